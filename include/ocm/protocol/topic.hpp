@@ -1,0 +1,188 @@
+/// What is known about a robot's topics: which frames, which fields, which units, whose board. The generator
+/// writes these as constexpr data; a tool loads the same types from a spec at run time. Views only: whoever
+/// made the catalogue owns the text.
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <type_traits>
+
+#include "ocm/base/decimal.hpp"
+#include "ocm/base/time.hpp"
+#include "ocm/protocol/codec.hpp"
+#include "ocm/protocol/identifier.hpp"
+#include "ocm/protocol/request.hpp"
+
+namespace ocm::protocol {
+
+/// A name for a value, or for a bit when the field is a set of flags.
+struct NamedValue {
+  std::int64_t raw = 0;  ///< the value; for flags the number of the bit
+  std::string_view name;
+  friend constexpr bool operator==(const NamedValue&, const NamedValue&) = default;
+};
+
+/// One number in a frame. physical = raw * scale + offset, in `unit`.
+struct Field {
+  std::string_view name;
+  Position position{};
+  bool is_signed = false;
+  base::Decimal scale{1, 0};
+  base::Decimal offset{};
+  std::string_view unit;     ///< as a person writes it: "deg/s"; empty for counts
+  std::int64_t raw_min = 0;  ///< the range that the source gives, in raw units
+  std::int64_t raw_max = 0;
+  std::span<const NamedValue> values;  ///< names of values, or of flags
+  bool flags = false;                  ///< `values` names bits, several of which may be set
+
+  [[nodiscard]] constexpr std::int64_t raw(const can::Payload& data) const noexcept {
+    return get(data, position, is_signed);
+  }
+  /// Exact; out_of_range only for scales that no sensor has.
+  [[nodiscard]] constexpr base::Result<base::Decimal> physical(std::int64_t raw_value) const noexcept {
+    const auto scaled = base::multiply({raw_value, 0}, scale);
+    if (!scaled) return scaled.error;
+    return base::add(*scaled, offset);
+  }
+  /// The raw number nearest to a physical value; out_of_range beyond the field's range.
+  [[nodiscard]] constexpr base::Result<std::int64_t> raw_from(base::Decimal physical_value) const noexcept {
+    const auto above_offset = base::subtract(physical_value, offset);
+    if (!above_offset) return above_offset.error;
+    const auto raw_value = base::divide_rounded(*above_offset, scale);
+    if (!raw_value) return raw_value.error;
+    if (*raw_value < raw_min || *raw_value > raw_max) return base::Error::out_of_range;
+    return *raw_value;
+  }
+};
+
+/// One frame of a topic.
+struct FrameLayout {
+  std::string_view name;  ///< within the topic: "velocity", "x", "sensor_1"; empty for a topic's only frame
+  TopicId id{};
+  std::uint8_t dlc = 0;
+  std::span<const Field> fields;
+};
+
+enum class Kind : std::uint8_t { sensor, actuator };
+
+/// What an actuator does, so that a tool knows how to say it: `drive` takes velocities, `light` a colour.
+enum class Role : std::uint8_t { none, drive, light };
+
+struct Topic {
+  std::string_view name;
+  std::span<const std::string_view> aliases;
+  TopicId id{};  ///< requests (sensor) or set points (actuator) carry it
+  Kind kind = Kind::sensor;
+  Role role = Role::none;
+  std::uint8_t board = 0;               ///< index into Catalogue::boards
+  std::span<const FrameLayout> frames;  ///< in the order in which they are sent
+  Priority priority = default_priority;
+  Period period = default_period;    ///< sensors: sent so often when a request names no period
+  base::Duration shortest_period{};  ///< sensors: how often the part delivers something new
+  base::Duration deadline{};         ///< from release to the end of the last frame; 0: none given
+  base::Duration jitter{};           ///< of the release
+  base::Duration timeout{};   ///< actuators: set point goes to zero when none came for so long; 0: never
+  std::string_view group;     ///< "led" for led_1..led_8; empty otherwise
+  std::uint8_t instance = 0;  ///< 1..8 within the group
+  std::string_view source;    ///< where the facts come from
+};
+
+struct Board {
+  std::string_view name;
+  std::string_view mcu;
+};
+
+/// A frame's place in the catalogue.
+struct FrameRef {
+  const Topic* topic = nullptr;
+  std::uint8_t frame = 0;  ///< index into topic->frames
+  [[nodiscard]] constexpr const FrameLayout& layout() const noexcept { return topic->frames[frame]; }
+  constexpr explicit operator bool() const noexcept { return topic != nullptr; }
+};
+
+struct Catalogue {
+  std::string_view robot;
+  std::uint32_t bit_rate = 0;
+  std::span<const Board> boards;
+  std::span<const Topic> topics;
+
+  /// By name or alias; nullptr when there is none. O(topics).
+  [[nodiscard]] constexpr const Topic* find(std::string_view name_or_alias) const noexcept {
+    for (const Topic& topic : topics) {
+      if (topic.name == name_or_alias) return &topic;
+      for (const auto alias : topic.aliases)
+        if (alias == name_or_alias) return &topic;
+    }
+    return nullptr;
+  }
+  /// Whose request or set point has this number.
+  [[nodiscard]] constexpr const Topic* find(TopicId id) const noexcept {
+    for (const Topic& topic : topics)
+      if (topic.id == id) return &topic;
+    return nullptr;
+  }
+};
+
+/// Which frame an identifier stands for, in one step: 512 references, for both directions.
+class FrameIndex {
+ public:
+  constexpr FrameIndex() = default;
+  /// The catalogue must outlive the index.
+  constexpr explicit FrameIndex(const Catalogue& catalogue) noexcept {
+    for (const Topic& topic : catalogue.topics) {
+      const bool sensor = topic.kind == Kind::sensor;
+      if (sensor) requests_[topic.id.value] = &topic;
+      for (std::size_t i = 0; i < topic.frames.size(); ++i) {
+        auto& table = sensor ? sensors_ : actuators_;
+        table[topic.frames[i].id.value] = {&topic, static_cast<std::uint8_t>(i)};
+      }
+    }
+  }
+  /// Sensor data, or an actuator's set point; empty for requests and unknown identifiers.
+  [[nodiscard]] constexpr FrameRef find(Identifier id) const noexcept {
+    return (id.direction == Direction::sensor ? sensors_ : actuators_)[id.topic.value];
+  }
+  /// The sensor that a command frame asks; nullptr otherwise.
+  [[nodiscard]] constexpr const Topic* requested(Identifier id) const noexcept {
+    return id.direction == Direction::command ? requests_[id.topic.value] : nullptr;
+  }
+
+ private:
+  std::array<FrameRef, 256> sensors_{};
+  std::array<FrameRef, 256> actuators_{};
+  std::array<const Topic*, 256> requests_{};
+};
+
+/// What a board needs of a topic's type; what the generator writes satisfies it.
+template <class T>
+concept TopicType = requires(const T& topic, std::size_t frame,
+                             const std::array<can::Payload, T::frames.size()>& all) {
+  { T::id } -> std::convertible_to<TopicId>;
+  {
+    T::instances
+    } -> std::convertible_to<std::uint8_t>;  // 1, or how many of a kind follow each other: eight LEDs
+  { T::frames[frame].id } -> std::convertible_to<TopicId>;
+  { T::frames[frame].dlc } -> std::convertible_to<std::uint8_t>;
+  { topic.encode(frame) } -> std::same_as<can::Payload>;
+  { T::decode(all) } -> std::same_as<T>;
+};
+
+/// What a generated topic says of each of its frames.
+struct FrameHead {
+  TopicId id{};
+  std::uint8_t dlc = 0;
+};
+
+/// The types of a board's sensors or actuators.
+template <class... Topics>
+struct TopicList {
+  static constexpr std::size_t size = sizeof...(Topics);
+  template <class T>
+  static constexpr bool contains = (std::is_same_v<T, Topics> || ...);
+};
+
+}  // namespace ocm::protocol

@@ -1,0 +1,59 @@
+/// The buses of a host behind one interface, so that a tool can choose at run time. Host only.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "ocm/base/result.hpp"
+#include "ocm/base/time.hpp"
+#include "ocm/can/bus.hpp"
+#include "ocm/can/filter.hpp"
+#include "ocm/can/frame.hpp"
+
+namespace ocm::transport {
+
+/// What went wrong, said to a person: what and where, and what to do about it.
+struct Failure {
+  std::string what;
+  std::string remedy;
+  friend bool operator==(const Failure&, const Failure&) = default;
+};
+
+template <class T>
+using Outcome = base::Result<T, Failure>;
+
+/// What happened to frames on their way. Nothing is lost without one of these going up.
+struct BusCounters {
+  std::uint64_t sent = 0;
+  std::uint64_t received = 0;
+  std::uint64_t lost = 0;          ///< frames that were on the bus and never reached this reader
+  std::uint64_t refused = 0;       ///< sends that the queue had no room for (each retry counts)
+  std::uint64_t error_frames = 0;  ///< reports of the CAN controller among the received
+};
+
+/// A bus as a host program sees it. Satisfies can::Bus.
+class Bus {
+ public:
+  Bus() = default;
+  Bus(const Bus&) = delete;
+  Bus& operator=(const Bus&) = delete;
+  virtual ~Bus() = default;
+
+  /// "can0", "sim": what the user chose.
+  [[nodiscard]] virtual std::string_view name() const = 0;
+  /// true: taken; false: no room now, try again when `descriptor` is writable; an error: the bus is gone.
+  virtual base::Result<bool> send(const can::Frame& frame) = 0;
+  /// Waits at most `timeout` (zero: not at all) for a frame. Frames are stamped by the bus (Unix time).
+  virtual base::Result<can::Received> receive(base::Duration timeout) = 0;
+  /// Only frames that pass one of the filters are received from now on (none: all). Error frames always are.
+  virtual Outcome<void> subscribe(std::span<const can::Filter> filters) = 0;
+  /// To poll for input; owned by the bus.
+  [[nodiscard]] virtual int descriptor() const = 0;
+  [[nodiscard]] virtual const BusCounters& counters() const = 0;
+  /// Why `send` or `receive` answered Error::closed, in words; empty while the bus is open.
+  [[nodiscard]] virtual const Failure& failure() const = 0;
+};
+
+}  // namespace ocm::transport
