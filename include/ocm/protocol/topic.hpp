@@ -185,4 +185,34 @@ struct TopicList {
   static constexpr bool contains = (std::is_same_v<T, Topics> || ...);
 };
 
+/// A generated topic as an entry of its catalogue. `instance` is 1..T::instances for one of several of a kind,
+/// whose `entry_name` is then led_1 and whose group is T's name; 0 otherwise.
+template <TopicType T>
+[[nodiscard]] constexpr Topic catalogue_entry(std::uint8_t board, std::span<const std::string_view> aliases,
+                                              std::span<const FrameLayout> frames, std::string_view source,
+                                              std::uint8_t instance = 0,
+                                              std::string_view entry_name = T::name) noexcept {
+  Topic topic;
+  topic.name = entry_name;
+  topic.aliases = aliases;
+  topic.id = TopicId{static_cast<std::uint8_t>(T::id.value + (instance == 0 ? 0 : instance - 1))};
+  topic.kind = T::kind;
+  topic.board = board;
+  topic.frames = frames;
+  topic.priority = T::priority;
+  topic.deadline = T::deadline;
+  topic.jitter = T::jitter;
+  topic.source = source;
+  if constexpr (T::kind == Kind::sensor) {
+    topic.period = T::period;
+    topic.shortest_period = T::shortest_period;
+  } else {
+    topic.role = T::role;
+    topic.timeout = T::timeout;
+  }
+  if (instance != 0) topic.group = T::name;
+  topic.instance = instance;
+  return topic;
+}
+
 }  // namespace ocm::protocol

@@ -33,6 +33,13 @@ struct BusCounters {
   std::uint64_t error_frames = 0;  ///< reports of the CAN controller among the received
 };
 
+/// Whether the bus can carry frames now.
+enum class BusState : std::uint8_t {
+  up,
+  down,    ///< the interface was switched off; it may come back, and then the same object goes on
+  closed,  ///< gone for good: `failure` says why
+};
+
 /// A bus as a host program sees it. Satisfies can::Bus.
 class Bus {
  public:
@@ -43,15 +50,23 @@ class Bus {
 
   /// "can0", "sim": what the user chose.
   [[nodiscard]] virtual std::string_view name() const = 0;
-  /// true: taken; false: no room now, try again when `descriptor` is writable; an error: the bus is gone.
+  /// true: taken; false: no room now (or the bus is down: see `state`), try again in a millisecond: a full
+  /// queue does not always show in `descriptor`; Error::closed: the bus is gone; Error::bad_identifier,
+  /// Error::bad_length: no such frame can exist.
   virtual base::Result<bool> send(const can::Frame& frame) = 0;
   /// Waits at most `timeout` (zero: not at all) for a frame. Frames are stamped by the bus (Unix time).
+  /// Error::timed_out also comes early, when a signal was caught or `state` has changed.
   virtual base::Result<can::Received> receive(base::Duration timeout) = 0;
   /// Only frames that pass one of the filters are received from now on (none: all). Error frames always are.
   virtual Outcome<void> subscribe(std::span<const can::Filter> filters) = 0;
-  /// To poll for input; owned by the bus.
+  /// To poll for input once `receive(zero)` has answered Error::timed_out: until then frames may wait inside
+  /// the bus. Owned by the bus.
   [[nodiscard]] virtual int descriptor() const = 0;
   [[nodiscard]] virtual const BusCounters& counters() const = 0;
+  /// As the last `send` or `receive` left it.
+  [[nodiscard]] virtual BusState state() const {
+    return failure() == Failure{} ? BusState::up : BusState::closed;
+  }
   /// Why `send` or `receive` answered Error::closed, in words; empty while the bus is open.
   [[nodiscard]] virtual const Failure& failure() const = 0;
 };

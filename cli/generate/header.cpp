@@ -1,0 +1,853 @@
+#include "cli/generate/header.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "cli/spec/names.hpp"
+
+namespace ocm::generate {
+
+namespace {
+
+using base::Decimal;
+using base::Duration;
+using spec::FieldModel;
+using spec::FrameModel;
+using spec::Model;
+using spec::pascal_case;
+using spec::TopicModel;
+
+constexpr std::size_t columns = 110;
+
+// --- numbers and words
+// ------------------------------------------------------------------------------------------
+
+std::string print(Decimal number) {
+  return std::string{base::to_text(number).view()};
+}
+
+/// 36'000'000
+std::string grouped(std::uint64_t number) {
+  std::string digits = std::to_string(number);
+  for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, "'");
+  return digits;
+}
+
+std::string hex(unsigned number) {
+  base::Text<4> text;
+  text << "0x";
+  text.hex(number, 2);
+  return std::string{text.view()};
+}
+
+/// A raw number as a literal that has no warning in any type.
+std::string literal(std::int64_t number) {
+  if (number == INT64_MIN) return "INT64_MIN";
+  if (number == INT32_MIN) return "INT32_MIN";
+  return number < 0 ? "-" + grouped(static_cast<std::uint64_t>(-number))
+                    : grouped(static_cast<std::uint64_t>(number));
+}
+
+/// The mask of one bit: 0x01, 0x8000.
+std::string mask_literal(std::int64_t bit) {
+  base::Text<20> text;
+  text << "0x";
+  text.hex(std::uint64_t{1} << bit, static_cast<int>(bit / 8 * 2 + 2));
+  return std::string{text.view()};
+}
+
+std::string quoted(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"') out += '\\';
+    out += c;
+  }
+  return out + "\"";
+}
+
+std::string capitalised(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
+/// "power_status" -> "Power status"
+std::string title(std::string_view name) {
+  std::string words{name};
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return capitalised(words);
+}
+
+std::string chrono(Duration duration) {
+  const std::int64_t ns = duration.count();
+  if (ns == 0) return "{}";
+  const auto as = [](std::string_view unit, std::int64_t count) {
+    return " = std::chrono::" + std::string{unit} + "{" + grouped(static_cast<std::uint64_t>(count)) + "}";
+  };
+  if (ns % 1'000'000'000 == 0) return as("seconds", ns / 1'000'000'000);
+  if (ns % 1'000'000 == 0) return as("milliseconds", ns / 1'000'000);
+  if (ns % 1'000 == 0) return as("microseconds", ns / 1'000);
+  return as("nanoseconds", ns);
+}
+
+std::string integer_type(const FieldModel& field) {
+  const unsigned width = field.position.width;
+  const char* bits = width <= 8 ? "8" : width <= 16 ? "16" : width <= 32 ? "32" : "64";
+  return std::string{"std::"} + (field.is_signed ? "int" : "uint") + bits + "_t";
+}
+
+std::string member_type(const FieldModel& field) {
+  return field.is_enumeration() ? pascal_case(field.name) : integer_type(field);
+}
+
+std::string bits_alias(const FieldModel& field) {
+  return pascal_case(field.name) + "Bits";
+}
+
+/// Aggregates have a struct for each frame and one around them.
+bool is_aggregate(const TopicModel& topic) {
+  return topic.frames.size() > 1 || topic.frames.front().is_array;
+}
+
+std::string frame_type(const TopicModel& topic, const FrameModel& frame) {
+  return pascal_case(topic.name) + pascal_case(frame.name);
+}
+
+std::size_t frame_count(const TopicModel& topic) {
+  std::size_t count = 0;
+  for (const FrameModel& frame : topic.frames) count += frame.count;
+  return count;
+}
+
+// --- physical = (raw * factor + shift) / divisor, all whole numbers
+// ---------------------------------------------
+
+std::string power_of_ten(int n) {
+  if (n <= 9) {
+    std::uint64_t power = 1;
+    for (int i = 0; i < n; ++i) power *= 10;
+    return grouped(power) + ".0";
+  }
+  return "1e" + std::to_string(n);
+}
+
+/// digits * 10^zeros as a double literal. It is exact up to 2^53.
+std::string whole(std::int64_t digits, int zeros) {
+  std::uint64_t magnitude =
+      digits < 0 ? 0 - static_cast<std::uint64_t>(digits) : static_cast<std::uint64_t>(digits);
+  for (; zeros > 0 && magnitude <= 99'999'999; --zeros) magnitude *= 10;
+  const std::string text = (digits < 0 ? "-" : "") + grouped(magnitude);
+  return zeros == 0 ? text + ".0" : text + "e" + std::to_string(zeros);
+}
+
+struct Conversion {
+  std::string factor;   ///< empty: 1
+  std::string shift;    ///< empty: 0
+  std::string divisor;  ///< empty: 1
+};
+
+Conversion conversion(const FieldModel& field) {
+  const Decimal scale = field.scale;
+  const Decimal offset = field.offset;
+  Conversion c;
+  const int lowest = offset.digits == 0 ? scale.exponent : std::min<int>(scale.exponent, offset.exponent);
+  const int places = lowest < 0 ? -lowest : 0;
+  if (offset.digits == 0 && scale.digits > 0 && places > 0 && places <= 18) {
+    std::int64_t power = 1;
+    for (int i = 0; i < places; ++i) power *= 10;
+    if (power % scale.digits == 0) {  // one part in so many: 1/1024, 1/1'000'000
+      const std::int64_t parts = power / scale.digits;
+      c.divisor = grouped(static_cast<std::uint64_t>(parts)) + ".0";
+      return c;
+    }
+  }
+  if (scale.digits != 1 || scale.exponent + places != 0)
+    c.factor = whole(scale.digits, scale.exponent + places);
+  if (offset.digits != 0) c.shift = whole(offset.digits, offset.exponent + places);
+  if (places != 0) c.divisor = power_of_ten(places);
+  return c;
+}
+
+std::string to_physical(const FieldModel& field) {
+  const Conversion c = conversion(field);
+  std::string text = field.position.width > 32 ? "static_cast<double>(" + field.name + ")" : field.name;
+  if (!c.factor.empty()) text += " * " + c.factor;
+  if (!c.shift.empty()) {
+    text += c.shift.front() == '-' ? " - " + c.shift.substr(1) : " + " + c.shift;
+    if (!c.divisor.empty()) text = "(" + text + ")";
+  }
+  if (!c.divisor.empty()) text += " / " + c.divisor;
+  return text;
+}
+
+std::string to_raw(const FieldModel& field, std::string text) {
+  const Conversion c = conversion(field);
+  if (!c.divisor.empty()) text += " * " + c.divisor;
+  if (!c.shift.empty()) {
+    text += c.shift.front() == '-' ? " + " + c.shift.substr(1) : " - " + c.shift;
+    if (!c.factor.empty()) text = "(" + text + ")";
+  }
+  if (!c.factor.empty()) text += " / " + c.factor;
+  return text;
+}
+
+// --- text
+// -------------------------------------------------------------------------------------------------------
+
+/// How many columns UTF-8 takes.
+std::size_t width_of(std::string_view text) {
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+class Writer {
+ public:
+  void line(std::string_view text = {}) {
+    if (!text.empty()) text_.append(2 * depth_, ' ').append(text);
+    text_ += '\n';
+  }
+  void open(std::string_view text) {
+    line(text);
+    ++depth_;
+  }
+  void close(std::string_view text) {
+    --depth_;
+    line(text);
+  }
+  /// Broken into lines between words.
+  void comment(std::string_view text, std::string_view mark = "/// ") {
+    const std::string indent(2 * depth_, ' ');
+    std::string current;
+    while (!text.empty()) {
+      const std::size_t end = std::min(text.find(' '), text.size());
+      const std::string_view word = text.substr(0, end);
+      if (!current.empty() &&
+          indent.size() + mark.size() + width_of(current) + 1 + width_of(word) > columns) {
+        text_.append(indent).append(mark).append(current) += '\n';
+        current.clear();
+      }
+      if (!current.empty()) current += ' ';
+      current += word;
+      text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    if (!current.empty()) text_.append(indent).append(mark).append(current) += '\n';
+  }
+  /// Lines with a remark each: behind them, aligned, where that fits; above them otherwise.
+  void remarked(const std::vector<std::pair<std::string, std::string>>& lines) {
+    std::size_t widest = 0;
+    std::size_t longest = 0;
+    for (const auto& [code, remark] : lines)
+      if (!remark.empty()) widest = std::max(widest, width_of(code));
+    for (const auto& [code, remark] : lines)
+      if (!remark.empty()) longest = std::max(longest, 2 * depth_ + widest + 7 + width_of(remark));
+    for (const auto& [code, remark] : lines) {
+      if (remark.empty()) {
+        line(code);
+      } else if (longest <= columns) {
+        line(code + std::string(widest - width_of(code) + 2, ' ') + "///< " + remark);
+      } else {
+        comment(remark);
+        line(code);
+      }
+    }
+  }
+  /// `head` + items, parted by commas and broken to fit, aligned behind the head + `tail`.
+  void list(std::string_view head, const std::vector<std::string>& items, std::string_view tail) {
+    const std::string indent(2 * depth_, ' ');
+    const std::string hang(indent.size() + head.size(), ' ');
+    std::string current = indent + std::string{head};
+    bool first = true;
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      const std::string piece = items[i] + (i + 1 < items.size() ? "," : std::string{tail});
+      if (!first && width_of(current) + 1 + width_of(piece) > columns) {
+        text_.append(current) += '\n';
+        current = hang;
+        first = true;
+      }
+      if (!first) current += ' ';
+      current += piece;
+      first = false;
+    }
+    if (items.empty()) current += tail;
+    text_.append(current) += '\n';
+  }
+  std::string take() { return std::move(text_); }
+
+ private:
+  std::string text_;
+  std::size_t depth_ = 0;
+};
+
+std::string with_source(std::string text, const std::string& source) {
+  if (source.empty()) return text;
+  return text.empty() ? "[" + source + "]" : text + " [" + source + "]";
+}
+
+// --- one frame
+// --------------------------------------------------------------------------------------------------
+
+std::string remark(const FieldModel& field) {
+  std::string text = field.description;
+  const auto add = [&](const std::string& part, std::string_view glue = ", ") {
+    if (!text.empty()) text += glue;
+    text += part;
+  };
+  if (field.flags || field.is_enumeration()) return with_source(std::move(text), field.source.joined());
+  const std::string unit = field.unit.empty() ? "" : " " + field.unit;
+  const auto physical = [&](std::int64_t raw) {
+    return print(*base::add(*base::multiply({raw, 0}, field.scale), field.offset));
+  };
+  const bool plain = field.scale == Decimal{1, 0} && field.offset.digits == 0;
+  if (!plain) {
+    add(print(field.scale) + unit + " a bit", "; ");
+    if (field.offset.digits != 0) add("from " + print(field.offset) + unit + " on");
+  }
+  std::string low = physical(field.raw_min);
+  std::string high = physical(field.raw_max);
+  if (field.scale.digits < 0) std::swap(low, high);
+  add("[" + low + ", " + high + "]" + unit, plain ? "; " : ", ");
+  return with_source(std::move(text), field.source.joined());
+}
+
+/// A name for a parameter or a local that no member of the struct has: members never end in an underscore.
+std::string local(const FrameModel& frame, std::string name) {
+  for (const FieldModel& field : frame.fields) {
+    if (field.name == name) return name + "_";
+    for (const auto& value : field.values)
+      if (field.flags && value.name == name) return name + "_";
+  }
+  return name;
+}
+std::string local(const TopicModel& topic, std::string name) {
+  for (const FrameModel& frame : topic.frames)
+    if (frame.name == name) return name + "_";
+  return name;
+}
+
+void write_types(Writer& out, const FrameModel& frame) {
+  for (const FieldModel& field : frame.fields) {
+    if (!field.is_enumeration()) continue;
+    out.open("enum class " + pascal_case(field.name) + " : " + integer_type(field) + " {");
+    for (const auto& value : field.values) out.line(value.name + " = " + literal(value.raw) + ",");
+    out.close("};");
+  }
+  for (const FieldModel& field : frame.fields) {
+    if (field.is_enumeration()) continue;
+    for (const auto& value : field.values)
+      out.line("static constexpr " + integer_type(field) + " " +
+               (field.flags ? value.name + "_flag = " + mask_literal(value.raw)
+                            : field.name + "_" + value.name + " = " + literal(value.raw)) +
+               ";");
+  }
+  const bool any = std::any_of(frame.fields.begin(), frame.fields.end(),
+                               [](const FieldModel& field) { return !field.values.empty(); });
+  if (any) out.line();
+}
+
+void write_members(Writer& out, const FrameModel& frame) {
+  std::vector<std::pair<std::string, std::string>> lines;
+  for (const FieldModel& field : frame.fields)
+    lines.emplace_back(member_type(field) + " " + field.name + (field.is_enumeration() ? "{};" : " = 0;"),
+                       remark(field));
+  out.remarked(lines);
+}
+
+/// A function on one line where it fits.
+void write_function(Writer& out, const std::string& head, const std::vector<std::string>& body,
+                    std::size_t indent = 2) {
+  if (body.size() == 1 && indent + head.size() + 5 + body[0].size() <= columns)
+    return out.line(head + " { " + body[0] + " }");
+  out.open(head + " {");
+  for (const std::string& statement : body) out.line(statement);
+  out.close("}");
+}
+
+void write_accessors(Writer& out, const FrameModel& frame) {
+  const std::string value = local(frame, "value");
+  const std::string on = local(frame, "on");
+  for (const FieldModel& field : frame.fields) {
+    if (!field.unit_name.empty()) {
+      const std::string name = field.name + "_" + field.unit_name;
+      write_function(out, "[[nodiscard]] constexpr double " + name + "() const noexcept",
+                     {"return " + to_physical(field) + ";"});
+      out.open("constexpr void set_" + name + "(double " + value + ") noexcept {");
+      std::vector<std::string> arguments{to_raw(field, value), bits_alias(field) + "::min",
+                                         bits_alias(field) + "::max"};
+      if (field.has_range) arguments = {arguments[0], literal(field.raw_min), literal(field.raw_max)};
+      out.list(field.name + " = ocm::protocol::nearest_raw<" + integer_type(field) + ">(", arguments, ");");
+      out.close("}");
+    }
+    if (!field.flags) continue;
+    for (const auto& flag : field.values) {
+      write_function(out, "[[nodiscard]] constexpr bool " + flag.name + "() const noexcept",
+                     {"return (" + field.name + " & " + flag.name + "_flag) != 0;"});
+      write_function(out, "constexpr void set_" + flag.name + "(bool " + on + ") noexcept",
+                     {field.name + " = static_cast<" + integer_type(field) + ">(" + on + " ? " + field.name +
+                      " | " + flag.name + "_flag : " + field.name + " & ~" + flag.name + "_flag);"});
+    }
+  }
+}
+
+void write_layout(Writer& out, const FrameModel& frame) {
+  for (const FieldModel& field : frame.fields) {
+    const protocol::Position p = field.position;
+    const unsigned type_width = p.width <= 8 ? 8 : p.width <= 16 ? 16 : p.width <= 32 ? 32 : 64;
+    const bool big = p.order == protocol::ByteOrder::big;
+    std::string arguments = integer_type(field) + ", " + std::to_string(p.start);
+    if (p.width != type_width || big) arguments += ", " + std::to_string(p.width);
+    if (big) arguments += ", ocm::protocol::ByteOrder::big";
+    out.line("using " + bits_alias(field) + " = ocm::protocol::Bits<" + arguments + ">;");
+  }
+}
+
+void write_codec(Writer& out, const std::string& type, const FrameModel& frame, bool is_topic) {
+  const std::string data = local(frame, "data");
+  const std::string value = local(frame, "value");
+  std::vector<std::string> encode{"ocm::can::Payload " + data + "{};"};
+  std::vector<std::string> decode{type + " " + value + ";"};
+  for (const FieldModel& field : frame.fields) {
+    const std::string bits = bits_alias(field);
+    const std::string got = bits + "::get(" + data + ")";
+    const std::string raw =
+        field.is_enumeration() ? "static_cast<" + integer_type(field) + ">(" + field.name + ")" : field.name;
+    encode.push_back(bits + "::put(" + data + ", " + raw + ");");
+    decode.push_back(
+        value + "." + field.name + " = " +
+        (field.is_enumeration() ? "static_cast<" + pascal_case(field.name) + ">(" + got + ")" : got) + ";");
+  }
+  encode.push_back("return " + data + ";");
+  decode.push_back("return " + value + ";");
+  if (frame.fields.empty()) {
+    encode = {"return {};"};
+    decode = {"return {};"};
+  }
+  write_function(out,
+                 std::string{"[[nodiscard]] constexpr ocm::can::Payload encode("} +
+                     (is_topic ? "std::size_t /*frame*/ = 0" : "") + ") const noexcept",
+                 encode);
+  write_function(out,
+                 "[[nodiscard]] static constexpr " + type + " decode(const ocm::can::Payload&" +
+                     (frame.fields.empty() ? "" : " " + data) + ") noexcept",
+                 decode);
+}
+
+// --- one topic
+// --------------------------------------------------------------------------------------------------
+
+std::string board_type(const Model& model, const TopicModel& topic) {
+  return pascal_case(model.boards[topic.board].name);
+}
+
+void write_topic_comment(Writer& out, const Model& model, const TopicModel& topic) {
+  std::string text = title(topic.name) + (topic.description.empty() ? ". " : ": " + topic.description + ". ");
+  const bool sensor = topic.kind == protocol::Kind::sensor;
+  text += sensor ? "Sensor of " : "Actuator of ";
+  text += board_type(model, topic) + ", ";
+  text += sensor ? "requests on " : "set points on ";
+  text += hex(topic.id);
+  if (topic.is_group) text += " to " + hex(topic.id + topic.count - 1U);
+  text += ".";
+  // The sources of single constants stand beside them.
+  spec::Source rest{topic.source.general, {}};
+  for (const auto& fact : topic.source.particular)
+    if (fact.first == "id" || fact.first == "board" || fact.first == "count" || fact.first == "frames" ||
+        fact.first == "byte_order" || fact.first == "kind")
+      rest.particular.push_back(fact);
+  if (!is_aggregate(topic))
+    for (const auto& fact : topic.frames.front().source.particular) rest.particular.push_back(fact);
+  out.comment(with_source(std::move(text), rest.joined()));
+}
+
+std::string frame_heads(const TopicModel& topic) {
+  std::string heads;
+  for (const FrameModel& frame : topic.frames) {
+    for (unsigned i = 0; i < frame.count; ++i) {
+      if (!heads.empty()) heads += ", ";
+      heads += "{ocm::protocol::TopicId{" + hex(frame.id + i) + "}, " + std::to_string(frame.dlc) + "}";
+    }
+  }
+  return heads;
+}
+
+void write_constants(Writer& out, const TopicModel& topic) {
+  const bool sensor = topic.kind == protocol::Kind::sensor;
+  const std::size_t frames = frame_count(topic);
+  out.line("static constexpr std::string_view name = " + quoted(topic.name) + ";");
+  out.line("static constexpr ocm::protocol::TopicId id{" + hex(topic.id) + "};");
+  out.line("static constexpr std::uint8_t instances = " + std::to_string(topic.count) + ";");
+  const std::string head =
+      "static constexpr std::array<ocm::protocol::FrameHead, " + std::to_string(frames) + "> frames";
+  const std::string one_line = head + "{{" + frame_heads(topic) + "}};";
+  if (2 + one_line.size() <= columns) {
+    out.line(one_line);
+  } else {
+    out.line(head + "{{");
+    for (const FrameModel& frame : topic.frames)
+      for (unsigned i = 0; i < frame.count; ++i)
+        out.line("    {ocm::protocol::TopicId{" + hex(frame.id + i) + "}, " + std::to_string(frame.dlc) +
+                 "},");
+    out.line("}};");
+  }
+  static constexpr std::string_view units[] = {"milliseconds", "seconds", "microseconds"};
+  static constexpr std::string_view roles[] = {"none", "drive", "light"};
+  std::vector<std::pair<std::string, std::string>> lines;
+  const auto add = [&](std::string code, std::string_view fact) {
+    const std::string& source = topic.source.of(fact);
+    lines.emplace_back(std::move(code), &source == &topic.source.general ? "" : "[" + source + "]");
+  };
+  out.line(std::string{"static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::"} +
+           (sensor ? "sensor;" : "actuator;"));
+  if (sensor) {
+    add("static constexpr ocm::protocol::Period period{" + std::to_string(topic.period.count) +
+            ", ocm::protocol::PeriodUnit::" +
+            std::string{units[static_cast<std::size_t>(topic.period.unit)]} + "};",
+        "period");
+    add("static constexpr ocm::base::Duration shortest_period" + chrono(topic.shortest_period) + ";",
+        "shortest_period");
+  } else {
+    add("static constexpr ocm::protocol::Role role = ocm::protocol::Role::" +
+            std::string{roles[static_cast<std::size_t>(topic.role)]} + ";",
+        "role");
+    add("static constexpr ocm::base::Duration timeout" + chrono(topic.timeout) + ";", "timeout");
+  }
+  add("static constexpr ocm::base::Duration deadline" + chrono(topic.deadline) + ";", "deadline");
+  add("static constexpr ocm::base::Duration jitter" + chrono(topic.jitter) + ";", "jitter");
+  add("static constexpr ocm::protocol::Priority priority = ocm::protocol::Priority::" +
+          std::string{protocol::name(topic.priority)} + ";",
+      "priority");
+  out.remarked(lines);
+}
+
+void write_equality(Writer& out, const std::string& type) {
+  out.line("friend constexpr bool operator==(const " + type + "&, const " + type + "&) = default;");
+}
+
+void write_fields(Writer& out, const FrameModel& frame) {
+  if (frame.fields.empty()) return;
+  out.line();
+  write_types(out, frame);
+  write_members(out, frame);
+  const bool has_accessors = std::any_of(frame.fields.begin(), frame.fields.end(),
+                                         [](const FieldModel& f) { return !f.unit_name.empty() || f.flags; });
+  out.line();
+  write_layout(out, frame);
+  if (!has_accessors) return;
+  out.line();
+  write_accessors(out, frame);
+}
+
+void write_frame(Writer& out, const TopicModel& topic, const FrameModel& frame) {
+  const std::string type = frame_type(topic, frame);
+  std::string text = title(topic.name) + ", " + (frame.is_array ? "one " : "") + frame.name;
+  text += frame.description.empty() ? "." : ": " + frame.description + ".";
+  out.comment(with_source(std::move(text), frame.source.joined()));
+  out.open("struct " + type + " {");
+  if (frame.is_array) {
+    out.line("static constexpr ocm::protocol::TopicId id{" + hex(frame.id) + "};  ///< of the first of " +
+             std::to_string(frame.count));
+  } else {
+    out.line("static constexpr ocm::protocol::TopicId id{" + hex(frame.id) + "};");
+  }
+  out.line("static constexpr std::uint8_t dlc = " + std::to_string(frame.dlc) + ";");
+  write_fields(out, frame);
+  out.line();
+  write_codec(out, type, frame, false);
+  write_equality(out, type);
+  out.close("};");
+  out.line();
+}
+
+void write_single(Writer& out, const TopicModel& topic) {
+  const std::string type = pascal_case(topic.name);
+  const FrameModel& frame = topic.frames.front();
+  const std::string all = local(frame, "all");
+  write_fields(out, frame);
+  out.line();
+  write_codec(out, type, frame, true);
+  write_function(out,
+                 "[[nodiscard]] static constexpr " + type +
+                     " decode(const std::array<ocm::can::Payload, 1>& " + all + ") noexcept",
+                 {"return decode(" + all + "[0]);"});
+  write_equality(out, type);
+}
+
+void write_aggregate(Writer& out, const TopicModel& topic) {
+  const std::string type = pascal_case(topic.name);
+  out.line();
+  for (const FrameModel& frame : topic.frames) {
+    const std::string inner = frame_type(topic, frame);
+    out.line((frame.is_array ? "std::array<" + inner + ", " + std::to_string(frame.count) + ">" : inner) +
+             " " + frame.name + (frame.is_array ? "{};" : ";"));
+  }
+  out.line();
+  const std::string all = local(topic, "all");
+  const std::string index = local(topic, "frame");
+  const std::string value = local(topic, "value");
+  const std::string i = local(topic, "i");
+  std::vector<std::string> encode;
+  std::vector<std::string> decode{type + " " + value + ";"};
+  const auto for_each = [&](const std::string& member, const std::string& statement) {
+    const std::string head =
+        "for (std::size_t " + i + " = 0; " + i + " < " + member + ".size(); ++" + i + ")";
+    if (4 + head.size() + 1 + statement.size() <= columns) return decode.push_back(head + " " + statement);
+    decode.push_back(head);
+    decode.push_back("  " + statement);
+  };
+  std::size_t first = 0;
+  for (const FrameModel& frame : topic.frames) {
+    const std::string inner = frame_type(topic, frame);
+    const std::string at = std::to_string(first);
+    const std::string member = value + "." + frame.name;
+    if (frame.is_array && first == 0) {
+      encode.push_back("if (" + index + " < " + frame.name + ".size()) return " + frame.name + "[" + index +
+                       "].encode();");
+      for_each(member, member + "[" + i + "] = " + inner + "::decode(" + all + "[" + i + "]);");
+    } else if (frame.is_array) {
+      const std::string end = std::to_string(first + frame.count);
+      encode.push_back("if (" + index + " >= " + at + " && " + index + " < " + end + ") return " +
+                       frame.name + "[" + index + " - " + at + "].encode();");
+      for_each(member, member + "[" + i + "] = " + inner + "::decode(" + all + "[" + at + " + " + i + "]);");
+    } else {
+      encode.push_back("if (" + index + " == " + at + ") return " + frame.name + ".encode();");
+      decode.push_back(member + " = " + inner + "::decode(" + all + "[" + at + "]);");
+    }
+    first += frame.count;
+  }
+  encode.push_back("return {};");
+  decode.push_back("return " + value + ";");
+  out.comment("In the order in which they are sent; no data where there is no such frame.");
+  write_function(out,
+                 "[[nodiscard]] constexpr ocm::can::Payload encode(std::size_t " + index + ") const noexcept",
+                 encode);
+  write_function(out,
+                 "[[nodiscard]] static constexpr " + type + " decode(const std::array<ocm::can::Payload, " +
+                     std::to_string(first) + ">& " + all + ") noexcept",
+                 decode);
+  write_equality(out, type);
+}
+
+void write_topic(Writer& out, const Model& model, const TopicModel& topic) {
+  const std::string type = pascal_case(topic.name);
+  if (is_aggregate(topic))
+    for (const FrameModel& frame : topic.frames) write_frame(out, topic, frame);
+  write_topic_comment(out, model, topic);
+  out.open("struct " + type + " {");
+  write_constants(out, topic);
+  if (is_aggregate(topic))
+    write_aggregate(out, topic);
+  else
+    write_single(out, topic);
+  out.close("};");
+  out.line("static_assert(ocm::protocol::TopicType<" + type + ">);");
+  out.line();
+}
+
+// --- boards and catalogue
+// ---------------------------------------------------------------------------------------
+
+void write_board(Writer& out, const Model& model, std::size_t index) {
+  const spec::BoardModel& board = model.boards[index];
+  const auto types = [&](protocol::Kind kind) {
+    std::vector<std::string> list;
+    for (const TopicModel& topic : model.topics)
+      if (topic.board == index && topic.kind == kind) list.push_back(pascal_case(topic.name));
+    return list;
+  };
+  out.comment(with_source(
+      "The board " + board.name + (board.description.empty() ? "." : ": " + board.description + "."),
+      board.source.joined()));
+  out.open("struct " + pascal_case(board.name) + " {");
+  out.line("static constexpr std::string_view name = " + quoted(board.name) + ";");
+  out.line("static constexpr std::string_view mcu = " + quoted(board.mcu) + ";");
+  if (board.clock_hz) out.line("static constexpr std::uint32_t clock_hz = " + grouped(*board.clock_hz) + ";");
+  if (board.can_clock_hz)
+    out.line("static constexpr std::uint32_t can_clock_hz = " + grouped(*board.can_clock_hz) + ";");
+  for (const auto& [alias, kind] :
+       {std::pair{"sensors", protocol::Kind::sensor}, std::pair{"actuators", protocol::Kind::actuator}}) {
+    const auto list = types(kind);
+    const std::string head = std::string{"using "} + alias + " = ocm::protocol::TopicList<";
+    std::size_t length = 2 + head.size() + 2;
+    for (const std::string& type : list) length += type.size() + 2;
+    if (length <= columns + 2) {
+      out.list(head, list, ">;");
+    } else {
+      out.line(std::string{"using "} + alias + " =");
+      out.list("    ocm::protocol::TopicList<", list, ">;");
+    }
+  }
+  out.close("};");
+  out.line();
+}
+
+std::string decimal(Decimal number) {
+  if (number == Decimal{}) return "{}";
+  return "{" + std::to_string(number.digits) + ", " + std::to_string(number.exponent) + "}";
+}
+
+std::string frame_space(const TopicModel& topic, const FrameModel& frame) {
+  return frame.name.empty() ? topic.name : topic.name + "_" + frame.name;
+}
+
+void write_field_tables(Writer& out, const FrameModel& frame) {
+  for (const FieldModel& field : frame.fields) {
+    if (field.values.empty()) continue;
+    std::vector<std::string> entries;
+    for (const auto& value : field.values)
+      entries.push_back("{" + literal(value.raw) + ", " + quoted(value.name) + "}");
+    out.list("inline constexpr std::array<protocol::NamedValue, " + std::to_string(entries.size()) + "> " +
+                 field.name + "_names{{",
+             entries, "}};");
+  }
+  if (frame.fields.empty()) return;
+  out.open("inline constexpr std::array<protocol::Field, " + std::to_string(frame.fields.size()) +
+           "> fields{{");
+  for (const FieldModel& field : frame.fields) {
+    const protocol::Position p = field.position;
+    out.line(
+        "{" + quoted(field.name) + ", {" + std::to_string(p.start) + ", " + std::to_string(p.width) + ", " +
+        (p.order == protocol::ByteOrder::big ? "protocol::ByteOrder::big" : "protocol::ByteOrder::little") +
+        "}, " + (field.is_signed ? "true" : "false") + ", " + decimal(field.scale) + ", " +
+        decimal(field.offset) + ", " + quoted(field.unit) + ", " + literal(field.raw_min) + ", " +
+        literal(field.raw_max) + ", " + (field.values.empty() ? "{}" : field.name + "_names") + ", " +
+        (field.flags ? "true" : "false") + "},");
+  }
+  out.close("}};");
+}
+
+void write_tables(Writer& out, const TopicModel& topic) {
+  const bool aggregate = is_aggregate(topic);
+  if (aggregate) {
+    for (const FrameModel& frame : topic.frames) {
+      const std::string space = "namespace " + frame_space(topic, frame);
+      if (frame.fields.empty()) continue;
+      out.line(space + " {");
+      write_field_tables(out, frame);
+      out.line("}  // " + space);
+    }
+  }
+  out.line("namespace " + topic.name + " {");
+  if (!topic.aliases.empty()) {
+    std::vector<std::string> aliases;
+    for (const std::string& alias : topic.aliases) aliases.push_back(quoted(alias));
+    out.list("inline constexpr std::array<std::string_view, " + std::to_string(aliases.size()) + "> aliases{",
+             aliases, "};");
+  }
+  if (!aggregate) write_field_tables(out, topic.frames.front());
+  const std::size_t frames = frame_count(topic) * topic.count;
+  out.open("inline constexpr std::array<protocol::FrameLayout, " + std::to_string(frames) + "> frames{{");
+  for (unsigned instance = 0; instance < topic.count; ++instance) {
+    for (const FrameModel& frame : topic.frames) {
+      for (unsigned i = 0; i < frame.count; ++i) {
+        const std::string name = frame.is_array ? frame.name + "_" + std::to_string(i + 1) : frame.name;
+        const std::string fields = frame.fields.empty() ? "{}"
+                                   : aggregate          ? frame_space(topic, frame) + "::fields"
+                                                        : "fields";
+        out.line("{" + quoted(name) + ", protocol::TopicId{" + hex(frame.id + i + instance) + "}, " +
+                 std::to_string(frame.dlc) + ", " + fields + "},");
+      }
+    }
+  }
+  out.close("}};");
+  out.line("inline constexpr std::string_view source =");
+  out.line("  " + quoted(topic.source.joined()) + ";");
+  out.line("}  // namespace " + topic.name);
+}
+
+void write_topic_row(Writer& out, const TopicModel& topic, unsigned instance) {
+  const std::size_t frames = frame_count(topic);
+  const std::string type = pascal_case(topic.name);
+  const std::string aliases = topic.aliases.empty() ? "{}" : topic.name + "::aliases";
+  if (topic.is_group) {
+    const std::string its_frames = "{&" + topic.name + "::frames[" + std::to_string(instance * frames) +
+                                   "], " + std::to_string(frames) + "}";
+    out.line("protocol::catalogue_entry<" + type + ">(" + std::to_string(topic.board) + ", " + aliases +
+             ", " + its_frames + ", " + topic.name + "::source, " + std::to_string(instance + 1) + ", " +
+             quoted(topic.name + "_" + std::to_string(instance + 1)) + "),");
+  } else {
+    out.line("protocol::catalogue_entry<" + type + ">(" + std::to_string(topic.board) + ", " + aliases +
+             ", " + topic.name + "::frames, " + topic.name + "::source),");
+  }
+}
+
+void write_catalogue(Writer& out, const Model& model) {
+  out.line("// clang-format off");
+  out.line("namespace detail {");
+  out.line("namespace protocol = ocm::protocol;");
+  out.line();
+  out.line(
+      "// Fields: name, {start, width, order}, signed, scale, offset, unit, lowest and highest raw number,");
+  out.line("// names of values or flags, whether flags. Scale and offset: {digits, power of ten}.");
+  out.line("// Frames: name, id, DLC, fields.");
+  out.line(
+      "// Topics: index of the board, aliases, frames, source, and of several of a kind: number and name.");
+  for (const TopicModel& topic : model.topics) {
+    out.line();
+    write_tables(out, topic);
+  }
+  out.line();
+  out.open("inline constexpr std::array<protocol::Board, " + std::to_string(model.boards.size()) +
+           "> boards{{");
+  for (const auto& board : model.boards) out.line("{" + quoted(board.name) + ", " + quoted(board.mcu) + "},");
+  out.close("}};");
+  out.line();
+  std::size_t topics = 0;
+  for (const TopicModel& topic : model.topics) topics += topic.count;
+  out.open("inline constexpr std::array<protocol::Topic, " + std::to_string(topics) + "> topics{{");
+  for (const TopicModel& topic : model.topics)
+    for (unsigned i = 0; i < topic.count; ++i) write_topic_row(out, topic, i);
+  out.close("}};");
+  out.line("}  // namespace detail");
+  out.line("// clang-format on");
+  out.line();
+  out.comment("Everything that is said on the bus, as a tool sees it that loads the spec when it runs.");
+  out.line("inline constexpr ocm::protocol::Catalogue catalogue{" + quoted(model.robot) +
+           ", bit_rate, detail::boards, detail::topics};");
+}
+
+}  // namespace
+
+std::string header(const Model& model, std::string_view spec_name) {
+  Writer out;
+  out.comment("Made by ocm-generate from " + std::string{spec_name} +
+                  ". Do not edit: change the spec, and generate again.",
+              "// ");
+  out.line();
+  out.comment("The topics of " + model.robot +
+              (model.description.empty() ? "." : ": " + model.description + "."));
+  out.line("///");
+  out.comment(
+      "Members of a frame are raw numbers, as they travel. name_unit() is the physical value, rounded once "
+      "where "
+      "raw number times scale stays below 2^53; set_name_unit() takes the nearest raw number within the "
+      "field's "
+      "range, and the one nearest to zero for not a number. encode() puts the nearest number that the width "
+      "holds. No heap, no exceptions; everything is constexpr.");
+  if (const std::string source = model.defaults_source.joined(); !source.empty()) {
+    out.line("///");
+    out.comment("Where a period, deadline, jitter, priority or timeout names no source: [" + source + "]");
+  }
+  out.line("#pragma once");
+  out.line();
+  for (const char* name : {"array", "chrono", "cstddef", "cstdint", "string_view"})
+    out.line(std::string{"#include <"} + name + ">");
+  out.line();
+  for (const char* name :
+       {"ocm/base/time.hpp", "ocm/can/frame.hpp", "ocm/protocol/codec.hpp", "ocm/protocol/identifier.hpp",
+        "ocm/protocol/physical.hpp", "ocm/protocol/request.hpp", "ocm/protocol/topic.hpp"})
+    out.line("#include \"" + std::string{name} + "\"");
+  out.line();
+  out.line("namespace " + model.name_space + " {");
+  out.line();
+  out.comment(with_source("Bits per second on the bus.", model.bus_source.joined()));
+  out.line("inline constexpr std::uint32_t bit_rate = " + grouped(model.bit_rate) + ";");
+  out.line();
+  for (const TopicModel& topic : model.topics) write_topic(out, model, topic);
+  for (std::size_t i = 0; i < model.boards.size(); ++i) write_board(out, model, i);
+  write_catalogue(out, model);
+  out.line();
+  out.line("}  // namespace " + model.name_space);
+  return out.take();
+}
+
+}  // namespace ocm::generate

@@ -1,0 +1,118 @@
+/// A robot as its spec tells it, checked and complete: what the generator writes from, and what the catalogue
+/// is made of.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "ocm/base/decimal.hpp"
+#include "ocm/base/time.hpp"
+#include "ocm/protocol/codec.hpp"
+#include "ocm/protocol/identifier.hpp"
+#include "ocm/protocol/request.hpp"
+#include "ocm/protocol/topic.hpp"
+
+namespace ocm::spec {
+
+/// Where the facts of an object of the spec come from.
+struct Source {
+  std::string general;                                          ///< of all that `particular` does not name
+  std::vector<std::pair<std::string, std::string>> particular;  ///< fact, source
+
+  [[nodiscard]] const std::string& of(std::string_view fact) const noexcept {
+    for (const auto& [name, text] : particular)
+      if (name == fact) return text;
+    return general;
+  }
+  /// On one line: "Thesis table 4.1; scale: data sheet; id decided: none given".
+  [[nodiscard]] std::string joined() const {
+    std::string line = general;
+    for (const auto& [name, text] : particular) {
+      if (!line.empty()) line += "; ";
+      line.append(name).append(text.rfind("decided", 0) == 0 ? " " : ": ").append(text);
+    }
+    return line;
+  }
+};
+
+struct ValueModel {
+  std::string name;
+  std::int64_t raw = 0;  ///< of a flag: the number of its bit
+};
+
+struct FieldModel {
+  std::string name;
+  std::string description;
+  protocol::Position position;
+  bool is_signed = false;
+  base::Decimal scale{1, 0};
+  base::Decimal offset{};
+  std::string unit;       ///< as a person writes it: "deg/s"
+  std::string unit_name;  ///< as an identifier: "deg_per_s"; empty for counts
+  std::int64_t raw_min = 0;
+  std::int64_t raw_max = 0;
+  bool has_range = false;  ///< the spec gives one; otherwise raw_min and raw_max are what the width holds
+  std::vector<ValueModel> values;
+  bool flags = false;
+  Source source;  ///< empty: as the frame's
+
+  /// The values are all that the field can be, so that it is an enumeration: they have names and no unit.
+  [[nodiscard]] bool is_enumeration() const noexcept { return !values.empty() && !flags && unit.empty(); }
+};
+
+struct FrameModel {
+  std::string name;  ///< empty for a topic's only frame
+  std::string description;
+  std::uint8_t id = 0;     ///< of the first
+  std::uint8_t count = 1;  ///< equal frames with consecutive ids
+  bool is_array = false;   ///< the spec gives a count: frames are called name_1, name_2, ...
+  std::uint8_t dlc = 0;
+  std::vector<FieldModel> fields;
+  Source source;  ///< empty: as the topic's
+};
+
+struct TopicModel {
+  std::string name;
+  std::string description;
+  std::vector<std::string> aliases;
+  std::uint8_t id = 0;
+  std::uint8_t count = 1;  ///< equal topics with consecutive ids, such as eight lights
+  bool is_group = false;   ///< the spec gives a count: topics are called name_1, name_2, ...
+  protocol::Kind kind = protocol::Kind::sensor;
+  protocol::Role role = protocol::Role::none;
+  std::uint8_t board = 0;
+  std::vector<FrameModel> frames;
+  protocol::Priority priority = protocol::default_priority;
+  protocol::Period period = protocol::default_period;
+  base::Duration shortest_period{};
+  base::Duration deadline{};
+  base::Duration jitter{};
+  base::Duration timeout{};
+  Source source;
+};
+
+struct BoardModel {
+  std::string name;
+  std::string description;
+  std::string mcu;
+  std::optional<std::uint32_t> clock_hz;
+  std::optional<std::uint32_t> can_clock_hz;
+  Source source;
+};
+
+struct Model {
+  std::string robot;
+  std::string name_space;
+  std::string description;
+  std::uint32_t bit_rate = 0;
+  Source bus_source;
+  Source defaults_source;
+  std::vector<BoardModel> boards;
+  std::vector<TopicModel> topics;
+};
+
+}  // namespace ocm::spec

@@ -1,0 +1,1073 @@
+#include "cli/spec/reader.hpp"
+
+#include <algorithm>
+#include <array>
+#include <initializer_list>
+#include <map>
+#include <set>
+#include <string>
+
+#include "cli/spec/names.hpp"
+
+namespace ocm::spec {
+
+namespace {
+
+using base::Decimal;
+using base::Duration;
+using Kind = Node::Kind;
+
+/// A node and how it is reached.
+struct At {
+  const Node* node;
+  std::string path;
+
+  [[nodiscard]] At item(std::size_t i) const { return {&node->items[i], path + "/" + std::to_string(i)}; }
+  [[nodiscard]] std::optional<At> member(std::string_view key) const {
+    const Node* found = node->find(key);
+    if (found == nullptr) return std::nullopt;
+    return At{found, path + "/" + pointer_step(key)};
+  }
+};
+
+[[nodiscard]] std::string quoted(std::string_view text) {
+  return "\"" + std::string{text} + "\"";
+}
+/// As the spec has it, for messages.
+[[nodiscard]] std::string shown(const Node& node) {
+  if (node.is(Kind::string)) return quoted(node.text);
+  if (node.is(Kind::number)) return node.text;
+  return std::string{describe(node.kind)};
+}
+[[nodiscard]] std::string hex(std::uint64_t number) {
+  base::Text<20> text;
+  text << "0x";
+  text.hex(number, number > 0xFF ? 3 : 2);
+  return std::string{text.view()};
+}
+[[nodiscard]] std::string print(Decimal number) {
+  return std::string{base::to_text(number).view()};
+}
+/// The shortest spelling: "50ms", "13334us".
+[[nodiscard]] std::string print(Duration duration) {
+  const std::int64_t ns = duration.count();
+  if (ns % 1'000'000'000 == 0) return std::to_string(ns / 1'000'000'000) + "s";
+  if (ns % 1'000'000 == 0) return std::to_string(ns / 1'000'000) + "ms";
+  if (ns % 1'000 == 0) return std::to_string(ns / 1'000) + "us";
+  return std::to_string(ns) + "ns";
+}
+template <class Names>
+[[nodiscard]] std::string list_of(const Names& names) {
+  std::string list;
+  for (const auto& name : names) list.append(list.empty() ? "" : ", ").append(name);
+  return list;
+}
+
+constexpr std::string_view name_form =
+    "lower-case letters, digits and single underscores, a letter first: \"sensor_1\"";
+constexpr std::string_view duration_form = "a number with ns, us, ms or s: \"50ms\"";
+
+// What a frame's struct and a topic's struct have already; a field, frame or flag cannot be called so.
+constexpr std::array<std::string_view, 17> struct_members{
+    "id",       "ids",    "dlc",      "count",   "name",   "frames", "instances",       "kind",  "role",
+    "priority", "period", "deadline", "timeout", "jitter", "encode", "shortest_period", "decode"};
+// What the generated header needs in its own namespace, and in the one of its tables.
+constexpr std::array<std::string_view, 8> namespace_members{"bit_rate", "boards",   "catalogue", "detail",
+                                                            "ocm",      "protocol", "std",       "topics"};
+
+class Reader {
+ public:
+  Reader(std::string_view file_name, std::vector<Problem>& problems)
+      : file_name_(file_name), problems_(problems) {}
+
+  Model read(const Node& node) {
+    const At root{&node, ""};
+    Model model;
+    if (!is_object(root, "a spec is an object with robot, namespace, bus, boards and topics")) return model;
+    check_keys(root, {"$schema", "robot", "namespace", "description", "byte_order", "bus", "defaults",
+                      "boards", "topics"});
+    if (const auto at = require(root, "robot", "the robot's name")) model.robot = line(*at, false);
+    if (const auto at = require(root, "namespace", "the C++ namespace of the generated header"))
+      read_namespace(*at, model);
+    if (const auto at = root.member("description")) model.description = line(*at);
+    order_ = read_order(root, protocol::ByteOrder::little);
+    if (const auto at = require(root, "bus", R"({"bit_rate": 500000, "source": "..."})"))
+      read_bus(*at, model);
+    if (const auto at = root.member("defaults")) read_defaults(*at, model);
+    if (const auto at = require(root, "boards", "the list of the boards on the bus")) read_boards(*at, model);
+    if (const auto at = require(root, "topics", "the list of what is said on the bus"))
+      read_topics(*at, model);
+    return model;
+  }
+
+ private:
+  // --- telling
+  // ----------------------------------------------------------------------------------------------
+
+  void tell(const At& at, std::string what, std::string remedy) {
+    problems_.push_back({std::string{file_name_} + ":" + std::to_string(at.node->line) + ": " +
+                             (at.path.empty() ? "/" : at.path),
+                         std::move(what), std::move(remedy)});
+  }
+
+  // --- reading JSON
+  // -----------------------------------------------------------------------------------------
+
+  [[nodiscard]] bool is_kind(const At& at, Kind kind, std::string_view remedy) {
+    if (at.node->is(kind)) return true;
+    tell(at,
+         shown(*at.node) + (at.node->is(Kind::string) || at.node->is(Kind::number) ? " is not " : ", not ") +
+             std::string{describe(kind)},
+         std::string{remedy});
+    return false;
+  }
+  [[nodiscard]] bool is_object(const At& at, std::string_view remedy) {
+    return is_kind(at, Kind::object, remedy);
+  }
+
+  void check_keys(const At& at, std::initializer_list<std::string_view> known) {
+    for (const auto& [key, node] : at.node->members) {
+      if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+      const std::string near = nearest_name(key, known);
+      tell({&node, at.path + "/" + pointer_step(key)}, "unknown member " + quoted(key),
+           near.empty() ? "one of " + list_of(known) : "did you mean " + quoted(near) + "?");
+    }
+  }
+  [[nodiscard]] std::optional<At> require(const At& at, std::string_view key, std::string_view remedy) {
+    auto found = at.member(key);
+    if (!found) tell(at, "no " + quoted(key), "add " + quoted(key) + ": " + std::string{remedy});
+    return found;
+  }
+
+  /// One line of text for people.
+  [[nodiscard]] std::string line(const At& at, bool may_be_empty = true) {
+    if (!is_kind(at, Kind::string, "a line of text in double quotes")) return {};
+    for (const char c : at.node->text) {
+      if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) {
+        tell(at, "the text has a line break or another control character", "one line of plain text");
+        return {};
+      }
+      if (c == '\\') {  // at the end of a comment it would swallow the next line of the generated header
+        tell(at, "the text has a backslash", "leave it out, or write /");
+        return {};
+      }
+    }
+    if (at.node->text.empty() && !may_be_empty) tell(at, "the text is empty", "at least one character");
+    return at.node->text;
+  }
+
+  /// A name as the spec and C++ want it; empty if it is none.
+  [[nodiscard]] std::string name(const At& at) {
+    if (!is_kind(at, Kind::string, name_form)) return {};
+    const std::string& text = at.node->text;
+    if (!is_name(text)) {
+      tell(at, quoted(text) + " is not a name", std::string{name_form});
+      return {};
+    }
+    if (text.size() > 40) {
+      tell(at, "the name " + quoted(text) + " has " + std::to_string(text.size()) + " characters",
+           "at most 40");
+      return {};
+    }
+    if (is_reserved(text)) {
+      tell(at, quoted(text) + " is a word of C++", "another name, such as " + quoted(text + "_value"));
+      return {};
+    }
+    return text;
+  }
+
+  [[nodiscard]] std::optional<Decimal> decimal(const At& at, std::string_view remedy) {
+    if (!is_kind(at, Kind::number, remedy)) return std::nullopt;
+    const auto number = base::parse_decimal(at.node->text);
+    if (number) return *number;
+    tell(at, "number " + at.node->text.substr(0, 40) + " has more digits than can be kept exactly",
+         "at most 18 digits, and an exponent of at most 100");
+    return std::nullopt;
+  }
+
+  /// A whole number within [min, max].
+  [[nodiscard]] std::optional<std::int64_t> integer(const At& at, std::int64_t min, std::int64_t max) {
+    const std::string remedy = "a whole number from " + std::to_string(min) + " to " + std::to_string(max);
+    const auto number = decimal(at, remedy);
+    if (!number) return std::nullopt;
+    const auto whole = number->exponent < 0 || number->exponent > 18
+                           ? base::Result<std::int64_t>{base::Error::out_of_range}
+                           : base::detail::scaled(number->digits, number->exponent);
+    if (whole && *whole >= min && *whole <= max) return *whole;
+    tell(at, at.node->text.substr(0, 40) + (number->exponent < 0 ? " is not whole" : " is out of range"),
+         remedy);
+    return std::nullopt;
+  }
+
+  /// 3 or "0x03".
+  [[nodiscard]] std::optional<std::uint8_t> id(const At& at) {
+    static constexpr std::string_view form = "a topic's number has 8 bits: \"0x00\" to \"0xFF\"";
+    std::optional<std::uint64_t> number;
+    if (at.node->is(Kind::number)) {
+      if (const auto parsed = base::parse_unsigned(at.node->text)) number = *parsed;
+    } else if (at.node->is(Kind::string)) {
+      const std::string_view text = at.node->text;
+      if (text.substr(0, 2) == "0x" && text.size() <= 18)
+        if (const auto parsed = base::parse_unsigned(text.substr(2), 16)) number = *parsed;
+    }
+    if (!number) {
+      tell(at, shown(*at.node) + " is not an id", std::string{form});
+      return std::nullopt;
+    }
+    if (*number > 0xFF) {
+      tell(at, shown(*at.node) + " is wider than 8 bits", std::string{form});
+      return std::nullopt;
+    }
+    return static_cast<std::uint8_t>(*number);
+  }
+
+  /// "50ms". Not negative; 292 years at most.
+  [[nodiscard]] std::optional<Duration> duration(const At& at) {
+    static constexpr std::pair<std::string_view, Decimal> units[] = {
+        {"ns", {1, 0}}, {"us", {1, 3}}, {"ms", {1, 6}}, {"s", {1, 9}}};
+    if (!is_kind(at, Kind::string, duration_form)) return std::nullopt;
+    const std::string_view text = at.node->text;
+    const std::size_t split = text.find_first_not_of("0123456789.");
+    if (split != std::string_view::npos && split != 0) {
+      for (const auto& [unit, nanoseconds] : units) {
+        if (text.substr(split) != unit) continue;
+        const auto count = base::parse_decimal(text.substr(0, split));
+        if (!count) break;
+        const auto product = base::multiply(*count, nanoseconds);
+        const auto whole = !product || product->exponent < 0
+                               ? base::Result<std::int64_t>{base::Error::out_of_range}
+                               : base::detail::scaled(product->digits, product->exponent);
+        if (whole) return Duration{*whole};
+        tell(at, quoted(text) + " is no whole number of nanoseconds within 292 years",
+             std::string{duration_form});
+        return std::nullopt;
+      }
+    }
+    tell(at, quoted(text) + " is not a duration", std::string{duration_form});
+    return std::nullopt;
+  }
+
+  /// A duration that a request can carry.
+  [[nodiscard]] std::optional<protocol::Period> period(const At& at) {
+    const auto wanted = duration(at);
+    if (!wanted) return std::nullopt;
+    if (const auto wire = protocol::Period::from(*wanted)) return *wire;
+    tell(at, "a request cannot carry the period " + quoted(at.node->text),
+         "1 to 65535 of us, ms or s; the nearest is \"" +
+             print(protocol::Period::nearest(*wanted).duration()) + "\"");
+    return std::nullopt;
+  }
+
+  [[nodiscard]] std::optional<protocol::Priority> priority(const At& at) {
+    static constexpr std::pair<std::string_view, protocol::Priority> priorities[] = {
+        {"urgent", protocol::Priority::urgent},
+        {"high", protocol::Priority::high},
+        {"medium", protocol::Priority::medium},
+        {"low", protocol::Priority::low}};
+    return one_of(at, priorities);
+  }
+
+  template <class T, std::size_t N>
+  [[nodiscard]] std::optional<T> one_of(const At& at, const std::pair<std::string_view, T> (&choices)[N]) {
+    std::vector<std::string_view> names;
+    for (const auto& [text, value] : choices) {
+      if (at.node->is(Kind::string) && at.node->text == text) return value;
+      names.push_back(text);
+    }
+    tell(at, shown(*at.node) + " is not known here", "one of " + list_of(names));
+    return std::nullopt;
+  }
+
+  [[nodiscard]] protocol::ByteOrder read_order(const At& at, protocol::ByteOrder inherited) {
+    static constexpr std::pair<std::string_view, protocol::ByteOrder> choices[] = {
+        {"little", protocol::ByteOrder::little}, {"big", protocol::ByteOrder::big}};
+    const auto order = at.member("byte_order");
+    return order ? one_of(*order, choices).value_or(inherited) : inherited;
+  }
+
+  /// `facts` are the members that need a source; `inherited`: it may be missing, for it is further out.
+  [[nodiscard]] Source read_source(const At& object, std::initializer_list<std::string_view> facts,
+                                   bool inherited) {
+    const auto at = object.member("source");
+    Source source;
+    if (!at) {
+      if (!inherited)
+        tell(object, "no \"source\"", R"(add "source": where the facts come from, or "decided: why")");
+      return source;
+    }
+    if (at->node->is(Kind::string)) {
+      source.general = line(*at, false);
+      return source;
+    }
+    if (!is_object(*at, R"(a line of text, or {"default": "...", "id": "..."} with a text for each fact)"))
+      return source;
+    for (const auto& [key, node] : at->node->members) {
+      const At entry{&node, at->path + "/" + pointer_step(key)};
+      std::string text = line(entry, false);
+      if (key == "default") {
+        source.general = std::move(text);
+      } else if (std::find(facts.begin(), facts.end(), key) == facts.end() || !object.member(key)) {
+        std::vector<std::string> present;
+        for (const auto fact : facts)
+          if (object.member(fact)) present.emplace_back(fact);
+        tell(entry, "source for " + quoted(key) + ", which is no fact of this object",
+             "default, or one of " + list_of(present));
+      } else {
+        source.particular.emplace_back(key, std::move(text));
+      }
+    }
+    if (at->member("default") || inherited) return source;
+    for (const auto fact : facts)
+      if (object.member(fact) && !at->member(fact))
+        tell(*at, "no source for " + quoted(fact), "add " + quoted(fact) + " or \"default\"");
+    return source;
+  }
+
+  // --- robot, bus, boards
+  // -----------------------------------------------------------------------------------
+
+  void read_namespace(const At& at, Model& model) {
+    model.name_space = name(at);
+    if (model.name_space == "std" || model.name_space == "ocm")
+      tell(at, quoted(model.name_space) + " is somebody else's namespace",
+           "the robot's own name, such as \"amiro\"");
+  }
+
+  void read_bus(const At& at, Model& model) {
+    if (!is_object(at, R"({"bit_rate": 500000, "source": "..."})")) return;
+    check_keys(at, {"bit_rate", "source"});
+    model.bus_source = read_source(at, {"bit_rate"}, false);
+    if (const auto rate = require(at, "bit_rate", "bits per second, such as 500000"))
+      model.bit_rate = static_cast<std::uint32_t>(integer(*rate, 1'000, 1'000'000).value_or(0));
+  }
+
+  /// What every topic has that does not say otherwise.
+  void read_defaults(const At& at, Model& model) {
+    if (!is_object(at, R"({"period": "50ms", "deadline": "50ms", "source": "..."})")) return;
+    check_keys(at, {"period", "deadline", "jitter", "priority", "timeout", "source"});
+    model.defaults_source = read_source(at, {"period", "deadline", "jitter", "priority", "timeout"}, false);
+    if (const auto a = at.member("period")) defaults_.period = period(*a).value_or(defaults_.period);
+    if (const auto a = at.member("deadline")) defaults_.deadline = duration(*a).value_or(Duration{});
+    if (const auto a = at.member("jitter")) defaults_.jitter = duration(*a).value_or(Duration{});
+    if (const auto a = at.member("timeout")) defaults_.timeout = duration(*a).value_or(Duration{});
+    if (const auto a = at.member("priority")) defaults_.priority = priority(*a).value_or(defaults_.priority);
+  }
+
+  /// A type in the generated namespace; two of the same name are a problem at `at`.
+  void claim_type(const At& at, std::string_view name) {
+    const std::string type = pascal_case(name);
+    const auto [other, is_new] = types_.emplace(type, at.path);
+    if (!is_new && other->second != at.path)
+      tell(at, "the generated header would have two types " + type + " (see " + other->second + ")",
+           "another name for one of them");
+  }
+
+  void read_boards(const At& at, Model& model) {
+    static constexpr std::string_view form =
+        R"(a list of boards: [{"name": "main_board", "mcu": "STM32F103", "source": "..."}])";
+    if (!is_kind(at, Kind::array, form)) return;
+    if (at.node->items.empty()) tell(at, "the list is empty", "at least one board");
+    if (at.node->items.size() > 255)
+      return tell(at, std::to_string(at.node->items.size()) + " boards",
+                  "at most 255: a topic keeps its board in 8 bits");
+    for (std::size_t i = 0; i < at.node->items.size(); ++i) {
+      const At board_at = at.item(i);
+      BoardModel board;
+      if (is_object(board_at, R"({"name": "main_board", "mcu": "STM32F103", "source": "..."})")) {
+        check_keys(board_at, {"name", "description", "mcu", "clock_hz", "can_clock_hz", "source"});
+        if (const auto a = require(board_at, "name", "what topics call it")) {
+          board.name = name(*a);
+          if (!board.name.empty()) claim_board(*a, board.name);
+        }
+        if (const auto a = board_at.member("description")) board.description = line(*a);
+        if (const auto a = require(board_at, "mcu", "the microcontroller, such as \"STM32F103\""))
+          board.mcu = line(*a, false);
+        board.clock_hz = read_clock(board_at, "clock_hz");
+        board.can_clock_hz = read_clock(board_at, "can_clock_hz");
+        board.source = read_source(board_at, {"mcu", "clock_hz", "can_clock_hz"}, false);
+      }
+      model.boards.push_back(std::move(board));  // also a bad one: the others keep their numbers
+    }
+    boards_known_ = true;
+  }
+  void claim_board(const At& at, const std::string& board) {
+    const auto [other, is_new] = boards_.emplace(board, at.path);
+    if (is_new)
+      claim_type(at, board);
+    else
+      tell(at, "a second board " + quoted(board) + " (see " + other->second + ")",
+           "a name of its own for each board");
+  }
+  [[nodiscard]] std::optional<std::uint32_t> read_clock(const At& board, std::string_view key) {
+    const auto at = board.member(key);
+    if (!at) return std::nullopt;
+    const auto hz = integer(*at, 1, 4'000'000'000);
+    if (!hz) return std::nullopt;
+    return static_cast<std::uint32_t>(*hz);
+  }
+
+  // --- topics
+  // -----------------------------------------------------------------------------------------------
+
+  void read_topics(const At& at, Model& model) {
+    if (!is_kind(at, Kind::array, "a list of topics")) return;
+    if (at.node->items.empty()) tell(at, "the list is empty", "at least one topic");
+    if (at.node->items.size() > 256)
+      return tell(at, std::to_string(at.node->items.size()) + " topics",
+                  "at most 256: a topic's number has 8 bits");
+    for (std::size_t i = 0; i < at.node->items.size(); ++i) {
+      const At topic_at = at.item(i);
+      if (!is_object(topic_at, "a topic: an object with name, id, board, frames and source")) continue;
+      model.topics.push_back(read_topic(topic_at, model));
+    }
+  }
+
+  [[nodiscard]] TopicModel read_topic(const At& at, const Model& model) {
+    check_keys(
+        at, {"name", "alias", "description", "kind", "role", "id", "count", "board", "byte_order", "period",
+             "shortest_period", "deadline", "jitter", "priority", "timeout", "frames", "source"});
+    TopicModel topic;
+    if (const auto a = require(at, "name", "what people call it")) topic.name = name(*a);
+    if (const auto a = at.member("description")) topic.description = line(*a);
+    topic.source = read_source(at,
+                               {"kind", "role", "id", "count", "board", "byte_order", "period",
+                                "shortest_period", "deadline", "jitter", "priority", "timeout", "frames"},
+                               false);
+    if (const auto a = at.member("kind")) {
+      static constexpr std::pair<std::string_view, protocol::Kind> kinds[] = {
+          {"sensor", protocol::Kind::sensor}, {"actuator", protocol::Kind::actuator}};
+      topic.kind = one_of(*a, kinds).value_or(protocol::Kind::sensor);
+    }
+    const bool sensor = topic.kind == protocol::Kind::sensor;
+    if (const auto a = at.member("count")) {
+      topic.is_group = true;
+      if (const auto n = integer(*a, 1, 255)) topic.count = static_cast<std::uint8_t>(*n);
+      if (sensor)
+        tell(*a, "\"count\" is for actuators",
+             "one topic with a frame of this count: a request then serves all");
+    }
+    read_names(at, topic);
+    if (const auto a = require(at, "board", "which of the boards serves it")) read_board(*a, model, topic);
+    std::optional<std::uint8_t> topic_id;
+    if (const auto a = require(at, "id",
+                               sensor ? "the number that requests carry, \"0x08\""
+                                      : "the number that set points carry, \"0x08\"")) {
+      topic_id = id(*a);
+      if (topic_id) {
+        topic.id = *topic_id;
+        claim_ids(*a, commands_, topic.id, topic.count, "commands");
+      }
+    }
+    read_times(at, topic);
+    topic.priority = defaults_.priority;
+    if (const auto a = at.member("priority")) topic.priority = priority(*a).value_or(topic.priority);
+    const protocol::ByteOrder order = read_order(at, order_);
+    if (const auto a = require(at, "frames", R"([{"fields": [{"name": "x", "byte": 0, "type": "i16"}]}])"))
+      read_frames(*a, topic_id, order, topic);
+    if (const auto a = at.member("role")) {
+      static constexpr std::pair<std::string_view, protocol::Role> roles[] = {
+          {"drive", protocol::Role::drive}, {"light", protocol::Role::light}};
+      topic.role = one_of(*a, roles).value_or(protocol::Role::none);
+      check_role(*a, topic);
+    }
+    return topic;
+  }
+
+  void read_names(const At& at, TopicModel& topic) {
+    if (!topic.name.empty()) {
+      const At name_at = *at.member("name");
+      claim_type(name_at, topic.name);
+      for (const auto taken : namespace_members)
+        if (topic.name == taken)
+          tell(name_at, quoted(topic.name) + " has a meaning of its own in the header", "another name");
+      if (topic.is_group) {
+        claim_name(name_at, topic.name);
+        for (unsigned i = 1; i <= topic.count; ++i) claim_name(name_at, topic.name + "_" + std::to_string(i));
+      } else {
+        claim_name(name_at, topic.name);
+      }
+    }
+    const auto alias_at = at.member("alias");
+    if (!alias_at) return;
+    if (topic.is_group) tell(*alias_at, "a topic with a count has no alias", "leave \"alias\" out");
+    if (!is_kind(*alias_at, Kind::array, R"(a list of names: ["gyro"])")) return;
+    for (std::size_t i = 0; i < alias_at->node->items.size(); ++i) {
+      const At a = alias_at->item(i);
+      std::string alias = name(a);
+      if (alias.empty()) continue;
+      claim_name(a, alias);
+      topic.aliases.push_back(std::move(alias));
+    }
+  }
+  void claim_name(const At& at, const std::string& topic_name) {
+    const auto [other, is_new] = topic_names_.emplace(topic_name, at.path);
+    if (!is_new)
+      tell(at, "a second topic is called " + quoted(topic_name) + " (see " + other->second + ")",
+           "names and aliases are unique over all topics");
+  }
+
+  void read_board(const At& at, const Model& model, TopicModel& topic) {
+    if (!is_kind(at, Kind::string, "the name of a board")) return;
+    for (std::size_t i = 0; i < model.boards.size(); ++i) {
+      if (model.boards[i].name != at.node->text || at.node->text.empty()) continue;
+      topic.board = static_cast<std::uint8_t>(i);
+      return;
+    }
+    if (!boards_known_) return;  // told already
+    std::vector<std::string> names;
+    for (const BoardModel& board : model.boards)
+      if (!board.name.empty()) names.push_back(board.name);
+    const std::string near = nearest_name(at.node->text, names);
+    tell(at, "unknown board " + quoted(at.node->text),
+         !near.empty() ? "did you mean " + quoted(near) + "?" : "one of " + list_of(names));
+  }
+
+  /// Every id of `count` consecutive ones, in one direction of the bus.
+  void claim_ids(const At& at, std::map<unsigned, std::string>& taken, unsigned first, unsigned count,
+                 std::string_view direction) {
+    if (first + count - 1 > 0xFF) {
+      tell(at, std::to_string(count) + " ids from " + hex(first) + " on end at " + hex(first + count - 1),
+           "the last must be 0xFF or below: start at " + hex(0x100 - count) + " or below");
+      return;
+    }
+    for (unsigned i = first; i < first + count; ++i) {
+      const auto [other, is_new] = taken.emplace(i, at.path);
+      if (is_new) continue;
+      tell(
+          at, "id " + hex(i) + " is taken (see " + other->second + ")",
+          "a number that no other of the " + std::string{direction} + " has, such as " + hex(free_id(taken)));
+      return;
+    }
+  }
+  [[nodiscard]] static unsigned free_id(const std::map<unsigned, std::string>& taken) {
+    unsigned candidate = 1;
+    while (candidate < 0xFF && taken.count(candidate) != 0) ++candidate;
+    return candidate;
+  }
+
+  void read_times(const At& at, TopicModel& topic) {
+    const bool sensor = topic.kind == protocol::Kind::sensor;
+    for (const std::string_view key : {"period", "shortest_period"})
+      if (const auto a = at.member(key); a && !sensor)
+        tell(*a, quoted(key) + " is for sensors", "leave it out: an actuator sends nothing");
+    for (const std::string_view key : {"timeout", "role"})
+      if (const auto a = at.member(key); a && sensor)
+        tell(*a, quoted(key) + " is for actuators", "leave it out, or say \"kind\": \"actuator\"");
+    topic.deadline = defaults_.deadline;
+    topic.jitter = defaults_.jitter;
+    if (sensor) topic.period = defaults_.period;
+    if (!sensor) topic.timeout = defaults_.timeout;
+    if (const auto a = at.member("period")) topic.period = period(*a).value_or(topic.period);
+    if (const auto a = at.member("shortest_period")) {
+      const auto shortest = duration(*a);
+      topic.shortest_period = shortest.value_or(Duration{});
+      if (shortest && *shortest == Duration{})
+        tell(*a, "a shortest period of zero", "how often the part delivers something new, such as \"4ms\"");
+    }
+    if (const auto a = at.member("deadline")) topic.deadline = duration(*a).value_or(Duration{});
+    if (const auto a = at.member("jitter")) topic.jitter = duration(*a).value_or(Duration{});
+    if (const auto a = at.member("timeout")) topic.timeout = duration(*a).value_or(Duration{});
+  }
+
+  // --- frames
+  // -----------------------------------------------------------------------------------------------
+
+  void read_frames(const At& at, std::optional<std::uint8_t> topic_id, protocol::ByteOrder order,
+                   TopicModel& topic) {
+    if (!is_kind(at, Kind::array, "a list of frames, in the order in which they are sent")) return;
+    if (at.node->items.empty()) tell(at, "the list is empty", "at least one frame");
+    if (at.node->items.size() > 255)
+      return tell(at, std::to_string(at.node->items.size()) + " frames", "at most 255");
+    const bool several = at.node->items.size() > 1;
+    std::map<std::string, std::string> names;
+    for (std::size_t i = 0; i < at.node->items.size(); ++i) {
+      const At frame_at = at.item(i);
+      if (!is_object(frame_at, R"({"id": "0x08", "fields": [...]})")) continue;
+      FrameModel frame = read_frame(frame_at, topic_id, several, order, topic);
+      if (!frame.name.empty()) {
+        const At name_at = *frame_at.member("name");
+        std::vector<std::string> mine{frame.name};
+        if (frame_at.member("count"))
+          for (unsigned n = 1; n <= frame.count; ++n) mine.push_back(frame.name + "_" + std::to_string(n));
+        for (const std::string& one : mine) {
+          const auto [other, is_new] = names.emplace(one, name_at.path);
+          if (is_new) continue;
+          tell(name_at, "a second frame is called " + quoted(one) + " (see " + other->second + ")",
+               "a name of its own for each frame of the topic");
+        }
+      }
+      topic.frames.push_back(std::move(frame));
+    }
+    std::size_t count = 0;
+    for (const FrameModel& frame : topic.frames) count += frame.count;
+    if (count > 255) tell(at, std::to_string(count) + " frames with their counts", "at most 255");
+  }
+
+  [[nodiscard]] FrameModel read_frame(const At& at, std::optional<std::uint8_t> topic_id, bool several,
+                                      protocol::ByteOrder order, const TopicModel& topic) {
+    check_keys(at, {"name", "description", "id", "count", "dlc", "byte_order", "fields", "source"});
+    FrameModel frame;
+    const bool sensor = topic.kind == protocol::Kind::sensor;
+    const auto count_at = at.member("count");
+    if (count_at) {
+      frame.is_array = true;
+      if (const auto n = integer(*count_at, 1, 255)) frame.count = static_cast<std::uint8_t>(*n);
+      if (!sensor)
+        tell(*count_at, "\"count\" of a frame is for sensors",
+             "a set point travels in one frame: give the topic a count");
+    }
+    const auto name_at = at.member("name");
+    if (name_at) {
+      frame.name = name(*name_at);
+      if (!several && !count_at) {
+        tell(*name_at, "the topic's only frame has a name", "leave it out: the topic's name is enough");
+        frame.name.clear();
+      }
+    } else if (several || count_at) {
+      tell(at, "no \"name\"",
+           several ? "add \"name\": a topic's frames have names when there are several"
+                   : "add \"name\": frames with a count are called name_1, name_2, ...");
+    }
+    if (!frame.name.empty()) {
+      check_member_name(*name_at, frame.name);
+      if (!topic.name.empty()) claim_type(*name_at, topic.name + "_" + frame.name);
+    }
+    if (!sensor && several)
+      tell(at, "a set point of several frames", "one frame: the wheels must not act on half a set point");
+    if (const auto a = at.member("description")) frame.description = line(*a);
+    frame.source = read_source(at, {"id", "count", "dlc", "byte_order", "fields"}, true);
+
+    std::optional<std::uint8_t> frame_id = several ? std::nullopt : topic_id;
+    if (const auto a = at.member("id"))
+      frame_id = id(*a);
+    else if (several)
+      tell(at, "no \"id\"", "add \"id\": each of several frames has its own");
+    if (frame_id) {
+      frame.id = *frame_id;
+      const At id_at = at.member("id").value_or(at);
+      if (sensor)
+        claim_ids(id_at, samples_, frame.id, frame.count, "sensors' frames");
+      else if (topic_id && *frame_id != *topic_id)
+        tell(id_at, "the set point's frame has id " + hex(*frame_id) + ", the topic " + hex(*topic_id),
+             "the same id for both, or no \"id\" here");
+    }
+
+    std::optional<std::uint8_t> dlc;
+    const auto dlc_at = at.member("dlc");
+    if (dlc_at) {
+      if (const auto n = integer(*dlc_at, 0, 8)) dlc = static_cast<std::uint8_t>(*n);
+    }
+    order = read_order(at, order);
+    std::uint8_t used = 0;
+    if (const auto a = require(at, "fields", R"([{"name": "x", "byte": 0, "type": "i16"}])"))
+      used = read_fields(*a, dlc, order, pascal_case(topic.name + "_" + frame.name), frame);
+    frame.dlc = dlc.value_or(used);
+    return frame;
+  }
+
+  // --- fields
+  // -----------------------------------------------------------------------------------------------
+
+  /// A member of a generated struct.
+  void check_member_name(const At& at, std::string_view member) {
+    if (std::find(struct_members.begin(), struct_members.end(), member) != struct_members.end())
+      tell(at, quoted(member) + " has a meaning of its own in the generated struct",
+           "another name, such as " + quoted(std::string{member} + "_value"));
+  }
+  /// Members that a field brings: itself and its accessors.
+  void claim_member(const At& at, std::map<std::string, std::string>& members, const std::string& member) {
+    const auto [other, is_new] = members.emplace(member, at.path);
+    if (!is_new && other->second != at.path)
+      tell(at, "the generated struct would have two members " + member + " (see " + other->second + ")",
+           "another name for one of them");
+  }
+
+  /// Returns how many bytes the fields take.
+  [[nodiscard]] std::uint8_t read_fields(const At& at, std::optional<std::uint8_t> dlc,
+                                         protocol::ByteOrder order, const std::string& type,
+                                         FrameModel& frame) {
+    if (!is_kind(at, Kind::array, "a list of fields")) return 0;
+    if (at.node->items.empty() && dlc.value_or(1) != 0)
+      tell(at, "the list is empty", "at least one field, or \"dlc\": 0 for a frame that says all by coming");
+    std::uint64_t taken = 0;
+    std::map<std::string, std::string> members;
+    std::vector<std::pair<std::uint64_t, std::string>> masks;
+    for (std::size_t i = 0; i < at.node->items.size(); ++i) {
+      const At field_at = at.item(i);
+      if (!is_object(field_at, R"({"name": "x", "byte": 0, "type": "i16"})")) continue;
+      FieldModel field = read_field(field_at, order);
+      const std::uint64_t mask = field.position.mask();
+      if (mask != 0) {
+        const At place = position_of(field_at);
+        if ((mask & taken) != 0) {
+          for (const auto& [other_mask, other_name] : masks)
+            if ((mask & other_mask) != 0)
+              tell(place,
+                   field_title(field) + " overlaps " + quoted(other_name) + " in " + bits(mask & other_mask),
+                   free_hint(taken, field.position.width));
+        }
+        if (dlc && *dlc < 8 && (mask >> (8 * *dlc)) != 0)
+          tell(place, field_title(field) + " reaches beyond the frame's " + std::to_string(*dlc) + " bytes",
+               "\"dlc\": " + std::to_string(bytes_of(mask)) + ", or another place for the field");
+        taken |= mask;
+        masks.emplace_back(mask, field.name);
+      }
+      claim_members(field_at, field, type, members);
+      frame.fields.push_back(std::move(field));
+    }
+    return bytes_of(taken);
+  }
+  [[nodiscard]] static std::uint8_t bytes_of(std::uint64_t mask) {
+    std::uint8_t bytes = 0;
+    for (; mask != 0; mask >>= 8) ++bytes;
+    return bytes;
+  }
+  [[nodiscard]] static At position_of(const At& field) {
+    if (const auto at = field.member("byte")) return *at;
+    return field.member("bit").value_or(field);
+  }
+  [[nodiscard]] static std::string field_title(const FieldModel& field) {
+    return field.name.empty() ? "the field" : quoted(field.name);
+  }
+  [[nodiscard]] static std::string bits(std::uint64_t mask) {
+    unsigned first = 0;
+    while ((mask >> first & 1) == 0) ++first;
+    unsigned last = 63;
+    while ((mask >> last & 1) == 0) --last;
+    if (first == last) return "bit " + std::to_string(first);
+    return "bits " + std::to_string(first) + " to " + std::to_string(last);
+  }
+  [[nodiscard]] static std::string free_hint(std::uint64_t taken, unsigned width) {
+    const unsigned bytes = (width + 7) / 8;
+    for (unsigned byte = 0; byte + bytes <= 8; ++byte) {
+      const std::uint64_t mask = protocol::detail::low_mask(8 * bytes) << (8 * byte);
+      if ((mask & taken) == 0) return "\"byte\": " + std::to_string(byte) + " is free";
+    }
+    return "a narrower type, or another frame: no " + std::to_string(bytes) + " bytes in a row are left";
+  }
+
+  void claim_members(const At& at, const FieldModel& field, const std::string& type,
+                     std::map<std::string, std::string>& members) {
+    if (field.name.empty()) return;
+    const At name_at = at.member("name").value_or(at);
+    check_member_name(name_at, field.name);
+    claim_member(name_at, members, field.name);
+    if (!field.unit_name.empty()) {
+      claim_member(name_at, members, field.name + "_" + field.unit_name);
+      claim_member(name_at, members, "set_" + field.name + "_" + field.unit_name);
+    }
+    for (const ValueModel& value : field.values) {
+      if (field.flags) {
+        claim_member(name_at, members, value.name);
+        claim_member(name_at, members, "set_" + value.name);
+        claim_member(name_at, members, value.name + "_flag");
+        check_member_name(name_at, value.name);
+      } else if (!field.is_enumeration()) {
+        claim_member(name_at, members, field.name + "_" + value.name);
+      }
+    }
+    claim_member(name_at, members, pascal_case(field.name) + "Bits");
+    if (!field.is_enumeration()) return;
+    if (pascal_case(field.name) == type)
+      tell(name_at, "the generated header would have a type " + type + " within a type " + type,
+           "another name for the field");
+    claim_member(name_at, members, pascal_case(field.name));
+  }
+
+  [[nodiscard]] FieldModel read_field(const At& at, protocol::ByteOrder order) {
+    check_keys(at, {"name", "description", "byte", "bit", "type", "byte_order", "scale", "offset", "unit",
+                    "unit_name", "range", "values", "flags", "source"});
+    FieldModel field;
+    if (const auto a = require(at, "name", "what the number is called")) field.name = name(*a);
+    if (const auto a = at.member("description")) field.description = line(*a);
+    field.source = read_source(
+        at, {"byte", "bit", "type", "byte_order", "scale", "offset", "unit", "range", "values", "flags"},
+        true);
+    order = read_order(at, order);
+    const bool typed = read_type(at, field);
+    read_position(at, order, typed, field);
+    read_unit(at, field);
+    if (const auto a = at.member("scale")) {
+      if (const auto scale = decimal(*a, "physical units a bit, such as 0.0175")) {
+        if (scale->digits == 0)
+          tell(*a, "a scale of zero", "physical units a bit, such as 0.0175; leave it out for 1");
+        else
+          field.scale = *scale;
+      }
+    }
+    if (const auto a = at.member("offset"))
+      field.offset = decimal(*a, "what the raw number 0 stands for, such as -40").value_or(Decimal{});
+    if (typed) {
+      field.raw_min = protocol::lowest(field.position.width, field.is_signed);
+      field.raw_max = protocol::highest(field.position.width, field.is_signed);
+      if (check_exact(at, field)) read_range(at, field);
+    }
+    read_values(at, typed, field);
+    return field;
+  }
+
+  [[nodiscard]] bool read_type(const At& at, FieldModel& field) {
+    static constexpr std::string_view form =
+        "i2 to i64 (signed) or u1 to u63 (unsigned), such as \"i16\", \"u12\", \"i24\"";
+    const auto a = require(at, "type", form);
+    if (!a) return false;
+    const std::string_view text = a->node->is(Kind::string) ? std::string_view{a->node->text} : "";
+    const auto width = text.size() < 2 || text[1] == '0'
+                           ? base::Result<std::uint64_t>{base::Error::bad_syntax}
+                           : base::parse_unsigned(text.substr(1));
+    const bool is_signed = !text.empty() && text.front() == 'i';
+    if (!width || (text.front() != 'i' && text.front() != 'u')) {
+      tell(*a, "unknown type " + shown(*a->node), std::string{form});
+      return false;
+    }
+    if (*width < (is_signed ? 2U : 1U) || *width > (is_signed ? 64U : 63U)) {
+      tell(*a, "no type has the width of " + shown(*a->node), std::string{form});
+      return false;
+    }
+    field.is_signed = is_signed;
+    field.position.width = static_cast<std::uint8_t>(*width);
+    return true;
+  }
+
+  void read_position(const At& at, protocol::ByteOrder order, bool typed, FieldModel& field) {
+    field.position.order = order;
+    field.position.start = 255;  // until the place is known; overlaps nothing
+    const auto byte = at.member("byte");
+    const auto bit = at.member("bit");
+    if (byte && bit) tell(*bit, "both \"byte\" and \"bit\"", "one of them says where the field begins");
+    if (!byte && !bit)
+      tell(at, "no \"byte\" and no \"bit\"",
+           "add \"byte\": 0 to 7, or \"bit\": 0 to 63, where the field begins");
+    if (!byte && !bit) return;
+    const auto number = byte ? integer(*byte, 0, 7) : integer(*bit, 0, 63);
+    if (!number) return;
+    const auto n = static_cast<unsigned>(*number);
+    const bool big = order == protocol::ByteOrder::big;
+    const unsigned start = !byte ? n : big ? 8 * n + 7 : 8 * n;
+    field.position.start = static_cast<std::uint8_t>(start);
+    if (!typed || field.position.mask() != 0) return;
+    const unsigned width = field.position.width;
+    const unsigned most = 64 - (big ? start / 8 * 8 + 7 - start % 8 : start);
+    tell(byte ? *byte : *bit,
+         "a field of " + std::to_string(width) + " bits that begins here does not end within 8 bytes",
+         byte ? "\"byte\": " + std::to_string((64 - width) / 8) + " or below, or at most " +
+                    std::to_string(most) + " bits"
+              : "at most " + std::to_string(most) + " bits, or an earlier beginning");
+  }
+
+  void read_unit(const At& at, FieldModel& field) {
+    const auto unit = at.member("unit");
+    const auto name_at = at.member("unit_name");
+    if (unit) field.unit = line(*unit);
+    if (field.unit.empty()) {
+      if (name_at) tell(*name_at, "\"unit_name\" without \"unit\"", "leave it out, or add \"unit\"");
+      return;
+    }
+    if (name_at) {
+      const std::string& text = name_at->node->text;
+      const bool good =
+          name_at->node->is(Kind::string) && !text.empty() && text.size() <= 40 && unit_name(text) == text;
+      if (good)
+        field.unit_name = text;
+      else
+        tell(*name_at, shown(*name_at->node) + " cannot end a name",
+             "letters, digits and underscores, such as \"gauss\"");
+      return;
+    }
+    field.unit_name = unit_name(field.unit);
+    if (field.unit_name.empty() || field.unit_name.size() > 40) {
+      field.unit_name.clear();
+      tell(*unit, "the unit " + quoted(field.unit) + " cannot be read as a name",
+           "add \"unit_name\", which ends the name of the accessor, such as \"gauss\"");
+    }
+  }
+
+  /// Every raw number must have its physical value exactly.
+  [[nodiscard]] bool check_exact(const At& at, const FieldModel& field) {
+    for (const std::int64_t raw : {field.raw_min, field.raw_max, std::int64_t{1}}) {
+      const int exponent = field.offset.digits == 0
+                               ? field.scale.exponent
+                               : std::min<int>(field.scale.exponent, field.offset.exponent);
+      std::int64_t product = 0;
+      std::int64_t sum = 0;
+      bool good = !base::detail::multiply_overflows(raw, field.scale.digits, product) &&
+                  field.scale.exponent > -80 && field.scale.exponent < 80 && field.offset.exponent > -80 &&
+                  field.offset.exponent < 80;
+      if (good && field.offset.digits != 0) {
+        const auto a = base::detail::scaled(product, field.scale.exponent - exponent);
+        const auto b = base::detail::scaled(field.offset.digits, field.offset.exponent - exponent);
+        good = a && b && !__builtin_add_overflow(*a, *b, &sum);
+      }
+      if (good) continue;
+      const auto place = at.member("scale");
+      tell(place ? *place : at.member("offset").value_or(at),
+           "scale and offset have too many digits for " + std::to_string(field.position.width) + " bits",
+           "raw number times the digits of the scale, plus offset, must stay within 18 digits");
+      return false;
+    }
+    return true;
+  }
+
+  void read_range(const At& at, FieldModel& field) {
+    const auto a = at.member("range");
+    if (!a) return;
+    static constexpr std::string_view form = "two numbers in the field's unit, lowest first: [-500, 500]";
+    if (!is_kind(*a, Kind::array, form)) return;
+    if (a->node->items.size() != 2)
+      return tell(*a, "a range of " + std::to_string(a->node->items.size()) + " numbers", std::string{form});
+    const auto low = decimal(a->item(0), form);
+    const auto high = decimal(a->item(1), form);
+    if (!low || !high) return;
+    if (base::compare(*low, *high) > 0)
+      return tell(*a, "the range begins at " + print(*low) + " and ends below it, at " + print(*high),
+                  std::string{form});
+    const std::int64_t lowest_raw = field.raw_min;
+    const std::int64_t highest_raw = field.raw_max;
+    const bool falling = field.scale.digits < 0;
+    const auto held = [&](std::int64_t raw) { return *raw_to_physical(field, raw); };
+    const Decimal bottom = held(falling ? highest_raw : lowest_raw);
+    const Decimal top = held(falling ? lowest_raw : highest_raw);
+    if (base::compare(*low, bottom) < 0 || base::compare(*high, top) > 0)
+      return tell(*a,
+                  "the range [" + print(*low) + ", " + print(*high) + "] is wider than what " +
+                      std::to_string(field.position.width) + " bits hold, [" + print(bottom) + ", " +
+                      print(top) + "]",
+                  "a range within it, a wider type or a larger scale");
+    // The raw numbers whose physical value lies in the range, found by bisection: exact, whatever the digits.
+    const std::int64_t first = first_raw(field, falling ? *high : *low, falling);
+    const std::int64_t last = last_raw(field, falling ? *low : *high, falling);
+    if (first > last)
+      return tell(*a, "no raw number lies in the range [" + print(*low) + ", " + print(*high) + "]",
+                  "a wider range, or a smaller scale");
+    field.raw_min = first;
+    field.raw_max = last;
+    field.has_range = true;
+  }
+  [[nodiscard]] static base::Result<Decimal> raw_to_physical(const FieldModel& field, std::int64_t raw) {
+    const auto scaled = base::multiply({raw, 0}, field.scale);
+    if (!scaled) return scaled.error;
+    return base::add(*scaled, field.offset);
+  }
+  /// Lowest raw number that is not before `bound`, where "before" follows the sign of the scale.
+  [[nodiscard]] static std::int64_t first_raw(const FieldModel& field, Decimal bound, bool falling) {
+    std::int64_t low = field.raw_min;
+    std::int64_t high = field.raw_max;
+    while (low < high) {
+      const std::int64_t middle = midpoint(low, high);
+      const int order = base::compare(*raw_to_physical(field, middle), bound);
+      if (falling ? order > 0 : order < 0)
+        low = middle + 1;
+      else
+        high = middle;
+    }
+    const int order = base::compare(*raw_to_physical(field, low), bound);
+    return (falling ? order > 0 : order < 0) ? low + 1 : low;
+  }
+  [[nodiscard]] static std::int64_t last_raw(const FieldModel& field, Decimal bound, bool falling) {
+    std::int64_t low = field.raw_min;
+    std::int64_t high = field.raw_max;
+    while (low < high) {
+      const std::int64_t middle = midpoint(low, high) + 1;
+      const int order = base::compare(*raw_to_physical(field, middle), bound);
+      if (falling ? order < 0 : order > 0)
+        high = middle - 1;
+      else
+        low = middle;
+    }
+    const int order = base::compare(*raw_to_physical(field, low), bound);
+    return (falling ? order < 0 : order > 0) ? low - 1 : low;
+  }
+  /// Rounded down; no overflow.
+  [[nodiscard]] static std::int64_t midpoint(std::int64_t low, std::int64_t high) {
+    const auto distance = static_cast<std::uint64_t>(high) - static_cast<std::uint64_t>(low);
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(low) + distance / 2);
+  }
+
+  void read_values(const At& at, bool typed, FieldModel& field) {
+    const auto values = at.member("values");
+    const auto flags = at.member("flags");
+    if (values && flags) tell(*flags, "both \"values\" and \"flags\"", "a field is one or the other");
+    const auto a = flags ? flags : values;
+    if (!a) return;
+    field.flags = flags.has_value();
+    const std::string form = field.flags ? R"(names and numbers of bits: {"charging": 1})"
+                                         : R"(names and raw numbers: {"unknown": 65535})";
+    if (!is_object(*a, form)) return;
+    if (a->node->members.empty()) tell(*a, "no names", form);
+    if (field.flags && field.is_signed)
+      tell(*a, "flags in a signed field", "an unsigned type, such as \"u8\"");
+    if (field.flags && (!field.unit.empty() || at.member("scale") || at.member("offset")))
+      tell(*a, "flags with a unit, scale or offset", "flags are bits: leave these out");
+    std::map<std::int64_t, std::string> seen;
+    for (const auto& [key, node] : a->node->members) {
+      const At entry{&node, a->path + "/" + pointer_step(key)};
+      const Node key_node = [&] {
+        Node n;
+        n.kind = Kind::string;
+        n.text = key;
+        n.line = node.line;
+        return n;
+      }();
+      const std::string value_name = name({&key_node, entry.path});
+      if (!typed) continue;
+      const unsigned width = field.position.width;
+      const auto raw = field.flags ? integer(entry, 0, width - 1)
+                                   : integer(entry, protocol::lowest(width, field.is_signed),
+                                             protocol::highest(width, field.is_signed));
+      if (!raw || value_name.empty()) continue;
+      const auto [other, is_new] = seen.emplace(*raw, value_name);
+      if (!is_new)
+        tell(entry,
+             quoted(value_name) + " and " + quoted(other->second) + " are both " + std::to_string(*raw),
+             "a number of its own for each name");
+      field.values.push_back({value_name, *raw});
+    }
+  }
+
+  // --- roles
+  // ------------------------------------------------------------------------------------------------
+
+  void check_role(const At& at, const TopicModel& topic) {
+    struct Wanted {
+      std::string_view field;
+      std::string_view unit;
+    };
+    const std::vector<Wanted> wanted =
+        topic.role == protocol::Role::drive   ? std::vector<Wanted>{{"x", "m/s"}, {"z", "rad/s"}}
+        : topic.role == protocol::Role::light ? std::vector<Wanted>{{"red", ""}, {"green", ""}, {"blue", ""}}
+                                              : std::vector<Wanted>{};
+    if (topic.frames.size() != 1) return;
+    for (const Wanted& field : wanted) {
+      const auto& fields = topic.frames.front().fields;
+      const auto found = std::find_if(fields.begin(), fields.end(),
+                                      [&](const FieldModel& f) { return f.name == field.field; });
+      if (found == fields.end())
+        tell(at, "role " + shown(*at.node) + " without a field " + quoted(field.field),
+             topic.role == protocol::Role::drive ? "fields x in m/s and z in rad/s"
+                                                 : "fields red, green and blue");
+      else if (found->unit != field.unit)
+        tell(at,
+             "role " + shown(*at.node) + " with field " + quoted(field.field) + " in " + quoted(found->unit),
+             field.unit.empty() ? "no unit" : "the unit \"" + std::string{field.unit} + "\"");
+    }
+  }
+
+  std::string_view file_name_;
+  std::vector<Problem>& problems_;
+  protocol::ByteOrder order_ = protocol::ByteOrder::little;
+  TopicModel defaults_;
+  bool boards_known_ = false;
+  std::map<std::string, std::string> boards_;
+  std::map<std::string, std::string> types_;        ///< name in C++, where
+  std::map<std::string, std::string> topic_names_;  ///< name or alias, where
+  std::map<unsigned, std::string> commands_;        ///< ids of requests and set points, where
+  std::map<unsigned, std::string> samples_;         ///< ids of sensors' frames, where
+};
+
+}  // namespace
+
+Model read_model(const Node& root, std::string_view file_name, std::vector<Problem>& problems) {
+  return Reader{file_name, problems}.read(root);
+}
+
+}  // namespace ocm::spec

@@ -1,0 +1,84 @@
+/// The whole robot on a host: its three boards, each a node of its own on the bus, in one world.
+///
+///     sim::SimulatedRobot robot{options, bottom_port, middle_port, top_port};
+///     robot.receive(frame, now);  // whenever a frame was complete on the bus
+///     robot.advance(now);         // at next_event(), and when a port has room again while waiting()
+///
+/// Time is handed in: a server passes the clock, a test whatever it likes. The ports must outlive the robot.
+#pragma once
+
+#include <algorithm>
+#include <utility>
+
+#include "ocm/base/time.hpp"
+#include "ocm/can/bus.hpp"
+#include "ocm/can/frame.hpp"
+
+#include "firmware/boards/di_wheel_drive/board.hpp"
+#include "firmware/boards/light_ring/board.hpp"
+#include "firmware/boards/power_management/board.hpp"
+#include "firmware/sim/world.hpp"
+
+namespace ocm::firmware::sim {
+
+template <can::Sender Bus>
+class SimulatedRobot {
+ public:
+  SimulatedRobot(WorldOptions options, Bus& di_wheel_drive, Bus& power_management, Bus& light_ring)
+      : world_(std::move(options)),
+        next_odometry_(world_.options().start_time),
+        di_wheel_drive_(world_, di_wheel_drive),
+        power_management_(world_, power_management),
+        light_ring_(world_, light_ring) {}
+
+  /// A frame that every board hears, complete on the bus at `now`. Call `advance` afterwards.
+  void receive(const can::Frame& frame, base::Time now) noexcept {
+    pass_until(now);
+    di_wheel_drive_.receive(frame, now);
+    power_management_.receive(frame, now);
+    light_ring_.receive(frame, now);
+  }
+
+  /// Lets the world go on until `now`, then the boards do what is due.
+  void advance(base::Time now) noexcept {
+    pass_until(now);
+    di_wheel_drive_.poll(now);
+    power_management_.poll(now);
+    light_ring_.poll(now);
+  }
+
+  /// When a board has something to do next; base::never when nothing is asked of the robot. The world needs
+  /// no calls of its own.
+  [[nodiscard]] base::Time next_event() const noexcept {
+    return std::min({di_wheel_drive_.next_event(), power_management_.next_event(), light_ring_.next_event()});
+  }
+  /// Frames wait for a port: advance as soon as it has room.
+  [[nodiscard]] bool waiting() const noexcept {
+    return di_wheel_drive_.waiting() || power_management_.waiting() || light_ring_.waiting();
+  }
+
+  [[nodiscard]] World& world() noexcept { return world_; }
+  [[nodiscard]] const World& world() const noexcept { return world_; }
+  [[nodiscard]] const auto& di_wheel_drive() const noexcept { return di_wheel_drive_; }
+  [[nodiscard]] const auto& power_management() const noexcept { return power_management_; }
+  [[nodiscard]] const auto& light_ring() const noexcept { return light_ring_; }
+
+ private:
+  /// The odometry looks at the wheels on its own grid, however seldom somebody calls.
+  void pass_until(base::Time now) noexcept {
+    while (next_odometry_ <= now) {
+      world_.advance_to(next_odometry_);
+      di_wheel_drive_.update_odometry();
+      next_odometry_ += boards::di_wheel_drive::odometry_period;
+    }
+    world_.advance_to(now);
+  }
+
+  World world_;
+  base::Time next_odometry_;
+  boards::di_wheel_drive::Board<World, Bus> di_wheel_drive_;
+  boards::power_management::Board<World, Bus> power_management_;
+  boards::light_ring::Board<World, Bus> light_ring_;
+};
+
+}  // namespace ocm::firmware::sim

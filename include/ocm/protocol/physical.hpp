@@ -1,0 +1,22 @@
+/// From a physical value to the raw number of a field: what generated setters call.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+
+namespace ocm::protocol {
+
+/// The whole number nearest to `value`, halves away from zero, held within [min, max]: a set point that is
+/// too large becomes the largest, never one backwards. Not a number gives the number in the range that is
+/// nearest to zero: a fault upstream must not move the robot.
+template <std::integral T>
+[[nodiscard]] constexpr T nearest_raw(double value, T min, T max) noexcept {
+  if (value != value) return min > 0 ? min : max < 0 ? max : T{0};
+  if (value <= static_cast<double>(min)) return min;
+  if (value >= static_cast<double>(max)) return max;
+  const auto whole = static_cast<std::int64_t>(value);  // towards zero; the difference below is exact
+  const double rest = value - static_cast<double>(whole);
+  return static_cast<T>(whole + (rest >= 0.5 ? 1 : rest <= -0.5 ? -1 : 0));
+}
+
+}  // namespace ocm::protocol
