@@ -13,12 +13,10 @@ The program that makes it runs on the machine that builds, whatever is being bui
   4. the ocm-generate that is installed beside this file, or on the PATH.
 ]]
 
-set(_ocm_generate_topics_dir ${CMAKE_CURRENT_LIST_DIR})
-
 # Sets in the caller's scope: ocm_generator, the command; ocm_generator_depends, what must be built before.
 function(_ocm_find_generator)
   set(depends "")
-  set(host_project ${_ocm_generate_topics_dir}/../cli/generate/host)
+  set(host_project ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../cli/generate/host)
   if(OCM_GENERATE)
     get_filename_component(generator "${OCM_GENERATE}" ABSOLUTE BASE_DIR ${CMAKE_BINARY_DIR})
     if(NOT EXISTS ${generator})
@@ -52,7 +50,8 @@ function(_ocm_find_generator)
         INSTALL_COMMAND "")
     endif()
   else()
-    find_program(OCM_INSTALLED_GENERATE ocm-generate HINTS ${_ocm_generate_topics_dir}/../../../bin
+    find_program(OCM_INSTALLED_GENERATE ocm-generate HINTS ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../../../bin
+                 ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../../../../bin  # lib/<triplet>/cmake/ocm
                  NO_CMAKE_FIND_ROOT_PATH)
     if(NOT OCM_INSTALLED_GENERATE)
       message(FATAL_ERROR "There is no ocm-generate beside this installation of ocm nor on the PATH. "

@@ -67,8 +67,7 @@ class CountingIterator {
     ++*this;
     return before;
   }
-  friend bool operator==(const CountingIterator& a, const CountingIterator& b) { return a.at_ == b.at_; }
-  friend bool operator!=(const CountingIterator& a, const CountingIterator& b) { return a.at_ != b.at_; }
+  bool operator==(const CountingIterator& other) const { return at_ == other.at_; }
 
  private:
   const char* at_;
@@ -106,7 +105,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
   bool start_array(std::size_t) override { return open(Node::Kind::array); }
   bool key(string_t& name) override {
     if (!short_enough(name)) return false;
-    open_.back()->members.emplace_back(name, Node{});
+    open_.back()->members.push_back({name, Node{}});
     return true;
   }
   bool end_object() override { return close(); }
@@ -125,7 +124,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
       remedy = "save the file as UTF-8";
     } else if (what.find("number overflow") != std::string::npos) {
       what = "number " + token.substr(0, 40) + " is too large";
-      remedy = "at most 18 digits";
+      remedy = "at most 18 digits, and an exponent of at most 100";
     }
     const std::size_t offset = position == 0 ? 0 : std::min(position, text_.size() + 1) - 1;
     std::size_t line = 1;
@@ -161,7 +160,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     }
     Node& parent = *open_.back();
     if (parent.kind == Node::Kind::array) return &parent.items.emplace_back(std::move(node));
-    return &(parent.members.back().second = std::move(node));
+    return &(parent.members.back().node = std::move(node));
   }
   bool add(Node node) {
     put(std::move(node));

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "cli/spec/problem.hpp"
@@ -13,18 +12,24 @@
 namespace ocm::spec {
 
 struct Node {
+  struct Member;
   enum class Kind { null, boolean, number, string, array, object };
 
   Kind kind = Kind::null;
   bool truth = false;
   std::string text;  ///< of a string; of a number as it was typed, or an equal spelling
   std::vector<Node> items;
-  std::vector<std::pair<std::string, Node>> members;
+  std::vector<Member> members;
   std::size_t line = 0;  ///< from 1
 
   [[nodiscard]] bool is(Kind k) const noexcept { return kind == k; }
   /// nullptr where there is none; O(members).
   [[nodiscard]] const Node* find(std::string_view key) const noexcept;
+};
+
+struct Node::Member {
+  std::string name;
+  Node node;
 };
 
 /// In words, for messages: "a text", "an object".

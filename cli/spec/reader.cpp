@@ -2,70 +2,16 @@
 
 #include <algorithm>
 #include <array>
-#include <initializer_list>
 #include <map>
 #include <set>
 #include <string>
 
+#include "cli/spec/checker.hpp"
 #include "cli/spec/names.hpp"
 
 namespace ocm::spec {
 
 namespace {
-
-using base::Decimal;
-using base::Duration;
-using Kind = Node::Kind;
-
-/// A node and how it is reached.
-struct At {
-  const Node* node;
-  std::string path;
-
-  [[nodiscard]] At item(std::size_t i) const { return {&node->items[i], path + "/" + std::to_string(i)}; }
-  [[nodiscard]] std::optional<At> member(std::string_view key) const {
-    const Node* found = node->find(key);
-    if (found == nullptr) return std::nullopt;
-    return At{found, path + "/" + pointer_step(key)};
-  }
-};
-
-[[nodiscard]] std::string quoted(std::string_view text) {
-  return "\"" + std::string{text} + "\"";
-}
-/// As the spec has it, for messages.
-[[nodiscard]] std::string shown(const Node& node) {
-  if (node.is(Kind::string)) return quoted(node.text);
-  if (node.is(Kind::number)) return node.text;
-  return std::string{describe(node.kind)};
-}
-[[nodiscard]] std::string hex(std::uint64_t number) {
-  base::Text<20> text;
-  text << "0x";
-  text.hex(number, number > 0xFF ? 3 : 2);
-  return std::string{text.view()};
-}
-[[nodiscard]] std::string print(Decimal number) {
-  return std::string{base::to_text(number).view()};
-}
-/// The shortest spelling: "50ms", "13334us".
-[[nodiscard]] std::string print(Duration duration) {
-  const std::int64_t ns = duration.count();
-  if (ns % 1'000'000'000 == 0) return std::to_string(ns / 1'000'000'000) + "s";
-  if (ns % 1'000'000 == 0) return std::to_string(ns / 1'000'000) + "ms";
-  if (ns % 1'000 == 0) return std::to_string(ns / 1'000) + "us";
-  return std::to_string(ns) + "ns";
-}
-template <class Names>
-[[nodiscard]] std::string list_of(const Names& names) {
-  std::string list;
-  for (const auto& name : names) list.append(list.empty() ? "" : ", ").append(name);
-  return list;
-}
-
-constexpr std::string_view name_form =
-    "lower-case letters, digits and single underscores, a letter first: \"sensor_1\"";
-constexpr std::string_view duration_form = "a number with ns, us, ms or s: \"50ms\"";
 
 // What a frame's struct and a topic's struct have already; a field, frame or flag cannot be called so.
 constexpr std::array<std::string_view, 17> struct_members{
@@ -75,10 +21,9 @@ constexpr std::array<std::string_view, 17> struct_members{
 constexpr std::array<std::string_view, 8> namespace_members{"bit_rate", "boards",   "catalogue", "detail",
                                                             "ocm",      "protocol", "std",       "topics"};
 
-class Reader {
+class Reader : private Checker {
  public:
-  Reader(std::string_view file_name, std::vector<Problem>& problems)
-      : file_name_(file_name), problems_(problems) {}
+  using Checker::Checker;
 
   Model read(const Node& node) {
     const At root{&node, ""};
@@ -101,228 +46,6 @@ class Reader {
   }
 
  private:
-  // --- telling
-  // ----------------------------------------------------------------------------------------------
-
-  void tell(const At& at, std::string what, std::string remedy) {
-    problems_.push_back({std::string{file_name_} + ":" + std::to_string(at.node->line) + ": " +
-                             (at.path.empty() ? "/" : at.path),
-                         std::move(what), std::move(remedy)});
-  }
-
-  // --- reading JSON
-  // -----------------------------------------------------------------------------------------
-
-  [[nodiscard]] bool is_kind(const At& at, Kind kind, std::string_view remedy) {
-    if (at.node->is(kind)) return true;
-    tell(at,
-         shown(*at.node) + (at.node->is(Kind::string) || at.node->is(Kind::number) ? " is not " : ", not ") +
-             std::string{describe(kind)},
-         std::string{remedy});
-    return false;
-  }
-  [[nodiscard]] bool is_object(const At& at, std::string_view remedy) {
-    return is_kind(at, Kind::object, remedy);
-  }
-
-  void check_keys(const At& at, std::initializer_list<std::string_view> known) {
-    for (const auto& [key, node] : at.node->members) {
-      if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-      const std::string near = nearest_name(key, known);
-      tell({&node, at.path + "/" + pointer_step(key)}, "unknown member " + quoted(key),
-           near.empty() ? "one of " + list_of(known) : "did you mean " + quoted(near) + "?");
-    }
-  }
-  [[nodiscard]] std::optional<At> require(const At& at, std::string_view key, std::string_view remedy) {
-    auto found = at.member(key);
-    if (!found) tell(at, "no " + quoted(key), "add " + quoted(key) + ": " + std::string{remedy});
-    return found;
-  }
-
-  /// One line of text for people.
-  [[nodiscard]] std::string line(const At& at, bool may_be_empty = true) {
-    if (!is_kind(at, Kind::string, "a line of text in double quotes")) return {};
-    for (const char c : at.node->text) {
-      if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) {
-        tell(at, "the text has a line break or another control character", "one line of plain text");
-        return {};
-      }
-      if (c == '\\') {  // at the end of a comment it would swallow the next line of the generated header
-        tell(at, "the text has a backslash", "leave it out, or write /");
-        return {};
-      }
-    }
-    if (at.node->text.empty() && !may_be_empty) tell(at, "the text is empty", "at least one character");
-    return at.node->text;
-  }
-
-  /// A name as the spec and C++ want it; empty if it is none.
-  [[nodiscard]] std::string name(const At& at) {
-    if (!is_kind(at, Kind::string, name_form)) return {};
-    const std::string& text = at.node->text;
-    if (!is_name(text)) {
-      tell(at, quoted(text) + " is not a name", std::string{name_form});
-      return {};
-    }
-    if (text.size() > 40) {
-      tell(at, "the name " + quoted(text) + " has " + std::to_string(text.size()) + " characters",
-           "at most 40");
-      return {};
-    }
-    if (is_reserved(text)) {
-      tell(at, quoted(text) + " is a word of C++", "another name, such as " + quoted(text + "_value"));
-      return {};
-    }
-    return text;
-  }
-
-  [[nodiscard]] std::optional<Decimal> decimal(const At& at, std::string_view remedy) {
-    if (!is_kind(at, Kind::number, remedy)) return std::nullopt;
-    const auto number = base::parse_decimal(at.node->text);
-    if (number) return *number;
-    tell(at, "number " + at.node->text.substr(0, 40) + " has more digits than can be kept exactly",
-         "at most 18 digits, and an exponent of at most 100");
-    return std::nullopt;
-  }
-
-  /// A whole number within [min, max].
-  [[nodiscard]] std::optional<std::int64_t> integer(const At& at, std::int64_t min, std::int64_t max) {
-    const std::string remedy = "a whole number from " + std::to_string(min) + " to " + std::to_string(max);
-    const auto number = decimal(at, remedy);
-    if (!number) return std::nullopt;
-    const auto whole = number->exponent < 0 || number->exponent > 18
-                           ? base::Result<std::int64_t>{base::Error::out_of_range}
-                           : base::detail::scaled(number->digits, number->exponent);
-    if (whole && *whole >= min && *whole <= max) return *whole;
-    tell(at, at.node->text.substr(0, 40) + (number->exponent < 0 ? " is not whole" : " is out of range"),
-         remedy);
-    return std::nullopt;
-  }
-
-  /// 3 or "0x03".
-  [[nodiscard]] std::optional<std::uint8_t> id(const At& at) {
-    static constexpr std::string_view form = "a topic's number has 8 bits: \"0x00\" to \"0xFF\"";
-    std::optional<std::uint64_t> number;
-    if (at.node->is(Kind::number)) {
-      if (const auto parsed = base::parse_unsigned(at.node->text)) number = *parsed;
-    } else if (at.node->is(Kind::string)) {
-      const std::string_view text = at.node->text;
-      if (text.substr(0, 2) == "0x" && text.size() <= 18)
-        if (const auto parsed = base::parse_unsigned(text.substr(2), 16)) number = *parsed;
-    }
-    if (!number) {
-      tell(at, shown(*at.node) + " is not an id", std::string{form});
-      return std::nullopt;
-    }
-    if (*number > 0xFF) {
-      tell(at, shown(*at.node) + " is wider than 8 bits", std::string{form});
-      return std::nullopt;
-    }
-    return static_cast<std::uint8_t>(*number);
-  }
-
-  /// "50ms". Not negative; 292 years at most.
-  [[nodiscard]] std::optional<Duration> duration(const At& at) {
-    static constexpr std::pair<std::string_view, Decimal> units[] = {
-        {"ns", {1, 0}}, {"us", {1, 3}}, {"ms", {1, 6}}, {"s", {1, 9}}};
-    if (!is_kind(at, Kind::string, duration_form)) return std::nullopt;
-    const std::string_view text = at.node->text;
-    const std::size_t split = text.find_first_not_of("0123456789.");
-    if (split != std::string_view::npos && split != 0) {
-      for (const auto& [unit, nanoseconds] : units) {
-        if (text.substr(split) != unit) continue;
-        const auto count = base::parse_decimal(text.substr(0, split));
-        if (!count) break;
-        const auto product = base::multiply(*count, nanoseconds);
-        const auto whole = !product || product->exponent < 0
-                               ? base::Result<std::int64_t>{base::Error::out_of_range}
-                               : base::detail::scaled(product->digits, product->exponent);
-        if (whole) return Duration{*whole};
-        tell(at, quoted(text) + " is no whole number of nanoseconds within 292 years",
-             std::string{duration_form});
-        return std::nullopt;
-      }
-    }
-    tell(at, quoted(text) + " is not a duration", std::string{duration_form});
-    return std::nullopt;
-  }
-
-  /// A duration that a request can carry.
-  [[nodiscard]] std::optional<protocol::Period> period(const At& at) {
-    const auto wanted = duration(at);
-    if (!wanted) return std::nullopt;
-    if (const auto wire = protocol::Period::from(*wanted)) return *wire;
-    tell(at, "a request cannot carry the period " + quoted(at.node->text),
-         "1 to 65535 of us, ms or s; the nearest is \"" +
-             print(protocol::Period::nearest(*wanted).duration()) + "\"");
-    return std::nullopt;
-  }
-
-  [[nodiscard]] std::optional<protocol::Priority> priority(const At& at) {
-    static constexpr std::pair<std::string_view, protocol::Priority> priorities[] = {
-        {"urgent", protocol::Priority::urgent},
-        {"high", protocol::Priority::high},
-        {"medium", protocol::Priority::medium},
-        {"low", protocol::Priority::low}};
-    return one_of(at, priorities);
-  }
-
-  template <class T, std::size_t N>
-  [[nodiscard]] std::optional<T> one_of(const At& at, const std::pair<std::string_view, T> (&choices)[N]) {
-    std::vector<std::string_view> names;
-    for (const auto& [text, value] : choices) {
-      if (at.node->is(Kind::string) && at.node->text == text) return value;
-      names.push_back(text);
-    }
-    tell(at, shown(*at.node) + " is not known here", "one of " + list_of(names));
-    return std::nullopt;
-  }
-
-  [[nodiscard]] protocol::ByteOrder read_order(const At& at, protocol::ByteOrder inherited) {
-    static constexpr std::pair<std::string_view, protocol::ByteOrder> choices[] = {
-        {"little", protocol::ByteOrder::little}, {"big", protocol::ByteOrder::big}};
-    const auto order = at.member("byte_order");
-    return order ? one_of(*order, choices).value_or(inherited) : inherited;
-  }
-
-  /// `facts` are the members that need a source; `inherited`: it may be missing, for it is further out.
-  [[nodiscard]] Source read_source(const At& object, std::initializer_list<std::string_view> facts,
-                                   bool inherited) {
-    const auto at = object.member("source");
-    Source source;
-    if (!at) {
-      if (!inherited)
-        tell(object, "no \"source\"", R"(add "source": where the facts come from, or "decided: why")");
-      return source;
-    }
-    if (at->node->is(Kind::string)) {
-      source.general = line(*at, false);
-      return source;
-    }
-    if (!is_object(*at, R"(a line of text, or {"default": "...", "id": "..."} with a text for each fact)"))
-      return source;
-    for (const auto& [key, node] : at->node->members) {
-      const At entry{&node, at->path + "/" + pointer_step(key)};
-      std::string text = line(entry, false);
-      if (key == "default") {
-        source.general = std::move(text);
-      } else if (std::find(facts.begin(), facts.end(), key) == facts.end() || !object.member(key)) {
-        std::vector<std::string> present;
-        for (const auto fact : facts)
-          if (object.member(fact)) present.emplace_back(fact);
-        tell(entry, "source for " + quoted(key) + ", which is no fact of this object",
-             "default, or one of " + list_of(present));
-      } else {
-        source.particular.emplace_back(key, std::move(text));
-      }
-    }
-    if (at->member("default") || inherited) return source;
-    for (const auto fact : facts)
-      if (object.member(fact) && !at->member(fact))
-        tell(*at, "no source for " + quoted(fact), "add " + quoted(fact) + " or \"default\"");
-    return source;
-  }
-
   // --- robot, bus, boards
   // -----------------------------------------------------------------------------------
 
@@ -388,7 +111,7 @@ class Reader {
       }
       model.boards.push_back(std::move(board));  // also a bad one: the others keep their numbers
     }
-    boards_known_ = true;
+    boards_known_ = !boards_.empty();
   }
   void claim_board(const At& at, const std::string& board) {
     const auto [other, is_new] = boards_.emplace(board, at.path);
@@ -436,7 +159,9 @@ class Reader {
     if (const auto a = at.member("kind")) {
       static constexpr std::pair<std::string_view, protocol::Kind> kinds[] = {
           {"sensor", protocol::Kind::sensor}, {"actuator", protocol::Kind::actuator}};
-      topic.kind = one_of(*a, kinds).value_or(protocol::Kind::sensor);
+      // What has a timeout or a role is meant to be an actuator, whatever the word is.
+      const bool acts = at.member("timeout") || at.member("role");
+      topic.kind = one_of(*a, kinds).value_or(acts ? protocol::Kind::actuator : protocol::Kind::sensor);
     }
     const bool sensor = topic.kind == protocol::Kind::sensor;
     if (const auto a = at.member("count")) {
@@ -476,16 +201,12 @@ class Reader {
   void read_names(const At& at, TopicModel& topic) {
     if (!topic.name.empty()) {
       const At name_at = *at.member("name");
-      claim_type(name_at, topic.name);
+      if (claim_name(name_at, topic.name)) claim_type(name_at, topic.name);
       for (const auto taken : namespace_members)
         if (topic.name == taken)
           tell(name_at, quoted(topic.name) + " has a meaning of its own in the header", "another name");
-      if (topic.is_group) {
-        claim_name(name_at, topic.name);
+      if (topic.is_group)
         for (unsigned i = 1; i <= topic.count; ++i) claim_name(name_at, topic.name + "_" + std::to_string(i));
-      } else {
-        claim_name(name_at, topic.name);
-      }
     }
     const auto alias_at = at.member("alias");
     if (!alias_at) return;
@@ -499,11 +220,13 @@ class Reader {
       topic.aliases.push_back(std::move(alias));
     }
   }
-  void claim_name(const At& at, const std::string& topic_name) {
+  /// Whether it was free.
+  bool claim_name(const At& at, const std::string& topic_name) {
     const auto [other, is_new] = topic_names_.emplace(topic_name, at.path);
     if (!is_new)
       tell(at, "a second topic is called " + quoted(topic_name) + " (see " + other->second + ")",
            "names and aliases are unique over all topics");
+    return is_new;
   }
 
   void read_board(const At& at, const Model& model, TopicModel& topic) {
@@ -587,14 +310,17 @@ class Reader {
       if (!frame.name.empty()) {
         const At name_at = *frame_at.member("name");
         std::vector<std::string> mine{frame.name};
-        if (frame_at.member("count"))
+        if (frame.is_array)
           for (unsigned n = 1; n <= frame.count; ++n) mine.push_back(frame.name + "_" + std::to_string(n));
+        bool free = true;
         for (const std::string& one : mine) {
           const auto [other, is_new] = names.emplace(one, name_at.path);
+          free = free && is_new;
           if (is_new) continue;
           tell(name_at, "a second frame is called " + quoted(one) + " (see " + other->second + ")",
                "a name of its own for each frame of the topic");
         }
+        if (free && !topic.name.empty()) claim_type(name_at, topic.name + "_" + frame.name);
       }
       topic.frames.push_back(std::move(frame));
     }
@@ -628,27 +354,26 @@ class Reader {
            several ? "add \"name\": a topic's frames have names when there are several"
                    : "add \"name\": frames with a count are called name_1, name_2, ...");
     }
-    if (!frame.name.empty()) {
-      check_member_name(*name_at, frame.name);
-      if (!topic.name.empty()) claim_type(*name_at, topic.name + "_" + frame.name);
-    }
+    if (!frame.name.empty()) check_member_name(*name_at, frame.name);
     if (!sensor && several)
       tell(at, "a set point of several frames", "one frame: the wheels must not act on half a set point");
     if (const auto a = at.member("description")) frame.description = line(*a);
     frame.source = read_source(at, {"id", "count", "dlc", "byte_order", "fields"}, true);
 
-    std::optional<std::uint8_t> frame_id = several ? std::nullopt : topic_id;
+    std::optional<std::uint8_t> own_id;
     if (const auto a = at.member("id"))
-      frame_id = id(*a);
+      own_id = id(*a);
     else if (several)
       tell(at, "no \"id\"", "add \"id\": each of several frames has its own");
-    if (frame_id) {
-      frame.id = *frame_id;
+    else
+      own_id = topic_id;
+    if (own_id.has_value()) {
+      frame.id = own_id.value_or(0);
       const At id_at = at.member("id").value_or(at);
       if (sensor)
         claim_ids(id_at, samples_, frame.id, frame.count, "sensors' frames");
-      else if (topic_id && *frame_id != *topic_id)
-        tell(id_at, "the set point's frame has id " + hex(*frame_id) + ", the topic " + hex(*topic_id),
+      else if (topic_id && frame.id != *topic_id)
+        tell(id_at, "the set point's frame has id " + hex(frame.id) + ", the topic " + hex(*topic_id),
              "the same id for both, or no \"id\" here");
     }
 
@@ -751,6 +476,9 @@ class Reader {
     if (field.name.empty()) return;
     const At name_at = at.member("name").value_or(at);
     check_member_name(name_at, field.name);
+    if (const auto other = members.find(field.name); other != members.end())
+      return tell(name_at, "a second " + quoted(field.name) + " (see " + other->second + ")",
+                  "a name of its own for each field and flag of the frame");
     claim_member(name_at, members, field.name);
     if (!field.unit_name.empty()) {
       claim_member(name_at, members, field.name + "_" + field.unit_name);
@@ -1001,13 +729,10 @@ class Reader {
     std::map<std::int64_t, std::string> seen;
     for (const auto& [key, node] : a->node->members) {
       const At entry{&node, a->path + "/" + pointer_step(key)};
-      const Node key_node = [&] {
-        Node n;
-        n.kind = Kind::string;
-        n.text = key;
-        n.line = node.line;
-        return n;
-      }();
+      Node key_node;  // a name like any other, only that it stands left of a colon
+      key_node.kind = Kind::string;
+      key_node.text = key;
+      key_node.line = node.line;
       const std::string value_name = name({&key_node, entry.path});
       if (!typed) continue;
       const unsigned width = field.position.width;
@@ -1052,8 +777,6 @@ class Reader {
     }
   }
 
-  std::string_view file_name_;
-  std::vector<Problem>& problems_;
   protocol::ByteOrder order_ = protocol::ByteOrder::little;
   TopicModel defaults_;
   bool boards_known_ = false;

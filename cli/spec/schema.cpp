@@ -1,6 +1,8 @@
 // valijson is slow to compile: it has this file to itself.
 #include <algorithm>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
@@ -89,13 +91,17 @@ bool is_at_or_below(const std::string& place, const std::string& path) {
 }  // namespace
 
 void validate_by_schema(const Node& root, std::string_view file_name, std::vector<Problem>& problems) {
-  const auto schema_json = nlohmann::json::parse(schema_text());
-  valijson::Schema schema;
-  valijson::SchemaParser{}.populateSchema(valijson::adapters::NlohmannJsonAdapter{schema_json}, schema);
+  // Read once: it takes longer than the validation of a spec.
+  static const auto schema_json = nlohmann::json::parse(schema_text());
+  static const auto schema = [] {
+    auto made = std::make_unique<valijson::Schema>();
+    valijson::SchemaParser{}.populateSchema(valijson::adapters::NlohmannJsonAdapter{schema_json}, *made);
+    return made;
+  }();
   const auto document = to_json(root);
   valijson::ValidationResults results;
   valijson::Validator validator;
-  if (validator.validate(schema, valijson::adapters::NlohmannJsonAdapter{document}, &results)) return;
+  if (validator.validate(*schema, valijson::adapters::NlohmannJsonAdapter{document}, &results)) return;
 
   // Innermost first: what surrounds a bad value is reported by valijson as well, and says nothing new.
   std::vector<Problem> found;

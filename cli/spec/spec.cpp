@@ -119,6 +119,14 @@ Loaded parse(std::string_view text, std::string_view file_name) {
   if (!std::all_of(loaded.problems.begin(), loaded.problems.end(), has_path)) return loaded;
   Model model = read_model(root, file_name, loaded.problems);
   validate_by_schema(root, file_name, loaded.problems);
+  const auto line_of = [&](const Problem& p) {
+    std::size_t line = 0;  // places begin "file:line"
+    for (std::size_t i = file_name.size() + 1; i < p.place.size() && base::is_digit(p.place[i]); ++i)
+      line = 10 * line + static_cast<std::size_t>(p.place[i] - '0');
+    return line;
+  };
+  std::stable_sort(loaded.problems.begin(), loaded.problems.end(),
+                   [&](const Problem& a, const Problem& b) { return line_of(a) < line_of(b); });
   if (loaded.problems.empty()) loaded.spec = std::make_unique<Spec>(std::move(model));
   return loaded;
 }

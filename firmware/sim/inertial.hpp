@@ -38,7 +38,7 @@ template <class T>
   return static_cast<T>(digit > high ? high : digit >= low ? digit : low);  // not a number: low
 }
 
-/// L3G4200D at +-500 deg/s, 800 samples/s, low-pass at 30 Hz. [data sheet, tables 4 and 21]
+/// L3G4200D at +-500 deg/s, 800 samples/s, low-pass at 30 Hz. [data sheet]
 struct GyroscopeModel {
   base::Duration period = std::chrono::microseconds{1250};
   double deg_per_s_per_digit = 0.0175;
@@ -65,7 +65,7 @@ struct GyroscopeModel {
   }
 };
 
-/// LIS331DLH at +-8 g, 1000 samples/s, low-pass at 780 Hz. [data sheet, tables 3 and 20]
+/// LIS331DLH at +-8 g, 1000 samples/s, low-pass at 780 Hz. [data sheet]
 struct AccelerometerModel {
   base::Duration period = std::chrono::milliseconds{1};
   double digits_per_g = 1024;
@@ -88,7 +88,7 @@ struct AccelerometerModel {
   }
 };
 
-/// HMC5883L at +-4.7 G, 75 samples/s. [data sheet, table of gains]
+/// HMC5883L at +-4.7 G, 75 samples/s. [data sheet]
 struct MagnetometerModel {
   base::Duration period = std::chrono::microseconds{13334};
   std::int32_t microgauss_per_count = 2560;

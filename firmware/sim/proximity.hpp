@@ -4,7 +4,7 @@
 /// measured on the AMiRo itself: counts above the offset = 0.9427 / d^2 * |cos(1.2365 * angle)|, d in metres,
 /// with a variance of 20.9 counts. [obstacle model in VCNL4020Models.h of github.com/tik0/amiro_senseact,
 /// solved for the counts] At 10 mm this gives 9427, at 50 mm 377 and at 200 mm, the greatest range of the
-/// data sheet, 24; below 3.9 mm the converter is at its end, 65535.
+/// data sheet, 24; below 3.8 mm the converter is at its end, 65535.
 #pragma once
 
 #include <algorithm>

@@ -10,6 +10,9 @@
 
 namespace ocm::base {
 
+/// Parsed and computed numbers lie within 10^-100 .. 10^100 a digit: anything else is out_of_range.
+inline constexpr int max_decimal_exponent = 100;
+
 /// `digits * 10^exponent`. Normalised: no trailing zero in `digits` unless it is 0, and then exponent 0.
 struct Decimal {
   std::int64_t digits = 0;
@@ -17,7 +20,7 @@ struct Decimal {
 
   friend constexpr bool operator==(const Decimal&, const Decimal&) = default;
   [[nodiscard]] constexpr double as_double() const noexcept {
-    // Dividing by an exact power of ten rounds once; multiplying by 10^-n would round twice.
+    // Dividing by an exact power of ten (up to 10^22) rounds once; multiplying by 10^-n would round twice.
     double power = 1;
     const int n = exponent < 0 ? -exponent : exponent;
     for (int i = 0; i < n; ++i) power *= 10;
@@ -25,6 +28,7 @@ struct Decimal {
   }
 };
 
+/// `exponent` within -128 .. 109, which leaves room for the zeros that move into it.
 [[nodiscard]] constexpr Decimal normalised(std::int64_t digits, int exponent) noexcept {
   if (digits == 0) return {};
   while (digits % 10 == 0) digits /= 10, ++exponent;
@@ -42,25 +46,35 @@ namespace detail {
     if (multiply_overflows(digits, 10, digits)) return Error::out_of_range;
   return digits;
 }
+/// Normalised, or out_of_range.
+[[nodiscard]] constexpr Result<Decimal> bounded(std::int64_t digits, int exponent) noexcept {
+  while (digits != 0 && digits % 10 == 0) digits /= 10, ++exponent;
+  if (digits == 0) return Decimal{};
+  if (exponent < -max_decimal_exponent || exponent > max_decimal_exponent) return Error::out_of_range;
+  return Decimal{digits, static_cast<std::int8_t>(exponent)};
+}
+[[nodiscard]] constexpr std::uint64_t magnitude(std::int64_t number) noexcept {
+  return number < 0 ? 0 - static_cast<std::uint64_t>(number) : static_cast<std::uint64_t>(number);
+}
 }  // namespace detail
 
-/// a * b; out_of_range where the product needs more than 63 bits of digits.
+/// a * b; out_of_range where the product of the digits needs more than 63 bits.
 [[nodiscard]] constexpr Result<Decimal> multiply(Decimal a, Decimal b) noexcept {
   std::int64_t product = 0;
   if (detail::multiply_overflows(a.digits, b.digits, product)) return Error::out_of_range;
-  return normalised(product, a.exponent + b.exponent);
+  return detail::bounded(product, a.exponent + b.exponent);
 }
 
 /// a + b, exact or out_of_range.
 [[nodiscard]] constexpr Result<Decimal> add(Decimal a, Decimal b) noexcept {
-  if (a.digits == 0) return b;
-  if (b.digits == 0) return a;
+  if (a.digits == 0) return detail::bounded(b.digits, b.exponent);
+  if (b.digits == 0) return detail::bounded(a.digits, a.exponent);
   const int exponent = a.exponent < b.exponent ? a.exponent : b.exponent;
   const auto x = detail::scaled(a.digits, a.exponent - exponent);
   const auto y = detail::scaled(b.digits, b.exponent - exponent);
   std::int64_t sum = 0;
   if (!x || !y || __builtin_add_overflow(*x, *y, &sum)) return Error::out_of_range;
-  return normalised(sum, exponent);
+  return detail::bounded(sum, exponent);
 }
 
 [[nodiscard]] constexpr Result<Decimal> subtract(Decimal a, Decimal b) noexcept {
@@ -68,28 +82,47 @@ namespace detail {
   return add(a, Decimal{-b.digits, b.exponent});
 }
 
-/// a / b rounded half away from zero to a whole number.
+/// a / b rounded half away from zero to a whole number; out_of_range where that needs more than 63 bits, or b
+/// is 0. Exact for every other pair; no 128-bit arithmetic, which a Cortex-M has not.
 [[nodiscard]] constexpr Result<std::int64_t> divide_rounded(Decimal a, Decimal b) noexcept {
   if (b.digits == 0) return Error::out_of_range;
-  const int exponent = a.exponent < b.exponent ? a.exponent : b.exponent;
-  // Exponents differ by more than 18 only when the quotient is far out of range or zero.
-  const auto numerator = detail::scaled(a.digits, a.exponent - exponent);
-  if (!numerator) return a.digits == 0 ? Result<std::int64_t>{0} : Error::out_of_range;
-  const auto denominator = detail::scaled(b.digits, b.exponent - exponent);
-  if (!denominator) return std::int64_t{0};
-  if (*numerator == INT64_MIN || *denominator == INT64_MIN) return Error::out_of_range;
-  const bool negative = (*numerator < 0) != (*denominator < 0);
-  const std::uint64_t n = static_cast<std::uint64_t>(*numerator < 0 ? -*numerator : *numerator);
-  const std::uint64_t d = static_cast<std::uint64_t>(*denominator < 0 ? -*denominator : *denominator);
-  const std::uint64_t quotient = n / d + (n % d >= d - n % d ? 1 : 0);
-  return negative ? -static_cast<std::int64_t>(quotient) : static_cast<std::int64_t>(quotient);
+  if (a.digits == 0) return std::int64_t{0};
+  const bool negative = (a.digits < 0) != (b.digits < 0);
+  std::uint64_t divisor = detail::magnitude(b.digits);
+  for (int n = b.exponent - a.exponent; n > 0; --n)
+    // A divisor of 2^64 or more is more than twice any dividend: the quotient rounds to 0.
+    if (__builtin_mul_overflow(divisor, std::uint64_t{10}, &divisor)) return std::int64_t{0};
+  std::uint64_t quotient = detail::magnitude(a.digits) / divisor;
+  std::uint64_t rest = detail::magnitude(a.digits) % divisor;
+  // One decimal place a step, as on paper. A divisor that was scaled up above needs no step, so that here it
+  // is at most 2^63, the rest smaller, and twice the rest fits.
+  for (int n = a.exponent - b.exponent; n > 0 && (quotient | rest) != 0; --n) {
+    if (__builtin_mul_overflow(quotient, std::uint64_t{10}, &quotient)) return Error::out_of_range;
+    std::uint64_t place = 0;
+    std::uint64_t tenfold = 0;                           // 10 * rest, less place * divisor
+    for (const bool bit : {true, false, true, false}) {  // 10 in binary
+      tenfold *= 2;
+      place *= 2;
+      if (tenfold >= divisor) tenfold -= divisor, ++place;
+      if (!bit) continue;
+      tenfold += rest;
+      if (tenfold >= divisor) tenfold -= divisor, ++place;
+    }
+    rest = tenfold;
+    if (__builtin_add_overflow(quotient, place, &quotient)) return Error::out_of_range;
+  }
+  if (rest >= divisor - rest && __builtin_add_overflow(quotient, std::uint64_t{1}, &quotient))
+    return Error::out_of_range;
+  const std::uint64_t limit = static_cast<std::uint64_t>(INT64_MAX) + (negative ? 1 : 0);
+  if (quotient > limit) return Error::out_of_range;
+  return static_cast<std::int64_t>(negative ? 0 - quotient : quotient);
 }
 
-/// Three-way: negative, zero or positive as a < b, a == b, a > b. Exact for every pair.
+/// -1, 0 or 1 as a < b, a == b, a > b. Exact for every pair.
 [[nodiscard]] constexpr int compare(Decimal a, Decimal b) noexcept {
   const int sign_a = a.digits < 0 ? -1 : a.digits > 0;
   const int sign_b = b.digits < 0 ? -1 : b.digits > 0;
-  if (sign_a != sign_b) return sign_a - sign_b;
+  if (sign_a != sign_b) return sign_a < sign_b ? -1 : 1;
   const int exponent = a.exponent < b.exponent ? a.exponent : b.exponent;
   const auto x = detail::scaled(a.digits, a.exponent - exponent);
   const auto y = detail::scaled(b.digits, b.exponent - exponent);
@@ -116,9 +149,10 @@ namespace detail {
       point = true;
     } else if (is_digit(c)) {
       any = true;
-      if (detail::multiply_overflows(digits, 10, digits) || __builtin_add_overflow(digits, c - '0', &digits))
+      // Negative whatever the sign: there is one more negative number than there are positive ones.
+      if (detail::multiply_overflows(digits, 10, digits) || __builtin_sub_overflow(digits, c - '0', &digits))
         return Error::out_of_range;
-      if (point && --exponent < -100) return Error::out_of_range;
+      if (point && --exponent < -max_decimal_exponent) return Error::out_of_range;
     } else {
       break;
     }
@@ -131,21 +165,19 @@ namespace detail {
     if (!tail.empty() && (tail.front() == '-' || tail.front() == '+')) tail.remove_prefix(1);
     const auto shift = parse_unsigned(tail);
     if (!shift) return shift.error;
-    if (*shift > 100) return Error::out_of_range;
+    if (*shift > 2 * max_decimal_exponent) return Error::out_of_range;
     exponent += down ? -static_cast<int>(*shift) : static_cast<int>(*shift);
   }
-  if (exponent < -100 || exponent > 100) return Error::out_of_range;
-  return normalised(negative ? -digits : digits, exponent);
+  if (!negative && digits == INT64_MIN) return Error::out_of_range;
+  return detail::bounded(negative ? digits : -digits, exponent);
 }
 
-/// Plain notation without an exponent, shortest: 0.0525, -930, 1200. At most 130 characters.
+/// Plain notation without an exponent, shortest: 0.0525, -930, 1200. At most 120 characters for exponents up
+/// to max_decimal_exponent.
 template <std::size_t N>
 constexpr Text<N>& print(Text<N>& out, Decimal number) noexcept {
-  std::uint64_t magnitude = static_cast<std::uint64_t>(number.digits);
-  if (number.digits < 0) {
-    out << '-';
-    magnitude = 0 - magnitude;
-  }
+  const std::uint64_t magnitude = detail::magnitude(number.digits);
+  if (number.digits < 0) out << '-';
   if (number.exponent >= 0) {
     out.decimal(magnitude);
     for (int i = 0; i < number.exponent; ++i) out << '0';
@@ -166,8 +198,8 @@ constexpr Text<N>& print(Text<N>& out, Decimal number) noexcept {
   return out;
 }
 
-[[nodiscard]] constexpr Text<132> to_text(Decimal number) noexcept {
-  Text<132> text;
+[[nodiscard]] constexpr Text<120> to_text(Decimal number) noexcept {
+  Text<120> text;
   print(text, number);
   return text;
 }

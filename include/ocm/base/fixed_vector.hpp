@@ -23,10 +23,11 @@ class FixedVector {
     return {};
   }
   constexpr void clear() noexcept { size_ = 0; }
-  /// Removes the element at `index`; the order of the others stays. O(N).
+  /// Removes the element at `index`, if there is one; the order of the others stays. O(N).
   constexpr void erase(std::size_t index) noexcept {
+    if (index >= size_) return;
     for (std::size_t i = index + 1; i < size_; ++i) items_[i - 1] = items_[i];
-    if (index < size_) --size_;
+    --size_;
   }
 
   constexpr T& operator[](std::size_t i) noexcept { return items_[i]; }

@@ -25,7 +25,7 @@ class Text {
     for (const char c : text) *this << c;
     return *this;
   }
-  /// Upper-case hexadecimal with exactly `digits` digits.
+  /// Upper-case hexadecimal with exactly `digits` digits, at most 16.
   constexpr Text& hex(std::uint64_t number, int digits) noexcept {
     for (int i = digits - 1; i >= 0; --i) *this << "0123456789ABCDEF"[(number >> (4 * i)) & 0xF];
     return *this;

@@ -48,9 +48,9 @@ struct Frame {
   return {};
 }
 
-/// Order on the bus: true if `a` wins the arbitration against `b`, that is sends the first dominant bit where
-/// they differ. The base identifier goes first, then RTR (or SRR) and IDE, then the extension. [ISO
-/// 11898-1, 6.6]
+/// Order on the bus: the frame with the lower key wins the arbitration, that is sends the first dominant bit
+/// where they differ. The base identifier goes first, then RTR (or SRR) and IDE, then the extension. Equal
+/// keys collide. [ISO 11898-1, 6.6]
 [[nodiscard]] constexpr std::uint32_t arbitration_key(const Frame& frame) noexcept {
   // 11 bits base identifier | RTR or SRR | IDE | 18 bits extension | RTR of an extended frame
   const std::uint32_t rtr = is_remote(frame.format) ? 1 : 0;

@@ -38,7 +38,9 @@ using FrameText = base::Text<max_frame_text>;
   return out;
 }
 
-/// Reads what `to_text` writes and what cansend accepts: data bytes may be parted by dots.
+/// Reads what `to_text` writes, lower-case too, and single dots between data bytes as cansend does. Refuses
+/// with bad_syntax, bad_identifier (too large, or not of three or eight digits), bad_length (more than 8
+/// bytes).
 [[nodiscard]] constexpr base::Result<Frame> parse_frame(std::string_view text) noexcept {
   using base::Error;
   const auto hash = text.find('#');
@@ -68,10 +70,7 @@ using FrameText = base::Text<max_frame_text>;
   } else {
     std::size_t i = 0;
     while (i < data_text.size()) {
-      if (data_text[i] == '.' && i > 0 && i + 1 < data_text.size()) {
-        ++i;
-        continue;
-      }
+      if (data_text[i] == '.' && i > 0) ++i;  // one, between bytes
       if (i + 1 >= data_text.size()) return Error::bad_syntax;
       const int high = base::hex_digit(data_text[i]);
       const int low = base::hex_digit(data_text[i + 1]);

@@ -45,14 +45,14 @@ namespace detail {
 
 /// The eight bytes as one number, first byte lowest (little) or highest (big).
 [[nodiscard]] constexpr std::uint64_t load(const can::Payload& data, ByteOrder order) noexcept {
-  std::uint64_t word = 0;
-  for (unsigned i = 0; i < 8; ++i)
-    word |= std::uint64_t{data[i]} << (order == ByteOrder::little ? 8 * i : 56 - 8 * i);
-  return word;
+  const auto word = std::bit_cast<std::uint64_t>(data);
+  return (order == ByteOrder::little) == (std::endian::native == std::endian::little)
+             ? word
+             : __builtin_bswap64(word);
 }
 constexpr void store(can::Payload& data, std::uint64_t word, ByteOrder order) noexcept {
-  for (unsigned i = 0; i < 8; ++i)
-    data[i] = static_cast<std::uint8_t>(word >> (order == ByteOrder::little ? 8 * i : 56 - 8 * i));
+  const bool native = (order == ByteOrder::little) == (std::endian::native == std::endian::little);
+  data = std::bit_cast<can::Payload>(native ? word : __builtin_bswap64(word));
 }
 /// Distance of the field's lowest bit from the lowest bit of `load`'s number.
 [[nodiscard]] constexpr unsigned shift_of(Position p) noexcept {
@@ -81,7 +81,8 @@ constexpr void store(can::Payload& data, std::uint64_t word, ByteOrder order) no
   return magnitude_bits >= 63 ? INT64_MAX : (std::int64_t{1} << magnitude_bits) - 1;
 }
 
-/// Run-time form. The position must be valid (`mask() != 0`).
+/// Run-time form. The position must be valid (`mask() != 0`). An unsigned field of 64 bits comes back as the
+/// same bits: negative from 2^63 on.
 [[nodiscard]] constexpr std::int64_t get(const can::Payload& data, Position position,
                                          bool is_signed) noexcept {
   const std::uint64_t bits =
@@ -97,7 +98,8 @@ constexpr void put(can::Payload& data, Position position, std::int64_t value) no
   detail::store(data, word, position.order);
 }
 
-/// Compile-time form: a field of type T at a fixed position. T is the smallest integer that holds the width.
+/// Compile-time form: a field of type T at a fixed position. T holds the width; the generator takes the
+/// smallest.
 template <class T, unsigned Start, unsigned Width = 8 * sizeof(T), ByteOrder Order = ByteOrder::little>
 struct Bits {
   static_assert(std::is_integral_v<T>);
@@ -113,10 +115,10 @@ struct Bits {
 
   [[nodiscard]] static constexpr T get(const can::Payload& data) noexcept {
     Word bits = 0;
-    each_byte([&](unsigned byte, int shift) {
-      const Word value = data[byte];
-      bits = static_cast<Word>(bits | (shift >= 0 ? value << shift : value >> -shift));
-    });
+    for (unsigned i = first; i <= last; ++i) {
+      const Word value = data[place_of(i)];
+      bits = static_cast<Word>(bits | (8 * i >= shift ? value << (8 * i - shift) : value >> (shift - 8 * i)));
+    }
     if constexpr (Width < 8 * sizeof(Word)) {
       bits = static_cast<Word>(bits & detail::low_mask(Width));
       if constexpr (std::is_signed_v<T>) {
@@ -124,36 +126,54 @@ struct Bits {
         bits = static_cast<Word>((bits ^ sign) - sign);
       }
     }
-    return static_cast<T>(bits);
+    // By way of the signed type of the same width, in case T is wider.
+    using Value = std::conditional_t<std::is_signed_v<T>, std::make_signed_t<Word>, Word>;
+    return static_cast<T>(static_cast<Value>(bits));
   }
 
   /// The frame's other bits are kept. A value outside [min, max] is put as the nearer bound: a velocity that
   /// is too large must not come out as one backwards.
   static constexpr void put(can::Payload& data, T value) noexcept {
     if constexpr (Width < 8 * sizeof(T)) value = value < min ? min : value > max ? max : value;
-    const Word bits =
-        static_cast<Word>(static_cast<Word>(value) & static_cast<Word>(detail::low_mask(Width)));
-    each_byte([&](unsigned byte, int shift) {
-      const std::uint8_t taken = static_cast<std::uint8_t>(position.mask() >> (8 * byte));
-      const std::uint8_t value_bits = static_cast<std::uint8_t>(shift >= 0 ? bits >> shift : bits << -shift);
-      data[byte] = static_cast<std::uint8_t>((data[byte] & ~taken) | (value_bits & taken));
-    });
+    // One store of eight bytes, or the processor waits: eight small stores cannot be forwarded to the load of
+    // the whole frame that follows. A Cortex-M has neither such registers nor that problem.
+    if constexpr (sizeof(void*) >= 8)
+      put_by_word(data, value);
+    else
+      put_by_bytes(data, value);
+  }
+
+  /// The two ways to put the lowest `Width` bits of `value`; same result.
+  static constexpr void put_by_word(can::Payload& data, T value) noexcept {
+    const std::uint64_t bits = (static_cast<std::uint64_t>(value) & detail::low_mask(Width)) << shift;
+    detail::store(data, (detail::load(data, Order) & ~(detail::low_mask(Width) << shift)) | bits, Order);
+  }
+  static constexpr void put_by_bytes(can::Payload& data, T value) noexcept {
+    const Word bits = static_cast<Word>(value);
+    for (unsigned i = first; i <= last; ++i) {
+      const auto byte =
+          static_cast<std::uint8_t>(8 * i >= shift ? bits >> (8 * i - shift) : bits << (shift - 8 * i));
+      std::uint8_t& place = data[place_of(i)];
+      if constexpr (whole_bytes) {
+        place = byte;
+      } else {
+        const unsigned from = i == first ? 0xFFU << shift % 8 : 0xFFU;
+        const unsigned to = i == last ? 0xFFU >> (7 - (shift + Width - 1) % 8) : 0xFFU;
+        place = static_cast<std::uint8_t>((place & ~(from & to)) | (byte & from & to));
+      }
+    }
   }
 
  private:
   // Wide enough that no shift loses a bit, and never 64 bits where 32 do: a Cortex-M has no 64-bit registers.
   using Word = std::conditional_t<(Width <= 32), std::uint32_t, std::uint64_t>;
 
-  /// Calls `f(byte, shift)` for each byte of the field, where `shift` is how far the byte's bit 0 lies above
-  /// the field's bit 0.
-  template <class F>
-  static constexpr void each_byte(F&& f) noexcept {
-    constexpr unsigned shift = detail::shift_of(position);
-    constexpr unsigned first = shift / 8;
-    constexpr unsigned last = (shift + Width - 1) / 8;
-    for (unsigned i = first; i <= last; ++i)
-      f(Order == ByteOrder::little ? i : 7 - i, static_cast<int>(8 * i) - static_cast<int>(shift));
-  }
+  // Bytes are counted from the one with the field's order's lowest bits: the first of the frame, or the last.
+  static constexpr unsigned shift = detail::shift_of(position);
+  static constexpr unsigned first = shift / 8;
+  static constexpr unsigned last = (shift + Width - 1) / 8;
+  static constexpr bool whole_bytes = shift % 8 == 0 && Width % 8 == 0;
+  static constexpr unsigned place_of(unsigned i) noexcept { return Order == ByteOrder::little ? i : 7 - i; }
 };
 
 }  // namespace ocm::protocol

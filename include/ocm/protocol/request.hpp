@@ -50,7 +50,8 @@ struct Period {
       for (std::int64_t count = wanted / size; count <= wanted / size + 1; ++count) {
         const std::int64_t held = count < 1 ? 1 : count > UINT16_MAX ? UINT16_MAX : count;
         const std::int64_t distance = held * size > wanted ? held * size - wanted : wanted - held * size;
-        if (distance < best_distance) {
+        const bool shorter = held * size < best.duration().count();
+        if (distance < best_distance || (distance == best_distance && shorter)) {
           best = {static_cast<std::uint16_t>(held), unit};
           best_distance = distance;
         }
@@ -96,10 +97,12 @@ struct Request {
 }
 
 /// Reads a command frame on a sensor's topic. Refuses with bad_identifier (not a command, not a base data
-/// frame), bad_length (stop and once: DLC 1; publish: 1 or 4), bad_mode, bad_unit, bad_period (0).
+/// frame), bad_length (stop and once: DLC 1; publish: 1 or 4), bad_mode, bad_unit, bad_period (0). A publish
+/// request of DLC 1 comes out with `default_period`; a topic with another default must look at the DLC.
 [[nodiscard]] constexpr base::Result<Request> decode_request(const can::Frame& frame) noexcept {
   using base::Error;
-  if (frame.format != can::Format::base || !can::validate(frame)) return Error::bad_identifier;
+  if (frame.format != can::Format::base) return Error::bad_identifier;
+  if (const auto valid = can::validate(frame); !valid) return valid.error;
   const Identifier id = Identifier::decode(frame.id);
   if (id.direction != Direction::command) return Error::bad_identifier;
   if (frame.dlc == 0) return Error::bad_length;

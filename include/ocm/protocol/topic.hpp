@@ -185,8 +185,8 @@ struct TopicList {
   static constexpr bool contains = (std::is_same_v<T, Topics> || ...);
 };
 
-/// A generated topic as an entry of its catalogue. `instance` is 1..T::instances for one of several of a kind,
-/// whose `entry_name` is then led_1 and whose group is T's name; 0 otherwise.
+/// A generated topic as an entry of its catalogue. `instance` is 1..T::instances for one of several of a
+/// kind, whose `entry_name` is then led_1 and whose group is T's name; 0 otherwise.
 template <TopicType T>
 [[nodiscard]] constexpr Topic catalogue_entry(std::uint8_t board, std::span<const std::string_view> aliases,
                                               std::span<const FrameLayout> frames, std::string_view source,

@@ -1,0 +1,61 @@
+#include "cli/timeline.hpp"
+
+#include <algorithm>
+#include <thread>
+
+#include "cli/interrupt.hpp"
+
+namespace ocm::cli {
+
+void Timeline::carry_out(const reflective::Command& command) {
+  for (const auto& frame : command.frames) send_patiently(*bus_, frame);
+  if (command.ends_hold) held_.reset();
+  if (!command.hold) return;
+  const auto now = Clock::now();
+  const auto& hold = *command.hold;
+  const auto end = hold.lasting.count() > 0 ? now + hold.lasting : Clock::time_point::max();
+  held_ = Held{hold, now + reflective::hold_period, end};
+}
+
+void Timeline::rest() {
+  if (!held_) return;
+  const can::Frame frame = held_->hold.rest;
+  held_.reset();  // before sending: a failure must not come back here
+  send_patiently(*bus_, frame);
+}
+
+bool Timeline::wait(Clock::time_point until) {
+  for (;;) {
+    if (interrupted() != 0) return false;
+    const auto now = Clock::now();
+    if (held_ && now >= held_->end) rest();
+    if (held_ && now >= held_->next) {
+      send_patiently(*bus_, held_->hold.frame);
+      held_->next += reflective::hold_period;  // absolute: no drift
+    }
+    if (now >= until) return true;
+    auto wake = until;
+    if (held_) wake = std::min({wake, held_->next, held_->end});
+    // Waiting in short pieces bounds how long a signal that comes just before the wait can go unseen.
+    const auto pause = std::min<Clock::duration>(wake - now, std::chrono::milliseconds{200});
+    if (pause.count() <= 0) continue;
+    if (!on_receive_) {
+      std::this_thread::sleep_for(pause);
+      continue;
+    }
+    const auto received = bus_->receive(pause);
+    watch_.look(*bus_);
+    if (received)
+      on_receive_(*received);
+    else if (received.error == base::Error::closed)
+      fail(bus_->failure());
+  }
+}
+
+bool Timeline::wait_for_hold() {
+  while (held_)
+    if (!wait(std::min(held_->end, Clock::now() + std::chrono::hours{1}))) return false;
+  return true;
+}
+
+}  // namespace ocm::cli

@@ -1,0 +1,45 @@
+/// Doing things at their times while the bus stays awake: waits until an absolute time, takes what comes from
+/// the bus meanwhile, and repeats a held set point every 100 ms. Shared by drive and run.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <optional>
+
+#include "ocm/can/bus.hpp"
+#include "ocm/reflective/command.hpp"
+#include "ocm/transport/bus.hpp"
+
+#include "cli/session.hpp"
+
+namespace ocm::cli {
+
+class Timeline {
+ public:
+  using Clock = std::chrono::steady_clock;
+  /// `on_receive` gets every frame that comes while waiting; empty: they are left unread.
+  Timeline(transport::Bus& bus, std::function<void(const can::Received&)> on_receive)
+      : bus_(&bus), on_receive_(std::move(on_receive)) {}
+
+  /// Sends a command's frames and takes over, or ends, its hold.
+  void carry_out(const reflective::Command& command);
+  /// Waits until `until`, repeating and receiving. False: a signal came first.
+  [[nodiscard]] bool wait(Clock::time_point until);
+  /// Until the hold is over by itself (drive --for) or a signal comes. False: a signal.
+  [[nodiscard]] bool wait_for_hold();
+  /// Ends a hold: sends the set point of rest. Nothing without a hold.
+  void rest();
+
+ private:
+  struct Held {
+    reflective::Hold hold;
+    Clock::time_point next;
+    Clock::time_point end;
+  };
+  transport::Bus* bus_;
+  std::function<void(const can::Received&)> on_receive_;
+  std::optional<Held> held_;
+  StateWatch watch_;
+};
+
+}  // namespace ocm::cli

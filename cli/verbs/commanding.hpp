@@ -1,0 +1,52 @@
+/// What the verbs that send commands have in common: the words go to the same parser that reads scripts, and
+/// the frames to the bus or, with --dry-run, to stdout.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "ocm/base/time.hpp"
+#include "ocm/reflective/command.hpp"
+
+#include "cli/session.hpp"
+
+namespace ocm::cli {
+
+class Commanding {
+ public:
+  Commanding(const Commanding&) = delete;  // the options write into its members
+  Commanding& operator=(const Commanding&) = delete;
+  /// Adds the positional words, --priority and --dry-run to `verb`.
+  Commanding(CLI::App& verb, Session& session, std::string_view words_help, bool with_priority = true);
+
+  /// The command, or exit_usage with a message that names the word.
+  [[nodiscard]] reflective::Command parse() const;
+  /// As parse, with `options` (such as "--for 2s") added to the words.
+  [[nodiscard]] reflective::Command parse(const std::vector<std::string>& options) const;
+  [[nodiscard]] bool dry_run() const { return dry_run_; }
+
+ private:
+  std::string verb_;
+  Session* session_;
+  std::vector<std::string> words_;
+  std::string priority_;
+  bool dry_run_ = false;
+};
+
+/// Sends the command's frames once, or prints them.
+void carry_out(Session& session, const reflective::Command& command, bool dry_run);
+
+/// Prints frames in candump notation, one a line.
+void print_frames(const std::vector<can::Frame>& frames);
+
+/// A duration option such as --timeout 2s; exit_usage when it is none.
+[[nodiscard]] base::Duration duration_option(std::string_view option, const std::string& text);
+
+/// A plain command verb: parse, carry out. For stop, led, set, send.
+void add_command_verb(CLI::App& app, Session& session, std::string_view name, std::string_view description,
+                      std::string_view group, std::string_view words_help, std::string_view examples,
+                      bool with_priority = true);
+
+}  // namespace ocm::cli

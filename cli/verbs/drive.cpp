@@ -1,0 +1,44 @@
+#include <memory>
+#include <string>
+
+#include "cli/interrupt.hpp"
+#include "cli/timeline.hpp"
+#include "cli/verbs/commanding.hpp"
+#include "cli/verbs/verbs.hpp"
+
+namespace ocm::cli {
+
+void add_drive(CLI::App& app, Session& session, int& exit_code) {
+  auto* verb = add_verb(app, "drive", "set the motors, and keep them going until Ctrl-C or --for", act_group,
+                        "  amiroctl drive 0.05m/s 0.2rad/s       until Ctrl-C, then zero\n"
+                        "  amiroctl drive 5cm/s -30deg/s --for 2s\n"
+                        "  amiroctl drive 50000                  bare numbers are um/s and urad/s\n"
+                        "  amiroctl drive stop");
+  struct Options {
+    Options(CLI::App& app, Session& s)
+        : commanding(app, s, "X [Z] | stop; forward velocity and angular velocity, left is positive") {}
+    Commanding commanding;
+    std::string lasting;
+    bool once = false;
+  };
+  const auto options = std::make_shared<Options>(*verb, session);
+  auto* lasting = verb->add_option("--for", options->lasting, "how long to drive")->type_name("T");
+  verb->add_flag("--once", options->once, "send one frame; the board stops the motors when none follows")
+      ->excludes(lasting);
+  verb->callback([options, &session, &exit_code] {
+    std::vector<std::string> extra;
+    if (!options->lasting.empty()) extra = {"--for", options->lasting};
+    const auto command = options->commanding.parse(extra);
+    if (options->commanding.dry_run() || options->once || !command.hold)
+      return carry_out(session, command, options->commanding.dry_run());
+    catch_interrupts();
+    const auto bus = session.open_bus();
+    Timeline timeline{*bus, {}};
+    timeline.carry_out(command);
+    const bool ended = timeline.wait_for_hold();
+    timeline.rest();
+    if (!ended) exit_code = exit_code_after_interrupt(exit_success);
+  });
+}
+
+}  // namespace ocm::cli

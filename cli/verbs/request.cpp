@@ -1,0 +1,81 @@
+#include "cli/verbs/request.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <unistd.h>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "ocm/reflective/quantity.hpp"
+#include "ocm/reflective/sample.hpp"
+
+#include "cli/interrupt.hpp"
+#include "cli/output/output.hpp"
+#include "cli/verbs/commanding.hpp"
+#include "cli/verbs/subscription.hpp"
+
+namespace ocm::cli {
+namespace {
+
+/// Sends the command and shows the first sample of the topic it asks; fails after `timeout` and says what to
+/// check.
+void send_and_await(Session& session, const reflective::Command& command, base::Duration timeout) {
+  catch_interrupts();
+  const auto& catalogue = session.catalogue();
+  const auto bus = session.open_bus();
+  const auto& topic = *command.answers;
+  const auto filters = filters_for({&topic}, false);
+  if (const auto subscribed = bus->subscribe(filters); !subscribed) fail(subscribed.error);
+  for (const auto& frame : command.frames) send_patiently(*bus, frame);
+
+  reflective::Receiver receiver{catalogue};
+  Printer printer{
+      make_output(isatty(STDOUT_FILENO) != 0 ? Format::pretty : Format::json, catalogue, session.colour())};
+  const auto deadline = std::chrono::steady_clock::now() + timeout;
+  while (interrupted() == 0) {
+    const base::Duration left = deadline - std::chrono::steady_clock::now();
+    const auto received = bus->receive(std::max(left, base::Duration{0}));
+    if (received) {
+      const auto reception = receiver.take(*received);
+      if (reception.topic != &topic) continue;
+      printer.write({bus->name(), *received, reception});
+      if (reception.meaning != reflective::Meaning::sample) continue;
+      return printer.flush();
+    }
+    if (received.error == base::Error::closed) fail(bus->failure());
+    if (left.count() > 0) continue;
+    const auto& counters = receiver.counters();
+    fail(
+        {fmt::format("no {} within {}", topic.name, reflective::to_text(timeout)),
+         counters.frames != 0
+             ? fmt::format("{} frames came, {} of wrong length: does the robot run another protocol version?",
+                           counters.frames, counters.wrong_dlc)
+             : fmt::format("is board {} powered and on {}? Is the bit rate {} bit/s? See `amiroctl listen`",
+                           catalogue.boards[topic.board].name, bus->name(), catalogue.bit_rate)});
+  }
+  throw Exit{exit_code_after_interrupt(exit_failure)};
+}
+
+}  // namespace
+
+void add_request_options(CLI::App& verb, Session& session, std::string_view words_help) {
+  struct Options {
+    Options(CLI::App& app, Session& s, std::string_view help) : commanding(app, s, help) {}
+    Commanding commanding;
+    std::string wait;
+  };
+  const auto options = std::make_shared<Options>(verb, session, words_help);
+  auto* wait =
+      verb.add_option("--wait", options->wait, "wait for the first sample and show it, at most T (2s)");
+  wait->expected(0, 1)->type_name("[T]");
+  verb.callback([options, wait, &session] {
+    const auto command = options->commanding.parse();
+    if (options->commanding.dry_run() || wait->count() == 0)
+      return carry_out(session, command, options->commanding.dry_run());
+    send_and_await(session, command, duration_option("--wait", options->wait.empty() ? "2s" : options->wait));
+  });
+}
+
+}  // namespace ocm::cli

@@ -1,0 +1,112 @@
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <memory>
+#include <sstream>
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+#include "ocm/can/text.hpp"
+#include "ocm/reflective/quantity.hpp"
+#include "ocm/reflective/script.hpp"
+
+#include "cli/interrupt.hpp"
+#include "cli/output/output.hpp"
+#include "cli/timeline.hpp"
+#include "cli/verbs/commanding.hpp"
+#include "cli/verbs/verbs.hpp"
+
+namespace ocm::cli {
+namespace {
+
+struct RunOptions {
+  std::string file;
+  double speed = 1;
+  bool listen = false;
+  bool dry_run = false;
+};
+
+std::string read_script(const std::string& file) {
+  if (file == "-") return {std::istreambuf_iterator<char>{std::cin}, {}};
+  std::ifstream in{file, std::ios::binary};
+  std::string text{std::istreambuf_iterator<char>{in}, {}};
+  if (!in.is_open() || in.bad())
+    fail({fmt::format("cannot read {}: {}", file, std::strerror(errno == 0 ? EISDIR : errno)),
+          "give the name of a script, or - for standard input"});
+  return text;
+}
+
+/// A step that comes while its script is checked whole: every error first, then nothing is sent.
+reflective::Script checked(const std::string& file, const std::string& text,
+                           const protocol::Catalogue& catalogue) {
+  auto script = reflective::parse_script(text, catalogue);
+  if (script.errors.empty()) return script;
+  for (const auto& error : script.errors)
+    fmt::print(stderr, "{}:{}:{}: {}\n    {}\n", file, error.line, error.column, error.what, error.remedy);
+  fail({fmt::format("{}: {} error{}, nothing was sent", file, script.errors.size(),
+                    script.errors.size() == 1 ? "" : "s"),
+        ""},
+       exit_usage);
+}
+
+void run(Session& session, const RunOptions& options, int& exit_code) {
+  const auto& catalogue = session.catalogue();
+  const auto script = checked(options.file, read_script(options.file), catalogue);
+  if (options.dry_run) {
+    for (const auto& step : script.steps)
+      for (const auto& frame : step.command.frames)
+        fmt::print("{:<8} {}\n", reflective::to_text(step.at), can::to_text(frame).view());
+    return;
+  }
+
+  catch_interrupts();
+  const auto bus = session.open_bus();
+  reflective::Receiver receiver{catalogue};
+  Printer printer{
+      make_output(isatty(STDOUT_FILENO) != 0 ? Format::pretty : Format::json, catalogue, session.colour())};
+  const auto show = [&](const can::Received& received) {
+    const auto reception = receiver.take(received);
+    if (reception.meaning != reflective::Meaning::request &&
+        reception.meaning != reflective::Meaning::set_point)
+      printer.write({bus->name(), received, reception});
+    printer.flush();
+  };
+  Timeline timeline{*bus, options.listen ? std::function<void(const can::Received&)>{show}
+                                         : std::function<void(const can::Received&)>{}};
+  const auto start = Timeline::Clock::now();
+  for (const auto& step : script.steps) {
+    const auto at = std::chrono::duration_cast<Timeline::Clock::duration>(
+        std::chrono::duration<double, std::nano>(static_cast<double>(step.at.count()) / options.speed));
+    if (!timeline.wait(start + at)) break;
+    remark(fmt::format("{:>8}  {}", reflective::to_text(step.at), step.text));
+    timeline.carry_out(step.command);
+  }
+  const bool whole = interrupted() == 0 && timeline.wait_for_hold();
+  timeline.rest();
+  if (!whole) {
+    remark("interrupted: the motors were set to zero; `amiroctl stop` stops the sensors too");
+    exit_code = exit_code_after_interrupt(exit_success);
+  }
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Session& session, int& exit_code) {
+  auto* verb = add_verb(app, "run", "carry out a script, each line at its time", play_group,
+                        "  amiroctl run examples/standalone.script --listen\n"
+                        "  amiroctl run tour.script --speed 10\n"
+                        "  echo '0s drive 5cm/s --for 1s' | amiroctl run -");
+  const auto options = std::make_shared<RunOptions>();
+  verb->add_option("script", options->file, "file, or - for standard input")->required()->type_name("SCRIPT");
+  verb->add_option("--speed", options->speed, "how many times faster the steps follow each other")
+      ->check(CLI::Range(0.001, 1000.0))
+      ->type_name("N");
+  verb->add_flag("--listen", options->listen, "show what the sensors answer");
+  verb->add_flag("--dry-run", options->dry_run, "print each step's frames and send nothing");
+  verb->callback([options, &session, &exit_code] { run(session, *options, exit_code); });
+}
+
+}  // namespace ocm::cli

@@ -1,0 +1,14 @@
+#include "cli/verbs/commanding.hpp"
+#include "cli/verbs/verbs.hpp"
+
+namespace ocm::cli {
+
+void add_stop(CLI::App& app, Session& session, int&) {
+  add_command_verb(app, session, "stop", "stop a topic, or the whole robot: motors first, then every sensor",
+                   ask_group, "topic; nothing or all: everything",
+                   "  amiroctl stop                     motors to zero, then every sensor\n"
+                   "  amiroctl stop gyro                the gyroscope only\n"
+                   "  amiroctl stop motors --priority urgent");
+}
+
+}  // namespace ocm::cli

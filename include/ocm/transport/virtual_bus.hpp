@@ -1,0 +1,411 @@
+/// A client of the virtual bus: what `--bus sim` is. docs/virtual-bus.md has the whole picture. Host only.
+///
+///     auto bus = VirtualBus::open();
+///     if (!bus) { /* bus.error.what, bus.error.remedy */ }
+///     (*bus)->send(frame);
+///
+/// A node of its own on the bus, like a board: it does not hear its own frames. One system call a frame sent,
+/// and one for all that waits to be received. Not thread-safe.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <poll.h>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "ocm/can/filter.hpp"
+#include "ocm/transport/bus.hpp"
+#include "ocm/transport/descriptor.hpp"
+#include "ocm/transport/virtual_bus_protocol.hpp"
+
+namespace ocm::transport {
+
+class VirtualBus final : public Bus {
+ public:
+  /// The server of the default path, or of `path`. Waits at most `patience`, twice, for its answer.
+  [[nodiscard]] static Outcome<std::unique_ptr<VirtualBus>> open(
+      std::string path = {}, base::Duration patience = std::chrono::seconds{2}) {
+    std::string name = path.empty() ? "sim" : "sim:" + path;
+    if (path.empty()) path = virtual_bus::default_path();
+    const auto address = virtual_bus::to_address(path);
+    if (!address) return address.error;
+    Descriptor socket{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0)};
+    if (!socket) return connect_failure(path, errno);
+    // A server that is stopped accepts nobody, and its queue may be full.
+    const auto limit_us = std::max<std::int64_t>(patience.count() / 1000, 1);
+    const timeval limit{limit_us / 1'000'000, limit_us % 1'000'000};
+    ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);
+    while (::connect(socket.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) < 0)
+      if (errno != EINTR) return connect_failure(path, errno);
+    const auto peer = virtual_bus::peer_of(socket.get());
+    if (!peer || peer->uid != ::geteuid())
+      return Failure{"the simulator on '" + path + "' belongs to another user" +
+                         (peer ? " (uid " + std::to_string(peer->uid) + ")" : ""),
+                     "start one of your own: amiroctl sim"};
+    std::unique_ptr<VirtualBus> bus{
+        new VirtualBus(std::move(socket), std::move(name), path, virtual_bus::process_text(peer))};
+    if (auto problem = bus->greet(patience)) return std::move(*problem);
+    return bus;
+  }
+
+  /// Whether a server listens on the default path, or on `path`. Waits for nothing.
+  [[nodiscard]] static bool running(const std::string& path = virtual_bus::default_path()) {
+    const auto address = virtual_bus::to_address(path);
+    const Descriptor socket{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
+    if (!address || !socket) return false;
+    return ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) == 0 ||
+           errno == EAGAIN;
+  }
+
+  /// Says goodbye: frames that wait for the bus are sent. Takes at most 100 ms if the server is stuck.
+  ~VirtualBus() override {
+    if (ended_) return;
+    const virtual_bus::Record record = to_record(virtual_bus::Goodbye{});
+    if (!write(&record, 1)) {
+      wait(POLLOUT, std::chrono::milliseconds{100});
+      write(&record, 1);
+    }
+  }
+
+  /// "sim", or "sim:PATH".
+  [[nodiscard]] std::string_view name() const override { return name_; }
+  /// What the server calls its bus or robot.
+  [[nodiscard]] std::string_view bus_name() const noexcept { return bus_name_; }
+  /// bit/s
+  [[nodiscard]] std::uint32_t bit_rate() const noexcept { return bit_rate_; }
+  /// Frames that `send` takes before it has to hear from the server.
+  [[nodiscard]] std::uint64_t credit() const noexcept { return credit_; }
+
+  /// Never waits. false: as many frames wait for the bus as the server lets this client have (64 unless
+  /// told); `descriptor` becomes readable when there is room again.
+  base::Result<bool> send(const can::Frame& frame) override {
+    if (closed()) return base::Error::closed;
+    if (frame.format == can::Format::error) return base::Error::bad_identifier;
+    if (const auto valid = can::validate(frame); !valid) return valid.error;
+    // Credit comes first in a message, but many messages may wait before that.
+    while (credit_ == 0 && fill() == Filled::something) {
+    }
+    const virtual_bus::Record record = virtual_bus::to_record(frame);
+    if (credit_ != 0 && write(&record, 1)) {
+      --credit_;
+      ++counters_.sent;
+      return true;
+    }
+    if (closed()) return base::Error::closed;
+    ++counters_.refused;
+    return false;
+  }
+
+  /// A signal that is caught while this waits ends it at once with Error::timed_out; one that comes just
+  /// before does not, so wait no longer than the signal may take. After the end of the server the frames that
+  /// still waited come first, then Error::closed.
+  base::Result<can::Received> receive(base::Duration timeout) override {
+    can::Received received;
+    if (take(received)) return received;
+    const auto begin = std::chrono::steady_clock::now();
+    for (;;) {
+      if (closed()) return base::Error::closed;
+      const Filled filled = fill();
+      if (take(received)) return received;
+      if (filled == Filled::something) continue;
+      if (filled == Filled::interrupted || timeout <= base::Duration::zero()) return base::Error::timed_out;
+      const base::Duration rest = timeout - (std::chrono::steady_clock::now() - begin);
+      if (rest <= base::Duration::zero() || !wait(POLLIN, rest)) return base::Error::timed_out;
+    }
+  }
+
+  /// The server filters, so that what does not pass costs this process nothing. At most 512 filters. May wait
+  /// a second for a server that is busy.
+  Outcome<void> subscribe(std::span<const can::Filter> filters) override {
+    if (closed()) return ending_;
+    if (filters.size() > virtual_bus::max_filters)
+      return Failure{std::to_string(filters.size()) + " filters for the virtual bus; it takes " +
+                         std::to_string(virtual_bus::max_filters),
+                     "use fewer filters with wider masks, or none"};
+    std::vector<virtual_bus::Record> records{
+        to_record(virtual_bus::Count{.type = virtual_bus::Type::filters, .count = filters.size()})};
+    for (const can::Filter& filter : filters)
+      records.push_back(to_record(virtual_bus::FilterRecord{.id = filter.id, .mask = filter.mask}));
+    for (std::size_t at = 0; at < records.size();) {
+      const std::size_t count = std::min(records.size() - at, virtual_bus::max_records);
+      if (write(records.data() + at, count)) {
+        at += count;
+        continue;
+      }
+      if (closed()) return ending_;
+      if (!wait(POLLOUT, std::chrono::seconds{1})) {
+        // The server has half a list now and would take what comes next for the rest of it.
+        end({"the simulator" + process_ + " does not answer", stuck_remedy(path_)});
+        return ending_;
+      }
+    }
+    filters_.assign(filters.begin(), filters.end());
+    return {};
+  }
+
+  [[nodiscard]] int descriptor() const override { return socket_.get(); }
+  [[nodiscard]] const BusCounters& counters() const override { return counters_; }
+  [[nodiscard]] const Failure& failure() const override { return failure_; }
+
+ private:
+  static constexpr std::size_t messages_at_once = 16;
+  /// Frames kept for somebody who sends and never receives.
+  static constexpr std::size_t max_inbox = 65'536;
+
+  enum class Filled : std::uint8_t { something, nothing, interrupted };
+
+  VirtualBus(Descriptor socket, std::string name, std::string path, std::string process)
+      : socket_(std::move(socket)),
+        name_(std::move(name)),
+        path_(std::move(path)),
+        process_(std::move(process)),
+        buffer_(messages_at_once * virtual_bus::max_message) {
+    for (std::size_t i = 0; i < messages_at_once; ++i) {
+      places_[i] = {buffer_.data() + i * virtual_bus::max_message, virtual_bus::max_message};
+      messages_[i].msg_hdr.msg_iov = &places_[i];
+      messages_[i].msg_hdr.msg_iovlen = 1;
+    }
+  }
+
+  [[nodiscard]] static std::string stuck_remedy(const std::string& path) {
+    return "it may be stopped (Ctrl-Z): continue it (fg) or end it; `fuser " + path + "` names its process";
+  }
+
+  [[nodiscard]] static Failure connect_failure(const std::string& path, int error) {
+    switch (error) {
+      case ENOENT:
+      case ENOTDIR:
+      case ECONNREFUSED:
+        return {"no simulator is running: nobody listens on '" + path + "'", "start one with `amiroctl sim`"};
+      case EAGAIN:
+        return {"the simulator on '" + path + "' does not answer", stuck_remedy(path)};
+      case EACCES:
+      case EPERM:
+        return {"not allowed to connect to '" + path + "'",
+                "a simulator serves its own user only: start one of your own (amiroctl sim)"};
+      case EPROTOTYPE:
+        return {"'" + path + "' is a socket, but not of a simulator",
+                "name another path, or none: `amiroctl sim`, `--bus sim`"};
+      default:
+        return {"cannot connect to the simulator on '" + path + "': " + std::strerror(error),
+                "start one with `amiroctl sim`"};
+    }
+  }
+
+  /// Says hello and waits for the answer.
+  [[nodiscard]] std::optional<Failure> greet(base::Duration patience) {
+    const virtual_bus::Record hello = to_record(virtual_bus::Hello{});
+    bool said = write(&hello, 1);
+    const auto give_up = std::chrono::steady_clock::now() + patience;
+    while (bit_rate_ == 0 && !ended_) {
+      if (!said) said = write(&hello, 1);
+      if (fill() == Filled::something) continue;
+      const base::Duration rest = give_up - std::chrono::steady_clock::now();
+      if (rest <= base::Duration::zero()) {
+        end({"the simulator" + process_ + " does not answer on '" + path_ + "'", stuck_remedy(path_)});
+        break;
+      }
+      wait(said ? POLLIN : POLLIN | POLLOUT, rest);
+    }
+    if (!ended_) return std::nullopt;
+    return ending_;
+  }
+
+  /// Whether the server has gone, and then `failure` says so. Frames may still wait in the inbox.
+  [[nodiscard]] bool closed() {
+    if (ended_) failure_ = ending_;
+    return ended_;
+  }
+
+  /// true: handed to the server. false: no room in the socket, or the server is gone.
+  bool write(const virtual_bus::Record* records, std::size_t count) {
+    if (ended_) return false;
+    const std::size_t size = count * virtual_bus::record_size;
+    for (;;) {
+      if (::send(socket_.get(), records, size, MSG_DONTWAIT | MSG_NOSIGNAL) >= 0) return true;
+      if (errno == EINTR || errno == ECONNRESET) continue;  // the latter once: reading tells why
+      if (errno == EAGAIN || errno == ENOBUFS || errno == ENOMEM) return false;
+      break;
+    }
+    while (!ended_ && fill() == Filled::something) {
+    }
+    end(gone());
+    return false;
+  }
+
+  /// true: something happened. false: time is up, or a signal came.
+  bool wait(short what, base::Duration time) const noexcept {
+    const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(time);
+    timespec limit{};
+    limit.tv_sec = static_cast<time_t>(seconds.count());
+    limit.tv_nsec = static_cast<long>((time - seconds).count());
+    pollfd entry{socket_.get(), what, 0};
+    return ::ppoll(&entry, 1, &limit, nullptr) > 0;
+  }
+
+  /// Reads what waits in the socket.
+  Filled fill() {
+    if (ended_) return Filled::nothing;
+    int count = 0;
+    do {
+      for (mmsghdr& message : messages_) message.msg_hdr.msg_flags = 0;
+      count = ::recvmmsg(socket_.get(), messages_.data(), messages_at_once, MSG_DONTWAIT, nullptr);
+    } while (count < 0 && errno == ECONNRESET);  // comes once, before what the server said last
+    if (count < 0) {
+      if (errno == EAGAIN) return Filled::nothing;
+      if (errno == EINTR) return Filled::interrupted;
+      end(gone());
+      return Filled::something;
+    }
+    for (int i = 0; i < count && !ended_; ++i) {
+      const mmsghdr& message = messages_[static_cast<std::size_t>(i)];
+      const auto* const bytes = static_cast<const std::byte*>(message.msg_hdr.msg_iov->iov_base);
+      if (message.msg_len == 0) {
+        end(gone());
+      } else if ((message.msg_hdr.msg_flags & MSG_TRUNC) != 0 ||
+                 message.msg_len % virtual_bus::record_size != 0) {
+        end(not_understood());
+      }
+      for (std::size_t at = 0; at < message.msg_len && !ended_; at += virtual_bus::record_size) {
+        virtual_bus::Record record;
+        std::memcpy(record.data(), bytes + at, record.size());
+        take_in(record);
+      }
+    }
+    return Filled::something;
+  }
+
+  void take_in(const virtual_bus::Record& record) {
+    using virtual_bus::Type;
+    switch (virtual_bus::type_of(record)) {
+      case Type::frame: {
+        const auto content = virtual_bus::from_record<virtual_bus::FrameRecord>(record);
+        const auto frame = virtual_bus::decode(content);
+        if (!frame) return end(not_understood());
+        keep({base::Time{base::Duration{content.time_ns}}, *frame});
+        return;
+      }
+      case Type::credit:
+        credit_ += virtual_bus::from_record<virtual_bus::Count>(record).count;
+        return;
+      case Type::overrun:
+        counters_.lost += virtual_bus::from_record<virtual_bus::Count>(record).count;
+        return;
+      case Type::goodbye:
+        return end(dismissed(virtual_bus::from_record<virtual_bus::Goodbye>(record)));
+      case Type::hello: {
+        const auto hello = virtual_bus::from_record<virtual_bus::Hello>(record);
+        if (hello.magic != virtual_bus::magic || hello.version != virtual_bus::version || hello.bit_rate == 0)
+          return end(not_understood());
+        bit_rate_ = hello.bit_rate;
+        credit_ = hello.credit;
+        bus_name_.assign(hello.name.data(), ::strnlen(hello.name.data(), hello.name.size()));
+        return;
+      }
+      case Type::filters:
+      case Type::filter:
+        break;
+    }
+    end(not_understood());
+  }
+
+  void keep(const can::Received& received) {
+    if (next_ == inbox_.size() || inbox_.size() == max_inbox) {
+      inbox_.erase(inbox_.begin(), inbox_.begin() + static_cast<std::ptrdiff_t>(next_));
+      next_ = 0;
+    }
+    if (inbox_.size() == max_inbox) {
+      ++counters_.lost;
+      return;
+    }
+    inbox_.push_back(received);
+  }
+
+  /// The next frame that was read and passes the filters: what the server sent before it knew them does not.
+  [[nodiscard]] bool take(can::Received& received) {
+    while (next_ < inbox_.size()) {
+      received = inbox_[next_++];
+      const bool error = received.frame.format == can::Format::error;
+      if (!error && !passes(received.frame)) continue;
+      ++counters_.received;
+      if (error) ++counters_.error_frames;
+      return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] bool passes(const can::Frame& frame) const noexcept {
+    return filters_.empty() || std::any_of(filters_.begin(), filters_.end(),
+                                           [&](const can::Filter& filter) { return filter.accepts(frame); });
+  }
+
+  // --- the end
+  // ----------------------------------------------------------------------------------------------
+
+  /// The first reason stays.
+  void end(Failure failure) {
+    if (ended_) return;
+    ended_ = true;
+    ending_ = std::move(failure);
+  }
+
+  [[nodiscard]] Failure gone() const {
+    return {"the simulator" + process_ + " on '" + path_ + "' is gone",
+            "start one with `amiroctl sim`; if it crashed, please report what it said last"};
+  }
+
+  [[nodiscard]] Failure not_understood() const {
+    return {"the simulator" + process_ + " on '" + path_ + "' said something that this program does not know",
+            "use the simulator and the program of the same version of ocm"};
+  }
+
+  [[nodiscard]] Failure dismissed(const virtual_bus::Goodbye& goodbye) const {
+    using virtual_bus::Reason;
+    const std::string simulator = "the simulator" + process_ + " on '" + path_ + "'";
+    switch (goodbye.reason) {
+      case Reason::leaving:
+      case Reason::ended:
+        return {simulator + " was ended", "start one with `amiroctl sim`"};
+      case Reason::full:
+        return {simulator + " has no file descriptor left for this program",
+                "close other programs on the bus, or raise the simulator's limit: ulimit -n"};
+      case Reason::other_user:
+        return {simulator + " belongs to another user", "start one of your own: amiroctl sim"};
+      case Reason::bad_version:
+        return {simulator + " speaks version " + std::to_string(goodbye.version) +
+                    " of the virtual bus's protocol, this program version " + std::to_string(goodbye.detail),
+                "use the simulator and the program of the same version of ocm"};
+      default:
+        return {simulator + " disconnected this program: " + virtual_bus::describe(goodbye),
+                "this is a fault of this program, or of another version of ocm: please report it"};
+    }
+  }
+
+  Descriptor socket_;
+  std::string name_;
+  std::string path_;
+  std::string process_;
+  std::string bus_name_;
+  std::uint32_t bit_rate_ = 0;
+  std::uint64_t credit_ = 0;
+  bool ended_ = false;  ///< nothing more comes from the server; frames may still wait in the inbox
+  Failure ending_;      ///< why
+  Failure failure_;     ///< the same, once the caller was told
+  BusCounters counters_;
+  std::vector<can::Filter> filters_;
+  std::vector<can::Received> inbox_;
+  std::size_t next_ = 0;  ///< in the inbox
+  std::vector<std::byte> buffer_;
+  std::array<iovec, messages_at_once> places_{};
+  std::array<mmsghdr, messages_at_once> messages_{};
+};
+
+}  // namespace ocm::transport

@@ -1,0 +1,606 @@
+/// Serves a simulated CAN bus to other programs of the same user, on a local socket: each client is a node,
+/// frames take their bit times and arbitrate. docs/virtual-bus.md has the whole picture. Host only.
+///
+///     auto server = VirtualBusServer::open({.bit_rate = 500'000});
+///     simulation::Port board{(*server)->arbiter(), {simulation::QueueOrder::by_identifier, 3}};
+///     for (;;) {
+///       ... wait until next_event(), or until descriptor() is readable ...
+///       (*server)->poll(now, [&](const simulation::Delivery& d) { ... the board hears d.frame at d.time ...
+///       });
+///     }
+///
+/// Time is handed in and no call waits, so that a slow, dead or hostile client costs the others nothing but
+/// its share of work. Not thread-safe.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <fcntl.h>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <sys/epoll.h>
+#include <sys/file.h>
+#include <sys/resource.h>
+#include <utility>
+#include <vector>
+
+#include "ocm/can/filter.hpp"
+#include "ocm/simulation/arbiter.hpp"
+#include "ocm/transport/bus.hpp"
+#include "ocm/transport/descriptor.hpp"
+#include "ocm/transport/virtual_bus_protocol.hpp"
+
+namespace ocm::transport {
+
+struct VirtualBusOptions {
+  std::string path{};                  ///< of the socket; empty: virtual_bus::default_path()
+  std::string name = "sim";            ///< of the bus or robot, for clients to show; 11 bytes are kept
+  std::uint32_t bit_rate = 500'000;    ///< 1 to 1'000'000'000 bit/s
+  base::Time epoch{};                  ///< the first boundary of a bit, in the time handed to `poll`
+  base::Duration to_unix_time{};       ///< added to the bus's time in the stamps that clients get
+  std::size_t transmit_queue = 64;     ///< frames of a client that may wait for the bus, at least 1
+  std::size_t output_queue = 4096;     ///< frames that may wait for a client to read them, besides 200 KiB in
+                                       ///< the kernel; at least 1
+  bool raise_descriptor_limit = true;  ///< to the hard limit of the process, so that more clients fit
+  base::Duration patience = std::chrono::seconds{1};  ///< with another server that starts just now
+  std::function<void(std::string_view)> report{};     ///< told a sentence when a client is turned away
+};
+
+/// What happened to clients and their frames. What happened on the bus is in `arbiter().totals()`.
+struct VirtualBusCounters {
+  std::uint64_t welcomed = 0;         ///< clients that said hello
+  std::uint64_t left = 0;             ///< in order; their waiting frames are sent
+  std::uint64_t died = 0;             ///< without a word; their waiting frames are withdrawn
+  std::uint64_t turned_away = 0;      ///< instead of welcomed: another user, another version, no greeting
+  std::uint64_t misbehaved = 0;       ///< disconnected for what they sent; their waiting frames are withdrawn
+  std::uint64_t accept_failures = 0;  ///< connections that found no file descriptor or memory
+  std::uint64_t overruns = 0;         ///< frames dropped for clients that read too slowly; each was told
+  std::uint64_t withdrawn = 0;        ///< frames
+};
+
+class VirtualBusServer {
+ public:
+  /// Replaces the socket of a server that has died; refuses when one is running, or when others could reach
+  /// the socket. Creates the default directory. Waits at most `patience` for another server that starts just
+  /// now.
+  [[nodiscard]] static Outcome<std::unique_ptr<VirtualBusServer>> open(VirtualBusOptions options = {}) {
+    if (options.bit_rate < 1 || options.bit_rate > simulation::BitClock::max_bit_rate)
+      return Failure{"no bus runs at " + std::to_string(options.bit_rate) + " bit/s",
+                     "choose a bit rate from 1 to 1000000000; the robot's is 500000"};
+    std::string directory;
+    if (options.path.empty()) {
+      directory = virtual_bus::default_directory();
+      options.path = virtual_bus::default_path();
+      ::mkdir(directory.c_str(), 0700);  // whatever the answer, the check below tells
+      if (auto problem = virtual_bus::check_directory(directory)) return std::move(*problem);
+    } else {
+      const std::size_t slash = options.path.rfind('/');
+      directory = slash == std::string::npos ? "." : slash == 0 ? "/" : options.path.substr(0, slash);
+    }
+    const auto address = virtual_bus::to_address(options.path);
+    if (!address) return address.error;
+
+    // Two servers that start together must not both find the socket stale: one at a time.
+    const Descriptor lock{::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
+    if (!lock)
+      return Failure{"cannot open the directory '" + directory + "': " + std::strerror(errno),
+                     "create it (mkdir -p -m 700 '" + directory + "'), or choose another path"};
+    if (!lock_in_time(lock.get(), options.patience))
+      return Failure{"another program holds the lock of the directory '" + directory + "'",
+                     "end it (`fuser " + directory + "` names it), or choose another path"};
+    if (auto problem = make_room(*address, options.path)) return std::move(*problem);
+
+    Descriptor listener{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
+    Descriptor events{::epoll_create1(EPOLL_CLOEXEC)};
+    Descriptor spare{::open("/dev/null", O_RDONLY | O_CLOEXEC)};
+    // The mode of the socket before it has a name is that of the name: at no moment is it open to others.
+    if (!listener || !events || !spare || ::fchmod(listener.get(), 0600) < 0 ||
+        ::bind(listener.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) < 0 ||
+        ::listen(listener.get(), SOMAXCONN) < 0)
+      return system_failure(options.path, errno);
+    epoll_event event{};
+    event.events = EPOLLIN;
+    event.data.ptr = nullptr;
+    struct stat status {};
+    if (::epoll_ctl(events.get(), EPOLL_CTL_ADD, listener.get(), &event) < 0 ||
+        ::stat(options.path.c_str(), &status) < 0)
+      return system_failure(options.path, errno);
+    if (options.raise_descriptor_limit) raise_limit();
+    return std::unique_ptr<VirtualBusServer>(new VirtualBusServer(
+        std::move(options), std::move(listener), std::move(events), std::move(spare), status));
+  }
+
+  VirtualBusServer(const VirtualBusServer&) = delete;
+  VirtualBusServer& operator=(const VirtualBusServer&) = delete;
+
+  /// Tells the clients, and removes the socket.
+  ~VirtualBusServer() {
+    for (auto& client : clients_) dismiss(*client, {.reason = virtual_bus::Reason::ended});
+    struct stat status {};
+    if (::lstat(options_.path.c_str(), &status) == 0 && status.st_ino == inode_ && status.st_dev == device_)
+      ::unlink(options_.path.c_str());
+  }
+
+  [[nodiscard]] const std::string& path() const noexcept { return options_.path; }
+  /// Readable when a client wants something. An epoll descriptor; owned by the server.
+  [[nodiscard]] int descriptor() const noexcept { return events_.get(); }
+  /// When to call `poll` at the latest: the end of the frame on the bus. base::never when it is idle.
+  [[nodiscard]] base::Time next_event() const noexcept {
+    return std::min(arbiter_.next_event(), accept_again_);
+  }
+  /// The bus: attach boards, send their frames, read its load.
+  [[nodiscard]] simulation::Arbiter& arbiter() noexcept { return arbiter_; }
+  [[nodiscard]] const simulation::Arbiter& arbiter() const noexcept { return arbiter_; }
+  [[nodiscard]] const VirtualBusCounters& counters() const noexcept { return counters_; }
+  /// Connections, those that have not said hello yet included.
+  [[nodiscard]] std::size_t clients() const noexcept { return clients_.size(); }
+
+  /// Lets the bus go on until `now`; no system call. `deliver(const simulation::Delivery&)` is called for
+  /// every frame that is complete by then, as Arbiter::advance does. For boards that act at times of their
+  /// own: advance to each of these, and `poll` at the end.
+  template <class Deliver>
+  void advance(base::Time now, Deliver&& deliver) {
+    arbiter_.advance(now, [&](const simulation::Delivery& delivery) {
+      distribute(delivery);
+      deliver(delivery);
+    });
+  }
+
+  /// Advances the bus, then takes what clients sent (their frames are handed over at `now`), accepts new
+  /// ones and hands out what is complete. Waits for nothing.
+  template <class Deliver>
+  void poll(base::Time now, Deliver&& deliver) {
+    advance(now, deliver);
+    serve(now);
+  }
+  void poll(base::Time now) {
+    poll(now, [](const simulation::Delivery&) {});
+  }
+
+  /// Gives every client an error frame (can::Format::error), as a controller's driver would report it. At the
+  /// next `poll` it is on its way. Not on the bus: boards do not hear it. Other frames are refused.
+  base::Status report_error(const can::Frame& frame, base::Time time) {
+    if (frame.format != can::Format::error) return base::Error::bad_identifier;
+    if (const auto valid = can::validate(frame); !valid) return valid;
+    const virtual_bus::Record record = virtual_bus::to_record(frame, time + options_.to_unix_time);
+    for (auto& client : clients_)
+      if (client->welcome) push(*client, record);
+    return {};
+  }
+
+ private:
+  static constexpr std::size_t messages_at_once = 64;
+  static constexpr base::Duration accept_pause = std::chrono::milliseconds{100};
+
+  /// A bounded ring of records that grows as needed.
+  class Queue {
+   public:
+    [[nodiscard]] std::size_t size() const noexcept { return size_; }
+    void clear() noexcept { size_ = 0; }
+    bool push(const virtual_bus::Record& record, std::size_t limit) {
+      if (size_ >= limit) return false;
+      if (size_ == ring_.size()) {
+        std::rotate(ring_.begin(), ring_.begin() + static_cast<std::ptrdiff_t>(head_), ring_.end());
+        head_ = 0;
+        ring_.resize(std::min(limit, std::max<std::size_t>(2 * size_, 64)));
+      }
+      ring_[wrap(head_ + size_++)] = record;
+      return true;
+    }
+    /// The oldest `count` records, in up to two pieces.
+    [[nodiscard]] std::array<iovec, 2> front(std::size_t count) noexcept {
+      const std::size_t first = std::min(count, ring_.size() - head_);
+      return {iovec{ring_.data() + head_, first * virtual_bus::record_size},
+              iovec{ring_.data(), (count - first) * virtual_bus::record_size}};
+    }
+    void pop(std::size_t count) noexcept {
+      head_ = wrap(head_ + count);
+      size_ -= count;
+    }
+
+   private:
+    [[nodiscard]] std::size_t wrap(std::size_t i) const noexcept {
+      return i < ring_.size() ? i : i - ring_.size();
+    }
+    std::vector<virtual_bus::Record> ring_;
+    std::size_t head_ = 0;
+    std::size_t size_ = 0;
+  };
+
+  struct Client {
+    Descriptor socket;
+    std::optional<ucred> peer;
+    simulation::NodeId node{};  ///< from its hello on
+    bool welcome = false;       ///< it said hello
+    bool blocked = false;       ///< its socket is full: wait for EPOLLOUT
+    bool deaf = false;          ///< nothing can be sent to it any more
+    bool gone = false;          ///< to be forgotten at the end of this poll
+    Queue output;
+    std::uint64_t credit = 0;  ///< owed
+    std::uint64_t lost = 0;    ///< and not told yet
+    std::vector<can::Filter> filters;
+    std::vector<can::Filter> coming_filters;
+    std::size_t missing_filters = 0;
+  };
+
+  VirtualBusServer(VirtualBusOptions options, Descriptor listener, Descriptor events, Descriptor spare,
+                   const struct stat& status)
+      : options_(std::move(options)),
+        listener_(std::move(listener)),
+        events_(std::move(events)),
+        spare_(std::move(spare)),
+        inode_(status.st_ino),
+        device_(status.st_dev),
+        arbiter_(options_.bit_rate, options_.epoch),
+        buffer_(messages_at_once * virtual_bus::max_message) {
+    options_.transmit_queue = std::clamp<std::size_t>(options_.transmit_queue, 1, UINT32_MAX);
+    options_.output_queue = std::max<std::size_t>(options_.output_queue, 1);
+    for (std::size_t i = 0; i < messages_at_once; ++i) {
+      places_[i] = {buffer_.data() + i * virtual_bus::max_message, virtual_bus::max_message};
+      messages_[i].msg_hdr.msg_iov = &places_[i];
+      messages_[i].msg_hdr.msg_iovlen = 1;
+    }
+  }
+
+  // --- start
+  // ------------------------------------------------------------------------------------------------
+
+  [[nodiscard]] static Failure system_failure(const std::string& path, int error) {
+    return {"cannot serve a virtual bus on '" + path + "': " + std::strerror(error),
+            error == EMFILE || error == ENFILE
+                ? "close other programs, or raise the limit: ulimit -n"
+                : "is its directory yours and writable? or choose another path"};
+  }
+
+  [[nodiscard]] static bool lock_in_time(int directory, base::Duration patience) noexcept {
+    constexpr base::Duration pause = std::chrono::milliseconds{10};
+    for (;; patience -= pause) {
+      if (::flock(directory, LOCK_EX | LOCK_NB) == 0) return true;
+      if (errno != EWOULDBLOCK && errno != EINTR) return true;  // a file system without locks
+      if (patience <= base::Duration::zero()) return false;
+      ::usleep(static_cast<useconds_t>(pause.count() / 1000));
+    }
+  }
+
+  /// Removes the socket of a dead server; says why when something else is there.
+  [[nodiscard]] static std::optional<Failure> make_room(const sockaddr_un& address, const std::string& path) {
+    struct stat status {};
+    if (::lstat(path.c_str(), &status) < 0) {
+      if (errno == ENOENT) return std::nullopt;
+      return system_failure(path, errno);
+    }
+    if (!S_ISSOCK(status.st_mode))
+      return Failure{"'" + path + "' exists and is no socket", "remove it, or choose another path"};
+    if (status.st_uid != ::geteuid())
+      return Failure{
+          "the socket '" + path + "' belongs to another user (uid " + std::to_string(status.st_uid) + ")",
+          "choose another path"};
+    const Descriptor probe{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
+    if (!probe) return system_failure(path, errno);
+    if (::connect(probe.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 ||
+        errno == EAGAIN) {
+      const auto peer = virtual_bus::peer_of(probe.get());
+      const std::string end =
+          peer && peer->pid > 0 ? ", end it (kill " + std::to_string(peer->pid) + ")" : "";
+      return Failure{"a simulator already runs on '" + path + "'" + virtual_bus::process_text(peer),
+                     "use it (--bus sim)" + end + ", or serve another one: amiroctl sim --bus sim:PATH"};
+    }
+    if (errno == EPROTOTYPE)
+      return Failure{"another program listens on '" + path + "'", "end it, or choose another path"};
+    if (errno != ECONNREFUSED || ::unlink(path.c_str()) < 0) return system_failure(path, errno);
+    return std::nullopt;
+  }
+
+  static void raise_limit() noexcept {
+    rlimit limit{};
+    if (::getrlimit(RLIMIT_NOFILE, &limit) == 0 && limit.rlim_cur < limit.rlim_max) {
+      limit.rlim_cur = limit.rlim_max;
+      ::setrlimit(RLIMIT_NOFILE, &limit);
+    }
+  }
+
+  // --- from the bus to the clients
+  // --------------------------------------------------------------------------
+
+  void distribute(const simulation::Delivery& delivery) {
+    const virtual_bus::Record record =
+        virtual_bus::to_record(delivery.frame, delivery.time + options_.to_unix_time);
+    for (auto& client : clients_) {
+      if (!client->welcome || client->gone) continue;
+      if (client->node == delivery.from)
+        ++client->credit;
+      else if (passes(*client, delivery.frame))
+        push(*client, record);
+    }
+  }
+
+  [[nodiscard]] static bool passes(const Client& client, const can::Frame& frame) noexcept {
+    return client.filters.empty() ||
+           std::any_of(client.filters.begin(), client.filters.end(),
+                       [&](const can::Filter& filter) { return filter.accepts(frame); });
+  }
+
+  void push(Client& client, const virtual_bus::Record& record) {
+    if (client.deaf || client.output.push(record, options_.output_queue)) return;
+    ++client.lost;
+    ++counters_.overruns;
+  }
+
+  void flush(Client& client) {
+    while (!client.deaf && !client.blocked &&
+           (client.output.size() != 0 || client.credit != 0 || client.lost != 0)) {
+      // Credit and losses go first and need no place in the queue: they always get through.
+      std::array<virtual_bus::Record, 2> accounts;
+      std::size_t count = 0;
+      const auto add = [&](virtual_bus::Type type, std::uint64_t number) {
+        if (number != 0) accounts[count++] = to_record(virtual_bus::Count{.type = type, .count = number});
+      };
+      add(virtual_bus::Type::credit, client.credit);
+      add(virtual_bus::Type::overrun, client.lost);
+      const std::size_t records = std::min(client.output.size(), virtual_bus::max_records - count);
+      const auto pieces = client.output.front(records);
+      std::array<iovec, 3> all{iovec{accounts.data(), count * virtual_bus::record_size}, pieces[0],
+                               pieces[1]};
+      msghdr message{};
+      message.msg_iov = all.data();
+      message.msg_iovlen = all.size();
+      if (::sendmsg(client.socket.get(), &message, MSG_DONTWAIT | MSG_NOSIGNAL) >= 0) {
+        client.output.pop(records);
+        client.credit = 0;
+        client.lost = 0;
+      } else if (errno == EAGAIN || errno == ENOBUFS || errno == ENOMEM) {
+        client.blocked = true;
+        watch(client);
+      } else if (errno != EINTR) {
+        client.deaf = true;  // what it sent before it died is still to be read
+        client.output.clear();
+      }
+    }
+  }
+
+  // --- from the clients
+  // -------------------------------------------------------------------------------------
+
+  void serve(base::Time now) {
+    if (accept_again_ <= now) accept(now);
+    ready_.resize(clients_.size() + 1);
+    const int count = ::epoll_wait(events_.get(), ready_.data(), static_cast<int>(ready_.size()), 0);
+    bool knocking = false;
+    for (int i = 0; i < count; ++i) {
+      const epoll_event& event = ready_[static_cast<std::size_t>(i)];
+      auto* const client = static_cast<Client*>(event.data.ptr);
+      if (client == nullptr) {
+        knocking = true;
+        continue;
+      }
+      if ((event.events & EPOLLOUT) != 0) {
+        client->blocked = false;
+        watch(*client);
+      }
+      if ((event.events & ~static_cast<std::uint32_t>(EPOLLOUT)) != 0) read(*client, now);
+    }
+    if (knocking && accept_again_ == base::never) accept(now);
+    for (auto& client : clients_)
+      if (!client->gone) flush(*client);
+    std::erase_if(clients_, [](const auto& client) { return client->gone; });
+  }
+
+  /// One batch: what is left makes the descriptor readable again.
+  void read(Client& client, base::Time now) {
+    int count = 0;
+    do {
+      for (mmsghdr& message : messages_) message.msg_hdr.msg_flags = 0;
+      count = ::recvmmsg(client.socket.get(), messages_.data(), messages_at_once, MSG_DONTWAIT, nullptr);
+      // ECONNRESET: it closed its end with frames unread. What it sent before is still there.
+    } while (count < 0 && (errno == EINTR || errno == ECONNRESET));
+    if (count < 0 && errno != EAGAIN) return lose(client);
+    for (int i = 0; i < count && !client.gone; ++i) {
+      const mmsghdr& message = messages_[static_cast<std::size_t>(i)];
+      if (message.msg_len == 0) return lose(client);
+      if ((message.msg_hdr.msg_flags & MSG_TRUNC) != 0 || message.msg_len % virtual_bus::record_size != 0)
+        return refuse(client, {.reason = virtual_bus::Reason::bad_size, .detail = message.msg_len});
+      const auto* const bytes = static_cast<const std::byte*>(message.msg_hdr.msg_iov->iov_base);
+      for (std::size_t at = 0; at < message.msg_len && !client.gone; at += virtual_bus::record_size) {
+        virtual_bus::Record record;
+        std::memcpy(record.data(), bytes + at, record.size());
+        take(client, record, now);
+      }
+    }
+  }
+
+  void take(Client& client, const virtual_bus::Record& record, base::Time now) {
+    using virtual_bus::Reason;
+    using virtual_bus::Type;
+    const Type type = virtual_bus::type_of(record);
+    const auto number = static_cast<std::uint64_t>(type);
+    if (!client.welcome) {
+      const auto hello = virtual_bus::from_record<virtual_bus::Hello>(record);
+      if (type != Type::hello || hello.magic != virtual_bus::magic)
+        return refuse(client, {.reason = Reason::no_hello, .detail = number});
+      if (hello.version != virtual_bus::version)
+        return refuse(client, {.reason = Reason::bad_version, .detail = hello.version});
+      return welcome(client);
+    }
+    switch (type) {
+      case Type::frame: {
+        const auto frame = virtual_bus::decode(virtual_bus::from_record<virtual_bus::FrameRecord>(record));
+        if (!frame) return refuse(client, frame.error);
+        const auto taken = arbiter_.send(client.node, *frame, now);
+        if (!taken)  // an error frame: all else was looked at
+          return refuse(client,
+                        {.reason = Reason::bad_format, .detail = static_cast<std::uint8_t>(frame->format)});
+        if (!*taken) refuse(client, {.reason = Reason::no_credit});
+        return;
+      }
+      case Type::filters: {
+        const auto count = virtual_bus::from_record<virtual_bus::Count>(record).count;
+        if (count > virtual_bus::max_filters || client.missing_filters != 0)
+          return refuse(client, {.reason = Reason::bad_filters, .detail = count});
+        client.coming_filters.clear();
+        client.missing_filters = static_cast<std::size_t>(count);
+        if (count == 0) client.filters.clear();
+        return;
+      }
+      case Type::filter: {
+        if (client.missing_filters == 0) return refuse(client, {.reason = Reason::bad_filters, .detail = 1});
+        const auto filter = virtual_bus::from_record<virtual_bus::FilterRecord>(record);
+        client.coming_filters.push_back({filter.id, filter.mask});
+        if (--client.missing_filters == 0) client.filters.swap(client.coming_filters);
+        return;
+      }
+      case Type::goodbye:
+        ++counters_.left;
+        arbiter_.detach(client.node, simulation::Leftovers::send);
+        client.gone = true;
+        return;
+      case Type::hello:
+      case Type::credit:
+      case Type::overrun:
+        break;
+    }
+    refuse(client, {.reason = Reason::unknown_record, .detail = number});
+  }
+
+  void welcome(Client& client) {
+    client.welcome = true;
+    client.node = arbiter_.attach({simulation::QueueOrder::fifo, options_.transmit_queue});
+    virtual_bus::Hello hello;
+    hello.bit_rate = options_.bit_rate;
+    hello.credit = static_cast<std::uint32_t>(options_.transmit_queue);
+    std::copy_n(options_.name.begin(), std::min(options_.name.size(), hello.name.size() - 1),
+                hello.name.begin());
+    client.output.push(to_record(hello), 1);
+    ++counters_.welcomed;
+  }
+
+  /// The client's end is closed.
+  void lose(Client& client) {
+    client.gone = true;
+    if (!client.welcome) return;  // somebody who only looked whether a server runs
+    ++counters_.died;
+    counters_.withdrawn += arbiter_.detach(client.node, simulation::Leftovers::withdraw);
+  }
+
+  void refuse(Client& client, const virtual_bus::Goodbye& goodbye) {
+    ++(client.welcome ? counters_.misbehaved : counters_.turned_away);
+    report(client, goodbye);
+    dismiss(client, goodbye);
+    counters_.withdrawn += arbiter_.detach(client.node, simulation::Leftovers::withdraw);
+    client.gone = true;
+  }
+
+  void report(const Client& client, const virtual_bus::Goodbye& goodbye) const {
+    if (options_.report)
+      options_.report("a client" + virtual_bus::process_text(client.peer) +
+                      " was disconnected: " + virtual_bus::describe(goodbye));
+  }
+
+  /// The last word; lost when the client's socket is full.
+  static void dismiss(Client& client, const virtual_bus::Goodbye& goodbye) {
+    const virtual_bus::Record record = to_record(goodbye);
+    ::send(client.socket.get(), record.data(), record.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+  }
+
+  // --- connections
+  // ------------------------------------------------------------------------------------------
+
+  void watch(Client& client) noexcept {
+    epoll_event event{};
+    event.events = EPOLLIN;
+    if (client.blocked) event.events |= EPOLLOUT;
+    event.data.ptr = &client;
+    ::epoll_ctl(events_.get(), EPOLL_CTL_MOD, client.socket.get(), &event);
+  }
+
+  void listen_for_clients(bool on) noexcept {
+    epoll_event event{};
+    event.events = on ? EPOLLIN : 0U;
+    event.data.ptr = nullptr;
+    ::epoll_ctl(events_.get(), EPOLL_CTL_MOD, listener_.get(), &event);
+  }
+
+  /// All who wait, up to as many as the kernel lets wait.
+  void accept(base::Time now) {
+    if (accept_again_ != base::never) {
+      accept_again_ = base::never;
+      listen_for_clients(true);
+    }
+    for (int i = 0; i < SOMAXCONN; ++i) {
+      if (!spare_) spare_ = Descriptor{::open("/dev/null", O_RDONLY | O_CLOEXEC)};
+      auto client = std::make_unique<Client>();
+      client->socket = accept_one();
+      if (!client->socket) {
+        if (errno == EAGAIN) return;
+        if (errno == EINTR || errno == ECONNABORTED) continue;
+        const Turned turned = turn_away_one();
+        if (turned == Turned::nobody) return;
+        ++counters_.accept_failures;
+        if (turned == Turned::away) continue;
+        // Nothing helps now. The listener would stay readable and keep the owner busy: look again later.
+        listen_for_clients(false);
+        accept_again_ = now + accept_pause;
+        return;
+      }
+      client->peer = virtual_bus::peer_of(client->socket.get());
+      if (!client->peer || client->peer->uid != ::geteuid()) {
+        refuse(*client, {.reason = virtual_bus::Reason::other_user,
+                         .detail = client->peer ? client->peer->uid : UINT32_MAX});
+        continue;
+      }
+      epoll_event event{};
+      event.events = EPOLLIN;
+      event.data.ptr = client.get();
+      if (::epoll_ctl(events_.get(), EPOLL_CTL_ADD, client->socket.get(), &event) < 0) {
+        ++counters_.accept_failures;
+        dismiss(*client, {.reason = virtual_bus::Reason::full});
+        continue;
+      }
+      clients_.push_back(std::move(client));
+    }
+  }
+
+  [[nodiscard]] Descriptor accept_one() const noexcept {
+    return Descriptor{::accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)};
+  }
+
+  enum class Turned : std::uint8_t { away, nobody, failed };
+
+  /// With no descriptor left, the spare one gives room to tell a client so. The kernel says that there is
+  /// none also when nobody waits.
+  Turned turn_away_one() {
+    spare_.reset();
+    Client client;
+    client.socket = accept_one();
+    const Turned turned = client.socket ? Turned::away : errno == EAGAIN ? Turned::nobody : Turned::failed;
+    if (turned == Turned::away) {
+      client.peer = virtual_bus::peer_of(client.socket.get());
+      report(client, {.reason = virtual_bus::Reason::full});
+      dismiss(client, {.reason = virtual_bus::Reason::full});
+    }
+    client.socket.reset();
+    spare_ = Descriptor{::open("/dev/null", O_RDONLY | O_CLOEXEC)};
+    return turned;
+  }
+
+  VirtualBusOptions options_;
+  Descriptor listener_;
+  Descriptor events_;
+  Descriptor spare_;
+  ino_t inode_;
+  dev_t device_;
+  simulation::Arbiter arbiter_;
+  VirtualBusCounters counters_;
+  base::Time accept_again_ = base::never;
+  std::vector<std::unique_ptr<Client>> clients_;
+  std::vector<epoll_event> ready_;
+  std::vector<std::byte> buffer_;
+  std::array<iovec, messages_at_once> places_{};
+  std::array<mmsghdr, messages_at_once> messages_{};
+};
+
+}  // namespace ocm::transport

@@ -1,0 +1,73 @@
+"""Runs amiroctl and a simulator in a folder of their own, so that tests never meet each other or the user's bus."""
+
+import json
+import os
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+AMIROCTL = os.environ["AMIROCTL"]
+SOURCE = os.environ["OCM_SOURCE_DIR"]
+
+
+class Case(unittest.TestCase):
+    """A test case with its own runtime folder; nothing is inherited from the user's environment."""
+
+    def setUp(self):
+        self._folder = tempfile.TemporaryDirectory(prefix="ocm-test-")
+        self.folder = self._folder.name
+        self.environment = {"PATH": os.environ["PATH"], "XDG_RUNTIME_DIR": self.folder, "HOME": self.folder}
+        self._started = []
+
+    def tearDown(self):
+        for process in self._started:
+            if process.poll() is None:
+                process.kill()
+            process.communicate()
+        self._folder.cleanup()
+
+    def start(self, *arguments, **options):
+        process = subprocess.Popen([AMIROCTL, *arguments], env=self.environment, text=True, stdin=subprocess.DEVNULL,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
+        self._started.append(process)
+        return process
+
+    def run_tool(self, *arguments, code=0, stdin="", timeout=30):
+        """Runs to the end and checks the exit code; returns (stdout, stderr)."""
+        result = subprocess.run([AMIROCTL, *arguments], env=self.environment, text=True, input=stdin,
+                                capture_output=True, timeout=timeout)
+        self.assertEqual(result.returncode, code, f"{arguments}: {result.stdout}{result.stderr}")
+        return result.stdout, result.stderr
+
+    def start_sim(self, *arguments):
+        """Starts a simulator and returns when it can be reached."""
+        sim = self.start("sim", *arguments)
+        deadline = time.monotonic() + 10
+        while time.monotonic() < deadline:
+            if sim.poll() is not None:
+                self.fail("the simulator ended: " + sim.stderr.read())
+            if os.path.exists(os.path.join(self.folder, "ocm", "sim.sock")):
+                return sim
+            time.sleep(0.01)
+        self.fail("the simulator did not open its socket")
+
+    def listen(self, *arguments):
+        """Starts `listen --json` and returns when it is subscribed: it says which bus it uses before it listens."""
+        listener = self.start("listen", "--json", *arguments)
+        self.assertIn("bus: sim", listener.stderr.readline())
+        time.sleep(0.1)
+        return listener
+
+    def interrupt(self, process, number=signal.SIGINT):
+        process.send_signal(number)
+        return process.communicate(timeout=10)
+
+    @staticmethod
+    def objects(text):
+        return [json.loads(line) for line in text.splitlines()]
+
+
+def main():
+    unittest.main(verbosity=1)

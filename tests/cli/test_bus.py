@@ -1,0 +1,243 @@
+"""Requests, samples, set points and signals over a running simulator."""
+
+import os
+import signal
+import subprocess
+import time
+
+from harness import AMIROCTL, SOURCE, Case, main
+
+
+class OnTheBus(Case):
+    def test_the_main_job(self):
+        self.start_sim()
+        listener = self.listen("gyro", "-n", "3", "--timeout", "10s")
+        _, err = self.run_tool("publish", "gyro", "100ms")
+        self.assertEqual(err.splitlines(), ["bus: sim (the only one there is; --bus chooses)"])
+        out, err = listener.communicate(timeout=15)
+        self.assertEqual(listener.returncode, 0, err)
+        samples = self.objects(out)
+        self.assertEqual(len(samples), 3)
+        for sample in samples:
+            self.assertEqual(list(sample), "time_ns bus id priority topic frame fields units data".split())
+            self.assertEqual(sample["topic"], "gyroscope")
+            self.assertEqual(sample["id"], "608")
+            self.assertEqual(sample["priority"], "medium")
+            self.assertEqual(sample["units"], {"x": "deg/s", "y": "deg/s", "z": "deg/s"})
+            raw = bytes.fromhex(sample["data"])
+            x = int.from_bytes(raw[0:2], "little", signed=True)
+            self.assertAlmostEqual(sample["fields"]["x"], x * 0.0175, places=9)
+        times = [int(sample["time_ns"]) for sample in samples]
+        # Bus time, not this machine's scheduling: the grid is exact up to the frames before.
+        for earlier, later in zip(times, times[1:]):
+            self.assertAlmostEqual(later - earlier, 100_000_000, delta=20_000_000)
+        self.assertLess(abs(times[0] / 1e9 - time.time()), 60)
+
+    def test_once_waits_and_shows(self):
+        self.start_sim()
+        sample, = self.objects(self.run_tool("once", "power", "--wait")[0])
+        self.assertEqual(sample["topic"], "power_status")
+        frames = self.objects(self.run_tool("once", "ring", "--wait", "5s")[0])
+        self.assertEqual(len(frames), 8)
+
+    def test_wait_fails_in_time_and_says_what_to_check(self):
+        self.start_sim("--without", "power_management")
+        begin = time.monotonic()
+        _, err = self.run_tool("once", "power", "--wait", "300ms", code=1)
+        self.assertLess(time.monotonic() - begin, 5)
+        for word in ("no power_status within 300ms", "power_management", "500000"):
+            self.assertIn(word, err)
+
+    def test_formats(self):
+        self.start_sim()
+        self.run_tool("publish", "odom", "50ms")
+        out, _ = self.run_tool("listen", "--csv", "-n", "4", "--timeout", "5s")
+        lines = out.splitlines()
+        self.assertEqual(lines[0], "time,topic,field,value,unit")
+        self.assertIn(",odometry,velocity.x,", out)
+        self.assertRegex(lines[1], r"^\d{10}\.\d{9},odometry,velocity\.x,-?[\d.]+,m/s$")
+        out, _ = self.run_tool("listen", "--raw", "-n", "2", "--timeout", "5s")
+        self.assertRegex(out.splitlines()[0], r"^\(\d{10}\.\d{6}\) sim 60[23]#[0-9A-F]{16}$")
+        out, _ = self.run_tool("listen", "--pretty", "-n", "2", "--timeout", "5s")
+        self.assertRegex(out.splitlines()[0], r"^ +0\.000000  medium  odometry +velocity\.x +-?[\d.]+ m/s")
+
+    def test_commands_are_shown_when_asked_for(self):
+        self.start_sim()
+        listener = self.listen("--commands", "-n", "3", "--timeout", "10s")
+        self.run_tool("stop", "mag")
+        self.run_tool("publish", "gyro", "5s", "--priority", "high")
+        out, _ = listener.communicate(timeout=15)
+        stop, publish, sample = self.objects(out)
+        self.assertEqual((stop["id"], stop["fields"]["mode"]), ("205", "stop"))
+        self.assertEqual((publish["id"], publish["fields"]), ("108", {"mode": "publish", "period": 5}))
+        self.assertEqual((sample["id"], sample["priority"]), ("508", "high"))
+
+    def test_strict_tells_unknown_frames(self):
+        self.start_sim()
+        for strict, code in ((["--strict"], 1), ([], 0)):
+            listener = self.listen("--timeout", "1s", *strict)
+            self.run_tool("send", "6F0#00")
+            self.run_tool("send", "608#0000")
+            _, err = listener.communicate(timeout=15)
+            self.assertEqual(listener.returncode, code, err)
+            self.assertIn("1 of unknown identifier", err)
+            self.assertIn("1 of wrong length", err)
+
+    def test_timeouts(self):
+        self.start_sim()
+        self.run_tool("listen", "--timeout", "200ms")
+        self.run_tool("listen", "--idle-timeout", "200ms")
+        self.run_tool("listen", "-n", "1", "--timeout", "200ms", code=1)
+
+    def test_ctrl_c_ends_listen_cleanly(self):
+        self.start_sim()
+        for number in (signal.SIGINT, signal.SIGTERM):
+            listener = self.listen()
+            _, err = self.interrupt(listener, number)
+            self.assertEqual(listener.returncode, 128 + number)
+            self.assertIn("0 frames, 0 samples", err)
+
+    def test_listen_survives_the_simulator_by_telling(self):
+        sim = self.start_sim()
+        listener = self.listen()
+        self.interrupt(sim)
+        _, err = listener.communicate(timeout=10)
+        self.assertEqual(listener.returncode, 1)
+        self.assertIn("sim", err)
+
+    def test_a_reader_that_goes_away_ends_listen(self):
+        self.start_sim()
+        self.run_tool("publish", "gyro", "10ms")
+        pipe = subprocess.Popen(f"'{AMIROCTL}' listen --json | head -2", shell=True, text=True, env=self.environment,
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        out, _ = pipe.communicate(timeout=10)
+        self.assertEqual(len(self.objects(out)), 2)
+
+    def test_a_full_disk_is_told(self):
+        self.start_sim()
+        self.run_tool("publish", "gyro", "10ms")
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            result = subprocess.run([AMIROCTL, "listen", "--json"], env=self.environment, stdout=full, text=True,
+                                    stderr=subprocess.PIPE, timeout=10)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("No space left", result.stderr)
+
+    def test_drive_repeats_and_ends_with_zero(self):
+        self.start_sim()
+        listener = self.listen("motors", "odom", "--timeout", "20s")
+        self.run_tool("drive", "5cm/s", "--for", "550ms")
+        time.sleep(0.2)
+        out, _ = self.interrupt(listener)
+        frames = [line["data"] for line in self.objects(out)]
+        self.assertEqual(frames[-1], "0000000000000000")
+        self.assertEqual(set(frames[:-1]), {"50C3000000000000"})
+        self.assertEqual(len(frames), 7)  # at 0, 100, ... 500 ms, and the zero
+
+    def test_ctrl_c_stops_the_motors(self):
+        self.start_sim()
+        listener = self.listen("motors", "--timeout", "20s")
+        drive = self.start("drive", "5cm/s")
+        time.sleep(0.5)
+        self.interrupt(drive)
+        self.assertEqual(drive.returncode, 130)
+        time.sleep(0.2)
+        out, _ = self.interrupt(listener)
+        self.assertEqual(self.objects(out)[-1]["data"], "0000000000000000")
+
+    def test_the_robot_moves_and_its_watchdog_stops_it(self):
+        self.start_sim()
+        self.run_tool("drive", "10cm/s", "--once")
+        time.sleep(1.5)
+        position = lambda: self.objects(self.run_tool("once", "odom", "--wait")[0])[-1]["fields"]["x"]
+        first = position()
+        self.assertGreater(first, 0.02)
+        self.assertLess(first, 0.1)
+        time.sleep(0.3)
+        self.assertAlmostEqual(position(), first, delta=0.001)
+
+    def test_a_second_simulator_is_refused(self):
+        first = self.start_sim()
+        _, err = self.run_tool("sim", code=1)
+        self.assertIn(str(first.pid), err)
+        self.run_tool("once", "gyro", "--wait")
+
+    def test_a_killed_simulator_leaves_nothing_in_the_way(self):
+        first = self.start_sim()
+        first.kill()
+        first.wait()
+        self.refused = self.run_tool("once", "gyro", code=1)
+        self.start("sim")
+        deadline = time.monotonic() + 10
+        while time.monotonic() < deadline:
+            if subprocess.run([AMIROCTL, "once", "gyro"], env=self.environment, capture_output=True).returncode == 0:
+                return
+            time.sleep(0.05)
+        self.fail("a new simulator cannot be reached")
+
+    def test_the_same_seed_gives_the_same_robot(self):
+        values = []
+        for seed in ("7", "7", "8"):
+            sim = self.start_sim("--seed", seed, "--frozen")
+            out, _ = self.run_tool("once", "gyro", "--wait")
+            values.append(self.objects(out)[0]["data"])
+            self.interrupt(sim)
+        self.assertEqual(values[0], values[1])
+
+
+class Scripts(Case):
+    def script(self, text):
+        path = os.path.join(self.folder, "steps.script")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+        return path
+
+    def test_a_script_is_checked_whole_before_anything_is_sent(self):
+        self.start_sim()
+        listener = self.listen("--commands", "--timeout", "20s")
+        path = self.script("0s publish gyro 1s\n1s publish gyr 1s\n2s led 9 red\n")
+        _, err = self.run_tool("run", path, code=2)
+        self.assertIn(f"{path}:2:12: no topic 'gyr'", err)
+        self.assertIn(f"{path}:3:8: no LED '9'", err)
+        out, _ = self.interrupt(listener)
+        self.assertEqual(out, "")
+
+    def test_steps_come_at_their_times(self):
+        self.start_sim()
+        listener = self.listen("--commands", "led", "motors", "--timeout", "20s")
+        path = self.script("0s led 1 red\n5s led 2 red\n10s drive 5cm/s\n13s drive stop\n15s led 3 red\n")
+        self.run_tool("run", path, "--speed", "10")
+        time.sleep(0.2)
+        out, _ = self.interrupt(listener)
+        frames = self.objects(out)
+        start = int(frames[0]["time_ns"])
+        at = {frame["topic"]: (int(frame["time_ns"]) - start) / 1e9 for frame in frames if frame["topic"] != "motors"}
+        self.assertAlmostEqual(at["led_2"], 0.5, delta=0.1)
+        self.assertAlmostEqual(at["led_3"], 1.5, delta=0.1)
+        motors = [frame["data"] for frame in frames if frame["topic"] == "motors"]
+        self.assertEqual(motors, ["50C3000000000000"] * 3 + ["0000000000000000"])  # repeated at 100 and 200 ms
+
+    def test_dry_run(self):
+        out, _ = self.run_tool("run", os.path.join(SOURCE, "examples", "standalone.script"), "--dry-run")
+        self.assertEqual(len(out.splitlines()), 21)
+        self.assertEqual(out.splitlines()[0].split(), ["1s", "209#01F40100"])
+
+    def test_standard_input_and_interrupt(self):
+        self.start_sim()
+        listener = self.listen("motors", "--timeout", "20s")
+        self.run_tool("run", "-", stdin="0s drive 5cm/s --for 200ms\n")
+        path = self.script("0s drive 5cm/s\n60s drive stop\n")
+        run = self.start("run", path)
+        time.sleep(0.5)
+        self.interrupt(run)
+        self.assertEqual(run.returncode, 130)
+        time.sleep(0.2)
+        out, _ = self.interrupt(listener)
+        self.assertEqual(self.objects(out)[-1]["data"], "0000000000000000")
+
+    def test_a_missing_script(self):
+        _, err = self.run_tool("run", os.path.join(self.folder, "none.script"), code=1)
+        self.assertIn("none.script", err)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,85 @@
+"""Exit codes and messages: every error names the input, the place and the remedy."""
+
+import os
+
+from harness import SOURCE, Case, main
+
+
+class Usage(Case):
+    def refused(self, arguments, *words, code=2):
+        out, err = self.run_tool(*arguments, code=code)
+        self.assertEqual(out, "")
+        for word in words:
+            self.assertIn(word, err)
+
+    def test_wrong_words_are_usage_errors(self):
+        self.refused(["publish", "gyr", "1s"], "'gyr'", "did you mean 'gyro'?")
+        self.refused(["publish", "gyro", "65.536s"], "65.536s", "nearest: 65.535s")
+        self.refused(["publish", "gyro", "0s"], "nearest: 1us")
+        self.refused(["publish", "gyro", "1.5us"], "1.5us", "nearest: 1us")
+        self.refused(["publish"], "publish TOPIC [PERIOD]")
+        self.refused(["led", "9", "red"], "1 to 8")
+        self.refused(["drive", "5cm"], "m/s")
+        self.refused(["send", "205"], "205#01840302")
+        self.refused(["listen", "gyr"], "did you mean 'gyro'?")
+        self.refused(["info", "nope"], "one of")
+        self.refused(["listen", "--timeout", "soon"], "--timeout soon")
+        self.refused(["listen", "--json", "--csv"])
+        self.refused(["listen", "-n", "-3"])
+        self.refused([])
+        self.refused(["frobnicate"])
+        self.refused(["publish", "gyro", "--wat"])
+
+    def test_help_and_version(self):
+        out, _ = self.run_tool("--help")
+        for heading in ("Ask sensors", "Command actuators", "Watch the bus", "Exit codes"):
+            self.assertIn(heading, out)
+        for verb in "list info publish once stop drive led set send listen run sim".split():
+            out, _ = self.run_tool(verb, "--help")
+            self.assertIn("Examples:", out)
+            self.assertIn(f"amiroctl {verb}" if verb != "run" else "run", out)
+        self.assertIn("amiroctl ", self.run_tool("--version")[0])
+
+    def test_no_bus_says_how_to_get_one(self):
+        self.refused(["once", "gyro"], "amiroctl sim", "ip link set can0 up", code=1)
+        self.refused(["--bus", "sim", "once", "gyro"], "amiroctl sim", code=1)
+        self.refused(["--bus", "can7", "once", "gyro"], code=1)
+        self.environment["AMIROCTL_BUS"] = "sim"
+        self.refused(["once", "gyro"], "amiroctl sim", code=1)
+
+    def test_the_flag_goes_before_the_environment(self):
+        self.environment["AMIROCTL_BUS"] = "sim"
+        _, err = self.run_tool("--bus", "a-name-of-over-15-characters", "once", "gyro", code=1)
+        self.assertIn("a-name-of-over-15-characters", err)
+
+    def test_another_spec(self):
+        self.refused(["--spec", os.path.join(self.folder, "none.json"), "list"], "none.json", code=1)
+        bad = os.path.join(self.folder, "bad.json")
+        with open(bad, "w", encoding="utf-8") as file:
+            file.write('{ "robot": "x",\n  oops }')
+        self.refused(["--spec", bad, "list"], "bad.json:2", code=1)
+        own = os.path.join(SOURCE, "spec", "topics.json")
+        self.assertEqual(self.run_tool("--spec", own, "list")[0], self.run_tool("list")[0])
+
+
+class Look(Case):
+    def test_list(self):
+        out, _ = self.run_tool("list")
+        for alias in "gyro accel mag floor odom power ring motors".split():
+            self.assertIn(alias, out)
+        topics = self.objects(self.run_tool("list", "--json")[0])
+        self.assertEqual(len(topics), 7 + 1 + 8)
+        gyroscope = next(topic for topic in topics if topic["topic"] == "gyroscope")
+        self.assertEqual(gyroscope["id"], "0x08")
+        self.assertIn("gyro", gyroscope["aliases"])
+
+    def test_info(self):
+        out, _ = self.run_tool("info", "gyro")
+        for word in ("0x08", "di_wheel_drive", "deg/s", "0.0175", "608", "bytes 0..1", "Thesis"):
+            self.assertIn(word.lower(), out.lower())
+        self.assertIn("500ms", self.run_tool("info", "motors")[0])
+        self.assertIn("red", self.run_tool("info", "led")[0])
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,18 @@
+// Motors take set points, and have no samples.
+// expect: this topic belongs to another board
+#include "ocm/controller/controller.hpp"
+#include "ocm/topics/amiro.hpp"
+
+struct Can {
+  ocm::base::Result<bool> send(const ocm::can::Frame&) { return true; }
+};
+using ocm::base::Result;
+using Board = ocm::controller::Controller<amiro::DiWheelDrive, Can>;
+
+void set_up(Board& board) {
+#ifdef OCM_MUST_FAIL
+  board.serve<amiro::Motors>([] { return Result<amiro::Motors>{amiro::Motors{}}; });
+#else
+  board.accept<amiro::Motors>([](const amiro::Motors&) {});
+#endif
+}

@@ -1,0 +1,18 @@
+// The ring of proximity sensors is on another board.
+// expect: this topic belongs to another board
+#include "ocm/controller/controller.hpp"
+#include "ocm/topics/amiro.hpp"
+
+struct Can {
+  ocm::base::Result<bool> send(const ocm::can::Frame&) { return true; }
+};
+using ocm::base::Result;
+using Board = ocm::controller::Controller<amiro::DiWheelDrive, Can>;
+
+void set_up(Board& board) {
+#ifdef OCM_MUST_FAIL
+  board.serve<amiro::ProximityRing>([] { return Result<amiro::ProximityRing>{amiro::ProximityRing{}}; });
+#else
+  board.serve<amiro::Magnetometer>([] { return Result<amiro::Magnetometer>{amiro::Magnetometer{}}; });
+#endif
+}

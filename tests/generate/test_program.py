@@ -1,0 +1,149 @@
+"""ocm-generate as a person or a build calls it: exit status, messages, and what becomes of the header.
+
+Usage: test_program.py OCM_GENERATE
+"""
+import json
+import os
+import pathlib
+import stat
+import subprocess
+import sys
+import tempfile
+import unittest
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+TOOL = ""
+GOOD = (HERE / "good.json").read_text()
+
+
+def run(*arguments, **options):
+    return subprocess.run([TOOL, *map(str, arguments)], capture_output=True, text=True, timeout=60, **options)
+
+
+class Program(unittest.TestCase):
+    def setUp(self):
+        self.scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(self.scratch.cleanup)
+        self.folder = pathlib.Path(self.scratch.name)
+        self.spec = self.folder / "good.json"
+        self.spec.write_text(GOOD)
+        self.header = self.folder / "pair.hpp"
+
+    def test_writes_a_header(self):
+        done = run(self.spec, "-o", self.header)
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))
+        self.assertIn("struct Gyroscope {", self.header.read_text())
+        self.assertEqual(sorted(os.listdir(self.folder)), ["good.json", "pair.hpp"])
+
+    def test_the_same_spec_gives_the_same_bytes_wherever_it_lies(self):
+        run(self.spec, "-o", self.header)
+        elsewhere = self.folder / "elsewhere"
+        elsewhere.mkdir()
+        (elsewhere / "good.json").write_text(GOOD)
+        done = run("good.json", "-o", "-", cwd=elsewhere, env={"LC_ALL": "de_DE.UTF-8", "TZ": "Asia/Tokyo"})
+        self.assertEqual(done.returncode, 0)
+        self.assertEqual(done.stdout, self.header.read_text())
+
+    def test_every_bad_spec_leaves_the_old_header_alone(self):
+        bad = self.folder / "bad.json"
+        for row in json.loads((HERE / "bad_specs.json").read_text()):
+            with self.subTest(replace=row["replace"], by=row["by"]):
+                bad.write_text(GOOD.replace(row["replace"], row["by"], 1))
+                self.header.write_text("the old header")
+                before = self.header.stat()
+                done = run("bad.json", "-o", self.header, cwd=self.folder)
+                self.assertEqual(done.returncode, 1)
+                self.assertEqual(done.stdout, "")
+                self.assertEqual(done.stderr.splitlines(), row["problems"])
+                self.assertEqual(self.header.read_text(), "the old header")
+                after = self.header.stat()
+                self.assertEqual((after.st_ino, after.st_mtime_ns), (before.st_ino, before.st_mtime_ns))
+        self.assertEqual(sorted(os.listdir(self.folder)), ["bad.json", "good.json", "pair.hpp"])
+
+    def test_a_bad_spec_makes_no_header(self):
+        self.spec.write_text("{")
+        self.assertEqual(run(self.spec, "-o", self.header).returncode, 1)
+        self.assertFalse(self.header.exists())
+
+    def test_control_characters_of_a_spec_do_not_reach_the_terminal(self):
+        self.spec.write_text(GOOD.replace('"0x08"', '"\\u001b[2J"'))
+        done = run(self.spec, "--check")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("\\x1B[2J", done.stderr)
+        self.assertNotIn("\x1b", done.stderr)
+
+    def test_check_says_what_is_wrong_and_writes_nothing(self):
+        self.assertEqual(run(self.spec, "--check").returncode, 0)
+        self.spec.write_text(GOOD.replace('"0x08"', '"0x108"'))
+        done = run(self.spec, "--check")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn('/topics/0/id: "0x108" is wider than 8 bits', done.stderr)
+
+    def test_keeps_the_mode_of_a_header_and_a_link_to_it(self):
+        real = self.folder / "real.hpp"
+        real.write_text("old")
+        real.chmod(0o640)
+        self.header.symlink_to(real)
+        self.assertEqual(run(self.spec, "-o", self.header).returncode, 0)
+        self.assertTrue(self.header.is_symlink())
+        self.assertIn("namespace pair", real.read_text())
+        self.assertEqual(stat.S_IMODE(real.stat().st_mode), 0o640)
+
+    def test_a_new_header_has_the_mode_of_any_new_file(self):
+        subprocess.run(["sh", "-c", f'umask 027; exec "$0" "$1" -o "$2"', TOOL, self.spec, self.header], check=True)
+        self.assertEqual(stat.S_IMODE(self.header.stat().st_mode), 0o640)
+
+    def test_where_no_header_can_be_written(self):
+        for output, words in ((self.folder / "no" / "x.hpp", "a folder that exists"), (self.folder, "it is a folder")):
+            done = run(self.spec, "-o", output)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn(words, done.stderr)
+        done = run(self.spec, "-o", "/dev/full")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("No space left", done.stderr)
+
+    def test_wrong_usage_is_2(self):
+        for arguments in ((), (self.spec,), (self.spec, "-o"), (self.spec, "-o", "a", "-o", "b"), ("-x",),
+                          (self.spec, "second", "-o", "a"), (self.spec, "-o", "a", "--check"), (self.spec, "-o", "")):
+            with self.subTest(arguments=arguments):
+                done = run(*arguments)
+                self.assertEqual(done.returncode, 2)
+                self.assertTrue(done.stderr.startswith("ocm-generate: "))
+
+    def test_help_version_and_schema(self):
+        for option in ("--help", "--version", "--schema"):
+            done = run(option)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(run("--schema").stdout, (ROOT / "spec" / "topics.schema.json").read_text())
+
+    def test_the_page_on_specs_names_every_member(self):
+        page = (ROOT / "docs" / "spec.md").read_text()
+        schema = json.loads((ROOT / "spec" / "topics.schema.json").read_text())
+
+        def members(rule):
+            if isinstance(rule, dict):
+                yield from rule.get("properties", {})
+                for value in rule.values():
+                    yield from members(value)
+            elif isinstance(rule, list):
+                for value in rule:
+                    yield from members(value)
+
+        self.assertEqual({m for m in members(schema) if f"`{m}`" not in page} - {"$schema"}, set())
+
+    def test_the_spec_that_the_page_begins_with_is_good(self):
+        page = (ROOT / "docs" / "spec.md").read_text()
+        self.spec.write_text(page.split("```json\n")[1].split("```")[0])
+        done = run(self.spec, "--check")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def test_a_spec_that_is_missing(self):
+        done = run(self.folder / "nothing.json", "-o", self.header)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("nothing.json: there is no such file; ", done.stderr)
+
+
+if __name__ == "__main__":
+    TOOL = str(pathlib.Path(sys.argv.pop(1)).resolve())
+    unittest.main()

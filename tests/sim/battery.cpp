@@ -1,0 +1,84 @@
+#include "firmware/sim/battery.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace ocm::firmware::sim;
+
+namespace {
+
+/// Whole seconds of a constant load, with the gauge looking at each.
+void run(Battery& battery, std::int64_t load_mw, int seconds) {
+  for (int i = 0; i < seconds; ++i) {
+    battery.step(load_mw, 1000);
+    battery.gauge();
+  }
+}
+
+}  // namespace
+
+TEST_CASE("the thesis's reading: 52 %, 137 minutes, -930 mW") {
+  Battery battery{{}, 0.52, false};
+  const GaugeReading expected{false, false, 52, 137, -930};
+  CHECK(battery.reading() == expected);
+  run(battery, 930, 10);
+  CHECK(battery.reading() == expected);
+}
+
+TEST_CASE("a load drains what it says") {
+  Battery battery{{}, 1, false};
+  CHECK(battery.reading().state_of_charge_percent == 100);
+  run(battery, 4080, 3600);  // 4.08 W for an hour are the 4.08 Wh
+  CHECK(battery.empty());
+  CHECK(battery.reading().state_of_charge_percent == 0);
+  CHECK(battery.reading().minutes == 0);
+  run(battery, 930, 10);  // nothing is left to give
+  CHECK(battery.energy_uj() == 0);
+  CHECK(battery.reading().power_mw == 0);
+}
+
+TEST_CASE("a short load does not halve the time that is left") {
+  Battery battery{{}, 0.5, false};
+  const auto before = battery.reading().minutes;
+  run(battery, 2930, 2);
+  CHECK(battery.reading().power_mw == -2930);
+  CHECK(battery.reading().minutes > before * 9 / 10);
+  run(battery, 2930, 300);
+  CHECK(battery.reading().minutes < before * 2 / 5);
+}
+
+TEST_CASE("the charger fills the batteries, then carries the load") {
+  Battery battery{{}, 0.5, true};
+  CHECK(battery.charging());
+  CHECK(battery.reading().plugged);
+  CHECK(battery.reading().power_mw == 4070);
+  CHECK(battery.reading().minutes == 30);  // 2.04 Wh at 4.07 W
+  run(battery, 930, 29 * 60);
+  CHECK(battery.charging());
+  run(battery, 930, 3 * 60);
+  CHECK(battery.reading() == GaugeReading{true, false, 100, 65535, 0});
+
+  battery.set_plugged(false);
+  run(battery, 930, 1);
+  CHECK(battery.reading() == GaugeReading{false, false, 100, 263, -930});
+}
+
+TEST_CASE("a charger that is too weak does not charge") {
+  Battery battery{{}, 0.5, true};
+  run(battery, 6000, 60);
+  CHECK(battery.reading().power_mw == -1000);
+  CHECK(battery.reading().minutes == 65535);  // to full: never
+}
+
+TEST_CASE("a thousand small steps and one large one are the same to the bit") {
+  Battery small{{}, 0.5, false};
+  Battery large{{}, 0.5, false};
+  for (int i = 0; i < 1000; ++i) small.step(1234, 1);
+  large.step(1234, 1000);
+  CHECK(small.energy_uj() == large.energy_uj());
+}
+
+TEST_CASE("power beyond 16 bits saturates") {
+  Battery battery{{}, 1, false};
+  run(battery, 100'000, 1);
+  CHECK(battery.reading().power_mw == -32768);
+}

@@ -1,0 +1,105 @@
+#include "ocm/can/error_frame.hpp"
+
+#include <algorithm>
+#include <linux/can/error.h>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/can/text.hpp"
+
+using namespace ocm;
+
+namespace {
+constexpr auto words(const char* text) {
+  return can::describe(*can::parse_frame(text));
+}
+
+// The kernel's header is the source of the numbers.
+static_assert(can::error_class::tx_timeout == CAN_ERR_TX_TIMEOUT);
+static_assert(can::error_class::arbitration_lost == CAN_ERR_LOSTARB);
+static_assert(can::error_class::controller == CAN_ERR_CRTL);
+static_assert(can::error_class::protocol == CAN_ERR_PROT);
+static_assert(can::error_class::transceiver == CAN_ERR_TRX);
+static_assert(can::error_class::no_acknowledgement == CAN_ERR_ACK);
+static_assert(can::error_class::bus_off == CAN_ERR_BUSOFF);
+static_assert(can::error_class::bus_error == CAN_ERR_BUSERROR);
+static_assert(can::error_class::restarted == CAN_ERR_RESTARTED);
+#ifdef CAN_ERR_CNT
+static_assert(can::error_class::counters == CAN_ERR_CNT);
+#endif
+static_assert(can::controller_error::rx_overflow == CAN_ERR_CRTL_RX_OVERFLOW);
+static_assert(can::controller_error::tx_overflow == CAN_ERR_CRTL_TX_OVERFLOW);
+static_assert(can::controller_error::rx_warning == CAN_ERR_CRTL_RX_WARNING);
+static_assert(can::controller_error::tx_warning == CAN_ERR_CRTL_TX_WARNING);
+static_assert(can::controller_error::rx_passive == CAN_ERR_CRTL_RX_PASSIVE);
+static_assert(can::controller_error::tx_passive == CAN_ERR_CRTL_TX_PASSIVE);
+static_assert(can::controller_error::active == CAN_ERR_CRTL_ACTIVE);
+static_assert(can::protocol_error::bit == CAN_ERR_PROT_BIT);
+static_assert(can::protocol_error::form == CAN_ERR_PROT_FORM);
+static_assert(can::protocol_error::stuff == CAN_ERR_PROT_STUFF);
+static_assert(can::protocol_error::dominant_bit == CAN_ERR_PROT_BIT0);
+static_assert(can::protocol_error::recessive_bit == CAN_ERR_PROT_BIT1);
+static_assert(can::protocol_error::overload == CAN_ERR_PROT_OVERLOAD);
+static_assert(can::protocol_error::active == CAN_ERR_PROT_ACTIVE);
+static_assert(can::protocol_error::transmission == CAN_ERR_PROT_TX);
+static_assert(can::detail::error_location(CAN_ERR_PROT_LOC_CRC_SEQ) == "the CRC");
+static_assert(can::detail::error_location(CAN_ERR_PROT_LOC_ACK) == "the acknowledge slot");
+static_assert(can::detail::error_location(CAN_ERR_PROT_LOC_ACK_DEL) == "the acknowledge delimiter");
+static_assert(can::detail::error_location(CAN_ERR_PROT_LOC_ID12_05) == "the identifier");
+static_assert(can::detail::error_location(CAN_ERR_PROT_LOC_EOF) == "the end of frame");
+static_assert(can::detail::error_location(CAN_ERR_PROT_LOC_INTERM) == "the intermission");
+
+static_assert(words("20000040#0000000000000000") == "bus-off: the controller has left the bus");
+static_assert(words("20000240#000000000000FF00") ==
+              "bus-off: the controller has left the bus, error counters: sending 255, receiving 0");
+static_assert(words("20000100#0000000000000000") == "the controller was restarted");
+static_assert(words("20000004#0001000000000000") ==
+              "the controller's receive buffer overflowed: frames are lost");
+static_assert(words("20000004#0010000000000000") == "error passive (receiving)");
+static_assert(words("20000004#0008000000006000") ==
+              "error warning (sending), error counters: sending 96, receiving 0");
+static_assert(words("20000204#003000000000C8C8") ==
+              "error passive (both ways), error counters: sending 200, receiving 200");
+static_assert(words("20000004#0040000000000000") == "error active again");
+static_assert(words("20000004#0000000000000000") == "controller problem");
+static_assert(words("200000A0#0000001900000000") == "no acknowledgement: no other node, or another bit rate");
+static_assert(words("200000A8#0000001900000000") == "no acknowledgement: no other node, or another bit rate");
+static_assert(words("200000A8#0000041900000000") ==
+              "no acknowledgement: no other node, or another bit rate, stuff error in the acknowledge slot");
+static_assert(words("20000088#0000000800000000") == "protocol error in the CRC");
+static_assert(words("20000088#0000040000000000") == "stuff error");
+static_assert(words("20000088#0000810A00000000") == "bit error in the data while sending");
+static_assert(words("20000008#0000060000000000") == "form error, stuff error");
+static_assert(words("20000080#0000000000000000") == "bus error");
+static_assert(words("20000002#0B00000000000000") == "arbitration lost in bit 11");
+static_assert(words("20000002#0000000000000000") == "arbitration lost");
+static_assert(words("20000010#0000000045000000") == "CANH is shorted to the battery, CANL is not connected");
+static_assert(words("20000001#0000000000000000") == "the driver gave up sending: timeout");
+static_assert(words("20000400#0000000000000000") == "unknown error class 0x00000400");
+static_assert(words("20000000#0000000000000000") == "error frame without a class");
+static_assert(words("20000200#0000000000000102") == "error counters: sending 1, receiving 2");
+static_assert(words("205#01").view().empty());
+
+static_assert(can::lost_in_controller(*can::parse_frame("20000004#0001000000000000")));
+static_assert(!can::lost_in_controller(*can::parse_frame("20000004#0002000000000000")));
+static_assert(!can::lost_in_controller(*can::parse_frame("20000040#0001000000000000")));
+static_assert(!can::lost_in_controller(*can::parse_frame("00000004#0001000000000000")));
+}  // namespace
+
+TEST_CASE("the longest description of an error frame fits") {
+  std::size_t longest = 0;
+  bool overflowed = false;
+  for (unsigned byte = 0; byte < 256; ++byte) {
+    const auto b = static_cast<std::uint8_t>(byte);
+    for (const std::uint32_t id :
+         {can::max_extended_id, can::max_extended_id & ~can::error_class::protocol}) {
+      const auto text =
+          can::describe(can::Frame{id, 8, {255, 0x7F, 0xFF, b, b, 0, 255, 255}, can::Format::error});
+      longest = std::max(longest, text.view().size());
+      overflowed = overflowed || text.overflowed();
+    }
+  }
+  CAPTURE(longest);
+  CHECK_FALSE(overflowed);
+  CHECK(longest > 500);  // every class was in it
+}

@@ -1,0 +1,37 @@
+#include "ocm/protocol/physical.hpp"
+
+#include <limits>
+
+#include <catch2/catch.hpp>
+
+namespace {
+
+using ocm::protocol::nearest_raw;
+
+constexpr std::int16_t low = INT16_MIN;
+constexpr std::int16_t high = INT16_MAX;
+
+TEST_CASE("a raw number is the nearest one, halves away from zero") {
+  STATIC_REQUIRE(nearest_raw<std::int16_t>(2.5, low, high) == 3);
+  STATIC_REQUIRE(nearest_raw<std::int16_t>(-2.5, low, high) == -3);
+  STATIC_REQUIRE(nearest_raw<std::int16_t>(2.4999, low, high) == 2);
+  // Adding 0.5 first would round this up: the sum is 1.0 in binary.
+  STATIC_REQUIRE(nearest_raw<std::int16_t>(0.49999999999999994, low, high) == 0);
+}
+
+TEST_CASE("a raw number stays within the range") {
+  STATIC_REQUIRE(nearest_raw<std::int16_t>(32768.0, low, high) == 32767);
+  STATIC_REQUIRE(nearest_raw<std::int16_t>(-1e300, low, high) == -32768);
+  STATIC_REQUIRE(nearest_raw<std::uint8_t>(101.0, 0, 100) == 100);
+  STATIC_REQUIRE(nearest_raw<std::int64_t>(1e19, INT64_MIN, INT64_MAX) == INT64_MAX);
+  CHECK(nearest_raw<std::int16_t>(-std::numeric_limits<double>::infinity(), low, high) == -32768);
+}
+
+TEST_CASE("not a number is the nearest to zero, so that nothing moves") {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  STATIC_REQUIRE(nearest_raw<std::int16_t>(nan, low, high) == 0);
+  STATIC_REQUIRE(nearest_raw<std::int16_t>(nan, 5, 9) == 5);
+  STATIC_REQUIRE(nearest_raw<std::int16_t>(nan, -9, -5) == -5);
+}
+
+}  // namespace

@@ -1,0 +1,126 @@
+#include "ocm/transport/interfaces.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace ocm;
+using transport::CanInterface;
+using transport::detail::LinkDump;
+
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+template <class T>
+Bytes bytes_of(const T& object) {
+  const auto* begin = reinterpret_cast<const std::byte*>(&object);
+  return {begin, begin + sizeof object};
+}
+
+Bytes operator+(Bytes a, const Bytes& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+Bytes padded(Bytes bytes) {
+  bytes.resize((bytes.size() + 3) & ~std::size_t{3});
+  return bytes;
+}
+
+Bytes attribute(unsigned type, const Bytes& payload) {
+  rtattr header{};
+  header.rta_len = static_cast<unsigned short>(sizeof header + payload.size());
+  header.rta_type = static_cast<unsigned short>(type);
+  return padded(bytes_of(header) + payload);
+}
+
+Bytes text(std::string_view words) {
+  Bytes bytes;
+  for (const char c : words) bytes.push_back(static_cast<std::byte>(c));
+  bytes.push_back(std::byte{0});
+  return bytes;
+}
+
+Bytes message(unsigned type, const Bytes& payload) {
+  nlmsghdr header{};
+  header.nlmsg_len = static_cast<unsigned>(sizeof header + payload.size());
+  header.nlmsg_type = static_cast<unsigned short>(type);
+  return padded(bytes_of(header) + payload);
+}
+
+Bytes link(unsigned hardware, int index, unsigned flags, const Bytes& attributes) {
+  ifinfomsg body{};
+  body.ifi_type = static_cast<unsigned short>(hardware);
+  body.ifi_index = index;
+  body.ifi_flags = flags;
+  return message(RTM_NEWLINK, bytes_of(body) + attributes);
+}
+
+Bytes can_info(std::uint32_t bit_rate) {
+  can_bittiming timing{};
+  timing.bitrate = bit_rate;
+  return attribute(IFLA_LINKINFO | NLA_F_NESTED,
+                   attribute(IFLA_INFO_KIND, text("can")) +
+                       attribute(IFLA_INFO_DATA, attribute(IFLA_CAN_BITTIMING, bytes_of(timing))));
+}
+
+}  // namespace
+
+TEST_CASE("only the CAN interfaces are read from the kernel's list") {
+  std::vector<CanInterface> found;
+  const Bytes datagram = link(ARPHRD_LOOPBACK, 1, IFF_UP, attribute(IFLA_IFNAME, text("lo"))) +
+                         link(transport::can_hardware_type, 4, IFF_UP | IFF_RUNNING,
+                              attribute(IFLA_IFNAME, text("can0")) + can_info(500'000)) +
+                         link(transport::can_hardware_type, 5, 0,
+                              attribute(IFLA_IFNAME, text("vcan12")) +
+                                  attribute(IFLA_LINKINFO, attribute(IFLA_INFO_KIND, text("vcan"))));
+  CHECK(transport::detail::read_links(datagram, found) == LinkDump::more);
+  REQUIRE(found.size() == 2);
+  CHECK(found[0] == CanInterface{"can0", 4, true, "can", 500'000});
+  CHECK(found[1] == CanInterface{"vcan12", 5, false, "vcan", 0});
+  CHECK(transport::detail::read_links(message(NLMSG_DONE, bytes_of(0)), found) == LinkDump::done);
+  CHECK(transport::detail::read_links(message(NLMSG_ERROR, bytes_of(-1)), found) == LinkDump::failed);
+  CHECK(found.size() == 2);
+}
+
+TEST_CASE("a broken answer about interfaces is refused at every length") {
+  const Bytes whole =
+      link(transport::can_hardware_type, 4, IFF_UP, attribute(IFLA_IFNAME, text("can0")) + can_info(500'000));
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    const Bytes cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
+    std::vector<CanInterface> found;
+    // Less than a header is no message; more is one that claims to be longer than it is.
+    CHECK(transport::detail::read_links(cut, found) ==
+          (size < sizeof(nlmsghdr) ? LinkDump::more : LinkDump::failed));
+    CHECK(found.empty());
+  }
+  nlmsghdr endless{};  // a length of zero would never advance
+  std::vector<CanInterface> found;
+  CHECK(transport::detail::read_links(bytes_of(endless), found) == LinkDump::failed);
+  rtattr too_short{};
+  too_short.rta_len = 3;
+  CHECK(transport::detail::find_attribute(bytes_of(too_short), 0).empty());
+}
+
+TEST_CASE("the kernel answers, with or without CAN") {
+  const auto found = transport::query_can_interfaces();
+  REQUIRE(found);
+  CHECK(transport::can_interfaces() == *found);
+  for (const CanInterface& interface : *found) {
+    CHECK_FALSE(interface.name.empty());
+    CHECK(interface.index > 0);
+  }
+  if (const auto support = transport::can_support(); !support) {
+    CHECK(found->empty());
+    CHECK_FALSE(support.error.remedy.empty());
+  }
+}
+
+TEST_CASE("why a CAN socket cannot be had") {
+  using transport::can_socket_failure;
+  CHECK_THAT(can_socket_failure(EAFNOSUPPORT).what, Catch::StartsWith("this kernel has no CAN"));
+  CHECK_THAT(can_socket_failure(EAFNOSUPPORT).remedy,
+             Catch::Contains("modprobe can_raw") && Catch::Contains("--bus sim"));
+  CHECK_THAT(can_socket_failure(EPROTONOSUPPORT).what, Catch::Contains("no raw sockets"));
+  CHECK_THAT(can_socket_failure(EPERM).what, Catch::StartsWith("not allowed"));
+  CHECK_THAT(can_socket_failure(EMFILE).what, Catch::Contains(std::strerror(EMFILE)));
+}

@@ -1,0 +1,141 @@
+#include "ocm/transport/virtual_bus_protocol.hpp"
+
+#include <fstream>
+
+#include <catch2/catch.hpp>
+
+#include "unit/transport/virtual_bus_setup.hpp"
+
+using namespace ocm;
+using namespace ocm::test;
+
+namespace {
+
+static_assert(sizeof(vb::Hello) == vb::record_size);
+static_assert(sizeof(vb::FrameRecord) == vb::record_size);
+static_assert(sizeof(vb::Count) == vb::record_size);
+static_assert(sizeof(vb::FilterRecord) == vb::record_size);
+static_assert(sizeof(vb::Goodbye) == vb::record_size);
+
+constexpr can::Frame request{.id = 0x205, .dlc = 4, .data = {0x01, 0x84, 0x03, 0x02}};
+static_assert(*vb::decode(vb::from_record<vb::FrameRecord>(vb::to_record(request))) == request);
+static_assert(vb::type_of(vb::to_record(request)) == vb::Type::frame);
+
+constexpr vb::Reason reason(vb::FrameRecord record) {
+  return vb::decode(record).error.reason;
+}
+static_assert(reason({.dlc = 200}) == vb::Reason::bad_dlc);
+static_assert(reason({.id = 0x800}) == vb::Reason::bad_identifier);
+static_assert(reason({.format = 1, .id = 0x2000'0000}) == vb::Reason::bad_identifier);
+static_assert(reason({.format = 5}) == vb::Reason::bad_format);
+static_assert(vb::decode({.dlc = 200}).error.detail == 200);
+
+// What lies behind the data is no part of a frame, and a remote frame has none.
+static_assert(*vb::decode({.dlc = 1, .data = {1, 2, 3}}) == can::Frame{.dlc = 1, .data = {1}});
+static_assert(*vb::decode({.format = 2, .dlc = 3, .data = {1, 2, 3}}) ==
+              can::Frame{.dlc = 3, .format = can::Format::base_remote});
+
+/// Sets a variable of the environment, and sets it back.
+class Environment {
+ public:
+  Environment(const char* name, const char* value) : name_(name) {
+    if (const char* const old = std::getenv(name)) old_ = old;
+    set(value);
+  }
+  Environment(const Environment&) = delete;
+  Environment& operator=(const Environment&) = delete;
+  ~Environment() { set(old_ ? old_->c_str() : nullptr); }
+
+ private:
+  void set(const char* value) const {
+    if (value == nullptr)
+      ::unsetenv(name_);
+    else
+      ::setenv(name_, value, 1);
+  }
+  const char* name_;
+  std::optional<std::string> old_;
+};
+
+}  // namespace
+
+TEST_CASE("the socket lies in the user's runtime directory, or else in one in /tmp") {
+  const TemporaryDirectory directory;
+  const std::string fallback = "/tmp/ocm-" + std::to_string(::geteuid()) + "/sim.sock";
+  {
+    const Environment set{"XDG_RUNTIME_DIR", directory.path().c_str()};
+    CHECK(vb::default_path() == directory.path() + "/ocm/sim.sock");
+  }
+  for (const char* value :
+       {static_cast<const char*>(nullptr), "", "relative", "/nowhere/at/all", "/dev/null"}) {
+    const Environment set{"XDG_RUNTIME_DIR", value};
+    CHECK(vb::default_path() == fallback);
+  }
+}
+
+TEST_CASE("only a directory that is ours and closed to others is trusted") {
+  const TemporaryDirectory parent;
+  const std::string directory = parent.path() + "/ocm";
+  CHECK_THAT(vb::check_directory(directory)->what,
+             Catch::Contains(directory) && Catch::Contains("No such file"));
+  REQUIRE(::mkdir(directory.c_str(), 0700) == 0);
+  CHECK_FALSE(vb::check_directory(directory));
+  for (const mode_t mode : {0701U, 0720U, 0777U}) {
+    REQUIRE(::chmod(directory.c_str(), mode) == 0);
+    const auto problem = vb::check_directory(directory);
+    REQUIRE(problem);
+    CHECK_THAT(problem->what, Catch::Contains("open to other users"));
+    CHECK(problem->remedy == "chmod 700 " + directory);
+  }
+  const std::string link = parent.path() + "/link";
+  REQUIRE(::symlink(directory.c_str(), link.c_str()) == 0);
+  CHECK_THAT(vb::check_directory(link)->what, Catch::Contains("no directory"));
+  if (::geteuid() == 0) {  // only root can give a directory away
+    REQUIRE(::chmod(directory.c_str(), 0700) == 0);
+    REQUIRE(::chown(directory.c_str(), 65534, 65534) == 0);
+    CHECK_THAT(vb::check_directory(directory)->what, Catch::Contains("another user (uid 65534)"));
+  }
+}
+
+TEST_CASE("the default directory is made for the user alone, and the socket too") {
+  const TemporaryDirectory runtime;
+  const Environment set{"XDG_RUNTIME_DIR", runtime.path().c_str()};
+  const mode_t mask = ::umask(0);  // even when the user lets everybody in elsewhere
+  const auto server = transport::VirtualBusServer::open();
+  ::umask(mask);
+  INFO(server.error.what);
+  REQUIRE(server);
+  struct stat status {};
+  REQUIRE(::stat((runtime.path() + "/ocm").c_str(), &status) == 0);
+  CHECK((status.st_mode & 07777) == 0700);
+  REQUIRE(::stat((*server)->path().c_str(), &status) == 0);
+  CHECK((status.st_mode & 07777) == 0600);
+  CHECK(transport::VirtualBus::running());
+
+  const TemporaryDirectory other;
+  const Environment elsewhere{"XDG_RUNTIME_DIR", other.path().c_str()};
+  CHECK_FALSE(transport::VirtualBus::running());
+  REQUIRE(::mkdir((other.path() + "/ocm").c_str(), 0700) == 0);
+  REQUIRE(::chmod((other.path() + "/ocm").c_str(), 0755) == 0);
+  CHECK_THAT(transport::VirtualBusServer::open().error.what, Catch::Contains("open to other users"));
+}
+
+TEST_CASE("a path that no socket can have") {
+  CHECK(vb::to_address("/tmp/" + std::string(102, 'x')).ok());
+  const auto refused = vb::to_address("/tmp/" + std::string(103, 'x'));
+  CHECK_THAT(refused.error.what, Catch::Contains("108 bytes"));
+  CHECK_THAT(refused.error.remedy, Catch::Contains("107"));
+  CHECK_FALSE(vb::to_address(""));
+  CHECK_FALSE(vb::to_address(std::string("a\0b", 3)));
+}
+
+TEST_CASE("every reason has words of its own") {
+  std::vector<std::string> words;
+  for (unsigned i = 0; i <= static_cast<unsigned>(vb::Reason::bad_filters); ++i)
+    words.push_back(vb::describe({.reason = static_cast<vb::Reason>(i), .detail = 200}));
+  CHECK(words[static_cast<unsigned>(vb::Reason::bad_dlc)] == "it sent a frame with DLC 200; at most 8");
+  CHECK_THAT(words[static_cast<unsigned>(vb::Reason::bad_identifier)], Catch::Contains("0x000000C8"));
+  std::sort(words.begin(), words.end());
+  CHECK(std::unique(words.begin(), words.end()) == words.end());
+  CHECK(vb::describe({.reason = static_cast<vb::Reason>(99)}) == "reason 99");
+}

@@ -1,0 +1,481 @@
+#include "ocm/transport/virtual_bus_server.hpp"
+
+#include <fstream>
+#include <random>
+#include <sys/wait.h>
+
+#include <catch2/catch.hpp>
+
+#include "unit/transport/virtual_bus_setup.hpp"
+
+using namespace ocm;
+using namespace ocm::test;
+using transport::VirtualBusServer;
+
+namespace {
+
+/// What a child process answers: an exit code. It must not return into the test.
+template <class Work>
+int in_child(Work&& work) {
+  const pid_t child = ::fork();
+  REQUIRE(child >= 0);
+  if (child == 0) ::_exit(work());
+  int status = 0;
+  REQUIRE(::waitpid(child, &status, 0) == child);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+}  // namespace
+
+TEST_CASE("a second server is refused, with the path and the process of the first") {
+  VirtualBusSetup setup;
+  const auto second = VirtualBusServer::open({.path = setup.path()});
+  REQUIRE_FALSE(second);
+  CHECK_THAT(second.error.what, Catch::Contains("already runs on '" + setup.path() + "'") &&
+                                    Catch::Contains("process " + std::to_string(::getpid())));
+  CHECK_THAT(second.error.remedy,
+             Catch::Contains("--bus sim") && Catch::Contains("kill " + std::to_string(::getpid())));
+  // And the first one did not mind.
+  const auto client = setup.join();
+  CHECK(setup.server->counters().welcomed == 1);
+  CHECK(setup.server->counters().died == 0);
+}
+
+TEST_CASE("the socket of a dead server is replaced, and nothing else is") {
+  const TemporaryDirectory directory;
+  const std::string path = directory.path() + "/sim.sock";
+  CHECK(in_child([&] {
+          const auto server = VirtualBusServer::open({.path = path});
+          ::_exit(server ? 0 : 1);  // at once, without cleaning up
+          return 2;
+        }) == 0);
+  CHECK(std::filesystem::is_socket(path));
+  {
+    const auto server = VirtualBusServer::open({.path = path});
+    INFO(server.error.what);
+    CHECK(server);
+    CHECK(transport::VirtualBus::running(path));
+  }
+  CHECK_FALSE(std::filesystem::exists(path));
+
+  std::ofstream{path} << "precious";
+  const auto refused = VirtualBusServer::open({.path = path});
+  CHECK_THAT(refused.error.what, Catch::Contains("no socket") && Catch::Contains(path));
+  CHECK(std::filesystem::file_size(path) == 8);
+  std::filesystem::remove(path);
+
+  // A socket of another kind, on which somebody listens.
+  const auto address = vb::to_address(path);
+  const transport::Descriptor stream{::socket(AF_UNIX, SOCK_STREAM, 0)};
+  REQUIRE(::bind(stream.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) == 0);
+  REQUIRE(::listen(stream.get(), 1) == 0);
+  CHECK_THAT(VirtualBusServer::open({.path = path}).error.what, Catch::Contains("another program listens"));
+}
+
+TEST_CASE("a server removes its own socket only") {
+  const TemporaryDirectory directory;
+  const std::string path = directory.path() + "/sim.sock";
+  auto first = VirtualBusServer::open({.path = path});
+  REQUIRE(first);
+  std::filesystem::remove(path);
+  const auto second = VirtualBusServer::open({.path = path});
+  REQUIRE(second);
+  first.value.reset();
+  CHECK(transport::VirtualBus::running(path));
+}
+
+TEST_CASE("options and places that cannot be served") {
+  CHECK_THAT(VirtualBusServer::open({.path = "/nowhere/at/all"}).error.what,
+             Catch::Contains("'/nowhere/at'"));
+  CHECK_THAT(VirtualBusServer::open({.path = "/tmp/" + std::string(200, 'x')}).error.what,
+             Catch::Contains("205 bytes"));
+  const TemporaryDirectory directory;
+  for (const std::uint32_t bit_rate : {0U, 1'000'000'001U})
+    CHECK_THAT(VirtualBusServer::open({.path = directory.path() + "/s", .bit_rate = bit_rate}).error.what,
+               Catch::Contains(std::to_string(bit_rate) + " bit/s"));
+  CHECK(std::filesystem::is_empty(directory.path()));
+
+  // Somebody else starts a server there, and does not come to an end.
+  const transport::Descriptor lock{::open(directory.path().c_str(), O_RDONLY | O_DIRECTORY)};
+  REQUIRE(::flock(lock.get(), LOCK_EX) == 0);
+  CHECK_THAT(VirtualBusServer::open({.path = directory.path() + "/s", .patience = 20ms}).error.what,
+             Catch::Contains("lock"));
+  REQUIRE(::flock(lock.get(), LOCK_UN) == 0);
+  CHECK(VirtualBusServer::open({.path = directory.path() + "/s", .patience = 0ns}));
+}
+
+TEST_CASE("programs of another user are turned away, on both sides") {
+  if (::geteuid() != 0) return;  // it takes root to become somebody else
+  VirtualBusSetup setup;
+  REQUIRE(::chmod(setup.directory.path().c_str(), 0755) == 0);
+  constexpr uid_t nobody = 65534;
+  // The mode of the socket keeps them out.
+  CHECK(in_child([&] {
+          if (::setuid(nobody) != 0) return 10;
+          const auto bus = transport::VirtualBus::open(setup.path());
+          return !bus && bus.error.what.find("not allowed") == 0 ? 0 : 1;
+        }) == 0);
+  REQUIRE(::chmod(setup.path().c_str(), 0666) == 0);
+  // Without it a client sees whose server it is,
+  CHECK(in_child([&] {
+          if (::setuid(nobody) != 0) return 10;
+          const auto bus = transport::VirtualBus::open(setup.path());
+          return !bus && bus.error.what.find("another user (uid 0)") != std::string::npos ? 0 : 1;
+        }) == 0);
+  setup.poll();
+  // and a server whose client.
+  CHECK(setup.server->counters().turned_away == 1);
+  REQUIRE(setup.reports.size() == 1);
+  CHECK_THAT(setup.reports[0], Catch::Contains("another user (uid 65534)"));
+  CHECK(setup.server->clients() == 0);
+}
+
+TEST_CASE("a client of another version is told which one is spoken here") {
+  VirtualBusSetup setup;
+  RawClient client{setup.path()};
+  client.say(vb::Hello{.version = 7});
+  setup.poll();
+  const vb::Goodbye goodbye = client.dismissal();
+  CHECK(goodbye.reason == vb::Reason::bad_version);
+  CHECK(goodbye.detail == 7);
+  CHECK(goodbye.version == vb::version);
+  CHECK(setup.server->counters().turned_away == 1);
+  CHECK(setup.server->counters().welcomed == 0);
+}
+
+TEST_CASE("garbage disconnects who sends it, and nobody else") {
+  VirtualBusSetup setup;
+  const auto good = setup.join();
+  const auto dismiss = [&](auto&& talk) {
+    RawClient client{setup.path()};
+    client.greet();
+    setup.poll();
+    talk(client);
+    setup.poll();
+    return client.dismissal();
+  };
+  const auto garbage = [&](auto content) { return dismiss([&](RawClient& client) { client.say(content); }); };
+  using vb::Reason;
+  CHECK(garbage(vb::FrameRecord{.dlc = 200}).reason == Reason::bad_dlc);
+  CHECK(garbage(vb::FrameRecord{.id = 0x800}).reason == Reason::bad_identifier);
+  CHECK(garbage(vb::FrameRecord{.format = 9}).reason == Reason::bad_format);
+  CHECK(garbage(vb::FrameRecord{.format = 4, .dlc = 8}).reason == Reason::bad_format);  // an error frame
+  CHECK(garbage(vb::Hello{}).reason == Reason::unknown_record);
+  CHECK(garbage(vb::Count{.type = vb::Type::credit, .count = 1}).reason == Reason::unknown_record);
+  CHECK(garbage(vb::Count{.type = static_cast<vb::Type>(77)}).detail == 77);
+  CHECK(garbage(vb::FilterRecord{}).reason == Reason::bad_filters);
+  CHECK(garbage(vb::Count{.type = vb::Type::filters, .count = 513}).detail == 513);
+  for (const std::size_t size : {std::size_t{1}, std::size_t{31}, std::size_t{33}, vb::max_message + 32}) {
+    const auto goodbye = dismiss([&](RawClient& client) {
+      const std::vector<std::byte> bytes(size);
+      client.send(bytes.data(), bytes.size());
+    });
+    CHECK(goodbye.reason == Reason::bad_size);
+  }
+  CHECK(setup.server->counters().misbehaved == 13);
+  CHECK(setup.server->counters().welcomed == 14);
+
+  // Before the greeting too.
+  RawClient stranger{setup.path()};
+  stranger.say(frame("205#01"));
+  setup.poll();
+  CHECK(stranger.dismissal().reason == Reason::no_hello);
+  CHECK(setup.server->counters().turned_away == 1);
+  CHECK(setup.reports.size() == 14);
+  CHECK_THAT(setup.reports[0], Catch::Equals("a client (process " + std::to_string(::getpid()) +
+                                             ") was disconnected: it sent a frame with DLC 200; at most 8"));
+
+  CHECK(setup.server->clients() == 1);
+  setup.send("605#00");
+  setup.run();
+  CHECK(received(*good) == Texts{"605#00"});
+  CHECK(*good->send(frame("205#01")));
+  setup.run();
+  CHECK(setup.on_bus == Texts{"605#00", "205#01"});
+}
+
+TEST_CASE("frames before the garbage in the same message are withdrawn with their sender") {
+  VirtualBusSetup setup;
+  RawClient client{setup.path()};
+  client.greet();
+  const std::array<vb::Record, 3> message{vb::to_record(frame("100#")), vb::to_record(frame("101#")),
+                                          vb::to_record(vb::FrameRecord{.dlc = 9})};
+  client.send(message.data(), sizeof message);
+  setup.run();
+  CHECK(setup.on_bus.empty());
+  CHECK(setup.server->counters().withdrawn == 2);
+  CHECK(setup.server->counters().misbehaved == 1);
+}
+
+TEST_CASE("who sends more than it has credit for is disconnected") {
+  VirtualBusSetup setup{{.transmit_queue = 4}};
+  RawClient client{setup.path()};
+  client.greet();
+  for (int i = 0; i < 5; ++i) client.say(frame("100#"));
+  setup.poll();
+  CHECK(client.dismissal().reason == vb::Reason::no_credit);
+  CHECK(setup.server->counters().withdrawn == 4);
+}
+
+TEST_CASE("a client that dies loses what waits, not what is on the bus, and harms nobody") {
+  VirtualBusSetup setup;
+  const auto listener = setup.join();
+  RawClient client{setup.path()};
+  client.greet();
+  for (const char* text : {"100#01", "100#02", "100#03"}) client.say(frame(text));
+  setup.poll();
+  setup.now += 10us;  // 100#01 is on the bus
+  setup.poll();
+  client.say(frame("100#04"));
+  client.close();
+  setup.send("605#");
+  setup.run();
+  CHECK(setup.on_bus == Texts{"100#01", "605#"});
+  CHECK(received(*listener) == Texts{"100#01", "605#"});
+  CHECK(setup.server->counters().died == 1);
+  CHECK(setup.server->counters().withdrawn == 3);
+  CHECK(setup.server->clients() == 1);
+}
+
+TEST_CASE("a client may ask for nothing but whether a server runs") {
+  VirtualBusSetup setup;
+  CHECK(transport::VirtualBus::running(setup.path()));
+  setup.poll();
+  CHECK(setup.server->clients() == 0);
+  CHECK(setup.server->counters().died == 0);
+  CHECK(setup.reports.empty());
+}
+
+TEST_CASE("a slow client is told how much it missed, and stalls nobody") {
+  VirtualBusSetup setup{{.output_queue = 8}};
+  const auto slow = setup.join();
+  const auto fast = setup.join();
+  constexpr std::size_t frames = 2000;
+  std::size_t fast_received = 0;
+  for (std::size_t i = 0; i < frames; ++i) {
+    setup.send("605#0001020304050607");
+    setup.run();
+    fast_received += received(*fast).size();
+  }
+  CHECK(fast_received == frames);
+  CHECK(fast->counters().lost == 0);
+  const std::uint64_t dropped = setup.server->counters().overruns;
+  REQUIRE(dropped > 0);
+
+  // It wakes up and reads all there is; the notice comes as soon as there is room for it.
+  std::size_t slow_received = received(*slow).size();
+  setup.poll();
+  slow_received += received(*slow).size();
+  CHECK(slow->counters().lost == dropped);
+  CHECK(slow_received + dropped == frames);
+  CHECK(slow->counters().received == slow_received);
+
+  setup.send("606#");
+  setup.run();
+  CHECK(received(*slow) == Texts{"606#"});
+  CHECK(setup.server->counters().overruns == dropped);
+}
+
+TEST_CASE("a client that never reads can go on sending while it has credit, and gets it back later") {
+  VirtualBusSetup setup{{.transmit_queue = 2, .output_queue = 4}};
+  const auto deaf = setup.join();
+  for (int i = 0; i < 2000; ++i) setup.send("605#00");
+  setup.run();
+  REQUIRE(setup.server->counters().overruns > 0);  // its socket and its queue are full
+  CHECK(*deaf->send(frame("100#01")));
+  CHECK(*deaf->send(frame("100#02")));
+  setup.run();
+  // Looking for credit empties its socket, and the server then has room to give it.
+  CHECK_FALSE(*deaf->send(frame("100#03")));
+  setup.poll();
+  CHECK(*deaf->send(frame("100#03")));
+  setup.run();
+  CHECK(setup.on_bus.back() == "100#03");
+  CHECK(received(*deaf).size() + deaf->counters().lost == 2000);
+}
+
+TEST_CASE("no file descriptor left: the client is told, counted, and the next one gets in") {
+  VirtualBusSetup setup{{.raise_descriptor_limit = false}};
+  const auto good = setup.join();
+  RawClient unlucky{setup.path()};
+  unlucky.greet();
+  rlimit limit{};
+  REQUIRE(::getrlimit(RLIMIT_NOFILE, &limit) == 0);
+  rlimit tight = limit;
+  {
+    const transport::Descriptor next{::open("/dev/null", O_RDONLY)};  // the lowest free number
+    tight.rlim_cur = static_cast<rlim_t>(next.get());
+  }
+  REQUIRE(::setrlimit(RLIMIT_NOFILE, &tight) == 0);
+  setup.poll();
+  REQUIRE(::setrlimit(RLIMIT_NOFILE, &limit) == 0);
+  CHECK(unlucky.dismissal().reason == vb::Reason::full);
+  CHECK(setup.server->counters().accept_failures == 1);
+  CHECK(setup.server->clients() == 1);
+
+  const auto next = setup.join();
+  CHECK(*next->send(frame("205#01")));
+  setup.run();
+  CHECK(received(*good) == Texts{"205#01"});
+}
+
+TEST_CASE(
+    "not even a descriptor to turn clients away: the server looks again later, and keeps quiet till then") {
+  VirtualBusSetup setup{{.raise_descriptor_limit = false}};
+  const auto good = setup.join();
+  RawClient waiting{setup.path()};
+  waiting.greet();
+  rlimit limit{};
+  REQUIRE(::getrlimit(RLIMIT_NOFILE, &limit) == 0);
+  rlimit tight = limit;
+  tight.rlim_cur = 3;
+  REQUIRE(::setrlimit(RLIMIT_NOFILE, &tight) == 0);
+  setup.poll();
+  REQUIRE(::setrlimit(RLIMIT_NOFILE, &limit) == 0);
+  CHECK(setup.server->counters().accept_failures == 1);
+  CHECK_FALSE(readable(setup.server->descriptor()));
+  CHECK(setup.server->next_event() == setup.now + 100ms);
+
+  setup.send("605#");
+  setup.run();
+  CHECK(received(*good) == Texts{"605#"});
+  CHECK(setup.server->clients() == 1);
+  setup.now = setup.server->next_event();
+  setup.poll();
+  CHECK(setup.server->clients() == 2);
+  CHECK(waiting.heard().size() == 1);
+  CHECK(setup.server->next_event() == base::never);
+}
+
+TEST_CASE("the descriptor limit is raised as far as the process may") {
+  rlimit limit{};
+  REQUIRE(::getrlimit(RLIMIT_NOFILE, &limit) == 0);
+  rlimit low = limit;
+  low.rlim_cur = 256;
+  REQUIRE(::setrlimit(RLIMIT_NOFILE, &low) == 0);
+  VirtualBusSetup setup;
+  rlimit now{};
+  REQUIRE(::getrlimit(RLIMIT_NOFILE, &now) == 0);
+  CHECK(now.rlim_cur == limit.rlim_max);
+  REQUIRE(::setrlimit(RLIMIT_NOFILE, &limit) == 0);
+}
+
+TEST_CASE("a hundred clients, each a node of its own") {
+  VirtualBusSetup setup;
+  std::vector<std::unique_ptr<transport::VirtualBus>> clients;
+  for (int i = 0; i < 100; ++i) clients.push_back(setup.join());
+  // All within one bit time, the least urgent first: the bus puts them into order.
+  Texts expected;
+  for (unsigned i = 0; i < 100; ++i) {
+    CHECK(*clients[i]->send({.id = 0x100 + 99 - i}));
+    expected.emplace_back(can::to_text({.id = 0x100 + i}).view());
+  }
+  setup.run();
+  CHECK(setup.on_bus == expected);
+  for (unsigned i = 0; i < 100; ++i) {
+    Texts heard = expected;
+    heard.erase(heard.begin() + (99 - i));
+    CHECK(received(*clients[i]) == heard);
+    CHECK(clients[i]->counters().lost == 0);
+  }
+  clients.clear();
+  setup.poll();
+  CHECK(setup.server->clients() == 0);
+  CHECK(setup.server->counters().left == 100);
+}
+
+TEST_CASE("time stamps are those of the bus, in the owner's Unix time") {
+  VirtualBusSetup setup{{.epoch = base::Time{1s}, .to_unix_time = 1'700'000'000s - 1s}};
+  const auto client = setup.join();
+  setup.now += 1us;
+  setup.send("605#00D20000");
+  setup.run();
+  const auto one = client->receive(0ns);
+  REQUIRE(one);
+  // Handed over in the first bit, sent from the next boundary on, 2 us a bit.
+  CHECK(one->time.time_since_epoch() == 1'700'000'000s + (1 + can::frame_bits(frame("605#00D20000"))) * 2us);
+}
+
+TEST_CASE("an error frame of the owner reaches every client, whatever its filters") {
+  VirtualBusSetup setup;
+  const auto client = setup.join();
+  const std::array filters{can::Filter{0x100, 0x7FF}};
+  CHECK(client->subscribe(filters));
+  setup.poll();
+  const can::Frame bus_off{.id = 0x40, .dlc = 8, .format = can::Format::error};
+  CHECK(setup.server->report_error(bus_off, setup.now));
+  CHECK(setup.server->report_error(frame("605#"), setup.now).error == base::Error::bad_identifier);
+  setup.poll();
+  const auto one = client->receive(0ns);
+  REQUIRE(one);
+  CHECK(one->frame == bus_off);
+  CHECK(client->counters().error_frames == 1);
+  CHECK(setup.on_bus.empty());
+}
+
+TEST_CASE("next_event is what the bus does next") {
+  VirtualBusSetup setup;
+  CHECK(setup.server->next_event() == base::never);
+  setup.send("605#");
+  CHECK(setup.server->next_event() == setup.server->arbiter().next_event());
+  setup.server->advance(setup.server->next_event(), [](const simulation::Delivery&) {});
+  CHECK(setup.server->next_event() == base::never);
+  CHECK(setup.server->arbiter().totals().frames == 1);
+}
+
+TEST_CASE("whatever clients send, the others go on") {
+  VirtualBusSetup setup;
+  const auto sender = setup.join();
+  const auto listener = setup.join();
+  std::mt19937 random{20260101};
+  const auto below = [&](std::uint32_t bound) { return static_cast<std::uint32_t>(random() % bound); };
+  std::vector<std::unique_ptr<RawClient>> wild;
+  for (unsigned i = 0; i < 5000; ++i) {
+    if (wild.size() < 5) {
+      wild.push_back(std::make_unique<RawClient>(setup.path()));
+      if (below(8) != 0) wild.back()->greet();
+    }
+    const std::size_t one = below(static_cast<std::uint32_t>(wild.size()));
+    RawClient& client = *wild[one];
+    // Mostly records that are nearly right, at times anything at all.
+    std::vector<vb::Record> records(1 + below(4));
+    for (vb::Record& record : records) {
+      vb::FrameRecord content{.format = static_cast<std::uint8_t>(below(4)),
+                              .dlc = static_cast<std::uint8_t>(below(9)),
+                              .id = below(0x700) + 0x100};
+      record = vb::to_record(content);
+      record[0] = static_cast<std::byte>(below(4) == 0 ? below(10) : 2);
+      if (below(4) == 0) record[below(vb::record_size)] = static_cast<std::byte>(below(256));
+    }
+    const std::size_t whole = records.size() * vb::record_size;
+    client.send(records.data(), below(10) == 0 ? below(static_cast<std::uint32_t>(whole)) : whole);
+    if (below(20) == 0) client.heard();
+    if (below(10) == 0) wild.erase(wild.begin() + static_cast<std::ptrdiff_t>(one));
+
+    if (i % 10 == 0) {
+      CHECK(*sender->send({.id = 0, .dlc = 2, .data = {static_cast<std::uint8_t>(i / 10), 0}}));
+      setup.run();
+      bool heard = false;
+      while (const auto frame = listener->receive(0ns))
+        heard |= frame->frame.id == 0 && frame->frame.dlc == 2 &&
+                 frame->frame.data[0] == static_cast<std::uint8_t>(i / 10);
+      REQUIRE(heard);
+      received(*sender);
+    }
+    // A client that was hung up on is replaced.
+    std::erase_if(wild, [](const auto& other) {
+      std::byte peek{};
+      return ::recv(other->descriptor(), &peek, 1, MSG_PEEK | MSG_DONTWAIT) == 0;
+    });
+  }
+  wild.clear();
+  setup.run();
+  const auto& counters = setup.server->counters();
+  CHECK(setup.server->clients() == 2);
+  CHECK(counters.misbehaved > 100);
+  CHECK(counters.died > 50);
+  CHECK(counters.left > 10);
+  CHECK(counters.welcomed == counters.misbehaved + counters.died + counters.left + 2);
+  CHECK(sender->counters().sent == 500);
+  CHECK(listener->counters().lost == 0);
+}
