@@ -351,7 +351,8 @@ def quotes_are_the_examples(tree):
             yield f"{page}:{line}: snippet '{match.group(1)}' is announced, and no code follows"
     quoted = re.compile(r"(?m)^(?!<!-- snippet)(.*)\n+```cpp$")
     for line, match in tree.find("README.md", quoted) if "README.md" in tree.known else ():
-        yield f"README.md:{line + match.group(0).count(chr(10))}: C++ in the README is quoted: put '<!-- snippet: NAME -->' above it"
+        line += match.group(0).count("\n")
+        yield f"README.md:{line}: C++ in the README is quoted: put '<!-- snippet: NAME -->' above it"
 
 
 RULES = (floors_have_rows, includes_go_down, layers_are_apart, no_circles, namespace_is_folder, no_banned_headers,

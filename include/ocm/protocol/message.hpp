@@ -20,6 +20,7 @@ template <TopicType T>
 template <TopicType T>
 [[nodiscard]] constexpr can::Frame sample_frame(const T& sample, Priority priority = default_priority,
                                                 std::size_t index = 0) noexcept {
+  static_assert(T::kind == Kind::sensor, "an actuator sends no samples");
   return {Identifier{Direction::sensor, priority, frame_id<T>(index)}.encode(), T::frames[index].dlc,
           sample.encode(index)};
 }
@@ -28,6 +29,7 @@ template <TopicType T>
 template <TopicType T>
 [[nodiscard]] constexpr can::Frame command(const T& set_point, Priority priority = default_priority,
                                            std::uint8_t instance = 1) noexcept {
+  static_assert(T::kind == Kind::actuator, "only an actuator takes set points");
   static_assert(T::frames.size() == 1, "a set point travels in one frame");
   return {Identifier{Direction::command, priority, frame_id<T>(0, instance)}.encode(), T::frames[0].dlc,
           set_point.encode(0)};

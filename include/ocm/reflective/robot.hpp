@@ -23,27 +23,34 @@
 
 namespace ocm::reflective {
 
+/// A generated topic that can be asked for samples.
+template <class T>
+concept SensorType = protocol::TopicType<T> && T::kind == protocol::Kind::sensor;
+/// A generated topic that takes set points.
+template <class T>
+concept ActuatorType = protocol::TopicType<T> && T::kind == protocol::Kind::actuator;
+
 template <can::Bus Bus>
 class Robot {
  public:
   Robot(Bus& bus, const protocol::Catalogue& catalogue) : bus_(&bus), receiver_(catalogue) {}
 
-  template <protocol::TopicType T>
+  template <SensorType T>
   base::Status publish(base::Duration period, protocol::Priority priority = protocol::default_priority) {
     const auto frame = protocol::publish_every(T::id, period, priority);
     if (!frame) return frame.error;
     return send(*frame);
   }
-  template <protocol::TopicType T>
+  template <SensorType T>
   base::Status once(protocol::Priority priority = protocol::default_priority) {
     return send(protocol::once(T::id, priority));
   }
-  template <protocol::TopicType T>
+  template <SensorType T>
   base::Status stop() {
     return send(protocol::stop(T::id));
   }
   /// `instance` counts from 1, for actuators of which there are several.
-  template <protocol::TopicType T>
+  template <ActuatorType T>
   base::Status set(const T& set_point, std::uint8_t instance = 1,
                    protocol::Priority priority = protocol::default_priority) {
     if (instance < 1 || instance > T::instances) return base::Error::out_of_range;

@@ -129,7 +129,8 @@ class VirtualBusServer {
   [[nodiscard]] const std::string& path() const noexcept { return options_.path; }
   /// Readable when a client wants something. An epoll descriptor; owned by the server.
   [[nodiscard]] int descriptor() const noexcept { return events_.get(); }
-  /// When to call `poll` at the latest: the end of the frame on the bus. base::never when it is idle.
+  /// When to call `poll` at the latest: at the end of the frame on the bus. base::never when it is idle.
+  /// Whatever it is, it lies in the future after `advance` to that time.
   [[nodiscard]] base::Time next_event() const noexcept {
     return std::min(arbiter_.next_event(), accept_again_);
   }
@@ -145,6 +146,7 @@ class VirtualBusServer {
   /// own: advance to each of these, and `poll` at the end.
   template <class Deliver>
   void advance(base::Time now, Deliver&& deliver) {
+    if (accept_again_ <= now) accept_again_ = base::never;  // at the next `poll`
     arbiter_.advance(now, [&](const simulation::Delivery& delivery) {
       distribute(delivery);
       deliver(delivery);
@@ -367,7 +369,7 @@ class VirtualBusServer {
   // -------------------------------------------------------------------------------------
 
   void serve(base::Time now) {
-    if (accept_again_ <= now) accept(now);
+    if (paused_ && accept_again_ == base::never) accept(now);
     ready_.resize(clients_.size() + 1);
     const int count = ::epoll_wait(events_.get(), ready_.data(), static_cast<int>(ready_.size()), 0);
     bool knocking = false;
@@ -384,7 +386,7 @@ class VirtualBusServer {
       }
       if ((event.events & ~static_cast<std::uint32_t>(EPOLLOUT)) != 0) read(*client, now);
     }
-    if (knocking && accept_again_ == base::never) accept(now);
+    if (knocking && !paused_) accept(now);
     for (auto& client : clients_)
       if (!client->gone) flush(*client);
     std::erase_if(clients_, [](const auto& client) { return client->gone; });
@@ -517,19 +519,18 @@ class VirtualBusServer {
     ::epoll_ctl(events_.get(), EPOLL_CTL_MOD, client.socket.get(), &event);
   }
 
-  void listen_for_clients(bool on) noexcept {
+  void pause_accepting(bool on) noexcept {
+    if (on == paused_) return;
+    paused_ = on;
     epoll_event event{};
-    event.events = on ? EPOLLIN : 0U;
+    event.events = on ? 0U : EPOLLIN;
     event.data.ptr = nullptr;
     ::epoll_ctl(events_.get(), EPOLL_CTL_MOD, listener_.get(), &event);
   }
 
   /// All who wait, up to as many as the kernel lets wait.
   void accept(base::Time now) {
-    if (accept_again_ != base::never) {
-      accept_again_ = base::never;
-      listen_for_clients(true);
-    }
+    pause_accepting(false);
     for (int i = 0; i < SOMAXCONN; ++i) {
       if (!spare_) spare_ = Descriptor{::open("/dev/null", O_RDONLY | O_CLOEXEC)};
       auto client = std::make_unique<Client>();
@@ -542,7 +543,7 @@ class VirtualBusServer {
         ++counters_.accept_failures;
         if (turned == Turned::away) continue;
         // Nothing helps now. The listener would stay readable and keep the owner busy: look again later.
-        listen_for_clients(false);
+        pause_accepting(true);
         accept_again_ = now + accept_pause;
         return;
       }
@@ -595,7 +596,8 @@ class VirtualBusServer {
   dev_t device_;
   simulation::Arbiter arbiter_;
   VirtualBusCounters counters_;
-  base::Time accept_again_ = base::never;
+  bool paused_ = false;                    ///< the listener is left alone, until `poll` at or after
+  base::Time accept_again_ = base::never;  ///< which passes in `advance`
   std::vector<std::unique_ptr<Client>> clients_;
   std::vector<epoll_event> ready_;
   std::vector<std::byte> buffer_;

@@ -370,7 +370,7 @@ TEST_CASE("frames that wait for a client are bounded, and those beyond are count
     setup.run();
   }
   // Each send without credit reads all that waits, on the look-out for some.
-  for (int i = 0; i < 20; ++i) {
+  for (int i = 0; i < 200; ++i) {
     while (*bus->send(frame("100#"))) {
     }
     setup.poll();

@@ -341,6 +341,9 @@ TEST_CASE(
   CHECK(received(*good) == Texts{"605#"});
   CHECK(setup.server->clients() == 1);
   setup.now = setup.server->next_event();
+  setup.server->advance(setup.now, [](const simulation::Delivery&) {});
+  CHECK(setup.server->next_event() == base::never);  // an owner that goes from event to event gets on
+  CHECK(setup.server->clients() == 1);
   setup.poll();
   CHECK(setup.server->clients() == 2);
   CHECK(waiting.heard().size() == 1);

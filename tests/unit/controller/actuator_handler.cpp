@@ -1,0 +1,66 @@
+#include "ocm/controller/actuator_handler.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "unit/controller/fixture.hpp"
+
+using namespace fixture;
+
+TEST_CASE("motors stop 500 ms after the last command") {
+  Board board;
+  const auto command = protocol::command(amiro::Motors{50'000, 0});
+  board.controller.receive(command, at(0ms));
+  board.controller.receive(command, at(400ms));
+  board.controller.poll(at(899ms));
+  REQUIRE(board.set_points.size() == 2);
+  CHECK(board.controller.next_event() == at(900ms));
+  board.controller.poll(at(900ms));
+  REQUIRE(board.set_points.size() == 3);
+  CHECK(board.set_points[2] == amiro::Motors{});
+  CHECK(board.controller.counters().timeouts == 1);
+  board.controller.poll(at(5s));
+  CHECK(board.set_points.size() == 3);
+}
+
+TEST_CASE("motors that were told to rest need no watchdog") {
+  Board board;
+  board.controller.receive(protocol::command(amiro::Motors{50'000, 0}), at(0ms));
+  board.controller.receive(protocol::command(amiro::Motors{}), at(100ms));
+  CHECK(board.controller.next_event() == base::never);
+  board.controller.poll(at(5s));
+  CHECK(board.controller.counters().timeouts == 0);
+}
+
+TEST_CASE("the timeout can be chosen") {
+  Mailboxes bus;
+  controller::Controller<amiro::DiWheelDrive, Mailboxes> controller{bus};
+  int calls = 0;
+  controller.accept<amiro::Motors>([&calls](const amiro::Motors&) { ++calls; }, 100ms);
+  controller.receive(protocol::command(amiro::Motors{1, 0}), at(0ms));
+  controller.poll(at(100ms));
+  CHECK(calls == 2);
+}
+
+TEST_CASE("a set point of the wrong length moves nothing") {
+  Board board;
+  for (const char* text : {"201#", "201#00", "201#50C30000000000"}) board.receive(text, 0s);
+  CHECK(board.set_points.empty());
+  CHECK(board.controller.counters().bad_length == 3);
+}
+
+TEST_CASE("each LED gets its own set point") {
+  Mailboxes bus;
+  controller::Controller<amiro::LightRing, Mailboxes> controller{bus};
+  std::vector<std::pair<int, amiro::Led>> calls;
+  controller.accept<amiro::Led>(
+      [&calls](std::uint8_t number, const amiro::Led& led) { calls.emplace_back(number, led); });
+  controller.receive(frame("23C#643278"), at(0s));
+  controller.receive(frame("243#FFFFFF"), at(0s));
+  controller.receive(frame("244#FFFFFF"), at(0s));  // one behind the last
+  controller.receive(frame("23B#FFFFFF"), at(0s));  // one before the first
+  REQUIRE(calls.size() == 2);
+  CHECK(calls[0] == std::pair<int, amiro::Led>{1, amiro::Led{100, 50, 120}});  // the thesis's figure 6.1
+  CHECK(calls[1].first == 8);
+  CHECK(controller.counters().foreign == 2);
+  CHECK(controller.next_event() == base::never);  // LEDs stay on
+}

@@ -1,0 +1,95 @@
+#include "ocm/controller/sensor_handler.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "unit/controller/fixture.hpp"
+
+using namespace fixture;
+
+TEST_CASE("publish: the first sample at once, then on the grid") {
+  Board board;
+  board.receive("208#01F40100", 1s);  // every 500 ms
+  CHECK(texts(board.bus) == std::vector<std::string>{"608#01000000FFFF"});
+  CHECK(board.controller.next_event() == at(1500ms));
+  board.controller.poll(at(1499ms));
+  CHECK(board.bus.frames.size() == 1);
+  board.controller.poll(at(1500ms));
+  CHECK(board.bus.frames.size() == 2);
+}
+
+TEST_CASE("the priority of a request is the priority of its frames") {  // thesis 4.1
+  Board board;
+  board.receive("008#01F40100", 0s);
+  board.receive("308#01F40100", 100ms);  // the next request changes it while running
+  CHECK(texts(board.bus) == std::vector<std::string>{"408#01000000FFFF", "708#02000000FFFF"});
+}
+
+TEST_CASE("DLC 1 publishes at the topic's own period") {
+  Board board;
+  board.receive("205#01", 0s);
+  REQUIRE(board.bus.frames.size() == 3);
+  CHECK(board.controller.next_event() == at(amiro::Magnetometer::period.duration()));
+}
+
+TEST_CASE("the three magnetometer frames go out back to back") {  // thesis figure 7.2: 59 to 120 ms apart
+  Board board;
+  board.receive("205#01840302", 0s);
+  CHECK(texts(board.bus) == std::vector<std::string>{"605#00D20000", "606#00AAF1FF", "607#003E1700"});
+}
+
+TEST_CASE("once sends one sample, and stops a publisher") {  // thesis figure 5.2
+  Board board;
+  board.receive("208#01F40100", 0s);
+  board.receive("208#02", 100ms);
+  CHECK(board.bus.frames.size() == 2);
+  CHECK(board.controller.next_event() == base::never);
+}
+
+TEST_CASE("stop suspends") {
+  Board board;
+  board.receive("208#01F40100", 0s);
+  board.receive("208#00", 100ms);
+  board.controller.poll(at(10s));
+  CHECK(board.bus.frames.size() == 1);
+}
+
+TEST_CASE("a part that does not answer costs its own samples only") {
+  Board board;
+  board.receive("204#01F40100", 0s);
+  board.receive("208#01F40100", 0s);
+  CHECK(board.controller.counters().not_sampled == 1);
+  CHECK(board.bus.frames.size() == 1);
+}
+
+TEST_CASE("a sample waits for the bus and is never mixed with the next one") {
+  Board board;
+  board.bus.room = 2;
+  board.receive("205#010A0000", 0s);  // every 10 ms, three frames
+  CHECK(board.bus.frames.size() == 2);
+  CHECK(board.controller.waiting());
+  board.controller.poll(at(10ms));  // still no room: this release is given up
+  CHECK(board.controller.counters().overrun == 1);
+  board.bus.room = 10;
+  board.controller.poll(at(11ms));
+  CHECK(texts(board.bus) == std::vector<std::string>{"605#00D20000", "606#00AAF1FF", "607#003E1700"});
+  CHECK_FALSE(board.controller.waiting());
+}
+
+TEST_CASE("an urgent sample overtakes one that waits") {
+  Board board;
+  board.bus.room = 1;
+  board.receive("305#02", 0s);  // low: one of three frames leaves
+  board.receive("008#02", 0s);  // urgent
+  board.bus.room = 1;
+  board.controller.poll(at(1ms));
+  REQUIRE(board.bus.frames.size() == 2);
+  CHECK(board.bus.frames[1].id == 0x408);
+}
+
+TEST_CASE("a bus that fails is counted, and the sample given up") {
+  Board board;
+  board.bus.broken = true;
+  board.receive("205#02", 0s);
+  CHECK(board.controller.counters().send_failed == 1);
+  CHECK_FALSE(board.controller.waiting());
+}

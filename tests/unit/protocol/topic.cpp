@@ -1,0 +1,191 @@
+#include "ocm/protocol/topic.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "unit/base/random.hpp"
+#include "unit/protocol/example_topics.hpp"
+
+namespace {
+
+using namespace std::chrono_literals;
+using ocm::base::Decimal;
+using ocm::base::Error;
+using ocm::protocol::Direction;
+using ocm::protocol::Field;
+using ocm::protocol::FrameIndex;
+using ocm::protocol::Identifier;
+using ocm::protocol::Kind;
+using ocm::protocol::Priority;
+using ocm::protocol::Topic;
+using ocm::protocol::TopicId;
+using ocm::test::catalogue;
+using ocm::test::Lamp;
+using ocm::test::Scale;
+
+constexpr FrameIndex frame_index{catalogue};
+
+constexpr Identifier sensor(int topic) {
+  return {Direction::sensor, Priority::medium, TopicId{static_cast<std::uint8_t>(topic)}};
+}
+constexpr Identifier to_board(int topic, Priority priority = Priority::medium) {
+  return {Direction::command, priority, TopicId{static_cast<std::uint8_t>(topic)}};
+}
+
+// --- fields
+// ---------------------------------------------------------------------------------------------------
+
+constexpr const Field& weight = ocm::test::weight_fields[0];
+
+TEST_CASE("a raw number becomes exactly the physical value, and back") {
+  // raw / 4 + 100
+  STATIC_REQUIRE(*weight.physical(0) == Decimal{1, 2});
+  STATIC_REQUIRE(*weight.physical(1) == Decimal{10025, -2});
+  STATIC_REQUIRE(*weight.physical(-400) == Decimal{});
+  STATIC_REQUIRE(*weight.physical(-401) == Decimal{-25, -2});
+  for (std::int64_t raw = weight.raw_min; raw <= weight.raw_max; ++raw)
+    REQUIRE(weight.raw_from(*weight.physical(raw)) == raw);
+}
+
+TEST_CASE("a physical value between two raw numbers goes to the nearer, halves away from zero") {
+  STATIC_REQUIRE(*weight.raw_from({10012, -2}) == 0);   // 0.48 of a step
+  STATIC_REQUIRE(*weight.raw_from({100125, -3}) == 1);  // half a step
+  STATIC_REQUIRE(*weight.raw_from({99875, -3}) == -1);  // half a step below the offset
+  STATIC_REQUIRE(*weight.raw_from({99876, -3}) == 0);
+}
+
+TEST_CASE("a physical value outside of the field's range is refused") {
+  STATIC_REQUIRE(*weight.raw_from({}) == -400);
+  STATIC_REQUIRE(weight.raw_from({-25, -2}).error == Error::out_of_range);
+  STATIC_REQUIRE(*weight.raw_from({11, 2}) == 4000);
+  STATIC_REQUIRE(weight.raw_from({110025, -2}).error == Error::out_of_range);
+  STATIC_REQUIRE(weight.raw_from({1, 100}).error == Error::out_of_range);
+  STATIC_REQUIRE(weight.raw_from({INT64_MIN, 0}).error == Error::out_of_range);
+}
+
+TEST_CASE("a field reads itself from a frame") {
+  STATIC_REQUIRE(weight.raw({0xFF, 0xFF, 0xFF, 0xFE}) == -2);
+  STATIC_REQUIRE(ocm::test::state_fields[0].raw({0x81}) == 0x81);
+}
+
+TEST_CASE("the catalogue's decoder agrees with the typed one") {
+  ocm::test::Random random{1};
+  for (int i = 0; i < 2'000; ++i) {
+    const Scale sample{static_cast<std::int32_t>(random()), static_cast<std::uint8_t>(random())};
+    REQUIRE(weight.raw(sample.encode(0)) == sample.weight);
+    REQUIRE(ocm::test::state_fields[0].raw(sample.encode(1)) == sample.state);
+  }
+}
+
+// --- the catalogue
+// --------------------------------------------------------------------------------------------
+
+TEST_CASE("a topic is found by its name and by each alias, and by nothing else") {
+  const Topic* scale = catalogue.find("scale");
+  REQUIRE(scale != nullptr);
+  CHECK(scale->name == "scale");
+  CHECK(catalogue.find("weight") == scale);
+  CHECK(catalogue.find("w") == scale);
+  CHECK(catalogue.find("lamp_2")->instance == 2);
+  for (const auto other : {"", "Scale", "scal", "scale ", "lamp", "lamp_4"}) {
+    INFO(other);
+    CHECK(catalogue.find(other) == nullptr);
+  }
+}
+
+TEST_CASE("a topic is found by the number of its requests or set points") {
+  CHECK(catalogue.find(TopicId{0x10})->name == "scale");
+  CHECK(catalogue.find(TopicId{0x32})->name == "lamp_3");
+  // The second frame of a sensor takes no requests.
+  CHECK(catalogue.find(TopicId{0x21}) == nullptr);
+  CHECK(catalogue.find(TopicId{0x33}) == nullptr);
+  CHECK(ocm::protocol::Catalogue{}.find("scale") == nullptr);
+  CHECK(ocm::protocol::Catalogue{}.find(TopicId{0x10}) == nullptr);
+}
+
+TEST_CASE("an entry of the catalogue says what its type says") {
+  const Topic& scale = catalogue.topics[0];
+  CHECK(scale.id == Scale::id);
+  CHECK(scale.kind == Kind::sensor);
+  CHECK(scale.board == 1);
+  CHECK(scale.priority == Priority::high);
+  CHECK(scale.period == Scale::period);
+  CHECK(scale.shortest_period == 10ms);
+  CHECK(scale.deadline == 20ms);
+  CHECK(scale.jitter == 1ms);
+  CHECK(scale.source == "a data sheet");
+  CHECK(scale.group.empty());
+  CHECK(scale.instance == 0);
+
+  const Topic& lamp = catalogue.topics[3];
+  CHECK(lamp.id == TopicId{0x32});
+  CHECK(lamp.kind == Kind::actuator);
+  CHECK(lamp.role == ocm::protocol::Role::light);
+  CHECK(lamp.timeout == 1s);
+  CHECK(lamp.group == "lamp");
+  CHECK(lamp.instance == 3);
+}
+
+// --- the index
+// ------------------------------------------------------------------------------------------------
+
+TEST_CASE("the index knows every identifier that means something, and no other") {
+  for (unsigned number = 0; number <= ocm::can::max_base_id; ++number) {
+    const Identifier id = Identifier::decode(number);
+    const int topic = id.topic.value;
+    const bool command = id.direction == Direction::command;
+    INFO(number);
+    const auto ref = frame_index.find(id);
+    if (!command && (topic == 0x10 || topic == 0x21)) {
+      REQUIRE(ref);
+      REQUIRE(ref.topic == &catalogue.topics[0]);
+      REQUIRE(ref.frame == (topic == 0x10 ? 0 : 1));
+      REQUIRE(&ref.layout() == &ocm::test::scale_frames[ref.frame]);
+    } else if (command && topic >= 0x30 && topic <= 0x32) {
+      REQUIRE(ref);
+      REQUIRE(ref.topic == &catalogue.topics[static_cast<std::size_t>(topic - 0x30 + 1)]);
+      REQUIRE(&ref.layout() == &ocm::test::lamp_frames[static_cast<std::size_t>(topic - 0x30)]);
+    } else {
+      REQUIRE_FALSE(ref);
+    }
+    REQUIRE(frame_index.requested(id) == (command && topic == 0x10 ? &catalogue.topics[0] : nullptr));
+  }
+}
+
+TEST_CASE("a request is no sample, and a set point is no request") {
+  CHECK_FALSE(frame_index.find(to_board(0x10)));
+  CHECK(frame_index.requested(to_board(0x10, Priority::urgent)) != nullptr);
+  CHECK(frame_index.requested(sensor(0x10)) == nullptr);
+  CHECK(frame_index.requested(to_board(0x30)) == nullptr);
+  CHECK_FALSE(frame_index.find(sensor(0x30)));
+}
+
+TEST_CASE("an index of nothing finds nothing") {
+  constexpr FrameIndex empty;
+  STATIC_REQUIRE_FALSE(empty.find(sensor(0x10)));
+  STATIC_REQUIRE(empty.requested(to_board(0x10)) == nullptr);
+  constexpr FrameIndex of_nothing{ocm::protocol::Catalogue{}};
+  STATIC_REQUIRE_FALSE(of_nothing.find(sensor(0x10)));
+}
+
+// --- types
+// ----------------------------------------------------------------------------------------------------
+
+struct ForgetsToDecode {
+  static constexpr TopicId id{1};
+  static constexpr std::uint8_t instances = 1;
+  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{};
+  [[nodiscard]] ocm::can::Payload encode(std::size_t) const { return {}; }
+};
+
+TEST_CASE("what a board needs of a topic") {
+  STATIC_REQUIRE(ocm::protocol::TopicType<Scale>);
+  STATIC_REQUIRE(ocm::protocol::TopicType<Lamp>);
+  STATIC_REQUIRE_FALSE(ocm::protocol::TopicType<ForgetsToDecode>);
+  STATIC_REQUIRE_FALSE(ocm::protocol::TopicType<int>);
+  using List = ocm::protocol::TopicList<Scale, Lamp>;
+  STATIC_REQUIRE(List::size == 2);
+  STATIC_REQUIRE(List::contains<Lamp>);
+  STATIC_REQUIRE_FALSE(ocm::protocol::TopicList<Scale>::contains<Lamp>);
+}
+
+}  // namespace
