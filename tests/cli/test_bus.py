@@ -184,6 +184,26 @@ class OnTheBus(Case):
         self.assertEqual(values[0], values[1])
 
 
+class Library(Case):
+    def test_the_operator_of_the_examples(self):
+        self.start_sim()
+        listener = self.listen("gyro", "--commands", "--timeout", "20s")
+        result = subprocess.run([os.environ["EXAMPLE_OPERATOR"]], env=self.environment, text=True, capture_output=True,
+                                timeout=20)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(len(result.stdout.splitlines()), 5)
+        time.sleep(0.2)
+        out, _ = self.interrupt(listener)
+        ids = [frame["id"] for frame in self.objects(out)]
+        self.assertEqual((ids[0], ids.count("508"), ids[-1]), ("108", 5, "208"))
+
+    def test_the_operator_says_what_to_do_without_a_robot(self):
+        result = subprocess.run([os.environ["EXAMPLE_OPERATOR"]], env=self.environment, text=True, capture_output=True,
+                                timeout=20)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("amiroctl sim", result.stderr)
+
+
 class Scripts(Case):
     def script(self, text):
         path = os.path.join(self.folder, "steps.script")

@@ -64,3 +64,29 @@ TEST_CASE("each LED gets its own set point") {
   CHECK(controller.counters().foreign == 2);
   CHECK(controller.next_event() == base::never);  // LEDs stay on
 }
+
+TEST_CASE("a set point of the wrong length does not feed the watchdog") {
+  Board board;
+  board.receive("201#50C3000000000000", 0ms);
+  board.receive("201#50C300", 400ms);
+  CHECK(board.controller.next_event() == at(500ms));
+}
+
+TEST_CASE("each of several actuators has a timeout of its own") {
+  Mailboxes bus;
+  controller::Controller<amiro::LightRing, Mailboxes> controller{bus};
+  std::vector<int> off;
+  controller.accept<amiro::Led>(
+      [&off](std::uint8_t number, const amiro::Led& led) {
+        if (led == amiro::Led{}) off.push_back(number);
+      },
+      1s);
+  controller.receive(frame("23C#FFFFFF"), at(0ms));
+  controller.receive(frame("23D#FFFFFF"), at(300ms));
+  CHECK(controller.next_event() == at(1000ms));
+  controller.poll(at(1000ms));
+  CHECK(off == std::vector<int>{1});
+  CHECK(controller.next_event() == at(1300ms));
+  controller.poll(at(1300ms));
+  CHECK(off == std::vector<int>{1, 2});
+}

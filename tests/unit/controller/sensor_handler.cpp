@@ -93,3 +93,26 @@ TEST_CASE("a bus that fails is counted, and the sample given up") {
   CHECK(board.controller.counters().send_failed == 1);
   CHECK_FALSE(board.controller.waiting());
 }
+
+TEST_CASE("a release is late beyond the topic's jitter, not at it") {
+  Board board;
+  board.receive("208#01640000", 0s);  // every 100 ms
+  board.controller.poll(at(100ms + amiro::Gyroscope::jitter));
+  CHECK(board.controller.counters().late == 0);
+  board.controller.poll(at(200ms + amiro::Gyroscope::jitter + 1ns));
+  CHECK(board.controller.counters().late == 1);
+  board.controller.poll(at(520ms));  // those at 300 and 400 are gone
+  CHECK(board.controller.counters().missed == 2);
+}
+
+TEST_CASE("a stop lets a sample that is half sent finish") {
+  Board board;
+  board.bus.room = 1;
+  board.receive("205#010A0000", 0s);
+  board.receive("205#00", 1ms);
+  board.bus.room = 10;
+  board.controller.poll(at(2ms));
+  CHECK(board.bus.frames.size() == 3);
+  board.controller.poll(at(1s));
+  CHECK(board.bus.frames.size() == 3);
+}

@@ -3,4 +3,4 @@
 using namespace ocm::test;
 
 // From bit 7 of byte 0 on there is room for 64 bits, from bit 6 for 63, from bit 7 of byte 1 for 56, ...
-static_assert(sweep<ByteOrder::big, 0>(std::make_integer_sequence<unsigned, 64>{}) == 64 * 65 / 2);
+static_assert(sweep<ByteOrder::big, 0>(std::make_integer_sequence<unsigned, 16>{}) == 904);

@@ -1,0 +1,6 @@
+#include "unit/protocol/codec_sweep.hpp"
+
+using namespace ocm::test;
+
+// From bit b of the frame on there is room for 64 - b bits.
+static_assert(sweep<ByteOrder::little, 0>(std::make_integer_sequence<unsigned, 16>{}) == 904);
