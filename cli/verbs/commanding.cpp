@@ -15,7 +15,8 @@ Commanding::Commanding(CLI::App& verb, Session& session, std::string_view words_
     : verb_(verb.get_name()), session_(&session) {
   verb.add_option("words", words_, std::string{words_help})->type_name("");
   if (with_priority)
-    verb.add_option("--priority", priority_, "urgent, high, medium (default) or low")->type_name("P");
+    verb.add_option("--priority", priority_, "urgent, high, medium or low; default: the topic's own")
+        ->type_name("P");
   verb.add_flag("--dry-run", dry_run_, "print the frames in candump notation and send nothing");
 }
 

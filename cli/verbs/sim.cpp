@@ -187,6 +187,7 @@ void add_sim(CLI::App& app, Session& session, int& exit_code) {
       ->type_name("N");
   verb->callback([options, &session, &exit_code] {
     catch_interrupts();
+    if (!session.spec_file.empty()) remark("the simulated robot is the AMiRo, whatever --spec says");
     if (!session.bus_name.empty() && session.bus_name != "sim" && !session.bus_name.starts_with("sim:")) {
       const auto bus = session.open_bus();
       simulate_on(*bus, *options);

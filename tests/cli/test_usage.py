@@ -73,6 +73,17 @@ class Look(Case):
         self.assertEqual(gyroscope["id"], "0x08")
         self.assertIn("gyro", gyroscope["aliases"])
 
+    def test_a_robot_that_the_tool_was_not_compiled_for(self):
+        ferry = ["--spec", os.path.join(SOURCE, "examples", "other-robot", "topics.json")]
+        self.assertIn("fork_status", self.run_tool(*ferry, "list")[0])
+        for words, frame in (("publish lidar 20ms", "1A0#01140000"),  # its own priority: high
+                             ("publish lidar 20ms --priority low", "3A0#01140000"),
+                             ("drive 1m/s", "010#03E80000"),  # urgent; big-endian, 1 mm/s a bit
+                             ("led 2 red", "221#F000")):
+            self.assertEqual(self.run_tool(*ferry, *words.split(), "--dry-run")[0].split(), [frame])
+        _, err = self.run_tool(*ferry, "publish", "gyro", code=2)
+        self.assertIn("no topic 'gyro'", err)
+
     def test_info(self):
         out, _ = self.run_tool("info", "gyro")
         for word in ("0x08", "di_wheel_drive", "deg/s", "0.0175", "608", "bytes 0..1", "Thesis"):

@@ -140,6 +140,7 @@ namespace detail {
   }
   std::int64_t digits = 0;
   int exponent = 0;
+  int zeros = 0;  // after `digits`: taken into them before another digit only, so that 10^100 can be read
   bool point = false;
   bool any = false;
   std::size_t i = 0;
@@ -149,14 +150,20 @@ namespace detail {
       point = true;
     } else if (is_digit(c)) {
       any = true;
-      // Negative whatever the sign: there is one more negative number than there are positive ones.
-      if (detail::multiply_overflows(digits, 10, digits) || __builtin_sub_overflow(digits, c - '0', &digits))
-        return Error::out_of_range;
       if (point && --exponent < -max_decimal_exponent) return Error::out_of_range;
+      if (c == '0') {
+        if (digits != 0 && ++zeros > 2 * max_decimal_exponent) return Error::out_of_range;
+        continue;
+      }
+      // Negative whatever the sign: there is one more negative number than there are positive ones.
+      for (++zeros; zeros > 0; --zeros)
+        if (detail::multiply_overflows(digits, 10, digits)) return Error::out_of_range;
+      if (__builtin_sub_overflow(digits, c - '0', &digits)) return Error::out_of_range;
     } else {
       break;
     }
   }
+  exponent += zeros;
   if (!any) return Error::bad_syntax;
   if (i < text.size()) {
     if (text[i] != 'e' && text[i] != 'E') return Error::bad_syntax;

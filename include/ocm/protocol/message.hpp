@@ -18,7 +18,7 @@ template <TopicType T>
 
 /// Frame `index` of a sample, as a board sends it.
 template <TopicType T>
-[[nodiscard]] constexpr can::Frame sample_frame(const T& sample, Priority priority = default_priority,
+[[nodiscard]] constexpr can::Frame sample_frame(const T& sample, Priority priority = T::priority,
                                                 std::size_t index = 0) noexcept {
   static_assert(T::kind == Kind::sensor, "an actuator sends no samples");
   return {Identifier{Direction::sensor, priority, frame_id<T>(index)}.encode(), T::frames[index].dlc,
@@ -27,7 +27,7 @@ template <TopicType T>
 
 /// An actuator's set point as its one frame.
 template <TopicType T>
-[[nodiscard]] constexpr can::Frame command(const T& set_point, Priority priority = default_priority,
+[[nodiscard]] constexpr can::Frame command(const T& set_point, Priority priority = T::priority,
                                            std::uint8_t instance = 1) noexcept {
   static_assert(T::kind == Kind::actuator, "only an actuator takes set points");
   static_assert(T::frames.size() == 1, "a set point travels in one frame");

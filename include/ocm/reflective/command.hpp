@@ -195,7 +195,7 @@ class CommandParser {
       ++i;
     }
     if (line.words.empty()) return WordError{0, "no command", "one of: " + verbs()};
-    protocol::Priority priority = protocol::default_priority;
+    std::optional<protocol::Priority> priority;  // none: the topic's own
     if (line.priority) {
       const auto parsed = protocol::parse_priority(line.priority->text);
       if (!parsed)
@@ -219,13 +219,14 @@ class CommandParser {
   }
 
   /// Everything at rest: motors first, then every publisher.
-  [[nodiscard]] Command stop_all(protocol::Priority priority) const {
+  [[nodiscard]] Command stop_all(std::optional<protocol::Priority> priority) const {
     Command command;
     command.ends_hold = true;
     for (const auto& topic : catalogue_->topics)
       if (topic.role == protocol::Role::drive) command.frames.push_back(set_point(topic, {}, priority));
     for (const auto& topic : catalogue_->topics)
-      if (topic.kind == protocol::Kind::sensor) command.frames.push_back(protocol::stop(topic.id, priority));
+      if (topic.kind == protocol::Kind::sensor)
+        command.frames.push_back(protocol::stop(topic.id, priority.value_or(topic.priority)));
     return command;
   }
 
@@ -276,14 +277,15 @@ class CommandParser {
                      detail::suggestion(word.text, words)};
   }
 
-  detail::Parsed publish(const Line& line, protocol::Priority priority) const {
+  detail::Parsed publish(const Line& line, std::optional<protocol::Priority> priority) const {
     if (auto error = check_count(line, 2, 3, "publish TOPIC [PERIOD]")) return *error;
     const auto sensor = topic(line[1], protocol::Kind::sensor);
     if (!sensor) return sensor.error;
     Command command;
     command.answers = *sensor;
     if (line.size() == 2) {
-      command.frames = {protocol::encode_default_publish((*sensor)->id, priority)};
+      command.frames = {
+          protocol::encode_default_publish((*sensor)->id, priority.value_or((*sensor)->priority))};
       return command;
     }
     const Word& word = line[2];
@@ -303,28 +305,29 @@ class CommandParser {
       return WordError{word.index, "the wire cannot carry a period of " + std::string{word.text},
                        "nearest: " + to_text(protocol::Period::nearest(wanted))};
     }
-    command.frames = {protocol::encode({(*sensor)->id, protocol::Mode::publish, *wire, priority})};
+    command.frames = {protocol::encode(
+        {(*sensor)->id, protocol::Mode::publish, *wire, priority.value_or((*sensor)->priority)})};
     return command;
   }
 
-  detail::Parsed once(const Line& line, protocol::Priority priority) const {
+  detail::Parsed once(const Line& line, std::optional<protocol::Priority> priority) const {
     if (auto error = check_count(line, 2, 2, "once TOPIC")) return *error;
     const auto sensor = topic(line[1], protocol::Kind::sensor);
     if (!sensor) return sensor.error;
     Command command;
     command.answers = *sensor;
-    command.frames = {protocol::once((*sensor)->id, priority)};
+    command.frames = {protocol::once((*sensor)->id, priority.value_or((*sensor)->priority))};
     return command;
   }
 
-  detail::Parsed stop(const Line& line, protocol::Priority priority) const {
+  detail::Parsed stop(const Line& line, std::optional<protocol::Priority> priority) const {
     if (auto error = check_count(line, 1, 2, "stop [TOPIC|all]")) return *error;
     if (line.size() == 1 || line[1].text == "all") return stop_all(priority);
     const auto any = topic(line[1], {});
     if (!any) return any.error;
     Command command;
     if ((*any)->kind == protocol::Kind::sensor) {
-      command.frames = {protocol::stop((*any)->id, priority)};
+      command.frames = {protocol::stop((*any)->id, priority.value_or((*any)->priority))};
     } else {
       command.frames = {set_point(**any, {}, priority)};
       command.ends_hold = (*any)->role == protocol::Role::drive;
@@ -332,7 +335,7 @@ class CommandParser {
     return command;
   }
 
-  detail::Parsed drive(const Line& line, protocol::Priority priority) const {
+  detail::Parsed drive(const Line& line, std::optional<protocol::Priority> priority) const {
     const protocol::Topic* motors = nullptr;
     for (const auto& candidate : catalogue_->topics)
       if (candidate.role == protocol::Role::drive) motors = &candidate;
@@ -382,7 +385,7 @@ class CommandParser {
     return command;
   }
 
-  detail::Parsed led(const Line& line, protocol::Priority priority) const {
+  detail::Parsed led(const Line& line, std::optional<protocol::Priority> priority) const {
     std::vector<const protocol::Topic*> lights;
     for (const auto& candidate : catalogue_->topics)
       if (candidate.role == protocol::Role::light && candidate.frames[0].fields.size() >= 3)
@@ -416,7 +419,7 @@ class CommandParser {
     return command;
   }
 
-  detail::Parsed set(const Line& line, protocol::Priority priority) const {
+  detail::Parsed set(const Line& line, std::optional<protocol::Priority> priority) const {
     if (auto error = check_count(line, 3, SIZE_MAX - 1, "set ACTUATOR FIELD=VALUE ...")) return *error;
     const auto actuator = topic(line[1], protocol::Kind::actuator);
     if (!actuator) return actuator.error;
@@ -471,10 +474,12 @@ class CommandParser {
 
   /// Fields that are not given are zero.
   static can::Frame set_point(const protocol::Topic& actuator, std::span<const std::int64_t> raw,
-                              protocol::Priority priority) {
+                              std::optional<protocol::Priority> priority) {
     const auto& layout = actuator.frames[0];
     can::Frame frame;
-    frame.id = protocol::Identifier{protocol::Direction::command, priority, layout.id}.encode();
+    frame.id =
+        protocol::Identifier{protocol::Direction::command, priority.value_or(actuator.priority), layout.id}
+            .encode();
     frame.dlc = layout.dlc;
     for (std::size_t i = 0; i < raw.size() && i < layout.fields.size(); ++i)
       protocol::put(frame.data, layout.fields[i].position, raw[i]);

@@ -115,7 +115,8 @@ struct Unit {
       {"ms", 1'000'000}, {"s", 1'000'000'000}, {"min", 60'000'000'000}, {"h", 3'600'000'000'000}};
   for (const auto& unit : units) {
     if (quantity->unit != unit.name) continue;
-    const auto ns = base::multiply(quantity->number, {unit.nanoseconds, 0});
+    // Normalised, so that powers of ten go into the exponent: every duration that is printed can be read.
+    const auto ns = base::multiply(quantity->number, base::normalised(unit.nanoseconds, 0));
     if (!ns || ns->exponent < 0) return base::Error::out_of_range;
     const auto count = base::detail::scaled(ns->digits, ns->exponent);
     if (!count) return count.error;

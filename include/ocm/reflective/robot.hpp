@@ -36,13 +36,13 @@ class Robot {
   Robot(Bus& bus, const protocol::Catalogue& catalogue) : bus_(&bus), receiver_(catalogue) {}
 
   template <SensorType T>
-  base::Status publish(base::Duration period, protocol::Priority priority = protocol::default_priority) {
+  base::Status publish(base::Duration period, protocol::Priority priority = T::priority) {
     const auto frame = protocol::publish_every(T::id, period, priority);
     if (!frame) return frame.error;
     return send(*frame);
   }
   template <SensorType T>
-  base::Status once(protocol::Priority priority = protocol::default_priority) {
+  base::Status once(protocol::Priority priority = T::priority) {
     return send(protocol::once(T::id, priority));
   }
   template <SensorType T>
@@ -51,8 +51,7 @@ class Robot {
   }
   /// `instance` counts from 1, for actuators of which there are several.
   template <ActuatorType T>
-  base::Status set(const T& set_point, std::uint8_t instance = 1,
-                   protocol::Priority priority = protocol::default_priority) {
+  base::Status set(const T& set_point, std::uint8_t instance = 1, protocol::Priority priority = T::priority) {
     if (instance < 1 || instance > T::instances) return base::Error::out_of_range;
     return send(protocol::command(set_point, priority, instance));
   }

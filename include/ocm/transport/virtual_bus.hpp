@@ -91,7 +91,7 @@ class VirtualBus final : public Bus {
     if (frame.format == can::Format::error) return base::Error::bad_identifier;
     if (const auto valid = can::validate(frame); !valid) return valid.error;
     // Credit comes first in a message, but many messages may wait before that.
-    while (credit_ == 0 && fill() == Filled::something) {
+    while (credit_ == 0 && fill()) {
     }
     const virtual_bus::Record record = virtual_bus::to_record(frame);
     if (credit_ != 0 && write(&record, 1)) {
@@ -113,10 +113,10 @@ class VirtualBus final : public Bus {
     const auto begin = std::chrono::steady_clock::now();
     for (;;) {
       if (closed()) return base::Error::closed;
-      const Filled filled = fill();
+      const bool filled = fill();
       if (take(received)) return received;
-      if (filled == Filled::something) continue;
-      if (filled == Filled::interrupted || timeout <= base::Duration::zero()) return base::Error::timed_out;
+      if (filled) continue;
+      if (timeout <= base::Duration::zero()) return base::Error::timed_out;
       const base::Duration rest = timeout - (std::chrono::steady_clock::now() - begin);
       if (rest <= base::Duration::zero() || !wait(POLLIN, rest)) return base::Error::timed_out;
     }
@@ -159,8 +159,6 @@ class VirtualBus final : public Bus {
   static constexpr std::size_t messages_at_once = 16;
   /// Frames kept for somebody who sends and never receives.
   static constexpr std::size_t max_inbox = 65'536;
-
-  enum class Filled : std::uint8_t { something, nothing, interrupted };
 
   VirtualBus(Descriptor socket, std::string name, std::string path, std::string process)
       : socket_(std::move(socket)),
@@ -207,7 +205,7 @@ class VirtualBus final : public Bus {
     const auto give_up = std::chrono::steady_clock::now() + patience;
     while (bit_rate_ == 0 && !ended_) {
       if (!said) said = write(&hello, 1);
-      if (fill() == Filled::something) continue;
+      if (fill()) continue;
       const base::Duration rest = give_up - std::chrono::steady_clock::now();
       if (rest <= base::Duration::zero()) {
         end({"the simulator" + process_ + " does not answer on '" + path_ + "'", stuck_remedy(path_)});
@@ -235,7 +233,7 @@ class VirtualBus final : public Bus {
       if (errno == EAGAIN || errno == ENOBUFS || errno == ENOMEM) return false;
       break;
     }
-    while (!ended_ && fill() == Filled::something) {
+    while (fill()) {
     }
     end(gone());
     return false;
@@ -251,20 +249,17 @@ class VirtualBus final : public Bus {
     return ::ppoll(&entry, 1, &limit, nullptr) > 0;
   }
 
-  /// Reads what waits in the socket.
-  Filled fill() {
-    if (ended_) return Filled::nothing;
+  /// Reads what waits in the socket, in one batch. false: nothing waited.
+  bool fill() {
+    if (ended_) return false;
     int count = 0;
     do {
       for (mmsghdr& message : messages_) message.msg_hdr.msg_flags = 0;
       count = ::recvmmsg(socket_.get(), messages_.data(), messages_at_once, MSG_DONTWAIT, nullptr);
-    } while (count < 0 && errno == ECONNRESET);  // comes once, before what the server said last
-    if (count < 0) {
-      if (errno == EAGAIN) return Filled::nothing;
-      if (errno == EINTR) return Filled::interrupted;
-      end(gone());
-      return Filled::something;
-    }
+      // ECONNRESET comes once, before what the server said last.
+    } while (count < 0 && (errno == EINTR || errno == ECONNRESET));
+    if (count < 0 && errno == EAGAIN) return false;
+    if (count < 0) end(gone());
     for (int i = 0; i < count && !ended_; ++i) {
       const mmsghdr& message = messages_[static_cast<std::size_t>(i)];
       const auto* const bytes = static_cast<const std::byte*>(message.msg_hdr.msg_iov->iov_base);
@@ -280,7 +275,7 @@ class VirtualBus final : public Bus {
         take_in(record);
       }
     }
-    return Filled::something;
+    return true;
   }
 
   void take_in(const virtual_bus::Record& record) {

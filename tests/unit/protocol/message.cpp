@@ -23,13 +23,13 @@ constexpr Frame frame(const char* text) {
 
 TEST_CASE("a sample's frames carry its topic's identifiers and lengths, as sensor data") {
   constexpr Scale sample{0x01020304, 0x81};
-  STATIC_REQUIRE(sample_frame(sample) == frame("610#01020304"));
+  STATIC_REQUIRE(sample_frame(sample) == frame("510#01020304"));  // the topic's own priority: high
   STATIC_REQUIRE(sample_frame(sample, Priority::urgent, 1) == frame("421#81"));
   STATIC_REQUIRE(sample_frame(sample, Priority::low, 0) == frame("710#01020304"));
 }
 
 TEST_CASE("a set point is one command frame, on the identifier of its instance") {
-  STATIC_REQUIRE(command(Lamp{7}) == frame("230#07"));
+  STATIC_REQUIRE(command(Lamp{7}) == frame("330#07"));  // the topic's own priority: low
   STATIC_REQUIRE(command(Lamp{7}, Priority::high, 3) == frame("132#07"));
 }
 

@@ -274,6 +274,8 @@ TEST_CASE("a node that leaves takes its waiting frames along, or has them sent")
   CHECK(texts(sent) == Texts{"100#", "100#", "101#", "102#"});
   CHECK(sent[0].from == a);
   CHECK(sent[3].from == b);
+  CHECK(bus.attach().index == a.index);  // both places are free again
+  CHECK(bus.attach().index == b.index);
   CHECK(bus.totals().withdrawn == 2);
   CHECK(bus.totals().clashes == 1);
 }

@@ -237,6 +237,22 @@ TEST_CASE("a client that dies loses what waits, not what is on the bus, and harm
   CHECK(setup.server->clients() == 1);
 }
 
+TEST_CASE("a client that dies with more to be read than is read at once") {
+  VirtualBusSetup setup{{.transmit_queue = 1000}};
+  RawClient client{setup.path()};
+  client.greet();
+  client.say(frame("100#"));
+  setup.poll();
+  for (int i = 0; i < 200; ++i) client.say(frame("200#"));
+  client.close();
+  // Credit is due to it and cannot be given any more, and its end is not read yet.
+  setup.now = setup.server->next_event();
+  setup.run();
+  CHECK(setup.on_bus == Texts{"100#"});
+  CHECK(setup.server->counters().withdrawn == 200);
+  CHECK(setup.server->counters().died == 1);
+}
+
 TEST_CASE("a client may ask for nothing but whether a server runs") {
   VirtualBusSetup setup;
   CHECK(transport::VirtualBus::running(setup.path()));
