@@ -100,7 +100,8 @@ bool Session::colour() const {
 void StateWatch::look(const transport::Bus& bus) {
   if (bus.state() == state_) return;
   state_ = bus.state();
-  if (state_ == transport::BusState::down) remark(fmt::format("{} went down; waiting for it to come back", bus.name()));
+  if (state_ == transport::BusState::down)
+    remark(fmt::format("{} went down; waiting for it to come back", bus.name()));
   if (state_ == transport::BusState::up) remark(fmt::format("{} is up again", bus.name()));
 }
 

@@ -20,6 +20,6 @@ static_assert(timing.ok() && timing.value.bit_rate(36'000'000) == 500'000);
 int main() {
   const unsigned bits = can::frame_bits(frame);
   std::printf("%.*s: %u bits with stuffing, %u us at 500 kbit/s; at most %u bits\n",
-              static_cast<int>(can::to_text(frame).view().size()), can::to_text(frame).view().data(), bits, 2 * bits,
-              can::worst_frame_bits(frame.format, frame.dlc));
+              static_cast<int>(can::to_text(frame).view().size()), can::to_text(frame).view().data(), bits,
+              2 * bits, can::worst_frame_bits(frame.format, frame.dlc));
 }

@@ -1,5 +1,5 @@
-/// A board: what a firmware author writes. Here the bus is stdout and time is a loop; on a robot they are a CAN
-/// controller and a timer.
+/// A board: what a firmware author writes. Here the bus is stdout and time is a loop; on a robot they are a
+/// CAN controller and a timer.
 #include <cstdio>
 
 #include "ocm/can/text.hpp"

@@ -1,5 +1,5 @@
-/// An operator: a program on the robot's Linux, or on a laptop at the bus. Give it a CAN interface, or nothing for the
-/// simulator that `amiroctl sim` runs.
+/// An operator: a program on the robot's Linux, or on a laptop at the bus. Give it a CAN interface, or
+/// nothing for the simulator that `amiroctl sim` runs.
 #include <cstdio>
 #include <memory>
 

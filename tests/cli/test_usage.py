@@ -79,7 +79,7 @@ class Look(Case):
         for words, frame in (("publish lidar 20ms", "1A0#01140000"),  # its own priority: high
                              ("publish lidar 20ms --priority low", "3A0#01140000"),
                              ("drive 1m/s", "010#03E80000"),  # urgent; big-endian, 1 mm/s a bit
-                             ("led 2 red", "221#F000")):
+                             ("led 2 red", "121#F000")):
             self.assertEqual(self.run_tool(*ferry, *words.split(), "--dry-run")[0].split(), [frame])
         _, err = self.run_tool(*ferry, "publish", "gyro", code=2)
         self.assertIn("no topic 'gyro'", err)

@@ -1,6 +1,5 @@
 // A program of somebody who has ocm. Two source files include everything: what is not inline does not link.
 #include <cstdio>
-
 #include <ocm/can/text.hpp>
 
 #ifdef OCM_CONSUMER_GENERATED

@@ -4,4 +4,6 @@
 #include <ocm/transport/socketcan.hpp>
 #include <ocm/transport/virtual_bus.hpp>
 
-bool wrong_interface_is_refused() { return !ocm::transport::SocketCan::open("no-such-can"); }
+bool wrong_interface_is_refused() {
+  return !ocm::transport::SocketCan::open("no-such-can");
+}
