@@ -36,6 +36,12 @@ Wide power(int n) {
   return p;
 }
 
+/// Digits of at most so many bits, with an exponent of low..high before normalisation.
+Decimal any_decimal(Random& random, int most_bits, int low, int high) {
+  const std::int64_t digits = random.digits(most_bits);
+  return ocm::base::normalised(digits, random.within(low, high));
+}
+
 // --- vectors
 // ------------------------------------------------------------------------------------------------
 
@@ -111,7 +117,7 @@ TEST_CASE("printing and parsing are each other's inverse") {
   Random random{3};
   for (int i = 0; i < 20'000; ++i) {
     // Numbers that plain notation can hold: digits with the zeros behind them within 63 bits.
-    const auto original = ocm::base::normalised(random.digits(), random.within(-80, 0));
+    const auto original = any_decimal(random, 63, -80, 0);
     const auto text = to_text(original);
     INFO(std::string{text.view()});
     REQUIRE(parse_decimal(text.view()) == original);
@@ -138,8 +144,8 @@ TEST_CASE("sums and products are exact, or refused") {
   int refused = 0;
   int exact = 0;
   for (int i = 0; i < 100'000; ++i) {
-    const auto a = ocm::base::normalised(random.digits(), random.within(-9, 0));
-    const auto b = ocm::base::normalised(random.digits(), random.within(-9, 0));
+    const auto a = any_decimal(random, 63, -9, 0);
+    const auto b = any_decimal(random, 63, -9, 0);
     INFO(std::string{to_text(a).view()} << " and " << std::string{to_text(b).view()});
 
     const Wide x = at_scale(a, 9);
@@ -168,8 +174,8 @@ TEST_CASE("sums and products are exact, or refused") {
 TEST_CASE("what 63 bits hold is never refused") {
   Random random{5};
   for (int i = 0; i < 20'000; ++i) {
-    const Decimal a = ocm::base::normalised(random.digits(31), random.within(-9, 0));
-    const Decimal b = ocm::base::normalised(random.digits(31), random.within(-9, 0));
+    const Decimal a = any_decimal(random, 31, -9, 0);
+    const Decimal b = any_decimal(random, 31, -9, 0);
     REQUIRE(multiply(a, b).ok());
     REQUIRE(add(a, b).ok());
   }
@@ -263,7 +269,7 @@ TEST_CASE("quotients at the edges") {
 TEST_CASE("a double is the nearest one as long as 53 bits hold the digits") {
   Random random{7};
   for (int i = 0; i < 20'000; ++i) {
-    const auto d = ocm::base::normalised(random.digits(53), random.within(-22, 6));
+    const auto d = any_decimal(random, 53, -22, 6);
     const auto text = to_text(d);
     if (std::llabs(d.digits) >= 1LL << 53) continue;
     INFO(std::string{text.view()});

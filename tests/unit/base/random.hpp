@@ -1,4 +1,5 @@
-/// Seeded random numbers for tests: the same on every machine and standard library.
+/// Seeded random numbers for tests: the same in every run, and with every standard library. Two calls in one
+/// argument list come in the order that the compiler likes.
 #pragma once
 
 #include <cstdint>
