@@ -67,8 +67,9 @@ TEST_CASE("a topic of one frame and an array of frames") {
   CHECK(ocm::protocol::sample_frame(status, Priority::low, 4) == Frame{0x7B5, 4, {0x00, 0x00, 0x10}});
 }
 
+// Without another one, a frame has the priority of its topic: high, and urgent for the wheels.
 TEST_CASE("no data, several of a kind, 64 bits") {
-  STATIC_REQUIRE(ocm::protocol::sample_frame(Heartbeat{}) == Frame{0x6C0, 0, {}});
+  STATIC_REQUIRE(ocm::protocol::sample_frame(Heartbeat{}) == Frame{0x5C0, 0, {}});
   STATIC_REQUIRE(ocm::protocol::command(Beacon{1, 2, 3}, Priority::high, 2) == Frame{0x121, 2, {0x12, 0x30}});
   constexpr auto winch = [] {
     Winch w;
@@ -76,7 +77,7 @@ TEST_CASE("no data, several of a kind, 64 bits") {
     return w;
   }();
   STATIC_REQUIRE(winch.value == 1'500'000'000);
-  STATIC_REQUIRE(ocm::protocol::command(Wheels{-1, 256}) == Frame{0x210, 4, {0xFF, 0xFF, 0x01, 0x00}});
+  STATIC_REQUIRE(ocm::protocol::command(Wheels{-1, 256}) == Frame{0x010, 4, {0xFF, 0xFF, 0x01, 0x00}});
 }
 
 TEST_CASE("the catalogue is the other robot's own") {

@@ -131,7 +131,8 @@ class Process:
 class Candump(Process):
     """candump's log of an interface, error frames too; it goes on when the interface goes down."""
     def __init__(self, interface):
-        super().__init__('candump', '-L', '-D', f'{interface},0:0,#FFFFFFFF', listens_on=interface)
+        # -r: a judge that loses frames itself, when the guest is slow, judges nothing
+        super().__init__('candump', '-L', '-D', '-r', '8388608', f'{interface},0:0,#FFFFFFFF', listens_on=interface)
 
     def frames(self):
         lines = re.findall(r'^\(([0-9.]+)\) \S+ ([0-9A-F]+)#(\S*)', self.stdout, re.M)
