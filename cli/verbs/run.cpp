@@ -1,10 +1,10 @@
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <iterator>
 #include <memory>
-#include <sstream>
+#include <system_error>
 #include <unistd.h>
 
 #include <fmt/format.h>
@@ -29,17 +29,38 @@ struct RunOptions {
   bool dry_run = false;
 };
 
-std::string read_script(const std::string& file) {
-  if (file == "-") return {std::istreambuf_iterator<char>{std::cin}, {}};
-  std::ifstream in{file, std::ios::binary};
-  std::string text{std::istreambuf_iterator<char>{in}, {}};
-  if (!in.is_open() || in.bad())
-    fail({fmt::format("cannot read {}: {}", file, std::strerror(errno == 0 ? EISDIR : errno)),
-          "give the name of a script, or - for standard input"});
+/// Far more than anybody writes by hand; a pipe that never ends must not fill the memory.
+constexpr std::size_t max_script = 16U << 20U;
+
+std::string read_all(std::istream& in) {
+  std::string text;
+  char piece[65'536];
+  while (text.size() <= max_script && (in.read(piece, sizeof piece) || in.gcount() > 0))
+    text.append(piece, static_cast<std::size_t>(in.gcount()));
   return text;
 }
 
-/// A step that comes while its script is checked whole: every error first, then nothing is sent.
+std::string read_script(const std::string& file) {
+  std::string text;
+  if (file == "-") {
+    text = read_all(std::cin);
+  } else {
+    std::error_code error;
+    if (std::filesystem::is_directory(file, error))
+      fail({fmt::format("{} is a folder", file), "give the name of a script, or - for standard input"});
+    std::ifstream in{file, std::ios::binary};
+    if (!in.is_open())
+      fail({fmt::format("cannot read {}: {}", file, std::strerror(errno)),
+            "give the name of a script, or - for standard input"});
+    text = read_all(in);
+  }
+  if (text.size() > max_script)
+    fail({fmt::format("{} is larger than {} MiB", file, max_script >> 20U),
+          "a script has one command a line"});
+  return text;
+}
+
+/// The script, checked whole: with an error in it nothing is sent.
 reflective::Script checked(const std::string& file, const std::string& text,
                            const protocol::Catalogue& catalogue) {
   auto script = reflective::parse_script(text, catalogue);

@@ -260,6 +260,10 @@ class Scripts(Case):
     def test_a_missing_script(self):
         _, err = self.run_tool("run", os.path.join(self.folder, "none.script"), code=1)
         self.assertIn("none.script", err)
+        _, err = self.run_tool("run", self.folder, code=1)
+        self.assertIn("is a folder", err)
+        _, err = self.run_tool("run", "/dev/zero", code=1)
+        self.assertIn("larger than 16 MiB", err)
 
 
 if __name__ == "__main__":
