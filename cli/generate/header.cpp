@@ -490,7 +490,7 @@ void write_constants(Writer& out, const TopicModel& topic) {
     out.line("}};");
   }
   static constexpr std::string_view units[] = {"milliseconds", "seconds", "microseconds"};
-  static constexpr std::string_view roles[] = {"none", "drive", "light"};
+  static constexpr std::string_view roles[] = {"none", "drive", "light", "status", "refusal"};
   std::vector<std::pair<std::string, std::string>> lines;
   const auto add = [&](std::string code, std::string_view fact) {
     const std::string& source = topic.source.of(fact);
@@ -506,11 +506,12 @@ void write_constants(Writer& out, const TopicModel& topic) {
     add("static constexpr ocm::base::Duration shortest_period" + chrono(topic.shortest_period) + ";",
         "shortest_period");
   } else {
+    add("static constexpr ocm::base::Duration timeout" + chrono(topic.timeout) + ";", "timeout");
+  }
+  if (topic.role != protocol::Role::none)
     add("static constexpr ocm::protocol::Role role = ocm::protocol::Role::" +
             std::string{roles[static_cast<std::size_t>(topic.role)]} + ";",
         "role");
-    add("static constexpr ocm::base::Duration timeout" + chrono(topic.timeout) + ";", "timeout");
-  }
   add("static constexpr ocm::base::Duration deadline" + chrono(topic.deadline) + ";", "deadline");
   add("static constexpr ocm::base::Duration jitter" + chrono(topic.jitter) + ";", "jitter");
   add("static constexpr ocm::protocol::Priority priority = ocm::protocol::Priority::" +
@@ -676,6 +677,15 @@ void write_board(Writer& out, const Model& model, std::size_t index) {
       out.list("    ocm::protocol::TopicList<", list, ">;");
     }
   }
+  // What the board says of itself; void where the spec has no such topic.
+  for (const auto& [alias, role] :
+       {std::pair{"status", protocol::Role::status}, std::pair{"refusal", protocol::Role::refusal}}) {
+    std::string type = "void";
+    for (const TopicModel& topic : model.topics)
+      if (topic.board == index && topic.role == role) type = pascal_case(topic.name);
+    out.line(std::string{"using "} + alias + " = " + type + ";");
+  }
+  out.line("static constexpr std::uint32_t wire_hash = " + model.name_space + "::wire_hash;");
   out.close("};");
   out.line();
 }
@@ -803,6 +813,9 @@ void write_catalogue(Writer& out, const Model& model) {
   out.comment("Everything that is said on the bus, as a tool sees it that loads the spec when it runs.");
   out.line("inline constexpr ocm::protocol::Catalogue catalogue{" + quoted(model.robot) +
            ", bit_rate, detail::boards, detail::topics};");
+  out.line();
+  out.comment("What tells a board that was built from another spec: boards report it in their status.");
+  out.line("inline constexpr std::uint32_t wire_hash = ocm::protocol::wire_hash(catalogue);");
 }
 
 }  // namespace
@@ -834,7 +847,8 @@ std::string header(const Model& model, std::string_view spec_name) {
   out.line();
   for (const char* name :
        {"ocm/base/time.hpp", "ocm/can/frame.hpp", "ocm/protocol/codec.hpp", "ocm/protocol/identifier.hpp",
-        "ocm/protocol/physical.hpp", "ocm/protocol/request.hpp", "ocm/protocol/topic.hpp"})
+        "ocm/protocol/physical.hpp", "ocm/protocol/request.hpp", "ocm/protocol/topic.hpp",
+        "ocm/protocol/wire_hash.hpp"})
     out.line("#include \"" + std::string{name} + "\"");
   out.line();
   out.line("namespace " + model.name_space + " {");
@@ -843,9 +857,9 @@ std::string header(const Model& model, std::string_view spec_name) {
   out.line("inline constexpr std::uint32_t bit_rate = " + grouped(model.bit_rate) + ";");
   out.line();
   for (const TopicModel& topic : model.topics) write_topic(out, model, topic);
-  for (std::size_t i = 0; i < model.boards.size(); ++i) write_board(out, model, i);
   write_catalogue(out, model);
   out.line();
+  for (std::size_t i = 0; i < model.boards.size(); ++i) write_board(out, model, i);
   out.line("}  // namespace " + model.name_space);
   return out.take();
 }

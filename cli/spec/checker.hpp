@@ -79,6 +79,9 @@ class Checker {
       : file_name_(file_name), problems_(problems) {}
 
  protected:
+  /// How many problems there are so far.
+  [[nodiscard]] std::size_t told() const noexcept { return problems_.size(); }
+
   // --- telling
   // ----------------------------------------------------------------------------------------------
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <set>
+#include <span>
 #include <string>
 
 #include "cli/spec/checker.hpp"
@@ -18,8 +19,8 @@ constexpr std::array<std::string_view, 17> struct_members{
     "id",       "ids",    "dlc",      "count",   "name",   "frames", "instances",       "kind",  "role",
     "priority", "period", "deadline", "timeout", "jitter", "encode", "shortest_period", "decode"};
 // What the generated header needs in its own namespace, and in the one of its tables.
-constexpr std::array<std::string_view, 8> namespace_members{"bit_rate", "boards",   "catalogue", "detail",
-                                                            "ocm",      "protocol", "std",       "topics"};
+constexpr std::array<std::string_view, 9> namespace_members{
+    "bit_rate", "boards", "catalogue", "detail", "ocm", "protocol", "std", "topics", "wire_hash"};
 
 class Reader : private Checker {
  public:
@@ -141,8 +142,70 @@ class Reader : private Checker {
     for (std::size_t i = 0; i < at.node->items.size(); ++i) {
       const At topic_at = at.item(i);
       if (!is_object(topic_at, "a topic: an object with name, id, board, frames and source")) continue;
+      const std::size_t told_before = told();
+      if (const auto like = topic_at.member("like")) {
+        if (const auto node = read_like(topic_at, *like))
+          model.topics.push_back(read_topic({&*node, topic_at.path}, model));
+        continue;
+      }
       model.topics.push_back(read_topic(topic_at, model));
+      if (const std::string& topic = model.topics.back().name; !topic.empty())
+        patterns_.push_back({topic, topic_at.node, told() == told_before});
     }
+  }
+
+  /// The topic that `at` stands for: all of the other one but name and alias, its frames' ids moved as far as
+  /// the topic's own. Empty when there is nothing to read on with.
+  [[nodiscard]] std::optional<Node> read_like(const At& at, const At& like) {
+    static constexpr std::array<std::string_view, 7> own{"name", "alias", "description", "like",
+                                                         "id",   "board", "source"};
+    const auto is_own = [](const std::string& key) {
+      return std::find(own.begin(), own.end(), key) != own.end();
+    };
+    for (const auto& [key, node] : at.node->members)
+      if (!is_own(key))
+        tell({&node, at.path + "/" + pointer_step(key)}, quoted(key) + " of a topic that is like another",
+             "leave it out: it is the other one's; or leave out \"like\", and write the topic out");
+    if (!is_kind(like, Kind::string, "the name of a topic before this one")) return std::nullopt;
+    std::vector<std::string> names;
+    for (const Pattern& pattern : patterns_) names.push_back(pattern.name);
+    const auto found = std::find(names.begin(), names.end(), like.node->text);
+    if (found == names.end()) {
+      const std::string near = nearest_name(like.node->text, names);
+      tell(like, "no topic " + quoted(like.node->text) + " before this one",
+           !near.empty() ? "did you mean " + quoted(near) + "?" : "a topic that is written out, further up");
+      return std::nullopt;
+    }
+    const Pattern& pattern = patterns_[static_cast<std::size_t>(found - names.begin())];
+    const auto own_id = require(at, "id", "the number that requests carry, \"0x39\"");
+    if (!pattern.good || !own_id) return std::nullopt;  // told already
+    const auto mine = id(*own_id);
+    if (!mine) return std::nullopt;
+    const int shift = int{*mine} - int{id({pattern.node->find("id"), ""}).value_or(0)};
+
+    Node topic = *at.node;
+    std::erase_if(topic.members,
+                  [&](const Node::Member& member) { return member.name == "like" || !is_own(member.name); });
+    for (const Node::Member& member : pattern.node->members) {
+      if (member.name == "alias" || topic.find(member.name) != nullptr) continue;
+      topic.members.push_back(member);
+      move_to(topic.members.back().node, at.node->line);
+      if (member.name != "frames") continue;
+      for (Node& frame : topic.members.back().node.items)
+        for (Node::Member& part : frame.members) {
+          if (part.name != "id") continue;
+          const int moved = int{id({&part.node, ""}).value_or(0)} + shift;
+          part.node.kind = Kind::number;
+          part.node.text = std::to_string(moved);
+        }
+    }
+    return topic;
+  }
+  /// Problems of what was taken over are those of the topic that took it.
+  static void move_to(Node& node, std::size_t line) {
+    node.line = line;
+    for (Node& item : node.items) move_to(item, line);
+    for (Node::Member& member : node.members) move_to(member.node, line);
   }
 
   [[nodiscard]] TopicModel read_topic(const At& at, const Model& model) {
@@ -159,8 +222,8 @@ class Reader : private Checker {
     if (const auto a = at.member("kind")) {
       static constexpr std::pair<std::string_view, protocol::Kind> kinds[] = {
           {"sensor", protocol::Kind::sensor}, {"actuator", protocol::Kind::actuator}};
-      // What has a timeout or a role is meant to be an actuator, whatever the word is.
-      const bool acts = at.member("timeout") || at.member("role");
+      // What has a timeout is meant to be an actuator, whatever the word is.
+      const bool acts = at.member("timeout").has_value();
       topic.kind = one_of(*a, kinds).value_or(acts ? protocol::Kind::actuator : protocol::Kind::sensor);
     }
     const bool sensor = topic.kind == protocol::Kind::sensor;
@@ -191,7 +254,10 @@ class Reader : private Checker {
       read_frames(*a, topic_id, order, topic);
     if (const auto a = at.member("role")) {
       static constexpr std::pair<std::string_view, protocol::Role> roles[] = {
-          {"drive", protocol::Role::drive}, {"light", protocol::Role::light}};
+          {"drive", protocol::Role::drive},
+          {"light", protocol::Role::light},
+          {"status", protocol::Role::status},
+          {"refusal", protocol::Role::refusal}};
       topic.role = one_of(*a, roles).value_or(protocol::Role::none);
       check_role(*a, topic);
     }
@@ -273,9 +339,8 @@ class Reader : private Checker {
     for (const std::string_view key : {"period", "shortest_period"})
       if (const auto a = at.member(key); a && !sensor)
         tell(*a, quoted(key) + " is for sensors", "leave it out: an actuator sends nothing");
-    for (const std::string_view key : {"timeout", "role"})
-      if (const auto a = at.member(key); a && sensor)
-        tell(*a, quoted(key) + " is for actuators", "leave it out, or say \"kind\": \"actuator\"");
+    if (const auto a = at.member("timeout"); a && sensor)
+      tell(*a, "\"timeout\" is for actuators", "leave it out, or say \"kind\": \"actuator\"");
     topic.deadline = defaults_.deadline;
     topic.jitter = defaults_.jitter;
     if (sensor) topic.period = defaults_.period;
@@ -752,30 +817,71 @@ class Reader : private Checker {
   // --- roles
   // ------------------------------------------------------------------------------------------------
 
+  /// What a tool relies on, that knows the role and not the robot.
   void check_role(const At& at, const TopicModel& topic) {
+    using protocol::Role;
+    const bool sensor = topic.kind == protocol::Kind::sensor;
+    const bool reports = topic.role == Role::status || topic.role == Role::refusal;
+    if (topic.role == Role::none) return;
+    if (sensor != reports)
+      return tell(at, "role " + shown(*at.node) + " is for " + (reports ? "sensors" : "actuators"),
+                  reports ? "leave it out, or leave out \"kind\": \"actuator\""
+                          : "leave it out, or say \"kind\": \"actuator\"");
+    if (reports) {
+      const auto [other, is_new] = reports_.emplace(std::pair{topic.board, topic.role}, at.path);
+      if (!is_new)
+        tell(at,
+             "a second topic of its board has the role " + shown(*at.node) + " (see " + other->second + ")",
+             "at most one of a board");
+    }
+
     struct Wanted {
+      std::string_view frame;
       std::string_view field;
       std::string_view unit;
     };
-    const std::vector<Wanted> wanted =
-        topic.role == protocol::Role::drive   ? std::vector<Wanted>{{"x", "m/s"}, {"z", "rad/s"}}
-        : topic.role == protocol::Role::light ? std::vector<Wanted>{{"red", ""}, {"green", ""}, {"blue", ""}}
-                                              : std::vector<Wanted>{};
-    if (topic.frames.size() != 1) return;
+    static constexpr Wanted drive[]{{"", "x", "m/s"}, {"", "z", "rad/s"}};
+    static constexpr Wanted light[]{{"", "red", ""}, {"", "green", ""}, {"", "blue", ""}};
+    static constexpr Wanted status[]{
+        {"identity", "uptime", "s"}, {"identity", "reset", ""},  {"identity", "wire_hash", ""},
+        {"health", "load", "%"},     {"health", "bus", ""},      {"health", "publishing", ""},
+        {"health", "faults", ""},    {"health", "overload", ""}, {"health", "bus_errors", ""}};
+    static constexpr Wanted refusal[]{{"", "topic", ""}, {"", "reason", ""}, {"", "refused", ""}};
+    const std::span<const Wanted> wanted = topic.role == Role::drive    ? std::span<const Wanted>{drive}
+                                           : topic.role == Role::light  ? std::span<const Wanted>{light}
+                                           : topic.role == Role::status ? std::span<const Wanted>{status}
+                                                                        : std::span<const Wanted>{refusal};
+    const auto form = [&] {
+      std::string text;
+      for (const Wanted& field : wanted) {
+        text += text.empty() ? "fields " : &field == &wanted.back() ? " and " : ", ";
+        if (!field.frame.empty()) text.append(field.frame).append(".");
+        text.append(field.field);
+        if (!field.unit.empty()) text.append(" in ").append(field.unit);
+      }
+      return text;
+    };
     for (const Wanted& field : wanted) {
-      const auto& fields = topic.frames.front().fields;
-      const auto found = std::find_if(fields.begin(), fields.end(),
-                                      [&](const FieldModel& f) { return f.name == field.field; });
-      if (found == fields.end())
-        tell(at, "role " + shown(*at.node) + " without a field " + quoted(field.field),
-             topic.role == protocol::Role::drive ? "fields x in m/s and z in rad/s"
-                                                 : "fields red, green and blue");
+      const std::string full =
+          (field.frame.empty() ? "" : std::string{field.frame} + ".") + std::string{field.field};
+      const FieldModel* found = nullptr;
+      for (const FrameModel& frame : topic.frames)
+        for (const FieldModel& f : frame.fields)
+          if (frame.name == field.frame && f.name == field.field) found = &f;
+      if (found == nullptr)
+        tell(at, "role " + shown(*at.node) + " without a field " + quoted(full), form());
       else if (found->unit != field.unit)
-        tell(at,
-             "role " + shown(*at.node) + " with field " + quoted(field.field) + " in " + quoted(found->unit),
+        tell(at, "role " + shown(*at.node) + " with field " + quoted(full) + " in " + quoted(found->unit),
              field.unit.empty() ? "no unit" : "the unit \"" + std::string{field.unit} + "\"");
     }
   }
+
+  /// A topic that others can be like.
+  struct Pattern {
+    std::string name;
+    const Node* node;
+    bool good;  ///< nothing was wrong with it
+  };
 
   protocol::ByteOrder order_ = protocol::ByteOrder::little;
   TopicModel defaults_;
@@ -785,6 +891,8 @@ class Reader : private Checker {
   std::map<std::string, std::string> topic_names_;  ///< name or alias, where
   std::map<unsigned, std::string> commands_;        ///< ids of requests and set points, where
   std::map<unsigned, std::string> samples_;         ///< ids of sensors' frames, where
+  std::map<std::pair<std::uint8_t, protocol::Role>, std::string> reports_;  ///< of which board, where
+  std::vector<Pattern> patterns_;
 };
 
 }  // namespace

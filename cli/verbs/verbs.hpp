@@ -23,6 +23,7 @@ void add_led(CLI::App& app, Session& session, int& exit_code);
 void add_set(CLI::App& app, Session& session, int& exit_code);
 void add_send(CLI::App& app, Session& session, int& exit_code);
 void add_listen(CLI::App& app, Session& session, int& exit_code);
+void add_doctor(CLI::App& app, Session& session, int& exit_code);
 void add_run(CLI::App& app, Session& session, int& exit_code);
 void add_sim(CLI::App& app, Session& session, int& exit_code);
 

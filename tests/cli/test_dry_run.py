@@ -39,7 +39,7 @@ class DryRun(Case):
         out, _ = self.run_tool("stop", "--dry-run")
         self.assertEqual(out.split()[0], "201#0000000000000000")
         self.assertEqual(out, self.run_tool("stop", "all", "--dry-run")[0])
-        self.assertEqual(len(out.split()), 8)
+        self.assertEqual(len(out.split()), 1 + 7 + 2 * 3)  # motors, sensors, and each board's two reports
 
     def test_options_may_stand_before_the_verb_or_behind_it(self):
         self.check("--bus nowhere publish gyro 1s", "208#01E80300")

@@ -24,6 +24,7 @@
 #include "ocm/protocol/physical.hpp"
 #include "ocm/protocol/request.hpp"
 #include "ocm/protocol/topic.hpp"
+#include "ocm/protocol/wire_hash.hpp"
 
 namespace ferry {
 
@@ -240,8 +241,8 @@ struct Wheels {
   static constexpr std::uint8_t instances = 1;
   static constexpr std::array<ocm::protocol::FrameHead, 1> frames{{{ocm::protocol::TopicId{0x10}, 4}}};
   static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::actuator;
-  static constexpr ocm::protocol::Role role = ocm::protocol::Role::drive;
   static constexpr ocm::base::Duration timeout = std::chrono::milliseconds{200};
+  static constexpr ocm::protocol::Role role = ocm::protocol::Role::drive;
   static constexpr ocm::base::Duration deadline = std::chrono::milliseconds{20};
   static constexpr ocm::base::Duration jitter = std::chrono::microseconds{200};
   static constexpr ocm::protocol::Priority priority = ocm::protocol::Priority::urgent;
@@ -287,8 +288,8 @@ struct Beacon {
   static constexpr std::uint8_t instances = 2;
   static constexpr std::array<ocm::protocol::FrameHead, 1> frames{{{ocm::protocol::TopicId{0x20}, 2}}};
   static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::actuator;
-  static constexpr ocm::protocol::Role role = ocm::protocol::Role::light;
   static constexpr ocm::base::Duration timeout{};
+  static constexpr ocm::protocol::Role role = ocm::protocol::Role::light;
   static constexpr ocm::base::Duration deadline = std::chrono::milliseconds{20};
   static constexpr ocm::base::Duration jitter = std::chrono::microseconds{200};
   static constexpr ocm::protocol::Priority priority = ocm::protocol::Priority::high;
@@ -329,7 +330,6 @@ struct Winch {
   static constexpr std::uint8_t instances = 1;
   static constexpr std::array<ocm::protocol::FrameHead, 1> frames{{{ocm::protocol::TopicId{0x30}, 8}}};
   static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::actuator;
-  static constexpr ocm::protocol::Role role = ocm::protocol::Role::none;
   static constexpr ocm::base::Duration timeout{};
   static constexpr ocm::base::Duration deadline = std::chrono::milliseconds{20};
   static constexpr ocm::base::Duration jitter = std::chrono::microseconds{200};
@@ -362,23 +362,6 @@ struct Winch {
   friend constexpr bool operator==(const Winch&, const Winch&) = default;
 };
 static_assert(ocm::protocol::TopicType<Winch>);
-
-/// The board chassis: wheels and range finders. [decided]
-struct Chassis {
-  static constexpr std::string_view name = "chassis";
-  static constexpr std::string_view mcu = "STM32G0B1";
-  static constexpr std::uint32_t clock_hz = 64'000'000;
-  using sensors = ocm::protocol::TopicList<Range>;
-  using actuators = ocm::protocol::TopicList<Wheels>;
-};
-
-/// The board lift: the fork. [decided]
-struct Lift {
-  static constexpr std::string_view name = "lift";
-  static constexpr std::string_view mcu = "RP2040 with MCP2515";
-  using sensors = ocm::protocol::TopicList<ForkStatus, Heartbeat>;
-  using actuators = ocm::protocol::TopicList<Beacon, Winch>;
-};
 
 // clang-format off
 namespace detail {
@@ -496,5 +479,31 @@ inline constexpr std::array<protocol::Topic, 7> topics{{
 
 /// Everything that is said on the bus, as a tool sees it that loads the spec when it runs.
 inline constexpr ocm::protocol::Catalogue catalogue{"Ferry", bit_rate, detail::boards, detail::topics};
+
+/// What tells a board that was built from another spec: boards report it in their status.
+inline constexpr std::uint32_t wire_hash = ocm::protocol::wire_hash(catalogue);
+
+/// The board chassis: wheels and range finders. [decided]
+struct Chassis {
+  static constexpr std::string_view name = "chassis";
+  static constexpr std::string_view mcu = "STM32G0B1";
+  static constexpr std::uint32_t clock_hz = 64'000'000;
+  using sensors = ocm::protocol::TopicList<Range>;
+  using actuators = ocm::protocol::TopicList<Wheels>;
+  using status = void;
+  using refusal = void;
+  static constexpr std::uint32_t wire_hash = ferry::wire_hash;
+};
+
+/// The board lift: the fork. [decided]
+struct Lift {
+  static constexpr std::string_view name = "lift";
+  static constexpr std::string_view mcu = "RP2040 with MCP2515";
+  using sensors = ocm::protocol::TopicList<ForkStatus, Heartbeat>;
+  using actuators = ocm::protocol::TopicList<Beacon, Winch>;
+  using status = void;
+  using refusal = void;
+  static constexpr std::uint32_t wire_hash = ferry::wire_hash;
+};
 
 }  // namespace ferry

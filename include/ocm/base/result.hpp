@@ -23,6 +23,8 @@ enum class Error : std::uint8_t {
   full,            ///< a bounded container or queue has no room left
   closed,          ///< the bus is gone: interface down, peer closed
   timed_out,       ///< nothing came before the deadline
+  no_answer,       ///< a part did not acknowledge, or is not the one that belongs there
+  bus_fault,       ///< a board-internal bus failed: arbitration lost, line stuck, wrong signal
 };
 
 [[nodiscard]] constexpr std::string_view describe(Error error) noexcept {
@@ -53,6 +55,10 @@ enum class Error : std::uint8_t {
       return "the bus is gone";
     case Error::timed_out:
       return "nothing came in time";
+    case Error::no_answer:
+      return "the part does not answer";
+    case Error::bus_fault:
+      return "the bus of the part failed";
   }
   return "unknown error";
 }

@@ -1,14 +1,20 @@
 /// The sensors of one board: the state machine of thesis figure 5.2. A request starts, changes or stops a
-/// topic's publisher; when a topic is due its part is read, encoded, and its frames go to the bus back to
-/// back.
+/// topic's stream; when it is released its part is read, encoded, and its frames go to the bus back to back.
+/// When the bus has no room the rest of the sample waits, and the topic is not released again until it is
+/// gone.
 ///
-/// No heap. RAM a topic: 40 bytes of schedule, 8 bytes a frame that waits for the bus, three pointers for its
-/// reader. Not reentrant: call `handle` and `poll` from one context.
+/// `handle` may preempt `run` and be preempted by it; `run` of one stream is in one context at a time (the
+/// dispatcher sees to that), those of two streams may preempt each other. A topic's slot is touched by its
+/// `run` only; counters and bus under the port's lock, frame by frame.
+///
+/// No heap. RAM a topic: 8 bytes a frame, three pointers for its reader, 2 bytes; its stream is the
+/// dispatcher's.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -17,22 +23,31 @@
 #include "ocm/base/time.hpp"
 #include "ocm/can/bus.hpp"
 #include "ocm/can/frame.hpp"
+#include "ocm/controller/report.hpp"
 #include "ocm/protocol/counters.hpp"
 #include "ocm/protocol/request.hpp"
 #include "ocm/protocol/topic.hpp"
-#include "ocm/scheduling/publisher.hpp"
+#include "ocm/scheduling/dispatcher.hpp"
+#include "ocm/scheduling/port.hpp"
 
 namespace ocm::controller {
 
 namespace detail {
+/// A sample on its way to the bus.
+struct Sending {
+  protocol::Priority priority = protocol::default_priority;
+  std::uint8_t sent = 0;  // of its frames
+};
 template <class Topic>
 struct SensorSlot {
   base::InlineFunction<base::Result<Topic>(base::Time)> read;
   std::array<can::Payload, Topic::frames.size()> payloads{};
-  std::uint8_t sent = Topic::frames.size();  // of `payloads`
-  protocol::Priority priority = protocol::default_priority;
-
-  [[nodiscard]] bool waiting() const noexcept { return sent < Topic::frames.size(); }
+  Sending sending;
+};
+/// What holds when a request does not say otherwise.
+struct SensorDefaults {
+  base::Duration period{};
+  base::Duration jitter{};
 };
 }  // namespace detail
 
@@ -51,112 +66,136 @@ class SensorHandler<protocol::TopicList<Topics...>> {
     std::get<Slot<Topic>>(slots_).read = read;
   }
 
-  /// A command frame. False: not one of this board's sensors.
-  bool handle(const can::Frame& frame, [[maybe_unused]] base::Time now,
-              protocol::Counters& counters) noexcept {
+  /// A command frame. The sensors' streams are those of `dispatcher` from `first_stream` on.
+  template <class Dispatcher, scheduling::Port P>
+  Verdict handle(const can::Frame& frame, [[maybe_unused]] base::Time now,
+                 [[maybe_unused]] Dispatcher& dispatcher, std::size_t first_stream, [[maybe_unused]] P& port,
+                 [[maybe_unused]] protocol::Counters& counters) noexcept {
     [[maybe_unused]] const protocol::TopicId topic = protocol::Identifier::decode(frame.id).topic;
-    std::size_t stream = 0;
-    return (
-        (Topics::id == topic ? (request<Topics>(stream, frame, now, counters), true) : (++stream, false)) ||
-        ...);
+    std::size_t stream = first_stream;
+    Verdict verdict;
+    static_cast<void>(
+        ((Topics::id == topic
+              ? (verdict = {true,
+                            request(stream, frame, now, bool{std::get<Slot<Topics>>(slots_).read},
+                                    {Topics::period.duration(), Topics::jitter}, dispatcher, port, counters)},
+                 true)
+              : (++stream, false)) ||
+         ...));
+    return verdict;
   }
 
-  /// Releases what is due and hands frames to the bus until it takes no more.
-  template <can::Sender Bus>
-  void poll(base::Time now, Bus& bus, protocol::Counters& counters) noexcept {
-    flush(bus, counters);
-    scheduling::Release due;
-    while (publisher_.take_due(now, due)) {
-      counters.missed += due.missed;
-      counters.late += due.late ? 1U : 0U;
-      release(std::index_sequence_for<Topics...>{}, due, now, counters);
-      flush(bus, counters);
-    }
+  /// Samples sensor number `sensor`, or goes on with what waits of it, until the bus takes no more.
+  template <scheduling::Port P, can::Sender Bus>
+  scheduling::Outcome run(std::size_t sensor, const scheduling::Release& release, P& port, Bus& bus,
+                          protocol::Counters& counters) noexcept {
+    return run(std::index_sequence_for<Topics...>{}, sensor, release, port, bus, counters);
   }
 
-  /// Frames of a sample wait for the bus: poll again as soon as it has room.
-  [[nodiscard]] bool waiting() const noexcept { return (std::get<Slot<Topics>>(slots_).waiting() || ...); }
-  [[nodiscard]] base::Time next_release() const noexcept { return publisher_.next_release(); }
+  /// Bit n: sensor number n had nothing to say when it was read last. To be called with the port's lock held.
+  [[nodiscard]] std::uint32_t faults() const noexcept { return faults_; }
 
  private:
   template <class Topic>
   using Slot = detail::SensorSlot<Topic>;
 
-  template <class Topic>
-  void request(std::size_t stream, const can::Frame& frame, base::Time now,
-               protocol::Counters& counters) noexcept {
+  // What does not depend on the topic's type is compiled once: a board has few kilobytes.
+
+  /// Why it is refused, if it is.
+  template <class Dispatcher, class P>
+  [[gnu::noinline]] static base::Error request(std::size_t stream, const can::Frame& frame, base::Time now,
+                                               bool served, const detail::SensorDefaults& defaults,
+                                               Dispatcher& dispatcher, P& port,
+                                               protocol::Counters& counters) noexcept {
     auto request = protocol::decode_request(frame);
-    if (!std::get<Slot<Topic>>(slots_).read) request = base::Error::unknown_topic;
-    if (!request) return counters.refuse(request.error);
-    ++counters.requests;
+    if (!served) request = base::Error::unknown_topic;
+    {
+      [[maybe_unused]] const auto guard = port.lock();
+      if (!request) {
+        counters.refuse(request.error);
+        return request.error;
+      }
+      ++counters.requests;
+    }
     switch (request->mode) {
       case protocol::Mode::stop:
-        return publisher_.stop(stream);
+        dispatcher.stop(stream);
+        break;
       case protocol::Mode::once:
-        return publisher_.once(stream, request->priority, now);
+        dispatcher.once(stream, request->priority, now);
+        break;
       case protocol::Mode::publish:
         // Without a period in the request, the topic's own default holds.
-        return publisher_.start(stream, (frame.dlc == 1 ? Topic::period : request->period).duration(),
-                                request->priority, now, Topic::jitter);
+        dispatcher.start(stream, frame.dlc == 1 ? defaults.period : request->period.duration(),
+                         request->priority, now, defaults.jitter);
+        break;
     }
+    return base::Error::none;
   }
 
-  template <std::size_t... I>
-  void release(std::index_sequence<I...>, const scheduling::Release& due, [[maybe_unused]] base::Time now,
-               protocol::Counters& counters) noexcept {
-    ((I == due.stream ? sample(std::get<I>(slots_), due.priority, now, counters) : void()), ...);
+  template <std::size_t... I, class P, class Bus>
+  scheduling::Outcome run(std::index_sequence<I...>, [[maybe_unused]] std::size_t sensor,
+                          [[maybe_unused]] const scheduling::Release& release, [[maybe_unused]] P& port,
+                          [[maybe_unused]] Bus& bus, [[maybe_unused]] protocol::Counters& counters) noexcept {
+    auto outcome = scheduling::Outcome::done;
+    ((I == sensor ? void(outcome = step<I>(std::get<I>(slots_), release, port, bus, counters)) : void()),
+     ...);
+    return outcome;
   }
 
-  template <class Topic>
-  static void sample(Slot<Topic>& slot, protocol::Priority priority, base::Time now,
-                     protocol::Counters& counters) noexcept {
-    if (slot.waiting()) {  // half a sample is on the bus: a receiver must not get the rest of another one
-      ++counters.overrun;
-      return;
-    }
-    const base::Result<Topic> read = slot.read(now);
-    if (!read) {
-      ++counters.not_sampled;
-      return;
-    }
-    for (std::size_t i = 0; i < slot.payloads.size(); ++i) slot.payloads[i] = read->encode(i);
-    slot.priority = priority;
-    slot.sent = 0;
-    ++counters.samples;
+  template <std::size_t Sensor, class Topic, class P, class Bus>
+  scheduling::Outcome step(Slot<Topic>& slot, const scheduling::Release& release, P& port, Bus& bus,
+                           protocol::Counters& counters) noexcept {
+    if (!release.resumed && !sample<Sensor>(slot, release.priority, port, counters))
+      return scheduling::Outcome::done;
+    return send(slot.sending, Topic::frames, slot.payloads.data(), port, bus, counters);
   }
 
-  /// Most urgent first; a topic's frames in their order.
-  template <can::Sender Bus>
-  void flush(Bus& bus, protocol::Counters& counters) noexcept {
-    for (std::uint8_t level = 0; level < protocol::priority_levels; ++level)
-      if (!(flush(std::get<Slot<Topics>>(slots_), static_cast<protocol::Priority>(level), bus, counters) &&
-            ...))
-        return;
+  /// False: the part delivered nothing.
+  template <std::size_t Sensor, class Topic, class P>
+  bool sample(Slot<Topic>& slot, protocol::Priority priority, P& port,
+              protocol::Counters& counters) noexcept {
+    const base::Result<Topic> read = slot.read(port.now());
+    if (read) {
+      for (std::size_t i = 0; i < slot.payloads.size(); ++i) slot.payloads[i] = read->encode(i);
+      slot.sending = {priority, 0};
+    }
+    count(Sensor, read.ok(), port, counters);
+    return read.ok();
   }
-  /// False: the bus is full.
-  template <class Topic, can::Sender Bus>
-  static bool flush(Slot<Topic>& slot, protocol::Priority level, Bus& bus,
-                    protocol::Counters& counters) noexcept {
-    if (slot.priority != level) return true;
-    while (slot.waiting()) {
-      const auto& head = Topic::frames[slot.sent];
-      const can::Frame frame{protocol::Identifier{protocol::Direction::sensor, level, head.id}.encode(),
-                             head.dlc, slot.payloads[slot.sent]};
+  template <class P>
+  [[gnu::noinline]] void count(std::size_t sensor, bool sampled, P& port,
+                               protocol::Counters& counters) noexcept {
+    [[maybe_unused]] const auto guard = port.lock();
+    ++(sampled ? counters.samples : counters.not_sampled);
+    const std::uint32_t bit = sensor < 32 ? std::uint32_t{1} << sensor : 0;
+    faults_ = sampled ? faults_ & ~bit : faults_ | bit;
+  }
+
+  template <class P, class Bus>
+  [[gnu::noinline]] static scheduling::Outcome send(detail::Sending& sending,
+                                                    std::span<const protocol::FrameHead> heads,
+                                                    const can::Payload* payloads, P& port, Bus& bus,
+                                                    protocol::Counters& counters) noexcept {
+    for (; sending.sent < heads.size(); ++sending.sent) {
+      const auto& head = heads[sending.sent];
+      const can::Frame frame{
+          protocol::Identifier{protocol::Direction::sensor, sending.priority, head.id}.encode(), head.dlc,
+          payloads[sending.sent]};
+      [[maybe_unused]] const auto guard = port.lock();
       const base::Result<bool> taken = bus.send(frame);
-      if (!taken) {
+      if (!taken) {  // the rest of the sample is given up
         ++counters.send_failed;
-        slot.sent = Topic::frames.size();
-        return true;
+        return scheduling::Outcome::done;
       }
-      if (!*taken) return false;
+      if (!*taken) return scheduling::Outcome::waits;
       ++counters.sent;
-      ++slot.sent;
     }
-    return true;
+    return scheduling::Outcome::done;
   }
 
-  scheduling::Publisher<sizeof...(Topics)> publisher_;
   std::tuple<Slot<Topics>...> slots_;
+  std::uint32_t faults_ = 0;
 };
 
 }  // namespace ocm::controller

@@ -22,16 +22,18 @@ struct Counters {
   std::uint32_t bad_unit = 0;
   std::uint32_t bad_period = 0;
   std::uint32_t not_served = 0;  ///< this board's topic, but nothing serves it
+  std::uint32_t failed = 0;      ///< taken, and then a part would not: calibration, storage
   // frames to the bus
   std::uint32_t samples = 0;      ///< read and handed on
   std::uint32_t sent = 0;         ///< frames that the bus took
   std::uint32_t not_sampled = 0;  ///< the part delivered nothing: no frame for this release
-  std::uint32_t overrun = 0;      ///< released while the last sample still waited for the bus: not sent
+  std::uint32_t overrun = 0;      ///< released while the last sample still waited for the bus: not sampled
   std::uint32_t late = 0;         ///< released later than the topic's jitter allows
   std::uint32_t missed = 0;       ///< releases skipped because a whole period had passed
   std::uint32_t send_failed = 0;  ///< the bus answered with an error: frames of a sample given up
   // safety
   std::uint32_t timeouts = 0;  ///< actuators brought to rest because no set point came
+  std::uint32_t bus_lost = 0;  ///< actuators brought to rest because the board lost the bus
 
   /// Counts a refused request.
   constexpr void refuse(base::Error cause) noexcept {
@@ -48,13 +50,16 @@ struct Counters {
       case base::Error::unknown_topic:
         ++not_served;
         break;
-      default:
+      case base::Error::bad_length:
         ++bad_length;
+        break;
+      default:
+        ++failed;
         break;
     }
   }
   [[nodiscard]] constexpr std::uint32_t refused() const noexcept {
-    return bad_length + bad_mode + bad_unit + bad_period + not_served;
+    return bad_length + bad_mode + bad_unit + bad_period + not_served + failed;
   }
   friend constexpr bool operator==(const Counters&, const Counters&) = default;
 };
@@ -71,6 +76,7 @@ constexpr void for_each(const Counters& c, F&& f) {
   f(std::string_view{"bad_unit"}, c.bad_unit);
   f(std::string_view{"bad_period"}, c.bad_period);
   f(std::string_view{"not_served"}, c.not_served);
+  f(std::string_view{"failed"}, c.failed);
   f(std::string_view{"samples"}, c.samples);
   f(std::string_view{"sent"}, c.sent);
   f(std::string_view{"not_sampled"}, c.not_sampled);
@@ -79,6 +85,7 @@ constexpr void for_each(const Counters& c, F&& f) {
   f(std::string_view{"missed"}, c.missed);
   f(std::string_view{"send_failed"}, c.send_failed);
   f(std::string_view{"timeouts"}, c.timeouts);
+  f(std::string_view{"bus_lost"}, c.bus_lost);
 }
 
 }  // namespace ocm::protocol

@@ -69,8 +69,9 @@ struct FrameLayout {
 
 enum class Kind : std::uint8_t { sensor, actuator };
 
-/// What an actuator does, so that a tool knows how to say it: `drive` takes velocities, `light` a colour.
-enum class Role : std::uint8_t { none, drive, light };
+/// What a topic is for, so that a tool that does not know the robot can use it: `drive` takes velocities,
+/// `light` a colour; `status` tells how its board is, `refusal` which request the board refused, and why.
+enum class Role : std::uint8_t { none, drive, light, status, refusal };
 
 struct Topic {
   std::string_view name;
@@ -183,6 +184,13 @@ struct TopicList {
   static constexpr std::size_t size = sizeof...(Topics);
   template <class T>
   static constexpr bool contains = (std::is_same_v<T, Topics> || ...);
+  /// The number of T in the list; `size` when it is not there.
+  template <class T>
+  static constexpr std::size_t index = [] {
+    std::size_t i = 0;
+    static_cast<void>(((std::is_same_v<T, Topics> || (++i, false)) || ...));
+    return i;
+  }();
 };
 
 /// A generated topic as an entry of its catalogue. `instance` is 1..T::instances for one of several of a
@@ -207,9 +215,9 @@ template <TopicType T>
     topic.period = T::period;
     topic.shortest_period = T::shortest_period;
   } else {
-    topic.role = T::role;
     topic.timeout = T::timeout;
   }
+  if constexpr (requires { T::role; }) topic.role = T::role;
   if (instance != 0) topic.group = T::name;
   topic.instance = instance;
   return topic;

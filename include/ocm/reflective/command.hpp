@@ -403,7 +403,7 @@ class CommandParser {
       if (!number || *number < 1 || *number > lights.size())
         return WordError{which.index, "no LED " + detail::quoted(which.text),
                          "1 to " + std::to_string(lights.size()) + ", or all"};
-      chosen = {lights[*number - 1]};
+      chosen = {lights[static_cast<std::size_t>(*number) - 1]};
     }
     const auto rgb = parse_colour(line[2].text);
     if (!rgb)

@@ -1,12 +1,17 @@
-/// Which topic is due, and when. Releases lie on a grid that starts when the request is received: the next
-/// release is the last one plus the period, so a late caller delays one release and never the ones after it.
-/// Whole periods that passed are skipped and counted; releases are never bunched.
+/// Which stream is due, and when. Releases lie on a grid that starts when the request is received: the next
+/// release is the last one plus the period, so a late taker delays one release and never the ones after it.
+/// Who comes whole periods too late gets the newest grid point that has passed, and the skipped ones are
+/// counted: at most one release is taken in one period of the grid, so releases are never bunched.
 ///
-/// The caller passes `now`: no clock, no heap. 40 bytes a topic; `take_due` and `next_release` are O(N) in
-/// the number of topics. Not reentrant.
+/// A stream that was taken is not taken again until `done`, whatever is asked for in between.
+///
+/// The caller passes `now`: no clock, no heap. 40 bytes a stream and 8 more; `take_due`, `due` and
+/// `next_release` are O(N) in the number of streams, the others O(1). Not reentrant: a Dispatcher locks
+/// around it.
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 
@@ -22,21 +27,42 @@ struct Release {
   base::Time scheduled{};    ///< where the grid has it
   std::uint32_t missed = 0;  ///< releases before this one that were skipped
   bool late = false;         ///< taken later than the stream's jitter allows
+  bool resumed = false;      ///< not new: what an earlier release left waiting may go on now
   friend constexpr bool operator==(const Release&, const Release&) = default;
+};
+
+/// What a stream could not keep up with, since the start. They wrap.
+struct Overload {
+  std::uint32_t missed = 0;   ///< releases skipped because a whole period had passed
+  std::uint32_t late = 0;     ///< releases taken later than the jitter allows
+  std::uint32_t overrun = 0;  ///< releases given up because the last one's outcome still waited
+  friend constexpr bool operator==(const Overload&, const Overload&) = default;
 };
 
 template <std::size_t N>
 class Publisher {
  public:
-  /// Publishes stream `stream` every `period` (above zero), the first time at once. On a running stream this
-  /// replaces period, priority and grid at once. A release later than `jitter` counts as late.
-  constexpr void start(std::size_t stream, base::Duration period, protocol::Priority priority, base::Time now,
-                       base::Duration jitter = base::Duration::max()) noexcept {
-    streams_[stream] = {now, period, jitter, priority, State::periodic};
+  static constexpr std::size_t streams = N;
+
+  /// Publishes stream `stream` every `period` (above zero), the first time at `from`. On a running stream
+  /// this replaces period, priority and grid at once. A release later than `jitter` (to the microsecond; one
+  /// above 71 minutes is none) counts as late.
+  constexpr void start(std::size_t stream, base::Duration period, protocol::Priority priority,
+                       base::Time from, base::Duration jitter = base::Duration::max()) noexcept {
+    Stream& s = streams_[stream];
+    s.next = from;
+    s.period = period;
+    s.jitter_us = microseconds(jitter);
+    s.priority = priority;
+    s.state = State::periodic;
   }
-  /// One release at once, then none: a running stream stops.
-  constexpr void once(std::size_t stream, protocol::Priority priority, base::Time now) noexcept {
-    streams_[stream] = {now, base::Duration{0}, base::Duration::max(), priority, State::once};
+  /// One release at `when`, then none: a running stream stops at once.
+  constexpr void once(std::size_t stream, protocol::Priority priority, base::Time when) noexcept {
+    Stream& s = streams_[stream];
+    s.next = when;
+    s.jitter_us = UINT32_MAX;
+    s.priority = priority;
+    s.state = State::once;
   }
   /// Takes effect before the next release.
   constexpr void stop(std::size_t stream) noexcept { streams_[stream].state = State::idle; }
@@ -51,52 +77,140 @@ class Publisher {
     return streams_[stream].priority;
   }
 
-  /// Takes the most urgent release that is due at `now` (equal priorities: the lower stream number) into
-  /// `release`. False: none is due.
-  [[nodiscard]] constexpr bool take_due(base::Time now, Release& release) noexcept {
+  /// Takes a release of this priority that is due at `now` into `release`: the one whose grid point is the
+  /// earliest, of equal ones the lower stream number. False: none is due. The stream is taken until `done`.
+  [[nodiscard]] constexpr bool take_due(base::Time now, protocol::Priority priority,
+                                        Release& release) noexcept {
     std::size_t found = N;
     for (std::size_t i = 0; i < N; ++i) {
       const Stream& s = streams_[i];
-      if (s.state == State::idle || s.next > now) continue;
-      if (found == N || s.priority < streams_[found].priority) found = i;
+      if (s.priority != priority || !s.takeable() || s.next > now) continue;
+      if (found == N || s.next < streams_[found].next) found = i;
     }
     if (found == N) return false;
 
-    Stream& stream = streams_[found];
-    release = {found, stream.priority, stream.next, 0, false};
-    if (stream.state == State::once) {
-      stream.state = State::idle;
+    Stream& s = streams_[found];
+    release = {found, s.priority, s.next, 0, false, false};
+    s.taken_at = s.priority;
+    s.use = Use::taken;
+    if (s.state == State::once) {
+      s.state = State::idle;
       return true;
     }
-    stream.next += stream.period;
-    if (stream.next <= now) {  // a whole period too late: go on with the newest grid point that has passed
-      const std::int64_t skipped = (now - stream.next) / stream.period + 1;
-      stream.next += skipped * stream.period;
-      release.scheduled = stream.next - stream.period;
-      release.missed = skipped > UINT32_MAX ? UINT32_MAX : static_cast<std::uint32_t>(skipped);
+    s.next += s.period;
+    if (s.next <= now) {  // a whole period too late: go on with the newest grid point that has passed
+      release.missed = s.skip_passed(now);
+      release.scheduled = s.next - s.period;
+      s.overload.missed += release.missed;
     }
-    release.late = release.missed != 0 || now - release.scheduled > stream.jitter;
+    release.late = release.missed != 0 ||
+                   (s.jitter_us != UINT32_MAX &&
+                    now - release.scheduled > std::chrono::microseconds{std::int64_t{s.jitter_us}});
+    s.overload.late += release.late ? 1U : 0U;
     return true;
   }
 
-  /// When the next release is due; base::never when nothing runs.
+  /// What the release did is not finished: it waits for something, and until then the stream is not taken.
+  constexpr void hold(std::size_t stream) noexcept {
+    streams_[stream].use = Use::held;
+    ++held_;
+  }
+  /// A held stream of this priority (the one that it was taken at), from number `from` on; N: there is none.
+  [[nodiscard]] constexpr std::size_t held(protocol::Priority priority, std::size_t from = 0) const noexcept {
+    if (held_ == 0) return N;  // nearly always: spares a look at each
+    while (from < N && !(streams_[from].use == Use::held && streams_[from].taken_at == priority)) ++from;
+    return from;
+  }
+  /// The priority that a stream in use was taken at.
+  [[nodiscard]] constexpr protocol::Priority taken_at(std::size_t stream) const noexcept {
+    return streams_[stream].taken_at;
+  }
+  [[nodiscard]] constexpr bool in_use(std::size_t stream) const noexcept {
+    return streams_[stream].use != Use::none;
+  }
+  /// The release is finished. Grid points that passed while it was held are given up, and counted; a single
+  /// release is not, and comes now.
+  constexpr void done(std::size_t stream, base::Time now) noexcept {
+    Stream& s = streams_[stream];
+    if (s.overdue_while_held(now)) s.overload.overrun += s.skip_passed(now);
+    if (s.use == Use::held) --held_;
+    s.use = Use::none;
+  }
+
+  /// Up to `now`, with what is already lost of a stream that is held, or that nobody comes to take.
+  [[nodiscard]] constexpr Overload overload(std::size_t stream, base::Time now) const noexcept {
+    Stream s = streams_[stream];
+    if (s.overdue_while_held(now))
+      s.overload.overrun += s.skip_passed(now);
+    else if (s.state == State::periodic && s.next <= now)
+      s.overload.missed += s.skip_passed(now) - 1;  // the newest one may still be taken
+    return s.overload;
+  }
+
+  /// When the stream can be taken next; base::never when it does not run, or not until it is done.
+  [[nodiscard]] constexpr base::Time next_release(std::size_t stream) const noexcept {
+    return streams_[stream].takeable() ? streams_[stream].next : base::never;
+  }
+  /// When the first of them all can be taken.
   [[nodiscard]] constexpr base::Time next_release() const noexcept {
     base::Time next = base::never;
     for (const Stream& s : streams_)
-      if (s.state != State::idle && s.next < next) next = s.next;
+      if (s.takeable() && s.next < next) next = s.next;
     return next;
+  }
+
+  struct Due {
+    std::uint8_t priorities = 0;    ///< a bit for each that has a stream due
+    base::Time next = base::never;  ///< the first release after now
+  };
+  [[nodiscard]] constexpr Due due(base::Time now) const noexcept {
+    Due result;
+    for (const Stream& s : streams_) {
+      if (!s.takeable()) continue;
+      if (s.next <= now)
+        result.priorities =
+            static_cast<std::uint8_t>(result.priorities | 1U << static_cast<unsigned>(s.priority));
+      else if (s.next < result.next)
+        result.next = s.next;
+    }
+    return result;
   }
 
  private:
   enum class State : std::uint8_t { idle, periodic, once };
+  enum class Use : std::uint8_t { none, taken, held };
   struct Stream {
     base::Time next{};
     base::Duration period{};
-    base::Duration jitter{};
+    std::uint32_t jitter_us = UINT32_MAX;
+    Overload overload{};
     protocol::Priority priority = protocol::default_priority;
+    protocol::Priority taken_at = protocol::default_priority;
     State state = State::idle;
+    Use use = Use::none;
+
+    [[nodiscard]] constexpr bool takeable() const noexcept {
+      return state != State::idle && use == Use::none;
+    }
+    [[nodiscard]] constexpr bool overdue_while_held(base::Time now) const noexcept {
+      return use == Use::held && state == State::periodic && next <= now;
+    }
+    /// Moves `next`, which has passed, behind `now`; says over how many grid points.
+    constexpr std::uint32_t skip_passed(base::Time now) noexcept {
+      const std::int64_t skipped = (now - next) / period + 1;
+      next += skipped * period;
+      return skipped > UINT32_MAX ? UINT32_MAX : static_cast<std::uint32_t>(skipped);
+    }
   };
+  static_assert(sizeof(Stream) == 40);
+
+  [[nodiscard]] static constexpr std::uint32_t microseconds(base::Duration jitter) noexcept {
+    const std::int64_t us = jitter.count() / 1000;
+    return us < 0 ? 0 : us > UINT32_MAX ? UINT32_MAX : static_cast<std::uint32_t>(us);
+  }
+
   std::array<Stream, N> streams_{};
+  std::size_t held_ = 0;  // how many
 };
 
 }  // namespace ocm::scheduling

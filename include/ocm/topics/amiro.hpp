@@ -25,6 +25,7 @@
 #include "ocm/protocol/physical.hpp"
 #include "ocm/protocol/request.hpp"
 #include "ocm/protocol/topic.hpp"
+#include "ocm/protocol/wire_hash.hpp"
 
 namespace amiro {
 
@@ -582,9 +583,9 @@ struct Motors {
   static constexpr std::uint8_t instances = 1;
   static constexpr std::array<ocm::protocol::FrameHead, 1> frames{{{ocm::protocol::TopicId{0x01}, 8}}};
   static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::actuator;
-  static constexpr ocm::protocol::Role role = ocm::protocol::Role::drive;
   /// [decided: five set points at 100 ms lost in a row]
   static constexpr ocm::base::Duration timeout = std::chrono::milliseconds{500};
+  static constexpr ocm::protocol::Role role = ocm::protocol::Role::drive;
   static constexpr ocm::base::Duration deadline = std::chrono::milliseconds{50};
   static constexpr ocm::base::Duration jitter = std::chrono::milliseconds{1};
   static constexpr ocm::protocol::Priority priority = ocm::protocol::Priority::medium;
@@ -633,8 +634,8 @@ struct Led {
   static constexpr std::uint8_t instances = 8;
   static constexpr std::array<ocm::protocol::FrameHead, 1> frames{{{ocm::protocol::TopicId{0x3C}, 3}}};
   static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::actuator;
-  static constexpr ocm::protocol::Role role = ocm::protocol::Role::light;
   static constexpr ocm::base::Duration timeout{};
+  static constexpr ocm::protocol::Role role = ocm::protocol::Role::light;
   static constexpr ocm::base::Duration deadline = std::chrono::milliseconds{50};
   static constexpr ocm::base::Duration jitter = std::chrono::milliseconds{1};
   static constexpr ocm::protocol::Priority priority = ocm::protocol::Priority::medium;
@@ -668,38 +669,724 @@ struct Led {
 };
 static_assert(ocm::protocol::TopicType<Led>);
 
-/// The board di_wheel_drive: bottom board: wheels, inertial sensors, floor sensors. [Thesis 2.1.1; clock_hz:
-/// AMiRo-OS 1.0; can_clock_hz: AMiRo-OS 1.0; RM0008 7.2]
-struct DiWheelDrive {
-  static constexpr std::string_view name = "di_wheel_drive";
-  static constexpr std::string_view mcu = "STM32F103";
-  static constexpr std::uint32_t clock_hz = 72'000'000;
-  static constexpr std::uint32_t can_clock_hz = 36'000'000;
-  using sensors = ocm::protocol::TopicList<Odometry, FloorProximity, Magnetometer, Gyroscope, Accelerometer>;
-  using actuators = ocm::protocol::TopicList<Motors>;
+/// Floor calibration: offsets of the floor sensors: measured now, with the robot held up, or forgotten.
+/// Actuator of DiWheelDrive, set points on 0x0A. [decided: a command of the shell of AMiRo-OS 1.0 has none on
+/// the bus; id decided: free in the board's block]
+struct FloorCalibration {
+  static constexpr std::string_view name = "floor_calibration";
+  static constexpr ocm::protocol::TopicId id{0x0A};
+  static constexpr std::uint8_t instances = 1;
+  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{{{ocm::protocol::TopicId{0x0A}, 1}}};
+  static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::actuator;
+  static constexpr ocm::base::Duration timeout{};
+  static constexpr ocm::base::Duration deadline = std::chrono::milliseconds{50};
+  static constexpr ocm::base::Duration jitter = std::chrono::milliseconds{1};
+  static constexpr ocm::protocol::Priority priority = ocm::protocol::Priority::medium;
+
+  enum class Action : std::uint8_t {
+    none = 0,
+    measure = 1,
+    forget = 2,
+  };
+
+  Action action{};
+
+  using ActionBits = ocm::protocol::Bits<std::uint8_t, 0>;
+
+  [[nodiscard]] constexpr ocm::can::Payload encode(std::size_t /*frame*/ = 0) const noexcept {
+    ocm::can::Payload data{};
+    ActionBits::put(data, static_cast<std::uint8_t>(action));
+    return data;
+  }
+  [[nodiscard]] static constexpr FloorCalibration decode(const ocm::can::Payload& data) noexcept {
+    FloorCalibration value;
+    value.action = static_cast<Action>(ActionBits::get(data));
+    return value;
+  }
+  [[nodiscard]] static constexpr FloorCalibration decode(
+      const std::array<ocm::can::Payload, 1>& all) noexcept {
+    return decode(all[0]);
+  }
+  friend constexpr bool operator==(const FloorCalibration&, const FloorCalibration&) = default;
+};
+static_assert(ocm::protocol::TopicType<FloorCalibration>);
+
+/// Ring calibration: offsets of the proximity ring: measured now, with nothing around the robot, or
+/// forgotten. Actuator of PowerManagement, set points on 0x27. [decided, as floor_calibration]
+struct RingCalibration {
+  static constexpr std::string_view name = "ring_calibration";
+  static constexpr ocm::protocol::TopicId id{0x27};
+  static constexpr std::uint8_t instances = 1;
+  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{{{ocm::protocol::TopicId{0x27}, 1}}};
+  static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::actuator;
+  static constexpr ocm::base::Duration timeout{};
+  static constexpr ocm::base::Duration deadline = std::chrono::milliseconds{50};
+  static constexpr ocm::base::Duration jitter = std::chrono::milliseconds{1};
+  static constexpr ocm::protocol::Priority priority = ocm::protocol::Priority::medium;
+
+  enum class Action : std::uint8_t {
+    none = 0,
+    measure = 1,
+    forget = 2,
+  };
+
+  Action action{};
+
+  using ActionBits = ocm::protocol::Bits<std::uint8_t, 0>;
+
+  [[nodiscard]] constexpr ocm::can::Payload encode(std::size_t /*frame*/ = 0) const noexcept {
+    ocm::can::Payload data{};
+    ActionBits::put(data, static_cast<std::uint8_t>(action));
+    return data;
+  }
+  [[nodiscard]] static constexpr RingCalibration decode(const ocm::can::Payload& data) noexcept {
+    RingCalibration value;
+    value.action = static_cast<Action>(ActionBits::get(data));
+    return value;
+  }
+  [[nodiscard]] static constexpr RingCalibration decode(
+      const std::array<ocm::can::Payload, 1>& all) noexcept {
+    return decode(all[0]);
+  }
+  friend constexpr bool operator==(const RingCalibration&, const RingCalibration&) = default;
+};
+static_assert(ocm::protocol::TopicType<RingCalibration>);
+
+/// Di wheel drive status, identity.
+struct DiWheelDriveStatusIdentity {
+  static constexpr ocm::protocol::TopicId id{0x1B};
+  static constexpr std::uint8_t dlc = 8;
+
+  enum class Reset : std::uint8_t {
+    unknown = 0,
+    power = 1,
+    pin = 2,
+    software = 3,
+    watchdog = 4,
+    low_power = 5,
+    fault = 6,
+  };
+
+  std::uint32_t uptime = 0;     ///< since the start; stays at its end; [0, 16777215] s
+  Reset reset{};                ///< why the board started
+  std::uint32_t wire_hash = 0;  ///< of the spec that the board was built from; [0, 4294967295]
+
+  using UptimeBits = ocm::protocol::Bits<std::uint32_t, 0, 24>;
+  using ResetBits = ocm::protocol::Bits<std::uint8_t, 24>;
+  using WireHashBits = ocm::protocol::Bits<std::uint32_t, 32>;
+
+  [[nodiscard]] constexpr double uptime_s() const noexcept { return uptime; }
+  constexpr void set_uptime_s(double value) noexcept {
+    uptime = ocm::protocol::nearest_raw<std::uint32_t>(value, UptimeBits::min, UptimeBits::max);
+  }
+
+  [[nodiscard]] constexpr ocm::can::Payload encode() const noexcept {
+    ocm::can::Payload data{};
+    UptimeBits::put(data, uptime);
+    ResetBits::put(data, static_cast<std::uint8_t>(reset));
+    WireHashBits::put(data, wire_hash);
+    return data;
+  }
+  [[nodiscard]] static constexpr DiWheelDriveStatusIdentity decode(const ocm::can::Payload& data) noexcept {
+    DiWheelDriveStatusIdentity value;
+    value.uptime = UptimeBits::get(data);
+    value.reset = static_cast<Reset>(ResetBits::get(data));
+    value.wire_hash = WireHashBits::get(data);
+    return value;
+  }
+  friend constexpr bool operator==(const DiWheelDriveStatusIdentity&,
+                                   const DiWheelDriveStatusIdentity&) = default;
 };
 
-/// The board power_management: middle board: batteries, proximity ring. [Thesis 2.1.2; clock_hz: AMiRo-OS
-/// 1.0; can_clock_hz: AMiRo-OS 1.0; RM0090 6.2]
-struct PowerManagement {
-  static constexpr std::string_view name = "power_management";
-  static constexpr std::string_view mcu = "STM32F405";
-  static constexpr std::uint32_t clock_hz = 168'000'000;
-  static constexpr std::uint32_t can_clock_hz = 42'000'000;
-  using sensors = ocm::protocol::TopicList<PowerStatus, ProximityRing>;
-  using actuators = ocm::protocol::TopicList<>;
+/// Di wheel drive status, health.
+struct DiWheelDriveStatusHealth {
+  static constexpr ocm::protocol::TopicId id{0x1C};
+  static constexpr std::uint8_t dlc = 8;
+
+  enum class Bus : std::uint8_t {
+    active = 0,
+    warning = 1,
+    passive = 2,
+    off = 3,
+  };
+  static constexpr std::uint8_t load_unknown = 255;
+
+  /// of the CPU, over the last second; [0, 100] %
+  std::uint8_t load = 0;
+  /// state of the CAN controller's error counters
+  Bus bus{};
+  /// bit n: the board's n-th sensor, in the order of the spec, is published; [0, 255]
+  std::uint8_t publishing = 0;
+  /// bit n: the n-th sensor's part did not answer last time; [0, 255]
+  std::uint8_t faults = 0;
+  /// releases that came late or not at all; stays at its end; [0, 65535]
+  std::uint16_t overload = 0;
+  /// errors on the bus and frames given up; stays at its end; [0, 65535]
+  std::uint16_t bus_errors = 0;
+
+  using LoadBits = ocm::protocol::Bits<std::uint8_t, 0>;
+  using BusBits = ocm::protocol::Bits<std::uint8_t, 8>;
+  using PublishingBits = ocm::protocol::Bits<std::uint8_t, 16>;
+  using FaultsBits = ocm::protocol::Bits<std::uint8_t, 24>;
+  using OverloadBits = ocm::protocol::Bits<std::uint16_t, 32>;
+  using BusErrorsBits = ocm::protocol::Bits<std::uint16_t, 48>;
+
+  [[nodiscard]] constexpr double load_percent() const noexcept { return load; }
+  constexpr void set_load_percent(double value) noexcept {
+    load = ocm::protocol::nearest_raw<std::uint8_t>(value, 0, 100);
+  }
+
+  [[nodiscard]] constexpr ocm::can::Payload encode() const noexcept {
+    ocm::can::Payload data{};
+    LoadBits::put(data, load);
+    BusBits::put(data, static_cast<std::uint8_t>(bus));
+    PublishingBits::put(data, publishing);
+    FaultsBits::put(data, faults);
+    OverloadBits::put(data, overload);
+    BusErrorsBits::put(data, bus_errors);
+    return data;
+  }
+  [[nodiscard]] static constexpr DiWheelDriveStatusHealth decode(const ocm::can::Payload& data) noexcept {
+    DiWheelDriveStatusHealth value;
+    value.load = LoadBits::get(data);
+    value.bus = static_cast<Bus>(BusBits::get(data));
+    value.publishing = PublishingBits::get(data);
+    value.faults = FaultsBits::get(data);
+    value.overload = OverloadBits::get(data);
+    value.bus_errors = BusErrorsBits::get(data);
+    return value;
+  }
+  friend constexpr bool operator==(const DiWheelDriveStatusHealth&,
+                                   const DiWheelDriveStatusHealth&) = default;
 };
 
-/// The board light_ring: top board: eight coloured lights. [Thesis 2.1.3; clock_hz: AMiRo-OS 1.0;
-/// can_clock_hz: AMiRo-OS 1.0; RM0008 7.2]
-struct LightRing {
-  static constexpr std::string_view name = "light_ring";
-  static constexpr std::string_view mcu = "STM32F103";
-  static constexpr std::uint32_t clock_hz = 72'000'000;
-  static constexpr std::uint32_t can_clock_hz = 36'000'000;
-  using sensors = ocm::protocol::TopicList<>;
-  using actuators = ocm::protocol::TopicList<Led>;
+/// Di wheel drive status: how the board is. Sensor of DiWheelDrive, requests on 0x1B. [decided: status ids at
+/// the end of each board's block of 30]
+struct DiWheelDriveStatus {
+  static constexpr std::string_view name = "di_wheel_drive_status";
+  static constexpr ocm::protocol::TopicId id{0x1B};
+  static constexpr std::uint8_t instances = 1;
+  static constexpr std::array<ocm::protocol::FrameHead, 2> frames{{
+      {ocm::protocol::TopicId{0x1B}, 8},
+      {ocm::protocol::TopicId{0x1C}, 8},
+  }};
+  static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::sensor;
+  static constexpr ocm::protocol::Period period{1000, ocm::protocol::PeriodUnit::milliseconds};
+  static constexpr ocm::base::Duration shortest_period = std::chrono::milliseconds{100};
+  static constexpr ocm::protocol::Role role = ocm::protocol::Role::status;
+  static constexpr ocm::base::Duration deadline = std::chrono::seconds{1};
+  static constexpr ocm::base::Duration jitter = std::chrono::milliseconds{1};
+  static constexpr ocm::protocol::Priority priority = ocm::protocol::Priority::low;
+
+  DiWheelDriveStatusIdentity identity;
+  DiWheelDriveStatusHealth health;
+
+  /// In the order in which they are sent; no data where there is no such frame.
+  [[nodiscard]] constexpr ocm::can::Payload encode(std::size_t frame) const noexcept {
+    if (frame == 0) return identity.encode();
+    if (frame == 1) return health.encode();
+    return {};
+  }
+  [[nodiscard]] static constexpr DiWheelDriveStatus decode(
+      const std::array<ocm::can::Payload, 2>& all) noexcept {
+    DiWheelDriveStatus value;
+    value.identity = DiWheelDriveStatusIdentity::decode(all[0]);
+    value.health = DiWheelDriveStatusHealth::decode(all[1]);
+    return value;
+  }
+  friend constexpr bool operator==(const DiWheelDriveStatus&, const DiWheelDriveStatus&) = default;
 };
+static_assert(ocm::protocol::TopicType<DiWheelDriveStatus>);
+
+/// Di wheel drive refusal: the last request or set point that the board refused; sent unasked. Sensor of
+/// DiWheelDrive, requests on 0x1D. [decided: status ids at the end of each board's block of 30; reasons as
+/// ocm::base::Error numbers them]
+struct DiWheelDriveRefusal {
+  static constexpr std::string_view name = "di_wheel_drive_refusal";
+  static constexpr ocm::protocol::TopicId id{0x1D};
+  static constexpr std::uint8_t instances = 1;
+  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{{{ocm::protocol::TopicId{0x1D}, 6}}};
+  static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::sensor;
+  static constexpr ocm::protocol::Period period{1000, ocm::protocol::PeriodUnit::milliseconds};
+  static constexpr ocm::base::Duration shortest_period = std::chrono::milliseconds{100};
+  static constexpr ocm::protocol::Role role = ocm::protocol::Role::refusal;
+  static constexpr ocm::base::Duration deadline = std::chrono::seconds{1};
+  static constexpr ocm::base::Duration jitter = std::chrono::milliseconds{1};
+  static constexpr ocm::protocol::Priority priority = ocm::protocol::Priority::low;
+
+  enum class Reason : std::uint8_t {
+    nothing = 0,
+    bad_length = 3,
+    bad_mode = 4,
+    bad_unit = 5,
+    bad_period = 6,
+    out_of_range = 7,
+    not_served = 8,
+    no_sample = 9,
+    no_room = 10,
+    no_answer = 13,
+    bus_fault = 14,
+  };
+
+  /// the number that it was for; [0, 255]
+  std::uint8_t topic = 0;
+  Reason reason{};
+  /// so many since the start; stays at its end; [0, 65535]
+  std::uint16_t refused = 0;
+  /// releases at which a part had nothing to say; stays at its end; [0, 65535]
+  std::uint16_t not_sampled = 0;
+
+  using TopicBits = ocm::protocol::Bits<std::uint8_t, 0>;
+  using ReasonBits = ocm::protocol::Bits<std::uint8_t, 8>;
+  using RefusedBits = ocm::protocol::Bits<std::uint16_t, 16>;
+  using NotSampledBits = ocm::protocol::Bits<std::uint16_t, 32>;
+
+  [[nodiscard]] constexpr ocm::can::Payload encode(std::size_t /*frame*/ = 0) const noexcept {
+    ocm::can::Payload data{};
+    TopicBits::put(data, topic);
+    ReasonBits::put(data, static_cast<std::uint8_t>(reason));
+    RefusedBits::put(data, refused);
+    NotSampledBits::put(data, not_sampled);
+    return data;
+  }
+  [[nodiscard]] static constexpr DiWheelDriveRefusal decode(const ocm::can::Payload& data) noexcept {
+    DiWheelDriveRefusal value;
+    value.topic = TopicBits::get(data);
+    value.reason = static_cast<Reason>(ReasonBits::get(data));
+    value.refused = RefusedBits::get(data);
+    value.not_sampled = NotSampledBits::get(data);
+    return value;
+  }
+  [[nodiscard]] static constexpr DiWheelDriveRefusal decode(
+      const std::array<ocm::can::Payload, 1>& all) noexcept {
+    return decode(all[0]);
+  }
+  friend constexpr bool operator==(const DiWheelDriveRefusal&, const DiWheelDriveRefusal&) = default;
+};
+static_assert(ocm::protocol::TopicType<DiWheelDriveRefusal>);
+
+/// Power management status, identity.
+struct PowerManagementStatusIdentity {
+  static constexpr ocm::protocol::TopicId id{0x39};
+  static constexpr std::uint8_t dlc = 8;
+
+  enum class Reset : std::uint8_t {
+    unknown = 0,
+    power = 1,
+    pin = 2,
+    software = 3,
+    watchdog = 4,
+    low_power = 5,
+    fault = 6,
+  };
+
+  std::uint32_t uptime = 0;     ///< since the start; stays at its end; [0, 16777215] s
+  Reset reset{};                ///< why the board started
+  std::uint32_t wire_hash = 0;  ///< of the spec that the board was built from; [0, 4294967295]
+
+  using UptimeBits = ocm::protocol::Bits<std::uint32_t, 0, 24>;
+  using ResetBits = ocm::protocol::Bits<std::uint8_t, 24>;
+  using WireHashBits = ocm::protocol::Bits<std::uint32_t, 32>;
+
+  [[nodiscard]] constexpr double uptime_s() const noexcept { return uptime; }
+  constexpr void set_uptime_s(double value) noexcept {
+    uptime = ocm::protocol::nearest_raw<std::uint32_t>(value, UptimeBits::min, UptimeBits::max);
+  }
+
+  [[nodiscard]] constexpr ocm::can::Payload encode() const noexcept {
+    ocm::can::Payload data{};
+    UptimeBits::put(data, uptime);
+    ResetBits::put(data, static_cast<std::uint8_t>(reset));
+    WireHashBits::put(data, wire_hash);
+    return data;
+  }
+  [[nodiscard]] static constexpr PowerManagementStatusIdentity decode(
+      const ocm::can::Payload& data) noexcept {
+    PowerManagementStatusIdentity value;
+    value.uptime = UptimeBits::get(data);
+    value.reset = static_cast<Reset>(ResetBits::get(data));
+    value.wire_hash = WireHashBits::get(data);
+    return value;
+  }
+  friend constexpr bool operator==(const PowerManagementStatusIdentity&,
+                                   const PowerManagementStatusIdentity&) = default;
+};
+
+/// Power management status, health.
+struct PowerManagementStatusHealth {
+  static constexpr ocm::protocol::TopicId id{0x3A};
+  static constexpr std::uint8_t dlc = 8;
+
+  enum class Bus : std::uint8_t {
+    active = 0,
+    warning = 1,
+    passive = 2,
+    off = 3,
+  };
+  static constexpr std::uint8_t load_unknown = 255;
+
+  /// of the CPU, over the last second; [0, 100] %
+  std::uint8_t load = 0;
+  /// state of the CAN controller's error counters
+  Bus bus{};
+  /// bit n: the board's n-th sensor, in the order of the spec, is published; [0, 255]
+  std::uint8_t publishing = 0;
+  /// bit n: the n-th sensor's part did not answer last time; [0, 255]
+  std::uint8_t faults = 0;
+  /// releases that came late or not at all; stays at its end; [0, 65535]
+  std::uint16_t overload = 0;
+  /// errors on the bus and frames given up; stays at its end; [0, 65535]
+  std::uint16_t bus_errors = 0;
+
+  using LoadBits = ocm::protocol::Bits<std::uint8_t, 0>;
+  using BusBits = ocm::protocol::Bits<std::uint8_t, 8>;
+  using PublishingBits = ocm::protocol::Bits<std::uint8_t, 16>;
+  using FaultsBits = ocm::protocol::Bits<std::uint8_t, 24>;
+  using OverloadBits = ocm::protocol::Bits<std::uint16_t, 32>;
+  using BusErrorsBits = ocm::protocol::Bits<std::uint16_t, 48>;
+
+  [[nodiscard]] constexpr double load_percent() const noexcept { return load; }
+  constexpr void set_load_percent(double value) noexcept {
+    load = ocm::protocol::nearest_raw<std::uint8_t>(value, 0, 100);
+  }
+
+  [[nodiscard]] constexpr ocm::can::Payload encode() const noexcept {
+    ocm::can::Payload data{};
+    LoadBits::put(data, load);
+    BusBits::put(data, static_cast<std::uint8_t>(bus));
+    PublishingBits::put(data, publishing);
+    FaultsBits::put(data, faults);
+    OverloadBits::put(data, overload);
+    BusErrorsBits::put(data, bus_errors);
+    return data;
+  }
+  [[nodiscard]] static constexpr PowerManagementStatusHealth decode(const ocm::can::Payload& data) noexcept {
+    PowerManagementStatusHealth value;
+    value.load = LoadBits::get(data);
+    value.bus = static_cast<Bus>(BusBits::get(data));
+    value.publishing = PublishingBits::get(data);
+    value.faults = FaultsBits::get(data);
+    value.overload = OverloadBits::get(data);
+    value.bus_errors = BusErrorsBits::get(data);
+    return value;
+  }
+  friend constexpr bool operator==(const PowerManagementStatusHealth&,
+                                   const PowerManagementStatusHealth&) = default;
+};
+
+/// Power management status: how the board is. Sensor of PowerManagement, requests on 0x39. [decided, as
+/// di_wheel_drive_status]
+struct PowerManagementStatus {
+  static constexpr std::string_view name = "power_management_status";
+  static constexpr ocm::protocol::TopicId id{0x39};
+  static constexpr std::uint8_t instances = 1;
+  static constexpr std::array<ocm::protocol::FrameHead, 2> frames{{
+      {ocm::protocol::TopicId{0x39}, 8},
+      {ocm::protocol::TopicId{0x3A}, 8},
+  }};
+  static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::sensor;
+  static constexpr ocm::protocol::Period period{1000, ocm::protocol::PeriodUnit::milliseconds};
+  static constexpr ocm::base::Duration shortest_period = std::chrono::milliseconds{100};
+  static constexpr ocm::protocol::Role role = ocm::protocol::Role::status;
+  static constexpr ocm::base::Duration deadline = std::chrono::seconds{1};
+  static constexpr ocm::base::Duration jitter = std::chrono::milliseconds{1};
+  static constexpr ocm::protocol::Priority priority = ocm::protocol::Priority::low;
+
+  PowerManagementStatusIdentity identity;
+  PowerManagementStatusHealth health;
+
+  /// In the order in which they are sent; no data where there is no such frame.
+  [[nodiscard]] constexpr ocm::can::Payload encode(std::size_t frame) const noexcept {
+    if (frame == 0) return identity.encode();
+    if (frame == 1) return health.encode();
+    return {};
+  }
+  [[nodiscard]] static constexpr PowerManagementStatus decode(
+      const std::array<ocm::can::Payload, 2>& all) noexcept {
+    PowerManagementStatus value;
+    value.identity = PowerManagementStatusIdentity::decode(all[0]);
+    value.health = PowerManagementStatusHealth::decode(all[1]);
+    return value;
+  }
+  friend constexpr bool operator==(const PowerManagementStatus&, const PowerManagementStatus&) = default;
+};
+static_assert(ocm::protocol::TopicType<PowerManagementStatus>);
+
+/// Power management refusal: the last request or set point that the board refused; sent unasked. Sensor of
+/// PowerManagement, requests on 0x3B. [decided, as di_wheel_drive_refusal]
+struct PowerManagementRefusal {
+  static constexpr std::string_view name = "power_management_refusal";
+  static constexpr ocm::protocol::TopicId id{0x3B};
+  static constexpr std::uint8_t instances = 1;
+  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{{{ocm::protocol::TopicId{0x3B}, 6}}};
+  static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::sensor;
+  static constexpr ocm::protocol::Period period{1000, ocm::protocol::PeriodUnit::milliseconds};
+  static constexpr ocm::base::Duration shortest_period = std::chrono::milliseconds{100};
+  static constexpr ocm::protocol::Role role = ocm::protocol::Role::refusal;
+  static constexpr ocm::base::Duration deadline = std::chrono::seconds{1};
+  static constexpr ocm::base::Duration jitter = std::chrono::milliseconds{1};
+  static constexpr ocm::protocol::Priority priority = ocm::protocol::Priority::low;
+
+  enum class Reason : std::uint8_t {
+    nothing = 0,
+    bad_length = 3,
+    bad_mode = 4,
+    bad_unit = 5,
+    bad_period = 6,
+    out_of_range = 7,
+    not_served = 8,
+    no_sample = 9,
+    no_room = 10,
+    no_answer = 13,
+    bus_fault = 14,
+  };
+
+  /// the number that it was for; [0, 255]
+  std::uint8_t topic = 0;
+  Reason reason{};
+  /// so many since the start; stays at its end; [0, 65535]
+  std::uint16_t refused = 0;
+  /// releases at which a part had nothing to say; stays at its end; [0, 65535]
+  std::uint16_t not_sampled = 0;
+
+  using TopicBits = ocm::protocol::Bits<std::uint8_t, 0>;
+  using ReasonBits = ocm::protocol::Bits<std::uint8_t, 8>;
+  using RefusedBits = ocm::protocol::Bits<std::uint16_t, 16>;
+  using NotSampledBits = ocm::protocol::Bits<std::uint16_t, 32>;
+
+  [[nodiscard]] constexpr ocm::can::Payload encode(std::size_t /*frame*/ = 0) const noexcept {
+    ocm::can::Payload data{};
+    TopicBits::put(data, topic);
+    ReasonBits::put(data, static_cast<std::uint8_t>(reason));
+    RefusedBits::put(data, refused);
+    NotSampledBits::put(data, not_sampled);
+    return data;
+  }
+  [[nodiscard]] static constexpr PowerManagementRefusal decode(const ocm::can::Payload& data) noexcept {
+    PowerManagementRefusal value;
+    value.topic = TopicBits::get(data);
+    value.reason = static_cast<Reason>(ReasonBits::get(data));
+    value.refused = RefusedBits::get(data);
+    value.not_sampled = NotSampledBits::get(data);
+    return value;
+  }
+  [[nodiscard]] static constexpr PowerManagementRefusal decode(
+      const std::array<ocm::can::Payload, 1>& all) noexcept {
+    return decode(all[0]);
+  }
+  friend constexpr bool operator==(const PowerManagementRefusal&, const PowerManagementRefusal&) = default;
+};
+static_assert(ocm::protocol::TopicType<PowerManagementRefusal>);
+
+/// Light ring status, identity.
+struct LightRingStatusIdentity {
+  static constexpr ocm::protocol::TopicId id{0x57};
+  static constexpr std::uint8_t dlc = 8;
+
+  enum class Reset : std::uint8_t {
+    unknown = 0,
+    power = 1,
+    pin = 2,
+    software = 3,
+    watchdog = 4,
+    low_power = 5,
+    fault = 6,
+  };
+
+  std::uint32_t uptime = 0;     ///< since the start; stays at its end; [0, 16777215] s
+  Reset reset{};                ///< why the board started
+  std::uint32_t wire_hash = 0;  ///< of the spec that the board was built from; [0, 4294967295]
+
+  using UptimeBits = ocm::protocol::Bits<std::uint32_t, 0, 24>;
+  using ResetBits = ocm::protocol::Bits<std::uint8_t, 24>;
+  using WireHashBits = ocm::protocol::Bits<std::uint32_t, 32>;
+
+  [[nodiscard]] constexpr double uptime_s() const noexcept { return uptime; }
+  constexpr void set_uptime_s(double value) noexcept {
+    uptime = ocm::protocol::nearest_raw<std::uint32_t>(value, UptimeBits::min, UptimeBits::max);
+  }
+
+  [[nodiscard]] constexpr ocm::can::Payload encode() const noexcept {
+    ocm::can::Payload data{};
+    UptimeBits::put(data, uptime);
+    ResetBits::put(data, static_cast<std::uint8_t>(reset));
+    WireHashBits::put(data, wire_hash);
+    return data;
+  }
+  [[nodiscard]] static constexpr LightRingStatusIdentity decode(const ocm::can::Payload& data) noexcept {
+    LightRingStatusIdentity value;
+    value.uptime = UptimeBits::get(data);
+    value.reset = static_cast<Reset>(ResetBits::get(data));
+    value.wire_hash = WireHashBits::get(data);
+    return value;
+  }
+  friend constexpr bool operator==(const LightRingStatusIdentity&, const LightRingStatusIdentity&) = default;
+};
+
+/// Light ring status, health.
+struct LightRingStatusHealth {
+  static constexpr ocm::protocol::TopicId id{0x58};
+  static constexpr std::uint8_t dlc = 8;
+
+  enum class Bus : std::uint8_t {
+    active = 0,
+    warning = 1,
+    passive = 2,
+    off = 3,
+  };
+  static constexpr std::uint8_t load_unknown = 255;
+
+  /// of the CPU, over the last second; [0, 100] %
+  std::uint8_t load = 0;
+  /// state of the CAN controller's error counters
+  Bus bus{};
+  /// bit n: the board's n-th sensor, in the order of the spec, is published; [0, 255]
+  std::uint8_t publishing = 0;
+  /// bit n: the n-th sensor's part did not answer last time; [0, 255]
+  std::uint8_t faults = 0;
+  /// releases that came late or not at all; stays at its end; [0, 65535]
+  std::uint16_t overload = 0;
+  /// errors on the bus and frames given up; stays at its end; [0, 65535]
+  std::uint16_t bus_errors = 0;
+
+  using LoadBits = ocm::protocol::Bits<std::uint8_t, 0>;
+  using BusBits = ocm::protocol::Bits<std::uint8_t, 8>;
+  using PublishingBits = ocm::protocol::Bits<std::uint8_t, 16>;
+  using FaultsBits = ocm::protocol::Bits<std::uint8_t, 24>;
+  using OverloadBits = ocm::protocol::Bits<std::uint16_t, 32>;
+  using BusErrorsBits = ocm::protocol::Bits<std::uint16_t, 48>;
+
+  [[nodiscard]] constexpr double load_percent() const noexcept { return load; }
+  constexpr void set_load_percent(double value) noexcept {
+    load = ocm::protocol::nearest_raw<std::uint8_t>(value, 0, 100);
+  }
+
+  [[nodiscard]] constexpr ocm::can::Payload encode() const noexcept {
+    ocm::can::Payload data{};
+    LoadBits::put(data, load);
+    BusBits::put(data, static_cast<std::uint8_t>(bus));
+    PublishingBits::put(data, publishing);
+    FaultsBits::put(data, faults);
+    OverloadBits::put(data, overload);
+    BusErrorsBits::put(data, bus_errors);
+    return data;
+  }
+  [[nodiscard]] static constexpr LightRingStatusHealth decode(const ocm::can::Payload& data) noexcept {
+    LightRingStatusHealth value;
+    value.load = LoadBits::get(data);
+    value.bus = static_cast<Bus>(BusBits::get(data));
+    value.publishing = PublishingBits::get(data);
+    value.faults = FaultsBits::get(data);
+    value.overload = OverloadBits::get(data);
+    value.bus_errors = BusErrorsBits::get(data);
+    return value;
+  }
+  friend constexpr bool operator==(const LightRingStatusHealth&, const LightRingStatusHealth&) = default;
+};
+
+/// Light ring status: how the board is. Sensor of LightRing, requests on 0x57. [decided, as
+/// di_wheel_drive_status]
+struct LightRingStatus {
+  static constexpr std::string_view name = "light_ring_status";
+  static constexpr ocm::protocol::TopicId id{0x57};
+  static constexpr std::uint8_t instances = 1;
+  static constexpr std::array<ocm::protocol::FrameHead, 2> frames{{
+      {ocm::protocol::TopicId{0x57}, 8},
+      {ocm::protocol::TopicId{0x58}, 8},
+  }};
+  static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::sensor;
+  static constexpr ocm::protocol::Period period{1000, ocm::protocol::PeriodUnit::milliseconds};
+  static constexpr ocm::base::Duration shortest_period = std::chrono::milliseconds{100};
+  static constexpr ocm::protocol::Role role = ocm::protocol::Role::status;
+  static constexpr ocm::base::Duration deadline = std::chrono::seconds{1};
+  static constexpr ocm::base::Duration jitter = std::chrono::milliseconds{1};
+  static constexpr ocm::protocol::Priority priority = ocm::protocol::Priority::low;
+
+  LightRingStatusIdentity identity;
+  LightRingStatusHealth health;
+
+  /// In the order in which they are sent; no data where there is no such frame.
+  [[nodiscard]] constexpr ocm::can::Payload encode(std::size_t frame) const noexcept {
+    if (frame == 0) return identity.encode();
+    if (frame == 1) return health.encode();
+    return {};
+  }
+  [[nodiscard]] static constexpr LightRingStatus decode(
+      const std::array<ocm::can::Payload, 2>& all) noexcept {
+    LightRingStatus value;
+    value.identity = LightRingStatusIdentity::decode(all[0]);
+    value.health = LightRingStatusHealth::decode(all[1]);
+    return value;
+  }
+  friend constexpr bool operator==(const LightRingStatus&, const LightRingStatus&) = default;
+};
+static_assert(ocm::protocol::TopicType<LightRingStatus>);
+
+/// Light ring refusal: the last request or set point that the board refused; sent unasked. Sensor of
+/// LightRing, requests on 0x59. [decided, as di_wheel_drive_refusal]
+struct LightRingRefusal {
+  static constexpr std::string_view name = "light_ring_refusal";
+  static constexpr ocm::protocol::TopicId id{0x59};
+  static constexpr std::uint8_t instances = 1;
+  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{{{ocm::protocol::TopicId{0x59}, 6}}};
+  static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::sensor;
+  static constexpr ocm::protocol::Period period{1000, ocm::protocol::PeriodUnit::milliseconds};
+  static constexpr ocm::base::Duration shortest_period = std::chrono::milliseconds{100};
+  static constexpr ocm::protocol::Role role = ocm::protocol::Role::refusal;
+  static constexpr ocm::base::Duration deadline = std::chrono::seconds{1};
+  static constexpr ocm::base::Duration jitter = std::chrono::milliseconds{1};
+  static constexpr ocm::protocol::Priority priority = ocm::protocol::Priority::low;
+
+  enum class Reason : std::uint8_t {
+    nothing = 0,
+    bad_length = 3,
+    bad_mode = 4,
+    bad_unit = 5,
+    bad_period = 6,
+    out_of_range = 7,
+    not_served = 8,
+    no_sample = 9,
+    no_room = 10,
+    no_answer = 13,
+    bus_fault = 14,
+  };
+
+  /// the number that it was for; [0, 255]
+  std::uint8_t topic = 0;
+  Reason reason{};
+  /// so many since the start; stays at its end; [0, 65535]
+  std::uint16_t refused = 0;
+  /// releases at which a part had nothing to say; stays at its end; [0, 65535]
+  std::uint16_t not_sampled = 0;
+
+  using TopicBits = ocm::protocol::Bits<std::uint8_t, 0>;
+  using ReasonBits = ocm::protocol::Bits<std::uint8_t, 8>;
+  using RefusedBits = ocm::protocol::Bits<std::uint16_t, 16>;
+  using NotSampledBits = ocm::protocol::Bits<std::uint16_t, 32>;
+
+  [[nodiscard]] constexpr ocm::can::Payload encode(std::size_t /*frame*/ = 0) const noexcept {
+    ocm::can::Payload data{};
+    TopicBits::put(data, topic);
+    ReasonBits::put(data, static_cast<std::uint8_t>(reason));
+    RefusedBits::put(data, refused);
+    NotSampledBits::put(data, not_sampled);
+    return data;
+  }
+  [[nodiscard]] static constexpr LightRingRefusal decode(const ocm::can::Payload& data) noexcept {
+    LightRingRefusal value;
+    value.topic = TopicBits::get(data);
+    value.reason = static_cast<Reason>(ReasonBits::get(data));
+    value.refused = RefusedBits::get(data);
+    value.not_sampled = NotSampledBits::get(data);
+    return value;
+  }
+  [[nodiscard]] static constexpr LightRingRefusal decode(
+      const std::array<ocm::can::Payload, 1>& all) noexcept {
+    return decode(all[0]);
+  }
+  friend constexpr bool operator==(const LightRingRefusal&, const LightRingRefusal&) = default;
+};
+static_assert(ocm::protocol::TopicType<LightRingRefusal>);
 
 // clang-format off
 namespace detail {
@@ -872,13 +1559,195 @@ inline constexpr std::string_view source =
   "Thesis 4.2.2, LEDs; id decided: the thesis names a header that is not public";
 }  // namespace led
 
+namespace floor_calibration {
+inline constexpr std::array<protocol::NamedValue, 3> action_names{{{0, "none"}, {1, "measure"},
+                                                                   {2, "forget"}}};
+inline constexpr std::array<protocol::Field, 1> fields{{
+  {"action", {0, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, action_names, false},
+}};
+inline constexpr std::array<protocol::FrameLayout, 1> frames{{
+  {"", protocol::TopicId{0x0A}, 1, fields},
+}};
+inline constexpr std::string_view source =
+  "decided: a command of the shell of AMiRo-OS 1.0 has none on the bus; id decided: free in the board's block";
+}  // namespace floor_calibration
+
+namespace ring_calibration {
+inline constexpr std::array<protocol::NamedValue, 3> action_names{{{0, "none"}, {1, "measure"},
+                                                                   {2, "forget"}}};
+inline constexpr std::array<protocol::Field, 1> fields{{
+  {"action", {0, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, action_names, false},
+}};
+inline constexpr std::array<protocol::FrameLayout, 1> frames{{
+  {"", protocol::TopicId{0x27}, 1, fields},
+}};
+inline constexpr std::string_view source =
+  "decided, as floor_calibration";
+}  // namespace ring_calibration
+
+namespace di_wheel_drive_status_identity {
+inline constexpr std::array<protocol::NamedValue, 7> reset_names{{{0, "unknown"}, {1, "power"}, {2, "pin"},
+                                                                  {3, "software"}, {4, "watchdog"},
+                                                                  {5, "low_power"}, {6, "fault"}}};
+inline constexpr std::array<protocol::Field, 3> fields{{
+  {"uptime", {0, 24, protocol::ByteOrder::little}, false, {1, 0}, {}, "s", 0, 16'777'215, {}, false},
+  {"reset", {24, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, reset_names, false},
+  {"wire_hash", {32, 32, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 4'294'967'295, {}, false},
+}};
+}  // namespace di_wheel_drive_status_identity
+namespace di_wheel_drive_status_health {
+inline constexpr std::array<protocol::NamedValue, 1> load_names{{{255, "unknown"}}};
+inline constexpr std::array<protocol::NamedValue, 4> bus_names{{{0, "active"}, {1, "warning"}, {2, "passive"},
+                                                                {3, "off"}}};
+inline constexpr std::array<protocol::Field, 6> fields{{
+  {"load", {0, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "%", 0, 100, load_names, false},
+  {"bus", {8, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, bus_names, false},
+  {"publishing", {16, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, {}, false},
+  {"faults", {24, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, {}, false},
+  {"overload", {32, 16, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 65'535, {}, false},
+  {"bus_errors", {48, 16, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 65'535, {}, false},
+}};
+}  // namespace di_wheel_drive_status_health
+namespace di_wheel_drive_status {
+inline constexpr std::array<protocol::FrameLayout, 2> frames{{
+  {"identity", protocol::TopicId{0x1B}, 8, di_wheel_drive_status_identity::fields},
+  {"health", protocol::TopicId{0x1C}, 8, di_wheel_drive_status_health::fields},
+}};
+inline constexpr std::string_view source =
+  "decided: status ids at the end of each board's block of 30";
+}  // namespace di_wheel_drive_status
+
+namespace di_wheel_drive_refusal {
+inline constexpr std::array<protocol::NamedValue, 11> reason_names{{{0, "nothing"}, {3, "bad_length"},
+                                                                    {4, "bad_mode"}, {5, "bad_unit"},
+                                                                    {6, "bad_period"}, {7, "out_of_range"},
+                                                                    {8, "not_served"}, {9, "no_sample"},
+                                                                    {10, "no_room"}, {13, "no_answer"},
+                                                                    {14, "bus_fault"}}};
+inline constexpr std::array<protocol::Field, 4> fields{{
+  {"topic", {0, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, {}, false},
+  {"reason", {8, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, reason_names, false},
+  {"refused", {16, 16, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 65'535, {}, false},
+  {"not_sampled", {32, 16, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 65'535, {}, false},
+}};
+inline constexpr std::array<protocol::FrameLayout, 1> frames{{
+  {"", protocol::TopicId{0x1D}, 6, fields},
+}};
+inline constexpr std::string_view source =
+  "decided: status ids at the end of each board's block of 30; reasons as ocm::base::Error numbers them";
+}  // namespace di_wheel_drive_refusal
+
+namespace power_management_status_identity {
+inline constexpr std::array<protocol::NamedValue, 7> reset_names{{{0, "unknown"}, {1, "power"}, {2, "pin"},
+                                                                  {3, "software"}, {4, "watchdog"},
+                                                                  {5, "low_power"}, {6, "fault"}}};
+inline constexpr std::array<protocol::Field, 3> fields{{
+  {"uptime", {0, 24, protocol::ByteOrder::little}, false, {1, 0}, {}, "s", 0, 16'777'215, {}, false},
+  {"reset", {24, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, reset_names, false},
+  {"wire_hash", {32, 32, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 4'294'967'295, {}, false},
+}};
+}  // namespace power_management_status_identity
+namespace power_management_status_health {
+inline constexpr std::array<protocol::NamedValue, 1> load_names{{{255, "unknown"}}};
+inline constexpr std::array<protocol::NamedValue, 4> bus_names{{{0, "active"}, {1, "warning"}, {2, "passive"},
+                                                                {3, "off"}}};
+inline constexpr std::array<protocol::Field, 6> fields{{
+  {"load", {0, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "%", 0, 100, load_names, false},
+  {"bus", {8, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, bus_names, false},
+  {"publishing", {16, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, {}, false},
+  {"faults", {24, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, {}, false},
+  {"overload", {32, 16, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 65'535, {}, false},
+  {"bus_errors", {48, 16, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 65'535, {}, false},
+}};
+}  // namespace power_management_status_health
+namespace power_management_status {
+inline constexpr std::array<protocol::FrameLayout, 2> frames{{
+  {"identity", protocol::TopicId{0x39}, 8, power_management_status_identity::fields},
+  {"health", protocol::TopicId{0x3A}, 8, power_management_status_health::fields},
+}};
+inline constexpr std::string_view source =
+  "decided, as di_wheel_drive_status";
+}  // namespace power_management_status
+
+namespace power_management_refusal {
+inline constexpr std::array<protocol::NamedValue, 11> reason_names{{{0, "nothing"}, {3, "bad_length"},
+                                                                    {4, "bad_mode"}, {5, "bad_unit"},
+                                                                    {6, "bad_period"}, {7, "out_of_range"},
+                                                                    {8, "not_served"}, {9, "no_sample"},
+                                                                    {10, "no_room"}, {13, "no_answer"},
+                                                                    {14, "bus_fault"}}};
+inline constexpr std::array<protocol::Field, 4> fields{{
+  {"topic", {0, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, {}, false},
+  {"reason", {8, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, reason_names, false},
+  {"refused", {16, 16, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 65'535, {}, false},
+  {"not_sampled", {32, 16, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 65'535, {}, false},
+}};
+inline constexpr std::array<protocol::FrameLayout, 1> frames{{
+  {"", protocol::TopicId{0x3B}, 6, fields},
+}};
+inline constexpr std::string_view source =
+  "decided, as di_wheel_drive_refusal";
+}  // namespace power_management_refusal
+
+namespace light_ring_status_identity {
+inline constexpr std::array<protocol::NamedValue, 7> reset_names{{{0, "unknown"}, {1, "power"}, {2, "pin"},
+                                                                  {3, "software"}, {4, "watchdog"},
+                                                                  {5, "low_power"}, {6, "fault"}}};
+inline constexpr std::array<protocol::Field, 3> fields{{
+  {"uptime", {0, 24, protocol::ByteOrder::little}, false, {1, 0}, {}, "s", 0, 16'777'215, {}, false},
+  {"reset", {24, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, reset_names, false},
+  {"wire_hash", {32, 32, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 4'294'967'295, {}, false},
+}};
+}  // namespace light_ring_status_identity
+namespace light_ring_status_health {
+inline constexpr std::array<protocol::NamedValue, 1> load_names{{{255, "unknown"}}};
+inline constexpr std::array<protocol::NamedValue, 4> bus_names{{{0, "active"}, {1, "warning"}, {2, "passive"},
+                                                                {3, "off"}}};
+inline constexpr std::array<protocol::Field, 6> fields{{
+  {"load", {0, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "%", 0, 100, load_names, false},
+  {"bus", {8, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, bus_names, false},
+  {"publishing", {16, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, {}, false},
+  {"faults", {24, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, {}, false},
+  {"overload", {32, 16, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 65'535, {}, false},
+  {"bus_errors", {48, 16, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 65'535, {}, false},
+}};
+}  // namespace light_ring_status_health
+namespace light_ring_status {
+inline constexpr std::array<protocol::FrameLayout, 2> frames{{
+  {"identity", protocol::TopicId{0x57}, 8, light_ring_status_identity::fields},
+  {"health", protocol::TopicId{0x58}, 8, light_ring_status_health::fields},
+}};
+inline constexpr std::string_view source =
+  "decided, as di_wheel_drive_status";
+}  // namespace light_ring_status
+
+namespace light_ring_refusal {
+inline constexpr std::array<protocol::NamedValue, 11> reason_names{{{0, "nothing"}, {3, "bad_length"},
+                                                                    {4, "bad_mode"}, {5, "bad_unit"},
+                                                                    {6, "bad_period"}, {7, "out_of_range"},
+                                                                    {8, "not_served"}, {9, "no_sample"},
+                                                                    {10, "no_room"}, {13, "no_answer"},
+                                                                    {14, "bus_fault"}}};
+inline constexpr std::array<protocol::Field, 4> fields{{
+  {"topic", {0, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, {}, false},
+  {"reason", {8, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, reason_names, false},
+  {"refused", {16, 16, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 65'535, {}, false},
+  {"not_sampled", {32, 16, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 65'535, {}, false},
+}};
+inline constexpr std::array<protocol::FrameLayout, 1> frames{{
+  {"", protocol::TopicId{0x59}, 6, fields},
+}};
+inline constexpr std::string_view source =
+  "decided, as di_wheel_drive_refusal";
+}  // namespace light_ring_refusal
+
 inline constexpr std::array<protocol::Board, 3> boards{{
   {"di_wheel_drive", "STM32F103"},
   {"power_management", "STM32F405"},
   {"light_ring", "STM32F103"},
 }};
 
-inline constexpr std::array<protocol::Topic, 16> topics{{
+inline constexpr std::array<protocol::Topic, 24> topics{{
   protocol::catalogue_entry<Odometry>(0, odometry::aliases, odometry::frames, odometry::source),
   protocol::catalogue_entry<FloorProximity>(0, floor_proximity::aliases, floor_proximity::frames, floor_proximity::source),
   protocol::catalogue_entry<Magnetometer>(0, magnetometer::aliases, magnetometer::frames, magnetometer::source),
@@ -895,11 +1764,66 @@ inline constexpr std::array<protocol::Topic, 16> topics{{
   protocol::catalogue_entry<Led>(2, {}, {&led::frames[5], 1}, led::source, 6, "led_6"),
   protocol::catalogue_entry<Led>(2, {}, {&led::frames[6], 1}, led::source, 7, "led_7"),
   protocol::catalogue_entry<Led>(2, {}, {&led::frames[7], 1}, led::source, 8, "led_8"),
+  protocol::catalogue_entry<FloorCalibration>(0, {}, floor_calibration::frames, floor_calibration::source),
+  protocol::catalogue_entry<RingCalibration>(1, {}, ring_calibration::frames, ring_calibration::source),
+  protocol::catalogue_entry<DiWheelDriveStatus>(0, {}, di_wheel_drive_status::frames, di_wheel_drive_status::source),
+  protocol::catalogue_entry<DiWheelDriveRefusal>(0, {}, di_wheel_drive_refusal::frames, di_wheel_drive_refusal::source),
+  protocol::catalogue_entry<PowerManagementStatus>(1, {}, power_management_status::frames, power_management_status::source),
+  protocol::catalogue_entry<PowerManagementRefusal>(1, {}, power_management_refusal::frames, power_management_refusal::source),
+  protocol::catalogue_entry<LightRingStatus>(2, {}, light_ring_status::frames, light_ring_status::source),
+  protocol::catalogue_entry<LightRingRefusal>(2, {}, light_ring_refusal::frames, light_ring_refusal::source),
 }};
 }  // namespace detail
 // clang-format on
 
 /// Everything that is said on the bus, as a tool sees it that loads the spec when it runs.
 inline constexpr ocm::protocol::Catalogue catalogue{"AMiRo", bit_rate, detail::boards, detail::topics};
+
+/// What tells a board that was built from another spec: boards report it in their status.
+inline constexpr std::uint32_t wire_hash = ocm::protocol::wire_hash(catalogue);
+
+/// The board di_wheel_drive: bottom board: wheels, inertial sensors, floor sensors. [Thesis 2.1.1; clock_hz:
+/// AMiRo-OS 1.0; can_clock_hz: AMiRo-OS 1.0; RM0008 7.2]
+struct DiWheelDrive {
+  static constexpr std::string_view name = "di_wheel_drive";
+  static constexpr std::string_view mcu = "STM32F103";
+  static constexpr std::uint32_t clock_hz = 72'000'000;
+  static constexpr std::uint32_t can_clock_hz = 36'000'000;
+  using sensors = ocm::protocol::TopicList<Odometry, FloorProximity, Magnetometer, Gyroscope, Accelerometer,
+                                           DiWheelDriveStatus, DiWheelDriveRefusal>;
+  using actuators = ocm::protocol::TopicList<Motors, FloorCalibration>;
+  using status = DiWheelDriveStatus;
+  using refusal = DiWheelDriveRefusal;
+  static constexpr std::uint32_t wire_hash = amiro::wire_hash;
+};
+
+/// The board power_management: middle board: batteries, proximity ring. [Thesis 2.1.2; clock_hz: AMiRo-OS
+/// 1.0; can_clock_hz: AMiRo-OS 1.0; RM0090 6.2]
+struct PowerManagement {
+  static constexpr std::string_view name = "power_management";
+  static constexpr std::string_view mcu = "STM32F405";
+  static constexpr std::uint32_t clock_hz = 168'000'000;
+  static constexpr std::uint32_t can_clock_hz = 42'000'000;
+  using sensors =
+      ocm::protocol::TopicList<PowerStatus, ProximityRing, PowerManagementStatus, PowerManagementRefusal>;
+  using actuators = ocm::protocol::TopicList<RingCalibration>;
+  using status = PowerManagementStatus;
+  using refusal = PowerManagementRefusal;
+  static constexpr std::uint32_t wire_hash = amiro::wire_hash;
+};
+
+/// The board light_ring: top board: eight coloured lights. [Thesis 2.1.3; clock_hz: AMiRo-OS 1.0;
+/// can_clock_hz: AMiRo-OS 1.0; RM0008 7.2]
+struct LightRing {
+  static constexpr std::string_view name = "light_ring";
+  static constexpr std::string_view mcu = "STM32F103";
+  static constexpr std::uint32_t clock_hz = 72'000'000;
+  static constexpr std::uint32_t can_clock_hz = 36'000'000;
+  using sensors = ocm::protocol::TopicList<LightRingStatus, LightRingRefusal>;
+  using actuators = ocm::protocol::TopicList<Led>;
+  using status = LightRingStatus;
+  using refusal = LightRingRefusal;
+  static constexpr std::uint32_t wire_hash = amiro::wire_hash;
+};
 
 }  // namespace amiro

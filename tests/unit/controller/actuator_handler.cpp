@@ -90,3 +90,59 @@ TEST_CASE("each of several actuators has a timeout of its own") {
   controller.poll(at(1300ms));
   CHECK(off == std::vector<int>{1, 2});
 }
+
+TEST_CASE("motors come to rest at once when the bus is lost, and once") {
+  Board board;
+  board.controller.receive(protocol::command(amiro::Motors{50'000, 0}), at(0ms));
+  board.controller.bus_lost();
+  CHECK(board.set_points.size() == 1);  // the urgent level does it, as soon as it runs
+  CHECK(board.controller.next_event() <= at(0ms));
+  board.controller.poll(at(1ms));
+  REQUIRE(board.set_points.size() == 2);
+  CHECK(board.set_points[1] == amiro::Motors{});
+  CHECK(board.controller.counters().bus_lost == 1);
+  CHECK(board.controller.next_event() == base::never);
+  board.controller.bus_lost();  // at rest already
+  board.controller.poll(at(2s));
+  CHECK(board.set_points.size() == 2);
+  CHECK(board.controller.counters().bus_lost == 1);
+  CHECK(board.controller.counters().timeouts == 0);
+  board.controller.receive(protocol::command(amiro::Motors{20'000, 0}), at(3s));  // and it can go on
+  CHECK(board.set_points.back() == amiro::Motors{20'000, 0});
+  CHECK(board.controller.next_event() == at(3500ms));
+}
+
+TEST_CASE("what has no timeout stays as it is when the bus is lost") {
+  Mailboxes bus;
+  controller::Controller<amiro::LightRing, Mailboxes> controller{bus};
+  int calls = 0;
+  controller.accept<amiro::Led>([&calls](std::uint8_t, const amiro::Led&) { ++calls; });
+  controller.receive(frame("23C#FFFFFF"), at(0s));
+  controller.bus_lost();
+  controller.poll(at(1s));
+  CHECK(calls == 1);
+  CHECK(controller.counters().bus_lost == 0);
+}
+
+TEST_CASE("a set point that comes while another is being applied is applied after it, by the same") {
+  struct {
+    Mailboxes bus;
+    controller::Controller<amiro::DiWheelDrive, Mailboxes> controller{bus};
+    std::vector<std::int32_t> applied;
+    int depth = 0;
+  } board;
+  board.controller.accept<amiro::Motors>([&board](const amiro::Motors& motors) {
+    CHECK(++board.depth == 1);
+    board.applied.push_back(motors.x);
+    if (motors.x == 1) {  // preempted: two more commands, the board loses the bus, and the urgent level runs
+      board.controller.receive(protocol::command(amiro::Motors{2, 0}), at(1ms));
+      board.controller.receive(protocol::command(amiro::Motors{3, 0}), at(1ms));
+      board.controller.bus_lost();
+      board.controller.poll(at(1ms));
+      CHECK(board.applied.size() == 1);
+    }
+    --board.depth;
+  });
+  board.controller.receive(protocol::command(amiro::Motors{1, 0}), at(0ms));
+  CHECK(board.applied == std::vector<std::int32_t>{1, 0});  // the last decision, and no older one after it
+}

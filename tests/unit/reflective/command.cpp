@@ -71,7 +71,7 @@ TEST_CASE("stop brings the motors to rest first, then every sensor") {
   CHECK(all.starts_with("201#0000000000000000 "));
   for (const auto& topic : amiro::catalogue.topics)
     if (topic.kind == protocol::Kind::sensor)
-      CHECK(all.find(can::to_text(protocol::stop(topic.id)).view()) != std::string::npos);
+      CHECK(all.find(can::to_text(protocol::stop(topic.id, topic.priority)).view()) != std::string::npos);
   CHECK(parse("stop")->ends_hold);
   CHECK(parse("stop motors")->ends_hold);
   CHECK_FALSE(parse("stop gyro")->ends_hold);

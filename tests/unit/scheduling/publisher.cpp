@@ -16,12 +16,19 @@ constexpr base::Time at(base::Duration offset) {
   return base::Time{offset};
 }
 
-/// All releases that are due at `now`, most urgent first.
+/// All releases that are due at `now`, most urgent first, each of them finished at once.
 template <std::size_t N>
 constexpr int drain(Publisher<N>& publisher, base::Time now, Release* releases) {
   int count = 0;
-  while (publisher.take_due(now, releases[count])) ++count;
+  for (const auto priority : {Priority::urgent, Priority::high, Priority::medium, Priority::low})
+    while (publisher.take_due(now, priority, releases[count])) publisher.done(releases[count++].stream, now);
   return count;
+}
+template <std::size_t N>
+constexpr bool take(Publisher<N>& publisher, base::Time now, Release& release) {
+  if (!publisher.take_due(now, Priority::medium, release)) return false;
+  publisher.done(release.stream, now);
+  return true;
 }
 
 // The first sample goes out at once; the grid starts at the reception of the request.
@@ -29,10 +36,10 @@ constexpr bool releases_on_a_grid() {
   Publisher<1> publisher;
   publisher.start(0, 500ms, Priority::medium, at(100ms));
   Release release;
-  if (!publisher.take_due(at(100ms), release) || release.scheduled != at(100ms)) return false;
-  if (publisher.take_due(at(599ms), release)) return false;
+  if (!take(publisher, at(100ms), release) || release.scheduled != at(100ms)) return false;
+  if (take(publisher, at(599ms), release)) return false;
   // 30 ms late: the thesis's publisher, which slept after its work, would go on at 1130 ms. [Thesis 7.1]
-  if (!publisher.take_due(at(630ms), release) || release.scheduled != at(600ms)) return false;
+  if (!take(publisher, at(630ms), release) || release.scheduled != at(600ms)) return false;
   return publisher.next_release() == at(1100ms);
 }
 static_assert(releases_on_a_grid());
@@ -92,6 +99,89 @@ constexpr bool lateness_is_judged_by_the_jitter() {
   return drain(publisher, at(106ms), releases) == 1 && releases[0].late && releases[0].missed == 0;
 }
 static_assert(lateness_is_judged_by_the_jitter());
+
+constexpr bool within_a_priority_the_earliest_grid_point_goes_first() {
+  Publisher<3> publisher;
+  publisher.start(0, 1s, Priority::medium, at(2ms));
+  publisher.start(1, 1s, Priority::medium, at(1ms));
+  publisher.start(2, 1s, Priority::medium, at(1ms));
+  Release releases[4];
+  if (drain(publisher, at(5ms), releases) != 3) return false;
+  return releases[0].stream == 1 && releases[1].stream == 2 && releases[2].stream == 0;
+}
+static_assert(within_a_priority_the_earliest_grid_point_goes_first());
+
+// Whatever is asked for in between: a job is never in two contexts.
+constexpr bool what_is_taken_is_not_taken_again() {
+  Publisher<1> publisher;
+  Release release;
+  publisher.start(0, 10ms, Priority::low, at(0ms));
+  if (!publisher.take_due(at(0ms), Priority::low, release)) return false;
+  if (publisher.take_due(at(10ms), Priority::low, release) || publisher.next_release() != base::never)
+    return false;
+  publisher.start(0, 10ms, Priority::urgent, at(12ms));
+  if (publisher.take_due(at(15ms), Priority::urgent, release) || publisher.due(at(15ms)).priorities != 0)
+    return false;
+  publisher.done(0, at(15ms));
+  if (publisher.due(at(15ms)).priorities != 1) return false;
+  return publisher.take_due(at(15ms), Priority::urgent, release) && release.scheduled == at(12ms);
+}
+static_assert(what_is_taken_is_not_taken_again());
+
+constexpr bool releases_while_held_are_given_up_and_counted() {
+  Publisher<1> publisher;
+  Release release;
+  publisher.start(0, 10ms, Priority::low, at(0ms));
+  if (!publisher.take_due(at(0ms), Priority::low, release)) return false;
+  publisher.hold(0);
+  if (publisher.held(Priority::low) != 0 || publisher.held(Priority::high) != 1) return false;
+  if (publisher.overload(0, at(9ms)).overrun != 0 || publisher.overload(0, at(10ms)).overrun != 1)
+    return false;
+  publisher.done(0, at(31ms));
+  if (publisher.overload(0, at(31ms)) != scheduling::Overload{0, 0, 3}) return false;
+  return publisher.next_release() == at(40ms) && publisher.held(Priority::low) == 1;
+}
+static_assert(releases_while_held_are_given_up_and_counted());
+
+constexpr bool a_single_release_waits_for_what_is_held() {
+  Publisher<1> publisher;
+  Release release;
+  publisher.once(0, Priority::low, at(0ms));
+  if (!publisher.take_due(at(0ms), Priority::low, release)) return false;
+  publisher.hold(0);
+  publisher.once(0, Priority::high, at(5ms));
+  if (publisher.take_due(at(6ms), Priority::high, release)) return false;
+  publisher.done(0, at(7ms));
+  return publisher.take_due(at(7ms), Priority::high, release) && publisher.overload(0, at(7ms)).overrun == 0;
+}
+static_assert(a_single_release_waits_for_what_is_held());
+
+constexpr bool overload_is_counted_for_each_stream() {
+  Publisher<2> publisher;
+  publisher.start(0, 10ms, Priority::medium, at(0ms), 1ms);
+  publisher.start(1, 100ms, Priority::medium, at(0ms), 1ms);
+  Release releases[3];
+  if (drain(publisher, at(0ms), releases) != 2) return false;
+  drain(publisher, at(45ms), releases);  // 10, 20, 30 skipped; 40 late
+  if (publisher.overload(0, at(45ms)) != scheduling::Overload{3, 1, 0}) return false;
+  publisher.start(0, 10ms, Priority::medium, at(46ms));  // a new request does not forget
+  return publisher.overload(0, at(46ms)).missed == 3 &&
+         publisher.overload(1, at(46ms)) == scheduling::Overload{};
+}
+static_assert(overload_is_counted_for_each_stream());
+
+constexpr bool due_says_whom_to_call_and_when_to_look_again() {
+  Publisher<4> publisher;
+  publisher.start(0, 1s, Priority::low, at(3ms));
+  publisher.start(1, 1s, Priority::urgent, at(5ms));
+  publisher.start(2, 1s, Priority::medium, at(20ms));
+  publisher.once(3, Priority::high, at(9ms));
+  const auto due = publisher.due(at(5ms));
+  return due.priorities == 0b1001 && due.next == at(9ms);
+}
+static_assert(due_says_whom_to_call_and_when_to_look_again());
+
+static_assert(sizeof(Publisher<17>) == 17 * 40 + 8);
 
 }  // namespace
 

@@ -150,6 +150,41 @@ TEST_CASE("motors and lights") {
   CHECK(motors == Motors{0, INT32_MAX});
 }
 
+TEST_CASE("status: two frames, the same of every board") {
+  LightRingStatus s;
+  s.identity = {0x010203, LightRingStatusIdentity::Reset::watchdog, 0xA1B2C3D4};
+  s.health = {37, LightRingStatusHealth::Bus::passive, 0b101, 0b1, 0x1234, 0xFFFF};
+  CHECK(ocm::protocol::sample_frame(s, Priority::low, 0) ==
+        Frame{0x757, 8, {0x03, 0x02, 0x01, 4, 0xD4, 0xC3, 0xB2, 0xA1}});
+  CHECK(ocm::protocol::sample_frame(s, Priority::low, 1) ==
+        Frame{0x758, 8, {37, 2, 0b101, 0b1, 0x34, 0x12, 0xFF, 0xFF}});
+  CHECK(LightRingStatus::decode({s.encode(0), s.encode(1)}) == s);
+  STATIC_REQUIRE(LightRingStatus::priority == Priority::low);
+  STATIC_REQUIRE(std::is_same_v<LightRing::status, LightRingStatus>);
+  STATIC_REQUIRE(std::is_same_v<PowerManagement::refusal, PowerManagementRefusal>);
+}
+
+TEST_CASE("refusal: which topic, why, and how often") {
+  using Reason = DiWheelDriveRefusal::Reason;
+  CHECK(ocm::protocol::sample_frame(DiWheelDriveRefusal{0x08, Reason::bad_mode, 3, 0}, Priority::low) ==
+        Frame{0x71D, 6, {0x08, 4, 3, 0, 0, 0}});
+  // The reasons are the numbers of the library's errors.
+  const auto same = [](Reason reason, ocm::base::Error error) {
+    return static_cast<std::uint8_t>(reason) == static_cast<std::uint8_t>(error);
+  };
+  CHECK(same(Reason::nothing, ocm::base::Error::none));
+  CHECK(same(Reason::bad_length, ocm::base::Error::bad_length));
+  CHECK(same(Reason::bad_mode, ocm::base::Error::bad_mode));
+  CHECK(same(Reason::bad_unit, ocm::base::Error::bad_unit));
+  CHECK(same(Reason::bad_period, ocm::base::Error::bad_period));
+  CHECK(same(Reason::out_of_range, ocm::base::Error::out_of_range));
+  CHECK(same(Reason::not_served, ocm::base::Error::unknown_topic));
+  CHECK(same(Reason::no_sample, ocm::base::Error::not_sampled));
+  CHECK(same(Reason::no_room, ocm::base::Error::full));
+  CHECK(same(Reason::no_answer, ocm::base::Error::no_answer));
+  CHECK(same(Reason::bus_fault, ocm::base::Error::bus_fault));
+}
+
 TEST_CASE("the catalogue knows every name, and whose topic it is") {
   struct Expected {
     std::string_view name;
@@ -169,6 +204,14 @@ TEST_CASE("the catalogue knows every name, and whose topic it is") {
       {"motors", "motors", 0x01, "di_wheel_drive", 1},
       {"led_1", "led_1", 0x3C, "light_ring", 1},
       {"led_8", "led_8", 0x43, "light_ring", 1},
+      {"floor_calibration", "floor_calibration", 0x0A, "di_wheel_drive", 1},
+      {"ring_calibration", "ring_calibration", 0x27, "power_management", 1},
+      {"di_wheel_drive_status", "di_wheel_drive_status", 0x1B, "di_wheel_drive", 2},
+      {"di_wheel_drive_refusal", "di_wheel_drive_refusal", 0x1D, "di_wheel_drive", 1},
+      {"power_management_status", "power_management_status", 0x39, "power_management", 2},
+      {"power_management_refusal", "power_management_refusal", 0x3B, "power_management", 1},
+      {"light_ring_status", "light_ring_status", 0x57, "light_ring", 2},
+      {"light_ring_refusal", "light_ring_refusal", 0x59, "light_ring", 1},
   };
   for (const Expected& e : expected) {
     CAPTURE(e.name);
@@ -179,7 +222,7 @@ TEST_CASE("the catalogue knows every name, and whose topic it is") {
     CHECK(catalogue.boards[topic->board].name == e.board);
     CHECK(topic->frames.size() == e.frames);
   }
-  STATIC_REQUIRE(catalogue.topics.size() == 16);
+  STATIC_REQUIRE(catalogue.topics.size() == 24);
   STATIC_REQUIRE(catalogue.find("led_3")->group == "led");
   STATIC_REQUIRE(catalogue.find("led_3")->instance == 3);
   STATIC_REQUIRE(catalogue.bit_rate == 500'000);

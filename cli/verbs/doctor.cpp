@@ -1,0 +1,239 @@
+/// How is the robot? Watches the bus for a moment, asks every board, and says in words what is wrong and what
+/// to do about it.
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "ocm/protocol/message.hpp"
+#include "ocm/protocol/request.hpp"
+#include "ocm/reflective/diagnosis.hpp"
+#include "ocm/reflective/sample.hpp"
+
+#include "cli/interrupt.hpp"
+#include "cli/verbs/commanding.hpp"
+#include "cli/verbs/verbs.hpp"
+
+namespace ocm::cli {
+namespace {
+
+using reflective::BoardReport;
+using reflective::Diagnosis;
+using reflective::Finding;
+using reflective::Severity;
+using SteadyClock = std::chrono::steady_clock;
+
+struct DoctorOptions {
+  std::string watch = "1s";
+  std::string patience = "500ms";
+  bool json = false;
+};
+
+/// The bus and what was seen on it.
+class Examination {
+ public:
+  Examination(Session& session)
+      : catalogue_(session.catalogue()),
+        bus_(session.open_bus()),
+        receiver_(catalogue_),
+        diagnosis_(catalogue_) {}
+
+  /// Listens for `duration`, or until `done`.
+  template <class Done>
+  void listen(base::Duration duration, Done done) {
+    const auto end = SteadyClock::now() + duration;
+    while (interrupted() == 0 && !done()) {
+      const base::Duration left = end - SteadyClock::now();
+      if (left.count() <= 0) return;
+      // In pieces, so that a signal is seen soon.
+      const auto received = bus_->receive(std::min<base::Duration>(left, std::chrono::milliseconds{200}));
+      if (received)
+        diagnosis_.take(receiver_.take(*received));
+      else if (received.error == base::Error::closed)
+        fail(bus_->failure());
+    }
+    if (interrupted() != 0) throw Exit{exit_code_after_interrupt(exit_failure)};
+  }
+
+  /// Who has not spoken by himself is asked, twice at most. What is published is waited for and not asked:
+  /// asking once would stop it.
+  void ask(base::Duration patience) {
+    for (int attempt = 0; attempt < 2 && !complete(); ++attempt) {
+      for (const BoardReport& board : diagnosis_.boards())
+        if (board.status != nullptr && !board.answered) request(*board.status);
+      listen(patience, [this] { return have_statuses(); });
+    }
+    for (const BoardReport& board : diagnosis_.boards())
+      if (board.refusal != nullptr && board.answered && board.reason.empty() &&
+          !diagnosis_.publishes(*board.refusal))
+        request(*board.refusal);
+    const auto& battery = diagnosis_.battery();
+    if (battery.topic != nullptr && !battery.answered && diagnosis_.boards()[battery.topic->board].answered &&
+        !diagnosis_.publishes(*battery.topic))
+      request(*battery.topic);
+    listen(patience, [this] { return complete(); });
+  }
+
+  [[nodiscard]] std::vector<Finding> findings() const {
+    std::vector<Finding> all = diagnosis_.findings();
+    const auto& counters = bus_->counters();
+    const auto& seen = receiver_.counters();
+    const auto add = [&all](std::uint64_t number, std::string_view what, std::string_view remedy) {
+      if (number != 0)
+        all.push_back({Severity::warning, "", reflective::count(number, what), std::string{remedy}});
+    };
+    add(counters.error_frames, "error frame* from the CAN controller of this machine",
+        "check cable, termination and bit rate; `amiroctl listen` shows what they say");
+    add(counters.lost, "frame* lost on the way to this program", "this machine is too busy");
+    add(seen.unknown, "frame* that the spec does not know",
+        "another program or robot on the bus, or another spec: `amiroctl listen` shows them");
+    add(seen.wrong_dlc, "frame* of a wrong length", "a board or a program with another spec");
+    add(seen.incomplete, "incomplete sample*", "frames are lost on the bus");
+    return all;
+  }
+
+  [[nodiscard]] const Diagnosis& diagnosis() const { return diagnosis_; }
+  [[nodiscard]] const protocol::Catalogue& catalogue() const { return catalogue_; }
+  [[nodiscard]] std::string_view bus_name() const { return bus_->name(); }
+  [[nodiscard]] std::uint64_t frames() const { return receiver_.counters().frames; }
+
+ private:
+  void request(const protocol::Topic& topic) {
+    send_patiently(*bus_, protocol::once(topic.id, topic.priority));
+  }
+  [[nodiscard]] bool have_statuses() const {
+    const auto& boards = diagnosis_.boards();
+    return std::all_of(boards.begin(), boards.end(),
+                       [](const BoardReport& b) { return b.status == nullptr || b.answered; });
+  }
+  [[nodiscard]] bool complete() const {
+    const auto& boards = diagnosis_.boards();
+    return have_statuses() && (diagnosis_.battery().topic == nullptr || diagnosis_.battery().answered) &&
+           std::all_of(boards.begin(), boards.end(),
+                       [](const BoardReport& b) { return b.refusal == nullptr || !b.reason.empty(); });
+  }
+
+  const protocol::Catalogue& catalogue_;
+  std::unique_ptr<transport::Bus> bus_;
+  reflective::Receiver receiver_;
+  Diagnosis diagnosis_;
+};
+
+/// 90061 s as "1 d 1 h".
+std::string span(std::int64_t seconds) {
+  if (seconds < 120) return fmt::format("{} s", seconds);
+  if (seconds < 7200) return fmt::format("{} min", seconds / 60);
+  if (seconds < 172'800) return fmt::format("{} h {} min", seconds / 3600, seconds / 60 % 60);
+  return fmt::format("{} d {} h", seconds / 86'400, seconds / 3600 % 24);
+}
+
+void print_pretty(const Examination& examination, const std::vector<Finding>& findings, bool colour) {
+  const auto& catalogue = examination.catalogue();
+  const auto& diagnosis = examination.diagnosis();
+  std::size_t width = 5;
+  for (const auto& board : catalogue.boards) width = std::max(width, board.name.size());
+  fmt::print("{:<{}}  {:<10}  {:<9}  {:<7}  {:>5}  {:<7}  {}\n", "BOARD", width, "UP", "RESET", "SPEC",
+             "LOAD", "BUS", "PUBLISHES");
+  for (std::size_t i = 0; i < catalogue.boards.size(); ++i) {
+    const BoardReport& board = diagnosis.boards()[i];
+    if (!board.answered) {
+      fmt::print("{:<{}}  {}\n", catalogue.boards[i].name, width,
+                 board.status == nullptr ? "has no status in this spec"
+                 : board.heard           ? "sends, but has no status"
+                                         : "-");
+      continue;
+    }
+    const bool same = static_cast<std::uint32_t>(board.wire_hash) == protocol::wire_hash(catalogue);
+    const std::string running = diagnosis.sensors_of(i, board.publishing);
+    fmt::print("{:<{}}  {:<10}  {:<9}  {:<7}  {:>5}  {:<7}  {}\n", catalogue.boards[i].name, width,
+               span(board.uptime_s), board.reset.empty() ? "?" : board.reset, same ? "same" : "another",
+               board.load ? fmt::format("{} %", *board.load) : "-", board.bus.empty() ? "?" : board.bus,
+               running.empty() ? "-" : running);
+  }
+  if (const auto& battery = diagnosis.battery(); battery.answered)
+    fmt::print("battery {} %{}\n", battery.state_of_charge, battery.plugged ? ", charger plugged in" : "");
+  fmt::print("\n");
+  for (const Finding& finding : findings) {
+    const char* mark = !colour                                 ? ""
+                       : finding.severity == Severity::problem ? "\x1b[31m"
+                       : finding.severity == Severity::warning ? "\x1b[33m"
+                                                               : "\x1b[2m";
+    fmt::print("{}{:<8}{} {}{}{}\n         {}\n", mark, name(finding.severity), colour ? "\x1b[0m" : "",
+               finding.board, finding.board.empty() ? "" : ": ", finding.what, finding.remedy);
+  }
+  if (findings.empty()) fmt::print("all is well\n");
+}
+
+void print_json(const Examination& examination, const std::vector<Finding>& findings) {
+  using Json = nlohmann::ordered_json;
+  const auto& catalogue = examination.catalogue();
+  const auto& diagnosis = examination.diagnosis();
+  Json out;
+  out["robot"] = catalogue.robot;
+  out["bus"] = examination.bus_name();
+  out["frames"] = examination.frames();
+  out["boards"] = Json::array();
+  for (std::size_t i = 0; i < catalogue.boards.size(); ++i) {
+    const BoardReport& board = diagnosis.boards()[i];
+    Json entry{{"board", catalogue.boards[i].name}, {"answers", board.answered}, {"heard", board.heard}};
+    if (board.answered) {
+      entry["uptime_s"] = board.uptime_s;
+      entry["reset"] = board.reset;
+      entry["wire_hash"] = fmt::format("0x{:08X}", board.wire_hash);
+      entry["load_percent"] = board.load ? Json(*board.load) : Json();
+      entry["bus"] = board.bus;
+      entry["publishing"] = diagnosis.sensors_of(i, board.publishing);
+      entry["faults"] = diagnosis.sensors_of(i, board.faults);
+      entry["overload"] = board.overload;
+      entry["bus_errors"] = board.bus_errors;
+      entry["refused"] = board.refused;
+    }
+    out["boards"].push_back(std::move(entry));
+  }
+  out["wire_hash"] = fmt::format("0x{:08X}", protocol::wire_hash(catalogue));
+  const auto& battery = diagnosis.battery();
+  out["battery_percent"] = battery.answered ? Json(battery.state_of_charge) : Json();
+  out["findings"] = Json::array();
+  for (const Finding& finding : findings)
+    out["findings"].push_back({{"severity", name(finding.severity)},
+                               {"board", finding.board},
+                               {"what", finding.what},
+                               {"remedy", finding.remedy}});
+  fmt::print("{}\n", out.dump());
+}
+
+}  // namespace
+
+void add_doctor(CLI::App& app, Session& session, int& exit_code) {
+  auto* verb = add_verb(app, "doctor", "how the robot is: what every board says of itself, and what to do",
+                        watch_group,
+                        "  amiroctl doctor\n"
+                        "  amiroctl doctor --watch 10s --json | jq '.findings[]'");
+  const auto options = std::make_shared<DoctorOptions>();
+  verb->add_option("--watch", options->watch, "how long to listen before asking (1s)")->type_name("T");
+  verb->add_option("--patience", options->patience, "how long a board may take to answer (500ms)")
+      ->type_name("T");
+  verb->add_flag("--json", options->json, "one object, for programs");
+  verb->callback([options, &session, &exit_code] {
+    const base::Duration watch = duration_option("--watch", options->watch);
+    const base::Duration patience = duration_option("--patience", options->patience);
+    catch_interrupts();
+    Examination examination{session};
+    examination.listen(watch, [] { return false; });
+    examination.ask(patience);
+    const auto findings = examination.findings();
+    if (options->json)
+      print_json(examination, findings);
+    else
+      print_pretty(examination, findings, session.colour());
+    const bool well = std::all_of(findings.begin(), findings.end(),
+                                  [](const Finding& f) { return f.severity == Severity::note; });
+    exit_code = well ? exit_success : exit_failure;
+  });
+}
+
+}  // namespace ocm::cli

@@ -1,0 +1,34 @@
+/// What the scheduling needs of the system that it runs on: a clock, one timer, a context a priority level,
+/// and a short critical section. An RTOS, a bare machine, a host's threads and virtual time all have these;
+/// docs/porting.md shows how to write one.
+#pragma once
+
+#include <concepts>
+
+#include "ocm/base/time.hpp"
+#include "ocm/protocol/identifier.hpp"
+
+namespace ocm::scheduling {
+
+/// A priority level is the priority of the request: urgent, high, medium, low. A level preempts those after
+/// it.
+using Level = protocol::Priority;
+
+/// - `now()`: monotonic time. Any context.
+/// - `arm(when)`: have the timer's context call `expire()` of the dispatcher at `when`, or as soon after as
+/// the
+///   clock allows (at once for a time that has passed). Replaces what was armed; base::never disarms.
+/// - `pend(level)`: have the level's context call `run(level)`, once more even if it is running now. A
+/// level's
+///   context runs only while no more urgent one can, and is preempted by those.
+/// - `lock()`: a guard; until it goes, no other context enters. Held for a bounded, short time; not nested.
+///   `arm` and `pend` are called with the lock held, from any context.
+template <class P>
+concept Port = requires(P& port, base::Time when, Level level) {
+  { port.now() } -> std::same_as<base::Time>;
+  port.arm(when);
+  port.pend(level);
+  { port.lock() } -> std::destructible;
+};
+
+}  // namespace ocm::scheduling

@@ -1,0 +1,115 @@
+"""amiroctl doctor: what it finds on a simulated robot, and that it leaves the robot as it was."""
+
+import json
+import os
+import signal
+import time
+
+from harness import Case, main
+
+QUICK = ("--watch", "200ms", "--patience", "300ms")
+
+
+class Doctor(Case):
+    def examine(self, *arguments, code):
+        out, _ = self.run_tool("doctor", "--json", *QUICK, *arguments, code=code)
+        return json.loads(out)
+
+    def what(self, report):
+        return [(f["severity"], f["board"], f["what"]) for f in report["findings"]]
+
+    def test_a_robot_that_is_well(self):
+        self.start_sim()
+        out, _ = self.run_tool("doctor", *QUICK)
+        rows = out.splitlines()
+        self.assertEqual([row.split()[0] for row in rows[1:4]], ["di_wheel_drive", "power_management", "light_ring"])
+        for row in rows[1:4]:
+            self.assertIn("power", row)
+            self.assertIn("same", row)
+            self.assertIn("active", row)
+        self.assertEqual(rows[4], "battery 90 %")
+        self.assertEqual(rows[-1], "all is well")
+
+    def test_a_board_that_is_off(self):
+        self.start_sim("--without", "power_management")
+        report = self.examine(code=1)
+        self.assertEqual(self.what(report), [("problem", "power_management", "does not answer")])
+        self.assertEqual([b["answers"] for b in report["boards"]], [True, False, True])
+        self.assertIsNone(report["battery_percent"])
+
+    def test_nobody_there(self):
+        self.start_sim("--without", "di_wheel_drive,power_management,light_ring")
+        report = self.examine(code=1)
+        self.assertEqual(self.what(report), [("problem", "", "no board answers")])
+        self.assertIn("500000 bit/s", report["findings"][0]["remedy"])
+
+    def test_another_spec(self):
+        self.start_sim()
+        spec = os.path.join(self.folder, "spec.json")
+        with open(os.path.join(os.environ["OCM_SOURCE_DIR"], "spec/topics.json"), encoding="utf-8") as source:
+            text = source.read()
+        with open(spec, "w", encoding="utf-8") as file:
+            file.write(text.replace('"scale": 0.0175', '"scale": 0.035'))
+        out, _ = self.run_tool("--spec", spec, "doctor", "--json", *QUICK, code=1)
+        report = json.loads(out)
+        self.assertEqual([w[:2] for w in self.what(report)],
+                         [("problem", b["board"]) for b in report["boards"]])
+        self.assertIn("another spec", report["findings"][0]["what"])
+
+    def test_refusals_and_their_reason(self):
+        self.start_sim()
+        self.run_tool("send", "208#03")
+        self.run_tool("send", "208#01000000")
+        report = self.examine(code=0)  # a note is no illness
+        self.assertEqual(self.what(report), [
+            ("note", "di_wheel_drive", "2 requests refused so far, the last for gyroscope: bad_period")])
+
+    def test_a_refusal_is_told_unasked(self):
+        self.start_sim()
+        listener = self.listen("di_wheel_drive_refusal", "-n", "1")
+        self.run_tool("send", "201#01")
+        out, _ = listener.communicate(timeout=10)
+        self.assertEqual(json.loads(out)["fields"],
+                         {"topic": 1, "reason": 3, "refused": 1, "not_sampled": 0})
+
+    def test_what_is_published_goes_on(self):
+        self.start_sim()
+        self.run_tool("publish", "gyro", "20ms")
+        self.run_tool("publish", "di_wheel_drive_status", "100ms")
+        self.run_tool("publish", "power", "100ms")
+        report = self.examine(code=0)
+        publishing = {b["board"]: b["publishing"] for b in report["boards"]}
+        self.assertEqual(publishing["di_wheel_drive"], "gyroscope, di_wheel_drive_status")
+        self.assertEqual(report["battery_percent"], 90)
+        publishing = {b["board"]: b["publishing"] for b in self.examine(code=0)["boards"]}
+        self.assertEqual(publishing["di_wheel_drive"], "gyroscope, di_wheel_drive_status")
+        self.assertEqual(publishing["power_management"], "power_status")
+
+    def test_strangers_on_the_bus(self):
+        self.start_sim()
+        doctor = self.start("doctor", "--json", "--watch", "1s")
+        self.assertIn("bus: sim", doctor.stderr.readline())
+        time.sleep(0.2)
+        self.run_tool("send", "7FF#00")
+        self.run_tool("send", "608#00")
+        out, _ = doctor.communicate(timeout=10)
+        self.assertEqual(doctor.returncode, 1)
+        self.assertEqual([w[2] for w in self.what(json.loads(out))],
+                         ["1 frame that the spec does not know", "1 frame of a wrong length"])
+
+    def test_ctrl_c_ends_it(self):
+        self.start_sim()
+        doctor = self.start("doctor", "--watch", "1h")
+        self.assertIn("bus: sim", doctor.stderr.readline())
+        time.sleep(0.2)
+        out, _ = self.interrupt(doctor)
+        self.assertEqual(doctor.returncode, 128 + signal.SIGINT)
+        self.assertEqual(out, "")
+
+    def test_wrong_usage(self):
+        _, err = self.run_tool("doctor", "--watch", "soon", code=2)
+        self.assertIn("--watch soon: not a time", err)
+
+
+if __name__ == "__main__":
+    main()

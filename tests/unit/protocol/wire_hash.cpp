@@ -1,0 +1,83 @@
+#include "ocm/protocol/wire_hash.hpp"
+
+#include <array>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/topics/amiro.hpp"
+
+namespace {
+
+using namespace ocm::protocol;
+
+constexpr std::array<Field, 2> two_fields{{
+    {"x", {0, 16, ByteOrder::little}, true, {175, -4}, {}, "deg/s", -28571, 28571, {}, false},
+    {"y", {16, 16, ByteOrder::little}, true, {175, -4}, {}, "deg/s", -28571, 28571, {}, false},
+}};
+
+/// A catalogue of two topics that a test can change.
+struct Robot {
+  std::array<Field, 2> fields = two_fields;
+  std::array<FrameLayout, 2> frames{{{"", TopicId{8}, 4, fields}, {"", TopicId{9}, 4, fields}}};
+  std::array<Topic, 2> topics{};
+  std::uint32_t bit_rate = 500'000;
+
+  constexpr Robot() {
+    for (std::size_t i = 0; i < topics.size(); ++i) {
+      topics[i].name = i == 0 ? "gyroscope" : "accelerometer";
+      topics[i].id = frames[i].id;
+      topics[i].frames = {&frames[i], 1};
+    }
+  }
+  Robot(const Robot&) = delete;
+  Robot& operator=(const Robot&) = delete;
+  [[nodiscard]] constexpr std::uint32_t hash() const { return wire_hash({"", bit_rate, {}, topics}); }
+};
+
+template <class Change>
+constexpr bool changes(Change change) {
+  Robot before;
+  Robot after;
+  change(after);
+  return before.hash() != after.hash();
+}
+
+// What travels counts.
+static_assert(changes([](Robot& r) { r.bit_rate = 1'000'000; }));
+static_assert(changes([](Robot& r) { r.topics[0].id = TopicId{10}; }));
+static_assert(changes([](Robot& r) { r.topics[1].kind = Kind::actuator; }));
+static_assert(changes([](Robot& r) { r.frames[0].id = TopicId{10}; }));
+static_assert(changes([](Robot& r) { r.frames[0].dlc = 6; }));
+static_assert(changes([](Robot& r) { r.fields[1].position.start = 24; }));
+static_assert(changes([](Robot& r) { r.fields[1].position.width = 12; }));
+static_assert(changes([](Robot& r) { r.fields[1].position.order = ByteOrder::big; }));
+static_assert(changes([](Robot& r) { r.fields[0].is_signed = false; }));
+static_assert(changes([](Robot& r) { r.fields[0].scale = {1, -2}; }));
+static_assert(changes([](Robot& r) { r.fields[0].offset = {-40, 0}; }));
+static_assert(changes([](Robot& r) { r.fields[0].scale.exponent = -5; }));
+
+// What people call it does not, nor when it is sent, nor where it stands in the spec.
+static_assert(!changes([](Robot& r) { r.topics[0].name = "gyro"; }));
+static_assert(!changes([](Robot& r) { r.topics[0].source = "elsewhere"; }));
+static_assert(!changes([](Robot& r) { r.fields[0].name = "roll"; }));
+static_assert(!changes([](Robot& r) { r.fields[0].raw_max = 100; }));
+static_assert(!changes([](Robot& r) { r.topics[0].period = {1, PeriodUnit::seconds}; }));
+static_assert(!changes([](Robot& r) { std::swap(r.topics[0], r.topics[1]); }));
+
+// Two topics that exchange their frames are another spec.
+static_assert(changes([](Robot& r) { std::swap(r.topics[0].frames, r.topics[1].frames); }));
+
+TEST_CASE("wire_hash: FNV-1a, typed by hand for a catalogue that says nothing") {
+  // FNV-1a of eight zero bytes: 0x811C9DC5 times 0x01000193 eight times over, modulo 2^32.
+  std::uint32_t expected = 0x811C9DC5;
+  for (int i = 0; i < 8; ++i) expected *= 0x01000193;
+  CHECK(wire_hash({}) == expected);
+  CHECK(wire_hash({}) == 0x9BE17165);
+}
+
+TEST_CASE("wire_hash: the generated header has it at compile time") {
+  static_assert(amiro::wire_hash == wire_hash(amiro::catalogue));
+  CHECK(amiro::wire_hash != 0);
+}
+
+}  // namespace
