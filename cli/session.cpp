@@ -11,6 +11,7 @@
 #include "ocm/can/text.hpp"
 #include "ocm/topics/amiro.hpp"
 #include "ocm/transport/interfaces.hpp"
+#include "ocm/transport/slcan.hpp"
 #include "ocm/transport/socketcan.hpp"
 #include "ocm/transport/virtual_bus.hpp"
 
@@ -27,8 +28,10 @@ void remark(std::string_view text) {
 }
 
 void Session::add_options(CLI::App& app) {
-  app.add_option("--bus", bus_name,
-                 "CAN interface (can0, vcan0, ...) or sim; default: the only one that is up or running")
+  app.add_option(
+         "--bus", bus_name,
+         "CAN interface (can0, vcan0, ...), slcan:/dev/ttyACM0@500k (a serial adapter) or sim; default: "
+         "the only interface that is up or sim")
       ->envname("AMIROCTL_BUS")
       ->type_name("NAME");
   app.add_option("--spec", spec_file, "topics of another robot, as JSON; default: the AMiRo's, compiled in")
@@ -61,7 +64,12 @@ std::unique_ptr<transport::Bus> Session::open_bus(std::string_view name) {
     take(transport::VirtualBus::open());
   else if (name.starts_with("sim:"))
     take(transport::VirtualBus::open(std::string{name.substr(4)}));
-  else
+  else if (name.starts_with("slcan:")) {
+    auto opened = transport::Slcan::open(name.substr(6));
+    if (opened && !(*opened)->answers())
+      remark("the adapter answers no command: what it drops, nobody knows");
+    take(std::move(opened));
+  } else
     take(transport::SocketCan::open(name));
   if (!bus) fail(bus.error);
   return std::move(bus.value);

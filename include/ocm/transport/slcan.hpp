@@ -1,0 +1,761 @@
+/// A serial CAN adapter that speaks SLCAN (can/slcan.hpp) as a bus: a device such as /dev/ttyACM0, a pty, or
+/// a local stream socket (a board in QEMU). No kernel part, no root. Host only.
+///
+/// - Frames carry the adapter's milliseconds, mapped to Unix time, where it has them (command Z1), else the
+///   time of reading.
+/// - An adapter that answers has at most `window` frames unanswered. One that it refuses (BEL: its buffer is
+///   full) is sent again, before anything else; of one identifier only one frame is under way, so the order
+///   within an identifier stays. Until there is room again `send` answers false.
+/// - Adapters that never answer are taken as they are: what they drop nobody knows.
+/// - Errors of the bus come as error frames: from the status flags, asked for once a second, and from the
+///   lines that linux's driver understands too.
+/// - What is not a line of the protocol is counted (`line_faults`), and never becomes a frame.
+/// - One system call for up to 4 KiB of text. Filters are applied here.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <deque>
+#include <fcntl.h>
+#include <filesystem>
+#include <linux/tty.h>
+#include <memory>
+#include <optional>
+#include <poll.h>
+#include <span>
+#include <string>
+#include <string_view>
+#include <sys/file.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <system_error>
+#include <termios.h>
+#include <vector>
+
+#include "ocm/can/slcan.hpp"
+#include "ocm/transport/bus.hpp"
+#include "ocm/transport/descriptor.hpp"
+#include "ocm/transport/system_time.hpp"
+
+namespace ocm::transport {
+
+struct SlcanOptions {
+  std::uint32_t bit_rate = 500'000;  ///< of the CAN bus: one of can::slcan::bit_rates
+  std::uint32_t baud = 115'200;      ///< of the serial line; USB devices mostly ignore it
+  /// How long to wait for each answer while opening. An adapter that says nothing at all within it is taken
+  /// for one that never answers.
+  base::Duration patience = std::chrono::milliseconds{300};
+  std::size_t window = 8;  ///< frames that may wait for their answer
+  /// After that long an answer is taken for lost.
+  base::Duration answer_limit = std::chrono::milliseconds{500};
+  base::Duration status_period = std::chrono::seconds{1};  ///< between two questions for the status flags
+};
+
+struct SlcanAddress {
+  std::string path;
+  SlcanOptions options;
+};
+
+/// What happened between this program and the adapter.
+struct SlcanCounters {
+  std::uint64_t sent_again = 0;  ///< frames that the adapter had refused
+  std::uint64_t unanswered = 0;  ///< commands without an answer: whether the frame went out nobody knows
+  std::uint64_t strays = 0;      ///< answers to nothing
+};
+
+namespace detail {
+
+inline constexpr std::array<std::pair<std::uint32_t, speed_t>, 18> serial_speeds{{{9600, B9600},
+                                                                                  {19200, B19200},
+                                                                                  {38400, B38400},
+                                                                                  {57600, B57600},
+                                                                                  {115200, B115200},
+                                                                                  {230400, B230400},
+                                                                                  {460800, B460800},
+                                                                                  {500000, B500000},
+                                                                                  {576000, B576000},
+                                                                                  {921600, B921600},
+                                                                                  {1000000, B1000000},
+                                                                                  {1152000, B1152000},
+                                                                                  {1500000, B1500000},
+                                                                                  {2000000, B2000000},
+                                                                                  {2500000, B2500000},
+                                                                                  {3000000, B3000000},
+                                                                                  {3500000, B3500000},
+                                                                                  {4000000, B4000000}}};
+
+/// "500k", "1M", "125000"
+[[nodiscard]] constexpr std::optional<std::uint32_t> parse_rate(std::string_view text) noexcept {
+  std::uint64_t factor = 1;
+  if (!text.empty() && (text.back() == 'k' || text.back() == 'K')) factor = 1000;
+  if (!text.empty() && text.back() == 'M') factor = 1'000'000;
+  if (factor != 1) text.remove_suffix(1);
+  const auto number = base::parse_unsigned(text);
+  if (!number || *number == 0 || *number > UINT32_MAX / factor) return std::nullopt;
+  return static_cast<std::uint32_t>(*number * factor);
+}
+
+[[nodiscard]] inline std::string rate_text(std::uint32_t rate) {
+  if (rate % 1'000'000 == 0) return std::to_string(rate / 1'000'000) + "M";
+  if (rate % 1000 == 0) return std::to_string(rate / 1000) + "k";
+  return std::to_string(rate);
+}
+
+/// Maps the milliseconds of an adapter, which start again every minute, to the clock that stamps the arrival.
+/// A frame cannot come before it was sent: the smallest delay seen is taken for none. The two clocks may
+/// differ by 200 ppm.
+class StampClock {
+ public:
+  [[nodiscard]] base::Time map(std::uint16_t stamp, base::Time arrival) noexcept {
+    constexpr base::Duration turn = std::chrono::milliseconds{can::slcan::stamp_period};
+    if (!started_) {
+      started_ = true;
+      offset_ = arrival.time_since_epoch();
+      count_ = base::Duration::zero();
+    } else {
+      const base::Duration step = std::chrono::milliseconds{(stamp + can::slcan::stamp_period - last_stamp_) %
+                                                            can::slcan::stamp_period};
+      const base::Duration elapsed = std::max(arrival - last_arrival_, base::Duration::zero());
+      // Whole minutes without a frame are seen by the other clock only.
+      const base::Duration rest = elapsed - step + turn / 2;
+      const std::int64_t turns = rest >= base::Duration::zero() ? rest / turn : -1;
+      count_ += step + turns * turn;
+      offset_ = std::min(offset_ + elapsed / 5000, arrival.time_since_epoch() - count_);
+      if (arrival.time_since_epoch() - (offset_ + count_) > longest_delay)  // the adapter started anew
+        offset_ = arrival.time_since_epoch() - count_;
+    }
+    last_stamp_ = stamp;
+    last_arrival_ = arrival;
+    return base::Time{offset_ + count_};
+  }
+
+ private:
+  /// No adapter keeps a frame for longer, nor a program that reads.
+  static constexpr base::Duration longest_delay = std::chrono::seconds{5};
+  bool started_ = false;
+  std::uint16_t last_stamp_ = 0;
+  base::Time last_arrival_{};
+  base::Duration count_{};   ///< of the adapter, since the first frame
+  base::Duration offset_{};  ///< our clock when `count_` was 0
+};
+
+/// The serial devices of this machine, by the names that stay.
+[[nodiscard]] inline std::string serial_devices() {
+  std::vector<std::string> found;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator{"/dev/serial/by-id", error})
+    found.push_back(entry.path().string());
+  if (found.empty()) {
+    for (const auto& entry : std::filesystem::directory_iterator{"/dev", error}) {
+      const std::string name = entry.path().filename().string();
+      if (name.starts_with("ttyACM") || name.starts_with("ttyUSB")) found.push_back(entry.path().string());
+    }
+  }
+  std::sort(found.begin(), found.end());
+  std::string text;
+  for (const std::string& name : found) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+[[nodiscard]] inline Failure open_failure(const std::string& path, int error) {
+  const std::string reason = std::string(" (") + std::strerror(error) + ")";
+  switch (error) {
+    case ENOENT:
+    case ENXIO:
+    case ENODEV: {
+      const std::string devices = serial_devices();
+      return {"there is no serial device '" + path + "'" + reason,
+              devices.empty() ? "plug the adapter in; `dmesg | tail` tells its name, mostly /dev/ttyACM0"
+                              : "the serial devices here are: " + devices};
+    }
+    case EACCES:
+    case EPERM:
+      return {"not allowed to open '" + path + "'" + reason,
+              "join the group that owns it and log in again: sudo usermod -aG dialout $USER (see ls -l " +
+                  path + ")"};
+    case EBUSY:
+    case EWOULDBLOCK:
+      return {"'" + path + "' is in use by another program",
+              "end that one: `fuser -v " + path + "` names it"};
+    case ECONNREFUSED:
+      return {"nobody listens on the socket '" + path + "'" + reason, "start the board or program behind it"};
+    default:
+      return {"cannot open '" + path + "'" + reason, "see the kernel's log: dmesg"};
+  }
+}
+
+}  // namespace detail
+
+/// Reads `PATH[@BIT_RATE[,BAUD]]`, as in /dev/ttyACM0@500k,115200. The bit rate is the robot's 500k unless
+/// said.
+[[nodiscard]] inline Outcome<SlcanAddress> parse_slcan_address(std::string_view text) {
+  static constexpr std::string_view form = "write slcan:/dev/ttyACM0@500k, or slcan:/dev/ttyUSB0@500k,57600";
+  SlcanAddress address;
+  const auto at = text.rfind('@');
+  address.path = std::string(text.substr(0, at));
+  if (address.path.empty())
+    return Failure{"'slcan:" + std::string(text) + "' names no device", std::string(form)};
+  if (at == std::string_view::npos) return address;
+  std::string_view rates = text.substr(at + 1);
+  const auto comma = rates.find(',');
+  const std::string bit_rate{rates.substr(0, comma)};
+  const auto rate = detail::parse_rate(bit_rate);
+  if (!rate)
+    return Failure{"'" + bit_rate + "' in 'slcan:" + std::string(text) + "' is no bit rate",
+                   std::string(form)};
+  address.options.bit_rate = *rate;
+  if (!can::slcan::bit_rate_code(*rate)) {
+    std::string all;
+    for (const std::uint32_t other : can::slcan::bit_rates)
+      all += (all.empty() ? "" : ", ") + detail::rate_text(other);
+    return Failure{"an SLCAN adapter has no bit rate " + bit_rate + ": only " + all,
+                   "the nearest is " + detail::rate_text(can::slcan::nearest_bit_rate(*rate)) +
+                       "; every node of a bus has the same, and the robot's is 500k"};
+  }
+  if (comma == std::string_view::npos) return address;
+  const std::string baud_text{rates.substr(comma + 1)};
+  const auto baud = detail::parse_rate(baud_text);
+  if (!baud)
+    return Failure{"'" + baud_text + "' in 'slcan:" + std::string(text) + "' is no speed of a serial line",
+                   std::string(form)};
+  address.options.baud = *baud;
+  const auto distance = [&](const auto& entry) {
+    return std::max(entry.first, *baud) - std::min(entry.first, *baud);
+  };
+  const auto nearest =
+      std::min_element(detail::serial_speeds.begin(), detail::serial_speeds.end(),
+                       [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+  if (nearest->first != *baud)
+    return Failure{"a serial line has no speed " + baud_text + " here",
+                   "the nearest is " + std::to_string(nearest->first) + "; USB adapters mostly ignore it"};
+  return address;
+}
+
+class Slcan final : public Bus {
+ public:
+  /// `name` as parse_slcan_address has it. The failure says what is wrong, where, and what to do.
+  [[nodiscard]] static Outcome<std::unique_ptr<Slcan>> open(std::string_view name) {
+    auto address = parse_slcan_address(name);
+    if (!address) return address.error;
+    return open(address->path, address->options);
+  }
+
+  /// Takes the adapter for this program alone, closes its channel, sets the bit rate and opens it again.
+  /// Takes a few round trips; `patience` once for an adapter that never answers.
+  [[nodiscard]] static Outcome<std::unique_ptr<Slcan>> open(const std::string& path,
+                                                            const SlcanOptions& options) {
+    if (!can::slcan::bit_rate_code(options.bit_rate)) {
+      auto wrong = parse_slcan_address(path + "@" + std::to_string(options.bit_rate));
+      return wrong.error;
+    }
+    struct stat status {};
+    if (::stat(path.c_str(), &status) < 0) return detail::open_failure(path, errno);
+    const bool is_socket = S_ISSOCK(status.st_mode);
+    if (!is_socket && !S_ISCHR(status.st_mode)) return kind_failure(path);
+    auto bus = std::unique_ptr<Slcan>(new Slcan(path, options));
+    if (auto problem = is_socket ? bus->connect() : bus->open_device()) return std::move(*problem);
+    if (auto problem = bus->start()) return std::move(*problem);
+    return bus;
+  }
+
+  /// Waits, at most 300 ms, until what was sent has been answered; then closes the adapter's channel and
+  /// gives the line its settings back.
+  ~Slcan() override {
+    if (state() == BusState::up && started_) finish();
+    if (restore_) {
+      // What cannot go out must not make close(2) wait for it.
+      ::tcflush(line_.get(), TCOFLUSH);
+      ::tcsetattr(line_.get(), TCSANOW, &*restore_);
+      ::ioctl(line_.get(), TIOCNXCL);
+    }
+  }
+
+  /// "slcan:" and the path.
+  [[nodiscard]] std::string_view name() const override { return name_; }
+  /// Whether the adapter answers commands. If not, nobody knows whether frames are sent.
+  [[nodiscard]] bool answers() const noexcept { return answers_; }
+  /// What it says of itself after command V; empty when it does not.
+  [[nodiscard]] const std::string& version() const noexcept { return version_; }
+  [[nodiscard]] const can::slcan::LineFaults& line_faults() const noexcept { return reader_.faults(); }
+  [[nodiscard]] const SlcanCounters& adapter_counters() const noexcept { return adapter_; }
+
+  /// Never waits. false: the line has no room, or the adapter has not answered yet; `descriptor` becomes
+  /// readable when it does.
+  base::Result<bool> send(const can::Frame& frame) override {
+    if (state() == BusState::closed) return base::Error::closed;
+    const auto line = can::slcan::encode(frame);
+    if (!line) return line.error;
+    work();
+    if (state() == BusState::closed) return base::Error::closed;
+    if (!has_room(frame) || !write(line->view())) {
+      if (state() == BusState::closed) return base::Error::closed;
+      ++counters_.refused;
+      return false;
+    }
+    ++counters_.sent;
+    if (tracks()) under_way_.push_back({false, frame, now()});
+    return true;
+  }
+
+  /// A signal that is caught while this waits ends it with Error::timed_out. After the adapter has gone the
+  /// frames that were complete come first, then Error::closed.
+  base::Result<can::Received> receive(base::Duration timeout) override {
+    const base::Time begin = now();
+    for (;;) {
+      if (inbox_.empty()) work();
+      if (!inbox_.empty()) {
+        const can::Received received = inbox_.front();
+        inbox_.pop_front();
+        ++counters_.received;
+        if (received.frame.format == can::Format::error) ++counters_.error_frames;
+        return received;
+      }
+      if (state() == BusState::closed) return base::Error::closed;
+      const base::Duration rest = timeout - (now() - begin);
+      if (timeout <= base::Duration::zero() || rest <= base::Duration::zero()) return base::Error::timed_out;
+      if (!wait(std::min(rest, until_due())) && errno == EINTR) return base::Error::timed_out;
+    }
+  }
+
+  /// Filters here: the text of every frame is read either way. Frames that wait are filtered too.
+  Outcome<void> subscribe(std::span<const can::Filter> filters) override {
+    filters_.assign(filters.begin(), filters.end());
+    std::erase_if(inbox_, [this](const can::Received& received) { return !passes(received.frame); });
+    return {};
+  }
+
+  [[nodiscard]] int descriptor() const override { return line_.get(); }
+  [[nodiscard]] const BusCounters& counters() const override { return counters_; }
+  [[nodiscard]] const Failure& failure() const override { return failure_; }
+
+ private:
+  using Answer = can::slcan::Answer;
+  static constexpr std::size_t max_inbox = 65'536;  ///< frames kept for somebody who sends and never receives
+  static constexpr base::Duration quiet = std::chrono::milliseconds{100};
+  static constexpr base::Duration pause_before_again = std::chrono::milliseconds{2};
+  static constexpr base::Duration farewell = std::chrono::milliseconds{300};
+
+  /// A command whose answer is awaited.
+  struct UnderWay {
+    bool status = false;
+    can::Frame frame{};
+    base::Time since{};
+  };
+  enum class Confirms : std::uint8_t { unknown, yes, no };
+
+  Slcan(const std::string& path, const SlcanOptions& options)
+      : path_(path), name_("slcan:" + path), options_(options) {}
+
+  [[nodiscard]] static base::Time now() noexcept {
+    return base::Time{
+        std::chrono::duration_cast<base::Duration>(std::chrono::steady_clock::now().time_since_epoch())};
+  }
+  [[nodiscard]] static base::Duration unix_minus_steady() noexcept {
+    return std::chrono::duration_cast<base::Duration>(std::chrono::system_clock::now().time_since_epoch()) -
+           now().time_since_epoch();
+  }
+
+  // --- opening ---
+
+  [[nodiscard]] static Failure kind_failure(const std::string& path) {
+    const std::string devices = detail::serial_devices();
+    return {"'" + path + "' is neither a serial device nor a socket",
+            devices.empty() ? "name the adapter's, mostly /dev/ttyACM0 or /dev/ttyUSB0"
+                            : "the serial devices here are: " + devices};
+  }
+
+  [[nodiscard]] std::optional<Failure> connect() {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    if (path_.size() >= sizeof address.sun_path)
+      return Failure{"the path '" + path_ + "' is too long for a socket",
+                     "use one of at most 107 characters"};
+    std::copy(path_.begin(), path_.end(), std::begin(address.sun_path));
+    line_ = Descriptor{::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)};
+    if (!line_ || ::connect(line_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) < 0)
+      return errno == EAGAIN ? detail::open_failure(path_, EBUSY) : detail::open_failure(path_, errno);
+    return std::nullopt;
+  }
+
+  [[nodiscard]] std::optional<Failure> open_device() {
+    line_ = Descriptor{::open(path_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)};
+    if (!line_) return detail::open_failure(path_, errno);
+    termios settings{};
+    if (::tcgetattr(line_.get(), &settings) < 0) return kind_failure(path_);
+    int discipline = 0;
+    if (::ioctl(line_.get(), TIOCGETD, &discipline) == 0 && discipline == N_SLCAN)
+      return Failure{"'" + path_ + "' is taken by the kernel's slcan driver",
+                     "use the interface that it has made (`ip link show type can`), or end slcand"};
+    // Both: the lock also keeps root out, the other also programs that do not look for locks.
+    if (::flock(line_.get(), LOCK_EX | LOCK_NB) < 0 && errno == EWOULDBLOCK)
+      return detail::open_failure(path_, EBUSY);
+    ::ioctl(line_.get(), TIOCEXCL);
+    restore_ = settings;
+    ::cfmakeraw(&settings);
+    settings.c_cflag |= CLOCAL | CREAD;
+    settings.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS | CSTOPB);
+    settings.c_iflag &= ~static_cast<tcflag_t>(IXOFF);
+    settings.c_cc[VMIN] = 1;
+    settings.c_cc[VTIME] = 0;
+    for (const auto& [baud, speed] : detail::serial_speeds) {
+      if (baud == options_.baud) {
+        ::cfsetispeed(&settings, speed);
+        ::cfsetospeed(&settings, speed);
+      }
+    }
+    if (::tcsetattr(line_.get(), TCSANOW, &settings) < 0) {
+      return Failure{
+          "cannot set '" + path_ + "' to " + std::to_string(options_.baud) + " baud: " + std::strerror(errno),
+          "try another speed: slcan:" + path_ + "@" + detail::rate_text(options_.bit_rate) + ",115200"};
+    }
+    ::tcflush(line_.get(), TCIOFLUSH);
+    return std::nullopt;
+  }
+
+  /// From any state of the adapter, also in the middle of a line and with its channel open, to an open
+  /// channel. [CAN232 manual: begin with CRs, then close]
+  [[nodiscard]] std::optional<Failure> start() {
+    tell("\rC\rV\r");
+    const base::Time begin = now();
+    base::Time last = begin;
+    for (std::size_t heard = 0; version_.empty() && now() - begin < 3 * options_.patience;) {
+      if (now() - last >= (answers_ ? quiet : options_.patience)) break;
+      wait(std::chrono::milliseconds{10});
+      read();
+      if (state() == BusState::closed) return failure_;
+      if (answers_heard_ != heard) last = now();
+      heard = answers_heard_;
+    }
+    if (!answers_ && version_.empty() && line_faults().total() != 0) {
+      return Failure{"what comes from '" + path_ + "' is not SLCAN (" +
+                         std::to_string(line_faults().total()) + " lines of something else)",
+                     "is this the adapter? Another speed of the serial line is written slcan:" + path_ + "@" +
+                         detail::rate_text(options_.bit_rate) + ",57600"};
+    }
+    const auto code = can::slcan::bit_rate_code(options_.bit_rate);
+    const auto digit = static_cast<char>('0' + *code);
+    if (auto problem =
+            demand(std::string{'S', digit, '\r'}, "the bit rate " + detail::rate_text(options_.bit_rate),
+                   "it may serve others only, or be in use: unplug it and plug it in again"))
+      return problem;
+    if (answers_) (void)ask("Z1\r");  // one without a clock refuses: the time of reading does
+    inbox_.clear();                   // of the channel as somebody else had it
+    if (auto problem = demand("O\r", "to open the channel",
+                              "unplug it and plug it in again; is its firmware one for SLCAN?"))
+      return problem;
+    if (answers_) {
+      answer_to_status_ = false;
+      (void)ask("F\r");
+      asks_status_ = answer_to_status_;
+    }
+    opening_ = false;
+    started_ = true;
+    next_status_ = now() + options_.status_period;
+    return failure_ == Failure{} ? std::nullopt : std::optional<Failure>{failure_};
+  }
+
+  /// Writes a command while opening.
+  void tell(std::string_view command) {
+    const base::Time begin = now();
+    (void)write(command);
+    while (!out_.empty() && state() == BusState::up && now() - begin < options_.patience) {
+      pollfd line{line_.get(), POLLOUT, 0};
+      ::poll(&line, 1, 10);
+      flush();
+    }
+  }
+  /// Writes a command while opening; the answer, none if there was none in time.
+  [[nodiscard]] Answer::Kind ask(std::string_view command) {
+    read();
+    last_answer_ = Answer::Kind::none;
+    tell(command);
+    const base::Time begin = now();
+    while (last_answer_ == Answer::Kind::none && state() == BusState::up &&
+           now() - begin < options_.patience) {
+      wait(std::chrono::milliseconds{10});
+      read();
+    }
+    return last_answer_;
+  }
+  [[nodiscard]] std::optional<Failure> demand(std::string_view command, const std::string& what,
+                                              const std::string& remedy) {
+    if (!answers_) {
+      tell(command);
+    } else {
+      const std::string quoted = " (command " + std::string(command.substr(0, command.size() - 1)) + ")";
+      switch (ask(command)) {
+        case Answer::Kind::refused:
+          return Failure{"the adapter on '" + path_ + "' refuses " + what + quoted, remedy};
+        case Answer::Kind::none:
+          if (state() == BusState::closed) break;
+          return Failure{
+              "the adapter on '" + path_ + "' has stopped to answer when asked for " + what + quoted,
+              "unplug it and plug it in again"};
+        default:
+          break;
+      }
+    }
+    return state() == BusState::closed ? std::optional<Failure>{failure_} : std::nullopt;
+  }
+
+  // --- the line ---
+
+  /// true: all of `text` is on its way. false: no room, nothing was written. A part that the kernel did not
+  /// take waits in `out_`, and goes first.
+  bool write(std::string_view text) {
+    if (!flush()) return false;
+    out_ = text;
+    flush();
+    if (state() == BusState::closed) return false;
+    if (out_.size() != text.size()) return true;
+    out_.clear();
+    return false;
+  }
+  /// true when nothing waits.
+  bool flush() {
+    while (!out_.empty() && state() == BusState::up) {
+      const ssize_t written = restore_ ? ::write(line_.get(), out_.data(), out_.size())
+                                       : ::send(line_.get(), out_.data(), out_.size(), MSG_NOSIGNAL);
+      if (written > 0) {
+        out_.erase(0, static_cast<std::size_t>(written));
+        continue;
+      }
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0 && errno != EAGAIN) lose(errno);
+      break;
+    }
+    return out_.empty();
+  }
+  /// All that has come. false: nothing had.
+  bool read() {
+    std::array<char, 4096> text;  // NOLINT: filled by the kernel
+    bool any = false;
+    while (state() == BusState::up) {
+      const ssize_t size = ::read(line_.get(), text.data(), text.size());
+      if (size < 0 && errno == EINTR) continue;
+      if (size < 0 && errno == EAGAIN) break;
+      if (size <= 0) {
+        lose(size < 0 ? errno : 0);
+        break;
+      }
+      any = true;
+      const base::Time arrival = now();
+      for (const char c : std::string_view{text.data(), static_cast<std::size_t>(size)})
+        handle(reader_.feed(c), arrival);
+      if (inbox_.size() >= max_inbox || static_cast<std::size_t>(size) < text.size()) break;
+    }
+    return any;
+  }
+  /// true: there is something to read, or to hear that the line is gone.
+  bool wait(base::Duration limit) {
+    const short events = out_.empty() ? POLLIN : POLLIN | POLLOUT;
+    pollfd line{line_.get(), events, 0};
+    const timespec time = to_timespec(limit);
+    errno = 0;
+    return ::ppoll(&line, 1, &time, nullptr) > 0;
+  }
+  void lose(int error) {
+    if (state() == BusState::closed) return;
+    const bool torn = reader_.mid_line();
+    failure_ = {"the adapter on '" + path_ + "' is gone: unplugged, or its other end closed" +
+                    (error == 0 || error == EIO ? "" : " (" + std::string(std::strerror(error)) + ")") +
+                    (torn ? ", in the middle of a line" : ""),
+                "plug it in again and start anew"};
+  }
+
+  // --- the protocol ---
+
+  [[nodiscard]] bool tracks() const noexcept { return answers_ && confirms_ != Confirms::no; }
+  [[nodiscard]] bool has_room(const can::Frame& frame) const {
+    if (!out_.empty()) return false;
+    if (!tracks()) return true;
+    const auto same = [&frame](const can::Frame& other) {
+      return other.id == frame.id && can::is_extended(other.format) == can::is_extended(frame.format);
+    };
+    return again_.empty() && under_way_.size() < options_.window &&
+           std::none_of(under_way_.begin(), under_way_.end(),
+                        [&](const UnderWay& other) { return !other.status && same(other.frame); });
+  }
+
+  /// Reads, repeats what was refused, asks for the status, forgets what is never answered.
+  void work() {
+    if (state() == BusState::closed) return;
+    read();
+    flush();
+    const base::Time time = now();
+    while (!under_way_.empty() && time - under_way_.front().since >= options_.answer_limit) {
+      const bool status = under_way_.front().status;
+      under_way_.pop_front();
+      ++adapter_.unanswered;
+      // One that has answered commands, but never a frame, does not answer frames.
+      if (!status && confirms_ == Confirms::unknown) {
+        confirms_ = Confirms::no;
+        std::erase_if(under_way_, [](const UnderWay& other) { return !other.status; });
+      }
+    }
+    while (!again_.empty() && time >= again_at_ && under_way_.size() < options_.window && out_.empty()) {
+      const auto line = can::slcan::encode(again_.front());
+      if (!write(line->view())) break;
+      under_way_.push_back({false, again_.front(), time});
+      again_.pop_front();
+      ++adapter_.sent_again;
+    }
+    if (asks_status_ && time >= next_status_ && out_.empty() && write("F\r")) {
+      under_way_.push_back({true, {}, time});
+      next_status_ = time + options_.status_period;
+    }
+  }
+  /// How long `work` has nothing to do unless something comes.
+  [[nodiscard]] base::Duration until_due() const {
+    base::Time due = base::never;
+    if (asks_status_) due = std::min(due, next_status_);
+    if (!again_.empty()) due = std::min(due, again_at_);
+    if (!under_way_.empty()) due = std::min(due, under_way_.front().since + options_.answer_limit);
+    const base::Time time = now();
+    return due <= time ? base::Duration{std::chrono::milliseconds{1}} : due - time;
+  }
+
+  void handle(const Answer& answer, base::Time arrival) {
+    switch (answer.kind) {
+      case Answer::Kind::none:
+        return;
+      case Answer::Kind::frame:
+        take(answer, arrival);
+        return;
+      case Answer::Kind::version:
+        version_ = answer.text.empty() ? "?" : std::string(answer.text);
+        break;
+      case Answer::Kind::status_flags:
+        take_status(answer.flags, arrival);
+        break;
+      case Answer::Kind::done:
+      case Answer::Kind::taken:
+      case Answer::Kind::refused:
+        if (opening_) answers_ = true;
+        break;
+      case Answer::Kind::serial:
+        break;
+    }
+    ++answers_heard_;
+    last_answer_ = answer.kind;
+    if (!opening_) settle(answer.kind);
+  }
+
+  /// Which command this answers: the oldest. A status question that something else answers was not answered.
+  void settle(Answer::Kind kind) {
+    const bool to_status = kind == Answer::Kind::status_flags;
+    if (!to_status && kind != Answer::Kind::done && kind != Answer::Kind::taken &&
+        kind != Answer::Kind::refused)
+      return;
+    while (!under_way_.empty() && under_way_.front().status != to_status) {
+      if (kind == Answer::Kind::refused) {  // F is refused by one that has closed its channel by itself
+        under_way_.pop_front();
+        return;
+      }
+      ++adapter_.unanswered;
+      under_way_.pop_front();
+    }
+    if (under_way_.empty()) {
+      if (tracks()) ++adapter_.strays;
+      return;
+    }
+    const UnderWay settled = under_way_.front();
+    under_way_.pop_front();
+    if (to_status) return;
+    confirms_ = Confirms::yes;
+    if (kind != Answer::Kind::refused) return;
+    again_.push_back(settled.frame);
+    again_at_ = now() + pause_before_again;
+  }
+
+  void take(const Answer& answer, base::Time arrival) {
+    base::Time time = arrival;
+    if (answer.stamped) time = clock_.map(answer.stamp, arrival);
+    put({time + unix_minus_steady(), answer.frame});
+  }
+  void take_status(std::uint8_t flags, base::Time arrival) {
+    answer_to_status_ = true;
+    // A full transmit queue shows in refused frames, and these are sent again.
+    if (confirms_ == Confirms::yes)
+      flags &= static_cast<std::uint8_t>(~can::slcan::status::transmit_queue_full);
+    const can::Frame frame = can::slcan::to_error_frame(flags, flags_);
+    flags_ = flags;
+    if (frame.id != 0) put({arrival + unix_minus_steady(), frame});
+  }
+  void put(const can::Received& received) {
+    if (!passes(received.frame)) return;
+    if (inbox_.size() >= max_inbox)
+      ++counters_.lost;
+    else
+      inbox_.push_back(received);
+  }
+  [[nodiscard]] bool passes(const can::Frame& frame) const {
+    return filters_.empty() || frame.format == can::Format::error ||
+           std::any_of(filters_.begin(), filters_.end(),
+                       [&frame](const can::Filter& filter) { return filter.accepts(frame); });
+  }
+
+  void finish() {
+    asks_status_ = false;
+    const base::Time begin = now();
+    const auto in_time = [&] { return state() == BusState::up && now() - begin < farewell; };
+    while (in_time()) {
+      work();
+      int waits = 0;
+      if (restore_) ::ioctl(line_.get(), TIOCOUTQ, &waits);
+      if (out_.empty() && under_way_.empty() && again_.empty() && waits == 0) break;
+      wait(std::min(until_due(), base::Duration{std::chrono::milliseconds{2}}));
+    }
+    if (state() != BusState::up || !write("C\r")) return;
+    last_answer_ = Answer::Kind::none;
+    const base::Time end = now() + std::chrono::milliseconds{50};
+    for (int waits = 1; state() == BusState::up && now() < end;) {
+      if (answers_ ? last_answer_ != Answer::Kind::none : waits == 0) break;
+      wait(std::chrono::milliseconds{2});
+      read();
+      waits = 0;
+      if (restore_) ::ioctl(line_.get(), TIOCOUTQ, &waits);
+    }
+  }
+
+  std::string path_;
+  std::string name_;
+  SlcanOptions options_;
+  Descriptor line_;
+  std::optional<termios> restore_;  ///< a device; a socket has no settings
+
+  can::slcan::AnswerReader reader_;
+  std::string out_;
+  std::deque<can::Received> inbox_;
+  std::deque<UnderWay> under_way_;
+  std::deque<can::Frame> again_;
+  base::Time again_at_{};
+  base::Time next_status_{};
+  std::vector<can::Filter> filters_;
+  detail::StampClock clock_;
+
+  bool opening_ = true;
+  bool started_ = false;
+  bool answers_ = false;
+  bool asks_status_ = false;
+  bool answer_to_status_ = false;
+  Confirms confirms_ = Confirms::unknown;
+  std::uint8_t flags_ = 0;
+  std::size_t answers_heard_ = 0;
+  Answer::Kind last_answer_ = Answer::Kind::none;
+  std::string version_;
+
+  BusCounters counters_;
+  SlcanCounters adapter_;
+  Failure failure_;
+};
+
+}  // namespace ocm::transport

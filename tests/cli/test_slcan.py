@@ -1,0 +1,253 @@
+"""amiroctl on serial CAN adapters (SLCAN): the adapter is played here on a pty, by the manual of LAWICEL's CAN232 and
+without a line of the library. python-can's slcan interface is a second host."""
+
+import os
+import pty
+import re
+import select
+import signal
+import subprocess
+import sys
+import threading
+import time
+import tty
+
+from harness import Case, main
+
+FRAME = re.compile(r"^(?:t([0-7][0-9A-Fa-f]{2})|T([01][0-9A-Fa-f]{7}))([0-8])((?:[0-9A-Fa-f]{2})*)$")
+
+
+class Adapter:
+    """An adapter with a robot behind it: `script` maps a frame that the host sends, in candump's notation, to the
+    lines that go up after it."""
+
+    def __init__(self, script=None, refuse=(), mute=False, stamps=True):
+        self.script, self.refuse, self.mute, self.with_stamps = script or {}, set(refuse), mute, stamps
+        self.frames, self.commands = [], []
+        self.open, self.rate, self.stamped = False, None, False
+        self.full = 0  # so many frames are refused
+        self.master, self.slave = pty.openpty()
+        tty.setraw(self.slave)
+        self.path = os.ttyname(self.slave)
+        self.ended = threading.Event()
+        self.thread = threading.Thread(target=self.run, daemon=True)
+        self.thread.start()
+
+    def run(self):
+        line = b""
+        while not self.ended.is_set():
+            if not select.select([self.master], [], [], 0.02)[0]:
+                continue
+            for byte in os.read(self.master, 4096):
+                if byte != 13:
+                    line += bytes([byte])
+                    continue
+                answer, up = self.obey(line.decode("latin-1"))
+                line = b""
+                if not self.mute:
+                    self.say(answer)
+                for text in up:
+                    self.say(text)
+
+    def obey(self, command):
+        ok, refused = "\r", "\a"
+        letter = command[:1]
+        self.commands.append(command)
+        if letter in self.refuse:
+            return refused, []
+        if letter == "":
+            return ok, []
+        if letter in "tT":
+            match = FRAME.match(command)
+            if not self.open or not match or len(match[4]) != 2 * int(match[3]):
+                return refused, []
+            if self.full:
+                self.full -= 1
+                return refused, []
+            text = f"{match[1] or match[2]}#{match[4]}".upper()
+            self.frames.append(text)
+            return ("z" if letter == "t" else "Z") + "\r", self.script.get(text, [])
+        if command == "V":
+            return "V1013\r", []
+        if command == "C":
+            was, self.open = self.open, False
+            return ok if was else refused, []
+        if command == "O":
+            if self.open or self.rate is None:
+                return refused, []
+            self.open = True
+            return ok, []
+        if command == "F":
+            return "F00\r" if self.open else refused, []
+        if re.fullmatch("S[0-8]", command) and not self.open:
+            self.rate = [10, 20, 50, 100, 125, 250, 500, 800, 1000][int(command[1])]
+            return ok, []
+        if re.fullmatch("Z[01]", command) and not self.open and self.with_stamps:
+            self.stamped = command == "Z1"
+            return ok, []
+        return refused, []
+
+    def say(self, text):
+        os.write(self.master, text.encode("latin-1"))
+
+    def unplug(self):
+        self.ended.set()
+        self.thread.join()
+        os.close(self.master)
+        os.close(self.slave)
+
+
+# Gyroscope once, and what the thesis's robot answers: x = -4 is 65532, that is -0.07 deg/s.
+GYRO_ONCE, GYRO = "208#02", "t6086FCFF00000000"
+
+
+class OnASerialLine(Case):
+    def adapter(self, **options):
+        adapter = Adapter(**options)
+        self.addCleanup(lambda: adapter.ended.is_set() or adapter.unplug())
+        return adapter
+
+    def test_once_and_its_sample(self):
+        adapter = self.adapter(script={GYRO_ONCE: [GYRO + "0010\r"]})
+        out, err = self.run_tool("--bus", f"slcan:{adapter.path}@500k", "once", "gyro", "--wait")
+        sample, = self.objects(out)
+        self.assertEqual(sample["bus"], f"slcan:{adapter.path}")
+        self.assertEqual(sample["fields"], {"x": -0.07, "y": 0, "z": 0})
+        self.assertLess(abs(int(sample["time_ns"]) / 1e9 - time.time()), 10)
+        self.assertIn(f"bus: slcan:{adapter.path}\n", err)
+        self.assertEqual(adapter.frames, [GYRO_ONCE])
+        self.assertEqual(adapter.rate, 500)
+        self.assertTrue(adapter.stamped)
+        self.assertFalse(adapter.open, "the channel stays open after the tool has ended")
+        self.assertEqual([c for c in adapter.commands if c][:6], ["C", "V", "S6", "Z1", "O", "F"])
+
+    def test_bit_rates_of_the_address(self):
+        adapter = self.adapter()
+        for text, rate in (("@125k", 125), ("@1M", 1000), ("@10000", 10), ("", 500), ("@250k,57600", 250)):
+            self.run_tool("--bus", f"slcan:{adapter.path}{text}", "send", "123#DEADBEEF")
+            self.assertEqual(adapter.rate, rate)
+        _, err = self.run_tool("--bus", f"slcan:{adapter.path}@83333", "send", "123#", code=1)
+        self.assertIn("the nearest is 100k", err)
+        self.assertEqual(adapter.frames, ["123#DEADBEEF"] * 5)
+
+    def test_send_of_each_kind_and_a_full_buffer(self):
+        adapter = self.adapter()
+        adapter.full = 3
+        for text in ("205#01840302", "1F334455#1122334455667788", "000#"):
+            self.run_tool("--bus", f"slcan:{adapter.path}", "send", text)
+        self.assertEqual(adapter.frames, ["205#01840302", "1F334455#1122334455667788", "000#"])
+        self.assertEqual(sum(c.startswith("t205") for c in adapter.commands), 4)  # refused three times
+
+    def test_an_adapter_that_stays_full(self):
+        adapter = self.adapter(refuse="t")
+        begin = time.monotonic()
+        script = os.path.join(self.folder, "two.script")
+        with open(script, "w", encoding="utf-8") as file:
+            file.write("0s led 1 red\n0s led 1 blue\n")
+        _, err = self.run_tool("--bus", f"slcan:{adapter.path}", "run", script, code=1)
+        self.assertLess(time.monotonic() - begin, 10)
+        self.assertIn(f"slcan:{adapter.path} stays full", err)
+
+    def test_listen_with_garbage_between(self):
+        adapter = self.adapter()
+        listener = self.start("--bus", f"slcan:{adapter.path}", "listen", "--json", "-n", "3", "--timeout", "20s")
+        self.assertIn("bus: slcan", listener.stderr.readline())
+        for end in ("\r", "\r\n", "0BB8\r"):
+            adapter.say(f"\xff\xfe\r{GYRO[:-1]}\rt6\r{GYRO}{end}")
+        out, err = listener.communicate(timeout=20)
+        self.assertEqual(listener.returncode, 0, err)
+        self.assertEqual([sample["data"] for sample in self.objects(out)], ["FCFF00000000"] * 3)
+
+    def test_unplugged_in_the_middle_of_a_line(self):
+        adapter = self.adapter()
+        listener = self.start("--bus", f"slcan:{adapter.path}", "listen", "--json", "--timeout", "20s")
+        self.assertIn("bus: slcan", listener.stderr.readline())
+        adapter.say(f"{GYRO}\r{GYRO[:9]}")
+        self.assertIn("FCFF00000000", listener.stdout.readline())
+        adapter.unplug()
+        out, err = listener.communicate(timeout=10)
+        self.assertEqual((listener.returncode, out), (1, ""))
+        self.assertIn(f"'{adapter.path}' is gone", err)
+        self.assertIn("plug it in again", err)
+
+    def test_ctrl_c_closes_the_channel(self):
+        adapter = self.adapter()
+        listener = self.start("--bus", f"slcan:{adapter.path}", "listen", "--timeout", "20s")
+        listener.stderr.readline()
+        self.assertTrue(adapter.open)
+        self.interrupt(listener)
+        self.assertEqual(listener.returncode, 128 + signal.SIGINT)
+        self.assertFalse(adapter.open)
+
+    def test_what_refuses_says_what(self):
+        for letter, words in (("S", "refuses the bit rate 500k"), ("O", "refuses to open the channel")):
+            adapter = self.adapter(refuse=letter)
+            _, err = self.run_tool("--bus", f"slcan:{adapter.path}", "send", "123#", code=1)
+            self.assertIn(words, err)
+            self.assertIn(adapter.path, err)
+
+    def test_an_adapter_that_never_answers(self):
+        adapter = self.adapter(script={GYRO_ONCE: [GYRO + "\r"]}, mute=True, stamps=False)
+        out, err = self.run_tool("--bus", f"slcan:{adapter.path}", "once", "gyro", "--wait")
+        self.assertEqual(self.objects(out)[0]["data"], "FCFF00000000")
+        self.assertIn("answers no command", err)
+
+    def test_one_program_at_a_time(self):
+        adapter = self.adapter()
+        listener = self.start("--bus", f"slcan:{adapter.path}", "listen", "--timeout", "20s")
+        listener.stderr.readline()
+        _, err = self.run_tool("--bus", f"slcan:{adapter.path}", "send", "123#", code=1)
+        self.assertIn("in use by another program", err)
+        self.interrupt(listener)
+        self.run_tool("--bus", f"slcan:{adapter.path}", "send", "123#")
+
+    def test_devices_that_are_none(self):
+        for path, words in (("/dev/no-adapter", "there is no serial device '/dev/no-adapter'"),
+                            ("/dev/null", "neither a serial device nor a socket"), ("", "names no device")):
+            _, err = self.run_tool("--bus", f"slcan:{path}", "send", "123#", code=1)
+            self.assertIn(words, err)
+
+
+class PythonCan(Case):
+    """A reading of the protocol by others: what python-can sends to an adapter, and takes from it, the tool does too."""
+
+    SCRIPT = """
+import can, sys
+bus = can.Bus(interface='slcan', channel=sys.argv[1], bitrate=500000, sleep_after_open=0)
+try:
+    for extended, number in ((False, 0x123), (True, 0x1F334455)):
+        bus.send(can.Message(arbitration_id=number, is_extended_id=extended, data=[1, 2]))
+        answer = bus.recv(5)
+        print('%X#%s' % (answer.arbitration_id, bytes(answer.data).hex().upper()))
+finally:
+    bus.shutdown()
+"""
+
+    def python_with_can(self):
+        """Debian's packages are in Debian's Python, which need not be the one that runs this."""
+        for python in (sys.executable, "/usr/bin/python3"):
+            if subprocess.run([python, "-c", "import can, serial"], capture_output=True, check=False).returncode == 0:
+                return python
+        return self.fail("python-can or pyserial is missing: sudo apt-get install python3-can python3-serial")
+
+    def test_the_same_adapter_serves_both(self):
+        adapter = Adapter(script={"123#0102": ["t32121122\r"], "1F334455#0102": ["T1F33445621122\r"]})
+        self.addCleanup(lambda: adapter.ended.is_set() or adapter.unplug())
+        theirs = subprocess.run([self.python_with_can(), "-c", self.SCRIPT, adapter.path], text=True, timeout=30,
+                                capture_output=True, check=True).stdout.split()
+        self.assertEqual(theirs, ["321#1122", "1F334456#1122"])
+        sent = list(adapter.frames)
+        adapter.frames.clear()
+
+        listener = self.start("--bus", f"slcan:{adapter.path}", "listen", "--raw", "-n", "2", "--timeout", "10s")
+        self.assertIn("bus: slcan", listener.stderr.readline())
+        adapter.say("t32121122\rT1F33445621122\r")
+        out, err = listener.communicate(timeout=15)
+        self.assertEqual([line.split()[2] for line in out.splitlines()], theirs, err)
+        for frame in sent:
+            self.run_tool("--bus", f"slcan:{adapter.path}", "send", frame)
+        self.assertEqual(adapter.frames, sent)
+
+
+if __name__ == "__main__":
+    main()
