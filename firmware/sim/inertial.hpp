@@ -65,13 +65,13 @@ struct GyroscopeModel {
   }
 };
 
-/// LIS331DLH at +-8 g, 1000 samples/s, low-pass at 780 Hz. [data sheet]
+/// LIS331DLH at +-4 g, 1000 samples/s, low-pass at 780 Hz. [data sheet; range: AMiRo-OS, FS_4G]
 struct AccelerometerModel {
   base::Duration period = std::chrono::milliseconds{1};
-  double digits_per_g = 1024;
-  double range_g = 8;
-  double noise_g = 0.0061;  ///< 218 ug/sqrt(Hz) over 780 Hz
-  double offset_g = 0.020;  ///< typical zero-g offset; the thesis's log shows 26 digits on x
+  double range_g = 4;
+  double digits_per_g = 512;  ///< 12 bits over the range, [-2048, 2047]
+  double noise_g = 0.0061;    ///< 218 ug/sqrt(Hz) over 780 Hz
+  double offset_g = 0.020;    ///< typical zero-g offset; the thesis's log shows 26 digits on x
 
   static constexpr double standard_gravity_m_per_s2 = 9.80665;
 
@@ -84,7 +84,9 @@ struct AccelerometerModel {
  private:
   [[nodiscard]] std::int16_t axis(double g, const Sample& sample, std::uint8_t channel) const noexcept {
     const double measured = g + offset_g * sample.constant(channel) + noise_g * sample.normal(channel);
-    return digits<std::int16_t>(measured * digits_per_g, -range_g * digits_per_g, range_g * digits_per_g);
+    const double end = range_g * digits_per_g;
+    const auto digit = digits<std::int16_t>(measured * digits_per_g, -end, end - 1);
+    return static_cast<std::int16_t>(digit * (1024 / digits_per_g));  // in 1/1024 g, as it travels: even
   }
 };
 

@@ -4,7 +4,9 @@
 ///     robot.receive(frame, now);  // whenever a frame was complete on the bus
 ///     robot.advance(now);         // at next_event(), and when a port has room again while waiting()
 ///
-/// Time is handed in: a server passes the clock, a test whatever it likes. The ports must outlive the robot.
+/// Time is handed in: a server passes the clock, a test whatever it likes. The boards do everything at the
+/// time at which it is due, however seldom somebody calls: a simulated robot is never late because its host
+/// is. The ports must outlive the robot.
 #pragma once
 
 #include <algorithm>
@@ -26,10 +28,14 @@ class SimulatedRobot {
  public:
   SimulatedRobot(WorldOptions options, Bus& di_wheel_drive, Bus& power_management, Bus& light_ring)
       : world_(std::move(options)),
-        next_odometry_(world_.options().start_time),
-        di_wheel_drive_(world_, di_wheel_drive),
-        power_management_(world_, power_management),
-        light_ring_(world_, light_ring) {}
+        di_wheel_drive_(world_, di_wheel_drive, world_.options().start_time),
+        power_management_(world_, power_management, world_.options().start_time),
+        light_ring_(world_, light_ring, world_.options().start_time) {
+    const auto switched_on = [] { return controller::Health{.reset = 1}; };
+    di_wheel_drive_.controller().report(switched_on);
+    power_management_.controller().report(switched_on);
+    light_ring_.controller().report(switched_on);
+  }
 
   /// A frame that every board hears, complete on the bus at `now`. Call `advance` afterwards.
   void receive(const can::Frame& frame, base::Time now) noexcept {
@@ -39,16 +45,13 @@ class SimulatedRobot {
     light_ring_.receive(frame, now);
   }
 
-  /// Lets the world go on until `now`, then the boards do what is due.
+  /// Lets the world go on until `now`, and the boards do what is due.
   void advance(base::Time now) noexcept {
     pass_until(now);
-    di_wheel_drive_.poll(now);
-    power_management_.poll(now);
-    light_ring_.poll(now);
+    poll(now);
   }
 
-  /// When a board has something to do next; base::never when nothing is asked of the robot. The world needs
-  /// no calls of its own.
+  /// When a board has something to do next: at the latest, its odometry. The world needs no calls of its own.
   [[nodiscard]] base::Time next_event() const noexcept {
     return std::min({di_wheel_drive_.next_event(), power_management_.next_event(), light_ring_.next_event()});
   }
@@ -64,18 +67,21 @@ class SimulatedRobot {
   [[nodiscard]] const auto& light_ring() const noexcept { return light_ring_; }
 
  private:
-  /// The odometry looks at the wheels on its own grid, however seldom somebody calls.
+  /// What was due before `now`, in its order; the world is at `now` then.
   void pass_until(base::Time now) noexcept {
-    while (next_odometry_ <= now) {
-      world_.advance_to(next_odometry_);
-      di_wheel_drive_.update_odometry();
-      next_odometry_ += boards::di_wheel_drive::odometry_period;
+    for (base::Time next = next_event(); next < now; next = next_event()) {
+      world_.advance_to(next);
+      poll(next);
     }
     world_.advance_to(now);
   }
+  void poll(base::Time now) noexcept {
+    di_wheel_drive_.poll(now);
+    power_management_.poll(now);
+    light_ring_.poll(now);
+  }
 
   World world_;
-  base::Time next_odometry_;
   boards::di_wheel_drive::Board<World, Bus> di_wheel_drive_;
   boards::power_management::Board<World, Bus> power_management_;
   boards::light_ring::Board<World, Bus> light_ring_;

@@ -56,7 +56,8 @@ class World {
   explicit World(WorldOptions options = {})
       : options_(std::move(options)),
         drive_(options_.drive, options_.start),
-        battery_(options_.power, options_.state_of_charge, options_.plugged) {
+        battery_(options_.power, options_.state_of_charge, options_.plugged),
+        floor_offset_(options_.floor.offset_counts) {
     sampled_.fill({drive_.motion(), 0});
   }
 
@@ -81,10 +82,31 @@ class World {
   // What the robot does to the world
   // -------------------------------------------------------------------------
 
+  /// Set points of speed controllers that keep to them.
   void set_wheels(boards::WheelSpeeds speeds) noexcept { drive_.set(speeds); }
+  /// Voltages of the motors by themselves, -1..1 of all: in the end a wheel goes that part of its greatest
+  /// speed. Whoever sets these controls the speeds himself.
+  void set_duty(double left, double right) noexcept {
+    drive_.set({left * options_.drive.greatest_speed_m_per_s, right * options_.drive.greatest_speed_m_per_s});
+  }
   /// @param light 0..7; others are ignored
   void set_light(std::size_t light, Colour colour) noexcept {
     if (light < lights) lights_[light] = colour;
+  }
+
+  /// What the floor's sensors see now is what they see with nothing below them; or nothing is known of that.
+  base::Status calibrate_floor(bool forget) noexcept {
+    const auto raw = raw_floor();
+    if (!raw && !forget) return raw.error;
+    floor_offset_ = forget ? boards::FloorCounts{} : *raw;
+    return {};
+  }
+  /// The same for the ring. Its counts keep the offset: it is stored for others.
+  base::Status calibrate_ring(bool forget) noexcept {
+    const auto counts = ring();
+    if (!counts && !forget) return counts.error;
+    ring_offset_ = forget ? boards::RingCounts{} : *counts;
+    return {};
   }
 
   // What others do to it
@@ -123,8 +145,21 @@ class World {
     return options_.magnetometer.read(options_.arena, sample(Part::magnetometer));
   }
   [[nodiscard]] base::Result<boards::FloorCounts> floor() const noexcept {
+    auto counts = raw_floor();
+    if (!counts) return counts;
+    for (std::size_t i = 0; i < counts->size(); ++i) {
+      std::uint16_t& count = (*counts)[i];
+      count = static_cast<std::uint16_t>(count > floor_offset_[i] ? count - floor_offset_[i] : 0);
+    }
+    return counts;
+  }
+  /// Before the offset is taken off.
+  [[nodiscard]] base::Result<boards::FloorCounts> raw_floor() const noexcept {
     if (absent(Part::floor)) return base::Error::not_sampled;
-    return options_.floor.read(options_.arena, sample(Part::floor));
+    boards::FloorCounts counts = options_.floor.read(options_.arena, sample(Part::floor));
+    for (std::size_t i = 0; i < counts.size(); ++i)
+      counts[i] = static_cast<std::uint16_t>(counts[i] + options_.floor.offset_counts[i]);
+    return counts;
   }
   [[nodiscard]] base::Result<boards::RingCounts> ring() const noexcept {
     if (absent(Part::ring)) return base::Error::not_sampled;
@@ -138,6 +173,8 @@ class World {
     if (absent(Part::gauge)) return base::Error::not_sampled;
     return battery_.reading();
   }
+
+  [[nodiscard]] const boards::RingCounts& ring_offset() const noexcept { return ring_offset_; }
 
   /// The newest sample of a part, as its model gets it.
   [[nodiscard]] Sample sample(Part part) const noexcept {
@@ -189,6 +226,8 @@ class World {
   Drive drive_;
   Battery battery_;
   std::array<Sampled, parts> sampled_{};
+  boards::FloorCounts floor_offset_;  // what is taken for the floor sensors' offset
+  boards::RingCounts ring_offset_{};
   std::array<bool, parts> absent_{};
   std::array<Colour, lights> lights_{};
   std::int64_t elapsed_ms_ = 0;

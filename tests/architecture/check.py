@@ -182,7 +182,7 @@ def board_headers(tree):
     for name, floor in tree.headers():
         if floor in tree.floors and tree.floors[floor].board:
             yield name
-    yield from tree.below("firmware/boards/")
+    yield from tree.below("firmware/boards/", "firmware/drivers/")
 
 
 def no_banned_headers(tree):
@@ -244,11 +244,11 @@ def generator_is_independent(tree):
 
 def boards_know_no_world(tree):
     """A board runs on any hardware: it reaches neither the simulation nor an operator nor the host."""
-    for name in tree.below("firmware/boards/"):
+    for name in tree.below("firmware/boards/", "firmware/drivers/"):
         for reached, way in closure(tree, name).items():
             floor = reached.split("/")[2] if reached.startswith("include/ocm/") else ""
             host = floor in tree.floors and not tree.floors[floor].board
-            if host or not reached.startswith(("include/ocm/", "firmware/boards/")):
+            if host or not reached.startswith(("include/ocm/", "firmware/boards/", "firmware/drivers/")):
                 yield f"{name}:1: a board reaches what runs on the host only: {' -> '.join(way)}"
 
 

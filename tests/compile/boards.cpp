@@ -19,10 +19,12 @@ struct Bottom {
   base::Result<FloorCounts> floor();
   base::Result<WheelTicks> encoders();
   void set_wheels(WheelSpeeds speeds);
+  base::Status calibrate_floor(bool forget);
 };
 struct Middle {
   base::Result<GaugeReading> gauge();
   base::Result<RingCounts> ring();
+  base::Status calibrate_ring(bool forget);
 };
 struct Top {
   void set_light(std::size_t light, Colour colour);
@@ -39,6 +41,5 @@ base::Time turn(const can::Frame& frame, base::Time now, Can& can, Bottom& botto
   static di_wheel_drive::Board<Bottom, Can> drive{bottom, can};
   static power_management::Board<Middle, Can> power{middle, can};
   static light_ring::Board<Top, Can> ring{top, can};
-  drive.update_odometry();
   return std::min({step(drive, frame, now), step(power, frame, now), step(ring, frame, now)});
 }

@@ -2,11 +2,11 @@
 """Compiles what must compile, and what must not: sweep.py PART --build DIR [--warnings FLAGS] [--jobs N].
 
     host      each header of include/ocm alone, with GCC and Clang
-    board     what runs on a board, firmware/boards with it, without exceptions and RTTI: each header alone for Cortex-M0, and
-              all together for Cortex-M0, M3, M4 and with the host's GCC and Clang
+    board     what runs on a board, firmware/boards and firmware/drivers with it, without exceptions and RTTI: each header
+              alone for Cortex-M0, and all together for Cortex-M0, M3, M4 and with the host's GCC and Clang
     closure   each generated header in a tree that holds nothing but the floors below it
-    vectors   vectors.cpp (the wire as static_asserts) with all five; boards.cpp as object code for the three Cortex-M, in
-              which no symbol of a heap, of exceptions, RTTI or streams may be missing
+    vectors   vectors.cpp (the wire as static_asserts) with all five; boards.cpp and parts.cpp as object code for the three
+              Cortex-M, in which no symbol of a heap, of exceptions, RTTI or streams may be missing
     refused   each file of refused/ twice with GCC and with Clang: it must compile, and with -DOCM_MUST_FAIL it must not, with
               the phrase of its `// expect:` line (`// expect g++:`, `// expect clang++:` where they differ)
 
@@ -101,7 +101,8 @@ def host(ninja):
 
 
 def board(ninja):
-    boards = [path.relative_to(ROOT).as_posix() for path in sorted((ROOT / "firmware/boards").rglob("*.hpp"))]
+    boards = [path.relative_to(ROOT).as_posix() for folder in ("firmware/boards", "firmware/drivers")
+              for path in sorted((ROOT / folder).rglob("*.hpp"))]
     headers = list(library(on_board())) + boards
     for header in headers:
         ninja.syntax(f"m0/{header}", alone(ninja, header), CORES["m0"])
@@ -130,11 +131,11 @@ def vectors(ninja):
     for name, compiler in ((GCC, f"{GCC} {BARE}"), (CLANG, f"{CLANG} {BARE}"), *CORES.items()):
         ninja.syntax(f"{name}/vectors", HERE / "vectors.cpp", compiler)
     for name, compiler in CORES.items():
-        output = f"{name}/boards.o"
-        ninja.add(output, HERE / "boards.cpp",
-                  f"{compiler} {STANDARD} -Os -I{ROOT / 'include'} -I{ROOT} {ninja.warnings} -Werror -c -MD -MF {output}.d "
-                  f"-MT {output} {HERE / 'boards.cpp'} -o {output} && {sys.executable} -B {HERE / 'sweep.py'} symbols "
-                  f"--object {output}")
+        for unit in ("boards", "parts"):
+            output, source = f"{name}/{unit}.o", HERE / f"{unit}.cpp"
+            ninja.add(output, source,
+                      f"{compiler} {STANDARD} -Os -I{ROOT / 'include'} -I{ROOT} {ninja.warnings} -Werror -c -MD -MF {output}.d "
+                      f"-MT {output} {source} -o {output} && {sys.executable} -B {HERE / 'sweep.py'} symbols --object {output}")
 
 
 def refused(ninja):

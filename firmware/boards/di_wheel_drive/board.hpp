@@ -1,10 +1,15 @@
 /// DiWheelDrive, the bottom board: wheels, inertial sensors, compass, floor sensors. The same code runs on
 /// the board, with drivers, and on a host, with a simulated world.
 ///
-/// No heap, no exceptions. Not reentrant: call all of it from one context, or lock around it.
+/// Two tasks of its own: at `high` the odometry, every `odometry_period`; at `urgent`, on hardware that has a
+/// speed controller to be stepped, that, every `control_period`.
+///
+/// No heap, no exceptions. Who may call what: ocm/controller/controller.hpp.
 #pragma once
 
+#include <chrono>
 #include <concepts>
+#include <cstddef>
 
 #include "ocm/base/result.hpp"
 #include "ocm/base/time.hpp"
@@ -12,8 +17,12 @@
 #include "ocm/can/frame.hpp"
 #include "ocm/controller/controller.hpp"
 #include "ocm/protocol/counters.hpp"
+#include "ocm/scheduling/cooperative.hpp"
+#include "ocm/scheduling/dispatcher.hpp"
+#include "ocm/scheduling/port.hpp"
 #include "ocm/topics/amiro.hpp"
 
+#include "firmware/boards/calibration.hpp"
 #include "firmware/boards/di_wheel_drive/geometry.hpp"
 #include "firmware/boards/di_wheel_drive/odometry.hpp"
 #include "firmware/boards/samples.hpp"
@@ -21,6 +30,10 @@
 namespace ocm::firmware::boards::di_wheel_drive {
 
 /// What the board needs of its parts. A part that has nothing to say answers Error::not_sampled.
+///
+/// With a port other than the cooperative one they are called from several contexts: each sensor from the
+/// level that it was asked for, `encoders` at high. `set_wheels` is called where set points come from; of
+/// Regulated hardware it is called in the context of `control`, just before it.
 template <class H>
 concept Hardware = requires(H& hardware, WheelSpeeds speeds) {
   { hardware.gyroscope() } -> std::same_as<base::Result<AngularRate>>;
@@ -28,8 +41,27 @@ concept Hardware = requires(H& hardware, WheelSpeeds speeds) {
   { hardware.magnetometer() } -> std::same_as<base::Result<MagneticField>>;
   { hardware.floor() } -> std::same_as<base::Result<FloorCounts>>;
   { hardware.encoders() } -> std::same_as<base::Result<WheelTicks>>;
-  hardware.set_wheels(speeds);  // the speed controllers' set points
+  hardware.set_wheels(speeds);                                       // the speed controllers' set points
+  { hardware.calibrate_floor(true) } -> std::same_as<base::Status>;  // true: forget the offsets
 };
+
+/// Hardware whose speed controllers are software: `control` is one step of them.
+template <class H>
+concept Regulated = Hardware<H> && requires(H& hardware) {
+  hardware.control();
+};
+
+/// Hardware whose parts come and go, and whose calibration takes time.
+template <class H>
+concept Maintained = Hardware<H> && requires(H& hardware, base::Time now) {
+  hardware.maintain(now);
+  { hardware.calibrating() } -> std::same_as<bool>;
+  { hardware.calibration_error() } -> std::same_as<base::Error>;
+};
+
+/// How often the speed controllers are stepped. [decided: five steps in an odometry period]
+inline constexpr base::Duration control_period = std::chrono::milliseconds{10};
+static_assert(odometry_period % control_period == base::Duration{0});
 
 static_assert(odometry_period == amiro::Odometry::shortest_period);
 
@@ -44,14 +76,18 @@ static_assert(odometry_period == amiro::Odometry::shortest_period);
   return wire;
 }
 
-template <Hardware H, can::Sender Bus>
+template <Hardware H, can::Sender Bus, scheduling::Port P = scheduling::Cooperative>
 class Board {
  public:
-  /// Both must outlive the board.
-  Board(H& hardware, Bus& bus) noexcept : hardware_(&hardware), controller_(bus) {
+  static constexpr std::size_t tasks = Regulated<H> ? 2 : 1;
+  using Controller = controller::Controller<amiro::DiWheelDrive, Bus, P, tasks>;
+
+  /// All of them must outlive the board. The tasks' grid begins now, so the port works by now.
+  Board(H& hardware, Bus& bus, controller::PortArgument<P> port = {}) noexcept
+      : hardware_(&hardware), controller_(bus, port) {
     controller_.template serve<amiro::Odometry>([this]() -> base::Result<amiro::Odometry> {
-      if (!odometry_.valid()) return base::Error::not_sampled;
-      return to_wire(odometry_.state());
+      [[maybe_unused]] const auto guard = controller_.port().lock();
+      return position_;
     });
     controller_.template serve<amiro::Gyroscope>([this]() -> base::Result<amiro::Gyroscope> {
       const auto rate = hardware_->gyroscope();
@@ -74,32 +110,75 @@ class Board {
       return amiro::FloorProximity{(*counts)[0], (*counts)[1], (*counts)[2], (*counts)[3]};
     });
     controller_.template accept<amiro::Motors>([this](const amiro::Motors& target) {
-      hardware_->set_wheels(wheel_speeds(target.x_m_per_s(), target.z_rad_per_s()));
+      const WheelSpeeds speeds = wheel_speeds(target.x_m_per_s(), target.z_rad_per_s());
+      if constexpr (Regulated<H>) {
+        [[maybe_unused]] const auto guard = controller_.port().lock();
+        wheels_ = speeds;
+      } else {
+        hardware_->set_wheels(speeds);
+      }
     });
+    controller_.template accept<amiro::FloorCalibration>([this](const amiro::FloorCalibration& command) {
+      calibration_.apply(command, controller_,
+                         [this](bool forget) { return hardware_->calibrate_floor(forget); });
+    });
+    controller_.template every<0>(odometry_period, scheduling::Level::high, [this] { update_odometry(); });
+    if constexpr (Regulated<H>)
+      controller_.template every<1>(control_period, scheduling::Level::urgent, [this] { control(); });
   }
   Board(const Board&) = delete;  // the controller holds this address
   Board& operator=(const Board&) = delete;
 
-  /// To be called once every `odometry_period`, whatever else is going on.
+  void receive(const can::Frame& frame, base::Time now) noexcept { controller_.receive(frame, now); }
+  /// On hardware that wants it, to be called every 10 ms or so on the low level: looks after the parts, and
+  /// tells how a calibration ended.
+  void maintain(base::Time now) noexcept requires Maintained<H> {
+    hardware_->maintain(now);
+    calibration_.look(
+        controller_, [this] { return hardware_->calibrating(); },
+        [this] { return hardware_->calibration_error(); });
+  }
+  void poll(base::Time now) noexcept requires std::same_as<P, scheduling::Cooperative> {
+    controller_.poll(now);
+  }
+  [[nodiscard]] base::Time next_event() const noexcept requires std::same_as<P, scheduling::Cooperative> {
+    return controller_.next_event();
+  }
+  [[nodiscard]] bool waiting() const noexcept { return controller_.waiting(); }
+  [[nodiscard]] protocol::Counters counters() const noexcept { return controller_.counters(); }
+  /// For a port's contexts, and for what the status frames say.
+  [[nodiscard]] Controller& controller() noexcept { return controller_; }
+  [[nodiscard]] const Controller& controller() const noexcept { return controller_; }
+
+ private:
   void update_odometry() noexcept {
     const auto ticks = hardware_->encoders();
     if (ticks)
       odometry_.update(*ticks);
     else
       odometry_.interrupt();
+    base::Result<amiro::Odometry> position = base::Error::not_sampled;
+    if (odometry_.valid()) position = to_wire(odometry_.state());
+    [[maybe_unused]] const auto guard = controller_.port().lock();
+    position_ = position;
   }
 
-  void receive(const can::Frame& frame, base::Time now) noexcept { controller_.receive(frame, now); }
-  void poll(base::Time now) noexcept { controller_.poll(now); }
-  [[nodiscard]] base::Time next_event() const noexcept { return controller_.next_event(); }
-  [[nodiscard]] bool waiting() const noexcept { return controller_.waiting(); }
-  [[nodiscard]] const protocol::Counters& counters() const noexcept { return controller_.counters(); }
-  [[nodiscard]] const Odometry& odometry() const noexcept { return odometry_; }
+  void control() noexcept requires Regulated<H> {
+    WheelSpeeds wheels;
+    {
+      [[maybe_unused]] const auto guard = controller_.port().lock();
+      wheels = wheels_;
+    }
+    hardware_->set_wheels(wheels);
+    hardware_->control();
+  }
 
- private:
   H* hardware_;
-  Odometry odometry_;
-  controller::Controller<amiro::DiWheelDrive, Bus> controller_;
+  Calibration<amiro::FloorCalibration> calibration_;
+  Odometry odometry_;  // of its task only
+  base::Result<amiro::Odometry> position_ = base::Error::not_sampled;
+  WheelSpeeds wheels_{};
+  Controller controller_;
 };
 
 }  // namespace ocm::firmware::boards::di_wheel_drive

@@ -1,9 +1,10 @@
 /// LightRing, the top board: eight coloured lights. The same code runs on the board, with a driver, and on a
 /// host, with a simulated world.
 ///
-/// No heap, no exceptions. Not reentrant.
+/// No heap, no exceptions. Who may call what: ocm/controller/controller.hpp.
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 
@@ -12,6 +13,8 @@
 #include "ocm/can/frame.hpp"
 #include "ocm/controller/controller.hpp"
 #include "ocm/protocol/counters.hpp"
+#include "ocm/scheduling/cooperative.hpp"
+#include "ocm/scheduling/port.hpp"
 #include "ocm/topics/amiro.hpp"
 
 #include "firmware/boards/samples.hpp"
@@ -24,11 +27,20 @@ concept Hardware = requires(H& hardware, std::size_t light, Colour colour) {
   hardware.set_light(light, colour);
 };
 
-template <Hardware H, can::Sender Bus>
+/// Hardware that wants to be looked after.
+template <class H>
+concept Maintained = Hardware<H> && requires(H& hardware, base::Time now) {
+  hardware.maintain(now);
+};
+
+template <Hardware H, can::Sender Bus, scheduling::Port P = scheduling::Cooperative>
 class Board {
  public:
-  /// Both must outlive the board.
-  Board(H& hardware, Bus& bus) noexcept : hardware_(&hardware), controller_(bus) {
+  using Controller = controller::Controller<amiro::LightRing, Bus, P>;
+
+  /// All of them must outlive the board.
+  Board(H& hardware, Bus& bus, controller::PortArgument<P> port = {}) noexcept
+      : hardware_(&hardware), controller_(bus, port) {
     controller_.template accept<amiro::Led>([this](std::uint8_t instance, const amiro::Led& led) {
       hardware_->set_light(instance - 1U, Colour{led.red, led.green, led.blue});
     });
@@ -37,14 +49,23 @@ class Board {
   Board& operator=(const Board&) = delete;
 
   void receive(const can::Frame& frame, base::Time now) noexcept { controller_.receive(frame, now); }
-  void poll(base::Time now) noexcept { controller_.poll(now); }
-  [[nodiscard]] base::Time next_event() const noexcept { return controller_.next_event(); }
+  /// On hardware that wants it, to be called every 10 ms or so on the low level.
+  void maintain(base::Time now) noexcept requires Maintained<H> { hardware_->maintain(now); }
+  void poll(base::Time now) noexcept requires std::same_as<P, scheduling::Cooperative> {
+    controller_.poll(now);
+  }
+  [[nodiscard]] base::Time next_event() const noexcept requires std::same_as<P, scheduling::Cooperative> {
+    return controller_.next_event();
+  }
   [[nodiscard]] bool waiting() const noexcept { return controller_.waiting(); }
-  [[nodiscard]] const protocol::Counters& counters() const noexcept { return controller_.counters(); }
+  [[nodiscard]] protocol::Counters counters() const noexcept { return controller_.counters(); }
+  /// For a port's contexts, and for what the status frames say.
+  [[nodiscard]] Controller& controller() noexcept { return controller_; }
+  [[nodiscard]] const Controller& controller() const noexcept { return controller_; }
 
  private:
   H* hardware_;
-  controller::Controller<amiro::LightRing, Bus> controller_;
+  Controller controller_;
 };
 
 }  // namespace ocm::firmware::boards::light_ring

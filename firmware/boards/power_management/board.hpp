@@ -1,7 +1,7 @@
 /// PowerManagement, the middle board: fuel gauge and proximity ring. The same code runs on the board, with
 /// drivers, and on a host, with a simulated world.
 ///
-/// No heap, no exceptions. Not reentrant.
+/// No heap, no exceptions. Who may call what: ocm/controller/controller.hpp.
 #pragma once
 
 #include <concepts>
@@ -13,8 +13,11 @@
 #include "ocm/can/frame.hpp"
 #include "ocm/controller/controller.hpp"
 #include "ocm/protocol/counters.hpp"
+#include "ocm/scheduling/cooperative.hpp"
+#include "ocm/scheduling/port.hpp"
 #include "ocm/topics/amiro.hpp"
 
+#include "firmware/boards/calibration.hpp"
 #include "firmware/boards/samples.hpp"
 
 namespace ocm::firmware::boards::power_management {
@@ -24,13 +27,25 @@ template <class H>
 concept Hardware = requires(H& hardware) {
   { hardware.gauge() } -> std::same_as<base::Result<GaugeReading>>;
   { hardware.ring() } -> std::same_as<base::Result<RingCounts>>;
+  { hardware.calibrate_ring(true) } -> std::same_as<base::Status>;  // true: forget the offsets
 };
 
-template <Hardware H, can::Sender Bus>
+/// Hardware whose parts come and go, and whose calibration takes time.
+template <class H>
+concept Maintained = Hardware<H> && requires(H& hardware, base::Time now) {
+  hardware.maintain(now);
+  { hardware.calibrating() } -> std::same_as<bool>;
+  { hardware.calibration_error() } -> std::same_as<base::Error>;
+};
+
+template <Hardware H, can::Sender Bus, scheduling::Port P = scheduling::Cooperative>
 class Board {
  public:
-  /// Both must outlive the board.
-  Board(H& hardware, Bus& bus) noexcept : hardware_(&hardware), controller_(bus) {
+  using Controller = controller::Controller<amiro::PowerManagement, Bus, P>;
+
+  /// All of them must outlive the board.
+  Board(H& hardware, Bus& bus, controller::PortArgument<P> port = {}) noexcept
+      : hardware_(&hardware), controller_(bus, port) {
     controller_.template serve<amiro::PowerStatus>([this]() -> base::Result<amiro::PowerStatus> {
       const auto gauge = hardware_->gauge();
       if (!gauge) return gauge.error;
@@ -49,19 +64,39 @@ class Board {
       for (std::size_t i = 0; i < ring.sensor.size(); ++i) ring.sensor[i].proximity = (*counts)[i];
       return ring;
     });
+    controller_.template accept<amiro::RingCalibration>([this](const amiro::RingCalibration& command) {
+      calibration_.apply(command, controller_,
+                         [this](bool forget) { return hardware_->calibrate_ring(forget); });
+    });
   }
   Board(const Board&) = delete;  // the controller holds this address
   Board& operator=(const Board&) = delete;
 
   void receive(const can::Frame& frame, base::Time now) noexcept { controller_.receive(frame, now); }
-  void poll(base::Time now) noexcept { controller_.poll(now); }
-  [[nodiscard]] base::Time next_event() const noexcept { return controller_.next_event(); }
+  /// On hardware that wants it, to be called every 10 ms or so on the low level: looks after the parts, and
+  /// tells how a calibration ended.
+  void maintain(base::Time now) noexcept requires Maintained<H> {
+    hardware_->maintain(now);
+    calibration_.look(
+        controller_, [this] { return hardware_->calibrating(); },
+        [this] { return hardware_->calibration_error(); });
+  }
+  void poll(base::Time now) noexcept requires std::same_as<P, scheduling::Cooperative> {
+    controller_.poll(now);
+  }
+  [[nodiscard]] base::Time next_event() const noexcept requires std::same_as<P, scheduling::Cooperative> {
+    return controller_.next_event();
+  }
   [[nodiscard]] bool waiting() const noexcept { return controller_.waiting(); }
-  [[nodiscard]] const protocol::Counters& counters() const noexcept { return controller_.counters(); }
+  [[nodiscard]] protocol::Counters counters() const noexcept { return controller_.counters(); }
+  /// For a port's contexts, and for what the status frames say.
+  [[nodiscard]] Controller& controller() noexcept { return controller_; }
+  [[nodiscard]] const Controller& controller() const noexcept { return controller_; }
 
  private:
   H* hardware_;
-  controller::Controller<amiro::PowerManagement, Bus> controller_;
+  Calibration<amiro::RingCalibration> calibration_;
+  Controller controller_;
 };
 
 }  // namespace ocm::firmware::boards::power_management
