@@ -1,0 +1,36 @@
+/// What the boards say to each other beside CAN: SYS_SYNC_N, low while anybody is busy; SYS_PD_N, low when
+/// anybody wants the robot off or restarted. And the programming UART, on which the flashing tool says hello.
+/// [AMiRo-BLT main.c of each board; AMiRo-OS main.cpp]
+///
+/// When a shutdown or restart is wanted nothing of ours runs on: `prepare` brings the actuators to rest, then
+/// the bootloader has the chip, and does not come back.
+#pragma once
+
+#include <cstdint>
+#include <hal.h>
+
+#include "firmware/chibios/stm32/bootloader.hpp"
+
+namespace ocm::firmware::chibios::stm32 {
+
+struct SignalPins {
+  ioportid_t sync_port;
+  std::uint8_t sync_pad;
+  std::uint8_t power_down_pad;  ///< on port C of all three boards
+  char power_down_port = 'C';
+};
+
+/// From now on SYS_PD_N and the UART are obeyed. `prepare` is called with interrupts off, once.
+void obey_shutdown(const SignalPins& pins, void (*prepare)()) noexcept;
+
+/// Lets SYS_SYNC_N go: this board is ready. Other boards' programs wait for it.
+void say_ready() noexcept;
+
+/// Into the bootloader, with all boards. By the bootloader's own function; where its table is not one that we
+/// know, by a reset of this chip.
+[[noreturn]] void shut_down(Shutdown kind) noexcept;
+
+/// Actuators to rest, then a reset of this chip alone: for a program that cannot go on.
+[[noreturn]] void rest_and_restart() noexcept;
+
+}  // namespace ocm::firmware::chibios::stm32

@@ -1,0 +1,65 @@
+/// main() of a real board: the bus, the board on it, the threads. Each board has a file that names its pins
+/// and its parts' buses and calls this. What is above the buses is the same as in the emulated images.
+#pragma once
+
+#include <cstdint>
+
+#include "ocm/base/time.hpp"
+#include "ocm/controller/report.hpp"
+#include "ocm/topics/amiro.hpp"
+
+#include "firmware/chibios/load.hpp"
+#include "firmware/chibios/port.hpp"
+#include "firmware/chibios/stm32/board_signals.hpp"
+#include "firmware/chibios/stm32/can_bus.hpp"
+#include "firmware/chibios/stm32/chip.hpp"
+#include "firmware/drivers/bxcan_filter.hpp"
+
+namespace ocm::firmware::chibios::stm32 {
+
+/// What a board's status says of its chip.
+class Vitals {
+ public:
+  Vitals(Port& port, CanBus& can) noexcept : load_(port), can_(&can), cause_(reset_cause()) {}
+
+  /// To be called every 10 ms or so.
+  void look(base::Time now) noexcept { load_.look(now); }
+
+  [[nodiscard]] controller::Health health() const noexcept {
+    const auto counters = can_->counters();
+    controller::Health health;
+    health.reset = static_cast<std::uint8_t>(cause_);
+    health.load = load_.percent();
+    health.bus = static_cast<std::uint8_t>(can_->errors().state);
+    health.bus_errors =
+        counters.passive + counters.bus_off + counters.dropped + counters.overruns + can_->missed();
+    return health;
+  }
+
+ private:
+  LoadMeter load_;
+  CanBus* can_;
+  ResetCause cause_;
+};
+
+/// `Type` is the board in the generated header, `Board` its template; `parts` have their buses started.
+template <class Type, template <class, class, class> class Board, class Parts>
+[[noreturn]] void run(Parts& parts) noexcept {
+  static Port port;
+  static CanBus can;
+  static Vitals vitals{port, can};
+  parts.start(port.now());
+  static constexpr auto filters = drivers::bxcan::filter_banks_of<Type>();
+  // A controller that does not answer has no clock or is broken: nothing of this board would be heard of.
+  if (!can.start(port, bit_timing<Type, amiro::catalogue.bit_rate>, filters).ok()) rest_and_restart();
+  static Board<Parts, CanBus, Port> board{parts, can, port};
+  board.controller().report([] { return vitals.health(); });
+  static Runtime runtime{port, board.controller(), can};
+  say_ready();
+  runtime.run([](base::Time now) {
+    vitals.look(now);
+    board.maintain(now);
+  });
+}
+
+}  // namespace ocm::firmware::chibios::stm32

@@ -1,0 +1,47 @@
+/// main() of an emulated board: parts on the link, bus on SLCAN, and the board between them. Each board has a
+/// file that names its parts' buses and calls this.
+#pragma once
+
+#include "ocm/base/time.hpp"
+#include "ocm/controller/report.hpp"
+
+#include "firmware/chibios/load.hpp"
+#include "firmware/chibios/port.hpp"
+#include "firmware/qemu/machine.hpp"
+#include "firmware/qemu/parts_link.hpp"
+#include "firmware/qemu/slcan_bus.hpp"
+
+namespace ocm::firmware::qemu {
+
+/// What every emulated board stands on.
+struct Machine {
+  Uart can_line{1};
+  Uart parts_line{2};
+  chibios::Port port;
+  SlcanBus can{can_line, port};
+  PartsLink link{parts_line};
+};
+
+/// From start_machine() to the board at work. `Board` is a board's template; `parts` hang on the machine's
+/// link.
+template <template <class, class, class> class Board, class Parts>
+[[noreturn]] void run(Machine& machine, Parts& parts) noexcept {
+  machine.can.start();
+  machine.link.start();
+  parts.start(machine.port.now());
+  static Board<Parts, SlcanBus, chibios::Port> board{parts, machine.can, machine.port};
+  static chibios::LoadMeter load{machine.port};
+  board.controller().report([] {
+    controller::Health health;
+    health.reset = 1;  // QEMU's machine has just been switched on: it has no register that would say so
+    health.load = load.percent();
+    return health;
+  });
+  static chibios::Runtime runtime{machine.port, board.controller(), machine.can};
+  runtime.run([](base::Time now) {
+    load.look(now);
+    board.maintain(now);
+  });
+}
+
+}  // namespace ocm::firmware::qemu

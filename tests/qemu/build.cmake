@@ -1,0 +1,8 @@
+# Builds the images: cmake -D SOURCE=firmware -D BINARY=folder -P build.cmake
+if(NOT EXISTS ${BINARY}/build.ninja OR NOT EXISTS ${BINARY}/CMakeCache.txt)
+  file(REMOVE_RECURSE ${BINARY})
+  execute_process(COMMAND ${CMAKE_COMMAND} -S ${SOURCE} -B ${BINARY} -G Ninja
+                          --toolchain ${SOURCE}/../cmake/toolchains/arm-none-eabi.cmake
+                  COMMAND_ERROR_IS_FATAL ANY)
+endif()
+execute_process(COMMAND ${CMAKE_COMMAND} --build ${BINARY} COMMAND_ERROR_IS_FATAL ANY)

@@ -1,0 +1,244 @@
+"""The boards' images in QEMU: requests over SLCAN, parts that are there, away or come back, actuators, stacks."""
+
+import struct
+import subprocess
+import time
+
+import harness
+from harness import FuelGauge, I2cRegisters, MotionSensor, Parts
+
+GYRO, ACCEL, MAG, ODOMETRY = 0x08, 0x09, 0x05, 0x03
+GYRO_OUTPUT, ACCEL_OUTPUT = (100, -200, 32767), (-64, 1600, 8192)
+
+
+def di_wheel_drive_parts():
+    """SPI 1 gyroscope, SPI 2 accelerometer, I2C 1 compass; no floor sensors, no EEPROM. [docs/parts.md]"""
+    parts = Parts()
+    parts.spi = {1: MotionSensor(0xD3, GYRO_OUTPUT), 2: MotionSensor(0x32, ACCEL_OUTPUT)}
+    compass = dict(enumerate(b"H43", 10)) | dict(enumerate(struct.pack(">3h", 100, -7, 2), 3))
+    parts.i2c = {(1, 0x1E): I2cRegisters(compass)}
+    return parts
+
+
+def motors(forward_um_s, turn_urad_s=0):
+    return struct.pack("<2i", forward_um_s, turn_urad_s)
+
+
+class DiWheelDrive(harness.Case):
+    def setUp(self):
+        self.parts = di_wheel_drive_parts()
+        self.board = self.boot("di_wheel_drive", self.parts)
+
+    def settle(self):
+        """The gyroscope's turn-on is the longest: 300 ms. [AN3393 2.4]"""
+        self.board.publish(GYRO, 10)
+        self.board.wait(lambda: self.board.of(0x608), 10, "the gyroscope's first frame")
+        self.board.stop(GYRO)
+        time.sleep(0.05)
+
+    def test_publishes_at_the_period(self):
+        self.settle()
+        asked = self.board.publish(GYRO, 500)
+        self.assertEqual(bytes.fromhex("01F40100"), struct.pack("<BHB", 1, 500, 0))
+        self.board.wait(lambda: len(self.board.of(0x608, asked)) >= 7, 10, "seven frames")
+        frames = self.board.of(0x608, asked)[:7]
+        self.assertEqual({data for _, data in frames}, {struct.pack("<3h", *GYRO_OUTPUT)})
+        self.assertLess(frames[0][0] - asked, 0.2, "the first sample is due at once")
+        self.assertAlmostEqual((frames[6][0] - frames[0][0]) / 6, 0.5, delta=0.02)
+        self.board.stop(GYRO)
+        time.sleep(0.1)
+        heard = len(self.board.frames)
+        time.sleep(1.2)
+        self.assertEqual(self.board.frames[heard:], [], "a stopped topic went on")
+
+    def test_four_levels_at_once(self):
+        self.settle()
+        begin = time.monotonic()
+        for level, topic in enumerate((GYRO, ACCEL, MAG, ODOMETRY)):
+            self.board.publish(topic, 50, level)
+        time.sleep(2)
+        end = time.monotonic()
+        expected = {0x408: struct.pack("<3h", *GYRO_OUTPUT),
+                    # 12 bits, left-justified, 1/512 g each: in 1/1024 g
+                    0x509: struct.pack("<3h", *(value // 16 * 2 for value in ACCEL_OUTPUT)),
+                    # sent x, y, z, but registers are x, z, y; 2560 uG a count
+                    0x605: struct.pack("<i", 100 * 2560), 0x606: struct.pack("<i", 2 * 2560),
+                    0x607: struct.pack("<i", -7 * 2560)}
+        for identifier in (*expected, 0x702, 0x703):
+            frames = [frame for frame in self.board.of(identifier, begin) if frame[0] < end]
+            self.assertAlmostEqual(len(frames), 40, delta=4, msg=f"{identifier:03X}")
+            if identifier in expected:
+                self.assertEqual({data for _, data in frames}, {expected[identifier]}, f"{identifier:03X}")
+        compass = [name for _, name, _ in self.board.frames if 0x605 <= name <= 0x607]
+        self.assertEqual(compass[:30], [0x605, 0x606, 0x607] * 10, "a sample's frames stay together, in order")
+
+    def test_reprioritised_while_running(self):
+        self.settle()
+        self.board.publish(GYRO, 20, priority=3)
+        self.board.wait(lambda: len(self.board.of(0x708)) >= 3, 5, "frames at low")
+        changed = self.board.publish(GYRO, 20, priority=0)
+        self.board.wait(lambda: len(self.board.of(0x408)) >= 3, 5, "frames at urgent")
+        self.assertEqual([at for at, _ in self.board.of(0x708) if at > changed + 0.1], [])
+
+    def test_absent_part_hurts_nobody_and_comes_back(self):
+        self.settle()
+        self.parts.spi[1].present = False
+        time.sleep(0.1)
+        asked = self.board.publish(GYRO, 50)
+        self.board.publish(ACCEL, 50)
+        time.sleep(1)
+        self.assertEqual(self.board.of(0x608, asked + 0.1), [])
+        self.assertGreaterEqual(len(self.board.of(0x609, asked)), 17)
+        self.parts.spi[1] = MotionSensor(0xD3, (7, 8, 9))
+        self.board.wait(lambda: any(data == struct.pack("<3h", 7, 8, 9) for _, data in self.board.of(0x608)), 5,
+                        "the part that came back")
+        self.assertGreaterEqual(len(self.board.of(0x609, time.monotonic() - 0.5)), 8)
+
+    def test_host_that_does_not_answer(self):
+        self.settle()
+        self.board.publish(ACCEL, 50)
+        self.board.wait(lambda: self.board.of(0x609), 5, "the accelerometer")
+        self.parts.silent = True
+        time.sleep(1.5)
+        self.assertEqual(self.board.of(0x609, time.monotonic() - 0.5), [])
+        self.assertEqual(self.board.ask("V"), "V1010", "the board is dead")
+        self.parts.silent = False
+        back = time.monotonic()
+        self.board.wait(lambda: self.board.of(0x609, back), 5, "the accelerometer after the host's silence")
+
+    def moving(self):
+        return self.parts.duties and self.parts.duties[-1][1:] != (0, 0)
+
+    def test_motors_stop_at_the_watchdog(self):
+        for _ in range(12):  # kept alive: far beyond the watchdog's 500 ms
+            last = self.board.send(0x201, motors(100_000))
+            time.sleep(0.1)
+        self.assertTrue(self.moving())
+        left, right = self.parts.duties[-1][1:]
+        self.assertGreater(left, 0)
+        self.assertGreater(right, 0)
+        self.board.wait(lambda: not self.moving(), 3, "standstill")
+        stopped = next(at for at, *duty in reversed(self.parts.duties) if duty != [0, 0])
+        self.assertGreater(stopped - last, 0.4, "the watchdog is 500 ms")
+        self.assertLess(stopped - last, 0.7, "the watchdog is 500 ms")
+
+    def test_motors_stop_when_the_bus_is_lost(self):
+        self.board.send(0x201, motors(0, 1_000_000))
+        self.board.wait(self.moving, 3, "movement")
+        left, right = self.parts.duties[-1][1:]
+        self.assertLess(left, 0)
+        self.assertGreater(right, 0)
+        self.assertEqual(self.board.ask("C"), "")
+        closed = time.monotonic()
+        self.board.wait(lambda: not self.moving(), 3, "standstill")
+        self.assertLess(time.monotonic() - closed, 0.3, "not only when the watchdog is over")
+
+    def test_adapter_closes_and_opens(self):
+        self.settle()
+        self.board.publish(GYRO, 20)
+        self.board.wait(lambda: len(self.board.of(0x608)) > 5, 5, "frames")
+        self.assertEqual(self.board.ask("C"), "")
+        time.sleep(0.1)
+        heard = len(self.board.frames)
+        time.sleep(0.3)
+        self.assertEqual(len(self.board.frames), heard, "frames from a closed channel")
+        self.assertEqual(self.board.ask("t2088"), "\a", "a frame into a closed channel")
+        self.assertEqual(self.board.ask("S6"), "")
+        self.assertEqual(self.board.ask("O"), "")
+        opened = time.monotonic()
+        self.board.wait(lambda: len(self.board.of(0x608, opened)) > 5, 5, "frames after opening")
+
+    def test_noise_on_the_line(self):
+        self.settle()
+        for noise in ("t20", "x" * 200, "t208Z", "T1", "\x01\x02\xff".encode("latin-1").decode("latin-1")[:2]):
+            self.assertEqual(self.board.ask(noise), "\a", repr(noise))
+        self.board.publish(GYRO, 20)
+        self.board.wait(lambda: len(self.board.of(0x608)) > 5, 5, "frames after noise")
+
+    def test_stacks_have_room(self):
+        """Fill patterns, read out of the machine's memory after all paths were taken."""
+        self.settle()
+        for level, topic in enumerate((GYRO, ACCEL, MAG, ODOMETRY)):
+            self.board.publish(topic, 20, level)
+        self.board.publish(0x04, 100, 0)
+        for _ in range(10):
+            self.board.send(0x201, motors(50_000))
+            self.board.ask("t20")
+            time.sleep(0.1)
+        elf = f"{harness.IMAGES}/di_wheel_drive_qemu_m3.elf"
+        symbols = {}
+        for line in subprocess.run(["arm-none-eabi-nm", "-SC", elf], capture_output=True, text=True,
+                                   check=True).stdout.splitlines():
+            fields = line.split(maxsplit=3)
+            if len(fields) == 4 and len(fields[1]) == 8:
+                symbols[fields[3]] = (int(fields[0], 16), int(fields[1], 16))
+            elif fields[-1].startswith("__"):
+                symbols[fields[-1]] = (int(fields[0], 16), 0)
+        runtime = next(place for name, place in symbols.items() if name.endswith("::runtime") and "guard" not in name)
+        memory = self.board.memory(*runtime)
+        runs = []  # untouched bytes at the bottom of each thread's area: receiver, urgent, high, medium
+        at = 0
+        while at < len(memory):
+            length = 0
+            while at + length < len(memory) and memory[at + length] == 0x55:
+                length += 1
+            if length >= 32:
+                runs.append(length)
+            at += length + 1
+        main = symbols["__process_stack_base__"][0]
+        interrupts = symbols["__main_stack_base__"][0]
+        for name, start, end in (("low", main, symbols["__process_stack_end__"][0]),
+                                 ("interrupts", interrupts, symbols["__main_stack_end__"][0])):
+            stack = self.board.memory(start, end - start)
+            runs.append(len(stack) - len(stack.lstrip(b"\x55")))
+        print("untouched bytes of stack:", dict(zip(("receiver", "urgent", "high", "medium", "low", "interrupts"), runs)))
+        self.assertEqual(len(runs), 6, runs)
+        self.assertGreaterEqual(min(runs), 96, runs)
+
+
+class LightRing(harness.Case):
+    class Lights:
+        def __init__(self):
+            self.shown = []
+
+        def transfer(self, mode, clock, out):
+            assert mode == 0 and clock <= 30_000_000
+            self.shown.append(bytes(out))
+            return bytes(len(out))
+
+    def test_colours(self):
+        parts = Parts()
+        lights = parts.spi[1] = self.Lights()
+        board = self.boot("light_ring", parts)
+        board.wait(lambda: parts.outputs and parts.outputs[-1][1] == 0, 5, "the outputs switched on")
+        self.assertEqual(lights.shown[0], bytes(36), "dark before the outputs are on")
+        board.send(0x23C, bytes([255, 128, 0]))  # the first light: red, green, blue
+        board.wait(lambda: any(lights.shown[-1]), 3, "light")
+        # Shifted in first: output 23 blue, 22 green, 21 red, 12 bits each.
+        self.assertEqual(lights.shown[-1][:5].hex(), "000808fff0")
+        self.assertEqual(lights.shown[-1][5:], bytes(31))
+
+
+class PowerManagement(harness.Case):
+    def test_battery_and_absent_ring(self):
+        parts = Parts()
+        for bus, power, charge in ((1, -1000, 70), (2, -500, 81)):
+            registers = dict(enumerate(struct.pack("<H", 0x0008), 0x0A))
+            registers |= dict(enumerate(struct.pack("<2H", 100, 65535), 0x16))
+            registers |= dict(enumerate(struct.pack("<h", power), 0x24))
+            registers |= dict(enumerate(struct.pack("<H", charge), 0x2C))
+            parts.i2c[bus, 0x55] = FuelGauge(registers)
+        parts.inputs = 1
+        board = self.boot("power_management", parts)
+        board.publish(0x1F, 100, 0)  # the ring: eight sensors that are not there
+        asked = board.publish(0x1E, 1000)
+        board.wait(lambda: len(board.of(0x61E)) >= 3, 10, "three battery reports")
+        frames = board.of(0x61E)
+        self.assertEqual({data for _, data in frames}, {struct.pack("<BBHh", 1, 75, 100, -1500)})
+        self.assertAlmostEqual((frames[2][0] - frames[0][0]) / 2, 1.0, delta=0.05)
+        self.assertLess(frames[0][0] - asked, 1.5)
+        self.assertEqual([frame for frame in board.frames if frame[1] != 0x61E], [])
+
+
+if __name__ == "__main__":
+    harness.main()
