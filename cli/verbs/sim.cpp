@@ -1,7 +1,10 @@
-/// A simulated robot: the three boards' own code in a simulated world, on a virtual bus or on a CAN
-/// interface.
+/// A simulated robot: its three boards, compiled for this machine or as images in QEMU, in a simulated world,
+/// on a virtual bus or on a CAN interface.
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <cstdlib>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <poll.h>
@@ -16,10 +19,14 @@
 #include "cli/interrupt.hpp"
 #include "cli/verbs/commanding.hpp"
 #include "cli/verbs/verbs.hpp"
+#include "firmware/sim/qemu_robot.hpp"
 #include "firmware/sim/robot.hpp"
 
 namespace ocm::cli {
 namespace {
+
+constexpr std::array<std::string_view, 3> board_names{amiro::DiWheelDrive::name, amiro::PowerManagement::name,
+                                                      amiro::LightRing::name};
 
 /// A board's connection to whatever bus there is. A board that is switched off sends nothing.
 struct Port {
@@ -31,7 +38,8 @@ struct Port {
   }
 };
 
-using Robot = firmware::sim::SimulatedRobot<Port>;
+/// One for each board, in the order of `board_names`.
+using Ports = std::array<Port, board_names.size()>;
 
 /// Frames that wait in a board before its sensors are held up.
 constexpr std::size_t board_queue = 32;
@@ -39,6 +47,8 @@ constexpr std::size_t board_queue = 32;
 struct SimOptions {
   firmware::sim::WorldOptions world;
   std::vector<std::string> without;
+  bool qemu = false;
+  std::string images;
   std::uint32_t bit_rate = amiro::bit_rate;
   double speed = 1;
 };
@@ -66,53 +76,164 @@ class SimulatedClock {
   std::chrono::steady_clock::time_point start_;
 };
 
-void print_counters(std::string_view board, const protocol::Counters& counters) {
-  std::string text;
-  protocol::for_each(counters, [&text](std::string_view name, std::uint32_t value) {
-    if (value != 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, value);
-  });
-  remark(fmt::format("{:<17} {}", board, text.empty() ? "nothing came" : text));
-}
+/// The boards as the bus's loop sees them.
+class Robot {
+ public:
+  Robot() = default;
+  Robot(const Robot&) = delete;
+  Robot& operator=(const Robot&) = delete;
+  virtual ~Robot() = default;
 
-void print_summary(const Robot& robot) {
-  print_counters(amiro::DiWheelDrive::name, robot.di_wheel_drive().counters());
-  print_counters(amiro::PowerManagement::name, robot.power_management().counters());
-  print_counters(amiro::LightRing::name, robot.light_ring().counters());
-}
-
-struct Ports {
-  Port di_wheel_drive, power_management, light_ring;
-
-  explicit Ports(const std::vector<std::string>& without) {
-    for (const auto& board : without) port(board).on = false;
-  }
-  Port& port(const std::string& board) {
-    if (board == amiro::DiWheelDrive::name) return di_wheel_drive;
-    if (board == amiro::PowerManagement::name) return power_management;
-    if (board == amiro::LightRing::name) return light_ring;
-    fail({"sim: no board '" + board + "'", "one of: di_wheel_drive, power_management, light_ring"},
-         exit_usage);
-  }
+  virtual void receive(const can::Frame& frame, base::Time now) = 0;
+  virtual void advance(base::Time now) = 0;
+  /// When a board has something to do by itself.
+  [[nodiscard]] virtual base::Time next_event() const = 0;
+  /// Frames wait for the bus.
+  [[nodiscard]] virtual bool waiting() const = 0;
+  /// All boards listen.
+  [[nodiscard]] virtual bool ready() const { return true; }
+  /// Readable when a board has something to say.
+  [[nodiscard]] virtual std::vector<int> descriptors() const { return {}; }
+  virtual void print_summary() const = 0;
 };
+
+/// The boards compiled for this machine.
+class HostRobot final : public Robot {
+ public:
+  HostRobot(const SimOptions& options, Ports& ports) : robot_{options.world, ports[0], ports[1], ports[2]} {}
+  void receive(const can::Frame& frame, base::Time now) override { robot_.receive(frame, now); }
+  void advance(base::Time now) override { robot_.advance(now); }
+  [[nodiscard]] base::Time next_event() const override { return robot_.next_event(); }
+  [[nodiscard]] bool waiting() const override { return robot_.waiting(); }
+  void print_summary() const override {
+    print(board_names[0], robot_.di_wheel_drive().counters());
+    print(board_names[1], robot_.power_management().counters());
+    print(board_names[2], robot_.light_ring().counters());
+  }
+
+ private:
+  static void print(std::string_view board, const protocol::Counters& counters) {
+    std::string text;
+    protocol::for_each(counters, [&text](std::string_view name, std::uint32_t value) {
+      if (value != 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, value);
+    });
+    remark(fmt::format("{:<17} {}", board, text.empty() ? "nothing came" : text));
+  }
+
+  firmware::sim::SimulatedRobot<Port> robot_;
+};
+
+/// Where `scripts/build firmware` and an installation put the images, seen from this program.
+std::string default_images() {
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  for (const char* place : {"firmware", "../firmware", "../share/ocm/firmware"}) {
+    const auto folder = program.parent_path() / place;
+    if (std::filesystem::exists(folder / "light_ring_qemu_m3.elf", error)) return folder.lexically_normal();
+  }
+  return (program.parent_path() / "firmware").lexically_normal();
+}
+
+/// The boards as images in QEMU.
+class EmulatedRobot final : public Robot {
+ public:
+  EmulatedRobot(const SimOptions& options, Ports& ports, std::function<base::Time()> clock)
+      : ports_(&ports), robot_(start(options, std::move(clock))) {}
+  void receive(const can::Frame& frame, base::Time now) override { robot_->receive(frame, now); }
+  void advance(base::Time now) override {
+    const auto send = [this](std::size_t board, const can::Frame& frame) {
+      const auto taken = (*ports_)[board].send(frame);
+      return !taken || *taken;  // what a bus will never take is gone
+    };
+    if (!robot_->advance(now, send)) fail(robot_->failure());
+  }
+  [[nodiscard]] base::Time next_event() const override { return base::never; }
+  [[nodiscard]] bool waiting() const override {
+    return robot_->waiting(0) || robot_->waiting(1) || robot_->waiting(2);
+  }
+  [[nodiscard]] bool ready() const override { return robot_->ready(); }
+  [[nodiscard]] std::vector<int> descriptors() const override {
+    const auto all = robot_->descriptors();
+    return {all.begin(), all.end()};
+  }
+  void print_summary() const override {
+    for (std::size_t i = 0; i < firmware::sim::QemuRobot::boards; ++i) {
+      const auto& counters = robot_->counters(i);
+      remark(fmt::format("{:<17} sent {}, heard {}, lost on its line {}, garbage {}, exchanges with parts {}",
+                         robot_->name(i), counters.sent, counters.heard, counters.deaf, counters.garbage,
+                         counters.exchanges));
+      for (const std::string& text : robot_->violations(i).texts())
+        remark(fmt::format("{:<17} against a data sheet: {}", robot_->name(i), text));
+    }
+  }
+
+ private:
+  static std::unique_ptr<firmware::sim::QemuRobot> start(const SimOptions& options,
+                                                         std::function<base::Time()> clock) {
+    auto started = firmware::sim::QemuRobot::start(
+        options.world, options.images.empty() ? default_images() : options.images, std::move(clock));
+    if (!started) fail(started.error);
+    return std::move(*started);
+  }
+
+  Ports* ports_;
+  std::unique_ptr<firmware::sim::QemuRobot> robot_;
+};
+
+/// Until something is readable, or `wait` is over.
+void wait_for(int bus, const Robot& robot, base::Duration wait) {
+  std::vector<pollfd> inputs{{bus, POLLIN, 0}};
+  for (const int descriptor : robot.descriptors()) inputs.push_back({descriptor, POLLIN, 0});
+  const timespec limit{0, static_cast<long>(wait.count())};
+  ::ppoll(inputs.data(), inputs.size(), &limit, nullptr);
+}
+
+std::unique_ptr<Robot> make_robot(const SimOptions& options, Ports& ports, const SimulatedClock& clock) {
+  for (const auto& board : options.without) {
+    const auto found = std::find(board_names.begin(), board_names.end(), board);
+    if (found == board_names.end())
+      fail({"sim: no board '" + board + "'", fmt::format("one of: {}", fmt::join(board_names, ", "))},
+           exit_usage);
+    ports[static_cast<std::size_t>(found - board_names.begin())].on = false;
+  }
+  if (options.qemu) return std::make_unique<EmulatedRobot>(options, ports, [&clock] { return clock.now(); });
+  return std::make_unique<HostRobot>(options, ports);
+}
+
+/// Boards in QEMU start like others, in their time; who waits for the simulator waits for them.
+void wait_until_ready(Robot& robot, const SimulatedClock& clock) {
+  const base::Time patience = clock.now() + std::chrono::seconds{30};
+  while (!robot.ready() && interrupted() == 0) {
+    robot.advance(clock.now());
+    wait_for(-1, robot, std::chrono::milliseconds{20});
+    if (clock.now() > patience)
+      fail({"sim: a board in QEMU does not start", "are these images of the boards? See docs/verbs/sim.md"});
+  }
+}
 
 /// The boards on a real CAN interface: the kernel is the bus.
 void simulate_on(transport::Bus& bus, const SimOptions& options) {
-  Ports ports{options.without};
-  for (Port* port : {&ports.di_wheel_drive, &ports.power_management, &ports.light_ring})
-    port->hand_over = [&bus](const can::Frame& frame) { return bus.send(frame); };
-  Robot robot{options.world, ports.di_wheel_drive, ports.power_management, ports.light_ring};
+  Ports ports;
+  for (Port& port : ports) port.hand_over = [&bus](const can::Frame& frame) { return bus.send(frame); };
   const SimulatedClock clock{1};
+  const auto robot = make_robot(options, ports, clock);
+  wait_until_ready(*robot, clock);
   StateWatch watch;
   while (interrupted() == 0) {
-    robot.advance(clock.now());
-    const base::Duration wait =
-        robot.waiting() ? base::Duration{std::chrono::milliseconds{1}} : clock.until(robot.next_event());
-    const auto received = bus.receive(wait);
-    if (received && received->frame.format != can::Format::error) robot.receive(received->frame, clock.now());
+    robot->advance(clock.now());
+    auto received = bus.receive(base::Duration{0});
+    if (!received && received.error == base::Error::timed_out) {
+      wait_for(
+          bus.descriptor(), *robot,
+          robot->waiting() ? base::Duration{std::chrono::milliseconds{1}} : clock.until(robot->next_event()));
+      received = bus.receive(base::Duration{0});
+    }
+    if (received && received->frame.format != can::Format::error)
+      robot->receive(received->frame, clock.now());
     if (!received && received.error == base::Error::closed) fail(bus.failure());
     watch.look(bus);
   }
-  print_summary(robot);
+  robot->print_summary();
 }
 
 /// The boards and any number of programs on a virtual bus.
@@ -129,35 +250,35 @@ void serve(const std::string& bus_name, const SimOptions& options) {
   auto& arbiter = server.arbiter();
 
   const SimulatedClock clock{options.speed};
-  Ports ports{options.without};
-  for (Port* port : {&ports.di_wheel_drive, &ports.power_management, &ports.light_ring}) {
+  Ports ports;
+  for (Port& port : ports) {
     // A board has three mailboxes that go by identifier; its driver puts the lowest ones there.
     const auto node = arbiter.attach({simulation::QueueOrder::by_identifier, board_queue});
-    port->hand_over = [&arbiter, node](const can::Frame& frame) { return arbiter.send(node, frame); };
+    port.hand_over = [&arbiter, node](const can::Frame& frame) { return arbiter.send(node, frame); };
   }
-  Robot robot{options.world, ports.di_wheel_drive, ports.power_management, ports.light_ring};
-  remark(fmt::format("simulated {} on --bus {} ({}), {} bit/s; Ctrl-C ends it", amiro::catalogue.robot,
-                     bus_name.empty() ? "sim" : bus_name, server.path(), options.bit_rate));
+  const auto robot = make_robot(options, ports, clock);
+  wait_until_ready(*robot, clock);
+  remark(fmt::format("simulated {}{} on --bus {} ({}), {} bit/s; Ctrl-C ends it", amiro::catalogue.robot,
+                     options.qemu ? " with its boards in QEMU" : "", bus_name.empty() ? "sim" : bus_name,
+                     server.path(), options.bit_rate));
 
   const auto hear = [&robot](const simulation::Delivery& delivery) {
-    robot.receive(delivery.frame, delivery.time);
+    robot->receive(delivery.frame, delivery.time);
   };
   while (interrupted() == 0) {
     const base::Time now = clock.now();
     // Whatever falls due until now, in the order in which it does.
     for (;;) {
-      const base::Time next = std::min(server.next_event(), robot.next_event());
+      const base::Time next = std::min(server.next_event(), robot->next_event());
       if (next > now) break;
       server.advance(next, hear);
-      robot.advance(next);
+      robot->advance(next);
     }
+    if (options.qemu) robot->advance(now);
     server.poll(now, hear);
-    pollfd input{server.descriptor(), POLLIN, 0};
-    const base::Duration wait = clock.until(std::min(server.next_event(), robot.next_event()));
-    const timespec limit{0, static_cast<long>(wait.count())};
-    ::ppoll(&input, 1, &limit, nullptr);
+    wait_for(server.descriptor(), *robot, clock.until(std::min(server.next_event(), robot->next_event())));
   }
-  print_summary(robot);
+  robot->print_summary();
   const auto& bus = arbiter.totals();
   const auto& clients = server.counters();
   remark(fmt::format(
@@ -172,7 +293,8 @@ void add_sim(CLI::App& app, Session& session, int& exit_code) {
                         "  amiroctl sim                       a virtual bus for this user, as --bus sim\n"
                         "  amiroctl sim --bus vcan0           the three boards on a CAN interface\n"
                         "  amiroctl sim --seed 7 --speed 10\n"
-                        "  amiroctl sim --without light_ring  a board that is switched off");
+                        "  amiroctl sim --without light_ring  a board that is switched off\n"
+                        "  amiroctl sim --boards qemu         the boards' firmware, emulated");
   const auto options = std::make_shared<SimOptions>();
   verb->add_option("--seed", options->world.seed, "of all noise; equal seeds give equal robots")
       ->type_name("N");
@@ -185,7 +307,21 @@ void add_sim(CLI::App& app, Session& session, int& exit_code) {
   verb->add_option("--bitrate", options->bit_rate, "of the virtual bus, bit/s")
       ->check(CLI::Range(1'000U, 1'000'000'000U))
       ->type_name("N");
-  verb->callback([options, &session, &exit_code] {
+  const auto boards = std::make_shared<std::string>("host");
+  verb->add_option("--boards", *boards,
+                   "host: the boards' code compiled for this machine; qemu: their images, emulated")
+      ->check(CLI::IsMember({"host", "qemu"}))
+      ->type_name("host|qemu");
+  verb->add_option("--images", options->images,
+                   "folder of the images for QEMU (that of scripts/build firmware)")
+      ->type_name("FOLDER");
+  verb->callback([options, boards, &session, &exit_code] {
+    options->qemu = *boards == "qemu";
+    if (options->qemu && options->speed != 1)
+      fail({"sim: --speed with --boards qemu", "leave one out: emulated boards run in real time"},
+           exit_usage);
+    if (!options->qemu && !options->images.empty())
+      fail({"sim: --images without --boards qemu", "add --boards qemu, or leave --images out"}, exit_usage);
     catch_interrupts();
     if (!session.spec_file.empty()) remark("the simulated robot is the AMiRo, whatever --spec says");
     if (!session.bus_name.empty() && session.bus_name != "sim" && !session.bus_name.starts_with("sim:")) {
