@@ -194,6 +194,16 @@ TEST_CASE("odometry: the totals wrap around, and a gap loses only its own way") 
   CHECK(odometry.state().x_m == Approx(11 * boards::di_wheel_drive::metres_per_tick));
 }
 
+TEST_CASE("odometry: a look that came after several periods is no higher speed") {
+  boards::di_wheel_drive::Odometry odometry;
+  odometry.update({0, 0});
+  odometry.update({10, 10});
+  const double speed = odometry.state().forward_m_per_s;
+  odometry.update({40, 40}, 3);
+  CHECK(odometry.state().forward_m_per_s == Approx(speed));
+  CHECK(odometry.state().x_m == Approx(40 * boards::di_wheel_drive::metres_per_tick));
+}
+
 TEST_CASE("driving and lights drain the batteries") {
   World idle, driving, bright;
   driving.set_wheels({0.02, -0.02});

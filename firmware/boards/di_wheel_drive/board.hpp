@@ -122,7 +122,9 @@ class Board {
       calibration_.apply(command, controller_,
                          [this](bool forget) { return hardware_->calibrate_floor(forget); });
     });
-    controller_.template every<0>(odometry_period, scheduling::Level::high, [this] { update_odometry(); });
+    controller_.template every<0>(
+        odometry_period, scheduling::Level::high,
+        [this](const scheduling::Release& release) { update_odometry(release.missed + 1); });
     if constexpr (Regulated<H>)
       controller_.template every<1>(control_period, scheduling::Level::urgent, [this] { control(); });
   }
@@ -151,10 +153,10 @@ class Board {
   [[nodiscard]] const Controller& controller() const noexcept { return controller_; }
 
  private:
-  void update_odometry() noexcept {
+  void update_odometry(std::uint32_t periods) noexcept {
     const auto ticks = hardware_->encoders();
     if (ticks)
-      odometry_.update(*ticks);
+      odometry_.update(*ticks, periods);
     else
       odometry_.interrupt();
     base::Result<amiro::Odometry> position = base::Error::not_sampled;

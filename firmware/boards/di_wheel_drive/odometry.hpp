@@ -30,11 +30,10 @@ class Odometry {
     double turn_rad_per_s = 0;
   };
 
-  /// The encoders' totals, one `odometry_period` after the last ones. The first totals only set the origin.
-  void update(WheelTicks ticks) noexcept {
-    if (started_) {
-      move(metres(ticks.left, last_.left), metres(ticks.right, last_.right));
-    }
+  /// The encoders' totals, so many `odometry_period`s (1 or more) after the last ones: more than one when the
+  /// board was busy with something more urgent. The first totals only set the origin.
+  void update(WheelTicks ticks, std::uint32_t periods = 1) noexcept {
+    if (started_) move(metres(ticks.left, last_.left), metres(ticks.right, last_.right), periods);
     last_ = ticks;
     started_ = true;
   }
@@ -55,8 +54,8 @@ class Odometry {
     return static_cast<std::int32_t>(difference) * metres_per_tick;  // right across the wrap, too
   }
 
-  void move(double left_m, double right_m) noexcept {
-    constexpr double period_s = std::chrono::duration<double>(odometry_period).count();
+  void move(double left_m, double right_m, std::uint32_t periods) noexcept {
+    const double period_s = std::chrono::duration<double>(odometry_period).count() * periods;
     const double forward = (left_m + right_m) / 2;
     const double turn = (right_m - left_m) / wheel_base_m;
     const double middle = state_.heading_rad + turn / 2;
