@@ -14,9 +14,7 @@
 #include "ocm/base/result.hpp"
 #include "ocm/base/time.hpp"
 #include "ocm/can/bus.hpp"
-#include "ocm/can/frame.hpp"
 #include "ocm/controller/controller.hpp"
-#include "ocm/protocol/counters.hpp"
 #include "ocm/scheduling/cooperative.hpp"
 #include "ocm/scheduling/dispatcher.hpp"
 #include "ocm/scheduling/port.hpp"
@@ -25,6 +23,7 @@
 #include "firmware/boards/calibration.hpp"
 #include "firmware/boards/di_wheel_drive/geometry.hpp"
 #include "firmware/boards/di_wheel_drive/odometry.hpp"
+#include "firmware/boards/node.hpp"
 #include "firmware/boards/samples.hpp"
 
 namespace ocm::firmware::boards::di_wheel_drive {
@@ -77,14 +76,14 @@ static_assert(odometry_period == amiro::Odometry::shortest_period);
 }
 
 template <Hardware H, can::Sender Bus, scheduling::Port P = scheduling::Cooperative>
-class Board {
- public:
-  static constexpr std::size_t tasks = Regulated<H> ? 2 : 1;
-  using Controller = controller::Controller<amiro::DiWheelDrive, Bus, P, tasks>;
+class Board : public Node<amiro::DiWheelDrive, Bus, P, (Regulated<H> ? 2 : 1)> {
+  using Base = Node<amiro::DiWheelDrive, Bus, P, (Regulated<H> ? 2 : 1)>;
+  using Base::controller_;
 
+ public:
   /// All of them must outlive the board. The tasks' grid begins now, so the port works by now.
   Board(H& hardware, Bus& bus, controller::PortArgument<P> port = {}) noexcept
-      : hardware_(&hardware), controller_(bus, port) {
+      : Base(bus, port), hardware_(&hardware) {
     controller_.template serve<amiro::Odometry>([this]() -> base::Result<amiro::Odometry> {
       [[maybe_unused]] const auto guard = controller_.port().lock();
       return position_;
@@ -128,10 +127,6 @@ class Board {
     if constexpr (Regulated<H>)
       controller_.template every<1>(control_period, scheduling::Level::urgent, [this] { control(); });
   }
-  Board(const Board&) = delete;  // the controller holds this address
-  Board& operator=(const Board&) = delete;
-
-  void receive(const can::Frame& frame, base::Time now) noexcept { controller_.receive(frame, now); }
   /// On hardware that wants it, to be called every 10 ms or so on the low level: looks after the parts, and
   /// tells how a calibration ended.
   void maintain(base::Time now) noexcept requires Maintained<H> {
@@ -140,17 +135,6 @@ class Board {
         controller_, [this] { return hardware_->calibrating(); },
         [this] { return hardware_->calibration_error(); });
   }
-  void poll(base::Time now) noexcept requires std::same_as<P, scheduling::Cooperative> {
-    controller_.poll(now);
-  }
-  [[nodiscard]] base::Time next_event() const noexcept requires std::same_as<P, scheduling::Cooperative> {
-    return controller_.next_event();
-  }
-  [[nodiscard]] bool waiting() const noexcept { return controller_.waiting(); }
-  [[nodiscard]] protocol::Counters counters() const noexcept { return controller_.counters(); }
-  /// For a port's contexts, and for what the status frames say.
-  [[nodiscard]] Controller& controller() noexcept { return controller_; }
-  [[nodiscard]] const Controller& controller() const noexcept { return controller_; }
 
  private:
   void update_odometry(std::uint32_t periods) noexcept {
@@ -180,7 +164,6 @@ class Board {
   Odometry odometry_;  // of its task only
   base::Result<amiro::Odometry> position_ = base::Error::not_sampled;
   WheelSpeeds wheels_{};
-  Controller controller_;
 };
 
 }  // namespace ocm::firmware::boards::di_wheel_drive

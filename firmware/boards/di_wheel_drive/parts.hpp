@@ -20,6 +20,7 @@
 
 #include "firmware/boards/di_wheel_drive/board.hpp"
 #include "firmware/boards/di_wheel_drive/geometry.hpp"
+#include "firmware/boards/part_set.hpp"
 #include "firmware/boards/samples.hpp"
 #include "firmware/drivers/bus.hpp"
 #include "firmware/drivers/calibration.hpp"
@@ -63,7 +64,11 @@ static_assert(full_speed == 20595);  // 80 ticks in 10 ms
 template <drivers::I2c CompassBus, drivers::I2c FloorBus, drivers::Spi GyroscopeDevice,
           drivers::Spi AccelerometerDevice, drivers::MotorTimers Motors, drivers::Outputs Pins,
           drivers::Mutex Lock = drivers::NoMutex>
-class Parts {
+class Parts
+    : public PartSet<Parts<CompassBus, FloorBus, GyroscopeDevice, AccelerometerDevice, Motors, Pins, Lock>,
+                     8> {
+  friend PartSet<Parts, 8>;
+
  public:
   static constexpr std::size_t floor_sensors = 4;
 
@@ -84,19 +89,14 @@ class Parts {
   void start(base::Time now) {
     motors_->set_duty(0, 0);
     pins_->write(wiring::motor_power_pin);
-    for_each([now](auto& each) { each.maintain(now); });
+    this->start_parts(now);
   }
 
   /// To be called every 10 ms or so on a low level: looks after one part, or takes one step of a calibration.
   void maintain(base::Time now) {
     if (calibration_.driver().busy())
       return calibration_.driver().step([this](std::size_t sensor) { return raw_floor(sensor); });
-    for (std::size_t i = 0; i < parts; ++i) {
-      bool used = false;
-      with(turn_, [&](auto& each) { used = each.maintain(now); });
-      turn_ = (turn_ + 1) % parts;
-      if (used) return;
-    }
+    this->maintain_one(now);
   }
 
   // What the board asks for
@@ -153,27 +153,10 @@ class Parts {
   // For the status frames
   // --------------------------------------------------------------------------------------------------
 
-  /// Bit by bit who does not answer.
+  /// Bit by bit who does not answer; the same numbers have the faults of `PartSet`.
   [[nodiscard]] std::uint8_t absent() const noexcept {
-    unsigned bits = 0;
-    for (std::size_t i = 0; i < parts; ++i)
-      with(i, [&](const auto& each) { bits |= static_cast<unsigned>(each.absent()) << i; });
-    return static_cast<std::uint8_t>(bits);
+    return static_cast<std::uint8_t>(this->absent_bits());
   }
-  /// Failed starts, checks and reads of one part, by its bit number in `absent()`.
-  [[nodiscard]] std::uint16_t faults(std::size_t number) const noexcept {
-    std::uint16_t faults = 0;
-    with(number, [&](const auto& each) { faults = each.faults(); });
-    return faults;
-  }
-  /// Of all parts together.
-  [[nodiscard]] std::uint32_t faults() const noexcept {
-    std::uint32_t sum = 0;
-    for (std::size_t i = 0; i < parts; ++i) sum += faults(i);
-    return sum;
-  }
-
-  static constexpr std::size_t parts = 8;  ///< as many as `absent()` has bits in use
 
  private:
   using Multiplexer = drivers::Pca9544<FloorBus, Lock>;
@@ -209,22 +192,9 @@ class Parts {
       case 7:
         return what(self.calibration_);
       default:
-        if (number < parts) what(self.floor_[number - 3]);
+        if (number < Parts::parts) what(self.floor_[number - 3]);
     }
   }
-  template <class F>
-  void with(std::size_t number, F what) {
-    pick(*this, number, what);
-  }
-  template <class F>
-  void with(std::size_t number, F what) const {
-    pick(*this, number, what);
-  }
-  template <class F>
-  void for_each(F what) {
-    for (std::size_t i = 0; i < parts; ++i) with(i, what);
-  }
-
   Motors* motors_;
   Pins* pins_;
   Multiplexer multiplexer_;
@@ -237,7 +207,6 @@ class Parts {
       FloorSensor{multiplexer_.channel(2)}, FloorSensor{multiplexer_.channel(3)}};
   drivers::Part<drivers::Calibration<FloorBus, floor_sensors>> calibration_;
   std::array<Wheel, 2> wheels_{};
-  std::size_t turn_ = 0;
 };
 
 }  // namespace ocm::firmware::boards::di_wheel_drive

@@ -10,14 +10,13 @@
 #include "ocm/base/result.hpp"
 #include "ocm/base/time.hpp"
 #include "ocm/can/bus.hpp"
-#include "ocm/can/frame.hpp"
 #include "ocm/controller/controller.hpp"
-#include "ocm/protocol/counters.hpp"
 #include "ocm/scheduling/cooperative.hpp"
 #include "ocm/scheduling/port.hpp"
 #include "ocm/topics/amiro.hpp"
 
 #include "firmware/boards/calibration.hpp"
+#include "firmware/boards/node.hpp"
 #include "firmware/boards/samples.hpp"
 
 namespace ocm::firmware::boards::power_management {
@@ -39,13 +38,14 @@ concept Maintained = Hardware<H> && requires(H& hardware, base::Time now) {
 };
 
 template <Hardware H, can::Sender Bus, scheduling::Port P = scheduling::Cooperative>
-class Board {
- public:
-  using Controller = controller::Controller<amiro::PowerManagement, Bus, P>;
+class Board : public Node<amiro::PowerManagement, Bus, P> {
+  using Base = Node<amiro::PowerManagement, Bus, P>;
+  using Base::controller_;
 
+ public:
   /// All of them must outlive the board.
   Board(H& hardware, Bus& bus, controller::PortArgument<P> port = {}) noexcept
-      : hardware_(&hardware), controller_(bus, port) {
+      : Base(bus, port), hardware_(&hardware) {
     controller_.template serve<amiro::PowerStatus>([this]() -> base::Result<amiro::PowerStatus> {
       const auto gauge = hardware_->gauge();
       if (!gauge) return gauge.error;
@@ -69,10 +69,6 @@ class Board {
                          [this](bool forget) { return hardware_->calibrate_ring(forget); });
     });
   }
-  Board(const Board&) = delete;  // the controller holds this address
-  Board& operator=(const Board&) = delete;
-
-  void receive(const can::Frame& frame, base::Time now) noexcept { controller_.receive(frame, now); }
   /// On hardware that wants it, to be called every 10 ms or so on the low level: looks after the parts, and
   /// tells how a calibration ended.
   void maintain(base::Time now) noexcept requires Maintained<H> {
@@ -81,22 +77,10 @@ class Board {
         controller_, [this] { return hardware_->calibrating(); },
         [this] { return hardware_->calibration_error(); });
   }
-  void poll(base::Time now) noexcept requires std::same_as<P, scheduling::Cooperative> {
-    controller_.poll(now);
-  }
-  [[nodiscard]] base::Time next_event() const noexcept requires std::same_as<P, scheduling::Cooperative> {
-    return controller_.next_event();
-  }
-  [[nodiscard]] bool waiting() const noexcept { return controller_.waiting(); }
-  [[nodiscard]] protocol::Counters counters() const noexcept { return controller_.counters(); }
-  /// For a port's contexts, and for what the status frames say.
-  [[nodiscard]] Controller& controller() noexcept { return controller_; }
-  [[nodiscard]] const Controller& controller() const noexcept { return controller_; }
 
  private:
   H* hardware_;
   Calibration<amiro::RingCalibration> calibration_;
-  Controller controller_;
 };
 
 }  // namespace ocm::firmware::boards::power_management

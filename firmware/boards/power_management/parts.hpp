@@ -16,6 +16,7 @@
 #include "ocm/base/result.hpp"
 #include "ocm/base/time.hpp"
 
+#include "firmware/boards/part_set.hpp"
 #include "firmware/boards/power_management/board.hpp"
 #include "firmware/boards/samples.hpp"
 #include "firmware/drivers/bq27500.hpp"
@@ -58,9 +59,14 @@ inline constexpr std::uint8_t ring = 0x08;  ///< one of the eight or more: which
 
 template <drivers::I2c BackBus, drivers::I2c FrontBus, drivers::Inputs Pins,
           drivers::Mutex Lock = drivers::NoMutex>
-class Parts {
+class Parts : public PartSet<Parts<BackBus, FrontBus, Pins, Lock>, 11> {
+  friend PartSet<Parts, 11>;
+
  public:
   static constexpr std::size_t ring_sensors = 8;
+  static constexpr std::size_t ring_first =
+      3;  ///< part number of ring sensor 1; 0 gauge P7, 1 gauge P8, 2 EEPROM
+  static_assert(Parts::parts == ring_first + ring_sensors);
 
   /// All must outlive the parts.
   Parts(BackBus& back, FrontBus& front, Pins& pins)
@@ -74,20 +80,13 @@ class Parts {
   Parts& operator=(const Parts&) = delete;
 
   /// Once, before anything else: each part is tried once.
-  void start(base::Time now) {
-    for (std::size_t i = 0; i < parts; ++i) with(i, [now](auto& each) { each.maintain(now); });
-  }
+  void start(base::Time now) { this->start_parts(now); }
 
   /// To be called every 10 ms or so on a low level: looks after one part, or takes one step of a calibration.
   void maintain(base::Time now) {
     if (calibration_.driver().busy())
       return calibration_.driver().step([this](std::size_t sensor) { return raw_ring(sensor); });
-    for (std::size_t i = 0; i < parts; ++i) {
-      bool used = false;
-      with(turn_, [&](auto& each) { used = each.maintain(now); });
-      turn_ = (turn_ + 1) % parts;
-      if (used) return;
-    }
+    this->maintain_one(now);
   }
 
   // What the board asks for
@@ -129,10 +128,7 @@ class Parts {
   // --------------------------------------------------------------------------------------------------
 
   [[nodiscard]] std::uint8_t absent() const noexcept {
-    unsigned bits = 0;
-    for (std::size_t i = 0; i < ring_first; ++i)
-      with(i, [&](const auto& each) { bits |= static_cast<unsigned>(each.absent()) << i; });
-    return static_cast<std::uint8_t>(bits | (absent_ring() != 0 ? part::ring : 0U));
+    return static_cast<std::uint8_t>(this->absent_bits(ring_first) | (absent_ring() != 0 ? part::ring : 0U));
   }
   /// Bit i: ring sensor i + 1 does not answer.
   [[nodiscard]] std::uint8_t absent_ring() const noexcept {
@@ -140,21 +136,6 @@ class Parts {
     for (std::size_t i = 0; i < ring_sensors; ++i) bits |= static_cast<unsigned>(ring_[i].absent()) << i;
     return static_cast<std::uint8_t>(bits);
   }
-  /// Failed starts, checks and reads: of 0 gauge P7, 1 gauge P8, 2 EEPROM, 3 to 10 the ring's sensors.
-  [[nodiscard]] std::uint16_t faults(std::size_t number) const noexcept {
-    std::uint16_t faults = 0;
-    with(number, [&](const auto& each) { faults = each.faults(); });
-    return faults;
-  }
-  /// Of all parts together.
-  [[nodiscard]] std::uint32_t faults() const noexcept {
-    std::uint32_t sum = 0;
-    for (std::size_t i = 0; i < parts; ++i) sum += faults(i);
-    return sum;
-  }
-
-  static constexpr std::size_t ring_first = 3;
-  static constexpr std::size_t parts = ring_first + ring_sensors;
 
  private:
   /// A channel of either multiplexer, so that the eight sensors are of one type.
@@ -188,18 +169,9 @@ class Parts {
       case 2:
         return what(self.calibration_);
       default:
-        if (number < parts) what(self.ring_[number - ring_first]);
+        if (number < Parts::parts) what(self.ring_[number - ring_first]);
     }
   }
-  template <class F>
-  void with(std::size_t number, F what) {
-    pick(*this, number, what);
-  }
-  template <class F>
-  void with(std::size_t number, F what) const {
-    pick(*this, number, what);
-  }
-
   Pins* pins_;
   drivers::Pca9544<BackBus, Lock> back_multiplexer_;
   drivers::Pca9544<FrontBus, Lock> front_multiplexer_;
@@ -210,7 +182,6 @@ class Parts {
                                              RingSensor{RingBus{*this, 2}}, RingSensor{RingBus{*this, 3}},
                                              RingSensor{RingBus{*this, 4}}, RingSensor{RingBus{*this, 5}},
                                              RingSensor{RingBus{*this, 6}}, RingSensor{RingBus{*this, 7}}};
-  std::size_t turn_ = 0;
 };
 
 }  // namespace ocm::firmware::boards::power_management
