@@ -8,6 +8,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <initializer_list>
 #include <span>
 
 #include "ocm/base/result.hpp"
@@ -42,14 +43,19 @@ inline constexpr base::Duration turn_on = std::chrono::milliseconds{56};
 
 inline constexpr std::int32_t microgauss_per_count = 2560;  ///< at gain 5 [data sheet, table 9: 2.56 mG/LSb]
 inline constexpr std::int16_t overflow = -4096;             ///< [data sheet, Data Output X Registers]
+inline constexpr std::int16_t lowest = -2048;               ///< 12 bits, sign extended [the same]
+inline constexpr std::int16_t highest = 2047;
 
-/// Six bytes from `data_x_msb` on: x, z, y, high byte first. [data sheet, table 2]
+/// Six bytes from `data_x_msb` on: x, z, y, high byte first. [data sheet, table 2] Error::not_sampled: too
+/// strong a field; Error::bus_fault: bytes that no part sends.
 [[nodiscard]] constexpr base::Result<boards::MagneticField> decode(
     std::span<const std::uint8_t, 6> data) noexcept {
   const std::int16_t x = join_signed(data[0], data[1]);
   const std::int16_t z = join_signed(data[2], data[3]);
   const std::int16_t y = join_signed(data[4], data[5]);
   if (x == overflow || y == overflow || z == overflow) return base::Error::not_sampled;
+  for (const std::int16_t count : {x, y, z})
+    if (count < lowest || count > highest) return base::Error::bus_fault;
   return boards::MagneticField{x * microgauss_per_count, y * microgauss_per_count, z * microgauss_per_count};
 }
 

@@ -20,6 +20,8 @@ static_assert(drivers::hmc5883l::decode(std::array<std::uint8_t, 6>{0x00, 0x15, 
 static_assert(drivers::hmc5883l::decode(std::array<std::uint8_t, 6>{0xF8, 0x00, 0x07, 0xFF, 0x00, 0x00}) ==
               base::Result<MagneticField>{MagneticField{-5'242'880, 0, 5'240'320}});
 // -4096 is no number but an overflow.
+static_assert(drivers::hmc5883l::decode(std::array<std::uint8_t, 6>{0x08, 0x00, 0x00, 0x00, 0x00, 0x00})
+                  .error == base::Error::bus_fault);  // 2048 needs a thirteenth bit
 static_assert(drivers::hmc5883l::decode(std::array<std::uint8_t, 6>{0x00, 0x00, 0xF0, 0x00, 0x00, 0x00})
                   .error == Error::not_sampled);
 

@@ -69,7 +69,9 @@
 #define CH_CFG_TRACE_HOOK(tep) {}
 
 /* Sleep when nothing is to be done: saves the battery, and the host's CPU under QEMU. */
+#if !defined(CORTEX_ENABLE_WFI_IDLE)
 #define CORTEX_ENABLE_WFI_IDLE              TRUE
+#endif
 
 #if !defined(_FROM_ASM_)
 #ifdef __cplusplus
