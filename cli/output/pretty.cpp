@@ -156,7 +156,11 @@ class Pretty final : public Output {
       paint(out, plain);
       fmt::format_to(std::back_inserter(out), " {:>{}}", value_text(field, payloads[column.frame]),
                      column.width);
-      if (!field.unit.empty() && (!one_unit || i + 1 == columns.size()))
+      // One unit for all stands at the end; a name in place of a number has none.
+      const std::int64_t raw = field.raw(payloads[column.frame]);
+      const bool named = std::any_of(field.values.begin(), field.values.end(),
+                                     [raw](const auto& value) { return value.raw == raw; });
+      if (!field.unit.empty() && (one_unit ? i + 1 == columns.size() : !named))
         fmt::format_to(std::back_inserter(out), " {}", field.unit);
     }
   }
