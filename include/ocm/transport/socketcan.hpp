@@ -37,6 +37,7 @@
 #include "ocm/transport/bus.hpp"
 #include "ocm/transport/descriptor.hpp"
 #include "ocm/transport/interfaces.hpp"
+#include "ocm/transport/system_time.hpp"
 
 namespace ocm::transport {
 
@@ -357,10 +358,7 @@ class SocketCan final : public Bus {
 
   /// Error::timed_out is the caller's part. True: something may have come.
   [[nodiscard]] bool wait(base::Duration time) const noexcept {
-    const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(time);
-    timespec limit{};
-    limit.tv_sec = static_cast<time_t>(seconds.count());
-    limit.tv_nsec = static_cast<long>((time - seconds).count());
+    const timespec limit = to_timespec(time);
     pollfd entry{socket_.get(), POLLIN, 0};
     return ::ppoll(&entry, 1, &limit, nullptr) >= 0;
   }

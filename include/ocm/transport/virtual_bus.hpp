@@ -24,6 +24,7 @@
 #include "ocm/can/filter.hpp"
 #include "ocm/transport/bus.hpp"
 #include "ocm/transport/descriptor.hpp"
+#include "ocm/transport/system_time.hpp"
 #include "ocm/transport/virtual_bus_protocol.hpp"
 
 namespace ocm::transport {
@@ -40,8 +41,7 @@ class VirtualBus final : public Bus {
     Descriptor socket{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0)};
     if (!socket) return connect_failure(path, errno);
     // A server that is stopped accepts nobody, and its queue may be full.
-    const auto limit_us = std::max<std::int64_t>(patience.count() / 1000, 1);
-    const timeval limit{limit_us / 1'000'000, limit_us % 1'000'000};
+    const timeval limit = to_timeval(patience);
     ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);
     while (::connect(socket.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) < 0)
       if (errno != EINTR) return connect_failure(path, errno);
@@ -241,10 +241,7 @@ class VirtualBus final : public Bus {
 
   /// true: something happened. false: time is up, or a signal came.
   bool wait(short what, base::Duration time) const noexcept {
-    const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(time);
-    timespec limit{};
-    limit.tv_sec = static_cast<time_t>(seconds.count());
-    limit.tv_nsec = static_cast<long>((time - seconds).count());
+    const timespec limit = to_timespec(time);
     pollfd entry{socket_.get(), what, 0};
     return ::ppoll(&entry, 1, &limit, nullptr) > 0;
   }

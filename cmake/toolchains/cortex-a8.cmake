@@ -1,0 +1,31 @@
+# The operator's board, a Cortex-A8 with Linux, by Debian's g++-arm-linux-gnueabihf: small static programs, which ask
+# for nothing but the kernel. What amiroctl needs besides is header-only here, and taken from the machine that builds.
+#
+#   cmake -S . -B build/operator -G Ninja --toolchain cmake/toolchains/cortex-a8.cmake      (scripts/build operator)
+#
+# ctest runs what it builds by qemu-arm-static.
+set(CMAKE_SYSTEM_NAME Linux)
+set(CMAKE_SYSTEM_PROCESSOR armv7-a)
+set(CMAKE_CXX_COMPILER arm-linux-gnueabihf-g++)
+find_program(qemu_arm qemu-arm-static)
+set(CMAKE_CROSSCOMPILING_EMULATOR ${qemu_arm} -cpu cortex-a8)
+
+set(CMAKE_CXX_FLAGS_INIT "-mcpu=cortex-a8 -mfpu=neon -mfloat-abi=hard -ffunction-sections -fdata-sections")
+set(CMAKE_EXE_LINKER_FLAGS_INIT "-static -Wl,--gc-sections")
+# Optimised for size as a whole: MinSizeRel, the default here, is half of Release.
+set(CMAKE_BUILD_TYPE MinSizeRel CACHE STRING "Optimised for size")
+set(CMAKE_CXX_FLAGS_MINSIZEREL_INIT "-Os -DNDEBUG -flto=auto")
+set(CMAKE_EXE_LINKER_FLAGS_MINSIZEREL_INIT "-s")
+set(CMAKE_CXX_COMPILER_AR arm-linux-gnueabihf-gcc-ar)  # which know what -flto leaves in an archive
+set(CMAKE_CXX_COMPILER_RANLIB arm-linux-gnueabihf-gcc-ranlib)
+set(CMAKE_AR arm-linux-gnueabihf-gcc-ar CACHE FILEPATH "")
+set(CMAKE_RANLIB arm-linux-gnueabihf-gcc-ranlib CACHE FILEPATH "")
+
+set(CMAKE_FIND_ROOT_PATH /usr/arm-linux-gnueabihf)
+set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
+set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
+list(APPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR}/header_only)
+include(${CMAKE_CURRENT_LIST_DIR}/header_only/folder.cmake)
+set(OCM_VALIJSON_INCLUDE_DIR ${ocm_header_only} CACHE PATH "")

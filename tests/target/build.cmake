@@ -1,0 +1,11 @@
+# Builds for another machine, in a folder of its own:
+#   cmake -D SOURCE=folder -D BINARY=folder -D TOOLCHAIN=file [-D TARGETS=a;b] [-D OPTIONS=-Dx=y;...] -P build.cmake
+if(NOT EXISTS ${BINARY}/build.ninja OR NOT EXISTS ${BINARY}/CMakeCache.txt)
+  file(REMOVE_RECURSE ${BINARY})
+endif()
+execute_process(COMMAND ${CMAKE_COMMAND} -S ${SOURCE} -B ${BINARY} -G Ninja --toolchain ${TOOLCHAIN} ${OPTIONS}
+                COMMAND_ERROR_IS_FATAL ANY)
+if(NOT TARGETS)
+  set(TARGETS all)
+endif()
+execute_process(COMMAND ${CMAKE_COMMAND} --build ${BINARY} --target ${TARGETS} COMMAND_ERROR_IS_FATAL ANY)
