@@ -35,7 +35,7 @@ enum { ok, bad_length = 3, bad_mode = 4, bad_unit = 5, bad_period = 6, failed = 
 struct stream {
   int64_t next;
   int64_t period;
-  uint32_t jitter_us;
+  uint32_t jitter_ns;
   uint32_t missed, late, overrun;
   uint8_t level, taken_at, state, use;
 };
@@ -117,11 +117,11 @@ static void attend(struct stream* s) {
   else
     arm_by(s->next);
 }
-static void start(struct stream* s, int64_t period, uint8_t level, int64_t from, uint32_t jitter_us) {
+static void start(struct stream* s, int64_t period, uint8_t level, int64_t from, uint32_t jitter_ns) {
   const uint32_t mask = port_lock();
   s->next = from;
   s->period = period;
-  s->jitter_us = jitter_us;
+  s->jitter_ns = jitter_ns;
   s->level = level;
   s->state = periodic;
   attend(s);
@@ -130,7 +130,7 @@ static void start(struct stream* s, int64_t period, uint8_t level, int64_t from,
 static void once(struct stream* s, uint8_t level, int64_t when) {
   const uint32_t mask = port_lock();
   s->next = when;
-  s->jitter_us = UINT32_MAX;
+  s->jitter_ns = UINT32_MAX;
   s->level = level;
   s->state = single;
   attend(s);
@@ -181,7 +181,7 @@ static struct stream* take(unsigned level) {
         scheduled = s->next - s->period;
         s->missed += missed;
       }
-      if (missed != 0 || (s->jitter_us != UINT32_MAX && now - scheduled > INT64_C(1000) * s->jitter_us))
+      if (missed != 0 || (s->jitter_ns != UINT32_MAX && now - scheduled > (int64_t)s->jitter_ns))
         ++s->late;
     }
   }
@@ -338,19 +338,19 @@ static const struct sensor {
   bool (*sample)(uint8_t d[][8]);
   uint8_t (*payloads)[8];
   int64_t default_period;
-  uint32_t jitter_us;
+  uint32_t jitter_ns;
   uint8_t frames;
   struct {
     uint8_t id, dlc;
   } heads[3];
 } table_of_sensors[sensors] = {
-    {sample_odometry, payloads, 50 * MS, 1000, 2, {{0x02, 8}, {0x03, 8}}},
-    {sample_floor, payloads + 2, 50 * MS, 1000, 1, {{0x04, 8}}},
-    {sample_magnetometer, payloads + 3, 50 * MS, 1000, 3, {{0x05, 4}, {0x06, 4}, {0x07, 4}}},
-    {sample_gyroscope, payloads + 6, 50 * MS, 1000, 1, {{0x08, 6}}},
-    {sample_accelerometer, payloads + 7, 50 * MS, 1000, 1, {{0x09, 6}}},
-    {sample_status, payloads + 8, 1000 * MS, 1000, 2, {{0x1B, 8}, {0x1C, 8}}},
-    {sample_refusal, payloads + 10, 1000 * MS, 1000, 1, {{0x1D, 6}}},
+    {sample_odometry, payloads, 50 * MS, 1 * MS, 2, {{0x02, 8}, {0x03, 8}}},
+    {sample_floor, payloads + 2, 50 * MS, 1 * MS, 1, {{0x04, 8}}},
+    {sample_magnetometer, payloads + 3, 50 * MS, 1 * MS, 3, {{0x05, 4}, {0x06, 4}, {0x07, 4}}},
+    {sample_gyroscope, payloads + 6, 50 * MS, 1 * MS, 1, {{0x08, 6}}},
+    {sample_accelerometer, payloads + 7, 50 * MS, 1 * MS, 1, {{0x09, 6}}},
+    {sample_status, payloads + 8, 1000 * MS, 1 * MS, 2, {{0x1B, 8}, {0x1C, 8}}},
+    {sample_refusal, payloads + 10, 1000 * MS, 1 * MS, 1, {{0x1D, 6}}},
 };
 
 /// False: the bus has no room, and the rest waits.
@@ -542,7 +542,7 @@ static uint8_t request(unsigned number, const struct frame* frame, int64_t now) 
   else if (r.mode == 2)
     once(s, r.level, now);
   else
-    start(s, frame->dlc == 1 ? sensor->default_period : duration(&r), r.level, now, sensor->jitter_us);
+    start(s, frame->dlc == 1 ? sensor->default_period : duration(&r), r.level, now, sensor->jitter_ns);
   return ok;
 }
 

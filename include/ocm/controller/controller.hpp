@@ -262,26 +262,17 @@ class Controller {
     activity.wire_hash = Board::wire_hash;
     for (std::size_t sensor = 0; sensor < sensors && sensor < 32; ++sensor)
       activity.publishing |= (active(sensor) ? std::uint32_t{1} : 0U) << sensor;
-    activity.counters = counters();
-    activity.overload =
-        std::uint64_t{activity.counters.missed} + activity.counters.late + activity.counters.overrun;
-    for (std::size_t task = 0; task < Tasks; ++task) {
-      const scheduling::Overload one = task_overload(task);
-      activity.overload += std::uint64_t{one.missed} + one.late + one.overrun;
-    }
+    activity.overload = dispatcher_.overload();
     {
       [[maybe_unused]] const auto guard = port().lock();
+      activity.send_failed = counters_.send_failed;
       activity.faults = sensors_.faults();
     }
     return make_status<typename Board::status>(health_ ? health_() : Health{}, activity);
   }
   [[nodiscard]] auto refusal() const noexcept {
-    Refusal last;
-    {
-      [[maybe_unused]] const auto guard = port().lock();
-      last = last_refusal_;
-    }
-    return make_refusal<typename Board::refusal>(last, counters());
+    [[maybe_unused]] const auto guard = port().lock();
+    return make_refusal<typename Board::refusal>(last_refusal_, counters_.refused(), counters_.not_sampled);
   }
 
   /// Has the actuators looked at when the first watchdog expires.

@@ -11,7 +11,6 @@
 
 #include "ocm/base/result.hpp"
 #include "ocm/base/time.hpp"
-#include "ocm/protocol/counters.hpp"
 #include "ocm/protocol/identifier.hpp"
 
 namespace ocm::controller {
@@ -40,7 +39,7 @@ struct Activity {
   std::uint32_t publishing = 0;  ///< bit n: the board's n-th sensor
   std::uint32_t faults = 0;      ///< the same
   std::uint64_t overload = 0;
-  protocol::Counters counters{};
+  std::uint32_t send_failed = 0;  ///< frames given up
 };
 
 struct Refusal {
@@ -77,19 +76,20 @@ template <class Status>
   put(status.health.publishing, activity.publishing & 0xFFU);
   put(status.health.faults, activity.faults & 0xFFU);
   put(status.health.overload, activity.overload);
-  put(status.health.bus_errors, std::uint64_t{health.bus_errors} + activity.counters.send_failed);
+  put(status.health.bus_errors, std::uint64_t{health.bus_errors} + activity.send_failed);
   return status;
 }
 
 /// `Topic`: a generated topic with the role refusal.
 template <class Topic>
-[[nodiscard]] constexpr Topic make_refusal(const Refusal& last, const protocol::Counters& counters) noexcept {
+[[nodiscard]] constexpr Topic make_refusal(const Refusal& last, std::uint32_t refused,
+                                           std::uint32_t not_sampled) noexcept {
   using detail::put;
   Topic topic;
   put(topic.topic, last.topic.value);
   put(topic.reason, static_cast<std::uint64_t>(last.reason));
-  put(topic.refused, counters.refused());
-  if constexpr (requires { topic.not_sampled; }) put(topic.not_sampled, counters.not_sampled);
+  put(topic.refused, refused);
+  if constexpr (requires { topic.not_sampled; }) put(topic.not_sampled, not_sampled);
   return topic;
 }
 

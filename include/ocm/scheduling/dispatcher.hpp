@@ -139,6 +139,11 @@ class Dispatcher {
     [[maybe_unused]] const auto guard = port_->lock();
     return publisher_.overload(stream, port_->now());
   }
+  /// Of all streams and kinds together.
+  [[nodiscard]] std::uint64_t overload() const noexcept {
+    [[maybe_unused]] const auto guard = port_->lock();
+    return publisher_.overload(port_->now());
+  }
   /// When the first stream can be taken; it may have passed. base::never: none runs.
   [[nodiscard]] base::Time next_release() const noexcept {
     [[maybe_unused]] const auto guard = port_->lock();

@@ -45,14 +45,14 @@ class Publisher {
   static constexpr std::size_t streams = N;
 
   /// Publishes stream `stream` every `period` (above zero), the first time at `from`. On a running stream
-  /// this replaces period, priority and grid at once. A release later than `jitter` (to the microsecond; one
-  /// above 71 minutes is none) counts as late.
+  /// this replaces period, priority and grid at once. A release later than `jitter` (one above 4.29 s is
+  /// none) counts as late.
   constexpr void start(std::size_t stream, base::Duration period, protocol::Priority priority,
                        base::Time from, base::Duration jitter = base::Duration::max()) noexcept {
     Stream& s = streams_[stream];
     s.next = from;
     s.period = period;
-    s.jitter_us = microseconds(jitter);
+    s.jitter_ns = nanoseconds(jitter);
     s.priority = priority;
     s.state = State::periodic;
   }
@@ -60,7 +60,7 @@ class Publisher {
   constexpr void once(std::size_t stream, protocol::Priority priority, base::Time when) noexcept {
     Stream& s = streams_[stream];
     s.next = when;
-    s.jitter_us = UINT32_MAX;
+    s.jitter_ns = no_jitter;
     s.priority = priority;
     s.state = State::once;
   }
@@ -103,9 +103,9 @@ class Publisher {
       release.scheduled = s.next - s.period;
       s.overload.missed += release.missed;
     }
-    release.late = release.missed != 0 ||
-                   (s.jitter_us != UINT32_MAX &&
-                    now - release.scheduled > std::chrono::microseconds{std::int64_t{s.jitter_us}});
+    release.late =
+        release.missed != 0 ||
+        (s.jitter_ns != no_jitter && now - release.scheduled > base::Duration{std::int64_t{s.jitter_ns}});
     s.overload.late += release.late ? 1U : 0U;
     return true;
   }
@@ -147,6 +147,16 @@ class Publisher {
     return s.overload;
   }
 
+  /// Of all streams and kinds together.
+  [[nodiscard]] constexpr std::uint64_t overload(base::Time now) const noexcept {
+    std::uint64_t sum = 0;
+    for (std::size_t stream = 0; stream < N; ++stream) {
+      const Overload one = overload(stream, now);
+      sum += std::uint64_t{one.missed} + one.late + one.overrun;
+    }
+    return sum;
+  }
+
   /// When the stream can be taken next; base::never when it does not run, or not until it is done.
   [[nodiscard]] constexpr base::Time next_release(std::size_t stream) const noexcept {
     return streams_[stream].takeable() ? streams_[stream].next : base::never;
@@ -177,12 +187,13 @@ class Publisher {
   }
 
  private:
+  static constexpr std::uint32_t no_jitter = UINT32_MAX;
   enum class State : std::uint8_t { idle, periodic, once };
   enum class Use : std::uint8_t { none, taken, held };
   struct Stream {
     base::Time next{};
     base::Duration period{};
-    std::uint32_t jitter_us = UINT32_MAX;
+    std::uint32_t jitter_ns = no_jitter;
     Overload overload{};
     protocol::Priority priority = protocol::default_priority;
     protocol::Priority taken_at = protocol::default_priority;
@@ -204,9 +215,9 @@ class Publisher {
   };
   static_assert(sizeof(Stream) == 40);
 
-  [[nodiscard]] static constexpr std::uint32_t microseconds(base::Duration jitter) noexcept {
-    const std::int64_t us = jitter.count() / 1000;
-    return us < 0 ? 0 : us > UINT32_MAX ? UINT32_MAX : static_cast<std::uint32_t>(us);
+  [[nodiscard]] static constexpr std::uint32_t nanoseconds(base::Duration jitter) noexcept {
+    const std::int64_t ns = jitter.count();
+    return ns < 0 ? 0 : ns > no_jitter ? no_jitter : static_cast<std::uint32_t>(ns);
   }
 
   std::array<Stream, N> streams_{};
