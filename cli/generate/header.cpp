@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/spec/names.hpp"
+#include "cli/spec/worst_bits.hpp"
 
 namespace ocm::generate {
 
@@ -358,7 +359,12 @@ void write_function(Writer& out, const std::string& head, const std::vector<std:
                     std::size_t indent = 2) {
   if (body.size() == 1 && indent + head.size() + 5 + body[0].size() <= columns)
     return out.line(head + " { " + body[0] + " }");
-  out.open(head + " {");
+  if (const std::size_t bracket = head.find('('); indent + head.size() + 2 > columns) {
+    out.line(head.substr(0, bracket + 1));
+    out.open("    " + head.substr(bracket + 1) + " {");
+  } else {
+    out.open(head + " {");
+  }
   for (const std::string& statement : body) out.line(statement);
   out.close("}");
 }
@@ -459,14 +465,25 @@ void write_topic_comment(Writer& out, const Model& model, const TopicModel& topi
   out.comment(with_source(std::move(text), rest.joined()));
 }
 
-std::string frame_heads(const TopicModel& topic) {
-  std::string heads;
-  for (const FrameModel& frame : topic.frames) {
-    for (unsigned i = 0; i < frame.count; ++i) {
-      if (!heads.empty()) heads += ", ";
-      heads += "{ocm::protocol::TopicId{" + hex(frame.id + i) + "}, " + std::to_string(frame.dlc) + "}";
-    }
+/// Of `instances` frames with consecutive ids the greatest, as an initializer.
+std::string worst_bits(const TopicModel& topic, const FrameModel& frame, unsigned id, unsigned instances) {
+  protocol::BitsByPriority greatest{};
+  for (unsigned instance = 0; instance < instances; ++instance) {
+    const auto bits = spec::worst_bits(topic.kind, id + instance, frame.dlc);
+    for (std::size_t level = 0; level < bits.size(); ++level)
+      greatest[level] = std::max(greatest[level], bits[level]);
   }
+  std::string text;
+  for (const unsigned bits : greatest) text += (text.empty() ? "{" : ", ") + std::to_string(bits);
+  return text + "}";
+}
+
+std::vector<std::string> frame_heads(const TopicModel& topic) {
+  std::vector<std::string> heads;
+  for (const FrameModel& frame : topic.frames)
+    for (unsigned i = 0; i < frame.count; ++i)
+      heads.push_back("{ocm::protocol::TopicId{" + hex(frame.id + i) + "}, " + std::to_string(frame.dlc) +
+                      ", " + worst_bits(topic, frame, frame.id + i, topic.count) + "}");
   return heads;
 }
 
@@ -478,15 +495,16 @@ void write_constants(Writer& out, const TopicModel& topic) {
   out.line("static constexpr std::uint8_t instances = " + std::to_string(topic.count) + ";");
   const std::string head =
       "static constexpr std::array<ocm::protocol::FrameHead, " + std::to_string(frames) + "> frames";
-  const std::string one_line = head + "{{" + frame_heads(topic) + "}};";
-  if (2 + one_line.size() <= columns) {
-    out.line(one_line);
+  const std::vector<std::string> heads = frame_heads(topic);
+  const std::string only = heads.size() == 1 ? "{" + heads.front() + "}};" : "";
+  if (!only.empty() && 2 + head.size() + 1 + only.size() <= columns) {
+    out.line(head + "{" + only);
+  } else if (!only.empty()) {
+    out.line(head + "{");
+    out.line("    " + only);
   } else {
     out.line(head + "{{");
-    for (const FrameModel& frame : topic.frames)
-      for (unsigned i = 0; i < frame.count; ++i)
-        out.line("    {ocm::protocol::TopicId{" + hex(frame.id + i) + "}, " + std::to_string(frame.dlc) +
-                 "},");
+    for (const std::string& its : heads) out.line("    " + its + ",");
     out.line("}};");
   }
   static constexpr std::string_view units[] = {"milliseconds", "seconds", "microseconds"};
@@ -521,7 +539,15 @@ void write_constants(Writer& out, const TopicModel& topic) {
 }
 
 void write_equality(Writer& out, const std::string& type) {
-  out.line("friend constexpr bool operator==(const " + type + "&, const " + type + "&) = default;");
+  const std::string head = "friend constexpr bool operator==(";
+  const std::string argument = "const " + type + "&";
+  const std::string tail = argument + ") = default;";
+  if (2 + head.size() + argument.size() + 2 + tail.size() <= columns) {
+    out.line(head + argument + ", " + tail);
+  } else {
+    out.line(head + argument + ",");
+    out.line(std::string(head.size(), ' ') + tail);
+  }
 }
 
 void write_fields(Writer& out, const FrameModel& frame) {
@@ -670,11 +696,14 @@ void write_board(Writer& out, const Model& model, std::size_t index) {
     const std::string head = std::string{"using "} + alias + " = ocm::protocol::TopicList<";
     std::size_t length = 2 + head.size() + 2;
     for (const std::string& type : list) length += type.size() + 2;
-    if (length <= columns + 2) {
-      out.list(head, list, ">;");
-    } else {
+    // As clang-format has it: on one line, or on a second one alone, or broken behind the bracket.
+    constexpr std::string_view list_type = "    ocm::protocol::TopicList<";
+    const std::size_t on_second_line = length - head.size() + list_type.size();
+    if (length > columns + 2 && on_second_line <= columns + 2) {
       out.line(std::string{"using "} + alias + " =");
-      out.list("    ocm::protocol::TopicList<", list, ">;");
+      out.list(list_type, list, ">;");
+    } else {
+      out.list(head, list, ">;");
     }
   }
   // What the board says of itself; void where the spec has no such topic.
@@ -754,7 +783,8 @@ void write_tables(Writer& out, const TopicModel& topic) {
                                    : aggregate          ? frame_space(topic, frame) + "::fields"
                                                         : "fields";
         out.line("{" + quoted(name) + ", protocol::TopicId{" + hex(frame.id + i + instance) + "}, " +
-                 std::to_string(frame.dlc) + ", " + fields + "},");
+                 std::to_string(frame.dlc) + ", " + fields + ", " +
+                 worst_bits(topic, frame, frame.id + i + instance, 1) + "},");
       }
     }
   }
@@ -788,7 +818,7 @@ void write_catalogue(Writer& out, const Model& model) {
   out.line(
       "// Fields: name, {start, width, order}, signed, scale, offset, unit, lowest and highest raw number,");
   out.line("// names of values or flags, whether flags. Scale and offset: {digits, power of ten}.");
-  out.line("// Frames: name, id, DLC, fields.");
+  out.line("// Frames: name, id, DLC, fields, most bits by priority.");
   out.line(
       "// Topics: index of the board, aliases, frames, source, and of several of a kind: number and name.");
   for (const TopicModel& topic : model.topics) {
@@ -835,7 +865,8 @@ std::string header(const Model& model, std::string_view spec_name) {
       "raw number times scale stays below 2^53; set_name_unit() takes the nearest raw number within the "
       "field's "
       "range, and the one nearest to zero for not a number. encode() puts the nearest number that the width "
-      "holds. No heap, no exceptions; everything is constexpr.");
+      "holds. `frames` has of each frame the id, the DLC, and the most bits that it takes on the bus at each "
+      "priority, whatever its content. No heap, no exceptions; everything is constexpr.");
   if (const std::string source = model.defaults_source.joined(); !source.empty()) {
     out.line("///");
     out.comment("Where a period, deadline, jitter, priority or timeout names no source: [" + source + "]");

@@ -4,6 +4,8 @@
 #include <cstring>
 #include <fcntl.h>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <sys/stat.h>
@@ -11,6 +13,7 @@
 #include <vector>
 
 #include "cli/generate/header.hpp"
+#include "cli/generate/tasks.hpp"
 #include "cli/spec/spec.hpp"
 
 namespace {
@@ -22,6 +25,7 @@ constexpr int usage_error = 2;
 constexpr const char* help =
     "Usage: ocm-generate SPEC -o HEADER\n"
     "       ocm-generate SPEC --check\n"
+    "       ocm-generate --tasks SETS -o HEADER\n"
     "\n"
     "Writes the C++ header of a robot from its spec: a struct with encode and decode for each frame,\n"
     "and the catalogue of all topics. The same spec gives the same bytes.\n"
@@ -29,6 +33,7 @@ constexpr const char* help =
     "  -o, --output HEADER  the header; - is the standard output. It is replaced in one step, and only\n"
     "                       when the spec is good.\n"
     "      --check          only say what is wrong with the spec\n"
+    "      --tasks          the file has task sets of processors (spec/tasks.json), not a robot's topics\n"
     "      --schema         print the JSON schema of specs, for an editor, and end\n"
     "      --help, --version\n"
     "\n"
@@ -114,6 +119,7 @@ int main(int argc, char** argv) {
   bool has_output = false;
   bool check = false;
   bool only_names = false;
+  bool tasks = false;
   for (int i = 1; i < argc; ++i) {
     const std::string_view argument = argv[i];
     if (!only_names && argument == "--") {
@@ -130,6 +136,8 @@ int main(int argc, char** argv) {
                  : complain("the standard output", std::strerror(errno), "somewhere that takes the schema");
     } else if (!only_names && argument == "--check") {
       check = true;
+    } else if (!only_names && argument == "--tasks") {
+      tasks = true;
     } else if (!only_names && (argument == "-o" || argument == "--output")) {
       if (++i == argc) return complain_usage(std::string{argument} + " without a header");
       if (has_output) return complain_usage("two headers: " + output + " and " + argv[i]);
@@ -148,14 +156,26 @@ int main(int argc, char** argv) {
   if (has_output && check) return complain_usage("--check writes no header");
   if (has_output && output.empty()) return complain_usage("the header has no name");
 
+  const auto put = [&](const std::string& text) {
+    if (check) return success;
+    if (output != "-") return replace(output, text);
+    if (write_all(STDOUT_FILENO, text)) return success;
+    return complain("the standard output", std::strerror(errno), "somewhere that takes the header");
+  };
+  const std::string name = std::filesystem::path{spec}.filename().string();
+  if (tasks) {
+    std::ifstream in{spec, std::ios::binary};
+    const std::string json{std::istreambuf_iterator<char>{in}, {}};
+    if (!in) return complain(spec, "cannot be read", "a file with task sets");
+    std::vector<ocm::spec::Problem> problems;
+    const std::string text = ocm::generate::tasks_header(json, name, problems);
+    for (const auto& problem : problems)
+      complain(printable(problem.place), printable(problem.what), printable(problem.remedy));
+    return problems.empty() ? put(text) : failure;
+  }
   const auto loaded = ocm::spec::load(spec);
   for (const auto& problem : loaded.problems)
     complain(printable(problem.place), printable(problem.what), printable(problem.remedy));
   if (!loaded.spec) return failure;
-  if (check) return success;
-  const std::string text =
-      ocm::generate::header(loaded.spec->model(), std::filesystem::path{spec}.filename().string());
-  if (output != "-") return replace(output, text);
-  if (write_all(STDOUT_FILENO, text)) return success;
-  return complain("the standard output", std::strerror(errno), "somewhere that takes the header");
+  return put(ocm::generate::header(loaded.spec->model(), name));
 }

@@ -10,6 +10,7 @@
 
 #include "cli/spec/json.hpp"
 #include "cli/spec/reader.hpp"
+#include "cli/spec/worst_bits.hpp"
 
 namespace ocm::spec {
 
@@ -51,7 +52,8 @@ struct Spec::Storage {
         const std::string_view name =
             numbered ? keep(frame.name + "_" + std::to_string(i + 1)) : std::string_view{frame.name};
         const unsigned id = frame.id + i + (instance == 0 ? 0U : instance - 1U);
-        list.push_back({name, protocol::TopicId{static_cast<std::uint8_t>(id)}, frame.dlc, its_fields});
+        list.push_back({name, protocol::TopicId{static_cast<std::uint8_t>(id)}, frame.dlc, its_fields,
+                        worst_bits(topic.kind, id, frame.dlc)});
       }
     }
     return list;

@@ -10,16 +10,19 @@
 #include "ocm/can/frame.hpp"
 #include "ocm/controller/controller.hpp"
 #include "ocm/protocol/counters.hpp"
+#include "ocm/scheduling/admission.hpp"
 #include "ocm/scheduling/cooperative.hpp"
 #include "ocm/scheduling/port.hpp"
 
 namespace ocm::firmware::boards {
 
-/// `Type`: the board in the generated header. `Tasks`: how many periodic tasks of its own it has.
-template <class Type, can::Sender Bus, scheduling::Port P = scheduling::Cooperative, std::size_t Tasks = 0>
+/// `Type`: the board in the generated header. `Tasks`: how many periodic tasks of its own it has. `A`: who
+/// decides whether it takes one stream more.
+template <class Type, can::Sender Bus, scheduling::Port P = scheduling::Cooperative, std::size_t Tasks = 0,
+          scheduling::Admission A = scheduling::AdmitAll>
 class Node {
  public:
-  using Controller = controller::Controller<Type, Bus, P, Tasks>;
+  using Controller = controller::Controller<Type, Bus, P, Tasks, A>;
 
   Node(const Node&) = delete;  // the controller holds the board's address
   Node& operator=(const Node&) = delete;

@@ -1,4 +1,5 @@
 #include "firmware/boards/di_wheel_drive/board.hpp"
+#include "firmware/boards/di_wheel_drive/costs.hpp"
 #include "firmware/boards/di_wheel_drive/parts.hpp"
 #include "firmware/chibios/port.hpp"
 #include "firmware/qemu/machine.hpp"
@@ -21,5 +22,5 @@ int main() {
   static di_wheel_drive::Parts<qemu::LinkI2c, qemu::LinkI2c, qemu::LinkSpi, qemu::LinkSpi,
                                qemu::LinkMotorTimers, qemu::LinkOutputs, ocm::firmware::chibios::Mutex>
       parts{compass, floor, gyroscope, accelerometer, motors, pins};
-  qemu::run<di_wheel_drive::Board>(machine, parts);
+  qemu::run<amiro::DiWheelDrive, di_wheel_drive::Board, di_wheel_drive::Costs>(machine, parts);
 }

@@ -1,4 +1,5 @@
 #include "firmware/boards/light_ring/board.hpp"
+#include "firmware/boards/light_ring/costs.hpp"
 #include "firmware/boards/light_ring/parts.hpp"
 #include "firmware/chibios/port.hpp"
 #include "firmware/qemu/machine.hpp"
@@ -16,5 +17,5 @@ int main() {
   static qemu::LinkOutputs pins{machine.link, 0};
   static light_ring::Parts<qemu::LinkSpi, qemu::LinkOutputs, ocm::firmware::chibios::Mutex> parts{lights,
                                                                                                   pins};
-  qemu::run<light_ring::Board>(machine, parts);
+  qemu::run<amiro::LightRing, light_ring::Board, light_ring::Costs>(machine, parts);
 }

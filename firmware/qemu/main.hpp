@@ -2,8 +2,10 @@
 /// file that names its parts' buses and calls this.
 #pragma once
 
+#include "ocm/analysis/admission.hpp"
 #include "ocm/base/time.hpp"
 #include "ocm/controller/report.hpp"
+#include "ocm/topics/amiro.hpp"
 
 #include "firmware/chibios/load.hpp"
 #include "firmware/chibios/port.hpp"
@@ -22,14 +24,15 @@ struct Machine {
   PartsLink link{parts_line};
 };
 
-/// From start_machine() to the board at work. `Board` is a board's template; `parts` hang on the machine's
-/// link.
-template <template <class, class, class> class Board, class Parts>
+/// From start_machine() to the board at work. `Type` is the board in the generated header, `Board` its
+/// template, `Costs` what its admission reckons with; `parts` hang on the machine's link.
+template <class Type, template <class, class, class, class> class Board, class Costs, class Parts>
 [[noreturn]] void run(Machine& machine, Parts& parts) noexcept {
   machine.can.start();
   machine.link.start();
   parts.start(machine.port.now());
-  static Board<Parts, SlcanBus, chibios::Port> board{parts, machine.can, machine.port};
+  using Admission = analysis::BoardAdmission<Type, amiro::bit_rate, Costs>;
+  static Board<Parts, SlcanBus, chibios::Port, Admission> board{parts, machine.can, machine.port};
   static chibios::LoadMeter load{machine.port};
   board.controller().report([] {
     controller::Health health;

@@ -1,4 +1,5 @@
 #include "firmware/boards/power_management/board.hpp"
+#include "firmware/boards/power_management/costs.hpp"
 #include "firmware/boards/power_management/parts.hpp"
 #include "firmware/chibios/port.hpp"
 #include "firmware/qemu/machine.hpp"
@@ -18,5 +19,5 @@ int main() {
   static power_management::Parts<qemu::LinkI2c, qemu::LinkI2c, qemu::LinkInputs,
                                  ocm::firmware::chibios::Mutex>
       parts{back, front, pins};
-  qemu::run<power_management::Board>(machine, parts);
+  qemu::run<amiro::PowerManagement, power_management::Board, power_management::Costs>(machine, parts);
 }

@@ -12,9 +12,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "ocm/analysis/admission.hpp"
 #include "ocm/base/time.hpp"
 #include "ocm/can/bus.hpp"
 #include "ocm/can/frame.hpp"
+#include "ocm/scheduling/cooperative.hpp"
+#include "ocm/topics/amiro.hpp"
 
 #include "firmware/boards/di_wheel_drive/board.hpp"
 #include "firmware/boards/light_ring/board.hpp"
@@ -82,9 +85,14 @@ class SimulatedRobot {
   }
 
   World world_;
-  boards::di_wheel_drive::Board<World, Bus> di_wheel_drive_;
-  boards::power_management::Board<World, Bus> power_management_;
-  boards::light_ring::Board<World, Bus> light_ring_;
+  /// Simulated parts answer at once: the bus alone decides.
+  template <class Board>
+  using Admission = analysis::BoardAdmission<Board, amiro::bit_rate>;
+  using Port = scheduling::Cooperative;
+
+  boards::di_wheel_drive::Board<World, Bus, Port, Admission<amiro::DiWheelDrive>> di_wheel_drive_;
+  boards::power_management::Board<World, Bus, Port, Admission<amiro::PowerManagement>> power_management_;
+  boards::light_ring::Board<World, Bus, Port, Admission<amiro::LightRing>> light_ring_;
 };
 
 }  // namespace ocm::firmware::sim

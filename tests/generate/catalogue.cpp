@@ -51,6 +51,8 @@ void compare(const protocol::Topic& a, const protocol::Topic& b) {
     CHECK(a.frames[i].name == b.frames[i].name);
     CHECK(a.frames[i].id == b.frames[i].id);
     CHECK(a.frames[i].dlc == b.frames[i].dlc);
+    CHECK(a.frames[i].worst_bits == b.frames[i].worst_bits);
+    CHECK(a.frames[i].worst_bits[0] != 0);
     REQUIRE(a.frames[i].fields.size() == b.frames[i].fields.size());
     for (std::size_t j = 0; j < a.frames[i].fields.size(); ++j)
       compare(a.frames[i].fields[j], b.frames[i].fields[j]);

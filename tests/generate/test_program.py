@@ -103,6 +103,32 @@ class Program(unittest.TestCase):
         self.assertEqual(done.returncode, 1)
         self.assertIn("No space left", done.stderr)
 
+    def test_task_sets(self):
+        sets = self.folder / "tasks.json"
+        task = {"name": "control", "cost": "120us", "period": "10ms", "level": 0}
+        def made(**changes):
+            sets.write_text(json.dumps({"sets": [{"name": "board", "source": "s", "tasks": [task | changes]}]}))
+            return run("--tasks", sets, "-o", "-")
+        done = made(deadline="2ms", jitter="3ns", own=True)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("Task task{.cost = 120'000, .period = 10'000'000, .deadline = 2'000'000, .jitter = 3, .level = 0}",
+                      done.stdout)
+        self.assertIn("own = true", done.stdout)
+        for changes, said in (({"cost": "0us"}, "'0us' is no such time"), ({"cost": 120}, "'120' is no such time"),
+                              ({"period": "10 ms"}, "'10 ms' is no such time"), ({"period": "-1s"}, "'-1s'"),
+                              ({"period": "99999999999999s"}, "is no such time"), ({"level": -1}, "level is out of range"),
+                              ({"level": 1.5}, "level is out of range"), ({"name": "Control"}, "'Control' is no name"),
+                              ({"own": 1}, "own is not true or false"), ({"prio": 1}, "unknown member prio")):
+            done = made(**changes)
+            self.assertEqual((done.returncode, done.stdout), (1, ""), changes)
+            self.assertIn(said, done.stderr)
+        for text in ("", "[]", "{}", '{"sets": []}', '{"sets": [{"name": "a", "tasks": []}]}', '{"sets": [1]}'):
+            sets.write_text(text)
+            done = run("--tasks", sets, "-o", "-")
+            self.assertEqual((done.returncode, done.stdout), (1, ""), text)
+            self.assertNotEqual(done.stderr, "")
+        self.assertEqual(run("--tasks", self.folder / "none", "-o", "-").returncode, 1)
+
     def test_wrong_usage_is_2(self):
         for arguments in ((), (self.spec,), (self.spec, "-o"), (self.spec, "-o", "a", "-o", "b"), ("-x",),
                           (self.spec, "second", "-o", "a"), (self.spec, "-o", "a", "--check"), (self.spec, "-o", "")):

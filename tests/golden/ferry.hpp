@@ -6,7 +6,8 @@
 /// Members of a frame are raw numbers, as they travel. name_unit() is the physical value, rounded once where
 /// raw number times scale stays below 2^53; set_name_unit() takes the nearest raw number within the field's
 /// range, and the one nearest to zero for not a number. encode() puts the nearest number that the width
-/// holds. No heap, no exceptions; everything is constexpr.
+/// holds. `frames` has of each frame the id, the DLC, and the most bits that it takes on the bus at each
+/// priority, whatever its content. No heap, no exceptions; everything is constexpr.
 ///
 /// Where a period, deadline, jitter, priority or timeout names no source: [decided]
 #pragma once
@@ -36,7 +37,8 @@ struct Range {
   static constexpr std::string_view name = "range";
   static constexpr ocm::protocol::TopicId id{0xA0};
   static constexpr std::uint8_t instances = 1;
-  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{{{ocm::protocol::TopicId{0xA0}, 3}}};
+  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{
+      {{ocm::protocol::TopicId{0xA0}, 3, {81, 81, 81, 81}}}};
   static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::sensor;
   static constexpr ocm::protocol::Period period{20, ocm::protocol::PeriodUnit::milliseconds};
   static constexpr ocm::base::Duration shortest_period = std::chrono::milliseconds{10};
@@ -180,11 +182,11 @@ struct ForkStatus {
   static constexpr ocm::protocol::TopicId id{0xB0};
   static constexpr std::uint8_t instances = 1;
   static constexpr std::array<ocm::protocol::FrameHead, 5> frames{{
-      {ocm::protocol::TopicId{0xB1}, 4},
-      {ocm::protocol::TopicId{0xB2}, 4},
-      {ocm::protocol::TopicId{0xB3}, 4},
-      {ocm::protocol::TopicId{0xB4}, 4},
-      {ocm::protocol::TopicId{0xB5}, 4},
+      {ocm::protocol::TopicId{0xB1}, 4, {89, 89, 89, 89}},
+      {ocm::protocol::TopicId{0xB2}, 4, {90, 90, 91, 90}},
+      {ocm::protocol::TopicId{0xB3}, 4, {89, 90, 89, 89}},
+      {ocm::protocol::TopicId{0xB4}, 4, {90, 90, 90, 90}},
+      {ocm::protocol::TopicId{0xB5}, 4, {89, 89, 89, 89}},
   }};
   static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::sensor;
   static constexpr ocm::protocol::Period period{1000, ocm::protocol::PeriodUnit::milliseconds};
@@ -217,7 +219,8 @@ struct Heartbeat {
   static constexpr std::string_view name = "heartbeat";
   static constexpr ocm::protocol::TopicId id{0xC0};
   static constexpr std::uint8_t instances = 1;
-  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{{{ocm::protocol::TopicId{0xC0}, 0}}};
+  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{
+      {{ocm::protocol::TopicId{0xC0}, 0, {49, 49, 49, 51}}}};
   static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::sensor;
   static constexpr ocm::protocol::Period period{500, ocm::protocol::PeriodUnit::milliseconds};
   static constexpr ocm::base::Duration shortest_period{};
@@ -239,7 +242,8 @@ struct Wheels {
   static constexpr std::string_view name = "wheels";
   static constexpr ocm::protocol::TopicId id{0x10};
   static constexpr std::uint8_t instances = 1;
-  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{{{ocm::protocol::TopicId{0x10}, 4}}};
+  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{
+      {{ocm::protocol::TopicId{0x10}, 4, {91, 90, 90, 90}}}};
   static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::actuator;
   static constexpr ocm::base::Duration timeout = std::chrono::milliseconds{200};
   static constexpr ocm::protocol::Role role = ocm::protocol::Role::drive;
@@ -286,7 +290,8 @@ struct Beacon {
   static constexpr std::string_view name = "beacon";
   static constexpr ocm::protocol::TopicId id{0x20};
   static constexpr std::uint8_t instances = 2;
-  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{{{ocm::protocol::TopicId{0x20}, 2}}};
+  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{
+      {{ocm::protocol::TopicId{0x20}, 2, {72, 71, 71, 70}}}};
   static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::actuator;
   static constexpr ocm::base::Duration timeout{};
   static constexpr ocm::protocol::Role role = ocm::protocol::Role::light;
@@ -328,7 +333,8 @@ struct Winch {
   static constexpr std::string_view name = "winch";
   static constexpr ocm::protocol::TopicId id{0x30};
   static constexpr std::uint8_t instances = 1;
-  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{{{ocm::protocol::TopicId{0x30}, 8}}};
+  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{
+      {{ocm::protocol::TopicId{0x30}, 8, {132, 131, 131, 130}}}};
   static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::actuator;
   static constexpr ocm::base::Duration timeout{};
   static constexpr ocm::base::Duration deadline = std::chrono::milliseconds{20};
@@ -369,7 +375,7 @@ namespace protocol = ocm::protocol;
 
 // Fields: name, {start, width, order}, signed, scale, offset, unit, lowest and highest raw number,
 // names of values or flags, whether flags. Scale and offset: {digits, power of ten}.
-// Frames: name, id, DLC, fields.
+// Frames: name, id, DLC, fields, most bits by priority.
 // Topics: index of the board, aliases, frames, source, and of several of a kind: number and name.
 
 namespace range {
@@ -379,7 +385,7 @@ inline constexpr std::array<protocol::Field, 2> fields{{
   {"right", {11, 12, protocol::ByteOrder::big}, false, {1, -3}, {}, "m", 0, 4'095, {}, false},
 }};
 inline constexpr std::array<protocol::FrameLayout, 1> frames{{
-  {"", protocol::TopicId{0xA0}, 3, fields},
+  {"", protocol::TopicId{0xA0}, 3, fields, {81, 81, 81, 81}},
 }};
 inline constexpr std::string_view source =
   "decided";
@@ -405,11 +411,11 @@ inline constexpr std::array<protocol::Field, 1> fields{{
 namespace fork_status {
 inline constexpr std::array<std::string_view, 1> aliases{"fork"};
 inline constexpr std::array<protocol::FrameLayout, 5> frames{{
-  {"state", protocol::TopicId{0xB1}, 4, fork_status_state::fields},
-  {"cell_1", protocol::TopicId{0xB2}, 4, fork_status_cell::fields},
-  {"cell_2", protocol::TopicId{0xB3}, 4, fork_status_cell::fields},
-  {"cell_3", protocol::TopicId{0xB4}, 4, fork_status_cell::fields},
-  {"cell_4", protocol::TopicId{0xB5}, 4, fork_status_cell::fields},
+  {"state", protocol::TopicId{0xB1}, 4, fork_status_state::fields, {89, 89, 89, 89}},
+  {"cell_1", protocol::TopicId{0xB2}, 4, fork_status_cell::fields, {90, 90, 91, 90}},
+  {"cell_2", protocol::TopicId{0xB3}, 4, fork_status_cell::fields, {89, 90, 89, 89}},
+  {"cell_3", protocol::TopicId{0xB4}, 4, fork_status_cell::fields, {90, 90, 90, 90}},
+  {"cell_4", protocol::TopicId{0xB5}, 4, fork_status_cell::fields, {89, 89, 89, 89}},
 }};
 inline constexpr std::string_view source =
   "decided";
@@ -417,7 +423,7 @@ inline constexpr std::string_view source =
 
 namespace heartbeat {
 inline constexpr std::array<protocol::FrameLayout, 1> frames{{
-  {"", protocol::TopicId{0xC0}, 0, {}},
+  {"", protocol::TopicId{0xC0}, 0, {}, {49, 49, 49, 51}},
 }};
 inline constexpr std::string_view source =
   "decided";
@@ -429,7 +435,7 @@ inline constexpr std::array<protocol::Field, 2> fields{{
   {"z", {23, 16, protocol::ByteOrder::big}, true, {1, -3}, {}, "rad/s", -6'500, 6'500, {}, false},
 }};
 inline constexpr std::array<protocol::FrameLayout, 1> frames{{
-  {"", protocol::TopicId{0x10}, 4, fields},
+  {"", protocol::TopicId{0x10}, 4, fields, {91, 90, 90, 90}},
 }};
 inline constexpr std::string_view source =
   "decided";
@@ -442,8 +448,8 @@ inline constexpr std::array<protocol::Field, 3> fields{{
   {"blue", {15, 4, protocol::ByteOrder::big}, false, {1, 0}, {}, "", 0, 15, {}, false},
 }};
 inline constexpr std::array<protocol::FrameLayout, 2> frames{{
-  {"", protocol::TopicId{0x20}, 2, fields},
-  {"", protocol::TopicId{0x21}, 2, fields},
+  {"", protocol::TopicId{0x20}, 2, fields, {72, 71, 71, 70}},
+  {"", protocol::TopicId{0x21}, 2, fields, {71, 69, 69, 69}},
 }};
 inline constexpr std::string_view source =
   "decided";
@@ -454,7 +460,7 @@ inline constexpr std::array<protocol::Field, 1> fields{{
   {"value", {0, 64, protocol::ByteOrder::little}, true, {1, -9}, {}, "m", 0, 1'800'000'000, {}, false},
 }};
 inline constexpr std::array<protocol::FrameLayout, 1> frames{{
-  {"", protocol::TopicId{0x30}, 8, fields},
+  {"", protocol::TopicId{0x30}, 8, fields, {132, 131, 131, 130}},
 }};
 inline constexpr std::string_view source =
   "decided";

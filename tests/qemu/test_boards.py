@@ -72,6 +72,21 @@ class DiWheelDrive(harness.Case):
         compass = [name for _, name, _ in self.board.frames if 0x605 <= name <= 0x607]
         self.assertEqual(compass[:30], [0x605, 0x606, 0x607] * 10, "a sample's frames stay together, in order")
 
+    def test_a_request_that_cannot_be_met_is_refused_and_harms_nobody(self):
+        self.settle()
+        self.board.publish(ACCEL, 50)
+        self.board.wait(lambda: len(self.board.of(0x609)) >= 3, 5, "the accelerometer")
+        asked = time.monotonic()
+        self.board.send(0x008, struct.pack("<BHB", 1, 300, 2))  # the gyroscope every 300 us, urgent
+        self.board.wait(lambda: self.board.of(0x71D, asked), 5, "the refusal")
+        topic, reason = self.board.of(0x71D, asked)[0][1][:2]
+        self.assertEqual((topic, reason), (GYRO, 15))  # not_schedulable
+        time.sleep(1)
+        self.assertEqual(self.board.of(0x408, asked), [])
+        self.assertGreaterEqual(len(self.board.of(0x609, asked)), 17)
+        self.board.publish(GYRO, 20)
+        self.board.wait(lambda: len(self.board.of(0x608, asked)) >= 3, 5, "a request that can be met")
+
     def test_reprioritised_while_running(self):
         self.settle()
         self.board.publish(GYRO, 20, priority=3)

@@ -15,6 +15,7 @@
 #include "ocm/base/time.hpp"
 #include "ocm/can/bus.hpp"
 #include "ocm/controller/controller.hpp"
+#include "ocm/scheduling/admission.hpp"
 #include "ocm/scheduling/cooperative.hpp"
 #include "ocm/scheduling/dispatcher.hpp"
 #include "ocm/scheduling/port.hpp"
@@ -75,9 +76,10 @@ static_assert(odometry_period == amiro::Odometry::shortest_period);
   return wire;
 }
 
-template <Hardware H, can::Sender Bus, scheduling::Port P = scheduling::Cooperative>
-class Board : public Node<amiro::DiWheelDrive, Bus, P, (Regulated<H> ? 2 : 1)> {
-  using Base = Node<amiro::DiWheelDrive, Bus, P, (Regulated<H> ? 2 : 1)>;
+template <Hardware H, can::Sender Bus, scheduling::Port P = scheduling::Cooperative,
+          scheduling::Admission A = scheduling::AdmitAll>
+class Board : public Node<amiro::DiWheelDrive, Bus, P, (Regulated<H> ? 2 : 1), A> {
+  using Base = Node<amiro::DiWheelDrive, Bus, P, (Regulated<H> ? 2 : 1), A>;
   using Base::controller_;
 
  public:

@@ -11,6 +11,7 @@
 #include "ocm/base/time.hpp"
 #include "ocm/can/bus.hpp"
 #include "ocm/controller/controller.hpp"
+#include "ocm/scheduling/admission.hpp"
 #include "ocm/scheduling/cooperative.hpp"
 #include "ocm/scheduling/port.hpp"
 #include "ocm/topics/amiro.hpp"
@@ -32,9 +33,10 @@ concept Maintained = Hardware<H> && requires(H& hardware, base::Time now) {
   hardware.maintain(now);
 };
 
-template <Hardware H, can::Sender Bus, scheduling::Port P = scheduling::Cooperative>
-class Board : public Node<amiro::LightRing, Bus, P> {
-  using Base = Node<amiro::LightRing, Bus, P>;
+template <Hardware H, can::Sender Bus, scheduling::Port P = scheduling::Cooperative,
+          scheduling::Admission A = scheduling::AdmitAll>
+class Board : public Node<amiro::LightRing, Bus, P, 0, A> {
+  using Base = Node<amiro::LightRing, Bus, P, 0, A>;
   using Base::controller_;
 
  public:

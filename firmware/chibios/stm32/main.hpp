@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "ocm/analysis/admission.hpp"
 #include "ocm/base/time.hpp"
 #include "ocm/controller/report.hpp"
 #include "ocm/topics/amiro.hpp"
@@ -42,8 +43,9 @@ class Vitals {
   ResetCause cause_;
 };
 
-/// `Type` is the board in the generated header, `Board` its template; `parts` have their buses started.
-template <class Type, template <class, class, class> class Board, class Parts>
+/// `Type` is the board in the generated header, `Board` its template, `Costs` what its admission reckons
+/// with; `parts` have their buses started.
+template <class Type, template <class, class, class, class> class Board, class Costs, class Parts>
 [[noreturn]] void run(Parts& parts) noexcept {
   static Port port;
   static CanBus can;
@@ -52,7 +54,8 @@ template <class Type, template <class, class, class> class Board, class Parts>
   static constexpr auto filters = drivers::bxcan::filter_banks_of<Type>();
   // A controller that does not answer has no clock or is broken: nothing of this board would be heard of.
   if (!can.start(port, bit_timing<Type, amiro::catalogue.bit_rate>, filters).ok()) rest_and_restart();
-  static Board<Parts, CanBus, Port> board{parts, can, port};
+  using Admission = analysis::BoardAdmission<Type, amiro::bit_rate, Costs>;
+  static Board<Parts, CanBus, Port, Admission> board{parts, can, port};
   board.controller().report([] { return vitals.health(); });
   static Runtime runtime{port, board.controller(), can};
   say_ready();

@@ -5,6 +5,7 @@
 #include "ocm/topics/amiro.hpp"
 
 #include "firmware/boards/di_wheel_drive/board.hpp"
+#include "firmware/boards/di_wheel_drive/costs.hpp"
 #include "firmware/boards/di_wheel_drive/parts.hpp"
 #include "firmware/chibios/stm32/board_signals.hpp"
 #include "firmware/chibios/stm32/chip.hpp"
@@ -90,5 +91,5 @@ int main() {
   static di_wheel_drive::Parts<stm32::I2cBus, stm32::I2cBus, stm32::SpiDevice, stm32::SpiDevice,
                                stm32::MotorTimers, stm32::OnePin, chibios::Mutex>
       parts{compass, floor, gyroscope, accelerometer, motors, power};
-  stm32::run<amiro::DiWheelDrive, di_wheel_drive::Board>(parts);
+  stm32::run<amiro::DiWheelDrive, di_wheel_drive::Board, di_wheel_drive::Costs>(parts);
 }

@@ -4,6 +4,7 @@
 #include "ocm/topics/amiro.hpp"
 
 #include "firmware/boards/light_ring/board.hpp"
+#include "firmware/boards/light_ring/costs.hpp"
 #include "firmware/boards/light_ring/parts.hpp"
 #include "firmware/chibios/stm32/board_signals.hpp"
 #include "firmware/chibios/stm32/chip.hpp"
@@ -58,5 +59,5 @@ int main() {
   static stm32::SpiDevice lights{lights_bus, GPIOC, 4};
   static stm32::OnePin dark{GPIOA, blank};
   static light_ring::Parts<stm32::SpiDevice, stm32::OnePin, chibios::Mutex> parts{lights, dark};
-  stm32::run<amiro::LightRing, light_ring::Board>(parts);
+  stm32::run<amiro::LightRing, light_ring::Board, light_ring::Costs>(parts);
 }

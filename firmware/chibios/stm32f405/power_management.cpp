@@ -6,6 +6,7 @@
 #include "ocm/topics/amiro.hpp"
 
 #include "firmware/boards/power_management/board.hpp"
+#include "firmware/boards/power_management/costs.hpp"
 #include "firmware/boards/power_management/parts.hpp"
 #include "firmware/chibios/stm32/board_signals.hpp"
 #include "firmware/chibios/stm32/chip.hpp"
@@ -98,5 +99,5 @@ int main() {
   front.start();
   static power_management::Parts<stm32::I2cBus, stm32::I2cBus, stm32::OnePin, chibios::Mutex> parts{
       back, front, plugged};
-  stm32::run<amiro::PowerManagement, power_management::Board>(parts);
+  stm32::run<amiro::PowerManagement, power_management::Board, power_management::Costs>(parts);
 }

@@ -11,20 +11,21 @@ namespace ocm::base {
 /// Why an operation of the core failed. `describe` says it in words.
 enum class Error : std::uint8_t {
   none,
-  bad_syntax,      ///< text that is not of the expected form
-  bad_identifier,  ///< identifier too wide for its frame format
-  bad_length,      ///< DLC or number of bytes that the frame or request cannot have
-  bad_mode,        ///< request mode other than stop, publish, once
-  bad_unit,        ///< request unit other than ms, s, us
-  bad_period,      ///< period of zero, negative, or not representable on the wire
-  out_of_range,    ///< number outside what its field or type holds
-  unknown_topic,   ///< nobody serves this topic
-  not_sampled,     ///< a part did not deliver a sample
-  full,            ///< a bounded container or queue has no room left
-  closed,          ///< the bus is gone: interface down, peer closed
-  timed_out,       ///< nothing came before the deadline
-  no_answer,       ///< a part did not acknowledge, or is not the one that belongs there
-  bus_fault,       ///< a board-internal bus failed: arbitration lost, line stuck, wrong signal
+  bad_syntax,       ///< text that is not of the expected form
+  bad_identifier,   ///< identifier too wide for its frame format
+  bad_length,       ///< DLC or number of bytes that the frame or request cannot have
+  bad_mode,         ///< request mode other than stop, publish, once
+  bad_unit,         ///< request unit other than ms, s, us
+  bad_period,       ///< period of zero, negative, or not representable on the wire
+  out_of_range,     ///< number outside what its field or type holds
+  unknown_topic,    ///< nobody serves this topic
+  not_sampled,      ///< a part did not deliver a sample
+  full,             ///< a bounded container or queue has no room left
+  closed,           ///< the bus is gone: interface down, peer closed
+  timed_out,        ///< nothing came before the deadline
+  no_answer,        ///< a part did not acknowledge, or is not the one that belongs there
+  bus_fault,        ///< a board-internal bus failed: arbitration lost, line stuck, wrong signal
+  not_schedulable,  ///< somebody would miss a deadline: CPU or bus cannot carry it
 };
 
 [[nodiscard]] constexpr std::string_view describe(Error error) noexcept {
@@ -59,6 +60,8 @@ enum class Error : std::uint8_t {
       return "the part does not answer";
     case Error::bus_fault:
       return "the bus of the part failed";
+    case Error::not_schedulable:
+      return "somebody would miss a deadline";
   }
   return "unknown error";
 }

@@ -45,6 +45,7 @@
 #include "ocm/controller/sensor_handler.hpp"
 #include "ocm/protocol/counters.hpp"
 #include "ocm/protocol/identifier.hpp"
+#include "ocm/scheduling/admission.hpp"
 #include "ocm/scheduling/cooperative.hpp"
 #include "ocm/scheduling/dispatcher.hpp"
 #include "ocm/scheduling/port.hpp"
@@ -77,8 +78,10 @@ class PortPlace<scheduling::Cooperative> {
 };
 }  // namespace detail
 
-/// `Tasks`: how many periodic tasks of its own the board has.
-template <class Board, can::Sender Bus, scheduling::Port P = scheduling::Cooperative, std::size_t Tasks = 0>
+/// `Tasks`: how many periodic tasks of its own the board has. `A` may refuse streams that would make somebody
+/// late (docs/admission.md).
+template <class Board, can::Sender Bus, scheduling::Port P = scheduling::Cooperative, std::size_t Tasks = 0,
+          scheduling::Admission A = scheduling::AdmitAll>
 class Controller {
   static constexpr bool cooperative = std::same_as<P, scheduling::Cooperative>;
   static constexpr bool has_status = requires { requires !std::is_void_v<typename Board::status>; };
@@ -145,7 +148,7 @@ class Controller {
                          protocol::Identifier::decode(frame.id).direction == protocol::Direction::command;
     Verdict verdict;
     if (command) {
-      verdict = sensors_.handle(frame, now, dispatcher_, first_sensor, port(), counters_);
+      verdict = sensors_.handle(frame, now, dispatcher_, first_sensor, port(), counters_, admission_);
       if (!verdict.mine) {
         verdict = actuators_.handle(frame, now, port(), counters_);
         if (verdict.mine) watch();
@@ -288,6 +291,7 @@ class Controller {
   ActuatorHandler<typename Board::actuators> actuators_;
   std::array<base::InlineFunction<void(const scheduling::Release&)>, Tasks> tasks_{};
   mutable base::InlineFunction<Health()> health_;
+  [[no_unique_address]] A admission_;
   Refusal last_refusal_;
   base::Time start_;
   protocol::Counters counters_;

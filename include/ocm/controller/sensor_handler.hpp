@@ -27,6 +27,7 @@
 #include "ocm/protocol/counters.hpp"
 #include "ocm/protocol/request.hpp"
 #include "ocm/protocol/topic.hpp"
+#include "ocm/scheduling/admission.hpp"
 #include "ocm/scheduling/dispatcher.hpp"
 #include "ocm/scheduling/port.hpp"
 
@@ -67,20 +68,20 @@ class SensorHandler<protocol::TopicList<Topics...>> {
   }
 
   /// A command frame. The sensors' streams are those of `dispatcher` from `first_stream` on.
-  template <class Dispatcher, scheduling::Port P>
+  template <class Dispatcher, scheduling::Port P, scheduling::Admission A>
   Verdict handle(const can::Frame& frame, [[maybe_unused]] base::Time now,
                  [[maybe_unused]] Dispatcher& dispatcher, std::size_t first_stream, [[maybe_unused]] P& port,
-                 [[maybe_unused]] protocol::Counters& counters) noexcept {
+                 [[maybe_unused]] protocol::Counters& counters, [[maybe_unused]] A& admission) noexcept {
     [[maybe_unused]] const protocol::TopicId topic = protocol::Identifier::decode(frame.id).topic;
-    std::size_t stream = first_stream;
+    std::size_t sensor = 0;
     Verdict verdict;
     static_cast<void>(
-        ((Topics::id == topic
-              ? (verdict = {true,
-                            request(stream, frame, now, bool{std::get<Slot<Topics>>(slots_).read},
-                                    {Topics::period.duration(), Topics::jitter}, dispatcher, port, counters)},
-                 true)
-              : (++stream, false)) ||
+        ((Topics::id == topic ? (verdict = {true, request(sensor, first_stream, frame, now,
+                                                          bool{std::get<Slot<Topics>>(slots_).read},
+                                                          {Topics::period.duration(), Topics::jitter},
+                                                          dispatcher, port, counters, admission)},
+                                 true)
+                              : (++sensor, false)) ||
          ...));
     return verdict;
   }
@@ -102,13 +103,22 @@ class SensorHandler<protocol::TopicList<Topics...>> {
   // What does not depend on the topic's type is compiled once: a board has few kilobytes.
 
   /// Why it is refused, if it is.
-  template <class Dispatcher, class P>
-  [[gnu::noinline]] static base::Error request(std::size_t stream, const can::Frame& frame, base::Time now,
-                                               bool served, const detail::SensorDefaults& defaults,
-                                               Dispatcher& dispatcher, P& port,
-                                               protocol::Counters& counters) noexcept {
+  template <class Dispatcher, class P, class A>
+  [[gnu::noinline]] static base::Error request(std::size_t sensor, std::size_t first_stream,
+                                               const can::Frame& frame, base::Time now, bool served,
+                                               const detail::SensorDefaults& defaults, Dispatcher& dispatcher,
+                                               P& port, protocol::Counters& counters, A& admission) noexcept {
+    const std::size_t stream = first_stream + sensor;
     auto request = protocol::decode_request(frame);
     if (!served) request = base::Error::unknown_topic;
+    // Without a period in the request, the topic's own default holds.
+    const base::Duration period = frame.dlc == 1 ? defaults.period : request.value.period.duration();
+    if (request && request->mode == protocol::Mode::publish) {
+      // Asked without the lock: this takes longer than a lock may.
+      if (const base::Error error = admission.admit(sensor, period, request->priority);
+          error != base::Error::none)
+        request = error;
+    }
     {
       [[maybe_unused]] const auto guard = port.lock();
       if (!request) {
@@ -120,14 +130,14 @@ class SensorHandler<protocol::TopicList<Topics...>> {
     switch (request->mode) {
       case protocol::Mode::stop:
         dispatcher.stop(stream);
+        admission.ended(sensor);
         break;
       case protocol::Mode::once:
         dispatcher.once(stream, request->priority, now);
+        admission.ended(sensor);
         break;
       case protocol::Mode::publish:
-        // Without a period in the request, the topic's own default holds.
-        dispatcher.start(stream, frame.dlc == 1 ? defaults.period : request->period.duration(),
-                         request->priority, now, defaults.jitter);
+        dispatcher.start(stream, period, request->priority, now, defaults.jitter);
         break;
     }
     return base::Error::none;

@@ -21,8 +21,9 @@ struct Counters {
   std::uint32_t bad_mode = 0;
   std::uint32_t bad_unit = 0;
   std::uint32_t bad_period = 0;
-  std::uint32_t not_served = 0;  ///< this board's topic, but nothing serves it
-  std::uint32_t failed = 0;      ///< taken, and then a part would not: calibration, storage
+  std::uint32_t not_served = 0;       ///< this board's topic, but nothing serves it
+  std::uint32_t not_schedulable = 0;  ///< somebody would have missed a deadline
+  std::uint32_t failed = 0;           ///< taken, and then a part would not: calibration, storage
   // frames to the bus
   std::uint32_t samples = 0;      ///< read and handed on
   std::uint32_t sent = 0;         ///< frames that the bus took
@@ -50,6 +51,9 @@ struct Counters {
       case base::Error::unknown_topic:
         ++not_served;
         break;
+      case base::Error::not_schedulable:
+        ++not_schedulable;
+        break;
       case base::Error::bad_length:
         ++bad_length;
         break;
@@ -59,7 +63,7 @@ struct Counters {
     }
   }
   [[nodiscard]] constexpr std::uint32_t refused() const noexcept {
-    return bad_length + bad_mode + bad_unit + bad_period + not_served + failed;
+    return bad_length + bad_mode + bad_unit + bad_period + not_served + not_schedulable + failed;
   }
   friend constexpr bool operator==(const Counters&, const Counters&) = default;
 };
@@ -76,6 +80,7 @@ constexpr void for_each(const Counters& c, F&& f) {
   f(std::string_view{"bad_unit"}, c.bad_unit);
   f(std::string_view{"bad_period"}, c.bad_period);
   f(std::string_view{"not_served"}, c.not_served);
+  f(std::string_view{"not_schedulable"}, c.not_schedulable);
   f(std::string_view{"failed"}, c.failed);
   f(std::string_view{"samples"}, c.samples);
   f(std::string_view{"sent"}, c.sent);

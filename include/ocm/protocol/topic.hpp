@@ -13,6 +13,7 @@
 
 #include "ocm/base/decimal.hpp"
 #include "ocm/base/time.hpp"
+#include "ocm/can/length.hpp"
 #include "ocm/protocol/codec.hpp"
 #include "ocm/protocol/identifier.hpp"
 #include "ocm/protocol/request.hpp"
@@ -59,12 +60,17 @@ struct Field {
   }
 };
 
+/// The most bits that a frame can take with any content, intermission included, by the priority at which it
+/// is sent: the priority is in the identifier, and with it changes where stuff bits fall. 0: not known.
+using BitsByPriority = std::array<std::uint8_t, priority_levels>;
+
 /// One frame of a topic.
 struct FrameLayout {
   std::string_view name;  ///< within the topic: "velocity", "x", "sensor_1"; empty for a topic's only frame
   TopicId id{};
   std::uint8_t dlc = 0;
   std::span<const Field> fields;
+  BitsByPriority worst_bits{};
 };
 
 enum class Kind : std::uint8_t { sensor, actuator };
@@ -176,7 +182,17 @@ concept TopicType = requires(const T& topic, std::size_t frame,
 struct FrameHead {
   TopicId id{};
   std::uint8_t dlc = 0;
+  BitsByPriority worst_bits{};  ///< of several instances of a topic: the greatest
 };
+
+/// The most bits that a frame takes at a priority, intermission included: what the spec's generator found, or
+/// the closed bound where nobody looked.
+template <class Frame>
+requires std::same_as<Frame, FrameHead> || std::same_as<Frame, FrameLayout>
+[[nodiscard]] constexpr unsigned worst_bits(const Frame& frame, Priority priority) noexcept {
+  const unsigned exact = frame.worst_bits[static_cast<std::size_t>(priority)];
+  return exact != 0 ? exact : can::worst_frame_bits(can::Format::base, frame.dlc);
+}
 
 /// The types of a board's sensors or actuators.
 template <class... Topics>

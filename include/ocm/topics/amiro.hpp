@@ -5,7 +5,8 @@
 /// Members of a frame are raw numbers, as they travel. name_unit() is the physical value, rounded once where
 /// raw number times scale stays below 2^53; set_name_unit() takes the nearest raw number within the field's
 /// range, and the one nearest to zero for not a number. encode() puts the nearest number that the width
-/// holds. No heap, no exceptions; everything is constexpr.
+/// holds. `frames` has of each frame the id, the DLC, and the most bits that it takes on the bus at each
+/// priority, whatever its content. No heap, no exceptions; everything is constexpr.
 ///
 /// Where a period, deadline, jitter, priority or timeout names no source: [period: Thesis figure 4.2;
 /// deadline decided: the default period; jitter decided: a system tick of 1 ms; priority: Thesis 4.2: medium
@@ -125,8 +126,8 @@ struct Odometry {
   static constexpr ocm::protocol::TopicId id{0x03};
   static constexpr std::uint8_t instances = 1;
   static constexpr std::array<ocm::protocol::FrameHead, 2> frames{{
-      {ocm::protocol::TopicId{0x02}, 8},
-      {ocm::protocol::TopicId{0x03}, 8},
+      {ocm::protocol::TopicId{0x02}, 8, {131, 131, 131, 131}},
+      {ocm::protocol::TopicId{0x03}, 8, {131, 131, 131, 131}},
   }};
   static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::sensor;
   static constexpr ocm::protocol::Period period{50, ocm::protocol::PeriodUnit::milliseconds};
@@ -161,7 +162,8 @@ struct FloorProximity {
   static constexpr std::string_view name = "floor_proximity";
   static constexpr ocm::protocol::TopicId id{0x04};
   static constexpr std::uint8_t instances = 1;
-  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{{{ocm::protocol::TopicId{0x04}, 8}}};
+  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{
+      {{ocm::protocol::TopicId{0x04}, 8, {132, 132, 132, 132}}}};
   static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::sensor;
   static constexpr ocm::protocol::Period period{50, ocm::protocol::PeriodUnit::milliseconds};
   /// [VCNL4020 data sheet: at most 250 proximity measurements/s]
@@ -291,9 +293,9 @@ struct Magnetometer {
   static constexpr ocm::protocol::TopicId id{0x05};
   static constexpr std::uint8_t instances = 1;
   static constexpr std::array<ocm::protocol::FrameHead, 3> frames{{
-      {ocm::protocol::TopicId{0x05}, 4},
-      {ocm::protocol::TopicId{0x06}, 4},
-      {ocm::protocol::TopicId{0x07}, 4},
+      {ocm::protocol::TopicId{0x05}, 4, {91, 90, 90, 90}},
+      {ocm::protocol::TopicId{0x06}, 4, {91, 92, 91, 91}},
+      {ocm::protocol::TopicId{0x07}, 4, {90, 90, 90, 90}},
   }};
   static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::sensor;
   static constexpr ocm::protocol::Period period{50, ocm::protocol::PeriodUnit::milliseconds};
@@ -331,7 +333,8 @@ struct Gyroscope {
   static constexpr std::string_view name = "gyroscope";
   static constexpr ocm::protocol::TopicId id{0x08};
   static constexpr std::uint8_t instances = 1;
-  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{{{ocm::protocol::TopicId{0x08}, 6}}};
+  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{
+      {{ocm::protocol::TopicId{0x08}, 6, {111, 110, 111, 110}}}};
   static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::sensor;
   static constexpr ocm::protocol::Period period{50, ocm::protocol::PeriodUnit::milliseconds};
   /// [L3G4200D data sheet: 800 Hz]
@@ -388,7 +391,8 @@ struct Accelerometer {
   static constexpr std::string_view name = "accelerometer";
   static constexpr ocm::protocol::TopicId id{0x09};
   static constexpr std::uint8_t instances = 1;
-  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{{{ocm::protocol::TopicId{0x09}, 6}}};
+  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{
+      {{ocm::protocol::TopicId{0x09}, 6, {110, 109, 111, 109}}}};
   static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::sensor;
   static constexpr ocm::protocol::Period period{50, ocm::protocol::PeriodUnit::milliseconds};
   /// [LIS331DLH data sheet: 1000 Hz]
@@ -444,7 +448,8 @@ struct PowerStatus {
   static constexpr std::string_view name = "power_status";
   static constexpr ocm::protocol::TopicId id{0x1E};
   static constexpr std::uint8_t instances = 1;
-  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{{{ocm::protocol::TopicId{0x1E}, 6}}};
+  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{
+      {{ocm::protocol::TopicId{0x1E}, 6, {112, 110, 110, 110}}}};
   static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::sensor;
   static constexpr ocm::protocol::Period period{50, ocm::protocol::PeriodUnit::milliseconds};
   /// [BQ27500 data sheet: gauge updated every second]
@@ -541,14 +546,14 @@ struct ProximityRing {
   static constexpr ocm::protocol::TopicId id{0x1F};
   static constexpr std::uint8_t instances = 1;
   static constexpr std::array<ocm::protocol::FrameHead, 8> frames{{
-      {ocm::protocol::TopicId{0x1F}, 2},
-      {ocm::protocol::TopicId{0x20}, 2},
-      {ocm::protocol::TopicId{0x21}, 2},
-      {ocm::protocol::TopicId{0x22}, 2},
-      {ocm::protocol::TopicId{0x23}, 2},
-      {ocm::protocol::TopicId{0x24}, 2},
-      {ocm::protocol::TopicId{0x25}, 2},
-      {ocm::protocol::TopicId{0x26}, 2},
+      {ocm::protocol::TopicId{0x1F}, 2, {72, 71, 70, 71}},
+      {ocm::protocol::TopicId{0x20}, 2, {70, 71, 70, 71}},
+      {ocm::protocol::TopicId{0x21}, 2, {70, 71, 69, 69}},
+      {ocm::protocol::TopicId{0x22}, 2, {70, 70, 69, 69}},
+      {ocm::protocol::TopicId{0x23}, 2, {70, 70, 70, 70}},
+      {ocm::protocol::TopicId{0x24}, 2, {70, 69, 69, 69}},
+      {ocm::protocol::TopicId{0x25}, 2, {70, 70, 69, 70}},
+      {ocm::protocol::TopicId{0x26}, 2, {70, 69, 70, 69}},
   }};
   static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::sensor;
   static constexpr ocm::protocol::Period period{50, ocm::protocol::PeriodUnit::milliseconds};
@@ -581,7 +586,8 @@ struct Motors {
   static constexpr std::string_view name = "motors";
   static constexpr ocm::protocol::TopicId id{0x01};
   static constexpr std::uint8_t instances = 1;
-  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{{{ocm::protocol::TopicId{0x01}, 8}}};
+  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{
+      {{ocm::protocol::TopicId{0x01}, 8, {132, 131, 131, 131}}}};
   static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::actuator;
   /// [decided: five set points at 100 ms lost in a row]
   static constexpr ocm::base::Duration timeout = std::chrono::milliseconds{500};
@@ -632,7 +638,8 @@ struct Led {
   static constexpr std::string_view name = "led";
   static constexpr ocm::protocol::TopicId id{0x3C};
   static constexpr std::uint8_t instances = 8;
-  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{{{ocm::protocol::TopicId{0x3C}, 3}}};
+  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{
+      {{ocm::protocol::TopicId{0x3C}, 3, {83, 82, 82, 82}}}};
   static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::actuator;
   static constexpr ocm::base::Duration timeout{};
   static constexpr ocm::protocol::Role role = ocm::protocol::Role::light;
@@ -676,7 +683,8 @@ struct FloorCalibration {
   static constexpr std::string_view name = "floor_calibration";
   static constexpr ocm::protocol::TopicId id{0x0A};
   static constexpr std::uint8_t instances = 1;
-  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{{{ocm::protocol::TopicId{0x0A}, 1}}};
+  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{
+      {{ocm::protocol::TopicId{0x0A}, 1, {61, 59, 60, 59}}}};
   static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::actuator;
   static constexpr ocm::base::Duration timeout{};
   static constexpr ocm::base::Duration deadline = std::chrono::milliseconds{50};
@@ -717,7 +725,8 @@ struct RingCalibration {
   static constexpr std::string_view name = "ring_calibration";
   static constexpr ocm::protocol::TopicId id{0x27};
   static constexpr std::uint8_t instances = 1;
-  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{{{ocm::protocol::TopicId{0x27}, 1}}};
+  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{
+      {{ocm::protocol::TopicId{0x27}, 1, {60, 59, 59, 60}}}};
   static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::actuator;
   static constexpr ocm::base::Duration timeout{};
   static constexpr ocm::base::Duration deadline = std::chrono::milliseconds{50};
@@ -867,8 +876,8 @@ struct DiWheelDriveStatus {
   static constexpr ocm::protocol::TopicId id{0x1B};
   static constexpr std::uint8_t instances = 1;
   static constexpr std::array<ocm::protocol::FrameHead, 2> frames{{
-      {ocm::protocol::TopicId{0x1B}, 8},
-      {ocm::protocol::TopicId{0x1C}, 8},
+      {ocm::protocol::TopicId{0x1B}, 8, {131, 130, 130, 130}},
+      {ocm::protocol::TopicId{0x1C}, 8, {132, 131, 131, 131}},
   }};
   static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::sensor;
   static constexpr ocm::protocol::Period period{1000, ocm::protocol::PeriodUnit::milliseconds};
@@ -905,7 +914,8 @@ struct DiWheelDriveRefusal {
   static constexpr std::string_view name = "di_wheel_drive_refusal";
   static constexpr ocm::protocol::TopicId id{0x1D};
   static constexpr std::uint8_t instances = 1;
-  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{{{ocm::protocol::TopicId{0x1D}, 6}}};
+  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{
+      {{ocm::protocol::TopicId{0x1D}, 6, {110, 109, 109, 109}}}};
   static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::sensor;
   static constexpr ocm::protocol::Period period{1000, ocm::protocol::PeriodUnit::milliseconds};
   static constexpr ocm::base::Duration shortest_period = std::chrono::milliseconds{100};
@@ -926,6 +936,7 @@ struct DiWheelDriveRefusal {
     no_room = 10,
     no_answer = 13,
     bus_fault = 14,
+    not_schedulable = 15,
   };
 
   /// the number that it was for; [0, 255]
@@ -1081,8 +1092,8 @@ struct PowerManagementStatus {
   static constexpr ocm::protocol::TopicId id{0x39};
   static constexpr std::uint8_t instances = 1;
   static constexpr std::array<ocm::protocol::FrameHead, 2> frames{{
-      {ocm::protocol::TopicId{0x39}, 8},
-      {ocm::protocol::TopicId{0x3A}, 8},
+      {ocm::protocol::TopicId{0x39}, 8, {129, 130, 130, 130}},
+      {ocm::protocol::TopicId{0x3A}, 8, {130, 130, 130, 130}},
   }};
   static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::sensor;
   static constexpr ocm::protocol::Period period{1000, ocm::protocol::PeriodUnit::milliseconds};
@@ -1118,7 +1129,8 @@ struct PowerManagementRefusal {
   static constexpr std::string_view name = "power_management_refusal";
   static constexpr ocm::protocol::TopicId id{0x3B};
   static constexpr std::uint8_t instances = 1;
-  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{{{ocm::protocol::TopicId{0x3B}, 6}}};
+  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{
+      {{ocm::protocol::TopicId{0x3B}, 6, {109, 109, 109, 109}}}};
   static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::sensor;
   static constexpr ocm::protocol::Period period{1000, ocm::protocol::PeriodUnit::milliseconds};
   static constexpr ocm::base::Duration shortest_period = std::chrono::milliseconds{100};
@@ -1139,6 +1151,7 @@ struct PowerManagementRefusal {
     no_room = 10,
     no_answer = 13,
     bus_fault = 14,
+    not_schedulable = 15,
   };
 
   /// the number that it was for; [0, 255]
@@ -1291,8 +1304,8 @@ struct LightRingStatus {
   static constexpr ocm::protocol::TopicId id{0x57};
   static constexpr std::uint8_t instances = 1;
   static constexpr std::array<ocm::protocol::FrameHead, 2> frames{{
-      {ocm::protocol::TopicId{0x57}, 8},
-      {ocm::protocol::TopicId{0x58}, 8},
+      {ocm::protocol::TopicId{0x57}, 8, {130, 130, 129, 130}},
+      {ocm::protocol::TopicId{0x58}, 8, {131, 131, 131, 131}},
   }};
   static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::sensor;
   static constexpr ocm::protocol::Period period{1000, ocm::protocol::PeriodUnit::milliseconds};
@@ -1328,7 +1341,8 @@ struct LightRingRefusal {
   static constexpr std::string_view name = "light_ring_refusal";
   static constexpr ocm::protocol::TopicId id{0x59};
   static constexpr std::uint8_t instances = 1;
-  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{{{ocm::protocol::TopicId{0x59}, 6}}};
+  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{
+      {{ocm::protocol::TopicId{0x59}, 6, {109, 109, 109, 109}}}};
   static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::sensor;
   static constexpr ocm::protocol::Period period{1000, ocm::protocol::PeriodUnit::milliseconds};
   static constexpr ocm::base::Duration shortest_period = std::chrono::milliseconds{100};
@@ -1349,6 +1363,7 @@ struct LightRingRefusal {
     no_room = 10,
     no_answer = 13,
     bus_fault = 14,
+    not_schedulable = 15,
   };
 
   /// the number that it was for; [0, 255]
@@ -1394,7 +1409,7 @@ namespace protocol = ocm::protocol;
 
 // Fields: name, {start, width, order}, signed, scale, offset, unit, lowest and highest raw number,
 // names of values or flags, whether flags. Scale and offset: {digits, power of ten}.
-// Frames: name, id, DLC, fields.
+// Frames: name, id, DLC, fields, most bits by priority.
 // Topics: index of the board, aliases, frames, source, and of several of a kind: number and name.
 
 namespace odometry_velocity {
@@ -1413,8 +1428,8 @@ inline constexpr std::array<protocol::Field, 3> fields{{
 namespace odometry {
 inline constexpr std::array<std::string_view, 1> aliases{"odom"};
 inline constexpr std::array<protocol::FrameLayout, 2> frames{{
-  {"velocity", protocol::TopicId{0x02}, 8, odometry_velocity::fields},
-  {"pose", protocol::TopicId{0x03}, 8, odometry_pose::fields},
+  {"velocity", protocol::TopicId{0x02}, 8, odometry_velocity::fields, {131, 131, 131, 131}},
+  {"pose", protocol::TopicId{0x03}, 8, odometry_pose::fields, {131, 131, 131, 131}},
 }};
 inline constexpr std::string_view source =
   "Thesis 4.2.1; shortest_period: AMiRo-OS 1.0, Odometry: updated every 50 ms";
@@ -1429,7 +1444,7 @@ inline constexpr std::array<protocol::Field, 4> fields{{
   {"sensor_4", {48, 16, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 65'535, {}, false},
 }};
 inline constexpr std::array<protocol::FrameLayout, 1> frames{{
-  {"", protocol::TopicId{0x04}, 8, fields},
+  {"", protocol::TopicId{0x04}, 8, fields, {132, 132, 132, 132}},
 }};
 inline constexpr std::string_view source =
   "Thesis table 4.4; counts: VCNL4020 data sheet; shortest_period: VCNL4020 data sheet: at most 250 proximity measurements/s";
@@ -1453,9 +1468,9 @@ inline constexpr std::array<protocol::Field, 1> fields{{
 namespace magnetometer {
 inline constexpr std::array<std::string_view, 1> aliases{"mag"};
 inline constexpr std::array<protocol::FrameLayout, 3> frames{{
-  {"x", protocol::TopicId{0x05}, 4, magnetometer_x::fields},
-  {"y", protocol::TopicId{0x06}, 4, magnetometer_y::fields},
-  {"z", protocol::TopicId{0x07}, 4, magnetometer_z::fields},
+  {"x", protocol::TopicId{0x05}, 4, magnetometer_x::fields, {91, 90, 90, 90}},
+  {"y", protocol::TopicId{0x06}, 4, magnetometer_y::fields, {91, 92, 91, 91}},
+  {"z", protocol::TopicId{0x07}, 4, magnetometer_z::fields, {90, 90, 90, 90}},
 }};
 inline constexpr std::string_view source =
   "Thesis table 4.3; 1 uG a bit in steps of 2560: HMC5883L data sheet, 390 counts/G at +-4.7 G; shortest_period: HMC5883L data sheet: 75 Hz in continuous mode";
@@ -1469,7 +1484,7 @@ inline constexpr std::array<protocol::Field, 3> fields{{
   {"z", {32, 16, protocol::ByteOrder::little}, true, {175, -4}, {}, "deg/s", -28'571, 28'571, {}, false},
 }};
 inline constexpr std::array<protocol::FrameLayout, 1> frames{{
-  {"", protocol::TopicId{0x08}, 6, fields},
+  {"", protocol::TopicId{0x08}, 6, fields, {111, 110, 111, 110}},
 }};
 inline constexpr std::string_view source =
   "Thesis table 4.1; scale: L3G4200D data sheet, table 4, at 500 dps; shortest_period: L3G4200D data sheet: 800 Hz";
@@ -1483,7 +1498,7 @@ inline constexpr std::array<protocol::Field, 3> fields{{
   {"z", {32, 16, protocol::ByteOrder::little}, true, {9765625, -10}, {}, "g", -8'192, 8'192, {}, false},
 }};
 inline constexpr std::array<protocol::FrameLayout, 1> frames{{
-  {"", protocol::TopicId{0x09}, 6, fields},
+  {"", protocol::TopicId{0x09}, 6, fields, {110, 109, 111, 109}},
 }};
 inline constexpr std::string_view source =
   "Thesis table 4.2; scale: z reads near 1024 at rest, thesis figure 6.3; shortest_period: LIS331DLH data sheet: 1000 Hz";
@@ -1500,7 +1515,7 @@ inline constexpr std::array<protocol::Field, 4> fields{{
   {"power", {32, 16, protocol::ByteOrder::little}, true, {1, 0}, {}, "mW", -32'768, 32'767, {}, false},
 }};
 inline constexpr std::array<protocol::FrameLayout, 1> frames{{
-  {"", protocol::TopicId{0x1E}, 6, fields},
+  {"", protocol::TopicId{0x1E}, 6, fields, {112, 110, 110, 110}},
 }};
 inline constexpr std::string_view source =
   "Thesis table 4.7; shortest_period: BQ27500 data sheet: gauge updated every second";
@@ -1514,14 +1529,14 @@ inline constexpr std::array<protocol::Field, 1> fields{{
 namespace proximity_ring {
 inline constexpr std::array<std::string_view, 1> aliases{"ring"};
 inline constexpr std::array<protocol::FrameLayout, 8> frames{{
-  {"sensor_1", protocol::TopicId{0x1F}, 2, proximity_ring_sensor::fields},
-  {"sensor_2", protocol::TopicId{0x20}, 2, proximity_ring_sensor::fields},
-  {"sensor_3", protocol::TopicId{0x21}, 2, proximity_ring_sensor::fields},
-  {"sensor_4", protocol::TopicId{0x22}, 2, proximity_ring_sensor::fields},
-  {"sensor_5", protocol::TopicId{0x23}, 2, proximity_ring_sensor::fields},
-  {"sensor_6", protocol::TopicId{0x24}, 2, proximity_ring_sensor::fields},
-  {"sensor_7", protocol::TopicId{0x25}, 2, proximity_ring_sensor::fields},
-  {"sensor_8", protocol::TopicId{0x26}, 2, proximity_ring_sensor::fields},
+  {"sensor_1", protocol::TopicId{0x1F}, 2, proximity_ring_sensor::fields, {72, 71, 70, 71}},
+  {"sensor_2", protocol::TopicId{0x20}, 2, proximity_ring_sensor::fields, {70, 71, 70, 71}},
+  {"sensor_3", protocol::TopicId{0x21}, 2, proximity_ring_sensor::fields, {70, 71, 69, 69}},
+  {"sensor_4", protocol::TopicId{0x22}, 2, proximity_ring_sensor::fields, {70, 70, 69, 69}},
+  {"sensor_5", protocol::TopicId{0x23}, 2, proximity_ring_sensor::fields, {70, 70, 70, 70}},
+  {"sensor_6", protocol::TopicId{0x24}, 2, proximity_ring_sensor::fields, {70, 69, 69, 69}},
+  {"sensor_7", protocol::TopicId{0x25}, 2, proximity_ring_sensor::fields, {70, 70, 69, 70}},
+  {"sensor_8", protocol::TopicId{0x26}, 2, proximity_ring_sensor::fields, {70, 69, 70, 69}},
 }};
 inline constexpr std::string_view source =
   "Thesis table 4.8; counts: VCNL4020 data sheet; shortest_period: VCNL4020 data sheet: at most 250 proximity measurements/s";
@@ -1533,7 +1548,7 @@ inline constexpr std::array<protocol::Field, 2> fields{{
   {"z", {32, 32, protocol::ByteOrder::little}, true, {1, -6}, {}, "rad/s", INT32_MIN, 2'147'483'647, {}, false},
 }};
 inline constexpr std::array<protocol::FrameLayout, 1> frames{{
-  {"", protocol::TopicId{0x01}, 8, fields},
+  {"", protocol::TopicId{0x01}, 8, fields, {132, 131, 131, 131}},
 }};
 inline constexpr std::string_view source =
   "Thesis table 4.9, its bytes read as little-endian; id decided: the thesis names a header that is not public; timeout decided: five set points at 100 ms lost in a row";
@@ -1546,14 +1561,14 @@ inline constexpr std::array<protocol::Field, 3> fields{{
   {"blue", {16, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, {}, false},
 }};
 inline constexpr std::array<protocol::FrameLayout, 8> frames{{
-  {"", protocol::TopicId{0x3C}, 3, fields},
-  {"", protocol::TopicId{0x3D}, 3, fields},
-  {"", protocol::TopicId{0x3E}, 3, fields},
-  {"", protocol::TopicId{0x3F}, 3, fields},
-  {"", protocol::TopicId{0x40}, 3, fields},
-  {"", protocol::TopicId{0x41}, 3, fields},
-  {"", protocol::TopicId{0x42}, 3, fields},
-  {"", protocol::TopicId{0x43}, 3, fields},
+  {"", protocol::TopicId{0x3C}, 3, fields, {81, 80, 80, 80}},
+  {"", protocol::TopicId{0x3D}, 3, fields, {82, 80, 80, 80}},
+  {"", protocol::TopicId{0x3E}, 3, fields, {82, 81, 81, 81}},
+  {"", protocol::TopicId{0x3F}, 3, fields, {83, 81, 81, 82}},
+  {"", protocol::TopicId{0x40}, 3, fields, {82, 81, 81, 81}},
+  {"", protocol::TopicId{0x41}, 3, fields, {82, 82, 82, 82}},
+  {"", protocol::TopicId{0x42}, 3, fields, {81, 81, 80, 80}},
+  {"", protocol::TopicId{0x43}, 3, fields, {81, 80, 81, 80}},
 }};
 inline constexpr std::string_view source =
   "Thesis 4.2.2, LEDs; id decided: the thesis names a header that is not public";
@@ -1566,7 +1581,7 @@ inline constexpr std::array<protocol::Field, 1> fields{{
   {"action", {0, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, action_names, false},
 }};
 inline constexpr std::array<protocol::FrameLayout, 1> frames{{
-  {"", protocol::TopicId{0x0A}, 1, fields},
+  {"", protocol::TopicId{0x0A}, 1, fields, {61, 59, 60, 59}},
 }};
 inline constexpr std::string_view source =
   "decided: a command of the shell of AMiRo-OS 1.0 has none on the bus; id decided: free in the board's block";
@@ -1579,7 +1594,7 @@ inline constexpr std::array<protocol::Field, 1> fields{{
   {"action", {0, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, action_names, false},
 }};
 inline constexpr std::array<protocol::FrameLayout, 1> frames{{
-  {"", protocol::TopicId{0x27}, 1, fields},
+  {"", protocol::TopicId{0x27}, 1, fields, {60, 59, 59, 60}},
 }};
 inline constexpr std::string_view source =
   "decided, as floor_calibration";
@@ -1610,20 +1625,21 @@ inline constexpr std::array<protocol::Field, 6> fields{{
 }  // namespace di_wheel_drive_status_health
 namespace di_wheel_drive_status {
 inline constexpr std::array<protocol::FrameLayout, 2> frames{{
-  {"identity", protocol::TopicId{0x1B}, 8, di_wheel_drive_status_identity::fields},
-  {"health", protocol::TopicId{0x1C}, 8, di_wheel_drive_status_health::fields},
+  {"identity", protocol::TopicId{0x1B}, 8, di_wheel_drive_status_identity::fields, {131, 130, 130, 130}},
+  {"health", protocol::TopicId{0x1C}, 8, di_wheel_drive_status_health::fields, {132, 131, 131, 131}},
 }};
 inline constexpr std::string_view source =
   "decided: status ids at the end of each board's block of 30";
 }  // namespace di_wheel_drive_status
 
 namespace di_wheel_drive_refusal {
-inline constexpr std::array<protocol::NamedValue, 11> reason_names{{{0, "nothing"}, {3, "bad_length"},
+inline constexpr std::array<protocol::NamedValue, 12> reason_names{{{0, "nothing"}, {3, "bad_length"},
                                                                     {4, "bad_mode"}, {5, "bad_unit"},
                                                                     {6, "bad_period"}, {7, "out_of_range"},
                                                                     {8, "not_served"}, {9, "no_sample"},
                                                                     {10, "no_room"}, {13, "no_answer"},
-                                                                    {14, "bus_fault"}}};
+                                                                    {14, "bus_fault"},
+                                                                    {15, "not_schedulable"}}};
 inline constexpr std::array<protocol::Field, 4> fields{{
   {"topic", {0, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, {}, false},
   {"reason", {8, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, reason_names, false},
@@ -1631,7 +1647,7 @@ inline constexpr std::array<protocol::Field, 4> fields{{
   {"not_sampled", {32, 16, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 65'535, {}, false},
 }};
 inline constexpr std::array<protocol::FrameLayout, 1> frames{{
-  {"", protocol::TopicId{0x1D}, 6, fields},
+  {"", protocol::TopicId{0x1D}, 6, fields, {110, 109, 109, 109}},
 }};
 inline constexpr std::string_view source =
   "decided: status ids at the end of each board's block of 30; reasons as ocm::base::Error numbers them";
@@ -1662,20 +1678,21 @@ inline constexpr std::array<protocol::Field, 6> fields{{
 }  // namespace power_management_status_health
 namespace power_management_status {
 inline constexpr std::array<protocol::FrameLayout, 2> frames{{
-  {"identity", protocol::TopicId{0x39}, 8, power_management_status_identity::fields},
-  {"health", protocol::TopicId{0x3A}, 8, power_management_status_health::fields},
+  {"identity", protocol::TopicId{0x39}, 8, power_management_status_identity::fields, {129, 130, 130, 130}},
+  {"health", protocol::TopicId{0x3A}, 8, power_management_status_health::fields, {130, 130, 130, 130}},
 }};
 inline constexpr std::string_view source =
   "decided, as di_wheel_drive_status";
 }  // namespace power_management_status
 
 namespace power_management_refusal {
-inline constexpr std::array<protocol::NamedValue, 11> reason_names{{{0, "nothing"}, {3, "bad_length"},
+inline constexpr std::array<protocol::NamedValue, 12> reason_names{{{0, "nothing"}, {3, "bad_length"},
                                                                     {4, "bad_mode"}, {5, "bad_unit"},
                                                                     {6, "bad_period"}, {7, "out_of_range"},
                                                                     {8, "not_served"}, {9, "no_sample"},
                                                                     {10, "no_room"}, {13, "no_answer"},
-                                                                    {14, "bus_fault"}}};
+                                                                    {14, "bus_fault"},
+                                                                    {15, "not_schedulable"}}};
 inline constexpr std::array<protocol::Field, 4> fields{{
   {"topic", {0, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, {}, false},
   {"reason", {8, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, reason_names, false},
@@ -1683,7 +1700,7 @@ inline constexpr std::array<protocol::Field, 4> fields{{
   {"not_sampled", {32, 16, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 65'535, {}, false},
 }};
 inline constexpr std::array<protocol::FrameLayout, 1> frames{{
-  {"", protocol::TopicId{0x3B}, 6, fields},
+  {"", protocol::TopicId{0x3B}, 6, fields, {109, 109, 109, 109}},
 }};
 inline constexpr std::string_view source =
   "decided, as di_wheel_drive_refusal";
@@ -1714,20 +1731,21 @@ inline constexpr std::array<protocol::Field, 6> fields{{
 }  // namespace light_ring_status_health
 namespace light_ring_status {
 inline constexpr std::array<protocol::FrameLayout, 2> frames{{
-  {"identity", protocol::TopicId{0x57}, 8, light_ring_status_identity::fields},
-  {"health", protocol::TopicId{0x58}, 8, light_ring_status_health::fields},
+  {"identity", protocol::TopicId{0x57}, 8, light_ring_status_identity::fields, {130, 130, 129, 130}},
+  {"health", protocol::TopicId{0x58}, 8, light_ring_status_health::fields, {131, 131, 131, 131}},
 }};
 inline constexpr std::string_view source =
   "decided, as di_wheel_drive_status";
 }  // namespace light_ring_status
 
 namespace light_ring_refusal {
-inline constexpr std::array<protocol::NamedValue, 11> reason_names{{{0, "nothing"}, {3, "bad_length"},
+inline constexpr std::array<protocol::NamedValue, 12> reason_names{{{0, "nothing"}, {3, "bad_length"},
                                                                     {4, "bad_mode"}, {5, "bad_unit"},
                                                                     {6, "bad_period"}, {7, "out_of_range"},
                                                                     {8, "not_served"}, {9, "no_sample"},
                                                                     {10, "no_room"}, {13, "no_answer"},
-                                                                    {14, "bus_fault"}}};
+                                                                    {14, "bus_fault"},
+                                                                    {15, "not_schedulable"}}};
 inline constexpr std::array<protocol::Field, 4> fields{{
   {"topic", {0, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, {}, false},
   {"reason", {8, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, reason_names, false},
@@ -1735,7 +1753,7 @@ inline constexpr std::array<protocol::Field, 4> fields{{
   {"not_sampled", {32, 16, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 65'535, {}, false},
 }};
 inline constexpr std::array<protocol::FrameLayout, 1> frames{{
-  {"", protocol::TopicId{0x59}, 6, fields},
+  {"", protocol::TopicId{0x59}, 6, fields, {109, 109, 109, 109}},
 }};
 inline constexpr std::string_view source =
   "decided, as di_wheel_drive_refusal";

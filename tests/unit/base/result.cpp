@@ -11,7 +11,7 @@ using ocm::base::Error;
 using ocm::base::Result;
 using ocm::base::Status;
 
-constexpr Error last_error = Error::bus_fault;
+constexpr Error last_error = Error::not_schedulable;
 
 struct NoDefaultComparison {
   int number = 0;

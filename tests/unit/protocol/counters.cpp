@@ -37,7 +37,8 @@ TEST_CASE("a refusal is counted under its cause") {
   for (const auto& [cause, counter] :
        {Case{Error::bad_length, &Counters::bad_length}, Case{Error::bad_mode, &Counters::bad_mode},
         Case{Error::bad_unit, &Counters::bad_unit}, Case{Error::bad_period, &Counters::bad_period},
-        Case{Error::unknown_topic, &Counters::not_served}}) {
+        Case{Error::unknown_topic, &Counters::not_served},
+        Case{Error::not_schedulable, &Counters::not_schedulable}}) {
     Counters counters;
     counters.refuse(cause);
     Counters expected;

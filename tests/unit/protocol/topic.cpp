@@ -177,6 +177,16 @@ struct ForgetsToDecode {
   [[nodiscard]] ocm::can::Payload encode(std::size_t) const { return {}; }
 };
 
+TEST_CASE("a frame is as long as its spec was told, by priority; the closed bound where nobody looked") {
+  using ocm::protocol::Priority;
+  using ocm::protocol::worst_bits;
+  constexpr ocm::protocol::FrameHead told{TopicId{0x10}, 4, {91, 90, 89, 88}};
+  STATIC_REQUIRE(worst_bits(told, Priority::urgent) == 91);
+  STATIC_REQUIRE(worst_bits(told, Priority::low) == 88);
+  STATIC_REQUIRE(worst_bits(ocm::protocol::FrameHead{TopicId{0x10}, 4}, Priority::low) == 95);
+  STATIC_REQUIRE(worst_bits(ocm::protocol::FrameLayout{"", TopicId{0x10}, 8, {}}, Priority::high) == 135);
+}
+
 TEST_CASE("what a board needs of a topic") {
   STATIC_REQUIRE(ocm::protocol::TopicType<Scale>);
   STATIC_REQUIRE(ocm::protocol::TopicType<Lamp>);

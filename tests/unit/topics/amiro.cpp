@@ -183,6 +183,7 @@ TEST_CASE("refusal: which topic, why, and how often") {
   CHECK(same(Reason::no_room, ocm::base::Error::full));
   CHECK(same(Reason::no_answer, ocm::base::Error::no_answer));
   CHECK(same(Reason::bus_fault, ocm::base::Error::bus_fault));
+  CHECK(same(Reason::not_schedulable, ocm::base::Error::not_schedulable));
 }
 
 TEST_CASE("the catalogue knows every name, and whose topic it is") {

@@ -1,0 +1,15 @@
+/// What PowerManagement's samples and tasks take of its processor, for its admission: its set of
+/// spec/tasks.json, which is schedulable as long as nobody asks for more than the defaults.
+#pragma once
+
+#include "ocm/analysis/task_list.hpp"
+#include "ocm/analysis/task_sets.hpp"
+
+namespace ocm::firmware::boards::power_management {
+
+namespace task_set = analysis::task_sets::power_management;
+static_assert(analysis::schedulable<task_set::Facts::Tasks>);
+
+using Costs = analysis::CostsOf<task_set::Facts>;
+
+}  // namespace ocm::firmware::boards::power_management

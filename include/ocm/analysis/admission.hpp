@@ -1,0 +1,244 @@
+/// A board's own answer to "one stream more?": yes only if each sample of each of its streams is read and on
+/// the wire before its deadline, or before the next one if that is earlier.
+///
+///     using Admission = analysis::BoardAdmission<amiro::DiWheelDrive, amiro::bit_rate, Costs>;
+///     controller::Controller<amiro::DiWheelDrive, Can, Port, 2, Admission> controller{can, port};
+///
+/// Of stream s, at its level and in whole microseconds:
+///
+///     reads = blocking + C_s + sum over tasks and streams k, no less urgent, of ceil(reads / T_k) C_k
+///     sends = B + F_s + sum over streams k, no less urgent, of ceil((sends + reads_k + tau) / T_k) F_k
+///     reads + sends <= min(D_s, T_s)
+///
+/// C: processor and waiting for the part; F: all frames of a sample, at their exact lengths and priority; B:
+/// one frame of anybody's, already on its way. The first is the response time on a preemptive processor, the
+/// second the sufficient one on CAN [Davis et al. 2007, equation 16], with a sample's frames as one. Streams
+/// of one level delay each other whatever their order. A board does not hear what others send, so `Costs`
+/// says which share of the bus is its own; who hears all is the operator's tool (docs/admission.md).
+///
+/// Memory: 8 bytes a sensor. Time: sensors^2 steps an iteration and at most `most_iterations` of each sum, no
+/// division wider than 32 bits; what that is on a Cortex-M3 is in docs/admission.md. Who would take longer is
+/// refused. No heap.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "ocm/base/result.hpp"
+#include "ocm/base/time.hpp"
+#include "ocm/can/frame.hpp"
+#include "ocm/can/length.hpp"
+#include "ocm/protocol/identifier.hpp"
+#include "ocm/protocol/topic.hpp"
+#include "ocm/scheduling/admission.hpp"
+#include "ocm/scheduling/port.hpp"
+
+namespace ocm::analysis {
+
+/// Something that a board does by itself, every period.
+struct OwnTask {
+  std::uint32_t cost_us = 0;
+  std::uint32_t period_us = 0;
+  scheduling::Level level = scheduling::Level::urgent;
+};
+
+/// What a board without a processor to speak of needs: a simulated one. Also what `Costs` must have.
+struct NoCosts {
+  /// C of a sample of this topic.
+  template <class Topic>
+  static constexpr std::uint32_t sample_us = 0;
+  static constexpr std::array<OwnTask, 0> own{};
+  /// How long a job can wait for a part's bus that a less urgent one holds, and for the kernel.
+  static constexpr std::uint32_t blocking_us = 0;
+  /// The board may fill so much of the bus.
+  static constexpr std::uint32_t bus_percent = 100;
+};
+
+namespace detail {
+
+/// What is known of a sensor before anybody asks for it.
+struct SensorCost {
+  std::uint32_t sample_us = 0;
+  std::uint32_t deadline_us = 0;                                     ///< 0: none but the period
+  std::array<std::uint32_t, protocol::priority_levels> frames_us{};  ///< by priority
+};
+
+[[nodiscard]] constexpr std::uint32_t bits_us(std::uint32_t bits, std::uint32_t bit_rate) noexcept {
+  return static_cast<std::uint32_t>((std::uint64_t{bits} * 1'000'000 + bit_rate - 1) / bit_rate);
+}
+
+template <class Topic, class Costs>
+[[nodiscard]] constexpr SensorCost sensor_cost(std::uint32_t bit_rate) noexcept {
+  SensorCost cost;
+  cost.sample_us = Costs::template sample_us<Topic>;
+  cost.deadline_us = static_cast<std::uint32_t>(
+      std::min<std::int64_t>(Topic::deadline.count() / 1000, std::numeric_limits<std::int32_t>::max()));
+  for (std::size_t level = 0; level < protocol::priority_levels; ++level) {
+    std::uint32_t bits = 0;
+    for (const auto& frame : Topic::frames)
+      bits += protocol::worst_bits(frame, static_cast<protocol::Priority>(level));
+    cost.frames_us[level] = bits_us(bits, bit_rate);
+  }
+  return cost;
+}
+
+template <class Sensors, class Costs>
+struct SensorCosts;
+template <class... Topics, class Costs>
+struct SensorCosts<protocol::TopicList<Topics...>, Costs> {
+  static constexpr std::array<SensorCost, sizeof...(Topics)> of(std::uint32_t bit_rate) noexcept {
+    return {sensor_cost<Topics, Costs>(bit_rate)...};
+  }
+};
+
+/// What is asked of a board now. Apart from BoardAdmission so that it is compiled once a number of sensors.
+template <std::size_t N>
+class BoardLoad {
+ public:
+  static constexpr std::uint32_t late = std::numeric_limits<std::uint32_t>::max();
+  static constexpr int most_iterations = 16;
+
+  struct Facts {
+    std::array<SensorCost, N> sensors{};
+    const OwnTask* own = nullptr;
+    std::size_t own_count = 0;
+    std::uint32_t blocking_us = 0;
+    std::uint32_t any_frame_us = 0;  ///< B
+    std::uint32_t bit_us = 0;        ///< tau
+    std::uint32_t bus_percent = 100;
+  };
+  struct Stream {
+    std::uint32_t period_us = 0;  ///< 0: it does not run
+    scheduling::Level level = scheduling::Level::low;
+  };
+  using Streams = std::array<Stream, N>;
+
+  /// Everybody meets his deadline.
+  [[nodiscard]] static constexpr bool fits(const Facts& facts, const Streams& streams) noexcept {
+    if (!within_share(facts, streams)) return false;
+    std::array<std::uint32_t, N> reads{};
+    for (std::size_t s = 0; s < N; ++s) {
+      if (streams[s].period_us == 0) continue;
+      reads[s] = read_bound(facts, streams, s);
+      if (reads[s] == late) return false;
+    }
+    for (std::size_t s = 0; s < N; ++s) {
+      if (streams[s].period_us == 0) continue;
+      // Once more for the jitter that reading leaves: the deadline is for both.
+      const std::uint32_t due = deadline(facts, streams, s) - reads[s];
+      if (send_bound(facts, streams, reads, s, due) == late) return false;
+    }
+    return true;
+  }
+
+ private:
+  static constexpr std::uint32_t deadline(const Facts& facts, const Streams& streams,
+                                          std::size_t s) noexcept {
+    const std::uint32_t own = facts.sensors[s].deadline_us;
+    return own == 0 ? streams[s].period_us : std::min(own, streams[s].period_us);
+  }
+  static constexpr std::uint32_t frames(const Facts& facts, const Streams& streams, std::size_t s) noexcept {
+    return facts.sensors[s].frames_us[static_cast<std::size_t>(streams[s].level)];
+  }
+
+  /// In parts of 2^20, each rounded up.
+  static constexpr bool within_share(const Facts& facts, const Streams& streams) noexcept {
+    std::uint64_t load = 0;
+    for (std::size_t s = 0; s < N; ++s)
+      if (streams[s].period_us != 0)
+        load += (std::uint64_t{frames(facts, streams, s)} << 20U) / streams[s].period_us + 1;
+    return load * 100 <= std::uint64_t{facts.bus_percent} << 20U;
+  }
+
+  /// The least w with w = base + demand(w), or `late` where that is beyond `due`.
+  template <class Demand>
+  static constexpr std::uint32_t solve(std::uint64_t base, std::uint32_t due, Demand demand) noexcept {
+    std::uint64_t window = base;
+    for (int i = 0; i < most_iterations; ++i) {
+      if (window > due) return late;
+      const std::uint64_t next = base + demand(static_cast<std::uint32_t>(window));
+      if (next == window) return static_cast<std::uint32_t>(window);
+      window = next;
+    }
+    return late;
+  }
+  static constexpr std::uint64_t demand_of(std::uint32_t window, std::uint32_t period,
+                                           std::uint32_t cost) noexcept {
+    return std::uint64_t{(window - 1) / period + 1} * cost;  // window: at least 1
+  }
+
+  static constexpr std::uint32_t read_bound(const Facts& facts, const Streams& streams,
+                                            std::size_t s) noexcept {
+    const std::uint64_t base = std::uint64_t{facts.blocking_us} + facts.sensors[s].sample_us;
+    if (base == 0) return 0;
+    return solve(base, deadline(facts, streams, s), [&](std::uint32_t window) {
+      std::uint64_t sum = 0;
+      for (std::size_t k = 0; k < facts.own_count; ++k)
+        if (facts.own[k].level <= streams[s].level)
+          sum += demand_of(window, facts.own[k].period_us, facts.own[k].cost_us);
+      for (std::size_t k = 0; k < N; ++k)
+        if (k != s && streams[k].period_us != 0 && streams[k].level <= streams[s].level)
+          sum += demand_of(window, streams[k].period_us, facts.sensors[k].sample_us);
+      return sum;
+    });
+  }
+  static constexpr std::uint32_t send_bound(const Facts& facts, const Streams& streams,
+                                            const std::array<std::uint32_t, N>& reads, std::size_t s,
+                                            std::uint32_t due) noexcept {
+    return solve(std::uint64_t{facts.any_frame_us} + frames(facts, streams, s), due,
+                 [&](std::uint32_t window) {
+                   std::uint64_t sum = 0;
+                   for (std::size_t k = 0; k < N; ++k)
+                     if (k != s && streams[k].period_us != 0 && streams[k].level <= streams[s].level)
+                       sum += demand_of(window + reads[k] + facts.bit_us, streams[k].period_us,
+                                        frames(facts, streams, k));
+                   return sum;
+                 });
+  }
+};
+
+}  // namespace detail
+
+/// A scheduling::Admission for the sensors of `Board`, a board of the generated header.
+template <class Board, std::uint32_t bit_rate, class Costs = NoCosts>
+class BoardAdmission {
+  static constexpr std::size_t sensors = Board::sensors::size;
+  using Load = detail::BoardLoad<sensors>;
+
+ public:
+  constexpr base::Error admit(std::size_t stream, base::Duration period, scheduling::Level level) noexcept {
+    const typename Load::Stream before = streams_[stream];
+    streams_[stream] = {microseconds(period), level};
+    if (Load::fits(facts, streams_)) return base::Error::none;
+    streams_[stream] = before;
+    return base::Error::not_schedulable;
+  }
+  constexpr void ended(std::size_t stream) noexcept { streams_[stream] = {}; }
+
+ private:
+  /// Rounded down, so that the stream seems no less frequent than it is; half an hour at most, and at least
+  /// one.
+  static constexpr std::uint32_t microseconds(base::Duration period) noexcept {
+    constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max();
+    return static_cast<std::uint32_t>(std::clamp<std::int64_t>(period.count() / 1000, 1, most));
+  }
+
+  static constexpr typename Load::Facts facts = [] {
+    typename Load::Facts f;
+    f.sensors = detail::SensorCosts<typename Board::sensors, Costs>::of(bit_rate);
+    f.own = Costs::own.data();
+    f.own_count = Costs::own.size();
+    f.blocking_us = Costs::blocking_us;
+    f.any_frame_us = detail::bits_us(can::worst_frame_bits(can::Format::base, can::max_dlc), bit_rate);
+    f.bit_us = detail::bits_us(1, bit_rate);
+    f.bus_percent = Costs::bus_percent;
+    return f;
+  }();
+
+  typename Load::Streams streams_{};
+};
+
+}  // namespace ocm::analysis

@@ -1,0 +1,129 @@
+/// A bus that does not compile when a message on it would be late.
+///
+///     struct Pose {
+///       static constexpr ocm::analysis::Message message{...};  // in ticks, with its key
+///     };
+///     static_assert(ocm::analysis::schedulable<ocm::analysis::Traffic<tau_bit, Pose, SetPoint>>);
+///
+/// Where that fails, GCC and Clang name the type that is late, the bound on its response time and its
+/// deadline: misses_its_deadline<Pose, 5160000, 5000000>. A topic of a spec becomes such types by
+/// TopicFrame<Topic, frame>, with the period, deadline, jitter and priority that the topic has by default.
+///
+/// Cost: one exact analysis at compile time: 300 messages at a moderate load take GCC and Clang 0.3 s and
+/// stay within Clang's million steps.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <utility>
+
+#include "ocm/analysis/can_response.hpp"
+#include "ocm/analysis/message_set.hpp"
+#include "ocm/base/time.hpp"
+#include "ocm/protocol/message.hpp"
+#include "ocm/protocol/topic.hpp"
+
+namespace ocm::analysis {
+
+/// Messages as types, in any order, and how long a bit is in their ticks.
+template <std::int64_t tau_bit, class... Messages>
+struct Traffic {
+  static constexpr std::size_t size = sizeof...(Messages);
+
+ private:
+  static constexpr auto solve() noexcept {
+    std::array<Message, size> set{Messages::message...};
+    std::array<std::size_t, size> from{};
+    for (std::size_t i = 0; i < size; ++i) from[i] = i;
+    for (std::size_t i = 1; i < size; ++i)
+      for (std::size_t k = i; k > 0 && set[k].key < set[k - 1].key; --k) {
+        std::swap(set[k], set[k - 1]);
+        std::swap(from[k], from[k - 1]);
+      }
+    const auto sorted = can_response_times(set, {.bit = tau_bit});
+    std::array<Explained, size> found{};
+    for (std::size_t i = 0; i < size; ++i) found[from[i]] = sorted[i];
+    // Two messages of one identifier cannot both be analysed: neither has a place.
+    for (std::size_t i = 1; i < size; ++i)
+      if (set[i].key == set[i - 1].key)
+        found[from[i]] = found[from[i - 1]] = {.deadline = set[i].due(), .reason = Reason::bad_input};
+    return found;
+  }
+
+ public:
+  /// In the order of `Messages`.
+  static constexpr std::array<Explained, size> results = solve();
+};
+
+/// What a message is that has no bound within its deadline. `response` is `unbounded` where it has none.
+template <class Message, std::int64_t response, std::int64_t deadline>
+struct misses_its_deadline {
+  using message = Message;
+};
+/// What a set has instead where there is no such message.
+struct all_meet_their_deadlines {};
+
+namespace detail {
+
+template <std::size_t index, class First, class... Rest>
+struct TypeAt {
+  using type = typename TypeAt<index - 1, Rest...>::type;
+};
+template <class First, class... Rest>
+struct TypeAt<0, First, Rest...> {
+  using type = First;
+};
+
+template <class Set>
+struct FirstLate;
+template <std::int64_t tau_bit, class... Messages>
+struct FirstLate<Traffic<tau_bit, Messages...>> {
+  using Set = Traffic<tau_bit, Messages...>;
+  static constexpr std::size_t index = [] {
+    std::size_t i = 0;
+    while (i < Set::size && Set::results[i].ok()) ++i;
+    return i;
+  }();
+  static constexpr auto find() noexcept {
+    if constexpr (index == Set::size)
+      return all_meet_their_deadlines{};
+    else
+      return misses_its_deadline<typename TypeAt<index, Messages...>::type, Set::results[index].response,
+                                 Set::results[index].deadline>{};
+  }
+  using type = decltype(find());
+};
+
+}  // namespace detail
+
+/// The first of a set's messages that may be late, as misses_its_deadline; or all_meet_their_deadlines.
+template <class Set>
+using first_late = typename detail::FirstLate<Set>::type;
+
+/// For the message of the compiler: it says which type is not this one.
+template <class Late>
+concept nobody_is_late = std::is_same_v<Late, all_meet_their_deadlines>;
+
+template <class Set>
+concept schedulable = nobody_is_late<first_late<Set>>;
+
+/// Frame `index` of a topic, or of one of its instances (1..Topic::instances), in nanoseconds: as the topic
+/// is sent when nobody asks for anything else. Set points have no period of their own: `period` gives it.
+template <protocol::TopicType Topic, std::uint32_t bit_rate, std::size_t index = 0, std::uint8_t instance = 1,
+          std::int64_t period_ns = 0>
+struct TopicFrame {
+  static constexpr Message message = [] {
+    protocol::FrameHead head = Topic::frames[index];
+    head.id = protocol::frame_id<Topic>(index, instance);
+    base::Duration period{period_ns};
+    if constexpr (Topic::kind == protocol::Kind::sensor)
+      if (period_ns == 0) period = Topic::period.duration();
+    const auto direction =
+        Topic::kind == protocol::Kind::sensor ? protocol::Direction::sensor : protocol::Direction::command;
+    return message_of(head, direction, Topic::priority, period, Topic::deadline, Topic::jitter, bit_rate);
+  }();
+};
+
+}  // namespace ocm::analysis

@@ -1,0 +1,264 @@
+// Made by ocm-generate from tasks.json. Do not edit: change that, and generate again.
+
+/// Task sets of processors: the boards', and those of the robots that theses analysed. A task is a type,
+/// so that a set that misses a deadline names it. Times are nanoseconds. No heap; everything is constexpr.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "ocm/analysis/task_list.hpp"
+#include "ocm/analysis/task_set.hpp"
+
+// clang-format off
+namespace ocm::analysis::task_sets {
+
+/// DiWheelDrive, each topic at its default period and priority. [docs/boards/figures.md, under load: latest measured start at 32 ns an instruction, the part's bus included]
+namespace di_wheel_drive {
+
+/// [idle share without requests: the most it can be if the odometry were nothing]
+struct Control {
+  static constexpr std::string_view name = "control";
+  static constexpr bool own = true;
+  static constexpr Task task{.cost = 120'000, .period = 10'000'000, .blocking = 10'000, .level = 0};
+};
+
+/// [idle share without requests: the most it can be if the control were nothing]
+struct DeadReckoning {
+  static constexpr std::string_view name = "dead_reckoning";
+  static constexpr bool own = true;
+  static constexpr Task task{.cost = 600'000, .period = 50'000'000, .blocking = 10'000, .level = 1};
+};
+
+struct Odometry {
+  static constexpr std::string_view name = "odometry";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 89'000, .period = 50'000'000, .blocking = 10'000, .level = 2};
+};
+
+/// [docs/boards/figures.md, at 16 ns an instruction, which was later]
+struct FloorProximity {
+  static constexpr std::string_view name = "floor_proximity";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 1'390'000, .period = 50'000'000, .blocking = 10'000, .level = 2};
+};
+
+struct Magnetometer {
+  static constexpr std::string_view name = "magnetometer";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 331'000, .period = 50'000'000, .blocking = 10'000, .level = 2};
+};
+
+struct Gyroscope {
+  static constexpr std::string_view name = "gyroscope";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 137'000, .period = 50'000'000, .blocking = 10'000, .level = 2};
+};
+
+struct Accelerometer {
+  static constexpr std::string_view name = "accelerometer";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 252'000, .period = 50'000'000, .blocking = 10'000, .level = 2};
+};
+
+/// [decided: it reads nothing]
+struct DiWheelDriveStatus {
+  static constexpr std::string_view name = "di_wheel_drive_status";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 100'000, .period = 1'000'000'000, .blocking = 10'000, .level = 3};
+};
+
+/// [decided: it reads nothing]
+struct DiWheelDriveRefusal {
+  static constexpr std::string_view name = "di_wheel_drive_refusal";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 100'000, .period = 1'000'000'000, .blocking = 10'000, .level = 3};
+};
+
+struct Facts {
+  using Tasks = TaskList<Control, DeadReckoning, Odometry, FloorProximity, Magnetometer, Gyroscope, Accelerometer, DiWheelDriveStatus, DiWheelDriveRefusal>;
+  static constexpr std::int64_t blocking = 10'000;
+  static constexpr std::uint32_t bus_percent = 80;
+};
+
+}  // namespace di_wheel_drive
+
+/// PowerManagement, each topic at its default period and priority. [docs/boards/figures.md, under load: latest measured start at 32 ns an instruction, the part's bus included]
+namespace power_management {
+
+struct ProximityRing {
+  static constexpr std::string_view name = "proximity_ring";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 9'108'000, .period = 50'000'000, .blocking = 1'000'000, .level = 2};
+};
+
+struct PowerStatus {
+  static constexpr std::string_view name = "power_status";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 7'247'000, .period = 50'000'000, .blocking = 1'000'000, .level = 2};
+};
+
+/// [decided: it reads nothing]
+struct PowerManagementStatus {
+  static constexpr std::string_view name = "power_management_status";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 100'000, .period = 1'000'000'000, .blocking = 1'000'000, .level = 3};
+};
+
+/// [decided: it reads nothing]
+struct PowerManagementRefusal {
+  static constexpr std::string_view name = "power_management_refusal";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 100'000, .period = 1'000'000'000, .blocking = 1'000'000, .level = 3};
+};
+
+struct Facts {
+  using Tasks = TaskList<ProximityRing, PowerStatus, PowerManagementStatus, PowerManagementRefusal>;
+  static constexpr std::int64_t blocking = 1'000'000;
+  static constexpr std::uint32_t bus_percent = 80;
+};
+
+}  // namespace power_management
+
+/// LightRing, which has no sensor of its own. [decided: it reads nothing]
+namespace light_ring {
+
+struct LightRingStatus {
+  static constexpr std::string_view name = "light_ring_status";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 100'000, .period = 1'000'000'000, .blocking = 10'000, .level = 3};
+};
+
+struct LightRingRefusal {
+  static constexpr std::string_view name = "light_ring_refusal";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 100'000, .period = 1'000'000'000, .blocking = 10'000, .level = 3};
+};
+
+struct Facts {
+  using Tasks = TaskList<LightRingStatus, LightRingRefusal>;
+  static constexpr std::int64_t blocking = 10'000;
+  static constexpr std::uint32_t bus_percent = 80;
+};
+
+}  // namespace light_ring
+
+/// the AVR robot of the second thesis, a level a task. [second thesis, table 9.2]
+namespace thesis_avr {
+
+struct EncoderLeft {
+  static constexpr std::string_view name = "encoder_left";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 1'700, .period = 15'000'000, .level = 0};
+};
+
+struct EncoderRight {
+  static constexpr std::string_view name = "encoder_right";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 1'640, .period = 15'000'000, .level = 1};
+};
+
+struct UartReceive {
+  static constexpr std::string_view name = "uart_receive";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 2'960, .period = 103'000'000, .level = 2};
+};
+
+struct Estimator {
+  static constexpr std::string_view name = "estimator";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 1'700'000, .period = 30'000'000, .level = 3};
+};
+
+struct Movement {
+  static constexpr std::string_view name = "movement";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 43'000, .period = 20'000'000, .level = 4};
+};
+
+struct Communication {
+  static constexpr std::string_view name = "communication";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 140'000, .period = 103'000'000, .level = 5};
+};
+
+struct PoseController {
+  static constexpr std::string_view name = "pose_controller";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 255'000, .period = 30'000'000, .level = 6};
+};
+
+struct Tower {
+  static constexpr std::string_view name = "tower";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 7'300'000, .period = 200'000'000, .level = 7};
+};
+
+struct Facts {
+  using Tasks = TaskList<EncoderLeft, EncoderRight, UartReceive, Estimator, Movement, Communication, PoseController, Tower>;
+  static constexpr std::int64_t blocking = 0;
+  static constexpr std::uint32_t bus_percent = 100;
+};
+
+}  // namespace thesis_avr
+
+/// the Arduino robot of the second thesis, a level a task. [second thesis, table 9.3]
+namespace thesis_arduino {
+
+struct EncoderLeft {
+  static constexpr std::string_view name = "encoder_left";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 610, .period = 800'000, .level = 0};
+};
+
+struct EncoderRight {
+  static constexpr std::string_view name = "encoder_right";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 610, .period = 800'000, .level = 1};
+};
+
+struct UartReceive {
+  static constexpr std::string_view name = "uart_receive";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 3'400, .period = 103'000'000, .level = 2};
+};
+
+struct Estimator {
+  static constexpr std::string_view name = "estimator";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 1'660'000, .period = 30'000'000, .level = 3};
+};
+
+struct Movement {
+  static constexpr std::string_view name = "movement";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 41'000, .period = 20'000'000, .level = 4};
+};
+
+struct Communication {
+  static constexpr std::string_view name = "communication";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 130'000, .period = 103'000'000, .level = 5};
+};
+
+struct PoseController {
+  static constexpr std::string_view name = "pose_controller";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 187'000, .period = 30'000'000, .level = 6};
+};
+
+struct Tower {
+  static constexpr std::string_view name = "tower";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 5'880'000, .period = 200'000'000, .level = 7};
+};
+
+struct Facts {
+  using Tasks = TaskList<EncoderLeft, EncoderRight, UartReceive, Estimator, Movement, Communication, PoseController, Tower>;
+  static constexpr std::int64_t blocking = 0;
+  static constexpr std::uint32_t bus_percent = 100;
+};
+
+}  // namespace thesis_arduino
+
+}  // namespace ocm::analysis::task_sets

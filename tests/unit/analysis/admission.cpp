@@ -1,0 +1,215 @@
+#include "ocm/analysis/admission.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <random>
+#include <span>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/analysis/can_response.hpp"
+#include "ocm/analysis/cpu.hpp"
+#include "ocm/can/text.hpp"
+#include "ocm/controller/controller.hpp"
+#include "ocm/topics/amiro.hpp"
+
+using namespace ocm;
+using namespace ocm::analysis;
+using namespace std::chrono_literals;
+using scheduling::Level;
+
+namespace {
+
+/// A processor that everybody notices.
+struct Slow {
+  template <class Topic>
+  static constexpr std::uint32_t sample_us = 300;
+  static constexpr std::array<OwnTask, 2> own{
+      {{.cost_us = 600, .period_us = 50'000, .level = Level::high},
+       {.cost_us = 120, .period_us = 10'000, .level = Level::urgent}}};
+  static constexpr std::uint32_t blocking_us = 50;
+  static constexpr std::uint32_t bus_percent = 60;
+};
+
+template <class Board, class Costs = NoCosts>
+using Admission = BoardAdmission<Board, amiro::bit_rate, Costs>;
+static_assert(scheduling::Admission<Admission<amiro::DiWheelDrive>>);
+static_assert(sizeof(Admission<amiro::DiWheelDrive>) == 8 * amiro::DiWheelDrive::sensors::size);
+
+constexpr std::size_t ring = amiro::PowerManagement::sensors::index<amiro::ProximityRing>;
+constexpr std::size_t gyroscope = amiro::DiWheelDrive::sensors::index<amiro::Gyroscope>;
+
+// 562 bits of its own and a frame of 8 bytes (135 bits) before them, at 2 us each: 1394 us.
+constexpr base::Error ask_ring(base::Duration period, Level level = Level::urgent) {
+  return Admission<amiro::PowerManagement>{}.admit(ring, period, level);
+}
+static_assert(ask_ring(1ms) == base::Error::not_schedulable);
+static_assert(ask_ring(1393us) == base::Error::not_schedulable);
+static_assert(ask_ring(1394us) == base::Error::none);
+static_assert(ask_ring(1500us) == base::Error::none);
+static_assert(ask_ring(1us) == base::Error::not_schedulable);
+static_assert(ask_ring(base::Duration{1}) == base::Error::not_schedulable);
+static_assert(ask_ring(65'535s) == base::Error::none);
+
+/// Takes frames, and remembers them.
+struct Wire {
+  base::Result<bool> send(const can::Frame& frame) {
+    frames.push_back(frame);
+    return true;
+  }
+  std::vector<can::Frame> frames;
+};
+
+}  // namespace
+
+TEST_CASE("A refused request changes nothing, and an ended stream makes room") {
+  Admission<amiro::DiWheelDrive> admission;
+  constexpr std::size_t accelerometer = amiro::DiWheelDrive::sensors::index<amiro::Accelerometer>;
+  CHECK(admission.admit(gyroscope, 750us, Level::medium) == base::Error::none);
+  // Another at the same level: 270 + 222 + 222 us.
+  CHECK(admission.admit(accelerometer, 700us, Level::medium) == base::Error::not_schedulable);
+  // More urgent it would be in time, but the one that runs would not.
+  CHECK(admission.admit(accelerometer, 500us, Level::urgent) == base::Error::not_schedulable);
+  CHECK(admission.admit(accelerometer, 750us, Level::medium) == base::Error::none);
+  // What runs may not take more, and goes on with what it had.
+  CHECK(admission.admit(gyroscope, 600us, Level::medium) == base::Error::not_schedulable);
+  admission.ended(accelerometer);
+  CHECK(admission.admit(gyroscope, 600us, Level::medium) == base::Error::none);
+}
+
+TEST_CASE("The processor counts: reading, the board's own tasks, a bus of parts that somebody holds") {
+  Admission<amiro::DiWheelDrive, Slow> admission;
+  // 50 + 300 + 120 to read at urgent, 270 + 218 or so to send.
+  CHECK(admission.admit(gyroscope, 900us, Level::urgent) == base::Error::not_schedulable);
+  CHECK(admission.admit(gyroscope, 1000us, Level::urgent) == base::Error::none);
+  admission.ended(gyroscope);
+  // At high the odometry goes before it, too.
+  CHECK(admission.admit(gyroscope, 1400us, Level::high) == base::Error::not_schedulable);
+  CHECK(admission.admit(gyroscope, 1700us, Level::high) == base::Error::none);
+}
+
+TEST_CASE("A board keeps to its share of the bus") {
+  // The ring at 1500 us is 75 % of the bus, at 2 ms 56 %.
+  Admission<amiro::PowerManagement, Slow> admission;
+  CHECK(admission.admit(ring, 1'800us, Level::urgent) == base::Error::not_schedulable);
+  CHECK(admission.admit(ring, 2'000us, Level::urgent) == base::Error::none);
+}
+
+TEST_CASE("What it takes meets its deadlines by the exact analyses") {
+  using Board = amiro::DiWheelDrive;
+  std::mt19937 random{11};
+  const auto between = [&](std::int64_t low, std::int64_t high) {
+    return std::uniform_int_distribution<std::int64_t>{low, high}(random);
+  };
+  int taken = 0;
+  int refused = 0;
+  int checked = 0;
+  for (int round = 0; round < 300; ++round) {
+    Admission<Board, Slow> admission;
+    std::array<std::int64_t, 5> period{};
+    std::array<std::uint32_t, 5> level{};
+    for (int request = 0; request < 12; ++request) {
+      const auto stream = static_cast<std::size_t>(between(0, 4));
+      const std::int64_t asked = between(800, between(0, 1) == 0 ? 4'000 : 20'000);
+      const auto at = static_cast<std::uint32_t>(between(0, 3));
+      const auto answer = admission.admit(stream, std::chrono::microseconds{asked}, static_cast<Level>(at));
+      if (answer != base::Error::none) {
+        ++refused;
+        continue;
+      }
+      ++taken;
+      period[stream] = asked;
+      level[stream] = at;
+
+      std::vector<Task> tasks{{.cost = 600, .period = 50'000, .level = 1},
+                              {.cost = 120, .period = 10'000, .level = 0}};
+      std::array<std::size_t, 5> task{};
+      for (std::size_t i = 0; i < 5; ++i) {
+        task[i] = tasks.size();
+        if (period[i] != 0)
+          tasks.push_back({.cost = 300, .period = period[i], .blocking = 50, .level = level[i]});
+      }
+      std::vector<Explained> read(tasks.size());
+      response_times(std::span<const Task>{tasks}, std::span<Explained>{read});
+      // Each stream in turn, seen from the hand-over of its sample: its frames come together, those of others
+      // up to their reading's response time late.
+      for (std::size_t own = 0; own < 5; ++own) {
+        if (period[own] == 0) continue;
+        REQUIRE(read[task[own]].bounded());
+        std::vector<Message> set{Message{.cost = 270, .period = 1'000'000'000, .key = 0xFFFF}};
+        std::vector<std::uint32_t> keys;
+        const auto add = [&]<class Topic>(const Topic&, std::size_t i) {
+          if (period[i] == 0) return;
+          for (const auto& frame : Topic::frames) {
+            Message message;
+            message.cost = 2 * static_cast<std::int64_t>(
+                                   protocol::worst_bits(frame, static_cast<protocol::Priority>(level[i])));
+            message.period = period[i];
+            message.deadline =
+                std::min<std::int64_t>(period[i], 50'000) - (i == own ? read[task[i]].response : 0);
+            message.jitter = i == own ? 0 : read[task[i]].response;
+            message.key = level[i] << 8 | frame.id.value;
+            if (i == own) keys.push_back(message.key);
+            set.push_back(message);
+          }
+        };
+        add(amiro::Odometry{}, 0);
+        add(amiro::FloorProximity{}, 1);
+        add(amiro::Magnetometer{}, 2);
+        add(amiro::Gyroscope{}, 3);
+        add(amiro::Accelerometer{}, 4);
+        sort_by_key(set);
+        CanResponse<16> analysis;
+        const auto sent = analysis.analyse(set, {.bit = 2});
+        for (std::size_t i = 0; i < set.size(); ++i) {
+          if (std::find(keys.begin(), keys.end(), set[i].key) == keys.end()) continue;
+          INFO(round << ' ' << request << ' ' << own << ' ' << sent[i].response << ' ' << sent[i].deadline);
+          REQUIRE(sent[i].ok());
+          ++checked;
+        }
+      }
+    }
+  }
+  CHECK(checked > 5'000);
+  CHECK(taken > 500);
+  CHECK(refused > 500);
+}
+
+TEST_CASE("A controller answers with the reason, and what runs goes on") {
+  Wire wire;
+  using Board = amiro::PowerManagement;
+  controller::Controller<Board, Wire, scheduling::Cooperative, 0, Admission<Board>> controller{wire};
+  controller.serve<amiro::ProximityRing>(
+      [] { return base::Result<amiro::ProximityRing>{amiro::ProximityRing{}}; });
+  const auto receive = [&](const char* text, base::Duration now) {
+    const auto frame = can::parse_frame(text);
+    REQUIRE(frame.ok());
+    controller.receive(*frame, base::Time{now});
+    controller.poll(base::Time{now});
+  };
+  receive("21F#01320000", 0ms);  // every 50 ms, medium
+  REQUIRE(wire.frames.size() == 8);
+  wire.frames.clear();
+  receive("01F#01010000", 10ms);  // every millisecond, urgent
+  REQUIRE(wire.frames.size() == 1);
+  const auto told = amiro::PowerManagementRefusal::decode({wire.frames[0].data});
+  CHECK(told.topic == amiro::ProximityRing::id.value);
+  CHECK(static_cast<base::Error>(told.reason) == base::Error::not_schedulable);
+  CHECK(told.refused == 1);
+  CHECK(controller.counters().not_schedulable == 1);
+  CHECK(controller.counters().requests == 1);
+  wire.frames.clear();
+  controller.poll(base::Time{49ms});
+  CHECK(wire.frames.empty());
+  controller.poll(base::Time{50ms});
+  REQUIRE(wire.frames.size() == 8);
+  CHECK(wire.frames[0].id == 0x61F);
+  // Without a period: the topic's own.
+  wire.frames.clear();
+  receive("01F#01", 60ms);
+  CHECK(controller.counters().requests == 2);
+  CHECK(wire.frames.size() == 8);
+}

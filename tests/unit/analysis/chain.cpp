@@ -1,0 +1,166 @@
+#include "ocm/analysis/chain.hpp"
+
+#include <algorithm>
+#include <array>
+#include <random>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/analysis/can_response.hpp"
+
+using namespace ocm::analysis;
+using enum Activation;
+
+namespace {
+
+constexpr Explained in(std::int64_t response) {
+  return {.response = response, .deadline = unbounded, .reason = Reason::schedulable};
+}
+
+// By hand. Sensor each 100, over after 10 at most and 4 at least; frame 20, 12 at least; operator each 50,
+// response 5; frame; motor task 3.
+constexpr std::array<Hop, 5> hops{{
+    {.activation = sampled, .period = 100, .best = 4},
+    {.best = 12},
+    {.activation = sampled, .period = 50, .best = 1},
+    {.best = 12},
+    {.best = 3},
+}};
+constexpr std::array<std::int64_t, 5> alone{10, 20, 5, 20, 3};
+struct Solved {
+  std::array<Hop, 5> chain;
+  ChainBound bound;
+};
+constexpr Solved solve(std::int64_t deadline) {
+  Solved solved{hops, {}};
+  solved.bound = bound_chain(solved.chain, deadline, [](std::size_t i, std::int64_t jitter) {
+    return in(alone[i] + jitter);  // R has J in it, as those of tasks and messages have
+  });
+  return solved;
+}
+constexpr Solved by_hand = solve(208);
+static_assert(by_hand.bound.latency == 10 + 20 + (50 + 5) + 20 + 3);
+static_assert(by_hand.bound.shortest == 4 + 12 + 1 + 12 + 3);
+static_assert(by_hand.bound.age == 108 + 100);
+static_assert(by_hand.bound.ok() && by_hand.bound.hop == 2);
+static_assert(solve(207).bound.reason == Reason::misses_deadline);
+// Jitter: of the sensor 6, then with the frame's own 8; the operator starts anew with its own 4.
+static_assert(by_hand.chain[1].inherited == 6 && by_hand.chain[1].hands_on == 6 + 8);
+static_assert(by_hand.chain[2].inherited == 0 && by_hand.chain[2].hands_on == 4);
+static_assert(by_hand.chain[4].inherited == 4 + 8 && by_hand.chain[4].hands_on == 12);
+static_assert(by_hand.chain[2].waits == 50 && by_hand.chain[2].until == 85);
+
+/// Plays a chain many times: each hop takes anything from its best to its worst, each grid has any phase.
+std::int64_t longest_played(const std::vector<Hop>& chain, const std::vector<std::int64_t>& worst, bool age,
+                            std::mt19937& random) {
+  const auto up_to = [&](std::int64_t most) {
+    const auto choice = random() % 3;
+    if (choice == 0) return most;
+    return choice == 1 ? std::int64_t{0}
+                       : static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(most + 1));
+  };
+  std::vector<std::int64_t> phases;
+  for (const Hop& hop : chain)
+    phases.push_back(hop.activation == sampled ? static_cast<std::int64_t>(random()) % hop.period : 0);
+  std::int64_t longest = 0;
+  for (std::int64_t release = 10'000; release < 20'000; release += chain[0].period) {
+    std::int64_t now = release;
+    for (std::size_t i = 0; i < chain.size(); ++i) {
+      if (chain[i].activation == sampled && i > 0) {
+        // The first of its releases that is not before the value.
+        const std::int64_t since = now - phases[i];
+        now = phases[i] + (since + chain[i].period - 1) / chain[i].period * chain[i].period;
+      }
+      now += chain[i].best + up_to(worst[i] - chain[i].best);
+    }
+    longest = std::max(longest, now - release);
+  }
+  // What happened just after the sensor looked is seen at its next release.
+  return age ? longest + chain[0].period - 1 : longest;
+}
+
+}  // namespace
+
+TEST_CASE("no chain that is played takes longer than was said, and the bound is nearly reached") {
+  std::mt19937 random{1994};
+  int near = 0;
+  constexpr int rounds = 400;
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<Hop> chain(1 + random() % 5);
+    std::vector<std::int64_t> worst;
+    for (std::size_t i = 0; i < chain.size(); ++i) {
+      chain[i].activation = i == 0 || random() % 2 == 0 ? sampled : triggered;
+      chain[i].period = 20 + static_cast<std::int64_t>(random() % 80);
+      chain[i].best = static_cast<std::int64_t>(random() % 10);
+      worst.push_back(chain[i].best + static_cast<std::int64_t>(random() % 15));
+    }
+    const ChainBound bound =
+        bound_chain(chain, 1'000, [&](std::size_t i, std::int64_t jitter) { return in(worst[i] + jitter); });
+    REQUIRE(bound.reason != Reason::bad_input);
+    std::int64_t latency = 0;
+    std::int64_t age = 0;
+    for (int run = 0; run < 40; ++run) {
+      latency = std::max(latency, longest_played(chain, worst, false, random));
+      age = std::max(age, longest_played(chain, worst, true, random));
+    }
+    CAPTURE(round);
+    REQUIRE(latency <= bound.latency);
+    REQUIRE(age <= bound.age);
+    near += 100 * latency >= 85 * bound.latency ? 1 : 0;
+  }
+  CHECK(near > rounds * 3 / 4);
+}
+
+TEST_CASE("frames of a chain delay each other on one bus, with the jitter that each has inherited") {
+  // A command frame, a sensor frame and one of somebody else; the sensor's task varies by 200.
+  std::array<Message, 3> bus{
+      {{.cost = 130, .period = 1'000}, {.cost = 130, .period = 1'000}, {.cost = 130, .period = 5'000}}};
+  CanResponse<3> analysis;
+  std::array<Hop, 4> chain{{{.activation = sampled, .period = 1'000}, {.best = 50}, {}, {.best = 50}}};
+  const auto respond = [&](std::size_t i, std::int64_t jitter) {
+    if (i == 0) return in(200);
+    if (i == 2) return in(300 + jitter);  // an operator that answers each sample
+    const std::size_t message = i == 1 ? 1 : 0;
+    bus[message].jitter = jitter;
+    return analysis.analyse(bus, {})[message];
+  };
+  const ChainBound bound = bound_chain(chain, 3'000, respond);
+  REQUIRE(bound.ok());
+  CHECK(chain[1].inherited == 200);
+  CHECK(bus[1].jitter == 200);
+  // The sensor's frame: 130 from below, its own, and twice 130 by the command, whose jitter, at the end of
+  // the chain, brings two of them together: known in the second pass only.
+  CHECK(chain[1].responds == 520);
+  CHECK(chain[2].inherited == 200 + 520 - 50);
+  CHECK(chain[3].inherited == 200 + 520 - 50 + 300);
+  CHECK(bus[0].jitter == chain[3].inherited);
+  CHECK(bound.latency == 200 + 520 + 300 + chain[3].responds);
+  // What was said holds for the set as it is now.
+  CHECK(analysis.analyse(bus, {})[1].response == 200 + 520);
+}
+
+TEST_CASE("chains: what cannot be bounded has a reason and a hop") {
+  const auto overloaded = [](std::size_t i, std::int64_t) {
+    return i == 1 ? Explained{.reason = Reason::overloaded} : in(5);
+  };
+  std::array<Hop, 2> chain{{{.activation = sampled, .period = 10}, {}}};
+  CHECK(bound_chain(chain, 100, overloaded).reason == Reason::overloaded);
+  CHECK(bound_chain(chain, 100, overloaded).hop == 1);
+  CHECK(bound_chain({}, 100, overloaded).reason == Reason::bad_input);
+
+  // Each pass makes the first hop slower by what the second has inherited.
+  std::int64_t seen = 0;
+  const auto circle = [&](std::size_t i, std::int64_t jitter) {
+    if (i == 1) seen = jitter;
+    return in(i == 0 ? 10 + seen : 5 + jitter);
+  };
+  CHECK(bound_chain(chain, 100, circle).reason == Reason::too_long);
+  const auto huge = [](std::size_t, std::int64_t) { return in(unbounded - 1); };
+  CHECK(bound_chain(chain, 100, huge).reason == Reason::too_long);
+
+  std::array<Hop, 1> event{{{.activation = triggered}}};
+  CHECK(bound_chain(event, 100, circle).reason == Reason::bad_input);
+  std::array<Hop, 1> timeless{{{.activation = sampled}}};
+  CHECK(bound_chain(timeless, 100, circle).hop == 0);
+}

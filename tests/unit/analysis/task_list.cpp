@@ -1,0 +1,52 @@
+#include "ocm/analysis/task_list.hpp"
+
+#include <cstdint>
+#include <string_view>
+#include <type_traits>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/topics/amiro.hpp"
+
+using namespace ocm::analysis;
+
+namespace {
+
+struct Quick {
+  static constexpr std::string_view name = "quick";
+  static constexpr bool own = true;
+  static constexpr Task task{.cost = 1'001, .period = 10'000, .level = 0};
+};
+struct Gyroscope {
+  static constexpr std::string_view name = "gyroscope";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 8'999, .period = 10'000, .blocking = 0, .level = 1};
+};
+struct TooMuch {
+  static constexpr Task task{.cost = 9'000, .period = 10'000, .level = 1};
+};
+
+static_assert(schedulable<TaskList<Quick, Gyroscope>>);
+static_assert(!schedulable<TaskList<Quick, TooMuch>>);
+static_assert(
+    std::is_same_v<first_late<TaskList<Quick, TooMuch>>, misses_its_deadline<TooMuch, unbounded, 10'000>>);
+static_assert(schedulable<TaskList<>>);
+
+struct Facts {
+  using Tasks = TaskList<Quick, Gyroscope>;
+  static constexpr std::int64_t blocking = 1'500;
+  static constexpr std::uint32_t bus_percent = 40;
+};
+using Costs = CostsOf<Facts>;
+// Rounded up to whole microseconds.
+static_assert(Costs::own.size() == 1 && Costs::own[0].cost_us == 2 && Costs::own[0].period_us == 10);
+static_assert(Costs::own[0].level == ocm::scheduling::Level::urgent);
+static_assert(Costs::sample_us<amiro::Gyroscope> == 9);
+static_assert(Costs::blocking_us == 2 && Costs::bus_percent == 40);
+
+}  // namespace
+
+TEST_CASE("A list finds its tasks by name") {
+  CHECK(Facts::Tasks::cost_us("quick") == 2);
+  CHECK(Facts::Tasks::cost_us("slow") == 0);
+}
