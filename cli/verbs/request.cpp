@@ -13,6 +13,7 @@
 
 #include "cli/interrupt.hpp"
 #include "cli/output/output.hpp"
+#include "cli/verbs/admission.hpp"
 #include "cli/verbs/commanding.hpp"
 #include "cli/verbs/subscription.hpp"
 
@@ -21,10 +22,11 @@ namespace {
 
 /// Sends the command and shows the first sample of the topic it asks; fails after `timeout` and says what to
 /// check.
-void send_and_await(Session& session, const reflective::Command& command, base::Duration timeout) {
+void send_and_await(Session& session, transport::Bus& open_bus, const reflective::Command& command,
+                    base::Duration timeout) {
   catch_interrupts();
   const auto& catalogue = session.catalogue();
-  const auto bus = session.open_bus();
+  auto* const bus = &open_bus;
   const auto& topic = *command.answers;
   const auto filters = filters_for({&topic}, false);
   if (const auto subscribed = bus->subscribe(filters); !subscribed) fail(subscribed.error);
@@ -60,21 +62,29 @@ void send_and_await(Session& session, const reflective::Command& command, base::
 
 }  // namespace
 
-void add_request_options(CLI::App& verb, Session& session, std::string_view words_help) {
+void add_request_options(CLI::App& verb, Session& session, std::string_view words_help, Starts starts) {
   struct Options {
     Options(CLI::App& app, Session& s, std::string_view help) : commanding(app, s, help) {}
     Commanding commanding;
+    AdmissionOptions admission;
     std::string wait;
   };
   const auto options = std::make_shared<Options>(verb, session, words_help);
   auto* wait =
       verb.add_option("--wait", options->wait, "wait for the first sample and show it, at most T (2s)");
   wait->expected(0, 1)->type_name("[T]");
+  if (starts == Starts::stream) add_admission_options(verb, options->admission);
   verb.callback([options, wait, &session] {
     const auto command = options->commanding.parse();
-    if (options->commanding.dry_run() || wait->count() == 0)
-      return carry_out(session, command, options->commanding.dry_run());
-    send_and_await(session, command, duration_option("--wait", options->wait.empty() ? "2s" : options->wait));
+    const bool dry_run = options->commanding.dry_run();
+    if (dry_run && !options->admission.explain) return print_frames(command.frames);
+    base::Duration timeout{};
+    if (wait->count() != 0) timeout = duration_option("--wait", options->wait.empty() ? "2s" : options->wait);
+    const auto bus = session.open_bus();
+    admit(session, *bus, command, options->admission);
+    if (dry_run) return print_frames(command.frames);
+    if (wait->count() != 0) return send_and_await(session, *bus, command, timeout);
+    for (const auto& frame : command.frames) send_patiently(*bus, frame);
   });
 }
 

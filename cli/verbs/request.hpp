@@ -9,7 +9,12 @@
 
 namespace ocm::cli {
 
-/// The words, --priority, --dry-run and --wait, and what the verb does with them.
-void add_request_options(CLI::App& verb, Session& session, std::string_view words_help);
+/// What a verb's request starts: one sample, or a stream, which the bus must be able to carry.
+enum class Starts : bool { sample, stream };
+
+/// The words, --priority, --dry-run and --wait, of a stream those of its admission, and what the verb does
+/// with them.
+void add_request_options(CLI::App& verb, Session& session, std::string_view words_help,
+                         Starts starts = Starts::sample);
 
 }  // namespace ocm::cli

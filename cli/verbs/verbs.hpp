@@ -26,6 +26,7 @@ void add_listen(CLI::App& app, Session& session, int& exit_code);
 void add_doctor(CLI::App& app, Session& session, int& exit_code);
 void add_run(CLI::App& app, Session& session, int& exit_code);
 void add_sim(CLI::App& app, Session& session, int& exit_code);
+void add_analyse(CLI::App& app, Session& session, int& exit_code);
 
 /// Headings under which --help lists the verbs.
 inline constexpr std::string_view look_group = "Look at the robot's topics";

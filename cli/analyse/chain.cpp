@@ -1,0 +1,185 @@
+#include "cli/analyse/chain.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "ocm/analysis/cpu.hpp"
+
+#include "cli/session.hpp"
+
+namespace ocm::cli::analyse {
+namespace {
+
+using analysis::Explained;
+
+/// One processor or bus of the chain, whose jitters grow while the chain is bounded.
+struct Place {
+  bool is_bus = false;
+  std::vector<std::string> names;
+  std::vector<analysis::Task> tasks;
+  BusModel bus;
+};
+
+Place place_of(const std::string& name, const std::string& path, const BusOptions& options,
+               const protocol::Catalogue& catalogue, const std::vector<Rate>& rates) {
+  Place place;
+  if (name != "robot" && is_task_set(path)) {
+    for (TaskEntry& entry : read_tasks(path).entries) {
+      place.names.push_back(std::move(entry.name));
+      place.tasks.push_back(entry.task);
+    }
+    return place;
+  }
+  BusOptions how = options;
+  if (name == "robot") how.lengths = Lengths::exact;
+  const BusSet set = name == "robot" ? robot_bus(catalogue, rates) : read_bus(path);
+  place.is_bus = true;
+  place.bus = model_of(set, how);
+  for (const BusEntry& entry : set.entries) place.names.push_back(entry.name);
+  return place;
+}
+
+std::string why(const ChainStudy& study) {
+  const auto& bound = study.bound;
+  const std::string hop = bound.hop < study.entries.size() ? study.entries[bound.hop].name : "";
+  if (bound.latency == analysis::unbounded)
+    return fmt::format("no bound: {}{}", hop.empty() ? "" : hop + ": ", analysis::describe(bound.reason));
+  const auto& slowest = study.hops[bound.hop];
+  std::string text =
+      fmt::format("{} takes the longest: {}", hop, time_text(slowest.waits + slowest.responds));
+  if (slowest.waits > 0) text += fmt::format(", {} of it until it looks", time_text(slowest.waits));
+  if (study.deadline != analysis::unbounded)
+    text = fmt::format("{} {} its deadline; {}", time_text(std::abs(study.deadline - bound.age)),
+                       bound.ok() ? "before" : "after", text);
+  return text;
+}
+
+}  // namespace
+
+ChainStudy study_chain(const std::string& file, std::int64_t deadline, const BusOptions& options,
+                       const protocol::Catalogue& catalogue, const std::vector<Rate>& rates) {
+  ChainStudy study;
+  study.entries = read_chain(file);
+  study.deadline = deadline;
+  std::map<std::string, Place> places;
+  std::vector<std::size_t> members;
+  std::vector<Mistake> mistakes;
+  const auto folder = std::filesystem::path{file}.parent_path();
+  for (const HopEntry& entry : study.entries) {
+    analysis::Hop hop;
+    hop.activation = entry.sampled ? analysis::Activation::sampled : analysis::Activation::triggered;
+    hop.period = entry.period;
+    hop.best = entry.best;
+    std::size_t member = 0;
+    if (!entry.set.empty()) {
+      if (!places.contains(entry.set))
+        places.emplace(entry.set,
+                       place_of(entry.set, (folder / entry.set).string(), options, catalogue, rates));
+      const Place& place = places.at(entry.set);
+      member = static_cast<std::size_t>(std::find(place.names.begin(), place.names.end(), entry.name) -
+                                        place.names.begin());
+      if (member == place.names.size()) {
+        mistakes.push_back({fmt::format("{}:{}", file, entry.line),
+                            fmt::format("'{}' is not in {}", entry.name, entry.set),
+                            "a name as that set has it; a topic's frame is topic.frame"});
+      } else {
+        hop.period = place.is_bus ? place.bus.messages[member].period : place.tasks[member].period;
+        hop.jitter = place.is_bus ? place.bus.messages[member].jitter : place.tasks[member].jitter;
+      }
+    }
+    members.push_back(member);
+    study.hops.push_back(hop);
+  }
+  stop_at(mistakes, file);
+
+  const auto analysis = std::make_unique<analysis::CanResponse<most_messages>>();
+  study.bound = analysis::bound_chain(study.hops, deadline, [&](std::size_t i, std::int64_t jitter) {
+    const HopEntry& entry = study.entries[i];
+    if (entry.set.empty()) {
+      // Given, not analysed: it takes so long from its activation on, whenever that is.
+      Explained given;
+      const auto response = analysis::Checked{entry.response} + (entry.sampled ? 0 : jitter);
+      given.response = response.value_or(analysis::unbounded);
+      given.reason = response.ok() ? analysis::Reason::schedulable : analysis::Reason::too_long;
+      return given;
+    }
+    Place& place = places.at(entry.set);
+    if (!place.is_bus) {
+      place.tasks[members[i]].jitter = jitter;
+      return analysis::response_time(place.tasks, members[i]);
+    }
+    place.bus.messages[members[i]].jitter = jitter;
+    return analysis->analyse(place.bus.messages, place.bus.bus, options.test)[members[i]];
+  });
+  return study;
+}
+
+std::string to_json(const ChainStudy& study) {
+  using Json = nlohmann::ordered_json;
+  const bool bounded = study.bound.latency != analysis::unbounded;
+  Json hops = Json::array();
+  for (std::size_t i = 0; i < study.hops.size(); ++i) {
+    const auto& hop = study.hops[i];
+    hops.push_back({{"name", study.entries[i].name},
+                    {"activation", study.entries[i].sampled ? "sampled" : "triggered"},
+                    {"waits_ns", bounded ? Json(hop.waits) : Json(nullptr)},
+                    {"responds_ns", bounded ? Json(hop.responds) : Json(nullptr)},
+                    {"until_ns", bounded ? Json(hop.until) : Json(nullptr)}});
+  }
+  const Json object{
+      {"latency_ns", bounded ? Json(study.bound.latency) : Json(nullptr)},
+      {"shortest_ns", bounded ? Json(study.bound.shortest) : Json(nullptr)},
+      {"age_ns", bounded ? Json(study.bound.age) : Json(nullptr)},
+      {"deadline_ns", study.deadline != analysis::unbounded ? Json(study.deadline) : Json(nullptr)},
+      {"schedulable", study.bound.ok()},
+      {"hops", hops},
+      {"why", why(study)}};
+  return object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string to_csv(const ChainStudy& study) {
+  std::string text = "hop,activation,waits_ns,responds_ns,until_ns\n";
+  for (std::size_t i = 0; i < study.hops.size(); ++i) {
+    const auto& hop = study.hops[i];
+    text +=
+        fmt::format("{},{},{},{},{}\n", study.entries[i].name,
+                    study.entries[i].sampled ? "sampled" : "triggered", hop.waits, hop.responds, hop.until);
+  }
+  return text;
+}
+
+std::string to_table(const ChainStudy& study) {
+  const bool bounded = study.bound.latency != analysis::unbounded;
+  std::size_t width = 3;
+  std::size_t set_width = 3;
+  for (const auto& entry : study.entries) {
+    width = std::max(width, entry.name.size());
+    set_width = std::max(set_width, entry.set.size());
+  }
+  constexpr auto line = "{:<{}}  {:<{}}  {:<10}  {:>12}  {:>12}  {:>12}  {:>12}\n";
+  std::string text = fmt::format(fmt::runtime(line), "HOP", width, "SET", set_width, "ACTIVATION", "JITTER",
+                                 "WAITS", "RESPONDS", "UNTIL");
+  for (std::size_t i = 0; i < study.hops.size(); ++i) {
+    const auto& hop = study.hops[i];
+    const auto& entry = study.entries[i];
+    text += fmt::format(fmt::runtime(line), entry.name, width, entry.set.empty() ? "-" : entry.set, set_width,
+                        entry.sampled ? "sampled" : "triggered", bounded ? time_text(hop.inherited) : "-",
+                        bounded ? time_text(hop.waits) : "-", bounded ? time_text(hop.responds) : "-",
+                        bounded ? time_text(hop.until) : "-");
+  }
+  text += "\n";
+  if (bounded)
+    text += fmt::format(
+        "From the sensor's release to the end of the last hop: {} to {}. From an event to the end of "
+        "the reaction: {} at most.\n",
+        time_text(study.bound.shortest), time_text(study.bound.latency), time_text(study.bound.age));
+  return text + "  " + why(study) + "\n";
+}
+
+}  // namespace ocm::cli::analyse

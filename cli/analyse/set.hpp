@@ -1,0 +1,125 @@
+/// The sets that `amiroctl analyse` looks at, and where they come from: CSV, DBC, a robot's catalogue.
+///
+/// A reader that finds mistakes prints each with its file, line and remedy, and leaves with exit_usage; a
+/// file that cannot be read is exit_failure.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ocm/analysis/message_set.hpp"
+#include "ocm/analysis/task_set.hpp"
+#include "ocm/base/time.hpp"
+#include "ocm/can/frame.hpp"
+#include "ocm/protocol/topic.hpp"
+
+namespace ocm::cli::analyse {
+
+/// A message as its file has it. Times are nanoseconds.
+struct BusEntry {
+  std::string name;
+  can::Frame head;    ///< identifier, format and DLC; no data
+  unsigned bits = 0;  ///< the most bits that a spec gives for it; 0: none given
+  std::int64_t period = 0;
+  std::int64_t deadline = analysis::implicit_deadline;
+  std::int64_t jitter = 0;
+  std::size_t line = 0;      ///< of its file; 0: from no file
+  bool overwritten = false;  ///< the next of its kind has to find it gone: D is T at most
+
+  [[nodiscard]] std::int64_t deadline_at(std::int64_t at_period) const {
+    const bool implicit = deadline == analysis::implicit_deadline;
+    return overwritten && !implicit ? std::min(deadline, at_period) : deadline;
+  }
+};
+/// In the order of arbitration, with identifiers that differ.
+struct BusSet {
+  std::vector<BusEntry> entries;
+  std::vector<std::string> remarks;  ///< what is not in the set, and other things to know
+};
+
+struct TaskEntry {
+  std::string name;
+  std::int64_t priority = 0;  ///< greater is more urgent
+  analysis::Task task;        ///< its level is the place of its priority
+  std::size_t line = 0;
+};
+/// The most urgent first.
+struct TaskSet {
+  std::vector<TaskEntry> entries;
+};
+
+/// A period given on the command line or in a file of rates.
+struct Rate {
+  std::string name;  ///< a topic's name or alias, or a message's
+  base::Duration period{};
+  bool off = false;
+  bool has_priority = false;
+  protocol::Priority priority = protocol::default_priority;
+  std::string place;  ///< for messages: "--rates gyro=1", "rates.txt:3"
+};
+
+/// More messages than a bus with 11-bit identifiers can have; the analysis takes so many.
+inline constexpr std::size_t most_messages = 4096;
+inline constexpr std::size_t most_tasks = 4096;
+
+/// One mistake: "place: what", and below it the remedy.
+struct Mistake {
+  std::string place;
+  std::string what;
+  std::string remedy;
+};
+/// Prints them, and leaves with exit_usage; does nothing if there are none.
+void stop_at(const std::vector<Mistake>& mistakes, std::string_view file);
+
+/// All of a file, or of standard input for "-".
+[[nodiscard]] std::string read_text(const std::string& file);
+
+/// Lines of a table with a header, as csv.cpp splits them.
+struct Line {
+  std::size_t number = 0;
+  std::vector<std::string> cells;
+};
+/// Cells are separated by commas and may stand in double quotes; empty lines and those that begin with # are
+/// left out, and so are spaces around a cell.
+[[nodiscard]] std::vector<Line> split_csv(std::string_view text);
+
+/// `name,id,dlc,period_ns,deadline_ns,jitter_ns`, or a DBC file if the name ends so.
+[[nodiscard]] BusSet read_bus(const std::string& file);
+/// The messages of a DBC file that have a cycle time.
+[[nodiscard]] BusSet parse_dbc(std::string_view text, const std::string& file,
+                               std::vector<Mistake>& mistakes);
+/// `name,priority,C_ns,T_ns,D_ns,J_ns,B_ns`
+[[nodiscard]] TaskSet read_tasks(const std::string& file);
+
+/// Whether a file is a set of tasks: its header has C_ns.
+[[nodiscard]] bool is_task_set(const std::string& file);
+
+/// A hop of a chain: `hop,set,activation,response_ns,best_ns,period_ns`.
+struct HopEntry {
+  std::string name;  ///< of the task or message in its set
+  std::string
+      set;  ///< a file beside that of the chain; "robot": the robot's topics; empty: `response` is given
+  bool sampled = true;  ///< or triggered by the hop before
+  std::int64_t response = 0;
+  std::int64_t best = 0;
+  std::int64_t period = 0;
+  std::size_t line = 0;
+};
+[[nodiscard]] std::vector<HopEntry> read_chain(const std::string& file);
+
+/// Words of --rates: "topic=period", "topic=period@priority", "topic=off", or the name of a file of such
+/// lines.
+[[nodiscard]] std::vector<Rate> read_rates(const std::vector<std::string>& words);
+/// A robot's sensors as they are sent when nobody asks for anything else, and its drive, changed by `rates`.
+[[nodiscard]] BusSet robot_bus(const protocol::Catalogue& catalogue, const std::vector<Rate>& rates);
+/// Changes the periods of a set that was read.
+void apply_rates(BusSet& set, const std::vector<Rate>& rates);
+
+/// Puts messages into the order of arbitration; of equal identifiers the second is a mistake.
+void order_bus(BusSet& set, std::string_view file, std::vector<Mistake>& mistakes);
+
+}  // namespace ocm::cli::analyse

@@ -1,0 +1,81 @@
+/// What the analysis says of a set, for all outputs: a row a message or task, the load, and what would help.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ocm/analysis/can_response.hpp"
+#include "ocm/analysis/task_set.hpp"
+#include "ocm/analysis/utilisation.hpp"
+#include "ocm/analysis/verdict.hpp"
+
+#include "cli/analyse/set.hpp"
+
+namespace ocm::cli::analyse {
+
+/// Times are nanoseconds.
+struct Row {
+  std::string name;
+  std::string rank;  ///< the identifier, or the priority
+  std::string size;  ///< "8 B, 131 bits"; empty for tasks
+  std::int64_t cost = 0;
+  std::int64_t period = 0;
+  std::int64_t jitter = 0;
+  analysis::Explained result;
+  std::vector<std::int64_t> instances;  ///< responses in the busy period; none where there is no bound
+  std::string why;
+};
+
+/// Rows are in order of priority, the most urgent first.
+struct Study {
+  enum class Kind { bus, tasks } kind = Kind::bus;
+  std::vector<Row> rows;
+  analysis::Utilisation load;
+  bool with_errors = false;          ///< an error model takes its share on top of the load
+  std::string head;                  ///< bit rate and assumptions, or the processor's
+  std::vector<std::string> remarks;  ///< what is not in the set
+  [[nodiscard]] bool passes() const;
+  [[nodiscard]] double utilisation() const;
+};
+
+enum class Lengths { generic, exact };
+
+struct BusOptions {
+  std::int64_t bit_rate = 0;
+  Lengths lengths = Lengths::generic;
+  analysis::CanTest test = analysis::CanTest::exact;
+  std::int64_t error_burst = 0;
+  std::int64_t error_every = 0;  ///< nanoseconds
+};
+
+/// A set ready for the analysis: nanoseconds, in the order of the entries.
+struct BusModel {
+  std::vector<analysis::Message> messages;
+  std::vector<unsigned> bits;
+  analysis::CanBus bus;
+};
+[[nodiscard]] BusModel model_of(const BusSet& set, const BusOptions& options);
+
+[[nodiscard]] Study study_bus(const BusSet& set, const BusOptions& options);
+[[nodiscard]] Study study_tasks(const TaskSet& set, const analysis::Processor& processor);
+
+/// For people: what of each row can change, and what would make all meet their deadlines.
+struct Advice {
+  struct Room {
+    std::int64_t shortest_period = 0;  ///< 0: none found, or none looked for
+    std::int64_t greatest_cost = 0;    ///< tasks; 0: none
+  };
+  std::vector<Room> rooms;           ///< one a row; empty: a set too large to look
+  std::vector<std::string> changes;  ///< sentences
+};
+[[nodiscard]] Advice advise_bus(const BusSet& set, const BusOptions& options, const Study& study);
+[[nodiscard]] Advice advise_tasks(const TaskSet& set, const analysis::Processor& processor,
+                                  const Study& study);
+
+/// One sentence: what delays it and by how much, or why there is no bound.
+[[nodiscard]] std::string explain(const Study& study, std::size_t row);
+[[nodiscard]] std::string time_text(std::int64_t nanoseconds);
+
+}  // namespace ocm::cli::analyse

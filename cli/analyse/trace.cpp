@@ -1,0 +1,398 @@
+#include "cli/analyse/trace.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "ocm/can/length.hpp"
+#include "ocm/can/text.hpp"
+#include "ocm/protocol/request.hpp"
+
+#include "cli/analyse/report.hpp"
+#include "cli/session.hpp"
+
+namespace ocm::cli::analyse {
+namespace {
+
+constexpr std::size_t window = 100;
+/// candump writes microseconds.
+constexpr std::int64_t resolution = 1000;
+
+struct Arrival {
+  std::int64_t time = 0;
+  unsigned bits = 0;  ///< with its stuff bits and the intermission
+  can::Frame frame;
+};
+
+struct Log {
+  std::vector<Arrival> arrivals;
+  std::size_t errors = 0;
+  std::vector<std::string> remarks;
+};
+
+Log read_log(const std::string& file) {
+  std::ifstream opened;
+  if (file != "-") {
+    opened.open(file);
+    if (!opened.is_open())
+      fail({fmt::format("cannot read {}: {}", file, std::strerror(errno)), "a log as candump -l writes it"});
+  }
+  std::istream& in = file == "-" ? std::cin : opened;
+  Log log;
+  std::vector<Mistake> mistakes;
+  std::string line;
+  std::string interface;
+  std::size_t others = 0;
+  std::size_t backwards = 0;
+  constexpr std::size_t most_mistakes = 20;
+  for (std::size_t number = 1; std::getline(in, line) && mistakes.size() < most_mistakes; ++number) {
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    const auto parsed = can::parse_log_line(line);
+    if (!parsed) {
+      mistakes.push_back({fmt::format("{}:{}", file, number),
+                          fmt::format("no line of a log: {}", base::describe(parsed.error)),
+                          "(1436509052.249713) can0 605#00D20000, as candump -l writes it"});
+      continue;
+    }
+    if (interface.empty()) interface = parsed->interface;
+    if (parsed->interface != interface) {
+      ++others;
+      continue;
+    }
+    if (parsed->frame.format == can::Format::error) {
+      ++log.errors;
+      continue;
+    }
+    const std::int64_t time = parsed->time.time_since_epoch().count();
+    if (!log.arrivals.empty() && time < log.arrivals.back().time) ++backwards;
+    log.arrivals.push_back({time, can::frame_bits(parsed->frame) + can::intermission_bits, parsed->frame});
+  }
+  if (mistakes.empty() && log.arrivals.empty())
+    mistakes.push_back({file, "no frame", "a log as candump -l writes it"});
+  stop_at(mistakes, file);
+  if (others > 0)
+    log.remarks.push_back(
+        fmt::format("Only the frames of {}: {} of other interfaces were passed over.", interface, others));
+  if (backwards > 0) {
+    log.remarks.push_back(
+        fmt::format("{} frames are older than the one before them: sorted by time.", backwards));
+    std::stable_sort(log.arrivals.begin(), log.arrivals.end(),
+                     [](const Arrival& a, const Arrival& b) { return a.time < b.time; });
+  }
+  return log;
+}
+
+/// The topics that are in the log, with the periods that requests in it ask for.
+BusSet set_of(const Log& log, const protocol::Catalogue& catalogue, std::vector<Rate> rates) {
+  const protocol::FrameIndex index{catalogue};
+  struct Seen {
+    bool sent = false;
+    protocol::Priority priority = protocol::default_priority;
+    std::int64_t asked = 0;
+    std::int64_t last = 0;
+    std::int64_t shortest = 0;
+  };
+  std::map<const protocol::Topic*, Seen> seen;
+  std::vector<std::string> remarks;
+  for (const Arrival& arrival : log.arrivals) {
+    if (arrival.frame.format != can::Format::base && arrival.frame.format != can::Format::base_remote)
+      continue;
+    const auto id = protocol::Identifier::decode(arrival.frame.id);
+    if (const auto* topic = index.requested(id)) {
+      const auto request = protocol::decode_request(arrival.frame);
+      if (!request || request->mode != protocol::Mode::publish) continue;
+      const std::int64_t asked =
+          (arrival.frame.dlc == 1 ? topic->period : request->period).duration().count();
+      Seen& its = seen[topic];
+      if (its.asked != 0 && its.asked != asked)
+        remarks.push_back(fmt::format("{} was asked for every {} and every {}: the shorter one counts.",
+                                      topic->name, time_text(its.asked), time_text(asked)));
+      if (its.asked == 0 || asked < its.asked) its.asked = asked;
+    } else if (const auto frame = index.find(id)) {
+      Seen& its = seen[frame.topic];
+      its.priority = id.priority;
+      its.sent = true;
+      if (frame.frame != 0) continue;
+      if (its.last != 0 && (its.shortest == 0 || arrival.time - its.last < its.shortest))
+        its.shortest = arrival.time - its.last;
+      its.last = arrival.time;
+    }
+  }
+  std::vector<Rate> all;
+  for (const auto& topic : catalogue.topics) {
+    const auto its = seen.find(&topic);
+    Rate rate;
+    rate.name = topic.name;
+    rate.place = "the log";
+    if (its == seen.end() || !its->second.sent) {
+      rate.off = true;
+    } else {
+      rate.has_priority = true;
+      rate.priority = its->second.priority;
+      rate.period = topic.period.duration();
+      if (its->second.asked != 0) rate.period = base::Duration{its->second.asked};
+      if (topic.kind == protocol::Kind::actuator) {
+        rate.period = base::Duration{its->second.shortest > 0 ? its->second.shortest : 1'000'000'000};
+        remarks.push_back(
+            fmt::format("{} has no period of its own: the shortest distance in the log, {}, counts.",
+                        topic.name, time_text(rate.period.count())));
+      }
+    }
+    all.push_back(std::move(rate));
+  }
+  for (Rate& rate : rates) {
+    // A rate that says no priority leaves that of the log.
+    for (const Rate& from_log : all)
+      if (const auto* topic = catalogue.find(rate.name);
+          topic != nullptr && from_log.name == topic->name && !rate.has_priority) {
+        rate.has_priority = from_log.has_priority;
+        rate.priority = from_log.priority;
+      }
+    all.push_back(rate);
+  }
+  const bool any = std::any_of(all.begin(), all.end(), [](const Rate& rate) { return !rate.off; });
+  if (!any) fail({"the log has no frame of any topic", "--set FILE.csv gives the messages of another bus"});
+  BusSet set = robot_bus(catalogue, all);
+  set.remarks = std::move(remarks);
+  return set;
+}
+
+class Meter {
+ public:
+  void add(std::int64_t time, const can::Frame& frame, unsigned bits, std::int64_t period) {
+    measured_.greatest_dlc = std::max<unsigned>(measured_.greatest_dlc, frame.dlc);
+    least_bits_ = measured_.count == 0 ? bits : std::min(least_bits_, bits);
+    if (measured_.count == 0) {
+      first_ = time;
+      restart();
+    } else {
+      const std::int64_t distance = time - last_;
+      measured_.shortest = measured_.count == 1 ? distance : std::min(measured_.shortest, distance);
+      measured_.longest = std::max(measured_.longest, distance);
+      // A pause of several periods is one of the sender, or lost frames: the grid goes on behind it.
+      const bool skips_one = distance > period && distance - period >= period - period / 2;
+      const bool pause = skips_one && distance - period - period / 2 >= period;
+      if (pause || ++in_window_ >= window) {
+        restart();
+      } else {
+        behind_ += distance - period - (skips_one ? period : 0);
+        earliest_ = std::min(earliest_, behind_);
+        latest_ = std::max(latest_, behind_);
+        measured_.lateness = std::max(measured_.lateness, latest_ - earliest_);
+      }
+    }
+    last_ = time;
+    ++measured_.count;
+  }
+  [[nodiscard]] Measured finish(std::int64_t bit_rate) const {
+    Measured result = measured_;
+    if (result.count > 1) result.mean = (last_ - first_) / static_cast<std::int64_t>(result.count - 1);
+    if (result.count > 0)
+      result.response = result.lateness + static_cast<std::int64_t>(least_bits_) * 1'000'000'000 / bit_rate;
+    return result;
+  }
+
+ private:
+  void restart() {
+    behind_ = earliest_ = latest_ = 0;
+    in_window_ = 0;
+  }
+  Measured measured_;
+  unsigned least_bits_ = 0;
+  std::int64_t first_ = 0;
+  std::int64_t last_ = 0;
+  std::int64_t behind_ = 0;  ///< the grid that the first of the window starts
+  std::int64_t earliest_ = 0;
+  std::int64_t latest_ = 0;
+  std::size_t in_window_ = 0;
+};
+
+}  // namespace
+
+bool TraceStudy::passes() const {
+  return broken.empty() && study.passes() &&
+         std::none_of(measured.begin(), measured.end(), [](const Measured& m) { return m.exceeds; });
+}
+
+TraceStudy study_trace(const std::string& log_file, const std::string& set_file, const BusOptions& options,
+                       const protocol::Catalogue& catalogue, std::vector<Rate> rates) {
+  const Log log = read_log(log_file);
+  BusSet set;
+  if (set_file.empty()) {
+    set = set_of(log, catalogue, std::move(rates));
+  } else {
+    set = read_bus(set_file);
+    apply_rates(set, rates);
+  }
+  TraceStudy trace;
+  trace.study = study_bus(set, options);
+  trace.study.remarks.insert(trace.study.remarks.end(), log.remarks.begin(), log.remarks.end());
+  trace.frames = log.arrivals.size();
+  trace.span = log.arrivals.back().time - log.arrivals.front().time;
+
+  std::map<std::uint32_t, std::size_t> rows;
+  for (std::size_t i = 0; i < set.entries.size(); ++i) rows[can::arbitration_key(set.entries[i].head)] = i;
+  std::vector<Meter> meters(set.entries.size());
+  std::map<std::uint32_t, std::pair<can::Frame, std::size_t>> strangers;
+  std::int64_t bits = 0;
+  const protocol::FrameIndex index{catalogue};
+  std::size_t requests = 0;
+  std::size_t too_close = 0;
+  std::int64_t before = 0;
+  for (std::size_t n = 0; n < log.arrivals.size(); ++n) {
+    const Arrival& arrival = log.arrivals[n];
+    if (n > 0) {
+      bits += arrival.bits;
+      const std::int64_t needs = static_cast<std::int64_t>(arrival.bits) * 1'000'000'000 / options.bit_rate;
+      if (arrival.time - before + resolution < needs) ++too_close;
+    }
+    before = arrival.time;
+    const auto row = rows.find(can::arbitration_key(arrival.frame));
+    if (row != rows.end()) {
+      meters[row->second].add(arrival.time, arrival.frame, arrival.bits, set.entries[row->second].period);
+    } else if (set_file.empty() && !can::is_extended(arrival.frame.format) &&
+               index.requested(protocol::Identifier::decode(arrival.frame.id)) != nullptr) {
+      ++requests;
+    } else {
+      auto& [frame, count] = strangers[can::arbitration_key(arrival.frame)];
+      frame = arrival.frame;
+      ++count;
+    }
+  }
+  if (requests > 0)
+    trace.study.remarks.push_back(
+        fmt::format("{} request{} from the operator, not in the set: each can delay a frame by its "
+                    "own length.",
+                    requests, requests == 1 ? "" : "s"));
+  if (trace.span > 0)
+    trace.load = static_cast<double>(bits) * 1e9 / static_cast<double>(options.bit_rate) /
+                 static_cast<double>(trace.span);
+
+  // What the log contradicts.
+  auto& broken = trace.broken;
+  for (std::size_t i = 0; i < set.entries.size(); ++i) {
+    const BusEntry& entry = set.entries[i];
+    const auto& result = trace.study.rows[i].result;
+    trace.measured.push_back(meters[i].finish(options.bit_rate));
+    Measured& m = trace.measured.back();
+    if (m.greatest_dlc > entry.head.dlc)
+      broken.push_back(fmt::format("length: {} came with {} bytes, {} were assumed", entry.name,
+                                   m.greatest_dlc, entry.head.dlc));
+    // A tenth of a percent is more than two quartz clocks differ by.
+    m.other_period = m.count > 2 && m.mean < entry.period - entry.period / 1000 - resolution;
+    m.exceeds =
+        m.count > 1 && !m.other_period && result.bounded() && m.response > result.response + resolution;
+    if (m.other_period)
+      broken.push_back(
+          fmt::format("period: {} came every {} on average, every {} was assumed; --rates NAME=PERIOD says "
+                      "what was meant",
+                      entry.name, time_text(m.mean), time_text(entry.period)));
+    else if (m.exceeds)
+      broken.push_back(fmt::format(
+          "jitter: {} came up to {} behind its period, {} were assumed for its release, and with what the "
+          "bus does {} at "
+          "most: its sender releases it later than assumed, or sends something less urgent first, or the "
+          "times in the "
+          "log are those of a busy host",
+          entry.name, time_text(m.lateness), time_text(entry.jitter), time_text(result.response)));
+  }
+  for (const auto& [key, stranger] : strangers)
+    broken.push_back(fmt::format("set: {} frame{} of 0x{:X}, which is not in the set", stranger.second,
+                                 stranger.second == 1 ? "" : "s", stranger.first.id));
+  const auto allowed = static_cast<std::size_t>(
+      options.error_burst + (options.error_every > 0 ? trace.span / options.error_every : 0));
+  if (log.errors > allowed)
+    broken.push_back(fmt::format("errors: {} error frames, {} were assumed", log.errors, allowed));
+  if (too_close > 0)
+    broken.push_back(
+        fmt::format("bit rate: {} frames came sooner after the one before than {} bit/s allow: the bit rate "
+                    "is higher, or the times are those of a host and not of a CAN controller",
+                    too_close, options.bit_rate));
+  if (trace.load > trace.study.utilisation() + 1e-3)
+    broken.push_back(fmt::format("load: {:.2f} % measured, {:.2f} % at most were assumed", trace.load * 100,
+                                 trace.study.utilisation() * 100));
+  return trace;
+}
+
+std::string to_json(const TraceStudy& trace) {
+  using Json = nlohmann::ordered_json;
+  Json rows = Json::array();
+  for (std::size_t i = 0; i < trace.measured.size(); ++i) {
+    const Row& row = trace.study.rows[i];
+    const Measured& m = trace.measured[i];
+    rows.push_back({{"name", row.name},
+                    {"count", m.count},
+                    {"period_ns", row.period},
+                    {"shortest_ns", m.shortest},
+                    {"mean_ns", m.mean},
+                    {"longest_ns", m.longest},
+                    {"lateness_ns", m.other_period ? Json(nullptr) : Json(m.lateness)},
+                    {"measured_ns", m.other_period ? Json(nullptr) : Json(m.response)},
+                    {"response_ns", row.result.bounded() ? Json(row.result.response) : Json(nullptr)},
+                    {"deadline_ns", row.result.deadline},
+                    {"schedulable", row.result.ok()},
+                    {"within", !m.exceeds && !m.other_period}});
+  }
+  const Json object{{"utilisation", trace.study.utilisation()},
+                    {"measured_utilisation", trace.load},
+                    {"span_ns", trace.span},
+                    {"frames", trace.frames},
+                    {"messages", rows},
+                    {"broken", trace.broken}};
+  return object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string to_csv(const TraceStudy& trace) {
+  std::string text =
+      "name,count,period_ns,shortest_ns,mean_ns,longest_ns,lateness_ns,measured_ns,response_ns,within\n";
+  for (std::size_t i = 0; i < trace.measured.size(); ++i) {
+    const Row& row = trace.study.rows[i];
+    const Measured& m = trace.measured[i];
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", cell_text(row.name), m.count, row.period,
+                        m.shortest, m.mean, m.longest, m.other_period ? "" : std::to_string(m.lateness),
+                        m.other_period ? "" : std::to_string(m.response),
+                        row.result.bounded() ? std::to_string(row.result.response) : "",
+                        !m.exceeds && !m.other_period);
+  }
+  return text;
+}
+
+std::string to_table(const TraceStudy& trace) {
+  std::size_t width = 7;
+  for (const Row& row : trace.study.rows) width = std::max(width, row.name.size());
+  constexpr auto line = "{:<{}}  {:>7}  {:>10}  {:>12}  {:>12}  {:>12}  {:>12}  {:>12}  {}\n";
+  std::string text = fmt::format(fmt::runtime(line), "MESSAGE", width, "FRAMES", "T", "SHORTEST", "MEAN",
+                                 "LONGEST", "MEASURED", "R", "VERDICT");
+  for (std::size_t i = 0; i < trace.measured.size(); ++i) {
+    const Row& row = trace.study.rows[i];
+    const Measured& m = trace.measured[i];
+    const bool enough = m.count > 1;
+    text += fmt::format(fmt::runtime(line), row.name, width, m.count, time_text(row.period),
+                        enough ? time_text(m.shortest) : "-", enough ? time_text(m.mean) : "-",
+                        enough ? time_text(m.longest) : "-",
+                        m.count > 0 && !m.other_period ? time_text(m.response) : "-",
+                        row.result.bounded() ? time_text(row.result.response) : "none",
+                        m.exceeds          ? "BEYOND ITS BOUND"
+                        : m.other_period   ? "OTHER PERIOD"
+                        : !row.result.ok() ? "may miss"
+                        : m.count == 0     ? "never came"
+                                           : "ok");
+  }
+  text +=
+      fmt::format("\n{} frames in {}; load {:.2f} % measured, {:.2f} % at most ({})\n", trace.frames,
+                  time_text(trace.span), trace.load * 100, trace.study.utilisation() * 100, trace.study.head);
+  text += trace.broken.empty() ? "The log contradicts no assumption.\n"
+                               : "Assumptions that the log contradicts:\n";
+  for (const std::string& broken : trace.broken) text += "  - " + broken + "\n";
+  for (const std::string& remark : trace.study.remarks) text += remark + "\n";
+  return text;
+}
+
+}  // namespace ocm::cli::analyse

@@ -1,0 +1,30 @@
+/// Before a sensor is asked for a stream: does the bus carry it, with what runs on it already? What runs is
+/// listened to for a moment, nobody is asked; docs/admission.md says what is assumed.
+#pragma once
+
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "ocm/reflective/command.hpp"
+#include "ocm/transport/bus.hpp"
+
+#include "cli/session.hpp"
+
+namespace ocm::cli {
+
+struct AdmissionOptions {
+  bool force = false;
+  bool explain = false;
+  std::string listen = "100ms";
+};
+
+/// --force, --explain and --listen.
+void add_admission_options(CLI::App& verb, AdmissionOptions& options);
+
+/// Listens, and fails with the reason where somebody would be late; --explain prints the table to stdout. A
+/// command that starts no stream passes at once, and so does all with --force alone.
+void admit(Session& session, transport::Bus& bus, const reflective::Command& command,
+           const AdmissionOptions& options);
+
+}  // namespace ocm::cli

@@ -1,0 +1,260 @@
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "ocm/reflective/quantity.hpp"
+
+#include "cli/analyse/chain.hpp"
+#include "cli/analyse/report.hpp"
+#include "cli/analyse/set.hpp"
+#include "cli/analyse/study.hpp"
+#include "cli/analyse/trace.hpp"
+#include "cli/verbs/verbs.hpp"
+
+namespace ocm::cli {
+namespace {
+
+using namespace analyse;
+
+struct Options {
+  std::string file;
+  std::vector<std::string> rates;
+  std::string bit_rate;
+  std::string lengths;
+  std::string test = "exact";
+  std::string errors;
+  std::string context_switch;
+  std::string deadline;
+  std::string set;
+  std::string svg;
+  bool json = false;
+  bool csv = false;
+};
+
+std::int64_t duration(std::string_view option, std::string_view text) {
+  const auto time = reflective::parse_duration(text);
+  if (time && time->count() >= 0) return time->count();
+  fail({fmt::format("{} {}: no time", option, text), "a number with its unit, such as 900us or 50ms"},
+       exit_usage);
+}
+
+/// "500000", "500k", "83.333k", "1M"
+std::int64_t bit_rate(std::string_view text) {
+  std::string_view digits = text;
+  std::int64_t unit = 1;
+  if (digits.ends_with('k') || digits.ends_with('K')) unit = 1000;
+  if (digits.ends_with('M')) unit = 1'000'000;
+  if (unit != 1) digits.remove_suffix(1);
+  const auto number = base::parse_decimal(digits);
+  const auto rate = number ? base::multiply(*number, {unit, 0}) : number;
+  const auto whole = rate ? base::divide_rounded(*rate, {1, 0}) : base::Result<std::int64_t>{rate.error};
+  // Bits a second, whole; classic CAN ends at a million.
+  if (whole && *whole >= 1 && *whole <= 1'000'000 && base::compare(*rate, {*whole, 0}) == 0) return *whole;
+  fail({fmt::format("--bitrate {}: no bit rate of CAN", text),
+        "1 to 1000000 bits a second, such as 500k or 125000"},
+       exit_usage);
+}
+
+/// "burst=1,every=10ms": one of them, or both.
+void read_errors(std::string_view text, BusOptions& options) {
+  const std::string whole{text};
+  bool has_burst = false;
+  const auto wrong = [&whole](std::string_view what) {
+    fail({fmt::format("--errors {}: {}", whole, what),
+          "burst=N,every=TIME: N faults at once, and one more every TIME, such as burst=2,every=10ms"},
+         exit_usage);
+  };
+  while (!text.empty()) {
+    const auto comma = text.find(',');
+    const std::string_view part = text.substr(0, comma);
+    text.remove_prefix(comma == std::string_view::npos ? text.size() : comma + 1);
+    if (part.starts_with("burst=")) {
+      const auto count = base::parse_unsigned(part.substr(6));
+      if (!count || *count > 1'000'000) wrong("no number of faults");
+      options.error_burst = static_cast<std::int64_t>(*count);
+      has_burst = true;
+    } else if (part.starts_with("every=")) {
+      const auto time = reflective::parse_duration(part.substr(6));
+      if (!time || time->count() < 1) wrong("no time between faults");
+      options.error_every = time->count();
+    } else {
+      wrong(fmt::format("'{}' is neither burst=N nor every=TIME", part));
+    }
+  }
+  if (options.error_every > 0 && options.error_burst == 0) {
+    if (has_burst) wrong("no faults at once, but one every so often");
+    options.error_burst = 1;
+  }
+}
+
+BusOptions bus_options(const Options& options, const protocol::Catalogue& catalogue) {
+  BusOptions result;
+  result.bit_rate = options.bit_rate.empty() ? catalogue.bit_rate : bit_rate(options.bit_rate);
+  const bool own = options.file.empty();
+  const std::string lengths = options.lengths.empty() ? (own ? "exact" : "generic") : options.lengths;
+  result.lengths = lengths == "exact" ? Lengths::exact : Lengths::generic;
+  result.test = options.test == "exact" ? analysis::CanTest::exact : analysis::CanTest::sufficient;
+  read_errors(options.errors, result);
+  return result;
+}
+
+void write_file(const std::string& file, const std::string& text) {
+  if (file == "-") {
+    fmt::print("{}", text);
+    return;
+  }
+  std::ofstream out{file, std::ios::binary};
+  out << text;
+  out.close();
+  if (!out)
+    fail({fmt::format("cannot write {}: {}", file, std::strerror(errno)),
+          "give the name of a file that can be written"});
+}
+
+template <class Advise>
+int show(const Study& study, const Options& options, const Session& session, Advise advise) {
+  if (!options.svg.empty()) write_file(options.svg, to_svg(study));
+  if (options.json)
+    fmt::print("{}", to_json(study));
+  else if (options.csv)
+    fmt::print("{}", to_csv(study));
+  else if (options.svg != "-")
+    fmt::print("{}", to_table(study, advise(), session.colour()));
+  return study.passes() ? exit_success : exit_failure;
+}
+
+int bus(const Options& options, Session& session) {
+  const auto rates = read_rates(options.rates);
+  const BusOptions how = bus_options(options, session.catalogue());
+  BusSet set;
+  if (options.file.empty()) {
+    set = robot_bus(session.catalogue(), rates);
+  } else {
+    set = read_bus(options.file);
+    apply_rates(set, rates);
+  }
+  const Study study = study_bus(set, how);
+  return show(study, options, session, [&] { return advise_bus(set, how, study); });
+}
+
+int tasks(const Options& options, Session& session) {
+  const TaskSet set = read_tasks(options.file);
+  analysis::Processor processor;
+  if (!options.context_switch.empty())
+    processor.context_switch = duration("--context-switch", options.context_switch);
+  const Study study = study_tasks(set, processor);
+  return show(study, options, session, [&] { return advise_tasks(set, processor, study); });
+}
+
+int chain(const Options& options, Session& session) {
+  const std::int64_t deadline =
+      options.deadline.empty() ? analysis::unbounded : duration("--deadline", options.deadline);
+  const ChainStudy study = study_chain(options.file, deadline, bus_options(options, session.catalogue()),
+                                       session.catalogue(), read_rates(options.rates));
+  fmt::print("{}", options.json ? to_json(study) : options.csv ? to_csv(study) : to_table(study));
+  return study.bound.ok() ? exit_success : exit_failure;
+}
+
+int trace(const Options& options, Session& session) {
+  Options how = options;
+  how.file = options.set;
+  const TraceStudy study = study_trace(options.file, options.set, bus_options(how, session.catalogue()),
+                                       session.catalogue(), read_rates(options.rates));
+  fmt::print("{}", options.json ? to_json(study) : options.csv ? to_csv(study) : to_table(study));
+  return study.passes() ? exit_success : exit_failure;
+}
+
+void add_outputs(CLI::App& verb, Options& options) {
+  auto* json = verb.add_flag("--json", options.json, "one object, for programs");
+  verb.add_flag("--csv", options.csv, "a line each, times in nanoseconds")->excludes(json);
+  verb.add_option("--svg", options.svg, "draw the worst case into FILE; - for standard output")
+      ->type_name("FILE")
+      ->excludes(json);
+}
+
+void add_bus_options(CLI::App& verb, Options& options) {
+  verb.add_option("--rates", options.rates,
+                  "topic=period, topic=period@priority or topic=off, several; or a file of such lines")
+      ->type_name("RATE");
+  verb.add_option("--bitrate", options.bit_rate, "such as 500k or 125000; default: the spec's")
+      ->type_name("RATE");
+  verb.add_option("--lengths", options.lengths,
+                  "generic: the longest that any identifier could make a frame; exact: of its identifier. "
+                  "Default: generic for a FILE, exact for the robot")
+      ->check(CLI::IsMember({"generic", "exact"}));
+  verb.add_option("--test", options.test, "exact (default), or sufficient: one instance, for D <= T")
+      ->check(CLI::IsMember({"exact", "sufficient"}));
+  verb.add_option("--errors", options.errors,
+                  "burst=N,every=TIME: so many faults at once, and one more every TIME")
+      ->type_name("MODEL");
+}
+
+}  // namespace
+
+void add_analyse(CLI::App& app, Session& session, int& exit_code) {
+  auto* verb = add_verb(app, "analyse", "whether every message and every task is always in time", look_group,
+                        "  amiroctl analyse bus\n"
+                        "  amiroctl analyse bus --rates gyro=50ms ring=2ms@high\n"
+                        "  amiroctl analyse bus messages.csv --bitrate 125k --svg worst-case.svg\n"
+                        "  amiroctl analyse tasks tasks.csv --json");
+  verb->alias("analyze");
+  verb->require_subcommand(1);
+
+  const auto of_bus = std::make_shared<Options>();
+  auto* bus_verb = verb->add_subcommand("bus", "the messages of a CAN bus: the robot's own, or a FILE's");
+  bus_verb->fallthrough();
+  bus_verb->add_option("FILE", of_bus->file,
+                       "CSV (name,id,dlc,period_ns,deadline_ns,jitter_ns) or DBC; none: the robot's topics");
+  add_bus_options(*bus_verb, *of_bus);
+  add_outputs(*bus_verb, *of_bus);
+  bus_verb->callback([of_bus, &session, &exit_code] { exit_code = bus(*of_bus, session); });
+
+  const auto of_tasks = std::make_shared<Options>();
+  auto* tasks_verb = verb->add_subcommand("tasks", "the tasks of a processor");
+  tasks_verb->fallthrough();
+  tasks_verb->add_option("FILE", of_tasks->file, "CSV: name,priority,C_ns,T_ns,D_ns,J_ns,B_ns")->required();
+  tasks_verb
+      ->add_option("--context-switch", of_tasks->context_switch,
+                   "what one costs; a job pays two. Default: nothing")
+      ->type_name("TIME");
+  add_outputs(*tasks_verb, *of_tasks);
+  tasks_verb->callback([of_tasks, &session, &exit_code] { exit_code = tasks(*of_tasks, session); });
+
+  const auto of_chain = std::make_shared<Options>();
+  auto* chain_verb = verb->add_subcommand("chain", "from a sensor to a motor, over tasks and frames");
+  chain_verb->fallthrough();
+  chain_verb->add_option("FILE", of_chain->file, "CSV: hop,set,activation,response_ns,best_ns,period_ns")
+      ->required();
+  chain_verb
+      ->add_option("--deadline", of_chain->deadline,
+                   "from an event to the end of the reaction; default: none")
+      ->type_name("TIME");
+  add_bus_options(*chain_verb, *of_chain);
+  auto* chain_json = chain_verb->add_flag("--json", of_chain->json, "one object, for programs");
+  chain_verb->add_flag("--csv", of_chain->csv, "a line a hop, times in nanoseconds")->excludes(chain_json);
+  chain_verb->callback([of_chain, &session, &exit_code] { exit_code = chain(*of_chain, session); });
+
+  const auto of_trace = std::make_shared<Options>();
+  auto* trace_verb = verb->add_subcommand("trace", "a recorded log, held against the bounds");
+  trace_verb->fallthrough();
+  trace_verb
+      ->add_option("LOG", of_trace->file,
+                   "as candump -l and `amiroctl listen --raw` write it; - for standard input")
+      ->required();
+  trace_verb
+      ->add_option("--set", of_trace->set,
+                   "its messages, CSV or DBC; default: the robot's topics that are in it")
+      ->type_name("FILE");
+  add_bus_options(*trace_verb, *of_trace);
+  auto* trace_json = trace_verb->add_flag("--json", of_trace->json, "one object, for programs");
+  trace_verb->add_flag("--csv", of_trace->csv, "a line a message, times in nanoseconds")
+      ->excludes(trace_json);
+  trace_verb->callback([of_trace, &session, &exit_code] { exit_code = trace(*of_trace, session); });
+}
+
+}  // namespace ocm::cli

@@ -1,0 +1,134 @@
+"""publish asks the bus before it asks the board."""
+
+import re
+import time
+
+from harness import Case, main
+
+NOT_SCHEDULABLE = 15
+SENSORS = "odometry floor_proximity magnetometer gyroscope accelerometer power_status proximity_ring".split()
+
+
+class Admission(Case):
+    def everything_at(self, period):
+        self.start_sim()
+        for sensor in SENSORS:
+            self.run_tool("publish", sensor, period)
+
+    def test_a_request_that_makes_somebody_late_is_refused_with_a_counter_offer(self):
+        self.everything_at("50ms")
+        ring = ("publish", "ring", "--priority", "urgent")
+        out, err = self.run_tool(*ring, "1ms", code=1)
+        self.assertEqual(out, "")
+        # Six of the ring's eight frames and one of 8 bytes that is on its way take more than 1 ms.
+        self.assertRegex(err, r"proximity_ring every 1ms at urgent does not fit on the bus: proximity_ring/sensor_6 "
+                              r"would miss its deadline of 1ms by 1\d\dus")
+        offer = re.search(r"the shortest period that passes is 1\.(\d+)ms", err)
+        offered = 1000 + int(offer[1].ljust(3, "0"))
+        self.assertTrue(1300 <= offered <= 1470, err)
+        # Nothing was sent: the ring still comes every 50 ms, and at medium.
+        out, _ = self.run_tool("listen", "ring", "--raw", "--count", "12")
+        self.assertNotRegex(out, " 4(1F|2[0-6])#")
+        self.run_tool(*ring, f"{offered - 1}us", code=1)
+        _, err = self.run_tool(*ring, "1500us")
+        self.assertEqual(err.splitlines(), ["bus: sim (the only one there is; --bus chooses)"])
+
+    def test_the_offer_passes(self):
+        self.everything_at("50ms")
+        _, err = self.run_tool("publish", "mag", "500us", "--priority", "high", code=1)
+        offer = re.search(r"the shortest period that passes is (\S+);", err)[1]
+        self.run_tool("publish", "mag", offer, "--priority", "high")
+
+    def test_explain_shows_why_not(self):
+        self.everything_at("50ms")
+        out, _ = self.run_tool("publish", "ring", "1ms", "--priority", "urgent", "--explain", code=1)
+        lines = out.splitlines()
+        self.assertEqual(lines[0].split(), "ID MESSAGE PERIOD DEADLINE BITS RESPONSE SLACK VERDICT".split())
+        self.assertEqual(len(lines), 1 + 17 + 1)
+        self.assertIn("in time, asked for", lines[1])
+        self.assertRegex(lines[8], "^426 .*never gets through, asked for")
+        self.assertRegex(lines[-1], r"^load 1\d\d\.\d % of 500000 bit/s at worst; 17 identifiers heard within 10\d")
+
+    def test_force_sends_what_others_could_not_bear(self):
+        self.start_sim()
+        self.run_tool("publish", "gyro", "1ms", "--priority", "low")
+        ring = ("publish", "ring", "1500us", "--priority", "urgent")
+        _, err = self.run_tool(*ring, code=1)
+        self.assertIn("gyroscope, which runs already, would ", err)
+        self.run_tool(*ring, "--force")
+        out, _ = self.run_tool("listen", "ring", "--raw", "--count", "2")
+        self.assertRegex(out, " 4(1F|2[0-6])#")
+
+    def test_the_board_refuses_too_and_says_why(self):
+        self.start_sim()
+        self.run_tool("publish", "ring", "50ms")
+        listener = self.listen("power_management_refusal", "--count", "1", "--timeout", "5s")
+        self.run_tool("publish", "ring", "1ms", "--priority", "urgent", "--force")
+        out, _ = listener.communicate(timeout=10)
+        refusal = self.objects(out)[0]["fields"]
+        self.assertEqual((refusal["topic"], refusal["reason"], refusal["refused"]), (0x1F, NOT_SCHEDULABLE, 1))
+        # What ran goes on as it did.
+        out, _ = self.run_tool("listen", "ring", "--raw", "--count", "16")
+        self.assertNotRegex(out, " 4(1F|2[0-6])#")
+        self.assertEqual(out.count(" 61F#"), 2)
+        out, _ = self.run_tool("doctor", "--watch", "100ms")
+        self.assertIn("proximity_ring: not_schedulable", out)
+
+    def test_who_runs_already_is_not_harmed(self):
+        self.start_sim()
+        self.run_tool("publish", "gyro", "500us", "--priority", "low")
+        _, err = self.run_tool("publish", "ring", "2ms", "--priority", "urgent", code=1)
+        self.assertIn("gyroscope, which runs already, would ", err)
+
+    def test_a_request_that_no_bus_carries_is_refused_on_a_silent_one_too(self):
+        self.start_sim()
+        _, err = self.run_tool("publish", "ring", "1ms", code=1)
+        self.assertIn("proximity_ring/sensor_", err)
+
+    def test_it_costs_a_tenth_of_a_second_and_force_nothing(self):
+        self.start_sim()
+        def seconds(*arguments):
+            begin = time.monotonic()
+            self.run_tool(*arguments)
+            return time.monotonic() - begin
+        self.run_tool("publish", "gyro", "50ms")  # warm
+        free = min(seconds("publish", "gyro", "50ms", "--force") for _ in range(3))
+        asked = min(seconds("publish", "gyro", "50ms") for _ in range(3))
+        self.assertLess(free, 0.1)
+        self.assertLess(asked - free, 0.15)
+
+    def test_dry_run_needs_no_bus(self):
+        out, _ = self.run_tool("publish", "ring", "1ms", "--priority", "urgent", "--dry-run")
+        self.assertEqual(out, "01F#01010000\n")
+
+    def test_dry_run_explain_sends_nothing(self):
+        self.start_sim()
+        out, _ = self.run_tool("publish", "gyro", "50ms", "--dry-run", "--explain")
+        self.assertIn("in time, asked for", out)
+        self.assertIn("208#01320000\n", out)
+        self.run_tool("listen", "gyro", "--count", "1", "--timeout", "300ms", code=1)
+
+    def test_once_and_scripts_do_not_ask(self):
+        self.run_tool("once", "gyro", "--explain", code=2)
+        self.start_sim()
+        path = f"{self.folder}/fast.script"
+        with open(path, "w") as script:
+            script.write("0s publish ring 1ms --priority urgent\n100ms stop ring\n")
+        self.run_tool("run", path)
+
+    def test_a_longer_look_sees_what_comes_seldom(self):
+        self.start_sim()
+        self.run_tool("publish", "power", "200ms")
+        out, _ = self.run_tool("publish", "gyro", "50ms", "--dry-run", "--explain", "--listen", "700ms")
+        self.assertRegex(out, r"power_status +(19\d|200)(\.\d+)?ms +50ms")
+        # A status tells of a stream that was not heard; it counts as often as it could have been missed.
+        self.run_tool("publish", "power", "20s")
+        self.run_tool("publish", "power_management_status", "100ms")
+        out, _ = self.run_tool("publish", "gyro", "50ms", "--dry-run", "--explain", "--listen", "350ms")
+        self.assertRegex(out, r"power_status +35\d(\.\d+)?ms +50ms")
+        _, err = self.run_tool("publish", "gyro", "--listen", "soon", code=2)
+        self.assertIn("--listen soon: not a time", err)
+
+
+if __name__ == "__main__":
+    main()

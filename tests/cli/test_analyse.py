@@ -1,0 +1,422 @@
+"""amiroctl analyse: the figures of the literature, other people's files, and mistakes in them."""
+
+import json
+import os
+import xml.etree.ElementTree as ElementTree
+
+from harness import Case, main
+
+BUS = "name,id,dlc,period_ns,deadline_ns,jitter_ns\n"
+TASKS = "name,priority,C_ns,T_ns,D_ns,J_ns,B_ns\n"
+
+# Three messages of 7 bytes at 125 kbit/s, 1 ms each: the third is late in its second release only.
+# [Davis, Burns, Bril, Lukkien 2007, section 3.3]
+DAVIS = BUS + "a,0x101,7,2500000,,\nb,0x102,7,3500000,3250000,0\nc,0x103,7,3500000,3250000,\n"
+
+
+class Analyse(Case):
+    def file(self, text, name="set.csv"):
+        path = os.path.join(self.folder, name)
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+        return path
+
+    def bus(self, text, *options, code=0, name="set.csv"):
+        out, _ = self.run_tool("analyse", "bus", self.file(text, name), "--json", *options, code=code)
+        return json.loads(out)
+
+    def tasks(self, text, *options, code=0):
+        out, _ = self.run_tool("analyse", "tasks", self.file(text), "--json", *options, code=code)
+        return json.loads(out)
+
+    @staticmethod
+    def column(rows, key):
+        return {row["name"]: row[key] for row in rows}
+
+
+class Bus(Analyse):
+    def test_the_second_release_is_the_worst(self):
+        found = self.bus(DAVIS, "--bitrate", "125k", code=1)
+        self.assertEqual(list(found), ["utilisation", "messages"])
+        self.assertEqual(list(found["messages"][0]),
+                         ["name", "response_ns", "deadline_ns", "schedulable", "instances_ns", "why"])
+        self.assertEqual(self.column(found["messages"], "response_ns"), {"a": 2000000, "b": 3000000, "c": 3500000})
+        self.assertEqual(self.column(found["messages"], "deadline_ns"), {"a": 2500000, "b": 3250000, "c": 3250000})
+        self.assertEqual(self.column(found["messages"], "schedulable"), {"a": True, "b": True, "c": False})
+        self.assertEqual(self.column(found["messages"], "instances_ns")["c"], [3000000, 3500000])
+        self.assertAlmostEqual(found["utilisation"], 1 / 2.5 + 2 / 3.5, places=9)
+        self.assertIn("250us", found["messages"][2]["why"])
+
+    def test_sufficient(self):
+        found = self.bus(DAVIS, "--bitrate", "125000", "--test", "sufficient", code=1)
+        self.assertEqual(self.column(found["messages"], "response_ns")["c"], 7000000)
+
+    def test_exact_lengths_are_shorter(self):
+        generic = self.column(self.bus(DAVIS, "--bitrate", "125k", "--lengths", "generic", code=1)["messages"],
+                              "response_ns")
+        exact = self.column(self.bus(DAVIS, "--bitrate", "125k", "--lengths", "exact")["messages"], "response_ns")
+        for name in "abc":
+            self.assertLess(exact[name], generic[name])
+
+    def test_errors_add_to_each_response(self):
+        # One fault: 31 bits and the longest frame again. a: 1 ms + 1 ms + 156 bits of 8 us.
+        found = self.bus(BUS + "a,1,7,100000000,,\nb,2,7,100000000,,\n", "--bitrate", "125k", "--errors",
+                         "burst=1,every=1s")
+        self.assertEqual(self.column(found["messages"], "response_ns"),
+                         {"a": 2000000 + 156 * 8000, "b": 2000000 + 156 * 8000})
+
+    def test_jitter_adds_to_its_own(self):
+        found = self.bus(BUS + "a,1,7,100000000,,250000\nb,2,7,100000000,,\n", "--bitrate", "125k")
+        self.assertEqual(self.column(found["messages"], "response_ns")["a"], 2250000)
+
+    def test_overload_has_no_bound(self):
+        found = self.bus(BUS + "a,1,8,150000,,\nb,2,8,150000,,\nc,3,8,1000000,,\n", "--bitrate", "1M", code=1)
+        self.assertEqual(self.column(found["messages"], "response_ns"), {"a": 270000, "b": None, "c": None})
+        self.assertEqual(self.column(found["messages"], "instances_ns")["c"], [])
+        self.assertIn("180.00 %", found["messages"][1]["why"])
+        self.assertAlmostEqual(found["utilisation"], 2 * 135 / 150 + .135)
+
+    def test_identifiers_decide(self):
+        # 0x40x is of 29 bits and shares its first eleven with 0: it loses to 0 and wins against 1.
+        text = BUS + "low,2047,0,1000000,,\nwide,0x40x,0,1000000,,\nfirst,0,0,1000000,,\nbig,0x18FF0102,8,1000000,,\n"
+        found = self.bus(text)
+        self.assertEqual([m["name"] for m in found["messages"]], ["first", "wide", "big", "low"])
+        # B of the last is none; 55 + 80 + 160 + 55 bits of 2 us.
+        self.assertEqual(found["messages"][-1]["response_ns"], 2000 * (55 + 80 + 160 + 55))
+
+    def test_extremes(self):
+        largest = 2**63 - 1
+        found = self.bus(BUS + f"a,1,8,{largest},,\nb,2,8,{largest},1,{largest}\nc,3,8,{largest},,\n", code=1)
+        self.assertEqual(self.column(found["messages"], "response_ns")["b"], None)
+        full = BUS + "".join(f"m{i},{i},8,1000000000,,\n" for i in range(2048))
+        found = self.bus(full, "--bitrate", "1M")
+        self.assertEqual(len(found["messages"]), 2048)
+        self.assertEqual(found["messages"][-1]["response_ns"], 2048 * 135000)
+
+    def test_spreadsheets(self):
+        text = "\ufeff" + 'id , name,period_ns,dlc\r\n# a remark\r\n\r\n0x101,"a, the ""first""",1000000,8\r\n'
+        self.assertEqual(self.bus(text)["messages"][0]["name"], 'a, the "first"')
+
+    def test_table_and_csv(self):
+        path = self.file(DAVIS)
+        out, _ = self.run_tool("analyse", "bus", path, "--bitrate", "125k", code=1)
+        for word in ("MESSAGE", "SLACK", "MISSES", "-250us", "1 of 3 may miss its deadline", "250 kbit/s",
+                     "2nd of 2 releases"):
+            self.assertIn(word, out)
+        out, _ = self.run_tool("analyse", "bus", path, "--bitrate", "125k", "--csv", code=1)
+        self.assertEqual(out.splitlines()[3].split(",")[:11],
+                         "c,0x103,1000000,3500000,3250000,0,0,5000000,3500000,-250000,false".split(","))
+
+    def test_the_shortest_periods_are_the_edge(self):
+        """What the table says of a period holds, and one nanosecond less does not."""
+        out, _ = self.run_tool("analyse", "bus", self.file(DAVIS), "--bitrate", "125k", code=1)
+        change = next(line for line in out.splitlines() if line.startswith("  - a every"))
+        self.assertTrue(change.split()[3].endswith("ms"), change)
+        edge = round(float(change.split()[3][:-2]) * 1e6)
+        self.assertGreater(edge, 2500000)
+        self.bus(DAVIS.replace("a,0x101,7,2500000", f"a,0x101,7,{edge}"), "--bitrate", "125k")
+        self.bus(DAVIS.replace("a,0x101,7,2500000", f"a,0x101,7,{edge - 1}"), "--bitrate", "125k", code=1)
+
+    def test_another_order(self):
+        # Deadline monotonic order is not optimal. Here from the top: 125, 95 and 125 bits do not fit as a, c, b.
+        text = BUS + "a,1,7,2240000,2200000,\nb,2,7,2880000,2760000,\nc,3,4,4400000,3400000,\n"
+        out, _ = self.run_tool("analyse", "bus", self.file(text), "--bitrate", "125k", code=1)
+        self.assertIn("identifiers in this order: a, c, b", out)
+        out = self.bus(text.replace("b,2", "b,4"), "--bitrate", "125k")
+        self.assertEqual(self.column(out["messages"], "response_ns"), {"a": 2000000, "b": 2760000, "c": 2760000})
+
+    def test_mistakes_name_the_line(self):
+        for text, *words in (
+                ("", "set.csv", "header"),
+                (BUS, "set.csv:1"),
+                ("name,id,dlc\na,1,8\n", "set.csv:1", "period_ns"),
+                (BUS + "a,1,8,1000\n\nb,zwei,8,1000\n", "set.csv:4", "'zwei'"),
+                (BUS + "a,0x20000000,8,1000\n", "set.csv:2", "29 bits"),
+                (BUS + "a,1,9,1000\n", "set.csv:2", "CAN FD"),
+                (BUS + "a,1,8,0\n", "set.csv:2", "period_ns '0'"),
+                (BUS + "a,1,8,-5\n", "set.csv:2", "'-5'"),
+                (BUS + "a,1,8,1e6\n", "set.csv:2", "'1e6'"),
+                (BUS + "a,1,8,99999999999999999999\n", "set.csv:2", "63 bits"),
+                (BUS + "a,1,8,1000,0\n", "set.csv:2", "deadline_ns '0'"),
+                (BUS + "a,1,8,1000,,-1\n", "set.csv:2", "jitter_ns '-1'"),
+                (BUS + "a,1,8,1000\nb,0x1,8,1000\n", "set.csv:3", "'a' in line 2"),
+                (BUS + "a,1,8,1000,1,1,1\n", "set.csv:2", "7 cells"),
+                (BUS.replace("dlc", "DLC") + "a,1,8,1000\n", "set.csv:1", "'DLC'")):
+            with self.subTest(text):
+                out, err = self.run_tool("analyse", "bus", self.file(text), code=2)
+                self.assertEqual(out, "")
+                for word in words:
+                    self.assertIn(word, err)
+        _, err = self.run_tool("analyse", "bus", os.path.join(self.folder, "none.csv"), code=1)
+        self.assertIn("none.csv", err)
+        path = self.file(DAVIS)
+        for options in (["--bitrate", "0"], ["--bitrate", "2M"], ["--bitrate", "fast"], ["--errors", "some"],
+                        ["--errors", "burst=0,every=1s"], ["--test", "rough"], ["--json", "--csv"]):
+            self.run_tool("analyse", "bus", path, *options, code=2)
+        self.run_tool("analyse", code=2)
+
+
+class Robot(Analyse):
+    def names(self, *options, code=0):
+        out, _ = self.run_tool("analyse", "bus", "--json", *options, code=code)
+        return json.loads(out)
+
+    def test_as_it_is_sent_by_default(self):
+        found = self.names()
+        names = self.column(found["messages"], "schedulable")
+        self.assertIn("odometry.velocity", names)
+        self.assertIn("gyroscope.x" if "gyroscope.x" in names else "gyroscope", names)
+        self.assertTrue(all(names.values()))
+
+    def test_everything_at_900_us_does_not_fit(self):
+        topics = [t for t in self.objects(self.run_tool("list", "--json")[0]) if t["kind"] == "sensor"]
+        rates = [f"{t['topic']}=900us" for t in topics]
+        found = self.names("--rates", *rates, "--bitrate", "500k", code=1)
+        self.assertGreater(found["utilisation"], 3)
+        out, _ = self.run_tool("analyse", "bus", "--rates", *rates, code=1)
+        self.assertIn("all periods", out)
+
+    def test_rates_from_a_file(self):
+        path = self.file("# what runs\ngyro=10ms@urgent\nring=off\n", "rates.txt")
+        found = self.names("--rates", path)
+        by_name = {m["name"]: m for m in found["messages"]}
+        self.assertTrue(any(m["deadline_ns"] == 10000000 for name, m in by_name.items() if "gyro" in name))
+        self.assertFalse(any(name.startswith("proximity_ring") for name in by_name))
+        for text, *words in (("gyr=1s", "rates.txt:1", "'gyr'"), ("\ngyro=soon", "rates.txt:2", "soon"),
+                             ("gyro", "rates.txt:1"), ("gyro=1s@top", "top")):
+            _, err = self.run_tool("analyse", "bus", "--rates", self.file(text, "rates.txt"), code=2)
+            for word in words:
+                self.assertIn(word, err)
+
+    def test_british_and_american(self):
+        self.assertEqual(self.run_tool("analyze", "bus")[0], self.run_tool("analyse", "bus")[0])
+
+
+class Tasks(Analyse):
+    def responses(self, rows, code=0, *options):
+        text = TASKS + "".join(f"{','.join(str(cell) for cell in row)}\n" for row in rows)
+        found = self.tasks(text, *options, code=code)
+        self.assertEqual(list(found), ["utilisation", "tasks"])
+        return self.column(found["tasks"], "response_ns"), found
+
+    def test_text_books(self):
+        found, _ = self.responses([("a", 1, 12, 50), ("b", 2, 10, 40), ("c", 3, 10, 30)], 1)
+        self.assertEqual(found, {"a": 52, "b": 20, "c": 10})
+        found, whole = self.responses([("a", 1, 40, 80), ("b", 2, 10, 40), ("c", 3, 5, 20)])
+        self.assertEqual(found, {"a": 80, "b": 15, "c": 5})
+        self.assertEqual(whole["utilisation"], 1)
+        found, _ = self.responses([("a", 4, 3, 20, 5), ("b", 3, 3, 15, 7), ("c", 2, 4, 10, 10), ("d", 1, 3, 20, 20)])
+        self.assertEqual(found, {"a": 3, "b": 6, "c": 10, "d": 20})
+
+    def test_all_releases_of_the_busy_period(self):
+        found, whole = self.responses([("a", 2, 26, 70), ("b", 1, 62, 100, 118)])
+        self.assertEqual(found["b"], 118)
+        self.assertEqual(self.column(whole["tasks"], "instances_ns")["b"], [114, 102, 116, 104, 118, 106, 94])
+
+    def test_the_robots(self):
+        avr = [("A", 15, 1700), ("B", 15, 1640), ("C", 103, 2960), ("D", 30, 1700000), ("E", 20, 43000),
+               ("F", 103, 140000), ("G", 30, 255000), ("H", 200, 7300000)]
+        rows = [(name, 8 - i, cost, period * 1000000) for i, (name, period, cost) in enumerate(avr)]
+        found, whole = self.responses(rows)
+        self.assertEqual(list(found.values()),
+                         [1700, 3340, 6300, 1706300, 1749300, 1889300, 2144300, 9444300])
+        self.assertAlmostEqual(whole["utilisation"], .1054, places=4)
+
+    def test_blocking_and_jitter(self):
+        found, _ = self.responses([("a", 2, 10, 100, "", 5, 7), ("b", 1, 20, 200, "", "", "")])
+        self.assertEqual(found, {"a": 10 + 5 + 7, "b": 30})
+
+    def test_equal_priorities_delay_each_other(self):
+        found, _ = self.responses([("a", 1, 10, 100), ("b", 1, 20, 100)])
+        self.assertEqual(found, {"a": 30, "b": 30})
+
+    def test_context_switches(self):
+        found, _ = self.responses([("a", 1, 10, 100)], 0, "--context-switch", "1ns")
+        self.assertEqual(found, {"a": 12})
+
+    def test_overload(self):
+        found, whole = self.responses([("a", 2, 60, 100), ("b", 1, 41, 100)], 1)
+        self.assertEqual(found, {"a": 60, "b": None})
+        self.assertEqual(self.column(whole["tasks"], "schedulable"), {"a": True, "b": False})
+        self.assertIn("101.00 %", whole["tasks"][1]["why"])
+
+    def test_table_says_what_to_change(self):
+        path = self.file(TASKS + "a,1,12,50,,,\nb,2,10,40,,,\nc,3,10,30,,,\n")
+        out, _ = self.run_tool("analyse", "tasks", path, code=1)
+        for word in ("a every 52ns", "MOST C", "1 of 3", "misses its deadline by 2ns"):
+            self.assertIn(word, out)
+
+    def test_mistakes(self):
+        for text, *words in ((TASKS + "a,1,0,10\n", "set.csv:2", "C_ns '0'"), (TASKS + "a,,1,10\n", "no priority"),
+                             (TASKS + "a,1,1,10,,,-1\n", "B_ns '-1'"), ("name,C_ns\n", "T_ns")):
+            out, err = self.run_tool("analyse", "tasks", self.file(text), code=2)
+            self.assertEqual(out, "")
+            for word in words:
+                self.assertIn(word, err)
+
+
+class Chain(Analyse):
+    HOPS = "hop,set,activation,response_ns,best_ns,period_ns\n"
+
+    def chain(self, text, *options, code=0):
+        out, _ = self.run_tool("analyse", "chain", self.file(text, "chain.csv"), "--json", *options, code=code)
+        return json.loads(out)
+
+    def test_hops_add_up(self):
+        """From the sensor to the motor: R, + R of the frame with the jitter of the task, + T + R where one samples."""
+        self.file(TASKS + "read,2,1000,1000000,,,\nother,1,500,1000000,,,\nact,3,2000,2000000,,,\n", "cpu.csv")
+        self.file(BUS + "pose,1,7,1000000000,,\nset,2,7,1000000000,,\n", "bus.csv")
+        hops = (self.HOPS + "read,cpu.csv,sampled\npose,bus.csv,triggered\nplan,,sampled,5000000,,10000000\n"
+                "set,bus.csv,triggered\nact,cpu.csv,sampled\n")
+        found = self.chain(hops, "--bitrate", "125k", "--deadline", "1s")
+        # read: after act, 3000. pose: 1 ms and 1 ms of set. plan: 10 + 5 ms. set: 2 ms. act: 2 ms and 2000.
+        until = [3000, 2003000, 17003000, 19003000, 21005000]
+        self.assertEqual([hop["until_ns"] for hop in found["hops"]], until)
+        self.assertEqual(found["latency_ns"], until[-1])
+        self.assertEqual(found["age_ns"], until[-1] + 1000000)
+        self.assertTrue(found["schedulable"])
+        self.assertIn("plan takes the longest", found["why"])
+        self.chain(hops, "--bitrate", "125k", "--deadline", "22ms", code=1)
+        out, _ = self.run_tool("analyse", "chain", self.file(hops, "chain.csv"), "--bitrate", "125k")
+        self.assertIn("22.005ms at most", out)
+
+    def test_over_the_robots_own_bus(self):
+        found = self.chain(self.HOPS + "estimate,,sampled,2000000,,30000000\nodometry.pose,robot,triggered\n")
+        self.assertGreater(found["latency_ns"], 2000000 + 111 * 2000)
+
+    def test_mistakes(self):
+        self.file(BUS + "pose,1,7,1000000000,,\n", "bus.csv")
+        for text, *words in (("a,bus.csv,sampled\n", "chain.csv:2", "'a' is not in bus.csv"),
+                             ("pose,bus.csv,triggered\n", "chain.csv:2", "first hop"),
+                             ("pose,bus.csv,often\n", "'often'"), ("x,,sampled,5\n", "no period_ns"),
+                             ("pose,bus.csv,sampled,5\n", "beside a set")):
+            _, err = self.run_tool("analyse", "chain", self.file(self.HOPS + text, "chain.csv"), code=2)
+            for word in words:
+                self.assertIn(word, err)
+
+
+class Trace(Analyse):
+    SET = BUS + "a,0x101,2,10000000,,500000\nb,0x102,2,20000000,,\n"
+
+    def log(self, frames):
+        """(time in us, frame) as candump -l writes it."""
+        lines = sorted(frames)
+        return self.file("".join(f"({1000 + t // 1000000}.{t % 1000000:06}) can0 {frame}\n" for t, frame in lines), "x.log")
+
+    def trace(self, frames, *options, code=0):
+        out, _ = self.run_tool("analyse", "trace", self.log(frames), "--set", self.file(self.SET), "--json", *options,
+                               code=code)
+        found = json.loads(out)
+        return {row["name"]: row for row in found["messages"]}, found
+
+    @staticmethod
+    def regular(count=300):
+        frames = [(i * 10000 + 300 + i % 3 * 100, "101#0102") for i in range(count)]
+        return frames + [(i * 20000 + 900, "102#0102") for i in range(count // 2)]
+
+    def test_what_keeps_to_its_bounds(self):
+        found, whole = self.trace(self.regular())
+        self.assertEqual(whole["broken"], [])
+        a = found["a"]
+        self.assertEqual((a["count"], a["shortest_ns"], a["longest_ns"], a["lateness_ns"]), (300, 9800000, 10100000, 200000))
+        # The frame itself on top, its stuff bits as they are: 47 + 16 and at least no stuff bit, of 2 us.
+        self.assertGreaterEqual(a["measured_ns"], 200000 + 63 * 2000)
+        self.assertLess(a["measured_ns"], a["response_ns"])
+        self.assertTrue(a["within"])
+        # Two frames a 20 ms and one: 3 of 63 bits and some stuff bits of 2 us.
+        self.assertAlmostEqual(whole["measured_utilisation"], 3 * 67 * 2e-6 / 20e-3, delta=1e-3)
+
+    def test_a_pause_is_no_lateness(self):
+        frames = [(t if t < 1000000 else t + 123456, f) for t, f in self.regular()]
+        self.assertEqual(self.trace(frames)[1]["broken"], [])
+
+    def test_a_lost_frame_is_no_lateness(self):
+        frames = [frame for frame in self.regular() if frame[0] // 10000 != 50]
+        self.assertEqual(self.trace(frames)[1]["broken"], [])
+
+    def broken(self, frames, word, *options):
+        _, whole = self.trace(frames, *options, code=1)
+        self.assertEqual([text.split(":")[0] for text in whole["broken"]], [word], whole["broken"])
+        return whole["broken"][0]
+
+    def test_each_broken_assumption_has_its_name(self):
+        regular = self.regular()
+        late = [(t + (4000 if f.startswith("102") and 500000 < t < 520000 else 0), f) for t, f in regular]
+        self.assertIn("b came up to 4ms behind", self.broken(late, "jitter"))
+        fast = [(t * 4 // 5 if f.startswith("102") else t, f) for t, f in self.regular()]
+        found, whole = self.trace(fast, code=1)
+        self.assertIn("b came every 16ms", whole["broken"][0])
+        self.assertEqual((found["b"]["measured_ns"], found["b"]["within"]), (None, False))
+        self.assertIn("0x7FF", self.broken(regular + [(5000, "7FF#")], "set"))
+        self.assertIn("8 bytes", self.broken([(t, f + "030405060708" if t == 500900 else f) for t, f in regular], "length"))
+        self.assertIn("1 error frame", self.broken(regular + [(5000, "20000004#0000000000000000")], "errors"))
+        self.trace(regular + [(5000, "20000004#0000000000000000")], "--errors", "burst=1")
+        close = regular + [(t + 20, "102#0102") for t, f in regular if f.startswith("102") and t == 500900]
+        self.assertIn("bit rate", " ".join(self.trace(close, code=1)[1]["broken"]))
+
+    def test_the_robot(self):
+        """Requests in the log say the periods; what nobody asked for is not in the set."""
+        frames = [(0, "208#01320000")] + [(1000 + i * 50000, "608#000000000000") for i in range(50)]
+        out, _ = self.run_tool("analyse", "trace", self.log(frames), "--json")
+        found = json.loads(out)
+        self.assertEqual([(row["name"], row["period_ns"]) for row in found["messages"]], [("gyroscope", 50000000)])
+        self.assertEqual(found["broken"], [])
+        out, _ = self.run_tool("analyse", "trace", os.path.join(self.folder, "x.log"))
+        self.assertIn("1 request", out)
+
+    def test_mistakes(self):
+        for text, word in (("nonsense\n", "x.log:1"), ("", "no frame"), ("(1.0) can0 101#01\n\n(2.0) can0 1#01\n", "x.log:3")):
+            _, err = self.run_tool("analyse", "trace", self.file(text, "x.log"), code=2)
+            self.assertIn(word, err)
+        self.run_tool("analyse", "trace", os.path.join(self.folder, "none.log"), code=1)
+
+
+class Picture(Analyse):
+    def test_svg(self):
+        path = os.path.join(self.folder, "worst.svg")
+        self.run_tool("analyse", "bus", self.file(DAVIS.replace("\nc,", '\n"<c>",')), "--bitrate", "125k", "--svg", path,
+                      code=1)
+        root = ElementTree.parse(path).getroot()
+        texts = [text.text for text in root.iter("{http://www.w3.org/2000/svg}text")]
+        self.assertIn("<c>", texts)
+        self.assertIn("3.5ms of 3.25ms, 250us late", texts)
+        out, _ = self.run_tool("analyse", "bus", "--svg", "-")
+        ElementTree.fromstring(out)
+        self.run_tool("analyse", "bus", "--svg", os.path.join(self.folder, "none", "x.svg"), code=1)
+
+
+class Dbc(Analyse):
+    TEXT = '''VERSION ""
+NS_ :
+BS_:
+BU_: Engine Dash
+BO_ 257 Speed: 7 Engine
+ SG_ Rpm : 0|16@1+ (0.25,0) [0|16383] "rpm" Dash
+BO_ 2566844672 Wide: 8 Engine
+BO_ 1024 Rare: 2 Dash
+BO_ 3221225472 VECTOR__INDEPENDENT_SIG_MSG: 0 Vector__XXX
+CM_ BO_ 257 "says
+BO_ 1 is not a message; nor is BA_ ""GenMsgCycleTime""";
+BA_DEF_ BO_ "GenMsgCycleTime" INT 0 65535;
+BA_DEF_DEF_ "GenMsgCycleTime" 0;
+BA_ "GenMsgCycleTime" BO_ 257 10;
+BA_ "GenMsgCycleTime" BO_ 2566844672 100;
+'''
+
+    def test_cycle_times(self):
+        found = self.bus(self.TEXT, "--bitrate", "125k", name="car.dbc")
+        self.assertEqual(self.column(found["messages"], "deadline_ns"), {"Speed": 10000000, "Wide": 100000000})
+        self.assertEqual(found["messages"][0]["response_ns"], (160 + 125) * 8000)
+        out, _ = self.run_tool("analyse", "bus", os.path.join(self.folder, "car.dbc"))
+        self.assertIn("no cycle time: Rare", out)
+
+    def test_mistakes(self):
+        for text, word in (("BO_ 1 A: 64 X\n", ":1: 'A' has 64 bytes"), ("BO_ 2048 A: 8 X\n", ":1: 'A'"),
+                           ("BO_ 1 A: 8 X\n", "cycle time"), ("\nBO_ A 8\n", ":2: BO_"), ("", "no message"),
+                           ('BO_ 1 A: 8 X\nBA_ "GenMsgCycleTime" BO_ 1 soon;', ":2: GenMsgCycleTime")):
+            _, err = self.run_tool("analyse", "bus", self.file(text, "car.dbc"), code=2)
+            self.assertIn(word, err)
+
+
+if __name__ == "__main__":
+    main()
