@@ -140,7 +140,7 @@ TEST_CASE("offsets: simulated never exceeds predicted, whatever the phases of th
     for (std::size_t m = 0; m < set.size(); ++m) {
       CAPTURE(round, m);
       REQUIRE(worst[m] <= results[m].response);
-      reached += 100 * worst[m] >= 80 * results[m].response ? 1 : 0;
+      reached += results[m].bounded() && 100 * worst[m] >= 80 * results[m].response ? 1 : 0;
       ++messages;
     }
   }
