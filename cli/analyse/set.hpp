@@ -75,6 +75,11 @@ struct Mistake {
 /// Prints them, and leaves with exit_usage; does nothing if there are none.
 void stop_at(const std::vector<Mistake>& mistakes, std::string_view file);
 
+/// The names of the sets of spec/tasks.json: the boards', and those of the robots of the theses.
+[[nodiscard]] std::vector<std::string> own_task_sets();
+/// One of them; empty where there is none of this name.
+[[nodiscard]] TaskSet own_tasks(std::string_view name);
+
 /// All of a file, or of standard input for "-".
 [[nodiscard]] std::string read_text(const std::string& file);
 

@@ -177,8 +177,16 @@ std::string tasks_header(std::string_view json, std::string_view file_name,
                      "#include \"ocm/analysis/task_list.hpp\"\n#include \"ocm/analysis/task_set.hpp\"\n\n"
                      "// clang-format off\nnamespace ocm::analysis::task_sets {\n\n";
   std::set<std::string> taken;
-  for (const Node& set : reader.list(root, "sets"))
-    text += set_namespace(reader, set, reader.name(set, taken));
+  std::string calls;
+  for (const Node& set : reader.list(root, "sets")) {
+    const std::string name = reader.name(set, taken);
+    text += set_namespace(reader, set, name);
+    calls += "  f(std::string_view{\"" + name + "\"}, " + name + "::Facts::Tasks{});\n";
+  }
+  text +=
+      "/// Calls f(name, its TaskList) for every set.\ntemplate <class F>\n"
+      "constexpr void for_each_set(F&& f) {\n" +
+      calls + "}\n\n";
   return problems.empty() ? text + "}  // namespace ocm::analysis::task_sets\n" : std::string{};
 }
 

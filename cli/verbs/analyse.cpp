@@ -1,8 +1,10 @@
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
@@ -143,7 +145,11 @@ int bus(const Options& options, Session& session) {
 }
 
 int tasks(const Options& options, Session& session) {
-  const TaskSet set = read_tasks(options.file);
+  // A board's name, unless there is a file of that name.
+  TaskSet set;
+  std::error_code error;
+  if (!std::filesystem::exists(options.file, error)) set = own_tasks(options.file);
+  if (set.entries.empty()) set = read_tasks(options.file);
   analysis::Processor processor;
   if (!options.context_switch.empty())
     processor.context_switch = duration("--context-switch", options.context_switch);
@@ -201,7 +207,8 @@ void add_analyse(CLI::App& app, Session& session, int& exit_code) {
                         "  amiroctl analyse bus\n"
                         "  amiroctl analyse bus --rates gyro=50ms ring=2ms@high\n"
                         "  amiroctl analyse bus messages.csv --bitrate 125k --svg worst-case.svg\n"
-                        "  amiroctl analyse tasks tasks.csv --json");
+                        "  amiroctl analyse tasks tasks.csv --json\n"
+                        "  amiroctl analyse tasks di_wheel_drive");
   verb->alias("analyze");
   verb->require_subcommand(1);
 
@@ -217,7 +224,11 @@ void add_analyse(CLI::App& app, Session& session, int& exit_code) {
   const auto of_tasks = std::make_shared<Options>();
   auto* tasks_verb = verb->add_subcommand("tasks", "the tasks of a processor");
   tasks_verb->fallthrough();
-  tasks_verb->add_option("FILE", of_tasks->file, "CSV: name,priority,C_ns,T_ns,D_ns,J_ns,B_ns")->required();
+  tasks_verb
+      ->add_option("FILE|BOARD", of_tasks->file,
+                   fmt::format("CSV: name,priority,C_ns,T_ns,D_ns,J_ns,B_ns; or one of {}",
+                               fmt::join(own_task_sets(), ", ")))
+      ->required();
   tasks_verb
       ->add_option("--context-switch", of_tasks->context_switch,
                    "what one costs; a job pays two. Default: nothing")

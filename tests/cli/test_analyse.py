@@ -222,6 +222,20 @@ class Tasks(Analyse):
                          [1700, 3340, 6300, 1706300, 1749300, 1889300, 2144300, 9444300])
         self.assertAlmostEqual(whole["utilisation"], .1054, places=4)
 
+    def test_sets_that_have_a_name(self):
+        """The thesis's robots, as spec/tasks.json has them; its table 9.2 with its errors mended."""
+        report = json.loads(self.run_tool("analyse", "tasks", "thesis_avr", "--json")[0])
+        self.assertEqual([task["response_ns"] for task in report["tasks"]],
+                         [1_700, 3_340, 6_300, 1_706_300, 1_749_300, 1_889_300, 2_144_300, 9_444_300])
+        report = json.loads(self.run_tool("analyse", "tasks", "thesis_arduino", "--json")[0])
+        self.assertEqual([task["response_ns"] for task in report["tasks"]],
+                         [610, 1_220, 4_620, 1_667_060, 1_708_060, 1_838_060, 2_025_060, 7_913_600])
+        for board in ("di_wheel_drive", "power_management", "light_ring"):
+            report = json.loads(self.run_tool("analyse", "tasks", board, "--json")[0])
+            self.assertTrue(all(task["schedulable"] for task in report["tasks"]))
+        _, err = self.run_tool("analyse", "tasks", "di_wheel_driver", code=1)
+        self.assertIn("di_wheel_driver", err)
+
     def test_blocking_and_jitter(self):
         found, _ = self.responses([("a", 2, 10, 100, "", 5, 7), ("b", 1, 20, 200, "", "", "")])
         self.assertEqual(found, {"a": 10 + 5 + 7, "b": 30})

@@ -261,4 +261,14 @@ struct Facts {
 
 }  // namespace thesis_arduino
 
+/// Calls f(name, its TaskList) for every set.
+template <class F>
+constexpr void for_each_set(F&& f) {
+  f(std::string_view{"di_wheel_drive"}, di_wheel_drive::Facts::Tasks{});
+  f(std::string_view{"power_management"}, power_management::Facts::Tasks{});
+  f(std::string_view{"light_ring"}, light_ring::Facts::Tasks{});
+  f(std::string_view{"thesis_avr"}, thesis_avr::Facts::Tasks{});
+  f(std::string_view{"thesis_arduino"}, thesis_arduino::Facts::Tasks{});
+}
+
 }  // namespace ocm::analysis::task_sets
