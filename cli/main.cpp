@@ -1,6 +1,8 @@
 /// amiroctl: ask a robot's sensors, command its actuators and watch its bus.
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -28,6 +30,15 @@ std::vector<std::string> arguments(int argc, char** argv) {
   return result;
 }
 
+/// What was printed must have arrived: a full disk shows when the last of it is written.
+int finish(int code) {
+  errno = 0;
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  std::fprintf(stderr, "amiroctl: cannot write to the standard output: %s\n",
+               errno != 0 ? std::strerror(errno) : "an earlier write failed");
+  return exit_failure;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -43,9 +54,9 @@ int main(int argc, char** argv) {
   for (const AddVerb add : verbs) add(app, session, exit_code);
   try {
     app.parse(arguments(argc, argv));
-    return exit_code;
+    return finish(exit_code);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? exit_success : exit_usage;
+    return finish(app.exit(error) == 0 ? exit_success : exit_usage);
   } catch (const Exit& exit) {
     return exit.code;
   } catch (const std::exception& error) {

@@ -313,7 +313,8 @@ template <template <class, class, class> class Board, class Parts, std::size_t T
         say(title), say(" idle_permille "), say(idle * 1000 / time), say(" quiet_permille ");
         say(quiet * 1000 / quiet_time), say(" bus_permille "), say(std::int64_t{bits} * 2'000 / (time / 1us));
         say(" late "), say(counters.late), say(" missed "), say(counters.missed), say(" overrun ");
-        say(counters.overrun), say(" not_sampled "), say(counters.not_sampled), say("\n");
+        say(counters.overrun), say(" not_sampled "), say(counters.not_sampled);
+        say(" busy_at_rest_us "), say((quiet_time - quiet) / 1us), say("\n");
         firmware::qemu::leave("", 0);
       },
       nullptr);

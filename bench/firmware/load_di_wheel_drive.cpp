@@ -31,8 +31,17 @@ int main() {
   static bench::LoadSpi accelerometer{0x32};          // [LIS331DLH data sheet, WHO_AM_I]
   static bench::LoadMotors motors;
   static bench::LoadPins pins;
-  static di_wheel_drive::Parts<bench::LoadI2c, bench::LoadI2c, bench::LoadSpi, bench::LoadSpi,
-                               bench::LoadMotors, bench::LoadPins, ocm::firmware::chibios::Mutex>
-      parts{compass, floor, gyroscope, accelerometer, motors, pins};
+  using Real = di_wheel_drive::Parts<bench::LoadI2c, bench::LoadI2c, bench::LoadSpi, bench::LoadSpi,
+                                     bench::LoadMotors, bench::LoadPins, ocm::firmware::chibios::Mutex>;
+#ifdef OCM_LOAD_WITHOUT_CONTROL
+  // What the speed controllers take is what is missing without them.
+  struct Parts : Real {
+    using Real::Real;
+    void control() = delete;
+  };
+#else
+  using Parts = Real;
+#endif
+  static Parts parts{compass, floor, gyroscope, accelerometer, motors, pins};
   bench::measure<di_wheel_drive::Board>("di_wheel_drive", asked, parts);
 }

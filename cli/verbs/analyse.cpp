@@ -149,6 +149,9 @@ int tasks(const Options& options, Session& session) {
   TaskSet set;
   std::error_code error;
   if (!std::filesystem::exists(options.file, error)) set = own_tasks(options.file);
+  if (set.entries.empty() && options.file != "-" && !std::filesystem::exists(options.file, error))
+    fail({fmt::format("analyse tasks: {} is neither a file nor a board", options.file),
+          fmt::format("a CSV file, - for standard input, or one of {}", fmt::join(own_task_sets(), ", "))});
   if (set.entries.empty()) set = read_tasks(options.file);
   analysis::Processor processor;
   if (!options.context_switch.empty())

@@ -1,8 +1,9 @@
 """Exit codes and messages: every error names the input, the place and the remedy."""
 
 import os
+import subprocess
 
-from harness import SOURCE, Case, main
+from harness import AMIROCTL, SOURCE, Case, main
 
 
 class Usage(Case):
@@ -60,6 +61,16 @@ class Usage(Case):
         self.refused(["--spec", bad, "list"], "bad.json:2", code=1)
         own = os.path.join(SOURCE, "spec", "topics.json")
         self.assertEqual(self.run_tool("--spec", own, "list")[0], self.run_tool("list")[0])
+
+
+class FullDisk(Case):
+    def test_what_was_not_written_is_no_success(self):
+        for arguments in (["list"], ["info", "gyro"], ["publish", "gyro", "1s", "--dry-run"], ["analyse", "bus"], ["--help"]):
+            with self.subTest(arguments=arguments), open("/dev/full", "w", encoding="utf-8") as full:
+                done = subprocess.run([AMIROCTL, *arguments], env=self.environment, stdin=subprocess.DEVNULL, stdout=full,
+                                      stderr=subprocess.PIPE, text=True, timeout=30, check=False)
+                self.assertEqual(done.returncode, 1)
+                self.assertIn("No space left on device", done.stderr)
 
 
 class Look(Case):

@@ -63,6 +63,7 @@ namespace detail {
 struct SensorCost {
   std::uint32_t sample_us = 0;
   std::uint32_t deadline_us = 0;                                     ///< 0: none but the period
+  std::uint32_t shortest_us = 0;                                     ///< how often the part has something new
   std::array<std::uint32_t, protocol::priority_levels> frames_us{};  ///< by priority
 };
 
@@ -76,6 +77,8 @@ template <class Topic, class Costs>
   cost.sample_us = Costs::template sample_us<Topic>;
   cost.deadline_us = static_cast<std::uint32_t>(
       std::min<std::int64_t>(Topic::deadline.count() / 1000, std::numeric_limits<std::int32_t>::max()));
+  cost.shortest_us = static_cast<std::uint32_t>(std::min<std::int64_t>(
+      Topic::shortest_period.count() / 1000, std::numeric_limits<std::int32_t>::max()));
   for (std::size_t level = 0; level < protocol::priority_levels; ++level) {
     std::uint32_t bits = 0;
     for (const auto& frame : Topic::frames)
@@ -128,17 +131,19 @@ class BoardLoad {
     for (std::size_t s = 0; s < N; ++s) {
       if (streams[s].period_us == 0) continue;
       // Once more for the jitter that reading leaves: the deadline is for both.
-      const std::uint32_t due = deadline(facts, streams, s) - reads[s];
+      const std::uint32_t due = std::min(deadline(facts, streams, s) - reads[s], streams[s].period_us);
       if (send_bound(facts, streams, reads, s, due) == late) return false;
     }
     return true;
   }
 
  private:
+  /// The next sample overwrites this one; but only when the part has a new one is anything lost by that.
   static constexpr std::uint32_t deadline(const Facts& facts, const Streams& streams,
                                           std::size_t s) noexcept {
     const std::uint32_t own = facts.sensors[s].deadline_us;
-    return own == 0 ? streams[s].period_us : std::min(own, streams[s].period_us);
+    const std::uint32_t next = std::max(streams[s].period_us, facts.sensors[s].shortest_us);
+    return own == 0 ? next : std::min(own, next);
   }
   static constexpr std::uint32_t frames(const Facts& facts, const Streams& streams, std::size_t s) noexcept {
     return facts.sensors[s].frames_us[static_cast<std::size_t>(streams[s].level)];
@@ -174,16 +179,18 @@ class BoardLoad {
                                             std::size_t s) noexcept {
     const std::uint64_t base = std::uint64_t{facts.blocking_us} + facts.sensors[s].sample_us;
     if (base == 0) return 0;
-    return solve(base, deadline(facts, streams, s), [&](std::uint32_t window) {
-      std::uint64_t sum = 0;
-      for (std::size_t k = 0; k < facts.own_count; ++k)
-        if (facts.own[k].level <= streams[s].level)
-          sum += demand_of(window, facts.own[k].period_us, facts.own[k].cost_us);
-      for (std::size_t k = 0; k < N; ++k)
-        if (k != s && streams[k].period_us != 0 && streams[k].level <= streams[s].level)
-          sum += demand_of(window, streams[k].period_us, facts.sensors[k].sample_us);
-      return sum;
-    });
+    // One instance at a time: within the period, also where the deadline is later.
+    return solve(base, std::min(deadline(facts, streams, s), streams[s].period_us),
+                 [&](std::uint32_t window) {
+                   std::uint64_t sum = 0;
+                   for (std::size_t k = 0; k < facts.own_count; ++k)
+                     if (facts.own[k].level <= streams[s].level)
+                       sum += demand_of(window, facts.own[k].period_us, facts.own[k].cost_us);
+                   for (std::size_t k = 0; k < N; ++k)
+                     if (k != s && streams[k].period_us != 0 && streams[k].level <= streams[s].level)
+                       sum += demand_of(window, streams[k].period_us, facts.sensors[k].sample_us);
+                   return sum;
+                 });
   }
   static constexpr std::uint32_t send_bound(const Facts& facts, const Streams& streams,
                                             const std::array<std::uint32_t, N>& reads, std::size_t s,

@@ -16,18 +16,18 @@ namespace ocm::analysis::task_sets {
 /// DiWheelDrive, each topic at its default period and priority. [docs/boards/figures.md, under load: latest measured start at 32 ns an instruction, the part's bus included]
 namespace di_wheel_drive {
 
-/// [idle share without requests: the most it can be if the odometry were nothing]
+/// [docs/boards/figures.md, own tasks]
 struct Control {
   static constexpr std::string_view name = "control";
   static constexpr bool own = true;
-  static constexpr Task task{.cost = 120'000, .period = 10'000'000, .blocking = 10'000, .level = 0};
+  static constexpr Task task{.cost = 52'000, .period = 10'000'000, .blocking = 10'000, .level = 0};
 };
 
-/// [idle share without requests: the most it can be if the control were nothing]
+/// [docs/boards/figures.md, own tasks: with the looking after the parts]
 struct DeadReckoning {
   static constexpr std::string_view name = "dead_reckoning";
   static constexpr bool own = true;
-  static constexpr Task task{.cost = 600'000, .period = 50'000'000, .blocking = 10'000, .level = 1};
+  static constexpr Task task{.cost = 324'000, .period = 50'000'000, .blocking = 10'000, .level = 1};
 };
 
 struct Odometry {

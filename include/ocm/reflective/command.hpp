@@ -125,9 +125,16 @@ using Parsed = base::Result<Command, WordError>;
   };
   std::string expected = number_text(field.raw_min) + " to " + number_text(field.raw_max);
   if (!field.unit.empty()) expected += " " + std::string{field.unit};
+  if (!field.flags && !field.values.empty()) {
+    std::string names;
+    for (const auto& value : field.values) names.append(names.empty() ? "" : ", ").append(value.name);
+    expected = names + ", or " + expected;
+  }
   const auto quantity = parse_quantity(text);
   if (!quantity)
-    return detail::quoted(text) + " is not a number: " + std::string{field.name} + " takes " + expected;
+    return detail::quoted(text) +
+           (field.values.empty() || field.flags ? " is not a number: " : " has no meaning: ") +
+           std::string{field.name} + " takes " + expected;
   if (!quantity->unit.empty() && field.unit.empty())
     return detail::quoted(text) + " has a unit, but " + std::string{field.name} + " is a plain number, " +
            expected;
