@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <poll.h>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -50,7 +51,32 @@ struct SimOptions {
   bool qemu = false;
   std::string images;
   std::uint32_t bit_rate = amiro::bit_rate;
+  double bus_errors = 0;  ///< bits a second that nodes see wrong, on average
   double speed = 1;
+};
+
+/// Interference on the wire: single bits at random, at no moment more likely than at another.
+class Interference {
+ public:
+  Interference(double bits_per_second, std::uint64_t seed)
+      : random_(seed), seconds_(bits_per_second > 0 ? bits_per_second : 1), on_(bits_per_second > 0) {
+    if (on_) step();
+  }
+  /// Disturbs what lies within a second from `now`: always ahead of what the bus has done.
+  void disturb(simulation::Arbiter& bus, base::Time now) {
+    for (; on_ && next_ <= now + std::chrono::seconds{1}; step())
+      bus.disturb({bus.clock().boundary_from(next_), flag_bits_(random_)});
+  }
+
+ private:
+  void step() { next_ += base::Duration{static_cast<std::int64_t>(seconds_(random_) * 1e9) + 1}; }
+
+  std::mt19937_64 random_;
+  std::exponential_distribution<> seconds_;
+  std::uniform_int_distribution<unsigned> flag_bits_{simulation::shortest_flag_bits,
+                                                     simulation::longest_flag_bits};
+  bool on_;
+  base::Time next_{};
 };
 
 /// Virtual time: `speed` times as fast as the clock, from zero on.
@@ -265,8 +291,10 @@ void serve(const std::string& bus_name, const SimOptions& options) {
   const auto hear = [&robot](const simulation::Delivery& delivery) {
     robot->receive(delivery.frame, delivery.time);
   };
+  Interference interference{options.bus_errors, options.world.seed};
   while (interrupted() == 0) {
     const base::Time now = clock.now();
+    interference.disturb(arbiter, now);
     // Whatever falls due until now, in the order in which it does.
     for (;;) {
       const base::Time next = std::min(server.next_event(), robot->next_event());
@@ -284,6 +312,8 @@ void serve(const std::string& bus_name, const SimOptions& options) {
   remark(fmt::format(
       "bus               {} frames, {} clients, {} turned away, {} misbehaved, {} frames lost by slow ones",
       bus.frames, clients.welcomed, clients.turned_away, clients.misbehaved, clients.overruns));
+  if (options.bus_errors > 0)
+    remark(fmt::format("                  {} error frames, {} frames repeated", bus.errors, bus.repetitions));
 }
 
 }  // namespace
@@ -294,6 +324,7 @@ void add_sim(CLI::App& app, Session& session, int& exit_code) {
                         "  amiroctl sim --bus vcan0           the three boards on a CAN interface\n"
                         "  amiroctl sim --seed 7 --speed 10\n"
                         "  amiroctl sim --without light_ring  a board that is switched off\n"
+                        "  amiroctl sim --bus-errors 20       interference: 20 broken bits a second\n"
                         "  amiroctl sim --boards qemu         the boards' firmware, emulated");
   const auto options = std::make_shared<SimOptions>();
   verb->add_option("--seed", options->world.seed, "of all noise; equal seeds give equal robots")
@@ -306,6 +337,10 @@ void add_sim(CLI::App& app, Session& session, int& exit_code) {
       ->type_name("N");
   verb->add_option("--bitrate", options->bit_rate, "of the virtual bus, bit/s")
       ->check(CLI::Range(1'000U, 1'000'000'000U))
+      ->type_name("N");
+  verb->add_option("--bus-errors", options->bus_errors,
+                   "on the virtual bus: bits a second that interference breaks, on average")
+      ->check(CLI::Range(0.0, 100'000.0))
       ->type_name("N");
   const auto boards = std::make_shared<std::string>("host");
   verb->add_option("--boards", *boards,
@@ -325,6 +360,10 @@ void add_sim(CLI::App& app, Session& session, int& exit_code) {
     catch_interrupts();
     if (!session.spec_file.empty()) remark("the simulated robot is the AMiRo, whatever --spec says");
     if (!session.bus_name.empty() && session.bus_name != "sim" && !session.bus_name.starts_with("sim:")) {
+      if (options->bus_errors > 0)
+        fail({"sim: --bus-errors with --bus " + session.bus_name,
+              "leave one out: a real bus has errors of its own"},
+             exit_usage);
       const auto bus = session.open_bus();
       simulate_on(*bus, *options);
     } else {

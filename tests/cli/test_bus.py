@@ -1,6 +1,7 @@
 """Requests, samples, set points and signals over a running simulator."""
 
 import os
+import re
 import signal
 import subprocess
 import time
@@ -182,6 +183,24 @@ class OnTheBus(Case):
             values.append(self.objects(out)[0]["data"])
             self.interrupt(sim)
         self.assertEqual(values[0], values[1])
+
+    def test_interference_costs_time_and_no_sample(self):
+        """Frames that are disturbed come again; listeners are told of each error frame."""
+        sim = self.start_sim("--bus-errors", "200", "--seed", "3")
+        self.run_tool("publish", "gyro", "10ms")
+        out, err = self.run_tool("listen", "--json", "--timeout", "1s")
+        errors = [frame for frame in self.objects(out) if frame.get("error", "").startswith("error frame")]
+        self.assertGreater(len(errors), 100)
+        self.assertRegex(err, r"\b(9\d|10\d) samples")  # of 100
+        self.assertNotIn("incomplete", err)
+        self.interrupt(sim)
+        told = re.search(r"(\d+) error frames, (\d+) frames repeated", sim.communicate()[1])
+        self.assertGreater(int(told[1]), len(errors))
+        self.assertGreater(int(told[2]), 0)
+
+    def test_a_real_bus_has_errors_of_its_own(self):
+        _, err = self.run_tool("sim", "--bus", "can0", "--bus-errors", "1", code=2)
+        self.assertIn("--bus-errors", err)
 
 
 class Library(Case):

@@ -19,7 +19,7 @@
 namespace ocm::analysis {
 
 struct Message {
-  std::int64_t cost = 0;    ///< C: its longest frame with the intermission, at least 1
+  std::int64_t cost = 0;    ///< C: its longest frame with the intermission; at least 1, and one bit
   std::int64_t period = 0;  ///< T: releases are at least so far apart, but for the jitter; at least 1
   std::int64_t deadline = implicit_deadline;  ///< D, from the release as planned; at least 1
   std::int64_t jitter = 0;                    ///< J: how much later than planned it can be handed over
@@ -44,7 +44,8 @@ struct CanBus {
   ErrorModel errors{};
 };
 
-/// An error flag, its echo, the delimiter and the intermission after them. [ISO 11898-1; Davis et al. 2007]
+/// An error flag, its echo, the delimiter, an intermission, and the 8 bits that an error passive sender
+/// waits: the first three would do where C has its intermission and all are error active. [Davis et al. 2007]
 inline constexpr std::int64_t error_frame_bits = 31;
 
 /// The first message whose numbers mean nothing; nobody if all do.

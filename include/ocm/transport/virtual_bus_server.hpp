@@ -29,6 +29,7 @@
 #include <utility>
 #include <vector>
 
+#include "ocm/can/error_frame.hpp"
 #include "ocm/can/filter.hpp"
 #include "ocm/simulation/arbiter.hpp"
 #include "ocm/transport/bus.hpp"
@@ -142,15 +143,19 @@ class VirtualBusServer {
   [[nodiscard]] std::size_t clients() const noexcept { return clients_.size(); }
 
   /// Lets the bus go on until `now`; no system call. `deliver(const simulation::Delivery&)` is called for
-  /// every frame that is complete by then, as Arbiter::advance does. For boards that act at times of their
+  /// every frame that is complete by then, as Arbiter::advance does; clients get an error frame for every
+  /// error on the bus. For boards that act at times of their
   /// own: advance to each of these, and `poll` at the end.
   template <class Deliver>
   void advance(base::Time now, Deliver&& deliver) {
     if (accept_again_ <= now) accept_again_ = base::never;  // at the next `poll`
-    arbiter_.advance(now, [&](const simulation::Delivery& delivery) {
-      distribute(delivery);
-      deliver(delivery);
-    });
+    arbiter_.advance(
+        now,
+        [&](const simulation::Delivery& delivery) {
+          distribute(delivery);
+          deliver(delivery);
+        },
+        [&](const simulation::BusError& error) { distribute(error); });
   }
 
   /// Advances the bus, then takes what clients sent (their frames are handed over at `now`), accepts new
@@ -315,10 +320,38 @@ class VirtualBusServer {
     for (auto& client : clients_) {
       if (!client->welcome || client->gone) continue;
       if (client->node == delivery.from)
-        ++client->credit;
+        client->credit += delivery.sent ? 1 : 0;
       else if (passes(*client, delivery.frame))
         push(*client, record);
     }
+  }
+
+  /// As each client's own controller would report it.
+  void distribute(const simulation::BusError& error) {
+    for (auto& client : clients_) {
+      if (!client->welcome || client->gone) continue;
+      const can::Frame frame = error_frame(arbiter_.faults(client->node), client->node == error.sender);
+      push(*client, virtual_bus::to_record(frame, error.time + options_.to_unix_time));
+    }
+  }
+
+  /// What sends sees a bit error, what listens a stuff error: six dominant bits.
+  [[nodiscard]] static can::Frame error_frame(const simulation::FaultConfinement& faults,
+                                              bool sends) noexcept {
+    namespace c = can::error_class;
+    can::Frame frame{.id = c::protocol | c::bus_error | c::counters, .dlc = 8, .format = can::Format::error};
+    const unsigned passive = simulation::FaultConfinement::passive_from;
+    if (faults.state() == simulation::FaultState::bus_off) frame.id |= c::bus_off;
+    if (faults.state() == simulation::FaultState::error_passive) {
+      frame.id |= c::controller;
+      if (faults.transmit_errors() >= passive) frame.data[1] |= can::controller_error::tx_passive;
+      if (faults.receive_errors() >= passive) frame.data[1] |= can::controller_error::rx_passive;
+    }
+    frame.data[2] =
+        sends ? can::protocol_error::bit | can::protocol_error::transmission : can::protocol_error::stuff;
+    frame.data[6] = static_cast<std::uint8_t>(std::min(faults.transmit_errors(), 255U));
+    frame.data[7] = static_cast<std::uint8_t>(faults.receive_errors());
+    return frame;
   }
 
   [[nodiscard]] static bool passes(const Client& client, const can::Frame& frame) noexcept {

@@ -6,6 +6,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "ocm/can/error_frame.hpp"
+
 #include "unit/transport/virtual_bus_setup.hpp"
 
 using namespace ocm;
@@ -413,6 +415,66 @@ TEST_CASE("time stamps are those of the bus, in the owner's Unix time") {
   REQUIRE(one);
   // Handed over in the first bit, sent from the next boundary on, 2 us a bit.
   CHECK(one->time.time_since_epoch() == 1'700'000'000s + (1 + can::frame_bits(frame("605#00D20000"))) * 2us);
+}
+
+TEST_CASE("an error on the bus: each client is told in its own way, and the frame comes all the same") {
+  VirtualBusSetup setup;
+  const auto sender = setup.join();
+  const auto listener = setup.join();
+  CHECK(sender->send(frame("205#01840302")));
+  setup.poll();
+  auto& arbiter = setup.server->arbiter();
+  const std::uint64_t present = arbiter.clock().boundary_from(setup.now);
+  arbiter.disturb({.boundary = present + 20});
+  // In the last bit of the repetition: the listener gets it twice.
+  arbiter.disturb({.boundary = present + 20 + 1 + 6 + 8 + 3 + can::frame_bits(frame("205#01840302")) - 1});
+  setup.run();
+  const auto to_sender = sender->receive(0ns);
+  REQUIRE(to_sender);
+  CHECK(to_sender->frame.format == can::Format::error);
+  CHECK(can::describe(to_sender->frame).view() ==
+        "bit error while sending, error counters: sending 8, receiving 0");
+  CHECK(to_sender->time.time_since_epoch() == (present + 21) * 2us);
+  const auto to_listener = listener->receive(0ns);
+  REQUIRE(to_listener);
+  CHECK(can::describe(to_listener->frame).view() == "stuff error, error counters: sending 0, receiving 1");
+  CHECK(received(*sender).size() == 1);
+  const Texts rest = received(*listener);
+  REQUIRE(rest.size() == 3);
+  CHECK(rest[1] == "205#01840302");
+  CHECK(rest[2] == "205#01840302");
+  CHECK(setup.server->counters().misbehaved == 0);
+
+  // A frame that was delivered twice has come out of the queue once: 64 more are taken, and no 65th.
+  for (int i = 0; i < 64; ++i) CHECK(*sender->send(frame("100#")));
+  CHECK_FALSE(*sender->send(frame("100#")));
+  setup.poll();
+  CHECK(setup.server->counters().misbehaved == 0);
+}
+
+TEST_CASE("an error on the bus: a client hears that it is error passive, and off the bus") {
+  VirtualBusSetup setup;
+  const auto client = setup.join();
+  CHECK(*client->send(frame("100#")));
+  setup.poll();
+  auto& arbiter = setup.server->arbiter();
+  std::vector<std::string> texts;
+  for (int i = 0; i < 32; ++i) {
+    arbiter.disturb({.boundary = arbiter.clock().boundary_from(setup.now) + 40});
+    setup.now += 41 * 2us;
+    setup.poll();
+    while (const auto one = client->receive(0ns)) texts.emplace_back(can::describe(one->frame).view());
+  }
+  REQUIRE(texts.size() == 32);
+  CHECK(texts[14] == "bit error while sending, error counters: sending 120, receiving 0");
+  CHECK(texts[15] ==
+        "error passive (sending), bit error while sending, error counters: sending 128, receiving 0");
+  CHECK(texts[31] ==
+        "bus-off: the controller has left the bus, bit error while sending, error counters: sending 255, "
+        "receiving 0");
+  setup.now += (128 * 11 + 100) * 2us;
+  setup.run();
+  CHECK(arbiter.totals().frames == 1);
 }
 
 TEST_CASE("an error frame of the owner reaches every client, whatever its filters") {
