@@ -2,7 +2,6 @@
 /// only.
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -13,8 +12,10 @@
 #include "ocm/analysis/cpu.hpp"
 #include "ocm/analysis/sensitivity.hpp"
 
+#include "bench/best_of.hpp"
+
 using namespace ocm::analysis;
-using SteadyClock = std::chrono::steady_clock;
+using ocm::bench::best_of;
 
 namespace {
 
@@ -36,18 +37,6 @@ std::vector<Task> draw(std::size_t count) {
   return tasks;
 }
 
-/// The best of several, in microseconds.
-template <class What>
-double best(int times, What what) {
-  double least = 1e18;
-  for (int i = 0; i < times; ++i) {
-    const auto start = SteadyClock::now();
-    what();
-    least = std::min(least, std::chrono::duration<double, std::micro>(SteadyClock::now() - start).count());
-  }
-  return least;
-}
-
 }  // namespace
 
 int main() {
@@ -56,13 +45,13 @@ int main() {
     std::vector<Task> tasks = draw(count);
     std::vector<Explained> results(count);
     const int times = count > 500 ? 3 : 50;
-    const double all = best(times, [&] { response_times(tasks, results); });
+    const double all = best_of(times, [&] { response_times(tasks, results); });
     for (const Explained& result : results)
       if (!result.bounded()) return EXIT_FAILURE;
     bool met = false;
-    const double verdicts = best(times, [&] { met = all_schedulable(tasks); });
+    const double verdicts = best_of(times, [&] { met = all_schedulable(tasks); });
     Edge edge;
-    const double period = count > 500 ? NAN : best(3, [&] { edge = shortest_period(tasks, count / 2); });
+    const double period = count > 500 ? NAN : best_of(3, [&] { edge = shortest_period(tasks, count / 2); });
     std::printf("%6zu %15.1f us %15.1f us", count, all, verdicts);
     std::isnan(period) ? std::printf(" %18s\n", "") : std::printf(" %15.1f us\n", period);
     if (met != std::all_of(results.begin(), results.end(), [](const Explained& e) { return e.ok(); }))

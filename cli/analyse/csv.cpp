@@ -114,13 +114,15 @@ class Table {
   std::vector<std::string> names_;
 };
 
-constexpr std::string_view bus_header = "name,id,dlc,period_ns,deadline_ns,jitter_ns";
-constexpr std::array<Column, 6> bus_columns{{{"name", true},
+constexpr std::string_view bus_header = "name,id,dlc,period_ns,deadline_ns,jitter_ns,node,offset_ns";
+constexpr std::array<Column, 8> bus_columns{{{"name", true},
                                              {"id", true},
                                              {"dlc", true},
                                              {"period_ns", true},
                                              {"deadline_ns", false},
-                                             {"jitter_ns", false}}};
+                                             {"jitter_ns", false},
+                                             {"node", false},
+                                             {"offset_ns", false}}};
 constexpr std::string_view task_header = "name,priority,C_ns,T_ns,D_ns,J_ns,B_ns";
 constexpr std::array<Column, 7> task_columns{{{"name", true},
                                               {"priority", true},
@@ -176,6 +178,11 @@ BusSet bus_from(Table& table, const std::string& file) {
     entry.period = table.number(line, "period_ns", 1);
     entry.deadline = table.number(line, "deadline_ns", 1, analysis::implicit_deadline);
     entry.jitter = table.number(line, "jitter_ns", 0, 0);
+    entry.node = table.cell(line, "node");
+    entry.offset = table.number(line, "offset_ns", 0, 0);
+    if (entry.offset > 0 && entry.node.empty())
+      table.mistake(line, "an offset_ns and no node",
+                    "messages of one node have one clock, from which offsets count: say which");
     if (entry.name.empty()) entry.name = table.cell(line, "id");
     set.entries.push_back(std::move(entry));
   }

@@ -19,6 +19,8 @@ namespace {
 constexpr std::uint32_t extended_flag = 0x8000'0000;
 /// Vector's pseudo message for signals without one; it is never sent.
 constexpr std::uint32_t independent_signals = 0xC000'0000;
+/// Stands for a node where there is none.
+constexpr std::string_view no_sender = "Vector__XXX";
 
 /// Words, numbers, quoted strings and punctuation, one by one.
 class Tokens {
@@ -117,6 +119,9 @@ BusSet parse_dbc(std::string_view text, const std::string& file, std::vector<Mis
       raw.id = static_cast<std::uint32_t>(*number);
       raw.entry.name = name->text;
       raw.entry.line = line;
+      Tokens ahead = tokens;  // a line that ends here has no sender
+      if (const auto sender = ahead.next(); sender && !sender->starts_line && sender->text != no_sender)
+        raw.entry.node = sender->text;
       raw.entry.head.id = raw.id & ~extended_flag;
       raw.entry.head.format = (raw.id & extended_flag) != 0 ? can::Format::extended : can::Format::base;
       if (*length > can::max_dlc)

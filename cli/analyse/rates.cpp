@@ -18,6 +18,9 @@ namespace {
 /// The tool repeats a held set point so often (cli/timeline.hpp).
 constexpr base::Duration drive_period = std::chrono::milliseconds{100};
 
+/// Whoever sends requests and set points.
+constexpr std::string_view operator_node = "operator";
+
 constexpr std::string_view rate_remedy =
     "topic=period, such as gyro=50ms; topic=period@priority, such as ring=2ms@urgent; topic=off";
 
@@ -134,6 +137,7 @@ BusSet robot_bus(const protocol::Catalogue& catalogue, const std::vector<Rate>& 
       entry.period = period.count();
       entry.deadline = topic.deadline.count() == 0 ? analysis::implicit_deadline : topic.deadline.count();
       entry.overwritten = true;
+      entry.node = sensor ? catalogue.boards[topic.board].name : operator_node;
       entry.jitter = topic.jitter.count();
       set.entries.push_back(std::move(entry));
     }

@@ -50,8 +50,12 @@ std::string to_json(const Study& study) {
                     {"deadline_ns", row.result.deadline},
                     {"schedulable", row.result.ok()},
                     {"instances_ns", row.instances},
-                    {"why", row.why}});
-  const Json object{{"utilisation", study.utilisation()}, {is_bus(study) ? "messages" : "tasks", rows}};
+                    {"why", row.why},
+                    {is_bus(study) ? "id" : "priority", row.rank}});
+  Json object{{"utilisation", study.utilisation()}, {is_bus(study) ? "messages" : "tasks", rows}};
+  for (const auto& queue : study.queues)
+    object["queues"].push_back(
+        {{"node", queue.node}, {"frames", queue.frames > 0 ? Json(queue.frames) : Json(nullptr)}});
   return object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -146,6 +150,10 @@ std::string to_table(const Study& study, const Advice& advice, bool colour) {
               "deadlines.\n"
             : "LEAST T, MOST C: the shortest period and the greatest cost of that task, others as they are, "
               "with which all meet their deadlines.\n";
+  for (const auto& queue : study.queues)
+    text += queue.frames > 0 ? fmt::format("{} has {} frame{} waiting or on the bus at most.\n", queue.node,
+                                           queue.frames, queue.frames == 1 ? "" : "s")
+                             : fmt::format("There is no bound on how many frames of {} wait.\n", queue.node);
   for (const std::string& remark : study.remarks) text += remark + "\n";
   return text;
 }

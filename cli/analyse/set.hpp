@@ -27,6 +27,8 @@ struct BusEntry {
   std::int64_t period = 0;
   std::int64_t deadline = analysis::implicit_deadline;
   std::int64_t jitter = 0;
+  std::int64_t offset = 0;   ///< of its first release, by the clock of its node
+  std::string node;          ///< who sends it; empty: not told
   std::size_t line = 0;      ///< of its file; 0: from no file
   bool overwritten = false;  ///< the next of its kind has to find it gone: D is T at most
 
@@ -65,6 +67,8 @@ struct Rate {
 /// More messages than a bus with 11-bit identifiers can have; the analysis takes so many.
 inline constexpr std::size_t most_messages = 4096;
 inline constexpr std::size_t most_tasks = 4096;
+/// Clocks that offsets can count from.
+inline constexpr std::size_t most_clocks = 64;
 
 /// One mistake: "place: what", and below it the remedy.
 struct Mistake {
@@ -92,7 +96,7 @@ struct Line {
 /// left out, and so are spaces around a cell.
 [[nodiscard]] std::vector<Line> split_csv(std::string_view text);
 
-/// `name,id,dlc,period_ns,deadline_ns,jitter_ns`, or a DBC file if the name ends so.
+/// `name,id,dlc,period_ns,deadline_ns,jitter_ns,node,offset_ns`, or a DBC file if the name ends so.
 [[nodiscard]] BusSet read_bus(const std::string& file);
 /// The messages of a DBC file that have a cycle time.
 [[nodiscard]] BusSet parse_dbc(std::string_view text, const std::string& file,

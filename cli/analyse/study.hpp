@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "ocm/analysis/can_queues.hpp"
 #include "ocm/analysis/can_response.hpp"
 #include "ocm/analysis/task_set.hpp"
 #include "ocm/analysis/utilisation.hpp"
@@ -14,6 +15,9 @@
 #include "cli/analyse/set.hpp"
 
 namespace ocm::cli::analyse {
+
+/// Responses listed of one busy period.
+inline constexpr std::size_t most_instances = 1000;
 
 /// Times are nanoseconds.
 struct Row {
@@ -36,6 +40,11 @@ struct Study {
   bool with_errors = false;          ///< an error model takes its share on top of the load
   std::string head;                  ///< bit rate and assumptions, or the processor's
   std::vector<std::string> remarks;  ///< what is not in the set
+  struct Queue {
+    std::string node;
+    std::int64_t frames = 0;  ///< that wait or are sent at once, at most; 0: no bound
+  };
+  std::vector<Queue> queues;  ///< of the nodes of which the queue was given
   [[nodiscard]] bool passes() const;
   [[nodiscard]] double utilisation() const;
 };
@@ -48,6 +57,11 @@ struct BusOptions {
   analysis::CanTest test = analysis::CanTest::exact;
   std::int64_t error_burst = 0;
   std::int64_t error_every = 0;  ///< nanoseconds
+  struct Queue {
+    std::string node;
+    analysis::NodeQueue queue;
+  };
+  std::vector<Queue> queues;  ///< of nodes that do not always offer their most urgent frame
 };
 
 /// A set ready for the analysis: nanoseconds, in the order of the entries.
@@ -55,10 +69,19 @@ struct BusModel {
   std::vector<analysis::Message> messages;
   std::vector<unsigned> bits;
   analysis::CanBus bus;
+  std::vector<std::string> nodes;           ///< Message::node is an index; a message of no node has its own
+  std::vector<analysis::NodeQueue> queues;  ///< one a node; empty: each offers its most urgent frame
+  bool offsets = false;
 };
 [[nodiscard]] BusModel model_of(const BusSet& set, const BusOptions& options);
 
 [[nodiscard]] Study study_bus(const BusSet& set, const BusOptions& options);
+
+/// Which identifiers may be given anew: all of them, or the two bits of priority in a robot's.
+enum class Assign { nothing, identifiers, priorities };
+/// Gives the set identifiers with which all meet their deadlines, with a remark that says whether there are
+/// any; if not, it stays as it is.
+void assign(BusSet& set, const BusOptions& options, Assign what);
 [[nodiscard]] Study study_tasks(const TaskSet& set, const analysis::Processor& processor);
 
 /// For people: what of each row can change, and what would make all meet their deadlines.

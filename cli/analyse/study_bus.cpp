@@ -2,23 +2,30 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <map>
 #include <memory>
-#include <numeric>
+#include <span>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "ocm/analysis/can_assignment.hpp"
+#include "ocm/analysis/can_offsets.hpp"
+#include "ocm/analysis/can_queues.hpp"
 #include "ocm/analysis/checked.hpp"
 #include "ocm/can/worst_bits.hpp"
+#include "ocm/protocol/identifier.hpp"
 
 #include "cli/analyse/search.hpp"
 #include "cli/analyse/study.hpp"
+#include "cli/session.hpp"
 
 namespace ocm::cli::analyse {
 namespace {
 
 using analysis::CanTest;
 using analysis::Checked;
+using analysis::Explained;
 using analysis::Message;
 using Analysis = analysis::CanResponse<most_messages>;
 
@@ -29,39 +36,6 @@ constexpr std::size_t most_rooms = 128;
 /// [CiA 301, table 1]
 constexpr std::array<std::int64_t, 8> usual_bit_rates{10'000,  20'000,  50'000,  125'000,
                                                       250'000, 500'000, 800'000, 1'000'000};
-/// Responses listed of one busy period.
-constexpr std::size_t most_instances = 1000;
-
-/// The response of each release of the busy period, by the equation as it stands. The analysis gives the
-/// worst only; that one is among these.
-std::vector<std::int64_t> instances_of(const BusModel& model, std::size_t m,
-                                       const analysis::Explained& result, CanTest test) {
-  if (!result.bounded()) return {};
-  if (result.instances <= 1 || test == CanTest::sufficient) return {result.response};
-  const Message& message = model.messages[m];
-  std::int64_t longest = 0;
-  for (std::size_t k = 0; k <= m; ++k) longest = std::max(longest, model.messages[k].cost);
-  std::vector<std::int64_t> responses;
-  Checked window = result.blocking;
-  const std::size_t count = std::min(result.instances, most_instances);
-  for (std::size_t q = 0; q < count; ++q) {
-    const Checked own = Checked{message.cost} * static_cast<std::int64_t>(q) + result.blocking;
-    for (;;) {
-      Checked next = own + analysis::error_delay(model.bus, longest, window + message.cost);
-      for (std::size_t k = 0; k < m; ++k) {
-        const Message& above = model.messages[k];
-        next += analysis::ceil_div(window + above.jitter + model.bus.bit, above.period) * above.cost;
-      }
-      if (!next.ok() || next <= window) break;
-      window = next;
-    }
-    responses.push_back(
-        (window + message.jitter + message.cost - Checked{message.period} * static_cast<std::int64_t>(q))
-            .value_or(analysis::unbounded));
-    window += message.cost;
-  }
-  return responses;
-}
 
 std::string bit_rate_text(std::int64_t rate) {
   if (rate % 1'000'000 == 0) return fmt::format("{} Mbit/s", rate / 1'000'000);
@@ -72,25 +46,162 @@ std::string id_text(const can::Frame& head) {
   return can::is_extended(head.format) ? fmt::format("0x{:08X}", head.id) : fmt::format("0x{:03X}", head.id);
 }
 
-/// Tests variants of a set; nobody: all meet their deadlines.
+/// The analysis that a model needs. Where queues are given, offsets do not count: that is safe.
+class Solver {
+ public:
+  explicit Solver(const BusModel& model) {
+    if (!model.queues.empty())
+      queues_ = std::make_unique<analysis::CanQueues<most_messages>>();
+    else if (model.offsets)
+      offsets_ = std::make_unique<analysis::CanOffsets<most_messages, most_clocks>>();
+    else
+      plain_ = std::make_unique<Analysis>();
+  }
+  /// `observe` as CanResponse::analyse has it; of queues and offsets it is told nothing.
+  template <class Observer = decltype(analysis::unobserved)>
+  std::span<const Explained> solve(const BusModel& model, CanTest test, analysis::Limits limits = {},
+                                   Observer&& observe = Observer{}) {
+    if (queues_) return queues_->analyse(model.messages, model.queues, model.bus, limits);
+    if (offsets_) return offsets_->analyse(model.messages, model.bus, limits);
+    return plain_->analyse(model.messages, model.bus, test, limits, observe);
+  }
+  /// Whether a test of the whole set is quick enough for thousands of them.
+  [[nodiscard]] bool fast() const { return plain_ != nullptr; }
+
+ private:
+  std::unique_ptr<Analysis> plain_;
+  std::unique_ptr<analysis::CanQueues<most_messages>> queues_;
+  std::unique_ptr<analysis::CanOffsets<most_messages, most_clocks>> offsets_;
+};
+
+/// Tests variants of a set.
 class Trial {
  public:
-  Trial(const BusModel& model, CanTest test)
-      : model_(model), test_(test), analysis_(std::make_unique<Analysis>()) {}
+  Trial(const BusModel& model, CanTest test) : model_(model), test_(test), solver_(model) {}
+  /// All meet their deadlines.
   [[nodiscard]] bool passes() {
-    const auto results = analysis_->analyse(model_.messages, model_.bus, test_, quick);
+    const auto results = solver_.solve(model_, test_, quick);
     return std::all_of(results.begin(), results.end(), [](const auto& result) { return result.ok(); });
   }
   BusModel& model() { return model_; }
-  Analysis& analysis() { return *analysis_; }
+  [[nodiscard]] bool fast() const { return solver_.fast(); }
 
  private:
   BusModel model_;
   CanTest test_;
-  std::unique_ptr<Analysis> analysis_;
+  Solver solver_;
 };
 
+std::vector<std::string> names_of(const std::vector<std::string>& nodes) {
+  std::vector<std::string> names;
+  for (const std::string& node : nodes)
+    if (!node.empty()) names.push_back(node);
+  return names;
+}
+
+/// Names of nodes become numbers.
+void set_nodes(const BusSet& set, const BusOptions& options, BusModel& model) {
+  for (std::size_t i = 0; i < set.entries.size(); ++i) {
+    const BusEntry& entry = set.entries[i];
+    const auto known = entry.node.empty() ? model.nodes.end()
+                                          : std::find(model.nodes.begin(), model.nodes.end(), entry.node);
+    model.messages[i].node = static_cast<std::uint16_t>(known - model.nodes.begin());
+    model.messages[i].offset = entry.offset;
+    model.offsets = model.offsets || entry.offset > 0;
+    if (known == model.nodes.end()) model.nodes.push_back(entry.node);
+  }
+  model.offsets = model.offsets && options.test == CanTest::exact;
+  if (model.offsets && model.nodes.size() > most_clocks)
+    fail({fmt::format("analyse bus: offsets by more than {} clocks", most_clocks),
+          "a message of no node has a clock of its own: name the nodes, or leave out the offsets"},
+         exit_usage);
+  if (options.queues.empty()) return;
+  model.queues.resize(model.nodes.size());
+  for (const BusOptions::Queue& queue : options.queues) {
+    const auto node = std::find(model.nodes.begin(), model.nodes.end(), queue.node);
+    if (node == model.nodes.end())
+      fail({fmt::format("--queue {}: no node of this name sends anything", queue.node),
+            fmt::format("one of {}", fmt::join(names_of(model.nodes), ", "))},
+           exit_usage);
+    model.queues[static_cast<std::size_t>(node - model.nodes.begin())] = queue.queue;
+  }
+}
+
+/// Audsley's order, as indices; first the lowest level that nobody can take, or nobody.
+std::pair<std::size_t, std::vector<std::size_t>> best_order(BusModel model) {
+  for (std::size_t i = 0; i < model.messages.size(); ++i)
+    model.messages[i].key = static_cast<std::uint32_t>(i);
+  const auto analysis = std::make_unique<Analysis>();
+  const std::size_t stuck = analysis::assign_priorities<most_messages>(model.messages, model.bus, *analysis);
+  std::vector<std::size_t> order;
+  for (const Message& message : model.messages) order.push_back(message.key);
+  return {stuck, order};
+}
+
+/// The identifiers that there are, handed out in Audsley's order.
+void assign_identifiers(BusSet& set, const BusOptions& options) {
+  const auto [stuck, order] = best_order(model_of(set, options));
+  if (stuck != analysis::nobody) {
+    set.remarks.push_back(
+        fmt::format("No order of identifiers makes all meet their deadlines: {} of the "
+                    "messages cannot share the bus whatever their order is.",
+                    stuck + 1));
+    return;
+  }
+  std::vector<BusEntry> entries;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    entries.push_back(set.entries[order[i]]);
+    entries.back().head.id = set.entries[i].head.id;
+  }
+  set.entries = std::move(entries);
+  set.remarks.emplace_back("The identifiers are given anew: in this order all meet their deadlines.");
+}
+
+/// Direction and topic stay, the priority is chosen: the least urgent one with which all are in time.
+void assign_layout(BusSet& set, const BusOptions& options) {
+  const BusModel model = model_of(set, options);
+  const auto lengths = std::make_unique<can::WorstBits>();
+  std::vector<analysis::TopicMessage> topics;
+  std::map<std::pair<protocol::Direction, std::uint8_t>, BusEntry> of;
+  for (std::size_t i = 0; i < set.entries.size(); ++i) {
+    const auto id = protocol::Identifier::decode(static_cast<std::uint16_t>(set.entries[i].head.id));
+    analysis::TopicMessage topic{model.messages[i], id.direction, id.topic};
+    unsigned bits = 0;  // whatever its priority will be
+    for (unsigned level = 0; level < protocol::priority_levels; ++level) {
+      const protocol::Identifier tried{id.direction, static_cast<protocol::Priority>(level), id.topic};
+      bits = std::max(bits, lengths->bits(tried.encode(), can::Format::base, set.entries[i].head.dlc));
+    }
+    topic.message.cost = analysis::bits_ns(bits, static_cast<std::uint32_t>(options.bit_rate));
+    topics.push_back(topic);
+    of[{id.direction, id.topic.value}] = set.entries[i];
+  }
+  const auto analysis = std::make_unique<Analysis>();
+  const std::size_t stuck =
+      analysis::assign_in_layout<most_messages>(std::span{topics}, model.bus, *analysis);
+  if (stuck != analysis::nobody) {
+    const auto& late = topics[stuck];
+    set.remarks.push_back(
+        fmt::format("No choice of priorities makes all meet their deadlines: {} is late "
+                    "even at urgent.",
+                    of.at({late.direction, late.topic.value}).name));
+    return;
+  }
+  set.entries.clear();
+  for (const auto& topic : topics) {
+    set.entries.push_back(of.at({topic.direction, topic.topic.value}));
+    set.entries.back().head.id = topic.identifier();
+    set.entries.back().bits = 0;  // of the new identifier
+  }
+  set.remarks.emplace_back(
+      "The priorities are given anew: the least urgent ones with which all meet their deadlines.");
+}
+
 }  // namespace
+
+void assign(BusSet& set, const BusOptions& options, Assign what) {
+  if (what == Assign::identifiers) assign_identifiers(set, options);
+  if (what == Assign::priorities) assign_layout(set, options);
+}
 
 BusModel model_of(const BusSet& set, const BusOptions& options) {
   BusModel model;
@@ -111,6 +222,7 @@ BusModel model_of(const BusSet& set, const BusOptions& options) {
                               .jitter = entry.jitter,
                               .key = can::arbitration_key(entry.head)});
   }
+  set_nodes(set, options, model);
   model.bus.bit = analysis::bits_ns(1, rate);
   model.bus.errors = {.burst = options.error_burst, .every = options.error_every};
   return model;
@@ -118,8 +230,12 @@ BusModel model_of(const BusSet& set, const BusOptions& options) {
 
 Study study_bus(const BusSet& set, const BusOptions& options) {
   const BusModel model = model_of(set, options);
-  const auto analysis = std::make_unique<Analysis>();
-  const auto results = analysis->analyse(model.messages, model.bus, options.test);
+  Solver solver{model};
+  std::vector<std::vector<std::int64_t>> instances(set.entries.size());
+  const auto results =
+      solver.solve(model, options.test, {}, [&](std::size_t m, std::int64_t, std::int64_t response) {
+        if (instances[m].size() < most_instances) instances[m].push_back(response);
+      });
   Study study;
   study.kind = Study::Kind::bus;
   study.with_errors = options.error_burst > 0;
@@ -127,6 +243,8 @@ Study study_bus(const BusSet& set, const BusOptions& options) {
     const BusEntry& entry = set.entries[i];
     const Message& message = model.messages[i];
     study.load.add(message.cost, message.period);
+    if (!results[i].bounded()) instances[i].clear();
+    if (results[i].bounded() && instances[i].empty()) instances[i] = {results[i].response};
     study.rows.push_back({entry.name,
                           id_text(entry.head),
                           fmt::format("{} B, {} bits", entry.head.dlc, model.bits[i]),
@@ -134,7 +252,7 @@ Study study_bus(const BusSet& set, const BusOptions& options) {
                           message.period,
                           message.jitter,
                           results[i],
-                          instances_of(model, i, results[i], options.test),
+                          std::move(instances[i]),
                           {}});
   }
   for (std::size_t i = 0; i < study.rows.size(); ++i) study.rows[i].why = explain(study, i);
@@ -145,6 +263,13 @@ Study study_bus(const BusSet& set, const BusOptions& options) {
     study.head += options.error_every > 0 ? fmt::format(", {} errors at once and one more every {}",
                                                         options.error_burst, time_text(options.error_every))
                                           : fmt::format(", {} errors at most", options.error_burst);
+  if (model.offsets && model.queues.empty()) study.head += ", with offsets";
+  if (!model.queues.empty()) study.head += ", with queues";
+  for (const BusOptions::Queue& queue : options.queues) {
+    const auto node = std::find(model.nodes.begin(), model.nodes.end(), queue.node) - model.nodes.begin();
+    study.queues.push_back(
+        {queue.node, analysis::queue_bound(model.messages, results, static_cast<std::uint16_t>(node))});
+  }
   study.remarks = set.remarks;
   return study;
 }
@@ -154,7 +279,7 @@ Advice advise_bus(const BusSet& set, const BusOptions& options, const Study& stu
   Trial trial{model_of(set, options), options.test};
   auto& messages = trial.model().messages;
   const bool passes = study.passes();
-  if (messages.size() <= most_rooms) {
+  if (messages.size() <= most_rooms && trial.fast()) {
     for (std::size_t i = 0; i < messages.size(); ++i) {
       const std::int64_t before = messages[i].period;
       const auto shortest = last_good(analysis::longest_looked_for, 1, [&](std::int64_t period) {
@@ -209,17 +334,11 @@ Advice advise_bus(const BusSet& set, const BusOptions& options, const Study& stu
     advice.changes.push_back(
         fmt::format("all periods {}.{:03} times as long", *stretched / permille, *stretched % permille));
   if (options.test == CanTest::exact && options.lengths == Lengths::generic &&
-      messages.size() <= most_rooms) {
-    BusModel model = trial.model();
-    for (std::size_t i = 0; i < model.messages.size(); ++i)
-      model.messages[i].key = static_cast<std::uint32_t>(i);
-    if (analysis::assign_priorities<most_messages>(model.messages, model.bus, trial.analysis()) ==
-        analysis::nobody) {
-      std::string order;
-      for (const Message& message : model.messages)
-        order += (order.empty() ? "" : ", ") + set.entries[message.key].name;
-      advice.changes.push_back("identifiers in this order: " + order);
-    }
+      messages.size() <= most_rooms && trial.fast()) {
+    const auto [stuck, order] = best_order(trial.model());
+    std::string names;
+    for (const std::size_t i : order) names += (names.empty() ? "" : ", ") + set.entries[i].name;
+    if (stuck == analysis::nobody) advice.changes.push_back("identifiers in this order: " + names);
   }
   return advice;
 }

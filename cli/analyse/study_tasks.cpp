@@ -17,7 +17,6 @@ using analysis::Task;
 constexpr analysis::Limits quick{.terms = 200'000};
 /// Beyond, what each task could still do is not looked for: 124 tests of the set each.
 constexpr std::size_t most_rooms = 40;
-constexpr std::size_t most_instances = 1000;
 
 std::vector<Task> tasks_of(const TaskSet& set) {
   std::vector<Task> tasks;
@@ -50,9 +49,14 @@ Study study_tasks(const TaskSet& set, const analysis::Processor& processor) {
   study.head = "fixed priorities, preemptive";
   if (processor.context_switch > 0)
     study.head += fmt::format(", {} a context switch", time_text(processor.context_switch));
+  if (processor.interrupt > 0)
+    study.head += fmt::format(", {} an interrupt for each release", time_text(processor.interrupt));
+  if (processor.lock > 0)
+    study.head += fmt::format(", interrupts off for {} at most", time_text(processor.lock));
   if (processor.tick_period > 0)
-    study.head += fmt::format(", a tick of {} every {}", time_text(processor.tick_cost),
-                              time_text(processor.tick_period));
+    study.head +=
+        fmt::format(", a tick of {} every {}{}", time_text(processor.tick_cost),
+                    time_text(processor.tick_period), processor.released_by_tick ? " that releases" : "");
   return study;
 }
 

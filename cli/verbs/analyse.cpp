@@ -16,6 +16,7 @@
 #include "cli/analyse/set.hpp"
 #include "cli/analyse/study.hpp"
 #include "cli/analyse/trace.hpp"
+#include "cli/verbs/commanding.hpp"
 #include "cli/verbs/verbs.hpp"
 
 namespace ocm::cli {
@@ -31,6 +32,13 @@ struct Options {
   std::string test = "exact";
   std::string errors;
   std::string context_switch;
+  std::string interrupt;
+  std::string lock;
+  std::string tick;
+  std::string tick_cost;
+  bool released_by_tick = false;
+  std::vector<std::string> queues;
+  std::string assign;
   std::string deadline;
   std::string set;
   std::string svg;
@@ -42,23 +50,6 @@ std::int64_t duration(std::string_view option, std::string_view text) {
   const auto time = reflective::parse_duration(text);
   if (time && time->count() >= 0) return time->count();
   fail({fmt::format("{} {}: no time", option, text), "a number with its unit, such as 900us or 50ms"},
-       exit_usage);
-}
-
-/// "500000", "500k", "83.333k", "1M"
-std::int64_t bit_rate(std::string_view text) {
-  std::string_view digits = text;
-  std::int64_t unit = 1;
-  if (digits.ends_with('k') || digits.ends_with('K')) unit = 1000;
-  if (digits.ends_with('M')) unit = 1'000'000;
-  if (unit != 1) digits.remove_suffix(1);
-  const auto number = base::parse_decimal(digits);
-  const auto rate = number ? base::multiply(*number, {unit, 0}) : number;
-  const auto whole = rate ? base::divide_rounded(*rate, {1, 0}) : base::Result<std::int64_t>{rate.error};
-  // Bits a second, whole; classic CAN ends at a million.
-  if (whole && *whole >= 1 && *whole <= 1'000'000 && base::compare(*rate, {*whole, 0}) == 0) return *whole;
-  fail({fmt::format("--bitrate {}: no bit rate of CAN", text),
-        "1 to 1000000 bits a second, such as 500k or 125000"},
        exit_usage);
 }
 
@@ -94,14 +85,58 @@ void read_errors(std::string_view text, BusOptions& options) {
   }
 }
 
+/// "motor=fifo", "motor=mailboxes:3"
+BusOptions::Queue read_queue(const std::string& text) {
+  const auto equals = text.rfind('=');
+  const std::string_view kind =
+      std::string_view{text}.substr(equals == std::string::npos ? text.size() : equals + 1);
+  BusOptions::Queue result{text.substr(0, equals), {}};
+  if (kind == "fifo") {
+    result.queue.kind = analysis::NodeQueue::Kind::fifo;
+    return result;
+  }
+  constexpr std::string_view mailboxes = "mailboxes:";
+  const auto count = kind.starts_with(mailboxes) ? base::parse_unsigned(kind.substr(mailboxes.size()))
+                                                 : base::Error::bad_syntax;
+  if (!count || *count < 1 || *count > most_messages)
+    fail({fmt::format("--queue {}: no queue", text),
+          "NODE=fifo or NODE=mailboxes:N, such as di_wheel_drive=mailboxes:3"},
+         exit_usage);
+  result.queue = {analysis::NodeQueue::Kind::mailboxes, static_cast<std::size_t>(*count)};
+  return result;
+}
+
+Assign assignment(const Options& options, const BusOptions& how, const BusSet& set) {
+  if (options.assign.empty()) return Assign::nothing;
+  const auto wrong = [&](std::string_view what, std::string_view remedy) {
+    fail({fmt::format("--assign {}: {}", options.assign, what), std::string{remedy}}, exit_usage);
+  };
+  if (how.test != analysis::CanTest::exact || !how.queues.empty())
+    wrong("orders are judged by the exact test, without queues", "leave out --test and --queue");
+  if (options.assign == "priorities") {
+    if (!options.file.empty())
+      wrong("the identifiers of a file have no bits of priority", "--assign identifiers");
+    return Assign::priorities;
+  }
+  if (how.lengths == Lengths::exact)
+    wrong("exact lengths depend on the identifiers that are looked for", "--lengths generic");
+  for (const BusEntry& entry : set.entries)
+    if (entry.head.format != set.entries.front().head.format)
+      wrong("identifiers of 11 and of 29 bits cannot be exchanged", "analyse them one kind at a time");
+  return Assign::identifiers;
+}
+
 BusOptions bus_options(const Options& options, const protocol::Catalogue& catalogue) {
   BusOptions result;
-  result.bit_rate = options.bit_rate.empty() ? catalogue.bit_rate : bit_rate(options.bit_rate);
+  result.bit_rate = options.bit_rate.empty() ? catalogue.bit_rate : bit_rate_option(options.bit_rate);
   const bool own = options.file.empty();
   const std::string lengths = options.lengths.empty() ? (own ? "exact" : "generic") : options.lengths;
   result.lengths = lengths == "exact" ? Lengths::exact : Lengths::generic;
   result.test = options.test == "exact" ? analysis::CanTest::exact : analysis::CanTest::sufficient;
   read_errors(options.errors, result);
+  for (const std::string& queue : options.queues) result.queues.push_back(read_queue(queue));
+  if (!result.queues.empty() && result.test == analysis::CanTest::sufficient)
+    fail({"--queue: --test sufficient knows no queues", "leave out one of them"}, exit_usage);
   return result;
 }
 
@@ -140,8 +175,26 @@ int bus(const Options& options, Session& session) {
     set = read_bus(options.file);
     apply_rates(set, rates);
   }
+  assign(set, how, assignment(options, how, set));
   const Study study = study_bus(set, how);
   return show(study, options, session, [&] { return advise_bus(set, how, study); });
+}
+
+analysis::Processor processor_of(const Options& options) {
+  analysis::Processor processor;
+  const auto take = [](std::string_view option, const std::string& text, std::int64_t& time) {
+    if (!text.empty()) time = duration(option, text);
+  };
+  take("--context-switch", options.context_switch, processor.context_switch);
+  take("--interrupt", options.interrupt, processor.interrupt);
+  take("--lock", options.lock, processor.lock);
+  take("--tick", options.tick, processor.tick_period);
+  take("--tick-cost", options.tick_cost, processor.tick_cost);
+  processor.released_by_tick = options.released_by_tick;
+  if (!processor.valid())
+    fail({"analyse tasks: a tick needs a period of more than 0", "--tick TIME, such as --tick 1ms"},
+         exit_usage);
+  return processor;
 }
 
 int tasks(const Options& options, Session& session) {
@@ -153,9 +206,7 @@ int tasks(const Options& options, Session& session) {
     fail({fmt::format("analyse tasks: {} is neither a file nor a board", options.file),
           fmt::format("a CSV file, - for standard input, or one of {}", fmt::join(own_task_sets(), ", "))});
   if (set.entries.empty()) set = read_tasks(options.file);
-  analysis::Processor processor;
-  if (!options.context_switch.empty())
-    processor.context_switch = duration("--context-switch", options.context_switch);
+  const analysis::Processor processor = processor_of(options);
   const Study study = study_tasks(set, processor);
   return show(study, options, session, [&] { return advise_tasks(set, processor, study); });
 }
@@ -206,12 +257,15 @@ void add_bus_options(CLI::App& verb, Options& options) {
 }  // namespace
 
 void add_analyse(CLI::App& app, Session& session, int& exit_code) {
-  auto* verb = add_verb(app, "analyse", "whether every message and every task is always in time", look_group,
-                        "  amiroctl analyse bus\n"
-                        "  amiroctl analyse bus --rates gyro=50ms ring=2ms@high\n"
-                        "  amiroctl analyse bus messages.csv --bitrate 125k --svg worst-case.svg\n"
-                        "  amiroctl analyse tasks tasks.csv --json\n"
-                        "  amiroctl analyse tasks di_wheel_drive");
+  auto* verb =
+      add_verb(app, "analyse", "whether every message and every task is always in time", look_group,
+               "  amiroctl analyse bus\n"
+               "  amiroctl analyse bus --rates gyro=50ms ring=2ms@high\n"
+               "  amiroctl analyse bus messages.csv --bitrate 125k --svg worst-case.svg\n"
+               "  amiroctl analyse bus --queue di_wheel_drive=fifo\n"
+               "  amiroctl analyse bus --rates ring=4ms@low --assign priorities\n"
+               "  amiroctl analyse tasks tasks.csv --json\n"
+               "  amiroctl analyse tasks di_wheel_drive --context-switch 2us --tick 1ms --tick-cost 3us");
   verb->alias("analyze");
   verb->require_subcommand(1);
 
@@ -219,8 +273,19 @@ void add_analyse(CLI::App& app, Session& session, int& exit_code) {
   auto* bus_verb = verb->add_subcommand("bus", "the messages of a CAN bus: the robot's own, or a FILE's");
   bus_verb->fallthrough();
   bus_verb->add_option("FILE", of_bus->file,
-                       "CSV (name,id,dlc,period_ns,deadline_ns,jitter_ns) or DBC; none: the robot's topics");
+                       "CSV (name,id,dlc,period_ns,deadline_ns,jitter_ns,node,offset_ns) or DBC; none: the "
+                       "robot's topics");
   add_bus_options(*bus_verb, *of_bus);
+  bus_verb
+      ->add_option("--queue", of_bus->queues,
+                   "NODE=fifo: it sends in the order of release; NODE=mailboxes:N: what is in one of its N "
+                   "mailboxes is not taken back. Several; default: each node sends its most urgent first")
+      ->type_name("QUEUE");
+  bus_verb
+      ->add_option("--assign", of_bus->assign,
+                   "identifiers: hand out those that there are; priorities: choose the robot's. So that all "
+                   "meet their deadlines, if that is possible")
+      ->check(CLI::IsMember({"identifiers", "priorities"}));
   add_outputs(*bus_verb, *of_bus);
   bus_verb->callback([of_bus, &session, &exit_code] { exit_code = bus(*of_bus, session); });
 
@@ -236,6 +301,23 @@ void add_analyse(CLI::App& app, Session& session, int& exit_code) {
       ->add_option("--context-switch", of_tasks->context_switch,
                    "what one costs; a job pays two. Default: nothing")
       ->type_name("TIME");
+  tasks_verb
+      ->add_option("--interrupt", of_tasks->interrupt,
+                   "what each release of each task costs ahead of all priorities. Default: nothing")
+      ->type_name("TIME");
+  tasks_verb
+      ->add_option("--lock", of_tasks->lock,
+                   "the longest stretch with interrupts off: each task may wait for one. Default: none")
+      ->type_name("TIME");
+  auto* tick = tasks_verb->add_option("--tick", of_tasks->tick, "the system's timer interrupt comes so often")
+                   ->type_name("TIME");
+  tasks_verb->add_option("--tick-cost", of_tasks->tick_cost, "and costs so much. Default: nothing")
+      ->type_name("TIME")
+      ->needs(tick);
+  tasks_verb
+      ->add_flag("--released-by-tick", of_tasks->released_by_tick,
+                 "releases are noticed at ticks only: a tick more jitter for each task")
+      ->needs(tick);
   add_outputs(*tasks_verb, *of_tasks);
   tasks_verb->callback([of_tasks, &session, &exit_code] { exit_code = tasks(*of_tasks, session); });
 

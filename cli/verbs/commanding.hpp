@@ -2,7 +2,9 @@
 /// the frames to the bus or, with --dry-run, to stdout.
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -43,6 +45,9 @@ void print_frames(const std::vector<can::Frame>& frames);
 
 /// A duration option such as --timeout 2s; exit_usage when it is none.
 [[nodiscard]] base::Duration duration_option(std::string_view option, const std::string& text);
+
+/// A bit rate in bit/s: "500000", "500k", "83.333k", "1M"; exit_usage when it is none of classic CAN.
+[[nodiscard]] std::uint32_t bit_rate_option(std::string_view text);
 
 /// A plain command verb: parse, carry out. For stop, led, set, send.
 void add_command_verb(CLI::App& app, Session& session, std::string_view name, std::string_view description,

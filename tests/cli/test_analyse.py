@@ -2,6 +2,8 @@
 
 import json
 import os
+import subprocess
+import sys
 import xml.etree.ElementTree as ElementTree
 
 from harness import Case, main
@@ -39,13 +41,20 @@ class Bus(Analyse):
         found = self.bus(DAVIS, "--bitrate", "125k", code=1)
         self.assertEqual(list(found), ["utilisation", "messages"])
         self.assertEqual(list(found["messages"][0]),
-                         ["name", "response_ns", "deadline_ns", "schedulable", "instances_ns", "why"])
+                         ["name", "response_ns", "deadline_ns", "schedulable", "instances_ns", "why", "id"])
         self.assertEqual(self.column(found["messages"], "response_ns"), {"a": 2000000, "b": 3000000, "c": 3500000})
         self.assertEqual(self.column(found["messages"], "deadline_ns"), {"a": 2500000, "b": 3250000, "c": 3250000})
         self.assertEqual(self.column(found["messages"], "schedulable"), {"a": True, "b": True, "c": False})
         self.assertEqual(self.column(found["messages"], "instances_ns")["c"], [3000000, 3500000])
         self.assertAlmostEqual(found["utilisation"], 1 / 2.5 + 2 / 3.5, places=9)
         self.assertIn("250us", found["messages"][2]["why"])
+
+    def test_a_release_in_the_first_bit_of_an_arbitration(self):
+        """Frames of 55, 55 and 65 us: b waits for c and a, 120 us. A release of a after exactly that time wins once
+        more, since it is there in the first bit; one bit later it does not. [Davis et al. 2007: tau_bit]"""
+        for period, response in ((120000, 230000), (121000, 175000)):
+            found = self.bus(BUS + f"a,1,0,{period},,\nb,2,0,1000000,,\nc,3,1,1000000,,\n", "--bitrate", "1M")
+            self.assertEqual(found["messages"][1]["response_ns"], response)
 
     def test_sufficient(self):
         found = self.bus(DAVIS, "--bitrate", "125000", "--test", "sufficient", code=1)
@@ -125,6 +134,56 @@ class Bus(Analyse):
         out = self.bus(text.replace("b,2", "b,4"), "--bitrate", "125k")
         self.assertEqual(self.column(out["messages"], "response_ns"), {"a": 2000000, "b": 2760000, "c": 2760000})
 
+    NODES = BUS.strip() + ",node,offset_ns\n"
+
+    def test_fifo(self):
+        """a waits for whatever is queued before it in its node, as if it were as urgent as c. [Davis et al. 2011]"""
+        text = (self.NODES + "a,1,0,10000000,,,left,\nb,2,0,10000000,,,right,\nc,3,0,10000000,,,left,\n")
+        plain = self.column(self.bus(text, "--bitrate", "1M")["messages"], "response_ns")
+        self.assertEqual(plain, {"a": 110000, "b": 165000, "c": 165000})
+        found = self.bus(text, "--bitrate", "1M", "--queue", "left=fifo")
+        # a: b, c and itself; b: c, and a which c's queue can hold up; the order of arbitration stays.
+        self.assertEqual(self.column(found["messages"], "response_ns"), {"a": 165000, "b": 165000, "c": 165000})
+        self.assertEqual(found["queues"], [{"node": "left", "frames": 2}])
+        out, _ = self.run_tool("analyse", "bus", self.file(text), "--bitrate", "1M", "--queue", "left=fifo")
+        self.assertIn("left has 2 frames waiting", out)
+
+    def test_mailboxes(self):
+        """One mailbox: a waits for c, which is in it and is held up by b."""
+        text = self.NODES + "a,1,0,10000000,,,left,\nb,2,0,10000000,,,right,\nc,3,0,10000000,,,left,\n"
+        one = self.bus(text, "--bitrate", "1M", "--queue", "left=mailboxes:1")
+        self.assertEqual(self.column(one["messages"], "response_ns")["a"], 165000)
+        two = self.bus(text, "--bitrate", "1M", "--queue", "left=mailboxes:2")
+        self.assertEqual(self.column(two["messages"], "response_ns")["a"], 110000)
+
+    def test_offsets(self):
+        """Two of one clock, half a period apart, never delay a third one both; of two clocks they may."""
+        text = self.NODES + "a,1,0,1000000,,,left,\nb,2,0,1000000,,,{},500000\nc,3,0,1000000,,,right,\n"
+        self.assertEqual(self.bus(text.format("left"), "--bitrate", "1M")["messages"][2]["response_ns"], 110000)
+        self.assertEqual(self.bus(text.format("other"), "--bitrate", "1M")["messages"][2]["response_ns"], 165000)
+        out, _ = self.run_tool("analyse", "bus", self.file(text.format("left")), "--bitrate", "1M")
+        self.assertIn("with offsets", out)
+
+    def test_identifiers_given_anew(self):
+        """The set of test_another_order: a, c, b do, and nothing else."""
+        text = BUS + "a,1,7,2240000,2200000,\nb,2,7,2880000,2760000,\nc,3,4,4400000,3400000,\n"
+        found = self.bus(text, "--bitrate", "125k", "--assign", "identifiers")
+        self.assertEqual(self.column(found["messages"], "id"), {"a": "0x001", "c": "0x002", "b": "0x003"})
+        none = text.replace("3400000", "1500000")
+        out, _ = self.run_tool("analyse", "bus", self.file(none), "--bitrate", "125k", "--assign", "identifiers", code=1)
+        self.assertIn("No order of identifiers", out)
+
+    def test_options_that_mean_nothing(self):
+        nodes = self.file(self.NODES + "a,1,0,1000000,,,left,\n")
+        for options, word in ((["--queue", "left"], "NODE=fifo"), (["--queue", "left=mailboxes:0"], "mailboxes:0"),
+                              (["--queue", "top=fifo"], "one of left"), (["--assign", "priorities"], "identifiers"),
+                              (["--queue", "left=fifo", "--test", "sufficient"], "--test"),
+                              (["--assign", "identifiers", "--lengths", "exact"], "generic")):
+            _, err = self.run_tool("analyse", "bus", nodes, *options, code=2)
+            self.assertIn(word, err)
+        _, err = self.run_tool("analyse", "bus", self.file(self.NODES + "a,1,0,1000000,,,,5\n"), code=2)
+        self.assertIn("no node", err)
+
     def test_mistakes_name_the_line(self):
         for text, *words in (
                 ("", "set.csv", "header"),
@@ -188,6 +247,25 @@ class Robot(Analyse):
             for word in words:
                 self.assertIn(word, err)
 
+    def test_priorities_given_anew(self):
+        """The ring every 4 ms is late at low, and so goes up; nothing goes higher than it must."""
+        rates = ["ring=4ms@low", "odometry=off"]
+        before = self.names("--rates", *rates, code=1)
+        found = self.names("--rates", *rates, "--assign", "priorities")
+        self.assertTrue(all(m["schedulable"] for m in found["messages"]))
+        level = {m["name"]: int(m["id"], 16) >> 8 & 3 for m in found["messages"]}
+        self.assertEqual((level["gyroscope"], level["proximity_ring.sensor_8"]), (3, 2))
+        self.assertEqual(len(before["messages"]), len(found["messages"]))
+        fast = [f"{t}=1ms" for t in ("ring", "gyroscope", "accelerometer", "floor_proximity", "magnetometer")]
+        out, _ = self.run_tool("analyse", "bus", "--rates", *fast, "--assign", "priorities", code=1)
+        self.assertIn("No choice of priorities", out)
+
+    def test_a_board_with_a_fifo(self):
+        plain = self.column(self.names()["messages"], "response_ns")
+        fifo = self.names("--queue", "di_wheel_drive=fifo")
+        self.assertGreater(self.column(fifo["messages"], "response_ns")["odometry.pose"], plain["odometry.pose"])
+        self.assertGreater(fifo["queues"][0]["frames"], 8)
+
     def test_british_and_american(self):
         self.assertEqual(self.run_tool("analyze", "bus")[0], self.run_tool("analyse", "bus")[0])
 
@@ -208,6 +286,11 @@ class Tasks(Analyse):
         found, _ = self.responses([("a", 4, 3, 20, 5), ("b", 3, 3, 15, 7), ("c", 2, 4, 10, 10), ("d", 1, 3, 20, 20)])
         self.assertEqual(found, {"a": 3, "b": 6, "c": 10, "d": 20})
 
+        found, _ = self.responses([("a", 1, 32, 80), ("b", 2, 5, 40), ("c", 3, 4, 16)])
+        self.assertEqual(found, {"a": 58, "b": 9, "c": 4})
+        found, _ = self.responses([("a", 3, 3, 7), ("b", 2, 3, 12), ("c", 1, 5, 20)])
+        self.assertEqual(found, {"a": 3, "b": 6, "c": 20})
+
     def test_all_releases_of_the_busy_period(self):
         found, whole = self.responses([("a", 2, 26, 70), ("b", 1, 62, 100, 118)])
         self.assertEqual(found["b"], 118)
@@ -221,6 +304,12 @@ class Tasks(Analyse):
         self.assertEqual(list(found.values()),
                          [1700, 3340, 6300, 1706300, 1749300, 1889300, 2144300, 9444300])
         self.assertAlmostEqual(whole["utilisation"], .1054, places=4)
+        arduino = [("A", .8, 610), ("B", .8, 610), ("C", 103, 3400), ("D", 30, 1660000), ("E", 20, 41000),
+                   ("F", 103, 130000), ("G", 30, 187000), ("H", 200, 5880000)]
+        rows = [(name, 8 - i, cost, int(period * 1000000)) for i, (name, period, cost) in enumerate(arduino)]
+        found, whole = self.responses(rows)
+        self.assertEqual(list(found.values()), [610, 1220, 4620, 1667060, 1708060, 1838060, 2025060, 7913600])
+        self.assertAlmostEqual(whole["utilisation"], .0958, places=4)
 
     def test_sets_that_have_a_name(self):
         """The thesis's robots, as spec/tasks.json has them; its table 9.2 with its errors mended."""
@@ -247,6 +336,20 @@ class Tasks(Analyse):
     def test_context_switches(self):
         found, _ = self.responses([("a", 1, 10, 100)], 0, "--context-switch", "1ns")
         self.assertEqual(found, {"a": 12})
+
+    def test_what_the_system_takes(self):
+        """Tasks of 10 and 20 of 100 and 200 ns, a tick of 1 each 50, 2 an interrupt, 3 with interrupts off."""
+        rows = [("a", 2, 10, 100), ("b", 1, 20, 200)]
+        one = self.responses(rows, 0, "--tick", "50ns", "--tick-cost", "1ns")[0]
+        self.assertEqual(one, {"a": 11, "b": 31})
+        self.assertEqual(self.responses(rows, 0, "--interrupt", "2ns")[0], {"a": 14, "b": 34})
+        self.assertEqual(self.responses(rows, 0, "--lock", "3ns")[0], {"a": 13, "b": 33})
+        self.assertEqual(self.responses(rows, 0, "--tick", "50ns", "--released-by-tick")[0], {"a": 60, "b": 80})
+        path = self.file(TASKS + "a,1,10,100,,,\n")
+        self.run_tool("analyse", "tasks", path, "--tick-cost", "1ns", code=2)
+        self.run_tool("analyse", "tasks", path, "--tick", "0s", "--tick-cost", "1ns", code=2)
+        out, _ = self.run_tool("analyse", "tasks", path, "--lock", "3ns", "--interrupt", "2ns")
+        self.assertIn("interrupts off for 3ns", out)
 
     def test_overload(self):
         found, whole = self.responses([("a", 2, 60, 100), ("b", 1, 41, 100)], 1)
@@ -379,10 +482,11 @@ class Trace(Analyse):
         self.assertIn("1 request", out)
 
     def test_mistakes(self):
-        for text, word in (("nonsense\n", "x.log:1"), ("", "no frame"), ("(1.0) can0 101#01\n\n(2.0) can0 1#01\n", "x.log:3")):
+        for text, word in (("nonsense\n", "x.log:1"), ("\n", "no frame"), ("(1.0) can0 101#01\n\n(2.0) can0 1#01\n", "x.log:3")):
             _, err = self.run_tool("analyse", "trace", self.file(text, "x.log"), code=2)
             self.assertIn(word, err)
         self.run_tool("analyse", "trace", os.path.join(self.folder, "none.log"), code=1)
+        self.run_tool("analyse", "trace", self.file("", "x.log"), code=1)
 
 
 class Picture(Analyse):
@@ -423,6 +527,28 @@ BA_ "GenMsgCycleTime" BO_ 2566844672 100;
         self.assertEqual(found["messages"][0]["response_ns"], (160 + 125) * 8000)
         out, _ = self.run_tool("analyse", "bus", os.path.join(self.folder, "car.dbc"))
         self.assertIn("no cycle time: Rare", out)
+
+    def test_what_another_reader_sees(self):
+        """Names, identifiers, cycle times and senders of canmatrix are those that were analysed."""
+        reader = ("import sys, canmatrix.formats\n"
+                  "for m in canmatrix.formats.loadp(sys.argv[1])[''].frames:\n"
+                  "    print(m.name, hex(m.arbitration_id.id), m.size, m.effective_cycle_time, *m.transmitters)\n")
+        path = self.file(self.TEXT, "car.dbc")
+        for python in ("/usr/bin/python3", sys.executable):
+            read = subprocess.run([python, "-c", reader, path], capture_output=True, text=True, check=False)
+            if read.returncode == 0:
+                break
+        else:
+            self.skipTest("no canmatrix")
+        rows = [line.split() for line in read.stdout.splitlines()]
+        seen = {row[0]: row for row in rows if row[3] not in ("0", "None")}
+        self.assertEqual(set(seen), {"Speed", "Wide"}, read.stdout)
+        found = self.bus(self.TEXT, "--queue", "Engine=fifo", name="car.dbc")
+        for message in found["messages"]:
+            other = seen[message["name"]]
+            self.assertEqual(int(message["id"], 16), int(other[1], 16))
+            self.assertEqual(message["deadline_ns"], int(float(other[3]) * 1e6))
+            self.assertEqual(other[4], "Engine")
 
     def test_mistakes(self):
         for text, word in (("BO_ 1 A: 64 X\n", ":1: 'A' has 64 bytes"), ("BO_ 2048 A: 8 X\n", ":1: 'A'"),

@@ -5,6 +5,7 @@
 #include "ocm/analysis/task_list.hpp"
 #include "ocm/analysis/task_sets.hpp"
 
+#include "firmware/boards/bus.hpp"  // the proof for the bus, beside that for the processor
 #include "firmware/boards/di_wheel_drive/board.hpp"
 
 namespace ocm::firmware::boards::di_wheel_drive {

@@ -5,6 +5,8 @@
 #include "ocm/analysis/task_list.hpp"
 #include "ocm/analysis/task_sets.hpp"
 
+#include "firmware/boards/bus.hpp"  // the proof for the bus, beside that for the processor
+
 namespace ocm::firmware::boards::light_ring {
 
 namespace task_set = analysis::task_sets::light_ring;

@@ -36,14 +36,14 @@ class Checked {
   }
 
   friend constexpr Checked operator+(Checked a, Checked b) noexcept {
-    if (!a.ok_ || !b.ok_ || (b.value_ > 0 ? a.value_ > most - b.value_ : a.value_ < least - b.value_))
-      return spoilt();
-    return a.value_ + b.value_;
+    std::int64_t sum = 0;
+    if (!a.ok_ || !b.ok_ || __builtin_add_overflow(a.value_, b.value_, &sum)) return spoilt();
+    return sum;
   }
   friend constexpr Checked operator-(Checked a, Checked b) noexcept {
-    if (!a.ok_ || !b.ok_ || (b.value_ < 0 ? a.value_ > most + b.value_ : a.value_ < least + b.value_))
-      return spoilt();
-    return a.value_ - b.value_;
+    std::int64_t difference = 0;
+    if (!a.ok_ || !b.ok_ || __builtin_sub_overflow(a.value_, b.value_, &difference)) return spoilt();
+    return difference;
   }
   friend constexpr Checked operator*(Checked a, Checked b) noexcept {
     if (!a.ok_ || !b.ok_) return spoilt();
@@ -69,7 +69,6 @@ class Checked {
 
  private:
   static constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
-  static constexpr std::int64_t least = std::numeric_limits<std::int64_t>::min();
 
   static constexpr std::uint64_t magnitude(std::int64_t value) noexcept {
     return value < 0 ? ~static_cast<std::uint64_t>(value) + 1 : static_cast<std::uint64_t>(value);

@@ -7,12 +7,14 @@
 ///
 /// Where that fails, GCC and Clang name the type that is late, the bound on its response time and its
 /// deadline: misses_its_deadline<Pose, 5160000, 5000000>. A topic of a spec becomes such types by
-/// TopicFrame<Topic, frame>, with the period, deadline, jitter and priority that the topic has by default.
+/// TopicFrame<Topic, frame>, with the period, deadline, jitter and priority that the topic has by default;
+/// all that the boards of a spec send is SentBy<bit_rate, Boards...>.
 ///
 /// Cost: one exact analysis at compile time: 300 messages at a moderate load take GCC and Clang 0.3 s and
 /// stay within Clang's million steps.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -27,10 +29,27 @@
 
 namespace ocm::analysis {
 
+namespace detail {
+
+template <std::size_t index, class... Types>
+struct TypeAt;
+template <std::size_t index, class First, class... Rest>
+struct TypeAt<index, First, Rest...> {
+  using type = typename TypeAt<index - 1, Rest...>::type;
+};
+template <class First, class... Rest>
+struct TypeAt<0, First, Rest...> {
+  using type = First;
+};
+
+}  // namespace detail
+
 /// Messages as types, in any order, and how long a bit is in their ticks.
 template <std::int64_t tau_bit, class... Messages>
 struct Traffic {
   static constexpr std::size_t size = sizeof...(Messages);
+  template <std::size_t index>
+  using item = typename detail::TypeAt<index, Messages...>::type;
 
  private:
   static constexpr auto solve() noexcept {
@@ -67,20 +86,8 @@ struct all_meet_their_deadlines {};
 
 namespace detail {
 
-template <std::size_t index, class First, class... Rest>
-struct TypeAt {
-  using type = typename TypeAt<index - 1, Rest...>::type;
-};
-template <class First, class... Rest>
-struct TypeAt<0, First, Rest...> {
-  using type = First;
-};
-
 template <class Set>
-struct FirstLate;
-template <std::int64_t tau_bit, class... Messages>
-struct FirstLate<Traffic<tau_bit, Messages...>> {
-  using Set = Traffic<tau_bit, Messages...>;
+struct FirstLate {
   static constexpr std::size_t index = [] {
     std::size_t i = 0;
     while (i < Set::size && Set::results[i].ok()) ++i;
@@ -90,7 +97,7 @@ struct FirstLate<Traffic<tau_bit, Messages...>> {
     if constexpr (index == Set::size)
       return all_meet_their_deadlines{};
     else
-      return misses_its_deadline<typename TypeAt<index, Messages...>::type, Set::results[index].response,
+      return misses_its_deadline<typename Set::template item<index>, Set::results[index].response,
                                  Set::results[index].deadline>{};
   }
   using type = decltype(find());
@@ -98,7 +105,8 @@ struct FirstLate<Traffic<tau_bit, Messages...>> {
 
 }  // namespace detail
 
-/// The first of a set's messages that may be late, as misses_its_deadline; or all_meet_their_deadlines.
+/// The first of a set's messages (or tasks: task_list.hpp) that may be late, as misses_its_deadline; or
+/// all_meet_their_deadlines.
 template <class Set>
 using first_late = typename detail::FirstLate<Set>::type;
 
@@ -125,5 +133,44 @@ struct TopicFrame {
     return message_of(head, direction, Topic::priority, period, Topic::deadline, Topic::jitter, bit_rate);
   }();
 };
+
+/// A frame as TopicFrame, that must have been sent when the next sample comes: what still waits then is lost.
+template <protocol::TopicType Topic, std::uint32_t bit_rate, std::size_t index = 0, std::uint8_t instance = 1,
+          std::int64_t period_ns = 0>
+struct FreshFrame {
+  static constexpr Message message = [] {
+    Message m = TopicFrame<Topic, bit_rate, index, instance, period_ns>::message;
+    m.deadline = std::min(m.due(), m.period);
+    return m;
+  }();
+};
+
+template <std::int64_t tau_bit, class... Some, class... More>
+[[nodiscard]] constexpr Traffic<tau_bit, Some..., More...> operator+(Traffic<tau_bit, Some...>,
+                                                                     Traffic<tau_bit, More...>) noexcept {
+  return {};
+}
+
+namespace detail {
+
+template <std::uint32_t bit_rate, class Topic, std::size_t... i>
+constexpr auto frames_of(std::index_sequence<i...>) noexcept {
+  constexpr std::size_t frames = Topic::frames.size();
+  return Traffic<bits_ns(1, bit_rate),
+                 FreshFrame<Topic, bit_rate, i % frames, static_cast<std::uint8_t>(i / frames + 1)>...>{};
+}
+template <std::uint32_t bit_rate, class... Topics>
+constexpr auto frames_of(protocol::TopicList<Topics...>) noexcept {
+  return (Traffic<bits_ns(1, bit_rate)>{} + ... +
+          frames_of<bit_rate, Topics>(
+              std::make_index_sequence<Topics::frames.size() * std::size_t{Topics::instances}>{}));
+}
+
+}  // namespace detail
+
+/// All frames that these boards of a generated header send when nobody asks for anything else.
+template <std::uint32_t bit_rate, class... Boards>
+using SentBy = decltype((Traffic<bits_ns(1, bit_rate)>{} + ... +
+                         detail::frames_of<bit_rate>(typename Boards::sensors{})));
 
 }  // namespace ocm::analysis

@@ -25,6 +25,8 @@ namespace ocm::analysis {
 template <class... Tasks>
 struct TaskList {
   static constexpr std::size_t size = sizeof...(Tasks);
+  template <std::size_t index>
+  using item = typename detail::TypeAt<index, Tasks...>::type;
   static constexpr std::array<Task, size> tasks{Tasks::task...};
   static constexpr std::array<Explained, size> results = response_times(tasks);
 
@@ -55,26 +57,6 @@ struct TaskList {
     return static_cast<std::uint32_t>((ns + 999) / 1000);
   }
 };
-
-namespace detail {
-template <class... Tasks>
-struct FirstLate<TaskList<Tasks...>> {
-  using Set = TaskList<Tasks...>;
-  static constexpr std::size_t index = [] {
-    std::size_t i = 0;
-    while (i < Set::size && Set::results[i].ok()) ++i;
-    return i;
-  }();
-  static constexpr auto find() noexcept {
-    if constexpr (index == Set::size)
-      return all_meet_their_deadlines{};
-    else
-      return misses_its_deadline<typename TypeAt<index, Tasks...>::type, Set::results[index].response,
-                                 Set::results[index].deadline>{};
-  }
-  using type = decltype(find());
-};
-}  // namespace detail
 
 /// What BoardAdmission must know of a board, from its set in spec/tasks.json: `Facts` has `Tasks`, `blocking`
 /// and `bus_percent`. Each sensor of the board needs a task of its name.

@@ -1,5 +1,6 @@
 #include "ocm/analysis/can_response.hpp"
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <random>
@@ -85,62 +86,141 @@ static_assert(can_response_times(over)[0].response == 20);
 static_assert(can_response_times(over)[1].reason == Reason::overloaded);
 static_assert(can_response_times(over)[2].reason == Reason::overloaded);
 
-/// The formulas as they stand in the paper, from scratch for each message: slow, and on other paths.
-std::int64_t by_the_paper(const std::vector<Message>& set, std::size_t m, std::int64_t bit) {
+/// The formulas as they stand in the paper, from scratch for each message: slow, and on other paths. The
+/// response of each instance.
+std::vector<std::int64_t> by_the_paper(const std::vector<Message>& set, std::size_t m, const CanBus& bus) {
   const auto ceil = [](std::int64_t a, std::int64_t b) { return (a + b - 1) / b; };
   std::int64_t blocking = 0;
-  for (std::size_t k = m + 1; k < set.size(); ++k) blocking = std::max(blocking, set[k].cost);
+  std::int64_t longest = 0;
+  for (std::size_t k = 0; k < set.size(); ++k)
+    (k > m ? blocking : longest) = std::max(k > m ? blocking : longest, set[k].cost);
+  const auto errors = [&](std::int64_t t) {
+    if (bus.errors.burst == 0) return std::int64_t{0};
+    const std::int64_t more = bus.errors.every > 0 ? ceil(t, bus.errors.every) - 1 : 0;
+    return (bus.errors.burst + more) * (31 * bus.bit + longest);
+  };
   std::int64_t busy = 0;
   for (std::int64_t next = set[m].cost; next != busy;) {
     busy = next;
-    next = blocking;
+    next = blocking + errors(busy);
     for (std::size_t k = 0; k <= m; ++k) next += ceil(busy + set[k].jitter, set[k].period) * set[k].cost;
   }
-  std::int64_t worst = 0;
+  std::vector<std::int64_t> responses;
   for (std::int64_t q = 0; q < ceil(busy + set[m].jitter, set[m].period); ++q) {
     std::int64_t window = -1;
     for (std::int64_t next = blocking + q * set[m].cost; next != window;) {
       window = next;
-      next = blocking + q * set[m].cost;
+      next = blocking + q * set[m].cost + errors(window + set[m].cost);
       for (std::size_t k = 0; k < m; ++k)
-        next += ceil(window + set[k].jitter + bit, set[k].period) * set[k].cost;
+        next += ceil(window + set[k].jitter + bus.bit, set[k].period) * set[k].cost;
     }
-    worst = std::max(worst, set[m].jitter + window - q * set[m].period + set[m].cost);
+    responses.push_back(set[m].jitter + window - q * set[m].period + set[m].cost);
   }
-  return worst;
+  return responses;
 }
 
 }  // namespace
 
-TEST_CASE("the sweep over levels says what the formulas say of each message alone") {
+TEST_CASE("the sweep over levels says what the formulas say of each message and instance alone") {
   std::mt19937 random{2007};
   const auto below = [&](std::int64_t end) {
     return static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(end));
   };
   CanResponse<40> analysis;
   int several = 0;
+  int with_errors = 0;
+  int falls = 0;  // B becomes so much less that the level below begins before the one above
   for (int round = 0; round < 4'000; ++round) {
     std::vector<Message> set(1 + random() % (round % 8 == 0 ? 40 : 8));
+    CanBus bus{.bit = 1 + below(3)};
+    if (round % 4 == 1) bus.errors = {.burst = 1 + below(2), .every = below(2) * (700 + below(5'000))};
     const std::int64_t scale = 130 * static_cast<std::int64_t>(set.size()) * (1 + below(3));
-    double load = 0;
+    double load = bus.errors.every > 0 ? 230.0 / static_cast<double>(bus.errors.every) : 0;
     for (Message& m : set) {
-      m.cost = 47 + below(90);
+      m.cost = round % 3 == 0 ? 3 + below(130) : 47 + below(90);
       m.period = scale / 3 + below(2 * scale);
       if (random() % 2 == 0) m.jitter = below(2 * m.period);
       load += static_cast<double>(m.cost) / static_cast<double>(m.period);
     }
     if (load > 0.995) continue;
-    const std::int64_t bit = 1 + below(3);
-    const auto results = analysis.analyse(set, {.bit = bit});
+    std::vector<std::vector<std::int64_t>> observed(set.size());
+    const auto results = analysis.analyse(set, bus, CanTest::exact, {},
+                                          [&](std::size_t m, std::int64_t q, std::int64_t response) {
+                                            REQUIRE(observed[m].size() == static_cast<std::size_t>(q));
+                                            observed[m].push_back(response);
+                                          });
     for (std::size_t m = 0; m < set.size(); ++m) {
       CAPTURE(round, m);
-      REQUIRE(results[m].response == by_the_paper(set, m, bit));
+      const auto expected = by_the_paper(set, m, bus);
+      const auto worst = std::max_element(expected.begin(), expected.end());
+      REQUIRE(observed[m] == expected);
+      REQUIRE(results[m].response == *worst);
+      REQUIRE(results[m].instance == static_cast<std::size_t>(worst - expected.begin()));
+      REQUIRE(results[m].instances == expected.size());
       REQUIRE((results[m].reason == Reason::schedulable) == (results[m].response <= set[m].period));
       several += results[m].instances > 1 ? 1 : 0;
-      if (m > 0) REQUIRE(results[m].largest < m);
+      with_errors += bus.errors.every > 0 ? 1 : 0;
+      if (m > 0) {
+        REQUIRE(results[m].largest < m);
+        falls += results[m - 1].blocking > results[m].blocking + set[m - 1].cost ? 1 : 0;
+      }
     }
   }
   CHECK(several > 1'000);
+  CHECK(with_errors > 1'000);
+  CHECK(falls > 100);
+}
+
+TEST_CASE("who delays a message most is told of its worst instance, the most urgent of equals") {
+  std::mt19937 random{2011};
+  CanResponse<12> analysis;
+  int in_between = 0;
+  for (int round = 0; round < 2'000; ++round) {
+    std::vector<Message> set(2 + random() % 11);
+    for (Message& m : set) {
+      m.cost = 47 + 10 * static_cast<std::int64_t>(random() % 9);
+      m.period = 70 * static_cast<std::int64_t>(set.size()) + static_cast<std::int64_t>(random() % 900);
+    }
+    const auto results = analysis.analyse(set, {});
+    for (std::size_t m = 0; m < set.size(); ++m) {
+      const Explained& result = results[m];
+      if (!result.bounded()) continue;
+      const auto before = static_cast<std::int64_t>(result.instance) * set[m].cost;
+      const std::int64_t window = result.blocking + before + result.interference;
+      std::int64_t most = 0;
+      std::int64_t sum = 0;
+      std::size_t who = nobody;
+      for (std::size_t k = 0; k < m; ++k) {
+        const std::int64_t share = (window + 1 + set[k].period - 1) / set[k].period * set[k].cost;
+        sum += share;
+        if (share > most) who = k;
+        most = std::max(most, share);
+      }
+      CAPTURE(round, m);
+      REQUIRE(sum == result.interference);
+      REQUIRE(result.largest == who);
+      REQUIRE(result.largest_share == most);
+      in_between += result.instance + 1 < result.instances ? 1 : 0;
+    }
+  }
+  CHECK(in_between > 500);
+}
+
+TEST_CASE("a bit that is shorter than a tick: all that comes at 0 still goes first") {
+  const auto results = can_response_times(
+      std::array<Message, 3>{{{.cost = 135, .period = 9'000}, {.cost = 55, .period = 9'000}, {55, 9'000}}},
+      {.bit = 0});
+  CHECK(results[0].response == 190);
+  CHECK(results[1].response == 245);
+  CHECK(results[2].response == 245);
+  // The last one begins before the others do: nothing blocks it.
+  const auto falls = can_response_times(
+      std::array<Message, 3>{{{.cost = 55, .period = 9'000}, {.cost = 60, .period = 9'000}, {135, 9'000}}},
+      {.bit = 0});
+  CHECK(falls[2].response == 250);
+  CHECK(
+      can_response_times(std::array<Message, 1>{{{.cost = 135, .period = 9'000}}}, {.bit = 0})[0].response ==
+      135);
 }
 
 TEST_CASE("CAN: numbers that mean nothing are named, and nothing is computed from them") {
@@ -159,6 +239,11 @@ TEST_CASE("CAN: numbers that mean nothing are named, and nothing is computed fro
   CHECK(small.analyse(davis, {})[0].reason == Reason::bad_input);
   CHECK(small.analyse({}, {}).empty());
   CHECK(can_response_times(davis, {.bit = -1})[0].reason == Reason::bad_input);
+  // No frame is shorter than a bit.
+  const auto shorter = can_response_times(
+      std::array<Message, 2>{{{.cost = 9, .period = 90}, {.cost = 7, .period = 90}}}, {.bit = 8});
+  CHECK(shorter[0].reason == Reason::bad_input);
+  CHECK(shorter[0].largest == 1);
 }
 
 TEST_CASE("CAN: huge and tiny numbers end with a reason") {
@@ -205,4 +290,38 @@ TEST_CASE("the sufficient test is never below the exact one, and says so only wh
   CHECK(late_deadline.deadline == 50);
   CHECK(late_deadline.reason == Reason::misses_deadline);
   CHECK(late_deadline.blocked_by == 0);
+}
+
+TEST_CASE("the sufficient test with errors is its equation, level by level") {
+  std::mt19937 random{16};
+  CanResponse<8> analysis;
+  int compared = 0;
+  for (int round = 0; round < 4'000; ++round) {
+    std::vector<Message> set(2 + random() % 6);
+    for (Message& m : set) {
+      m.cost = 10 + static_cast<std::int64_t>(random() % 120);
+      m.period = 2'000 + static_cast<std::int64_t>(random() % 3'000);
+    }
+    const CanBus bus{.bit = 1,
+                     .errors = {.burst = 1, .every = 250 + static_cast<std::int64_t>(random() % 700)}};
+    const auto results = analysis.analyse(set, bus, CanTest::sufficient);
+    std::int64_t longest = 0;
+    for (std::size_t m = 0; m < set.size(); ++m) {
+      longest = std::max(longest, set[m].cost);
+      if (!results[m].bounded()) continue;
+      std::int64_t base = set[m].cost;
+      for (std::size_t k = m + 1; k < set.size(); ++k) base = std::max(base, set[k].cost);
+      std::int64_t window = -1;
+      for (std::int64_t next = base; next != window;) {
+        window = next;
+        next = base + error_delay(bus, longest, window + set[m].cost).value();
+        for (std::size_t k = 0; k < m; ++k)
+          next += (window + bus.bit + set[k].period - 1) / set[k].period * set[k].cost;
+      }
+      CAPTURE(round, m);
+      REQUIRE(results[m].response == window + set[m].cost);
+      ++compared;
+    }
+  }
+  CHECK(compared > 10'000);
 }

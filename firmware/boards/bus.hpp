@@ -1,0 +1,46 @@
+/// The robot's bus, proven: whatever all boards send at the periods and priorities of spec/topics.json, and
+/// the operator's set points for the motors, is on the wire before its deadline and before the next sample. A
+/// topic that the spec makes too fast stops every board's image here. The compiler names the first frame that
+/// is late, which can be another one than the fast one:
+/// misses_its_deadline<FreshFrame<amiro::ProximityRing, ...>, response, deadline>, in nanoseconds.
+///
+/// Not in it, since nobody sends them by the clock: requests, the lights' set points, calibrations; nor what
+/// is asked for beyond the spec's periods, which admission decides (docs/admission.md). `amiroctl analyse
+/// bus` shows the same set as a table.
+///
+/// Nothing at run time; compiling takes some 0.05 s longer.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+
+#include "ocm/analysis/schedulable.hpp"
+#include "ocm/base/time.hpp"
+#include "ocm/protocol/topic.hpp"
+#include "ocm/topics/amiro.hpp"
+
+namespace ocm::firmware::boards {
+
+/// The operator repeats a set point so often: five may be lost before the motors stop by themselves.
+inline constexpr base::Duration set_point_period = amiro::Motors::timeout / 5;
+
+using Bus = decltype(
+    analysis::SentBy<amiro::bit_rate, amiro::DiWheelDrive, amiro::PowerManagement, amiro::LightRing>{} +
+    analysis::Traffic<
+        analysis::bits_ns(1, amiro::bit_rate),
+        analysis::FreshFrame<amiro::Motors, amiro::bit_rate, 0, 1, set_point_period.count()>>{});
+
+static_assert(analysis::schedulable<Bus>, "the boards send more than the bus takes: see spec/topics.json");
+
+/// Frames of the spec's sensors, whatever board they are of.
+static_assert(
+    Bus::size == 1 +
+                     [] {
+                       std::size_t frames = 0;
+                       for (const protocol::Topic& topic : amiro::catalogue.topics)
+                         if (topic.kind == protocol::Kind::sensor) frames += topic.frames.size();
+                       return frames;
+                     }(),
+    "a board of the spec is not in this set");
+
+}  // namespace ocm::firmware::boards
