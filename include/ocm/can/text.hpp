@@ -85,12 +85,20 @@ using FrameText = base::Text<max_frame_text>;
   return frame;
 }
 
+/// The words of a line of a candump log; the views point into the line.
+struct LogWords {
+  base::Time time{};
+  std::string_view interface;
+  std::string_view frame;  ///< not read yet
+  char direction = 0;      ///< 'R' received, 'T' sent, 0 not said (candump's optional suffix)
+};
+
 /// One line of a candump log: when, on which interface, what. `interface` points into the parsed line.
 struct LogLine {
   base::Time time{};
   std::string_view interface;
   Frame frame;
-  char direction = 0;  ///< 'R' received, 'T' sent, 0 not said (candump's optional suffix)
+  char direction = 0;  ///< as in LogWords
 };
 
 namespace detail {
@@ -103,16 +111,10 @@ constexpr std::string_view take_word(std::string_view& text) noexcept {
   text.remove_prefix(end);
   return word;
 }
-}  // namespace detail
 
-/// Reads `(seconds.fraction) interface frame [R|T]`, with 0 to 9 digits of fraction.
-[[nodiscard]] constexpr base::Result<LogLine> parse_log_line(std::string_view text) noexcept {
+/// `seconds.fraction`, with 0 to 9 digits of fraction.
+constexpr base::Result<base::Time> parse_stamp(std::string_view stamp) noexcept {
   using base::Error;
-  while (!text.empty() && (text.back() == '\n' || text.back() == '\r' || text.back() == ' '))
-    text.remove_suffix(1);
-  std::string_view stamp = detail::take_word(text);
-  if (stamp.size() < 3 || stamp.front() != '(' || stamp.back() != ')') return Error::bad_syntax;
-  stamp = stamp.substr(1, stamp.size() - 2);
   const auto point = stamp.find('.');
   const auto seconds = base::parse_unsigned(stamp.substr(0, point));
   if (!seconds) return seconds.error;
@@ -125,20 +127,42 @@ constexpr std::string_view take_word(std::string_view& text) noexcept {
     nanoseconds = *digits;
     for (std::size_t i = fraction.size(); i < 9; ++i) nanoseconds *= 10;
   }
-  LogLine line;
-  line.time = base::Time{base::Duration{static_cast<std::int64_t>(*seconds * 1'000'000'000 + nanoseconds)}};
-  line.interface = detail::take_word(text);
-  if (line.interface.empty()) return Error::bad_syntax;
-  const auto frame = parse_frame(detail::take_word(text));
-  if (!frame) return frame.error;
-  line.frame = *frame;
+  return base::Time{base::Duration{static_cast<std::int64_t>(*seconds * 1'000'000'000 + nanoseconds)}};
+}
+}  // namespace detail
+
+/// Takes `(seconds.fraction) interface frame [R|T]` apart and reads all but the frame, which may be of more
+/// kinds than a board knows. Refuses with bad_syntax, and out_of_range (a time beyond 64 bits of
+/// nanoseconds).
+[[nodiscard]] constexpr base::Result<LogWords> split_log_line(std::string_view text) noexcept {
+  using base::Error;
+  while (!text.empty() && (text.back() == '\n' || text.back() == '\r' || text.back() == ' '))
+    text.remove_suffix(1);
+  const std::string_view stamp = detail::take_word(text);
+  if (stamp.size() < 3 || stamp.front() != '(' || stamp.back() != ')') return Error::bad_syntax;
+  const auto time = detail::parse_stamp(stamp.substr(1, stamp.size() - 2));
+  if (!time) return time.error;
+  LogWords words;
+  words.time = *time;
+  words.interface = detail::take_word(text);
+  words.frame = detail::take_word(text);
+  if (words.frame.empty()) return Error::bad_syntax;
   const std::string_view direction = detail::take_word(text);
   if (!direction.empty()) {
     if (direction != "R" && direction != "T") return Error::bad_syntax;
-    line.direction = direction.front();
+    words.direction = direction.front();
   }
   if (!detail::take_word(text).empty()) return Error::bad_syntax;
-  return line;
+  return words;
+}
+
+/// Reads a line of a log of classic frames.
+[[nodiscard]] constexpr base::Result<LogLine> parse_log_line(std::string_view text) noexcept {
+  const auto words = split_log_line(text);
+  if (!words) return words.error;
+  const auto frame = parse_frame(words->frame);
+  if (!frame) return frame.error;
+  return LogLine{words->time, words->interface, *frame, words->direction};
 }
 
 /// Interface names have at most 15 characters on Linux; longer ones overflow the text, which says so.

@@ -366,7 +366,7 @@ Trace random_trace(Random& random) {
   for (std::size_t n = 0; n < nodes; ++n)
     trace.orders.push_back(random() % 2 == 0 ? QueueOrder::fifo : QueueOrder::by_identifier);
   const std::uint64_t busy = 500 + random() % 5'000;
-  const std::size_t frames = 1 + random() % (busy / 60);
+  const std::size_t frames = 1 + static_cast<std::size_t>(random() % (busy / 60));
   std::vector<std::uint64_t> boundaries(frames);
   for (auto& boundary : boundaries) boundary = random() % busy;
   std::sort(boundaries.begin(), boundaries.end());

@@ -1,0 +1,88 @@
+/// What a log holds of a frame: more than a board ever sees. CAN FD, 29 bits and errors pass through,
+/// whatever the robot at hand uses. Plain data of 88 bytes.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "ocm/base/time.hpp"
+#include "ocm/can/frame.hpp"
+
+namespace ocm::log {
+
+inline constexpr std::uint8_t max_fd_length = 64;  ///< data bytes of a CAN FD frame [ISO 11898-1:2015]
+
+/// Who put the frame on the bus, as seen from where it was recorded.
+enum class Direction : std::uint8_t { unknown, received, sent };
+
+/// Bits of Entry::flags, with the values of [linux/can.h] (CANFD_BRS, CANFD_ESI, CANFD_FDF).
+namespace flag {
+inline constexpr std::uint8_t bit_rate_switch = 0x01;
+inline constexpr std::uint8_t error_state = 0x02;  ///< the sender is error passive
+inline constexpr std::uint8_t fd = 0x04;           ///< a CAN FD frame
+}  // namespace flag
+
+struct Entry {
+  base::Time time{};     ///< since 1970 (UTC) where the format knows it, since the log's beginning otherwise
+  std::uint32_t id = 0;  ///< as in can::Frame
+  std::uint16_t interface = 0;  ///< which of the log's Interfaces
+  can::Format format = can::Format::base;
+  std::uint8_t length = 0;  ///< data bytes, 0..8, FD 0..64; of a remote frame the length asked for
+  std::uint8_t flags = 0;   ///< of namespace flag
+  /// 9..15 where a classic frame of 8 bytes had this in its length code, 0 otherwise ("len8_dlc" of Linux).
+  std::uint8_t raw_dlc = 0;
+  Direction direction = Direction::unknown;
+  /// Those beyond `length` are not looked at, but the first eight of them are zero.
+  std::array<std::uint8_t, max_fd_length> data;
+
+  Entry() noexcept { std::fill_n(data.begin(), 8, std::uint8_t{0}); }  // not all 64: logs are long
+  Entry(base::Time when, const can::Frame& frame, std::uint16_t from = 0) noexcept
+      : time(when), id(frame.id), interface(from), format(frame.format), length(frame.dlc) {
+    std::copy(frame.data.begin(), frame.data.end(), data.begin());
+  }
+
+  [[nodiscard]] bool is_fd() const noexcept { return (flags & flag::fd) != 0; }
+  [[nodiscard]] std::span<const std::uint8_t> bytes() const noexcept {
+    return {data.data(), can::is_remote(format) ? std::size_t{0} : length};
+  }
+  /// As a board knows frames; nothing for a CAN FD frame.
+  [[nodiscard]] std::optional<can::Frame> classic() const noexcept {
+    if (is_fd()) return std::nullopt;
+    can::Frame frame;
+    frame.id = id;
+    frame.dlc = length;
+    frame.format = format;
+    std::copy_n(data.begin(), frame.data.size(), frame.data.begin());
+    return frame;
+  }
+  friend bool operator==(const Entry& a, const Entry& b) noexcept {
+    const auto x = a.bytes(), y = b.bytes();
+    return a.time == b.time && a.id == b.id && a.interface == b.interface && a.format == b.format &&
+           a.length == b.length && a.flags == b.flags && a.raw_dlc == b.raw_dlc &&
+           a.direction == b.direction && std::equal(x.begin(), x.end(), y.begin(), y.end());
+  }
+};
+
+/// The lengths that a CAN FD frame can have: 0..8, 12, 16, 20, 24, 32, 48, 64 [ISO 11898-1:2015].
+[[nodiscard]] constexpr bool is_fd_length(std::size_t length) noexcept {
+  return length <= 8 || length == 12 || length == 16 || length == 20 || length == 24 || length == 32 ||
+         length == 48 || length == 64;
+}
+
+/// The length that a length code stands for; codes over 15 as 15. [ISO 11898-1:2015]
+[[nodiscard]] constexpr std::uint8_t fd_length(unsigned dlc) noexcept {
+  constexpr std::uint8_t lengths[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64};
+  return lengths[dlc < 16 ? dlc : 15];
+}
+
+/// The smallest length code whose length holds `length` bytes.
+[[nodiscard]] constexpr std::uint8_t fd_dlc(std::size_t length) noexcept {
+  std::uint8_t dlc = 0;
+  while (dlc < 15 && fd_length(dlc) < length) ++dlc;
+  return dlc;
+}
+
+}  // namespace ocm::log

@@ -1,0 +1,273 @@
+#include "ocm/log/blf.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "tests/unit/log/log_testing.hpp"
+
+using namespace ocm;
+using namespace ocm::log;
+using log::testing::bytes;
+using log::testing::Zone;
+
+namespace {
+
+base::Time at(std::int64_t ns) {
+  return base::Time{base::Duration{ns}};
+}
+constexpr std::int64_t start = 1'700'000'000'123'000'000;
+
+/// In place of zlib: data that is told to repeat its first byte so often, "3x" for "xxx".
+std::size_t repeat(std::string_view packed, std::span<char> into) {
+  if (packed.size() < 2 || packed[0] < '0' || packed[0] > '9') return 0;
+  const std::size_t times = static_cast<std::size_t>(packed[0] - '0');
+  std::string out;
+  for (std::size_t i = 0; i < times; ++i) out += packed.substr(1);
+  const std::size_t count = std::min(out.size(), into.size());
+  std::memcpy(into.data(), out.data(), count);
+  return count;
+}
+
+log::testing::Log read_blf(std::string_view file, Inflate inflate = repeat) {
+  const Zone zone{"UTC0"};
+  return log::testing::read_all<BlfReader>(file, inflate);
+}
+
+// By hand. [python-can io/blf.py; Vector BLF, FileStatistics] LOGG, 144 bytes, application, sizes, counts;
+// 2023-11-14 (Tuesday) 22:13:20.123; the same as end; padding
+const std::string head =
+    bytes(
+        "4C4F4747 90000000 05000000 02060801 9000000000000000 9000000000000000 00000000 00000000"
+        "E707 0B00 0200 0E00 1600 0D00 1400 7B00  E707 0B00 0200 0E00 1600 0D00 1400 7B00") +
+    std::string(72, '\0');
+
+/// An object with a head of version 1: time in nanoseconds, unless `flags` is 1.
+std::string object(std::uint32_t type, std::uint64_t time, std::string_view body_in_hex,
+                   std::uint32_t flags = 2) {
+  const std::string body = bytes(body_in_hex);
+  Bytes out;
+  out.append("LOBJ");
+  out.little(std::uint16_t{32});
+  out.little(std::uint16_t{1});
+  out.little(static_cast<std::uint32_t>(32 + body.size()));
+  out.little(type);
+  out.little(flags);
+  out.little(std::uint32_t{0});
+  out.little(time);
+  out.append(body);
+  return std::string{out.view()};
+}
+std::string container(std::string_view content, std::uint16_t method = 0, std::uint32_t size = 0) {
+  Bytes out;
+  out.append("LOBJ");
+  out.little(std::uint16_t{16});
+  out.little(std::uint16_t{1});
+  out.little(static_cast<std::uint32_t>(32 + content.size()));
+  out.little(std::uint32_t{10});
+  out.little(method);
+  out.zeros(6);
+  out.little(size != 0 ? size : static_cast<std::uint32_t>(content.size()));
+  out.zeros(4);
+  out.append(content);
+  out.zeros(content.size() % 4);  // as python-can and Vector's tools fill up
+  return std::string{out.view()};
+}
+// Channel 2, received, 2 bytes, 0x123
+const std::string message = object(1, 5, "0200 00 02 23010000 1122000000000000");
+
+Entry entry_of(std::string_view one) {
+  const auto log = read_blf(head + container(one));
+  REQUIRE(log.complained == 0);
+  REQUIRE(log.entries.size() == 1);
+  return log.entries[0];
+}
+Cause cause_of(std::string_view one) {
+  const auto log = read_blf(head + container(std::string{one} + message));
+  REQUIRE(log.entries.size() == 1);  // the one behind
+  REQUIRE(log.complained == 1);
+  return log.complaints[0].cause;
+}
+
+}  // namespace
+
+TEST_CASE("blf: a file by hand") {
+  CHECK(BlfReader::recognises(head));
+  const auto log = read_blf(head + container(message));
+  REQUIRE(log.complained == 0);
+  REQUIRE(log.entries.size() == 1);
+  Entry wanted{at(start + 5), {0x123, 2, {0x11, 0x22}}};
+  wanted.direction = Direction::received;
+  CHECK(log.entries[0] == wanted);
+  CHECK(log.names[0] == "can1");
+}
+
+TEST_CASE("blf: kinds of frames") {
+  const Entry sent = entry_of(object(86, 5, "0100 01 0F 23010080 1122334455667788 00000000 00000000"));
+  CHECK(sent.direction == Direction::sent);
+  CHECK(sent.raw_dlc == 15);
+  CHECK(sent.length == 8);
+  CHECK(sent.format == can::Format::extended);
+  const Entry remote = entry_of(object(1, 5, "0100 80 05 23010000 1122334455667788"));
+  CHECK(remote.format == can::Format::base_remote);
+  CHECK(remote.length == 5);
+  CHECK(remote.data[0] == 0);
+
+  const std::string twelve = "0102030405060708090A0B0C";
+  const Entry fd = entry_of(
+      object(100, 5, "0100 01 09 23010000 00000000 00 07 0C 00 00000000" + twelve + std::string(104, '0')));
+  CHECK(fd.length == 12);
+  CHECK(fd.data[11] == 0x0C);
+  CHECK(fd.flags == (flag::fd | flag::bit_rate_switch | flag::error_state));
+  CHECK(fd.direction == Direction::sent);
+  CHECK(entry_of(object(100, 5, "0100 00 02 23010000 00000000 00 00 02 00 00000000 1122")).flags == 0);
+
+  const std::string middle = "00000000 00000000 00000000 00000000 0000";  // bit rates, offsets, bits
+  const Entry fd64 =
+      entry_of(object(101, 5, "02 09 0C 00 23010080 00000000 00300000" + middle + "01 00 00000000" + twelve));
+  CHECK(fd64.length == 12);
+  CHECK(fd64.flags == (flag::fd | flag::bit_rate_switch));
+  CHECK(fd64.direction == Direction::sent);
+  CHECK(fd64.format == can::Format::extended);
+  const Entry remote64 =
+      entry_of(object(101, 5, "01 03 00 00 23010000 00000000 10000000" + middle + "00 00 00000000"));
+  CHECK(remote64.format == can::Format::base_remote);
+  CHECK(remote64.length == 3);
+
+  CHECK(is_bus_error(entry_of(object(2, 5, "0100 0600"))));
+  CHECK(is_bus_error(entry_of(
+      object(73, 5, "0100 0000 00000000 00 00 08 00 00000000 04000000 0000 0000 0011223344556677"))));
+  CHECK(is_bus_error(entry_of(object(104, 5, "01 00 00 00 0000 0000 0000 00 00"))));
+}
+
+TEST_CASE("blf: times of either unit, and heads of either version") {
+  CHECK(entry_of(object(1, 7, "0100 00 00 23010000 0000000000000000", 1)).time == at(start + 70'000));
+  std::string second =
+      object(1, 7, "00000000 00000000 0100 00 00 23010000 0000000000000000");  // original time
+  second[4] = 40;
+  second[6] = 2;
+  CHECK(entry_of(second).time == at(start + 7));
+}
+
+TEST_CASE("blf: a start that nobody knows is 0, one that cannot be is said") {
+  std::string none = head;
+  std::fill_n(none.begin() + 40, 16, '\0');
+  const auto log = read_blf(none + container(message));
+  CHECK(log.complained == 0);
+  CHECK(log.entries.at(0).time == at(5));
+  std::string wrong = head;
+  wrong[42] = 13;
+  CHECK(read_blf(wrong + container(message)).complaints.at(0).cause == Cause::time);
+}
+
+TEST_CASE("blf: objects go over from one container to the next") {
+  const std::string objects = message + object(0x41, 0, "010203") + std::string(3, '\0') + message + message;
+  for (std::size_t first = 1; first < objects.size(); ++first) {
+    INFO(first);
+    const auto log = read_blf(head + container(objects.substr(0, first)) + container(objects.substr(first)));
+    REQUIRE(log.complained == 0);
+    REQUIRE(log.entries.size() == 3);
+  }
+}
+
+TEST_CASE("blf: containers that are packed") {
+  const auto log =
+      read_blf(head + container("2" + message, 2, static_cast<std::uint32_t>(2 * message.size())));
+  CHECK(log.complained == 0);
+  CHECK(log.entries.size() == 2);
+  const auto short_one =
+      read_blf(head + container("1" + message, 2, static_cast<std::uint32_t>(2 * message.size())));
+  CHECK(short_one.entries.size() == 1);
+  CHECK(short_one.complaints.at(0).cause == Cause::compressed);
+  const auto bomb = read_blf(head + container("9" + message, 2, 48));
+  CHECK(bomb.entries.size() == 1);  // no more than was said
+  CHECK(read_blf(head + container("xyz", 2, 48) + container(message)).complaints.at(0).cause ==
+        Cause::compressed);
+  CHECK(read_blf(head + container("1" + message, 7, 48)).complaints.at(0).cause == Cause::compressed);
+  CHECK(read_blf(head + container("1" + message, 2, 48), nullptr).complaints.at(0).cause ==
+        Cause::compressed);
+  const auto huge = read_blf(head + container("1" + message, 2, 0xFFFF'FFFF) + container(message));
+  CHECK(huge.complaints.at(0).cause == Cause::too_long);
+  CHECK(huge.entries.size() == 1);
+}
+
+TEST_CASE("blf: objects without a container") {
+  const auto log = read_blf(head + message + message);
+  CHECK(log.entries.size() == 2);
+  CHECK(log.complained == 0);
+}
+
+TEST_CASE("blf: frames that cannot be, and wishes to send") {
+  CHECK(cause_of(object(1, 5, "0001 00 02 23010000 1122000000000000")) == Cause::unsupported);  // channel 256
+  CHECK(cause_of(object(1, 5, "0100 00 02 00080000 1122000000000000")) == Cause::identifier);
+  CHECK(cause_of(object(1, 5, "0100 00 02 000000A0 1122000000000000")) == Cause::identifier);
+  CHECK(cause_of(object(1, 5, "0100 00 10 23010000 1122000000000000")) == Cause::length);
+  CHECK(cause_of(object(1, 5, "0100 00 02 23010000 11")) == Cause::length);
+  CHECK(cause_of(object(1, 5, "0100 00 02")) == Cause::length);
+  CHECK(cause_of(object(100, 5, "0100 80 02 23010000 00000000 00 01 02 00 00000000 1122")) == Cause::syntax);
+  CHECK(cause_of(object(100, 5, "0100 00 02 23010000 00000000 00 01 01 00 00000000 1122")) == Cause::length);
+  CHECK(cause_of(object(100, 5, "0100")) == Cause::length);
+  CHECK(cause_of(object(101, 5, "01")) == Cause::length);
+  CHECK(cause_of(object(2, 5, "01")) == Cause::length);
+  CHECK(cause_of(object(1, UINT64_MAX, "0100 00 00 23010000 0000000000000000")) == Cause::time);
+  CHECK(cause_of(object(1, UINT64_MAX, "0100 00 00 23010000 0000000000000000", 1)) == Cause::time);
+  std::string headless = message;
+  headless[4] = 31;
+  CHECK(cause_of(headless) == Cause::syntax);
+  headless[4] = 100;
+  CHECK(cause_of(headless) == Cause::syntax);
+  const auto wish = read_blf(head + container(object(1, 5, "0100 02 00 23010000 0000000000000000")));
+  CHECK(wish.entries.empty());
+  CHECK(wish.complained == 0);
+}
+
+TEST_CASE("blf: sizes that cannot be are said, and reading goes on") {
+  for (const std::uint32_t size : {0U, 15U, 0xFFFF'FFFFU, 0x7FFF'FFFFU}) {
+    std::string wrong = message;
+    std::memcpy(wrong.data() + 8, &size, sizeof size);
+    INFO(size);
+    const auto inside = read_blf(head + container(message + wrong + message));
+    CHECK(inside.entries.size() == 2);
+    CHECK(inside.complained == 1);
+    std::string outside = container(message);
+    std::memcpy(outside.data() + 8, &size, sizeof size);
+    const auto log = read_blf(head + outside + container(message));
+    CHECK(log.entries.size() == 2);  // the object inside is found by its signature
+    CHECK(log.complained >= 1);
+  }
+}
+
+TEST_CASE("blf: cut off anywhere, all whole objects before are read") {
+  const std::string file = head + container(message) + container(message + message);
+  const std::size_t first = head.size() + 32 + message.size();
+  for (std::size_t size = 1; size < file.size(); ++size) {
+    INFO(size);
+    const auto log = read_blf(file.substr(0, size));
+    REQUIRE(log.entries.size() == (size < first             ? 0
+                                   : size < first + 32 + 48 ? 1
+                                   : size < first + 32 + 96 ? 2
+                                                            : 3));
+    if (size != head.size() && size != first) REQUIRE(log.complained >= 1);
+  }
+}
+
+TEST_CASE("blf: any bit flipped, and every entry can exist") {
+  const std::string whole = head + container(message +
+                                             object(100, 5,
+                                                    "0100 01 09 23010000 00000000 00 07 0C 00 00000000 "
+                                                    "0102030405060708090A0B0C") +
+                                             message);
+  for (std::size_t bit = 0; bit < whole.size() * 8; ++bit) {
+    std::string file = whole;
+    file[bit / 8] = static_cast<char>(file[bit / 8] ^ 1 << bit % 8);
+    const auto log = read_blf(file);
+    REQUIRE(log.entries.size() <= 3);
+    for (const Entry& entry : log.entries) REQUIRE(log::testing::can_exist(entry));
+  }
+}
+
+TEST_CASE("blf: what it is not") {
+  CHECK_FALSE(BlfReader::recognises("LOG"));
+  const auto log = read_blf(std::string(200, 'x'));
+  CHECK(log.entries.empty());
+  REQUIRE(log.complained == 1);
+  CHECK(log.complaints[0].cause == Cause::syntax);
+}

@@ -1,0 +1,58 @@
+#include "ocm/log/calendar.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "tests/unit/log/log_testing.hpp"
+
+using namespace ocm::log;
+using ocm::log::testing::Zone;
+
+TEST_CASE("calendar: seconds of a date and back") {
+  const Zone zone{"UTC0"};
+  CHECK(seconds_of({1970, 1, 1, 0, 0, 0}) == 0);
+  CHECK(seconds_of({2023, 11, 14, 22, 13, 20}) == 1'700'000'000);
+  CHECK(seconds_of({1969, 12, 31, 23, 59, 59}) == -1);  // what mktime also says when it fails
+  CHECK(seconds_of({1678, 1, 1, 0, 0, 0}) == -9'214'560'000);
+  CHECK(local_time_of(1'700'000'000) == CalendarTime{2023, 11, 14, 22, 13, 20});
+  CHECK(local_time_of(-1) == CalendarTime{1969, 12, 31, 23, 59, 59});
+}
+
+TEST_CASE("calendar: the time zone of this machine counts") {
+  const Zone zone{"CET-1CEST,M3.5.0,M10.5.0/3"};  // Central Europe, without a data base of zones
+  CHECK(seconds_of({2023, 11, 14, 23, 13, 20}) == 1'700'000'000);
+  CHECK(seconds_of({2023, 7, 1, 14, 0, 0}) == 1'688'212'800);  // summer
+  CHECK(local_time_of(1'688'212'800).hour == 14);
+}
+
+TEST_CASE("calendar: what no calendar has") {
+  const Zone zone{"UTC0"};
+  CHECK(seconds_of({2024, 2, 29, 0, 0, 0}));
+  CHECK(seconds_of({2000, 2, 29, 0, 0, 0}));
+  for (const CalendarTime& wrong : {CalendarTime{2023, 2, 29, 0, 0, 0}, CalendarTime{1900, 2, 29, 0, 0, 0},
+                                    CalendarTime{2023, 4, 31, 0, 0, 0}, CalendarTime{2023, 0, 1, 0, 0, 0},
+                                    CalendarTime{2023, 13, 1, 0, 0, 0}, CalendarTime{2023, 1, 0, 0, 0, 0},
+                                    CalendarTime{2023, 1, 1, 24, 0, 0}, CalendarTime{2023, 1, 1, 0, 60, 0},
+                                    CalendarTime{2023, 1, 1, 0, 0, 60}, CalendarTime{2023, 1, 1, -1, 0, 0},
+                                    CalendarTime{1677, 12, 31, 0, 0, 0}, CalendarTime{2262, 1, 1, 0, 0, 0}})
+    CHECK_FALSE(seconds_of(wrong));
+}
+
+TEST_CASE("calendar: days of the week") {
+  CHECK(weekday_of({1970, 1, 1, 0, 0, 0}) == 4);    // Thursday
+  CHECK(weekday_of({2000, 2, 29, 0, 0, 0}) == 2);   // Tuesday
+  CHECK(weekday_of({2023, 11, 14, 0, 0, 0}) == 2);  // Tuesday, as date(1) says
+  CHECK(weekday_of({2023, 12, 31, 0, 0, 0}) == 0);  // Sunday
+}
+
+TEST_CASE("calendar: months in English and German") {
+  CHECK(month_of("Jan") == 1);
+  CHECK(month_of("January") == 1);
+  CHECK(month_of("M\xE4r") == 3);       // Latin-1
+  CHECK(month_of("M\xC3\xA4rz") == 3);  // UTF-8
+  CHECK(month_of("Mrz") == 3);
+  CHECK(month_of("Mai") == 5);
+  CHECK(month_of("Okt") == 10);
+  CHECK(month_of("Dez") == 12);
+  for (int i = 0; i < 12; ++i) CHECK(month_of(month_names[i]) == i + 1);
+  for (const auto* wrong : {"", "M", "Ja", "jan", "Xyz", "M\xE4"}) CHECK(month_of(wrong) == 0);
+}
