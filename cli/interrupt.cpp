@@ -1,6 +1,7 @@
 #include "cli/interrupt.hpp"
 
 #include <csignal>
+#include <initializer_list>
 
 namespace ocm::cli {
 namespace {
@@ -8,15 +9,26 @@ volatile std::sig_atomic_t noted_signal = 0;
 void note(int signal) {
   noted_signal = signal;
 }
-}  // namespace
 
-void catch_interrupts() {
+void catch_signal(int signal) {
   struct sigaction action {};
   action.sa_handler = note;
   sigemptyset(&action.sa_mask);
   action.sa_flags = 0;  // no SA_RESTART: a blocking wait must return
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+  sigaction(signal, &action, nullptr);
+}
+}  // namespace
+
+void catch_interrupts() {
+  catch_signal(SIGINT);
+  catch_signal(SIGTERM);
+}
+
+void catch_hangups() {
+  for (const int signal : {SIGHUP, SIGQUIT}) {
+    struct sigaction before {};
+    if (sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) catch_signal(signal);
+  }
 }
 
 int interrupted() noexcept {

@@ -15,6 +15,9 @@
 #include "ocm/transport/socketcan.hpp"
 #include "ocm/transport/virtual_bus.hpp"
 
+#include "cli/config.hpp"
+#include "cli/generate/robot_spec.hpp"
+
 namespace ocm::cli {
 
 void fail(const transport::Failure& failure, int code) {
@@ -37,19 +40,28 @@ void Session::add_options(CLI::App& app) {
   app.add_option("--spec", spec_file, "topics of another robot, as JSON; default: the AMiRo's, compiled in")
       ->envname("AMIROCTL_SPEC")
       ->type_name("FILE");
+  app.add_option("--config", config_file,
+                 "options that stand on no command line, as TOML; default: ~/.config/amiroctl/config.toml")
+      ->envname("AMIROCTL_CONFIG")
+      ->type_name("FILE");
+  app.parse_complete_callback([this, &app] { apply_config(app, config_file); });
   app.add_flag("--no-color,--no-colour", no_colour_, "never colour the output (also: NO_COLOR)");
 }
 
 const protocol::Catalogue& Session::catalogue() {
-  if (spec_file.empty()) return amiro::catalogue;
+  return spec_file.empty() ? amiro::catalogue : spec().catalogue();
+}
+
+const spec::Spec& Session::spec() {
   if (spec_ == nullptr) {
-    auto loaded = spec::load(spec_file);
+    auto loaded = spec_file.empty() ? spec::parse(generate::robot_spec_text(), generate::robot_spec_name)
+                                    : spec::load(spec_file);
     for (const auto& problem : loaded.problems)
       fmt::print(stderr, "amiroctl: {}: {}\n          {}\n", problem.place, problem.what, problem.remedy);
     if (loaded.spec == nullptr) throw Exit{exit_failure};
     spec_ = std::move(loaded.spec);
   }
-  return spec_->catalogue();
+  return *spec_;
 }
 
 std::unique_ptr<transport::Bus> Session::open_bus(std::string_view name) {

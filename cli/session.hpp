@@ -38,6 +38,8 @@ class Session {
 
   /// The AMiRo's, compiled in, or that of --spec.
   [[nodiscard]] const protocol::Catalogue& catalogue();
+  /// The same with all that its spec says, read when it is asked for.
+  [[nodiscard]] const spec::Spec& spec();
 
   /// The bus of --bus, AMIROCTL_BUS, or the only one there is; says on stderr which.
   [[nodiscard]] std::unique_ptr<transport::Bus> open_bus();
@@ -49,6 +51,7 @@ class Session {
 
   std::string bus_name;
   std::string spec_file;
+  std::string config_file;
 
  private:
   [[nodiscard]] static std::string only_bus();

@@ -27,6 +27,7 @@ install(FILES ${PROJECT_BINARY_DIR}/ocmConfig.cmake ${PROJECT_BINARY_DIR}/ocmCon
 
 if(OCM_TOOLS)
   install(TARGETS amiroctl ocm-generate RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  include(${CMAKE_CURRENT_LIST_DIR}/Help.cmake)
 endif()
 install(FILES ${PROJECT_SOURCE_DIR}/spec/topics.json ${PROJECT_SOURCE_DIR}/spec/topics.schema.json
         DESTINATION ${CMAKE_INSTALL_DATADIR}/ocm/spec)

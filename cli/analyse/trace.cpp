@@ -1,21 +1,20 @@
 #include "cli/analyse/trace.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <iostream>
+#include <array>
 #include <map>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "ocm/can/length.hpp"
-#include "ocm/can/text.hpp"
 #include "ocm/protocol/request.hpp"
 
 #include "cli/analyse/report.hpp"
+#include "cli/logs/opened_log.hpp"
 #include "cli/session.hpp"
 
 namespace ocm::cli::analyse {
@@ -37,49 +36,58 @@ struct Log {
   std::vector<std::string> remarks;
 };
 
-Log read_log(const std::string& file) {
-  std::ifstream opened;
-  if (file != "-") {
-    opened.open(file);
-    if (!opened.is_open())
-      fail({fmt::format("cannot read {}: {}", file, std::strerror(errno)), "a log as candump -l writes it"});
-  }
-  std::istream& in = file == "-" ? std::cin : opened;
-  Log log;
+/// What could not be read, as mistakes at their places.
+std::vector<Mistake> mistakes_of(const log::Reader& reader, const std::string& file) {
   std::vector<Mistake> mistakes;
-  std::string line;
-  std::string interface;
+  for (const log::Complaint& complaint : reader.complaints().first())
+    mistakes.push_back(
+        {fmt::format("{}:{}{}", file, complaint.place.is_line ? "" : "byte ", complaint.place.number),
+         fmt::format("no frame of a log: {}: {}", log::describe(complaint.cause), complaint.detail),
+         "(1436509052.249713) can0 605#00D20000, as candump -l writes it, or another format of "
+         "amiroctl convert"});
+  return mistakes;
+}
+
+Log read_log(const std::string& file, const protocol::Catalogue& catalogue) {
+  logs::OpenedLog opened{file, {}, catalogue};
+  log::Reader& reader = opened.reader();
+  Log log;
   std::size_t others = 0;
+  std::size_t flexible = 0;
   std::size_t backwards = 0;
-  constexpr std::size_t most_mistakes = 20;
-  for (std::size_t number = 1; std::getline(in, line) && mistakes.size() < most_mistakes; ++number) {
-    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-    const auto parsed = can::parse_log_line(line);
-    if (!parsed) {
-      mistakes.push_back({fmt::format("{}:{}", file, number),
-                          fmt::format("no line of a log: {}", base::describe(parsed.error)),
-                          "(1436509052.249713) can0 605#00D20000, as candump -l writes it"});
-      continue;
+  std::optional<std::uint16_t> interface;
+  std::array<log::Entry, log::batch> entries;
+  while (const std::size_t count = reader.read(entries)) {
+    for (const log::Entry& entry : std::span{entries}.first(count)) {
+      if (!interface) interface = entry.interface;
+      const auto frame = entry.classic();
+      if (entry.interface != *interface) {
+        ++others;
+      } else if (!frame) {
+        ++flexible;
+      } else if (frame->format == can::Format::error) {
+        ++log.errors;
+      } else {
+        const std::int64_t time = entry.time.time_since_epoch().count();
+        if (!log.arrivals.empty() && time < log.arrivals.back().time) ++backwards;
+        log.arrivals.push_back({time, can::frame_bits(*frame) + can::intermission_bits, *frame});
+      }
     }
-    if (interface.empty()) interface = parsed->interface;
-    if (parsed->interface != interface) {
-      ++others;
-      continue;
-    }
-    if (parsed->frame.format == can::Format::error) {
-      ++log.errors;
-      continue;
-    }
-    const std::int64_t time = parsed->time.time_since_epoch().count();
-    if (!log.arrivals.empty() && time < log.arrivals.back().time) ++backwards;
-    log.arrivals.push_back({time, can::frame_bits(parsed->frame) + can::intermission_bits, parsed->frame});
+  }
+  std::vector<Mistake> mistakes = mistakes_of(reader, file);
+  if (mistakes.empty() && opened.ended_early()) {
+    opened.complain();
+    throw Exit{exit_failure};
   }
   if (mistakes.empty() && log.arrivals.empty())
     mistakes.push_back({file, "no frame", "a log as candump -l writes it"});
   stop_at(mistakes, file);
   if (others > 0)
+    log.remarks.push_back(fmt::format("Only the frames of {}: {} of other interfaces were passed over.",
+                                      reader.interfaces().name(*interface), others));
+  if (flexible > 0)
     log.remarks.push_back(
-        fmt::format("Only the frames of {}: {} of other interfaces were passed over.", interface, others));
+        fmt::format("{} CAN FD frames were passed over: the analysis knows classic ones only.", flexible));
   if (backwards > 0) {
     log.remarks.push_back(
         fmt::format("{} frames are older than the one before them: sorted by time.", backwards));
@@ -223,7 +231,7 @@ bool TraceStudy::passes() const {
 
 TraceStudy study_trace(const std::string& log_file, const std::string& set_file, const BusOptions& options,
                        const protocol::Catalogue& catalogue, std::vector<Rate> rates) {
-  const Log log = read_log(log_file);
+  const Log log = read_log(log_file, catalogue);
   BusSet set;
   if (set_file.empty()) {
     set = set_of(log, catalogue, std::move(rates));

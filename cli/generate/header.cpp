@@ -5,6 +5,9 @@
 #include <utility>
 #include <vector>
 
+#include "cli/generate/conversion.hpp"
+#include "cli/generate/words.hpp"
+#include "cli/generate/writer.hpp"
 #include "cli/spec/names.hpp"
 #include "cli/spec/worst_bits.hpp"
 
@@ -20,28 +23,7 @@ using spec::Model;
 using spec::pascal_case;
 using spec::TopicModel;
 
-constexpr std::size_t columns = 110;
-
-// --- numbers and words
-// ------------------------------------------------------------------------------------------
-
-std::string print(Decimal number) {
-  return std::string{base::to_text(number).view()};
-}
-
-/// 36'000'000
-std::string grouped(std::uint64_t number) {
-  std::string digits = std::to_string(number);
-  for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, "'");
-  return digits;
-}
-
-std::string hex(unsigned number) {
-  base::Text<4> text;
-  text << "0x";
-  text.hex(number, 2);
-  return std::string{text.view()};
-}
+// --- numbers and words -------------------------------------------------------------------------------------
 
 /// A raw number as a literal that has no warning in any type.
 std::string literal(std::int64_t number) {
@@ -57,27 +39,6 @@ std::string mask_literal(std::int64_t bit) {
   text << "0x";
   text.hex(std::uint64_t{1} << bit, static_cast<int>(bit / 8 * 2 + 2));
   return std::string{text.view()};
-}
-
-std::string quoted(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"') out += '\\';
-    out += c;
-  }
-  return out + "\"";
-}
-
-std::string capitalised(std::string text) {
-  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
-  return text;
-}
-
-/// "power_status" -> "Power status"
-std::string title(std::string_view name) {
-  std::string words{name};
-  std::replace(words.begin(), words.end(), '_', ' ');
-  return capitalised(words);
 }
 
 std::string chrono(Duration duration) {
@@ -106,210 +67,11 @@ std::string bits_alias(const FieldModel& field) {
   return pascal_case(field.name) + "Bits";
 }
 
-/// Aggregates have a struct for each frame and one around them.
-bool is_aggregate(const TopicModel& topic) {
-  return topic.frames.size() > 1 || topic.frames.front().is_array;
-}
-
 std::string frame_type(const TopicModel& topic, const FrameModel& frame) {
   return pascal_case(topic.name) + pascal_case(frame.name);
 }
 
-std::size_t frame_count(const TopicModel& topic) {
-  std::size_t count = 0;
-  for (const FrameModel& frame : topic.frames) count += frame.count;
-  return count;
-}
-
-// --- physical = (raw * factor + shift) / divisor, all whole numbers
-// ---------------------------------------------
-
-std::string power_of_ten(int n) {
-  if (n <= 9) {
-    std::uint64_t power = 1;
-    for (int i = 0; i < n; ++i) power *= 10;
-    return grouped(power) + ".0";
-  }
-  return "1e" + std::to_string(n);
-}
-
-/// digits * 10^zeros as a double literal. It is exact up to 2^53.
-std::string whole(std::int64_t digits, int zeros) {
-  std::uint64_t magnitude =
-      digits < 0 ? 0 - static_cast<std::uint64_t>(digits) : static_cast<std::uint64_t>(digits);
-  for (; zeros > 0 && magnitude <= 99'999'999; --zeros) magnitude *= 10;
-  const std::string text = (digits < 0 ? "-" : "") + grouped(magnitude);
-  return zeros == 0 ? text + ".0" : text + "e" + std::to_string(zeros);
-}
-
-struct Conversion {
-  std::string factor;   ///< empty: 1
-  std::string shift;    ///< empty: 0
-  std::string divisor;  ///< empty: 1
-};
-
-Conversion conversion(const FieldModel& field) {
-  const Decimal scale = field.scale;
-  const Decimal offset = field.offset;
-  Conversion c;
-  const int lowest = offset.digits == 0 ? scale.exponent : std::min<int>(scale.exponent, offset.exponent);
-  const int places = lowest < 0 ? -lowest : 0;
-  if (offset.digits == 0 && scale.digits > 0 && places > 0 && places <= 18) {
-    std::int64_t power = 1;
-    for (int i = 0; i < places; ++i) power *= 10;
-    if (power % scale.digits == 0) {  // one part in so many: 1/1024, 1/1'000'000
-      const std::int64_t parts = power / scale.digits;
-      c.divisor = grouped(static_cast<std::uint64_t>(parts)) + ".0";
-      return c;
-    }
-  }
-  if (scale.digits != 1 || scale.exponent + places != 0)
-    c.factor = whole(scale.digits, scale.exponent + places);
-  if (offset.digits != 0) c.shift = whole(offset.digits, offset.exponent + places);
-  if (places != 0) c.divisor = power_of_ten(places);
-  return c;
-}
-
-std::string to_physical(const FieldModel& field) {
-  const Conversion c = conversion(field);
-  std::string text = field.position.width > 32 ? "static_cast<double>(" + field.name + ")" : field.name;
-  if (!c.factor.empty()) text += " * " + c.factor;
-  if (!c.shift.empty()) {
-    text += c.shift.front() == '-' ? " - " + c.shift.substr(1) : " + " + c.shift;
-    if (!c.divisor.empty()) text = "(" + text + ")";
-  }
-  if (!c.divisor.empty()) text += " / " + c.divisor;
-  return text;
-}
-
-std::string to_raw(const FieldModel& field, std::string text) {
-  const Conversion c = conversion(field);
-  if (!c.divisor.empty()) text += " * " + c.divisor;
-  if (!c.shift.empty()) {
-    text += c.shift.front() == '-' ? " + " + c.shift.substr(1) : " - " + c.shift;
-    if (!c.factor.empty()) text = "(" + text + ")";
-  }
-  if (!c.factor.empty()) text += " / " + c.factor;
-  return text;
-}
-
-// --- text
-// -------------------------------------------------------------------------------------------------------
-
-/// How many columns UTF-8 takes.
-std::size_t width_of(std::string_view text) {
-  return static_cast<std::size_t>(std::count_if(
-      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
-}
-
-class Writer {
- public:
-  void line(std::string_view text = {}) {
-    if (!text.empty()) text_.append(2 * depth_, ' ').append(text);
-    text_ += '\n';
-  }
-  void open(std::string_view text) {
-    line(text);
-    ++depth_;
-  }
-  void close(std::string_view text) {
-    --depth_;
-    line(text);
-  }
-  /// Broken into lines between words.
-  void comment(std::string_view text, std::string_view mark = "/// ") {
-    const std::string indent(2 * depth_, ' ');
-    std::string current;
-    while (!text.empty()) {
-      const std::size_t end = std::min(text.find(' '), text.size());
-      const std::string_view word = text.substr(0, end);
-      if (!current.empty() &&
-          indent.size() + mark.size() + width_of(current) + 1 + width_of(word) > columns) {
-        text_.append(indent).append(mark).append(current) += '\n';
-        current.clear();
-      }
-      if (!current.empty()) current += ' ';
-      current += word;
-      text.remove_prefix(std::min(end + 1, text.size()));
-    }
-    if (!current.empty()) text_.append(indent).append(mark).append(current) += '\n';
-  }
-  /// Lines with a remark each: behind them, aligned, where that fits; above them otherwise.
-  void remarked(const std::vector<std::pair<std::string, std::string>>& lines) {
-    std::size_t widest = 0;
-    std::size_t longest = 0;
-    for (const auto& [code, remark] : lines)
-      if (!remark.empty()) widest = std::max(widest, width_of(code));
-    for (const auto& [code, remark] : lines)
-      if (!remark.empty()) longest = std::max(longest, 2 * depth_ + widest + 7 + width_of(remark));
-    for (const auto& [code, remark] : lines) {
-      if (remark.empty()) {
-        line(code);
-      } else if (longest <= columns) {
-        line(code + std::string(widest - width_of(code) + 2, ' ') + "///< " + remark);
-      } else {
-        comment(remark);
-        line(code);
-      }
-    }
-  }
-  /// `head` + items, parted by commas and broken to fit, aligned behind the head + `tail`.
-  void list(std::string_view head, const std::vector<std::string>& items, std::string_view tail) {
-    const std::string indent(2 * depth_, ' ');
-    const std::string hang(indent.size() + head.size(), ' ');
-    std::string current = indent + std::string{head};
-    bool first = true;
-    for (std::size_t i = 0; i < items.size(); ++i) {
-      const std::string piece = items[i] + (i + 1 < items.size() ? "," : std::string{tail});
-      if (!first && width_of(current) + 1 + width_of(piece) > columns) {
-        text_.append(current) += '\n';
-        current = hang;
-        first = true;
-      }
-      if (!first) current += ' ';
-      current += piece;
-      first = false;
-    }
-    if (items.empty()) current += tail;
-    text_.append(current) += '\n';
-  }
-  std::string take() { return std::move(text_); }
-
- private:
-  std::string text_;
-  std::size_t depth_ = 0;
-};
-
-std::string with_source(std::string text, const std::string& source) {
-  if (source.empty()) return text;
-  return text.empty() ? "[" + source + "]" : text + " [" + source + "]";
-}
-
-// --- one frame
-// --------------------------------------------------------------------------------------------------
-
-std::string remark(const FieldModel& field) {
-  std::string text = field.description;
-  const auto add = [&](const std::string& part, std::string_view glue = ", ") {
-    if (!text.empty()) text += glue;
-    text += part;
-  };
-  if (field.flags || field.is_enumeration()) return with_source(std::move(text), field.source.joined());
-  const std::string unit = field.unit.empty() ? "" : " " + field.unit;
-  const auto physical = [&](std::int64_t raw) {
-    return print(*base::add(*base::multiply({raw, 0}, field.scale), field.offset));
-  };
-  const bool plain = field.scale == Decimal{1, 0} && field.offset.digits == 0;
-  if (!plain) {
-    add(print(field.scale) + unit + " a bit", "; ");
-    if (field.offset.digits != 0) add("from " + print(field.offset) + unit + " on");
-  }
-  std::string low = physical(field.raw_min);
-  std::string high = physical(field.raw_max);
-  if (field.scale.digits < 0) std::swap(low, high);
-  add("[" + low + ", " + high + "]" + unit, plain ? "; " : ", ");
-  return with_source(std::move(text), field.source.joined());
-}
+// --- one frame ---------------------------------------------------------------------------------------------
 
 /// A name for a parameter or a local that no member of the struct has: members never end in an underscore.
 std::string local(const FrameModel& frame, std::string name) {
@@ -369,6 +131,11 @@ void write_function(Writer& out, const std::string& head, const std::vector<std:
   out.close("}");
 }
 
+std::string physical_of(const FieldModel& field) {
+  return to_physical(conversion(field),
+                     field.position.width > 32 ? "static_cast<double>(" + field.name + ")" : field.name);
+}
+
 void write_accessors(Writer& out, const FrameModel& frame) {
   const std::string value = local(frame, "value");
   const std::string on = local(frame, "on");
@@ -376,9 +143,9 @@ void write_accessors(Writer& out, const FrameModel& frame) {
     if (!field.unit_name.empty()) {
       const std::string name = field.name + "_" + field.unit_name;
       write_function(out, "[[nodiscard]] constexpr double " + name + "() const noexcept",
-                     {"return " + to_physical(field) + ";"});
+                     {"return " + physical_of(field) + ";"});
       out.open("constexpr void set_" + name + "(double " + value + ") noexcept {");
-      std::vector<std::string> arguments{to_raw(field, value), bits_alias(field) + "::min",
+      std::vector<std::string> arguments{to_raw(conversion(field), value), bits_alias(field) + "::min",
                                          bits_alias(field) + "::max"};
       if (field.has_range) arguments = {arguments[0], literal(field.raw_min), literal(field.raw_max)};
       out.list(field.name + " = ocm::protocol::nearest_raw<" + integer_type(field) + ">(", arguments, ");");
@@ -438,8 +205,7 @@ void write_codec(Writer& out, const std::string& type, const FrameModel& frame, 
                  decode);
 }
 
-// --- one topic
-// --------------------------------------------------------------------------------------------------
+// --- one topic ---------------------------------------------------------------------------------------------
 
 std::string board_type(const Model& model, const TopicModel& topic) {
   return pascal_case(model.boards[topic.board].name);
@@ -670,8 +436,7 @@ void write_topic(Writer& out, const Model& model, const TopicModel& topic) {
   out.line();
 }
 
-// --- boards and catalogue
-// ---------------------------------------------------------------------------------------
+// --- boards and catalogue ----------------------------------------------------------------------------------
 
 void write_board(Writer& out, const Model& model, std::size_t index) {
   const spec::BoardModel& board = model.boards[index];

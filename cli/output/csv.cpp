@@ -1,39 +1,165 @@
-/// Long CSV, one line a field: time,topic,field,value,unit. Time in seconds with nanoseconds. Fields of
-/// topics with several frames are named frame.field.
+/// CSV with a head line, time in seconds with nine digits. Long, a line a field: time,topic,field,value,unit;
+/// fields of topics with several frames are named frame.field. With chosen fields wide, a line a frame that
+/// has one: time, and a column a field in the order of the choice, named topic.field; the cells of fields of
+/// other frames are empty.
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "cli/output/field_text.hpp"
 #include "cli/output/output.hpp"
 
 namespace ocm::cli {
 namespace {
 
-class Csv final : public Output {
- public:
-  void begin(Buffer& out) override { append(out, "time,topic,field,value,unit\n"); }
+/// In quotes where that is needed. [RFC 4180]
+std::string cell(std::string_view text) {
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string{text};
+  std::string out{'"'};
+  for (const char c : text) {
+    if (c == '"') out += '"';
+    out += c;
+  }
+  return out += '"';
+}
 
-  void write(Buffer& out, const Event& event) override {
-    const auto meaning = event.reception.meaning;
-    if (meaning != reflective::Meaning::part && meaning != reflective::Meaning::sample &&
-        meaning != reflective::Meaning::set_point)
-      return;
-    const auto& layout = event.reception.frame.layout();
-    const std::int64_t ns = event.received.time.time_since_epoch().count();
-    for (const auto& field : layout.fields) {
-      fmt::format_to(std::back_inserter(out), "{}.{:09},{},", ns / 1'000'000'000, ns % 1'000'000'000,
-                     event.reception.topic->name);
-      if (!layout.name.empty()) fmt::format_to(std::back_inserter(out), "{}.", layout.name);
-      append(out, field.name);
-      out.push_back(',');
-      append(out, physical(field, event.received.frame.data));
-      out.push_back(',');
-      append(out, field.unit);
-      out.push_back('\n');
+char* put_text(char* to, std::string_view text) {
+  std::memcpy(to, text.data(), text.size());
+  return to + text.size();
+}
+
+/// The frame's layout and data; nothing when it is no data of a topic.
+const protocol::FrameLayout* layout_of(const reflective::Reception& reception) {
+  using reflective::Meaning;
+  const bool data = reception.meaning == Meaning::part || reception.meaning == Meaning::sample ||
+                    reception.meaning == Meaning::set_point;
+  return data ? &reception.frame.layout() : nullptr;
+}
+
+can::Payload payload_of(const log::Entry& entry) {
+  can::Payload data;
+  std::copy_n(entry.data.begin(), data.size(), data.begin());
+  return data;
+}
+
+/// By number of a topic's frame, in an array that all topics share: what is made once for a frame.
+template <class T>
+class PerFrame {
+ public:
+  explicit PerFrame(const protocol::Catalogue& catalogue) : first_of_(catalogue.topics.data()) {
+    for (const auto& topic : catalogue.topics) {
+      begins_.push_back(items_.size());
+      items_.resize(items_.size() + topic.frames.size());
     }
   }
+  [[nodiscard]] T& operator[](protocol::FrameRef frame) {
+    return items_[begins_[static_cast<std::size_t>(frame.topic - first_of_)] + frame.frame];
+  }
+
+ private:
+  const protocol::Topic* first_of_;
+  std::vector<std::size_t> begins_;
+  std::vector<T> items_;
+};
+
+class LongCsv final : public Output {
+ public:
+  explicit LongCsv(const protocol::Catalogue& catalogue) : lines_(catalogue) {
+    for (const auto& topic : catalogue.topics)
+      for (std::size_t i = 0; i < topic.frames.size(); ++i) {
+        const auto& layout = topic.frames[i];
+        const std::string frame = layout.name.empty() ? std::string{} : std::string{layout.name} + '.';
+        for (const auto& field : layout.fields)
+          lines_[{&topic, static_cast<std::uint8_t>(i)}].push_back(
+              {FieldText{field}, ',' + cell(topic.name) + ',' + cell(frame + std::string{field.name}) + ',',
+               ',' + cell(field.unit) + '\n'});
+      }
+  }
+
+  void begin(Buffer& out) override { out.append("time,topic,field,value,unit\n"); }
+
+  bool write(Buffer& out, const Event& event) override {
+    if (layout_of(event.reception) == nullptr) return false;
+    char time[40];
+    const auto time_size =
+        static_cast<std::size_t>(put_seconds(time, event.entry.time.time_since_epoch().count()) - time);
+    const can::Payload data = payload_of(event.entry);
+    for (const Line& line : lines_[event.reception.frame]) {
+      char* to = out.room(time_size + line.before.size() + FieldText::room + line.after.size());
+      to = put_text(to, {time, time_size});
+      to = put_text(to, line.before);
+      to = line.value.print(to, data);
+      out.grow_to(put_text(to, line.after));
+    }
+    return true;
+  }
+
+ private:
+  struct Line {
+    FieldText value;
+    std::string before, after;
+  };
+  PerFrame<std::vector<Line>> lines_;
+};
+
+class WideCsv final : public Output {
+ public:
+  WideCsv(const protocol::Catalogue& catalogue, const Selection& selection)
+      : cells_(catalogue), columns_(selection.fields().size()) {
+    for (std::size_t i = 0; i < columns_; ++i) {
+      const auto& chosen = selection.fields()[i];
+      head_ += ',' + cell(chosen.name);
+      const auto number = static_cast<std::uint8_t>(chosen.layout - chosen.topic->frames.data());
+      cells_[{chosen.topic, number}].push_back({FieldText{*chosen.field}, i});
+    }
+  }
+
+  void begin(Buffer& out) override {
+    out.append("time");
+    out.append(head_);
+    out.append('\n');
+  }
+
+  bool write(Buffer& out, const Event& event) override {
+    if (layout_of(event.reception) == nullptr) return false;
+    const auto& cells = cells_[event.reception.frame];  // in the order of the columns
+    if (cells.empty()) return false;
+    const can::Payload data = payload_of(event.entry);
+    char* to = out.room(40 + cells.size() * FieldText::room + columns_ + 1);
+    to = put_seconds(to, event.entry.time.time_since_epoch().count());
+    std::size_t column = 0;
+    const auto put_commas = [&](std::size_t count) {
+      std::memset(to, ',', count);
+      to += count;
+    };
+    for (const Cell& cell : cells) {
+      put_commas(cell.column + 1 - column);
+      column = cell.column + 1;
+      to = cell.value.print(to, data);
+    }
+    put_commas(columns_ - column);
+    *to++ = '\n';
+    out.grow_to(to);
+    return true;
+  }
+
+ private:
+  struct Cell {
+    FieldText value;
+    std::size_t column;
+  };
+  PerFrame<std::vector<Cell>> cells_;
+  std::size_t columns_;
+  std::string head_;
 };
 
 }  // namespace
 
-std::unique_ptr<Output> make_csv() {
-  return std::make_unique<Csv>();
+std::unique_ptr<Output> make_csv(const protocol::Catalogue& catalogue, const Selection& selection) {
+  if (selection.everything()) return std::make_unique<LongCsv>(catalogue);
+  return std::make_unique<WideCsv>(catalogue, selection);
 }
 
 }  // namespace ocm::cli

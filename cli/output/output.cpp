@@ -1,43 +1,25 @@
 #include "cli/output/output.hpp"
 
-#include <cerrno>
-#include <cstring>
-#include <unistd.h>
-
-#include "cli/session.hpp"
-
 namespace ocm::cli {
 
-std::unique_ptr<Output> make_output(Format format, const protocol::Catalogue& catalogue, bool colour) {
+reflective::Reception understand(reflective::Receiver& receiver, const log::Entry& entry) {
+  const auto frame = entry.classic();
+  return frame ? receiver.take({entry.time, *frame}) : reflective::Reception{};
+}
+
+std::unique_ptr<Output> make_output(Format format, const protocol::Catalogue& catalogue,
+                                    const Selection& selection, bool colour) {
   switch (format) {
     case Format::json:
-      return make_json(catalogue);
+      return make_json(catalogue, selection);
     case Format::csv:
-      return make_csv();
+      return make_csv(catalogue, selection);
     case Format::raw:
       return make_raw();
     case Format::pretty:
       break;
   }
-  return make_pretty(catalogue, colour);
-}
-
-void Printer::flush() {
-  const char* data = buffer_.data();
-  std::size_t left = buffer_.size();
-  while (left > 0) {
-    const ssize_t written = ::write(STDOUT_FILENO, data, left);
-    if (written < 0) {
-      if (errno == EINTR || errno == EAGAIN) continue;
-      const int error = errno;
-      buffer_.clear();
-      fail({fmt::format("cannot write the output: {}", std::strerror(error)),
-            "is the disk full, or was the file closed?"});
-    }
-    data += written;
-    left -= static_cast<std::size_t>(written);
-  }
-  buffer_.clear();
+  return make_pretty(catalogue, selection, colour);
 }
 
 }  // namespace ocm::cli

@@ -2,6 +2,7 @@
 /// their units in columns. Samples of several frames appear when they are complete.
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -11,125 +12,183 @@
 #include "ocm/protocol/request.hpp"
 #include "ocm/reflective/quantity.hpp"
 
+#include "cli/output/field_text.hpp"
 #include "cli/output/output.hpp"
 
 namespace ocm::cli {
 namespace {
 
-/// What one value is called and how wide it may become.
+constexpr std::string_view plain = "\033[0m";
+constexpr std::string_view dim = "\033[2m";
+constexpr std::string_view bold = "\033[1m";
+constexpr std::string_view red = "\033[31m";
+
+/// Characters on the screen: a letter of UTF-8 is one, whatever its bytes.
+std::size_t letters(std::string_view text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+/// What stands before a value and behind it, and how wide it may become.
 struct Column {
-  std::string label;
+  FieldText value;
   std::size_t frame = 0;
-  const protocol::Field* field = nullptr;
+  std::string before;  ///< blanks, label
+  std::string unit;    ///< with a blank before it; empty where none is shown
+  bool unit_of_all = false;
   std::size_t width = 0;
 };
 
 class Pretty final : public Output {
  public:
-  Pretty(const protocol::Catalogue& catalogue, bool colour) : colour_(colour) {
+  Pretty(const protocol::Catalogue& catalogue, const Selection& selection, bool colour)
+      : colour_(colour), everything_(selection.everything()) {
+    std::size_t width = 0;
+    for (const auto& topic : catalogue.topics) width = std::max(width, letters(topic.name));
     for (const auto& topic : catalogue.topics) {
-      name_width_ = std::max(name_width_, topic.name.size());
-      columns_.emplace(&topic, columns_of(topic));
+      const std::string name = painted(bold, fmt::format("{:<{}}  ", topic.name, width));
+      topics_.emplace(&topic, TopicText{name, columns_of(topic, selection)});
     }
+    constexpr std::array<std::string_view, 4> codes{"\033[31m", "\033[33m", "\033[32m", "\033[36m"};
+    for (std::size_t i = 0; i < codes.size(); ++i)
+      priorities_[i] =
+          painted(codes[i], fmt::format("{:<7} ", protocol::name(static_cast<protocol::Priority>(i))));
   }
 
-  void write(Buffer& out, const Event& event) override {
+  bool write(Buffer& out, const Event& event) override {
     using reflective::Meaning;
-    const auto& frame = event.received.frame;
-    switch (event.reception.meaning) {
+    const Meaning meaning = event.reception.meaning;
+    if (meaning == Meaning::part) return false;
+    const bool data = meaning == Meaning::sample || meaning == Meaning::set_point;
+    if (!everything_ && (!data || topics_.at(event.reception.topic).columns.empty())) return false;
+    switch (meaning) {
       case Meaning::part:
-        return;
+        break;
       case Meaning::sample:
         head(out, event, "");
         values(out, *event.reception.topic, event.reception.sample.payloads);
         break;
-      case Meaning::set_point:
+      case Meaning::set_point: {
         head(out, event, "<- ");
-        values(out, *event.reception.topic, std::span{&frame.data, 1});
+        const can::Payload payload = event.entry.classic()->data;
+        values(out, *event.reception.topic, std::span{&payload, 1});
         break;
+      }
       case Meaning::request:
         head(out, event, "<- ");
-        request(out, *event.reception.topic, frame);
+        request(out, *event.reception.topic, *event.entry.classic());
         break;
       case Meaning::wrong_dlc:
         head(out, event, "");
-        paint(out, red);
-        fmt::format_to(std::back_inserter(out), "DLC {} instead of {}: {}", frame.dlc,
-                       event.reception.frame.layout().dlc, can::to_text(frame).view());
-        paint(out, plain);
+        out.append(painted(red, fmt::format("DLC {} instead of {}: {}", event.entry.length,
+                                            event.reception.frame.layout().dlc, frame_text(event.entry))));
         break;
       case Meaning::unknown:
         time(out, event);
-        fmt::format_to(std::back_inserter(out), "{:<7} unknown: {}", "-", can::to_text(frame).view());
+        append_formatted(out, "{:<7} {}: {}", "-", event.entry.is_fd() ? "CAN FD" : "unknown",
+                         frame_text(event.entry));
         break;
       case Meaning::error:
         time(out, event);
-        paint(out, red);
-        fmt::format_to(std::back_inserter(out), "{:<7} error frame: {}", "-", can::describe(frame).view());
-        paint(out, plain);
+        out.append(painted(
+            red, fmt::format("{:<7} error frame: {}", "-", can::describe(*event.entry.classic()).view())));
         break;
     }
-    out.push_back('\n');
+    out.append('\n');
+    return true;
   }
 
  private:
-  static constexpr std::string_view plain = "\033[0m";
-  static constexpr std::string_view dim = "\033[2m";
-  static constexpr std::string_view bold = "\033[1m";
-  static constexpr std::string_view red = "\033[31m";
+  struct TopicText {
+    std::string name;
+    std::vector<Column> columns;
+  };
 
-  void paint(Buffer& out, std::string_view code) const {
-    if (colour_) append(out, code);
+  [[nodiscard]] std::string painted(std::string_view code, std::string_view text) const {
+    return colour_ ? fmt::format("{}{}{}", code, text, plain) : std::string{text};
   }
 
+  /// In candump's notation.
+  static std::string frame_text(const log::Entry& entry) {
+    if (const auto frame = entry.classic()) return std::string{can::to_text(*frame).view()};
+    const bool wide = can::is_extended(entry.format);
+    std::string text =
+        fmt::format("{:0{}X}##{:X}", entry.id, wide ? 8 : 3, entry.flags & 0xFU & ~unsigned{log::flag::fd});
+    for (const std::uint8_t byte : entry.bytes()) text += fmt::format("{:02X}", byte);
+    return text;
+  }
+
+  /// Seconds since the first frame, with microseconds.
   void time(Buffer& out, const Event& event) {
-    if (!started_) begin_ = event.received.time;
+    if (!started_) begin_ = event.entry.time;
     started_ = true;
-    const std::int64_t us = (event.received.time - begin_).count() / 1000;
-    paint(out, dim);
-    fmt::format_to(std::back_inserter(out), "{}{:>5}.{:06}  ", us < 0 ? "-" : "", std::abs(us) / 1'000'000,
-                   std::abs(us) % 1'000'000);
-    paint(out, plain);
+    const std::int64_t us = (event.entry.time - begin_).count() / 1000;
+    const std::uint64_t magnitude = base::detail::magnitude(us);
+    char text[64];
+    char* to = text;
+    if (colour_) to = std::copy(dim.begin(), dim.end(), to);
+    *to = '-';
+    to += us < 0 ? 1 : 0;
+    const std::uint64_t seconds = magnitude / 1'000'000;
+    for (std::uint64_t least = 10'000; least > 1 && seconds < least; least /= 10) *to++ = ' ';
+    to = put_unsigned(to, seconds);
+    put_eight(to, magnitude % 1'000'000);  // eight digits, of which the first two give way to the point
+    std::memmove(to + 1, to + 2, 6);
+    *to = '.';
+    to += 7;
+    *to++ = ' ';
+    *to++ = ' ';
+    if (colour_) to = std::copy(plain.begin(), plain.end(), to);
+    out.append({text, static_cast<std::size_t>(to - text)});
   }
 
   void head(Buffer& out, const Event& event, std::string_view arrow) {
-    constexpr std::array<std::string_view, 4> codes{"\033[31m", "\033[33m", "\033[32m", "\033[36m"};
     time(out, event);
-    const auto priority = protocol::Identifier::decode(event.received.frame.id).priority;
-    paint(out, codes[static_cast<std::size_t>(priority)]);
-    fmt::format_to(std::back_inserter(out), "{:<7} ", name(priority));
-    paint(out, plain);
-    paint(out, bold);
-    fmt::format_to(std::back_inserter(out), "{:<{}}  ", event.reception.topic->name, name_width_);
-    paint(out, plain);
-    append(out, arrow);
+    const auto priority = protocol::Identifier::decode(event.entry.id).priority;
+    out.append(priorities_[static_cast<std::size_t>(priority)]);
+    out.append(topics_.at(event.reception.topic).name);
+    out.append(arrow);
   }
 
-  static std::vector<Column> columns_of(const protocol::Topic& topic) {
+  [[nodiscard]] std::vector<Column> columns_of(const protocol::Topic& topic,
+                                               const Selection& selection) const {
     std::vector<Column> columns;
     for (std::size_t i = 0; i < topic.frames.size(); ++i) {
       const auto& layout = topic.frames[i];
       for (const auto& field : layout.fields) {
-        Column column{std::string{field.name}, i, &field, 1};
+        if (!selection.has(layout, field)) continue;
+        std::string label{field.name};
         if (topic.frames.size() > 1) {
-          column.label = layout.name;
-          if (layout.fields.size() > 1) column.label.append(".").append(field.name);
+          label = layout.name;
+          if (layout.fields.size() > 1) label.append(".").append(field.name);
         }
-        for (const std::int64_t raw : {field.raw_min, field.raw_max})
-          if (const auto bound = field.physical(raw))
-            column.width = std::max(column.width, base::to_text(*bound).view().size());
-        // A whole bound says nothing of the digits behind the point.
-        if (field.scale.exponent < 0)
-          column.width = std::max(column.width, static_cast<std::size_t>(2 - field.scale.exponent));
-        column.width = std::min<std::size_t>(column.width, 11);
-        columns.push_back(std::move(column));
+        std::string before = (columns.empty() ? "" : "  ") + painted(dim, label) + ' ';
+        std::string unit = field.unit.empty() ? std::string{} : ' ' + std::string{field.unit};
+        columns.push_back({FieldText{field}, i, std::move(before), std::move(unit), false, width_of(field)});
       }
+    }
+    // One unit for all stands at the end.
+    const bool one_unit = std::all_of(columns.begin(), columns.end(),
+                                      [&](const Column& column) { return column.unit == columns[0].unit; });
+    for (auto& column : columns) {
+      column.unit_of_all = one_unit;
+      if (one_unit && &column != &columns.back()) column.unit.clear();
     }
     return columns;
   }
 
-  static std::string value_text(const protocol::Field& field, const can::Payload& data) {
-    const std::int64_t raw = field.raw(data);
+  static std::size_t width_of(const protocol::Field& field) {
+    std::size_t width = 1;
+    for (const std::int64_t raw : {field.raw_min, field.raw_max})
+      if (const auto bound = field.physical(raw))
+        width = std::max(width, base::to_text(*bound).view().size());
+    // A whole bound says nothing of the digits behind the point.
+    if (field.scale.exponent < 0) width = std::max(width, static_cast<std::size_t>(2 - field.scale.exponent));
+    return std::min<std::size_t>(width, 11);
+  }
+
+  /// The names of a value that has some; empty otherwise.
+  static std::string names_of(const protocol::Field& field, std::int64_t raw) {
     std::string text;
     for (const auto& value : field.values) {
       const bool applies = field.flags ? (raw >> value.raw & 1) != 0 : raw == value.raw;
@@ -137,66 +196,73 @@ class Pretty final : public Output {
       if (!text.empty()) text += '|';
       text += value.name;
     }
-    if (!text.empty()) return text;
-    if (field.flags) return raw == 0 ? "-" : fmt::format("0x{:X}", raw);
-    return std::string{base::to_text(physical(field, data)).view()};
+    if (!text.empty() || !field.flags) return text;
+    return raw == 0 ? "-" : fmt::format("0x{:X}", raw);
+  }
+
+  static void put_right(Buffer& out, std::string_view text, std::size_t width) {
+    if (const std::size_t size = letters(text); size < width) {
+      std::memset(out.room(width - size), ' ', width - size);
+      out.grow(width - size);
+    }
+    out.append(text);
   }
 
   void values(Buffer& out, const protocol::Topic& topic, std::span<const can::Payload> payloads) const {
-    const auto& columns = columns_.at(&topic);
-    const bool one_unit = std::all_of(columns.begin(), columns.end(), [&](const Column& column) {
-      return column.field->unit == columns[0].field->unit;
-    });
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-      const Column& column = columns[i];
-      const auto& field = *column.field;
-      if (i != 0) append(out, "  ");
-      paint(out, dim);
-      append(out, column.label);
-      paint(out, plain);
-      fmt::format_to(std::back_inserter(out), " {:>{}}", value_text(field, payloads[column.frame]),
-                     column.width);
-      // One unit for all stands at the end; a name in place of a number has none.
-      const std::int64_t raw = field.raw(payloads[column.frame]);
-      const bool named = std::any_of(field.values.begin(), field.values.end(),
-                                     [raw](const auto& value) { return value.raw == raw; });
-      if (!field.unit.empty() && (one_unit ? i + 1 == columns.size() : !named))
-        fmt::format_to(std::back_inserter(out), " {}", field.unit);
+    for (const Column& column : topics_.at(&topic).columns) {
+      out.append(column.before);
+      const can::Payload& data = payloads[column.frame];
+      const auto& field = column.value.field();
+      char number[FieldText::room];
+      bool named = false;
+      if (field.values.empty() && !field.flags) {
+        const char* const end = column.value.print(number, data);
+        put_right(out, {number, static_cast<std::size_t>(end - number)}, column.width);
+      } else {
+        const std::int64_t raw = field.raw(data);
+        std::string text = names_of(field, raw);
+        if (text.empty())
+          text.assign(number, static_cast<std::size_t>(column.value.print(number, data) - number));
+        put_right(out, text, column.width);
+        named = std::any_of(field.values.begin(), field.values.end(),
+                            [raw](const auto& value) { return value.raw == raw; });
+      }
+      if (column.unit_of_all || !named) out.append(column.unit);  // a name in place of a number has none
     }
   }
 
   static void request(Buffer& out, const protocol::Topic& topic, const can::Frame& frame) {
     const auto request = protocol::decode_request(frame);
-    if (!request) {
-      fmt::format_to(std::back_inserter(out), "bad request {}: {}", can::to_text(frame).view(),
-                     base::describe(request.error));
-      return;
-    }
+    if (!request)
+      return append_formatted(out, "bad request {}: {}", can::to_text(frame).view(),
+                              base::describe(request.error));
     switch (request->mode) {
       case protocol::Mode::stop:
-        append(out, "stop");
+        out.append("stop");
         break;
       case protocol::Mode::once:
-        append(out, "once");
+        out.append("once");
         break;
       case protocol::Mode::publish:
-        append(out, "publish every ");
-        append(out, reflective::to_text(frame.dlc == 1 ? topic.period : request->period));
+        out.append("publish every ");
+        out.append(reflective::to_text(frame.dlc == 1 ? topic.period : request->period));
         break;
     }
   }
 
   bool colour_;
+  bool everything_;
   bool started_ = false;
   base::Time begin_{};
-  std::size_t name_width_ = 0;
-  std::unordered_map<const protocol::Topic*, std::vector<Column>> columns_;
+  std::array<std::string, protocol::priority_levels> priorities_;
+  std::unordered_map<const protocol::Topic*, TopicText> topics_;
 };
 
 }  // namespace
 
-std::unique_ptr<Output> make_pretty(const protocol::Catalogue& catalogue, bool colour) {
-  return std::make_unique<Pretty>(catalogue, colour);
+std::unique_ptr<Output> make_pretty(const protocol::Catalogue& catalogue, const Selection& selection,
+                                    bool colour) {
+  return std::make_unique<Pretty>(catalogue, selection, colour);
 }
 
 }  // namespace ocm::cli

@@ -1,5 +1,6 @@
 /// candump's log line: `(1436509052.249713) can0 605#00D20000`. Every frame, known or not.
-#include "ocm/can/text.hpp"
+#include "ocm/log/candump.hpp"
+#include "ocm/log/interfaces.hpp"
 
 #include "cli/output/output.hpp"
 
@@ -8,10 +9,16 @@ namespace {
 
 class Raw final : public Output {
  public:
-  void write(Buffer& out, const Event& event) override {
-    append(out, can::to_log_line(event.received.time, event.bus, event.received.frame).view());
-    out.push_back('\n');
+  bool write(Buffer& out, const Event& event) override {
+    log::Entry entry = event.entry;
+    entry.interface = interfaces_.number(event.bus);
+    writer_.write(out, {&entry, 1}, interfaces_);
+    return true;
   }
+
+ private:
+  log::Interfaces interfaces_;
+  log::CandumpWriter writer_;
 };
 
 }  // namespace

@@ -12,7 +12,7 @@
 #include "ocm/reflective/sample.hpp"
 
 #include "cli/interrupt.hpp"
-#include "cli/output/output.hpp"
+#include "cli/output/printer.hpp"
 #include "cli/verbs/admission.hpp"
 #include "cli/verbs/commanding.hpp"
 #include "cli/verbs/subscription.hpp"
@@ -33,8 +33,8 @@ void send_and_await(Session& session, transport::Bus& open_bus, const reflective
   for (const auto& frame : command.frames) send_patiently(*bus, frame);
 
   reflective::Receiver receiver{catalogue};
-  Printer printer{
-      make_output(isatty(STDOUT_FILENO) != 0 ? Format::pretty : Format::json, catalogue, session.colour())};
+  Printer printer{make_output(isatty(STDOUT_FILENO) != 0 ? Format::pretty : Format::json, catalogue, {},
+                              session.colour())};
   const auto deadline = std::chrono::steady_clock::now() + timeout;
   while (interrupted() == 0) {
     const base::Duration left = deadline - std::chrono::steady_clock::now();
@@ -42,7 +42,7 @@ void send_and_await(Session& session, transport::Bus& open_bus, const reflective
     if (received) {
       const auto reception = receiver.take(*received);
       if (reception.topic != &topic) continue;
-      printer.write({bus->name(), *received, reception});
+      printer.write({bus->name(), log::Entry{received->time, received->frame}, reception});
       if (reception.meaning != reflective::Meaning::sample) continue;
       return printer.flush();
     }

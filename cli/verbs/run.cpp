@@ -14,7 +14,7 @@
 #include "ocm/reflective/script.hpp"
 
 #include "cli/interrupt.hpp"
-#include "cli/output/output.hpp"
+#include "cli/output/printer.hpp"
 #include "cli/timeline.hpp"
 #include "cli/verbs/commanding.hpp"
 #include "cli/verbs/verbs.hpp"
@@ -86,13 +86,13 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
   catch_interrupts();
   const auto bus = session.open_bus();
   reflective::Receiver receiver{catalogue};
-  Printer printer{
-      make_output(isatty(STDOUT_FILENO) != 0 ? Format::pretty : Format::json, catalogue, session.colour())};
+  Printer printer{make_output(isatty(STDOUT_FILENO) != 0 ? Format::pretty : Format::json, catalogue, {},
+                              session.colour())};
   const auto show = [&](const can::Received& received) {
     const auto reception = receiver.take(received);
     if (reception.meaning != reflective::Meaning::request &&
         reception.meaning != reflective::Meaning::set_point)
-      printer.write({bus->name(), received, reception});
+      printer.write({bus->name(), log::Entry{received.time, received.frame}, reception});
     printer.flush();
   };
   Timeline timeline{*bus, options.listen ? std::function<void(const can::Received&)>{show}

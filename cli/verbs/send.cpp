@@ -1,14 +1,106 @@
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "ocm/can/text.hpp"
+
+#include "cli/interrupt.hpp"
 #include "cli/verbs/commanding.hpp"
+#include "cli/verbs/frame_lines.hpp"
 #include "cli/verbs/verbs.hpp"
 
 namespace ocm::cli {
+namespace {
 
-void add_send(CLI::App& app, Session& session, int&) {
-  add_command_verb(app, session, "send", "send a frame as it is", act_group, "frame in candump notation",
-                   "  amiroctl send 205#01840302        magnetometer every 900us, as in the thesis\n"
-                   "  amiroctl send 1F334455#DEADBEEF   extended identifier\n"
-                   "  amiroctl send 123#R               remote frame",
-                   false);
+struct SendOptions {
+  bool from_input = false;
+  bool timed = false;
+  bool keep_going = false;
+};
+
+/// Holds frames back until as much time has passed since the first as between their times.
+class Pace {
+ public:
+  using Clock = std::chrono::steady_clock;
+  /// false: a signal came.
+  [[nodiscard]] bool wait_for(base::Time time) {
+    if (!first_) {
+      first_ = time;
+      start_ = Clock::now();
+    }
+    const auto at = start_ + (time - *first_);
+    for (;;) {
+      if (interrupted() != 0) return false;
+      const auto left = at - Clock::now();
+      if (left.count() <= 0) return true;
+      // In pieces, so that a signal that comes just before the wait is seen soon.
+      std::this_thread::sleep_for(std::min<Clock::duration>(left, std::chrono::milliseconds{200}));
+    }
+  }
+
+ private:
+  std::optional<base::Time> first_;
+  Clock::time_point start_;
+};
+
+void send_lines(Session& session, const SendOptions& options, bool dry_run, int& exit_code) {
+  catch_interrupts();
+  const auto bus = dry_run ? nullptr : session.open_bus();
+  FrameLines lines{"-", session.catalogue(), options.keep_going};
+  Pace pace;
+  std::uint64_t sent = 0;
+  std::uint64_t errors = 0;
+  std::uint64_t fd = 0;
+  log::Entry entry;
+  std::string_view from;
+  while (lines.next(entry, from)) {
+    const auto frame = entry.classic();
+    if (!frame || frame->format == can::Format::error) {
+      ++(frame ? errors : fd);
+      continue;
+    }
+    if (options.timed && !pace.wait_for(entry.time)) break;
+    if (dry_run)
+      print_frames({*frame});
+    else
+      send_patiently(*bus, *frame);
+    ++sent;
+  }
+  std::string text = fmt::format("{} frames {}", sent, dry_run ? "read" : "sent");
+  if (errors != 0) text += fmt::format(", {} error frames are reports and were not", errors);
+  if (fd != 0) text += fmt::format(", {} CAN FD frames were not: only classic frames can be", fd);
+  if (lines.bad_lines() != 0) text += fmt::format(", {} lines could not be read", lines.bad_lines());
+  remark(text);
+  if (lines.failed() || fd != 0) exit_code = exit_failure;
+  exit_code = exit_code_after_interrupt(exit_code);
+}
+
+}  // namespace
+
+void add_send(CLI::App& app, Session& session, int& exit_code) {
+  auto* verb = add_verb(app, "send", "send a frame as it is, or frames from the standard input", act_group,
+                        "  amiroctl send 205#01840302        magnetometer every 900us, as in the thesis\n"
+                        "  amiroctl send 1F334455#DEADBEEF   extended identifier\n"
+                        "  amiroctl send 123#R               remote frame\n"
+                        "  amiroctl --bus can0 listen --json | amiroctl --bus can1 send --stdin\n"
+                        "  amiroctl decode drive.log --topic motors | amiroctl send --stdin --timed");
+  const auto commanding = std::make_shared<Commanding>(*verb, session, "frame in candump notation", false);
+  const auto options = std::make_shared<SendOptions>();
+  auto* input = verb->add_flag("--stdin", options->from_input,
+                               "send what comes in: JSON lines, candump's log lines or frames, one a line");
+  input->excludes(verb->get_option("words"));
+  verb->add_flag("--timed", options->timed, "with the distances of their times; default: at once")
+      ->needs(input);
+  verb->add_flag("--keep-going", options->keep_going, "tell bad lines and go on; exit 1 at the end")
+      ->needs(input);
+  verb->callback([commanding, options, &session, &exit_code] {
+    if (options->from_input) return send_lines(session, *options, commanding->dry_run(), exit_code);
+    carry_out(session, commanding->parse(), commanding->dry_run());
+  });
 }
 
 }  // namespace ocm::cli

@@ -7,7 +7,10 @@ execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --config ${CONFIG} -
 file(RENAME ${staged} ${PREFIX})
 
 foreach(file bin/amiroctl bin/ocm-generate include/ocm/topics/amiro.hpp share/cmake/ocm/ocmConfig.cmake
-             share/ocm/spec/topics.json share/ocm/spec/topics.schema.json share/doc/ocm/LICENSE)
+             share/ocm/spec/topics.json share/ocm/spec/topics.schema.json share/doc/ocm/LICENSE
+             share/man/man1/amiroctl.1 share/man/man1/amiroctl-publish.1 share/man/man1/ocm-generate.1
+             share/bash-completion/completions/amiroctl share/zsh/site-functions/_amiroctl
+             share/fish/vendor_completions.d/amiroctl.fish)
   if(NOT EXISTS ${PREFIX}/${file})
     message(FATAL_ERROR "${file} was not installed")
   endif()

@@ -129,8 +129,22 @@ class Program(unittest.TestCase):
             self.assertNotEqual(done.stderr, "")
         self.assertEqual(run("--tasks", self.folder / "none", "-o", "-").returncode, 1)
 
+    def test_every_target(self):
+        begins = {"cpp": "// Made by", "dbc": "VERSION", "c": "// Made by", "markdown": "# Topics of Pair",
+                  "wireshark": "-- Made by", "json-schema": "{"}
+        for target, begin in begins.items():
+            done = run(self.spec, "--to", target, "-o", "-")
+            self.assertEqual((done.returncode, done.stderr), (0, ""), target)
+            self.assertTrue(done.stdout.startswith(begin), target)
+            self.assertEqual(run(self.spec, "--to", target, "-o", "-").stdout, done.stdout)
+        self.assertEqual(run(self.spec, "--to", "cpp", "-o", "-").stdout, run(self.spec, "-o", "-").stdout)
+        self.assertIn("--to", run("--help").stdout)
+        self.assertEqual({t for t in begins if f"  {t} " in run("--help").stdout}, set(begins))
+
     def test_wrong_usage_is_2(self):
-        for arguments in ((), (self.spec,), (self.spec, "-o"), (self.spec, "-o", "a", "-o", "b"), ("-x",),
+        for arguments in ((self.spec, "--to", "pdf", "-o", "a"), (self.spec, "--to"), (self.spec, "--priority", "low", "-o", "a"),
+                          (self.spec, "--to", "dbc", "--priority", "big", "-o", "a"), ("--tasks", self.spec, "--to", "c", "-o", "a"),
+                          (), (self.spec,), (self.spec, "-o"), (self.spec, "-o", "a", "-o", "b"), ("-x",),
                           (self.spec, "second", "-o", "a"), (self.spec, "-o", "a", "--check"), (self.spec, "-o", "")):
             with self.subTest(arguments=arguments):
                 done = run(*arguments)

@@ -1,0 +1,41 @@
+/// The bytes of a file or of a pipe, read in the pieces that are asked for; the kernel is told that all of it
+/// will be read, so that it reads ahead.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "ocm/log/input.hpp"
+
+namespace ocm::cli::logs {
+
+class FileSource final : public log::Source {
+ public:
+  /// "-": stdin. What went wrong is in `failure`.
+  explicit FileSource(const std::string& path);
+  ~FileSource() override;
+
+  /// The first bytes, up to four, which `read` hands out all the same. Waits for a pipe.
+  [[nodiscard]] std::string_view beginning();
+  /// Ends early, with a failure, when a signal was caught that ends the command.
+  std::size_t read(std::span<char> into) override;
+  [[nodiscard]] const std::string& failure() const override { return failure_; }
+
+  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }          ///< 0 for a pipe
+  [[nodiscard]] std::uint64_t position() const noexcept { return position_; }  ///< bytes that were read
+
+ private:
+  std::size_t read_some(std::span<char> into);
+
+  int descriptor_ = -1;
+  std::uint64_t size_ = 0;
+  std::uint64_t position_ = 0;
+  char head_[4] = {};
+  std::size_t head_begin_ = 0;
+  std::size_t head_end_ = 0;
+  std::string failure_;
+};
+
+}  // namespace ocm::cli::logs

@@ -1,0 +1,586 @@
+#include "cli/logs/json_lines.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "ocm/base/text.hpp"
+#include "ocm/can/text.hpp"
+#include "ocm/protocol/request.hpp"
+#include "ocm/reflective/command.hpp"
+
+#include "cli/output/output.hpp"
+
+namespace ocm::cli::logs {
+namespace {
+
+std::string shown(std::string_view text) {
+  return '"' + log::Complaints::printable(text) + '"';
+}
+
+}  // namespace
+
+/// Goes through one line of JSON, in place. Each function is false where the line is not what it asks for.
+class JsonLineParser::Scanner {
+ public:
+  explicit Scanner(std::string_view line) : at_(line.data()), end_(line.data() + line.size()) {}
+
+  [[nodiscard]] bool take(char c) {
+    skip_blanks();
+    if (at_ == end_ || *at_ != c) return false;
+    ++at_;
+    return true;
+  }
+  [[nodiscard]] bool at_end() {
+    skip_blanks();
+    return at_ == end_;
+  }
+  /// The key and the colon behind it. Keys that matter have no escapes; of others it does not matter.
+  [[nodiscard]] bool take_key(std::string_view& key) {
+    Value value;
+    if (!take_string(value) || !take(':')) return false;
+    key = value.text;
+    return true;
+  }
+  /// A string or a number; of anything else nothing is kept.
+  [[nodiscard]] bool take_value(Value& value) {
+    skip_blanks();
+    if (at_ == end_) return false;
+    if (*at_ == '"') return take_string(value);
+    if (*at_ == '-' || base::is_digit(*at_)) {
+      const char* const begin = at_;
+      while (at_ != end_ && is_of_number(*at_)) ++at_;
+      value = {{begin, static_cast<std::size_t>(at_ - begin)}, false, false};
+      return true;
+    }
+    value = {};
+    return skip_value();
+  }
+  [[nodiscard]] bool take_boolean(bool& value) {
+    value = take_word("true");
+    return value || take_word("false");
+  }
+  /// Any value, whatever is in it.
+  [[nodiscard]] bool skip_value(int depth = 0) {
+    constexpr int deepest = 32;
+    if (depth == deepest) return false;
+    skip_blanks();
+    if (at_ == end_) return false;
+    Value ignored;
+    if (*at_ == '{' || *at_ == '[') return skip_container(depth);
+    if (*at_ == '"' || *at_ == '-' || base::is_digit(*at_)) return take_value(ignored);
+    return take_word("true") || take_word("false") || take_word("null");
+  }
+
+ private:
+  static bool is_of_number(char c) {
+    return base::is_digit(c) || c == '.' || c == '-' || c == '+' || c == 'e' || c == 'E';
+  }
+  void skip_blanks() {
+    while (at_ != end_ && (*at_ == ' ' || *at_ == '\t' || *at_ == '\r')) ++at_;
+  }
+  bool take_word(std::string_view word) {
+    skip_blanks();
+    if (!std::string_view{at_, static_cast<std::size_t>(end_ - at_)}.starts_with(word)) return false;
+    at_ += word.size();
+    return true;
+  }
+  bool take_string(Value& value) {
+    if (!take('"')) return false;
+    const char* const begin = at_;
+    bool escaped = false;
+    while (at_ != end_ && *at_ != '"') {
+      if (static_cast<unsigned char>(*at_) < 0x20) return false;
+      if (*at_ == '\\') {
+        escaped = true;
+        if (++at_ == end_) return false;
+      }
+      ++at_;
+    }
+    if (at_ == end_) return false;
+    value = {{begin, static_cast<std::size_t>(at_ - begin)}, true, escaped};
+    ++at_;
+    return true;
+  }
+  bool skip_container(int depth) {
+    const bool object = *at_ == '{';
+    const char closing = object ? '}' : ']';
+    ++at_;
+    if (take(closing)) return true;
+    do {
+      std::string_view key;
+      if (object && !take_key(key)) return false;
+      if (!skip_value(depth + 1)) return false;
+    } while (take(','));
+    return take(closing);
+  }
+
+  const char* at_;
+  const char* end_;
+};
+
+namespace {
+
+void append_utf8(std::string& out, std::uint32_t code) {
+  const auto byte = [&out](std::uint32_t value) { out += static_cast<char>(value); };
+  if (code < 0x80) return byte(code);
+  if (code < 0x800) {
+    byte(0xC0 | code >> 6);
+  } else {
+    if (code < 0x10000) {
+      byte(0xE0 | code >> 12);
+    } else {
+      byte(0xF0 | code >> 18);
+      byte(0x80 | (code >> 12 & 0x3F));
+    }
+    byte(0x80 | (code >> 6 & 0x3F));
+  }
+  byte(0x80 | (code & 0x3F));
+}
+
+/// Four hexadecimal digits of a \u; nothing when there are none.
+std::optional<std::uint32_t> code_unit(std::string_view text) {
+  if (text.size() < 6 || text[0] != '\\' || text[1] != 'u') return std::nullopt;
+  const auto unit = base::parse_unsigned(text.substr(2, 4), 16);
+  return unit ? std::optional{static_cast<std::uint32_t>(*unit)} : std::nullopt;
+}
+
+/// The text that the inside of a JSON string stands for; the counterpart of append_json. false: no JSON.
+bool unescape(std::string_view text, std::string& out) {
+  out.clear();
+  while (!text.empty()) {
+    if (text.front() != '\\') {
+      out += text.front();
+      text.remove_prefix(1);
+      continue;
+    }
+    if (const auto unit = code_unit(text)) {
+      text.remove_prefix(6);
+      const auto low = code_unit(text);
+      const bool pair = *unit >= 0xD800 && *unit < 0xDC00 && low && *low >= 0xDC00 && *low < 0xE000;
+      if (pair) {
+        append_utf8(out, 0x10000 + ((*unit - 0xD800) << 10) + (*low - 0xDC00));
+        text.remove_prefix(6);
+      } else if (*unit >= 0xDC80 && *unit <= 0xDCFF) {
+        out += static_cast<char>(*unit & 0xFF);  // a byte that was no UTF-8 [PEP 383]
+      } else if (*unit >= 0xD800 && *unit < 0xE000) {
+        return false;
+      } else {
+        append_utf8(out, *unit);
+      }
+      continue;
+    }
+    constexpr std::string_view letters = "\"\\/bfnrt";
+    constexpr std::string_view meanings = "\"\\/\b\f\n\r\t";
+    const auto i = text.size() < 2 ? std::string_view::npos : letters.find(text[1]);
+    if (i == std::string_view::npos) return false;
+    out += meanings[i];
+    text.remove_prefix(2);
+  }
+  return true;
+}
+
+}  // namespace
+
+JsonLineParser::JsonLineParser(const protocol::Catalogue& catalogue)
+    : catalogue_(&catalogue), index_(catalogue) {
+  for (const auto& topic : catalogue.topics)
+    for (const auto& layout : topic.frames)
+      for (const auto& field : layout.fields) texts_[&layout].emplace_back(field);
+}
+
+bool JsonLineParser::refuse(log::Cause cause, std::string what, std::string remedy) {
+  problem_ = {cause, std::move(what), std::move(remedy)};
+  return false;
+}
+
+bool JsonLineParser::parse(std::string_view line, log::Entry& entry, std::string_view& bus) {
+  if (!scan(line)) return false;
+  entry = log::Entry{};
+  Meaning meaning;
+  if (!take_time(entry) || !take_bus(bus)) return false;
+  if (!(record_.id ? take_id(entry, meaning) : take_topic(entry, meaning))) return false;
+  if (!take_data(entry, meaning) || !take_extras(entry)) return false;
+  if (record_.has_fields && !put_fields(entry, meaning)) return false;
+  last_ = entry.time;
+  return true;
+}
+
+bool JsonLineParser::scan(std::string_view line) {
+  record_.time = record_.bus = record_.id = record_.priority = record_.topic = {};
+  record_.frame = record_.data = record_.direction = record_.raw_dlc = {};
+  record_.has_fd = record_.has_fields = false;
+  record_.field_count = 0;
+  const auto broken = [&] {
+    return refuse(log::Cause::syntax, "no JSON object in one line: " + shown(line),
+                  "one object a line is wanted, as decode --json prints it; jq needs -c");
+  };
+  Scanner scanner{line};
+  if (!scanner.take('{')) return broken();
+  if (!scanner.take('}')) {
+    do {
+      std::string_view key;
+      if (!scanner.take_key(key)) return broken();
+      if (key == "fields") {
+        if (!scan_fields(scanner)) return problem_.what.empty() ? broken() : false;
+        continue;
+      }
+      if (key == "fd") {
+        if (!scan_fd(scanner)) return broken();
+        continue;
+      }
+      Value* const value = key == "time_ns"     ? &record_.time
+                           : key == "bus"       ? &record_.bus
+                           : key == "id"        ? &record_.id
+                           : key == "priority"  ? &record_.priority
+                           : key == "topic"     ? &record_.topic
+                           : key == "frame"     ? &record_.frame
+                           : key == "data"      ? &record_.data
+                           : key == "direction" ? &record_.direction
+                           : key == "raw_dlc"   ? &record_.raw_dlc
+                                                : nullptr;
+      if (!(value != nullptr ? scanner.take_value(*value) : scanner.skip_value())) return broken();
+    } while (scanner.take(','));
+    if (!scanner.take('}')) return broken();
+  }
+  return scanner.at_end() || broken();
+}
+
+bool JsonLineParser::scan_fields(Scanner& scanner) {
+  problem_.what.clear();
+  record_.has_fields = true;
+  record_.field_count = 0;
+  if (!scanner.take('{')) return false;
+  if (scanner.take('}')) return true;
+  do {
+    if (record_.field_count == record_.fields.size())
+      return refuse(log::Cause::syntax, "more than 64 fields", "a frame has 64 bits");
+    auto& named = record_.fields[record_.field_count++];
+    if (!scanner.take_key(named.name) || !scanner.take_value(named.value)) return false;
+  } while (scanner.take(','));
+  return scanner.take('}');
+}
+
+bool JsonLineParser::scan_fd(Scanner& scanner) {
+  record_.has_fd = true;
+  record_.fd_flags = log::flag::fd;
+  if (!scanner.take('{')) return false;
+  if (scanner.take('}')) return true;
+  do {
+    std::string_view key;
+    bool set = false;
+    if (!scanner.take_key(key) || !scanner.take_boolean(set)) return false;
+    if (key == "brs" && set) record_.fd_flags |= log::flag::bit_rate_switch;
+    if (key == "esi" && set) record_.fd_flags |= log::flag::error_state;
+  } while (scanner.take(','));
+  return scanner.take('}');
+}
+
+bool JsonLineParser::take_time(log::Entry& entry) {
+  entry.time = last_;
+  if (!record_.time) return true;
+  std::string_view text = record_.time.text;
+  const bool negative = text.starts_with('-');
+  if (negative) text.remove_prefix(1);
+  const auto ns = base::parse_unsigned(text);
+  const std::uint64_t most = static_cast<std::uint64_t>(INT64_MAX) + (negative ? 1 : 0);
+  if (!ns || *ns > most)
+    return refuse(log::Cause::time, "time_ns " + shown(record_.time.text) + " is no time",
+                  "whole nanoseconds of 64 bits are wanted");
+  entry.time = base::Time{base::Duration{static_cast<std::int64_t>(negative ? 0 - *ns : *ns)}};
+  return true;
+}
+
+bool JsonLineParser::take_bus(std::string_view& bus) {
+  bus = record_.bus.text;
+  if (!record_.bus.escaped) return true;
+  if (!unescape(bus, bus_))
+    return refuse(log::Cause::syntax, "bus " + shown(bus) + " is no JSON string", "check its backslashes");
+  bus = bus_;
+  return true;
+}
+
+JsonLineParser::Meaning JsonLineParser::meaning_of(const log::Entry& entry) const {
+  if (entry.format != can::Format::base || record_.has_fd) return {};
+  const auto id = protocol::Identifier::decode(entry.id);
+  if (const auto* requested = index_.requested(id)) return {requested, {}};
+  return {nullptr, index_.find(id)};
+}
+
+bool JsonLineParser::take_id(log::Entry& entry, Meaning& meaning) {
+  const std::string_view text = record_.id.text;
+  const auto id = base::parse_unsigned(text, 16);
+  const bool wide = text.size() == 8;
+  if (!id || (!wide && text.size() != 3) || !record_.id.is_string)
+    return refuse(log::Cause::identifier, "id " + shown(text) + " is no identifier",
+                  "three hexadecimal digits are wanted, or eight for an extended one");
+  entry.id = static_cast<std::uint32_t>(*id);
+  entry.format = wide ? can::Format::extended : can::Format::base;
+  if (wide && (entry.id & can::error_frame_flag) != 0) {
+    entry.format = can::Format::error;
+    entry.id &= ~can::error_frame_flag;
+  }
+  if (entry.id > (wide ? can::max_extended_id : can::max_base_id))
+    return refuse(log::Cause::identifier, "id " + shown(text) + " is too large",
+                  "7FF is the largest of three digits, 1FFFFFFF of eight");
+  meaning = meaning_of(entry);
+  return agrees(entry, meaning);
+}
+
+/// Whether topic, priority and frame say what the identifier says.
+bool JsonLineParser::agrees(const log::Entry& entry, const Meaning& meaning) {
+  const auto contradiction = [&](std::string_view key, std::string_view text) {
+    return refuse(log::Cause::identifier,
+                  fmt::format("id {} and {} {} contradict each other", record_.id.text, key, shown(text)),
+                  "leave one of them out: jq 'del(.id)' makes the id from topic, frame and priority");
+  };
+  if (record_.topic) {
+    const auto* const topic = meaning.requested != nullptr ? meaning.requested : meaning.frame.topic;
+    const std::string_view name = record_.topic.text;
+    if (topic == nullptr || (topic->name != name && catalogue_->find(name) != topic))
+      return contradiction("topic", name);
+  }
+  const bool of_topic = meaning.requested != nullptr || meaning.frame;
+  if (record_.priority && of_topic &&
+      record_.priority.text != name(protocol::Identifier::decode(entry.id).priority))
+    return contradiction("priority", record_.priority.text);
+  if (record_.frame && of_topic &&
+      record_.frame.text != (meaning.requested != nullptr ? "request" : frame_name(meaning.frame)))
+    return contradiction("frame", record_.frame.text);
+  return true;
+}
+
+/// The identifier from the topic.
+bool JsonLineParser::take_topic(log::Entry& entry, Meaning& meaning) {
+  using protocol::Direction;
+  if (!record_.topic) return refuse(log::Cause::identifier, "neither id nor topic", "one of them is wanted");
+  const auto* const topic = catalogue_->find(record_.topic.text);
+  if (topic == nullptr) {
+    const auto words = reflective::topic_words(*catalogue_);
+    return refuse(log::Cause::identifier, "no topic " + shown(record_.topic.text),
+                  reflective::detail::suggestion(record_.topic.text, words));
+  }
+  auto priority = topic->priority;
+  if (record_.priority) {
+    const auto parsed = protocol::parse_priority(record_.priority.text);
+    if (!parsed)
+      return refuse(log::Cause::identifier, "no priority " + shown(record_.priority.text),
+                    "one of: urgent, high, medium, low");
+    priority = *parsed;
+  }
+  const bool sensor = topic->kind == protocol::Kind::sensor;
+  if (sensor && record_.frame && record_.frame.text == "request") {
+    meaning.requested = topic;
+    entry.id = protocol::Identifier{Direction::command, priority, topic->id}.encode();
+    return true;
+  }
+  std::string names;
+  for (std::size_t i = 0; i < topic->frames.size(); ++i) {
+    const protocol::FrameRef frame{topic, static_cast<std::uint8_t>(i)};
+    names += (names.empty() ? "" : ", ") + std::string{frame_name(frame)};
+    const bool meant = record_.frame ? record_.frame.text == frame_name(frame) : topic->frames.size() == 1;
+    if (!meant) continue;
+    meaning.frame = frame;
+    entry.id =
+        protocol::Identifier{sensor ? Direction::sensor : Direction::command, priority, frame.layout().id}
+            .encode();
+    return true;
+  }
+  return refuse(log::Cause::identifier,
+                record_.frame ? fmt::format("{} has no frame {}", topic->name, shown(record_.frame.text))
+                              : fmt::format("{} has several frames", topic->name),
+                "frame is one of: " + names);
+}
+
+bool JsonLineParser::take_remote(log::Entry& entry) {
+  std::string_view text = record_.data.text.substr(1);
+  const auto length = text.empty() ? base::Result<std::uint64_t>{0} : base::parse_unsigned(text);
+  if (!length || text.size() > 1 || *length > can::max_dlc || entry.format == can::Format::error ||
+      record_.has_fd)
+    return refuse(log::Cause::length, "data " + shown(record_.data.text) + " is no remote frame's",
+                  "R is wanted, or R0 to R8, and neither fd nor an error frame's id");
+  entry.format = entry.format == can::Format::base ? can::Format::base_remote : can::Format::extended_remote;
+  entry.length = static_cast<std::uint8_t>(*length);
+  return true;
+}
+
+bool JsonLineParser::take_data(log::Entry& entry, const Meaning& meaning) {
+  if (!record_.data) {
+    if (!record_.has_fields || (meaning.requested == nullptr && !meaning.frame))
+      return refuse(log::Cause::length, "no data", "data is wanted, or fields of a topic");
+    if (meaning.frame) entry.length = meaning.frame.layout().dlc;
+    return true;
+  }
+  const std::string_view text = record_.data.text;
+  if (text.starts_with('R')) return take_remote(entry);
+  const std::size_t most = record_.has_fd ? log::max_fd_length : can::max_dlc;
+  const std::size_t length = text.size() / 2;
+  if (length > most || (record_.has_fd && !log::is_fd_length(length)))
+    return refuse(log::Cause::length, fmt::format("data of {} bytes", length),
+                  record_.has_fd ? "CAN FD has 0 to 8, 12, 16, 20, 24, 32, 48 or 64"
+                                 : "a frame has at most 8; with \"fd\":{} up to 64");
+  for (std::size_t i = 0; i < text.size(); i += 2) {
+    const int high = base::hex_digit(text[i]);
+    const int low = i + 1 < text.size() ? base::hex_digit(text[i + 1]) : -1;
+    if (high < 0 || low < 0 || !record_.data.is_string)
+      return refuse(log::Cause::syntax, "data " + shown(text) + " is not hexadecimal",
+                    "two digits a byte are wanted");
+    entry.data[i / 2] = static_cast<std::uint8_t>(high << 4 | low);
+  }
+  entry.length = static_cast<std::uint8_t>(length);
+  return true;
+}
+
+bool JsonLineParser::take_extras(log::Entry& entry) {
+  if (record_.has_fd) {
+    if (entry.format == can::Format::error)
+      return refuse(log::Cause::syntax, "an error frame with fd", "leave fd out");
+    entry.flags = record_.fd_flags;
+  }
+  if (record_.direction) {
+    const std::string_view text = record_.direction.text;
+    if (text != "received" && text != "sent")
+      return refuse(log::Cause::syntax, "direction " + shown(text), "received or sent is wanted");
+    entry.direction = text == "sent" ? log::Direction::sent : log::Direction::received;
+  }
+  if (record_.raw_dlc) {
+    const auto code = base::parse_unsigned(record_.raw_dlc.text);
+    if (!code || *code <= can::max_dlc || *code > 15 || entry.length != can::max_dlc || record_.has_fd ||
+        entry.format == can::Format::error)
+      return refuse(log::Cause::length, "raw_dlc " + shown(record_.raw_dlc.text),
+                    "9 to 15 is wanted, with a classic frame of 8 bytes");
+    entry.raw_dlc = static_cast<std::uint8_t>(*code);
+  }
+  return true;
+}
+
+bool JsonLineParser::put_fields(log::Entry& entry, const Meaning& meaning) {
+  if (can::is_remote(entry.format) || (meaning.requested == nullptr && !meaning.frame))
+    return record_.field_count == 0 ||
+           refuse(log::Cause::syntax, fmt::format("fields, but id {} is of no topic", record_.id.text),
+                  "leave them out, or name the robot's topics with --spec");
+  if (meaning.requested != nullptr) return put_request(entry, *meaning.requested);
+  const auto& layout = meaning.frame.layout();
+  if (entry.length != layout.dlc)
+    return refuse(log::Cause::length,
+                  fmt::format("data of {} bytes with fields of {}", entry.length, meaning.frame.topic->name),
+                  fmt::format("it has {} bytes; leave data or fields out", layout.dlc));
+  can::Payload data;
+  std::memcpy(data.data(), entry.data.data(), data.size());
+  const std::span<const FieldText> texts = texts_[&layout];  // none for a frame without fields
+  for (std::size_t i = 0; i < record_.field_count; ++i)
+    if (!put_field(data, record_.fields[i], texts, i)) return false;
+  std::memcpy(entry.data.data(), data.data(), data.size());
+  return true;
+}
+
+/// `hint`: where the field is if the line has all of them, in their order.
+bool JsonLineParser::put_field(can::Payload& data, const NamedText& named, std::span<const FieldText> fields,
+                               std::size_t hint) {
+  std::size_t i = hint < fields.size() && fields[hint].field().name == named.name ? hint : 0;
+  while (i < fields.size() && fields[i].field().name != named.name) ++i;
+  if (i == fields.size()) {
+    std::vector<std::string_view> names;
+    for (const auto& field : fields) names.push_back(field.field().name);
+    return refuse(log::Cause::syntax, "no field " + shown(named.name),
+                  names.empty() ? "the frame has none" : reflective::detail::suggestion(named.name, names));
+  }
+  const auto& field = fields[i].field();
+  const std::string_view text = named.value.text;
+  char present[FieldText::room];
+  const auto size = static_cast<std::size_t>(fields[i].print(present, data) - present);
+  if (text == std::string_view{present, size}) return true;
+  if (!named.value.is_string) {
+    const auto number = base::parse_decimal(text);
+    if (number && *number == physical(field, data)) return true;  // 2.50, 1e-06
+    if (const auto raw = number ? field.raw_from(*number) : base::Result<std::int64_t>{number.error}) {
+      protocol::put(data, field.position, *raw);
+      return true;
+    }
+  }
+  const auto raw = reflective::parse_value(field, text);
+  if (!raw) return refuse(log::Cause::syntax, raw.error, "leave the field out, and data counts");
+  protocol::put(data, field.position, *raw);
+  return true;
+}
+
+bool JsonLineParser::put_request(log::Entry& entry, const protocol::Topic& topic) {
+  using protocol::Mode;
+  Value mode_text;
+  Value period_text;
+  for (std::size_t i = 0; i < record_.field_count; ++i) {
+    const auto& named = record_.fields[i];
+    if (named.name != "mode" && named.name != "period")
+      return refuse(log::Cause::syntax, "no field " + shown(named.name), "a request has mode and period");
+    (named.name == "mode" ? mode_text : period_text) = named.value;
+  }
+  constexpr std::string_view modes[] = {"stop", "publish", "once"};
+  const auto* const found = std::find(std::begin(modes), std::end(modes), mode_text.text);
+  if (found == std::end(modes))
+    return refuse(log::Cause::syntax, "mode " + shown(mode_text.text), "one of: stop, publish, once");
+  const auto mode = static_cast<Mode>(found - std::begin(modes));
+  std::optional<base::Duration> period;
+  if (period_text) {
+    const auto seconds = base::parse_decimal(period_text.text);
+    const auto ns =
+        seconds ? base::divide_rounded(*seconds, {1, -9}) : base::Result<std::int64_t>{seconds.error};
+    if (!ns || !protocol::Period::from(base::Duration{*ns}))
+      return refuse(log::Cause::syntax, "period " + shown(period_text.text) + " is none that a request has",
+                    "seconds are wanted that are 1 to 65535 whole us, ms or s");
+    period = base::Duration{*ns};
+  }
+  // What the data says already, as JsonText shows it, stays as it is.
+  if (record_.data) {
+    const auto present = protocol::decode_request(*entry.classic());
+    if (present && present->mode == mode &&
+        (mode != Mode::publish || !period ||
+         *period == (entry.length == 1 ? topic.period : present->period).duration()))
+      return true;
+  }
+  const auto priority = protocol::Identifier::decode(entry.id).priority;
+  const auto frame =
+      mode != Mode::publish ? protocol::encode(protocol::Request{topic.id, mode, {}, priority})
+      : period
+          ? protocol::encode(protocol::Request{topic.id, mode, *protocol::Period::from(*period), priority})
+          : protocol::encode_default_publish(topic.id, priority);
+  entry.length = frame.dlc;
+  std::memcpy(entry.data.data(), frame.data.data(), frame.data.size());
+  return true;
+}
+
+bool JsonLinesReader::recognises(std::string_view beginning) {
+  const auto first = beginning.find_first_not_of(" \t\r\n");
+  if (first == std::string_view::npos || beginning[first] != '{') return false;
+  const auto line = beginning.substr(first, beginning.find('\n', first) - first);
+  for (const std::string_view key : {R"("data")", R"("id")", R"("fields")"})
+    if (line.find(key) != std::string_view::npos) return true;
+  return false;
+}
+
+std::size_t JsonLinesReader::read(std::span<log::Entry> into) {
+  using log::Input;
+  std::size_t count = 0;
+  while (count < into.size()) {
+    std::string_view line;
+    const auto taken = input_->take_line(line, count == 0 ? Input::Wait::yes : Input::Wait::no);
+    if (taken == Input::Line::none || taken == Input::Line::later) break;
+    const log::Place place{input_->line_number(), true};
+    if (taken == Input::Line::too_long) {
+      complain(log::Cause::too_long, place, line);
+      continue;
+    }
+    if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
+    std::string_view bus;
+    if (!parser_.parse(line, into[count], bus)) {
+      const bool cut = taken == Input::Line::last && !line.ends_with('}');
+      complain(cut ? log::Cause::truncated : parser_.problem().cause, place, parser_.problem().what);
+      continue;
+    }
+    into[count].interface = interfaces_.number(bus);
+    ++count;
+  }
+  return count;
+}
+
+}  // namespace ocm::cli::logs

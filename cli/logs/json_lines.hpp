@@ -1,0 +1,126 @@
+/// JSON lines of `listen --json` and `decode --json` as a log: read back bit by bit, whoever was at them in
+/// between. A line is a frame:
+///
+/// - `id` and `data` make the frame; `fields` are put over `data`, so that an edited value counts and the
+///   bits of no field stay. A field that says what `data` says changes nothing, be it out of range.
+/// - Without `data` the frame is of zeros and `fields`; without `id` it is `topic`'s, at `priority` and, of a
+///   topic with several, its `frame`.
+/// - What contradicts itself (an id of another topic, another priority) is refused, not guessed at.
+///
+/// Keys in any order; unknown ones are passed over. No allocation a line. A line that cannot be read costs
+/// that line: the parser says what is wrong and what would be right.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "ocm/log/reader.hpp"
+#include "ocm/log/writer.hpp"
+#include "ocm/protocol/topic.hpp"
+
+#include "cli/output/field_text.hpp"
+#include "cli/output/json_text.hpp"
+
+namespace ocm::cli::logs {
+
+/// Why a line is no frame.
+struct JsonProblem {
+  log::Cause cause = log::Cause::syntax;
+  std::string what;
+  std::string remedy;
+};
+
+class JsonLineParser {
+ public:
+  /// The catalogue must outlive the parser.
+  explicit JsonLineParser(const protocol::Catalogue& catalogue);
+
+  /// Reads one line into `entry` (but for its interface) and `bus` (empty: not said; holds as long as the
+  /// line and until the next). A line without `time_ns` has the time of the one before. false: `problem`.
+  [[nodiscard]] bool parse(std::string_view line, log::Entry& entry, std::string_view& bus);
+  [[nodiscard]] const JsonProblem& problem() const noexcept { return problem_; }
+
+ private:
+  /// A value as it stands in the line: of a string what is between its quotes.
+  struct Value {
+    std::string_view text;
+    bool is_string = false;
+    bool escaped = false;
+    [[nodiscard]] explicit operator bool() const noexcept { return text.data() != nullptr; }
+  };
+  struct NamedText {
+    std::string_view name;
+    Value value;
+  };
+  /// The keys that matter.
+  struct Record {
+    Value time, bus, id, priority, topic, frame, data, direction, raw_dlc;
+    bool has_fd = false, has_fields = false;
+    std::uint8_t fd_flags = 0;
+    std::array<NamedText, 64> fields;  // a frame has 64 bits
+    std::size_t field_count = 0;
+  };
+  /// What the identifier stands for.
+  struct Meaning {
+    const protocol::Topic* requested = nullptr;
+    protocol::FrameRef frame;
+  };
+  class Scanner;
+
+  bool refuse(log::Cause cause, std::string what, std::string remedy);
+  bool scan(std::string_view line);
+  bool scan_fields(Scanner& scanner);
+  bool scan_fd(Scanner& scanner);
+  bool take_time(log::Entry& entry);
+  bool take_bus(std::string_view& bus);
+  bool take_extras(log::Entry& entry);
+  bool take_id(log::Entry& entry, Meaning& meaning);
+  bool take_topic(log::Entry& entry, Meaning& meaning);
+  bool agrees(const log::Entry& entry, const Meaning& meaning);
+  bool take_data(log::Entry& entry, const Meaning& meaning);
+  bool take_remote(log::Entry& entry);
+  bool put_fields(log::Entry& entry, const Meaning& meaning);
+  bool put_field(can::Payload& data, const NamedText& named, std::span<const FieldText> fields,
+                 std::size_t hint);
+  bool put_request(log::Entry& entry, const protocol::Topic& topic);
+  [[nodiscard]] Meaning meaning_of(const log::Entry& entry) const;
+
+  const protocol::Catalogue* catalogue_;
+  protocol::FrameIndex index_;
+  std::unordered_map<const protocol::FrameLayout*, std::vector<FieldText>> texts_;
+  Record record_;
+  base::Time last_{};
+  std::string bus_;
+  JsonProblem problem_;
+};
+
+class JsonLinesReader final : public log::Reader {
+ public:
+  JsonLinesReader(log::Input& input, const protocol::Catalogue& catalogue)
+      : Reader(input), parser_(catalogue) {}
+  [[nodiscard]] static bool recognises(std::string_view beginning);
+  [[nodiscard]] std::size_t read(std::span<log::Entry> into) override;
+
+ private:
+  JsonLineParser parser_;
+};
+
+class JsonLinesWriter final : public log::Writer {
+ public:
+  explicit JsonLinesWriter(const protocol::Catalogue& catalogue) : text_(catalogue) {}
+  void write(log::Bytes& out, std::span<const log::Entry> entries,
+             const log::Interfaces& interfaces) override {
+    for (const auto& entry : entries) text_.write(out, interfaces.name(entry.interface), entry);
+  }
+
+ private:
+  JsonText text_;
+};
+
+}  // namespace ocm::cli::logs

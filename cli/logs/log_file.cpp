@@ -1,0 +1,169 @@
+#include "cli/logs/log_file.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+#include "cli/logs/packing.hpp"
+#include "cli/session.hpp"
+
+namespace ocm::cli::logs {
+
+struct LogFile::State {
+  /// So much is gathered before it is written: large enough for the disk, small enough for the second cache.
+  static constexpr std::size_t enough = std::size_t{1} << 18;
+
+  std::string path;
+  int descriptor = -1;
+  bool regular = false;
+  bool finished = false;
+  std::uint64_t size = 0;
+  std::unique_ptr<log::Writer> writer;
+  std::unique_ptr<Packer> packer;
+  log::Bytes bytes;
+  std::string packed;
+  transport::Failure failure;
+
+  bool failed(std::string_view doing) {
+    failure = {fmt::format("cannot {} {}: {}", doing, path == "-" ? "the standard output" : path,
+                           std::strerror(errno)),
+               errno == ENOSPC ? "free some space; what was written before can be read"
+                               : "what was written before can be read"};
+    return false;
+  }
+
+  /// A file that takes no more ends where the last call ended, so that it ends with a whole record.
+  bool hand_out(std::string_view text) {
+    std::size_t done = 0;
+    while (done < text.size()) {
+      const ssize_t count = ::write(descriptor, text.data() + done, text.size() - done);
+      if (count < 0 && errno == EINTR) continue;
+      if (count < 0) {
+        failed("write");
+        if (regular && done > 0 && ::ftruncate(descriptor, static_cast<off_t>(size)) != 0) return false;
+        return false;
+      }
+      done += static_cast<std::size_t>(count);
+    }
+    size += text.size();
+    return true;
+  }
+
+  bool empty_out(Packer::Until until) {
+    if (!failure.what.empty()) return false;
+    bool done = true;
+    if (packer != nullptr) {
+      packed.clear();
+      packer->pack(bytes.view(), packed, until);
+      done = hand_out(packed);
+    } else {
+      done = hand_out(bytes.view());
+    }
+    bytes.clear();
+    return done;
+  }
+
+  bool empty_when_full() {
+    if (!failure.what.empty()) return false;
+    return bytes.size() < enough || empty_out(Packer::Until::more);
+  }
+};
+
+transport::Outcome<std::unique_ptr<LogFile>> LogFile::create(const std::string& path, const LogFormat& format,
+                                                             const protocol::Catalogue& catalogue) {
+  transport::Outcome<std::unique_ptr<LogFile>> made;
+  auto state = std::make_unique<State>();
+  state->path = path;
+  if (format.writer == nullptr) {
+    made.error = {fmt::format("{} is read only", format.name), "--to names another format"};
+    return made;
+  }
+  if (const Packing packing = packing_of_name(path); packing != Packing::none) {
+    auto packer = make_packer(packing);
+    if (!packer) {
+      made.error = packer.error;
+      return made;
+    }
+    state->packer = std::move(*packer);
+  }
+  state->descriptor =
+      path == "-" ? STDOUT_FILENO : ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  struct stat status {};
+  if (state->descriptor < 0 || fstat(state->descriptor, &status) != 0) {
+    state->failed("write");
+    made.error = {state->failure.what, "a folder that exists and may be written to is wanted"};
+    return made;
+  }
+  state->regular = S_ISREG(status.st_mode) && path != "-";  // stdout may be appended to by others
+  state->writer = format.writer(catalogue);
+  state->writer->begin(state->bytes);
+  made.value.reset(new LogFile);
+  made.value->state_ = std::move(state);
+  return made;
+}
+
+LogFile::~LogFile() {
+  if (state_ != nullptr) finish();
+}
+
+bool LogFile::write(std::span<const log::Entry> entries, const log::Interfaces& interfaces) {
+  state_->writer->write(state_->bytes, entries, interfaces);
+  return state_->empty_when_full();
+}
+
+bool LogFile::recorded(std::span<const log::Recorded> recorded) {
+  state_->writer->recorded(state_->bytes, recorded);
+  return state_->empty_when_full();
+}
+
+bool LogFile::flush(bool to_disk) {
+  state_->writer->flush(state_->bytes);
+  if (!state_->empty_out(Packer::Until::here)) return false;
+  if (to_disk && state_->regular && ::fdatasync(state_->descriptor) != 0) return state_->failed("write");
+  return true;
+}
+
+bool LogFile::finish() {
+  if (state_->finished) return state_->failure.what.empty();
+  state_->finished = true;
+  state_->writer->finish(state_->bytes);
+  bool done = state_->empty_out(Packer::Until::ended);
+  if (state_->path != "-" && ::close(state_->descriptor) != 0 && done) done = state_->failed("write");
+  return done;
+}
+
+const transport::Failure& LogFile::failure() const noexcept {
+  return state_->failure;
+}
+
+const log::Losses& LogFile::lost() const noexcept {
+  return state_->writer->lost();
+}
+
+std::uint64_t LogFile::size() const noexcept {
+  return state_->size;
+}
+
+const std::string& LogFile::path() const noexcept {
+  return state_->path;
+}
+
+void tell_losses(const log::Losses& losses, const LogFormat& format) {
+  if (!losses.any()) return;
+  std::string text;
+  for (std::size_t i = 0; i < log::losses; ++i) {
+    const auto lost = static_cast<log::Lost>(i);
+    if (losses.count(lost) == 0) continue;
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", losses.count(lost), log::describe(lost));
+  }
+  remark(fmt::format("lost, because {} has no room for it: {}", format.name, text));
+  const LogFormat* const finer = find_format(fmt::format("{}-ns", format.name));
+  if (losses.count(log::Lost::time_digits) != 0 && finer != nullptr)
+    remark(fmt::format("{} keeps all digits: {}", finer->name, finer->description));
+}
+
+}  // namespace ocm::cli::logs

@@ -1,0 +1,54 @@
+/// A log that is written to a file, to a pipe or to stdout (`-`): collects what the writer appends and writes
+/// it in large pieces; tells a full disk.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "ocm/base/result.hpp"
+#include "ocm/log/writer.hpp"
+#include "ocm/protocol/topic.hpp"
+#include "ocm/transport/bus.hpp"
+
+#include "cli/logs/format.hpp"
+
+namespace ocm::cli::logs {
+
+class LogFile {
+ public:
+  /// Creates `path`, or empties it; a name that ends in .gz or .zst is compressed. The failure says what and
+  /// what to do.
+  [[nodiscard]] static transport::Outcome<std::unique_ptr<LogFile>> create(
+      const std::string& path, const LogFormat& format, const protocol::Catalogue& catalogue);
+  /// Finishes, if nobody did; what fails then is lost: call `finish`.
+  ~LogFile();
+
+  /// Each: false when the file takes no more (a full disk): `failure` says it; what was written before can be
+  /// read.
+  bool write(std::span<const log::Entry> entries, const log::Interfaces& interfaces);
+  bool recorded(std::span<const log::Recorded> recorded);
+  /// Hands all that was taken so far to the kernel; with `to_disk` waits until the disk has it (fdatasync).
+  bool flush(bool to_disk = false);
+  /// What stands at the end of the format, flush, close.
+  bool finish();
+
+  [[nodiscard]] const transport::Failure& failure() const noexcept;
+  [[nodiscard]] const log::Losses& lost() const noexcept;
+  [[nodiscard]] std::uint64_t size() const noexcept;  ///< bytes written to the file
+  [[nodiscard]] const std::string& path() const noexcept;
+
+  LogFile(const LogFile&) = delete;
+  LogFile& operator=(const LogFile&) = delete;
+
+ private:
+  LogFile() = default;
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// What the format could not hold, on stderr, one line; nothing when that is nothing.
+void tell_losses(const log::Losses& losses, const LogFormat& format);
+
+}  // namespace ocm::cli::logs

@@ -1,0 +1,140 @@
+#include "cli/logs/mcap_samples.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "ocm/log/mcap.hpp"
+
+#include "cli/output/json_text.hpp"
+#include "cli/output/output.hpp"
+
+namespace ocm::cli::logs {
+namespace {
+
+std::string quoted(std::string_view text) {
+  std::string out{'"'};
+  append_json(out, text);
+  return out += '"';
+}
+
+/// The unit, and the names of values: "0 off, 1 on".
+std::string description(const protocol::Field& field) {
+  std::string text{field.unit};
+  for (const protocol::NamedValue& value : field.values)
+    text +=
+        fmt::format("{}{}{} {}", text.empty() ? "" : ", ", field.flags ? "bit " : "", value.raw, value.name);
+  return text;
+}
+
+std::string object(std::string_view properties) {
+  return fmt::format(R"("type":"object","properties":{{{}}})", properties);
+}
+
+std::string fields_schema(const protocol::FrameLayout& frame) {
+  std::string properties;
+  for (const protocol::Field& field : frame.fields) {
+    const std::string about = description(field);
+    properties +=
+        fmt::format(R"({}{}:{{"type":"number"{}{}}})", properties.empty() ? "" : ",", quoted(field.name),
+                    about.empty() ? "" : R"(,"description":)", about.empty() ? "" : quoted(about));
+  }
+  return object(properties);
+}
+
+char* copy(char* to, std::string_view text) {
+  return std::copy(text.begin(), text.end(), to);
+}
+
+}  // namespace
+
+std::string mcap_schema(const protocol::Topic& topic) {
+  std::string type;
+  if (topic.frames.size() == 1) {
+    type = fields_schema(topic.frames.front());
+  } else {
+    std::string properties;
+    for (std::size_t i = 0; i < topic.frames.size(); ++i)
+      properties += fmt::format("{}{}:{{{}}}", i == 0 ? "" : ",",
+                                quoted(frame_name({&topic, static_cast<std::uint8_t>(i)})),
+                                fields_schema(topic.frames[i]));
+    type = object(properties);
+  }
+  return fmt::format(
+      R"({{"$schema":"https://json-schema.org/draft/2020-12/schema","title":{},"description":{},{}}})",
+      quoted(topic.name), quoted(topic.source), type);
+}
+
+McapSamples::McapSamples(const protocol::Catalogue& catalogue) : catalogue_(&catalogue) {
+  for (const protocol::Topic& topic : catalogue.topics) {
+    TopicText& text = topics_.emplace_back();
+    text.room = 2;
+    for (const protocol::FrameLayout& frame : topic.frames) {
+      const FrameText& made = text.frames.emplace_back(text_of(frame, topic.frames.size() == 1));
+      for (const Value& value : made.values) text.room += value.before.size() + FieldText::room;
+      text.room += made.end.size() + 1;
+    }
+  }
+}
+
+McapSamples::FrameText McapSamples::text_of(const protocol::FrameLayout& frame, bool alone) {
+  FrameText made;
+  std::string before = alone ? "" : quoted(frame.name) + ":{";
+  for (const protocol::Field& field : frame.fields) {
+    made.values.push_back({before + quoted(field.name) + ':', FieldText{field}});
+    before = ",";
+  }
+  if (made.values.empty()) made.end = before;
+  if (!alone) made.end += '}';
+  return made;
+}
+
+char* McapSamples::print(char* to, const FrameText& frame, const can::Payload& data) {
+  for (const Value& value : frame.values) to = value.text.print(copy(to, value.before), data);
+  return copy(to, frame.end);
+}
+
+std::uint16_t McapSamples::channel(log::Bytes& out, log::mcap::Container& container, Heard& heard,
+                                   const protocol::Topic& topic, std::string_view interface) {
+  const auto number = static_cast<std::size_t>(&topic - catalogue_->topics.data());
+  std::uint16_t& channel = heard.channels[number];
+  if (channel != 0) return channel;
+  std::uint16_t& schema = topics_[number].schema;
+  if (schema == 0)
+    schema =
+        container.add_schema(out, fmt::format("{}.{}", catalogue_->robot, topic.name), mcap_schema(topic));
+  const std::string name = log::mcap::escaped(interface);
+  const log::mcap::Pair metadata[] = {{"interface", name}};
+  return channel = container.add_channel(out, schema, fmt::format("/{}", topic.name), metadata);
+}
+
+void McapSamples::put(log::Bytes& out, log::mcap::Container& container, const log::Entry& entry,
+                      std::uint64_t time_ns, const log::Interfaces& interfaces) {
+  if (entry.interface >= most_interfaces) return;
+  if (heard_.size() <= entry.interface) heard_.resize(entry.interface + std::size_t{1});
+  auto& heard = heard_[entry.interface];
+  if (heard == nullptr) heard = std::make_unique<Heard>(*catalogue_);
+  const reflective::Reception reception = understand(heard->receiver, entry);
+  const bool is_sample = reception.meaning == reflective::Meaning::sample;
+  if (!is_sample && reception.meaning != reflective::Meaning::set_point) return;
+
+  const protocol::Topic& topic = *reception.topic;
+  const TopicText& text = topics_[static_cast<std::size_t>(&topic - catalogue_->topics.data())];
+  const std::uint16_t to_channel = channel(out, container, *heard, topic, interfaces.name(entry.interface));
+  char* to = container.begin_message(out, to_channel, time_ns, text.room);
+  *to++ = '{';
+  if (is_sample) {
+    for (std::size_t i = 0; i < text.frames.size(); ++i) {
+      if (i != 0) *to++ = ',';
+      to = print(to, text.frames[i], reception.sample.payloads[i]);
+    }
+  } else {
+    can::Payload data;
+    std::copy_n(entry.data.begin(), data.size(), data.begin());
+    to = print(to, text.frames[reception.frame.frame], data);
+  }
+  *to++ = '}';
+  container.end_message(to);
+}
+
+}  // namespace ocm::cli::logs

@@ -1,0 +1,139 @@
+/// A field's physical value as text, exactly: the same characters as
+/// base::to_text(field.physical(field.raw(data))), in a few nanoseconds. What the field's scale and offset
+/// say is worked out once: physical = (raw * factor + offset) / 10^places, in whole numbers.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+#include "ocm/base/decimal.hpp"
+#include "ocm/protocol/codec.hpp"
+#include "ocm/protocol/topic.hpp"
+
+#include "cli/output/digits.hpp"
+
+namespace ocm::cli {
+
+/// A field's value in `data`, exactly; the raw number where scale and offset lead beyond 63 bits.
+[[nodiscard]] inline base::Decimal physical(const protocol::Field& field, const can::Payload& data) {
+  const std::int64_t raw = field.raw(data);
+  const auto value = field.physical(raw);
+  return value ? *value : base::normalised(raw, 0);
+}
+
+class FieldText {
+ public:
+  /// Most bytes that `print` may write, those behind the end of the text included.
+  static constexpr std::size_t room = 160;
+
+  /// `field` must outlive this.
+  explicit FieldText(const protocol::Field& field) : field_(&field), fast_(work_out(field)) {
+    shift_ = protocol::detail::shift_of(field.position);
+    mask_ = protocol::detail::low_mask(field.position.width);
+    sign_ = field.is_signed ? std::uint64_t{1} << (field.position.width - 1) : 0;
+    swapped_ = field.position.order == protocol::ByteOrder::big;
+  }
+
+  /// Writes the value of the field in `data`; returns the end.
+  char* print(char* to, const can::Payload& data) const noexcept {
+    if (!fast_) return print_slowly(to, data);
+    const std::int64_t value = raw(data) * factor_ + offset_;
+    const std::uint64_t magnitude = base::detail::magnitude(value);
+    *to = '-';
+    to += value < 0 ? 1 : 0;
+    if (magnitude >= ten_to_8 || places_ >= 8) return print_long(to, magnitude);
+    const std::uint64_t digits = eight_digits(static_cast<std::uint32_t>(magnitude));
+    const int whole = 8 - places_;  // digits before the point, at least one of which is written
+    const int first = std::min(std::countr_zero(digits | std::uint64_t{1} << 56) / 8, whole - 1);
+    const std::uint64_t text = digits | ascii_zeros;
+    put_word(to, text >> 8 * first);
+    to += whole - first;
+    if (places_ == 0) return to;
+    *to = '.';
+    put_word(to + 1, text >> 8 * whole);
+    const int last = (71 - std::countl_zero(digits >> 8 * whole)) / 8;  // of the digits behind the point
+    return last == 0 ? to : to + 1 + last;
+  }
+
+  [[nodiscard]] const protocol::Field& field() const noexcept { return *field_; }
+  /// As field().raw(data).
+  [[nodiscard]] std::int64_t raw(const can::Payload& data) const noexcept {
+    auto word = std::bit_cast<std::uint64_t>(data);
+    if (swapped_) word = __builtin_bswap64(word);
+    const std::uint64_t bits = word >> shift_ & mask_;
+    return static_cast<std::int64_t>((bits ^ sign_) - sign_);
+  }
+
+ private:
+  /// Whether the whole numbers suffice for every raw number that the field can have.
+  bool work_out(const protocol::Field& field) noexcept {
+    const base::Decimal scale = field.scale;
+    const base::Decimal offset = field.offset;
+    int exponent = std::min<int>(scale.exponent, offset.digits == 0 ? scale.exponent : offset.exponent);
+    exponent = std::min(exponent, 0);
+    if (exponent < -18) return false;
+    const auto factor = base::detail::scaled(scale.digits, scale.exponent - exponent);
+    const auto shift = offset.digits == 0 ? base::Result<std::int64_t>{std::int64_t{0}}
+                                          : base::detail::scaled(offset.digits, offset.exponent - exponent);
+    if (!factor || !shift) return false;
+    const bool any_sign = field.is_signed || field.position.width >= 64;
+    const unsigned width = field.position.width;
+    for (const std::int64_t raw : {protocol::lowest(width, any_sign), protocol::highest(width, any_sign)}) {
+      std::int64_t product = 0;
+      std::int64_t sum = 0;
+      if (__builtin_mul_overflow(raw, *factor, &product) || __builtin_add_overflow(product, *shift, &sum))
+        return false;
+    }
+    factor_ = *factor;
+    offset_ = *shift;
+    places_ = -exponent;
+    return true;
+  }
+
+  char* print_slowly(char* to, const can::Payload& data) const noexcept {
+    const auto text = base::to_text(physical(*field_, data));
+    std::copy(text.view().begin(), text.view().end(), to);
+    return to + text.view().size();
+  }
+
+  /// Up to 19 digits, and up to 18 of them behind the point: 24 digits in three words.
+  char* print_long(char* to, std::uint64_t magnitude) const noexcept {
+    const auto digits_of = [](std::uint64_t number) {
+      return eight_digits(static_cast<std::uint32_t>(number));
+    };
+    const std::uint64_t words[3] = {digits_of(magnitude / ten_to_8 / ten_to_8),
+                                    digits_of(magnitude / ten_to_8 % ten_to_8),
+                                    digits_of(magnitude % ten_to_8)};
+    char text[48];  // the second half is only copied
+    for (int i = 0; i < 3; ++i) put_word(text + 8 * i, words[i] | ascii_zeros);
+    const int leading = words[0] != 0   ? std::countr_zero(words[0]) / 8
+                        : words[1] != 0 ? 8 + std::countr_zero(words[1]) / 8
+                                        : 16 + std::countr_zero(words[2] | std::uint64_t{1} << 56) / 8;
+    const int last = words[2] != 0   ? 24 - std::countl_zero(words[2]) / 8
+                     : words[1] != 0 ? 16 - std::countl_zero(words[1]) / 8
+                                     : 8 - std::countl_zero(words[0]) / 8;
+    const int whole = 24 - places_;
+    const int first = std::min(leading, whole - 1);
+    std::memcpy(to, text + first, 24);
+    to += whole - first;
+    if (last <= whole) return to;
+    *to++ = '.';
+    std::memcpy(to, text + whole, 24);
+    return to + (last - whole);
+  }
+
+  const protocol::Field* field_;
+  std::int64_t factor_ = 1;
+  std::int64_t offset_ = 0;
+  std::uint64_t mask_ = 0;
+  std::uint64_t sign_ = 0;
+  unsigned shift_ = 0;
+  int places_ = 0;
+  bool swapped_ = false;
+  bool fast_;
+};
+
+}  // namespace ocm::cli

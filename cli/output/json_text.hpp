@@ -1,0 +1,76 @@
+/// Frames as JSON lines, one object a frame with stable keys: time_ns (a string: it has more digits than a
+/// double), bus, id, priority, topic, frame, fields, units, data; and where they say something direction, fd,
+/// raw_dlc. What is the same in every frame of an identifier is made once, so that a line is a few copies
+/// with numbers between them. Nothing of the frame is left out: cli/logs/json_lines.hpp reads it back.
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ocm/log/bytes.hpp"
+#include "ocm/log/entry.hpp"
+#include "ocm/protocol/topic.hpp"
+
+#include "cli/output/field_text.hpp"
+#include "cli/output/selection.hpp"
+
+namespace ocm::cli {
+
+/// Appends `text` as the inside of a JSON string. Bytes that are no UTF-8 become lone surrogates, U+DC80 to
+/// U+DCFF, as Python's surrogateescape has them: a line stays valid JSON, and nothing is lost. [PEP 383]
+void append_json(std::string& out, std::string_view text);
+
+class JsonText {
+ public:
+  /// The catalogue must outlive this. With a selection, only its fields, and only frames that have one.
+  explicit JsonText(const protocol::Catalogue& catalogue, const Selection& selection = {});
+
+  /// Appends one line. false: nothing of the frame was selected.
+  bool write(log::Bytes& out, std::string_view bus, const log::Entry& entry);
+
+ private:
+  /// Characters of `pieces_`.
+  struct Piece {
+    std::uint32_t begin = 0;
+    std::uint32_t size = 0;
+  };
+  struct FieldPiece {
+    FieldText value;
+    Piece after;  ///< what stands behind the value: the next field's name, or the units
+  };
+  enum class Kind : std::uint8_t { unknown, fields, request };
+  /// What an identifier stands for.
+  struct Known {
+    Kind kind = Kind::unknown;
+    bool selected = true;
+    std::uint8_t fields = 0;
+    std::uint32_t first_field = 0;
+    Piece head;  ///< from the identifier to the first value
+    protocol::FrameRef frame;
+  };
+  /// An interface's name, ready to be printed.
+  struct BusText {
+    std::string name;
+    std::string text;
+  };
+
+  Piece keep(std::string_view text);
+  void know(protocol::FrameRef frame, const Selection& selection);
+  char* put(char* to, Piece piece) const noexcept;
+  char* put_begin(char* to, std::string_view bus_text, const log::Entry& entry) const noexcept;
+  const std::string& bus_text(std::string_view bus, std::uint16_t number);
+  void write_rest(log::Bytes& out, std::string_view bus_text, const Known& known,
+                  const log::Entry& entry) const;
+  void write_request(log::Bytes& out, const Known& known, const log::Entry& entry) const;
+
+  std::array<Known, can::max_base_id + 1> known_{};
+  std::vector<FieldPiece> fields_;
+  std::string pieces_;
+  std::size_t room_ = 0;  ///< for any line without what stands before the identifier
+  bool everything_;
+  std::array<BusText, 16> buses_;
+};
+
+}  // namespace ocm::cli

@@ -1,0 +1,30 @@
+/// An output on stdout: gathers lines and writes them in large pieces, or at once when nothing more is
+/// waiting.
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "cli/output/output.hpp"
+
+namespace ocm::cli {
+
+class Printer {
+ public:
+  explicit Printer(std::unique_ptr<Output> output) : output_(std::move(output)) { output_->begin(buffer_); }
+  /// Whether the event was shown.
+  bool write(const Event& event) {
+    const bool shown = output_->write(buffer_, event);
+    if (buffer_.size() >= enough) flush();
+    return shown;
+  }
+  /// Leaves with exit_failure when stdout takes no more (a full disk, a closed file).
+  void flush();
+
+ private:
+  static constexpr std::size_t enough = 1 << 16;
+  std::unique_ptr<Output> output_;
+  Buffer buffer_;
+};
+
+}  // namespace ocm::cli

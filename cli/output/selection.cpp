@@ -1,0 +1,70 @@
+#include "cli/output/selection.hpp"
+
+#include <algorithm>
+
+#include "ocm/reflective/command.hpp"
+
+namespace ocm::cli {
+namespace {
+
+/// "x", or "velocity.x" where the topic has several frames.
+std::string name_within(const protocol::FrameLayout& layout, const protocol::Field& field) {
+  std::string name{layout.name};
+  if (!name.empty()) name += '.';
+  return name += field.name;
+}
+
+bool is_called(const protocol::Topic& topic, std::string_view word) {
+  return topic.name == word || topic.group == word ||
+         std::find(topic.aliases.begin(), topic.aliases.end(), word) != topic.aliases.end();
+}
+
+}  // namespace
+
+transport::Outcome<Selection> Selection::of(const protocol::Catalogue& catalogue,
+                                            std::span<const std::string> words) {
+  Selection selection;
+  for (const std::string_view word : words) {
+    const auto point = word.find('.');
+    const std::string_view of_topic = word.substr(0, point);
+    const std::string_view rest =
+        point == std::string_view::npos ? std::string_view{} : word.substr(point + 1);
+    std::vector<std::string> names;
+    bool topic_found = false;
+    bool found = false;
+    for (const auto& topic : catalogue.topics) {
+      if (!is_called(topic, of_topic)) continue;
+      topic_found = true;
+      for (const auto& layout : topic.frames)
+        for (const auto& field : layout.fields) {
+          const std::string name = name_within(layout, field);
+          names.push_back(std::string{of_topic} + '.' + name);
+          if (point != std::string_view::npos && rest != name && rest != layout.name) continue;
+          found = true;
+          if (!selection.fields_.empty() && selection.has(layout, field)) continue;
+          selection.fields_.push_back({&topic, &layout, &field, std::string{topic.name} + '.' + name});
+        }
+    }
+    if (found) continue;
+    if (!topic_found)
+      return transport::Failure{"no topic '" + std::string{of_topic} + "'",
+                                reflective::detail::suggestion(of_topic, reflective::topic_words(catalogue))};
+    const std::vector<std::string_view> candidates{names.begin(), names.end()};
+    return transport::Failure{"no field '" + std::string{word} + "'",
+                              reflective::detail::suggestion(word, candidates)};
+  }
+  return selection;
+}
+
+bool Selection::has(const protocol::FrameLayout& layout, const protocol::Field& field) const noexcept {
+  return everything() || std::any_of(fields_.begin(), fields_.end(), [&](const ChosenField& chosen) {
+           return chosen.layout == &layout && chosen.field == &field;
+         });
+}
+
+bool Selection::has(const protocol::FrameLayout& layout) const noexcept {
+  return everything() || std::any_of(fields_.begin(), fields_.end(),
+                                     [&](const ChosenField& chosen) { return chosen.layout == &layout; });
+}
+
+}  // namespace ocm::cli

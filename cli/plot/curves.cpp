@@ -1,0 +1,118 @@
+#include "cli/plot/curves.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "ocm/protocol/identifier.hpp"
+
+namespace ocm::cli::plot {
+namespace {
+
+using Chosen = std::vector<ChosenField>;
+
+/// As Selection, and: a field that several frames of its topic have is meant in each of them; `*` is all.
+transport::Outcome<Chosen> choose(const protocol::Catalogue& catalogue, std::string_view word) {
+  std::vector<std::string> words;
+  const std::size_t point = word.find('.');
+  const std::string_view of_topic = word.substr(0, point);
+  const protocol::Topic* const topic = catalogue.find(of_topic);
+  if (word.ends_with(".*")) {
+    words.emplace_back(word.substr(0, word.size() - 2));
+  } else if (topic != nullptr && point != std::string_view::npos) {
+    for (const auto& layout : topic->frames)
+      for (const auto& field : layout.fields)
+        if (!layout.name.empty() && field.name == word.substr(point + 1))
+          words.push_back(fmt::format("{}.{}.{}", of_topic, layout.name, field.name));
+  }
+  if (words.empty()) words.emplace_back(word);
+  auto selection = Selection::of(catalogue, words);
+  if (!selection) return selection.error;
+  return Chosen{selection->fields().begin(), selection->fields().end()};
+}
+
+/// The pair that is meant: of one frame, if that is clear; otherwise the only one.
+std::optional<Wanted> pair_of(const Chosen& xs, const Chosen& ys) {
+  std::vector<Wanted> pairs;
+  for (const auto& x : xs)
+    for (const auto& y : ys)
+      if (x.layout == y.layout) pairs.push_back({x, y});
+  if (pairs.empty() && xs.size() == 1 && ys.size() == 1) pairs.push_back({xs[0], ys[0]});
+  return pairs.size() == 1 ? std::optional{pairs[0]} : std::nullopt;
+}
+
+std::string names(const Chosen& fields) {
+  std::string text;
+  for (const auto& field : fields) text += (text.empty() ? "" : ", ") + field.name;
+  return text;
+}
+
+double value_of(const protocol::Field& field, const can::Payload& data) {
+  const std::int64_t raw = field.raw(data);
+  const auto physical = field.physical(raw);
+  return physical ? physical->as_double() : static_cast<double>(raw);
+}
+
+}  // namespace
+
+transport::Outcome<std::vector<Wanted>> parse_fields(const protocol::Catalogue& catalogue,
+                                                     std::string_view word) {
+  const std::size_t colon = word.find(':');
+  const auto ys = choose(catalogue, colon == std::string_view::npos ? word : word.substr(colon + 1));
+  if (!ys) return ys.error;
+  std::vector<Wanted> wanted;
+  if (colon == std::string_view::npos) {
+    for (const auto& y : *ys) wanted.push_back({std::nullopt, y});
+    return wanted;
+  }
+  const auto xs = choose(catalogue, word.substr(0, colon));
+  if (!xs) return xs.error;
+  const auto pair = pair_of(*xs, *ys);
+  if (!pair)
+    return transport::Failure{fmt::format("'{}' may mean several paths", word),
+                              fmt::format("name the frames: {} against {}", names(*xs), names(*ys))};
+  wanted.push_back(*pair);
+  return wanted;
+}
+
+Curves::Curves(const protocol::Catalogue& catalogue, const std::vector<Wanted>& wanted) : index_(catalogue) {
+  for (const auto& each : wanted) curves_.push_back({each, {}, {}});
+  for (std::size_t i = 0; i < curves_.size(); ++i)
+    if (const auto& x = curves_[i].wanted.x) uses_[x->layout].push_back({i, x->field, true});
+  for (std::size_t i = 0; i < curves_.size(); ++i) {
+    const auto& y = curves_[i].wanted.y;
+    uses_[y.layout].push_back({i, y.field, false});
+  }
+}
+
+void Curves::take(std::span<const log::Entry> entries) {
+  for (const log::Entry& entry : entries) {
+    begin_ = begin_ ? std::min(*begin_, entry.time) : entry.time;
+    end_ = std::max(end_, entry.time);
+    if (entry.format != can::Format::base || entry.is_fd()) continue;
+    const auto frame = index_.find(protocol::Identifier::decode(entry.id));
+    if (!frame || frame.layout().dlc != entry.length) continue;
+    const auto uses = uses_.find(&frame.layout());
+    if (uses == uses_.end()) continue;
+    can::Payload data;
+    std::copy_n(entry.data.begin(), data.size(), data.begin());
+    for (const Use& use : uses->second) {
+      Curve& curve = curves_[use.curve];
+      const double value = value_of(*use.field, data);
+      if (use.is_x)
+        curve.x = value;
+      else if (!curve.wanted.x)
+        curve.envelope.add(entry.time, 0, value);
+      else if (curve.x)
+        curve.envelope.add(entry.time, *curve.x, value);
+    }
+  }
+}
+
+std::uint64_t Curves::points() const noexcept {
+  std::uint64_t sum = 0;
+  for (const Curve& curve : curves_) sum += curve.envelope.count();
+  return sum;
+}
+
+}  // namespace ocm::cli::plot

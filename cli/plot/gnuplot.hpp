@@ -1,0 +1,31 @@
+/// Curves as a picture: a script for gnuplot, and gnuplot to draw it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ocm/transport/bus.hpp"
+
+#include "cli/plot/curves.hpp"
+
+namespace ocm::cli::plot {
+
+enum class Kind : std::uint8_t { svg, png, pdf };
+
+struct Picture {
+  Kind kind = Kind::svg;
+  unsigned width = 0;   ///< pixels; 0: as is right for what is drawn
+  unsigned height = 0;  ///<
+  std::string title;
+  std::string subtitle;
+};
+
+/// Curves over time stand one below the other, a panel for each unit; paths share one.
+[[nodiscard]] std::string to_script(const Curves& curves, const Picture& picture);
+
+/// The picture that the script draws. The failure says what gnuplot says, or that there is none.
+[[nodiscard]] transport::Outcome<std::string> draw(std::string_view script);
+
+}  // namespace ocm::cli::plot

@@ -1,0 +1,67 @@
+/// A CAN interface of Linux, as a recorder sees it: one CAN_RAW socket that takes CAN FD frames too and knows
+/// which frames this machine has sent. Up to 64 frames a system call.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <linux/can.h>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <sys/socket.h>
+#include <sys/uio.h>
+#include <time.h>
+
+#include "ocm/log/entry.hpp"
+#include "ocm/transport/descriptor.hpp"
+#include "ocm/transport/socketcan.hpp"
+
+#include "cli/record/capture.hpp"
+
+namespace ocm::cli::record {
+
+class CanCapture final : public Capture {
+ public:
+  [[nodiscard]] static transport::Outcome<std::unique_ptr<Capture>> open(std::string_view name,
+                                                                         const Filters& filters);
+
+  [[nodiscard]] std::size_t read(std::span<log::Entry> into, std::uint16_t interface) override;
+  void look() override;
+
+  [[nodiscard]] std::string_view name() const override { return name_; }
+  [[nodiscard]] int descriptor() const override { return socket_.get(); }
+  [[nodiscard]] transport::BusState state() const override { return state_; }
+  [[nodiscard]] const transport::Failure& failure() const override { return failure_; }
+  [[nodiscard]] std::uint64_t lost() const override { return lost_; }
+  [[nodiscard]] std::uint32_t bit_rate() const override { return bit_rate_; }
+  [[nodiscard]] bool keeps_times() const override { return true; }
+  [[nodiscard]] bool may_return() const override { return true; }
+
+ private:
+  /// Where recvmmsg puts one frame and what comes with it.
+  struct Slot {
+    canfd_frame frame{};
+    iovec place{};
+    alignas(cmsghdr)
+        std::array<std::byte, CMSG_SPACE(sizeof(timespec)) + CMSG_SPACE(sizeof(std::uint32_t))> control{};
+  };
+
+  explicit CanCapture(std::string_view name);
+  void read_control(msghdr& message, log::Entry& entry);
+  void lose(int error);
+
+  transport::Descriptor socket_;
+  std::string name_;
+  int index_ = 0;
+  std::uint32_t bit_rate_ = 0;
+  transport::BusState state_ = transport::BusState::up;
+  transport::Failure failure_;
+  std::uint64_t lost_ = 0;
+  transport::detail::DropCounter drops_;
+  std::array<Slot, batch> slots_{};
+  std::array<mmsghdr, batch> messages_{};
+};
+
+}  // namespace ocm::cli::record

@@ -1,0 +1,110 @@
+/// The file that a recording goes into, or the files: a new one at a size or a time, the oldest deleted where
+/// only the newest are kept. Every frame is in exactly one of them, in order.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ocm/base/time.hpp"
+#include "ocm/log/entry.hpp"
+#include "ocm/log/interfaces.hpp"
+#include "ocm/log/reader.hpp"
+#include "ocm/log/writer.hpp"
+#include "ocm/protocol/topic.hpp"
+#include "ocm/transport/bus.hpp"
+
+#include "cli/logs/format.hpp"
+#include "cli/logs/log_file.hpp"
+#include "cli/record/names.hpp"
+
+namespace ocm::cli::record {
+
+/// When a file is full. Zero: never.
+struct Split {
+  std::uint64_t size = 0;  ///< bytes that were written to it
+  base::Duration time{};   ///< from its first frame, by the frames' own times
+  [[nodiscard]] bool any() const noexcept { return size != 0 || time > base::Duration::zero(); }
+};
+
+/// How many of the entries still belong into a file that began at `begin`; at least those before the first
+/// that is `split` or more later. A time that goes back belongs to the file.
+[[nodiscard]] std::size_t entries_before_split(std::span<const log::Entry> entries, base::Time begin,
+                                               base::Duration split) noexcept;
+
+struct FilesOptions {
+  std::string path;  ///< "-": stdout; of a recording in several files the name that is numbered
+  const logs::LogFormat* format = nullptr;
+  Split split;
+  std::uint64_t ring = 0;  ///< keep so many; 0: all
+  bool overwrite = false;
+  bool numbers_free = false;  ///< the name was not chosen by the user: a free one near it will do
+  bool sync = true;
+};
+
+class Files {
+ public:
+  Files(FilesOptions options, const protocol::Catalogue& catalogue);
+
+  /// The first file. The failure names the file and says what to do.
+  [[nodiscard]] transport::Outcome<void> open();
+
+  /// Each: false when a file takes no more: `failure` says why.
+  [[nodiscard]] bool write(std::span<const log::Entry> entries, const log::Interfaces& interfaces);
+  /// What was taken so far goes to the kernel, and to the disk where that is asked for.
+  [[nodiscard]] bool flush();
+  /// Once, at the end, also after a failure.
+  [[nodiscard]] bool finish();
+
+  /// Of every interface, by its number: frames that were on the bus and could not be written, so far.
+  void set_dropped(std::span<const std::uint64_t> dropped) {
+    dropped_.assign(dropped.begin(), dropped.end());
+  }
+
+  [[nodiscard]] const transport::Failure& failure() const noexcept { return failure_; }
+  [[nodiscard]] std::uint64_t size() const noexcept { return finished_size_ + (file_ ? file_->size() : 0); }
+  [[nodiscard]] std::uint64_t count() const noexcept { return count_; }     ///< files
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }  ///< of the newest
+  [[nodiscard]] const std::string& first_path() const noexcept { return first_path_; }
+  /// What the format could not hold, of all files that are finished.
+  [[nodiscard]] const log::Losses& losses() const noexcept { return losses_; }
+  [[nodiscard]] std::uint64_t deleted() const noexcept { return deleted_; }
+
+  /// After a failure: how many frames can be read back. Reads the last file once more.
+  [[nodiscard]] std::uint64_t readable() const;
+
+ private:
+  [[nodiscard]] transport::Outcome<std::string> claim_next();
+  [[nodiscard]] transport::Outcome<void> open_next();
+  [[nodiscard]] bool append(std::span<const log::Entry> entries, const log::Interfaces& interfaces);
+  [[nodiscard]] bool failed(const transport::Failure& failure);
+  [[nodiscard]] bool next_file();
+  void delete_oldest();
+
+  FilesOptions options_;
+  const protocol::Catalogue* catalogue_;
+  FileName name_;
+  std::unique_ptr<logs::LogFile> file_;
+  transport::Failure failure_;
+  std::string path_;
+  std::string first_path_;
+  std::deque<std::string> kept_;
+  bool finished_ = true;
+  std::uint64_t number_ = 0;  ///< of the newest file's name
+  std::uint64_t count_ = 0;
+  std::uint64_t deleted_ = 0;
+  std::uint64_t finished_size_ = 0;
+  std::uint64_t finished_entries_ = 0;
+  std::uint64_t entries_ = 0;        ///< in the newest file
+  std::optional<base::Time> begin_;  ///< of the newest file: its first frame
+  log::Losses losses_;
+  std::vector<log::Recorded> recorded_;  ///< of the newest file
+  std::vector<std::uint64_t> dropped_;
+  std::vector<std::uint64_t> told_dropped_;  ///< in the files before
+};
+
+}  // namespace ocm::cli::record

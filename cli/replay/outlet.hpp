@@ -1,0 +1,35 @@
+/// A bus that recorded frames are sent to, as long as it takes: CAN FD frames too where it is a CAN interface
+/// that carries them.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string_view>
+
+#include "ocm/log/entry.hpp"
+#include "ocm/transport/bus.hpp"
+
+namespace ocm::cli::replay {
+
+class Outlet {
+ public:
+  explicit Outlet(std::unique_ptr<transport::Bus> bus);
+
+  enum class Sent : std::uint8_t {
+    yes,
+    error_frame,  ///< a report of somebody's controller: nothing for the wire
+    fd_frame,     ///< this bus has none
+  };
+  /// Waits for room up to a second, then leaves through cli::fail.
+  Sent send(const log::Entry& entry);
+
+  [[nodiscard]] std::string_view name() const { return bus_->name(); }
+
+ private:
+  [[nodiscard]] bool send_fd(const log::Entry& entry) const;
+
+  std::unique_ptr<transport::Bus> bus_;
+  bool takes_fd_;
+};
+
+}  // namespace ocm::cli::replay

@@ -1,0 +1,139 @@
+#include "cli/replay/player.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <time.h>
+
+#include "ocm/transport/system_time.hpp"
+
+#include "cli/interrupt.hpp"
+
+namespace ocm::cli::replay {
+
+base::Time monotonic_now() {
+  return base::Time{std::chrono::steady_clock::now().time_since_epoch()};
+}
+
+void wait_until(base::Time time) {
+  // In pieces, so that a signal that comes just before the wait is seen soon.
+  while (interrupted() == 0) {
+    const base::Time now = monotonic_now();
+    if (now >= time) return;
+    const base::Time step = std::min(time, now + base::Duration{std::chrono::milliseconds{200}});
+    const timespec until = transport::to_timespec(step.time_since_epoch());
+    ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
+  }
+}
+
+Selection::Selection(const protocol::Catalogue& catalogue, std::vector<const protocol::Topic*> topics,
+                     Only only)
+    : index_(catalogue), topics_(std::move(topics)), only_(only) {}
+
+bool Selection::has(const log::Entry& entry) const {
+  if (topics_.empty() && only_ == Only::all) return true;
+  if (entry.format != can::Format::base || entry.is_fd()) return false;
+  const auto id = protocol::Identifier::decode(entry.id);
+  const bool command = id.direction == protocol::Direction::command;
+  if (only_ != Only::all && command != (only_ == Only::commands)) return false;
+  const auto* topic = index_.requested(id);
+  if (topic == nullptr) topic = index_.find(id).topic;
+  return topics_.empty() || std::find(topics_.begin(), topics_.end(), topic) != topics_.end();
+}
+
+Player::Player(PlayerOptions options, Selection selection, std::vector<Outlet> outlets,
+               std::unique_ptr<log::Writer> printer)
+    : options_(std::move(options)),
+      selection_(std::move(selection)),
+      outlets_(std::move(outlets)),
+      printer_(std::move(printer)),
+      playback_(options_.playback) {}
+
+void Player::play(log::Reader& log) {
+  first_.reset();
+  routes_.clear();
+  std::array<log::Entry, log::batch> entries;
+  bool goes_on = true;
+  while (goes_on) {
+    const std::size_t count = log.read(entries);
+    if (count == 0) return;
+    for (std::size_t i = 0; i < count && goes_on; ++i)
+      goes_on = interrupted() == 0 && play(entries[i], log.interfaces());
+    std::fwrite(printed_.view().data(), 1, printed_.size(), stdout);
+    printed_.clear();
+  }
+}
+
+bool Player::play(const log::Entry& entry, const log::Interfaces& interfaces) {
+  if (!first_) {
+    first_ = entry.time;
+    if (!started_) begin_ = printer_ != nullptr ? base::Time{} : monotonic_now();
+    playback_.begin(started_ ? playback_.last_due() : begin_, entry.time + options_.span.from);
+    started_ = true;
+  }
+  const base::Duration offset = log::Playback::distance(entry.time, *first_);
+  if (options_.span.is_behind(offset)) return false;
+  if (options_.span.is_before(offset) || !selection_.has(entry)) {
+    ++played_.not_chosen;
+    return true;
+  }
+  if (printer_ != nullptr)
+    print(entry, interfaces);
+  else
+    send(entry, interfaces);
+  return true;
+}
+
+void Player::send(const log::Entry& entry, const log::Interfaces& interfaces) {
+  const auto outlet = route(entry.interface, interfaces);
+  if (!outlet) {
+    ++played_.no_route;
+    return;
+  }
+  if (!options_.at_once) {
+    const base::Time due = playback_.due(entry.time);
+    wait_until(due);
+    if (interrupted() != 0) return;
+    playback_.sent(due, monotonic_now());
+  }
+  switch (outlets_[*outlet].send(entry)) {
+    case Outlet::Sent::yes:
+      ++played_.sent;
+      return;
+    case Outlet::Sent::error_frame:
+      ++played_.error_frames;
+      return;
+    case Outlet::Sent::fd_frame:
+      ++played_.fd_frames;
+      return;
+  }
+}
+
+void Player::print(const log::Entry& entry, const log::Interfaces& interfaces) {
+  if (entry.format == can::Format::error) {
+    ++played_.error_frames;
+    return;
+  }
+  log::Entry printed = entry;
+  printed.time = options_.at_once ? base::Time{} : playback_.due(entry.time);
+  printer_->write(printed_, {&printed, 1}, interfaces);
+  ++played_.sent;
+}
+
+std::optional<std::size_t> Player::route(std::uint16_t interface, const log::Interfaces& interfaces) {
+  if (options_.routes.empty()) return 0;
+  while (routes_.size() <= interface) {
+    const auto name = interfaces.name(static_cast<std::uint16_t>(routes_.size()));
+    const auto found = std::find_if(options_.routes.begin(), options_.routes.end(),
+                                    [name](const auto& known) { return known.first == name; });
+    routes_.push_back(found != options_.routes.end() ? std::optional{found->second} : std::nullopt);
+  }
+  return routes_[interface];
+}
+
+base::Duration Player::lasted() const {
+  return started_ ? monotonic_now() - begin_ : base::Duration{};
+}
+
+}  // namespace ocm::cli::replay

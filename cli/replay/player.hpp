@@ -1,0 +1,104 @@
+/// Sends the frames of a log, each at its time, to the buses that their interfaces stand for.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ocm/base/time.hpp"
+#include "ocm/log/entry.hpp"
+#include "ocm/log/playback.hpp"
+#include "ocm/log/reader.hpp"
+#include "ocm/log/writer.hpp"
+#include "ocm/protocol/topic.hpp"
+
+#include "cli/replay/outlet.hpp"
+
+namespace ocm::cli::replay {
+
+enum class Only : std::uint8_t { all, sensors, commands };
+
+/// Which frames of a log are played.
+class Selection {
+ public:
+  /// Of all frames, or of the topics' ones: sensor data, requests and set points.
+  Selection(const protocol::Catalogue& catalogue, std::vector<const protocol::Topic*> topics, Only only);
+  [[nodiscard]] bool has(const log::Entry& entry) const;
+
+ private:
+  protocol::FrameIndex index_;
+  std::vector<const protocol::Topic*> topics_;
+  Only only_;
+};
+
+/// A part of a log, by distances from its first frame. Without a beginning all that comes before belongs to
+/// it, too: times that go back.
+struct Span {
+  base::Duration from{};
+  base::Duration until = base::Duration::max();
+  [[nodiscard]] bool is_before(base::Duration offset) const noexcept {
+    return from > base::Duration::zero() && offset < from;
+  }
+  [[nodiscard]] bool is_behind(base::Duration offset) const noexcept { return offset > until; }
+};
+
+struct PlayerOptions {
+  log::PlaybackOptions playback;
+  bool at_once = false;  ///< --speed max
+  Span span;
+  /// Name of an interface in the log, and the bus that stands for it. Empty: all go to the only outlet.
+  std::vector<std::pair<std::string, std::size_t>> routes;
+};
+
+/// What became of the frames.
+struct Played {
+  std::uint64_t sent = 0;
+  std::uint64_t not_chosen = 0;  ///< another topic, or outside of --from and --until
+  std::uint64_t no_route = 0;    ///< of an interface that stands for no bus
+  std::uint64_t error_frames = 0;
+  std::uint64_t fd_frames = 0;
+};
+
+class Player {
+ public:
+  /// `outlets` empty: frames are printed as a candump log, at the times at which they would be sent.
+  Player(PlayerOptions options, Selection selection, std::vector<Outlet> outlets,
+         std::unique_ptr<log::Writer> printer);
+
+  /// The whole log, or as far as --until, or until a signal comes (interrupted()).
+  void play(log::Reader& log);
+
+  [[nodiscard]] const Played& played() const noexcept { return played_; }
+  [[nodiscard]] const log::Playback& playback() const noexcept { return playback_; }
+  /// From the first frame to now.
+  [[nodiscard]] base::Duration lasted() const;
+
+ private:
+  /// false: no later frame is to be played.
+  bool play(const log::Entry& entry, const log::Interfaces& interfaces);
+  void send(const log::Entry& entry, const log::Interfaces& interfaces);
+  void print(const log::Entry& entry, const log::Interfaces& interfaces);
+  [[nodiscard]] std::optional<std::size_t> route(std::uint16_t interface, const log::Interfaces& interfaces);
+
+  PlayerOptions options_;
+  Selection selection_;
+  std::vector<Outlet> outlets_;
+  std::unique_ptr<log::Writer> printer_;
+  log::Bytes printed_;
+  log::Playback playback_;
+  Played played_;
+  base::Time begin_{};               ///< of the first pass
+  std::optional<base::Time> first_;  ///< of the log, in this pass
+  bool started_ = false;
+  std::vector<std::optional<std::size_t>> routes_;  ///< by number of the interface
+};
+
+/// CLOCK_MONOTONIC.
+[[nodiscard]] base::Time monotonic_now();
+/// Until `time`, or until a signal comes, which is seen in at most 200 ms.
+void wait_until(base::Time time);
+
+}  // namespace ocm::cli::replay

@@ -1,0 +1,59 @@
+/// What was measured, of each bus that was looked at.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ocm/base/time.hpp"
+#include "ocm/log/entry.hpp"
+#include "ocm/log/interfaces.hpp"
+#include "ocm/protocol/topic.hpp"
+#include "ocm/reflective/statistics.hpp"
+
+namespace ocm::cli::stats {
+
+struct Bus {
+  std::string name;
+  reflective::BusFigures figures;
+  std::uint64_t drops = 0;  ///< frames that were on the bus and did not arrive
+};
+
+struct Report {
+  std::string_view robot;
+  std::string source;
+  std::vector<Bus> buses;
+};
+
+/// Sorts frames by the interface that they came over. A log of another interface of the same name goes on
+/// with its figures.
+class Collector {
+ public:
+  Collector(const protocol::Catalogue& catalogue, std::uint32_t bit_rate)
+      : catalogue_(&catalogue), bit_rate_(bit_rate) {}
+
+  void take(std::span<const log::Entry> entries, const log::Interfaces& interfaces);
+  void lost(std::string_view interface, std::uint64_t frames) { find(interface).drops += frames; }
+  [[nodiscard]] bool any() const noexcept;
+  /// As of the last frame, or of `now`.
+  [[nodiscard]] std::vector<Bus> buses(std::optional<base::Time> now = {}) const;
+
+ private:
+  struct Part {
+    std::string name;
+    reflective::BusStatistics statistics;
+    std::uint64_t drops = 0;
+  };
+  Part& find(std::string_view name);
+
+  const protocol::Catalogue* catalogue_;
+  std::uint32_t bit_rate_;
+  std::deque<Part> parts_;  // in place: `last_` points into it
+  Part* last_ = nullptr;
+};
+
+}  // namespace ocm::cli::stats

@@ -1,0 +1,287 @@
+#include "cli/stats/report.hpp"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "ocm/base/text.hpp"
+#include "ocm/can/text.hpp"
+#include "ocm/log/complaints.hpp"
+#include "ocm/reflective/diagnosis.hpp"
+#include "ocm/reflective/quantity.hpp"
+
+#include "cli/analyse/report.hpp"
+
+namespace ocm::cli::stats {
+namespace {
+
+using reflective::BusFigures;
+using reflective::PeriodFrom;
+using reflective::Timing;
+using reflective::TopicFigures;
+
+std::string time(double ns) {
+  return to_text(ns, Unit::time);
+}
+std::string time(std::int64_t ns) {
+  return time(static_cast<double>(ns));
+}
+
+bool is_shown(const TopicFigures& topic, const Shown& shown) {
+  return shown.empty() || std::find(shown.begin(), shown.end(), topic.topic) != shown.end();
+}
+
+std::string_view name(PeriodFrom from) {
+  constexpr std::string_view names[]{"", "request", "spec", "measured"};
+  return names[static_cast<std::size_t>(from)];
+}
+
+bool has_lateness(const Timing& timing) {
+  return timing.distances != 0 &&
+         (timing.period_from == PeriodFrom::request || timing.period_from == PeriodFrom::spec);
+}
+
+/// "high", or "high 40, low 2": samples by what they were sent at.
+std::string priorities(const TopicFigures& topic) {
+  const auto kinds =
+      std::count_if(topic.by_priority.begin(), topic.by_priority.end(), [](auto n) { return n != 0; });
+  std::string text;
+  for (std::size_t i = 0; i < topic.by_priority.size(); ++i) {
+    if (topic.by_priority[i] == 0) continue;
+    if (!text.empty()) text += ", ";
+    text += protocol::name(static_cast<protocol::Priority>(i));
+    if (kinds > 1) text += fmt::format(" {}", topic.by_priority[i]);
+  }
+  return text.empty() ? "-" : text;
+}
+
+std::string period(const Timing& timing) {
+  if (timing.period_from == PeriodFrom::nothing) return "-";
+  const std::string text = time(timing.period_ns);
+  return timing.period_from == PeriodFrom::request ? text
+                                                   : fmt::format("{} ({})", text, name(timing.period_from));
+}
+
+std::string gap(const Timing& timing, base::Time first) {
+  if (timing.gap_ns == 0) return "-";
+  return fmt::format("{} at {}", time(timing.gap_ns), time((timing.gap_from - first).count()));
+}
+
+constexpr std::array head{"TOPIC",  "PRIORITY", "SAMPLES", "RATE",        "PERIOD", "MEAN",
+                          "JITTER", "LATE",     "MISSING", "LONGEST GAP", "LOAD",   "FAULTS"};
+using Row = std::array<std::string, head.size()>;
+
+Row row(const TopicFigures& topic, base::Time first) {
+  const Timing& timing = topic.timing;
+  const bool measured = timing.distances != 0;
+  std::string faults;
+  const auto fault = [&faults](std::uint64_t count, std::string_view what) {
+    if (count == 0) return;
+    if (!faults.empty()) faults += ", ";
+    faults += fmt::format("{} {}", count, what);
+  };
+  fault(topic.incomplete, "incomplete");
+  fault(topic.wrong_dlc, "of wrong length");
+  fault(topic.bad_requests, "bad requests");
+  fault(timing.backwards, "back in time");
+  return {std::string{topic.topic->name},
+          priorities(topic),
+          fmt::format("{}", timing.count),
+          measured ? to_text(timing.rate_hz, Unit::hertz) : "-",
+          period(timing),
+          measured ? time(timing.mean_ns) : "-",
+          measured ? time(timing.jitter_ns) : "-",
+          has_lateness(timing) ? time(timing.lateness_ns) : "-",
+          timing.period_from == PeriodFrom::nothing ? "-" : fmt::format("{}", timing.missing),
+          gap(timing, first),
+          to_text(topic.load * 100, Unit::percent),
+          faults};
+}
+
+std::string id_text(const reflective::Stranger& stranger) {
+  std::string text{can::to_text(can::Frame{stranger.id, 0, {}, stranger.format}).view()};
+  // "655#" and "655#R": a remote frame is another than the data frame of its identifier.
+  return text.ends_with('#') ? text.substr(0, text.size() - 1) : text;
+}
+
+std::string strangers(const BusFigures& figures) {
+  constexpr std::size_t most = 5;
+  auto sorted = figures.strangers;
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const auto& a, const auto& b) { return a.count > b.count; });
+  std::string text;
+  for (std::size_t i = 0; i < std::min(sorted.size(), most); ++i)
+    text += fmt::format("{}{} {}", i == 0 ? "" : ", ", id_text(sorted[i]), sorted[i].count);
+  return sorted.size() > most ? text + ", ..." : text;
+}
+
+/// What a bus carried, and what went wrong on it.
+std::vector<std::string> summary(const Bus& bus) {
+  const BusFigures& figures = bus.figures;
+  const auto& counters = figures.counters;
+  std::vector<std::string> lines;
+  lines.push_back(fmt::format(
+      "{}: {} in {} ({}); load {} at {} kbit/s, {} in the worst 100 ms, until {}",
+      log::Complaints::printable(bus.name), reflective::count(counters.frames - counters.errors, "frame*"),
+      time(figures.span().count()), to_text(figures.rate_hz, Unit::hertz),
+      to_text(figures.load * 100, Unit::percent), figures.bit_rate / 1000.0,
+      to_text(figures.worst_load * 100, Unit::percent), time((figures.worst_until - figures.first).count())));
+  std::string faults;
+  const auto fault = [&faults](std::uint64_t count, std::string_view what) {
+    if (count == 0) return;
+    faults += fmt::format("{}{}", faults.empty() ? "" : ", ", reflective::count(count, what));
+  };
+  fault(counters.errors, "error frame*");
+  fault(figures.overflows, "overflow* of the CAN controller");
+  fault(bus.drops, "frame* lost");
+  fault(figures.fd_frames, "CAN FD frame*, not in the load");
+  fault(counters.unknown, "frame* that no topic has");
+  if (counters.unknown != 0) faults += fmt::format(" ({})", strangers(figures));
+  if (!faults.empty()) lines.push_back("  " + faults);
+  return lines;
+}
+
+nlohmann::ordered_json to_object(const TopicFigures& topic) {
+  using Json = nlohmann::ordered_json;
+  const Timing& timing = topic.timing;
+  const bool measured = timing.distances != 0;
+  const bool periodic = timing.period_from != PeriodFrom::nothing;
+  Json by_priority = Json::object();
+  for (std::size_t i = 0; i < topic.by_priority.size(); ++i)
+    if (topic.by_priority[i] != 0)
+      by_priority[std::string{protocol::name(static_cast<protocol::Priority>(i))}] = topic.by_priority[i];
+  const auto if_measured = [measured](auto value) { return measured ? Json(value) : Json(nullptr); };
+  return {
+      {"topic", topic.topic->name},
+      {"count", timing.count},
+      {"by_priority", by_priority},
+      {"rate_hz", if_measured(timing.rate_hz)},
+      {"period_ns", periodic ? Json(timing.period_ns) : Json(nullptr)},
+      {"period_from", periodic ? Json(name(timing.period_from)) : Json(nullptr)},
+      {"mean_ns", if_measured(timing.mean_ns)},
+      {"jitter_ns", if_measured(timing.jitter_ns)},
+      {"spread_ns", if_measured(timing.spread_ns)},
+      {"lateness_ns", has_lateness(timing) ? Json(timing.lateness_ns) : Json(nullptr)},
+      {"gap_ns", timing.gap_ns != 0 ? Json(timing.gap_ns) : Json(nullptr)},
+      {"gap_from_ns", timing.gap_ns != 0 ? Json(fmt::format("{}", timing.gap_from.time_since_epoch().count()))
+                                         : Json(nullptr)},
+      {"missing", periodic ? Json(timing.missing) : Json(nullptr)},
+      {"incomplete", topic.incomplete},
+      {"wrong_length", topic.wrong_dlc},
+      {"requests", topic.requests},
+      {"bad_requests", topic.bad_requests},
+      {"backwards", timing.backwards},
+      {"load_percent", topic.load * 100}};
+}
+
+nlohmann::ordered_json to_object(const Bus& bus, const Shown& shown) {
+  using Json = nlohmann::ordered_json;
+  const BusFigures& figures = bus.figures;
+  const auto& counters = figures.counters;
+  Json unknown = Json::array();
+  for (const auto& stranger : figures.strangers)
+    unknown.push_back({{"id", id_text(stranger)}, {"count", stranger.count}});
+  Json topics = Json::array();
+  for (const auto& topic : figures.topics)
+    if (is_shown(topic, shown)) topics.push_back(to_object(topic));
+  return {{"bus", bus.name},
+          {"first_ns", fmt::format("{}", figures.first.time_since_epoch().count())},
+          {"last_ns", fmt::format("{}", figures.last.time_since_epoch().count())},
+          {"frames", counters.frames - counters.errors},
+          {"rate_hz", figures.rate_hz},
+          {"bit_rate", figures.bit_rate},
+          {"load_percent", figures.load * 100},
+          {"request_load_percent", figures.request_load * 100},
+          {"unknown_load_percent", figures.stranger_load * 100},
+          {"worst_100ms_load_percent", figures.worst_load * 100},
+          {"worst_100ms_until_ns", fmt::format("{}", figures.worst_until.time_since_epoch().count())},
+          {"commands", counters.commands},
+          {"errors", counters.errors},
+          {"overflows", figures.overflows},
+          {"drops", bus.drops},
+          {"incomplete", counters.incomplete},
+          {"wrong_length", counters.wrong_dlc},
+          {"fd_frames", figures.fd_frames},
+          {"unknown", counters.unknown},
+          {"unknown_ids", unknown},
+          {"topics", topics}};
+}
+
+}  // namespace
+
+std::vector<std::string> to_table(const Report& report, const Shown& shown, bool colour) {
+  std::vector<std::string> lines;
+  for (const Bus& bus : report.buses) {
+    if (!lines.empty()) lines.emplace_back();
+    std::vector<Row> rows(1);
+    std::copy(head.begin(), head.end(), rows[0].begin());
+    std::vector<bool> bad{false};
+    for (const auto& topic : bus.figures.topics) {
+      if (!is_shown(topic, shown)) continue;
+      rows.push_back(row(topic, bus.figures.first));
+      bad.push_back(topic.timing.missing + topic.incomplete + topic.wrong_dlc != 0);
+    }
+    std::array<std::size_t, head.size()> widths{};
+    for (const Row& row : rows)
+      for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+    for (std::size_t n = 0; n < rows.size(); ++n) {
+      std::string line;
+      for (std::size_t i = 0; i < head.size(); ++i) {
+        const bool words = i <= 1 || i + 1 == head.size();
+        line += i == 0 ? "" : "  ";
+        line += words ? fmt::format("{:<{}}", rows[n][i], widths[i])
+                      : fmt::format("{:>{}}", rows[n][i], widths[i]);
+      }
+      line.erase(line.find_last_not_of(' ') + 1);
+      lines.push_back(colour && bad[n] ? "\x1b[33m" + line + "\x1b[0m" : line);
+    }
+    const auto about = summary(bus);
+    lines.insert(lines.end(), about.begin(), about.end());
+  }
+  return lines;
+}
+
+std::string to_json(const Report& report, const Shown& shown, std::span<const Assertion> assertions) {
+  using Json = nlohmann::ordered_json;
+  Json out{{"robot", report.robot}, {"source", report.source}, {"buses", Json::array()}};
+  for (const Bus& bus : report.buses) out["buses"].push_back(to_object(bus, shown));
+  if (!assertions.empty()) out["assertions"] = Json::array();
+  for (const Assertion& assertion : assertions) {
+    const auto verdict = assertion.check(report.buses);
+    out["assertions"].push_back({{"assert", assertion.text()},
+                                 {"holds", verdict.holds},
+                                 {"measured", verdict.measured ? Json(*verdict.measured) : Json(nullptr)}});
+  }
+  return out.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string to_csv(const Report& report, const Shown& shown) {
+  std::string text =
+      "bus,topic,priority,count,rate_hz,period_ns,period_from,mean_ns,jitter_ns,spread_ns,lateness_ns,gap_ns,"
+      "gap_from_ns,missing,incomplete,wrong_length,requests,load_percent\n";
+  for (const Bus& bus : report.buses)
+    for (const auto& topic : bus.figures.topics) {
+      if (!is_shown(topic, shown)) continue;
+      // As in JSON, so that a figure has one text.
+      const auto object = to_object(topic);
+      text += analyse::cell_text(bus.name);
+      for (const char* key : {"topic", "priority", "count", "rate_hz", "period_ns", "period_from", "mean_ns",
+                              "jitter_ns", "spread_ns", "lateness_ns", "gap_ns", "gap_from_ns", "missing",
+                              "incomplete", "wrong_length", "requests", "load_percent"}) {
+        text += ',';
+        if (key == std::string_view{"priority"})
+          text += analyse::cell_text(priorities(topic));
+        else if (object[key].is_string())
+          text += object[key].get<std::string>();
+        else if (!object[key].is_null())
+          text += object[key].dump();
+      }
+      text += '\n';
+    }
+  return text;
+}
+
+}  // namespace ocm::cli::stats

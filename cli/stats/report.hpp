@@ -1,0 +1,24 @@
+/// Figures as a table for a person, as one JSON object, or as CSV.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ocm/protocol/topic.hpp"
+
+#include "cli/stats/assertion.hpp"
+#include "cli/stats/figures.hpp"
+
+namespace ocm::cli::stats {
+
+/// Topics that are shown; empty: all.
+using Shown = std::vector<const protocol::Topic*>;
+
+/// Lines without an end; every line is one on the terminal, colours take no room.
+[[nodiscard]] std::vector<std::string> to_table(const Report& report, const Shown& shown, bool colour);
+[[nodiscard]] std::string to_json(const Report& report, const Shown& shown,
+                                  std::span<const Assertion> assertions);
+[[nodiscard]] std::string to_csv(const Report& report, const Shown& shown);
+
+}  // namespace ocm::cli::stats

@@ -1,0 +1,29 @@
+#include "cli/verbs/chosen_topics.hpp"
+
+#include <fmt/format.h>
+
+#include "ocm/reflective/command.hpp"
+
+#include "cli/session.hpp"
+
+namespace ocm::cli {
+
+std::vector<const protocol::Topic*> chosen_topics(std::string_view verb, const protocol::Catalogue& catalogue,
+                                                  std::span<const std::string> words) {
+  std::vector<const protocol::Topic*> topics;
+  for (const auto& word : words) {
+    bool found = false;
+    for (const auto& topic : catalogue.topics) {
+      if (catalogue.find(word) != &topic && topic.group != word) continue;
+      topics.push_back(&topic);
+      found = true;
+    }
+    if (found) continue;
+    const auto names = reflective::topic_words(catalogue);
+    fail({fmt::format("{}: no topic '{}'", verb, word), reflective::detail::suggestion(word, names)},
+         exit_usage);
+  }
+  return topics;
+}
+
+}  // namespace ocm::cli

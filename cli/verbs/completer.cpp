@@ -1,0 +1,247 @@
+#include "cli/verbs/completer.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+#include "ocm/transport/interfaces.hpp"
+#include "ocm/transport/virtual_bus.hpp"
+
+#include "cli/generate/messages.hpp"
+#include "cli/generate/target.hpp"
+
+namespace ocm::cli {
+namespace {
+
+/// Options and positionals of a verb, those of its option groups included.
+template <class F>
+void for_each_option(const CLI::App& app, F&& f) {
+  for (const CLI::Option* option : app.get_options()) f(*option);
+  for (const CLI::App* group :
+       app.get_subcommands([](const CLI::App* each) { return each->get_name().empty(); }))
+    for_each_option(*group, f);
+}
+
+const CLI::Option* find_option(const CLI::App* app, const std::string& name) {
+  const CLI::Option* found = nullptr;
+  for (; app != nullptr && found == nullptr; app = app->get_parent())
+    for_each_option(*app, [&](const CLI::Option& option) {
+      if (option.nonpositional() && option.check_name(name)) found = &option;
+    });
+  return found;
+}
+
+bool takes_value(const CLI::Option& option) {
+  return option.get_items_expected_max() > 0;
+}
+
+const CLI::App* find_verb(const CLI::App& app, const std::string& name) {
+  for (const CLI::App* verb : app.get_subcommands(
+           [&](const CLI::App* each) { return !each->get_name().empty() && each->check_name(name); }))
+    return verb;
+  return nullptr;
+}
+
+/// The command line so far.
+struct Line {
+  const CLI::App* verb = nullptr;        ///< the innermost
+  std::vector<std::string> positionals;  ///< of it
+  const CLI::Option* waiting = nullptr;  ///< for its value, which is the word being typed
+  bool only_positionals = false;         ///< after --
+};
+
+Line read_line(const CLI::App& app, Session& session, const std::vector<std::string>& words) {
+  Line line{&app, {}, nullptr, false};
+  for (std::size_t i = 0; i + 1 < words.size(); ++i) {
+    const std::string& word = words[i];
+    if (line.waiting != nullptr) {
+      if (line.waiting->check_name("--spec")) session.spec_file = word;
+      line.waiting = nullptr;
+    } else if (line.only_positionals || word.size() < 2 || word.front() != '-') {
+      const CLI::App* verb = line.positionals.empty() ? find_verb(*line.verb, word) : nullptr;
+      if (verb != nullptr)
+        line.verb = verb;
+      else
+        line.positionals.push_back(word);
+    } else if (word == "--") {
+      line.only_positionals = true;
+    } else if (const std::size_t equals = word.find('='); equals != std::string::npos) {
+      if (word.substr(0, equals) == "--spec") session.spec_file = word.substr(equals + 1);
+    } else if (const CLI::Option* option = find_option(line.verb, word);
+               option != nullptr && takes_value(*option) && option->get_items_expected_min() > 0) {
+      line.waiting = option;
+    }
+  }
+  return line;
+}
+
+class Completer {
+ public:
+  Completer(Session& session, std::string typed) : session_(session), typed_(std::move(typed)) {}
+
+  Completion take() { return std::move(completion_); }
+  void files() { completion_.files = true; }
+  void add(std::string_view word, std::string_view what = {}) {
+    if (std::string_view{prefix_ + std::string{word}}.starts_with(typed_))
+      completion_.candidates.push_back({prefix_ + std::string{word}, std::string{what}});
+  }
+  /// What stands before every candidate: "--priority=".
+  void set_prefix(std::string prefix) { prefix_ = std::move(prefix); }
+
+  void verbs_of(const CLI::App& app) {
+    for (const CLI::App* verb : app.get_subcommands(
+             [](const CLI::App* each) { return !each->get_name().empty() && !each->get_group().empty(); }))
+      add(verb->get_name(), verb->get_description());
+  }
+
+  void options_of(const CLI::App* app) {
+    for (; app != nullptr; app = app->get_parent())
+      for_each_option(*app, [this](const CLI::Option& option) {
+        if (option.get_group().empty() || option.get_lnames().empty()) return;
+        add("--" + option.get_lnames().front(), option.get_description());
+      });
+  }
+
+  enum class Of { sensors, actuators, all };
+  void topics(Of which, std::string_view tail = {}) {
+    for (const auto& topic : session_.catalogue().topics) {
+      const bool sensor = topic.kind == protocol::Kind::sensor;
+      if (which != Of::all && sensor != (which == Of::sensors)) continue;
+      const std::string board{session_.catalogue().boards[topic.board].name};
+      const std::string what = (sensor ? "sensor of " : "actuator of ") + board;
+      add(std::string{topic.name} + std::string{tail}, what);
+      for (const auto alias : topic.aliases) add(std::string{alias} + std::string{tail}, what);
+    }
+  }
+
+  void fields(const std::string& name) {
+    const protocol::Topic* topic = session_.catalogue().find(name);
+    if (topic == nullptr) return;
+    for (const auto& frame : topic->frames)
+      for (const auto& field : frame.fields) {
+        add(std::string{field.name} + "=", field.unit);
+        for (const auto& value : field.values)
+          if (!field.flags) add(std::string{field.name} + "=" + std::string{value.name});
+      }
+  }
+
+  void priorities() {
+    for (const auto priority : generate::priorities) add(protocol::name(priority));
+  }
+
+  void buses() {
+    for (const auto& interface : transport::can_interfaces())
+      add(interface.name, interface.up ? "up" : "down");
+    add("sim",
+        transport::VirtualBus::running() ? "the running simulator" : "the simulator, which does not run");
+    add("slcan:", "a serial adapter, as slcan:/dev/ttyACM0@500k");
+  }
+
+  /// What the declaration of an option or positional says of its values.
+  void values_of(const CLI::Option& option) {
+    if (option.check_name("--bus")) return buses();
+    if (option.check_name("--priority")) return priorities();
+    const std::string type = option.get_type_name();
+    if (const auto open = type.find('{'); open != std::string::npos)
+      return words_of(type.substr(open + 1, type.find('}', open) - open - 1), ',');
+    // Without a type of its own a positional says by its name what it is: FILE, but not words.
+    const std::string name = option.get_name();
+    const bool telling = std::any_of(name.begin(), name.end(), [](char c) { return c >= 'A' && c <= 'Z'; });
+    if (!type.empty() && type != "TEXT")
+      words_of(type, '|');
+    else if (option.get_positional() && telling)
+      words_of(name, '|');
+  }
+
+  void positional(const Line& line) {
+    const std::string verb = line.verb->get_name();
+    const std::size_t index = line.positionals.size();
+    if (verb == "publish" || verb == "once") return index == 0 ? topics(Of::sensors) : void();
+    if (verb == "stop") {
+      add("all", "motors to zero, then every sensor");
+      return topics(Of::all);
+    }
+    if (verb == "set" || verb == "encode")
+      return index == 0 ? topics(verb == "set" ? Of::actuators : Of::all) : fields(line.positionals[0]);
+    if (verb == "led") return index == 0 ? lights() : index == 1 ? colours() : void();
+    if (verb == "drive") return add("stop");
+    std::size_t number = 0;
+    for_each_option(*line.verb, [&](const CLI::Option& option) {
+      if (!option.get_positional()) return;
+      const bool many = option.get_items_expected_max() > 1;
+      if (number++ == index || (many && number <= index + 1)) values_of(option);
+    });
+  }
+
+ private:
+  /// "FILE|BOARD", "host|qemu", "[TOPIC ...]": words in capitals stand for something, others for themselves.
+  void words_of(std::string_view text, char separator) {
+    while (!text.empty()) {
+      const std::size_t end = std::min(text.find(separator), text.size());
+      word_of(text.substr(0, end));
+      text.remove_prefix(std::min(end + 1, text.size()));
+    }
+  }
+
+  void word_of(std::string_view word) {
+    const auto names = [&](std::string_view what) { return word.find(what) != std::string_view::npos; };
+    if (names("TOPIC")) return topics(Of::all);
+    if (names("FILE") || names("FOLDER") || names("SCRIPT") || names("LOG")) return files();
+    if (names("BOARD")) return boards();
+    if (names("BUS")) return buses();
+    if (names("RATE")) return topics(Of::sensors, "=");
+    if (names("TARGET")) {
+      for (const auto& target : generate::targets()) add(target.name, target.description);
+      return;
+    }
+    const bool literal =
+        std::all_of(word.begin(), word.end(), [](char c) { return (c >= 'a' && c <= 'z') || c == '-'; });
+    if (literal && !word.empty()) add(word);
+  }
+
+  void boards() {
+    for (const auto& board : session_.catalogue().boards) add(board.name, board.mcu);
+  }
+  void lights() {
+    for (const auto& topic : session_.catalogue().topics)
+      if (topic.role == protocol::Role::light && topic.instance != 0)
+        add(std::to_string(topic.instance), topic.name);
+    add("all");
+  }
+  void colours() {
+    for (const char* name :
+         {"off", "white", "red", "green", "blue", "yellow", "cyan", "magenta", "orange", "purple", "pink"})
+      add(name);
+  }
+
+  Session& session_;
+  std::string typed_;
+  std::string prefix_;
+  Completion completion_;
+};
+
+}  // namespace
+
+Completion complete(const CLI::App& app, Session& session, const std::vector<std::string>& words) {
+  const Line line = read_line(app, session, words);
+  const std::string typed = words.empty() ? "" : words.back();
+  Completer completer{session, typed};
+  if (line.waiting != nullptr) {
+    completer.values_of(*line.waiting);
+  } else if (!line.only_positionals && typed.starts_with('-')) {
+    const std::size_t equals = typed.find('=');
+    const CLI::Option* option =
+        equals == std::string::npos ? nullptr : find_option(line.verb, typed.substr(0, equals));
+    if (option != nullptr) {
+      completer.set_prefix(typed.substr(0, equals + 1));
+      completer.values_of(*option);
+    } else {
+      completer.options_of(line.verb);
+    }
+  } else {
+    if (line.positionals.empty()) completer.verbs_of(*line.verb);
+    completer.positional(line);
+  }
+  return completer.take();
+}
+
+}  // namespace ocm::cli

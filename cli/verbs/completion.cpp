@@ -1,0 +1,118 @@
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "cli/verbs/completer.hpp"
+#include "cli/verbs/verbs.hpp"
+
+// Each shell asks the tool itself, by `amiroctl completion --words -- WORD ...`, so that a script never grows
+// old, and topics of another --spec are known. The answer's first line is "words" or "files" (then names of
+// files will do, too); each further line a candidate, or a candidate, a tab and what it is.
+
+namespace ocm::cli {
+namespace {
+
+constexpr std::string_view bash = R"sh(# Completion of amiroctl in bash. Made by: amiroctl completion bash
+_amiroctl() {
+  local line=${COMP_LINE:0:COMP_POINT} words kind candidate word before
+  read -ra words <<<"$line"
+  [[ $line == *[[:space:]] ]] && words+=("")
+  word=${words[${#words[@]} - 1]}
+  before=${word%"${word##*[=:]}"}  # bash completes only what follows the last of = and :
+  COMPREPLY=()
+  while IFS= read -r candidate; do
+    if [[ -z $kind ]]; then kind=$candidate; continue; fi
+    candidate=${candidate%%$'\t'*}
+    COMPREPLY+=("${candidate#"$before"}")
+  done < <("${words[0]}" completion --words -- "${words[@]:1}" 2>/dev/null)
+  [[ $kind == files ]] && compopt -o default
+  [[ ${#COMPREPLY[@]} == 1 && ${COMPREPLY[0]} == *[=:] ]] && compopt -o nospace
+  return 0
+}
+complete -F _amiroctl amiroctl
+)sh";
+
+constexpr std::string_view zsh = R"sh(#compdef amiroctl
+# Completion of amiroctl in zsh. Made by: amiroctl completion zsh
+_amiroctl() {
+  local -a lines names shown open opened
+  local line name
+  lines=("${(@f)$("${words[1]}" completion --words -- "${(@)words[2,CURRENT-1]}" "$PREFIX" 2>/dev/null)}")
+  for line in "${(@)lines[2,-1]}"; do
+    name=${line%%$'\t'*}
+    [[ -n $name ]] || continue
+    if [[ $name == *[=:] ]]; then
+      open+=("$name"); opened+=("${line/$'\t'/  -- }")
+    else
+      names+=("$name"); shown+=("${line/$'\t'/  -- }")
+    fi
+  done
+  (( ${#names} )) && compadd -l -d shown -a -- names
+  (( ${#open} )) && compadd -S '' -l -d opened -a -- open
+  [[ ${lines[1]} == files ]] && _files
+  return 0
+}
+if [[ ${funcstack[1]} == _amiroctl ]]; then
+  _amiroctl "$@"
+else
+  compdef _amiroctl amiroctl
+fi
+)sh";
+
+constexpr std::string_view fish = R"sh(# Completion of amiroctl in fish. Made by: amiroctl completion fish
+function __amiroctl_complete
+  set -l words (commandline -opc)
+  set -l current (commandline -ct)
+  set -l lines ($words[1] completion --words -- $words[2..-1] "$current" 2>/dev/null)
+  if test (count $lines) -gt 1
+    printf '%s\n' $lines[2..-1]
+  end
+  if test "$lines[1]" = files
+    __fish_complete_path "$current"
+  end
+end
+complete -c amiroctl -f -a '(__amiroctl_complete)'
+)sh";
+
+void print_words(CLI::App& app, Session& session, const std::vector<std::string>& words) {
+  const Completion completion = complete(app, session, words);
+  fmt::print("{}\n", completion.files ? "files" : "words");
+  for (const auto& candidate : completion.candidates)
+    fmt::print("{}{}{}\n", candidate.word, candidate.what.empty() ? "" : "\t", candidate.what);
+}
+
+void print_script(const std::vector<std::string>& shells) {
+  if (shells.size() == 1)
+    for (const auto& [name, script] : {std::pair{"bash", bash}, {"zsh", zsh}, {"fish", fish}})
+      if (shells.front() == name) return fmt::print("{}", script);
+  fail({shells.empty() ? "completion: for which shell?"
+                       : fmt::format("completion: unknown shell {}", shells.front()),
+        "amiroctl completion bash, zsh or fish"},
+       exit_usage);
+}
+
+}  // namespace
+
+void add_completion(CLI::App& app, Session& session, int&) {
+  auto* verb = add_verb(
+      app, "completion", "completion of commands, topics and options in a shell", help_group,
+      "  source <(amiroctl completion bash)       for this bash; for good: put it into\n"
+      "                                           ~/.local/share/bash-completion/completions/amiroctl\n"
+      "  amiroctl completion zsh > ~/.zfunc/_amiroctl\n"
+      "  amiroctl completion fish > ~/.config/fish/completions/amiroctl.fish");
+  struct Options {
+    std::vector<std::string> words;
+    bool ask = false;
+  };
+  const auto options = std::make_shared<Options>();
+  verb->add_option("shell", options->words, "bash, zsh or fish")->type_name("bash|zsh|fish");
+  verb->add_flag("--words", options->ask,
+                 "what the scripts ask: candidates for the last of the words behind --");
+  verb->callback([options, &app, &session] {
+    options->ask ? print_words(app, session, options->words) : print_script(options->words);
+  });
+}
+
+}  // namespace ocm::cli

@@ -1,0 +1,133 @@
+#include <array>
+#include <memory>
+#include <string>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+#include "cli/interrupt.hpp"
+#include "cli/logs/log_file.hpp"
+#include "cli/logs/opened_log.hpp"
+#include "cli/verbs/verbs.hpp"
+
+namespace ocm::cli {
+namespace {
+
+struct ConvertOptions {
+  std::string in, out;
+  std::string from, to;
+  bool strict = false;
+};
+
+/// The names of the formats that have `part` (a reader or a writer).
+template <class Part>
+std::string names_of(Part part) {
+  std::string names;
+  for (const logs::LogFormat& format : logs::log_formats())
+    if (format.*part != nullptr) names += (names.empty() ? "" : ", ") + std::string{format.name};
+  return names;
+}
+
+const logs::LogFormat& wanted_format(const ConvertOptions& options) {
+  const auto* const format =
+      options.to.empty() ? logs::format_of_name(options.out) : logs::find_format(options.to);
+  const std::string remedy = "--to names a format: " + names_of(&logs::LogFormat::writer);
+  if (format == nullptr && !options.to.empty())
+    fail({fmt::format("convert: no log format '{}'", options.to), remedy}, exit_usage);
+  if (format == nullptr && options.out == "-")
+    fail({"convert: what goes to the standard output has no ending to tell the format", remedy}, exit_usage);
+  if (format == nullptr)
+    fail({fmt::format("convert: the ending of {} is of no log format", options.out), remedy}, exit_usage);
+  if (format->writer == nullptr)
+    fail({fmt::format("convert: {} is read only", format->name), remedy}, exit_usage);
+  return *format;
+}
+
+/// Creating the output would empty the input.
+void refuse_same_file(const ConvertOptions& options) {
+  const auto look = [](const std::string& path, int descriptor, struct stat& status) {
+    const int result = path == "-" ? fstat(descriptor, &status) : stat(path.c_str(), &status);
+    return result == 0 && S_ISREG(status.st_mode);
+  };
+  struct stat in {};
+  struct stat out {};
+  if (!look(options.in, STDIN_FILENO, in) || !look(options.out, STDOUT_FILENO, out)) return;
+  if (in.st_dev != out.st_dev || in.st_ino != out.st_ino) return;
+  fail({fmt::format("convert: {} and {} are the same file", options.in, options.out),
+        "write to another file and rename it"},
+       exit_usage);
+}
+
+/// Copies to the end, or until a signal or a full disk; how many frames.
+std::uint64_t copy(logs::OpenedLog& in, logs::LogFile& out) {
+  std::array<log::Entry, log::batch> entries;
+  std::uint64_t frames = 0;
+  const bool live = in.size() == 0;  // whoever reads behind a pipe wants frames when they come
+  while (interrupted() == 0) {
+    const std::size_t count = in.reader().read(entries);
+    if (count == 0) break;
+    if (!out.write(std::span{entries}.first(count), in.reader().interfaces())) return frames;
+    if (live && count < entries.size() && !out.flush()) return frames;
+    frames += count;
+  }
+  out.recorded(in.reader().recorded());
+  out.finish();
+  return frames;
+}
+
+void convert(Session& session, const ConvertOptions& options, int& exit_code) {
+  const logs::LogFormat& format = wanted_format(options);
+  catch_interrupts();
+  refuse_same_file(options);
+  logs::OpenedLog in{options.in, options.from, session.catalogue()};
+  auto out = logs::LogFile::create(options.out, format, session.catalogue());
+  if (!out) fail(out.error);
+
+  const std::uint64_t frames = copy(in, **out);
+  const bool written = (*out)->failure().what.empty();
+  const bool whole = written && interrupted() == 0 && !in.ended_early();
+  remark(fmt::format("{} frames, {} to {}{}", frames, in.format().name, format.name,
+                     whole ? "" : fmt::format(": {} holds the beginning only", options.out)));
+  const bool unreadable = in.complain();
+  logs::tell_losses((*out)->lost(), format);
+  if (!written) fail((*out)->failure());
+  const bool nothing = frames == 0 && unreadable;
+  const bool not_all = unreadable || (*out)->lost().any();
+  if (in.ended_early() || nothing || (options.strict && not_all)) exit_code = exit_failure;
+  exit_code = exit_code_after_interrupt(exit_code);
+}
+
+std::string list_of_formats() {
+  std::string text =
+      "  amiroctl convert drive.log drive.pcapng\n"
+      "  candump -L can0 | amiroctl convert - - --to csv\n"
+      "  amiroctl convert drive.log.gz drive.csv --strict   exit 1 when anything is lost\n"
+      "Formats:\n";
+  for (const logs::LogFormat& format : logs::log_formats())
+    text += fmt::format("  {:<11} {:<8} {}{}\n", format.name, format.ending, format.description,
+                        format.writer == nullptr   ? " (read only)"
+                        : format.reader == nullptr ? " (written only)"
+                                                   : "");
+  return text + "A name that ends in .gz or .zst is packed; what is read is unpacked whatever its name.";
+}
+
+}  // namespace
+
+void add_convert(CLI::App& app, Session& session, int& exit_code) {
+  auto* verb = add_verb(app, "convert", "a log in another format", log_group, list_of_formats());
+  const auto options = std::make_shared<ConvertOptions>();
+  verb->add_option("in", options->in, "the log to read; - for the standard input")
+      ->type_name("IN")
+      ->required();
+  verb->add_option("out", options->out, "the log to write; - for the standard output")
+      ->type_name("OUT")
+      ->required();
+  verb->add_option("--from", options->from, "format of IN; default: what it begins with, then its ending")
+      ->type_name("FORMAT");
+  verb->add_option("--to", options->to, "format of OUT; default: its ending")->type_name("FORMAT");
+  verb->add_flag("--strict", options->strict, "exit 1 when anything was lost or could not be read");
+  verb->callback([options, &session, &exit_code] { convert(session, *options, exit_code); });
+}
+
+}  // namespace ocm::cli

@@ -1,0 +1,165 @@
+#include <array>
+#include <bitset>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "cli/interrupt.hpp"
+#include "cli/logs/opened_log.hpp"
+#include "cli/verbs/chosen_topics.hpp"
+#include "cli/verbs/commanding.hpp"
+#include "cli/verbs/display.hpp"
+#include "cli/verbs/verbs.hpp"
+
+namespace ocm::cli {
+namespace {
+
+struct DecodeOptions {
+  std::vector<std::string> files;
+  std::vector<std::string> topics;
+  DisplayOptions display;
+  std::string from;
+  std::string since, until;
+  std::uint64_t count = 0;
+  bool strict = false;
+};
+
+/// Which frames are looked at: those of the chosen topics, within the chosen time.
+class Window {
+ public:
+  Window(const protocol::Catalogue& catalogue, const DecodeOptions& options) {
+    if (!options.since.empty()) since_ = duration_option("--since", options.since);
+    if (!options.until.empty()) until_ = duration_option("--until", options.until);
+    all_topics_ = options.topics.empty();
+    for (const auto* topic : chosen_topics("decode", catalogue, options.topics)) choose(*topic);
+  }
+
+  [[nodiscard]] bool has(const log::Entry& entry) {
+    if (!begin_) begin_ = entry.time;
+    const base::Duration at = entry.time - *begin_;
+    if (at < since_ || at > until_) return false;
+    return all_topics_ ||
+           (entry.format == can::Format::base && !entry.is_fd() && ids_[entry.id & can::max_base_id]);
+  }
+
+ private:
+  /// Its data, and what is said to it.
+  void choose(const protocol::Topic& topic) {
+    using protocol::Direction;
+    for (std::size_t level = 0; level < protocol::priority_levels; ++level) {
+      const auto priority = static_cast<protocol::Priority>(level);
+      ids_.set(protocol::Identifier{Direction::command, priority, topic.id}.encode());
+      const bool sensor = topic.kind == protocol::Kind::sensor;
+      for (const auto& layout : topic.frames)
+        ids_.set(protocol::Identifier{sensor ? Direction::sensor : Direction::command, priority, layout.id}
+                     .encode());
+    }
+  }
+
+  bool all_topics_ = true;
+  std::bitset<can::max_base_id + 1> ids_;
+  std::optional<base::Time> begin_;
+  base::Duration since_ = base::Duration::min();
+  base::Duration until_ = base::Duration::max();
+};
+
+struct Decoding {
+  Display display;
+  Window window;
+  std::uint64_t most = 0;  ///< lines to show; 0: all
+  bool unreadable = false;
+  bool ended_early = false;
+
+  [[nodiscard]] bool over() const { return interrupted() != 0 || (most != 0 && display.shown() >= most); }
+
+  void take(std::span<const log::Entry> entries, const log::Interfaces& interfaces) {
+    for (const auto& entry : entries) {
+      if (over()) return;
+      if (!window.has(entry)) continue;
+      display.understand(entry);
+      display.show(interfaces.name(entry.interface), entry);
+    }
+  }
+
+  void read(logs::OpenedLog& log) {
+    std::array<log::Entry, log::batch> entries;
+    while (!over()) {
+      const std::size_t count = log.reader().read(entries);
+      if (count == 0) break;
+      take(std::span{entries}.first(count), log.reader().interfaces());
+      if (count < entries.size()) display.flush();  // a pipe from a live bus: now, not with the next frames
+    }
+    display.flush();
+    unreadable |= log.complain();
+    ended_early |= log.ended_early();
+  }
+};
+
+/// Frames that are of topics of this robot.
+std::uint64_t understood(const Display& display) {
+  const auto& seen = display.counters();
+  return seen.frames - seen.unknown - seen.wrong_dlc - seen.errors;
+}
+
+void tell_another_bus(const Display& display, const protocol::Catalogue& catalogue) {
+  const std::uint64_t frames = display.counters().frames + display.fd();
+  if (frames == 0) return remark("no frame to decode");
+  const std::uint64_t foreign = display.counters().unknown + display.fd();
+  if (foreign < frames - frames / 10) return;
+  remark(
+      fmt::format("{} of {} frames are of no topic of {}: a log of another bus? --spec FILE names the "
+                  "topics of another robot",
+                  foreign, frames, catalogue.robot));
+}
+
+void decode(Session& session, const DecodeOptions& options, int& exit_code) {
+  const auto& catalogue = session.catalogue();
+  catch_interrupts();
+  Decoding decoding{Display{"decode", session, options.display}, Window{catalogue, options}, options.count};
+  const std::vector<std::string> standard_input{"-"};
+  for (const auto& file : options.files.empty() ? standard_input : options.files) {
+    if (decoding.over()) break;
+    logs::OpenedLog log{file, options.from, catalogue};
+    decoding.read(log);
+  }
+  const Display& display = decoding.display;
+  display.summarise(0);
+  tell_another_bus(display, catalogue);
+  const bool not_all = decoding.unreadable || display.fd() != 0 || display.counters().faults() != 0;
+  if (understood(display) == 0 || decoding.ended_early || (options.strict && not_all))
+    exit_code = exit_failure;
+  exit_code = exit_code_after_interrupt(exit_code);
+}
+
+}  // namespace
+
+void add_decode(CLI::App& app, Session& session, int& exit_code) {
+  auto* verb = add_verb(app, "decode", "say what the frames of a log mean", log_group,
+                        "  amiroctl decode drive.log | jq -c .fields\n"
+                        "  amiroctl decode drive.pcapng --csv --field gyroscope.z --field odom.velocity.x\n"
+                        "  amiroctl decode drive.log.zst --topic power --since 10s --until 1min --pretty\n"
+                        "  candump -L can0 | amiroctl decode --pretty\n"
+                        "  amiroctl decode drive.log | amiroctl encode    the log again, to the byte");
+  const auto options = std::make_shared<DecodeOptions>();
+  verb->add_option("files", options->files,
+                   "logs of any format, one after another; default: - (standard input)")
+      ->type_name("[FILE ...]");
+  add_display_options(*verb, options->display);
+  verb->add_option("--topic", options->topics, "only this topic; repeatable")
+      ->type_name("TOPIC")
+      ->allow_extra_args(false);
+  verb->add_option("--from", options->from, "the format of the logs; default: what they begin with says it")
+      ->type_name("FORMAT");
+  verb->add_option("--since", options->since, "from this time after the first frame")->type_name("T");
+  verb->add_option("--until", options->until, "up to this time after the first frame")->type_name("T");
+  verb->add_option("-n,--count", options->count, "end after so many")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
+  verb->add_flag("--strict", options->strict, "exit 1 when any line or frame could not be decoded");
+  verb->callback([options, &session, &exit_code] { decode(session, *options, exit_code); });
+}
+
+}  // namespace ocm::cli

@@ -1,0 +1,69 @@
+#include "cli/verbs/display.hpp"
+
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+namespace ocm::cli {
+namespace {
+
+Format format_of(const DisplayOptions& options) {
+  if (options.json) return Format::json;
+  if (options.csv) return Format::csv;
+  if (options.raw) return Format::raw;
+  if (options.pretty || isatty(STDOUT_FILENO) != 0) return Format::pretty;
+  return Format::json;
+}
+
+Selection selection_of(std::string_view verb, const protocol::Catalogue& catalogue,
+                       const DisplayOptions& options) {
+  if (options.raw && !options.fields.empty())
+    fail({fmt::format("{}: --field with --raw, which shows no fields", verb),
+          "leave one of them out; topics select frames"},
+         exit_usage);
+  auto selection = Selection::of(catalogue, options.fields);
+  if (!selection)
+    fail({fmt::format("{}: {}", verb, selection.error.what), selection.error.remedy}, exit_usage);
+  return std::move(*selection);
+}
+
+}  // namespace
+
+void add_display_options(CLI::App& verb, DisplayOptions& options) {
+  auto* format = verb.add_option_group("Format", "default: pretty on a terminal, JSON lines otherwise");
+  format->add_flag("--pretty", options.pretty, "a line a sample, values with units");
+  format->add_flag("--json", options.json, "an object a frame");
+  format->add_flag("--csv", options.csv,
+                   "a line a field: time, topic, field, value, unit; with --field a column a field");
+  format->add_flag("--raw", options.raw, "candump's log line");
+  format->require_option(0, 1);
+  verb.add_option("--field", options.fields,
+                  "only this, such as gyroscope.x or odometry.velocity.x; repeatable")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+}
+
+Display::Display(std::string_view verb, Session& session, const DisplayOptions& options)
+    : receiver_(session.catalogue()),
+      printer_(make_output(format_of(options), session.catalogue(),
+                           selection_of(verb, session.catalogue(), options), session.colour())) {
+  printer_.flush();
+}
+
+void Display::summarise(std::uint64_t lost) const {
+  const auto& seen = receiver_.counters();
+  std::string text = fmt::format("{} frames, {} samples", seen.frames + fd_, seen.samples);
+  const auto add = [&text](std::uint64_t count, std::string_view what) {
+    if (count != 0) text += fmt::format(", {} {}", count, what);
+  };
+  add(seen.commands, "commands");
+  add(seen.unknown, "of unknown identifier");
+  add(fd_, "of CAN FD");
+  add(seen.wrong_dlc, "of wrong length");
+  add(seen.incomplete, "incomplete samples");
+  add(seen.errors, "error frames");
+  add(lost, "lost in the receive queue");
+  remark(text);
+}
+
+}  // namespace ocm::cli

@@ -1,0 +1,62 @@
+/// What the verbs that show frames have in common, whether the frames come from a bus or out of a log: the
+/// format, the choice of topics and fields, and the summary at the end.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "ocm/log/entry.hpp"
+#include "ocm/reflective/sample.hpp"
+
+#include "cli/output/printer.hpp"
+#include "cli/session.hpp"
+
+namespace ocm::cli {
+
+struct DisplayOptions {
+  bool pretty = false, json = false, csv = false, raw = false;
+  std::vector<std::string> fields;
+};
+
+/// --pretty, --json, --csv, --raw and --field.
+void add_display_options(CLI::App& verb, DisplayOptions& options);
+
+/// Frames in, text on stdout out.
+class Display {
+ public:
+  /// `verb` is for messages. Prints the head line, where the format has one.
+  Display(std::string_view verb, Session& session, const DisplayOptions& options);
+
+  /// What the entry means, which is counted and kept for `show`. Valid until the next.
+  const reflective::Reception& understand(const log::Entry& entry) {
+    reception_ = cli::understand(receiver_, entry);
+    fd_ += entry.is_fd() ? 1 : 0;
+    return reception_;
+  }
+  /// Whether there was anything to show.
+  bool show(std::string_view bus, const log::Entry& entry) {
+    const bool shown = printer_.write({bus, entry, reception_});
+    shown_ += shown ? 1 : 0;
+    return shown;
+  }
+  void flush() { printer_.flush(); }
+
+  [[nodiscard]] std::uint64_t shown() const noexcept { return shown_; }  ///< lines, or frames with --csv
+  [[nodiscard]] std::uint64_t fd() const noexcept { return fd_; }
+  [[nodiscard]] const reflective::ReceiverCounters& counters() const noexcept { return receiver_.counters(); }
+  /// What came, and every fault by its cause, on stderr.
+  void summarise(std::uint64_t lost) const;
+
+ private:
+  reflective::Receiver receiver_;
+  reflective::Reception reception_;
+  Printer printer_;
+  std::uint64_t shown_ = 0;
+  std::uint64_t fd_ = 0;
+};
+
+}  // namespace ocm::cli

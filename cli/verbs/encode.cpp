@@ -1,0 +1,85 @@
+#include <array>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "cli/interrupt.hpp"
+#include "cli/logs/file_source.hpp"
+#include "cli/logs/json_lines.hpp"
+#include "cli/logs/log_file.hpp"
+#include "cli/verbs/frame_lines.hpp"
+#include "cli/verbs/verbs.hpp"
+
+namespace ocm::cli {
+namespace {
+
+struct EncodeOptions {
+  std::string in = "-";
+  std::string out = "-";
+  std::string to;
+  bool keep_going = false;
+};
+
+const logs::LogFormat& wanted_format(const EncodeOptions& options) {
+  const auto* const by_name =
+      options.to.empty() ? logs::format_of_name(options.out) : logs::find_format(options.to);
+  if (by_name == nullptr && !options.to.empty()) {
+    std::string names;
+    for (const auto& format : logs::log_formats())
+      if (format.writer != nullptr) names += (names.empty() ? "" : ", ") + std::string{format.name};
+    fail({fmt::format("encode: no log format '{}'", options.to), "--to names one of: " + names}, exit_usage);
+  }
+  return by_name != nullptr ? *by_name : *logs::find_format("candump");
+}
+
+void encode(Session& session, const EncodeOptions& options, int& exit_code) {
+  const auto& format = wanted_format(options);
+  catch_interrupts();
+  FrameLines lines{options.in, session.catalogue(), options.keep_going};
+  auto out = logs::LogFile::create(options.out, format, session.catalogue());
+  if (!out) fail(out.error);
+  std::array<log::Entry, log::batch> entries;
+  log::Interfaces interfaces;
+  std::uint64_t frames = 0;
+  std::size_t count = 0;
+  bool written = true;
+  const auto write = [&](bool now) {
+    written =
+        written && (*out)->write(std::span{entries}.first(count), interfaces) && (!now || (*out)->flush());
+    frames += count;
+    count = 0;
+  };
+  while (written) {
+    if (count == entries.size() || (count != 0 && !lines.more_here())) write(!lines.more_here());
+    std::string_view bus;
+    if (!lines.next(entries[count], bus)) break;
+    entries[count].interface = interfaces.number(bus);
+    ++count;
+  }
+  write(false);
+  (*out)->finish();
+  remark(fmt::format("{} frames encoded", frames));
+  logs::tell_losses((*out)->lost(), format);
+  if (!(*out)->failure().what.empty()) fail((*out)->failure());
+  if (lines.failed()) exit_code = exit_failure;
+  exit_code = exit_code_after_interrupt(exit_code);
+}
+
+}  // namespace
+
+void add_encode(CLI::App& app, Session& session, int& exit_code) {
+  auto* verb =
+      add_verb(app, "encode", "make a log of what decode or listen printed as JSON", log_group,
+               "  amiroctl decode a.log | jq -c 'select(.topic==\"motors\")' | amiroctl encode > motors.log\n"
+               "  amiroctl decode a.log | jq -c '.fields.x *= 2' | amiroctl encode -o faster.pcapng\n"
+               "  echo '{\"topic\":\"motors\",\"fields\":{\"x\":0.05}}' | amiroctl encode");
+  const auto options = std::make_shared<EncodeOptions>();
+  verb->add_option("file", options->in, "JSON lines; default: - (standard input)")->type_name("[FILE]");
+  verb->add_option("-o,--output", options->out, "the log; its ending says its format")->type_name("FILE");
+  verb->add_option("--to", options->to, "format of the log; default: candump")->type_name("FORMAT");
+  verb->add_flag("--keep-going", options->keep_going, "tell bad lines and go on; exit 1 at the end");
+  verb->callback([options, &session, &exit_code] { encode(session, *options, exit_code); });
+}
+
+}  // namespace ocm::cli

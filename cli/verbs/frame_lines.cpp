@@ -1,0 +1,78 @@
+#include "cli/verbs/frame_lines.hpp"
+
+#include <fmt/format.h>
+
+#include "ocm/log/candump.hpp"
+
+#include "cli/interrupt.hpp"
+#include "cli/session.hpp"
+
+namespace ocm::cli {
+
+FrameLines::FrameLines(std::string path, const protocol::Catalogue& catalogue, bool keep_going)
+    : path_(path == "-" ? "standard input" : path),
+      source_(path),
+      input_(source_),
+      json_(catalogue),
+      keep_going_(keep_going) {
+  if (!source_.failure().empty())
+    fail({fmt::format("cannot read {}: {}", path_, source_.failure()), "a file of JSON lines is wanted"});
+}
+
+bool FrameLines::next(log::Entry& entry, std::string_view& bus) {
+  using log::Input;
+  for (;;) {
+    std::string_view line;
+    const auto taken = input_.take_line(line);
+    if (taken == Input::Line::none || interrupted() != 0) {
+      broken_ = interrupted() == 0 && !input_.failure().empty();
+      if (broken_) remark(fmt::format("{}: {}", path_, input_.failure()));
+      return false;
+    }
+    const auto begin = line.find_first_not_of(" \t");
+    if (begin == std::string_view::npos) continue;
+    if (taken == Input::Line::too_long)
+      problem_ = {log::Cause::too_long, "a line of more than 16 MiB", "a frame a line is wanted"};
+    else if (parse(line.substr(begin), entry, bus))
+      return true;
+    ++bad_;
+    if (!keep_going_ || bad_ <= log::Complaints::kept) tell();
+    if (!keep_going_) return false;
+  }
+}
+
+void FrameLines::tell() const {
+  remark(fmt::format("amiroctl: {}:{}: {}\n          {}", path_, input_.line_number(), problem_.what,
+                     problem_.remedy));
+}
+
+bool FrameLines::parse(std::string_view line, log::Entry& entry, std::string_view& bus) {
+  if (line.front() == '{') {
+    if (json_.parse(line, entry, bus)) return true;
+    problem_ = json_.problem();
+    return false;
+  }
+  return parse_log_line(line, entry, bus);
+}
+
+bool FrameLines::parse_log_line(std::string_view line, log::Entry& entry, std::string_view& bus) {
+  std::optional<log::Cause> wrong;
+  if (line.front() == '(') {
+    const auto parsed = log::candump::parse_line(line);
+    entry = parsed.entry;
+    bus = parsed.interface;
+    wrong = parsed.wrong;
+  } else {
+    const auto frame = can::parse_frame(line.substr(0, line.find_last_not_of(" \t") + 1));
+    entry = log::Entry{{}, *frame};
+    bus = {};
+    if (!frame) wrong = log::candump::cause_of(frame.error);
+  }
+  if (!wrong) return true;
+  problem_ = {*wrong, fmt::format("\"{}\": {}", log::Complaints::printable(line), log::describe(*wrong)),
+              "a line is a JSON object as listen --json prints it, a candump log line, or a frame such as "
+              "205#01840302"};
+  return false;
+}
+
+}  // namespace ocm::cli

@@ -1,0 +1,70 @@
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "cli/generate/output_file.hpp"
+#include "cli/generate/robot_spec.hpp"
+#include "cli/generate/target.hpp"
+#include "cli/verbs/verbs.hpp"
+
+namespace ocm::cli {
+namespace {
+
+struct GenerateOptions {
+  std::string target;
+  std::string output = "-";
+  std::string priority;
+};
+
+std::string base_name(const std::string& path) {
+  return path.substr(path.rfind('/') + 1);  // npos + 1 is 0
+}
+
+std::string targets_help() {
+  std::string text = "Targets:\n";
+  for (const auto& target : generate::targets())
+    text += fmt::format("  {:<12} {}\n", target.name, target.description);
+  return text;
+}
+
+void generate_file(Session& session, const GenerateOptions& options) {
+  const auto* target = generate::find_target(options.target);
+  if (target == nullptr)
+    fail({fmt::format("generate: unknown target {}", options.target), "one of " + generate::target_names()},
+         exit_usage);
+  generate::Options how{std::string{generate::robot_spec_name}, std::nullopt};
+  if (!session.spec_file.empty()) how.spec_name = base_name(session.spec_file);
+  if (!options.priority.empty()) {
+    const auto priority = protocol::parse_priority(options.priority);
+    if (!priority)
+      fail({fmt::format("generate: unknown priority {}", options.priority), "urgent, high, medium or low"},
+           exit_usage);
+    if (target->name != "dbc")
+      fail({fmt::format("generate {}: --priority is for dbc", target->name), "leave it out"}, exit_usage);
+    how.priority = *priority;
+  }
+  const std::string text = target->make(session.spec().model(), how);
+  if (const auto problem = generate::write_file(options.output, text))
+    fail({fmt::format("{}: {}", problem->place, problem->what), problem->remedy});
+}
+
+}  // namespace
+
+void add_generate(CLI::App& app, Session& session, int&) {
+  auto* verb = add_verb(app, "generate", "files for other programs, from the robot's spec", look_group,
+                        "  amiroctl generate dbc -o amiro.dbc\n"
+                        "  amiroctl generate wireshark -o ~/.local/lib/wireshark/plugins/amiro.lua\n"
+                        "  amiroctl --spec other.json generate c > other.h");
+  verb->footer(targets_help() + "\n" + verb->get_footer());
+  const auto options = std::make_shared<GenerateOptions>();
+  verb->add_option("target", options->target, generate::target_names())->required()->type_name("TARGET");
+  verb->add_option("-o,--output", options->output, "the file, replaced in one step; default: standard output")
+      ->type_name("FILE");
+  verb->add_option("--priority", options->priority,
+                   "dbc: frames at this priority only, and their names without it")
+      ->type_name("P");
+  verb->callback([options, &session] { generate_file(session, *options); });
+}
+
+}  // namespace ocm::cli

@@ -1,0 +1,172 @@
+/// Fields as a picture: over time, or one against another; of a log, or of the bus for a while.
+#include <chrono>
+#include <memory>
+#include <string>
+#include <unistd.h>
+#include <utility>
+#include <vector>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include "ocm/base/text.hpp"
+#include "ocm/log/complaints.hpp"
+#include "ocm/reflective/diagnosis.hpp"
+
+#include "cli/generate/output_file.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/plot/curves.hpp"
+#include "cli/plot/gnuplot.hpp"
+#include "cli/verbs/verbs.hpp"
+#include "cli/watching.hpp"
+
+namespace ocm::cli {
+namespace {
+
+constexpr std::size_t most_curves = 64;
+
+struct PlotOptions {
+  std::vector<std::string> words;
+  WatchOptions watch;
+  std::string output;
+  std::string size;
+  std::string title;
+  bool script = false;
+};
+
+/// By the ending of the file; a pipe gets SVG.
+plot::Kind kind_of(const std::string& output) {
+  if (output == "-" || output.ends_with(".svg")) return plot::Kind::svg;
+  if (output.ends_with(".png")) return plot::Kind::png;
+  if (output.ends_with(".pdf")) return plot::Kind::pdf;
+  fail({fmt::format("plot: {}: no kind of picture", output), "end it in .svg, .png or .pdf"}, exit_usage);
+}
+
+void read_size(const std::string& text, plot::Picture& picture) {
+  if (text.empty()) return;
+  const std::size_t times = text.find('x');
+  const auto width = base::parse_unsigned(std::string_view{text}.substr(0, times));
+  const auto height =
+      times == std::string::npos ? width : base::parse_unsigned(std::string_view{text}.substr(times + 1));
+  constexpr std::uint64_t least = 200, most = 16'384;
+  const auto fits = [](const auto& side) { return side && *side >= least && *side <= most; };
+  if (times == std::string::npos || !fits(width) || !fits(height))
+    fail({fmt::format("--size {}: no size", text),
+          fmt::format("write WIDTHxHEIGHT in pixels, {} to {} each, such as 1200x600", least, most)},
+         exit_usage);
+  picture.width = static_cast<unsigned>(*width);
+  picture.height = static_cast<unsigned>(*height);
+}
+
+std::vector<plot::Wanted> read_fields(const std::vector<std::string>& words,
+                                      const protocol::Catalogue& catalogue) {
+  std::vector<plot::Wanted> wanted;
+  for (const auto& word : words) {
+    const auto parsed = plot::parse_fields(catalogue, word);
+    if (!parsed) fail({"plot: " + parsed.error.what, parsed.error.remedy}, exit_usage);
+    wanted.insert(wanted.end(), parsed->begin(), parsed->end());
+  }
+  if (wanted.empty())
+    fail({"plot: no field to draw",
+          "name some: plot drive.log gyroscope.z; `amiroctl info gyro` lists fields"},
+         exit_usage);
+  if (wanted.size() > most_curves)
+    fail({fmt::format("plot: {} curves are too many for a picture", wanted.size()),
+          fmt::format("name {} fields at most", most_curves)},
+         exit_usage);
+  const auto units = [](const plot::Wanted& path) {
+    return std::pair{path.x->field->unit, path.y.field->unit};
+  };
+  for (const auto& each : wanted) {
+    if (each.x.has_value() != wanted[0].x.has_value())
+      fail({"plot: a path and curves over time do not fit into one picture", "draw them one by one"},
+           exit_usage);
+    if (each.x && units(each) != units(wanted[0]))
+      fail({"plot: paths of other units do not fit into one picture", "draw them one by one"}, exit_usage);
+  }
+  return wanted;
+}
+
+/// "2015-07-10 06:55:52 UTC, 12.3 s", as far as the log knows the day.
+std::string when(const plot::Curves& curves) {
+  const base::Time begin = curves.begin().value_or(base::Time{});
+  const auto seconds = std::chrono::floor<std::chrono::seconds>(begin.time_since_epoch());
+  std::string text;
+  constexpr std::chrono::hours year{24 * 365};
+  if (seconds > year)
+    text = fmt::format("{:%Y-%m-%d %H:%M:%S} UTC, ", fmt::gmtime(static_cast<std::time_t>(seconds.count())));
+  return text + fmt::format("{:.6g} s", static_cast<double>((curves.end() - begin).count()) / 1e9);
+}
+
+void tell_missing(const plot::Curves& curves) {
+  for (const auto& curve : curves.all()) {
+    if (curve.envelope.count() != 0) continue;
+    const auto& wanted = curve.wanted;
+    remark(fmt::format("no {} came", wanted.x ? wanted.x->name + " with " + wanted.y.name : wanted.y.name));
+  }
+}
+
+void run(Session& session, const PlotOptions& options, int& exit_code) {
+  const auto& catalogue = session.catalogue();
+  Words words = split_words("plot", options.words, [&catalogue](std::string_view word) {
+    return static_cast<bool>(plot::parse_fields(catalogue, word));
+  });
+  const auto wanted = read_fields(words.others, catalogue);
+  const bool terminal = isatty(STDOUT_FILENO) != 0;
+  const std::string output = !options.output.empty() ? options.output : terminal ? "plot.svg" : "-";
+  plot::Picture picture;
+  picture.kind = kind_of(output);
+  read_size(options.size, picture);
+
+  plot::Curves curves{catalogue, wanted};
+  Watching watching{session, options.watch, std::move(words.files)};
+  watching.run([&](auto entries, const auto&) { curves.take(entries); }, {});
+  tell_missing(curves);
+  if (curves.points() == 0) {
+    if (interrupted() == 0)
+      remark(fmt::format("amiroctl: plot: nothing to draw came from {}", watching.source()));
+    exit_code = exit_code_after_interrupt(watching.ending(exit_failure));
+    return;
+  }
+  picture.title =
+      !options.title.empty() ? options.title : fmt::format("{}: {}", catalogue.robot, watching.source());
+  picture.subtitle = when(curves);
+  std::string text = plot::to_script(curves, picture);
+  if (!options.script) {
+    auto drawn = plot::draw(text);
+    if (!drawn) fail(drawn.error);
+    text = std::move(*drawn);
+  }
+  if (const auto problem = generate::write_file(output, text))
+    fail({fmt::format("{}: {}", problem->place, problem->what), problem->remedy});
+  if (output != "-")
+    remark(fmt::format("{}: {} of {}", output, reflective::count(curves.points(), "point*"),
+                       reflective::count(wanted.size(), "curve*")));
+  exit_code = exit_code_after_interrupt(watching.ending(exit_code));
+}
+
+}  // namespace
+
+void add_plot(CLI::App& app, Session& session, int& exit_code) {
+  auto* verb = add_verb(app, "plot", "draw fields over time, or one against another", log_group,
+                        "  amiroctl plot drive.log gyroscope.z -o turn.png\n"
+                        "  amiroctl plot drive.log 'gyro.*' odometry.velocity   a panel for each unit\n"
+                        "  amiroctl plot drive.log odometry.x:odometry.y       where it drove\n"
+                        "  amiroctl plot live gyro.z --duration 10s");
+  const auto options = std::make_shared<PlotOptions>();
+  verb->add_option("words", options->words,
+                   "logs, any format; none, or live: the bus. Fields: gyroscope.z, 'gyro.*', "
+                   "odometry.x:odometry.y")
+      ->type_name("[FILE ...|live] FIELD ...");
+  verb->add_option("-o,--output", options->output,
+                   ".svg, .png or .pdf; - is SVG on stdout. Default: plot.svg on a terminal, otherwise -")
+      ->type_name("FILE");
+  verb->add_option("--size", options->size, "in pixels; default: as is right for what is drawn")
+      ->type_name("WIDTHxHEIGHT");
+  verb->add_option("--title", options->title, "default: the robot and the log")->type_name("TEXT");
+  verb->add_flag("--script", options->script, "write what gnuplot would be told, and draw nothing");
+  add_watch_options(*verb, options->watch);
+  verb->callback([options, &session, &exit_code] { run(session, *options, exit_code); });
+}
+
+}  // namespace ocm::cli

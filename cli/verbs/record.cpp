@@ -1,0 +1,239 @@
+#include <csignal>
+#include <cstdio>
+#include <ctime>
+#include <memory>
+#include <string>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "ocm/reflective/quantity.hpp"
+#include "ocm/transport/socketcan.hpp"
+
+#include "cli/interrupt.hpp"
+#include "cli/logs/format.hpp"
+#include "cli/logs/log_file.hpp"
+#include "cli/record/capture.hpp"
+#include "cli/record/files.hpp"
+#include "cli/record/recorder.hpp"
+#include "cli/verbs/chosen_topics.hpp"
+#include "cli/verbs/commanding.hpp"
+#include "cli/verbs/subscription.hpp"
+#include "cli/verbs/verbs.hpp"
+
+namespace ocm::cli {
+namespace {
+
+struct RecordOptions {
+  std::vector<std::string> topics;
+  std::string file;
+  std::string to;
+  std::vector<std::string> filters;
+  std::string split;
+  std::uint64_t ring = 0;
+  std::uint64_t count = 0;
+  std::string duration;
+  bool commands = false;
+  bool force = false;
+  bool no_sync = false;
+  bool strict = false;
+};
+
+std::string format_names() {
+  std::string names;
+  for (const auto& format : logs::log_formats())
+    if (format.writer != nullptr) names += fmt::format("{}{}", names.empty() ? "" : ", ", format.name);
+  return names;
+}
+
+/// --to, or what the file's name ends in; candump where neither says anything.
+const logs::LogFormat& chosen_format(const RecordOptions& options) {
+  const bool named = !options.file.empty() && options.file != "-";
+  const auto* format = !options.to.empty() ? logs::find_format(options.to)
+                       : named             ? logs::format_of_name(options.file)
+                                           : logs::find_format("candump");
+  if (format == nullptr && !options.to.empty())
+    fail({fmt::format("record: no format '{}'", options.to), "one of: " + format_names()}, exit_usage);
+  if (format == nullptr)
+    fail({fmt::format("record: the name {} says no format", options.file),
+          fmt::format("end it in .log (candump), .pcapng, ..., or --to one of: {}", format_names())},
+         exit_usage);
+  if (format->writer == nullptr)
+    fail({fmt::format("record: {} is read only", format->name), "one of: " + format_names()}, exit_usage);
+  return *format;
+}
+
+record::Split parse_split(const std::string& text) {
+  record::Split split;
+  if (text.empty()) return split;
+  if (const auto time = reflective::parse_duration(text); time && time->count() > 0)
+    split.time = *time;
+  else
+    split.size = record::parse_size(text);
+  if (!split.any())
+    fail({fmt::format("--split {}: neither a size nor a time", text), "write 100MB, 64MiB, 10min or 1h"},
+         exit_usage);
+  return split;
+}
+
+record::Filters chosen_filters(const RecordOptions& options, const protocol::Catalogue& catalogue) {
+  record::Filters filters;
+  const auto topics = chosen_topics("record", catalogue, options.topics);
+  for (const auto& filter : filters_for(topics, options.commands))
+    filters.push_back(transport::to_socketcan(filter));
+  for (const auto& text : options.filters) {
+    const auto filter = record::parse_filter(text);
+    if (!filter) fail(filter.error, exit_usage);
+    filters.push_back(*filter);
+  }
+  return filters;
+}
+
+/// --bus can0,can1: several at once.
+std::vector<record::Port> open_ports(Session& session, const record::Filters& filters) {
+  if (session.bus_name.empty())
+    static_cast<void>(session.open_bus());  // says which it is, or that there is none or several
+  else
+    remark("bus: " + session.bus_name);
+  std::vector<record::Port> ports;
+  for (std::size_t begin = 0; begin <= session.bus_name.size();) {
+    const std::size_t end = std::min(session.bus_name.find(',', begin), session.bus_name.size());
+    record::Port port;
+    port.name = session.bus_name.substr(begin, end - begin);
+    begin = end + 1;
+    auto capture = record::open_capture(port.name, filters);
+    if (!capture) fail(capture.error);
+    port.capture = std::move(capture.value);
+    ports.push_back(std::move(port));
+  }
+  return ports;
+}
+
+record::FilesOptions file_options(const RecordOptions& options, const protocol::Catalogue& catalogue) {
+  record::FilesOptions files;
+  files.format = &chosen_format(options);
+  files.split = parse_split(options.split);
+  files.ring = options.ring;
+  files.overwrite = options.force;
+  files.sync = !options.no_sync;
+  files.numbers_free = options.file.empty();
+  files.path = options.file.empty() ? record::default_stem(catalogue.robot, std::time(nullptr)) +
+                                          std::string{files.format->ending}
+                                    : options.file;
+  if (files.path == "-" && files.split.any())
+    fail({"record: --split needs a file", "name one with -o"}, exit_usage);
+  if (files.ring != 0 && !files.split.any())
+    fail({"record: --ring keeps the newest of several files, and there is one",
+          "give --split a size or a time"},
+         exit_usage);
+  return files;
+}
+
+/// Whether somebody reads what is written while it is written.
+bool is_live(const std::string& path) {
+  struct stat what {};
+  const int found = path == "-" ? ::fstat(STDOUT_FILENO, &what) : ::stat(path.c_str(), &what);
+  return found == 0 && !S_ISREG(what.st_mode);
+}
+
+void add_count(std::string& text, std::uint64_t count, std::string_view what) {
+  if (count != 0) text += fmt::format(", {} {}", count, what);
+}
+
+/// What is in the files, and all that is not.
+std::uint64_t summarise(const record::Recorder& recorder, const record::Files& files) {
+  const auto seconds = std::chrono::duration_cast<std::chrono::milliseconds>(recorder.lasted());
+  std::string text = fmt::format("recorded {} frames in {} to {}", recorder.received(),
+                                 reflective::to_text(base::Duration{seconds}),
+                                 files.first_path() == "-" ? "the standard output" : files.first_path());
+  if (files.count() > 1) text += fmt::format(" .. {} ({} files)", files.path(), files.count());
+  text += fmt::format(", {}", record::size_text(files.size()));
+  add_count(text, files.deleted(), "of the files deleted again");
+  std::uint64_t lost = 0;
+  for (const auto& port : recorder.ports()) {
+    const std::string where = recorder.ports().size() > 1 ? " on " + port.name : "";
+    add_count(text, port.errors, "error frames" + where);
+    add_count(text, port.lost() - port.lost_here, "lost in the receive queue" + where);
+    add_count(text, port.lost_here, "lost because the disk was too slow" + where);
+    add_count(text, port.overflows, "times frames lost in the controller" + where);
+    lost += port.lost() + port.overflows;
+  }
+  remark(text);
+  return lost;
+}
+
+void run_record(Session& session, const RecordOptions& options, int& exit_code) {
+  const auto& catalogue = session.catalogue();
+  auto chosen = file_options(options, catalogue);
+  const bool live = is_live(chosen.path);
+  const auto& format = *chosen.format;
+  const auto filters = chosen_filters(options, catalogue);
+  record::Limits limits{options.count, {}, catalogue.bit_rate};
+  if (!options.duration.empty()) limits.duration = duration_option("--duration", options.duration);
+
+  catch_interrupts();
+  catch_hangups();
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is told of like a full disk
+  auto ports = open_ports(session, filters);
+  record::Files files{std::move(chosen), catalogue};
+  if (const auto opened = files.open(); !opened) fail(opened.error);
+  remark(fmt::format("recording to {}; Ctrl-C ends",
+                     files.path() == "-" ? "the standard output" : files.path()));
+  record::Recorder recorder{std::move(ports), filters, files, limits, live};
+  recorder.run();
+
+  const std::uint64_t lost = summarise(recorder, files);
+  logs::tell_losses(files.losses(), format);
+  if (!files.failure().what.empty()) {
+    const std::uint64_t readable = std::min(files.readable(), recorder.received());
+    remark(
+        fmt::format("{} frames can be read, {} were not written", readable, recorder.received() - readable));
+    fail(files.failure());
+  }
+  if (!recorder.ended().what.empty()) fail(recorder.ended());
+  if (options.strict && lost != 0) exit_code = exit_failure;
+  exit_code = exit_code_after_interrupt(exit_code);
+}
+
+}  // namespace
+
+void add_record(CLI::App& app, Session& session, int& exit_code) {
+  auto* verb =
+      add_verb(app, "record", "write what happens on the bus to a file", log_group,
+               "  amiroctl record                        amiro-2026-11-21_163000.log, as candump -l\n"
+               "  amiroctl record -o drive.pcapng        for Wireshark\n"
+               "  amiroctl record -o drive.log.zst gyro odom --duration 10min\n"
+               "  amiroctl record --split 100MB --ring 10  a black box of 1 GB\n"
+               "  amiroctl --bus can0,can1 record -o both.pcapng");
+  const auto options = std::make_shared<RecordOptions>();
+  verb->add_option("topics", options->topics, "only these; default: everything, error frames too")
+      ->type_name("[TOPIC ...]");
+  verb->add_option("-o,--output", options->file,
+                   "the file; its ending chooses the format, with .gz or .zst it is packed; - for stdout")
+      ->type_name("FILE");
+  verb->add_option("--to", options->to, "the format, whatever the name: " + format_names())
+      ->type_name("FORMAT");
+  verb->add_flag("--force", options->force, "overwrite the file if it is there");
+  verb->add_flag("--commands", options->commands, "with topics: their requests and set points too");
+  verb->add_option("--filter,--raw-ids", options->filters,
+                   "only frames with id & mask, hexadecimal as candump has it: 600:700; repeatable")
+      ->type_name("ID:MASK")
+      ->allow_extra_args(false);
+  verb->add_option("--split", options->split, "a new file after this size or time: 100MB, 10min")
+      ->type_name("SIZE|T");
+  verb->add_option("--ring", options->ring, "with --split: keep the newest N files")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
+  verb->add_option("-n,--count", options->count, "end after so many frames")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--duration", options->duration, "end after this time")->type_name("T");
+  verb->add_flag("--no-sync", options->no_sync,
+                 "leave it to the kernel when data reach the disk; default: every second");
+  verb->add_flag("--strict", options->strict, "exit 1 when frames were lost");
+  verb->callback([options, &session, &exit_code] { run_record(session, *options, exit_code); });
+}
+
+}  // namespace ocm::cli

@@ -1,0 +1,301 @@
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "ocm/base/decimal.hpp"
+#include "ocm/can/text.hpp"
+#include "ocm/reflective/quantity.hpp"
+
+#include "cli/interrupt.hpp"
+#include "cli/logs/format.hpp"
+#include "cli/logs/opened_log.hpp"
+#include "cli/replay/player.hpp"
+#include "cli/replay/stand_in.hpp"
+#include "cli/verbs/chosen_topics.hpp"
+#include "cli/verbs/commanding.hpp"
+#include "cli/verbs/verbs.hpp"
+
+namespace ocm::cli {
+namespace {
+
+struct ReplayOptions {
+  std::string file;
+  std::string from_format;
+  std::vector<std::string> topics;
+  std::string speed = "1";
+  std::string loop;
+  std::uint64_t passes = 1;  ///< 0: without end
+  std::string from, until, longest_gap;
+  std::string only;
+  std::vector<std::string> interfaces;
+  bool on_command = false;
+  bool dry_run = false;
+};
+
+replay::PlayerOptions player_options(const ReplayOptions& options) {
+  replay::PlayerOptions player;
+  player.at_once = options.speed == "max";
+  if (!player.at_once) {
+    const auto speed = base::parse_decimal(options.speed);
+    if (!speed || speed->as_double() < 1e-6 || speed->as_double() > 1e6)
+      fail({fmt::format("--speed {}: not a speed", options.speed),
+            "write how many times faster, 0.000001 to 1000000, or max"},
+           exit_usage);
+    player.playback.speed = speed->as_double();
+  }
+  if (!options.from.empty()) player.span.from = duration_option("--from", options.from);
+  if (!options.until.empty()) player.span.until = duration_option("--until", options.until);
+  if (!options.longest_gap.empty())
+    player.playback.longest_gap = duration_option("--max-gap", options.longest_gap);
+  if (player.span.until < player.span.from)
+    fail({"replay: --until is before --from", "both count from the first frame of the log"}, exit_usage);
+  return player;
+}
+
+replay::Only parse_only(const std::string& text) {
+  if (text == "sensors") return replay::Only::sensors;
+  if (text == "commands") return replay::Only::commands;
+  return replay::Only::all;
+}
+
+/// 0: without end.
+std::uint64_t parse_passes(const std::string& text) {
+  if (text.empty()) return 0;
+  const auto passes = base::parse_unsigned(text);
+  if (!passes || *passes == 0)
+    fail({fmt::format("--loop {}: not a number of passes", text),
+          "write --loop 3, or --loop alone as the last word"},
+         exit_usage);
+  return *passes;
+}
+
+struct Route {
+  std::string in_log, bus;
+};
+
+std::vector<Route> parse_routes(const std::vector<std::string>& words) {
+  std::vector<Route> routes;
+  for (const auto& word : words) {
+    const auto sign = word.find('=');
+    if (sign == std::string::npos || sign == 0 || sign + 1 == word.size())
+      fail({fmt::format("--interface {}: not a pair", word),
+            "write the log's name and the bus: --interface can0=vcan1"},
+           exit_usage);
+    routes.push_back({word.substr(0, sign), word.substr(sign + 1)});
+  }
+  return routes;
+}
+
+/// The bus, or one for each name that --interface has on its right side.
+std::vector<replay::Outlet> open_outlets(Session& session, const std::vector<Route>& routes,
+                                         replay::PlayerOptions& player) {
+  std::vector<replay::Outlet> outlets;
+  std::vector<std::string> names;
+  if (routes.empty()) outlets.emplace_back(session.open_bus());
+  for (const auto& route : routes) {
+    const auto known = std::find(names.begin(), names.end(), route.bus);
+    player.routes.emplace_back(route.in_log, static_cast<std::size_t>(known - names.begin()));
+    if (known != names.end()) continue;
+    names.push_back(route.bus);
+    outlets.emplace_back(Session::open_bus(route.bus));
+  }
+  return outlets;
+}
+
+void add_count(std::string& text, std::uint64_t count, std::string_view what) {
+  if (count != 0) text += fmt::format(", {} {}", count, what);
+}
+
+std::string rounded(base::Duration duration) {
+  return reflective::to_text(std::chrono::duration_cast<std::chrono::microseconds>(duration));
+}
+
+void summarise(const replay::Player& player, bool dry_run) {
+  const auto& played = player.played();
+  const auto lasted = std::chrono::duration_cast<std::chrono::milliseconds>(player.lasted());
+  std::string text = dry_run ? fmt::format("{} frames would be sent", played.sent)
+                             : fmt::format("sent {} frames in {}", played.sent, reflective::to_text(lasted));
+  add_count(text, played.not_chosen, "not chosen");
+  add_count(text, played.error_frames, "error frames left out");
+  add_count(text, played.fd_frames, "CAN FD frames left out: the bus has none");
+  add_count(text, played.no_route, "of interfaces without a bus");
+  add_count(text, player.playback().backward(), "with a time before the last");
+  add_count(text, player.playback().cut(), "pauses cut");
+  if (player.playback().late() != 0)
+    text += fmt::format(", {} later than 1 ms, the latest by {}", player.playback().late(),
+                        rounded(player.playback().worst()));
+  remark(text);
+}
+
+void play(Session& session, const ReplayOptions& options, int& exit_code) {
+  const auto& catalogue = session.catalogue();
+  auto chosen = player_options(options);
+  replay::Selection selection{catalogue, chosen_topics("replay", catalogue, options.topics),
+                              parse_only(options.only)};
+  const auto routes = parse_routes(options.interfaces);
+  if (options.passes != 1 && options.file == "-")
+    fail({"replay: --loop needs a file", "what came on the standard input is gone"}, exit_usage);
+  if (options.passes != 1 && options.dry_run)
+    fail({"replay: --dry-run plays once", "leave --loop away"}, exit_usage);
+
+  catch_interrupts();
+  auto log = std::make_unique<logs::OpenedLog>(options.file, options.from_format, catalogue);
+  std::vector<replay::Outlet> outlets;
+  std::unique_ptr<log::Writer> printer;
+  if (options.dry_run)
+    printer = logs::find_format("candump")->writer(catalogue);
+  else
+    outlets = open_outlets(session, routes, chosen);
+  replay::Player player{std::move(chosen), std::move(selection), std::move(outlets), std::move(printer)};
+  bool damaged = false;
+  try {
+    for (std::uint64_t pass = 1;; ++pass) {
+      const std::uint64_t sent_before = player.played().sent;
+      player.play(log->reader());
+      if (pass == 1) damaged = log->complain();
+      const bool last = options.passes != 0 && pass == options.passes;
+      // A pass without a frame takes no time: more of them would never end.
+      if (last || interrupted() != 0 || player.played().sent == sent_before) break;
+      log = std::make_unique<logs::OpenedLog>(options.file, options.from_format, catalogue);
+    }
+  } catch (const Exit&) {  // the bus took no more: what was sent is told all the same
+    summarise(player, false);
+    throw;
+  }
+  summarise(player, options.dry_run);
+  exit_code = exit_code_after_interrupt(damaged ? exit_failure : exit_success);
+}
+
+/// The samples of the log, between --from and --until.
+void learn(replay::StandIn& robot, logs::OpenedLog& log, const replay::Span& span,
+           const replay::Selection& selection) {
+  std::vector<log::Entry> entries(log::batch);
+  std::optional<base::Time> first;
+  while (const std::size_t count = log.reader().read(entries)) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto& entry = entries[i];
+      if (!first) first = entry.time;
+      const base::Duration offset = log::Playback::distance(entry.time, *first);
+      const auto frame = entry.classic();
+      if (!frame || span.is_before(offset) || span.is_behind(offset) || !selection.has(entry)) continue;
+      if (!robot.learn(*frame))
+        fail({fmt::format("{} has more frames than fit into the memory for --on-command", log.path()),
+              "choose a part of it with --from and --until, or some topics"});
+    }
+  }
+}
+
+void tell_learnt(const replay::StandIn& robot, const protocol::Catalogue& catalogue) {
+  std::string text;
+  for (const auto& topic : catalogue.topics)
+    if (robot.samples(topic) != 0)
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", robot.samples(topic), topic.name);
+  remark(fmt::format("samples: {}; waiting for requests, Ctrl-C ends", text));
+}
+
+void stand_in(Session& session, const ReplayOptions& options, int& exit_code) {
+  using Answer = replay::StandIn::Answer;
+  const auto& catalogue = session.catalogue();
+  const auto span = player_options(options).span;
+  const replay::Selection selection{catalogue, chosen_topics("replay", catalogue, options.topics),
+                                    replay::Only::sensors};
+  catch_interrupts();
+  replay::StandIn robot{catalogue};
+  {
+    logs::OpenedLog log{options.file, options.from_format, catalogue};
+    learn(robot, log, span, selection);
+    log.complain();
+  }
+  if (robot.samples() == 0)
+    fail({fmt::format("{} has no sample of a sensor: nothing could be answered", options.file),
+          "is --spec that of the robot that was recorded?"});
+  const auto bus = session.open_bus();
+  tell_learnt(robot, catalogue);
+
+  std::uint64_t requests = 0, refused = 0, silent = 0, sent = 0;
+  StateWatch watch;
+  while (interrupted() == 0) {
+    const base::Time now = replay::monotonic_now();
+    for (const auto& frame : robot.due(now)) {
+      send_patiently(*bus, frame);
+      ++sent;
+    }
+    const base::Duration left =
+        std::min<base::Duration>(robot.next() == base::never ? base::Duration::max() : robot.next() - now,
+                                 std::chrono::milliseconds{200});
+    const auto received = bus->receive(std::max(left, base::Duration{0}));
+    watch.look(*bus);
+    if (received.error == base::Error::closed) fail(bus->failure());
+    if (!received) continue;
+    switch (robot.take(received->frame, replay::monotonic_now())) {
+      case Answer::none:
+        break;
+      case Answer::accepted:
+        ++requests;
+        break;
+      case Answer::refused:
+        ++refused;
+        remark(fmt::format("refused: {}", can::to_text(received->frame).view()));
+        break;
+      case Answer::silent:
+        ++silent;
+        remark(fmt::format("{}: the log has no sample of it", can::to_text(received->frame).view()));
+        break;
+    }
+  }
+  std::string text = fmt::format("{} requests, {} frames sent", requests, sent);
+  add_count(text, refused, "requests refused");
+  add_count(text, silent, "requests for what was not recorded");
+  remark(text);
+  exit_code = exit_code_after_interrupt(exit_success);
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app, Session& session, int& exit_code) {
+  auto* verb = add_verb(app, "replay", "send what was recorded, each frame at its time", log_group,
+                        "  amiroctl replay drive.log\n"
+                        "  amiroctl replay drive.pcapng --speed 10 gyro odom\n"
+                        "  amiroctl replay drive.log --from 1min --until 90s --loop\n"
+                        "  amiroctl replay both.pcapng --interface can0=vcan0 --interface can1=vcan1\n"
+                        "  amiroctl replay drive.log --on-command     a robot that is a log");
+  const auto options = std::make_shared<ReplayOptions>();
+  verb->add_option("file", options->file, "a log in any format, packed or not; - for standard input")
+      ->required()
+      ->type_name("FILE");
+  verb->add_option("topics", options->topics, "only frames of these; default: all that is in the log")
+      ->type_name("[TOPIC ...]");
+  verb->add_option("--from-format", options->from_format, "the log's format, where it cannot be seen")
+      ->type_name("FORMAT");
+  verb->add_option("--speed", options->speed, "how many times faster; max: as fast as the bus takes them")
+      ->type_name("X|max");
+  auto* loop = verb->add_option("--loop", options->loop, "play it N times; without N until Ctrl-C");
+  loop->expected(0, 1)->type_name("[N]");
+  verb->add_option("--from", options->from, "begin so far into the log")->type_name("T");
+  verb->add_option("--until", options->until, "end so far into the log")->type_name("T");
+  verb->add_option("--max-gap", options->longest_gap, "cut longer pauses to this")->type_name("T");
+  verb->add_option("--only", options->only, "sensors: what boards sent; commands: what they were sent")
+      ->check(CLI::IsMember({"sensors", "commands"}))
+      ->type_name("WHICH");
+  verb->add_option("--interface", options->interfaces,
+                   "frames of the log's interface LOG go to BUS, those of others nowhere; repeatable")
+      ->type_name("LOG=BUS")
+      ->allow_extra_args(false);
+  verb->add_flag("--on-command", options->on_command,
+                 "answer requests on the bus with the samples of the log, at the period that is asked for");
+  verb->add_flag("--dry-run", options->dry_run,
+                 "print the frames, and when they would be sent; send nothing");
+  verb->callback([options, loop, &session, &exit_code] {
+    if (loop->count() != 0) options->passes = parse_passes(options->loop);
+    if (options->on_command)
+      stand_in(session, *options, exit_code);
+    else
+      play(session, *options, exit_code);
+  });
+}
+
+}  // namespace ocm::cli

@@ -1,0 +1,170 @@
+/// How regularly topics come, what is missing, and how full the bus is: of a log, or of the bus as it is.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <sys/ioctl.h>
+#include <unistd.h>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "ocm/reflective/command.hpp"
+
+#include "cli/interrupt.hpp"
+#include "cli/stats/assertion.hpp"
+#include "cli/stats/report.hpp"
+#include "cli/verbs/chosen_topics.hpp"
+#include "cli/verbs/commanding.hpp"
+#include "cli/verbs/verbs.hpp"
+#include "cli/watching.hpp"
+
+namespace ocm::cli {
+namespace {
+
+struct StatsOptions {
+  std::vector<std::string> words;
+  WatchOptions watch;
+  std::vector<std::string> assertions;
+  std::string bit_rate;
+  bool json = false, csv = false;
+};
+
+base::Time unix_time() {
+  return base::Time{std::chrono::system_clock::now().time_since_epoch()};
+}
+
+/// A table on a terminal that is drawn anew over the last one.
+class Screen {
+ public:
+  Screen() : terminal_(isatty(STDOUT_FILENO) != 0) {}
+  [[nodiscard]] bool terminal() const noexcept { return terminal_; }
+
+  void show(const std::vector<std::string>& lines) {
+    if (!terminal_) return print(lines, SIZE_MAX, SIZE_MAX);
+    winsize size{};
+    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || size.ws_row < 2)
+      size = {24, 80, 0, 0};
+    if (drawn_ > 0) fmt::print("\x1b[{}A\x1b[J", drawn_);
+    drawn_ = std::min<std::size_t>(lines.size(), size.ws_row - 1U);
+    print(lines, drawn_, size.ws_col);
+  }
+  /// The last one, in full.
+  void finish(const std::vector<std::string>& lines) {
+    if (drawn_ > 0) fmt::print("\x1b[{}A\x1b[J", drawn_);
+    print(lines, SIZE_MAX, SIZE_MAX);
+  }
+
+ private:
+  /// A line that breaks would take two of those that go away with the next table. Colours take no room, and
+  /// are what a line ends with.
+  static std::string cut(const std::string& line, std::size_t columns) {
+    const bool coloured = line.starts_with("\x1b[");
+    const std::size_t before = coloured ? 5 : 0;
+    const std::size_t after = coloured ? 4 : 0;
+    if (line.size() - before - after <= columns) return line;
+    return line.substr(0, before + columns) + (coloured ? "\x1b[0m" : "");
+  }
+  static void print(const std::vector<std::string>& lines, std::size_t rows, std::size_t columns) {
+    for (std::size_t i = 0; i < std::min(rows, lines.size()); ++i) fmt::print("{}\n", cut(lines[i], columns));
+    std::fflush(stdout);
+  }
+
+  bool terminal_;
+  std::size_t drawn_ = 0;
+};
+
+std::vector<stats::Assertion> read_assertions(const std::vector<std::string>& texts,
+                                              const protocol::Catalogue& catalogue) {
+  std::vector<stats::Assertion> assertions;
+  for (const auto& text : texts) {
+    auto assertion = stats::Assertion::parse(text, catalogue);
+    if (!assertion) fail({"stats: " + assertion.error.what, assertion.error.remedy}, exit_usage);
+    assertions.push_back(std::move(assertion.value));
+  }
+  return assertions;
+}
+
+std::uint32_t chosen_bit_rate(const std::string& text, const protocol::Catalogue& catalogue) {
+  if (!text.empty()) return bit_rate_option(text);
+  if (catalogue.bit_rate != 0) return catalogue.bit_rate;
+  fail({"stats: the spec says no bit rate", "--bitrate gives it, such as --bitrate 500k"}, exit_usage);
+}
+
+void run(Session& session, const StatsOptions& options, int& exit_code) {
+  const auto& catalogue = session.catalogue();
+  const auto means_topic = [&catalogue](std::string_view word) {
+    return std::any_of(catalogue.topics.begin(), catalogue.topics.end(), [&](const protocol::Topic& topic) {
+      return catalogue.find(word) == &topic || topic.group == word;
+    });
+  };
+  Words words = split_words("stats", options.words, means_topic);
+  const auto shown = chosen_topics("stats", catalogue, words.others);
+  const auto assertions = read_assertions(options.assertions, catalogue);
+  stats::Collector collector{catalogue, chosen_bit_rate(options.bit_rate, catalogue)};
+  Watching watching{session, options.watch, std::move(words.files)};
+
+  const bool table = !options.json && !options.csv;
+  Screen screen;
+  const auto report = [&](std::optional<base::Time> now) {
+    return stats::Report{catalogue.robot, watching.source(), collector.buses(now)};
+  };
+  // In a pipe, whoever said when it ends waits for the end.
+  const bool tell = table && (screen.terminal() || !watching.ends());
+  watching.run([&](auto entries, const auto& interfaces) { collector.take(entries, interfaces); },
+               [&](auto interface, auto frames) { collector.lost(interface, frames); },
+               [&] {
+                 if (tell && collector.any())
+                   screen.show(stats::to_table(report(unix_time()), shown, session.colour()));
+               });
+
+  std::optional<base::Time> now;
+  if (watching.live() && collector.any()) now = unix_time();
+  const auto result = report(now);
+  if (options.json)
+    fmt::print("{}", stats::to_json(result, shown, assertions));
+  else if (options.csv)
+    fmt::print("{}", stats::to_csv(result, shown));
+  else
+    screen.finish(stats::to_table(result, shown, session.colour()));
+  if (!collector.any() && interrupted() == 0) {
+    remark(fmt::format("amiroctl: stats: no frame came from {}", watching.source()));
+    exit_code = exit_failure;
+  }
+  for (const auto& assertion : assertions) {
+    const auto verdict = assertion.check(result.buses);
+    if (verdict.holds) continue;
+    remark("does not hold: " + verdict.said);
+    exit_code = exit_failure;
+  }
+  exit_code = exit_code_after_interrupt(watching.ending(exit_code));
+}
+
+}  // namespace
+
+void add_stats(CLI::App& app, Session& session, int& exit_code) {
+  auto* verb =
+      add_verb(app, "stats", "rates, jitter, gaps and losses of topics, and the load of the bus", log_group,
+               "  amiroctl stats                          the bus, a table that is renewed every second\n"
+               "  amiroctl stats gyro --duration 10s\n"
+               "  amiroctl stats drive.log --json | jq '.buses[0].topics'\n"
+               "  amiroctl stats drive.log --assert 'gyro.rate>1.9' --assert 'bus.load<40%'");
+  verb->alias("hz");
+  const auto options = std::make_shared<StatsOptions>();
+  verb->add_option("words", options->words,
+                   "logs, any format; none, or live: the bus. Topics to show; default: all")
+      ->type_name("[FILE ...|live] [TOPIC ...]");
+  add_watch_options(*verb, options->watch);
+  verb->add_option("--assert", options->assertions,
+                   "exit 1 unless this holds, such as 'gyro.rate>1.9'; may be given again")
+      ->type_name("EXPRESSION")
+      ->allow_extra_args(false);
+  verb->add_option("--bitrate", options->bit_rate, "such as 500k or 125000; default: the spec's")
+      ->type_name("RATE");
+  auto* json = verb->add_flag("--json", options->json, "one object, for programs");
+  verb->add_flag("--csv", options->csv, "a line a topic, times in nanoseconds")->excludes(json);
+  verb->callback([options, &session, &exit_code] { run(session, *options, exit_code); });
+}
+
+}  // namespace ocm::cli

@@ -1,0 +1,198 @@
+"""decode, encode and send --stdin: a log in words, back again, and onto a bus."""
+
+import gzip
+import json
+import os
+import re
+import subprocess
+import time
+
+from harness import AMIROCTL, Case, main
+
+# One frame of every kind. [docs/verbs/listen.md; candump's notation: can-utils lib.h]
+LOG = """\
+(1436509052.249713) can0 608#0300FFFF0000
+(1436509052.349713) can0 602#50C30000400D0300
+(1436509052.350000) can1 603#0000000001000000 R
+(1436509053.000000) can0 208#01F40100 T
+(1436509053.500000) can0 201#50C30000400D0300
+(1436509054.000000) can0 4FF#0011
+(1436509054.100000) can0 608#01
+(1436509054.200000) can0 12345678#DEADBEEF
+(1436509054.300000) can0 123#R4
+(1436509054.400000) can0 608##10300FFFF00001122
+(1436509054.500000) can0 601#0011223344556677_C
+(1436509054.600000) can0 20000040#0000000000000000
+"""
+
+
+class Decode(Case):
+    def file(self, name, content):
+        path = os.path.join(self.folder, name)
+        with open(path, "wb") as file:
+            file.write(content if isinstance(content, bytes) else content.encode())
+        return path
+
+    def test_back_to_the_byte(self):
+        out, err = self.run_tool("decode", "--json", stdin=LOG)
+        self.assertEqual(len(out.splitlines()), 12)
+        self.assertIn("12 frames, 2 samples, 2 commands, 4 of unknown identifier, 1 of CAN FD, 1 of wrong length, "
+                      "1 error frames", err)
+        again, _ = self.run_tool("encode", stdin=out)
+        self.assertEqual(again, LOG)
+        converted, _ = self.run_tool("convert", "-", "-", "--to", "json", stdin=LOG)
+        self.assertEqual(converted, out)
+        again, _ = self.run_tool("convert", "-", "-", "--to", "candump", stdin=converted)
+        self.assertEqual(again, LOG)
+
+    def test_json(self):
+        out, _ = self.run_tool("decode", stdin=LOG)
+        first, velocity, pose, request, motors = self.objects(out)[:5]
+        self.assertEqual(first["fields"], {"x": 0.0525, "y": -0.0175, "z": 0})
+        self.assertEqual(list(first), ["time_ns", "bus", "id", "priority", "topic", "frame", "fields", "units", "data"])
+        self.assertEqual((velocity["frame"], pose["frame"]), ("velocity", "pose"))
+        self.assertEqual((pose["bus"], pose["direction"]), ("can1", "received"))
+        self.assertEqual(request["fields"], {"mode": "publish", "period": 0.5})
+        self.assertEqual(motors["topic"], "motors")
+
+    def test_choices(self):
+        def lines(*arguments):
+            return self.run_tool("decode", *arguments, stdin=LOG)[0].splitlines()
+
+        self.assertEqual(len(lines("--topic", "gyro")), 3)
+        self.assertEqual(len(lines("--topic", "gyro", "--topic", "odom")), 5)
+        self.assertEqual(lines("--csv", "--field", "gyroscope.y", "--field", "odom.velocity.x"), [
+            "time,gyroscope.y,odometry.velocity.x", "1436509052.249713000,-0.0175,", "1436509052.349713000,,0.05"])
+        self.assertEqual([json.loads(line)["fields"] for line in lines("--field", "gyro.y")], [{"y": -0.0175}])
+        self.assertEqual(len(lines("-n", "3")), 3)
+        self.assertEqual(len(lines("--since", "100ms", "--until", "1s")), 3)
+        self.assertEqual(len(lines("--pretty")), 11)  # two frames of a sample are one line
+        self.assertEqual("\n".join(lines("--raw")) + "\n", LOG)
+
+    def test_several_files_packed_and_plain(self):
+        plain = self.file("a.log", LOG)
+        packed = self.file("b.log.gz", gzip.compress(LOG.encode()))
+        out, err = self.run_tool("decode", plain, packed, "--json")
+        self.assertEqual(len(out.splitlines()), 24)
+        self.assertIn("24 frames", err)
+
+    def test_what_cannot_be_decoded(self):
+        good = LOG.splitlines()[0] + "\n"
+        _, err = self.run_tool("decode", "--strict", stdin=good)
+        _, err = self.run_tool("decode", "--strict", stdin=LOG, code=1)
+        _, err = self.run_tool("decode", "--strict", stdin=good + "what\n", code=1)
+        self.assertIn("line 2", err)
+        self.run_tool("decode", stdin=good + "what\n")
+        _, err = self.run_tool("decode", stdin="(0.0) can0 7FF#11\n" * 9, code=1)
+        self.assertIn("9 of 9 frames are of no topic of AMiRo: a log of another bus? --spec", err)
+        _, err = self.run_tool("decode", "--topic", "ring", stdin=LOG, code=1)
+        self.assertIn("no frame to decode", err)
+
+    def test_wrong_usage(self):
+        for arguments, word in ((["--field", "gyro.w"], "no field 'gyro.w'"), (["--field", "gyra"], "no topic 'gyra'"),
+                                (["--topic", "gyra"], "no topic 'gyra'"), (["--json", "--csv"], "--"),
+                                (["--raw", "--field", "gyro"], "--raw"), (["--since", "soon"], "--since soon"),
+                                (["--from", "xml"], "xml")):
+            _, err = self.run_tool("decode", *arguments, stdin=LOG, code=2)
+            self.assertIn(word, err)
+        _, err = self.run_tool("decode", "/nowhere.log", code=1)
+        self.assertIn("/nowhere.log", err)
+
+    def test_a_reader_that_goes_away(self):
+        path = self.file("long.log", LOG * 20000)
+        pipe = subprocess.run(f"'{AMIROCTL}' decode '{path}' | head -1; echo ${{PIPESTATUS[0]}}", shell=True, text=True,
+                              executable="/bin/bash", capture_output=True, timeout=30)
+        line, code = pipe.stdout.splitlines()
+        self.assertEqual((json.loads(line)["topic"], code, pipe.stderr), ("gyroscope", "141", ""))
+
+    def test_a_full_disk(self):
+        with open("/dev/full", "w") as full:
+            for verb, text in (("decode", LOG), ("encode", '{"id":"123","data":"11"}\n')):
+                result = subprocess.run([AMIROCTL, verb], input=text, stdout=full, text=True, stderr=subprocess.PIPE)
+                self.assertEqual(result.returncode, 1)
+                self.assertIn("cannot write", result.stderr)
+
+    def test_memory_is_constant(self):
+        process = subprocess.Popen([AMIROCTL, "decode", "-"], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.DEVNULL)
+        self._started.append(process)
+        for _ in range(100):
+            process.stdin.write((LOG * 500).encode())  # 25 MB in all
+        process.stdin.flush()
+        with open(f"/proc/{process.pid}/status") as status:
+            peak = int(re.search(r"VmHWM:\s*(\d+) kB", status.read())[1])
+        self.assertLess(peak, 32 * 1024)
+
+    def test_a_live_pipe_is_shown_at_once(self):
+        process = subprocess.Popen([AMIROCTL, "decode", "--json"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True, bufsize=1)
+        self._started.append(process)
+        for line in LOG.splitlines()[:3]:
+            process.stdin.write(line + "\n")
+            process.stdin.flush()
+            self.assertIn("data", json.loads(process.stdout.readline()))
+        self.interrupt(process)
+        self.assertEqual(process.returncode, 130)
+
+
+class Encode(Case):
+    def test_edits(self):
+        line = json.loads(self.run_tool("decode", stdin=LOG)[0].splitlines()[0])
+        line["fields"]["x"] = 0.07
+        out, _ = self.run_tool("encode", stdin=json.dumps(line))
+        self.assertEqual(out, "(1436509052.249713) can0 608#0400FFFF0000\n")
+        del line["data"], line["id"]
+        line["priority"] = "urgent"
+        out, _ = self.run_tool("encode", stdin=json.dumps(line))
+        self.assertEqual(out, "(1436509052.249713) can0 408#0400FFFF0000\n")
+
+    def test_bad_lines(self):
+        lines = '{"id":"123","data":"11"}\n{"id":"123"}\n{"id":"124","data":"22"}\n'
+        out, err = self.run_tool("encode", stdin=lines, code=1)
+        self.assertIn("standard input:2: no data", err)
+        self.assertEqual(out.split()[-1], "123#11")
+        out, err = self.run_tool("encode", "--keep-going", stdin=lines, code=1)
+        self.assertEqual(len(out.splitlines()), 2)
+        _, err = self.run_tool("encode", "--to", "xml", code=2)
+        self.assertIn("candump", err)
+        _, err = self.run_tool("encode", "/nowhere.jsonl", code=1)
+        self.assertIn("/nowhere.jsonl", err)
+
+    def test_to_a_file_of_another_format(self):
+        json_lines, _ = self.run_tool("decode", stdin=LOG)
+        path = os.path.join(self.folder, "out.pcapng")
+        self.run_tool("encode", "-o", path, stdin=json_lines)
+        out, _ = self.run_tool("decode", path)
+        self.assertEqual(out, json_lines)
+
+
+class Send(Case):
+    def test_dry_run(self):
+        lines = '605#01\n(1.5) can0 123#R\n{"topic":"motors","fields":{"x":0.05,"z":0.2}}\n'
+        out, err = self.run_tool("send", "--stdin", "--dry-run", stdin=lines)
+        self.assertEqual(out.split(), ["605#01", "123#R", "201#50C30000400D0300"])
+        out, err = self.run_tool("send", "--stdin", "--dry-run", stdin=lines + "what\n", code=1)
+        self.assertIn("standard input:4:", err)
+        _, err = self.run_tool("send", "--stdin", "--dry-run", stdin=LOG, code=1)
+        self.assertIn("1 error frames are reports and were not, 1 CAN FD frames were not", err)
+        self.run_tool("send", "--stdin", "605#01", code=2)
+        self.run_tool("send", "--timed", "605#01", code=2)
+
+    def test_what_listen_prints_is_sent(self):
+        self.start_sim()
+        listener = self.listen("--commands", "--timeout", "20s")
+        lines = "".join(line + "\n" for line in LOG.splitlines()[3:6])
+        json_lines, _ = self.run_tool("decode", "-", "--from", "candump", stdin=lines)
+        _, err = self.run_tool("send", "--stdin", "--timed", stdin=json_lines)
+        self.assertIn("3 frames sent", err)
+        time.sleep(0.3)
+        heard = self.objects(self.interrupt(listener)[0])
+        heard = [line for line in heard if line["id"] in ("208", "201", "4FF")]
+        sent = self.objects(json_lines)
+        self.assertEqual([(line["id"], line["data"]) for line in heard], [(line["id"], line["data"]) for line in sent])
+        times = [int(line["time_ns"]) for line in heard]
+        self.assertGreaterEqual(times[2] - times[0], 950_000_000)  # 1 s in the log; how late the last comes is luck
+
+
+if __name__ == "__main__":
+    main()

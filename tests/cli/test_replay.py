@@ -1,0 +1,221 @@
+"""amiroctl replay on a virtual bus: frames at their times, and a log that answers like the robot that it is of."""
+
+import os
+import re
+import signal
+import sys
+import time
+
+from harness import SOURCE, Case, main
+
+sys.path.insert(0, os.path.join(SOURCE, "tests", "logs"))
+from virtual_bus import Client  # noqa: E402
+
+LINE = re.compile(r"^\((\d+\.\d+)\) (\S+) (\S+)#(\S*)(?: ([RT]))?$")
+
+
+class Replaying(Case):
+    def setUp(self):
+        super().setUp()
+        self.path = lambda name: os.path.join(self.folder, name)
+
+    def write_log(self, *lines, name="in.log", interface="can0"):
+        with open(self.path(name), "w") as file:
+            for second, frame in lines:
+                file.write(f"({second:.6f}) {interface} {frame}\n")
+        return self.path(name)
+
+    def lines(self, name):
+        with open(self.path(name)) as file:
+            return [(float(line[1]), f"{line[3]}#{line[4]}") for line in map(LINE.match, file)]
+
+    def recording(self, name, *arguments):
+        recorder = self.start("record", "-o", self.path(name), *arguments)
+        for line in recorder.stderr:
+            if "Ctrl-C ends" in line:
+                return recorder
+        self.fail(f"record ended with {recorder.wait()}")
+
+    def replayed(self, log, *arguments, code=0):
+        """What comes on the bus when a log is replayed, with its times; and what replay says."""
+        name = f"out{len(os.listdir(self.folder))}.log"
+        recorder = self.recording(name)
+        _, err = self.run_tool("replay", log, *arguments, code=code)
+        time.sleep(0.3)
+        self.interrupt(recorder)
+        return self.lines(name), err
+
+    def test_record_replay_record(self):
+        self.start_sim()
+        recorder = self.recording("first.log")
+        for words in (("gyro", "20ms"), ("odom", "30ms"), ("ring", "100ms")):
+            self.run_tool("publish", *words)
+        time.sleep(1.5)
+        self.run_tool("stop", "all")
+        time.sleep(0.3)
+        self.interrupt(recorder)
+        first = self.lines("first.log")
+        self.assertGreater(len(first), 150)
+        # Sensor data only: the robot would answer the requests.
+        sensors = [line for line in first if int(line[1][:3], 16) & 0x400]
+        second, _ = self.replayed(self.path("first.log"), "--only", "sensors")
+        self.assertEqual([frame for _, frame in second], [frame for _, frame in sensors])
+        shift = [there - here for (here, _), (there, _) in zip(sensors, second)]
+        self.assertLess(max(shift) - min(shift), 0.2)
+
+    def test_times_are_kept_and_scaled(self):
+        self.start_sim()
+        log = self.write_log((100, "608#01"), (100.2, "608#02"), (100.2, "608#03"), (101, "608#04"))
+        for speed, factor in (("1", 1), ("4", 0.25)):
+            out, err = self.replayed(log, "--speed", speed)
+            self.assertEqual([frame for _, frame in out], ["608#01", "608#02", "608#03", "608#04"])
+            for (when, _), wanted in zip(out, (0, 0.2, 0.2, 1)):
+                self.assertAlmostEqual(when - out[0][0], wanted * factor, delta=0.1)
+            self.assertIn("sent 4 frames in ", err)
+        begin = time.monotonic()
+        out, _ = self.replayed(log, "--speed", "max")
+        self.assertEqual(len(out), 4)
+        self.assertLess(out[-1][0] - out[0][0], 0.5)
+        self.assertLess(time.monotonic() - begin, 5)
+
+    def test_all_that_a_bus_can_carry(self):
+        self.start_sim()
+        frames = ["7FF#1122334455667788", "18FF1234#AA", "123#R", "1F334455#R", "000#"]
+        log = self.write_log(*[(i / 1000, frame) for i, frame in enumerate(frames)], (0.01, "20000040#0000000000000000"),
+                             (0.02, "123##1AABB"))
+        out, err = self.replayed(log)
+        self.assertEqual([frame for _, frame in out], frames)
+        self.assertIn("1 error frames left out", err)
+        self.assertIn("1 CAN FD frames left out", err)
+
+    def test_times_that_go_back(self):
+        self.start_sim()
+        log = self.write_log((100, "608#01"), (99.999, "608#02"), (100.1, "608#03"), (50, "608#04"), (50.1, "608#05"))
+        out, err = self.replayed(log)
+        self.assertEqual([frame for _, frame in out], [f"608#0{i}" for i in range(1, 6)])
+        self.assertIn("2 with a time before the last", err)
+        self.assertAlmostEqual(out[4][0] - out[3][0], 0.1, delta=0.05)
+
+    def test_parts_of_a_log(self):
+        lines = [(10 + i / 10, f"608#{i:02X}") for i in range(50)] + [(14.95, "609#00"), (14.96, "209#00")]
+        log = self.write_log(*lines)
+        def dry(*arguments):
+            out, err = self.run_tool("replay", log, "--dry-run", *arguments)
+            return [(float(line[1]), f"{line[3]}#{line[4]}") for line in map(LINE.match, out.splitlines())], err
+        out, err = dry()
+        self.assertEqual(out, [(round(when - 10, 6), frame) for when, frame in lines])
+        self.assertIn("52 frames would be sent", err)
+        self.assertEqual(dry("--from", "1s", "--until", "1200ms")[0], [(0, "608#0A"), (0.1, "608#0B"), (0.2, "608#0C")])
+        self.assertEqual([frame for _, frame in dry("accel")[0]], ["609#00", "209#00"])
+        self.assertEqual([frame for _, frame in dry("accel", "--only", "commands")[0]], ["209#00"])
+        self.assertEqual(len(dry("--only", "sensors")[0]), 51)
+        self.assertEqual(dry("--speed", "2")[0][1], (0.05, "608#01"))
+        long = self.write_log((0, "608#01"), (3600, "608#02"), (3601, "608#03"), name="long.log")
+        log = long
+        out, err = dry("--max-gap", "2s")
+        self.assertEqual([when for when, _ in out], [0, 2, 3])
+        self.assertIn("1 pauses cut", err)
+
+    def test_loops(self):
+        self.start_sim()
+        log = self.write_log((1, "608#01"), (1.05, "608#02"))
+        out, _ = self.replayed(log, "--loop", "3")
+        self.assertEqual([frame for _, frame in out], ["608#01", "608#02"] * 3)
+        endless = self.start("replay", log, "--loop")
+        time.sleep(1)
+        _, err = self.interrupt(endless)
+        self.assertEqual(endless.returncode, 130)
+        self.assertGreater(int(re.search(r"sent (\d+) frames", err)[1]), 10)
+
+    def test_a_log_from_a_pipe_is_played_while_it_comes(self):
+        self.start_sim()
+        out, err = self.run_tool("replay", "-", stdin="(1.0) x 608#01\n(1.1) x 608#02\n")
+        self.assertIn("sent 2 frames", err)
+
+    def test_interfaces_go_to_their_buses(self):
+        other = "sim:" + self.path("other.sock")
+        self.start_sim()
+        self.start_sim("--bus", other)
+        with open(self.path("in.log"), "w") as file:
+            file.write("(1.0) can0 608#01\n(1.0) can1 608#02\n(1.0) can2 608#03\n")
+        here = self.recording("here.log", "--bus", "sim")
+        there = self.recording("there.log", "--bus", other)
+        _, err = self.run_tool("replay", self.path("in.log"), "--interface", "can0=sim", "--interface", f"can1={other}")
+        time.sleep(0.3)
+        self.interrupt(here)
+        self.interrupt(there)
+        self.assertEqual([frame for _, frame in self.lines("here.log")], ["608#01"])
+        self.assertEqual([frame for _, frame in self.lines("there.log")], ["608#02"])
+        self.assertIn("1 of interfaces without a bus", err)
+
+    def test_a_log_stands_in_for_the_robot(self):
+        sim = self.start_sim("--without", "di_wheel_drive,light_ring,power_management")
+        lines = []
+        for i in range(4):
+            lines.append((i, f"608#{i:02X}0000000000"))
+            lines += [(i + 0.1, f"602#{i:02X}00000000000000"), (i + 0.11, f"603#{i:02X}000000000000FF")]
+        robot = self.start("replay", self.write_log(*lines), "--on-command")
+        for line in robot.stderr:
+            if "waiting for requests" in line:
+                break
+        self.assertIn("4 gyroscope", line)
+        self.assertIn("4 odometry", line)
+        listener = self.recording("out.log")
+        self.run_tool("publish", "gyro", "100ms", "--priority", "high")
+        time.sleep(1.05)
+        self.run_tool("stop", "gyro")
+        self.run_tool("once", "odom", "--wait", "3s")
+        self.run_tool("once", "accel")
+        self.run_tool("send", "208#07")
+        time.sleep(0.3)
+        self.interrupt(listener)
+        _, err = self.interrupt(robot)
+        self.assertEqual(robot.returncode, 130)
+        out = [line for line in self.lines("out.log") if int(line[1][:3], 16) & 0x400]
+        gyro = [line for line in out if line[1].startswith("508#")]
+        self.assertIn(len(gyro), (10, 11, 12))
+        # The samples of the log in turn, its first after its last, at the period that was asked for.
+        self.assertEqual([frame for _, frame in gyro], [f"508#{i % 4:02X}0000000000" for i in range(len(gyro))])
+        for (earlier, _), (later, _) in zip(gyro, gyro[1:]):
+            self.assertAlmostEqual(later - earlier, 0.1, delta=0.05)
+        self.assertEqual([frame for _, frame in out[len(gyro):]], ["602#0000000000000000", "603#00000000000000FF"])
+        self.assertIn("the log has no sample of it", err)
+        self.assertIn("1 requests refused", err)
+        self.assertIn("1 requests for what was not recorded", err)
+        self.interrupt(sim)
+
+    def test_a_simulator_that_goes(self):
+        sim = self.start_sim()
+        log = self.write_log(*[(i / 10, "608#00") for i in range(100)])
+        replay = self.start("replay", log)
+        time.sleep(0.5)
+        self.interrupt(sim)
+        _, err = replay.communicate(timeout=10)
+        self.assertEqual(replay.returncode, 1)
+        self.assertIn("sent ", err)
+        self.assertIn("was ended", err)
+
+    def test_a_damaged_log_is_played_and_told_of(self):
+        self.start_sim()
+        log = self.write_log((1, "608#01"), (1.01, "608#zz"), (1.02, "608#02"))
+        out, err = self.replayed(log, code=1)
+        self.assertEqual([frame for _, frame in out], ["608#01", "608#02"])
+        self.assertIn("line 2", err)
+
+    def test_usage(self):
+        log = self.write_log((1, "608#01"))
+        for words, hint in ((("--speed", "0"), "max"), (("--speed", "fast"), "max"), (("--loop", "x"), "--loop 3"),
+                            (("--interface", "can0"), "can0=vcan1"), (("gyrro",), "did you mean 'gyro'"),
+                            (("--from", "2s", "--until", "1s"), "--until is before --from"),
+                            (("--only", "both"), "sensors"), (("--dry-run", "--loop", "2"), "--loop")):
+            _, err = self.run_tool("replay", log, *words, code=2)
+            self.assertIn(hint, err)
+        self.run_tool("replay", "-", "--loop", "2", code=2)
+        _, err = self.run_tool("replay", self.path("none.log"), code=1)
+        self.assertIn("none.log", err)
+        _, err = self.run_tool("replay", log, "--on-command", code=1)
+        self.assertIn("no sample of a sensor", err)
+
+
+if __name__ == "__main__":
+    main()

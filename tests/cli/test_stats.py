@@ -1,0 +1,260 @@
+"""amiroctl stats: figures of logs whose periods, gaps and losses are typed by hand; assertions; the live bus."""
+
+import json
+import os
+import signal
+import time
+
+from harness import Case, main
+
+START = 1436509052  # 2015-07-10T06:17:32Z
+
+
+class Stats(Case):
+    def log(self, frames, name="drive.log"):
+        """(milliseconds, frame) or (milliseconds, frame, interface) in candump's form."""
+        path = os.path.join(self.folder, name)
+        with open(path, "w", encoding="ascii") as file:
+            for ms, frame, *interface in frames:
+                us = round(ms * 1000)
+                file.write(f"({START + us // 1000000}.{us % 1000000:06}) {interface[0] if interface else 'can0'} {frame}\n")
+        return path
+
+    def report(self, *arguments, code=0):
+        out, err = self.run_tool("stats", "--json", *arguments, code=code)
+        report = json.loads(out)
+        return report, err
+
+    def topic(self, path, name):
+        report, _ = self.report(path)
+        return {t["topic"]: t for t in report["buses"][0]["topics"]}[name]
+
+    GYRO = "508#3E001E00FCFF"
+
+    def test_period_jitter_and_gap_by_hand(self):
+        # Distances 500, 503, 497, 1000 ms, one sample missing; a request for 500 ms a millisecond before.
+        path = self.log([(0, "108#01F40100")] + [(ms, self.GYRO) for ms in (1, 501, 1004, 1501, 2501)])
+        gyro = self.topic(path, "gyroscope")
+        self.assertEqual(gyro["count"], 5)
+        self.assertEqual(gyro["by_priority"], {"high": 5})
+        self.assertEqual(gyro["period_ns"], 500_000_000)
+        self.assertEqual(gyro["period_from"], "request")
+        self.assertEqual(gyro["mean_ns"], 625e6)
+        self.assertEqual(gyro["rate_hz"], 1.6)
+        # Off their mean of 625: (125^2 + 122^2 + 128^2 + 375^2) / 4 = 46879.5
+        self.assertAlmostEqual(gyro["jitter_ns"], 46879.5 ** 0.5 * 1e6, delta=1)
+        self.assertEqual(gyro["spread_ns"], 503_000_000)
+        self.assertEqual(gyro["lateness_ns"], 3_000_000)
+        self.assertEqual(gyro["gap_ns"], 1_000_000_000)
+        self.assertEqual(gyro["gap_from_ns"], str(START * 10**9 + 1_501_000_000))
+        self.assertEqual(gyro["missing"], 1)
+        self.assertEqual(gyro["requests"], 1)
+
+    def test_all_distances_count_and_a_stop_is_no_gap(self):
+        frames = [(0, "208#01F40100")] + [(1 + 500 * i, "608#000000000000") for i in range(4)]
+        frames += [(1600, "208#00"), (60000, "208#01140000")]
+        frames += [(60000.5 + 20 * i, "608#000000000000") for i in range(101)]
+        gyro = self.topic(self.log(frames), "gyroscope")
+        self.assertEqual(gyro["count"], 105)
+        self.assertAlmostEqual(gyro["mean_ns"], (3 * 500e6 + 100 * 20e6) / 103, delta=1)
+        self.assertEqual(gyro["jitter_ns"], 0)
+        self.assertEqual(gyro["period_ns"], 20_000_000)
+        self.assertEqual(gyro["missing"], 0)
+        self.assertEqual(gyro["gap_ns"], 500_000_000)
+
+    def test_silence_at_the_end_is_a_gap(self):
+        frames = [(0, "208#01640000"), (1, "608#000000000000"), (101, "608#000000000000")]
+        gyro = self.topic(self.log(frames + [(1101, "655#")]), "gyroscope")
+        self.assertEqual(gyro["missing"], 9)
+        self.assertEqual(gyro["gap_ns"], 1_000_000_000)
+        self.assertEqual(gyro["rate_hz"], 10)
+
+    def test_without_a_request_the_samples_say_the_period(self):
+        path = self.log([(20 * i, "608#000000000000") for i in range(40) if i != 20])
+        gyro = self.topic(path, "gyroscope")
+        self.assertEqual((gyro["period_ns"], gyro["period_from"], gyro["missing"]), (20_000_000, "measured", 1))
+        self.assertIsNone(gyro["lateness_ns"])
+        path = self.log([(50 * i, "608#000000000000") for i in range(40) if i != 20])
+        gyro = self.topic(path, "gyroscope")
+        self.assertEqual((gyro["period_ns"], gyro["period_from"], gyro["missing"]), (50_000_000, "spec", 1))
+
+    def test_faults_of_the_bus(self):
+        path = self.log([(0, "608#00"), (1, "655#01"), (2, "1F334455#"), (3, "655#02"), (4, "605#00000000"),
+                         (5, "20000040#0000000000000000"), (6, "20000004#0001000000000000"), (7, "655##1AA"),
+                         (8, "208#09")])
+        report, _ = self.report(path)
+        bus = report["buses"][0]
+        self.assertEqual(bus["bus"], "can0")
+        self.assertEqual((bus["frames"], bus["errors"], bus["overflows"], bus["fd_frames"]), (6, 2, 1, 1))
+        self.assertEqual((bus["unknown"], bus["wrong_length"], bus["commands"]), (3, 1, 1))
+        self.assertEqual(bus["unknown_ids"], [{"id": "655", "count": 2}, {"id": "1F334455", "count": 1}])
+        gyro = bus["topics"][1]
+        self.assertEqual((gyro["topic"], gyro["wrong_length"], gyro["requests"], gyro["bad_requests"]),
+                         ("gyroscope", 1, 1, 1))
+        out, _ = self.run_tool("stats", path)
+        self.assertIn("2 error frames, 1 overflow of the CAN controller, 1 CAN FD frame, not in the load, "
+                      "3 frames that no topic has (655 2, 1F334455 1)", out)
+
+    def test_load_is_of_exact_bits(self):
+        # 205#01840302 has 44 + 32 + 5 bits and 3 of intermission: tests/unit/can/length.cpp. Ten of them in
+        # 9 ms at 500 kbit/s, the first of which had begun before.
+        path = self.log([(i, "205#01840302") for i in range(10)])
+        report, _ = self.report(path)
+        bus = report["buses"][0]
+        self.assertAlmostEqual(bus["load_percent"], 100 * 9 * 84 / 500e3 / 0.009)
+        self.assertAlmostEqual(bus["request_load_percent"], bus["load_percent"])
+        self.assertAlmostEqual(bus["worst_100ms_load_percent"], 100 * 840 / 50e3)
+        report, _ = self.report(path, "--bitrate", "125k")
+        self.assertAlmostEqual(report["buses"][0]["load_percent"], 4 * bus["load_percent"])
+        self.assertEqual(report["buses"][0]["bit_rate"], 125000)
+
+    def test_assertions(self):
+        path = self.log([(0, "108#01F40100")] + [(1 + 500 * i, self.GYRO) for i in range(5)])
+        holds = ["gyro.rate>1.9", "gyro.rate == 2Hz", "gyroscope.count==5", "gyro.period<=500ms", "gyro.jitter<1us",
+                 "gyro.gap<0.6s", "gyro.missing==0", "gyro.incomplete=0", "gyro.lateness<=0", "gyro.load<1%",
+                 "bus.errors==0", "bus.unknown==0", "bus.drops==0", "bus.frames==6", "bus.load<1%", "bus.peak<1%",
+                 "bus.rate!=7", "mag.count==0"]
+        arguments = [word for each in holds for word in ("--assert", each)]
+        out, err = self.run_tool("stats", path, "--json", *arguments)
+        self.assertEqual([a["holds"] for a in json.loads(out)["assertions"]], [True] * len(holds))
+        self.assertNotIn("does not hold", err)
+
+    def test_assertions_that_do_not_hold_say_what_was_measured(self):
+        path = self.log([(0, "108#01F40100")] + [(1 + 500 * i, self.GYRO) for i in range(5)])
+        for expression, measured in (("gyro.rate>2", "it is 2 Hz"), ("gyro.period<500ms", "it is 500 ms"),
+                                     ("gyro.count!=5", "it is 5"), ("bus.frames>6", "it is 6"),
+                                     ("bus.load==0", "it is 0.0"),
+                                     # No data is no success.
+                                     ("mag.rate>=0", "nothing was measured"),
+                                     ("mag.missing==0", "nothing was measured"),
+                                     ("motors.gap<1h", "nothing was measured")):
+            out, err = self.run_tool("stats", path, "--assert", expression, code=1)
+            self.assertIn(f"does not hold: {expression}: {measured}", err)
+            self.assertIn("gyroscope", out)
+
+    def test_a_bad_expression_is_wrong_usage_with_a_remedy(self):
+        path = self.log([(0, self.GYRO)])
+        for expression, what, remedy in (
+                ("gyro", "compares nothing", "TOPIC.QUANTITY>NUMBER"),
+                ("gyro>1", "says no quantity", "TOPIC.QUANTITY>NUMBER"),
+                ("gyroscoope.rate>1", "no topic 'gyroscoope'", "did you mean 'gyroscope'?"),
+                ("gyro.rat>1", "no quantity 'rat'", "did you mean 'rate'?"),
+                ("bus.gap>1s", "no quantity 'gap' of the bus", "one of: rate"),
+                ("gyro.rate>fast", "'fast' is nothing to compare a rate with", "1.9Hz"),
+                ("gyro.gap<100", "'100' is nothing to compare a gap with", "50ms"),
+                ("bus.load<0.4", "'0.4' is nothing to compare a load with", "40%"),
+                ("gyro.count==5ms", "'5ms' is nothing", "plain number"),
+                ("gyro.rate!1", "'!' compares nothing", "!=")):
+            _, err = self.run_tool("stats", path, "--assert", expression, code=2)
+            self.assertIn(what, err)
+            self.assertIn(remedy, err)
+
+    def test_interfaces_have_a_table_each_and_assertions_hold_on_all(self):
+        frames = [(10 * i, self.GYRO, f"can{i % 2}") for i in range(20)] + [(400, self.GYRO, "can1")]
+        path = self.log(frames)
+        report, _ = self.report(path)
+        self.assertEqual([(b["bus"], b["topics"][0]["count"]) for b in report["buses"]], [("can0", 10), ("can1", 11)])
+        self.run_tool("stats", path, "--assert", "gyro.count>=10")
+        _, err = self.run_tool("stats", path, "--assert", "gyro.gap<100ms", code=1)
+        self.assertIn("it is 210 ms on can1", err)
+
+    def test_several_logs_go_on(self):
+        first = self.log([(i, self.GYRO) for i in (0, 100)], "1.log")
+        second = self.log([(i, self.GYRO) for i in (200, 300)], "2.log")
+        report, _ = self.report(first, second)
+        self.assertEqual(report["buses"][0]["topics"][0]["count"], 4)
+        self.assertEqual(report["buses"][0]["topics"][0]["spread_ns"], 0)
+        self.assertEqual(report["source"], "2 logs")
+
+    def test_limits_and_topics(self):
+        path = self.log([(100 * i, self.GYRO) for i in range(10)] + [(2000, "605#00000000")])
+        report, _ = self.report(path, "--duration", "300ms")
+        self.assertEqual(report["buses"][0]["frames"], 4)
+        report, _ = self.report(path, "-n", "7")
+        self.assertEqual(report["buses"][0]["frames"], 7)
+        report, _ = self.report(path, "mag")
+        self.assertEqual([t["topic"] for t in report["buses"][0]["topics"]], ["magnetometer"])
+
+    def test_table_and_csv(self):
+        path = self.log([(0, "108#01F40100")] + [(1 + 500 * i, self.GYRO) for i in range(5)])
+        out, _ = self.run_tool("hz", path)
+        rows = out.splitlines()
+        self.assertEqual(rows[0].split(), ["TOPIC", "PRIORITY", "SAMPLES", "RATE", "PERIOD", "MEAN", "JITTER", "LATE",
+                                           "MISSING", "LONGEST", "GAP", "LOAD", "FAULTS"])
+        self.assertEqual(rows[1].split()[:5], ["gyroscope", "high", "5", "2", "Hz"])
+        self.assertIn("500 ms at 1 ms", rows[1])
+        self.assertTrue(rows[2].startswith("can0: 6 frames in 2.001 s"), rows[2])
+        out, _ = self.run_tool("stats", "--csv", path)
+        head, row = out.splitlines()
+        values = dict(zip(head.split(","), row.split(",")))
+        self.assertEqual((values["bus"], values["topic"], values["priority"], values["count"], values["period_ns"]),
+                         ("can0", "gyroscope", "high", "5", "500000000"))
+        self.assertEqual(values["rate_hz"], "2.0")
+
+    def test_wrong_words(self):
+        _, err = self.run_tool("stats", "gyroscop", code=2)
+        self.assertIn("did you mean 'gyroscope'?", err)
+        _, err = self.run_tool("stats", os.path.join(self.folder, "none.log"), code=1)
+        self.assertIn("none.log", err)
+        path = self.log([(0, self.GYRO)])
+        _, err = self.run_tool("stats", path, "live", code=2)
+        self.assertIn("live is the bus", err)
+        _, err = self.run_tool("stats", path, "--bitrate", "0", code=2)
+        self.assertIn("--bitrate 0", err)
+        _, err = self.run_tool("stats", path, "--duration", "soon", code=2)
+        self.assertIn("--duration soon", err)
+
+    def test_a_log_without_frames_is_an_error(self):
+        path = os.path.join(self.folder, "junk.log")
+        with open(path, "w", encoding="ascii") as file:
+            file.write("(1.000000) can0 nothing\n")
+        _, err = self.run_tool("stats", path, "--from", "candump", code=1)
+        self.assertIn("no frame came from junk.log", err)
+
+    def test_live(self):
+        self.start_sim()
+        self.run_tool("publish", "gyro", "20ms")
+        self.run_tool("publish", "odom", "100ms")
+        out, err = self.run_tool("stats", "live", "--json", "--duration", "2s", "--assert", "gyro.rate>30",
+                                 "--assert", "odom.rate>5", "--assert", "bus.errors==0", "--assert", "bus.unknown==0")
+        bus = json.loads(out)["buses"][0]
+        topics = {t["topic"]: t for t in bus["topics"]}
+        self.assertIn("bus: sim", err)
+        self.assertEqual(bus["bus"], "sim")
+        self.assertEqual(topics["odometry"]["incomplete"], 0)
+        self.assertGreater(bus["load_percent"], 0.5)
+        self.assertGreater(topics["gyroscope"]["rate_hz"], 30)
+
+    def test_live_sees_requests_and_ends_with_ctrl_c(self):
+        self.start_sim()
+        stats = self.start("stats", "--json")
+        self.assertIn("bus: sim", stats.stderr.readline())
+        time.sleep(0.3)
+        self.run_tool("publish", "gyro", "50ms", "--priority", "high")
+        time.sleep(1)
+        out, _ = self.interrupt(stats)
+        self.assertEqual(stats.returncode, 128 + signal.SIGINT)
+        gyro = json.loads(out)["buses"][0]["topics"][0]
+        self.assertEqual((gyro["period_ns"], gyro["period_from"]), (50_000_000, "request"))
+        self.assertGreater(gyro["by_priority"]["high"], 5)
+
+    def test_live_in_a_pipe_is_told_every_second(self):
+        self.start_sim()
+        self.run_tool("publish", "gyro", "100ms")
+        stats = self.start("stats", "gyro")
+        lines = [stats.stdout.readline() for _ in range(6)]  # two tables
+        self.assertEqual([line.split()[0] for line in lines], ["TOPIC", "gyroscope", "sim:"] * 2)
+        self.assertNotIn("\x1b", "".join(lines))
+        self.interrupt(stats)
+        self.assertEqual(stats.returncode, 128 + signal.SIGINT)
+
+    def test_live_on_a_silent_bus(self):
+        self.start_sim("--without", "di_wheel_drive,power_management,light_ring")
+        _, err = self.run_tool("stats", "--duration", "300ms", code=1)
+        self.assertIn("no frame came from sim", err)
+        _, err = self.run_tool("stats", "--duration", "300ms", "--assert", "gyro.rate>0", code=1)
+        self.assertIn("does not hold: gyro.rate>0: nothing was measured", err)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,165 @@
+"""The C header: it compiles wherever C99 or C++ does, says what the thesis says, and agrees with the catalogue."""
+import json
+import pathlib
+import re
+import shutil
+import subprocess
+import unittest
+
+from peers import Case, SPECS, generate, samples
+
+HERE = pathlib.Path(__file__).resolve().parent
+WARNINGS = "-Wall -Wextra -Wconversion -Wsign-conversion -Wshadow -pedantic -Werror".split()
+COMPILERS = {
+    "gcc": ["gcc", "-std=c99"],
+    "clang": ["clang-14", "-std=c99"],
+    "C++": ["g++", "-std=c++11", "-x", "c++", "-Wno-missing-field-initializers"],
+    "Cortex-M0": ["arm-none-eabi-gcc", "-std=c99", "-mcpu=cortex-m0", "-mthumb"],
+}
+
+
+def spec_topics(robot):
+    """Topics of the spec, those that are like another written out."""
+    topics = {}
+    for topic in json.loads(SPECS[robot].read_text())["topics"]:
+        topics[topic["name"]] = {**topics.get(topic.get("like"), {}), **topic}
+    return topics
+
+
+def driver(robot, header, frames):
+    """A program that reads `number id data` and prints the raw numbers, the physical values, the raw numbers that
+    these give again, and the frame made from the struct."""
+    text = f'#include "{header.name}"\n#include <inttypes.h>\n#include <stdio.h>\n'
+    body = ""
+    source = header.read_text()
+    topics = spec_topics(robot)
+    for number, sample in enumerate(frames):
+        name, index = sample["topic"], 0
+        if name not in topics:
+            name, index = name.rsplit("_", 1)
+            index = int(index) - 1
+        frame_name, member = sample["frame"], ""
+        declared = topics[name]["frames"]
+        if frame_name:
+            if not any(frame.get("name") == frame_name for frame in declared):
+                frame_name, element = frame_name.rsplit("_", 1)
+                member = f"[{int(element) - 1}]"
+            member = f"value.{frame_name}{member}"
+        member = member or "value"
+        stem = f"{robot}_{name}" + (f"_{frame_name}" if frame_name else "")
+        body += f"  case {number}: {{\n    {robot}_{name}_t value;\n    const int at = {robot}_{name}_take(&value, &frame);\n    (void)at;\n"
+        for field in sample["fields"]:
+            body += f'    printf("%" PRId64 " ", (int64_t){member}.{field});\n'
+            accessor = re.search(rf"double ({stem}_{field}_\w+)\(const", source)
+            if accessor:
+                setter = accessor[1].replace(f"{stem}_{field}_", f"{stem}_set_{field}_")
+                body += f'    {{ const double physical = {accessor[1]}(&{member});\n      {stem}_t again = {member};\n'
+                body += f'      {setter}(&again, physical);\n'
+                body += f'      printf("%.17g %" PRId64 " ", physical, (int64_t)again.{field}); }}\n'
+            else:
+                body += '    printf("- - ");\n'
+        extra = f", (uint8_t)at" if len(declared) > 1 or "count" in declared[0] or "count" in topics[name] else ""
+        body += f"    frame = {robot}_{name}_frame(&value{extra}, {robot}_priority_of(frame.id));\n    break;\n  }}\n"
+    return text + """
+int main(void) {
+  int number;
+  unsigned id, length;
+  char data[17];
+  while (scanf("%d %u %u %16s", &number, &id, &length, data) == 4) {
+    unsigned i;
+    unsigned byte;
+    """ + f"{robot}_frame frame" + """ = {0, 0, {0, 0, 0, 0, 0, 0, 0, 0}};
+    frame.id = (uint16_t)id;
+    frame.dlc = (uint8_t)length;
+    for (i = 0; i < length && sscanf(data + 2 * i, "%2x", &byte) == 1; ++i) frame.data[i] = (uint8_t)byte;
+    switch (number) {
+""" + body + """    default: return 1;
+    }
+    printf("%u %u ", (unsigned)frame.id, (unsigned)frame.dlc);
+    for (i = 0; i < 8; ++i) printf("%02X", (unsigned)frame.data[i]);
+    printf("\\n");
+  }
+  return 0;
+}
+"""
+
+
+class C(Case):
+    def header(self, robot):
+        path = self.folder / f"{robot}.h"
+        generate(SPECS[robot], "--to", "c", "-o", path)
+        return path
+
+    def compile(self, compiler, source, *options):
+        self.assertIsNotNone(shutil.which(compiler[0]), f"{compiler[0]} is missing: scripts/setup")
+        done = subprocess.run([*compiler, *WARNINGS, "-I", self.folder, source, *options], capture_output=True,
+                              encoding="utf-8", timeout=120)
+        self.assertEqual((done.returncode, done.stdout + done.stderr), (0, ""), compiler)
+
+    def test_compiles_everywhere_without_a_warning(self):
+        self.header("amiro")
+        self.header("ferry")
+        source = self.folder / "both.c"
+        source.write_text('#include "amiro.h"\n#include "ferry.h"\n#include "amiro.h"\nint main(void) { return 0; }\n')
+        for compiler in COMPILERS.values():
+            self.compile(compiler, source, "-c", "-o", self.folder / "both.o")
+
+    def test_the_frames_of_the_thesis(self):
+        self.header("amiro")
+        for name in ("gcc", "clang", "C++"):
+            program = self.folder / "vectors"
+            self.compile(COMPILERS[name], HERE / "vectors.c", "-o", program)
+            done = subprocess.run([program], capture_output=True, encoding="utf-8", timeout=60)
+            self.assertEqual((done.returncode, done.stdout), (0, ""), name)
+
+    def test_random_frames_agree_with_the_catalogue(self):
+        for robot in SPECS:
+            header = self.header(robot)
+            expected = list(samples(robot, 40))
+            kinds = {(s["topic"], s["frame"]): i for i, s in reversed(list(enumerate(expected)))}
+            frames = expected[:max(kinds.values()) + 1]
+            source = self.folder / "driver.c"
+            source.write_text(driver(robot, header, frames))
+            # -O1: what is not initialised would be told.
+            self.compile(COMPILERS["gcc"], source, "-O1", "-Wno-maybe-uninitialized", "-o", self.folder / "driver")
+            lines = [f'{kinds[s["topic"], s["frame"]]} {s["id"]} {len(s["data"]) // 2} {s["data"] or "-"}' for s in expected]
+            done = subprocess.run([self.folder / "driver"], input="\n".join(lines), capture_output=True, encoding="utf-8",
+                                  timeout=60, check=True)
+            printed = done.stdout.splitlines()
+            self.assertEqual(len(printed), len(expected))
+            for sample, line in zip(expected, printed):
+                words = line.split()
+                for i, (name, field) in enumerate(sample["fields"].items()):
+                    raw, physical, again = words[3 * i:3 * i + 3]
+                    self.assertEqual(int(raw), field["raw"], (sample, name))
+                    if field["unit"]:
+                        if field["width"] <= 32:
+                            self.assertEqual(float(physical), float(field["value"]), (sample, name))
+                        self.assertEqual(int(again), min(max(field["raw"], field["low"]), field["high"]), (sample, name))
+                id, dlc, data = words[-3:]
+                self.assertEqual((int(id), int(dlc)), (sample["id"], len(sample["data"]) // 2))
+                self.assertEqual(self.fields_of(robot, sample, data), sample["data"].ljust(16, "0"), sample)
+
+    @staticmethod
+    def fields_of(robot, sample, data):
+        """What was encoded, with the bits that no field has as they came."""
+        if robot == "amiro":
+            return data  # every bit is a field's
+        covered = 0
+        topics = spec_topics(robot)
+        name = sample["topic"] if sample["topic"] in topics else sample["topic"].rsplit("_", 1)[0]
+        frame_name = re.sub(r"_\d+$", "", sample["frame"])
+        frame = next(f for f in topics[name]["frames"] if f.get("name", "") == frame_name)
+        for field in frame["fields"]:
+            width = int(field["type"][1:])
+            order = field.get("byte_order", frame.get("byte_order", topics[name].get("byte_order", "big")))
+            bit = field["bit"] if "bit" in field else 8 * field["byte"] + (7 if order == "big" else 0)
+            for _ in range(width):
+                covered |= 1 << 8 * (7 - bit // 8) + bit % 8
+                bit += 1 if order == "little" else -1 if bit % 8 else 15
+        came = int(sample["data"].ljust(16, "0"), 16)
+        return f"{(int(data, 16) & covered) | (came & ~covered):016X}"
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,72 @@
+"""The JSON schema, on what `amiroctl listen --json` really prints. Needs python3-jsonschema (Debian)."""
+import copy
+import json
+import os
+import sys
+import time
+import unittest
+
+import jsonschema
+
+from peers import ROOT, SPECS, generate, samples
+
+sys.path.insert(0, str(ROOT / "tests" / "cli"))
+os.environ.setdefault("AMIROCTL", "amiroctl")
+import harness  # noqa: E402
+
+
+def line_of(sample):
+    """As `listen --json` prints it."""
+    fields = {name: float(field["value"]) for name, field in sample["fields"].items()}
+    return {"time_ns": "1", "bus": "sim", "id": f'{sample["id"]:03X}', "priority": sample["priority"],
+            "topic": sample["topic"], "frame": sample["frame"] or sample["topic"], "fields": fields,
+            "units": {name: field["unit"] for name, field in sample["fields"].items()}, "data": sample["data"]}
+
+
+class Schema(unittest.TestCase):
+    def validator(self, robot):
+        schema = json.loads(generate(SPECS[robot], "--to", "json-schema", "-o", "-"))
+        jsonschema.Draft7Validator.check_schema(schema)
+        return jsonschema.Draft7Validator(schema)
+
+    def test_takes_every_frame_at_every_value(self):
+        for robot in SPECS:
+            validator = self.validator(robot)
+            for sample in samples(robot, 6):
+                self.assertEqual([e.message for e in validator.iter_errors(line_of(sample))], [], sample)
+
+    def test_refuses_what_no_line_can_be(self):
+        validator = self.validator("amiro")
+        good = line_of(next(s for s in samples("amiro", 1) if s["topic"] == "gyroscope"))
+        self.assertTrue(validator.is_valid(good))
+        for change in ({"topic": "gyro"}, {"frame": "x"}, {"id": "005"}, {"time_ns": 1}, {"priority": "big"},
+                       {"data": "0"}, {"fields": {"w": 1}}, {"fields": {"x": "1"}}, {"fields": {"x": 573.44}},
+                       {"units": {"x": "rad/s"}}, {"error": "both"}, {"more": 1}, {"fd": {"x": True}},
+                       {"direction": "up"}):
+            self.assertFalse(validator.is_valid({**copy.deepcopy(good), **change}), change)
+        for key in ("time_ns", "bus", "id", "data", "topic", "fields"):
+            self.assertFalse(validator.is_valid({k: v for k, v in good.items() if k != key}), key)
+
+
+class RealLines(harness.Case):
+    def test_of_a_simulated_robot(self):
+        schema = jsonschema.Draft7Validator(json.loads(generate(SPECS["amiro"], "--to", "json-schema", "-o", "-")))
+        self.start_sim()
+        listener = self.listen("--commands")
+        # Requests good and bad, set points, samples of every sensor, a wrong length, a stranger, a remote frame.
+        sent = ["205#01840302", "205#01", "205#03", "204#02", "21E#02", "203#02", "21F#02", "31B#02", "201#0000000000000000",
+                "240#643278", "608#00", "6FF#01", "1F334455#DEAD", "608#R"]
+        for frame in sent:
+            self.run_tool("send", frame)
+        time.sleep(0.5)
+        out, _ = self.interrupt(listener)
+        lines = self.objects(out)
+        topics = {line.get("topic") for line in lines if "fields" in line}
+        self.assertLessEqual({"magnetometer", "power_status", "proximity_ring", "motors", "led_5"}, topics)
+        self.assertTrue(any("error" in line for line in lines))
+        for line in lines:
+            self.assertEqual([e.message for e in schema.iter_errors(line)], [], line)
+
+
+if __name__ == "__main__":
+    unittest.main()

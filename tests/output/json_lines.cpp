@@ -1,0 +1,243 @@
+#include "cli/logs/json_lines.hpp"
+
+#include <random>
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/can/text.hpp"
+#include "ocm/topics/amiro.hpp"
+
+#include "cli/output/output.hpp"
+#include "unit/log/entries.hpp"
+#include "unit/log/log_testing.hpp"
+
+using namespace ocm;
+using cli::logs::JsonLineParser;
+using cli::logs::JsonLinesReader;
+using cli::logs::JsonLinesWriter;
+
+namespace {
+
+// The line of a gyroscope's frame: three digits of 0.0175 deg/s. [docs/verbs/listen.md]
+constexpr std::string_view gyroscope =
+    R"({"time_ns":"1436509052249713000","bus":"can0","id":"608","priority":"medium","topic":"gyroscope",)"
+    R"("frame":"gyroscope","fields":{"x":0.0525,"y":-0.0175,"z":0},)"
+    R"("units":{"x":"deg/s","y":"deg/s","z":"deg/s"},"data":"0300FFFF0000"})";
+
+log::Entry entry_of(std::string_view frame) {
+  const auto parsed = can::parse_frame(frame);
+  REQUIRE(parsed.ok());
+  return {base::Time{base::Duration{1'436'509'052'249'713'000}}, *parsed};
+}
+
+std::string line_of(const log::Entry& entry, std::string_view bus = "can0",
+                    const cli::Selection& chosen = {}) {
+  cli::JsonText text{amiro::catalogue, chosen};
+  log::Bytes out;
+  text.write(out, bus, entry);
+  return std::string{out.view()};
+}
+
+/// The frame that a line makes, in candump's notation; or what is wrong with it.
+std::string frame_of(std::string_view line) {
+  JsonLineParser parser{amiro::catalogue};
+  log::Entry entry;
+  std::string_view bus;
+  if (!parser.parse(line, entry, bus)) return parser.problem().what + "; " + parser.problem().remedy;
+  return std::string{can::to_text(entry.classic().value()).view()};
+}
+
+std::string replaced(std::string_view text, std::string_view what, std::string_view with) {
+  std::string out{text};
+  const auto at = out.find(what);
+  REQUIRE(at != std::string::npos);
+  return out.replace(at, what.size(), with);
+}
+
+bool has(const std::string& text, std::string_view part) {
+  return text.find(part) != std::string::npos;
+}
+
+cli::Selection selection(const std::vector<std::string>& words) {
+  auto chosen = cli::Selection::of(amiro::catalogue, words);
+  REQUIRE(chosen.ok());
+  return *chosen;
+}
+
+}  // namespace
+
+TEST_CASE("JSON lines: what each kind of frame looks like", "[output]") {
+  const std::string head = R"({"time_ns":"1436509052249713000","bus":"can0","id":)";
+  CHECK(line_of(entry_of("608#0300FFFF0000")) == std::string{gyroscope} + '\n');
+  CHECK(line_of(entry_of("208#01F40100")) ==
+        head + R"("208","priority":"medium","topic":"gyroscope","frame":"request",)"
+               R"("fields":{"mode":"publish","period":0.5},"units":{"period":"s"},"data":"01F40100"})"
+               "\n");
+  CHECK(line_of(entry_of("608#00")) ==
+        head + R"("608","priority":"medium","topic":"gyroscope","frame":"gyroscope",)"
+               R"("error":"DLC 1 instead of 6","data":"00"})"
+               "\n");
+  CHECK(line_of(entry_of("4FF#1122")) ==
+        head + R"("4FF","error":"unknown identifier","data":"1122"})" + "\n");
+  CHECK(line_of(entry_of("12345678#R4")) ==
+        head + R"("12345678","error":"unknown identifier","data":"R4"})" + "\n");
+  auto entry = entry_of("605#01020304");
+  entry.flags = log::flag::fd | log::flag::bit_rate_switch;
+  entry.direction = log::Direction::sent;
+  CHECK(line_of(entry) == head + R"("605","error":"CAN FD frame","data":"01020304","direction":"sent",)"
+                                 R"("fd":{"brs":true,"esi":false}})"
+                                 "\n");
+  auto long_code = entry_of("601#0102030405060708");
+  long_code.raw_dlc = 12;
+  CHECK(has(line_of(long_code), R"("data":"0102030405060708","raw_dlc":12})"));
+  CHECK(has(line_of(entry_of("608#0300FFFF0000"), "a\"b\\\x01\xFF"), R"("bus":"a\"b\\\u0001\udcff")"));
+  // What looks like UTF-8 and is none: overlong, a surrogate, beyond U+10FFFF. [RFC 3629]
+  CHECK(has(line_of(entry_of("608#0300FFFF0000"), "\xC0\x80"), R"("bus":"\udcc0\udc80")"));
+  CHECK(has(line_of(entry_of("608#0300FFFF0000"), "\xED\xA0\x80"), R"("bus":"\udced\udca0\udc80")"));
+  CHECK(
+      has(line_of(entry_of("608#0300FFFF0000"), "\xF4\x90\x80\x80"), R"("bus":"\udcf4\udc90\udc80\udc80")"));
+  CHECK(has(line_of(entry_of("608#0300FFFF0000"), "caf\xC3\xA9"), "\"bus\":\"caf\xC3\xA9\""));
+}
+
+TEST_CASE("JSON lines: chosen fields only", "[output]") {
+  const auto chosen = selection({"gyro.z", "odom.velocity"});
+  CHECK(has(line_of(entry_of("608#0300FFFF0000"), "can0", chosen),
+            R"("fields":{"z":0},"units":{"z":"deg/s"},"data":"0300FFFF0000"})"));
+  CHECK(has(line_of(entry_of("602#0102030405060708"), "can0", chosen), R"("fields":{"x":67.305985,"z":)"));
+  CHECK(line_of(entry_of("603#0102030405060708"), "can0", chosen).empty());
+  CHECK(line_of(entry_of("4FF#11"), "can0", chosen).empty());
+  CHECK(line_of(entry_of("608#11"), "can0", chosen).empty());
+  CHECK(selection({"power.flags", "power"}).fields().size() == 4);
+  CHECK(selection({"led.red"}).fields().size() == 8);
+  const std::vector<std::string> wrong{"gyro.w"};
+  CHECK(has(cli::Selection::of(amiro::catalogue, wrong).error.remedy, "gyro.x"));
+}
+
+TEST_CASE("JSON lines: any entries come back bit by bit", "[output]") {
+  std::mt19937 random{4};
+  log::Interfaces interfaces;
+  for (const std::string_view name : {"can0", "a \"b\"\t\\", "\xFF\xC3", "\xED\xA0\x80 \xF0\x9F\x98\x80"})
+    interfaces.add(name);
+  auto entries = test::RandomEntries{4, {.interfaces = 4}}.many(20'000);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    auto& entry = entries[i];
+    if (i % 3 == 0 || entry.format != can::Format::base || entry.is_fd()) continue;
+    entry.id = (entry.id & 0x700U) |
+               static_cast<std::uint32_t>(random() % 0x60);  // mostly topics, and often with their length
+    if (random() % 4 == 0) continue;
+    const auto ref = protocol::FrameIndex{amiro::catalogue}.find(protocol::Identifier::decode(entry.id));
+    if (ref && entry.raw_dlc == 0) entry.length = ref.layout().dlc;
+    for (std::size_t j = 0; j < 8; ++j)
+      entry.data[j] = static_cast<std::uint8_t>(j < entry.length ? random() : 0);
+  }
+  JsonLinesWriter writer{amiro::catalogue};
+  const std::string text = log::testing::write_all(writer, entries, interfaces);
+  CHECK(JsonLinesReader::recognises(text.substr(0, 4096)));
+  const auto log = log::testing::read_all<JsonLinesReader>(text, amiro::catalogue);
+  for (const auto& complaint : log.complaints) UNSCOPED_INFO(complaint.detail);
+  REQUIRE(log.complained == 0);
+  REQUIRE(log.entries.size() == entries.size());
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    auto read = log.entries[i];
+    REQUIRE(log.names[i] == interfaces.name(entries[i].interface));
+    read.interface = entries[i].interface;
+    REQUIRE(read == entries[i]);
+    REQUIRE(log::testing::can_exist(read));
+  }
+}
+
+TEST_CASE("JSON lines: an edited value counts, unused bits stay", "[output]") {
+  CHECK(frame_of(gyroscope) == "608#0300FFFF0000");
+  CHECK(frame_of(replaced(gyroscope, "0.0525", "0.07")) == "608#0400FFFF0000");
+  CHECK(frame_of(replaced(gyroscope, "0.0525", "5.25e-02")) == "608#0300FFFF0000");
+  CHECK(frame_of(replaced(gyroscope, "0.0525", "\"0.07deg/s\"")) == "608#0400FFFF0000");
+  // Out of range, but what the data says: 0x7FFF is 573.4225 deg/s, of 500.
+  const std::string far = replaced(replaced(gyroscope, "0.0525", "573.4225"), "0300FFFF", "FF7FFFFF");
+  CHECK(frame_of(far) == "608#FF7FFFFF0000");
+  CHECK(frame_of(replaced(far, "573.4225", "5.734225e2")) == "608#FF7FFFFF0000");
+  CHECK(has(frame_of(replaced(far, "573.4225", "570")), "out of range"));
+  // Keys as jq -S sorts them, blanks, keys that nobody knows.
+  CHECK(
+      frame_of(R"( { "data" : "0300FFFF0000" , "x":[1,{"y":null}], "fields":{"z":0.0175}, "id":"608" } )") ==
+      "608#0300FFFF0100");
+  // Value names: what has a name may be told by it.
+  CHECK(frame_of(R"({"topic":"floor_calibration","fields":{"action":"measure"}})") == "20A#01");
+}
+
+TEST_CASE("JSON lines: frames from topic and fields", "[output]") {
+  // Thesis: 0.05 m/s forwards, 0.2 rad/s [docs/verbs/drive.md]
+  CHECK(frame_of(R"({"topic":"motors","fields":{"x":0.05,"z":0.2}})") == "201#50C30000400D0300");
+  CHECK(frame_of(R"({"topic":"motors","priority":"urgent","fields":{}})") == "001#0000000000000000");
+  CHECK(frame_of(R"({"topic":"mag","frame":"y","fields":{"field":1e-06}})") == "606#01000000");
+  CHECK(frame_of(R"({"topic":"gyro","frame":"request","fields":{"mode":"publish","period":0.5}})") ==
+        "208#01F40100");
+  CHECK(frame_of(R"({"topic":"gyro","frame":"request","fields":{"mode":"stop"}})") == "208#00");
+  CHECK(frame_of(R"({"topic":"gyro","frame":"request","fields":{"mode":"publish"}})") == "208#01");
+  CHECK(frame_of(R"({"id":"208","fields":{"mode":"once","period":1},"data":"01F40100"})") == "208#02");
+  CHECK(frame_of(R"({"id":"208","fields":{"mode":"publish","period":0.25},"data":"01F40100"})") ==
+        "208#01FA0000");
+  // Seconds on the wire stay seconds where nothing was edited.
+  CHECK(frame_of(R"({"id":"208","fields":{"mode":"publish","period":2},"data":"01020001"})") ==
+        "208#01020001");
+}
+
+TEST_CASE("JSON lines: what contradicts itself or is none is refused in words", "[output]") {
+  const auto wrong = [](std::string_view line, std::string_view part) {
+    const std::string answer = frame_of(line);
+    CAPTURE(line, answer);
+    CHECK(has(answer, part));
+  };
+  wrong(replaced(gyroscope, "medium", "high"), "contradict");
+  wrong(replaced(gyroscope, "\"topic\":\"gyroscope\"", "\"topic\":\"motors\""), "contradict");
+  wrong(replaced(gyroscope, "\"frame\":\"gyroscope\"", "\"frame\":\"request\""), "contradict");
+  wrong(replaced(gyroscope, "\"x\":0.0525", "\"w\":1"), "no field \"w\"; did you mean");
+  wrong(replaced(gyroscope, "0.0525", "true"), "x takes");
+  wrong(replaced(gyroscope, "0300FFFF0000", "0300"),
+        "data of 2 bytes with fields of gyroscope; it has 6 bytes");
+  wrong("{", "no JSON object in one line");
+  wrong("[1]", "jq needs -c");
+  wrong("{}", "neither id nor topic");
+  wrong("{} x", "no JSON object");
+  wrong(R"({"id":"608"})", "no data");
+  wrong(R"({"id":"8FF","data":""})", "too large");
+  wrong(R"({"id":"60","data":""})", "no identifier");
+  wrong(R"({"id":"608","data":"0"})", "not hexadecimal");
+  wrong(R"({"id":"608","data":"000102030405060708"})", "data of 9 bytes");
+  wrong(R"({"id":"608","fd":{},"data":"000102030405060708"})", "data of 9 bytes; CAN FD has");
+  wrong(R"({"id":"608","data":"R9"})", "no remote frame");
+  wrong(R"({"id":"20000040","data":"R"})", "no remote frame");
+  wrong(R"({"id":"608","data":"00","raw_dlc":9})", "raw_dlc");
+  wrong(R"({"id":"608","data":"00","direction":"left"})", "received or sent");
+  wrong(R"({"id":"608","data":"00","time_ns":"9223372036854775808"})", "no time");
+  wrong(R"({"topic":"gyr","fields":{}})", "did you mean 'gyro'");
+  wrong(R"({"topic":"magnetometer","fields":{}})", "several frames; frame is one of: x, y, z");
+  wrong(R"({"topic":"gyro","frame":"request","fields":{"mode":"publish","period":1e-7}})", "period");
+  wrong(R"({"id":"4FF","fields":{"x":1},"data":"00"})", "of no topic");
+}
+
+TEST_CASE("JSON lines: a log that is cut or damaged anywhere gives entries that can exist", "[output]") {
+  const std::string text = std::string{gyroscope} + "\n" + std::string{gyroscope} + "\n";
+  for (std::size_t size = 0; size < text.size(); ++size) {
+    const auto log = log::testing::read_all<JsonLinesReader>(text.substr(0, size), amiro::catalogue);
+    const bool whole = size + 1 == gyroscope.size() + 1 || size + 1 == text.size();
+    CHECK(log.complained == (size % (gyroscope.size() + 1) == 0 || whole ? 0U : 1U));
+    CHECK(log.entries.size() == (size + 1) / (gyroscope.size() + 1));
+  }
+  std::mt19937 random{5};
+  for (int i = 0; i < 20'000; ++i) {
+    std::string damaged = text;
+    for (int flips = 0; flips < 3; ++flips)
+      damaged[random() % damaged.size()] ^= static_cast<char>(1U << random() % 8);
+    for (const auto& entry : log::testing::read_all<JsonLinesReader>(damaged, amiro::catalogue).entries)
+      REQUIRE(log::testing::can_exist(entry));
+  }
+}
+
+TEST_CASE("JSON lines: a line without a time has the time of the one before", "[output]") {
+  const std::string text = std::string{gyroscope} + "\n\n" + R"({"id":"123","data":"R"})" + "\n";
+  const auto log = log::testing::read_all<JsonLinesReader>(text, amiro::catalogue);
+  REQUIRE(log.entries.size() == 2);
+  CHECK(log.entries[1].time == log.entries[0].time);
+}
