@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "cli/output/csv_cell.hpp"
+
 namespace ocm::cli::analyse {
 namespace {
 
@@ -34,13 +36,6 @@ std::string verdict_of(const analysis::Explained& result) {
 
 }  // namespace
 
-std::string cell_text(const std::string& text) {
-  if (text.find_first_of(",\"\n#") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string{"\"\""} : std::string{c};
-  return quoted + '"';
-}
-
 std::string to_json(const Study& study) {
   using Json = nlohmann::ordered_json;
   Json rows = Json::array();
@@ -66,11 +61,11 @@ std::string to_csv(const Study& study) {
       is_bus(study) ? "id" : "priority");
   for (const Row& row : study.rows) {
     const auto& r = row.result;
-    text += fmt::format("{},{},{},{},{},{},", cell_text(row.name), row.rank, row.cost, row.period, r.deadline,
+    text += fmt::format("{},{},{},{},{},{},", csv_cell(row.name), row.rank, row.cost, row.period, r.deadline,
                         row.jitter);
     text += r.bounded() ? fmt::format("{},{},{},{}", r.blocking, r.interference, r.response, r.slack())
                         : std::string{",,,"};
-    text += fmt::format(",{},{}\n", r.ok(), cell_text(row.why));
+    text += fmt::format(",{},{}\n", r.ok(), csv_cell(row.why));
   }
   return text;
 }

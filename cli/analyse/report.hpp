@@ -7,9 +7,6 @@
 
 namespace ocm::cli::analyse {
 
-/// A CSV cell; in quotes where it has to be.
-[[nodiscard]] std::string cell_text(const std::string& text);
-
 /// `utilisation` and `messages` or `tasks`, one object and a line feed.
 [[nodiscard]] std::string to_json(const Study& study);
 /// One line a message or task, times in nanoseconds; empty cells where there is no bound.

@@ -10,11 +10,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "ocm/can/length.hpp"
 #include "ocm/protocol/request.hpp"
+#include "ocm/reflective/bus_load.hpp"
 
 #include "cli/analyse/report.hpp"
 #include "cli/logs/opened_log.hpp"
+#include "cli/output/csv_cell.hpp"
 #include "cli/session.hpp"
 
 namespace ocm::cli::analyse {
@@ -70,7 +71,7 @@ Log read_log(const std::string& file, const protocol::Catalogue& catalogue) {
       } else {
         const std::int64_t time = entry.time.time_since_epoch().count();
         if (!log.arrivals.empty() && time < log.arrivals.back().time) ++backwards;
-        log.arrivals.push_back({time, can::frame_bits(*frame) + can::intermission_bits, *frame});
+        log.arrivals.push_back({time, reflective::bits_on_bus(*frame), *frame});
       }
     }
   }
@@ -363,7 +364,7 @@ std::string to_csv(const TraceStudy& trace) {
   for (std::size_t i = 0; i < trace.measured.size(); ++i) {
     const Row& row = trace.study.rows[i];
     const Measured& m = trace.measured[i];
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", cell_text(row.name), m.count, row.period,
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", csv_cell(row.name), m.count, row.period,
                         m.shortest, m.mean, m.longest, m.other_period ? "" : std::to_string(m.lateness),
                         m.other_period ? "" : std::to_string(m.response),
                         row.result.bounded() ? std::to_string(row.result.response) : "",

@@ -1,14 +1,13 @@
 /// How full a bus is: the bits of its frames, stuff bits as they really fall, against the bits that there
-/// was time for. CAN FD frames, whose data go at another bit rate, and error frames are not in it. One pass
-/// over the bits of a frame: see can/length.hpp.
+/// was time for. CAN FD frames, whose data go at another bit rate, and error frames are not in it.
 #pragma once
 
 #include <cstdint>
 #include <span>
 
 #include "ocm/base/time.hpp"
-#include "ocm/can/length.hpp"
 #include "ocm/log/entry.hpp"
+#include "ocm/reflective/bus_load.hpp"
 
 namespace ocm::cli::record {
 
@@ -16,8 +15,7 @@ class BusLoad {
  public:
   void add(const log::Entry& entry) noexcept {
     const auto frame = entry.classic();
-    if (frame && frame->format != can::Format::error)
-      bits_ += can::frame_bits(*frame) + can::intermission_bits;
+    if (frame && frame->format != can::Format::error) bits_ += reflective::bits_on_bus(*frame);
   }
   /// 0..1 since the last call, over the time that has passed since; 0 where the bit rate is not known.
   [[nodiscard]] double take(base::Duration passed, std::uint32_t bit_rate) noexcept {

@@ -13,7 +13,7 @@
 #include "ocm/reflective/diagnosis.hpp"
 #include "ocm/reflective/quantity.hpp"
 
-#include "cli/analyse/report.hpp"
+#include "cli/output/csv_cell.hpp"
 
 namespace ocm::cli::stats {
 namespace {
@@ -267,13 +267,13 @@ std::string to_csv(const Report& report, const Shown& shown) {
       if (!is_shown(topic, shown)) continue;
       // As in JSON, so that a figure has one text.
       const auto object = to_object(topic);
-      text += analyse::cell_text(bus.name);
+      text += csv_cell(bus.name);
       for (const char* key : {"topic", "priority", "count", "rate_hz", "period_ns", "period_from", "mean_ns",
                               "jitter_ns", "spread_ns", "lateness_ns", "gap_ns", "gap_from_ns", "missing",
                               "incomplete", "wrong_length", "requests", "load_percent"}) {
         text += ',';
         if (key == std::string_view{"priority"})
-          text += analyse::cell_text(priorities(topic));
+          text += csv_cell(priorities(topic));
         else if (object[key].is_string())
           text += object[key].get<std::string>();
         else if (!object[key].is_null())

@@ -10,7 +10,8 @@ set(CMAKE_CXX_COMPILER arm-linux-gnueabihf-g++)
 find_program(qemu_arm qemu-arm-static)
 set(CMAKE_CROSSCOMPILING_EMULATOR ${qemu_arm} -cpu cortex-a8)
 
-set(CMAKE_CXX_FLAGS_INIT "-mcpu=cortex-a8 -mfpu=neon -mfloat-abi=hard -ffunction-sections -fdata-sections")
+# Logs are larger than 2 GiB: _FILE_OFFSET_BITS.
+set(CMAKE_CXX_FLAGS_INIT "-mcpu=cortex-a8 -mfpu=neon -mfloat-abi=hard -ffunction-sections -fdata-sections -D_FILE_OFFSET_BITS=64")
 set(CMAKE_EXE_LINKER_FLAGS_INIT "-static -Wl,--gc-sections")
 # Optimised for size as a whole: MinSizeRel, the default here, is half of Release.
 set(CMAKE_BUILD_TYPE MinSizeRel CACHE STRING "Optimised for size")

@@ -1,19 +1,15 @@
 """MCAP against Foxglove's own library, @mcap/core, which scripts/setup fetches."""
 
-import glob
 import json
-import os
 import random
 import subprocess
 import unittest
 
 import harness
 import jsonschema
+import mcap_core
 import peers
 
-CACHE = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
-TREES = sorted(glob.glob(os.path.join(CACHE, "ocm", "mcap-*", "node_modules")))
-PEER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "mcap_peer.mjs")
 START = 1_700_000_000_000_000_000
 
 # Identifier at medium priority and DLC of each frame. [docs/protocol.md, spec/topics.json]
@@ -36,15 +32,8 @@ def robot_lines(count, seed):
 
 @peers.needs("node", "zstd")
 class Foxglove(peers.Case):
-    def setUp(self):
-        super().setUp()
-        self.assertTrue(TREES, f"no @mcap/core in {CACHE}/ocm: run scripts/setup")
-
     def peer(self, verb, name, stdin=None):
-        done = subprocess.run(["node", PEER, os.path.dirname(TREES[-1]), verb, self.path(name)], capture_output=True,
-                              text=True, input=stdin, timeout=60, check=False)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return json.loads(done.stdout) if done.stdout else None
+        return mcap_core.run(verb, self.path(name), stdin)
 
     def written(self, lines, *options):
         self.save("ours.log", "".join(line + "\n" for line in lines))

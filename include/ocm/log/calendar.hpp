@@ -3,8 +3,11 @@
 /// once a frame.
 #pragma once
 
+#include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <ctime>
+#include <limits>
 #include <optional>
 #include <string_view>
 
@@ -23,40 +26,55 @@ struct CalendarTime {
   friend bool operator==(const CalendarTime&, const CalendarTime&) = default;
 };
 
+namespace detail {
+
+[[nodiscard]] constexpr std::chrono::year_month_day date_of(const CalendarTime& when) noexcept {
+  return {std::chrono::year{when.year}, std::chrono::month{static_cast<unsigned>(when.month)},
+          std::chrono::day{static_cast<unsigned>(when.day)}};
+}
+
+/// Seconds that local clocks are ahead of UTC at a moment; where time_t has 32 bits, beyond it what holds at
+/// its end.
+[[nodiscard]] inline std::int64_t ahead_of_utc(std::int64_t seconds) noexcept {
+  using Limits = std::numeric_limits<std::time_t>;
+  const auto when = static_cast<std::time_t>(std::clamp<std::int64_t>(seconds, Limits::min(), Limits::max()));
+  std::tm parts{};
+  ::tzset();
+  ::localtime_r(&when, &parts);
+  return parts.tm_gmtoff;
+}
+
+}  // namespace detail
+
 /// 0 Sunday .. 6 Saturday.
-[[nodiscard]] inline int weekday_of(const CalendarTime& when) noexcept {
-  constexpr int shifts[12] = {0, 3, 2, 5, 0, 3, 5, 1, 4, 6, 2, 4};  // [Sakamoto's method]
-  const int year = when.year - (when.month < 3 ? 1 : 0);
-  return (year + year / 4 - year / 100 + year / 400 + shifts[when.month - 1] + when.day) % 7;
+[[nodiscard]] constexpr int weekday_of(const CalendarTime& when) noexcept {
+  return static_cast<int>(std::chrono::weekday{std::chrono::sys_days{detail::date_of(when)}}.c_encoding());
 }
 
 /// Seconds since 1970 (UTC) of a local time; nothing for what no calendar has, and beyond 1678..2261, which
 /// is what nanoseconds reach. Of an hour that comes twice, at the end of summer time, either one.
 [[nodiscard]] inline std::optional<std::int64_t> seconds_of(const CalendarTime& local) noexcept {
-  constexpr int days[12] = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
-  if (local.year < 1678 || local.year > 2261 || local.month < 1 || local.month > 12) return std::nullopt;
-  const bool leap = local.year % 4 == 0 && (local.year % 100 != 0 || local.year % 400 == 0);
-  if (local.day < 1 || local.day > days[local.month - 1] + (leap && local.month == 2 ? 1 : 0))
+  if (local.year < 1678 || local.year > 2261 || local.month < 1 || local.day < 1) return std::nullopt;
+  const auto date = detail::date_of(local);
+  if (!date.ok() || local.hour < 0 || local.hour > 23 || local.minute < 0 || local.minute > 59 ||
+      local.second < 0 || local.second > 59)
     return std::nullopt;
-  if (local.hour < 0 || local.hour > 23 || local.minute < 0 || local.minute > 59 || local.second < 0 ||
-      local.second > 59)
-    return std::nullopt;
-  std::tm parts{};
-  parts.tm_year = local.year - 1900;
-  parts.tm_mon = local.month - 1;
-  parts.tm_mday = local.day;
-  parts.tm_hour = local.hour;
-  parts.tm_min = local.minute;
-  parts.tm_sec = local.second;
-  parts.tm_isdst = -1;
-  return std::mktime(&parts);
+  const std::int64_t days = std::chrono::sys_days{date}.time_since_epoch().count();
+  const std::int64_t as_utc = ((days * 24 + local.hour) * 60 + local.minute) * 60 + local.second;
+  return as_utc - detail::ahead_of_utc(as_utc - detail::ahead_of_utc(as_utc));
 }
 
 [[nodiscard]] inline CalendarTime local_time_of(std::int64_t seconds) noexcept {
-  const auto when = static_cast<std::time_t>(seconds);  // which has 32 bits on some ARM hosts
-  std::tm parts{};
-  localtime_r(&when, &parts);
-  return {parts.tm_year + 1900, parts.tm_mon + 1, parts.tm_mday, parts.tm_hour, parts.tm_min, parts.tm_sec};
+  const std::chrono::sys_seconds local{std::chrono::seconds{seconds + detail::ahead_of_utc(seconds)}};
+  const auto days = std::chrono::floor<std::chrono::days>(local);
+  const std::chrono::year_month_day date{days};
+  const std::chrono::hh_mm_ss clock{local - days};
+  return {static_cast<int>(date.year()),
+          static_cast<int>(static_cast<unsigned>(date.month())),
+          static_cast<int>(static_cast<unsigned>(date.day())),
+          static_cast<int>(clock.hours().count()),
+          static_cast<int>(clock.minutes().count()),
+          static_cast<int>(clock.seconds().count())};
 }
 
 inline constexpr std::string_view month_names[12] = {"Jan", "Feb", "Mar", "Apr", "May", "Jun",

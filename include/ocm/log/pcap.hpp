@@ -98,8 +98,9 @@ class PcapReader final : public Reader {
       return std::nullopt;
     }
     const std::uint32_t size = load32(head.data() + 8);
+    if (size > Input::longest - pcap::record_header)
+      return end(Cause::too_long, "a packet of " + std::to_string(size) + " bytes");
     const std::size_t total = pcap::record_header + size;
-    if (total > Input::longest) return end(Cause::too_long, "a packet of " + std::to_string(size) + " bytes");
     if (have_some && input_->here() < total) return std::nullopt;
     const std::string_view record = input_->peek(total);
     if (record.size() == total) return record;
