@@ -24,6 +24,12 @@ class Out {
     const auto end = std::to_chars(digits, digits + sizeof digits, number).ptr;
     return *this << std::string_view{digits, static_cast<std::size_t>(end - digits)};
   }
+  /// In millionths; the library's own way to write a float takes more flash than the tests have.
+  template <std::floating_point T>
+  Out& operator<<(T number) noexcept {
+    const bool fits = number > T(-9e12) && number < T(9e12);
+    return fits ? *this << static_cast<long long>(number * T(1e6)) << "e-6" : *this << "(no number, or huge)";
+  }
 };
 
 /// What INFO and CAPTURE say in addition, while it is in scope. Said only when a check fails, with the values

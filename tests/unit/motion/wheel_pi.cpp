@@ -1,0 +1,71 @@
+#include "ocm/motion/wheel_pi.hpp"
+
+#include <limits>
+
+#include <catch2/catch.hpp>
+
+#include "unit/motion/near.hpp"
+
+namespace {
+
+using namespace ocm::motion;
+using ocm::test::near;
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+constexpr WheelPiModel model{.pi = {.kp = 0.0005F, .ki = 0.004F, .least = 0.0F, .most = 1.0F},
+                             .starting_effort = 0.3F};
+
+// Master right: e = 200, u = 0.1 + 0.004 * 200 * 0.02 = 0.116; the slave follows what the master makes: e =
+// 100.
+constexpr WheelPiStep step = control({}, 800.0F, {500.0F, 600.0F}, 0.02F, model);
+static_assert(near(step.efforts.right, 0.116F) && near(step.efforts.left, 0.058F));
+
+constexpr WheelPiModel left_master() {
+  WheelPiModel other = model;
+  other.right_is_master = false;
+  return other;
+}
+static_assert(near(control({}, 800.0F, {600.0F, 500.0F}, 0.02F, left_master()).efforts.left, 0.116F));
+static_assert(near(control({}, 800.0F, {600.0F, 500.0F}, 0.02F, left_master()).efforts.right, 0.058F));
+
+static_assert(control({}, 100.0F, {0.0F, 0.0F}, 0.02F, model).efforts == Efforts{0.0F, 0.3F},
+              "the master gets what starts it; the slave follows when the master turns");
+static_assert(control(step.state, 0.0F, {500.0F, 600.0F}, 0.02F, model).efforts == Efforts{});
+static_assert(control(step.state, nan, {500.0F, 600.0F}, 0.02F, model).state == WheelPi{},
+              "no integral is left");
+static_assert(control(step.state, -1.0F, {500.0F, 600.0F}, 0.02F, model).efforts == Efforts{});
+
+/// A motor whose rate follows its effort, above what friction takes: weaker on one side.
+float motor(float rate, float effort, float strength) {
+  const float wanted = effort > 0.25F || rate > 0.0F ? strength * effort : 0.0F;
+  return rate + (wanted - rate) * 0.2F;
+}
+
+TEST_CASE("a rate that is not finite is counted, and the last effort stands", "[motion]") {
+  const WheelPiStep after = control(step.state, 800.0F, {500.0F, nan}, 0.02F, model);
+  CHECK(after.state.right.rejected == 1);
+  CHECK(after.state.left.rejected == 1);  // the slave does not know its master's rate
+  CHECK(after.state.right.output == step.state.right.output);
+}
+
+TEST_CASE("two motors that differ turn alike, and the slave slows down with its master", "[motion]") {
+  WheelPi state{};
+  WheelRates rates{};
+  const auto run = [&](float right_strength) {
+    for (int i = 0; i < 1000; ++i) {
+      const WheelPiStep next = control(state, 500.0F, rates, 0.02F, model);
+      state = next.state;
+      rates.left_ticks_s = motor(rates.left_ticks_s, next.efforts.left, 1250.0F);
+      rates.right_ticks_s = motor(rates.right_ticks_s, next.efforts.right, right_strength);
+    }
+  };
+  run(900.0F);
+  CHECK(near(rates.right_ticks_s, 500.0F, 2.0F));
+  CHECK(near(rates.left_ticks_s, 500.0F, 2.0F));
+  run(400.0F);  // the master under load cannot make 500 any more
+  CHECK(near(rates.right_ticks_s, 400.0F, 2.0F));
+  CHECK(near(rates.left_ticks_s, 400.0F, 2.0F));
+}
+
+}  // namespace
