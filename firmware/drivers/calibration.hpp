@@ -16,6 +16,7 @@
 #include <optional>
 #include <span>
 
+#include "ocm/base/crc16.hpp"
 #include "ocm/base/result.hpp"
 #include "ocm/base/time.hpp"
 
@@ -24,19 +25,6 @@
 #include "firmware/drivers/bytes.hpp"
 
 namespace ocm::firmware::drivers {
-
-/// CRC-16/CCITT-FALSE: polynomial 0x1021, start 0xFFFF. Bit by bit: 22 bytes once in a while.
-[[nodiscard]] constexpr std::uint16_t crc16(std::span<const std::uint8_t> bytes) noexcept {
-  std::uint16_t crc = 0xFFFF;
-  for (const std::uint8_t byte : bytes) {
-    crc = static_cast<std::uint16_t>(crc ^ byte << 8);
-    for (int bit = 0; bit < 8; ++bit)
-      crc = static_cast<std::uint16_t>((crc & 0x8000) != 0 ? crc << 1 ^ 0x1021 : crc << 1);
-  }
-  return crc;
-}
-// [catalogue of parametrised CRC algorithms: check value of "123456789"]
-static_assert(crc16(std::array<std::uint8_t, 9>{'1', '2', '3', '4', '5', '6', '7', '8', '9'}) == 0x29B1);
 
 /// What a slot holds.
 struct CalibrationRecord {
@@ -57,7 +45,7 @@ struct CalibrationRecord {
     bytes[6 + 2 * i] = low_byte(record.offsets[i]);
     bytes[7 + 2 * i] = high_byte(record.offsets[i]);
   }
-  const std::uint16_t crc = crc16(std::span{bytes}.first<22>());
+  const std::uint16_t crc = base::crc16(std::span{bytes}.first<22>());
   bytes[22] = low_byte(crc);
   bytes[23] = high_byte(crc);
   return bytes;
