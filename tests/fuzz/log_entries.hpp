@@ -11,6 +11,9 @@
 
 namespace ocm::fuzz {
 
+/// Of log::Input: so little that lines and records often lie across its end.
+inline constexpr std::size_t small_room = 256;
+
 /// Whether a bus could have carried it, or a controller reported it.
 [[nodiscard]] inline bool can_exist(const log::Entry& entry) {
   const bool wide = can::is_extended(entry.format) || entry.format == can::Format::error;

@@ -15,7 +15,7 @@ template <class R, class... More>
 [[nodiscard]] std::vector<log::Entry> read_log(std::string_view bytes, log::Interfaces& interfaces,
                                                std::uint64_t& complaints, More... more) {
   log::MemorySource source{bytes};
-  log::Input input{source};
+  log::Input input{source, fuzz::small_room};
   R reader{input, more...};
   auto entries = read_all(reader);
   for (std::size_t i = 0; i < reader.interfaces().size(); ++i)

@@ -53,8 +53,10 @@ class Input {
   /// So many bytes behind a view can be read (they are zero or of what follows).
   static constexpr std::size_t padding = 64;
 
-  /// The source must outlive the input.
-  explicit Input(Source& source) : source_(&source), bytes_(allocate(block)), capacity_(block) {}
+  /// The source must outlive the input. `room` is what is read at once at first; it grows with the longest
+  /// line or record.
+  explicit Input(Source& source, std::size_t room = block)
+      : source_(&source), bytes_(allocate(room)), capacity_(room) {}
 
   /// The next `count` bytes, not taken yet; fewer only at the end of the log, and when `count` > `longest`.
   [[nodiscard]] std::string_view peek(std::size_t count) {

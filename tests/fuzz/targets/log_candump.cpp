@@ -14,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text = fuzz::text_of(data, size);
   (void)log::CandumpReader::recognises(text);
   log::MemorySource source{text};
-  log::Input input{source};
+  log::Input input{source, fuzz::small_room};
   log::CandumpReader reader{input};
   const auto entries = fuzz::read_all(reader);
   fuzz::expect(entries.size() + reader.complaints().total() <= size, "no more is read than is there");
@@ -23,7 +23,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   log::Bytes out;
   writer.write(out, entries, reader.interfaces());
   log::MemorySource again_source{out.view()};
-  log::Input again_input{again_source};
+  log::Input again_input{again_source, fuzz::small_room};
   log::CandumpReader again{again_input};
   const auto reread = fuzz::read_all(again);
   fuzz::expect(again.complaints().total() == 0, "what is written is read without complaint");

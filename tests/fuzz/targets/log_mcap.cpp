@@ -25,7 +25,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text = fuzz::text_of(data, size);
   (void)log::McapReader::recognises(text);
   log::MemorySource source{text};
-  log::Input input{source};
+  log::Input input{source, fuzz::small_room};
   log::McapReader reader{input, unpack};
   const auto entries = fuzz::read_all(reader);
   fuzz::expect(reader.interfaces().size() <= log::Interfaces::most, "interfaces have a limit");
@@ -41,7 +41,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   writer.finish(out);
   fuzz::expect(!writer.lost().any(), "nothing is lost");
   log::MemorySource again_source{out.view()};
-  log::Input again_input{again_source};
+  log::Input again_input{again_source, fuzz::small_room};
   log::McapReader again{again_input};
   const auto reread = fuzz::read_all(again);
   fuzz::expect(again.complaints().total() == 0, "what is written is read without complaint");
