@@ -54,8 +54,8 @@ class RealLines(harness.Case):
         self.start_sim()
         listener = self.listen("--commands")
         # Requests good and bad, set points, samples of every sensor, a wrong length, a stranger, a remote frame.
-        sent = ["205#01840302", "205#01", "205#03", "204#02", "21E#02", "203#02", "21F#02", "31B#02", "201#0000000000000000",
-                "240#643278", "608#00", "6FF#01", "1F334455#DEAD", "608#R"]
+        sent = ["205#01140000", "205#01", "205#03", "205#00", "204#02", "21E#02", "203#02", "21F#02", "31B#02",
+                "201#0000000000000000", "240#643278", "608#00", "6FF#01", "1F334455#DEAD", "608#R"]
         for frame in sent:
             self.run_tool("send", frame)
         time.sleep(0.5)
