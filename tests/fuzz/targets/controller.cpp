@@ -30,6 +30,7 @@ class Account {
   /// The board reads a sample.
   void read(protocol::TopicId topic, base::Time now) {
     Stream& stream = streams_[topic.value];
+    if (tells_refusals(topic)) return;  // unasked, too: whenever the board has refused a request
     fuzz::expect(stream.may != protocol::Mode::stop, "a sensor is read only when it was asked for");
     fuzz::expect(stream.next == 0, "a sensor is read when its last sample is gone");
     if (stream.may == protocol::Mode::once) {
@@ -55,7 +56,8 @@ class Account {
     fuzz::expect(stream.pending, "a board sends what it has read");
     fuzz::expect(frame.dlc == ref.layout().dlc && ref.frame == stream.next,
                  "a sample's frames come in order");
-    fuzz::expect(id.priority == stream.sampled, "a sample has the priority asked for");
+    fuzz::expect(id.priority == stream.sampled || tells_refusals(ref.topic->id),
+                 "a sample has the priority asked for");
     stream.next = static_cast<std::uint8_t>(stream.next + 1);
     if (taken && stream.next != ref.topic->frames.size()) return;
     stream.next = 0;
@@ -73,6 +75,10 @@ class Account {
     std::uint8_t next = 0;   ///< frame of it
     protocol::Priority sampled = protocol::default_priority;
   };
+  [[nodiscard]] static bool tells_refusals(protocol::TopicId topic) {
+    return amiro::catalogue.find(topic)->role == protocol::Role::refusal;
+  }
+
   protocol::FrameIndex index_{amiro::catalogue};
   std::array<Stream, 256> streams_{};
 };
@@ -137,7 +143,8 @@ class Fuzzed {
   void serve(protocol::TopicList<Topics...>) {
     std::uint8_t bit = 1;
     [[maybe_unused]] const auto one = [&]<class Topic>(std::type_identity<Topic>) {
-      if ((left_out_ & bit) == 0)
+      // What a controller says of itself it serves in any case: here, too, so that the account hears of it.
+      if ((left_out_ & bit) == 0 || amiro::catalogue.find(Topic::id)->role != protocol::Role::none)
         controller_.template serve<Topic>([this](base::Time now) -> base::Result<Topic> {
           account_.read(Topic::id, now);
           if (++reads_ % 5 == 0) return base::Error::not_sampled;
