@@ -60,7 +60,7 @@ class Input {
 
   /// The next `count` bytes, not taken yet; fewer only at the end of the log, and when `count` > `longest`.
   [[nodiscard]] std::string_view peek(std::size_t count) {
-    while (end_ - begin_ < count && count <= longest && fill(count)) {
+    while (end_ - begin_ < count && count <= longest && fill()) {
     }
     return {bytes_.get() + begin_, std::min(count, end_ - begin_)};
   }
@@ -79,7 +79,7 @@ class Input {
   /// Takes `count` bytes without looking at them, however many. false: the log has less.
   [[nodiscard]] bool discard(std::uint64_t count) {
     while (count > 0) {
-      if (begin_ == end_ && !fill(1)) return false;
+      if (begin_ == end_ && !fill()) return false;
       const std::size_t step = static_cast<std::size_t>(std::min<std::uint64_t>(count, end_ - begin_));
       skip(step);
       count -= step;
@@ -113,7 +113,7 @@ class Input {
       seen = have;
       if (have >= longest) return pass_over(line);
       if (wait == Wait::no && !at_end_) return Line::later;
-      if (fill(have + 1)) continue;
+      if (fill()) continue;
       if (have == 0) return Line::none;
       line = {bytes_.get() + begin_, have};
       skip(have);
@@ -131,22 +131,21 @@ class Input {
 
  private:
   static std::unique_ptr<char[]> allocate(std::size_t size) {
-    return std::make_unique<char[]>(size + padding);
+    return std::unique_ptr<char[]>{new char[size + padding]{}};
   }
 
-  /// Makes room for `wanted` bytes in one piece and reads once. false: the end.
-  bool fill(std::size_t wanted) {
+  /// Reads once, behind what is here. The memory grows with what has come, not with what a header promises.
+  /// false: the end.
+  bool fill() {
     if (at_end_) return false;
-    if (begin_ == end_) begin_ = end_ = 0;
-    if (capacity_ - begin_ < wanted || capacity_ == end_) {
-      const std::size_t have = end_ - begin_;
-      if (capacity_ < wanted || (capacity_ == have)) {
-        const std::size_t larger = std::max(capacity_ * 2, wanted);
-        auto grown = allocate(larger);
-        std::memcpy(grown.get(), bytes_.get() + begin_, have);
+    const std::size_t have = end_ - begin_;
+    if (have == 0 || end_ == capacity_) {
+      if (have == capacity_) {
+        auto grown = allocate(2 * capacity_);
+        std::memcpy(grown.get(), bytes_.get(), have);
         bytes_ = std::move(grown);
-        capacity_ = larger;
-      } else {
+        capacity_ *= 2;
+      } else if (have != 0) {
         std::memmove(bytes_.get(), bytes_.get() + begin_, have);
       }
       begin_ = 0;
