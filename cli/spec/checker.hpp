@@ -1,5 +1,5 @@
-/// Reading single values of a spec's JSON, and telling what is wrong with them: what the reader of a spec
-/// stands on. For reader.cpp only.
+/// Reading single values of a document's JSON, and telling what is wrong with them: what the readers of specs
+/// and of worlds stand on. For their reader.cpp only.
 #pragma once
 
 #include <algorithm>
@@ -40,7 +40,7 @@ struct At {
 }
 /// As the spec has it, for messages.
 [[nodiscard]] inline std::string shown(const Node& node) {
-  if (node.is(Kind::string)) return quoted(node.text);
+  if (node.is(Kind::string)) return spec::quoted(node.text);
   if (node.is(Kind::number)) return node.text;
   return std::string{describe(node.kind)};
 }
@@ -110,13 +110,13 @@ class Checker {
     for (const auto& [key, node] : at.node->members) {
       if (std::find(known.begin(), known.end(), key) != known.end()) continue;
       const std::string near = nearest_name(key, known);
-      tell({&node, at.path + "/" + pointer_step(key)}, "unknown member " + quoted(key),
-           near.empty() ? "one of " + list_of(known) : "did you mean " + quoted(near) + "?");
+      tell({&node, at.path + "/" + pointer_step(key)}, "unknown member " + spec::quoted(key),
+           near.empty() ? "one of " + list_of(known) : "did you mean " + spec::quoted(near) + "?");
     }
   }
   [[nodiscard]] std::optional<At> require(const At& at, std::string_view key, std::string_view remedy) {
     auto found = at.member(key);
-    if (!found) tell(at, "no " + quoted(key), "add " + quoted(key) + ": " + std::string{remedy});
+    if (!found) tell(at, "no " + spec::quoted(key), "add " + spec::quoted(key) + ": " + std::string{remedy});
     return found;
   }
 
@@ -142,16 +142,17 @@ class Checker {
     if (!is_kind(at, Kind::string, name_form)) return {};
     const std::string& text = at.node->text;
     if (!is_name(text)) {
-      tell(at, quoted(text) + " is not a name", std::string{name_form});
+      tell(at, spec::quoted(text) + " is not a name", std::string{name_form});
       return {};
     }
     if (text.size() > 40) {
-      tell(at, "the name " + quoted(text) + " has " + std::to_string(text.size()) + " characters",
+      tell(at, "the name " + spec::quoted(text) + " has " + std::to_string(text.size()) + " characters",
            "at most 40");
       return {};
     }
     if (is_reserved(text)) {
-      tell(at, quoted(text) + " is a word of C++", "another name, such as " + quoted(text + "_value"));
+      tell(at, spec::quoted(text) + " is a word of C++",
+           "another name, such as " + spec::quoted(text + "_value"));
       return {};
     }
     return text;
@@ -219,12 +220,12 @@ class Checker {
                                ? base::Result<std::int64_t>{base::Error::out_of_range}
                                : base::detail::scaled(product->digits, product->exponent);
         if (whole) return Duration{*whole};
-        tell(at, quoted(text) + " is no whole number of nanoseconds within 292 years",
+        tell(at, spec::quoted(text) + " is no whole number of nanoseconds within 292 years",
              std::string{duration_form});
         return std::nullopt;
       }
     }
-    tell(at, quoted(text) + " is not a duration", std::string{duration_form});
+    tell(at, spec::quoted(text) + " is not a duration", std::string{duration_form});
     return std::nullopt;
   }
 
@@ -233,7 +234,7 @@ class Checker {
     const auto wanted = duration(at);
     if (!wanted) return std::nullopt;
     if (const auto wire = protocol::Period::from(*wanted)) return *wire;
-    tell(at, "a request cannot carry the period " + quoted(at.node->text),
+    tell(at, "a request cannot carry the period " + spec::quoted(at.node->text),
          "1 to 65535 of us, ms or s; the nearest is \"" +
              print(protocol::Period::nearest(*wanted).duration()) + "\"");
     return std::nullopt;
@@ -291,7 +292,7 @@ class Checker {
         std::vector<std::string> present;
         for (const auto fact : facts)
           if (object.member(fact)) present.emplace_back(fact);
-        tell(entry, "source for " + quoted(key) + ", which is no fact of this object",
+        tell(entry, "source for " + spec::quoted(key) + ", which is no fact of this object",
              "default, or one of " + list_of(present));
       } else {
         source.particular.emplace_back(key, std::move(text));
@@ -300,7 +301,7 @@ class Checker {
     if (at->member("default") || inherited) return source;
     for (const auto fact : facts)
       if (object.member(fact) && !at->member(fact))
-        tell(*at, "no source for " + quoted(fact), "add " + quoted(fact) + " or \"default\"");
+        tell(*at, "no source for " + spec::quoted(fact), "add " + spec::quoted(fact) + " or \"default\"");
     return source;
   }
 

@@ -76,8 +76,14 @@ class CountingIterator {
 
 class Builder : public nlohmann::json_sax<nlohmann::json> {
  public:
-  Builder(std::string_view text, std::string_view file_name, std::vector<Problem>& problems)
-      : taken(text.data()), text_(text), counted_(text.data()), file_name_(file_name), problems_(problems) {}
+  Builder(std::string_view text, std::string_view file_name, std::vector<Problem>& problems,
+          const Document& document)
+      : taken(text.data()),
+        text_(text),
+        counted_(text.data()),
+        file_name_(file_name),
+        problems_(problems),
+        document_(document) {}
 
   const char* taken;
 
@@ -116,10 +122,10 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     // ours to tell; line and column stand in the place.
     std::string what = error.what();
     if (const auto begin = what.find(": "); begin != std::string::npos) what.erase(0, begin + 2);
-    std::string_view remedy = "strict JSON: double quotes, commas between members, no comments";
+    std::string remedy = "strict JSON: double quotes, commas between members, no comments";
     if (text_.find_first_not_of(" \t\r\n") == std::string_view::npos) {
       what = "the file is empty";
-      remedy = "a spec is a JSON object with robot, namespace, bus, boards and topics";
+      remedy = std::string{document_.what} + " is a JSON object with " + std::string{document_.members};
     } else if (what.find("UTF-8") != std::string::npos) {
       remedy = "save the file as UTF-8";
     } else if (what.find("number overflow") != std::string::npos) {
@@ -134,7 +140,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
       if (c == '\n') ++line;
     }
     problems_.push_back({std::string{file_name_} + ":" + std::to_string(line) + ":" + std::to_string(column),
-                         std::move(what), std::string{remedy}});
+                         std::move(what), std::move(remedy)});
     return false;
   }
 
@@ -169,8 +175,9 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
   // Only the innermost open node grows, so the addresses of those around it stay.
   bool open(Node::Kind kind) {
     if (open_.size() == max_depth) {
-      problems_.push_back({place(), "nested deeper than " + std::to_string(max_depth) + " levels",
-                           "a spec needs 7 levels at most"});
+      problems_.push_back(
+          {place(), "nested deeper than " + std::to_string(max_depth) + " levels",
+           std::string{document_.what} + " needs " + std::to_string(document_.levels) + " levels at most"});
       return false;
     }
     Node node;
@@ -196,6 +203,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
   std::size_t line_ = 1;
   std::string_view file_name_;
   std::vector<Problem>& problems_;
+  const Document& document_;
   Node root_;
   std::vector<Node*> open_;
 };
@@ -217,9 +225,10 @@ void find_twins(const Node& node, const std::string& path, std::string_view file
 
 }  // namespace
 
-Node parse_json(std::string_view text, std::string_view file_name, std::vector<Problem>& problems) {
+Node parse_json(std::string_view text, std::string_view file_name, std::vector<Problem>& problems,
+                const Document& document) {
   if (text.data() == nullptr) text = "";
-  Builder builder{text, file_name, problems};
+  Builder builder{text, file_name, problems, document};
   const CountingIterator first{text.data(), &builder.taken};
   const CountingIterator last{text.data() + text.size(), &builder.taken};
   if (!nlohmann::json::sax_parse(first, last, &builder)) return {};

@@ -1,5 +1,5 @@
-/// JSON as the spec needs it: numbers keep their digits (0.0175 stays 175 * 10^-4), members keep their order,
-/// and every value knows where it stands in the text.
+/// JSON as the tool's files need it: numbers keep their digits (0.0175 stays 175 * 10^-4), members keep their
+/// order, and every value knows where it stands in the text.
 #pragma once
 
 #include <cstddef>
@@ -35,11 +35,19 @@ struct Node::Member {
 /// In words, for messages: "a text", "an object".
 [[nodiscard]] std::string_view describe(Node::Kind kind) noexcept;
 
+/// What kind of document is read, for messages.
+struct Document {
+  std::string_view what = "a spec";
+  std::string_view members = "robot, namespace, bus, boards and topics";  ///< of its outermost object
+  std::string_view schema = "topics.schema.json";
+  int levels = 7;  ///< how deep it is nested at most
+};
+
 /// Reads `text`. Appends to `problems` where it is not JSON, nested deeper than `max_depth`, has a text
 /// longer than `max_text` bytes or a member twice; then the node is not to be used. Throws std::bad_alloc
 /// only.
 [[nodiscard]] Node parse_json(std::string_view text, std::string_view file_name,
-                              std::vector<Problem>& problems);
+                              std::vector<Problem>& problems, const Document& document = {});
 
 inline constexpr std::size_t max_depth = 32;
 inline constexpr std::size_t max_text = 1000;

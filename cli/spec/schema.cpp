@@ -1,4 +1,6 @@
 // valijson is slow to compile: it has this file to itself.
+#include "cli/spec/schema.hpp"
+
 #include <algorithm>
 #include <memory>
 #include <string>
@@ -90,37 +92,48 @@ bool is_at_or_below(const std::string& place, const std::string& path) {
 
 }  // namespace
 
-void validate_by_schema(const Node& root, std::string_view file_name, std::vector<Problem>& problems) {
-  // Read once: it takes longer than the validation of a spec.
-  static const auto schema_json = nlohmann::json::parse(schema_text());
-  static const auto schema = [] {
-    auto made = std::make_unique<valijson::Schema>();
-    valijson::SchemaParser{}.populateSchema(valijson::adapters::NlohmannJsonAdapter{schema_json}, *made);
-    return made;
-  }();
+struct Schema::Parsed {
+  nlohmann::json json;
+  valijson::Schema rules;
+};
+
+Schema::Schema(std::string_view text, const Document& document)
+    : document_(document), parsed_(std::make_unique<Parsed>()) {
+  parsed_->json = nlohmann::json::parse(text);
+  valijson::SchemaParser{}.populateSchema(valijson::adapters::NlohmannJsonAdapter{parsed_->json},
+                                          parsed_->rules);
+}
+Schema::~Schema() = default;
+
+void Schema::validate(const Node& root, std::string_view file_name, std::vector<Problem>& problems) const {
   const auto document = to_json(root);
   valijson::ValidationResults results;
   valijson::Validator validator;
-  if (validator.validate(*schema, valijson::adapters::NlohmannJsonAdapter{document}, &results)) return;
+  if (validator.validate(parsed_->rules, valijson::adapters::NlohmannJsonAdapter{document}, &results)) return;
 
   // Innermost first: what surrounds a bad value is reported by valijson as well, and says nothing new.
   std::vector<Problem> found;
   valijson::ValidationResults::Error error;
   while (results.popError(error)) {
-    const Place place = find_place(root, schema_json, error.context);
+    const Place place = find_place(root, parsed_->json, error.context);
     const auto told_below = [&](const Problem& p) { return is_at_or_below(p.place, place.path); };
     if (std::any_of(problems.begin(), problems.end(), told_below) ||
         std::any_of(found.begin(), found.end(), told_below))
       continue;
     const bool described =
         place.schema != nullptr && place.schema->is_object() && place.schema->contains("description");
-    found.push_back(
-        {std::string{file_name} + ":" + std::to_string(place.node->line) + ": " +
-             (place.path.empty() ? "/" : place.path),
-         error.description,
-         described ? place.schema->at("description").get<std::string>() : "see topics.schema.json"});
+    found.push_back({std::string{file_name} + ":" + std::to_string(place.node->line) + ": " +
+                         (place.path.empty() ? "/" : place.path),
+                     error.description,
+                     described ? place.schema->at("description").get<std::string>()
+                               : "see " + std::string{document_.schema}});
   }
   problems.insert(problems.end(), found.begin(), found.end());
+}
+
+void validate_by_schema(const Node& root, std::string_view file_name, std::vector<Problem>& problems) {
+  static const Schema schema{schema_text(), {}};  // read once: it takes longer than the validation of a spec
+  schema.validate(root, file_name, problems);
 }
 
 }  // namespace ocm::spec

@@ -1,13 +1,9 @@
 #include "cli/spec/spec.hpp"
 
-#include <algorithm>
-#include <array>
 #include <deque>
-#include <fstream>
-#include <iterator>
 #include <string>
-#include <system_error>
 
+#include "cli/spec/file.hpp"
 #include "cli/spec/json.hpp"
 #include "cli/spec/reader.hpp"
 #include "cli/spec/worst_bits.hpp"
@@ -116,48 +112,18 @@ Loaded parse(std::string_view text, std::string_view file_name) {
     return loaded;
   }
   const Node root = parse_json(text, file_name, loaded.problems);
-  // After a syntax error there is no document; a member that is there twice leaves one that can be judged.
-  const auto has_path = [](const Problem& p) { return p.place.find(": /") != std::string::npos; };
-  if (!std::all_of(loaded.problems.begin(), loaded.problems.end(), has_path)) return loaded;
+  if (!has_document(loaded.problems)) return loaded;
   Model model = read_model(root, file_name, loaded.problems);
   validate_by_schema(root, file_name, loaded.problems);
-  const auto line_of = [&](const Problem& p) {
-    std::size_t line = 0;  // places begin "file:line"
-    for (std::size_t i = file_name.size() + 1; i < p.place.size() && base::is_digit(p.place[i]); ++i)
-      line = 10 * line + static_cast<std::size_t>(p.place[i] - '0');
-    return line;
-  };
-  std::stable_sort(loaded.problems.begin(), loaded.problems.end(),
-                   [&](const Problem& a, const Problem& b) { return line_of(a) < line_of(b); });
+  sort_by_line(loaded.problems, file_name);
   if (loaded.problems.empty()) loaded.spec = std::make_unique<Spec>(std::move(model));
   return loaded;
 }
 
 Loaded load(const std::filesystem::path& file) {
-  const auto failed = [&](std::string what, std::string remedy) {
-    Loaded loaded;
-    loaded.problems.push_back({file.string(), std::move(what), std::move(remedy)});
-    return loaded;
-  };
-  std::error_code error;
-  const auto status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status))
-    return failed(
-        error && error != std::errc::no_such_file_or_directory ? error.message() : "there is no such file",
-        "the path of a spec, such as spec/topics.json");
-  if (std::filesystem::is_directory(status))
-    return failed("it is a folder", "the path of the spec within it");
-  std::ifstream in{file, std::ios::binary};
-  if (!in) return failed("it cannot be opened", "a file that you may read");
-  // One byte more than allowed is enough to know that it is too much; a device has no end.
-  std::string text(max_spec_bytes + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (in.bad()) return failed("it cannot be read", "a readable file");
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  if (text.size() > max_spec_bytes)
-    return failed("the file is larger than " + std::to_string(max_spec_bytes) + " bytes",
-                  "a spec of a robot is smaller");
-  return parse(text, file.string());
+  Loaded loaded;
+  const auto text = read_document(file, "a spec", "spec/topics.json", loaded.problems);
+  return text ? parse(*text, file.string()) : std::move(loaded);
 }
 
 }  // namespace ocm::spec

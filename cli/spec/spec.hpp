@@ -9,6 +9,7 @@
 
 #include "ocm/protocol/topic.hpp"
 
+#include "cli/spec/file.hpp"
 #include "cli/spec/model.hpp"
 #include "cli/spec/problem.hpp"
 
@@ -37,7 +38,7 @@ struct Loaded {
 };
 
 /// A spec is at most this large.
-inline constexpr std::size_t max_spec_bytes = 1'000'000;
+inline constexpr std::size_t max_spec_bytes = max_document_bytes;
 
 /// Any bytes are a problem at worst: throws std::bad_alloc only. `file_name` is for the places.
 [[nodiscard]] Loaded parse(std::string_view text, std::string_view file_name);

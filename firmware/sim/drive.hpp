@@ -13,6 +13,7 @@
 
 #include "firmware/boards/di_wheel_drive/geometry.hpp"
 #include "firmware/boards/samples.hpp"
+#include "firmware/sim/body.hpp"
 #include "firmware/sim/geometry.hpp"
 
 namespace ocm::firmware::sim {
@@ -62,7 +63,11 @@ class Drive {
     Pose& pose = motion_.pose;
     const double turn = (wheels_.right - wheels_.left) / boards::di_wheel_drive::wheel_base_m;
     pose = arc(before, (wheels_.left + wheels_.right) / 2 * step_s, turn * step_s);
-    keep_out(walls, before);
+    Vector centre = pose.position();
+    touching_ = keep_out(centre, before.position(),
+                         [&](Vector at) { return push_out(walls, at, model_.robot_radius_m); });
+    pose.x_m = centre.x;
+    pose.y_m = centre.y;
 
     const Vector velocity = (pose.position() - before.position()) * (1 / step_s);
     const Vector change = (velocity - motion_.velocity_m_per_s) * (1 / step_s);
@@ -83,19 +88,7 @@ class Drive {
 
   [[nodiscard]] WheelTicks ticks() const noexcept { return {ticks(travel_.left), ticks(travel_.right)}; }
 
-  /// The end of an arc of this length and angle.
-  [[nodiscard]] static Pose arc(const Pose& from, double length_m, double angle_rad) noexcept {
-    const double end = from.heading_rad + angle_rad;
-    if (std::abs(angle_rad) < 1e-9)
-      return {from.x_m + length_m * std::cos(end), from.y_m + length_m * std::sin(end), end};
-    const double radius = length_m / angle_rad;
-    return {from.x_m + radius * (std::sin(end) - std::sin(from.heading_rad)),
-            from.y_m - radius * (std::cos(end) - std::cos(from.heading_rad)), end};
-  }
-
  private:
-  static constexpr double contact_m = 1e-9;  // less is rounding: the robot comes to rest at a wall
-
   [[nodiscard]] Motion resting() const noexcept {
     Motion rest;
     rest.pose = motion_.pose;
@@ -106,29 +99,6 @@ class Drive {
     const double most = model_.greatest_acceleration_m_per_s2 * step_s;
     const double next = speed + std::clamp((target - speed) * gain_, -most, most);
     return std::abs(target - next) < 1e-6 ? target : next;  // arrived
-  }
-
-  void keep_out(const std::vector<Segment>& walls, const Pose& before) noexcept {
-    Pose& pose = motion_.pose;
-    touching_ = false;
-    for (int i = 0; i < 4; ++i) {  // a corner takes two, a wedge a few
-      double deepest = contact_m;
-      Vector push;
-      for (const Segment& wall : walls) {
-        const Vector away = pose.position() - nearest_point(wall, pose.position());
-        const double distance = length(away);
-        const double depth = model_.robot_radius_m - distance;
-        if (depth <= deepest || distance == 0) continue;
-        deepest = depth;
-        push = away * (depth / distance);
-      }
-      if (deepest <= contact_m) return;
-      touching_ = true;
-      pose.x_m += push.x;
-      pose.y_m += push.y;
-    }
-    pose.x_m = before.x_m;  // wedged
-    pose.y_m = before.y_m;
   }
 
   [[nodiscard]] static std::int32_t ticks(double travel_m) noexcept {

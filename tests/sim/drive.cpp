@@ -23,16 +23,16 @@ void run(Drive& drive, double seconds, const std::vector<Segment>& walls = open_
 
 TEST_CASE("an exact arc ends where geometry says") {
   // A quarter of a circle of radius 1 m.
-  const Pose quarter = Drive::arc({}, pi / 2, pi / 2);
+  const Pose quarter = arc({}, pi / 2, pi / 2);
   CHECK(quarter.x_m == Approx(1));
   CHECK(quarter.y_m == Approx(1));
   CHECK(quarter.heading_rad == Approx(pi / 2));
   // Two halves make a whole.
-  const Pose halves = Drive::arc(Drive::arc({}, pi / 4, pi / 4), pi / 4, pi / 4);
+  const Pose halves = arc(arc({}, pi / 4, pi / 4), pi / 4, pi / 4);
   CHECK(halves.x_m == Approx(quarter.x_m));
   CHECK(halves.y_m == Approx(quarter.y_m));
   // Nearly straight joins straight.
-  CHECK(Drive::arc({}, 1, 1.1e-9).x_m == Approx(Drive::arc({}, 1, 0.9e-9).x_m).epsilon(1e-6));
+  CHECK(arc({}, 1, 1.1e-9).x_m == Approx(arc({}, 1, 0.9e-9).x_m).epsilon(1e-6));
 }
 
 TEST_CASE("straight ahead for a second: 0.1 m, less what the lag costs") {
