@@ -6,16 +6,13 @@
 
 using namespace ocm;
 using namespace ocm::log;
+using log::testing::at;
 using log::testing::read_all;
 using log::testing::Zone;
 
 namespace {
 
 constexpr std::int64_t second = 1'000'000'000;
-
-base::Time at(std::int64_t ns) {
-  return base::Time{base::Duration{ns}};
-}
 
 const std::string head = "date Tue Nov 14 10:13:20.000 pm 2023\nbase hex  timestamps absolute\n";
 constexpr std::int64_t start = 1'700'000'000 * second;

@@ -6,14 +6,12 @@
 
 using namespace ocm;
 using namespace ocm::log;
+using log::testing::at;
 using log::testing::bytes;
 using log::testing::Zone;
 
 namespace {
 
-base::Time at(std::int64_t ns) {
-  return base::Time{base::Duration{ns}};
-}
 constexpr std::int64_t start = 1'700'000'000'123'000'000;
 
 /// In place of zlib: data that is told to repeat its first byte so often, "3x" for "xxx".

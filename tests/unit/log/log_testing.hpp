@@ -21,6 +21,11 @@ namespace ocm::log::testing {
 
 using fuzz::can_exist;
 
+/// So long after the epoch.
+constexpr base::Time at(std::int64_t ns) {
+  return base::Time{base::Duration{ns}};
+}
+
 /// "0A 0D 0D 0A": bytes as their sources print them; blanks and line ends do not count.
 inline std::string bytes(std::string_view hex) {
   std::string out;

@@ -6,14 +6,11 @@
 
 using namespace ocm;
 using namespace ocm::log;
+using log::testing::at;
 using log::testing::bytes;
 using log::testing::read_all;
 
 namespace {
-
-base::Time at(std::int64_t ns) {
-  return base::Time{base::Duration{ns}};
-}
 
 // By hand. [draft-ietf-opsawg-pcap, 4 and 5]: magic, version 2.4, zone, accuracy, longest, link type 227
 const std::string little_us = bytes("D4C3B2A1 0200 0400 00000000 00000000 00000400 E3000000");

@@ -8,14 +8,11 @@
 
 using namespace ocm;
 using namespace ocm::log;
+using log::testing::at;
 using log::testing::bytes;
 using log::testing::read_all;
 
 namespace {
-
-base::Time at(std::int64_t ns) {
-  return base::Time{base::Duration{ns}};
-}
 
 // Blocks by hand. [draft-ietf-opsawg-pcapng, 4.1, 4.2, 4.3]
 const std::string little_section = bytes("0A0D0D0A 1C000000 4D3C2B1A 0100 0000 FFFFFFFFFFFFFFFF 1C000000");

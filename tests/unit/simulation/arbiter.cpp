@@ -7,7 +7,8 @@
 #include <catch2/catch.hpp>
 
 #include "ocm/can/bus.hpp"
-#include "ocm/can/text.hpp"
+
+#include "unit/simulation/arbiter_testing.hpp"
 
 using namespace ocm;
 using namespace std::chrono_literals;
@@ -16,32 +17,16 @@ using simulation::Delivery;
 using simulation::Leftovers;
 using simulation::NodeId;
 using simulation::QueueOrder;
+using test::frame;
+using test::run;
+using test::Texts;
+using test::texts;
 
 namespace {
 
 constexpr base::Time at(base::Duration time) {
   return base::Time{time};
 }
-
-can::Frame frame(std::string_view text) {
-  const auto parsed = can::parse_frame(text);
-  REQUIRE(parsed.ok());
-  return *parsed;
-}
-
-std::vector<Delivery> run(Arbiter& bus, base::Time until = base::never) {
-  std::vector<Delivery> deliveries;
-  bus.advance(until, [&](const Delivery& delivery) { deliveries.push_back(delivery); });
-  return deliveries;
-}
-
-std::vector<std::string> texts(const std::vector<Delivery>& deliveries) {
-  std::vector<std::string> result;
-  for (const Delivery& delivery : deliveries) result.emplace_back(can::to_text(delivery.frame).view());
-  return result;
-}
-
-using Texts = std::vector<std::string>;
 
 /// A trace of tests/arbitration/schedule.txt.
 struct Trace {

@@ -6,9 +6,9 @@
 
 #include <catch2/catch.hpp>
 
-#include "ocm/can/text.hpp"
 #include "ocm/simulation/arbiter.hpp"
 
+#include "unit/simulation/arbiter_testing.hpp"
 #include "unit/simulation/naive_bus.hpp"
 
 using namespace ocm;
@@ -20,6 +20,10 @@ using simulation::FaultState;
 using simulation::Leftovers;
 using simulation::NodeId;
 using simulation::QueueOrder;
+using test::frame;
+using test::run;
+using test::Texts;
+using test::texts;
 
 namespace {
 
@@ -33,26 +37,6 @@ constexpr base::Time at(std::uint64_t boundary) {
 constexpr can::Frame plain{.id = 0x555, .dlc = 5, .data = {0x55, 0x55, 0x55, 0x55, 0x55}};
 constexpr std::uint64_t plain_bits = 84;
 static_assert(can::frame_bits(plain) == plain_bits);
-
-can::Frame frame(std::string_view text) {
-  const auto parsed = can::parse_frame(text);
-  REQUIRE(parsed.ok());
-  return *parsed;
-}
-
-std::vector<Delivery> run(Arbiter& bus, base::Time until = base::never) {
-  std::vector<Delivery> deliveries;
-  bus.advance(until, [&](const Delivery& delivery) { deliveries.push_back(delivery); });
-  return deliveries;
-}
-
-std::vector<std::string> texts(const std::vector<Delivery>& deliveries) {
-  std::vector<std::string> result;
-  for (const Delivery& delivery : deliveries) result.emplace_back(can::to_text(delivery.frame).view());
-  return result;
-}
-
-using Texts = std::vector<std::string>;
 
 }  // namespace
 
