@@ -1,7 +1,11 @@
 #include "cli/interrupt.hpp"
 
+#include <cerrno>
+#include <climits>
 #include <csignal>
 #include <initializer_list>
+#include <poll.h>
+#include <unistd.h>
 
 namespace ocm::cli {
 namespace {
@@ -16,6 +20,19 @@ void catch_signal(int signal) {
   sigemptyset(&action.sa_mask);
   action.sa_flags = 0;  // no SA_RESTART: a blocking wait must return
   sigaction(signal, &action, nullptr);
+}
+
+/// Waits until something can be written, or a write will say why not. false: a signal came, and for a second
+/// nothing was taken.
+bool takes_more(int descriptor) {
+  constexpr int most_tenths = 10;
+  for (int tenths = 0; tenths < most_tenths;) {
+    pollfd entry{descriptor, POLLOUT, 0};
+    const int ready = ::poll(&entry, 1, 100);
+    if (ready > 0 || (ready < 0 && errno != EINTR)) return true;
+    if (noted_signal != 0) ++tenths;
+  }
+  return false;
 }
 }  // namespace
 
@@ -37,6 +54,25 @@ int interrupted() noexcept {
 
 int exit_code_after_interrupt(int code) noexcept {
   return noted_signal != 0 ? 128 + noted_signal : code;
+}
+
+Written write_all(int descriptor, std::string_view text, Signals signals) {
+  Written written;
+  while (written.bytes < text.size()) {
+    // A pipe that takes something takes so much without waiting.
+    const bool in_pages = signals == Signals::blocked || noted_signal != 0;
+    if (in_pages && !takes_more(descriptor)) return {written.bytes, EINTR};
+    const std::string_view piece = text.substr(written.bytes, in_pages ? PIPE_BUF : std::string_view::npos);
+    const ssize_t count = ::write(descriptor, piece.data(), piece.size());
+    if (count >= 0) {
+      written.bytes += static_cast<std::size_t>(count);
+    } else if (errno == EAGAIN) {
+      if (!takes_more(descriptor)) return {written.bytes, EINTR};
+    } else if (errno != EINTR) {
+      return {written.bytes, errno};
+    }
+  }
+  return written;
 }
 
 }  // namespace ocm::cli

@@ -1,6 +1,9 @@
 /// Ctrl-C and SIGTERM end a command cleanly: they interrupt a wait, and the verb sees here that it is over.
 #pragma once
 
+#include <cstddef>
+#include <string_view>
+
 namespace ocm::cli {
 
 /// From now on SIGINT and SIGTERM are noted instead of killing.
@@ -12,5 +15,17 @@ void catch_hangups();
 [[nodiscard]] int interrupted() noexcept;
 /// 128 + signal when one came, else `code`.
 [[nodiscard]] int exit_code_after_interrupt(int code) noexcept;
+
+/// How far a write came.
+struct Written {
+  std::size_t bytes = 0;
+  int error = 0;  ///< errno where not all was written; EINTR: a signal came, and nobody took the rest
+};
+/// Whether signals end the writes of this thread.
+enum class Signals : bool { reach, blocked };
+/// Writes all of `text`, and waits for whoever reads behind a pipe. After a signal for a second at most,
+/// while nothing is taken: a reader that stands still does not keep the command from ending. Where signals
+/// are blocked a pipe is written page by page, so that no write outlasts one.
+[[nodiscard]] Written write_all(int descriptor, std::string_view text, Signals signals = Signals::reach);
 
 }  // namespace ocm::cli

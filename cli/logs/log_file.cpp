@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/interrupt.hpp"
 #include "cli/logs/packing.hpp"
 #include "cli/session.hpp"
 
@@ -28,26 +29,26 @@ struct LogFile::State {
   std::string packed;
   transport::Failure failure;
 
+  Signals signals = Signals::reach;
+
   bool failed(std::string_view doing) {
     failure = {fmt::format("cannot {} {}: {}", doing, path == "-" ? "the standard output" : path,
                            std::strerror(errno)),
-               errno == ENOSPC ? "free some space; what was written before can be read"
-                               : "what was written before can be read"};
+               errno == ENOSPC  ? "free some space; what was written before can be read"
+               : errno == EINTR ? "whoever reads it takes no more, and a signal ended the wait"
+                                : "what was written before can be read"};
     return false;
   }
 
   /// A file that takes no more ends where the last call ended, so that it ends with a whole record.
   bool hand_out(std::string_view text) {
-    std::size_t done = 0;
-    while (done < text.size()) {
-      const ssize_t count = ::write(descriptor, text.data() + done, text.size() - done);
-      if (count < 0 && errno == EINTR) continue;
-      if (count < 0) {
-        failed("write");
-        if (regular && done > 0 && ::ftruncate(descriptor, static_cast<off_t>(size)) != 0) return false;
+    const Written written = write_all(descriptor, text, signals);
+    if (written.error != 0) {
+      errno = written.error;
+      failed("write");
+      if (regular && written.bytes > 0 && ::ftruncate(descriptor, static_cast<off_t>(size)) != 0)
         return false;
-      }
-      done += static_cast<std::size_t>(count);
+      return false;
     }
     size += text.size();
     return true;
@@ -104,6 +105,10 @@ transport::Outcome<std::unique_ptr<LogFile>> LogFile::create(const std::string& 
   made.value.reset(new LogFile);
   made.value->state_ = std::move(state);
   return made;
+}
+
+void LogFile::without_signals() noexcept {
+  if (!state_->regular) state_->signals = Signals::blocked;
 }
 
 LogFile::~LogFile() {

@@ -25,6 +25,9 @@ class LogFile {
   /// Finishes, if nobody did; what fails then is lost: call `finish`.
   ~LogFile();
 
+  /// For a thread that no signal reaches: a pipe is then written so that a signal is seen all the same.
+  void without_signals() noexcept;
+
   /// Each: false when the file takes no more (a full disk): `failure` says it; what was written before can be
   /// read.
   bool write(std::span<const log::Entry> entries, const log::Interfaces& interfaces);

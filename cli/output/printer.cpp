@@ -4,25 +4,25 @@
 #include <cstring>
 #include <unistd.h>
 
+#include "cli/interrupt.hpp"
 #include "cli/session.hpp"
 
 namespace ocm::cli {
 
-void Printer::flush() {
-  std::string_view left = buffer_.view();
-  while (!left.empty()) {
-    const ssize_t written = ::write(STDOUT_FILENO, left.data(), left.size());
-    if (written >= 0) {
-      left.remove_prefix(static_cast<std::size_t>(written));
-      continue;
-    }
-    if (errno == EINTR || errno == EAGAIN) continue;
-    const int error = errno;
-    buffer_.clear();
+void write_out(std::string_view text) {
+  const int error = write_all(STDOUT_FILENO, text).error;
+  if (error == EINTR)
+    fail({"interrupted: whoever reads the output takes no more of it", "the rest of it is lost"},
+         exit_code_after_interrupt(exit_failure));
+  if (error != 0)
     fail({fmt::format("cannot write the output: {}", std::strerror(error)),
           "is the disk full, or was the file closed?"});
-  }
-  buffer_.clear();
+}
+
+void write_out(Buffer& buffer) {
+  const std::string_view text = buffer.view();
+  buffer.clear();  // the bytes stay where they are
+  write_out(text);
 }
 
 }  // namespace ocm::cli

@@ -3,11 +3,18 @@
 #pragma once
 
 #include <memory>
+#include <string_view>
 #include <utility>
 
 #include "cli/output/output.hpp"
 
 namespace ocm::cli {
+
+/// Writes all of it to stdout. Leaves with exit_failure when stdout takes no more (a full disk, a closed
+/// file), and after a signal when whoever reads stands still.
+void write_out(std::string_view text);
+/// The same, and empties the buffer.
+void write_out(Buffer& buffer);
 
 class Printer {
  public:
@@ -18,8 +25,7 @@ class Printer {
     if (buffer_.size() >= enough) flush();
     return shown;
   }
-  /// Leaves with exit_failure when stdout takes no more (a full disk, a closed file).
-  void flush();
+  void flush() { write_out(buffer_); }
 
  private:
   static constexpr std::size_t enough = 1 << 16;

@@ -42,6 +42,17 @@ std::string words(const std::string& text) {
 
 }  // namespace
 
+std::string quoted(std::string_view text) {
+  std::string out = "'";
+  for (const char c : text) {
+    if (c == '\'')
+      out += "''";
+    else
+      out += static_cast<unsigned char>(c) < 0x20 || c == 0x7F ? '?' : c;
+  }
+  return out + "'";
+}
+
 transport::Outcome<std::string> draw(std::string_view script) {
   // Files and not pipes: nobody waits for anybody, and half a picture is not taken for one.
   const File in{std::tmpfile()}, out{std::tmpfile()}, said{std::tmpfile()};

@@ -1,6 +1,7 @@
 /// Curves as a picture: a script for gnuplot, and gnuplot to draw it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -13,6 +14,13 @@
 namespace ocm::cli::plot {
 
 enum class Kind : std::uint8_t { svg, png, pdf };
+
+/// Colours that are told apart by everybody. [Okabe, Ito 2008]
+inline constexpr std::array colours{"#0072B2", "#D55E00", "#009E73", "#CC79A7",
+                                    "#E69F00", "#56B4E9", "#000000", "#999933"};
+
+/// A text that gnuplot takes as it is.
+[[nodiscard]] std::string quoted(std::string_view text);
 
 struct Picture {
   Kind kind = Kind::svg;

@@ -10,9 +10,6 @@
 namespace ocm::cli::plot {
 namespace {
 
-/// Colours that are told apart by everybody. [Okabe, Ito 2008]
-constexpr std::array colours{"#0072B2", "#D55E00", "#009E73", "#CC79A7",
-                             "#E69F00", "#56B4E9", "#000000", "#999933"};
 /// So few points are marked, each.
 constexpr std::size_t marked = 200;
 
@@ -38,18 +35,6 @@ std::vector<Panel> panels_of(const Curves& curves, bool path) {
     panel->curves.push_back(i);
   }
   return panels;
-}
-
-/// A text that gnuplot takes as it is.
-std::string quoted(std::string_view text) {
-  std::string out = "'";
-  for (const char c : text) {
-    if (c == '\'')
-      out += "''";
-    else
-      out += static_cast<unsigned char>(c) < 0x20 || c == 0x7F ? '?' : c;
-  }
-  return out + "'";
 }
 
 std::string with_unit(const ChosenField& field) {

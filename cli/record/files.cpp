@@ -4,6 +4,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <unistd.h>
 #include <utility>
 
@@ -70,6 +71,7 @@ transport::Outcome<void> Files::open_next() {
   auto file = logs::LogFile::create(*path, *options_.format, *catalogue_);
   if (!file) return std::move(file.error);
   file_ = std::move(file.value);
+  file_->without_signals();  // they are for the thread that receives
   path_ = *path;
   finished_ = false;
   kept_.push_back(path_);
@@ -160,7 +162,10 @@ bool Files::failed(const transport::Failure& failure) {
 }
 
 std::uint64_t Files::readable() const {
-  if (path_ == "-" || entries_ == 0 || file_->size() > most_to_read_back) return finished_entries_;
+  std::error_code unreadable;
+  // A device may have no end.
+  if (path_ == "-" || !std::filesystem::is_regular_file(path_, unreadable)) return finished_entries_;
+  if (entries_ == 0 || file_->size() > most_to_read_back) return finished_entries_;
   try {
     logs::OpenedLog log{path_, options_.format->name, *catalogue_};
     std::array<log::Entry, log::batch> entries;

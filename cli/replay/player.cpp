@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cstdio>
 #include <time.h>
 
 #include "ocm/transport/system_time.hpp"
 
 #include "cli/interrupt.hpp"
+#include "cli/output/printer.hpp"
 
 namespace ocm::cli::replay {
 
@@ -60,8 +60,7 @@ void Player::play(log::Reader& log) {
     if (count == 0) return;
     for (std::size_t i = 0; i < count && goes_on; ++i)
       goes_on = interrupted() == 0 && play(entries[i], log.interfaces());
-    std::fwrite(printed_.view().data(), 1, printed_.size(), stdout);
-    printed_.clear();
+    write_out(printed_);
   }
 }
 

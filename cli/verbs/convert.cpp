@@ -91,7 +91,7 @@ void convert(Session& session, const ConvertOptions& options, int& exit_code) {
                      whole ? "" : fmt::format(": {} holds the beginning only", options.out)));
   const bool unreadable = in.complain();
   logs::tell_losses((*out)->lost(), format);
-  if (!written) fail((*out)->failure());
+  if (!written) fail((*out)->failure(), exit_code_after_interrupt(exit_failure));
   const bool nothing = frames == 0 && unreadable;
   const bool not_all = unreadable || (*out)->lost().any();
   if (in.ended_early() || nothing || (options.strict && not_all)) exit_code = exit_failure;

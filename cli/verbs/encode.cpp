@@ -61,7 +61,7 @@ void encode(Session& session, const EncodeOptions& options, int& exit_code) {
   (*out)->finish();
   remark(fmt::format("{} frames encoded", frames));
   logs::tell_losses((*out)->lost(), format);
-  if (!(*out)->failure().what.empty()) fail((*out)->failure());
+  if (!(*out)->failure().what.empty()) fail((*out)->failure(), exit_code_after_interrupt(exit_failure));
   if (lines.failed()) exit_code = exit_failure;
   exit_code = exit_code_after_interrupt(exit_code);
 }

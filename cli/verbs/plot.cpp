@@ -15,6 +15,7 @@
 
 #include "cli/generate/output_file.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/output/printer.hpp"
 #include "cli/plot/curves.hpp"
 #include "cli/plot/gnuplot.hpp"
 #include "cli/verbs/verbs.hpp"
@@ -137,7 +138,9 @@ void run(Session& session, const PlotOptions& options, int& exit_code) {
     if (!drawn) fail(drawn.error);
     text = std::move(*drawn);
   }
-  if (const auto problem = generate::write_file(output, text))
+  if (output == "-")
+    write_out(text);
+  else if (const auto problem = generate::write_file(output, text))
     fail({fmt::format("{}: {}", problem->place, problem->what), problem->remedy});
   if (output != "-")
     remark(fmt::format("{}: {} of {}", output, reflective::count(curves.points(), "point*"),

@@ -190,7 +190,7 @@ void run_record(Session& session, const RecordOptions& options, int& exit_code) 
     const std::uint64_t readable = std::min(files.readable(), recorder.received());
     remark(
         fmt::format("{} frames can be read, {} were not written", readable, recorder.received() - readable));
-    fail(files.failure());
+    fail(files.failure(), exit_code_after_interrupt(exit_failure));
   }
   if (!recorder.ended().what.empty()) fail(recorder.ended());
   if (options.strict && lost != 0) exit_code = exit_failure;

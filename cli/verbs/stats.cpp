@@ -1,11 +1,11 @@
 /// How regularly topics come, what is missing, and how full the bus is: of a log, or of the bus as it is.
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <sys/ioctl.h>
 #include <unistd.h>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -13,6 +13,7 @@
 #include "ocm/reflective/command.hpp"
 
 #include "cli/interrupt.hpp"
+#include "cli/output/printer.hpp"
 #include "cli/stats/assertion.hpp"
 #include "cli/stats/report.hpp"
 #include "cli/verbs/chosen_topics.hpp"
@@ -46,15 +47,11 @@ class Screen {
     winsize size{};
     if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || size.ws_row < 2)
       size = {24, 80, 0, 0};
-    if (drawn_ > 0) fmt::print("\x1b[{}A\x1b[J", drawn_);
-    drawn_ = std::min<std::size_t>(lines.size(), size.ws_row - 1U);
-    print(lines, drawn_, size.ws_col);
+    const std::size_t before = std::exchange(drawn_, std::min<std::size_t>(lines.size(), size.ws_row - 1U));
+    print(lines, drawn_, size.ws_col, before);
   }
   /// The last one, in full.
-  void finish(const std::vector<std::string>& lines) {
-    if (drawn_ > 0) fmt::print("\x1b[{}A\x1b[J", drawn_);
-    print(lines, SIZE_MAX, SIZE_MAX);
-  }
+  void finish(const std::vector<std::string>& lines) { print(lines, SIZE_MAX, SIZE_MAX, drawn_); }
 
  private:
   /// A line that breaks would take two of those that go away with the next table. Colours take no room, and
@@ -66,9 +63,13 @@ class Screen {
     if (line.size() - before - after <= columns) return line;
     return line.substr(0, before + columns) + (coloured ? "\x1b[0m" : "");
   }
-  static void print(const std::vector<std::string>& lines, std::size_t rows, std::size_t columns) {
-    for (std::size_t i = 0; i < std::min(rows, lines.size()); ++i) fmt::print("{}\n", cut(lines[i], columns));
-    std::fflush(stdout);
+  /// In place of so many lines above.
+  static void print(const std::vector<std::string>& lines, std::size_t rows, std::size_t columns,
+                    std::size_t drawn = 0) {
+    std::string text;
+    if (drawn > 0) text = fmt::format("\x1b[{}A\x1b[J", drawn);
+    for (std::size_t i = 0; i < std::min(rows, lines.size()); ++i) text += cut(lines[i], columns) + '\n';
+    write_out(text);
   }
 
   bool terminal_;
@@ -123,9 +124,9 @@ void run(Session& session, const StatsOptions& options, int& exit_code) {
   if (watching.live() && collector.any()) now = unix_time();
   const auto result = report(now);
   if (options.json)
-    fmt::print("{}", stats::to_json(result, shown, assertions));
+    write_out(stats::to_json(result, shown, assertions));
   else if (options.csv)
-    fmt::print("{}", stats::to_csv(result, shown));
+    write_out(stats::to_csv(result, shown));
   else
     screen.finish(stats::to_table(result, shown, session.colour()));
   if (!collector.any() && interrupted() == 0) {

@@ -1,0 +1,108 @@
+"""Where the output cannot go: a pipe whose reader stands still, and a device that is full. A signal ends the command all
+the same, with its exit code; a full device ends it by itself."""
+
+import fcntl
+import json
+import os
+import signal
+import subprocess
+import time
+
+from harness import AMIROCTL, Case, main
+
+LINES = "".join(f"({1000 + i / 100:.6f}) can0 608#{i % 100:02d}0000000000\n" for i in range(300))
+
+
+class StuckOutput(Case):
+    def setUp(self):
+        super().setUp()
+        self.log = os.path.join(self.folder, "a.log")
+        self.json = os.path.join(self.folder, "a.json")
+        with open(self.log, "w", encoding="utf-8") as file:
+            file.write(LINES)
+        with open(self.json, "w", encoding="utf-8") as file:
+            file.write(self.run_tool("decode", self.log)[0])
+
+    def start_to(self, stdout, *arguments):
+        process = subprocess.Popen([AMIROCTL, *arguments], env=self.environment, stdin=subprocess.DEVNULL, stdout=stdout,
+                                   stderr=subprocess.PIPE, text=True)
+        self._started.append(process)
+        return process
+
+    def wait_for_handler(self, process):
+        """Until SIGINT is caught: before that it kills, as it should."""
+        for _ in range(1000):
+            with open(f"/proc/{process.pid}/status", encoding="utf-8") as status:
+                caught = next(int(line.split()[1], 16) for line in status if line.startswith("SigCgt"))
+            if caught >> (signal.SIGINT - 1) & 1:
+                return
+            self.assertIsNone(process.poll(), "it ended before the signal")
+            time.sleep(0.01)
+        self.fail("SIGINT is not caught")
+
+    @staticmethod
+    def full_pipe():
+        reader, writer = os.pipe()
+        fcntl.fcntl(writer, fcntl.F_SETPIPE_SZ, 4096)
+        os.set_blocking(writer, False)
+        try:
+            while True:
+                os.write(writer, b"\n" * 4096)
+        except BlockingIOError:
+            os.set_blocking(writer, True)
+        return reader, writer
+
+    def test_a_reader_that_stands_still(self):
+        self.start_sim()
+        self.run_tool("publish", "gyro", "2ms")
+        for arguments in (["record", "-o", "-"], ["record", "-o", "-", "--to", "pcapng"], ["stats"], ["stats", self.log],
+                          ["stats", self.log, "--json"], ["plot", self.log, "gyro.z", "-o", "-"],
+                          ["plot", self.log, "gyro.z", "--script"], ["replay", self.log, "--dry-run"], ["decode", self.log],
+                          ["decode", self.log, "--csv"], ["convert", self.log, "-", "--to", "csv"], ["encode", self.json],
+                          ["listen"]):
+            with self.subTest(arguments=arguments):
+                reader, writer = self.full_pipe()
+                process = self.start_to(writer, *arguments)
+                os.close(writer)
+                self.wait_for_handler(process)
+                time.sleep(0.3)
+                process.send_signal(signal.SIGINT)
+                self.assertEqual(process.wait(timeout=15), 128 + signal.SIGINT)
+                os.close(reader)
+
+    def test_a_slow_reader_gets_whole_lines(self):
+        with open(self.log, "a", encoding="utf-8") as file:
+            file.write(LINES * 100)
+        for arguments in (["decode", self.log], ["convert", self.log, "-", "--to", "json"]):
+            with self.subTest(arguments=arguments):
+                reader, writer = self.full_pipe()
+                process = self.start_to(writer, *arguments)
+                os.close(writer)
+                self.wait_for_handler(process)
+                time.sleep(0.3)
+                process.send_signal(signal.SIGINT)
+                time.sleep(0.2)
+                with os.fdopen(reader, encoding="utf-8") as out:
+                    lines = out.read().lstrip("\n").splitlines(keepends=True)
+                self.assertEqual(process.wait(timeout=15), 128 + signal.SIGINT)
+                self.assertGreater(len(lines), 0)
+                self.assertTrue(lines[-1].endswith("}\n"))
+                for line in lines:
+                    json.loads(line)
+
+    def test_a_full_device_ends_what_would_go_on(self):
+        self.start_sim()
+        self.run_tool("publish", "gyro", "2ms")
+        for arguments in (["stats"], ["stats", "--json", "--duration", "300ms"], ["record", "-o", "-"],
+                          ["record", "-o", "/dev/full", "--force", "--to", "pcapng"],  # not read back: it has no end
+                          ["replay", self.log, "--dry-run"], ["plot", self.log, "gyro.z", "-o", "-"], ["listen"]):
+            with self.subTest(arguments=arguments), open("/dev/full", "w", encoding="utf-8") as full:
+                process = self.start_to(full, *arguments)
+                _, err = process.communicate(timeout=15)
+                self.assertEqual(process.returncode, 1, err)
+                self.assertIn("No space left on device", err)
+                self.assertNotIn("sent ", err)
+
+
+if __name__ == "__main__":
+    main()
