@@ -59,6 +59,10 @@ class Reader {
   /// Kind::none unless the character completes a sentence, which is then `sentence()` until the next `{` or
   /// answer.
   constexpr Kind feed(char c) noexcept {
+    if (state_ == State::number && base::is_digit(c)) {  // first: most characters are digits
+      digit(c);
+      return Kind::none;
+    }
     if (c == '{') return open();
     if (c == '\n' || c == '\r') return end_line();
     if (state_ == State::outside) return outside(c);
@@ -154,17 +158,18 @@ class Reader {
     digits_ = 0;
     magnitude_ = 0;
   }
+  /// Of what a digit ends, or a sign begins.
   constexpr void number(char c) noexcept {
     if (c == ',') {
       if (end_number()) begin_number();
       return;
     }
-    if (c == '-' && digits_ == 0 && !negative_) {
-      negative_ = true;
-      return;
-    }
+    if (c != '-' || digits_ != 0 || negative_) return fail(faults_.bad_number);
+    negative_ = true;
+  }
+  constexpr void digit(char c) noexcept {
     // A zero has nothing in front and nothing behind: numbers that no robot prints are splices.
-    if (!base::is_digit(c) || (digits_ != 0 && magnitude_ == 0)) return fail(faults_.bad_number);
+    if (digits_ != 0 && magnitude_ == 0) return fail(faults_.bad_number);
     if (digits_ == 5) return fail(faults_.out_of_range);
     magnitude_ = magnitude_ * 10 + (c - '0');
     ++digits_;
