@@ -27,6 +27,12 @@ concept Lockable = requires(M& mutex) {
   mutex.unlock();
 };
 
+/// Of a system with one context, where nobody waits.
+struct NoMutex {
+  constexpr void lock() noexcept {}
+  constexpr void unlock() noexcept {}
+};
+
 /// What it cost to share, since the start. Times are what the clock showed: a holder that was preempted by
 /// an upper level counts those jobs too.
 struct Contention {

@@ -150,8 +150,10 @@ class Cpu {
   }
   /// Something from outside, such as a frame that comes: `happen` is called at `when`, or now if that has
   /// passed, before any context goes on.
-  void at(base::Time when, std::function<void()> happen) {
-    events_.emplace(std::max(when, now_), std::move(happen));
+  void at(base::Time when, std::function<void()> happen) { at(when, {}, std::move(happen)); }
+  /// The same, by an interrupt that takes `cost` besides what all of them do, and then has its effect.
+  void at(base::Time when, base::Duration cost, std::function<void()> happen) {
+    events_.emplace(std::max(when, now_), Event{cost, std::move(happen)});
   }
 
   /// Runs up to and with `end`: what takes no time there is done.
@@ -208,6 +210,10 @@ class Cpu {
 
     [[nodiscard]] bool wants() const noexcept { return pended || job.has_value(); }
   };
+  struct Event {
+    base::Duration cost;
+    std::function<void()> happen;
+  };
   struct Resource {
     Level ceiling;
     std::size_t owner;
@@ -224,15 +230,15 @@ class Cpu {
       return true;
     }
     if (events_.empty() || events_.begin()->first > now_) return false;
-    const auto what = std::move(events_.begin()->second);
+    const Event event = std::move(events_.begin()->second);
     events_.erase(events_.begin());
-    interrupt();
-    what();
+    interrupt(event.cost);
+    event.happen();
     return true;
   }
-  void interrupt() noexcept {
-    now_ += options_.interrupt;
-    interrupted_ += options_.interrupt;
+  void interrupt(base::Duration cost = {}) noexcept {
+    now_ += options_.interrupt + cost;
+    interrupted_ += options_.interrupt + cost;
   }
 
   /// The level that a context runs at, lower numbers being more urgent.
@@ -314,7 +320,7 @@ class Cpu {
   std::function<std::optional<Job>(Level)> begin_ = [](Level) { return std::optional<Job>{}; };
   std::array<Context, levels> contexts_{};
   std::vector<Resource> resources_;
-  std::multimap<base::Time, std::function<void()>> events_;
+  std::multimap<base::Time, Event> events_;
   std::size_t last_ = nobody;
   base::Duration idle_{};
   base::Duration interrupted_{};

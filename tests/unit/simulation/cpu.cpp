@@ -85,6 +85,18 @@ TEST_CASE("an urgent job preempts, and the preempted one goes on where it was") 
   CHECK(setup.cpu.misuses() == 0);
 }
 
+TEST_CASE("an interrupt of its own cost takes that from whoever runs, and then has its effect") {
+  Setup setup{{0us, 1us, ResourceProtocol::inheritance}};
+  setup.programs = {{0, {compute(10ms)}}};
+  setup.once(0, Level::urgent, 0ms);
+  base::Time happened{};
+  setup.cpu.at(at(4ms), 250us, [&] { happened = setup.cpu.now(); });
+  setup.cpu.run_until(at(1s));
+  CHECK(happened == at(4ms + 251us));
+  CHECK(setup.jobs[0][0].ended == at(10ms + 1us + 251us));
+  CHECK(setup.cpu.interrupted() == 252us);
+}
+
 TEST_CASE("a context switch and an interrupt cost what they are said to cost") {
   Setup setup{{10us, 1us, ResourceProtocol::inheritance}};
   setup.programs = {{0, {compute(10ms)}}, {1, {compute(2ms)}}};

@@ -1,0 +1,121 @@
+#include "ocm/scheduling/mailbox.hpp"
+
+#include <atomic>
+#include <mutex>
+#include <thread>
+
+#include <catch2/catch.hpp>
+
+using namespace ocm;
+using scheduling::Mailbox;
+
+namespace {
+
+/// A lock that says when it is taken twice.
+struct Port {
+  struct Guard {
+    explicit Guard(Port& p) : port(&p) {
+      CHECK_FALSE(port->locked);
+      port->locked = true;
+    }
+    ~Guard() {
+      port->locked = false;
+      ++port->sections;
+    }
+    Guard(const Guard&) = delete;
+    Guard& operator=(const Guard&) = delete;
+    Port* port;
+  };
+  Guard lock() { return Guard{*this}; }
+  bool locked = false;
+  int sections = 0;
+};
+
+TEST_CASE("mailbox: what was put last is taken once", "[mailbox]") {
+  Port port;
+  Mailbox<int, Port> box{port};
+  CHECK(box.take().error == base::Error::no_answer);
+  box.put(3);
+  CHECK(*box.take() == 3);
+  CHECK(box.take().error == base::Error::no_answer);
+  CHECK(box.lost() == 0);
+}
+
+TEST_CASE("mailbox: a newer one takes the place of what nobody took, which is counted", "[mailbox]") {
+  Port port;
+  Mailbox<int, Port> box{port};
+  for (int i = 1; i <= 5; ++i) box.put(i);
+  CHECK(*box.take() == 5);
+  CHECK(box.lost() == 4);
+  box.put(6);
+  CHECK(box.lost() == 4);
+}
+
+TEST_CASE("mailbox: what is cleared is lost, and nothing is lost of an empty one", "[mailbox]") {
+  Port port;
+  Mailbox<int, Port> box{port};
+  box.clear();
+  CHECK(box.lost() == 0);
+  box.put(1);
+  box.clear();
+  CHECK(box.lost() == 1);
+  CHECK(box.take().error == base::Error::no_answer);
+  box.put(2);
+  const int before = port.sections;
+  CHECK_FALSE(box.empty_locked());
+  box.clear_locked();
+  CHECK(box.empty_locked());
+  CHECK(port.sections == before);  // whose lock the caller holds
+  CHECK(box.lost() == 2);
+}
+
+TEST_CASE("mailbox: every access is one section under the port's lock", "[mailbox]") {
+  Port port;
+  Mailbox<int, Port> box{port};
+  box.put(1);
+  (void)box.take();
+  box.clear();
+  (void)box.lost();
+  CHECK(port.sections == 4);
+}
+
+/// Two numbers that belong together.
+struct Pair {
+  long number = 0;
+  long minus = 0;
+};
+struct ThreadPort {
+  std::unique_lock<std::mutex> lock() { return std::unique_lock{mutex}; }
+  std::mutex mutex;
+};
+
+TEST_CASE("mailbox: two threads: whole items, in order, each taken or counted", "[mailbox]") {
+  constexpr long items = 200'000;
+  ThreadPort port;
+  Mailbox<Pair, ThreadPort> box{port};
+  std::atomic<bool> ended = false;
+  std::thread writer{[&] {
+    for (long i = 1; i <= items; ++i) box.put({i, -i});
+    ended = true;
+  }};
+  long taken = 0;
+  long last = 0;
+  bool whole = true;
+  bool ordered = true;
+  for (bool more = true; more;) {
+    more = !ended;
+    while (const auto item = box.take()) {
+      whole = whole && item->minus == -item->number;
+      ordered = ordered && item->number > last;
+      last = item->number;
+      ++taken;
+    }
+  }
+  writer.join();
+  CHECK(whole);
+  CHECK(ordered);
+  CHECK(last == items);
+  CHECK(taken + box.lost() == items);
+}
+
+}  // namespace
