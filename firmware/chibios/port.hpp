@@ -149,6 +149,11 @@ class Thread {
 /// How often a board looks after its parts. [firmware/boards/*/parts.hpp, maintain]
 inline constexpr base::Duration background_period = std::chrono::milliseconds{10};
 
+/// The kernel's priority of a level's thread.
+[[nodiscard]] constexpr tprio_t priority_of(Level level) noexcept {
+  return NORMALPRIO + protocol::priority_levels - 1 - static_cast<tprio_t>(level);
+}
+
 /// Stack sizes, in bytes, on top of what the kernel needs for a switch and an interrupt.
 struct Stacks {
   std::size_t level = 768;
@@ -169,23 +174,20 @@ concept EventSource = requires(C& can, can::Frame& frame) {
   { can.wait(frame) } -> std::same_as<BusEvent>;
 };
 
-/// The threads of a board. `Controller` is ocm/controller/controller.hpp's.
-template <class Controller, EventSource Can, Stacks Sizes = Stacks{}>
-class Runtime {
+/// A thread a priority level. `Work` has `expire()` and `run(Level)`, as scheduling::Dispatcher.
+template <class Work, std::size_t StackBytes = Stacks{}.level>
+class Levels {
  public:
-  /// All must outlive the runtime.
-  Runtime(Port& port, Controller& controller, Can& can) noexcept
-      : port_(&port), controller_(&controller), can_(&can) {}
-  Runtime(const Runtime&) = delete;
-  Runtime& operator=(const Runtime&) = delete;
+  /// Both must outlive the threads.
+  Levels(Port& port, Work& work) noexcept : port_(&port), work_(&work) {}
+  Levels(const Levels&) = delete;
+  Levels& operator=(const Levels&) = delete;
 
   /// Makes the calling thread the lowest level, which between its jobs calls `background(now)` every
   /// `background_period`: what is not urgent and belongs to no topic.
   template <class F>
   [[noreturn]] void run(F background) noexcept {
-    port_->start([](void* self) { static_cast<Runtime*>(self)->controller_->expire(); }, this);
-    receiver_.start(
-        priority_of(Level::urgent) + 1, [](void* self) { static_cast<Runtime*>(self)->receive(); }, this);
+    port_->start([](void* self) { static_cast<Levels*>(self)->work_->expire(); }, this);
     start_level<Level::urgent>();
     start_level<Level::high>();
     start_level<Level::medium>();
@@ -197,32 +199,57 @@ class Runtime {
         background(now);
         next = now + background_period;
       } else if (port_->wait(Level::low, next - now)) {
-        controller_->run(Level::low);
+        work_->run(Level::low);
       }
     }
   }
 
-  /// Bytes of stack that nobody ever touched, of the receiver or of the three levels above low.
-  [[nodiscard]] std::size_t untouched_receiver() const noexcept { return receiver_.untouched(); }
+  /// Bytes of stack that nobody ever touched, of the three levels above low.
   [[nodiscard]] std::size_t untouched(Level level) const noexcept {
-    return levels_[static_cast<std::size_t>(level)].untouched();
+    return threads_[static_cast<std::size_t>(level)].untouched();
   }
 
  private:
-  static constexpr tprio_t priority_of(Level level) noexcept {
-    return NORMALPRIO + protocol::priority_levels - 1 - static_cast<tprio_t>(level);
-  }
   template <Level L>
   void start_level() noexcept {
-    levels_[static_cast<std::size_t>(L)].start(
-        priority_of(L), [](void* self) { static_cast<Runtime*>(self)->serve(L); }, this);
+    threads_[static_cast<std::size_t>(L)].start(
+        priority_of(L), [](void* self) { static_cast<Levels*>(self)->serve(L); }, this);
   }
   [[noreturn]] void serve(Level level) noexcept {
     for (;;) {
       port_->wait(level);
-      controller_->run(level);
+      work_->run(level);
     }
   }
+
+  Port* port_;
+  Work* work_;
+  std::array<Thread<StackBytes>, protocol::priority_levels - 1> threads_;
+};
+
+/// The threads of a board on a bus. `Controller` is ocm/controller/controller.hpp's.
+template <class Controller, EventSource Can, Stacks Sizes = Stacks{}>
+class Runtime {
+ public:
+  /// All must outlive the runtime.
+  Runtime(Port& port, Controller& controller, Can& can) noexcept
+      : port_(&port), controller_(&controller), can_(&can), levels_(port, controller) {}
+  Runtime(const Runtime&) = delete;
+  Runtime& operator=(const Runtime&) = delete;
+
+  /// As Levels::run.
+  template <class F>
+  [[noreturn]] void run(F background) noexcept {
+    receiver_.start(
+        priority_of(Level::urgent) + 1, [](void* self) { static_cast<Runtime*>(self)->receive(); }, this);
+    levels_.run(background);
+  }
+
+  /// Bytes of stack that nobody ever touched, of the receiver or of the three levels above low.
+  [[nodiscard]] std::size_t untouched_receiver() const noexcept { return receiver_.untouched(); }
+  [[nodiscard]] std::size_t untouched(Level level) const noexcept { return levels_.untouched(level); }
+
+ private:
   [[noreturn]] void receive() noexcept {
     for (;;) {
       can::Frame frame;
@@ -244,7 +271,7 @@ class Runtime {
   Controller* controller_;
   Can* can_;
   Thread<Sizes.receiver> receiver_;
-  std::array<Thread<Sizes.level>, protocol::priority_levels - 1> levels_;
+  Levels<Controller, Sizes.level> levels_;
 };
 
 }  // namespace ocm::firmware::chibios

@@ -64,6 +64,18 @@ concept Outputs = requires(P& pins, std::uint8_t levels) {
   pins.write(levels);
 };
 
+/// An analogue-to-digital converter: `convert(channel)` is one conversion, in counts.
+template <class A>
+concept Converter = requires(A& converter, std::uint8_t channel) {
+  { converter.convert(channel) } -> std::same_as<base::Result<std::uint16_t>>;
+};
+
+/// A timer's channel that repeats a pulse; a new width, in the timer's counts, holds from the next one on.
+template <class T>
+concept PulseTimer = requires(T& timer, std::uint16_t counts) {
+  timer.set_width(counts);
+};
+
 /// For what is more than one transfer and used from more than one priority level, such as "select the
 /// channel, then talk to the part behind it". On an RTOS: a mutex with priority inheritance, held for one
 /// such pair.

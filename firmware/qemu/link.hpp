@@ -6,16 +6,18 @@
 ///     host:   { sequence, status, length, bytes... }
 ///
 /// `sequence` is the board's and comes back: an answer that is older than the board's patience is known by it
-/// and skipped. `status` 0: done, `length` bytes follow, `asked` of them; else the value of a base::Error,
-/// and no bytes.
+/// and skipped. 0: the board waits for no answer. `status` 0: done, `length` bytes follow, `asked` of them;
+/// else the value of a base::Error, and no bytes.
 ///
-/// kind          unit          a               written                           asked
-/// i2c           bus           7-bit address   what is written after START       bytes after the repeated
-/// START spi           device        mode, 0 to 3    clock in Hz (4 bytes, LE), out    as many as out
-/// set_duty      0             0               left, right (int16, LE)           0
-/// encoders      0             0               -                                 4: left, right (uint16, LE)
-/// inputs        group         0               -                                 1
-/// outputs       group         0               1                                 0
+///     kind       unit     a              written                          asked
+///     i2c        bus      7-bit address  what is written after START      bytes after the repeated START
+///     spi        device   mode, 0 to 3   clock in Hz (4 bytes, LE), out   as many as out
+///     set_duty   0        0              left, right (int16, LE)          0
+///     encoders   0        0              -                                4: left, right (uint16, LE)
+///     inputs     group    0              -                                1
+///     outputs    group    0              1                                0
+///     convert    channel  0              -                                2: counts of the converter (LE)
+///     set_pulse  channel  0              width, counts (uint16, LE)       0
 ///
 /// For both ends: no heap, constexpr, O(1) a byte. A reader holds 262 bytes.
 #pragma once
@@ -29,7 +31,7 @@
 
 namespace ocm::firmware::qemu::link {
 
-enum class Kind : std::uint8_t { i2c = 1, spi, set_duty, encoders, inputs, outputs };
+enum class Kind : std::uint8_t { i2c = 1, spi, set_duty, encoders, inputs, outputs, convert, set_pulse };
 
 inline constexpr std::size_t request_header = 6;
 inline constexpr std::size_t answer_header = 3;

@@ -8,7 +8,13 @@ namespace {
 
 constinit systime_t alarm_time = 0;
 constinit bool alarm_set = false;
-constinit std::array<Uart*, 2> uarts{};
+constinit void (*last_words)(const char*) = nullptr;
+
+struct Handler {
+  void (*received)(void*) = nullptr;
+  void* object = nullptr;
+};
+constinit std::array<Handler, 3> handlers{};
 
 /// All interrupts of ours: below what the kernel keeps for itself, all at one level. [ChibiOS
 /// CORTEX_MAX_KERNEL_PRIORITY]
@@ -31,7 +37,7 @@ void set_systick() noexcept {
 }
 
 USART_TypeDef& registers(unsigned number) noexcept {
-  return number == 1 ? *USART1 : *USART2;
+  return number == 1 ? *USART1 : number == 2 ? *USART2 : *USART3;
 }
 
 /// [Semihosting for AArch32 and AArch64, 2.1: the operation in r0, its argument in r1]
@@ -40,6 +46,15 @@ std::uint32_t semihosting(std::uint32_t operation, const void* argument) noexcep
   register const void* r1 asm("r1") = argument;
   asm volatile("bkpt 0xAB" : "+r"(r0) : "r"(r1) : "memory");
   return r0;
+}
+
+// Locked for good, so that last words may call what locks.
+[[noreturn]] void give_up(const char* reason, int code) noexcept {
+  __set_BASEPRI(CORTEX_BASEPRI_KERNEL);
+  void (*const words)(const char*) = last_words;
+  last_words = nullptr;  // a fault in them is the end
+  if (words != nullptr) words(reason);
+  leave(reason, code);
 }
 
 }  // namespace
@@ -65,17 +80,26 @@ void leave(const char* reason, int code) noexcept {
   }
 }
 
-void Uart::start(chibios::Signal& received) noexcept {
+void before_giving_up(void (*words)(const char* reason)) noexcept {
+  last_words = words;
+}
+
+void busy_wait(std::uint32_t us) noexcept {
+  const std::uint32_t begin = TIM2->CNT;
+  while (TIM2->CNT - begin < us) {
+  }
+}
+
+void UartRegisters::start(void (*received)(void*), void* object) noexcept {
   const chibios::Lock lock;
-  received_ = &received;
-  uarts[number_ - 1] = this;
-  const IRQn_Type line = number_ == 1 ? USART1_IRQn : USART2_IRQn;
-  NVIC_SetPriority(line, interrupt_priority);
-  NVIC_EnableIRQ(line);
+  handlers[number_ - 1] = {received, object};
+  constexpr std::array<IRQn_Type, 3> lines{USART1_IRQn, USART2_IRQn, USART3_IRQn};
+  NVIC_SetPriority(lines[number_ - 1], interrupt_priority);
+  NVIC_EnableIRQ(lines[number_ - 1]);
   registers(number_).CR1 = USART_CR1_UE | USART_CR1_TE | USART_CR1_RE | USART_CR1_RXNEIE;
 }
 
-void Uart::write(std::span<const std::uint8_t> bytes) noexcept {
+void UartRegisters::write(std::span<const std::uint8_t> bytes) noexcept {
   USART_TypeDef& uart = registers(number_);
   for (const std::uint8_t byte : bytes) {
     while ((uart.SR & USART_SR_TXE) == 0) {
@@ -84,25 +108,45 @@ void Uart::write(std::span<const std::uint8_t> bytes) noexcept {
   }
 }
 
+bool UartRegisters::take(std::uint8_t& byte) noexcept {
+  USART_TypeDef& uart = registers(number_);
+  if ((uart.SR & USART_SR_RXNE) == 0) return false;
+  byte = static_cast<std::uint8_t>(uart.DR);
+  return true;
+}
+
+void UartRegisters::listen(bool on) noexcept {
+  USART_TypeDef& uart = registers(number_);
+  if (on)
+    uart.CR1 |= USART_CR1_RXNEIE;
+  else
+    uart.CR1 &= ~USART_CR1_RXNEIE;
+}
+
+void Uart::start(chibios::Signal& received) noexcept {
+  received_ = &received;
+  registers_.start([](void* self) { static_cast<Uart*>(self)->on_interrupt(); }, this);
+}
+
 bool Uart::read(std::uint8_t& byte) noexcept {
   const chibios::Lock lock;
   if (size_ == 0) return false;
   byte = ring_[begin_];
   begin_ = (begin_ + 1) % ring_.size();
   --size_;
-  registers(number_).CR1 |= USART_CR1_RXNEIE;
+  registers_.listen(true);
   return true;
 }
 
 void Uart::on_interrupt() noexcept {
   const chibios::Lock lock;
-  USART_TypeDef& uart = registers(number_);
-  if ((uart.SR & USART_SR_RXNE) == 0) return;
   if (size_ == ring_.size()) {
-    uart.CR1 &= ~USART_CR1_RXNEIE;  // QEMU hands over the next byte when this one is read
+    registers_.listen(false);
     return;
   }
-  ring_[(begin_ + size_++) % ring_.size()] = static_cast<std::uint8_t>(uart.DR);
+  std::uint8_t byte = 0;
+  if (!registers_.take(byte)) return;
+  ring_[(begin_ + size_++) % ring_.size()] = byte;
   received_->raise_locked();
 }
 
@@ -141,26 +185,26 @@ CH_IRQ_HANDLER(SysTick_Handler) {
   CH_IRQ_EPILOGUE();
 }
 
-// Vectors have no names in ChibiOS: 0x40 + 4 * interrupt. USART1 is 37, USART2 is 38. [RM0090, table 62]
-CH_IRQ_HANDLER(VectorD4) {
-  CH_IRQ_PROLOGUE();
-  ocm::firmware::qemu::uarts[0]->on_interrupt();
-  CH_IRQ_EPILOGUE();
-}
-
-CH_IRQ_HANDLER(VectorD8) {
-  CH_IRQ_PROLOGUE();
-  ocm::firmware::qemu::uarts[1]->on_interrupt();
-  CH_IRQ_EPILOGUE();
-}
+// Vectors have no names in ChibiOS: 0x40 + 4 * interrupt. USART1 is 37, USART2 38, USART3 39. [RM0090, table
+// 62]
+#define OCM_UART_INTERRUPT(vector, index)                       \
+  CH_IRQ_HANDLER(vector) {                                      \
+    CH_IRQ_PROLOGUE();                                          \
+    const auto& handler = ocm::firmware::qemu::handlers[index]; \
+    handler.received(handler.object);                           \
+    CH_IRQ_EPILOGUE();                                          \
+  }
+OCM_UART_INTERRUPT(VectorD4, 0)
+OCM_UART_INTERRUPT(VectorD8, 1)
+OCM_UART_INTERRUPT(VectorDC, 2)
 
 void HardFault_Handler() {
-  ocm::firmware::qemu::leave("hard fault", 3);
+  ocm::firmware::qemu::give_up("hard fault", 3);
 }
 void ocm_halted(const char* reason) {
-  ocm::firmware::qemu::leave(reason != nullptr ? reason : "the kernel halted", 2);
+  ocm::firmware::qemu::give_up(reason != nullptr ? reason : "the kernel halted", 2);
 }
 void abort() {
-  ocm::firmware::qemu::leave("abort", 4);
+  ocm::firmware::qemu::give_up("abort", 4);
 }
 }

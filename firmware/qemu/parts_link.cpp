@@ -4,18 +4,30 @@
 
 namespace ocm::firmware::qemu {
 
+void PartsLink::write(link::Request request, std::span<const std::uint8_t> head) noexcept {
+  auto header = link::header(request);
+  header[4] = static_cast<std::uint8_t>(head.size() + request.written.size());
+  const chibios::Lock lock;  // a frame stays whole, whoever posts another meanwhile
+  uart_->write(header);
+  uart_->write(head);
+  uart_->write(request.written);
+}
+
+void PartsLink::post(link::Request request) noexcept {
+  request.sequence = 0;
+  request.asked = 0;
+  if (request.written.size() <= link::max_bytes) write(request, {});
+}
+
 base::Status PartsLink::exchange(link::Request request, std::span<std::uint8_t> read,
                                  std::span<const std::uint8_t> head) noexcept {
   if (head.size() + request.written.size() > link::max_bytes || read.size() > link::max_bytes)
     return base::Error::bad_length;
   mutex_.lock();
-  request.sequence = ++sequence_;
+  if (++sequence_ == 0) sequence_ = 1;
+  request.sequence = sequence_;
   request.asked = static_cast<std::uint8_t>(read.size());
-  auto header = link::header(request);
-  header[4] = static_cast<std::uint8_t>(head.size() + request.written.size());
-  uart_->write(header);
-  uart_->write(head);
-  uart_->write(request.written);
+  write(request, head);
 
   base::Status result = base::Error::bus_fault;
   for (bool waiting = true; waiting;) {
@@ -50,8 +62,7 @@ void LinkMotorTimers::set_duty(std::int16_t left, std::int16_t right) noexcept {
   const auto r = static_cast<std::uint16_t>(right);
   const std::array<std::uint8_t, 4> bytes{static_cast<std::uint8_t>(l), static_cast<std::uint8_t>(l >> 8U),
                                           static_cast<std::uint8_t>(r), static_cast<std::uint8_t>(r >> 8U)};
-  // The concept has no error, as timers have none: the next set point comes soon.
-  static_cast<void>(link_->exchange({.kind = link::Kind::set_duty, .written = bytes}, {}));
+  link_->post({.kind = link::Kind::set_duty, .written = bytes});
 }
 
 std::uint8_t LinkInputs::read() noexcept {
@@ -61,8 +72,20 @@ std::uint8_t LinkInputs::read() noexcept {
 }
 
 void LinkOutputs::write(std::uint8_t levels) noexcept {
-  static_cast<void>(
-      link_->exchange({.kind = link::Kind::outputs, .unit = group_, .written = {&levels, 1}}, {}));
+  link_->post({.kind = link::Kind::outputs, .unit = group_, .written = {&levels, 1}});
+}
+
+base::Result<std::uint16_t> LinkConverter::convert(std::uint8_t channel) noexcept {
+  std::array<std::uint8_t, 2> bytes{};
+  if (const auto done = link_->exchange({.kind = link::Kind::convert, .unit = channel}, bytes); !done)
+    return done.error;
+  return static_cast<std::uint16_t>(bytes[0] | bytes[1] << 8);
+}
+
+void LinkPulseTimer::set_width(std::uint16_t counts) noexcept {
+  const std::array<std::uint8_t, 2> bytes{static_cast<std::uint8_t>(counts),
+                                          static_cast<std::uint8_t>(counts >> 8U)};
+  link_->post({.kind = link::Kind::set_pulse, .unit = channel_, .written = bytes});
 }
 
 }  // namespace ocm::firmware::qemu

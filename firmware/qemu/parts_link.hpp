@@ -4,7 +4,7 @@
 ///
 /// One line, so one mutex with priority inheritance around an exchange; with a host that answers, an exchange
 /// takes as long as the host does. One that does not answer costs `patience`, and is Error::bus_fault. For
-/// threads.
+/// threads; what only sets something (motors, outputs, pulses) waits for nobody and may be called anywhere.
 #pragma once
 
 #include <array>
@@ -35,8 +35,12 @@ class PartsLink {
   /// `read.size()` bytes are expected, 255 at most, as are those written.
   base::Status exchange(link::Request request, std::span<std::uint8_t> read,
                         std::span<const std::uint8_t> head = {}) noexcept;
+  /// Sends `request` and waits for nothing, as a write to a register does not. Any context, interrupts too.
+  void post(link::Request request) noexcept;
 
  private:
+  void write(link::Request request, std::span<const std::uint8_t> head) noexcept;
+
   Uart* uart_;
   chibios::Mutex mutex_;
   chibios::Signal signal_;
@@ -88,6 +92,27 @@ class LinkMotorTimers {
   std::array<std::uint16_t, 2> counts_{};  ///< said again when the host does not answer
 };
 static_assert(drivers::MotorTimers<LinkMotorTimers>);
+
+class LinkConverter {
+ public:
+  explicit LinkConverter(PartsLink& link) noexcept : link_(&link) {}
+  [[nodiscard]] base::Result<std::uint16_t> convert(std::uint8_t channel) noexcept;
+
+ private:
+  PartsLink* link_;
+};
+static_assert(drivers::Converter<LinkConverter>);
+
+class LinkPulseTimer {
+ public:
+  LinkPulseTimer(PartsLink& link, std::uint8_t channel) noexcept : link_(&link), channel_(channel) {}
+  void set_width(std::uint16_t counts) noexcept;
+
+ private:
+  PartsLink* link_;
+  std::uint8_t channel_;
+};
+static_assert(drivers::PulseTimer<LinkPulseTimer>);
 
 class LinkInputs {
  public:

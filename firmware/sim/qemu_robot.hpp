@@ -30,6 +30,7 @@
 #include "firmware/sim/parts/light_ring.hpp"
 #include "firmware/sim/parts/part_clock.hpp"
 #include "firmware/sim/parts/power_management.hpp"
+#include "firmware/sim/parts/transfers.hpp"
 #include "firmware/sim/qemu_board.hpp"
 #include "firmware/sim/world.hpp"
 
@@ -40,18 +41,15 @@ namespace ocm::firmware::sim {
                                          std::span<std::uint8_t> read) {
   using qemu::link::Kind;
   const auto in = request.written;
-  const auto u16 = [&in](std::size_t at) { return static_cast<std::uint16_t>(in[at] | in[at + 1] << 8); };
   switch (request.kind) {
     case Kind::i2c:
-      return models.i2c(request.unit).transfer(request.a, in, read);
-    case Kind::spi: {
-      if (in.size() < 4 || in.size() - 4 != read.size()) return base::Error::bad_length;
-      const std::uint32_t clock_hz = u16(0) | std::uint32_t{u16(2)} << 16;
-      return models.spi(request.unit).transfer({request.a, clock_hz}, in.subspan(4), read);
-    }
+      return transfer(models.i2c(request.unit), request, read);
+    case Kind::spi:
+      return transfer(models.spi(request.unit), request, read);
     case Kind::set_duty:
       if (in.size() != 4) return base::Error::bad_length;
-      models.motors().set_duty(static_cast<std::int16_t>(u16(0)), static_cast<std::int16_t>(u16(2)));
+      models.motors().set_duty(static_cast<std::int16_t>(word_at(in, 0)),
+                               static_cast<std::int16_t>(word_at(in, 2)));
       return {};
     case Kind::encoders: {
       if (read.size() != 4) return base::Error::bad_length;
@@ -67,6 +65,9 @@ namespace ocm::firmware::sim {
       if (in.size() != 1) return base::Error::bad_length;
       models.outputs().write(in[0]);
       return {};
+    case Kind::convert:
+    case Kind::set_pulse:
+      break;  // none of these boards has a converter or a servo
   }
   return base::Error::bad_mode;
 }

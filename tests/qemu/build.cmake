@@ -1,8 +1,11 @@
-# Builds the images: cmake -D SOURCE=firmware -D BINARY=folder -P build.cmake
+# Builds the images: cmake -D SOURCE=firmware -D BINARY=folder [-D TOOLCHAIN=file] -P build.cmake
+if(NOT TOOLCHAIN)
+  set(TOOLCHAIN ${SOURCE}/../cmake/toolchains/arm-none-eabi.cmake)
+endif()
 if(NOT EXISTS ${BINARY}/build.ninja OR NOT EXISTS ${BINARY}/CMakeCache.txt)
   file(REMOVE_RECURSE ${BINARY})
   execute_process(COMMAND ${CMAKE_COMMAND} -S ${SOURCE} -B ${BINARY} -G Ninja
-                          --toolchain ${SOURCE}/../cmake/toolchains/arm-none-eabi.cmake
+                          --toolchain ${TOOLCHAIN}
                   COMMAND_ERROR_IS_FATAL ANY)
 endif()
 execute_process(COMMAND ${CMAKE_COMMAND} --build ${BINARY} COMMAND_ERROR_IS_FATAL ANY)

@@ -18,7 +18,7 @@ MACHINES = {"qemu_m3": "netduino2", "qemu_m4": "netduinoplus2"}
 CHIPS = {"di_wheel_drive": "qemu_m3", "light_ring": "qemu_m3", "power_management": "qemu_m4"}
 
 # The parts' line: kinds and errors. [firmware/qemu/link.hpp; include/ocm/base/result.hpp]
-I2C, SPI, SET_DUTY, ENCODERS, INPUTS, OUTPUTS = 1, 2, 3, 4, 5, 6
+I2C, SPI, SET_DUTY, ENCODERS, INPUTS, OUTPUTS, CONVERT, SET_PULSE = 1, 2, 3, 4, 5, 6, 7, 8
 
 
 def error_numbers():
@@ -91,6 +91,8 @@ class Parts:
         self.inputs = 0
         self.duties = []         # (time, left, right)
         self.outputs = []        # (time, levels)
+        self.converter = {}      # channel -> count
+        self.pulses = []         # (time, counts)
         self.exchanges = 0
         self.silent = False      # the host is away: no answers at all
 
@@ -111,6 +113,11 @@ class Parts:
             return struct.pack("<2H", *self.encoders)
         if kind == INPUTS:
             return bytes([self.inputs])
+        if kind == CONVERT:
+            return struct.pack("<H", self.converter[unit])
+        if kind == SET_PULSE:
+            self.pulses.append((time.monotonic(), *struct.unpack("<H", written)))
+            return b""
         assert kind == OUTPUTS, kind
         self.outputs.append((time.monotonic(), written[0]))
         return b""
@@ -144,38 +151,28 @@ class Parts:
                     return
 
 
-class Board:
-    """A running image. Frames that it sent are in `frames`: (time, id, data)."""
+class Machine:
+    """A running image; its serial lines, named in their order, are `lines`. `news` is told when something came."""
 
-    def __init__(self, name, parts, chip=None):
-        chip = chip or CHIPS[name]
-        self.parts = parts
-        self.frames = []
-        self.answers = []        # lines that are no frames: "z", "V1010", "\a", ...
-        self._news = threading.Condition()
+    def __init__(self, name, chip, lines):
+        self.news = threading.Condition()
         self._folder = tempfile.TemporaryDirectory(prefix="ocm-qemu-")
-        listeners = [self._listen("can"), self._listen("parts"), self._listen("qmp")]
+        listeners = {line: self._listen(line) for line in (*lines, "qmp")}
+        self.image = os.path.join(IMAGES, f"{name}_{chip}.elf")
         self.process = subprocess.Popen(
-            [QEMU, "-M", MACHINES[chip], "-nographic", "-monitor", "none", "-semihosting",
-             "-kernel", os.path.join(IMAGES, f"{name}_{chip}.elf"),
-             *(f for listener in ("can", "parts") for f in ("-serial", f"unix:{self._path(listener)}")),
+            [QEMU, "-M", MACHINES[chip], "-nographic", "-monitor", "none", "-semihosting", "-kernel", self.image,
+             *(f for line in lines for f in ("-serial", f"unix:{self._path(line)}")),
              "-qmp", f"unix:{self._path('qmp')}"],
             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-        lines = []
-        for listener in listeners:
+        self.lines = {}
+        for line, listener in listeners.items():
             listener.settimeout(20)
-            lines.append(listener.accept()[0])
+            self.lines[line] = listener.accept()[0]
             listener.close()
-        self._can, self._parts_line, self._qmp = lines
-        self._qmp_file = self._qmp.makefile("rw")
-        self._threads = [threading.Thread(target=self._listen_can, daemon=True),
-                         threading.Thread(target=parts.serve, args=(self._parts_line,), daemon=True)]
-        for thread in self._threads:
-            thread.start()
+        self._qmp_file = self.lines["qmp"].makefile("rw")
+        self._threads = []
         json.loads(self._qmp_file.readline())
         self.monitor("qmp_capabilities")
-        # Before it says CR it does not listen: QEMU throws away what a UART gets that is not enabled.
-        self.wait(lambda: self.answers, 10, "the adapter's first word")
 
     def _path(self, name):
         return os.path.join(self._folder.name, name)
@@ -185,6 +182,107 @@ class Board:
         listener.bind(self._path(name))
         listener.listen(1)
         return listener
+
+    def thread(self, target, *arguments):
+        thread = threading.Thread(target=target, args=arguments, daemon=True)
+        self._threads.append(thread)
+        thread.start()
+
+    def monitor(self, command, **arguments):
+        self._qmp_file.write(json.dumps({"execute": command, "arguments": arguments}) + "\n")
+        self._qmp_file.flush()
+        while True:
+            answer = json.loads(self._qmp_file.readline())
+            if "event" not in answer:
+                assert "return" in answer, answer
+                return answer["return"]
+
+    def wait(self, condition, timeout, what):
+        """Until condition() holds; looked at with each news and now and then."""
+        end = time.monotonic() + timeout
+        with self.news:
+            while not condition():
+                left = end - time.monotonic()
+                assert left > 0, f"{what}: not within {timeout} s; {self.heard()}"
+                self.news.wait(min(left, 0.02))
+
+    def heard(self):
+        """For who waits in vain."""
+        return ""
+
+    def memory(self, start, size):
+        path = self._path("memory")
+        self.monitor("pmemsave", val=start, size=size, filename=path)
+        with open(path, "rb") as file:
+            return file.read()
+
+    def symbols(self):
+        """Name -> (address, size) of the image's variables, and of what its linker script defines."""
+        found = {}
+        for line in subprocess.run(["arm-none-eabi-nm", "-SC", self.image], capture_output=True, text=True,
+                                   check=True).stdout.splitlines():
+            fields = line.split(maxsplit=3)
+            if len(fields) == 4 and len(fields[1]) == 8:
+                found[fields[3]] = (int(fields[0], 16), int(fields[1], 16))
+            elif fields[-1].startswith("__"):
+                found[fields[-1]] = (int(fields[0], 16), 0)
+        return found
+
+    def untouched(self, threads, names):
+        """Bytes of stack that nobody ever touched, by the fill patterns in the machine's memory: those of the threads
+        `names` in the variable that ends with `threads`, of main()'s, which is the lowest level's, and of the interrupts."""
+        symbols = self.symbols()
+        place = next(place for name, place in symbols.items() if name.endswith(threads) and "guard" not in name)
+        memory = self.memory(*place)
+        runs, at = [], 0
+        while at < len(memory):
+            length = 0
+            while at + length < len(memory) and memory[at + length] == 0x55:
+                length += 1
+            if length >= 32:
+                runs.append(length)
+            at += length + 1
+        assert len(runs) == len(names), (names, runs)
+        free = dict(zip(names, runs))
+        for name, stack in (("low", "process"), ("interrupts", "main")):
+            start, end = (symbols[f"__{stack}_stack_{side}__"][0] for side in ("base", "end"))
+            memory = self.memory(start, end - start)
+            free[name] = len(memory) - len(memory.lstrip(b"\x55"))
+        return free
+
+    def end(self, code=None):
+        """Ends QEMU. An image that gave up said why, and is not running any more: that is wrong, unless `code` is what
+        it has to end with. What QEMU said."""
+        if code is None:
+            gone = self.process.poll()
+            if gone is None:
+                self.process.kill()
+        else:
+            gone = self.process.wait(10)
+        said = self.process.communicate()[0]
+        self._qmp_file.close()
+        for line in self.lines.values():
+            line.close()
+        for thread in self._threads:
+            thread.join(5)
+        self._folder.cleanup()
+        assert gone == code, f"the image ended with {gone}: {said}"
+        return said
+
+
+class Board(Machine):
+    """A board on its bus. Frames that it sent are in `frames`: (time, id, data)."""
+
+    def __init__(self, name, parts, chip=None):
+        super().__init__(name, chip or CHIPS[name], ("can", "parts"))
+        self.parts = parts
+        self.frames = []
+        self.answers = []        # lines that are no frames: "z", "V1010", "\a", ...
+        self._can = self.lines["can"]
+        self.thread(self._listen_can)
+        self.thread(parts.serve, self.lines["parts"])
+        # Before it says CR it does not listen: QEMU throws away what a UART gets that is not enabled.
+        self.wait(lambda: self.answers, 10, "the adapter's first word")
 
     def _listen_can(self):
         line = b""
@@ -206,23 +304,14 @@ class Board:
                     line = b""
 
     def _heard(self, now, text):
-        with self._news:
+        with self.news:
             if text.startswith("t"):
                 data = bytes.fromhex(text[5:])
                 assert len(data) == int(text[4]), text
                 self.frames.append((now, int(text[1:4], 16), data))
             else:
                 self.answers.append(text)
-            self._news.notify_all()
-
-    def monitor(self, command, **arguments):
-        self._qmp_file.write(json.dumps({"execute": command, "arguments": arguments}) + "\n")
-        self._qmp_file.flush()
-        while True:
-            answer = json.loads(self._qmp_file.readline())
-            if "event" not in answer:
-                assert "return" in answer, answer
-                return answer["return"]
+            self.news.notify_all()
 
     def say(self, text):
         """A line to the adapter."""
@@ -230,10 +319,10 @@ class Board:
 
     def ask(self, text, timeout=5):
         """The adapter's next answer that is no frame."""
-        with self._news:
+        with self.news:
             seen = len(self.answers)
             self.say(text)
-            assert self._news.wait_for(lambda: len(self.answers) > seen, timeout), f"no answer to {text!r}"
+            assert self.news.wait_for(lambda: len(self.answers) > seen, timeout), f"no answer to {text!r}"
             return self.answers[seen]
 
     def send(self, identifier, data):
@@ -249,41 +338,11 @@ class Board:
     def stop(self, topic, priority=2):
         return self.send(priority << 8 | topic, bytes(1))
 
-    def wait(self, condition, timeout, what):
-        """Until condition() holds; looked at with each frame and now and then."""
-        end = time.monotonic() + timeout
-        with self._news:
-            while not condition():
-                left = end - time.monotonic()
-                assert left > 0, f"{what}: not within {timeout} s; heard {self.frames[-5:]}"
-                self._news.wait(min(left, 0.02))
+    def heard(self):
+        return f"heard {self.frames[-5:]}"
 
     def of(self, identifier, since=0.0):
         return [(at, data) for at, name, data in list(self.frames) if name == identifier and at >= since]
-
-    def memory(self, start, size):
-        path = self._path("memory")
-        self.monitor("pmemsave", val=start, size=size, filename=path)
-        with open(path, "rb") as file:
-            return file.read()
-
-    def end(self, code=None):
-        """Ends QEMU. An image that gave up said why, and is not running any more: that is wrong, unless `code` is what
-        it has to end with."""
-        if code is None:
-            gone = self.process.poll()
-            if gone is None:
-                self.process.kill()
-        else:
-            gone = self.process.wait(10)
-        said = self.process.communicate()[0]
-        self._qmp_file.close()
-        for line in (self._can, self._parts_line, self._qmp):
-            line.close()
-        for thread in self._threads:
-            thread.join(5)
-        self._folder.cleanup()
-        assert gone == code, f"the image ended with {gone}: {said}"
 
 
 class Case(unittest.TestCase):

@@ -34,6 +34,8 @@ TEST_CASE("a request on the line, byte by byte") {
   CHECK(static_cast<int>(link::Kind::encoders) == 4);
   CHECK(static_cast<int>(link::Kind::inputs) == 5);
   CHECK(static_cast<int>(link::Kind::outputs) == 6);
+  CHECK(static_cast<int>(link::Kind::convert) == 7);
+  CHECK(static_cast<int>(link::Kind::set_pulse) == 8);
 }
 
 TEST_CASE("an answer on the line, byte by byte") {

@@ -1,7 +1,6 @@
 """The boards' images in QEMU: requests over SLCAN, parts that are there, away or come back, actuators, stacks."""
 
 import struct
-import subprocess
 import time
 
 import harness
@@ -180,35 +179,9 @@ class DiWheelDrive(harness.Case):
             self.board.send(0x201, motors(50_000))
             self.board.ask("t20")
             time.sleep(0.1)
-        elf = f"{harness.IMAGES}/di_wheel_drive_qemu_m3.elf"
-        symbols = {}
-        for line in subprocess.run(["arm-none-eabi-nm", "-SC", elf], capture_output=True, text=True,
-                                   check=True).stdout.splitlines():
-            fields = line.split(maxsplit=3)
-            if len(fields) == 4 and len(fields[1]) == 8:
-                symbols[fields[3]] = (int(fields[0], 16), int(fields[1], 16))
-            elif fields[-1].startswith("__"):
-                symbols[fields[-1]] = (int(fields[0], 16), 0)
-        runtime = next(place for name, place in symbols.items() if name.endswith("::runtime") and "guard" not in name)
-        memory = self.board.memory(*runtime)
-        runs = []  # untouched bytes at the bottom of each thread's area: receiver, urgent, high, medium
-        at = 0
-        while at < len(memory):
-            length = 0
-            while at + length < len(memory) and memory[at + length] == 0x55:
-                length += 1
-            if length >= 32:
-                runs.append(length)
-            at += length + 1
-        main = symbols["__process_stack_base__"][0]
-        interrupts = symbols["__main_stack_base__"][0]
-        for name, start, end in (("low", main, symbols["__process_stack_end__"][0]),
-                                 ("interrupts", interrupts, symbols["__main_stack_end__"][0])):
-            stack = self.board.memory(start, end - start)
-            runs.append(len(stack) - len(stack.lstrip(b"\x55")))
-        print("untouched bytes of stack:", dict(zip(("receiver", "urgent", "high", "medium", "low", "interrupts"), runs)))
-        self.assertEqual(len(runs), 6, runs)
-        self.assertGreaterEqual(min(runs), 96, runs)
+        free = self.board.untouched("::runtime", ("receiver", "urgent", "high", "medium"))
+        print("untouched bytes of stack:", free)
+        self.assertGreaterEqual(min(free.values()), 96, free)
 
 
 class LightRing(harness.Case):

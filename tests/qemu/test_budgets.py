@@ -22,9 +22,22 @@ Total      184967
 """
 
 
+AVR_LISTING = """image.elf  :
+section                     size      addr
+.data                        886   8388864
+.text                      17334         0
+.bss                         136   8389750
+.note.gnu.avr.deviceinfo      64         0
+.debug_info                 1938         0
+"""
+
+
 class Budgets(unittest.TestCase):
     def test_figures(self):
         self.assertEqual(budgets.figures(LISTING), {"flash": 448 + 20000 + 16, "ram": 1024 + 16 + 6000})
+
+    def test_figures_of_an_avr(self):
+        self.assertEqual(budgets.figures(AVR_LISTING), {"flash": 17334 + 886, "ram": 886 + 136})
 
     def test_within(self):
         same = {"a": {"flash": 100, "ram": 10}}

@@ -57,7 +57,7 @@ struct Frame {
   if (!is_extended(frame.format)) return frame.id << 21 | rtr << 20;
   const std::uint32_t base_id = frame.id >> 18;
   const std::uint32_t extension = frame.id & 0x3'FFFF;
-  return base_id << 21 | 1U << 20 | 1U << 19 | extension << 1 | rtr;
+  return base_id << 21 | std::uint32_t{3} << 19 | extension << 1 | rtr;
 }
 
 }  // namespace ocm::can

@@ -91,7 +91,7 @@ class PrefixFilter {
       return Step::prefix;
     }
     if (!base::is_digit(c)) return give_up();
-    index_ = static_cast<std::uint16_t>(index_ * 10 + (c - '0'));
+    index_ = static_cast<std::uint16_t>(index_ * 10U + static_cast<unsigned>(c - '0'));
     return ++length_ <= 3 && index_ <= 255 ? Step::prefix : give_up();
   }
   constexpr Step name(char c) noexcept {

@@ -34,7 +34,7 @@ class LinkQuality {
   }
 
  private:
-  static constexpr std::uint32_t one = 1U << 24;
+  static constexpr std::uint32_t one = std::uint32_t{1} << 24;
   static constexpr unsigned weight = 4;
   /// After a hundred of a kind nothing of before is left to see.
   [[nodiscard]] static constexpr std::uint32_t bounded(std::uint32_t n) noexcept { return n < 100 ? n : 100; }

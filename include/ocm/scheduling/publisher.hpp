@@ -213,7 +213,7 @@ class Publisher {
       return skipped > UINT32_MAX ? UINT32_MAX : static_cast<std::uint32_t>(skipped);
     }
   };
-  static_assert(sizeof(Stream) == 40);
+  static_assert(sizeof(Stream) <= 40);
 
   [[nodiscard]] static constexpr std::uint32_t nanoseconds(base::Duration jitter) noexcept {
     const std::int64_t ns = jitter.count();
