@@ -203,7 +203,7 @@ class OnASerialLine(Case):
 
     def test_devices_that_are_none(self):
         for path, words in (("/dev/no-adapter", "there is no serial device '/dev/no-adapter'"),
-                            ("/dev/null", "neither a serial device nor a socket"), ("", "names no device")):
+                            ("/dev/null", "'/dev/null' is no serial device"), ("", "names no device")):
             _, err = self.run_tool("--bus", f"slcan:{path}", "send", "123#", code=1)
             self.assertIn(words, err)
 

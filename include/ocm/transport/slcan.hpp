@@ -19,30 +19,22 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
-#include <cstring>
 #include <deque>
-#include <fcntl.h>
-#include <filesystem>
-#include <linux/tty.h>
 #include <memory>
 #include <optional>
 #include <poll.h>
 #include <span>
 #include <string>
 #include <string_view>
-#include <sys/file.h>
-#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
-#include <system_error>
-#include <termios.h>
 #include <vector>
 
 #include "ocm/can/slcan.hpp"
 #include "ocm/transport/bus.hpp"
 #include "ocm/transport/descriptor.hpp"
+#include "ocm/transport/serial_port.hpp"
 #include "ocm/transport/system_time.hpp"
 
 namespace ocm::transport {
@@ -72,25 +64,6 @@ struct SlcanCounters {
 };
 
 namespace detail {
-
-inline constexpr std::array<std::pair<std::uint32_t, speed_t>, 18> serial_speeds{{{9600, B9600},
-                                                                                  {19200, B19200},
-                                                                                  {38400, B38400},
-                                                                                  {57600, B57600},
-                                                                                  {115200, B115200},
-                                                                                  {230400, B230400},
-                                                                                  {460800, B460800},
-                                                                                  {500000, B500000},
-                                                                                  {576000, B576000},
-                                                                                  {921600, B921600},
-                                                                                  {1000000, B1000000},
-                                                                                  {1152000, B1152000},
-                                                                                  {1500000, B1500000},
-                                                                                  {2000000, B2000000},
-                                                                                  {2500000, B2500000},
-                                                                                  {3000000, B3000000},
-                                                                                  {3500000, B3500000},
-                                                                                  {4000000, B4000000}}};
 
 /// "500k", "1M", "125000"
 [[nodiscard]] constexpr std::optional<std::uint32_t> parse_rate(std::string_view text) noexcept {
@@ -147,51 +120,6 @@ class StampClock {
   base::Duration offset_{};  ///< our clock when `count_` was 0
 };
 
-/// The serial devices of this machine, by the names that stay.
-[[nodiscard]] inline std::string serial_devices() {
-  std::vector<std::string> found;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator{"/dev/serial/by-id", error})
-    found.push_back(entry.path().string());
-  if (found.empty()) {
-    for (const auto& entry : std::filesystem::directory_iterator{"/dev", error}) {
-      const std::string name = entry.path().filename().string();
-      if (name.starts_with("ttyACM") || name.starts_with("ttyUSB")) found.push_back(entry.path().string());
-    }
-  }
-  std::sort(found.begin(), found.end());
-  std::string text;
-  for (const std::string& name : found) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
-[[nodiscard]] inline Failure open_failure(const std::string& path, int error) {
-  const std::string reason = std::string(" (") + std::strerror(error) + ")";
-  switch (error) {
-    case ENOENT:
-    case ENXIO:
-    case ENODEV: {
-      const std::string devices = serial_devices();
-      return {"there is no serial device '" + path + "'" + reason,
-              devices.empty() ? "plug the adapter in; `dmesg | tail` tells its name, mostly /dev/ttyACM0"
-                              : "the serial devices here are: " + devices};
-    }
-    case EACCES:
-    case EPERM:
-      return {"not allowed to open '" + path + "'" + reason,
-              "join the group that owns it and log in again: sudo usermod -aG dialout $USER (see ls -l " +
-                  path + ")"};
-    case EBUSY:
-    case EWOULDBLOCK:
-      return {"'" + path + "' is in use by another program",
-              "end that one: `fuser -v " + path + "` names it"};
-    case ECONNREFUSED:
-      return {"nobody listens on the socket '" + path + "'" + reason, "start the board or program behind it"};
-    default:
-      return {"cannot open '" + path + "'" + reason, "see the kernel's log: dmesg"};
-  }
-}
-
 }  // namespace detail
 
 /// Reads `PATH[@BIT_RATE[,BAUD]]`, as in /dev/ttyACM0@500k,115200. The bit rate is the robot's 500k unless
@@ -227,15 +155,10 @@ class StampClock {
     return Failure{"'" + baud_text + "' in 'slcan:" + std::string(text) + "' is no speed of a serial line",
                    std::string(form)};
   address.options.baud = *baud;
-  const auto distance = [&](const auto& entry) {
-    return std::max(entry.first, *baud) - std::min(entry.first, *baud);
-  };
-  const auto nearest =
-      std::min_element(detail::serial_speeds.begin(), detail::serial_speeds.end(),
-                       [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
-  if (nearest->first != *baud)
+  const std::uint32_t nearest = detail::nearest_serial_speed(*baud);
+  if (nearest != *baud)
     return Failure{"a serial line has no speed " + baud_text + " here",
-                   "the nearest is " + std::to_string(nearest->first) + "; USB adapters mostly ignore it"};
+                   "the nearest is " + std::to_string(nearest) + "; USB adapters mostly ignore it"};
   return address;
 }
 
@@ -259,7 +182,7 @@ class Slcan final : public Bus {
     struct stat status {};
     if (::stat(path.c_str(), &status) < 0) return detail::open_failure(path, errno);
     const bool is_socket = S_ISSOCK(status.st_mode);
-    if (!is_socket && !S_ISCHR(status.st_mode)) return kind_failure(path);
+    if (!is_socket && !S_ISCHR(status.st_mode)) return detail::no_serial_device(path, "a socket");
     auto bus = std::unique_ptr<Slcan>(new Slcan(path, options));
     if (auto problem = is_socket ? bus->connect() : bus->open_device()) return std::move(*problem);
     if (auto problem = bus->start()) return std::move(*problem);
@@ -270,12 +193,6 @@ class Slcan final : public Bus {
   /// gives the line its settings back.
   ~Slcan() override {
     if (state() == BusState::up && started_) finish();
-    if (restore_) {
-      // What cannot go out must not make close(2) wait for it.
-      ::tcflush(line_.get(), TCOFLUSH);
-      ::tcsetattr(line_.get(), TCSANOW, &*restore_);
-      ::ioctl(line_.get(), TIOCNXCL);
-    }
   }
 
   /// "slcan:" and the path.
@@ -332,7 +249,7 @@ class Slcan final : public Bus {
     return {};
   }
 
-  [[nodiscard]] int descriptor() const override { return line_.get(); }
+  [[nodiscard]] int descriptor() const override { return port_ ? port_.descriptor() : socket_.get(); }
   [[nodiscard]] const BusCounters& counters() const override { return counters_; }
   [[nodiscard]] const Failure& failure() const override { return failure_; }
 
@@ -365,13 +282,6 @@ class Slcan final : public Bus {
 
   // --- opening ---
 
-  [[nodiscard]] static Failure kind_failure(const std::string& path) {
-    const std::string devices = detail::serial_devices();
-    return {"'" + path + "' is neither a serial device nor a socket",
-            devices.empty() ? "name the adapter's, mostly /dev/ttyACM0 or /dev/ttyUSB0"
-                            : "the serial devices here are: " + devices};
-  }
-
   [[nodiscard]] std::optional<Failure> connect() {
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
@@ -379,44 +289,16 @@ class Slcan final : public Bus {
       return Failure{"the path '" + path_ + "' is too long for a socket",
                      "use one of at most 107 characters"};
     std::copy(path_.begin(), path_.end(), std::begin(address.sun_path));
-    line_ = Descriptor{::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)};
-    if (!line_ || ::connect(line_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) < 0)
+    socket_ = Descriptor{::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)};
+    if (!socket_ || ::connect(socket_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) < 0)
       return errno == EAGAIN ? detail::open_failure(path_, EBUSY) : detail::open_failure(path_, errno);
     return std::nullopt;
   }
 
   [[nodiscard]] std::optional<Failure> open_device() {
-    line_ = Descriptor{::open(path_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)};
-    if (!line_) return detail::open_failure(path_, errno);
-    termios settings{};
-    if (::tcgetattr(line_.get(), &settings) < 0) return kind_failure(path_);
-    int discipline = 0;
-    if (::ioctl(line_.get(), TIOCGETD, &discipline) == 0 && discipline == N_SLCAN)
-      return Failure{"'" + path_ + "' is taken by the kernel's slcan driver",
-                     "use the interface that it has made (`ip link show type can`), or end slcand"};
-    // Both: the lock also keeps root out, the other also programs that do not look for locks.
-    if (::flock(line_.get(), LOCK_EX | LOCK_NB) < 0 && errno == EWOULDBLOCK)
-      return detail::open_failure(path_, EBUSY);
-    ::ioctl(line_.get(), TIOCEXCL);
-    restore_ = settings;
-    ::cfmakeraw(&settings);
-    settings.c_cflag |= CLOCAL | CREAD;
-    settings.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS | CSTOPB);
-    settings.c_iflag &= ~static_cast<tcflag_t>(IXOFF);
-    settings.c_cc[VMIN] = 1;
-    settings.c_cc[VTIME] = 0;
-    for (const auto& [baud, speed] : detail::serial_speeds) {
-      if (baud == options_.baud) {
-        ::cfsetispeed(&settings, speed);
-        ::cfsetospeed(&settings, speed);
-      }
-    }
-    if (::tcsetattr(line_.get(), TCSANOW, &settings) < 0) {
-      return Failure{
-          "cannot set '" + path_ + "' to " + std::to_string(options_.baud) + " baud: " + std::strerror(errno),
-          "try another speed: slcan:" + path_ + "@" + detail::rate_text(options_.bit_rate) + ",115200"};
-    }
-    ::tcflush(line_.get(), TCIOFLUSH);
+    auto opened = SerialPort::open(path_, options_.baud);
+    if (!opened) return std::move(opened.error);
+    port_ = std::move(*opened);
     return std::nullopt;
   }
 
@@ -467,7 +349,7 @@ class Slcan final : public Bus {
     const base::Time begin = now();
     (void)write(command);
     while (!out_.empty() && state() == BusState::up && now() - begin < options_.patience) {
-      pollfd line{line_.get(), POLLOUT, 0};
+      pollfd line{descriptor(), POLLOUT, 0};
       ::poll(&line, 1, 10);
       flush();
     }
@@ -522,8 +404,8 @@ class Slcan final : public Bus {
   /// true when nothing waits.
   bool flush() {
     while (!out_.empty() && state() == BusState::up) {
-      const ssize_t written = restore_ ? ::write(line_.get(), out_.data(), out_.size())
-                                       : ::send(line_.get(), out_.data(), out_.size(), MSG_NOSIGNAL);
+      const ssize_t written = port_ ? ::write(descriptor(), out_.data(), out_.size())
+                                    : ::send(descriptor(), out_.data(), out_.size(), MSG_NOSIGNAL);
       if (written > 0) {
         out_.erase(0, static_cast<std::size_t>(written));
         continue;
@@ -539,7 +421,7 @@ class Slcan final : public Bus {
     std::array<char, 4096> text;  // NOLINT: filled by the kernel
     bool any = false;
     while (state() == BusState::up) {
-      const ssize_t size = ::read(line_.get(), text.data(), text.size());
+      const ssize_t size = ::read(descriptor(), text.data(), text.size());
       if (size < 0 && errno == EINTR) continue;
       if (size < 0 && errno == EAGAIN) break;
       if (size <= 0) {
@@ -557,18 +439,15 @@ class Slcan final : public Bus {
   /// true: there is something to read, or to hear that the line is gone.
   bool wait(base::Duration limit) {
     const short events = out_.empty() ? POLLIN : POLLIN | POLLOUT;
-    pollfd line{line_.get(), events, 0};
+    pollfd line{descriptor(), events, 0};
     const timespec time = to_timespec(limit);
     errno = 0;
     return ::ppoll(&line, 1, &time, nullptr) > 0;
   }
   void lose(int error) {
     if (state() == BusState::closed) return;
-    const bool torn = reader_.mid_line();
-    failure_ = {"the adapter on '" + path_ + "' is gone: unplugged, or its other end closed" +
-                    (error == 0 || error == EIO ? "" : " (" + std::string(std::strerror(error)) + ")") +
-                    (torn ? ", in the middle of a line" : ""),
-                "plug it in again and start anew"};
+    failure_ = detail::line_gone("the adapter on '" + path_ + "'", error);
+    if (reader_.mid_line()) failure_.what += ", in the middle of a line";
   }
 
   // --- the protocol ---
@@ -709,28 +588,26 @@ class Slcan final : public Bus {
     const auto in_time = [&] { return state() == BusState::up && now() - begin < farewell; };
     while (in_time()) {
       work();
-      int waits = 0;
-      if (restore_) ::ioctl(line_.get(), TIOCOUTQ, &waits);
-      if (out_.empty() && under_way_.empty() && again_.empty() && waits == 0) break;
+      if (out_.empty() && under_way_.empty() && again_.empty() && unsent() == 0) break;
       wait(std::min(until_due(), base::Duration{std::chrono::milliseconds{2}}));
     }
     if (state() != BusState::up || !write("C\r")) return;
     last_answer_ = Answer::Kind::none;
     const base::Time end = now() + std::chrono::milliseconds{50};
-    for (int waits = 1; state() == BusState::up && now() < end;) {
-      if (answers_ ? last_answer_ != Answer::Kind::none : waits == 0) break;
+    do {
       wait(std::chrono::milliseconds{2});
       read();
-      waits = 0;
-      if (restore_) ::ioctl(line_.get(), TIOCOUTQ, &waits);
-    }
+    } while (state() == BusState::up && now() < end &&
+             (answers_ ? last_answer_ == Answer::Kind::none : unsent() != 0));
   }
+  /// A socket's bytes are gone when they are sent.
+  [[nodiscard]] std::size_t unsent() const noexcept { return port_ ? port_.unsent() : 0; }
 
   std::string path_;
   std::string name_;
   SlcanOptions options_;
-  Descriptor line_;
-  std::optional<termios> restore_;  ///< a device; a socket has no settings
+  SerialPort port_;  ///< one of the two
+  Descriptor socket_;
 
   can::slcan::AnswerReader reader_;
   std::string out_;

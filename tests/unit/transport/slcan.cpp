@@ -228,7 +228,7 @@ TEST_CASE("slcan address: device, bit rate, speed of the line") {
 
 TEST_CASE("slcan: what cannot be opened is told with what to do") {
   CHECK_THAT(failure("/dev/no-such-adapter").what, Contains("no serial device '/dev/no-such-adapter'"));
-  CHECK_THAT(failure("/dev/null").what, Contains("neither a serial device nor a socket"));
+  CHECK_THAT(failure("/dev/null").what, Contains("'/dev/null' is no serial device"));
   CHECK_THAT(failure("/etc/passwd").what, Contains("neither a serial device nor a socket"));
   Device device;
   SlcanOptions odd;

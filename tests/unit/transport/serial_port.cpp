@@ -1,0 +1,144 @@
+#include "ocm/transport/serial_port.hpp"
+
+#include <array>
+#include <string>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/transport/pty.hpp"
+
+namespace {
+
+using namespace ocm;
+using Catch::Contains;
+using transport::Pty;
+using transport::SerialPort;
+
+std::string all(SerialPort& port) {
+  std::string text;
+  std::array<char, 64> room{};
+  for (auto size = port.read(room); size && *size != 0; size = port.read(room))
+    text.append(room.data(), *size);
+  return text;
+}
+std::string all(Pty& pty) {
+  std::string text;
+  std::array<char, 64> room{};
+  while (const std::size_t size = pty.read(room)) text.append(room.data(), size);
+  return text;
+}
+transport::Failure failure(const std::string& path, std::uint32_t baud = 115'200) {
+  auto port = SerialPort::open(path, baud);
+  CHECK_FALSE(port);
+  return port.error;
+}
+
+TEST_CASE("serial port: bytes as they are, both ways") {
+  auto pty = Pty::open();
+  REQUIRE(pty);
+  auto port = SerialPort::open(pty->path(), 38'400);
+  REQUIRE(port);
+  CHECK(*port);
+  CHECK(port->path() == pty->path());
+  std::string every;
+  for (int byte = 0; byte < 256; ++byte) every += static_cast<char>(byte);
+  CHECK(pty->write(every) == 256);
+  CHECK(all(*port) == every);
+  CHECK(port->write(every).value == 256);
+  CHECK(all(*pty) == every);
+  CHECK(all(*port).empty());
+}
+
+TEST_CASE("serial port: nothing to read, no room, no bytes asked for: no error") {
+  auto pty = Pty::open();
+  REQUIRE(pty);
+  auto port = SerialPort::open(pty->path());
+  REQUIRE(port);
+  std::array<char, 8> room{};
+  CHECK(port->read(room) == base::Result<std::size_t>{0});
+  CHECK(pty->write("x") == 1);
+  CHECK(port->read(std::span<char>{}) == base::Result<std::size_t>{0});
+  std::size_t taken = 0;
+  base::Result<std::size_t> last{1};
+  for (int i = 0; i < 10'000 && *last != 0; ++i) {
+    last = port->write(std::string(1000, 'y'));
+    REQUIRE(last);
+    taken += *last;
+  }
+  CHECK(*last == 0);
+  CHECK(all(*pty).size() == taken);
+}
+
+TEST_CASE("serial port: in words, what is wrong and what to do") {
+  CHECK_THAT(failure("/dev/no-such-line").what, Contains("there is no serial device '/dev/no-such-line'"));
+  CHECK_THAT(failure("/dev/null").what, Contains("'/dev/null' is no serial device"));
+  CHECK_THAT(failure("/etc/passwd").what, Contains("'/etc/passwd' is no serial device"));
+  CHECK_THAT(failure("/tmp").what, Contains("'/tmp' is no serial device"));
+  CHECK_FALSE(failure("/dev/no-such-line").remedy.empty());
+  CHECK_THAT(transport::detail::open_failure("/dev/x", EACCES).what,
+             Contains("not allowed to open '/dev/x'"));
+  CHECK_THAT(transport::detail::open_failure("/dev/x", EACCES).remedy, Contains("dialout"));
+
+  auto pty = Pty::open();
+  REQUIRE(pty);
+  CHECK(failure(pty->path(), 12'345).what == "a serial line has no speed 12345 here");
+  CHECK(failure(pty->path(), 12'345).remedy == "the nearest is 9600");
+  auto port = SerialPort::open(pty->path());  // the refused one has let it go
+  REQUIRE(port);
+  CHECK_THAT(failure(pty->path()).what, Contains("'" + pty->path() + "' is in use by another program"));
+  port->close();
+  CHECK_FALSE(*port);
+  CHECK(SerialPort::open(pty->path()));
+}
+
+TEST_CASE("serial port: unplugged, what had come is read first, then it is gone") {
+  auto pty = Pty::open();
+  REQUIRE(pty);
+  auto port = SerialPort::open(pty->path());
+  REQUIRE(port);
+  CHECK(port->failure().what.empty());
+  *pty = Pty{};
+  std::array<char, 8> room{};
+  CHECK(port->read(room).error == base::Error::closed);
+  CHECK_THAT(port->failure().what, Contains("is gone: unplugged"));
+  CHECK(port->write("x").error == base::Error::closed);
+}
+
+TEST_CASE("serial port: the line gets its settings back, and its owner may move") {
+  auto pty = Pty::open();
+  REQUIRE(pty);
+  const transport::Descriptor other{::open(pty->path().c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC)};
+  termios echoing{};
+  REQUIRE(::tcgetattr(other.get(), &echoing) == 0);
+  echoing.c_lflag |= ECHO;
+  REQUIRE(::tcsetattr(other.get(), TCSANOW, &echoing) == 0);
+  const auto echoes = [&] {
+    termios now{};
+    REQUIRE(::tcgetattr(other.get(), &now) == 0);
+    return (now.c_lflag & ECHO) != 0;
+  };
+  SerialPort kept;
+  {
+    auto port = SerialPort::open(pty->path());
+    REQUIRE(port);
+    CHECK_FALSE(echoes());
+    kept = std::move(*port);
+  }
+  CHECK_FALSE(echoes());
+  CHECK(kept.write("x").value == 1);
+  kept = SerialPort{};
+  CHECK(echoes());
+}
+
+TEST_CASE(
+    "serial port: a pseudo terminal is locked, but not exclusive: that would outlive a killed program") {
+  auto pty = Pty::open();
+  REQUIRE(pty);
+  const auto port = SerialPort::open(pty->path());
+  REQUIRE(port);
+  int exclusive = -1;
+  REQUIRE(::ioctl(port->descriptor(), TIOCGEXCL, &exclusive) == 0);
+  CHECK(exclusive == 0);
+}
+
+}  // namespace
