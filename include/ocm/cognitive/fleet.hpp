@@ -1,0 +1,259 @@
+/// The robots behind one central: what each of them is, where it is, and how good its link is. Takes the
+/// stream of packets apart, confirms handshakes, and says when a robot should be called back before its link
+/// is gone, and when it is. [Thesis 2, 4.5, 6.3, 15.3]
+///
+/// Bytes in, words for robots out, time handed in; no I/O. O(1) a byte. What belongs to nobody, and what came
+/// when it could not be meant, is counted. Host only.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "ocm/base/time.hpp"
+#include "ocm/cognitive/map.hpp"
+#include "ocm/line/demultiplexer.hpp"
+#include "ocm/line/format.hpp"
+
+namespace ocm::cognitive {
+
+struct FleetOptions {
+  bool packed = true;                                      ///< ask robots that offer it for packed updates
+  std::uint32_t good_from = 850;                           ///< per mille of whole sentences: well again
+  std::uint32_t bad_below = 700;                           ///< to be called back
+  motion::Point central{};                                 ///< where the central stands
+  float range_m = std::numeric_limits<float>::infinity();  ///< of its radio
+  float near_range = 0.9F;                                 ///< of the range: to be called back
+  base::Duration deadline = std::chrono::seconds{5};       ///< silence of a robot that told none
+  base::Duration settle = std::chrono::milliseconds{300};  ///< an idle so soon is of before the set point
+};
+
+/// Why a robot should come back.
+enum class Advice : std::uint8_t { stay, bad_link, far_away };
+
+/// What the fleet knows of one robot.
+struct Robot {
+  std::string name{};
+  bool linked = false;     ///< the central says so
+  bool confirmed = false;  ///< its handshake came, and was answered
+  bool idle = false;       ///< at its set point
+  bool paused = false;
+  bool lost = false;  ///< silent for its deadline, or without a link
+  std::optional<line::Handshake> handshake{};
+  std::optional<line::Update> update{};  ///< the newest
+  base::Time updated{};
+  base::Time heard{};  ///< its last word of any kind
+  line::Kind last = line::Kind::none;
+  base::Time told{};      ///< when the last set point, pause or unpause was said
+  motion::Pose origin{};  ///< where its frame began, in the world
+  Advice advice = Advice::stay;
+
+  [[nodiscard]] Shape shape() const { return handshake ? shape_of(*handshake) : Shape{}; }
+  /// In the world; where it began, before the first update.
+  [[nodiscard]] motion::Pose pose() const { return update ? placed(origin, pose_of(*update)) : origin; }
+};
+
+/// They wrap.
+struct FleetCounters {
+  std::uint32_t handshakes = 0;
+  std::uint32_t updates = 0;
+  std::uint32_t idles = 0;
+  std::uint32_t pongs = 0;
+  std::uint32_t early_idles = 0;  ///< right behind a set point: meant the one before
+  std::uint32_t lost = 0;         ///< times that a robot was
+  std::uint32_t calls = 0;        ///< times that one should have come back
+};
+
+/// Words for a robot.
+struct Saying {
+  std::size_t robot = 0;
+  std::string words{};
+};
+
+class Fleet {
+ public:
+  static constexpr std::size_t most_robots = 128;  ///< on the list of a central
+
+  explicit Fleet(const FleetOptions& options = {}) : options_(options) {}
+
+  /// The central has a link to this robot.
+  void linked(std::size_t index, std::string_view name, base::Time now) {
+    if (index >= most_robots) return;
+    Robot& robot = robots_[index];
+    if (robot.name != name) robot = Robot{.name = std::string{name}, .origin = robot.origin};
+    if (!robot.linked) ears_.restart(index);
+    robot.linked = true;
+    robot.lost = false;
+    robot.heard = now;
+    robot.advice = Advice::stay;
+  }
+  /// The link is gone: the robot stops by itself.
+  void unlinked(std::size_t index) {
+    if (index >= most_robots || !robots_[index].linked) return;
+    robots_[index].linked = false;
+    lose(robots_[index]);
+  }
+  /// Where the frame of a robot's poses is in the world: where it stood when it began.
+  void set_origin(std::size_t index, const motion::Pose& origin) {
+    if (index < most_robots) robots_[index].origin = origin;
+  }
+
+  /// The robots' bytes (CentralClient::take_robots). `heard(index, kind)` after each whole sentence.
+  template <class Heard>
+  void feed(std::string_view bytes, base::Time now, Heard&& heard) {
+    for (const char c : bytes) {
+      const auto sentence = ears_.feed(static_cast<std::uint8_t>(c));
+      if (sentence.kind == line::Kind::none) continue;
+      hear(sentence.robot, sentence.kind, now);
+      heard(std::size_t{sentence.robot}, sentence.kind);
+    }
+  }
+  void feed(std::string_view bytes, base::Time now) {
+    feed(bytes, now, [](std::size_t, line::Kind) {});
+  }
+  /// Who is silent for too long is lost.
+  void expire(base::Time now) {
+    for (Robot& robot : robots_)
+      if (robot.linked && !robot.lost && now - robot.heard > deadline_of(robot)) lose(robot);
+  }
+
+  // --- what is to be said ---
+
+  /// False when a field is out of its range: then nothing is said.
+  bool go(std::size_t index, const line::SetPoint& set_point, base::Time now) {
+    const auto words = line::write(set_point);
+    if (index >= most_robots || !words) return false;
+    Robot& robot = robots_[index];
+    robot.idle = false;
+    robot.told = now;
+    return say(index, words->view());
+  }
+  bool pause(std::size_t index, base::Time now) { return hold(index, true, now); }
+  bool unpause(std::size_t index, base::Time now) { return hold(index, false, now); }
+  bool ping(std::size_t index) { return say(index, line::write(line::Kind::ping)->view()); }
+  [[nodiscard]] std::optional<Saying> take() {
+    if (sayings_.empty()) return std::nullopt;
+    Saying saying = std::move(sayings_.front());
+    sayings_.pop_front();
+    return saying;
+  }
+
+  // --- what is known ---
+
+  /// index < most_robots; one that never was there has no name.
+  [[nodiscard]] const Robot& robot(std::size_t index) const { return robots_[index]; }
+  [[nodiscard]] std::uint32_t quality_per_mille(std::size_t index) const {
+    return ears_.ear(index).quality().per_mille();
+  }
+  [[nodiscard]] const line::Ear& ear(std::size_t index) const { return ears_.ear(index); }
+  [[nodiscard]] base::Duration deadline_of(const Robot& robot) const noexcept {
+    if (!robot.handshake || robot.handshake->deadline <= 0) return options_.deadline;
+    return std::chrono::milliseconds{robot.handshake->deadline};
+  }
+  /// Whether, and why, the robot should come back; it stays so until the link is well, and it is nearer.
+  [[nodiscard]] Advice call_back(std::size_t index) const { return robots_[index].advice; }
+  [[nodiscard]] const FleetCounters& counters() const noexcept { return counters_; }
+  /// Bytes that belonged to nobody.
+  [[nodiscard]] std::uint32_t nobodys() const noexcept { return ears_.nobodys(); }
+  [[nodiscard]] const FleetOptions& options() const noexcept { return options_; }
+
+ private:
+  bool say(std::size_t index, std::string_view words) {
+    if (index >= most_robots) return false;
+    sayings_.push_back({index, std::string{words}});
+    return true;
+  }
+  bool hold(std::size_t index, bool paused, base::Time now) {
+    if (index >= most_robots) return false;
+    robots_[index].paused = paused;
+    robots_[index].told = now;
+    return say(index, line::write(paused ? line::Kind::pause : line::Kind::unpause)->view());
+  }
+  void lose(Robot& robot) {
+    if (!robot.lost) ++counters_.lost;
+    robot.lost = true;
+    robot.idle = false;
+  }
+
+  void hear(std::size_t index, line::Kind kind, base::Time now) {
+    if (index >= most_robots) return;
+    Robot& robot = robots_[index];
+    robot.heard = now;
+    robot.last = kind;
+    robot.lost = false;
+    robot.linked = true;  // whoever speaks has a link
+    switch (kind) {
+      case line::Kind::handshake:
+        greet(index, robot);
+        break;
+      case line::Kind::update:
+        update(index, robot, now);
+        break;
+      case line::Kind::idle:
+        ++counters_.idles;
+        robot.confirmed = true;
+        if (now - robot.told < options_.settle && robot.told != base::Time{}) {
+          ++counters_.early_idles;
+          break;
+        }
+        robot.idle = true;
+        break;
+      case line::Kind::pong:
+        ++counters_.pongs;
+        break;
+      default:
+        break;
+    }
+    judge(index, robot);
+  }
+  /// It is said again each second until the robot hears the answer.
+  void greet(std::size_t index, Robot& robot) {
+    ++counters_.handshakes;
+    robot.handshake = ears_.ear(index).sentence().as<line::Handshake>().value;
+    robot.origin = robot.pose();  // its pose begins at 0 again, where it stands
+    robot.update.reset();
+    robot.confirmed = true;
+    robot.idle = true;  // it waits for a set point
+    robot.paused = false;
+    robot.told = {};
+    (void)say(index, line::answer(*robot.handshake, options_.packed).view());
+  }
+  void update(std::size_t index, Robot& robot, base::Time now) {
+    ++counters_.updates;
+    robot.confirmed = true;
+    robot.update = ears_.ear(index).sentence().as<line::Update>().value;
+    robot.updated = now;
+    // Paused robots send none: it was not heard.
+    constexpr base::Duration in_flight = std::chrono::seconds{1};
+    if (robot.paused && now - robot.told > in_flight) robot.paused = false;
+  }
+  void judge(std::size_t index, Robot& robot) {
+    const line::LinkQuality& quality = ears_.ear(index).quality();
+    const float far = distance_m(place(robot.pose()), options_.central);
+    const bool before = robot.advice != Advice::stay;
+    const float limit = options_.range_m * (before ? options_.near_range * 0.9F : options_.near_range);
+    if (far > limit)
+      robot.advice = Advice::far_away;
+    else if (quality.below(before ? options_.good_from : options_.bad_below))
+      robot.advice = Advice::bad_link;
+    else
+      robot.advice = Advice::stay;
+    if (!before && robot.advice != Advice::stay) ++counters_.calls;
+  }
+
+  FleetOptions options_;
+  line::Demultiplexer<most_robots> ears_;
+  std::array<Robot, most_robots> robots_{};
+  std::deque<Saying> sayings_;
+  FleetCounters counters_{};
+};
+
+}  // namespace ocm::cognitive

@@ -1,0 +1,148 @@
+/// Several robots draw one map: what the fleet hears goes into the map, and who is idle gets an order of the
+/// explorer. Robots that should be called back are, at once. [Thesis 2, 14.3, 15.3]
+///
+/// Pure, time is handed in. O(beams) an update; an order costs some milliseconds. Host only.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "ocm/cognitive/explorer.hpp"
+#include "ocm/cognitive/fleet.hpp"
+#include "ocm/cognitive/map.hpp"
+
+namespace ocm::cognitive {
+
+struct MappingOptions {
+  MapOptions map{};
+  ExplorerOptions explorer{};
+  /// Degrees between two updates: while a robot turns that fast, nobody knows where its beams were.
+  int most_turn_deg = 6;
+  base::Duration again = std::chrono::seconds{1};  ///< before a robot that waits is asked for again
+};
+
+struct MappingCounters {
+  std::uint32_t turning = 0;  ///< updates not drawn, because the robot turned
+  std::uint32_t drawn = 0;
+  std::uint32_t orders = 0;
+};
+
+class Mapping {
+ public:
+  explicit Mapping(Fleet& fleet, const MappingOptions& options = {})
+      : fleet_(&fleet), options_(options), map_(options.map), explorer_(options.explorer) {}
+
+  /// To be told of each sentence, as Server::feed does.
+  void heard(std::size_t robot, line::Kind kind) {
+    if (robot >= Fleet::most_robots) return;
+    if (kind == line::Kind::handshake) {
+      tracks_[robot] = Track{.path = std::move(tracks_[robot].path)};
+      explorer_.forget(static_cast<std::uint8_t>(robot));
+    }
+    if (kind == line::Kind::update) draw(robot);
+  }
+
+  /// Gives orders to those who have nothing to do. Often: ten times a second.
+  void step(base::Time now) {
+    const std::vector<Scout> scouts = all();
+    for (const Scout& scout : scouts) {
+      Track& track = tracks_[scout.robot];
+      if (scout.lost) {
+        track.order = {};
+        explorer_.forget(scout.robot);
+        continue;
+      }
+      const bool called = scout.call_back && !track.called;
+      track.called = scout.call_back;
+      if (!called && (!fleet_->robot(scout.robot).idle || now < track.ask_at)) continue;
+      track.order = explorer_.next(scout.robot, scouts, map_, now);
+      obey(scout, track, now);
+    }
+  }
+  /// Nobody has anything left to do, or waits for one that has.
+  [[nodiscard]] bool done() const {
+    bool any = false;
+    for (const Scout& scout : all()) {
+      if (scout.lost) continue;
+      const Track& track = tracks_[scout.robot];
+      any = true;
+      if (track.order.kind == Order::Kind::drive || track.order.kind == Order::Kind::look) return false;
+      if (!track.asked || (track.order.kind == Order::Kind::wait && scout.call_back)) return false;
+    }
+    return any;
+  }
+
+  [[nodiscard]] const Map& map() const noexcept { return map_; }
+  [[nodiscard]] const Explorer& explorer() const noexcept { return explorer_; }
+  [[nodiscard]] const MappingCounters& counters() const noexcept { return counters_; }
+  /// Where a robot was, a point each 2 cm; by its own estimate.
+  [[nodiscard]] const std::vector<motion::Point>& path(std::size_t robot) const {
+    return tracks_[robot].path;
+  }
+
+ private:
+  struct Track {
+    Order order{};
+    base::Time ask_at{};
+    std::optional<int> heading{};  ///< of the last update, degrees
+    std::vector<motion::Point> path{};
+    bool asked = false;
+    bool called = false;
+  };
+
+  /// Those that said where they are.
+  [[nodiscard]] std::vector<Scout> all() const {
+    std::vector<Scout> scouts;
+    for (std::size_t i = 0; i < Fleet::most_robots; ++i) {
+      const Robot& robot = fleet_->robot(i);
+      if (!robot.update) continue;
+      scouts.push_back({static_cast<std::uint8_t>(i),
+                        {robot.pose(), robot.shape()},
+                        fleet_->call_back(i) != Advice::stay,
+                        robot.lost || !robot.linked});
+    }
+    return scouts;
+  }
+  void draw(std::size_t index) {
+    const Robot& robot = fleet_->robot(index);
+    Track& track = tracks_[index];
+    const motion::Pose pose = robot.pose();
+    constexpr float step_m = 0.02F;
+    if (track.path.empty() || distance_m(track.path.back(), place(pose)) >= step_m)
+      track.path.push_back(place(pose));
+    const int heading = robot.update->heading;
+    const int turned =
+        track.heading ? std::abs(static_cast<int>(std::remainder(heading - *track.heading, 360.0))) : 0;
+    track.heading = heading;
+    if (turned > options_.most_turn_deg) return void(++counters_.turning);
+    std::vector<Body> others;
+    for (const Scout& other : all())
+      if (other.robot != index) others.push_back(other.body);
+    if (map_.take({pose, robot.shape()}, *robot.update, others)) ++counters_.drawn;
+  }
+  void obey(const Scout& scout, Track& track, base::Time now) {
+    track.asked = true;
+    track.ask_at = now + options_.again;
+    if (track.order.kind == Order::Kind::look) track.ask_at = std::min(track.order.until, track.ask_at);
+    if (track.order.kind != Order::Kind::drive) return;
+    ++counters_.orders;
+    track.ask_at = now;
+    (void)fleet_->go(scout.robot, track.order.set_point, now);
+  }
+
+  Fleet* fleet_;
+  MappingOptions options_;
+  Map map_;
+  Explorer explorer_;
+  std::array<Track, Fleet::most_robots> tracks_{};
+  MappingCounters counters_{};
+};
+
+}  // namespace ocm::cognitive

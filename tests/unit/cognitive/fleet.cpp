@@ -1,0 +1,206 @@
+#include "ocm/cognitive/fleet.hpp"
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/line/packed.hpp"
+
+#include "unit/base/random.hpp"
+#include "unit/line/line_testing.hpp"
+
+namespace {
+
+using namespace std::chrono_literals;
+using namespace ocm::cognitive;
+using ocm::base::Time;
+using ocm::line::Kind;
+using ocm::line::Update;
+using ocm::test::Random;
+
+constexpr Time second{1s};
+const std::string handshake = "[0]:AVR:{H,15,20,-4,6,0,90,180,270,2000,0}\n";
+const std::string packing = "[0]:AVR:{H,15,20,-4,6,0,90,180,270,2000,20225}\n";
+
+std::string sayings(Fleet& fleet) {
+  std::string all;
+  while (const auto saying = fleet.take()) all += std::to_string(saying->robot) + ":" + saying->words;
+  return all;
+}
+
+TEST_CASE(
+    "fleet: a handshake is answered, each time that it is said, and packed updates asked of who offers "
+    "them") {
+  Fleet fleet;
+  fleet.linked(0, "AVR", second);
+  CHECK_FALSE(fleet.robot(0).confirmed);
+  fleet.feed(handshake, second);
+  CHECK(sayings(fleet) == "0:{S,CON}\n");
+  fleet.feed(packing, second);
+  CHECK(sayings(fleet) == "0:{S,BIN}\n{S,CON}\n");
+  CHECK(fleet.robot(0).confirmed);
+  CHECK(fleet.robot(0).handshake->width == 15);
+  CHECK(fleet.robot(0).shape().tower.ahead_of_axle_m == Approx(0.10F));
+  CHECK(fleet.deadline_of(fleet.robot(0)) == 2s);
+  CHECK(fleet.counters().handshakes == 2);
+  FleetOptions text;
+  text.packed = false;
+  Fleet plain{text};
+  plain.feed(packing, second);
+  CHECK(sayings(plain) == "0:{S,CON}\n");
+}
+
+TEST_CASE("fleet: poses, in the robot's frame and in the world's") {
+  Fleet fleet;
+  fleet.set_origin(0, {1.0F, 2.0F, ocm::motion::pi / 2});
+  CHECK(fleet.robot(0).pose().x_m == 1.0F);
+  fleet.feed("[0]:AVR:{U,50,20,-30,10,0,40,0,0}\n", second);
+  REQUIRE(fleet.robot(0).update);
+  CHECK(fleet.robot(0).update->s2 == 40);
+  CHECK(fleet.robot(0).updated == second);
+  CHECK(fleet.robot(0).pose().x_m == Approx(0.8F));
+  CHECK(fleet.robot(0).pose().y_m == Approx(2.5F));
+  CHECK(fleet.robot(0).pose().heading_rad == Approx(ocm::motion::radians(60.0F)));
+}
+
+TEST_CASE("fleet: packed updates are updates") {
+  Fleet fleet;
+  const auto packet = ocm::line::pack({0, {10, -20, 90, 4, 0, 30, 0, 0}});
+  std::string bytes = "[3]:AVR:";
+  for (const std::uint8_t byte : packet->bytes()) bytes += static_cast<char>(byte);
+  fleet.feed(bytes, second);
+  REQUIRE(fleet.robot(3).update);
+  CHECK(*fleet.robot(3).update == Update{10, -20, 90, 4, 0, 30, 0, 0});
+}
+
+TEST_CASE("fleet: idle, until it is told to go; an idle right behind the set point meant the one before") {
+  Fleet fleet;
+  fleet.feed("[0]:AVR:{S,IDL}\n", second);
+  CHECK(fleet.robot(0).idle);
+  REQUIRE(fleet.go(0, {90, 50}, second));
+  CHECK_FALSE(fleet.robot(0).idle);
+  CHECK(sayings(fleet) == "0:{U,90,50}\n");
+  fleet.feed("[0]:AVR:{S,IDL}\n", second + 100ms);
+  CHECK_FALSE(fleet.robot(0).idle);
+  CHECK(fleet.counters().early_idles == 1);
+  fleet.feed("[0]:AVR:{S,IDL}\n", second + 2s);
+  CHECK(fleet.robot(0).idle);
+  CHECK_FALSE(fleet.go(0, {361, 0}, second));
+  CHECK_FALSE(fleet.go(Fleet::most_robots, {0, 0}, second));
+  CHECK(sayings(fleet).empty());
+}
+
+TEST_CASE("fleet: paused as it was told, unless updates go on") {
+  Fleet fleet;
+  fleet.feed("[0]:AVR:{U,0,0,0,0,0,0,0,0}\n", second);
+  REQUIRE(fleet.pause(0, second));
+  CHECK(sayings(fleet) == "0:{S,PAU}\n");
+  fleet.feed("[0]:AVR:{U,0,0,0,0,0,0,0,0}\n", second + 200ms);  // was on its way
+  CHECK(fleet.robot(0).paused);
+  fleet.feed("[0]:AVR:{S,IDL}\n", second + 3s);
+  CHECK(fleet.robot(0).paused);
+  fleet.feed("[0]:AVR:{U,0,0,0,0,0,0,0,0}\n", second + 4s);
+  CHECK_FALSE(fleet.robot(0).paused);
+  REQUIRE(fleet.unpause(0, second));
+  CHECK(sayings(fleet) == "0:{S,UNP}\n");
+  REQUIRE(fleet.ping(0));
+  CHECK(sayings(fleet) == "0:{}\n");
+  fleet.feed("[0]:AVR:\t!\n", second);
+  CHECK(fleet.robot(0).last == Kind::pong);
+  CHECK(fleet.counters().pongs == 1);
+}
+
+TEST_CASE("fleet: silent for its own deadline is lost; a word brings it back") {
+  Fleet fleet;
+  fleet.linked(0, "AVR", second);
+  fleet.feed(handshake, second);
+  fleet.expire(second + 2s);
+  CHECK_FALSE(fleet.robot(0).lost);
+  fleet.expire(second + 2001ms);
+  CHECK(fleet.robot(0).lost);
+  CHECK(fleet.counters().lost == 1);
+  fleet.expire(second + 9s);
+  CHECK(fleet.counters().lost == 1);
+  fleet.feed("[0]:AVR:{S,IDL}\n", second + 10s);
+  CHECK_FALSE(fleet.robot(0).lost);
+  fleet.unlinked(0);
+  CHECK(fleet.robot(0).lost);
+  CHECK_FALSE(fleet.robot(0).linked);
+  CHECK(fleet.counters().lost == 2);
+  // Without a handshake: the fleet's own.
+  fleet.linked(1, "Arduino", second);
+  fleet.expire(second + 5s);
+  CHECK_FALSE(fleet.robot(1).lost);
+  fleet.expire(second + 5001ms);
+  CHECK(fleet.robot(1).lost);
+}
+
+TEST_CASE("fleet: a link that is new begins a new frame where the robot stands") {
+  Fleet fleet;
+  fleet.linked(0, "AVR", second);
+  fleet.feed(handshake + "[0]:AVR:{U,100,0,90,0,0,0,0,0}\n", second);
+  fleet.unlinked(0);
+  fleet.linked(0, "AVR", second + 5s);
+  CHECK(fleet.quality_per_mille(0) == 1000);
+  fleet.feed(handshake, second + 6s);
+  CHECK(fleet.robot(0).pose().x_m == Approx(1.0F));
+  fleet.feed(handshake, second + 7s);
+  fleet.feed("[0]:AVR:{U,50,0,0,0,0,0,0,0}\n", second + 8s);
+  CHECK(fleet.robot(0).pose().x_m == Approx(1.0F));
+  CHECK(fleet.robot(0).pose().y_m == Approx(0.5F));
+  // Another robot at the same index is another robot.
+  fleet.linked(0, "Arduino", second + 9s);
+  CHECK_FALSE(fleet.robot(0).handshake);
+  CHECK_FALSE(fleet.robot(0).update);
+}
+
+TEST_CASE("fleet: the log of listing 15.1 calls the robot back") {
+  Fleet fleet;
+  std::vector<Kind> heard;
+  fleet.feed(ocm::test::listing_15_1, second, [&](std::size_t robot, Kind kind) {
+    CHECK(robot == 0);
+    heard.push_back(kind);
+  });
+  CHECK(heard == std::vector<Kind>{Kind::update, Kind::idle, Kind::idle, Kind::update});
+  CHECK(fleet.call_back(0) == Advice::bad_link);
+  CHECK(fleet.counters().calls == 1);
+  // It is well again only when it is better than what called it.
+  while (fleet.quality_per_mille(0) < 700) fleet.feed("[0]:AVR:{S,IDL}\n", second);
+  CHECK(fleet.call_back(0) == Advice::bad_link);
+  for (int i = 0; i < 40; ++i) fleet.feed("[0]:AVR:{S,IDL}\n", second);
+  CHECK(fleet.call_back(0) == Advice::stay);
+}
+
+TEST_CASE("fleet: a pose near the range calls back, until it is well inside") {
+  FleetOptions options;
+  options.central = {1.0F, 0.0F};
+  options.range_m = 8.0F;
+  Fleet fleet{options};
+  const auto at = [&](int cm) {
+    fleet.feed("[0]:AVR:{U," + std::to_string(cm) + ",0,0,0,0,0,0,0}\n", second);
+    return fleet.call_back(0);
+  };
+  CHECK(at(800) == Advice::stay);      // 7 m away; the bound is 7.2
+  CHECK(at(830) == Advice::far_away);  // 7.3
+  CHECK(at(800) == Advice::far_away);  // and back below 6.48
+  CHECK(at(740) == Advice::stay);
+}
+
+TEST_CASE("fleet: any bytes: nothing but counters") {
+  Random random{7};
+  Fleet fleet;
+  for (int run = 0; run < 300; ++run) {
+    std::string bytes;
+    for (int i = 0; i < 200; ++i)
+      bytes += random.below(2) == 0 ? "{}[]:,0123456789UHSIDL\n\t!"[random.below(25)]
+                                    : static_cast<char>(random());
+    fleet.feed(bytes, second);
+    (void)sayings(fleet);
+  }
+  for (std::size_t i = 0; i < Fleet::most_robots; ++i) REQUIRE(ocm::motion::is_finite(fleet.robot(i).pose()));
+  CHECK(fleet.nobodys() > 0);
+}
+
+}  // namespace

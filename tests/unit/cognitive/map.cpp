@@ -1,0 +1,210 @@
+#include "ocm/cognitive/map.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/cognitive/agreement.hpp"
+
+#include "unit/base/random.hpp"
+#include "unit/cognitive/testing/room.hpp"
+
+namespace {
+
+using namespace ocm::cognitive;
+using ocm::line::Handshake;
+using ocm::line::Update;
+using ocm::motion::Pose;
+using ocm::test::Random;
+using ocm::test::Room;
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+MapOptions cells_of_10_cm() {
+  MapOptions options;
+  options.resolution_m = 0.10F;
+  options.beam.half_width_rad = 0.0F;
+  return options;
+}
+/// The robot stands in the middle of cell 0, 0.
+constexpr Pose middle{0.05F, 0.05F, 0.0F};
+
+TEST_CASE("map: one beam by hand") {
+  Map map{cells_of_10_cm()};
+  // Forward 50 cm: the beam ends at x = 0.55. It frees up to 4 cm before that: cells 0 to 5, but 5 is hit,
+  // too.
+  REQUIRE(map.take({middle, {}}, {0, 0, 0, 0, 50, 0, 0, 0}));
+  CHECK(map.log_odds({3, 0}) == Approx(-0.2F));
+  CHECK(map.log_odds({4, 0}) == Approx(-0.2F));
+  // 0.5 m is beyond sharp: 0.9 - 0.45 * 0.1 / 0.4.
+  CHECK(map.log_odds({5, 0}) == Approx(0.9F - 0.1125F).margin(1e-4));
+  CHECK(map.log_odds({6, 0}) == 0.0F);
+  CHECK(map.log_odds({4, 1}) == 0.0F);
+  // To the left nothing was seen: free for 60 cm, weighing less.
+  CHECK(map.log_odds({0, 5}) == Approx(-0.1F));
+  CHECK(map.log_odds({0, 7}) == 0.0F);
+  CHECK(map.counters().hits == 1);
+  CHECK(map.counters().nothing == 3);
+  CHECK(map.state({6, 0}) == CellState::unknown);
+  CHECK(map.state({4, 0}) == CellState::unknown);  // said once
+  REQUIRE(map.take({middle, {}}, {0, 0, 0, 0, 50, 0, 0, 0}));
+  CHECK(map.state({4, 0}) == CellState::free);
+}
+
+TEST_CASE("map: the tower's place, its servo and the robot's heading are in it") {
+  Handshake handshake;
+  handshake.width = 16;
+  handshake.length = 22;
+  handshake.axle_offset = -4;  // the axle is behind the centre
+  handshake.tower_offset = 6;
+  handshake.sensor2 = 90;
+  handshake.sensor3 = 180;
+  handshake.sensor4 = 270;
+  const Shape shape = shape_of(handshake);
+  CHECK(shape.tower.ahead_of_axle_m == Approx(0.10F));
+  CHECK(shape.centre_m == Approx(0.04F));
+  CHECK(shape.radius_m() == Approx(std::hypot(0.08F, 0.15F)));
+  // Heading 90 degrees, servo 30: sensor 4 looks to 270 + 30 + 90 = 30 degrees of the world, from 10 cm
+  // ahead.
+  Map map{cells_of_10_cm()};
+  const float c = std::cos(0.5235988F), s = std::sin(0.5235988F);
+  const ocm::motion::Point seen{0.05F + 0.32F * c, 0.05F + 0.10F + 0.32F * s};
+  map.take({{0.05F, 0.05F, ocm::motion::pi / 2}, shape}, {0, 0, 90, 30, 0, 0, 0, 32});
+  const Cell cell = map.raster().cell(seen);
+  CHECK(map.log_odds(cell) > 0.3F);
+  CHECK(map.counters().hits == 1);
+}
+
+TEST_CASE("map: a handshake that cannot be is not believed, a short one is completed") {
+  Handshake wild;
+  wild.width = 3000;
+  wild.length = -5;
+  wild.axle_offset = -32768;
+  wild.tower_offset = 32767;
+  wild.sensor1 = 32767;
+  const Shape shape = shape_of(wild);
+  CHECK(shape.width_m == Shape{}.width_m);
+  CHECK(shape.length_m == Shape{}.length_m);
+  CHECK(shape.tower.ahead_of_axle_m == 0.0F);
+  CHECK(std::abs(shape.tower.sensor_heading_deg[0]) < 360.0F);
+  Handshake old;
+  old.given = 2;
+  old.width = 12;
+  old.length = 14;
+  CHECK(shape_of(old).width_m == Approx(0.12F));
+  CHECK(shape_of(old).tower.sensor_heading_deg[1] == 90.0F);
+}
+
+TEST_CASE("map: near things: under 10 cm nothing is freed, and little is said") {
+  MapOptions options = cells_of_10_cm();
+  options.beam.unsure_m = 0.0F;
+  Map map{options};
+  map.take({{0.05F, 0.05F, 0.0F}, {}}, {0, 0, 0, 0, 9, 0, 0, 0});
+  CHECK(map.counters().near == 1);
+  CHECK(map.log_odds({1, 0}) == Approx(0.3F));
+}
+
+TEST_CASE("map: beyond the range of the sensor is nothing") {
+  Map map{cells_of_10_cm()};
+  map.take({middle, {}}, {0, 0, 0, 0, 81, 255, 0, 0});
+  CHECK(map.counters().hits == 0);
+  CHECK(map.counters().nothing == 4);
+  CHECK(map.log_odds({8, 0}) == 0.0F);
+}
+
+TEST_CASE("map: another robot is no wall, and where robots stand it is free") {
+  Map map{cells_of_10_cm()};
+  const std::array others{Body{{0.60F, 0.05F, 0.0F}, {}}};
+  map.take({middle, {}}, {0, 0, 0, 0, 50, 0, 0, 0}, others);
+  CHECK(map.counters().on_robots == 1);
+  CHECK(map.log_odds({5, 0}) <= 0.0F);
+  // A wall that was seen there before is taken back when a robot stands on it.
+  Map wrong{cells_of_10_cm()};
+  for (int i = 0; i < 20; ++i) wrong.take({middle, {}}, {0, 0, 0, 0, 55, 0, 0, 0});
+  REQUIRE(wrong.state({6, 0}) == CellState::occupied);
+  for (int i = 0; i < 40; ++i) wrong.take({{0.65F, 0.05F, 0.0F}, {}}, {0, 0, 0, 0, 0, 0, 0, 0});
+  CHECK(wrong.state({6, 0}) == CellState::free);
+}
+
+TEST_CASE("map: log odds are bounded, so that the world may change") {
+  Map map{cells_of_10_cm()};
+  for (int i = 0; i < 1000; ++i) map.take({middle, {}}, {0, 0, 0, 0, 36, 0, 0, 0});
+  CHECK(map.log_odds({4, 0}) == 4.0F);
+  CHECK(map.log_odds({2, 0}) == -3.0F);
+  CHECK(map.probability({4, 0}) == Approx(0.982F).margin(0.001));
+  CHECK(map.probability({50, 50}) == 0.5F);
+  int updates = 0;
+  while (map.state({4, 0}) != CellState::free && updates < 100) {
+    map.take({middle, {}}, {0, 0, 0, 0, 70, 0, 0, 0});
+    ++updates;
+  }
+  CHECK(updates < 30);
+}
+
+TEST_CASE("map: poses that are no place are refused and counted") {
+  Map map;
+  for (const Pose& pose : {Pose{nan, 0, 0}, Pose{0, nan, 0}, Pose{0, 0, nan}, Pose{infinity, 0, 0},
+                           Pose{0, -infinity, 0}, Pose{1e30F, 0, 0}, Pose{0, 1000.5F, 0}})
+    CHECK_FALSE(map.take({pose, {}}, {0, 0, 0, 0, 50, 50, 50, 50}));
+  CHECK(map.counters().refused_poses == 7);
+  CHECK(map.counters().updates == 0);
+  CHECK(map.box().empty());
+  // At the border of the world: what lies beyond it is not stored.
+  CHECK(map.take({{1000.0F, 1000.0F, 0.0F}, {}}, {0, 0, 0, 0, 50, 50, 50, 50}));
+  CHECK(map.counters().outside > 0);
+  // Others that are nowhere are nobody.
+  const std::array others{Body{{nan, nan, nan}, {}}};
+  CHECK(map.take({{0, 0, 0}, {}}, {0, 0, 0, 0, 50, 0, 0, 0}, others));
+}
+
+TEST_CASE("map: its size is bounded") {
+  MapOptions options;
+  options.most_cells = 10'000;
+  Map map{options};
+  Random random{3};
+  for (int i = 0; i < 2000; ++i) {
+    const auto far = [&] { return static_cast<float>(random.within(-90'000, 90'000)) / 100.0F; };
+    (void)map.take({{far(), far(), far()}, {}}, ocm::test::PerfectRobot{{}}.update({}, {}));
+  }
+  CHECK(map.box().cells() <= 10'000);
+  CHECK(map.counters().outside > 0);
+}
+
+TEST_CASE("map: random rooms, a sensor without noise: their walls are found, and no others") {
+  Random random{4};
+  const auto metres = [&](int low_cm, int high_cm) {
+    return static_cast<float>(random.within(low_cm, high_cm)) / 100;
+  };
+  for (int run = 0; run < 20; ++run) {
+    CAPTURE(run);
+    const float x = metres(80, 140), y = metres(80, 140);
+    Room room{ocm::test::rectangle(0, 0, x, y)};
+    const float at = metres(30, 50);  // an inner wall from below
+    room.walls.push_back({{x / 2, 0}, {x / 2 + metres(-10, 10), at}});
+    Map map;
+    std::vector<ocm::motion::Point> places;
+    for (int stand = 0; stand < 30; ++stand) {
+      const ocm::motion::Point p{metres(15, static_cast<int>(x * 100) - 15),
+                                 metres(15, static_cast<int>(y * 100) - 15)};
+      if (room.distance(p) < 0.14F) continue;
+      places.push_back(p);
+      // Its frame begins where it stands; the tower turns to and fro once.
+      const Pose pose{p.x_m, p.y_m, metres(-314, 314)};
+      std::vector<ocm::test::PerfectRobot> all{ocm::test::PerfectRobot{pose}};
+      for (int i = 0; i < 46; ++i) {
+        all[0].step(room, all);
+        REQUIRE(map.take({pose, {}}, all[0].update(room, all)));
+      }
+    }
+    const Agreement found = agreement(map, room.walls, places);
+    CHECK(found.precision >= 0.99);
+    CHECK(found.recall >= 0.90);
+    CHECK(found.explored >= 0.95);
+  }
+}
+
+}  // namespace

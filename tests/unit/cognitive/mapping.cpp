@@ -1,0 +1,206 @@
+#include "ocm/cognitive/mapping.hpp"
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/cognitive/agreement.hpp"
+#include "ocm/line/reader.hpp"
+
+#include "unit/base/random.hpp"
+#include "unit/cognitive/testing/room.hpp"
+
+namespace {
+
+using namespace std::chrono_literals;
+using namespace ocm::cognitive;
+using ocm::base::Time;
+using ocm::line::Kind;
+using ocm::test::PerfectRobot;
+using ocm::test::Random;
+using ocm::test::Room;
+
+/// Perfect robots in a room, a fleet that hears them, and what is made of it.
+struct Expedition {
+  Room room;
+  std::vector<PerfectRobot> robots;
+  Fleet fleet;
+  Mapping mapping;
+  Time now{1s};
+  float nearest_m = 1e9F;  ///< two robots were to each other
+
+  Expedition(Room there, std::vector<PerfectRobot> who, const FleetOptions& fleet_options = {},
+             const MappingOptions& options = {})
+      : room(std::move(there)), robots(std::move(who)), fleet(fleet_options), mapping(fleet, options) {
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      fleet.linked(i, "R", now);
+      fleet.set_origin(i, robots[i].start());
+    }
+  }
+  void say(std::size_t i, std::string_view words) {
+    fleet.feed("[" + std::to_string(i) + "]:R:" + std::string{words}, now,
+               [this](std::size_t robot, Kind kind) { mapping.heard(robot, kind); });
+  }
+  void step() {
+    now += 200ms;
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      robots[i].step(room, robots);
+      say(i, ocm::line::write(robots[i].update(room, robots))->view());
+      if (robots[i].idle()) say(i, "{S,IDL}\n");
+      for (std::size_t k = 0; k < i; ++k)
+        nearest_m = std::min(nearest_m, distance_m(place(robots[i].pose()), place(robots[k].pose())));
+    }
+    mapping.step(now);
+    while (const auto saying = fleet.take()) {
+      ocm::line::Reader reader{ocm::line::Direction::to_robot};
+      for (const char c : saying->words)
+        if (reader.feed(c) == Kind::set_point)
+          robots[saying->robot].go(*reader.sentence().as<ocm::line::SetPoint>());
+    }
+  }
+  /// Seconds until nothing was left to do; `most` when it did not end.
+  double run(double most = 1800) {
+    int steps = 0;
+    while (!mapping.done() && 0.2 * steps < most) step(), ++steps;
+    return 0.2 * steps;
+  }
+  Agreement result() const {
+    std::vector<ocm::motion::Point> inside;
+    for (const PerfectRobot& robot : robots) inside.push_back(place(robot.start()));
+    return agreement(mapping.map(), room.walls, inside);
+  }
+};
+
+/// 4.38 m2 with two walls inside, as thesis 2 built one.
+Room labyrinth() {
+  Room room{ocm::test::rectangle(0, 0, 2.4F, 1.83F)};
+  room.walls.push_back({{0.8F, 0.0F}, {0.8F, 1.1F}});
+  room.walls.push_back({{1.6F, 1.83F}, {1.6F, 0.7F}});
+  room.walls.push_back({{1.6F, 0.7F}, {2.0F, 0.7F}});
+  return room;
+}
+
+TEST_CASE("mapping: one robot draws a labyrinth, and ends") {
+  Expedition expedition{labyrinth(), {PerfectRobot{{0.4F, 0.4F, 0.0F}}}};
+  CHECK(expedition.run() < 600);
+  const Agreement result = expedition.result();
+  CHECK(result.precision > 0.98);
+  CHECK(result.recall > 0.97);
+  CHECK(result.explored > 0.98);
+  CHECK(expedition.robots[0].bumps() == 0);
+}
+
+TEST_CASE("mapping: two robots draw one map, in less time, and keep apart") {
+  Expedition alone{labyrinth(), {PerfectRobot{{0.4F, 0.4F, 0.0F}}}};
+  Expedition both{labyrinth(), {PerfectRobot{{0.4F, 0.4F, 0.0F}}, PerfectRobot{{2.0F, 1.4F, 3.0F}}}};
+  const double one = alone.run(), two = both.run();
+  CHECK(two < 0.75 * one);
+  const Agreement result = both.result();
+  CHECK(result.precision > 0.98);
+  CHECK(result.recall > 0.97);
+  CHECK(result.explored > 0.98);
+  CHECK(both.nearest_m > 0.25F);
+  CHECK(both.robots[0].bumps() + both.robots[1].bumps() == 0);
+}
+
+TEST_CASE("mapping: random rooms are explored, whatever stands in them") {
+  Random random{11};
+  const auto metres = [&](int low_cm, int high_cm) {
+    return static_cast<float>(random.within(low_cm, high_cm)) / 100;
+  };
+  for (int run = 0; run < 8; ++run) {
+    CAPTURE(run);
+    const float x = metres(120, 260), y = metres(120, 260);
+    Room room{ocm::test::rectangle(0, 0, x, y)};
+    const ocm::motion::Pose start{metres(25, 60), metres(25, 60), metres(-314, 314)};
+    for (int i = 0; i < 3; ++i) {
+      const ocm::cognitive::Wall wall{{metres(0, 260), metres(0, 260)}, {metres(0, 260), metres(0, 260)}};
+      if (distance_m(wall, place(start)) > 0.35F) room.walls.push_back(wall);
+    }
+    Expedition expedition{room, {PerfectRobot{start}}};
+    REQUIRE(expedition.run(1800) < 1800);
+    CHECK(expedition.result().precision > 0.97);
+    // The end of a wall without thickness is not seen from ahead: it may be met, but not for ever.
+    CHECK(expedition.robots[0].bumps() <= 6);
+  }
+}
+
+TEST_CASE("mapping: what is seen while the robot turns is not drawn") {
+  Expedition expedition{labyrinth(), {PerfectRobot{{0.4F, 0.4F, 0.0F}}}};
+  expedition.say(0, "{U,0,0,0,0,30,0,0,0}\n");
+  CHECK(expedition.mapping.counters().drawn == 1);
+  expedition.say(0, "{U,0,0,10,0,30,0,0,0}\n");
+  CHECK(expedition.mapping.counters().turning == 1);
+  expedition.say(0, "{U,0,0,12,0,30,0,0,0}\n");
+  CHECK(expedition.mapping.counters().drawn == 2);
+  // Across 180 degrees it is a small turn, too.
+  expedition.say(0, "{U,0,0,178,0,30,0,0,0}\n");
+  expedition.say(0, "{U,0,0,-179,0,30,0,0,0}\n");
+  CHECK(expedition.mapping.counters().drawn == 3);
+}
+
+TEST_CASE("mapping: nobody there is not done, and neither is a robot that was not asked") {
+  Fleet fleet;
+  Mapping mapping{fleet};
+  mapping.step(Time{1s});
+  CHECK_FALSE(mapping.done());
+  fleet.feed("[0]:R:{U,0,0,0,0,0,0,0,0}\n", Time{1s},
+             [&](std::size_t robot, Kind kind) { mapping.heard(robot, kind); });
+  CHECK_FALSE(mapping.done());
+  mapping.heard(Fleet::most_robots, Kind::update);
+  CHECK(mapping.path(0).size() == 1);
+}
+
+TEST_CASE("mapping: a robot far from the central is called back at once, and does not go there again") {
+  FleetOptions options;
+  options.range_m = 2.0F;  // from 1.8 m on
+  options.central = {0.3F, 0.3F};
+  MappingOptions mapping;
+  mapping.explorer.home = options.central;
+  Expedition expedition{
+      Room{ocm::test::rectangle(0, 0, 4.0F, 0.6F)}, {PerfectRobot{{0.3F, 0.3F, 0.0F}}}, options, mapping};
+  float farthest = 0.0F;
+  for (int i = 0; i < 6000 && !expedition.mapping.done(); ++i) {
+    expedition.step();
+    farthest = std::max(farthest, expedition.robots[0].pose().x_m);
+  }
+  CHECK(expedition.mapping.done());
+  CHECK(expedition.mapping.explorer().counters().calls >= 1);
+  CHECK(expedition.fleet.counters().calls >= 1);
+  CHECK(farthest < 2.3F);
+  CHECK(expedition.mapping.explorer().range_m() < 2.0F);
+}
+
+TEST_CASE("mapping: who is called back does not finish its piece first") {
+  FleetOptions options;
+  options.range_m = 1.0F;
+  Expedition expedition{Room{ocm::test::rectangle(-1, -1, 4, 1)}, {PerfectRobot{{0, 0, 0}}}, options};
+  for (int cm = 0; cm <= 80; cm += 4)  // drives, without a word of being idle
+    for (int servo = 0; servo <= 90; servo += 2)
+      expedition.say(0, "{U," + std::to_string(cm) + ",0,0," + std::to_string(servo) + ",0,0,0,0}\n");
+  expedition.mapping.step(expedition.now);
+  CHECK_FALSE(expedition.fleet.take());
+  expedition.say(0, "{U,95,0,0,0,0,0,0,0}\n");
+  expedition.mapping.step(expedition.now);
+  const auto saying = expedition.fleet.take();
+  REQUIRE(saying);
+  CHECK(saying->words.starts_with("{U,"));
+  expedition.mapping.step(expedition.now);
+  CHECK_FALSE(expedition.fleet.take());  // once
+}
+
+TEST_CASE("mapping: a robot that is lost keeps nobody waiting, and goes on when it is back") {
+  Expedition expedition{labyrinth(), {PerfectRobot{{0.4F, 0.4F, 0.0F}}, PerfectRobot{{2.0F, 1.4F, 3.0F}}}};
+  for (int i = 0; i < 50; ++i) expedition.step();
+  expedition.fleet.unlinked(1);
+  expedition.mapping.step(expedition.now);
+  CHECK_FALSE(expedition.mapping.explorer().goal(1));
+  for (int i = 0; i < 50; ++i) expedition.step();  // it speaks again
+  CHECK_FALSE(expedition.fleet.robot(1).lost);
+  CHECK(expedition.run() < 1800);
+  CHECK(expedition.result().explored > 0.97);
+}
+
+}  // namespace

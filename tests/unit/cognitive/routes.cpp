@@ -1,0 +1,165 @@
+#include "ocm/cognitive/routes.hpp"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "unit/base/random.hpp"
+#include "unit/cognitive/testing/drawing.hpp"
+
+namespace {
+
+using namespace ocm::cognitive;
+using ocm::motion::Point;
+using ocm::test::map_of;
+using ocm::test::middle_of;
+using ocm::test::Random;
+
+// Cells of 10 cm. The lower left character is cell 0, 0.
+const std::vector<std::string> hall{"##########",  //
+                                    "#........#",  //
+                                    "#.####...#",  //
+                                    "#....#...#",  //
+                                    "#....#...#",  //
+                                    "##########"};
+
+TEST_CASE("routes: clearance by hand") {
+  const Map map = map_of(hall);
+  const Terrain terrain{map};
+  CHECK(terrain.state({1, 4}) == CellState::free);
+  CHECK(terrain.state({2, 3}) == CellState::occupied);
+  // One cell from the next: half a cell to its border.
+  CHECK(terrain.clearance_m({1, 1}) == Approx(0.05F));
+  CHECK(terrain.clearance_m({0, 0}) == 0.0F);
+  // 7, 3: two cells from 9, 3 and from 5, 3.
+  CHECK(terrain.clearance_m({7, 3}) == Approx(0.15F));
+  CHECK(terrain.clearance_m({100, 100}) == 0.0F);
+  CHECK(terrain.passable({7, 3}, 0.15F));
+  CHECK_FALSE(terrain.passable({7, 3}, 0.16F));
+  CHECK_FALSE(terrain.passable({0, 0}, 0.0F));
+}
+
+TEST_CASE("routes: clearance against a search over all cells") {
+  Random random{1};
+  for (int run = 0; run < 30; ++run) {
+    const int width = 3 + static_cast<int>(random.below(20)), height = 3 + static_cast<int>(random.below(20));
+    std::vector<std::string> rows(static_cast<std::size_t>(height),
+                                  std::string(static_cast<std::size_t>(width), '.'));
+    const unsigned sparse = 2 + random.below(30);
+    for (auto& row : rows)
+      for (char& c : row)
+        if (random.below(sparse) == 0) c = '#';
+    const Map map = map_of(rows);
+    const Terrain terrain{map};
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        double best = 1e30;
+        for (int b = 0; b < height; ++b)
+          for (int a = 0; a < width; ++a)
+            if (map.state({a, b}) == CellState::occupied) best = std::min(best, std::hypot(a - x, b - y));
+        const float clearance = terrain.clearance_m({x, y});
+        if (best > 1e20)
+          REQUIRE(clearance > 1000.0F);
+        else
+          REQUIRE(clearance == Approx(best == 0 ? 0.0 : (best - 0.5) * 0.1).margin(1e-4));
+      }
+  }
+}
+
+TEST_CASE("routes: around a wall, by hand") {
+  const Map map = map_of(hall);
+  const Terrain terrain{map};
+  const Routes routes{terrain, middle_of(map, {3, 1}), 0.04F};
+  REQUIRE(routes.reaches({7, 1}));
+  const auto way = routes.way_to({7, 1});
+  REQUIRE(way.size() >= 4);
+  CHECK(way.front() == middle_of(map, {3, 1}));
+  CHECK(way.back() == middle_of(map, {7, 1}));
+  // It must pass the gap at the upper left.
+  CHECK(routes.cost({7, 1}) > 1.0F);
+  // A robot that is too wide for the gap of one cell has no way.
+  const Routes wide{terrain, middle_of(map, {7, 3}), 0.06F};
+  CHECK_FALSE(wide.reaches({3, 1}));
+  CHECK(wide.way_to({3, 1}).empty());
+  CHECK(wide.reaches({7, 2}));
+}
+
+TEST_CASE("routes: what nobody has seen is no way") {
+  const Map map = map_of({"#####", "#. .#", "#####"});
+  const Terrain terrain{map};
+  CHECK_FALSE(Routes(terrain, middle_of(map, {1, 1}), 0.0F).reaches({3, 1}));
+}
+
+TEST_CASE("routes: a robot that stands too close may leave, but come no closer") {
+  const Map map =
+      map_of({"#########", "#.......#", "#.......#", "#.......#", "#.......#", "#.......#", "#########"});
+  const Terrain terrain{map};
+  const Routes routes{terrain, middle_of(map, {1, 3}), 0.14F};
+  CHECK(routes.reaches({4, 3}));
+  CHECK(routes.reaches({3, 3}));
+  CHECK_FALSE(routes.reaches({7, 1}));
+}
+
+TEST_CASE("routes: others are kept off, along all of their way") {
+  const Map map = map_of({".........", ".........", ".........", ".........", "........."});
+  const std::vector<Moving> others{{{middle_of(map, {4, 0}), middle_of(map, {4, 4})}, 0.05F}};
+  const Terrain terrain{map, others};
+  CHECK(terrain.clearance_m({4, 2}) == Approx(-0.05F));
+  CHECK(terrain.clearance_m({6, 2}) == Approx(0.15F));
+  CHECK_FALSE(Routes(terrain, middle_of(map, {1, 2}), 0.08F).reaches({7, 2}));
+  CHECK(Routes(Terrain{map}, middle_of(map, {1, 2}), 0.08F).reaches({7, 2}));
+}
+
+TEST_CASE("routes: from nowhere, to nowhere") {
+  const Map map = map_of(hall);
+  const Terrain terrain{map};
+  CHECK_FALSE(Routes(terrain, {50.0F, 50.0F}, 0.0F).reaches({7, 3}));
+  CHECK_FALSE(Routes(terrain, {NAN, 0.0F}, 0.0F).reaches({7, 3}));
+  CHECK(Routes(terrain, middle_of(map, {7, 3}), 0.0F).way_to({500, 3}).empty());
+  const Map nothing;
+  const Terrain blank{nothing};
+  CHECK_FALSE(Routes(blank, {0.0F, 0.0F}, 0.1F).reaches({0, 0}));
+}
+
+TEST_CASE(
+    "routes: whatever the map, no way leads through what is not free, and none is longer than the cells' "
+    "own") {
+  Random random{2};
+  int found = 0;
+  for (int run = 0; run < 300; ++run) {
+    std::vector<std::string> rows(24, std::string(30, '.'));
+    for (auto& row : rows)
+      for (char& c : row) {
+        const unsigned which = random.below(40);
+        if (which < 3) c = '#';
+        if (which == 3) c = ' ';
+      }
+    const Map map = map_of(rows);
+    const Terrain terrain{map};
+    const Cell start{random.within(0, 29), random.within(0, 23)},
+        goal{random.within(0, 29), random.within(0, 23)};
+    if (map.state(start) != CellState::free) continue;
+    const float radius = static_cast<float>(random.below(3)) * 0.05F;
+    const Routes routes{terrain, middle_of(map, start), radius};
+    const auto way = routes.way_to(goal);
+    REQUIRE(way.empty() != routes.reaches(goal));
+    if (way.empty()) continue;
+    ++found;
+    REQUIRE(way.front() == middle_of(map, start));
+    REQUIRE(way.back() == middle_of(map, goal));
+    double length = 0;
+    for (std::size_t i = 1; i < way.size(); ++i) {
+      length += distance_m(way[i - 1], way[i]);
+      for_each_cell(map.raster(), way[i - 1], way[i], [&](Cell c) {
+        REQUIRE(map.state(c) == CellState::free);
+        return true;
+      });
+    }
+    REQUIRE(length <= routes.cost(goal) + 1e-3);
+  }
+  CHECK(found > 60);
+}
+
+}  // namespace

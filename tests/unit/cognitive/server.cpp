@@ -1,0 +1,133 @@
+#include "ocm/cognitive/server.hpp"
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "unit/base/random.hpp"
+#include "unit/cognitive/testing/virtual_central.hpp"
+
+namespace {
+
+using namespace std::chrono_literals;
+using namespace ocm::cognitive;
+using ocm::base::Duration;
+using ocm::base::Time;
+using ocm::line::Kind;
+using ocm::test::Random;
+using ocm::test::VirtualCentral;
+
+struct Bench {
+  VirtualCentral central;
+  Server server;
+  std::vector<CentralEvent> events;
+  std::vector<std::pair<std::size_t, Kind>> heard;
+  Time now{1s};
+
+  void advance(Duration time) {
+    for (const Time end = now + time; now < end;) {
+      now += 10ms;
+      central.advance(now);
+      server.expire(now);
+      central.write(server.take());
+      server.feed(std::exchange(central.to_server, {}), now,
+                  [this](std::size_t robot, Kind kind) { heard.emplace_back(robot, kind); });
+      central.write(server.take());
+      while (auto event = server.next_event()) events.push_back(*event);
+    }
+  }
+  void connect_all() {
+    server.client().scan(300ms);
+    advance(1s);
+    for (const Peer& peer : std::vector<Peer>{server.client().peers()}) server.client().connect(peer.index);
+    advance(3s);
+  }
+};
+
+TEST_CASE("server: from nothing to two robots that drive") {
+  Bench bench;
+  bench.central.add("AVR");
+  bench.central.add("Arduino");
+  bench.connect_all();
+  for (std::size_t i = 0; i < 2; ++i) {
+    CHECK(bench.central.robots[i].confirmed);
+    CHECK(bench.server.fleet().robot(i).confirmed);
+    CHECK(bench.server.fleet().robot(i).update);
+  }
+  CHECK(bench.server.fleet().robot(1).name == "Arduino");
+  bench.server.fleet().go(1, {90, 50}, bench.now);
+  bench.advance(1500ms);
+  CHECK(bench.central.robots[1].heard.back() == "{U,90,50}\n");
+  CHECK(bench.server.fleet().robot(1).idle);
+  CHECK(bench.server.unsaid() == 0);
+  // Nothing of what both sent was torn by the answers between.
+  CHECK(bench.server.fleet().quality_per_mille(0) == 1000);
+  CHECK(bench.server.fleet().quality_per_mille(1) == 1000);
+  CHECK(bench.server.client().stream().cut() == 0);
+}
+
+TEST_CASE("server: commands between the packets of robots tear no sentence") {
+  Bench bench;
+  bench.central.add("AVR");
+  bench.central.add("Arduino");
+  bench.connect_all();
+  for (int i = 0; i < 100; ++i) {
+    bench.server.fleet().ping(static_cast<std::size_t>(i % 2));
+    if (i % 7 == 0) bench.server.client().scan(0s);
+    bench.advance(70ms);
+  }
+  bench.advance(1s);
+  for (std::size_t i = 0; i < 2; ++i) {
+    CHECK(bench.server.fleet().quality_per_mille(i) == 1000);
+    CHECK(bench.server.fleet().ear(i).text().faults().total() == 0);
+  }
+  CHECK(bench.central.robots[0].heard.size() == 51);  // with the answer to the handshake
+}
+
+TEST_CASE("server: a link that dies is told, and what is said into it fails in words") {
+  Bench bench;
+  bench.central.add("AVR");
+  bench.connect_all();
+  bench.events.clear();
+  bench.central.cut(0);
+  bench.advance(100ms);
+  REQUIRE(bench.events.size() == 1);
+  CHECK(bench.events[0].kind == CentralEvent::Kind::lost);
+  CHECK(bench.server.fleet().robot(0).lost);
+  bench.server.fleet().pause(0, bench.now);
+  bench.server.client().scan(0s);  // leaves data mode
+  bench.server.fleet().pause(0, bench.now);
+  bench.advance(1s);
+  REQUIRE_FALSE(bench.events.empty());
+  CHECK(bench.server.fleet().robot(0).lost);
+  // Connected again, it says who it is, again.
+  bench.server.client().connect(0);
+  bench.advance(3s);
+  CHECK_FALSE(bench.server.fleet().robot(0).lost);
+  CHECK(bench.central.robots[0].confirmed);
+}
+
+TEST_CASE("server: links that die at any time: who is lost is lost, who is not is heard") {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    CAPTURE(seed);
+    Random random{seed};
+    Bench bench;
+    for (const char* name : {"A", "B", "C"}) bench.central.add(name);
+    bench.connect_all();
+    for (int i = 0; i < 40; ++i) {
+      if (random.below(3) == 0) bench.central.cut(random.below(3));
+      if (random.below(2) == 0) bench.server.client().connect(random.below(3));
+      if (random.below(2) == 0) bench.server.fleet().go(random.below(3), {0, 10}, bench.now);
+      bench.advance(Duration{10ms * random.below(100)});
+    }
+    bench.advance(12s);
+    for (std::size_t i = 0; i < 3; ++i) {
+      REQUIRE(bench.server.fleet().robot(i).lost == !bench.central.robots[i].linked);
+      if (bench.central.robots[i].linked) REQUIRE(bench.now - bench.server.fleet().robot(i).heard < 1s);
+    }
+  }
+}
+
+}  // namespace
