@@ -15,10 +15,11 @@ namespace {
 
 using namespace ocm::cli;
 
-constexpr AddVerb verbs[] = {add_list,   add_info,   add_analyse, add_generate, add_publish,    add_once,
-                             add_stop,   add_drive,  add_led,     add_set,      add_send,       add_listen,
-                             add_doctor, add_record, add_replay,  add_decode,   add_encode,     add_convert,
-                             add_stats,  add_plot,   add_run,     add_sim,      add_completion, add_man};
+constexpr AddVerb verbs[] = {
+    add_list,   add_info,    add_analyse, add_generate, add_publish, add_once,       add_stop,    add_drive,
+    add_led,    add_set,     add_send,    add_listen,   add_doctor,  add_record,     add_replay,  add_decode,
+    add_encode, add_convert, add_stats,   add_plot,     add_run,     add_sim,        add_central, add_robots,
+    add_goto,   add_pause,   add_unpause, add_map,      add_line,    add_completion, add_man};
 
 /// "-.1m/s" is a number and not an option: "-0.1m/s" is what the parser of options takes for one.
 std::vector<std::string> arguments(int argc, char** argv) {

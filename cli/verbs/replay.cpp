@@ -163,7 +163,7 @@ void play(Session& session, const ReplayOptions& options, int& exit_code) {
       log = std::make_unique<logs::OpenedLog>(options.file, options.from_format, catalogue);
     }
   } catch (const Exit&) {  // the bus took no more: what was sent is told all the same
-    summarise(player, false);
+    if (!options.dry_run) summarise(player, false);
     throw;
   }
   summarise(player, options.dry_run);

@@ -1,5 +1,5 @@
 /// A simulated robot: its three boards, compiled for this machine or as images in QEMU, in a simulated world,
-/// on a virtual bus or on a CAN interface.
+/// on a virtual bus or on a CAN interface. Or line robots, which are in cli/sim/.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -18,6 +18,8 @@
 #include "ocm/transport/virtual_bus_server.hpp"
 
 #include "cli/interrupt.hpp"
+#include "cli/sim/clock.hpp"
+#include "cli/sim/line_robots.hpp"
 #include "cli/verbs/commanding.hpp"
 #include "cli/verbs/verbs.hpp"
 #include "firmware/sim/qemu_robot.hpp"
@@ -77,29 +79,6 @@ class Interference {
                                                      simulation::longest_flag_bits};
   bool on_;
   base::Time next_{};
-};
-
-/// Virtual time: `speed` times as fast as the clock, from zero on.
-class SimulatedClock {
- public:
-  explicit SimulatedClock(double speed) : speed_(speed), start_(std::chrono::steady_clock::now()) {}
-  [[nodiscard]] base::Time now() const {
-    const auto elapsed = std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start_);
-    return base::Time{base::Duration{static_cast<std::int64_t>(elapsed.count() * speed_)}};
-  }
-  /// Real time until `when`, at least zero and at most 200 ms, so that a signal is seen soon.
-  [[nodiscard]] base::Duration until(base::Time when) const {
-    constexpr base::Duration longest{200'000'000};
-    const base::Time present = now();
-    if (when <= present) return base::Duration{0};
-    if (when - present > base::Duration{std::chrono::hours{1}}) return longest;
-    const double left = static_cast<double>((when - present).count()) / speed_;
-    return std::min(longest, base::Duration{static_cast<std::int64_t>(left) + 1});
-  }
-
- private:
-  double speed_;
-  std::chrono::steady_clock::time_point start_;
 };
 
 /// The boards as the bus's loop sees them.
@@ -316,6 +295,55 @@ void serve(const std::string& bus_name, const SimOptions& options) {
     remark(fmt::format("                  {} error frames, {} frames repeated", bus.errors, bus.repetitions));
 }
 
+// --- line robots ---
+
+constexpr std::array<const char*, 5> line_robots_options{"--lines", "--radio-loss", "--radio-range",
+                                                         "--radio-repeats", "--links"};
+
+void add_line_robots(CLI::App& verb, LineRobotsOptions& options) {
+  verb.add_option("--robots", options.robots, "so many line robots instead of the AMiRo, and their central")
+      ->check(CLI::Range(1U, 128U))
+      ->type_name("N");
+  verb.add_option("--world", options.world,
+                  "where the line robots are: a file, or square (default), labyrinth, range")
+      ->type_name("FILE");
+  verb.add_flag("--lines", options.lines, "no central: each line robot on a serial line of its own");
+  verb.add_option("--radio-loss", options.radio_loss, "share of packets lost wherever a robot is")
+      ->check(CLI::Range(0.0, 1.0))
+      ->type_name("0..1");
+  verb.add_option("--radio-range", options.radio_range,
+                  "how far the central's radio reaches; default: the world's")
+      ->check(CLI::Range(0.01, 10'000.0))
+      ->type_name("METRES");
+  verb.add_flag("--radio-repeats", options.repeats, "the radio repeats what was lost, as Bluetooth does");
+  verb.add_option("--links", options.links, "robots that the central can have a link with; default: all")
+      ->check(CLI::Range(1U, 128U))
+      ->type_name("N");
+}
+bool wants_line_robots(const CLI::App& verb) {
+  if (verb.count("--robots") != 0 || verb.count("--world") != 0) return true;
+  for (const char* option : line_robots_options)
+    if (verb.count(option) != 0)
+      fail({fmt::format("sim: {} without --robots", option), "add --robots N, or leave it out"}, exit_usage);
+  return false;
+}
+/// What is meant for the AMiRo's boards and their bus.
+void refuse_boards_options(const CLI::App& verb, const Session& session) {
+  for (const char* option : {"--bus-errors", "--boards", "--images", "--without", "--frozen", "--bitrate"})
+    if (verb.count(option) != 0)
+      fail({fmt::format("sim: {} with line robots", option), "they have no bus and no boards: leave one out"},
+           exit_usage);
+  const char* environment = std::getenv("AMIROCTL_BUS");
+  if (!session.bus_name.empty() && session.bus_name != (environment != nullptr ? environment : ""))
+    fail({"sim: --bus with line robots", "they have no bus: leave one out"}, exit_usage);
+  if (verb.count("--lines") != 0)
+    for (const char* option : {"--radio-loss", "--radio-range", "--radio-repeats", "--links"})
+      if (verb.count(option) != 0)
+        fail({fmt::format("sim: {} with --lines", option),
+              "without a central there is no radio: leave one out"},
+             exit_usage);
+}
+
 }  // namespace
 
 void add_sim(CLI::App& app, Session& session, int& exit_code) {
@@ -325,7 +353,9 @@ void add_sim(CLI::App& app, Session& session, int& exit_code) {
                         "  amiroctl sim --seed 7 --speed 10\n"
                         "  amiroctl sim --without light_ring  a board that is switched off\n"
                         "  amiroctl sim --bus-errors 20       interference: 20 broken bits a second\n"
-                        "  amiroctl sim --boards qemu         the boards' firmware, emulated");
+                        "  amiroctl sim --boards qemu         the boards' firmware, emulated\n"
+                        "  amiroctl sim --robots 2            line robots in a room, and their central\n"
+                        "  amiroctl sim --world labyrinth --radio-loss 0.1");
   const auto options = std::make_shared<SimOptions>();
   verb->add_option("--seed", options->world.seed, "of all noise; equal seeds give equal robots")
       ->type_name("N");
@@ -350,7 +380,19 @@ void add_sim(CLI::App& app, Session& session, int& exit_code) {
   verb->add_option("--images", options->images,
                    "folder of the images for QEMU (that of scripts/build firmware)")
       ->type_name("FOLDER");
-  verb->callback([options, boards, &session, &exit_code] {
+  const auto line_robots = std::make_shared<LineRobotsOptions>();
+  add_line_robots(*verb, *line_robots);
+  verb->callback([options, boards, line_robots, verb, &session, &exit_code] {
+    if (wants_line_robots(*verb)) {
+      refuse_boards_options(*verb, session);
+      catch_interrupts();
+      catch_hangups();  // the lines' links must go with it
+      line_robots->seed = options->world.seed;
+      line_robots->speed = options->speed;
+      simulate_line_robots(*line_robots);
+      exit_code = exit_code_after_interrupt(exit_success);
+      return;
+    }
     options->qemu = *boards == "qemu";
     if (options->qemu && options->speed != 1)
       fail({"sim: --speed with --boards qemu", "leave one out: emulated boards run in real time"},

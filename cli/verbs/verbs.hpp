@@ -35,6 +35,13 @@ void add_decode(CLI::App& app, Session& session, int& exit_code);
 void add_encode(CLI::App& app, Session& session, int& exit_code);
 void add_convert(CLI::App& app, Session& session, int& exit_code);
 void add_generate(CLI::App& app, Session& session, int& exit_code);
+void add_central(CLI::App& app, Session& session, int& exit_code);
+void add_robots(CLI::App& app, Session& session, int& exit_code);
+void add_goto(CLI::App& app, Session& session, int& exit_code);
+void add_pause(CLI::App& app, Session& session, int& exit_code);
+void add_unpause(CLI::App& app, Session& session, int& exit_code);
+void add_map(CLI::App& app, Session& session, int& exit_code);
+void add_line(CLI::App& app, Session& session, int& exit_code);
 void add_completion(CLI::App& app, Session& session, int& exit_code);
 void add_man(CLI::App& app, Session& session, int& exit_code);
 
@@ -45,6 +52,7 @@ inline constexpr std::string_view act_group = "Command actuators";
 inline constexpr std::string_view watch_group = "Watch the bus";
 inline constexpr std::string_view log_group = "Record, and work with logs";
 inline constexpr std::string_view play_group = "Scripts and simulation";
+inline constexpr std::string_view line_group = "Line robots";
 inline constexpr std::string_view help_group = "For your shell";
 
 /// A subcommand with its heading and its examples below the options.

@@ -35,7 +35,7 @@ class Usage(Case):
         out, _ = self.run_tool("--help")
         for heading in ("Ask sensors", "Command actuators", "Watch the bus", "Exit codes"):
             self.assertIn(heading, out)
-        for verb in "list info publish once stop drive led set send listen run sim".split():
+        for verb in "list info publish once stop drive led set send listen run sim central line".split():
             out, _ = self.run_tool(verb, "--help")
             self.assertIn("Examples:", out)
             self.assertIn(f"amiroctl {verb}" if verb != "run" else "run", out)

@@ -195,6 +195,11 @@ TEST_CASE("line robot: applications believe what the models are, but for their e
     CHECK(is.drive.wheel_radius_m == believed.estimator.drive.wheel_radius_m);
     CHECK(is.drive.wheelbase_m == believed.estimator.drive.wheelbase_m);
     CHECK(is.drive.ticks_per_turn == believed.estimator.drive.ticks_per_turn);
+    // What it says of its measures, from the middle of its body.
+    CHECK(believed.handshake.axle_offset == std::lround(-is.body.centre_ahead_m * 100));
+    CHECK(believed.handshake.tower_offset - believed.handshake.axle_offset ==
+          std::lround(is.tower.ahead_of_axle_m * 100));
+    CHECK(believed.handshake.width == std::lround(is.body.radius_m * 200));
   };
   same(avr_model, ocm::controller::avr_robot);
   same(arduino_model, ocm::controller::arduino_robot);

@@ -84,8 +84,8 @@ namespace detail {
 /// Where each sensor looks is where sensing::Tower has it.
 inline constexpr line::Handshake line_handshake{.width = 20,
                                                 .length = 20,
-                                                .axle_offset = 0,
-                                                .tower_offset = 0,
+                                                .axle_offset = 1,
+                                                .tower_offset = 3,
                                                 .sensor1 = 0,
                                                 .sensor2 = 90,
                                                 .sensor3 = 180,
@@ -125,6 +125,8 @@ inline constexpr LineRobotModel avr_robot = [] {
 /// Motors with PWM, geared down, 2475 ticks a turn and 1250 ticks/s. [T2 §11.2.1, §11.2.3]
 inline constexpr LineRobotModel arduino_robot = [] {
   LineRobotModel model = avr_robot;
+  model.handshake.axle_offset = 4;  // moved forwards by the gears [T2 §11.2.1; size decided]
+  model.handshake.tower_offset = 0;
   const motion::Drive drive{.wheel_radius_m = 0.028F, .wheelbase_m = 0.15F, .ticks_per_turn = 2475.0F};
   model.estimator.drive = drive;
   model.estimator.heading.wheel_variance_rad2_per_s = motion::wheel_variance_rad2(drive);

@@ -19,7 +19,7 @@ using ocm::test::near;
 
 namespace {
 
-const std::string handshake = "{H,20,20,0,0,0,90,180,270,5000,20225}\n";
+const std::string handshake = "{H,20,20,1,3,0,90,180,270,5000,20225}\n";
 constexpr controller::Lights green{.green = true};
 constexpr controller::Lights yellow{.yellow = true};
 constexpr controller::Lights both{.green = true, .yellow = true};

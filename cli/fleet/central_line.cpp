@@ -1,0 +1,232 @@
+#include "cli/fleet/central_line.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <poll.h>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "ocm/transport/pty.hpp"
+
+#include "cli/interrupt.hpp"
+#include "cli/session.hpp"
+#include "cli/verbs/commanding.hpp"
+
+namespace ocm::cli::fleet {
+namespace {
+
+using namespace std::chrono_literals;
+using cognitive::CentralEvent;
+using cognitive::Peer;
+
+/// How long a robot may take from its link to its first word: it measures its gyro first.
+constexpr base::Duration first_word = 8s;
+/// How long a wish may take at the central, with all its time-outs.
+constexpr base::Duration longest_wish = 60s;
+
+transport::SerialPort open_port(std::string_view verb, const LineOptions& options) {
+  const bool usual = options.path.empty();
+  const std::string path = usual ? transport::central_line() : options.path;
+  auto port = transport::SerialPort::open(path, options.baud);
+  if (port) return std::move(*port);
+  auto failure = port.error;
+  failure.what = fmt::format("{}: {}", verb, failure.what);
+  if (usual)
+    failure = {fmt::format("{}: there is no central at '{}'", verb, path),
+               "start one (amiroctl sim --robots 2, or amiroctl central --pty), or name a dongle: --central "
+               "/dev/ttyACM0"};
+  if (usual && port.error.what.find("in use") != std::string::npos)
+    failure = {fmt::format("{}: {}", verb, port.error.what), port.error.remedy};
+  fail(failure);
+}
+
+std::string listed(const std::vector<Peer>& peers) {
+  std::string text;
+  for (const Peer& peer : peers) text += (text.empty() ? "" : ", ") + peer.name;
+  return text;
+}
+
+}  // namespace
+
+void add_line_options(CLI::App& verb, LineOptions& options) {
+  verb.add_option("--central", options.path,
+                  "the central's serial line; default: that of `sim --robots` or `central --pty`")
+      ->type_name("PATH");
+  verb.add_option("--baud", options.baud, "of the central's line")->type_name("N")->capture_default_str();
+  verb.add_option("--scan", options.scan, "how long to look for robots that are not listed")
+      ->type_name("T")
+      ->capture_default_str();
+}
+
+CentralLine::CentralLine(std::string_view verb, const LineOptions& options,
+                         const cognitive::FleetOptions& fleet)
+    : verb_(verb),
+      scan_(duration_option("--scan", options.scan)),
+      port_(open_port(verb, options)),
+      server_(fleet) {
+  catch_interrupts();
+  catch_hangups();
+}
+
+CentralLine::~CentralLine() {
+  heard_ = nullptr;  // whoever listened may be gone already
+  try {
+    server_.expire(now());
+    server_.client().leave();
+    flush(1s);
+  } catch (const Exit&) {  // the line is gone, which is said
+  }
+}
+
+void CentralLine::flush(base::Duration limit) {
+  const base::Time end = now() + limit;
+  server_.expire(now());
+  const auto rest = [this] { return !server_.client().idle() || !unsent_.empty() || port_.unsent() != 0; };
+  while (port_ && now() < end && rest()) exchange();
+}
+
+base::Time CentralLine::now() {
+  return base::Time{std::chrono::steady_clock::now().time_since_epoch()};
+}
+
+std::string CentralLine::name(unsigned index) const {
+  const Peer* const peer = server_.client().peer(index);
+  return peer != nullptr ? peer->name : fmt::format("robot {}", index);
+}
+
+void CentralLine::write() {
+  unsent_ += server_.take();
+  if (unsent_.empty()) return;
+  const auto taken = port_.write(unsent_);
+  if (!taken) {
+    auto failure = port_.failure();
+    port_.close();
+    fail({fmt::format("{}: {}", verb_, failure.what), failure.remedy});
+  }
+  unsent_.erase(0, *taken);
+}
+
+void CentralLine::exchange() {
+  server_.expire(now());
+  write();
+  pollfd line{port_.descriptor(), static_cast<short>(unsent_.empty() ? POLLIN : POLLIN | POLLOUT), 0};
+  const auto until = std::clamp<base::Duration>(server_.deadline() - now(), 1ms, 50ms);
+  (void)::poll(&line, 1, static_cast<int>(until / 1ms));
+  std::array<char, 4096> room;
+  for (;;) {
+    const auto size = port_.read(room);
+    if (!size) {
+      auto failure = port_.failure();
+      port_.close();
+      fail({fmt::format("{}: {}", verb_, failure.what), failure.remedy});
+    }
+    if (*size == 0) break;
+    server_.feed({room.data(), *size}, now(), [this](std::size_t robot, line::Kind kind) {
+      if (heard_) heard_(robot, kind);
+    });
+  }
+  take_events();
+  write();
+}
+
+void CentralLine::take_events() {
+  while (auto event = server_.next_event())
+    if (event->kind == CentralEvent::Kind::failed) failed_.push_back(std::move(*event));
+}
+
+bool CentralLine::run(std::optional<base::Duration> limit, const std::function<bool()>& done) {
+  const base::Time begin = now();
+  while (interrupted() == 0) {
+    if (done()) return true;
+    if (limit && now() - begin >= *limit) return false;
+    exchange();
+  }
+  return false;
+}
+
+bool CentralLine::wait(base::Duration limit, const std::function<bool()>& done) {
+  const bool was_done = run(limit, done);
+  if (interrupted() != 0) throw Exit{exit_code_after_interrupt(exit_failure)};
+  return was_done;
+}
+
+void CentralLine::list(base::Duration scan) {
+  failed_.clear();
+  server_.client().scan(scan);
+  (void)wait(longest_wish, [this] { return server_.client().idle(); });
+  if (!failed_.empty())
+    fail({fmt::format("{}: {}: {}", verb_, path(), failed_.front().words),
+          "is it a central? Unplug the dongle and plug it in again, or start the simulation anew"});
+}
+
+const std::vector<Peer>& CentralLine::scan() {
+  list(scan_);
+  return server_.client().peers();
+}
+
+std::optional<unsigned> CentralLine::find(const std::string& name) const {
+  const auto& peers = server_.client().peers();
+  const auto count = std::count_if(peers.begin(), peers.end(), [&](const Peer& p) { return p.name == name; });
+  if (count > 1)
+    fail({fmt::format("{}: {} robots are called '{}'", verb_, count, name),
+          "name one by its address or index: `amiroctl robots` lists them"},
+         exit_usage);
+  for (const Peer& peer : peers)
+    if (peer.name == name || peer.address == name) return peer.index;
+  for (const Peer& peer : peers)
+    if (std::to_string(peer.index) == name) return peer.index;
+  return std::nullopt;
+}
+
+void CentralLine::unknown(const std::string& name) const {
+  const auto& peers = server_.client().peers();
+  fail({fmt::format("{}: the central finds no robot '{}'", verb_, name),
+        peers.empty() ? "it finds none at all: is the robot switched on, and near?"
+                      : fmt::format("it finds {}", listed(peers))});
+}
+
+std::vector<unsigned> CentralLine::connect(const std::vector<std::string>& names) {
+  const bool all = names.empty() || std::find(names.begin(), names.end(), "all") != names.end();
+  list(0s);
+  if (all || std::any_of(names.begin(), names.end(), [this](const auto& name) { return !find(name); }))
+    list(scan_);
+  std::vector<unsigned> wanted;
+  if (all)
+    for (const Peer& peer : server_.client().peers()) wanted.push_back(peer.index);
+  if (!all)
+    for (const std::string& name : names) {
+      const auto index = find(name);
+      if (!index) unknown(name);
+      if (std::find(wanted.begin(), wanted.end(), *index) == wanted.end()) wanted.push_back(*index);
+    }
+  if (wanted.empty())
+    fail({fmt::format("{}: the central finds no robot", verb_),
+          "is one switched on, and near? --scan 10s looks for longer"});
+  failed_.clear();
+  for (const unsigned index : wanted) server_.client().connect(index);
+  (void)wait(longest_wish, [this] { return server_.client().idle(); });
+  for (const CentralEvent& event : failed_) {
+    if (wanted.size() == 1)
+      fail({fmt::format("{}: {}", verb_, event.words), "is it near enough? `amiroctl robots` lists robots"});
+    remark(fmt::format("{}: {}", verb_, event.words));
+  }
+  std::erase_if(wanted, [this](unsigned index) { return !fleet().robot(index).linked; });
+  if (wanted.empty()) fail({fmt::format("{}: no robot could be connected", verb_), "are they near enough?"});
+  (void)wait(first_word, [&] {
+    return std::all_of(wanted.begin(), wanted.end(),
+                       [this](unsigned index) { return fleet().robot(index).last != line::Kind::none; });
+  });
+  return wanted;
+}
+
+unsigned CentralLine::connect_one(const std::string& name) {
+  const unsigned index = connect({name}).front();
+  if (fleet().robot(index).last == line::Kind::none)
+    fail({fmt::format("{}: {} has a link, but says nothing", verb_, name),
+          "switch it off and on: its program may hang"});
+  return index;
+}
+
+}  // namespace ocm::cli::fleet

@@ -1,0 +1,81 @@
+/// The central's serial line, a server behind it, and real time: what the verbs for line robots have in
+/// common. One program at a time has the line; links stay up when it ends.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "ocm/base/time.hpp"
+#include "ocm/cognitive/server.hpp"
+#include "ocm/transport/serial_port.hpp"
+
+namespace ocm::cli::fleet {
+
+struct LineOptions {
+  std::string path;  ///< empty: that of a simulation or of `amiroctl central --pty`
+  std::uint32_t baud = 115'200;
+  std::string scan = "3s";
+};
+
+/// --central, --baud and --scan.
+void add_line_options(CLI::App& verb, LineOptions& options);
+
+/// Ends the command with words that say what is wrong and what to do, wherever it cannot go on.
+class CentralLine {
+ public:
+  /// `verb` is for messages.
+  CentralLine(std::string_view verb, const LineOptions& options, const cognitive::FleetOptions& fleet = {});
+  CentralLine(const CentralLine&) = delete;
+  CentralLine& operator=(const CentralLine&) = delete;
+  /// Leaves the central in command mode.
+  ~CentralLine();
+
+  /// Everything that the robots say is told to it, too.
+  void on_heard(std::function<void(std::size_t robot, line::Kind kind)> heard) { heard_ = std::move(heard); }
+
+  /// Listens and speaks until `done`, or for `limit`, or until a signal comes. Whether it was done.
+  bool run(std::optional<base::Duration> limit, const std::function<bool()>& done);
+  /// As `run`; a signal ends the command.
+  bool wait(base::Duration limit, const std::function<bool()>& done);
+  /// Until everything that was wished is said, signal or not.
+  void flush(base::Duration limit);
+
+  /// All robots that the central finds: those that it has listed, and those that advertise.
+  const std::vector<cognitive::Peer>& scan();
+  /// Links to the robots that are meant, by name, address or index; `all` or nothing: to all that there are.
+  /// One that is not there ends the command; one of several that cannot be reached is told.
+  std::vector<unsigned> connect(const std::vector<std::string>& names);
+  /// A link to one robot, confirmed and heard.
+  unsigned connect_one(const std::string& name);
+
+  [[nodiscard]] cognitive::Server& server() noexcept { return server_; }
+  [[nodiscard]] const cognitive::Fleet& fleet() const noexcept { return server_.fleet(); }
+  [[nodiscard]] std::string name(unsigned index) const;
+  [[nodiscard]] static base::Time now();
+  [[nodiscard]] const std::string& path() const noexcept { return port_.path(); }
+
+ private:
+  /// What the central has not taken yet goes first.
+  void exchange();
+  void write();
+  void take_events();
+  void list(base::Duration scan);
+  [[nodiscard]] std::optional<unsigned> find(const std::string& name) const;
+  [[noreturn]] void unknown(const std::string& name) const;
+
+  std::string verb_;
+  base::Duration scan_{};
+  transport::SerialPort port_;
+  cognitive::Server server_;
+  std::function<void(std::size_t, line::Kind)> heard_;
+  std::string unsent_;
+  std::vector<cognitive::CentralEvent> failed_;
+};
+
+}  // namespace ocm::cli::fleet

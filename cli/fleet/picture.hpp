@@ -1,0 +1,46 @@
+/// A map as a file: SVG, PNG or PDF to look at, drawn by gnuplot; PGM with YAML, as ROS's map_server reads
+/// and writes them, for other programs.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ocm/cognitive/map.hpp"
+#include "ocm/transport/bus.hpp"
+
+namespace ocm::cli::fleet {
+
+struct DrawnRobot {
+  std::string name;
+  std::vector<motion::Point> path;       ///< by its own estimate
+  std::vector<motion::Point> true_path;  ///< where somebody knows it
+};
+
+struct MapPicture {
+  std::string title;
+  std::string subtitle;
+  std::vector<DrawnRobot> robots;
+  std::vector<cognitive::Wall> walls;  ///< true ones; none: nobody knows
+};
+
+enum class MapFile : std::uint8_t { svg, png, pdf, pgm };
+
+/// By the ending of its name.
+[[nodiscard]] std::optional<MapFile> map_file(std::string_view name);
+
+/// What gnuplot is told. `kind` is not pgm.
+[[nodiscard]] std::string to_script(const cognitive::Map& map, const MapPicture& picture, MapFile kind);
+
+/// A portable grey map, the top first: occupied 0, free 254, unknown 205. [map_server]
+[[nodiscard]] std::string to_pgm(const cognitive::Map& map);
+/// What belongs to it; `image` is the file's name.
+[[nodiscard]] std::string to_yaml(const cognitive::Map& map, std::string_view image);
+
+/// Writes the file, and beside a PGM its YAML. What went wrong, if anything did.
+[[nodiscard]] std::optional<transport::Failure> write_map(const std::string& file, const cognitive::Map& map,
+                                                          const MapPicture& picture);
+
+}  // namespace ocm::cli::fleet

@@ -1,0 +1,331 @@
+/// What robots and their server say over the line robot's link, as JSON lines: whole sentences only; what is
+/// damaged is counted and told at the end.
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "ocm/line/demultiplexer.hpp"
+
+#include "cli/interrupt.hpp"
+#include "cli/logs/file_source.hpp"
+#include "cli/output/digits.hpp"
+#include "cli/output/printer.hpp"
+#include "cli/verbs/verbs.hpp"
+
+namespace ocm::cli {
+namespace {
+
+struct LineOptions {
+  std::string file = "-";
+  bool to_robot = false;
+  bool strict = false;
+  std::uint64_t count = 0;
+};
+
+/// As in spec/sentences.json.
+constexpr std::string_view type_name(line::Kind kind) {
+  constexpr std::array<std::string_view, 12> names{"none",      "confirm", "set_point", "pause",
+                                                   "unpause",   "packed",  "text",      "ping",
+                                                   "handshake", "update",  "idle",      "pong"};
+  static_assert(names.size() == static_cast<std::size_t>(line::Kind::pong) + 1);
+  return names[static_cast<std::size_t>(kind)];
+}
+
+/// One robot's stream, in the direction that is asked for.
+class Stream {
+ public:
+  explicit Stream(bool to_robot) : to_robot_(to_robot) {}
+
+  line::Kind feed(std::uint8_t byte) {
+    said_ = true;
+    packed_ = line::is_packed(byte);
+    const line::Kind kind = to_robot_ ? server_.feed(static_cast<char>(byte)) : robot_.feed(byte);
+    if (kind != line::Kind::none) ++sentences_;
+    return kind;
+  }
+  /// The prefix that names the robot. Another name is another robot, on a link of its own.
+  void call(std::string_view name) {
+    if (!name_.empty() && name_ != name) {
+      robot_.restart();
+      server_.restart();
+    }
+    name_ = name;
+  }
+  /// Nothing more comes: what was begun is damaged.
+  void end() {
+    if (said_) (void)feed('\n');
+  }
+
+  [[nodiscard]] const line::Sentence& sentence() const {
+    return to_robot_ ? server_.sentence() : robot_.sentence();
+  }
+  /// The sentence was a packed update, which has a number.
+  [[nodiscard]] bool packed() const { return packed_; }
+  [[nodiscard]] std::uint8_t sequence() const { return robot_.packed().packed().sequence; }
+
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] bool said_anything() const { return said_; }
+  [[nodiscard]] std::uint64_t sentences() const { return sentences_; }
+  [[nodiscard]] std::uint64_t damaged() const {
+    return std::uint64_t{text().faults().total()} + robot_.packed().faults().total();
+  }
+  [[nodiscard]] std::uint64_t stray() const {
+    return std::uint64_t{text().stray()} + robot_.packed().faults().stray;
+  }
+  [[nodiscard]] const line::Reader& text() const { return to_robot_ ? server_ : robot_.text(); }
+  [[nodiscard]] const line::Ear& ear() const { return robot_; }
+
+ private:
+  bool to_robot_;
+  bool said_ = false;
+  bool packed_ = false;
+  line::Ear robot_;
+  line::Reader server_{line::Direction::to_robot};
+  std::string name_;
+  std::uint64_t sentences_ = 0;
+};
+
+/// Robots by the central's index; and what has no prefix, as on a line without a central.
+class Streams {
+ public:
+  static constexpr std::size_t nameless = 256;
+
+  explicit Streams(bool to_robot) : streams_(nameless + 1, Stream{to_robot}) {}
+
+  /// Which stream the byte completes a sentence of; -1: none.
+  int feed(std::uint8_t byte) {
+    using Step = line::PrefixFilter::Step;
+    const char c = static_cast<char>(byte);
+    switch (filter_.feed(c)) {
+      case Step::prefix:
+        if (c == '[') prefix_.clear();
+        prefix_ += c;
+        return -1;
+      case Step::source:
+        current_ = filter_.source();
+        streams_[current_].call(std::string_view{prefix_}.substr(prefix_.rfind(':') + 1));
+        return -1;
+      case Step::nobody:
+        ++nobodys_;
+        return -1;
+      case Step::text:
+        break;
+    }
+    return streams_[current_].feed(byte) != line::Kind::none ? static_cast<int>(current_) : -1;
+  }
+  void end() {
+    for (Stream& stream : streams_) stream.end();
+  }
+
+  [[nodiscard]] const Stream& operator[](std::size_t index) const { return streams_[index]; }
+  [[nodiscard]] std::size_t size() const { return streams_.size(); }
+  [[nodiscard]] std::uint64_t nobodys() const { return nobodys_; }
+  [[nodiscard]] std::uint64_t broken_prefixes() const { return filter_.broken(); }
+
+ private:
+  line::PrefixFilter filter_{true};
+  std::string prefix_;
+  std::size_t current_ = nameless;
+  std::vector<Stream> streams_;
+  std::uint64_t nobodys_ = 0;
+};
+
+// --- JSON --------------------------------------------------------------------------------------------------
+
+void put_number(Buffer& out, int number) {
+  out.grow_to(put_signed(out.room(32), number));
+}
+
+/// The integers that came by the names of a T's fields; what a robot said beyond them in a list.
+template <class T>
+void put_values(Buffer& out, const line::Sentence& sentence) {
+  const std::size_t named = std::min<std::size_t>(sentence.count, T::fields.size());
+  for (std::size_t i = 0; i < named; ++i) {
+    out.append(i == 0 ? "\"" : ",\"");
+    out.append(T::fields[i].name);
+    out.append("\":");
+    put_number(out, sentence.integers[i]);
+  }
+  for (std::size_t i = named; i < sentence.count; ++i) {
+    out.append(i == named ? ",\"more\":[" : ",");
+    put_number(out, sentence.integers[i]);
+  }
+  if (named < sentence.count) out.append(']');
+}
+
+void put_values(Buffer& out, const line::Sentence& sentence) {
+  switch (sentence.kind) {
+    case line::Kind::set_point:
+      return put_values<line::SetPoint>(out, sentence);
+    case line::Kind::handshake:
+      return put_values<line::Handshake>(out, sentence);
+    case line::Kind::update:
+      return put_values<line::Update>(out, sentence);
+    default:
+      return;
+  }
+}
+
+/// A name has no character that JSON escapes but the quote and the backslash: fits_name.
+void put_robot(Buffer& out, std::size_t index, std::string_view name) {
+  if (index == Streams::nameless) return out.append(R"({"robot":null,"name":null)");
+  out.append(R"({"robot":)");
+  put_number(out, static_cast<int>(index));
+  out.append(R"(,"name":")");
+  for (const char c : name) {
+    if (c == '"' || c == '\\') out.append('\\');
+    out.append(c);
+  }
+  out.append('"');
+}
+
+void put_sentence(Buffer& out, std::size_t index, const Stream& stream) {
+  const line::Sentence& sentence = stream.sentence();
+  put_robot(out, index, stream.name());
+  out.append(R"(,"type":")");
+  out.append(type_name(sentence.kind));
+  out.append(R"(","values":{)");
+  put_values(out, sentence);
+  out.append('}');
+  if (stream.packed()) {
+    out.append(R"(,"sequence":)");
+    put_number(out, stream.sequence());
+  }
+  out.append("}\n");
+}
+
+// --- what was heard, in words ------------------------------------------------------------------------------
+
+template <class Faults>
+struct Cause {
+  std::uint32_t Faults::*count;
+  std::string_view words;
+};
+constexpr Cause<line::ReaderFaults> text_causes[] = {
+    {&line::ReaderFaults::torn, "torn"},
+    {&line::ReaderFaults::unclosed, "unclosed"},
+    {&line::ReaderFaults::headless, "headless"},
+    {&line::ReaderFaults::unknown, "unknown"},
+    {&line::ReaderFaults::bad_number, "with a bad number"},
+    {&line::ReaderFaults::wrong_count, "with a wrong count of integers"},
+    {&line::ReaderFaults::out_of_range, "out of range"},
+    {&line::ReaderFaults::too_long, "too long"},
+};
+constexpr Cause<line::PackedFaults> packed_causes[] = {
+    {&line::PackedFaults::corrupt, "packed and corrupt"},
+    {&line::PackedFaults::torn, "packed and torn"},
+    {&line::PackedFaults::lost, "packed and lost"},
+    {&line::PackedFaults::repeated, "packed and repeated"},
+    {&line::PackedFaults::late, "packed and late"},
+    {&line::PackedFaults::out_of_range, "packed and out of range"},
+};
+
+template <class Faults, std::size_t N>
+void add_causes(std::string& text, const Faults& faults, const Cause<Faults> (&causes)[N]) {
+  for (const auto& cause : causes)
+    if (faults.*cause.count != 0)
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", faults.*cause.count, cause.words);
+}
+
+std::string counted(std::uint64_t count, std::string_view what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+std::string describe(const Stream& stream) {
+  std::string causes;
+  add_causes(causes, stream.text().faults(), text_causes);
+  add_causes(causes, stream.ear().packed().faults(), packed_causes);
+  std::string text =
+      fmt::format("{}, {} damaged", counted(stream.sentences(), "whole sentence"), stream.damaged());
+  if (!causes.empty()) text += fmt::format(" ({})", causes);
+  if (stream.stray() != 0) text += ", " + counted(stream.stray(), "stray character");
+  return text;
+}
+
+/// Whether anything of the stream was not of a whole sentence.
+bool summarise(const Streams& streams, bool to_robot) {
+  bool damaged = false;
+  for (std::size_t i = 0; i < streams.size(); ++i) {
+    const Stream& stream = streams[i];
+    if (!stream.said_anything()) continue;
+    damaged |= stream.damaged() != 0 || stream.stray() != 0;
+    std::string text = describe(stream);
+    if (!to_robot) text += fmt::format("; link quality {} %", stream.ear().quality().per_mille() / 10);
+    remark(i == Streams::nameless ? text : fmt::format("[{}] {}: {}", i, stream.name(), text));
+  }
+  if (streams.broken_prefixes() == 0) return damaged;
+  remark(fmt::format("broken prefixes: {}, and behind them {} that may be anybody's",
+                     streams.broken_prefixes(), counted(streams.nobodys(), "character")));
+  return true;
+}
+
+// --- the verb ----------------------------------------------------------------------------------------------
+
+/// Reads to the end, to a signal, or until `most` sentences were shown (0: all); how many were.
+std::uint64_t show(log::Source& source, Streams& streams, std::uint64_t most) {
+  std::array<char, 1 << 16> block;
+  Buffer out;
+  std::uint64_t shown = 0;
+  for (std::size_t size = source.read(block); size != 0; size = source.read(block)) {
+    for (const char c : std::string_view{block.data(), size}) {
+      const int index = streams.feed(static_cast<std::uint8_t>(c));
+      if (index < 0) continue;
+      put_sentence(out, static_cast<std::size_t>(index), streams[static_cast<std::size_t>(index)]);
+      if (++shown == most) break;
+    }
+    write_out(out);  // what a pipe or a terminal has brought is shown before more is waited for
+    if (most != 0 && shown == most) return shown;
+  }
+  streams.end();
+  return shown;
+}
+
+void run_line(const LineOptions& options, int& exit_code) {
+  catch_interrupts();
+  logs::FileSource source{options.file};
+  const std::string shown_name = options.file == "-" ? "the standard input" : options.file;
+  const auto wanted = options.to_robot ? "what a server said to a robot" : "what a robot said";
+  if (!source.failure().empty())
+    fail({fmt::format("cannot read {}: {}", shown_name, source.failure()),
+          fmt::format("a file with {} is wanted", wanted)});
+  Streams streams{options.to_robot};
+  const std::uint64_t shown = show(source, streams, options.count);
+  const bool damaged = summarise(streams, options.to_robot);
+  if (interrupted() == 0 && !source.failure().empty())
+    fail({fmt::format("{}: cannot be read beyond byte {}: {}", shown_name, source.position(),
+                      source.failure()),
+          "what came before it is above"});
+  if (shown == 0)
+    remark(fmt::format("no whole sentence in {}: it is read as {}; {} reads the other direction", shown_name,
+                       wanted, options.to_robot ? "without --to-robot line" : "--to-robot"));
+  if (shown == 0 || (options.strict && damaged)) exit_code = exit_failure;
+  exit_code = exit_code_after_interrupt(exit_code);
+}
+
+}  // namespace
+
+void add_line(CLI::App& app, Session&, int& exit_code) {
+  auto* verb =
+      add_verb(app, "line", "say what line robots said, as JSON", line_group,
+               "  amiroctl line central.log | jq -c 'select(.name==\"AVR\") | .values'\n"
+               "  amiroctl line --to-robot server.log\n"
+               "  stty -F /dev/ttyUSB0 raw -echo 115200; amiroctl line /dev/ttyUSB0\n"
+               "  amiroctl line --strict central.log > /dev/null    exit 1 when anything was damaged");
+  const auto options = std::make_shared<LineOptions>();
+  verb->add_option("file", options->file,
+                   "bytes of a robot's line, or of a central with its prefixes; default: - (standard input)")
+      ->type_name("[FILE]");
+  verb->add_flag("--to-robot", options->to_robot, "what is said to robots; default: what they say");
+  verb->add_option("-n,--count", options->count, "end after so many sentences")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
+  verb->add_flag("--strict", options->strict, "exit 1 when anything was damaged or stray");
+  verb->callback([options, &exit_code] { run_line(*options, exit_code); });
+}
+
+}  // namespace ocm::cli

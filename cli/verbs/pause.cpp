@@ -1,0 +1,83 @@
+/// Line robots hold their tower and their updates, and go on again.
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "cli/fleet/central_line.hpp"
+#include "cli/verbs/verbs.hpp"
+
+namespace ocm::cli {
+namespace {
+
+using namespace std::chrono_literals;
+
+struct PauseOptions {
+  fleet::LineOptions line;
+  std::vector<std::string> robots;
+};
+
+/// Said, and seen to be obeyed: a paused robot sends no updates. What was on its way may still come.
+bool obeys(fleet::CentralLine& line, unsigned index, bool paused) {
+  constexpr base::Duration on_its_way = 500ms, watched = 1500ms;
+  const auto& robot = line.fleet().robot(index);
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    auto& said = line.server().fleet();
+    (void)(paused ? said.pause(index, fleet::CentralLine::now())
+                  : said.unpause(index, fleet::CentralLine::now()));
+    (void)line.wait(on_its_way, [] { return false; });
+    const base::Time then = robot.updated;
+    const bool updates =
+        line.wait(watched, [&] { return robot.updated != then || robot.lost; }) && !robot.lost;
+    if (updates != paused && !robot.lost) return true;
+  }
+  return false;
+}
+
+void run(std::string_view verb, const PauseOptions& options, bool paused, int& exit_code) {
+  fleet::CentralLine line{verb, options.line};
+  for (const unsigned index : line.connect(options.robots)) {
+    const std::string name = line.name(index);
+    if (obeys(line, index, paused)) {
+      fmt::print("{}: {}\n", name, paused ? "paused" : "goes on");
+      continue;
+    }
+    remark(line.fleet().robot(index).lost
+               ? fmt::format("{}: {} is lost", verb, name)
+               : fmt::format("{}: {} {}", verb, name, paused ? "sends updates still" : "sends no updates"));
+    exit_code = exit_failure;
+  }
+}
+
+void add(CLI::App& app, std::string_view name, std::string_view description, std::string_view examples,
+         bool paused, int& exit_code) {
+  auto* verb = add_verb(app, name, description, line_group, examples);
+  const auto options = std::make_shared<PauseOptions>();
+  verb->add_option("robot", options->robots, "names, addresses or indexes; all")
+      ->required()
+      ->type_name("ROBOT ...");
+  fleet::add_line_options(*verb, options->line);
+  verb->callback(
+      [options, paused, word = std::string{name}, &exit_code] { run(word, *options, paused, exit_code); });
+}
+
+}  // namespace
+
+void add_pause(CLI::App& app, Session&, int& exit_code) {
+  add(app, "pause", "hold a line robot's tower and its updates",
+      "  amiroctl pause AVR\n"
+      "  amiroctl pause all\n"
+      "  amiroctl pause AVR && amiroctl goto AVR 0 50   it drives all the same",
+      true, exit_code);
+}
+
+void add_unpause(CLI::App& app, Session&, int& exit_code) {
+  add(app, "unpause", "let a line robot's tower and its updates go on",
+      "  amiroctl unpause AVR\n"
+      "  amiroctl unpause all",
+      false, exit_code);
+}
+
+}  // namespace ocm::cli

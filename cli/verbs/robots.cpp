@@ -1,0 +1,115 @@
+/// The robots behind a central: who is there, where, in which state, and how good its link is.
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/fleet/central_line.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/verbs/commanding.hpp"
+#include "cli/verbs/verbs.hpp"
+
+namespace ocm::cli {
+namespace {
+
+using cognitive::Peer;
+using cognitive::Robot;
+
+struct RobotsOptions {
+  fleet::LineOptions line;
+  std::string watch = "1500ms";
+  bool json = false;
+  bool list = false;
+};
+
+std::string_view state_of(const Robot& robot) {
+  if (!robot.linked) return "no link";
+  if (robot.lost) return "silent";
+  if (robot.paused || (robot.idle && !robot.update))
+    return "paused";  // by whomever: it says that it is idle only
+  if (!robot.confirmed) return "connected";
+  return robot.idle ? "idle" : "moving";
+}
+
+std::string pose_of(const Robot& robot) {
+  if (!robot.update) return "-";
+  return fmt::format("{} {} {}", robot.update->x, robot.update->y, robot.update->heading);
+}
+
+nlohmann::ordered_json to_json(const fleet::CentralLine& line, const Peer& peer) {
+  using Json = nlohmann::ordered_json;
+  const Robot& robot = line.fleet().robot(peer.index);
+  Json out{
+      {"robot", peer.name}, {"index", peer.index}, {"address", peer.address}, {"state", state_of(robot)}};
+  out["linked"] = robot.linked;
+  out["confirmed"] = robot.confirmed;
+  out["idle"] = robot.idle;
+  out["quality"] = robot.linked ? Json(line.fleet().quality_per_mille(peer.index) / 1000.0) : Json();
+  out["pose"] = Json();
+  if (robot.update)
+    out["pose"] = {
+        {"x_cm", robot.update->x}, {"y_cm", robot.update->y}, {"heading_deg", robot.update->heading}};
+  out["body"] = Json();
+  if (robot.handshake)
+    out["body"] = {{"width_cm", robot.handshake->width},
+                   {"length_cm", robot.handshake->length},
+                   {"axle_offset_cm", robot.handshake->axle_offset},
+                   {"tower_offset_cm", robot.handshake->tower_offset},
+                   {"deadline_ms", robot.handshake->deadline},
+                   {"packed", line::offers_packed(*robot.handshake)}};
+  return out;
+}
+
+void print_table(const fleet::CentralLine& line, const std::vector<Peer>& peers) {
+  std::size_t width = 5;
+  for (const Peer& peer : peers) width = std::max(width, peer.name.size());
+  fmt::print("{:<{}}  {:<5}  {:<12}  {:<9}  {:>16}  {:>7}\n", "ROBOT", width, "INDEX", "ADDRESS", "STATE",
+             "X Y DEG [cm]", "QUALITY");
+  for (const Peer& peer : peers) {
+    const Robot& robot = line.fleet().robot(peer.index);
+    fmt::print("{:<{}}  {:<5}  {:<12}  {:<9}  {:>16}  {:>7}\n", peer.name, width, peer.index, peer.address,
+               state_of(robot), pose_of(robot),
+               robot.linked ? fmt::format("{} %", line.fleet().quality_per_mille(peer.index) / 10) : "-");
+  }
+}
+
+void run(const RobotsOptions& options, int& exit_code) {
+  const auto watch = duration_option("--watch", options.watch);
+  fleet::CentralLine line{"robots", options.line};
+  if (options.list)
+    (void)line.scan();
+  else
+    (void)line.connect({});
+  if (!options.list) (void)line.wait(watch, [] { return false; });
+  const std::vector<Peer> peers = line.server().client().peers();
+  if (options.json)
+    for (const Peer& peer : peers) fmt::print("{}\n", to_json(line, peer).dump());
+  else
+    print_table(line, peers);
+  if (peers.empty()) exit_code = exit_failure;
+}
+
+}  // namespace
+
+void add_robots(CLI::App& app, Session&, int& exit_code) {
+  auto* verb = add_verb(app, "robots",
+                        "line robots behind a central: where they are, and how their links are", line_group,
+                        "  amiroctl robots\n"
+                        "  amiroctl robots --json | jq -r .robot\n"
+                        "  amiroctl robots --list                     without a link to any of them\n"
+                        "  amiroctl robots --central /dev/ttyACM0");
+  const auto options = std::make_shared<RobotsOptions>();
+  verb->add_flag("--json", options->json, "an object a robot");
+  verb->add_flag("--list", options->list, "those that advertise; connect to none");
+  verb->add_option("--watch", options->watch, "how long to listen once all are connected")
+      ->type_name("T")
+      ->capture_default_str();
+  fleet::add_line_options(*verb, options->line);
+  verb->callback([options, &exit_code] { run(*options, exit_code); });
+}
+
+}  // namespace ocm::cli

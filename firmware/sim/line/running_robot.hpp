@@ -1,0 +1,105 @@
+/// A line robot of the world with its application running in virtual time. What its link is, is up to whoever
+/// composes it: a dongle on a radio, or a line of its own.
+///
+///     RunningRobot<Dongle> robot{world.robot(0), dongle, start};
+///     robot.advance_to(now);                    // at next_event(), the world being there already
+///     robot.receive(bytes, now);
+///
+/// Host only. Its jobs take no time. It must stay where it is.
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "ocm/base/time.hpp"
+#include "ocm/controller/line_models.hpp"
+#include "ocm/controller/line_robot.hpp"
+#include "ocm/scheduling/cooperative.hpp"
+
+#include "firmware/sim/line/parts.hpp"
+#include "firmware/sim/line/robot.hpp"
+
+namespace ocm::firmware::sim::line {
+
+/// What a robot's application asks of its link.
+template <class L>
+concept RobotLink = requires(L& link, std::span<const std::uint8_t> bytes, base::Time now) {
+  { link.linked() } -> std::same_as<bool>;
+  { link.write(bytes, now) } -> std::same_as<std::size_t>;  ///< how many found room
+};
+
+/// The application's model of a robot of this kind.
+[[nodiscard]] constexpr const controller::LineRobotModel& application_of(RobotKind kind) noexcept {
+  return kind == RobotKind::avr ? controller::avr_robot : controller::arduino_robot;
+}
+
+template <RobotLink Link>
+class RunningRobot {
+ public:
+  /// As its owner has it: its compass was calibrated, once, in an undisturbed place.
+  RunningRobot(Robot& body, Link& link, base::Time start)
+      : RunningRobot(body, link, start,
+                     controller::calibrated(application_of(body.model().kind), body.own_field())) {}
+  RunningRobot(Robot& body, Link& link, base::Time start, const controller::LineRobotModel& model)
+      : body_(&body),
+        model_(model),
+        port_(start),
+        parts_(body, Linked{&link}, Send{&link, &port_}),
+        application_(parts_, port_, model_) {
+    application_.start();
+  }
+  RunningRobot(const RunningRobot&) = delete;  // the application holds its port and parts
+  RunningRobot& operator=(const RunningRobot&) = delete;
+
+  /// Whatever is due until `now`, at `now`.
+  void advance_to(base::Time now) {
+    port_.advance(now);
+    while (port_.armed() <= now || port_.pended()) {
+      if (port_.armed() <= now) application_.expire();
+      for (scheduling::Level level{}; port_.take_pended(level);) application_.run(level);
+    }
+  }
+  /// When there is something to do.
+  [[nodiscard]] base::Time next_event() const noexcept {
+    return port_.pended() ? port_.now() : port_.armed();
+  }
+
+  /// From its link.
+  void receive(std::span<const std::uint8_t> bytes, base::Time now) {
+    port_.advance(now);
+    for (const std::uint8_t byte : bytes) application_.receive(byte);
+  }
+  void link_changed(base::Time now) {
+    port_.advance(now);
+    application_.link_changed();
+  }
+
+  /// The truth, which its application does not know.
+  [[nodiscard]] const Pose& pose() const noexcept { return body_->pose(); }
+  [[nodiscard]] const Robot& body() const noexcept { return *body_; }
+  [[nodiscard]] auto& application() noexcept { return application_; }
+
+ private:
+  struct Linked {
+    Link* link;
+    [[nodiscard]] bool operator()() const { return link->linked(); }
+  };
+  struct Send {
+    Link* link;
+    const scheduling::Cooperative* port;
+    [[nodiscard]] std::size_t operator()(std::span<const std::uint8_t> bytes) const {
+      return link->write(bytes, port->now());
+    }
+  };
+  using Parts = WorldParts<Linked, Send>;
+
+  Robot* body_;
+  controller::LineRobotModel model_;
+  scheduling::Cooperative port_;
+  Parts parts_;
+  controller::LineRobot<Parts, scheduling::Cooperative> application_;
+};
+
+}  // namespace ocm::firmware::sim::line
