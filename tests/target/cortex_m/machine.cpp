@@ -91,7 +91,7 @@ int TestCase::run_all() {
   Out out;
   for (const TestCase* one = last_; one != nullptr; one = one->before_) {
     const int before = failed_checks;
-    one->body_();
+    Section::run_each(one->body_);
     ++cases;
     if (failed_checks == before) continue;
     ++failed;

@@ -90,6 +90,24 @@ class TestCase {
   static inline TestCase* last_ = nullptr;
 };
 
+/// A case with sections, none within another, runs once for each of them, as with Catch2.
+class Section {
+ public:
+  explicit operator bool() const noexcept { return met_++ == wanted_; }
+  template <class Body>
+  static void run_each(Body body) {
+    wanted_ = 0;
+    do {
+      met_ = 0;
+      body();
+    } while (++wanted_ < met_);
+  }
+
+ private:
+  static inline int wanted_ = 0;
+  static inline int met_ = 0;
+};
+
 enum class Severity { check, require };
 
 /// Counts a check; tells it where it does not hold.
@@ -127,6 +145,8 @@ using Catch::Approx;
                                                                   function};                         \
   static void function()
 #define TEST_CASE(...) OCM_TARGET_CASE(OCM_TARGET_NAME(ocm_test_), __VA_ARGS__)
+
+#define SECTION(...) if (::ocm::target::Section{})
 
 #define OCM_TARGET_CHECK(severity, holds, ...)                                                       \
   ::ocm::target::check(static_cast<bool>(__VA_ARGS__) == (holds), ::ocm::target::Severity::severity, \
