@@ -14,6 +14,7 @@
 
 #include "ocm/base/text.hpp"
 #include "ocm/line/sentence.hpp"
+#include "ocm/line/whole_update.hpp"
 
 namespace ocm::line {
 
@@ -69,6 +70,19 @@ class Reader {
     if (c == '}') return close();
     if (state_ != State::skipping) inside(c);
     return Kind::none;
+  }
+
+  /// Takes characters off the front of a text until a sentence is complete or none is left: as if each was
+  /// fed by itself, but twice as fast where updates lie whole in it.
+  constexpr Kind feed(std::string_view& text) noexcept {
+    Kind kind = Kind::none;
+    while (kind == Kind::none && !text.empty()) {
+      kind = feed(text.front());
+      const std::size_t whole = state_ == State::opened ? whole_update(text) : 0;
+      if (whole != 0) kind = end_sentence(Kind::update);
+      text.remove_prefix(whole != 0 ? whole : 1);
+    }
+    return kind;
   }
 
   [[nodiscard]] constexpr const Sentence& sentence() const noexcept { return sentence_; }
@@ -183,11 +197,18 @@ class Reader {
     return true;
   }
 
-  constexpr Kind close() noexcept {
-    const Kind kind = whole();
+  constexpr Kind close() noexcept { return end_sentence(whole()); }
+  constexpr Kind end_sentence(Kind kind) noexcept {
     state_ = State::outside;
     tab_ = false;
     return kind == Kind::none ? kind : accept(kind);
+  }
+  /// How many characters the update has whose brace has opened; 0: none that can be taken at once.
+  constexpr std::size_t whole_update(std::string_view text) noexcept {
+    if (direction_ == Direction::to_robot) return 0;
+    const std::size_t size = detail::whole_update(text, sentence_.integers);
+    if (size != 0) sentence_.count = Update::fields.size();
+    return size;
   }
   /// The sentence that ends here, or none and a counted cause.
   [[nodiscard]] constexpr Kind whole() noexcept {

@@ -110,6 +110,7 @@ static_assert(only("\tx!\n").kind == Kind::none);
 static_assert(only("\t\n!\n").kind == Kind::none);
 static_assert(only("\t!\n", Direction::to_robot).kind == Kind::none);
 static_assert(only("{U\t!}").kind == Kind::none);
+static_assert(only("\t{S,IDL}!\n").kind == Kind::idle);
 
 static_assert(sizeof(Reader) <= 92);
 
