@@ -29,22 +29,23 @@ constexpr base::Duration longest_wish = 60s;
 transport::SerialPort open_port(std::string_view verb, const LineOptions& options) {
   const bool usual = options.path.empty();
   const std::string path = usual ? transport::central_line() : options.path;
+  // The link that a killed simulator has left may lead to a terminal of somebody else.
+  if (usual && !transport::is_served(path))
+    fail({fmt::format("{}: there is no central at '{}'", verb, path),
+          "start one (amiroctl sim --robots 2, or amiroctl central --pty), or name a dongle: --central "
+          "/dev/ttyACM0"});
   auto port = transport::SerialPort::open(path, options.baud);
-  if (port) return std::move(*port);
-  auto failure = port.error;
-  failure.what = fmt::format("{}: {}", verb, failure.what);
-  if (usual)
-    failure = {fmt::format("{}: there is no central at '{}'", verb, path),
-               "start one (amiroctl sim --robots 2, or amiroctl central --pty), or name a dongle: --central "
-               "/dev/ttyACM0"};
-  if (usual && port.error.what.find("in use") != std::string::npos)
-    failure = {fmt::format("{}: {}", verb, port.error.what), port.error.remedy};
-  fail(failure);
+  if (!port) fail({fmt::format("{}: {}", verb, port.error.what), port.error.remedy});
+  return std::move(*port);
 }
 
-std::string listed(const std::vector<Peer>& peers) {
+/// "AVR (index 0, address C00000000000), ...": those of this name, or all.
+std::string listed(const std::vector<Peer>& peers, std::string_view name = {}) {
   std::string text;
-  for (const Peer& peer : peers) text += (text.empty() ? "" : ", ") + peer.name;
+  for (const Peer& peer : peers)
+    if (name.empty() || peer.name == name)
+      text += fmt::format("{}{} (index {}, address {})", text.empty() ? "" : ", ", peer.name, peer.index,
+                          peer.address);
   return text;
 }
 
@@ -171,7 +172,7 @@ std::optional<unsigned> CentralLine::find(const std::string& name) const {
   const auto count = std::count_if(peers.begin(), peers.end(), [&](const Peer& p) { return p.name == name; });
   if (count > 1)
     fail({fmt::format("{}: {} robots are called '{}'", verb_, count, name),
-          "name one by its address or index: `amiroctl robots` lists them"},
+          fmt::format("name one by its index or address: {}", listed(peers, name))},
          exit_usage);
   for (const Peer& peer : peers)
     if (peer.name == name || peer.address == name) return peer.index;

@@ -53,6 +53,8 @@ class CentralLine {
   std::vector<unsigned> connect(const std::vector<std::string>& names);
   /// A link to one robot, confirmed and heard.
   unsigned connect_one(const std::string& name);
+  /// Ends the command: the central finds none of this name. Lists those that it finds.
+  [[noreturn]] void unknown(const std::string& name) const;
 
   [[nodiscard]] cognitive::Server& server() noexcept { return server_; }
   [[nodiscard]] const cognitive::Fleet& fleet() const noexcept { return server_.fleet(); }
@@ -67,7 +69,6 @@ class CentralLine {
   void take_events();
   void list(base::Duration scan);
   [[nodiscard]] std::optional<unsigned> find(const std::string& name) const;
-  [[noreturn]] void unknown(const std::string& name) const;
 
   std::string verb_;
   base::Duration scan_{};

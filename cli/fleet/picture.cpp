@@ -96,6 +96,8 @@ class Script {
     add("set size ratio -1\nset xrange [{:.4f}:{:.4f}]\nset yrange [{:.4f}:{:.4f}]\n", low_.x_m, high_.x_m,
         low_.y_m, high_.y_m);
     add("set xlabel 'x [m]'\nset ylabel 'y [m]'\n"
+        "set object 1 rectangle from graph 0,0 to graph 1,1 behind fillcolor rgb '#d9dde3' fillstyle solid "
+        "noborder\n"  // beyond the cells nothing is known either
         "set palette defined (0 '#ffffff', 0.5 '#d9dde3', 1 '#1a1a1a')\nset cbrange [0:1]\nunset colorbox\n");
   }
   /// Free, unknown, occupied.
@@ -219,7 +221,7 @@ std::optional<transport::Failure> write_map(const std::string& file, const Map& 
   }
   const auto drawn = plot::draw(to_script(map, picture, kind));
   if (!drawn)
-    return transport::Failure{drawn.error.what,
+    return transport::Failure{fmt::format("{}: {}", file, drawn.error.what),
                               drawn.error.what.find("no gnuplot") == std::string::npos
                                   ? drawn.error.remedy
                                   : "install it: sudo apt install gnuplot-nox; or write a .pgm"};

@@ -122,7 +122,13 @@ void check_files(const std::vector<std::string>& files) {
 }
 
 /// Where robots began decides how their maps fit together.
-void place_robots(fleet::CentralLine& line, const std::vector<unsigned>& robots, const Known& known) {
+void place_robots(fleet::CentralLine& line, const std::vector<unsigned>& robots, const Known& known,
+                  const std::vector<std::string>& starts) {
+  const auto& peers = line.server().client().peers();
+  for (const std::string& text : starts)
+    if (const std::string name = parse_start(text).name;
+        std::none_of(peers.begin(), peers.end(), [&](const cognitive::Peer& p) { return p.name == name; }))
+      line.unknown(name);
   for (const unsigned index : robots) {
     const std::string name = line.name(index);
     const auto start = std::find_if(known.starts.begin(), known.starts.end(),
@@ -146,6 +152,42 @@ double area_m2(const cognitive::Map& map, cognitive::CellState state) {
   return static_cast<double>(cells) * map.raster().resolution_m() * map.raster().resolution_m();
 }
 
+/// Why it ended.
+enum class End : std::uint8_t { known, time_over, interrupted, robots_lost, central_gone };
+
+/// "... in 12 s".
+std::string_view words(End end) {
+  switch (end) {
+    case End::known:
+      return "all that can be reached";
+    case End::time_over:
+      return "what was seen until --duration was over";
+    case End::interrupted:
+      return "what was seen until it was interrupted";
+    case End::robots_lost:
+      return "what was seen until every robot was lost";
+    case End::central_gone:
+      return "what was seen until the central was gone";
+  }
+  return "what was seen";
+}
+/// In JSON.
+std::string_view key(End end) {
+  switch (end) {
+    case End::known:
+      return "known";
+    case End::time_over:
+      return "duration";
+    case End::interrupted:
+      return "interrupted";
+    case End::robots_lost:
+      return "robots_lost";
+    case End::central_gone:
+      return "central_gone";
+  }
+  return "known";
+}
+
 std::string span(base::Duration time) {
   return fmt::format("{:.0f} s", static_cast<double>(time.count()) / 1e9);
 }
@@ -155,7 +197,7 @@ class Run {
   Run(const MapVerbOptions& options, const Known& known)
       : options_(options), known_(known), line_("map", options.line, fleet_options(options, known)) {
     robots_ = line_.connect(options.robots);
-    place_robots(line_, robots_, known_);
+    place_robots(line_, robots_, known_, options.starts);
     for (const unsigned index : robots_)
       if (!line_.fleet().robot(index).update)  // paused, by whomever
         line_.server().fleet().unpause(index, fleet::CentralLine::now());
@@ -163,30 +205,19 @@ class Run {
     line_.on_heard([this](std::size_t robot, line::Kind kind) { mapping_->heard(robot, kind); });
   }
 
-  /// Until all is known, for `limit`, or until Ctrl-C.
-  void explore(std::optional<base::Duration> limit) {
+  /// Until all is known, for `limit`, until Ctrl-C, or until the central is gone. Whichever it is, what was
+  /// drawn is there.
+  End explore(std::optional<base::Duration> limit) {
     const base::Time begin = fleet::CentralLine::now();
-    base::Time next = begin, told = begin;
-    const bool terminal = isatty(STDERR_FILENO) != 0;
-    done_ = line_.run(limit, [&] {
-      const base::Time now = fleet::CentralLine::now();
-      if (now < next) return false;
-      next = now + 100ms;
-      if (!options_.watch) mapping_->step(now);
-      if (terminal && now - told >= 10s) {
-        told = now;
-        remark(fmt::format("map: {}: {:.2f} m2 free, {}", span(now - begin),
-                           area_m2(mapping_->map(), cognitive::CellState::free),
-                           reflective::count(mapping_->counters().drawn, "update*")));
-      }
-      if (!lost_.empty() || std::any_of(robots_.begin(), robots_.end(), [&](unsigned i) { return lost(i); }))
-        tell_lost();
-      return !options_.watch && (mapping_->done() || nobody_left());
-    });
-    took_ = fleet::CentralLine::now() - begin;
-    for (const unsigned index : robots_)
-      if (!lost(index) && !line_.fleet().robot(index).idle && !options_.watch)
-        (void)line_.server().fleet().go(index, {0, 0}, fleet::CentralLine::now());
+    try {
+      end_ = drive(limit);
+      took_ = fleet::CentralLine::now() - begin;
+      if (!options_.watch) halt();
+    } catch (const Exit&) {  // which has said that the line is gone
+      took_ = fleet::CentralLine::now() - begin;
+      end_ = End::central_gone;
+    }
+    return end_;
   }
 
   [[nodiscard]] fleet::MapPicture picture(const std::optional<Agreement>& result) const {
@@ -210,11 +241,41 @@ class Run {
 
   [[nodiscard]] const cognitive::Map& map() const { return mapping_->map(); }
   [[nodiscard]] bool any() const { return mapping_->counters().drawn != 0; }
+
+ private:
+  End drive(std::optional<base::Duration> limit) {
+    const base::Time begin = fleet::CentralLine::now();
+    base::Time next = begin, told = begin;
+    const bool terminal = isatty(STDERR_FILENO) != 0;
+    const bool done = line_.run(limit, [&] {
+      const base::Time now = fleet::CentralLine::now();
+      if (now < next) return false;
+      next = now + 100ms;
+      if (!options_.watch) mapping_->step(now);
+      if (terminal && now - told >= 10s) {
+        told = now;
+        remark(fmt::format("map: {}: {:.2f} m2 free, {}", span(now - begin),
+                           area_m2(mapping_->map(), cognitive::CellState::free),
+                           reflective::count(mapping_->counters().drawn, "update*")));
+      }
+      if (!lost_.empty() || std::any_of(robots_.begin(), robots_.end(), [&](unsigned i) { return lost(i); }))
+        tell_lost();
+      return !options_.watch && (mapping_->done() || nobody_left());
+    });
+    if (interrupted() != 0) return End::interrupted;
+    if (nobody_left()) return End::robots_lost;
+    return done ? End::known : End::time_over;
+  }
+  /// Now, for a picture takes its time.
+  void halt() {
+    for (const unsigned index : robots_)
+      if (!lost(index) && !line_.fleet().robot(index).idle)
+        (void)line_.server().fleet().go(index, {0, 0}, fleet::CentralLine::now());
+    line_.flush(1s);
+  }
   [[nodiscard]] bool nobody_left() const {
     return std::all_of(robots_.begin(), robots_.end(), [this](unsigned index) { return lost(index); });
   }
-
- private:
   static cognitive::FleetOptions fleet_options(const MapVerbOptions& options, const Known& known) {
     cognitive::FleetOptions fleet;
     if (known.central) fleet.central = *known.central;
@@ -257,7 +318,7 @@ class Run {
   std::optional<Mapping> mapping_;
   std::vector<unsigned> lost_;
   base::Duration took_{};
-  bool done_ = false;
+  End end_ = End::known;
 };
 
 void Run::report(const std::optional<Agreement>& result) const {
@@ -267,7 +328,8 @@ void Run::report(const std::optional<Agreement>& result) const {
   const double free = area_m2(mapping_->map(), cognitive::CellState::free);
   if (options_.json) {
     nlohmann::ordered_json out{{"seconds", static_cast<double>(took_.count()) / 1e9},
-                               {"done", done_},
+                               {"done", end_ == End::known},
+                               {"ended", key(end_)},
                                {"robots", robots_.size()},
                                {"free_m2", free},
                                {"updates", drawn.drawn},
@@ -283,14 +345,25 @@ void Run::report(const std::optional<Agreement>& result) const {
     fmt::print("{}\n", out.dump());
     return;
   }
-  fmt::print("{} in {}: {:.2f} m2 free; {} drawn, {} not, because a robot turned; {}\n",
-             done_ ? "all that can be reached" : "what was seen", span(took_), free,
-             reflective::count(drawn.drawn, "update*"), drawn.turning,
+  fmt::print("{} in {}: {:.2f} m2 free; {} drawn, {} not, because a robot turned; {}\n", words(end_),
+             span(took_), free, reflective::count(drawn.drawn, "update*"), drawn.turning,
              reflective::count(explorer.goals, "goal*"));
   if (result)
     fmt::print(
         "agreement with the true walls within 6 cm: precision {:.3f}, recall {:.3f}; explored {:.3f}\n",
         result->precision, result->recall, result->explored);
+}
+
+/// All that can be written; what cannot is told, each.
+bool write_files(const std::vector<std::string>& files, const Run& run,
+                 const std::optional<Agreement>& result) {
+  bool all = true;
+  for (const std::string& file : files) {
+    const auto failure = fleet::write_map(file, run.map(), run.picture(result));
+    remark(fmt::format("map: {}", failure ? failure->what + "; " + failure->remedy : file));
+    all = all && !failure;
+  }
+  return all;
 }
 
 void run(const MapVerbOptions& options, int& exit_code) {
@@ -303,23 +376,17 @@ void run(const MapVerbOptions& options, int& exit_code) {
   if (!options.duration.empty()) limit = duration_option("--duration", options.duration);
   const Known known = known_of(load_world(options.world), options.starts);
   Run run{options, known};
-  run.explore(limit);
+  const End end = run.explore(limit);
   if (!run.any()) {
     if (interrupted() == 0) remark("map: no update came that could be drawn");
     exit_code = exit_code_after_interrupt(exit_failure);
     return;
   }
   const auto result = run.result();
-  for (const std::string& file : options.files) {
-    if (const auto failure = fleet::write_map(file, run.map(), run.picture(result))) fail(*failure);
-    remark(fmt::format("map: {}", file));
-  }
+  const bool written = write_files(options.files, run, result);
   run.report(result);
-  if (run.nobody_left() && interrupted() == 0) {
-    remark("map: every robot is lost");
-    exit_code = exit_failure;
-  }
-  exit_code = exit_code_after_interrupt(exit_code);
+  const bool whole = end != End::robots_lost && end != End::central_gone;
+  exit_code = written ? exit_code_after_interrupt(whole ? exit_success : exit_failure) : exit_failure;
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 """Runs amiroctl and a simulator in a folder of their own, so that tests never meet each other or the user's bus."""
 
+import concurrent.futures
 import json
 import os
 import signal
@@ -65,5 +66,36 @@ class Case(unittest.TestCase):
         return [json.loads(line) for line in text.splitlines()]
 
 
-def main():
-    unittest.main(verbosity=1)
+class Together(unittest.TestSuite):
+    """Four cases at a time."""
+
+    def run(self, result, debug=False):
+        def alone(case):
+            own = unittest.TestResult()
+            case.run(own)
+            return own
+
+        with concurrent.futures.ThreadPoolExecutor(4) as pool:
+            for own in pool.map(alone, cases(self)):
+                result.testsRun += own.testsRun
+                for outcome in ("failures", "errors", "skipped", "expectedFailures", "unexpectedSuccesses"):
+                    getattr(result, outcome).extend(getattr(own, outcome))
+        return result
+
+
+def cases(suite):
+    for test in suite:
+        if isinstance(test, unittest.TestSuite):
+            yield from cases(test)
+        else:
+            yield test
+
+
+class TogetherRunner(unittest.TextTestRunner):
+    def run(self, test):
+        return super().run(Together(cases(test)))
+
+
+def main(together=False):
+    """`together`: for cases that wait for the clock more than they work."""
+    unittest.main(verbosity=1, testRunner=TogetherRunner if together else None)

@@ -2,6 +2,7 @@
 docs/line.md, not from the library: commands, answers, packets of 20 bytes with their prefix; robots that shake hands,
 drive in a rectangular room as soon as they are told, and see its walls."""
 
+import fcntl
 import math
 import os
 import select
@@ -20,6 +21,7 @@ class Robot:
         self.reachable = True
         self.deaf = False        # hears nothing
         self.silent = False      # says nothing
+        self.mumbles = False     # says that it is idle, but never where it is
         self.blocked_cm = None   # stops after so many cm
         self.busy_until = 0.0
         self.speed = 100.0       # cm/s
@@ -68,10 +70,10 @@ class Robot:
         for k in range(4):
             way = self.ray(self.heading + math.radians(90 * k + self.servo))
             seen.append(round(100 * way) if 0.05 <= way <= 0.8 else 0)
+        values = [round(100 * (c * dx + s * dy)), round(100 * (c * dy - s * dx)), degrees, self.servo, *seen]
         self.servo += self.step
         if self.servo in (0, 90):
             self.step = -self.step
-        values = [round(100 * (c * dx + s * dy)), round(100 * (c * dy - s * dx)), degrees, self.servo, *seen]
         return "{U," + ",".join(map(str, values)) + "}\n"
 
     def say(self, now):
@@ -84,7 +86,7 @@ class Robot:
             self.spoke = now
             return "{H,20,20,0,0,0,90,180,270,2000,0}\n"
         text = ""
-        if not self.paused and now - self.spoke >= 0.05:
+        if not self.paused and not self.mumbles and now - self.spoke >= 0.05:
             self.spoke = now
             text += self.update()
         if now >= self.busy_until and now - self.idled >= 0.5:
@@ -108,6 +110,8 @@ class Central:
         tty.setraw(self.slave)
         self.path = os.path.join(folder, link)
         os.makedirs(os.path.dirname(self.path), mode=0o700, exist_ok=True)
+        self.lock = os.open(self.path + ".lock", os.O_RDWR | os.O_CREAT, 0o600)
+        fcntl.flock(self.lock, fcntl.LOCK_EX)  # who serves a line holds it; a killed one does not
         os.symlink(os.ttyname(self.slave), self.path)
         self.over = False
         self.thread = threading.Thread(target=self.serve, daemon=True)
@@ -116,10 +120,10 @@ class Central:
     def close(self):
         self.over = True
         self.thread.join(5)
-        for file in (self.master, self.slave):
+        for file in (self.master, self.slave, self.lock):
             if file is not None:
                 os.close(file)
-        self.master = self.slave = None
+        self.master = self.slave = self.lock = None
 
     def unplug(self):
         """The device goes while programs have it open."""
@@ -131,6 +135,11 @@ class Central:
     def write(self, text):
         if not self.mute:
             os.write(self.master, text.encode())
+
+    def abandon(self):
+        """As if its program had been killed, and the terminal been given to another: link and lock file stay."""
+        os.close(self.lock)
+        self.lock = None
 
     def drop(self, robot):
         robot.linked = robot.confirmed = False

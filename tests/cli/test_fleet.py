@@ -159,12 +159,16 @@ class Goto(Line):
     def test_an_unknown_robot(self):
         _, err = self.tool("goto", "Nobody", "0", "0", code=1)
         self.assertIn("no robot 'Nobody'", err)
-        self.assertIn("AVR, Arduino", err)
+        self.assertIn("it finds AVR (index 0, address C00000000000), Arduino (index 1, address C00000000001)", err)
+        _, err = self.tool("pause", "AVR", "Nobody", code=1)
+        self.assertIn("it finds AVR (index 0", err)
+        self.assertFalse(self.avr.paused)
 
     def test_two_robots_of_one_name(self):
         self.arduino.name = "AVR"
         _, err = self.tool("goto", "AVR", "0", "0", code=2)
         self.assertIn("2 robots are called 'AVR'", err)
+        self.assertIn("AVR (index 0, address C00000000000), AVR (index 1, address C00000000001)", err)
         self.tool("goto", "C00000000001", "10", "0")
         self.assertEqual(self.arduino.heard[-1], "{U,10,0}")
 
@@ -214,6 +218,18 @@ class TheLine(Line):
         _, err = self.run_tool("robots", "--baud", "7", "--central", self.central.path, code=1)
         self.assertIn("no speed 7", err)
 
+    def test_a_link_that_a_killed_program_has_left(self):
+        # It may lead to a terminal of somebody else by now: not a byte goes there.
+        self.central.abandon()
+        for words in (["robots"], ["goto", "AVR", "0", "0"], ["pause", "AVR"], ["unpause", "AVR"], ["map", "a.svg"]):
+            _, err = self.tool(*words, code=1)
+            self.assertIn("there is no central at", err)
+            self.assertIn("amiroctl sim --robots 2", err)
+        self.assertEqual(self.central.commands, [])
+        # Whoever names it means it.
+        self.tool("robots", "--central", self.central.path, "--watch", "100ms")
+        self.assertIn("list", self.central.commands)
+
     def test_the_central_is_left_in_command_mode(self):
         self.tool("goto", "AVR", "0", "0")
         time.sleep(0.2)
@@ -243,4 +259,4 @@ class NoCentral(Case):
 
 
 if __name__ == "__main__":
-    main()
+    main(together=True)

@@ -145,17 +145,20 @@ TEST_CASE(
     const double seconds = expedition.explore(15min);
     REQUIRE(expedition.mapping->done());
     const auto result = expedition.result();
-    CHECK(seconds < 600);
+    // Of 60 seeds the slowest takes 262 s, the worst has precision 0.71 and recall 0.84: a robot that trusted
+    // its compass over steel. None of these is so bad.
+    CHECK(seconds < 300);
     CHECK(expedition.lost == 0);
-    CHECK(result.explored > 0.9);
+    CHECK(result.explored > 0.95);
     CHECK(result.precision > 0.8);
     CHECK(result.recall > 0.9);
     precision += result.precision / seeds;
     recall += result.recall / seeds;
     explored += result.explored / seeds;
   }
-  CHECK(precision > 0.9);
-  CHECK(recall > 0.95);
+  // Over 60 seeds 0.955, 0.991 and 0.98, and so within 0.02 over six.
+  CHECK(precision > 0.93);
+  CHECK(recall > 0.97);
   CHECK(explored > 0.97);
 }
 
@@ -172,7 +175,7 @@ TEST_CASE("line mapping: a robot that leaves the radio's range is called back be
     CHECK(expedition.worst < 700);
     // Packets get lost from 2 m on; at 4 m all are.
     CHECK(expedition.farthest_m > 2.0);
-    CHECK(expedition.farthest_m < 4.0);
+    CHECK(expedition.farthest_m < 3.6);
     // Home again, where the link is well.
     CHECK(expedition.server.fleet().call_back(0) == cognitive::Advice::stay);
   }
@@ -190,7 +193,7 @@ TEST_CASE("line mapping: without a call back the same robot drives on until its 
 
 // The figures of docs/cognitive.md: sim_tests "[.measure-mapping]"
 TEST_CASE("line mapping: measured", "[.measure-mapping]") {
-  constexpr int seeds = 20;
+  constexpr int seeds = 60;  // with 20 the means are off by 0.02
   const auto print = [](const char* what, std::vector<double> figures) {
     std::sort(figures.begin(), figures.end());
     double sum = 0;
@@ -198,11 +201,16 @@ TEST_CASE("line mapping: measured", "[.measure-mapping]") {
     std::printf("%-28s mean %7.3f, least %7.3f, most %7.3f\n", what,
                 sum / static_cast<double>(figures.size()), figures.front(), figures.back());
   };
-  for (const std::size_t robots : {1U, 2U}) {
+  struct Case {
+    std::size_t robots;
+    bool steel;
+  };
+  for (const auto [robots, steel] : {Case{1, true}, Case{2, true}, Case{1, false}, Case{2, false}}) {
     std::vector<double> seconds, precision, recall, explored;
     for (std::uint64_t seed = 101; seed < 101 + seeds; ++seed) {
       auto model = labyrinth();
       model.starts.resize(robots);
+      if (!steel) model.anomalies.clear();
       Expedition expedition{model, seed, options_for(model, true)};
       seconds.push_back(expedition.explore(30min));
       const auto result = expedition.result();
@@ -210,7 +218,8 @@ TEST_CASE("line mapping: measured", "[.measure-mapping]") {
       recall.push_back(result.recall);
       explored.push_back(result.explored);
     }
-    std::printf("labyrinth, %zu robots, %d seeds\n", robots, seeds);
+    std::printf("labyrinth, %zu robots, %s, %d seeds\n", robots, steel ? "magnetic anomalies" : "no anomaly",
+                seeds);
     print("seconds", seconds);
     print("precision", precision);
     print("recall", recall);
