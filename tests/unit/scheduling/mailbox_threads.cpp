@@ -51,5 +51,3 @@ TEST_CASE("mailbox: two threads: whole items, in order, each taken or counted", 
   CHECK(last == items);
   CHECK(taken + box.lost() == items);
 }
-
-}  // namespace
