@@ -1,5 +1,6 @@
 // What a robot or a server may hear: a sentence is taken exactly as it would be written; each opening brace
-// has one outcome; after any noise the next sentence is heard.
+// has one outcome; after any noise the next sentence is heard; and in blocks all is as character by
+// character.
 #include "ocm/line/reader.hpp"
 
 #include "tests/fuzz/fuzz.hpp"
@@ -60,10 +61,41 @@ void check(Direction direction, std::string_view stream) {
   fuzz::expect(heard, "after any noise the next sentence is heard");
 }
 
+/// Blocks of `size`, so that sentences lie within and across them.
+void check_blocks(Direction direction, std::string_view stream, std::size_t size) {
+  line::Reader blocks{direction};
+  line::Reader characters{direction};
+  while (!stream.empty()) {
+    std::string_view block = stream.substr(0, size);
+    stream.remove_prefix(block.size());
+    while (!block.empty()) {
+      const std::string_view before = block;
+      const Kind kind = blocks.feed(block);
+      Kind same = Kind::none;
+      for (const char c : before.substr(0, before.size() - block.size())) {
+        fuzz::expect(same == Kind::none, "a block ends where a sentence does");
+        same = characters.feed(c);
+      }
+      fuzz::expect(kind == same, "a block completes what its characters do");
+      if (kind != Kind::none)
+        fuzz::expect(blocks.sentence().count == characters.sentence().count &&
+                         blocks.sentence().integers == characters.sentence().integers,
+                     "with the same integers");
+      fuzz::expect(blocks.faults() == characters.faults() && blocks.heard() == characters.heard() &&
+                       blocks.stray() == characters.stray() &&
+                       blocks.mid_sentence() == characters.mid_sentence(),
+                   "and the same counts");
+    }
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   check(Direction::to_robot, fuzz::text_of(data, size));
   check(Direction::from_robot, fuzz::text_of(data, size));
+  check_blocks(Direction::from_robot, fuzz::text_of(data, size), size);
+  check_blocks(Direction::from_robot, fuzz::text_of(data, size), 61);
+  check_blocks(Direction::to_robot, fuzz::text_of(data, size), size);
   return 0;
 }
