@@ -149,9 +149,12 @@ void add_central(CLI::App& app, Session&, int& exit_code) {
       fail({fmt::format("central: a serial line has no speed {} here", options->baud),
             fmt::format("the nearest is {}", nearest)},
            exit_usage);
+    std::error_code error;
+    for (const RobotLine& robot : lines.robots)
+      if (!std::filesystem::exists(robot.path, error))
+        remark(fmt::format("no {} yet; {} is looked for while the central scans", robot.path, robot.name));
     if (lines.robots.empty()) {
       lines.folder = transport::robot_lines();
-      std::error_code error;
       if (!std::filesystem::exists(lines.folder, error) || std::filesystem::is_empty(lines.folder, error))
         remark(fmt::format("no robots in {} yet; each `start` looks again. --robot NAME=PATH names one",
                            lines.folder));

@@ -212,7 +212,7 @@ class OnSerialLines(Case):
             talk.type("list\n")
             time.sleep(0.1)
         self.assertIn("0:020000000000:AVR", talk.said)
-        talk.end()
+        self.assertIn(f"no {link} yet; AVR is looked for", talk.end())
 
     def test_garbage_and_all_bytes(self):
         robot = self.robot()

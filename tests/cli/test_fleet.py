@@ -111,13 +111,17 @@ class Goto(Line):
         time.sleep(0.3)
         self.assertEqual(self.avr.heard[-1], "{U,0,0}")
 
-    def test_interrupted_it_stops_the_robot(self):
-        self.avr.speed = 1
+    def on_the_way(self):
         tool = self.start("goto", "AVR", "0", "50", "--scan", "200ms")
         for _ in range(100):
             time.sleep(0.1)
             if "{U,0,50}" in self.avr.heard:
                 break
+        return tool
+
+    def test_interrupted_it_stops_the_robot(self):
+        self.avr.speed = 1
+        tool = self.on_the_way()
         self.interrupt(tool)
         self.assertEqual(tool.returncode, 130)
         time.sleep(0.3)
@@ -125,11 +129,7 @@ class Goto(Line):
 
     def test_the_link_is_lost_on_the_way(self):
         self.avr.speed = 1
-        tool = self.start("goto", "AVR", "0", "50", "--scan", "200ms")
-        for _ in range(100):
-            time.sleep(0.1)
-            if "{U,0,50}" in self.avr.heard:
-                break
+        tool = self.on_the_way()
         self.central.drop(self.avr)
         _, err = tool.communicate(timeout=10)
         self.assertEqual(tool.returncode, 1)
@@ -137,11 +137,7 @@ class Goto(Line):
 
     def test_a_robot_that_falls_silent(self):
         self.avr.speed = 1
-        tool = self.start("goto", "AVR", "0", "50", "--scan", "200ms")
-        for _ in range(100):
-            time.sleep(0.1)
-            if "{U,0,50}" in self.avr.heard:
-                break
+        tool = self.on_the_way()
         self.avr.silent = True
         _, err = tool.communicate(timeout=10)
         self.assertEqual(tool.returncode, 1)
