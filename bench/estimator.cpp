@@ -1,4 +1,4 @@
-// One step of the line robot's pose estimator on this machine, in ns: readings of a robot that drives, turns
+// One step of the mapper's pose estimator on this machine, in ns: readings of a robot that drives, turns
 // and stands in turn, each step from the state of the last.
 #include <cmath>
 #include <cstdio>

@@ -1,6 +1,6 @@
-/// What a fleet of line robots costs in virtual time: world, applications, dongles, radio and central, with
+/// What a fleet of mappers costs in virtual time: world, applications, dongles, radio and central, with
 /// every robot linked, confirmed, driving and sending. Processor time, so that other load does not count.
-#include "firmware/sim/line/fleet.hpp"
+#include "sim/mapper/fleet.hpp"
 
 #include <cmath>
 #include <cstdio>
@@ -11,7 +11,7 @@
 
 using namespace ocm;
 using namespace std::chrono_literals;
-namespace plant = ocm::firmware::sim::line;
+namespace plant = ocm::sim::mapper;
 
 namespace {
 
@@ -25,7 +25,7 @@ double processor_s() {
 plant::WorldModel room(std::size_t robots) {
   const double half = 1 + std::sqrt(static_cast<double>(robots));
   plant::WorldModel model;
-  const firmware::sim::Vector corners[] = {{-half, -half}, {half, -half}, {half, half}, {-half, half}};
+  const sim::Vector corners[] = {{-half, -half}, {half, -half}, {half, half}, {-half, half}};
   for (std::size_t i = 0; i < 4; ++i) model.walls.push_back({corners[i], corners[(i + 1) % 4]});
   const auto side = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(robots))));
   for (std::size_t i = 0; i < robots; ++i)

@@ -12,7 +12,7 @@
 #include "ocm/base/decimal.hpp"
 
 #include "cli/session.hpp"
-#include "cli/spec/names.hpp"
+#include "generator/spec/names.hpp"
 
 namespace ocm::cli {
 namespace {

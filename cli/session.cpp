@@ -16,7 +16,7 @@
 #include "ocm/transport/virtual_bus.hpp"
 
 #include "cli/config.hpp"
-#include "cli/generate/robot_spec.hpp"
+#include "generator/robot_spec.hpp"
 
 namespace ocm::cli {
 

@@ -14,7 +14,7 @@
 #include "ocm/protocol/topic.hpp"
 #include "ocm/transport/bus.hpp"
 
-#include "cli/spec/spec.hpp"
+#include "generator/spec/spec.hpp"
 
 namespace ocm::cli {
 

@@ -7,14 +7,14 @@
 
 namespace ocm::cli {
 
-void Timeline::carry_out(const reflective::Command& command) {
+void Timeline::carry_out(const client::Command& command) {
   for (const auto& frame : command.frames) send_patiently(*bus_, frame);
   if (command.ends_hold) held_.reset();
   if (!command.hold) return;
   const auto now = Clock::now();
   const auto& hold = *command.hold;
   const auto end = hold.lasting.count() > 0 ? now + hold.lasting : Clock::time_point::max();
-  held_ = Held{hold, now + reflective::hold_period, end};
+  held_ = Held{hold, now + client::hold_period, end};
 }
 
 void Timeline::rest() {
@@ -31,7 +31,7 @@ bool Timeline::wait(Clock::time_point until) {
     if (held_ && now >= held_->end) rest();
     if (held_ && now >= held_->next) {
       send_patiently(*bus_, held_->hold.frame);
-      held_->next += reflective::hold_period;  // absolute: no drift
+      held_->next += client::hold_period;  // absolute: no drift
     }
     if (now >= until) return true;
     auto wake = until;

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "ocm/can/bus.hpp"
-#include "ocm/reflective/command.hpp"
+#include "ocm/client/command.hpp"
 #include "ocm/transport/bus.hpp"
 
 #include "cli/session.hpp"
@@ -22,7 +22,7 @@ class Timeline {
       : bus_(&bus), on_receive_(std::move(on_receive)) {}
 
   /// Sends a command's frames and takes over, or ends, its hold.
-  void carry_out(const reflective::Command& command);
+  void carry_out(const client::Command& command);
   /// Waits until `until`, repeating and receiving. False: a signal came first.
   [[nodiscard]] bool wait(Clock::time_point until);
   /// Until the hold is over by itself (drive --for) or a signal comes. False: a signal.
@@ -32,7 +32,7 @@ class Timeline {
 
  private:
   struct Held {
-    reflective::Hold hold;
+    client::Hold hold;
     Clock::time_point next;
     Clock::time_point end;
   };

@@ -16,7 +16,7 @@ The program that makes it runs on the machine that builds, whatever is being bui
 # Sets in the caller's scope: ocm_generator, the command; ocm_generator_depends, what must be built before.
 function(_ocm_find_generator)
   set(depends "")
-  set(host_project ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../cli/generate/host)
+  set(host_project ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../generator/host)
   if(OCM_GENERATE)
     get_filename_component(generator "${OCM_GENERATE}" ABSOLUTE BASE_DIR ${CMAKE_BINARY_DIR})
     if(NOT EXISTS ${generator})

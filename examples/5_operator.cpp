@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "ocm/reflective/robot.hpp"
+#include "ocm/client/robot.hpp"
 #include "ocm/topics/amiro.hpp"
 #include "ocm/transport/socketcan.hpp"
 #include "ocm/transport/virtual_bus.hpp"
@@ -13,7 +13,7 @@ using namespace std::chrono_literals;
 
 int listen(transport::Bus& bus) {
   // snippet: operator
-  reflective::Robot robot{bus, amiro::catalogue};
+  client::Robot robot{bus, amiro::catalogue};
   if (!robot.publish<amiro::Gyroscope>(100ms, protocol::Priority::high)) return 1;
   for (int count = 0; count < 5; ++count) {
     const auto sample = robot.next(1s);

@@ -1,4 +1,4 @@
-/// What each of a line robot's sensors has a part in: the square of thesis 2, table 13.1, by the whole
+/// What each of a mapper's sensors has a part in: the square of thesis 2, table 13.1, by the whole
 /// application in virtual time, and what five estimators make of the very same drives. docs/motion.md tells
 /// what is seen.
 ///
@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/sim/line_square.hpp"
+#include "tests/sim/mapper_square.hpp"
 
 using namespace ocm;
 using namespace ocm::square;
@@ -69,7 +69,7 @@ void table(const std::vector<Outcome>& outcomes) {
   std::printf("  %-38s %19s %8s %8s %21s\n", "", "position, cm", "x, cm", "y, cm", "heading, degrees");
   std::printf("  %-38s %9s %9s %8s %8s %10s %10s\n", "", "median", "90 %", "median", "median", "median",
               "90 %");
-  const auto all = variants(controller::avr_robot);
+  const auto all = variants(mapper::app::avr_robot);
   for (std::size_t i = 0; i < variant_count; ++i)
     std::printf("  %-38s %9.1f %9.1f %8.1f %8.1f %10.2f %10.2f\n", all[i].name,
                 100 * position_of(outcomes, i, 0.5), 100 * position_of(outcomes, i, 0.9),
@@ -96,7 +96,7 @@ std::string panel(const std::string& data, const char* title, const char* unit, 
   constexpr std::array colours{"#999999", "#E69F00", "#D55E00", "#0072B2", "#009E73"};
   std::string text =
       std::string{"set title '"} + title + "'\nset ylabel '" + unit + "'\nset yrange " + range + "\nplot ";
-  const auto all = variants(controller::avr_robot);
+  const auto all = variants(mapper::app::avr_robot);
   for (std::size_t i = 0; i < variant_count; ++i)
     text.append(i == 0 ? "" : ", ")
         .append("$" + data + " using 1:" + std::to_string(i + 2) + " with lines lw 2 lc rgb '")
@@ -123,7 +123,7 @@ int main(int argc, char** argv) {
     std::vector<Outcome> outcomes;
     Curves curves;
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-      Drive drive{places[n].world, seed, controller::avr_robot};
+      Drive drive{places[n].world, seed, mapper::app::avr_robot};
       drive.square(stand);
       outcomes.push_back(outcome_of(drive));
       follow(drive, curves);
@@ -166,7 +166,7 @@ int main(int argc, char** argv) {
         quantile(took, 0.5));
   };
   const auto avr = [](std::uint64_t seed) {
-    return std::make_unique<Drive>(open_room(), seed, controller::avr_robot);
+    return std::make_unique<Drive>(open_room(), seed, mapper::app::avr_robot);
   };
   for (const auto& [name, rest] : {std::pair{"no rest", 0s},
                                    {"rests of 2 s", 2s},
@@ -178,20 +178,21 @@ int main(int argc, char** argv) {
   own("seeds 1001 to 1100", stand, 1001, avr);
   own("seeds 2001 to 2100", stand, 2001, avr);
   own("its compass calibrated by itself", stand, 1, [](std::uint64_t seed) {
-    const auto offset = offset_by_turning(open_room(), seed, controller::avr_robot);
-    return std::make_unique<Drive>(open_room(), seed, controller::calibrated(controller::avr_robot, *offset),
+    const auto offset = offset_by_turning(open_room(), seed, mapper::app::avr_robot);
+    return std::make_unique<Drive>(open_room(), seed,
+                                   mapper::app::calibrated(mapper::app::avr_robot, *offset),
                                    Drive::Compass::as_in_model);
   });
   own("Arduino robot", stand, 1, [](std::uint64_t seed) {
     WorldModel room = open_room();
     room.starts = {{"Arduino", RobotKind::arduino, {}}};
-    return std::make_unique<Drive>(room, seed, controller::arduino_robot);
+    return std::make_unique<Drive>(room, seed, mapper::app::arduino_robot);
   });
 
   std::printf("where the robot really is, from the ideal square, when it says idle\n");
   std::vector<Row> off_m(legs.size()), off_rad(legs.size());
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-    Drive drive{open_room(), seed, controller::avr_robot};
+    Drive drive{open_room(), seed, mapper::app::avr_robot};
     drive.square(stand);
     for (std::size_t leg = 0; leg < legs.size(); ++leg) {
       const Pose off = relative(drive.idle()[leg], ideal_after(leg + 1));

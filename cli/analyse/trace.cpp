@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "ocm/measure/bus_load.hpp"
 #include "ocm/protocol/request.hpp"
-#include "ocm/reflective/bus_load.hpp"
 
 #include "cli/analyse/report.hpp"
 #include "cli/logs/opened_log.hpp"
@@ -71,7 +71,7 @@ Log read_log(const std::string& file, const protocol::Catalogue& catalogue) {
       } else {
         const std::int64_t time = entry.time.time_since_epoch().count();
         if (!log.arrivals.empty() && time < log.arrivals.back().time) ++backwards;
-        log.arrivals.push_back({time, reflective::bits_on_bus(*frame), *frame});
+        log.arrivals.push_back({time, measure::bits_on_bus(*frame), *frame});
       }
     }
   }

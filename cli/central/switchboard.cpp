@@ -28,7 +28,7 @@ constexpr base::Duration scan_period = 250ms;
 constexpr base::Duration farewell = 300ms;
 
 /// Locally administered. [IEEE 802, the second bit]
-line::Address address_of(std::size_t number) {
+mapper::link::Address address_of(std::size_t number) {
   return {0x02, 0, 0, 0, static_cast<std::uint8_t>(number >> 8), static_cast<std::uint8_t>(number)};
 }
 
@@ -52,7 +52,7 @@ void Switchboard::add(RobotLine robot) {
   wire->address = address_of(wires_.size());
   wires_.push_back(std::move(wire));
 }
-Switchboard::Wire& Switchboard::wire(const line::Address& address) {
+Switchboard::Wire& Switchboard::wire(const mapper::link::Address& address) {
   return *wires_[static_cast<std::size_t>(address[4] << 8 | address[5])];
 }
 
@@ -177,9 +177,10 @@ void Switchboard::read(Wire& wire, base::Time now) {
   if (wire.cutter.begun() != 0 && now - wire.last_byte >= silence) hand_over(wire);
 }
 void Switchboard::hand_over(Wire& wire) {
-  const line::Packet packet = wire.cutter.take();
+  const mapper::link::Packet packet = wire.cutter.take();
   ++wire.from_it;
-  if (output_.size() + packet.size + line::write_prefix(255, wire.robot.name).view().size() > max_output)
+  if (output_.size() + packet.size + mapper::link::write_prefix(255, wire.robot.name).view().size() >
+      max_output)
     ++wire.unheard;
   else
     central_->heard(wire.address, packet.bytes(), *this);
@@ -224,7 +225,7 @@ void Switchboard::print_summary() const {
     if (wire->unsent != 0) text += fmt::format(", {} bytes not sent", wire->unsent);
     remark(text);
   }
-  const line::CentralCounters& counters = central_->counters();
+  const mapper::link::CentralCounters& counters = central_->counters();
   std::string text;
   const auto add = [&text](std::uint64_t count, std::string_view what) {
     if (count != 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "ocm/base/time.hpp"
-#include "ocm/line/central.hpp"
+#include "ocm/mapper/link/central.hpp"
 #include "ocm/simulation/dongle.hpp"
 #include "ocm/transport/serial_port.hpp"
 
@@ -57,19 +57,19 @@ class Switchboard {
   /// On stderr, what went where and what did not.
   void print_summary() const;
 
-  // --- as the central's port (line::CentralPort); not for others ---
+  // --- as the central's port (mapper::link::CentralPort); not for others ---
   void say(std::string_view text) { output_ += text; }
   void start_scan();
   void stop_scan() { scanning_ = false; }
-  void connect(const line::Address& address) { wire(address).wish = Wish::open; }
-  void disconnect(const line::Address& address) { wire(address).wish = Wish::close; }
+  void connect(const mapper::link::Address& address) { wire(address).wish = Wish::open; }
+  void disconnect(const mapper::link::Address& address) { wire(address).wish = Wish::close; }
   void restart();
 
  private:
   enum class Wish : std::uint8_t { none, open, close };
   struct Wire {
     RobotLine robot;
-    line::Address address{};
+    mapper::link::Address address{};
     transport::SerialPort port{};
     Wish wish = Wish::none;
     base::Time close_at{};  ///< of a wish to close: what is under way has until then
@@ -80,10 +80,10 @@ class Switchboard {
     std::uint64_t unheard = 0;                        ///< packets that the server did not read
     std::uint64_t unsent = 0;  ///< bytes that its line did not take before it was closed
   };
-  using Central = line::Central<max_robots, max_robots, 64>;
+  using Central = mapper::link::Central<max_robots, max_robots, 64>;
 
   void add(RobotLine robot);
-  [[nodiscard]] Wire& wire(const line::Address& address);
+  [[nodiscard]] Wire& wire(const mapper::link::Address& address);
   void look_for_robots();
   void settle(Wire& wire, base::Time now);
   void open(Wire& wire);

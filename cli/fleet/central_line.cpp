@@ -18,8 +18,8 @@ namespace ocm::cli::fleet {
 namespace {
 
 using namespace std::chrono_literals;
-using cognitive::CentralEvent;
-using cognitive::Peer;
+using mapper::server::CentralEvent;
+using mapper::server::Peer;
 
 /// How long a robot may take from its link to its first word: it measures its gyro first.
 constexpr base::Duration first_word = 8s;
@@ -124,7 +124,7 @@ void CentralLine::exchange() {
       fail({fmt::format("{}: {}", verb_, failure.what), failure.remedy});
     }
     if (*size == 0) break;
-    server_.feed({room.data(), *size}, now(), [this](std::size_t robot, line::Kind kind) {
+    server_.feed({room.data(), *size}, now(), [this](std::size_t robot, mapper::link::Kind kind) {
       if (heard_) heard_(robot, kind);
     });
   }
@@ -216,15 +216,16 @@ std::vector<unsigned> CentralLine::connect(const std::vector<std::string>& names
   std::erase_if(wanted, [this](unsigned index) { return !fleet().robot(index).linked; });
   if (wanted.empty()) fail({fmt::format("{}: no robot could be connected", verb_), "are they near enough?"});
   (void)wait(first_word, [&] {
-    return std::all_of(wanted.begin(), wanted.end(),
-                       [this](unsigned index) { return fleet().robot(index).last != line::Kind::none; });
+    return std::all_of(wanted.begin(), wanted.end(), [this](unsigned index) {
+      return fleet().robot(index).last != mapper::link::Kind::none;
+    });
   });
   return wanted;
 }
 
 unsigned CentralLine::connect_one(const std::string& name) {
   const unsigned index = connect({name}).front();
-  if (fleet().robot(index).last == line::Kind::none)
+  if (fleet().robot(index).last == mapper::link::Kind::none)
     fail({fmt::format("{}: {} has a link, but says nothing", verb_, name),
           "switch it off and on: its program may hang"});
   return index;

@@ -1,4 +1,4 @@
-/// The central's serial line, a server behind it, and real time: what the verbs for line robots have in
+/// The central's serial line, a server behind it, and real time: what the verbs for mappers have in
 /// common. One program at a time has the line; links stay up when it ends.
 #pragma once
 
@@ -37,7 +37,9 @@ class CentralLine {
   ~CentralLine();
 
   /// Everything that the robots say is told to it, too.
-  void on_heard(std::function<void(std::size_t robot, line::Kind kind)> heard) { heard_ = std::move(heard); }
+  void on_heard(std::function<void(std::size_t robot, mapper::link::Kind kind)> heard) {
+    heard_ = std::move(heard);
+  }
 
   /// Listens and speaks until `done`, or for `limit`, or until a signal comes. Whether it was done.
   bool run(std::optional<base::Duration> limit, const std::function<bool()>& done);
@@ -47,7 +49,7 @@ class CentralLine {
   void flush(base::Duration limit);
 
   /// All robots that the central finds: those that it has listed, and those that advertise.
-  const std::vector<cognitive::Peer>& scan();
+  const std::vector<mapper::server::Peer>& scan();
   /// Links to the robots that are meant, by name, address or index; `all` or nothing: to all that there are.
   /// One that is not there ends the command; one of several that cannot be reached is told.
   std::vector<unsigned> connect(const std::vector<std::string>& names);
@@ -74,9 +76,9 @@ class CentralLine {
   base::Duration scan_{};
   transport::SerialPort port_;
   cognitive::Server server_;
-  std::function<void(std::size_t, line::Kind)> heard_;
+  std::function<void(std::size_t, mapper::link::Kind)> heard_;
   std::string unsent_;
-  std::vector<cognitive::CentralEvent> failed_;
+  std::vector<mapper::server::CentralEvent> failed_;
 };
 
 }  // namespace ocm::cli::fleet

@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "cli/generate/output_file.hpp"
 #include "cli/plot/gnuplot.hpp"
+#include "generator/output_file.hpp"
 
 namespace ocm::cli::fleet {
 namespace {

@@ -114,9 +114,9 @@ void McapSamples::put(log::Bytes& out, log::mcap::Container& container, const lo
   if (heard_.size() <= entry.interface) heard_.resize(entry.interface + std::size_t{1});
   auto& heard = heard_[entry.interface];
   if (heard == nullptr) heard = std::make_unique<Heard>(*catalogue_);
-  const reflective::Reception reception = understand(heard->receiver, entry);
-  const bool is_sample = reception.meaning == reflective::Meaning::sample;
-  if (!is_sample && reception.meaning != reflective::Meaning::set_point) return;
+  const client::Reception reception = understand(heard->receiver, entry);
+  const bool is_sample = reception.meaning == client::Meaning::sample;
+  if (!is_sample && reception.meaning != client::Meaning::set_point) return;
 
   const protocol::Topic& topic = *reception.topic;
   const TopicText& text = topics_[static_cast<std::size_t>(&topic - catalogue_->topics.data())];

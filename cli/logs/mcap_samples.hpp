@@ -12,12 +12,12 @@
 #include <string_view>
 #include <vector>
 
+#include "ocm/client/sample.hpp"
 #include "ocm/log/bytes.hpp"
 #include "ocm/log/entry.hpp"
 #include "ocm/log/interfaces.hpp"
 #include "ocm/log/mcap_container.hpp"
 #include "ocm/protocol/topic.hpp"
-#include "ocm/reflective/sample.hpp"
 
 #include "cli/output/field_text.hpp"
 
@@ -53,7 +53,7 @@ class McapSamples {
   struct Heard {
     explicit Heard(const protocol::Catalogue& catalogue)
         : receiver(catalogue), channels(catalogue.topics.size()) {}
-    reflective::Receiver receiver;
+    client::Receiver receiver;
     std::vector<std::uint16_t> channels;  // by number of the topic; 0: not written yet
   };
 

@@ -31,8 +31,8 @@ char* put_text(char* to, std::string_view text) {
 }
 
 /// The frame's layout and data; nothing when it is no data of a topic.
-const protocol::FrameLayout* layout_of(const reflective::Reception& reception) {
-  using reflective::Meaning;
+const protocol::FrameLayout* layout_of(const client::Reception& reception) {
+  using client::Meaning;
   const bool data = reception.meaning == Meaning::part || reception.meaning == Meaning::sample ||
                     reception.meaning == Meaning::set_point;
   return data ? &reception.frame.layout() : nullptr;

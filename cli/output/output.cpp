@@ -2,9 +2,9 @@
 
 namespace ocm::cli {
 
-reflective::Reception understand(reflective::Receiver& receiver, const log::Entry& entry) {
+client::Reception understand(client::Receiver& receiver, const log::Entry& entry) {
   const auto frame = entry.classic();
-  return frame ? receiver.take({entry.time, *frame}) : reflective::Reception{};
+  return frame ? receiver.take({entry.time, *frame}) : client::Reception{};
 }
 
 std::unique_ptr<Output> make_output(Format format, const protocol::Catalogue& catalogue,

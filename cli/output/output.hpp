@@ -8,10 +8,10 @@
 
 #include <fmt/format.h>
 
+#include "ocm/client/sample.hpp"
 #include "ocm/log/bytes.hpp"
 #include "ocm/log/entry.hpp"
 #include "ocm/protocol/topic.hpp"
-#include "ocm/reflective/sample.hpp"
 
 #include "cli/output/selection.hpp"
 
@@ -21,7 +21,7 @@ namespace ocm::cli {
 struct Event {
   std::string_view bus;
   const log::Entry& entry;
-  const reflective::Reception& reception;
+  const client::Reception& reception;
 };
 
 using Buffer = log::Bytes;
@@ -40,7 +40,7 @@ void append_formatted(Buffer& out, fmt::format_string<Arguments...> text, Argume
 }
 
 /// What an entry means; the receiver counts all but CAN FD frames, of which it knows nothing.
-[[nodiscard]] reflective::Reception understand(reflective::Receiver& receiver, const log::Entry& entry);
+[[nodiscard]] client::Reception understand(client::Receiver& receiver, const log::Entry& entry);
 
 /// Writes events as text into a buffer, which `Printer` empties.
 class Output {

@@ -9,8 +9,8 @@
 
 #include "ocm/can/error_frame.hpp"
 #include "ocm/can/text.hpp"
+#include "ocm/client/quantity.hpp"
 #include "ocm/protocol/request.hpp"
-#include "ocm/reflective/quantity.hpp"
 
 #include "cli/output/field_text.hpp"
 #include "cli/output/output.hpp"
@@ -56,7 +56,7 @@ class Pretty final : public Output {
   }
 
   bool write(Buffer& out, const Event& event) override {
-    using reflective::Meaning;
+    using client::Meaning;
     const Meaning meaning = event.reception.meaning;
     if (meaning == Meaning::part) return false;
     const bool data = meaning == Meaning::sample || meaning == Meaning::set_point;
@@ -245,7 +245,7 @@ class Pretty final : public Output {
         break;
       case protocol::Mode::publish:
         out.append("publish every ");
-        out.append(reflective::to_text(frame.dlc == 1 ? topic.period : request->period));
+        out.append(client::to_text(frame.dlc == 1 ? topic.period : request->period));
         break;
     }
   }

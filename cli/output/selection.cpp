@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "ocm/reflective/command.hpp"
+#include "ocm/client/command.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -48,10 +48,10 @@ transport::Outcome<Selection> Selection::of(const protocol::Catalogue& catalogue
     if (found) continue;
     if (!topic_found)
       return transport::Failure{"no topic '" + std::string{of_topic} + "'",
-                                reflective::detail::suggestion(of_topic, reflective::topic_words(catalogue))};
+                                client::detail::suggestion(of_topic, client::topic_words(catalogue))};
     const std::vector<std::string_view> candidates{names.begin(), names.end()};
     return transport::Failure{"no field '" + std::string{word} + "'",
-                              reflective::detail::suggestion(word, candidates)};
+                              client::detail::suggestion(word, candidates)};
   }
   return selection;
 }

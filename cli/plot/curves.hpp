@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "ocm/log/entry.hpp"
+#include "ocm/measure/envelope.hpp"
 #include "ocm/protocol/topic.hpp"
-#include "ocm/reflective/envelope.hpp"
 #include "ocm/transport/bus.hpp"
 
 #include "cli/output/selection.hpp"
@@ -32,7 +32,7 @@ struct Wanted {
 
 struct Curve {
   Wanted wanted;
-  reflective::Envelope envelope;
+  measure::Envelope envelope;
   std::optional<double> x;  ///< the newest
 };
 

@@ -7,7 +7,7 @@
 
 #include "ocm/base/time.hpp"
 #include "ocm/log/entry.hpp"
-#include "ocm/reflective/bus_load.hpp"
+#include "ocm/measure/bus_load.hpp"
 
 namespace ocm::cli::record {
 
@@ -15,7 +15,7 @@ class BusLoad {
  public:
   void add(const log::Entry& entry) noexcept {
     const auto frame = entry.classic();
-    if (frame && frame->format != can::Format::error) bits_ += reflective::bits_on_bus(*frame);
+    if (frame && frame->format != can::Format::error) bits_ += measure::bits_on_bus(*frame);
   }
   /// 0..1 since the last call, over the time that has passed since; 0 where the bit rate is not known.
   [[nodiscard]] double take(base::Duration passed, std::uint32_t bit_rate) noexcept {

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "ocm/base/decimal.hpp"
-#include "ocm/reflective/quantity.hpp"
+#include "ocm/client/quantity.hpp"
 #include "ocm/transport/descriptor.hpp"
 
 namespace ocm::cli::record {
@@ -51,7 +51,7 @@ Claimed claim(const std::string& path) {
 }
 
 std::uint64_t parse_size(std::string_view text) {
-  const auto quantity = reflective::parse_quantity(text);
+  const auto quantity = client::parse_quantity(text);
   if (!quantity || quantity->number.digits <= 0) return 0;
   std::string_view unit = quantity->unit;
   if (unit.ends_with('B')) unit.remove_suffix(1);

@@ -13,7 +13,7 @@ StandIn::StandIn(const protocol::Catalogue& catalogue)
 
 bool StandIn::learn(const can::Frame& frame) {
   const auto reception = receiver_.take({{}, frame});
-  if (reception.meaning != reflective::Meaning::sample) return true;
+  if (reception.meaning != client::Meaning::sample) return true;
   const auto& payloads = reception.sample.payloads;
   if (frames_ + payloads.size() > most_frames) return false;
   auto& recorded = recordings_[index(*reception.topic)].payloads;

@@ -10,8 +10,8 @@
 #include "ocm/base/time.hpp"
 #include "ocm/can/bus.hpp"
 #include "ocm/can/frame.hpp"
+#include "ocm/client/sample.hpp"
 #include "ocm/protocol/topic.hpp"
-#include "ocm/reflective/sample.hpp"
 #include "ocm/scheduling/publisher.hpp"
 
 namespace ocm::cli::replay {
@@ -56,7 +56,7 @@ class StandIn {
   }
 
   const protocol::Catalogue* catalogue_;
-  reflective::Receiver receiver_;
+  client::Receiver receiver_;
   protocol::FrameIndex index_;
   std::vector<Recording> recordings_;
   std::unique_ptr<scheduling::Publisher<most_topics>> publisher_;

@@ -7,7 +7,7 @@ Collector::Part& Collector::find(std::string_view name) {
   for (Part& part : parts_)
     if (part.name == name) return *(last_ = &part);
   return *(last_ = &parts_.emplace_back(
-               Part{std::string{name}, reflective::BusStatistics{*catalogue_, bit_rate_}, 0}));
+               Part{std::string{name}, measure::BusStatistics{*catalogue_, bit_rate_}, 0}));
 }
 
 void Collector::take(std::span<const log::Entry> entries, const log::Interfaces& interfaces) {

@@ -12,14 +12,14 @@
 #include "ocm/base/time.hpp"
 #include "ocm/log/entry.hpp"
 #include "ocm/log/interfaces.hpp"
+#include "ocm/measure/statistics.hpp"
 #include "ocm/protocol/topic.hpp"
-#include "ocm/reflective/statistics.hpp"
 
 namespace ocm::cli::stats {
 
 struct Bus {
   std::string name;
-  reflective::BusFigures figures;
+  measure::BusFigures figures;
   std::uint64_t drops = 0;  ///< frames that were on the bus and did not arrive
 };
 
@@ -45,7 +45,7 @@ class Collector {
  private:
   struct Part {
     std::string name;
-    reflective::BusStatistics statistics;
+    measure::BusStatistics statistics;
     std::uint64_t drops = 0;
   };
   Part& find(std::string_view name);

@@ -9,19 +9,19 @@
 
 #include "ocm/base/text.hpp"
 #include "ocm/can/text.hpp"
+#include "ocm/client/diagnosis.hpp"
+#include "ocm/client/quantity.hpp"
 #include "ocm/log/complaints.hpp"
-#include "ocm/reflective/diagnosis.hpp"
-#include "ocm/reflective/quantity.hpp"
 
 #include "cli/output/csv_cell.hpp"
 
 namespace ocm::cli::stats {
 namespace {
 
-using reflective::BusFigures;
-using reflective::PeriodFrom;
-using reflective::Timing;
-using reflective::TopicFigures;
+using measure::BusFigures;
+using measure::PeriodFrom;
+using measure::Timing;
+using measure::TopicFigures;
 
 std::string time(double ns) {
   return to_text(ns, Unit::time);
@@ -101,7 +101,7 @@ Row row(const TopicFigures& topic, base::Time first) {
           faults};
 }
 
-std::string id_text(const reflective::Stranger& stranger) {
+std::string id_text(const measure::Stranger& stranger) {
   std::string text{can::to_text(can::Frame{stranger.id, 0, {}, stranger.format}).view()};
   // "655#" and "655#R": a remote frame is another than the data frame of its identifier.
   return text.ends_with('#') ? text.substr(0, text.size() - 1) : text;
@@ -125,14 +125,14 @@ std::vector<std::string> summary(const Bus& bus) {
   std::vector<std::string> lines;
   lines.push_back(fmt::format(
       "{}: {} in {} ({}); load {} at {} kbit/s, {} in the worst 100 ms, until {}",
-      log::Complaints::printable(bus.name), reflective::count(counters.frames - counters.errors, "frame*"),
+      log::Complaints::printable(bus.name), client::count(counters.frames - counters.errors, "frame*"),
       time(figures.span().count()), to_text(figures.rate_hz, Unit::hertz),
       to_text(figures.load * 100, Unit::percent), figures.bit_rate / 1000.0,
       to_text(figures.worst_load * 100, Unit::percent), time((figures.worst_until - figures.first).count())));
   std::string faults;
   const auto fault = [&faults](std::uint64_t count, std::string_view what) {
     if (count == 0) return;
-    faults += fmt::format("{}{}", faults.empty() ? "" : ", ", reflective::count(count, what));
+    faults += fmt::format("{}{}", faults.empty() ? "" : ", ", client::count(count, what));
   };
   fault(counters.errors, "error frame*");
   fault(figures.overflows, "overflow* of the CAN controller");

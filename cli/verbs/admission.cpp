@@ -15,11 +15,11 @@
 #include "ocm/analysis/utilisation.hpp"
 #include "ocm/can/length.hpp"
 #include "ocm/can/text.hpp"
+#include "ocm/client/diagnosis.hpp"
+#include "ocm/client/quantity.hpp"
+#include "ocm/client/sample.hpp"
 #include "ocm/protocol/request.hpp"
 #include "ocm/protocol/topic.hpp"
-#include "ocm/reflective/diagnosis.hpp"
-#include "ocm/reflective/quantity.hpp"
-#include "ocm/reflective/sample.hpp"
 
 #include "cli/interrupt.hpp"
 #include "cli/verbs/commanding.hpp"
@@ -29,8 +29,8 @@ namespace {
 
 using analysis::Explained;
 using analysis::Message;
-using reflective::Meaning;
-using reflective::to_text;
+using client::Meaning;
+using client::to_text;
 
 /// More than any robot of this protocol has at a time: its boards have 256 numbers.
 constexpr std::size_t most_identifiers = 512;
@@ -46,7 +46,7 @@ struct Wish {
   base::Duration period{};
 };
 
-std::optional<Wish> wish_of(const reflective::Command& command) {
+std::optional<Wish> wish_of(const client::Command& command) {
   if (command.answers == nullptr || command.frames.size() != 1) return {};
   const auto request = protocol::decode_request(command.frames[0]);
   if (!request || request->mode != protocol::Mode::publish) return {};
@@ -166,8 +166,8 @@ class Traffic {
   }
 
   const protocol::Catalogue& catalogue_;
-  reflective::Receiver receiver_;
-  reflective::Diagnosis diagnosis_;
+  client::Receiver receiver_;
+  client::Diagnosis diagnosis_;
   std::map<std::uint32_t, Heard> heard_;
   std::map<std::uint32_t, Line> lines_;
 };
@@ -245,7 +245,7 @@ void add_admission_options(CLI::App& verb, AdmissionOptions& options) {
       ->type_name("T");
 }
 
-void admit(Session& session, transport::Bus& bus, const reflective::Command& command,
+void admit(Session& session, transport::Bus& bus, const client::Command& command,
            const AdmissionOptions& options) {
   const auto wish = wish_of(command);
   if (!wish || (options.force && !options.explain)) return;

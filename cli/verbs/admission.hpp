@@ -6,7 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "ocm/reflective/command.hpp"
+#include "ocm/client/command.hpp"
 #include "ocm/transport/bus.hpp"
 
 #include "cli/session.hpp"
@@ -24,7 +24,7 @@ void add_admission_options(CLI::App& verb, AdmissionOptions& options);
 
 /// Listens, and fails with the reason where somebody would be late; --explain prints the table to stdout. A
 /// command that starts no stream passes at once, and so does all with --force alone.
-void admit(Session& session, transport::Bus& bus, const reflective::Command& command,
+void admit(Session& session, transport::Bus& bus, const client::Command& command,
            const AdmissionOptions& options);
 
 }  // namespace ocm::cli

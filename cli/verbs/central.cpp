@@ -1,4 +1,4 @@
-/// This machine as the central of line robots, in place of the dongle at the server.
+/// This machine as the central of mappers, in place of the dongle at the server.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -13,7 +13,7 @@
 
 #include <fmt/format.h>
 
-#include "ocm/line/prefix.hpp"
+#include "ocm/mapper/link/prefix.hpp"
 #include "ocm/transport/pty.hpp"
 #include "ocm/transport/system_time.hpp"
 
@@ -53,9 +53,9 @@ RobotLine parse_robot(const std::string& text) {
   if (robot.name.empty() || robot.path.empty())
     fail({fmt::format("central: --robot '{}' is not NAME=PATH", text), "as in --robot AVR=/dev/ttyUSB0"},
          exit_usage);
-  if (line::safe_name(robot.name).view() != robot.name)
+  if (mapper::link::safe_name(robot.name).view() != robot.name)
     fail({fmt::format("central: a robot cannot be called '{}'", robot.name),
-          fmt::format("use at most {} printed characters, none of : [ ] {{ }}", line::max_name)},
+          fmt::format("use at most {} printed characters, none of : [ ] {{ }}", mapper::link::max_name)},
          exit_usage);
   return robot;
 }
@@ -127,7 +127,7 @@ void serve(Switchboard& board, ServerEnd& server) {
 
 void add_central(CLI::App& app, Session&, int& exit_code) {
   auto* verb =
-      add_verb(app, "central", "this machine as the central of line robots on serial lines", line_group,
+      add_verb(app, "central", "this machine as the central of mappers on serial lines", mapper_group,
                "  amiroctl central --robot AVR=/dev/ttyUSB0   type start, list, conn 0, {S,CON}\n"
                "  amiroctl central --pty                      for a server that opens a serial line\n"
                "  amiroctl sim --robots 2 --lines             simulated robots, each with a line of its own\n"

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "ocm/reflective/command.hpp"
+#include "ocm/client/command.hpp"
 
 #include "cli/session.hpp"
 
@@ -19,9 +19,8 @@ std::vector<const protocol::Topic*> chosen_topics(std::string_view verb, const p
       found = true;
     }
     if (found) continue;
-    const auto names = reflective::topic_words(catalogue);
-    fail({fmt::format("{}: no topic '{}'", verb, word), reflective::detail::suggestion(word, names)},
-         exit_usage);
+    const auto names = client::topic_words(catalogue);
+    fail({fmt::format("{}: no topic '{}'", verb, word), client::detail::suggestion(word, names)}, exit_usage);
   }
   return topics;
 }

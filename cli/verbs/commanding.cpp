@@ -6,7 +6,7 @@
 
 #include "ocm/base/decimal.hpp"
 #include "ocm/can/text.hpp"
-#include "ocm/reflective/quantity.hpp"
+#include "ocm/client/quantity.hpp"
 
 #include "cli/verbs/verbs.hpp"
 
@@ -21,11 +21,11 @@ Commanding::Commanding(CLI::App& verb, Session& session, std::string_view words_
   verb.add_flag("--dry-run", dry_run_, "print the frames in candump notation and send nothing");
 }
 
-reflective::Command Commanding::parse() const {
+client::Command Commanding::parse() const {
   return parse({});
 }
 
-reflective::Command Commanding::parse(const std::vector<std::string>& options) const {
+client::Command Commanding::parse(const std::vector<std::string>& options) const {
   std::vector<std::string_view> words{verb_};
   words.insert(words.end(), words_.begin(), words_.end());
   words.insert(words.end(), options.begin(), options.end());
@@ -33,7 +33,7 @@ reflective::Command Commanding::parse(const std::vector<std::string>& options) c
     words.emplace_back("--priority");
     words.emplace_back(priority_);
   }
-  auto command = reflective::CommandParser{session_->catalogue()}.parse(words);
+  auto command = client::CommandParser{session_->catalogue()}.parse(words);
   if (!command) fail({verb_ + ": " + command.error.what, command.error.remedy}, exit_usage);
   return std::move(command.value);
 }
@@ -42,14 +42,14 @@ void print_frames(const std::vector<can::Frame>& frames) {
   for (const auto& frame : frames) fmt::print("{}\n", can::to_text(frame).view());
 }
 
-void carry_out(Session& session, const reflective::Command& command, bool dry_run) {
+void carry_out(Session& session, const client::Command& command, bool dry_run) {
   if (dry_run) return print_frames(command.frames);
   const auto bus = session.open_bus();
   for (const auto& frame : command.frames) send_patiently(*bus, frame);
 }
 
 base::Duration duration_option(std::string_view option, const std::string& text) {
-  const auto duration = reflective::parse_duration(text);
+  const auto duration = client::parse_duration(text);
   if (!duration || duration->count() < 0)
     fail({fmt::format("{} {}: not a time", option, text), "write 500ms, 2s or 1.5s"}, exit_usage);
   return *duration;

@@ -10,7 +10,7 @@
 #include <CLI/CLI.hpp>
 
 #include "ocm/base/time.hpp"
-#include "ocm/reflective/command.hpp"
+#include "ocm/client/command.hpp"
 
 #include "cli/session.hpp"
 
@@ -24,9 +24,9 @@ class Commanding {
   Commanding(CLI::App& verb, Session& session, std::string_view words_help, bool with_priority = true);
 
   /// The command, or exit_usage with a message that names the word.
-  [[nodiscard]] reflective::Command parse() const;
+  [[nodiscard]] client::Command parse() const;
   /// As parse, with `options` (such as "--for 2s") added to the words.
-  [[nodiscard]] reflective::Command parse(const std::vector<std::string>& options) const;
+  [[nodiscard]] client::Command parse(const std::vector<std::string>& options) const;
   [[nodiscard]] bool dry_run() const { return dry_run_; }
 
  private:
@@ -38,7 +38,7 @@ class Commanding {
 };
 
 /// Sends the command's frames once, or prints them.
-void carry_out(Session& session, const reflective::Command& command, bool dry_run);
+void carry_out(Session& session, const client::Command& command, bool dry_run);
 
 /// Prints frames in candump notation, one a line.
 void print_frames(const std::vector<can::Frame>& frames);

@@ -6,8 +6,8 @@
 #include "ocm/transport/interfaces.hpp"
 #include "ocm/transport/virtual_bus.hpp"
 
-#include "cli/generate/messages.hpp"
-#include "cli/generate/target.hpp"
+#include "generator/messages.hpp"
+#include "generator/target.hpp"
 
 namespace ocm::cli {
 namespace {

@@ -9,8 +9,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "ocm/client/sample.hpp"
 #include "ocm/log/entry.hpp"
-#include "ocm/reflective/sample.hpp"
 
 #include "cli/output/printer.hpp"
 #include "cli/session.hpp"
@@ -32,7 +32,7 @@ class Display {
   Display(std::string_view verb, Session& session, const DisplayOptions& options);
 
   /// What the entry means, which is counted and kept for `show`. Valid until the next.
-  const reflective::Reception& understand(const log::Entry& entry) {
+  const client::Reception& understand(const log::Entry& entry) {
     reception_ = cli::understand(receiver_, entry);
     fd_ += entry.is_fd() ? 1 : 0;
     return reception_;
@@ -47,13 +47,13 @@ class Display {
 
   [[nodiscard]] std::uint64_t shown() const noexcept { return shown_; }  ///< lines, or frames with --csv
   [[nodiscard]] std::uint64_t fd() const noexcept { return fd_; }
-  [[nodiscard]] const reflective::ReceiverCounters& counters() const noexcept { return receiver_.counters(); }
+  [[nodiscard]] const client::ReceiverCounters& counters() const noexcept { return receiver_.counters(); }
   /// What came, and every fault by its cause, on stderr.
   void summarise(std::uint64_t lost) const;
 
  private:
-  reflective::Receiver receiver_;
-  reflective::Reception reception_;
+  client::Receiver receiver_;
+  client::Reception reception_;
   Printer printer_;
   std::uint64_t shown_ = 0;
   std::uint64_t fd_ = 0;

@@ -9,10 +9,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "ocm/client/diagnosis.hpp"
+#include "ocm/client/sample.hpp"
 #include "ocm/protocol/message.hpp"
 #include "ocm/protocol/request.hpp"
-#include "ocm/reflective/diagnosis.hpp"
-#include "ocm/reflective/sample.hpp"
 
 #include "cli/interrupt.hpp"
 #include "cli/verbs/commanding.hpp"
@@ -21,10 +21,10 @@
 namespace ocm::cli {
 namespace {
 
-using reflective::BoardReport;
-using reflective::Diagnosis;
-using reflective::Finding;
-using reflective::Severity;
+using client::BoardReport;
+using client::Diagnosis;
+using client::Finding;
+using client::Severity;
 using SteadyClock = std::chrono::steady_clock;
 
 struct DoctorOptions {
@@ -84,7 +84,7 @@ class Examination {
     const auto& seen = receiver_.counters();
     const auto add = [&all](std::uint64_t number, std::string_view what, std::string_view remedy) {
       if (number != 0)
-        all.push_back({Severity::warning, "", reflective::count(number, what), std::string{remedy}});
+        all.push_back({Severity::warning, "", client::count(number, what), std::string{remedy}});
     };
     add(counters.error_frames, "error frame* from the CAN controller of this machine",
         "check cable, termination and bit rate; `amiroctl listen` shows what they say");
@@ -119,7 +119,7 @@ class Examination {
 
   const protocol::Catalogue& catalogue_;
   std::unique_ptr<transport::Bus> bus_;
-  reflective::Receiver receiver_;
+  client::Receiver receiver_;
   Diagnosis diagnosis_;
 };
 

@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
-#include "cli/generate/output_file.hpp"
-#include "cli/generate/robot_spec.hpp"
-#include "cli/generate/target.hpp"
 #include "cli/verbs/verbs.hpp"
+#include "generator/output_file.hpp"
+#include "generator/robot_spec.hpp"
+#include "generator/target.hpp"
 
 namespace ocm::cli {
 namespace {

@@ -32,7 +32,7 @@ struct GotoOptions {
 
 /// A whole number with or without its unit: 90, 90deg.
 std::int16_t number(std::string_view what, std::string text, std::string_view unit,
-                    const line::Field<line::SetPoint>& field) {
+                    const mapper::link::Field<mapper::link::SetPoint>& field) {
   const std::string original = text;
   if (text.ends_with(unit)) text.resize(text.size() - unit.size());
   char* end = nullptr;
@@ -46,13 +46,13 @@ std::int16_t number(std::string_view what, std::string text, std::string_view un
   return static_cast<std::int16_t>(value);
 }
 
-std::string place(const line::Update& at) {
+std::string place(const mapper::link::Update& at) {
   return fmt::format("x {} cm, y {} cm, heading {} deg", at.x, at.y, at.heading);
 }
 
 /// Says where it came to; whether that is where it was sent.
-bool arrived(const std::string& name, const Robot& robot, const std::optional<line::Update>& before,
-             const line::SetPoint& wanted) {
+bool arrived(const std::string& name, const Robot& robot, const std::optional<mapper::link::Update>& before,
+             const mapper::link::SetPoint& wanted) {
   if (!robot.update || !before) {
     fmt::print("{}: idle; it does not say where\n", name);
     return true;
@@ -72,8 +72,9 @@ bool arrived(const std::string& name, const Robot& robot, const std::optional<li
 }
 
 void run(const GotoOptions& options, int& exit_code) {
-  const line::SetPoint wanted{number("ANGLE", options.angle, "deg", line::SetPoint::fields[0]),
-                              number("DISTANCE", options.distance, "cm", line::SetPoint::fields[1])};
+  const mapper::link::SetPoint wanted{
+      number("ANGLE", options.angle, "deg", mapper::link::SetPoint::fields[0]),
+      number("DISTANCE", options.distance, "cm", mapper::link::SetPoint::fields[1])};
   const auto timeout = duration_option("--timeout", options.timeout);
   fleet::CentralLine line{"goto", options.line};
   const unsigned index = line.connect_one(options.robot);
@@ -108,7 +109,7 @@ void run(const GotoOptions& options, int& exit_code) {
 }  // namespace
 
 void add_goto(CLI::App& app, Session&, int& exit_code) {
-  auto* verb = add_verb(app, "goto", "turn a line robot and drive it a piece", line_group,
+  auto* verb = add_verb(app, "goto", "turn a mapper and drive it a piece", mapper_group,
                         "  amiroctl goto AVR 90 50          to the left, then 50 cm\n"
                         "  amiroctl goto AVR -45 0          turn to the right\n"
                         "  amiroctl goto AVR 0 0            stop\n"

@@ -1,4 +1,4 @@
-/// What robots and their server say over the line robot's link, as JSON lines: whole sentences only; what is
+/// What robots and their server say over the mapper's link, as JSON lines: whole sentences only; what is
 /// damaged is counted and told at the end.
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "ocm/line/demultiplexer.hpp"
+#include "ocm/mapper/link/demultiplexer.hpp"
 
 #include "cli/interrupt.hpp"
 #include "cli/logs/file_source.hpp"
@@ -28,11 +28,11 @@ struct LineOptions {
 };
 
 /// As in spec/sentences.json.
-constexpr std::string_view type_name(line::Kind kind) {
+constexpr std::string_view type_name(mapper::link::Kind kind) {
   constexpr std::array<std::string_view, 12> names{"none",      "confirm", "set_point", "pause",
                                                    "unpause",   "packed",  "text",      "ping",
                                                    "handshake", "update",  "idle",      "pong"};
-  static_assert(names.size() == static_cast<std::size_t>(line::Kind::pong) + 1);
+  static_assert(names.size() == static_cast<std::size_t>(mapper::link::Kind::pong) + 1);
   return names[static_cast<std::size_t>(kind)];
 }
 
@@ -41,11 +41,11 @@ class Stream {
  public:
   explicit Stream(bool to_robot) : to_robot_(to_robot) {}
 
-  line::Kind feed(std::uint8_t byte) {
+  mapper::link::Kind feed(std::uint8_t byte) {
     said_ = true;
-    packed_ = line::is_packed(byte);
-    const line::Kind kind = to_robot_ ? server_.feed(static_cast<char>(byte)) : robot_.feed(byte);
-    if (kind != line::Kind::none) ++sentences_;
+    packed_ = mapper::link::is_packed(byte);
+    const mapper::link::Kind kind = to_robot_ ? server_.feed(static_cast<char>(byte)) : robot_.feed(byte);
+    if (kind != mapper::link::Kind::none) ++sentences_;
     return kind;
   }
   /// The prefix that names the robot. Another name is another robot, on a link of its own.
@@ -61,7 +61,7 @@ class Stream {
     if (said_) (void)feed('\n');
   }
 
-  [[nodiscard]] const line::Sentence& sentence() const {
+  [[nodiscard]] const mapper::link::Sentence& sentence() const {
     return to_robot_ ? server_.sentence() : robot_.sentence();
   }
   /// The sentence was a packed update, which has a number.
@@ -77,15 +77,15 @@ class Stream {
   [[nodiscard]] std::uint64_t stray() const {
     return std::uint64_t{text().stray()} + robot_.packed().faults().stray;
   }
-  [[nodiscard]] const line::Reader& text() const { return to_robot_ ? server_ : robot_.text(); }
-  [[nodiscard]] const line::Ear& ear() const { return robot_; }
+  [[nodiscard]] const mapper::link::Reader& text() const { return to_robot_ ? server_ : robot_.text(); }
+  [[nodiscard]] const mapper::link::Ear& ear() const { return robot_; }
 
  private:
   bool to_robot_;
   bool said_ = false;
   bool packed_ = false;
-  line::Ear robot_;
-  line::Reader server_{line::Direction::to_robot};
+  mapper::link::Ear robot_;
+  mapper::link::Reader server_{mapper::link::Direction::to_robot};
   std::string name_;
   std::uint64_t sentences_ = 0;
 };
@@ -99,7 +99,7 @@ class Streams {
 
   /// Which stream the byte completes a sentence of; -1: none.
   int feed(std::uint8_t byte) {
-    using Step = line::PrefixFilter::Step;
+    using Step = mapper::link::PrefixFilter::Step;
     const char c = static_cast<char>(byte);
     switch (filter_.feed(c)) {
       case Step::prefix:
@@ -116,7 +116,7 @@ class Streams {
       case Step::text:
         break;
     }
-    return streams_[current_].feed(byte) != line::Kind::none ? static_cast<int>(current_) : -1;
+    return streams_[current_].feed(byte) != mapper::link::Kind::none ? static_cast<int>(current_) : -1;
   }
   void end() {
     for (Stream& stream : streams_) stream.end();
@@ -128,7 +128,7 @@ class Streams {
   [[nodiscard]] std::uint64_t broken_prefixes() const { return filter_.broken(); }
 
  private:
-  line::PrefixFilter filter_{true};
+  mapper::link::PrefixFilter filter_{true};
   std::string prefix_;
   std::size_t current_ = nameless;
   std::vector<Stream> streams_;
@@ -143,7 +143,7 @@ void put_number(Buffer& out, int number) {
 
 /// The integers that came by the names of a T's fields; what a robot said beyond them in a list.
 template <class T>
-void put_values(Buffer& out, const line::Sentence& sentence) {
+void put_values(Buffer& out, const mapper::link::Sentence& sentence) {
   const std::size_t named = std::min<std::size_t>(sentence.count, T::fields.size());
   for (std::size_t i = 0; i < named; ++i) {
     out.append(i == 0 ? "\"" : ",\"");
@@ -158,14 +158,14 @@ void put_values(Buffer& out, const line::Sentence& sentence) {
   if (named < sentence.count) out.append(']');
 }
 
-void put_values(Buffer& out, const line::Sentence& sentence) {
+void put_values(Buffer& out, const mapper::link::Sentence& sentence) {
   switch (sentence.kind) {
-    case line::Kind::set_point:
-      return put_values<line::SetPoint>(out, sentence);
-    case line::Kind::handshake:
-      return put_values<line::Handshake>(out, sentence);
-    case line::Kind::update:
-      return put_values<line::Update>(out, sentence);
+    case mapper::link::Kind::set_point:
+      return put_values<mapper::link::SetPoint>(out, sentence);
+    case mapper::link::Kind::handshake:
+      return put_values<mapper::link::Handshake>(out, sentence);
+    case mapper::link::Kind::update:
+      return put_values<mapper::link::Update>(out, sentence);
     default:
       return;
   }
@@ -185,7 +185,7 @@ void put_robot(Buffer& out, std::size_t index, std::string_view name) {
 }
 
 void put_sentence(Buffer& out, std::size_t index, const Stream& stream) {
-  const line::Sentence& sentence = stream.sentence();
+  const mapper::link::Sentence& sentence = stream.sentence();
   put_robot(out, index, stream.name());
   out.append(R"(,"type":")");
   out.append(type_name(sentence.kind));
@@ -206,23 +206,23 @@ struct Cause {
   std::uint32_t Faults::*count;
   std::string_view words;
 };
-constexpr Cause<line::ReaderFaults> text_causes[] = {
-    {&line::ReaderFaults::torn, "torn"},
-    {&line::ReaderFaults::unclosed, "unclosed"},
-    {&line::ReaderFaults::headless, "headless"},
-    {&line::ReaderFaults::unknown, "unknown"},
-    {&line::ReaderFaults::bad_number, "with a bad number"},
-    {&line::ReaderFaults::wrong_count, "with a wrong count of integers"},
-    {&line::ReaderFaults::out_of_range, "out of range"},
-    {&line::ReaderFaults::too_long, "too long"},
+constexpr Cause<mapper::link::ReaderFaults> text_causes[] = {
+    {&mapper::link::ReaderFaults::torn, "torn"},
+    {&mapper::link::ReaderFaults::unclosed, "unclosed"},
+    {&mapper::link::ReaderFaults::headless, "headless"},
+    {&mapper::link::ReaderFaults::unknown, "unknown"},
+    {&mapper::link::ReaderFaults::bad_number, "with a bad number"},
+    {&mapper::link::ReaderFaults::wrong_count, "with a wrong count of integers"},
+    {&mapper::link::ReaderFaults::out_of_range, "out of range"},
+    {&mapper::link::ReaderFaults::too_long, "too long"},
 };
-constexpr Cause<line::PackedFaults> packed_causes[] = {
-    {&line::PackedFaults::corrupt, "packed and corrupt"},
-    {&line::PackedFaults::torn, "packed and torn"},
-    {&line::PackedFaults::lost, "packed and lost"},
-    {&line::PackedFaults::repeated, "packed and repeated"},
-    {&line::PackedFaults::late, "packed and late"},
-    {&line::PackedFaults::out_of_range, "packed and out of range"},
+constexpr Cause<mapper::link::PackedFaults> packed_causes[] = {
+    {&mapper::link::PackedFaults::corrupt, "packed and corrupt"},
+    {&mapper::link::PackedFaults::torn, "packed and torn"},
+    {&mapper::link::PackedFaults::lost, "packed and lost"},
+    {&mapper::link::PackedFaults::repeated, "packed and repeated"},
+    {&mapper::link::PackedFaults::late, "packed and late"},
+    {&mapper::link::PackedFaults::out_of_range, "packed and out of range"},
 };
 
 template <class Faults, std::size_t N>
@@ -311,7 +311,7 @@ void run_line(const LineOptions& options, int& exit_code) {
 
 void add_line(CLI::App& app, Session&, int& exit_code) {
   auto* verb =
-      add_verb(app, "line", "say what line robots said, as JSON", line_group,
+      add_verb(app, "line", "say what mappers said, as JSON", mapper_group,
                "  amiroctl line central.log | jq -c 'select(.name==\"AVR\") | .values'\n"
                "  amiroctl line --to-robot server.log\n"
                "  stty -F /dev/ttyUSB0 raw -echo 115200; amiroctl line /dev/ttyUSB0\n"

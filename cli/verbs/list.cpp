@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "ocm/reflective/quantity.hpp"
+#include "ocm/client/quantity.hpp"
 
 #include "cli/verbs/verbs.hpp"
 
@@ -48,7 +48,7 @@ void list_table(const protocol::Catalogue& catalogue) {
     fmt::print("{:<{}}  {:<{}}  0x{:02X}  {:<8}  {:<{}}  {:>6}  {:>7}\n", topic.name, name_width,
                aliases_of(topic), alias_width, topic.id.value, sensor ? "sensor" : "actuator",
                catalogue.boards[topic.board].name, board_width, topic.frames.size(),
-               sensor ? reflective::to_text(topic.period) : "-");
+               sensor ? client::to_text(topic.period) : "-");
   }
 }
 

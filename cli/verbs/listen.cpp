@@ -75,7 +75,7 @@ void listen(Session& session, const ListenOptions& options, int& exit_code) {
     }
     const log::Entry entry{received->time, received->frame};
     const auto meaning = display.understand(entry).meaning;
-    using reflective::Meaning;
+    using client::Meaning;
     const bool command = meaning == Meaning::request || meaning == Meaning::set_point;
     if (command && !commands_wanted) continue;
     if (!options.idle_timeout.empty()) last = SteadyClock::now();

@@ -1,4 +1,4 @@
-#include "cli/generate/man.hpp"
+#include "generator/man.hpp"
 
 #include <filesystem>
 #include <memory>
@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "cli/generate/output_file.hpp"
 #include "cli/verbs/verbs.hpp"
+#include "generator/output_file.hpp"
 
 namespace ocm::cli {
 namespace {

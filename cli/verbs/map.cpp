@@ -1,4 +1,4 @@
-/// Line robots draw a map of where they are, together; and how well it agrees with walls that are known.
+/// Mappers draw a map of where they are, together; and how well it agrees with walls that are known.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -11,16 +11,16 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "ocm/client/diagnosis.hpp"
 #include "ocm/cognitive/agreement.hpp"
 #include "ocm/cognitive/mapping.hpp"
-#include "ocm/reflective/diagnosis.hpp"
 
 #include "cli/fleet/central_line.hpp"
 #include "cli/fleet/picture.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/verbs/commanding.hpp"
 #include "cli/verbs/verbs.hpp"
-#include "cli/world/reader.hpp"
+#include "sim/worlds/reader.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -28,7 +28,7 @@ namespace {
 using namespace std::chrono_literals;
 using cognitive::Agreement;
 using cognitive::Mapping;
-using firmware::sim::line::WorldModel;
+using sim::mapper::WorldModel;
 
 struct MapVerbOptions {
   fleet::LineOptions line;
@@ -71,8 +71,8 @@ Start parse_start(const std::string& text) {
 
 std::optional<WorldModel> load_world(const std::string& name) {
   if (name.empty()) return std::nullopt;
-  const auto text = world::built_in(name);
-  auto loaded = text ? world::parse(*text, name) : world::load(name);
+  const auto text = sim::worlds::built_in(name);
+  auto loaded = text ? sim::worlds::parse(*text, name) : sim::worlds::load(name);
   if (loaded.world) return std::move(*loaded.world);
   for (std::size_t i = 1; i < loaded.problems.size(); ++i)
     remark(fmt::format("{}: {}", loaded.problems[i].place, loaded.problems[i].what));
@@ -81,7 +81,7 @@ std::optional<WorldModel> load_world(const std::string& name) {
        exit_failure);
 }
 
-motion::Point to_point(firmware::sim::Vector v) {
+motion::Point to_point(sim::Vector v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y)};
 }
 
@@ -126,8 +126,8 @@ void place_robots(fleet::CentralLine& line, const std::vector<unsigned>& robots,
                   const std::vector<std::string>& starts) {
   const auto& peers = line.server().client().peers();
   for (const std::string& text : starts)
-    if (const std::string name = parse_start(text).name;
-        std::none_of(peers.begin(), peers.end(), [&](const cognitive::Peer& p) { return p.name == name; }))
+    if (const std::string name = parse_start(text).name; std::none_of(
+            peers.begin(), peers.end(), [&](const mapper::server::Peer& p) { return p.name == name; }))
       line.unknown(name);
   for (const unsigned index : robots) {
     const std::string name = line.name(index);
@@ -202,7 +202,7 @@ class Run {
       if (!line_.fleet().robot(index).update)  // paused, by whomever
         line_.server().fleet().unpause(index, fleet::CentralLine::now());
     mapping_.emplace(line_.server().fleet(), mapping_options(options, known, line_, robots_));
-    line_.on_heard([this](std::size_t robot, line::Kind kind) { mapping_->heard(robot, kind); });
+    line_.on_heard([this](std::size_t robot, mapper::link::Kind kind) { mapping_->heard(robot, kind); });
   }
 
   /// Until all is known, for `limit`, until Ctrl-C, or until the central is gone. Whichever it is, what was
@@ -256,7 +256,7 @@ class Run {
         told = now;
         remark(fmt::format("map: {}: {:.2f} m2 free, {}", span(now - begin),
                            area_m2(mapping_->map(), cognitive::CellState::free),
-                           reflective::count(mapping_->counters().drawn, "update*")));
+                           client::count(mapping_->counters().drawn, "update*")));
       }
       if (!lost_.empty() || std::any_of(robots_.begin(), robots_.end(), [&](unsigned i) { return lost(i); }))
         tell_lost();
@@ -346,8 +346,8 @@ void Run::report(const std::optional<Agreement>& result) const {
     return;
   }
   fmt::print("{} in {}: {:.2f} m2 free; {} drawn, {} not, because a robot turned; {}\n", words(end_),
-             span(took_), free, reflective::count(drawn.drawn, "update*"), drawn.turning,
-             reflective::count(explorer.goals, "goal*"));
+             span(took_), free, client::count(drawn.drawn, "update*"), drawn.turning,
+             client::count(explorer.goals, "goal*"));
   if (result)
     fmt::print(
         "agreement with the true walls within 6 cm: precision {:.3f}, recall {:.3f}; explored {:.3f}\n",
@@ -393,7 +393,7 @@ void run(const MapVerbOptions& options, int& exit_code) {
 
 void add_map(CLI::App& app, Session&, int& exit_code) {
   auto* verb =
-      add_verb(app, "map", "let line robots explore, and draw a map of what they see", line_group,
+      add_verb(app, "map", "let mappers explore, and draw a map of what they see", mapper_group,
                "  amiroctl map room.svg\n"
                "  amiroctl map room.png room.pgm --robots AVR --duration 5min\n"
                "  amiroctl map room.svg --start AVR=0.4,0.4,0 --start Arduino=2,1.4,180\n"

@@ -1,4 +1,4 @@
-/// Line robots hold their tower and their updates, and go on again.
+/// Mappers hold their tower and their updates, and go on again.
 #include <chrono>
 #include <memory>
 #include <string>
@@ -53,7 +53,7 @@ void run(std::string_view verb, const PauseOptions& options, bool paused, int& e
 
 void add(CLI::App& app, std::string_view name, std::string_view description, std::string_view examples,
          bool paused, int& exit_code) {
-  auto* verb = add_verb(app, name, description, line_group, examples);
+  auto* verb = add_verb(app, name, description, mapper_group, examples);
   const auto options = std::make_shared<PauseOptions>();
   verb->add_option("robot", options->robots, "names, addresses or indexes; all")
       ->required()
@@ -66,7 +66,7 @@ void add(CLI::App& app, std::string_view name, std::string_view description, std
 }  // namespace
 
 void add_pause(CLI::App& app, Session&, int& exit_code) {
-  add(app, "pause", "hold a line robot's tower and its updates",
+  add(app, "pause", "hold a mapper's tower and its updates",
       "  amiroctl pause AVR\n"
       "  amiroctl pause all\n"
       "  amiroctl pause AVR && amiroctl goto AVR 0 50   it drives all the same",
@@ -74,7 +74,7 @@ void add_pause(CLI::App& app, Session&, int& exit_code) {
 }
 
 void add_unpause(CLI::App& app, Session&, int& exit_code) {
-  add(app, "unpause", "let a line robot's tower and its updates go on",
+  add(app, "unpause", "let a mapper's tower and its updates go on",
       "  amiroctl unpause AVR\n"
       "  amiroctl unpause all",
       false, exit_code);

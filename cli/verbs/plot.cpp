@@ -10,16 +10,16 @@
 #include <fmt/format.h>
 
 #include "ocm/base/text.hpp"
+#include "ocm/client/diagnosis.hpp"
 #include "ocm/log/complaints.hpp"
-#include "ocm/reflective/diagnosis.hpp"
 
-#include "cli/generate/output_file.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/output/printer.hpp"
 #include "cli/plot/curves.hpp"
 #include "cli/plot/gnuplot.hpp"
 #include "cli/verbs/verbs.hpp"
 #include "cli/watching.hpp"
+#include "generator/output_file.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -143,8 +143,8 @@ void run(Session& session, const PlotOptions& options, int& exit_code) {
   else if (const auto problem = generate::write_file(output, text))
     fail({fmt::format("{}: {}", problem->place, problem->what), problem->remedy});
   if (output != "-")
-    remark(fmt::format("{}: {} of {}", output, reflective::count(curves.points(), "point*"),
-                       reflective::count(wanted.size(), "curve*")));
+    remark(fmt::format("{}: {} of {}", output, client::count(curves.points(), "point*"),
+                       client::count(wanted.size(), "curve*")));
   exit_code = exit_code_after_interrupt(watching.ending(exit_code));
 }
 

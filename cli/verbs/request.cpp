@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "ocm/reflective/quantity.hpp"
-#include "ocm/reflective/sample.hpp"
+#include "ocm/client/quantity.hpp"
+#include "ocm/client/sample.hpp"
 
 #include "cli/interrupt.hpp"
 #include "cli/output/printer.hpp"
@@ -22,7 +22,7 @@ namespace {
 
 /// Sends the command and shows the first sample of the topic it asks; fails after `timeout` and says what to
 /// check.
-void send_and_await(Session& session, transport::Bus& open_bus, const reflective::Command& command,
+void send_and_await(Session& session, transport::Bus& open_bus, const client::Command& command,
                     base::Duration timeout) {
   catch_interrupts();
   const auto& catalogue = session.catalogue();
@@ -32,7 +32,7 @@ void send_and_await(Session& session, transport::Bus& open_bus, const reflective
   if (const auto subscribed = bus->subscribe(filters); !subscribed) fail(subscribed.error);
   for (const auto& frame : command.frames) send_patiently(*bus, frame);
 
-  reflective::Receiver receiver{catalogue};
+  client::Receiver receiver{catalogue};
   Printer printer{make_output(isatty(STDOUT_FILENO) != 0 ? Format::pretty : Format::json, catalogue, {},
                               session.colour())};
   const auto deadline = std::chrono::steady_clock::now() + timeout;
@@ -43,14 +43,14 @@ void send_and_await(Session& session, transport::Bus& open_bus, const reflective
       const auto reception = receiver.take(*received);
       if (reception.topic != &topic) continue;
       printer.write({bus->name(), log::Entry{received->time, received->frame}, reception});
-      if (reception.meaning != reflective::Meaning::sample) continue;
+      if (reception.meaning != client::Meaning::sample) continue;
       return printer.flush();
     }
     if (received.error == base::Error::closed) fail(bus->failure());
     if (left.count() > 0) continue;
     const auto& counters = receiver.counters();
     fail(
-        {fmt::format("no {} within {}", topic.name, reflective::to_text(timeout)),
+        {fmt::format("no {} within {}", topic.name, client::to_text(timeout)),
          counters.frames != 0
              ? fmt::format("{} frames came, {} of wrong length: does the robot run another protocol version?",
                            counters.frames, counters.wrong_dlc)

@@ -16,8 +16,8 @@
 namespace ocm::cli {
 namespace {
 
-using cognitive::Peer;
 using cognitive::Robot;
+using mapper::server::Peer;
 
 struct RobotsOptions {
   fleet::LineOptions line;
@@ -60,7 +60,7 @@ nlohmann::ordered_json to_json(const fleet::CentralLine& line, const Peer& peer)
                    {"axle_offset_cm", robot.handshake->axle_offset},
                    {"tower_offset_cm", robot.handshake->tower_offset},
                    {"deadline_ms", robot.handshake->deadline},
-                   {"packed", line::offers_packed(*robot.handshake)}};
+                   {"packed", mapper::link::offers_packed(*robot.handshake)}};
   return out;
 }
 
@@ -96,8 +96,8 @@ void run(const RobotsOptions& options, int& exit_code) {
 }  // namespace
 
 void add_robots(CLI::App& app, Session&, int& exit_code) {
-  auto* verb = add_verb(app, "robots",
-                        "line robots behind a central: where they are, and how their links are", line_group,
+  auto* verb = add_verb(app, "robots", "mappers behind a central: where they are, and how their links are",
+                        mapper_group,
                         "  amiroctl robots\n"
                         "  amiroctl robots --json | jq -r .robot\n"
                         "  amiroctl robots --list                     without a link to any of them\n"

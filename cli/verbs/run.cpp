@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 
 #include "ocm/can/text.hpp"
-#include "ocm/reflective/quantity.hpp"
-#include "ocm/reflective/script.hpp"
+#include "ocm/client/quantity.hpp"
+#include "ocm/client/script.hpp"
 
 #include "cli/interrupt.hpp"
 #include "cli/output/printer.hpp"
@@ -61,9 +61,9 @@ std::string read_script(const std::string& file) {
 }
 
 /// The script, checked whole: with an error in it nothing is sent.
-reflective::Script checked(const std::string& file, const std::string& text,
-                           const protocol::Catalogue& catalogue) {
-  auto script = reflective::parse_script(text, catalogue);
+client::Script checked(const std::string& file, const std::string& text,
+                       const protocol::Catalogue& catalogue) {
+  auto script = client::parse_script(text, catalogue);
   if (script.errors.empty()) return script;
   for (const auto& error : script.errors)
     fmt::print(stderr, "{}:{}:{}: {}\n    {}\n", file, error.line, error.column, error.what, error.remedy);
@@ -79,19 +79,18 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
   if (options.dry_run) {
     for (const auto& step : script.steps)
       for (const auto& frame : step.command.frames)
-        fmt::print("{:<8} {}\n", reflective::to_text(step.at), can::to_text(frame).view());
+        fmt::print("{:<8} {}\n", client::to_text(step.at), can::to_text(frame).view());
     return;
   }
 
   catch_interrupts();
   const auto bus = session.open_bus();
-  reflective::Receiver receiver{catalogue};
+  client::Receiver receiver{catalogue};
   Printer printer{make_output(isatty(STDOUT_FILENO) != 0 ? Format::pretty : Format::json, catalogue, {},
                               session.colour())};
   const auto show = [&](const can::Received& received) {
     const auto reception = receiver.take(received);
-    if (reception.meaning != reflective::Meaning::request &&
-        reception.meaning != reflective::Meaning::set_point)
+    if (reception.meaning != client::Meaning::request && reception.meaning != client::Meaning::set_point)
       printer.write({bus->name(), log::Entry{received.time, received.frame}, reception});
     printer.flush();
   };
@@ -102,7 +101,7 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
     const auto at = std::chrono::duration_cast<Timeline::Clock::duration>(
         std::chrono::duration<double, std::nano>(static_cast<double>(step.at.count()) / options.speed));
     if (!timeline.wait(start + at)) break;
-    remark(fmt::format("{:>8}  {}", reflective::to_text(step.at), step.text));
+    remark(fmt::format("{:>8}  {}", client::to_text(step.at), step.text));
     timeline.carry_out(step.command);
   }
   const bool whole = interrupted() == 0 && timeline.wait_for_hold();

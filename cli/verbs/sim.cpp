@@ -1,5 +1,5 @@
 /// A simulated robot: its three boards, compiled for this machine or as images in QEMU, in a simulated world,
-/// on a virtual bus or on a CAN interface. Or line robots, which are in cli/sim/.
+/// on a virtual bus or on a CAN interface. Or mappers, which are in cli/sim/.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -18,12 +18,12 @@
 #include "ocm/transport/virtual_bus_server.hpp"
 
 #include "cli/interrupt.hpp"
-#include "cli/sim/clock.hpp"
-#include "cli/sim/line_robots.hpp"
 #include "cli/verbs/commanding.hpp"
 #include "cli/verbs/verbs.hpp"
-#include "firmware/sim/qemu_robot.hpp"
-#include "firmware/sim/robot.hpp"
+#include "sim/amiro/robot.hpp"
+#include "sim/clock.hpp"
+#include "sim/mapper/serve.hpp"
+#include "sim/qemu/robot.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -48,7 +48,7 @@ using Ports = std::array<Port, board_names.size()>;
 constexpr std::size_t board_queue = 32;
 
 struct SimOptions {
-  firmware::sim::WorldOptions world;
+  sim::WorldOptions world;
   std::vector<std::string> without;
   bool qemu = false;
   std::string images;
@@ -125,7 +125,7 @@ class HostRobot final : public Robot {
     remark(fmt::format("{:<17} {}", board, text.empty() ? "nothing came" : text));
   }
 
-  firmware::sim::SimulatedRobot<Port> robot_;
+  sim::SimulatedRobot<Port> robot_;
 };
 
 /// Where `scripts/build firmware` and an installation put the images, seen from this program.
@@ -162,7 +162,7 @@ class EmulatedRobot final : public Robot {
     return {all.begin(), all.end()};
   }
   void print_summary() const override {
-    for (std::size_t i = 0; i < firmware::sim::QemuRobot::boards; ++i) {
+    for (std::size_t i = 0; i < sim::QemuRobot::boards; ++i) {
       const auto& counters = robot_->counters(i);
       remark(fmt::format("{:<17} sent {}, heard {}, lost on its line {}, garbage {}, exchanges with parts {}",
                          robot_->name(i), counters.sent, counters.heard, counters.deaf, counters.garbage,
@@ -173,16 +173,15 @@ class EmulatedRobot final : public Robot {
   }
 
  private:
-  static std::unique_ptr<firmware::sim::QemuRobot> start(const SimOptions& options,
-                                                         std::function<base::Time()> clock) {
-    auto started = firmware::sim::QemuRobot::start(
+  static std::unique_ptr<sim::QemuRobot> start(const SimOptions& options, std::function<base::Time()> clock) {
+    auto started = sim::QemuRobot::start(
         options.world, options.images.empty() ? default_images() : options.images, std::move(clock));
     if (!started) fail(started.error);
     return std::move(*started);
   }
 
   Ports* ports_;
-  std::unique_ptr<firmware::sim::QemuRobot> robot_;
+  std::unique_ptr<sim::QemuRobot> robot_;
 };
 
 /// Until something is readable, or `wait` is over.
@@ -295,19 +294,19 @@ void serve(const std::string& bus_name, const SimOptions& options) {
     remark(fmt::format("                  {} error frames, {} frames repeated", bus.errors, bus.repetitions));
 }
 
-// --- line robots ---
+// --- mappers ---
 
-constexpr std::array<const char*, 5> line_robots_options{"--lines", "--radio-loss", "--radio-range",
-                                                         "--radio-repeats", "--links"};
+constexpr std::array<const char*, 5> mapper_options{"--lines", "--radio-loss", "--radio-range",
+                                                    "--radio-repeats", "--links"};
 
-void add_line_robots(CLI::App& verb, LineRobotsOptions& options) {
-  verb.add_option("--robots", options.robots, "so many line robots instead of the AMiRo, and their central")
+void add_mappers(CLI::App& verb, MapperOptions& options) {
+  verb.add_option("--robots", options.robots, "so many mappers instead of the AMiRo, and their central")
       ->check(CLI::Range(1U, 128U))
       ->type_name("N");
   verb.add_option("--world", options.world,
-                  "where the line robots are: a file, or square (default), labyrinth, range")
+                  "where the mappers are: a file, or square (default), labyrinth, range")
       ->type_name("FILE");
-  verb.add_flag("--lines", options.lines, "no central: each line robot on a serial line of its own");
+  verb.add_flag("--lines", options.lines, "no central: each mapper on a serial line of its own");
   verb.add_option("--radio-loss", options.radio_loss, "share of packets lost wherever a robot is")
       ->check(CLI::Range(0.0, 1.0))
       ->type_name("0..1");
@@ -320,9 +319,9 @@ void add_line_robots(CLI::App& verb, LineRobotsOptions& options) {
       ->check(CLI::Range(1U, 128U))
       ->type_name("N");
 }
-bool wants_line_robots(const CLI::App& verb) {
+bool wants_mappers(const CLI::App& verb) {
   if (verb.count("--robots") != 0 || verb.count("--world") != 0) return true;
-  for (const char* option : line_robots_options)
+  for (const char* option : mapper_options)
     if (verb.count(option) != 0)
       fail({fmt::format("sim: {} without --robots", option), "add --robots N, or leave it out"}, exit_usage);
   return false;
@@ -331,11 +330,11 @@ bool wants_line_robots(const CLI::App& verb) {
 void refuse_boards_options(const CLI::App& verb, const Session& session) {
   for (const char* option : {"--bus-errors", "--boards", "--images", "--without", "--frozen", "--bitrate"})
     if (verb.count(option) != 0)
-      fail({fmt::format("sim: {} with line robots", option), "they have no bus and no boards: leave one out"},
+      fail({fmt::format("sim: {} with mappers", option), "they have no bus and no boards: leave one out"},
            exit_usage);
   const char* environment = std::getenv("AMIROCTL_BUS");
   if (!session.bus_name.empty() && session.bus_name != (environment != nullptr ? environment : ""))
-    fail({"sim: --bus with line robots", "they have no bus: leave one out"}, exit_usage);
+    fail({"sim: --bus with mappers", "they have no bus: leave one out"}, exit_usage);
   if (verb.count("--lines") != 0)
     for (const char* option : {"--radio-loss", "--radio-range", "--radio-repeats", "--links"})
       if (verb.count(option) != 0)
@@ -354,7 +353,7 @@ void add_sim(CLI::App& app, Session& session, int& exit_code) {
                         "  amiroctl sim --without light_ring  a board that is switched off\n"
                         "  amiroctl sim --bus-errors 20       interference: 20 broken bits a second\n"
                         "  amiroctl sim --boards qemu         the boards' firmware, emulated\n"
-                        "  amiroctl sim --robots 2            line robots in a room, and their central\n"
+                        "  amiroctl sim --robots 2            mappers in a room, and their central\n"
                         "  amiroctl sim --world labyrinth --radio-loss 0.1");
   const auto options = std::make_shared<SimOptions>();
   verb->add_option("--seed", options->world.seed, "of all noise; equal seeds give equal robots")
@@ -380,16 +379,16 @@ void add_sim(CLI::App& app, Session& session, int& exit_code) {
   verb->add_option("--images", options->images,
                    "folder of the images for QEMU (that of scripts/build firmware)")
       ->type_name("FOLDER");
-  const auto line_robots = std::make_shared<LineRobotsOptions>();
-  add_line_robots(*verb, *line_robots);
-  verb->callback([options, boards, line_robots, verb, &session, &exit_code] {
-    if (wants_line_robots(*verb)) {
+  const auto mappers = std::make_shared<MapperOptions>();
+  add_mappers(*verb, *mappers);
+  verb->callback([options, boards, mappers, verb, &session, &exit_code] {
+    if (wants_mappers(*verb)) {
       refuse_boards_options(*verb, session);
       catch_interrupts();
       catch_hangups();  // the lines' links must go with it
-      line_robots->seed = options->world.seed;
-      line_robots->speed = options->speed;
-      simulate_line_robots(*line_robots);
+      mappers->seed = options->world.seed;
+      mappers->speed = options->speed;
+      simulate_mappers(*mappers);
       exit_code = exit_code_after_interrupt(exit_success);
       return;
     }

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "ocm/reflective/command.hpp"
+#include "ocm/client/command.hpp"
 
 #include "cli/interrupt.hpp"
 #include "cli/output/printer.hpp"

@@ -52,7 +52,7 @@ inline constexpr std::string_view act_group = "Command actuators";
 inline constexpr std::string_view watch_group = "Watch the bus";
 inline constexpr std::string_view log_group = "Record, and work with logs";
 inline constexpr std::string_view play_group = "Scripts and simulation";
-inline constexpr std::string_view line_group = "Line robots";
+inline constexpr std::string_view mapper_group = "Mappers";
 inline constexpr std::string_view help_group = "For your shell";
 
 /// A subcommand with its heading and its examples below the options.

@@ -3,7 +3,8 @@
 /// banks, two masks of 16 bits in each.
 ///
 /// Topics that differ in one bit share a mask, so a filter never lets a foreign identifier through: `exact`
-/// in tests/bxcan asks all 2048. Remote and extended frames pass none: RTR and IDE are in every mask.
+/// in tests/firmware/bxcan asks all 2048. Remote and extended frames pass none: RTR and IDE are in every
+/// mask.
 #pragma once
 
 #include <array>

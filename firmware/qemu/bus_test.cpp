@@ -1,5 +1,5 @@
-// Sends what tests/qemu/test_bus.py expects to hear, in its order: the emulated CAN controller's arbitration
-// and its pace, with the kernel under it. Exit code 0, or the first broken promise on stderr.
+// Sends what tests/firmware/qemu/test_bus.py expects to hear, in its order: the emulated CAN controller's
+// arbitration and its pace, with the kernel under it. Exit code 0, or the first broken promise on stderr.
 #include <chrono>
 #include <cstdint>
 

@@ -1,4 +1,4 @@
-/// The dongle of an emulated line robot: its serial line is one UART, its pin 19 another. QEMU's machines
+/// The dongle of an emulated mapper: its serial line is one UART, its pin 19 another. QEMU's machines
 /// have no pins: a byte on the second UART is the level that pin 19 has now, '0' low, connected, or '1' high
 /// [Thesis 2, 6.4.1]; the robot itself says CR there once it listens.
 ///

@@ -1,8 +1,8 @@
-#include "firmware/sim/battery.hpp"
+#include "sim/amiro/battery.hpp"
 
 #include <catch2/catch.hpp>
 
-using namespace ocm::firmware::sim;
+using namespace ocm::sim;
 
 namespace {
 

@@ -1,13 +1,13 @@
-#include "firmware/sim/drive.hpp"
+#include "sim/amiro/drive.hpp"
 
 #include <cmath>
 
 #include <catch2/catch.hpp>
 
-#include "firmware/sim/arena.hpp"
-#include "firmware/sim/noise.hpp"
+#include "sim/amiro/arena.hpp"
+#include "sim/physics/noise.hpp"
 
-using namespace ocm::firmware::sim;
+using namespace ocm::sim;
 namespace di_wheel_drive = ocm::firmware::boards::di_wheel_drive;
 
 namespace {

@@ -1,10 +1,10 @@
-#include "firmware/sim/noise.hpp"
+#include "sim/physics/noise.hpp"
 
 #include <cmath>
 
 #include <catch2/catch.hpp>
 
-using ocm::firmware::sim::Noise;
+using ocm::sim::Noise;
 
 TEST_CASE("noise is a function of seed, part, sample and channel") {
   constexpr Noise noise{7, 2};

@@ -1,4 +1,4 @@
-#include "firmware/sim/robot.hpp"
+#include "sim/amiro/robot.hpp"
 
 #include <cmath>
 #include <string>

@@ -3,9 +3,9 @@
 
 #include <catch2/catch.hpp>
 
-#include "firmware/sim/world.hpp"
+#include "sim/amiro/world.hpp"
 
-using namespace ocm::firmware::sim;
+using namespace ocm::sim;
 using ocm::firmware::boards::Axes;
 
 namespace {

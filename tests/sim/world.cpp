@@ -1,4 +1,4 @@
-#include "firmware/sim/world.hpp"
+#include "sim/amiro/world.hpp"
 
 #include <cmath>
 #include <tuple>
@@ -8,7 +8,7 @@
 
 #include "firmware/boards/di_wheel_drive/odometry.hpp"
 
-using namespace ocm::firmware::sim;
+using namespace ocm::sim;
 using namespace std::chrono_literals;
 using ocm::base::Duration;
 using ocm::base::Error;

@@ -25,7 +25,7 @@
 #include "ocm/base/time.hpp"
 #include "ocm/cognitive/map.hpp"
 #include "ocm/cognitive/routes.hpp"
-#include "ocm/line/sentence.hpp"
+#include "ocm/mapper/link/sentence.hpp"
 
 namespace ocm::cognitive {
 
@@ -62,14 +62,14 @@ struct Order {
     done,   ///< nothing left that it could reach
   };
   Kind kind = Kind::done;
-  line::SetPoint set_point{};
+  mapper::link::SetPoint set_point{};
   base::Time until{};
 };
 
 /// The straight way to a point as a set point: turned first, in whole degrees and centimetres, at most
 /// `longest_m`.
-[[nodiscard]] inline line::SetPoint set_point_to(const motion::Pose& from, motion::Point to,
-                                                 float longest_m) {
+[[nodiscard]] inline mapper::link::SetPoint set_point_to(const motion::Pose& from, motion::Point to,
+                                                         float longest_m) {
   const motion::Point seen = motion::to_robot(from, to);
   const float way = std::min(std::hypot(seen.x_m, seen.y_m), std::min(longest_m, 300.0F));
   const float angle = way > 0.0F ? motion::degrees(std::atan2(seen.y_m, seen.x_m)) : 0.0F;
@@ -77,7 +77,8 @@ struct Order {
 }
 
 /// Where a robot is that has carried it out.
-[[nodiscard]] inline motion::Point end_of(const motion::Pose& from, const line::SetPoint& piece) noexcept {
+[[nodiscard]] inline motion::Point end_of(const motion::Pose& from,
+                                          const mapper::link::SetPoint& piece) noexcept {
   const float heading = from.heading_rad + motion::radians(static_cast<float>(piece.angle));
   const float way = static_cast<float>(piece.distance) / 100.0F;
   return {from.x_m + way * std::cos(heading), from.y_m + way * std::sin(heading)};
@@ -265,7 +266,7 @@ class Explorer {
     constexpr float step_m = 0.03F;  // a corner so near is passed by
     const bool near = way.size() > 2 && distance_m(way[0], way[1]) < step_m;
     for (float longest = options_.longest_m; longest > 0.01F; longest /= 2) {
-      const line::SetPoint piece = set_point_to(self.body.pose, way[near ? 2 : 1], longest);
+      const mapper::link::SetPoint piece = set_point_to(self.body.pose, way[near ? 2 : 1], longest);
       if (!terrain.open(way[0], end_of(self.body.pose, piece))) continue;
       mission.way.assign(way.begin() + 1, way.end());
       mission.was = self.body.pose;

@@ -20,8 +20,8 @@
 
 #include "ocm/base/time.hpp"
 #include "ocm/cognitive/map.hpp"
-#include "ocm/line/demultiplexer.hpp"
-#include "ocm/line/format.hpp"
+#include "ocm/mapper/link/demultiplexer.hpp"
+#include "ocm/mapper/link/format.hpp"
 
 namespace ocm::cognitive {
 
@@ -47,11 +47,11 @@ struct Robot {
   bool idle = false;       ///< at its set point
   bool paused = false;
   bool lost = false;  ///< silent for its deadline, or without a link
-  std::optional<line::Handshake> handshake{};
-  std::optional<line::Update> update{};  ///< the newest
+  std::optional<mapper::link::Handshake> handshake{};
+  std::optional<mapper::link::Update> update{};  ///< the newest
   base::Time updated{};
   base::Time heard{};  ///< its last word of any kind
-  line::Kind last = line::Kind::none;
+  mapper::link::Kind last = mapper::link::Kind::none;
   base::Time told{};      ///< when the last set point, pause or unpause was said
   motion::Pose origin{};  ///< where its frame began, in the world
   Advice advice = Advice::stay;
@@ -111,13 +111,13 @@ class Fleet {
   void feed(std::string_view bytes, base::Time now, Heard&& heard) {
     for (const char c : bytes) {
       const auto sentence = ears_.feed(static_cast<std::uint8_t>(c));
-      if (sentence.kind == line::Kind::none) continue;
+      if (sentence.kind == mapper::link::Kind::none) continue;
       hear(sentence.robot, sentence.kind, now);
       heard(std::size_t{sentence.robot}, sentence.kind);
     }
   }
   void feed(std::string_view bytes, base::Time now) {
-    feed(bytes, now, [](std::size_t, line::Kind) {});
+    feed(bytes, now, [](std::size_t, mapper::link::Kind) {});
   }
   /// Who is silent for too long is lost.
   void expire(base::Time now) {
@@ -128,8 +128,8 @@ class Fleet {
   // --- what is to be said ---
 
   /// False when a field is out of its range: then nothing is said.
-  bool go(std::size_t index, const line::SetPoint& set_point, base::Time now) {
-    const auto words = line::write(set_point);
+  bool go(std::size_t index, const mapper::link::SetPoint& set_point, base::Time now) {
+    const auto words = mapper::link::write(set_point);
     if (index >= most_robots || !words) return false;
     Robot& robot = robots_[index];
     robot.idle = false;
@@ -138,7 +138,7 @@ class Fleet {
   }
   bool pause(std::size_t index, base::Time now) { return hold(index, true, now); }
   bool unpause(std::size_t index, base::Time now) { return hold(index, false, now); }
-  bool ping(std::size_t index) { return say(index, line::write(line::Kind::ping)->view()); }
+  bool ping(std::size_t index) { return say(index, mapper::link::write(mapper::link::Kind::ping)->view()); }
   [[nodiscard]] std::optional<Saying> take() {
     if (sayings_.empty()) return std::nullopt;
     Saying saying = std::move(sayings_.front());
@@ -153,7 +153,7 @@ class Fleet {
   [[nodiscard]] std::uint32_t quality_per_mille(std::size_t index) const {
     return ears_.ear(index).quality().per_mille();
   }
-  [[nodiscard]] const line::Ear& ear(std::size_t index) const { return ears_.ear(index); }
+  [[nodiscard]] const mapper::link::Ear& ear(std::size_t index) const { return ears_.ear(index); }
   [[nodiscard]] base::Duration deadline_of(const Robot& robot) const noexcept {
     if (!robot.handshake || robot.handshake->deadline <= 0) return options_.deadline;
     return std::chrono::milliseconds{robot.handshake->deadline};
@@ -175,7 +175,8 @@ class Fleet {
     if (index >= most_robots) return false;
     robots_[index].paused = paused;
     robots_[index].told = now;
-    return say(index, line::write(paused ? line::Kind::pause : line::Kind::unpause)->view());
+    return say(index,
+               mapper::link::write(paused ? mapper::link::Kind::pause : mapper::link::Kind::unpause)->view());
   }
   void lose(Robot& robot) {
     if (!robot.lost) ++counters_.lost;
@@ -183,7 +184,7 @@ class Fleet {
     robot.idle = false;
   }
 
-  void hear(std::size_t index, line::Kind kind, base::Time now) {
+  void hear(std::size_t index, mapper::link::Kind kind, base::Time now) {
     if (index >= most_robots) return;
     Robot& robot = robots_[index];
     robot.heard = now;
@@ -191,13 +192,13 @@ class Fleet {
     robot.lost = false;
     robot.linked = true;  // whoever speaks has a link
     switch (kind) {
-      case line::Kind::handshake:
+      case mapper::link::Kind::handshake:
         greet(index, robot);
         break;
-      case line::Kind::update:
+      case mapper::link::Kind::update:
         update(index, robot, now);
         break;
-      case line::Kind::idle:
+      case mapper::link::Kind::idle:
         ++counters_.idles;
         robot.confirmed = true;
         if (now - robot.told < options_.settle && robot.told != base::Time{}) {
@@ -206,7 +207,7 @@ class Fleet {
         }
         robot.idle = true;
         break;
-      case line::Kind::pong:
+      case mapper::link::Kind::pong:
         ++counters_.pongs;
         break;
       default:
@@ -217,26 +218,26 @@ class Fleet {
   /// It is said again each second until the robot hears the answer.
   void greet(std::size_t index, Robot& robot) {
     ++counters_.handshakes;
-    robot.handshake = ears_.ear(index).sentence().as<line::Handshake>().value;
+    robot.handshake = ears_.ear(index).sentence().as<mapper::link::Handshake>().value;
     robot.origin = robot.pose();  // its pose begins at 0 again, where it stands
     robot.update.reset();
     robot.confirmed = true;
     robot.idle = true;  // it waits for a set point
     robot.paused = false;
     robot.told = {};
-    (void)say(index, line::answer(*robot.handshake, options_.packed).view());
+    (void)say(index, mapper::link::answer(*robot.handshake, options_.packed).view());
   }
   void update(std::size_t index, Robot& robot, base::Time now) {
     ++counters_.updates;
     robot.confirmed = true;
-    robot.update = ears_.ear(index).sentence().as<line::Update>().value;
+    robot.update = ears_.ear(index).sentence().as<mapper::link::Update>().value;
     robot.updated = now;
     // Paused robots send none: it was not heard.
     constexpr base::Duration in_flight = std::chrono::seconds{1};
     if (robot.paused && now - robot.told > in_flight) robot.paused = false;
   }
   void judge(std::size_t index, Robot& robot) {
-    const line::LinkQuality& quality = ears_.ear(index).quality();
+    const mapper::link::LinkQuality& quality = ears_.ear(index).quality();
     const float far = distance_m(place(robot.pose()), options_.central);
     const bool before = robot.advice != Advice::stay;
     const float limit = options_.range_m * (before ? options_.near_range * 0.9F : options_.near_range);
@@ -250,7 +251,7 @@ class Fleet {
   }
 
   FleetOptions options_;
-  line::Demultiplexer<most_robots> ears_;
+  mapper::link::Demultiplexer<most_robots> ears_;
   std::array<Robot, most_robots> robots_{};
   std::deque<Saying> sayings_;
   FleetCounters counters_{};

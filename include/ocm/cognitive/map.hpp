@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "ocm/cognitive/grid.hpp"
-#include "ocm/line/sentence.hpp"
+#include "ocm/mapper/link/sentence.hpp"
 #include "ocm/motion/pose.hpp"
 #include "ocm/sensing/tower.hpp"
 
@@ -40,7 +40,7 @@ struct Shape {
 };
 
 /// The fields that were given and can be; of others a robot's usual ones.
-[[nodiscard]] inline Shape shape_of(const line::Handshake& handshake) noexcept {
+[[nodiscard]] inline Shape shape_of(const mapper::link::Handshake& handshake) noexcept {
   Shape shape;
   const auto metres = [](std::int16_t cm) { return static_cast<float>(cm) / 100.0F; };
   constexpr std::int16_t most_cm = 100;  // for a robot with a tower of this reach
@@ -72,7 +72,7 @@ struct Body {
   const motion::Point p = motion::to_world(origin, place(pose));
   return {p.x_m, p.y_m, motion::wrap(origin.heading_rad + pose.heading_rad)};
 }
-[[nodiscard]] inline motion::Pose pose_of(const line::Update& update) noexcept {
+[[nodiscard]] inline motion::Pose pose_of(const mapper::link::Update& update) noexcept {
   return {static_cast<float>(update.x) / 100.0F, static_cast<float>(update.y) / 100.0F,
           motion::wrap(motion::radians(static_cast<float>(update.heading)))};
 }
@@ -121,7 +121,7 @@ class Map {
 
   /// An update of the robot at `robot.pose`; `others` stand around. False, and nothing changes but a counter,
   /// when the pose is no place.
-  bool take(const Body& robot, const line::Update& update, std::span<const Body> others = {}) {
+  bool take(const Body& robot, const mapper::link::Update& update, std::span<const Body> others = {}) {
     if (!motion::is_finite(robot.pose) || !Raster::has(place(robot.pose))) {
       ++counters_.refused_poses;
       return false;

@@ -40,13 +40,13 @@ class Mapping {
       : fleet_(&fleet), options_(options), map_(options.map), explorer_(options.explorer) {}
 
   /// To be told of each sentence, as Server::feed does.
-  void heard(std::size_t robot, line::Kind kind) {
+  void heard(std::size_t robot, mapper::link::Kind kind) {
     if (robot >= Fleet::most_robots) return;
-    if (kind == line::Kind::handshake) {
+    if (kind == mapper::link::Kind::handshake) {
       tracks_[robot] = Track{.path = std::move(tracks_[robot].path)};
       explorer_.forget(static_cast<std::uint8_t>(robot));
     }
-    if (kind == line::Kind::update) draw(robot);
+    if (kind == mapper::link::Kind::update) draw(robot);
   }
 
   /// Gives orders to those who have nothing to do. Often: ten times a second.

@@ -10,14 +10,14 @@
 #include <string_view>
 #include <utility>
 
-#include "ocm/cognitive/central_client.hpp"
 #include "ocm/cognitive/fleet.hpp"
+#include "ocm/mapper/server/central_client.hpp"
 
 namespace ocm::cognitive {
 
 class Server {
  public:
-  explicit Server(const FleetOptions& fleet = {}, const CentralClientOptions& client = {})
+  explicit Server(const FleetOptions& fleet = {}, const mapper::server::CentralClientOptions& client = {})
       : client_(client), fleet_(fleet) {}
 
   /// Bytes from the central. `heard(robot, kind)` after each whole sentence of a robot.
@@ -31,7 +31,7 @@ class Server {
     expire(now);
   }
   void feed(std::string_view bytes, base::Time now) {
-    feed(bytes, now, [](std::size_t, line::Kind) {});
+    feed(bytes, now, [](std::size_t, mapper::link::Kind) {});
   }
   /// Time-outs, and what is to be said. At `deadline()`, and after each wish.
   void expire(base::Time now) {
@@ -45,15 +45,15 @@ class Server {
   /// What goes to the central.
   [[nodiscard]] std::string take() { return client_.take(); }
   /// What became of wishes and links; the fleet knows already.
-  [[nodiscard]] std::optional<CentralEvent> next_event() {
+  [[nodiscard]] std::optional<mapper::server::CentralEvent> next_event() {
     if (events_.empty()) return std::nullopt;
-    CentralEvent event = std::move(events_.front());
+    mapper::server::CentralEvent event = std::move(events_.front());
     events_.pop_front();
     return event;
   }
 
-  [[nodiscard]] CentralClient& client() noexcept { return client_; }
-  [[nodiscard]] const CentralClient& client() const noexcept { return client_; }
+  [[nodiscard]] mapper::server::CentralClient& client() noexcept { return client_; }
+  [[nodiscard]] const mapper::server::CentralClient& client() const noexcept { return client_; }
   [[nodiscard]] Fleet& fleet() noexcept { return fleet_; }
   [[nodiscard]] const Fleet& fleet() const noexcept { return fleet_; }
   /// Words for which the queue had no room.
@@ -62,18 +62,18 @@ class Server {
  private:
   void take_events(base::Time now) {
     while (auto event = client_.next_event()) {
-      const Peer* const peer = client_.peer(event->index);
-      if (event->kind == CentralEvent::Kind::connected)
+      const mapper::server::Peer* const peer = client_.peer(event->index);
+      if (event->kind == mapper::server::CentralEvent::Kind::connected)
         fleet_.linked(event->index, peer != nullptr ? std::string_view{peer->name} : std::string_view{"?"},
                       now);
-      if (event->kind == CentralEvent::Kind::lost) fleet_.unlinked(event->index);
-      if (event->kind != CentralEvent::Kind::said) events_.push_back(std::move(*event));
+      if (event->kind == mapper::server::CentralEvent::Kind::lost) fleet_.unlinked(event->index);
+      if (event->kind != mapper::server::CentralEvent::Kind::said) events_.push_back(std::move(*event));
     }
   }
 
-  CentralClient client_;
+  mapper::server::CentralClient client_;
   Fleet fleet_;
-  std::deque<CentralEvent> events_;
+  std::deque<mapper::server::CentralEvent> events_;
   std::uint32_t unsaid_ = 0;
 };
 

@@ -16,7 +16,7 @@
 
 #include "ocm/base/result.hpp"
 #include "ocm/base/time.hpp"
-#include "ocm/line/packet.hpp"
+#include "ocm/mapper/link/packet.hpp"
 
 namespace ocm::simulation {
 
@@ -29,8 +29,8 @@ class PacketCutter {
     return packet_.full() || byte == '\n';
   }
   /// What there is, whole or begun; the next packet begins.
-  constexpr line::Packet take() noexcept {
-    const line::Packet packet = packet_;
+  constexpr mapper::link::Packet take() noexcept {
+    const mapper::link::Packet packet = packet_;
     packet_ = {};
     return packet;
   }
@@ -38,7 +38,7 @@ class PacketCutter {
   [[nodiscard]] constexpr std::size_t begun() const noexcept { return packet_.size; }
 
  private:
-  line::Packet packet_{};
+  mapper::link::Packet packet_{};
 };
 
 struct DongleModel {
@@ -80,7 +80,7 @@ class Dongle {
     return taken;
   }
   /// The radio has room: the oldest packet, or Error::no_answer.
-  base::Result<line::Packet> take(base::Time now) {
+  base::Result<mapper::link::Packet> take(base::Time now) {
     work(now);
     return outbox_.take();
   }
@@ -96,7 +96,7 @@ class Dongle {
   }
 
   [[nodiscard]] const DongleCounters& counters() const noexcept { return counters_; }
-  [[nodiscard]] const line::OutboxCounters& outbox() const noexcept { return outbox_.counters(); }
+  [[nodiscard]] const mapper::link::OutboxCounters& outbox() const noexcept { return outbox_.counters(); }
 
  private:
   /// The bytes that the UART has carried until now.
@@ -112,7 +112,7 @@ class Dongle {
   std::deque<std::uint8_t> uart_;
   base::Time first_{};  ///< when the first that waits is over
   PacketCutter cutter_;
-  line::Outbox<Waiting> outbox_;
+  mapper::link::Outbox<Waiting> outbox_;
   bool linked_ = false;
   DongleCounters counters_;
 };

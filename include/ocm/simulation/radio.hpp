@@ -34,7 +34,7 @@
 
 #include "ocm/base/result.hpp"
 #include "ocm/base/time.hpp"
-#include "ocm/line/packet.hpp"
+#include "ocm/mapper/link/packet.hpp"
 
 namespace ocm::simulation {
 
@@ -80,15 +80,19 @@ struct RadioModel {
 
 /// What the radio calls, with the robot's number, in the order of time; `Radio::time` tells it.
 template <class U>
-concept RadioUser = requires(U& user, std::size_t robot, const line::Packet& packet, bool linked) {
-  { user.next_for_robot(robot) } -> std::same_as<base::Result<line::Packet>>;    ///< the central's oldest
-  { user.next_for_central(robot) } -> std::same_as<base::Result<line::Packet>>;  ///< the dongle's oldest
-  user.at_robot(robot, packet);    ///< the robot's dongle has received it
-  user.at_central(robot, packet);  ///< the central has
-  user.found(robot);               ///< the central, which scans, has heard that it advertises
-  user.connected(robot);           ///< at the central
-  user.closed(robot);              ///< at the central: the link, or the attempt
-  user.linked(robot, linked);      ///< at the robot's dongle
+concept RadioUser = requires(U& user, std::size_t robot, const mapper::link::Packet& packet, bool linked) {
+  {
+    user.next_for_robot(robot)
+    } -> std::same_as<base::Result<mapper::link::Packet>>;  ///< the central's oldest
+  {
+    user.next_for_central(robot)
+    } -> std::same_as<base::Result<mapper::link::Packet>>;  ///< the dongle's oldest
+  user.at_robot(robot, packet);                             ///< the robot's dongle has received it
+  user.at_central(robot, packet);                           ///< the central has
+  user.found(robot);           ///< the central, which scans, has heard that it advertises
+  user.connected(robot);       ///< at the central
+  user.closed(robot);          ///< at the central: the link, or the attempt
+  user.linked(robot, linked);  ///< at the robot's dongle
 };
 
 /// What became of the packets of one way: taken = delivered + lost + dropped, and those under way.
@@ -239,7 +243,7 @@ class Radio {
     base::Time event{};
     base::Time central_heard{};
     base::Time robot_heard{};
-    std::array<std::optional<line::Packet>, 2> again{};  ///< a way's lost packet, to be repeated
+    std::array<std::optional<mapper::link::Packet>, 2> again{};  ///< a way's lost packet, to be repeated
     RadioCounters counters{};
   };
   struct Report {
@@ -254,13 +258,13 @@ class Radio {
     std::uint64_t link;
     Way way;
     bool goodbye;  ///< the central has ended the link
-    line::Packet packet;
+    mapper::link::Packet packet;
   };
 
   [[nodiscard]] static WayCounters& counters(Robot& robot, Way way) noexcept {
     return way == Way::to_robot ? robot.counters.to_robot : robot.counters.to_central;
   }
-  [[nodiscard]] static std::optional<line::Packet>& again(Robot& robot, Way way) noexcept {
+  [[nodiscard]] static std::optional<mapper::link::Packet>& again(Robot& robot, Way way) noexcept {
     return robot.again[static_cast<std::size_t>(way)];
   }
 
@@ -374,10 +378,10 @@ class Radio {
   bool transfer(std::size_t i, Way way, Next next) {
     Robot& robot = robots_[i];
     WayCounters& count = counters(robot, way);
-    std::optional<line::Packet>& again = Radio::again(robot, way);
+    std::optional<mapper::link::Packet>& again = Radio::again(robot, way);
     bool heard = false;
     for (unsigned k = 0; k < model_.packets; ++k) {
-      line::Packet packet;
+      mapper::link::Packet packet;
       if (again) {
         packet = *again;
         ++count.repeated;

@@ -20,7 +20,7 @@ namespace {
 static_assert(frame_bits({.id = 0, .dlc = 0}) == 34 + 6 + 10);
 
 // What a frame has at least: 44 bits and the data, 64 for an extended one. [Bosch CAN 2.0, 3.1] In the first
-// of these no five bits are equal, CRC included; all were written out by tests/arbitration/schedule.py.
+// of these no five bits are equal, CRC included; all were written out by tests/sim/arbitration/schedule.py.
 static_assert(frame_bits({.id = 0x555, .dlc = 5, .data = {0x55, 0x55, 0x55, 0x55, 0x55}}) == 44 + 40);
 static_assert(frame_bits({.id = 0, .dlc = 8}) == 44 + 64 + 16);
 static_assert(frame_bits({.id = 0x205, .dlc = 4, .data = {0x01, 0x84, 0x03, 0x02}}) == 44 + 32 + 5);

@@ -16,7 +16,7 @@ namespace {
 using namespace std::chrono_literals;
 using namespace ocm::cognitive;
 using ocm::base::Time;
-using ocm::line::SetPoint;
+using ocm::mapper::link::SetPoint;
 using ocm::motion::Point;
 using ocm::motion::Pose;
 using ocm::test::map_of;

@@ -6,18 +6,18 @@
 
 #include <catch2/catch.hpp>
 
-#include "ocm/line/packed.hpp"
+#include "ocm/mapper/link/packed.hpp"
 
 #include "unit/base/random.hpp"
-#include "unit/line/line_testing.hpp"
+#include "unit/mapper/link/link_testing.hpp"
 
 namespace {
 
 using namespace std::chrono_literals;
 using namespace ocm::cognitive;
 using ocm::base::Time;
-using ocm::line::Kind;
-using ocm::line::Update;
+using ocm::mapper::link::Kind;
+using ocm::mapper::link::Update;
 using ocm::test::Random;
 
 constexpr Time second{1s};
@@ -67,7 +67,7 @@ TEST_CASE("fleet: poses, in the robot's frame and in the world's") {
 
 TEST_CASE("fleet: packed updates are updates") {
   Fleet fleet;
-  const auto packet = ocm::line::pack({0, {10, -20, 90, 4, 0, 30, 0, 0}});
+  const auto packet = ocm::mapper::link::pack({0, {10, -20, 90, 4, 0, 30, 0, 0}});
   std::string bytes = "[3]:AVR:";
   for (const std::uint8_t byte : packet->bytes()) bytes += static_cast<char>(byte);
   fleet.feed(bytes, second);

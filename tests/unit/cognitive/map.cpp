@@ -15,8 +15,8 @@
 namespace {
 
 using namespace ocm::cognitive;
-using ocm::line::Handshake;
-using ocm::line::Update;
+using ocm::mapper::link::Handshake;
+using ocm::mapper::link::Update;
 using ocm::motion::Pose;
 using ocm::test::Random;
 using ocm::test::Room;

@@ -7,7 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include "ocm/cognitive/agreement.hpp"
-#include "ocm/line/reader.hpp"
+#include "ocm/mapper/link/reader.hpp"
 
 #include "unit/base/random.hpp"
 #include "unit/cognitive/testing/room.hpp"
@@ -17,7 +17,7 @@ namespace {
 using namespace std::chrono_literals;
 using namespace ocm::cognitive;
 using ocm::base::Time;
-using ocm::line::Kind;
+using ocm::mapper::link::Kind;
 using ocm::test::PerfectRobot;
 using ocm::test::Random;
 using ocm::test::Room;
@@ -47,17 +47,17 @@ struct Expedition {
     now += 200ms;
     for (std::size_t i = 0; i < robots.size(); ++i) {
       robots[i].step(room, robots);
-      say(i, ocm::line::write(robots[i].update(room, robots))->view());
+      say(i, ocm::mapper::link::write(robots[i].update(room, robots))->view());
       if (robots[i].idle()) say(i, "{S,IDL}\n");
       for (std::size_t k = 0; k < i; ++k)
         nearest_m = std::min(nearest_m, distance_m(place(robots[i].pose()), place(robots[k].pose())));
     }
     mapping.step(now);
     while (const auto saying = fleet.take()) {
-      ocm::line::Reader reader{ocm::line::Direction::to_robot};
+      ocm::mapper::link::Reader reader{ocm::mapper::link::Direction::to_robot};
       for (const char c : saying->words)
         if (reader.feed(c) == Kind::set_point)
-          robots[saying->robot].go(*reader.sentence().as<ocm::line::SetPoint>());
+          robots[saying->robot].go(*reader.sentence().as<ocm::mapper::link::SetPoint>());
     }
   }
   /// Seconds until nothing was left to do; `most` when it did not end.

@@ -15,14 +15,14 @@ using namespace std::chrono_literals;
 using namespace ocm::cognitive;
 using ocm::base::Duration;
 using ocm::base::Time;
-using ocm::line::Kind;
+using ocm::mapper::link::Kind;
 using ocm::test::Random;
 using ocm::test::VirtualCentral;
 
 struct Bench {
   VirtualCentral central;
   Server server;
-  std::vector<CentralEvent> events;
+  std::vector<ocm::mapper::server::CentralEvent> events;
   std::vector<std::pair<std::size_t, Kind>> heard;
   Time now{1s};
 
@@ -41,7 +41,9 @@ struct Bench {
   void connect_all() {
     server.client().scan(300ms);
     advance(1s);
-    for (const Peer& peer : std::vector<Peer>{server.client().peers()}) server.client().connect(peer.index);
+    for (const ocm::mapper::server::Peer& peer :
+         std::vector<ocm::mapper::server::Peer>{server.client().peers()})
+      server.client().connect(peer.index);
     advance(3s);
   }
 };
@@ -94,7 +96,7 @@ TEST_CASE("server: a link that dies is told, and what is said into it fails in w
   bench.central.cut(0);
   bench.advance(100ms);
   REQUIRE(bench.events.size() == 1);
-  CHECK(bench.events[0].kind == CentralEvent::Kind::lost);
+  CHECK(bench.events[0].kind == ocm::mapper::server::CentralEvent::Kind::lost);
   CHECK(bench.server.fleet().robot(0).lost);
   bench.server.fleet().pause(0, bench.now);
   bench.server.client().scan(0s);  // leaves data mode

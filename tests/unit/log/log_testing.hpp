@@ -14,7 +14,7 @@
 #include "ocm/log/reader.hpp"
 #include "ocm/log/writer.hpp"
 
-#include "tests/fuzz/log_entries.hpp"
+#include "tests/robustness/fuzz/log_entries.hpp"
 #include "tests/unit/log/entries.hpp"
 
 namespace ocm::log::testing {

@@ -28,7 +28,7 @@ constexpr base::Time at(base::Duration time) {
   return base::Time{time};
 }
 
-/// A trace of tests/arbitration/schedule.txt.
+/// A trace of tests/sim/arbitration/schedule.txt.
 struct Trace {
   struct Send {
     base::Time time;
@@ -64,7 +64,7 @@ can::Frame read_frame(std::istream& line) {
 }
 
 std::vector<Trace> read_traces() {
-  std::ifstream file{std::string{OCM_SOURCE_DIR} + "/tests/arbitration/schedule.txt"};
+  std::ifstream file{std::string{OCM_SOURCE_DIR} + "/tests/sim/arbitration/schedule.txt"};
   REQUIRE(file);
   std::vector<Trace> traces;
   for (std::string text; std::getline(file, text);) {

@@ -16,7 +16,7 @@ namespace {
 
 using namespace ocm;
 using namespace std::chrono_literals;
-using line::Packet;
+using mapper::link::Packet;
 using simulation::Place;
 using simulation::Radio;
 using simulation::RadioModel;

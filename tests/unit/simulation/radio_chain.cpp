@@ -7,9 +7,9 @@
 
 #include <catch2/catch.hpp>
 
-#include "ocm/line/central.hpp"
-#include "ocm/line/demultiplexer.hpp"
-#include "ocm/line/format.hpp"
+#include "ocm/mapper/link/central.hpp"
+#include "ocm/mapper/link/demultiplexer.hpp"
+#include "ocm/mapper/link/format.hpp"
 #include "ocm/simulation/dongle.hpp"
 #include "ocm/simulation/radio.hpp"
 
@@ -52,7 +52,7 @@ class Chain {
   std::string server;  ///< all that the server has got
   std::string robot;   ///< all that the robot has
 
-  [[nodiscard]] const line::Ear& ear() const { return ears_.ear(0); }
+  [[nodiscard]] const mapper::link::Ear& ear() const { return ears_.ear(0); }
   [[nodiscard]] const Radio& radio() const { return radio_; }
   [[nodiscard]] const simulation::Dongle<>& dongle() const { return dongle_; }
   [[nodiscard]] bool linked() const { return dongle_.linked(); }
@@ -62,8 +62,8 @@ class Chain {
     server += text;
     for (const char c : text) {
       const auto got = ears_.feed(static_cast<std::uint8_t>(c));
-      if (got.kind == line::Kind::idle) ++idle;
-      if (got.kind != line::Kind::update) continue;
+      if (got.kind == mapper::link::Kind::idle) ++idle;
+      if (got.kind != mapper::link::Kind::update) continue;
       ++heard;
       longest_silence = std::max(longest_silence, now_ - last_);
       last_ = now_;
@@ -71,21 +71,23 @@ class Chain {
   }
   void start_scan() { radio_.start_scan(now_); }
   void stop_scan() { radio_.stop_scan(); }
-  void connect(const line::Address&) { radio_.connect(0, now_); }
-  void disconnect(const line::Address&) { radio_.disconnect(0, now_); }
+  void connect(const mapper::link::Address&) { radio_.connect(0, now_); }
+  void disconnect(const mapper::link::Address&) { radio_.disconnect(0, now_); }
   void restart() { radio_.restart(); }
 
   // RadioUser
-  base::Result<line::Packet> next_for_robot(std::size_t) { return central_.take(address); }
-  base::Result<line::Packet> next_for_central(std::size_t) { return dongle_.take(radio_.time()); }
-  void at_robot(std::size_t, const line::Packet& packet) {
+  base::Result<mapper::link::Packet> next_for_robot(std::size_t) { return central_.take(address); }
+  base::Result<mapper::link::Packet> next_for_central(std::size_t) { return dongle_.take(radio_.time()); }
+  void at_robot(std::size_t, const mapper::link::Packet& packet) {
     for (const std::uint8_t byte : packet.bytes()) {
       robot += static_cast<char>(byte);
-      const line::Kind kind = reader_.feed(static_cast<char>(byte));
+      const mapper::link::Kind kind = reader_.feed(static_cast<char>(byte));
       writer_.hear(kind);
     }
   }
-  void at_central(std::size_t, const line::Packet& packet) { central_.heard(address, packet.bytes(), *this); }
+  void at_central(std::size_t, const mapper::link::Packet& packet) {
+    central_.heard(address, packet.bytes(), *this);
+  }
   void found(std::size_t) { central_.found(address, "AVR", *this); }
   void connected(std::size_t) { central_.connected(address, *this); }
   void closed(std::size_t) { central_.closed(address, *this); }
@@ -98,12 +100,12 @@ class Chain {
   }
 
  private:
-  static constexpr line::Address address{0xC0, 0, 0, 0, 0, 1};
+  static constexpr mapper::link::Address address{0xC0, 0, 0, 0, 0, 1};
 
   void send_update() {
     due_ += 200ms;
-    const line::Update update{-177, -61, static_cast<std::int16_t>(sent % 360), 49, 0, 17, 58, 0};
-    line::Outbox<4> lines;
+    const mapper::link::Update update{-177, -61, static_cast<std::int16_t>(sent % 360), 49, 0, 17, 58, 0};
+    mapper::link::Outbox<4> lines;
     REQUIRE(writer_.send(update, lines));
     while (const auto packet = lines.take()) (void)dongle_.write(packet->bytes(), now_);
     if (sent % 20 == 19) (void)dongle_.write(std::span{idle_, sizeof idle_}, now_);
@@ -116,10 +118,10 @@ class Chain {
   base::Time last_{};
   Radio radio_;
   simulation::Dongle<> dongle_;
-  line::UpdateWriter writer_{true};
-  line::Reader reader_{line::Direction::to_robot};
-  line::Central<> central_;
-  line::Demultiplexer<8> ears_;
+  mapper::link::UpdateWriter writer_{true};
+  mapper::link::Reader reader_{mapper::link::Direction::to_robot};
+  mapper::link::Central<> central_;
+  mapper::link::Demultiplexer<8> ears_;
   bool packed_;
 };
 
@@ -224,7 +226,7 @@ TEST_CASE("radio chain: the farther, the less comes whole; packed updates stand 
   }
 }
 
-// unit_simulation "[.measure]" prints the table of docs/line.md.
+// unit_simulation "[.measure]" prints the table of docs/mapper-link.md.
 TEST_CASE("radio chain: measured degradation", "[.measure]") {
   std::printf(
       "| distance | packets lost | text | quality | longest silence | packed | repeats: longest silence |\n"

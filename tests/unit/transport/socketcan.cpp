@@ -1,5 +1,5 @@
-// What can be known without CAN in the kernel. The rest is in tests/socketcan, which boots a kernel that has
-// it.
+// What can be known without CAN in the kernel. The rest is in tests/peers/socketcan, which boots a kernel
+// that has it.
 #include "ocm/transport/socketcan.hpp"
 
 #include <linux/can/error.h>

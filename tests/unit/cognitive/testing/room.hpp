@@ -12,7 +12,7 @@
 
 #include "ocm/cognitive/grid.hpp"
 #include "ocm/cognitive/map.hpp"
-#include "ocm/line/sentence.hpp"
+#include "ocm/mapper/link/sentence.hpp"
 #include "ocm/sensing/anti_collision.hpp"
 #include "ocm/sensing/tower.hpp"
 
@@ -58,7 +58,7 @@ class PerfectRobot {
   explicit PerfectRobot(const motion::Pose& start, const cognitive::Shape& shape = {})
       : start_(start), pose_(start), shape_(shape) {}
 
-  void go(const line::SetPoint& set_point) {
+  void go(const mapper::link::SetPoint& set_point) {
     turn_ = motion::radians(set_point.angle);
     way_ = static_cast<float>(set_point.distance) / 100.0F;
   }
@@ -93,7 +93,7 @@ class PerfectRobot {
     sweep_ = sensing::next(sweep_, sensing::tower_mode(true, false, movement_));
   }
   [[nodiscard]] bool idle() const { return turn_ == 0.0F && way_ == 0.0F; }
-  [[nodiscard]] line::Update update(const Room& room, const std::vector<PerfectRobot>& all) const {
+  [[nodiscard]] mapper::link::Update update(const Room& room, const std::vector<PerfectRobot>& all) const {
     const motion::Point p = motion::to_robot(start_, cognitive::place(pose_));
     const auto cm = [](float m) { return static_cast<std::int16_t>(std::lround(m * 100.0F)); };
     return {cm(p.x_m),

@@ -1,6 +1,6 @@
-/// A central, its radio and simple robots in virtual time, for tests of the server's side: line::Central
-/// itself, links that take time to come, and can be cut, robots that shake hands and send updates, and
-/// answers that get lost on the serial line.
+/// A central, its radio and simple robots in virtual time, for tests of the server's side:
+/// mapper::link::Central itself, links that take time to come, and can be cut, robots that shake hands and
+/// send updates, and answers that get lost on the serial line.
 #pragma once
 
 #include <algorithm>
@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "ocm/base/time.hpp"
-#include "ocm/line/central.hpp"
-#include "ocm/line/reader.hpp"
-#include "ocm/line/sentence.hpp"
+#include "ocm/mapper/link/central.hpp"
+#include "ocm/mapper/link/reader.hpp"
+#include "ocm/mapper/link/sentence.hpp"
 
 namespace ocm::test {
 
@@ -22,14 +22,14 @@ class VirtualCentral {
  public:
   struct Robot {
     std::string name;
-    line::Address address{};
+    mapper::link::Address address{};
     bool reachable = true;  ///< whether an attempt to connect succeeds
     bool advertises = true;
     bool linked = false;
     bool confirmed = false;
     unsigned updates = 0;
     std::vector<std::string> heard{};  ///< whole lines
-    line::Update update{};
+    mapper::link::Update update{};
     base::Time spoke{};                 ///< its last sentence
     std::string line{};                 ///< from the central, so far
     std::optional<base::Time> comes{};  ///< when the link will be there
@@ -37,7 +37,7 @@ class VirtualCentral {
   };
   std::vector<Robot> robots;
   std::string to_server;  ///< what the central said since the server last looked
-  line::Central<8, 3, 8> central;
+  mapper::link::Central<8, 3, 8> central;
   base::Duration connecting = std::chrono::milliseconds{400};
 
   std::size_t add(std::string name) {
@@ -78,7 +78,7 @@ class VirtualCentral {
       if (!robot.confirmed) {
         speak(robot, "{H,15,20,0,3,0,90,180,270,2000,0}\n");
       } else {
-        speak(robot, line::write(robot.update)->view());
+        speak(robot, mapper::link::write(robot.update)->view());
         if (++robot.updates % 5 == 0) speak(robot, "{S,IDL}\n");  // it is at once where it should be
       }
     }
@@ -88,8 +88,8 @@ class VirtualCentral {
   void say(std::string_view text) { to_server += text; }
   void start_scan() {}
   void stop_scan() {}
-  void connect(const line::Address& address) { of(address).comes = now + connecting; }
-  void disconnect(const line::Address& address) {
+  void connect(const mapper::link::Address& address) { of(address).comes = now + connecting; }
+  void disconnect(const mapper::link::Address& address) {
     of(address).comes.reset();
     of(address).goes = now + std::chrono::milliseconds{50};
   }
@@ -100,7 +100,7 @@ class VirtualCentral {
   base::Time now{};
 
  private:
-  Robot& of(const line::Address& address) {
+  Robot& of(const mapper::link::Address& address) {
     return *std::find_if(robots.begin(), robots.end(),
                          [&](const Robot& robot) { return robot.address == address; });
   }
@@ -112,7 +112,7 @@ class VirtualCentral {
   }
   void speak(const Robot& robot, std::string_view text) {
     while (!text.empty()) {
-      const auto packet = line::take_packet(text);
+      const auto packet = mapper::link::take_packet(text);
       central.heard(robot.address, packet.bytes(), *this);
     }
   }

@@ -1,0 +1,572 @@
+/// A C99 header of its own: for firmware in C, and for code that Simulink generated. Compared with a plain
+/// translation of a DBC file it hands over whole samples: from a frame to a struct and back in one call, with
+/// scaled accessors, identifiers with priority, and the requests that no DBC can describe.
+#include <algorithm>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "generator/conversion.hpp"
+#include "generator/messages.hpp"
+#include "generator/target.hpp"
+#include "generator/words.hpp"
+#include "generator/writer.hpp"
+
+namespace ocm::generate {
+namespace {
+
+using spec::FieldModel;
+using spec::FrameModel;
+using spec::Model;
+using spec::TopicModel;
+
+std::string upper(std::string text) {
+  for (char& c : text)
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+  return text;
+}
+
+/// C has no ' between thousands.
+std::string plain(std::string text) {
+  text.erase(std::remove(text.begin(), text.end(), '\''), text.end());
+  return text;
+}
+
+/// The one word of C99 that C++ has not, so that a spec allows it. [ISO C99, 6.4.1]
+std::string member(const std::string& name) {
+  return name == "restrict" ? "restrict_" : name;
+}
+
+unsigned type_width(const FieldModel& field) {
+  const unsigned width = field.position.width;
+  return width <= 8 ? 8 : width <= 16 ? 16 : width <= 32 ? 32 : 64;
+}
+
+std::string type_of(const FieldModel& field) {
+  return (field.is_signed ? "int" : "uint") + std::to_string(type_width(field)) + "_t";
+}
+
+/// What the bits of a field are shifted in: no more than 32 where that will do, for a Cortex-M's sake.
+bool is_wide(const FieldModel& field) {
+  return field.position.width > 32;
+}
+std::string word_type(const FieldModel& field) {
+  return is_wide(field) ? "uint64_t" : "uint32_t";
+}
+
+std::string literal(std::int64_t number) {
+  if (number == INT64_MIN) return "INT64_MIN";
+  if (number == INT32_MIN) return "INT32_MIN";
+  const std::string digits = std::to_string(number);
+  if (number > UINT32_MAX || number < INT32_MIN) return "INT64_C(" + digits + ")";
+  return number > INT32_MAX ? digits + "u" : digits;
+}
+
+std::string word_literal(std::uint64_t number, bool wide) {
+  base::Text<24> text;
+  text << (wide ? "UINT64_C(0x" : "0x");
+  text.hex(number, number > 0xFFFF'FFFF ? 16 : number > 0xFFFF ? 8 : number > 0xFF ? 4 : 2);
+  text << (wide ? ")" : "u");
+  return std::string{text.view()};
+}
+
+/// The part of a field that lies in one byte of the frame.
+struct Piece {
+  unsigned byte = 0;   ///< of the frame
+  unsigned shift = 0;  ///< of the piece's lowest bit, within the byte
+  unsigned from = 0;   ///< the piece's lowest bit, within the field
+  unsigned width = 0;
+};
+
+std::vector<Piece> pieces_of(protocol::Position at) {
+  std::vector<Piece> pieces;
+  const bool little = at.order == protocol::ByteOrder::little;
+  const unsigned begin = protocol::detail::shift_of(at);
+  for (unsigned bit = 0; bit < at.width;) {
+    const unsigned place = begin + bit;
+    const unsigned width = std::min(8 - place % 8, at.width - bit);
+    pieces.push_back({little ? place / 8 : 7 - place / 8, place % 8, bit, width});
+    bit += width;
+  }
+  return pieces;
+}
+
+std::string shifted(std::string text, std::string_view by, unsigned count) {
+  return count == 0 ? text : "(" + text + " " + std::string{by} + " " + std::to_string(count) + ")";
+}
+
+std::string masked(std::string text, unsigned width) {
+  return width == 8 ? text : "(" + text + " & " + word_literal((1U << width) - 1, false) + ")";
+}
+
+class Header {
+ public:
+  Header(const Model& model, const Options& options)
+      : model_(model), options_(options), robot_(model.name_space), macro_(upper(robot_)) {}
+
+  std::string make() {
+    opening();
+    protocol_part();
+    for (const TopicModel& topic : model_.topics) write_topic(topic);
+    out_.line("#ifdef __cplusplus");
+    out_.line("}");
+    out_.line("#endif");
+    out_.line();
+    out_.line("#endif");
+    return out_.take();
+  }
+
+ private:
+  // --- names -----------------------------------------------------------------------------------------------
+
+  /// Words joined by underscores may meet: what does so gets one more.
+  std::string unique(std::string name) {
+    while (!taken_.insert(name).second) name += '_';
+    return name;
+  }
+  std::string stem(const TopicModel& topic, const FrameModel& frame) const {
+    return robot_ + "_" + topic.name + (is_aggregate(topic) ? "_" + frame.name : "");
+  }
+
+  // --- the robot -------------------------------------------------------------------------------------------
+
+  void opening() {
+    out_.comment("Made by ocm-generate from " + options_.spec_name +
+                     ". Do not edit: change the spec, and generate again.",
+                 "// ");
+    out_.line("//");
+    out_.comment(
+        "The topics of " + model_.robot + (model_.description.empty() ? "" : ": " + model_.description) +
+            ", for C99 and C++11. No other file is needed, nothing is to be linked, and there is no heap.",
+        "// ");
+    out_.line("//");
+    out_.comment(
+        "A struct has raw numbers, as they travel. _x_unit() is the physical value of x, and set_x_unit() "
+        "takes "
+        "the nearest raw number within the field's range (not a number: the one nearest to zero). _frame() "
+        "makes the CAN frame of a struct, _take() fills the struct from one. _encode() puts the nearest "
+        "number "
+        "that the width holds.",
+        "// ");
+    out_.line("#ifndef " + macro_ + "_TOPICS_H");
+    out_.line("#define " + macro_ + "_TOPICS_H");
+    out_.line();
+    out_.line("#include <stdint.h>");
+    out_.line();
+    out_.line("#ifdef __cplusplus");
+    out_.line("extern \"C\" {");
+    out_.line("#endif");
+    out_.line();
+    comment(with_source("Bits per second on the bus.", model_.bus_source.joined()));
+    define("BIT_RATE", std::to_string(model_.bit_rate) + "u");
+    out_.line();
+  }
+
+  void comment(std::string_view text) { out_.comment(text, "// "); }
+
+  void define(const std::string& name, const std::string& value) {
+    out_.line("#define " + unique(macro_ + "_" + name) + " " + value);
+  }
+
+  /// Text of the protocol, the same for every robot but for its name: @ stands for amiro, $ for AMIRO.
+  void with_names(std::string_view text) {
+    std::string named;
+    for (const char c : text) {
+      if (c == '@')
+        named += robot_;
+      else if (c == '$')
+        named += macro_;
+      else
+        named += c;
+    }
+    while (!named.empty()) {
+      const std::size_t end = named.find('\n');
+      out_.line(named.substr(0, end));
+      named.erase(0, end == std::string::npos ? end : end + 1);
+    }
+  }
+
+  void protocol_part() {
+    with_names(R"(// --- identifiers and requests
+
+typedef struct @_frame {
+  uint16_t id;  // 11 bits
+  uint8_t dlc;
+  uint8_t data[8];
+} @_frame;
+
+typedef enum @_priority { $_URGENT = 0, $_HIGH = 1, $_MEDIUM = 2, $_LOW = 3 } @_priority;
+typedef enum @_mode { $_STOP = 0, $_PUBLISH = 1, $_ONCE = 2 } @_mode;
+typedef enum @_unit { $_MILLISECONDS = 0, $_SECONDS = 1, $_MICROSECONDS = 2 } @_unit;
+
+// What _take() and @_read_request() return in place of a number of 0 or more.
+#define $_FOREIGN (-1)       // a frame of another topic, or no request
+#define $_WRONG_LENGTH (-2)
+#define $_WRONG_MODE (-3)
+#define $_WRONG_UNIT (-4)
+#define $_WRONG_PERIOD (-5)  // zero
+
+// Of a request or a set point, to a board.
+static inline uint16_t @_command_id(uint8_t topic, @_priority priority) {
+  return (uint16_t)((((uint32_t)priority & 3u) << 8) | topic);
+}
+// Of samples, from a board.
+static inline uint16_t @_sample_id(uint8_t topic, @_priority priority) {
+  return (uint16_t)(0x400u | (((uint32_t)priority & 3u) << 8) | topic);
+}
+static inline int @_is_sample(uint16_t id) { return (id & 0x400u) != 0; }
+static inline @_priority @_priority_of(uint16_t id) { return (@_priority)(((uint32_t)id >> 8) & 3u); }
+static inline uint8_t @_topic_of(uint16_t id) { return (uint8_t)(id & 0xFFu); }
+
+static inline @_frame @_request_of_mode(uint8_t topic, @_mode mode, @_priority priority) {
+  @_frame frame = {0, 1, {0, 0, 0, 0, 0, 0, 0, 0}};
+  frame.id = @_command_id(topic, priority);
+  frame.data[0] = (uint8_t)mode;
+  return frame;
+}
+static inline @_frame @_stop(uint8_t topic, @_priority priority) {
+  return @_request_of_mode(topic, $_STOP, priority);
+}
+static inline @_frame @_once(uint8_t topic, @_priority priority) {
+  return @_request_of_mode(topic, $_ONCE, priority);
+}
+// At the topic's own period.
+static inline @_frame @_publish(uint8_t topic, @_priority priority) {
+  return @_request_of_mode(topic, $_PUBLISH, priority);
+}
+// Every `count` units; a board refuses a count of 0.
+static inline @_frame @_publish_every(uint8_t topic, uint16_t count, @_unit unit, @_priority priority) {
+  @_frame frame = @_request_of_mode(topic, $_PUBLISH, priority);
+  frame.dlc = 4;
+  frame.data[1] = (uint8_t)(count & 0xFFu);
+  frame.data[2] = (uint8_t)(count >> 8);
+  frame.data[3] = (uint8_t)unit;
+  return frame;
+}
+
+// For a board: what an operator asks.
+typedef struct @_request {
+  uint8_t topic;
+  @_priority priority;  // of the samples that answer
+  @_mode mode;
+  uint16_t count;       // of a publish; 0: the topic's own period
+  @_unit unit;
+} @_request;
+
+static inline uint64_t @_period_us(uint16_t count, @_unit unit) {
+  return (uint64_t)count * (unit == $_SECONDS ? 1000000u : unit == $_MILLISECONDS ? 1000u : 1u);
+}
+
+// Reads a command frame on a sensor's topic. 0, or why it is none; then *request is as it was.
+static inline int @_read_request(const @_frame* frame, @_request* request) {
+  const uint32_t count = frame->data[1] | ((uint32_t)frame->data[2] << 8);
+  const int has_period = frame->dlc == 4;
+  if (frame->id > 0x3FFu) return $_FOREIGN;
+  if (frame->dlc == 0 || frame->dlc > 8) return $_WRONG_LENGTH;
+  if (frame->data[0] > 2) return $_WRONG_MODE;
+  if (frame->dlc != 1 && !(has_period && frame->data[0] == 1)) return $_WRONG_LENGTH;
+  if (has_period && frame->data[3] > 2) return $_WRONG_UNIT;
+  if (has_period && count == 0) return $_WRONG_PERIOD;
+  request->topic = @_topic_of(frame->id);
+  request->priority = @_priority_of(frame->id);
+  request->mode = (@_mode)frame->data[0];
+  request->count = (uint16_t)(has_period ? count : 0u);
+  request->unit = has_period ? (@_unit)frame->data[3] : $_MILLISECONDS;
+  return 0;
+}
+
+// --- numbers
+
+static inline uint32_t @_at_most_u32(uint32_t number, uint32_t most) { return number < most ? number : most; }
+static inline uint64_t @_at_most_u64(uint64_t number, uint64_t most) { return number < most ? number : most; }
+static inline int32_t @_held_i32(int32_t number, int32_t least, int32_t most) {
+  return number < least ? least : number > most ? most : number;
+}
+static inline int64_t @_held_i64(int64_t number, int64_t least, int64_t most) {
+  return number < least ? least : number > most ? most : number;
+}
+// The nearest whole number, halves away from zero, within [least, most].
+static inline int64_t @_nearest(double value, int64_t least, int64_t most) {
+  int64_t whole = 0;
+  double rest = 0;
+  if (value != value) return least > 0 ? least : most < 0 ? most : 0;
+  if (value <= (double)least) return least;
+  if (value >= (double)most) return most;
+  whole = (int64_t)value;
+  rest = value - (double)whole;
+  return whole + (rest >= 0.5 ? 1 : rest <= -0.5 ? -1 : 0);
+}
+)");
+    out_.line();
+  }
+
+  // --- one frame -------------------------------------------------------------------------------------------
+
+  void write_struct(const std::string& name, const FrameModel& frame) {
+    std::vector<std::pair<std::string, std::string>> lines;
+    out_.open("typedef struct " + name + "_t {");
+    for (const FieldModel& field : frame.fields) {
+      std::string text = remark(field);
+      if (field.flags || !field.values.empty()) text = text.empty() ? "see below" : text + "; see below";
+      out_.comment(text, "// ");
+      out_.line(type_of(field) + " " + member(field.name) + ";");
+    }
+    if (frame.fields.empty()) out_.line("uint8_t nothing;  // C has no empty struct");
+    out_.close("} " + name + "_t;");
+  }
+
+  void write_values(const std::string& name, const FrameModel& frame) {
+    const std::string prefix = upper(name.substr(robot_.size() + 1)) + "_";
+    for (const FieldModel& field : frame.fields)
+      for (const auto& value : field.values)
+        define(prefix + upper(field.name) + "_" + upper(value.name),
+               field.flags     ? word_literal(std::uint64_t{1} << value.raw, is_wide(field))
+               : value.raw < 0 ? "(" + literal(value.raw) + ")"
+                               : literal(value.raw));
+  }
+
+  std::string clamped(const FieldModel& field, const std::string& number) const {
+    const unsigned width = field.position.width;
+    if (width == type_width(field)) return number;
+    const bool wide = is_wide(field);
+    if (!field.is_signed)
+      return robot_ + (wide ? "_at_most_u64(" : "_at_most_u32(") + number + ", " +
+             word_literal((std::uint64_t{1} << width) - 1, wide) + ")";
+    return robot_ + (wide ? "_held_i64(" : "_held_i32(") + number + ", " +
+           literal(protocol::lowest(width, true)) + ", " + literal(protocol::highest(width, true)) + ")";
+  }
+
+  void write_encode(const std::string& name, const FrameModel& frame) {
+    out_.open("static inline void " + unique(name + "_encode") + "(const " + name +
+              "_t* value, uint8_t data[8]) {");
+    std::vector<std::string> bytes[8];
+    for (const FieldModel& field : frame.fields) {
+      const std::string bits = field.name + "_bits";
+      out_.line("const " + word_type(field) + " " + bits + " = (" + word_type(field) + ")" +
+                clamped(field, "value->" + member(field.name)) + ";");
+      for (const Piece& piece : pieces_of(field.position))
+        bytes[piece.byte].push_back(
+            shifted(masked(shifted(bits, ">>", piece.from), piece.width), "<<", piece.shift));
+    }
+    if (frame.fields.empty()) out_.line("(void)value;");
+    for (std::size_t i = 0; i < 8; ++i) {
+      std::string sum;
+      for (const std::string& term : bytes[i]) sum += (sum.empty() ? "" : " | ") + term;
+      if (bytes[i].size() != 1 || sum.front() != '(') sum = "(" + sum + ")";
+      const std::string byte = "data[" + std::to_string(i) + "] = ";
+      out_.line(byte + (bytes[i].empty() ? "0" : "(uint8_t)" + sum) + ";");
+    }
+    out_.close("}");
+  }
+
+  void write_decode(const std::string& name, const FrameModel& frame) {
+    out_.open("static inline void " + unique(name + "_decode") + "(" + name +
+              "_t* value, const uint8_t data[8]) {");
+    for (const FieldModel& field : frame.fields) {
+      std::vector<std::string> terms;
+      for (const Piece& piece : pieces_of(field.position)) {
+        const std::string byte = "(" + word_type(field) + ")data[" + std::to_string(piece.byte) + "]";
+        terms.push_back(shifted(masked(shifted(byte, ">>", piece.shift), piece.width), "<<", piece.from));
+      }
+      for (std::size_t i = 0; i + 1 < terms.size(); ++i) terms[i] += " |";
+      const unsigned width = field.position.width;
+      const std::string bits = field.name + "_bits";
+      std::string head = "const " + word_type(field) + " " + bits + " =";
+      for (const std::string& term : terms) head += " " + term;
+      if (head.size() + 3 <= columns) {
+        out_.line(head + ";");
+      } else {
+        out_.open("const " + word_type(field) + " " + bits + " =");
+        for (std::size_t i = 0; i < terms.size(); ++i)
+          out_.line(terms[i] + (i + 1 < terms.size() ? "" : ";"));
+        out_.undent();
+      }
+      const std::string sign = word_literal(std::uint64_t{1} << (width - 1), is_wide(field));
+      const bool extended = field.is_signed && width != 32 && width != 64;
+      out_.line("value->" + member(field.name) + " = (" + type_of(field) + ")" +
+                (extended ? "((" + bits + " ^ " + sign + ") - " + sign + ")" : bits) + ";");
+    }
+    if (frame.fields.empty()) {
+      out_.line("(void)data;");
+      out_.line("value->nothing = 0;");
+    }
+    out_.close("}");
+  }
+
+  void write_accessors(const std::string& name, const FrameModel& frame) {
+    for (const FieldModel& field : frame.fields) {
+      if (field.unit_name.empty()) continue;
+      const std::string what = field.name + "_" + field.unit_name;
+      const Conversion c = conversion(field);
+      const std::string raw = "(double)value->" + member(field.name);
+      out_.open("static inline double " + unique(name + "_" + what) + "(const " + name + "_t* value) {");
+      out_.line("return " + plain(to_physical(c, raw)) + ";");
+      out_.close("}");
+      out_.open("static inline void " + unique(name + "_set_" + what) + "(" + name + "_t* value, double " +
+                field.unit_name + "_) {");
+      out_.line("value->" + member(field.name) + " = (" + type_of(field) + ")" + robot_ + "_nearest(" +
+                plain(to_raw(c, field.unit_name + "_")) + ", " + literal(field.raw_min) + ", " +
+                literal(field.raw_max) + ");");
+      out_.close("}");
+    }
+  }
+
+  void write_frame(const TopicModel& topic, const FrameModel& frame) {
+    const std::string name = stem(topic, frame);
+    comment(with_source(title(topic.name) + (is_aggregate(topic) ? ", " + frame.name : "") +
+                            (frame.description.empty() ? "" : ": " + frame.description) + ".",
+                        frame.source.joined()));
+    write_struct(name, frame);
+    write_values(name, frame);
+    write_encode(name, frame);
+    write_decode(name, frame);
+    write_accessors(name, frame);
+    out_.line();
+  }
+
+  // --- one topic -------------------------------------------------------------------------------------------
+
+  struct Slot {
+    std::string member;  ///< "value->pose", "value->sensor[3]", "value"
+    std::string stem;
+    unsigned id = 0;
+    unsigned dlc = 0;
+  };
+
+  std::vector<Slot> slots_of(const TopicModel& topic) const {
+    std::vector<Slot> slots;
+    for (const FrameModel& frame : topic.frames)
+      for (unsigned i = 0; i < frame.count; ++i) {
+        std::string place = "value";
+        if (is_aggregate(topic)) place = "&value->" + member(frame.name);
+        if (frame.is_array) place += "[" + std::to_string(i) + "]";
+        slots.push_back({std::move(place), stem(topic, frame), frame.id + i, frame.dlc});
+      }
+    return slots;
+  }
+
+  void write_topic(const TopicModel& topic) {
+    const bool sensor = topic.kind == protocol::Kind::sensor;
+    const std::string name = robot_ + "_" + topic.name;
+    const std::string name_macro = upper(topic.name);
+    out_.line("// --- " + topic.name);
+    out_.line();
+    for (const FrameModel& frame : topic.frames) write_frame(topic, frame);
+    std::string what = title(topic.name) + (topic.description.empty() ? "" : ": " + topic.description) + ". ";
+    what += (sensor ? "Sensor of " : "Actuator of ") + model_.boards[topic.board].name + ".";
+    comment(with_source(std::move(what), topic.source.joined()));
+    define(name_macro + "_ID", hex(topic.id) + "u");
+    define(name_macro + "_PRIORITY", macro_ + "_" + upper(std::string{protocol::name(topic.priority)}));
+    if (topic.is_group) define(name_macro + "_COUNT", std::to_string(topic.count) + "u");
+    if (sensor) define(name_macro + "_FRAMES", std::to_string(frame_count(topic)) + "u");
+    if (is_aggregate(topic)) {
+      out_.open("typedef struct " + name + "_t {");
+      for (const FrameModel& frame : topic.frames)
+        out_.line(stem(topic, frame) + "_t " + member(frame.name) +
+                  (frame.is_array ? "[" + std::to_string(frame.count) + "]" : "") + ";");
+      out_.close("} " + name + "_t;");
+    }
+    write_make_frame(topic, slots_of(topic));
+    write_take(topic, slots_of(topic));
+    out_.line();
+  }
+
+  void write_make_frame(const TopicModel& topic, const std::vector<Slot>& slots) {
+    const std::string name = robot_ + "_" + topic.name;
+    const bool several = slots.size() > 1;
+    const std::string index = several || topic.is_group ? ", uint8_t index" : "";
+    const std::string identifier =
+        robot_ + (topic.kind == protocol::Kind::sensor ? "_sample_id(" : "_command_id(");
+    if (topic.is_group)
+      comment("Number `index`, from 0 to " + std::to_string(topic.count - 1) +
+              "; any other is that of the last.");
+    if (several)
+      comment("Frame `index`, from 0 to " + std::to_string(slots.size() - 1) +
+              ", in the order in which they are sent; any other is the last.");
+    const std::string head = "static inline " + robot_ + "_frame " + unique(name + "_frame") + "(";
+    out_.line(head + "const " + name + "_t* value" + index + ",");
+    out_.open(std::string(head.size(), ' ') + robot_ + "_priority priority) {");
+    out_.line(robot_ + "_frame frame = {0, " + std::to_string(slots.front().dlc) +
+              ", {0, 0, 0, 0, 0, 0, 0, 0}};");
+    const auto fill = [&](const Slot& slot, const std::string& id) {
+      if (slot.dlc != slots.front().dlc) out_.line("frame.dlc = " + std::to_string(slot.dlc) + ";");
+      out_.line("frame.id = " + identifier + id + ", priority);");
+      out_.line(slot.stem + "_encode(" + slot.member + ", frame.data);");
+    };
+    if (!several) {
+      const std::string last = std::to_string(topic.count - 1);
+      fill(slots.front(), topic.is_group ? "(uint8_t)(" + hex(slots.front().id) + "u + (index < " + last +
+                                               " ? index : " + last + "u))"
+                                         : hex(slots.front().id));
+    } else {
+      out_.line("switch (index) {");
+      for (std::size_t i = 0; i < slots.size(); ++i) {
+        out_.open(i + 1 < slots.size() ? "case " + std::to_string(i) + ":" : "default:");
+        fill(slots[i], hex(slots[i].id));
+        out_.line("break;");
+        out_.undent();
+      }
+      out_.line("}");
+    }
+    out_.line("return frame;");
+    out_.close("}");
+  }
+
+  void write_take(const TopicModel& topic, const std::vector<Slot>& slots) {
+    const std::string name = robot_ + "_" + topic.name;
+    const bool sensor = topic.kind == protocol::Kind::sensor;
+    std::string says = "Whatever the priority. ";
+    says += topic.is_group ? "Which of them it was for, from 0; "
+            : slots.size() > 1
+                ? "Which frame it was, from 0; a sample is complete when its last frame came after "
+                  "all others; "
+                : "0; ";
+    comment(says + "or " + macro_ + "_FOREIGN, or " + macro_ + "_WRONG_LENGTH, and the struct is as it was.");
+    const std::string head = "static inline int " + unique(name + "_take") + "(";
+    out_.line(head + name + "_t* value,");
+    out_.open(std::string(head.size(), ' ') + "const " + robot_ + "_frame* frame) {");
+    if (topic.is_group)
+      out_.line("const uint8_t index = (uint8_t)(" + robot_ + "_topic_of(frame->id) - " +
+                hex(slots.front().id) + "u);");
+    out_.line("if (frame->id > 0x7FFu || " + std::string{sensor ? "!" : ""} + robot_ +
+              "_is_sample(frame->id)) return " + macro_ + "_FOREIGN;");
+    const auto decode = [&](const Slot& slot, const std::string& result) {
+      out_.line("if (frame->dlc != " + std::to_string(slot.dlc) + ") return " + macro_ + "_WRONG_LENGTH;");
+      out_.line(slot.stem + "_decode(" + slot.member + ", frame->data);");
+      out_.line("return " + result + ";");
+    };
+    if (topic.is_group) {
+      out_.line("if (index >= " + std::to_string(topic.count) + "u) return " + macro_ + "_FOREIGN;");
+      decode(slots.front(), "index");
+    } else if (slots.size() == 1) {
+      out_.line("if (" + robot_ + "_topic_of(frame->id) != " + hex(slots.front().id) + "u) return " + macro_ +
+                "_FOREIGN;");
+      decode(slots.front(), "0");
+    } else {
+      out_.line("switch (" + robot_ + "_topic_of(frame->id)) {");
+      for (std::size_t i = 0; i < slots.size(); ++i) {
+        out_.open("case " + hex(slots[i].id) + ":");
+        decode(slots[i], std::to_string(i));
+        out_.undent();
+      }
+      out_.line("default: return " + macro_ + "_FOREIGN;");
+      out_.line("}");
+    }
+    out_.close("}");
+  }
+
+  const Model& model_;
+  const Options& options_;
+  std::string robot_;
+  std::string macro_;
+  Writer out_;
+  std::set<std::string> taken_;
+};
+
+}  // namespace
+
+std::string make_c(const Model& model, const Options& options) {
+  return Header{model, options}.make();
+}
+
+}  // namespace ocm::generate

@@ -1,0 +1,55 @@
+#include "generator/spec/file.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <system_error>
+
+#include "ocm/base/text.hpp"
+
+namespace ocm::spec {
+
+std::optional<std::string> read_document(const std::filesystem::path& file, std::string_view what,
+                                         std::string_view example, std::vector<Problem>& problems) {
+  const auto failed = [&](std::string problem, std::string remedy) {
+    problems.push_back({file.string(), std::move(problem), std::move(remedy)});
+    return std::nullopt;
+  };
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status))
+    return failed(
+        error && error != std::errc::no_such_file_or_directory ? error.message() : "there is no such file",
+        "the path of " + std::string{what} + ", such as " + std::string{example});
+  if (std::filesystem::is_directory(status))
+    return failed("it is a folder",
+                  "the path of the " + std::string{what.substr(what.find(' ') + 1)} + " within it");
+  std::ifstream in{file, std::ios::binary};
+  if (!in) return failed("it cannot be opened", "a file that you may read");
+  // One byte more than allowed is enough to know that it is too much; a device has no end.
+  std::string text(max_document_bytes + 1, '\0');
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (in.bad()) return failed("it cannot be read", "a readable file");
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  if (text.size() > max_document_bytes)
+    return failed("the file is larger than " + std::to_string(max_document_bytes) + " bytes",
+                  std::string{what} + " is smaller");
+  return text;
+}
+
+bool has_document(const std::vector<Problem>& problems) {
+  const auto has_path = [](const Problem& p) { return p.place.find(": /") != std::string::npos; };
+  return std::all_of(problems.begin(), problems.end(), has_path);
+}
+
+void sort_by_line(std::vector<Problem>& problems, std::string_view file_name) {
+  const auto line_of = [&](const Problem& p) {
+    std::size_t line = 0;  // places begin "file:line"
+    for (std::size_t i = file_name.size() + 1; i < p.place.size() && base::is_digit(p.place[i]); ++i)
+      line = 10 * line + static_cast<std::size_t>(p.place[i] - '0');
+    return line;
+  };
+  std::stable_sort(problems.begin(), problems.end(),
+                   [&](const Problem& a, const Problem& b) { return line_of(a) < line_of(b); });
+}
+
+}  // namespace ocm::spec

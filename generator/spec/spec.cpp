@@ -1,0 +1,129 @@
+#include "generator/spec/spec.hpp"
+
+#include <deque>
+#include <string>
+
+#include "generator/spec/file.hpp"
+#include "generator/spec/json.hpp"
+#include "generator/spec/reader.hpp"
+#include "generator/spec/worst_bits.hpp"
+
+namespace ocm::spec {
+
+/// Deques and strings that nothing changes once the catalogue points to them.
+struct Spec::Storage {
+  explicit Storage(Model m) : model(std::move(m)) {}
+  Storage(const Storage&) = delete;
+  Storage& operator=(const Storage&) = delete;
+
+  Model model;
+  std::deque<std::string> texts;
+  std::deque<std::vector<protocol::NamedValue>> values;
+  std::deque<std::vector<protocol::Field>> fields;
+  std::deque<std::vector<protocol::FrameLayout>> frames;
+  std::deque<std::vector<std::string_view>> aliases;
+  std::vector<protocol::Board> boards;
+  std::vector<protocol::Topic> topics;
+  protocol::Catalogue catalogue;
+
+  std::string_view keep(std::string text) { return texts.emplace_back(std::move(text)); }
+
+  std::span<const protocol::Field> make_fields(const FrameModel& frame) {
+    auto& list = fields.emplace_back();
+    for (const FieldModel& field : frame.fields) {
+      auto& names = values.emplace_back();
+      for (const ValueModel& value : field.values) names.push_back({value.raw, value.name});
+      list.push_back({field.name, field.position, field.is_signed, field.scale, field.offset, field.unit,
+                      field.raw_min, field.raw_max, names, field.flags});
+    }
+    return list;
+  }
+
+  std::span<const protocol::FrameLayout> make_frames(const TopicModel& topic, std::uint8_t instance) {
+    auto& list = frames.emplace_back();
+    for (const FrameModel& frame : topic.frames) {
+      const auto its_fields = make_fields(frame);
+      for (unsigned i = 0; i < frame.count; ++i) {
+        const bool numbered = !frame.name.empty() && frame.is_array;
+        const std::string_view name =
+            numbered ? keep(frame.name + "_" + std::to_string(i + 1)) : std::string_view{frame.name};
+        const unsigned id = frame.id + i + (instance == 0 ? 0U : instance - 1U);
+        list.push_back({name, protocol::TopicId{static_cast<std::uint8_t>(id)}, frame.dlc, its_fields,
+                        worst_bits(topic.kind, id, frame.dlc)});
+      }
+    }
+    return list;
+  }
+
+  void add_topic(const TopicModel& topic, std::uint8_t instance) {
+    protocol::Topic out;
+    out.name =
+        instance == 0 ? std::string_view{topic.name} : keep(topic.name + "_" + std::to_string(instance));
+    out.aliases = aliases.emplace_back(topic.aliases.begin(), topic.aliases.end());
+    out.id = protocol::TopicId{static_cast<std::uint8_t>(topic.id + (instance == 0 ? 0 : instance - 1))};
+    out.kind = topic.kind;
+    out.role = topic.role;
+    out.board = topic.board;
+    out.frames = make_frames(topic, instance);
+    out.priority = topic.priority;
+    out.period = topic.period;
+    out.shortest_period = topic.shortest_period;
+    out.deadline = topic.deadline;
+    out.jitter = topic.jitter;
+    out.timeout = topic.timeout;
+    if (instance != 0) out.group = topic.name;
+    out.instance = instance;
+    out.source = keep(topic.source.joined());
+    topics.push_back(out);
+  }
+
+  void make_catalogue() {
+    for (const BoardModel& board : model.boards) boards.push_back({board.name, board.mcu});
+    for (const TopicModel& topic : model.topics) {
+      if (!topic.is_group)
+        add_topic(topic, 0);
+      else
+        for (unsigned i = 1; i <= topic.count; ++i) add_topic(topic, static_cast<std::uint8_t>(i));
+    }
+    catalogue = {model.robot, model.bit_rate, boards, topics};
+  }
+};
+
+Spec::Spec(Model model) : storage_(std::make_unique<Storage>(std::move(model))) {
+  storage_->make_catalogue();
+}
+Spec::Spec(Spec&&) noexcept = default;
+Spec& Spec::operator=(Spec&&) noexcept = default;
+Spec::~Spec() = default;
+
+const protocol::Catalogue& Spec::catalogue() const noexcept {
+  return storage_->catalogue;
+}
+const Model& Spec::model() const noexcept {
+  return storage_->model;
+}
+
+Loaded parse(std::string_view text, std::string_view file_name) {
+  Loaded loaded;
+  if (text.size() > max_spec_bytes) {
+    loaded.problems.push_back({std::string{file_name},
+                               "the file has " + std::to_string(text.size()) + " bytes",
+                               "a spec has at most " + std::to_string(max_spec_bytes)});
+    return loaded;
+  }
+  const Node root = parse_json(text, file_name, loaded.problems);
+  if (!has_document(loaded.problems)) return loaded;
+  Model model = read_model(root, file_name, loaded.problems);
+  validate_by_schema(root, file_name, loaded.problems);
+  sort_by_line(loaded.problems, file_name);
+  if (loaded.problems.empty()) loaded.spec = std::make_unique<Spec>(std::move(model));
+  return loaded;
+}
+
+Loaded load(const std::filesystem::path& file) {
+  Loaded loaded;
+  const auto text = read_document(file, "a spec", "spec/topics.json", loaded.problems);
+  return text ? parse(*text, file.string()) : std::move(loaded);
+}
+
+}  // namespace ocm::spec

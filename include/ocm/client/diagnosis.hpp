@@ -1,0 +1,286 @@
+/// How a robot is, from what its boards say of themselves: takes samples of topics with the roles status and
+/// refusal and of batteries, and makes sentences of them, each with what to do. Knows the roles' fields by
+/// name and nothing of the robot, so it serves every spec.
+///
+/// Pure: sends nothing, reads no clock. O(1) a frame; allocates a little for each board and each finding.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ocm/client/sample.hpp"
+#include "ocm/protocol/identifier.hpp"
+#include "ocm/protocol/topic.hpp"
+#include "ocm/protocol/wire_hash.hpp"
+
+namespace ocm::client {
+
+enum class Severity : std::uint8_t {
+  note,     ///< worth knowing
+  warning,  ///< something does not work as it should
+  problem,  ///< the robot cannot be used so
+};
+
+[[nodiscard]] constexpr std::string_view name(Severity severity) noexcept {
+  constexpr std::string_view names[]{"note", "warning", "problem"};
+  return names[static_cast<std::size_t>(severity)];
+}
+
+struct Finding {
+  Severity severity = Severity::note;
+  std::string_view board;  ///< empty: the bus, or the robot as a whole
+  std::string what;
+  std::string remedy;
+};
+
+/// "1 frame", "2 frames" of "frame*".
+[[nodiscard]] inline std::string count(std::uint64_t number, std::string_view what) {
+  const std::size_t star = what.find('*');
+  return std::to_string(number) + " " + std::string{what.substr(0, star)} + (number == 1 ? "" : "s") +
+         std::string{what.substr(star + 1)};
+}
+
+/// What one board says of itself. Raw numbers, as they came.
+struct BoardReport {
+  const protocol::Topic* status = nullptr;   ///< the topics that it comes on; nullptr: the spec has none
+  const protocol::Topic* refusal = nullptr;  ///<
+  bool heard = false;                        ///< any frame of it came
+  bool answered = false;                     ///< a status came; the numbers below mean something
+  std::int64_t uptime_s = 0;
+  std::int64_t wire_hash = 0;
+  std::string_view reset;            ///< by the spec's names; empty: a number without one
+  std::string_view bus;              ///<
+  std::optional<std::int64_t> load;  ///< percent
+  std::int64_t publishing = 0;       ///< bits, by the order of the board's sensors in the spec
+  std::int64_t faults = 0;           ///<
+  std::int64_t overload = 0;
+  std::int64_t bus_errors = 0;
+  std::int64_t refused = 0;  ///< of the last refusal that came
+  std::int64_t refused_topic = 0;
+  std::string_view reason;
+};
+
+struct BatteryReport {
+  const protocol::Topic* topic = nullptr;  ///< the one that has a field state_of_charge in percent
+  bool answered = false;
+  std::int64_t state_of_charge = 0;  ///< percent
+  bool plugged = false;
+};
+
+class Diagnosis {
+ public:
+  // Below these a robot is about to stop, or will within the experiment. [decided]
+  static constexpr std::int64_t battery_low_percent = 20;
+  static constexpr std::int64_t battery_empty_percent = 10;
+  static constexpr std::int64_t load_high_percent = 90;
+
+  /// The catalogue must outlive it.
+  explicit Diagnosis(const protocol::Catalogue& catalogue) : catalogue_(&catalogue) {
+    boards_.resize(catalogue.boards.size());
+    sensors_.resize(catalogue.boards.size());
+    for (const protocol::Topic& topic : catalogue.topics) {
+      if (topic.kind != protocol::Kind::sensor || topic.board >= boards_.size()) continue;
+      sensors_[topic.board].push_back(&topic);
+      if (topic.role == protocol::Role::status) boards_[topic.board].status = &topic;
+      if (topic.role == protocol::Role::refusal) boards_[topic.board].refusal = &topic;
+      for (const protocol::FrameLayout& frame : topic.frames)
+        for (const protocol::Field& field : frame.fields)
+          if (field.name == "state_of_charge" && field.unit == "%") battery_.topic = &topic;
+    }
+  }
+
+  /// Every reception, of whatever kind.
+  void take(const Reception& reception) {
+    if (reception.topic == nullptr || reception.topic->board >= boards_.size()) return;
+    if (reception.meaning != Meaning::part && reception.meaning != Meaning::sample) return;
+    BoardReport& board = boards_[reception.topic->board];
+    board.heard = true;
+    if (reception.meaning != Meaning::sample) return;
+    const Reader reader{reception.sample};
+    if (reception.topic == board.status) take_status(reader, board);
+    if (reception.topic == board.refusal) {
+      board.refused = reader.raw("", "refused");
+      board.refused_topic = reader.raw("", "topic");
+      board.reason = reader.word("", "reason");
+    }
+    if (reception.topic == battery_.topic) take_battery(reader);
+  }
+
+  /// In the order of the spec's boards.
+  [[nodiscard]] const std::vector<BoardReport>& boards() const noexcept { return boards_; }
+  [[nodiscard]] const BatteryReport& battery() const noexcept { return battery_; }
+  /// Whether the board publishes this sensor now, as its last status has it.
+  [[nodiscard]] bool publishes(const protocol::Topic& topic) const noexcept {
+    if (topic.board >= boards_.size() || !boards_[topic.board].answered) return false;
+    const auto& sensors = sensors_[topic.board];
+    for (std::size_t i = 0; i < sensors.size() && i < 8; ++i)
+      if (sensors[i] == &topic) return (boards_[topic.board].publishing >> i & 1) != 0;
+    return false;
+  }
+  /// The names of the sensors whose bits are set: "gyroscope, odometry".
+  [[nodiscard]] std::string sensors_of(std::size_t board, std::int64_t bits) const {
+    std::string text;
+    for (std::size_t i = 0; i < sensors_[board].size() && i < 8; ++i)
+      if ((bits >> i & 1) != 0) text.append(text.empty() ? "" : ", ").append(sensors_[board][i]->name);
+    return text;
+  }
+
+  /// The most serious first; within a severity in the order of the boards.
+  [[nodiscard]] std::vector<Finding> findings() const {
+    std::vector<Finding> all;
+    bool any_status = false;
+    bool any_answer = false;
+    for (const BoardReport& board : boards_) {
+      any_status = any_status || board.status != nullptr;
+      any_answer = any_answer || board.answered || board.heard;
+    }
+    if (any_status && !any_answer) {
+      all.push_back({Severity::problem, "", "no board answers",
+                     "is the robot on, is the bus terminated at both ends, is its bit rate " +
+                         std::to_string(catalogue_->bit_rate) + " bit/s?"});
+    } else {
+      for (std::size_t i = 0; i < boards_.size(); ++i) examine(i, all);
+    }
+    if (battery_.answered) examine_battery(all);
+    std::vector<Finding> sorted;
+    for (const Severity severity : {Severity::problem, Severity::warning, Severity::note})
+      for (Finding& finding : all)
+        if (finding.severity == severity) sorted.push_back(std::move(finding));
+    return sorted;
+  }
+
+ private:
+  /// A sample's fields by name.
+  class Reader {
+   public:
+    explicit Reader(const Sample& sample) : sample_(&sample) {}
+    [[nodiscard]] const protocol::Field* find(std::string_view frame, std::string_view field,
+                                              std::int64_t& raw) const {
+      const auto frames = sample_->topic->frames;
+      for (std::size_t i = 0; i < frames.size(); ++i) {
+        if (frames[i].name != frame) continue;
+        for (const protocol::Field& f : frames[i].fields) {
+          if (f.name != field) continue;
+          raw = f.raw(sample_->payloads[i]);
+          return &f;
+        }
+      }
+      return nullptr;
+    }
+    [[nodiscard]] std::int64_t raw(std::string_view frame, std::string_view field) const {
+      std::int64_t number = 0;
+      static_cast<void>(find(frame, field, number));
+      return number;
+    }
+    [[nodiscard]] std::string_view word(std::string_view frame, std::string_view field) const {
+      std::int64_t number = 0;
+      const protocol::Field* f = find(frame, field, number);
+      if (f == nullptr || f->flags) return {};
+      for (const protocol::NamedValue& value : f->values)
+        if (value.raw == number) return value.name;
+      return {};
+    }
+    [[nodiscard]] bool flag(std::string_view flag_name) const {
+      const auto frames = sample_->topic->frames;
+      for (std::size_t i = 0; i < frames.size(); ++i)
+        for (const protocol::Field& f : frames[i].fields)
+          if (f.flags)
+            for (const protocol::NamedValue& bit : f.values)
+              if (bit.name == flag_name) return (f.raw(sample_->payloads[i]) >> bit.raw & 1) != 0;
+      return false;
+    }
+
+   private:
+    const Sample* sample_;
+  };
+
+  static void take_status(const Reader& reader, BoardReport& board) {
+    board.answered = true;
+    board.uptime_s = reader.raw("identity", "uptime");
+    board.reset = reader.word("identity", "reset");
+    board.wire_hash = reader.raw("identity", "wire_hash");
+    board.load = reader.raw("health", "load");
+    if (reader.word("health", "load") == "unknown") board.load.reset();
+    board.bus = reader.word("health", "bus");
+    board.publishing = reader.raw("health", "publishing");
+    board.faults = reader.raw("health", "faults");
+    board.overload = reader.raw("health", "overload");
+    board.bus_errors = reader.raw("health", "bus_errors");
+  }
+  void take_battery(const Reader& reader) {
+    battery_.answered = true;
+    for (const protocol::FrameLayout& frame : battery_.topic->frames)
+      battery_.state_of_charge = reader.raw(frame.name, "state_of_charge");
+    battery_.plugged = reader.flag("plugged");
+  }
+
+  void examine(std::size_t index, std::vector<Finding>& all) const {
+    const BoardReport& board = boards_[index];
+    const std::string_view who = catalogue_->boards[index].name;
+    if (board.status == nullptr) return;
+    const auto tell = [&](Severity severity, std::string what, std::string remedy) {
+      all.push_back({severity, who, std::move(what), std::move(remedy)});
+    };
+    if (!board.answered) {
+      if (board.heard)
+        return tell(Severity::warning, "sends, and does not say how it is",
+                    "it runs a firmware without a status; flash the present one");
+      return tell(Severity::problem, "does not answer",
+                  "is it plugged in, has it power, was it flashed? A board that is off sends nothing");
+    }
+    if (static_cast<std::uint32_t>(board.wire_hash) != protocol::wire_hash(*catalogue_))
+      tell(Severity::problem, "was built from another spec: its numbers may mean something else",
+           "flash it from this spec, or give this tool the board's with --spec");
+    if (board.bus != "active")
+      tell(board.bus == "off" ? Severity::problem : Severity::warning,
+           "its CAN controller is in state " + std::string{board.bus.empty() ? "?" : board.bus},
+           "check cable, termination and that every node has the same bit rate");
+    if (board.faults != 0)
+      tell(Severity::warning, "no answer from the part behind " + sensors_of(index, board.faults),
+           "check how it is connected; the board keeps trying, and everything else goes on");
+    if (board.overload != 0) {
+      const std::string running = sensors_of(index, board.publishing);
+      tell(Severity::warning,
+           count(static_cast<std::uint64_t>(board.overload), "release* came late or not at all"),
+           "ask for longer periods" + (running.empty() ? std::string{} : "; it publishes " + running));
+    }
+    if (board.load && *board.load >= load_high_percent)
+      tell(Severity::warning, "its CPU is busy for " + std::to_string(*board.load) + " % of the time",
+           "ask for longer periods, or for fewer topics");
+    if (board.reset == "watchdog" || board.reset == "fault")
+      tell(Severity::warning, "it started again because of a " + std::string{board.reset},
+           "a firmware that hung or crashed: note what was asked of it before");
+    if (board.bus_errors != 0)
+      tell(Severity::note,
+           count(static_cast<std::uint64_t>(board.bus_errors), "error* on the bus or frames given up so far"),
+           "few are normal when nodes come and go; many point to cable or termination");
+    if (board.refused != 0) {
+      const protocol::Topic* topic =
+          catalogue_->find(protocol::TopicId{static_cast<std::uint8_t>(board.refused_topic)});
+      const std::string about = topic != nullptr ? std::string{topic->name} : std::string{"?"};
+      tell(Severity::note,
+           count(static_cast<std::uint64_t>(board.refused), "request* refused so far, the last for ") +
+               about + ": " + std::string{board.reason.empty() ? "?" : board.reason},
+           "`amiroctl info " + about + "` says what it takes");
+    }
+  }
+
+  void examine_battery(std::vector<Finding>& all) const {
+    if (battery_.plugged || battery_.state_of_charge > battery_low_percent) return;
+    all.push_back({battery_.state_of_charge <= battery_empty_percent ? Severity::problem : Severity::warning,
+                   catalogue_->boards[battery_.topic->board].name,
+                   "the battery has " + std::to_string(battery_.state_of_charge) + " % left",
+                   "plug the charger in"});
+  }
+
+  const protocol::Catalogue* catalogue_;
+  std::vector<BoardReport> boards_;
+  std::vector<std::vector<const protocol::Topic*>> sensors_;  // of each board, in the order of the spec
+  BatteryReport battery_;
+};
+
+}  // namespace ocm::client

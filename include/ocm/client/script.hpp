@@ -1,0 +1,105 @@
+/// A script: one command a line, each at its time from the start.
+///
+///     # a comment: a '#' at the start of a line, or one with blanks around it
+///     1s   publish accelerometer 500ms
+///     25s  led 1 white
+///
+/// The whole text is read, and every error told, before anything is sent.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ocm/base/time.hpp"
+#include "ocm/client/command.hpp"
+#include "ocm/client/quantity.hpp"
+#include "ocm/protocol/topic.hpp"
+
+namespace ocm::client {
+
+struct Step {
+  base::Duration at{};  ///< from the start of the script
+  Command command;
+  std::size_t line = 0;  ///< from 1
+  std::string text;      ///< the command's words, for telling what is done
+};
+
+struct ScriptError {
+  std::size_t line = 0;    ///< from 1
+  std::size_t column = 0;  ///< from 1, in bytes
+  std::string what;
+  std::string remedy;
+  friend bool operator==(const ScriptError&, const ScriptError&) = default;
+};
+
+struct Script {
+  std::vector<Step> steps;
+  std::vector<ScriptError> errors;  ///< when there is one, do not run the steps
+};
+
+/// Steps stand in the order of their times; equal times are carried out in the order of the lines.
+[[nodiscard]] inline Script parse_script(std::string_view text, const protocol::Catalogue& catalogue) {
+  const CommandParser parser{catalogue};
+  Script script;
+  std::size_t line_number = 0;
+  while (!text.empty()) {
+    const auto newline = text.find('\n');
+    std::string_view line = text.substr(0, newline);
+    text = newline == std::string_view::npos ? std::string_view{} : text.substr(newline + 1);
+    ++line_number;
+    if (line.ends_with('\r')) line.remove_suffix(1);
+
+    std::vector<std::string_view> words;
+    std::vector<std::size_t> columns;
+    for (std::size_t i = 0; i < line.size();) {
+      if (line[i] == ' ' || line[i] == '\t') {
+        ++i;
+        continue;
+      }
+      std::size_t end = line.find_first_of(" \t", i);
+      if (end == std::string_view::npos) end = line.size();
+      const std::string_view word = line.substr(i, end - i);
+      // '#' opens a comment as a word of its own or as a line's first character; within a word it is a frame
+      // or a colour.
+      if (word == "#" || (words.empty() && word.starts_with('#'))) break;
+      words.push_back(word);
+      columns.push_back(i + 1);
+      i = end;
+    }
+    if (words.empty()) continue;
+
+    const auto at = parse_duration(words[0]);
+    if (!at || at->count() < 0) {
+      script.errors.push_back({line_number, columns[0],
+                               detail::quoted(words[0]) + " is not a time from the start",
+                               "begin the line with one, such as 1s, 500ms or 0s"});
+      continue;
+    }
+    if (!script.steps.empty() && *at < script.steps.back().at) {
+      script.errors.push_back(
+          {line_number, columns[0],
+           std::string{words[0]} + " lies before the step at " + to_text(script.steps.back().at),
+           "put the steps in the order of their times"});
+      continue;
+    }
+    columns.push_back(line.size() + 1);  // behind the last word: where something is missing
+    auto command = parser.parse(std::span{words}.subspan(1));
+    if (!command) {
+      const std::size_t word = std::min(command.error.word + 1, columns.size() - 1);
+      script.errors.push_back({line_number, columns[word], command.error.what, command.error.remedy});
+      continue;
+    }
+    const std::size_t begin = words.size() > 1 ? columns[1] - 1 : 0;
+    const std::size_t end = columns[words.size() - 1] - 1 + words.back().size();
+    script.steps.push_back(
+        {*at, std::move(*command), line_number, std::string{line.substr(begin, end - begin)}});
+  }
+  if (script.steps.empty() && script.errors.empty())
+    script.errors.push_back({line_number == 0 ? 1 : line_number, 1, "the script has no steps",
+                             "write lines such as: 1s publish gyro 500ms"});
+  return script;
+}
+
+}  // namespace ocm::client

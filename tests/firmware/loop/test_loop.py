@@ -1,0 +1,282 @@
+"""The boards' images in QEMU, on the virtual bus, beside the same boards compiled for the host: both robots get the
+same requests, and must say the same.
+
+What the emulated lines cannot carry is left out: above about 1000 frames a second of one board (the magnetometer every
+900 us makes 3333) a serial line in QEMU falls behind, and the board's frames wait or are counted as overruns.
+"""
+
+import collections
+import itertools
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "tests" / "cli"))
+from harness import Case, main  # noqa: E402
+
+IMAGES = os.environ["OCM_IMAGES"]
+SENSORS = ["odometry", "floor_proximity", "magnetometer", "gyroscope", "accelerometer", "power_status", "proximity_ring"]
+PRIORITIES = ["urgent", "high", "medium", "low"]
+
+
+class Robots(Case):
+    """Two robots, each on its own bus: "host" and "qemu"."""
+
+    def start_robots(self, *arguments):
+        self.sims = {}
+        for name, more in (("host", ()), ("qemu", ("--boards", "qemu", "--images", IMAGES))):
+            self.sims[name] = self.start_sim("--bus", self.bus(name), *more, *arguments)
+        # An emulated board needs a moment until it knows its parts.
+        self.until(lambda: self.asked("qemu", "odometry") is not None)
+
+    def bus(self, name):
+        return f"sim:{self.folder}/{name}.sock"
+
+    def until(self, condition, seconds=20):
+        end = time.monotonic() + seconds
+        while not condition():
+            self.assertLess(time.monotonic(), end, "it did not come about in time")
+            time.sleep(0.1)
+
+    def tool(self, name, *arguments, code=0):
+        return self.run_tool("--bus", self.bus(name), *arguments, code=code)[0]
+
+    def asked(self, name, topic, priority="medium"):
+        """The frames that one request brings, as (identifier, data); None when there is no answer."""
+        listener = self.start("--bus", self.bus(name), "listen", "--json", "--timeout", "3s", topic)
+        self.assertIn("bus: sim", listener.stderr.readline())
+        time.sleep(0.05)
+        self.tool(name, "once", topic, "--priority", priority)
+        frames, count = [], self.frames_of(topic)
+        for line in listener.stdout:
+            event = json.loads(line)
+            frames.append((event["id"], event["data"]))
+            if len(frames) == count:
+                break
+        listener.send_signal(signal.SIGINT)
+        listener.communicate(timeout=10)
+        return frames if len(frames) == count else None
+
+    def record(self, name, *arguments):
+        """Listens into a file: what nobody reads must not hold the listener up. `recorded` ends it."""
+        path = f"{self.folder}/{name}.json"
+        with open(path, "wb") as file:
+            listener = subprocess.Popen([os.environ["AMIROCTL"], "--bus", self.bus(name), "listen", "--json", *arguments],
+                                        env=self.environment, stdin=subprocess.DEVNULL, stdout=file,
+                                        stderr=subprocess.PIPE, text=True)
+        self._started.append(listener)
+        self.assertIn("bus: sim", listener.stderr.readline())
+        time.sleep(0.1)
+        return listener, path
+
+    def recorded(self, recording):
+        listener, path = recording
+        _, err = self.interrupt(listener)
+        self.assertNotIn("lost", err)
+        with open(path, encoding="utf-8") as file:
+            return self.objects(file.read())
+
+    @staticmethod
+    def frames_of(topic):
+        return {"odometry": 2, "magnetometer": 3, "proximity_ring": 8}.get(topic, 1)
+
+    def summaries(self):
+        """Ends both robots; what each said."""
+        texts = {}
+        for name, sim in self.sims.items():
+            _, texts[name] = self.interrupt(sim)
+            self.assertEqual(sim.returncode, 128 + signal.SIGINT, texts[name])
+        return texts
+
+
+class Frozen(Robots):
+    """With the world's time standing still every value is the same."""
+
+    def setUp(self):
+        super().setUp()
+        self.start_robots("--frozen", "--seed", "3")
+
+    def test_every_sensor_at_every_priority(self):
+        for topic in SENSORS:
+            for priority in PRIORITIES:
+                with self.subTest(topic=topic, priority=priority):
+                    expected = self.asked("host", topic, priority)
+                    self.assertIsNotNone(expected)
+                    self.assertEqual(self.asked("qemu", topic, priority), expected)
+        texts = self.summaries()
+        self.assertNotIn("against a data sheet", texts["qemu"])
+        self.assertIn("garbage 0", texts["qemu"])
+
+    def test_what_is_refused_and_how_it_is_told(self):
+        refused = ["208#03", "208#FF", "208#", "208#0000", "208#01F401", "208#01F40103", "208#01000000", "201#00",
+                   "21F#03", "23C#FF"]
+        heard = {}
+        for name in self.sims:
+            recording = self.record(name)
+            for frame in refused:
+                self.tool(name, "send", frame)
+                time.sleep(0.1)  # one refusal, one frame
+            self.tool(name, "once", "gyro")  # and all else goes on
+            time.sleep(0.3)
+            heard[name] = [(e["id"], e["data"]) for e in self.recorded(recording) if int(e["id"], 16) & 0x400]
+        self.assertEqual(len(heard["host"]), len(refused) + 1)
+        self.assertEqual(heard["qemu"], heard["host"])
+
+    def test_the_vectors_of_the_protocol(self):
+        """The requests that the thesis's protocol is known by; and one that is beyond an emulated line."""
+        heard = {}
+        for name in self.sims:
+            recording = self.record(name)
+            for frame in ("205#01", "205#00", "204#02", "208#01F40100", "108#01C80000", "208#00", "205#01840302"):
+                self.tool(name, "send", frame)
+                time.sleep(0.12)
+            self.tool(name, "send", "205#00")
+            time.sleep(1)
+            ends = time.time_ns()
+            time.sleep(0.3)
+            events = self.recorded(recording)
+            self.assertLess(max(int(e["time_ns"]) for e in events), ends)  # the stop was heeded
+            heard[name] = [(e["id"], e["data"]) for e in events]
+        # All but the last, every 900 us, which the host's board keeps and the emulated one does not.
+        first = {name: list(dict.fromkeys(frames)) for name, frames in heard.items()}
+        self.assertEqual(sorted(first["qemu"]), sorted(first["host"]))
+        for identifier in ("604", "508"):
+            self.assertEqual([f for f in heard["qemu"] if f[0] == identifier],
+                             [f for f in heard["host"] if f[0] == identifier])
+        self.assertGreater(len(heard["host"]), 300)
+        report = json.loads(self.tool("qemu", "doctor", "--json", "--watch", "100ms", code=1))
+        self.assertIn("came late or not at all", report["findings"][0]["what"])  # told, not hidden
+
+    def test_calibration_of_the_floor_is_forgotten_and_measured(self):
+        before = self.asked("qemu", "floor_proximity")
+        for name in self.sims:
+            self.tool(name, "set", "floor_calibration", "action=forget")
+        raw = self.asked("host", "floor_proximity")
+        self.assertNotEqual(raw, before)
+        self.until(lambda: self.asked("qemu", "floor_proximity") == raw)
+        self.tool("qemu", "set", "floor_calibration", "action=measure")
+        self.until(lambda: self.asked("qemu", "floor_proximity") == [("604", "0000000000000000")])
+
+
+class Moving(Robots):
+    def test_the_standalone_script(self):
+        """The thesis's run of 40 s, on both robots at once: same frames, in the same order, as often."""
+        self.start_robots("--seed", "1")
+        recordings = {name: self.record(name, "--commands") for name in self.sims}
+        runs = {}
+        for name in self.sims:
+            runs[name] = self.start("--bus", self.bus(name), "run", str(ROOT / "examples" / "standalone.script"))
+        for name, run in runs.items():
+            run.communicate(timeout=60)
+            self.assertEqual(run.returncode, 0)
+        time.sleep(0.5)
+        output = {name: self.recorded(recording) for name, recording in recordings.items()}
+
+        samples = {name: self.samples(events) for name, events in output.items()}
+        # Three stops of the script fall on the very grid point of a release: which is first is nobody's promise.
+        on_the_edge = {"accelerometer", "proximity_ring", "odometry"}
+        for topic in SENSORS:
+            host, qemu = samples["host"][topic], samples["qemu"][topic]
+            self.assertGreater(len(host), 0, topic)
+            self.assertLessEqual(abs(len(host) - len(qemu)), 1 if topic in on_the_edge else 0, topic)
+            # The frames of a sample: same identifiers and lengths, in the same order.
+            self.assertEqual(set(map(self.shape, host)), set(map(self.shape, qemu)), topic)
+        # A set point of the motors is repeated as long as it holds: how often is a matter of microseconds.
+        commands = {name: [key for key, _ in itertools.groupby((e["id"], e["data"]) for e in events
+                                                               if int(e["id"], 16) < 0x400)]
+                    for name, events in output.items()}
+        self.assertEqual(commands["qemu"], commands["host"])
+        # The order of first samples is that of the requests.
+        first = {name: list(dict.fromkeys(e["topic"] for e in events if e["topic"] in SENSORS
+                                          and int(e["id"], 16) >= 0x400)) for name, events in output.items()}
+        self.assertEqual(first["qemu"], first["host"])
+        # Nothing drifts: the thesis's own publisher had 640 ms for 500 ms.
+        for topic, period in (("accelerometer", 0.5), ("magnetometer", 0.8), ("gyroscope", 5)):
+            times = [sample[-1][2] for sample in samples["qemu"][topic]]
+            mean = (times[-1] - times[0]) / (len(times) - 1)
+            self.assertAlmostEqual(mean, period, delta=0.01, msg=topic)
+        texts = self.summaries()
+        self.assertNotIn("against a data sheet", texts["qemu"])
+
+    @staticmethod
+    def shape(sample):
+        return tuple((identifier, len(data)) for identifier, data, _ in sample)
+
+    def samples(self, events):
+        """Topic -> samples, each a list of (identifier, data, time in s)."""
+        result, current = collections.defaultdict(list), collections.defaultdict(list)
+        for event in events:
+            if int(event["id"], 16) < 0x400 or event["topic"] not in SENSORS:
+                continue
+            topic = event["topic"]
+            current[topic].append((event["id"], event["data"], int(event["time_ns"]) / 1e9))
+            if len(current[topic]) == self.frames_of(topic):
+                result[topic].append(current.pop(topic))
+        self.assertFalse({t: f for t, f in current.items() if f}, "half a sample")
+        return result
+
+    def test_the_firmware_drives_and_its_watchdog_stops_it(self):
+        self.start_robots("--seed", "1")
+        recording = self.record("qemu", "odometry")
+        self.tool("qemu", "publish", "odometry", "100ms")
+        self.tool("qemu", "set", "motors", "x=0.2m/s")  # once: nobody repeats it
+        time.sleep(2)
+        events = self.recorded(recording)
+        speeds = [e["fields"]["x"] for e in events if e["frame"] == "velocity"]
+        path = [e["fields"]["x"] for e in events if e["frame"] == "pose"]
+        self.assertGreater(max(speeds), 0.15)
+        self.assertLess(max(speeds), 0.3)
+        self.assertEqual(speeds[-1], 0)
+        self.assertEqual(path[-1], path[-3])
+        self.assertGreater(path[-1], 0.05)  # 0.5 s at 0.2 m/s, and the way up and down
+        self.assertLess(path[-1], 0.15)
+
+    def test_a_board_that_ends_is_told(self):
+        self.start_robots()
+        boards = subprocess.run(["pgrep", "-P", str(self.sims["qemu"].pid), "qemu"], capture_output=True, text=True,
+                                check=True).stdout.split()
+        self.assertEqual(len(boards), 3)
+        os.kill(int(boards[2]), signal.SIGKILL)
+        _, err = self.sims["qemu"].communicate(timeout=10)
+        self.assertEqual(self.sims["qemu"].returncode, 1)
+        self.assertIn("light_ring: QEMU was ended by signal Killed", err)
+        self.assertEqual(subprocess.run(["pgrep", "-P", str(self.sims["qemu"].pid)], check=False).returncode, 1)
+
+    def test_all_at_50_ms_without_a_loss(self):
+        """17 sensor frames every 50 ms, the thesis's own full load."""
+        self.start_robots("--seed", "1")
+        for topic in SENSORS:
+            self.tool("qemu", "publish", topic, "50ms")
+        recording = self.record("qemu", *SENSORS)
+        time.sleep(5)
+        counts = collections.Counter(e["topic"] for e in self.recorded(recording))
+        for topic in SENSORS:
+            self.assertAlmostEqual(counts[topic] / self.frames_of(topic), 100, delta=4, msg=topic)
+
+
+class Usage(Case):
+    def test_no_image(self):
+        _, err = self.run_tool("sim", "--boards", "qemu", "--images", self.folder, code=1)
+        self.assertIn("di_wheel_drive_qemu_m3.elf: No such file or directory", err)
+        self.assertIn("scripts/build firmware", err)
+
+    def test_no_qemu(self):
+        self.environment["PATH"] = self.folder
+        _, err = self.run_tool("sim", "--boards", "qemu", "--images", IMAGES, code=1)
+        self.assertIn("cannot start qemu-system-arm", err)
+        self.assertIn("apt-get install qemu-system-arm", err)
+
+    def test_what_does_not_go_together(self):
+        self.run_tool("sim", "--boards", "qemu", "--speed", "2", code=2)
+        self.run_tool("sim", "--images", ".", code=2)
+        self.run_tool("sim", "--boards", "paper", code=2)
+
+
+if __name__ == "__main__":
+    main()

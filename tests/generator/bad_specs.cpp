@@ -1,0 +1,112 @@
+// bad_specs.json: what is changed in good.json, and all that must be said about it.
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "generator/spec/reader.hpp"
+#include "generator/spec/spec.hpp"
+
+namespace {
+
+std::string read(const std::string& name) {
+  std::ifstream in{std::string{OCM_SOURCE_DIR} + "/" + name, std::ios::binary};
+  REQUIRE(in);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+std::vector<std::string> printed(const std::vector<ocm::spec::Problem>& problems) {
+  std::vector<std::string> lines;
+  for (const auto& p : problems) lines.push_back(p.place + ": " + p.what + "; " + p.remedy);
+  return lines;
+}
+
+TEST_CASE("the spec that the bad ones are made from is good") {
+  const auto loaded = ocm::spec::parse(read("tests/generator/good.json"), "good.json");
+  CHECK(printed(loaded.problems).empty());
+  CHECK(loaded.spec != nullptr);
+}
+
+TEST_CASE("every mistake is told with its place, what is wrong and what would be right") {
+  const std::string good = read("tests/generator/good.json");
+  const auto table = nlohmann::json::parse(read("tests/generator/bad_specs.json"));
+  REQUIRE(table.size() > 100);
+  for (const auto& row : table) {
+    const std::string from = row.at("replace");
+    const std::string to = row.at("by");
+    CAPTURE(from, to);
+    std::string text = good;
+    const auto at = text.find(from);
+    REQUIRE(at != std::string::npos);
+    text.replace(at, from.size(), to);
+    const auto loaded = ocm::spec::parse(text, "bad.json");
+    CHECK(printed(loaded.problems) == row.at("problems").get<std::vector<std::string>>());
+    CHECK(loaded.spec == nullptr);
+
+    // An editor has only the schema: what is a matter of form it must see as well.
+    std::vector<ocm::spec::Problem> syntax;
+    const auto root = ocm::spec::parse_json(text, "bad.json", syntax);
+    if (!syntax.empty()) continue;
+    std::vector<ocm::spec::Problem> by_schema;
+    ocm::spec::validate_by_schema(root, "bad.json", by_schema);
+    CHECK(by_schema.empty() != row.at("schema").get<bool>());
+  }
+}
+
+TEST_CASE("all problems are told, in the order of the file") {
+  std::string text = read("tests/generator/good.json");
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  replace("500000", "5");
+  replace("\"0x08\"", "\"0x1FF\"");
+  replace("\"i24\"", "\"float\"");
+  replace("\"1s\"", "\"soon\"");
+  const auto loaded = ocm::spec::parse(text, "bad.json");
+  std::vector<std::string> places;
+  for (const auto& p : loaded.problems) places.push_back(p.place);
+  CHECK(places == std::vector<std::string>{"bad.json:4: /bus/bit_rate", "bad.json:11: /topics/0/id",
+                                           "bad.json:27: /topics/1/frames/0/fields/0/type",
+                                           "bad.json:33: /topics/2/timeout"});
+}
+
+TEST_CASE("what is no spec at all") {
+  const auto only = [](std::string_view text) {
+    const auto loaded = ocm::spec::parse(text, "f");
+    CHECK(loaded.spec == nullptr);
+    REQUIRE(loaded.problems.size() == 1);
+    return loaded.problems[0];
+  };
+  using ocm::spec::Problem;
+  const std::string object = "a spec is an object with robot, namespace, bus, boards and topics";
+  CHECK(only("") == Problem{"f:1:1", "the file is empty",
+                            "a spec is a JSON object with robot, namespace, bus, boards and topics"});
+  CHECK(only(" \n ").what == "the file is empty");
+  CHECK(only("[]") == Problem{"f:1: /", "a list, not an object", object});
+  CHECK(only("null") == Problem{"f:1: /", "null, not an object", object});
+  CHECK(only("\"topics\"") == Problem{"f:1: /", "\"topics\" is not an object", object});
+  CHECK(only("{\"robot\": \"\xFF\"}").remedy == "save the file as UTF-8");
+  CHECK(only("{\n\n  \"robot\": \"a\xC3\"}").place == "f:3:15");
+  CHECK(only(std::string(100'000, '[')) ==
+        Problem{"f:1", "nested deeper than 32 levels", "a spec needs 7 levels at most"});
+  CHECK(only("[\"" + std::string(5'000, 'a') + "\"]") ==
+        Problem{"f:1", "a text of 5000 bytes", "at most 1000"});
+  CHECK(only(std::string(1'000'001, ' ')) ==
+        Problem{"f", "the file has 1000001 bytes", "a spec has at most 1000000"});
+  CHECK(only(std::string(2, '\0')).place == "f:1:1");
+  CHECK(ocm::spec::parse("{}", "f").problems.size() == 5);
+}
+
+TEST_CASE("a file that is not there, or is no file") {
+  const auto only = [](const std::filesystem::path& file) { return ocm::spec::load(file).problems.at(0); };
+  CHECK(only("/nonexistent/spec.json").what == "there is no such file");
+  CHECK(only("/").what == "it is a folder");
+  CHECK(only("/dev/zero").what == "the file is larger than 1000000 bytes");
+  CHECK(only("/dev/null").what == "the file is empty");
+}
+
+}  // namespace

@@ -1,0 +1,105 @@
+// The compiled catalogue and the one that is loaded from the same spec say the same.
+#include <catch2/catch.hpp>
+
+#include "ocm/topics/amiro.hpp"
+
+#include "generator/spec/spec.hpp"
+#include "golden/ferry.hpp"
+
+namespace {
+
+namespace protocol = ocm::protocol;
+
+template <class Range>
+std::vector<typename Range::value_type> list(const Range& range) {
+  return {range.begin(), range.end()};
+}
+
+void compare(const protocol::Field& a, const protocol::Field& b) {
+  CAPTURE(a.name);
+  CHECK(a.name == b.name);
+  CHECK(a.position == b.position);
+  CHECK(a.is_signed == b.is_signed);
+  CHECK(a.scale == b.scale);
+  CHECK(a.offset == b.offset);
+  CHECK(a.unit == b.unit);
+  CHECK(a.raw_min == b.raw_min);
+  CHECK(a.raw_max == b.raw_max);
+  CHECK(list(a.values) == list(b.values));
+  CHECK(a.flags == b.flags);
+}
+
+void compare(const protocol::Topic& a, const protocol::Topic& b) {
+  CAPTURE(a.name);
+  CHECK(a.name == b.name);
+  CHECK(list(a.aliases) == list(b.aliases));
+  CHECK(a.id == b.id);
+  CHECK(a.kind == b.kind);
+  CHECK(a.role == b.role);
+  CHECK(a.board == b.board);
+  CHECK(a.priority == b.priority);
+  CHECK(a.period == b.period);
+  CHECK(a.shortest_period == b.shortest_period);
+  CHECK(a.deadline == b.deadline);
+  CHECK(a.jitter == b.jitter);
+  CHECK(a.timeout == b.timeout);
+  CHECK(a.group == b.group);
+  CHECK(a.instance == b.instance);
+  CHECK(a.source == b.source);
+  REQUIRE(a.frames.size() == b.frames.size());
+  for (std::size_t i = 0; i < a.frames.size(); ++i) {
+    CHECK(a.frames[i].name == b.frames[i].name);
+    CHECK(a.frames[i].id == b.frames[i].id);
+    CHECK(a.frames[i].dlc == b.frames[i].dlc);
+    CHECK(a.frames[i].worst_bits == b.frames[i].worst_bits);
+    CHECK(a.frames[i].worst_bits[0] != 0);
+    REQUIRE(a.frames[i].fields.size() == b.frames[i].fields.size());
+    for (std::size_t j = 0; j < a.frames[i].fields.size(); ++j)
+      compare(a.frames[i].fields[j], b.frames[i].fields[j]);
+  }
+}
+
+void compare(const protocol::Catalogue& a, const protocol::Catalogue& b) {
+  CHECK(a.robot == b.robot);
+  CHECK(a.bit_rate == b.bit_rate);
+  REQUIRE(a.boards.size() == b.boards.size());
+  for (std::size_t i = 0; i < a.boards.size(); ++i) {
+    CHECK(a.boards[i].name == b.boards[i].name);
+    CHECK(a.boards[i].mcu == b.boards[i].mcu);
+  }
+  REQUIRE(a.topics.size() == b.topics.size());
+  for (std::size_t i = 0; i < a.topics.size(); ++i) compare(a.topics[i], b.topics[i]);
+}
+
+ocm::spec::Loaded load(const std::string& name) {
+  auto loaded = ocm::spec::load(std::string{OCM_SOURCE_DIR} + "/" + name);
+  for (const auto& p : loaded.problems) UNSCOPED_INFO(p.place << ": " << p.what << "; " << p.remedy);
+  REQUIRE(loaded.spec != nullptr);
+  return loaded;
+}
+
+TEST_CASE("AMiRo: compiled and loaded are equal") {
+  const auto loaded = load("spec/topics.json");
+  compare(amiro::catalogue, loaded.spec->catalogue());
+}
+
+TEST_CASE("the other robot: compiled and loaded are equal") {
+  const auto loaded = load("examples/other-robot/topics.json");
+  compare(ferry::catalogue, loaded.spec->catalogue());
+}
+
+TEST_CASE("a moved spec keeps its catalogue where it is") {
+  auto loaded = load("spec/topics.json");
+  const auto* catalogue = &loaded.spec->catalogue();
+  const auto* name = catalogue->robot.data();
+  ocm::spec::Spec moved = std::move(*loaded.spec);
+  CHECK(&moved.catalogue() == catalogue);
+  CHECK(moved.catalogue().robot.data() == name);
+  compare(amiro::catalogue, moved.catalogue());
+}
+
+TEST_CASE("every fact of the AMiRo has a source") {
+  for (const auto& topic : amiro::catalogue.topics) CHECK_FALSE(topic.source.empty());
+}
+
+}  // namespace

@@ -1,0 +1,201 @@
+// spec/tasks.json and spec/sentences.json against the schemas that an editor has of them, and what the
+// schemas must see.
+#include <fstream>
+#include <string>
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validator.hpp>
+
+namespace {
+
+using Json = nlohmann::json;
+using Adapter = valijson::adapters::NlohmannJsonAdapter;
+
+/// spec/NAME.json, spec/NAME.schema.json, and what the one says of the other when it is changed.
+class Spec {
+ public:
+  explicit Spec(const std::string& name) : json_(read(name + ".json")), text_(read(name + ".schema.json")) {
+    valijson::SchemaParser{}.populateSchema(Adapter{text_}, schema_);
+  }
+  [[nodiscard]] const Json& json() const { return json_; }
+  [[nodiscard]] bool takes(const Json& json) const {
+    valijson::Validator validator;
+    return validator.validate(schema_, Adapter{json}, nullptr);
+  }
+  /// With another value, or a new one, at `pointer`.
+  [[nodiscard]] bool takes(const char* pointer, const Json& value) const {
+    Json changed = json_;
+    changed[Json::json_pointer{pointer}] = value;
+    return takes(changed);
+  }
+  /// Without `member` of what is at `pointer`, which has it.
+  [[nodiscard]] bool takes_without(const char* pointer, const char* member) const {
+    Json changed = json_;
+    REQUIRE(changed[Json::json_pointer{pointer}].erase(member) == 1);
+    return takes(changed);
+  }
+
+ private:
+  static Json read(const std::string& name) {
+    std::ifstream in{std::string{OCM_SOURCE_DIR} + "/spec/" + name};
+    REQUIRE(in);
+    return Json::parse(in);
+  }
+
+  Json json_;
+  Json text_;
+  valijson::Schema schema_;
+};
+
+TEST_CASE("the task sets keep to their schema, which tells what does not") {
+  const Spec tasks{"tasks"};
+  CHECK(tasks.takes(tasks.json()));
+  CHECK(tasks.takes("/sets/0/tasks/0/cost", "53us"));
+  CHECK_FALSE(tasks.takes("/sets/0/tasks/0/cost", "53"));
+  CHECK_FALSE(tasks.takes("/sets/0/tasks/0/cost", 53));
+  CHECK_FALSE(tasks.takes("/sets/0/tasks/0/costs", "53us"));
+  CHECK_FALSE(tasks.takes("/sets/0/tasks/0/name", "Control"));
+  CHECK_FALSE(tasks.takes("/sets/0/tasks", Json::array()));
+  CHECK_FALSE(tasks.takes("/sets/0/bus_percent", 101));
+  CHECK_FALSE(tasks.takes(Json::object()));
+  for (const char* needed : {"name", "cost", "period", "level"}) {
+    CAPTURE(needed);
+    CHECK_FALSE(tasks.takes_without("/sets/0/tasks/0", needed));
+  }
+}
+
+// In spec/sentences.json: a sentence of a word, one of integers, one of fixed text.
+constexpr const char* confirm = "/sentences/0";
+constexpr const char* set_point = "/sentences/1";
+constexpr const char* ping = "/sentences/6";
+constexpr const char* handshake = "/sentences/7";
+
+TEST_CASE("the sentences keep to their schema") {
+  const Spec sentences{"sentences"};
+  CHECK(sentences.takes(sentences.json()));
+  const auto name = [&](const char* at) { return sentences.json()[Json::json_pointer{at}]["name"]; };
+  REQUIRE(name(confirm) == "confirm");
+  REQUIRE(name(set_point) == "set_point");
+  REQUIRE(name(ping) == "ping");
+  REQUIRE(name(handshake) == "handshake");
+  CHECK(sentences.takes("/sentences/0/word", "GOO"));
+  CHECK(sentences.takes("/sentences/1/fields/0/range", {-32768, 32767}));
+  CHECK(sentences.takes_without("/sentences/1/fields/0", "range"));
+  CHECK(sentences.takes_without(handshake, "integers"));
+  CHECK(sentences.takes("/sentences/1/source", "decided"));
+}
+
+TEST_CASE("what the schema of the sentences must see: a member that is missing") {
+  const Spec sentences{"sentences"};
+  CHECK_FALSE(sentences.takes(Json::object()));
+  CHECK_FALSE(sentences.takes(nullptr));
+  const std::pair<const char*, const char*> needed[] = {
+      {"", "robot"},
+      {"", "description"},
+      {"", "integer"},
+      {"", "packet"},
+      {"", "sentences"},
+      {"", "packed"},
+      {"/integer", "min"},
+      {"/integer", "max"},
+      {"/integer", "source"},
+      {"/packet", "bytes"},
+      {"/packet", "source"},
+      {confirm, "name"},
+      {confirm, "direction"},
+      {confirm, "description"},
+      {confirm, "source"},
+      {confirm, "letter"},
+      {confirm, "word"},
+      {set_point, "letter"},
+      {set_point, "fields"},
+      {ping, "text"},
+      {"/sentences/1/source", "default"},
+      {"/sentences/1/fields/0", "name"},
+      {"/sentences/1/fields/0", "unit"},
+      {"/sentences/1/fields/0", "description"},
+      {"/packed", "version"},
+      {"/packed", "tag"},
+      {"/packed", "sentence"},
+      {"/packed", "description"},
+      {"/packed", "fields"},
+      {"/packed", "source"},
+      {"/packed/fields/0", "name"},
+      {"/packed/fields/0", "bits"},
+  };
+  for (const auto& [where, member] : needed) {
+    CAPTURE(where, member);
+    CHECK_FALSE(sentences.takes_without(where, member));
+  }
+}
+
+TEST_CASE("what the schema of the sentences must see: a value that cannot be") {
+  const Spec sentences{"sentences"};
+  const std::pair<const char*, Json> bad[] = {
+      {"/robots", "mapper"},
+      {"/robot", ""},
+      {"/robot", 1},
+      {"/robot", "line\nrobot"},
+      {"/integer/min", -32769},
+      {"/integer/max", 32768},
+      {"/integer/max", "32767"},
+      {"/integer/most", 1},
+      {"/packet/bytes", 0},
+      {"/packet/bytes", 256},
+      {"/packet/bytes", 20.5},
+      {"/sentences", Json::array()},
+      {"/sentences", Json::object()},
+      {"/sentences/0", "{S,CON}"},
+      {"/sentences/0/name", "Confirm"},
+      {"/sentences/0/name", "0confirm"},
+      {"/sentences/0/direction", "to_server"},
+      {"/sentences/0/letter", "s"},
+      {"/sentences/0/letter", "SS"},
+      {"/sentences/0/word", "con"},
+      {"/sentences/0/word", "CONF"},
+      {"/sentences/0/words", "CON"},
+      {"/sentences/0/description", "two\nlines"},
+      {"/sentences/0/source", 4.3},
+      {"/sentences/1/source/angle", 4.3},
+      {"/sentences/1/fields", Json::array()},
+      {"/sentences/1/fields/0/name", "Angle"},
+      {"/sentences/1/fields/0/unit", "degrees"},
+      {"/sentences/1/fields/0/range", {0}},
+      {"/sentences/1/fields/0/range", {0, 1, 2}},
+      {"/sentences/1/fields/0/range", {0, 32768}},
+      {"/sentences/1/fields/0/range", {"0", "1"}},
+      {"/sentences/1/fields/0/default", 0},
+      {"/sentences/7/integers", {0, 16}},
+      {"/sentences/7/integers", {1, 17}},
+      {"/sentences/7/integers", 10},
+      // One that is of two sorts at once.
+      {"/sentences/0/fields", sentences.json()["sentences"][1]["fields"]},
+      {"/sentences/0/text", "{}"},
+      {"/sentences/0/integers", {1, 2}},
+      {"/sentences/1/word", "CON"},
+      {"/sentences/1/text", "{}"},
+      {"/sentences/6/letter", "S"},
+      {"/sentences/6/word", "CON"},
+      {"/sentences/6/integers", {1, 2}},
+      {"/sentences/6/text", ""},
+      {"/packed/version", 0},
+      {"/packed/tag", 127},
+      {"/packed/tag", 256},
+      {"/packed/sentence", ""},
+      {"/packed/bits", 112},
+      {"/packed/fields", Json::array()},
+      {"/packed/fields/0/bits", 0},
+      {"/packed/fields/0/bits", 17},
+      {"/packed/fields/0/range", {0, 1}},
+  };
+  for (const auto& [where, value] : bad) {
+    CAPTURE(where, value);
+    CHECK_FALSE(sentences.takes(where, value));
+  }
+}
+
+}  // namespace

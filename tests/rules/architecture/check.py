@@ -1,0 +1,393 @@
+#!/usr/bin/env python3
+"""The rules of docs/architecture.md, checked: check.py ROOT [RULE ...]. Each violation is a line with file, line, what
+is wrong and what would be right; exit 1 if there are any. Without RULE all are checked; --list names them."""
+import pathlib
+import re
+import sys
+
+import house
+
+LAYERS = ("controller", "reflective", "cognitive")
+
+BANNED_HEADERS = set("""any condition_variable deque exception filesystem format forward_list fstream functional future
+    iomanip ios iosfwd iostream istream list locale map memory memory_resource mutex ostream queue random regex set
+    shared_mutex sstream stack stdexcept string strstream syncstream thread typeindex typeinfo unordered_map
+    unordered_set vector cstdio stdio.h ctime time.h clocale locale.h cstdlib stdlib.h""".split())
+
+BANNED_WORDS = {
+    r"\bthrow\b": "throw: return a base::Result",
+    r"\btry\b": "try: there are no exceptions on a board",
+    r"\bcatch\b": "catch: there are no exceptions on a board",
+    r"\bdynamic_cast\b": "dynamic_cast: there is no RTTI on a board",
+    r"\btypeid\b": "typeid: there is no RTTI on a board",
+    r"\bnew\b(?!\s*\()": "new: there is no heap on a board (placement new is allowed)",
+    r"(?<!=)(?<!= )\bdelete\b": "delete: there is no heap on a board",
+    r"\b(?:malloc|calloc|realloc|free)\s*\(": "malloc and free: there is no heap on a board",
+    r"\bstd::(?:string|vector|function|map|set|list|deque|shared_ptr|unique_ptr)\b": "a type that uses the heap",
+    r"\b(?:steady|system|high_resolution)_clock\b": "a clock: time is handed in",
+    r"\bassert\s*\(": "assert: return a base::Result, or prove it with static_assert",
+}
+
+# Written so that no pattern is found in this file itself.
+MACHINE_PATHS = re.compile(r"(?<![\w.$}/-])/(?:wor[k]|roo[t])(?=[/\s`'\")\]]|$)|/hom[e]/\w|/tm[p]/(?:build|bash_jobs)"
+                           r"|/User[s]/\w")
+INTERNAL_NAMES = re.compile(r"\bfar[m]-\w|\bshare[d]/(?:facts|tools|theses|hooks)|\bissue[s] (?:show|close)\b")
+
+SOURCE = (".hpp", ".cpp", ".h", ".c")
+
+
+class Tree:
+    def __init__(self, root):
+        self.root = pathlib.Path(root)
+        self.files = house.files(root)
+        self.known = set(self.files)
+        self.floors = house.read_floors(root)
+        self.texts = {}
+        self.included = {}
+
+    def text(self, name):
+        if name not in self.texts:
+            try:
+                self.texts[name] = (self.root / name).read_text()
+            except UnicodeDecodeError:
+                self.texts[name] = ""  # not text
+        return self.texts[name]
+
+    def below(self, *folders, ends=SOURCE):
+        return [name for name in self.files if name.startswith(folders) and name.endswith(ends)]
+
+    def headers(self):
+        """(path, floor's name) of all headers of the library."""
+        for name in self.below("include/ocm/", ends=(".hpp", ".h")):
+            yield name, self.floor(name)
+
+    def floor(self, name):
+        """The floor of a file; '' where it is not of the library."""
+        return house.floor_of(self.floors, name.removeprefix("include/ocm/")) if name.startswith("include/ocm/") else ""
+
+    def includes(self, name):
+        if name not in self.included:
+            self.included[name] = house.includes(self.text(name))
+        return self.included[name]
+
+    def resolve(self, what):
+        """The project's file that an #include means; None where it is not one of ours."""
+        for candidate in ("include/" + what, what):
+            if candidate in self.known:
+                return candidate
+        return None
+
+    def find(self, name, pattern, text=None):
+        """(line, match) of every match."""
+        text = self.text(name) if text is None else text
+        for match in re.finditer(pattern, text):
+            yield text.count("\n", 0, match.start()) + 1, match
+
+
+# --- the library ---------------------------------------------------------------------------------------------
+
+def floors_have_rows(tree):
+    """Every folder of include/ocm with headers is a row of the table, and every row a folder."""
+    seen = set()
+    for name, floor in tree.headers():
+        if floor not in tree.floors:
+            yield f"{name}:1: floor '{floor}' has no row in docs/architecture.md; give it one"
+        seen.add(floor)
+    for floor in tree.floors:
+        if floor not in seen:
+            yield f"docs/architecture.md:1: floor '{floor}' has a row, but no header in include/ocm/{floor}/"
+
+
+def includes_go_down(tree):
+    """Includes of the library are full paths to what the table allows."""
+    for name, floor in tree.headers():
+        for line, quoted, what in tree.includes(name):
+            if not quoted:
+                if what.startswith("ocm/"):
+                    yield f'{name}:{line}: <{what}>: the library includes itself with quotes: "{what}"'
+                continue
+            target = tree.floor("include/" + what)
+            if not target or "include/" + what not in tree.known:
+                yield f'{name}:{line}: "{what}" is not the full path of a header, such as "ocm/base/result.hpp"'
+            elif floor in tree.floors and target not in tree.floors[floor].reach:
+                allowed = ", ".join(sorted(tree.floors[floor].reach))
+                yield f'{name}:{line}: "{what}": floor \'{floor}\' may include {allowed}; not \'{target}\''
+
+
+def layers_are_apart(tree):
+    """Controller, Reflective and Cognitive Operator never reach each other, by whatever way."""
+    for name, floor in tree.headers():
+        if floor not in LAYERS:
+            continue
+        for reached, way in closure(tree, name).items():
+            other = tree.floor(reached)
+            if other in LAYERS and other != floor:
+                yield f"{name}:1: OCM layer '{floor}' reaches layer '{other}': {' -> '.join(way)}"
+
+
+def closure(tree, start):
+    """Every file of the project that `start` includes, with the way to it."""
+    ways = {}
+    todo = [(start, (start,))]
+    while todo:
+        name, way = todo.pop()
+        for _, _, what in tree.includes(name):
+            target = tree.resolve(what)
+            if target and target not in ways and target != start:
+                ways[target] = way + (target,)
+                todo.append((target, ways[target]))
+    return ways
+
+
+def no_circles(tree):
+    """No header reaches itself."""
+    state = {}
+
+    def visit(name, way):
+        state[name] = "open"
+        for _, _, what in tree.includes(name):
+            target = tree.resolve(what)
+            if target is None:
+                continue
+            if state.get(target) == "open":
+                circle = way[way.index(target):] + [target]
+                yield f"{name}:1: a circle of includes: {' -> '.join(circle)}"
+            elif target not in state:
+                yield from visit(target, way + [target])
+        state[name] = "done"
+
+    for name in tree.below("include/", "cli/", "firmware/", "generator/", "sim/"):
+        if name not in state:
+            yield from visit(name, [name])
+
+
+def namespace_is_folder(tree):
+    """ocm::<floor> in include/ocm/<floor>; the robot's own, which is the file's name, in a generated header."""
+    for name, floor in tree.headers():
+        expected = pathlib.PurePosixPath(name).stem if floor == "topics" else "ocm::" + floor.replace("/", "::")
+        opened = list(tree.find(name, r"(?m)^(?:inline )?namespace\s+([\w:]+)\s*\{",
+                                house.without_comments(tree.text(name))))
+        if not opened:
+            yield f"{name}:1: no namespace: expected {expected}"
+            continue
+        if not any((match.group(1) + "::").startswith(expected + "::") for _, match in opened):
+            yield f"{name}:1: its namespace is {opened[0][1].group(1)}: expected {expected}"
+            continue
+        for line, match in opened:
+            allowed = match.group(1) == expected or match.group(1).startswith(expected + "::")
+            # Inside a generated header, names like `detail` are opened within the robot's namespace.
+            if not allowed and (match.group(1).startswith("ocm") or match.group(1) == "std"):
+                yield f"{name}:{line}: namespace {match.group(1)}: expected {expected}"
+
+
+def board_headers(tree):
+    """What runs on a board: the floors of which the table says so, and the boards themselves."""
+    for name, floor in tree.headers():
+        if floor in tree.floors and tree.floors[floor].board:
+            yield name
+    yield from tree.below("firmware/boards/", "firmware/drivers/")
+
+
+def no_banned_headers(tree):
+    """No standard header on a board that brings a heap, exceptions, streams, threads or a clock."""
+    for name in board_headers(tree):
+        for line, quoted, what in tree.includes(name):
+            if not quoted and (what in BANNED_HEADERS or re.match(r"(?:linux|sys|net|netinet)/|unistd\.h|poll\.h", what)):
+                yield f"{name}:{line}: <{what}> is not for boards: no heap, exceptions, streams, threads, clocks"
+
+
+def no_banned_words(tree):
+    """No exceptions, RTTI, heap or clock on a board."""
+    for name in board_headers(tree):
+        code = house.without_comments(tree.text(name))
+        code = re.sub(r"(?m)^[ \t]*#.*$", "", code)  # <new> is a header, not an allocation
+        for pattern, why in BANNED_WORDS.items():
+            for line, _ in tree.find(name, pattern, code):
+                yield f"{name}:{line}: {why}"
+
+
+def headers_open_with_a_comment(tree):
+    """The first line of a header says what it is."""
+    for name in tree.below("include/", "cli/", "firmware/", "generator/", "sim/", ends=(".hpp", ".h")):
+        first = tree.text(name).split("\n", 1)[0]
+        if not re.match(r"///? ?\S.{15,}", first):
+            yield f"{name}:1: a header opens with a comment that says what it is"
+
+
+def headers_have_tests(tree):
+    """tests/unit mirrors include/ocm, both ways; codec_sweep.cpp is a further test of codec.hpp."""
+    tested = {name[len("include/ocm/"):-len(".hpp")] for name, _ in tree.headers()}
+    for name, _ in tree.headers():
+        test = "tests/unit/" + name[len("include/ocm/"):].replace(".hpp", ".cpp")
+        if test not in tree.known:
+            yield f"{name}:1: it has no test: {test} is missing"
+    for name in tree.below("tests/unit/", ends=(".cpp",)):
+        stem = name[len("tests/unit/"):-len(".cpp")]
+        if stem not in tested and not any(stem.startswith(header + "_") for header in tested):
+            yield f"{name}:1: it tests no header: include/ocm/{stem}.hpp is missing"
+
+
+# --- around the library --------------------------------------------------------------------------------------
+
+def own_includes_are_full_paths(tree):
+    """The tool and the firmware include their own files from the repository's root."""
+    for name in tree.below("cli/", "firmware/", "generator/", "sim/"):
+        for line, quoted, what in tree.includes(name):
+            if quoted and tree.resolve(what) is None:
+                yield f'{name}:{line}: "{what}" is not a full path, such as "cli/session.hpp" or "ocm/base/time.hpp"'
+
+
+def generator_is_independent(tree):
+    """The generator reaches no generated header."""
+    for name in tree.below("generator/"):
+        for reached, way in closure(tree, name).items():
+            if reached.startswith("include/ocm/topics/"):
+                yield f"{name}:1: the generator reaches what it generates: {' -> '.join(way)}"
+
+
+def boards_know_no_world(tree):
+    """A board runs on any hardware: it reaches neither the simulation nor an operator nor the host."""
+    for name in tree.below("firmware/boards/", "firmware/drivers/"):
+        for reached, way in closure(tree, name).items():
+            floor = tree.floor(reached)
+            host = floor in tree.floors and not tree.floors[floor].board
+            if host or not reached.startswith(("include/ocm/", "firmware/boards/", "firmware/drivers/")):
+                yield f"{name}:1: a board reaches what runs on the host only: {' -> '.join(way)}"
+
+
+def generated_files_are_reproducible(tree):
+    """No date, no time in what is generated: the same spec gives the same file."""
+    for name in tree.below("include/", "tests/generator/golden/"):
+        if "Made by ocm-generate" not in tree.text(name)[:300]:
+            continue
+        for line, match in tree.find(name, r"\b(?:19|20)\d\d-\d\d-\d\d\b|\b\d\d:\d\d:\d\d\b|__DATE__|__TIME__"):
+            yield f"{name}:{line}: generated, with a date or time: {match.group(0)}"
+
+
+def no_machine_paths(tree):
+    """No path of somebody's machine, and no name of tools that are not of the project."""
+    for name in tree.files:
+        for line, match in tree.find(name, MACHINE_PATHS):
+            yield f"{name}:{line}: a path of one machine: {match.group(0).strip()}"
+        for line, match in tree.find(name, INTERNAL_NAMES):
+            yield f"{name}:{line}: a name that is not of the project: {match.group(0)}"
+
+
+# --- pages ---------------------------------------------------------------------------------------------------
+
+def pages(tree):
+    return [name for name in tree.files if name.endswith(".md")]
+
+
+def without_fences(text):
+    """Fenced and inline code blanked."""
+    text = re.sub(r"(?ms)^( *)```.*?^\1```", lambda m: re.sub(r"[^\n]", " ", m.group(0)), text)
+    return re.sub(r"`[^`\n]*`", lambda m: " " * len(m.group(0)), text)
+
+
+def links(tree, page):
+    """(line, file or '', anchor or '') of every relative link; the file as a path from the root."""
+    folder = pathlib.PurePosixPath(page).parent
+    for line, match in tree.find(page, r"\]\(([^)\s]+)(?:\s+\"[^\"]*\")?\)", without_fences(tree.text(page))):
+        link = match.group(1)
+        if re.match(r"[a-z]+:", link):
+            continue
+        path, _, anchor = link.partition("#")
+        parts = []
+        for part in (folder / path).parts if path else ():
+            if part == ".." and parts and parts[-1] != "..":
+                parts.pop()
+            elif part != ".":
+                parts.append(part)
+        yield line, link, "/".join(parts) if path else page, anchor
+
+
+def anchors(text):
+    """The anchors of a page's headings, as GitHub makes them."""
+    found = set()
+    fenced = re.sub(r"(?ms)^( *)```.*?^\1```", "", text)
+    for heading in re.findall(r"(?m)^#+ +(.*?) *#*$", fenced):
+        plain = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading)
+        found.add(re.sub(r"[^\w\- ]", "", plain.lower()).replace(" ", "-"))
+    return found
+
+
+def links_resolve(tree):
+    """Relative links lead to a file, a folder or a heading."""
+    folders = {str(parent) for name in tree.files for parent in pathlib.PurePosixPath(name).parents}
+    for page in pages(tree):
+        for line, link, target, anchor in links(tree, page):
+            if target not in tree.known and target not in folders:
+                yield f"{page}:{line}: the link ({link}) leads nowhere: there is no {target}"
+            elif anchor and target.endswith(".md") and anchor not in anchors(tree.text(target)):
+                yield f"{page}:{line}: the link ({link}) leads nowhere: {target} has no heading '{anchor}'"
+
+
+def pages_are_linked(tree):
+    """Every page of docs can be reached from another one."""
+    linked = {target for page in pages(tree) for _, _, target, _ in links(tree, page) if target != page}
+    for page in pages(tree):
+        if page.startswith("docs/") and page not in linked:
+            yield f"{page}:1: no other page links to it; add it to an index, README.md for instance"
+
+
+def snippets(tree):
+    """Name -> (file, code) of what examples offer to be quoted; indentation taken off."""
+    found = {}
+    for name in tree.below("examples/"):
+        for _, match in tree.find(name, r"(?m)^( *)// snippet: (\S+)\n((?:.*\n)*?) *// endsnippet$"):
+            indent, code = match.group(1), match.group(3)
+            found[match.group(2)] = (name, re.sub(rf"(?m)^{indent}", "", code))
+    return found
+
+
+def quotes_are_the_examples(tree):
+    """Code behind <!-- snippet: NAME --> is the snippet of that name; all C++ of the README is such code."""
+    offered = snippets(tree)
+    for page in pages(tree):
+        for line, match in tree.find(page, r"(?m)^<!-- snippet: (\S+) -->\n+```\w*\n((?:.*\n)*?)```$"):
+            if match.group(1) not in offered:
+                yield f"{page}:{line}: no file of examples/ has a snippet '{match.group(1)}'"
+            elif match.group(2) != offered[match.group(1)][1]:
+                yield f"{page}:{line}: not what {offered[match.group(1)][0]} has as '{match.group(1)}'; copy it again"
+        for line, match in tree.find(page, r"(?m)^<!-- snippet: (\S+) -->\n+(?!```|\n)"):
+            yield f"{page}:{line}: snippet '{match.group(1)}' is announced, and no code follows"
+    quoted = re.compile(r"(?m)^(?!<!-- snippet)(.*)\n+```cpp$")
+    for line, match in tree.find("README.md", quoted) if "README.md" in tree.known else ():
+        line += match.group(0).count("\n")
+        yield f"README.md:{line}: C++ in the README is quoted: put '<!-- snippet: NAME -->' above it"
+
+
+RULES = (floors_have_rows, includes_go_down, layers_are_apart, no_circles, namespace_is_folder, no_banned_headers,
+         no_banned_words, headers_open_with_a_comment, headers_have_tests, own_includes_are_full_paths,
+         generator_is_independent, boards_know_no_world, generated_files_are_reproducible, no_machine_paths,
+         links_resolve, pages_are_linked, quotes_are_the_examples)
+
+
+def check(root, rules=RULES):
+    """[(rule's name, violation)]"""
+    try:
+        tree = Tree(root)
+    except house.TableError as error:
+        return [("floor_table", str(error))]
+    return [(rule.__name__, violation) for rule in rules for violation in rule(tree)]
+
+
+def main(arguments):
+    if arguments[:1] == ["--list"]:
+        for rule in RULES:
+            print(f"{rule.__name__:34} {rule.__doc__}")
+        return 0
+    by_name = {rule.__name__: rule for rule in RULES}
+    if not arguments or any(name not in by_name for name in arguments[1:]):
+        print("usage: check.py ROOT [RULE ...] | --list", file=sys.stderr)
+        return 2
+    found = check(arguments[0], [by_name[name] for name in arguments[1:]] or RULES)
+    for rule, violation in found:
+        print(f"{violation} [{rule}]")
+    print(f"{len(found)} violations of the architecture" if found else "the architecture holds")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

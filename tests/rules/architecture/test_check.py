@@ -1,0 +1,189 @@
+#!/usr/bin/env python3
+"""The checker, checked: a small tree that keeps every rule, and one planted violation after the other."""
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import check
+import house
+
+ROW = "| 9 | `extra` | what is planted | {} | host |\n"
+
+GOOD = {
+    "README.md": "# A project\n\n[architecture](docs/architecture.md#floors)\n\n<!-- snippet: hello -->\n```cpp\n"
+                 "greet();\nif (true) {\n  greet();\n}\n```\n",
+    "docs/architecture.md": "# Architecture\n\n## Floors\n\n[home](../README.md)\n\n<!-- floors: read by a test -->\n\n"
+                            "| floor | folder | what | may include | runs on |\n|---|---|---|---|---|\n"
+                            "| 0 | `base` | | | board, host |\n"
+                            "| 3 | `topics` | | `base` | board, host |\n"
+                            "| 5 | `controller` | | `topics` | board, host |\n"
+                            "| 5 | `reflective` | | `topics` | host |\n"
+                            "| 5 | `skiff/oars` | | `base` | board, host |\n"
+                            "| 6 | `transport` | | `base` | host |\n"
+                            "\n<!-- end of floors -->\n",
+    "include/ocm/base/result.hpp": "/// A value or the reason why there is none.\n#pragma once\n#include <new>\n"
+                                   "#include <string_view>\nnamespace ocm::base {\nstruct Result {};\n"
+                                   "// a new word in a comment, and throw\n"
+                                   "inline void put(void* p) { ::new (p) Result; }\nstruct A { A(const A&) = delete; };\n"
+                                   "inline constexpr auto text = \"throw new\";\n}\n",
+    "include/ocm/topics/ferry.hpp": "// Made by ocm-generate from topics.json. Do not edit.\n#pragma once\n"
+                                    '#include "ocm/base/result.hpp"\nnamespace ferry {\nnamespace detail {\n}\n}\n',
+    "include/ocm/controller/board.hpp": "/// One board of the robot, that is.\n#pragma once\n"
+                                        '#include "ocm/topics/ferry.hpp"\nnamespace ocm::controller {}\n',
+    "include/ocm/reflective/robot.hpp": "/// The robot as its operator sees it.\n#pragma once\n#include <vector>\n"
+                                        '#include "ocm/topics/ferry.hpp"\nnamespace ocm::reflective {}\n',
+    "include/ocm/transport/bus.hpp": "/// A bus of the host, and its sockets.\n#pragma once\n#include <sys/socket.h>\n"
+                                     '#include "ocm/base/result.hpp"\nnamespace ocm::transport::detail {}\n'
+                                     "namespace ocm::transport {}\n",
+    "include/ocm/skiff/oars/left.hpp": "/// A floor below another folder, on the left.\n#pragma once\n"
+                                       '#include "ocm/base/result.hpp"\nnamespace ocm::skiff::oars {}\n',
+    "generator/main.cpp": '#include "generator/spec/spec.hpp"\nint main() {}\n',
+    "generator/spec/spec.hpp": '/// Reads the spec of a robot.\n#pragma once\n#include "ocm/base/result.hpp"\n',
+    "firmware/boards/deck/board.hpp": '/// The deck of the ferry, a board.\n#include "ocm/controller/board.hpp"\n',
+    "sim/amiro/world.hpp": '/// The water and the quays, simulated.\n#include "firmware/boards/deck/board.hpp"\n',
+    "examples/0_hello.cpp": "int main() {\n  // snippet: hello\n  greet();\n  if (true) {\n    greet();\n  }\n"
+                            "  // endsnippet\n}\n",
+    "tests/unit/base/result.cpp": "",
+    "tests/unit/topics/ferry.cpp": "",
+    "tests/unit/controller/board.cpp": "",
+    "tests/unit/reflective/robot.cpp": "",
+    "tests/unit/skiff/oars/left.cpp": "",
+    "tests/unit/transport/bus.cpp": "",
+}
+
+
+def replaced(name, old, new):
+    assert old in GOOD[name], (name, old)
+    return {name: GOOD[name].replace(old, new)}
+
+
+def added(name, text):
+    return {name: GOOD[name] + text}
+
+
+RESULT, BOARD, ROBOT = ("include/ocm/base/result.hpp", "include/ocm/controller/board.hpp",
+                        "include/ocm/reflective/robot.hpp")
+OARS = "include/ocm/skiff/oars/left.hpp"
+README, PAGE, FERRY = "README.md", "docs/architecture.md", "include/ocm/topics/ferry.hpp"
+
+# rule, what is planted (None removes a file), where it must be found
+PLANTED = [
+    ("floor_table", {PAGE: None}, "docs/architecture.md: there is no such page"),
+    ("floor_table", replaced(PAGE, "<!-- end of floors -->", ""), "no table between"),
+    ("floor_table", replaced(PAGE, "| 3 | `topics` | | `base` |", "| 3 | `topics` | | `transport` |"), "not below it"),
+    ("floor_table", replaced(PAGE, "| 3 | `topics` | | `base` |", "| 3 | `topics` | | `cellar` |"), "has no row"),
+    ("floor_table", replaced(PAGE, "| 0 | `base` | | | board, host |", "| 0 | `base` | | | host |"),
+     "runs on a board, 'base' does not"),
+    ("floors_have_rows", replaced(PAGE, "<!-- end", ROW.format("`base`") + "<!-- end"), "docs/architecture.md:1:"),
+    ("floors_have_rows", {"include/ocm/attic/a.hpp": "/// Nobody knows why this is here.\nnamespace ocm::attic {}\n",
+                          "tests/unit/attic/a.cpp": ""}, "include/ocm/attic/a.hpp:1:"),
+    ("includes_go_down", added(RESULT, '#include "ocm/transport/bus.hpp"\n'), RESULT + ":12:"),
+    ("includes_go_down", added("include/ocm/transport/bus.hpp", '#include "ocm/topics/ferry.hpp"\n'), "bus.hpp:7:"),
+    ("includes_go_down", added(BOARD, '#include "result.hpp"\n'), BOARD + ":5:"),
+    ("includes_go_down", added(BOARD, '#include "ocm/base/absent.hpp"\n'), BOARD + ":5:"),
+    ("includes_go_down", added(BOARD, "#include <ocm/base/result.hpp>\n"), BOARD + ":5:"),
+    ("includes_go_down", added(OARS, '#include "ocm/topics/ferry.hpp"\n'), OARS + ":5:"),
+    ("namespace_is_folder", replaced(OARS, "ocm::skiff::oars", "ocm::skiff"), OARS + ":1:"),
+    ("layers_are_apart", added(ROBOT, '#include "ocm/controller/board.hpp"\n'), ROBOT + ":1:"),
+    ("layers_are_apart", {**added(FERRY, '#include "ocm/controller/board.hpp"\n')}, ROBOT + ":1:"),
+    ("no_circles", added(RESULT, '#include "ocm/topics/ferry.hpp"\n'), "a circle of includes"),
+    ("namespace_is_folder", replaced(BOARD, "ocm::controller", "ocm::control"), BOARD + ":1:"),
+    ("namespace_is_folder", added(BOARD, "namespace ocm::base {}\n"), BOARD + ":5:"),
+    ("namespace_is_folder", replaced(FERRY, "namespace ferry", "namespace boat"), FERRY + ":1:"),
+    ("namespace_is_folder", replaced(BOARD, "namespace ocm::controller {}", ""), BOARD + ":1:"),
+    ("headers_open_with_a_comment", replaced(BOARD, "/// One board of the robot, that is.\n", ""), BOARD + ":1:"),
+    ("headers_have_tests", {"tests/unit/base/result.cpp": None}, RESULT + ":1:"),
+    ("headers_have_tests", {"tests/unit/base/ghost.cpp": ""}, "tests/unit/base/ghost.cpp:1:"),
+    ("own_includes_are_full_paths", added("generator/spec/spec.hpp", '#include "json.hpp"\n'), "generator/spec/spec.hpp:4:"),
+    ("generator_is_independent", added("generator/spec/spec.hpp", '#include "ocm/topics/ferry.hpp"\n'),
+     "generator/main.cpp:1:"),
+    ("boards_know_no_world", added("firmware/boards/deck/board.hpp", '#include "ocm/reflective/robot.hpp"\n'),
+     "firmware/boards/deck/board.hpp:1:"),
+    ("boards_know_no_world", added("firmware/boards/deck/board.hpp", '#include "sim/amiro/world.hpp"\n'),
+     "firmware/boards/deck/board.hpp:1:"),
+    ("generated_files_are_reproducible", added(FERRY, "// 2024-05-01\n"), FERRY + ":8:"),
+    ("no_machine_paths", {"cli/x.cpp": 'auto p = "/wor' 'k/main";\n'}, "cli/x.cpp:1:"),
+    ("no_machine_paths", {"cli/x.cpp": "\n// see /hom" "e/jane/ocm\n"}, "cli/x.cpp:2:"),
+    ("no_machine_paths", {"cli/x.cpp": "// built in /tm" "p/build-me\n"}, "cli/x.cpp:1:"),
+    ("no_machine_paths", {"cli/x.cpp": "// as shar" "ed/facts says\n"}, "cli/x.cpp:1:"),
+    ("links_resolve", added(README, "[gone](docs/gone.md)\n"), "README.md:12:"),
+    ("links_resolve", added(README, "[gone](docs/architecture.md#ceilings)\n"), "README.md:12:"),
+    ("pages_are_linked", {"docs/island.md": "# Island\n\n[me](island.md)\n"}, "docs/island.md:1:"),
+    ("quotes_are_the_examples", replaced(README, "  greet();", "   greet();"), "README.md:5:"),
+    ("quotes_are_the_examples", replaced(README, "snippet: hello", "snippet: goodbye"), "README.md:5:"),
+    ("quotes_are_the_examples", added(README, "\n```cpp\nint unquoted;\n```\n"), "README.md:13:"),
+    ("quotes_are_the_examples", added(README, "<!-- snippet: hello -->\nprose\n"), "README.md:12:"),
+]
+PLANTED += [("no_banned_headers", replaced(BOARD, "#pragma once\n", f"#pragma once\n#include <{header}>\n"), BOARD + ":3:")
+            for header in sorted(check.BANNED_HEADERS)]
+PLANTED += [("no_banned_headers", added("firmware/boards/deck/board.hpp", "#include <iostream>\n"), "board.hpp:3:")]
+PLANTED += [("no_banned_words", added(BOARD, f"{code}\n"), BOARD + ":5:")
+            for code in ("void f() { throw 1; }", "auto p = new int;", "auto p = new int[3];", "void f(int* p) { delete p; }",
+                         "auto d = dynamic_cast<D*>(b);", "auto& t = typeid(int);", "auto p = std::malloc(3);",
+                         "void f() { try { g(); } catch (...) {} }", "std::string s;", "std::function<void()> f;",
+                         "auto now = std::chrono::steady_clock::now();", "void f() { assert(true); }")]
+
+
+def write(folder, contents):
+    """Writes the files; None removes one."""
+    for name, text in contents.items():
+        path = pathlib.Path(folder, name)
+        if text is None:
+            path.unlink(missing_ok=True)
+        else:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text)
+
+
+class Checker(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
+        write(cls.folder.name, GOOD)
+
+    def violations(self, changes):
+        write(self.folder.name, changes)
+        try:
+            return check.check(self.folder.name)
+        finally:
+            write(self.folder.name, {name: GOOD.get(name) for name in changes})
+
+    def test_a_good_tree_has_no_violation(self):
+        self.assertEqual(self.violations({}), [])
+
+    def test_every_planted_violation_is_found_by_its_rule(self):
+        for rule, changes, where in PLANTED:
+            with self.subTest(rule=rule, planted=changes):
+                found = [violation for by, violation in self.violations(changes) if by == rule]
+                self.assertTrue(any(where in violation for violation in found), found)
+
+    def test_every_rule_has_a_planted_violation(self):
+        self.assertEqual({rule.__name__ for rule in check.RULES} | {"floor_table"}, {rule for rule, _, _ in PLANTED})
+
+    def test_a_planted_header_is_found_once(self):
+        found = self.violations(added(BOARD, "auto p = new int;\n"))
+        self.assertEqual([rule for rule, _ in found], ["no_banned_words"])
+
+    def test_what_git_ignores_is_no_file_of_the_project(self):
+        with tempfile.TemporaryDirectory() as folder:
+            write(folder, {"a.txt": "", "build/b.txt": "", ".gitignore": "/build/\n"})
+            self.assertEqual(house.files(folder), [".gitignore", "a.txt"])  # not a repository: build folders by name
+            subprocess.run(["git", "init", "-q", folder], check=True)
+            self.assertEqual(house.files(folder), [".gitignore", "a.txt"])
+
+    def test_comments_and_strings_are_not_code(self):
+        code = "a; // throw\n/* new\nnew */ b; \"throw \\\" new\"; c = 1'000'000; d = 'x';"
+        blank = house.without_comments(code)
+        self.assertEqual(len(blank.splitlines()), 3)
+        self.assertFalse(re.search("throw|new", blank))
+        self.assertIn("1'000'000", blank)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,123 @@
+#include "cli/output/field_text.hpp"
+
+#include <bit>
+#include <random>
+#include <string>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/topics/amiro.hpp"
+
+#include "generator/spec/spec.hpp"
+
+using namespace ocm;
+using cli::FieldText;
+
+namespace {
+
+std::string printed(const protocol::Field& field, const can::Payload& data) {
+  char text[FieldText::room];
+  return {text, FieldText{field}.print(text, data)};
+}
+
+std::string expected(const protocol::Field& field, const can::Payload& data) {
+  return std::string{base::to_text(cli::physical(field, data)).view()};
+}
+
+can::Payload payload(std::uint64_t bits) {
+  return std::bit_cast<can::Payload>(bits);
+}
+
+protocol::Field field_of(unsigned width, bool is_signed, base::Decimal scale, base::Decimal offset = {}) {
+  protocol::Field field;
+  field.position = {0, static_cast<std::uint8_t>(width), protocol::ByteOrder::little};
+  field.is_signed = is_signed;
+  field.scale = scale;
+  field.offset = offset;
+  return field;
+}
+
+/// Numbers of every size, not large ones only.
+std::uint64_t any_bits(std::mt19937_64& random) {
+  return random() >> random() % 64;
+}
+
+void check_fields(const protocol::Catalogue& catalogue, int rounds) {
+  std::mt19937_64 random{1};
+  for (const auto& topic : catalogue.topics)
+    for (const auto& layout : topic.frames)
+      for (const auto& field : layout.fields)
+        for (int i = 0; i < rounds; ++i) {
+          can::Payload data = payload(random());
+          if (i % 2 == 0) protocol::put(data, field.position, static_cast<std::int64_t>(any_bits(random)));
+          if (printed(field, data) != expected(field, data))
+            FAIL(topic.name << '.' << field.name << ": " << printed(field, data) << " for "
+                            << expected(field, data));
+        }
+}
+
+}  // namespace
+
+TEST_CASE("numbers as digits", "[output]") {
+  std::mt19937_64 random{2};
+  char text[64];
+  const auto text_to = [&](const char* end) {
+    return std::string(text, static_cast<std::size_t>(end - text));
+  };
+  for (const std::int64_t number :
+       {INT64_MIN, INT64_MAX, std::int64_t{0}, std::int64_t{-1}, std::int64_t{99'999'999},
+        std::int64_t{100'000'000}, std::int64_t{9'999'999'999'999'999}, std::int64_t{10'000'000'000'000'000}})
+    CHECK(text_to(cli::put_signed(text, number)) == std::to_string(number));
+  for (int i = 0; i < 10'000; ++i) {
+    const std::uint64_t number = any_bits(random);
+    REQUIRE(text_to(cli::put_unsigned(text, number)) == std::to_string(number));
+  }
+  CHECK(text_to(cli::put_seconds(text, 1'436'509'052'249'713'000)) == "1436509052.249713000");
+  CHECK(text_to(cli::put_seconds(text, 0)) == "0.000000000");
+  CHECK(text_to(cli::put_seconds(text, -1'000'000'001)) == "-1.000000001");
+  CHECK(text_to(cli::put_hex(text, 0x2A, 3)) == "02A");
+}
+
+TEST_CASE("a field's value is printed exactly", "[output]") {
+  // The gyroscope: 0.0175 deg/s a digit. [L3G4200D data sheet, table 4]
+  const auto gyroscope = field_of(16, true, {175, -4});
+  CHECK(printed(gyroscope, payload(3)) == "0.0525");
+  CHECK(printed(gyroscope, payload(0xFFFF)) == "-0.0175");
+  CHECK(printed(gyroscope, payload(0)) == "0");
+  CHECK(printed(gyroscope, payload(400)) == "7");
+  CHECK(printed(field_of(32, true, {1, -6}), payload(0x8000'0000)) == "-2147.483648");
+  CHECK(printed(field_of(8, false, {5, -1}, {-40, 0}), payload(81)) == "0.5");
+  CHECK(printed(field_of(8, false, {1, 2}), payload(12)) == "1200");
+  CHECK(printed(field_of(64, true, {1, -18}), payload(std::uint64_t{1} << 63)) == "-9.223372036854775808");
+}
+
+TEST_CASE("a field's value is what the catalogue says, for every field and any bits", "[output]") {
+  check_fields(amiro::catalogue, 2000);
+  const auto other = spec::load(std::string{OCM_SOURCE_DIR} + "/examples/other-robot/topics.json");
+  REQUIRE(other.spec != nullptr);
+  check_fields(other.spec->catalogue(), 2000);
+}
+
+TEST_CASE("a field's value is exact for any scale, offset, width and byte order", "[output]") {
+  std::mt19937_64 random{3};
+  for (int i = 0; i < 20'000; ++i) {
+    const auto width = static_cast<unsigned>(1 + random() % 64);
+    const auto exponent = [&] { return static_cast<int>(random() % 29) - 22; };
+    const auto scale =
+        base::normalised(static_cast<std::int64_t>(any_bits(random) % 1'000'000) + 1, exponent());
+    const auto offset =
+        random() % 2 == 0
+            ? base::Decimal{}
+            : base::normalised(static_cast<std::int64_t>(any_bits(random) % 10'000) - 5000, exponent());
+    auto field = field_of(width, random() % 2 == 0, scale, offset);
+    if (random() % 2 == 0) {
+      field.position = {7, static_cast<std::uint8_t>(width), protocol::ByteOrder::big};
+    }
+    for (int j = 0; j < 5; ++j) {
+      can::Payload data = payload(random());
+      protocol::put(data, field.position, static_cast<std::int64_t>(any_bits(random)));
+      REQUIRE(FieldText{field}.raw(data) == field.raw(data));
+      REQUIRE(printed(field, data) == expected(field, data));
+    }
+  }
+}

@@ -1,0 +1,78 @@
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/can/text.hpp"
+#include "ocm/topics/amiro.hpp"
+
+#include "cli/output/output.hpp"
+
+using namespace ocm;
+
+namespace {
+
+/// What an output makes of frames that come 1 ms apart.
+std::string shown(std::unique_ptr<cli::Output> output, const std::vector<std::string>& frames) {
+  client::Receiver receiver{amiro::catalogue};
+  log::Bytes out;
+  output->begin(out);
+  base::Time time{base::Duration{1'436'509'052'249'713'000}};
+  for (const auto& text : frames) {
+    const log::Entry entry{time, *can::parse_frame(text)};
+    const auto reception = cli::understand(receiver, entry);
+    output->write(out, {"can0", entry, reception});
+    time += std::chrono::milliseconds{1};
+  }
+  return std::string{out.view()};
+}
+
+const std::vector<std::string> frames{
+    "608#0300FFFF0000", "602#50C30000400D0300", "603#0000000001000000", "208#01F40100", "4FF#00",
+    "21E#02",           "61E#036400FF0A00"};
+
+cli::Selection selection(const std::vector<std::string>& words) {
+  return *cli::Selection::of(amiro::catalogue, words);
+}
+
+}  // namespace
+
+TEST_CASE("CSV has a line a field", "[output]") {
+  CHECK(shown(cli::make_csv(amiro::catalogue, {}), {frames[0], frames[1], frames[4]}) ==
+        "time,topic,field,value,unit\n"
+        "1436509052.249713000,gyroscope,x,0.0525,deg/s\n"
+        "1436509052.249713000,gyroscope,y,-0.0175,deg/s\n"
+        "1436509052.249713000,gyroscope,z,0,deg/s\n"
+        "1436509052.250713000,odometry,velocity.x,0.05,m/s\n"
+        "1436509052.250713000,odometry,velocity.z,0.2,rad/s\n");
+}
+
+TEST_CASE("CSV of chosen fields has a column each", "[output]") {
+  CHECK(shown(cli::make_csv(amiro::catalogue, selection({"odometry.velocity.z", "gyro.x", "gyro.z"})),
+              frames) ==
+        "time,odometry.velocity.z,gyroscope.x,gyroscope.z\n"
+        "1436509052.249713000,,0.0525,0\n"
+        "1436509052.250713000,0.2,,\n");
+}
+
+TEST_CASE("pretty lines are for a person", "[output]") {
+  const std::string text = shown(cli::make_pretty(amiro::catalogue, {}, false), frames);
+  CHECK(
+      text.find(
+          "    0.000000  medium  gyroscope                 x    0.0525  y   -0.0175  z         0 deg/s\n") !=
+      std::string::npos);
+  CHECK(text.find("    0.003000  medium  gyroscope                 <- publish every 500ms\n") !=
+        std::string::npos);
+  CHECK(text.find("    0.004000  -       unknown: 4FF#00\n") != std::string::npos);
+  CHECK(text.find("plugged|charging") != std::string::npos);
+  CAPTURE(text);
+  CHECK(std::count(text.begin(), text.end(), '\n') == 6);  // the odometry's two frames are one sample
+  const std::string chosen = shown(cli::make_pretty(amiro::catalogue, selection({"gyro.y"}), false), frames);
+  CHECK(std::count(chosen.begin(), chosen.end(), '\n') == 1);
+  CHECK(chosen.find("y   -0.0175 deg/s") != std::string::npos);
+}
+
+TEST_CASE("raw lines are candump's", "[output]") {
+  CHECK(shown(cli::make_raw(), {frames[0], frames[4]}) ==
+        "(1436509052.249713) can0 608#0300FFFF0000\n(1436509052.250713) can0 4FF#00\n");
+}

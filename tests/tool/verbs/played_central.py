@@ -1,0 +1,213 @@
+"""A central with mappers, played on a pseudo terminal: what the verbs for mappers talk to in tests. Written from
+docs/mapper-link.md, not from the library: commands, answers, packets of 20 bytes with their prefix; robots that shake hands,
+drive in a rectangular room as soon as they are told, and see its walls."""
+
+import fcntl
+import math
+import os
+import select
+import threading
+import time
+import tty
+
+
+class Robot:
+    def __init__(self, name, pose=(0.0, 0.0, 0.0), room=(0.0, 0.0, 1.2, 1.0)):
+        self.name = name
+        self.start = pose
+        self.x, self.y, self.heading = pose
+        self.room = room
+        self.linked = self.confirmed = self.paused = False
+        self.reachable = True
+        self.deaf = False        # hears nothing
+        self.silent = False      # says nothing
+        self.mumbles = False     # says that it is idle, but never where it is
+        self.blocked_cm = None   # stops after so many cm
+        self.busy_until = 0.0
+        self.speed = 100.0       # cm/s
+        self.servo, self.step = 0, 10
+        self.heard = []
+        self.spoke = 0.0
+        self.idled = 0.0
+
+    def hear(self, line, now):
+        self.heard.append(line)
+        if self.deaf:
+            return
+        if line == "{S,CON}":
+            self.confirmed = True
+        elif line == "{S,PAU}":
+            self.paused = True
+        elif line == "{S,UNP}":
+            self.paused = False
+        elif line.startswith("{U,"):
+            angle, distance = map(int, line[3:-1].split(","))
+            self.heading += math.radians(angle)
+            if self.blocked_cm is not None:
+                distance = min(distance, self.blocked_cm)
+            way = min(distance / 100, self.ray(self.heading) - 0.12)
+            self.x += way * math.cos(self.heading)
+            self.y += way * math.sin(self.heading)
+            self.busy_until = now + max(0.0, distance / self.speed) + 0.4
+            self.idled = 0.0
+
+    def ray(self, angle):
+        x0, y0, x1, y1 = self.room
+        ways = []
+        c, s = math.cos(angle), math.sin(angle)
+        if c > 1e-9: ways.append((x1 - self.x) / c)
+        if c < -1e-9: ways.append((x0 - self.x) / c)
+        if s > 1e-9: ways.append((y1 - self.y) / s)
+        if s < -1e-9: ways.append((y0 - self.y) / s)
+        return min(way for way in ways if way >= -1e-9)
+
+    def update(self):
+        dx, dy = self.x - self.start[0], self.y - self.start[1]
+        c, s = math.cos(self.start[2]), math.sin(self.start[2])
+        degrees = round(math.degrees(self.heading - self.start[2]))
+        degrees = (degrees + 180) % 360 - 180
+        seen = []
+        for k in range(4):
+            way = self.ray(self.heading + math.radians(90 * k + self.servo))
+            seen.append(round(100 * way) if 0.05 <= way <= 0.8 else 0)
+        values = [round(100 * (c * dx + s * dy)), round(100 * (c * dy - s * dx)), degrees, self.servo, *seen]
+        self.servo += self.step
+        if self.servo in (0, 90):
+            self.step = -self.step
+        return "{U," + ",".join(map(str, values)) + "}\n"
+
+    def say(self, now):
+        """What it has to say now."""
+        if self.silent:
+            return ""
+        if not self.confirmed:
+            if now - self.spoke < 0.3:
+                return ""
+            self.spoke = now
+            return "{H,20,20,0,0,0,90,180,270,2000,0}\n"
+        text = ""
+        if not self.paused and not self.mumbles and now - self.spoke >= 0.05:
+            self.spoke = now
+            text += self.update()
+        if now >= self.busy_until and now - self.idled >= 0.5:
+            self.idled = now
+            text += "{S,IDL}\n"
+        return text
+
+
+class Central:
+    """Serves until `close`. `path` is what a program opens; `robots` may be changed meanwhile."""
+
+    def __init__(self, folder, robots, link="central"):
+        self.robots = robots
+        self.listed = []
+        self.target = None       # data mode
+        self.scanning = False
+        self.line = self.typed = ""
+        self.mute = False        # answers no command
+        self.commands = []
+        self.master, self.slave = os.openpty()
+        tty.setraw(self.slave)
+        self.path = os.path.join(folder, link)
+        os.makedirs(os.path.dirname(self.path), mode=0o700, exist_ok=True)
+        self.lock = os.open(self.path + ".lock", os.O_RDWR | os.O_CREAT, 0o600)
+        fcntl.flock(self.lock, fcntl.LOCK_EX)  # who serves a line holds it; a killed one does not
+        os.symlink(os.ttyname(self.slave), self.path)
+        self.over = False
+        self.thread = threading.Thread(target=self.serve, daemon=True)
+        self.thread.start()
+
+    def close(self):
+        self.over = True
+        self.thread.join(5)
+        for file in (self.master, self.slave, self.lock):
+            if file is not None:
+                os.close(file)
+        self.master = self.slave = self.lock = None
+
+    def unplug(self):
+        """The device goes while programs have it open."""
+        self.over = True
+        self.thread.join(5)
+        os.close(self.master)
+        self.master = None
+
+    def write(self, text):
+        if not self.mute:
+            os.write(self.master, text.encode())
+
+    def abandon(self):
+        """As if its program had been killed, and the terminal been given to another: link and lock file stay."""
+        os.close(self.lock)
+        self.lock = None
+
+    def drop(self, robot):
+        robot.linked = robot.confirmed = False
+        self.write(f"lost {self.listed.index(robot)}\n")
+
+    def serve(self):
+        while not self.over:
+            ready, _, _ = select.select([self.master], [], [], 0.01)
+            if ready:
+                for char in os.read(self.master, 4096).decode("latin-1"):
+                    self.feed(char)
+            now = time.monotonic()
+            if self.scanning:
+                self.listed += [robot for robot in self.robots if robot not in self.listed]
+            for index, robot in enumerate(self.listed):
+                text = robot.say(now) if robot.linked else ""
+                while text:
+                    self.write(f"[{index}]:{robot.name}:{text[:20]}")
+                    text = text[20:]
+
+    def feed(self, char):
+        if self.target is not None:
+            if char == "*":
+                self.target = None
+                self.typed = ""
+                return self.write("command\n")
+            self.typed += char
+            if char == "\n":
+                if self.target.linked:
+                    self.target.hear(self.typed.strip(), time.monotonic())
+                self.typed = ""
+            return None
+        if char == "\n":
+            line, self.line = self.line, ""
+            return self.execute(line) if line else None
+        if char != "*" or self.line:
+            self.line += char
+        return None
+
+    def execute(self, line):
+        self.commands.append(line)
+        word, _, number = line.partition(" ")
+        if line == "start":
+            self.listed = [robot for robot in self.listed if robot.linked]
+            self.scanning = True
+            return self.write("scanning\n")
+        if line == "stop":
+            self.scanning = False
+            return self.write(f"found {len(self.listed)}\n")
+        if line == "list":
+            entries = [f"{i}:C0000000000{i}:{robot.name}\n" for i, robot in enumerate(self.listed)]
+            return self.write("".join(entries) + "end of list\n")
+        if word in ("conn", "switch", "drop"):
+            if not number.isdigit() or int(number) >= len(self.listed):
+                return self.write("error: not in the list; see list\n")
+            robot = self.listed[int(number)]
+            if word == "drop":
+                robot.linked = robot.confirmed = False
+                return self.write(f"closing {number}\nclosed {number}\n")
+            if word == "switch" and not robot.linked:
+                return self.write(f"error: no link to {number}; conn first\n")
+            self.target = robot
+            if robot.linked:
+                return self.write(f"data {number}\n")
+            self.scanning = False
+            self.write(f"connecting {number}\n")
+            if not robot.reachable:
+                return self.write(f"error: no link to {number}\n")
+            robot.linked = True
+            return self.write(f"connected {number}\n")
+        return self.write("error: start, list, stop, conn i, switch i, drop i, *, reset\n")

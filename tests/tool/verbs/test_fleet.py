@@ -1,0 +1,258 @@
+"""Mappers behind a central: robots, goto, pause, unpause, on a central that is played on a pseudo terminal."""
+
+import json
+import os
+import signal
+import subprocess
+import time
+
+from harness import AMIROCTL, Case, main
+from played_central import Central, Robot
+
+
+class Line(Case):
+    """With a central and two robots at the place where the verbs look for one."""
+
+    def setUp(self):
+        super().setUp()
+        self.avr = Robot("AVR")
+        self.arduino = Robot("Arduino", pose=(0.6, 0.5, 1.5))
+        self.central = Central(self.folder, [self.avr, self.arduino], link="ocm/central")
+        self.addCleanup(self.central.close)
+
+    def tool(self, *arguments, code=0):
+        out, err = self.run_tool(*arguments, "--scan", "200ms", code=code)
+        return out, err
+
+
+class Robots(Line):
+    def test_all_that_are_there(self):
+        out, _ = self.tool("robots", "--json", "--watch", "1s")
+        robots = [json.loads(line) for line in out.splitlines()]
+        self.assertEqual([robot["robot"] for robot in robots], ["AVR", "Arduino"])
+        for robot in robots:
+            self.assertEqual(robot["state"], "idle")
+            self.assertTrue(robot["linked"] and robot["confirmed"])
+            self.assertEqual(robot["quality"], 1.0)
+            self.assertEqual(robot["pose"], {"x_cm": 0, "y_cm": 0, "heading_deg": 0})
+            self.assertEqual(robot["body"]["width_cm"], 20)
+        self.assertIn("{S,CON}", self.avr.heard)
+        # The link stays; the next program takes it over, though it hears no handshake.
+        out, _ = self.tool("robots", "--watch", "1s")
+        self.assertRegex(out, r"AVR +0 +C00000000000 +idle +0 0 0 +100 %")
+        self.assertEqual(self.avr.heard.count("{S,CON}"), 1)
+        self.assertNotIn("drop 0", self.central.commands)
+
+    def test_a_list_connects_nobody(self):
+        out, _ = self.tool("robots", "--list")
+        self.assertRegex(out, r"Arduino +1 +C00000000001 +no link")
+        self.assertFalse(self.avr.linked)
+
+    def test_a_program_that_died_left_the_central_in_data_mode(self):
+        port = os.open(self.central.path, os.O_RDWR | os.O_NOCTTY)
+        os.write(port, b"start\n")
+        time.sleep(0.1)
+        os.write(port, b"conn 0\n{U,9")
+        time.sleep(0.1)
+        os.close(port)
+        out, _ = self.tool("robots", "--watch", "1s")
+        self.assertRegex(out, r"AVR .* idle")
+        self.assertEqual([line for line in self.avr.heard if line != "{S,CON}"], [])
+
+    def test_nobody_is_there(self):
+        self.central.robots = []
+        _, err = self.tool("robots", code=1)
+        self.assertIn("finds no robot", err)
+
+    def test_a_robot_that_cannot_be_reached_is_told_and_the_others_are_shown(self):
+        self.arduino.reachable = False
+        out, err = self.tool("robots")
+        self.assertIn("no link to 1", err)
+        self.assertRegex(out, r"AVR .* idle")
+        self.assertRegex(out, r"Arduino .* no link")
+
+    def test_a_central_that_does_not_answer(self):
+        self.central.mute = True
+        _, err = self.tool("robots", code=1)
+        self.assertIn("does not answer", err)
+
+
+class Goto(Line):
+    def test_turns_drives_and_says_where_it_came_to(self):
+        self.avr.x = self.avr.y = 0.5
+        self.avr.start = (0.5, 0.5, 0.0)
+        out, _ = self.tool("goto", "AVR", "90", "25cm")
+        self.assertEqual(out, "AVR: x 0 cm, y 25 cm, heading 90 deg\n")
+        self.assertEqual(self.avr.heard[-1], "{U,90,25}")
+        out, _ = self.tool("goto", "0", "-90", "10")  # by its index
+        self.assertEqual(out, "AVR: x 10 cm, y 25 cm, heading 0 deg\n")
+
+    def test_something_in_front_of_it(self):
+        self.avr.blocked_cm = 10
+        self.avr.x = self.avr.y = 0.5
+        self.avr.start = (0.5, 0.5, 0.0)
+        out, err = self.tool("goto", "AVR", "0", "30", code=1)
+        self.assertEqual(out, "AVR: x 10 cm, y 0 cm, heading 0 deg\n")
+        self.assertIn("stopped 20 cm", err)
+
+    def test_does_not_wait(self):
+        self.avr.speed = 1
+        begin = time.monotonic()
+        out, _ = self.tool("goto", "AVR", "0", "50", "--no-wait")
+        self.assertEqual(out, "")
+        self.assertLess(time.monotonic() - begin, 8)
+        self.assertEqual(self.avr.heard[-1], "{U,0,50}")
+
+    def test_does_not_arrive_in_time_and_is_stopped(self):
+        self.avr.speed = 1
+        _, err = self.tool("goto", "AVR", "0", "50", "--timeout", "1s", code=1)
+        self.assertIn("has not arrived after 1s", err)
+        self.assertIn("--timeout", err)
+        time.sleep(0.3)
+        self.assertEqual(self.avr.heard[-1], "{U,0,0}")
+
+    def on_the_way(self):
+        tool = self.start("goto", "AVR", "0", "50", "--scan", "200ms")
+        for _ in range(100):
+            time.sleep(0.1)
+            if "{U,0,50}" in self.avr.heard:
+                break
+        return tool
+
+    def test_interrupted_it_stops_the_robot(self):
+        self.avr.speed = 1
+        tool = self.on_the_way()
+        self.interrupt(tool)
+        self.assertEqual(tool.returncode, 130)
+        time.sleep(0.3)
+        self.assertEqual(self.avr.heard[-1], "{U,0,0}")
+
+    def test_the_link_is_lost_on_the_way(self):
+        self.avr.speed = 1
+        tool = self.on_the_way()
+        self.central.drop(self.avr)
+        _, err = tool.communicate(timeout=10)
+        self.assertEqual(tool.returncode, 1)
+        self.assertIn("AVR is lost: its link is gone", err)
+
+    def test_a_robot_that_falls_silent(self):
+        self.avr.speed = 1
+        tool = self.on_the_way()
+        self.avr.silent = True
+        _, err = tool.communicate(timeout=10)
+        self.assertEqual(tool.returncode, 1)
+        self.assertIn("said nothing for its deadline", err)
+
+    def test_wrong_words(self):
+        for words, text in ((["AVR", "north", "5"], "ANGLE north"), (["AVR", "361", "5"], "-360 to 360"),
+                            (["AVR", "90", "4e9"], "DISTANCE 4e9"), (["AVR", "90", "5.5"], "DISTANCE 5.5"),
+                            (["AVR", "90", "99999999999999999999"], "DISTANCE"), (["AVR", "90", ""], "DISTANCE"),
+                            (["AVR", "90"], "distance"), (["AVR", "90", "5", "--timeout", "soon"], "soon")):
+            with self.subTest(words=words):
+                _, err = self.run_tool("goto", *words, code=2)
+                self.assertIn(text.lower(), err.lower())
+
+    def test_an_unknown_robot(self):
+        _, err = self.tool("goto", "Nobody", "0", "0", code=1)
+        self.assertIn("no robot 'Nobody'", err)
+        self.assertIn("it finds AVR (index 0, address C00000000000), Arduino (index 1, address C00000000001)", err)
+        _, err = self.tool("pause", "AVR", "Nobody", code=1)
+        self.assertIn("it finds AVR (index 0", err)
+        self.assertFalse(self.avr.paused)
+
+    def test_two_robots_of_one_name(self):
+        self.arduino.name = "AVR"
+        _, err = self.tool("goto", "AVR", "0", "0", code=2)
+        self.assertIn("2 robots are called 'AVR'", err)
+        self.assertIn("AVR (index 0, address C00000000000), AVR (index 1, address C00000000001)", err)
+        self.tool("goto", "C00000000001", "10", "0")
+        self.assertEqual(self.arduino.heard[-1], "{U,10,0}")
+
+
+class Pause(Line):
+    def test_pauses_and_goes_on(self):
+        self.assertEqual(self.tool("pause", "AVR")[0], "AVR: paused\n")
+        self.assertTrue(self.avr.paused)
+        self.assertFalse(self.arduino.paused)
+        # It drives all the same, but does not say where it is.
+        out, _ = self.tool("goto", "AVR", "0", "5")
+        self.assertIn("does not say where", out)
+        self.assertRegex(self.tool("robots", "--watch", "1s")[0], r"AVR .* paused")
+        self.assertEqual(self.tool("unpause", "all")[0], "AVR: goes on\nArduino: goes on\n")
+        self.assertFalse(self.avr.paused)
+
+    def test_a_robot_that_does_not_listen(self):
+        self.tool("robots")
+        self.avr.deaf = True
+        _, err = self.tool("pause", "AVR", code=1)
+        self.assertIn("sends updates still", err)
+        self.assertEqual(self.avr.heard.count("{S,PAU}"), 2)
+
+
+class TheLine(Line):
+    def test_one_program_at_a_time(self):
+        first = self.start("robots", "--watch", "5s", "--scan", "200ms")
+        time.sleep(1)
+        _, err = self.tool("robots", code=1)
+        self.assertIn("in use by another program", err)
+        self.interrupt(first)
+        self.assertEqual(first.returncode, 130)
+        self.tool("robots", "--watch", "100ms")
+
+    def test_the_dongle_is_unplugged(self):
+        tool = self.start("robots", "--watch", "30s", "--scan", "200ms")
+        time.sleep(1.5)
+        self.central.unplug()
+        _, err = tool.communicate(timeout=10)
+        self.assertEqual(tool.returncode, 1)
+        self.assertIn("is gone", err)
+
+    def test_another_path(self):
+        self.tool("robots", "--central", os.path.realpath(self.central.path), "--watch", "100ms")
+        _, err = self.run_tool("robots", "--central", "/dev/null", code=1)
+        self.assertIn("no serial device", err)
+        _, err = self.run_tool("robots", "--baud", "7", "--central", self.central.path, code=1)
+        self.assertIn("no speed 7", err)
+
+    def test_a_link_that_a_killed_program_has_left(self):
+        # It may lead to a terminal of somebody else by now: not a byte goes there.
+        self.central.abandon()
+        for words in (["robots"], ["goto", "AVR", "0", "0"], ["pause", "AVR"], ["unpause", "AVR"], ["map", "a.svg"]):
+            _, err = self.tool(*words, code=1)
+            self.assertIn("there is no central at", err)
+            self.assertIn("amiroctl sim --robots 2", err)
+        self.assertEqual(self.central.commands, [])
+        # Whoever names it means it.
+        self.tool("robots", "--central", self.central.path, "--watch", "100ms")
+        self.assertIn("list", self.central.commands)
+
+    def test_the_central_is_left_in_command_mode(self):
+        self.tool("goto", "AVR", "0", "0")
+        time.sleep(0.2)
+        self.assertIsNone(self.central.target)
+
+    def test_a_full_disk(self):
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            done = subprocess.run([AMIROCTL, "robots", "--watch", "100ms", "--scan", "200ms"], env=self.environment,
+                                  stdin=subprocess.DEVNULL, stdout=full, stderr=subprocess.PIPE, text=True, timeout=30,
+                                  check=False)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("No space left on device", done.stderr)
+
+    def test_terminated(self):
+        tool = self.start("robots", "--watch", "30s", "--scan", "200ms")
+        time.sleep(1.5)
+        self.interrupt(tool, signal.SIGTERM)
+        self.assertEqual(tool.returncode, 143)
+
+
+class NoCentral(Case):
+    def test_says_how_to_get_one(self):
+        for words in (["robots"], ["goto", "AVR", "0", "0"], ["pause", "AVR"], ["unpause", "AVR"], ["map", "a.svg"]):
+            _, err = self.run_tool(*words, code=1)
+            self.assertIn("there is no central", err)
+            self.assertIn("amiroctl sim --robots 2", err)
+
+
+if __name__ == "__main__":
+    main(together=True)

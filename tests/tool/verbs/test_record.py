@@ -1,0 +1,270 @@
+"""amiroctl record on a virtual bus: what is sent is in the file, whatever ends the recording."""
+
+import os
+import re
+import resource
+import signal
+import subprocess
+import sys
+import time
+
+from harness import AMIROCTL, SOURCE, Case, main
+
+sys.path.insert(0, os.path.join(SOURCE, "tests", "logs"))
+from virtual_bus import Client  # noqa: E402
+
+LINE = re.compile(r"^\((\d+\.\d+)\) (\S+) (\S+)#(\S*)(?: ([RT]))?$")
+
+
+class Recording(Case):
+    def record(self, *arguments, **options):
+        """Starts `record` in the test's folder and returns when it records."""
+        process = self.start("record", *arguments, cwd=self.folder, **options)
+        for line in process.stderr:
+            if "Ctrl-C ends" in line:
+                return process
+        self.fail(f"record ended with {process.wait()}")
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def frames(self, name):
+        """Identifier and data of each line of a candump log."""
+        with open(self.path(name)) as file:
+            whole = file.read().rpartition("\n")[0].splitlines()  # while it is recorded the last line may be a part
+        lines = [LINE.match(line) for line in whole]
+        self.assertNotIn(None, lines)
+        return [(line[3], line[4]) for line in lines]
+
+    def wait_for_frames(self, name, count):
+        end = time.monotonic() + 10
+        while len(self.frames(name)) < count:
+            self.assertLess(time.monotonic(), end, f"{name} does not get {count} frames")
+            time.sleep(0.02)
+
+    def send_numbered(self, count, first=0):
+        client = Client(self.folder)
+        for i in range(first, first + count):
+            client.send(0x123, i.to_bytes(4, "big"))
+        client.close()
+        return [("123", f"{i:08X}") for i in range(first, first + count)]
+
+    def test_what_is_sent_is_recorded_in_order(self):
+        self.start_sim()
+        recorder = self.record("-o", "a.log")
+        sent = self.send_numbered(3000)
+        client = Client(self.folder)
+        client.send(0x18FF1234, b"\x01", form=1)
+        client.send(0x321, b"", form=2)
+        client.close()
+        sent += [("18FF1234", "01"), ("321", "R")]
+        self.wait_for_frames("a.log", len(sent))
+        _, err = self.interrupt(recorder)
+        self.assertEqual(recorder.returncode, 130, err)
+        self.assertEqual(self.frames("a.log"), sent)
+        self.assertRegex(err, r"recorded 3002 frames in [0-9.]+m?s to a\.log, ")
+        self.assertNotIn("lost in the receive queue", err)
+
+    def test_the_time_of_the_bus_is_recorded(self):
+        self.start_sim()
+        recorder = self.record("-o", "a.log", "-n", "20")
+        self.run_tool("publish", "gyro", "50ms")
+        self.assertEqual(recorder.wait(10), 0)
+        with open(self.path("a.log")) as file:
+            stamps = [float(LINE.match(line)[1]) for line in file if "608#" in line]
+        self.assertEqual(len(stamps), 19)  # and the request
+        for earlier, later in zip(stamps, stamps[1:]):
+            self.assertAlmostEqual(later - earlier, 0.05, delta=0.01)
+
+    def test_every_signal_finishes_the_file(self):
+        self.start_sim()
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
+            name = f"{number}.log"
+            recorder = self.record("-o", name)
+            sent = self.send_numbered(10)
+            time.sleep(0.3)
+            _, err = self.interrupt(recorder, number)
+            self.assertEqual(recorder.returncode, 128 + number, err)
+            self.assertEqual(self.frames(name), sent)
+
+    def test_nohup_is_respected(self):
+        self.start_sim()
+        recorder = self.record("-o", "a.log", preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
+        recorder.send_signal(signal.SIGHUP)
+        sent = self.send_numbered(10)
+        self.wait_for_frames("a.log", 10)
+        self.interrupt(recorder)
+        self.assertEqual(self.frames("a.log"), sent)
+
+    def test_default_names_never_overwrite(self):
+        self.start_sim()
+        # Several in the same second, surely: all at once.
+        recorders = [self.record() for _ in range(3)]
+        for recorder in recorders:
+            self.interrupt(recorder)
+        names = [name for name in os.listdir(self.folder) if name.endswith(".log")]
+        self.assertEqual(len(names), 3, names)
+        for name in names:
+            self.assertRegex(name, r"^amiro-\d{4}-\d\d-\d\d_\d{6}(-\d)?\.log$")
+
+    def test_a_file_that_is_there_stays(self):
+        self.start_sim()
+        with open(self.path("a.log"), "w") as file:
+            file.write("precious")
+        _, err = self.run_tool("record", "-o", self.path("a.log"), code=1)
+        self.assertIn("a.log is there already", err)
+        self.assertIn("--force", err)
+        with open(self.path("a.log")) as file:
+            self.assertEqual(file.read(), "precious")
+        self.run_tool("record", "-o", self.path("a.log"), "--force", "--duration", "100ms")
+        self.assertEqual(os.path.getsize(self.path("a.log")), 0)
+
+    def test_topics_and_filters(self):
+        self.start_sim()
+        self.run_tool("publish", "gyro", "20ms")
+        self.run_tool("publish", "accel", "20ms")
+        topic = self.record("-o", "topic.log", "gyro", "-n", "5")
+        raw = self.record("-o", "raw.log", "--filter", "609:7FF", "-n", "5")
+        others = self.record("-o", "others.log", "--raw-ids", "608~7FF", "-n", "5")
+        for recorder in (topic, raw, others):
+            self.assertEqual(recorder.wait(10), 0)
+        self.assertEqual({number for number, _ in self.frames("topic.log")}, {"608"})
+        self.assertEqual({number for number, _ in self.frames("raw.log")}, {"609"})
+        self.assertEqual({number for number, _ in self.frames("others.log")}, {"609"})
+        commands = self.record("-o", "commands.log", "gyro", "--commands")
+        self.run_tool("stop", "gyro")
+        self.run_tool("stop", "accel")
+        time.sleep(0.3)
+        self.interrupt(commands)
+        self.assertIn(("208", "00"), self.frames("commands.log"))
+        self.assertNotIn(("209", "00"), self.frames("commands.log"))
+
+    def test_split_by_size_loses_nothing(self):
+        self.start_sim()
+        recorder = self.record("-o", "part.log", "--split", "20kB")
+        sent = self.send_numbered(4000)
+        time.sleep(0.5)
+        _, err = self.interrupt(recorder)
+        names = sorted(name for name in os.listdir(self.folder) if name.startswith("part_"))
+        self.assertGreater(len(names), 5)
+        self.assertEqual(names, [f"part_{i:03}.log" for i in range(1, len(names) + 1)])
+        self.assertEqual([frame for name in names for frame in self.frames(name)], sent)
+        for name in names[:-1]:
+            self.assertGreaterEqual(os.path.getsize(self.path(name)), 20_000)
+            self.assertLess(os.path.getsize(self.path(name)), 20_000 + 256 * 50)
+        self.assertIn(f"({len(names)} files)", err)
+
+    def test_split_by_time_and_ring(self):
+        self.start_sim()
+        self.run_tool("publish", "gyro", "10ms")
+        recorder = self.record("-o", "part.log", "--split", "300ms", "--ring", "3")
+        time.sleep(2.2)
+        _, err = self.interrupt(recorder)
+        names = sorted(name for name in os.listdir(self.folder) if name.startswith("part_"))
+        self.assertEqual(len(names), 3)
+        self.assertGreaterEqual(names[0], "part_004.log")
+        stamps = []
+        for name in names:
+            with open(self.path(name)) as file:
+                own = [float(LINE.match(line)[1]) for line in file]
+            self.assertLess(own[-1] - own[0], 0.3)
+            stamps += own
+        for earlier, later in zip(stamps, stamps[1:]):
+            self.assertLess(later - earlier, 0.02)
+        self.assertIn("of the files deleted again", err)
+
+    def test_to_standard_output_at_once(self):
+        self.start_sim()
+        recorder = self.record("-o", "-")
+        sent = self.send_numbered(1)
+        line = recorder.stdout.readline()
+        self.assertEqual(LINE.match(line.rstrip("\n")).group(3, 4), sent[0])
+        self.interrupt(recorder)
+
+    def test_two_buses_in_one_file(self):
+        other = "sim:" + self.path("other.sock")
+        self.start_sim()
+        self.start_sim("--bus", other)
+        recorder = self.record("-o", "both.log", "--bus", "sim," + other)
+        for bus in ("sim", other):
+            self.run_tool("publish", "gyro", "2ms", "--bus", bus)
+        time.sleep(1)
+        self.interrupt(recorder)
+        with open(self.path("both.log")) as file:
+            lines = [LINE.match(line.rstrip("\n")) for line in file]
+        self.assertEqual(sorted({line[2] for line in lines}), ["sim", other])
+        # Between two simulators the order is that in which they hand frames over, which is theirs to be late with;
+        # between two interfaces it is exact (tests/peers/socketcan).
+        for bus in ("sim", other):
+            stamps = [line[1] for line in lines if line[2] == bus]
+            self.assertEqual(stamps, sorted(stamps))
+            self.assertGreater(len(stamps), 200)
+
+    def test_a_simulator_that_ends(self):
+        sim = self.start_sim()
+        recorder = self.record("-o", "a.log")
+        sent = self.send_numbered(50)
+        time.sleep(0.3)
+        self.interrupt(sim)
+        _, err = recorder.communicate(timeout=10)
+        self.assertEqual(recorder.returncode, 1)
+        self.assertIn("was ended", err)
+        self.assertEqual(self.frames("a.log"), sent)
+
+    def test_a_file_that_may_not_grow_keeps_what_it_has(self):
+        self.start_sim()
+        limit = 20_000
+        recorder = self.record("-o", "a.log", "--no-sync",
+                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
+        sent = self.send_numbered(3000)
+        _, err = recorder.communicate(timeout=20)
+        self.assertEqual(recorder.returncode, 1, err)
+        written = self.frames("a.log")
+        self.assertEqual(written, sent[:len(written)])
+        said = re.search(r"(\d+) frames can be read, (\d+) were not written", err)
+        self.assertEqual(int(said[1]), len(written))
+        received = int(re.search(r"recorded (\d+) frames", err)[1])
+        self.assertEqual(int(said[2]), received - len(written))
+        self.assertIn("cannot write a.log", err)
+
+    def test_usage(self):
+        self.start_sim()
+        for words, hint in ((("-o", "x"), "--to one of: "),
+                            (("-o", "x.log", "--to", "xml"), "no format 'xml'"),
+                            (("--split", "soon"), "100MB"),
+                            (("--ring", "3"), "--split"),
+                            (("--split", "1MB", "-o", "-"), "-o"),
+                            (("--filter", "zz"), "id:mask"),
+                            (("--filter", "20000000:7FF"), "id:mask"),
+                            (("gyrro",), "did you mean 'gyro'"),
+                            (("--duration", "soon"), "500ms")):
+            _, err = self.run_tool("record", *words, code=2)
+            self.assertIn(hint, err)
+        self.assertEqual([name for name in os.listdir(self.folder) if name.endswith(".log")], [])
+        _, err = self.run_tool("record", "-o", self.path("no/such/folder.log"), code=1)
+        self.assertIn("cannot create", err)
+
+    def test_progress_on_a_terminal(self):
+        self.start_sim()
+        self.run_tool("publish", "gyro", "5ms")
+        ours, theirs = os.openpty()
+        recorder = subprocess.Popen([AMIROCTL, "record", "-o", self.path("a.log"), "--duration", "2500ms"],
+                                    env=self.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                    stderr=theirs)
+        os.close(theirs)
+        self._started.append(recorder)
+        text = b""
+        try:
+            while piece := os.read(ours, 4096):
+                text += piece
+        except OSError:
+            pass  # the end of a terminal
+        os.close(ours)
+        self.assertEqual(recorder.wait(5), 0)
+        said = text.decode()
+        self.assertRegex(said, r"\d+ frames, [12]\d\d/s, sim [3-6] % full, 0 lost, [0-9.]+ (bytes|kB), "
+                               r"[0-9.]+ \S+ free")
+
+
+if __name__ == "__main__":
+    main()

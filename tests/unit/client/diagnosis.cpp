@@ -1,0 +1,169 @@
+#include "ocm/client/diagnosis.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/protocol/message.hpp"
+#include "ocm/topics/amiro.hpp"
+
+namespace {
+
+using namespace ocm::client;
+using ocm::protocol::Priority;
+using Reason = amiro::DiWheelDriveRefusal::Reason;
+
+/// A robot's frames on their way to a diagnosis.
+struct Patient {
+  Receiver receiver{amiro::catalogue};
+  Diagnosis diagnosis{amiro::catalogue};
+
+  template <class T>
+  void say(const T& sample) {
+    for (std::size_t i = 0; i < T::frames.size(); ++i)
+      diagnosis.take(receiver.take({{}, ocm::protocol::sample_frame(sample, Priority::low, i)}));
+  }
+  template <class Status>
+  static Status healthy() {
+    Status status;
+    status.identity.uptime = 12;
+    status.identity.reset = decltype(status.identity.reset){1};
+    status.identity.wire_hash = amiro::wire_hash;
+    status.health.load = 4;
+    return status;
+  }
+  void all_healthy() {
+    say(healthy<amiro::DiWheelDriveStatus>());
+    say(healthy<amiro::PowerManagementStatus>());
+    say(healthy<amiro::LightRingStatus>());
+    amiro::PowerStatus power;
+    power.state_of_charge = 90;
+    say(power);
+  }
+  /// "severity board: what"
+  [[nodiscard]] std::vector<std::string> findings() const {
+    std::vector<std::string> lines;
+    for (const Finding& f : diagnosis.findings())
+      lines.push_back(std::string{name(f.severity)} + " " + std::string{f.board} + ": " + f.what);
+    return lines;
+  }
+};
+
+using Lines = std::vector<std::string>;
+
+TEST_CASE("diagnosis: a healthy robot has no findings") {
+  Patient robot;
+  robot.all_healthy();
+  CHECK(robot.findings().empty());
+  const BoardReport& board = robot.diagnosis.boards()[0];
+  CHECK(board.answered);
+  CHECK(board.uptime_s == 12);
+  CHECK(board.reset == "power");
+  CHECK(board.bus == "active");
+  CHECK(board.load == 4);
+  CHECK(robot.diagnosis.battery().state_of_charge == 90);
+}
+
+TEST_CASE("diagnosis: nobody answers") {
+  CHECK(Patient{}.findings() == Lines{"problem : no board answers"});
+}
+
+TEST_CASE("diagnosis: one board is missing, another has an older firmware") {
+  Patient robot;
+  robot.say(Patient::healthy<amiro::DiWheelDriveStatus>());
+  robot.say(amiro::ProximityRing{});  // power_management sends, but no status
+  CHECK(robot.findings() == Lines{"problem light_ring: does not answer",
+                                  "warning power_management: sends, and does not say how it is"});
+}
+
+TEST_CASE("diagnosis: a board of another spec") {
+  Patient robot;
+  robot.all_healthy();
+  auto status = Patient::healthy<amiro::LightRingStatus>();
+  status.identity.wire_hash ^= 1;
+  robot.say(status);
+  CHECK(robot.findings() ==
+        Lines{"problem light_ring: was built from another spec: its numbers may mean something else"});
+}
+
+TEST_CASE("diagnosis: what ails a board, the worst first") {
+  Patient robot;
+  robot.all_healthy();
+  auto status = Patient::healthy<amiro::DiWheelDriveStatus>();
+  status.identity.reset = amiro::DiWheelDriveStatusIdentity::Reset::watchdog;
+  status.health.bus = amiro::DiWheelDriveStatusHealth::Bus::passive;
+  status.health.load = 95;
+  status.health.publishing = 0b01000;  // odometry, floor_proximity, magnetometer, gyroscope, accelerometer
+  status.health.faults = 0b10100;
+  status.health.overload = 7;
+  status.health.bus_errors = 40;
+  robot.say(status);
+  robot.say(amiro::DiWheelDriveRefusal{0x08, Reason::bad_period, 2, 0});
+  CHECK(robot.findings() ==
+        Lines{
+            "warning di_wheel_drive: its CAN controller is in state passive",
+            "warning di_wheel_drive: no answer from the part behind magnetometer, accelerometer",
+            "warning di_wheel_drive: 7 releases came late or not at all",
+            "warning di_wheel_drive: its CPU is busy for 95 % of the time",
+            "warning di_wheel_drive: it started again because of a watchdog",
+            "note di_wheel_drive: 40 errors on the bus or frames given up so far",
+            "note di_wheel_drive: 2 requests refused so far, the last for gyroscope: bad_period",
+        });
+  CHECK(robot.diagnosis.publishes(*amiro::catalogue.find("gyroscope")));
+  CHECK(!robot.diagnosis.publishes(*amiro::catalogue.find("odometry")));
+  CHECK(!robot.diagnosis.publishes(*amiro::catalogue.find("motors")));
+}
+
+TEST_CASE("diagnosis: an unknown load is not a high one") {
+  Patient robot;
+  robot.all_healthy();
+  auto status = Patient::healthy<amiro::LightRingStatus>();
+  status.health.load = amiro::LightRingStatusHealth::load_unknown;
+  robot.say(status);
+  CHECK(robot.findings().empty());
+  CHECK(!robot.diagnosis.boards()[2].load);
+}
+
+TEST_CASE("diagnosis: numbers without a name are no names") {
+  Patient robot;
+  robot.all_healthy();
+  auto status = Patient::healthy<amiro::LightRingStatus>();
+  status.identity.reset = decltype(status.identity.reset){200};
+  status.health.bus = decltype(status.health.bus){9};
+  robot.say(status);
+  CHECK(robot.diagnosis.boards()[2].reset.empty());
+  CHECK(robot.findings() == Lines{"warning light_ring: its CAN controller is in state ?"});
+}
+
+TEST_CASE("diagnosis: the battery") {
+  struct Case {
+    std::uint8_t percent;
+    bool plugged;
+    Lines expected;
+  };
+  const auto [percent, plugged, expected] =
+      GENERATE(Case{21, false, {}}, Case{20, false, {"warning power_management: the battery has 20 % left"}},
+               Case{10, false, {"problem power_management: the battery has 10 % left"}}, Case{10, true, {}});
+  Patient robot;
+  robot.all_healthy();
+  amiro::PowerStatus power;
+  power.state_of_charge = percent;
+  power.set_plugged(plugged);
+  robot.say(power);
+  CHECK(robot.findings() == expected);
+}
+
+TEST_CASE("diagnosis: requests and set points say nothing about a board") {
+  Patient robot;
+  robot.diagnosis.take(robot.receiver.take({{}, ocm::protocol::once(amiro::Gyroscope::id)}));
+  robot.diagnosis.take(robot.receiver.take({{}, ocm::protocol::command(amiro::Motors{})}));
+  CHECK(!robot.diagnosis.boards()[0].heard);
+}
+
+TEST_CASE("diagnosis: a robot without status topics has nothing to find") {
+  constexpr ocm::protocol::Catalogue bare{"bare", 500'000, amiro::catalogue.boards, {}};
+  CHECK(Diagnosis{bare}.findings().empty());
+}
+
+}  // namespace

@@ -1,0 +1,77 @@
+#include "ocm/client/quantity.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace ocm;
+using namespace ocm::client;
+using namespace std::chrono_literals;
+
+namespace {
+constexpr base::Duration duration(std::string_view text) {
+  return parse_duration(text).value;
+}
+static_assert(duration("500ms") == 500ms);
+static_assert(duration("900us") == 900us);
+static_assert(duration("900\u00b5s") == 900us);
+static_assert(duration("1.5s") == 1500ms);
+static_assert(duration(".5s") == 500ms);
+static_assert(duration("1e3ms") == 1s);
+static_assert(duration("2min") == 120s);
+static_assert(duration("0s") == 0s);
+static_assert(parse_duration("500").error == base::Error::bad_unit);
+static_assert(parse_duration("500mss").error == base::Error::bad_unit);
+static_assert(parse_duration("").error == base::Error::bad_syntax);
+static_assert(parse_duration("ms").error == base::Error::bad_syntax);
+static_assert(parse_duration("1.5ns").error == base::Error::out_of_range);
+static_assert(parse_duration("99999999999h").error == base::Error::out_of_range);
+
+std::string converted(std::string_view text, std::string_view unit) {
+  const auto quantity = parse_quantity(text);
+  REQUIRE(quantity.ok());
+  const auto result = convert(*quantity, unit);
+  if (!result) return std::string{base::describe(result.error)};
+  return std::string{base::to_text(*result).view()};
+}
+}  // namespace
+
+TEST_CASE("units of the same kind convert exactly") {
+  CHECK(converted("5cm/s", "m/s") == "0.05");
+  CHECK(converted("-.1m/s", "m/s") == "-0.1");
+  CHECK(converted("50000um/s", "m/s") == "0.05");
+  CHECK(converted("3mrad", "rad") == "0.003");
+  CHECK(converted("0.001km", "m") == "1");
+  CHECK(converted("7", "m/s") == "7");  // bare: already in the field's unit
+  CHECK(converted("-930mW", "W") == "-0.93");
+}
+
+TEST_CASE("degrees and radians convert to a billionth") {
+  CHECK(converted("180deg/s", "rad/s") == "3.141592654");
+  CHECK(converted("-30deg/s", "rad/s") == "-0.523598776");
+  CHECK(converted("1rad/s", "deg/s") == "57.295779513");
+}
+
+TEST_CASE("units of another kind are refused") {
+  for (const char* text : {"5m", "5m/h", "5G/s", "5furlong", "5mm/s/s", "5s"}) {
+    CAPTURE(text);
+    CHECK(converted(text, "m/s") == base::describe(base::Error::bad_unit));
+  }
+}
+
+TEST_CASE("durations print in the largest exact unit") {
+  CHECK(to_text(base::Duration{500ms}) == "500ms");
+  CHECK(to_text(base::Duration{1500ms}) == "1.5s");
+  CHECK(to_text(base::Duration{900us}) == "900us");
+  CHECK(to_text(base::Duration{65'535s}) == "65535s");
+  CHECK(to_text(base::Duration{1'234'567us}) == "1234.567ms");
+  CHECK(to_text(base::Duration{0}) == "0s");
+  CHECK(to_text(base::Duration{-20ms}) == "-20ms");
+  CHECK(to_text(base::Duration{1}) == "1ns");
+}
+
+TEST_CASE("every duration reads back as it was printed") {
+  for (std::int64_t ns = 1; ns < 4'000'000'000'000'000; ns = ns * 3 + 7) {
+    const base::Duration duration{ns};
+    CAPTURE(ns, to_text(duration));
+    REQUIRE(parse_duration(to_text(duration)) == base::Result<base::Duration>{duration});
+  }
+}

@@ -1,0 +1,56 @@
+#include "ocm/mapper/app/models.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "unit/motion/near.hpp"
+
+using namespace ocm;
+using namespace std::chrono_literals;
+using mapper::app::arduino_robot;
+using mapper::app::avr_robot;
+using ocm::test::near;
+
+namespace {
+
+// [T2 §11.2.3; tables 9.2, 9.3]
+static_assert(avr_robot.estimator.drive.ticks_per_turn == 198.0F && avr_robot.motors.most_ticks_s == 66.0F);
+static_assert(arduino_robot.estimator.drive.ticks_per_turn == 2475.0F &&
+              arduino_robot.motors.most_ticks_s == 1250.0F);
+static_assert(avr_robot.periods.estimator == 30ms && avr_robot.periods.movement == 20ms &&
+              avr_robot.periods.tower == 200ms);
+static_assert(avr_robot.times.handshake == 1s);
+static_assert(avr_robot.times.return_after == 0s, "a robot that comes home by itself has to be asked for");
+static_assert(avr_robot.motors.kind == mapper::app::MotorKind::gated);      // [T2 §7.1, §10.2.3]
+static_assert(arduino_robot.motors.kind == mapper::app::MotorKind::paced);  // [T2 §7.1.1]
+
+TEST_CASE("mapper models: what every model must be", "[mapper_models]") {
+  for (const mapper::app::RobotModel* model : {&avr_robot, &arduino_robot}) {
+    CHECK(model->estimator.drive.valid());
+    CHECK(model->estimator.heading.gyro_weight == 0.75F);  // [T2 §7.3]
+    CHECK(model->estimator.compass_variance_rad2 > 0.0F);
+    CHECK(mapper::link::write(model->handshake).ok());
+    // A step of the estimator may be late a few times over before it loses ticks.
+    CHECK(static_cast<float>(model->estimator.most_ticks) > 3 * 0.030F * model->motors.most_ticks_s);
+    // Idle says within the deadline that the robot is there.
+    CHECK(model->handshake.deadline > 2000);
+    CHECK(model->minimum_distance_cm >= 10);                        // the sensors' near end
+    CHECK(model->measuring.moving_rad_s > motion::radians(10.0F));  // zero-rate level of the part
+  }
+}
+
+TEST_CASE("mapper models: the tower's sensors are where sensing has them", "[mapper_models]") {
+  const sensing::Tower tower;
+  const mapper::link::Handshake& handshake = avr_robot.handshake;
+  const std::int16_t sent[] = {handshake.sensor1, handshake.sensor2, handshake.sensor3, handshake.sensor4};
+  for (std::size_t i = 0; i < 4; ++i) CHECK(near(static_cast<float>(sent[i]), tower.sensor_heading_deg[i]));
+}
+
+TEST_CASE("mapper models: a calibration belongs to one robot, not to its type", "[mapper_models]") {
+  CHECK_FALSE(avr_robot.compass.calibrated);
+  const auto mine = calibrated(avr_robot, {0.1F, -0.2F});
+  CHECK(mine.compass.calibrated);
+  CHECK(mine.compass.offset == sensing::Field{0.1F, -0.2F});
+  CHECK(mine.handshake == avr_robot.handshake);
+}
+
+}  // namespace

@@ -1,0 +1,274 @@
+#include "ocm/mapper/server/central_client.hpp"
+
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "unit/base/random.hpp"
+#include "unit/cognitive/testing/virtual_central.hpp"
+
+namespace {
+
+using namespace std::chrono_literals;
+using namespace ocm::mapper::server;
+using ocm::base::Duration;
+using ocm::base::Time;
+using ocm::test::Random;
+using ocm::test::VirtualCentral;
+using Event = CentralEvent::Kind;
+
+/// A client at a central. Time goes in steps of 10 ms; the serial line carries everything, unless `loses`.
+struct Bench {
+  VirtualCentral central;
+  CentralClient client;
+  std::vector<CentralEvent> events;
+  bool loses = false;  ///< what the central says
+  std::string answers;
+  Time now{};
+
+  void advance(Duration time) {
+    for (const Time end = now + time; now < end;) {
+      now += 10ms;
+      central.advance(now);
+      client.expire(now);
+      central.write(client.take());
+      const std::string said = std::exchange(central.to_server, {});
+      answers += said;
+      if (!loses) client.feed(said, now);
+      central.write(client.take());
+      while (auto event = client.next_event()) events.push_back(*event);
+    }
+  }
+  int count(Event kind) const {
+    int n = 0;
+    for (const auto& event : events) n += event.kind == kind ? 1 : 0;
+    return n;
+  }
+  std::string words() const { return events.empty() ? "" : events.back().words; }
+};
+
+TEST_CASE("central client: scans, lists, connects, speaks") {
+  Bench bench;
+  bench.central.add("AVR");
+  bench.central.add("Arduino");
+  bench.client.scan(500ms);
+  bench.advance(2s);
+  REQUIRE(bench.count(Event::listed) == 1);
+  REQUIRE(bench.client.peers().size() == 2);
+  CHECK(bench.client.peers()[1] == Peer{1, "C00000000002", "Arduino", false});
+  bench.client.connect(0);
+  bench.client.connect(1);
+  bench.client.say(0, "{S,CON}\n");
+  bench.client.say(1, "{U,90,50}\n");
+  bench.advance(4s);
+  CHECK(bench.count(Event::connected) == 2);
+  CHECK(bench.count(Event::failed) == 0);
+  CHECK(bench.client.peers()[0].linked);
+  CHECK(bench.central.robots[0].heard == std::vector<std::string>{"{S,CON}\n"});
+  CHECK(bench.central.robots[1].heard == std::vector<std::string>{"{U,90,50}\n"});
+  CHECK(bench.client.idle());
+  CHECK(bench.central.central.counters().refused_commands == 0);
+}
+
+TEST_CASE("central client: takes over from a program that died in data mode, or within a command") {
+  for (const char* rest :
+       {"conn 0\n{U,9", "swi", "start\n", "conn 0\n", "*", "start\nlis", "0123456789012345678"}) {
+    CAPTURE(rest);
+    Bench bench;
+    bench.central.add("AVR");
+    bench.central.write("start\n");
+    bench.advance(50ms);
+    bench.central.write(rest);
+    bench.advance(1s);
+    bench.client.scan(300ms);
+    bench.advance(3s);
+    CHECK(bench.count(Event::failed) == 0);
+    REQUIRE(bench.client.peers().size() == 1);
+    bench.client.connect(0);
+    bench.client.say(0, "{S,PAU}\n");
+    bench.advance(3s);
+    REQUIRE_FALSE(bench.central.robots[0].heard.empty());
+    CHECK(bench.central.robots[0].heard.back() == "{S,PAU}\n");
+    CHECK(bench.client.peers()[0].linked);
+  }
+}
+
+TEST_CASE("central client: a link that is there already stays, and is said to be connected") {
+  Bench bench;
+  bench.central.add("AVR");
+  bench.central.write("start\n");
+  bench.advance(50ms);
+  bench.central.write("conn 0\n{S,CON}\n");
+  bench.loses = true;  // another program's
+  bench.advance(1s);
+  bench.loses = false;
+  bench.client.scan(0s);
+  bench.advance(100ms);
+  bench.client.connect(0);
+  bench.advance(100ms);
+  CHECK(bench.count(Event::connected) == 1);
+  CHECK(bench.answers.find("data 0") != std::string::npos);
+  CHECK(bench.central.robots[0].heard == std::vector<std::string>{"{S,CON}\n"});
+}
+
+TEST_CASE("central client: refusals end a wish with the central's own words") {
+  Bench bench;
+  for (const char* name : {"a", "b", "c", "d"}) bench.central.add(name);
+  bench.client.scan(300ms);
+  bench.advance(1s);
+  for (unsigned i = 0; i < 4; ++i) bench.client.connect(i);
+  bench.advance(5s);
+  CHECK(bench.count(Event::connected) == 3);
+  REQUIRE(bench.count(Event::failed) == 1);
+  CHECK(bench.words() == "the central refuses d: no more links than 3; drop one");
+  bench.client.say(3, "{}\n");
+  bench.advance(1s);
+  CHECK(bench.words() == "the central refuses d: no link to 3; conn first");
+  bench.client.connect(9);
+  bench.advance(1s);
+  CHECK(bench.words() == "the central refuses robot 9: not in the list; see list");
+  bench.client.drop(0);
+  bench.advance(1s);
+  CHECK(bench.count(Event::lost) == 1);
+  bench.client.connect(3);
+  bench.advance(2s);
+  CHECK(bench.count(Event::connected) == 4);
+}
+
+TEST_CASE("central client: a robot that does not answer") {
+  Bench bench;
+  bench.central.add("AVR");
+  bench.client.scan(300ms);
+  bench.advance(1s);
+  bench.central.robots[0].reachable = false;
+  bench.client.connect(0);
+  bench.advance(2s);
+  CHECK(bench.count(Event::failed) == 1);
+  CHECK(bench.words() == "the central refuses AVR: no link to 0");
+  // One that never comes: the attempt is ended, so that others may be connected.
+  bench.central.connecting = 60s;
+  bench.client.connect(0);
+  bench.advance(12s);
+  REQUIRE(bench.count(Event::failed) == 2);
+  CHECK(bench.central.central.links() == 0);
+  bench.central.connecting = 100ms;
+  bench.central.robots[0].reachable = true;
+  bench.client.connect(0);
+  bench.advance(2s);
+  CHECK(bench.count(Event::connected) == 1);
+}
+
+TEST_CASE("central client: nobody at the line") {
+  Bench bench;
+  bench.loses = true;
+  bench.client.scan(1s);
+  bench.client.say(0, "{}\n");
+  bench.advance(2900ms);
+  CHECK(bench.events.empty());
+  bench.advance(200ms);
+  REQUIRE(bench.count(Event::failed) == 1);
+  CHECK(bench.words() == "the central does not answer");
+  CHECK(bench.client.counters().timeouts == 3);
+  bench.advance(3s);
+  CHECK(bench.count(Event::failed) == 2);
+  CHECK(bench.client.idle());
+}
+
+TEST_CASE("central client: somebody resets the central") {
+  Bench bench;
+  bench.central.add("AVR");
+  bench.client.scan(300ms);
+  bench.advance(1s);
+  bench.client.connect(0);
+  bench.advance(1s);
+  bench.central.write("*\nreset\n");
+  bench.advance(1s);
+  CHECK(bench.count(Event::lost) == 1);
+  CHECK_FALSE(bench.client.peers()[0].linked);
+  bench.client.scan(300ms);
+  bench.advance(1s);
+  bench.client.connect(0);
+  bench.advance(1s);
+  CHECK(bench.count(Event::connected) == 2);
+}
+
+TEST_CASE("central client: the queue is bounded") {
+  CentralClientOptions options;
+  options.most_wishes = 2;
+  CentralClient client{options};
+  CHECK(client.say(0, "a"));
+  CHECK(client.say(0, "b"));
+  CHECK_FALSE(client.say(0, "c"));
+}
+
+TEST_CASE(
+    "central client: any wishes, links that die, answers that get lost: all ends, nobody hears another's "
+    "words") {
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    CAPTURE(seed);
+    Random random{seed};
+    Bench bench;
+    const unsigned robots = 1 + random.below(4);
+    for (unsigned i = 0; i < robots; ++i) bench.central.add("R" + std::to_string(i));
+    bench.central.write(random.below(2) == 0 ? "start\n" : "swit");
+    bench.client.scan(300ms);
+    bench.advance(2s);
+    unsigned wishes = 1, said = 0;
+    for (int i = 0; i < 120; ++i) {
+      const unsigned index = random.below(robots);
+      switch (random.below(8)) {
+        case 0:
+          bench.client.scan(random.below(2) == 0 ? 0ms : 200ms);
+          ++wishes;
+          break;
+        case 1:
+        case 2:
+          bench.client.connect(index);
+          ++wishes;
+          break;
+        case 3:
+        case 4:
+          bench.client.say(index, "{" + std::to_string(index) + "}\n");
+          ++wishes;
+          ++said;
+          break;
+        case 5:
+          bench.central.cut(index);
+          break;
+        case 6:
+          if (random.below(4) == 0) bench.client.drop(index), ++wishes;
+          break;
+        default:
+          bench.loses = random.below(4) == 0;
+          bench.central.robots[index].reachable = random.below(6) != 0;
+          break;
+      }
+      bench.advance(Duration{10ms * random.below(60)});
+    }
+    bench.loses = false;
+    for (int i = 0; i < 120 && !bench.client.idle(); ++i) bench.advance(2s);
+    REQUIRE(bench.client.idle());
+    // Settled again: what is wished now comes true.
+    for (auto& robot : bench.central.robots) robot.reachable = true;
+    bench.client.scan(300ms);
+    bench.advance(2s);
+    REQUIRE(bench.client.peers().size() == robots);
+    bench.client.connect(0);
+    bench.client.say(0, "{0}\n");
+    bench.advance(6s);
+    if (bench.client.peers()[0].linked) {
+      REQUIRE_FALSE(bench.central.robots[0].heard.empty());
+      CHECK(bench.central.robots[0].heard.back() == "{0}\n");
+    }
+    CHECK(bench.client.peers()[0].linked == bench.central.robots[0].linked);
+    for (unsigned i = 0; i < robots; ++i)
+      for (const std::string& words : bench.central.robots[i].heard)
+        REQUIRE(words == "{" + std::to_string(i) + "}\n");
+    CHECK(bench.count(Event::said) <= static_cast<int>(said) + 1);
+    CHECK(bench.count(Event::listed) + bench.count(Event::said) + bench.count(Event::failed) > 0);
+    CHECK(wishes > 1);
+  }
+}
+
+}  // namespace

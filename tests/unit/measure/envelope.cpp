@@ -1,0 +1,121 @@
+#include "ocm/measure/envelope.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <random>
+
+#include <catch2/catch.hpp>
+
+namespace {
+
+using namespace std::chrono_literals;
+using namespace ocm::measure;
+using ocm::base::Time;
+
+TEST_CASE("envelope: few points stay as they are") {
+  Envelope envelope;
+  for (int i = 0; i < 1000; ++i) envelope.add(Time{i * 1ms}, 0, i % 7);
+  const auto points = envelope.points();
+  REQUIRE(points.size() == 1000);
+  for (int i = 0; i < 1000; ++i) {
+    const auto& point = points[static_cast<std::size_t>(i)];
+    CHECK(point.time == Time{i * 1ms});
+    CHECK(point.y == i % 7);
+    CHECK(point.begins == (i == 0));
+  }
+}
+
+TEST_CASE("envelope: of a million points the peak is left, and a few thousand") {
+  Envelope envelope;
+  for (int i = 0; i < 1'000'000; ++i) {
+    double y = std::sin(i / 1e5);
+    if (i == 123'456) y = 100;
+    if (i == 654'321) y = -100;
+    envelope.add(Time{i * 1ms}, 0, y);
+  }
+  CHECK(envelope.count() == 1'000'000);
+  const auto points = envelope.points();
+  CHECK(points.size() <= 4 * Envelope::columns);  // x is the same: first, last, lowest, highest
+  CHECK(points.size() >= 2 * Envelope::columns / 2);
+  CHECK(points.front().number == 0);
+  CHECK(points.back().number == 999'999);
+  bool high = false, low = false;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points[i].y == 100) high = points[i].time == Time{123'456ms};
+    if (points[i].y == -100) low = points[i].time == Time{654'321ms};
+    if (i > 0) CHECK(points[i - 1].number < points[i].number);
+    CHECK(points[i].begins == (i == 0));
+  }
+  CHECK(high);
+  CHECK(low);
+}
+
+TEST_CASE("envelope: every column keeps its extremes in both directions") {
+  std::mt19937 random{3};
+  Envelope envelope;
+  struct All {
+    double x, y;
+    std::size_t column;
+  };
+  std::vector<All> all;
+  // 2^21 ns in columns of 2^10 ns.
+  for (std::int64_t t = 0; t < 1 << 21; t += 1 + static_cast<std::int64_t>(random() % 60)) {
+    const double x = static_cast<double>(random() % 10'000), y = static_cast<double>(random() % 10'000);
+    envelope.add(Time{std::chrono::nanoseconds{t}}, x, y);
+    all.push_back({x, y, static_cast<std::size_t>(t >> 10)});
+  }
+  std::vector<double> most_x(2048, -1), least_x(2048, 1e9), most_y(2048, -1), least_y(2048, 1e9);
+  const auto note = [&](const All& a) {
+    most_x[a.column] = std::max(most_x[a.column], a.x);
+    least_x[a.column] = std::min(least_x[a.column], a.x);
+    most_y[a.column] = std::max(most_y[a.column], a.y);
+    least_y[a.column] = std::min(least_y[a.column], a.y);
+  };
+  for (const All& a : all) note(a);
+  const auto expected = std::tuple{most_x, least_x, most_y, least_y};
+  for (auto* each : {&most_x, &most_y}) std::fill(each->begin(), each->end(), -1);
+  for (auto* each : {&least_x, &least_y}) std::fill(each->begin(), each->end(), 1e9);
+  for (const auto& point : envelope.points()) {
+    const auto& as_added = all[static_cast<std::size_t>(point.number)];
+    CHECK(as_added.x == point.x);
+    note({point.x, point.y, as_added.column});
+  }
+  CHECK((expected == std::tuple{most_x, least_x, most_y, least_y}));
+  CHECK(envelope.points().size() < all.size() / 5);
+}
+
+TEST_CASE("envelope: a pause parts the curve, jitter and one lost sample do not") {
+  Envelope envelope;
+  for (const int ms : {0, 100, 190, 300, 500, 600, 2000, 2010, 2020, 2030})
+    envelope.add(Time{ms * 1ms}, 0, 0);
+  std::vector<std::uint64_t> begins;
+  for (const auto& point : envelope.points())
+    if (point.begins) begins.push_back(point.number);
+  CHECK(begins == std::vector<std::uint64_t>{0, 6});
+}
+
+TEST_CASE("envelope: a slower period behind a pause is a curve again") {
+  Envelope envelope;
+  for (int i = 0; i < 10; ++i) envelope.add(Time{i * 10ms}, 0, 0);
+  for (int i = 1; i < 10; ++i) envelope.add(Time{i * 1s}, 0, 0);
+  std::size_t pieces = 0;
+  for (const auto& point : envelope.points()) pieces += point.begins ? 1 : 0;
+  CHECK(pieces == 2);
+}
+
+TEST_CASE("envelope: times that go back or leap stay in order of arrival") {
+  Envelope envelope;
+  envelope.add(Time{10s}, 0, 1);
+  envelope.add(Time{9s}, 0, 2);
+  envelope.add(Time{Time::max() - Time{}}, 0, 3);
+  const auto points = envelope.points();
+  REQUIRE(points.size() == 3);
+  CHECK(points[1].y == 2);
+  CHECK(points[2].y == 3);
+}
+
+TEST_CASE("envelope: nothing is nothing") {
+  CHECK(Envelope{}.points().empty());
+}
+
+}  // namespace

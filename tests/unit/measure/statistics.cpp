@@ -1,0 +1,161 @@
+#include "ocm/measure/statistics.hpp"
+
+#include <chrono>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/can/text.hpp"
+#include "ocm/topics/amiro.hpp"
+
+namespace {
+
+using namespace std::chrono_literals;
+using namespace ocm::measure;
+using ocm::base::Time;
+
+/// A bus of 500 kbit/s to put frames on, in candump's notation.
+struct Recorded {
+  BusStatistics statistics{amiro::catalogue, 500'000};
+  void put(ocm::base::Duration time, std::string_view frame) {
+    const auto parsed = ocm::can::parse_frame(frame);
+    REQUIRE(parsed);
+    statistics.take({Time{time}, *parsed});
+  }
+  [[nodiscard]] static const TopicFigures* find(const BusFigures& figures, std::string_view name) {
+    for (const auto& topic : figures.topics)
+      if (topic.topic->name == name) return &topic;
+    return nullptr;
+  }
+};
+
+TEST_CASE("statistics: a topic asked for, by what it was sent at") {
+  Recorded log;
+  log.put(0ms, "108#01F40100");  // publish the gyroscope every 500 ms, priority high
+  for (int i = 0; i < 5; ++i) log.put(1ms + i * 500ms, "508#3E001E00FCFF");
+  log.put(2010ms, "208#00");  // stop
+  log.put(9s, "205#02");      // once the magnetometer, which lets the log go on
+  const auto figures = log.statistics.figures();
+  const auto* gyroscope = Recorded::find(figures, "gyroscope");
+  REQUIRE(gyroscope != nullptr);
+  CHECK(gyroscope->timing.count == 5);
+  CHECK(gyroscope->timing.rate_hz == 2.0);
+  CHECK(gyroscope->timing.missing == 0);
+  CHECK(gyroscope->by_priority == std::array<std::uint64_t, 4>{0, 5, 0, 0});
+  CHECK(gyroscope->requests == 2);
+  CHECK(gyroscope->bad_requests == 0);
+  CHECK(figures.topics.size() == 2);
+  CHECK(figures.counters.commands == 3);
+  CHECK(figures.counters.frames == 8);
+}
+
+TEST_CASE("statistics: a request without a period asks for the topic's own") {
+  auto topic = *amiro::catalogue.find("gyroscope");
+  topic.period = {20, ocm::protocol::PeriodUnit::milliseconds};
+  auto catalogue = amiro::catalogue;
+  catalogue.topics = {&topic, 1};
+  BusStatistics statistics{catalogue, 500'000};
+  statistics.take({Time{0ms}, {0x208, 1, {1}}});
+  statistics.take({Time{1ms}, {0x608, 6, {}}});
+  const auto figures = statistics.figures(Time{1001ms});
+  REQUIRE(figures.topics.size() == 1);
+  CHECK(figures.topics[0].timing.period_ns == 20'000'000);
+  CHECK(figures.topics[0].timing.period_from == PeriodFrom::request);
+  CHECK(figures.topics[0].timing.missing == 49);
+}
+
+TEST_CASE("statistics: faults by topic") {
+  Recorded log;
+  log.put(0ms, "608#00");        // wrong length
+  log.put(1ms, "208#03");        // no such mode
+  log.put(2ms, "605#01000000");  // magnetometer x, y, z
+  log.put(3ms, "655#01000000");  // nobody's
+  log.put(4ms, "1F334455#01");   // nor is this
+  log.put(5ms, "655#");          // the same stranger
+  log.put(6ms, "608#R");         // a remote frame
+  log.put(6500us, "00000655#");  // as wide as it is, another stranger
+  log.put(7ms, "20000040#0000000000000000");
+  log.put(8ms, "20000004#0001000000000000");  // lost in the controller
+  const auto figures = log.statistics.figures();
+  const auto* gyroscope = Recorded::find(figures, "gyroscope");
+  REQUIRE(gyroscope != nullptr);
+  CHECK(gyroscope->wrong_dlc == 1);
+  CHECK(gyroscope->requests == 1);
+  CHECK(gyroscope->bad_requests == 1);
+  CHECK(gyroscope->timing.count == 0);
+  CHECK(figures.counters.unknown == 5);
+  CHECK(figures.counters.errors == 2);
+  CHECK(figures.overflows == 1);
+  REQUIRE(figures.strangers.size() == 4);
+  CHECK(figures.strangers[0].id == 0x655);
+  CHECK(figures.strangers[0].count == 2);
+  CHECK(figures.strangers[1].format == ocm::can::Format::extended);
+  CHECK(figures.strangers[2].format == ocm::can::Format::base_remote);
+}
+
+TEST_CASE("statistics: incomplete samples are their topic's") {
+  Recorded log;
+  // The spec's magnetometer has three frames.
+  const auto* topic = amiro::catalogue.find("magnetometer");
+  REQUIRE(topic->frames.size() == 3);
+  const auto put = [&](int ms, std::size_t frame) {
+    ocm::can::Frame part;
+    part.id = ocm::protocol::Identifier{ocm::protocol::Direction::sensor, ocm::protocol::Priority::low,
+                                        topic->frames[frame].id}
+                  .encode();
+    part.dlc = topic->frames[frame].dlc;
+    log.statistics.take({Time{ms * 1ms}, part});
+  };
+  for (std::size_t frame = 0; frame < 3; ++frame) put(static_cast<int>(frame), frame);
+  put(100, 0);
+  put(102, 2);  // 1 was lost
+  for (std::size_t frame = 0; frame < 3; ++frame) put(200 + static_cast<int>(frame), frame);
+  const auto figures = log.statistics.figures();
+  REQUIRE(figures.topics.size() == 1);
+  CHECK(figures.topics[0].incomplete == 1);
+  CHECK(figures.topics[0].timing.count == 2);
+  CHECK(figures.topics[0].timing.mean_ns == 200e6);  // from last frame to last frame
+  CHECK(figures.topics[0].by_priority[3] == 2);
+}
+
+TEST_CASE("statistics: the load is of exact bits, and its parts make the whole") {
+  Recorded log;
+  const std::string_view frames[] = {"508#3E001E00FCFF", "208#01F40100",         "655#FF",
+                                     "508#000000000000", "201#0000000000000000", "608#00"};
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < std::size(frames); ++i) {
+    log.put(static_cast<int>(i) * 1ms, frames[i]);
+    if (i != 0) bits += ocm::can::frame_bits(*ocm::can::parse_frame(frames[i])) + 3;
+  }
+  const auto figures = log.statistics.figures();
+  CHECK(figures.load == Approx(static_cast<double>(bits) / 500'000 / 0.005));
+  CHECK(figures.rate_hz == Approx(1000.0));
+  double parts = figures.request_load + figures.stranger_load;
+  for (const auto& topic : figures.topics) parts += topic.load;
+  CHECK(parts == Approx(figures.load));
+  CHECK(Recorded::find(figures, "motors")->timing.count == 1);
+  CHECK(figures.worst_load > 0);
+  CHECK(figures.worst_until == Time{5ms});
+}
+
+TEST_CASE("statistics: nothing came") {
+  const BusStatistics statistics{amiro::catalogue, 500'000};
+  CHECK_FALSE(statistics.any());
+  const auto figures = statistics.figures();
+  CHECK(figures.topics.empty());
+  CHECK(figures.load == 0.0);
+  CHECK(figures.rate_hz == 0.0);
+}
+
+TEST_CASE("statistics: CAN FD is counted apart, strangers only so many") {
+  BusStatistics statistics{amiro::catalogue, 500'000};
+  statistics.take_fd(Time{1s});
+  for (std::uint32_t id = 0; id < 100; ++id)
+    statistics.take({Time{2s}, {id, 0, {}, ocm::can::Format::extended}});
+  const auto figures = statistics.figures();
+  CHECK(figures.fd_frames == 1);
+  CHECK(figures.span() == 1s);
+  CHECK(figures.strangers.size() == BusStatistics::most_strangers);
+  CHECK(figures.counters.unknown == 100);
+}
+
+}  // namespace

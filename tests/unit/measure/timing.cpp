@@ -1,0 +1,255 @@
+#include "ocm/measure/timing.hpp"
+
+#include <chrono>
+#include <initializer_list>
+#include <random>
+
+#include <catch2/catch.hpp>
+
+namespace {
+
+using namespace std::chrono_literals;
+using namespace ocm::measure;
+using ocm::base::Duration;
+using ocm::base::Time;
+
+constexpr Time at(Duration since) {
+  return Time{since};
+}
+
+Stream stream_of(std::initializer_list<int> milliseconds, Duration asked) {
+  Stream stream{50ms};
+  stream.asked(at(std::chrono::milliseconds{*milliseconds.begin()}), asked);
+  for (const int ms : milliseconds) stream.sample(at(std::chrono::milliseconds{ms}));
+  return stream;
+}
+
+TEST_CASE("timing: a perfect stream") {
+  const Timing timing = stream_of({0, 500, 1000, 1500, 2000}, 500ms).timing(at(2s));
+  CHECK(timing.count == 5);
+  CHECK(timing.distances == 4);
+  CHECK(timing.rate_hz == 2.0);
+  CHECK(timing.mean_ns == 5e8);
+  CHECK(timing.jitter_ns == 0.0);
+  CHECK(timing.spread_ns == 0);
+  CHECK(timing.lateness_ns == 0);
+  CHECK(timing.gap_ns == 500'000'000);
+  CHECK(timing.missing == 0);
+  CHECK(timing.period_ns == 500'000'000);
+  CHECK(timing.period_from == PeriodFrom::request);
+}
+
+TEST_CASE("timing: jitter, spread and lateness by hand") {
+  // Distances 100, 103, 97, 100 ms: mean 100, squares 0 + 9 + 9 + 0, deviation sqrt(18 / 4) = 2.12132 ms.
+  // Off the grid: 0, 0, 3, 0, 0.
+  const Timing timing = stream_of({0, 100, 203, 300, 400}, 100ms).timing(at(400ms));
+  CHECK(timing.mean_ns == 1e8);
+  CHECK(timing.jitter_ns == Approx(2.1213203e6));
+  CHECK(timing.spread_ns == 6'000'000);
+  CHECK(timing.lateness_ns == 3'000'000);
+  CHECK(timing.gap_ns == 103'000'000);
+  CHECK(timing.gap_from == at(100ms));
+}
+
+TEST_CASE("timing: drift off the grid adds up, jitter about it does not") {
+  const Timing slow = stream_of({0, 101, 202, 303, 404}, 100ms).timing(at(404ms));
+  CHECK(slow.jitter_ns == 0.0);
+  CHECK(slow.lateness_ns == 4'000'000);
+}
+
+TEST_CASE("timing: lateness looks at a hundred samples at a time") {
+  Stream stream{50ms};
+  stream.asked(at(0ns), 100ms);
+  for (int i = 0; i < 1000; ++i) stream.sample(at(i * 100'010us));  // 100 ppm slow
+  const Timing timing = stream.timing(at(1000 * 100ms));
+  CHECK(timing.lateness_ns == 99 * 10'000);
+  CHECK(timing.missing == 0);
+}
+
+TEST_CASE("timing: missing samples") {
+  SECTION("one, and three in a row") {
+    const Timing timing = stream_of({0, 100, 300, 400, 800, 900}, 100ms).timing(at(900ms));
+    CHECK(timing.missing == 4);
+    CHECK(timing.gap_ns == 400'000'000);
+    CHECK(timing.gap_from == at(400ms));
+    CHECK(timing.lateness_ns == 0);
+  }
+  SECTION("late is not missing: the next one makes up for it") {
+    const Timing timing = stream_of({0, 100, 260, 300, 400}, 100ms).timing(at(400ms));
+    CHECK(timing.missing == 0);
+    CHECK(timing.lateness_ns == 60'000'000);
+  }
+  SECTION("late by several, in a burst") {
+    // And 20 ms late once more behind it, which is less.
+    const Timing timing = stream_of({0, 100, 390, 391, 400, 500, 620}, 100ms).timing(at(620ms));
+    CHECK(timing.missing == 0);
+    CHECK(timing.lateness_ns == 190'000'000);
+  }
+  SECTION("late and missing: two came for three") {
+    const Timing timing = stream_of({0, 100, 390, 400, 500}, 100ms).timing(at(500ms));
+    CHECK(timing.missing == 1);
+    CHECK(timing.lateness_ns == 90'000'000);
+  }
+  SECTION("behind a pause the grid is another") {
+    const Timing timing = stream_of({0, 100, 450, 550}, 100ms).timing(at(550ms));
+    CHECK(timing.missing == 3);
+    CHECK(timing.lateness_ns == 0);
+  }
+  SECTION("one that is late at the end is missing so far") {
+    CHECK(stream_of({0, 100, 260}, 100ms).timing(at(260ms)).missing == 1);
+  }
+}
+
+TEST_CASE("timing: silence at the end, where samples are due") {
+  Stream stream = stream_of({0, 100, 200}, 100ms);
+  CHECK(stream.timing(at(349ms)).missing == 0);
+  const Timing timing = stream.timing(at(1200ms));
+  CHECK(timing.missing == 9);
+  CHECK(timing.gap_ns == 1'000'000'000);
+  CHECK(timing.gap_from == at(200ms));
+  CHECK(timing.rate_hz == 10.0);
+
+  stream.stopped(at(210ms));
+  const Timing stopped = stream.timing(at(1200ms));
+  CHECK(stopped.missing == 0);
+  CHECK(stopped.gap_ns == 100'000'000);
+  CHECK(stopped.period_from == PeriodFrom::request);
+  CHECK(stopped.period_ns == 100'000'000);
+}
+
+TEST_CASE("timing: asked, and nothing ever comes") {
+  Stream stream{50ms};
+  stream.asked(at(1s), 100ms);
+  const Timing timing = stream.timing(at(2s));
+  CHECK(timing.count == 0);
+  CHECK(timing.missing == 9);
+  CHECK(timing.gap_ns == 1'000'000'000);
+}
+
+TEST_CASE("timing: asked, and the first sample comes late") {
+  Stream stream{50ms};
+  stream.asked(at(1s), 100ms);
+  stream.sample(at(1430ms));
+  stream.sample(at(1530ms));
+  const Timing timing = stream.timing(at(1530ms));
+  CHECK(timing.missing == 3);
+  CHECK(timing.gap_ns == 430'000'000);
+  CHECK(timing.gap_from == at(1s));
+  CHECK(timing.distances == 1);
+  CHECK(timing.lateness_ns == 0);
+}
+
+TEST_CASE("timing: the distance across a request is in no figure") {
+  Stream stream = stream_of({0, 100, 200}, 100ms);
+  stream.stopped(at(250ms));
+  stream.asked(at(60s), 20ms);
+  for (int i = 0; i <= 3; ++i) stream.sample(at(60s + i * 20ms));
+  const Timing timing = stream.timing(at(60s + 60ms));
+  CHECK(timing.count == 7);
+  CHECK(timing.distances == 5);
+  CHECK(timing.mean_ns == Approx(52e6));  // (2 * 100 + 3 * 20) / 5
+  CHECK(timing.jitter_ns == 0.0);         // within each stretch none
+  CHECK(timing.spread_ns == 0);
+  CHECK(timing.missing == 0);
+  CHECK(timing.gap_ns == 100'000'000);
+  CHECK(timing.period_ns == 20'000'000);
+}
+
+TEST_CASE("timing: who fell silent before he was asked again was silent all the same") {
+  Stream stream = stream_of({0, 100}, 100ms);
+  stream.asked(at(1100ms), 100ms);
+  stream.sample(at(1101ms));
+  const Timing timing = stream.timing(at(1101ms));
+  CHECK(timing.missing == 9);
+  CHECK(timing.gap_ns == 1'000'000'000);
+  CHECK(timing.distances == 1);
+}
+
+TEST_CASE("timing: without a request the period is the spec's or the measured one") {
+  SECTION("the spec's") {
+    Stream stream{50ms};
+    for (const int ms : {0, 51, 99, 150, 250, 300}) stream.sample(at(std::chrono::milliseconds{ms}));
+    const Timing timing = stream.timing(at(300ms));
+    CHECK(timing.period_from == PeriodFrom::spec);
+    CHECK(timing.period_ns == 50'000'000);
+    CHECK(timing.missing == 1);
+    CHECK(timing.lateness_ns == 2'000'000);
+  }
+  SECTION("measured") {
+    Stream stream{50ms};
+    for (const int ms : {0, 20, 41, 60, 100, 120, 140, 160, 180, 200, 300, 320})
+      stream.sample(at(std::chrono::milliseconds{ms}));
+    const Timing timing = stream.timing(at(320ms));
+    CHECK(timing.period_from == PeriodFrom::measured);
+    CHECK(timing.period_ns == 20'000'000);
+    CHECK(timing.missing == 1 + 4);
+    CHECK(timing.lateness_ns == 0);
+  }
+  SECTION("a single sample says nothing") {
+    Stream stream{50ms};
+    stream.sample(at(0ns));
+    const Timing timing = stream.timing(at(10s));
+    CHECK(timing.period_from == PeriodFrom::nothing);
+    CHECK(timing.distances == 0);
+    CHECK(timing.gap_ns == 0);
+  }
+  SECTION("set points have none") {
+    Stream stream{0ms};
+    for (const int ms : {0, 100, 200, 900}) stream.sample(at(std::chrono::milliseconds{ms}));
+    const Timing timing = stream.timing(at(5s));
+    CHECK(timing.period_from == PeriodFrom::nothing);
+    CHECK(timing.missing == 0);
+    CHECK(timing.gap_ns == 700'000'000);
+    CHECK(timing.distances == 3);
+  }
+  SECTION("who is asked for one sample at a time has none") {
+    Stream stream{50ms};
+    for (int i = 0; i < 20; ++i) {
+      stream.stopped(at(i * 50ms));
+      stream.sample(at(i * 50ms + 1ms));
+    }
+    const Timing timing = stream.timing(at(5s));
+    CHECK(timing.count == 20);
+    CHECK(timing.distances == 0);
+    CHECK(timing.missing == 0);
+    CHECK(timing.period_from == PeriodFrom::nothing);
+  }
+}
+
+TEST_CASE("timing: times that go back are counted and begin anew") {
+  Stream stream{0ms};
+  for (const int ms : {100, 200, 50, 150}) stream.sample(at(std::chrono::milliseconds{ms}));
+  const Timing timing = stream.timing(at(200ms));
+  CHECK(timing.backwards == 1);
+  CHECK(timing.distances == 2);
+  CHECK(timing.mean_ns == 1e8);
+}
+
+TEST_CASE("timing: what was left out is missing, and what is a little late is not") {
+  std::mt19937 random{5};
+  for (int run = 0; run < 200; ++run) {
+    Stream stream{50ms};
+    stream.asked(at(0ns), 10ms);
+    std::uint64_t left_out = 0;
+    Duration latest{0}, earliest{0}, end{0};
+    bool first = true;
+    for (int i = 0; i < 90; ++i) {
+      if (!first && i < 89 && random() % 4 == 0) {
+        ++left_out;
+        continue;
+      }
+      const Duration late{first ? 0 : static_cast<std::int64_t>(random() % 2'000'000)};
+      end = i * Duration{10ms} + late;
+      stream.sample(at(end));
+      latest = std::max(latest, late);
+      earliest = std::min(earliest, late);
+      first = false;
+    }
+    const Timing timing = stream.timing(at(end));
+    CHECK(timing.missing == left_out);
+    CHECK(timing.lateness_ns <= (latest - earliest).count());
+    CHECK(timing.count + timing.missing == 90);
+  }
+}
+
+}  // namespace
