@@ -275,7 +275,7 @@ static inline int @_read_request(const @_frame* frame, @_request* request) {
   return 0;
 }
 
-// --- numbers
+// --- numbers ---
 
 static inline uint32_t @_at_most_u32(uint32_t number, uint32_t most) { return number < most ? number : most; }
 static inline uint64_t @_at_most_u64(uint64_t number, uint64_t most) { return number < most ? number : most; }

@@ -53,8 +53,7 @@ static uint32_t faults;
 static int64_t start_time;
 static struct { uint8_t topic, reason; } last_refusal;
 
-// --- frames
-// ------------------------------------------------------------------------------------------------------
+// --- frames ---
 static inline void put16(uint8_t* at, uint16_t value) {
   at[0] = (uint8_t)value;
   at[1] = (uint8_t)(value >> 8);
@@ -95,8 +94,7 @@ static void encode_ring(uint8_t d[64], const uint16_t sensor[8]) {
   }
 }
 
-// --- scheduling
-// --------------------------------------------------------------------------------------------------
+// --- scheduling ---
 static uint32_t skip_passed(struct stream* s, int64_t now) {
   const int64_t skipped = (now - s->next) / s->period + 1;
   s->next += skipped * s->period;
@@ -219,8 +217,7 @@ static struct stream* find_held(unsigned level, struct stream* from) {
   return from;
 }
 
-// --- status and refusals
-// -----------------------------------------------------------------------------------------
+// --- status and refusals ---
 static uint32_t saturated_16(uint64_t n) {
   return n > UINT16_MAX ? UINT16_MAX : (uint32_t)n;
 }
@@ -267,8 +264,7 @@ static uint32_t overload_of(const struct stream* s) {
   return all;
 }
 
-// --- sensors
-// -----------------------------------------------------------------------------------------------------
+// --- sensors ---
 static bool sample_odometry(uint8_t d[][8]) {
   int32_t velocity[2], pose[2];
   uint16_t orientation;
@@ -388,8 +384,7 @@ static bool serve_sensor(unsigned number, bool resumed, uint8_t level) {
   return true;
 }
 
-// --- actuators
-// ---------------------------------------------------------------------------------------------------
+// --- actuators ---
 static struct {
   int64_t expires_at;
   int32_t x, z;
@@ -497,8 +492,7 @@ static void bus_lost(void) {
   watch();
 }
 
-// --- requests
-// ----------------------------------------------------------------------------------------------------
+// --- requests ---
 struct request {
   uint8_t mode, level, unit, error;
   uint16_t count;
@@ -546,8 +540,7 @@ static uint8_t request(unsigned number, const struct frame* frame, int64_t now) 
   return ok;
 }
 
-// --- the board
-// ---------------------------------------------------------------------------------------------------
+// --- the board ---
 static void receive(const struct frame* frame, int64_t now) {
   bool mine = false;
   if (frame->format == 0 && (frame->id >> 10 & 1) == 0) {

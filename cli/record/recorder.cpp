@@ -263,7 +263,7 @@ void Recorder::show_progress() {
   shown_received_ = received_;
 }
 
-// --- the thread that writes
+// --- the thread that writes ---
 
 void Recorder::write_all() {
   auto flushed = Clock::now();

@@ -108,8 +108,7 @@ class Calibration {
   /// How the last request ended: what is in use may not be what is stored.
   [[nodiscard]] base::Error last() const noexcept { return last_.load(std::memory_order_relaxed); }
 
-  // What follows is for one context only
-  // -----------------------------------------------------------------------------------
+  // --- what follows is for one context only ---
 
   /// Fetches what is stored, unless something was measured since. An EEPROM without a record is no error.
   base::Result<base::Duration> start() {

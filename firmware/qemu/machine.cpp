@@ -155,8 +155,7 @@ void Uart::on_interrupt() noexcept {
 using ocm::firmware::qemu::alarm_set;
 using ocm::firmware::qemu::alarm_time;
 
-// --- what the kernel and the vector table call
-// ------------------------------------------------------------------
+// --- what the kernel and the vector table call ---
 extern "C" {
 
 void ocm_alarm_start(systime_t time) {

@@ -82,8 +82,7 @@ class Checker {
   /// How many problems there are so far.
   [[nodiscard]] std::size_t told() const noexcept { return problems_.size(); }
 
-  // --- telling
-  // ----------------------------------------------------------------------------------------------
+  // --- telling ---
 
   void tell(const At& at, std::string what, std::string remedy) {
     problems_.push_back({std::string{file_name_} + ":" + std::to_string(at.node->line) + ": " +
@@ -91,8 +90,7 @@ class Checker {
                          std::move(what), std::move(remedy)});
   }
 
-  // --- reading JSON
-  // -----------------------------------------------------------------------------------------
+  // --- reading JSON ---
 
   [[nodiscard]] bool is_kind(const At& at, Kind kind, std::string_view remedy) {
     if (at.node->is(kind)) return true;

@@ -43,8 +43,7 @@ class Reader : private FieldReader {
   }
 
  private:
-  // --- robot, bus, boards
-  // -----------------------------------------------------------------------------------
+  // --- robot, bus, boards ---
 
   void read_namespace(const At& at, Model& model) {
     model.name_space = name(at);
@@ -126,8 +125,7 @@ class Reader : private FieldReader {
     return static_cast<std::uint32_t>(*hz);
   }
 
-  // --- topics
-  // -----------------------------------------------------------------------------------------------
+  // --- topics ---
 
   void read_topics(const At& at, Model& model) {
     if (!is_kind(at, Kind::array, "a list of topics")) return;
@@ -353,8 +351,7 @@ class Reader : private FieldReader {
     if (const auto a = at.member("timeout")) topic.timeout = duration(*a).value_or(Duration{});
   }
 
-  // --- frames
-  // -----------------------------------------------------------------------------------------------
+  // --- frames ---
 
   void read_frames(const At& at, std::optional<std::uint8_t> topic_id, protocol::ByteOrder order,
                    TopicModel& topic) {
@@ -451,8 +448,7 @@ class Reader : private FieldReader {
     return frame;
   }
 
-  // --- roles
-  // ------------------------------------------------------------------------------------------------
+  // --- roles ---
 
   /// What a tool relies on, that knows the role and not the robot.
   void check_role(const At& at, const TopicModel& topic) {

@@ -79,8 +79,7 @@ class World {
     }
   }
 
-  // What the robot does to the world
-  // -------------------------------------------------------------------------
+  // --- what the robot does to the world ---
 
   /// Set points of speed controllers that keep to them.
   void set_wheels(firmware::boards::WheelSpeeds speeds) noexcept { drive_.set(speeds); }
@@ -109,15 +108,13 @@ class World {
     return {};
   }
 
-  // What others do to it
-  // -------------------------------------------------------------------------------------
+  // --- what others do to it ---
 
   void set_plugged(bool plugged) noexcept { battery_.set_plugged(plugged); }
   /// An absent part delivers no sample until it is put back.
   void set_absent(Part part, bool absent) noexcept { absent_[index(part)] = absent; }
 
-  // What an onlooker sees
-  // ------------------------------------------------------------------------------------
+  // --- what an onlooker sees ---
 
   [[nodiscard]] const Motion& motion() const noexcept { return drive_.motion(); }
   [[nodiscard]] const Pose& pose() const noexcept { return drive_.motion().pose; }
@@ -129,8 +126,7 @@ class World {
   [[nodiscard]] const WorldOptions& options() const noexcept { return options_; }
   [[nodiscard]] base::Time time() const noexcept { return options_.start_time + elapsed_ms_ * step; }
 
-  // What the parts deliver; Error::not_sampled when they are absent
-  // ------------------------------------------
+  // --- what the parts deliver; Error::not_sampled when they are absent ---
 
   [[nodiscard]] base::Result<firmware::boards::AngularRate> gyroscope() const noexcept {
     if (absent(Part::gyroscope)) return base::Error::not_sampled;

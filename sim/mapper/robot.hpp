@@ -59,8 +59,7 @@ class Robot {
                      (1 + model.wheel_errors.wheelbase_spread * constant_of(body_noise(), 4))),
         pose_(start.pose) {}
 
-  // What its application does to it
-  // -----------------------------------------------------------------------------------------------------
+  // --- what its application does to it ---
 
   /// Each motor, [-1, 1]; 0 is off.
   void drive(motion::Efforts efforts) noexcept {
@@ -71,8 +70,7 @@ class Robot {
   void turn_tower(std::int32_t degrees) noexcept { servo_.turn(degrees); }
   void show(ocm::mapper::app::Lights lights) noexcept { lights_ = lights; }
 
-  // What its parts deliver; Error::not_sampled when they are absent
-  // -----------------------------------------------------------------------------------------------------
+  // --- what its parts deliver; Error::not_sampled when they are absent ---
 
   [[nodiscard]] ocm::mapper::app::WheelTicks ticks() const noexcept {
     return {left_.ticks(), right_.ticks()};
@@ -94,14 +92,12 @@ class Robot {
     return infrared_reading(model_.infrared, noise(Part::infrared), infrared_, sensor);
   }
 
-  // What others do to it
-  // -----------------------------------------------------------------------------------------------------
+  // --- what others do to it ---
 
   /// An absent part delivers no sample until it is put back.
   void set_absent(Part part, bool absent) noexcept { absent_[index(part)] = absent; }
 
-  // What an onlooker sees
-  // -----------------------------------------------------------------------------------------------------
+  // --- what an onlooker sees ---
 
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
   [[nodiscard]] const RobotModel& model() const noexcept { return model_; }
@@ -123,8 +119,7 @@ class Robot {
     return {static_cast<float>(field.x), static_cast<float>(field.y)};
   }
 
-  // For the world
-  // -----------------------------------------------------------------------------------------------------
+  // --- for the world ---
 
   /// Nothing of it moves, and nothing will until the next command: steps change nothing.
   [[nodiscard]] bool at_rest() const noexcept {

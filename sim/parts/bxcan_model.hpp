@@ -43,8 +43,7 @@ class BxcanModel {
   std::vector<can::Frame> transmitted;  ///< what was acknowledged, in order
   std::array<bool, 14> filters_used{};  ///< banks that accepted something
 
-  // --- the program's side
-  // -----------------------------------------------------------------------------------
+  // --- the program's side ---
 
   std::uint32_t read(Register which) {
     tick();
@@ -141,8 +140,7 @@ class BxcanModel {
   [[nodiscard]] bool receive_interrupt() const { return !fifo_.frames.empty() && (ier_ & 2) != 0; }
   [[nodiscard]] bool error_interrupt() const { return erri_; }
 
-  // --- the bus's side
-  // ---------------------------------------------------------------------------------------
+  // --- the bus's side ---
 
   /// The bus is idle and everybody may start. The frame that this controller puts on the wire, if any.
   std::optional<can::Frame> begin() {

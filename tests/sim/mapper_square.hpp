@@ -282,8 +282,7 @@ void replay(const std::vector<Step>& steps, const mapper::app::RobotModel& model
   }
 }
 
-// The least that anybody must miss
-// -----------------------------------------------------------------------------------------------------
+// --- the least that anybody must miss ---
 
 /// Standard deviations at the end of a drive.
 struct Floor {
@@ -344,8 +343,7 @@ struct Floor {
   return {position.x, position.y, heading_floor_rad(drive)};
 }
 
-// Many drives
-// -----------------------------------------------------------------------------------------------------
+// --- many drives ---
 
 /// What one drive came to.
 struct Outcome {

@@ -99,8 +99,7 @@ class Parts
     this->maintain_one(now);
   }
 
-  // What the board asks for
-  // ------------------------------------------------------------------------------------------------
+  // --- what the board asks for ---
 
   base::Result<AngularRate> gyroscope() {
     return gyroscope_.use([](auto& part) { return part.read(); });
@@ -150,8 +149,7 @@ class Parts
   /// How the last calibration ended.
   [[nodiscard]] base::Error calibration_error() const noexcept { return calibration_.driver().last(); }
 
-  // For the status frames
-  // --------------------------------------------------------------------------------------------------
+  // --- for the status frames ---
 
   /// Bit by bit who does not answer; the same numbers have the faults of `PartSet`.
   [[nodiscard]] std::uint8_t absent() const noexcept {

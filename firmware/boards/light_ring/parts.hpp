@@ -66,8 +66,7 @@ class Parts {
     show_locked();
   }
 
-  // For the status frames
-  // --------------------------------------------------------------------------------------------------
+  // --- for the status frames ---
 
   [[nodiscard]] std::uint8_t absent() const noexcept {
     return failing_.load(std::memory_order_relaxed) ? part::lights : std::uint8_t{0};

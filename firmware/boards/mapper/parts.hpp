@@ -105,8 +105,7 @@ class Parts
   /// To be called every 10 ms or so on a low level.
   void maintain(base::Time now) { this->maintain_one(now); }
 
-  // What the application asks for
-  // --------------------------------------------------------------------------------------------------
+  // --- what the application asks for ---
 
   [[nodiscard]] ocm::mapper::app::WheelTicks ticks() {
     const drivers::Guard<Lock> guard{lock_};  // two tasks ask

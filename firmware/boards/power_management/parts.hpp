@@ -89,8 +89,7 @@ class Parts : public PartSet<Parts<BackBus, FrontBus, Pins, Lock>, 11> {
     this->maintain_one(now);
   }
 
-  // What the board asks for
-  // ------------------------------------------------------------------------------------------------
+  // --- what the board asks for ---
 
   /// Both gauges must answer: what half of the batteries say would be taken for all.
   base::Result<GaugeReading> gauge() {
@@ -124,8 +123,7 @@ class Parts : public PartSet<Parts<BackBus, FrontBus, Pins, Lock>, 11> {
     return calibration_.driver().offset(sensor);
   }
 
-  // For the status frames
-  // --------------------------------------------------------------------------------------------------
+  // --- for the status frames ---
 
   [[nodiscard]] std::uint8_t absent() const noexcept {
     return static_cast<std::uint8_t>(this->absent_bits(ring_first) | (absent_ring() != 0 ? part::ring : 0U));

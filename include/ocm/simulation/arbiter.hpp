@@ -278,8 +278,7 @@ class Arbiter {
     node.queue = {};
   }
 
-  // --- frames
-  // -----------------------------------------------------------------------------------------------
+  // --- frames ---
 
   /// Holds the next arbitration, without consequences yet. false: nobody has a frame.
   bool choose() const noexcept {
@@ -348,8 +347,7 @@ class Arbiter {
     deliver(delivery);
   }
 
-  // --- disturbances
-  // -----------------------------------------------------------------------------------------
+  // --- disturbances ---
 
   template <class Deliver, class Complain>
   void disturb_now(Deliver& deliver, Complain& complain) {
@@ -426,8 +424,7 @@ class Arbiter {
       &node == sender ? node.faults.failed_to_send() : node.faults.failed_to_receive();
   }
 
-  // --- silence: what lies between what is sent
-  // --------------------------------------------------------------
+  // --- silence: what lies between what is sent ---
 
   /// Whatever was sent from `from` on is over, its intermission at `until`.
   void begin_silence(std::uint64_t from, std::uint64_t until, std::uint64_t& bits) noexcept {

@@ -339,8 +339,7 @@ class VirtualBus final : public Bus {
                                            [&](const can::Filter& filter) { return filter.accepts(frame); });
   }
 
-  // --- the end
-  // ----------------------------------------------------------------------------------------------
+  // --- the end ---
 
   /// The first reason stays.
   void end(Failure failure) {

@@ -185,8 +185,7 @@ template <class T>
   return "reason " + std::to_string(static_cast<unsigned>(goodbye.reason));
 }
 
-// --- where the socket is
-// ------------------------------------------------------------------------------------
+// --- where the socket is ---
 
 /// A directory of this user alone, below the first of these: $XDG_RUNTIME_DIR, when it is absolute and ours,
 /// as its specification wants; else /tmp. It may not exist yet.

@@ -254,8 +254,7 @@ class VirtualBusServer {
     }
   }
 
-  // --- start
-  // ------------------------------------------------------------------------------------------------
+  // --- start ---
 
   [[nodiscard]] static Failure system_failure(const std::string& path, int error) {
     return {"cannot serve a virtual bus on '" + path + "': " + std::strerror(error),
@@ -311,8 +310,7 @@ class VirtualBusServer {
     }
   }
 
-  // --- from the bus to the clients
-  // --------------------------------------------------------------------------
+  // --- from the bus to the clients ---
 
   void distribute(const simulation::Delivery& delivery) {
     const virtual_bus::Record record =
@@ -398,8 +396,7 @@ class VirtualBusServer {
     }
   }
 
-  // --- from the clients
-  // -------------------------------------------------------------------------------------
+  // --- from the clients ---
 
   void serve(base::Time now) {
     if (paused_ && accept_again_ == base::never) accept(now);
@@ -541,8 +538,7 @@ class VirtualBusServer {
     ::send(client.socket.get(), record.data(), record.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
   }
 
-  // --- connections
-  // ------------------------------------------------------------------------------------------
+  // --- connections ---
 
   void watch(Client& client) noexcept {
     epoll_event event{};

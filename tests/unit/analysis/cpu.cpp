@@ -93,8 +93,7 @@ static_assert([] {
          low.response == 4 + 1 + 5 + low.interference;  // its worst instance is the first
 }());
 
-// --- what cannot be bounded has a reason
-// ---------------------------------------------------------------------
+// --- what cannot be bounded has a reason ---
 
 constexpr Explained overloaded =
     response_times(in_order(std::array{Task{5, 10}, Task{11, 20}, Task{1, 1000}}))[1];

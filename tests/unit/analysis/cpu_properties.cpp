@@ -240,8 +240,7 @@ TEST_CASE("resources with ceilings: never longer than predicted") {
   CHECK(seen.share() > 0.7);  // 74 %
 }
 
-// --- the boards' processor: four levels, tasks that share one, and what switches and interrupts cost
-// ------------
+// --- the boards' processor: four levels, tasks that share one, and what switches and interrupts cost ---
 
 namespace {
 

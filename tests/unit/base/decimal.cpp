@@ -45,8 +45,7 @@ Decimal any_decimal(Random& random, int most_bits, int low, int high) {
   return ocm::base::normalised(digits, random.within(low, high));
 }
 
-// --- vectors
-// ------------------------------------------------------------------------------------------------
+// --- vectors ---
 
 // L3G4200D at +-500 deg/s: 17.5 mdeg/s a digit. In binary floating point 3 * 0.0175 is 0.052500000000000005.
 static_assert(*multiply({3, 0}, number("0.0175")) == number("0.0525"));
@@ -127,8 +126,7 @@ TEST_CASE("printing and parsing are each other's inverse") {
   }
 }
 
-// --- arithmetic against words of 128 bits
-// --------------------------------------------------------------------
+// --- arithmetic against words of 128 bits ---
 
 #if defined(__SIZEOF_INT128__)
 /// A number as value * 10^-scale in 128 bits, where the test chooses exponents so that it fits.

@@ -11,8 +11,7 @@ using ocm::base::Error;
 using ocm::can::BitTiming;
 using ocm::can::find_bit_timing;
 
-// --- the robot's two chips
-// ------------------------------------------------------------------------------------
+// --- the robot's two chips ---
 
 // STM32F103 at 72 MHz, APB1 36 MHz. [RM0008 24.7.7; AMiRo-OS 1.0: TS1 13, TS2 2, SJW 1]
 constexpr std::uint32_t f1_pclk_hz = 36'000'000;
@@ -50,8 +49,7 @@ static_assert(BitTiming{0, 13, 2, 1}.bit_rate(8'000'000) == 444'444);
 static_assert(!BitTiming{0, 13, 2, 1}.exact(8'000'000));
 static_assert(BitTiming{0, 12, 1, 1}.bit_rate(8'000'000) == 500'000);
 
-// --- the search against all fields there are
-// ------------------------------------------------------------------
+// --- the search against all fields there are ---
 
 /// Sample point as a fraction: sampled / quanta.
 struct Best {

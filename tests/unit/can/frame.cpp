@@ -50,8 +50,7 @@ TEST_CASE("frames are equal when everything is") {
   CHECK_FALSE(frame == Frame{0x205, 4, {1, 0x84, 3, 2}, Format::extended});
 }
 
-// --- arbitration against the wire
-// ----------------------------------------------------------------------------
+// --- arbitration against the wire ---
 
 /// The arbitration field as it is sent, '0' dominant. [ISO 11898-1, 6.4.2.3: base: identifier, RTR, then the
 /// dominant IDE; extended: base identifier, SRR and IDE recessive, extension, RTR]

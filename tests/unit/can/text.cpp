@@ -20,8 +20,7 @@ constexpr ocm::base::Time at_ns(std::int64_t ns) {
   return ocm::base::Time{ocm::base::Duration{ns}};
 }
 
-// --- vectors
-// --------------------------------------------------------------------------------------------------
+// --- vectors ---
 
 // Magnetometer every 900 us, medium priority, and its x axis. [Thesis 4.2]
 constexpr Frame magnetometer_every_900_us{0x205, 4, {0x01, 0x84, 0x03, 0x02}};
@@ -187,8 +186,7 @@ TEST_CASE("garbage gets an answer and never a frame that cannot exist") {
   CHECK(taken > 1000);
 }
 
-// --- log lines
-// ------------------------------------------------------------------------------------------------
+// --- log lines ---
 
 static_assert(to_log_line(at_ns(1'436'509'052'249'713'000), "can0", {0x605, 4, {0x00, 0xD2, 0x00, 0x00}}) ==
               "(1436509052.249713) can0 605#00D20000");

@@ -22,8 +22,7 @@ constexpr Payload with(T value, Payload data = {}) {
   return data;
 }
 
-// --- vectors, worked out by hand
-// -----------------------------------------------------------------------------
+// --- vectors, worked out by hand ---
 
 // Two fields of 12 bits in three bytes, as DBC numbers them.
 static_assert(with<Bits<std::uint16_t, 0, 12>>(std::uint16_t{0xABC}) == Payload{0xBC, 0x0A});
@@ -58,8 +57,7 @@ static_assert(with<Bits<std::uint8_t, 10, 1>>(std::uint8_t{0}, {0xFF, 0xFF, 0xFF
               Payload{0xFF, 0xFB, 0xFF});
 static_assert(Bits<std::int8_t, 10, 1>::get({0x00, 0x04}) == -1);
 
-// --- positions
-// ------------------------------------------------------------------------------------------------
+// --- positions ---
 
 TEST_CASE("a position's mask are its bits, or nothing when it does not fit") {
   for (int start = 0; start < 256; ++start)
@@ -98,8 +96,7 @@ TEST_CASE("bounds of widths") {
   STATIC_REQUIRE(Bits<std::uint8_t, 0>::max == 255);
 }
 
-// --- saturation
-// -----------------------------------------------------------------------------------------------
+// --- saturation ---
 
 TEST_CASE("a value that a width does not hold is put as the nearest one") {
   using Signed24 = Bits<std::int32_t, 0, 24>;
@@ -132,8 +129,7 @@ TEST_CASE("the run-time form puts the lowest bits: its caller has checked the ra
   CHECK(data == Payload{0xF0});
 }
 
-// --- types that are wider than the field
-// ------------------------------------------------------------------------
+// --- types that are wider than the field ---
 
 TEST_CASE("a type may be wider than the field needs") {
   STATIC_REQUIRE(Bits<std::int64_t, 0, 32>::get({0xFF, 0xFF, 0xFF, 0xFF}) == -1);
@@ -145,8 +141,7 @@ TEST_CASE("a type may be wider than the field needs") {
   STATIC_REQUIRE(with<Bits<std::int64_t, 0, 32>>(std::int64_t{-1} << 40) == Payload{0x00, 0x00, 0x00, 0x80});
 }
 
-// --- the run-time form at every position
-// ------------------------------------------------------------------------
+// --- the run-time form at every position ---
 
 TEST_CASE("the run-time form agrees with bit after bit, everywhere") {
   Random random{1};

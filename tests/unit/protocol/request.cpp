@@ -32,9 +32,9 @@ constexpr TopicId floor_proximity{0x04};
 constexpr TopicId magnetometer{0x05};
 constexpr TopicId gyroscope{0x08};
 
-// --- vectors: data[0] = mode 0 stop, 1 publish, 2 once; data[1..2] = period, little endian; data[3] = unit 0
-// ms, 1 s, 2 us. [Thesis 4.2, figure 4.2]
-// ---------------------------------------------------------------------------
+// --- vectors ---
+// data[0] = mode 0 stop, 1 publish, 2 once; data[1..2] = period, little endian; data[3] = unit 0 ms, 1 s,
+// 2 us. [Thesis 4.2, figure 4.2]
 
 static_assert(*publish_every(magnetometer, 900us) == frame("205#01840302"));
 static_assert(*publish_every(gyroscope, 500ms, Priority::high) == frame("108#01F40100"));
@@ -133,8 +133,7 @@ TEST_CASE("what is read from random bytes says the same when it is written") {
   CHECK(taken > 10'000);
 }
 
-// --- periods
-// --------------------------------------------------------------------------------------------------
+// --- periods ---
 
 TEST_CASE("a period that the wire can carry is carried exactly, in milliseconds where it can be") {
   STATIC_REQUIRE(*Period::from(900us) == Period{900, PeriodUnit::microseconds});

@@ -31,8 +31,7 @@ constexpr Identifier to_board(int topic, Priority priority = Priority::medium) {
   return {Direction::command, priority, TopicId{static_cast<std::uint8_t>(topic)}};
 }
 
-// --- fields
-// ---------------------------------------------------------------------------------------------------
+// --- fields ---
 
 constexpr const Field& weight = ocm::test::weight_fields[0];
 
@@ -76,8 +75,7 @@ TEST_CASE("the catalogue's decoder agrees with the typed one") {
   }
 }
 
-// --- the catalogue
-// --------------------------------------------------------------------------------------------
+// --- the catalogue ---
 
 TEST_CASE("a topic is found by its name and by each alias, and by nothing else") {
   const Topic* scale = catalogue.find("scale");
@@ -125,8 +123,7 @@ TEST_CASE("an entry of the catalogue says what its type says") {
   CHECK(lamp.instance == 3);
 }
 
-// --- the index
-// ------------------------------------------------------------------------------------------------
+// --- the index ---
 
 TEST_CASE("the index knows every identifier that means something, and no other") {
   for (unsigned number = 0; number <= ocm::can::max_base_id; ++number) {
@@ -167,8 +164,7 @@ TEST_CASE("an index of nothing finds nothing") {
   STATIC_REQUIRE_FALSE(of_nothing.find(sensor(0x10)));
 }
 
-// --- types
-// ----------------------------------------------------------------------------------------------------
+// --- types ---
 
 struct ForgetsToDecode {
   static constexpr TopicId id{1};

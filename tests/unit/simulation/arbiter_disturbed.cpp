@@ -325,8 +325,7 @@ TEST_CASE("a node whose frames are always broken is off the bus after 32 times, 
   CHECK(sent[0].from == a);
 }
 
-// --- against a bus that goes bit by bit
-// -------------------------------------------------------------------
+// --- against a bus that goes bit by bit ---
 
 namespace {
 
