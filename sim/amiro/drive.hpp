@@ -15,13 +15,12 @@
 #include "firmware/boards/samples.hpp"
 #include "sim/physics/body.hpp"
 #include "sim/physics/geometry.hpp"
+#include "sim/physics/step.hpp"
 
 namespace ocm::sim {
 
 using firmware::boards::WheelSpeeds;
 using firmware::boards::WheelTicks;
-
-inline constexpr double step_s = 0.001;
 
 struct DriveModel {
   double robot_radius_m = 0.05;               ///< [thesis, chapter 2: diameter 100 mm]

@@ -11,6 +11,7 @@
 #include "firmware/boards/samples.hpp"
 #include "sim/amiro/arena.hpp"
 #include "sim/amiro/drive.hpp"
+#include "sim/physics/digits.hpp"
 #include "sim/physics/noise.hpp"
 
 namespace ocm::sim {
@@ -27,16 +28,9 @@ struct Sample {
   }
   /// Drawn once for the part: bias, offset.
   [[nodiscard]] constexpr double constant(std::uint8_t channel) const noexcept {
-    return noise.normal(~std::uint64_t{0} >> 16, channel);
+    return noise.constant(channel);
   }
 };
-
-/// The nearest digit; beyond the part's range the last one of it, as the part does. Never wraps.
-template <class T>
-[[nodiscard]] T digits(double value, double low, double high) noexcept {
-  const double digit = std::floor(value + 0.5);
-  return static_cast<T>(digit > high ? high : digit >= low ? digit : low);  // not a number: low
-}
 
 /// L3G4200D at +-500 deg/s, 800 samples/s, low-pass at 30 Hz. [data sheet]
 struct GyroscopeModel {

@@ -18,6 +18,7 @@
 #include "firmware/boards/samples.hpp"
 #include "sim/amiro/arena.hpp"
 #include "sim/amiro/inertial.hpp"
+#include "sim/physics/digits.hpp"
 
 namespace ocm::sim {
 

@@ -24,6 +24,7 @@
 #include "sim/amiro/drive.hpp"
 #include "sim/amiro/inertial.hpp"
 #include "sim/amiro/proximity.hpp"
+#include "sim/physics/step.hpp"
 
 namespace ocm::sim {
 
@@ -179,8 +180,7 @@ class World {
   }
 
  private:
-  static constexpr base::Duration step = std::chrono::milliseconds{1};
-  static_assert(std::chrono::duration<double>(step).count() == step_s);
+  static constexpr base::Duration step = step_length;
 
   struct Sampled {
     Motion motion{};

@@ -50,13 +50,13 @@ class Robot {
       : model_(model),
         seed_(split_mix(seed, number)),
         name_(start.name),
-        left_(model.motor, constant_of(body_noise(), 0)),
-        right_(model.motor, constant_of(body_noise(), 1)),
+        left_(model.motor, body_noise().constant(0)),
+        right_(model.motor, body_noise().constant(1)),
         servo_(model.servo),
         left_m_per_tick_(model.drive.m_per_tick() * (1 + radius_error(2))),
         right_m_per_tick_(model.drive.m_per_tick() * (1 + radius_error(3))),
         wheelbase_m_(model.drive.wheelbase_m *
-                     (1 + model.wheel_errors.wheelbase_spread * constant_of(body_noise(), 4))),
+                     (1 + model.wheel_errors.wheelbase_spread * body_noise().constant(4))),
         pose_(start.pose) {}
 
   // --- what its application does to it ---
@@ -180,7 +180,7 @@ class Robot {
   [[nodiscard]] Noise noise(Part part) const noexcept { return {seed_, index(part)}; }
   [[nodiscard]] Noise body_noise() const noexcept { return {seed_, body_stream}; }
   [[nodiscard]] double radius_error(std::uint8_t channel) const noexcept {
-    return model_.wheel_errors.radius_spread * constant_of(body_noise(), channel);
+    return model_.wheel_errors.radius_spread * body_noise().constant(channel);
   }
 
   /// How much more or less than the model's figures the wheels slip now.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -15,8 +16,8 @@
 #include "ocm/sensing/ir_sensor.hpp"
 #include "ocm/sensing/tower.hpp"
 
-#include "sim/amiro/inertial.hpp"
 #include "sim/mapper/robot_model.hpp"
+#include "sim/physics/digits.hpp"
 #include "sim/physics/geometry.hpp"
 #include "sim/physics/noise.hpp"
 
@@ -30,11 +31,6 @@ namespace ocm::sim::mapper {
   return before + (noise.normal(place + 1, channel) - before) * (steps - whole);
 }
 
-/// Drawn once for a part: bias, offset.
-[[nodiscard]] constexpr double constant_of(const Noise& noise, std::uint8_t channel) noexcept {
-  return Sample{{}, 0, noise}.constant(channel);
-}
-
 // Gyro
 
 struct GyroSample {
@@ -46,7 +42,7 @@ struct GyroSample {
 /// deg/s, at this time of the world.
 [[nodiscard]] inline double gyro_bias_deg_per_s(const GyroModel& model, const Noise& noise,
                                                 double time_s) noexcept {
-  return model.bias_deg_per_s * constant_of(noise, 0) +
+  return model.bias_deg_per_s * noise.constant(0) +
          model.wander_deg_per_s * slow_noise(noise, time_s / 60, 1);
 }
 
@@ -75,7 +71,7 @@ struct CompassSample {
 
 /// The robot's own magnetism, in its frame, gauss.
 [[nodiscard]] inline Vector own_field(const CompassModel& model, const Noise& noise) noexcept {
-  return Vector{constant_of(noise, 0), constant_of(noise, 1)} * model.own_field_gauss;
+  return Vector{noise.constant(0), noise.constant(1)} * model.own_field_gauss;
 }
 
 /// Gauss, x ahead, y left, in steps of the part's digit; beyond its range the end of it.
@@ -122,8 +118,8 @@ struct InfraredSample {
 [[nodiscard]] inline float infrared_reading(const InfraredModel& model, const Noise& noise,
                                             const InfraredSample& sample, std::size_t sensor) noexcept {
   const auto channel = static_cast<std::uint8_t>(3 * sensor);
-  const double slope = 1 + model.slope_spread * constant_of(noise, channel);
-  const double offset = model.offset_spread_v * constant_of(noise, static_cast<std::uint8_t>(channel + 1));
+  const double slope = 1 + model.slope_spread * noise.constant(channel);
+  const double offset = model.offset_spread_v * noise.constant(static_cast<std::uint8_t>(channel + 1));
   const sensing::IrCurve curve{static_cast<float>(model.curve.slope_v_cm * slope),
                                static_cast<float>(model.curve.offset_v + offset)};
   const auto centimetres = static_cast<float>(sample.distance_m[sensor] * 100);

@@ -8,8 +8,8 @@
 
 #include "ocm/sensing/servo.hpp"
 
-#include "sim/amiro/drive.hpp"
 #include "sim/mapper/robot_model.hpp"
+#include "sim/physics/step.hpp"
 
 namespace ocm::sim::mapper {
 

@@ -12,8 +12,8 @@
 
 #include "ocm/motion/odometry.hpp"
 
-#include "sim/amiro/drive.hpp"
 #include "sim/mapper/robot_model.hpp"
+#include "sim/physics/step.hpp"
 
 namespace ocm::sim::mapper {
 

@@ -25,6 +25,7 @@
 
 #include "sim/mapper/robot.hpp"
 #include "sim/mapper/world_model.hpp"
+#include "sim/physics/step.hpp"
 
 namespace ocm::sim::mapper {
 
@@ -78,8 +79,7 @@ class World {
   }
 
  private:
-  static constexpr base::Duration step = std::chrono::milliseconds{1};
-  static_assert(std::chrono::duration<double>(step).count() == step_s);
+  static constexpr base::Duration step = step_length;
 
   [[nodiscard]] Surroundings around(std::size_t number) const noexcept {
     return {model_, discs_, number, fastest_step_m_};

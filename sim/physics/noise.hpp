@@ -40,6 +40,10 @@ class Noise {
     }
     return static_cast<double>(sum) / 4294967296.0 - 6.0;
   }
+  /// Drawn once for the part: bias, offset.
+  [[nodiscard]] constexpr double constant(std::uint8_t channel) const noexcept {
+    return normal(~std::uint64_t{0} >> 16, channel);
+  }
 
  private:
   std::uint64_t key_;
