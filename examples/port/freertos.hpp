@@ -161,8 +161,8 @@ class FreeRtosPort {
   void* board_ = nullptr;
   void (*expire_)(void*) = nullptr;
   void (*run_)(void*, Level) = nullptr;
-  std::array<Task, ocm::protocol::priority_levels> tasks_{};
-  std::array<bool, ocm::protocol::priority_levels> pended_{};
+  std::array<Task, ocm::scheduling::level_count> tasks_{};
+  std::array<bool, ocm::scheduling::level_count> pended_{};
   Time armed_ = ocm::base::never;
   std::uint32_t wraps_ = 0;
   std::uint32_t last_count_ = 0;

@@ -118,7 +118,7 @@ class Port {
   void set_timer() noexcept;
   static void timer_expired(void* self);
 
-  std::array<Signal, protocol::priority_levels> pended_{};
+  std::array<Signal, scheduling::level_count> pended_{};
   virtual_timer_t timer_{};
   base::Time target_ = base::never;
   void (*expire_)(void*) = nullptr;
@@ -151,7 +151,7 @@ inline constexpr base::Duration background_period = std::chrono::milliseconds{10
 
 /// The kernel's priority of a level's thread.
 [[nodiscard]] constexpr tprio_t priority_of(Level level) noexcept {
-  return NORMALPRIO + protocol::priority_levels - 1 - static_cast<tprio_t>(level);
+  return NORMALPRIO + scheduling::level_count - 1 - static_cast<tprio_t>(level);
 }
 
 /// Stack sizes, in bytes, on top of what the kernel needs for a switch and an interrupt.
@@ -224,7 +224,7 @@ class Levels {
 
   Port* port_;
   Work* work_;
-  std::array<Thread<StackBytes>, protocol::priority_levels - 1> threads_;
+  std::array<Thread<StackBytes>, scheduling::level_count - 1> threads_;
 };
 
 /// The threads of a board on a bus. `Controller` is ocm/controller/controller.hpp's.

@@ -34,6 +34,7 @@
 #include "ocm/protocol/identifier.hpp"
 #include "ocm/protocol/topic.hpp"
 #include "ocm/scheduling/admission.hpp"
+#include "ocm/scheduling/level.hpp"
 #include "ocm/scheduling/port.hpp"
 
 namespace ocm::analysis {
@@ -62,9 +63,9 @@ namespace detail {
 /// What is known of a sensor before anybody asks for it.
 struct SensorCost {
   std::uint32_t sample_us = 0;
-  std::uint32_t deadline_us = 0;                                     ///< 0: none but the period
-  std::uint32_t shortest_us = 0;                                     ///< how often the part has something new
-  std::array<std::uint32_t, protocol::priority_levels> frames_us{};  ///< by priority
+  std::uint32_t deadline_us = 0;                                   ///< 0: none but the period
+  std::uint32_t shortest_us = 0;                                   ///< how often the part has something new
+  std::array<std::uint32_t, scheduling::level_count> frames_us{};  ///< by level
 };
 
 [[nodiscard]] constexpr std::uint32_t bits_us(std::uint32_t bits, std::uint32_t bit_rate) noexcept {
@@ -79,7 +80,9 @@ template <class Topic, class Costs>
       std::min<std::int64_t>(Topic::deadline.count() / 1000, std::numeric_limits<std::int32_t>::max()));
   cost.shortest_us = static_cast<std::uint32_t>(std::min<std::int64_t>(
       Topic::shortest_period.count() / 1000, std::numeric_limits<std::int32_t>::max()));
-  for (std::size_t level = 0; level < protocol::priority_levels; ++level) {
+  // A request's priority is the level that its samples run at.
+  static_assert(protocol::priority_levels == scheduling::level_count);
+  for (std::size_t level = 0; level < scheduling::level_count; ++level) {
     std::uint32_t bits = 0;
     for (const auto& frame : Topic::frames)
       bits += protocol::worst_bits(frame, static_cast<protocol::Priority>(level));

@@ -41,6 +41,7 @@
 #include "ocm/can/bus.hpp"
 #include "ocm/can/frame.hpp"
 #include "ocm/controller/actuator_handler.hpp"
+#include "ocm/controller/level.hpp"
 #include "ocm/controller/report.hpp"
 #include "ocm/controller/sensor_handler.hpp"
 #include "ocm/protocol/counters.hpp"
@@ -255,7 +256,7 @@ class Controller {
     if constexpr (has_refusal) {
       constexpr std::size_t sensor = Board::sensors::template index<typename Board::refusal>;
       if (!active(sensor))  // who publishes it sees it at the next release
-        dispatcher_.once(first_sensor + sensor, Board::refusal::priority, port().now());
+        dispatcher_.once(first_sensor + sensor, level_of(Board::refusal::priority), port().now());
     }
   }
 

@@ -23,6 +23,7 @@
 #include "ocm/base/time.hpp"
 #include "ocm/can/bus.hpp"
 #include "ocm/can/frame.hpp"
+#include "ocm/controller/level.hpp"
 #include "ocm/controller/report.hpp"
 #include "ocm/protocol/counters.hpp"
 #include "ocm/protocol/request.hpp"
@@ -115,7 +116,7 @@ class SensorHandler<protocol::TopicList<Topics...>> {
     const base::Duration period = frame.dlc == 1 ? defaults.period : request.value.period.duration();
     if (request && request->mode == protocol::Mode::publish) {
       // Asked without the lock: this takes longer than a lock may.
-      if (const base::Error error = admission.admit(sensor, period, request->priority);
+      if (const base::Error error = admission.admit(sensor, period, level_of(request->priority));
           error != base::Error::none)
         request = error;
     }
@@ -133,11 +134,11 @@ class SensorHandler<protocol::TopicList<Topics...>> {
         admission.ended(sensor);
         break;
       case protocol::Mode::once:
-        dispatcher.once(stream, request->priority, now);
+        dispatcher.once(stream, level_of(request->priority), now);
         admission.ended(sensor);
         break;
       case protocol::Mode::publish:
-        dispatcher.start(stream, period, request->priority, now, defaults.jitter);
+        dispatcher.start(stream, period, level_of(request->priority), now, defaults.jitter);
         break;
     }
     return base::Error::none;
@@ -156,7 +157,7 @@ class SensorHandler<protocol::TopicList<Topics...>> {
   template <std::size_t Sensor, class Topic, class P, class Bus>
   scheduling::Outcome step(Slot<Topic>& slot, const scheduling::Release& release, P& port, Bus& bus,
                            protocol::Counters& counters) noexcept {
-    if (!release.resumed && !sample<Sensor>(slot, release.priority, port, counters))
+    if (!release.resumed && !sample<Sensor>(slot, priority_of(release.level), port, counters))
       return scheduling::Outcome::done;
     return send(slot.sending, Topic::frames, slot.payloads.data(), port, bus, counters);
   }

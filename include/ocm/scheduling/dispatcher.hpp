@@ -75,8 +75,8 @@ class Dispatcher {
   void expire() noexcept {
     [[maybe_unused]] const auto guard = port_->lock();
     const auto due = publisher_.due(port_->now());
-    for (unsigned level = 0; level < protocol::priority_levels; ++level)
-      if ((due.priorities >> level & 1U) != 0) port_->pend(static_cast<Level>(level));
+    for (unsigned level = 0; level < level_count; ++level)
+      if ((due.levels >> level & 1U) != 0) port_->pend(static_cast<Level>(level));
     armed_ = base::never;
     arm_by(due.next);
   }
@@ -131,7 +131,7 @@ class Dispatcher {
   /// A stream waits for `wake`.
   [[nodiscard]] bool waiting() const noexcept {
     [[maybe_unused]] const auto guard = port_->lock();
-    for (unsigned level = 0; level < protocol::priority_levels; ++level)
+    for (unsigned level = 0; level < level_count; ++level)
       if (publisher_.held(static_cast<Level>(level)) < Streams) return true;
     return false;
   }
@@ -159,7 +159,7 @@ class Dispatcher {
   void attend(std::size_t stream) noexcept {
     const base::Time next = publisher_.next_release(stream);
     if (next <= port_->now())
-      port_->pend(publisher_.priority(stream));
+      port_->pend(publisher_.level(stream));
     else
       arm_by(next);
   }

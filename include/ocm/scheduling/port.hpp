@@ -6,13 +6,9 @@
 #include <concepts>
 
 #include "ocm/base/time.hpp"
-#include "ocm/protocol/identifier.hpp"
+#include "ocm/scheduling/level.hpp"
 
 namespace ocm::scheduling {
-
-/// A priority level is the priority of the request: urgent, high, medium, low. A level preempts those after
-/// it.
-using Level = protocol::Priority;
 
 /// - `now()`: monotonic time. Any context.
 /// - `arm(when)`: have the timer's context call `expire()` of the dispatcher at `when`, or as soon after as

@@ -16,14 +16,14 @@
 #include <cstdint>
 
 #include "ocm/base/time.hpp"
-#include "ocm/protocol/identifier.hpp"
+#include "ocm/scheduling/level.hpp"
 
 namespace ocm::scheduling {
 
 /// One release that is due now.
 struct Release {
   std::size_t stream = 0;
-  protocol::Priority priority = protocol::default_priority;
+  Level level = default_level;
   base::Time scheduled{};    ///< where the grid has it
   std::uint32_t missed = 0;  ///< releases before this one that were skipped
   bool late = false;         ///< taken later than the stream's jitter allows
@@ -45,23 +45,23 @@ class Publisher {
   static constexpr std::size_t streams = N;
 
   /// Publishes stream `stream` every `period` (above zero), the first time at `from`. On a running stream
-  /// this replaces period, priority and grid at once. A release later than `jitter` (one above 4.29 s is
+  /// this replaces period, level and grid at once. A release later than `jitter` (one above 4.29 s is
   /// none) counts as late.
-  constexpr void start(std::size_t stream, base::Duration period, protocol::Priority priority,
-                       base::Time from, base::Duration jitter = base::Duration::max()) noexcept {
+  constexpr void start(std::size_t stream, base::Duration period, Level level, base::Time from,
+                       base::Duration jitter = base::Duration::max()) noexcept {
     Stream& s = streams_[stream];
     s.next = from;
     s.period = period;
     s.jitter_ns = nanoseconds(jitter);
-    s.priority = priority;
+    s.level = level;
     s.state = State::periodic;
   }
   /// One release at `when`, then none: a running stream stops at once.
-  constexpr void once(std::size_t stream, protocol::Priority priority, base::Time when) noexcept {
+  constexpr void once(std::size_t stream, Level level, base::Time when) noexcept {
     Stream& s = streams_[stream];
     s.next = when;
     s.jitter_ns = no_jitter;
-    s.priority = priority;
+    s.level = level;
     s.state = State::once;
   }
   /// Takes effect before the next release.
@@ -73,25 +73,22 @@ class Publisher {
   [[nodiscard]] constexpr base::Duration period(std::size_t stream) const noexcept {
     return streams_[stream].period;
   }
-  [[nodiscard]] constexpr protocol::Priority priority(std::size_t stream) const noexcept {
-    return streams_[stream].priority;
-  }
+  [[nodiscard]] constexpr Level level(std::size_t stream) const noexcept { return streams_[stream].level; }
 
-  /// Takes a release of this priority that is due at `now` into `release`: the one whose grid point is the
+  /// Takes a release of this level that is due at `now` into `release`: the one whose grid point is the
   /// earliest, of equal ones the lower stream number. False: none is due. The stream is taken until `done`.
-  [[nodiscard]] constexpr bool take_due(base::Time now, protocol::Priority priority,
-                                        Release& release) noexcept {
+  [[nodiscard]] constexpr bool take_due(base::Time now, Level level, Release& release) noexcept {
     std::size_t found = N;
     for (std::size_t i = 0; i < N; ++i) {
       const Stream& s = streams_[i];
-      if (s.priority != priority || !s.takeable() || s.next > now) continue;
+      if (s.level != level || !s.takeable() || s.next > now) continue;
       if (found == N || s.next < streams_[found].next) found = i;
     }
     if (found == N) return false;
 
     Stream& s = streams_[found];
-    release = {found, s.priority, s.next, 0, false, false};
-    s.taken_at = s.priority;
+    release = {found, s.level, s.next, 0, false, false};
+    s.taken_at = s.level;
     s.use = Use::taken;
     if (s.state == State::once) {
       s.state = State::idle;
@@ -115,14 +112,14 @@ class Publisher {
     streams_[stream].use = Use::held;
     ++held_;
   }
-  /// A held stream of this priority (the one that it was taken at), from number `from` on; N: there is none.
-  [[nodiscard]] constexpr std::size_t held(protocol::Priority priority, std::size_t from = 0) const noexcept {
+  /// A held stream of this level (the one that it was taken at), from number `from` on; N: there is none.
+  [[nodiscard]] constexpr std::size_t held(Level level, std::size_t from = 0) const noexcept {
     if (held_ == 0) return N;  // nearly always: spares a look at each
-    while (from < N && !(streams_[from].use == Use::held && streams_[from].taken_at == priority)) ++from;
+    while (from < N && !(streams_[from].use == Use::held && streams_[from].taken_at == level)) ++from;
     return from;
   }
-  /// The priority that a stream in use was taken at.
-  [[nodiscard]] constexpr protocol::Priority taken_at(std::size_t stream) const noexcept {
+  /// The level that a stream in use was taken at.
+  [[nodiscard]] constexpr Level taken_at(std::size_t stream) const noexcept {
     return streams_[stream].taken_at;
   }
   [[nodiscard]] constexpr bool in_use(std::size_t stream) const noexcept {
@@ -170,7 +167,7 @@ class Publisher {
   }
 
   struct Due {
-    std::uint8_t priorities = 0;    ///< a bit for each that has a stream due
+    std::uint8_t levels = 0;        ///< a bit for each that has a stream due
     base::Time next = base::never;  ///< the first release after now
   };
   [[nodiscard]] constexpr Due due(base::Time now) const noexcept {
@@ -178,8 +175,7 @@ class Publisher {
     for (const Stream& s : streams_) {
       if (!s.takeable()) continue;
       if (s.next <= now)
-        result.priorities =
-            static_cast<std::uint8_t>(result.priorities | 1U << static_cast<unsigned>(s.priority));
+        result.levels = static_cast<std::uint8_t>(result.levels | 1U << static_cast<unsigned>(s.level));
       else if (s.next < result.next)
         result.next = s.next;
     }
@@ -195,8 +191,8 @@ class Publisher {
     base::Duration period{};
     std::uint32_t jitter_ns = no_jitter;
     Overload overload{};
-    protocol::Priority priority = protocol::default_priority;
-    protocol::Priority taken_at = protocol::default_priority;
+    Level level = default_level;
+    Level taken_at = default_level;
     State state = State::idle;
     Use use = Use::none;
 

@@ -137,7 +137,7 @@ class Cpu {
              job.started = now_;
              return Job{demand(job.release), [this, &dispatcher, &record, job]() mutable {
                           job.ended = now_;
-                          job.blocked = std::exchange(context(job.release.priority).blocked, {});
+                          job.blocked = std::exchange(context(job.release.level).blocked, {});
                           record(job);
                           dispatcher.done(job.release.stream);
                         }};
@@ -195,7 +195,7 @@ class Cpu {
   [[nodiscard]] base::Duration idle() const noexcept { return idle_; }
 
  private:
-  static constexpr std::size_t levels = protocol::priority_levels;
+  static constexpr std::size_t levels = scheduling::level_count;
   static constexpr std::size_t nobody = levels;
 
   struct Context {

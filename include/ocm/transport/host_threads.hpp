@@ -134,7 +134,7 @@ class HostThreads {
 
  private:
   static constexpr std::int64_t second_ns = 1'000'000'000;
-  static constexpr std::size_t timer = protocol::priority_levels;
+  static constexpr std::size_t timer = scheduling::level_count;
 
   struct Context {
     pthread_cond_t wake{};
@@ -248,7 +248,7 @@ class HostThreads {
   bool stopping_ = false;
   std::function<void()> expire_;
   std::function<void(Level)> run_;
-  std::array<Context, protocol::priority_levels + 1> contexts_{};
+  std::array<Context, scheduling::level_count + 1> contexts_{};
   int processor_ = -1;
   std::optional<Failure> shortfall_;
 };

@@ -90,19 +90,21 @@ static_assert(amiro::catalogue.find("gyro")->id == TopicId{0x08});
 constexpr bool releases_lie_on_a_grid() {
   scheduling::Publisher<2> publisher;
   scheduling::Release due;
-  const auto take = [&](Priority level, base::Time now) {
+  const auto take = [&](scheduling::Level level, base::Time now) {
     if (!publisher.take_due(now, level, due)) return false;
     publisher.done(due.stream, now);
     return true;
   };
-  publisher.start(0, 100ms, Priority::low, base::Time{5ms});
-  publisher.start(1, 100ms, Priority::urgent, base::Time{5ms});
-  if (publisher.due(base::Time{5ms}).priorities != 0b1001) return false;
-  if (!take(Priority::urgent, base::Time{5ms}) || due.stream != 1) return false;
-  if (!take(Priority::low, base::Time{5ms}) || due.stream != 0) return false;
-  if (take(Priority::low, base::Time{104ms}) || publisher.next_release() != base::Time{105ms}) return false;
+  publisher.start(0, 100ms, scheduling::Level::low, base::Time{5ms});
+  publisher.start(1, 100ms, scheduling::Level::urgent, base::Time{5ms});
+  if (publisher.due(base::Time{5ms}).levels != 0b1001) return false;
+  if (!take(scheduling::Level::urgent, base::Time{5ms}) || due.stream != 1) return false;
+  if (!take(scheduling::Level::low, base::Time{5ms}) || due.stream != 0) return false;
+  if (take(scheduling::Level::low, base::Time{104ms}) || publisher.next_release() != base::Time{105ms})
+    return false;
   publisher.stop(1);
-  if (!take(Priority::low, base::Time{333ms}) || due.scheduled != base::Time{305ms} || due.missed != 2)
+  if (!take(scheduling::Level::low, base::Time{333ms}) || due.scheduled != base::Time{305ms} ||
+      due.missed != 2)
     return false;
   return publisher.next_release() == base::Time{405ms};
 }

@@ -91,7 +91,7 @@ TEST_CASE("a stream is released at once, then on its grid, and the timer is arme
   for (std::size_t i = 0; i < 10; ++i) {
     CHECK(setup.releases[i].scheduled == at(3ms + 10ms * i));
     CHECK(setup.releases[i].stream == 1);
-    CHECK(setup.releases[i].priority == Level::high);
+    CHECK(setup.releases[i].level == Level::high);
   }
   CHECK(setup.port.arms == 10);
   CHECK(setup.dispatcher.active() == 1);
@@ -138,8 +138,8 @@ TEST_CASE("what is asked for while a job runs acts from its next release") {
   setup.dispatcher.start(0, 10ms, Level::low, at(0ms));
   setup.pass_to(12ms);
   REQUIRE(setup.releases.size() == 3);
-  CHECK(setup.releases[0].priority == Level::low);
-  CHECK(setup.releases[1].priority == Level::urgent);
+  CHECK(setup.releases[0].level == Level::low);
+  CHECK(setup.releases[1].level == Level::urgent);
   CHECK(setup.releases[1].scheduled == at(4ms));
   CHECK(setup.releases[2].scheduled == at(11ms));
 }
@@ -194,9 +194,9 @@ TEST_CASE("what waits is resumed by the level that began it, before anything new
   setup.pass_to(40ms);
   REQUIRE(setup.releases.size() == 4);
   CHECK(setup.releases[2].resumed);
-  CHECK(setup.releases[2].priority == Level::low);
+  CHECK(setup.releases[2].level == Level::low);
   CHECK_FALSE(setup.releases[3].resumed);
-  CHECK(setup.releases[3].priority == Level::urgent);
+  CHECK(setup.releases[3].level == Level::urgent);
   CHECK(setup.releases[3].scheduled == at(32ms));
   CHECK_FALSE(setup.dispatcher.waiting());
   CHECK(setup.dispatcher.overload(0).overrun == 3);

@@ -147,7 +147,7 @@ class Naive {
     unroll(stream, now);
     release = {};
     release.stream = best;
-    release.priority = level;
+    release.level = level;
     while (stream.points.size() > 1 && stream.points[1] <= now) {
       stream.points.pop_front();
       ++release.missed;
@@ -363,7 +363,7 @@ TEST_CASE("never two starts in one period, none after a stop, and each on the gr
           if (request.time <= job.started) newest = &request;
         REQUIRE(newest != nullptr);
         REQUIRE(newest->period > 0us);  // not stopped
-        REQUIRE(job.release.priority == newest->level);
+        REQUIRE(job.release.level == newest->level);
         REQUIRE((job.release.scheduled - newest->time) % newest->period == 0ns);
         REQUIRE(job.release.scheduled <= job.started);
         REQUIRE(job.started - job.release.scheduled < newest->period);

@@ -95,8 +95,3 @@ TEST_CASE("what is asked of it before its tasks exist is done when they do") {
   CHECK(expired == 1);
   CHECK(ran == 1);
 }
-
-TEST_CASE("a level is the priority of a request") {
-  STATIC_REQUIRE(std::is_same_v<Level, protocol::Priority>);
-  STATIC_REQUIRE(Level::urgent < Level::low);
-}

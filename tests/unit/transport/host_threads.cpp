@@ -7,6 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include "ocm/controller/controller.hpp"
+#include "ocm/controller/level.hpp"
 #include "ocm/protocol/message.hpp"
 #include "ocm/protocol/request.hpp"
 #include "ocm/scheduling/resource.hpp"
@@ -170,9 +171,10 @@ TEST_CASE("a whole board on threads: requests from two sides of it, a bus that i
       board.receive(frame, threads.now());
       ++asked;
     };
-    say(*protocol::publish_every(amiro::Magnetometer::id, 2ms, level));
-    say(*protocol::publish_every(amiro::FloorProximity::id, 3ms, levels[(i + 1) % 4]));
-    if (i % 3 == 0) say(protocol::once(amiro::Gyroscope::id, level));
+    say(*protocol::publish_every(amiro::Magnetometer::id, 2ms, controller::priority_of(level)));
+    say(*protocol::publish_every(amiro::FloorProximity::id, 3ms,
+                                 controller::priority_of(levels[(i + 1) % 4])));
+    if (i % 3 == 0) say(protocol::once(amiro::Gyroscope::id, controller::priority_of(level)));
     if (i % 5 == 0) say(protocol::command(amiro::Motors{i + 1, 0}));
     if (i % 50 == 49) {
       board.bus_lost();

@@ -170,7 +170,7 @@ class Preemptive {
     return false;
   }
 
-  std::size_t running = protocol::priority_levels;  ///< none
+  std::size_t running = scheduling::level_count;  ///< none
   std::function<void()> between;
 
  private:

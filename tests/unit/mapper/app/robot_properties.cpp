@@ -76,7 +76,7 @@ void survives(std::uint32_t seeds, int time_ms) {
         if (inside || !chaos.one_in(40)) return;
         inside = true;
         chaos.interrupt();
-        if (bench.port.running == protocol::priority_levels) {
+        if (bench.port.running == scheduling::level_count) {
           inside = false;
           return;
         }
