@@ -14,9 +14,9 @@
 #include <thread>
 
 #include "ocm/protocol/message.hpp"
+#include "ocm/simulation/virtual_bus_server.hpp"
 #include "ocm/topics/amiro.hpp"
 #include "ocm/transport/virtual_bus.hpp"
-#include "ocm/transport/virtual_bus_server.hpp"
 
 extern char** environ;  // NOLINT: POSIX names it so
 
@@ -29,7 +29,7 @@ namespace {
 class Server {
  public:
   explicit Server(const std::string& path)
-      : server_(transport::VirtualBusServer::open({.path = path, .bit_rate = 1'000'000'000})) {
+      : server_(simulation::VirtualBusServer::open({.path = path, .bit_rate = 1'000'000'000})) {
     if (server_) thread_ = std::thread{[this] { serve(); }};
   }
   ~Server() {
@@ -48,7 +48,7 @@ class Server {
       ::poll(&input, 1, busy ? 0 : 1);
     }
   }
-  transport::Outcome<std::unique_ptr<transport::VirtualBusServer>> server_;
+  transport::Outcome<std::unique_ptr<simulation::VirtualBusServer>> server_;
   std::atomic<bool> over_{false};
   std::thread thread_;
 };

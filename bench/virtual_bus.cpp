@@ -16,7 +16,7 @@
 #include <thread>
 
 #include "ocm/simulation/arbiter.hpp"
-#include "ocm/transport/virtual_bus_server.hpp"
+#include "ocm/simulation/virtual_bus_server.hpp"
 
 namespace {
 
@@ -64,7 +64,7 @@ void fail(const transport::Failure& failure) {
 }
 
 /// The server with its own clock, as amiroctl sim drives it.
-void serve(transport::VirtualBusServer& server, const std::atomic<bool>& done) {
+void serve(simulation::VirtualBusServer& server, const std::atomic<bool>& done) {
   const auto begin = SteadyClock::now();
   const auto now = [&] { return base::Time{SteadyClock::now() - begin}; };
   while (!done) {
@@ -79,7 +79,7 @@ void serve(transport::VirtualBusServer& server, const std::atomic<bool>& done) {
 }
 
 double through_sockets(const std::string& path, std::uint32_t frames) {
-  auto server = transport::VirtualBusServer::open({.path = path, .bit_rate = 1'000'000'000});
+  auto server = simulation::VirtualBusServer::open({.path = path, .bit_rate = 1'000'000'000});
   if (!server) fail(server.error);
   std::atomic<bool> done{false};
   std::thread serving{[&] { serve(**server, done); }};

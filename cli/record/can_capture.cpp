@@ -84,8 +84,7 @@ transport::Outcome<std::unique_ptr<Capture>> CanCapture::open(std::string_view n
       capture->index_ = interface.index;
       capture->bit_rate_ = interface.bit_rate;
     }
-  capture->socket_ =
-      transport::Descriptor{::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW)};
+  capture->socket_ = host::Descriptor{::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW)};
   if (!capture->socket_) return transport::can_socket_failure(errno);
   if (capture->index_ == 0) return transport::detail::gone_failure(name);  // 0 would be all interfaces
   if (const int error = prepare(capture->socket_.get(), filters, capture->index_); error != 0)

@@ -14,8 +14,8 @@
 #include <sys/uio.h>
 #include <time.h>
 
+#include "ocm/host/descriptor.hpp"
 #include "ocm/log/entry.hpp"
-#include "ocm/transport/descriptor.hpp"
 #include "ocm/transport/socketcan.hpp"
 
 #include "cli/record/capture.hpp"
@@ -52,7 +52,7 @@ class CanCapture final : public Capture {
   void read_control(msghdr& message, log::Entry& entry);
   void lose(int error);
 
-  transport::Descriptor socket_;
+  host::Descriptor socket_;
   std::string name_;
   int index_ = 0;
   std::uint32_t bit_rate_ = 0;

@@ -8,7 +8,7 @@
 
 #include "ocm/base/decimal.hpp"
 #include "ocm/client/quantity.hpp"
-#include "ocm/transport/descriptor.hpp"
+#include "ocm/host/descriptor.hpp"
 
 namespace ocm::cli::record {
 
@@ -42,7 +42,7 @@ std::string numbered(const FileName& name, std::uint64_t number) {
 }
 
 Claimed claim(const std::string& path) {
-  const transport::Descriptor file{::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)};
+  const host::Descriptor file{::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)};
   if (file) return Claimed::ours;
   if (errno != EEXIST) return Claimed::failed;
   struct stat what {};

@@ -13,7 +13,7 @@
 #include <fmt/format.h>
 
 #include "ocm/can/error_frame.hpp"
-#include "ocm/transport/system_time.hpp"
+#include "ocm/host/system_time.hpp"
 
 #include "cli/interrupt.hpp"
 #include "cli/record/names.hpp"
@@ -235,7 +235,7 @@ void Recorder::wait() {
       entries[count++] = {port.capture->descriptor(), POLLIN, 0};
   }
   if (::poll(entries.data(), count, static_cast<int>(limit.count())) <= 0 || !patient_ || live_) return;
-  const timespec time = transport::to_timespec(fetch_pause);
+  const timespec time = host::to_timespec(fetch_pause);
   ::nanosleep(&time, nullptr);
 }
 

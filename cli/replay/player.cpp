@@ -5,7 +5,7 @@
 #include <chrono>
 #include <time.h>
 
-#include "ocm/transport/system_time.hpp"
+#include "ocm/host/system_time.hpp"
 
 #include "cli/interrupt.hpp"
 #include "cli/output/printer.hpp"
@@ -22,7 +22,7 @@ void wait_until(base::Time time) {
     const base::Time now = monotonic_now();
     if (now >= time) return;
     const base::Time step = std::min(time, now + base::Duration{std::chrono::milliseconds{200}});
-    const timespec until = transport::to_timespec(step.time_since_epoch());
+    const timespec until = host::to_timespec(step.time_since_epoch());
     ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
   }
 }

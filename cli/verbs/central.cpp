@@ -13,9 +13,9 @@
 
 #include <fmt/format.h>
 
+#include "ocm/host/system_time.hpp"
 #include "ocm/mapper/link/prefix.hpp"
 #include "ocm/transport/pty.hpp"
-#include "ocm/transport/system_time.hpp"
 
 #include "cli/central/server_end.hpp"
 #include "cli/central/switchboard.hpp"
@@ -96,7 +96,7 @@ void wait(const Switchboard& board, const ServerEnd& server, base::Duration limi
   std::vector<pollfd> inputs;
   server.watch(inputs, board.output().size() < Switchboard::max_output, !board.output().empty());
   board.watch(inputs);
-  const timespec time = transport::to_timespec(limit);
+  const timespec time = host::to_timespec(limit);
   ::ppoll(inputs.data(), inputs.size(), &time, nullptr);
 }
 

@@ -15,7 +15,7 @@
 #include <fmt/format.h>
 
 #include "ocm/can/bus.hpp"
-#include "ocm/transport/virtual_bus_server.hpp"
+#include "ocm/simulation/virtual_bus_server.hpp"
 
 #include "cli/interrupt.hpp"
 #include "cli/verbs/commanding.hpp"
@@ -242,13 +242,13 @@ void simulate_on(transport::Bus& bus, const SimOptions& options) {
 
 /// The boards and any number of programs on a virtual bus.
 void serve(const std::string& bus_name, const SimOptions& options) {
-  transport::VirtualBusOptions bus_options;
+  simulation::VirtualBusOptions bus_options;
   if (bus_name.starts_with("sim:")) bus_options.path = bus_name.substr(4);
   bus_options.name = amiro::catalogue.robot;
   bus_options.bit_rate = options.bit_rate;
   bus_options.to_unix_time = std::chrono::system_clock::now().time_since_epoch();
   bus_options.report = [](std::string_view sentence) { remark(sentence); };
-  auto opened = transport::VirtualBusServer::open(bus_options);
+  auto opened = simulation::VirtualBusServer::open(bus_options);
   if (!opened) fail(opened.error);
   auto& server = **opened;
   auto& arbiter = server.arbiter();

@@ -14,8 +14,8 @@
 
 #include <fmt/format.h>
 
+#include "ocm/host/system_time.hpp"
 #include "ocm/transport/pty.hpp"
-#include "ocm/transport/system_time.hpp"
 
 #include "cli/interrupt.hpp"
 #include "cli/session.hpp"
@@ -90,7 +90,7 @@ void print_robot(Robot& robot, const std::string& link) {
 
 void wait(const std::vector<pollfd>& inputs, base::Duration limit) {
   std::vector<pollfd> copy = inputs;
-  const timespec time = transport::to_timespec(limit);
+  const timespec time = host::to_timespec(limit);
   ::ppoll(copy.data(), copy.size(), &time, nullptr);
 }
 

@@ -27,8 +27,8 @@
 #include <vector>
 
 #include "ocm/base/result.hpp"
+#include "ocm/host/descriptor.hpp"
 #include "ocm/transport/bus.hpp"
-#include "ocm/transport/descriptor.hpp"
 
 #include "firmware/qemu/link.hpp"
 
@@ -51,7 +51,7 @@ class QemuProcess {
           "no image of " + options.name + ": " + options.image + ": " + std::strerror(errno),
           "build it: scripts/build firmware, or say where it is with --images"};
     std::unique_ptr<QemuProcess> qemu{new QemuProcess(std::move(options))};
-    std::vector<transport::Descriptor> theirs;
+    std::vector<host::Descriptor> theirs;
     for (std::size_t i = 0; i < lines; ++i) {
       int ends[2];
       if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) < 0)
@@ -100,7 +100,7 @@ class QemuProcess {
  private:
   explicit QemuProcess(QemuOptions options) : options_(std::move(options)) {}
 
-  std::optional<transport::Failure> spawn(std::span<const transport::Descriptor> theirs) {
+  std::optional<transport::Failure> spawn(std::span<const host::Descriptor> theirs) {
     // Their ends must survive exec, under numbers that nobody else has.
     constexpr int first_number = 10;
     constexpr int out_of_the_way = 40;
@@ -130,8 +130,8 @@ class QemuProcess {
     int report[2];
     if (::pipe2(report, O_CLOEXEC) < 0)
       return transport::Failure{std::string{"no pipe: "} + std::strerror(errno), "close other programs"};
-    transport::Descriptor reading{report[0]};
-    transport::Descriptor writing{report[1]};
+    host::Descriptor reading{report[0]};
+    host::Descriptor writing{report[1]};
     const pid_t parent = ::getpid();
     process_ = ::fork();
     if (process_ == 0) {
@@ -167,7 +167,7 @@ class QemuProcess {
   QemuOptions options_;
   pid_t process_ = -1;
   std::string end_;
-  std::vector<transport::Descriptor> lines_;
+  std::vector<host::Descriptor> lines_;
 };
 
 /// The host's end of a parts' line: requests in, answers out. (firmware/qemu/link.hpp)

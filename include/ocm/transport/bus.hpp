@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <span>
-#include <string>
 #include <string_view>
 
 #include "ocm/base/result.hpp"
@@ -11,18 +10,12 @@
 #include "ocm/can/bus.hpp"
 #include "ocm/can/filter.hpp"
 #include "ocm/can/frame.hpp"
+#include "ocm/host/failure.hpp"
 
 namespace ocm::transport {
 
-/// What went wrong, said to a person: what and where, and what to do about it.
-struct Failure {
-  std::string what;
-  std::string remedy;
-  friend bool operator==(const Failure&, const Failure&) = default;
-};
-
-template <class T>
-using Outcome = base::Result<T, Failure>;
+using host::Failure;
+using host::Outcome;
 
 /// What happened to frames on their way. Nothing is lost without one of these going up.
 struct BusCounters {

@@ -21,8 +21,8 @@
 #include <sys/socket.h>
 #include <vector>
 
-#include "ocm/transport/bus.hpp"
-#include "ocm/transport/descriptor.hpp"
+#include "ocm/host/descriptor.hpp"
+#include "ocm/host/failure.hpp"
 
 namespace ocm::transport {
 
@@ -105,7 +105,7 @@ enum class LinkDump : std::uint8_t { more, done, failed };
   return LinkDump::more;
 }
 
-[[nodiscard]] inline Failure interfaces_failure(int error) {
+[[nodiscard]] inline host::Failure interfaces_failure(int error) {
   return {std::string("cannot list the network interfaces (") + std::strerror(error) + ")",
           "name the bus with --bus; if a sandbox forbids netlink sockets, run outside of it"};
 }
@@ -114,8 +114,8 @@ enum class LinkDump : std::uint8_t { more, done, failed };
 
 /// Every CAN interface of the machine, up or down, in the kernel's order. Empty when there is none, which is
 /// also the answer of a kernel without CAN: `can_support` tells these apart. About 50 us and 64 KiB of stack.
-[[nodiscard]] inline Outcome<std::vector<CanInterface>> query_can_interfaces() {
-  const Descriptor socket{::socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC, NETLINK_ROUTE)};
+[[nodiscard]] inline host::Outcome<std::vector<CanInterface>> query_can_interfaces() {
+  const host::Descriptor socket{::socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC, NETLINK_ROUTE)};
   if (!socket) return detail::interfaces_failure(errno);
   struct {
     nlmsghdr header{};
@@ -149,7 +149,7 @@ enum class LinkDump : std::uint8_t { more, done, failed };
 }
 
 /// Why a CAN_RAW socket cannot be had, from the errno of socket(2).
-[[nodiscard]] inline Failure can_socket_failure(int error) {
+[[nodiscard]] inline host::Failure can_socket_failure(int error) {
   const std::string reason = std::string(" (") + std::strerror(error) + ")";
   switch (error) {
     case EAFNOSUPPORT:
@@ -169,8 +169,8 @@ enum class LinkDump : std::uint8_t { more, done, failed };
 
 /// Whether this process can have CAN sockets at all, by opening one. May make the kernel load its CAN
 /// modules.
-[[nodiscard]] inline Outcome<void> can_support() {
-  const Descriptor socket{::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC, CAN_RAW)};
+[[nodiscard]] inline host::Outcome<void> can_support() {
+  const host::Descriptor socket{::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC, CAN_RAW)};
   if (!socket) return can_socket_failure(errno);
   return {};
 }

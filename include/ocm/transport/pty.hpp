@@ -26,33 +26,33 @@
 #include <utility>
 
 #include "ocm/base/result.hpp"
-#include "ocm/transport/bus.hpp"
-#include "ocm/transport/descriptor.hpp"
-#include "ocm/transport/virtual_bus_protocol.hpp"
+#include "ocm/host/descriptor.hpp"
+#include "ocm/host/failure.hpp"
+#include "ocm/host/user_directory.hpp"
 
 namespace ocm::transport {
 
 /// Where a simulated or wired central has its line: beside the virtual bus, for this user alone.
 [[nodiscard]] inline std::string central_line() {
-  return virtual_bus::default_directory() + "/central";
+  return host::user_directory() + "/central";
 }
 /// The folder of robots' own lines, by their names.
 [[nodiscard]] inline std::string robot_lines() {
-  return virtual_bus::default_directory() + "/line";
+  return host::user_directory() + "/line";
 }
 /// Makes the folder of this user in which both lie, and that of the lines; nothing when they can be trusted.
-[[nodiscard]] inline std::optional<Failure> make_line_folders() {
-  const std::string directory = virtual_bus::default_directory();
+[[nodiscard]] inline std::optional<host::Failure> make_line_folders() {
+  const std::string directory = host::user_directory();
   ::mkdir(directory.c_str(), 0700);  // whatever the answer, the check tells
-  if (auto problem = virtual_bus::check_directory(directory)) return problem;
+  if (auto problem = host::check_private(directory)) return problem;
   ::mkdir(robot_lines().c_str(), 0700);
-  return virtual_bus::check_directory(robot_lines());
+  return host::check_private(robot_lines());
 }
 
 /// Whether a Pty of some program has this link. One that a killed program has left may lead by now to a
 /// terminal of somebody else: who opens a link by itself asks first.
 [[nodiscard]] inline bool is_served(const std::string& link) noexcept {
-  const Descriptor lock{::open((link + ".lock").c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW)};
+  const host::Descriptor lock{::open((link + ".lock").c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW)};
   return lock && ::flock(lock.get(), LOCK_SH | LOCK_NB) < 0;
 }
 
@@ -82,14 +82,14 @@ class Pty {
 
   /// `link`: a path by which programs find it; none when empty. Refused when another program serves it, or
   /// when it is something else than a link.
-  [[nodiscard]] static Outcome<Pty> open(const std::string& link = {}) {
+  [[nodiscard]] static host::Outcome<Pty> open(const std::string& link = {}) {
     Pty pty;
-    pty.master_ = Descriptor{::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)};
+    pty.master_ = host::Descriptor{::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)};
     char name[64] = {};
     if (!pty.master_ || ::grantpt(pty.master_.get()) < 0 || ::unlockpt(pty.master_.get()) < 0 ||
         ::ptsname_r(pty.master_.get(), name, sizeof name) != 0)
-      return Failure{std::string("cannot make a pseudo terminal: ") + std::strerror(errno),
-                     "is /dev/pts mounted, and are there any left? See /proc/sys/kernel/pty/max"};
+      return host::Failure{std::string("cannot make a pseudo terminal: ") + std::strerror(errno),
+                           "is /dev/pts mounted, and are there any left? See /proc/sys/kernel/pty/max"};
     pty.path_ = name;
     pty.renew();
     if (link.empty()) return pty;
@@ -155,7 +155,7 @@ class Pty {
   /// Bytes as they are, and none of before. Opened and closed once, the line tells whether anybody has it
   /// open.
   void renew() const {
-    const Descriptor line{::open(path_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)};
+    const host::Descriptor line{::open(path_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)};
     termios settings{};
     if (!line || ::tcgetattr(line.get(), &settings) < 0) return;
     ::cfmakeraw(&settings);
@@ -163,19 +163,19 @@ class Pty {
     ::tcflush(line.get(), TCIOFLUSH);
   }
 
-  [[nodiscard]] std::optional<Failure> make_link(const std::string& link) {
+  [[nodiscard]] std::optional<host::Failure> make_link(const std::string& link) {
     const std::string lock = link + ".lock";
     struct stat named {};
     for (struct stat locked{}; named.st_ino == 0 || named.st_ino != locked.st_ino;) {
-      lock_ = Descriptor{::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600)};
+      lock_ = host::Descriptor{::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600)};
       if (!lock_)
-        return Failure{"cannot write '" + lock + "': " + std::strerror(errno),
-                       "create its folder (mkdir -p), or choose another path"};
+        return host::Failure{"cannot write '" + lock + "': " + std::strerror(errno),
+                             "create its folder (mkdir -p), or choose another path"};
       // Somebody may just be asking whether it is served.
       for (int tries = 0; ::flock(lock_.get(), LOCK_EX | LOCK_NB) < 0; ++tries) {
         if (tries == 5)
-          return Failure{"another program serves '" + link + "'",
-                         "end it (`fuser -v " + lock + "` names it), or choose another path"};
+          return host::Failure{"another program serves '" + link + "'",
+                               "end it (`fuser -v " + lock + "` names it), or choose another path"};
         ::usleep(1000);
       }
       // One that has just ended may have taken the lock's name away meanwhile.
@@ -185,13 +185,14 @@ class Pty {
     const bool there = ::lstat(link.c_str(), &status) == 0;
     if (there && !S_ISLNK(status.st_mode)) {
       ::unlink(lock.c_str());
-      return Failure{"'" + link + "' is there, and no link", "remove it, or choose another path"};
+      return host::Failure{"'" + link + "' is there, and no link", "remove it, or choose another path"};
     }
     if (there) ::unlink(link.c_str());
     if (::symlink(path_.c_str(), link.c_str()) < 0) {
       const int error = errno;
       ::unlink(lock.c_str());
-      return Failure{"cannot make the link '" + link + "': " + std::strerror(error), "choose another path"};
+      return host::Failure{"cannot make the link '" + link + "': " + std::strerror(error),
+                           "choose another path"};
     }
     link_ = link;
     return std::nullopt;
@@ -203,8 +204,8 @@ class Pty {
     link_.clear();
   }
 
-  Descriptor master_;
-  Descriptor lock_;
+  host::Descriptor master_;
+  host::Descriptor lock_;
   std::string path_;
   std::string link_;
   bool attached_ = false;

@@ -32,8 +32,8 @@
 #include <vector>
 
 #include "ocm/base/result.hpp"
-#include "ocm/transport/bus.hpp"
-#include "ocm/transport/descriptor.hpp"
+#include "ocm/host/descriptor.hpp"
+#include "ocm/host/failure.hpp"
 
 namespace ocm::transport {
 
@@ -86,7 +86,7 @@ inline constexpr std::array<std::pair<std::uint32_t, speed_t>, 18> serial_speeds
   return text;
 }
 
-[[nodiscard]] inline Failure open_failure(const std::string& path, int error) {
+[[nodiscard]] inline host::Failure open_failure(const std::string& path, int error) {
   const std::string reason = std::string(" (") + std::strerror(error) + ")";
   switch (error) {
     case ENOENT:
@@ -114,7 +114,7 @@ inline constexpr std::array<std::pair<std::uint32_t, speed_t>, 18> serial_speeds
 }
 
 /// `other`: what it could have been instead of a serial device.
-[[nodiscard]] inline Failure no_serial_device(const std::string& path, std::string_view other = {}) {
+[[nodiscard]] inline host::Failure no_serial_device(const std::string& path, std::string_view other = {}) {
   const std::string devices = serial_devices();
   return {"'" + path + "' is " +
               (other.empty() ? "no serial device" : "neither a serial device nor " + std::string(other)),
@@ -122,7 +122,7 @@ inline constexpr std::array<std::pair<std::uint32_t, speed_t>, 18> serial_speeds
                           : "the serial devices here are: " + devices};
 }
 
-[[nodiscard]] inline Failure line_gone(const std::string& what, int error) {
+[[nodiscard]] inline host::Failure line_gone(const std::string& what, int error) {
   return {what + " is gone: unplugged, or its other end closed" +
               (error == 0 || error == EIO ? "" : " (" + std::string(std::strerror(error)) + ")"),
           "plug it in again and start anew"};
@@ -155,14 +155,14 @@ class SerialPort {
 
   /// What was in the line before is thrown away. The failure says what is wrong and what to do: no such
   /// device, none at all, not allowed, in use, taken by the kernel, a speed that it does not have.
-  [[nodiscard]] static Outcome<SerialPort> open(const std::string& path, std::uint32_t baud = 115'200) {
+  [[nodiscard]] static host::Outcome<SerialPort> open(const std::string& path, std::uint32_t baud = 115'200) {
     SerialPort port;
     port.path_ = path;
     // Looked at first: opening a FIFO or a tape has effects of its own.
     struct stat status {};
     if (::stat(path.c_str(), &status) < 0) return detail::open_failure(path, errno);
     if (!S_ISCHR(status.st_mode)) return detail::no_serial_device(path);
-    port.line_ = Descriptor{::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)};
+    port.line_ = host::Descriptor{::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)};
     if (!port.line_) return detail::open_failure(path, errno);
     if (auto problem = port.take(baud)) return std::move(*problem);
     return port;
@@ -204,7 +204,7 @@ class SerialPort {
     return ::ioctl(line_.get(), TIOCOUTQ, &waits) == 0 && waits > 0 ? static_cast<std::size_t>(waits) : 0;
   }
   /// Why `read` or `write` answered Error::closed.
-  [[nodiscard]] const Failure& failure() const noexcept { return failure_; }
+  [[nodiscard]] const host::Failure& failure() const noexcept { return failure_; }
 
   /// Throws away what the kernel has not yet sent: it must not make the end wait.
   void close() noexcept {
@@ -218,13 +218,13 @@ class SerialPort {
   }
 
  private:
-  [[nodiscard]] std::optional<Failure> take(std::uint32_t baud) {
+  [[nodiscard]] std::optional<host::Failure> take(std::uint32_t baud) {
     termios settings{};
     if (::tcgetattr(line_.get(), &settings) < 0) return detail::no_serial_device(path_);
     int discipline = 0;
     if (::ioctl(line_.get(), TIOCGETD, &discipline) == 0 && discipline == N_SLCAN)
-      return Failure{"'" + path_ + "' is taken by the kernel's slcan driver",
-                     "use the interface that it has made (`ip link show type can`), or end slcand"};
+      return host::Failure{"'" + path_ + "' is taken by the kernel's slcan driver",
+                           "use the interface that it has made (`ip link show type can`), or end slcand"};
     // Both: the lock also keeps root out, the other also programs that do not look for locks. A pseudo
     // terminal would stay exclusive when its program is killed, until its other end goes.
     if (::flock(line_.get(), LOCK_EX | LOCK_NB) < 0 && errno == EWOULDBLOCK)
@@ -239,8 +239,8 @@ class SerialPort {
     settings.c_cc[VTIME] = 0;
     const std::uint32_t nearest = detail::nearest_serial_speed(baud);
     if (nearest != baud)
-      return Failure{"a serial line has no speed " + std::to_string(baud) + " here",
-                     "the nearest is " + std::to_string(nearest)};
+      return host::Failure{"a serial line has no speed " + std::to_string(baud) + " here",
+                           "the nearest is " + std::to_string(nearest)};
     for (const auto& [number, speed] : detail::serial_speeds) {
       if (number == baud) {
         ::cfsetispeed(&settings, speed);
@@ -248,7 +248,7 @@ class SerialPort {
       }
     }
     if (::tcsetattr(line_.get(), TCSANOW, &settings) < 0)
-      return Failure{
+      return host::Failure{
           "cannot set '" + path_ + "' to " + std::to_string(baud) + " baud: " + std::strerror(errno),
           "try another speed, such as 115200"};
     ::tcflush(line_.get(), TCIOFLUSH);
@@ -265,9 +265,9 @@ class SerialPort {
   }
 
   std::string path_;
-  Descriptor line_;
+  host::Descriptor line_;
   std::optional<termios> restore_;
-  Failure failure_;
+  host::Failure failure_;
 };
 
 }  // namespace ocm::transport

@@ -32,10 +32,10 @@
 #include <vector>
 
 #include "ocm/can/slcan.hpp"
+#include "ocm/host/descriptor.hpp"
+#include "ocm/host/system_time.hpp"
 #include "ocm/transport/bus.hpp"
-#include "ocm/transport/descriptor.hpp"
 #include "ocm/transport/serial_port.hpp"
-#include "ocm/transport/system_time.hpp"
 
 namespace ocm::transport {
 
@@ -289,7 +289,7 @@ class Slcan final : public Bus {
       return Failure{"the path '" + path_ + "' is too long for a socket",
                      "use one of at most 107 characters"};
     std::copy(path_.begin(), path_.end(), std::begin(address.sun_path));
-    socket_ = Descriptor{::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)};
+    socket_ = host::Descriptor{::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)};
     if (!socket_ || ::connect(socket_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) < 0)
       return errno == EAGAIN ? detail::open_failure(path_, EBUSY) : detail::open_failure(path_, errno);
     return std::nullopt;
@@ -440,7 +440,7 @@ class Slcan final : public Bus {
   bool wait(base::Duration limit) {
     const short events = out_.empty() ? POLLIN : POLLIN | POLLOUT;
     pollfd line{descriptor(), events, 0};
-    const timespec time = to_timespec(limit);
+    const timespec time = host::to_timespec(limit);
     errno = 0;
     return ::ppoll(&line, 1, &time, nullptr) > 0;
   }
@@ -607,7 +607,7 @@ class Slcan final : public Bus {
   std::string name_;
   SlcanOptions options_;
   SerialPort port_;  ///< one of the two
-  Descriptor socket_;
+  host::Descriptor socket_;
 
   can::slcan::AnswerReader reader_;
   std::string out_;

@@ -34,10 +34,10 @@
 #include <vector>
 
 #include "ocm/can/text.hpp"
+#include "ocm/host/descriptor.hpp"
+#include "ocm/host/system_time.hpp"
 #include "ocm/transport/bus.hpp"
-#include "ocm/transport/descriptor.hpp"
 #include "ocm/transport/interfaces.hpp"
-#include "ocm/transport/system_time.hpp"
 
 namespace ocm::transport {
 
@@ -168,7 +168,7 @@ class SocketCan final : public Bus {
   [[nodiscard]] static Outcome<std::unique_ptr<SocketCan>> open(std::string_view interface,
                                                                 SocketCanOptions options = {}) {
     if (interface.empty() || interface.size() >= IFNAMSIZ) return detail::name_failure(interface);
-    Descriptor socket{::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW)};
+    host::Descriptor socket{::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW)};
     if (!socket) return can_socket_failure(errno);
 
     if (!detail::can_be_interface(interface)) return detail::missing_failure(interface, can_interfaces());
@@ -305,7 +305,7 @@ class SocketCan final : public Bus {
     alignas(cmsghdr) std::array<std::byte, control_size> control{};
   };
 
-  SocketCan(Descriptor socket, std::string_view interface, int index)
+  SocketCan(host::Descriptor socket, std::string_view interface, int index)
       : socket_(std::move(socket)), name_(interface), index_(index) {
     for (std::size_t i = 0; i < batch_size; ++i) {
       Slot& slot = slots_[i];
@@ -358,7 +358,7 @@ class SocketCan final : public Bus {
 
   /// Error::timed_out is the caller's part. True: something may have come.
   [[nodiscard]] bool wait(base::Duration time) const noexcept {
-    const timespec limit = to_timespec(time);
+    const timespec limit = host::to_timespec(time);
     pollfd entry{socket_.get(), POLLIN, 0};
     return ::ppoll(&entry, 1, &limit, nullptr) >= 0;
   }
@@ -439,7 +439,7 @@ class SocketCan final : public Bus {
     return state_;
   }
 
-  Descriptor socket_;
+  host::Descriptor socket_;
   std::string name_;
   int index_;
   BusState state_ = BusState::up;

@@ -22,9 +22,9 @@
 #include <vector>
 
 #include "ocm/can/filter.hpp"
+#include "ocm/host/descriptor.hpp"
+#include "ocm/host/system_time.hpp"
 #include "ocm/transport/bus.hpp"
-#include "ocm/transport/descriptor.hpp"
-#include "ocm/transport/system_time.hpp"
 #include "ocm/transport/virtual_bus_protocol.hpp"
 
 namespace ocm::transport {
@@ -38,10 +38,10 @@ class VirtualBus final : public Bus {
     if (path.empty()) path = virtual_bus::default_path();
     const auto address = virtual_bus::to_address(path);
     if (!address) return address.error;
-    Descriptor socket{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0)};
+    host::Descriptor socket{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0)};
     if (!socket) return connect_failure(path, errno);
     // A server that is stopped accepts nobody, and its queue may be full.
-    const timeval limit = to_timeval(patience);
+    const timeval limit = host::to_timeval(patience);
     ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);
     while (::connect(socket.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) < 0)
       if (errno != EINTR) return connect_failure(path, errno);
@@ -59,7 +59,7 @@ class VirtualBus final : public Bus {
   /// Whether a server listens on the default path, or on `path`. Waits for nothing.
   [[nodiscard]] static bool running(const std::string& path = virtual_bus::default_path()) {
     const auto address = virtual_bus::to_address(path);
-    const Descriptor socket{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
+    const host::Descriptor socket{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
     if (!address || !socket) return false;
     return ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) == 0 ||
            errno == EAGAIN;
@@ -160,7 +160,7 @@ class VirtualBus final : public Bus {
   /// Frames kept for somebody who sends and never receives.
   static constexpr std::size_t max_inbox = 65'536;
 
-  VirtualBus(Descriptor socket, std::string name, std::string path, std::string process)
+  VirtualBus(host::Descriptor socket, std::string name, std::string path, std::string process)
       : socket_(std::move(socket)),
         name_(std::move(name)),
         path_(std::move(path)),
@@ -241,7 +241,7 @@ class VirtualBus final : public Bus {
 
   /// true: something happened. false: time is up, or a signal came.
   bool wait(short what, base::Duration time) const noexcept {
-    const timespec limit = to_timespec(time);
+    const timespec limit = host::to_timespec(time);
     pollfd entry{socket_.get(), what, 0};
     return ::ppoll(&entry, 1, &limit, nullptr) > 0;
   }
@@ -380,7 +380,7 @@ class VirtualBus final : public Bus {
     }
   }
 
-  Descriptor socket_;
+  host::Descriptor socket_;
   std::string name_;
   std::string path_;
   std::string process_;

@@ -9,24 +9,21 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cerrno>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <sys/socket.h>
-#include <sys/stat.h>
 #include <sys/un.h>
-#include <unistd.h>
 
 #include "ocm/base/text.hpp"
 #include "ocm/base/time.hpp"
 #include "ocm/can/bus.hpp"
 #include "ocm/can/frame.hpp"
-#include "ocm/transport/bus.hpp"
+#include "ocm/host/failure.hpp"
+#include "ocm/host/user_directory.hpp"
 
 namespace ocm::transport::virtual_bus {
 
@@ -187,47 +184,16 @@ template <class T>
 
 // --- where the socket is ---
 
-/// A directory of this user alone, below the first of these: $XDG_RUNTIME_DIR, when it is absolute and ours,
-/// as its specification wants; else /tmp. It may not exist yet.
-[[nodiscard]] inline std::string default_directory() {
-  const char* const runtime = std::getenv("XDG_RUNTIME_DIR");
-  struct stat status {};
-  if (runtime != nullptr && runtime[0] == '/' && ::stat(runtime, &status) == 0 && S_ISDIR(status.st_mode) &&
-      status.st_uid == ::geteuid())
-    return std::string(runtime) + "/ocm";
-  return "/tmp/ocm-" + std::to_string(::geteuid());
-}
-
 [[nodiscard]] inline std::string default_path() {
-  return default_directory() + "/sim.sock";
-}
-
-/// Why the directory of the default socket cannot be trusted, or does not exist; nothing when it is fine:
-/// ours, no link, closed to everybody else.
-[[nodiscard]] inline std::optional<Failure> check_directory(const std::string& directory) {
-  struct stat status {};
-  if (::lstat(directory.c_str(), &status) < 0)
-    return Failure{
-        "cannot use the directory '" + directory + "': " + std::strerror(errno),
-        "create it (mkdir -m 700 " + directory + "), or set XDG_RUNTIME_DIR to a directory of yours"};
-  if (!S_ISDIR(status.st_mode))
-    return Failure{"'" + directory + "' is no directory",
-                   "remove it, or set XDG_RUNTIME_DIR to a directory of yours"};
-  if (status.st_uid != ::geteuid())
-    return Failure{"the directory '" + directory + "' belongs to another user (uid " +
-                       std::to_string(status.st_uid) + ")",
-                   "ask for its removal, or set XDG_RUNTIME_DIR to a directory of yours"};
-  if ((status.st_mode & 077) != 0)
-    return Failure{"the directory '" + directory + "' is open to other users", "chmod 700 " + directory};
-  return std::nullopt;
+  return host::user_directory() + "/sim.sock";
 }
 
 /// Paths are limited to 107 bytes by the kernel.
-[[nodiscard]] inline Outcome<sockaddr_un> to_address(const std::string& path) {
+[[nodiscard]] inline host::Outcome<sockaddr_un> to_address(const std::string& path) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (path.empty() || path.size() >= sizeof address.sun_path || path.find('\0') != std::string::npos)
-    return Failure{
+    return host::Failure{
         "'" + path + "' cannot be the path of a socket: it has " + std::to_string(path.size()) + " bytes",
         "use a path of 1 to " + std::to_string(sizeof address.sun_path - 1) + " bytes"};
   std::copy(path.begin(), path.end(), std::begin(address.sun_path));

@@ -18,7 +18,7 @@
 #include <unistd.h>
 
 #include "ocm/can/slcan.hpp"
-#include "ocm/transport/descriptor.hpp"
+#include "ocm/host/descriptor.hpp"
 
 using namespace ocm;
 
@@ -40,8 +40,8 @@ struct End {
     int numbers[2] = {-1, -1};
     char path[64] = {};
     if (::openpty(&numbers[0], &numbers[1], path, nullptr, nullptr) < 0) give_up("openpty");
-    line = transport::Descriptor{numbers[0]};
-    slave = transport::Descriptor{numbers[1]};
+    line = host::Descriptor{numbers[0]};
+    slave = host::Descriptor{numbers[1]};
     name = path;
     termios raw{};
     if (::tcgetattr(slave.get(), &raw) < 0) give_up("tcgetattr");
@@ -60,8 +60,8 @@ struct End {
     return true;
   }
 
-  transport::Descriptor line;
-  transport::Descriptor slave;
+  host::Descriptor line;
+  host::Descriptor slave;
   std::string name;
   can::slcan::Adapter adapter;
   std::string out;

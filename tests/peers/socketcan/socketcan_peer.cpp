@@ -112,8 +112,8 @@ class Adapter {
     int master = -1;
     int slave = -1;
     REQUIRE(openpty(&master, &slave, nullptr, &raw, nullptr) == 0);
-    master_ = transport::Descriptor{master};
-    slave_ = transport::Descriptor{slave};
+    master_ = host::Descriptor{master};
+    slave_ = host::Descriptor{slave};
     int discipline = N_SLCAN;
     REQUIRE(ioctl(slave, TIOCSETD, &discipline) == 0);
     ifreq request{};
@@ -147,8 +147,8 @@ class Adapter {
   }
 
  private:
-  transport::Descriptor master_;
-  transport::Descriptor slave_;
+  host::Descriptor master_;
+  host::Descriptor slave_;
   std::string name_;
   std::string opening_;
 };
@@ -177,7 +177,7 @@ TEST_CASE("what cansend sends is received", "[plain]") {
 
 TEST_CASE("what is sent, candump reads", "[plain]") {
   char log[] = "/tmp/candump.XXXXXX";
-  const transport::Descriptor file{mkstemp(log)};
+  const host::Descriptor file{mkstemp(log)};
   REQUIRE(file);
   const auto bus = open("vcan0");
   const long before = listeners("vcan0");

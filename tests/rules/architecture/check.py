@@ -125,6 +125,14 @@ def layers_are_apart(tree):
                 yield f"{name}:1: OCM layer '{floor}' reaches layer '{other}': {' -> '.join(way)}"
 
 
+def mapper_knows_no_can(tree):
+    """The mapper has no CAN bus: nothing of it reaches a header of CAN or of its protocol."""
+    for name in tree.below("include/ocm/mapper/", ends=(".hpp", ".h")):
+        for reached, way in closure(tree, name).items():
+            if reached.startswith(("include/ocm/can/", "include/ocm/protocol/")):
+                yield f"{name}:1: the mapper reaches CAN: {' -> '.join(way)}"
+
+
 def closure(tree, start):
     """Every file of the project that `start` includes, with the way to it."""
     ways = {}
@@ -358,8 +366,9 @@ def quotes_are_the_examples(tree):
         yield f"README.md:{line}: C++ in the README is quoted: put '<!-- snippet: NAME -->' above it"
 
 
-RULES = (floors_have_rows, includes_go_down, layers_are_apart, no_circles, namespace_is_folder, no_banned_headers,
-         no_banned_words, headers_open_with_a_comment, headers_have_tests, own_includes_are_full_paths,
+RULES = (floors_have_rows, includes_go_down, layers_are_apart, mapper_knows_no_can, no_circles, namespace_is_folder,
+         no_banned_headers, no_banned_words, headers_open_with_a_comment, headers_have_tests,
+         own_includes_are_full_paths,
          generator_is_independent, boards_know_no_world, generated_files_are_reproducible, no_machine_paths,
          links_resolve, pages_are_linked, quotes_are_the_examples)
 

@@ -34,11 +34,3 @@ TEST_CASE("a bus without a state of its own is up until it failed") {
   bus.reason = {"pulled out", "put it in"};
   CHECK(bus.state() == BusState::closed);
 }
-
-TEST_CASE("an outcome is a value or a failure in words") {
-  const transport::Outcome<int> number = 7;
-  const transport::Outcome<int> failure = Failure{"no bus", "start one"};
-  CHECK(number.ok());
-  CHECK_FALSE(failure.ok());
-  CHECK(failure.error.remedy == "start one");
-}

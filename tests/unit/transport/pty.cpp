@@ -13,7 +13,7 @@ namespace {
 
 using namespace ocm;
 using Catch::Contains;
-using transport::Descriptor;
+using host::Descriptor;
 using transport::Pty;
 
 std::string all(Pty& pty) {

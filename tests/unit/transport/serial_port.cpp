@@ -107,7 +107,7 @@ TEST_CASE("serial port: unplugged, what had come is read first, then it is gone"
 TEST_CASE("serial port: the line gets its settings back, and its owner may move") {
   auto pty = Pty::open();
   REQUIRE(pty);
-  const transport::Descriptor other{::open(pty->path().c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC)};
+  const host::Descriptor other{::open(pty->path().c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC)};
   termios echoing{};
   REQUIRE(::tcgetattr(other.get(), &echoing) == 0);
   echoing.c_lflag |= ECHO;

@@ -57,8 +57,8 @@ class Device {
     ::cfmakeraw(&raw);
     raw.c_lflag |= ECHO;  // something that the host must switch off, and on again
     REQUIRE(::tcsetattr(slave, TCSANOW, &raw) == 0);
-    line_ = transport::Descriptor{master};
-    slave_ = transport::Descriptor{slave};
+    line_ = host::Descriptor{master};
+    slave_ = host::Descriptor{slave};
     path_ = name;
     start();
   }
@@ -126,8 +126,8 @@ class Device {
   }
 
   std::function<std::string(Device&, char)> answer_;
-  transport::Descriptor line_;
-  transport::Descriptor slave_;
+  host::Descriptor line_;
+  host::Descriptor slave_;
   std::string path_;
   std::string heard_;
   std::mutex mutex_;
@@ -669,7 +669,7 @@ TEST_CASE("slcan: a local socket, as a board in QEMU has it") {
   REQUIRE(::mkdtemp(folder.data()) != nullptr);
   const std::string path = folder + "/uart";
   {
-    const transport::Descriptor listener{::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)};
+    const host::Descriptor listener{::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)};
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
     std::copy(path.begin(), path.end(), std::begin(address.sun_path));
@@ -679,7 +679,7 @@ TEST_CASE("slcan: a local socket, as a board in QEMU has it") {
     can::slcan::Adapter adapter;
     Wire wire;
     std::thread board([&] {
-      const transport::Descriptor peer{::accept(listener.get(), nullptr, nullptr)};
+      const host::Descriptor peer{::accept(listener.get(), nullptr, nullptr)};
       char c = 0;
       while (::recv(peer.get(), &c, 1, 0) == 1) {
         const auto reply = adapter.feed(c, wire);

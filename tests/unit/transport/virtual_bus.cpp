@@ -31,7 +31,7 @@ class RawServer {
   transport::Outcome<std::unique_ptr<VirtualBus>> open(const T& answer, bool hang_up) {
     transport::Outcome<std::unique_ptr<VirtualBus>> opened;
     std::thread opener{[&] { opened = VirtualBus::open(path()); }};
-    client_ = transport::Descriptor{::accept(listener_.get(), nullptr, nullptr)};
+    client_ = host::Descriptor{::accept(listener_.get(), nullptr, nullptr)};
     vb::Record hello{};
     CHECK(::recv(client_.get(), hello.data(), hello.size(), 0) == static_cast<ssize_t>(hello.size()));
     say(answer);
@@ -51,8 +51,8 @@ class RawServer {
 
  private:
   TemporaryDirectory directory_;
-  transport::Descriptor listener_{::socket(AF_UNIX, SOCK_SEQPACKET, 0)};
-  transport::Descriptor client_;
+  host::Descriptor listener_{::socket(AF_UNIX, SOCK_SEQPACKET, 0)};
+  host::Descriptor client_;
 };
 
 }  // namespace
@@ -68,7 +68,7 @@ TEST_CASE("nobody serves a bus: the message says how to get one") {
   CHECK_THAT(VirtualBus::open("/tmp/" + std::string(200, 'x')).error.what, Catch::Contains("205 bytes"));
   // A socket that nobody listens on any more.
   {
-    const transport::Descriptor dead{::socket(AF_UNIX, SOCK_SEQPACKET, 0)};
+    const host::Descriptor dead{::socket(AF_UNIX, SOCK_SEQPACKET, 0)};
     const auto address = vb::to_address(path);
     REQUIRE(::bind(dead.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) == 0);
   }

@@ -35,28 +35,6 @@ static_assert(*vb::decode({.dlc = 1, .data = {1, 2, 3}}) == can::Frame{.dlc = 1,
 static_assert(*vb::decode({.format = 2, .dlc = 3, .data = {1, 2, 3}}) ==
               can::Frame{.dlc = 3, .format = can::Format::base_remote});
 
-/// Sets a variable of the environment, and sets it back.
-class Environment {
- public:
-  Environment(const char* name, const char* value) : name_(name) {
-    if (const char* const old = std::getenv(name)) old_ = old;
-    set(value);
-  }
-  Environment(const Environment&) = delete;
-  Environment& operator=(const Environment&) = delete;
-  ~Environment() { set(old_ ? old_->c_str() : nullptr); }
-
- private:
-  void set(const char* value) const {
-    if (value == nullptr)
-      ::unsetenv(name_);
-    else
-      ::setenv(name_, value, 1);
-  }
-  const char* name_;
-  std::optional<std::string> old_;
-};
-
 }  // namespace
 
 TEST_CASE("the socket lies in the user's runtime directory, or else in one in /tmp") {
@@ -71,53 +49,6 @@ TEST_CASE("the socket lies in the user's runtime directory, or else in one in /t
     const Environment set{"XDG_RUNTIME_DIR", value};
     CHECK(vb::default_path() == fallback);
   }
-}
-
-TEST_CASE("only a directory that is ours and closed to others is trusted") {
-  const TemporaryDirectory parent;
-  const std::string directory = parent.path() + "/ocm";
-  CHECK_THAT(vb::check_directory(directory)->what,
-             Catch::Contains(directory) && Catch::Contains("No such file"));
-  REQUIRE(::mkdir(directory.c_str(), 0700) == 0);
-  CHECK_FALSE(vb::check_directory(directory));
-  for (const mode_t mode : {0701U, 0720U, 0777U}) {
-    REQUIRE(::chmod(directory.c_str(), mode) == 0);
-    const auto problem = vb::check_directory(directory);
-    REQUIRE(problem);
-    CHECK_THAT(problem->what, Catch::Contains("open to other users"));
-    CHECK(problem->remedy == "chmod 700 " + directory);
-  }
-  const std::string link = parent.path() + "/link";
-  REQUIRE(::symlink(directory.c_str(), link.c_str()) == 0);
-  CHECK_THAT(vb::check_directory(link)->what, Catch::Contains("no directory"));
-  if (::geteuid() == 0) {  // only root can give a directory away
-    REQUIRE(::chmod(directory.c_str(), 0700) == 0);
-    REQUIRE(::chown(directory.c_str(), 65534, 65534) == 0);
-    CHECK_THAT(vb::check_directory(directory)->what, Catch::Contains("another user (uid 65534)"));
-  }
-}
-
-TEST_CASE("the default directory is made for the user alone, and the socket too") {
-  const TemporaryDirectory runtime;
-  const Environment set{"XDG_RUNTIME_DIR", runtime.path().c_str()};
-  const mode_t mask = ::umask(0);  // even when the user lets everybody in elsewhere
-  const auto server = transport::VirtualBusServer::open();
-  ::umask(mask);
-  INFO(server.error.what);
-  REQUIRE(server);
-  struct stat status {};
-  REQUIRE(::stat((runtime.path() + "/ocm").c_str(), &status) == 0);
-  CHECK((status.st_mode & 07777) == 0700);
-  REQUIRE(::stat((*server)->path().c_str(), &status) == 0);
-  CHECK((status.st_mode & 07777) == 0600);
-  CHECK(transport::VirtualBus::running());
-
-  const TemporaryDirectory other;
-  const Environment elsewhere{"XDG_RUNTIME_DIR", other.path().c_str()};
-  CHECK_FALSE(transport::VirtualBus::running());
-  REQUIRE(::mkdir((other.path() + "/ocm").c_str(), 0700) == 0);
-  REQUIRE(::chmod((other.path() + "/ocm").c_str(), 0755) == 0);
-  CHECK_THAT(transport::VirtualBusServer::open().error.what, Catch::Contains("open to other users"));
 }
 
 TEST_CASE("a path that no socket can have") {

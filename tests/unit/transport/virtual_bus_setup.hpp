@@ -2,8 +2,6 @@
 #pragma once
 
 #include <atomic>
-#include <cstdlib>
-#include <filesystem>
 #include <poll.h>
 #include <string>
 #include <thread>
@@ -12,8 +10,10 @@
 #include <catch2/catch.hpp>
 
 #include "ocm/can/text.hpp"
+#include "ocm/simulation/virtual_bus_server.hpp"
 #include "ocm/transport/virtual_bus.hpp"
-#include "ocm/transport/virtual_bus_server.hpp"
+
+#include "unit/host/host_testing.hpp"
 
 namespace ocm::test {
 
@@ -27,23 +27,6 @@ inline can::Frame frame(std::string_view text) {
 }
 
 using Texts = std::vector<std::string>;
-
-/// A directory of the test's own, removed at the end.
-class TemporaryDirectory {
- public:
-  TemporaryDirectory() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "ocm-test-XXXXXX").string();
-    REQUIRE(::mkdtemp(pattern.data()) != nullptr);
-    path_ = pattern;
-  }
-  TemporaryDirectory(const TemporaryDirectory&) = delete;
-  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
-  ~TemporaryDirectory() { std::filesystem::remove_all(path_); }
-  [[nodiscard]] const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
 
 inline bool readable(int descriptor) {
   pollfd entry{descriptor, POLLIN, 0};
@@ -63,7 +46,7 @@ class RawClient {
   explicit RawClient(const std::string& path) {
     const auto address = vb::to_address(path);
     REQUIRE(address);
-    socket_ = transport::Descriptor{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK, 0)};
+    socket_ = host::Descriptor{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK, 0)};
     REQUIRE(socket_);
     REQUIRE(::connect(socket_.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) == 0);
   }
@@ -103,14 +86,14 @@ class RawClient {
   bool closed = false;
 
  private:
-  transport::Descriptor socket_;
+  host::Descriptor socket_;
 };
 
 struct VirtualBusSetup {
-  explicit VirtualBusSetup(transport::VirtualBusOptions options = {}) {
+  explicit VirtualBusSetup(simulation::VirtualBusOptions options = {}) {
     options.path = directory.path() + "/sim.sock";
     options.report = [this](std::string_view text) { reports.emplace_back(text); };
-    auto opened = transport::VirtualBusServer::open(std::move(options));
+    auto opened = simulation::VirtualBusServer::open(std::move(options));
     INFO(opened.error.what);
     REQUIRE(opened);
     server = std::move(opened.value);
@@ -161,7 +144,7 @@ struct VirtualBusSetup {
   void send(std::string_view text) { CHECK(*server->arbiter().send(port, frame(text), now)); }
 
   TemporaryDirectory directory;
-  std::unique_ptr<transport::VirtualBusServer> server;
+  std::unique_ptr<simulation::VirtualBusServer> server;
   simulation::NodeId port;
   base::Time now{1s};
   Texts on_bus;  ///< every frame, as candump writes it

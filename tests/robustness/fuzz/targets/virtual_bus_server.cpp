@@ -1,7 +1,7 @@
 // The server of the virtual bus, with three clients on real sockets that send any messages, and one that
 // behaves: nothing of what the others do harms it or the server, and everything that happens is counted. Time
 // is handed in.
-#include "ocm/transport/virtual_bus_server.hpp"
+#include "ocm/simulation/virtual_bus_server.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -100,19 +100,19 @@ class Peer {
     fuzz::expect(false, "the server says only what a server says");
   }
 
-  transport::Descriptor socket_;
+  host::Descriptor socket_;
   bool greeted_ = false;
 };
 
 class Scene {
  public:
   Scene() {
-    transport::VirtualBusOptions options;
+    simulation::VirtualBusOptions options;
     options.path = directory().socket();
     options.transmit_queue = 4;
     options.raise_descriptor_limit = false;
     options.report = [](std::string_view text) { fuzz::expect(!text.empty(), "a report has words"); };
-    auto opened = transport::VirtualBusServer::open(std::move(options));
+    auto opened = simulation::VirtualBusServer::open(std::move(options));
     fuzz::expect(opened.ok(), "the server opens");
     server_ = std::move(opened.value);
     witness_.emplace(server_->path());
@@ -207,7 +207,7 @@ class Scene {
     fuzz::expect(witness_->credit == own_, "who behaves gets the credit back");
   }
 
-  std::unique_ptr<transport::VirtualBusServer> server_;
+  std::unique_ptr<simulation::VirtualBusServer> server_;
   std::array<std::optional<Peer>, 3> peers_;
   std::optional<Peer> witness_;
   base::Time now_{base::Duration{1'000'000'000}};

@@ -4,7 +4,7 @@
 #include <unistd.h>
 #include <utility>
 
-namespace ocm::transport {
+namespace ocm::host {
 
 class Descriptor {
  public:
@@ -34,4 +34,4 @@ class Descriptor {
   int number_ = -1;
 };
 
-}  // namespace ocm::transport
+}  // namespace ocm::host

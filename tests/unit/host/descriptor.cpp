@@ -1,4 +1,4 @@
-#include "ocm/transport/descriptor.hpp"
+#include "ocm/host/descriptor.hpp"
 
 #include <fcntl.h>
 #include <type_traits>
@@ -6,7 +6,7 @@
 
 #include <catch2/catch.hpp>
 
-using ocm::transport::Descriptor;
+using ocm::host::Descriptor;
 
 static_assert(!std::is_copy_constructible_v<Descriptor>);
 static_assert(std::is_nothrow_move_constructible_v<Descriptor>);

@@ -1,4 +1,4 @@
-#include "ocm/transport/host_threads.hpp"
+#include "ocm/scheduling/ports/host_threads.hpp"
 
 #include <atomic>
 #include <thread>
@@ -18,9 +18,9 @@
 using namespace ocm;
 using namespace std::chrono_literals;
 using scheduling::Level;
-using transport::HostMutex;
-using transport::HostThreads;
-using transport::HostThreadsOptions;
+using scheduling::ports::HostMutex;
+using scheduling::ports::HostThreads;
+using scheduling::ports::HostThreadsOptions;
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "ocm/transport/virtual_bus_server.hpp"
+#include "ocm/simulation/virtual_bus_server.hpp"
 
 #include <fstream>
 #include <random>
@@ -12,7 +12,7 @@
 
 using namespace ocm;
 using namespace ocm::test;
-using transport::VirtualBusServer;
+using simulation::VirtualBusServer;
 
 namespace {
 
@@ -68,7 +68,7 @@ TEST_CASE("the socket of a dead server is replaced, and nothing else is") {
 
   // A socket of another kind, on which somebody listens.
   const auto address = vb::to_address(path);
-  const transport::Descriptor stream{::socket(AF_UNIX, SOCK_STREAM, 0)};
+  const host::Descriptor stream{::socket(AF_UNIX, SOCK_STREAM, 0)};
   REQUIRE(::bind(stream.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) == 0);
   REQUIRE(::listen(stream.get(), 1) == 0);
   CHECK_THAT(VirtualBusServer::open({.path = path}).error.what, Catch::Contains("another program listens"));
@@ -98,7 +98,7 @@ TEST_CASE("options and places that cannot be served") {
   CHECK(std::filesystem::is_empty(directory.path()));
 
   // Somebody else starts a server there, and does not come to an end.
-  const transport::Descriptor lock{::open(directory.path().c_str(), O_RDONLY | O_DIRECTORY)};
+  const host::Descriptor lock{::open(directory.path().c_str(), O_RDONLY | O_DIRECTORY)};
   REQUIRE(::flock(lock.get(), LOCK_EX) == 0);
   CHECK_THAT(VirtualBusServer::open({.path = directory.path() + "/s", .patience = 20ms}).error.what,
              Catch::Contains("lock"));
@@ -321,7 +321,7 @@ TEST_CASE("no file descriptor left: the client is told, counted, and the next on
   REQUIRE(::getrlimit(RLIMIT_NOFILE, &limit) == 0);
   rlimit tight = limit;
   {
-    const transport::Descriptor next{::open("/dev/null", O_RDONLY)};  // the lowest free number
+    const host::Descriptor next{::open("/dev/null", O_RDONLY)};  // the lowest free number
     tight.rlim_cur = static_cast<rlim_t>(next.get());
   }
   REQUIRE(::setrlimit(RLIMIT_NOFILE, &tight) == 0);
@@ -559,4 +559,27 @@ TEST_CASE("whatever clients send, the others go on") {
   CHECK(counters.welcomed == counters.misbehaved + counters.died + counters.left + 2);
   CHECK(sender->counters().sent == 500);
   CHECK(listener->counters().lost == 0);
+}
+
+TEST_CASE("the default directory is made for the user alone, and the socket too") {
+  const TemporaryDirectory runtime;
+  const Environment set{"XDG_RUNTIME_DIR", runtime.path().c_str()};
+  const mode_t mask = ::umask(0);  // even when the user lets everybody in elsewhere
+  const auto server = simulation::VirtualBusServer::open();
+  ::umask(mask);
+  INFO(server.error.what);
+  REQUIRE(server);
+  struct stat status {};
+  REQUIRE(::stat((runtime.path() + "/ocm").c_str(), &status) == 0);
+  CHECK((status.st_mode & 07777) == 0700);
+  REQUIRE(::stat((*server)->path().c_str(), &status) == 0);
+  CHECK((status.st_mode & 07777) == 0600);
+  CHECK(transport::VirtualBus::running());
+
+  const TemporaryDirectory other;
+  const Environment elsewhere{"XDG_RUNTIME_DIR", other.path().c_str()};
+  CHECK_FALSE(transport::VirtualBus::running());
+  REQUIRE(::mkdir((other.path() + "/ocm").c_str(), 0700) == 0);
+  REQUIRE(::chmod((other.path() + "/ocm").c_str(), 0755) == 0);
+  CHECK_THAT(simulation::VirtualBusServer::open().error.what, Catch::Contains("open to other users"));
 }

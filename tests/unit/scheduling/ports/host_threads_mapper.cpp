@@ -10,13 +10,13 @@
 #include <catch2/catch.hpp>
 
 #include "ocm/mapper/app/robot.hpp"
-#include "ocm/transport/host_threads.hpp"
+#include "ocm/scheduling/ports/host_threads.hpp"
 
 #include "unit/mapper/app/app_testing.hpp"
 
 using namespace app_testing;
-using transport::HostMutex;
-using transport::HostThreads;
+using scheduling::ports::HostMutex;
+using scheduling::ports::HostThreads;
 
 namespace {
 

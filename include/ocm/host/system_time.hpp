@@ -10,7 +10,7 @@
 
 #include "ocm/base/time.hpp"
 
-namespace ocm::transport {
+namespace ocm::host {
 
 /// What has passed is zero.
 [[nodiscard]] constexpr timespec to_timespec(base::Duration time) noexcept {
@@ -34,4 +34,4 @@ namespace ocm::transport {
   return result;
 }
 
-}  // namespace ocm::transport
+}  // namespace ocm::host

@@ -1,4 +1,4 @@
-#include "ocm/transport/system_time.hpp"
+#include "ocm/host/system_time.hpp"
 
 #include <limits>
 
@@ -6,8 +6,8 @@
 
 using namespace std::chrono_literals;
 using ocm::base::Duration;
-using ocm::transport::to_timespec;
-using ocm::transport::to_timeval;
+using ocm::host::to_timespec;
+using ocm::host::to_timeval;
 
 namespace {
 

@@ -26,11 +26,11 @@
 #include <utility>
 
 #include "ocm/base/time.hpp"
+#include "ocm/host/failure.hpp"
+#include "ocm/host/system_time.hpp"
 #include "ocm/scheduling/port.hpp"
-#include "ocm/transport/bus.hpp"
-#include "ocm/transport/system_time.hpp"
 
-namespace ocm::transport {
+namespace ocm::scheduling::ports {
 
 /// A mutex with priority inheritance, for what levels share: scheduling::Resource<HostMutex, HostThreads>.
 class HostMutex {
@@ -107,14 +107,14 @@ class HostThreads {
 
   // For who owns the threads
   /// Starts them; what was armed and pended before is done now. To be called once.
-  Outcome<bool> start(std::function<void()> expire, std::function<void(Level)> run) {
+  host::Outcome<bool> start(std::function<void()> expire, std::function<void(Level)> run) {
     expire_ = std::move(expire);
     run_ = std::move(run);
     for (std::size_t who = 0; who < contexts_.size(); ++who) {
       contexts_[who].owner = this;
       if (const int error = create(who); error != 0) {
         stop();
-        return Failure{"cannot start a thread: " + describe(error), "allow more threads (ulimit -u)"};
+        return host::Failure{"cannot start a thread: " + describe(error), "allow more threads (ulimit -u)"};
       }
     }
     return true;
@@ -130,7 +130,7 @@ class HostThreads {
       if (std::exchange(context.started, false)) pthread_join(context.thread, nullptr);
   }
   /// Why levels are less strict than they should be; nothing when they are strict. Known after `start`.
-  [[nodiscard]] const std::optional<Failure>& shortfall() const noexcept { return shortfall_; }
+  [[nodiscard]] const std::optional<host::Failure>& shortfall() const noexcept { return shortfall_; }
 
  private:
   static constexpr std::int64_t second_ns = 1'000'000'000;
@@ -159,13 +159,13 @@ class HostThreads {
       error = create_real_time(who);
       // The threads before this one, if any, have their priorities: all were permitted or none.
       if (error != 0)
-        shortfall_ =
-            Failure{"no real-time priorities for the levels: " + describe(error),
-                    "run it with CAP_SYS_NICE, or permit them (ulimit -r " + std::to_string(priority(timer)) +
-                        "); until then an urgent level does not "
-                        "stop one that runs"};
+        shortfall_ = host::Failure{"no real-time priorities for the levels: " + describe(error),
+                                   "run it with CAP_SYS_NICE, or permit them (ulimit -r " +
+                                       std::to_string(priority(timer)) +
+                                       "); until then an urgent level does not "
+                                       "stop one that runs"};
     } else if (!options_.real_time) {
-      shortfall_ = Failure{"real-time priorities were not asked for", ""};
+      shortfall_ = host::Failure{"real-time priorities were not asked for", ""};
     }
     if (error != 0) error = pthread_create(&contexts_[who].thread, nullptr, enter, &contexts_[who]);
     contexts_[who].started = error == 0;
@@ -205,7 +205,7 @@ class HostThreads {
       if (armed_ == base::never) {
         pthread_cond_wait(wake, mutex_.native());
       } else if (armed_ > now()) {
-        const timespec limit = to_timespec(armed_.time_since_epoch());
+        const timespec limit = host::to_timespec(armed_.time_since_epoch());
         pthread_cond_timedwait(wake, mutex_.native(), &limit);
       } else {
         armed_ = base::never;
@@ -250,9 +250,9 @@ class HostThreads {
   std::function<void(Level)> run_;
   std::array<Context, scheduling::level_count + 1> contexts_{};
   int processor_ = -1;
-  std::optional<Failure> shortfall_;
+  std::optional<host::Failure> shortfall_;
 };
 
 static_assert(scheduling::Port<HostThreads>);
 
-}  // namespace ocm::transport
+}  // namespace ocm::scheduling::ports

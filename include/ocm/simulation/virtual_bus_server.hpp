@@ -2,10 +2,10 @@
 /// frames take their bit times and arbitrate. docs/virtual-bus.md has the whole picture. Host only.
 ///
 ///     auto server = VirtualBusServer::open({.bit_rate = 500'000});
-///     simulation::Port board{(*server)->arbiter(), {simulation::QueueOrder::by_identifier, 3}};
+///     Port board{(*server)->arbiter(), {QueueOrder::by_identifier, 3}};
 ///     for (;;) {
 ///       ... wait until next_event(), or until descriptor() is readable ...
-///       (*server)->poll(now, [&](const simulation::Delivery& d) { ... the board hears d.frame at d.time ...
+///       (*server)->poll(now, [&](const Delivery& d) { ... the board hears d.frame at d.time ...
 ///       });
 ///     }
 ///
@@ -31,12 +31,14 @@
 
 #include "ocm/can/error_frame.hpp"
 #include "ocm/can/filter.hpp"
+#include "ocm/host/descriptor.hpp"
+#include "ocm/host/failure.hpp"
 #include "ocm/simulation/arbiter.hpp"
-#include "ocm/transport/bus.hpp"
-#include "ocm/transport/descriptor.hpp"
 #include "ocm/transport/virtual_bus_protocol.hpp"
 
-namespace ocm::transport {
+namespace ocm::simulation {
+
+namespace virtual_bus = transport::virtual_bus;
 
 struct VirtualBusOptions {
   std::string path{};                  ///< of the socket; empty: virtual_bus::default_path()
@@ -69,16 +71,16 @@ class VirtualBusServer {
   /// Replaces the socket of a server that has died; refuses when one is running, or when others could reach
   /// the socket. Creates the default directory. Waits at most `patience` for another server that starts just
   /// now.
-  [[nodiscard]] static Outcome<std::unique_ptr<VirtualBusServer>> open(VirtualBusOptions options = {}) {
-    if (options.bit_rate < 1 || options.bit_rate > simulation::BitClock::max_bit_rate)
-      return Failure{"no bus runs at " + std::to_string(options.bit_rate) + " bit/s",
-                     "choose a bit rate from 1 to 1000000000; the robot's is 500000"};
+  [[nodiscard]] static host::Outcome<std::unique_ptr<VirtualBusServer>> open(VirtualBusOptions options = {}) {
+    if (options.bit_rate < 1 || options.bit_rate > BitClock::max_bit_rate)
+      return host::Failure{"no bus runs at " + std::to_string(options.bit_rate) + " bit/s",
+                           "choose a bit rate from 1 to 1000000000; the robot's is 500000"};
     std::string directory;
     if (options.path.empty()) {
-      directory = virtual_bus::default_directory();
+      directory = host::user_directory();
       options.path = virtual_bus::default_path();
       ::mkdir(directory.c_str(), 0700);  // whatever the answer, the check below tells
-      if (auto problem = virtual_bus::check_directory(directory)) return std::move(*problem);
+      if (auto problem = host::check_private(directory)) return std::move(*problem);
     } else {
       const std::size_t slash = options.path.rfind('/');
       directory = slash == std::string::npos ? "." : slash == 0 ? "/" : options.path.substr(0, slash);
@@ -87,18 +89,18 @@ class VirtualBusServer {
     if (!address) return address.error;
 
     // Two servers that start together must not both find the socket stale: one at a time.
-    const Descriptor lock{::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
+    const host::Descriptor lock{::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
     if (!lock)
-      return Failure{"cannot open the directory '" + directory + "': " + std::strerror(errno),
-                     "create it (mkdir -p -m 700 '" + directory + "'), or choose another path"};
+      return host::Failure{"cannot open the directory '" + directory + "': " + std::strerror(errno),
+                           "create it (mkdir -p -m 700 '" + directory + "'), or choose another path"};
     if (!lock_in_time(lock.get(), options.patience))
-      return Failure{"another program holds the lock of the directory '" + directory + "'",
-                     "end it (`fuser " + directory + "` names it), or choose another path"};
+      return host::Failure{"another program holds the lock of the directory '" + directory + "'",
+                           "end it (`fuser " + directory + "` names it), or choose another path"};
     if (auto problem = make_room(*address, options.path)) return std::move(*problem);
 
-    Descriptor listener{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
-    Descriptor events{::epoll_create1(EPOLL_CLOEXEC)};
-    Descriptor spare{::open("/dev/null", O_RDONLY | O_CLOEXEC)};
+    host::Descriptor listener{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
+    host::Descriptor events{::epoll_create1(EPOLL_CLOEXEC)};
+    host::Descriptor spare{::open("/dev/null", O_RDONLY | O_CLOEXEC)};
     // The mode of the socket before it has a name is that of the name: at no moment is it open to others.
     if (!listener || !events || !spare || ::fchmod(listener.get(), 0600) < 0 ||
         ::bind(listener.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) < 0 ||
@@ -136,13 +138,13 @@ class VirtualBusServer {
     return std::min(arbiter_.next_event(), accept_again_);
   }
   /// The bus: attach boards, send their frames, read its load.
-  [[nodiscard]] simulation::Arbiter& arbiter() noexcept { return arbiter_; }
-  [[nodiscard]] const simulation::Arbiter& arbiter() const noexcept { return arbiter_; }
+  [[nodiscard]] Arbiter& arbiter() noexcept { return arbiter_; }
+  [[nodiscard]] const Arbiter& arbiter() const noexcept { return arbiter_; }
   [[nodiscard]] const VirtualBusCounters& counters() const noexcept { return counters_; }
   /// Connections, those that have not said hello yet included.
   [[nodiscard]] std::size_t clients() const noexcept { return clients_.size(); }
 
-  /// Lets the bus go on until `now`; no system call. `deliver(const simulation::Delivery&)` is called for
+  /// Lets the bus go on until `now`; no system call. `deliver(const Delivery&)` is called for
   /// every frame that is complete by then, as Arbiter::advance does; clients get an error frame for every
   /// error on the bus. For boards that act at times of their
   /// own: advance to each of these, and `poll` at the end.
@@ -151,11 +153,11 @@ class VirtualBusServer {
     if (accept_again_ <= now) accept_again_ = base::never;  // at the next `poll`
     arbiter_.advance(
         now,
-        [&](const simulation::Delivery& delivery) {
+        [&](const Delivery& delivery) {
           distribute(delivery);
           deliver(delivery);
         },
-        [&](const simulation::BusError& error) { distribute(error); });
+        [&](const BusError& error) { distribute(error); });
   }
 
   /// Advances the bus, then takes what clients sent (their frames are handed over at `now`), accepts new
@@ -166,7 +168,7 @@ class VirtualBusServer {
     serve(now);
   }
   void poll(base::Time now) {
-    poll(now, [](const simulation::Delivery&) {});
+    poll(now, [](const Delivery&) {});
   }
 
   /// Gives every client an error frame (can::Format::error), as a controller's driver would report it. At the
@@ -220,13 +222,13 @@ class VirtualBusServer {
   };
 
   struct Client {
-    Descriptor socket;
+    host::Descriptor socket;
     std::optional<ucred> peer;
-    simulation::NodeId node{};  ///< from its hello on
-    bool welcome = false;       ///< it said hello
-    bool blocked = false;       ///< its socket is full: wait for EPOLLOUT
-    bool deaf = false;          ///< nothing can be sent to it any more
-    bool gone = false;          ///< to be forgotten at the end of this poll
+    NodeId node{};         ///< from its hello on
+    bool welcome = false;  ///< it said hello
+    bool blocked = false;  ///< its socket is full: wait for EPOLLOUT
+    bool deaf = false;     ///< nothing can be sent to it any more
+    bool gone = false;     ///< to be forgotten at the end of this poll
     Queue output;
     std::uint64_t credit = 0;  ///< owed
     std::uint64_t lost = 0;    ///< and not told yet
@@ -235,8 +237,8 @@ class VirtualBusServer {
     std::size_t missing_filters = 0;
   };
 
-  VirtualBusServer(VirtualBusOptions options, Descriptor listener, Descriptor events, Descriptor spare,
-                   const struct stat& status)
+  VirtualBusServer(VirtualBusOptions options, host::Descriptor listener, host::Descriptor events,
+                   host::Descriptor spare, const struct stat& status)
       : options_(std::move(options)),
         listener_(std::move(listener)),
         events_(std::move(events)),
@@ -256,7 +258,7 @@ class VirtualBusServer {
 
   // --- start ---
 
-  [[nodiscard]] static Failure system_failure(const std::string& path, int error) {
+  [[nodiscard]] static host::Failure system_failure(const std::string& path, int error) {
     return {"cannot serve a virtual bus on '" + path + "': " + std::strerror(error),
             error == EMFILE || error == ENFILE
                 ? "close other programs, or raise the limit: ulimit -n"
@@ -274,30 +276,32 @@ class VirtualBusServer {
   }
 
   /// Removes the socket of a dead server; says why when something else is there.
-  [[nodiscard]] static std::optional<Failure> make_room(const sockaddr_un& address, const std::string& path) {
+  [[nodiscard]] static std::optional<host::Failure> make_room(const sockaddr_un& address,
+                                                              const std::string& path) {
     struct stat status {};
     if (::lstat(path.c_str(), &status) < 0) {
       if (errno == ENOENT) return std::nullopt;
       return system_failure(path, errno);
     }
     if (!S_ISSOCK(status.st_mode))
-      return Failure{"'" + path + "' exists and is no socket", "remove it, or choose another path"};
+      return host::Failure{"'" + path + "' exists and is no socket", "remove it, or choose another path"};
     if (status.st_uid != ::geteuid())
-      return Failure{
+      return host::Failure{
           "the socket '" + path + "' belongs to another user (uid " + std::to_string(status.st_uid) + ")",
           "choose another path"};
-    const Descriptor probe{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
+    const host::Descriptor probe{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
     if (!probe) return system_failure(path, errno);
     if (::connect(probe.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 ||
         errno == EAGAIN) {
       const auto peer = virtual_bus::peer_of(probe.get());
       const std::string end =
           peer && peer->pid > 0 ? ", end it (kill " + std::to_string(peer->pid) + ")" : "";
-      return Failure{"a simulator already runs on '" + path + "'" + virtual_bus::process_text(peer),
-                     "use it (--bus sim)" + end + ", or serve another one: amiroctl sim --bus sim:PATH"};
+      return host::Failure{
+          "a simulator already runs on '" + path + "'" + virtual_bus::process_text(peer),
+          "use it (--bus sim)" + end + ", or serve another one: amiroctl sim --bus sim:PATH"};
     }
     if (errno == EPROTOTYPE)
-      return Failure{"another program listens on '" + path + "'", "end it, or choose another path"};
+      return host::Failure{"another program listens on '" + path + "'", "end it, or choose another path"};
     if (errno != ECONNREFUSED || ::unlink(path.c_str()) < 0) return system_failure(path, errno);
     return std::nullopt;
   }
@@ -312,7 +316,7 @@ class VirtualBusServer {
 
   // --- from the bus to the clients ---
 
-  void distribute(const simulation::Delivery& delivery) {
+  void distribute(const Delivery& delivery) {
     const virtual_bus::Record record =
         virtual_bus::to_record(delivery.frame, delivery.time + options_.to_unix_time);
     for (auto& client : clients_) {
@@ -325,7 +329,7 @@ class VirtualBusServer {
   }
 
   /// As each client's own controller would report it.
-  void distribute(const simulation::BusError& error) {
+  void distribute(const BusError& error) {
     for (auto& client : clients_) {
       if (!client->welcome || client->gone) continue;
       const can::Frame frame = error_frame(arbiter_.faults(client->node), client->node == error.sender);
@@ -334,13 +338,12 @@ class VirtualBusServer {
   }
 
   /// What sends sees a bit error, what listens a stuff error: six dominant bits.
-  [[nodiscard]] static can::Frame error_frame(const simulation::FaultConfinement& faults,
-                                              bool sends) noexcept {
+  [[nodiscard]] static can::Frame error_frame(const FaultConfinement& faults, bool sends) noexcept {
     namespace c = can::error_class;
     can::Frame frame{.id = c::protocol | c::bus_error | c::counters, .dlc = 8, .format = can::Format::error};
-    const unsigned passive = simulation::FaultConfinement::passive_from;
-    if (faults.state() == simulation::FaultState::bus_off) frame.id |= c::bus_off;
-    if (faults.state() == simulation::FaultState::error_passive) {
+    const unsigned passive = FaultConfinement::passive_from;
+    if (faults.state() == FaultState::bus_off) frame.id |= c::bus_off;
+    if (faults.state() == FaultState::error_passive) {
       frame.id |= c::controller;
       if (faults.transmit_errors() >= passive) frame.data[1] |= can::controller_error::tx_passive;
       if (faults.receive_errors() >= passive) frame.data[1] |= can::controller_error::rx_passive;
@@ -487,7 +490,7 @@ class VirtualBusServer {
       }
       case Type::goodbye:
         ++counters_.left;
-        arbiter_.detach(client.node, simulation::Leftovers::send);
+        arbiter_.detach(client.node, Leftovers::send);
         client.gone = true;
         return;
       case Type::hello:
@@ -500,7 +503,7 @@ class VirtualBusServer {
 
   void welcome(Client& client) {
     client.welcome = true;
-    client.node = arbiter_.attach({simulation::QueueOrder::fifo, options_.transmit_queue});
+    client.node = arbiter_.attach({QueueOrder::fifo, options_.transmit_queue});
     virtual_bus::Hello hello;
     hello.bit_rate = options_.bit_rate;
     hello.credit = static_cast<std::uint32_t>(options_.transmit_queue);
@@ -515,14 +518,14 @@ class VirtualBusServer {
     client.gone = true;
     if (!client.welcome) return;  // somebody who only looked whether a server runs
     ++counters_.died;
-    counters_.withdrawn += arbiter_.detach(client.node, simulation::Leftovers::withdraw);
+    counters_.withdrawn += arbiter_.detach(client.node, Leftovers::withdraw);
   }
 
   void refuse(Client& client, const virtual_bus::Goodbye& goodbye) {
     ++(client.welcome ? counters_.misbehaved : counters_.turned_away);
     report(client, goodbye);
     dismiss(client, goodbye);
-    counters_.withdrawn += arbiter_.detach(client.node, simulation::Leftovers::withdraw);
+    counters_.withdrawn += arbiter_.detach(client.node, Leftovers::withdraw);
     client.gone = true;
   }
 
@@ -561,7 +564,7 @@ class VirtualBusServer {
   void accept(base::Time now) {
     pause_accepting(false);
     for (int i = 0; i < SOMAXCONN; ++i) {
-      if (!spare_) spare_ = Descriptor{::open("/dev/null", O_RDONLY | O_CLOEXEC)};
+      if (!spare_) spare_ = host::Descriptor{::open("/dev/null", O_RDONLY | O_CLOEXEC)};
       auto client = std::make_unique<Client>();
       client->socket = accept_one();
       if (!client->socket) {
@@ -594,8 +597,8 @@ class VirtualBusServer {
     }
   }
 
-  [[nodiscard]] Descriptor accept_one() const noexcept {
-    return Descriptor{::accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)};
+  [[nodiscard]] host::Descriptor accept_one() const noexcept {
+    return host::Descriptor{::accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)};
   }
 
   enum class Turned : std::uint8_t { away, nobody, failed };
@@ -613,17 +616,17 @@ class VirtualBusServer {
       dismiss(client, {.reason = virtual_bus::Reason::full});
     }
     client.socket.reset();
-    spare_ = Descriptor{::open("/dev/null", O_RDONLY | O_CLOEXEC)};
+    spare_ = host::Descriptor{::open("/dev/null", O_RDONLY | O_CLOEXEC)};
     return turned;
   }
 
   VirtualBusOptions options_;
-  Descriptor listener_;
-  Descriptor events_;
-  Descriptor spare_;
+  host::Descriptor listener_;
+  host::Descriptor events_;
+  host::Descriptor spare_;
   ino_t inode_;
   dev_t device_;
-  simulation::Arbiter arbiter_;
+  Arbiter arbiter_;
   VirtualBusCounters counters_;
   bool paused_ = false;                    ///< the listener is left alone, until `poll` at or after
   base::Time accept_again_ = base::never;  ///< which passes in `advance`
@@ -634,4 +637,4 @@ class VirtualBusServer {
   std::array<mmsghdr, messages_at_once> messages_{};
 };
 
-}  // namespace ocm::transport
+}  // namespace ocm::simulation
