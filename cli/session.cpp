@@ -16,13 +16,15 @@
 #include "ocm/transport/virtual_bus.hpp"
 
 #include "cli/config.hpp"
+#include "cli/shared/remedies.hpp"
 #include "generator/robot_spec.hpp"
 
 namespace ocm::cli {
 
 void fail(const transport::Failure& failure, int code) {
   fmt::print(stderr, "amiroctl: {}\n", failure.what);
-  if (!failure.remedy.empty()) fmt::print(stderr, "          {}\n", failure.remedy);
+  if (const std::string what_to_do = remedy(failure); !what_to_do.empty())
+    fmt::print(stderr, "          {}\n", what_to_do);
   throw Exit{code};
 }
 

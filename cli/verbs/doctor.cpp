@@ -15,6 +15,7 @@
 #include "ocm/protocol/request.hpp"
 
 #include "cli/interrupt.hpp"
+#include "cli/shared/remedies.hpp"
 #include "cli/verbs/commanding.hpp"
 #include "cli/verbs/verbs.hpp"
 
@@ -80,6 +81,7 @@ class Examination {
 
   [[nodiscard]] std::vector<Finding> findings() const {
     std::vector<Finding> all = diagnosis_.findings();
+    for (Finding& finding : all) finding.remedy = remedy(finding);
     const auto& counters = bus_->counters();
     const auto& seen = receiver_.counters();
     const auto add = [&all](std::uint64_t number, std::string_view what, std::string_view remedy) {

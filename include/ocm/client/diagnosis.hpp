@@ -1,6 +1,6 @@
 /// How a robot is, from what its boards say of themselves: takes samples of topics with the roles status and
-/// refusal and of batteries, and makes sentences of them, each with what to do. Knows the roles' fields by
-/// name and nothing of the robot, so it serves every spec.
+/// refusal and of batteries, and makes findings of them: what each is about, in a sentence, and what to do.
+/// Knows the roles' fields by name and nothing of the robot, so it serves every spec.
 ///
 /// Pure: sends nothing, reads no clock. O(1) a frame; allocates a little for each board and each finding.
 #pragma once
@@ -30,11 +30,30 @@ enum class Severity : std::uint8_t {
   return names[static_cast<std::size_t>(severity)];
 }
 
+/// What a finding is about, for programs that have something of their own to say about it.
+enum class Ailment : std::uint8_t {
+  other,
+  no_answer,     ///< of any board
+  statusless,    ///< the board sends, but no status
+  silent,        ///< the board does not answer
+  foreign_spec,  ///< the board was built from another spec
+  bus_state,     ///< of its CAN controller
+  part_faults,   ///< parts of the board that do not answer
+  overload,      ///< releases came late or not at all
+  busy,          ///< its CPU
+  restarted,     ///< because of a watchdog or a fault
+  bus_errors,    ///< on the bus, or frames given up
+  refusals,      ///< requests that the board refused; `topic` is the last one's
+  battery_low,   ///<
+};
+
 struct Finding {
   Severity severity = Severity::note;
   std::string_view board;  ///< empty: the bus, or the robot as a whole
   std::string what;
-  std::string remedy;
+  std::string remedy;  ///< holds for every program
+  Ailment ailment = Ailment::other;
+  std::string_view topic{};  ///< that it is about, if it is about one that is known
 };
 
 /// "1 frame", "2 frames" of "frame*".
@@ -141,7 +160,8 @@ class Diagnosis {
     if (any_status && !any_answer) {
       all.push_back({Severity::problem, "", "no board answers",
                      "is the robot on, is the bus terminated at both ends, is its bit rate " +
-                         std::to_string(catalogue_->bit_rate) + " bit/s?"});
+                         std::to_string(catalogue_->bit_rate) + " bit/s?",
+                     Ailment::no_answer});
     } else {
       for (std::size_t i = 0; i < boards_.size(); ++i) examine(i, all);
     }
@@ -222,50 +242,55 @@ class Diagnosis {
     const BoardReport& board = boards_[index];
     const std::string_view who = catalogue_->boards[index].name;
     if (board.status == nullptr) return;
-    const auto tell = [&](Severity severity, std::string what, std::string remedy) {
-      all.push_back({severity, who, std::move(what), std::move(remedy)});
+    const auto tell = [&](Ailment ailment, Severity severity, std::string what, std::string remedy,
+                          std::string_view topic = {}) {
+      all.push_back({severity, who, std::move(what), std::move(remedy), ailment, topic});
     };
     if (!board.answered) {
       if (board.heard)
-        return tell(Severity::warning, "sends, and does not say how it is",
+        return tell(Ailment::statusless, Severity::warning, "sends, and does not say how it is",
                     "it runs a firmware without a status; flash the present one");
-      return tell(Severity::problem, "does not answer",
+      return tell(Ailment::silent, Severity::problem, "does not answer",
                   "is it plugged in, has it power, was it flashed? A board that is off sends nothing");
     }
     if (static_cast<std::uint32_t>(board.wire_hash) != protocol::wire_hash(*catalogue_))
-      tell(Severity::problem, "was built from another spec: its numbers may mean something else",
-           "flash it from this spec, or give this tool the board's with --spec");
+      tell(Ailment::foreign_spec, Severity::problem,
+           "was built from another spec: its numbers may mean something else",
+           "flash it from this spec, or read its frames with the spec that it was built from");
     if (board.bus != "active")
-      tell(board.bus == "off" ? Severity::problem : Severity::warning,
+      tell(Ailment::bus_state, board.bus == "off" ? Severity::problem : Severity::warning,
            "its CAN controller is in state " + std::string{board.bus.empty() ? "?" : board.bus},
            "check cable, termination and that every node has the same bit rate");
     if (board.faults != 0)
-      tell(Severity::warning, "no answer from the part behind " + sensors_of(index, board.faults),
+      tell(Ailment::part_faults, Severity::warning,
+           "no answer from the part behind " + sensors_of(index, board.faults),
            "check how it is connected; the board keeps trying, and everything else goes on");
     if (board.overload != 0) {
       const std::string running = sensors_of(index, board.publishing);
-      tell(Severity::warning,
+      tell(Ailment::overload, Severity::warning,
            count(static_cast<std::uint64_t>(board.overload), "release* came late or not at all"),
            "ask for longer periods" + (running.empty() ? std::string{} : "; it publishes " + running));
     }
     if (board.load && *board.load >= load_high_percent)
-      tell(Severity::warning, "its CPU is busy for " + std::to_string(*board.load) + " % of the time",
+      tell(Ailment::busy, Severity::warning,
+           "its CPU is busy for " + std::to_string(*board.load) + " % of the time",
            "ask for longer periods, or for fewer topics");
     if (board.reset == "watchdog" || board.reset == "fault")
-      tell(Severity::warning, "it started again because of a " + std::string{board.reset},
+      tell(Ailment::restarted, Severity::warning, "it started again because of a " + std::string{board.reset},
            "a firmware that hung or crashed: note what was asked of it before");
     if (board.bus_errors != 0)
-      tell(Severity::note,
+      tell(Ailment::bus_errors, Severity::note,
            count(static_cast<std::uint64_t>(board.bus_errors), "error* on the bus or frames given up so far"),
            "few are normal when nodes come and go; many point to cable or termination");
     if (board.refused != 0) {
       const protocol::Topic* topic =
           catalogue_->find(protocol::TopicId{static_cast<std::uint8_t>(board.refused_topic)});
-      const std::string about = topic != nullptr ? std::string{topic->name} : std::string{"?"};
-      tell(Severity::note,
+      const std::string_view about = topic != nullptr ? topic->name : std::string_view{};
+      tell(Ailment::refusals, Severity::note,
            count(static_cast<std::uint64_t>(board.refused), "request* refused so far, the last for ") +
-               about + ": " + std::string{board.reason.empty() ? "?" : board.reason},
-           "`amiroctl info " + about + "` says what it takes");
+               std::string{about.empty() ? "?" : about} + ": " +
+               std::string{board.reason.empty() ? "?" : board.reason},
+           "ask only for what the spec says that it takes", about);
     }
   }
 
@@ -274,7 +299,7 @@ class Diagnosis {
     all.push_back({battery_.state_of_charge <= battery_empty_percent ? Severity::problem : Severity::warning,
                    catalogue_->boards[battery_.topic->board].name,
                    "the battery has " + std::to_string(battery_.state_of_charge) + " % left",
-                   "plug the charger in"});
+                   "plug the charger in", Ailment::battery_low});
   }
 
   const protocol::Catalogue* catalogue_;

@@ -294,11 +294,11 @@ class VirtualBusServer {
     if (::connect(probe.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 ||
         errno == EAGAIN) {
       const auto peer = virtual_bus::peer_of(probe.get());
-      const std::string end =
-          peer && peer->pid > 0 ? ", end it (kill " + std::to_string(peer->pid) + ")" : "";
-      return host::Failure{
-          "a simulator already runs on '" + path + "'" + virtual_bus::process_text(peer),
-          "use it (--bus sim)" + end + ", or serve another one: amiroctl sim --bus sim:PATH"};
+      const std::int64_t process = peer ? peer->pid : 0;
+      const std::string end = process > 0 ? ", end it (kill " + std::to_string(process) + ")" : "";
+      return host::Failure{"a simulator already runs on '" + path + "'" + virtual_bus::process_text(peer),
+                           "use it" + end + ", or choose another path", host::Cause::simulator_running,
+                           process};
     }
     if (errno == EPROTOTYPE)
       return host::Failure{"another program listens on '" + path + "'", "end it, or choose another path"};

@@ -107,7 +107,7 @@ enum class LinkDump : std::uint8_t { more, done, failed };
 
 [[nodiscard]] inline host::Failure interfaces_failure(int error) {
   return {std::string("cannot list the network interfaces (") + std::strerror(error) + ")",
-          "name the bus with --bus; if a sandbox forbids netlink sockets, run outside of it"};
+          "if a sandbox forbids netlink sockets, run outside of it", host::Cause::interfaces_unknown};
 }
 
 }  // namespace detail
@@ -153,11 +153,10 @@ enum class LinkDump : std::uint8_t { more, done, failed };
   const std::string reason = std::string(" (") + std::strerror(error) + ")";
   switch (error) {
     case EAFNOSUPPORT:
-      return {"this kernel has no CAN" + reason,
-              "sudo modprobe can_raw, or use the simulated robot: --bus sim"};
+      return {"this kernel has no CAN" + reason, "sudo modprobe can_raw", host::Cause::can_missing};
     case EPROTONOSUPPORT:
-      return {"this kernel has CAN, but no raw sockets" + reason,
-              "sudo modprobe can_raw, or use the simulated robot: --bus sim"};
+      return {"this kernel has CAN, but no raw sockets" + reason, "sudo modprobe can_raw",
+              host::Cause::can_missing};
     case EPERM:
     case EACCES:
       return {"not allowed to open a CAN socket" + reason,

@@ -49,7 +49,7 @@ class VirtualBus final : public Bus {
     if (!peer || peer->uid != ::geteuid())
       return Failure{"the simulator on '" + path + "' belongs to another user" +
                          (peer ? " (uid " + std::to_string(peer->uid) + ")" : ""),
-                     "start one of your own: amiroctl sim"};
+                     "start one of your own", host::Cause::simulator_foreign};
     std::unique_ptr<VirtualBus> bus{
         new VirtualBus(std::move(socket), std::move(name), path, virtual_bus::process_text(peer))};
     if (auto problem = bus->greet(patience)) return std::move(*problem);
@@ -182,19 +182,21 @@ class VirtualBus final : public Bus {
       case ENOENT:
       case ENOTDIR:
       case ECONNREFUSED:
-        return {"no simulator is running: nobody listens on '" + path + "'", "start one with `amiroctl sim`"};
+        return {"no simulator is running: nobody listens on '" + path + "'", "start one",
+                host::Cause::simulator_missing};
       case EAGAIN:
         return {"the simulator on '" + path + "' does not answer", stuck_remedy(path)};
       case EACCES:
       case EPERM:
         return {"not allowed to connect to '" + path + "'",
-                "a simulator serves its own user only: start one of your own (amiroctl sim)"};
+                "a simulator serves its own user only: start one of your own",
+                host::Cause::simulator_private};
       case EPROTOTYPE:
-        return {"'" + path + "' is a socket, but not of a simulator",
-                "name another path, or none: `amiroctl sim`, `--bus sim`"};
+        return {"'" + path + "' is a socket, but not of a simulator", "name another path",
+                host::Cause::no_simulator};
       default:
-        return {"cannot connect to the simulator on '" + path + "': " + std::strerror(error),
-                "start one with `amiroctl sim`"};
+        return {"cannot connect to the simulator on '" + path + "': " + std::strerror(error), "start one",
+                host::Cause::simulator_missing};
     }
   }
 
@@ -350,7 +352,7 @@ class VirtualBus final : public Bus {
 
   [[nodiscard]] Failure gone() const {
     return {"the simulator" + process_ + " on '" + path_ + "' is gone",
-            "start one with `amiroctl sim`; if it crashed, please report what it said last"};
+            "start it again; if it crashed, please report what it said last", host::Cause::simulator_gone};
   }
 
   [[nodiscard]] Failure not_understood() const {
@@ -364,12 +366,13 @@ class VirtualBus final : public Bus {
     switch (goodbye.reason) {
       case Reason::leaving:
       case Reason::ended:
-        return {simulator + " was ended", "start one with `amiroctl sim`"};
+        return {simulator + " was ended", "start it again", host::Cause::simulator_missing};
       case Reason::full:
         return {simulator + " has no file descriptor left for this program",
                 "close other programs on the bus, or raise the simulator's limit: ulimit -n"};
       case Reason::other_user:
-        return {simulator + " belongs to another user", "start one of your own: amiroctl sim"};
+        return {simulator + " belongs to another user", "start one of your own",
+                host::Cause::simulator_foreign};
       case Reason::bad_version:
         return {simulator + " speaks version " + std::to_string(goodbye.version) +
                     " of the virtual bus's protocol, this program version " + std::to_string(goodbye.detail),

@@ -33,6 +33,9 @@ MACHINE_PATHS = re.compile(r"(?<![\w.$}/-])/(?:wor[k]|roo[t])(?=[/\s`'\")\]]|$)|
                            r"|/User[s]/\w")
 INTERNAL_NAMES = re.compile(r"\bfar[m]-\w|\bshare[d]/(?:facts|tools|theses|hooks)|\bissue[s] (?:show|close)\b")
 
+# Reads words that people type, options among them.
+READS_OPTIONS = ("include/ocm/client/command.hpp",)
+
 SOURCE = (".hpp", ".cpp", ".h", ".c")
 
 
@@ -123,6 +126,18 @@ def layers_are_apart(tree):
             other = tree.floor(reached)
             if other in LAYERS and other != floor:
                 yield f"{name}:1: OCM layer '{floor}' reaches layer '{other}': {' -> '.join(way)}"
+
+
+def library_knows_no_tool(tree):
+    """No sentence of the library names amiroctl or an option: other programs use it too."""
+    token = r'//[^\n]*|/\*[\s\S]*?\*/|"(?:\\.|[^"\\\n])*"'
+    for name, _ in tree.headers():
+        if name in READS_OPTIONS:
+            continue
+        for line, match in tree.find(name, token):
+            found = re.search(r"amiroctl|(?<![\w-])--[a-z]", match.group(0))
+            if match.group(0).startswith('"') and found:
+                yield f"{name}:{line}: '{found.group(0)}': the library says a cause and facts; cli/ says what to do"
 
 
 def mapper_knows_no_can(tree):
@@ -366,10 +381,10 @@ def quotes_are_the_examples(tree):
         yield f"README.md:{line}: C++ in the README is quoted: put '<!-- snippet: NAME -->' above it"
 
 
-RULES = (floors_have_rows, includes_go_down, layers_are_apart, mapper_knows_no_can, no_circles, namespace_is_folder,
-         no_banned_headers, no_banned_words, headers_open_with_a_comment, headers_have_tests,
-         own_includes_are_full_paths,
-         generator_is_independent, boards_know_no_world, generated_files_are_reproducible, no_machine_paths,
+RULES = (floors_have_rows, includes_go_down, layers_are_apart, library_knows_no_tool, mapper_knows_no_can,
+         no_circles, namespace_is_folder, no_banned_headers, no_banned_words, headers_open_with_a_comment,
+         headers_have_tests, own_includes_are_full_paths, generator_is_independent, boards_know_no_world,
+         generated_files_are_reproducible, no_machine_paths,
          links_resolve, pages_are_linked, quotes_are_the_examples)
 
 

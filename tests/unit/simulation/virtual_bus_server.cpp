@@ -36,7 +36,9 @@ TEST_CASE("a second server is refused, with the path and the process of the firs
   CHECK_THAT(second.error.what, Catch::Contains("already runs on '" + setup.path() + "'") &&
                                     Catch::Contains("process " + std::to_string(::getpid())));
   CHECK_THAT(second.error.remedy,
-             Catch::Contains("--bus sim") && Catch::Contains("kill " + std::to_string(::getpid())));
+             Catch::Contains("use it") && Catch::Contains("kill " + std::to_string(::getpid())));
+  CHECK(second.error.cause == host::Cause::simulator_running);
+  CHECK(second.error.process == ::getpid());
   // And the first one did not mind.
   const auto client = setup.join();
   CHECK(setup.server->counters().welcomed == 1);

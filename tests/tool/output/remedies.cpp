@@ -1,0 +1,49 @@
+#include "cli/shared/remedies.hpp"
+
+#include <cerrno>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/transport/interfaces.hpp"
+
+using namespace ocm;
+using cli::remedy;
+using host::Cause;
+using host::Failure;
+
+TEST_CASE("remedies: what can be done with this tool is said with its words") {
+  CHECK(remedy(transport::can_socket_failure(EAFNOSUPPORT)) ==
+        "sudo modprobe can_raw, or use the simulated robot: --bus sim");
+  CHECK(remedy(transport::detail::interfaces_failure(EACCES)) ==
+        "name the bus with --bus; if a sandbox forbids netlink sockets, run outside of it");
+  CHECK(remedy(Failure{"x", "y", Cause::simulator_missing}) == "start one with `amiroctl sim`");
+  CHECK(remedy(Failure{"x", "y", Cause::simulator_gone}) ==
+        "start one with `amiroctl sim`; if it crashed, please report what it said last");
+  CHECK(remedy(Failure{"x", "y", Cause::simulator_private}) ==
+        "a simulator serves its own user only: start one of your own (amiroctl sim)");
+  CHECK(remedy(Failure{"x", "y", Cause::simulator_foreign}) == "start one of your own: amiroctl sim");
+  CHECK(remedy(Failure{"x", "y", Cause::no_simulator}) ==
+        "name another path, or none: `amiroctl sim`, `--bus sim`");
+  CHECK(remedy(Failure{"x", "y", Cause::simulator_running, 1234}) ==
+        "use it (--bus sim), end it (kill 1234), or serve another one: amiroctl sim --bus sim:PATH");
+  CHECK(remedy(Failure{"x", "y", Cause::simulator_running}) ==
+        "use it (--bus sim), or serve another one: amiroctl sim --bus sim:PATH");
+}
+
+TEST_CASE("remedies: all other failures keep their own") {
+  CHECK(remedy(Failure{"x", "close other programs"}) == "close other programs");
+  CHECK(remedy(transport::can_socket_failure(EPERM)) == transport::can_socket_failure(EPERM).remedy);
+}
+
+TEST_CASE("remedies: findings") {
+  using client::Ailment;
+  using client::Finding;
+  using client::Severity;
+  CHECK(remedy(Finding{Severity::problem, "a", "b", "c", Ailment::foreign_spec}) ==
+        "flash it from this spec, or give this tool the board's with --spec");
+  CHECK(remedy(Finding{Severity::note, "a", "b", "c", Ailment::refusals, "gyroscope"}) ==
+        "`amiroctl info gyroscope` says what it takes");
+  CHECK(remedy(Finding{Severity::note, "a", "b", "c", Ailment::refusals}) ==
+        "`amiroctl info ?` says what it takes");
+  CHECK(remedy(Finding{Severity::warning, "", "b", "c"}) == "c");
+}
