@@ -8,7 +8,7 @@
 #include <cstring>
 #include <span>
 
-#include "ocm/log/swar.hpp"
+#include "ocm/base/swar.hpp"
 
 namespace ocm::cli {
 
@@ -79,13 +79,13 @@ inline char* put_seconds(char* to, std::int64_t nanoseconds) noexcept {
 
 /// Two upper-case digits a byte.
 inline char* put_hex(char* to, std::span<const std::uint8_t> bytes) noexcept {
-  for (const std::uint8_t byte : bytes) to = log::swar::hex_byte(to, byte);
+  for (const std::uint8_t byte : bytes) to = base::swar::hex_byte(to, byte);
   return to;
 }
 
 /// Exactly `digits` upper-case digits.
 inline char* put_hex(char* to, std::uint32_t number, int digits) noexcept {
-  for (int i = digits - 1; i >= 0; --i) *to++ = log::swar::upper_digits[number >> 4 * i & 0xF];
+  for (int i = digits - 1; i >= 0; --i) *to++ = base::swar::upper_digits[number >> 4 * i & 0xF];
   return to;
 }
 

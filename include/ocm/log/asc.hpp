@@ -16,11 +16,11 @@
 #include <span>
 #include <string_view>
 
+#include "ocm/base/swar.hpp"
 #include "ocm/base/text.hpp"
 #include "ocm/log/calendar.hpp"
 #include "ocm/log/channels.hpp"
 #include "ocm/log/reader.hpp"
-#include "ocm/log/swar.hpp"
 #include "ocm/log/writer.hpp"
 
 namespace ocm::log {
@@ -452,9 +452,9 @@ class AscWriter final : public Writer {
     const auto fraction = static_cast<std::uint32_t>(us % 1'000'000);
     at = right(at, us / 1'000'000, 4);
     *at++ = '.';
-    at = swar::two_digits(at, fraction / 10'000);
-    at = swar::two_digits(at, fraction / 100 % 100);
-    at = swar::two_digits(at, fraction % 100);
+    at = base::swar::two_digits(at, fraction / 10'000);
+    at = base::swar::two_digits(at, fraction / 100 % 100);
+    at = base::swar::two_digits(at, fraction % 100);
     *at++ = ' ';
     return at;
   }
@@ -463,7 +463,7 @@ class AscWriter final : public Writer {
     if (!is_bus_error(entry)) losses_.add(Lost::error_detail);
     if (entry.direction != Direction::unknown) losses_.add(Lost::direction);
     at = left(at, channel, 2);
-    return swar::copy(at, " ErrorFrame");
+    return base::swar::copy(at, " ErrorFrame");
   }
 
   static char* classic(char* at, const Entry& entry, std::uint16_t channel) noexcept {
@@ -472,10 +472,10 @@ class AscWriter final : public Writer {
     const char* const id = at;
     at = identifier(at, entry);
     at = blanks(at, 16 - (at - id));
-    at = swar::copy(at, entry.direction == Direction::sent ? "Tx   " : "Rx   ");
+    at = base::swar::copy(at, entry.direction == Direction::sent ? "Tx   " : "Rx   ");
     *at++ = can::is_remote(entry.format) ? 'r' : 'd';
     *at++ = ' ';
-    *at++ = swar::upper_digits[entry.raw_dlc > can::max_dlc ? entry.raw_dlc & 0xF : entry.length & 0xF];
+    *at++ = base::swar::upper_digits[entry.raw_dlc > can::max_dlc ? entry.raw_dlc & 0xF : entry.length & 0xF];
     return data(at, entry);
   }
 
@@ -484,14 +484,14 @@ class AscWriter final : public Writer {
     if ((entry.flags & ~known) != 0) losses_.add(Lost::fd_flags);
     const bool bit_rate_switch = (entry.flags & flag::bit_rate_switch) != 0;
     const bool error_state = (entry.flags & flag::error_state) != 0;
-    at = swar::copy(at, "CANFD ");
+    at = base::swar::copy(at, "CANFD ");
     at = right(at, channel, 3);
-    at = swar::copy(at, entry.direction == Direction::sent ? " Tx   " : " Rx   ");
+    at = base::swar::copy(at, entry.direction == Direction::sent ? " Tx   " : " Rx   ");
     char id[12];
     const char* const id_end = identifier(id, entry);
     const bool extended = can::is_extended(entry.format);
     at = blanks(at, 9 - (id_end - id) - (extended ? 0 : 1));
-    at = swar::copy(at, {id, static_cast<std::size_t>(id_end - id)});
+    at = base::swar::copy(at, {id, static_cast<std::size_t>(id_end - id)});
     at = blanks(at, extended ? 34 : 35);  // where a symbolic name would stand
     *at++ = bit_rate_switch ? '1' : '0';
     *at++ = ' ';
@@ -502,15 +502,15 @@ class AscWriter final : public Writer {
     at = right(at, entry.length, 2);
     at = data(at, entry);
     // Duration and length in bits are not known; flags; checksum and bit timing are not known.
-    at = swar::copy(at, "        0    0     ");
+    at = base::swar::copy(at, "        0    0     ");
     *at++ = static_cast<char>('1' + (bit_rate_switch ? 2 : 0) + (error_state ? 4 : 0));
-    return swar::copy(at, "000 0 0 0 0 0");
+    return base::swar::copy(at, "000 0 0 0 0 0");
   }
 
   static char* identifier(char* at, const Entry& entry) noexcept {
     int shift = 28;
     while (shift > 0 && entry.id >> shift == 0) shift -= 4;
-    for (; shift >= 0; shift -= 4) *at++ = swar::upper_digits[entry.id >> shift & 0xF];
+    for (; shift >= 0; shift -= 4) *at++ = base::swar::upper_digits[entry.id >> shift & 0xF];
     if (can::is_extended(entry.format)) *at++ = 'x';
     return at;
   }
@@ -518,7 +518,7 @@ class AscWriter final : public Writer {
   static char* data(char* at, const Entry& entry) noexcept {
     for (const std::uint8_t byte : entry.bytes()) {
       *at++ = ' ';
-      at = swar::hex_byte(at, byte);
+      at = base::swar::hex_byte(at, byte);
     }
     return at;
   }
@@ -531,7 +531,7 @@ class AscWriter final : public Writer {
     base::Text<20> digits;
     digits.decimal(number);
     at = blanks(at, width - static_cast<std::ptrdiff_t>(digits.view().size()));
-    return swar::copy(at, digits.view());
+    return base::swar::copy(at, digits.view());
   }
   static char* left(char* at, std::uint64_t number, std::ptrdiff_t width) noexcept {
     const char* const begin = at;

@@ -128,7 +128,7 @@ class BlfReader final : public Reader {
     return false;
   }
 
-  [[nodiscard]] static std::uint16_t load16(const char* from) noexcept { return swar::load16(from); }
+  [[nodiscard]] static std::uint16_t load16(const char* from) noexcept { return base::swar::load16(from); }
 
   /// The next object in what is unpacked, taken; nothing where it is not whole.
   [[nodiscard]] std::optional<std::string_view> next_object() {
@@ -241,7 +241,7 @@ class BlfReader final : public Reader {
     const std::size_t head = load16(at + 4);
     if (head < blf::object_header || head > object.size())
       return refuse(Cause::syntax, "the head of an object");
-    if (!time_of(swar::load64(at + 24), packet::load32(at + 16), entry))
+    if (!time_of(base::swar::load64(at + 24), packet::load32(at + 16), entry))
       return refuse(Cause::time, "beyond nanoseconds");
     const std::string_view body = object.substr(head);
     switch (type) {

@@ -17,10 +17,10 @@
 #include <string_view>
 #include <vector>
 
+#include "ocm/base/swar.hpp"
 #include "ocm/base/text.hpp"
 #include "ocm/can/text.hpp"
 #include "ocm/log/reader.hpp"
-#include "ocm/log/swar.hpp"
 #include "ocm/log/writer.hpp"
 
 namespace ocm::log {
@@ -173,12 +173,14 @@ class CandumpReader final : public Reader {
   /// every other line, which then is not of interest here.
   [[nodiscard]] std::size_t usual(const char* const line, Entry& entry) const noexcept {
     // "(1436509052.249713) ": the last two digits of the seconds and the fraction make one word.
-    std::uint64_t low = swar::load64(line + 10) & ~std::uint64_t{0xFFFF};
-    low |= swar::load16(line + 9);
-    const std::uint64_t high = swar::load64(line + 1);
-    if (line[0] != '(' || line[11] != '.' || !swar::are_digits(high) || !swar::are_digits(low)) return 0;
-    auto ns = static_cast<std::int64_t>((swar::decimal(high) * 100'000'000 + swar::decimal(low)) * 1000);
-    if (swar::decimal(high) >= 92'233'720) return 0;  // near the end of 64 bits
+    std::uint64_t low = base::swar::load64(line + 10) & ~std::uint64_t{0xFFFF};
+    low |= base::swar::load16(line + 9);
+    const std::uint64_t high = base::swar::load64(line + 1);
+    if (line[0] != '(' || line[11] != '.' || !base::swar::are_digits(high) || !base::swar::are_digits(low))
+      return 0;
+    auto ns = static_cast<std::int64_t>((base::swar::decimal(high) * 100'000'000 + base::swar::decimal(low)) *
+                                        1000);
+    if (base::swar::decimal(high) >= 92'233'720) return 0;  // near the end of 64 bits
     const char* at = line + 18;
     if (*at != ')') {  // nine digits
       const unsigned a = digit(at[0]), b = digit(at[1]), c = digit(at[2]);
@@ -188,14 +190,14 @@ class CandumpReader final : public Reader {
     }
     if (at[0] != ')' || at[1] != ' ') return 0;
     at += 2;
-    const Name* const name = known(swar::load64(at));
+    const Name* const name = known(base::swar::load64(at));
     if (name == nullptr) return 0;
     at += name->size;
 
-    const swar::Hex id = swar::hex(swar::load64(at));
+    const base::swar::Hex id = base::swar::hex(base::swar::load64(at));
     const unsigned digits = id.count();
     if ((digits != 3 && digits != 8) || at[digits] != '#') return 0;
-    std::uint32_t number = swar::big_endian(id.bytes()) >> (32 - 4 * digits);
+    std::uint32_t number = base::swar::big_endian(id.bytes()) >> (32 - 4 * digits);
     if (digits == 3) {
       if (number > can::max_base_id) return 0;
       entry.format = can::Format::base;
@@ -222,8 +224,8 @@ class CandumpReader final : public Reader {
 
   /// Up to 16 digits, all at once: random lengths cost no wrong guess of a jump.
   static const char* data(const char* at, Entry& entry) noexcept {
-    const swar::Hex first = swar::hex(swar::load64(at));
-    const swar::Hex second = swar::hex(swar::load64(at + 8));
+    const base::swar::Hex first = base::swar::hex(base::swar::load64(at));
+    const base::swar::Hex second = base::swar::hex(base::swar::load64(at + 8));
     const std::uint32_t both = first.bad == 0 ? ~std::uint32_t{0} : 0;
     const unsigned digits = first.count() + (second.count() & both);
     const std::uint32_t words[2] = {first.bytes(), second.bytes() & both};
@@ -241,7 +243,7 @@ class CandumpReader final : public Reader {
     std::memset(entry.data.data(), 0, 8);
     std::size_t digits = 0;
     for (unsigned count = 8; count == 8 && digits < std::size_t{2} * max_fd_length; digits += count) {
-      const swar::Hex some = swar::hex(swar::load64(at + digits));
+      const base::swar::Hex some = base::swar::hex(base::swar::load64(at + digits));
       const std::uint32_t word = some.bytes();
       std::memcpy(entry.data.data() + digits / 2, &word, sizeof word);
       count = some.count();
@@ -316,7 +318,7 @@ class CandumpReader final : public Reader {
     interface.copy(text, interface.size());
     text[interface.size()] = ' ';
     const auto size = static_cast<std::uint8_t>(interface.size() + 1);
-    names_.push_back({swar::load64(text), ~std::uint64_t{0} >> (64 - 8 * size), size, number});
+    names_.push_back({base::swar::load64(text), ~std::uint64_t{0} >> (64 - 8 * size), size, number});
   }
 
   std::vector<Name> names_;
@@ -362,13 +364,13 @@ class CandumpWriter : public Writer {
 
   char* line(char* at, const Entry& entry, std::string_view name) noexcept {
     at = time(at, entry.time);
-    at = swar::copy(at, name);
+    at = base::swar::copy(at, name);
     *at++ = ' ';
     at = identifier(at, entry);
     at = can::is_remote(entry.format) ? remote(at, entry) : data(at, entry);
     if (entry.raw_dlc > can::max_dlc && entry.length == can::max_dlc && !entry.is_fd()) {
       *at++ = '_';
-      *at++ = swar::upper_digits[entry.raw_dlc & 0xF];
+      *at++ = base::swar::upper_digits[entry.raw_dlc & 0xF];
     }
     if (entry.direction != Direction::unknown) {
       *at++ = ' ';
@@ -389,14 +391,14 @@ class CandumpWriter : public Writer {
     const std::uint64_t seconds = us / 1'000'000;
     const auto fraction = static_cast<std::uint32_t>(us % 1'000'000);
     *at++ = '(';
-    at = swar::two_digits(at, static_cast<std::uint32_t>(seconds / 100'000'000));
-    at = swar::eight_digits(at, static_cast<std::uint32_t>(seconds % 100'000'000));
+    at = base::swar::two_digits(at, static_cast<std::uint32_t>(seconds / 100'000'000));
+    at = base::swar::eight_digits(at, static_cast<std::uint32_t>(seconds % 100'000'000));
     *at++ = '.';
-    at = swar::two_digits(at, fraction / 10'000);
-    at = swar::two_digits(at, fraction / 100 % 100);
-    at = swar::two_digits(at, fraction % 100);
+    at = base::swar::two_digits(at, fraction / 10'000);
+    at = base::swar::two_digits(at, fraction / 100 % 100);
+    at = base::swar::two_digits(at, fraction % 100);
     if (digits_ == Digits::nanoseconds) {
-      at = swar::two_digits(at, rest / 10);
+      at = base::swar::two_digits(at, rest / 10);
       *at++ = static_cast<char>('0' + rest % 10);
     } else if (rest != 0) {
       losses_.add(Lost::time_digits);
@@ -408,12 +410,12 @@ class CandumpWriter : public Writer {
 
   static char* identifier(char* at, const Entry& entry) noexcept {
     if (entry.format == can::Format::base || entry.format == can::Format::base_remote) {
-      *at++ = swar::upper_digits[entry.id >> 8 & 0xF];
-      at = swar::hex_byte(at, static_cast<std::uint8_t>(entry.id));
+      *at++ = base::swar::upper_digits[entry.id >> 8 & 0xF];
+      at = base::swar::hex_byte(at, static_cast<std::uint8_t>(entry.id));
     } else {
       const std::uint32_t id = entry.id | (entry.format == can::Format::error ? can::error_frame_flag : 0);
       for (int shift = 24; shift >= 0; shift -= 8)
-        at = swar::hex_byte(at, static_cast<std::uint8_t>(id >> shift));
+        at = base::swar::hex_byte(at, static_cast<std::uint8_t>(id >> shift));
     }
     *at++ = '#';
     return at;
@@ -421,18 +423,18 @@ class CandumpWriter : public Writer {
 
   static char* remote(char* at, const Entry& entry) noexcept {
     *at++ = 'R';
-    if (entry.length != 0) *at++ = swar::upper_digits[entry.length & 0xF];
+    if (entry.length != 0) *at++ = base::swar::upper_digits[entry.length & 0xF];
     return at;
   }
 
   static char* data(char* at, const Entry& entry) noexcept {
     if (entry.is_fd()) {
       *at++ = '#';
-      *at++ = swar::upper_digits[entry.flags & 0xF & ~flag::fd];
-      for (std::size_t i = 8; i < entry.length; ++i) swar::hex_byte(at + 2 * i, entry.data[i]);
+      *at++ = base::swar::upper_digits[entry.flags & 0xF & ~flag::fd];
+      for (std::size_t i = 8; i < entry.length; ++i) base::swar::hex_byte(at + 2 * i, entry.data[i]);
     }
     for (std::size_t i = 0; i < 8; ++i)
-      swar::hex_byte(at + 2 * i, entry.data[i]);  // a fixed count is unrolled
+      base::swar::hex_byte(at + 2 * i, entry.data[i]);  // a fixed count is unrolled
     return at + std::size_t{2} * entry.length;
   }
 

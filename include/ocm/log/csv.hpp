@@ -18,9 +18,9 @@
 #include <string_view>
 
 #include "ocm/base/decimal.hpp"
+#include "ocm/base/swar.hpp"
 #include "ocm/base/text.hpp"
 #include "ocm/log/reader.hpp"
-#include "ocm/log/swar.hpp"
 #include "ocm/log/writer.hpp"
 
 namespace ocm::log {
@@ -218,18 +218,18 @@ class CsvWriter final : public Writer {
     const std::uint64_t seconds = whole / 1'000'000'000;
     const auto fraction = static_cast<std::uint32_t>(whole % 1'000'000'000);
     char text[10];
-    swar::eight_digits(swar::two_digits(text, static_cast<std::uint32_t>(seconds / 100'000'000)),
-                       static_cast<std::uint32_t>(seconds % 100'000'000));
+    base::swar::eight_digits(base::swar::two_digits(text, static_cast<std::uint32_t>(seconds / 100'000'000)),
+                             static_cast<std::uint32_t>(seconds % 100'000'000));
     const std::string_view digits{text, sizeof text};
-    at = swar::copy(at, digits.substr(std::min(digits.find_first_not_of('0'), digits.size() - 1)));
+    at = base::swar::copy(at, digits.substr(std::min(digits.find_first_not_of('0'), digits.size() - 1)));
     *at++ = '.';
-    at = swar::eight_digits(at, fraction / 10);
+    at = base::swar::eight_digits(at, fraction / 10);
     *at++ = static_cast<char>('0' + fraction % 10);
     return fraction % 1000 == 0 ? at - 3 : at;
   }
 
   static char* identifier(char* at, std::uint32_t id) noexcept {
-    at = swar::copy(at, ",0x");
+    at = base::swar::copy(at, ",0x");
     int shift = 28;
     while (shift > 0 && id >> shift == 0) shift -= 4;
     for (; shift >= 0; shift -= 4) *at++ = "0123456789abcdef"[id >> shift & 0xF];

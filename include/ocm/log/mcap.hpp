@@ -109,7 +109,7 @@ class McapReader final : public Reader {
     const std::string_view head = input_->peek(mcap::record_head);
     if (head.size() < mcap::record_head) return end_early(head.size());
     const std::uint8_t kind = packet::load8(head.data());
-    const std::uint64_t length = swar::load64(head.data() + 1);
+    const std::uint64_t length = base::swar::load64(head.data() + 1);
     if (kind == mcap::opcode::footer && length == mcap::footer_size) return finish();
     if (kind == 0 || kind == mcap::opcode::footer) {
       complain(Cause::syntax, here(), "no record begins here");
@@ -212,8 +212,9 @@ class McapReader final : public Reader {
       const char* const at = rest.data();
       const std::uint32_t compression = packet::load32(at + 37);
       if (*at == mcap::opcode::chunk && compression <= name && rest.size() >= head + compression) {
-        const std::uint64_t records = swar::load64(at + 41 + compression);
-        if (records < Input::longest && swar::load64(at + 1) == records + compression + mcap::chunk_head)
+        const std::uint64_t records = base::swar::load64(at + 41 + compression);
+        if (records < Input::longest &&
+            base::swar::load64(at + 1) == records + compression + mcap::chunk_head)
           return Step::nothing;
       }
       const std::size_t next = rest.find(static_cast<char>(mcap::opcode::chunk), 1);
@@ -279,7 +280,7 @@ class McapReader final : public Reader {
   /// The next record of the chunk. Whether it made an entry.
   [[nodiscard]] bool take_of_chunk(Entry& entry) {
     const std::uint64_t length =
-        records_.size() < mcap::record_head ? UINT64_MAX : swar::load64(records_.data() + 1);
+        records_.size() < mcap::record_head ? UINT64_MAX : base::swar::load64(records_.data() + 1);
     if (length > records_.size() - mcap::record_head || records_.size() < mcap::record_head) {
       if (chunk_whole_) complain(Cause::syntax, place_in_chunk(), "a record beyond its chunk");
       records_ = {};
@@ -343,7 +344,7 @@ class McapReader final : public Reader {
 
   [[nodiscard]] bool message(std::string_view content, Place place, Entry& entry) {
     if (content.size() < mcap::message_head) return refuse(Cause::length, place, "a message");
-    const std::uint16_t number = swar::load16(content.data());
+    const std::uint16_t number = base::swar::load16(content.data());
     const Channel channel = number < channels_.size() ? channels_[number] : Channel{};
     if (channel.kind != Kind::raw) {
       if (channel.kind == Kind::unknown)
@@ -352,7 +353,7 @@ class McapReader final : public Reader {
       ++passed_over_;
       return false;
     }
-    const std::uint64_t ns = swar::load64(content.data() + 6);
+    const std::uint64_t ns = base::swar::load64(content.data() + 6);
     if (ns > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()))
       return refuse(Cause::time, place, "a message");
     entry.time = base::Time{base::Duration{static_cast<std::int64_t>(ns)}};

@@ -19,11 +19,11 @@
 #include <string_view>
 #include <vector>
 
+#include "ocm/base/swar.hpp"
 #include "ocm/base/text.hpp"
 #include "ocm/log/bytes.hpp"
 #include "ocm/log/crc32.hpp"
 #include "ocm/log/packet.hpp"
-#include "ocm/log/swar.hpp"
 
 namespace ocm::log::mcap {
 
@@ -68,7 +68,7 @@ struct Pair {
       continue;
     }
     char digits[2];
-    swar::hex_byte(digits, static_cast<std::uint8_t>(c));
+    base::swar::hex_byte(digits, static_cast<std::uint8_t>(c));
     out.append({'%', digits[0], digits[1]});
   }
   return out;

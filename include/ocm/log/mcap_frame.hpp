@@ -21,10 +21,10 @@
 #include <optional>
 #include <string_view>
 
+#include "ocm/base/swar.hpp"
 #include "ocm/base/text.hpp"
 #include "ocm/log/complaints.hpp"
 #include "ocm/log/entry.hpp"
-#include "ocm/log/swar.hpp"
 
 namespace ocm::log::mcap {
 
@@ -54,33 +54,33 @@ inline constexpr std::size_t frame_room = 2 * max_fd_length + 192;
 /// Writes the message at `to`; returns its end.
 inline char* put_frame(char* to, const Entry& entry) noexcept {
   const auto put_number = [&to](auto number) { to = std::to_chars(to, to + 20, number).ptr; };
-  to = swar::copy(to, R"({"id":)");
+  to = base::swar::copy(to, R"({"id":)");
   put_number(entry.id);
-  to = swar::copy(to, R"(,"data":")");
-  for (const std::uint8_t byte : entry.bytes()) to = swar::hex_byte(to, byte);
+  to = base::swar::copy(to, R"(,"data":")");
+  for (const std::uint8_t byte : entry.bytes()) to = base::swar::hex_byte(to, byte);
   *to++ = '"';
-  if (entry.direction == Direction::received) to = swar::copy(to, R"(,"direction":"received")");
-  if (entry.direction == Direction::sent) to = swar::copy(to, R"(,"direction":"sent")");
+  if (entry.direction == Direction::received) to = base::swar::copy(to, R"(,"direction":"received")");
+  if (entry.direction == Direction::sent) to = base::swar::copy(to, R"(,"direction":"sent")");
   if (entry.format != can::Format::base) {
-    if (can::is_extended(entry.format)) to = swar::copy(to, R"(,"extended":true)");
-    if (can::is_remote(entry.format)) to = swar::copy(to, R"(,"remote":true)");
-    if (entry.format == can::Format::error) to = swar::copy(to, R"(,"error":true)");
+    if (can::is_extended(entry.format)) to = base::swar::copy(to, R"(,"extended":true)");
+    if (can::is_remote(entry.format)) to = base::swar::copy(to, R"(,"remote":true)");
+    if (entry.format == can::Format::error) to = base::swar::copy(to, R"(,"error":true)");
     if (can::is_remote(entry.format) && entry.length != 0) {
-      to = swar::copy(to, R"(,"length":)");
+      to = base::swar::copy(to, R"(,"length":)");
       put_number(entry.length);
     }
   }
   if (entry.is_fd()) {
-    to = swar::copy(to, R"(,"fd":true)");
-    if ((entry.flags & flag::bit_rate_switch) != 0) to = swar::copy(to, R"(,"brs":true)");
-    if ((entry.flags & flag::error_state) != 0) to = swar::copy(to, R"(,"esi":true)");
+    to = base::swar::copy(to, R"(,"fd":true)");
+    if ((entry.flags & flag::bit_rate_switch) != 0) to = base::swar::copy(to, R"(,"brs":true)");
+    if ((entry.flags & flag::error_state) != 0) to = base::swar::copy(to, R"(,"esi":true)");
   }
   if (entry.raw_dlc != 0) {
-    to = swar::copy(to, R"(,"raw_dlc":)");
+    to = base::swar::copy(to, R"(,"raw_dlc":)");
     put_number(entry.raw_dlc);
   }
   if (const std::int64_t ns = entry.time.time_since_epoch().count(); ns < 0) {
-    to = swar::copy(to, R"(,"time_ns":")");
+    to = base::swar::copy(to, R"(,"time_ns":")");
     put_number(ns);
     *to++ = '"';
   }
@@ -226,7 +226,7 @@ class FrameParser {
         std::memcpy(text, at_, 8);
       else
         std::memcpy(text, at_, left);
-      const swar::Hex hex = swar::hex(swar::load64(text));
+      const base::swar::Hex hex = base::swar::hex(base::swar::load64(text));
       const unsigned count = hex.count();
       if (count == 0 || count % 2 != 0) return false;
       if (size_ + count / 2 > max_fd_length) {
@@ -292,12 +292,12 @@ class FrameParser {
   at += before_data.size();
 
   if (left() < 8) return false;
-  const swar::Hex first = swar::hex(swar::load64(at));
+  const base::swar::Hex first = base::swar::hex(base::swar::load64(at));
   std::uint64_t data = first.bytes();
   unsigned digits = first.count();
   if (digits == 8) {
     if (left() < 16) return false;
-    const swar::Hex second = swar::hex(swar::load64(at + 8));
+    const base::swar::Hex second = base::swar::hex(base::swar::load64(at + 8));
     data |= std::uint64_t{second.bytes()} << 32;
     digits += second.count();
   }

@@ -13,9 +13,9 @@
 #include <optional>
 #include <string_view>
 
+#include "ocm/base/swar.hpp"
 #include "ocm/log/complaints.hpp"
 #include "ocm/log/entry.hpp"
-#include "ocm/log/swar.hpp"
 
 namespace ocm::log {
 
@@ -47,7 +47,7 @@ inline constexpr std::uint32_t error_flag = 0x2000'0000;     ///< CAN_ERR_FLAG
   return word;
 }
 [[nodiscard]] inline std::uint32_t load32_big(const char* from) noexcept {
-  return swar::big_endian(load32(from));
+  return base::swar::big_endian(load32(from));
 }
 [[nodiscard]] inline std::uint32_t load16_big(const char* from) noexcept {
   return load32_big(from) >> 16;
@@ -71,7 +71,7 @@ inline void store32(char* to, std::uint32_t word) noexcept {
 
 /// The frame as LINKTYPE_CAN_SOCKETCAN: always 16 or 72 bytes, by which older tools tell CAN FD.
 inline void store(char* to, const Entry& entry) noexcept {
-  store32(to, swar::big_endian(entry.id | flags_of(entry.format)));
+  store32(to, base::swar::big_endian(entry.id | flags_of(entry.format)));
   to[4] = static_cast<char>(entry.length);
   to[6] = 0;
   if (!entry.is_fd()) [[likely]] {
@@ -126,9 +126,9 @@ inline void store(char* to, const Entry& entry) noexcept {
   char eight[can::max_dlc] = {};
   std::uint64_t data;
   if (bytes.size() >= classic_size) [[likely]]
-    data = swar::load64(bytes.data() + header_size);
+    data = base::swar::load64(bytes.data() + header_size);
   else
-    std::memcpy(eight, bytes.data() + header_size, length), data = swar::load64(eight);
+    std::memcpy(eight, bytes.data() + header_size, length), data = base::swar::load64(eight);
   if (length < can::max_dlc) data &= ~(~std::uint64_t{0} << 8 * length);
   std::memcpy(entry.data.data(), &data, sizeof data);
   return std::nullopt;
@@ -160,8 +160,8 @@ inline constexpr std::uint32_t sent_by_us = 4;  ///< [linux/if_packet.h]
   const std::uint32_t to_whom = second ? load8(at + 10) : load16_big(at);
   entry.direction = to_whom == sent_by_us ? Direction::sent : Direction::received;
   const std::uint32_t id = load32(at + before);
-  return load_frame(bytes.substr(before), swapped ? swar::big_endian(id) : id, protocol == protocol_can_fd,
-                    entry);
+  return load_frame(bytes.substr(before), swapped ? base::swar::big_endian(id) : id,
+                    protocol == protocol_can_fd, entry);
 }
 
 }  // namespace packet

@@ -67,7 +67,7 @@ class PcapReader final : public Reader {
 
   [[nodiscard]] std::uint32_t load32(const char* from) const noexcept {
     const std::uint32_t word = packet::load32(from);
-    return form_.swapped ? swar::big_endian(word) : word;
+    return form_.swapped ? base::swar::big_endian(word) : word;
   }
   [[nodiscard]] Place here() const noexcept { return {input_->offset()}; }
 

@@ -150,10 +150,10 @@ class PcapngReader final : public Reader {
 
   [[nodiscard]] std::uint32_t load32(const char* from) const noexcept {
     const std::uint32_t word = packet::load32(from);
-    return swapped_ ? swar::big_endian(word) : word;
+    return swapped_ ? base::swar::big_endian(word) : word;
   }
   [[nodiscard]] std::uint16_t load16(const char* from) const noexcept {
-    const std::uint16_t word = swar::load16(from);
+    const std::uint16_t word = base::swar::load16(from);
     return swapped_ ? static_cast<std::uint16_t>(word << 8 | word >> 8) : word;
   }
   [[nodiscard]] std::uint64_t load64(const char* from) const noexcept {

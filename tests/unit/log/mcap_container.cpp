@@ -15,7 +15,7 @@ namespace {
 void put(mcap::Container& container, Bytes& out, std::uint16_t channel, std::uint64_t ns,
          std::string_view text) {
   char* const at = container.begin_message(out, channel, ns, text.size());
-  container.end_message(swar::copy(at, text));
+  container.end_message(base::swar::copy(at, text));
 }
 
 struct Record {
@@ -29,7 +29,7 @@ std::vector<Record> records_of(std::string_view file) {
   REQUIRE(file.ends_with(mcap::magic));
   std::vector<Record> records;
   for (std::size_t at = 8; at < file.size() - 8;) {
-    const std::size_t length = static_cast<std::size_t>(swar::load64(file.data() + at + 1));
+    const std::size_t length = static_cast<std::size_t>(base::swar::load64(file.data() + at + 1));
     REQUIRE(at + 9 + length <= file.size() - 8);
     records.push_back({static_cast<std::uint8_t>(file[at]), at, file.substr(at + 9, length)});
     at += 9 + length;
@@ -181,8 +181,8 @@ TEST_CASE("mcap_container: every index leads to its message, and all are counted
         const std::uint64_t time = list.u64(), offset = list.u64();
         const std::string_view message = chunk.content.substr(40 + static_cast<std::size_t>(offset));
         REQUIRE(message[0] == mcap::opcode::message);
-        REQUIRE(swar::load16(message.data() + 9) == channel);
-        REQUIRE(swar::load64(message.data() + 15) == time);
+        REQUIRE(base::swar::load16(message.data() + 9) == channel);
+        REQUIRE(base::swar::load64(message.data() + 15) == time);
         lowest = std::min(lowest, time);
         highest = std::max(highest, time);
         ++found;

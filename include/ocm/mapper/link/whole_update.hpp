@@ -11,22 +11,12 @@
 #include <cstdint>
 #include <string_view>
 
+#include "ocm/base/swar.hpp"
 #include "ocm/mapper/link/sentence.hpp"
 
 namespace ocm::mapper::link::detail {
 
-/// A byte in each of the eight of a word.
-[[nodiscard]] constexpr std::uint64_t each(std::uint8_t byte) noexcept {
-  return byte * std::uint64_t{0x0101'0101'0101'0101};
-}
-
-/// Eight characters, the first in the lowest byte.
-[[nodiscard]] constexpr std::uint64_t eight(const char* text) noexcept {
-  std::array<char, 8> bytes{};
-  std::string_view{text, bytes.size()}.copy(bytes.data(), bytes.size());
-  const auto word = std::bit_cast<std::uint64_t>(bytes);
-  return std::endian::native == std::endian::little ? word : __builtin_bswap64(word);
-}
+using base::swar::each;
 
 /// A number that other text follows.
 struct ShortNumber {
@@ -66,7 +56,7 @@ template <std::size_t N>
   if (text.size() < whole_update_room || text[1] != 'U' || text[2] != ',') return 0;
   std::size_t at = 3;
   for (std::size_t i = 0; i < count; ++i) {
-    const ShortNumber number = short_number(eight(text.data() + at));
+    const ShortNumber number = short_number(base::swar::load64(text.data() + at));
     if (number.size == 0 || number.value < Update::fields[i].min || number.value > Update::fields[i].max)
       return 0;
     at += number.size;

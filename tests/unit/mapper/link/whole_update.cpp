@@ -21,7 +21,7 @@ using ocm::test::read;
 
 constexpr int not_taken = 12345;
 constexpr int number(const char (&text)[9]) {
-  const detail::ShortNumber number = detail::short_number(detail::eight(text));
+  const detail::ShortNumber number = detail::short_number(ocm::base::swar::load64(text));
   return number.size == 0 ? not_taken : number.value;
 }
 static_assert(number("0,123456") == 0);

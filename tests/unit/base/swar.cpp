@@ -1,4 +1,4 @@
-#include "ocm/log/swar.hpp"
+#include "ocm/base/swar.hpp"
 
 #include <string>
 
@@ -9,7 +9,7 @@
 #include "unit/base/random.hpp"
 
 using namespace ocm;
-namespace swar = ocm::log::swar;
+namespace swar = ocm::base::swar;
 
 namespace {
 std::uint64_t word_of(const char (&text)[9]) {
