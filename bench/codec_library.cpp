@@ -1,4 +1,5 @@
 // The same work with the generated header, and with its catalogue.
+#include "ocm/protocol/frame_index.hpp"
 #include "ocm/protocol/identifier.hpp"
 #include "ocm/protocol/topic.hpp"
 #include "ocm/topics/amiro.hpp"

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ocm/measure/bus_load.hpp"
+#include "ocm/protocol/frame_index.hpp"
 #include "ocm/protocol/request.hpp"
 
 #include "cli/analyse/report.hpp"

@@ -22,6 +22,7 @@
 
 #include "ocm/log/reader.hpp"
 #include "ocm/log/writer.hpp"
+#include "ocm/protocol/frame_index.hpp"
 #include "ocm/protocol/topic.hpp"
 
 #include "cli/output/field_text.hpp"

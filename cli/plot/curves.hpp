@@ -11,6 +11,7 @@
 
 #include "ocm/log/entry.hpp"
 #include "ocm/measure/envelope.hpp"
+#include "ocm/protocol/frame_index.hpp"
 #include "ocm/protocol/topic.hpp"
 #include "ocm/transport/bus.hpp"
 

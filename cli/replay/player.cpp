@@ -37,8 +37,7 @@ bool Selection::has(const log::Entry& entry) const {
   const auto id = protocol::Identifier::decode(entry.id);
   const bool command = id.direction == protocol::Direction::command;
   if (only_ != Only::all && command != (only_ == Only::commands)) return false;
-  const auto* topic = index_.requested(id);
-  if (topic == nullptr) topic = index_.find(id).topic;
+  const auto* topic = index_.subject(id).topic;
   return topics_.empty() || std::find(topics_.begin(), topics_.end(), topic) != topics_.end();
 }
 

@@ -13,6 +13,7 @@
 #include "ocm/log/playback.hpp"
 #include "ocm/log/reader.hpp"
 #include "ocm/log/writer.hpp"
+#include "ocm/protocol/frame_index.hpp"
 #include "ocm/protocol/topic.hpp"
 
 #include "cli/replay/outlet.hpp"

@@ -11,6 +11,7 @@
 #include "ocm/can/bus.hpp"
 #include "ocm/can/frame.hpp"
 #include "ocm/client/sample.hpp"
+#include "ocm/protocol/frame_index.hpp"
 #include "ocm/protocol/topic.hpp"
 #include "ocm/scheduling/publisher.hpp"
 

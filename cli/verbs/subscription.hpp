@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "ocm/can/filter.hpp"
+#include "ocm/protocol/identifier.hpp"
 #include "ocm/protocol/topic.hpp"
 
 namespace ocm::cli {
@@ -12,8 +13,7 @@ namespace ocm::cli {
 /// everything.
 [[nodiscard]] inline std::vector<can::Filter> filters_for(const std::vector<const protocol::Topic*>& topics,
                                                           bool commands) {
-  // All but the priority bits must agree.
-  constexpr std::uint32_t mask = 0x4FF;
+  constexpr std::uint32_t mask = protocol::topic_mask;
   std::vector<can::Filter> filters;
   for (const auto* topic : topics) {
     if (topic->kind == protocol::Kind::sensor)

@@ -17,6 +17,7 @@
 #include "ocm/base/time.hpp"
 #include "ocm/can/bus.hpp"
 #include "ocm/can/frame.hpp"
+#include "ocm/protocol/frame_index.hpp"
 #include "ocm/protocol/identifier.hpp"
 #include "ocm/protocol/topic.hpp"
 
@@ -96,15 +97,16 @@ class Receiver {
       return {};
     }
     const auto id = protocol::Identifier::decode(frame.id);
-    if (const protocol::Topic* topic = index_.requested(id)) {
-      ++counters_.commands;
-      return {Meaning::request, {}, topic, {}};
-    }
-    const protocol::FrameRef ref = index_.find(id);
-    if (!ref) {
+    const protocol::Subject subject = index_.subject(id);
+    if (!subject) {
       ++counters_.unknown;
       return {};
     }
+    if (subject.is_request()) {
+      ++counters_.commands;
+      return {Meaning::request, {}, subject.topic, {}};
+    }
+    const protocol::FrameRef ref = subject.frame;
     if (frame.dlc != ref.layout().dlc) {
       ++counters_.wrong_dlc;
       return {Meaning::wrong_dlc, ref, ref.topic, {}};

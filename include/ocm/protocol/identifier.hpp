@@ -43,6 +43,10 @@ inline constexpr std::size_t priority_levels = 4;
   return base::Error::bad_syntax;
 }
 
+/// The bits that direction and topic have: identifiers that agree in them differ in priority only. For
+/// acceptance filters.
+inline constexpr std::uint16_t topic_mask = 0x4FF;
+
 struct Identifier {
   Direction direction = Direction::command;
   Priority priority = default_priority;

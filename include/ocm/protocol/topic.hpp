@@ -134,36 +134,6 @@ struct Catalogue {
   }
 };
 
-/// Which frame an identifier stands for, in one step: 512 references, for both directions.
-class FrameIndex {
- public:
-  constexpr FrameIndex() = default;
-  /// The catalogue must outlive the index.
-  constexpr explicit FrameIndex(const Catalogue& catalogue) noexcept {
-    for (const Topic& topic : catalogue.topics) {
-      const bool sensor = topic.kind == Kind::sensor;
-      if (sensor) requests_[topic.id.value] = &topic;
-      for (std::size_t i = 0; i < topic.frames.size(); ++i) {
-        auto& table = sensor ? sensors_ : actuators_;
-        table[topic.frames[i].id.value] = {&topic, static_cast<std::uint8_t>(i)};
-      }
-    }
-  }
-  /// Sensor data, or an actuator's set point; empty for requests and unknown identifiers.
-  [[nodiscard]] constexpr FrameRef find(Identifier id) const noexcept {
-    return (id.direction == Direction::sensor ? sensors_ : actuators_)[id.topic.value];
-  }
-  /// The sensor that a command frame asks; nullptr otherwise.
-  [[nodiscard]] constexpr const Topic* requested(Identifier id) const noexcept {
-    return id.direction == Direction::command ? requests_[id.topic.value] : nullptr;
-  }
-
- private:
-  std::array<FrameRef, 256> sensors_{};
-  std::array<FrameRef, 256> actuators_{};
-  std::array<const Topic*, 256> requests_{};
-};
-
 /// What a board needs of a topic's type; what the generator writes satisfies it.
 template <class T>
 concept TopicType = requires(const T& topic, std::size_t frame,

@@ -7,6 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include "ocm/can/text.hpp"
+#include "ocm/protocol/frame_index.hpp"
 #include "ocm/topics/amiro.hpp"
 
 #include "cli/output/output.hpp"

@@ -22,6 +22,10 @@ static_assert(Identifier{Direction::command, Priority::high, TopicId{0x08}}.enco
 static_assert(Identifier{Direction::sensor, Priority::low, TopicId{0xFF}}.encode() == 0x7FF);
 static_assert(Identifier::decode(0x608) == Identifier{Direction::sensor, Priority::medium, TopicId{0x08}});
 // Medium is the default. [Thesis 4.2]
+static_assert(Identifier{Direction::command, Priority::urgent, TopicId{0xFF}}.encode() ==
+              (0x3FF & ocm::protocol::topic_mask));
+static_assert((Identifier{Direction::sensor, Priority::low, TopicId{0xFF}}.encode() &
+               ocm::protocol::topic_mask) == 0x4FF);
 static_assert(Identifier{}.priority == Priority::medium);
 static_assert(ocm::protocol::default_priority == Priority::medium);
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <type_traits>
 
+#include "ocm/protocol/frame_index.hpp"
 #include "ocm/topics/amiro.hpp"
 
 #include "tests/robustness/fuzz/fuzz.hpp"
