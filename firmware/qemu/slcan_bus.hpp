@@ -18,7 +18,7 @@
 #include "ocm/base/result.hpp"
 #include "ocm/can/bus.hpp"
 #include "ocm/can/frame.hpp"
-#include "ocm/can/slcan.hpp"
+#include "ocm/can/slcan_adapter.hpp"
 #include "ocm/protocol/identifier.hpp"
 
 #include "firmware/chibios/port.hpp"

@@ -17,7 +17,8 @@
 #include <utility>
 
 #include "ocm/can/frame.hpp"
-#include "ocm/can/slcan.hpp"
+#include "ocm/can/slcan_codec.hpp"
+#include "ocm/can/slcan_host.hpp"
 #include "ocm/transport/bus.hpp"
 
 #include "sim/qemu/process.hpp"

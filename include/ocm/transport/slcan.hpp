@@ -1,5 +1,5 @@
-/// A serial CAN adapter that speaks SLCAN (can/slcan.hpp) as a bus: a device such as /dev/ttyACM0, a pty, or
-/// a local stream socket (a board in QEMU). No kernel part, no root. Host only.
+/// A serial CAN adapter that speaks SLCAN (can/slcan_host.hpp) as a bus: a device such as /dev/ttyACM0, a
+/// pty, or a local stream socket (a board in QEMU). No kernel part, no root. Host only.
 ///
 /// - Frames carry the adapter's milliseconds, mapped to Unix time, where it has them (command Z1), else the
 ///   time of reading.
@@ -31,30 +31,16 @@
 #include <sys/un.h>
 #include <vector>
 
-#include "ocm/can/slcan.hpp"
+#include "ocm/can/slcan_codec.hpp"
+#include "ocm/can/slcan_host.hpp"
 #include "ocm/host/descriptor.hpp"
 #include "ocm/host/system_time.hpp"
 #include "ocm/transport/bus.hpp"
 #include "ocm/transport/serial_port.hpp"
+#include "ocm/transport/slcan_address.hpp"
+#include "ocm/transport/slcan_stamps.hpp"
 
 namespace ocm::transport {
-
-struct SlcanOptions {
-  std::uint32_t bit_rate = 500'000;  ///< of the CAN bus: one of can::slcan::bit_rates
-  std::uint32_t baud = 115'200;      ///< of the serial line; USB devices mostly ignore it
-  /// How long to wait for each answer while opening. An adapter that says nothing at all within it is taken
-  /// for one that never answers.
-  base::Duration patience = std::chrono::milliseconds{300};
-  std::size_t window = 8;  ///< frames that may wait for their answer
-  /// After that long an answer is taken for lost.
-  base::Duration answer_limit = std::chrono::milliseconds{500};
-  base::Duration status_period = std::chrono::seconds{1};  ///< between two questions for the status flags
-};
-
-struct SlcanAddress {
-  std::string path;
-  SlcanOptions options;
-};
 
 /// What happened between this program and the adapter.
 struct SlcanCounters {
@@ -62,105 +48,6 @@ struct SlcanCounters {
   std::uint64_t unanswered = 0;  ///< commands without an answer: whether the frame went out nobody knows
   std::uint64_t strays = 0;      ///< answers to nothing
 };
-
-namespace detail {
-
-/// "500k", "1M", "125000"
-[[nodiscard]] constexpr std::optional<std::uint32_t> parse_rate(std::string_view text) noexcept {
-  std::uint64_t factor = 1;
-  if (!text.empty() && (text.back() == 'k' || text.back() == 'K')) factor = 1000;
-  if (!text.empty() && text.back() == 'M') factor = 1'000'000;
-  if (factor != 1) text.remove_suffix(1);
-  const auto number = base::parse_unsigned(text);
-  if (!number || *number == 0 || *number > UINT32_MAX / factor) return std::nullopt;
-  return static_cast<std::uint32_t>(*number * factor);
-}
-
-[[nodiscard]] inline std::string rate_text(std::uint32_t rate) {
-  if (rate % 1'000'000 == 0) return std::to_string(rate / 1'000'000) + "M";
-  if (rate % 1000 == 0) return std::to_string(rate / 1000) + "k";
-  return std::to_string(rate);
-}
-
-/// Maps the milliseconds of an adapter, which start again every minute, to the clock that stamps the arrival.
-/// A frame cannot come before it was sent: the smallest delay seen is taken for none. The two clocks may
-/// differ by 200 ppm.
-class StampClock {
- public:
-  [[nodiscard]] base::Time map(std::uint16_t stamp, base::Time arrival) noexcept {
-    constexpr base::Duration turn = std::chrono::milliseconds{can::slcan::stamp_period};
-    if (!started_) {
-      started_ = true;
-      offset_ = arrival.time_since_epoch();
-      count_ = base::Duration::zero();
-    } else {
-      const base::Duration step = std::chrono::milliseconds{(stamp + can::slcan::stamp_period - last_stamp_) %
-                                                            can::slcan::stamp_period};
-      const base::Duration elapsed = std::max(arrival - last_arrival_, base::Duration::zero());
-      // Whole minutes without a frame are seen by the other clock only.
-      const base::Duration rest = elapsed - step + turn / 2;
-      const std::int64_t turns = rest >= base::Duration::zero() ? rest / turn : -1;
-      count_ += step + turns * turn;
-      offset_ = std::min(offset_ + elapsed / 5000, arrival.time_since_epoch() - count_);
-      if (arrival.time_since_epoch() - (offset_ + count_) > longest_delay)  // the adapter started anew
-        offset_ = arrival.time_since_epoch() - count_;
-    }
-    last_stamp_ = stamp;
-    last_arrival_ = arrival;
-    return base::Time{offset_ + count_};
-  }
-
- private:
-  /// No adapter keeps a frame for longer, nor a program that reads.
-  static constexpr base::Duration longest_delay = std::chrono::seconds{5};
-  bool started_ = false;
-  std::uint16_t last_stamp_ = 0;
-  base::Time last_arrival_{};
-  base::Duration count_{};   ///< of the adapter, since the first frame
-  base::Duration offset_{};  ///< our clock when `count_` was 0
-};
-
-}  // namespace detail
-
-/// Reads `PATH[@BIT_RATE[,BAUD]]`, as in /dev/ttyACM0@500k,115200. The bit rate is the robot's 500k unless
-/// said.
-[[nodiscard]] inline Outcome<SlcanAddress> parse_slcan_address(std::string_view text) {
-  static constexpr std::string_view form = "write slcan:/dev/ttyACM0@500k, or slcan:/dev/ttyUSB0@500k,57600";
-  SlcanAddress address;
-  const auto at = text.rfind('@');
-  address.path = std::string(text.substr(0, at));
-  if (address.path.empty())
-    return Failure{"'slcan:" + std::string(text) + "' names no device", std::string(form)};
-  if (at == std::string_view::npos) return address;
-  std::string_view rates = text.substr(at + 1);
-  const auto comma = rates.find(',');
-  const std::string bit_rate{rates.substr(0, comma)};
-  const auto rate = detail::parse_rate(bit_rate);
-  if (!rate)
-    return Failure{"'" + bit_rate + "' in 'slcan:" + std::string(text) + "' is no bit rate",
-                   std::string(form)};
-  address.options.bit_rate = *rate;
-  if (!can::slcan::bit_rate_code(*rate)) {
-    std::string all;
-    for (const std::uint32_t other : can::slcan::bit_rates)
-      all += (all.empty() ? "" : ", ") + detail::rate_text(other);
-    return Failure{"an SLCAN adapter has no bit rate " + bit_rate + ": only " + all,
-                   "the nearest is " + detail::rate_text(can::slcan::nearest_bit_rate(*rate)) +
-                       "; every node of a bus has the same, and the robot's is 500k"};
-  }
-  if (comma == std::string_view::npos) return address;
-  const std::string baud_text{rates.substr(comma + 1)};
-  const auto baud = detail::parse_rate(baud_text);
-  if (!baud)
-    return Failure{"'" + baud_text + "' in 'slcan:" + std::string(text) + "' is no speed of a serial line",
-                   std::string(form)};
-  address.options.baud = *baud;
-  const std::uint32_t nearest = detail::nearest_serial_speed(*baud);
-  if (nearest != *baud)
-    return Failure{"a serial line has no speed " + baud_text + " here",
-                   "the nearest is " + std::to_string(nearest) + "; USB adapters mostly ignore it"};
-  return address;
-}
 
 class Slcan final : public Bus {
  public:
@@ -617,7 +504,7 @@ class Slcan final : public Bus {
   base::Time again_at_{};
   base::Time next_status_{};
   std::vector<can::Filter> filters_;
-  detail::StampClock clock_;
+  StampClock clock_;
 
   bool opening_ = true;
   bool started_ = false;

@@ -17,7 +17,7 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include "ocm/can/slcan.hpp"
+#include "ocm/can/slcan_adapter.hpp"
 #include "ocm/host/descriptor.hpp"
 
 using namespace ocm;

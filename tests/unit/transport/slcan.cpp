@@ -9,12 +9,12 @@
 
 #include <catch2/catch.hpp>
 
+#include "ocm/can/slcan_adapter.hpp"
 #include "ocm/can/text.hpp"
 
 using namespace ocm;
 using namespace std::chrono_literals;
 using transport::BusState;
-using transport::parse_slcan_address;
 using transport::Slcan;
 using transport::SlcanOptions;
 
@@ -199,32 +199,6 @@ std::vector<std::string> receive(Slcan& bus, std::size_t count) {
 using Catch::Matchers::Contains;
 
 }  // namespace
-
-TEST_CASE("slcan address: device, bit rate, speed of the line") {
-  const auto address = parse_slcan_address("/dev/ttyACM0@250k,57600");
-  REQUIRE(address);
-  CHECK(address->path == "/dev/ttyACM0");
-  CHECK(address->options.bit_rate == 250'000);
-  CHECK(address->options.baud == 57'600);
-  CHECK(parse_slcan_address("/dev/ttyACM0")->options.bit_rate == 500'000);
-  CHECK(parse_slcan_address("/dev/ttyACM0@1M")->options.bit_rate == 1'000'000);
-  CHECK(parse_slcan_address("/dev/ttyACM0@125000")->options.bit_rate == 125'000);
-  CHECK(parse_slcan_address("/tmp/a@b/tty@10k")->path == "/tmp/a@b/tty");
-
-  const auto refused = [](std::string_view name) {
-    const auto wrong = parse_slcan_address(name);
-    REQUIRE_FALSE(wrong);
-    return wrong.error.what + " | " + wrong.error.remedy;
-  };
-  CHECK_THAT(refused(""), Contains("names no device"));
-  CHECK_THAT(refused("@500k"), Contains("names no device"));
-  CHECK_THAT(refused("/dev/x@"), Contains("no bit rate"));
-  CHECK_THAT(refused("/dev/x@fast"), Contains("'fast'") && Contains("slcan:/dev/ttyACM0@500k"));
-  CHECK_THAT(refused("/dev/x@99999999999k"), Contains("no bit rate"));
-  CHECK_THAT(refused("/dev/x@83333"), Contains("nearest is 100k") && Contains("10k, 20k, 50k, 100k, 125k"));
-  CHECK_THAT(refused("/dev/x@500k,"), Contains("no speed"));
-  CHECK_THAT(refused("/dev/x@500k,110000"), Contains("nearest is 115200"));
-}
 
 TEST_CASE("slcan: what cannot be opened is told with what to do") {
   CHECK_THAT(failure("/dev/no-such-adapter").what, Contains("no serial device '/dev/no-such-adapter'"));
@@ -616,52 +590,6 @@ TEST_CASE("slcan: the adapter's milliseconds become Unix time") {
   CHECK(times.back() <= after + 1ms);
   CHECK(times.back() >= before - 1ms);
   for (std::size_t i = 1; i < times.size(); ++i) CHECK(std::chrono::abs(times[i] - times[i - 1] - 5ms) < 1ms);
-}
-
-TEST_CASE("slcan: time stamps across minutes, hours of silence, delays, drift and a restart") {
-  using transport::detail::StampClock;
-  const auto at = [](std::int64_t ms) { return base::Time{std::chrono::milliseconds{ms + 1'000'000}}; };
-  const auto stamp = [](std::int64_t ms) {
-    return static_cast<std::uint16_t>((ms % 60'000 + 60'000) % 60'000);
-  };
-  SECTION("every 7 s for a day, each delayed by up to 20 ms: never later than it came, never off by more") {
-    StampClock clock;
-    for (std::int64_t ms = 0, i = 0; ms < 86'400'000; ms += 7000, ++i) {
-      const std::int64_t delay = i * 7919 % 21;
-      const base::Time mapped = clock.map(stamp(ms + 12'345), at(ms + delay));
-      CHECK(mapped <= at(ms + delay));
-      if (i > 30) REQUIRE(std::chrono::abs(mapped - at(ms)) <= 20ms);
-    }
-  }
-  SECTION("silence of minutes and hours") {
-    StampClock clock;
-    std::int64_t ms = 59'990;
-    CHECK(clock.map(stamp(ms), at(ms)) == at(ms));
-    for (const std::int64_t pause : {20, 59'999, 60'000, 60'001, 119'990, 600'000, 3'600'007}) {
-      ms += pause;
-      REQUIRE(clock.map(stamp(ms), at(ms)) == at(ms));
-      REQUIRE(clock.map(stamp(ms), at(ms + 3)) <= at(ms + 3));
-    }
-  }
-  SECTION("an adapter that is 100 ppm slow, and one that is 100 ppm fast") {
-    for (const int ppm : {-100, 100}) {
-      StampClock clock;
-      for (std::int64_t ms = 0; ms < 3'600'000; ms += 1000)
-        REQUIRE(std::chrono::abs(clock.map(stamp(ms + ms * ppm / 1'000'000), at(ms)) - at(ms)) <= 2ms);
-    }
-  }
-  SECTION("a stamp that goes back a little") {
-    StampClock clock;
-    (void)clock.map(stamp(1000), at(1000));
-    CHECK(std::chrono::abs(clock.map(stamp(998), at(1001)) - at(998)) < 1us);
-    CHECK(clock.map(stamp(1002), at(1002)) == at(1002));
-  }
-  SECTION("an adapter that starts anew") {
-    StampClock clock;
-    (void)clock.map(stamp(50'000), at(50'000));
-    CHECK(clock.map(stamp(20'000), at(60'000)) == at(60'000));
-    CHECK(clock.map(stamp(21'000), at(61'000)) == at(61'000));
-  }
 }
 
 TEST_CASE("slcan: a local socket, as a board in QEMU has it") {

@@ -1,6 +1,8 @@
 // The adapter's side, driven by any text with frames of the bus between: only an open channel sends or hears,
 // every line has one answer, and the host's reader understands each of them.
-#include "ocm/can/slcan.hpp"
+#include "ocm/can/slcan_adapter.hpp"
+
+#include "ocm/can/slcan_host.hpp"
 
 #include "tests/robustness/fuzz/fuzz.hpp"
 

@@ -1,6 +1,6 @@
 // What an adapter may say, and what a torn line may make of it: an answer is a frame that can exist, in time
 // and in words; each fault is counted once; after any noise the next line is heard.
-#include "ocm/can/slcan.hpp"
+#include "ocm/can/slcan_host.hpp"
 
 #include "tests/robustness/fuzz/fuzz.hpp"
 
