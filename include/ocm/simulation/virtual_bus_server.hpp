@@ -24,21 +24,20 @@
 #include <string>
 #include <string_view>
 #include <sys/epoll.h>
-#include <sys/file.h>
 #include <sys/resource.h>
 #include <utility>
 #include <vector>
 
-#include "ocm/can/error_frame.hpp"
 #include "ocm/can/filter.hpp"
 #include "ocm/host/descriptor.hpp"
 #include "ocm/host/failure.hpp"
 #include "ocm/simulation/arbiter.hpp"
+#include "ocm/simulation/error_report.hpp"
+#include "ocm/simulation/record_queue.hpp"
+#include "ocm/simulation/virtual_bus_socket.hpp"
 #include "ocm/transport/virtual_bus_protocol.hpp"
 
 namespace ocm::simulation {
-
-namespace virtual_bus = transport::virtual_bus;
 
 struct VirtualBusOptions {
   std::string path{};                  ///< of the socket; empty: virtual_bus::default_path()
@@ -75,61 +74,29 @@ class VirtualBusServer {
     if (options.bit_rate < 1 || options.bit_rate > BitClock::max_bit_rate)
       return host::Failure{"no bus runs at " + std::to_string(options.bit_rate) + " bit/s",
                            "choose a bit rate from 1 to 1000000000; the robot's is 500000"};
-    std::string directory;
-    if (options.path.empty()) {
-      directory = host::user_directory();
-      options.path = virtual_bus::default_path();
-      ::mkdir(directory.c_str(), 0700);  // whatever the answer, the check below tells
-      if (auto problem = host::check_private(directory)) return std::move(*problem);
-    } else {
-      const std::size_t slash = options.path.rfind('/');
-      directory = slash == std::string::npos ? "." : slash == 0 ? "/" : options.path.substr(0, slash);
-    }
-    const auto address = virtual_bus::to_address(options.path);
-    if (!address) return address.error;
-
-    // Two servers that start together must not both find the socket stale: one at a time.
-    const host::Descriptor lock{::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
-    if (!lock)
-      return host::Failure{"cannot open the directory '" + directory + "': " + std::strerror(errno),
-                           "create it (mkdir -p -m 700 '" + directory + "'), or choose another path"};
-    if (!lock_in_time(lock.get(), options.patience))
-      return host::Failure{"another program holds the lock of the directory '" + directory + "'",
-                           "end it (`fuser " + directory + "` names it), or choose another path"};
-    if (auto problem = make_room(*address, options.path)) return std::move(*problem);
-
-    host::Descriptor listener{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
+    auto socket = VirtualBusSocket::open(std::move(options.path), options.patience);
+    if (!socket) return std::move(socket.error);
     host::Descriptor events{::epoll_create1(EPOLL_CLOEXEC)};
     host::Descriptor spare{::open("/dev/null", O_RDONLY | O_CLOEXEC)};
-    // The mode of the socket before it has a name is that of the name: at no moment is it open to others.
-    if (!listener || !events || !spare || ::fchmod(listener.get(), 0600) < 0 ||
-        ::bind(listener.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) < 0 ||
-        ::listen(listener.get(), SOMAXCONN) < 0)
-      return system_failure(options.path, errno);
     epoll_event event{};
     event.events = EPOLLIN;
     event.data.ptr = nullptr;
-    struct stat status {};
-    if (::epoll_ctl(events.get(), EPOLL_CTL_ADD, listener.get(), &event) < 0 ||
-        ::stat(options.path.c_str(), &status) < 0)
-      return system_failure(options.path, errno);
+    if (!events || !spare || ::epoll_ctl(events.get(), EPOLL_CTL_ADD, socket->descriptor(), &event) < 0)
+      return VirtualBusSocket::failure(socket->path(), errno);
     if (options.raise_descriptor_limit) raise_limit();
-    return std::unique_ptr<VirtualBusServer>(new VirtualBusServer(
-        std::move(options), std::move(listener), std::move(events), std::move(spare), status));
+    return std::unique_ptr<VirtualBusServer>(new VirtualBusServer(std::move(options), std::move(socket.value),
+                                                                  std::move(events), std::move(spare)));
   }
 
   VirtualBusServer(const VirtualBusServer&) = delete;
   VirtualBusServer& operator=(const VirtualBusServer&) = delete;
 
-  /// Tells the clients, and removes the socket.
+  /// Tells the clients; the socket goes with it.
   ~VirtualBusServer() {
     for (auto& client : clients_) dismiss(*client, {.reason = virtual_bus::Reason::ended});
-    struct stat status {};
-    if (::lstat(options_.path.c_str(), &status) == 0 && status.st_ino == inode_ && status.st_dev == device_)
-      ::unlink(options_.path.c_str());
   }
 
-  [[nodiscard]] const std::string& path() const noexcept { return options_.path; }
+  [[nodiscard]] const std::string& path() const noexcept { return socket_.path(); }
   /// Readable when a client wants something. An epoll descriptor; owned by the server.
   [[nodiscard]] int descriptor() const noexcept { return events_.get(); }
   /// When to call `poll` at the latest: at the end of the frame on the bus. base::never when it is idle.
@@ -186,41 +153,6 @@ class VirtualBusServer {
   static constexpr std::size_t messages_at_once = 64;
   static constexpr base::Duration accept_pause = std::chrono::milliseconds{100};
 
-  /// A bounded ring of records that grows as needed.
-  class Queue {
-   public:
-    [[nodiscard]] std::size_t size() const noexcept { return size_; }
-    void clear() noexcept { size_ = 0; }
-    bool push(const virtual_bus::Record& record, std::size_t limit) {
-      if (size_ >= limit) return false;
-      if (size_ == ring_.size()) {
-        std::rotate(ring_.begin(), ring_.begin() + static_cast<std::ptrdiff_t>(head_), ring_.end());
-        head_ = 0;
-        ring_.resize(std::min(limit, std::max<std::size_t>(2 * size_, 64)));
-      }
-      ring_[wrap(head_ + size_++)] = record;
-      return true;
-    }
-    /// The oldest `count` records, in up to two pieces.
-    [[nodiscard]] std::array<iovec, 2> front(std::size_t count) noexcept {
-      const std::size_t first = std::min(count, ring_.size() - head_);
-      return {iovec{ring_.data() + head_, first * virtual_bus::record_size},
-              iovec{ring_.data(), (count - first) * virtual_bus::record_size}};
-    }
-    void pop(std::size_t count) noexcept {
-      head_ = wrap(head_ + count);
-      size_ -= count;
-    }
-
-   private:
-    [[nodiscard]] std::size_t wrap(std::size_t i) const noexcept {
-      return i < ring_.size() ? i : i - ring_.size();
-    }
-    std::vector<virtual_bus::Record> ring_;
-    std::size_t head_ = 0;
-    std::size_t size_ = 0;
-  };
-
   struct Client {
     host::Descriptor socket;
     std::optional<ucred> peer;
@@ -229,7 +161,7 @@ class VirtualBusServer {
     bool blocked = false;  ///< its socket is full: wait for EPOLLOUT
     bool deaf = false;     ///< nothing can be sent to it any more
     bool gone = false;     ///< to be forgotten at the end of this poll
-    Queue output;
+    RecordQueue output;
     std::uint64_t credit = 0;  ///< owed
     std::uint64_t lost = 0;    ///< and not told yet
     std::vector<can::Filter> filters;
@@ -237,14 +169,12 @@ class VirtualBusServer {
     std::size_t missing_filters = 0;
   };
 
-  VirtualBusServer(VirtualBusOptions options, host::Descriptor listener, host::Descriptor events,
-                   host::Descriptor spare, const struct stat& status)
+  VirtualBusServer(VirtualBusOptions options, VirtualBusSocket socket, host::Descriptor events,
+                   host::Descriptor spare)
       : options_(std::move(options)),
-        listener_(std::move(listener)),
+        socket_(std::move(socket)),
         events_(std::move(events)),
         spare_(std::move(spare)),
-        inode_(status.st_ino),
-        device_(status.st_dev),
         arbiter_(options_.bit_rate, options_.epoch),
         buffer_(messages_at_once * virtual_bus::max_message) {
     options_.transmit_queue = std::clamp<std::size_t>(options_.transmit_queue, 1, UINT32_MAX);
@@ -254,56 +184,6 @@ class VirtualBusServer {
       messages_[i].msg_hdr.msg_iov = &places_[i];
       messages_[i].msg_hdr.msg_iovlen = 1;
     }
-  }
-
-  // --- start ---
-
-  [[nodiscard]] static host::Failure system_failure(const std::string& path, int error) {
-    return {"cannot serve a virtual bus on '" + path + "': " + std::strerror(error),
-            error == EMFILE || error == ENFILE
-                ? "close other programs, or raise the limit: ulimit -n"
-                : "is its directory yours and writable? or choose another path"};
-  }
-
-  [[nodiscard]] static bool lock_in_time(int directory, base::Duration patience) noexcept {
-    constexpr base::Duration pause = std::chrono::milliseconds{10};
-    for (;; patience -= pause) {
-      if (::flock(directory, LOCK_EX | LOCK_NB) == 0) return true;
-      if (errno != EWOULDBLOCK && errno != EINTR) return true;  // a file system without locks
-      if (patience <= base::Duration::zero()) return false;
-      ::usleep(static_cast<useconds_t>(pause.count() / 1000));
-    }
-  }
-
-  /// Removes the socket of a dead server; says why when something else is there.
-  [[nodiscard]] static std::optional<host::Failure> make_room(const sockaddr_un& address,
-                                                              const std::string& path) {
-    struct stat status {};
-    if (::lstat(path.c_str(), &status) < 0) {
-      if (errno == ENOENT) return std::nullopt;
-      return system_failure(path, errno);
-    }
-    if (!S_ISSOCK(status.st_mode))
-      return host::Failure{"'" + path + "' exists and is no socket", "remove it, or choose another path"};
-    if (status.st_uid != ::geteuid())
-      return host::Failure{
-          "the socket '" + path + "' belongs to another user (uid " + std::to_string(status.st_uid) + ")",
-          "choose another path"};
-    const host::Descriptor probe{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
-    if (!probe) return system_failure(path, errno);
-    if (::connect(probe.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 ||
-        errno == EAGAIN) {
-      const auto peer = virtual_bus::peer_of(probe.get());
-      const std::int64_t process = peer ? peer->pid : 0;
-      const std::string end = process > 0 ? ", end it (kill " + std::to_string(process) + ")" : "";
-      return host::Failure{"a simulator already runs on '" + path + "'" + virtual_bus::process_text(peer),
-                           "use it" + end + ", or choose another path", host::Cause::simulator_running,
-                           process};
-    }
-    if (errno == EPROTOTYPE)
-      return host::Failure{"another program listens on '" + path + "'", "end it, or choose another path"};
-    if (errno != ECONNREFUSED || ::unlink(path.c_str()) < 0) return system_failure(path, errno);
-    return std::nullopt;
   }
 
   static void raise_limit() noexcept {
@@ -332,27 +212,9 @@ class VirtualBusServer {
   void distribute(const BusError& error) {
     for (auto& client : clients_) {
       if (!client->welcome || client->gone) continue;
-      const can::Frame frame = error_frame(arbiter_.faults(client->node), client->node == error.sender);
+      const can::Frame frame = error_report(arbiter_.faults(client->node), client->node == error.sender);
       push(*client, virtual_bus::to_record(frame, error.time + options_.to_unix_time));
     }
-  }
-
-  /// What sends sees a bit error, what listens a stuff error: six dominant bits.
-  [[nodiscard]] static can::Frame error_frame(const FaultConfinement& faults, bool sends) noexcept {
-    namespace c = can::error_class;
-    can::Frame frame{.id = c::protocol | c::bus_error | c::counters, .dlc = 8, .format = can::Format::error};
-    const unsigned passive = FaultConfinement::passive_from;
-    if (faults.state() == FaultState::bus_off) frame.id |= c::bus_off;
-    if (faults.state() == FaultState::error_passive) {
-      frame.id |= c::controller;
-      if (faults.transmit_errors() >= passive) frame.data[1] |= can::controller_error::tx_passive;
-      if (faults.receive_errors() >= passive) frame.data[1] |= can::controller_error::rx_passive;
-    }
-    frame.data[2] =
-        sends ? can::protocol_error::bit | can::protocol_error::transmission : can::protocol_error::stuff;
-    frame.data[6] = static_cast<std::uint8_t>(std::min(faults.transmit_errors(), 255U));
-    frame.data[7] = static_cast<std::uint8_t>(faults.receive_errors());
-    return frame;
   }
 
   [[nodiscard]] static bool passes(const Client& client, const can::Frame& frame) noexcept {
@@ -557,7 +419,7 @@ class VirtualBusServer {
     epoll_event event{};
     event.events = on ? 0U : EPOLLIN;
     event.data.ptr = nullptr;
-    ::epoll_ctl(events_.get(), EPOLL_CTL_MOD, listener_.get(), &event);
+    ::epoll_ctl(events_.get(), EPOLL_CTL_MOD, socket_.descriptor(), &event);
   }
 
   /// All who wait, up to as many as the kernel lets wait.
@@ -598,7 +460,7 @@ class VirtualBusServer {
   }
 
   [[nodiscard]] host::Descriptor accept_one() const noexcept {
-    return host::Descriptor{::accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)};
+    return host::Descriptor{::accept4(socket_.descriptor(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)};
   }
 
   enum class Turned : std::uint8_t { away, nobody, failed };
@@ -621,11 +483,9 @@ class VirtualBusServer {
   }
 
   VirtualBusOptions options_;
-  host::Descriptor listener_;
+  VirtualBusSocket socket_;
   host::Descriptor events_;
   host::Descriptor spare_;
-  ino_t inode_;
-  dev_t device_;
   Arbiter arbiter_;
   VirtualBusCounters counters_;
   bool paused_ = false;                    ///< the listener is left alone, until `poll` at or after

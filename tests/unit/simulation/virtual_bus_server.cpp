@@ -2,7 +2,6 @@
 
 #include <fstream>
 #include <random>
-#include <sys/wait.h>
 
 #include <catch2/catch.hpp>
 
@@ -13,21 +12,6 @@
 using namespace ocm;
 using namespace ocm::test;
 using simulation::VirtualBusServer;
-
-namespace {
-
-/// What a child process answers: an exit code. It must not return into the test.
-template <class Work>
-int in_child(Work&& work) {
-  const pid_t child = ::fork();
-  REQUIRE(child >= 0);
-  if (child == 0) ::_exit(work());
-  int status = 0;
-  REQUIRE(::waitpid(child, &status, 0) == child);
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
-
-}  // namespace
 
 TEST_CASE("a second server is refused, with the path and the process of the first") {
   VirtualBusSetup setup;
@@ -43,49 +27,6 @@ TEST_CASE("a second server is refused, with the path and the process of the firs
   const auto client = setup.join();
   CHECK(setup.server->counters().welcomed == 1);
   CHECK(setup.server->counters().died == 0);
-}
-
-TEST_CASE("the socket of a dead server is replaced, and nothing else is") {
-  const TemporaryDirectory directory;
-  const std::string path = directory.path() + "/sim.sock";
-  CHECK(in_child([&] {
-          const auto server = VirtualBusServer::open({.path = path});
-          ::_exit(server ? 0 : 1);  // at once, without cleaning up
-          return 2;
-        }) == 0);
-  CHECK(std::filesystem::is_socket(path));
-  {
-    const auto server = VirtualBusServer::open({.path = path});
-    INFO(server.error.what);
-    CHECK(server);
-    CHECK(transport::VirtualBus::running(path));
-  }
-  CHECK_FALSE(std::filesystem::exists(path));
-
-  std::ofstream{path} << "precious";
-  const auto refused = VirtualBusServer::open({.path = path});
-  CHECK_THAT(refused.error.what, Catch::Contains("no socket") && Catch::Contains(path));
-  CHECK(std::filesystem::file_size(path) == 8);
-  std::filesystem::remove(path);
-
-  // A socket of another kind, on which somebody listens.
-  const auto address = vb::to_address(path);
-  const host::Descriptor stream{::socket(AF_UNIX, SOCK_STREAM, 0)};
-  REQUIRE(::bind(stream.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) == 0);
-  REQUIRE(::listen(stream.get(), 1) == 0);
-  CHECK_THAT(VirtualBusServer::open({.path = path}).error.what, Catch::Contains("another program listens"));
-}
-
-TEST_CASE("a server removes its own socket only") {
-  const TemporaryDirectory directory;
-  const std::string path = directory.path() + "/sim.sock";
-  auto first = VirtualBusServer::open({.path = path});
-  REQUIRE(first);
-  std::filesystem::remove(path);
-  const auto second = VirtualBusServer::open({.path = path});
-  REQUIRE(second);
-  first.value.reset();
-  CHECK(transport::VirtualBus::running(path));
 }
 
 TEST_CASE("options and places that cannot be served") {
