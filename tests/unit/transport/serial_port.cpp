@@ -27,7 +27,7 @@ std::string all(Pty& pty) {
   while (const std::size_t size = pty.read(room)) text.append(room.data(), size);
   return text;
 }
-transport::Failure failure(const std::string& path, std::uint32_t baud = 115'200) {
+host::Failure failure(const std::string& path, std::uint32_t baud = 115'200) {
   auto port = SerialPort::open(path, baud);
   CHECK_FALSE(port);
   return port.error;
