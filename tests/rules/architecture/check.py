@@ -38,6 +38,15 @@ READS_OPTIONS = ("include/ocm/client/command.hpp",)
 
 SOURCE = (".hpp", ".cpp", ".h", ".c")
 
+# Folders around the library, and what each reaches in no way.
+APART = {
+    "firmware/": ("cli/", "generator/", "sim/"),
+    "generator/": ("cli/", "firmware/", "sim/"),
+    "sim/": ("cli/",),
+    "sim/amiro/": ("sim/mapper/",),
+    "sim/mapper/": ("sim/amiro/",),
+}
+
 
 class Tree:
     def __init__(self, root):
@@ -268,14 +277,49 @@ def generator_is_independent(tree):
                 yield f"{name}:1: the generator reaches what it generates: {' -> '.join(way)}"
 
 
-def boards_know_no_world(tree):
-    """A board runs on any hardware: it reaches neither the simulation nor an operator nor the host."""
-    for name in tree.below("firmware/boards/", "firmware/drivers/"):
+def firmware_is_for_boards(tree):
+    """Firmware reaches what runs on a board only; boards and drivers, which run on any hardware, no system either."""
+    for name in tree.below("firmware/"):
+        own = name.startswith(("firmware/boards/", "firmware/drivers/"))
         for reached, way in closure(tree, name).items():
             floor = tree.floor(reached)
-            host = floor in tree.floors and not tree.floors[floor].board
-            if host or not reached.startswith(("include/ocm/", "firmware/boards/", "firmware/drivers/")):
-                yield f"{name}:1: a board reaches what runs on the host only: {' -> '.join(way)}"
+            if floor in tree.floors and not tree.floors[floor].board:
+                yield f"{name}:1: firmware reaches what runs on the host only: {' -> '.join(way)}"
+            elif own and not reached.startswith(("include/ocm/", "firmware/boards/", "firmware/drivers/")):
+                yield f"{name}:1: a board reaches what is not on every hardware: {' -> '.join(way)}"
+
+
+def rooms_are_apart(tree):
+    """Neither simulators nor firmware know the tool; firmware knows no simulator, and no simulated robot another."""
+    for room, others in APART.items():
+        for name in tree.below(room):
+            for reached, way in closure(tree, name).items():
+                if reached.startswith(others):
+                    yield f"{name}:1: {room} reaches {reached.rsplit('/', 1)[0]}/: {' -> '.join(way)}"
+
+
+def folders_make_no_circle(tree):
+    """The folders of firmware, generator and simulators include each other in one direction only."""
+    graph = {}  # folder -> {folder: an include that leads there}
+    for name in tree.below("firmware/", "generator/", "sim/"):
+        folder = name.rsplit("/", 1)[0]
+        for line, _, what in tree.includes(name):
+            target = tree.resolve(what)
+            if target and not target.startswith("include/") and target.rsplit("/", 1)[0] != folder:
+                graph.setdefault(folder, {}).setdefault(target.rsplit("/", 1)[0], f"{name}:{line}")
+    done = set()
+
+    def visit(folder, way):
+        for other, where in sorted(graph.get(folder, {}).items()):
+            if other in way:
+                yield f"{where}: a circle of folders: {' -> '.join(way[way.index(other):] + [other])}"
+            elif other not in done:
+                yield from visit(other, way + [other])
+        done.add(folder)
+
+    for folder in sorted(graph):
+        if folder not in done:
+            yield from visit(folder, [folder])
 
 
 def generated_files_are_reproducible(tree):
@@ -381,11 +425,11 @@ def quotes_are_the_examples(tree):
         yield f"README.md:{line}: C++ in the README is quoted: put '<!-- snippet: NAME -->' above it"
 
 
-RULES = (floors_have_rows, includes_go_down, layers_are_apart, library_knows_no_tool, mapper_knows_no_can,
-         no_circles, namespace_is_folder, no_banned_headers, no_banned_words, headers_open_with_a_comment,
-         headers_have_tests, own_includes_are_full_paths, generator_is_independent, boards_know_no_world,
-         generated_files_are_reproducible, no_machine_paths,
-         links_resolve, pages_are_linked, quotes_are_the_examples)
+RULES = (floors_have_rows, includes_go_down, layers_are_apart, library_knows_no_tool, mapper_knows_no_can, no_circles,
+         namespace_is_folder, no_banned_headers, no_banned_words, headers_open_with_a_comment, headers_have_tests,
+         own_includes_are_full_paths, generator_is_independent, firmware_is_for_boards, rooms_are_apart,
+         folders_make_no_circle, generated_files_are_reproducible, no_machine_paths, links_resolve, pages_are_linked,
+         quotes_are_the_examples)
 
 
 def check(root, rules=RULES):

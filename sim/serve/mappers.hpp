@@ -1,12 +1,14 @@
-/// `sim --robots`: mappers in a world, in real time, for programs of this user: behind a central, whose
-/// serial line is a pseudo terminal, or each on a line of its own.
+/// Simulated mappers beside the user: in a world, behind a central whose serial line is a pseudo terminal, or
+/// each on a line of its own.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <string>
 
-namespace ocm::cli {
+#include "sim/serve/shell.hpp"
+
+namespace ocm::sim {
 
 struct MapperOptions {
   std::size_t robots = 0;  ///< 0: as many as the world has
@@ -20,7 +22,8 @@ struct MapperOptions {
   std::size_t links = 0;   ///< at once; 0: as many as robots
 };
 
-/// Until a signal comes; tells at its end what was sent and what was lost, by cause.
-void simulate_mappers(const MapperOptions& options);
+/// Until `shell.stop`; reports then what was sent and what was lost, by cause. A world that cannot be read
+/// ends with all its problems.
+[[nodiscard]] Ending serve_mappers(const MapperOptions& options, const Shell& shell);
 
-}  // namespace ocm::cli
+}  // namespace ocm::sim

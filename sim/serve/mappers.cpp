@@ -1,4 +1,4 @@
-#include "sim/mapper/serve.hpp"
+#include "sim/serve/mappers.hpp"
 
 #include <algorithm>
 #include <array>
@@ -17,16 +17,14 @@
 #include "ocm/host/system_time.hpp"
 #include "ocm/transport/pty.hpp"
 
-#include "cli/interrupt.hpp"
-#include "cli/session.hpp"
-#include "sim/clock.hpp"
 #include "sim/mapper/fleet.hpp"
+#include "sim/serve/clock.hpp"
 #include "sim/worlds/reader.hpp"
 
-namespace ocm::cli {
+namespace ocm::sim {
 namespace {
 
-namespace plant = sim::mapper;
+namespace plant = mapper;
 using namespace std::chrono_literals;
 
 /// What a program has not read yet; more is lost, and counted.
@@ -34,28 +32,42 @@ constexpr std::size_t max_unread = 65'536;
 /// A program that opens a line is seen that soon.
 constexpr base::Duration look_period = 20ms;
 
-plant::WorldModel read_world(const MapperOptions& options) {
+struct ChosenWorld {
+  plant::WorldModel model;
+  Ending problems;
+};
+
+ChosenWorld read_world(const MapperOptions& options) {
+  ChosenWorld chosen;
   const std::string name = options.world.empty() ? "square" : options.world;
   std::error_code error;
   const bool is_file = std::filesystem::exists(name, error) && !std::filesystem::is_directory(name, error);
-  const auto built_in = sim::worlds::built_in(name);
-  if (!is_file && !built_in)
-    fail({fmt::format("sim: there is no world '{}'", name),
-          fmt::format("give a file, or one of those built in: {}",
-                      fmt::join(sim::worlds::built_in_names(), ", "))});
-  auto loaded = is_file ? sim::worlds::load(name) : sim::worlds::parse(*built_in, name);
+  const auto built_in = worlds::built_in(name);
+  if (!is_file && !built_in) {
+    chosen.problems = Ending{{fmt::format("sim: there is no world '{}'", name),
+                              fmt::format("give a file, or one of those built in: {}",
+                                          fmt::join(worlds::built_in_names(), ", "))}};
+    return chosen;
+  }
+  auto loaded = is_file ? worlds::load(name) : worlds::parse(*built_in, name);
   for (const auto& problem : loaded.problems)
-    fmt::print(stderr, "amiroctl: {}: {}\n          {}\n", problem.place, problem.what, problem.remedy);
-  if (!loaded.world) throw Exit{exit_failure};
-  plant::WorldModel model = std::move(*loaded.world);
-  const std::size_t robots = options.robots == 0 ? model.starts.size() : options.robots;
-  auto starts = plant::starts_for(model, robots);
-  if (!starts || starts->empty())
-    fail({fmt::format("sim: no room for {} robots in '{}'", robots, name),
-          model.starts.empty() ? "the world has no start: give it one (robots)"
-                               : "take fewer, or a larger world with --world"});
-  model.starts = std::move(*starts);
-  return model;
+    chosen.problems.failures.push_back({problem.place + ": " + problem.what, problem.remedy});
+  if (!loaded.world) return chosen;
+  chosen.model = std::move(*loaded.world);
+  const std::size_t robots = options.robots == 0 ? chosen.model.starts.size() : options.robots;
+  auto starts = plant::starts_for(chosen.model, robots);
+  if (!starts || starts->empty()) {
+    chosen.problems = Ending{{fmt::format("sim: no room for {} robots in '{}'", robots, name),
+                              chosen.model.starts.empty() ? "the world has no start: give it one (robots)"
+                                                          : "take fewer, or a larger world with --world"}};
+    return chosen;
+  }
+  chosen.model.starts = std::move(*starts);
+  if (chosen.model.starts.size() > plant::Fleet::max_robots)
+    chosen.problems = Ending{{fmt::format("sim: {} robots", chosen.model.starts.size()),
+                              fmt::format("at most {}", plant::Fleet::max_robots)},
+                             true};
+  return chosen;
 }
 
 /// Parts of a sentence that say what was lost: only those that are not 0.
@@ -72,7 +84,7 @@ class Losses {
 };
 
 template <class Robot>
-void print_robot(Robot& robot, const std::string& link) {
+void report_robot(Robot& robot, const std::string& link, const Shell& shell) {
   const ocm::mapper::app::Counters counters = robot.application().counters();
   Losses lost;
   lost.add(counters.unsent, "sentences for a link that was gone")
@@ -81,11 +93,11 @@ void print_robot(Robot& robot, const std::string& link) {
       .add(counters.damaged.total(), "damaged sentences")
       .add(counters.refused, "sentences refused")
       .add(counters.orders_lost, "orders replaced");
-  remark(fmt::format(
+  shell.report(fmt::format(
       "{:<10} links {}, handshakes {}, updates {}, idles {}, set points {}, arrived {}, stops {}{}",
       robot.body().name(), counters.links, counters.handshakes, counters.updates, counters.idles,
       counters.set_points, counters.arrived, counters.collisions, lost.text()));
-  if (!link.empty()) remark(fmt::format("{:<10} {}", "", link));
+  if (!link.empty()) shell.report(fmt::format("{:<10} {}", "", link));
 }
 
 void wait(const std::vector<pollfd>& inputs, base::Duration limit) {
@@ -99,12 +111,7 @@ void wait(const std::vector<pollfd>& inputs, base::Duration limit) {
 /// The pseudo terminal in place of the central's serial line.
 class CentralLine {
  public:
-  CentralLine() {
-    if (auto problem = transport::make_line_folders()) fail(*problem);
-    auto opened = transport::Pty::open(transport::central_line());
-    if (!opened) fail(opened.error);
-    pty_ = std::move(*opened);
-  }
+  explicit CentralLine(transport::Pty pty) : pty_(std::move(pty)) {}
   [[nodiscard]] const std::string& name() const { return pty_.name(); }
   /// What the server says.
   [[nodiscard]] std::string_view read() {
@@ -148,11 +155,11 @@ std::string way_text(const simulation::WayCounters& way) {
                          .add(way.dropped, "dropped with their link")
                          .text());
 }
-void print_summary(plant::Fleet& fleet, const CentralLine& line) {
+void summarise(plant::Fleet& fleet, const CentralLine& line, const Shell& shell) {
   for (std::size_t i = 0; i < fleet.size(); ++i) {
     const simulation::RadioCounters& radio = fleet.radio().counters(i);
     const auto& dongle = fleet.dongle(i);
-    print_robot(
+    report_robot(
         fleet.robot(i),
         fmt::format("packets to it {}; from it {}{}", way_text(radio.to_robot), way_text(radio.to_central),
                     Losses{}
@@ -162,7 +169,8 @@ void print_summary(plant::Fleet& fleet, const CentralLine& line) {
                         .add(dongle.counters().refused, "bytes too many for its UART")
                         .add(radio.robot_timeouts, "time-outs of the link")
                         .add(radio.refused + radio.failed, "attempts to connect that failed")
-                        .text()));
+                        .text()),
+        shell);
   }
   const ocm::mapper::link::CentralCounters& central = fleet.central().counters();
   const std::string lost = Losses{}
@@ -173,27 +181,30 @@ void print_summary(plant::Fleet& fleet, const CentralLine& line) {
                                .add(line.unheard(), "bytes said to nobody")
                                .add(line.unread_lost(), "bytes that the program did not read")
                                .text();
-  remark(fmt::format("{:<10} {}", "central", lost.empty() ? "nothing was lost" : lost.substr(2)));
+  shell.report(fmt::format("{:<10} {}", "central", lost.empty() ? "nothing was lost" : lost.substr(2)));
 }
 
-void simulate_fleet(plant::World& world, const MapperOptions& options) {
+Ending serve_fleet(plant::World& world, const MapperOptions& options, const Shell& shell) {
+  auto opened = transport::Pty::open(transport::central_line());
+  if (!opened) return Ending{opened.error};
+  CentralLine line{std::move(*opened)};
   plant::FleetOptions fleet_options = plant::Fleet::options_for(world, options.seed);
   fleet_options.radio.loss_everywhere = options.radio_loss;
   fleet_options.radio.repeats = options.repeats;
   if (options.radio_range > 0) fleet_options.radio.range_m = options.radio_range;
   if (options.links != 0) fleet_options.radio.links = options.links;
-  CentralLine line;
   const auto fleet = std::make_unique<plant::Fleet>(world, fleet_options);
-  remark(fmt::format("simulated {} mapper{} in '{}', their central on {}; Ctrl-C ends it", fleet->size(),
-                     fleet->size() == 1 ? "" : "s", world.model().name, line.name()));
+  shell.report(fmt::format("simulated {} mapper{} in '{}', their central on {}; Ctrl-C ends it",
+                           fleet->size(), fleet->size() == 1 ? "" : "s", world.model().name, line.name()));
   const SimulatedClock clock{options.speed};
-  while (interrupted() == 0) {
+  while (!shell.stop()) {
     fleet->advance_to(clock.now());
     fleet->write(line.read());
     line.write(fleet->read());
     wait(line.inputs(), std::min(clock.until(fleet->next_event()), look_period));
   }
-  print_summary(*fleet, line);
+  summarise(*fleet, line, shell);
+  return {};
 }
 
 // --- each on a line of its own ---
@@ -201,11 +212,7 @@ void simulate_fleet(plant::World& world, const MapperOptions& options) {
 /// A robot's link, when it is a pseudo terminal: there is one while a program has it open.
 class OwnLine {
  public:
-  explicit OwnLine(const std::string& name) {
-    auto opened = transport::Pty::open(transport::robot_lines() + "/" + name);
-    if (!opened) fail(opened.error);
-    pty_ = std::move(*opened);
-  }
+  explicit OwnLine(transport::Pty pty) : pty_(std::move(pty)) {}
   /// Whether that has changed.
   [[nodiscard]] bool look() {
     const bool was = attached_;
@@ -232,18 +239,20 @@ class OwnLine {
 static_assert(plant::RobotLink<OwnLine>);
 using LinedRobot = plant::RunningRobot<OwnLine>;
 
-void simulate_lines(plant::World& world, const MapperOptions& options) {
-  if (auto problem = transport::make_line_folders()) fail(*problem);
+Ending serve_lines(plant::World& world, const MapperOptions& options, const Shell& shell) {
   std::vector<std::unique_ptr<OwnLine>> lines;
   std::vector<std::unique_ptr<LinedRobot>> robots;
   for (std::size_t i = 0; i < world.size(); ++i) {
     std::string name = world.robot(i).name();
     std::replace(name.begin(), name.end(), '/', '_');
-    lines.push_back(std::make_unique<OwnLine>(name));
+    auto opened = transport::Pty::open(transport::robot_lines() + "/" + name);
+    if (!opened) return Ending{opened.error};
+    lines.push_back(std::make_unique<OwnLine>(std::move(*opened)));
     robots.push_back(std::make_unique<LinedRobot>(world.robot(i), *lines.back(), world.time()));
   }
-  remark(fmt::format("simulated {} mapper{} in '{}', each on its line in {}; Ctrl-C ends it", robots.size(),
-                     robots.size() == 1 ? "" : "s", world.model().name, transport::robot_lines()));
+  shell.report(fmt::format("simulated {} mapper{} in '{}', each on its line in {}; Ctrl-C ends it",
+                           robots.size(), robots.size() == 1 ? "" : "s", world.model().name,
+                           transport::robot_lines()));
   const SimulatedClock clock{options.speed};
   const auto next_event = [&robots] {
     base::Time next = base::never;
@@ -254,7 +263,7 @@ void simulate_lines(plant::World& world, const MapperOptions& options) {
     world.advance_to(now);
     for (const auto& robot : robots) robot->advance_to(now);
   };
-  while (interrupted() == 0) {
+  while (!shell.stop()) {
     const base::Time now = clock.now();
     for (base::Time next = next_event(); next <= now; next = next_event()) happen(next);
     std::vector<pollfd> inputs;
@@ -266,22 +275,18 @@ void simulate_lines(plant::World& world, const MapperOptions& options) {
     happen(now);
     wait(inputs, std::min(clock.until(next_event()), look_period));
   }
-  for (const auto& robot : robots) print_robot(*robot, "");
+  for (const auto& robot : robots) report_robot(*robot, "", shell);
+  return {};
 }
 
 }  // namespace
 
-void simulate_mappers(const MapperOptions& options) {
-  plant::WorldModel model = read_world(options);
-  if (model.starts.size() > plant::Fleet::max_robots)
-    fail({fmt::format("sim: {} robots", model.starts.size()),
-          fmt::format("at most {}", plant::Fleet::max_robots)},
-         exit_usage);
-  plant::World world{std::move(model), {.seed = options.seed}};
-  if (options.lines)
-    simulate_lines(world, options);
-  else
-    simulate_fleet(world, options);
+Ending serve_mappers(const MapperOptions& options, const Shell& shell) {
+  ChosenWorld chosen = read_world(options);
+  if (!chosen.problems.well()) return chosen.problems;
+  plant::World world{std::move(chosen.model), {.seed = options.seed}};
+  if (auto problem = transport::make_line_folders()) return Ending{*problem};
+  return options.lines ? serve_lines(world, options, shell) : serve_fleet(world, options, shell);
 }
 
-}  // namespace ocm::cli
+}  // namespace ocm::sim

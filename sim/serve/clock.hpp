@@ -7,7 +7,7 @@
 
 #include "ocm/base/time.hpp"
 
-namespace ocm::cli {
+namespace ocm::sim {
 
 class SimulatedClock {
  public:
@@ -31,4 +31,4 @@ class SimulatedClock {
   std::chrono::steady_clock::time_point start_;
 };
 
-}  // namespace ocm::cli
+}  // namespace ocm::sim

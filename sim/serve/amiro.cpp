@@ -1,0 +1,149 @@
+#include "sim/serve/amiro.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <poll.h>
+
+#include <fmt/format.h>
+
+#include "ocm/simulation/virtual_bus_server.hpp"
+
+#include "sim/serve/boards.hpp"
+#include "sim/serve/clock.hpp"
+#include "sim/serve/interference.hpp"
+
+namespace ocm::sim {
+namespace {
+
+/// Frames that wait in a board before its sensors are held up.
+constexpr std::size_t board_queue = 32;
+
+/// Until something is readable, or `wait` is over.
+void wait_for(int bus, const Boards& boards, base::Duration wait) {
+  std::vector<pollfd> inputs{{bus, POLLIN, 0}};
+  for (const int descriptor : boards.descriptors()) inputs.push_back({descriptor, POLLIN, 0});
+  const timespec limit{0, static_cast<long>(wait.count())};
+  ::ppoll(inputs.data(), inputs.size(), &limit, nullptr);
+}
+
+/// A failure when there is no such board.
+std::optional<transport::Failure> switch_off(const std::vector<std::string>& without, Ports& ports) {
+  for (const auto& board : without) {
+    const auto found = std::find(board_names.begin(), board_names.end(), board);
+    if (found == board_names.end())
+      return transport::Failure{"sim: no board '" + board + "'",
+                                fmt::format("one of: {}", fmt::join(board_names, ", "))};
+    ports[static_cast<std::size_t>(found - board_names.begin())].on = false;
+  }
+  return std::nullopt;
+}
+
+transport::Outcome<std::unique_ptr<Boards>> make_boards(const AmiroOptions& options, Ports& ports,
+                                                        const SimulatedClock& clock) {
+  if (options.qemu)
+    return boards_in_qemu(options.world, ports, options.images, [&clock] { return clock.now(); });
+  return boards_of_the_host(options.world, ports);
+}
+
+/// Boards in QEMU start like others, in their time; who waits for the simulator waits for them.
+Ending wait_until_ready(Boards& boards, const SimulatedClock& clock, const Shell& shell) {
+  const base::Time patience = clock.now() + std::chrono::seconds{30};
+  while (!boards.ready() && !shell.stop()) {
+    if (!boards.advance(clock.now())) return Ending{boards.failure()};
+    wait_for(-1, boards, std::chrono::milliseconds{20});
+    if (clock.now() > patience)
+      return Ending{
+          {"sim: a board in QEMU does not start", "are these images of the boards? See docs/verbs/sim.md"}};
+  }
+  return {};
+}
+
+}  // namespace
+
+Ending serve_amiro(transport::Bus& bus, const AmiroOptions& options, const Shell& shell) {
+  Ports ports;
+  for (Port& port : ports) port.hand_over = [&bus](const can::Frame& frame) { return bus.send(frame); };
+  if (const auto problem = switch_off(options.without, ports)) return Ending{*problem, true};
+  const SimulatedClock clock{1};
+  const auto made = make_boards(options, ports, clock);
+  if (!made) return Ending{made.error};
+  Boards& boards = **made;
+  if (auto started = wait_until_ready(boards, clock, shell); !started.well()) return started;
+  while (!shell.stop()) {
+    if (!boards.advance(clock.now())) return Ending{boards.failure()};
+    auto received = bus.receive(base::Duration{0});
+    if (!received && received.error == base::Error::timed_out) {
+      wait_for(
+          bus.descriptor(), boards,
+          boards.waiting() ? base::Duration{std::chrono::milliseconds{1}} : clock.until(boards.next_event()));
+      received = bus.receive(base::Duration{0});
+    }
+    if (received && received->frame.format != can::Format::error)
+      boards.receive(received->frame, clock.now());
+    if (!received && received.error == base::Error::closed) return Ending{bus.failure()};
+  }
+  boards.summarise(shell);
+  return {};
+}
+
+Ending serve_amiro(const std::string& bus_name, const AmiroOptions& options, const Shell& shell) {
+  simulation::VirtualBusOptions bus_options;
+  if (bus_name.starts_with("sim:")) bus_options.path = bus_name.substr(4);
+  bus_options.name = amiro::catalogue.robot;
+  bus_options.bit_rate = options.bit_rate;
+  bus_options.to_unix_time = std::chrono::system_clock::now().time_since_epoch();
+  bus_options.report = shell.report;
+  auto opened = simulation::VirtualBusServer::open(bus_options);
+  if (!opened) return Ending{opened.error};
+  auto& server = **opened;
+  auto& arbiter = server.arbiter();
+
+  const SimulatedClock clock{options.speed};
+  Ports ports;
+  for (Port& port : ports) {
+    // A board has three mailboxes that go by identifier; its driver puts the lowest ones there.
+    const auto node = arbiter.attach({simulation::QueueOrder::by_identifier, board_queue});
+    port.hand_over = [&arbiter, node](const can::Frame& frame) { return arbiter.send(node, frame); };
+  }
+  if (const auto problem = switch_off(options.without, ports)) return Ending{*problem, true};
+  const auto made = make_boards(options, ports, clock);
+  if (!made) return Ending{made.error};
+  Boards& boards = **made;
+  if (auto started = wait_until_ready(boards, clock, shell); !started.well()) return started;
+  shell.report(fmt::format("simulated {}{} on --bus {} ({}), {} bit/s; Ctrl-C ends it",
+                           amiro::catalogue.robot, options.qemu ? " with its boards in QEMU" : "",
+                           bus_name.empty() ? "sim" : bus_name, server.path(), options.bit_rate));
+
+  const auto hear = [&boards](const simulation::Delivery& delivery) {
+    boards.receive(delivery.frame, delivery.time);
+  };
+  Interference interference{options.bus_errors, options.world.seed};
+  while (!shell.stop()) {
+    const base::Time now = clock.now();
+    interference.disturb(arbiter, now);
+    // Whatever falls due until now, in the order in which it does.
+    for (;;) {
+      const base::Time next = std::min(server.next_event(), boards.next_event());
+      if (next > now) break;
+      server.advance(next, hear);
+      if (!boards.advance(next)) return Ending{boards.failure()};
+    }
+    if (options.qemu && !boards.advance(now)) return Ending{boards.failure()};
+    server.poll(now, hear);
+    wait_for(server.descriptor(), boards, clock.until(std::min(server.next_event(), boards.next_event())));
+  }
+  boards.summarise(shell);
+  const auto& bus = arbiter.totals();
+  const auto& clients = server.counters();
+  shell.report(fmt::format(
+      "bus               {} frames, {} clients, {} turned away, {} misbehaved, {} frames lost by slow ones",
+      bus.frames, clients.welcomed, clients.turned_away, clients.misbehaved, clients.overruns));
+  if (options.bus_errors > 0)
+    shell.report(
+        fmt::format("                  {} error frames, {} frames repeated", bus.errors, bus.repetitions));
+  return {};
+}
+
+}  // namespace ocm::sim

@@ -1,0 +1,34 @@
+/// A simulated AMiRo beside the user: its three boards, compiled for this machine or as images in QEMU, in
+/// one world, on a virtual bus or on a CAN interface.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "ocm/topics/amiro.hpp"
+#include "ocm/transport/bus.hpp"
+
+#include "sim/amiro/world.hpp"
+#include "sim/serve/shell.hpp"
+
+namespace ocm::sim {
+
+struct AmiroOptions {
+  WorldOptions world;
+  std::vector<std::string> without;  ///< names of boards that are switched off
+  bool qemu = false;
+  std::string images;  ///< the folder of those for QEMU; empty: where they are expected
+  std::uint32_t bit_rate = amiro::bit_rate;
+  double bus_errors = 0;  ///< bits a second that nodes see wrong, on average
+  double speed = 1;
+};
+
+/// The boards and any number of programs on a virtual bus: that of the user ("" or "sim"), or the one whose
+/// socket is PATH ("sim:PATH"). Reports what was sent and what was lost, by cause, when it is told to stop.
+[[nodiscard]] Ending serve_amiro(const std::string& bus, const AmiroOptions& options, const Shell& shell);
+
+/// The boards on a real CAN interface: the kernel is the bus. In real time, without disturbances.
+[[nodiscard]] Ending serve_amiro(transport::Bus& bus, const AmiroOptions& options, const Shell& shell);
+
+}  // namespace ocm::sim

@@ -1,0 +1,48 @@
+#include <cstdint>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "ocm/protocol/counters.hpp"
+
+#include "sim/amiro/robot.hpp"
+#include "sim/serve/boards.hpp"
+
+namespace ocm::sim {
+namespace {
+
+class HostBoards final : public Boards {
+ public:
+  HostBoards(const WorldOptions& world, Ports& ports) : robot_{world, ports[0], ports[1], ports[2]} {}
+  void receive(const can::Frame& frame, base::Time now) override { robot_.receive(frame, now); }
+  base::Status advance(base::Time now) override {
+    robot_.advance(now);
+    return {};
+  }
+  [[nodiscard]] base::Time next_event() const override { return robot_.next_event(); }
+  [[nodiscard]] bool waiting() const override { return robot_.waiting(); }
+  void summarise(const Shell& shell) const override {
+    shell.report(line(board_names[0], robot_.di_wheel_drive().counters()));
+    shell.report(line(board_names[1], robot_.power_management().counters()));
+    shell.report(line(board_names[2], robot_.light_ring().counters()));
+  }
+
+ private:
+  static std::string line(std::string_view board, const protocol::Counters& counters) {
+    std::string text;
+    protocol::for_each(counters, [&text](std::string_view name, std::uint32_t value) {
+      if (value != 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, value);
+    });
+    return fmt::format("{:<17} {}", board, text.empty() ? "nothing came" : text);
+  }
+
+  SimulatedRobot<Port> robot_;
+};
+
+}  // namespace
+
+std::unique_ptr<Boards> boards_of_the_host(const WorldOptions& world, Ports& ports) {
+  return std::make_unique<HostBoards>(world, ports);
+}
+
+}  // namespace ocm::sim
