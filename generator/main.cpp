@@ -11,11 +11,11 @@
 #include <unistd.h>
 #include <vector>
 
-#include "generator/man.hpp"
-#include "generator/output_file.hpp"
 #include "generator/spec/spec.hpp"
-#include "generator/target.hpp"
-#include "generator/tasks.hpp"
+#include "generator/targets/target.hpp"
+#include "generator/targets/tasks.hpp"
+#include "generator/text/man.hpp"
+#include "generator/text/output_file.hpp"
 
 namespace {
 

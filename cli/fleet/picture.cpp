@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "cli/plot/gnuplot.hpp"
-#include "generator/output_file.hpp"
+#include "generator/text/output_file.hpp"
 
 namespace ocm::cli::fleet {
 namespace {

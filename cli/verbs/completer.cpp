@@ -6,8 +6,8 @@
 #include "ocm/transport/interfaces.hpp"
 #include "ocm/transport/virtual_bus.hpp"
 
-#include "generator/messages.hpp"
-#include "generator/target.hpp"
+#include "generator/targets/target.hpp"
+#include "generator/text/messages.hpp"
 
 namespace ocm::cli {
 namespace {

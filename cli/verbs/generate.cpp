@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include "cli/verbs/verbs.hpp"
-#include "generator/output_file.hpp"
 #include "generator/robot_spec.hpp"
-#include "generator/target.hpp"
+#include "generator/targets/target.hpp"
+#include "generator/text/output_file.hpp"
 
 namespace ocm::cli {
 namespace {

@@ -1,4 +1,4 @@
-#include "generator/man.hpp"
+#include "generator/text/man.hpp"
 
 #include <filesystem>
 #include <memory>
@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "cli/verbs/verbs.hpp"
-#include "generator/output_file.hpp"
+#include "generator/text/output_file.hpp"
 
 namespace ocm::cli {
 namespace {

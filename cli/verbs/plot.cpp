@@ -19,7 +19,7 @@
 #include "cli/plot/gnuplot.hpp"
 #include "cli/verbs/verbs.hpp"
 #include "cli/watching.hpp"
-#include "generator/output_file.hpp"
+#include "generator/text/output_file.hpp"
 
 namespace ocm::cli {
 namespace {

@@ -3,10 +3,10 @@
 
 #include "ocm/can/text.hpp"
 
-#include "generator/messages.hpp"
-#include "generator/target.hpp"
-#include "generator/words.hpp"
-#include "generator/writer.hpp"
+#include "generator/targets/target.hpp"
+#include "generator/text/messages.hpp"
+#include "generator/text/words.hpp"
+#include "generator/text/writer.hpp"
 
 namespace ocm::generate {
 namespace {

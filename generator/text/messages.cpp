@@ -1,4 +1,4 @@
-#include "generator/messages.hpp"
+#include "generator/text/messages.hpp"
 
 namespace ocm::generate {
 

@@ -1,6 +1,6 @@
-#include "generator/target.hpp"
+#include "generator/targets/target.hpp"
 
-#include "generator/header.hpp"
+#include "generator/targets/header.hpp"
 
 namespace ocm::generate {
 namespace {

@@ -1,15 +1,15 @@
-#include "generator/header.hpp"
+#include "generator/targets/header.hpp"
 
 #include <algorithm>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
-#include "generator/conversion.hpp"
 #include "generator/spec/names.hpp"
 #include "generator/spec/worst_bits.hpp"
-#include "generator/words.hpp"
-#include "generator/writer.hpp"
+#include "generator/text/conversion.hpp"
+#include "generator/text/words.hpp"
+#include "generator/text/writer.hpp"
 
 namespace ocm::generate {
 

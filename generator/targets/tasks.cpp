@@ -1,4 +1,4 @@
-#include "generator/tasks.hpp"
+#include "generator/targets/tasks.hpp"
 
 #include <cctype>
 #include <charconv>

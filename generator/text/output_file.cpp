@@ -1,4 +1,4 @@
-#include "generator/output_file.hpp"
+#include "generator/text/output_file.hpp"
 
 #include <cerrno>
 #include <cstdio>

@@ -3,9 +3,9 @@
 /// part may say more than it should.
 #include <nlohmann/json.hpp>
 
-#include "generator/messages.hpp"
-#include "generator/target.hpp"
-#include "generator/words.hpp"
+#include "generator/targets/target.hpp"
+#include "generator/text/messages.hpp"
+#include "generator/text/words.hpp"
 
 namespace ocm::generate {
 namespace {

@@ -1,9 +1,9 @@
-#include "generator/conversion.hpp"
+#include "generator/text/conversion.hpp"
 
 #include <algorithm>
 #include <cstdint>
 
-#include "generator/words.hpp"
+#include "generator/text/words.hpp"
 
 namespace ocm::generate {
 

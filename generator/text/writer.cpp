@@ -1,8 +1,8 @@
-#include "generator/writer.hpp"
+#include "generator/text/writer.hpp"
 
 #include <algorithm>
 
-#include "generator/words.hpp"
+#include "generator/text/words.hpp"
 
 namespace ocm::generate {
 

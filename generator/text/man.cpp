@@ -1,6 +1,6 @@
-#include "generator/man.hpp"
+#include "generator/text/man.hpp"
 
-#include "generator/words.hpp"
+#include "generator/text/words.hpp"
 
 namespace ocm::generate {
 namespace {

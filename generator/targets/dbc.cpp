@@ -9,10 +9,10 @@
 #include <set>
 #include <vector>
 
-#include "generator/messages.hpp"
 #include "generator/spec/names.hpp"
-#include "generator/target.hpp"
-#include "generator/words.hpp"
+#include "generator/targets/target.hpp"
+#include "generator/text/messages.hpp"
+#include "generator/text/words.hpp"
 
 namespace ocm::generate {
 namespace {

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <string_view>
 
-#include "generator/conversion.hpp"
-#include "generator/messages.hpp"
-#include "generator/target.hpp"
-#include "generator/words.hpp"
-#include "generator/writer.hpp"
+#include "generator/targets/target.hpp"
+#include "generator/text/conversion.hpp"
+#include "generator/text/messages.hpp"
+#include "generator/text/words.hpp"
+#include "generator/text/writer.hpp"
 
 namespace ocm::generate {
 namespace {

@@ -1,4 +1,4 @@
-#include "generator/words.hpp"
+#include "generator/text/words.hpp"
 
 #include <algorithm>
 #include <utility>
