@@ -37,7 +37,7 @@ def main():
     with tempfile.TemporaryDirectory() as scratch:
         project = pathlib.Path(scratch) / "project"
         build = pathlib.Path(scratch) / "build"
-        shutil.copytree(options.source / "tests" / "consumers" / "generate", project)
+        shutil.copytree(options.source / "tests" / "rules" / "consumers" / "generate", project)
         spec = project / "theirs.json"
         shutil.copy(options.source / "examples" / "other-robot" / "topics.json", spec)
 
@@ -53,7 +53,7 @@ def main():
         run("cmake", "--build", build)
 
         header = build / "ocm_topics" / "firmware" / "theirs.hpp"
-        golden = (options.source / "tests" / "golden" / "ferry.hpp").read_text()
+        golden = (options.source / "tests" / "generator" / "golden" / "ferry.hpp").read_text()
         first = header.read_text()
         expect("the header is the golden one", first == golden.replace("from topics.json", "from theirs.json"))
         expect("a header's own name is used", (build / "ocm_topics/firmware/robot/again.hpp").read_text() == first)

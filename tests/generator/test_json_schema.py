@@ -3,14 +3,13 @@ import copy
 import json
 import os
 import sys
-import time
 import unittest
 
 import jsonschema
 
 from peers import ROOT, SPECS, generate, samples
 
-sys.path.insert(0, str(ROOT / "tests" / "cli"))
+sys.path.insert(0, str(ROOT / "tests" / "tool" / "verbs"))
 os.environ.setdefault("AMIROCTL", "amiroctl")
 import harness  # noqa: E402
 
@@ -58,7 +57,7 @@ class RealLines(harness.Case):
                 "201#0000000000000000", "240#643278", "608#00", "6FF#01", "1F334455#DEAD", "608#R"]
         for frame in sent:
             self.run_tool("send", frame)
-        time.sleep(0.5)
+        self.settle()
         out, _ = self.interrupt(listener)
         lines = self.objects(out)
         topics = {line.get("topic") for line in lines if "fields" in line}

@@ -17,7 +17,7 @@ import time
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
-sys.path.insert(0, str(ROOT / "tests" / "cli"))
+sys.path.insert(0, str(ROOT / "tests" / "tool" / "verbs"))
 from harness import Case, main  # noqa: E402
 
 IMAGES = os.environ["OCM_IMAGES"]

@@ -8,12 +8,16 @@ import select
 import signal
 import struct
 import subprocess
+import sys
 import tempfile
 import termios
 import threading
 import time
 import traceback
 import tty
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..'))
+import waiting
 
 Frame = collections.namedtuple('Frame', 'time id data')  # as candump -L writes them: seconds, hex, hex
 checks = []
@@ -58,11 +62,8 @@ def run_all(selected, context):
     return failures
 
 
-def eventually(holds, what, limit=10):
-    end = time.monotonic() + limit
-    while not holds():
-        expect(time.monotonic() < end, f'{what}: not within {limit} s')
-        time.sleep(0.01)
+def eventually(holds, what, limit=30):
+    waiting.until(holds, what, limit)
 
 
 def sh(*command):
@@ -114,6 +115,10 @@ class Process:
             raise AssertionError(f'{self.command}: still runs after {limit} s; stderr: {self.stderr}') from None
         return 128 - code if code < 0 else code
 
+    def settle(self, looks=20):
+        """Returns when it has read all that there was, and waits for more: nothing runs on its way to it any longer."""
+        waiting.until_asleep(self.process.pid, looks=looks, limit=120)
+
     def stop(self, number=signal.SIGINT):
         if self.process.poll() is None:
             self.send_signal(number)
@@ -139,8 +144,8 @@ class Candump(Process):
         return [Frame(float(stamp), number, data) for stamp, number, data in lines]
 
     def finish(self):
-        """All frames, after those that are still on their way."""
-        time.sleep(0.2)
+        """All frames, once it has printed what is still in its queue."""
+        self.settle()
         self.stop()
         return self.frames()
 

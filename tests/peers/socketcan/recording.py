@@ -21,8 +21,8 @@ class Recorder(Process):
         eventually(lambda: 'Ctrl-C ends' in self.stderr or self.process.poll() is not None, 'record listens')
 
     def finish(self):
-        """After the frames that are still on their way: CPU seconds that it took."""
-        time.sleep(0.5)
+        """After the frames that are still in its queue: CPU seconds that it took."""
+        self.settle()
         self.send_signal(signal.SIGINT)
         _, status, usage = os.wait4(self.process.pid, 0)
         self.process.returncode = os.waitstatus_to_exitcode(status)
@@ -49,7 +49,8 @@ class CandumpLog(Process):
         expect(self.process.poll() is None, f'candump ended: {self.stderr}')
 
     def finish(self):
-        """CPU seconds that it took."""
+        """After the frames that are still in its queue: CPU seconds that it took."""
+        self.settle()
         self.process.send_signal(signal.SIGINT)
         _, _, usage = os.wait4(self.process.pid, 0)
         self.process.returncode = 0
@@ -148,7 +149,7 @@ def _(context):
             vcan.up()
             eventually(lambda: 'vcan9 is up again' in recorder.stderr, 'up is told')
             cansend('608#02', interface='vcan9')
-            time.sleep(0.3)
+            recorder.settle()
             sh('ip', 'link', 'del', 'vcan9')
             eventually(lambda: 'is gone' in recorder.stderr, 'gone is told')
             with Vcan('vcan9'):

@@ -5,12 +5,14 @@ import json
 import os
 import signal
 import subprocess
+import sys
 import tempfile
-import time
 import unittest
 
 AMIROCTL = os.environ["AMIROCTL"]
 SOURCE = os.environ["OCM_SOURCE_DIR"]
+sys.path.insert(0, os.path.join(SOURCE, "tests"))
+import waiting
 
 
 class Case(unittest.TestCase):
@@ -54,8 +56,12 @@ class Case(unittest.TestCase):
         """Starts `listen --json` and returns when it is subscribed: it says which bus it uses before it listens."""
         listener = self.start("listen", "--json", *arguments)
         self.assertIn("bus: sim", listener.stderr.readline())
-        time.sleep(0.1)
+        self.settle()
         return listener
+
+    def settle(self):
+        """Returns when every program that was started has read and handed on what there was, and waits for more."""
+        waiting.until_asleep(*(process.pid for process in self._started if process.poll() is None))
 
     def interrupt(self, process, number=signal.SIGINT):
         process.send_signal(number)

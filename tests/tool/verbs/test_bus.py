@@ -127,7 +127,7 @@ class OnTheBus(Case):
         self.start_sim()
         listener = self.listen("motors", "odom", "--timeout", "20s")
         self.run_tool("drive", "5cm/s", "--for", "550ms")
-        time.sleep(0.2)
+        self.settle()
         out, _ = self.interrupt(listener)
         frames = [line["data"] for line in self.objects(out)]
         self.assertEqual(frames[-1], "0000000000000000")
@@ -141,7 +141,7 @@ class OnTheBus(Case):
         time.sleep(0.5)
         self.interrupt(drive)
         self.assertEqual(drive.returncode, 130)
-        time.sleep(0.2)
+        self.settle()
         out, _ = self.interrupt(listener)
         self.assertEqual(self.objects(out)[-1]["data"], "0000000000000000")
 
@@ -211,7 +211,7 @@ class Library(Case):
                                 timeout=20)
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(len(result.stdout.splitlines()), 5)
-        time.sleep(0.2)
+        self.settle()
         out, _ = self.interrupt(listener)
         ids = [frame["id"] for frame in self.objects(out)]
         self.assertEqual((ids[0], ids.count("508"), ids[-1]), ("108", 5, "208"))
@@ -245,7 +245,7 @@ class Scripts(Case):
         listener = self.listen("--commands", "led", "motors", "--timeout", "20s")
         path = self.script("0s led 1 red\n5s led 2 red\n10s drive 5cm/s\n13s drive stop\n15s led 3 red\n")
         self.run_tool("run", path, "--speed", "10")
-        time.sleep(0.2)
+        self.settle()
         out, _ = self.interrupt(listener)
         frames = self.objects(out)
         start = int(frames[0]["time_ns"])
@@ -273,7 +273,7 @@ class Scripts(Case):
         time.sleep(0.5)
         self.interrupt(run)
         self.assertEqual(run.returncode, 130)
-        time.sleep(0.2)
+        self.settle()
         out, _ = self.interrupt(listener)
         self.assertEqual(self.objects(out)[-1]["data"], "0000000000000000")
 

@@ -13,7 +13,7 @@ import threading
 import time
 import tty
 
-from harness import AMIROCTL, Case, main
+from harness import AMIROCTL, Case, main, waiting
 
 
 class Robot:
@@ -166,14 +166,17 @@ class OnSerialLines(Case):
         talk.wait_for("data 1\n")
         self.assertEqual(robots[0].hear("\n"), "{U,0,1}\n")
         self.assertEqual(robots[1].hear("\n"), "{U,1,1}\n")
-        time.sleep(0.3)
-        talk.end()
-        streams = {"0": "", "1": ""}
-        for index, text in re.findall(r"\[([01])\]:(?:AVR|Arduino):([^\[]*)", talk.said):
-            streams[index] += re.sub(r"(command|data \d)\n", "", text)
+
+        def whole(number):
+            """The numbers of a robot's lines, of which any may come in pieces."""
+            pieces = re.findall(r"\[%d\]:(?:AVR|Arduino):([^\[]*)" % number, talk.said)
+            stream = re.sub(r"(command|data \d)\n", "", "".join(pieces))
+            return [int(i) for i in re.findall(r"\{U,(\d+),%d,0,0,0,0,0,0\}\n" % number, stream)]
         for number in (0, 1):
-            whole = re.findall(r"\{U,(\d+),%d,0,0,0,0,0,0\}\n" % number, streams[str(number)])
-            self.assertEqual([int(i) for i in whole], list(range(lines)))
+            waiting.until(lambda: len(whole(number)) >= lines, f"all lines of robot {number}")
+        talk.end()
+        for number in (0, 1):
+            self.assertEqual(whole(number), list(range(lines)))
 
     def test_unplugged_while_it_sends_and_back_again(self):
         robot = self.robot()

@@ -5,7 +5,6 @@ import json
 import os
 import re
 import subprocess
-import time
 
 from harness import AMIROCTL, Case, main
 
@@ -191,7 +190,7 @@ class Send(Case):
         json_lines, _ = self.run_tool("decode", "-", "--from", "candump", stdin=lines)
         _, err = self.run_tool("send", "--stdin", "--timed", stdin=json_lines)
         self.assertIn("3 frames sent", err)
-        time.sleep(0.3)
+        self.settle()
         heard = self.objects(self.interrupt(listener)[0])
         heard = [line for line in heard if line["id"] in ("208", "201", "4FF")]
         sent = self.objects(json_lines)

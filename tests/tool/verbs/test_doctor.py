@@ -3,7 +3,6 @@
 import json
 import os
 import signal
-import time
 
 from harness import Case, main
 
@@ -89,7 +88,7 @@ class Doctor(Case):
         self.start_sim()
         doctor = self.start("doctor", "--json", "--watch", "1s")
         self.assertIn("bus: sim", doctor.stderr.readline())
-        time.sleep(0.2)
+        self.settle()
         self.run_tool("send", "7FF#00")
         self.run_tool("send", "608#00")
         out, _ = doctor.communicate(timeout=10)
@@ -101,7 +100,7 @@ class Doctor(Case):
         self.start_sim()
         doctor = self.start("doctor", "--watch", "1h")
         self.assertIn("bus: sim", doctor.stderr.readline())
-        time.sleep(0.2)
+        self.settle()
         out, _ = self.interrupt(doctor)
         self.assertEqual(doctor.returncode, 128 + signal.SIGINT)
         self.assertEqual(out, "")

@@ -10,7 +10,7 @@ import time
 
 from harness import AMIROCTL, SOURCE, Case, main
 
-sys.path.insert(0, os.path.join(SOURCE, "tests", "logs"))
+sys.path.insert(0, os.path.join(SOURCE, "tests", "peers", "logs"))
 from virtual_bus import Client  # noqa: E402
 
 LINE = re.compile(r"^\((\d+\.\d+)\) (\S+) (\S+)#(\S*)(?: ([RT]))?$")
@@ -82,7 +82,7 @@ class Recording(Case):
             name = f"{number}.log"
             recorder = self.record("-o", name)
             sent = self.send_numbered(10)
-            time.sleep(0.3)
+            self.settle()
             _, err = self.interrupt(recorder, number)
             self.assertEqual(recorder.returncode, 128 + number, err)
             self.assertEqual(self.frames(name), sent)
@@ -134,7 +134,7 @@ class Recording(Case):
         commands = self.record("-o", "commands.log", "gyro", "--commands")
         self.run_tool("stop", "gyro")
         self.run_tool("stop", "accel")
-        time.sleep(0.3)
+        self.settle()
         self.interrupt(commands)
         self.assertIn(("208", "00"), self.frames("commands.log"))
         self.assertNotIn(("209", "00"), self.frames("commands.log"))
@@ -143,7 +143,7 @@ class Recording(Case):
         self.start_sim()
         recorder = self.record("-o", "part.log", "--split", "20kB")
         sent = self.send_numbered(4000)
-        time.sleep(0.5)
+        self.settle()
         _, err = self.interrupt(recorder)
         names = sorted(name for name in os.listdir(self.folder) if name.startswith("part_"))
         self.assertGreater(len(names), 5)
@@ -204,7 +204,7 @@ class Recording(Case):
         sim = self.start_sim()
         recorder = self.record("-o", "a.log")
         sent = self.send_numbered(50)
-        time.sleep(0.3)
+        self.settle()
         self.interrupt(sim)
         _, err = recorder.communicate(timeout=10)
         self.assertEqual(recorder.returncode, 1)

@@ -8,7 +8,7 @@ import time
 
 from harness import SOURCE, Case, main
 
-sys.path.insert(0, os.path.join(SOURCE, "tests", "logs"))
+sys.path.insert(0, os.path.join(SOURCE, "tests", "peers", "logs"))
 from virtual_bus import Client  # noqa: E402
 
 LINE = re.compile(r"^\((\d+\.\d+)\) (\S+) (\S+)#(\S*)(?: ([RT]))?$")
@@ -41,7 +41,7 @@ class Replaying(Case):
         name = f"out{len(os.listdir(self.folder))}.log"
         recorder = self.recording(name)
         _, err = self.run_tool("replay", log, *arguments, code=code)
-        time.sleep(0.3)
+        self.settle()
         self.interrupt(recorder)
         return self.lines(name), err
 
@@ -52,7 +52,7 @@ class Replaying(Case):
             self.run_tool("publish", *words)
         time.sleep(1.5)
         self.run_tool("stop", "all")
-        time.sleep(0.3)
+        self.settle()
         self.interrupt(recorder)
         first = self.lines("first.log")
         self.assertGreater(len(first), 150)
@@ -141,7 +141,7 @@ class Replaying(Case):
         here = self.recording("here.log", "--bus", "sim")
         there = self.recording("there.log", "--bus", other)
         _, err = self.run_tool("replay", self.path("in.log"), "--interface", "can0=sim", "--interface", f"can1={other}")
-        time.sleep(0.3)
+        self.settle()
         self.interrupt(here)
         self.interrupt(there)
         self.assertEqual([frame for _, frame in self.lines("here.log")], ["608#01"])
@@ -167,7 +167,7 @@ class Replaying(Case):
         self.run_tool("once", "odom", "--wait", "3s")
         self.run_tool("once", "accel")
         self.run_tool("send", "208#07")
-        time.sleep(0.3)
+        self.settle()
         self.interrupt(listener)
         _, err = self.interrupt(robot)
         self.assertEqual(robot.returncode, 130)

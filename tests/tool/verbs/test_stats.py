@@ -229,7 +229,7 @@ class Stats(Case):
         self.start_sim()
         stats = self.start("stats", "--json")
         self.assertIn("bus: sim", stats.stderr.readline())
-        time.sleep(0.3)
+        self.settle()
         self.run_tool("publish", "gyro", "50ms", "--priority", "high")
         time.sleep(1)
         out, _ = self.interrupt(stats)

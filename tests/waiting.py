@@ -1,0 +1,38 @@
+"""Waits for events, never for a time: what a test may wait for in place of a sleep."""
+
+import os
+import time
+
+
+def until(holds, what, limit=30):
+    """Returns when `holds()` is true; what it is, is said when it does not become so."""
+    end = time.monotonic() + limit
+    while not holds():
+        if time.monotonic() > end:
+            raise AssertionError(f"{what}: not within {limit} s")
+        time.sleep(0.01)
+
+
+def asleep(pid):
+    """Whether all threads of a process wait. One that has something to do, and gets no processor, does not."""
+    tasks = f"/proc/{pid}/task"
+    try:
+        for task in os.listdir(tasks):
+            with open(f"{tasks}/{task}/stat", encoding="utf-8") as file:
+                if file.read().rpartition(")")[2].split()[0] not in "SZ":
+                    return False
+    except FileNotFoundError:  # it has just ended, and its threads with it
+        pass
+    return True
+
+
+def until_asleep(*pids, looks=5, limit=30):
+    """Returns when all of them wait at the same time, look after look: each has read and handed on what there was.
+    For processes on one bus: those that write to it are named, too. [man 5 proc: stat]"""
+    seen = 0
+
+    def all_asleep():
+        nonlocal seen
+        seen = seen + 1 if all(map(asleep, pids)) else 0
+        return seen >= looks
+    until(all_asleep, f"processes {pids} come to rest", limit)
