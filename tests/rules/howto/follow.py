@@ -1,0 +1,166 @@
+#!/usr/bin/env python3
+"""Follows a page of docs/howto word for word: follow.py PAGE [--root DIR] [--build DIR] [--keep DIR]
+
+It copies the project's files to a scratch folder and applies the page's marked blocks there, in order. A mark is a
+comment on the line above a fenced block; a reader of the page does not see it:
+
+    <!-- file: PATH -->                     the block is a new file
+    <!-- append: PATH -->                   the block goes to the end of a file
+    <!-- insert: PATH after: "TEXT" -->     the block goes after the one line that contains TEXT
+    <!-- insert: PATH before: "TEXT" -->    the block goes before that line
+    <!-- replace: PATH line: "TEXT" -->     the block replaces that line
+    <!-- run -->                            the block is commands, run by bash -e in the copy
+
+Blocks without a mark are for the reader only. Programs of the build folder are at build/ in the copy. Exit status: 0
+the page can be followed, 1 it cannot, 2 wrong usage. --keep leaves the copy at DIR, which must not exist."""
+import argparse
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "architecture"))
+import house  # noqa: E402
+
+MARK = re.compile(r"^ *<!-- *(?:(?P<word>file|append|insert|replace): *(?P<path>\S+)"
+                  r"(?: +(?P<where>after|before|line): *\"(?P<text>.*)\")?|(?P<run>run)) *-->$")
+PLACES = {"file": (None,), "append": (None,), "insert": ("after", "before"), "replace": ("line",)}
+LIKE_A_MARK = re.compile(r"^ *<!-- *(file|append|insert|replace|run)\b")
+FENCE = re.compile(r"^( *)```")
+
+
+class PageError(Exception):
+    """The page cannot be followed; the text has page and line."""
+
+
+class Step:
+    def __init__(self, line, match, text):
+        self.line = line
+        self.word = "run" if match["run"] else match["word"]
+        self.path, self.where, self.anchor = match["path"], match["where"], match["text"]
+        self.text = text
+
+
+def steps(page, text):
+    """The marked blocks of a page, in order."""
+    lines = text.splitlines()
+    found = []
+    at = 0
+    fenced = False
+    while at < len(lines):
+        line = lines[at]
+        at += 1
+        if FENCE.match(line):
+            fenced = not fenced
+        if fenced or not LIKE_A_MARK.match(line):
+            continue
+        number = at
+        match = MARK.match(line)
+        if not match or (match["word"] and match["where"] not in PLACES[match["word"]]):
+            raise PageError(f"{page}:{number}: unknown mark: {line.strip()}")
+        fence = FENCE.match(lines[at]) if at < len(lines) else None
+        if not fence:
+            raise PageError(f"{page}:{number}: no fenced block follows the mark")
+        indent = len(fence[1])
+        end = at + 1
+        while end < len(lines) and not re.match(rf" {{{indent}}}``` *$", lines[end]):
+            end += 1
+        if end == len(lines):
+            raise PageError(f"{page}:{number}: the block is not closed")
+        block = [row[indent:] if row[:indent].isspace() or not indent else row for row in lines[at + 1:end]]
+        found.append(Step(number, match, "".join(row + "\n" for row in block)))
+        at = end + 1
+    if not any(step.word == "run" for step in found):
+        raise PageError(f"{page}:1: no block is marked with <!-- run -->, so nothing would be checked")
+    return found
+
+
+def edit(step, root, where):
+    target = root / step.path
+    if root not in target.resolve().parents:
+        raise PageError(f"{where}: {step.path} is outside of the project")
+    if step.word == "file":
+        if target.exists():
+            raise PageError(f"{where}: {step.path} exists already")
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_text(step.text)
+        if step.text.startswith("#!"):
+            target.chmod(0o755)
+        return
+    if not target.is_file():
+        raise PageError(f"{where}: there is no file {step.path}")
+    lines = target.read_text().splitlines(keepends=True)
+    if step.word == "append":
+        target.write_text("".join(lines) + step.text)
+        return
+    hits = [number for number, line in enumerate(lines) if step.anchor in line]
+    if len(hits) != 1:
+        raise PageError(f'{where}: {len(hits)} lines of {step.path} contain "{step.anchor}"; expected 1')
+    if step.word == "replace":
+        lines[hits[0]] = step.text
+    else:
+        lines.insert(hits[0] + (step.where == "after"), step.text)
+    target.write_text("".join(lines))
+
+
+def run(step, root, where):
+    environment = dict(os.environ, PATH=f"{root / 'build'}{os.pathsep}{os.environ['PATH']}", LC_ALL="C.UTF-8",
+                       PYTHONDONTWRITEBYTECODE="1")
+    try:
+        done = subprocess.run(["bash", "-e", "-x", "-c", step.text], cwd=root, env=environment, text=True, timeout=300,
+                              stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    except subprocess.TimeoutExpired:
+        raise PageError(f"{where}: the commands did not end within 300 s") from None
+    print(done.stdout, end="")
+    if done.returncode != 0:
+        raise PageError(f"{where}: the last command above failed with exit status {done.returncode}")
+
+
+def copy(source, build, root):
+    """The project's files, and the programs that were built, as links: what a page writes does not reach the original."""
+    for name in house.files(source):
+        target = root / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(source / name, target)
+    (root / "build").mkdir()
+    for program in build.iterdir() if build else ():
+        if program.is_file() and os.access(program, os.X_OK):
+            (root / "build" / program.name).symlink_to(program.resolve())
+
+
+def follow(page, source, build, root):
+    """Applies the page in `root`; raises PageError."""
+    wanted = steps(page.name, page.read_text())
+    copy(source, build, root)
+    for step in wanted:
+        where = f"{page.name}:{step.line}"
+        print(f"--- {where}: {step.word} {step.path or ''}", flush=True)
+        (run if step.word == "run" else edit)(step, root, where)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
+    parser.add_argument("page", type=pathlib.Path)
+    parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parents[3],
+                        help="the project (default: the one that this program belongs to)")
+    parser.add_argument("--build", type=pathlib.Path, help="where its programs were built (default: ROOT/build)")
+    parser.add_argument("--keep", type=pathlib.Path, metavar="DIR", help="leave the copy at DIR")
+    arguments = parser.parse_args()
+    build = arguments.build or arguments.root / "build"
+    try:
+        with tempfile.TemporaryDirectory(prefix="ocm-howto-") as scratch:
+            root = arguments.keep or pathlib.Path(scratch, "ocm")
+            root.mkdir(parents=True)
+            follow(arguments.page, arguments.root.resolve(), build.resolve() if build.is_dir() else None, root.resolve())
+    except (PageError, OSError) as error:
+        print(f"follow: {error}", file=sys.stderr)
+        return 1
+    print(f"{arguments.page.name} can be followed")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

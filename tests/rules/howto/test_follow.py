@@ -1,0 +1,116 @@
+#!/usr/bin/env python3
+"""The follower of how-to pages against planted pages: good ones change the copy only, bad ones are found."""
+import pathlib
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import follow  # noqa: E402
+
+LIST = "first\nsecond\nthird\nsecond to last\n"
+
+
+class Follow(unittest.TestCase):
+    def setUp(self):
+        self.scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(self.scratch.cleanup)
+        top = pathlib.Path(self.scratch.name)
+        self.project, self.root, self.build = top / "project", top / "copy", top / "built"
+        self.project.mkdir()
+        self.root.mkdir()
+        self.build.mkdir()
+        (self.project / "list.txt").write_text(LIST)
+        (self.build / "tool").write_text("#!/bin/sh\necho tool > said.txt\n")
+        (self.build / "tool").chmod(0o755)
+
+    def follow(self, text):
+        page = pathlib.Path(self.scratch.name, "page.md")
+        page.write_text(text)
+        follow.follow(page, self.project, self.build, self.root)
+
+    def fails(self, text, line, message):
+        with self.assertRaises(follow.PageError) as failure:
+            self.follow(text)
+        self.assertIn(f"page.md:{line}: ", str(failure.exception))
+        self.assertIn(message, str(failure.exception))
+
+    def test_a_good_page(self):
+        self.follow("""# A page
+<!-- file: new/a.txt -->
+```text
+one
+<!-- run -->
+```
+<!-- insert: list.txt after: "third" -->
+```
+3b
+```
+<!-- insert: list.txt before: "third" -->
+```
+3a
+```
+<!-- replace: list.txt line: "first" -->
+```
+1
+```
+<!-- append: list.txt -->
+```
+last
+```
+1. Indented:
+   <!-- run -->
+   ```sh
+   grep -q '^one$' new/a.txt
+   tool
+   build/tool
+   ```
+
+```sh
+exit 1  # for the reader only
+```
+""")
+        self.assertEqual((self.root / "list.txt").read_text(), "1\nsecond\n3a\nthird\n3b\nsecond to last\nlast\n")
+        self.assertEqual((self.root / "new/a.txt").read_text(), "one\n<!-- run -->\n")
+        self.assertEqual((self.root / "said.txt").read_text(), "tool\n")
+        self.assertEqual((self.project / "list.txt").read_text(), LIST)
+        self.assertFalse((self.project / "new").exists())
+
+    def test_a_missing_insertion_point(self):
+        self.fails('<!-- insert: list.txt after: "fourth" -->\n```\nx\n```\n<!-- run -->\n```\ntrue\n```\n', 1,
+                   '0 lines of list.txt contain "fourth"')
+
+    def test_an_ambiguous_insertion_point(self):
+        self.fails('\n<!-- insert: list.txt after: "second" -->\n```\nx\n```\n<!-- run -->\n```\ntrue\n```\n', 2,
+                   '2 lines of list.txt contain "second"')
+
+    def test_a_failing_command(self):
+        self.fails("<!-- run -->\n```\ntrue\nfalse\ntouch after\n```\n", 1, "exit status 1")
+        self.assertFalse((self.root / "after").exists())
+
+    def test_a_file_that_exists(self):
+        self.fails("<!-- file: list.txt -->\n```\nx\n```\n<!-- run -->\n```\ntrue\n```\n", 1, "exists already")
+
+    def test_a_file_that_is_missing(self):
+        self.fails("<!-- append: away.txt -->\n```\nx\n```\n<!-- run -->\n```\ntrue\n```\n", 1, "no file away.txt")
+
+    def test_a_file_outside_of_the_project(self):
+        self.fails("<!-- file: ../out.txt -->\n```\nx\n```\n<!-- run -->\n```\ntrue\n```\n", 1, "outside")
+
+    def test_a_mark_without_a_block(self):
+        self.fails("<!-- run -->\n\n```\ntrue\n```\n", 1, "no fenced block follows")
+
+    def test_a_block_without_an_end(self):
+        self.fails("<!-- run -->\n```\ntrue\n", 1, "not closed")
+
+    def test_a_mark_with_a_mistake(self):
+        for mark in ('<!-- insert: list.txt -->', '<!-- insert: list.txt line: "a" -->', "<!-- run: x -->",
+                     '<!-- file: a after: "x" -->', '<!-- replace: a after: "x" -->'):
+            self.fails(f"{mark}\n```\ntrue\n```\n", 1, "unknown mark")
+
+    def test_a_page_that_checks_nothing(self):
+        self.fails("<!-- append: list.txt -->\n```\nx\n```\n", 1, "nothing would be checked")
+
+
+if __name__ == "__main__":
+    unittest.main()
