@@ -7,11 +7,13 @@ comment on the line above a fenced block; a reader of the page does not see it:
     <!-- file: PATH -->                     the block is a new file
     <!-- append: PATH -->                   the block goes to the end of a file
     <!-- insert: PATH after: "TEXT" -->     the block goes after the one line that contains TEXT
+    <!-- insert: PATH after: "TEXT" +N -->  the same, N lines further down
     <!-- insert: PATH before: "TEXT" -->    the block goes before that line
     <!-- replace: PATH line: "TEXT" -->     the block replaces that line
     <!-- run -->                            the block is commands, run by bash -e in the copy
 
-Blocks without a mark are for the reader only. Programs of the build folder are at build/ in the copy. Exit status: 0
+Blocks without a mark are for the reader only. Programs of the build folder, and Catch2's
+main, are at build/ in the copy. Exit status: 0
 the page can be followed, 1 it cannot, 2 wrong usage. --keep leaves the copy at DIR, which must not exist."""
 import argparse
 import os
@@ -26,10 +28,11 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "architecture"))
 import house  # noqa: E402
 
 MARK = re.compile(r"^ *<!-- *(?:(?P<word>file|append|insert|replace): *(?P<path>\S+)"
-                  r"(?: +(?P<where>after|before|line): *\"(?P<text>.*)\")?|(?P<run>run)) *-->$")
+                  r"(?: +(?P<where>after|before|line): *\"(?P<text>.*)\"(?: *\+(?P<more>\d+))?)?|(?P<run>run)) *-->$")
 PLACES = {"file": (None,), "append": (None,), "insert": ("after", "before"), "replace": ("line",)}
 LIKE_A_MARK = re.compile(r"^ *<!-- *(file|append|insert|replace|run)\b")
 FENCE = re.compile(r"^( *)```")
+TEST_MAIN = "tests/CMakeFiles/ocm_test_main.dir/main.cpp.o"  # Catch2's main: what costs most of a small test's time
 
 
 class PageError(Exception):
@@ -41,6 +44,7 @@ class Step:
         self.line = line
         self.word = "run" if match["run"] else match["word"]
         self.path, self.where, self.anchor = match["path"], match["where"], match["text"]
+        self.further = int(match["more"] or 0)
         self.text = text
 
 
@@ -59,7 +63,8 @@ def steps(page, text):
             continue
         number = at
         match = MARK.match(line)
-        if not match or (match["word"] and match["where"] not in PLACES[match["word"]]):
+        if not match or (match["word"] and match["where"] not in PLACES[match["word"]])\
+                or (match["more"] and match["where"] != "after"):
             raise PageError(f"{page}:{number}: unknown mark: {line.strip()}")
         fence = FENCE.match(lines[at]) if at < len(lines) else None
         if not fence:
@@ -102,7 +107,7 @@ def edit(step, root, where):
     if step.word == "replace":
         lines[hits[0]] = step.text
     else:
-        lines.insert(hits[0] + (step.where == "after"), step.text)
+        lines.insert(hits[0] + (step.where == "after") + step.further, step.text)
     target.write_text("".join(lines))
 
 
@@ -126,9 +131,11 @@ def copy(source, build, root):
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(source / name, target)
     (root / "build").mkdir()
-    for program in build.iterdir() if build else ():
-        if program.is_file() and os.access(program, os.X_OK):
-            (root / "build" / program.name).symlink_to(program.resolve())
+    built = [file for file in build.iterdir() if file.is_file() and os.access(file, os.X_OK)] if build else []
+    for file in built + ([build / TEST_MAIN] if build and (build / TEST_MAIN).is_file() else []):
+        target = root / "build" / file.relative_to(build)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.symlink_to(file.resolve())
 
 
 def follow(page, source, build, root):

@@ -54,6 +54,10 @@ one
 ```
 1
 ```
+<!-- insert: list.txt after: "3a" +2 -->
+```
+3c
+```
 <!-- append: list.txt -->
 ```
 last
@@ -70,7 +74,7 @@ last
 exit 1  # for the reader only
 ```
 """)
-        self.assertEqual((self.root / "list.txt").read_text(), "1\nsecond\n3a\nthird\n3b\nsecond to last\nlast\n")
+        self.assertEqual((self.root / "list.txt").read_text(), "1\nsecond\n3a\nthird\n3b\n3c\nsecond to last\nlast\n")
         self.assertEqual((self.root / "new/a.txt").read_text(), "one\n<!-- run -->\n")
         self.assertEqual((self.root / "said.txt").read_text(), "tool\n")
         self.assertEqual((self.project / "list.txt").read_text(), LIST)
@@ -105,7 +109,7 @@ exit 1  # for the reader only
 
     def test_a_mark_with_a_mistake(self):
         for mark in ('<!-- insert: list.txt -->', '<!-- insert: list.txt line: "a" -->', "<!-- run: x -->",
-                     '<!-- file: a after: "x" -->', '<!-- replace: a after: "x" -->'):
+                     '<!-- file: a after: "x" -->', '<!-- replace: a after: "x" -->', '<!-- insert: a before: "x" +1 -->'):
             self.fails(f"{mark}\n```\ntrue\n```\n", 1, "unknown mark")
 
     def test_a_page_that_checks_nothing(self):
