@@ -7,11 +7,11 @@
 #include <memory>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "ocm/analysis/cpu.hpp"
 
-#include "cli/session.hpp"
+#include "cli/shared/json.hpp"
+#include "cli/shared/messages.hpp"
 
 namespace ocm::cli::analyse {
 namespace {
@@ -121,7 +121,6 @@ ChainStudy study_chain(const std::string& file, std::int64_t deadline, const Bus
 }
 
 std::string to_json(const ChainStudy& study) {
-  using Json = nlohmann::ordered_json;
   const bool bounded = study.bound.latency != analysis::unbounded;
   Json hops = Json::array();
   for (std::size_t i = 0; i < study.hops.size(); ++i) {
@@ -140,7 +139,7 @@ std::string to_json(const ChainStudy& study) {
       {"schedulable", study.bound.ok()},
       {"hops", hops},
       {"why", why(study)}};
-  return object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return object.lines();
 }
 
 std::string to_csv(const ChainStudy& study) {

@@ -16,7 +16,7 @@
 #include "ocm/base/text.hpp"
 
 #include "cli/analyse/set.hpp"
-#include "cli/session.hpp"
+#include "cli/shared/messages.hpp"
 
 namespace ocm::cli::analyse {
 namespace {

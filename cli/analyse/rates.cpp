@@ -10,7 +10,7 @@
 #include "ocm/protocol/identifier.hpp"
 
 #include "cli/analyse/set.hpp"
-#include "cli/session.hpp"
+#include "cli/shared/messages.hpp"
 
 namespace ocm::cli::analyse {
 namespace {

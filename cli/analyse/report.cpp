@@ -4,9 +4,9 @@
 #include <array>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "cli/output/csv_cell.hpp"
+#include "cli/shared/json.hpp"
 
 namespace ocm::cli::analyse {
 namespace {
@@ -37,7 +37,6 @@ std::string verdict_of(const analysis::Explained& result) {
 }  // namespace
 
 std::string to_json(const Study& study) {
-  using Json = nlohmann::ordered_json;
   Json rows = Json::array();
   for (const Row& row : study.rows)
     rows.push_back({{"name", row.name},
@@ -51,7 +50,7 @@ std::string to_json(const Study& study) {
   for (const auto& queue : study.queues)
     object["queues"].push_back(
         {{"node", queue.node}, {"frames", queue.frames > 0 ? Json(queue.frames) : Json(nullptr)}});
-  return object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return object.lines();
 }
 
 std::string to_csv(const Study& study) {

@@ -8,6 +8,9 @@
 
 namespace ocm::cli::analyse {
 
+/// What one of thousands of tests may cost.
+inline constexpr analysis::Limits quick{.terms = 200'000};
+
 /// From `good` on towards `bad`, both included; none if `good` does not pass. Whatever is farther than one
 /// that does not pass, does not pass either. At most 62 tests.
 template <class Passes>

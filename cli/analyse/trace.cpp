@@ -8,7 +8,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "ocm/measure/bus_load.hpp"
 #include "ocm/protocol/frame_index.hpp"
@@ -17,7 +16,8 @@
 #include "cli/analyse/report.hpp"
 #include "cli/logs/opened_log.hpp"
 #include "cli/output/csv_cell.hpp"
-#include "cli/session.hpp"
+#include "cli/shared/json.hpp"
+#include "cli/shared/messages.hpp"
 
 namespace ocm::cli::analyse {
 namespace {
@@ -332,7 +332,6 @@ TraceStudy study_trace(const std::string& log_file, const std::string& set_file,
 }
 
 std::string to_json(const TraceStudy& trace) {
-  using Json = nlohmann::ordered_json;
   Json rows = Json::array();
   for (std::size_t i = 0; i < trace.measured.size(); ++i) {
     const Row& row = trace.study.rows[i];
@@ -356,7 +355,7 @@ std::string to_json(const TraceStudy& trace) {
                     {"frames", trace.frames},
                     {"messages", rows},
                     {"broken", trace.broken}};
-  return object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return object.lines();
 }
 
 std::string to_csv(const TraceStudy& trace) {

@@ -7,7 +7,7 @@
 #include <unistd.h>
 #include <utility>
 
-#include "cli/session.hpp"
+#include "cli/shared/messages.hpp"
 
 namespace ocm::cli::central {
 namespace {

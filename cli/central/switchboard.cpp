@@ -14,7 +14,7 @@
 
 #include "ocm/transport/pty.hpp"
 
-#include "cli/session.hpp"
+#include "cli/shared/messages.hpp"
 
 namespace ocm::cli::central {
 namespace {

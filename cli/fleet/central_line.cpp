@@ -10,9 +10,9 @@
 
 #include "ocm/transport/pty.hpp"
 
-#include "cli/interrupt.hpp"
-#include "cli/session.hpp"
-#include "cli/verbs/commanding.hpp"
+#include "cli/shared/interrupt.hpp"
+#include "cli/shared/messages.hpp"
+#include "cli/shared/values.hpp"
 
 namespace ocm::cli::fleet {
 namespace {
@@ -51,14 +51,14 @@ std::string listed(const std::vector<Peer>& peers, std::string_view name = {}) {
 
 }  // namespace
 
-void add_line_options(CLI::App& verb, LineOptions& options) {
+void add_line_options(Verb verb, LineOptions& options) {
   verb.add_option("--central", options.path,
                   "the central's serial line; default: that of `sim --robots` or `central --pty`")
-      ->type_name("PATH");
-  verb.add_option("--baud", options.baud, "of the central's line")->type_name("N")->capture_default_str();
+      .type_name("PATH");
+  verb.add_option("--baud", options.baud, "of the central's line").type_name("N").show_default();
   verb.add_option("--scan", options.scan, "how long to look for robots that are not listed")
-      ->type_name("T")
-      ->capture_default_str();
+      .type_name("T")
+      .show_default();
 }
 
 CentralLine::CentralLine(std::string_view verb, const LineOptions& options,

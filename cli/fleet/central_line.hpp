@@ -9,11 +9,11 @@
 #include <string_view>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "ocm/base/time.hpp"
 #include "ocm/cognitive/server.hpp"
 #include "ocm/transport/serial_port.hpp"
+
+#include "cli/shared/arguments.hpp"
 
 namespace ocm::cli::fleet {
 
@@ -24,7 +24,7 @@ struct LineOptions {
 };
 
 /// --central, --baud and --scan.
-void add_line_options(CLI::App& verb, LineOptions& options);
+void add_line_options(Verb verb, LineOptions& options);
 
 /// Ends the command with words that say what is wrong and what to do, wherever it cannot go on.
 class CentralLine {

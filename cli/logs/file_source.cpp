@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "cli/interrupt.hpp"
+#include "cli/shared/interrupt.hpp"
 
 namespace ocm::cli::logs {
 

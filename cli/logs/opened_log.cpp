@@ -5,10 +5,10 @@
 
 #include <fmt/format.h>
 
-#include "cli/interrupt.hpp"
 #include "cli/logs/file_source.hpp"
 #include "cli/logs/packing.hpp"
-#include "cli/session.hpp"
+#include "cli/shared/interrupt.hpp"
+#include "cli/shared/messages.hpp"
 
 namespace ocm::cli::logs {
 namespace {

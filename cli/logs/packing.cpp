@@ -200,9 +200,9 @@ class ZstdPacker final : public Packer {
 };
 #endif
 
-[[maybe_unused]] transport::Failure left_out(std::string_view what, std::string_view library,
+[[maybe_unused]] transport::Failure left_out(std::string_view what, std::string_view missing,
                                              std::string_view program) {
-  return {std::string{"this amiroctl was built without "} + std::string{library} + " and cannot do " +
+  return {std::string{"this amiroctl was built without "} + std::string{missing} + " and cannot do " +
               std::string{what},
           std::string{"unpack or pack the file with "} + std::string{program}};
 }

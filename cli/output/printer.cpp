@@ -4,8 +4,8 @@
 #include <cstring>
 #include <unistd.h>
 
-#include "cli/interrupt.hpp"
-#include "cli/session.hpp"
+#include "cli/shared/interrupt.hpp"
+#include "cli/shared/messages.hpp"
 
 namespace ocm::cli {
 

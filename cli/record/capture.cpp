@@ -10,7 +10,7 @@
 #include "ocm/transport/virtual_bus.hpp"
 
 #include "cli/record/can_capture.hpp"
-#include "cli/session.hpp"
+#include "cli/shared/messages.hpp"
 
 namespace ocm::cli::record {
 namespace {

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "cli/logs/opened_log.hpp"
-#include "cli/session.hpp"
+#include "cli/shared/messages.hpp"
 
 namespace ocm::cli::record {
 namespace {

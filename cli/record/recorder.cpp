@@ -15,9 +15,9 @@
 #include "ocm/can/error_frame.hpp"
 #include "ocm/host/system_time.hpp"
 
-#include "cli/interrupt.hpp"
 #include "cli/record/names.hpp"
-#include "cli/session.hpp"
+#include "cli/shared/interrupt.hpp"
+#include "cli/shared/messages.hpp"
 
 namespace ocm::cli::record {
 namespace {

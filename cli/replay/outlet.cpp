@@ -17,7 +17,7 @@
 #include "ocm/can/filter.hpp"
 #include "ocm/transport/socketcan.hpp"
 
-#include "cli/session.hpp"
+#include "cli/shared/session.hpp"
 
 namespace ocm::cli::replay {
 namespace {

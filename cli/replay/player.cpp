@@ -7,8 +7,8 @@
 
 #include "ocm/host/system_time.hpp"
 
-#include "cli/interrupt.hpp"
 #include "cli/output/printer.hpp"
+#include "cli/shared/interrupt.hpp"
 
 namespace ocm::cli::replay {
 

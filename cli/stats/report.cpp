@@ -5,7 +5,6 @@
 #include <iterator>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "ocm/base/text.hpp"
 #include "ocm/can/text.hpp"
@@ -14,6 +13,7 @@
 #include "ocm/log/complaints.hpp"
 
 #include "cli/output/csv_cell.hpp"
+#include "cli/shared/json.hpp"
 
 namespace ocm::cli::stats {
 namespace {
@@ -144,8 +144,7 @@ std::vector<std::string> summary(const Bus& bus) {
   return lines;
 }
 
-nlohmann::ordered_json to_object(const TopicFigures& topic) {
-  using Json = nlohmann::ordered_json;
+Json to_object(const TopicFigures& topic) {
   const Timing& timing = topic.timing;
   const bool measured = timing.distances != 0;
   const bool periodic = timing.period_from != PeriodFrom::nothing;
@@ -177,8 +176,7 @@ nlohmann::ordered_json to_object(const TopicFigures& topic) {
       {"load_percent", topic.load * 100}};
 }
 
-nlohmann::ordered_json to_object(const Bus& bus, const Shown& shown) {
-  using Json = nlohmann::ordered_json;
+Json to_object(const Bus& bus, const Shown& shown) {
   const BusFigures& figures = bus.figures;
   const auto& counters = figures.counters;
   Json unknown = Json::array();
@@ -245,7 +243,6 @@ std::vector<std::string> to_table(const Report& report, const Shown& shown, bool
 }
 
 std::string to_json(const Report& report, const Shown& shown, std::span<const Assertion> assertions) {
-  using Json = nlohmann::ordered_json;
   Json out{{"robot", report.robot}, {"source", report.source}, {"buses", Json::array()}};
   for (const Bus& bus : report.buses) out["buses"].push_back(to_object(bus, shown));
   if (!assertions.empty()) out["assertions"] = Json::array();
@@ -255,7 +252,7 @@ std::string to_json(const Report& report, const Shown& shown, std::span<const As
                                  {"holds", verdict.holds},
                                  {"measured", verdict.measured ? Json(*verdict.measured) : Json(nullptr)}});
   }
-  return out.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return out.line() + "\n";
 }
 
 std::string to_csv(const Report& report, const Shown& shown) {
@@ -266,7 +263,7 @@ std::string to_csv(const Report& report, const Shown& shown) {
     for (const auto& topic : bus.figures.topics) {
       if (!is_shown(topic, shown)) continue;
       // As in JSON, so that a figure has one text.
-      const auto object = to_object(topic);
+      auto object = to_object(topic);
       text += csv_cell(bus.name);
       for (const char* key : {"topic", "priority", "count", "rate_hz", "period_ns", "period_from", "mean_ns",
                               "jitter_ns", "spread_ns", "lateness_ns", "gap_ns", "gap_from_ns", "missing",
@@ -274,10 +271,10 @@ std::string to_csv(const Report& report, const Shown& shown) {
         text += ',';
         if (key == std::string_view{"priority"})
           text += csv_cell(priorities(topic));
-        else if (object[key].is_string())
-          text += object[key].get<std::string>();
+        else if (object[key].is_text())
+          text += object[key].text();
         else if (!object[key].is_null())
-          text += object[key].dump();
+          text += object[key].line();
       }
       text += '\n';
     }

@@ -16,7 +16,7 @@
 #include "cli/analyse/set.hpp"
 #include "cli/analyse/study.hpp"
 #include "cli/analyse/trace.hpp"
-#include "cli/verbs/commanding.hpp"
+#include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
 
 namespace ocm::cli {
@@ -229,128 +229,123 @@ int trace(const Options& options, Session& session) {
   return study.passes() ? exit_success : exit_failure;
 }
 
-void add_outputs(CLI::App& verb, Options& options) {
-  auto* json = verb.add_flag("--json", options.json, "one object, for programs");
-  verb.add_flag("--csv", options.csv, "a line each, times in nanoseconds")->excludes(json);
+void add_outputs(Verb verb, Options& options) {
+  const auto json = verb.add_flag("--json", options.json, "one object, for programs");
+  verb.add_flag("--csv", options.csv, "a line each, times in nanoseconds").excludes(json);
   verb.add_option("--svg", options.svg, "draw the worst case into FILE; - for standard output")
-      ->type_name("FILE")
-      ->excludes(json);
+      .type_name("FILE")
+      .excludes(json);
 }
 
-void add_bus_options(CLI::App& verb, Options& options) {
+void add_bus_options(Verb verb, Options& options) {
   verb.add_option("--rates", options.rates,
                   "topic=period, topic=period@priority or topic=off, several; or a file of such lines")
-      ->type_name("RATE");
+      .type_name("RATE");
   verb.add_option("--bitrate", options.bit_rate, "such as 500k or 125000; default: the spec's")
-      ->type_name("RATE");
+      .type_name("RATE");
   verb.add_option("--lengths", options.lengths,
                   "generic: the longest that any identifier could make a frame; exact: of its identifier. "
                   "Default: generic for a FILE, exact for the robot")
-      ->check(CLI::IsMember({"generic", "exact"}));
+      .one_of({"generic", "exact"});
   verb.add_option("--test", options.test, "exact (default), or sufficient: one instance, for D <= T")
-      ->check(CLI::IsMember({"exact", "sufficient"}));
+      .one_of({"exact", "sufficient"});
   verb.add_option("--errors", options.errors,
                   "burst=N,every=TIME: so many faults at once, and one more every TIME")
-      ->type_name("MODEL");
+      .type_name("MODEL");
 }
 
 }  // namespace
 
-void add_analyse(CLI::App& app, Session& session, int& exit_code) {
-  auto* verb =
-      add_verb(app, "analyse", "whether every message and every task is always in time", look_group,
-               "  amiroctl analyse bus\n"
-               "  amiroctl analyse bus --rates gyro=50ms ring=2ms@high\n"
-               "  amiroctl analyse bus messages.csv --bitrate 125k --svg worst-case.svg\n"
-               "  amiroctl analyse bus --queue di_wheel_drive=fifo\n"
-               "  amiroctl analyse bus --rates ring=4ms@low --assign priorities\n"
-               "  amiroctl analyse tasks tasks.csv --json\n"
-               "  amiroctl analyse tasks di_wheel_drive --context-switch 2us --tick 1ms --tick-cost 3us");
-  verb->alias("analyze");
-  verb->require_subcommand(1);
+void add_analyse(Verb app, Session& session, int& exit_code) {
+  auto verb =
+      app.add_verb("analyse", "whether every message and every task is always in time", look_group,
+                   "  amiroctl analyse bus\n"
+                   "  amiroctl analyse bus --rates gyro=50ms ring=2ms@high\n"
+                   "  amiroctl analyse bus messages.csv --bitrate 125k --svg worst-case.svg\n"
+                   "  amiroctl analyse bus --queue di_wheel_drive=fifo\n"
+                   "  amiroctl analyse bus --rates ring=4ms@low --assign priorities\n"
+                   "  amiroctl analyse tasks tasks.csv --json\n"
+                   "  amiroctl analyse tasks di_wheel_drive --context-switch 2us --tick 1ms --tick-cost 3us");
+  verb.alias("analyze");
+  verb.require_verb();
 
   const auto of_bus = std::make_shared<Options>();
-  auto* bus_verb = verb->add_subcommand("bus", "the messages of a CAN bus: the robot's own, or a FILE's");
-  bus_verb->fallthrough();
-  bus_verb->add_option("FILE", of_bus->file,
-                       "CSV (name,id,dlc,period_ns,deadline_ns,jitter_ns,node,offset_ns) or DBC; none: the "
-                       "robot's topics");
-  add_bus_options(*bus_verb, *of_bus);
+  auto bus_verb = verb.add_inner_verb("bus", "the messages of a CAN bus: the robot's own, or a FILE's");
+  bus_verb.add_option("FILE", of_bus->file,
+                      "CSV (name,id,dlc,period_ns,deadline_ns,jitter_ns,node,offset_ns) or DBC; none: the "
+                      "robot's topics");
+  add_bus_options(bus_verb, *of_bus);
   bus_verb
-      ->add_option("--queue", of_bus->queues,
-                   "NODE=fifo: it sends in the order of release; NODE=mailboxes:N: what is in one of its N "
-                   "mailboxes is not taken back. Several; default: each node sends its most urgent first")
-      ->type_name("QUEUE");
+      .add_option("--queue", of_bus->queues,
+                  "NODE=fifo: it sends in the order of release; NODE=mailboxes:N: what is in one of its N "
+                  "mailboxes is not taken back. Several; default: each node sends its most urgent first")
+      .type_name("QUEUE");
   bus_verb
-      ->add_option("--assign", of_bus->assign,
-                   "identifiers: hand out those that there are; priorities: choose the robot's. So that all "
-                   "meet their deadlines, if that is possible")
-      ->check(CLI::IsMember({"identifiers", "priorities"}));
-  add_outputs(*bus_verb, *of_bus);
-  bus_verb->callback([of_bus, &session, &exit_code] { exit_code = bus(*of_bus, session); });
+      .add_option("--assign", of_bus->assign,
+                  "identifiers: hand out those that there are; priorities: choose the robot's. So that all "
+                  "meet their deadlines, if that is possible")
+      .one_of({"identifiers", "priorities"});
+  add_outputs(bus_verb, *of_bus);
+  bus_verb.callback([of_bus, &session, &exit_code] { exit_code = bus(*of_bus, session); });
 
   const auto of_tasks = std::make_shared<Options>();
-  auto* tasks_verb = verb->add_subcommand("tasks", "the tasks of a processor");
-  tasks_verb->fallthrough();
+  auto tasks_verb = verb.add_inner_verb("tasks", "the tasks of a processor");
   tasks_verb
-      ->add_option("FILE|BOARD", of_tasks->file,
-                   fmt::format("CSV: name,priority,C_ns,T_ns,D_ns,J_ns,B_ns; or one of {}",
-                               fmt::join(own_task_sets(), ", ")))
-      ->required();
+      .add_option("FILE|BOARD", of_tasks->file,
+                  fmt::format("CSV: name,priority,C_ns,T_ns,D_ns,J_ns,B_ns; or one of {}",
+                              fmt::join(own_task_sets(), ", ")))
+      .required();
   tasks_verb
-      ->add_option("--context-switch", of_tasks->context_switch,
-                   "what one costs; a job pays two. Default: nothing")
-      ->type_name("TIME");
+      .add_option("--context-switch", of_tasks->context_switch,
+                  "what one costs; a job pays two. Default: nothing")
+      .type_name("TIME");
   tasks_verb
-      ->add_option("--interrupt", of_tasks->interrupt,
-                   "what each release of each task costs ahead of all priorities. Default: nothing")
-      ->type_name("TIME");
+      .add_option("--interrupt", of_tasks->interrupt,
+                  "what each release of each task costs ahead of all priorities. Default: nothing")
+      .type_name("TIME");
   tasks_verb
-      ->add_option("--lock", of_tasks->lock,
-                   "the longest stretch with interrupts off: each task may wait for one. Default: none")
-      ->type_name("TIME");
-  auto* tick = tasks_verb->add_option("--tick", of_tasks->tick, "the system's timer interrupt comes so often")
-                   ->type_name("TIME");
-  tasks_verb->add_option("--tick-cost", of_tasks->tick_cost, "and costs so much. Default: nothing")
-      ->type_name("TIME")
-      ->needs(tick);
+      .add_option("--lock", of_tasks->lock,
+                  "the longest stretch with interrupts off: each task may wait for one. Default: none")
+      .type_name("TIME");
+  const auto tick =
+      tasks_verb.add_option("--tick", of_tasks->tick, "the system's timer interrupt comes so often")
+          .type_name("TIME");
+  tasks_verb.add_option("--tick-cost", of_tasks->tick_cost, "and costs so much. Default: nothing")
+      .type_name("TIME")
+      .needs(tick);
   tasks_verb
-      ->add_flag("--released-by-tick", of_tasks->released_by_tick,
-                 "releases are noticed at ticks only: a tick more jitter for each task")
-      ->needs(tick);
-  add_outputs(*tasks_verb, *of_tasks);
-  tasks_verb->callback([of_tasks, &session, &exit_code] { exit_code = tasks(*of_tasks, session); });
+      .add_flag("--released-by-tick", of_tasks->released_by_tick,
+                "releases are noticed at ticks only: a tick more jitter for each task")
+      .needs(tick);
+  add_outputs(tasks_verb, *of_tasks);
+  tasks_verb.callback([of_tasks, &session, &exit_code] { exit_code = tasks(*of_tasks, session); });
 
   const auto of_chain = std::make_shared<Options>();
-  auto* chain_verb = verb->add_subcommand("chain", "from a sensor to a motor, over tasks and frames");
-  chain_verb->fallthrough();
-  chain_verb->add_option("FILE", of_chain->file, "CSV: hop,set,activation,response_ns,best_ns,period_ns")
-      ->required();
+  auto chain_verb = verb.add_inner_verb("chain", "from a sensor to a motor, over tasks and frames");
+  chain_verb.add_option("FILE", of_chain->file, "CSV: hop,set,activation,response_ns,best_ns,period_ns")
+      .required();
   chain_verb
-      ->add_option("--deadline", of_chain->deadline,
-                   "from an event to the end of the reaction; default: none")
-      ->type_name("TIME");
-  add_bus_options(*chain_verb, *of_chain);
-  auto* chain_json = chain_verb->add_flag("--json", of_chain->json, "one object, for programs");
-  chain_verb->add_flag("--csv", of_chain->csv, "a line a hop, times in nanoseconds")->excludes(chain_json);
-  chain_verb->callback([of_chain, &session, &exit_code] { exit_code = chain(*of_chain, session); });
+      .add_option("--deadline", of_chain->deadline, "from an event to the end of the reaction; default: none")
+      .type_name("TIME");
+  add_bus_options(chain_verb, *of_chain);
+  const auto chain_json = chain_verb.add_flag("--json", of_chain->json, "one object, for programs");
+  chain_verb.add_flag("--csv", of_chain->csv, "a line a hop, times in nanoseconds").excludes(chain_json);
+  chain_verb.callback([of_chain, &session, &exit_code] { exit_code = chain(*of_chain, session); });
 
   const auto of_trace = std::make_shared<Options>();
-  auto* trace_verb = verb->add_subcommand("trace", "a recorded log, held against the bounds");
-  trace_verb->fallthrough();
+  auto trace_verb = verb.add_inner_verb("trace", "a recorded log, held against the bounds");
   trace_verb
-      ->add_option("LOG", of_trace->file,
-                   "as candump -l and `amiroctl listen --raw` write it; - for standard input")
-      ->required();
+      .add_option("LOG", of_trace->file,
+                  "as candump -l and `amiroctl listen --raw` write it; - for standard input")
+      .required();
   trace_verb
-      ->add_option("--set", of_trace->set,
-                   "its messages, CSV or DBC; default: the robot's topics that are in it")
-      ->type_name("FILE");
-  add_bus_options(*trace_verb, *of_trace);
-  auto* trace_json = trace_verb->add_flag("--json", of_trace->json, "one object, for programs");
-  trace_verb->add_flag("--csv", of_trace->csv, "a line a message, times in nanoseconds")
-      ->excludes(trace_json);
-  trace_verb->callback([of_trace, &session, &exit_code] { exit_code = trace(*of_trace, session); });
+      .add_option("--set", of_trace->set,
+                  "its messages, CSV or DBC; default: the robot's topics that are in it")
+      .type_name("FILE");
+  add_bus_options(trace_verb, *of_trace);
+  const auto trace_json = trace_verb.add_flag("--json", of_trace->json, "one object, for programs");
+  trace_verb.add_flag("--csv", of_trace->csv, "a line a message, times in nanoseconds").excludes(trace_json);
+  trace_verb.callback([of_trace, &session, &exit_code] { exit_code = trace(*of_trace, session); });
 }
 
 }  // namespace ocm::cli

@@ -19,7 +19,7 @@
 
 #include "cli/central/server_end.hpp"
 #include "cli/central/switchboard.hpp"
-#include "cli/interrupt.hpp"
+#include "cli/shared/interrupt.hpp"
 #include "cli/verbs/verbs.hpp"
 
 namespace ocm::cli {
@@ -125,25 +125,26 @@ void serve(Switchboard& board, ServerEnd& server) {
 
 }  // namespace
 
-void add_central(CLI::App& app, Session&, int& exit_code) {
-  auto* verb =
-      add_verb(app, "central", "this machine as the central of mappers on serial lines", mapper_group,
-               "  amiroctl central --robot AVR=/dev/ttyUSB0   type start, list, conn 0, {S,CON}\n"
-               "  amiroctl central --pty                      for a server that opens a serial line\n"
-               "  amiroctl sim --robots 2 --lines             simulated robots, each with a line of its own\n"
-               "  amiroctl central                            connects those");
+void add_central(Verb app, Session&, int& exit_code) {
+  auto verb = app.add_verb(
+      "central", "this machine as the central of mappers on serial lines", mapper_group,
+      "  amiroctl central --robot AVR=/dev/ttyUSB0   type start, list, conn 0, {S,CON}\n"
+      "  amiroctl central --pty                      for a server that opens a serial line\n"
+      "  amiroctl sim --robots 2 --lines             simulated robots, each with a line of its own\n"
+      "  amiroctl central                            connects those");
   const auto options = std::make_shared<CentralOptions>();
-  verb->add_option("--robot", options->robots,
-                   "a robot's serial line; default: those of `sim --robots N --lines`")
-      ->type_name("NAME=PATH");
-  verb->add_option("--baud", options->baud, "of the robots' lines")->type_name("N")->capture_default_str();
-  auto* pty = verb->add_option("--pty", options->link,
-                               "the server is whoever opens LINK, a pseudo terminal; default: the line that "
-                               "`robots`, `goto` and others open")
-                  ->expected(0, 1)
-                  ->type_name("[LINK]");
-  verb->callback([options, pty, &exit_code] {
-    options->pty = pty->count() > 0;
+  verb.add_option("--robot", options->robots,
+                  "a robot's serial line; default: those of `sim --robots N --lines`")
+      .type_name("NAME=PATH");
+  verb.add_option("--baud", options->baud, "of the robots' lines").type_name("N").show_default();
+  const auto pty =
+      verb.add_option("--pty", options->link,
+                      "the server is whoever opens LINK, a pseudo terminal; default: the line that "
+                      "`robots`, `goto` and others open")
+          .expected(0, 1)
+          .type_name("[LINK]");
+  verb.callback([options, pty, &exit_code] {
+    options->pty = pty.count() > 0;
     central::SwitchboardOptions lines{parse_robots(options->robots), "", options->baud};
     if (const auto nearest = transport::detail::nearest_serial_speed(options->baud); nearest != options->baud)
       fail({fmt::format("central: a serial line has no speed {} here", options->baud),

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "cli/verbs/completer.hpp"
+#include "cli/completion/completer.hpp"
 #include "cli/verbs/verbs.hpp"
 
 // Each shell asks the tool itself, by `amiroctl completion --words -- WORD ...`, so that a script never grows
@@ -76,7 +76,7 @@ end
 complete -c amiroctl -f -a '(__amiroctl_complete)'
 )sh";
 
-void print_words(CLI::App& app, Session& session, const std::vector<std::string>& words) {
+void print_words(Verb app, Session& session, const std::vector<std::string>& words) {
   const Completion completion = complete(app, session, words);
   fmt::print("{}\n", completion.files ? "files" : "words");
   for (const auto& candidate : completion.candidates)
@@ -95,9 +95,9 @@ void print_script(const std::vector<std::string>& shells) {
 
 }  // namespace
 
-void add_completion(CLI::App& app, Session& session, int&) {
-  auto* verb = add_verb(
-      app, "completion", "completion of commands, topics and options in a shell", help_group,
+void add_completion(Verb app, Session& session, int&) {
+  auto verb = app.add_verb(
+      "completion", "completion of commands, topics and options in a shell", help_group,
       "  source <(amiroctl completion bash)       for this bash; for good: put it into\n"
       "                                           ~/.local/share/bash-completion/completions/amiroctl\n"
       "  amiroctl completion zsh > ~/.zfunc/_amiroctl\n"
@@ -107,10 +107,10 @@ void add_completion(CLI::App& app, Session& session, int&) {
     bool ask = false;
   };
   const auto options = std::make_shared<Options>();
-  verb->add_option("shell", options->words, "bash, zsh or fish")->type_name("bash|zsh|fish");
-  verb->add_flag("--words", options->ask,
-                 "what the scripts ask: candidates for the last of the words behind --");
-  verb->callback([options, &app, &session] {
+  verb.add_option("shell", options->words, "bash, zsh or fish").type_name("bash|zsh|fish");
+  verb.add_flag("--words", options->ask,
+                "what the scripts ask: candidates for the last of the words behind --");
+  verb.callback([options, app, &session] {
     options->ask ? print_words(app, session, options->words) : print_script(options->words);
   });
 }

@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "cli/interrupt.hpp"
 #include "cli/logs/log_file.hpp"
 #include "cli/logs/opened_log.hpp"
+#include "cli/shared/interrupt.hpp"
 #include "cli/verbs/verbs.hpp"
 
 namespace ocm::cli {
@@ -114,20 +114,18 @@ std::string list_of_formats() {
 
 }  // namespace
 
-void add_convert(CLI::App& app, Session& session, int& exit_code) {
-  auto* verb = add_verb(app, "convert", "a log in another format", log_group, list_of_formats());
+void add_convert(Verb app, Session& session, int& exit_code) {
+  auto verb = app.add_verb("convert", "a log in another format", log_group, list_of_formats());
   const auto options = std::make_shared<ConvertOptions>();
-  verb->add_option("in", options->in, "the log to read; - for the standard input")
-      ->type_name("IN")
-      ->required();
-  verb->add_option("out", options->out, "the log to write; - for the standard output")
-      ->type_name("OUT")
-      ->required();
-  verb->add_option("--from", options->from, "format of IN; default: what it begins with, then its ending")
-      ->type_name("FORMAT");
-  verb->add_option("--to", options->to, "format of OUT; default: its ending")->type_name("FORMAT");
-  verb->add_flag("--strict", options->strict, "exit 1 when anything was lost or could not be read");
-  verb->callback([options, &session, &exit_code] { convert(session, *options, exit_code); });
+  verb.add_option("in", options->in, "the log to read; - for the standard input").type_name("IN").required();
+  verb.add_option("out", options->out, "the log to write; - for the standard output")
+      .type_name("OUT")
+      .required();
+  verb.add_option("--from", options->from, "format of IN; default: what it begins with, then its ending")
+      .type_name("FORMAT");
+  verb.add_option("--to", options->to, "format of OUT; default: its ending").type_name("FORMAT");
+  verb.add_flag("--strict", options->strict, "exit 1 when anything was lost or could not be read");
+  verb.callback([options, &session, &exit_code] { convert(session, *options, exit_code); });
 }
 
 }  // namespace ocm::cli

@@ -7,12 +7,12 @@
 
 #include <fmt/format.h>
 
-#include "cli/interrupt.hpp"
 #include "cli/logs/opened_log.hpp"
-#include "cli/verbs/chosen_topics.hpp"
-#include "cli/verbs/commanding.hpp"
-#include "cli/verbs/display.hpp"
+#include "cli/shared/interrupt.hpp"
+#include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
+#include "cli/watch/chosen_topics.hpp"
+#include "cli/watch/display.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -136,30 +136,29 @@ void decode(Session& session, const DecodeOptions& options, int& exit_code) {
 
 }  // namespace
 
-void add_decode(CLI::App& app, Session& session, int& exit_code) {
-  auto* verb = add_verb(app, "decode", "say what the frames of a log mean", log_group,
-                        "  amiroctl decode drive.log | jq -c .fields\n"
-                        "  amiroctl decode drive.pcapng --csv --field gyroscope.z --field odom.velocity.x\n"
-                        "  amiroctl decode drive.log.zst --topic power --since 10s --until 1min --pretty\n"
-                        "  candump -L can0 | amiroctl decode --pretty\n"
-                        "  amiroctl decode drive.log | amiroctl encode    the log again, to the byte");
+void add_decode(Verb app, Session& session, int& exit_code) {
+  auto verb =
+      app.add_verb("decode", "say what the frames of a log mean", log_group,
+                   "  amiroctl decode drive.log | jq -c .fields\n"
+                   "  amiroctl decode drive.pcapng --csv --field gyroscope.z --field odom.velocity.x\n"
+                   "  amiroctl decode drive.log.zst --topic power --since 10s --until 1min --pretty\n"
+                   "  candump -L can0 | amiroctl decode --pretty\n"
+                   "  amiroctl decode drive.log | amiroctl encode    the log again, to the byte");
   const auto options = std::make_shared<DecodeOptions>();
-  verb->add_option("files", options->files,
-                   "logs of any format, one after another; default: - (standard input)")
-      ->type_name("[FILE ...]");
-  add_display_options(*verb, options->display);
-  verb->add_option("--topic", options->topics, "only this topic; repeatable")
-      ->type_name("TOPIC")
-      ->allow_extra_args(false);
-  verb->add_option("--from", options->from, "the format of the logs; default: what they begin with says it")
-      ->type_name("FORMAT");
-  verb->add_option("--since", options->since, "from this time after the first frame")->type_name("T");
-  verb->add_option("--until", options->until, "up to this time after the first frame")->type_name("T");
-  verb->add_option("-n,--count", options->count, "end after so many")
-      ->type_name("N")
-      ->check(CLI::PositiveNumber);
-  verb->add_flag("--strict", options->strict, "exit 1 when any line or frame could not be decoded");
-  verb->callback([options, &session, &exit_code] { decode(session, *options, exit_code); });
+  verb.add_option("files", options->files,
+                  "logs of any format, one after another; default: - (standard input)")
+      .type_name("[FILE ...]");
+  add_display_options(verb, options->display);
+  verb.add_option("--topic", options->topics, "only this topic; repeatable")
+      .type_name("TOPIC")
+      .one_a_mention();
+  verb.add_option("--from", options->from, "the format of the logs; default: what they begin with says it")
+      .type_name("FORMAT");
+  verb.add_option("--since", options->since, "from this time after the first frame").type_name("T");
+  verb.add_option("--until", options->until, "up to this time after the first frame").type_name("T");
+  verb.add_option("-n,--count", options->count, "end after so many").type_name("N").positive();
+  verb.add_flag("--strict", options->strict, "exit 1 when any line or frame could not be decoded");
+  verb.callback([options, &session, &exit_code] { decode(session, *options, exit_code); });
 }
 
 }  // namespace ocm::cli

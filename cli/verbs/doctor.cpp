@@ -7,16 +7,16 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "ocm/client/diagnosis.hpp"
 #include "ocm/client/sample.hpp"
 #include "ocm/protocol/message.hpp"
 #include "ocm/protocol/request.hpp"
 
-#include "cli/interrupt.hpp"
+#include "cli/shared/interrupt.hpp"
+#include "cli/shared/json.hpp"
 #include "cli/shared/remedies.hpp"
-#include "cli/verbs/commanding.hpp"
+#include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
 
 namespace ocm::cli {
@@ -171,7 +171,6 @@ void print_pretty(const Examination& examination, const std::vector<Finding>& fi
 }
 
 void print_json(const Examination& examination, const std::vector<Finding>& findings) {
-  using Json = nlohmann::ordered_json;
   const auto& catalogue = examination.catalogue();
   const auto& diagnosis = examination.diagnosis();
   Json out;
@@ -205,22 +204,22 @@ void print_json(const Examination& examination, const std::vector<Finding>& find
                                {"board", finding.board},
                                {"what", finding.what},
                                {"remedy", finding.remedy}});
-  fmt::print("{}\n", out.dump());
+  fmt::print("{}\n", out.line());
 }
 
 }  // namespace
 
-void add_doctor(CLI::App& app, Session& session, int& exit_code) {
-  auto* verb = add_verb(app, "doctor", "how the robot is: what every board says of itself, and what to do",
-                        watch_group,
-                        "  amiroctl doctor\n"
-                        "  amiroctl doctor --watch 10s --json | jq '.findings[]'");
+void add_doctor(Verb app, Session& session, int& exit_code) {
+  auto verb =
+      app.add_verb("doctor", "how the robot is: what every board says of itself, and what to do", watch_group,
+                   "  amiroctl doctor\n"
+                   "  amiroctl doctor --watch 10s --json | jq '.findings[]'");
   const auto options = std::make_shared<DoctorOptions>();
-  verb->add_option("--watch", options->watch, "how long to listen before asking (1s)")->type_name("T");
-  verb->add_option("--patience", options->patience, "how long a board may take to answer (500ms)")
-      ->type_name("T");
-  verb->add_flag("--json", options->json, "one object, for programs");
-  verb->callback([options, &session, &exit_code] {
+  verb.add_option("--watch", options->watch, "how long to listen before asking (1s)").type_name("T");
+  verb.add_option("--patience", options->patience, "how long a board may take to answer (500ms)")
+      .type_name("T");
+  verb.add_flag("--json", options->json, "one object, for programs");
+  verb.callback([options, &session, &exit_code] {
     const base::Duration watch = duration_option("--watch", options->watch);
     const base::Duration patience = duration_option("--patience", options->patience);
     catch_interrupts();

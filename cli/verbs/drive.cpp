@@ -1,31 +1,31 @@
 #include <memory>
 #include <string>
 
-#include "cli/interrupt.hpp"
-#include "cli/timeline.hpp"
-#include "cli/verbs/commanding.hpp"
+#include "cli/command/commanding.hpp"
+#include "cli/command/timeline.hpp"
+#include "cli/shared/interrupt.hpp"
 #include "cli/verbs/verbs.hpp"
 
 namespace ocm::cli {
 
-void add_drive(CLI::App& app, Session& session, int& exit_code) {
-  auto* verb = add_verb(app, "drive", "set the motors, and keep them going until Ctrl-C or --for", act_group,
-                        "  amiroctl drive 0.05m/s 0.2rad/s       until Ctrl-C, then zero\n"
-                        "  amiroctl drive 5cm/s -30deg/s --for 2s\n"
-                        "  amiroctl drive 50000                  bare numbers are um/s and urad/s\n"
-                        "  amiroctl drive stop");
+void add_drive(Verb app, Session& session, int& exit_code) {
+  auto verb = app.add_verb("drive", "set the motors, and keep them going until Ctrl-C or --for", act_group,
+                           "  amiroctl drive 0.05m/s 0.2rad/s       until Ctrl-C, then zero\n"
+                           "  amiroctl drive 5cm/s -30deg/s --for 2s\n"
+                           "  amiroctl drive 50000                  bare numbers are um/s and urad/s\n"
+                           "  amiroctl drive stop");
   struct Options {
-    Options(CLI::App& app, Session& s)
+    Options(Verb app, Session& s)
         : commanding(app, s, "X [Z] | stop; forward velocity and angular velocity, left is positive") {}
     Commanding commanding;
     std::string lasting;
     bool once = false;
   };
-  const auto options = std::make_shared<Options>(*verb, session);
-  auto* lasting = verb->add_option("--for", options->lasting, "how long to drive")->type_name("T");
-  verb->add_flag("--once", options->once, "send one frame; the board stops the motors when none follows")
-      ->excludes(lasting);
-  verb->callback([options, &session, &exit_code] {
+  const auto options = std::make_shared<Options>(verb, session);
+  const auto lasting = verb.add_option("--for", options->lasting, "how long to drive").type_name("T");
+  verb.add_flag("--once", options->once, "send one frame; the board stops the motors when none follows")
+      .excludes(lasting);
+  verb.callback([options, &session, &exit_code] {
     std::vector<std::string> extra;
     if (!options->lasting.empty()) extra = {"--for", options->lasting};
     const auto command = options->commanding.parse(extra);

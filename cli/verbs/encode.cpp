@@ -4,12 +4,12 @@
 
 #include <fmt/format.h>
 
-#include "cli/interrupt.hpp"
 #include "cli/logs/file_source.hpp"
 #include "cli/logs/json_lines.hpp"
 #include "cli/logs/log_file.hpp"
-#include "cli/verbs/frame_lines.hpp"
+#include "cli/shared/interrupt.hpp"
 #include "cli/verbs/verbs.hpp"
+#include "cli/watch/frame_lines.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -68,18 +68,18 @@ void encode(Session& session, const EncodeOptions& options, int& exit_code) {
 
 }  // namespace
 
-void add_encode(CLI::App& app, Session& session, int& exit_code) {
-  auto* verb =
-      add_verb(app, "encode", "make a log of what decode or listen printed as JSON", log_group,
-               "  amiroctl decode a.log | jq -c 'select(.topic==\"motors\")' | amiroctl encode > motors.log\n"
-               "  amiroctl decode a.log | jq -c '.fields.x *= 2' | amiroctl encode -o faster.pcapng\n"
-               "  echo '{\"topic\":\"motors\",\"fields\":{\"x\":0.05}}' | amiroctl encode");
+void add_encode(Verb app, Session& session, int& exit_code) {
+  auto verb = app.add_verb(
+      "encode", "make a log of what decode or listen printed as JSON", log_group,
+      "  amiroctl decode a.log | jq -c 'select(.topic==\"motors\")' | amiroctl encode > motors.log\n"
+      "  amiroctl decode a.log | jq -c '.fields.x *= 2' | amiroctl encode -o faster.pcapng\n"
+      "  echo '{\"topic\":\"motors\",\"fields\":{\"x\":0.05}}' | amiroctl encode");
   const auto options = std::make_shared<EncodeOptions>();
-  verb->add_option("file", options->in, "JSON lines; default: - (standard input)")->type_name("[FILE]");
-  verb->add_option("-o,--output", options->out, "the log; its ending says its format")->type_name("FILE");
-  verb->add_option("--to", options->to, "format of the log; default: candump")->type_name("FORMAT");
-  verb->add_flag("--keep-going", options->keep_going, "tell bad lines and go on; exit 1 at the end");
-  verb->callback([options, &session, &exit_code] { encode(session, *options, exit_code); });
+  verb.add_option("file", options->in, "JSON lines; default: - (standard input)").type_name("[FILE]");
+  verb.add_option("-o,--output", options->out, "the log; its ending says its format").type_name("FILE");
+  verb.add_option("--to", options->to, "format of the log; default: candump").type_name("FORMAT");
+  verb.add_flag("--keep-going", options->keep_going, "tell bad lines and go on; exit 1 at the end");
+  verb.callback([options, &session, &exit_code] { encode(session, *options, exit_code); });
 }
 
 }  // namespace ocm::cli

@@ -5,6 +5,7 @@
 
 #include "cli/verbs/verbs.hpp"
 #include "generator/robot_spec.hpp"
+#include "generator/spec/spec.hpp"
 #include "generator/targets/target.hpp"
 #include "generator/text/output_file.hpp"
 
@@ -51,20 +52,20 @@ void generate_file(Session& session, const GenerateOptions& options) {
 
 }  // namespace
 
-void add_generate(CLI::App& app, Session& session, int&) {
-  auto* verb = add_verb(app, "generate", "files for other programs, from the robot's spec", look_group,
-                        "  amiroctl generate dbc -o amiro.dbc\n"
-                        "  amiroctl generate wireshark -o ~/.local/lib/wireshark/plugins/amiro.lua\n"
-                        "  amiroctl --spec other.json generate c > other.h");
-  verb->footer(targets_help() + "\n" + verb->get_footer());
+void add_generate(Verb app, Session& session, int&) {
+  auto verb = app.add_verb("generate", "files for other programs, from the robot's spec", look_group,
+                           "  amiroctl generate dbc -o amiro.dbc\n"
+                           "  amiroctl generate wireshark -o ~/.local/lib/wireshark/plugins/amiro.lua\n"
+                           "  amiroctl --spec other.json generate c > other.h");
+  verb.footer(targets_help() + "\n" + verb.footer());
   const auto options = std::make_shared<GenerateOptions>();
-  verb->add_option("target", options->target, generate::target_names())->required()->type_name("TARGET");
-  verb->add_option("-o,--output", options->output, "the file, replaced in one step; default: standard output")
-      ->type_name("FILE");
-  verb->add_option("--priority", options->priority,
-                   "dbc: frames at this priority only, and their names without it")
-      ->type_name("P");
-  verb->callback([options, &session] { generate_file(session, *options); });
+  verb.add_option("target", options->target, generate::target_names()).required().type_name("TARGET");
+  verb.add_option("-o,--output", options->output, "the file, replaced in one step; default: standard output")
+      .type_name("FILE");
+  verb.add_option("--priority", options->priority,
+                  "dbc: frames at this priority only, and their names without it")
+      .type_name("P");
+  verb.callback([options, &session] { generate_file(session, *options); });
 }
 
 }  // namespace ocm::cli

@@ -11,8 +11,8 @@
 #include "ocm/cognitive/explorer.hpp"
 
 #include "cli/fleet/central_line.hpp"
-#include "cli/interrupt.hpp"
-#include "cli/verbs/commanding.hpp"
+#include "cli/shared/interrupt.hpp"
+#include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
 
 namespace ocm::cli {
@@ -108,24 +108,22 @@ void run(const GotoOptions& options, int& exit_code) {
 
 }  // namespace
 
-void add_goto(CLI::App& app, Session&, int& exit_code) {
-  auto* verb = add_verb(app, "goto", "turn a mapper and drive it a piece", mapper_group,
-                        "  amiroctl goto AVR 90 50          to the left, then 50 cm\n"
-                        "  amiroctl goto AVR -45 0          turn to the right\n"
-                        "  amiroctl goto AVR 0 0            stop\n"
-                        "  amiroctl goto AVR 0 100 --no-wait");
+void add_goto(Verb app, Session&, int& exit_code) {
+  auto verb = app.add_verb("goto", "turn a mapper and drive it a piece", mapper_group,
+                           "  amiroctl goto AVR 90 50          to the left, then 50 cm\n"
+                           "  amiroctl goto AVR -45 0          turn to the right\n"
+                           "  amiroctl goto AVR 0 0            stop\n"
+                           "  amiroctl goto AVR 0 100 --no-wait");
   const auto options = std::make_shared<GotoOptions>();
-  verb->add_option("robot", options->robot, "its name, address or index")->required()->type_name("ROBOT");
-  verb->add_option("angle", options->angle, "degrees to the left of where it looks now")
-      ->required()
-      ->type_name("ANGLE");
-  verb->add_option("distance", options->distance, "cm, then")->required()->type_name("DISTANCE");
-  verb->add_flag("--no-wait", options->no_wait, "do not wait until it is there");
-  verb->add_option("--timeout", options->timeout, "then it is told to stop")
-      ->type_name("T")
-      ->capture_default_str();
-  fleet::add_line_options(*verb, options->line);
-  verb->callback([options, &exit_code] { run(*options, exit_code); });
+  verb.add_option("robot", options->robot, "its name, address or index").required().type_name("ROBOT");
+  verb.add_option("angle", options->angle, "degrees to the left of where it looks now")
+      .required()
+      .type_name("ANGLE");
+  verb.add_option("distance", options->distance, "cm, then").required().type_name("DISTANCE");
+  verb.add_flag("--no-wait", options->no_wait, "do not wait until it is there");
+  verb.add_option("--timeout", options->timeout, "then it is told to stop").type_name("T").show_default();
+  fleet::add_line_options(verb, options->line);
+  verb.callback([options, &exit_code] { run(*options, exit_code); });
 }
 
 }  // namespace ocm::cli

@@ -77,15 +77,14 @@ void info(const protocol::Catalogue& catalogue, const std::string& word) {
 
 }  // namespace
 
-void add_info(CLI::App& app, Session& session, int&) {
-  auto* verb =
-      add_verb(app, "info", "all about one topic: frames, fields, units, ranges, where the facts come from",
-               look_group,
-               "  amiroctl info gyro\n"
-               "  amiroctl info motors");
+void add_info(Verb app, Session& session, int&) {
+  auto verb = app.add_verb(
+      "info", "all about one topic: frames, fields, units, ranges, where the facts come from", look_group,
+      "  amiroctl info gyro\n"
+      "  amiroctl info motors");
   const auto topic = std::make_shared<std::string>();
-  verb->add_option("topic", *topic, "name or alias")->required()->type_name("TOPIC");
-  verb->callback([topic, &session] { info(session.catalogue(), *topic); });
+  verb.add_option("topic", *topic, "name or alias").required().type_name("TOPIC");
+  verb.callback([topic, &session] { info(session.catalogue(), *topic); });
 }
 
 }  // namespace ocm::cli

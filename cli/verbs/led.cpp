@@ -1,9 +1,9 @@
-#include "cli/verbs/commanding.hpp"
+#include "cli/command/commanding.hpp"
 #include "cli/verbs/verbs.hpp"
 
 namespace ocm::cli {
 
-void add_led(CLI::App& app, Session& session, int&) {
+void add_led(Verb app, Session& session, int&) {
   add_command_verb(app, session, "led", "light an LED, or all of them", act_group,
                    "N|all COLOUR|off; a colour is 100,50,120 or #643278 or a name",
                    "  amiroctl led 1 red\n"

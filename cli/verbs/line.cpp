@@ -11,10 +11,10 @@
 
 #include "ocm/mapper/link/demultiplexer.hpp"
 
-#include "cli/interrupt.hpp"
 #include "cli/logs/file_source.hpp"
 #include "cli/output/digits.hpp"
 #include "cli/output/printer.hpp"
+#include "cli/shared/interrupt.hpp"
 #include "cli/verbs/verbs.hpp"
 
 namespace ocm::cli {
@@ -309,23 +309,21 @@ void run_line(const LineOptions& options, int& exit_code) {
 
 }  // namespace
 
-void add_line(CLI::App& app, Session&, int& exit_code) {
-  auto* verb =
-      add_verb(app, "line", "say what mappers said, as JSON", mapper_group,
-               "  amiroctl line central.log | jq -c 'select(.name==\"AVR\") | .values'\n"
-               "  amiroctl line --to-robot server.log\n"
-               "  stty -F /dev/ttyUSB0 raw -echo 115200; amiroctl line /dev/ttyUSB0\n"
-               "  amiroctl line --strict central.log > /dev/null    exit 1 when anything was damaged");
+void add_line(Verb app, Session&, int& exit_code) {
+  auto verb =
+      app.add_verb("line", "say what mappers said, as JSON", mapper_group,
+                   "  amiroctl line central.log | jq -c 'select(.name==\"AVR\") | .values'\n"
+                   "  amiroctl line --to-robot server.log\n"
+                   "  stty -F /dev/ttyUSB0 raw -echo 115200; amiroctl line /dev/ttyUSB0\n"
+                   "  amiroctl line --strict central.log > /dev/null    exit 1 when anything was damaged");
   const auto options = std::make_shared<LineOptions>();
-  verb->add_option("file", options->file,
-                   "bytes of a robot's line, or of a central with its prefixes; default: - (standard input)")
-      ->type_name("[FILE]");
-  verb->add_flag("--to-robot", options->to_robot, "what is said to robots; default: what they say");
-  verb->add_option("-n,--count", options->count, "end after so many sentences")
-      ->type_name("N")
-      ->check(CLI::PositiveNumber);
-  verb->add_flag("--strict", options->strict, "exit 1 when anything was damaged or stray");
-  verb->callback([options, &exit_code] { run_line(*options, exit_code); });
+  verb.add_option("file", options->file,
+                  "bytes of a robot's line, or of a central with its prefixes; default: - (standard input)")
+      .type_name("[FILE]");
+  verb.add_flag("--to-robot", options->to_robot, "what is said to robots; default: what they say");
+  verb.add_option("-n,--count", options->count, "end after so many sentences").type_name("N").positive();
+  verb.add_flag("--strict", options->strict, "exit 1 when anything was damaged or stray");
+  verb.callback([options, &exit_code] { run_line(*options, exit_code); });
 }
 
 }  // namespace ocm::cli

@@ -3,10 +3,10 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "ocm/client/quantity.hpp"
 
+#include "cli/shared/json.hpp"
 #include "cli/verbs/verbs.hpp"
 
 namespace ocm::cli {
@@ -20,7 +20,7 @@ std::string aliases_of(const protocol::Topic& topic) {
 
 void list_json(const protocol::Catalogue& catalogue) {
   for (const auto& topic : catalogue.topics) {
-    nlohmann::ordered_json line;
+    Json line;
     line["topic"] = topic.name;
     line["aliases"] = topic.aliases;
     line["id"] = fmt::format("0x{:02X}", topic.id.value);
@@ -28,7 +28,7 @@ void list_json(const protocol::Catalogue& catalogue) {
     line["board"] = catalogue.boards[topic.board].name;
     line["frames"] = topic.frames.size();
     if (topic.kind == protocol::Kind::sensor) line["period_ns"] = topic.period.duration().count();
-    fmt::print("{}\n", line.dump());
+    fmt::print("{}\n", line.line());
   }
 }
 
@@ -54,14 +54,14 @@ void list_table(const protocol::Catalogue& catalogue) {
 
 }  // namespace
 
-void add_list(CLI::App& app, Session& session, int&) {
-  auto* verb = add_verb(app, "list", "the robot's topics", look_group,
-                        "  amiroctl list\n"
-                        "  amiroctl list --json | jq -r .topic\n"
-                        "  amiroctl --spec other.json list");
+void add_list(Verb app, Session& session, int&) {
+  auto verb = app.add_verb("list", "the robot's topics", look_group,
+                           "  amiroctl list\n"
+                           "  amiroctl list --json | jq -r .topic\n"
+                           "  amiroctl --spec other.json list");
   const auto json = std::make_shared<bool>(false);
-  verb->add_flag("--json", *json, "an object a topic");
-  verb->callback(
+  verb.add_flag("--json", *json, "an object a topic");
+  verb.callback(
       [json, &session] { *json ? list_json(session.catalogue()) : list_table(session.catalogue()); });
 }
 

@@ -6,12 +6,12 @@
 
 #include <fmt/format.h>
 
-#include "cli/interrupt.hpp"
-#include "cli/verbs/chosen_topics.hpp"
-#include "cli/verbs/commanding.hpp"
-#include "cli/verbs/display.hpp"
-#include "cli/verbs/subscription.hpp"
+#include "cli/shared/interrupt.hpp"
+#include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
+#include "cli/watch/chosen_topics.hpp"
+#include "cli/watch/display.hpp"
+#include "cli/watch/subscription.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -93,27 +93,25 @@ void listen(Session& session, const ListenOptions& options, int& exit_code) {
 
 }  // namespace
 
-void add_listen(CLI::App& app, Session& session, int& exit_code) {
-  auto* verb =
-      add_verb(app, "listen", "show what the sensors say", watch_group,
-               "  amiroctl listen                        for a person on a terminal, JSON lines in a pipe\n"
-               "  amiroctl listen gyro odom --pretty\n"
-               "  amiroctl listen --json -n 10 | jq .fields\n"
-               "  amiroctl listen --raw > drive.log      a candump log\n"
-               "  amiroctl listen --strict --timeout 10s  exit 1 when anything was lost or unknown");
+void add_listen(Verb app, Session& session, int& exit_code) {
+  auto verb = app.add_verb(
+      "listen", "show what the sensors say", watch_group,
+      "  amiroctl listen                        for a person on a terminal, JSON lines in a pipe\n"
+      "  amiroctl listen gyro odom --pretty\n"
+      "  amiroctl listen --json -n 10 | jq .fields\n"
+      "  amiroctl listen --raw > drive.log      a candump log\n"
+      "  amiroctl listen --strict --timeout 10s  exit 1 when anything was lost or unknown");
   const auto options = std::make_shared<ListenOptions>();
-  verb->add_option("topics", options->topics, "only these; default: everything")->type_name("[TOPIC ...]");
-  add_display_options(*verb, options->display);
-  verb->add_flag("--commands", options->commands, "show requests and set points too");
-  verb->add_flag("--strict", options->strict, "exit 1 when frames were lost, unknown, wrong or incomplete");
-  verb->add_option("-n,--count", options->count, "end after so many")
-      ->type_name("N")
-      ->check(CLI::PositiveNumber);
-  verb->add_option("--timeout", options->timeout, "end after this time; exit 1 when -n is not reached")
-      ->type_name("T");
-  verb->add_option("--idle-timeout", options->idle_timeout, "end when nothing came for this time")
-      ->type_name("T");
-  verb->callback([options, &session, &exit_code] { listen(session, *options, exit_code); });
+  verb.add_option("topics", options->topics, "only these; default: everything").type_name("[TOPIC ...]");
+  add_display_options(verb, options->display);
+  verb.add_flag("--commands", options->commands, "show requests and set points too");
+  verb.add_flag("--strict", options->strict, "exit 1 when frames were lost, unknown, wrong or incomplete");
+  verb.add_option("-n,--count", options->count, "end after so many").type_name("N").positive();
+  verb.add_option("--timeout", options->timeout, "end after this time; exit 1 when -n is not reached")
+      .type_name("T");
+  verb.add_option("--idle-timeout", options->idle_timeout, "end when nothing came for this time")
+      .type_name("T");
+  verb.callback([options, &session, &exit_code] { listen(session, *options, exit_code); });
 }
 
 }  // namespace ocm::cli

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "ocm/client/diagnosis.hpp"
 #include "ocm/cognitive/agreement.hpp"
@@ -17,8 +16,9 @@
 
 #include "cli/fleet/central_line.hpp"
 #include "cli/fleet/picture.hpp"
-#include "cli/interrupt.hpp"
-#include "cli/verbs/commanding.hpp"
+#include "cli/shared/interrupt.hpp"
+#include "cli/shared/json.hpp"
+#include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
 #include "sim/worlds/reader.hpp"
 
@@ -327,22 +327,22 @@ void Run::report(const std::optional<Agreement>& result) const {
   const auto& explorer = mapping_->explorer().counters();
   const double free = area_m2(mapping_->map(), cognitive::CellState::free);
   if (options_.json) {
-    nlohmann::ordered_json out{{"seconds", static_cast<double>(took_.count()) / 1e9},
-                               {"done", end_ == End::known},
-                               {"ended", key(end_)},
-                               {"robots", robots_.size()},
-                               {"free_m2", free},
-                               {"updates", drawn.drawn},
-                               {"turning", drawn.turning},
-                               {"beams", map.hits + map.nothing + map.near + map.on_robots},
-                               {"goals", explorer.goals},
-                               {"calls_back", explorer.calls}};
+    Json out{{"seconds", static_cast<double>(took_.count()) / 1e9},
+             {"done", end_ == End::known},
+             {"ended", key(end_)},
+             {"robots", robots_.size()},
+             {"free_m2", free},
+             {"updates", drawn.drawn},
+             {"turning", drawn.turning},
+             {"beams", map.hits + map.nothing + map.near + map.on_robots},
+             {"goals", explorer.goals},
+             {"calls_back", explorer.calls}};
     if (result)
       out["agreement"] = {{"precision", result->precision},
                           {"recall", result->recall},
                           {"explored", result->explored},
                           {"tolerance_m", 0.06}};
-    fmt::print("{}\n", out.dump());
+    fmt::print("{}\n", out.line());
     return;
   }
   fmt::print("{} in {}: {:.2f} m2 free; {} drawn, {} not, because a robot turned; {}\n", words(end_),
@@ -391,36 +391,36 @@ void run(const MapVerbOptions& options, int& exit_code) {
 
 }  // namespace
 
-void add_map(CLI::App& app, Session&, int& exit_code) {
-  auto* verb =
-      add_verb(app, "map", "let mappers explore, and draw a map of what they see", mapper_group,
-               "  amiroctl map room.svg\n"
-               "  amiroctl map room.png room.pgm --robots AVR --duration 5min\n"
-               "  amiroctl map room.svg --start AVR=0.4,0.4,0 --start Arduino=2,1.4,180\n"
-               "  amiroctl map room.svg --world labyrinth    drawn over the true walls, and compared");
+void add_map(Verb app, Session&, int& exit_code) {
+  auto verb =
+      app.add_verb("map", "let mappers explore, and draw a map of what they see", mapper_group,
+                   "  amiroctl map room.svg\n"
+                   "  amiroctl map room.png room.pgm --robots AVR --duration 5min\n"
+                   "  amiroctl map room.svg --start AVR=0.4,0.4,0 --start Arduino=2,1.4,180\n"
+                   "  amiroctl map room.svg --world labyrinth    drawn over the true walls, and compared");
   const auto options = std::make_shared<MapVerbOptions>();
-  verb->add_option("file", options->files, ".svg, .png, .pdf; .pgm with a .yaml beside it for ROS")
-      ->required()
-      ->type_name("FILE ...");
-  verb->add_option("--robots", options->robots, "names, addresses or indexes; default: all")
-      ->type_name("ROBOT ...");
-  verb->add_option("--duration", options->duration, "at most so long; default: until all is known")
-      ->type_name("T");
-  verb->add_option("--start", options->starts, "where a robot was switched on: metres, degrees")
-      ->type_name("NAME=X,Y,DEG");
-  verb->add_option("--world", options->world,
-                   "a simulated world, or its name: starts, central, true walls to compare with")
-      ->type_name("FILE");
-  verb->add_option("--resolution", options->resolution_cm, "side of a cell in cm")
-      ->type_name("CM")
-      ->capture_default_str();
-  verb->add_option("--range", options->range_m, "of the central's radio in m: nobody is sent farther")
-      ->type_name("M");
-  verb->add_option("--title", options->title, "default: the robots")->type_name("TEXT");
-  verb->add_flag("--watch", options->watch, "draw only; somebody else drives");
-  verb->add_flag("--json", options->json, "figures as an object");
-  fleet::add_line_options(*verb, options->line);
-  verb->callback([options, &exit_code] { run(*options, exit_code); });
+  verb.add_option("file", options->files, ".svg, .png, .pdf; .pgm with a .yaml beside it for ROS")
+      .required()
+      .type_name("FILE ...");
+  verb.add_option("--robots", options->robots, "names, addresses or indexes; default: all")
+      .type_name("ROBOT ...");
+  verb.add_option("--duration", options->duration, "at most so long; default: until all is known")
+      .type_name("T");
+  verb.add_option("--start", options->starts, "where a robot was switched on: metres, degrees")
+      .type_name("NAME=X,Y,DEG");
+  verb.add_option("--world", options->world,
+                  "a simulated world, or its name: starts, central, true walls to compare with")
+      .type_name("FILE");
+  verb.add_option("--resolution", options->resolution_cm, "side of a cell in cm")
+      .type_name("CM")
+      .show_default();
+  verb.add_option("--range", options->range_m, "of the central's radio in m: nobody is sent farther")
+      .type_name("M");
+  verb.add_option("--title", options->title, "default: the robots").type_name("TEXT");
+  verb.add_flag("--watch", options->watch, "draw only; somebody else drives");
+  verb.add_flag("--json", options->json, "figures as an object");
+  fleet::add_line_options(verb, options->line);
+  verb.callback([options, &exit_code] { run(*options, exit_code); });
 }
 
 }  // namespace ocm::cli

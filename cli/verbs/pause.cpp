@@ -51,21 +51,21 @@ void run(std::string_view verb, const PauseOptions& options, bool paused, int& e
   }
 }
 
-void add(CLI::App& app, std::string_view name, std::string_view description, std::string_view examples,
+void add(Verb app, std::string_view name, std::string_view description, std::string_view examples,
          bool paused, int& exit_code) {
-  auto* verb = add_verb(app, name, description, mapper_group, examples);
+  auto verb = app.add_verb(name, description, mapper_group, examples);
   const auto options = std::make_shared<PauseOptions>();
-  verb->add_option("robot", options->robots, "names, addresses or indexes; all")
-      ->required()
-      ->type_name("ROBOT ...");
-  fleet::add_line_options(*verb, options->line);
-  verb->callback(
+  verb.add_option("robot", options->robots, "names, addresses or indexes; all")
+      .required()
+      .type_name("ROBOT ...");
+  fleet::add_line_options(verb, options->line);
+  verb.callback(
       [options, paused, word = std::string{name}, &exit_code] { run(word, *options, paused, exit_code); });
 }
 
 }  // namespace
 
-void add_pause(CLI::App& app, Session&, int& exit_code) {
+void add_pause(Verb app, Session&, int& exit_code) {
   add(app, "pause", "hold a mapper's tower and its updates",
       "  amiroctl pause AVR\n"
       "  amiroctl pause all\n"
@@ -73,7 +73,7 @@ void add_pause(CLI::App& app, Session&, int& exit_code) {
       true, exit_code);
 }
 
-void add_unpause(CLI::App& app, Session&, int& exit_code) {
+void add_unpause(Verb app, Session&, int& exit_code) {
   add(app, "unpause", "let a mapper's tower and its updates go on",
       "  amiroctl unpause AVR\n"
       "  amiroctl unpause all",

@@ -13,12 +13,12 @@
 #include "ocm/client/diagnosis.hpp"
 #include "ocm/log/complaints.hpp"
 
-#include "cli/interrupt.hpp"
 #include "cli/output/printer.hpp"
 #include "cli/plot/curves.hpp"
 #include "cli/plot/gnuplot.hpp"
+#include "cli/shared/interrupt.hpp"
 #include "cli/verbs/verbs.hpp"
-#include "cli/watching.hpp"
+#include "cli/watch/watching.hpp"
 #include "generator/text/output_file.hpp"
 
 namespace ocm::cli {
@@ -150,26 +150,26 @@ void run(Session& session, const PlotOptions& options, int& exit_code) {
 
 }  // namespace
 
-void add_plot(CLI::App& app, Session& session, int& exit_code) {
-  auto* verb = add_verb(app, "plot", "draw fields over time, or one against another", log_group,
-                        "  amiroctl plot drive.log gyroscope.z -o turn.png\n"
-                        "  amiroctl plot drive.log 'gyro.*' odometry.velocity   a panel for each unit\n"
-                        "  amiroctl plot drive.log odometry.x:odometry.y       where it drove\n"
-                        "  amiroctl plot live gyro.z --duration 10s");
+void add_plot(Verb app, Session& session, int& exit_code) {
+  auto verb = app.add_verb("plot", "draw fields over time, or one against another", log_group,
+                           "  amiroctl plot drive.log gyroscope.z -o turn.png\n"
+                           "  amiroctl plot drive.log 'gyro.*' odometry.velocity   a panel for each unit\n"
+                           "  amiroctl plot drive.log odometry.x:odometry.y       where it drove\n"
+                           "  amiroctl plot live gyro.z --duration 10s");
   const auto options = std::make_shared<PlotOptions>();
-  verb->add_option("words", options->words,
-                   "logs, any format; none, or live: the bus. Fields: gyroscope.z, 'gyro.*', "
-                   "odometry.x:odometry.y")
-      ->type_name("[FILE ...|live] FIELD ...");
-  verb->add_option("-o,--output", options->output,
-                   ".svg, .png or .pdf; - is SVG on stdout. Default: plot.svg on a terminal, otherwise -")
-      ->type_name("FILE");
-  verb->add_option("--size", options->size, "in pixels; default: as is right for what is drawn")
-      ->type_name("WIDTHxHEIGHT");
-  verb->add_option("--title", options->title, "default: the robot and the log")->type_name("TEXT");
-  verb->add_flag("--script", options->script, "write what gnuplot would be told, and draw nothing");
-  add_watch_options(*verb, options->watch);
-  verb->callback([options, &session, &exit_code] { run(session, *options, exit_code); });
+  verb.add_option("words", options->words,
+                  "logs, any format; none, or live: the bus. Fields: gyroscope.z, 'gyro.*', "
+                  "odometry.x:odometry.y")
+      .type_name("[FILE ...|live] FIELD ...");
+  verb.add_option("-o,--output", options->output,
+                  ".svg, .png or .pdf; - is SVG on stdout. Default: plot.svg on a terminal, otherwise -")
+      .type_name("FILE");
+  verb.add_option("--size", options->size, "in pixels; default: as is right for what is drawn")
+      .type_name("WIDTHxHEIGHT");
+  verb.add_option("--title", options->title, "default: the robot and the log").type_name("TEXT");
+  verb.add_flag("--script", options->script, "write what gnuplot would be told, and draw nothing");
+  add_watch_options(verb, options->watch);
+  verb.callback([options, &session, &exit_code] { run(session, *options, exit_code); });
 }
 
 }  // namespace ocm::cli

@@ -1,17 +1,17 @@
-#include "cli/verbs/request.hpp"
+#include "cli/command/request.hpp"
 #include "cli/verbs/verbs.hpp"
 
 namespace ocm::cli {
 
-void add_publish(CLI::App& app, Session& session, int&) {
-  auto* verb = add_verb(
-      app, "publish", "ask a sensor for samples at a period", ask_group,
+void add_publish(Verb app, Session& session, int&) {
+  auto verb = app.add_verb(
+      "publish", "ask a sensor for samples at a period", ask_group,
       "  amiroctl publish gyro 500ms\n"
       "  amiroctl publish ring 1s --priority low\n"
       "  amiroctl publish mag 900us --dry-run     prints 205#01840302\n"
       "  amiroctl publish odom --wait             the board's own period; shows the first sample\n"
       "  amiroctl publish ring 4ms --explain      what is on the bus, and how late each frame can be");
-  add_request_options(*verb, session, "TOPIC [PERIOD]; 1us to 65535s, default: the topic's own period",
+  add_request_options(verb, session, "TOPIC [PERIOD]; 1us to 65535s, default: the topic's own period",
                       Starts::stream);
 }
 

@@ -12,16 +12,16 @@
 #include "ocm/client/quantity.hpp"
 #include "ocm/transport/socketcan.hpp"
 
-#include "cli/interrupt.hpp"
 #include "cli/logs/format.hpp"
 #include "cli/logs/log_file.hpp"
 #include "cli/record/capture.hpp"
 #include "cli/record/files.hpp"
 #include "cli/record/recorder.hpp"
-#include "cli/verbs/chosen_topics.hpp"
-#include "cli/verbs/commanding.hpp"
-#include "cli/verbs/subscription.hpp"
+#include "cli/shared/interrupt.hpp"
+#include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
+#include "cli/watch/chosen_topics.hpp"
+#include "cli/watch/subscription.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -199,41 +199,37 @@ void run_record(Session& session, const RecordOptions& options, int& exit_code) 
 
 }  // namespace
 
-void add_record(CLI::App& app, Session& session, int& exit_code) {
-  auto* verb =
-      add_verb(app, "record", "write what happens on the bus to a file", log_group,
-               "  amiroctl record                        amiro-2026-11-21_163000.log, as candump -l\n"
-               "  amiroctl record -o drive.pcapng        for Wireshark\n"
-               "  amiroctl record -o drive.log.zst gyro odom --duration 10min\n"
-               "  amiroctl record --split 100MB --ring 10  a black box of 1 GB\n"
-               "  amiroctl --bus can0,can1 record -o both.pcapng");
+void add_record(Verb app, Session& session, int& exit_code) {
+  auto verb =
+      app.add_verb("record", "write what happens on the bus to a file", log_group,
+                   "  amiroctl record                        amiro-2026-11-21_163000.log, as candump -l\n"
+                   "  amiroctl record -o drive.pcapng        for Wireshark\n"
+                   "  amiroctl record -o drive.log.zst gyro odom --duration 10min\n"
+                   "  amiroctl record --split 100MB --ring 10  a black box of 1 GB\n"
+                   "  amiroctl --bus can0,can1 record -o both.pcapng");
   const auto options = std::make_shared<RecordOptions>();
-  verb->add_option("topics", options->topics, "only these; default: everything, error frames too")
-      ->type_name("[TOPIC ...]");
-  verb->add_option("-o,--output", options->file,
-                   "the file; its ending chooses the format, with .gz or .zst it is packed; - for stdout")
-      ->type_name("FILE");
-  verb->add_option("--to", options->to, "the format, whatever the name: " + format_names())
-      ->type_name("FORMAT");
-  verb->add_flag("--force", options->force, "overwrite the file if it is there");
-  verb->add_flag("--commands", options->commands, "with topics: their requests and set points too");
-  verb->add_option("--filter,--raw-ids", options->filters,
-                   "only frames with id & mask, hexadecimal as candump has it: 600:700; repeatable")
-      ->type_name("ID:MASK")
-      ->allow_extra_args(false);
-  verb->add_option("--split", options->split, "a new file after this size or time: 100MB, 10min")
-      ->type_name("SIZE|T");
-  verb->add_option("--ring", options->ring, "with --split: keep the newest N files")
-      ->type_name("N")
-      ->check(CLI::PositiveNumber);
-  verb->add_option("-n,--count", options->count, "end after so many frames")
-      ->type_name("N")
-      ->check(CLI::PositiveNumber);
-  verb->add_option("--duration", options->duration, "end after this time")->type_name("T");
-  verb->add_flag("--no-sync", options->no_sync,
-                 "leave it to the kernel when data reach the disk; default: every second");
-  verb->add_flag("--strict", options->strict, "exit 1 when frames were lost");
-  verb->callback([options, &session, &exit_code] { run_record(session, *options, exit_code); });
+  verb.add_option("topics", options->topics, "only these; default: everything, error frames too")
+      .type_name("[TOPIC ...]");
+  verb.add_option("-o,--output", options->file,
+                  "the file; its ending chooses the format, with .gz or .zst it is packed; - for stdout")
+      .type_name("FILE");
+  verb.add_option("--to", options->to, "the format, whatever the name: " + format_names())
+      .type_name("FORMAT");
+  verb.add_flag("--force", options->force, "overwrite the file if it is there");
+  verb.add_flag("--commands", options->commands, "with topics: their requests and set points too");
+  verb.add_option("--filter,--raw-ids", options->filters,
+                  "only frames with id & mask, hexadecimal as candump has it: 600:700; repeatable")
+      .type_name("ID:MASK")
+      .one_a_mention();
+  verb.add_option("--split", options->split, "a new file after this size or time: 100MB, 10min")
+      .type_name("SIZE|T");
+  verb.add_option("--ring", options->ring, "with --split: keep the newest N files").type_name("N").positive();
+  verb.add_option("-n,--count", options->count, "end after so many frames").type_name("N").positive();
+  verb.add_option("--duration", options->duration, "end after this time").type_name("T");
+  verb.add_flag("--no-sync", options->no_sync,
+                "leave it to the kernel when data reach the disk; default: every second");
+  verb.add_flag("--strict", options->strict, "exit 1 when frames were lost");
+  verb.callback([options, &session, &exit_code] { run_record(session, *options, exit_code); });
 }
 
 }  // namespace ocm::cli

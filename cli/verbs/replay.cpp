@@ -10,14 +10,14 @@
 #include "ocm/can/text.hpp"
 #include "ocm/client/quantity.hpp"
 
-#include "cli/interrupt.hpp"
 #include "cli/logs/format.hpp"
 #include "cli/logs/opened_log.hpp"
 #include "cli/replay/player.hpp"
 #include "cli/replay/stand_in.hpp"
-#include "cli/verbs/chosen_topics.hpp"
-#include "cli/verbs/commanding.hpp"
+#include "cli/shared/interrupt.hpp"
+#include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
+#include "cli/watch/chosen_topics.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -256,41 +256,40 @@ void stand_in(Session& session, const ReplayOptions& options, int& exit_code) {
 
 }  // namespace
 
-void add_replay(CLI::App& app, Session& session, int& exit_code) {
-  auto* verb = add_verb(app, "replay", "send what was recorded, each frame at its time", log_group,
-                        "  amiroctl replay drive.log\n"
-                        "  amiroctl replay drive.pcapng --speed 10 gyro odom\n"
-                        "  amiroctl replay drive.log --from 1min --until 90s --loop\n"
-                        "  amiroctl replay both.pcapng --interface can0=vcan0 --interface can1=vcan1\n"
-                        "  amiroctl replay drive.log --on-command     a robot that is a log");
+void add_replay(Verb app, Session& session, int& exit_code) {
+  auto verb = app.add_verb("replay", "send what was recorded, each frame at its time", log_group,
+                           "  amiroctl replay drive.log\n"
+                           "  amiroctl replay drive.pcapng --speed 10 gyro odom\n"
+                           "  amiroctl replay drive.log --from 1min --until 90s --loop\n"
+                           "  amiroctl replay both.pcapng --interface can0=vcan0 --interface can1=vcan1\n"
+                           "  amiroctl replay drive.log --on-command     a robot that is a log");
   const auto options = std::make_shared<ReplayOptions>();
-  verb->add_option("file", options->file, "a log in any format, packed or not; - for standard input")
-      ->required()
-      ->type_name("FILE");
-  verb->add_option("topics", options->topics, "only frames of these; default: all that is in the log")
-      ->type_name("[TOPIC ...]");
-  verb->add_option("--from-format", options->from_format, "the log's format, where it cannot be seen")
-      ->type_name("FORMAT");
-  verb->add_option("--speed", options->speed, "how many times faster; max: as fast as the bus takes them")
-      ->type_name("X|max");
-  auto* loop = verb->add_option("--loop", options->loop, "play it N times; without N until Ctrl-C");
-  loop->expected(0, 1)->type_name("[N]");
-  verb->add_option("--from", options->from, "begin so far into the log")->type_name("T");
-  verb->add_option("--until", options->until, "end so far into the log")->type_name("T");
-  verb->add_option("--max-gap", options->longest_gap, "cut longer pauses to this")->type_name("T");
-  verb->add_option("--only", options->only, "sensors: what boards sent; commands: what they were sent")
-      ->check(CLI::IsMember({"sensors", "commands"}))
-      ->type_name("WHICH");
-  verb->add_option("--interface", options->interfaces,
-                   "frames of the log's interface LOG go to BUS, those of others nowhere; repeatable")
-      ->type_name("LOG=BUS")
-      ->allow_extra_args(false);
-  verb->add_flag("--on-command", options->on_command,
-                 "answer requests on the bus with the samples of the log, at the period that is asked for");
-  verb->add_flag("--dry-run", options->dry_run,
-                 "print the frames, and when they would be sent; send nothing");
-  verb->callback([options, loop, &session, &exit_code] {
-    if (loop->count() != 0) options->passes = parse_passes(options->loop);
+  verb.add_option("file", options->file, "a log in any format, packed or not; - for standard input")
+      .required()
+      .type_name("FILE");
+  verb.add_option("topics", options->topics, "only frames of these; default: all that is in the log")
+      .type_name("[TOPIC ...]");
+  verb.add_option("--from-format", options->from_format, "the log's format, where it cannot be seen")
+      .type_name("FORMAT");
+  verb.add_option("--speed", options->speed, "how many times faster; max: as fast as the bus takes them")
+      .type_name("X|max");
+  const auto loop = verb.add_option("--loop", options->loop, "play it N times; without N until Ctrl-C");
+  loop.expected(0, 1).type_name("[N]");
+  verb.add_option("--from", options->from, "begin so far into the log").type_name("T");
+  verb.add_option("--until", options->until, "end so far into the log").type_name("T");
+  verb.add_option("--max-gap", options->longest_gap, "cut longer pauses to this").type_name("T");
+  verb.add_option("--only", options->only, "sensors: what boards sent; commands: what they were sent")
+      .one_of({"sensors", "commands"})
+      .type_name("WHICH");
+  verb.add_option("--interface", options->interfaces,
+                  "frames of the log's interface LOG go to BUS, those of others nowhere; repeatable")
+      .type_name("LOG=BUS")
+      .one_a_mention();
+  verb.add_flag("--on-command", options->on_command,
+                "answer requests on the bus with the samples of the log, at the period that is asked for");
+  verb.add_flag("--dry-run", options->dry_run, "print the frames, and when they would be sent; send nothing");
+  verb.callback([options, loop, &session, &exit_code] {
+    if (loop.count() != 0) options->passes = parse_passes(options->loop);
     if (options->on_command)
       stand_in(session, *options, exit_code);
     else

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "cli/fleet/central_line.hpp"
-#include "cli/interrupt.hpp"
-#include "cli/verbs/commanding.hpp"
+#include "cli/shared/interrupt.hpp"
+#include "cli/shared/json.hpp"
+#include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
 
 namespace ocm::cli {
@@ -40,8 +40,7 @@ std::string pose_of(const Robot& robot) {
   return fmt::format("{} {} {}", robot.update->x, robot.update->y, robot.update->heading);
 }
 
-nlohmann::ordered_json to_json(const fleet::CentralLine& line, const Peer& peer) {
-  using Json = nlohmann::ordered_json;
+Json to_json(const fleet::CentralLine& line, const Peer& peer) {
   const Robot& robot = line.fleet().robot(peer.index);
   Json out{
       {"robot", peer.name}, {"index", peer.index}, {"address", peer.address}, {"state", state_of(robot)}};
@@ -87,7 +86,7 @@ void run(const RobotsOptions& options, int& exit_code) {
   if (!options.list) (void)line.wait(watch, [] { return false; });
   const std::vector<Peer> peers = line.server().client().peers();
   if (options.json)
-    for (const Peer& peer : peers) fmt::print("{}\n", to_json(line, peer).dump());
+    for (const Peer& peer : peers) fmt::print("{}\n", to_json(line, peer).line());
   else
     print_table(line, peers);
   if (peers.empty()) exit_code = exit_failure;
@@ -95,21 +94,21 @@ void run(const RobotsOptions& options, int& exit_code) {
 
 }  // namespace
 
-void add_robots(CLI::App& app, Session&, int& exit_code) {
-  auto* verb = add_verb(app, "robots", "mappers behind a central: where they are, and how their links are",
-                        mapper_group,
-                        "  amiroctl robots\n"
-                        "  amiroctl robots --json | jq -r .robot\n"
-                        "  amiroctl robots --list                     without a link to any of them\n"
-                        "  amiroctl robots --central /dev/ttyACM0");
+void add_robots(Verb app, Session&, int& exit_code) {
+  auto verb = app.add_verb("robots", "mappers behind a central: where they are, and how their links are",
+                           mapper_group,
+                           "  amiroctl robots\n"
+                           "  amiroctl robots --json | jq -r .robot\n"
+                           "  amiroctl robots --list                     without a link to any of them\n"
+                           "  amiroctl robots --central /dev/ttyACM0");
   const auto options = std::make_shared<RobotsOptions>();
-  verb->add_flag("--json", options->json, "an object a robot");
-  verb->add_flag("--list", options->list, "those that advertise; connect to none");
-  verb->add_option("--watch", options->watch, "how long to listen once all are connected")
-      ->type_name("T")
-      ->capture_default_str();
-  fleet::add_line_options(*verb, options->line);
-  verb->callback([options, &exit_code] { run(*options, exit_code); });
+  verb.add_flag("--json", options->json, "an object a robot");
+  verb.add_flag("--list", options->list, "those that advertise; connect to none");
+  verb.add_option("--watch", options->watch, "how long to listen once all are connected")
+      .type_name("T")
+      .show_default();
+  fleet::add_line_options(verb, options->line);
+  verb.callback([options, &exit_code] { run(*options, exit_code); });
 }
 
 }  // namespace ocm::cli

@@ -13,10 +13,10 @@
 #include "ocm/client/quantity.hpp"
 #include "ocm/client/script.hpp"
 
-#include "cli/interrupt.hpp"
+#include "cli/command/commanding.hpp"
+#include "cli/command/timeline.hpp"
 #include "cli/output/printer.hpp"
-#include "cli/timeline.hpp"
-#include "cli/verbs/commanding.hpp"
+#include "cli/shared/interrupt.hpp"
 #include "cli/verbs/verbs.hpp"
 
 namespace ocm::cli {
@@ -114,19 +114,19 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
 
 }  // namespace
 
-void add_run(CLI::App& app, Session& session, int& exit_code) {
-  auto* verb = add_verb(app, "run", "carry out a script, each line at its time", play_group,
-                        "  amiroctl run examples/standalone.script --listen\n"
-                        "  amiroctl run tour.script --speed 10\n"
-                        "  echo '0s drive 5cm/s --for 1s' | amiroctl run -");
+void add_run(Verb app, Session& session, int& exit_code) {
+  auto verb = app.add_verb("run", "carry out a script, each line at its time", play_group,
+                           "  amiroctl run examples/standalone.script --listen\n"
+                           "  amiroctl run tour.script --speed 10\n"
+                           "  echo '0s drive 5cm/s --for 1s' | amiroctl run -");
   const auto options = std::make_shared<RunOptions>();
-  verb->add_option("script", options->file, "file, or - for standard input")->required()->type_name("SCRIPT");
-  verb->add_option("--speed", options->speed, "how many times faster the steps follow each other")
-      ->check(CLI::Range(0.001, 1000.0))
-      ->type_name("N");
-  verb->add_flag("--listen", options->listen, "show what the sensors answer");
-  verb->add_flag("--dry-run", options->dry_run, "print each step's frames and send nothing");
-  verb->callback([options, &session, &exit_code] { run(session, *options, exit_code); });
+  verb.add_option("script", options->file, "file, or - for standard input").required().type_name("SCRIPT");
+  verb.add_option("--speed", options->speed, "how many times faster the steps follow each other")
+      .range(0.001, 1000.0)
+      .type_name("N");
+  verb.add_flag("--listen", options->listen, "show what the sensors answer");
+  verb.add_flag("--dry-run", options->dry_run, "print each step's frames and send nothing");
+  verb.callback([options, &session, &exit_code] { run(session, *options, exit_code); });
 }
 
 }  // namespace ocm::cli

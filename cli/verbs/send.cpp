@@ -8,10 +8,10 @@
 
 #include "ocm/can/text.hpp"
 
-#include "cli/interrupt.hpp"
-#include "cli/verbs/commanding.hpp"
-#include "cli/verbs/frame_lines.hpp"
+#include "cli/command/commanding.hpp"
+#include "cli/shared/interrupt.hpp"
 #include "cli/verbs/verbs.hpp"
+#include "cli/watch/frame_lines.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -81,23 +81,24 @@ void send_lines(Session& session, const SendOptions& options, bool dry_run, int&
 
 }  // namespace
 
-void add_send(CLI::App& app, Session& session, int& exit_code) {
-  auto* verb = add_verb(app, "send", "send a frame as it is, or frames from the standard input", act_group,
-                        "  amiroctl send 205#01840302        magnetometer every 900us, as in the thesis\n"
-                        "  amiroctl send 1F334455#DEADBEEF   extended identifier\n"
-                        "  amiroctl send 123#R               remote frame\n"
-                        "  amiroctl --bus can0 listen --json | amiroctl --bus can1 send --stdin\n"
-                        "  amiroctl decode drive.log --topic motors | amiroctl send --stdin --timed");
-  const auto commanding = std::make_shared<Commanding>(*verb, session, "frame in candump notation", false);
+void add_send(Verb app, Session& session, int& exit_code) {
+  auto verb = app.add_verb("send", "send a frame as it is, or frames from the standard input", act_group,
+                           "  amiroctl send 205#01840302        magnetometer every 900us, as in the thesis\n"
+                           "  amiroctl send 1F334455#DEADBEEF   extended identifier\n"
+                           "  amiroctl send 123#R               remote frame\n"
+                           "  amiroctl --bus can0 listen --json | amiroctl --bus can1 send --stdin\n"
+                           "  amiroctl decode drive.log --topic motors | amiroctl send --stdin --timed");
+  const auto commanding = std::make_shared<Commanding>(verb, session, "frame in candump notation", false);
   const auto options = std::make_shared<SendOptions>();
-  auto* input = verb->add_flag("--stdin", options->from_input,
-                               "send what comes in: JSON lines, candump's log lines or frames, one a line");
-  input->excludes(verb->get_option("words"));
-  verb->add_flag("--timed", options->timed, "with the distances of their times; default: at once")
-      ->needs(input);
-  verb->add_flag("--keep-going", options->keep_going, "tell bad lines and go on; exit 1 at the end")
-      ->needs(input);
-  verb->callback([commanding, options, &session, &exit_code] {
+  const auto input =
+      verb.add_flag("--stdin", options->from_input,
+                    "send what comes in: JSON lines, candump's log lines or frames, one a line");
+  input.excludes(verb.option("words"));
+  verb.add_flag("--timed", options->timed, "with the distances of their times; default: at once")
+      .needs(input);
+  verb.add_flag("--keep-going", options->keep_going, "tell bad lines and go on; exit 1 at the end")
+      .needs(input);
+  verb.callback([commanding, options, &session, &exit_code] {
     if (options->from_input) return send_lines(session, *options, commanding->dry_run(), exit_code);
     carry_out(session, commanding->parse(), commanding->dry_run());
   });

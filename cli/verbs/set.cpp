@@ -1,9 +1,9 @@
-#include "cli/verbs/commanding.hpp"
+#include "cli/command/commanding.hpp"
 #include "cli/verbs/verbs.hpp"
 
 namespace ocm::cli {
 
-void add_set(CLI::App& app, Session& session, int&) {
+void add_set(Verb app, Session& session, int&) {
   add_command_verb(app, session, "set", "set any actuator, field by field, once", act_group,
                    "ACTUATOR FIELD=VALUE ...; a bare value is in the field's unit, what is not given is zero",
                    "  amiroctl set motors x=0.05m/s z=-30deg/s\n"

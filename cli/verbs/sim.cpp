@@ -9,9 +9,10 @@
 
 #include "ocm/transport/bus.hpp"
 
-#include "cli/interrupt.hpp"
-#include "cli/session.hpp"
+#include "cli/shared/interrupt.hpp"
+#include "cli/shared/messages.hpp"
 #include "cli/shared/remedies.hpp"
+#include "cli/shared/session.hpp"
 #include "cli/verbs/verbs.hpp"
 #include "sim/serve/amiro.hpp"
 #include "sim/serve/mappers.hpp"
@@ -29,27 +30,27 @@ int exit_code_of(const sim::Ending& ending) {
 
 // --- the AMiRo ---
 
-void add_boards(CLI::App& verb, sim::AmiroOptions& options, std::string& boards) {
+void add_boards(Verb verb, sim::AmiroOptions& options, std::string& boards) {
   verb.add_flag("--frozen", options.world.frozen,
                 "time stands still in the world: nothing moves, nothing is noisy");
-  verb.add_option("--without", options.without, "switch a board off")->type_name("BOARD")->delimiter(',');
+  verb.add_option("--without", options.without, "switch a board off").type_name("BOARD").delimiter(',');
   verb.add_option("--speed", options.speed, "how many times faster than real time")
-      ->check(CLI::Range(0.001, 1000.0))
-      ->type_name("N");
+      .range(0.001, 1000.0)
+      .type_name("N");
   verb.add_option("--bitrate", options.bit_rate, "of the virtual bus, bit/s")
-      ->check(CLI::Range(1'000U, 1'000'000'000U))
-      ->type_name("N");
+      .range(1'000U, 1'000'000'000U)
+      .type_name("N");
   verb.add_option("--bus-errors", options.bus_errors,
                   "on the virtual bus: bits a second that interference breaks, on average")
-      ->check(CLI::Range(0.0, 100'000.0))
-      ->type_name("N");
+      .range(0.0, 100'000.0)
+      .type_name("N");
   verb.add_option("--boards", boards,
                   "host: the boards' code compiled for this machine; qemu: their images, emulated")
-      ->check(CLI::IsMember({"host", "qemu"}))
-      ->type_name("host|qemu");
+      .one_of({"host", "qemu"})
+      .type_name("host|qemu");
   verb.add_option("--images", options.images,
                   "folder of the images for QEMU (that of scripts/build firmware)")
-      ->type_name("FOLDER");
+      .type_name("FOLDER");
 }
 
 int run_amiro(const sim::AmiroOptions& options, Session& session) {
@@ -80,28 +81,28 @@ int run_amiro(const sim::AmiroOptions& options, Session& session) {
 constexpr std::array<const char*, 5> mapper_options{"--lines", "--radio-loss", "--radio-range",
                                                     "--radio-repeats", "--links"};
 
-void add_mappers(CLI::App& verb, sim::MapperOptions& options) {
+void add_mappers(Verb verb, sim::MapperOptions& options) {
   verb.add_option("--robots", options.robots, "so many mappers instead of the AMiRo, and their central")
-      ->check(CLI::Range(1U, 128U))
-      ->type_name("N");
+      .range(1U, 128U)
+      .type_name("N");
   verb.add_option("--world", options.world,
                   "where the mappers are: a file, or square (default), labyrinth, range")
-      ->type_name("FILE");
+      .type_name("FILE");
   verb.add_flag("--lines", options.lines, "no central: each mapper on a serial line of its own");
   verb.add_option("--radio-loss", options.radio_loss, "share of packets lost wherever a robot is")
-      ->check(CLI::Range(0.0, 1.0))
-      ->type_name("0..1");
+      .range(0.0, 1.0)
+      .type_name("0..1");
   verb.add_option("--radio-range", options.radio_range,
                   "how far the central's radio reaches; default: the world's")
-      ->check(CLI::Range(0.01, 10'000.0))
-      ->type_name("METRES");
+      .range(0.01, 10'000.0)
+      .type_name("METRES");
   verb.add_flag("--radio-repeats", options.repeats, "the radio repeats what was lost, as Bluetooth does");
   verb.add_option("--links", options.links, "robots that the central can have a link with; default: all")
-      ->check(CLI::Range(1U, 128U))
-      ->type_name("N");
+      .range(1U, 128U)
+      .type_name("N");
 }
 
-bool wants_mappers(const CLI::App& verb) {
+bool wants_mappers(Verb verb) {
   if (verb.count("--robots") != 0 || verb.count("--world") != 0) return true;
   for (const char* option : mapper_options)
     if (verb.count(option) != 0)
@@ -110,7 +111,7 @@ bool wants_mappers(const CLI::App& verb) {
 }
 
 /// What is meant for the AMiRo's boards and their bus.
-void refuse_boards_options(const CLI::App& verb, const Session& session) {
+void refuse_boards_options(Verb verb, const Session& session) {
   for (const char* option : {"--bus-errors", "--boards", "--images", "--without", "--frozen", "--bitrate"})
     if (verb.count(option) != 0)
       fail({fmt::format("sim: {} with mappers", option), "they have no bus and no boards: leave one out"},
@@ -134,29 +135,29 @@ int run_mappers(const sim::MapperOptions& options) {
 
 }  // namespace
 
-void add_sim(CLI::App& app, Session& session, int& exit_code) {
-  auto* verb = add_verb(app, "sim", "a simulated robot, on a virtual bus or on a CAN interface", play_group,
-                        "  amiroctl sim                       a virtual bus for this user, as --bus sim\n"
-                        "  amiroctl sim --bus vcan0           the three boards on a CAN interface\n"
-                        "  amiroctl sim --seed 7 --speed 10\n"
-                        "  amiroctl sim --without light_ring  a board that is switched off\n"
-                        "  amiroctl sim --bus-errors 20       interference: 20 broken bits a second\n"
-                        "  amiroctl sim --boards qemu         the boards' firmware, emulated\n"
-                        "  amiroctl sim --robots 2            mappers in a room, and their central\n"
-                        "  amiroctl sim --world labyrinth --radio-loss 0.1");
+void add_sim(Verb app, Session& session, int& exit_code) {
+  auto verb = app.add_verb("sim", "a simulated robot, on a virtual bus or on a CAN interface", play_group,
+                           "  amiroctl sim                       a virtual bus for this user, as --bus sim\n"
+                           "  amiroctl sim --bus vcan0           the three boards on a CAN interface\n"
+                           "  amiroctl sim --seed 7 --speed 10\n"
+                           "  amiroctl sim --without light_ring  a board that is switched off\n"
+                           "  amiroctl sim --bus-errors 20       interference: 20 broken bits a second\n"
+                           "  amiroctl sim --boards qemu         the boards' firmware, emulated\n"
+                           "  amiroctl sim --robots 2            mappers in a room, and their central\n"
+                           "  amiroctl sim --world labyrinth --radio-loss 0.1");
   const auto options = std::make_shared<sim::AmiroOptions>();
-  verb->add_option("--seed", options->world.seed, "of all noise; equal seeds give equal robots")
-      ->type_name("N");
+  verb.add_option("--seed", options->world.seed, "of all noise; equal seeds give equal robots")
+      .type_name("N");
   const auto boards = std::make_shared<std::string>("host");
-  add_boards(*verb, *options, *boards);
+  add_boards(verb, *options, *boards);
   const auto mappers = std::make_shared<sim::MapperOptions>();
-  add_mappers(*verb, *mappers);
-  verb->callback([options, boards, mappers, verb, &session, &exit_code] {
+  add_mappers(verb, *mappers);
+  verb.callback([options, boards, mappers, verb, &session, &exit_code] {
     options->qemu = *boards == "qemu";
     mappers->seed = options->world.seed;
     mappers->speed = options->speed;
-    if (wants_mappers(*verb)) {
-      refuse_boards_options(*verb, session);
+    if (wants_mappers(verb)) {
+      refuse_boards_options(verb, session);
       exit_code = run_mappers(*mappers);
     } else {
       exit_code = run_amiro(*options, session);

@@ -12,14 +12,14 @@
 
 #include "ocm/client/command.hpp"
 
-#include "cli/interrupt.hpp"
 #include "cli/output/printer.hpp"
+#include "cli/shared/interrupt.hpp"
+#include "cli/shared/values.hpp"
 #include "cli/stats/assertion.hpp"
 #include "cli/stats/report.hpp"
-#include "cli/verbs/chosen_topics.hpp"
-#include "cli/verbs/commanding.hpp"
 #include "cli/verbs/verbs.hpp"
-#include "cli/watching.hpp"
+#include "cli/watch/chosen_topics.hpp"
+#include "cli/watch/watching.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -144,28 +144,28 @@ void run(Session& session, const StatsOptions& options, int& exit_code) {
 
 }  // namespace
 
-void add_stats(CLI::App& app, Session& session, int& exit_code) {
-  auto* verb =
-      add_verb(app, "stats", "rates, jitter, gaps and losses of topics, and the load of the bus", log_group,
-               "  amiroctl stats                          the bus, a table that is renewed every second\n"
-               "  amiroctl stats gyro --duration 10s\n"
-               "  amiroctl stats drive.log --json | jq '.buses[0].topics'\n"
-               "  amiroctl stats drive.log --assert 'gyro.rate>1.9' --assert 'bus.load<40%'");
-  verb->alias("hz");
+void add_stats(Verb app, Session& session, int& exit_code) {
+  auto verb =
+      app.add_verb("stats", "rates, jitter, gaps and losses of topics, and the load of the bus", log_group,
+                   "  amiroctl stats                          the bus, a table that is renewed every second\n"
+                   "  amiroctl stats gyro --duration 10s\n"
+                   "  amiroctl stats drive.log --json | jq '.buses[0].topics'\n"
+                   "  amiroctl stats drive.log --assert 'gyro.rate>1.9' --assert 'bus.load<40%'");
+  verb.alias("hz");
   const auto options = std::make_shared<StatsOptions>();
-  verb->add_option("words", options->words,
-                   "logs, any format; none, or live: the bus. Topics to show; default: all")
-      ->type_name("[FILE ...|live] [TOPIC ...]");
-  add_watch_options(*verb, options->watch);
-  verb->add_option("--assert", options->assertions,
-                   "exit 1 unless this holds, such as 'gyro.rate>1.9'; may be given again")
-      ->type_name("EXPRESSION")
-      ->allow_extra_args(false);
-  verb->add_option("--bitrate", options->bit_rate, "such as 500k or 125000; default: the spec's")
-      ->type_name("RATE");
-  auto* json = verb->add_flag("--json", options->json, "one object, for programs");
-  verb->add_flag("--csv", options->csv, "a line a topic, times in nanoseconds")->excludes(json);
-  verb->callback([options, &session, &exit_code] { run(session, *options, exit_code); });
+  verb.add_option("words", options->words,
+                  "logs, any format; none, or live: the bus. Topics to show; default: all")
+      .type_name("[FILE ...|live] [TOPIC ...]");
+  add_watch_options(verb, options->watch);
+  verb.add_option("--assert", options->assertions,
+                  "exit 1 unless this holds, such as 'gyro.rate>1.9'; may be given again")
+      .type_name("EXPRESSION")
+      .one_a_mention();
+  verb.add_option("--bitrate", options->bit_rate, "such as 500k or 125000; default: the spec's")
+      .type_name("RATE");
+  const auto json = verb.add_flag("--json", options->json, "one object, for programs");
+  verb.add_flag("--csv", options->csv, "a line a topic, times in nanoseconds").excludes(json);
+  verb.callback([options, &session, &exit_code] { run(session, *options, exit_code); });
 }
 
 }  // namespace ocm::cli

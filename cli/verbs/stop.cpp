@@ -1,9 +1,9 @@
-#include "cli/verbs/commanding.hpp"
+#include "cli/command/commanding.hpp"
 #include "cli/verbs/verbs.hpp"
 
 namespace ocm::cli {
 
-void add_stop(CLI::App& app, Session& session, int&) {
+void add_stop(Verb app, Session& session, int&) {
   add_command_verb(app, session, "stop", "stop a topic, or the whole robot: motors first, then every sensor",
                    ask_group, "topic; nothing or all: everything",
                    "  amiroctl stop                     motors to zero, then every sensor\n"

@@ -36,6 +36,13 @@ INTERNAL_NAMES = re.compile(r"\bfar[m]-\w|\bshare[d]/(?:facts|tools|theses|hooks
 # Reads words that people type, options among them.
 READS_OPTIONS = ("include/ocm/client/command.hpp",)
 
+# Headers that take seconds to compile, and the files that may.
+COSTLY = {
+    "CLI/": ("cli/shared/arguments.cpp",),
+    "nlohmann/": ("cli/shared/json.cpp", "generator/targets/json_schema.cpp", "generator/spec/json.cpp", "generator/spec/schema.cpp"),
+    "valijson/": ("generator/spec/schema.cpp",),
+}
+
 SOURCE = (".hpp", ".cpp", ".h", ".c")
 
 # Folders around the library, and what each reaches in no way.
@@ -266,7 +273,7 @@ def own_includes_are_full_paths(tree):
     for name in tree.below("cli/", "firmware/", "generator/", "sim/"):
         for line, quoted, what in tree.includes(name):
             if quoted and tree.resolve(what) is None:
-                yield f'{name}:{line}: "{what}" is not a full path, such as "cli/session.hpp" or "ocm/base/time.hpp"'
+                yield f'{name}:{line}: "{what}" is not a full path, such as "cli/shared/session.hpp" or "ocm/base/time.hpp"'
 
 
 def generator_is_independent(tree):
@@ -320,6 +327,57 @@ def folders_make_no_circle(tree):
     for folder in sorted(graph):
         if folder not in done:
             yield from visit(folder, [folder])
+
+
+def rooms(tree):
+    """(file, room, line, what it includes, that one's room) of the tool; main.cpp is in the room ''."""
+    for name in tree.below("cli/"):
+        parts = name.split("/")
+        room = parts[1] if len(parts) > 2 else ""
+        for line, quoted, what in tree.includes(name):
+            if quoted and what.startswith("cli/"):
+                yield name, room, line, what, what.split("/")[1]
+
+
+def verbs_are_seen_by_main_only(tree):
+    """Nothing stands on a verb: what two verbs share is in a room behind them."""
+    for name, room, line, what, other in rooms(tree):
+        if other == "verbs" and room not in ("", "verbs"):
+            yield f'{name}:{line}: "{what}": only main.cpp and verbs/ see verbs; what is shared goes to a room behind them'
+    for name in tree.below("sim/", "generator/", "firmware/"):
+        for line, _, what in tree.includes(name):
+            if what.startswith("cli/verbs/"):
+                yield f'{name}:{line}: "{what}": only main.cpp and verbs/ see verbs'
+
+
+def no_circles_of_rooms(tree):
+    """The rooms of cli/ include each other in one direction."""
+    ways = {}
+    for name, room, line, what, other in rooms(tree):
+        if room and room != other:
+            ways.setdefault(room, {}).setdefault(other, f'{name}:{line}: "{what}"')
+
+    def visit(room, way):
+        for other, where in sorted(ways.get(room, {}).items()):
+            if other in way:
+                yield f"{where}: a circle of rooms: {' -> '.join(way[way.index(other):] + [other])}"
+            else:
+                yield from visit(other, way + [other])
+
+    for room in sorted(ways):
+        # Each circle once, from the first of its rooms.
+        for found in visit(room, [room]):
+            if found.endswith(f"-> {room}") and min(found.split(": ")[-1].split(" -> ")) == room:
+                yield found
+
+
+def costly_headers_are_seen_by_few(tree):
+    """What takes seconds to compile is behind a layer of ours."""
+    for name in tree.below("cli/", "generator/", "sim/", "include/"):
+        for line, quoted, what in tree.includes(name):
+            few = next((files for start, files in COSTLY.items() if what.startswith(start)), None)
+            if not quoted and few is not None and name not in few:
+                yield f"{name}:{line}: <{what}> takes seconds to compile; only {', '.join(few)} includes it"
 
 
 def generated_files_are_reproducible(tree):
@@ -428,8 +486,8 @@ def quotes_are_the_examples(tree):
 RULES = (floors_have_rows, includes_go_down, layers_are_apart, library_knows_no_tool, mapper_knows_no_can, no_circles,
          namespace_is_folder, no_banned_headers, no_banned_words, headers_open_with_a_comment, headers_have_tests,
          own_includes_are_full_paths, generator_is_independent, firmware_is_for_boards, rooms_are_apart,
-         folders_make_no_circle, generated_files_are_reproducible, no_machine_paths, links_resolve, pages_are_linked,
-         quotes_are_the_examples)
+         folders_make_no_circle, verbs_are_seen_by_main_only, no_circles_of_rooms, costly_headers_are_seen_by_few,
+         generated_files_are_reproducible, no_machine_paths, links_resolve, pages_are_linked, quotes_are_the_examples)
 
 
 def check(root, rules=RULES):

@@ -50,6 +50,12 @@ GOOD = {
     "sim/physics/body.hpp": "/// What falls, and what floats.\n",
     "cli/wait.hpp": "/// How the tool waits for its user.\n",
     "firmware/system/image.cpp": '#include "firmware/boards/deck/board.hpp"\n',
+    "cli/main.cpp": '#include "cli/verbs/verbs.hpp"\n',
+    "cli/verbs/verbs.hpp": "/// The verbs of the tool, one file each.\n#pragma once\n",
+    "cli/verbs/ring.cpp": '#include "cli/verbs/verbs.hpp"\n#include "cli/horn/horn.hpp"\n',
+    "cli/bell/bell.hpp": "/// The bell of the ferry, which is rung.\n#pragma once\n",
+    "cli/horn/horn.hpp": '/// The horn of the ferry, with a bell.\n#pragma once\n#include "cli/bell/bell.hpp"\n',
+    "cli/shared/arguments.cpp": "#include <CLI/CLI.hpp>\n",
     "examples/0_hello.cpp": "int main() {\n  // snippet: hello\n  greet();\n  if (true) {\n    greet();\n  }\n"
                             "  // endsnippet\n}\n",
     "tests/unit/base/result.cpp": "",
@@ -73,6 +79,7 @@ def added(name, text):
 RESULT, BOARD, ROBOT = ("include/ocm/base/result.hpp", "include/ocm/controller/board.hpp",
                         "include/ocm/reflective/robot.hpp")
 OARS = "include/ocm/skiff/oars/left.hpp"
+BELL = "cli/bell/bell.hpp"
 README, PAGE, FERRY = "README.md", "docs/architecture.md", "include/ocm/topics/ferry.hpp"
 
 # rule, what is planted (None removes a file), where it must be found
@@ -132,6 +139,12 @@ PLANTED = [
     ("rooms_are_apart", added("sim/amiro/world.hpp", '#include "sim/mapper/plough.hpp"\n'), "sim/amiro/world.hpp:1:"),
     ("folders_make_no_circle", {"sim/physics/sea.hpp": '/// How deep it is.\n#include "sim/mapper/plough.hpp"\n'},
      "sim/mapper -> sim/physics -> sim/mapper"),
+    ("verbs_are_seen_by_main_only", added(BELL, '#include "cli/verbs/verbs.hpp"\n'), BELL + ":3:"),
+    ("verbs_are_seen_by_main_only", added("sim/amiro/world.hpp", '#include "cli/verbs/verbs.hpp"\n'), "world.hpp:3:"),
+    ("no_circles_of_rooms", added(BELL, '#include "cli/horn/horn.hpp"\n'),
+     "cli/horn/horn.hpp:3: \"cli/bell/bell.hpp\": a circle of rooms: bell -> horn -> bell"),
+    ("costly_headers_are_seen_by_few", added("cli/verbs/ring.cpp", "#include <CLI/CLI.hpp>\n"), "ring.cpp:3:"),
+    ("costly_headers_are_seen_by_few", added("generator/spec/spec.hpp", "#include <nlohmann/json.hpp>\n"), "spec.hpp:4:"),
     ("generated_files_are_reproducible", added(FERRY, "// 2024-05-01\n"), FERRY + ":8:"),
     ("no_machine_paths", {"cli/x.cpp": 'auto p = "/wor' 'k/main";\n'}, "cli/x.cpp:1:"),
     ("no_machine_paths", {"cli/x.cpp": "\n// see /hom" "e/jane/ocm\n"}, "cli/x.cpp:2:"),

@@ -5,9 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
-#include "cli/session.hpp"
+#include "cli/shared/arguments.hpp"
+#include "cli/shared/session.hpp"
 
 namespace ocm::cli {
 
@@ -23,7 +22,6 @@ struct Completion {
 
 /// `words` are those behind the program's name; the last is the one that is being typed, and may be empty.
 /// Candidates begin with it. A `--spec` among the words is heeded; one that cannot be read gives no topics.
-[[nodiscard]] Completion complete(const CLI::App& app, Session& session,
-                                  const std::vector<std::string>& words);
+[[nodiscard]] Completion complete(Verb program, Session& session, const std::vector<std::string>& words);
 
 }  // namespace ocm::cli

@@ -1,4 +1,4 @@
-#include "cli/verbs/admission.hpp"
+#include "cli/command/admission.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -21,8 +21,8 @@
 #include "ocm/protocol/request.hpp"
 #include "ocm/protocol/topic.hpp"
 
-#include "cli/interrupt.hpp"
-#include "cli/verbs/commanding.hpp"
+#include "cli/shared/interrupt.hpp"
+#include "cli/shared/values.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -238,11 +238,11 @@ std::optional<base::Duration> shortest(BusCheck& check, base::Duration refused) 
 
 }  // namespace
 
-void add_admission_options(CLI::App& verb, AdmissionOptions& options) {
+void add_admission_options(Verb verb, AdmissionOptions& options) {
   verb.add_flag("--force", options.force, "send it even if the bus could not carry it");
   verb.add_flag("--explain", options.explain, "show what is on the bus, and how late each frame can be");
   verb.add_option("--listen", options.listen, "how long to listen to what runs, before asking (100ms)")
-      ->type_name("T");
+      .type_name("T");
 }
 
 void admit(Session& session, transport::Bus& bus, const client::Command& command,

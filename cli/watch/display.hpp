@@ -7,13 +7,12 @@
 #include <string_view>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "ocm/client/sample.hpp"
 #include "ocm/log/entry.hpp"
 
 #include "cli/output/printer.hpp"
-#include "cli/session.hpp"
+#include "cli/shared/arguments.hpp"
+#include "cli/shared/session.hpp"
 
 namespace ocm::cli {
 
@@ -23,7 +22,7 @@ struct DisplayOptions {
 };
 
 /// --pretty, --json, --csv, --raw and --field.
-void add_display_options(CLI::App& verb, DisplayOptions& options);
+void add_display_options(Verb verb, DisplayOptions& options);
 
 /// Frames in, text on stdout out.
 class Display {

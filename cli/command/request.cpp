@@ -1,4 +1,4 @@
-#include "cli/verbs/request.hpp"
+#include "cli/command/request.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -11,11 +11,12 @@
 #include "ocm/client/quantity.hpp"
 #include "ocm/client/sample.hpp"
 
-#include "cli/interrupt.hpp"
+#include "cli/command/admission.hpp"
+#include "cli/command/commanding.hpp"
 #include "cli/output/printer.hpp"
-#include "cli/verbs/admission.hpp"
-#include "cli/verbs/commanding.hpp"
-#include "cli/verbs/subscription.hpp"
+#include "cli/shared/interrupt.hpp"
+#include "cli/shared/values.hpp"
+#include "cli/watch/subscription.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -62,28 +63,28 @@ void send_and_await(Session& session, transport::Bus& open_bus, const client::Co
 
 }  // namespace
 
-void add_request_options(CLI::App& verb, Session& session, std::string_view words_help, Starts starts) {
+void add_request_options(Verb verb, Session& session, std::string_view words_help, Starts starts) {
   struct Options {
-    Options(CLI::App& app, Session& s, std::string_view help) : commanding(app, s, help) {}
+    Options(Verb app, Session& s, std::string_view help) : commanding(app, s, help) {}
     Commanding commanding;
     AdmissionOptions admission;
     std::string wait;
   };
   const auto options = std::make_shared<Options>(verb, session, words_help);
-  auto* wait =
+  const auto wait =
       verb.add_option("--wait", options->wait, "wait for the first sample and show it, at most T (2s)");
-  wait->expected(0, 1)->type_name("[T]");
+  wait.expected(0, 1).type_name("[T]");
   if (starts == Starts::stream) add_admission_options(verb, options->admission);
   verb.callback([options, wait, &session] {
     const auto command = options->commanding.parse();
     const bool dry_run = options->commanding.dry_run();
     if (dry_run && !options->admission.explain) return print_frames(command.frames);
     base::Duration timeout{};
-    if (wait->count() != 0) timeout = duration_option("--wait", options->wait.empty() ? "2s" : options->wait);
+    if (wait.count() != 0) timeout = duration_option("--wait", options->wait.empty() ? "2s" : options->wait);
     const auto bus = session.open_bus();
     admit(session, *bus, command, options->admission);
     if (dry_run) return print_frames(command.frames);
-    if (wait->count() != 0) return send_and_await(session, *bus, command, timeout);
+    if (wait.count() != 0) return send_and_await(session, *bus, command, timeout);
     for (const auto& frame : command.frames) send_patiently(*bus, frame);
   });
 }

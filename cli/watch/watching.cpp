@@ -1,4 +1,4 @@
-#include "cli/watching.hpp"
+#include "cli/watch/watching.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,20 +7,18 @@
 
 #include <fmt/format.h>
 
-#include "cli/interrupt.hpp"
 #include "cli/logs/opened_log.hpp"
-#include "cli/verbs/commanding.hpp"
+#include "cli/shared/interrupt.hpp"
+#include "cli/shared/values.hpp"
 
 namespace ocm::cli {
 
-void add_watch_options(CLI::App& verb, WatchOptions& options) {
+void add_watch_options(Verb verb, WatchOptions& options) {
   verb.add_option("--from", options.format, "format of the logs; default: what they begin with says it")
-      ->type_name("FORMAT");
+      .type_name("FORMAT");
   verb.add_option("--duration", options.duration, "end after this time; of a log: look at its first T only")
-      ->type_name("T");
-  verb.add_option("-n,--count", options.count, "end after so many frames")
-      ->type_name("N")
-      ->check(CLI::PositiveNumber);
+      .type_name("T");
+  verb.add_option("-n,--count", options.count, "end after so many frames").type_name("N").positive();
 }
 
 Words split_words(std::string_view verb, const std::vector<std::string>& words,

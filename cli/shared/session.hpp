@@ -1,40 +1,30 @@
-/// What all verbs share: the options before the verb, the robot's catalogue, the bus, and how to say that
-/// something went wrong.
+/// What all verbs share: the options before the verb, the robot's catalogue and the bus.
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
-
-#include <CLI/CLI.hpp>
 
 #include "ocm/can/frame.hpp"
 #include "ocm/protocol/topic.hpp"
 #include "ocm/transport/bus.hpp"
 
-#include "generator/spec/spec.hpp"
+#include "cli/shared/arguments.hpp"
+#include "cli/shared/messages.hpp"
+
+namespace ocm::spec {
+class Spec;
+}
 
 namespace ocm::cli {
 
-/// Documented in docs/amiroctl.md. 128 + signal when a signal ended the command.
-enum ExitCode : int { exit_success = 0, exit_failure = 1, exit_usage = 2 };
-
-/// Thrown after the message was printed; main returns the code.
-struct Exit {
-  int code;
-};
-
-/// Prints "amiroctl: what" and the remedy on stderr and leaves with `code`.
-[[noreturn]] void fail(const transport::Failure& failure, int code = exit_failure);
-/// A remark for the person at the terminal, on stderr.
-void remark(std::string_view text);
-
 class Session {
  public:
+  Session();
+  ~Session();
+
   /// The options that every verb takes.
-  void add_options(CLI::App& app);
+  void add_options(Verb app);
 
   /// The AMiRo's, compiled in, or that of --spec.
   [[nodiscard]] const protocol::Catalogue& catalogue();

@@ -1,10 +1,10 @@
-#include "cli/verbs/chosen_topics.hpp"
+#include "cli/watch/chosen_topics.hpp"
 
 #include <fmt/format.h>
 
 #include "ocm/client/command.hpp"
 
-#include "cli/session.hpp"
+#include "cli/shared/messages.hpp"
 
 namespace ocm::cli {
 

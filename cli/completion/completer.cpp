@@ -1,6 +1,7 @@
-#include "cli/verbs/completer.hpp"
+#include "cli/completion/completer.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <string_view>
 
 #include "ocm/transport/interfaces.hpp"
@@ -12,53 +13,43 @@
 namespace ocm::cli {
 namespace {
 
-/// Options and positionals of a verb, those of its option groups included.
-template <class F>
-void for_each_option(const CLI::App& app, F&& f) {
-  for (const CLI::Option* option : app.get_options()) f(*option);
-  for (const CLI::App* group :
-       app.get_subcommands([](const CLI::App* each) { return each->get_name().empty(); }))
-    for_each_option(*group, f);
-}
-
-const CLI::Option* find_option(const CLI::App* app, const std::string& name) {
-  const CLI::Option* found = nullptr;
-  for (; app != nullptr && found == nullptr; app = app->get_parent())
-    for_each_option(*app, [&](const CLI::Option& option) {
-      if (option.nonpositional() && option.check_name(name)) found = &option;
-    });
+/// Of the verb, else of those that it is a verb of.
+std::optional<Option> find_option(Verb verb, const std::string& name) {
+  std::optional<Option> found;
+  for (; verb && !found; verb = verb.parent())
+    for (const Option& option : verb.options())
+      if (option.is_option() && option.is_named(name)) found = option;
   return found;
 }
 
-bool takes_value(const CLI::Option& option) {
-  return option.get_items_expected_max() > 0;
+bool wants_value(const Option& option) {
+  return option.most_values() > 0 && option.least_values() > 0;
 }
 
-const CLI::App* find_verb(const CLI::App& app, const std::string& name) {
-  for (const CLI::App* verb : app.get_subcommands(
-           [&](const CLI::App* each) { return !each->get_name().empty() && each->check_name(name); }))
-    return verb;
-  return nullptr;
+Verb find_verb(Verb of, const std::string& name) {
+  for (const Verb verb : of.verbs())
+    if (verb.is_named(name)) return verb;
+  return {};
 }
 
 /// The command line so far.
 struct Line {
-  const CLI::App* verb = nullptr;        ///< the innermost
+  Verb verb;                             ///< the innermost
   std::vector<std::string> positionals;  ///< of it
-  const CLI::Option* waiting = nullptr;  ///< for its value, which is the word being typed
+  std::optional<Option> waiting;         ///< for its value, which is the word being typed
   bool only_positionals = false;         ///< after --
 };
 
-Line read_line(const CLI::App& app, Session& session, const std::vector<std::string>& words) {
-  Line line{&app, {}, nullptr, false};
+Line read_line(Verb program, Session& session, const std::vector<std::string>& words) {
+  Line line{program, {}, std::nullopt, false};
   for (std::size_t i = 0; i + 1 < words.size(); ++i) {
     const std::string& word = words[i];
-    if (line.waiting != nullptr) {
-      if (line.waiting->check_name("--spec")) session.spec_file = word;
-      line.waiting = nullptr;
+    if (line.waiting) {
+      if (line.waiting->is_named("--spec")) session.spec_file = word;
+      line.waiting.reset();
     } else if (line.only_positionals || word.size() < 2 || word.front() != '-') {
-      const CLI::App* verb = line.positionals.empty() ? find_verb(*line.verb, word) : nullptr;
-      if (verb != nullptr)
+      const Verb verb = line.positionals.empty() ? find_verb(line.verb, word) : Verb{};
+      if (verb)
         line.verb = verb;
       else
         line.positionals.push_back(word);
@@ -66,8 +57,7 @@ Line read_line(const CLI::App& app, Session& session, const std::vector<std::str
       line.only_positionals = true;
     } else if (const std::size_t equals = word.find('='); equals != std::string::npos) {
       if (word.substr(0, equals) == "--spec") session.spec_file = word.substr(equals + 1);
-    } else if (const CLI::Option* option = find_option(line.verb, word);
-               option != nullptr && takes_value(*option) && option->get_items_expected_min() > 0) {
+    } else if (const auto option = find_option(line.verb, word); option && wants_value(*option)) {
       line.waiting = option;
     }
   }
@@ -87,18 +77,15 @@ class Completer {
   /// What stands before every candidate: "--priority=".
   void set_prefix(std::string prefix) { prefix_ = std::move(prefix); }
 
-  void verbs_of(const CLI::App& app) {
-    for (const CLI::App* verb : app.get_subcommands(
-             [](const CLI::App* each) { return !each->get_name().empty() && !each->get_group().empty(); }))
-      add(verb->get_name(), verb->get_description());
+  void verbs_of(Verb of) {
+    for (const Verb verb : of.verbs_for_all()) add(verb.name(), verb.description());
   }
 
-  void options_of(const CLI::App* app) {
-    for (; app != nullptr; app = app->get_parent())
-      for_each_option(*app, [this](const CLI::Option& option) {
-        if (option.get_group().empty() || option.get_lnames().empty()) return;
-        add("--" + option.get_lnames().front(), option.get_description());
-      });
+  void options_of(Verb verb) {
+    for (; verb; verb = verb.parent())
+      for (const Option& option : verb.options())
+        if (const auto names = option.long_names(); !option.is_hidden() && !names.empty())
+          add("--" + names.front(), option.description());
   }
 
   enum class Of { sensors, actuators, all };
@@ -137,23 +124,23 @@ class Completer {
   }
 
   /// What the declaration of an option or positional says of its values.
-  void values_of(const CLI::Option& option) {
-    if (option.check_name("--bus")) return buses();
-    if (option.check_name("--priority")) return priorities();
-    const std::string type = option.get_type_name();
+  void values_of(const Option& option) {
+    if (option.is_named("--bus")) return buses();
+    if (option.is_named("--priority")) return priorities();
+    const std::string type = option.type();
     if (const auto open = type.find('{'); open != std::string::npos)
       return words_of(type.substr(open + 1, type.find('}', open) - open - 1), ',');
     // Without a type of its own a positional says by its name what it is: FILE, but not words.
-    const std::string name = option.get_name();
+    const std::string name = option.name();
     const bool telling = std::any_of(name.begin(), name.end(), [](char c) { return c >= 'A' && c <= 'Z'; });
     if (!type.empty() && type != "TEXT")
       words_of(type, '|');
-    else if (option.get_positional() && telling)
+    else if (option.is_positional() && telling)
       words_of(name, '|');
   }
 
   void positional(const Line& line) {
-    const std::string verb = line.verb->get_name();
+    const std::string verb = line.verb.name();
     const std::size_t index = line.positionals.size();
     if (verb == "publish" || verb == "once") return index == 0 ? topics(Of::sensors) : void();
     if (verb == "stop") {
@@ -165,11 +152,11 @@ class Completer {
     if (verb == "led") return index == 0 ? lights() : index == 1 ? colours() : void();
     if (verb == "drive") return add("stop");
     std::size_t number = 0;
-    for_each_option(*line.verb, [&](const CLI::Option& option) {
-      if (!option.get_positional()) return;
-      const bool many = option.get_items_expected_max() > 1;
+    for (const Option& option : line.verb.options()) {
+      if (!option.is_positional()) continue;
+      const bool many = option.most_values() > 1;
       if (number++ == index || (many && number <= index + 1)) values_of(option);
-    });
+    }
   }
 
  private:
@@ -221,24 +208,24 @@ class Completer {
 
 }  // namespace
 
-Completion complete(const CLI::App& app, Session& session, const std::vector<std::string>& words) {
-  const Line line = read_line(app, session, words);
+Completion complete(Verb program, Session& session, const std::vector<std::string>& words) {
+  const Line line = read_line(program, session, words);
   const std::string typed = words.empty() ? "" : words.back();
   Completer completer{session, typed};
-  if (line.waiting != nullptr) {
+  if (line.waiting) {
     completer.values_of(*line.waiting);
   } else if (!line.only_positionals && typed.starts_with('-')) {
     const std::size_t equals = typed.find('=');
-    const CLI::Option* option =
-        equals == std::string::npos ? nullptr : find_option(line.verb, typed.substr(0, equals));
-    if (option != nullptr) {
+    const auto option =
+        equals == std::string::npos ? std::nullopt : find_option(line.verb, typed.substr(0, equals));
+    if (option) {
       completer.set_prefix(typed.substr(0, equals + 1));
       completer.values_of(*option);
     } else {
       completer.options_of(line.verb);
     }
   } else {
-    if (line.positionals.empty()) completer.verbs_of(*line.verb);
+    if (line.positionals.empty()) completer.verbs_of(line.verb);
     completer.positional(line);
   }
   return completer.take();

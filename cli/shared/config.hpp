@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include <CLI/CLI.hpp>
+#include "cli/shared/arguments.hpp"
 
 namespace ocm::cli {
 
@@ -44,9 +44,9 @@ struct Config {
 /// $XDG_CONFIG_HOME/amiroctl/config.toml, or ~/.config/amiroctl/config.toml; empty without a home.
 [[nodiscard]] std::string default_config_file();
 
-/// Gives to the options of `app` and of the verb that was called what the environment and the file say, where
-/// the command line said nothing. The file of `file` must be there; without a name the default one need not.
-/// Leaves with exit_usage and file, line and remedy when the file is wrong.
-void apply_config(CLI::App& app, const std::string& file);
+/// Gives to the options of `program` and of the verb that was called what the environment and the file say,
+/// where the command line said nothing. The file of `file` must be there; without a name the default one need
+/// not. Leaves with exit_usage and file, line and remedy when the file is wrong.
+void apply_config(Verb app, const std::string& file);
 
 }  // namespace ocm::cli

@@ -1,11 +1,11 @@
-#include "cli/verbs/frame_lines.hpp"
+#include "cli/watch/frame_lines.hpp"
 
 #include <fmt/format.h>
 
 #include "ocm/log/candump.hpp"
 
-#include "cli/interrupt.hpp"
-#include "cli/session.hpp"
+#include "cli/shared/interrupt.hpp"
+#include "cli/shared/messages.hpp"
 
 namespace ocm::cli {
 

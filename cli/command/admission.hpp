@@ -4,12 +4,11 @@
 
 #include <string>
 
-#include <CLI/CLI.hpp>
-
 #include "ocm/client/command.hpp"
 #include "ocm/transport/bus.hpp"
 
-#include "cli/session.hpp"
+#include "cli/shared/arguments.hpp"
+#include "cli/shared/session.hpp"
 
 namespace ocm::cli {
 
@@ -20,7 +19,7 @@ struct AdmissionOptions {
 };
 
 /// --force, --explain and --listen.
-void add_admission_options(CLI::App& verb, AdmissionOptions& options);
+void add_admission_options(Verb verb, AdmissionOptions& options);
 
 /// Listens, and fails with the reason where somebody would be late; --explain prints the table to stdout. A
 /// command that starts no stream passes at once, and so does all with --force alone.

@@ -1,10 +1,11 @@
-#include "cli/session.hpp"
+#include "cli/shared/session.hpp"
 
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <thread>
 #include <unistd.h>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -15,38 +16,30 @@
 #include "ocm/transport/socketcan.hpp"
 #include "ocm/transport/virtual_bus.hpp"
 
-#include "cli/config.hpp"
-#include "cli/shared/remedies.hpp"
+#include "cli/shared/config.hpp"
 #include "generator/robot_spec.hpp"
+#include "generator/spec/spec.hpp"
 
 namespace ocm::cli {
 
-void fail(const transport::Failure& failure, int code) {
-  fmt::print(stderr, "amiroctl: {}\n", failure.what);
-  if (const std::string what_to_do = remedy(failure); !what_to_do.empty())
-    fmt::print(stderr, "          {}\n", what_to_do);
-  throw Exit{code};
-}
+Session::Session() = default;
+Session::~Session() = default;
 
-void remark(std::string_view text) {
-  fmt::print(stderr, "{}\n", text);
-}
-
-void Session::add_options(CLI::App& app) {
+void Session::add_options(Verb app) {
   app.add_option(
          "--bus", bus_name,
          "CAN interface (can0, vcan0, ...), slcan:/dev/ttyACM0@500k (a serial adapter) or sim; default: "
          "the only interface that is up or sim")
-      ->envname("AMIROCTL_BUS")
-      ->type_name("NAME");
+      .environment("AMIROCTL_BUS")
+      .type_name("NAME");
   app.add_option("--spec", spec_file, "topics of another robot, as JSON; default: the AMiRo's, compiled in")
-      ->envname("AMIROCTL_SPEC")
-      ->type_name("FILE");
+      .environment("AMIROCTL_SPEC")
+      .type_name("FILE");
   app.add_option("--config", config_file,
                  "options that stand on no command line, as TOML; default: ~/.config/amiroctl/config.toml")
-      ->envname("AMIROCTL_CONFIG")
-      ->type_name("FILE");
-  app.parse_complete_callback([this, &app] { apply_config(app, config_file); });
+      .environment("AMIROCTL_CONFIG")
+      .type_name("FILE");
+  app.after_parsing([this, app] { apply_config(app, config_file); });
   app.add_flag("--no-color,--no-colour", no_colour_, "never colour the output (also: NO_COLOR)");
 }
 

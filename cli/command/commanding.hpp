@@ -2,17 +2,14 @@
 /// the frames to the bus or, with --dry-run, to stdout.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
-#include "ocm/base/time.hpp"
 #include "ocm/client/command.hpp"
 
-#include "cli/session.hpp"
+#include "cli/shared/arguments.hpp"
+#include "cli/shared/session.hpp"
 
 namespace ocm::cli {
 
@@ -21,7 +18,7 @@ class Commanding {
   Commanding(const Commanding&) = delete;  // the options write into its members
   Commanding& operator=(const Commanding&) = delete;
   /// Adds the positional words, --priority and --dry-run to `verb`.
-  Commanding(CLI::App& verb, Session& session, std::string_view words_help, bool with_priority = true);
+  Commanding(Verb verb, Session& session, std::string_view words_help, bool with_priority = true);
 
   /// The command, or exit_usage with a message that names the word.
   [[nodiscard]] client::Command parse() const;
@@ -43,14 +40,8 @@ void carry_out(Session& session, const client::Command& command, bool dry_run);
 /// Prints frames in candump notation, one a line.
 void print_frames(const std::vector<can::Frame>& frames);
 
-/// A duration option such as --timeout 2s; exit_usage when it is none.
-[[nodiscard]] base::Duration duration_option(std::string_view option, const std::string& text);
-
-/// A bit rate in bit/s: "500000", "500k", "83.333k", "1M"; exit_usage when it is none of classic CAN.
-[[nodiscard]] std::uint32_t bit_rate_option(std::string_view text);
-
 /// A plain command verb: parse, carry out. For stop, led, set, send.
-void add_command_verb(CLI::App& app, Session& session, std::string_view name, std::string_view description,
+void add_command_verb(Verb app, Session& session, std::string_view name, std::string_view description,
                       std::string_view group, std::string_view words_help, std::string_view examples,
                       bool with_priority = true);
 

@@ -1,4 +1,4 @@
-#include "cli/verbs/display.hpp"
+#include "cli/watch/display.hpp"
 
 #include <unistd.h>
 
@@ -29,18 +29,17 @@ Selection selection_of(std::string_view verb, const protocol::Catalogue& catalog
 
 }  // namespace
 
-void add_display_options(CLI::App& verb, DisplayOptions& options) {
-  auto* format = verb.add_option_group("Format", "default: pretty on a terminal, JSON lines otherwise");
-  format->add_flag("--pretty", options.pretty, "a line a sample, values with units");
-  format->add_flag("--json", options.json, "an object a frame");
-  format->add_flag("--csv", options.csv,
-                   "a line a field: time, topic, field, value, unit; with --field a column a field");
-  format->add_flag("--raw", options.raw, "candump's log line");
-  format->require_option(0, 1);
+void add_display_options(Verb verb, DisplayOptions& options) {
+  auto format = verb.add_choice("Format", "default: pretty on a terminal, JSON lines otherwise");
+  format.add_flag("--pretty", options.pretty, "a line a sample, values with units");
+  format.add_flag("--json", options.json, "an object a frame");
+  format.add_flag("--csv", options.csv,
+                  "a line a field: time, topic, field, value, unit; with --field a column a field");
+  format.add_flag("--raw", options.raw, "candump's log line");
   verb.add_option("--field", options.fields,
                   "only this, such as gyroscope.x or odometry.velocity.x; repeatable")
-      ->type_name("NAME")
-      ->allow_extra_args(false);
+      .type_name("NAME")
+      .one_a_mention();
 }
 
 Display::Display(std::string_view verb, Session& session, const DisplayOptions& options)

@@ -10,13 +10,12 @@
 #include <string_view>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "ocm/base/time.hpp"
 #include "ocm/log/entry.hpp"
 #include "ocm/log/interfaces.hpp"
 
-#include "cli/session.hpp"
+#include "cli/shared/arguments.hpp"
+#include "cli/shared/session.hpp"
 
 namespace ocm::cli {
 
@@ -27,7 +26,7 @@ struct WatchOptions {
 };
 
 /// --from, --duration and -n.
-void add_watch_options(CLI::App& verb, WatchOptions& options);
+void add_watch_options(Verb verb, WatchOptions& options);
 
 /// The words of a command line that are logs, and those that are something else.
 struct Words {

@@ -1,4 +1,4 @@
-#include "cli/interrupt.hpp"
+#include "cli/shared/interrupt.hpp"
 
 #include <cerrno>
 #include <climits>

@@ -3,9 +3,8 @@
 
 #include <string_view>
 
-#include <CLI/CLI.hpp>
-
-#include "cli/session.hpp"
+#include "cli/shared/arguments.hpp"
+#include "cli/shared/session.hpp"
 
 namespace ocm::cli {
 
@@ -14,7 +13,7 @@ enum class Starts : bool { sample, stream };
 
 /// The words, --priority, --dry-run and --wait, of a stream those of its admission, and what the verb does
 /// with them.
-void add_request_options(CLI::App& verb, Session& session, std::string_view words_help,
+void add_request_options(Verb verb, Session& session, std::string_view words_help,
                          Starts starts = Starts::sample);
 
 }  // namespace ocm::cli

@@ -1,9 +1,9 @@
-#include "cli/timeline.hpp"
+#include "cli/command/timeline.hpp"
 
 #include <algorithm>
 #include <thread>
 
-#include "cli/interrupt.hpp"
+#include "cli/shared/interrupt.hpp"
 
 namespace ocm::cli {
 

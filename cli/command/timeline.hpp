@@ -10,7 +10,7 @@
 #include "ocm/client/command.hpp"
 #include "ocm/transport/bus.hpp"
 
-#include "cli/session.hpp"
+#include "cli/shared/session.hpp"
 
 namespace ocm::cli {
 

@@ -1,4 +1,4 @@
-#include "cli/config.hpp"
+#include "cli/shared/config.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -11,7 +11,7 @@
 
 #include "ocm/base/decimal.hpp"
 
-#include "cli/session.hpp"
+#include "cli/shared/messages.hpp"
 #include "generator/spec/names.hpp"
 
 namespace ocm::cli {
@@ -132,78 +132,43 @@ class LineReader {
   std::size_t number_;
 };
 
-/// Options of an application without those of its verbs, and the group that each is in.
-template <class F>
-void for_each_option(CLI::App& app, F&& f) {
-  for (CLI::Option* option : app.get_options()) f(*option, app);
-  for (CLI::App* group : app.get_subcommands([](const CLI::App* each) { return each->get_name().empty(); }))
-    for_each_option(*group, f);
-}
-
-bool can_be_set(const CLI::Option& option) {
+bool can_be_set(const Option& option) {
   static const std::set<std::string> never{"help", "version", "config", "words", "all"};
-  return option.nonpositional() && !option.get_lnames().empty() &&
-         never.count(option.get_lnames().front()) == 0;
+  const auto names = option.long_names();
+  return option.is_option() && !names.empty() && never.count(names.front()) == 0;
 }
 
-/// The command line, or what was applied before, has it or another in its place.
-bool is_decided(const CLI::Option& option, const CLI::App& owner) {
-  if (option.count() > 0) return true;
-  for (const CLI::Option* other : option.get_excludes())
-    if (other->count() > 0) return true;
-  if (!owner.get_name().empty()) return false;
-  for (const CLI::Option* other : owner.get_options())
-    if (other->count() > 0) return true;
-  return false;
+/// The program and the verb that was called, from the outermost on.
+std::vector<Verb> called(Verb program) {
+  std::vector<Verb> verbs{program};
+  while (const Verb inner = verbs.back().called()) verbs.push_back(inner);
+  return verbs;
 }
 
-/// Throws CLI::ParseError when the option does not take the values.
-void give(CLI::Option& option, const std::string& key, const std::vector<std::string>& values) {
-  if (option.get_items_expected_max() == 0)
-    option.add_result(option.get_flag_value(key, values.empty() ? "" : values.front()));
-  else
-    option.add_result(values);
-  option.run_callback();
-}
-
-/// The robot's options and those of the verb that was called, from the outermost on.
-std::vector<CLI::App*> called(CLI::App& app) {
-  std::vector<CLI::App*> apps{&app};
-  for (auto inner = app.get_subcommands(); !inner.empty(); inner = apps.back()->get_subcommands()) {
-    const auto verb =
-        std::find_if(inner.begin(), inner.end(), [](CLI::App* each) { return !each->get_name().empty(); });
-    if (verb == inner.end()) break;
-    apps.push_back(*verb);
-  }
-  return apps;
-}
-
-CLI::App* find_table(CLI::App& app, std::string_view table) {
-  CLI::App* found = &app;
-  while (!table.empty() && found != nullptr) {
+Verb find_table(Verb program, std::string_view table) {
+  Verb found = program;
+  while (!table.empty() && found) {
     const std::string name{table.substr(0, table.find('.'))};
-    CLI::App* inner = nullptr;
-    for (CLI::App* each : found->get_subcommands([](const CLI::App*) { return true; }))
-      if (!each->get_name().empty() && each->check_name(name)) inner = each;
+    Verb inner;
+    for (const Verb each : found.verbs())
+      if (each.is_named(name)) inner = each;
     found = inner;
     table.remove_prefix(std::min(name.size() + 1, table.size()));
   }
   return found;
 }
 
-void collect_keys(CLI::App& app, bool verbs_too, std::set<std::string>& keys) {
-  for_each_option(app, [&](CLI::Option& option, CLI::App&) {
-    if (can_be_set(option)) keys.insert(option.get_lnames().begin(), option.get_lnames().end());
-  });
-  if (!verbs_too) return;
-  for (CLI::App* verb : app.get_subcommands([](const CLI::App* each) { return !each->get_name().empty(); }))
-    collect_keys(*verb, true, keys);
+void collect_keys(Verb verb, bool inner_too, std::set<std::string>& keys) {
+  for (const Option& option : verb.options())
+    if (can_be_set(option))
+      for (auto& name : option.long_names()) keys.insert(std::move(name));
+  if (!inner_too) return;
+  for (const Verb inner : verb.verbs()) collect_keys(inner, true, keys);
 }
 
-std::set<std::string> verb_names(CLI::App& app) {
+std::set<std::string> verb_names(Verb program) {
   std::set<std::string> names;
-  for (CLI::App* verb : app.get_subcommands([](const CLI::App* each) { return !each->get_name().empty(); }))
-    names.insert(verb->get_name());
+  for (const Verb verb : program.verbs()) names.insert(verb.name());
   return names;
 }
 
@@ -214,15 +179,15 @@ std::string suggestion(const std::string& typed, const std::set<std::string>& kn
 }
 
 /// What is wrong with the names of a setting, if anything is.
-void check_names(CLI::App& app, const Setting& setting, std::vector<ConfigProblem>& problems) {
-  CLI::App* table = find_table(app, setting.table);
-  if (table == nullptr) {
+void check_names(Verb program, const Setting& setting, std::vector<ConfigProblem>& problems) {
+  const Verb table = find_table(program, setting.table);
+  if (!table) {
     problems.push_back({setting.line, fmt::format("[{}] is no verb", setting.table),
-                        suggestion(setting.table, verb_names(app))});
+                        suggestion(setting.table, verb_names(program))});
     return;
   }
   std::set<std::string> keys;
-  collect_keys(*table, setting.table.empty(), keys);
+  collect_keys(table, setting.table.empty(), keys);
   if (keys.count(setting.key) == 0)
     problems.push_back(
         {setting.line, fmt::format("unknown key {}", setting.key), suggestion(setting.key, keys)});
@@ -242,36 +207,36 @@ std::string environment_name(const std::string& key) {
   return name;
 }
 
-void apply_environment(CLI::App& verb) {
-  for_each_option(verb, [](CLI::Option& option, const CLI::App& owner) {
-    if (!can_be_set(option) || is_decided(option, owner)) return;
-    for (const std::string& key : option.get_lnames()) {
+void apply_environment(Verb verb) {
+  for (Option option : verb.options()) {
+    if (!can_be_set(option) || option.is_decided()) continue;
+    for (const std::string& key : option.long_names()) {
       const std::string name = environment_name(key);
       const char* value = std::getenv(name.c_str());
       if (value == nullptr || *value == '\0') continue;
       try {
-        give(option, key, {value});
-      } catch (const CLI::ParseError& error) {
+        option.give(key, {value});
+      } catch (const BadValue& error) {
         fail({fmt::format("{}={}: {}", name, value, error.what()), "see `amiroctl VERB --help`, or unset it"},
              exit_usage);
       }
-      return;
+      break;
     }
-  });
+  }
 }
 
-void apply_setting(CLI::App& verb, const Setting& setting, const std::string& file) {
-  for_each_option(verb, [&](CLI::Option& option, const CLI::App& owner) {
-    const auto& names = option.get_lnames();
-    if (!can_be_set(option) || std::find(names.begin(), names.end(), setting.key) == names.end()) return;
-    if (is_decided(option, owner)) return;
+void apply_setting(Verb verb, const Setting& setting, const std::string& file) {
+  for (Option option : verb.options()) {
+    const auto names = option.long_names();
+    if (!can_be_set(option) || std::find(names.begin(), names.end(), setting.key) == names.end()) continue;
+    if (option.is_decided()) continue;
     try {
-      give(option, setting.key, setting.values);
-    } catch (const CLI::ParseError& error) {
+      option.give(setting.key, setting.values);
+    } catch (const BadValue& error) {
       leave(file,
             {{setting.line, fmt::format("{}: {}", setting.key, error.what()), "see `amiroctl VERB --help`"}});
     }
-  });
+  }
 }
 
 std::string read_file(const std::string& file, bool must_exist) {
@@ -316,13 +281,13 @@ std::string default_config_file() {
   return folder.empty() ? folder : folder + "/amiroctl/config.toml";
 }
 
-void apply_config(CLI::App& app, const std::string& file) {
-  const auto apps = called(app);
-  for (CLI::App* each : apps) apply_environment(*each);
+void apply_config(Verb program, const std::string& file) {
+  const auto verbs = called(program);
+  for (const Verb each : verbs) apply_environment(each);
   const std::string path = file.empty() ? default_config_file() : file;
   if (path.empty()) return;
   Config config = parse_config(read_file(path, !file.empty()));
-  for (const Setting& setting : config.settings) check_names(app, setting, config.problems);
+  for (const Setting& setting : config.settings) check_names(program, setting, config.problems);
   if (!config.problems.empty()) {
     std::stable_sort(config.problems.begin(), config.problems.end(),
                      [](const auto& a, const auto& b) { return a.line < b.line; });
@@ -331,9 +296,9 @@ void apply_config(CLI::App& app, const std::string& file) {
   // Of a verb's own table before what is for all; the later of two equal keys finds the option decided.
   for (const bool own : {true, false})
     for (const Setting& setting : config.settings)
-      for (CLI::App* each : apps)
-        if (setting.table.empty() != own && (!own || find_table(app, setting.table) == each))
-          apply_setting(*each, setting, path);
+      for (const Verb each : verbs)
+        if (setting.table.empty() != own && (!own || find_table(program, setting.table) == each))
+          apply_setting(each, setting, path);
 }
 
 }  // namespace ocm::cli

@@ -1,0 +1,55 @@
+#include "cli/command/commanding.hpp"
+
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "ocm/can/text.hpp"
+
+namespace ocm::cli {
+
+Commanding::Commanding(Verb verb, Session& session, std::string_view words_help, bool with_priority)
+    : verb_(verb.name()), session_(&session) {
+  verb.add_option("words", words_, std::string{words_help}).type_name("");
+  if (with_priority)
+    verb.add_option("--priority", priority_, "urgent, high, medium or low; default: the topic's own")
+        .type_name("P");
+  verb.add_flag("--dry-run", dry_run_, "print the frames in candump notation and send nothing");
+}
+
+client::Command Commanding::parse() const {
+  return parse({});
+}
+
+client::Command Commanding::parse(const std::vector<std::string>& options) const {
+  std::vector<std::string_view> words{verb_};
+  words.insert(words.end(), words_.begin(), words_.end());
+  words.insert(words.end(), options.begin(), options.end());
+  if (!priority_.empty()) {
+    words.emplace_back("--priority");
+    words.emplace_back(priority_);
+  }
+  auto command = client::CommandParser{session_->catalogue()}.parse(words);
+  if (!command) fail({verb_ + ": " + command.error.what, command.error.remedy}, exit_usage);
+  return std::move(command.value);
+}
+
+void print_frames(const std::vector<can::Frame>& frames) {
+  for (const auto& frame : frames) fmt::print("{}\n", can::to_text(frame).view());
+}
+
+void carry_out(Session& session, const client::Command& command, bool dry_run) {
+  if (dry_run) return print_frames(command.frames);
+  const auto bus = session.open_bus();
+  for (const auto& frame : command.frames) send_patiently(*bus, frame);
+}
+
+void add_command_verb(Verb app, Session& session, std::string_view name, std::string_view description,
+                      std::string_view group, std::string_view words_help, std::string_view examples,
+                      bool with_priority) {
+  auto verb = app.add_verb(name, description, group, examples);
+  const auto commanding = std::make_shared<Commanding>(verb, session, words_help, with_priority);
+  verb.callback([commanding, &session] { carry_out(session, commanding->parse(), commanding->dry_run()); });
+}
+
+}  // namespace ocm::cli

@@ -1,0 +1,147 @@
+/// How a verb says what it takes on the command line: a thin layer over CLI11, which takes seconds to compile
+/// and so is seen by arguments.cpp alone. Handles: they are copied freely and hold as long as their Program.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <initializer_list>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace ocm::cli {
+
+/// What an option does not take, in words; thrown by Option::give.
+struct BadValue : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// An option, a flag or a positional.
+class Option {
+ public:
+  Option(CLI::Option* option, CLI::App* owner) noexcept : option_(option), owner_(owner) {}
+
+  // What it is declared to be; each returns the option itself.
+  Option type_name(const std::string& name) const;  ///< for the help: "FILE"
+  Option required() const;
+  Option excludes(Option other) const;
+  Option needs(Option other) const;
+  Option one_of(std::initializer_list<const char*> words) const;
+  Option range(double least, double most) const;
+  Option range(unsigned least, unsigned most) const;
+  Option positive() const;
+  Option environment(const std::string& name) const;
+  Option delimiter(char separator) const;
+  /// How many values one mention takes: 0, 1.
+  Option expected(int least, int most) const;
+  /// One value a mention, however often it is mentioned.
+  Option one_a_mention() const;
+  /// The value that the variable has now is shown as the default.
+  Option show_default() const;
+
+  /// How often the command line has it.
+  [[nodiscard]] std::size_t count() const;
+
+  // What was declared.
+  [[nodiscard]] std::vector<std::string> long_names() const;  ///< without --
+  [[nodiscard]] std::string name() const;
+  [[nodiscard]] std::string description() const;
+  [[nodiscard]] std::string type() const;
+  [[nodiscard]] bool is_positional() const;
+  [[nodiscard]] bool is_option() const;  ///< not (only) a positional
+  [[nodiscard]] bool is_hidden() const;
+  [[nodiscard]] bool is_named(const std::string& name) const;  ///< "--spec"
+  [[nodiscard]] int least_values() const;
+  [[nodiscard]] int most_values() const;
+
+  /// Whether it has a value by now, or another one that excludes it has.
+  [[nodiscard]] bool is_decided() const;
+  /// As if the command line had it, as --key. BadValue when it does not take the values.
+  void give(const std::string& key, const std::vector<std::string>& values) const;
+
+ private:
+  CLI::Option* option_;
+  CLI::App* owner_;
+};
+
+/// A verb, a verb of a verb ("analyse bus"), a group of options, or the program.
+class Verb {
+ public:
+  Verb() noexcept = default;
+  explicit Verb(CLI::App* app) noexcept : app_(app) {}
+  explicit operator bool() const noexcept { return app_ != nullptr; }
+  friend bool operator==(Verb, Verb) = default;
+
+  // What it is declared to take.
+  /// "-n,--count" is an option, "file" a positional. What the command line says is written to `value`.
+  Option add_option(const std::string& names, std::string& value, const std::string& help) const;
+  Option add_option(const std::string& names, std::vector<std::string>& value, const std::string& help) const;
+  Option add_option(const std::string& names, std::uint32_t& value, const std::string& help) const;
+  Option add_option(const std::string& names, std::uint64_t& value, const std::string& help) const;
+  Option add_option(const std::string& names, double& value, const std::string& help) const;
+  Option add_flag(const std::string& names, bool& value, const std::string& help) const;
+  /// Options under a heading of their own, of which at most one may be given.
+  Verb add_choice(const std::string& heading, const std::string& help) const;
+  /// With its heading in the list of verbs, and its examples below its options.
+  Verb add_verb(std::string_view name, std::string_view description, std::string_view heading,
+                std::string_view examples) const;
+  /// A verb of this verb.
+  Verb add_inner_verb(const std::string& name, const std::string& description) const;
+  Verb alias(const std::string& name) const;
+  Verb require_verb() const;
+  Verb footer(const std::string& text) const;
+  /// What is done when the command line has the verb.
+  void callback(std::function<void()> run) const;
+  /// What is done when the whole command line was read, before any verb.
+  void after_parsing(std::function<void()> run) const;
+
+  /// How often the command line has this option, "--robots".
+  [[nodiscard]] std::size_t count(const std::string& option) const;
+  /// An option that was added: "words".
+  [[nodiscard]] Option option(const std::string& name) const;
+
+  // What was declared.
+  [[nodiscard]] std::string name() const;
+  [[nodiscard]] bool is_named(const std::string& name) const;
+  [[nodiscard]] std::string description() const;
+  [[nodiscard]] std::string footer() const;
+  [[nodiscard]] bool is_hidden() const;
+  [[nodiscard]] Verb parent() const;  ///< none of the program
+  [[nodiscard]] std::string help(const std::string& as_called) const;
+  /// Options and positionals, those of its groups behind its own.
+  [[nodiscard]] std::vector<Option> options() const;
+  [[nodiscard]] std::vector<Verb> verbs() const;          ///< hidden ones too
+  [[nodiscard]] std::vector<Verb> verbs_for_all() const;  ///< those that the help lists
+  [[nodiscard]] Verb called() const;                      ///< the one of its verbs that the command line has
+
+ private:
+  CLI::App* app_ = nullptr;
+};
+
+/// The whole of it.
+class Program {
+ public:
+  Program(const std::string& name, const std::string& description, const std::string& version,
+          const std::string& footer);
+  ~Program();
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  [[nodiscard]] Verb root() noexcept;
+
+  enum class Outcome { done, told, refused };  ///< told: --help or --version
+  /// Reads the command line and runs the verb's callback. Prints help, and what is wrong.
+  Outcome run(int argc, char** argv);
+
+ private:
+  std::unique_ptr<CLI::App> app_;
+};
+
+}  // namespace ocm::cli

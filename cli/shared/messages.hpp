@@ -1,0 +1,23 @@
+/// How a verb says that something went wrong, or just something, to the person at the terminal.
+#pragma once
+
+#include <string_view>
+
+#include "ocm/transport/bus.hpp"
+
+namespace ocm::cli {
+
+/// Documented in docs/amiroctl.md. 128 + signal when a signal ended the command.
+enum ExitCode : int { exit_success = 0, exit_failure = 1, exit_usage = 2 };
+
+/// Thrown after the message was printed; main returns the code.
+struct Exit {
+  int code;
+};
+
+/// Prints "amiroctl: what" and the remedy on stderr and leaves with `code`.
+[[noreturn]] void fail(const transport::Failure& failure, int code = exit_failure);
+/// A remark for the person at the terminal, on stderr.
+void remark(std::string_view text);
+
+}  // namespace ocm::cli
