@@ -63,7 +63,7 @@ int main() {
   qemu::before_giving_up(&stop_and_dim);
   parts.start(port.now());
 
-  static Robot robot{parts, port, ocm::controller::OCM_MAPPER};
+  static Robot robot{parts, port, ocm::mapper::app::OCM_MAPPER};
   static chibios::LoadMeter load{port};
   static chibios::Levels<Robot, level_stack> levels{port, robot};
   robot.start();
