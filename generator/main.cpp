@@ -11,7 +11,10 @@
 #include <unistd.h>
 #include <vector>
 
+#include "generator/spec/file.hpp"
+#include "generator/spec/sentences.hpp"
 #include "generator/spec/spec.hpp"
+#include "generator/targets/sentences.hpp"
 #include "generator/targets/target.hpp"
 #include "generator/targets/tasks.hpp"
 #include "generator/text/man.hpp"
@@ -29,7 +32,8 @@ constexpr const char* synopsis =
     "ocm-generate SPEC -o HEADER\n"
     "ocm-generate SPEC --to TARGET [--priority P] -o FILE\n"
     "ocm-generate SPEC --check\n"
-    "ocm-generate --tasks SETS -o HEADER\n";
+    "ocm-generate --tasks SETS -o HEADER\n"
+    "ocm-generate --sentences SENTENCES -o HEADER\n";
 
 constexpr const char* description =
     "Writes the C++ header of a robot from its spec: a struct with encode and decode for each frame,\n"
@@ -44,6 +48,7 @@ constexpr const char* options_help =
     "                     names without it\n"
     "      --check        only say what is wrong with the spec\n"
     "      --tasks        the file has task sets of processors (spec/tasks.json), not a robot's topics\n"
+    "      --sentences    the file has the sentences of a robot's text link (spec/sentences.json)\n"
     "      --schema       print the JSON schema of specs, for an editor, and end\n"
     "      --man          print this page in the form of man(1), and end\n"
     "      --help, --version\n";
@@ -125,6 +130,7 @@ struct Arguments {
   std::optional<protocol::Priority> priority;
   bool check = false;
   bool tasks = false;
+  bool sentences = false;
 };
 
 /// What is wrong with them; empty: nothing.
@@ -133,8 +139,11 @@ std::string wrong_usage(const Arguments& arguments) {
   if (!arguments.output && !arguments.check) return "no header: -o HEADER, or --check";
   if (arguments.output && arguments.check) return "--check writes no header";
   if (arguments.output && arguments.output->empty()) return "the header has no name";
+  if (arguments.tasks && arguments.sentences) return "--tasks or --sentences, not both";
   if (arguments.tasks && arguments.target != nullptr)
     return "--tasks makes a C++ header, and no other target";
+  if (arguments.sentences && arguments.target != nullptr)
+    return "--sentences makes a C++ header, and no other target";
   if (arguments.priority && (arguments.target == nullptr || arguments.target->name != "dbc"))
     return "--priority is for --to dbc";
   return {};
@@ -154,6 +163,14 @@ int run(const Arguments& arguments) {
     std::vector<spec::Problem> problems;
     const std::string text = generate::tasks_header(json, name, problems);
     return problems.empty() ? put(text) : complain(problems);
+  }
+  if (arguments.sentences) {
+    std::vector<spec::Problem> problems;
+    const auto json =
+        spec::read_document(arguments.file, "a file of sentences", "spec/sentences.json", problems);
+    if (!json) return complain(problems);
+    const auto loaded = spec::parse_sentences(*json, arguments.file);
+    return loaded.model ? put(generate::sentences_header(*loaded.model, name)) : complain(loaded.problems);
   }
   const auto loaded = spec::load(arguments.file);
   if (!loaded.spec) return complain(loaded.problems);
@@ -188,6 +205,8 @@ int main(int argc, char** argv) {
       arguments.check = true;
     } else if (argument == "--tasks") {
       arguments.tasks = true;
+    } else if (argument == "--sentences") {
+      arguments.sentences = true;
     } else if (argument == "-o" || argument == "--output") {
       const char* output = value();
       if (output == nullptr) return complain_usage(std::string{argument} + " without a header");

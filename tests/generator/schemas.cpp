@@ -2,6 +2,7 @@
 // schemas must see.
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -9,6 +10,8 @@
 #include <valijson/schema.hpp>
 #include <valijson/schema_parser.hpp>
 #include <valijson/validator.hpp>
+
+#include "generator/spec/sentences.hpp"
 
 namespace {
 
@@ -22,21 +25,27 @@ class Spec {
     valijson::SchemaParser{}.populateSchema(Adapter{text_}, schema_);
   }
   [[nodiscard]] const Json& json() const { return json_; }
+  [[nodiscard]] Json with(const char* pointer, const Json& value) const {
+    Json changed = json_;
+    changed[Json::json_pointer{pointer}] = value;
+    return changed;
+  }
+  [[nodiscard]] Json without(const char* pointer, const char* member) const {
+    Json changed = json_;
+    REQUIRE(changed[Json::json_pointer{pointer}].erase(member) == 1);
+    return changed;
+  }
   [[nodiscard]] bool takes(const Json& json) const {
     valijson::Validator validator;
     return validator.validate(schema_, Adapter{json}, nullptr);
   }
   /// With another value, or a new one, at `pointer`.
   [[nodiscard]] bool takes(const char* pointer, const Json& value) const {
-    Json changed = json_;
-    changed[Json::json_pointer{pointer}] = value;
-    return takes(changed);
+    return takes(with(pointer, value));
   }
   /// Without `member` of what is at `pointer`, which has it.
   [[nodiscard]] bool takes_without(const char* pointer, const char* member) const {
-    Json changed = json_;
-    REQUIRE(changed[Json::json_pointer{pointer}].erase(member) == 1);
-    return takes(changed);
+    return takes(without(pointer, member));
   }
 
  private:
@@ -66,6 +75,20 @@ TEST_CASE("the task sets keep to their schema, which tells what does not") {
     CAPTURE(needed);
     CHECK_FALSE(tasks.takes_without("/sets/0/tasks/0", needed));
   }
+}
+
+/// What ocm-generate says of sentences that are wrong: each problem with its place and its remedy.
+std::vector<std::string> told(const Json& sentences) {
+  std::vector<std::string> lines;
+  const auto loaded = ocm::spec::parse_sentences(sentences.dump(1), "s.json");
+  CHECK(loaded.model.has_value() == loaded.problems.empty());
+  for (const auto& problem : loaded.problems) {
+    CHECK(problem.place.starts_with("s.json:"));
+    CHECK_FALSE(problem.remedy.empty());
+    lines.push_back(problem.place.substr(problem.place.find(": ") + 2) + ": " + problem.what + "; " +
+                    problem.remedy);
+  }
+  return lines;
 }
 
 // In spec/sentences.json: a sentence of a word, one of integers, one of fixed text.
@@ -130,6 +153,7 @@ TEST_CASE("what the schema of the sentences must see: a member that is missing")
   for (const auto& [where, member] : needed) {
     CAPTURE(where, member);
     CHECK_FALSE(sentences.takes_without(where, member));
+    CHECK_FALSE(told(sentences.without(where, member)).empty());
   }
 }
 
@@ -195,6 +219,65 @@ TEST_CASE("what the schema of the sentences must see: a value that cannot be") {
   for (const auto& [where, value] : bad) {
     CAPTURE(where, value);
     CHECK_FALSE(sentences.takes(where, value));
+    CHECK_FALSE(told(sentences.with(where, value)).empty());
+  }
+}
+
+TEST_CASE("what no schema can see of sentences is told with its place and what would be right") {
+  using Lines = std::vector<std::string>;
+  const Spec spec{"sentences"};
+  const auto with = [&](const char* where, const Json& value) { return told(spec.with(where, value)); };
+  CHECK(told(spec.json()).empty());
+  CHECK(with("/robots", "mapper") == Lines{R"(/robots: unknown member "robots"; did you mean "robot"?)"});
+  CHECK(with("/sentences/2/name", "confirm") ==
+        Lines{R"(/sentences/2: a second sentence "confirm"; another name)"});
+  CHECK(with("/sentences/0/name", "none") ==
+        Lines{R"(/sentences/0: "none" is what a reader says when there is no sentence; another name)"});
+  CHECK(with("/sentences/0/name", "switch") ==
+        Lines{R"(/sentences/0/name: "switch" is a word of C++; another name, such as "switch_value")"});
+  CHECK(with("/sentences/2/word", "CON") ==
+        Lines{R"(/sentences/2: it cannot be told from "confirm"; another letter, word or text)"});
+  CHECK(
+      with("/sentences/2/letter", "T") ==
+      Lines{
+          R"(/sentences/2: a word behind another letter than that of "confirm"; all words are behind one letter: "S")"});
+  CHECK(with("/sentences/1/letter", "S") ==
+        Lines{R"(/sentences/1: the letter of "confirm" for both words and integers; another letter)"});
+  CHECK(with("/sentences/1/fields/1/name", "angle") ==
+        Lines{R"(/sentences/1/fields/1/name: a second integer "angle"; another name)"});
+  CHECK(
+      with("/sentences/1/fields/1/name", "letter") ==
+      Lines{R"(/sentences/1/fields/1/name: "letter" is a member of every sentence's struct; another name)"});
+  CHECK(
+      with("/sentences/1/fields/0/range", {360, -360}) ==
+      Lines{
+          "/sentences/1/fields/0/range: 360 is greater than -360; two whole numbers, [smallest, greatest]"});
+  CHECK(with("/sentences/7/integers", {11, 16}) ==
+        Lines{"/sentences/7/integers: 10 fields are outside of it; a number below and one above, or leave it "
+              "out"});
+  CHECK(
+      with("/sentences/1/source/width", "a ruler") ==
+      Lines{
+          R"(/sentences/1/source/width: source for "width", which is no fact of this object; default, range, or one of angle, distance)"});
+  CHECK(with("/packed/sentence", "idle") ==
+        Lines{R"(/packed/sentence: no sentence "idle" has integers; the name of one that has)"});
+  CHECK(
+      with("/packed/fields/0/bits", 7) ==
+      Lines{R"(/packed/fields/0: the first field is the packet's number; {"name": "sequence", "bits": 8})"});
+  CHECK(with("/packed/fields/2/name", "z") ==
+        Lines{R"(/packed/fields/2: "z" is not the next field of "update"; "y")"});
+  CHECK(with("/packed/fields/1/bits", 15) ==
+        Lines{"/packed/fields/1: 15 bits are too few for -32768 to 32767; 16, for integers below 0"});
+  CHECK(with("/packed/fields/5/bits", 7) == Lines{"/packed/fields/5: 7 bits are too few for 0 to 255; more"});
+  CHECK(with("/packed/fields/5/bits", 11) ==
+        Lines{"/packed/fields: 111 bits; 112: seven for each byte between tag and CRC"});
+}
+
+TEST_CASE("any bytes are a problem of the sentences, or sentences") {
+  for (const char* text :
+       {"", "{", "[]", "null", "{\"sentences\": [1]}", "\xFF\xFE", "{\"packed\": {\"fields\": [[]]}}"}) {
+    CAPTURE(text);
+    CHECK_FALSE(ocm::spec::parse_sentences(text, "s.json").problems.empty());
   }
 }
 

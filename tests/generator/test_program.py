@@ -129,6 +129,24 @@ class Program(unittest.TestCase):
             self.assertNotEqual(done.stderr, "")
         self.assertEqual(run("--tasks", self.folder / "none", "-o", "-").returncode, 1)
 
+    def test_sentences(self):
+        text = (ROOT / "spec" / "sentences.json").read_text()
+        sentences = self.folder / "sentences.json"
+        sentences.write_text(text)
+        done = run("--sentences", sentences, "-o", "-")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("struct SetPoint {", done.stdout)
+        self.assertEqual(run("--sentences", sentences, "--check").returncode, 0)
+        sentences.write_text(text.replace('"distance"', '"angle"'))
+        done = run("--sentences", "sentences.json", "-o", self.header, cwd=self.folder)
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        line = 1 + text[:text.index('"distance"')].count("\n")
+        self.assertEqual(done.stderr.splitlines(), [f'sentences.json:{line}: /sentences/1/fields/1/name: a second integer "angle"; another name'])
+        self.assertFalse(self.header.exists())
+        done = run("--sentences", self.folder / "none", "-o", "-")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("there is no such file; the path of a file of sentences", done.stderr)
+
     def test_every_target(self):
         begins = {"cpp": "// Made by", "dbc": "VERSION", "c": "// Made by", "markdown": "# Topics of Pair",
                   "wireshark": "-- Made by", "json-schema": "{"}
@@ -144,6 +162,7 @@ class Program(unittest.TestCase):
     def test_wrong_usage_is_2(self):
         for arguments in ((self.spec, "--to", "pdf", "-o", "a"), (self.spec, "--to"), (self.spec, "--priority", "low", "-o", "a"),
                           (self.spec, "--to", "dbc", "--priority", "big", "-o", "a"), ("--tasks", self.spec, "--to", "c", "-o", "a"),
+                          ("--sentences", self.spec, "--to", "c", "-o", "a"), ("--sentences", "--tasks", self.spec, "-o", "a"),
                           (), (self.spec,), (self.spec, "-o"), (self.spec, "-o", "a", "-o", "b"), ("-x",),
                           (self.spec, "second", "-o", "a"), (self.spec, "-o", "a", "--check"), (self.spec, "-o", "")):
             with self.subTest(arguments=arguments):

@@ -280,7 +280,7 @@ def generator_is_independent(tree):
     """The generator reaches no generated header."""
     for name in tree.below("generator/"):
         for reached, way in closure(tree, name).items():
-            if reached.startswith("include/ocm/topics/"):
+            if tree.text(reached).startswith("// Made by ocm-generate"):
                 yield f"{name}:1: the generator reaches what it generates: {' -> '.join(way)}"
 
 

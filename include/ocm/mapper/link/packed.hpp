@@ -23,9 +23,6 @@
 
 namespace ocm::mapper::link {
 
-/// First byte of a packed update of version 1. 0x31 is the digit 1 with the upper bit set.
-inline constexpr std::uint8_t packed_tag = 0xB1;
-
 /// Whether a byte of a stream is of a packed update; if not, of a sentence or a prefix.
 [[nodiscard]] constexpr bool is_packed(std::uint8_t byte) noexcept {
   return byte >= 0x80;
@@ -40,8 +37,6 @@ struct PackedUpdate {
 namespace detail {
 
 inline constexpr std::size_t packed_body = 17;  ///< bytes that the CRC is over
-inline constexpr std::array<std::uint8_t, 8> packed_widths{16, 16, 16, 8,
-                                                           12, 12, 12, 12};  ///< bits, as Update::fields
 
 /// Seven bits a byte, behind each other, most significant first.
 class SevenBits {
@@ -72,12 +67,12 @@ class SevenBits {
   packet.size = max_packet;
   packet.data[0] = packed_tag;
   detail::SevenBits bits{1};
-  bits.put(packet, packed.sequence, 8);
+  bits.put(packet, packed.sequence, packed_sequence_bits);
   for (std::size_t i = 0; i < Update::fields.size(); ++i) {
     const auto& field = Update::fields[i];
     const std::int16_t number = packed.update.*field.member;
     if (number < field.min || number > field.max) return base::Error::out_of_range;
-    bits.put(packet, static_cast<std::uint16_t>(number), detail::packed_widths[i]);
+    bits.put(packet, static_cast<std::uint16_t>(number), packed_widths[i]);
   }
   bits.put(packet, base::crc16(packet.bytes().first(detail::packed_body)), 21);
   return packet;
@@ -92,10 +87,10 @@ class SevenBits {
     return base::Error::bad_syntax;
   detail::SevenBits bits{1};
   PackedUpdate packed;
-  packed.sequence = static_cast<std::uint8_t>(bits.get(bytes, 8));
+  packed.sequence = static_cast<std::uint8_t>(bits.get(bytes, packed_sequence_bits));
   for (std::size_t i = 0; i < Update::fields.size(); ++i) {
     const auto& field = Update::fields[i];
-    const auto number = static_cast<std::int16_t>(bits.get(bytes, detail::packed_widths[i]));
+    const auto number = static_cast<std::int16_t>(bits.get(bytes, packed_widths[i]));
     if (number < field.min || number > field.max) return base::Error::out_of_range;
     packed.update.*field.member = number;
   }

@@ -13,12 +13,9 @@
 #include <string_view>
 
 #include "ocm/base/result.hpp"
+#include "ocm/mapper/link/sentences.hpp"
 
 namespace ocm::mapper::link {
-
-/// An ATT packet of 23 bytes, less its header. [Bluetooth core specification 4.0, volume 3, part F, 3.2.8:
-/// ATT_MTU 23]
-inline constexpr std::size_t max_packet = 20;
 
 struct Packet {
   std::uint8_t size = 0;

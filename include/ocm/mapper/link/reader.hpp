@@ -134,13 +134,19 @@ class Reader {
     state_ = State::skipping;
   }
 
+  /// Whether a sentence that way begins with it.
+  [[nodiscard]] constexpr bool is_letter(char c) const noexcept {
+    if (c == word_letter) return true;
+    if (direction_ == Direction::to_robot) return c == SetPoint::letter;
+    return c == Update::letter || c == Handshake::letter;
+  }
   constexpr void inside(char c) noexcept {
     switch (state_) {
       case State::opened:
         letter_ = c;
         if (c == ' ')
           state_ = State::blank;  // thesis 2 prints the ping as `{ }`
-        else if (c == 'S' || c == 'U' || (c == 'H' && direction_ == Direction::from_robot))
+        else if (is_letter(c))
           state_ = State::letter;
         else
           fail(faults_.unknown);
@@ -150,7 +156,7 @@ class Reader {
         return;
       case State::letter:
         if (c != ',') return fail(faults_.unknown);
-        if (letter_ == 'S')
+        if (letter_ == word_letter)
           state_ = State::word;
         else
           begin_number();
@@ -218,14 +224,15 @@ class Reader {
       case State::blank:
         return known(direction_ == Direction::to_robot ? Kind::ping : Kind::none);
       case State::letter:
-        fail(letter_ == 'S' ? faults_.unknown : faults_.wrong_count);
+        fail(letter_ == word_letter ? faults_.unknown : faults_.wrong_count);
         return Kind::none;
       case State::word:
         return known(kind_of_word(direction_, {word_.data(), word_size_}));
       case State::number:
         if (!end_number()) return Kind::none;
-        if (letter_ == 'H')
-          return checked(Kind::handshake, detail::fit<Handshake>(sentence_, 1, max_integers));
+        if (letter_ == Handshake::letter)
+          return checked(Kind::handshake, detail::fit<Handshake>(sentence_, Handshake::fewest_integers,
+                                                                 Handshake::most_integers));
         if (direction_ == Direction::to_robot)
           return checked(Kind::set_point, detail::fit<SetPoint>(sentence_));
         return checked(Kind::update, detail::fit<Update>(sentence_));

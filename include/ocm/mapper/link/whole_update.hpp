@@ -53,7 +53,7 @@ template <std::size_t N>
 [[nodiscard]] constexpr std::size_t whole_update(std::string_view text,
                                                  std::array<std::int16_t, N>& integers) noexcept {
   constexpr std::size_t count = Update::fields.size();
-  if (text.size() < whole_update_room || text[1] != 'U' || text[2] != ',') return 0;
+  if (text.size() < whole_update_room || text[1] != Update::letter || text[2] != ',') return 0;
   std::size_t at = 3;
   for (std::size_t i = 0; i < count; ++i) {
     const ShortNumber number = short_number(base::swar::load64(text.data() + at));

@@ -157,8 +157,8 @@ TEST_CASE("sentences.json and the packed update have the same bits") {
   int bits = 8;
   for (std::size_t i = 0; i < Update::fields.size(); ++i) {
     CHECK(packed["fields"][i + 1]["name"] == std::string{Update::fields[i].name});
-    CHECK(packed["fields"][i + 1]["bits"] == detail::packed_widths[i]);
-    bits += detail::packed_widths[i];
+    CHECK(packed["fields"][i + 1]["bits"] == packed_widths[i]);
+    bits += packed_widths[i];
   }
   CHECK(bits == 112);
   CHECK(entry(spec(), "handshake")["fields"][9]["description"].get<std::string>().find(
