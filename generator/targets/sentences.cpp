@@ -111,23 +111,8 @@ void write_kinds(Writer& out, const std::vector<SentenceModel>& sentences) {
   out.line();
 }
 
-/// A table of the sentences that are `chosen`: kind, direction, text.
-template <class Chosen>
-void write_table(Writer& out, const std::vector<SentenceModel>& sentences, std::string_view name,
-                 Chosen chosen) {
-  std::vector<std::string> rows;
-  for (const SentenceModel& sentence : sentences)
-    if (const std::string& text = chosen(sentence); !text.empty())
-      rows.push_back("{Kind::" + sentence.name + ", " + direction_of(sentence) + ", \"" + escaped(text) +
-                     "\"},");
-  out.line("inline constexpr std::array<Word, " + std::to_string(rows.size()) + "> " + std::string{name} +
-           "{{");
-  for (const std::string& row : rows) out.line("    " + row);
-  out.line("}};");
-}
-
 void write_words(Writer& out, const std::vector<SentenceModel>& sentences) {
-  out.comment("A sentence without integers, and what tells it from the others of its direction.");
+  out.comment("A sentence of a word behind `word_letter`.");
   out.open("struct Word {");
   out.line("Kind kind;");
   out.line("Direction direction;");
@@ -136,14 +121,26 @@ void write_words(Writer& out, const std::vector<SentenceModel>& sentences) {
   const auto word = std::find_if(sentences.begin(), sentences.end(),
                                  [](const SentenceModel& sentence) { return !sentence.word.empty(); });
   if (word != sentences.end()) {
-    out.comment("Sentences of a word behind `word_letter`.");
     out.line(std::string{"inline constexpr char word_letter = '"} + word->letter + "';");
     out.line("inline constexpr std::size_t word_length = " + std::to_string(word->word.size()) + ";");
   }
-  write_table(out, sentences, "words", [](const SentenceModel& s) -> const std::string& { return s.word; });
-  out.comment("Sentences that are a fixed text, without its line feed.");
-  write_table(out, sentences, "fixed_texts",
-              [](const SentenceModel& s) -> const std::string& { return s.text; });
+  std::vector<std::string> rows;
+  for (const SentenceModel& sentence : sentences)
+    if (!sentence.word.empty())
+      rows.push_back("    {Kind::" + sentence.name + ", " + direction_of(sentence) + ", \"" + sentence.word +
+                     "\"},");
+  out.line("inline constexpr std::array<Word, " + std::to_string(rows.size()) + "> words{{");
+  for (const std::string& row : rows) out.line(row);
+  out.line("}};");
+  out.line();
+  // A function, where a table would take RAM on a processor that cannot read its flash as memory.
+  out.comment("Of a sentence that is fixed text: all of it but its line feed. Empty for others.");
+  out.open("[[nodiscard]] constexpr std::string_view fixed_text(Kind kind) noexcept {");
+  for (const SentenceModel& sentence : sentences)
+    if (sentence.letter == 0)
+      out.line("if (kind == Kind::" + sentence.name + ") return \"" + escaped(sentence.text) + "\";");
+  out.line("return {};");
+  out.close("}");
   out.line();
 }
 

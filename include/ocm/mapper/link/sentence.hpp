@@ -68,8 +68,7 @@ template <class T>
 /// The line of a sentence without integers; Error::bad_syntax for a kind that has some, or none.
 [[nodiscard]] constexpr base::Result<Line> write(Kind kind) noexcept {
   Line line;
-  for (const Word& fixed : fixed_texts)
-    if (fixed.kind == kind) return line << fixed.text << '\n';
+  if (const std::string_view fixed = fixed_text(kind); !fixed.empty()) return line << fixed << '\n';
   for (const Word& word : words)
     if (word.kind == kind) return line << '{' << word_letter << ',' << word.text << "}\n";
   return base::Error::bad_syntax;

@@ -129,13 +129,12 @@ struct Update {
   friend constexpr bool operator==(const Update&, const Update&) = default;
 };
 
-/// A sentence without integers, and what tells it from the others of its direction.
+/// A sentence of a word behind `word_letter`.
 struct Word {
   Kind kind;
   Direction direction;
   std::string_view text;
 };
-/// Sentences of a word behind `word_letter`.
 inline constexpr char word_letter = 'S';
 inline constexpr std::size_t word_length = 3;
 inline constexpr std::array<Word, 6> words{{
@@ -146,11 +145,13 @@ inline constexpr std::array<Word, 6> words{{
     {Kind::text, Direction::to_robot, "TXT"},
     {Kind::idle, Direction::from_robot, "IDL"},
 }};
-/// Sentences that are a fixed text, without its line feed.
-inline constexpr std::array<Word, 2> fixed_texts{{
-    {Kind::ping, Direction::to_robot, "{}"},
-    {Kind::pong, Direction::from_robot, "\t!"},
-}};
+
+/// Of a sentence that is fixed text: all of it but its line feed. Empty for others.
+[[nodiscard]] constexpr std::string_view fixed_text(Kind kind) noexcept {
+  if (kind == Kind::ping) return "{}";
+  if (kind == Kind::pong) return "\t!";
+  return {};
+}
 
 /// An update in one packet: tag, then seven bits a byte below a bit of 1, most significant first, then 5 bits
 /// of 0 and the CRC-16 (0x1021, start 0xFFFF) of the 17 bytes before. [decided: docs/mapper-link.md]

@@ -32,9 +32,9 @@ TEST_CASE("words and fixed texts, each with its direction") {
   CHECK(words[0].kind == Kind::confirm);
   CHECK(words[0].text == "CON");
   CHECK(words[5].direction == Direction::from_robot);
-  CHECK(fixed_texts.size() == 2);
-  CHECK(fixed_texts[0].text == "{}");
-  CHECK(fixed_texts[1].text == "\t!");
+  CHECK(fixed_text(Kind::ping) == "{}");
+  CHECK(fixed_text(Kind::pong) == "\t!");
+  CHECK(fixed_text(Kind::idle).empty());
 }
 
 TEST_CASE("a packed update fills a packet: tag, seven bits a byte, and the CRC in three bytes") {
