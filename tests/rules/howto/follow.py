@@ -11,10 +11,12 @@ comment on the line above a fenced block; a reader of the page does not see it:
     <!-- insert: PATH before: "TEXT" -->    the block goes before that line
     <!-- replace: PATH line: "TEXT" -->     the block replaces that line
     <!-- run -->                            the block is commands, run by bash -e in the copy
+    <!-- check                              the lines up to --> are commands that a reader does not see: what he does
+    -->                                     with a full build, done at less cost
 
-Blocks without a mark are for the reader only. Programs of the build folder, and Catch2's
-main, are at build/ in the copy. Exit status: 0
-the page can be followed, 1 it cannot, 2 wrong usage. --keep leaves the copy at DIR, which must not exist."""
+Blocks without a mark are for the reader only. Programs of the build folder, and a few of its objects, are at build/ in
+the copy. Exit status: 0 the page can be followed, 1 it cannot, 2 wrong usage. --keep leaves the copy at DIR, which must
+not exist."""
 import argparse
 import os
 import pathlib
@@ -30,9 +32,12 @@ import house  # noqa: E402
 MARK = re.compile(r"^ *<!-- *(?:(?P<word>file|append|insert|replace): *(?P<path>\S+)"
                   r"(?: +(?P<where>after|before|line): *\"(?P<text>.*)\"(?: *\+(?P<more>\d+))?)?|(?P<run>run)) *-->$")
 PLACES = {"file": (None,), "append": (None,), "insert": ("after", "before"), "replace": ("line",)}
-LIKE_A_MARK = re.compile(r"^ *<!-- *(file|append|insert|replace|run)\b")
+CHECK = re.compile(r"^<!-- check$")
+LIKE_A_MARK = re.compile(r"^ *<!-- *(file|append|insert|replace|run|check)\b")
 FENCE = re.compile(r"^( *)```")
-TEST_MAIN = "tests/CMakeFiles/ocm_test_main.dir/main.cpp.o"  # Catch2's main: what costs most of a small test's time
+# What pages link to: Catch2's main, which costs most of a small test's time, and the generator but for what is new.
+BUILT = ("tests/CMakeFiles/ocm_test_main.dir/main.cpp.o", "generator/CMakeFiles/ocm-generate.dir/main.cpp.o",
+         "generator/*.a", "generator/spec/*.a")
 
 
 class PageError(Exception):
@@ -40,12 +45,12 @@ class PageError(Exception):
 
 
 class Step:
-    def __init__(self, line, match, text):
+    def __init__(self, line, text, match=None):
         self.line = line
-        self.word = "run" if match["run"] else match["word"]
-        self.path, self.where, self.anchor = match["path"], match["where"], match["text"]
-        self.further = int(match["more"] or 0)
         self.text = text
+        self.word = match["word"] if match and match["word"] else "run"
+        self.path, self.where, self.anchor = match.group("path", "where", "text") if match else (None, None, None)
+        self.further = int(match["more"] or 0) if match else 0
 
 
 def steps(page, text):
@@ -62,6 +67,13 @@ def steps(page, text):
         if fenced or not LIKE_A_MARK.match(line):
             continue
         number = at
+        if CHECK.match(line):
+            while at < len(lines) and lines[at].strip() != "-->":
+                at += 1
+            if at == len(lines):
+                raise PageError(f"{page}:{number}: the block is not closed")
+            found.append(Step(number, "".join(row + "\n" for row in lines[number:at])))
+            continue
         match = MARK.match(line)
         if not match or (match["word"] and match["where"] not in PLACES[match["word"]])\
                 or (match["more"] and match["where"] != "after"):
@@ -76,7 +88,7 @@ def steps(page, text):
         if end == len(lines):
             raise PageError(f"{page}:{number}: the block is not closed")
         block = [row[indent:] if row[:indent].isspace() or not indent else row for row in lines[at + 1:end]]
-        found.append(Step(number, match, "".join(row + "\n" for row in block)))
+        found.append(Step(number, "".join(row + "\n" for row in block), match))
         at = end + 1
     if not any(step.word == "run" for step in found):
         raise PageError(f"{page}:1: no block is marked with <!-- run -->, so nothing would be checked")
@@ -132,7 +144,7 @@ def copy(source, build, root):
         shutil.copy2(source / name, target)
     (root / "build").mkdir()
     built = [file for file in build.iterdir() if file.is_file() and os.access(file, os.X_OK)] if build else []
-    for file in built + ([build / TEST_MAIN] if build and (build / TEST_MAIN).is_file() else []):
+    for file in built + [file for pattern in BUILT for file in (build.glob(pattern) if build else ())]:
         target = root / "build" / file.relative_to(build)
         target.parent.mkdir(parents=True, exist_ok=True)
         target.symlink_to(file.resolve())

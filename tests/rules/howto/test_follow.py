@@ -73,10 +73,15 @@ last
 ```sh
 exit 1  # for the reader only
 ```
+<!-- check
+grep -q '^1$' list.txt
+touch checked
+-->
 """)
         self.assertEqual((self.root / "list.txt").read_text(), "1\nsecond\n3a\nthird\n3b\n3c\nsecond to last\nlast\n")
         self.assertEqual((self.root / "new/a.txt").read_text(), "one\n<!-- run -->\n")
         self.assertEqual((self.root / "said.txt").read_text(), "tool\n")
+        self.assertTrue((self.root / "checked").exists())
         self.assertEqual((self.project / "list.txt").read_text(), LIST)
         self.assertFalse((self.project / "new").exists())
 
@@ -92,6 +97,9 @@ exit 1  # for the reader only
         self.fails("<!-- run -->\n```\ntrue\nfalse\ntouch after\n```\n", 1, "exit status 1")
         self.assertFalse((self.root / "after").exists())
 
+    def test_a_failing_check(self):
+        self.fails("\n<!-- check\nfalse\n-->\n", 2, "exit status 1")
+
     def test_a_file_that_exists(self):
         self.fails("<!-- file: list.txt -->\n```\nx\n```\n<!-- run -->\n```\ntrue\n```\n", 1, "exists already")
 
@@ -106,9 +114,10 @@ exit 1  # for the reader only
 
     def test_a_block_without_an_end(self):
         self.fails("<!-- run -->\n```\ntrue\n", 1, "not closed")
+        self.fails("<!-- check\ntrue\n", 1, "not closed")
 
     def test_a_mark_with_a_mistake(self):
-        for mark in ('<!-- insert: list.txt -->', '<!-- insert: list.txt line: "a" -->', "<!-- run: x -->",
+        for mark in ('<!-- insert: list.txt -->', '<!-- insert: list.txt line: "a" -->', "<!-- run: x -->", "<!-- check -->",
                      '<!-- file: a after: "x" -->', '<!-- replace: a after: "x" -->', '<!-- insert: a before: "x" +1 -->'):
             self.fails(f"{mark}\n```\ntrue\n```\n", 1, "unknown mark")
 
