@@ -453,7 +453,19 @@ def pages_are_linked(tree):
     linked = {target for page in pages(tree) for _, _, target, _ in links(tree, page) if target != page}
     for page in pages(tree):
         if page.startswith("docs/") and page not in linked:
-            yield f"{page}:1: no other page links to it; add it to an index, README.md for instance"
+            yield f"{page}:1: no other page links to it; add it to an index, docs/README.md for instance"
+
+
+def indexes_are_complete(tree):
+    """docs/README.md lists every page of docs once; in a folder with a README.md of its own, that one does."""
+    for page in pages(tree):
+        folder = str(pathlib.PurePosixPath(page).parent)
+        index = f"{folder}/README.md" if f"{folder}/README.md" in tree.known else "docs/README.md"
+        if not page.startswith("docs/") or page == index:
+            continue
+        times = [target for _, _, target, _ in links(tree, index)].count(page) if index in tree.known else 0
+        if times != 1:
+            yield f"{page}:1: {index} lists this page {times} times; expected once"
 
 
 def snippets(tree):
@@ -487,7 +499,8 @@ RULES = (floors_have_rows, includes_go_down, layers_are_apart, library_knows_no_
          namespace_is_folder, no_banned_headers, no_banned_words, headers_open_with_a_comment, headers_have_tests,
          own_includes_are_full_paths, generator_is_independent, firmware_is_for_boards, rooms_are_apart,
          folders_make_no_circle, verbs_are_seen_by_main_only, no_circles_of_rooms, costly_headers_are_seen_by_few,
-         generated_files_are_reproducible, no_machine_paths, links_resolve, pages_are_linked, quotes_are_the_examples)
+         generated_files_are_reproducible, no_machine_paths, links_resolve, pages_are_linked, indexes_are_complete,
+         quotes_are_the_examples)
 
 
 def check(root, rules=RULES):

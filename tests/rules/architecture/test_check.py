@@ -17,7 +17,7 @@ ROW = "| 9 | `extra` | what is planted | {} | host |\n"
 GOOD = {
     "README.md": "# A project\n\n[architecture](docs/architecture.md#floors)\n\n<!-- snippet: hello -->\n```cpp\n"
                  "greet();\nif (true) {\n  greet();\n}\n```\n",
-    "docs/architecture.md": "# Architecture\n\n## Floors\n\n[home](../README.md)\n\n<!-- floors: read by a test -->\n\n"
+    "docs/architecture.md": "# Architecture\n\n## Floors\n\n[home](../README.md), [pages](README.md)\n\n<!-- floors: read by a test -->\n\n"
                             "| floor | folder | what | may include | runs on |\n|---|---|---|---|---|\n"
                             "| 0 | `base` | | | board, host |\n"
                             "| 3 | `topics` | | `base` | board, host |\n"
@@ -26,6 +26,7 @@ GOOD = {
                             "| 5 | `skiff/oars` | | `base` | board, host |\n"
                             "| 6 | `transport` | | `base` | host |\n"
                             "\n<!-- end of floors -->\n",
+    "docs/README.md": "# Pages\n\n[architecture](architecture.md)\n",
     "include/ocm/base/result.hpp": "/// A value or the reason why there is none.\n#pragma once\n#include <new>\n"
                                    "#include <string_view>\nnamespace ocm::base {\nstruct Result {};\n"
                                    "// a new word in a comment, and throw\n"
@@ -153,6 +154,9 @@ PLANTED = [
     ("links_resolve", added(README, "[gone](docs/gone.md)\n"), "README.md:12:"),
     ("links_resolve", added(README, "[gone](docs/architecture.md#ceilings)\n"), "README.md:12:"),
     ("pages_are_linked", {"docs/island.md": "# Island\n\n[me](island.md)\n"}, "docs/island.md:1:"),
+    ("indexes_are_complete", added("docs/README.md", "[again](architecture.md#floors)\n"), "docs/architecture.md:1:"),
+    ("indexes_are_complete", {"docs/a/README.md": "", "docs/a/b.md": ""}, "docs/a/b.md:1:"),
+    ("indexes_are_complete", {"docs/README.md": None}, "docs/architecture.md:1:"),
     ("quotes_are_the_examples", replaced(README, "  greet();", "   greet();"), "README.md:5:"),
     ("quotes_are_the_examples", replaced(README, "snippet: hello", "snippet: goodbye"), "README.md:5:"),
     ("quotes_are_the_examples", added(README, "\n```cpp\nint unquoted;\n```\n"), "README.md:13:"),
