@@ -1,0 +1,107 @@
+#!/usr/bin/env python3
+"""What scripts/test asks of ctest.
+
+    runs.py select BUILD NAME...   the tests that the names mean, each a test's name or a regular expression of all of it:
+                                   on stdout a regular expression for `ctest -R`, then the targets that they run, a line each.
+                                   Exit 2 where a name means none, with the nearest ones.
+    runs.py report JUNIT...        of ctest's --output-junit: how many tests passed, which failed, which were skipped, which
+                                   took longest
+"""
+
+import difflib
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import xml.etree.ElementTree
+
+
+def known(build):
+    shown = subprocess.run(["ctest", "--test-dir", build, "--show-only=json-v1"], check=True, capture_output=True, text=True)
+    return {test["name"]: test for test in json.loads(shown.stdout)["tests"]}
+
+
+def properties(test):
+    return {entry["name"]: entry["value"] for entry in test.get("properties", [])}
+
+
+def matching(names, pattern):
+    try:
+        return [name for name in names if re.fullmatch(pattern, name)]
+    except re.error:
+        return []
+
+
+def with_set_up(tests, chosen):
+    """The chosen tests and those that set up what they need: ctest runs these, too."""
+    needed = set(chosen)
+    fixtures = {fixture for name in chosen for fixture in properties(tests[name]).get("FIXTURES_REQUIRED", [])}
+    needed |= {name for name, test in tests.items() if fixtures & set(properties(test).get("FIXTURES_SETUP", []))}
+    return needed
+
+
+def programs(build, names):
+    """Every path that the command or the environment of one of these tests names: as ctest's own files say it, for of a
+    program that is not built yet it shows nothing."""
+    found = set()
+    for file in pathlib.Path(build).rglob("CTestTestfile.cmake"):
+        for line in file.read_text(encoding="utf-8").splitlines():
+            name = re.match(r"(?:add_test|set_tests_properties)\((?:\[=\[)?([\w.-]+)", line)
+            if name and name[1] in names:
+                found |= {os.path.normpath(path) for path in re.findall(r"/[^\s:;=\"]+", line)}
+    return found
+
+
+def select(build, wanted):
+    tests = known(build)
+    chosen = set()
+    for pattern in wanted:
+        found = matching(tests, pattern)
+        if not found:
+            near = difflib.get_close_matches(pattern, tests, n=3, cutoff=0.4)
+            near += [name for name in tests if pattern in name and name not in near][:3]
+            print(f"test: no test '{pattern}'" + (f"; near it: {', '.join(near)}" if near else "") +
+                  "; all: ctest --preset release -N", file=sys.stderr)
+            return 2
+        chosen.update(found)
+    print(f"^({'|'.join(sorted(map(re.escape, chosen)))})$")
+    listed = subprocess.run(["ninja", "-C", build, "-t", "targets", "all"], check=True, capture_output=True, text=True).stdout
+    build = os.path.abspath(build)
+    executables = {os.path.normpath(os.path.join(build, line.split(":")[0]))
+                   for line in listed.splitlines() if "EXECUTABLE_LINKER" in line}
+    used = programs(build, with_set_up(tests, chosen))
+    for path in sorted(executables & used):
+        print(os.path.relpath(path, build))
+    return 0
+
+
+def report(files):
+    cases = [case for path in files if os.path.exists(path)
+             for case in xml.etree.ElementTree.parse(path).getroot().iter("testcase")]
+    by = {}
+    for case in cases:
+        by.setdefault(case.get("status"), []).append(case)
+    failed = by.get("fail", [])
+    skipped = [case for status in ("notrun", "disabled") for case in by.get(status, [])]
+    slowest = sorted(cases, key=lambda case: -float(case.get("time")))[:10]
+    print(f"tests: {len(by.get('run', []))} passed, {len(failed)} failed, {len(skipped)} skipped")
+    for title, some in (("failed", failed), ("skipped", skipped)):
+        for case in some:
+            print(f"  {title}: {case.get('name')}")
+    print("slowest: " + ", ".join(f"{case.get('name')} {float(case.get('time')):.0f} s" for case in slowest))
+    return 0
+
+
+def main(arguments):
+    if len(arguments) >= 3 and arguments[0] == "select":
+        return select(arguments[1], arguments[2:])
+    if arguments and arguments[0] == "report":
+        return report(arguments[1:])
+    print(__doc__, file=sys.stderr)
+    return 2
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
