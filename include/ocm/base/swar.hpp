@@ -100,7 +100,7 @@ inline char* hex_byte(char* at, std::uint8_t byte) noexcept {
 }
 /// Below 100.
 inline char* two_digits(char* at, std::uint32_t number) noexcept {
-  std::memcpy(at, detail::decimal_pairs[number].text, 2);
+  std::memcpy(at, detail::decimal_pairs[static_cast<std::size_t>(number)].text, 2);
   return at + 2;
 }
 /// Below 100'000'000.
