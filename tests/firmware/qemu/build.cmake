@@ -8,5 +8,7 @@ if(NOT EXISTS ${BINARY}/build.ninja OR NOT EXISTS ${BINARY}/CMakeCache.txt)
                           --toolchain ${TOOLCHAIN}
                   COMMAND_ERROR_IS_FATAL ANY)
 endif()
-# nice: beside it run tests that tell time.
-execute_process(COMMAND nice ${CMAKE_COMMAND} --build ${BINARY} --parallel 2 COMMAND_ERROR_IS_FATAL ANY)
+# Half of the processors: beside it run tests that tell time.
+cmake_host_system_information(RESULT jobs QUERY NUMBER_OF_LOGICAL_CORES)
+math(EXPR jobs "(${jobs} + 1) / 2")
+execute_process(COMMAND ${CMAKE_COMMAND} --build ${BINARY} --parallel ${jobs} COMMAND_ERROR_IS_FATAL ANY)

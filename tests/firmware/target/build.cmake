@@ -8,5 +8,7 @@ execute_process(COMMAND ${CMAKE_COMMAND} -S ${SOURCE} -B ${BINARY} -G Ninja --to
 if(NOT TARGETS)
   set(TARGETS all)
 endif()
-# nice: beside it run tests that tell time.
-execute_process(COMMAND nice ${CMAKE_COMMAND} --build ${BINARY} --parallel 2 --target ${TARGETS} COMMAND_ERROR_IS_FATAL ANY)
+# Half of the processors: beside it run tests that tell time.
+cmake_host_system_information(RESULT jobs QUERY NUMBER_OF_LOGICAL_CORES)
+math(EXPR jobs "(${jobs} + 1) / 2")
+execute_process(COMMAND ${CMAKE_COMMAND} --build ${BINARY} --parallel ${jobs} --target ${TARGETS} COMMAND_ERROR_IS_FATAL ANY)

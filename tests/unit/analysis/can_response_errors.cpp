@@ -13,6 +13,7 @@
 #include "ocm/analysis/can_response.hpp"
 
 #include "unit/analysis/random_bus.hpp"
+#include "unit/base/explore.hpp"
 
 using namespace ocm;
 using namespace ocm::analysis;
@@ -129,7 +130,7 @@ TEST_CASE("CAN: simulated with faults never exceeds predicted with E(t); mutants
                                  {"repetition of its own frame only"},
                                  {"error frames of 17 bits"},
                                  {"error frames of 19 bits"}}};
-  const int rounds = test::rounds(4'000);
+  const int rounds = test::explored(800);
   for (int round = 0; round < rounds; ++round) {
     const RandomSet set = test::random_set(random);
     const ErrorModel model = random_model(set, random);

@@ -14,6 +14,7 @@
 #include "ocm/analysis/can_response.hpp"
 
 #include "unit/analysis/random_bus.hpp"
+#include "unit/base/explore.hpp"
 
 using namespace ocm;
 using namespace ocm::analysis;
@@ -30,7 +31,7 @@ TEST_CASE(
   int messages_without_jitter = 0;
   int reached_without_jitter = 0;
   int caught[3] = {};
-  const int rounds = test::rounds(20'000);
+  const int rounds = test::explored(5'000);
   for (int round = 0; round < rounds; ++round) {
     const RandomSet set = test::random_set(random);
     const auto results = analysis.analyse(set.messages, {});

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cstdlib>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -190,12 +189,6 @@ inline std::int64_t by_the_paper(const std::vector<analysis::Message>& set, std:
     worst = std::max(worst, set[m].jitter + window - q * set[m].period + set[m].cost);
   }
   return worst;
-}
-
-/// How many sets a run plays: OCM_RANDOM_SETS, but at least 500.
-inline int rounds(int usual) {
-  const char* const text = std::getenv("OCM_RANDOM_SETS");
-  return text == nullptr ? usual : std::max(std::atoi(text), 500);
 }
 
 }  // namespace ocm::test

@@ -6,6 +6,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "unit/base/explore.hpp"
+
 using namespace ocm;
 using can::Format;
 using can::Frame;
@@ -73,7 +75,8 @@ TEST_CASE("the witness is as long as was said, for every base identifier and len
 
 TEST_CASE("nothing is longer than was said") {
   std::mt19937 random{15};
-  for (int i = 0; i < 300'000; ++i) {
+  const int frames = test::explored(100'000);
+  for (int i = 0; i < frames; ++i) {
     Frame frame;
     frame.format = static_cast<Format>(random() % 4);
     frame.id = static_cast<std::uint32_t>(random()) & greatest_id(frame.format);

@@ -1,6 +1,5 @@
 // The bus where the wire is disturbed: bit times by hand after ISO 11898-1, and random traffic with random
 // disturbances against a bus that goes bit by bit (naive_bus.hpp). OCM_RANDOM_SETS=N plays N of them.
-#include <cstdlib>
 #include <iostream>
 #include <random>
 
@@ -8,6 +7,7 @@
 
 #include "ocm/simulation/arbiter.hpp"
 
+#include "unit/base/explore.hpp"
 #include "unit/simulation/arbiter_testing.hpp"
 #include "unit/simulation/naive_bus.hpp"
 
@@ -424,17 +424,13 @@ Played play(const Trace& trace, Random* random) {
   return played;
 }
 
-int rounds() {
-  const char* const text = std::getenv("OCM_RANDOM_SETS");
-  return text == nullptr ? 2'000 : std::max(std::atoi(text), 500);
-}
-
 }  // namespace
 
 TEST_CASE("random disturbances: the same as bit by bit, and no frame is lost or sent twice") {
   Random random{11898};
   std::uint64_t broken = 0, overloads = 0, duplicates = 0, early = 0, off = 0;
-  for (int round = 0; round < rounds(); ++round) {
+  const int rounds = test::explored(1'000);
+  for (int round = 0; round < rounds; ++round) {
     CAPTURE(round);
     const Trace trace = random_trace(random);
     const test::NaiveBus naive = play_naively(trace);
