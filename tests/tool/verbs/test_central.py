@@ -223,10 +223,12 @@ class OnSerialLines(Case):
         talk.type("start\nconn 0\n")
         talk.wait_for("connected 0\n")
         robot.say(bytes(range(256)))
-        time.sleep(0.3)
+
+        def stream():
+            return talk.said[talk.said.index("connected 0\n") + len("connected 0\n"):].replace("[0]:AVR:", "")
+        waiting.until(lambda: len(stream()) >= 256, "all bytes")
         talk.end()
-        stream = talk.said[talk.said.index("connected 0\n") + len("connected 0\n"):].replace("[0]:AVR:", "")
-        self.assertEqual(stream.encode("latin-1"), bytes(range(256)))
+        self.assertEqual(stream().encode("latin-1"), bytes(range(256)))
 
     def test_a_hundred_kilobytes_without_a_line_feed(self):
         robot = self.robot()
@@ -260,7 +262,7 @@ class OnSerialLines(Case):
         self.addCleanup(process.kill)
         process.stdin.write(b"start\nconn 0\n")
         process.stdin.flush()
-        time.sleep(0.5)
+        waiting.until_asleep(process.pid, looks=20)
         for _ in range(100):
             robot.say("{S,IDL}\n" * 500)
         process.send_signal(signal.SIGINT)
@@ -408,9 +410,9 @@ class OnAPseudoTerminal(Case):
         os.write(line, b"start\nconn 0\n")
         self.assertEqual(self.read(line, b"connected 0\n"), b"scanning\nconnecting 0\nconnected 0\n")
         os.close(line)
-        time.sleep(0.2)
+        self.settle()
         self.robot.say("{S,IDL}\n")  # nobody hears it
-        time.sleep(0.2)
+        self.settle()
         line = self.open()
         self.robot.say("{U,1,2,3,4,5,6,7,8}\n")
         self.assertEqual(self.read(line, b"8}\n"), b"[0]:AVR:{U,1,2,3,4,5,6,7,8}\n")

@@ -6,7 +6,7 @@ import signal
 import subprocess
 import time
 
-from harness import AMIROCTL, Case, main
+from harness import AMIROCTL, Case, main, waiting
 from played_central import Central, Robot
 
 
@@ -108,8 +108,7 @@ class Goto(Line):
         _, err = self.tool("goto", "AVR", "0", "50", "--timeout", "1s", code=1)
         self.assertIn("has not arrived after 1s", err)
         self.assertIn("--timeout", err)
-        time.sleep(0.3)
-        self.assertEqual(self.avr.heard[-1], "{U,0,0}")
+        waiting.until(lambda: self.avr.heard[-1] == "{U,0,0}", "the robot is stopped")
 
     def on_the_way(self):
         tool = self.start("goto", "AVR", "0", "50", "--scan", "200ms")
@@ -124,8 +123,7 @@ class Goto(Line):
         tool = self.on_the_way()
         self.interrupt(tool)
         self.assertEqual(tool.returncode, 130)
-        time.sleep(0.3)
-        self.assertEqual(self.avr.heard[-1], "{U,0,0}")
+        waiting.until(lambda: self.avr.heard[-1] == "{U,0,0}", "the robot is stopped")
 
     def test_the_link_is_lost_on_the_way(self):
         self.avr.speed = 1
@@ -228,8 +226,7 @@ class TheLine(Line):
 
     def test_the_central_is_left_in_command_mode(self):
         self.tool("goto", "AVR", "0", "0")
-        time.sleep(0.2)
-        self.assertIsNone(self.central.target)
+        waiting.until(lambda: self.central.target is None, "command mode")
 
     def test_a_full_disk(self):
         with open("/dev/full", "w", encoding="utf-8") as full:

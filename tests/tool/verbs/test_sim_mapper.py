@@ -41,6 +41,15 @@ class Line:
                 return match
         raise AssertionError(f"{pattern!r} does not come; there is {self.text[-500:]!r}")
 
+    def find(self, robots, limit=30):
+        """Returns when the central that scans has found so many."""
+        give_up = time.monotonic() + limit
+        while time.monotonic() < give_up:
+            self.write("list\n")
+            if self.wait_for(r"((?:\d+:\S+\n)*)end of list\n")[1].count("\n") >= robots:
+                return
+        raise AssertionError(f"{robots} robots are not found; there is {self.text[-500:]!r}")
+
 
 UPDATE = r"\{U,(-?\d+),(-?\d+),(-?\d+),\d+,\d+,\d+,\d+,\d+\}"
 
@@ -63,7 +72,7 @@ class Simulated(Case):
         line = self.central()
         line.write("start\n")
         line.wait_for("scanning\n")
-        time.sleep(0.3)
+        line.find(1)
         line.write("list\n")
         line.wait_for("0:C00000000000:AVR\nend of list\n")
         line.write("conn 0\n")
@@ -94,7 +103,7 @@ class Simulated(Case):
         sim = self.sim("--robots", "2", "--speed", "10", "--radio-loss", "0.2", "--seed", "3")
         line = self.central()
         line.write("start\n")
-        time.sleep(0.3)
+        line.find(2)
         line.write("stop\nconn 0\n")
         line.wait_for("found 2\n")
         line.wait_for("connected 0\n")
@@ -130,7 +139,7 @@ class Simulated(Case):
         self.sim("--robots", "2", "--links", "1", "--speed", "10")
         line = self.central()
         line.write("start\n")
-        time.sleep(0.3)
+        line.find(2)
         line.write("conn 0\n")
         line.wait_for("connected 0\n")
         line.write("*conn 1\n")
