@@ -102,12 +102,27 @@ class SentencesReader : private Checker {
 
   void read_sentences(const At& at, SentencesModel& model) {
     if (!is_list(at, "a list of at least one sentence")) return;
+    std::vector<At> places;
     for (std::size_t i = 0; i < at.node->items.size(); ++i) {
       const At item = at.item(i);
       if (!is_object(item, R"({"name": "idle", "direction": "from_robot", ...})")) continue;
       SentenceModel sentence = read_sentence(item);
       compare(item, sentence, model.sentences);
       model.sentences.push_back(std::move(sentence));
+      places.push_back(item);
+    }
+    // All words are behind one letter, and no integers: a reader knows at the letter what comes.
+    const auto first = std::find_if(model.sentences.begin(), model.sentences.end(),
+                                    [](const SentenceModel& sentence) { return !sentence.word.empty(); });
+    if (first == model.sentences.end()) return;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const SentenceModel& sentence = model.sentences[i];
+      if (!sentence.word.empty() && sentence.letter != first->letter)
+        tell(places[i], "a word behind another letter than that of " + spec::quoted(first->name),
+             std::string{"all words are behind one letter: \""} + first->letter + "\"");
+      if (!sentence.fields.empty() && sentence.letter == first->letter)
+        tell(places[i], "integers behind the letter of the word " + spec::quoted(first->name),
+             "another letter");
     }
   }
 
@@ -249,13 +264,6 @@ class SentencesReader : private Checker {
     for (const SentenceModel& other : others) {
       if (!sentence.name.empty() && sentence.name == other.name)
         tell(at, "a second sentence " + spec::quoted(sentence.name), "another name");
-      if (!sentence.word.empty() && !other.word.empty() && sentence.letter != other.letter)
-        return tell(at, "a word behind another letter than that of " + spec::quoted(other.name),
-                    std::string{"all words are behind one letter: \""} + other.letter + "\"");
-      if (sentence.letter != 0 && sentence.letter == other.letter &&
-          sentence.word.empty() != other.word.empty())
-        return tell(at, "the letter of " + spec::quoted(other.name) + " for both words and integers",
-                    "another letter");
       if (sentence.to_robot == other.to_robot && sentence.letter == other.letter &&
           sentence.word == other.word && sentence.text == other.text)
         return tell(at, "it cannot be told from " + spec::quoted(other.name), "another letter, word or text");

@@ -242,7 +242,7 @@ TEST_CASE("what no schema can see of sentences is told with its place and what w
       Lines{
           R"(/sentences/2: a word behind another letter than that of "confirm"; all words are behind one letter: "S")"});
   CHECK(with("/sentences/1/letter", "S") ==
-        Lines{R"(/sentences/1: the letter of "confirm" for both words and integers; another letter)"});
+        Lines{R"(/sentences/1: integers behind the letter of the word "confirm"; another letter)"});
   CHECK(with("/sentences/1/fields/1/name", "angle") ==
         Lines{R"(/sentences/1/fields/1/name: a second integer "angle"; another name)"});
   CHECK(
