@@ -31,7 +31,7 @@ using Analysis = analysis::CanResponse<most_messages>;
 
 /// Enough for whatever anybody means to build; what takes longer counts as "does not pass".
 /// Beyond, what each message could still do is not looked for: 62 tests of the set each.
-constexpr std::size_t most_messages = 128;
+constexpr std::size_t most_rooms = 128;
 /// [CiA 301, table 1]
 constexpr std::array<std::int64_t, 8> usual_bit_rates{10'000,  20'000,  50'000,  125'000,
                                                       250'000, 500'000, 800'000, 1'000'000};
@@ -278,7 +278,7 @@ Advice advise_bus(const BusSet& set, const BusOptions& options, const Study& stu
   Trial trial{model_of(set, options), options.test};
   auto& messages = trial.model().messages;
   const bool passes = study.passes();
-  if (messages.size() <= most_messages && trial.fast()) {
+  if (messages.size() <= most_rooms && trial.fast()) {
     for (std::size_t i = 0; i < messages.size(); ++i) {
       const std::int64_t before = messages[i].period;
       const auto shortest = last_good(analysis::longest_looked_for, 1, [&](std::int64_t period) {
@@ -333,7 +333,7 @@ Advice advise_bus(const BusSet& set, const BusOptions& options, const Study& stu
     advice.changes.push_back(
         fmt::format("all periods {}.{:03} times as long", *stretched / permille, *stretched % permille));
   if (options.test == CanTest::exact && options.lengths == Lengths::generic &&
-      messages.size() <= most_messages && trial.fast()) {
+      messages.size() <= most_rooms && trial.fast()) {
     const auto [stuck, order] = best_order(trial.model());
     std::string names;
     for (const std::size_t i : order) names += (names.empty() ? "" : ", ") + set.entries[i].name;

@@ -16,7 +16,7 @@ namespace {
 using analysis::Task;
 
 /// Beyond, what each task could still do is not looked for: 124 tests of the set each.
-constexpr std::size_t most_tasks = 40;
+constexpr std::size_t most_task_rooms = 40;
 
 std::vector<Task> tasks_of(const TaskSet& set) {
   std::vector<Task> tasks;
@@ -64,7 +64,7 @@ Advice advise_tasks(const TaskSet& set, const analysis::Processor& processor, co
   Advice advice;
   std::vector<Task> tasks = tasks_of(set);
   const bool passes = study.passes();
-  if (tasks.size() <= most_tasks) {
+  if (tasks.size() <= most_task_rooms) {
     for (std::size_t i = 0; i < tasks.size(); ++i) {
       const auto period = analysis::shortest_period(tasks, i, processor, quick);
       const auto cost = analysis::greatest_cost(tasks, i, processor, quick);
@@ -82,7 +82,7 @@ Advice advise_tasks(const TaskSet& set, const analysis::Processor& processor, co
   if (scale.exists && scale.value < analysis::greatest_scale)
     advice.changes.push_back(fmt::format("all costs {} {}.{:02} %", passes ? "could be" : "at",
                                          scale.value / 10'000, scale.value % 10'000 / 100));
-  if (!passes && tasks.size() <= most_tasks) {
+  if (!passes && tasks.size() <= most_task_rooms) {
     std::vector<Task> other = tasks;
     if (analysis::optimal_levels(other, processor, quick).ok()) {
       std::string order;
