@@ -1,5 +1,6 @@
 #include "cli/replay/stand_in.hpp"
 
+#include "ocm/controller/level.hpp"
 #include "ocm/protocol/request.hpp"
 
 namespace ocm::cli::replay {
@@ -45,10 +46,10 @@ StandIn::Answer StandIn::take(const can::Frame& frame, base::Time now) {
   }
   if (samples(*topic) == 0) return Answer::silent;
   if (request->mode == protocol::Mode::once) {
-    publisher_->once(stream, request->priority, now);
+    publisher_->once(stream, controller::level_of(request->priority), now);
   } else {
     const auto period = frame.dlc == 1 ? topic->period : request->period;
-    publisher_->start(stream, period.duration(), request->priority, now);
+    publisher_->start(stream, period.duration(), controller::level_of(request->priority), now);
   }
   return Answer::accepted;
 }
@@ -58,7 +59,7 @@ const std::vector<can::Frame>& StandIn::due(base::Time now) {
   sample_.clear();
   scheduling::Release release;
   for (const auto priority : {Priority::urgent, Priority::high, Priority::medium, Priority::low}) {
-    if (!publisher_->take_due(now, priority, release)) continue;
+    if (!publisher_->take_due(now, controller::level_of(priority), release)) continue;
     publisher_->done(release.stream, now);
     const auto& layouts = catalogue_->topics[release.stream].frames;
     auto& [payloads, next] = recordings_[release.stream];
