@@ -367,7 +367,7 @@ def _(context):
 @check('error frames are told in words and counted')
 def _(context):
     for strict, code in (([], 0), (['--strict'], 1)):
-        with Process(context.amiroctl, '--bus', 'vcan0', 'listen', '--pretty', '--timeout', '2s', *strict,
+        with Process(context.amiroctl, '--bus', 'vcan0', 'listen', '--pretty', '-n', '2', '--timeout', '20s', *strict,
                      listens_on='vcan0') as listen:
             cansend('20000040#0000000000000000', '20000004#0010000000000000')
             equal(listen.wait(), code, f'exit code with {strict}')

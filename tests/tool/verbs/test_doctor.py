@@ -86,7 +86,7 @@ class Doctor(Case):
 
     def test_strangers_on_the_bus(self):
         self.start_sim()
-        doctor = self.start("doctor", "--json", "--watch", "1s")
+        doctor = self.start("doctor", "--json", "--watch", "3s")
         self.assertIn("bus: sim", doctor.stderr.readline())
         self.settle()
         self.run_tool("send", "7FF#00")
