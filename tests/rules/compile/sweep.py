@@ -87,7 +87,7 @@ def library(floors=None):
     """The headers of the library as they are included; of these floors only."""
     for path in sorted((ROOT / "include/ocm").rglob("*.hpp")):
         name = path.relative_to(ROOT / "include").as_posix()
-        if floors is None or name.split("/")[1] in floors:
+        if floors is None or house.floor_of(house.read_floors(ROOT), name.removeprefix("ocm/")) in floors:
             yield name
 
 
