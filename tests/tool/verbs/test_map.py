@@ -46,7 +46,7 @@ class Map(Case):
         with open(world, "w", encoding="utf-8") as file:
             json.dump(WORLD, file)
         svg, png, pgm = self.path("box.svg"), self.path("box.png"), self.path("box.pgm")
-        out, err = self.map(svg, png, pgm, "--world", world, "--json")
+        out, err = self.map(svg, png, pgm, "--world", world, "--json", duration="12s")  # enough on a busy machine, too
         figures = json.loads(out)
         self.assertEqual((figures["done"], figures["ended"]), (False, "duration"))
         # These robots know exactly where they are; what is left are the corners, which a second place would show.
