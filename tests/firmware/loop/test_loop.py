@@ -11,6 +11,7 @@ import json
 import os
 import pathlib
 import signal
+import statistics
 import subprocess
 import sys
 import time
@@ -254,10 +255,24 @@ class Moving(Robots):
         for topic in SENSORS:
             self.tool("qemu", "publish", topic, "50ms")
         recording = self.record("qemu", *SENSORS)
-        time.sleep(5)
-        counts = collections.Counter(e["topic"] for e in self.recorded(recording))
+        expected = 100 * sum(self.frames_of(topic) for topic in SENSORS)
+        with open(f"{self.folder}/qemu.json", "rb") as file:  # ends by what came: an emulator may fall behind for a while
+            seen = 0
+
+            def enough():
+                nonlocal seen
+                seen += file.read().count(b"\n")
+                return seen >= expected
+
+            self.until(enough)
+        events = self.recorded(recording)[:expected]
+        counts = collections.Counter(e["topic"] for e in events)
         for topic in SENSORS:
             self.assertAlmostEqual(counts[topic] / self.frames_of(topic), 100, delta=4, msg=topic)
+            first = next(e["id"] for e in events if e["topic"] == topic)
+            times = [int(e["time_ns"]) for e in events if e["id"] == first]
+            period = statistics.median(later - earlier for earlier, later in itertools.pairwise(times))
+            self.assertAlmostEqual(period / 1e6, 50, delta=2, msg=topic)
 
 
 class Usage(Case):
