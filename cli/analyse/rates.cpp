@@ -5,12 +5,12 @@
 
 #include <fmt/format.h>
 
-#include "ocm/client/command.hpp"
-#include "ocm/client/quantity.hpp"
 #include "ocm/protocol/identifier.hpp"
 
 #include "cli/analyse/set.hpp"
 #include "cli/shared/messages.hpp"
+#include "cli/words/command.hpp"
+#include "cli/words/quantity.hpp"
 
 namespace ocm::cli::analyse {
 namespace {
@@ -47,7 +47,7 @@ void read_rate(std::string_view text, std::string place, std::vector<Rate>& rate
   }
   rate.off = period == "off";
   if (!rate.off) {
-    const auto parsed = client::parse_duration(period);
+    const auto parsed = words::parse_duration(period);
     if (!parsed || parsed->count() <= 0)
       mistakes.push_back({rate.place, fmt::format("no period '{}'", period),
                           "a time with its unit, such as 900us, 50ms or 2s; or off"});
@@ -100,10 +100,10 @@ BusSet robot_bus(const protocol::Catalogue& catalogue, const std::vector<Rate>& 
       found = true;
       chosen.emplace_back(&topic, &rate);
     }
-    const auto words = client::topic_words(catalogue);
+    const auto words = words::topic_words(catalogue);
     if (!found)
-      mistakes.push_back({rate.place, fmt::format("no topic '{}'", rate.name),
-                          client::detail::suggestion(rate.name, words)});
+      mistakes.push_back(
+          {rate.place, fmt::format("no topic '{}'", rate.name), words::detail::suggestion(rate.name, words)});
   }
 
   BusSet set;

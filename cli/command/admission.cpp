@@ -16,13 +16,13 @@
 #include "ocm/can/length.hpp"
 #include "ocm/can/text.hpp"
 #include "ocm/client/diagnosis.hpp"
-#include "ocm/client/quantity.hpp"
 #include "ocm/client/sample.hpp"
 #include "ocm/protocol/request.hpp"
 #include "ocm/protocol/topic.hpp"
 
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/values.hpp"
+#include "cli/words/quantity.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -30,7 +30,7 @@ namespace {
 using analysis::Explained;
 using analysis::Message;
 using client::Meaning;
-using client::to_text;
+using words::to_text;
 
 /// More than any robot of this protocol has at a time: its boards have 256 numbers.
 constexpr std::size_t most_identifiers = 512;

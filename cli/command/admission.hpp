@@ -4,11 +4,11 @@
 
 #include <string>
 
-#include "ocm/client/command.hpp"
 #include "ocm/transport/bus.hpp"
 
 #include "cli/shared/arguments.hpp"
 #include "cli/shared/session.hpp"
+#include "cli/words/command.hpp"
 
 namespace ocm::cli {
 

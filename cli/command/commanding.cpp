@@ -29,7 +29,7 @@ client::Command Commanding::parse(const std::vector<std::string>& options) const
     words.emplace_back("--priority");
     words.emplace_back(priority_);
   }
-  auto command = client::CommandParser{session_->catalogue()}.parse(words);
+  auto command = words::CommandParser{session_->catalogue()}.parse(words);
   if (!command) fail({verb_ + ": " + command.error.what, command.error.remedy}, exit_usage);
   return std::move(command.value);
 }

@@ -6,10 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "ocm/client/command.hpp"
-
 #include "cli/shared/arguments.hpp"
 #include "cli/shared/session.hpp"
+#include "cli/words/command.hpp"
 
 namespace ocm::cli {
 

@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "ocm/client/quantity.hpp"
 #include "ocm/client/sample.hpp"
 
 #include "cli/command/admission.hpp"
@@ -17,6 +16,7 @@
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/watch/subscription.hpp"
+#include "cli/words/quantity.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -51,7 +51,7 @@ void send_and_await(Session& session, transport::Bus& open_bus, const client::Co
     if (left.count() > 0) continue;
     const auto& counters = receiver.counters();
     fail(
-        {fmt::format("no {} within {}", topic.name, client::to_text(timeout)),
+        {fmt::format("no {} within {}", topic.name, words::to_text(timeout)),
          counters.frames != 0
              ? fmt::format("{} frames came, {} of wrong length: does the robot run another protocol version?",
                            counters.frames, counters.wrong_dlc)

@@ -7,10 +7,10 @@
 #include <optional>
 
 #include "ocm/can/bus.hpp"
-#include "ocm/client/command.hpp"
 #include "ocm/transport/bus.hpp"
 
 #include "cli/shared/session.hpp"
+#include "cli/words/command.hpp"
 
 namespace ocm::cli {
 

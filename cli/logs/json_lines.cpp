@@ -7,10 +7,10 @@
 
 #include "ocm/base/text.hpp"
 #include "ocm/can/text.hpp"
-#include "ocm/client/command.hpp"
 #include "ocm/protocol/request.hpp"
 
 #include "cli/output/output.hpp"
+#include "cli/words/command.hpp"
 
 namespace ocm::cli::logs {
 namespace {
@@ -357,9 +357,9 @@ bool JsonLineParser::take_topic(log::Entry& entry, Meaning& meaning) {
   if (!record_.topic) return refuse(log::Cause::identifier, "neither id nor topic", "one of them is wanted");
   const auto* const topic = catalogue_->find(record_.topic.text);
   if (topic == nullptr) {
-    const auto words = client::topic_words(*catalogue_);
+    const auto words = words::topic_words(*catalogue_);
     return refuse(log::Cause::identifier, "no topic " + shown(record_.topic.text),
-                  client::detail::suggestion(record_.topic.text, words));
+                  words::detail::suggestion(record_.topic.text, words));
   }
   auto priority = topic->priority;
   if (record_.priority) {
@@ -484,7 +484,7 @@ bool JsonLineParser::put_field(can::Payload& data, const NamedText& named, std::
     std::vector<std::string_view> names;
     for (const auto& field : fields) names.push_back(field.field().name);
     return refuse(log::Cause::syntax, "no field " + shown(named.name),
-                  names.empty() ? "the frame has none" : client::detail::suggestion(named.name, names));
+                  names.empty() ? "the frame has none" : words::detail::suggestion(named.name, names));
   }
   const auto& field = fields[i].field();
   const std::string_view text = named.value.text;
@@ -499,7 +499,7 @@ bool JsonLineParser::put_field(can::Payload& data, const NamedText& named, std::
       return true;
     }
   }
-  const auto raw = client::parse_value(field, text);
+  const auto raw = words::parse_value(field, text);
   if (!raw) return refuse(log::Cause::syntax, raw.error, "leave the field out, and data counts");
   protocol::put(data, field.position, *raw);
   return true;

@@ -9,11 +9,11 @@
 
 #include "ocm/can/error_frame.hpp"
 #include "ocm/can/text.hpp"
-#include "ocm/client/quantity.hpp"
 #include "ocm/protocol/request.hpp"
 
 #include "cli/output/field_text.hpp"
 #include "cli/output/output.hpp"
+#include "cli/words/quantity.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -245,7 +245,7 @@ class Pretty final : public Output {
         break;
       case protocol::Mode::publish:
         out.append("publish every ");
-        out.append(client::to_text(frame.dlc == 1 ? topic.period : request->period));
+        out.append(words::to_text(frame.dlc == 1 ? topic.period : request->period));
         break;
     }
   }

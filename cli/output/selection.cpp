@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "ocm/client/command.hpp"
+#include "cli/words/command.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -48,10 +48,10 @@ transport::Outcome<Selection> Selection::of(const protocol::Catalogue& catalogue
     if (found) continue;
     if (!topic_found)
       return transport::Failure{"no topic '" + std::string{of_topic} + "'",
-                                client::detail::suggestion(of_topic, client::topic_words(catalogue))};
+                                words::detail::suggestion(of_topic, words::topic_words(catalogue))};
     const std::vector<std::string_view> candidates{names.begin(), names.end()};
     return transport::Failure{"no field '" + std::string{word} + "'",
-                              client::detail::suggestion(word, candidates)};
+                              words::detail::suggestion(word, candidates)};
   }
   return selection;
 }

@@ -7,8 +7,9 @@
 #include <fmt/format.h>
 
 #include "ocm/base/decimal.hpp"
-#include "ocm/client/quantity.hpp"
 #include "ocm/host/descriptor.hpp"
+
+#include "cli/words/quantity.hpp"
 
 namespace ocm::cli::record {
 
@@ -51,7 +52,7 @@ Claimed claim(const std::string& path) {
 }
 
 std::uint64_t parse_size(std::string_view text) {
-  const auto quantity = client::parse_quantity(text);
+  const auto quantity = words::parse_quantity(text);
   if (!quantity || quantity->number.digits <= 0) return 0;
   std::string_view unit = quantity->unit;
   if (unit.ends_with('B')) unit.remove_suffix(1);

@@ -3,14 +3,14 @@
 #include <fmt/format.h>
 
 #include "ocm/base/decimal.hpp"
-#include "ocm/client/quantity.hpp"
 
 #include "cli/shared/messages.hpp"
+#include "cli/words/quantity.hpp"
 
 namespace ocm::cli {
 
 base::Duration duration_option(std::string_view option, const std::string& text) {
-  const auto duration = client::parse_duration(text);
+  const auto duration = words::parse_duration(text);
   if (!duration || duration->count() < 0)
     fail({fmt::format("{} {}: not a time", option, text), "write 500ms, 2s or 1.5s"}, exit_usage);
   return *duration;

@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "ocm/client/command.hpp"
-#include "ocm/client/quantity.hpp"
+#include "cli/words/command.hpp"
+#include "cli/words/quantity.hpp"
 
 namespace ocm::cli::stats {
 
@@ -104,7 +104,7 @@ std::string_view trimmed(std::string_view text) {
 
 /// In the unit that the quantity is measured in: Hz, ns, %. The failure says how to write it.
 base::Result<double, std::string> parse_limit(std::string_view text, Unit unit) {
-  const auto quantity = client::parse_quantity(text);
+  const auto quantity = words::parse_quantity(text);
   const bool bare = quantity && quantity->unit.empty();
   switch (unit) {
     case Unit::none:
@@ -120,7 +120,7 @@ base::Result<double, std::string> parse_limit(std::string_view text, Unit unit) 
     case Unit::time:
       break;
   }
-  const auto duration = client::parse_duration(text);
+  const auto duration = words::parse_duration(text);
   if (duration) return static_cast<double>(duration->count());
   if (bare && quantity->number.digits == 0) return 0.0;
   return std::string{"a time with its unit, such as 900us or 50ms"};
@@ -181,9 +181,9 @@ transport::Outcome<Assertion> Assertion::parse(std::string_view text, const prot
   if (!bus) {
     assertion.topic_ = catalogue.find(subject);
     if (assertion.topic_ == nullptr) {
-      auto words = client::topic_words(catalogue);
+      auto words = words::topic_words(catalogue);
       words.push_back("bus");
-      return wrong(fmt::format("no topic '{}'", subject), client::detail::suggestion(subject, words));
+      return wrong(fmt::format("no topic '{}'", subject), words::detail::suggestion(subject, words));
     }
   }
   for (const Quantity& quantity : quantities)
@@ -191,7 +191,7 @@ transport::Outcome<Assertion> Assertion::parse(std::string_view text, const prot
       assertion.quantity_ = &quantity;
   if (assertion.quantity_ == nullptr)
     return wrong(fmt::format("no quantity '{}' of {}", name, bus ? "the bus" : "a topic"),
-                 client::detail::suggestion(name, names_of(bus)));
+                 words::detail::suggestion(name, names_of(bus)));
   const std::string_view right = trimmed(text.substr(end));
   auto limit = parse_limit(right, assertion.quantity_->unit);
   if (!limit)

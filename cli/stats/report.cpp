@@ -9,11 +9,11 @@
 #include "ocm/base/text.hpp"
 #include "ocm/can/text.hpp"
 #include "ocm/client/diagnosis.hpp"
-#include "ocm/client/quantity.hpp"
 #include "ocm/log/complaints.hpp"
 
 #include "cli/output/csv_cell.hpp"
 #include "cli/shared/json.hpp"
+#include "cli/words/quantity.hpp"
 
 namespace ocm::cli::stats {
 namespace {

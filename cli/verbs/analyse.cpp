@@ -9,8 +9,6 @@
 
 #include <fmt/format.h>
 
-#include "ocm/client/quantity.hpp"
-
 #include "cli/analyse/chain.hpp"
 #include "cli/analyse/report.hpp"
 #include "cli/analyse/set.hpp"
@@ -18,6 +16,7 @@
 #include "cli/analyse/trace.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
+#include "cli/words/quantity.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -47,7 +46,7 @@ struct Options {
 };
 
 std::int64_t duration(std::string_view option, std::string_view text) {
-  const auto time = client::parse_duration(text);
+  const auto time = words::parse_duration(text);
   if (time && time->count() >= 0) return time->count();
   fail({fmt::format("{} {}: no time", option, text), "a number with its unit, such as 900us or 50ms"},
        exit_usage);
@@ -72,7 +71,7 @@ void read_errors(std::string_view text, BusOptions& options) {
       options.error_burst = static_cast<std::int64_t>(*count);
       has_burst = true;
     } else if (part.starts_with("every=")) {
-      const auto time = client::parse_duration(part.substr(6));
+      const auto time = words::parse_duration(part.substr(6));
       if (!time || time->count() < 1) wrong("no time between faults");
       options.error_every = time->count();
     } else {

@@ -3,10 +3,9 @@
 
 #include <fmt/format.h>
 
-#include "ocm/client/command.hpp"
-#include "ocm/client/quantity.hpp"
-
 #include "cli/verbs/verbs.hpp"
+#include "cli/words/command.hpp"
+#include "cli/words/quantity.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -44,8 +43,8 @@ void info(const protocol::Catalogue& catalogue, const std::string& word) {
   for (const auto& candidate : catalogue.topics)
     if (topic == nullptr && candidate.group == word) topic = &candidate;
   if (topic == nullptr) {
-    const auto words = client::topic_words(catalogue);
-    fail({"info: no topic '" + word + "'", client::detail::suggestion(word, words)}, exit_usage);
+    const auto words = words::topic_words(catalogue);
+    fail({"info: no topic '" + word + "'", words::detail::suggestion(word, words)}, exit_usage);
   }
   const bool sensor = topic->kind == protocol::Kind::sensor;
   const auto& board = catalogue.boards[topic->board];
@@ -59,11 +58,11 @@ void info(const protocol::Catalogue& catalogue, const std::string& word) {
   fmt::print("  priority   {} unless asked otherwise\n", name(topic->priority));
   if (sensor) {
     fmt::print("  period     {} unless asked otherwise; the part samples every {}\n",
-               client::to_text(topic->period), client::to_text(topic->shortest_period));
-    if (topic->deadline.count() != 0) fmt::print("  deadline   {}\n", client::to_text(topic->deadline));
-    if (topic->jitter.count() != 0) fmt::print("  jitter     {}\n", client::to_text(topic->jitter));
+               words::to_text(topic->period), words::to_text(topic->shortest_period));
+    if (topic->deadline.count() != 0) fmt::print("  deadline   {}\n", words::to_text(topic->deadline));
+    if (topic->jitter.count() != 0) fmt::print("  jitter     {}\n", words::to_text(topic->jitter));
   } else if (topic->timeout.count() != 0) {
-    fmt::print("  timeout    at rest {} after the last set point\n", client::to_text(topic->timeout));
+    fmt::print("  timeout    at rest {} after the last set point\n", words::to_text(topic->timeout));
   }
   for (const auto& layout : topic->frames) {
     const auto direction = sensor ? protocol::Direction::sensor : protocol::Direction::command;

@@ -4,10 +4,9 @@
 
 #include <fmt/format.h>
 
-#include "ocm/client/quantity.hpp"
-
 #include "cli/shared/json.hpp"
 #include "cli/verbs/verbs.hpp"
+#include "cli/words/quantity.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -48,7 +47,7 @@ void list_table(const protocol::Catalogue& catalogue) {
     fmt::print("{:<{}}  {:<{}}  0x{:02X}  {:<8}  {:<{}}  {:>6}  {:>7}\n", topic.name, name_width,
                aliases_of(topic), alias_width, topic.id.value, sensor ? "sensor" : "actuator",
                catalogue.boards[topic.board].name, board_width, topic.frames.size(),
-               sensor ? client::to_text(topic.period) : "-");
+               sensor ? words::to_text(topic.period) : "-");
   }
 }
 

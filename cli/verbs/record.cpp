@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 
-#include "ocm/client/quantity.hpp"
 #include "ocm/transport/socketcan.hpp"
 
 #include "cli/logs/format.hpp"
@@ -22,6 +21,7 @@
 #include "cli/verbs/verbs.hpp"
 #include "cli/watch/chosen_topics.hpp"
 #include "cli/watch/subscription.hpp"
+#include "cli/words/quantity.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -68,7 +68,7 @@ const logs::LogFormat& chosen_format(const RecordOptions& options) {
 record::Split parse_split(const std::string& text) {
   record::Split split;
   if (text.empty()) return split;
-  if (const auto time = client::parse_duration(text); time && time->count() > 0)
+  if (const auto time = words::parse_duration(text); time && time->count() > 0)
     split.time = *time;
   else
     split.size = record::parse_size(text);
@@ -146,7 +146,7 @@ void add_count(std::string& text, std::uint64_t count, std::string_view what) {
 std::uint64_t summarise(const record::Recorder& recorder, const record::Files& files) {
   const auto seconds = std::chrono::duration_cast<std::chrono::milliseconds>(recorder.lasted());
   std::string text = fmt::format("recorded {} frames in {} to {}", recorder.received(),
-                                 client::to_text(base::Duration{seconds}),
+                                 words::to_text(base::Duration{seconds}),
                                  files.first_path() == "-" ? "the standard output" : files.first_path());
   if (files.count() > 1) text += fmt::format(" .. {} ({} files)", files.path(), files.count());
   text += fmt::format(", {}", record::size_text(files.size()));

@@ -8,7 +8,6 @@
 
 #include "ocm/base/decimal.hpp"
 #include "ocm/can/text.hpp"
-#include "ocm/client/quantity.hpp"
 
 #include "cli/logs/format.hpp"
 #include "cli/logs/opened_log.hpp"
@@ -18,6 +17,7 @@
 #include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
 #include "cli/watch/chosen_topics.hpp"
+#include "cli/words/quantity.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -111,14 +111,14 @@ void add_count(std::string& text, std::uint64_t count, std::string_view what) {
 }
 
 std::string rounded(base::Duration duration) {
-  return client::to_text(std::chrono::duration_cast<std::chrono::microseconds>(duration));
+  return words::to_text(std::chrono::duration_cast<std::chrono::microseconds>(duration));
 }
 
 void summarise(const replay::Player& player, bool dry_run) {
   const auto& played = player.played();
   const auto lasted = std::chrono::duration_cast<std::chrono::milliseconds>(player.lasted());
   std::string text = dry_run ? fmt::format("{} frames would be sent", played.sent)
-                             : fmt::format("sent {} frames in {}", played.sent, client::to_text(lasted));
+                             : fmt::format("sent {} frames in {}", played.sent, words::to_text(lasted));
   add_count(text, played.not_chosen, "not chosen");
   add_count(text, played.error_frames, "error frames left out");
   add_count(text, played.fd_frames, "CAN FD frames left out: the bus has none");

@@ -10,14 +10,14 @@
 #include <fmt/format.h>
 
 #include "ocm/can/text.hpp"
-#include "ocm/client/quantity.hpp"
-#include "ocm/client/script.hpp"
 
 #include "cli/command/commanding.hpp"
 #include "cli/command/timeline.hpp"
 #include "cli/output/printer.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/verbs/verbs.hpp"
+#include "cli/words/quantity.hpp"
+#include "cli/words/script.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -61,9 +61,9 @@ std::string read_script(const std::string& file) {
 }
 
 /// The script, checked whole: with an error in it nothing is sent.
-client::Script checked(const std::string& file, const std::string& text,
-                       const protocol::Catalogue& catalogue) {
-  auto script = client::parse_script(text, catalogue);
+words::Script checked(const std::string& file, const std::string& text,
+                      const protocol::Catalogue& catalogue) {
+  auto script = words::parse_script(text, catalogue);
   if (script.errors.empty()) return script;
   for (const auto& error : script.errors)
     fmt::print(stderr, "{}:{}:{}: {}\n    {}\n", file, error.line, error.column, error.what, error.remedy);
@@ -79,7 +79,7 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
   if (options.dry_run) {
     for (const auto& step : script.steps)
       for (const auto& frame : step.command.frames)
-        fmt::print("{:<8} {}\n", client::to_text(step.at), can::to_text(frame).view());
+        fmt::print("{:<8} {}\n", words::to_text(step.at), can::to_text(frame).view());
     return;
   }
 
@@ -101,7 +101,7 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
     const auto at = std::chrono::duration_cast<Timeline::Clock::duration>(
         std::chrono::duration<double, std::nano>(static_cast<double>(step.at.count()) / options.speed));
     if (!timeline.wait(start + at)) break;
-    remark(fmt::format("{:>8}  {}", client::to_text(step.at), step.text));
+    remark(fmt::format("{:>8}  {}", words::to_text(step.at), step.text));
     timeline.carry_out(step.command);
   }
   const bool whole = interrupted() == 0 && timeline.wait_for_hold();

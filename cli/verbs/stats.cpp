@@ -10,8 +10,6 @@
 
 #include <fmt/format.h>
 
-#include "ocm/client/command.hpp"
-
 #include "cli/output/printer.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/values.hpp"
@@ -20,6 +18,7 @@
 #include "cli/verbs/verbs.hpp"
 #include "cli/watch/chosen_topics.hpp"
 #include "cli/watch/watching.hpp"
+#include "cli/words/command.hpp"
 
 namespace ocm::cli {
 namespace {

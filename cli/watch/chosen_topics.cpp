@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "ocm/client/command.hpp"
-
 #include "cli/shared/messages.hpp"
+#include "cli/words/command.hpp"
 
 namespace ocm::cli {
 
@@ -19,8 +18,8 @@ std::vector<const protocol::Topic*> chosen_topics(std::string_view verb, const p
       found = true;
     }
     if (found) continue;
-    const auto names = client::topic_words(catalogue);
-    fail({fmt::format("{}: no topic '{}'", verb, word), client::detail::suggestion(word, names)}, exit_usage);
+    const auto names = words::topic_words(catalogue);
+    fail({fmt::format("{}: no topic '{}'", verb, word), words::detail::suggestion(word, names)}, exit_usage);
   }
   return topics;
 }

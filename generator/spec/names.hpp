@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "generator/spec/edit_distance.hpp"
+
 namespace ocm::spec {
 
 /// Lower-case letters, digits and single underscores, a letter first, no underscore last: "sensor_1".
@@ -21,9 +23,6 @@ namespace ocm::spec {
 /// The nearest of `candidates` to what was typed, for "did you mean"; empty when none is near.
 template <class Candidates>
 [[nodiscard]] std::string nearest_name(std::string_view typed, const Candidates& candidates);
-
-/// Insertions, deletions and substitutions from one to the other; O(a * b).
-[[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
 
 template <class Candidates>
 std::string nearest_name(std::string_view typed, const Candidates& candidates) {

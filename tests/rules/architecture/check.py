@@ -33,9 +33,6 @@ MACHINE_PATHS = re.compile(r"(?<![\w.$}/-])/(?:wor[k]|roo[t])(?=[/\s`'\")\]]|$)|
                            r"|/User[s]/\w")
 INTERNAL_NAMES = re.compile(r"\bfar[m]-\w|\bshare[d]/(?:facts|tools|theses|hooks)|\bissue[s] (?:show|close)\b")
 
-# Reads words that people type, options among them.
-READS_OPTIONS = ("include/ocm/client/command.hpp",)
-
 # Headers that take seconds to compile, and the files that may.
 COSTLY = {
     "CLI/": ("cli/shared/arguments.cpp",),
@@ -148,8 +145,6 @@ def library_knows_no_tool(tree):
     """No sentence of the library names amiroctl or an option: other programs use it too."""
     token = r'//[^\n]*|/\*[\s\S]*?\*/|"(?:\\.|[^"\\\n])*"'
     for name, _ in tree.headers():
-        if name in READS_OPTIONS:
-            continue
         for line, match in tree.find(name, token):
             found = re.search(r"amiroctl|(?<![\w-])--[a-z]", match.group(0))
             if match.group(0).startswith('"') and found:

@@ -1,6 +1,6 @@
 // Commands, one word a line, so that a word may hold anything, as those of a command line do: never a crash,
 // and every error names one of the words or the place behind the last.
-#include "ocm/client/command.hpp"
+#include "cli/words/command.hpp"
 
 #include <vector>
 
@@ -14,7 +14,7 @@ using namespace ocm;
 namespace {
 
 void check(std::span<const std::string_view> words, const protocol::Catalogue& catalogue) {
-  const auto command = client::CommandParser{catalogue}.parse(words);
+  const auto command = cli::words::CommandParser{catalogue}.parse(words);
   if (!command) {
     fuzz::expect(command.error.word <= words.size(), "an error lies at a word or behind the last");
     fuzz::expect(!command.error.what.empty() && !command.error.remedy.empty(), "an error has words");

@@ -1,5 +1,5 @@
 // Numbers with units and durations: what parses, prints, and reparses equal; converting never fails badly.
-#include "ocm/client/quantity.hpp"
+#include "cli/words/quantity.hpp"
 
 #include <string>
 
@@ -10,27 +10,27 @@ using namespace ocm;
 namespace {
 
 void check_quantity(std::string_view text) {
-  const auto quantity = client::parse_quantity(text);
+  const auto quantity = cli::words::parse_quantity(text);
   if (!quantity) return;
   fuzz::expect(fuzz::within(quantity->unit, text), "the unit points into the text");
   for (const std::string_view unit : {"", "m/s", "mm/s", "rad", "deg/s", "G", "mW", "s", "no unit"}) {
-    const auto converted = client::convert(*quantity, unit);
+    const auto converted = cli::words::convert(*quantity, unit);
     if (quantity->unit.empty() || quantity->unit == unit)
       fuzz::expect(converted.ok() && *converted == quantity->number,
                    "in its own unit a quantity stays as it is");
   }
-  if (!client::detail::parse_unit(quantity->unit)) return;  // "1e5e6": its unit reads as an exponent
+  if (!cli::words::detail::parse_unit(quantity->unit)) return;  // "1e5e6": its unit reads as an exponent
   const std::string printed =
       std::string{base::to_text(quantity->number).view()} + std::string{quantity->unit};
-  const auto again = client::parse_quantity(printed);
+  const auto again = cli::words::parse_quantity(printed);
   fuzz::expect(again.ok() && again->number == quantity->number && again->unit == quantity->unit,
                "a quantity that is printed reparses equal");
 }
 
 void check_duration(std::string_view text) {
-  const auto duration = client::parse_duration(text);
+  const auto duration = cli::words::parse_duration(text);
   if (!duration) return;
-  const auto again = client::parse_duration(client::to_text(*duration));
+  const auto again = cli::words::parse_duration(cli::words::to_text(*duration));
   fuzz::expect(again.ok() && *again == *duration, "a duration that is printed reparses equal");
 
   const auto nearest = protocol::Period::nearest(*duration);

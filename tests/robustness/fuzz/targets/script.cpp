@@ -1,7 +1,7 @@
 // Scripts: every error has words and lies on the line that it names; a script without errors has steps in the
 // order of their times, and each step's words stand for the same frames again. For the robot, and for another
 // one.
-#include "ocm/client/script.hpp"
+#include "cli/words/script.hpp"
 
 #include <string>
 #include <vector>
@@ -31,7 +31,7 @@ std::vector<std::size_t> line_lengths(std::string_view text) {
 }
 
 void check(std::string_view text, const protocol::Catalogue& catalogue) {
-  const auto script = client::parse_script(text, catalogue);
+  const auto script = cli::words::parse_script(text, catalogue);
   const auto lengths = line_lengths(text);
   fuzz::expect(!script.steps.empty() || !script.errors.empty(), "a script has steps or errors");
   std::size_t last = 0;
@@ -49,7 +49,7 @@ void check(std::string_view text, const protocol::Catalogue& catalogue) {
     fuzz::expect(!step.command.frames.empty(), "a step sends something");
     for (const auto& frame : step.command.frames)
       fuzz::expect(can::validate(frame).ok(), "a step's frames can exist");
-    const auto again = client::parse_script(client::to_text(step.at) + " " + step.text, catalogue);
+    const auto again = cli::words::parse_script(cli::words::to_text(step.at) + " " + step.text, catalogue);
     fuzz::expect(again.errors.empty() && again.steps.size() == 1 && again.steps[0].at == step.at &&
                      again.steps[0].command.frames == step.command.frames,
                  "a step's text stands for the same frames");

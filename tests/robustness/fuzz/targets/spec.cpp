@@ -1,9 +1,9 @@
 // Specs: any text is a spec or has problems in words; what is a spec can be worked with.
 #include "generator/spec/spec.hpp"
 
-#include "ocm/client/command.hpp"
 #include "ocm/client/sample.hpp"
 
+#include "cli/words/command.hpp"
 #include "tests/robustness/fuzz/fuzz.hpp"
 
 using namespace ocm;
@@ -19,7 +19,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const protocol::Catalogue& catalogue = loaded.spec->catalogue();
   fuzz::expect(!catalogue.robot.empty() && !catalogue.topics.empty(), "a spec has a robot with topics");
   client::Receiver receiver{catalogue};
-  const client::CommandParser parser{catalogue};
+  const cli::words::CommandParser parser{catalogue};
   for (const auto& topic : catalogue.topics) {
     fuzz::expect(topic.board < catalogue.boards.size(), "a topic has a board");
     fuzz::expect(!topic.frames.empty(), "a topic has frames");

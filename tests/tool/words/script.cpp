@@ -1,4 +1,4 @@
-#include "ocm/client/script.hpp"
+#include "cli/words/script.hpp"
 
 #include <fstream>
 #include <iterator>
@@ -9,7 +9,7 @@
 #include "ocm/topics/amiro.hpp"
 
 using namespace ocm;
-using namespace ocm::client;
+using namespace ocm::cli::words;
 using namespace std::chrono_literals;
 
 TEST_CASE("steps, comments, colours and frames") {

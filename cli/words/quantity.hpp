@@ -13,7 +13,7 @@
 #include "ocm/base/time.hpp"
 #include "ocm/protocol/request.hpp"
 
-namespace ocm::client {
+namespace ocm::cli::words {
 
 /// A number and the unit written behind it; the unit is empty for a bare number.
 struct Quantity {
@@ -147,4 +147,4 @@ struct Unit {
   return to_text(period.duration());
 }
 
-}  // namespace ocm::client
+}  // namespace ocm::cli::words

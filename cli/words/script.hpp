@@ -13,11 +13,12 @@
 #include <vector>
 
 #include "ocm/base/time.hpp"
-#include "ocm/client/command.hpp"
-#include "ocm/client/quantity.hpp"
 #include "ocm/protocol/topic.hpp"
 
-namespace ocm::client {
+#include "cli/words/command.hpp"
+#include "cli/words/quantity.hpp"
+
+namespace ocm::cli::words {
 
 struct Step {
   base::Duration at{};  ///< from the start of the script
@@ -102,4 +103,4 @@ struct Script {
   return script;
 }
 
-}  // namespace ocm::client
+}  // namespace ocm::cli::words

@@ -1,9 +1,9 @@
-#include "ocm/client/quantity.hpp"
+#include "cli/words/quantity.hpp"
 
 #include <catch2/catch.hpp>
 
 using namespace ocm;
-using namespace ocm::client;
+using namespace ocm::cli::words;
 using namespace std::chrono_literals;
 
 namespace {

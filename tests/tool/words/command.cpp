@@ -1,0 +1,174 @@
+#include "cli/words/command.hpp"
+
+#include <sstream>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/can/text.hpp"
+#include "ocm/topics/amiro.hpp"
+
+using namespace ocm;
+using namespace ocm::cli::words;
+using namespace std::chrono_literals;
+
+namespace {
+
+base::Result<Command, WordError> parse(const std::string& line) {
+  static std::vector<std::string> kept;
+  kept.clear();
+  std::istringstream stream{line};
+  for (std::string word; stream >> word;) kept.push_back(word);
+  const std::vector<std::string_view> words(kept.begin(), kept.end());
+  return CommandParser{amiro::catalogue}.parse(words);
+}
+
+/// The frames of a command, in candump notation.
+std::string frames(const std::string& line) {
+  const auto command = parse(line);
+  INFO(line << ": " << command.error.what);
+  REQUIRE(command.ok());
+  std::string text;
+  for (const auto& frame : command->frames)
+    text += (text.empty() ? "" : " ") + std::string{can::to_text(frame).view()};
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("requests become the thesis's frames") {  // thesis 4.2.1
+  CHECK(frames("publish mag 900us") == "205#01840302");
+  CHECK(frames("once floor") == "204#02");
+  CHECK(frames("stop magnetometer") == "205#00");
+  CHECK(frames("publish mag") == "205#01");
+  CHECK(frames("publish gyro 500ms") == "208#01F40100");
+  CHECK(frames("publish gyro 1.5s") == "208#01DC0500");
+  CHECK(frames("publish gyro 65535s") == "208#01FFFF01");
+  CHECK(frames("publish ring 1s --priority high") == "11F#01E80300");
+  CHECK(frames("--priority low once power") == "31E#02");
+}
+
+TEST_CASE("set points become the thesis's frames") {  // thesis 4.2.2, figure 6.1
+  CHECK(frames("led 5 100,50,120") == "240#643278");
+  CHECK(frames("led 5 #643278") == "240#643278");
+  CHECK(frames("led 1 red") == "23C#FF0000");
+  CHECK(frames("led all off") ==
+        "23C#000000 23D#000000 23E#000000 23F#000000 240#000000 241#000000 242#000000 243#000000");
+  CHECK(frames("drive 0.05m/s 0.2rad/s") == "201#50C30000400D0300");
+  CHECK(frames("drive 50000") == "201#50C3000000000000");
+  CHECK(frames("drive -.1m/s") == "201#6079FEFF00000000");
+  CHECK(frames("drive 5cm/s -30deg/s") == frames("drive 50000 -523599"));  // 30 deg = 0.523599 rad
+  CHECK(frames("drive stop") == "201#0000000000000000");
+  CHECK(frames("set motors x=0.05m/s z=0.2") == "201#50C30000400D0300");
+  CHECK(frames("set motors z=0.2rad/s --priority urgent") == "001#00000000400D0300");
+  CHECK(frames("set led_8 green=255") == "243#00FF00");
+  CHECK(frames("send 205#01840302") == "205#01840302");
+  CHECK(frames("send 1F334455#DEADBEEF") == "1F334455#DEADBEEF");
+}
+
+TEST_CASE("stop brings the motors to rest first, then every sensor") {
+  const std::string all = frames("stop");
+  CHECK(all == frames("stop all"));
+  CHECK(all.starts_with("201#0000000000000000 "));
+  for (const auto& topic : amiro::catalogue.topics)
+    if (topic.kind == protocol::Kind::sensor)
+      CHECK(all.find(can::to_text(protocol::stop(topic.id, topic.priority)).view()) != std::string::npos);
+  CHECK(parse("stop")->ends_hold);
+  CHECK(parse("stop motors")->ends_hold);
+  CHECK_FALSE(parse("stop gyro")->ends_hold);
+}
+
+TEST_CASE("drive holds, until told otherwise or for a time") {
+  const auto command = parse("drive 5cm/s --for 2s");
+  REQUIRE(command.ok());
+  REQUIRE(command->hold.has_value());
+  CHECK(command->hold->lasting == 2s);
+  CHECK(can::to_text(command->hold->rest) == "201#0000000000000000");
+  CHECK(parse("drive 5cm/s")->hold->lasting == 0s);
+  CHECK_FALSE(parse("drive stop")->hold.has_value());
+}
+
+TEST_CASE("what is wrong is said of the word where it stands") {
+  struct Row {
+    const char* line;
+    std::size_t word;
+    const char* what;
+    const char* remedy;
+  };
+  const Row rows[] = {
+      {"", 0, "no command", "publish"},
+      {"pubish gyro", 0, "unknown command 'pubish'", "did you mean 'publish'?"},
+      {"publish", 1, "something is missing", "publish TOPIC [PERIOD]"},
+      {"publish gyr 1s", 1, "no topic 'gyr'", "did you mean 'gyro'?"},
+      {"publish zzzzzz 1s", 1, "no topic 'zzzzzz'", "one of: "},
+      {"publish motors 1s", 1, "'motors' is an actuator", "set"},
+      {"set gyro x=1", 1, "'gyro' is a sensor", "publish"},
+      {"publish gyro 65.536s", 2, "cannot carry", "nearest: 65.535s"},
+      {"publish gyro 0s", 2, "cannot carry", "nearest: 1us"},
+      {"publish gyro 1.5us", 2, "cannot carry", "nearest: 1us"},
+      {"publish gyro 0.1ns", 2, "cannot carry", "nearest: 1us"},
+      {"publish gyro -1s", 2, "cannot carry", "nearest: 1us"},
+      {"publish gyro 65536s", 2, "cannot carry", "nearest: 65535s"},
+      {"publish gyro 99999999999h", 2, "cannot carry", "nearest: 65535s"},
+      {"publish gyro 500", 2, "no unit of time", "500ms"},
+      {"publish gyro fast", 2, "not a period", "500ms"},
+      {"publish gyro 1s 2s", 3, "'2s' is too much", "publish TOPIC"},
+      {"publish gyro 1s --priority top", 4, "'top' is not a priority", "urgent, high, medium or low"},
+      {"publish gyro --priority", 2, "lacks its value", "urgent"},
+      {"publish gyro --for 1s", 3, "drive only", ""},
+      {"publish gyro --wat", 2, "unknown option '--wat'", ""},
+      {"once", 1, "something is missing", "once TOPIC"},
+      {"stop gyr", 1, "no topic 'gyr'", "gyro"},
+      {"led", 1, "something is missing", "led N|all"},
+      {"led 0 red", 1, "no LED '0'", "1 to 8"},
+      {"led 9 red", 1, "no LED '9'", "1 to 8"},
+      {"led 1 reddish", 2, "not a colour", "#643278"},
+      {"led 1 256,0,0", 2, "over 255", ""},
+      {"led 1 1,2", 2, "not a colour", ""},
+      {"led 1 1,2,3,4", 2, "not a colour", ""},
+      {"led 1 #12345", 2, "not a colour", ""},
+      {"led 1 #12345G", 2, "not a colour", ""},
+      {"drive", 1, "something is missing", "drive X"},
+      {"drive fast", 1, "'fast' is not a number", "0.05m/s"},
+      {"drive 5cm", 1, "another unit", "m/s"},
+      {"drive 1.5", 1, "no unit", ""},
+      {"drive 99999999999", 1, "out of range", ""},
+      {"drive 99999km/s", 1, "out of range", ""},
+      {"drive stop 5", 0, "stands alone", ""},
+      {"drive 1cm/s --for 0s", 3, "not a time above zero", "--for 2s"},
+      {"drive 1cm/s --for ever", 3, "not a time above zero", "--for 2s"},
+      {"set motors", 2, "something is missing", "FIELD=VALUE"},
+      {"set motors y=1", 2, "no field 'y'", "x"},
+      {"set motors x", 2, "not of the form FIELD=VALUE", ""},
+      {"set motors x=1 x=2", 3, "given twice", ""},
+      {"set motors x=", 2, "is not a number", "x"},
+      {"set led_1 red=256", 2, "out of range", ""},
+      {"set led_1 red=-1", 2, "out of range", ""},
+      {"set led_1 red=1m", 2, "has a unit", ""},
+      {"send", 1, "something is missing", "send FRAME"},
+      {"send 205", 1, "'205'", "205#01840302"},
+      {"send 205#0", 1, "'205#0'", "205#01840302"},
+      {"send 20#00", 1, "identifier", ""},
+      {"send 205#001122334455667788", 1, "length", ""},
+      {"send 20000004#", 1, "is an error frame", ""},
+      {"send 205#00 --priority low", 3, "in its identifier", ""},
+  };
+  for (const auto& row : rows) {
+    CAPTURE(row.line);
+    const auto command = parse(row.line);
+    REQUIRE_FALSE(command.ok());
+    CHECK(command.error.word == row.word);
+    CHECK_THAT(command.error.what, Catch::Contains(row.what));
+    CHECK_THAT(command.error.remedy, Catch::Contains(row.remedy));
+  }
+}
+
+TEST_CASE("a robot without motors and lights has neither drive nor led, but set and send") {
+  const protocol::Catalogue bare{"bare", 500'000, {}, {}};
+  const CommandParser parser{bare};
+  const std::string_view drive[] = {"drive", "5cm/s"};
+  const std::string_view led[] = {"led", "1", "red"};
+  const std::string_view send[] = {"send", "123#"};
+  CHECK_THAT(parser.parse(drive).error.what, Catch::Contains("nothing to drive"));
+  CHECK_THAT(parser.parse(led).error.what, Catch::Contains("no lights"));
+  CHECK(parser.parse(send).ok());
+}
