@@ -174,7 +174,7 @@ std::string to_svg(const Study& study) {
   };
   std::string svg;
   const auto add = [&svg]<class... Values>(fmt::format_string<Values...> text, Values&&... values) {
-    fmt::format_to(std::back_inserter(svg), text, std::forward<Values>(values)...);
+    svg += fmt::format(text, std::forward<Values>(values)...);
   };
   add("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
       "height=\"{1:.0f}\" font-family=\"DejaVu Sans, sans-serif\" font-size=\"12\">\n"

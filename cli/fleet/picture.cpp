@@ -44,7 +44,7 @@ class Script {
  private:
   template <class... Values>
   void add(fmt::format_string<Values...> text, Values&&... values) {
-    fmt::format_to(std::back_inserter(out_), text, std::forward<Values>(values)...);
+    out_ += fmt::format(text, std::forward<Values>(values)...);
   }
 
   /// Metres: all that is drawn.

@@ -26,12 +26,10 @@ struct Event {
 
 using Buffer = log::Bytes;
 
-/// For what is rarely written: formats by way of another buffer.
+/// For what is rarely written: formats by way of a string. fmt::format_to would compile all of fmt anew.
 template <class... Arguments>
 void append_formatted(Buffer& out, fmt::format_string<Arguments...> text, Arguments&&... arguments) {
-  fmt::memory_buffer buffer;
-  fmt::format_to(std::back_inserter(buffer), text, std::forward<Arguments>(arguments)...);
-  out.append({buffer.data(), buffer.size()});
+  out.append(fmt::format(text, std::forward<Arguments>(arguments)...));
 }
 
 /// What a frame is called within its topic; a topic's only frame has the topic's name.

@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <string>
 
+#include <fmt/format.h>
+
 #include "cli/shared/remedies.hpp"
 
 namespace ocm::cli {
@@ -23,6 +25,10 @@ void fail(const transport::Failure& failure, int code) {
 
 void remark(std::string_view text) {
   print("", text);
+}
+
+void add_count(std::string& text, std::uint64_t count, std::string_view what) {
+  if (count != 0) text += fmt::format(", {} {}", count, what);
 }
 
 }  // namespace ocm::cli

@@ -1,6 +1,8 @@
 /// How a verb says that something went wrong, or just something, to the person at the terminal.
 #pragma once
 
+#include <cstdint>
+#include <string>
 #include <string_view>
 
 #include "ocm/transport/bus.hpp"
@@ -19,5 +21,7 @@ struct Exit {
 [[noreturn]] void fail(const transport::Failure& failure, int code = exit_failure);
 /// A remark for the person at the terminal, on stderr.
 void remark(std::string_view text);
+/// Adds ", COUNT what" to a summary, where there is something to count.
+void add_count(std::string& text, std::uint64_t count, std::string_view what);
 
 }  // namespace ocm::cli

@@ -17,6 +17,7 @@
 #include "cli/record/files.hpp"
 #include "cli/record/recorder.hpp"
 #include "cli/shared/interrupt.hpp"
+#include "cli/shared/messages.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
 #include "cli/watch/chosen_topics.hpp"
@@ -136,10 +137,6 @@ bool is_live(const std::string& path) {
   struct stat what {};
   const int found = path == "-" ? ::fstat(STDOUT_FILENO, &what) : ::stat(path.c_str(), &what);
   return found == 0 && !S_ISREG(what.st_mode);
-}
-
-void add_count(std::string& text, std::uint64_t count, std::string_view what) {
-  if (count != 0) text += fmt::format(", {} {}", count, what);
 }
 
 /// What is in the files, and all that is not.

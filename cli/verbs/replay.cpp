@@ -14,6 +14,7 @@
 #include "cli/replay/player.hpp"
 #include "cli/replay/stand_in.hpp"
 #include "cli/shared/interrupt.hpp"
+#include "cli/shared/messages.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
 #include "cli/watch/chosen_topics.hpp"
@@ -104,10 +105,6 @@ std::vector<replay::Outlet> open_outlets(Session& session, const std::vector<Rou
     outlets.emplace_back(Session::open_bus(route.bus));
   }
   return outlets;
-}
-
-void add_count(std::string& text, std::uint64_t count, std::string_view what) {
-  if (count != 0) text += fmt::format(", {} {}", count, what);
 }
 
 std::string rounded(base::Duration duration) {

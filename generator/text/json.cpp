@@ -1,10 +1,10 @@
-#include "cli/shared/json.hpp"
+#include "generator/text/json.hpp"
 
 #include <algorithm>
 
 #include <nlohmann/json.hpp>
 
-namespace ocm::cli {
+namespace ocm::generate {
 
 struct JsonPrinter {
   using Tree = nlohmann::ordered_json;
@@ -76,4 +76,4 @@ std::string Json::lines() const {
   return JsonPrinter::tree(*this).dump(2, ' ', false, JsonPrinter::Tree::error_handler_t::replace) + "\n";
 }
 
-}  // namespace ocm::cli
+}  // namespace ocm::generate
