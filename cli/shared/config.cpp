@@ -9,8 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "ocm/base/decimal.hpp"
-
+#include "cli/shared/config_file.hpp"
 #include "cli/shared/messages.hpp"
 #include "generator/spec/names.hpp"
 
@@ -18,119 +17,6 @@ namespace ocm::cli {
 namespace {
 
 constexpr std::size_t max_config_bytes = 100'000;
-
-bool is_blank(char c) {
-  return c == ' ' || c == '\t' || c == '\r';
-}
-
-void skip_blanks(std::string_view& text) {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-}
-
-bool is_key_char(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || base::is_digit(c) || c == '-' || c == '_' ||
-         c == '.';
-}
-
-std::string take_key(std::string_view& text) {
-  std::size_t size = 0;
-  while (size < text.size() && is_key_char(text[size])) ++size;
-  std::string key{text.substr(0, size)};
-  text.remove_prefix(size);
-  skip_blanks(text);
-  return key;
-}
-
-/// Reads one line. `what` and `remedy` are set where it is wrong.
-class LineReader {
- public:
-  LineReader(std::string_view text, std::size_t number) : text_(text), number_(number) { skip_blanks(text_); }
-
-  void read(std::string& table, Config& config) {
-    if (text_.empty() || text_.front() == '#') return;
-    if (text_.front() == '[') return read_table(table, config);
-    Setting setting{table, take_key(text_), {}, number_};
-    if (setting.key.empty() || !take('='))
-      return complain(config, "not of the form key = value", "bus = \"can0\"");
-    if (take('[')) {
-      while (!take(']')) {
-        if (!read_value(setting, config)) return;
-        if (!take(',') && (text_.empty() || text_.front() != ']'))
-          return complain(config, "the array does not end on its line", "[\"gyro\", \"odom\"]");
-      }
-    } else if (!read_value(setting, config)) {
-      return;
-    }
-    if (at_end(config)) config.settings.push_back(std::move(setting));
-  }
-
- private:
-  void complain(Config& config, std::string what, std::string remedy) {
-    config.problems.push_back({number_, std::move(what), std::move(remedy)});
-  }
-
-  bool take(char c) {
-    if (text_.empty() || text_.front() != c) return false;
-    text_.remove_prefix(1);
-    skip_blanks(text_);
-    return true;
-  }
-
-  bool at_end(Config& config) {
-    if (text_.empty() || text_.front() == '#') return true;
-    complain(config, fmt::format("\"{}\" behind the value", text_), "a comment begins with #");
-    return false;
-  }
-
-  void read_table(std::string& table, Config& config) {
-    take('[');
-    table = take_key(text_);
-    if (table.empty() || !take(']')) return complain(config, "not of the form [verb]", "[listen]");
-    at_end(config);
-  }
-
-  bool read_value(Setting& setting, Config& config) {
-    if (!text_.empty() && (text_.front() == '"' || text_.front() == '\''))
-      return read_string(setting, config);
-    std::size_t size = 0;
-    while (size < text_.size() && !is_blank(text_[size]) && text_[size] != ',' && text_[size] != ']' &&
-           text_[size] != '#')
-      ++size;
-    const std::string word{text_.substr(0, size)};
-    if (word != "true" && word != "false" && !base::parse_decimal(word)) {
-      complain(config, word.empty() ? "no value" : word + " is neither a number nor true or false",
-               fmt::format("a text stands in quotes: {} = \"{}\"", setting.key, word));
-      return false;
-    }
-    setting.values.push_back(word);
-    text_.remove_prefix(size);
-    skip_blanks(text_);
-    return true;
-  }
-
-  /// In double quotes \" and \\ stand for themselves; in single ones nothing is special.
-  bool read_string(Setting& setting, Config& config) {
-    const char quote = text_.front();
-    std::string value;
-    for (std::size_t i = 1; i < text_.size(); ++i) {
-      if (text_[i] == quote) {
-        setting.values.push_back(std::move(value));
-        text_.remove_prefix(i + 1);
-        skip_blanks(text_);
-        return true;
-      }
-      if (text_[i] == '\\' && quote == '"' && i + 1 < text_.size() &&
-          (text_[i + 1] == '"' || text_[i + 1] == '\\'))
-        ++i;
-      value += text_[i];
-    }
-    complain(config, "the text does not end on its line", fmt::format("a {} at its end", quote));
-    return false;
-  }
-
-  std::string_view text_;
-  std::size_t number_;
-};
 
 bool can_be_set(const Option& option) {
   static const std::set<std::string> never{"help", "version", "config", "words", "all"};
@@ -260,17 +146,6 @@ std::string read_file(const std::string& file, bool must_exist) {
 
 }  // namespace
 
-Config parse_config(std::string_view text) {
-  Config config;
-  std::string table;
-  for (std::size_t number = 1; !text.empty(); ++number) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    LineReader{text.substr(0, end), number}.read(table, config);
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
-  return config;
-}
-
 std::string default_config_file() {
   const auto from = [](const char* name) {
     const char* value = std::getenv(name);
@@ -286,7 +161,7 @@ void apply_config(Verb program, const std::string& file) {
   for (const Verb each : verbs) apply_environment(each);
   const std::string path = file.empty() ? default_config_file() : file;
   if (path.empty()) return;
-  Config config = parse_config(read_file(path, !file.empty()));
+  ConfigFile config = parse_config(read_file(path, !file.empty()));
   for (const Setting& setting : config.settings) check_names(program, setting, config.problems);
   if (!config.problems.empty()) {
     std::stable_sort(config.problems.begin(), config.problems.end(),

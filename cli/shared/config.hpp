@@ -1,7 +1,7 @@
 /// Options that no command line has to repeat: from the environment, else from a file. An option on the
 /// command line goes before AMIROCTL_OPTION in the environment, and that before the file.
 ///
-/// The file is TOML with one level of tables; a key is an option's long name. What stands before the first
+/// The file is TOML; a key is an option's long name. What stands before the first
 /// table is for every verb that has the option, [listen] for that verb alone:
 ///
 ///     bus = "can0"
@@ -12,34 +12,10 @@
 #pragma once
 
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include "cli/shared/arguments.hpp"
 
 namespace ocm::cli {
-
-/// One line of the file.
-struct Setting {
-  std::string table;                ///< "listen", "analyse.bus"; empty: every verb
-  std::string key;                  ///< "idle-timeout"
-  std::vector<std::string> values;  ///< several of an array
-  std::size_t line = 0;
-};
-
-struct ConfigProblem {
-  std::size_t line = 0;
-  std::string what;
-  std::string remedy;
-};
-
-struct Config {
-  std::vector<Setting> settings;
-  std::vector<ConfigProblem> problems;
-};
-
-/// Strings, numbers, true, false, and arrays of them on one line. Any text is a problem at worst.
-[[nodiscard]] Config parse_config(std::string_view text);
 
 /// $XDG_CONFIG_HOME/amiroctl/config.toml, or ~/.config/amiroctl/config.toml; empty without a home.
 [[nodiscard]] std::string default_config_file();

@@ -1,7 +1,7 @@
 # A folder that holds the header-only libraries of the machine that builds, and nothing else of its /usr/include, whose
 # other headers are of another processor.
 set(ocm_header_only ${CMAKE_BINARY_DIR}/header_only)
-foreach(library CLI catch2 fmt nlohmann valijson)
+foreach(library CLI catch2 fmt nlohmann toml++ valijson)
   if(NOT EXISTS ${ocm_header_only}/${library} AND EXISTS /usr/include/${library})
     file(MAKE_DIRECTORY ${ocm_header_only})
     file(CREATE_LINK /usr/include/${library} ${ocm_header_only}/${library} SYMBOLIC)

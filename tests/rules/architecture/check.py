@@ -36,6 +36,7 @@ INTERNAL_NAMES = re.compile(r"\bfar[m]-\w|\bshare[d]/(?:facts|tools|theses|hooks
 # Headers that take seconds to compile, and the files that may.
 COSTLY = {
     "CLI/": ("cli/shared/arguments.cpp",),
+    "toml++/": ("cli/shared/config_file.cpp",),
     "nlohmann/": ("generator/text/json.cpp", "generator/spec/json.cpp", "generator/spec/schema.cpp"),
     "valijson/": ("generator/spec/schema.cpp",),
 }

@@ -53,6 +53,15 @@ class Config(harness.Case):
         self.assertIn(second, self.run_tool("stop", code=1)[1])
         self.assertIn(third, self.run_tool("stop", "--bus", "sim:" + third, code=1)[1])
 
+    def test_any_toml(self):
+        """Dotted keys, quoted keys, inline tables, arrays of several lines, other ways to write a number or a text."""
+        for text in ('publish.priority = "low"', 'publish = { priority = "low" }', '[publish]\n"priority" = """low"""',
+                     "[publish]\npriority = [\n  'low',  # only one\n]"):
+            self.write(text + "\n")
+            self.assertEqual(self.frame(), "305#01840302")
+        self.write("[listen]\ncount = 0x1\n")
+        self.assertIn("no simulator", self.run_tool("listen", "--bus", "sim:" + self.folder + "/none", code=1)[1])
+
     def test_one_of_a_group_on_the_command_line_is_enough(self):
         self.write("[analyse.bus]\njson = true\n")
         self.assertTrue(self.run_tool("analyse", "bus")[0].startswith("{"))
@@ -75,12 +84,16 @@ class Config(harness.Case):
                 ('bus = "sim"\nbuss = "sim"\n', 2, "unknown key buss", "did you mean bus?"),
                 ('[lissten]\npretty = true\n', 2, "[lissten] is no verb", "did you mean listen?"),
                 ('[list]\npretty = true\n', 2, "unknown key pretty", "a key is the long name of an option"),
-                ("\nbus = sim\n", 2, "sim is neither a number nor true or false", 'bus = "sim"'),
-                ('bus = "sim\n', 1, "the text does not end on its line", "at its end"),
-                ("bus\n", 1, "not of the form key = value", 'bus = "can0"'),
-                ("bus =\n", 1, "no value", "quotes"),
-                ("[list\n", 1, "not of the form [verb]", "[listen]"),
-                ('bus = "a" "b"\n', 1, "behind the value", "a comment begins with #"),
+                ("\nbus = sim\n", 2, "could not determine value type", 'bus = "can0"'),
+                ('bus = "sim\n', 1, "Error while parsing string", "a text stands in quotes"),
+                ("bus\n", 1, "expected '='", 'key = value'),
+                ("bus =\n", 1, "expected value", "quotes"),
+                ("[list\n", 1, "expected ']'", "[verb]"),
+                ('bus = "a" "b"\n', 1, "expected a comment or whitespace", "key = value"),
+                ('bus = "a"\nbus = "b"\n', 2, "cannot redefine existing string 'bus'", ""),
+                ('bus = 2020-01-01\n', 1, "bus: a date or a time is no option's value", "a text in quotes"),
+                ('bus = ["a",\n  ["b"]]\n', 2, "bus: an array within an array is no option's value", ""),
+                ('[[list]]\npretty = true\n', 1, "list: a table is no option's value", ""),
                 ('help = true\n', 1, "unknown key help", "")):
             self.write(text)
             out, err = self.run_tool("list", code=2)

@@ -1,0 +1,76 @@
+#include "cli/shared/config_file.hpp"
+
+#include <toml++/toml.h>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace ocm::cli {
+namespace {
+
+class Reader {
+ public:
+  explicit Reader(ConfigFile& file) : file_(file) {}
+
+  void read(const toml::table& table, const std::string& name) {
+    for (const auto& [key, node] : table) {
+      const std::string inner = name.empty() ? std::string{key.str()} : fmt::format("{}.{}", name, key.str());
+      if (const auto* deeper = node.as_table()) {
+        read(*deeper, inner);
+        continue;
+      }
+      Setting setting{name, std::string{key.str()}, {}, key.source().begin.line};
+      if (read(node, setting)) file_.settings.push_back(std::move(setting));
+    }
+  }
+
+ private:
+  bool read(const toml::node& node, Setting& setting) {
+    const auto* array = node.as_array();
+    if (array == nullptr) return read_value(node, setting);
+    for (const toml::node& item : *array)
+      if (!read_value(item, setting)) return false;
+    return true;
+  }
+
+  bool read_value(const toml::node& node, Setting& setting) {
+    if (const auto* text = node.as_string())
+      setting.values.push_back(text->get());
+    else if (const auto* truth = node.as_boolean())
+      setting.values.emplace_back(truth->get() ? "true" : "false");
+    else if (const auto* whole = node.as_integer())
+      setting.values.push_back(fmt::format("{}", whole->get()));
+    else if (const auto* real = node.as_floating_point())
+      setting.values.push_back(fmt::format("{}", real->get()));
+    else
+      return refuse(node, setting);
+    return true;
+  }
+
+  bool refuse(const toml::node& node, const Setting& setting) {
+    const char* what = node.is_array()   ? "an array within an array"
+                       : node.is_table() ? "a table"
+                                         : "a date or a time";
+    file_.problems.push_back({node.source().begin.line,
+                              fmt::format("{}: {} is no option's value", setting.key, what),
+                              "a text in quotes, a number, true, false, or an array of them"});
+    return false;
+  }
+
+  ConfigFile& file_;
+};
+
+}  // namespace
+
+ConfigFile parse_config(std::string_view text) {
+  ConfigFile file;
+  try {
+    Reader{file}.read(toml::parse(text), "");
+  } catch (const toml::parse_error& error) {
+    file.problems.push_back({error.source().begin.line, std::string{error.description()},
+                             "a line is key = value or [verb], a text stands in quotes: bus = \"can0\""});
+  }
+  return file;
+}
+
+}  // namespace ocm::cli
