@@ -21,6 +21,7 @@
 #include "ocm/protocol/topic.hpp"
 
 #include "cli/shared/interrupt.hpp"
+#include "cli/shared/live.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/words/quantity.hpp"
 
@@ -174,19 +175,12 @@ class Traffic {
 
 /// Returns how long was listened.
 base::Duration listen(transport::Bus& bus, Traffic& traffic, base::Duration duration) {
-  using Clock = std::chrono::steady_clock;
-  const auto begin = Clock::now();
-  for (;;) {
-    if (interrupted() != 0) throw Exit{exit_code_after_interrupt(exit_failure)};
-    const base::Duration passed = Clock::now() - begin;
-    if (passed >= duration) return passed;
-    const auto received =
-        bus.receive(std::min<base::Duration>(duration - passed, std::chrono::milliseconds{200}));
-    if (received)
-      traffic.take(*received);
-    else if (received.error == base::Error::closed)
-      fail(bus.failure());
-  }
+  const auto begin = Live::Clock::now();
+  Live{bus}.receive_or_leave(begin + duration, [&](const can::Received& received) {
+    traffic.take(received);
+    return true;
+  });
+  return Live::Clock::now() - begin;
 }
 
 /// To the microsecond, for people.

@@ -14,6 +14,7 @@
 #include "cli/command/commanding.hpp"
 #include "cli/output/printer.hpp"
 #include "cli/shared/interrupt.hpp"
+#include "cli/shared/live.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/watch/subscription.hpp"
 #include "cli/words/quantity.hpp"
@@ -36,29 +37,21 @@ void send_and_await(Session& session, transport::Bus& open_bus, const client::Co
   client::Receiver receiver{catalogue};
   Printer printer{make_output(isatty(STDOUT_FILENO) != 0 ? Format::pretty : Format::json, catalogue, {},
                               session.colour())};
-  const auto deadline = std::chrono::steady_clock::now() + timeout;
-  while (interrupted() == 0) {
-    const base::Duration left = deadline - std::chrono::steady_clock::now();
-    const auto received = bus->receive(std::max(left, base::Duration{0}));
-    if (received) {
-      const auto reception = receiver.take(*received);
-      if (reception.topic != &topic) continue;
-      printer.write({bus->name(), log::Entry{received->time, received->frame}, reception});
-      if (reception.meaning != client::Meaning::sample) continue;
-      return printer.flush();
-    }
-    if (received.error == base::Error::closed) fail(bus->failure());
-    if (left.count() > 0) continue;
-    const auto& counters = receiver.counters();
-    fail(
-        {fmt::format("no {} within {}", topic.name, words::to_text(timeout)),
-         counters.frames != 0
-             ? fmt::format("{} frames came, {} of wrong length: does the robot run another protocol version?",
-                           counters.frames, counters.wrong_dlc)
-             : fmt::format("is board {} powered and on {}? Is the bit rate {} bit/s? See `amiroctl listen`",
-                           catalogue.boards[topic.board].name, bus->name(), catalogue.bit_rate)});
-  }
-  throw Exit{exit_code_after_interrupt(exit_failure)};
+  const Over over = Live{*bus}.receive_or_leave(Live::Clock::now() + timeout, [&](const can::Received& received) {
+    const auto reception = receiver.take(received);
+    if (reception.topic != &topic) return true;
+    printer.write({bus->name(), log::Entry{received.time, received.frame}, reception});
+    return reception.meaning != client::Meaning::sample;
+  });
+  if (over == Over::enough) return printer.flush();
+  const auto& counters = receiver.counters();
+  fail(
+      {fmt::format("no {} within {}", topic.name, words::to_text(timeout)),
+       counters.frames != 0
+           ? fmt::format("{} frames came, {} of wrong length: does the robot run another protocol version?",
+                         counters.frames, counters.wrong_dlc)
+           : fmt::format("is board {} powered and on {}? Is the bit rate {} bit/s? See `amiroctl listen`",
+                         catalogue.boards[topic.board].name, bus->name(), catalogue.bit_rate)});
 }
 
 }  // namespace

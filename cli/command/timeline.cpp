@@ -1,7 +1,6 @@
 #include "cli/command/timeline.hpp"
 
 #include <algorithm>
-#include <thread>
 
 #include "cli/shared/interrupt.hpp"
 
@@ -36,19 +35,11 @@ bool Timeline::wait(Clock::time_point until) {
     if (now >= until) return true;
     auto wake = until;
     if (held_) wake = std::min({wake, held_->next, held_->end});
-    // Waiting in short pieces bounds how long a signal that comes just before the wait can go unseen.
-    const auto pause = std::min<Clock::duration>(wake - now, std::chrono::milliseconds{200});
-    if (pause.count() <= 0) continue;
-    if (!on_receive_) {
-      std::this_thread::sleep_for(pause);
-      continue;
-    }
-    const auto received = bus_->receive(pause);
-    watch_.look(*bus_);
-    if (received)
-      on_receive_(*received);
-    else if (received.error == base::Error::closed)
-      fail(bus_->failure());
+    const Over over = live_.receive(wake, [&](const can::Received& received) {
+      if (on_receive_) on_receive_(received);
+      return true;
+    });
+    if (over == Over::gone) fail(bus_->failure());
   }
 }
 

@@ -9,6 +9,7 @@
 #include "ocm/can/bus.hpp"
 #include "ocm/transport/bus.hpp"
 
+#include "cli/shared/live.hpp"
 #include "cli/shared/session.hpp"
 #include "cli/words/command.hpp"
 
@@ -16,10 +17,10 @@ namespace ocm::cli {
 
 class Timeline {
  public:
-  using Clock = std::chrono::steady_clock;
-  /// `on_receive` gets every frame that comes while waiting; empty: they are left unread.
+  using Clock = Live::Clock;
+  /// `on_receive` gets every frame that comes while waiting; empty: nobody looks at them.
   Timeline(transport::Bus& bus, std::function<void(const can::Received&)> on_receive)
-      : bus_(&bus), on_receive_(std::move(on_receive)) {}
+      : bus_(&bus), on_receive_(std::move(on_receive)), live_(bus) {}
 
   /// Sends a command's frames and takes over, or ends, its hold.
   void carry_out(const client::Command& command);
@@ -39,7 +40,7 @@ class Timeline {
   transport::Bus* bus_;
   std::function<void(const can::Received&)> on_receive_;
   std::optional<Held> held_;
-  StateWatch watch_;
+  Live live_;
 };
 
 }  // namespace ocm::cli

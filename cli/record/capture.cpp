@@ -6,11 +6,9 @@
 #include <fmt/format.h>
 
 #include "ocm/base/text.hpp"
-#include "ocm/transport/slcan.hpp"
-#include "ocm/transport/virtual_bus.hpp"
 
 #include "cli/record/can_capture.hpp"
-#include "cli/shared/messages.hpp"
+#include "cli/shared/buses.hpp"
 
 namespace ocm::cli::record {
 namespace {
@@ -20,8 +18,8 @@ using transport::BusState;
 /// What any transport::Bus gives: the virtual bus, a serial adapter.
 class BusCapture final : public Capture {
  public:
-  BusCapture(std::unique_ptr<transport::Bus> bus, Filters filters, std::uint32_t bit_rate, bool serial)
-      : bus_(std::move(bus)), filters_(std::move(filters)), bit_rate_(bit_rate), serial_(serial) {}
+  BusCapture(std::unique_ptr<transport::Bus> bus, Filters filters, bool serial)
+      : bus_(std::move(bus)), filters_(std::move(filters)), serial_(serial) {}
 
   std::size_t read(std::span<log::Entry> into, std::uint16_t interface) override {
     std::size_t count = 0;
@@ -43,14 +41,13 @@ class BusCapture final : public Capture {
   BusState state() const override { return closed_ ? BusState::closed : bus_->state(); }
   const transport::Failure& failure() const override { return bus_->failure(); }
   std::uint64_t lost() const override { return bus_->counters().lost; }
-  std::uint32_t bit_rate() const override { return bit_rate_; }
+  std::uint32_t bit_rate() const override { return bus_->bit_rate(); }
   bool keeps_times() const override { return !serial_; }  // of a serial adapter they are taken on arrival
   bool may_return() const override { return serial_; }
 
  private:
   std::unique_ptr<transport::Bus> bus_;
   Filters filters_;
-  std::uint32_t bit_rate_;
   bool serial_;
   bool closed_ = false;
 };
@@ -90,24 +87,12 @@ transport::Outcome<can_filter> parse_filter(std::string_view text) {
 }
 
 transport::Outcome<std::unique_ptr<Capture>> open_capture(std::string_view name, const Filters& filters) {
-  const auto wrap = [&](auto opened, std::uint32_t bit_rate,
-                        bool serial) -> transport::Outcome<std::unique_ptr<Capture>> {
-    return std::unique_ptr<Capture>{
-        std::make_unique<BusCapture>(std::move(opened.value), filters, bit_rate, serial)};
-  };
-  if (name == "sim" || name.starts_with("sim:")) {
-    auto opened = transport::VirtualBus::open(std::string{name == "sim" ? "" : name.substr(4)});
-    if (!opened) return std::move(opened.error);
-    const std::uint32_t bit_rate = (*opened)->bit_rate();
-    return wrap(std::move(opened), bit_rate, false);
-  }
-  if (name.starts_with("slcan:")) {
-    auto opened = transport::Slcan::open(name.substr(6));
-    if (!opened) return std::move(opened.error);
-    if (!(*opened)->answers()) remark("the adapter answers no command: what it drops, nobody knows");
-    return wrap(std::move(opened), 0, true);
-  }
-  return CanCapture::open(name, filters);
+  const BusName parsed = parse_bus_name(name);
+  if (parsed.kind == BusName::Kind::interface) return CanCapture::open(name, filters);
+  auto bus = open_bus(parsed);
+  if (!bus) return std::move(bus.error);
+  return std::unique_ptr<Capture>{
+      std::make_unique<BusCapture>(std::move(*bus), filters, parsed.kind == BusName::Kind::serial)};
 }
 
 }  // namespace ocm::cli::record

@@ -5,17 +5,14 @@
 #include <cstdlib>
 #include <thread>
 #include <unistd.h>
-#include <vector>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "ocm/can/text.hpp"
 #include "ocm/topics/amiro.hpp"
-#include "ocm/transport/interfaces.hpp"
-#include "ocm/transport/slcan.hpp"
-#include "ocm/transport/socketcan.hpp"
-#include "ocm/transport/virtual_bus.hpp"
 
+#include "cli/shared/buses.hpp"
 #include "cli/shared/config.hpp"
 #include "generator/robot_spec.hpp"
 #include "generator/spec/spec.hpp"
@@ -60,26 +57,9 @@ const spec::Spec& Session::spec() {
 }
 
 std::unique_ptr<transport::Bus> Session::open_bus(std::string_view name) {
-  transport::Outcome<std::unique_ptr<transport::Bus>> bus;
-  const auto take = [&bus](auto opened) {
-    if (opened)
-      bus.value = std::move(opened.value);
-    else
-      bus.error = std::move(opened.error);
-  };
-  if (name == "sim")
-    take(transport::VirtualBus::open());
-  else if (name.starts_with("sim:"))
-    take(transport::VirtualBus::open(std::string{name.substr(4)}));
-  else if (name.starts_with("slcan:")) {
-    auto opened = transport::Slcan::open(name.substr(6));
-    if (opened && !(*opened)->answers())
-      remark("the adapter answers no command: what it drops, nobody knows");
-    take(std::move(opened));
-  } else
-    take(transport::SocketCan::open(name));
+  auto bus = cli::open_bus(parse_bus_name(name));
   if (!bus) fail(bus.error);
-  return std::move(bus.value);
+  return std::move(*bus);
 }
 
 std::unique_ptr<transport::Bus> Session::open_bus() {
@@ -90,34 +70,9 @@ std::unique_ptr<transport::Bus> Session::open_bus() {
   return bus;
 }
 
-std::string Session::only_bus() {
-  std::vector<std::string> found;
-  for (const auto& interface : transport::can_interfaces())
-    if (interface.up) found.push_back(interface.name);
-  if (transport::VirtualBus::running()) found.emplace_back("sim");
-  if (found.empty())
-    fail({"no bus: no CAN interface is up and no simulator runs",
-          "start a simulated robot with `amiroctl sim`, or bring an interface up: "
-          "sudo ip link set can0 up type can bitrate 500000"});
-  if (found.size() > 1) {
-    std::string names = found[0];
-    for (std::size_t i = 1; i < found.size(); ++i) names += ", " + found[i];
-    fail({"several buses: " + names, "choose one with --bus NAME or AMIROCTL_BUS=NAME"}, exit_usage);
-  }
-  return found[0];
-}
-
 bool Session::colour() const {
   const char* never = std::getenv("NO_COLOR");
   return !no_colour_ && (never == nullptr || *never == '\0') && isatty(STDOUT_FILENO) != 0;
-}
-
-void StateWatch::look(const transport::Bus& bus) {
-  if (bus.state() == state_) return;
-  state_ = bus.state();
-  if (state_ == transport::BusState::down)
-    remark(fmt::format("{} went down; waiting for it to come back", bus.name()));
-  if (state_ == transport::BusState::up) remark(fmt::format("{} is up again", bus.name()));
 }
 
 void send_patiently(transport::Bus& bus, const can::Frame& frame, base::Duration patience) {

@@ -44,19 +44,8 @@ class Session {
   std::string config_file;
 
  private:
-  [[nodiscard]] static std::string only_bus();
-
   bool no_colour_ = false;
   std::unique_ptr<spec::Spec> spec_;
-};
-
-/// Tells once when the bus goes down, and once when it is back.
-class StateWatch {
- public:
-  void look(const transport::Bus& bus);
-
- private:
-  transport::BusState state_ = transport::BusState::up;
 };
 
 /// Waits for room when the bus is full, at most `patience`; then fails with the bus's words.

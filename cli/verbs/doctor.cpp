@@ -14,6 +14,7 @@
 #include "ocm/protocol/request.hpp"
 
 #include "cli/shared/interrupt.hpp"
+#include "cli/shared/live.hpp"
 #include "cli/shared/json.hpp"
 #include "cli/shared/remedies.hpp"
 #include "cli/shared/values.hpp"
@@ -40,24 +41,18 @@ class Examination {
   Examination(Session& session)
       : catalogue_(session.catalogue()),
         bus_(session.open_bus()),
+        live_(*bus_),
         receiver_(catalogue_),
         diagnosis_(catalogue_) {}
 
   /// Listens for `duration`, or until `done`.
   template <class Done>
   void listen(base::Duration duration, Done done) {
-    const auto end = SteadyClock::now() + duration;
-    while (interrupted() == 0 && !done()) {
-      const base::Duration left = end - SteadyClock::now();
-      if (left.count() <= 0) return;
-      // In pieces, so that a signal is seen soon.
-      const auto received = bus_->receive(std::min<base::Duration>(left, std::chrono::milliseconds{200}));
-      if (received)
-        diagnosis_.take(receiver_.take(*received));
-      else if (received.error == base::Error::closed)
-        fail(bus_->failure());
-    }
-    if (interrupted() != 0) throw Exit{exit_code_after_interrupt(exit_failure)};
+    if (done()) return;
+    live_.receive_or_leave(Live::Clock::now() + duration, [&](const can::Received& received) {
+      diagnosis_.take(receiver_.take(received));
+      return !done();
+    });
   }
 
   /// Who has not spoken by himself is asked, twice at most. What is published is waited for and not asked:
@@ -121,6 +116,7 @@ class Examination {
 
   const protocol::Catalogue& catalogue_;
   std::unique_ptr<transport::Bus> bus_;
+  Live live_;
   client::Receiver receiver_;
   Diagnosis diagnosis_;
 };

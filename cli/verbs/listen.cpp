@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "cli/shared/interrupt.hpp"
+#include "cli/shared/live.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
 #include "cli/watch/chosen_topics.hpp"
@@ -27,7 +28,7 @@ struct ListenOptions {
 };
 
 void listen(Session& session, const ListenOptions& options, int& exit_code) {
-  using SteadyClock = std::chrono::steady_clock;
+  using Clock = Live::Clock;
   const auto& catalogue = session.catalogue();
   const auto topics = chosen_topics("listen", catalogue, options.topics);
   const base::Duration timeout =
@@ -47,45 +48,29 @@ void listen(Session& session, const ListenOptions& options, int& exit_code) {
       });
 
   Display display{"listen", session, options.display};
-  const auto begin = SteadyClock::now();
+  const auto begin = Clock::now();
   auto last = begin;
-  bool timed_out = false;
-  transport::Failure gone;
-  StateWatch watch;
-  while (interrupted() == 0 && (options.count == 0 || display.shown() < options.count)) {
-    auto received = bus->receive(base::Duration{0});
-    if (!received && received.error == base::Error::timed_out) {
-      display.flush();
-      const auto now = SteadyClock::now();
-      const auto left = std::min<SteadyClock::duration>(begin + timeout - now, last + idle - now);
-      if (left.count() <= 0) {
-        timed_out = true;
-        break;
-      }
-      // In pieces, so that a signal that comes just before the wait is seen soon.
-      received = bus->receive(std::min<base::Duration>(left, std::chrono::milliseconds{200}));
-    }
-    if (!received) {
-      watch.look(*bus);
-      if (received.error == base::Error::closed) {
-        gone = bus->failure();
-        break;
-      }
-      continue;
-    }
-    const log::Entry entry{received->time, received->frame};
+  const auto end = [&] { return std::min(begin + timeout, last + idle); };
+  const auto take = [&](const can::Received& received) {
+    const log::Entry entry{received.time, received.frame};
     const auto meaning = display.understand(entry).meaning;
     using client::Meaning;
     const bool command = meaning == Meaning::request || meaning == Meaning::set_point;
-    if (command && !commands_wanted) continue;
-    if (!options.idle_timeout.empty()) last = SteadyClock::now();
+    if (command && !commands_wanted) return true;
+    if (!options.idle_timeout.empty()) last = Clock::now();
     display.show(bus->name(), entry);
-  }
+    return options.count == 0 || display.shown() < options.count;
+  };
+  Live live{*bus, [&] { display.flush(); }};
+  Over over = Over::time;
+  do
+    over = live.receive(end(), take);
+  while (over == Over::time && Clock::now() < end());
   display.flush();
   display.summarise(bus->counters().lost);
-  if (!gone.what.empty()) fail(gone);
+  if (over == Over::gone) fail(bus->failure());
   // As with candump -n: whoever waits for frames and gets none wants to know.
-  if (timed_out && options.count != 0) exit_code = exit_failure;
+  if (over == Over::time && options.count != 0) exit_code = exit_failure;
   if (options.strict && (display.counters().faults() != 0 || bus->counters().lost != 0))
     exit_code = exit_failure;
   exit_code = exit_code_after_interrupt(exit_code);

@@ -14,6 +14,7 @@
 #include "cli/replay/player.hpp"
 #include "cli/replay/stand_in.hpp"
 #include "cli/shared/interrupt.hpp"
+#include "cli/shared/live.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
@@ -214,35 +215,35 @@ void stand_in(Session& session, const ReplayOptions& options, int& exit_code) {
   tell_learnt(robot, catalogue);
 
   std::uint64_t requests = 0, refused = 0, silent = 0, sent = 0;
-  StateWatch watch;
-  while (interrupted() == 0) {
-    const base::Time now = replay::monotonic_now();
-    for (const auto& frame : robot.due(now)) {
-      send_patiently(*bus, frame);
-      ++sent;
-    }
-    const base::Duration left =
-        std::min<base::Duration>(robot.next() == base::never ? base::Duration::max() : robot.next() - now,
-                                 std::chrono::milliseconds{200});
-    const auto received = bus->receive(std::max(left, base::Duration{0}));
-    watch.look(*bus);
-    if (received.error == base::Error::closed) fail(bus->failure());
-    if (!received) continue;
-    switch (robot.take(received->frame, replay::monotonic_now())) {
+  Live live{*bus};
+  const auto take = [&](const can::Received& received) {
+    switch (robot.take(received.frame, replay::monotonic_now())) {
       case Answer::none:
-        break;
+        return true;
       case Answer::accepted:
         ++requests;
         break;
       case Answer::refused:
         ++refused;
-        remark(fmt::format("refused: {}", can::to_text(received->frame).view()));
+        remark(fmt::format("refused: {}", can::to_text(received.frame).view()));
         break;
       case Answer::silent:
         ++silent;
-        remark(fmt::format("{}: the log has no sample of it", can::to_text(received->frame).view()));
+        remark(fmt::format("{}: the log has no sample of it", can::to_text(received.frame).view()));
         break;
     }
+    return false;  // what is due next may have changed
+  };
+  for (Over over = Over::time; over == Over::time || over == Over::enough;) {
+    for (const auto& frame : robot.due(replay::monotonic_now())) {
+      send_patiently(*bus, frame);
+      ++sent;
+    }
+    const auto until = robot.next() == base::never
+                           ? Live::Clock::time_point::max()
+                           : Live::Clock::now() + (robot.next() - replay::monotonic_now());
+    over = live.receive(until, take);
+    if (over == Over::gone) fail(bus->failure());
   }
   std::string text = fmt::format("{} requests, {} frames sent", requests, sent);
   add_count(text, refused, "requests refused");

@@ -9,7 +9,9 @@
 
 #include "ocm/transport/bus.hpp"
 
+#include "cli/shared/buses.hpp"
 #include "cli/shared/interrupt.hpp"
+#include "cli/shared/live.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/shared/remedies.hpp"
 #include "cli/shared/session.hpp"
@@ -60,9 +62,10 @@ int run_amiro(const sim::AmiroOptions& options, Session& session) {
     fail({"sim: --images without --boards qemu", "add --boards qemu, or leave --images out"}, exit_usage);
   catch_interrupts();
   if (!session.spec_file.empty()) remark("the simulated robot is the AMiRo, whatever --spec says");
-  if (session.bus_name.empty() || session.bus_name == "sim" || session.bus_name.starts_with("sim:"))
+  const BusName bus_name = parse_bus_name(session.bus_name.empty() ? "sim" : session.bus_name);
+  if (bus_name.kind == BusName::Kind::simulated)
     return exit_code_of(
-        sim::serve_amiro(session.bus_name, options, {[] { return interrupted() != 0; }, remark}));
+        sim::serve_amiro(bus_name.address, options, {[] { return interrupted() != 0; }, remark}));
   if (options.bus_errors > 0)
     fail({"sim: --bus-errors with --bus " + session.bus_name,
           "leave one out: a real bus has errors of its own"},

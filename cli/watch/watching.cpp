@@ -9,6 +9,7 @@
 
 #include "cli/logs/opened_log.hpp"
 #include "cli/shared/interrupt.hpp"
+#include "cli/shared/live.hpp"
 #include "cli/shared/values.hpp"
 
 namespace ocm::cli {
@@ -102,42 +103,34 @@ void Watching::read(const std::string& file, const Take& take, const Lost& lost)
 }
 
 void Watching::listen(const Take& take, const Lost& lost, const std::function<void()>& each_second) {
-  using Clock = std::chrono::steady_clock;
+  using Clock = Live::Clock;
   const auto bus = session_->open_bus();
   bus_ = bus->name();
   log::Interfaces interfaces;
   const std::uint16_t interface = interfaces.number(bus_);
-  StateWatch state;
-  const auto begin = Clock::now();
-  auto tick = begin + std::chrono::seconds{1};
+  Live live{*bus};
+  const auto end = duration_ ? Clock::now() + *duration_ : Clock::time_point::max();
+  auto tick = each_second ? Clock::now() + std::chrono::seconds{1} : Clock::time_point::max();
   std::uint64_t told = 0;
-  while (!done_ && interrupted() == 0) {
-    const auto now = Clock::now();
-    if (duration_ && now - begin >= *duration_) break;
-    if (each_second && now >= tick) {
-      each_second();
-      tick += std::chrono::seconds{1};
-    }
-    // In pieces, so that a signal that comes just before the wait is seen soon.
-    base::Duration wait = std::chrono::milliseconds{100};
-    if (duration_) wait = std::min<base::Duration>(wait, *duration_ - (now - begin));
-    const auto received = bus->receive(wait);
+  for (;;) {
+    const Over over = live.receive(std::min(end, tick), [&](const can::Received& received) {
+      const log::Entry entry{received.time, received.frame, interface};
+      ++taken_;
+      take({&entry, 1}, interfaces);
+      if (count_ != 0 && taken_ >= count_) done_ = true;
+      return !done_;
+    });
     if (const auto missed = bus->counters().lost; missed != told) {
       lost(bus_, missed - told);
       told = missed;
     }
-    if (!received && received.error == base::Error::closed) {
-      gone_ = bus->failure();
-      return;
+    if (over == Over::gone) gone_ = bus->failure();
+    const auto now = Clock::now();
+    if (done_ || over == Over::gone || over == Over::signal || now >= end) return;
+    if (now >= tick) {
+      each_second();
+      tick += std::chrono::seconds{1};
     }
-    if (!received) {
-      state.look(*bus);
-      continue;
-    }
-    const log::Entry entry{received->time, received->frame, interface};
-    ++taken_;
-    take({&entry, 1}, interfaces);
-    if (count_ != 0 && taken_ >= count_) done_ = true;
   }
 }
 

@@ -88,9 +88,9 @@ Ending serve_amiro(transport::Bus& bus, const AmiroOptions& options, const Shell
   return {};
 }
 
-Ending serve_amiro(const std::string& bus_name, const AmiroOptions& options, const Shell& shell) {
+Ending serve_amiro(const std::string& path, const AmiroOptions& options, const Shell& shell) {
   simulation::VirtualBusOptions bus_options;
-  if (bus_name.starts_with("sim:")) bus_options.path = bus_name.substr(4);
+  bus_options.path = path;
   bus_options.name = amiro::catalogue.robot;
   bus_options.bit_rate = options.bit_rate;
   bus_options.to_unix_time = std::chrono::system_clock::now().time_since_epoch();

@@ -24,9 +24,8 @@ struct AmiroOptions {
   double speed = 1;
 };
 
-/// The boards and any number of programs on a virtual bus: that of the user ("" or "sim"), or the one whose
-/// socket is PATH ("sim:PATH"). Reports what was sent and what was lost, by cause, when it is told to stop.
-[[nodiscard]] Ending serve_amiro(const std::string& bus, const AmiroOptions& options, const Shell& shell);
+/// The boards and any number of programs on a virtual bus, whose socket is `path`; empty: that of the user. Reports what was sent and what was lost, by cause, when it is told to stop.
+[[nodiscard]] Ending serve_amiro(const std::string& path, const AmiroOptions& options, const Shell& shell);
 
 /// The boards on a real CAN interface: the kernel is the bus. In real time, without disturbances.
 [[nodiscard]] Ending serve_amiro(transport::Bus& bus, const AmiroOptions& options, const Shell& shell);

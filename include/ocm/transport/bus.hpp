@@ -60,6 +60,8 @@ class Bus {
   [[nodiscard]] virtual BusState state() const {
     return failure() == Failure{} ? BusState::up : BusState::closed;
   }
+  /// bit/s, where the bus says it; 0: not known.
+  [[nodiscard]] virtual std::uint32_t bit_rate() const noexcept { return 0; }
   /// Why `send` or `receive` answered Error::closed, in words; empty while the bus is open.
   [[nodiscard]] virtual const Failure& failure() const = 0;
 };

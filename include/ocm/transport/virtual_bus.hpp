@@ -80,7 +80,7 @@ class VirtualBus final : public Bus {
   /// What the server calls its bus or robot.
   [[nodiscard]] std::string_view bus_name() const noexcept { return bus_name_; }
   /// bit/s
-  [[nodiscard]] std::uint32_t bit_rate() const noexcept { return bit_rate_; }
+  [[nodiscard]] std::uint32_t bit_rate() const noexcept override { return bit_rate_; }
   /// Frames that `send` takes before it has to hear from the server.
   [[nodiscard]] std::uint64_t credit() const noexcept { return credit_; }
 

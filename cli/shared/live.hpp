@@ -1,0 +1,52 @@
+/// The one loop that receives from a live bus. It sees signals, tells when the bus goes down and comes back, and knows when
+/// it is gone for good; what a verb does with a frame is the verb's.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+
+#include "ocm/can/bus.hpp"
+#include "ocm/transport/bus.hpp"
+
+namespace ocm::cli {
+
+/// Why a wait for frames is over.
+enum class Over : std::uint8_t {
+  enough,  ///< the verb has what it wanted
+  time,
+  signal,  ///< interrupted() says which
+  gone,    ///< the bus is closed: its failure() says why
+};
+
+/// Tells once when a bus goes down, and once when it is back.
+class StateWatch {
+ public:
+  void look(const transport::Bus& bus);
+
+ private:
+  transport::BusState state_ = transport::BusState::up;
+};
+
+class Live {
+ public:
+  using Clock = std::chrono::steady_clock;
+  /// Gets a frame; false: that was enough.
+  using Take = std::function<bool(const can::Received&)>;
+
+  /// `bus` must outlive it. `idle`, where there is one, is called before each wait, when no frame is left to take; the time
+  /// is looked at then only, so that nothing of what came in time is left.
+  explicit Live(transport::Bus& bus, std::function<void()> idle = {}) : bus_(&bus), idle_(std::move(idle)) {}
+
+  /// Gives every frame to `take` until `until`.
+  [[nodiscard]] Over receive(Clock::time_point until, const Take& take);
+  /// The same for who cannot go on without the bus: leaves with its failure when it is gone, and after a signal.
+  Over receive_or_leave(Clock::time_point until, const Take& take);
+
+ private:
+  transport::Bus* bus_;
+  std::function<void()> idle_;
+  StateWatch state_;
+};
+
+}  // namespace ocm::cli
