@@ -19,7 +19,7 @@ endfunction()
 # frame: it halves the time to compile. docs/decisions/0021 has the figures.
 function(ocm_compile_quickly)
   foreach(target IN LISTS ARGN)
-    target_compile_options(${target} PRIVATE $<$<NOT:$<CONFIG:Debug>>:-O1>)
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
   endforeach()
 endfunction()
 

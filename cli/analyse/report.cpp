@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "ocm/base/utf8.hpp"
+
 #include "cli/output/csv_cell.hpp"
 #include "cli/shared/json.hpp"
 
@@ -13,12 +15,6 @@ namespace {
 
 bool is_bus(const Study& study) {
   return study.kind == Study::Kind::bus;
-}
-
-/// How many columns a terminal takes for it; bytes that continue a character take none.
-std::size_t width_of(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(
-      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
 }
 
 std::string verdict_of(const analysis::Explained& result) {
@@ -97,7 +93,7 @@ std::string to_table(const Study& study, const Advice& advice, bool colour) {
   }
   std::vector<std::size_t> widths(head.size());
   for (const auto& line : cells)
-    for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], width_of(line[i]));
+    for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], base::columns(line[i]));
 
   std::string text;
   for (std::size_t n = 0; n < cells.size(); ++n) {
@@ -105,7 +101,7 @@ std::string to_table(const Study& study, const Advice& advice, bool colour) {
     std::string shown;
     for (std::size_t i = 0; i < cells[n].size(); ++i) {
       const bool left = i == 0 || (bus && i == 1) || head[i] == "VERDICT";
-      const std::string blank(widths[i] - width_of(cells[n][i]), ' ');
+      const std::string blank(widths[i] - base::columns(cells[n][i]), ' ');
       if (i > 0) shown += "  ";
       shown += left ? cells[n][i] + blank : blank + cells[n][i];
     }

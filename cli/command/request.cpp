@@ -37,21 +37,21 @@ void send_and_await(Session& session, transport::Bus& open_bus, const client::Co
   client::Receiver receiver{catalogue};
   Printer printer{make_output(isatty(STDOUT_FILENO) != 0 ? Format::pretty : Format::json, catalogue, {},
                               session.colour())};
-  const Over over = Live{*bus}.receive_or_leave(Live::Clock::now() + timeout, [&](const can::Received& received) {
-    const auto reception = receiver.take(received);
-    if (reception.topic != &topic) return true;
-    printer.write({bus->name(), log::Entry{received.time, received.frame}, reception});
-    return reception.meaning != client::Meaning::sample;
-  });
+  const Over over =
+      Live{*bus}.receive_or_leave(Live::Clock::now() + timeout, [&](const can::Received& received) {
+        const auto reception = receiver.take(received);
+        if (reception.topic != &topic) return true;
+        printer.write({bus->name(), log::Entry{received.time, received.frame}, reception});
+        return reception.meaning != client::Meaning::sample;
+      });
   if (over == Over::enough) return printer.flush();
   const auto& counters = receiver.counters();
-  fail(
-      {fmt::format("no {} within {}", topic.name, words::to_text(timeout)),
-       counters.frames != 0
-           ? fmt::format("{} frames came, {} of wrong length: does the robot run another protocol version?",
-                         counters.frames, counters.wrong_dlc)
-           : fmt::format("is board {} powered and on {}? Is the bit rate {} bit/s? See `amiroctl listen`",
-                         catalogue.boards[topic.board].name, bus->name(), catalogue.bit_rate)});
+  fail({fmt::format("no {} within {}", topic.name, words::to_text(timeout)),
+        counters.frames != 0
+            ? fmt::format("{} frames came, {} of wrong length: does the robot run another protocol version?",
+                          counters.frames, counters.wrong_dlc)
+            : fmt::format("is board {} powered and on {}? Is the bit rate {} bit/s? See `amiroctl listen`",
+                          catalogue.boards[topic.board].name, bus->name(), catalogue.bit_rate)});
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "cli/plot/gnuplot.hpp"
-#include "generator/text/output_file.hpp"
+#include "cli/shared/output_file.hpp"
 
 namespace ocm::cli::fleet {
 namespace {
@@ -31,7 +31,7 @@ class Script {
  public:
   Script(const Map& map, const MapPicture& picture) : map_(map), picture_(picture), box_(known(map)) {}
 
-  std::string text(MapFile kind) {
+  std::string text(plot::Kind kind) {
     frame();
     size();
     terminal(kind);
@@ -73,16 +73,9 @@ class Script {
     width_ = static_cast<unsigned>(std::max(320.0, std::ceil(across * scale)) + left + right);
     height_ = static_cast<unsigned>(std::max(160.0, std::ceil(up * scale)) + top + bottom);
   }
-  void terminal(MapFile kind) {
-    if (kind == MapFile::svg)
-      add("set terminal svg size {},{} font 'DejaVu Sans,12' background '#ffffff'\n", width_, height_);
-    else if (kind == MapFile::png)
-      add("set terminal pngcairo size {},{} font 'DejaVu Sans,10' background '#ffffff'\n", width_, height_);
-    else
-      add("set terminal pdfcairo size {:.2f}in,{:.2f}in font 'DejaVu Sans,9' background '#ffffff'\n",
-          width_ / 100.0, height_ / 100.0);
-    add("set encoding utf8\n"
-        "set border 3 lc rgb '#888888' lw 1\n"
+  void terminal(plot::Kind kind) {
+    out_ += plot::terminal(kind, width_, height_);
+    add("set border 3 lc rgb '#888888' lw 1\n"
         "set tics nomirror out scale 0.6 textcolor rgb '#444444'\n"
         "set key noenhanced reverse Left samplen 2 horizontal at screen {:.5f},{:.5f} left top textcolor rgb "
         "'#222222'\n"
@@ -129,11 +122,11 @@ class Script {
       add("{:.4f} {:.4f}\n{:.4f} {:.4f}\n\n", wall.from.x_m, wall.from.y_m, wall.to.x_m, wall.to.y_m);
     add("EOD\n");
   }
-  void plot(MapFile kind) {
+  void plot(plot::Kind kind) {
     const double side = map_.raster().resolution_m();
     add("plot $map matrix using (($1+{:.1f})*{:.6g}):(($2+{:.1f})*{:.6g}):3 with image{} notitle",
         box_.low.x + 0.5, side, box_.low.y + 0.5, side,
-        kind == MapFile::svg ? " pixels" : "");  // rectangles: no picture within the picture
+        kind == plot::Kind::svg ? " pixels" : "");  // rectangles: no picture within the picture
     if (!picture_.walls.empty())
       add(", \\\n  $walls using 1:2 with lines lc rgb '#E3120B' lw 1.2 title 'true walls'");
     for (std::size_t i = 0; i < picture_.robots.size(); ++i) {
@@ -168,23 +161,13 @@ class Script {
   std::string out_;
 };
 
-std::optional<transport::Failure> write(const std::string& file, std::string_view text) {
-  if (const auto problem = generate::write_file(file, text))
-    return transport::Failure{fmt::format("{}: {}", problem->place, problem->what), problem->remedy};
-  return std::nullopt;
-}
-
 }  // namespace
 
-std::optional<MapFile> map_file(std::string_view name) {
-  if (name.ends_with(".svg")) return MapFile::svg;
-  if (name.ends_with(".png")) return MapFile::png;
-  if (name.ends_with(".pdf")) return MapFile::pdf;
-  if (name.ends_with(".pgm")) return MapFile::pgm;
-  return std::nullopt;
+bool is_map_file(std::string_view name) {
+  return name.ends_with(".pgm") || plot::kind_of_file(name);
 }
 
-std::string to_script(const Map& map, const MapPicture& picture, MapFile kind) {
+std::string to_script(const Map& map, const MapPicture& picture, plot::Kind kind) {
   return Script{map, picture}.text(kind);
 }
 
@@ -212,20 +195,19 @@ std::string to_yaml(const Map& map, std::string_view image) {
 
 std::optional<transport::Failure> write_map(const std::string& file, const Map& map,
                                             const MapPicture& picture) {
-  const MapFile kind = map_file(file).value_or(MapFile::svg);
-  if (kind == MapFile::pgm) {
-    if (auto failure = write(file, to_pgm(map))) return failure;
+  if (file.ends_with(".pgm")) {
+    if (auto failure = try_to_write(file, to_pgm(map))) return failure;
     auto yaml = std::filesystem::path{file};
     const std::string image = yaml.filename().string();
-    return write(yaml.replace_extension(".yaml").string(), to_yaml(map, image));
+    return try_to_write(yaml.replace_extension(".yaml").string(), to_yaml(map, image));
   }
-  const auto drawn = plot::draw(to_script(map, picture, kind));
+  const auto drawn = plot::draw(to_script(map, picture, plot::kind_of_file(file).value_or(plot::Kind::svg)));
   if (!drawn)
     return transport::Failure{fmt::format("{}: {}", file, drawn.error.what),
                               drawn.error.what.find("no gnuplot") == std::string::npos
                                   ? drawn.error.remedy
                                   : "install it: sudo apt install gnuplot-nox; or write a .pgm"};
-  return write(file, *drawn);
+  return try_to_write(file, *drawn);
 }
 
 }  // namespace ocm::cli::fleet

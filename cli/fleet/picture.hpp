@@ -11,6 +11,8 @@
 #include "ocm/cognitive/map.hpp"
 #include "ocm/transport/bus.hpp"
 
+#include "cli/plot/gnuplot.hpp"
+
 namespace ocm::cli::fleet {
 
 struct DrawnRobot {
@@ -26,13 +28,11 @@ struct MapPicture {
   std::vector<cognitive::Wall> walls;  ///< true ones; none: nobody knows
 };
 
-enum class MapFile : std::uint8_t { svg, png, pdf, pgm };
+/// Whether a map can be written to a file of that name: its ending says how.
+[[nodiscard]] bool is_map_file(std::string_view name);
 
-/// By the ending of its name.
-[[nodiscard]] std::optional<MapFile> map_file(std::string_view name);
-
-/// What gnuplot is told. `kind` is not pgm.
-[[nodiscard]] std::string to_script(const cognitive::Map& map, const MapPicture& picture, MapFile kind);
+/// What gnuplot is told.
+[[nodiscard]] std::string to_script(const cognitive::Map& map, const MapPicture& picture, plot::Kind kind);
 
 /// A portable grey map, the top first: occupied 0, free 254, unknown 205. [map_server]
 [[nodiscard]] std::string to_pgm(const cognitive::Map& map);

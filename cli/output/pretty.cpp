@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "ocm/base/utf8.hpp"
 #include "ocm/can/error_frame.hpp"
 #include "ocm/can/text.hpp"
 #include "ocm/protocol/request.hpp"
@@ -23,12 +24,6 @@ constexpr std::string_view dim = "\033[2m";
 constexpr std::string_view bold = "\033[1m";
 constexpr std::string_view red = "\033[31m";
 
-/// Characters on the screen: a letter of UTF-8 is one, whatever its bytes.
-std::size_t letters(std::string_view text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
-}
-
 /// What stands before a value and behind it, and how wide it may become.
 struct Column {
   FieldText value;
@@ -44,7 +39,7 @@ class Pretty final : public Output {
   Pretty(const protocol::Catalogue& catalogue, const Selection& selection, bool colour)
       : colour_(colour), everything_(selection.everything()) {
     std::size_t width = 0;
-    for (const auto& topic : catalogue.topics) width = std::max(width, letters(topic.name));
+    for (const auto& topic : catalogue.topics) width = std::max(width, base::columns(topic.name));
     for (const auto& topic : catalogue.topics) {
       const std::string name = painted(bold, fmt::format("{:<{}}  ", topic.name, width));
       topics_.emplace(&topic, TopicText{name, columns_of(topic, selection)});
@@ -201,7 +196,7 @@ class Pretty final : public Output {
   }
 
   static void put_right(Buffer& out, std::string_view text, std::size_t width) {
-    if (const std::size_t size = letters(text); size < width) {
+    if (const std::size_t size = base::columns(text); size < width) {
       std::memset(out.room(width - size), ' ', width - size);
       out.grow(width - size);
     }

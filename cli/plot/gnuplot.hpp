@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,6 +15,12 @@
 namespace ocm::cli::plot {
 
 enum class Kind : std::uint8_t { svg, png, pdf };
+
+/// By the ending of a file's name, if it is one of a picture.
+[[nodiscard]] std::optional<Kind> kind_of_file(std::string_view name);
+
+/// gnuplot's commands for a picture of so many pixels; 100 of them are an inch of paper.
+[[nodiscard]] std::string terminal(Kind kind, unsigned width, unsigned height);
 
 /// Colours that are told apart by everybody. [Okabe, Ito 2008]
 inline constexpr std::array colours{"#0072B2", "#D55E00", "#009E73", "#CC79A7",

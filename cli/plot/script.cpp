@@ -82,23 +82,8 @@ class Script {
   }
 
   void terminal() {
-    switch (picture_.kind) {
-      case Kind::svg:
-        add("set terminal svg size {},{} font 'DejaVu Sans,12' background '#ffffff' linewidth 1\n", width_,
-            height_);
-        break;
-      case Kind::png:
-        add("set terminal pngcairo size {},{} font 'DejaVu Sans,10' background '#ffffff' linewidth 1\n",
-            width_, height_);
-        break;
-      case Kind::pdf:  // 100 pixels are an inch
-        add("set terminal pdfcairo size {:.2f}in,{:.2f}in font 'DejaVu Sans,9' background '#ffffff' "
-            "linewidth 1\n",
-            width_ / 100.0, height_ / 100.0);
-        break;
-    }
-    add("set encoding utf8\n"
-        "set border 3 lc rgb '#888888' lw 1\n"
+    out_ += plot::terminal(picture_.kind, width_, height_);
+    add("set border 3 lc rgb '#888888' lw 1\n"
         "set tics nomirror out scale 0.6 textcolor rgb '#444444'\n"
         "set grid lc rgb '#dddddd' lw 0.8 lt 1\n"
         "set key noenhanced reverse Left samplen 2 spacing 1.25 width 0 textcolor rgb '#222222'\n"

@@ -1,5 +1,5 @@
-/// The one loop that receives from a live bus. It sees signals, tells when the bus goes down and comes back, and knows when
-/// it is gone for good; what a verb does with a frame is the verb's.
+/// The one loop that receives from a live bus. It sees signals, tells when the bus goes down and comes back,
+/// and knows when it is gone for good; what a verb does with a frame is the verb's.
 #pragma once
 
 #include <chrono>
@@ -34,13 +34,14 @@ class Live {
   /// Gets a frame; false: that was enough.
   using Take = std::function<bool(const can::Received&)>;
 
-  /// `bus` must outlive it. `idle`, where there is one, is called before each wait, when no frame is left to take; the time
-  /// is looked at then only, so that nothing of what came in time is left.
+  /// `bus` must outlive it. `idle`, where there is one, is called before each wait, when no frame is left to
+  /// take; the time is looked at then only, so that nothing of what came in time is left.
   explicit Live(transport::Bus& bus, std::function<void()> idle = {}) : bus_(&bus), idle_(std::move(idle)) {}
 
   /// Gives every frame to `take` until `until`.
   [[nodiscard]] Over receive(Clock::time_point until, const Take& take);
-  /// The same for who cannot go on without the bus: leaves with its failure when it is gone, and after a signal.
+  /// The same for who cannot go on without the bus: leaves with its failure when it is gone, and after a
+  /// signal.
   Over receive_or_leave(Clock::time_point until, const Take& take);
 
  private:

@@ -1,7 +1,4 @@
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <system_error>
@@ -14,6 +11,7 @@
 #include "cli/analyse/set.hpp"
 #include "cli/analyse/study.hpp"
 #include "cli/analyse/trace.hpp"
+#include "cli/shared/output_file.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
 #include "cli/words/quantity.hpp"
@@ -137,19 +135,6 @@ BusOptions bus_options(const Options& options, const protocol::Catalogue& catalo
   if (!result.queues.empty() && result.test == analysis::CanTest::sufficient)
     fail({"--queue: --test sufficient knows no queues", "leave out one of them"}, exit_usage);
   return result;
-}
-
-void write_file(const std::string& file, const std::string& text) {
-  if (file == "-") {
-    fmt::print("{}", text);
-    return;
-  }
-  std::ofstream out{file, std::ios::binary};
-  out << text;
-  out.close();
-  if (!out)
-    fail({fmt::format("cannot write {}: {}", file, std::strerror(errno)),
-          "give the name of a file that can be written"});
 }
 
 template <class Advise>

@@ -14,8 +14,8 @@
 #include "ocm/protocol/request.hpp"
 
 #include "cli/shared/interrupt.hpp"
-#include "cli/shared/live.hpp"
 #include "cli/shared/json.hpp"
+#include "cli/shared/live.hpp"
 #include "cli/shared/remedies.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"

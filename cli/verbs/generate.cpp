@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
+#include "cli/shared/output_file.hpp"
 #include "cli/verbs/verbs.hpp"
 #include "generator/robot_spec.hpp"
 #include "generator/spec/spec.hpp"
 #include "generator/targets/target.hpp"
-#include "generator/text/output_file.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -46,8 +46,7 @@ void generate_file(Session& session, const GenerateOptions& options) {
     how.priority = *priority;
   }
   const std::string text = target->make(session.spec().model(), how);
-  if (const auto problem = generate::write_file(options.output, text))
-    fail({fmt::format("{}: {}", problem->place, problem->what), problem->remedy});
+  write_file(options.output, text);
 }
 
 }  // namespace

@@ -27,15 +27,6 @@ struct LineOptions {
   std::uint64_t count = 0;
 };
 
-/// As in spec/sentences.json.
-constexpr std::string_view type_name(mapper::link::Kind kind) {
-  constexpr std::array<std::string_view, 12> names{"none",      "confirm", "set_point", "pause",
-                                                   "unpause",   "packed",  "text",      "ping",
-                                                   "handshake", "update",  "idle",      "pong"};
-  static_assert(names.size() == static_cast<std::size_t>(mapper::link::Kind::pong) + 1);
-  return names[static_cast<std::size_t>(kind)];
-}
-
 /// One robot's stream, in the direction that is asked for.
 class Stream {
  public:
@@ -188,7 +179,7 @@ void put_sentence(Buffer& out, std::size_t index, const Stream& stream) {
   const mapper::link::Sentence& sentence = stream.sentence();
   put_robot(out, index, stream.name());
   out.append(R"(,"type":")");
-  out.append(type_name(sentence.kind));
+  out.append(mapper::link::name(sentence.kind));
   out.append(R"(","values":{)");
   put_values(out, sentence);
   out.append('}');

@@ -63,8 +63,7 @@ void listen(Session& session, const ListenOptions& options, int& exit_code) {
   };
   Live live{*bus, [&] { display.flush(); }};
   Over over = Over::time;
-  do
-    over = live.receive(end(), take);
+  do over = live.receive(end(), take);
   while (over == Over::time && Clock::now() < end());
   display.flush();
   display.summarise(bus->counters().lost);

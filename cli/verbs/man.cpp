@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "cli/shared/output_file.hpp"
 #include "cli/verbs/verbs.hpp"
-#include "generator/text/output_file.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -45,9 +45,7 @@ void write_all(Verb root, const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   for (const Verb verb : verbs)
-    if (const auto problem =
-            generate::write_file(fmt::format("{}/{}.1", folder, page_name(verb)), page_of(verb, root)))
-      fail({fmt::format("{}: {}", problem->place, problem->what), problem->remedy});
+    write_file(fmt::format("{}/{}.1", folder, page_name(verb)), page_of(verb, root));
 }
 
 }  // namespace

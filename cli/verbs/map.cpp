@@ -117,7 +117,7 @@ Known known_of(const std::optional<WorldModel>& model, const std::vector<std::st
 /// A file of every kind that is asked for, before any robot moves.
 void check_files(const std::vector<std::string>& files) {
   for (const std::string& file : files)
-    if (!fleet::map_file(file))
+    if (!fleet::is_map_file(file))
       fail({fmt::format("map: {}: no kind of map", file), "end it in .svg, .png, .pdf or .pgm"}, exit_usage);
 }
 

@@ -17,9 +17,9 @@
 #include "cli/plot/curves.hpp"
 #include "cli/plot/gnuplot.hpp"
 #include "cli/shared/interrupt.hpp"
+#include "cli/shared/output_file.hpp"
 #include "cli/verbs/verbs.hpp"
 #include "cli/watch/watching.hpp"
-#include "generator/text/output_file.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -37,9 +37,8 @@ struct PlotOptions {
 
 /// By the ending of the file; a pipe gets SVG.
 plot::Kind kind_of(const std::string& output) {
-  if (output == "-" || output.ends_with(".svg")) return plot::Kind::svg;
-  if (output.ends_with(".png")) return plot::Kind::png;
-  if (output.ends_with(".pdf")) return plot::Kind::pdf;
+  if (output == "-") return plot::Kind::svg;
+  if (const auto kind = plot::kind_of_file(output)) return *kind;
   fail({fmt::format("plot: {}: no kind of picture", output), "end it in .svg, .png or .pdf"}, exit_usage);
 }
 
@@ -140,8 +139,8 @@ void run(Session& session, const PlotOptions& options, int& exit_code) {
   }
   if (output == "-")
     write_out(text);
-  else if (const auto problem = generate::write_file(output, text))
-    fail({fmt::format("{}: {}", problem->place, problem->what), problem->remedy});
+  else
+    write_file(output, text);
   if (output != "-")
     remark(fmt::format("{}: {} of {}", output, client::count(curves.points(), "point*"),
                        client::count(wanted.size(), "curve*")));

@@ -202,7 +202,7 @@ class SentencesReader : private Checker {
     for (std::size_t i = 0; i < at.node->items.size(); ++i) {
       const At item = at.item(i);
       if (!is_object(item, R"({"name": "x", "unit": "cm", "description": "..."})")) continue;
-      check_keys(item, {"name", "unit", "range", "description"});
+      check_keys(item, {"name", "unit", "range", "values", "description"});
       IntegerModel field;
       if (const auto text = require(item, "name", "what the integer is called")) {
         field.name = name(*text);
@@ -218,10 +218,24 @@ class SentencesReader : private Checker {
       if (const auto text = require(item, "description", "what the integer says"))
         field.description = line(*text, false);
       std::tie(field.min, field.max) = read_range(item);
+      if (const auto values = item.member("values")) read_values(*values, names, field);
       names.push_back(field.name);
       sentence.fields.push_back(std::move(field));
     }
     return names;
+  }
+
+  /// Each becomes a constant of the sentence's struct: `names` are members of it already.
+  void read_values(const At& at, const std::vector<std::string>& names, IntegerModel& field) {
+    if (!is_object(at, R"({"name_of_a_value": 1})")) return;
+    for (const auto& [text, node] : at.node->members) {
+      const At value{&node, at.path + "/" + pointer_step(text)};
+      if (!spec::is_name(text))
+        tell(value, spec::quoted(text) + " is no name", "small letters, digits and _, such as packed_offer");
+      else if (text == field.name || std::find(names.begin(), names.end(), text) != names.end())
+        tell(value, spec::quoted(text) + " is an integer of the sentence, too", "another name");
+      if (const auto number = integer(value, field.min, field.max)) field.values.emplace_back(text, *number);
+    }
   }
 
   [[nodiscard]] std::pair<std::int64_t, std::int64_t> read_range(const At& field) {

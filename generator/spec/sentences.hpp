@@ -21,7 +21,8 @@ struct IntegerModel {
   std::string description;
   std::int64_t min = 0;
   std::int64_t max = 0;
-  std::string source;  ///< empty: as the sentence's
+  std::vector<std::pair<std::string, std::int64_t>> values{};  ///< those that have a name
+  std::string source;                                          ///< empty: as the sentence's
 };
 
 /// What a sentence consists of: fixed text, a letter and a word, or a letter and integers.

@@ -86,6 +86,10 @@ void write_struct(Writer& out, const SentenceModel& sentence) {
   if (sentence.integers)
     out.line("static constexpr std::size_t fewest_integers = " + std::to_string(sentence.integers->first) +
              ", most_integers = " + std::to_string(sentence.integers->second) + ";");
+  for (const IntegerModel& field : sentence.fields)
+    for (const auto& [name, value] : field.values)
+      out.line("static constexpr std::int16_t " + name + " = " + std::to_string(value) + ";  ///< of " +
+               field.name);
   out.open("static constexpr std::array<Field<" + type + ">, " + count + "> fields{{");
   for (const IntegerModel& field : sentence.fields) {
     std::string row = "  {&" + type + "::" + field.name + ", \"" + field.name + "\", \"" + field.unit + "\"";
@@ -108,6 +112,13 @@ void write_kinds(Writer& out, const std::vector<SentenceModel>& sentences) {
     rows.emplace_back(sentence.name + ",", form_of(sentence) + " " + sentence.description);
   out.remarked(rows);
   out.close("};");
+  out.line();
+  out.comment("As the spec calls it.");
+  out.open("[[nodiscard]] constexpr std::string_view name(Kind kind) noexcept {");
+  for (const SentenceModel& sentence : sentences)
+    out.line("if (kind == Kind::" + sentence.name + ") return \"" + sentence.name + "\";");
+  out.line("return \"none\";");
+  out.close("}");
   out.line();
 }
 

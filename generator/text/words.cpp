@@ -47,11 +47,6 @@ std::string title(std::string_view name) {
   return capitalised(words);
 }
 
-std::size_t width_of(std::string_view text) {
-  return static_cast<std::size_t>(std::count_if(
-      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
-}
-
 std::string with_source(std::string text, const std::string& source) {
   if (source.empty()) return text;
   return text.empty() ? "[" + source + "]" : text + " [" + source + "]";

@@ -29,9 +29,6 @@ namespace ocm::generate {
 /// "power_status" -> "Power status"
 [[nodiscard]] std::string title(std::string_view name);
 
-/// How many columns UTF-8 takes.
-[[nodiscard]] std::size_t width_of(std::string_view text);
-
 /// "text [source]"
 [[nodiscard]] std::string with_source(std::string text, const std::string& source);
 

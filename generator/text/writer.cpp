@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "ocm/base/utf8.hpp"
+
 #include "generator/text/words.hpp"
 
 namespace ocm::generate {
@@ -27,7 +29,8 @@ void Writer::comment(std::string_view text, std::string_view mark) {
   while (!text.empty()) {
     const std::size_t end = std::min(text.find(' '), text.size());
     const std::string_view word = text.substr(0, end);
-    if (!current.empty() && indent.size() + mark.size() + width_of(current) + 1 + width_of(word) > columns) {
+    if (!current.empty() &&
+        indent.size() + mark.size() + base::columns(current) + 1 + base::columns(word) > columns) {
       text_.append(indent).append(mark).append(current) += '\n';
       current.clear();
     }
@@ -42,14 +45,14 @@ void Writer::remarked(const std::vector<std::pair<std::string, std::string>>& li
   std::size_t widest = 0;
   std::size_t longest = 0;
   for (const auto& [code, remark] : lines)
-    if (!remark.empty()) widest = std::max(widest, width_of(code));
+    if (!remark.empty()) widest = std::max(widest, base::columns(code));
   for (const auto& [code, remark] : lines)
-    if (!remark.empty()) longest = std::max(longest, 2 * depth_ + widest + 7 + width_of(remark));
+    if (!remark.empty()) longest = std::max(longest, 2 * depth_ + widest + 7 + base::columns(remark));
   for (const auto& [code, remark] : lines) {
     if (remark.empty()) {
       line(code);
     } else if (longest <= columns) {
-      line(code + std::string(widest - width_of(code) + 2, ' ') + "///< " + remark);
+      line(code + std::string(widest - base::columns(code) + 2, ' ') + "///< " + remark);
     } else {
       comment(remark);
       line(code);
@@ -64,7 +67,7 @@ void Writer::list(std::string_view head, const std::vector<std::string>& items, 
   bool first = true;
   for (std::size_t i = 0; i < items.size(); ++i) {
     const std::string piece = items[i] + (i + 1 < items.size() ? "," : std::string{tail});
-    if (!first && width_of(current) + 1 + width_of(piece) > columns) {
+    if (!first && base::columns(current) + 1 + base::columns(piece) > columns) {
       text_.append(current) += '\n';
       current = hang;
       first = true;

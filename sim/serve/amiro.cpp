@@ -114,7 +114,7 @@ Ending serve_amiro(const std::string& path, const AmiroOptions& options, const S
   if (auto started = wait_until_ready(boards, clock, shell); !started.well()) return started;
   shell.report(fmt::format("simulated {}{} on --bus {} ({}), {} bit/s; Ctrl-C ends it",
                            amiro::catalogue.robot, options.qemu ? " with its boards in QEMU" : "",
-                           bus_name.empty() ? "sim" : bus_name, server.path(), options.bit_rate));
+                           path.empty() ? "sim" : "sim:" + path, server.path(), options.bit_rate));
 
   const auto hear = [&boards](const simulation::Delivery& delivery) {
     boards.receive(delivery.frame, delivery.time);

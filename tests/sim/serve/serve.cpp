@@ -47,7 +47,7 @@ struct Watched {
 TEST_CASE("An AMiRo on a virtual bus says where it is, and at its end what each board received") {
   const Folder folder;
   Watched watched;
-  const Ending ending = sim::serve_amiro("sim:" + (folder / "bus"), {}, watched.shell());
+  const Ending ending = sim::serve_amiro(folder / "bus", {}, watched.shell());
   CHECK(ending.well());
   REQUIRE(watched.reports.size() == 5);
   CHECK(watched.reports[0].starts_with("simulated AMiRo on --bus sim:"));
@@ -60,7 +60,7 @@ TEST_CASE("A board that does not exist is the options' fault") {
   Watched watched;
   sim::AmiroOptions options;
   options.without = {"di_wheel_drive", "flux_capacitor"};
-  const Ending ending = sim::serve_amiro("sim:" + (folder / "bus"), options, watched.shell());
+  const Ending ending = sim::serve_amiro(folder / "bus", options, watched.shell());
   CHECK(ending.misuse);
   REQUIRE(ending.failures.size() == 1);
   CHECK(ending.failures[0].what == "sim: no board 'flux_capacitor'");
@@ -69,7 +69,7 @@ TEST_CASE("A board that does not exist is the options' fault") {
 
 TEST_CASE("A second AMiRo on the same bus fails, and the options are not to blame") {
   const Folder folder;
-  const std::string bus = "sim:" + (folder / "bus");
+  const std::string bus = (folder / "bus");
   Watched inner;
   Ending second;
   Watched watched;

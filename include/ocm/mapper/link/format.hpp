@@ -18,11 +18,8 @@
 
 namespace ocm::mapper::link {
 
-/// In `Handshake::formats`: packed updates of version 1. A number that no measure of a robot is likely to be.
-inline constexpr std::int16_t packed_offer = 20225;
-
 [[nodiscard]] constexpr bool offers_packed(const Handshake& handshake) noexcept {
-  return handshake.given >= Handshake::fields.size() && handshake.formats == packed_offer;
+  return handshake.given >= Handshake::fields.size() && handshake.formats == Handshake::packed_offer;
 }
 
 /// What a server answers to a handshake: `{S,CON}`, and before it `{S,BIN}` where that is wanted and offered.
@@ -65,7 +62,7 @@ class UpdateWriter {
   [[nodiscard]] constexpr bool packed() const noexcept { return packed_; }
   /// What goes into `Handshake::formats`.
   [[nodiscard]] constexpr std::int16_t offer() const noexcept {
-    return can_pack_ ? packed_offer : std::int16_t{0};
+    return can_pack_ ? Handshake::packed_offer : std::int16_t{0};
   }
 
  private:

@@ -38,6 +38,22 @@ enum class Kind : std::uint8_t {
   pong,       ///< `\t!` answers a ping
 };
 
+/// As the spec calls it.
+[[nodiscard]] constexpr std::string_view name(Kind kind) noexcept {
+  if (kind == Kind::confirm) return "confirm";
+  if (kind == Kind::set_point) return "set_point";
+  if (kind == Kind::pause) return "pause";
+  if (kind == Kind::unpause) return "unpause";
+  if (kind == Kind::packed) return "packed";
+  if (kind == Kind::text) return "text";
+  if (kind == Kind::ping) return "ping";
+  if (kind == Kind::handshake) return "handshake";
+  if (kind == Kind::update) return "update";
+  if (kind == Kind::idle) return "idle";
+  if (kind == Kind::pong) return "pong";
+  return "none";
+}
+
 /// `{U,angle,distance}` new set point, relative to the present pose; 0, 0 stops. [Thesis 2, table 4.3 and
 /// appendix J]
 struct SetPoint {
@@ -69,7 +85,7 @@ struct Handshake {
   std::int16_t sensor3 = 0;       ///< deg, where it looks when the tower is at 0
   std::int16_t sensor4 = 0;       ///< deg, where it looks when the tower is at 0
   std::int16_t deadline = 0;      ///< ms, without a word from the robot after which it counts as lost
-  std::int16_t formats = 0;       ///< 20225: can send packed updates; anything else: text only
+  std::int16_t formats = 0;       ///< packed_offer: can send packed updates; others: text only
   /// integers in the sentence, 1 to 16: fields that were not given are 0, integers beyond the last field are
   /// let go
   std::uint8_t given = 10;
@@ -78,6 +94,7 @@ struct Handshake {
   static constexpr Direction direction = Direction::from_robot;
   static constexpr char letter = 'H';
   static constexpr std::size_t fewest_integers = 1, most_integers = 16;
+  static constexpr std::int16_t packed_offer = 20225;  ///< of formats
   static constexpr std::array<Field<Handshake>, 10> fields{{
       {&Handshake::width, "width", "cm"},
       {&Handshake::length, "length", "cm"},

@@ -14,16 +14,16 @@ using namespace ocm::mapper::link;
 using ocm::base::Error;
 
 constexpr Handshake old_robot{.width = 15, .length = 20, .given = 9};
-constexpr Handshake new_robot{.width = 15, .length = 20, .formats = packed_offer, .given = 10};
+constexpr Handshake new_robot{.width = 15, .length = 20, .formats = Handshake::packed_offer, .given = 10};
 
 static_assert(offers_packed(new_robot));
 static_assert(!offers_packed(old_robot));
 static_assert(!offers_packed(Handshake{.formats = 1}));  // a number of some other meaning
-static_assert(!offers_packed(Handshake{.formats = packed_offer, .given = 9}));  // not said
+static_assert(!offers_packed(Handshake{.formats = Handshake::packed_offer, .given = 9}));  // not said
 static_assert(answer(old_robot, true) == "{S,CON}\n");                          // new server, old robot
 static_assert(answer(new_robot, true) == "{S,BIN}\n{S,CON}\n");
 static_assert(answer(new_robot, false) == "{S,CON}\n");  // old server
-static_assert(UpdateWriter{true}.offer() == packed_offer && UpdateWriter{false}.offer() == 0);
+static_assert(UpdateWriter{true}.offer() == Handshake::packed_offer && UpdateWriter{false}.offer() == 0);
 
 TEST_CASE("format: text until asked, and on every new link; a robot that did not offer is never asked") {
   const Update update{1, 2, 3, 4, 5, 6, 7, 8};

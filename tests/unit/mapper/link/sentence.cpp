@@ -162,7 +162,7 @@ TEST_CASE("sentences.json and the packed update have the same bits") {
   }
   CHECK(bits == 112);
   CHECK(entry(spec(), "handshake")["fields"][9]["description"].get<std::string>().find(
-            std::to_string(packed_offer)) != std::string::npos);
+            std::to_string(Handshake::packed_offer)) != std::string::npos);
 }
 
 }  // namespace

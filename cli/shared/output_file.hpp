@@ -1,0 +1,18 @@
+/// Files that a verb makes, each in one step: a reader sees the old file or the new one.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "ocm/transport/bus.hpp"
+
+namespace ocm::cli {
+
+/// As generate::write_file does it; "-" is the standard output. What went wrong, if anything did.
+[[nodiscard]] std::optional<transport::Failure> try_to_write(const std::string& path, std::string_view text);
+
+/// Leaves through cli::fail when it cannot be written.
+void write_file(const std::string& path, std::string_view text);
+
+}  // namespace ocm::cli
