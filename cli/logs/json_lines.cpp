@@ -9,6 +9,7 @@
 #include "ocm/can/text.hpp"
 #include "ocm/protocol/request.hpp"
 
+#include "cli/logs/json_scanner.hpp"
 #include "cli/output/output.hpp"
 #include "cli/words/command.hpp"
 
@@ -17,168 +18,6 @@ namespace {
 
 std::string shown(std::string_view text) {
   return '"' + log::Complaints::printable(text) + '"';
-}
-
-}  // namespace
-
-/// Goes through one line of JSON, in place. Each function is false where the line is not what it asks for.
-class JsonLineParser::Scanner {
- public:
-  explicit Scanner(std::string_view line) : at_(line.data()), end_(line.data() + line.size()) {}
-
-  [[nodiscard]] bool take(char c) {
-    skip_blanks();
-    if (at_ == end_ || *at_ != c) return false;
-    ++at_;
-    return true;
-  }
-  [[nodiscard]] bool at_end() {
-    skip_blanks();
-    return at_ == end_;
-  }
-  /// The key and the colon behind it. Keys that matter have no escapes; of others it does not matter.
-  [[nodiscard]] bool take_key(std::string_view& key) {
-    Value value;
-    if (!take_string(value) || !take(':')) return false;
-    key = value.text;
-    return true;
-  }
-  /// A string or a number; of anything else nothing is kept.
-  [[nodiscard]] bool take_value(Value& value) {
-    skip_blanks();
-    if (at_ == end_) return false;
-    if (*at_ == '"') return take_string(value);
-    if (*at_ == '-' || base::is_digit(*at_)) {
-      const char* const begin = at_;
-      while (at_ != end_ && is_of_number(*at_)) ++at_;
-      value = {{begin, static_cast<std::size_t>(at_ - begin)}, false, false};
-      return true;
-    }
-    value = {};
-    return skip_value();
-  }
-  [[nodiscard]] bool take_boolean(bool& value) {
-    value = take_word("true");
-    return value || take_word("false");
-  }
-  /// Any value, whatever is in it.
-  [[nodiscard]] bool skip_value(int depth = 0) {
-    constexpr int deepest = 32;
-    if (depth == deepest) return false;
-    skip_blanks();
-    if (at_ == end_) return false;
-    Value ignored;
-    if (*at_ == '{' || *at_ == '[') return skip_container(depth);
-    if (*at_ == '"' || *at_ == '-' || base::is_digit(*at_)) return take_value(ignored);
-    return take_word("true") || take_word("false") || take_word("null");
-  }
-
- private:
-  static bool is_of_number(char c) {
-    return base::is_digit(c) || c == '.' || c == '-' || c == '+' || c == 'e' || c == 'E';
-  }
-  void skip_blanks() {
-    while (at_ != end_ && (*at_ == ' ' || *at_ == '\t' || *at_ == '\r')) ++at_;
-  }
-  bool take_word(std::string_view word) {
-    skip_blanks();
-    if (!std::string_view{at_, static_cast<std::size_t>(end_ - at_)}.starts_with(word)) return false;
-    at_ += word.size();
-    return true;
-  }
-  bool take_string(Value& value) {
-    if (!take('"')) return false;
-    const char* const begin = at_;
-    bool escaped = false;
-    while (at_ != end_ && *at_ != '"') {
-      if (static_cast<unsigned char>(*at_) < 0x20) return false;
-      if (*at_ == '\\') {
-        escaped = true;
-        if (++at_ == end_) return false;
-      }
-      ++at_;
-    }
-    if (at_ == end_) return false;
-    value = {{begin, static_cast<std::size_t>(at_ - begin)}, true, escaped};
-    ++at_;
-    return true;
-  }
-  bool skip_container(int depth) {
-    const bool object = *at_ == '{';
-    const char closing = object ? '}' : ']';
-    ++at_;
-    if (take(closing)) return true;
-    do {
-      std::string_view key;
-      if (object && !take_key(key)) return false;
-      if (!skip_value(depth + 1)) return false;
-    } while (take(','));
-    return take(closing);
-  }
-
-  const char* at_;
-  const char* end_;
-};
-
-namespace {
-
-void append_utf8(std::string& out, std::uint32_t code) {
-  const auto byte = [&out](std::uint32_t value) { out += static_cast<char>(value); };
-  if (code < 0x80) return byte(code);
-  if (code < 0x800) {
-    byte(0xC0 | code >> 6);
-  } else {
-    if (code < 0x10000) {
-      byte(0xE0 | code >> 12);
-    } else {
-      byte(0xF0 | code >> 18);
-      byte(0x80 | (code >> 12 & 0x3F));
-    }
-    byte(0x80 | (code >> 6 & 0x3F));
-  }
-  byte(0x80 | (code & 0x3F));
-}
-
-/// Four hexadecimal digits of a \u; nothing when there are none.
-std::optional<std::uint32_t> code_unit(std::string_view text) {
-  if (text.size() < 6 || text[0] != '\\' || text[1] != 'u') return std::nullopt;
-  const auto unit = base::parse_unsigned(text.substr(2, 4), 16);
-  return unit ? std::optional{static_cast<std::uint32_t>(*unit)} : std::nullopt;
-}
-
-/// The text that the inside of a JSON string stands for; the counterpart of append_json. false: no JSON.
-bool unescape(std::string_view text, std::string& out) {
-  out.clear();
-  while (!text.empty()) {
-    if (text.front() != '\\') {
-      out += text.front();
-      text.remove_prefix(1);
-      continue;
-    }
-    if (const auto unit = code_unit(text)) {
-      text.remove_prefix(6);
-      const auto low = code_unit(text);
-      const bool pair = *unit >= 0xD800 && *unit < 0xDC00 && low && *low >= 0xDC00 && *low < 0xE000;
-      if (pair) {
-        append_utf8(out, 0x10000 + ((*unit - 0xD800) << 10) + (*low - 0xDC00));
-        text.remove_prefix(6);
-      } else if (*unit >= 0xDC80 && *unit <= 0xDCFF) {
-        out += static_cast<char>(*unit & 0xFF);  // a byte that was no UTF-8 [PEP 383]
-      } else if (*unit >= 0xD800 && *unit < 0xE000) {
-        return false;
-      } else {
-        append_utf8(out, *unit);
-      }
-      continue;
-    }
-    constexpr std::string_view letters = "\"\\/bfnrt";
-    constexpr std::string_view meanings = "\"\\/\b\f\n\r\t";
-    const auto i = text.size() < 2 ? std::string_view::npos : letters.find(text[1]);
-    if (i == std::string_view::npos) return false;
-    out += meanings[i];
-    text.remove_prefix(2);
-  }
-  return true;
 }
 
 }  // namespace
@@ -216,7 +55,7 @@ bool JsonLineParser::scan(std::string_view line) {
     return refuse(log::Cause::syntax, "no JSON object in one line: " + shown(line),
                   "one object a line is wanted, as decode --json prints it; jq needs -c");
   };
-  Scanner scanner{line};
+  JsonScanner scanner{line};
   if (!scanner.take('{')) return broken();
   if (!scanner.take('}')) {
     do {
@@ -230,16 +69,16 @@ bool JsonLineParser::scan(std::string_view line) {
         if (!scan_fd(scanner)) return broken();
         continue;
       }
-      Value* const value = key == "time_ns"     ? &record_.time
-                           : key == "bus"       ? &record_.bus
-                           : key == "id"        ? &record_.id
-                           : key == "priority"  ? &record_.priority
-                           : key == "topic"     ? &record_.topic
-                           : key == "frame"     ? &record_.frame
-                           : key == "data"      ? &record_.data
-                           : key == "direction" ? &record_.direction
-                           : key == "raw_dlc"   ? &record_.raw_dlc
-                                                : nullptr;
+      JsonValue* const value = key == "time_ns"     ? &record_.time
+                               : key == "bus"       ? &record_.bus
+                               : key == "id"        ? &record_.id
+                               : key == "priority"  ? &record_.priority
+                               : key == "topic"     ? &record_.topic
+                               : key == "frame"     ? &record_.frame
+                               : key == "data"      ? &record_.data
+                               : key == "direction" ? &record_.direction
+                               : key == "raw_dlc"   ? &record_.raw_dlc
+                                                    : nullptr;
       if (!(value != nullptr ? scanner.take_value(*value) : scanner.skip_value())) return broken();
     } while (scanner.take(','));
     if (!scanner.take('}')) return broken();
@@ -247,7 +86,7 @@ bool JsonLineParser::scan(std::string_view line) {
   return scanner.at_end() || broken();
 }
 
-bool JsonLineParser::scan_fields(Scanner& scanner) {
+bool JsonLineParser::scan_fields(JsonScanner& scanner) {
   problem_.what.clear();
   record_.has_fields = true;
   record_.field_count = 0;
@@ -262,7 +101,7 @@ bool JsonLineParser::scan_fields(Scanner& scanner) {
   return scanner.take('}');
 }
 
-bool JsonLineParser::scan_fd(Scanner& scanner) {
+bool JsonLineParser::scan_fd(JsonScanner& scanner) {
   record_.has_fd = true;
   record_.fd_flags = log::flag::fd;
   if (!scanner.take('{')) return false;
@@ -507,8 +346,8 @@ bool JsonLineParser::put_field(can::Payload& data, const NamedText& named, std::
 
 bool JsonLineParser::put_request(log::Entry& entry, const protocol::Topic& topic) {
   using protocol::Mode;
-  Value mode_text;
-  Value period_text;
+  JsonValue mode_text;
+  JsonValue period_text;
   for (std::size_t i = 0; i < record_.field_count; ++i) {
     const auto& named = record_.fields[i];
     if (named.name != "mode" && named.name != "period")

@@ -25,6 +25,7 @@
 #include "ocm/protocol/frame_index.hpp"
 #include "ocm/protocol/topic.hpp"
 
+#include "cli/logs/json_scanner.hpp"
 #include "cli/output/field_text.hpp"
 #include "cli/output/json_text.hpp"
 
@@ -48,20 +49,13 @@ class JsonLineParser {
   [[nodiscard]] const JsonProblem& problem() const noexcept { return problem_; }
 
  private:
-  /// A value as it stands in the line: of a string what is between its quotes.
-  struct Value {
-    std::string_view text;
-    bool is_string = false;
-    bool escaped = false;
-    [[nodiscard]] explicit operator bool() const noexcept { return text.data() != nullptr; }
-  };
   struct NamedText {
     std::string_view name;
-    Value value;
+    JsonValue value;
   };
   /// The keys that matter.
   struct Record {
-    Value time, bus, id, priority, topic, frame, data, direction, raw_dlc;
+    JsonValue time, bus, id, priority, topic, frame, data, direction, raw_dlc;
     bool has_fd = false, has_fields = false;
     std::uint8_t fd_flags = 0;
     std::array<NamedText, 64> fields;  // a frame has 64 bits
@@ -72,12 +66,11 @@ class JsonLineParser {
     const protocol::Topic* requested = nullptr;
     protocol::FrameRef frame;
   };
-  class Scanner;
 
   bool refuse(log::Cause cause, std::string what, std::string remedy);
   bool scan(std::string_view line);
-  bool scan_fields(Scanner& scanner);
-  bool scan_fd(Scanner& scanner);
+  bool scan_fields(JsonScanner& scanner);
+  bool scan_fd(JsonScanner& scanner);
   bool take_time(log::Entry& entry);
   bool take_bus(std::string_view& bus);
   bool take_extras(log::Entry& entry);

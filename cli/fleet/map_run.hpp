@@ -1,0 +1,74 @@
+/// Mappers explore and draw one map: places them, watches them until all is known or something ends it, and
+/// reports.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ocm/cognitive/agreement.hpp"
+#include "ocm/cognitive/mapping.hpp"
+
+#include "cli/fleet/central_line.hpp"
+#include "cli/fleet/known.hpp"
+#include "cli/fleet/picture.hpp"
+
+namespace ocm::cli::fleet {
+
+struct MapOptions {
+  LineOptions line;
+  std::vector<std::string> files;
+  std::vector<std::string> robots;
+  std::vector<std::string> starts;
+  std::string duration;
+  std::string world;
+  std::string title;
+  double resolution_cm = 4;
+  double range_m = 0;
+  bool watch = false;
+  bool json = false;
+};
+
+/// Why it ended.
+enum class End : std::uint8_t { known, time_over, interrupted, robots_lost, central_gone };
+
+class MapRun {
+ public:
+  /// Waits for the robots and places them. Both must outlive it. Leaves through cli::fail when it cannot
+  /// begin.
+  MapRun(const MapOptions& options, const Known& known);
+
+  /// Until all is known, for `limit`, until Ctrl-C, or until the central is gone. Whichever it is, what was
+  /// drawn is there.
+  End explore(std::optional<base::Duration> limit);
+
+  [[nodiscard]] MapPicture picture(const std::optional<cognitive::Agreement>& result) const;
+  /// Against the true walls, where they are known.
+  [[nodiscard]] std::optional<cognitive::Agreement> result() const;
+  /// On stdout.
+  void report(const std::optional<cognitive::Agreement>& result) const;
+
+  [[nodiscard]] const cognitive::Map& map() const { return mapping_->map(); }
+  [[nodiscard]] bool any() const { return mapping_->counters().drawn != 0; }
+
+ private:
+  [[nodiscard]] End drive(std::optional<base::Duration> limit);
+  /// Now, for a picture takes its time.
+  void halt();
+  void tell_lost();
+  [[nodiscard]] bool lost(unsigned index) const { return line_.fleet().robot(index).lost; }
+  [[nodiscard]] bool nobody_left() const;
+  [[nodiscard]] std::string names() const;
+
+  const MapOptions& options_;
+  const Known& known_;
+  CentralLine line_;
+  std::vector<unsigned> robots_;
+  std::optional<cognitive::Mapping> mapping_;
+  std::vector<unsigned> lost_;
+  base::Duration took_{};
+  End end_ = End::known;
+};
+
+}  // namespace ocm::cli::fleet

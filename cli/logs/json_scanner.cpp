@@ -1,0 +1,69 @@
+#include "cli/logs/json_scanner.hpp"
+
+#include <cstdint>
+#include <optional>
+
+namespace ocm::cli::logs {
+namespace {
+
+void append_utf8(std::string& out, std::uint32_t code) {
+  const auto byte = [&out](std::uint32_t value) { out += static_cast<char>(value); };
+  if (code < 0x80) return byte(code);
+  if (code < 0x800) {
+    byte(0xC0 | code >> 6);
+  } else {
+    if (code < 0x10000) {
+      byte(0xE0 | code >> 12);
+    } else {
+      byte(0xF0 | code >> 18);
+      byte(0x80 | (code >> 12 & 0x3F));
+    }
+    byte(0x80 | (code >> 6 & 0x3F));
+  }
+  byte(0x80 | (code & 0x3F));
+}
+
+/// Four hexadecimal digits of a \u; nothing when there are none.
+std::optional<std::uint32_t> code_unit(std::string_view text) {
+  if (text.size() < 6 || text[0] != '\\' || text[1] != 'u') return std::nullopt;
+  const auto unit = base::parse_unsigned(text.substr(2, 4), 16);
+  return unit ? std::optional{static_cast<std::uint32_t>(*unit)} : std::nullopt;
+}
+
+}  // namespace
+
+bool unescape(std::string_view text, std::string& out) {
+  out.clear();
+  while (!text.empty()) {
+    if (text.front() != '\\') {
+      out += text.front();
+      text.remove_prefix(1);
+      continue;
+    }
+    if (const auto unit = code_unit(text)) {
+      text.remove_prefix(6);
+      const auto low = code_unit(text);
+      const bool pair = *unit >= 0xD800 && *unit < 0xDC00 && low && *low >= 0xDC00 && *low < 0xE000;
+      if (pair) {
+        append_utf8(out, 0x10000 + ((*unit - 0xD800) << 10) + (*low - 0xDC00));
+        text.remove_prefix(6);
+      } else if (*unit >= 0xDC80 && *unit <= 0xDCFF) {
+        out += static_cast<char>(*unit & 0xFF);  // a byte that was no UTF-8 [PEP 383]
+      } else if (*unit >= 0xD800 && *unit < 0xE000) {
+        return false;
+      } else {
+        append_utf8(out, *unit);
+      }
+      continue;
+    }
+    constexpr std::string_view letters = "\"\\/bfnrt";
+    constexpr std::string_view meanings = "\"\\/\b\f\n\r\t";
+    const auto i = text.size() < 2 ? std::string_view::npos : letters.find(text[1]);
+    if (i == std::string_view::npos) return false;
+    out += meanings[i];
+    text.remove_prefix(2);
+  }
+  return true;
+}
+
+}  // namespace ocm::cli::logs
