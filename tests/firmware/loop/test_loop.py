@@ -19,14 +19,16 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tests" / "tool" / "verbs"))
+sys.path.insert(0, str(ROOT / "tests"))
 from harness import Case, main  # noqa: E402
+from realtime import RealTime  # noqa: E402
 
 IMAGES = os.environ["OCM_IMAGES"]
 SENSORS = ["odometry", "floor_proximity", "magnetometer", "gyroscope", "accelerometer", "power_status", "proximity_ring"]
 PRIORITIES = ["urgent", "high", "medium", "low"]
 
 
-class Robots(Case):
+class Robots(RealTime, Case):
     """Two robots, each on its own bus: "host" and "qemu"."""
 
     def start_robots(self, *arguments):
@@ -125,7 +127,10 @@ class Frozen(Robots):
                 time.sleep(0.1)  # one refusal, one frame
             self.tool(name, "once", "gyro")  # and all else goes on
             time.sleep(0.3)
-            heard[name] = [(e["id"], e["data"]) for e in self.recorded(recording) if int(e["id"], 16) & 0x400]
+            # Topic, reason and how many were refused; not how often an emulated part had nothing to say, which depends on
+            # how fast this machine emulates it.
+            heard[name] = [(e["id"], e["data"][:8] if e["id"] == "71D" else e["data"])
+                           for e in self.recorded(recording) if int(e["id"], 16) & 0x400]
         self.assertEqual(len(heard["host"]), len(refused) + 1)
         self.assertEqual(heard["qemu"], heard["host"])
 

@@ -7,10 +7,14 @@ import shutil
 import socket
 import struct
 import subprocess
+import sys
 import tempfile
 import threading
 import time
 import unittest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
+from realtime import RealTime  # noqa: E402
 
 IMAGES = os.environ.get("OCM_IMAGES", "")
 QEMU = shutil.which("qemu-system-arm")
@@ -345,7 +349,7 @@ class Board(Machine):
         return [(at, data) for at, name, data in list(self.frames) if name == identifier and at >= since]
 
 
-class Case(unittest.TestCase):
+class Case(RealTime):
     def boot(self, name, parts, chip=None):
         board = Board(name, parts, chip)
         self.addCleanup(board.end)
