@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Compiles what must compile, and what must not: sweep.py PART --build DIR [--warnings FLAGS] [--jobs N].
 
-    host      each header of include/ocm alone with Clang, which is faster, and all together with GCC: both have one standard
-              library, so a header that brings what it uses for one does for the other
+    host      all headers of include/ocm together with GCC and with Clang; and each alone with Clang, but for those that `board`
+              compiles alone: the compilers have one standard library, so a header that brings what it uses for one does
+              for the other
     board     what runs on a board, firmware/boards and firmware/drivers with it, without exceptions and RTTI: each header
               alone for Cortex-M0, and all together for Cortex-M0, M3, M4 and with the host's GCC and Clang
     closure   each generated header in a tree that holds nothing but the floors below it
@@ -96,10 +97,11 @@ def on_board():
 
 
 def host(ninja):
-    for header in library():
+    for header in sorted(set(library()) - set(library(on_board()))):
         ninja.syntax(f"{CLANG}/{header}", alone(ninja, header), CLANG)
     together = ninja.source("together.cpp", "".join(f'#include "{header}"\n' for header in library()))
-    ninja.syntax(f"{GCC}/together", together, GCC)
+    for compiler in (GCC, CLANG):
+        ninja.syntax(f"{compiler}/together", together, compiler)
 
 
 def board(ninja):

@@ -7,10 +7,12 @@
 
 #include "ocm/mapper/app/robot.hpp"
 
+#include "unit/base/explore.hpp"
 #include "unit/mapper/app/app_testing.hpp"
 #include "unit/motion/near.hpp"
 
 using namespace app_testing;
+using ocm::test::coarser;
 using ocm::test::near;
 
 namespace {
@@ -24,7 +26,7 @@ void never_drives(Bench& bench, base::Duration time) {
 TEST_CASE("mapper: the link dies in any millisecond of a drive: motors off before the interrupt ends",
           "[mapper][link]") {
   for (const RobotModel* model : {&mapper::app::avr_robot, &mapper::app::arduino_robot}) {
-    for (int ms = 0; ms < 300; ++ms) {
+    for (int ms = 0; ms < 300; ms += coarser(13)) {
       Bench bench{*model};
       bench.confirm();
       bench.say("{U,10,100}\n");
