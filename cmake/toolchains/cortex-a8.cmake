@@ -13,14 +13,11 @@ set(CMAKE_CROSSCOMPILING_EMULATOR ${qemu_arm} -cpu cortex-a8)
 # Logs are larger than 2 GiB: _FILE_OFFSET_BITS.
 set(CMAKE_CXX_FLAGS_INIT "-mcpu=cortex-a8 -mfpu=neon -mfloat-abi=hard -ffunction-sections -fdata-sections -D_FILE_OFFSET_BITS=64")
 set(CMAKE_EXE_LINKER_FLAGS_INIT "-static -Wl,--gc-sections")
-# Optimised for size as a whole: MinSizeRel, the default here, is half of Release.
+# Optimised for size: MinSizeRel, the default here, is half of Release. As a whole (-flto) it is 5 % less, and takes two minutes
+# more to link.
 set(CMAKE_BUILD_TYPE MinSizeRel CACHE STRING "Optimised for size")
-set(CMAKE_CXX_FLAGS_MINSIZEREL_INIT "-Os -DNDEBUG -flto=auto")
+set(CMAKE_CXX_FLAGS_MINSIZEREL_INIT "-Os -DNDEBUG")
 set(CMAKE_EXE_LINKER_FLAGS_MINSIZEREL_INIT "-s")
-set(CMAKE_CXX_COMPILER_AR arm-linux-gnueabihf-gcc-ar)  # which know what -flto leaves in an archive
-set(CMAKE_CXX_COMPILER_RANLIB arm-linux-gnueabihf-gcc-ranlib)
-set(CMAKE_AR arm-linux-gnueabihf-gcc-ar CACHE FILEPATH "")
-set(CMAKE_RANLIB arm-linux-gnueabihf-gcc-ranlib CACHE FILEPATH "")
 
 set(CMAKE_FIND_ROOT_PATH /usr/arm-linux-gnueabihf)
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
