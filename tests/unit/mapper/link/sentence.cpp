@@ -161,8 +161,10 @@ TEST_CASE("sentences.json and the packed update have the same bits") {
     bits += packed_widths[i];
   }
   CHECK(bits == 112);
-  CHECK(entry(spec(), "handshake")["fields"][9]["description"].get<std::string>().find(
-            std::to_string(Handshake::packed_offer)) != std::string::npos);
+  CHECK(entry(spec(), "handshake")["fields"][9]["values"]["packed_offer"] == Handshake::packed_offer);
+  CHECK(Handshake::packed_offer == 20225);  // docs/mapper-link.md, packed updates
+  CHECK(std::string{name(Kind::set_point)} == "set_point");
+  CHECK(std::string{name(Kind::none)} == "none");
 }
 
 }  // namespace
