@@ -15,7 +15,7 @@
 namespace ocm::cli::analyse {
 namespace {
 
-/// The tool repeats a held set point so often (cli/timeline.hpp).
+/// The tool repeats a held set point so often (cli/command/timeline.hpp).
 constexpr base::Duration drive_period = std::chrono::milliseconds{100};
 
 /// Whoever sends requests and set points.

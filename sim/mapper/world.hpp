@@ -1,6 +1,6 @@
 /// A world with mappers in it: what they are in is a WorldModel, what they do is theirs.
 ///
-///     sim::line::World world{model, {.seed = 7}};
+///     sim::mapper::World world{model, {.seed = 7}};
 ///     world.robot(0).drive({1.0F, 1.0F});
 ///     world.advance_to(now);
 ///     world.robot(0).pose();  // the truth, which its application does not know

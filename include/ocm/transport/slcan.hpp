@@ -76,8 +76,8 @@ class Slcan final : public Bus {
     return bus;
   }
 
-  /// Waits, at most 300 ms, until what was sent has been answered; then closes the adapter's channel and
-  /// gives the line its settings back.
+  /// Waits, at most `options.farewell`, until what was sent has been answered; then closes the adapter's
+  /// channel and gives the line its settings back.
   ~Slcan() override {
     if (state() == BusState::up && started_) finish();
   }
@@ -145,7 +145,6 @@ class Slcan final : public Bus {
   static constexpr std::size_t max_inbox = 65'536;  ///< frames kept for somebody who sends and never receives
   static constexpr base::Duration quiet = std::chrono::milliseconds{100};
   static constexpr base::Duration pause_before_again = std::chrono::milliseconds{2};
-  static constexpr base::Duration farewell = std::chrono::milliseconds{300};
 
   /// A command whose answer is awaited.
   struct UnderWay {
@@ -472,7 +471,7 @@ class Slcan final : public Bus {
   void finish() {
     asks_status_ = false;
     const base::Time begin = now();
-    const auto in_time = [&] { return state() == BusState::up && now() - begin < farewell; };
+    const auto in_time = [&] { return state() == BusState::up && now() - begin < options_.farewell; };
     while (in_time()) {
       work();
       if (out_.empty() && under_way_.empty() && again_.empty() && unsent() == 0) break;

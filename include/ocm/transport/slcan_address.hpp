@@ -26,6 +26,8 @@ struct SlcanOptions {
   /// After that long an answer is taken for lost.
   base::Duration answer_limit = std::chrono::milliseconds{500};
   base::Duration status_period = std::chrono::seconds{1};  ///< between two questions for the status flags
+  /// How long the end of a bus waits for answers to what was sent.
+  base::Duration farewell = std::chrono::milliseconds{300};
 };
 
 struct SlcanAddress {

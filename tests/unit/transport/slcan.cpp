@@ -425,7 +425,11 @@ TEST_CASE("slcan: a program that ends at once has still sent, also what was refu
   Device device;
   std::thread later;
   {
-    const auto bus = open(device.path());
+    transport::SlcanOptions options;
+    options.answer_limit = options.farewell = 20s;  // however busy this machine is
+    auto opened = transport::Slcan::open(device.path(), options);
+    REQUIRE(opened);
+    const auto bus = std::move(*opened);
     device.stall(true);
     device.with([&] { device.wire.room = 0; });
     for (std::uint32_t id = 1; id <= 5; ++id) CHECK(*bus->send({id, 0, {}}));
