@@ -6,6 +6,8 @@
 
 #include "ocm/can/text.hpp"
 
+#include "cli/shared/outgoing.hpp"
+
 namespace ocm::cli {
 
 Commanding::Commanding(Verb verb, Session& session, std::string_view words_help, bool with_priority)
@@ -38,10 +40,12 @@ void print_frames(const std::vector<can::Frame>& frames) {
   for (const auto& frame : frames) fmt::print("{}\n", can::to_text(frame).view());
 }
 
-void carry_out(Session& session, const client::Command& command, bool dry_run) {
+void carry_out(Session& session, std::string_view verb, const client::Command& command, bool dry_run) {
   if (dry_run) return print_frames(command.frames);
   const auto bus = session.open_bus();
-  for (const auto& frame : command.frames) send_patiently(*bus, frame);
+  Outgoing outgoing{*bus, std::string{verb}, command.ends_hold ? still_moving : ""};
+  for (const auto& frame : command.frames) outgoing.send(frame);
+  outgoing.expect_all_left();
 }
 
 void add_command_verb(Verb app, Session& session, std::string_view name, std::string_view description,
@@ -49,7 +53,9 @@ void add_command_verb(Verb app, Session& session, std::string_view name, std::st
                       bool with_priority) {
   auto verb = app.add_verb(name, description, group, examples);
   const auto commanding = std::make_shared<Commanding>(verb, session, words_help, with_priority);
-  verb.callback([commanding, &session] { carry_out(session, commanding->parse(), commanding->dry_run()); });
+  verb.callback([commanding, &session] {
+    carry_out(session, commanding->verb(), commanding->parse(), commanding->dry_run());
+  });
 }
 
 }  // namespace ocm::cli

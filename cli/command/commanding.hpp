@@ -24,6 +24,7 @@ class Commanding {
   /// As parse, with `options` (such as "--for 2s") added to the words.
   [[nodiscard]] client::Command parse(const std::vector<std::string>& options) const;
   [[nodiscard]] bool dry_run() const { return dry_run_; }
+  [[nodiscard]] const std::string& verb() const { return verb_; }
 
  private:
   std::string verb_;
@@ -33,8 +34,12 @@ class Commanding {
   bool dry_run_ = false;
 };
 
-/// Sends the command's frames once, or prints them.
-void carry_out(Session& session, const client::Command& command, bool dry_run);
+/// What it means when a stop, or the end of a drive, did not leave.
+inline constexpr const char* still_moving =
+    "THE ROBOT MAY STILL MOVE until its watchdog stops it: be ready to cut its power";
+
+/// Sends the command's frames once, or prints them. Leaves through cli::fail unless they left this machine.
+void carry_out(Session& session, std::string_view verb, const client::Command& command, bool dry_run);
 
 /// Prints frames in candump notation, one a line.
 void print_frames(const std::vector<can::Frame>& frames);

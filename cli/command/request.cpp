@@ -15,6 +15,7 @@
 #include "cli/output/printer.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/live.hpp"
+#include "cli/shared/outgoing.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/watch/subscription.hpp"
 #include "cli/words/quantity.hpp"
@@ -22,17 +23,23 @@
 namespace ocm::cli {
 namespace {
 
+void send_all(transport::Bus& bus, const std::string& verb, const client::Command& command) {
+  Outgoing outgoing{bus, verb};
+  for (const auto& frame : command.frames) outgoing.send(frame);
+  outgoing.expect_all_left();
+}
+
 /// Sends the command and shows the first sample of the topic it asks; fails after `timeout` and says what to
 /// check.
-void send_and_await(Session& session, transport::Bus& open_bus, const client::Command& command,
-                    base::Duration timeout) {
+void send_and_await(Session& session, transport::Bus& open_bus, const std::string& verb,
+                    const client::Command& command, base::Duration timeout) {
   catch_interrupts();
   const auto& catalogue = session.catalogue();
   auto* const bus = &open_bus;
   const auto& topic = *command.answers;
   const auto filters = filters_for({&topic}, false);
   if (const auto subscribed = bus->subscribe(filters); !subscribed) fail(subscribed.error);
-  for (const auto& frame : command.frames) send_patiently(*bus, frame);
+  send_all(*bus, verb, command);
 
   client::Receiver receiver{catalogue};
   Printer printer{make_output(isatty(STDOUT_FILENO) != 0 ? Format::pretty : Format::json, catalogue, {},
@@ -77,8 +84,8 @@ void add_request_options(Verb verb, Session& session, std::string_view words_hel
     const auto bus = session.open_bus();
     admit(session, *bus, command, options->admission);
     if (dry_run) return print_frames(command.frames);
-    if (wait.count() != 0) return send_and_await(session, *bus, command, timeout);
-    for (const auto& frame : command.frames) send_patiently(*bus, frame);
+    if (wait.count() != 0) return send_and_await(session, *bus, options->commanding.verb(), command, timeout);
+    send_all(*bus, options->commanding.verb(), command);
   });
 }
 

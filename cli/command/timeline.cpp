@@ -1,26 +1,85 @@
 #include "cli/command/timeline.hpp"
 
 #include <algorithm>
+#include <utility>
 
+#include <fmt/format.h>
+
+#include "cli/command/commanding.hpp"
 #include "cli/shared/interrupt.hpp"
+#include "cli/words/quantity.hpp"
 
 namespace ocm::cli {
 
+Timeline::Timeline(transport::Bus& bus, std::string verb,
+                   std::function<void(const can::Received&)> on_receive)
+    : bus_(&bus),
+      verb_(std::move(verb)),
+      on_receive_(std::move(on_receive)),
+      live_(bus),
+      outgoing_(bus, verb_, still_moving) {}
+
 void Timeline::carry_out(const client::Command& command) {
-  for (const auto& frame : command.frames) send_patiently(*bus_, frame);
+  for (const auto& frame : command.frames) outgoing_.send(frame);
   if (command.ends_hold) held_.reset();
   if (!command.hold) return;
   const auto now = Clock::now();
   const auto& hold = *command.hold;
   const auto end = hold.lasting.count() > 0 ? now + hold.lasting : Clock::time_point::max();
-  held_ = Held{hold, now + client::hold_period, end};
+  held_ = Held{hold, now + client::hold_period, end, now};
 }
 
 void Timeline::rest() {
   if (!held_) return;
   const can::Frame frame = held_->hold.rest;
   held_.reset();  // before sending: a failure must not come back here
-  send_patiently(*bus_, frame);
+  outgoing_.send(frame);
+}
+
+void Timeline::finish() {
+  rest();
+  outgoing_.expect_all_left();
+  if (withheld_ != 0)
+    remark(fmt::format("{}: {} set points were not sent, because the one before had not left", verb_,
+                       withheld_));
+}
+
+void Timeline::abandon(std::string what, std::string remedy) {
+  const can::Frame frame = held_->hold.rest;
+  held_.reset();
+  // One set point may still wait somewhere; nothing but rest comes behind it.
+  const auto taken = bus_->send(frame);
+  const bool rests = taken && *taken && outgoing_.all_left(std::chrono::seconds{1});
+  fail({fmt::format("{}: {}; {}", verb_, what, rests ? "the motors were set to zero" : still_moving),
+        std::move(remedy)});
+}
+
+void Timeline::repeat(Clock::time_point now) {
+  constexpr auto longest = client::longest_without_set_point;
+  if (now - held_->next >= longest)
+    abandon(
+        fmt::format("this program stood still for {}, and drives no further",
+                    words::to_text(std::chrono::duration_cast<std::chrono::milliseconds>(now - held_->next))),
+        "was it stopped, or did the machine sleep? Give the command again");
+  // Late ones are not made up for: a set point says what is wanted now.
+  held_->next += client::hold_period;  // absolute: no drift
+  if (held_->next <= now) held_->next = now + client::hold_period;
+  const auto delivery = bus_->delivery();
+  const auto& obstruction = delivery.obstruction;
+  if (!obstruction.what.empty() || (delivery.known && delivery.pending != 0)) {
+    ++withheld_;
+    if (now - held_->left < longest) return;  // an interface may come back
+    const auto since =
+        words::to_text(std::chrono::duration_cast<std::chrono::milliseconds>(now - held_->left));
+    const std::string what = fmt::format("no set point has left {} for {}", bus_->name(), since);
+    if (!obstruction.what.empty()) abandon(fmt::format("{}: {}", what, obstruction.what), obstruction.remedy);
+    abandon(what,
+            "nobody acknowledges frames: is a board powered and connected, and is the bit rate the same?");
+  }
+  held_->left = now;
+  const auto taken = bus_->send(held_->hold.frame);
+  if (taken.error == base::Error::closed) fail(bus_->failure());
+  if (!taken || !*taken) ++withheld_;
 }
 
 bool Timeline::wait(Clock::time_point until) {
@@ -28,10 +87,7 @@ bool Timeline::wait(Clock::time_point until) {
     if (interrupted() != 0) return false;
     const auto now = Clock::now();
     if (held_ && now >= held_->end) rest();
-    if (held_ && now >= held_->next) {
-      send_patiently(*bus_, held_->hold.frame);
-      held_->next += client::hold_period;  // absolute: no drift
-    }
+    if (held_ && now >= held_->next) repeat(now);
     if (now >= until) return true;
     auto wake = until;
     if (held_) wake = std::min({wake, held_->next, held_->end});

@@ -1,16 +1,22 @@
 /// Doing things at their times while the bus stays awake: waits until an absolute time, takes what comes from
 /// the bus meanwhile, and repeats a held set point every 100 ms. Shared by drive and run.
+///
+/// A robot never does what nobody asks now. No set point is given to a queue while the one before it has not
+/// left; when none has left for as long as the motors' watchdog waits, or when this program stood still for
+/// so long, the hold ends, and the set point of rest is the next that can leave.
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 
 #include "ocm/can/bus.hpp"
 #include "ocm/transport/bus.hpp"
 
 #include "cli/shared/live.hpp"
-#include "cli/shared/session.hpp"
+#include "cli/shared/outgoing.hpp"
 #include "cli/words/command.hpp"
 
 namespace ocm::cli {
@@ -18,9 +24,9 @@ namespace ocm::cli {
 class Timeline {
  public:
   using Clock = Live::Clock;
-  /// `on_receive` gets every frame that comes while waiting; empty: nobody looks at them.
-  Timeline(transport::Bus& bus, std::function<void(const can::Received&)> on_receive)
-      : bus_(&bus), on_receive_(std::move(on_receive)), live_(bus) {}
+  /// `verb` is for messages. `on_receive` gets every frame that comes while waiting; empty: nobody looks at
+  /// them.
+  Timeline(transport::Bus& bus, std::string verb, std::function<void(const can::Received&)> on_receive);
 
   /// Sends a command's frames and takes over, or ends, its hold.
   void carry_out(const client::Command& command);
@@ -30,17 +36,28 @@ class Timeline {
   [[nodiscard]] bool wait_for_hold();
   /// Ends a hold: sends the set point of rest. Nothing without a hold.
   void rest();
+  /// rest(), and what was sent has left; leaves through cli::fail, loudly, if not.
+  void finish();
 
  private:
   struct Held {
     client::Hold hold;
     Clock::time_point next;
     Clock::time_point end;
+    Clock::time_point left;  ///< when the last set point was seen to have left
   };
+  /// Sends the held set point again, if the last one has left.
+  void repeat(Clock::time_point now);
+  /// Ends the hold because of something that is wrong.
+  [[noreturn]] void abandon(std::string what, std::string remedy);
+
   transport::Bus* bus_;
+  std::string verb_;
   std::function<void(const can::Received&)> on_receive_;
   std::optional<Held> held_;
   Live live_;
+  Outgoing outgoing_;
+  std::uint64_t withheld_ = 0;  ///< set points that were due while the one before had not left
 };
 
 }  // namespace ocm::cli

@@ -44,7 +44,8 @@ canfd_frame to_raw(const log::Entry& entry) noexcept {
 
 }  // namespace
 
-Outlet::Outlet(std::unique_ptr<transport::Bus> bus) : bus_(std::move(bus)), takes_fd_(allow_fd(*bus_)) {
+Outlet::Outlet(std::unique_ptr<transport::Bus> bus)
+    : bus_(std::move(bus)), outgoing_(*bus_, "replay"), takes_fd_(allow_fd(*bus_)) {
   // Nobody reads what comes back; one identifier is the least that a bus can be asked for.
   const can::Filter least{can::max_base_id, can::max_base_id};
   if (const auto subscribed = bus_->subscribe({&least, 1}); !subscribed) fail(subscribed.error);
@@ -53,7 +54,7 @@ Outlet::Outlet(std::unique_ptr<transport::Bus> bus) : bus_(std::move(bus)), take
 Outlet::Sent Outlet::send(const log::Entry& entry) {
   if (entry.format == can::Format::error) return Sent::error_frame;
   if (const auto frame = entry.classic()) {
-    send_patiently(*bus_, *frame);
+    outgoing_.send(*frame);
     return Sent::yes;
   }
   if (!takes_fd_) return Sent::fd_frame;

@@ -9,6 +9,8 @@
 #include "ocm/log/entry.hpp"
 #include "ocm/transport/bus.hpp"
 
+#include "cli/shared/outgoing.hpp"
+
 namespace ocm::cli::replay {
 
 class Outlet {
@@ -23,12 +25,17 @@ class Outlet {
   /// Waits for room up to a second, then leaves through cli::fail.
   Sent send(const log::Entry& entry);
 
+  /// Waits until all has left, or leaves through cli::fail and says how much has not. CAN FD frames are not
+  /// counted.
+  void expect_all_left() { outgoing_.expect_all_left(); }
+
   [[nodiscard]] std::string_view name() const { return bus_->name(); }
 
  private:
   [[nodiscard]] bool send_fd(const log::Entry& entry) const;
 
   std::unique_ptr<transport::Bus> bus_;
+  Outgoing outgoing_;
   bool takes_fd_;
 };
 

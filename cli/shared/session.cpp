@@ -1,15 +1,12 @@
 #include "cli/shared/session.hpp"
 
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <thread>
 #include <unistd.h>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "ocm/can/text.hpp"
 #include "ocm/topics/amiro.hpp"
 
 #include "cli/shared/buses.hpp"
@@ -73,27 +70,6 @@ std::unique_ptr<transport::Bus> Session::open_bus() {
 bool Session::colour() const {
   const char* never = std::getenv("NO_COLOR");
   return !no_colour_ && (never == nullptr || *never == '\0') && isatty(STDOUT_FILENO) != 0;
-}
-
-void send_patiently(transport::Bus& bus, const can::Frame& frame, base::Duration patience) {
-  const auto give_up = std::chrono::steady_clock::now() + patience;
-  for (;;) {
-    const auto taken = bus.send(frame);
-    if (taken.error == base::Error::closed) fail(bus.failure());
-    if (!taken)
-      fail({fmt::format("{} cannot be sent: {}", can::to_text(frame).view(), base::describe(taken.error)),
-            "only data and remote frames with a valid identifier and up to 8 bytes can"});
-    if (*taken) return;
-    if (std::chrono::steady_clock::now() >= give_up && bus.state() == transport::BusState::down)
-      fail({fmt::format("{} is down: {} was not sent", bus.name(), can::to_text(frame).view()),
-            fmt::format("bring it up: sudo ip link set {} up", bus.name())});
-    if (std::chrono::steady_clock::now() >= give_up)
-      fail({fmt::format("the transmit queue of {} stays full: {} was not sent", bus.name(),
-                        can::to_text(frame).view()),
-            "nobody acknowledges frames: is a board powered and connected, and is the bit rate the same?"});
-    // A full queue of a CAN interface cannot be waited for (ENOBUFS is not signalled by poll): try again.
-    std::this_thread::sleep_for(std::chrono::milliseconds{1});
-  }
 }
 
 }  // namespace ocm::cli

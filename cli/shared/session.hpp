@@ -5,7 +5,6 @@
 #include <string>
 #include <string_view>
 
-#include "ocm/can/frame.hpp"
 #include "ocm/protocol/topic.hpp"
 #include "ocm/transport/bus.hpp"
 
@@ -47,9 +46,5 @@ class Session {
   bool no_colour_ = false;
   std::unique_ptr<spec::Spec> spec_;
 };
-
-/// Waits for room when the bus is full, at most `patience`; then fails with the bus's words.
-void send_patiently(transport::Bus& bus, const can::Frame& frame,
-                    base::Duration patience = std::chrono::seconds{1});
 
 }  // namespace ocm::cli

@@ -16,6 +16,7 @@
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/json.hpp"
 #include "cli/shared/live.hpp"
+#include "cli/shared/outgoing.hpp"
 #include "cli/shared/remedies.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
@@ -100,7 +101,7 @@ class Examination {
 
  private:
   void request(const protocol::Topic& topic) {
-    send_patiently(*bus_, protocol::once(topic.id, topic.priority));
+    Outgoing{*bus_, "doctor"}.send(protocol::once(topic.id, topic.priority));
   }
   [[nodiscard]] bool have_statuses() const {
     const auto& boards = diagnosis_.boards();

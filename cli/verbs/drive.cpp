@@ -30,13 +30,14 @@ void add_drive(Verb app, Session& session, int& exit_code) {
     if (!options->lasting.empty()) extra = {"--for", options->lasting};
     const auto command = options->commanding.parse(extra);
     if (options->commanding.dry_run() || options->once || !command.hold)
-      return carry_out(session, command, options->commanding.dry_run());
+      return carry_out(session, "drive", command, options->commanding.dry_run());
     catch_interrupts();
+    catch_hangups();
     const auto bus = session.open_bus();
-    Timeline timeline{*bus, {}};
+    Timeline timeline{*bus, "drive", {}};
     timeline.carry_out(command);
     const bool ended = timeline.wait_for_hold();
-    timeline.rest();
+    timeline.finish();
     if (!ended) exit_code = exit_code_after_interrupt(exit_success);
   });
 }

@@ -16,6 +16,7 @@
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/live.hpp"
 #include "cli/shared/messages.hpp"
+#include "cli/shared/outgoing.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
 #include "cli/watch/chosen_topics.hpp"
@@ -216,6 +217,7 @@ void stand_in(Session& session, const ReplayOptions& options, int& exit_code) {
 
   std::uint64_t requests = 0, refused = 0, silent = 0, sent = 0;
   Live live{*bus};
+  Outgoing outgoing{*bus, "replay"};
   const auto take = [&](const can::Received& received) {
     switch (robot.take(received.frame, replay::monotonic_now())) {
       case Answer::none:
@@ -236,7 +238,7 @@ void stand_in(Session& session, const ReplayOptions& options, int& exit_code) {
   };
   for (Over over = Over::time; over == Over::time || over == Over::enough;) {
     for (const auto& frame : robot.due(replay::monotonic_now())) {
-      send_patiently(*bus, frame);
+      outgoing.send(frame);
       ++sent;
     }
     const auto until = robot.next() == base::never

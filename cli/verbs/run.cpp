@@ -84,6 +84,7 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
   }
 
   catch_interrupts();
+  catch_hangups();
   const auto bus = session.open_bus();
   client::Receiver receiver{catalogue};
   Printer printer{make_output(isatty(STDOUT_FILENO) != 0 ? Format::pretty : Format::json, catalogue, {},
@@ -94,8 +95,9 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
       printer.write({bus->name(), log::Entry{received.time, received.frame}, reception});
     printer.flush();
   };
-  Timeline timeline{*bus, options.listen ? std::function<void(const can::Received&)>{show}
-                                         : std::function<void(const can::Received&)>{}};
+  Timeline timeline{*bus, "run",
+                    options.listen ? std::function<void(const can::Received&)>{show}
+                                   : std::function<void(const can::Received&)>{}};
   const auto start = Timeline::Clock::now();
   for (const auto& step : script.steps) {
     const auto at = std::chrono::duration_cast<Timeline::Clock::duration>(
@@ -105,7 +107,7 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
     timeline.carry_out(step.command);
   }
   const bool whole = interrupted() == 0 && timeline.wait_for_hold();
-  timeline.rest();
+  timeline.finish();
   if (!whole) {
     remark("interrupted: the motors were set to zero; `amiroctl stop` stops the sensors too");
     exit_code = exit_code_after_interrupt(exit_success);

@@ -10,6 +10,7 @@
 
 #include "cli/command/commanding.hpp"
 #include "cli/shared/interrupt.hpp"
+#include "cli/shared/outgoing.hpp"
 #include "cli/verbs/verbs.hpp"
 #include "cli/watch/frame_lines.hpp"
 
@@ -50,6 +51,8 @@ class Pace {
 void send_lines(Session& session, const SendOptions& options, bool dry_run, int& exit_code) {
   catch_interrupts();
   const auto bus = dry_run ? nullptr : session.open_bus();
+  std::optional<Outgoing> outgoing;
+  if (bus != nullptr) outgoing.emplace(*bus, "send");
   FrameLines lines{"-", session.catalogue(), options.keep_going};
   Pace pace;
   std::uint64_t sent = 0;
@@ -67,9 +70,10 @@ void send_lines(Session& session, const SendOptions& options, bool dry_run, int&
     if (dry_run)
       print_frames({*frame});
     else
-      send_patiently(*bus, *frame);
+      outgoing->send(*frame);
     ++sent;
   }
+  if (outgoing) outgoing->expect_all_left();
   std::string text = fmt::format("{} frames {}", sent, dry_run ? "read" : "sent");
   if (errors != 0) text += fmt::format(", {} error frames are reports and were not", errors);
   if (fd != 0) text += fmt::format(", {} CAN FD frames were not: only classic frames can be", fd);
@@ -100,7 +104,7 @@ void add_send(Verb app, Session& session, int& exit_code) {
       .needs(input);
   verb.callback([commanding, options, &session, &exit_code] {
     if (options->from_input) return send_lines(session, *options, commanding->dry_run(), exit_code);
-    carry_out(session, commanding->parse(), commanding->dry_run());
+    carry_out(session, commanding->verb(), commanding->parse(), commanding->dry_run());
   });
 }
 

@@ -24,6 +24,9 @@ struct Hold {
   base::Duration lasting{};  ///< zero: until another drive or a stop
 };
 inline constexpr base::Duration hold_period{100'000'000};
+/// After so long without a set point a board's watchdog stops the motors, and whoever holds one must not go
+/// on as if nothing had been. [spec/topics.json: watchdog of motors, 500 ms]
+inline constexpr base::Duration longest_without_set_point{500'000'000};
 
 struct Command {
   std::vector<can::Frame> frames;            ///< to send now, in this order

@@ -33,6 +33,14 @@ enum class BusState : std::uint8_t {
   closed,  ///< gone for good: `failure` says why
 };
 
+/// What is known of the frames that `send` took. A queue that takes a frame promises nothing: a controller
+/// that is bus-off lets its queue be filled and emptied, and no frame leaves.
+struct Delivery {
+  bool known = false;         ///< whether the bus can tell; if not, `pending` says nothing
+  std::uint64_t pending = 0;  ///< frames that were taken and have not left, as far as the bus knows
+  Failure obstruction{};      ///< why nothing can leave now; empty: nothing is known to be in the way
+};
+
 /// A bus as a host program sees it. Satisfies can::Bus.
 class Bus {
  public:
@@ -60,6 +68,8 @@ class Bus {
   [[nodiscard]] virtual BusState state() const {
     return failure() == Failure{} ? BusState::up : BusState::closed;
   }
+  /// What became of the frames that were sent. May ask the kernel: some 20 us.
+  [[nodiscard]] virtual Delivery delivery() { return {}; }
   /// bit/s, where the bus says it; 0: not known.
   [[nodiscard]] virtual std::uint32_t bit_rate() const noexcept { return 0; }
   /// Why `send` or `receive` answered Error::closed, in words; empty while the bus is open.

@@ -35,6 +35,8 @@ struct CanInterface {
   bool up = false;
   std::string kind;            ///< "can", "vcan", "vxcan", ...; empty when the driver does not say
   std::uint32_t bit_rate = 0;  ///< bit/s; 0: none set, or the interface has no bit rate
+  bool bus_off = false;        ///< the controller has left the bus after too many errors
+  std::uint64_t sent = 0;      ///< frames that left, of every program, since the interface was made; may wrap
   friend bool operator==(const CanInterface&, const CanInterface&) = default;
 };
 
@@ -76,6 +78,12 @@ template <class T>
   return text;
 }
 
+/// How rtnl_link_stats64 begins, which newer kernels have made longer. [linux/if_link.h]
+struct LinkStatistics {
+  std::uint64_t received = 0;
+  std::uint64_t transmitted = 0;
+};
+
 enum class LinkDump : std::uint8_t { more, done, failed };
 
 /// Reads one datagram of the answer to RTM_GETLINK and adds the CAN interfaces in it.
@@ -100,6 +108,11 @@ enum class LinkDump : std::uint8_t { more, done, failed };
     const auto timing =
         read_object<can_bittiming>(find_attribute(find_attribute(info, IFLA_INFO_DATA), IFLA_CAN_BITTIMING));
     if (interface.kind == "can" && timing) interface.bit_rate = timing->bitrate;
+    const auto state =
+        read_object<std::uint32_t>(find_attribute(find_attribute(info, IFLA_INFO_DATA), IFLA_CAN_STATE));
+    interface.bus_off = interface.kind == "can" && state && *state == CAN_STATE_BUS_OFF;
+    if (const auto statistics = read_object<LinkStatistics>(find_attribute(attributes, IFLA_STATS64)))
+      interface.sent = statistics->transmitted;
     interfaces.push_back(std::move(interface));
   }
   return LinkDump::more;
@@ -112,35 +125,55 @@ enum class LinkDump : std::uint8_t { more, done, failed };
 
 }  // namespace detail
 
-/// Every CAN interface of the machine, up or down, in the kernel's order. Empty when there is none, which is
-/// also the answer of a kernel without CAN: `can_support` tells these apart. About 50 us and 64 KiB of stack.
-[[nodiscard]] inline host::Outcome<std::vector<CanInterface>> query_can_interfaces() {
+namespace detail {
+
+/// All interfaces, or the one of this index.
+[[nodiscard]] inline host::Outcome<std::vector<CanInterface>> query_links(int index) {
   const host::Descriptor socket{::socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC, NETLINK_ROUTE)};
-  if (!socket) return detail::interfaces_failure(errno);
+  if (!socket) return interfaces_failure(errno);
   struct {
     nlmsghdr header{};
     ifinfomsg body{};
   } request;
   request.header.nlmsg_len = sizeof request;
   request.header.nlmsg_type = RTM_GETLINK;
-  request.header.nlmsg_flags = NLM_F_REQUEST | NLM_F_DUMP;
-  if (::send(socket.get(), &request, sizeof request, 0) < 0) return detail::interfaces_failure(errno);
+  request.header.nlmsg_flags =
+      static_cast<std::uint16_t>(index == 0 ? NLM_F_REQUEST | NLM_F_DUMP : NLM_F_REQUEST);
+  request.body.ifi_index = index;
+  if (::send(socket.get(), &request, sizeof request, 0) < 0) return interfaces_failure(errno);
 
   std::vector<CanInterface> interfaces;
   alignas(nlmsghdr) std::array<std::byte, 65536> datagram;  // the kernel dumps at most 32 KiB at a time
   for (;;) {
     const ssize_t size = ::recv(socket.get(), datagram.data(), datagram.size(), 0);
     if (size < 0 && errno == EINTR) continue;
-    if (size <= 0) return detail::interfaces_failure(size < 0 ? errno : EPROTO);
-    switch (detail::read_links(std::span{datagram}.first(static_cast<std::size_t>(size)), interfaces)) {
-      case detail::LinkDump::more:
-        break;
-      case detail::LinkDump::done:
+    if (size <= 0) return interfaces_failure(size < 0 ? errno : EPROTO);
+    switch (read_links(std::span{datagram}.first(static_cast<std::size_t>(size)), interfaces)) {
+      case LinkDump::more:
+        if (index == 0) break;
+        [[fallthrough]];
+      case LinkDump::done:
         return interfaces;
-      case detail::LinkDump::failed:
-        return detail::interfaces_failure(EPROTO);
+      case LinkDump::failed:
+        return interfaces_failure(EPROTO);
     }
   }
+}
+
+}  // namespace detail
+
+/// Every CAN interface of the machine, up or down, in the kernel's order. Empty when there is none, which is
+/// also the answer of a kernel without CAN: `can_support` tells these apart. About 50 us and 64 KiB of stack.
+[[nodiscard]] inline host::Outcome<std::vector<CanInterface>> query_can_interfaces() {
+  return detail::query_links(0);
+}
+
+/// The one of that index (> 0), as it is now; nothing when it is gone or the kernel would not tell. About 20
+/// us.
+[[nodiscard]] inline std::optional<CanInterface> query_can_interface(int index) {
+  const auto found = detail::query_links(index);
+  if (!found || found->size() != 1) return std::nullopt;
+  return found->front();
 }
 
 /// As `query_can_interfaces`; also empty when the kernel would not tell.

@@ -136,6 +136,17 @@ class Slcan final : public Bus {
     return {};
   }
 
+  /// By the adapter's answers. An adapter that gives none to frames tells nothing.
+  [[nodiscard]] Delivery delivery() override {
+    work();
+    if (!tracks() && out_.empty()) return {};
+    const auto asked = [](const UnderWay& each) { return !each.status; };
+    const auto waiting = std::count_if(under_way_.begin(), under_way_.end(), asked);
+    return {.known = true,
+            .pending = static_cast<std::uint64_t>(waiting) + again_.size() + never_answered_ +
+                       (out_.empty() ? 0U : 1U)};
+  }
+
   [[nodiscard]] int descriptor() const override { return port_ ? port_.descriptor() : socket_.get(); }
   [[nodiscard]] const BusCounters& counters() const override { return counters_; }
   [[nodiscard]] const Failure& failure() const override { return failure_; }
@@ -360,9 +371,11 @@ class Slcan final : public Bus {
       const bool status = under_way_.front().status;
       under_way_.pop_front();
       ++adapter_.unanswered;
+      if (!status) ++never_answered_;
       // One that has answered commands, but never a frame, does not answer frames.
       if (!status && confirms_ == Confirms::unknown) {
         confirms_ = Confirms::no;
+        never_answered_ = 0;
         std::erase_if(under_way_, [](const UnderWay& other) { return !other.status; });
       }
     }
@@ -518,6 +531,7 @@ class Slcan final : public Bus {
 
   BusCounters counters_;
   SlcanCounters adapter_;
+  std::uint64_t never_answered_ = 0;  ///< frames among the unanswered
   Failure failure_;
 };
 

@@ -7,8 +7,9 @@
 /// - Up to 64 frames are read with one system call.
 /// - What this socket had no room for is counted exactly (SO_RXQ_OVFL); what the controller had no room for
 ///   comes as an error frame.
-/// - While a controller is bus-off the kernel takes frames and drops them without a word: the error frame
-///   that said so is all there is.
+/// - While a controller is bus-off the kernel takes frames and drops them without a word. `delivery` asks for
+/// the
+///   controller's state, and compares what the driver has sent with what was given to it.
 #pragma once
 
 #include <algorithm>
@@ -191,7 +192,9 @@ class SocketCan final : public Bus {
     address.can_ifindex = index;
     if (::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) < 0)
       return detail::system_failure(interface, "open", errno);
-    return std::unique_ptr<SocketCan>(new SocketCan(std::move(socket), interface, index));
+    auto bus = std::unique_ptr<SocketCan>(new SocketCan(std::move(socket), interface, index));
+    if (const auto link = query_can_interface(index)) bus->sent_before_ = link->sent;
+    return bus;
   }
 
   [[nodiscard]] std::string_view name() const override { return name_; }
@@ -283,6 +286,24 @@ class SocketCan final : public Bus {
     filters_.assign(filters.begin(), filters.end());
     filtered_since_ = unix_time();
     return {};
+  }
+
+  /// By the driver's count of frames that left, which counts those of other programs, too: what is pending
+  /// may be more.
+  [[nodiscard]] Delivery delivery() override {
+    const auto link = query_can_interface(index_);
+    if (!link) return {};
+    Delivery delivery{.known = true};
+    const std::uint64_t left = link->sent - sent_before_;
+    delivery.pending = counters_.sent > left ? counters_.sent - left : 0;
+    if (link->bus_off)
+      delivery.obstruction = {
+          "'" + name_ + "' is bus-off: its controller has left the bus after too many errors",
+          "mend the cable, the termination or the bit rate; then: sudo ip link set " + name_ +
+              " type can restart"};
+    else if (!link->up)
+      delivery.obstruction = detail::down_failure(name_, std::span{&*link, 1});
+    return delivery;
   }
 
   [[nodiscard]] int descriptor() const override { return socket_.get(); }
@@ -446,6 +467,7 @@ class SocketCan final : public Bus {
   Failure failure_;
   BusCounters counters_;
   detail::DropCounter drops_;
+  std::uint64_t sent_before_ = 0;  ///< frames that had left when this was opened
   std::vector<can::Filter> filters_;
   base::Time filtered_since_ = base::Time::min();
   std::size_t next_ = 0;    ///< in the batch

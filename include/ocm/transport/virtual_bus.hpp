@@ -151,6 +151,13 @@ class VirtualBus final : public Bus {
     return {};
   }
 
+  /// Exactly: the server gives credit back for each frame that was on the bus.
+  [[nodiscard]] Delivery delivery() override {
+    while (credit_ < granted_ && fill()) {
+    }
+    return {.known = true, .pending = granted_ > credit_ ? granted_ - credit_ : 0};
+  }
+
   [[nodiscard]] int descriptor() const override { return socket_.get(); }
   [[nodiscard]] const BusCounters& counters() const override { return counters_; }
   [[nodiscard]] const Failure& failure() const override { return failure_; }
@@ -300,7 +307,7 @@ class VirtualBus final : public Bus {
         if (hello.magic != virtual_bus::magic || hello.version != virtual_bus::version || hello.bit_rate == 0)
           return end(not_understood());
         bit_rate_ = hello.bit_rate;
-        credit_ = hello.credit;
+        credit_ = granted_ = hello.credit;
         bus_name_.assign(hello.name.data(), ::strnlen(hello.name.data(), hello.name.size()));
         return;
       }
@@ -390,9 +397,10 @@ class VirtualBus final : public Bus {
   std::string bus_name_;
   std::uint32_t bit_rate_ = 0;
   std::uint64_t credit_ = 0;
-  bool ended_ = false;  ///< nothing more comes from the server; frames may still wait in the inbox
-  Failure ending_;      ///< why
-  Failure failure_;     ///< the same, once the caller was told
+  std::uint64_t granted_ = 0;  ///< credit when nothing is under way
+  bool ended_ = false;         ///< nothing more comes from the server; frames may still wait in the inbox
+  Failure ending_;             ///< why
+  Failure failure_;            ///< the same, once the caller was told
   BusCounters counters_;
   std::vector<can::Filter> filters_;
   std::vector<can::Received> inbox_;

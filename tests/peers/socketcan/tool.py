@@ -204,11 +204,11 @@ def _(context):
     gyro = times.pop('608', [])
     due = (asked['208#00'] - asked['208#01']) / 0.05 + 1
     expect(abs(len(gyro) - due) < 2.5, f'gyroscope: {len(gyro)} samples instead of {due:.1f}')
-    expect(gyro[-1] < asked['208#00'] + 0.05, 'gyroscope: answered to what it must refuse, or did not stop')
+    expect(gyro[-1] < asked['205#01840302'], 'gyroscope: answered to what it must refuse, or did not stop')
     mag = [times.pop(number, []) for number in ('605', '606', '607')]
     expect(len(mag[0]) > 100, f'magnetometer: {len(mag[0])} samples in 0.5 s')
     expect(max(map(len, mag)) - min(map(len, mag)) == 0, f'magnetometer: {[len(axis) for axis in mag]} frames of the axes')
-    expect(mag[2][-1] < asked['205#00'] + 0.05, 'magnetometer: did not stop')
+    expect(mag[2][-1] < asked['009#01640000'], 'magnetometer: did not stop')
     due = (asked['209#02'] - asked['009#01640000']) / 0.1 + 1
     urgent = times.pop('409', [])
     expect(abs(len(urgent) - due) < 1.5, f'accelerometer, urgent: {len(urgent)} samples instead of {due:.1f}')
@@ -326,12 +326,17 @@ def _(context):
     with Vcan('vcan1') as interface, Candump('vcan1') as log, \
             Process(context.amiroctl, '--bus', 'vcan1', 'drive', '5cm/s') as drive:
         eventually(lambda: len(log.frames()) > 3, 'set points')
+        # As long as the motors' watchdog waits, 500 ms, the drive waits, too. How long the interface was away is this
+        # machine's affair.
+        away = time.monotonic()
         interface.down()
-        time.sleep(0.3)
+        time.sleep(0.1)
         interface.up()
+        away = time.monotonic() - away
         before = len(log.frames())
         eventually(lambda: len(log.frames()) > before + 3 or drive.process.poll() is not None, 'more set points')
-        expect(drive.process.poll() is None, f'drive ended: {drive.stderr}')
+        if away < 0.3:
+            expect(drive.process.poll() is None, f'drive ended: {drive.stderr}')
         interface.down()
         equal(drive.wait(), 1, 'exit code with the interface down for good')
         matches(drive.stderr, 'vcan1.*down')
@@ -362,6 +367,27 @@ def _(context):
             refused = int(re.search(r'205#([0-9A-F]{16}) was not sent', run.stderr)[1], 16)
         taken = re.findall(r't2058([0-9A-F]{16})\r', adapter.sent())
         equal([int(number, 16) for number in taken], list(range(refused)), 'what the adapter got')
+
+
+@check('a controller that is bus-off: no command succeeds, and each says so')
+def _(context):
+    def go_off(adapter):
+        adapter.report('sb256000')
+        eventually(lambda: 'BUS-OFF' in sh('ip', '-details', 'link', 'show', adapter.name), 'bus-off')
+
+    with Adapter() as adapter:
+        go_off(adapter)
+        for verb in (['stop'], ['publish', 'gyro', '100ms', '--force'], ['drive', '5cm/s', '--for', '2s'],
+                     ['set', 'motors', 'x=0m/s'], ['send', '123#00']):
+            with Process(context.amiroctl, '--bus', adapter.name, *verb) as process:
+                equal(process.wait(), 1, f'exit code of {verb[0]}: {process.stderr}')
+                matches(process.stderr, f"'{adapter.name}' is bus-off", 'nothing was sent')
+        equal(re.findall(r't\d.*', adapter.sent()), [], 'frames of a controller that is bus-off')
+    with Adapter() as adapter, Process(context.amiroctl, '--bus', adapter.name, 'drive', '5cm/s') as drive:
+        eventually(lambda: 't2018' in adapter.sent(0.05), 'a set point')
+        go_off(adapter)
+        equal(drive.wait(), 1, f'exit code of a drive that loses its bus: {drive.stderr}')
+        matches(drive.stderr, 'is bus-off', 'THE ROBOT MAY STILL MOVE')
 
 
 @check('error frames are told in words and counted')

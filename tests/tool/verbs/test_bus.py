@@ -145,6 +145,55 @@ class OnTheBus(Case):
         out, _ = self.interrupt(listener)
         self.assertEqual(self.objects(out)[-1]["data"], "0000000000000000")
 
+    def test_every_end_of_a_drive_stops_the_motors(self):
+        """A terminal that is closed, ssh that is gone, Ctrl-\\: as Ctrl-C."""
+        self.start_sim()
+        script = os.path.join(self.folder, "drive.script")
+        with open(script, "w", encoding="utf-8") as file:
+            file.write("0s drive 5cm/s\n20s stop\n")
+        for command in (("drive", "5cm/s"), ("run", script)):
+            for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
+                listener = self.listen("motors", "--timeout", "20s")
+                drive = self.start(*command)
+                self.assertIn("50C3000000000000", listener.stdout.readline())
+                _, err = self.interrupt(drive, number)
+                self.assertEqual(drive.returncode, 128 + number, (command, number, err))
+                self.settle()
+                out, _ = self.interrupt(listener)
+                self.assertEqual(self.objects(out)[-1]["data"], "0000000000000000", (command, number))
+
+    def test_a_drive_that_stood_still_does_not_go_on(self):
+        self.start_sim()
+        listener = self.listen("motors", "--timeout", "20s")
+        drive = self.start("drive", "5cm/s")
+        self.assertIn("50C3000000000000", listener.stdout.readline())
+        drive.send_signal(signal.SIGSTOP)
+        time.sleep(1.2)
+        self.run_tool("stop")  # somebody else stops the robot meanwhile
+        drive.send_signal(signal.SIGCONT)
+        _, err = drive.communicate(timeout=10)
+        self.assertEqual(drive.returncode, 1)
+        self.assertRegex(err, r"drive: this program stood still for 1[.0-9]*s|drive: this program stood still for 1\d\d\dms")
+        self.assertIn("the motors were set to zero", err)
+        self.settle()
+        out, _ = self.interrupt(listener)
+        frames = [line["data"] for line in self.objects(out)]
+        stop = frames.index("0000000000000000")
+        self.assertEqual(set(frames[stop:]), {"0000000000000000"}, "it drove on after somebody's stop")
+
+    def test_a_bus_that_stands_still(self):
+        """The simulator is stopped: its socket takes frames that nobody reads."""
+        sim = self.start_sim()
+        drive = self.start("drive", "5cm/s")
+        drive.stderr.readline()
+        self.settle()
+        sim.send_signal(signal.SIGSTOP)
+        _, err = drive.communicate(timeout=10)
+        self.assertEqual(drive.returncode, 1)
+        self.assertIn("no set point has left sim for ", err)
+        self.assertIn("THE ROBOT MAY STILL MOVE", err)
+        sim.send_signal(signal.SIGCONT)
+
     def test_the_robot_moves_and_its_watchdog_stops_it(self):
         self.start_sim()
         self.run_tool("drive", "10cm/s", "--once")

@@ -12,7 +12,7 @@ import threading
 import time
 import tty
 
-from harness import Case, main
+from harness import Case, main, waiting
 
 FRAME = re.compile(r"^(?:t([0-7][0-9A-Fa-f]{2})|T([01][0-9A-Fa-f]{7}))([0-8])((?:[0-9A-Fa-f]{2})*)$")
 
@@ -30,12 +30,16 @@ class Adapter:
         tty.setraw(self.slave)
         self.path = os.ttyname(self.slave)
         self.ended = threading.Event()
+        self.asleep = threading.Event()  # reads nothing and answers nothing
         self.thread = threading.Thread(target=self.run, daemon=True)
         self.thread.start()
 
     def run(self):
         line = b""
         while not self.ended.is_set():
+            if self.asleep.is_set():
+                time.sleep(0.01)
+                continue
             if not select.select([self.master], [], [], 0.02)[0]:
                 continue
             for byte in os.read(self.master, 4096):
@@ -99,6 +103,8 @@ class Adapter:
 
 # Gyroscope once, and what the thesis's robot answers: x = -4 is 65532, that is -0.07 deg/s.
 GYRO_ONCE, GYRO = "208#02", "t6086FCFF00000000"
+# The set point of the motors at rest. [docs/protocol.md: medium priority, topic 1]
+REST = "201#0000000000000000"
 
 
 class OnASerialLine(Case):
@@ -147,6 +153,39 @@ class OnASerialLine(Case):
         _, err = self.run_tool("--bus", f"slcan:{adapter.path}", "run", script, code=1)
         self.assertLess(time.monotonic() - begin, 10)
         self.assertIn(f"slcan:{adapter.path} stays full", err)
+
+    def test_an_adapter_that_falls_asleep_while_driving(self):
+        """No set point is given to a line from which the last one has not left: none waits for the day it wakes."""
+        adapter = self.adapter()
+        drive = self.start("--bus", f"slcan:{adapter.path}", "drive", "5cm/s", "--for", "20s")
+        waiting.until(lambda: len(adapter.frames) >= 3, "set points")
+        adapter.asleep.set()
+        fell = time.monotonic()
+        out, err = drive.communicate(timeout=10)
+        self.assertEqual(drive.returncode, 1, err)
+        self.assertLess(time.monotonic() - fell, 4)
+        self.assertIn(f"no set point has left slcan:{adapter.path} for ", err)
+        self.assertIn("THE ROBOT MAY STILL MOVE", err)
+        driven = len(adapter.frames)
+        adapter.asleep.clear()
+        waiting.until(lambda: not select.select([adapter.master], [], [], 0.2)[0], "all of the line")
+        late = adapter.frames[driven:]
+        self.assertLessEqual(sum(frame != REST for frame in late), 1, late)
+        self.assertEqual(late[-1:], [REST], "nothing but rest comes last")
+
+    def test_commands_to_an_adapter_that_sleeps(self):
+        for words in ("stop", "publish gyro 100ms", "led 1 red", "send 123#00"):
+            adapter = self.adapter()
+            script = os.path.join(self.folder, "one.script")
+            with open(script, "w", encoding="utf-8") as file:
+                file.write(f"0s led 1 off\n1s {words}\n")
+            run = self.start("--bus", f"slcan:{adapter.path}", "run", script)
+            waiting.until(lambda: adapter.frames, "a frame, which it answers")
+            time.sleep(0.2)  # it has; the second step is far
+            adapter.asleep.set()
+            _, err = run.communicate(timeout=20)
+            self.assertEqual(run.returncode, 1, (words, err))
+            self.assertRegex(err, "did not leave|stays full")
 
     def test_listen_with_garbage_between(self):
         adapter = self.adapter()

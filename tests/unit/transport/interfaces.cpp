@@ -55,12 +55,13 @@ Bytes link(unsigned hardware, int index, unsigned flags, const Bytes& attributes
   return message(RTM_NEWLINK, bytes_of(body) + attributes);
 }
 
-Bytes can_info(std::uint32_t bit_rate) {
+Bytes can_info(std::uint32_t bit_rate, std::uint32_t state = CAN_STATE_ERROR_ACTIVE) {
   can_bittiming timing{};
   timing.bitrate = bit_rate;
   return attribute(IFLA_LINKINFO | NLA_F_NESTED,
                    attribute(IFLA_INFO_KIND, text("can")) +
-                       attribute(IFLA_INFO_DATA, attribute(IFLA_CAN_BITTIMING, bytes_of(timing))));
+                       attribute(IFLA_INFO_DATA, attribute(IFLA_CAN_BITTIMING, bytes_of(timing)) +
+                                                     attribute(IFLA_CAN_STATE, bytes_of(state))));
 }
 
 }  // namespace
@@ -101,10 +102,33 @@ TEST_CASE("a broken answer about interfaces is refused at every length") {
   CHECK(transport::detail::find_attribute(bytes_of(too_short), 0).empty());
 }
 
+TEST_CASE("a controller that is bus-off, and what an interface has sent") {
+  std::vector<CanInterface> found;
+  rtnl_link_stats64 statistics{};
+  statistics.rx_packets = 7;
+  statistics.tx_packets = 41;
+  for (const auto& [state, off] : {std::pair{CAN_STATE_BUS_OFF, true},
+                                   {CAN_STATE_ERROR_PASSIVE, false},
+                                   {CAN_STATE_ERROR_ACTIVE, false}}) {
+    found.clear();
+    const Bytes one =
+        link(transport::can_hardware_type, 4, IFF_UP,
+             attribute(IFLA_IFNAME, text("can0")) + attribute(IFLA_STATS64, bytes_of(statistics)) +
+                 can_info(500'000, static_cast<std::uint32_t>(state)));
+    CHECK(transport::detail::read_links(one, found) == LinkDump::more);
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].bus_off == off);
+    CHECK(found[0].sent == 41);
+  }
+}
+
 TEST_CASE("the kernel answers, with or without CAN") {
   const auto found = transport::query_can_interfaces();
   REQUIRE(found);
-  CHECK(transport::can_interfaces() == *found);
+  const auto again = transport::can_interfaces();
+  REQUIRE(again.size() == found->size());
+  for (std::size_t i = 0; i < again.size(); ++i) CHECK(again[i].name == (*found)[i].name);
+  CHECK_FALSE(transport::query_can_interface(INT32_MAX));
   for (const CanInterface& interface : *found) {
     CHECK_FALSE(interface.name.empty());
     CHECK(interface.index > 0);

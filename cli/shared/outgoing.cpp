@@ -1,0 +1,82 @@
+#include "cli/shared/outgoing.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "ocm/can/text.hpp"
+
+#include "cli/shared/messages.hpp"
+
+namespace ocm::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// A full queue of a CAN interface cannot be waited for (ENOBUFS is not signalled by poll), and nothing tells
+/// when a frame has left.
+constexpr base::Duration look_again = std::chrono::milliseconds{1};
+
+constexpr const char* nobody_acknowledges =
+    "nobody acknowledges frames: is a board powered and connected, and is the bit rate the same?";
+
+}  // namespace
+
+Outgoing::Outgoing(transport::Bus& bus, std::string verb, std::string otherwise)
+    : bus_(bus), verb_(std::move(verb)), otherwise_(std::move(otherwise)) {
+  const auto delivery = bus_.delivery();
+  if (delivery.obstruction.what.empty()) return;
+  give_up(fmt::format("{}; nothing was sent", delivery.obstruction.what), delivery.obstruction.remedy);
+}
+
+void Outgoing::send(const can::Frame& frame, base::Duration patience) {
+  const auto late = Clock::now() + patience;
+  for (;;) {
+    const auto taken = bus_.send(frame);
+    if (taken.error == base::Error::closed) fail(bus_.failure());
+    if (!taken)
+      fail({fmt::format("{} cannot be sent: {}", can::to_text(frame).view(), base::describe(taken.error)),
+            "only data and remote frames with a valid identifier and up to 8 bytes can"});
+    if (*taken) return;
+    if (Clock::now() >= late) {
+      if (bus_.state() == transport::BusState::down)
+        give_up(fmt::format("{} is down: {} was not sent", bus_.name(), can::to_text(frame).view()),
+                fmt::format("bring it up: sudo ip link set {} up", bus_.name()));
+      give_up(fmt::format("the transmit queue of {} stays full: {} was not sent", bus_.name(),
+                          can::to_text(frame).view()),
+              nobody_acknowledges);
+    }
+    std::this_thread::sleep_for(look_again);
+  }
+}
+
+bool Outgoing::all_left(base::Duration patience) {
+  const auto late = Clock::now() + patience;
+  for (;;) {
+    const auto delivery = bus_.delivery();
+    if (!delivery.known || delivery.pending == 0) return delivery.obstruction.what.empty();
+    if (!delivery.obstruction.what.empty() || Clock::now() >= late) return false;
+    std::this_thread::sleep_for(look_again);
+  }
+}
+
+void Outgoing::expect_all_left(base::Duration patience) {
+  if (all_left(patience)) return;
+  const auto delivery = bus_.delivery();
+  const auto sent = bus_.counters().sent;
+  const auto missing = std::min(std::max<std::uint64_t>(delivery.pending, 1), sent);
+  const std::string what = fmt::format("{} of {} frames did not leave {}", missing, sent, bus_.name());
+  if (!delivery.obstruction.what.empty())
+    give_up(fmt::format("{}: {}", what, delivery.obstruction.what), delivery.obstruction.remedy);
+  give_up(what, nobody_acknowledges);
+}
+
+void Outgoing::give_up(std::string what, std::string remedy) const {
+  if (!otherwise_.empty()) what += "; " + otherwise_;
+  fail({fmt::format("{}: {}", verb_, what), std::move(remedy)});
+}
+
+}  // namespace ocm::cli

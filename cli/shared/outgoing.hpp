@@ -1,0 +1,36 @@
+/// Frames on their way out. A command is done when its frames have left this machine, and not when a queue
+/// has taken them: the queue of a controller that is bus-off takes everything.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "ocm/base/time.hpp"
+#include "ocm/can/frame.hpp"
+#include "ocm/transport/bus.hpp"
+
+namespace ocm::cli {
+
+class Outgoing {
+ public:
+  /// `verb` is for messages; `otherwise` says what it means for the robot that frames did not leave, if it
+  /// means something. Leaves through cli::fail when nothing can leave, before anything is sent. `bus` must
+  /// outlive it.
+  Outgoing(transport::Bus& bus, std::string verb, std::string otherwise = {});
+
+  /// Waits for room in the queue, at most `patience`; then leaves with the bus's words.
+  void send(const can::Frame& frame, base::Duration patience = std::chrono::seconds{1});
+  /// Waits until all that was sent has left, at most `patience`; then leaves and says how much has not.
+  void expect_all_left(base::Duration patience = std::chrono::milliseconds{500});
+  /// The same as an answer. A bus that cannot tell says yes.
+  [[nodiscard]] bool all_left(base::Duration patience);
+
+ private:
+  [[noreturn]] void give_up(std::string what, std::string remedy) const;
+
+  transport::Bus& bus_;
+  std::string verb_;
+  std::string otherwise_;
+};
+
+}  // namespace ocm::cli
