@@ -1,5 +1,7 @@
 #include "cli/output/output.hpp"
 
+#include <iterator>
+
 namespace ocm::cli {
 
 client::Reception understand(client::Receiver& receiver, const log::Entry& entry) {
@@ -20,6 +22,12 @@ std::unique_ptr<Output> make_output(Format format, const protocol::Catalogue& ca
       break;
   }
   return make_pretty(catalogue, selection, colour);
+}
+
+void vappend_formatted(Buffer& out, fmt::string_view text, fmt::format_args arguments) {
+  fmt::memory_buffer buffer;
+  fmt::vformat_to(std::back_inserter(buffer), text, arguments);
+  out.append({buffer.data(), buffer.size()});
 }
 
 }  // namespace ocm::cli

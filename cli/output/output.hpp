@@ -26,10 +26,13 @@ struct Event {
 
 using Buffer = log::Bytes;
 
-/// For what is rarely written: formats by way of a string. fmt::format_to would compile all of fmt anew.
+/// Formats by way of another buffer, and allocates nothing for what is short. In output.cpp alone, because it
+/// compiles all of fmt anew.
+void vappend_formatted(Buffer& out, fmt::string_view text, fmt::format_args arguments);
+/// For what is rarely written.
 template <class... Arguments>
 void append_formatted(Buffer& out, fmt::format_string<Arguments...> text, Arguments&&... arguments) {
-  out.append(fmt::format(text, std::forward<Arguments>(arguments)...));
+  vappend_formatted(out, text, fmt::make_format_args(arguments...));
 }
 
 /// What a frame is called within its topic; a topic's only frame has the topic's name.
