@@ -378,7 +378,7 @@ def _(context):
     with Adapter() as adapter:
         go_off(adapter)
         for verb in (['stop'], ['publish', 'gyro', '100ms', '--force'], ['drive', '5cm/s', '--for', '2s'],
-                     ['set', 'motors', 'x=0m/s'], ['send', '123#00']):
+                     ['set', 'motors', 'x=0m/s'], ['send', '123#00'], ['doctor']):
             with Process(context.amiroctl, '--bus', adapter.name, *verb) as process:
                 equal(process.wait(), 1, f'exit code of {verb[0]}: {process.stderr}')
                 matches(process.stderr, f"'{adapter.name}' is bus-off", 'nothing was sent')
