@@ -161,6 +161,13 @@ class Script {
   std::string out_;
 };
 
+transport::Failure not_drawn(const std::string& file, const transport::Failure& why) {
+  return {fmt::format("{}: {}", file, why.what),
+          why.what.find("no gnuplot") == std::string::npos
+              ? why.remedy
+              : "install it: sudo apt install gnuplot-nox; or write a .pgm"};
+}
+
 }  // namespace
 
 bool is_map_file(std::string_view name) {
@@ -202,12 +209,15 @@ std::optional<transport::Failure> write_map(const std::string& file, const Map& 
     return try_to_write(yaml.replace_extension(".yaml").string(), to_yaml(map, image));
   }
   const auto drawn = plot::draw(to_script(map, picture, plot::kind_of_file(file).value_or(plot::Kind::svg)));
-  if (!drawn)
-    return transport::Failure{fmt::format("{}: {}", file, drawn.error.what),
-                              drawn.error.what.find("no gnuplot") == std::string::npos
-                                  ? drawn.error.remedy
-                                  : "install it: sudo apt install gnuplot-nox; or write a .pgm"};
+  if (!drawn) return not_drawn(file, drawn.error);
   return try_to_write(file, *drawn);
+}
+
+std::optional<transport::Failure> cannot_draw(const std::string& file) {
+  if (!plot::kind_of_file(file)) return std::nullopt;
+  const auto tried = plot::draw(plot::terminal(plot::Kind::svg, 200, 200) + "plot x\n");
+  if (!tried) return not_drawn(file, tried.error);
+  return std::nullopt;
 }
 
 }  // namespace ocm::cli::fleet

@@ -43,4 +43,8 @@ struct MapPicture {
 [[nodiscard]] std::optional<transport::Failure> write_map(const std::string& file, const cognitive::Map& map,
                                                           const MapPicture& picture);
 
+/// Why no map could be drawn to that file, if none could: to ask before robots drive for it. Takes as long as
+/// gnuplot needs to start.
+[[nodiscard]] std::optional<transport::Failure> cannot_draw(const std::string& file);
+
 }  // namespace ocm::cli::fleet

@@ -23,6 +23,11 @@ void check_files(const std::vector<std::string>& files) {
   for (const std::string& file : files)
     if (!fleet::is_map_file(file))
       fail({fmt::format("map: {}: no kind of map", file), "end it in .svg, .png, .pdf or .pgm"}, exit_usage);
+  for (const std::string& file : files)
+    if (auto failure = fleet::cannot_draw(file)) {
+      failure->what = "map: " + failure->what;
+      fail(*failure);
+    }
 }
 
 /// All that can be written; what cannot is told, each.
