@@ -1,5 +1,6 @@
-/// The one loop that receives from a live bus (`record` alone waits for several at once, in cli/record). It sees signals, tells when the bus goes down and comes back,
-/// and knows when it is gone for good; what a verb does with a frame is the verb's.
+/// The one loop that receives from a live bus (`record` alone waits for several at once, in cli/record). It
+/// sees signals, tells when the bus goes down and comes back, and knows when it is gone for good; what a verb
+/// does with a frame is the verb's.
 #pragma once
 
 #include <chrono>

@@ -256,8 +256,10 @@ TEST_CASE("what no schema can see of sentences is told with its place and what w
       with("/sentences/1/fields/0/range", {360, -360}) ==
       Lines{
           "/sentences/1/fields/0/range: 360 is greater than -360; two whole numbers, [smallest, greatest]"});
-  CHECK(with("/sentences/7/fields/9/values", {{"width", 1}}) ==
-        Lines{R"(/sentences/7/fields/9/values/width: "width" is an integer of the sentence, too; another name)"});
+  CHECK(
+      with("/sentences/7/fields/9/values", {{"width", 1}}) ==
+      Lines{
+          R"(/sentences/7/fields/9/values/width: "width" is an integer of the sentence, too; another name)"});
   CHECK(with("/sentences/1/fields/0/values", {{"back", 361}}).size() == 1);  // out of its range
   CHECK(with("/sentences/7/integers", {11, 16}) ==
         Lines{"/sentences/7/integers: 10 fields are outside of it; a number below and one above, or leave it "

@@ -20,7 +20,7 @@ static_assert(offers_packed(new_robot));
 static_assert(!offers_packed(old_robot));
 static_assert(!offers_packed(Handshake{.formats = 1}));  // a number of some other meaning
 static_assert(!offers_packed(Handshake{.formats = Handshake::packed_offer, .given = 9}));  // not said
-static_assert(answer(old_robot, true) == "{S,CON}\n");                          // new server, old robot
+static_assert(answer(old_robot, true) == "{S,CON}\n");  // new server, old robot
 static_assert(answer(new_robot, true) == "{S,BIN}\n{S,CON}\n");
 static_assert(answer(new_robot, false) == "{S,CON}\n");  // old server
 static_assert(UpdateWriter{true}.offer() == Handshake::packed_offer && UpdateWriter{false}.offer() == 0);
