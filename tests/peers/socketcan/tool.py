@@ -186,7 +186,12 @@ def _(context):
         cansend('205#01840302')                  # magnetometer every 900 us: more than the guest can do
         time.sleep(0.5)
         cansend('205#00')
-        time.sleep(0.5)
+
+        def quiet():
+            before = len(log.frames())
+            time.sleep(0.3)
+            return len(log.frames()) == before
+        eventually(quiet, 'the magnetometer stops')  # a slow guest has a queue of its samples still
         cansend('009#01640000')                  # accelerometer, urgent, 100 ms: answers are urgent too
         time.sleep(0.45)
         cansend('209#02')                        # once, medium: one more, and the end
