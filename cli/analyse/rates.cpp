@@ -15,9 +15,6 @@
 namespace ocm::cli::analyse {
 namespace {
 
-/// The tool repeats a held set point so often (cli/command/timeline.hpp).
-constexpr base::Duration drive_period = std::chrono::milliseconds{100};
-
 /// Whoever sends requests and set points.
 constexpr std::string_view operator_node = "operator";
 
@@ -112,7 +109,7 @@ BusSet robot_bus(const protocol::Catalogue& catalogue, const std::vector<Rate>& 
     const bool sensor = topic.kind == protocol::Kind::sensor;
     base::Duration period{};
     if (sensor) period = topic.period.duration();
-    if (topic.role == protocol::Role::drive) period = drive_period;
+    if (topic.role == protocol::Role::drive) period = client::hold_period;
     protocol::Priority priority = topic.priority;
     bool off = false;
     for (const auto& [of, rate] : chosen) {

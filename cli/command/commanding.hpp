@@ -34,10 +34,6 @@ class Commanding {
   bool dry_run_ = false;
 };
 
-/// What it means when a stop, or the end of a drive, did not leave.
-inline constexpr const char* still_moving =
-    "THE ROBOT MAY STILL MOVE until its watchdog stops it: be ready to cut its power";
-
 /// Sends the command's frames once, or prints them. Leaves through cli::fail unless they left this machine.
 void carry_out(Session& session, std::string_view verb, const client::Command& command, bool dry_run);
 

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "cli/command/commanding.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/words/quantity.hpp"
 
@@ -56,12 +55,14 @@ void Timeline::abandon(std::string what, std::string remedy) {
 
 void Timeline::repeat(Clock::time_point now) {
   constexpr auto longest = client::longest_without_set_point;
-  if (now - held_->next >= longest)
-    abandon(
-        fmt::format("this program stood still for {}, and drives no further",
-                    words::to_text(std::chrono::duration_cast<std::chrono::milliseconds>(now - held_->next))),
-        "was it stopped, or did the machine sleep? Give the command again");
-  // Late ones are not made up for: a set point says what is wanted now.
+  const auto in_words = [now](Clock::time_point since) {
+    return words::to_text(std::chrono::duration_cast<std::chrono::milliseconds>(now - since));
+  };
+  const auto last_turn = held_->next - client::hold_period;
+  if (now - last_turn >= longest)
+    abandon(fmt::format("this program stood still for {}, and drives no further", in_words(last_turn)),
+            "was it stopped, or did the machine sleep? Give the command again");
+  // Late set points are dropped: each holds only at its own time.
   held_->next += client::hold_period;  // absolute: no drift
   if (held_->next <= now) held_->next = now + client::hold_period;
   const auto delivery = bus_->delivery();
@@ -69,17 +70,18 @@ void Timeline::repeat(Clock::time_point now) {
   if (!obstruction.what.empty() || (delivery.known && delivery.pending != 0)) {
     ++withheld_;
     if (now - held_->left < longest) return;  // an interface may come back
-    const auto since =
-        words::to_text(std::chrono::duration_cast<std::chrono::milliseconds>(now - held_->left));
-    const std::string what = fmt::format("no set point has left {} for {}", bus_->name(), since);
+    const std::string what =
+        fmt::format("no set point has left {} for {}", bus_->name(), in_words(held_->left));
     if (!obstruction.what.empty()) abandon(fmt::format("{}: {}", what, obstruction.what), obstruction.remedy);
-    abandon(what,
-            "nobody acknowledges frames: is a board powered and connected, and is the bit rate the same?");
+    abandon(what, not_acknowledged);
   }
-  held_->left = now;
   const auto taken = bus_->send(held_->hold.frame);
   if (taken.error == base::Error::closed) fail(bus_->failure());
-  if (!taken || !*taken) ++withheld_;
+  if (taken && *taken)
+    held_->left = now;
+  else if (++withheld_; now - held_->left >= longest)
+    abandon(fmt::format("the transmit queue of {} has been full for {}", bus_->name(), in_words(held_->left)),
+            not_acknowledged);
 }
 
 bool Timeline::wait(Clock::time_point until) {

@@ -1,9 +1,9 @@
 /// Doing things at their times while the bus stays awake: waits until an absolute time, takes what comes from
 /// the bus meanwhile, and repeats a held set point every 100 ms. Shared by drive and run.
 ///
-/// A robot never does what nobody asks now. No set point is given to a queue while the one before it has not
-/// left; when none has left for as long as the motors' watchdog waits, or when this program stood still for
-/// so long, the hold ends, and the set point of rest is the next that can leave.
+/// The robot only does what is commanded now. No set point is given to a queue while the one before it has
+/// not left; when none has left for as long as the motors' watchdog waits, or when this program stood still
+/// for so long, the hold ends, and the set point of rest is the next that can leave.
 #pragma once
 
 #include <chrono>
@@ -24,8 +24,8 @@ namespace ocm::cli {
 class Timeline {
  public:
   using Clock = Live::Clock;
-  /// `verb` is for messages. `on_receive` gets every frame that comes while waiting; empty: nobody looks at
-  /// them.
+  /// `verb` is for messages. `on_receive` gets every frame that comes while waiting; empty: they are
+  /// discarded.
   Timeline(transport::Bus& bus, std::string verb, std::function<void(const can::Received&)> on_receive);
 
   /// Sends a command's frames and takes over, or ends, its hold.
@@ -44,7 +44,7 @@ class Timeline {
     client::Hold hold;
     Clock::time_point next;
     Clock::time_point end;
-    Clock::time_point left;  ///< when the last set point was seen to have left
+    Clock::time_point left;  ///< when a set point was last sent, with none before it under way
   };
   /// Sends the held set point again, if the last one has left.
   void repeat(Clock::time_point now);
@@ -57,7 +57,7 @@ class Timeline {
   std::optional<Held> held_;
   Live live_;
   Outgoing outgoing_;
-  std::uint64_t withheld_ = 0;  ///< set points that were due while the one before had not left
+  std::uint64_t withheld_ = 0;  ///< set points that were due while none could leave
 };
 
 }  // namespace ocm::cli

@@ -33,7 +33,7 @@ void place_robots(CentralLine& line, const std::vector<unsigned>& robots, const 
     if (start != known.starts.end())
       line.server().fleet().set_origin(index, start->pose);
     else if (robots.size() > 1)
-      fail({fmt::format("map: nobody said where {} began, and {} robots draw one map", name, robots.size()),
+      fail({fmt::format("map: no start pose for {}, and {} robots draw one map", name, robots.size()),
             fmt::format("say where each was switched on: --start {}=0.5,0.5,90, or --world FILE", name)},
            exit_usage);
     if (!line.fleet().robot(index).handshake)

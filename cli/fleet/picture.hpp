@@ -31,7 +31,7 @@ struct MapPicture {
 /// Whether a map can be written to a file of that name: its ending says how.
 [[nodiscard]] bool is_map_file(std::string_view name);
 
-/// What gnuplot is told.
+/// The script for gnuplot.
 [[nodiscard]] std::string to_script(const cognitive::Map& map, const MapPicture& picture, plot::Kind kind);
 
 /// A portable grey map, the top first: occupied 0, free 254, unknown 205. [map_server]

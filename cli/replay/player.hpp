@@ -72,6 +72,11 @@ class Player {
   /// The whole log, or as far as --until, or until a signal comes (interrupted()).
   void play(log::Reader& log);
 
+  /// Waits until all that was sent has left, or leaves through cli::fail and says how much has not.
+  void expect_all_left() {
+    for (Outlet& outlet : outlets_) outlet.expect_all_left();
+  }
+
   [[nodiscard]] const Played& played() const noexcept { return played_; }
   [[nodiscard]] const log::Playback& playback() const noexcept { return playback_; }
   /// From the first frame to now.

@@ -38,7 +38,7 @@ AnyBus open_bus(const BusName& name) {
     case BusName::Kind::serial: {
       auto opened = transport::Slcan::open(name.address);
       if (opened && !(*opened)->answers())
-        remark("the adapter answers no command: what it drops, nobody knows");
+        remark("the adapter answers no command: dropped frames cannot be counted");
       return any(std::move(opened));
     }
     case BusName::Kind::interface:

@@ -20,9 +20,6 @@ using Clock = std::chrono::steady_clock;
 /// when a frame has left.
 constexpr base::Duration look_again = std::chrono::milliseconds{1};
 
-constexpr const char* nobody_acknowledges =
-    "nobody acknowledges frames: is a board powered and connected, and is the bit rate the same?";
-
 }  // namespace
 
 Outgoing::Outgoing(transport::Bus& bus, std::string verb, std::string otherwise)
@@ -47,16 +44,21 @@ void Outgoing::send(const can::Frame& frame, base::Duration patience) {
                 fmt::format("bring it up: sudo ip link set {} up", bus_.name()));
       give_up(fmt::format("the transmit queue of {} stays full: {} was not sent", bus_.name(),
                           can::to_text(frame).view()),
-              nobody_acknowledges);
+              not_acknowledged);
     }
     std::this_thread::sleep_for(look_again);
   }
 }
 
 bool Outgoing::all_left(base::Duration patience) {
-  const auto late = Clock::now() + patience;
+  auto late = Clock::now() + patience;
+  std::uint64_t pending = UINT64_MAX;
   for (;;) {
     const auto delivery = bus_.delivery();
+    if (delivery.pending < pending) {  // a slow bus takes its time, and is not stuck
+      pending = delivery.pending;
+      late = Clock::now() + patience;
+    }
     if (!delivery.known || delivery.pending == 0) return delivery.obstruction.what.empty();
     if (!delivery.obstruction.what.empty() || Clock::now() >= late) return false;
     std::this_thread::sleep_for(look_again);
@@ -71,7 +73,7 @@ void Outgoing::expect_all_left(base::Duration patience) {
   const std::string what = fmt::format("{} of {} frames did not leave {}", missing, sent, bus_.name());
   if (!delivery.obstruction.what.empty())
     give_up(fmt::format("{}: {}", what, delivery.obstruction.what), delivery.obstruction.remedy);
-  give_up(what, nobody_acknowledges);
+  give_up(what, not_acknowledged);
 }
 
 void Outgoing::give_up(std::string what, std::string remedy) const {

@@ -11,6 +11,13 @@
 
 namespace ocm::cli {
 
+/// What it means when a stop, or the end of a drive, did not leave.
+inline constexpr const char* still_moving =
+    "THE ROBOT MAY STILL MOVE until its watchdog stops it: be ready to cut its power";
+/// What to check when a bus takes frames and none leaves.
+inline constexpr const char* not_acknowledged =
+    "no node acknowledges the frames: is a board powered and connected, and is the bit rate the same?";
+
 class Outgoing {
  public:
   /// `verb` is for messages; `otherwise` says what it means for the robot that frames did not leave, if it
@@ -20,7 +27,8 @@ class Outgoing {
 
   /// Waits for room in the queue, at most `patience`; then leaves with the bus's words.
   void send(const can::Frame& frame, base::Duration patience = std::chrono::seconds{1});
-  /// Waits until all that was sent has left, at most `patience`; then leaves and says how much has not.
+  /// Waits until all that was sent has left; leaves and says how much has not, when none has left for
+  /// `patience`.
   void expect_all_left(base::Duration patience = std::chrono::milliseconds{500});
   /// The same as an answer. A bus that cannot tell says yes.
   [[nodiscard]] bool all_left(base::Duration patience);

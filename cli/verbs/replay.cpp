@@ -161,6 +161,7 @@ void play(Session& session, const ReplayOptions& options, int& exit_code) {
       if (last || interrupted() != 0 || player.played().sent == sent_before) break;
       log = std::make_unique<logs::OpenedLog>(options.file, options.from_format, catalogue);
     }
+    player.expect_all_left();
   } catch (const Exit&) {  // the bus took no more: what was sent is told all the same
     if (!options.dry_run) summarise(player, false);
     throw;

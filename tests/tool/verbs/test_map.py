@@ -158,7 +158,7 @@ class Map(Case):
     def test_two_robots_need_their_starts(self):
         self.central.robots.append(Robot("Arduino", pose=(0.8, 0.5, 0.0)))
         _, err = self.map(self.path("a.pgm"), code=2)
-        self.assertIn("nobody said where AVR began", err)
+        self.assertIn("no start pose for AVR", err)
         self.assertIn("--start AVR=", err)
         self.map(self.path("a.pgm"), "--start", "AVR=0.4,0.5,0", "--start", "Arduino=0.8,0.5,0", duration="1s")
         self.map(self.path("b.pgm"), "--robots", "AVR", duration="500ms")
