@@ -1,7 +1,7 @@
 # ocm_rooms(TARGET ROOM... [ALONE FILE...] [EXCEPT FILE...]): adds to TARGET the sources of each folder, compiled as one
 # file a folder. Those behind ALONE are compiled one by one, those behind EXCEPT are not of the target. OCM_UNITY=OFF
 # compiles each file by itself.
-option(OCM_UNITY "Compile each room of the tools at once" ON)
+option(OCM_UNITY "Compile each room of the tools at once, and several tests of a floor" ON)
 
 function(ocm_rooms target)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "ALONE;EXCEPT")

@@ -21,18 +21,15 @@
 #include "ocm/can/text.hpp"
 #include "ocm/transport/socketcan.hpp"
 
+#include "unit/can/frame_of.hpp"
+
 using namespace ocm;
 using namespace std::chrono_literals;
+using test::frame;
 using transport::BusState;
 using transport::SocketCan;
 
 namespace {
-
-can::Frame frame(std::string_view text) {
-  const auto parsed = can::parse_frame(text);
-  REQUIRE(parsed);
-  return *parsed;
-}
 
 std::string text(const can::Frame& f) {
   return std::string(can::to_text(f).view());

@@ -16,12 +16,12 @@
 #include "ocm/controller/controller.hpp"
 #include "ocm/topics/amiro.hpp"
 
+namespace analysis_admission_test {
+
 using namespace ocm;
 using namespace ocm::analysis;
 using namespace std::chrono_literals;
 using scheduling::Level;
-
-namespace {
 
 /// A processor that everybody notices.
 struct Slow {
@@ -62,8 +62,6 @@ struct Wire {
   }
   std::vector<can::Frame> frames;
 };
-
-}  // namespace
 
 TEST_CASE("A refused request changes nothing, and an ended stream makes room") {
   Admission<amiro::DiWheelDrive> admission;
@@ -221,3 +219,5 @@ TEST_CASE("A controller answers with the reason, and what runs goes on") {
   CHECK(controller.counters().requests == 2);
   CHECK(wire.frames.size() == 8);
 }
+
+}  // namespace analysis_admission_test

@@ -9,9 +9,9 @@
 
 #include "unit/base/random.hpp"
 
-using namespace ocm::analysis;
+namespace analysis_assignment_test {
 
-namespace {
+using namespace ocm::analysis;
 
 // D > T: the monotonic order, of rates and of deadlines, misses; the other one does not. [Lehoczky 1990]
 constexpr std::array beyond{Task{52, 100, 110}, Task{52, 140, 154}};
@@ -73,8 +73,6 @@ static_assert([] {
   return optimal_levels(tasks, sections, Protocol::ceiling, {}).reason == Reason::bad_input;
 }());
 
-}  // namespace
-
 TEST_CASE("it finds an order if and only if there is one") {
   ocm::test::Random random{5};
   int found = 0;
@@ -106,3 +104,5 @@ TEST_CASE("it finds an order if and only if there is one") {
   CHECK(found > 300);
   CHECK(monotonic_misses > 30);  // the test would notice an assignment that is deadline monotonic
 }
+
+}  // namespace analysis_assignment_test

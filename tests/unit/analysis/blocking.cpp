@@ -8,9 +8,9 @@
 
 #include "ocm/analysis/cpu.hpp"
 
-using namespace ocm::analysis;
+namespace analysis_blocking_test {
 
-namespace {
+using namespace ocm::analysis;
 
 constexpr auto four = in_order(std::array{Task{50, 1000}, Task{50, 2000}, Task{50, 3000}, Task{50, 4000}});
 
@@ -94,8 +94,6 @@ static_assert([] {
   return set_blocking(tasks, two, inherit, {}) == Table::no_room && tasks == four;
 }());
 
-}  // namespace
-
 TEST_CASE("no sections, no blocking") {
   auto tasks = four;
   tasks[1].blocking = 5;
@@ -110,3 +108,5 @@ TEST_CASE("every mistake in a table has words of its own") {
     CHECK(words.insert(describe(static_cast<Table>(i))).second);
   CHECK(words.count("unknown") == 0);
 }
+
+}  // namespace analysis_blocking_test

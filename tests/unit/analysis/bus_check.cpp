@@ -11,11 +11,11 @@
 #include "ocm/can/length.hpp"
 #include "ocm/topics/amiro.hpp"
 
+namespace analysis_bus_check_test {
+
 using namespace ocm::analysis;
 using ocm::can::Format;
 using ocm::can::worst_frame_bits;
-
-namespace {
 
 constexpr std::int64_t ms = 1'000'000;
 constexpr std::int64_t us = 1'000;
@@ -59,8 +59,6 @@ constexpr bool generic_lengths = [] {
          !check.decide(1'469 * us).admitted;
 }();
 static_assert(generic_lengths);
-
-}  // namespace
 
 TEST_CASE("The shortest period that passes does, and the one before it does not") {
   for (const bool exact : {false, true}) {
@@ -170,3 +168,5 @@ TEST_CASE("What is admitted meets its deadlines by the exact analysis, and nothi
   CHECK(admitted > 200);
   CHECK(admitted < 1'800);
 }
+
+}  // namespace analysis_bus_check_test

@@ -7,13 +7,13 @@
 
 #include <catch2/catch.hpp>
 
+namespace analysis_can_assignment_test {
+
 using namespace ocm;
 using namespace ocm::analysis;
 using protocol::Direction;
 using protocol::Priority;
 using protocol::TopicId;
-
-namespace {
 
 // Deadline monotonic order misses; the last two change places. [Davis et al. 2007, table 4]
 constexpr std::array<Message, 3> opa{{
@@ -49,8 +49,6 @@ Message random_message(std::mt19937& random, std::int64_t scale) {
   if (random() % 3 == 0) m.jitter = static_cast<std::int64_t>(random()) % 100;
   return m;
 }
-
-}  // namespace
 
 TEST_CASE("Audsley's order works exactly where one of all orders does") {
   std::mt19937 random{1991};
@@ -147,3 +145,5 @@ TEST_CASE("no order for what cannot be analysed") {
   CHECK(assign_in_layout<2>(bad_topic, {}, analysis) == 0);
   CHECK(assign_in_layout<2>({}, {}, analysis) == nobody);
 }
+
+}  // namespace analysis_can_assignment_test

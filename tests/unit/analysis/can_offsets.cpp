@@ -11,10 +11,10 @@
 #include "ocm/analysis/can_response.hpp"
 #include "ocm/simulation/arbiter.hpp"
 
+namespace analysis_can_offsets_test {
+
 using namespace ocm;
 using namespace ocm::analysis;
-
-namespace {
 
 template <std::size_t N>
 constexpr std::array<std::int64_t, N> responses(const std::array<Message, N>& set,
@@ -49,8 +49,6 @@ struct Release {
   std::int64_t planned = 0;
   std::size_t message = 0;
 };
-
-}  // namespace
 
 TEST_CASE("with a node of its own for each message it is the exact analysis; with offsets never more") {
   std::mt19937 random{1994};
@@ -164,3 +162,5 @@ TEST_CASE("offsets: what cannot be bounded has a reason") {
   CHECK(analysis.analyse(set, {})[3].response == 80);
   CHECK(analysis.analyse(spread, {}, {.terms = 3})[3].reason == Reason::too_long);
 }
+
+}  // namespace analysis_can_offsets_test

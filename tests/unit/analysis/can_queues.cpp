@@ -16,11 +16,11 @@
 
 #include "unit/base/explore.hpp"
 
+namespace analysis_can_queues_test {
+
 using namespace ocm;
 using namespace ocm::analysis;
 using Kind = NodeQueue::Kind;
-
-namespace {
 
 constexpr NodeQueue by_priority{};
 constexpr NodeQueue fifo{.kind = Kind::fifo};
@@ -179,8 +179,6 @@ std::vector<Release> random_releases(std::mt19937& random, const std::vector<Mes
   return releases;
 }
 
-}  // namespace
-
 TEST_CASE("where every queue is by priority, it is the exact analysis") {
   std::mt19937 random{2011};
   CanQueues<8> queues;
@@ -272,3 +270,5 @@ TEST_CASE("queues: what cannot be bounded has a reason") {
   CanQueues<2> small;
   CHECK(small.analyse(example, nodes, {})[0].reason == Reason::bad_input);
 }
+
+}  // namespace analysis_can_queues_test

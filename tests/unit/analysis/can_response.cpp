@@ -8,9 +8,9 @@
 
 #include <catch2/catch.hpp>
 
-using namespace ocm::analysis;
+namespace analysis_can_response_test {
 
-namespace {
+using namespace ocm::analysis;
 
 // [Davis, Burns, Bril, Lukkien 2007, table 1] 125 kbit/s, 7 bytes each; in microseconds, one bit is 8.
 constexpr std::array<Message, 3> davis{{
@@ -118,8 +118,6 @@ std::vector<std::int64_t> by_the_paper(const std::vector<Message>& set, std::siz
   }
   return responses;
 }
-
-}  // namespace
 
 TEST_CASE("the sweep over levels says what the formulas say of each message and instance alone") {
   std::mt19937 random{2007};
@@ -325,3 +323,5 @@ TEST_CASE("the sufficient test with errors is its equation, level by level") {
   }
   CHECK(compared > 10'000);
 }
+
+}  // namespace analysis_can_response_test

@@ -15,14 +15,14 @@
 #include "unit/analysis/random_bus.hpp"
 #include "unit/base/explore.hpp"
 
+namespace analysis_can_response_errors_test {
+
 using namespace ocm;
 using namespace ocm::analysis;
 using simulation::Disturbance;
 using test::Formulas;
-using test::Random;
 using test::RandomSet;
-
-namespace {
+using test::Twister;
 
 /// A node stays error active through 15 faults of its own; what error passive ones do is not in the model.
 constexpr std::size_t most_faults = 15;
@@ -58,7 +58,7 @@ class Faults {
 };
 
 /// Every third set has a burst only; otherwise faults take up to 80 % of what the messages leave.
-ErrorModel random_model(const RandomSet& set, Random& random) {
+ErrorModel random_model(const RandomSet& set, Twister& random) {
   ErrorModel model;
   model.burst = 1 + static_cast<std::int64_t>(random() % 4);
   if (random() % 3 == 0) return model;
@@ -102,7 +102,7 @@ Played worst_run(const RandomSet& set, std::size_t m, const ErrorModel& model, s
 }
 
 /// Bursts and single faults, anywhere in the run or just before it.
-std::vector<Disturbance> random_faults(const ErrorModel& model, Random& random, std::int64_t horizon) {
+std::vector<Disturbance> random_faults(const ErrorModel& model, Twister& random, std::int64_t horizon) {
   Faults faults{model};
   const std::int64_t spread = 1 + horizon / 8;
   std::int64_t bit = test::critical_start - 300;
@@ -114,10 +114,8 @@ std::vector<Disturbance> random_faults(const ErrorModel& model, Random& random, 
   return faults.disturbances();
 }
 
-}  // namespace
-
 TEST_CASE("CAN: simulated with faults never exceeds predicted with E(t); mutants of E(t) are caught") {
-  Random random{31};
+  Twister random{31};
   CanResponse<8> analysis;
   std::int64_t messages = 0, faults = 0, within_a_frame = 0, reached = 0, reached_at_20 = 0;
   struct Mutant {
@@ -185,3 +183,5 @@ TEST_CASE("CAN: simulated with faults never exceeds predicted with E(t); mutants
     CHECK(mutant.caught > 0);
   }
 }
+
+}  // namespace analysis_can_response_errors_test

@@ -16,14 +16,16 @@
 #include "unit/analysis/random_bus.hpp"
 #include "unit/base/explore.hpp"
 
+namespace analysis_can_response_properties_test {
+
 using namespace ocm;
 using namespace ocm::analysis;
-using test::Random;
 using test::RandomSet;
+using test::Twister;
 
 TEST_CASE(
     "CAN: simulated never exceeds predicted; at the critical instant it is reached; mutants are caught") {
-  Random random{2007};
+  Twister random{2007};
   CanResponse<8> analysis;
   int messages = 0;
   int reached = 0;
@@ -72,3 +74,5 @@ TEST_CASE(
   CHECK(reached > messages * 95 / 100);
   for (const int times : caught) CHECK(times > 0);
 }
+
+}  // namespace analysis_can_response_properties_test

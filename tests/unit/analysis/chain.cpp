@@ -9,10 +9,10 @@
 
 #include "ocm/analysis/can_response.hpp"
 
+namespace analysis_chain_test {
+
 using namespace ocm::analysis;
 using enum Activation;
-
-namespace {
 
 constexpr Explained in(std::int64_t response) {
   return {.response = response, .deadline = unbounded, .reason = Reason::schedulable};
@@ -79,8 +79,6 @@ std::int64_t longest_played(const std::vector<Hop>& chain, const std::vector<std
   // What happened just after the sensor looked is seen at its next release.
   return age ? longest + chain[0].period - 1 : longest;
 }
-
-}  // namespace
 
 TEST_CASE("no chain that is played takes longer than was said, and the bound is nearly reached") {
   std::mt19937 random{1994};
@@ -164,3 +162,5 @@ TEST_CASE("chains: what cannot be bounded has a reason and a hop") {
   std::array<Hop, 1> timeless{{{.activation = sampled}}};
   CHECK(bound_chain(timeless, 100, circle).hop == 0);
 }
+
+}  // namespace analysis_chain_test

@@ -6,9 +6,9 @@
 
 #include "unit/base/random.hpp"
 
-using namespace ocm::analysis;
+namespace analysis_checked_test {
 
-namespace {
+using namespace ocm::analysis;
 
 constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
 constexpr std::int64_t least = std::numeric_limits<std::int64_t>::min();
@@ -38,8 +38,6 @@ static_assert(!(spoilt - 1).ok() && !(spoilt * 0).ok() && !ceil_div(spoilt, 1).o
 static_assert(!(spoilt == spoilt) && !(spoilt < 0) && !(spoilt > 0) && !(spoilt <= spoilt));
 static_assert(spoilt.value_or(-5) == -5 && Checked{3}.value_or(-5) == 3);
 
-}  // namespace
-
 #ifdef __SIZEOF_INT128__  // not on a Cortex-M
 TEST_CASE("checked numbers agree with 128 bits, or say that they cannot") {
   ocm::test::Random random{1};
@@ -62,3 +60,5 @@ TEST_CASE("checked numbers agree with 128 bits, or say that they cannot") {
   CHECK(right);
 }
 #endif
+
+}  // namespace analysis_checked_test

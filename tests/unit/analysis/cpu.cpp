@@ -9,9 +9,9 @@
 
 #include "unit/base/random.hpp"
 
-using namespace ocm::analysis;
+namespace analysis_cpu_test {
 
-namespace {
+using namespace ocm::analysis;
 
 constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
 
@@ -151,8 +151,6 @@ static_assert(response_times(in_order(std::array{Task{most, most}}), {.context_s
 static_assert(response_times(in_order(std::array{Task{most / 2, most}}), {.scale = most})[0].reason !=
               Reason::schedulable);
 
-}  // namespace
-
 TEST_CASE("an analysis that does not converge ends with a reason") {
   // U is below 1 by 10^-12, and the busy period of some 10^12 instances.
   const auto tasks =
@@ -230,3 +228,5 @@ TEST_CASE("two thousand tasks") {
   for (Task& task : tasks) task.cost = 3;
   CHECK(response_time(tasks, 2047).reason == Reason::overloaded);
 }
+
+}  // namespace analysis_cpu_test

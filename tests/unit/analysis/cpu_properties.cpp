@@ -18,6 +18,8 @@
 #include "unit/analysis/naive_cpu.hpp"
 #include "unit/base/random.hpp"
 
+namespace analysis_cpu_properties_test {
+
 using namespace ocm;
 using namespace ocm::analysis;
 using test::NaiveCpu;
@@ -25,8 +27,6 @@ using test::Random;
 using test::Releases;
 using test::Step;
 using test::Steps;
-
-namespace {
 
 #if defined(__OPTIMIZE__) && !defined(__arm__)
 constexpr int effort = 100;
@@ -202,8 +202,6 @@ Seen hold(Analysis analysis, Kind kind, Protocol protocol, int sets, std::uint64
   return seen;
 }
 
-}  // namespace
-
 TEST_CASE("independent tasks: never longer than predicted, and at the critical instant as long") {
   const Seen seen = hold(complete, {}, Protocol::inheritance, 300 * effort, 11);
   CHECK(seen.tasks > 900 * effort);
@@ -241,8 +239,6 @@ TEST_CASE("resources with ceilings: never longer than predicted") {
 }
 
 // --- the boards' processor: four levels, tasks that share one, and what switches and interrupts cost ---
-
-namespace {
 
 /// The longest response of each task, in nanoseconds, on the processor of the simulator. Each job does a
 /// nanosecond less than it may: whoever ends at the very moment of a release is held to have been late for
@@ -364,8 +360,6 @@ Seen hold_on_board(Analysis analysis, Processor processor, Protocol protocol, in
   return seen;
 }
 
-}  // namespace
-
 TEST_CASE("on a board: levels that are shared, switches, interrupts, resources") {
   const Processor processor{.context_switch = 12, .interrupt = 7};
   for (const Protocol protocol : {Protocol::inheritance, Protocol::ceiling}) {
@@ -418,3 +412,5 @@ TEST_CASE("a bound that is two ticks too low is noticed") {
         0);
   CHECK(hold(without, {.jitter = true, .resources = true}, Protocol::ceiling, 100 * effort, 14).beyond > 0);
 }
+
+}  // namespace analysis_cpu_properties_test

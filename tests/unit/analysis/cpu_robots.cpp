@@ -9,9 +9,9 @@
 #include "ocm/analysis/cpu.hpp"
 #include "ocm/analysis/utilisation.hpp"
 
-using namespace ocm::analysis;
+namespace analysis_cpu_robots_test {
 
-namespace {
+using namespace ocm::analysis;
 
 // Nanoseconds; encoders left and right, UART, estimator, movement, communication, pose, tower.
 constexpr auto avr = in_order(std::array<Task, 8>{{{1'700, 15'000'000},
@@ -92,8 +92,6 @@ constexpr auto slow_movement = [](std::array<Task, 8> tasks) {
 static_assert((slow_movement(avr) + 50) / 100 == 1'044 && (slow_movement(arduino) + 50) / 100 == 948);
 static_assert(liu_layland_bound(8) / 100 == 7'240);  // .72406, which is the thesis's .7241
 
-}  // namespace
-
 TEST_CASE("who delays the tower most") {
   std::array<std::int64_t, 8> shares{};
   const Explained tower = response_time(avr, 7, {}, {}, {}, shares);
@@ -103,3 +101,5 @@ TEST_CASE("who delays the tower most") {
   CHECK(shares == std::array<std::int64_t, 8>{1'700, 1'640, 2'960, 1'700'000, 43'000, 140'000, 255'000, 0});
   CHECK(tower.slack() == 190'555'700);
 }
+
+}  // namespace analysis_cpu_robots_test

@@ -6,10 +6,10 @@
 
 #include "ocm/topics/amiro.hpp"
 
+namespace analysis_message_set_test {
+
 using namespace ocm;
 using namespace ocm::analysis;
-
-namespace {
 
 static_assert(Message{.period = 7}.due() == 7);
 static_assert(Message{.period = 7, .deadline = 9}.due() == 9);
@@ -48,8 +48,6 @@ static_assert(pose.cost == amiro::Odometry::frames[1].worst_bits[0] * 2'000);
 static_assert(pose.period == 20'000'000 && pose.due() == 20'000'000 && pose.jitter == 5'000);
 static_assert(pose.key == can::arbitration_key({.id = 0x403}));
 
-}  // namespace
-
 TEST_CASE("a set is ordered as the bus arbitrates, and equal identifiers are noticed") {
   std::array<Message, 4> set{
       {{.cost = 1, .key = 5}, {.cost = 2, .key = 3}, {.cost = 3, .key = 5}, {.cost = 4, .key = 1}}};
@@ -63,3 +61,5 @@ TEST_CASE("a set is ordered as the bus arbitrates, and equal identifiers are not
   CHECK(first_clash(set) == nobody);
   CHECK(first_clash({}) == nobody);
 }
+
+}  // namespace analysis_message_set_test

@@ -1,4 +1,4 @@
-/// Random sets of messages, the simulated bus that plays them, and the formulas of the paper as they stand
+/// Twister sets of messages, the simulated bus that plays them, and the formulas of the paper as they stand
 /// there: what the property tests of the analysis of messages have in common. Tests only.
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace ocm::test {
 
-using Random = std::mt19937;
+using Twister = std::mt19937;
 
 inline const can::WorstBits& worst_bits() {
   static const auto table = std::make_unique<const can::WorstBits>();
@@ -30,7 +30,7 @@ struct RandomSet {
 };
 
 /// U between 0.3 and 0.99; D from half of T to twice as much; every second set with jitter.
-inline RandomSet random_set(Random& random) {
+inline RandomSet random_set(Twister& random) {
   RandomSet set;
   const std::size_t count = 1 + random() % 8;
   const double load = std::uniform_real_distribution{0.3, 0.99}(random);
@@ -84,7 +84,7 @@ inline std::vector<Release> critical_releases(const RandomSet& set, std::size_t 
 }
 
 /// Phases and jitters at random.
-inline std::vector<Release> random_releases(const RandomSet& set, Random& random, std::int64_t horizon) {
+inline std::vector<Release> random_releases(const RandomSet& set, Twister& random, std::int64_t horizon) {
   std::vector<Release> releases;
   for (std::size_t k = 0; k < set.messages.size(); ++k) {
     const analysis::Message& message = set.messages[k];
@@ -103,7 +103,7 @@ inline std::vector<Release> random_releases(const RandomSet& set, Random& random
 
 /// Plays releases, each message in a node of its own: what a run may have besides them.
 struct Play {
-  Random* contents = nullptr;  ///< the longest frames, or any
+  Twister* contents = nullptr;  ///< the longest frames, or any
   std::vector<simulation::Disturbance> disturbances{};
   std::function<void(const simulation::Delivery&)> watch{};  ///< sees every frame that is complete
 };
@@ -133,7 +133,7 @@ inline std::vector<std::int64_t> play(const RandomSet& set, std::vector<Release>
   for (const Release& release : releases) {
     bus.advance(time(release.at), deliver);
     can::Frame frame = set.frames[release.message];
-    Random* const contents = options.contents;
+    Twister* const contents = options.contents;
     for (std::size_t i = 0; contents != nullptr && i < frame.dlc; ++i)
       if ((*contents)() % 8 == 0) frame.data[i] = static_cast<std::uint8_t>((*contents)());
     planned[release.message].push_back(release.planned);

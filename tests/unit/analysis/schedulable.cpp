@@ -7,10 +7,10 @@
 
 #include "ocm/topics/amiro.hpp"
 
+namespace analysis_schedulable_test {
+
 using namespace ocm;
 using namespace ocm::analysis;
-
-namespace {
 
 template <std::int64_t cost, std::int64_t deadline, std::uint32_t identifier>
 struct Sent {
@@ -84,10 +84,10 @@ static_assert([] {
 }());
 static_assert(DiWheelDrive::results[0].blocking == 264'000 && DiWheelDrive::results[0].blocked_by == 3);
 
-}  // namespace
-
 TEST_CASE("what is said of a set of types is what the analysis says of its messages") {
   const auto one = can_response_times(std::array{Led::message, Pose::message}, {.bit = 2'000});
   CHECK(Traffic<2'000, Pose, Led>::results[0] == one[1]);
   CHECK(Traffic<2'000, Pose, Led>::results[1] == one[0]);
 }
+
+}  // namespace analysis_schedulable_test

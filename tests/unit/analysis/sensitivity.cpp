@@ -7,9 +7,9 @@
 
 #include "unit/base/random.hpp"
 
-using namespace ocm::analysis;
+namespace analysis_sensitivity_test {
 
-namespace {
+using namespace ocm::analysis;
 
 // [Burns, Wellings 2006, process sets A and B]
 constexpr auto set_b = rate_monotonic(std::array{Task{32, 80}, Task{5, 40}, Task{4, 16}});
@@ -38,8 +38,6 @@ static_assert(critical_scale(set_c) == Edge{true, 1'000'000, 0});
 static_assert(critical_scale(in_order(std::array{Task{10, 40}, Task{20, 80}})).value == 2'000'000);
 static_assert(critical_scale(in_order(std::array{Task{10, 40, 40, 40}})) == Edge{false, 0, 0});
 static_assert(critical_scale(in_order(std::array{Task{1, longest_looked_for * 4}})).missing == nobody);
-
-}  // namespace
 
 TEST_CASE("one tick beyond an edge somebody misses") {
   ocm::test::Random random{6};
@@ -81,3 +79,5 @@ TEST_CASE("one tick beyond an edge somebody misses") {
   }
   CHECK(edges > 1000);
 }
+
+}  // namespace analysis_sensitivity_test

@@ -8,9 +8,9 @@
 
 #include "ocm/topics/amiro.hpp"
 
-using namespace ocm::analysis;
+namespace analysis_task_list_test {
 
-namespace {
+using namespace ocm::analysis;
 
 struct Quick {
   static constexpr std::string_view name = "quick";
@@ -44,9 +44,9 @@ static_assert(Costs::own[0].level == ocm::scheduling::Level::urgent);
 static_assert(Costs::sample_us<amiro::Gyroscope> == 9);
 static_assert(Costs::blocking_us == 2 && Costs::bus_percent == 40);
 
-}  // namespace
-
 TEST_CASE("A list finds its tasks by name") {
   CHECK(Facts::Tasks::cost_us("quick") == 2);
   CHECK(Facts::Tasks::cost_us("slow") == 0);
 }
+
+}  // namespace analysis_task_list_test

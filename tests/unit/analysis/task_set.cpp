@@ -4,9 +4,9 @@
 
 #include <catch2/catch.hpp>
 
-using namespace ocm::analysis;
+namespace analysis_task_set_test {
 
-namespace {
+using namespace ocm::analysis;
 
 constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
 
@@ -33,8 +33,8 @@ static_assert(levels(in_order(mixed)) == std::array{0U, 1U, 2U, 3U});
 static_assert(levels(rate_monotonic(mixed)) == std::array{2U, 0U, 3U, 1U});      // of equal ones, the first
 static_assert(levels(deadline_monotonic(mixed)) == std::array{0U, 1U, 2U, 3U});  // 9, 20, 30, 40
 
-}  // namespace
-
 TEST_CASE("tasks without levels are peers") {
   CHECK(mixed[0].level == mixed[3].level);
 }
+
+}  // namespace analysis_task_set_test

@@ -5,9 +5,9 @@
 
 #include <catch2/catch.hpp>
 
-using namespace ocm::analysis;
+namespace analysis_task_sets_test {
 
-namespace {
+using namespace ocm::analysis;
 
 template <class Facts>
 constexpr auto responses() {
@@ -30,9 +30,9 @@ static_assert(schedulable<task_sets::di_wheel_drive::Facts::Tasks>);
 static_assert(schedulable<task_sets::power_management::Facts::Tasks>);
 static_assert(schedulable<task_sets::light_ring::Facts::Tasks>);
 
-}  // namespace
-
 TEST_CASE("The robots' utilisation is that of their tables") {
   CHECK(utilisation(task_sets::thesis_avr::Facts::Tasks::tasks).parts_per_million() / 100 == 1'054);
   CHECK(utilisation(task_sets::thesis_arduino::Facts::Tasks::tasks).parts_per_million() / 100 == 958);
 }
+
+}  // namespace analysis_task_sets_test

@@ -11,9 +11,9 @@
 
 #include "unit/base/random.hpp"
 
-using namespace ocm::analysis;
+namespace analysis_utilisation_test {
 
-namespace {
+using namespace ocm::analysis;
 
 constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
 
@@ -82,8 +82,6 @@ static_assert(hyperbolic(std::array{Task{1, 7}, Task{1, 9}}) == Proof::not_rate_
 static_assert(hyperbolic(std::array{Task{1, 7, 6}}) == Proof::not_simple);
 static_assert(hyperbolic(std::array{Task{1, 7, 7, 1}}) == Proof::not_simple);
 static_assert(hyperbolic(std::array{Task{1, 7, 7, 0, 1}}) == Proof::not_simple);
-
-}  // namespace
 
 #ifdef __SIZEOF_INT128__  // not on a Cortex-M
 TEST_CASE("the two numbers around a utilisation have the fraction between them") {
@@ -162,3 +160,5 @@ TEST_CASE("every proof has words of its own") {
     CHECK(words.insert(describe(static_cast<Proof>(i))).second);
   CHECK(words.count("unknown") == 0);
 }
+
+}  // namespace analysis_utilisation_test

@@ -5,16 +5,14 @@
 
 #include <catch2/catch.hpp>
 
-using namespace ocm::analysis;
+namespace analysis_verdict_test {
 
-namespace {
+using namespace ocm::analysis;
 
 static_assert(!Explained{}.ok() && !Explained{}.bounded() && Explained{}.reason == Reason::bad_input);
 static_assert(Explained{.response = 7, .deadline = 10, .reason = Reason::schedulable}.slack() == 3);
 static_assert(Explained{.response = 17, .deadline = 10, .reason = Reason::misses_deadline}.slack() == -7);
 static_assert(!Explained{.response = 17, .deadline = 10, .reason = Reason::misses_deadline}.ok());
-
-}  // namespace
 
 TEST_CASE("every reason has words of its own") {
   std::set<std::string_view> words;
@@ -26,3 +24,5 @@ TEST_CASE("every reason has words of its own") {
   }
   CHECK(describe(static_cast<Reason>(200)) == "unknown reason");
 }
+
+}  // namespace analysis_verdict_test

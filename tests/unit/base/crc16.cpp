@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace {
+namespace base_crc16_test {
 
 using ocm::base::crc16;
 
@@ -37,4 +37,4 @@ TEST_CASE("CRC-16: appended, it leaves nothing; every error of one or two bits i
   }
 }
 
-}  // namespace
+}  // namespace base_crc16_test

@@ -10,7 +10,7 @@
 
 #include "unit/base/random.hpp"
 
-namespace {
+namespace base_decimal_test {
 
 using ocm::base::add;
 using ocm::base::compare;
@@ -284,4 +284,4 @@ TEST_CASE("a double is the nearest one as long as 53 bits hold the digits") {
   CHECK(Decimal{1, 100}.as_double() == Approx(1e100));
 }
 
-}  // namespace
+}  // namespace base_decimal_test

@@ -8,7 +8,7 @@
 
 #include "unit/base/random.hpp"
 
-namespace {
+namespace base_fixed_vector_test {
 
 using ocm::base::Error;
 using ocm::base::FixedVector;
@@ -90,4 +90,4 @@ TEST_CASE("it behaves as std::vector does, up to its capacity") {
   }
 }
 
-}  // namespace
+}  // namespace base_fixed_vector_test

@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace {
+namespace base_inline_function_test {
 
 using ocm::base::InlineFunction;
 
@@ -73,4 +73,4 @@ TEST_CASE("what cannot be called in that way is not taken") {
   STATIC_REQUIRE_FALSE(std::is_constructible_v<InlineFunction<int(int)>, int>);
 }
 
-}  // namespace
+}  // namespace base_inline_function_test

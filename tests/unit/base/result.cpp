@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace {
+namespace base_result_test {
 
 using ocm::base::Error;
 using ocm::base::Result;
@@ -81,4 +81,4 @@ TEST_CASE("a result costs its value and the error") {
   STATIC_REQUIRE(sizeof(Result<std::uint32_t>) == 8);
 }
 
-}  // namespace
+}  // namespace base_result_test

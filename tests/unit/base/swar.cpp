@@ -8,14 +8,14 @@
 
 #include "unit/base/random.hpp"
 
+namespace base_swar_test {
+
 using namespace ocm;
 namespace swar = ocm::base::swar;
 
-namespace {
 std::uint64_t word_of(const char (&text)[9]) {
   return swar::load64(text);
 }
-}  // namespace
 
 TEST_CASE("eight decimal digits are a number") {
   CHECK(swar::decimal(word_of("12345678")) == 12'345'678);
@@ -73,3 +73,5 @@ TEST_CASE("numbers are written with the digits that were asked for") {
   CHECK(swar::copy(text, "xyz") == text + 3);
   CHECK(std::string{text, 3} == "xyz");
 }
+
+}  // namespace base_swar_test

@@ -7,7 +7,7 @@
 
 #include "unit/base/random.hpp"
 
-namespace {
+namespace base_text_test {
 
 using ocm::base::Error;
 using ocm::base::parse_unsigned;
@@ -98,4 +98,4 @@ TEST_CASE("reading agrees with the standard library on random numbers of every s
   }
 }
 
-}  // namespace
+}  // namespace base_text_test

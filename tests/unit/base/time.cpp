@@ -4,7 +4,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace {
+namespace base_time_test {
 
 using namespace std::chrono_literals;
 using ocm::base::Duration;
@@ -35,4 +35,4 @@ TEST_CASE("the caller's clock cannot be read, nor mixed with a host's") {
   STATIC_REQUIRE_FALSE(std::is_convertible_v<std::int64_t, Duration>);
 }
 
-}  // namespace
+}  // namespace base_time_test

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace {
+namespace base_utf8_test {
 
 using ocm::base::columns;
 
@@ -19,4 +19,4 @@ TEST_CASE("What is no UTF-8 is counted, too") {
   CHECK(columns("a\xC2") == 2);
 }
 
-}  // namespace
+}  // namespace base_utf8_test

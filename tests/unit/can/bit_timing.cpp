@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace {
+namespace can_bit_timing_test {
 
 using ocm::base::Error;
 using ocm::can::BitTiming;
@@ -119,4 +119,4 @@ TEST_CASE("fields that the register does not have are not valid") {
   STATIC_REQUIRE(BitTiming{0, 15, 2, 2}.valid());
 }
 
-}  // namespace
+}  // namespace can_bit_timing_test

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace {
+namespace can_bus_test {
 
 using ocm::base::Duration;
 using ocm::base::Result;
@@ -51,4 +51,4 @@ TEST_CASE("receptions are equal when frame and time are") {
   CHECK_FALSE(Received{Time{}, frame} == Received{Time{}, Frame{}});
 }
 
-}  // namespace
+}  // namespace can_bus_test

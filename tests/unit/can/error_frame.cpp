@@ -7,9 +7,10 @@
 
 #include "ocm/can/text.hpp"
 
+namespace can_error_frame_test {
+
 using namespace ocm;
 
-namespace {
 constexpr auto words(const char* text) {
   return can::describe(*can::parse_frame(text));
 }
@@ -84,7 +85,6 @@ static_assert(can::lost_in_controller(*can::parse_frame("20000004#00010000000000
 static_assert(!can::lost_in_controller(*can::parse_frame("20000004#0002000000000000")));
 static_assert(!can::lost_in_controller(*can::parse_frame("20000040#0001000000000000")));
 static_assert(!can::lost_in_controller(*can::parse_frame("00000004#0001000000000000")));
-}  // namespace
 
 TEST_CASE("the longest description of an error frame fits") {
   std::size_t longest = 0;
@@ -103,3 +103,5 @@ TEST_CASE("the longest description of an error frame fits") {
   CHECK_FALSE(overflowed);
   CHECK(longest > 500);  // every class was in it
 }
+
+}  // namespace can_error_frame_test

@@ -4,7 +4,7 @@
 
 #include "unit/base/random.hpp"
 
-namespace {
+namespace can_filter_test {
 
 using ocm::can::Filter;
 using ocm::can::Format;
@@ -44,4 +44,4 @@ TEST_CASE("nothing but base data frames is accepted") {
     CHECK_FALSE(Filter{}.accepts({0x205, 0, {}, format}));
 }
 
-}  // namespace
+}  // namespace can_filter_test

@@ -6,7 +6,7 @@
 
 #include "unit/base/random.hpp"
 
-namespace {
+namespace can_frame_test {
 
 using ocm::base::Error;
 using ocm::can::arbitration_key;
@@ -114,4 +114,4 @@ TEST_CASE("data before remote, base before extended, whatever the extension") {
   STATIC_REQUIRE(key(0x3FF, Format::base) < key(0x400, Format::base));
 }
 
-}  // namespace
+}  // namespace can_frame_test

@@ -7,13 +7,13 @@
 
 #include <catch2/catch.hpp>
 
+namespace can_length_test {
+
 using namespace ocm;
 using can::Format;
 using can::Frame;
 using can::frame_bits;
 using can::worst_frame_bits;
-
-namespace {
 
 // By hand: 19 zeros from SOF to DLC, whose CRC is zero: 34 equal bits, a stuff bit after each full five of
 // them.
@@ -133,8 +133,6 @@ unsigned longest(unsigned data_bytes) {
          can::intermission_bits;
 }
 
-}  // namespace
-
 TEST_CASE("the length of a frame equals that of its bits written out") {
   std::mt19937 random{11898};
   for (int i = 0; i < 20'000; ++i) {
@@ -158,3 +156,5 @@ TEST_CASE("no base frame is longer than 133 bits with its intermission, 2 below 
   CHECK(longest(1) == 62);
   CHECK(longest(0) == 53);
 }
+
+}  // namespace can_length_test

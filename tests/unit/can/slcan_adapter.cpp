@@ -8,7 +8,7 @@
 
 #include "unit/can/slcan_vectors.hpp"
 
-namespace {
+namespace can_slcan_adapter_test {
 
 namespace slcan = ocm::can::slcan;
 using ocm::base::Error;
@@ -220,4 +220,4 @@ static_assert(works_at_compile_time());
 
 static_assert(sizeof(Adapter) <= 84);
 
-}  // namespace
+}  // namespace can_slcan_adapter_test

@@ -4,7 +4,7 @@
 
 #include "unit/can/slcan_vectors.hpp"
 
-namespace {
+namespace can_slcan_codec_test {
 
 namespace slcan = ocm::can::slcan;
 using ocm::base::Error;
@@ -44,4 +44,4 @@ static_assert(slcan::bit_rate_of_registers(0x03, 0x1C) == 125'000);
 static_assert(slcan::bit_rate_of_registers(0x00, 0x14) == 1'000'000);
 static_assert(slcan::bit_rate_of_registers(0x00, 0x1C) == 500'000);
 
-}  // namespace
+}  // namespace can_slcan_codec_test

@@ -11,7 +11,7 @@
 #include "unit/base/random.hpp"
 #include "unit/can/slcan_vectors.hpp"
 
-namespace {
+namespace can_slcan_host_test {
 
 namespace slcan = ocm::can::slcan;
 using ocm::base::Error;
@@ -194,4 +194,4 @@ TEST_CASE("slcan: whatever comes, the reader finds the next line") {
 
 static_assert(sizeof(slcan::AnswerReader) <= 84);
 
-}  // namespace
+}  // namespace can_slcan_host_test

@@ -6,7 +6,7 @@
 
 #include "unit/base/random.hpp"
 
-namespace {
+namespace can_text_test {
 
 using ocm::base::Error;
 using ocm::can::Format;
@@ -266,4 +266,4 @@ TEST_CASE("log lines at the ends of time") {
   CHECK(to_log_line(at_ns(0), std::string(100, 'x'), frame).overflowed());
 }
 
-}  // namespace
+}  // namespace can_text_test

@@ -8,13 +8,13 @@
 
 #include "unit/base/explore.hpp"
 
+namespace can_worst_bits_test {
+
 using namespace ocm;
 using can::Format;
 using can::Frame;
 using can::frame_bits;
 using can::intermission_bits;
-
-namespace {
 
 /// One for all test cases: it is 2.25 MiB.
 const can::WorstBits& worst() {
@@ -37,8 +37,6 @@ unsigned longest_of_all(Frame frame) {
 std::uint32_t greatest_id(Format format) {
   return can::is_extended(format) ? can::max_extended_id : can::max_base_id;
 }
-
-}  // namespace
 
 TEST_CASE("frames without data, remote frames and one byte of data: every base identifier, every content") {
   for (std::uint32_t id = 0; id <= can::max_base_id; ++id) {
@@ -118,3 +116,5 @@ TEST_CASE("a frame that cannot exist has no length") {
   CHECK(worst().bits(1, Format::error, 8) == 0);
   CHECK(worst().witness(1, Format::base, 9).data == can::Payload{});
 }
+
+}  // namespace can_worst_bits_test

@@ -9,11 +9,11 @@
 #include "ocm/can/text.hpp"
 #include "ocm/topics/amiro.hpp"
 
+namespace client_command_test {
+
 using namespace ocm;
 using client::set_point;
 using client::stop_all;
-
-namespace {
 
 const protocol::Topic& topic(std::string_view name) {
   return *amiro::catalogue.find(name);
@@ -54,4 +54,4 @@ TEST_CASE("stopping all rests the motors first, then ends every stream") {
   CHECK(command.frames.size() == sensors + 1);
 }
 
-}  // namespace
+}  // namespace client_command_test

@@ -8,7 +8,7 @@
 #include "ocm/protocol/message.hpp"
 #include "ocm/topics/amiro.hpp"
 
-namespace {
+namespace client_diagnosis_test {
 
 using namespace ocm::client;
 using ocm::protocol::Priority;
@@ -166,4 +166,4 @@ TEST_CASE("diagnosis: a robot without status topics has nothing to find") {
   CHECK(Diagnosis{bare}.findings().empty());
 }
 
-}  // namespace
+}  // namespace client_diagnosis_test

@@ -7,10 +7,11 @@
 #include "ocm/can/text.hpp"
 #include "ocm/topics/amiro.hpp"
 
+namespace client_robot_test {
+
 using namespace ocm;
 using namespace std::chrono_literals;
 
-namespace {
 /// A bus that remembers what was sent and plays back what a robot would answer.
 struct Tape {
   base::Result<bool> send(const can::Frame& frame) {
@@ -27,7 +28,6 @@ struct Tape {
   std::vector<std::string> sent;
   std::deque<std::string> answers;
 };
-}  // namespace
 
 TEST_CASE("requests and set points by type") {
   Tape bus;
@@ -62,3 +62,5 @@ TEST_CASE("next gives complete samples only") {
   CHECK(robot.next(1s).error == base::Error::timed_out);
   CHECK(robot.counters().commands == 1);
 }
+
+}  // namespace client_robot_test

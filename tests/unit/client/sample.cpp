@@ -10,18 +10,18 @@
 #include "ocm/protocol/message.hpp"
 #include "ocm/topics/amiro.hpp"
 
+namespace client_sample_test {
+
 using namespace ocm;
 using namespace std::chrono_literals;
 using client::Meaning;
 using client::Receiver;
 
-namespace {
 client::Reception take(Receiver& receiver, std::string_view text, base::Duration at = {}) {
   const auto frame = can::parse_frame(text);
   REQUIRE(frame.ok());
   return receiver.take({base::Time{at}, *frame});
 }
-}  // namespace
 
 TEST_CASE("a sample of one frame is complete at once") {
   Receiver receiver{amiro::catalogue};
@@ -115,3 +115,5 @@ TEST_CASE("random loss: every whole sample comes out") {
   CHECK(receiver.counters().samples == whole);
   CHECK(receiver.counters().incomplete > 0);
 }
+
+}  // namespace client_sample_test

@@ -7,7 +7,7 @@
 
 #include "unit/cognitive/testing/room.hpp"
 
-namespace {
+namespace cognitive_agreement_test {
 
 using namespace ocm::cognitive;
 using ocm::motion::Point;
@@ -76,4 +76,4 @@ TEST_CASE("agreement: the place is what can be reached without crossing a wall")
   CHECK(agreement(map, walls, outside).area_cells == 0);
 }
 
-}  // namespace
+}  // namespace cognitive_agreement_test

@@ -12,7 +12,7 @@
 #include "unit/base/random.hpp"
 #include "unit/cognitive/testing/drawing.hpp"
 
-namespace {
+namespace cognitive_explorer_test {
 
 using namespace std::chrono_literals;
 using namespace ocm::cognitive;
@@ -241,4 +241,4 @@ TEST_CASE("explorer: whatever the map: it ends, and no piece leads through somet
   CHECK(pieces > 20 * runs);
 }
 
-}  // namespace
+}  // namespace cognitive_explorer_test

@@ -11,7 +11,7 @@
 #include "unit/base/random.hpp"
 #include "unit/mapper/link/link_testing.hpp"
 
-namespace {
+namespace cognitive_fleet_test {
 
 using namespace std::chrono_literals;
 using namespace ocm::cognitive;
@@ -203,4 +203,4 @@ TEST_CASE("fleet: any bytes: nothing but counters") {
   CHECK(fleet.nobodys() > 0);
 }
 
-}  // namespace
+}  // namespace cognitive_fleet_test

@@ -8,7 +8,7 @@
 
 #include "unit/base/random.hpp"
 
-namespace {
+namespace cognitive_grid_test {
 
 using namespace ocm::cognitive;
 using ocm::motion::Point;
@@ -116,4 +116,4 @@ TEST_CASE("grid: distance from a wall") {
   CHECK(distance_m(Wall{{1.0F, 1.0F}, {1.0F, 1.0F}}, {1.0F, 2.0F}) == Approx(1.0F));
 }
 
-}  // namespace
+}  // namespace cognitive_grid_test

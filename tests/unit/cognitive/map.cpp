@@ -12,7 +12,7 @@
 #include "unit/base/random.hpp"
 #include "unit/cognitive/testing/room.hpp"
 
-namespace {
+namespace cognitive_map_test {
 
 using namespace ocm::cognitive;
 using ocm::mapper::link::Handshake;
@@ -207,4 +207,4 @@ TEST_CASE("map: random rooms, a sensor without noise: their walls are found, and
   }
 }
 
-}  // namespace
+}  // namespace cognitive_map_test

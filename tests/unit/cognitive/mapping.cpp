@@ -12,7 +12,7 @@
 #include "unit/base/random.hpp"
 #include "unit/cognitive/testing/room.hpp"
 
-namespace {
+namespace cognitive_mapping_test {
 
 using namespace std::chrono_literals;
 using namespace ocm::cognitive;
@@ -203,4 +203,4 @@ TEST_CASE("mapping: a robot that is lost keeps nobody waiting, and goes on when 
   CHECK(expedition.result().explored > 0.97);
 }
 
-}  // namespace
+}  // namespace cognitive_mapping_test

@@ -9,7 +9,7 @@
 #include "unit/base/random.hpp"
 #include "unit/cognitive/testing/drawing.hpp"
 
-namespace {
+namespace cognitive_routes_test {
 
 using namespace ocm::cognitive;
 using ocm::motion::Point;
@@ -162,4 +162,4 @@ TEST_CASE(
   CHECK(found > 60);
 }
 
-}  // namespace
+}  // namespace cognitive_routes_test

@@ -9,7 +9,7 @@
 #include "unit/base/random.hpp"
 #include "unit/cognitive/testing/virtual_central.hpp"
 
-namespace {
+namespace cognitive_server_test {
 
 using namespace std::chrono_literals;
 using namespace ocm::cognitive;
@@ -132,4 +132,4 @@ TEST_CASE("server: links that die at any time: who is lost is lost, who is not i
   }
 }
 
-}  // namespace
+}  // namespace cognitive_server_test

@@ -4,6 +4,8 @@
 
 #include "unit/controller/fixture.hpp"
 
+namespace controller_actuator_handler_test {
+
 using namespace fixture;
 
 TEST_CASE("motors stop 500 ms after the last command") {
@@ -146,3 +148,5 @@ TEST_CASE("a set point that comes while another is being applied is applied afte
   board.controller.receive(protocol::command(amiro::Motors{1, 0}), at(0ms));
   CHECK(board.applied == std::vector<std::int32_t>{1, 0});  // the last decision, and no older one after it
 }
+
+}  // namespace controller_actuator_handler_test

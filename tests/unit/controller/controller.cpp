@@ -4,6 +4,8 @@
 
 #include "unit/controller/fixture.hpp"
 
+namespace controller_controller_test {
+
 using namespace fixture;
 
 TEST_CASE("a bad request is refused, counted by cause, and changes nothing") {
@@ -47,3 +49,5 @@ TEST_CASE("a board is silent on what is not its own") {
   CHECK(board.controller.counters().received == 7);
   CHECK(board.controller.counters().refused() == 0);
 }
+
+}  // namespace controller_controller_test

@@ -9,11 +9,11 @@
 
 #include "unit/controller/fixture.hpp"
 
+namespace controller_controller_ports_test {
+
 using namespace fixture;
 using scheduling::Level;
 using scheduling::Release;
-
-namespace {
 
 using WithTasks = controller::Controller<amiro::DiWheelDrive, Mailboxes, scheduling::Cooperative, 2>;
 
@@ -43,8 +43,6 @@ struct OnCpu {
     cpu.at(at(when), [this, text] { controller.receive(frame(text), cpu.now()); });
   }
 };
-
-}  // namespace
 
 TEST_CASE("a board's own tasks run on their grid, and before samples of the same level and moment") {
   Mailboxes bus;
@@ -136,3 +134,5 @@ TEST_CASE("room on the bus wakes the level whose frames wait, and no other") {
   CHECK_FALSE(board.controller.waiting());
   CHECK(board.cpu.misuses() == 0);
 }
+
+}  // namespace controller_controller_ports_test

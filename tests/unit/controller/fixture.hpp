@@ -12,10 +12,13 @@
 #include "ocm/protocol/message.hpp"
 #include "ocm/topics/amiro.hpp"
 
+#include "unit/can/frame_of.hpp"
+
 namespace fixture {
 
 using namespace ocm;
 using namespace std::chrono_literals;
+using test::frame;
 
 /// A bus with room for `room` frames.
 struct Mailboxes {
@@ -30,12 +33,6 @@ struct Mailboxes {
   bool broken = false;
   std::vector<can::Frame> frames;
 };
-
-inline can::Frame frame(std::string_view text) {
-  const auto parsed = can::parse_frame(text);
-  REQUIRE(parsed.ok());
-  return *parsed;
-}
 
 inline std::vector<std::string> texts(const Mailboxes& bus) {
   std::vector<std::string> result;

@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+namespace controller_level_test {
+
 using namespace ocm;
 using protocol::Priority;
 using scheduling::Level;
@@ -13,3 +15,5 @@ TEST_CASE("a level is the priority of a request, there and back") {
   STATIC_REQUIRE(controller::level_of(Priority::urgent) == Level::urgent);
   STATIC_REQUIRE(controller::priority_of(Level::low) == Priority::low);
 }
+
+}  // namespace controller_level_test

@@ -4,10 +4,10 @@
 
 #include "unit/controller/fixture.hpp"
 
+namespace controller_report_test {
+
 using namespace fixture;
 using Status = amiro::DiWheelDriveStatus;
-
-namespace {
 
 /// The status that the board sends when asked.
 Status ask_status(Board& board, base::Duration now) {
@@ -18,8 +18,6 @@ Status ask_status(Board& board, base::Duration now) {
   CHECK(board.bus.frames[1].id == 0x71C);
   return Status::decode({board.bus.frames[0].data, board.bus.frames[1].data});
 }
-
-}  // namespace
 
 TEST_CASE("status: a board says how it is without being taught to") {
   Board board;
@@ -130,3 +128,5 @@ TEST_CASE("a number beyond its field stays at its end") {
   CHECK(Status::decode({status.encode(0), status.encode(1)}).identity.uptime == 0xFFFFFF);
   CHECK(status.health.overload == 65'535);
 }
+
+}  // namespace controller_report_test

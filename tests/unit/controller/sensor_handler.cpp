@@ -4,6 +4,8 @@
 
 #include "unit/controller/fixture.hpp"
 
+namespace controller_sensor_handler_test {
+
 using namespace fixture;
 
 TEST_CASE("publish: the first sample at once, then on the grid") {
@@ -116,3 +118,5 @@ TEST_CASE("a stop lets a sample that is half sent finish") {
   board.controller.poll(at(1s));
   CHECK(board.bus.frames.size() == 3);
 }
+
+}  // namespace controller_sensor_handler_test

@@ -2,10 +2,11 @@
 
 #include <catch2/catch.hpp>
 
+namespace controller_watchdog_test {
+
 using namespace ocm;
 using namespace std::chrono_literals;
 
-namespace {
 constexpr bool expires_once() {
   controller::Watchdog watchdog{500ms};
   const base::Time start{};
@@ -22,7 +23,6 @@ constexpr bool zero_never_expires() {
   return !watchdog.expire(base::Time{24h}) && watchdog.expires_at() == base::never;
 }
 static_assert(zero_never_expires());
-}  // namespace
 
 TEST_CASE("each command buys another timeout") {
   controller::Watchdog watchdog{500ms};
@@ -32,3 +32,5 @@ TEST_CASE("each command buys another timeout") {
   }
   CHECK(watchdog.expire(base::Time{9 * 400ms + 500ms}));
 }
+
+}  // namespace controller_watchdog_test

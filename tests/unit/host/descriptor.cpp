@@ -6,19 +6,19 @@
 
 #include <catch2/catch.hpp>
 
+namespace host_descriptor_test {
+
 using ocm::host::Descriptor;
 
 static_assert(!std::is_copy_constructible_v<Descriptor>);
 static_assert(std::is_nothrow_move_constructible_v<Descriptor>);
 
-namespace {
 Descriptor open_null() {
   return Descriptor{::open("/dev/null", O_RDONLY | O_CLOEXEC)};
 }
 bool is_open(int number) {
   return ::fcntl(number, F_GETFD) != -1;
 }
-}  // namespace
 
 TEST_CASE("a descriptor is closed with its owner") {
   int number = -1;
@@ -49,3 +49,5 @@ TEST_CASE("none is none") {
   none.reset();
   CHECK_FALSE(none);
 }
+
+}  // namespace host_descriptor_test

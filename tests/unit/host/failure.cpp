@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+namespace host_failure_test {
+
 using namespace ocm;
 using host::Failure;
 
@@ -12,3 +14,5 @@ TEST_CASE("an outcome is a value or a failure in words") {
   CHECK_FALSE(failure.ok());
   CHECK(failure.error.remedy == "start one");
 }
+
+}  // namespace host_failure_test

@@ -4,12 +4,12 @@
 
 #include <catch2/catch.hpp>
 
+namespace host_system_time_test {
+
 using namespace std::chrono_literals;
 using ocm::base::Duration;
 using ocm::host::to_timespec;
 using ocm::host::to_timeval;
-
-namespace {
 
 constexpr bool is(timespec time, std::int64_t seconds, std::int64_t nanoseconds) {
   return time.tv_sec == seconds && time.tv_nsec == nanoseconds;
@@ -45,4 +45,4 @@ TEST_CASE("the longest times stay long, also where seconds have 32 bits") {
   }
 }
 
-}  // namespace
+}  // namespace host_system_time_test

@@ -4,6 +4,8 @@
 
 #include "unit/host/host_testing.hpp"
 
+namespace host_user_directory_test {
+
 using namespace ocm;
 using namespace ocm::test;
 
@@ -43,3 +45,5 @@ TEST_CASE("only a directory that is ours and closed to others is trusted") {
     CHECK_THAT(host::check_private(directory)->what, Catch::Contains("another user (uid 65534)"));
   }
 }
+
+}  // namespace host_user_directory_test

@@ -4,13 +4,13 @@
 
 #include "tests/unit/log/log_testing.hpp"
 
+namespace log_asc_test {
+
 using namespace ocm;
 using namespace ocm::log;
 using log::testing::at;
 using log::testing::read_all;
 using log::testing::Zone;
-
-namespace {
 
 constexpr std::int64_t second = 1'000'000'000;
 
@@ -45,8 +45,6 @@ Entry directed(Entry entry, Direction direction) {
   entry.direction = direction;
   return entry;
 }
-
-}  // namespace
 
 TEST_CASE("asc: lines as log2asc writes them") {
   // log2asc 2020.11 -I a.log can0 can1
@@ -381,3 +379,5 @@ TEST_CASE("asc: what it is") {
   CHECK_FALSE(AscReader::recognises("date of birth\n"));
   CHECK_FALSE(AscReader::recognises("(1436509052.249713) can0 605#00D20000\n"));
 }
+
+}  // namespace log_asc_test

@@ -4,13 +4,13 @@
 
 #include "tests/unit/log/log_testing.hpp"
 
+namespace log_blf_test {
+
 using namespace ocm;
 using namespace ocm::log;
 using log::testing::at;
 using log::testing::bytes;
 using log::testing::Zone;
-
-namespace {
 
 constexpr std::int64_t start = 1'700'000'000'123'000'000;
 
@@ -84,8 +84,6 @@ Cause cause_of(std::string_view one) {
   REQUIRE(log.complained == 1);
   return log.complaints[0].cause;
 }
-
-}  // namespace
 
 TEST_CASE("blf: a file by hand") {
   CHECK(BlfReader::recognises(head));
@@ -269,3 +267,5 @@ TEST_CASE("blf: what it is not") {
   REQUIRE(log.complained == 1);
   CHECK(log.complaints[0].cause == Cause::syntax);
 }
+
+}  // namespace log_blf_test

@@ -4,6 +4,8 @@
 
 #include <catch2/catch.hpp>
 
+namespace log_bytes_test {
+
 using ocm::log::Bytes;
 
 TEST_CASE("bytes are appended, overwritten and emptied") {
@@ -39,3 +41,5 @@ TEST_CASE("room that is not used is not part of the run, and growing keeps what 
   }
   CHECK(bytes.view() == expected);
 }
+
+}  // namespace log_bytes_test

@@ -4,6 +4,8 @@
 
 #include "tests/unit/log/log_testing.hpp"
 
+namespace log_calendar_test {
+
 using namespace ocm::log;
 using ocm::log::testing::Zone;
 
@@ -56,3 +58,5 @@ TEST_CASE("calendar: months in English and German") {
   for (int i = 0; i < 12; ++i) CHECK(month_of(month_names[i]) == i + 1);
   for (const auto* wrong : {"", "M", "Ja", "jan", "Xyz", "M\xE4"}) CHECK(month_of(wrong) == 0);
 }
+
+}  // namespace log_calendar_test

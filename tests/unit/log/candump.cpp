@@ -6,6 +6,8 @@
 
 #include "unit/log/entries.hpp"
 
+namespace log_candump_test {
+
 using namespace ocm;
 using log::Cause;
 using log::Direction;
@@ -13,8 +15,6 @@ using log::Entry;
 using test::RandomEntries;
 using test::ReadLog;
 using Log = ReadLog<log::CandumpReader>;
-
-namespace {
 
 base::Time at_ns(std::int64_t ns) {
   return base::Time{base::Duration{ns}};
@@ -92,8 +92,6 @@ const Vector vectors[] = {
     {"123#01 R", with(entry_of({0x123, 1, {1}}), 0, Direction::received)},
     {"123##101 T", with(fd(0x123, can::Format::base, 1, {1}), 0, Direction::sent)},
 };
-
-}  // namespace
 
 TEST_CASE("candump's lines are read and written") {
   const auto interfaces = test::interfaces_named({"can0"});
@@ -295,3 +293,5 @@ TEST_CASE("candump's logs are recognised by a line, wherever it stands") {
   CHECK_FALSE(CandumpReader::recognises("(14365"));
   CHECK_FALSE(CandumpReader::recognises("timestamp,arbitration_id\n0.0,0x1\n"));
 }
+
+}  // namespace log_candump_test

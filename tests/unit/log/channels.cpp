@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+namespace log_channels_test {
+
 using namespace ocm;
 using namespace ocm::log;
 
@@ -48,3 +50,5 @@ TEST_CASE("channels: an error of which nothing is known") {
   entry.data[7] = 1;
   CHECK_FALSE(is_bus_error(entry));
 }
+
+}  // namespace log_channels_test

@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+namespace log_complaints_test {
+
 using namespace ocm::log;
 
 TEST_CASE("complaints are counted by cause, and the first are kept in words") {
@@ -29,3 +31,5 @@ TEST_CASE("each cause has its words, and a place says what it counts") {
   CHECK(to_text(Place{12, true}) == "line 12");
   CHECK(to_text(Place{4096, false}) == "byte 4096");
 }
+
+}  // namespace log_complaints_test

@@ -4,6 +4,8 @@
 
 #include <catch2/catch.hpp>
 
+namespace log_crc32_test {
+
 using namespace ocm;
 
 TEST_CASE("crc32: the check value, and nothing") {
@@ -26,3 +28,5 @@ TEST_CASE("crc32: bit by bit the same, at every length and cut anywhere") {
     for (int bit = 0; bit < 8; ++bit) slow = slow >> 1 ^ ((slow & 1) != 0 ? 0xEDB8'8320 : 0);
   }
 }
+
+}  // namespace log_crc32_test

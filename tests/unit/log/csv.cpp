@@ -6,14 +6,14 @@
 
 #include "unit/log/entries.hpp"
 
+namespace log_csv_test {
+
 using namespace ocm;
 using log::Cause;
 using log::Entry;
 using log::Lost;
 using test::RandomEntries;
 using Log = test::ReadLog<log::CsvReader>;
-
-namespace {
 
 const std::string head = std::string{log::csv::head} + "\n";
 
@@ -48,8 +48,6 @@ Cause refusal_of(std::string_view row) {
   CHECK(log.reader.complaints().first()[0].place == log::Place{2, true});
   return log.reader.complaints().first()[0].cause;
 }
-
-}  // namespace
 
 TEST_CASE("python-can's rows are read and written") {
   const auto interfaces = test::interfaces_named({"can0"});
@@ -166,3 +164,5 @@ TEST_CASE("python-can's rows are recognised by their head line") {
   CHECK_FALSE(log::CsvReader::recognises("timestamp,arbitration_id"));
   CHECK_FALSE(log::CsvReader::recognises(""));
 }
+
+}  // namespace log_csv_test

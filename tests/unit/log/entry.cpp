@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+namespace log_entry_test {
+
 using namespace ocm;
 using log::Entry;
 
@@ -59,3 +61,5 @@ TEST_CASE("lengths of CAN FD are those that a length code has") {
   for (std::size_t length = 0; length <= 70; ++length)
     CHECK(log::is_fd_length(length) == (length <= 64 && log::fd_length(log::fd_dlc(length)) == length));
 }
+
+}  // namespace log_entry_test

@@ -7,10 +7,10 @@
 
 #include "unit/log/entries.hpp"
 
+namespace log_input_test {
+
 using namespace ocm;
 using log::Input;
-
-namespace {
 
 std::vector<std::string> lines_of(log::Source& source) {
   Input input{source};
@@ -23,8 +23,6 @@ std::vector<std::string> lines_of(log::Source& source) {
     CHECK(input.line_number() == lines.size());
   }
 }
-
-}  // namespace
 
 TEST_CASE("lines end with LF or CR LF, and the last may lack its end") {
   for (const std::size_t drop : {1U, 2U, 3U, 100U}) {
@@ -115,3 +113,5 @@ TEST_CASE("the source's failure is the input's") {
   CHECK(input.peek(2) == "x");
   CHECK(input.failure() == "the disk is gone");
 }
+
+}  // namespace log_input_test

@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+namespace log_interfaces_test {
+
 using ocm::log::Interfaces;
 
 TEST_CASE("interfaces are numbered as they come up") {
@@ -30,3 +32,5 @@ TEST_CASE("a damaged log does not make interfaces without end") {
   }
   CHECK(interfaces.size() == Interfaces::most);
 }
+
+}  // namespace log_interfaces_test

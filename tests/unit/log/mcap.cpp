@@ -6,12 +6,12 @@
 
 #include "tests/unit/log/log_testing.hpp"
 
+namespace log_mcap_test {
+
 using namespace ocm;
 using namespace ocm::log;
 using log::testing::bytes;
 using log::testing::read_all;
-
-namespace {
 
 std::string number(std::uint64_t value, std::size_t size) {
   return {reinterpret_cast<const char*>(&value), size};
@@ -72,7 +72,6 @@ Interfaces three() {
   for (const char* name : {"can0", "", "v\xFF%/raw"}) interfaces.add(name);
   return interfaces;
 }
-}  // namespace
 
 TEST_CASE("mcap: a file by hand, with chunks and without") {
   CHECK(McapReader::recognises(head));
@@ -312,3 +311,5 @@ TEST_CASE("mcap: what it is not") {
   CHECK(cause_of(magic, 0) == Cause::truncated);
   CHECK(read_mcap(head + tail).complained == 0);
 }
+
+}  // namespace log_mcap_test

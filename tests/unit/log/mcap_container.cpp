@@ -6,11 +6,11 @@
 
 #include "tests/unit/log/log_testing.hpp"
 
+namespace log_mcap_container_test {
+
 using namespace ocm;
 using namespace ocm::log;
 using log::testing::bytes;
-
-namespace {
 
 void put(mcap::Container& container, Bytes& out, std::uint16_t channel, std::uint64_t ns,
          std::string_view text) {
@@ -42,8 +42,6 @@ std::vector<Record> of_kind(const std::vector<Record>& records, std::uint8_t kin
     if (record.kind == kind) some.push_back(record);
   return some;
 }
-
-}  // namespace
 
 TEST_CASE("mcap_container: a file of one message, by hand") {
   mcap::Container container;
@@ -255,3 +253,5 @@ TEST_CASE("mcap_container: names as printable ASCII") {
   for (int c = 0; c < 256; ++c) all += static_cast<char>(c);
   CHECK(mcap::unescaped(mcap::escaped(all)) == all);
 }
+
+}  // namespace log_mcap_container_test

@@ -6,10 +6,10 @@
 
 #include "tests/unit/log/log_testing.hpp"
 
+namespace log_mcap_frame_test {
+
 using namespace ocm;
 using namespace ocm::log;
-
-namespace {
 
 std::string text_of(const Entry& entry) {
   char text[mcap::frame_room];
@@ -28,8 +28,6 @@ std::optional<Cause> cause_of(std::string_view text) {
   Entry entry;
   return mcap::FrameParser{text}.parse(entry);
 }
-
-}  // namespace
 
 TEST_CASE("mcap_frame: as it is written") {
   Entry entry{{}, {0x608, 4, {0x00, 0xD2, 0x00, 0x0F}}};
@@ -176,3 +174,5 @@ TEST_CASE("mcap_frame: what cannot be") {
     CHECK(cause_of(text) == Cause::time);
   }
 }
+
+}  // namespace log_mcap_frame_test

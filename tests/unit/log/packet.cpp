@@ -4,11 +4,11 @@
 
 #include "tests/unit/log/log_testing.hpp"
 
+namespace log_packet_test {
+
 using namespace ocm;
 using namespace ocm::log;
 using log::testing::bytes;
-
-namespace {
 
 struct Loaded {
   Entry entry;
@@ -19,8 +19,6 @@ Loaded load(std::string_view hex, LinkType type = LinkType::can_socketcan, bool 
   loaded.wrong = packet::load(bytes(hex), type, swapped, loaded.entry);
   return loaded;
 }
-
-}  // namespace
 
 TEST_CASE("packet: a classic frame is identifier, length and eight bytes") {
   // [tcpdump.org, LINKTYPE_CAN_SOCKETCAN]
@@ -124,3 +122,5 @@ TEST_CASE("packet: what is stored loads equal, in 16 or 72 bytes") {
     REQUIRE(log::testing::can_exist(again));
   }
 }
+
+}  // namespace log_packet_test

@@ -4,13 +4,13 @@
 
 #include "tests/unit/log/log_testing.hpp"
 
+namespace log_pcap_test {
+
 using namespace ocm;
 using namespace ocm::log;
 using log::testing::at;
 using log::testing::bytes;
 using log::testing::read_all;
-
-namespace {
 
 // By hand. [draft-ietf-opsawg-pcap, 4 and 5]: magic, version 2.4, zone, accuracy, longest, link type 227
 const std::string little_us = bytes("D4C3B2A1 0200 0400 00000000 00000000 00000400 E3000000");
@@ -21,8 +21,6 @@ const std::string big_ns = bytes("A1B23C4D 0002 0004 00000000 00000000 00040000 
 const std::string frame = bytes("00000123 02000000 1122000000000000");
 const std::string little_record = bytes("01000000 02000000 10000000 10000000") + frame;
 const std::string big_record = bytes("00000001 00000002 00000010 00000010") + frame;
-
-}  // namespace
 
 TEST_CASE("pcap: a file by hand, in either byte order and resolution") {
   const can::Frame wanted{0x123, 2, {0x11, 0x22}};
@@ -166,3 +164,5 @@ TEST_CASE("pcap: what it is not") {
   CHECK(log.entries.empty());
   CHECK(log.complained == 1);
 }
+
+}  // namespace log_pcap_test

@@ -6,13 +6,13 @@
 
 #include "tests/unit/log/log_testing.hpp"
 
+namespace log_pcapng_test {
+
 using namespace ocm;
 using namespace ocm::log;
 using log::testing::at;
 using log::testing::bytes;
 using log::testing::read_all;
-
-namespace {
 
 // Blocks by hand. [draft-ietf-opsawg-pcapng, 4.1, 4.2, 4.3]
 const std::string little_section = bytes("0A0D0D0A 1C000000 4D3C2B1A 0100 0000 FFFFFFFFFFFFFFFF 1C000000");
@@ -59,8 +59,6 @@ std::int64_t time_read(std::string_view options_in_hex, std::uint32_t high, std:
   REQUIRE(log.complaints.at(0).cause == Cause::time);
   return -1;
 }
-
-}  // namespace
 
 TEST_CASE("pcapng: a file by hand, in either byte order") {
   for (const auto& file :
@@ -327,3 +325,5 @@ TEST_CASE("pcapng: what it is not") {
   REQUIRE(log.complained == 1);
   CHECK(log.complaints[0].cause == Cause::syntax);
 }
+
+}  // namespace log_pcapng_test

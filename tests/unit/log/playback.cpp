@@ -4,7 +4,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace {
+namespace log_playback_test {
 
 using namespace ocm;
 using namespace std::chrono_literals;
@@ -115,4 +115,4 @@ TEST_CASE("times from one end of the clock to the other are played without overf
   CHECK(slow.due(at(100h * 24 * 365)) == base::never);
 }
 
-}  // namespace
+}  // namespace log_playback_test

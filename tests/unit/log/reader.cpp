@@ -2,9 +2,9 @@
 
 #include <catch2/catch.hpp>
 
-using namespace ocm;
+namespace log_reader_test {
 
-namespace {
+using namespace ocm;
 
 /// Every byte is a frame, an 'x' cannot be read.
 class ByteReader final : public log::Reader {
@@ -24,8 +24,6 @@ class ByteReader final : public log::Reader {
   }
 };
 
-}  // namespace
-
 TEST_CASE("a reader gives entries, and keeps interfaces and complaints") {
   log::MemorySource source{"abxa"};
   log::Input input{source};
@@ -39,3 +37,5 @@ TEST_CASE("a reader gives entries, and keeps interfaces and complaints") {
   CHECK(reader.complaints().first().at(0).place == log::Place{2, false});
   CHECK(reader.recorded().size() == 2);
 }
+
+}  // namespace log_reader_test

@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+namespace log_writer_test {
+
 using namespace ocm::log;
 
 TEST_CASE("losses are counted by kind, and each kind has its words") {
@@ -29,3 +31,5 @@ TEST_CASE("a writer without head, records and end writes none") {
   CHECK(out.size() == 0);
   CHECK_FALSE(writer.lost().any());
 }
+
+}  // namespace log_writer_test

@@ -7,7 +7,7 @@
 
 #include "ocm/can/text.hpp"
 
-namespace {
+namespace measure_bus_load_test {
 
 using namespace std::chrono_literals;
 using namespace ocm::measure;
@@ -86,4 +86,4 @@ TEST_CASE("bus_load: a share of time") {
   STATIC_REQUIRE(share(100, 0ms, 500'000) == 0.0);
 }
 
-}  // namespace
+}  // namespace measure_bus_load_test

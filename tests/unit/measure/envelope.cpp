@@ -6,7 +6,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace {
+namespace measure_envelope_test {
 
 using namespace std::chrono_literals;
 using namespace ocm::measure;
@@ -118,4 +118,4 @@ TEST_CASE("envelope: nothing is nothing") {
   CHECK(Envelope{}.points().empty());
 }
 
-}  // namespace
+}  // namespace measure_envelope_test

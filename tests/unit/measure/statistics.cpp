@@ -7,7 +7,7 @@
 #include "ocm/can/text.hpp"
 #include "ocm/topics/amiro.hpp"
 
-namespace {
+namespace measure_statistics_test {
 
 using namespace std::chrono_literals;
 using namespace ocm::measure;
@@ -158,4 +158,4 @@ TEST_CASE("statistics: CAN FD is counted apart, strangers only so many") {
   CHECK(figures.counters.unknown == 100);
 }
 
-}  // namespace
+}  // namespace measure_statistics_test

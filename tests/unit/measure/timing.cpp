@@ -6,7 +6,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace {
+namespace measure_timing_test {
 
 using namespace std::chrono_literals;
 using namespace ocm::measure;
@@ -252,4 +252,4 @@ TEST_CASE("timing: what was left out is missing, and what is a little late is no
   }
 }
 
-}  // namespace
+}  // namespace measure_timing_test

@@ -6,7 +6,7 @@
 
 #include "unit/motion/near.hpp"
 
-namespace {
+namespace motion_adaptive_weight_test {
 
 using namespace ocm::motion;
 using ocm::base::Error;
@@ -42,4 +42,4 @@ TEST_CASE("the weight finds the floor it drives on", "[motion]") {
   CHECK(near(weight, 0.75F, 1e-3F));
 }
 
-}  // namespace
+}  // namespace motion_adaptive_weight_test

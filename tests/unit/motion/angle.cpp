@@ -8,7 +8,7 @@
 #include "unit/base/random.hpp"
 #include "unit/motion/near.hpp"
 
-namespace {
+namespace motion_angle_test {
 
 using namespace ocm::motion;
 using ocm::test::near;
@@ -76,4 +76,4 @@ TEST_CASE("what is not finite has no direction", "[motion]") {
   CHECK(std::isnan(wrap(-std::numeric_limits<float>::infinity())));
 }
 
-}  // namespace
+}  // namespace motion_angle_test

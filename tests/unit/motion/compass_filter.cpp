@@ -7,7 +7,7 @@
 #include "unit/base/random.hpp"
 #include "unit/motion/near.hpp"
 
-namespace {
+namespace motion_compass_filter_test {
 
 using namespace ocm::motion;
 using ocm::test::near;
@@ -82,4 +82,4 @@ static_assert(!may_correct(trusted, Movement::straight, CompassRule::standing_wh
 static_assert(!may_correct({}, Movement::standing, CompassRule::standing_where_trusted));
 static_assert(may_correct({}, Movement::straight, CompassRule::always));
 
-}  // namespace
+}  // namespace motion_compass_filter_test

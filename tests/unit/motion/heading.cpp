@@ -6,7 +6,7 @@
 
 #include "unit/motion/near.hpp"
 
-namespace {
+namespace motion_heading_test {
 
 using namespace ocm::motion;
 using ocm::test::near;
@@ -93,4 +93,4 @@ TEST_CASE("one reading has no variance", "[motion]") {
   CHECK(bias.bias_rad_s() == 0.05F);
 }
 
-}  // namespace
+}  // namespace motion_heading_test

@@ -7,7 +7,7 @@
 #include "unit/base/random.hpp"
 #include "unit/motion/near.hpp"
 
-namespace {
+namespace motion_limits_test {
 
 using namespace ocm::motion;
 using ocm::test::near;
@@ -52,4 +52,4 @@ TEST_CASE("efforts stay in their range, in the proportion that was asked for", "
   CHECK(mixed(3e38F, 3e38F) == Efforts{});
 }
 
-}  // namespace
+}  // namespace motion_limits_test

@@ -9,7 +9,7 @@
 #include "unit/base/random.hpp"
 #include "unit/motion/near.hpp"
 
-namespace {
+namespace motion_odometry_test {
 
 using namespace ocm::motion;
 using ocm::test::near;
@@ -114,4 +114,4 @@ TEST_CASE("an advance that is not finite does not move a pose", "[motion]") {
   CHECK(moved(pose, {0.0F, -infinity}) == pose);
 }
 
-}  // namespace
+}  // namespace motion_odometry_test

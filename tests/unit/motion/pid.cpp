@@ -7,7 +7,7 @@
 #include "unit/base/random.hpp"
 #include "unit/motion/near.hpp"
 
-namespace {
+namespace motion_pid_test {
 
 using namespace ocm::motion;
 using ocm::test::near;
@@ -144,4 +144,4 @@ TEST_CASE("a PI controller leaves no error behind", "[motion]") {
   CHECK(near(pid.integral, 0.8F, 1e-3F));
 }
 
-}  // namespace
+}  // namespace motion_pid_test

@@ -4,7 +4,7 @@
 
 #include "unit/motion/near.hpp"
 
-namespace {
+namespace motion_pose_test {
 
 using namespace ocm::motion;
 using ocm::test::near;
@@ -29,4 +29,4 @@ TEST_CASE("a point ahead of a robot that looks left lies to the left in the worl
   CHECK(near(back.y_m, 0.1F));
 }
 
-}  // namespace
+}  // namespace motion_pose_test

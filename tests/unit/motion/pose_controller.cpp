@@ -11,7 +11,7 @@
 
 #include "unit/motion/near.hpp"
 
-namespace {
+namespace motion_pose_controller_test {
 
 using namespace ocm::motion;
 using ocm::test::near;
@@ -262,4 +262,4 @@ TEST_CASE("a stop forgets the set point and keeps the count", "[motion]") {
   CHECK(control(state, {}, dt, model).command.movement == Movement::standing);
 }
 
-}  // namespace
+}  // namespace motion_pose_controller_test

@@ -8,7 +8,7 @@
 #include "unit/base/random.hpp"
 #include "unit/motion/near.hpp"
 
-namespace {
+namespace motion_pose_estimator_test {
 
 using namespace ocm::motion;
 using ocm::test::near;
@@ -118,4 +118,4 @@ TEST_CASE("nonsense of any kind leaves pose and variance finite", "[motion]") {
   CHECK(e.rejected.compass > 100);
 }
 
-}  // namespace
+}  // namespace motion_pose_estimator_test

@@ -4,7 +4,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace {
+namespace motion_real_test {
 
 using namespace ocm::motion;
 
@@ -25,4 +25,4 @@ TEST_CASE("clamp ends NaN at the lower bound", "[motion]") {
   CHECK(clamp(nan, -1.0F, 1.0F) == -1.0F);
 }
 
-}  // namespace
+}  // namespace motion_real_test

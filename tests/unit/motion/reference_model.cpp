@@ -6,7 +6,7 @@
 
 #include "unit/motion/near.hpp"
 
-namespace {
+namespace motion_reference_model_test {
 
 using namespace ocm::motion;
 using ocm::test::near;
@@ -47,4 +47,4 @@ TEST_CASE("a time that cannot be moves nothing", "[motion]") {
   CHECK(approach(2.0F, 8.0F, ReferenceModel{.gain = 0.5F, .period_s = 0.0F}, 0.03F) == 2.0F);
 }
 
-}  // namespace
+}  // namespace motion_reference_model_test

@@ -4,7 +4,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace {
+namespace motion_soft_pwm_test {
 
 using namespace ocm::motion;
 using namespace std::chrono_literals;
@@ -36,4 +36,4 @@ TEST_CASE("over a second a motor is on for its share", "[motion]") {
   }
 }
 
-}  // namespace
+}  // namespace motion_soft_pwm_test

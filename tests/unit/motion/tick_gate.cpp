@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace {
+namespace motion_tick_gate_test {
 
 using namespace ocm::motion;
 
@@ -32,4 +32,4 @@ TEST_CASE("two motors of different pace stay within a step of each other", "[mot
   CHECK(left >= 999);
 }
 
-}  // namespace
+}  // namespace motion_tick_gate_test

@@ -6,7 +6,7 @@
 
 #include "unit/motion/near.hpp"
 
-namespace {
+namespace motion_wheel_pi_test {
 
 using namespace ocm::motion;
 using ocm::test::near;
@@ -68,4 +68,4 @@ TEST_CASE("two motors that differ turn alike, and the slave slows down with its 
   CHECK(near(rates.left_ticks_s, 400.0F, 2.0F));
 }
 
-}  // namespace
+}  // namespace motion_wheel_pi_test

@@ -4,7 +4,7 @@
 
 #include "unit/protocol/codec_sweep.hpp"
 
-namespace {
+namespace protocol_codec_test {
 
 using ocm::can::Payload;
 using ocm::protocol::Bits;
@@ -168,4 +168,4 @@ TEST_CASE("the run-time form agrees with bit after bit, everywhere") {
   CHECK(positions == 2 * 64 * 65 / 2);
 }
 
-}  // namespace
+}  // namespace protocol_codec_test

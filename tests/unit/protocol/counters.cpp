@@ -7,7 +7,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace {
+namespace protocol_counters_test {
 
 using ocm::base::Error;
 using ocm::protocol::Counters;
@@ -69,4 +69,4 @@ TEST_CASE("counters wrap") {
   CHECK(counters.bad_mode == 0);
 }
 
-}  // namespace
+}  // namespace protocol_counters_test

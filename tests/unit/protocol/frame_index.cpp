@@ -4,7 +4,7 @@
 
 #include "unit/protocol/example_topics.hpp"
 
-namespace {
+namespace protocol_frame_index_test {
 
 using ocm::protocol::Direction;
 using ocm::protocol::FrameIndex;
@@ -78,4 +78,4 @@ TEST_CASE("the subject of a frame is a request, a frame of a topic, or unknown")
   CHECK_FALSE(unknown.is_request());
 }
 
-}  // namespace
+}  // namespace protocol_frame_index_test

@@ -5,7 +5,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace {
+namespace protocol_identifier_test {
 
 using ocm::base::Error;
 using ocm::protocol::Direction;
@@ -76,4 +76,4 @@ TEST_CASE("a topic's number is a type of its own") {
   STATIC_REQUIRE(TopicId{}.value == 0);
 }
 
-}  // namespace
+}  // namespace protocol_identifier_test

@@ -6,7 +6,7 @@
 
 #include "unit/protocol/example_topics.hpp"
 
-namespace {
+namespace protocol_message_test {
 
 using ocm::can::Frame;
 using ocm::protocol::command;
@@ -46,4 +46,4 @@ TEST_CASE("a sample comes back from its frames") {
                  sample);
 }
 
-}  // namespace
+}  // namespace protocol_message_test

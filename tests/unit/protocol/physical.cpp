@@ -4,7 +4,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace {
+namespace protocol_physical_test {
 
 using ocm::protocol::nearest_raw;
 
@@ -34,4 +34,4 @@ TEST_CASE("not a number is the nearest to zero, so that nothing moves") {
   STATIC_REQUIRE(nearest_raw<std::int16_t>(nan, -9, -5) == -5);
 }
 
-}  // namespace
+}  // namespace protocol_physical_test

@@ -6,7 +6,7 @@
 
 #include "unit/base/random.hpp"
 
-namespace {
+namespace protocol_request_test {
 
 using namespace std::chrono_literals;
 using ocm::base::Duration;
@@ -226,4 +226,4 @@ TEST_CASE("no period of any unit is nearer than the nearest, and none as near is
   }
 }
 
-}  // namespace
+}  // namespace protocol_request_test

@@ -5,7 +5,7 @@
 #include "unit/base/random.hpp"
 #include "unit/protocol/example_topics.hpp"
 
-namespace {
+namespace protocol_topic_test {
 
 using namespace std::chrono_literals;
 using ocm::base::Decimal;
@@ -143,4 +143,4 @@ TEST_CASE("what a board needs of a topic") {
   STATIC_REQUIRE_FALSE(ocm::protocol::TopicList<Scale>::contains<Lamp>);
 }
 
-}  // namespace
+}  // namespace protocol_topic_test

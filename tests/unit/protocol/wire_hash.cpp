@@ -6,7 +6,7 @@
 
 #include "ocm/topics/amiro.hpp"
 
-namespace {
+namespace protocol_wire_hash_test {
 
 using namespace ocm::protocol;
 
@@ -80,4 +80,4 @@ TEST_CASE("wire_hash: the generated header has it at compile time") {
   CHECK(amiro::wire_hash != 0);
 }
 
-}  // namespace
+}  // namespace protocol_wire_hash_test

@@ -4,11 +4,11 @@
 
 #include <catch2/catch.hpp>
 
+namespace scheduling_admission_test {
+
 using namespace ocm;
 using namespace ocm::scheduling;
 using namespace std::chrono_literals;
-
-namespace {
 
 static_assert(Admission<AdmitAll>);
 static_assert(std::is_empty_v<AdmitAll>);
@@ -23,9 +23,9 @@ struct Yes {
 };
 static_assert(!Admission<Yes>);
 
-}  // namespace
-
 TEST_CASE("AdmitAll takes everything") {
   CHECK(AdmitAll::admit(0, base::Duration{1}, Level::urgent) == base::Error::none);
   AdmitAll::ended(0);
 }
+
+}  // namespace scheduling_admission_test

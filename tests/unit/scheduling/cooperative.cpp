@@ -4,12 +4,12 @@
 
 #include "unit/scheduling/conformance.hpp"
 
+namespace scheduling_cooperative_test {
+
 using namespace ocm;
 using namespace std::chrono_literals;
 using scheduling::Cooperative;
 using scheduling::Level;
-
-namespace {
 
 /// The loop that the header shows, in virtual time.
 struct Loop {
@@ -59,8 +59,8 @@ static_assert(time_goes_forwards());
 
 static_assert(sizeof(Cooperative) == 24);
 
-}  // namespace
-
 TEST_CASE("the cooperative port is a port") {
   conformance::check<Loop>();
 }
+
+}  // namespace scheduling_cooperative_test

@@ -7,6 +7,8 @@
 
 #include "ocm/scheduling/cooperative.hpp"
 
+namespace scheduling_dispatcher_test {
+
 using namespace ocm;
 using namespace std::chrono_literals;
 using scheduling::Cooperative;
@@ -15,8 +17,6 @@ using scheduling::Level;
 using scheduling::Outcome;
 using scheduling::Overload;
 using scheduling::Release;
-
-namespace {
 
 constexpr base::Time at(base::Duration offset) {
   return base::Time{offset};
@@ -78,8 +78,6 @@ struct Setup {
 };
 
 static_assert(sizeof(Dispatcher<7, Cooperative>) == 7 * 40 + 24);
-
-}  // namespace
 
 TEST_CASE("a stream is released at once, then on its grid, and the timer is armed once a release") {
   Setup setup;
@@ -230,3 +228,5 @@ TEST_CASE("a timer that goes off early or for nothing does no harm") {
   setup.pass_to(1s);
   CHECK(setup.releases.size() == 2);
 }
+
+}  // namespace scheduling_dispatcher_test

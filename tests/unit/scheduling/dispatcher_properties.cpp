@@ -12,6 +12,8 @@
 #include "ocm/scheduling/dispatcher.hpp"
 #include "ocm/simulation/cpu.hpp"
 
+namespace scheduling_dispatcher_properties_test {
+
 using namespace ocm;
 using namespace std::chrono_literals;
 using scheduling::Cooperative;
@@ -24,8 +26,6 @@ using simulation::compute;
 using simulation::Cpu;
 using simulation::JobRecord;
 using simulation::Program;
-
-namespace {
 
 constexpr base::Time at(base::Duration offset) {
   return base::Time{offset};
@@ -63,8 +63,6 @@ struct OneDay {
     }
   }
 };
-
-}  // namespace
 
 TEST_CASE("a day without drift: the number of releases and the last one are exact") {
   std::vector<base::Duration> periods = {500ms, 800ms, 999'999us, 7s, 3'601s, 65'535s};
@@ -115,8 +113,6 @@ TEST_CASE("a day of a taker that sleeps: what is not served is counted, and the 
     CHECK(served + missed == static_cast<std::uint64_t>(day / period) + 1);
   }
 }
-
-namespace {
 
 /// The judge: all that a stream was asked for, grid point by grid point.
 class Naive {
@@ -205,8 +201,6 @@ class Naive {
   std::array<Stream, 5> streams_;
 };
 
-}  // namespace
-
 TEST_CASE("random requests, late takers, long jobs: every release is the one that the naive model has") {
   std::mt19937 random{20261121};
   const auto below = [&random](std::int64_t n) {
@@ -293,8 +287,6 @@ TEST_CASE("random requests, late takers, long jobs: every release is the one tha
   CHECK(std::min({seen.missed, seen.late, seen.overrun}) > 100U * effort);
 }
 
-namespace {
-
 /// Random requests to jobs that take time, at all levels, on a processor that preempts them.
 struct Requests {
   struct Request {
@@ -340,8 +332,6 @@ struct Requests {
   }
 };
 
-}  // namespace
-
 TEST_CASE("never two starts in one period, none after a stop, and each on the grid of the newest request") {
   std::size_t starts = 0;
   for (unsigned seed = 1; seed <= 1U * effort; ++seed) {
@@ -376,8 +366,6 @@ TEST_CASE("never two starts in one period, none after a stop, and each on the gr
   }
   CHECK(starts > 2'000U * effort);
 }
-
-namespace {
 
 constexpr base::Duration section = 700us;  // the longest that anybody has the resource
 
@@ -417,8 +405,6 @@ struct Loaded {
     cpu.run_until(at(20s));
   }
 };
-
-}  // namespace
 
 TEST_CASE("overload is counted for the overloaded topic, and harms it and lower levels only") {
   const Loaded punctual{4, 0ms, false};
@@ -461,3 +447,5 @@ TEST_CASE("a resource shared with an overloaded level holds an upper one up for 
   const Loaded none{2, 8ms, true, simulation::ResourceProtocol::none};
   CHECK(none.longest_block[0] > section + 50us);
 }
+
+}  // namespace scheduling_dispatcher_properties_test

@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+namespace scheduling_level_test {
+
 using ocm::scheduling::Level;
 
 TEST_CASE("the more urgent level comes first") {
@@ -14,3 +16,5 @@ TEST_CASE("the more urgent level comes first") {
 TEST_CASE("what does not say otherwise runs at medium") {
   STATIC_REQUIRE(ocm::scheduling::default_level == Level::medium);
 }
+
+}  // namespace scheduling_level_test

@@ -2,10 +2,10 @@
 
 #include <catch2/catch.hpp>
 
+namespace scheduling_mailbox_test {
+
 using namespace ocm;
 using scheduling::Mailbox;
-
-namespace {
 
 /// A lock that says when it is taken twice.
 struct Port {
@@ -75,4 +75,4 @@ TEST_CASE("mailbox: every access is one section under the port's lock", "[mailbo
   CHECK(port.sections == 4);
 }
 
-}  // namespace
+}  // namespace scheduling_mailbox_test

@@ -7,9 +7,9 @@
 
 #include "ocm/scheduling/mailbox.hpp"
 
-using ocm::scheduling::Mailbox;
+namespace scheduling_mailbox_threads_test {
 
-namespace {
+using ocm::scheduling::Mailbox;
 
 /// Two numbers that belong together.
 struct Pair {
@@ -20,8 +20,6 @@ struct ThreadPort {
   std::unique_lock<std::mutex> lock() { return std::unique_lock{mutex}; }
   std::mutex mutex;
 };
-
-}  // namespace
 
 TEST_CASE("mailbox: two threads: whole items, in order, each taken or counted", "[mailbox]") {
   constexpr long items = 200'000;
@@ -51,3 +49,5 @@ TEST_CASE("mailbox: two threads: whole items, in order, each taken or counted", 
   CHECK(last == items);
   CHECK(taken + box.lost() == items);
 }
+
+}  // namespace scheduling_mailbox_threads_test

@@ -7,12 +7,12 @@
 #include "examples/port/freertos.hpp"
 #include "unit/scheduling/conformance.hpp"
 
+namespace scheduling_port_test {
+
 using namespace ocm;
 using namespace std::chrono_literals;
 using scheduling::Level;
 using scheduling::Port;
-
-namespace {
 
 struct Guard {
   ~Guard() {}
@@ -75,8 +75,6 @@ struct FreeRtos {
   example::FreeRtosPort freertos;
 };
 
-}  // namespace
-
 TEST_CASE("the port that the documentation shows is one") {
   conformance::check<FreeRtos>();
 }
@@ -95,3 +93,5 @@ TEST_CASE("what is asked of it before its tasks exist is done when they do") {
   CHECK(expired == 1);
   CHECK(ran == 1);
 }
+
+}  // namespace scheduling_port_test

@@ -4,13 +4,13 @@
 
 #include <catch2/catch.hpp>
 
+namespace scheduling_publisher_test {
+
 using namespace ocm;
 using namespace std::chrono_literals;
 using scheduling::Level;
 using scheduling::Publisher;
 using scheduling::Release;
-
-namespace {
 
 constexpr base::Time at(base::Duration offset) {
   return base::Time{offset};
@@ -183,8 +183,6 @@ static_assert(due_says_whom_to_call_and_when_to_look_again());
 
 static_assert(sizeof(Publisher<17>) == 17 * 40 + 8);
 
-}  // namespace
-
 TEST_CASE("a stop takes effect before the next release") {
   Publisher<2> publisher;
   publisher.start(0, 10ms, Level::medium, at(0ms));
@@ -232,3 +230,5 @@ TEST_CASE("a caller that slept for a century neither hangs nor overflows") {
   REQUIRE(drain(publisher, at(100 * 365 * 24h), releases) == 1);
   CHECK(releases[0].missed == UINT32_MAX);
 }
+
+}  // namespace scheduling_publisher_test

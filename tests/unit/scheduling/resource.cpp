@@ -4,12 +4,12 @@
 
 #include <catch2/catch.hpp>
 
+namespace scheduling_resource_test {
+
 using namespace ocm;
 using namespace std::chrono_literals;
 using scheduling::Contention;
 using scheduling::Resource;
-
-namespace {
 
 struct Clock {
   base::Time time{};
@@ -71,8 +71,6 @@ Contention three_claims() {
   return resource.contention();
 }
 
-}  // namespace
-
 TEST_CASE("the longest wait and the longest hold are kept, and who had to wait is counted") {
   CHECK(three_claims<Mutex>() == Contention{3, 2, 7ms, 3ms});
   CHECK(three_claims<Plain>() == Contention{3, 2, 7ms, 3ms});
@@ -90,3 +88,5 @@ TEST_CASE("a claim holds the mutex exactly as long as it lives") {
   CHECK(resource.contention().claims == 1);
   CHECK(mutex.locked == 0);
 }
+
+}  // namespace scheduling_resource_test

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace {
+namespace sensing_anti_collision_test {
 
 using namespace ocm::sensing;
 
@@ -19,4 +19,4 @@ TEST_CASE("some sensor looks ahead at every angle but from 31 to 59 degrees", "[
   for (int servo = 0; servo <= 90; ++servo) CHECK((ahead_cm(servo, 7, 8) == 0) == (servo > 30 && servo < 60));
 }
 
-}  // namespace
+}  // namespace sensing_anti_collision_test

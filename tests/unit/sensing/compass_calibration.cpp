@@ -7,7 +7,7 @@
 
 #include "unit/motion/near.hpp"
 
-namespace {
+namespace sensing_compass_calibration_test {
 
 using namespace ocm::sensing;
 using ocm::base::Error;
@@ -78,4 +78,4 @@ TEST_CASE("the angle of a field, its offset taken off", "[sensing]") {
   CHECK(field_angle({-1.0F, -0.0F}, {}) > 0.0F);  // pi, not -pi
 }
 
-}  // namespace
+}  // namespace sensing_compass_calibration_test

@@ -6,7 +6,7 @@
 
 #include "unit/motion/near.hpp"
 
-namespace {
+namespace sensing_ir_sensor_test {
 
 using namespace ocm::sensing;
 using ocm::test::near;
@@ -82,4 +82,4 @@ TEST_CASE("a higher voltage is never farther", "[sensing]") {
   }
 }
 
-}  // namespace
+}  // namespace sensing_ir_sensor_test

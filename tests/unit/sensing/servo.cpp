@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace {
+namespace sensing_servo_test {
 
 using namespace ocm::sensing;
 
@@ -30,4 +30,4 @@ TEST_CASE("each degree is a step of its own, of 12 or 13 counts", "[sensing]") {
   }
 }
 
-}  // namespace
+}  // namespace sensing_servo_test

@@ -6,7 +6,7 @@
 
 #include "unit/motion/near.hpp"
 
-namespace {
+namespace sensing_tower_test {
 
 using namespace ocm::sensing;
 using ocm::base::Error;
@@ -82,4 +82,4 @@ TEST_CASE("nothing seen is no point", "[sensing]") {
   CHECK(seen_at({}, tower, 0, TowerSensor::forward, reading).ok());
 }
 
-}  // namespace
+}  // namespace sensing_tower_test

@@ -10,6 +10,8 @@
 
 #include "unit/simulation/arbiter_testing.hpp"
 
+namespace simulation_arbiter_test {
+
 using namespace ocm;
 using namespace std::chrono_literals;
 using simulation::Arbiter;
@@ -21,8 +23,6 @@ using test::frame;
 using test::run;
 using test::Texts;
 using test::texts;
-
-namespace {
 
 constexpr base::Time at(base::Duration time) {
   return base::Time{time};
@@ -120,8 +120,6 @@ std::vector<Trace::Sent> play(const Trace& trace, base::Duration step, bool adva
   while (bus.next_event() != base::never) advance(bus.next_event());
   return result;
 }
-
-}  // namespace
 
 TEST_CASE("the bus makes of every trace what the independent computation makes of it, to the bit") {
   const auto traces = read_traces();
@@ -334,3 +332,5 @@ TEST_CASE("a port is what a board sends to") {
   CHECK_FALSE(*port.send(frame("606#")));
   CHECK(run(bus)[0].from == port.node());
 }
+
+}  // namespace simulation_arbiter_test

@@ -11,6 +11,8 @@
 #include "unit/simulation/arbiter_testing.hpp"
 #include "unit/simulation/naive_bus.hpp"
 
+namespace simulation_arbiter_disturbed_test {
+
 using namespace ocm;
 using namespace std::chrono_literals;
 using simulation::Arbiter;
@@ -25,8 +27,6 @@ using test::run;
 using test::Texts;
 using test::texts;
 
-namespace {
-
 constexpr base::Duration bit = 2us;  // at 500 kbit/s
 
 constexpr base::Time at(std::uint64_t boundary) {
@@ -37,8 +37,6 @@ constexpr base::Time at(std::uint64_t boundary) {
 constexpr can::Frame plain{.id = 0x555, .dlc = 5, .data = {0x55, 0x55, 0x55, 0x55, 0x55}};
 constexpr std::uint64_t plain_bits = 84;
 static_assert(can::frame_bits(plain) == plain_bits);
-
-}  // namespace
 
 TEST_CASE(
     "a frame broken at its bit k: flags from k + 1, 8 bits delimiter, 3 intermission, the frame again") {
@@ -327,8 +325,6 @@ TEST_CASE("a node whose frames are always broken is off the bus after 32 times, 
 
 // --- against a bus that goes bit by bit ---
 
-namespace {
-
 using Random = std::mt19937;
 
 struct Trace {
@@ -424,8 +420,6 @@ Played play(const Trace& trace, Random* random) {
   return played;
 }
 
-}  // namespace
-
 TEST_CASE("random disturbances: the same as bit by bit, and no frame is lost or sent twice") {
   Random random{11898};
   std::uint64_t broken = 0, overloads = 0, duplicates = 0, early = 0, off = 0;
@@ -467,3 +461,5 @@ TEST_CASE("random disturbances: the same as bit by bit, and no frame is lost or 
   CHECK(early > 0);
   CHECK(off > 0);
 }
+
+}  // namespace simulation_arbiter_disturbed_test

@@ -10,13 +10,9 @@
 #include "ocm/can/text.hpp"
 #include "ocm/simulation/arbiter.hpp"
 
-namespace ocm::test {
+#include "unit/can/frame_of.hpp"
 
-inline can::Frame frame(std::string_view text) {
-  const auto parsed = can::parse_frame(text);
-  REQUIRE(parsed.ok());
-  return *parsed;
-}
+namespace ocm::test {
 
 inline std::vector<simulation::Delivery> run(simulation::Arbiter& bus, base::Time until = base::never) {
   std::vector<simulation::Delivery> deliveries;

@@ -2,11 +2,11 @@
 
 #include <catch2/catch.hpp>
 
+namespace simulation_bit_clock_test {
+
 using namespace ocm;
 using simulation::BitClock;
 using namespace std::chrono_literals;
-
-namespace {
 
 constexpr base::Time at(base::Duration time) {
   return base::Time{time};
@@ -49,8 +49,6 @@ static_assert(early.time_of(18'446'744'073'709'551) == at(9'223'372'036'854'775'
 static_assert(early.time_of(18'446'744'073'709'552) == base::never);
 static_assert(robot.boundary_from(at(-1ns)) == 0);
 
-}  // namespace
-
 TEST_CASE("a boundary's time stamp leads back to the boundary at every bit rate") {
   for (const std::uint32_t bit_rate : {1U, 3U, 83'333U, 500'000U, 666'667U, 999'999'999U, 1'000'000'000U}) {
     const BitClock clock{bit_rate, at(-17ns)};
@@ -62,3 +60,5 @@ TEST_CASE("a boundary's time stamp leads back to the boundary at every bit rate"
     }
   }
 }
+
+}  // namespace simulation_bit_clock_test

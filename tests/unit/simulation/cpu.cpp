@@ -8,6 +8,8 @@
 
 #include "unit/scheduling/conformance.hpp"
 
+namespace simulation_cpu_test {
+
 using namespace ocm;
 using namespace std::chrono_literals;
 using scheduling::Level;
@@ -20,8 +22,6 @@ using simulation::lock;
 using simulation::Program;
 using simulation::ResourceProtocol;
 using simulation::unlock;
-
-namespace {
 
 constexpr base::Time at(base::Duration offset) {
   return base::Time{offset};
@@ -63,8 +63,6 @@ struct VirtualPort {
   void stop() {}
   static constexpr base::Duration slack{0};
 };
-
-}  // namespace
 
 TEST_CASE("the virtual processor is a port") {
   conformance::check<VirtualPort>();
@@ -186,3 +184,5 @@ TEST_CASE("equal runs are equal") {
   CHECK(first.size() > 20'000);
   CHECK(first == run());
 }
+
+}  // namespace simulation_cpu_test

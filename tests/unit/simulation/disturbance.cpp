@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+namespace simulation_disturbance_test {
+
 using namespace ocm;
 using simulation::Disturbance;
 using simulation::Disturbances;
@@ -34,3 +36,5 @@ TEST_CASE("two disturbances of one bit are one, with the longer flags") {
   CHECK(ahead.size() == 1);
   CHECK(ahead.pop().flag_bits == 11);
 }
+
+}  // namespace simulation_disturbance_test

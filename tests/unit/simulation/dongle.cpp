@@ -7,7 +7,7 @@
 
 #include "unit/base/random.hpp"
 
-namespace {
+namespace simulation_dongle_test {
 
 using namespace ocm;
 using namespace std::chrono_literals;
@@ -161,4 +161,4 @@ TEST_CASE("a packet cutter") {
   CHECK(cutter.begun() == 0);
 }
 
-}  // namespace
+}  // namespace simulation_dongle_test

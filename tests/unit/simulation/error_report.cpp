@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+namespace simulation_error_report_test {
+
 using namespace ocm;
 using simulation::error_report;
 using simulation::FaultConfinement;
@@ -31,3 +33,5 @@ TEST_CASE("error passive and bus-off are in the report") {
   while (listener.state() == simulation::FaultState::error_active) listener.failed_to_receive();
   CHECK(error_report(listener, false).data[1] == can::controller_error::rx_passive);
 }
+
+}  // namespace simulation_error_report_test

@@ -2,11 +2,11 @@
 
 #include <catch2/catch.hpp>
 
+namespace simulation_fault_confinement_test {
+
 using namespace ocm;
 using simulation::FaultConfinement;
 using simulation::FaultState;
-
-namespace {
 
 constexpr FaultConfinement after_failures(unsigned sending, unsigned receiving) {
   FaultConfinement faults;
@@ -28,8 +28,6 @@ static_assert(after_failures(31, 0).state() == FaultState::error_passive);
 static_assert(after_failures(32, 0).state() == FaultState::bus_off);
 static_assert(after_failures(0, 10'000).state() == FaultState::error_passive);  // who only hears stays
 static_assert(after_failures(0, 10'000).receive_errors() == 255);
-
-}  // namespace
 
 TEST_CASE("a success takes one back, never below zero") {
   FaultConfinement faults = after_failures(16, 3);
@@ -84,3 +82,5 @@ TEST_CASE("silence changes nothing for a node that is on the bus") {
   CHECK(faults.transmit_errors() == 160);
   CHECK(faults.receive_errors() == 9);
 }
+
+}  // namespace simulation_fault_confinement_test

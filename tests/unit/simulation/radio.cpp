@@ -12,7 +12,7 @@
 
 #include "unit/base/random.hpp"
 
-namespace {
+namespace simulation_radio_test {
 
 using namespace ocm;
 using namespace std::chrono_literals;
@@ -649,4 +649,4 @@ TEST_CASE("random lives of three robots are as a plain model has them") {
   }
 }
 
-}  // namespace
+}  // namespace simulation_radio_test

@@ -15,7 +15,7 @@
 
 #include "unit/base/random.hpp"
 
-namespace {
+namespace simulation_radio_chain_test {
 
 using namespace ocm;
 using namespace std::chrono_literals;
@@ -242,4 +242,4 @@ TEST_CASE("radio chain: measured degradation", "[.measure]") {
   }
 }
 
-}  // namespace
+}  // namespace simulation_radio_chain_test

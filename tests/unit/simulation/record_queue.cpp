@@ -6,11 +6,11 @@
 
 #include "unit/base/random.hpp"
 
+namespace simulation_record_queue_test {
+
 using namespace ocm;
 using simulation::RecordQueue;
 namespace vb = transport::virtual_bus;
-
-namespace {
 
 vb::Record record(std::uint32_t number) {
   return vb::to_record(vb::Count{.type = vb::Type::credit, .count = number});
@@ -27,8 +27,6 @@ std::deque<std::uint64_t> front(RecordQueue& queue, std::size_t count) {
     }
   return numbers;
 }
-
-}  // namespace
 
 TEST_CASE("records come out in the order in which they went in, up to the limit") {
   RecordQueue queue;
@@ -64,3 +62,5 @@ TEST_CASE("it is a queue, however it grows and turns") {
     REQUIRE(queue.size() == expected.size());
   }
 }
+
+}  // namespace simulation_record_queue_test

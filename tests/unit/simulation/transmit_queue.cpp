@@ -2,12 +2,12 @@
 
 #include <catch2/catch.hpp>
 
+namespace simulation_transmit_queue_test {
+
 using namespace ocm;
 using simulation::QueueOrder;
 using simulation::TransmitQueue;
 using simulation::WaitingFrame;
-
-namespace {
 
 /// A frame that is known by its key.
 WaitingFrame waiting(std::uint32_t key, std::uint64_t ready = 0) {
@@ -21,8 +21,6 @@ std::vector<std::uint32_t> keys(const TransmitQueue& queue) {
 }
 
 using Keys = std::vector<std::uint32_t>;
-
-}  // namespace
 
 TEST_CASE("a FIFO offers its oldest, mailboxes their lowest that is ready, of equals the oldest") {
   for (const QueueOrder order : {QueueOrder::fifo, QueueOrder::by_identifier}) {
@@ -76,3 +74,5 @@ TEST_CASE("a queue has room for at least one frame, none at all before it is mad
   CHECK(queue.empty());
   CHECK(queue.room() == 2);
 }
+
+}  // namespace simulation_transmit_queue_test

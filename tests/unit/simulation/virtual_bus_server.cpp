@@ -9,6 +9,8 @@
 
 #include "unit/transport/virtual_bus_setup.hpp"
 
+namespace simulation_virtual_bus_server_test {
+
 using namespace ocm;
 using namespace ocm::test;
 using simulation::VirtualBusServer;
@@ -526,3 +528,5 @@ TEST_CASE("the default directory is made for the user alone, and the socket too"
   REQUIRE(::chmod((other.path() + "/ocm").c_str(), 0755) == 0);
   CHECK_THAT(simulation::VirtualBusServer::open().error.what, Catch::Contains("open to other users"));
 }
+
+}  // namespace simulation_virtual_bus_server_test

@@ -9,6 +9,8 @@
 
 #include "unit/host/host_testing.hpp"
 
+namespace simulation_virtual_bus_socket_test {
+
 using namespace ocm;
 using namespace ocm::test;
 using namespace std::chrono_literals;
@@ -72,3 +74,5 @@ TEST_CASE("a socket that was moved stays, and goes with its last owner") {
   }
   CHECK_FALSE(std::filesystem::exists(path));
 }
+
+}  // namespace simulation_virtual_bus_socket_test

@@ -8,7 +8,7 @@
 #include "ocm/can/bit_timing.hpp"
 #include "ocm/protocol/message.hpp"
 
-namespace {
+namespace topics_amiro_test {
 
 using namespace amiro;
 using ocm::can::Frame;
@@ -249,4 +249,4 @@ TEST_CASE("each board's clock gives the bus's bit rate exactly") {  // [RM0008 2
   STATIC_REQUIRE(!PowerManagement::sensors::contains<Gyroscope>);
 }
 
-}  // namespace
+}  // namespace topics_amiro_test

@@ -4,13 +4,14 @@
 
 #include "ocm/can/bus.hpp"
 
+namespace transport_bus_test {
+
 using namespace ocm;
 using transport::BusState;
 using transport::Failure;
 
 static_assert(can::Bus<transport::Bus>);
 
-namespace {
 /// The least that a bus must say of itself.
 class Plain final : public transport::Bus {
  public:
@@ -26,7 +27,6 @@ class Plain final : public transport::Bus {
  private:
   transport::BusCounters counters_;
 };
-}  // namespace
 
 TEST_CASE("a bus without a state of its own is up until it failed") {
   Plain bus;
@@ -34,3 +34,5 @@ TEST_CASE("a bus without a state of its own is up until it failed") {
   bus.reason = {"pulled out", "put it in"};
   CHECK(bus.state() == BusState::closed);
 }
+
+}  // namespace transport_bus_test

@@ -2,11 +2,11 @@
 
 #include <catch2/catch.hpp>
 
+namespace transport_interfaces_test {
+
 using namespace ocm;
 using transport::CanInterface;
 using transport::detail::LinkDump;
-
-namespace {
 
 using Bytes = std::vector<std::byte>;
 
@@ -63,8 +63,6 @@ Bytes can_info(std::uint32_t bit_rate, std::uint32_t state = CAN_STATE_ERROR_ACT
                        attribute(IFLA_INFO_DATA, attribute(IFLA_CAN_BITTIMING, bytes_of(timing)) +
                                                      attribute(IFLA_CAN_STATE, bytes_of(state))));
 }
-
-}  // namespace
 
 TEST_CASE("only the CAN interfaces are read from the kernel's list") {
   std::vector<CanInterface> found;
@@ -149,3 +147,5 @@ TEST_CASE("why a CAN socket cannot be had") {
   CHECK_THAT(can_socket_failure(EPERM).what, Catch::StartsWith("not allowed"));
   CHECK_THAT(can_socket_failure(EMFILE).what, Catch::Contains(std::strerror(EMFILE)));
 }
+
+}  // namespace transport_interfaces_test

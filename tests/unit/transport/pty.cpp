@@ -9,7 +9,7 @@
 
 #include "ocm/transport/serial_port.hpp"
 
-namespace {
+namespace transport_pty_test {
 
 using namespace ocm;
 using Catch::Contains;
@@ -207,4 +207,4 @@ TEST_CASE("pty: a serial port at the other end sees it go") {
   CHECK_THAT(port->failure().what, Contains("is gone"));
 }
 
-}  // namespace
+}  // namespace transport_pty_test

@@ -7,7 +7,7 @@
 
 #include "ocm/transport/pty.hpp"
 
-namespace {
+namespace transport_serial_port_test {
 
 using namespace ocm;
 using Catch::Contains;
@@ -142,4 +142,4 @@ TEST_CASE(
   CHECK(exclusive == 0);
 }
 
-}  // namespace
+}  // namespace transport_serial_port_test

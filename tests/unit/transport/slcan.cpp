@@ -12,19 +12,16 @@
 #include "ocm/can/slcan_adapter.hpp"
 #include "ocm/can/text.hpp"
 
+#include "unit/can/frame_of.hpp"
+
+namespace transport_slcan_test {
+
 using namespace ocm;
 using namespace std::chrono_literals;
+using test::frame;
 using transport::BusState;
 using transport::Slcan;
 using transport::SlcanOptions;
-
-namespace {
-
-can::Frame frame(std::string_view text) {
-  const auto parsed = can::parse_frame(text);
-  REQUIRE(parsed);
-  return *parsed;
-}
 
 std::string text(const can::Frame& f) {
   return std::string(can::to_text(f).view());
@@ -197,8 +194,6 @@ std::vector<std::string> receive(Slcan& bus, std::size_t count) {
 }
 
 using Catch::Matchers::Contains;
-
-}  // namespace
 
 TEST_CASE("slcan: what cannot be opened is told with what to do") {
   CHECK_THAT(failure("/dev/no-such-adapter").what, Contains("no serial device '/dev/no-such-adapter'"));
@@ -633,3 +628,5 @@ TEST_CASE("slcan: a local socket, as a board in QEMU has it") {
   }
   std::filesystem::remove_all(folder);
 }
+
+}  // namespace transport_slcan_test

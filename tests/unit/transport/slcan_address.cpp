@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+namespace transport_slcan_address_test {
+
 using namespace ocm;
 using Catch::Matchers::Contains;
 using transport::parse_slcan_address;
@@ -31,3 +33,5 @@ TEST_CASE("slcan address: device, bit rate, speed of the line") {
   CHECK_THAT(refused("/dev/x@500k,"), Contains("no speed"));
   CHECK_THAT(refused("/dev/x@500k,110000"), Contains("nearest is 115200"));
 }
+
+}  // namespace transport_slcan_address_test

@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+namespace transport_slcan_stamps_test {
+
 using namespace ocm;
 using namespace std::chrono_literals;
 using transport::StampClock;
@@ -50,3 +52,5 @@ TEST_CASE("slcan: time stamps across minutes, hours of silence, delays, drift an
     CHECK(clock.map(stamp(21'000), at(61'000)) == at(61'000));
   }
 }
+
+}  // namespace transport_slcan_stamps_test

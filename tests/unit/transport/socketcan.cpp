@@ -6,11 +6,11 @@
 
 #include <catch2/catch.hpp>
 
+namespace transport_socketcan_test {
+
 using namespace ocm;
 using transport::CanInterface;
 using transport::SocketCan;
-
-namespace {
 
 static_assert(can::Bus<SocketCan>);
 
@@ -27,8 +27,6 @@ can_frame raw(std::uint32_t id, std::uint8_t length, std::array<std::uint8_t, 8>
 }
 
 const std::vector<CanInterface> some = {{"vcan0", 4, true, "vcan", 0}, {"can0", 5, false, "can", 0}};
-
-}  // namespace
 
 TEST_CASE("frames to and from the kernel's form") {
   for (const char* text : {"000#", "7FF#1122334455667788", "205#01840302", "00000205#01", "1FFFFFFF#FF",
@@ -118,3 +116,5 @@ TEST_CASE("an interface that is not there fails with a reason and a remedy") {
     CHECK(bus.error.what.find("nosuchcan") != std::string::npos);
   CHECK_FALSE(bus.error.remedy.empty());
 }
+
+}  // namespace transport_socketcan_test

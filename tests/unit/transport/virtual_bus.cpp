@@ -7,12 +7,12 @@
 
 #include "unit/transport/virtual_bus_setup.hpp"
 
+namespace transport_virtual_bus_test {
+
 using namespace ocm;
 using namespace ocm::test;
 using transport::BusState;
 using transport::VirtualBus;
-
-namespace {
 
 static_assert(can::Bus<VirtualBus>);
 
@@ -54,8 +54,6 @@ class RawServer {
   host::Descriptor listener_{::socket(AF_UNIX, SOCK_SEQPACKET, 0)};
   host::Descriptor client_;
 };
-
-}  // namespace
 
 TEST_CASE("nobody serves a bus: the message says how to get one") {
   const TemporaryDirectory directory;
@@ -393,3 +391,5 @@ TEST_CASE("frames that wait for a client are bounded, and those beyond are count
   CHECK(bus->counters().lost == 80'000 - 65'536 + 200);
   CHECK(received(*bus).size() == 65'536);
 }
+
+}  // namespace transport_virtual_bus_test

@@ -6,10 +6,10 @@
 
 #include "unit/transport/virtual_bus_setup.hpp"
 
+namespace transport_virtual_bus_protocol_test {
+
 using namespace ocm;
 using namespace ocm::test;
-
-namespace {
 
 static_assert(sizeof(vb::Hello) == vb::record_size);
 static_assert(sizeof(vb::FrameRecord) == vb::record_size);
@@ -34,8 +34,6 @@ static_assert(vb::decode({.dlc = 200}).error.detail == 200);
 static_assert(*vb::decode({.dlc = 1, .data = {1, 2, 3}}) == can::Frame{.dlc = 1, .data = {1}});
 static_assert(*vb::decode({.format = 2, .dlc = 3, .data = {1, 2, 3}}) ==
               can::Frame{.dlc = 3, .format = can::Format::base_remote});
-
-}  // namespace
 
 TEST_CASE("the socket lies in the user's runtime directory, or else in one in /tmp") {
   const TemporaryDirectory directory;
@@ -70,3 +68,5 @@ TEST_CASE("every reason has words of its own") {
   CHECK(std::unique(words.begin(), words.end()) == words.end());
   CHECK(vb::describe({.reason = static_cast<vb::Reason>(99)}) == "reason 99");
 }
+
+}  // namespace transport_virtual_bus_protocol_test

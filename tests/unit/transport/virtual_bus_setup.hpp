@@ -13,18 +13,13 @@
 #include "ocm/simulation/virtual_bus_server.hpp"
 #include "ocm/transport/virtual_bus.hpp"
 
+#include "unit/can/frame_of.hpp"
 #include "unit/host/host_testing.hpp"
 
 namespace ocm::test {
 
 namespace vb = transport::virtual_bus;
 using namespace std::chrono_literals;
-
-inline can::Frame frame(std::string_view text) {
-  const auto parsed = can::parse_frame(text);
-  REQUIRE(parsed.ok());
-  return *parsed;
-}
 
 using Texts = std::vector<std::string>;
 

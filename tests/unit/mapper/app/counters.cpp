@@ -5,9 +5,9 @@
 
 #include <catch2/catch.hpp>
 
-using namespace ocm;
+namespace mapper_app_counters_test {
 
-namespace {
+using namespace ocm;
 
 static_assert(std::is_trivially_copyable_v<mapper::app::Counters>);
 // Numbers of 32 bits alone, so that an image can hand them on as they lie.
@@ -21,4 +21,4 @@ TEST_CASE("mapper counters: all begin at nothing", "[mapper_counters]") {
   for (const std::uint32_t number : numbers) CHECK(number == 0);
 }
 
-}  // namespace
+}  // namespace mapper_app_counters_test

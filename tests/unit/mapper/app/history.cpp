@@ -9,13 +9,13 @@
 
 #include "unit/motion/near.hpp"
 
+namespace mapper_app_history_test {
+
 using namespace ocm;
 using mapper::app::History;
 using mapper::app::towards;
 using motion::Point;
 using ocm::test::near;
-
-namespace {
 
 template <std::size_t N>
 std::vector<Point> taken(History<N> history) {
@@ -143,4 +143,4 @@ TEST_CASE("mapper history: the set point towards a place, by hand", "[mapper_his
   CHECK(towards({1, 2, 3}, {1, 2}) == motion::SetPoint{});
 }
 
-}  // namespace
+}  // namespace mapper_app_history_test

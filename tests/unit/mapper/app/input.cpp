@@ -5,10 +5,10 @@
 
 #include <catch2/catch.hpp>
 
+namespace mapper_app_input_test {
+
 using namespace ocm;
 using mapper::app::Input;
-
-namespace {
 
 TEST_CASE("mapper input: first in, first out, and a byte without room is lost and counted",
           "[mapper_input]") {
@@ -71,4 +71,4 @@ TEST_CASE("mapper input: random pushes and pops against a queue", "[mapper_input
   CHECK(lost > 1000);
 }
 
-}  // namespace
+}  // namespace mapper_app_input_test

@@ -4,11 +4,11 @@
 
 #include <catch2/catch.hpp>
 
+namespace mapper_app_load_test {
+
 using namespace ocm;
 using namespace std::chrono_literals;
 using mapper::app::Load;
-
-namespace {
 
 constexpr base::Time at(base::Duration time) {
   return base::Time{time};
@@ -42,4 +42,4 @@ TEST_CASE("mapper load: a clock that goes back takes nothing away", "[mapper_loa
   CHECK(load.busy() == 0ms);
 }
 
-}  // namespace
+}  // namespace mapper_app_load_test

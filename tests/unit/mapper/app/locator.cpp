@@ -6,6 +6,8 @@
 
 #include "unit/motion/near.hpp"
 
+namespace mapper_app_locator_test {
+
 using namespace ocm;
 using mapper::app::Activity;
 using mapper::app::Locator;
@@ -16,8 +18,6 @@ using motion::Movement;
 using ocm::test::near;
 using ocm::test::near_angle;
 using sensing::Field;
-
-namespace {
 
 constexpr float dt = 0.030F;
 constexpr Activity at_rest{};
@@ -188,4 +188,4 @@ TEST_CASE("mapper locator: a turn that was not all around keeps the offset that 
   CHECK(locator.offset() == Field{0.01F, 0.02F});
 }
 
-}  // namespace
+}  // namespace mapper_app_locator_test

@@ -6,13 +6,13 @@
 
 #include "unit/motion/near.hpp"
 
+namespace mapper_app_measuring_test {
+
 using namespace ocm;
 using mapper::app::Measurement;
 using mapper::app::Measuring;
 using ocm::test::near;
 using sensing::Field;
-
-namespace {
 
 constexpr Measuring model{.samples = 4, .failures = 3, .moving_rad_s = 0.3F};
 constexpr base::Result<float> no_gyro{base::Error::no_answer};
@@ -101,4 +101,4 @@ TEST_CASE("mapper measuring: a part has failed after some failures in a row", "[
   CHECK_FALSE(measurement.failed());
 }
 
-}  // namespace
+}  // namespace mapper_app_measuring_test

@@ -4,13 +4,13 @@
 
 #include "unit/motion/near.hpp"
 
+namespace mapper_app_models_test {
+
 using namespace ocm;
 using namespace std::chrono_literals;
 using mapper::app::arduino_robot;
 using mapper::app::avr_robot;
 using ocm::test::near;
-
-namespace {
 
 // [T2 §11.2.3; tables 9.2, 9.3]
 static_assert(avr_robot.estimator.drive.ticks_per_turn == 198.0F && avr_robot.motors.most_ticks_s == 66.0F);
@@ -53,4 +53,4 @@ TEST_CASE("mapper models: a calibration belongs to one robot, not to its type", 
   CHECK(mine.handshake == avr_robot.handshake);
 }
 
-}  // namespace
+}  // namespace mapper_app_models_test

@@ -10,6 +10,8 @@
 
 #include "unit/motion/near.hpp"
 
+namespace mapper_app_motors_test {
+
 using namespace ocm;
 using mapper::app::MotorKind;
 using mapper::app::MotorModel;
@@ -19,8 +21,6 @@ using motion::Efforts;
 using motion::Movement;
 using motion::PoseCommand;
 using ocm::test::near;
-
-namespace {
 
 constexpr float dt = 0.020F;
 constexpr MotorModel gated = mapper::app::avr_robot.motors;
@@ -170,4 +170,4 @@ TEST_CASE("mapper motors: efforts are never beyond 1, whatever comes", "[mapper_
   }
 }
 
-}  // namespace
+}  // namespace mapper_app_motors_test

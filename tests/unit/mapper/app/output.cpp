@@ -9,9 +9,9 @@
 
 #include "unit/mapper/app/app_testing.hpp"
 
-using namespace app_testing;
+namespace mapper_app_output_test {
 
-namespace {
+using namespace app_testing;
 
 struct Clock {
   base::Time now() const { return {}; }
@@ -101,4 +101,4 @@ TEST_CASE("mapper output: without room the rest of the sentence is lost, to the 
   CHECK(setup.parts.sent == whole);
 }
 
-}  // namespace
+}  // namespace mapper_app_output_test

@@ -2,10 +2,10 @@
 
 #include <catch2/catch.hpp>
 
+namespace mapper_app_parts_test {
+
 using namespace ocm;
 using mapper::app::RobotParts;
-
-namespace {
 
 struct Parts {
   mapper::app::WheelTicks ticks() { return {}; }
@@ -38,4 +38,4 @@ TEST_CASE("mapper parts: lamps and ticks are compared by what they hold", "[mapp
   CHECK_FALSE(mapper::app::Lights{.green = true} == mapper::app::Lights{.yellow = true});
 }
 
-}  // namespace
+}  // namespace mapper_app_parts_test

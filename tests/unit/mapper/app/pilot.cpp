@@ -10,13 +10,13 @@
 
 #include "unit/motion/near.hpp"
 
+namespace mapper_app_pilot_test {
+
 using namespace ocm;
 using mapper::app::Pilot;
 using mapper::app::PilotEnd;
 using motion::Pose;
 using ocm::test::near;
-
-namespace {
 
 constexpr float dt = 0.030F;
 constexpr const motion::PoseControllerModel& model = mapper::app::arduino_robot.controller;
@@ -123,4 +123,4 @@ TEST_CASE("mapper pilot: a robot that knows not where it is gets home at once, s
   CHECK(pilot.rejected() > 0);
 }
 
-}  // namespace
+}  // namespace mapper_app_pilot_test

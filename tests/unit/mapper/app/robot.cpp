@@ -14,10 +14,10 @@
 #include "unit/mapper/app/app_testing.hpp"
 #include "unit/motion/near.hpp"
 
+namespace mapper_app_robot_test {
+
 using namespace app_testing;
 using ocm::test::near;
-
-namespace {
 
 const std::string handshake = "{H,20,20,1,3,0,90,180,270,5000,20225}\n";
 constexpr mapper::app::Lights green{.green = true};
@@ -684,4 +684,4 @@ TEST_CASE("mapper: idle time, where the port has none: all that no job took", "[
   CHECK(bench.robot.idle() == 2s);  // in this port jobs take no time
 }
 
-}  // namespace
+}  // namespace mapper_app_robot_test

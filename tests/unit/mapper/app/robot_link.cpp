@@ -11,11 +11,11 @@
 #include "unit/mapper/app/app_testing.hpp"
 #include "unit/motion/near.hpp"
 
+namespace mapper_app_robot_link_test {
+
 using namespace app_testing;
 using ocm::test::coarser;
 using ocm::test::near;
-
-namespace {
 
 void never_drives(Bench& bench, base::Duration time) {
   bench.each_step = [&] { REQUIRE(bench.parts.efforts == motion::Efforts{}); };
@@ -329,4 +329,4 @@ TEST_CASE("mapper: a hundred links, each as good as the first", "[mapper][link]"
   CHECK(bench.robot.counters().links_lost == 100);
 }
 
-}  // namespace
+}  // namespace mapper_app_robot_link_test

@@ -12,9 +12,9 @@
 
 #include "unit/mapper/app/app_testing.hpp"
 
-using namespace app_testing;
+namespace mapper_app_robot_properties_test {
 
-namespace {
+using namespace app_testing;
 
 /// An operator without sense, on a link that comes and goes, with parts that fail now and then.
 template <class Bench>
@@ -222,4 +222,4 @@ TEST_CASE("mapper: stopped in the middle of a control step, it is stopped", "[ma
   }
 }
 
-}  // namespace
+}  // namespace mapper_app_robot_properties_test

@@ -20,6 +20,8 @@
 
 #include "unit/mapper/app/app_testing.hpp"
 
+namespace mapper_app_robot_times_test {
+
 using namespace app_testing;
 using analysis::Section;
 using scheduling::Level;
@@ -27,8 +29,6 @@ using scheduling::Release;
 using simulation::compute;
 using simulation::Cpu;
 using simulation::Program;
-
-namespace {
 
 /// Where each task stands in a set: as in the thesis's tables.
 enum Row : std::size_t { left, right, uart, estimator, movement, communication, pose, tower, rows };
@@ -313,4 +313,4 @@ TEST_CASE("mapper: response times, as a table", "[.measure]") {
   }
 }
 
-}  // namespace
+}  // namespace mapper_app_robot_times_test

@@ -6,6 +6,8 @@
 
 #include <catch2/catch.hpp>
 
+namespace mapper_app_state_test {
+
 using namespace ocm;
 using namespace std::chrono_literals;
 using mapper::app::Event;
@@ -13,8 +15,6 @@ using mapper::app::Lights;
 using mapper::app::lights;
 using mapper::app::State;
 using mapper::app::Step;
-
-namespace {
 
 using S = State;
 using E = Event;
@@ -143,4 +143,4 @@ TEST_CASE("mapper state: lamps", "[mapper_state]") {
   }
 }
 
-}  // namespace
+}  // namespace mapper_app_state_test

@@ -4,13 +4,13 @@
 
 #include <catch2/catch.hpp>
 
+namespace mapper_app_tower_test {
+
 using namespace ocm;
 using mapper::app::distance_cm;
 using mapper::app::Distances;
 using mapper::app::in_the_way;
 using motion::Movement;
-
-namespace {
 
 constexpr auto curve = sensing::typical_ir_curve;
 
@@ -82,4 +82,4 @@ TEST_CASE("mapper tower: who stands or rotates hits nothing", "[mapper_tower]") 
     CHECK_FALSE(in_the_way(movement, false, 0, wall_ahead, 15));
 }
 
-}  // namespace
+}  // namespace mapper_app_tower_test

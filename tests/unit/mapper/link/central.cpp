@@ -12,7 +12,7 @@
 
 #include "unit/base/random.hpp"
 
-namespace {
+namespace mapper_link_central_test {
 
 using namespace ocm::mapper::link;
 using ocm::base::Error;
@@ -375,4 +375,4 @@ TEST_CASE(
   CHECK(bench.type("start\n") == "<scan>scanning\n");  // it never hangs
 }
 
-}  // namespace
+}  // namespace mapper_link_central_test

@@ -11,7 +11,7 @@
 
 #include "unit/mapper/link/link_testing.hpp"
 
-namespace {
+namespace mapper_link_demultiplexer_test {
 
 using namespace ocm::mapper::link;
 using ocm::test::Random;
@@ -161,4 +161,4 @@ TEST_CASE("an update that is lost lowers the quality when its number is missed")
   CHECK(ear.quality().per_mille() < 800);
 }
 
-}  // namespace
+}  // namespace mapper_link_demultiplexer_test

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace {
+namespace mapper_link_field_test {
 
 using namespace ocm::mapper::link;
 
@@ -20,4 +20,4 @@ TEST_CASE("a field without a range takes any integer, and reaches its member") {
   STATIC_REQUIRE(Pair{3, 4}.*second.member == 4);
 }
 
-}  // namespace
+}  // namespace mapper_link_field_test

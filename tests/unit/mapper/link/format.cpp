@@ -8,7 +8,7 @@
 
 #include "unit/mapper/link/link_testing.hpp"
 
-namespace {
+namespace mapper_link_format_test {
 
 using namespace ocm::mapper::link;
 using ocm::base::Error;
@@ -99,4 +99,4 @@ TEST_CASE("format: robot and server agree over the line, whoever of them is old"
   }
 }
 
-}  // namespace
+}  // namespace mapper_link_format_test

@@ -8,7 +8,7 @@
 
 #include "unit/mapper/link/link_testing.hpp"
 
-namespace {
+namespace mapper_link_packed_test {
 
 using namespace ocm::mapper::link;
 using ocm::base::Error;
@@ -142,4 +142,4 @@ TEST_CASE("packed: a whole packet with a field that cannot be is refused by that
   CHECK(reader.faults() == PackedFaults{.out_of_range = 1});
 }
 
-}  // namespace
+}  // namespace mapper_link_packed_test

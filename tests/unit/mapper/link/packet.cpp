@@ -9,7 +9,7 @@
 
 #include "unit/mapper/link/link_testing.hpp"
 
-namespace {
+namespace mapper_link_packet_test {
 
 using namespace ocm::mapper::link;
 using ocm::base::Error;
@@ -88,4 +88,4 @@ TEST_CASE("packets are equal by what they hold, not by what lies behind it") {
   CHECK(a.size == 20);
 }
 
-}  // namespace
+}  // namespace mapper_link_packet_test

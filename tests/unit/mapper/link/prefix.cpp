@@ -7,7 +7,7 @@
 
 #include "unit/mapper/link/link_testing.hpp"
 
-namespace {
+namespace mapper_link_prefix_test {
 
 using namespace ocm::mapper::link;
 using Step = PrefixFilter::Step;
@@ -82,4 +82,4 @@ TEST_CASE("every prefix that is written is taken out again") {
   }
 }
 
-}  // namespace
+}  // namespace mapper_link_prefix_test

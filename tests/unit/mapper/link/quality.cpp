@@ -4,7 +4,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace {
+namespace mapper_link_quality_test {
 
 using ocm::mapper::link::LinkQuality;
 
@@ -57,4 +57,4 @@ TEST_CASE("quality follows counters, also when they wrap or run far ahead") {
   CHECK(quality.per_mille() == 1000);
 }
 
-}  // namespace
+}  // namespace mapper_link_quality_test

@@ -11,7 +11,7 @@
 
 #include "unit/mapper/link/link_testing.hpp"
 
-namespace {
+namespace mapper_link_reader_test {
 
 using namespace ocm::mapper::link;
 using ocm::test::Random;
@@ -270,4 +270,4 @@ TEST_CASE("line: measured rate of splices", "[.measure]") {
   }
 }
 
-}  // namespace
+}  // namespace mapper_link_reader_test

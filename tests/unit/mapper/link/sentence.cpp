@@ -15,7 +15,7 @@
 
 #include "unit/mapper/link/link_testing.hpp"
 
-namespace {
+namespace mapper_link_sentence_test {
 
 using namespace ocm::mapper::link;
 using ocm::base::Error;
@@ -167,4 +167,4 @@ TEST_CASE("sentences.json and the packed update have the same bits") {
   CHECK(std::string{name(Kind::none)} == "none");
 }
 
-}  // namespace
+}  // namespace mapper_link_sentence_test

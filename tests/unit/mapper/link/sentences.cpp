@@ -4,7 +4,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace {
+namespace mapper_link_sentences_test {
 
 using namespace ocm::mapper::link;
 
@@ -45,4 +45,4 @@ TEST_CASE("a packed update fills a packet: tag, seven bits a byte, and the CRC i
   CHECK(bits == 7 * (static_cast<int>(max_packet) - 4));
 }
 
-}  // namespace
+}  // namespace mapper_link_sentences_test

@@ -11,7 +11,7 @@
 
 #include "unit/mapper/link/link_testing.hpp"
 
-namespace {
+namespace mapper_link_whole_update_test {
 
 using namespace ocm::mapper::link;
 using ocm::test::Random;
@@ -242,4 +242,4 @@ TEST_CASE("damaged streams are read the same in blocks as by characters") {
   }
 }
 
-}  // namespace
+}  // namespace mapper_link_whole_update_test

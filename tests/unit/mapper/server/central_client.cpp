@@ -8,7 +8,7 @@
 #include "unit/base/random.hpp"
 #include "unit/cognitive/testing/virtual_central.hpp"
 
-namespace {
+namespace mapper_server_central_client_test {
 
 using namespace std::chrono_literals;
 using namespace ocm::mapper::server;
@@ -271,4 +271,4 @@ TEST_CASE(
   }
 }
 
-}  // namespace
+}  // namespace mapper_server_central_client_test

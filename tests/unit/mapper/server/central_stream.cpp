@@ -6,7 +6,7 @@
 
 #include "unit/base/random.hpp"
 
-namespace {
+namespace mapper_server_central_stream_test {
 
 using namespace ocm::mapper::server;
 using Kind = CentralLine::Kind;
@@ -116,4 +116,4 @@ TEST_CASE("central stream: any bytes, any number: nothing is held for ever") {
   }
 }
 
-}  // namespace
+}  // namespace mapper_server_central_stream_test

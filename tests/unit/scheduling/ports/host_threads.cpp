@@ -15,14 +15,14 @@
 
 #include "unit/scheduling/conformance.hpp"
 
+namespace scheduling_ports_host_threads_test {
+
 using namespace ocm;
 using namespace std::chrono_literals;
 using scheduling::Level;
 using scheduling::ports::HostMutex;
 using scheduling::ports::HostThreads;
 using scheduling::ports::HostThreadsOptions;
-
-namespace {
 
 template <bool RealTime>
 struct Threads {
@@ -54,8 +54,6 @@ void spend(base::Duration time) {
   while (std::chrono::steady_clock::now() < end) {
   }
 }
-
-}  // namespace
 
 TEST_CASE("host threads are a port, with real-time priorities where they are permitted") {
   conformance::check<Threads<true>>();
@@ -219,3 +217,5 @@ TEST_CASE("a whole board on threads: requests from two sides of it, a bus that i
   }
   CHECK(next == 0);
 }
+
+}  // namespace scheduling_ports_host_threads_test

@@ -14,11 +14,11 @@
 
 #include "unit/mapper/app/app_testing.hpp"
 
+namespace scheduling_ports_host_threads_mapper_test {
+
 using namespace app_testing;
 using scheduling::ports::HostMutex;
 using scheduling::ports::HostThreads;
-
-namespace {
 
 /// Ideal parts that several threads may ask.
 class SharedParts {
@@ -125,8 +125,6 @@ RobotModel quick() {
   return model;
 }
 
-}  // namespace
-
 TEST_CASE("host threads: a mapper shakes hands, drives, arrives and idles in real time", "[host_threads]") {
   Running running{quick()};
   CHECK(running.robot.state() == State::advertising);
@@ -170,3 +168,5 @@ TEST_CASE("host threads: links that come and go while it drives: motors off when
   CHECK(running.robot.counters().links_lost == 20);
   CHECK(running.robot.counters().refused == 0);
 }
+
+}  // namespace scheduling_ports_host_threads_mapper_test
