@@ -30,7 +30,7 @@ namespace ocm::sim {
 
 /// What can be taken out of the robot.
 enum class Part : std::uint8_t { gyroscope, accelerometer, magnetometer, floor, ring, encoders, gauge };
-inline constexpr std::size_t parts = 7;
+inline constexpr std::size_t part_count = 7;
 
 struct WorldOptions {
   std::uint64_t seed = 1;
@@ -221,10 +221,10 @@ class World {
   WorldOptions options_;
   Drive drive_;
   Battery battery_;
-  std::array<Sampled, parts> sampled_{};
+  std::array<Sampled, part_count> sampled_{};
   firmware::boards::FloorCounts floor_offset_;  // what is taken for the floor sensors' offset
   firmware::boards::RingCounts ring_offset_{};
-  std::array<bool, parts> absent_{};
+  std::array<bool, part_count> absent_{};
   std::array<Colour, lights> lights_{};
   std::int64_t elapsed_ms_ = 0;
 };

@@ -20,7 +20,7 @@
 
 #include "firmware/drivers/bxcan_registers.hpp"
 
-namespace ocm::sim::parts {
+namespace ocm::sim {
 
 class BxcanModel {
  public:
@@ -471,4 +471,4 @@ class BxcanModelRegisters {
 };
 static_assert(firmware::drivers::bxcan::Registers<BxcanModelRegisters>);
 
-}  // namespace ocm::sim::parts
+}  // namespace ocm::sim

@@ -9,7 +9,7 @@
 #include "generator/spec/reader.hpp"
 #include "generator/spec/spec.hpp"
 
-namespace {
+namespace generator_bad_specs_test {
 
 std::string read(const std::string& name) {
   std::ifstream in{std::string{OCM_SOURCE_DIR} + "/" + name, std::ios::binary};
@@ -109,4 +109,4 @@ TEST_CASE("a file that is not there, or is no file") {
   CHECK(only("/dev/null").what == "the file is empty");
 }
 
-}  // namespace
+}  // namespace generator_bad_specs_test

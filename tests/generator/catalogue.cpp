@@ -6,7 +6,7 @@
 #include "generator/spec/spec.hpp"
 #include "golden/ferry.hpp"
 
-namespace {
+namespace generator_catalogue_test {
 
 namespace protocol = ocm::protocol;
 
@@ -102,4 +102,4 @@ TEST_CASE("every fact of the AMiRo has a source") {
   for (const auto& topic : amiro::catalogue.topics) CHECK_FALSE(topic.source.empty());
 }
 
-}  // namespace
+}  // namespace generator_catalogue_test

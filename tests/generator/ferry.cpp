@@ -6,7 +6,7 @@
 
 #include "ocm/protocol/message.hpp"
 
-namespace {
+namespace generator_ferry_test {
 
 using namespace ferry;
 using ocm::can::Frame;
@@ -91,4 +91,4 @@ TEST_CASE("the catalogue is the other robot's own") {
   CHECK(right.raw(Payload{0xAB, 0xC1, 0x23}) == 0x123);
 }
 
-}  // namespace
+}  // namespace generator_ferry_test

@@ -7,7 +7,7 @@
 
 #include "generator/spec/spec.hpp"
 
-namespace {
+namespace generator_garbage_test {
 
 std::string read(const std::string& name) {
   std::ifstream in{std::string{OCM_SOURCE_DIR} + "/" + name, std::ios::binary};
@@ -113,4 +113,4 @@ TEST_CASE("mutated specs never crash, and are accepted or told why not") {
   CHECK(accepted < 2'000);
 }
 
-}  // namespace
+}  // namespace generator_garbage_test

@@ -13,7 +13,7 @@
 
 #include "generator/spec/sentences.hpp"
 
-namespace {
+namespace generator_schemas_test {
 
 using Json = nlohmann::json;
 using Adapter = valijson::adapters::NlohmannJsonAdapter;
@@ -290,4 +290,4 @@ TEST_CASE("any bytes are a problem of the sentences, or sentences") {
   }
 }
 
-}  // namespace
+}  // namespace generator_schemas_test

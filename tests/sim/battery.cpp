@@ -2,9 +2,9 @@
 
 #include <catch2/catch.hpp>
 
-using namespace ocm::sim;
+namespace sim_battery_test {
 
-namespace {
+using namespace ocm::sim;
 
 /// Whole seconds of a constant load, with the gauge looking at each.
 void run(Battery& battery, std::int64_t load_mw, int seconds) {
@@ -13,8 +13,6 @@ void run(Battery& battery, std::int64_t load_mw, int seconds) {
     battery.gauge();
   }
 }
-
-}  // namespace
 
 TEST_CASE("the thesis's reading: 52 %, 137 minutes, -930 mW") {
   Battery battery{{}, 0.52, false};
@@ -82,3 +80,5 @@ TEST_CASE("power beyond 16 bits saturates") {
   run(battery, 100'000, 1);
   CHECK(battery.reading().power_mw == -32768);
 }
+
+}  // namespace sim_battery_test

@@ -7,10 +7,10 @@
 #include "sim/amiro/arena.hpp"
 #include "sim/physics/noise.hpp"
 
+namespace sim_drive_test {
+
 using namespace ocm::sim;
 namespace di_wheel_drive = ocm::firmware::boards::di_wheel_drive;
-
-namespace {
 
 const std::vector<Segment> open_space;
 
@@ -18,8 +18,6 @@ void run(Drive& drive, double seconds, const std::vector<Segment>& walls = open_
   const long steps = std::lround(seconds / step_s);
   for (long i = 0; i < steps; ++i) drive.step(walls, true);
 }
-
-}  // namespace
 
 TEST_CASE("an exact arc ends where geometry says") {
   // A quarter of a circle of radius 1 m.
@@ -152,3 +150,5 @@ TEST_CASE("encoders count 1408 ticks a turn, backwards too") {
   CHECK(drive.ticks().left == Approx(0.35 / (pi * 0.05571) * 1408).margin(2));
   CHECK(drive.ticks().right == Approx(-0.35 / (pi * 0.05571) * 1408).margin(2));
 }
+
+}  // namespace sim_drive_test

@@ -12,7 +12,7 @@
 
 #include "sim/mapper/fleet.hpp"
 
-namespace {
+namespace sim_mapper_fleet_test {
 
 using namespace ocm;
 using namespace std::chrono_literals;
@@ -223,4 +223,4 @@ TEST_CASE("fleet: a hundred robots, all with a link") {
   for (std::uint8_t i = 0; i < 100; ++i) CHECK(server.count(i, mapper::link::Kind::handshake) > 0);
 }
 
-}  // namespace
+}  // namespace sim_mapper_fleet_test

@@ -12,13 +12,13 @@
 
 #include "sim/mapper/world.hpp"
 
+namespace sim_mapper_heading_test {
+
 using namespace ocm::sim;
 using namespace ocm::sim::mapper;
 using namespace std::chrono_literals;
 namespace base = ocm::base;
 namespace motion = ocm::motion;
-
-namespace {
 
 constexpr int seeds = 60;
 
@@ -135,8 +135,6 @@ const std::vector<Outcome>& in_the_lab() {
   return drives;
 }
 
-}  // namespace
-
 TEST_CASE(
     "in an open-loop square the wheels say too much of the turns, the gyro a third of that too little") {
   const auto& drives = in_the_lab();
@@ -198,3 +196,5 @@ TEST_CASE("errors of wheels and of gyro in an open-loop square", "[.measure]") {
       CHECK(drives.size() == seeds);
     }
 }
+
+}  // namespace sim_mapper_heading_test

@@ -20,7 +20,7 @@
 
 #include "sim/mapper/fleet.hpp"
 
-namespace {
+namespace sim_mapper_mapping_test {
 
 using namespace std::chrono_literals;
 namespace cognitive = ocm::cognitive;
@@ -244,4 +244,4 @@ TEST_CASE("mapper mapping: measured", "[.measure-mapping]") {
   }
 }
 
-}  // namespace
+}  // namespace sim_mapper_mapping_test

@@ -6,11 +6,11 @@
 #include "sim/mapper/sensors.hpp"
 #include "sim/mapper/world_model.hpp"
 
+namespace sim_mapper_sensors_test {
+
 using namespace ocm::sim;
 using namespace ocm::sim::mapper;
 namespace sensing = ocm::sensing;
-
-namespace {
 
 struct Statistics {
   double mean = 0;
@@ -51,8 +51,6 @@ constexpr InfraredModel quiet_infrared = [] {
 double quiet_gyro_deg_per_s(double rate_deg_per_s) {
   return gyro_reading(quiet_gyro, {1, 0}, {0, rate_deg_per_s * degree, true}) / degree;
 }
-
-}  // namespace
 
 TEST_CASE("a gyro says too little, and not by a constant factor") {
   CHECK(quiet_gyro_deg_per_s(0) == 0);
@@ -214,3 +212,5 @@ TEST_CASE("slow noise goes through its places in straight lines") {
   CHECK(slow_noise(noise, 3.25, 1) == Approx(0.75 * noise.normal(3, 1) + 0.25 * noise.normal(4, 1)));
   CHECK(slow_noise(noise, 3.999999, 1) == Approx(noise.normal(4, 1)).margin(1e-4));
 }
+
+}  // namespace sim_mapper_sensors_test

@@ -12,7 +12,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace {
+namespace sim_mapper_square_test {
 
 using namespace ocm;
 using namespace ocm::square;
@@ -92,8 +92,6 @@ Pose over_the_floor(std::vector<Outcome> outcomes, std::size_t which) {
   for (Outcome& one : outcomes) one.own = one.error[which];
   return over_the_floor(outcomes);
 }
-
-}  // namespace
 
 TEST_CASE("square: the estimate ends as near the truth as the thesis's did") {
   check_as_the_thesis(own(in_the_open()));
@@ -238,3 +236,5 @@ TEST_CASE("square: an estimator that hears the truth is found out") {
   CHECK(over_the_floor(outcomes, trusted).heading_rad < 0.5);
   CHECK(over_the_floor(outcomes, with_gyro).heading_rad > 1);
 }
+
+}  // namespace sim_mapper_square_test

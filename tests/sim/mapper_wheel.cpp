@@ -4,10 +4,10 @@
 #include "sim/mapper/wheel.hpp"
 #include "sim/physics/noise.hpp"
 
+namespace sim_mapper_wheel_test {
+
 using namespace ocm::sim;
 using namespace ocm::sim::mapper;
-
-namespace {
 
 constexpr MotorModel avr = avr_model.motor;
 constexpr MotorModel arduino = arduino_model.motor;
@@ -29,8 +29,6 @@ double speed_at(const MotorModel& motor, float effort) {
 std::int32_t count(const Wheel& wheel) {
   return static_cast<std::int32_t>(wheel.ticks());
 }
-
-}  // namespace
 
 TEST_CASE("a motor of the AVR robot is dead below 40 %, and hardly faster at 100 % than at 40 %") {
   CHECK(speed_at(avr, 0.0F) == 0);
@@ -175,3 +173,5 @@ TEST_CASE("a step of the tower has settled within its 200 ms") {
   for (int ms = 0; ms < 1000; ++ms) servo.step();
   CHECK(servo.angle_deg() == 0);
 }
+
+}  // namespace sim_mapper_wheel_test

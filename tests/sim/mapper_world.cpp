@@ -12,14 +12,14 @@
 #include "sim/mapper/parts.hpp"
 #include "sim/mapper/world.hpp"
 
+namespace sim_mapper_world_test {
+
 using namespace ocm::sim;
 using namespace ocm::sim::mapper;
 using namespace std::chrono_literals;
 namespace base = ocm::base;
 namespace motion = ocm::motion;
 namespace sensing = ocm::sensing;
-
-namespace {
 
 base::Time at(base::Duration since_start) {
   return base::Time{} + since_start;
@@ -73,8 +73,6 @@ double nearest_wall(const WorldModel& world, const Disc& disc) {
 
 constexpr motion::Efforts ahead{1, 1};
 constexpr motion::Efforts turn_left{-1, 1};
-
-}  // namespace
 
 TEST_CASE("mapper: a straight way is as long as its wheels make it") {
   Bench bench{ideal()};
@@ -341,8 +339,6 @@ TEST_CASE("mapper world: a robot stops at another, slides off, and pushes it now
   CHECK(length(world.robot(1).disc().centre - world.robot(0).disc().centre) == Approx(0.2).margin(1e-6));
 }
 
-namespace {
-
 /// All that a robot's parts tell over a drive, read at every `period`.
 std::vector<double> told(std::uint64_t seed, base::Duration period, bool disturbed = false) {
   World world{room({{"one", RobotKind::avr, {-0.8, 0, 0}}, {"two", RobotKind::arduino, {0, -0.5, 1}}}),
@@ -368,8 +364,6 @@ std::vector<double> told(std::uint64_t seed, base::Duration period, bool disturb
   }
   return all;
 }
-
-}  // namespace
 
 TEST_CASE("mapper world: equal seeds, equal runs; others differ") {
   CHECK(told(1, 100ms) == told(1, 100ms));
@@ -502,3 +496,5 @@ TEST_CASE("mapper world: what a simulated second costs", "[.measure]") {
   for (const bool moving : {true, false})
     for (const std::size_t robots : {std::size_t{1}, std::size_t{10}, std::size_t{100}}) cost(robots, moving);
 }
+
+}  // namespace sim_mapper_world_test

@@ -4,6 +4,8 @@
 
 #include <catch2/catch.hpp>
 
+namespace sim_noise_test {
+
 using ocm::sim::Noise;
 
 TEST_CASE("noise is a function of seed, part, sample and channel") {
@@ -39,3 +41,5 @@ TEST_CASE("noise has mean 0, variance 1, and no memory") {
   CHECK(fourth / n == Approx(2.9).margin(0.15));
   CHECK(beyond_two / double{n} == Approx(0.0455).margin(0.004));  // that of the normal distribution
 }
+
+}  // namespace sim_noise_test

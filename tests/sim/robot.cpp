@@ -11,11 +11,11 @@
 #include "ocm/protocol/message.hpp"
 #include "ocm/topics/amiro.hpp"
 
+namespace sim_robot_test {
+
 using namespace ocm;
 using namespace ocm::firmware;
 using namespace std::chrono_literals;
-
-namespace {
 
 /// One board's place on the bus: takes `room` frames and keeps them.
 struct Port {
@@ -70,8 +70,6 @@ Topic last(const Port& port) {
       if (frame.id % 256 == Topic::frames[i].id.value) payloads[i] = frame.data;
   return Topic::decode(payloads);
 }
-
-}  // namespace
 
 TEST_CASE("a world is all the hardware that the boards need") {
   STATIC_REQUIRE(boards::di_wheel_drive::Hardware<sim::World>);
@@ -286,3 +284,5 @@ TEST_CASE("two robots with one seed say the same, frame for frame, however they 
   CHECK(a.bottom.frames == b.bottom.frames);
   CHECK(a.middle.frames == b.middle.frames);
 }
+
+}  // namespace sim_robot_test

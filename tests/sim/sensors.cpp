@@ -5,10 +5,10 @@
 
 #include "sim/amiro/world.hpp"
 
+namespace sim_sensors_test {
+
 using namespace ocm::sim;
 using ocm::firmware::boards::Axes;
-
-namespace {
 
 /// The `n`th sample of a part that sees this motion.
 Sample sample(const Motion& motion, std::uint64_t n = 0, bool noisy = true, std::uint64_t seed = 1) {
@@ -42,8 +42,6 @@ Statistics statistics(int n, F value) {
 }
 
 constexpr int many = 20'000;
-
-}  // namespace
 
 TEST_CASE("gyroscope: bias and noise are the model's") {
   const GyroscopeModel model;
@@ -230,3 +228,5 @@ TEST_CASE("no number wraps") {
   CHECK(digits<std::int16_t>(std::nan(""), -32768, 32767) == -32768);
   CHECK(digits<std::int16_t>(-0.5, -10, 10) == 0);
 }
+
+}  // namespace sim_sensors_test

@@ -8,14 +8,14 @@
 
 #include "firmware/boards/di_wheel_drive/odometry.hpp"
 
+namespace sim_world_test {
+
 using namespace ocm::sim;
 using namespace std::chrono_literals;
 using ocm::base::Duration;
 using ocm::base::Error;
 using ocm::base::Time;
 namespace boards = ocm::firmware::boards;
-
-namespace {
 
 constexpr Time start{};
 
@@ -43,8 +43,6 @@ std::vector<decltype(readings(std::declval<World&>()))> journey(World& world, F 
   return seen;
 }
 const auto nothing = [](World&, Time) {};
-
-}  // namespace
 
 TEST_CASE("the same seed gives the same world, another seed another one") {
   World a, b;
@@ -85,7 +83,7 @@ TEST_CASE("one part's absence does not touch the others") {
 
 TEST_CASE("an absent part delivers no sample") {
   World world;
-  for (std::size_t part = 0; part < parts; ++part) world.set_absent(static_cast<Part>(part), true);
+  for (std::size_t part = 0; part < part_count; ++part) world.set_absent(static_cast<Part>(part), true);
   CHECK(world.gyroscope().error == Error::not_sampled);
   CHECK(world.accelerometer().error == Error::not_sampled);
   CHECK(world.magnetometer().error == Error::not_sampled);
@@ -112,7 +110,7 @@ TEST_CASE("a part repeats its newest sample until it has a new one") {
 
 TEST_CASE("each part has noise of its own") {
   const World world;
-  for (std::size_t a = 0; a < parts; ++a)
+  for (std::size_t a = 0; a < part_count; ++a)
     for (std::size_t b = 0; b < a; ++b)
       CHECK(world.sample(static_cast<Part>(a)).noise.normal(0, 0) !=
             world.sample(static_cast<Part>(b)).noise.normal(0, 0));
@@ -253,3 +251,5 @@ TEST_CASE("a day at rest is passed at once") {
   CHECK(world.time() == start + 24h);
   CHECK(world.gauge()->state_of_charge_percent == 0);
 }
+
+}  // namespace sim_world_test

@@ -14,8 +14,8 @@
 namespace ocm::bxcan_tests {
 
 namespace bxcan = firmware::drivers::bxcan;
-using Model = sim::parts::BxcanModel;
-using ModelRegisters = sim::parts::BxcanModelRegisters;
+using Model = sim::BxcanModel;
+using ModelRegisters = sim::BxcanModelRegisters;
 using bxcan::Register;
 using End = Model::End;
 

@@ -17,14 +17,14 @@
 #include "sim/parts/power_management.hpp"
 #include "tests/firmware/drivers/fixture.hpp"
 
+namespace firmware_drivers_boards_test {
+
 using namespace drivers_tests;
 using namespace ocm;
 using namespace ocm::firmware;
 namespace bottom = boards::di_wheel_drive;
 namespace middle = boards::power_management;
 namespace top = boards::light_ring;
-
-namespace {
 
 sim::WorldOptions frozen(std::uint64_t seed = 1) {
   sim::WorldOptions options;
@@ -81,8 +81,6 @@ struct Middle {
     maintain(200ms);
   }
 };
-
-}  // namespace
 
 TEST_CASE("DiWheelDrive in a frozen world: the same digits as the world's") {
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
@@ -399,3 +397,5 @@ TEST_CASE("a bus, a device or a motor that a board does not have") {
   ring.motors().set_duty(0, 0);
   CHECK(ring.motors().encoders() == std::array<std::uint16_t, 2>{0, 0});
 }
+
+}  // namespace firmware_drivers_boards_test

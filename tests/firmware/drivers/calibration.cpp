@@ -8,12 +8,12 @@
 #include "sim/parts/at24c01b_model.hpp"
 #include "tests/firmware/drivers/fixture.hpp"
 
+namespace firmware_drivers_calibration_test {
+
 using namespace drivers_tests;
 using namespace ocm;
 using namespace ocm::firmware;
 using drivers::CalibrationRecord;
-
-namespace {
 
 constexpr CalibrationRecord record{200, 4, {1, 256, 65535, 2289}};
 static_assert(drivers::decode(drivers::encode(record)) == record);
@@ -49,8 +49,6 @@ base::Result<std::uint16_t> steady(std::size_t sensor) {
 std::array<std::uint16_t, 4> offsets(const Calibration& c) {
   return {c.offset(0), c.offset(1), c.offset(2), c.offset(3)};
 }
-
-}  // namespace
 
 TEST_CASE("a record with one bit wrong is none") {
   const auto bytes = drivers::encode(record);
@@ -241,3 +239,5 @@ TEST_CASE("what was measured is not overwritten by what was stored before, when 
   REQUIRE(c.start().ok());
   CHECK(c.offset(0) == 2300);
 }
+
+}  // namespace firmware_drivers_calibration_test

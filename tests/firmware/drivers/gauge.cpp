@@ -4,14 +4,14 @@
 #include "sim/parts/bq27500_model.hpp"
 #include "tests/firmware/drivers/fixture.hpp"
 
+namespace firmware_drivers_gauge_test {
+
 using namespace drivers_tests;
 using namespace ocm;
 using namespace ocm::firmware;
 using boards::GaugeReading;
 using drivers::bq27500::Battery;
 using drivers::bq27500::combine;
-
-namespace {
 
 constexpr Battery draining(std::uint16_t minutes, std::int16_t power, std::uint8_t charge) {
   return {true, false, minutes, 65535, power, charge};
@@ -52,8 +52,6 @@ struct Gauge {
   drivers::Bq27500<SpoiledI2c> driver{bus};
   Gauge() { wires.attach(model); }
 };
-
-}  // namespace
 
 TEST_CASE("gauge: what it says") {
   Gauge g;
@@ -104,3 +102,5 @@ TEST_CASE("gauge: absence and a bus that fails") {
   g.wires.set_stuck(true);
   CHECK(g.driver.read().error == Error::bus_fault);
 }
+
+}  // namespace firmware_drivers_gauge_test

@@ -9,12 +9,12 @@
 #include "sim/parts/tlc5947_model.hpp"
 #include "tests/firmware/drivers/fixture.hpp"
 
+namespace firmware_drivers_lights_test {
+
 using namespace drivers_tests;
 using namespace ocm;
 using namespace ocm::firmware;
 using boards::Colour;
-
-namespace {
 
 // Output 23 goes first, high bit first. [data sheet, Register Configuration]
 constexpr auto frame = [] {
@@ -35,8 +35,6 @@ struct Lights {
   sim::OutputPins pins{[this](std::uint8_t levels) { model.set_blank((levels & 1) != 0); }};
   boards::light_ring::Parts<SpoiledSpi, sim::OutputPins> parts{bus, pins};
 };
-
-}  // namespace
 
 TEST_CASE("lights: dark at the start, then each its colour") {
   Lights l;
@@ -111,3 +109,5 @@ TEST_CASE("lights: a bus that fails is said, and all is shown again when it work
   CHECK(l.seen[2] == Colour{9, 9, 9});
   CHECK(l.violations.none());
 }
+
+}  // namespace firmware_drivers_lights_test

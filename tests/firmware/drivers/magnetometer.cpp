@@ -6,12 +6,12 @@
 #include "sim/parts/hmc5883l_model.hpp"
 #include "tests/firmware/drivers/fixture.hpp"
 
+namespace firmware_drivers_magnetometer_test {
+
 using namespace drivers_tests;
 using namespace ocm;
 using namespace ocm::firmware;
 using boards::MagneticField;
-
-namespace {
 
 // The thesis's log, figure 7.2: 21, -367 and 595 counts. The order is x, z, y. [data sheet, table 2]
 static_assert(drivers::hmc5883l::decode(std::array<std::uint8_t, 6>{0x00, 0x15, 0x02, 0x53, 0xFE, 0x91}) ==
@@ -35,8 +35,6 @@ struct Magnetometer {
   drivers::Hmc5883l<SpoiledI2c> driver{bus};
   Magnetometer() { wires.attach(model); }
 };
-
-}  // namespace
 
 TEST_CASE("magnetometer: configured, settled, read, count by count") {
   Magnetometer m;
@@ -124,3 +122,5 @@ TEST_CASE("magnetometer: absence, reset, a bus that fails") {
   CHECK(m.driver.check().error == Error::bus_fault);
   CHECK(m.violations.none());
 }
+
+}  // namespace firmware_drivers_magnetometer_test

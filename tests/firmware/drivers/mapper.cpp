@@ -23,12 +23,12 @@
 #include "sim/parts/lsm6ds3_model.hpp"
 #include "tests/firmware/drivers/fixture.hpp"
 
+namespace firmware_drivers_mapper_test {
+
 using namespace drivers_tests;
 using namespace ocm;
 using namespace ocm::firmware;
 using boards::AngularRate;
-
-namespace {
 
 constexpr AngularRate decode(std::array<std::uint8_t, 6> out) {
   return drivers::lsm6ds3::decode(out);
@@ -52,8 +52,6 @@ struct Gyroscope {
     time.pass(*settling);
   }
 };
-
-}  // namespace
 
 TEST_CASE("LSM6DS3: configured, settled, read, digit by digit") {
   Gyroscope g;
@@ -165,8 +163,6 @@ TEST_CASE("duty of an effort") {
   STATIC_REQUIRE(duty(-0.4F) == -13107);
 }
 
-namespace {
-
 // What is put in by hand, in the application's units.
 struct Robot {
   mapper::app::WheelTicks wheels{};
@@ -262,8 +258,6 @@ struct Whole {
   }
 };
 
-}  // namespace
-
 TEST_CASE("the mapper's parts say what is put in behind their registers") {
   Whole whole;
   whole.robot.efforts = {0.5F, 0.5F};
@@ -351,3 +345,5 @@ TEST_CASE("what no mapper has is refused, and nothing is harmed") {
   CHECK(whole.wires.ask(Kind::spi, 1, 3, std::span{four}.first(3), none).error == Error::bad_length);
   CHECK(whole.wires.ask(Kind{0}, 0, 0, {}, none).error == Error::bad_mode);
 }
+
+}  // namespace firmware_drivers_mapper_test

@@ -7,13 +7,13 @@
 #include "sim/parts/st_motion_model.hpp"
 #include "tests/firmware/drivers/fixture.hpp"
 
+namespace firmware_drivers_motion_test {
+
 using namespace drivers_tests;
 using namespace ocm;
 using namespace ocm::firmware;
 using boards::AngularRate;
 using boards::SpecificForce;
-
-namespace {
 
 constexpr AngularRate decode_rate(std::array<std::uint8_t, 6> out) {
   return drivers::L3g4200dChip::decode(out);
@@ -47,8 +47,6 @@ struct Accelerometer {
   SpoiledSpi bus{&model, {}};
   drivers::Lis331dlh<SpoiledSpi> driver{bus};
 };
-
-}  // namespace
 
 TEST_CASE("gyroscope: configured, settled, read, digit by digit") {
   Gyroscope g;
@@ -188,3 +186,5 @@ TEST_CASE("accelerometer: what is wrong is noticed") {
     CHECK(a.driver.start().error == Error::no_answer);
   }
 }
+
+}  // namespace firmware_drivers_motion_test

@@ -4,11 +4,11 @@
 
 #include "tests/firmware/drivers/fixture.hpp"
 
+namespace firmware_drivers_part_test {
+
 using namespace drivers_tests;
 using namespace ocm;
 using namespace ocm::firmware::drivers;
-
-namespace {
 
 struct Driver {
   bool there = true;
@@ -36,8 +36,6 @@ using Test = Part<Driver>;
 base::Result<int> read(Test& part) {
   return part.use([](Driver& driver) { return driver.read(); });
 }
-
-}  // namespace
 
 TEST_CASE("a part is started, waited for, and read") {
   Test part;
@@ -131,3 +129,5 @@ TEST_CASE("no new sample is no fault") {
   CHECK(part.running());
   CHECK(part.faults() == 0);
 }
+
+}  // namespace firmware_drivers_part_test

@@ -8,11 +8,11 @@
 #include "sim/parts/vcnl4020_model.hpp"
 #include "tests/firmware/drivers/fixture.hpp"
 
+namespace firmware_drivers_proximity_test {
+
 using namespace drivers_tests;
 using namespace ocm;
 using namespace ocm::firmware;
-
-namespace {
 
 /// Counts how deep it is held.
 struct Recorder {
@@ -46,8 +46,6 @@ struct Proximity {
     return drivers::Vcnl4020<Channel>{multiplexer.channel(i)};
   }
 };
-
-}  // namespace
 
 TEST_CASE("proximity: four sensors of one address, each behind its channel") {
   Proximity p;
@@ -160,3 +158,5 @@ TEST_CASE("two parts that answer at once are noticed") {
   CHECK(p.driver(0).start().error == Error::bus_fault);
   CHECK(complained(p.violations, "two parts"));
 }
+
+}  // namespace firmware_drivers_proximity_test

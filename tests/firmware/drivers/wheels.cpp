@@ -8,10 +8,10 @@
 #include "firmware/drivers/wheel_controller.hpp"
 #include "tests/firmware/drivers/fixture.hpp"
 
+namespace firmware_drivers_wheels_test {
+
 using namespace drivers_tests;
 using namespace ocm::firmware::drivers;
-
-namespace {
 
 constexpr std::int32_t full_speed = 20595;  // as boards/di_wheel_drive/parts.hpp has it
 
@@ -49,8 +49,6 @@ struct Loop {
     return wheel.speed * 256;
   }
 };
-
-}  // namespace
 
 TEST_CASE("totals go on where the counter wraps, both ways") {
   WheelCounter counter;
@@ -163,3 +161,5 @@ TEST_CASE("the ends: no overflow anywhere") {
   CHECK(controller.step(-32768, 32767) == -full_duty);
   CHECK(controller.step(0, 0) == 0);
 }
+
+}  // namespace firmware_drivers_wheels_test

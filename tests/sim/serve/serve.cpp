@@ -10,10 +10,10 @@
 #include "sim/serve/amiro.hpp"
 #include "sim/serve/mappers.hpp"
 
+namespace sim_serve_serve_test {
+
 using namespace ocm;
 using sim::Ending;
-
-namespace {
 
 /// A folder of this test, in which the simulators' sockets and lines are.
 class Folder {
@@ -41,8 +41,6 @@ struct Watched {
     return {[this] { return turns-- <= 0; }, [this](std::string_view text) { reports.emplace_back(text); }};
   }
 };
-
-}  // namespace
 
 TEST_CASE("An AMiRo on a virtual bus says where it is, and at its end what each board received") {
   const Folder folder;
@@ -120,3 +118,5 @@ TEST_CASE("A world that cannot be had is said with all that is wrong with it") {
   }
   CHECK(watched.reports.empty());
 }
+
+}  // namespace sim_serve_serve_test

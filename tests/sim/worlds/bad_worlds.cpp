@@ -12,7 +12,7 @@
 #include "sim/worlds/reader.hpp"
 #include "tests/sim/worlds/read.hpp"
 
-namespace {
+namespace sim_worlds_bad_worlds_test {
 
 TEST_CASE("every mistake in a world is told with its place, what is wrong and what would be right") {
   const std::string good = read("tests/sim/worlds/good.json");
@@ -79,4 +79,4 @@ TEST_CASE("a world with too much in it is refused") {
         std::vector<std::string>{"f:1: /robots: a list of 201; a list of 1 to 200 robots"});
 }
 
-}  // namespace
+}  // namespace sim_worlds_bad_worlds_test

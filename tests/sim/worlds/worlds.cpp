@@ -9,7 +9,7 @@
 #include "sim/worlds/reader.hpp"
 #include "tests/sim/worlds/read.hpp"
 
-namespace {
+namespace sim_worlds_worlds_test {
 
 using namespace ocm::sim;
 using namespace ocm::sim::mapper;
@@ -163,4 +163,4 @@ TEST_CASE("mutated worlds never crash, and are accepted or told why not") {
   CHECK(good_ones > 100);  // some changes do not matter: the test reaches beyond the parser
 }
 
-}  // namespace
+}  // namespace sim_worlds_worlds_test

@@ -10,10 +10,10 @@
 
 #include "generator/spec/spec.hpp"
 
+namespace tool_output_field_text_test {
+
 using namespace ocm;
 using cli::FieldText;
-
-namespace {
 
 std::string printed(const protocol::Field& field, const can::Payload& data) {
   char text[FieldText::room];
@@ -55,8 +55,6 @@ void check_fields(const protocol::Catalogue& catalogue, int rounds) {
                             << expected(field, data));
         }
 }
-
-}  // namespace
 
 TEST_CASE("numbers as digits", "[output]") {
   std::mt19937_64 random{2};
@@ -121,3 +119,5 @@ TEST_CASE("a field's value is exact for any scale, offset, width and byte order"
     }
   }
 }
+
+}  // namespace tool_output_field_text_test

@@ -8,9 +8,9 @@
 
 #include "cli/output/output.hpp"
 
-using namespace ocm;
+namespace tool_output_formats_test {
 
-namespace {
+using namespace ocm;
 
 /// What an output makes of frames that come 1 ms apart.
 std::string shown(std::unique_ptr<cli::Output> output, const std::vector<std::string>& frames) {
@@ -34,8 +34,6 @@ const std::vector<std::string> frames{
 cli::Selection selection(const std::vector<std::string>& words) {
   return *cli::Selection::of(amiro::catalogue, words);
 }
-
-}  // namespace
 
 TEST_CASE("CSV has a line a field", "[output]") {
   CHECK(shown(cli::make_csv(amiro::catalogue, {}), {frames[0], frames[1], frames[4]}) ==
@@ -76,3 +74,5 @@ TEST_CASE("raw lines are candump's", "[output]") {
   CHECK(shown(cli::make_raw(), {frames[0], frames[4]}) ==
         "(1436509052.249713) can0 608#0300FFFF0000\n(1436509052.250713) can0 4FF#00\n");
 }
+
+}  // namespace tool_output_formats_test

@@ -14,12 +14,12 @@
 #include "unit/log/entries.hpp"
 #include "unit/log/log_testing.hpp"
 
+namespace tool_output_json_lines_test {
+
 using namespace ocm;
 using cli::logs::JsonLineParser;
 using cli::logs::JsonLinesReader;
 using cli::logs::JsonLinesWriter;
-
-namespace {
 
 // The line of a gyroscope's frame: three digits of 0.0175 deg/s. [docs/verbs/listen.md]
 constexpr std::string_view gyroscope =
@@ -66,8 +66,6 @@ cli::Selection selection(const std::vector<std::string>& words) {
   REQUIRE(chosen.ok());
   return *chosen;
 }
-
-}  // namespace
 
 TEST_CASE("JSON lines: what each kind of frame looks like", "[output]") {
   const std::string head = R"({"time_ns":"1436509052249713000","bus":"can0","id":)";
@@ -242,3 +240,5 @@ TEST_CASE("JSON lines: a line without a time has the time of the one before", "[
   REQUIRE(log.entries.size() == 2);
   CHECK(log.entries[1].time == log.entries[0].time);
 }
+
+}  // namespace tool_output_json_lines_test

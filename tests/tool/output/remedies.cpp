@@ -6,6 +6,8 @@
 
 #include "ocm/transport/interfaces.hpp"
 
+namespace tool_output_remedies_test {
+
 using namespace ocm;
 using cli::remedy;
 using host::Cause;
@@ -47,3 +49,5 @@ TEST_CASE("remedies: findings") {
         "`amiroctl info ?` says what it takes");
   CHECK(remedy(Finding{Severity::warning, "", "b", "c"}) == "c");
 }
+
+}  // namespace tool_output_remedies_test

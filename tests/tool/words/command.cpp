@@ -7,11 +7,11 @@
 #include "ocm/can/text.hpp"
 #include "ocm/topics/amiro.hpp"
 
+namespace tool_words_command_test {
+
 using namespace ocm;
 using namespace ocm::cli::words;
 using namespace std::chrono_literals;
-
-namespace {
 
 base::Result<Command, WordError> parse(const std::string& line) {
   static std::vector<std::string> kept;
@@ -32,8 +32,6 @@ std::string frames(const std::string& line) {
     text += (text.empty() ? "" : " ") + std::string{can::to_text(frame).view()};
   return text;
 }
-
-}  // namespace
 
 TEST_CASE("requests become the thesis's frames") {  // thesis 4.2.1
   CHECK(frames("publish mag 900us") == "205#01840302");
@@ -172,3 +170,5 @@ TEST_CASE("a robot without motors and lights has neither drive nor led, but set 
   CHECK_THAT(parser.parse(led).error.what, Catch::Contains("no lights"));
   CHECK(parser.parse(send).ok());
 }
+
+}  // namespace tool_words_command_test

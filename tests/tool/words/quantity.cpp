@@ -2,11 +2,12 @@
 
 #include <catch2/catch.hpp>
 
+namespace tool_words_quantity_test {
+
 using namespace ocm;
 using namespace ocm::cli::words;
 using namespace std::chrono_literals;
 
-namespace {
 constexpr base::Duration duration(std::string_view text) {
   return parse_duration(text).value;
 }
@@ -32,7 +33,6 @@ std::string converted(std::string_view text, std::string_view unit) {
   if (!result) return std::string{base::describe(result.error)};
   return std::string{base::to_text(*result).view()};
 }
-}  // namespace
 
 TEST_CASE("units of the same kind convert exactly") {
   CHECK(converted("5cm/s", "m/s") == "0.05");
@@ -75,3 +75,5 @@ TEST_CASE("every duration reads back as it was printed") {
     REQUIRE(parse_duration(to_text(duration)) == base::Result<base::Duration>{duration});
   }
 }
+
+}  // namespace tool_words_quantity_test

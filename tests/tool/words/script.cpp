@@ -8,6 +8,8 @@
 #include "ocm/can/text.hpp"
 #include "ocm/topics/amiro.hpp"
 
+namespace tool_words_script_test {
+
 using namespace ocm;
 using namespace ocm::cli::words;
 using namespace std::chrono_literals;
@@ -103,3 +105,5 @@ TEST_CASE("the standalone demo is what the thesis lists, with its misprints mend
     CHECK(can::to_text(script.steps[i].command.frames[0]) == std::string_view{rows[i].frame});
   }
 }
+
+}  // namespace tool_words_script_test
