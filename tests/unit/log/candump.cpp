@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "unit/base/explore.hpp"
 #include "unit/log/entries.hpp"
 
 namespace log_candump_test {
@@ -177,7 +178,7 @@ TEST_CASE("the usual path makes the same of any line as the careful one, and as 
   const auto interfaces = test::interfaces_named({"can0", "can1", "a_name_of_15_ch"});
   RandomEntries entries{11, {}};
   test::Random random{12};
-  for (int round = 0; round < 100'000; ++round) {
+  for (int round = 0; round < test::explored(20'000) / test::coarser(10); ++round) {
     const Entry entry = entries.next();
     log::CandumpWriter writer{random.below(2) == 0 ? log::CandumpWriter::Digits::microseconds
                                                    : log::CandumpWriter::Digits::nanoseconds};

@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "unit/base/explore.hpp"
 #include "tests/unit/log/log_testing.hpp"
 
 namespace log_mcap_test {
@@ -289,7 +290,7 @@ TEST_CASE("mcap: any bit flipped, and every entry can exist") {
   }
   const std::string whole{out.view()};  // the summary's bits say nothing
   std::uint64_t silent = 0;
-  for (std::size_t bit = 0; bit < whole.size() * 8; ++bit) {
+  for (std::size_t bit = 0; bit < whole.size() * 8; bit += test::coarser(7)) {
     std::string file = whole + tail;
     file[bit / 8] = static_cast<char>(file[bit / 8] ^ 1 << bit % 8);
     const auto log = read_mcap(file);
