@@ -4,8 +4,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "unit/base/explore.hpp"
 #include "tests/unit/log/log_testing.hpp"
+#include "unit/base/explore.hpp"
 
 namespace log_mcap_test {
 
