@@ -262,6 +262,18 @@ def headers_have_tests(tree):
             yield f"{name}:1: it tests no header: include/ocm/{stem}.hpp is missing"
 
 
+def tests_have_their_namespace(tree):
+    """Several files of tests/unit are compiled at once, so each has a namespace of its own, named for its path."""
+    for name in tree.below("tests/unit/", ends=(".cpp",)):
+        wanted = name[len("tests/unit/"):-len(".cpp")].replace("/", "_") + "_test"
+        spaces = list(tree.find(name, r"(?m)^namespace ?(\w*) \{"))
+        for line, match in spaces:
+            if match.group(1) != wanted:
+                yield f"{name}:{line}: what it declares belongs into namespace {wanted}"
+        if not spaces and "TEST_CASE" in tree.text(name):
+            yield f"{name}:1: what it declares belongs into namespace {wanted}"
+
+
 # --- around the library --------------------------------------------------------------------------------------
 
 def own_includes_are_full_paths(tree):
@@ -493,7 +505,7 @@ def quotes_are_the_examples(tree):
 
 RULES = (floors_have_rows, includes_go_down, layers_are_apart, library_knows_no_tool, mapper_knows_no_can, no_circles,
          namespace_is_folder, no_banned_headers, no_banned_words, headers_open_with_a_comment, headers_have_tests,
-         own_includes_are_full_paths, generator_is_independent, firmware_is_for_boards, rooms_are_apart,
+         tests_have_their_namespace, own_includes_are_full_paths, generator_is_independent, firmware_is_for_boards, rooms_are_apart,
          folders_make_no_circle, verbs_are_seen_by_main_only, no_circles_of_rooms, costly_headers_are_seen_by_few,
          generated_files_are_reproducible, no_machine_paths, links_resolve, pages_are_linked, indexes_are_complete,
          quotes_are_the_examples)

@@ -117,6 +117,8 @@ PLANTED = [
     ("namespace_is_folder", replaced(BOARD, "namespace ocm::controller {}", ""), BOARD + ":1:"),
     ("headers_open_with_a_comment", replaced(BOARD, "/// One board of the robot, that is.\n", ""), BOARD + ":1:"),
     ("headers_have_tests", {"tests/unit/base/result.cpp": None}, RESULT + ":1:"),
+    ("tests_have_their_namespace", {"tests/unit/base/result.cpp": "\nnamespace {\n}\n"}, "tests/unit/base/result.cpp:2:"),
+    ("tests_have_their_namespace", {"tests/unit/base/result.cpp": 'TEST_CASE("a") {}\n'}, "tests/unit/base/result.cpp:1:"),
     ("headers_have_tests", {"tests/unit/base/ghost.cpp": ""}, "tests/unit/base/ghost.cpp:1:"),
     ("own_includes_are_full_paths", added("generator/spec/spec.hpp", '#include "json.hpp"\n'), "generator/spec/spec.hpp:4:"),
     ("generator_is_independent", added("generator/spec/spec.hpp", '#include "ocm/topics/ferry.hpp"\n'),
