@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "ocm/transport/pty.hpp"
+#include "ocm/transport/virtual_bus.hpp"
 
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
@@ -31,9 +32,12 @@ transport::SerialPort open_port(std::string_view verb, const LineOptions& option
   const std::string path = usual ? transport::central_line() : options.path;
   // The link that a killed simulator has left may lead to a terminal of somebody else.
   if (usual && !transport::is_served(path))
-    fail({fmt::format("{}: there is no central at '{}'", verb, path),
-          "start one (amiroctl sim --robots 2, or amiroctl central --pty), or name a dongle: --central "
-          "/dev/ttyACM0"});
+    fail(
+        {fmt::format(
+             "{}: there is no central at '{}'{}", verb, path,
+             transport::VirtualBus::running() ? "; the simulator that runs is an AMiRo, which has none" : ""),
+         "start one (amiroctl sim --robots 2, or amiroctl central --pty), or name a dongle: --central "
+         "/dev/ttyACM0"});
   auto port = transport::SerialPort::open(path, options.baud);
   if (!port) fail({fmt::format("{}: {}", verb, port.error.what), port.error.remedy});
   return std::move(*port);
@@ -58,6 +62,7 @@ void add_line_options(Verb verb, LineOptions& options) {
   verb.add_option("--baud", options.baud, "of the central's line").type_name("N").show_default();
   verb.add_option("--scan", options.scan, "how long to look for robots that are not listed")
       .type_name("T")
+      .takes(accepted_duration())
       .show_default();
 }
 

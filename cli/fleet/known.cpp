@@ -17,13 +17,10 @@ using sim::mapper::WorldModel;
 
 std::optional<WorldModel> load_world(const std::string& name) {
   if (name.empty()) return std::nullopt;
-  const auto text = sim::worlds::built_in(name);
-  auto loaded = text ? sim::worlds::parse(*text, name) : sim::worlds::load(name);
+  auto loaded = sim::worlds::find(name);
   if (loaded.world) return std::move(*loaded.world);
-  for (std::size_t i = 1; i < loaded.problems.size(); ++i)
-    remark(fmt::format("{}: {}", loaded.problems[i].place, loaded.problems[i].what));
-  fail({fmt::format("map: {}: {}", loaded.problems.front().place, loaded.problems.front().what),
-        loaded.problems.front().remedy},
+  for (std::size_t i = 1; i < loaded.problems.size(); ++i) remark(sim::worlds::in_words(loaded.problems[i]));
+  fail({"map: " + sim::worlds::in_words(loaded.problems.front()), loaded.problems.front().remedy},
        exit_failure);
 }
 

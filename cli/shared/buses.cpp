@@ -1,9 +1,13 @@
 #include "cli/shared/buses.hpp"
 
+#include <filesystem>
+#include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "ocm/transport/interfaces.hpp"
+#include "ocm/transport/pty.hpp"
 #include "ocm/transport/slcan.hpp"
 #include "ocm/transport/socketcan.hpp"
 #include "ocm/transport/virtual_bus.hpp"
@@ -21,6 +25,27 @@ AnyBus any(Opened opened) {
   return std::unique_ptr<transport::Bus>{std::move(opened.value)};
 }
 
+/// Whether this user has mappers here, simulated or behind `amiroctl central`.
+bool mappers_run() {
+  if (transport::is_served(transport::central_line())) return true;
+  std::error_code error;
+  for (const auto& line : std::filesystem::directory_iterator{transport::robot_lines(), error})
+    if (line.is_symlink(error) && transport::is_served(line.path().string())) return true;
+  return false;
+}
+
+constexpr const char* instead_of_mappers =
+    "mappers take `amiroctl robots`, `goto`, `pause` and `map`; an AMiRo with a bus is `amiroctl sim`, which "
+    "may run "
+    "beside them";
+
+AnyBus open_simulated(const std::string& path) {
+  auto opened = transport::VirtualBus::open(path);
+  if (!opened && opened.error.cause == host::Cause::simulator_missing && path.empty() && mappers_run())
+    return transport::Failure{opened.error.what + "; mappers run, but have no CAN bus", instead_of_mappers};
+  return any(std::move(opened));
+}
+
 }  // namespace
 
 BusName parse_bus_name(std::string_view name) {
@@ -34,7 +59,7 @@ BusName parse_bus_name(std::string_view name) {
 AnyBus open_bus(const BusName& name) {
   switch (name.kind) {
     case BusName::Kind::simulated:
-      return any(transport::VirtualBus::open(name.address));
+      return open_simulated(name.address);
     case BusName::Kind::serial: {
       auto opened = transport::Slcan::open(name.address);
       if (opened && !(*opened)->answers())
@@ -52,6 +77,8 @@ std::string only_bus() {
   for (const auto& interface : transport::can_interfaces())
     if (interface.up) found.push_back(interface.name);
   if (transport::VirtualBus::running()) found.emplace_back("sim");
+  if (found.empty() && mappers_run())
+    fail({"no bus: mappers run, but have no CAN bus, and no CAN interface is up", instead_of_mappers});
   if (found.empty())
     fail({"no bus: no CAN interface is up and no simulator runs",
           "start a simulated robot with `amiroctl sim`, or bring an interface up: "

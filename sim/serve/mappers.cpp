@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <filesystem>
 #include <memory>
 #include <poll.h>
 #include <span>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -40,18 +38,9 @@ struct ChosenWorld {
 ChosenWorld read_world(const MapperOptions& options) {
   ChosenWorld chosen;
   const std::string name = options.world.empty() ? "square" : options.world;
-  std::error_code error;
-  const bool is_file = std::filesystem::exists(name, error) && !std::filesystem::is_directory(name, error);
-  const auto built_in = worlds::built_in(name);
-  if (!is_file && !built_in) {
-    chosen.problems = Ending{{fmt::format("sim: there is no world '{}'", name),
-                              fmt::format("give a file, or one of those built in: {}",
-                                          fmt::join(worlds::built_in_names(), ", "))}};
-    return chosen;
-  }
-  auto loaded = is_file ? worlds::load(name) : worlds::parse(*built_in, name);
+  auto loaded = worlds::find(name);
   for (const auto& problem : loaded.problems)
-    chosen.problems.failures.push_back({problem.place + ": " + problem.what, problem.remedy});
+    chosen.problems.failures.push_back({"sim: " + worlds::in_words(problem), problem.remedy});
   if (!loaded.world) return chosen;
   chosen.model = std::move(*loaded.world);
   const std::size_t robots = options.robots == 0 ? chosen.model.starts.size() : options.robots;

@@ -246,6 +246,22 @@ Loaded load(const std::filesystem::path& file) {
   return text ? parse(*text, file.string()) : std::move(loaded);
 }
 
+Loaded find(const std::string& name) {
+  std::error_code error;
+  if (std::filesystem::exists(name, error) && !std::filesystem::is_directory(name, error)) return load(name);
+  if (const auto text = built_in(name)) return parse(*text, name);
+  std::string names;
+  for (const auto each : built_in_names()) names += (names.empty() ? "" : ", ") + std::string{each};
+  Loaded loaded;
+  loaded.problems.push_back(
+      {"", "there is no world '" + name + "'", "give a file, or one of those built in: " + names});
+  return loaded;
+}
+
+std::string in_words(const Problem& problem) {
+  return problem.place.empty() ? problem.what : problem.place + ": " + problem.what;
+}
+
 std::optional<std::string_view> built_in(std::string_view name) noexcept {
   for (const Text& world : world_texts())
     if (world.name == name) return world.text;

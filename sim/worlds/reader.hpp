@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -25,6 +26,11 @@ struct Loaded {
 /// Any bytes are a problem at worst: throws std::bad_alloc only. `file_name` is for the places.
 [[nodiscard]] Loaded parse(std::string_view text, std::string_view file_name);
 [[nodiscard]] Loaded load(const std::filesystem::path& file);
+
+/// A world as a person names it: the file of this name, else the one that is compiled in.
+[[nodiscard]] Loaded find(const std::string& name);
+/// "place: what"; what alone of a world that there is not.
+[[nodiscard]] std::string in_words(const Problem& problem);
 
 /// A world that is compiled in: those of `sim/worlds`, by name ("square"). The text of its file.
 [[nodiscard]] std::optional<std::string_view> built_in(std::string_view name) noexcept;

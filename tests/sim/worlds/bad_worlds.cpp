@@ -57,6 +57,17 @@ TEST_CASE("no file, no world: the path is named") {
         "/dev/null:1:1: the file is empty; a world is a JSON object with name, walls and robots");
 }
 
+TEST_CASE("a world that is neither a file nor built in, nor a folder") {
+  for (const std::string name : {"atlantis", "/tmp"}) {
+    const auto loaded = ocm::sim::worlds::find(name);
+    REQUIRE(loaded.problems.size() == 1);
+    CHECK_FALSE(loaded.world);
+    CHECK(ocm::sim::worlds::in_words(loaded.problems[0]) == "there is no world '" + name + "'");
+    CHECK(loaded.problems[0].remedy == "give a file, or one of those built in: labyrinth, range, square");
+  }
+  CHECK(ocm::sim::worlds::find("square").world);
+}
+
 TEST_CASE("a world with too much in it is refused") {
   const auto problems_of = [](const std::string& walls, const std::string& robots) {
     return printed(

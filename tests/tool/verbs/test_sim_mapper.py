@@ -135,6 +135,28 @@ class Simulated(Case):
         self.assertIn("there is no world 'nowhere'", error)
         self.assertIn("labyrinth", error)
 
+    def test_sim_and_map_say_the_same_of_a_world_that_is_not_there(self):
+        for world in ("nowhere", "/tmp", self.folder + "/none.json"):
+            said = [self.run_tool(*words, "--world", world, code=1)[1].replace(words[0] + ": ", "", 1)
+                    for words in (["sim"], ["map", "a.svg"])]
+            self.assertEqual(said[0], said[1])
+            self.assertIn(f"amiroctl: there is no world '{world}'", said[0])
+
+    def test_a_verb_for_a_bus_says_that_mappers_run(self):
+        for words in (["--robots", "1"], ["--robots", "1", "--lines"]):
+            sim = self.sim(*words)
+            for verb in (["listen"], ["publish", "gyro", "1s"], ["listen", "--bus", "sim"]):
+                _, error = self.run_tool(*verb, code=1)
+                self.assertIn("mappers run, but have no CAN bus", error)
+                self.assertIn("mappers take `amiroctl robots`", error)
+                self.assertNotIn("and no simulator runs", error)
+            self.interrupt(sim)
+        self.assertIn("no simulator runs", self.run_tool("listen", code=1)[1])
+
+    def test_a_verb_for_mappers_says_that_an_amiro_runs(self):
+        self.start_sim()
+        self.assertIn("the simulator that runs is an AMiRo", self.run_tool("robots", code=1)[1])
+
     def test_too_many_links(self):
         self.sim("--robots", "2", "--links", "1", "--speed", "10")
         line = self.central()
