@@ -236,7 +236,8 @@ void add_admission_options(Verb verb, AdmissionOptions& options) {
   verb.add_flag("--force", options.force, "send it even if the bus could not carry it");
   verb.add_flag("--explain", options.explain, "show what is on the bus, and how late each frame can be");
   verb.add_option("--listen", options.listen, "how long to listen to what runs, before asking (100ms)")
-      .type_name("T");
+      .type_name("T")
+      .takes(accepted_duration());
 }
 
 void admit(Session& session, transport::Bus& bus, const client::Command& command,

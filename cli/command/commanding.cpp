@@ -7,6 +7,7 @@
 #include "ocm/can/text.hpp"
 
 #include "cli/shared/outgoing.hpp"
+#include "cli/shared/values.hpp"
 
 namespace ocm::cli {
 
@@ -15,7 +16,8 @@ Commanding::Commanding(Verb verb, Session& session, std::string_view words_help,
   verb.add_option("words", words_, std::string{words_help}).type_name("");
   if (with_priority)
     verb.add_option("--priority", priority_, "urgent, high, medium or low; default: the topic's own")
-        .type_name("P");
+        .type_name("P")
+        .takes(accepted_priority());
   verb.add_flag("--dry-run", dry_run_, "print the frames in candump notation and send nothing");
 }
 

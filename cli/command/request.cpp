@@ -73,7 +73,7 @@ void add_request_options(Verb verb, Session& session, std::string_view words_hel
   const auto options = std::make_shared<Options>(verb, session, words_help);
   const auto wait =
       verb.add_option("--wait", options->wait, "wait for the first sample and show it, at most T (2s)");
-  wait.expected(0, 1).type_name("[T]");
+  wait.expected(0, 1).type_name("[T]").takes(accepted_duration());
   if (starts == Starts::stream) add_admission_options(verb, options->admission);
   verb.callback([options, wait, &session] {
     const auto command = options->commanding.parse();

@@ -4,7 +4,9 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "ocm/log/reader.hpp"
 #include "ocm/log/writer.hpp"
@@ -27,6 +29,9 @@ struct LogFormat {
 [[nodiscard]] std::span<const LogFormat> log_formats();
 /// By name; nullptr: there is none.
 [[nodiscard]] const LogFormat* find_format(std::string_view name);
+/// The names of those that are read, and of those that are written.
+[[nodiscard]] std::vector<std::string> readable_formats();
+[[nodiscard]] std::vector<std::string> writable_formats();
 /// By the ending of a file's name, without .gz and .zst; nullptr: it says nothing.
 [[nodiscard]] const LogFormat* format_of_name(std::string_view file);
 

@@ -65,6 +65,20 @@ std::span<const LogFormat> log_formats() {
   return formats;
 }
 
+std::vector<std::string> readable_formats() {
+  std::vector<std::string> names;
+  for (const LogFormat& format : formats)
+    if (format.reader != nullptr) names.emplace_back(format.name);
+  return names;
+}
+
+std::vector<std::string> writable_formats() {
+  std::vector<std::string> names;
+  for (const LogFormat& format : formats)
+    if (format.writer != nullptr) names.emplace_back(format.name);
+  return names;
+}
+
 const LogFormat* find_format(std::string_view name) {
   for (const LogFormat& format : formats)
     if (format.name == name) return &format;

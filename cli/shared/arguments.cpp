@@ -1,9 +1,34 @@
 #include "cli/shared/arguments.hpp"
 
+#include <limits>
+#include <map>
+#include <set>
+#include <utility>
+
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 namespace ocm::cli {
 namespace {
+
+/// The program, which knows of each of its options what CLI11 does not keep.
+struct Root : CLI::App {
+  using CLI::App::App;
+  std::map<const CLI::Option*, Accepted> accepted;
+  std::set<const CLI::Option*> given;  ///< by the environment or a config file
+};
+
+Root& root_of(CLI::App* app) {
+  while (app->get_parent() != nullptr) app = app->get_parent();
+  return static_cast<Root&>(*app);  // a Verb is of a Program, whose root is one
+}
+
+Option declare(CLI::Option* option, CLI::App* app, Accepted accepted) {
+  root_of(app).accepted[option] = std::move(accepted);
+  return {option, app};
+}
+
+constexpr double no_bound = std::numeric_limits<double>::infinity();
 
 /// Groups of options are applications without a name.
 bool is_verb(const CLI::App* app) {
@@ -58,23 +83,29 @@ Option Option::needs(Option other) const {
 }
 
 Option Option::one_of(std::initializer_list<const char*> words) const {
-  option_->check(CLI::IsMember(std::vector<std::string>{words.begin(), words.end()}));
-  return *this;
+  std::vector<std::string> all{words.begin(), words.end()};
+  option_->check(CLI::IsMember(all));
+  return takes(accepted_words(std::move(all)));
+}
+
+Option Option::takes(Accepted accepted) const {
+  return declare(option_, owner_, std::move(accepted));
 }
 
 Option Option::range(double least, double most) const {
   option_->check(CLI::Range(least, most));
-  return *this;
+  return takes(accepted_number(least, most, fmt::format("a number from {} to {}", least, most)));
 }
 
 Option Option::range(unsigned least, unsigned most) const {
   option_->check(CLI::Range(least, most));
-  return *this;
+  return takes(accepted_whole(least, most, fmt::format("a whole number from {} to {}", least, most)));
 }
 
 Option Option::positive() const {
   option_->check(CLI::PositiveNumber);
-  return *this;
+  return takes(
+      accepted_whole(1, std::numeric_limits<std::uint64_t>::max(), "a whole number that is at least 1"));
 }
 
 Option Option::environment(const std::string& name) const {
@@ -146,6 +177,10 @@ int Option::most_values() const {
   return option_->get_items_expected_max();
 }
 
+const Accepted& Option::accepted() const {
+  return root_of(owner_).accepted[option_];
+}
+
 bool Option::is_decided() const {
   if (option_->count() > 0) return true;
   for (const CLI::Option* other : option_->get_excludes())
@@ -158,11 +193,12 @@ bool Option::is_decided() const {
 
 void Option::give(const std::string& key, const std::vector<std::string>& values) const {
   try {
-    if (option_->get_items_expected_max() == 0)
+    if (option_->get_items_expected_max() == 0 || (option_->get_items_expected_min() == 0 && values.empty()))
       option_->add_result(option_->get_flag_value(key, values.empty() ? "" : values.front()));
     else
       option_->add_result(values);
     option_->run_callback();
+    root_of(owner_).given.insert(option_);
   } catch (const CLI::ParseError& error) {
     throw BadValue{error.what()};
   }
@@ -180,19 +216,22 @@ Option Verb::add_option(const std::string& names, std::vector<std::string>& valu
 }
 
 Option Verb::add_option(const std::string& names, std::uint32_t& value, const std::string& help) const {
-  return {app_->add_option(names, value, help), app_};
+  return declare(app_->add_option(names, value, help), app_,
+                 accepted_whole(0, std::numeric_limits<std::uint32_t>::max(), "a whole number"));
 }
 
 Option Verb::add_option(const std::string& names, std::uint64_t& value, const std::string& help) const {
-  return {app_->add_option(names, value, help), app_};
+  return declare(app_->add_option(names, value, help), app_,
+                 accepted_whole(0, std::numeric_limits<std::uint64_t>::max(), "a whole number"));
 }
 
 Option Verb::add_option(const std::string& names, double& value, const std::string& help) const {
-  return {app_->add_option(names, value, help), app_};
+  return declare(app_->add_option(names, value, help), app_,
+                 accepted_number(-no_bound, no_bound, "a number"));
 }
 
 Option Verb::add_flag(const std::string& names, bool& value, const std::string& help) const {
-  return {app_->add_flag(names, value, help), app_};
+  return declare(app_->add_flag(names, value, help), app_, accepted_truth());
 }
 
 Verb Verb::add_choice(const std::string& heading, const std::string& help) const {
@@ -241,6 +280,11 @@ void Verb::after_parsing(std::function<void()> run) const {
 
 std::size_t Verb::count(const std::string& option) const {
   return app_->count(option);
+}
+
+bool Verb::is_typed(const std::string& option) const {
+  const CLI::Option* found = app_->get_option(option);
+  return found->count() != 0 && root_of(app_).given.count(found) == 0;
 }
 
 Option Verb::option(const std::string& name) const {
@@ -300,7 +344,7 @@ Verb Verb::called() const {
 
 Program::Program(const std::string& name, const std::string& description, const std::string& version,
                  const std::string& footer)
-    : app_(std::make_unique<CLI::App>(description, name)) {
+    : app_(std::make_unique<Root>(description, name)) {
   app_->set_version_flag("--version", version);
   app_->require_subcommand(1);
   app_->footer(footer);

@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/shared/option_value.hpp"
+
 namespace CLI {
 class App;
 class Option;
@@ -34,6 +36,9 @@ class Option {
   Option excludes(Option other) const;
   Option needs(Option other) const;
   Option one_of(std::initializer_list<const char*> words) const;
+  /// What a value of it is, where the verb itself reads the text; looked at in a config file and in the
+  /// environment.
+  Option takes(Accepted accepted) const;
   Option range(double least, double most) const;
   Option range(unsigned least, unsigned most) const;
   Option positive() const;
@@ -60,10 +65,12 @@ class Option {
   [[nodiscard]] bool is_named(const std::string& name) const;  ///< "--spec"
   [[nodiscard]] int least_values() const;
   [[nodiscard]] int most_values() const;
+  [[nodiscard]] const Accepted& accepted() const;
 
   /// Whether it has a value by now, or another one that excludes it has.
   [[nodiscard]] bool is_decided() const;
-  /// As if the command line had it, as --key. BadValue when it does not take the values.
+  /// As if the command line had it, as --key; without a value where it needs none. BadValue when it does not
+  /// take the values.
   void give(const std::string& key, const std::vector<std::string>& values) const;
 
  private:
@@ -102,8 +109,10 @@ class Verb {
   /// What is done when the whole command line was read, before any verb.
   void after_parsing(std::function<void()> run) const;
 
-  /// How often the command line has this option, "--robots".
+  /// How often this option was given, "--robots".
   [[nodiscard]] std::size_t count(const std::string& option) const;
+  /// Whether the command line itself has it, not the environment or a config file.
+  [[nodiscard]] bool is_typed(const std::string& option) const;
   /// An option that was added: "words".
   [[nodiscard]] Option option(const std::string& name) const;
 

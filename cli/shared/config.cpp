@@ -4,11 +4,16 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <optional>
 #include <set>
+#include <string_view>
+#include <unistd.h>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "cli/shared/config_check.hpp"
 #include "cli/shared/config_file.hpp"
 #include "cli/shared/messages.hpp"
 #include "generator/spec/names.hpp"
@@ -18,65 +23,11 @@ namespace {
 
 constexpr std::size_t max_config_bytes = 100'000;
 
-bool can_be_set(const Option& option) {
-  static const std::set<std::string> never{"help", "version", "config", "words", "all"};
-  const auto names = option.long_names();
-  return option.is_option() && !names.empty() && never.count(names.front()) == 0;
-}
-
 /// The program and the verb that was called, from the outermost on.
 std::vector<Verb> called(Verb program) {
   std::vector<Verb> verbs{program};
   while (const Verb inner = verbs.back().called()) verbs.push_back(inner);
   return verbs;
-}
-
-Verb find_table(Verb program, std::string_view table) {
-  Verb found = program;
-  while (!table.empty() && found) {
-    const std::string name{table.substr(0, table.find('.'))};
-    Verb inner;
-    for (const Verb each : found.verbs())
-      if (each.is_named(name)) inner = each;
-    found = inner;
-    table.remove_prefix(std::min(name.size() + 1, table.size()));
-  }
-  return found;
-}
-
-void collect_keys(Verb verb, bool inner_too, std::set<std::string>& keys) {
-  for (const Option& option : verb.options())
-    if (can_be_set(option))
-      for (auto& name : option.long_names()) keys.insert(std::move(name));
-  if (!inner_too) return;
-  for (const Verb inner : verb.verbs()) collect_keys(inner, true, keys);
-}
-
-std::set<std::string> verb_names(Verb program) {
-  std::set<std::string> names;
-  for (const Verb verb : program.verbs()) names.insert(verb.name());
-  return names;
-}
-
-std::string suggestion(const std::string& typed, const std::set<std::string>& known) {
-  const std::string near = spec::nearest_name(typed, known);
-  return near.empty() ? "a key is the long name of an option, without --; `amiroctl VERB --help` lists them"
-                      : fmt::format("did you mean {}?", near);
-}
-
-/// What is wrong with the names of a setting, if anything is.
-void check_names(Verb program, const Setting& setting, std::vector<ConfigProblem>& problems) {
-  const Verb table = find_table(program, setting.table);
-  if (!table) {
-    problems.push_back({setting.line, fmt::format("[{}] is no verb", setting.table),
-                        suggestion(setting.table, verb_names(program))});
-    return;
-  }
-  std::set<std::string> keys;
-  collect_keys(table, setting.table.empty(), keys);
-  if (keys.count(setting.key) == 0)
-    problems.push_back(
-        {setting.line, fmt::format("unknown key {}", setting.key), suggestion(setting.key, keys)});
 }
 
 [[noreturn]] void leave(const std::string& file, const std::vector<ConfigProblem>& problems) {
@@ -100,6 +51,8 @@ void apply_environment(Verb verb) {
       const std::string name = environment_name(key);
       const char* value = std::getenv(name.c_str());
       if (value == nullptr || *value == '\0') continue;
+      if (const auto refusal = refuse_text(option.accepted(), value))
+        fail({fmt::format("{}={}: {}", name, value, refusal->what), refusal->remedy}, exit_usage);
       try {
         option.give(key, {value});
       } catch (const BadValue& error) {
@@ -111,13 +64,39 @@ void apply_environment(Verb verb) {
   }
 }
 
+/// A variable that sets nothing is most often a misspelt one.
+void remark_unknown_environment(const std::vector<Settable>& settable) {
+  constexpr std::string_view prefix = "AMIROCTL_";
+  std::set<std::string> known{"CONFIG"};
+  for (const Settable& each : settable) known.insert(environment_name(each.key).substr(prefix.size()));
+  for (char** entry = environ; *entry != nullptr; ++entry) {
+    const std::string_view variable{*entry};
+    if (!variable.starts_with(prefix)) continue;
+    const std::string name{variable.substr(prefix.size(), variable.find('=') - prefix.size())};
+    if (known.count(name) != 0) continue;
+    const std::string near = spec::nearest_name(name, known);
+    remark(fmt::format("{}{} in the environment sets no option{}", prefix, name,
+                       near.empty() ? "" : fmt::format("; did you mean {}{}?", prefix, near)));
+  }
+}
+
 void apply_setting(Verb verb, const Setting& setting, const std::string& file) {
   for (Option option : verb.options()) {
     const auto names = option.long_names();
     if (!can_be_set(option) || std::find(names.begin(), names.end(), setting.key) == names.end()) continue;
     if (option.is_decided()) continue;
+    // Only above all tables: another verb takes it.
+    if (const auto refusal = refuse(option, setting.values))
+      leave(file, {{setting.line, fmt::format("{}: {}", setting.key, refusal->what),
+                    refusal->remedy + "; what is for another verb, write in its table"}});
+    std::vector<std::string> values;
+    for (const OptionValue& value : setting.values) values.push_back(value.text);
+    if (option.most_values() > 0 && setting.values.front().kind == ValueKind::truth) {
+      if (values.front() == "false") continue;
+      values.clear();
+    }
     try {
-      option.give(setting.key, setting.values);
+      option.give(setting.key, values);
     } catch (const BadValue& error) {
       leave(file,
             {{setting.line, fmt::format("{}: {}", setting.key, error.what()), "see `amiroctl VERB --help`"}});
@@ -158,11 +137,13 @@ std::string default_config_file() {
 
 void apply_config(Verb program, const std::string& file) {
   const auto verbs = called(program);
+  const auto settable = all_settable(program);
+  remark_unknown_environment(settable);
   for (const Verb each : verbs) apply_environment(each);
   const std::string path = file.empty() ? default_config_file() : file;
   if (path.empty()) return;
   ConfigFile config = parse_config(read_file(path, !file.empty()));
-  for (const Setting& setting : config.settings) check_names(program, setting, config.problems);
+  for (const Setting& setting : config.settings) check_setting(program, setting, settable, config.problems);
   if (!config.problems.empty()) {
     std::stable_sort(config.problems.begin(), config.problems.end(),
                      [](const auto& a, const auto& b) { return a.line < b.line; });

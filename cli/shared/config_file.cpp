@@ -35,13 +35,13 @@ class Reader {
 
   bool read_value(const toml::node& node, Setting& setting) {
     if (const auto* text = node.as_string())
-      setting.values.push_back(text->get());
+      setting.values.push_back({text->get(), ValueKind::text});
     else if (const auto* truth = node.as_boolean())
-      setting.values.emplace_back(truth->get() ? "true" : "false");
+      setting.values.push_back({truth->get() ? "true" : "false", ValueKind::truth});
     else if (const auto* whole = node.as_integer())
-      setting.values.push_back(fmt::format("{}", whole->get()));
+      setting.values.push_back({fmt::format("{}", whole->get()), ValueKind::number});
     else if (const auto* real = node.as_floating_point())
-      setting.values.push_back(fmt::format("{}", real->get()));
+      setting.values.push_back({fmt::format("{}", real->get()), ValueKind::number});
     else
       return refuse(node, setting);
     return true;
@@ -52,7 +52,7 @@ class Reader {
                        : node.is_table() ? "a table"
                                          : "a date or a time";
     file_.problems.push_back({node.source().begin.line,
-                              fmt::format("{}: {} is no option's value", setting.key, what),
+                              fmt::format("{}: {} cannot be a value", setting.key, what),
                               "a text in quotes, a number, true, false, or an array of them"});
     return false;
   }

@@ -6,12 +6,14 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/shared/option_value.hpp"
+
 namespace ocm::cli {
 
 struct Setting {
   std::string table;                ///< "listen", "analyse.bus"; empty: every verb
   std::string key;                  ///< "idle-timeout"
-  std::vector<std::string> values;  ///< several of an array
+  std::vector<OptionValue> values;  ///< several of an array
   std::size_t line = 0;
 };
 

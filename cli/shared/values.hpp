@@ -7,6 +7,8 @@
 
 #include "ocm/base/time.hpp"
 
+#include "cli/shared/option_value.hpp"
+
 namespace ocm::cli {
 
 /// A duration option such as --timeout 2s; exit_usage when it is none.
@@ -14,5 +16,10 @@ namespace ocm::cli {
 
 /// A bit rate in bit/s: "500000", "500k", "83.333k", "1M"; exit_usage when it is none of classic CAN.
 [[nodiscard]] std::uint32_t bit_rate_option(std::string_view text);
+
+/// What such options are declared to take.
+[[nodiscard]] Accepted accepted_duration();
+[[nodiscard]] Accepted accepted_bit_rate();
+[[nodiscard]] Accepted accepted_priority();
 
 }  // namespace ocm::cli

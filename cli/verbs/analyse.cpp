@@ -226,7 +226,8 @@ void add_bus_options(Verb verb, Options& options) {
                   "topic=period, topic=period@priority or topic=off, several; or a file of such lines")
       .type_name("RATE");
   verb.add_option("--bitrate", options.bit_rate, "such as 500k or 125000; default: the spec's")
-      .type_name("RATE");
+      .type_name("RATE")
+      .takes(accepted_bit_rate());
   verb.add_option("--lengths", options.lengths,
                   "generic: the longest that any identifier could make a frame; exact: of its identifier. "
                   "Default: generic for a FILE, exact for the robot")
@@ -282,20 +283,25 @@ void add_analyse(Verb app, Session& session, int& exit_code) {
   tasks_verb
       .add_option("--context-switch", of_tasks->context_switch,
                   "what one costs; a job pays two. Default: nothing")
-      .type_name("TIME");
+      .type_name("TIME")
+      .takes(accepted_duration());
   tasks_verb
       .add_option("--interrupt", of_tasks->interrupt,
                   "what each release of each task costs ahead of all priorities. Default: nothing")
-      .type_name("TIME");
+      .type_name("TIME")
+      .takes(accepted_duration());
   tasks_verb
       .add_option("--lock", of_tasks->lock,
                   "the longest stretch with interrupts off: each task may wait for one. Default: none")
-      .type_name("TIME");
+      .type_name("TIME")
+      .takes(accepted_duration());
   const auto tick =
       tasks_verb.add_option("--tick", of_tasks->tick, "the system's timer interrupt comes so often")
-          .type_name("TIME");
+          .type_name("TIME")
+          .takes(accepted_duration());
   tasks_verb.add_option("--tick-cost", of_tasks->tick_cost, "and costs so much. Default: nothing")
       .type_name("TIME")
+      .takes(accepted_duration())
       .needs(tick);
   tasks_verb
       .add_flag("--released-by-tick", of_tasks->released_by_tick,
@@ -310,7 +316,8 @@ void add_analyse(Verb app, Session& session, int& exit_code) {
       .required();
   chain_verb
       .add_option("--deadline", of_chain->deadline, "from an event to the end of the reaction; default: none")
-      .type_name("TIME");
+      .type_name("TIME")
+      .takes(accepted_duration());
   add_bus_options(chain_verb, *of_chain);
   const auto chain_json = chain_verb.add_flag("--json", of_chain->json, "one object, for programs");
   chain_verb.add_flag("--csv", of_chain->csv, "a line a hop, times in nanoseconds").excludes(chain_json);

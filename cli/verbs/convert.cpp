@@ -122,8 +122,11 @@ void add_convert(Verb app, Session& session, int& exit_code) {
       .type_name("OUT")
       .required();
   verb.add_option("--from", options->from, "format of IN; default: what it begins with, then its ending")
-      .type_name("FORMAT");
-  verb.add_option("--to", options->to, "format of OUT; default: its ending").type_name("FORMAT");
+      .type_name("FORMAT")
+      .takes(accepted_words(logs::readable_formats()));
+  verb.add_option("--to", options->to, "format of OUT; default: its ending")
+      .type_name("FORMAT")
+      .takes(accepted_words(logs::writable_formats()));
   verb.add_flag("--strict", options->strict, "exit 1 when anything was lost or could not be read");
   verb.callback([options, &session, &exit_code] { convert(session, *options, exit_code); });
 }

@@ -153,9 +153,14 @@ void add_decode(Verb app, Session& session, int& exit_code) {
       .type_name("TOPIC")
       .one_a_mention();
   verb.add_option("--from", options->from, "the format of the logs; default: what they begin with says it")
-      .type_name("FORMAT");
-  verb.add_option("--since", options->since, "from this time after the first frame").type_name("T");
-  verb.add_option("--until", options->until, "up to this time after the first frame").type_name("T");
+      .type_name("FORMAT")
+      .takes(accepted_words(logs::readable_formats()));
+  verb.add_option("--since", options->since, "from this time after the first frame")
+      .type_name("T")
+      .takes(accepted_duration());
+  verb.add_option("--until", options->until, "up to this time after the first frame")
+      .type_name("T")
+      .takes(accepted_duration());
   verb.add_option("-n,--count", options->count, "end after so many").type_name("N").positive();
   verb.add_flag("--strict", options->strict, "exit 1 when any line or frame could not be decoded");
   verb.callback([options, &session, &exit_code] { decode(session, *options, exit_code); });

@@ -212,9 +212,12 @@ void add_doctor(Verb app, Session& session, int& exit_code) {
                    "  amiroctl doctor\n"
                    "  amiroctl doctor --watch 10s --json | jq '.findings[]'");
   const auto options = std::make_shared<DoctorOptions>();
-  verb.add_option("--watch", options->watch, "how long to listen before asking (1s)").type_name("T");
+  verb.add_option("--watch", options->watch, "how long to listen before asking (1s)")
+      .type_name("T")
+      .takes(accepted_duration());
   verb.add_option("--patience", options->patience, "how long a board may take to answer (500ms)")
-      .type_name("T");
+      .type_name("T")
+      .takes(accepted_duration());
   verb.add_flag("--json", options->json, "one object, for programs");
   verb.callback([options, &session, &exit_code] {
     const base::Duration watch = duration_option("--watch", options->watch);

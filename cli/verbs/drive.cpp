@@ -4,6 +4,7 @@
 #include "cli/command/commanding.hpp"
 #include "cli/command/timeline.hpp"
 #include "cli/shared/interrupt.hpp"
+#include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
 
 namespace ocm::cli {
@@ -22,7 +23,9 @@ void add_drive(Verb app, Session& session, int& exit_code) {
     bool once = false;
   };
   const auto options = std::make_shared<Options>(verb, session);
-  const auto lasting = verb.add_option("--for", options->lasting, "how long to drive").type_name("T");
+  const auto lasting = verb.add_option("--for", options->lasting, "how long to drive")
+                           .type_name("T")
+                           .takes(accepted_duration());
   verb.add_flag("--once", options->once, "send one frame; the board stops the motors when none follows")
       .excludes(lasting);
   verb.callback([options, &session, &exit_code] {

@@ -77,7 +77,9 @@ void add_encode(Verb app, Session& session, int& exit_code) {
   const auto options = std::make_shared<EncodeOptions>();
   verb.add_option("file", options->in, "JSON lines; default: - (standard input)").type_name("[FILE]");
   verb.add_option("-o,--output", options->out, "the log; its ending says its format").type_name("FILE");
-  verb.add_option("--to", options->to, "format of the log; default: candump").type_name("FORMAT");
+  verb.add_option("--to", options->to, "format of the log; default: candump")
+      .type_name("FORMAT")
+      .takes(accepted_words(logs::writable_formats()));
   verb.add_flag("--keep-going", options->keep_going, "tell bad lines and go on; exit 1 at the end");
   verb.callback([options, &session, &exit_code] { encode(session, *options, exit_code); });
 }

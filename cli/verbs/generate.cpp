@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "cli/shared/output_file.hpp"
+#include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
 #include "generator/robot_spec.hpp"
 #include "generator/spec/spec.hpp"
@@ -16,6 +17,7 @@ struct GenerateOptions {
   std::string target;
   std::string output = "-";
   std::string priority;
+  bool priority_typed = false;
 };
 
 std::string base_name(const std::string& path) {
@@ -41,9 +43,10 @@ void generate_file(Session& session, const GenerateOptions& options) {
     if (!priority)
       fail({fmt::format("generate: unknown priority {}", options.priority), "urgent, high, medium or low"},
            exit_usage);
-    if (target->name != "dbc")
+    if (target->name == "dbc")
+      how.priority = *priority;
+    else if (options.priority_typed)  // that of a config file is for other verbs
       fail({fmt::format("generate {}: --priority is for dbc", target->name), "leave it out"}, exit_usage);
-    how.priority = *priority;
   }
   const std::string text = target->make(session.spec().model(), how);
   write_file(options.output, text);
@@ -63,8 +66,12 @@ void add_generate(Verb app, Session& session, int&) {
       .type_name("FILE");
   verb.add_option("--priority", options->priority,
                   "dbc: frames at this priority only, and their names without it")
-      .type_name("P");
-  verb.callback([options, &session] { generate_file(session, *options); });
+      .type_name("P")
+      .takes(accepted_priority());
+  verb.callback([verb, options, &session] {
+    options->priority_typed = verb.is_typed("--priority");
+    generate_file(session, *options);
+  });
 }
 
 }  // namespace ocm::cli

@@ -121,7 +121,10 @@ void add_goto(Verb app, Session&, int& exit_code) {
       .type_name("ANGLE");
   verb.add_option("distance", options->distance, "cm, then").required().type_name("DISTANCE");
   verb.add_flag("--no-wait", options->no_wait, "do not wait until it is there");
-  verb.add_option("--timeout", options->timeout, "then it is told to stop").type_name("T").show_default();
+  verb.add_option("--timeout", options->timeout, "then it is told to stop")
+      .type_name("T")
+      .takes(accepted_duration())
+      .show_default();
   fleet::add_line_options(verb, options->line);
   verb.callback([options, &exit_code] { run(*options, exit_code); });
 }

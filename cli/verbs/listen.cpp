@@ -92,9 +92,11 @@ void add_listen(Verb app, Session& session, int& exit_code) {
   verb.add_flag("--strict", options->strict, "exit 1 when frames were lost, unknown, wrong or incomplete");
   verb.add_option("-n,--count", options->count, "end after so many").type_name("N").positive();
   verb.add_option("--timeout", options->timeout, "end after this time; exit 1 when -n is not reached")
-      .type_name("T");
+      .type_name("T")
+      .takes(accepted_duration());
   verb.add_option("--idle-timeout", options->idle_timeout, "end when nothing came for this time")
-      .type_name("T");
+      .type_name("T")
+      .takes(accepted_duration());
   verb.callback([options, &session, &exit_code] { listen(session, *options, exit_code); });
 }
 

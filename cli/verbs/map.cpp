@@ -81,7 +81,8 @@ void add_map(Verb app, Session&, int& exit_code) {
   verb.add_option("--robots", options->robots, "names, addresses or indexes; default: all")
       .type_name("ROBOT ...");
   verb.add_option("--duration", options->duration, "at most so long; default: until all is known")
-      .type_name("T");
+      .type_name("T")
+      .takes(accepted_duration());
   verb.add_option("--start", options->starts, "where a robot was switched on: metres, degrees")
       .type_name("NAME=X,Y,DEG");
   verb.add_option("--world", options->world,

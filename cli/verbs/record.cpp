@@ -211,7 +211,8 @@ void add_record(Verb app, Session& session, int& exit_code) {
                   "the file; its ending chooses the format, with .gz or .zst it is packed; - for stdout")
       .type_name("FILE");
   verb.add_option("--to", options->to, "the format, whatever the name: " + format_names())
-      .type_name("FORMAT");
+      .type_name("FORMAT")
+      .takes(accepted_words(logs::writable_formats()));
   verb.add_flag("--force", options->force, "overwrite the file if it is there");
   verb.add_flag("--commands", options->commands, "with topics: their requests and set points too");
   verb.add_option("--filter,--raw-ids", options->filters,
@@ -222,7 +223,9 @@ void add_record(Verb app, Session& session, int& exit_code) {
       .type_name("SIZE|T");
   verb.add_option("--ring", options->ring, "with --split: keep the newest N files").type_name("N").positive();
   verb.add_option("-n,--count", options->count, "end after so many frames").type_name("N").positive();
-  verb.add_option("--duration", options->duration, "end after this time").type_name("T");
+  verb.add_option("--duration", options->duration, "end after this time")
+      .type_name("T")
+      .takes(accepted_duration());
   verb.add_flag("--no-sync", options->no_sync,
                 "leave it to the kernel when data reach the disk; default: every second");
   verb.add_flag("--strict", options->strict, "exit 1 when frames were lost");

@@ -1,5 +1,6 @@
 #include <chrono>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -39,14 +40,27 @@ struct ReplayOptions {
   bool dry_run = false;
 };
 
+constexpr const char* a_speed = "how many times faster, 0.000001 to 1000000, or max";
+
+base::Result<base::Decimal> parse_speed(const std::string& text) {
+  const auto speed = base::parse_decimal(text);
+  if (speed && (speed->as_double() < 1e-6 || speed->as_double() > 1e6)) return base::Error::out_of_range;
+  return speed;
+}
+
+Accepted accepted_speed() {
+  return {ValueKind::text, true, a_speed, {}, [](const std::string& text) {
+            return text == "max" || static_cast<bool>(parse_speed(text));
+          }};
+}
+
 replay::PlayerOptions player_options(const ReplayOptions& options) {
   replay::PlayerOptions player;
   player.at_once = options.speed == "max";
   if (!player.at_once) {
-    const auto speed = base::parse_decimal(options.speed);
-    if (!speed || speed->as_double() < 1e-6 || speed->as_double() > 1e6)
-      fail({fmt::format("--speed {}: not a speed", options.speed),
-            "write how many times faster, 0.000001 to 1000000, or max"},
+    const auto speed = parse_speed(options.speed);
+    if (!speed)
+      fail({fmt::format("--speed {}: not a speed", options.speed), fmt::format("write {}", a_speed)},
            exit_usage);
     player.playback.speed = speed->as_double();
   }
@@ -271,14 +285,23 @@ void add_replay(Verb app, Session& session, int& exit_code) {
   verb.add_option("topics", options->topics, "only frames of these; default: all that is in the log")
       .type_name("[TOPIC ...]");
   verb.add_option("--from-format", options->from_format, "the log's format, where it cannot be seen")
-      .type_name("FORMAT");
+      .type_name("FORMAT")
+      .takes(accepted_words(logs::readable_formats()));
   verb.add_option("--speed", options->speed, "how many times faster; max: as fast as the bus takes them")
-      .type_name("X|max");
+      .type_name("X|max")
+      .takes(accepted_speed());
   const auto loop = verb.add_option("--loop", options->loop, "play it N times; without N until Ctrl-C");
-  loop.expected(0, 1).type_name("[N]");
-  verb.add_option("--from", options->from, "begin so far into the log").type_name("T");
-  verb.add_option("--until", options->until, "end so far into the log").type_name("T");
-  verb.add_option("--max-gap", options->longest_gap, "cut longer pauses to this").type_name("T");
+  loop.expected(0, 1).type_name("[N]").takes(
+      accepted_whole(1, std::numeric_limits<std::uint64_t>::max(), "how many times, at least 1"));
+  verb.add_option("--from", options->from, "begin so far into the log")
+      .type_name("T")
+      .takes(accepted_duration());
+  verb.add_option("--until", options->until, "end so far into the log")
+      .type_name("T")
+      .takes(accepted_duration());
+  verb.add_option("--max-gap", options->longest_gap, "cut longer pauses to this")
+      .type_name("T")
+      .takes(accepted_duration());
   verb.add_option("--only", options->only, "sensors: what boards sent; commands: what they were sent")
       .one_of({"sensors", "commands"})
       .type_name("WHICH");

@@ -106,6 +106,7 @@ void add_robots(Verb app, Session&, int& exit_code) {
   verb.add_flag("--list", options->list, "those that advertise; connect to none");
   verb.add_option("--watch", options->watch, "how long to listen once all are connected")
       .type_name("T")
+      .takes(accepted_duration())
       .show_default();
   fleet::add_line_options(verb, options->line);
   verb.callback([options, &exit_code] { run(*options, exit_code); });

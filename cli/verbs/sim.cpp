@@ -120,7 +120,7 @@ void refuse_boards_options(Verb verb, const Session& session) {
       fail({fmt::format("sim: {} with mappers", option), "they have no bus and no boards: leave one out"},
            exit_usage);
   const char* environment = std::getenv("AMIROCTL_BUS");
-  if (!session.bus_name.empty() && session.bus_name != (environment != nullptr ? environment : ""))
+  if (verb.parent().is_typed("--bus") && session.bus_name != (environment != nullptr ? environment : ""))
     fail({"sim: --bus with mappers", "they have no bus: leave one out"}, exit_usage);
   if (verb.count("--lines") != 0)
     for (const char* option : {"--radio-loss", "--radio-range", "--radio-repeats", "--links"})

@@ -161,7 +161,8 @@ void add_stats(Verb app, Session& session, int& exit_code) {
       .type_name("EXPRESSION")
       .one_a_mention();
   verb.add_option("--bitrate", options->bit_rate, "such as 500k or 125000; default: the spec's")
-      .type_name("RATE");
+      .type_name("RATE")
+      .takes(accepted_bit_rate());
   const auto json = verb.add_flag("--json", options->json, "one object, for programs");
   verb.add_flag("--csv", options->csv, "a line a topic, times in nanoseconds").excludes(json);
   verb.callback([options, &session, &exit_code] { run(session, *options, exit_code); });

@@ -16,9 +16,11 @@ namespace ocm::cli {
 
 void add_watch_options(Verb verb, WatchOptions& options) {
   verb.add_option("--from", options.format, "format of the logs; default: what they begin with says it")
-      .type_name("FORMAT");
+      .type_name("FORMAT")
+      .takes(accepted_words(logs::readable_formats()));
   verb.add_option("--duration", options.duration, "end after this time; of a log: look at its first T only")
-      .type_name("T");
+      .type_name("T")
+      .takes(accepted_duration());
   verb.add_option("-n,--count", options.count, "end after so many frames").type_name("N").positive();
 }
 

@@ -82,8 +82,8 @@ class Config(harness.Case):
     def test_mistakes_are_told_with_file_line_and_remedy(self):
         for text, line, what, remedy in (
                 ('bus = "sim"\nbuss = "sim"\n', 2, "unknown key buss", "did you mean bus?"),
-                ('[lissten]\npretty = true\n', 2, "[lissten] is no verb", "did you mean listen?"),
-                ('[list]\npretty = true\n', 2, "unknown key pretty", "a key is the long name of an option"),
+                ('[lissten]\npretty = true\n', 2, "[lissten] is not a verb", "did you mean listen?"),
+                ('[list]\nzzzzz = true\n', 2, "unknown key zzzzz", "a key is the long name of an option"),
                 ("\nbus = sim\n", 2, "could not determine value type", 'bus = "can0"'),
                 ('bus = "sim\n', 1, "Error while parsing string", "a text stands in quotes"),
                 ("bus\n", 1, "expected '='", 'key = value'),
@@ -91,9 +91,9 @@ class Config(harness.Case):
                 ("[list\n", 1, "expected ']'", "[verb]"),
                 ('bus = "a" "b"\n', 1, "expected a comment or whitespace", "key = value"),
                 ('bus = "a"\nbus = "b"\n', 2, "cannot redefine existing string 'bus'", ""),
-                ('bus = 2020-01-01\n', 1, "bus: a date or a time is no option's value", "a text in quotes"),
-                ('bus = ["a",\n  ["b"]]\n', 2, "bus: an array within an array is no option's value", ""),
-                ('[[list]]\npretty = true\n', 1, "list: a table is no option's value", ""),
+                ('bus = 2020-01-01\n', 1, "bus: a date or a time cannot be a value", "a text in quotes"),
+                ('bus = ["a",\n  ["b"]]\n', 2, "bus: an array within an array cannot be a value", ""),
+                ('[[list]]\npretty = true\n', 1, "list: a table cannot be a value", ""),
                 ('help = true\n', 1, "unknown key help", "")):
             self.write(text)
             out, err = self.run_tool("list", code=2)
@@ -102,13 +102,102 @@ class Config(harness.Case):
             self.assertIn(what, err)
             self.assertIn(remedy, err)
 
+    def test_a_key_in_a_table_where_it_has_no_effect(self):
+        for text, what, remedy in (
+                ('[publish]\nbus = "sim"\n', "bus has no effect in [publish]", "write it above the first table"),
+                ('[analyse.bus]\nbus = "sim"\n', "bus has no effect in [analyse.bus]", "write it above the first table"),
+                ('[list]\npretty = true\n', "pretty has no effect in [list]", "in [listen], [decode]"),
+                ('[analyse]\nbitrate = "500k"\n', "bitrate has no effect in [analyse]", "[analyse.bus]")):
+            self.write(text)
+            _, err = self.run_tool("list", code=2)
+            self.assertIn(f"{self.file}:2: {what}\n", err)
+            self.assertIn(remedy, err)
+
     def test_values_that_an_option_does_not_take(self):
-        self.write('[sim]\nboards = "paper"\n')
+        """Whatever verb is called: the whole file is judged."""
+        for text, what, remedy in (
+                ('priority = "hihg"', "priority: invalid value 'hihg'", "did you mean high? expected urgent, high, medium or low"),
+                ("priority = 2", "priority: invalid value 2", "expected urgent, high, medium or low, in quotes"),
+                ("bus = 5", "bus: invalid value 5", "expected a text, in quotes"),
+                ("bus = true", "bus: invalid value true", "expected a text, in quotes"),
+                ('bus = ["sim", "can0"]', "bus: 2 values", "expected one"),
+                ("bus = []", "bus: an array without a value", "leave the line out"),
+                ('no-color = "yes"', "no-color: invalid value 'yes'", "expected true or false, without quotes"),
+                ("dry-run = 1", "dry-run: invalid value 1", "expected true or false, without quotes"),
+                ('[sim]\nboards = "paper"', "boards: invalid value 'paper'", "expected host or qemu"),
+                ("[sim]\nrobots = 0", "robots: invalid value 0", "expected a whole number from 1 to 128"),
+                ('[sim]\nrobots = "2"', "robots: invalid value '2'", "a whole number from 1 to 128, without quotes"),
+                ("[sim]\nradio-loss = 1.5", "radio-loss: invalid value 1.5", "expected a number from 0 to 1"),
+                ("[listen]\ncount = -1", "count: invalid value -1", "at least 1"),
+                ("[listen]\ncount = 1.5", "count: invalid value 1.5", "a whole number"),
+                ('[listen]\ntimeout = "5"', "timeout: invalid value '5'", "expected a time such as 500ms"),
+                ("[listen]\ntimeout = 5", "timeout: invalid value 5", "expected a time such as 500ms, 2s or 1.5s, in quotes"),
+                ('[publish]\nwait = "soon"', "wait: invalid value 'soon'", "expected a time"),
+                ('[replay]\nspeed = "fast"', "speed: invalid value 'fast'", "or max"),
+                ("[replay]\nloop = 0", "loop: invalid value 0", "how many times, at least 1"),
+                ('[convert]\nto = "candum"', "to: invalid value 'candum'", "did you mean candump?"),
+                ('[convert]\nto = "blf"', "to: invalid value 'blf'", "expected pcapng"),
+                ('[stats]\nbitrate = "5G"', "bitrate: invalid value '5G'", "500k or 125000")):
+            self.write(text + "\n")
+            for verb in (["list"], ["publish", "mag", "900us", "--dry-run"]):
+                out, err = self.run_tool(*verb, code=2)
+                self.assertEqual(out, "")
+                self.assertIn(f"{self.file}:{text.count(chr(10)) + 1}: {what}\n", err)
+                self.assertIn(remedy, err)
+
+    def test_values_that_are_taken(self):
+        for text in ("[stats]\nbitrate = 125000", '[stats]\nbitrate = "125k"', "[replay]\nspeed = 2.5", '[replay]\nspeed = "max"',
+                     "[replay]\nloop = true", "[replay]\nloop = 3", '[publish]\nwait = "1s"', "[publish]\nwait = false",
+                     '[sim]\nwithout = ["light_ring", "power_management"]', "[sim]\nspeed = 10", "[sim]\nseed = 0"):
+            self.write(text + "\n")
+            self.run_tool("list")
+
+    def test_an_option_that_needs_no_value(self):
+        log = os.path.join(self.folder, "a.log")
+        with open(log, "w", encoding="utf-8") as file:
+            file.write("(1.0) can0 605#00D20000\n")
+        for value in ("true", "3"):
+            self.write(f"[replay]\nloop = {value}\n")
+            self.assertIn("plays once", self.run_tool("replay", log, "--dry-run", code=2)[1])
+        self.write("[replay]\nloop = false\n")
+        self.assertEqual(self.run_tool("replay", log, "--dry-run")[0].count("605#"), 1)
+
+    def test_a_value_for_all_verbs_that_only_some_take(self):
+        self.write('bitrate = "500k"\n')
+        self.run_tool("analyse", "bus")
         _, err = self.run_tool("sim", code=2)
-        self.assertIn(f"{self.file}:2: boards: ", err)
-        self.write("")
+        self.assertIn(f"{self.file}:1: bitrate: invalid value '500k'\n", err)
+        self.assertIn("what is for another verb, write in its table", err)
+
+    def test_what_is_for_all_verbs_does_not_stop_one_that_has_no_use_for_it(self):
+        self.write('priority = "high"\n')
+        self.run_tool("generate", "wireshark")
+        self.assertIn("--priority is for dbc", self.run_tool("generate", "wireshark", "--priority", "low", code=2)[1])
+        self.write('bus = "can7"\n')
+        self.assertIn("/nowhere", self.run_tool("sim", "--world", "/nowhere/here.world", code=1)[1])
+        self.assertIn("--bus with mappers", self.run_tool("sim", "--robots", "1", "--bus", "can7", code=2)[1])
+
+    def test_values_from_the_environment(self):
         self.environment["AMIROCTL_BOARDS"] = "paper"
-        self.assertIn("AMIROCTL_BOARDS=paper: ", self.run_tool("sim", code=2)[1])
+        self.assertIn("AMIROCTL_BOARDS=paper: invalid value 'paper'", self.run_tool("sim", code=2)[1])
+        self.environment["AMIROCTL_PRIORITY"] = "hihg"
+        _, err = self.run_tool("publish", "mag", "900us", "--dry-run", code=2)
+        self.assertIn("AMIROCTL_PRIORITY=hihg: invalid value 'hihg'", err)
+        self.assertIn("did you mean high? expected urgent, high, medium or low", err)
+        del self.environment["AMIROCTL_PRIORITY"]
+        self.environment["AMIROCTL_DRY_RUN"] = "1"
+        self.assertEqual(self.run_tool("publish", "mag", "900us")[0].strip(), "205#01840302")
+        self.environment["AMIROCTL_DRY_RUN"] = "maybe"
+        self.assertIn("AMIROCTL_DRY_RUN=maybe: ", self.run_tool("publish", "mag", "900us", code=2)[1])
+
+    def test_variables_that_set_nothing_are_named(self):
+        self.environment.update(AMIROCTL_PRIORTY="high", AMIROCTL_ZZZZZZZZZZ="1", AMIROCTL_DRY_RUN="true", AMIROCTL_BUS="sim",
+                                AMIROCTL_CONFIG="/dev/null", AMIROCTL_HELP="1")
+        _, err = self.run_tool("list")
+        self.assertEqual(sorted(err.splitlines()),
+                         ["AMIROCTL_HELP in the environment sets no option",
+                          "AMIROCTL_PRIORTY in the environment sets no option; did you mean AMIROCTL_PRIORITY?",
+                          "AMIROCTL_ZZZZZZZZZZ in the environment sets no option"])
 
     def test_all_mistakes_at_once(self):
         self.write('a = 1\nb = 2\n')
