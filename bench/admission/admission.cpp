@@ -1,10 +1,9 @@
 // What one decision of DiWheelDrive's admission costs on a Cortex-M3, in instructions: on QEMU's mps2-an385
 // with -icount shift=0, where an instruction takes a nanosecond of the timer's time.
-#include "ocm/analysis/admission.hpp"
-
 #include <cstdint>
 #include <cstdio>
 
+#include "ocm/analysis/board_admission.hpp"
 #include "ocm/topics/amiro.hpp"
 
 #include "firmware/boards/di_wheel_drive/costs.hpp"

@@ -10,7 +10,7 @@
 
 #include "ocm/client/sample.hpp"
 
-#include "cli/command/admission.hpp"
+#include "cli/command/bus_admission.hpp"
 #include "cli/command/commanding.hpp"
 #include "cli/output/printer.hpp"
 #include "cli/shared/interrupt.hpp"

@@ -2,7 +2,7 @@
 /// file that names its parts' buses and calls this.
 #pragma once
 
-#include "ocm/analysis/admission.hpp"
+#include "ocm/analysis/board_admission.hpp"
 #include "ocm/base/time.hpp"
 #include "ocm/controller/report.hpp"
 #include "ocm/topics/amiro.hpp"

@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "ocm/analysis/admission.hpp"
+#include "ocm/analysis/board_admission.hpp"
 #include "ocm/base/time.hpp"
 #include "ocm/can/bus.hpp"
 #include "ocm/can/frame.hpp"

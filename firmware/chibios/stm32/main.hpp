@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "ocm/analysis/admission.hpp"
+#include "ocm/analysis/board_admission.hpp"
 #include "ocm/base/time.hpp"
 #include "ocm/controller/report.hpp"
 #include "ocm/topics/amiro.hpp"

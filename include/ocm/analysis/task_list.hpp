@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "ocm/analysis/admission.hpp"
+#include "ocm/analysis/board_admission.hpp"
 #include "ocm/analysis/cpu.hpp"
 #include "ocm/analysis/schedulable.hpp"
 #include "ocm/analysis/task_set.hpp"

@@ -476,6 +476,15 @@ def indexes_are_complete(tree):
             yield f"{page}:1: {index} lists this page {times} times; expected once"
 
 
+def test_folders_have_rows(tree):
+    """tests/README.md names each folder of tests that has a CMakeLists.txt."""
+    rows = tree.text("tests/README.md") if "tests/README.md" in tree.known else ""
+    for name in tree.files:
+        match = re.fullmatch(r"tests/(\w+/(?:\w+/)?)CMakeLists\.txt", name)
+        if match and f"`{match[1]}`" not in rows:
+            yield f"{name}:1: tests/README.md has no row for `{match[1]}`"
+
+
 def snippets(tree):
     """Name -> (file, code) of what examples offer to be quoted; indentation taken off."""
     found = {}
@@ -508,7 +517,7 @@ RULES = (floors_have_rows, includes_go_down, layers_are_apart, library_knows_no_
          tests_have_their_namespace, own_includes_are_full_paths, generator_is_independent, firmware_is_for_boards, rooms_are_apart,
          folders_make_no_circle, verbs_are_seen_by_main_only, no_circles_of_rooms, costly_headers_are_seen_by_few,
          generated_files_are_reproducible, no_machine_paths, links_resolve, pages_are_linked, indexes_are_complete,
-         quotes_are_the_examples)
+         test_folders_have_rows, quotes_are_the_examples)
 
 
 def check(root, rules=RULES):

@@ -1,4 +1,4 @@
-#include "cli/command/admission.hpp"
+#include "cli/command/bus_admission.hpp"
 
 #include <algorithm>
 #include <chrono>

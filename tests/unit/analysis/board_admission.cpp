@@ -1,4 +1,4 @@
-#include "ocm/analysis/admission.hpp"
+#include "ocm/analysis/board_admission.hpp"
 
 #include <algorithm>
 #include <array>
