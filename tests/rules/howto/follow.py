@@ -2,7 +2,8 @@
 """Follows a page of docs/howto word for word: follow.py PAGE [--root DIR] [--build DIR] [--keep DIR]
 
 It copies the project's files to a scratch folder and applies the page's marked blocks there, in order. A mark is a
-comment on the line above a fenced block; a reader of the page does not see it:
+comment on the line above a fenced block; a reader of the page does not see it, so the text since the last other file must
+name the file, by its whole path:
 
     <!-- file: PATH -->                     the block is a new file
     <!-- append: PATH -->                   the block goes to the end of a file
@@ -44,6 +45,11 @@ class PageError(Exception):
     """The page cannot be followed; the text has page and line."""
 
 
+def visible(line):
+    """What a reader of the page sees of a line of prose."""
+    return re.sub(r"\]\([^)]*\)", "]", re.sub(r"<!--.*?(-->|$)", "", line))
+
+
 class Step:
     def __init__(self, line, text, match=None):
         self.line = line
@@ -59,12 +65,14 @@ def steps(page, text):
     found = []
     at = 0
     fenced = False
+    prose, edited = "", None  # what a reader saw since the last other file; the file of the last mark
     while at < len(lines):
         line = lines[at]
         at += 1
         if FENCE.match(line):
             fenced = not fenced
         if fenced or not LIKE_A_MARK.match(line):
+            prose += "" if fenced else visible(line) + "\n"
             continue
         number = at
         if CHECK.match(line):
@@ -81,6 +89,11 @@ def steps(page, text):
         fence = FENCE.match(lines[at]) if at < len(lines) else None
         if not fence:
             raise PageError(f"{page}:{number}: no fenced block follows the mark")
+        if match["path"] and match["path"] != edited:
+            edited = match["path"]
+            if not re.search(rf"(?<![\w./-]){re.escape(edited)}(?![\w/-]|\.\w)", prose):
+                raise PageError(f"{page}:{number}: the text before the mark does not name {edited}")
+            prose = ""
         indent = len(fence[1])
         end = at + 1
         while end < len(lines) and not re.match(rf" {{{indent}}}``` *$", lines[end]):

@@ -30,18 +30,20 @@ class Follow(unittest.TestCase):
         follow.follow(page, self.project, self.build, self.root)
 
     def fails(self, text, line, message):
+        """Of a page that names its files in its first line."""
         with self.assertRaises(follow.PageError) as failure:
-            self.follow(text)
-        self.assertIn(f"page.md:{line}: ", str(failure.exception))
+            self.follow("`list.txt`, `away.txt` and `../out.txt`:\n" + text)
+        self.assertIn(f"page.md:{line + 1}: ", str(failure.exception))
         self.assertIn(message, str(failure.exception))
 
     def test_a_good_page(self):
-        self.follow("""# A page
+        self.follow("""# A page with `new/a.txt`
 <!-- file: new/a.txt -->
 ```text
 one
 <!-- run -->
 ```
+In [list.txt](elsewhere.txt):
 <!-- insert: list.txt after: "third" -->
 ```
 3b
@@ -109,6 +111,20 @@ touch checked
     def test_a_file_outside_of_the_project(self):
         self.fails("<!-- file: ../out.txt -->\n```\nx\n```\n<!-- run -->\n```\ntrue\n```\n", 1, "outside")
 
+    def test_a_file_that_the_text_does_not_name(self):
+        mark = "<!-- append: list.txt -->\n```\nlist.txt\n```\n"
+        run = "<!-- run -->\n```\ntrue\n```\n"
+        other = "\n`new.txt`\n<!-- file: new.txt -->\n```\nx\n```\n"
+        for before in ("", "In [the list](list.txt):\n", "<!-- list.txt -->\n", "```\nlist.txt\n```\n", "In `my-list.txt`:\n",
+                       "In `list.txt.old`:\n", "In `a/list.txt`:\n", "In `list.txt`" + other):
+            with self.assertRaises(follow.PageError) as failure:
+                self.follow(before + mark + run)
+            self.assertIn(f"page.md:{before.count(chr(10)) + 1}: the text before the mark does not name list.txt",
+                          str(failure.exception))
+        for before in ("In `list.txt`:\n", "In list.txt.\n", other + "In `list.txt`:\n", "In `list.txt`:\n" + mark + run):
+            self.follow(before + mark + run)
+            self.setUp()
+
     def test_a_mark_without_a_block(self):
         self.fails("<!-- run -->\n\n```\ntrue\n```\n", 1, "no fenced block follows")
 
@@ -122,7 +138,7 @@ touch checked
             self.fails(f"{mark}\n```\ntrue\n```\n", 1, "unknown mark")
 
     def test_a_page_that_checks_nothing(self):
-        self.fails("<!-- append: list.txt -->\n```\nx\n```\n", 1, "nothing would be checked")
+        self.fails("<!-- append: list.txt -->\n```\nx\n```\n", 0, "nothing would be checked")
 
 
 if __name__ == "__main__":
