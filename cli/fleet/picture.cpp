@@ -163,9 +163,7 @@ class Script {
 
 transport::Failure not_drawn(const std::string& file, const transport::Failure& why) {
   return {fmt::format("{}: {}", file, why.what),
-          why.what.find("no gnuplot") == std::string::npos
-              ? why.remedy
-              : "install it: sudo apt install gnuplot-nox; or write a .pgm"};
+          why.remedy + (why.remedy.empty() ? "" : "; or ") + "write a .pgm"};
 }
 
 }  // namespace

@@ -93,9 +93,8 @@ transport::Outcome<std::string> draw(std::string_view script) {
   const int error = posix_spawnp(&child, name, &actions, nullptr, arguments, environ);
   posix_spawn_file_actions_destroy(&actions);
   if (error == ENOENT)
-    return transport::Failure{
-        "there is no gnuplot, which draws the pictures",
-        "install it: sudo apt install gnuplot-nox; or --script prints what it would draw"};
+    return transport::Failure{"there is no gnuplot, which draws the pictures",
+                              "install it: sudo apt install gnuplot-nox"};
   if (error != 0)
     return transport::Failure{fmt::format("gnuplot cannot be started: {}", std::strerror(error)), ""};
   int status = 0;
@@ -103,8 +102,10 @@ transport::Outcome<std::string> draw(std::string_view script) {
   }
   std::string picture = contents(out.get());
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || picture.empty())
-    return transport::Failure{fmt::format("gnuplot draws nothing: {}", words(contents(said.get()))),
-                              "--script prints what it was to draw"};
+    return transport::Failure{WIFSIGNALED(status)
+                                  ? fmt::format("gnuplot was ended by signal {}", WTERMSIG(status))
+                                  : fmt::format("gnuplot draws nothing: {}", words(contents(said.get()))),
+                              ""};
   return picture;
 }
 

@@ -134,7 +134,9 @@ void run(Session& session, const PlotOptions& options, int& exit_code) {
   std::string text = plot::to_script(curves, picture);
   if (!options.script) {
     auto drawn = plot::draw(text);
-    if (!drawn) fail(drawn.error);
+    if (!drawn)
+      fail({drawn.error.what, drawn.error.remedy + (drawn.error.remedy.empty() ? "" : "; or ") +
+                                  "--script prints what it would draw"});
     text = std::move(*drawn);
   }
   if (output == "-")

@@ -169,6 +169,20 @@ class Plot(Case):
             self.assertEqual(file.read(), "old")
         self.assertIn("$d0 << EOD", self.script(self.gyro(), "gyro.z"))
 
+    def test_a_gnuplot_that_draws_nothing(self):
+        self.environment["PATH"] = self.folder + ":/usr/bin:/bin"
+        for commands, what in (("kill -INT $$", "gnuplot was ended by signal 2"), ("echo 'no font' >&2; exit 1", "no font")):
+            with open(os.path.join(self.folder, "gnuplot"), "w", encoding="ascii") as file:
+                file.write(f"#!/bin/sh\n{commands}\n")
+            os.chmod(os.path.join(self.folder, "gnuplot"), 0o755)
+            _, err = self.run_tool("plot", self.gyro(), "gyro.z", "-o", os.path.join(self.folder, "a.svg"), code=1)
+            self.assertIn(what, err)
+            self.assertIn("--script prints what it would draw", err)
+            _, err = self.run_tool("map", os.path.join(self.folder, "a.svg"), code=1)
+            self.assertIn(what, err)
+            self.assertIn("write a .pgm", err)
+            self.assertNotIn("--script", err)
+
     def test_names_that_mean_something_to_gnuplot_or_xml(self):
         path = self.log([(100 * i, "608#" + i16(i, i, i)) for i in range(3)], "a'b<c>&{}_^`!.log")
         svg, _ = self.run_tool("plot", path, "gyro.z", "--title", "it's `date` <b> {x_1} \\n @home ~a")
