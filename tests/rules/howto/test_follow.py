@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """The follower of how-to pages against planted pages: good ones change the copy only, bad ones are found."""
+import os
 import pathlib
 import sys
 import tempfile
@@ -24,15 +25,15 @@ class Follow(unittest.TestCase):
         (self.build / "tool").write_text("#!/bin/sh\necho tool > said.txt\n")
         (self.build / "tool").chmod(0o755)
 
-    def follow(self, text):
+    def follow(self, text, not_run=None):
         page = pathlib.Path(self.scratch.name, "page.md")
         page.write_text(text)
-        follow.follow(page, self.project, self.build, self.root)
+        follow.follow(page, self.project, self.build, self.root, not_run)
 
-    def fails(self, text, line, message):
+    def fails(self, text, line, message, not_run=None):
         """Of a page that names its files in its first line."""
         with self.assertRaises(follow.PageError) as failure:
-            self.follow("`list.txt`, `away.txt` and `../out.txt`:\n" + text)
+            self.follow("`list.txt`, `away.txt` and `../out.txt`:\n" + text, not_run)
         self.assertIn(f"page.md:{line + 1}: ", str(failure.exception))
         self.assertIn(message, str(failure.exception))
 
@@ -133,9 +134,66 @@ touch checked
         self.fails("<!-- check\ntrue\n", 1, "not closed")
 
     def test_a_mark_with_a_mistake(self):
-        for mark in ('<!-- insert: list.txt -->', '<!-- insert: list.txt line: "a" -->', "<!-- run: x -->", "<!-- check -->",
+        for mark in ('<!-- insert: list.txt -->', '<!-- insert: list.txt line: "a" -->', "<!-- run: x -->", "<!-- check -->", "<!-- run x -->",
+                     "<!-- beside -->", "<!-- not run -->", "<!-- not run: -->", "<!-- interrupt all -->",
                      '<!-- file: a after: "x" -->', '<!-- replace: a after: "x" -->', '<!-- insert: a before: "x" +1 -->'):
             self.fails(f"{mark}\n```\ntrue\n```\n", 1, "unknown mark")
+
+    BESIDE = """<!-- beside until: "ready" -->
+```sh
+trap 'echo interrupted >> said.txt; exit {code}' INT
+echo ready
+while :; do sleep 0.01; done
+```
+"""
+
+    def test_commands_of_another_terminal_go_on_until_they_are_interrupted(self):
+        self.follow(self.BESIDE.format(code=130) + """
+<!-- run NAME=value -->
+```
+test ! -e said.txt
+test $NAME = value
+```
+<!-- interrupt -->
+<!-- run -->
+```
+grep -q interrupted said.txt
+test -z "$NAME"
+```
+""" + self.BESIDE.format(code=0))
+        self.assertEqual((self.root / "said.txt").read_text(), "interrupted\n" * 2)  # at the end those that are left
+
+    def test_commands_of_another_terminal_that_go_wrong(self):
+        run = "<!-- run -->\n```\ntrue\n```\n"
+        self.fails(self.BESIDE.format(code=3) + run, 1, "ended with 3")
+        self.setUp()
+        self.fails('<!-- beside until: "ready" -->\n```\necho not yet\n```\n' + run, 1, "'ready' was not printed, but: not yet")
+        self.setUp()
+        self.fails(run + "<!-- interrupt -->\n", 5, "nothing to interrupt")
+
+    def test_a_page_that_fails_leaves_nothing_running(self):
+        self.fails(self.BESIDE.format(code=130) + "<!-- run -->\n```\nfalse\n```\n", 7, "exit status 1")
+        self.assertEqual((self.root / "said.txt").read_text(), "interrupted\n")
+
+    def test_a_transcript(self):
+        self.follow("<!-- transcript -->\n```console\n$ echo a; echo b\na\nb\n$ true\n```\n")
+        for text, what in (("$ echo a\nb\n", "prints 'a"), ("$ false\n", "exit status 1"), ("echo a\n", "a transcript is")):
+            self.setUp()
+            self.fails(f"<!-- transcript -->\n```console\n{text}```\n", 1, what)
+
+    def test_nothing_of_the_user_reaches_the_commands(self):
+        os.environ["AMIROCTL_BUS"] = "can0"
+        self.addCleanup(os.environ.pop, "AMIROCTL_BUS")
+        self.follow('<!-- run -->\n```\ntest -z "$AMIROCTL_BUS"\ntest -d "$XDG_RUNTIME_DIR"\n'
+                    f'test "$XDG_RUNTIME_DIR" != "{os.environ.get("XDG_RUNTIME_DIR")}"\n```\n')
+
+    def test_every_block_of_commands_has_a_mark(self):
+        good = "<!-- run -->\n```sh\ntrue\n```\n<!-- not run: needs a robot -->\n```sh\nfalse\n```\n```json\n{}\n```\n"
+        self.follow(good, 1)
+        self.fails(good, 0, "1 blocks are not run; expected 2", 2)
+        for left in (good.replace("<!-- not run: needs a robot -->\n", "\n"), good + "\n```console\n$ true\n```\n"):
+            self.fails(left, left[:left.rfind("\n\n")].count("\n") + 3, "no mark", 1)
+        self.fails(good + "\n    false\n", 13, "fenced block", 1)
 
     def test_a_page_that_checks_nothing(self):
         self.fails("<!-- append: list.txt -->\n```\nx\n```\n", 0, "nothing would be checked")
