@@ -16,7 +16,7 @@
 #include "ocm/controller/controller.hpp"
 #include "ocm/topics/amiro.hpp"
 
-namespace analysis_admission_test {
+namespace analysis_board_admission_test {
 
 using namespace ocm;
 using namespace ocm::analysis;
@@ -220,4 +220,4 @@ TEST_CASE("A controller answers with the reason, and what runs goes on") {
   CHECK(wire.frames.size() == 8);
 }
 
-}  // namespace analysis_admission_test
+}  // namespace analysis_board_admission_test
