@@ -33,7 +33,12 @@ int main(int argc, char** argv) {
   Program program{"amiroctl", "Ask a robot's sensors, command its actuators, watch its CAN bus.",
                   "amiroctl " OCM_VERSION,
                   "Exit codes: 0 done, 1 error, 2 wrong usage, 128 + signal when interrupted.\n"
-                  "`amiroctl VERB --help` shows a verb's options and examples."};
+                  "`amiroctl VERB --help` shows a verb's options and examples.",
+                  "begin with a simulated robot, and try the others in another terminal:\n"
+                  "  amiroctl sim\n"
+                  "  amiroctl once power --wait\n"
+                  "  amiroctl listen\n"
+                  "`amiroctl --help` lists all verbs"};
   Session session;
   session.add_options(program.root());
   int exit_code = exit_success;

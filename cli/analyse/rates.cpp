@@ -34,10 +34,10 @@ void read_rate(std::string_view text, std::string place, std::vector<Rate>& rate
   std::string_view period = text.substr(equals + 1);
   const auto at = period.find('@');
   if (at != std::string_view::npos) {
-    const auto priority = protocol::parse_priority(period.substr(at + 1));
+    const auto priority = words::read_priority(period.substr(at + 1));
     if (!priority)
-      mistakes.push_back({rate.place, fmt::format("no priority '{}'", period.substr(at + 1)),
-                          "one of urgent, high, medium, low"});
+      mistakes.push_back(
+          {rate.place, fmt::format("no priority '{}'", period.substr(at + 1)), priority.error.remedy});
     rate.has_priority = true;
     rate.priority = *priority;
     period = period.substr(0, at);
@@ -90,17 +90,16 @@ BusSet robot_bus(const protocol::Catalogue& catalogue, const std::vector<Rate>& 
   std::vector<std::pair<const protocol::Topic*, const Rate*>> chosen;
   for (const Rate& rate : rates) {
     bool found = false;
+    const auto* const named = words::find_topic(catalogue, rate.name);
     for (const auto& topic : catalogue.topics) {
-      if (topic.name != rate.name && topic.group != rate.name &&
-          std::find(topic.aliases.begin(), topic.aliases.end(), rate.name) == topic.aliases.end())
-        continue;
+      if (named != &topic && topic.group != rate.name) continue;
       found = true;
       chosen.emplace_back(&topic, &rate);
     }
     const auto words = words::topic_words(catalogue);
     if (!found)
       mistakes.push_back(
-          {rate.place, fmt::format("no topic '{}'", rate.name), words::detail::suggestion(rate.name, words)});
+          {rate.place, fmt::format("no topic '{}'", rate.name), words::suggestion(rate.name, words)});
   }
 
   BusSet set;

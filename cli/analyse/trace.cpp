@@ -18,6 +18,7 @@
 #include "cli/output/csv_cell.hpp"
 #include "cli/shared/json.hpp"
 #include "cli/shared/messages.hpp"
+#include "cli/words/topics.hpp"
 
 namespace ocm::cli::analyse {
 namespace {
@@ -160,7 +161,7 @@ BusSet set_of(const Log& log, const protocol::Catalogue& catalogue, std::vector<
   for (Rate& rate : rates) {
     // A rate that says no priority leaves that of the log.
     for (const Rate& from_log : all)
-      if (const auto* topic = catalogue.find(rate.name);
+      if (const auto* topic = words::find_topic(catalogue, rate.name);
           topic != nullptr && from_log.name == topic->name && !rate.has_priority) {
         rate.has_priority = from_log.has_priority;
         rate.priority = from_log.priority;

@@ -235,9 +235,7 @@ std::optional<base::Duration> shortest(BusCheck& check, base::Duration refused) 
 void add_admission_options(Verb verb, AdmissionOptions& options) {
   verb.add_flag("--force", options.force, "send it even if the bus could not carry it");
   verb.add_flag("--explain", options.explain, "show what is on the bus, and how late each frame can be");
-  verb.add_option("--listen", options.listen, "how long to listen to what runs, before asking (100ms)")
-      .type_name("T")
-      .takes(accepted_duration());
+  add_duration(verb, "--listen", options.listen, "how long to listen to what runs, before asking");
 }
 
 void admit(Session& session, transport::Bus& bus, const client::Command& command,
@@ -248,7 +246,7 @@ void admit(Session& session, transport::Bus& bus, const client::Command& command
   if (catalogue.bit_rate == 0) return;
   catch_interrupts();
   Traffic traffic{catalogue};
-  const base::Duration window = listen(bus, traffic, duration_option("--listen", options.listen));
+  const base::Duration window = listen(bus, traffic, options.listen);
   const auto check = std::make_unique<BusCheck>(
       analysis::CanBus{.bit = analysis::bits_ns(1, catalogue.bit_rate)}, analysis::CanTest::exact, limits);
   traffic.fill(*check, window, *wish);

@@ -2,8 +2,9 @@
 /// listened to for a moment, nobody is asked; docs/admission.md says what is assumed.
 #pragma once
 
-#include <string>
+#include <chrono>
 
+#include "ocm/base/time.hpp"
 #include "ocm/transport/bus.hpp"
 
 #include "cli/shared/arguments.hpp"
@@ -15,7 +16,7 @@ namespace ocm::cli {
 struct AdmissionOptions {
   bool force = false;
   bool explain = false;
-  std::string listen = "100ms";
+  base::Duration listen = std::chrono::milliseconds{100};
 };
 
 /// --force, --explain and --listen.

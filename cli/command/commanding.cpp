@@ -13,27 +13,19 @@ namespace ocm::cli {
 
 Commanding::Commanding(Verb verb, Session& session, std::string_view words_help, bool with_priority)
     : verb_(verb.name()), session_(&session) {
-  verb.add_option("words", words_, std::string{words_help}).type_name("");
+  verb.add_option("words", words_, std::string{words_help})
+      .type_name("")
+      .in_usage(std::string{words::form_of(verb_)});
   if (with_priority)
-    verb.add_option("--priority", priority_, "urgent, high, medium or low; default: the topic's own")
-        .type_name("P")
-        .takes(accepted_priority());
+    add_priority(verb, "--priority", options_.priority,
+                 "urgent, high, medium or low, or 0 to 3; default: the topic's own");
   verb.add_flag("--dry-run", dry_run_, "print the frames in candump notation and send nothing");
 }
 
 client::Command Commanding::parse() const {
-  return parse({});
-}
-
-client::Command Commanding::parse(const std::vector<std::string>& options) const {
   std::vector<std::string_view> words{verb_};
   words.insert(words.end(), words_.begin(), words_.end());
-  words.insert(words.end(), options.begin(), options.end());
-  if (!priority_.empty()) {
-    words.emplace_back("--priority");
-    words.emplace_back(priority_);
-  }
-  auto command = words::CommandParser{session_->catalogue()}.parse(words);
+  auto command = words::CommandParser{session_->catalogue(), "amiroctl "}.parse(words, options_);
   if (!command) fail({verb_ + ": " + command.error.what, command.error.remedy}, exit_usage);
   return std::move(command.value);
 }

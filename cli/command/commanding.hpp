@@ -1,5 +1,5 @@
-/// What the verbs that send commands have in common: the words go to the same parser that reads scripts, and
-/// the frames to the bus or, with --dry-run, to stdout.
+/// What the verbs that send commands have in common: words and options, read already, go to the same parser
+/// that reads scripts, and the frames to the bus or, with --dry-run, to stdout.
 #pragma once
 
 #include <string>
@@ -21,8 +21,8 @@ class Commanding {
 
   /// The command, or exit_usage with a message that names the word.
   [[nodiscard]] client::Command parse() const;
-  /// As parse, with `options` (such as "--for 2s") added to the words.
-  [[nodiscard]] client::Command parse(const std::vector<std::string>& options) const;
+  /// What the options of the command line say; a verb adds its own to them.
+  [[nodiscard]] words::CommandOptions& options() { return options_; }
   [[nodiscard]] bool dry_run() const { return dry_run_; }
   [[nodiscard]] const std::string& verb() const { return verb_; }
 
@@ -30,7 +30,7 @@ class Commanding {
   std::string verb_;
   Session* session_;
   std::vector<std::string> words_;
-  std::string priority_;
+  words::CommandOptions options_;
   bool dry_run_ = false;
 };
 

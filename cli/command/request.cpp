@@ -68,23 +68,22 @@ void add_request_options(Verb verb, Session& session, std::string_view words_hel
     Options(Verb app, Session& s, std::string_view help) : commanding(app, s, help) {}
     Commanding commanding;
     AdmissionOptions admission;
-    std::string wait;
+    base::Duration wait = std::chrono::seconds{2};
   };
   const auto options = std::make_shared<Options>(verb, session, words_help);
   const auto wait =
-      verb.add_option("--wait", options->wait, "wait for the first sample and show it, at most T (2s)");
-  wait.expected(0, 1).type_name("[T]").takes(accepted_duration());
+      add_duration(verb, "--wait", options->wait, "wait for the first sample and show it, at most T");
+  wait.expected(0, 1).type_name("[T]");
   if (starts == Starts::stream) add_admission_options(verb, options->admission);
   verb.callback([options, wait, &session] {
     const auto command = options->commanding.parse();
     const bool dry_run = options->commanding.dry_run();
     if (dry_run && !options->admission.explain) return print_frames(command.frames);
-    base::Duration timeout{};
-    if (wait.count() != 0) timeout = duration_option("--wait", options->wait.empty() ? "2s" : options->wait);
     const auto bus = session.open_bus();
     admit(session, *bus, command, options->admission);
     if (dry_run) return print_frames(command.frames);
-    if (wait.count() != 0) return send_and_await(session, *bus, options->commanding.verb(), command, timeout);
+    if (wait.count() != 0)
+      return send_and_await(session, *bus, options->commanding.verb(), command, options->wait);
     send_all(*bus, options->commanding.verb(), command);
   });
 }

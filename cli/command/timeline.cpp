@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "cli/shared/interrupt.hpp"
+#include "cli/shared/messages.hpp"
 #include "cli/words/quantity.hpp"
 
 namespace ocm::cli {

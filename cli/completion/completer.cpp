@@ -7,6 +7,7 @@
 #include "ocm/transport/interfaces.hpp"
 #include "ocm/transport/virtual_bus.hpp"
 
+#include "cli/words/topics.hpp"
 #include "generator/targets/target.hpp"
 #include "generator/text/messages.hpp"
 
@@ -101,7 +102,7 @@ class Completer {
   }
 
   void fields(const std::string& name) {
-    const protocol::Topic* topic = session_.catalogue().find(name);
+    const protocol::Topic* topic = words::find_topic(session_.catalogue(), name);
     if (topic == nullptr) return;
     for (const auto& frame : topic->frames)
       for (const auto& field : frame.fields) {

@@ -60,18 +60,12 @@ void add_line_options(Verb verb, LineOptions& options) {
                   "the central's serial line; default: that of `sim --robots` or `central --pty`")
       .type_name("PATH");
   verb.add_option("--baud", options.baud, "of the central's line").type_name("N").show_default();
-  verb.add_option("--scan", options.scan, "how long to look for robots that are not listed")
-      .type_name("T")
-      .takes(accepted_duration())
-      .show_default();
+  add_duration(verb, "--scan", options.scan, "how long to look for robots that are not listed");
 }
 
 CentralLine::CentralLine(std::string_view verb, const LineOptions& options,
                          const cognitive::FleetOptions& fleet)
-    : verb_(verb),
-      scan_(duration_option("--scan", options.scan)),
-      port_(open_port(verb, options)),
-      server_(fleet) {
+    : verb_(verb), scan_(options.scan), port_(open_port(verb, options)), server_(fleet) {
   catch_interrupts();
   catch_hangups();
 }

@@ -20,7 +20,7 @@ namespace ocm::cli::fleet {
 struct LineOptions {
   std::string path;  ///< empty: that of a simulation or of `amiroctl central --pty`
   std::uint32_t baud = 115'200;
-  std::string scan = "3s";
+  base::Duration scan = std::chrono::seconds{3};
 };
 
 /// --central, --baud and --scan.

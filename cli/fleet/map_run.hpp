@@ -21,7 +21,7 @@ struct MapOptions {
   std::vector<std::string> files;
   std::vector<std::string> robots;
   std::vector<std::string> starts;
-  std::string duration;
+  std::optional<base::Duration> duration;
   std::string world;
   std::string title;
   double resolution_cm = 4;

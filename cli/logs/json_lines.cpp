@@ -198,7 +198,7 @@ bool JsonLineParser::take_topic(log::Entry& entry, Meaning& meaning) {
   if (topic == nullptr) {
     const auto words = words::topic_words(*catalogue_);
     return refuse(log::Cause::identifier, "no topic " + shown(record_.topic.text),
-                  words::detail::suggestion(record_.topic.text, words));
+                  words::suggestion(record_.topic.text, words));
   }
   auto priority = topic->priority;
   if (record_.priority) {
@@ -323,7 +323,7 @@ bool JsonLineParser::put_field(can::Payload& data, const NamedText& named, std::
     std::vector<std::string_view> names;
     for (const auto& field : fields) names.push_back(field.field().name);
     return refuse(log::Cause::syntax, "no field " + shown(named.name),
-                  names.empty() ? "the frame has none" : words::detail::suggestion(named.name, names));
+                  names.empty() ? "the frame has none" : words::suggestion(named.name, names));
   }
   const auto& field = fields[i].field();
   const std::string_view text = named.value.text;

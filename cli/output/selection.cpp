@@ -14,11 +14,6 @@ std::string name_within(const protocol::FrameLayout& layout, const protocol::Fie
   return name += field.name;
 }
 
-bool is_called(const protocol::Topic& topic, std::string_view word) {
-  return topic.name == word || topic.group == word ||
-         std::find(topic.aliases.begin(), topic.aliases.end(), word) != topic.aliases.end();
-}
-
 }  // namespace
 
 transport::Outcome<Selection> Selection::of(const protocol::Catalogue& catalogue,
@@ -31,9 +26,10 @@ transport::Outcome<Selection> Selection::of(const protocol::Catalogue& catalogue
         point == std::string_view::npos ? std::string_view{} : word.substr(point + 1);
     std::vector<std::string> names;
     bool topic_found = false;
+    const auto* const named = words::find_topic(catalogue, of_topic);
     bool found = false;
     for (const auto& topic : catalogue.topics) {
-      if (!is_called(topic, of_topic)) continue;
+      if (named != &topic && topic.group != of_topic) continue;
       topic_found = true;
       for (const auto& layout : topic.frames)
         for (const auto& field : layout.fields) {
@@ -48,10 +44,9 @@ transport::Outcome<Selection> Selection::of(const protocol::Catalogue& catalogue
     if (found) continue;
     if (!topic_found)
       return transport::Failure{"no topic '" + std::string{of_topic} + "'",
-                                words::detail::suggestion(of_topic, words::topic_words(catalogue))};
+                                words::suggestion(of_topic, words::topic_words(catalogue))};
     const std::vector<std::string_view> candidates{names.begin(), names.end()};
-    return transport::Failure{"no field '" + std::string{word} + "'",
-                              words::detail::suggestion(word, candidates)};
+    return transport::Failure{"no field '" + std::string{word} + "'", words::suggestion(word, candidates)};
   }
   return selection;
 }

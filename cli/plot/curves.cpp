@@ -6,6 +6,8 @@
 
 #include "ocm/protocol/identifier.hpp"
 
+#include "cli/words/topics.hpp"
+
 namespace ocm::cli::plot {
 namespace {
 
@@ -16,7 +18,7 @@ transport::Outcome<Chosen> choose(const protocol::Catalogue& catalogue, std::str
   std::vector<std::string> words;
   const std::size_t point = word.find('.');
   const std::string_view of_topic = word.substr(0, point);
-  const protocol::Topic* const topic = catalogue.find(of_topic);
+  const protocol::Topic* const topic = words::find_topic(catalogue, of_topic);
   if (word.ends_with(".*")) {
     words.emplace_back(word.substr(0, word.size() - 2));
   } else if (topic != nullptr && point != std::string_view::npos) {

@@ -1,5 +1,6 @@
 #include "cli/shared/arguments.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <map>
 #include <set>
@@ -8,9 +9,118 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "cli/shared/messages.hpp"
+#include "cli/shared/misuse.hpp"
+#include "cli/shared/usage.hpp"
+#include "cli/words/suggestion.hpp"
+
 namespace ocm::cli {
 namespace {
 
+/// The help in the tool's words: usages with the names of positionals, options without the names that they
+/// had in earlier versions.
+class HelpText : public CLI::Formatter {
+ public:
+  void hide(const CLI::Option* option, const std::string& name) { former_.emplace(option, name); }
+  [[nodiscard]] bool hides(const CLI::Option* option, const std::string& name) const {
+    return former_.count({option, name}) != 0;
+  }
+
+  std::string make_usage(const CLI::App* app, std::string) const override {
+    return "Usage: " + usage(Verb{const_cast<CLI::App*>(app)}) + "\n";  // a handle that only reads
+  }
+
+  std::string make_option_name(const CLI::Option* option, bool is_positional) const override {
+    if (is_positional) return positional(Option{const_cast<CLI::Option*>(option), nullptr});
+    std::string names;
+    const auto add = [&](const std::string& name) {
+      if (!hides(option, name)) names += (names.empty() ? "" : ",") + name;
+    };
+    for (const auto& name : option->get_snames()) add("-" + name);
+    for (const auto& name : option->get_lnames()) add("--" + name);
+    return names;
+  }
+
+  std::string make_option_opts(const CLI::Option* option) const override {
+    if (option->get_positional()) return {};
+    std::string text;
+    if (option->get_type_size() != 0) {
+      const std::string type = option->get_type_name();
+      if (!type.empty()) text += " " + value_of(Option{const_cast<CLI::Option*>(option), nullptr});
+      if (!option->get_default_str().empty()) text += "=" + option->get_default_str();
+      if (const auto range = type.find(':');
+          range != std::string::npos && type.find('{') == std::string::npos)
+        text += " (" + type.substr(range + 1) + ")";
+      if (option->get_expected_max() == CLI::detail::expected_max_vector_size && !text.ends_with(" ..."))
+        text += " ...";
+    }
+    if (!option->get_envname().empty()) text += " (" + option->get_envname() + ")";
+    const auto add_others = [&text](std::string_view how, const std::set<CLI::Option*>& options) {
+      std::string names;
+      for (CLI::Option* other : options)
+        names += (names.empty() ? "" : ", ") + written(Option{other, nullptr});
+      if (!names.empty()) text += fmt::format(" ({} {})", how, names);
+    };
+    add_others("with", option->get_needs());
+    add_others("not with", option->get_excludes());
+    return text;
+  }
+
+ private:
+  std::set<std::pair<const CLI::Option*, std::string>> former_;
+};
+
+HelpText& help_text(CLI::App& app) {
+  return dynamic_cast<HelpText&>(*app.get_formatter());
+}
+
+/// What a check says of a text: in CLI11 it is one string, which `split` parts again.
+std::string wrong(const std::string& text, std::string_view what, std::string_view remedy) {
+  return fmt::format("{}: {}\n{}", text, what, remedy);
+}
+
+Misuse split(const std::string& text) {
+  const std::size_t end = text.find('\n');
+  return {text.substr(0, end), end == std::string::npos ? "" : text.substr(end + 1)};
+}
+
+/// Before CLI11 converts a text, so that the error is in our words.
+CLI::Option* add_check(CLI::Option* option, std::string_view description,
+                       std::function<std::string(const std::string&)> check) {
+  return option->check(CLI::Validator{[check = std::move(check)](std::string& text) { return check(text); },
+                                      std::string{description}});
+}
+
+template <class Number>
+CLI::Option* only_numbers(CLI::Option* option, std::string_view what, std::string_view remedy) {
+  return add_check(option, "", [what, remedy](const std::string& text) {
+    Number number{};
+    return CLI::detail::lexical_cast(text, number) ? std::string{} : wrong(text, what, remedy);
+  });
+}
+
+void add_range(CLI::Option* option, double least, double most) {
+  const std::string range = fmt::format("{} to {}", least, most);
+  add_check(option, range, [=](const std::string& text) {
+    double number = 0;
+    const bool in_range = CLI::detail::lexical_cast(text, number) && number >= least && number <= most;
+    return in_range ? std::string{} : wrong(text, "out of range", "write a number from " + range);
+  });
+}
+
+/// What is wrong with the value of an option, named as the command line has it.
+Misuse misuse_of(const CLI::ParseError& error) {
+  const std::string text = error.what();
+  const std::string name = text.substr(0, text.find(':'));
+  if (error.get_name() == "ValidationError") {
+    auto misuse = split(text.substr(std::min(text.size(), name.size() + 2)));
+    return {name + " " + misuse.what, misuse.remedy};
+  }
+  if (error.get_name() == "ArgumentMismatch" && text.find("At Most") != std::string::npos)
+    return {name + " is given more than once", "give it once"};
+  if (error.get_name() == "ArgumentMismatch") return {"missing value for " + name, ""};
+  return {text, ""};
+}
 /// The program, which knows of each of its options what CLI11 does not keep.
 struct Root : CLI::App {
   using CLI::App::App;
@@ -41,6 +151,12 @@ void collect_options(CLI::App& app, std::vector<Option>& options) {
     collect_options(*group, options);
 }
 
+std::vector<Option> handles(const std::set<CLI::Option*>& found, CLI::App* owner) {
+  std::vector<Option> options;
+  for (CLI::Option* option : found) options.emplace_back(option, owner);
+  return options;
+}
+
 std::vector<Verb> handles(const std::vector<CLI::App*>& apps) {
   std::vector<Verb> verbs;
   for (CLI::App* app : apps) verbs.emplace_back(app);
@@ -48,7 +164,7 @@ std::vector<Verb> handles(const std::vector<CLI::App*>& apps) {
 }
 
 /// "-.1m/s" is a number and not an option: "-0.1m/s" is what the parser of options takes for one.
-std::vector<std::string> words(int argc, char** argv) {
+std::vector<std::string> words_of(int argc, char** argv) {
   std::vector<std::string> result;
   for (int i = argc - 1; i > 0; --i) {  // CLI11 takes them from the back
     std::string word = argv[i];
@@ -83,9 +199,13 @@ Option Option::needs(Option other) const {
 }
 
 Option Option::one_of(std::initializer_list<const char*> words) const {
-  std::vector<std::string> all{words.begin(), words.end()};
-  option_->check(CLI::IsMember(all));
-  return takes(accepted_words(std::move(all)));
+  const std::vector<std::string> known{words.begin(), words.end()};
+  add_check(option_, "{" + CLI::detail::join(known, ",") + "}", [known](const std::string& text) {
+    if (std::find(known.begin(), known.end(), text) != known.end()) return std::string{};
+    return wrong(text, "unknown value",
+                 words::suggestion(text, std::vector<std::string_view>(known.begin(), known.end())));
+  });
+  return takes(accepted_words(known));
 }
 
 Option Option::takes(Accepted accepted) const {
@@ -93,17 +213,22 @@ Option Option::takes(Accepted accepted) const {
 }
 
 Option Option::range(double least, double most) const {
-  option_->check(CLI::Range(least, most));
+  add_range(option_, least, most);
   return takes(accepted_number(least, most, fmt::format("a number from {} to {}", least, most)));
 }
 
 Option Option::range(unsigned least, unsigned most) const {
-  option_->check(CLI::Range(least, most));
+  add_range(option_, least, most);
   return takes(accepted_whole(least, most, fmt::format("a whole number from {} to {}", least, most)));
 }
 
 Option Option::positive() const {
-  option_->check(CLI::PositiveNumber);
+  add_check(option_, "", [](const std::string& text) {
+    double number = 0;
+    return CLI::detail::lexical_cast(text, number) && number > 0
+               ? std::string{}
+               : wrong(text, "not above zero", "write a number above zero, such as 10");
+  });
   return takes(
       accepted_whole(1, std::numeric_limits<std::uint64_t>::max(), "a whole number that is at least 1"));
 }
@@ -133,6 +258,21 @@ Option Option::show_default() const {
   return *this;
 }
 
+Option Option::default_text(const std::string& text) const {
+  option_->default_str(text);
+  return *this;
+}
+
+Option Option::in_usage(const std::string& words) const {
+  option_->option_text(words);
+  return *this;
+}
+
+Option Option::formerly(const std::string& name) const {
+  help_text(*owner_).hide(option_, name);
+  return *this;
+}
+
 std::size_t Option::count() const {
   return option_->count();
 }
@@ -143,6 +283,10 @@ std::vector<std::string> Option::long_names() const {
 
 std::string Option::name() const {
   return option_->get_name();
+}
+
+std::string Option::usage() const {
+  return option_->get_option_text();
 }
 
 std::string Option::description() const {
@@ -165,8 +309,24 @@ bool Option::is_hidden() const {
   return option_->get_group().empty();
 }
 
+bool Option::is_required() const {
+  return option_->get_required();
+}
+
 bool Option::is_named(const std::string& name) const {
   return option_->check_name(name);
+}
+
+bool Option::is_former(const std::string& name) const {
+  return help_text(*owner_).hides(option_, name);
+}
+
+std::vector<Option> Option::excluded() const {
+  return handles(option_->get_excludes(), owner_);
+}
+
+std::vector<Option> Option::needed() const {
+  return handles(option_->get_needs(), owner_);
 }
 
 int Option::least_values() const {
@@ -191,7 +351,7 @@ bool Option::is_decided() const {
   return false;
 }
 
-void Option::give(const std::string& key, const std::vector<std::string>& values) const {
+std::optional<Misuse> Option::give(const std::string& key, const std::vector<std::string>& values) const {
   try {
     if (option_->get_items_expected_max() == 0 || (option_->get_items_expected_min() == 0 && values.empty()))
       option_->add_result(option_->get_flag_value(key, values.empty() ? "" : values.front()));
@@ -200,8 +360,13 @@ void Option::give(const std::string& key, const std::vector<std::string>& values
     option_->run_callback();
     root_of(owner_).given.insert(option_);
   } catch (const CLI::ParseError& error) {
-    throw BadValue{error.what()};
+    option_->clear();
+    Misuse misuse = misuse_of(error);
+    if (const std::string before = name() + " "; misuse.what.starts_with(before))
+      misuse.what.erase(0, before.size());
+    return misuse;
   }
+  return {};
 }
 
 // --- verb --------------------------------------------------------------------------------------------------
@@ -216,22 +381,47 @@ Option Verb::add_option(const std::string& names, std::vector<std::string>& valu
 }
 
 Option Verb::add_option(const std::string& names, std::uint32_t& value, const std::string& help) const {
-  return declare(app_->add_option(names, value, help), app_,
+  auto* option = app_->add_option(names, value, help);
+  only_numbers<std::uint32_t>(option, "not a whole number", "write a whole number, such as 10");
+  return declare(option, app_,
                  accepted_whole(0, std::numeric_limits<std::uint32_t>::max(), "a whole number"));
 }
 
 Option Verb::add_option(const std::string& names, std::uint64_t& value, const std::string& help) const {
-  return declare(app_->add_option(names, value, help), app_,
+  auto* option = app_->add_option(names, value, help);
+  only_numbers<std::uint64_t>(option, "not a whole number", "write a whole number, such as 10");
+  return declare(option, app_,
                  accepted_whole(0, std::numeric_limits<std::uint64_t>::max(), "a whole number"));
 }
 
 Option Verb::add_option(const std::string& names, double& value, const std::string& help) const {
-  return declare(app_->add_option(names, value, help), app_,
-                 accepted_number(-no_bound, no_bound, "a number"));
+  auto* option = app_->add_option(names, value, help);
+  only_numbers<double>(option, "not a number", "write a number, such as 1.5");
+  return declare(option, app_, accepted_number(-no_bound, no_bound, "a number"));
+}
+
+Option Verb::add_value(const std::string& names, TakeValue take, const std::string& help) const {
+  // CLI11 checks each text once, before it would convert it: here the check is the conversion.
+  auto* option = app_->add_option_function<std::string>(
+      names, [](const std::string&) {}, help);
+  add_check(option, "", [take = std::move(take)](const std::string& text) {
+    const auto misuse = take(text);
+    return misuse ? wrong(text, misuse->what, misuse->remedy) : std::string{};
+  });
+  return {option, app_};
 }
 
 Option Verb::add_flag(const std::string& names, bool& value, const std::string& help) const {
-  return declare(app_->add_flag(names, value, help), app_, accepted_truth());
+  auto* option = app_->add_flag(names, value, help);
+  add_check(option, "", [](const std::string& text) {
+    // What CLI11 takes; of "150ms" it would take the number.
+    constexpr std::string_view known[] = {"true", "false", "on", "off", "yes", "no",
+                                          "y",    "n",     "t",  "f",   "1",   "0"};
+    return std::find(std::begin(known), std::end(known), CLI::detail::to_lower(text)) != std::end(known)
+               ? std::string{}
+               : wrong(text, "neither true nor false", "a flag takes no value, or true or false");
+  });
+  return declare(option, app_, accepted_truth());
 }
 
 Verb Verb::add_choice(const std::string& heading, const std::string& help) const {
@@ -251,6 +441,7 @@ Verb Verb::add_verb(std::string_view name, std::string_view description, std::st
 
 Verb Verb::add_inner_verb(const std::string& name, const std::string& description) const {
   auto* verb = app_->add_subcommand(name, description);
+  verb->group("Verbs");
   verb->fallthrough();
   return Verb{verb};
 }
@@ -271,7 +462,10 @@ Verb Verb::footer(const std::string& text) const {
 }
 
 void Verb::callback(std::function<void()> run) const {
-  app_->callback(std::move(run));
+  app_->callback([verb = *this, run = std::move(run)] {
+    speak_for(verb.path());
+    run();
+  });
 }
 
 void Verb::after_parsing(std::function<void()> run) const {
@@ -315,8 +509,15 @@ Verb Verb::parent() const {
   return Verb{app_->get_parent()};
 }
 
-std::string Verb::help(const std::string& as_called) const {
-  return app_->help(as_called);
+std::string Verb::path() const {
+  if (!parent()) return {};
+  const std::string before = parent().path();
+  return before.empty() ? name() : before + " " + name();
+}
+
+std::string Verb::help() const {
+  // Not App::help, which shows that of the verb that was called.
+  return app_->get_formatter()->make_help(app_, "", CLI::AppFormatMode::Normal);
 }
 
 std::vector<Option> Verb::options() const {
@@ -340,11 +541,22 @@ Verb Verb::called() const {
   return {};
 }
 
+std::vector<Verb> Verb::choices() const {
+  return handles(app_->get_subcommands([](const CLI::App* each) { return !is_verb(each); }));
+}
+
+std::vector<std::string> Verb::left_over() const {
+  auto words = app_->remaining(true);
+  words.erase(std::remove(words.begin(), words.end(), "--"), words.end());
+  return words;
+}
+
 // --- program -----------------------------------------------------------------------------------------------
 
 Program::Program(const std::string& name, const std::string& description, const std::string& version,
-                 const std::string& footer)
-    : app_(std::make_unique<Root>(description, name)) {
+                 const std::string& footer, std::string beginning)
+    : beginning_(std::move(beginning)), app_(std::make_unique<Root>(description, name)) {
+  app_->formatter(std::make_shared<HelpText>());  // verbs take over that of their program
   app_->set_version_flag("--version", version);
   app_->require_subcommand(1);
   app_->footer(footer);
@@ -358,10 +570,19 @@ Verb Program::root() noexcept {
 
 Program::Outcome Program::run(int argc, char** argv) {
   try {
-    app_->parse(words(argc, argv));
+    app_->parse(words_of(argc, argv));
     return Outcome::done;
+  } catch (const CLI::Success& asked) {
+    app_->exit(asked);
+    return Outcome::told;
   } catch (const CLI::ParseError& error) {
-    return app_->exit(error) == 0 ? Outcome::told : Outcome::refused;
+    const bool of_a_value = error.get_name() == "ValidationError" || error.get_name() == "ArgumentMismatch" ||
+                            error.get_name() == "ConversionError";
+    Misuse misuse = of_a_value ? misuse_of(error) : misuse_of_words(root(), beginning_);
+    constexpr std::string_view missing = "missing value for ";
+    if (misuse.what.starts_with(missing)) misuse = missing_value(root(), misuse.what.substr(missing.size()));
+    refuse(root(), misuse);
+    return Outcome::refused;
   }
 }
 

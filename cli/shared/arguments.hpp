@@ -6,7 +6,7 @@
 #include <functional>
 #include <initializer_list>
 #include <memory>
-#include <stdexcept>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,10 +20,14 @@ class Option;
 
 namespace ocm::cli {
 
-/// What an option does not take, in words; thrown by Option::give.
-struct BadValue : std::runtime_error {
-  using std::runtime_error::runtime_error;
+/// What is wrong on a command line, and what would be right.
+struct Misuse {
+  std::string what;
+  std::string remedy;
 };
+
+/// Takes the text of an option's value, or says what is wrong with it: {"not a time", "write 500ms"}.
+using TakeValue = std::function<std::optional<Misuse>(const std::string& text)>;
 
 /// An option, a flag or a positional.
 class Option {
@@ -50,28 +54,40 @@ class Option {
   Option one_a_mention() const;
   /// The value that the variable has now is shown as the default.
   Option show_default() const;
+  /// Shown as the default, and the value of an option that may stand without one.
+  Option default_text(const std::string& text) const;
+  /// How usages write a positional, if not by its type: "X|stop [Z]".
+  Option in_usage(const std::string& words) const;
+  /// One of its names, of an earlier version: it works, but no help shows it.
+  Option formerly(const std::string& name) const;
 
   /// How often the command line has it.
   [[nodiscard]] std::size_t count() const;
 
   // What was declared.
-  [[nodiscard]] std::vector<std::string> long_names() const;  ///< without --
-  [[nodiscard]] std::string name() const;
+  [[nodiscard]] std::vector<std::string> long_names() const;  ///< without --; former ones, too
+  [[nodiscard]] std::string name() const;                     ///< as it is typed: "--count"
+  [[nodiscard]] std::string usage() const;                    ///< what in_usage said
   [[nodiscard]] std::string description() const;
   [[nodiscard]] std::string type() const;
   [[nodiscard]] bool is_positional() const;
   [[nodiscard]] bool is_option() const;  ///< not (only) a positional
   [[nodiscard]] bool is_hidden() const;
-  [[nodiscard]] bool is_named(const std::string& name) const;  ///< "--spec"
+  [[nodiscard]] bool is_required() const;
+  [[nodiscard]] bool is_named(const std::string& name) const;   ///< "--spec"
+  [[nodiscard]] bool is_former(const std::string& name) const;  ///< whether `formerly` named it, "--watch"
+  [[nodiscard]] std::vector<Option> excluded() const;
+  [[nodiscard]] std::vector<Option> needed() const;
   [[nodiscard]] int least_values() const;
   [[nodiscard]] int most_values() const;
   [[nodiscard]] const Accepted& accepted() const;
 
   /// Whether it has a value by now, or another one that excludes it has.
   [[nodiscard]] bool is_decided() const;
-  /// As if the command line had it, as --key; without a value where it needs none. BadValue when it does not
-  /// take the values.
-  void give(const std::string& key, const std::vector<std::string>& values) const;
+  /// As if the command line had it, as --key; without a value where it needs none. What is wrong with the
+  /// values, after the key: "soon: not a time".
+  [[nodiscard]] std::optional<Misuse> give(const std::string& key,
+                                           const std::vector<std::string>& values) const;
 
  private:
   CLI::Option* option_;
@@ -93,6 +109,8 @@ class Verb {
   Option add_option(const std::string& names, std::uint32_t& value, const std::string& help) const;
   Option add_option(const std::string& names, std::uint64_t& value, const std::string& help) const;
   Option add_option(const std::string& names, double& value, const std::string& help) const;
+  /// An option of another type, whose text `take` reads.
+  Option add_value(const std::string& names, TakeValue take, const std::string& help) const;
   Option add_flag(const std::string& names, bool& value, const std::string& help) const;
   /// Options under a heading of their own, of which at most one may be given.
   Verb add_choice(const std::string& heading, const std::string& help) const;
@@ -104,7 +122,7 @@ class Verb {
   Verb alias(const std::string& name) const;
   Verb require_verb() const;
   Verb footer(const std::string& text) const;
-  /// What is done when the command line has the verb.
+  /// What is done when the command line has the verb. What it refuses as wrong usage begins with its name.
   void callback(std::function<void()> run) const;
   /// What is done when the whole command line was read, before any verb.
   void after_parsing(std::function<void()> run) const;
@@ -122,13 +140,17 @@ class Verb {
   [[nodiscard]] std::string description() const;
   [[nodiscard]] std::string footer() const;
   [[nodiscard]] bool is_hidden() const;
-  [[nodiscard]] Verb parent() const;  ///< none of the program
-  [[nodiscard]] std::string help(const std::string& as_called) const;
+  [[nodiscard]] Verb parent() const;       ///< none of the program
+  [[nodiscard]] std::string path() const;  ///< "analyse bus"; empty of the program
+  [[nodiscard]] std::string help() const;
   /// Options and positionals, those of its groups behind its own.
   [[nodiscard]] std::vector<Option> options() const;
   [[nodiscard]] std::vector<Verb> verbs() const;          ///< hidden ones too
   [[nodiscard]] std::vector<Verb> verbs_for_all() const;  ///< those that the help lists
   [[nodiscard]] Verb called() const;                      ///< the one of its verbs that the command line has
+  [[nodiscard]] std::vector<Verb> choices() const;        ///< of add_choice
+  /// Words of the command line that nothing took.
+  [[nodiscard]] std::vector<std::string> left_over() const;
 
  private:
   CLI::App* app_ = nullptr;
@@ -137,8 +159,9 @@ class Verb {
 /// The whole of it.
 class Program {
  public:
+  /// `beginning` is what a command line without a verb gets to read.
   Program(const std::string& name, const std::string& description, const std::string& version,
-          const std::string& footer);
+          const std::string& footer, std::string beginning);
   ~Program();
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
@@ -150,6 +173,7 @@ class Program {
   Outcome run(int argc, char** argv);
 
  private:
+  std::string beginning_;
   std::unique_ptr<CLI::App> app_;
 };
 

@@ -51,14 +51,13 @@ void apply_environment(Verb verb) {
       const std::string name = environment_name(key);
       const char* value = std::getenv(name.c_str());
       if (value == nullptr || *value == '\0') continue;
-      if (const auto refusal = refuse_text(option.accepted(), value))
-        fail({fmt::format("{}={}: {}", name, value, refusal->what), refusal->remedy}, exit_usage);
-      try {
-        option.give(key, {value});
-      } catch (const BadValue& error) {
-        fail({fmt::format("{}={}: {}", name, value, error.what()), "see `amiroctl VERB --help`, or unset it"},
-             exit_usage);
-      }
+      // A name of an earlier version may mean something else in other verbs by now.
+      const bool may_be_another = option.is_former("--" + key);
+      const auto refusal = refuse_text(option.accepted(), value);
+      if (refusal && may_be_another) break;
+      if (refusal) fail({fmt::format("{}={}: {}", name, value, refusal->what), refusal->remedy}, exit_usage);
+      if (const auto misuse = option.give(key, {value}); misuse && !may_be_another)
+        fail({fmt::format("{}={}", name, misuse->what), misuse->remedy + ", or unset it"}, exit_usage);
       break;
     }
   }
@@ -86,21 +85,19 @@ void apply_setting(Verb verb, const Setting& setting, const std::string& file) {
     if (!can_be_set(option) || std::find(names.begin(), names.end(), setting.key) == names.end()) continue;
     if (option.is_decided()) continue;
     // Only above all tables: another verb takes it.
-    if (const auto refusal = refuse(option, setting.values))
+    if (const auto refusal = refuse(option, setting.values)) {
+      if (option.is_former("--" + setting.key)) continue;  // it has another meaning in that verb by now
       leave(file, {{setting.line, fmt::format("{}: {}", setting.key, refusal->what),
                     refusal->remedy + "; what is for another verb, write in its table"}});
+    }
     std::vector<std::string> values;
     for (const OptionValue& value : setting.values) values.push_back(value.text);
     if (option.most_values() > 0 && setting.values.front().kind == ValueKind::truth) {
       if (values.front() == "false") continue;
       values.clear();
     }
-    try {
-      option.give(setting.key, values);
-    } catch (const BadValue& error) {
-      leave(file,
-            {{setting.line, fmt::format("{}: {}", setting.key, error.what()), "see `amiroctl VERB --help`"}});
-    }
+    if (const auto misuse = option.give(setting.key, values))
+      leave(file, {{setting.line, fmt::format("{} = {}", setting.key, misuse->what), misuse->remedy}});
   }
 }
 

@@ -1,5 +1,6 @@
 #include "cli/shared/messages.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <string>
 
@@ -10,6 +11,12 @@
 namespace ocm::cli {
 namespace {
 
+/// The verb that runs.
+std::string& speaker() {
+  static std::string verb;
+  return verb;
+}
+
 void print(std::string_view before, std::string_view text) {
   std::fprintf(stderr, "%.*s%.*s\n", static_cast<int>(before.size()), before.data(),
                static_cast<int>(text.size()), text.data());
@@ -17,10 +24,26 @@ void print(std::string_view before, std::string_view text) {
 
 }  // namespace
 
+void speak_for(std::string_view verb) {
+  speaker() = verb;
+}
+
 void fail(const transport::Failure& failure, int code) {
-  print("amiroctl: ", failure.what);
-  if (const std::string what_to_do = remedy(failure); !what_to_do.empty()) print("          ", what_to_do);
+  const std::string& verb = speaker();
+  const bool has_verb = failure.what.starts_with(verb + ":") || failure.what.starts_with(verb + " ");
+  const bool add_verb = code == exit_usage && !verb.empty() && !has_verb;
+  complain({add_verb ? verb + ": " + failure.what : failure.what, remedy(failure)});
   throw Exit{code};
+}
+
+void complain(const transport::Failure& failure) {
+  print("amiroctl: ", failure.what);
+  const std::string what_to_do = remedy(failure);
+  for (std::string_view rest = what_to_do; !rest.empty();) {
+    const std::string_view line = rest.substr(0, rest.find('\n'));
+    print(line.empty() ? "" : "          ", line);
+    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+  }
 }
 
 void remark(std::string_view text) {

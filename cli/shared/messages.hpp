@@ -17,8 +17,12 @@ struct Exit {
   int code;
 };
 
+/// From now on wrong usage is told with this verb's name before it, "analyse bus". One program runs one verb.
+void speak_for(std::string_view verb);
 /// Prints "amiroctl: what" and the remedy on stderr and leaves with `code`.
 [[noreturn]] void fail(const transport::Failure& failure, int code = exit_failure);
+/// As fail, and goes on.
+void complain(const transport::Failure& failure);
 /// A remark for the person at the terminal, on stderr.
 void remark(std::string_view text);
 /// Adds ", COUNT what" to a summary, where there is something to count.

@@ -2,12 +2,10 @@
 
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "ocm/base/decimal.hpp"
 #include "ocm/protocol/identifier.hpp"
 
-#include "cli/shared/messages.hpp"
+#include "cli/words/command.hpp"
 #include "cli/words/quantity.hpp"
 
 namespace ocm::cli {
@@ -15,8 +13,13 @@ namespace {
 
 constexpr const char* a_bit_rate = "1 to 1000000 bits a second, such as 500k or 125000";
 
-/// Bits a second, whole; classic CAN ends at a million.
-base::Result<std::int64_t> parse_bit_rate(std::string_view digits) {
+base::Result<base::Duration, words::WordError> read_duration(std::string_view text) {
+  const auto duration = words::parse_duration(text);
+  if (duration && duration->count() >= 0) return *duration;
+  return words::WordError{0, "not a time", "write 500ms, 2s or 1.5s"};
+}
+
+base::Result<std::uint32_t, words::WordError> read_bit_rate(std::string_view digits) {
   std::int64_t unit = 1;
   if (digits.ends_with('k') || digits.ends_with('K')) unit = 1000;
   if (digits.ends_with('M')) unit = 1'000'000;
@@ -24,50 +27,55 @@ base::Result<std::int64_t> parse_bit_rate(std::string_view digits) {
   const auto number = base::parse_decimal(digits);
   const auto rate = number ? base::multiply(*number, {unit, 0}) : number;
   const auto whole = rate ? base::divide_rounded(*rate, {1, 0}) : base::Result<std::int64_t>{rate.error};
-  if (whole && (*whole < 1 || *whole > 1'000'000 || base::compare(*rate, {*whole, 0}) != 0))
-    return base::Error::out_of_range;
-  return whole;
-}
-
-base::Result<base::Duration> parse_length_of_time(std::string_view text) {
-  const auto duration = words::parse_duration(text);
-  if (duration && duration->count() < 0) return base::Error::out_of_range;
-  return duration;
+  // Bits a second, whole; classic CAN ends at a million.
+  if (whole && *whole >= 1 && *whole <= 1'000'000 && base::compare(*rate, {*whole, 0}) == 0)
+    return static_cast<std::uint32_t>(*whole);
+  return words::WordError{0, "no bit rate of CAN", a_bit_rate};
 }
 
 }  // namespace
 
-base::Duration duration_option(std::string_view option, const std::string& text) {
-  const auto duration = parse_length_of_time(text);
-  if (!duration)
-    fail({fmt::format("{} {}: not a time", option, text), "write 500ms, 2s or 1.5s"}, exit_usage);
-  return *duration;
+Option add_duration(Verb verb, const std::string& names, base::Duration& value, const std::string& help) {
+  const auto option = verb.add_value(names, take_into(value, read_duration), help);
+  return option.type_name("T").takes(accepted_duration()).default_text(words::to_text(value));
 }
 
-std::uint32_t bit_rate_option(std::string_view text) {
-  const auto rate = parse_bit_rate(text);
-  if (!rate) fail({fmt::format("--bitrate {}: no bit rate of CAN", text), a_bit_rate}, exit_usage);
-  return static_cast<std::uint32_t>(*rate);
+Option add_duration(Verb verb, const std::string& names, std::optional<base::Duration>& value,
+                    const std::string& help) {
+  const auto option = verb.add_value(names, take_into(value, read_duration), help);
+  return option.type_name("T").takes(accepted_duration());
+}
+
+Option add_priority(Verb verb, const std::string& names, std::optional<protocol::Priority>& value,
+                    const std::string& help) {
+  const auto option = verb.add_value(names, take_into(value, words::read_priority), help);
+  return option.type_name("P").takes(accepted_priority());
+}
+
+Option add_bit_rate(Verb verb, const std::string& names, std::optional<std::uint32_t>& value,
+                    const std::string& help) {
+  const auto option = verb.add_value(names, take_into(value, read_bit_rate), help);
+  return option.type_name("RATE").takes(accepted_bit_rate());
 }
 
 Accepted accepted_duration() {
   return {ValueKind::text, false, "a time such as 500ms, 2s or 1.5s", {}, [](const std::string& text) {
-            return static_cast<bool>(parse_length_of_time(text));
+            return static_cast<bool>(read_duration(text));
           }};
 }
 
 Accepted accepted_bit_rate() {
   return {ValueKind::text, true, a_bit_rate, {}, [](const std::string& text) {
-            return static_cast<bool>(parse_bit_rate(text));
+            return static_cast<bool>(read_bit_rate(text));
           }};
 }
 
 Accepted accepted_priority() {
-  using protocol::Priority;
-  std::vector<std::string> names;
-  for (const auto each : {Priority::urgent, Priority::high, Priority::medium, Priority::low})
-    names.emplace_back(name(each));
-  return accepted_words(std::move(names));
+  return {ValueKind::text,
+          true,
+          "urgent, high, medium or low, or 0 to 3",
+          {"urgent", "high", "medium", "normal", "low", "0", "1", "2", "3"},
+          {}};
 }
 
 }  // namespace ocm::cli

@@ -1,21 +1,42 @@
-/// Values of options that verbs have in common: texts in, quantities out, or the end of the command.
+/// Options whose values verbs have in common: their text is read once, while the command line is.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
-#include <string_view>
 
 #include "ocm/base/time.hpp"
+#include "ocm/protocol/identifier.hpp"
 
+#include "cli/shared/arguments.hpp"
 #include "cli/shared/option_value.hpp"
 
 namespace ocm::cli {
 
-/// A duration option such as --timeout 2s; exit_usage when it is none.
-[[nodiscard]] base::Duration duration_option(std::string_view option, const std::string& text);
+/// Of a function that reads a text and returns a value, or an error with `what` and `remedy`.
+template <class Value, class Read>
+[[nodiscard]] TakeValue take_into(Value& value, Read read) {
+  return [&value, read](const std::string& text) -> std::optional<Misuse> {
+    const auto result = read(text);
+    if (!result) return Misuse{result.error.what, result.error.remedy};
+    value = *result;
+    return {};
+  };
+}
 
-/// A bit rate in bit/s: "500000", "500k", "83.333k", "1M"; exit_usage when it is none of classic CAN.
-[[nodiscard]] std::uint32_t bit_rate_option(std::string_view text);
+/// A time of zero or more, such as 500ms; `value` is the default, and the help shows it.
+Option add_duration(Verb verb, const std::string& names, base::Duration& value, const std::string& help);
+/// The same without a default.
+Option add_duration(Verb verb, const std::string& names, std::optional<base::Duration>& value,
+                    const std::string& help);
+
+/// A priority by its name or number; without one it stays as it is.
+Option add_priority(Verb verb, const std::string& names, std::optional<protocol::Priority>& value,
+                    const std::string& help);
+
+/// A bit rate in bit/s: "500000", "500k", "83.333k", "1M", if classic CAN has it.
+Option add_bit_rate(Verb verb, const std::string& names, std::optional<std::uint32_t>& value,
+                    const std::string& help);
 
 /// What such options are declared to take.
 [[nodiscard]] Accepted accepted_duration();

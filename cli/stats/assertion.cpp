@@ -179,11 +179,11 @@ transport::Outcome<Assertion> Assertion::parse(std::string_view text, const prot
   assertion.relation_ = known->relation;
   const bool bus = subject == "bus";
   if (!bus) {
-    assertion.topic_ = catalogue.find(subject);
+    assertion.topic_ = words::find_topic(catalogue, subject);
     if (assertion.topic_ == nullptr) {
       auto words = words::topic_words(catalogue);
       words.push_back("bus");
-      return wrong(fmt::format("no topic '{}'", subject), words::detail::suggestion(subject, words));
+      return wrong(fmt::format("no topic '{}'", subject), words::suggestion(subject, words));
     }
   }
   for (const Quantity& quantity : quantities)
@@ -191,7 +191,7 @@ transport::Outcome<Assertion> Assertion::parse(std::string_view text, const prot
       assertion.quantity_ = &quantity;
   if (assertion.quantity_ == nullptr)
     return wrong(fmt::format("no quantity '{}' of {}", name, bus ? "the bus" : "a topic"),
-                 words::detail::suggestion(name, names_of(bus)));
+                 words::suggestion(name, names_of(bus)));
   const std::string_view right = trimmed(text.substr(end));
   auto limit = parse_limit(right, assertion.quantity_->unit);
   if (!limit)

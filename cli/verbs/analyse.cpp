@@ -24,31 +24,24 @@ using namespace analyse;
 struct Options {
   std::string file;
   std::vector<std::string> rates;
-  std::string bit_rate;
+  std::optional<std::uint32_t> bit_rate;
   std::string lengths;
   std::string test = "exact";
   std::string errors;
-  std::string context_switch;
-  std::string interrupt;
-  std::string lock;
-  std::string tick;
-  std::string tick_cost;
+  std::optional<base::Duration> context_switch;
+  std::optional<base::Duration> interrupt;
+  std::optional<base::Duration> lock;
+  std::optional<base::Duration> tick;
+  std::optional<base::Duration> tick_cost;
   bool released_by_tick = false;
   std::vector<std::string> queues;
   std::string assign;
-  std::string deadline;
+  std::optional<base::Duration> deadline;
   std::string set;
   std::string svg;
   bool json = false;
   bool csv = false;
 };
-
-std::int64_t duration(std::string_view option, std::string_view text) {
-  const auto time = words::parse_duration(text);
-  if (time && time->count() >= 0) return time->count();
-  fail({fmt::format("{} {}: no time", option, text), "a number with its unit, such as 900us or 50ms"},
-       exit_usage);
-}
 
 /// "burst=1,every=10ms": one of them, or both.
 void read_errors(std::string_view text, BusOptions& options) {
@@ -125,7 +118,7 @@ Assign assignment(const Options& options, const BusOptions& how, const BusSet& s
 
 BusOptions bus_options(const Options& options, const protocol::Catalogue& catalogue) {
   BusOptions result;
-  result.bit_rate = options.bit_rate.empty() ? catalogue.bit_rate : bit_rate_option(options.bit_rate);
+  result.bit_rate = options.bit_rate.value_or(catalogue.bit_rate);
   const bool own = options.file.empty();
   const std::string lengths = options.lengths.empty() ? (own ? "exact" : "generic") : options.lengths;
   result.lengths = lengths == "exact" ? Lengths::exact : Lengths::generic;
@@ -166,14 +159,14 @@ int bus(const Options& options, Session& session) {
 
 analysis::Processor processor_of(const Options& options) {
   analysis::Processor processor;
-  const auto take = [](std::string_view option, const std::string& text, std::int64_t& time) {
-    if (!text.empty()) time = duration(option, text);
+  const auto take = [](const std::optional<base::Duration>& given, std::int64_t& time) {
+    if (given) time = given->count();
   };
-  take("--context-switch", options.context_switch, processor.context_switch);
-  take("--interrupt", options.interrupt, processor.interrupt);
-  take("--lock", options.lock, processor.lock);
-  take("--tick", options.tick, processor.tick_period);
-  take("--tick-cost", options.tick_cost, processor.tick_cost);
+  take(options.context_switch, processor.context_switch);
+  take(options.interrupt, processor.interrupt);
+  take(options.lock, processor.lock);
+  take(options.tick, processor.tick_period);
+  take(options.tick_cost, processor.tick_cost);
   processor.released_by_tick = options.released_by_tick;
   if (!processor.valid())
     fail({"analyse tasks: a tick needs a period of more than 0", "--tick TIME, such as --tick 1ms"},
@@ -196,8 +189,7 @@ int tasks(const Options& options, Session& session) {
 }
 
 int chain(const Options& options, Session& session) {
-  const std::int64_t deadline =
-      options.deadline.empty() ? analysis::unbounded : duration("--deadline", options.deadline);
+  const std::int64_t deadline = options.deadline ? options.deadline->count() : analysis::unbounded;
   const ChainStudy study = study_chain(options.file, deadline, bus_options(options, session.catalogue()),
                                        session.catalogue(), read_rates(options.rates));
   fmt::print("{}", options.json ? to_json(study) : options.csv ? to_csv(study) : to_table(study));
@@ -225,9 +217,7 @@ void add_bus_options(Verb verb, Options& options) {
   verb.add_option("--rates", options.rates,
                   "topic=period, topic=period@priority or topic=off, several; or a file of such lines")
       .type_name("RATE");
-  verb.add_option("--bitrate", options.bit_rate, "such as 500k or 125000; default: the spec's")
-      .type_name("RATE")
-      .takes(accepted_bit_rate());
+  add_bit_rate(verb, "--bitrate", options.bit_rate, "such as 500k or 125000; default: the spec's");
   verb.add_option("--lengths", options.lengths,
                   "generic: the longest that any identifier could make a frame; exact: of its identifier. "
                   "Default: generic for a FILE, exact for the robot")
@@ -280,28 +270,15 @@ void add_analyse(Verb app, Session& session, int& exit_code) {
                   fmt::format("CSV: name,priority,C_ns,T_ns,D_ns,J_ns,B_ns; or one of {}",
                               fmt::join(own_task_sets(), ", ")))
       .required();
-  tasks_verb
-      .add_option("--context-switch", of_tasks->context_switch,
-                  "what one costs; a job pays two. Default: nothing")
-      .type_name("TIME")
-      .takes(accepted_duration());
-  tasks_verb
-      .add_option("--interrupt", of_tasks->interrupt,
-                  "what each release of each task costs ahead of all priorities. Default: nothing")
-      .type_name("TIME")
-      .takes(accepted_duration());
-  tasks_verb
-      .add_option("--lock", of_tasks->lock,
-                  "the longest stretch with interrupts off: each task may wait for one. Default: none")
-      .type_name("TIME")
-      .takes(accepted_duration());
+  add_duration(tasks_verb, "--context-switch", of_tasks->context_switch,
+               "what one costs; a job pays two. Default: nothing");
+  add_duration(tasks_verb, "--interrupt", of_tasks->interrupt,
+               "what each release of each task costs ahead of all priorities. Default: nothing");
+  add_duration(tasks_verb, "--lock", of_tasks->lock,
+               "the longest stretch with interrupts off: each task may wait for one. Default: none");
   const auto tick =
-      tasks_verb.add_option("--tick", of_tasks->tick, "the system's timer interrupt comes so often")
-          .type_name("TIME")
-          .takes(accepted_duration());
-  tasks_verb.add_option("--tick-cost", of_tasks->tick_cost, "and costs so much. Default: nothing")
-      .type_name("TIME")
-      .takes(accepted_duration())
+      add_duration(tasks_verb, "--tick", of_tasks->tick, "the system's timer interrupt comes so often");
+  add_duration(tasks_verb, "--tick-cost", of_tasks->tick_cost, "and costs so much. Default: nothing")
       .needs(tick);
   tasks_verb
       .add_flag("--released-by-tick", of_tasks->released_by_tick,
@@ -314,10 +291,8 @@ void add_analyse(Verb app, Session& session, int& exit_code) {
   auto chain_verb = verb.add_inner_verb("chain", "from a sensor to a motor, over tasks and frames");
   chain_verb.add_option("FILE", of_chain->file, "CSV: hop,set,activation,response_ns,best_ns,period_ns")
       .required();
-  chain_verb
-      .add_option("--deadline", of_chain->deadline, "from an event to the end of the reaction; default: none")
-      .type_name("TIME")
-      .takes(accepted_duration());
+  add_duration(chain_verb, "--deadline", of_chain->deadline,
+               "from an event to the end of the reaction; default: none");
   add_bus_options(chain_verb, *of_chain);
   const auto chain_json = chain_verb.add_flag("--json", of_chain->json, "one object, for programs");
   chain_verb.add_flag("--csv", of_chain->csv, "a line a hop, times in nanoseconds").excludes(chain_json);

@@ -6,6 +6,7 @@
 
 #include "cli/completion/completer.hpp"
 #include "cli/verbs/verbs.hpp"
+#include "cli/words/suggestion.hpp"
 
 // Each shell asks the tool itself, by `amiroctl completion --words -- WORD ...`, so that a script never grows
 // old, and topics of another --spec are known. The answer's first line is "words" or "files" (then names of
@@ -87,9 +88,12 @@ void print_script(const std::vector<std::string>& shells) {
   if (shells.size() == 1)
     for (const auto& [name, script] : {std::pair{"bash", bash}, {"zsh", zsh}, {"fish", fish}})
       if (shells.front() == name) return fmt::print("{}", script);
-  fail({shells.empty() ? "completion: for which shell?"
-                       : fmt::format("completion: unknown shell {}", shells.front()),
-        "amiroctl completion bash, zsh or fish"},
+  const std::string form = "usage: amiroctl completion bash|zsh|fish";
+  if (shells.empty()) fail({"completion: missing bash|zsh|fish", form}, exit_usage);
+  if (shells.size() > 1)
+    fail({fmt::format("completion: unexpected argument '{}'", shells[1]), form}, exit_usage);
+  constexpr std::string_view known[] = {"bash", "zsh", "fish"};
+  fail({fmt::format("completion: unknown shell '{}'", shells[0]), words::suggestion(shells[0], known)},
        exit_usage);
 }
 
@@ -107,7 +111,9 @@ void add_completion(Verb app, Session& session, int&) {
     bool ask = false;
   };
   const auto options = std::make_shared<Options>();
-  verb.add_option("shell", options->words, "bash, zsh or fish").type_name("bash|zsh|fish");
+  verb.add_option("shell", options->words, "bash, zsh or fish")
+      .type_name("bash|zsh|fish")
+      .in_usage("bash|zsh|fish");
   verb.add_flag("--words", options->ask,
                 "what the scripts ask: candidates for the last of the words behind --");
   verb.callback([options, app, &session] {

@@ -22,7 +22,7 @@ struct DecodeOptions {
   std::vector<std::string> topics;
   DisplayOptions display;
   std::string from;
-  std::string since, until;
+  std::optional<base::Duration> since, until;
   std::uint64_t count = 0;
   bool strict = false;
 };
@@ -31,8 +31,8 @@ struct DecodeOptions {
 class Window {
  public:
   Window(const protocol::Catalogue& catalogue, const DecodeOptions& options) {
-    if (!options.since.empty()) since_ = duration_option("--since", options.since);
-    if (!options.until.empty()) until_ = duration_option("--until", options.until);
+    since_ = options.since.value_or(since_);
+    until_ = options.until.value_or(until_);
     all_topics_ = options.topics.empty();
     for (const auto* topic : chosen_topics("decode", catalogue, options.topics)) choose(*topic);
   }
@@ -155,12 +155,8 @@ void add_decode(Verb app, Session& session, int& exit_code) {
   verb.add_option("--from", options->from, "the format of the logs; default: what they begin with says it")
       .type_name("FORMAT")
       .takes(accepted_words(logs::readable_formats()));
-  verb.add_option("--since", options->since, "from this time after the first frame")
-      .type_name("T")
-      .takes(accepted_duration());
-  verb.add_option("--until", options->until, "up to this time after the first frame")
-      .type_name("T")
-      .takes(accepted_duration());
+  add_duration(verb, "--since", options->since, "from this time after the first frame");
+  add_duration(verb, "--until", options->until, "up to this time after the first frame");
   verb.add_option("-n,--count", options->count, "end after so many").type_name("N").positive();
   verb.add_flag("--strict", options->strict, "exit 1 when any line or frame could not be decoded");
   verb.callback([options, &session, &exit_code] { decode(session, *options, exit_code); });

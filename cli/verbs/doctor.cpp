@@ -31,8 +31,8 @@ using client::Severity;
 using SteadyClock = std::chrono::steady_clock;
 
 struct DoctorOptions {
-  std::string watch = "1s";
-  std::string patience = "500ms";
+  base::Duration listen = std::chrono::seconds{1};
+  base::Duration patience = std::chrono::milliseconds{500};
   bool json = false;
 };
 
@@ -210,22 +210,17 @@ void add_doctor(Verb app, Session& session, int& exit_code) {
   auto verb =
       app.add_verb("doctor", "how the robot is: what every board says of itself, and what to do", watch_group,
                    "  amiroctl doctor\n"
-                   "  amiroctl doctor --watch 10s --json | jq '.findings[]'");
+                   "  amiroctl doctor --listen 10s --json | jq '.findings[]'");
   const auto options = std::make_shared<DoctorOptions>();
-  verb.add_option("--watch", options->watch, "how long to listen before asking (1s)")
-      .type_name("T")
-      .takes(accepted_duration());
-  verb.add_option("--patience", options->patience, "how long a board may take to answer (500ms)")
-      .type_name("T")
-      .takes(accepted_duration());
+  add_duration(verb, "--listen,--watch", options->listen, "how long to listen before asking")
+      .formerly("--watch");
+  add_duration(verb, "--patience", options->patience, "how long a board may take to answer");
   verb.add_flag("--json", options->json, "one object, for programs");
   verb.callback([options, &session, &exit_code] {
-    const base::Duration watch = duration_option("--watch", options->watch);
-    const base::Duration patience = duration_option("--patience", options->patience);
     catch_interrupts();
     Examination examination{session};
-    examination.listen(watch, [] { return false; });
-    examination.ask(patience);
+    examination.listen(options->listen, [] { return false; });
+    examination.ask(options->patience);
     const auto findings = examination.findings();
     if (options->json)
       print_json(examination, findings);

@@ -17,21 +17,20 @@ void add_drive(Verb app, Session& session, int& exit_code) {
                            "  amiroctl drive stop");
   struct Options {
     Options(Verb app, Session& s)
-        : commanding(app, s, "X [Z] | stop; forward velocity and angular velocity, left is positive") {}
+        : commanding(app, s, "forward velocity X, angular velocity Z (left is positive); stop: zero") {}
     Commanding commanding;
-    std::string lasting;
     bool once = false;
   };
   const auto options = std::make_shared<Options>(verb, session);
-  const auto lasting = verb.add_option("--for", options->lasting, "how long to drive")
-                           .type_name("T")
-                           .takes(accepted_duration());
+  const auto lasting =
+      verb.add_value("--for", take_into(options->commanding.options().lasting, words::read_lasting),
+                     "how long to drive")
+          .type_name("T")
+          .takes(accepted_duration());
   verb.add_flag("--once", options->once, "send one frame; the board stops the motors when none follows")
       .excludes(lasting);
   verb.callback([options, &session, &exit_code] {
-    std::vector<std::string> extra;
-    if (!options->lasting.empty()) extra = {"--for", options->lasting};
-    const auto command = options->commanding.parse(extra);
+    const auto command = options->commanding.parse();
     if (options->commanding.dry_run() || options->once || !command.hold)
       return carry_out(session, "drive", command, options->commanding.dry_run());
     catch_interrupts();

@@ -1,4 +1,5 @@
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -6,6 +7,7 @@
 #include "cli/shared/output_file.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
+#include "cli/words/suggestion.hpp"
 #include "generator/robot_spec.hpp"
 #include "generator/spec/spec.hpp"
 #include "generator/targets/target.hpp"
@@ -16,7 +18,7 @@ namespace {
 struct GenerateOptions {
   std::string target;
   std::string output = "-";
-  std::string priority;
+  std::optional<protocol::Priority> priority;
   bool priority_typed = false;
 };
 
@@ -31,23 +33,23 @@ std::string targets_help() {
   return text;
 }
 
+std::string remedy_for(std::string_view target) {
+  std::vector<std::string_view> names;
+  for (const auto& each : generate::targets()) names.push_back(each.name);
+  return words::suggestion(target, names);
+}
+
 void generate_file(Session& session, const GenerateOptions& options) {
   const auto* target = generate::find_target(options.target);
   if (target == nullptr)
-    fail({fmt::format("generate: unknown target {}", options.target), "one of " + generate::target_names()},
+    fail({fmt::format("generate: unknown target '{}'", options.target), remedy_for(options.target)},
          exit_usage);
   generate::Options how{std::string{generate::robot_spec_name}, std::nullopt};
   if (!session.spec_file.empty()) how.spec_name = base_name(session.spec_file);
-  if (!options.priority.empty()) {
-    const auto priority = protocol::parse_priority(options.priority);
-    if (!priority)
-      fail({fmt::format("generate: unknown priority {}", options.priority), "urgent, high, medium or low"},
-           exit_usage);
-    if (target->name == "dbc")
-      how.priority = *priority;
-    else if (options.priority_typed)  // that of a config file is for other verbs
-      fail({fmt::format("generate {}: --priority is for dbc", target->name), "leave it out"}, exit_usage);
-  }
+  if (target->name == "dbc")
+    how.priority = options.priority;
+  else if (options.priority_typed)  // that of a config file is for other verbs
+    fail({fmt::format("generate {}: --priority is for dbc", target->name), "drop --priority"}, exit_usage);
   const std::string text = target->make(session.spec().model(), how);
   write_file(options.output, text);
 }
@@ -64,10 +66,8 @@ void add_generate(Verb app, Session& session, int&) {
   verb.add_option("target", options->target, generate::target_names()).required().type_name("TARGET");
   verb.add_option("-o,--output", options->output, "the file, replaced in one step; default: standard output")
       .type_name("FILE");
-  verb.add_option("--priority", options->priority,
-                  "dbc: frames at this priority only, and their names without it")
-      .type_name("P")
-      .takes(accepted_priority());
+  add_priority(verb, "--priority", options->priority,
+               "dbc: frames at this priority only, and their names without it");
   verb.callback([verb, options, &session] {
     options->priority_typed = verb.is_typed("--priority");
     generate_file(session, *options);

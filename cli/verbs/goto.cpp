@@ -14,6 +14,7 @@
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
+#include "cli/words/quantity.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -26,7 +27,7 @@ struct GotoOptions {
   std::string robot;
   std::string angle;
   std::string distance;
-  std::string timeout = "60s";
+  base::Duration timeout = 60s;
   bool no_wait = false;
 };
 
@@ -75,7 +76,6 @@ void run(const GotoOptions& options, int& exit_code) {
   const mapper::link::SetPoint wanted{
       number("ANGLE", options.angle, "deg", mapper::link::SetPoint::fields[0]),
       number("DISTANCE", options.distance, "cm", mapper::link::SetPoint::fields[1])};
-  const auto timeout = duration_option("--timeout", options.timeout);
   fleet::CentralLine line{"goto", options.line};
   const unsigned index = line.connect_one(options.robot);
   const std::string name = line.name(index);
@@ -86,7 +86,7 @@ void run(const GotoOptions& options, int& exit_code) {
   if (!line.server().fleet().go(index, wanted, fleet::CentralLine::now()))
     fail({"goto: the central's queue is full", "try again"});
   if (options.no_wait) return line.flush(2s);
-  const bool done = line.run(timeout, [&] { return robot.idle || robot.lost; });
+  const bool done = line.run(options.timeout, [&] { return robot.idle || robot.lost; });
   if (interrupted() != 0) {
     (void)line.server().fleet().go(index, {0, 0}, fleet::CentralLine::now());
     throw Exit{exit_code_after_interrupt(exit_failure)};
@@ -97,7 +97,8 @@ void run(const GotoOptions& options, int& exit_code) {
           "a robot without a link stops; it can be connected again once it is near enough"});
   if (!done) {
     (void)line.server().fleet().go(index, {0, 0}, fleet::CentralLine::now());
-    fail({fmt::format("goto: {} has not arrived after {}; it is told to stop", name, options.timeout),
+    fail({fmt::format("goto: {} has not arrived after {}; it is told to stop", name,
+                      words::to_text(options.timeout)),
           "give it more time: --timeout 120s"});
   }
   // The update behind the idle has the place.
@@ -121,10 +122,7 @@ void add_goto(Verb app, Session&, int& exit_code) {
       .type_name("ANGLE");
   verb.add_option("distance", options->distance, "cm, then").required().type_name("DISTANCE");
   verb.add_flag("--no-wait", options->no_wait, "do not wait until it is there");
-  verb.add_option("--timeout", options->timeout, "then it is told to stop")
-      .type_name("T")
-      .takes(accepted_duration())
-      .show_default();
+  add_duration(verb, "--timeout", options->timeout, "then it is told to stop");
   fleet::add_line_options(verb, options->line);
   verb.callback([options, &exit_code] { run(*options, exit_code); });
 }

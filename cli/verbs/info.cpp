@@ -39,12 +39,12 @@ void print_field(const protocol::Field& field) {
 }
 
 void info(const protocol::Catalogue& catalogue, const std::string& word) {
-  const protocol::Topic* topic = catalogue.find(word);
+  const protocol::Topic* topic = words::find_topic(catalogue, word);
   for (const auto& candidate : catalogue.topics)
     if (topic == nullptr && candidate.group == word) topic = &candidate;
   if (topic == nullptr) {
     const auto words = words::topic_words(catalogue);
-    fail({"info: no topic '" + word + "'", words::detail::suggestion(word, words)}, exit_usage);
+    fail({"info: no topic '" + word + "'", words::suggestion(word, words)}, exit_usage);
   }
   const bool sensor = topic->kind == protocol::Kind::sensor;
   const auto& board = catalogue.boards[topic->board];
@@ -82,7 +82,7 @@ void add_info(Verb app, Session& session, int&) {
       "  amiroctl info gyro\n"
       "  amiroctl info motors");
   const auto topic = std::make_shared<std::string>();
-  verb.add_option("topic", *topic, "name or alias").required().type_name("TOPIC");
+  verb.add_option("topic", *topic, "name, alias or id").required().type_name("TOPIC");
   verb.callback([topic, &session] { info(session.catalogue(), *topic); });
 }
 

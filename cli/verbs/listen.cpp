@@ -23,19 +23,17 @@ struct ListenOptions {
   bool commands = false;
   bool strict = false;
   std::uint64_t count = 0;
-  std::string timeout;
-  std::string idle_timeout;
+  std::optional<base::Duration> timeout;
+  std::optional<base::Duration> idle_timeout;
 };
 
 void listen(Session& session, const ListenOptions& options, int& exit_code) {
   using Clock = Live::Clock;
   const auto& catalogue = session.catalogue();
   const auto topics = chosen_topics("listen", catalogue, options.topics);
-  const base::Duration timeout =
-      options.timeout.empty() ? base::Duration::max() / 4 : duration_option("--timeout", options.timeout);
-  const base::Duration idle = options.idle_timeout.empty()
-                                  ? base::Duration::max() / 4
-                                  : duration_option("--idle-timeout", options.idle_timeout);
+  constexpr base::Duration without_end = base::Duration::max() / 4;
+  const base::Duration timeout = options.timeout.value_or(without_end);
+  const base::Duration idle = options.idle_timeout.value_or(without_end);
   catch_interrupts();
   const auto bus = session.open_bus();
   if (!topics.empty()) {
@@ -57,7 +55,7 @@ void listen(Session& session, const ListenOptions& options, int& exit_code) {
     using client::Meaning;
     const bool command = meaning == Meaning::request || meaning == Meaning::set_point;
     if (command && !commands_wanted) return true;
-    if (!options.idle_timeout.empty()) last = Clock::now();
+    if (options.idle_timeout) last = Clock::now();
     display.show(bus->name(), entry);
     return options.count == 0 || display.shown() < options.count;
   };
@@ -91,12 +89,8 @@ void add_listen(Verb app, Session& session, int& exit_code) {
   verb.add_flag("--commands", options->commands, "show requests and set points too");
   verb.add_flag("--strict", options->strict, "exit 1 when frames were lost, unknown, wrong or incomplete");
   verb.add_option("-n,--count", options->count, "end after so many").type_name("N").positive();
-  verb.add_option("--timeout", options->timeout, "end after this time; exit 1 when -n is not reached")
-      .type_name("T")
-      .takes(accepted_duration());
-  verb.add_option("--idle-timeout", options->idle_timeout, "end when nothing came for this time")
-      .type_name("T")
-      .takes(accepted_duration());
+  add_duration(verb, "--timeout", options->timeout, "end after this time; exit 1 when -n is not reached");
+  add_duration(verb, "--idle-timeout", options->idle_timeout, "end when nothing came for this time");
   verb.callback([options, &session, &exit_code] { listen(session, *options, exit_code); });
 }
 

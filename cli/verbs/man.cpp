@@ -1,5 +1,6 @@
 #include "generator/text/man.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -8,7 +9,9 @@
 #include <fmt/format.h>
 
 #include "cli/shared/output_file.hpp"
+#include "cli/shared/usage.hpp"
 #include "cli/verbs/verbs.hpp"
+#include "cli/words/suggestion.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -17,26 +20,78 @@ std::string page_name(Verb verb) {
   return verb.parent() ? page_name(verb.parent()) + "-" + verb.name() : verb.name();
 }
 
-/// The help of --help, cut at its blank lines: what it is comes first, how it is called second.
-std::string page_of(Verb verb, Verb root) {
-  std::string command;
-  for (Verb each = verb; each.parent(); each = each.parent()) command = " " + each.name() + command;
-  std::string help = verb.help(root.name() + command);
+/// What --help shows between the usage and the footer: positionals, options, verbs.
+std::string options_of(Verb verb) {
+  std::string help = verb.help();
   const std::string footer = verb.footer();
   if (const auto at = help.rfind(footer); !footer.empty() && at != std::string::npos) help.erase(at);
-  const auto usage = help.find("Usage: ");
-  const auto usage_end = help.find('\n', usage);
-  generate::ManPage page{page_name(verb), verb.description(), OCM_VERSION};
-  page.literal("SYNOPSIS", help.substr(usage + 7, usage_end - usage - 7));
-  page.literal("OPTIONS", std::string_view{help}.substr(help.find_first_not_of('\n', usage_end)));
-  const bool is_root = !verb.parent();
-  page.literal(is_root ? "EXIT STATUS" : "EXAMPLES", footer);
+  help.erase(0, help.find("Usage: "));
+  help.erase(0, help.find('\n'));
+  help.erase(0, std::min(help.find_first_not_of('\n'), help.size()));
+  while (help.ends_with('\n')) help.pop_back();
+  return help;
+}
+
+constexpr std::string_view environment =
+    "AMIROCTL_BUS=NAME         the bus, as --bus\n"
+    "AMIROCTL_SPEC=FILE        topics of another robot, as --spec\n"
+    "AMIROCTL_CONFIG=FILE      the configuration file, as --config\n"
+    "AMIROCTL_OPTION=VALUE     any other option, in capitals and with _ for -: AMIROCTL_PRIORITY=high,\n"
+    "                          AMIROCTL_DRY_RUN=true. The command line goes first, then the environment,\n"
+    "                          then the configuration file\n"
+    "NO_COLOR                  if it is set, no output is coloured\n"
+    "XDG_CONFIG_HOME           folder of the configuration file, see FILES\n"
+    "XDG_RUNTIME_DIR           folder of the sockets and links that a simulation makes, see FILES";
+
+constexpr std::string_view files =
+    "~/.config/amiroctl/config.toml\n"
+    "    options that need not be typed, as TOML; $XDG_CONFIG_HOME/amiroctl/config.toml if that is set\n"
+    "$XDG_RUNTIME_DIR/ocm/\n"
+    "    the virtual bus of `amiroctl sim`, and the lines of simulated mappers and their central;\n"
+    "    /tmp/ocm-UID/ without the variable";
+
+std::string see_also(Verb verb, Verb root) {
   std::string others;
   for (const Verb other : root.verbs_for_all())
     if (other != verb)
       others += fmt::format("{}{}-{}(1)", others.empty() ? "" : ",\n", root.name(), other.name());
-  return page.text("SEE ALSO", (is_root ? "" : root.name() + "(1),\n") + others + ",\nocm-generate(1)")
-      .make();
+  return (verb == root ? "" : root.name() + "(1),\n") + others + ",\nocm-generate(1)";
+}
+
+std::string page_of_program(Verb root) {
+  // The first paragraph is the options that every verb has, the others list the verbs.
+  const std::string all = options_of(root);
+  const auto end_of_options = all.find("\n\n");
+  generate::ManPage page{root.name(), root.description(), OCM_VERSION};
+  page.literal("SYNOPSIS", usage(root));
+  page.literal("OPTIONS", all.substr(0, end_of_options));
+  page.literal("VERBS", all.substr(end_of_options + 2));
+  page.literal("ENVIRONMENT", environment);
+  page.literal("FILES", files);
+  page.literal("EXIT STATUS", root.footer());
+  return page.text("SEE ALSO", see_also(root, root)).make();
+}
+
+std::string page_of(Verb verb, Verb root) {
+  if (verb == root) return page_of_program(root);
+  std::string synopsis;
+  for (const Verb inner : verb.verbs_for_all()) synopsis += usage(inner) + "\n";
+  generate::ManPage page{page_name(verb), verb.description(), OCM_VERSION};
+  page.literal("SYNOPSIS", synopsis.empty() ? usage(verb) : synopsis);
+  page.literal("OPTIONS",
+               options_of(verb) + "\n\nThose of every verb, such as --bus: " + root.name() + "(1)");
+  for (const Verb inner : verb.verbs_for_all()) page.literal("OPTIONS OF " + inner.path(), options_of(inner));
+  page.literal("EXAMPLES", verb.footer());
+  return page.text("SEE ALSO", see_also(verb, root)).make();
+}
+
+[[noreturn]] void refuse_verb(Verb root, const std::string& typed) {
+  std::vector<std::string> names;
+  for (const Verb each : root.verbs_for_all()) names.push_back(each.name());
+  const auto near = words::nearest(typed, std::vector<std::string_view>(names.begin(), names.end()));
+  fail({fmt::format("man: unknown verb '{}'", typed),
+        near.empty() ? "`amiroctl --help` lists the verbs" : fmt::format("did you mean '{}'?", near)},
+       exit_usage);
 }
 
 void write_all(Verb root, const std::string& folder) {
@@ -67,8 +122,7 @@ void add_man(Verb app, Session&, int&) {
     Verb chosen = options->verb.empty() ? app : Verb{};
     for (const Verb each : app.verbs_for_all())
       if (each.is_named(options->verb)) chosen = each;
-    if (!chosen)
-      fail({fmt::format("man: unknown verb {}", options->verb), "`amiroctl --help` lists them"}, exit_usage);
+    if (!chosen) refuse_verb(app, options->verb);
     fmt::print("{}", page_of(chosen, app));
   });
 }

@@ -48,11 +48,9 @@ void run(const fleet::MapOptions& options, int& exit_code) {
     fail({fmt::format("map: --resolution {}: no size of a cell", options.resolution_cm),
           "write centimetres, 0.5 to 50"},
          exit_usage);
-  std::optional<base::Duration> limit;
-  if (!options.duration.empty()) limit = duration_option("--duration", options.duration);
   const fleet::Known known = fleet::known_of(options.world, options.starts);
   MapRun run{options, known};
-  const End end = run.explore(limit);
+  const End end = run.explore(options.duration);
   if (!run.any()) {
     if (interrupted() == 0) remark("map: no update came that could be drawn");
     exit_code = exit_code_after_interrupt(exit_failure);
@@ -80,9 +78,7 @@ void add_map(Verb app, Session&, int& exit_code) {
       .type_name("FILE ...");
   verb.add_option("--robots", options->robots, "names, addresses or indexes; default: all")
       .type_name("ROBOT ...");
-  verb.add_option("--duration", options->duration, "at most so long; default: until all is known")
-      .type_name("T")
-      .takes(accepted_duration());
+  add_duration(verb, "--duration", options->duration, "at most so long; default: until all is known");
   verb.add_option("--start", options->starts, "where a robot was switched on: metres, degrees")
       .type_name("NAME=X,Y,DEG");
   verb.add_option("--world", options->world,

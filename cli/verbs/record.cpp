@@ -35,7 +35,7 @@ struct RecordOptions {
   std::string split;
   std::uint64_t ring = 0;
   std::uint64_t count = 0;
-  std::string duration;
+  std::optional<base::Duration> duration;
   bool commands = false;
   bool force = false;
   bool no_sync = false;
@@ -168,7 +168,7 @@ void run_record(Session& session, const RecordOptions& options, int& exit_code) 
   const auto& format = *chosen.format;
   const auto filters = chosen_filters(options, catalogue);
   record::Limits limits{options.count, {}, catalogue.bit_rate};
-  if (!options.duration.empty()) limits.duration = duration_option("--duration", options.duration);
+  limits.duration = options.duration.value_or(base::Duration{});
 
   catch_interrupts();
   catch_hangups();
@@ -223,9 +223,7 @@ void add_record(Verb app, Session& session, int& exit_code) {
       .type_name("SIZE|T");
   verb.add_option("--ring", options->ring, "with --split: keep the newest N files").type_name("N").positive();
   verb.add_option("-n,--count", options->count, "end after so many frames").type_name("N").positive();
-  verb.add_option("--duration", options->duration, "end after this time")
-      .type_name("T")
-      .takes(accepted_duration());
+  add_duration(verb, "--duration", options->duration, "end after this time");
   verb.add_flag("--no-sync", options->no_sync,
                 "leave it to the kernel when data reach the disk; default: every second");
   verb.add_flag("--strict", options->strict, "exit 1 when frames were lost");

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <limits>
@@ -33,7 +34,7 @@ struct ReplayOptions {
   std::string speed = "1";
   std::string loop;
   std::uint64_t passes = 1;  ///< 0: without end
-  std::string from, until, longest_gap;
+  std::optional<base::Duration> since, until, longest_gap;
   std::string only;
   std::vector<std::string> interfaces;
   bool on_command = false;
@@ -54,6 +55,30 @@ Accepted accepted_speed() {
           }};
 }
 
+bool is_time(const std::string& text) {
+  const auto time = words::parse_duration(text);
+  return time && time->count() >= 0;
+}
+
+/// --from names a format, as everywhere. In version 0.1 it was a time, which --since is now: that still
+/// works, as no format is called like a time.
+TakeValue take_from(ReplayOptions& options) {
+  return [&options](const std::string& text) -> std::optional<Misuse> {
+    if (is_time(text))
+      options.since = words::parse_duration(text).value;
+    else
+      options.from_format = text;
+    return {};
+  };
+}
+
+Accepted accepted_from() {
+  const auto formats = logs::readable_formats();
+  return {ValueKind::text, false, accepted_words(formats).expected, {}, [formats](const std::string& text) {
+            return is_time(text) || std::find(formats.begin(), formats.end(), text) != formats.end();
+          }};
+}
+
 replay::PlayerOptions player_options(const ReplayOptions& options) {
   replay::PlayerOptions player;
   player.at_once = options.speed == "max";
@@ -64,12 +89,11 @@ replay::PlayerOptions player_options(const ReplayOptions& options) {
            exit_usage);
     player.playback.speed = speed->as_double();
   }
-  if (!options.from.empty()) player.span.from = duration_option("--from", options.from);
-  if (!options.until.empty()) player.span.until = duration_option("--until", options.until);
-  if (!options.longest_gap.empty())
-    player.playback.longest_gap = duration_option("--max-gap", options.longest_gap);
+  player.span.from = options.since.value_or(player.span.from);
+  player.span.until = options.until.value_or(player.span.until);
+  player.playback.longest_gap = options.longest_gap.value_or(player.playback.longest_gap);
   if (player.span.until < player.span.from)
-    fail({"replay: --until is before --from", "both count from the first frame of the log"}, exit_usage);
+    fail({"replay: --until is before --since", "both count from the first frame of the log"}, exit_usage);
   return player;
 }
 
@@ -275,33 +299,30 @@ void add_replay(Verb app, Session& session, int& exit_code) {
   auto verb = app.add_verb("replay", "send what was recorded, each frame at its time", log_group,
                            "  amiroctl replay drive.log\n"
                            "  amiroctl replay drive.pcapng --speed 10 gyro odom\n"
-                           "  amiroctl replay drive.log --from 1min --until 90s --loop\n"
+                           "  amiroctl replay drive.log --since 1min --until 90s --loop\n"
                            "  amiroctl replay both.pcapng --interface can0=vcan0 --interface can1=vcan1\n"
                            "  amiroctl replay drive.log --on-command     a robot that is a log");
   const auto options = std::make_shared<ReplayOptions>();
   verb.add_option("file", options->file, "a log in any format, packed or not; - for standard input")
       .required()
-      .type_name("FILE");
+      .type_name("FILE")
+      .in_usage("FILE|-");
   verb.add_option("topics", options->topics, "only frames of these; default: all that is in the log")
       .type_name("[TOPIC ...]");
-  verb.add_option("--from-format", options->from_format, "the log's format, where it cannot be seen")
+  verb.add_value("--from,--from-format", take_from(*options),
+                 "the format of the log; default: what it begins with says it")
       .type_name("FORMAT")
-      .takes(accepted_words(logs::readable_formats()));
+      .takes(accepted_from())
+      .formerly("--from-format");
   verb.add_option("--speed", options->speed, "how many times faster; max: as fast as the bus takes them")
       .type_name("X|max")
       .takes(accepted_speed());
   const auto loop = verb.add_option("--loop", options->loop, "play it N times; without N until Ctrl-C");
   loop.expected(0, 1).type_name("[N]").takes(
       accepted_whole(1, std::numeric_limits<std::uint64_t>::max(), "how many times, at least 1"));
-  verb.add_option("--from", options->from, "begin so far into the log")
-      .type_name("T")
-      .takes(accepted_duration());
-  verb.add_option("--until", options->until, "end so far into the log")
-      .type_name("T")
-      .takes(accepted_duration());
-  verb.add_option("--max-gap", options->longest_gap, "cut longer pauses to this")
-      .type_name("T")
-      .takes(accepted_duration());
+  add_duration(verb, "--since", options->since, "from this time after the first frame");
+  add_duration(verb, "--until", options->until, "up to this time after the first frame");
+  add_duration(verb, "--max-gap", options->longest_gap, "cut longer pauses to this");
   verb.add_option("--only", options->only, "sensors: what boards sent; commands: what they were sent")
       .one_of({"sensors", "commands"})
       .type_name("WHICH");

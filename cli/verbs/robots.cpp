@@ -21,7 +21,7 @@ using mapper::server::Peer;
 
 struct RobotsOptions {
   fleet::LineOptions line;
-  std::string watch = "1500ms";
+  base::Duration listen = std::chrono::milliseconds{1500};
   bool json = false;
   bool list = false;
 };
@@ -77,13 +77,12 @@ void print_table(const fleet::CentralLine& line, const std::vector<Peer>& peers)
 }
 
 void run(const RobotsOptions& options, int& exit_code) {
-  const auto watch = duration_option("--watch", options.watch);
   fleet::CentralLine line{"robots", options.line};
   if (options.list)
     (void)line.scan();
   else
     (void)line.connect({});
-  if (!options.list) (void)line.wait(watch, [] { return false; });
+  if (!options.list) (void)line.wait(options.listen, [] { return false; });
   const std::vector<Peer> peers = line.server().client().peers();
   if (options.json)
     for (const Peer& peer : peers) fmt::print("{}\n", to_json(line, peer).line());
@@ -104,10 +103,8 @@ void add_robots(Verb app, Session&, int& exit_code) {
   const auto options = std::make_shared<RobotsOptions>();
   verb.add_flag("--json", options->json, "an object a robot");
   verb.add_flag("--list", options->list, "those that advertise; connect to none");
-  verb.add_option("--watch", options->watch, "how long to listen once all are connected")
-      .type_name("T")
-      .takes(accepted_duration())
-      .show_default();
+  add_duration(verb, "--listen,--watch", options->listen, "how long to listen once all are connected")
+      .formerly("--watch");
   fleet::add_line_options(verb, options->line);
   verb.callback([options, &exit_code] { run(*options, exit_code); });
 }

@@ -25,7 +25,7 @@ namespace {
 struct RunOptions {
   std::string file;
   double speed = 1;
-  bool listen = false;
+  bool show = false;
   bool dry_run = false;
 };
 
@@ -96,8 +96,8 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
     printer.flush();
   };
   Timeline timeline{*bus, "run",
-                    options.listen ? std::function<void(const can::Received&)>{show}
-                                   : std::function<void(const can::Received&)>{}};
+                    options.show ? std::function<void(const can::Received&)>{show}
+                                 : std::function<void(const can::Received&)>{}};
   const auto start = Timeline::Clock::now();
   for (const auto& step : script.steps) {
     const auto at = std::chrono::duration_cast<Timeline::Clock::duration>(
@@ -118,15 +118,18 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
 
 void add_run(Verb app, Session& session, int& exit_code) {
   auto verb = app.add_verb("run", "carry out a script, each line at its time", play_group,
-                           "  amiroctl run examples/standalone.script --listen\n"
+                           "  amiroctl run examples/standalone.script --show\n"
                            "  amiroctl run tour.script --speed 10\n"
                            "  echo '0s drive 5cm/s --for 1s' | amiroctl run -");
   const auto options = std::make_shared<RunOptions>();
-  verb.add_option("script", options->file, "file, or - for standard input").required().type_name("SCRIPT");
+  verb.add_option("script", options->file, "file, or - for standard input")
+      .required()
+      .type_name("SCRIPT")
+      .in_usage("SCRIPT|-");
   verb.add_option("--speed", options->speed, "how many times faster the steps follow each other")
       .range(0.001, 1000.0)
       .type_name("N");
-  verb.add_flag("--listen", options->listen, "show what the sensors answer");
+  verb.add_flag("--show,--listen", options->show, "show what the sensors answer").formerly("--listen");
   verb.add_flag("--dry-run", options->dry_run, "print each step's frames and send nothing");
   verb.callback([options, &session, &exit_code] { run(session, *options, exit_code); });
 }

@@ -27,7 +27,7 @@ struct StatsOptions {
   std::vector<std::string> words;
   WatchOptions watch;
   std::vector<std::string> assertions;
-  std::string bit_rate;
+  std::optional<std::uint32_t> bit_rate;
   bool json = false, csv = false;
 };
 
@@ -86,8 +86,8 @@ std::vector<stats::Assertion> read_assertions(const std::vector<std::string>& te
   return assertions;
 }
 
-std::uint32_t chosen_bit_rate(const std::string& text, const protocol::Catalogue& catalogue) {
-  if (!text.empty()) return bit_rate_option(text);
+std::uint32_t chosen_bit_rate(std::optional<std::uint32_t> given, const protocol::Catalogue& catalogue) {
+  if (given) return *given;
   if (catalogue.bit_rate != 0) return catalogue.bit_rate;
   fail({"stats: the spec says no bit rate", "--bitrate gives it, such as --bitrate 500k"}, exit_usage);
 }
@@ -96,7 +96,7 @@ void run(Session& session, const StatsOptions& options, int& exit_code) {
   const auto& catalogue = session.catalogue();
   const auto means_topic = [&catalogue](std::string_view word) {
     return std::any_of(catalogue.topics.begin(), catalogue.topics.end(), [&](const protocol::Topic& topic) {
-      return catalogue.find(word) == &topic || topic.group == word;
+      return words::find_topic(catalogue, word) == &topic || topic.group == word;
     });
   };
   Words words = split_words("stats", options.words, means_topic);
@@ -160,9 +160,7 @@ void add_stats(Verb app, Session& session, int& exit_code) {
                   "exit 1 unless this holds, such as 'gyro.rate>1.9'; may be given again")
       .type_name("EXPRESSION")
       .one_a_mention();
-  verb.add_option("--bitrate", options->bit_rate, "such as 500k or 125000; default: the spec's")
-      .type_name("RATE")
-      .takes(accepted_bit_rate());
+  add_bit_rate(verb, "--bitrate", options->bit_rate, "such as 500k or 125000; default: the spec's");
   const auto json = verb.add_flag("--json", options->json, "one object, for programs");
   verb.add_flag("--csv", options->csv, "a line a topic, times in nanoseconds").excludes(json);
   verb.callback([options, &session, &exit_code] { run(session, *options, exit_code); });

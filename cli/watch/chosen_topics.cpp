@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 
 #include "cli/shared/messages.hpp"
-#include "cli/words/command.hpp"
+#include "cli/words/suggestion.hpp"
+#include "cli/words/topics.hpp"
 
 namespace ocm::cli {
 
@@ -12,14 +13,15 @@ std::vector<const protocol::Topic*> chosen_topics(std::string_view verb, const p
   std::vector<const protocol::Topic*> topics;
   for (const auto& word : words) {
     bool found = false;
+    const auto* const named = words::find_topic(catalogue, word);
     for (const auto& topic : catalogue.topics) {
-      if (catalogue.find(word) != &topic && topic.group != word) continue;
+      if (named != &topic && topic.group != word) continue;
       topics.push_back(&topic);
       found = true;
     }
     if (found) continue;
     const auto names = words::topic_words(catalogue);
-    fail({fmt::format("{}: no topic '{}'", verb, word), words::detail::suggestion(word, names)}, exit_usage);
+    fail({fmt::format("{}: no topic '{}'", verb, word), words::suggestion(word, names)}, exit_usage);
   }
   return topics;
 }

@@ -18,9 +18,8 @@ void add_watch_options(Verb verb, WatchOptions& options) {
   verb.add_option("--from", options.format, "format of the logs; default: what they begin with says it")
       .type_name("FORMAT")
       .takes(accepted_words(logs::readable_formats()));
-  verb.add_option("--duration", options.duration, "end after this time; of a log: look at its first T only")
-      .type_name("T")
-      .takes(accepted_duration());
+  add_duration(verb, "--duration", options.duration,
+               "end after this time; of a log: look at its first T only");
   verb.add_option("-n,--count", options.count, "end after so many frames").type_name("N").positive();
 }
 
@@ -45,8 +44,11 @@ Words split_words(std::string_view verb, const std::vector<std::string>& words,
 }
 
 Watching::Watching(Session& session, const WatchOptions& options, std::vector<std::string> files)
-    : session_(&session), format_(options.format), files_(std::move(files)), count_(options.count) {
-  if (!options.duration.empty()) duration_ = duration_option("--duration", options.duration);
+    : session_(&session),
+      format_(options.format),
+      files_(std::move(files)),
+      duration_(options.duration),
+      count_(options.count) {
   if (live() && !format_.empty())
     fail({"--from " + format_ + " is the format of a log, and there is none",
           "name the log, or leave --from away"},

@@ -20,8 +20,8 @@
 namespace ocm::cli {
 
 struct WatchOptions {
-  std::string format;    ///< of the logs; empty: find out
-  std::string duration;  ///< as it was typed; empty: no end
+  std::string format;                      ///< of the logs; empty: find out
+  std::optional<base::Duration> duration;  ///< none: no end
   std::uint64_t count = 0;
 };
 

@@ -4,8 +4,9 @@
 ///     drive X [Z] [--for T] | drive stop        led N|all COLOUR|off
 ///     set ACTUATOR FIELD=VALUE ...              send FRAME
 ///
-/// each with `--priority P`. A command becomes frames; what is wrong is said of the word where it stands.
-/// drive and led exist where the catalogue has actuators of that role; set and send always.
+/// each with `--priority P`. A script has the options among the words; the command line has read them already
+/// and hands them over as values. A command becomes frames; an error names the word that is wrong. drive and
+/// led exist where the catalogue has actuators of that role; set and send always.
 #pragma once
 
 #include <algorithm>
@@ -32,7 +33,8 @@
 #include "ocm/protocol/topic.hpp"
 
 #include "cli/words/quantity.hpp"
-#include "generator/spec/edit_distance.hpp"
+#include "cli/words/suggestion.hpp"
+#include "cli/words/topics.hpp"
 
 namespace ocm::cli::words {
 
@@ -48,48 +50,61 @@ struct WordError {
   friend bool operator==(const WordError&, const WordError&) = default;
 };
 
+/// What a command's options say, as values.
+struct CommandOptions {
+  std::optional<protocol::Priority> priority;  ///< none: the topic's own
+  std::optional<base::Duration> lasting;       ///< of drive; none: until something else is commanded
+};
+
+/// The value of --priority: a name, "normal" as the thesis also calls medium [Thesis 4.2.1], or its number in
+/// the identifier, which the thesis's menus ask for [Thesis, figure 6.2]. The error's `what` goes on after
+/// the text:
+/// "'top' is ", "not a priority".
+[[nodiscard]] inline base::Result<protocol::Priority, WordError> read_priority(std::string_view text) {
+  if (const auto priority = protocol::parse_priority(text)) return *priority;
+  if (text == "normal") return protocol::Priority::medium;
+  if (text.size() == 1 && text[0] >= '0' && text[0] <= '3')
+    return static_cast<protocol::Priority>(text[0] - '0');
+  return WordError{0, "not a priority", "write urgent, high, medium or low, or 0 to 3"};
+}
+
+/// The value of --for. The error is as that of read_priority.
+[[nodiscard]] inline base::Result<base::Duration, WordError> read_lasting(std::string_view text) {
+  const auto lasting = parse_duration(text);
+  if (lasting && lasting->count() > 0) return *lasting;
+  return WordError{0, "not a time above zero", "write 2s, 500ms or 1min"};
+}
+
+/// The words behind a verb, as its usage shows them: those in brackets may be missing, and ... is any number
+/// more.
+struct Form {
+  std::string_view verb;
+  std::string_view words;
+};
+inline constexpr Form forms[] = {{"publish", "TOPIC [PERIOD]"},
+                                 {"once", "TOPIC"},
+                                 {"stop", "[TOPIC|all]"},
+                                 {"drive", "X|stop [Z]"},
+                                 {"led", "N|all COLOUR|off"},
+                                 {"set", "ACTUATOR FIELD=VALUE ..."},
+                                 {"send", "FRAME"}};
+
+/// The words of a verb's form; empty if no command has the name.
+[[nodiscard]] constexpr std::string_view form_of(std::string_view verb) noexcept {
+  for (const auto& form : forms)
+    if (form.verb == verb) return form.words;
+  return {};
+}
+
 namespace detail {
 
 using Parsed = base::Result<Command, WordError>;
-
-/// "did you mean gyro?" or, when nothing is near, "one of: a, b, c".
-[[nodiscard]] inline std::string suggestion(std::string_view word,
-                                            std::span<const std::string_view> candidates) {
-  std::string_view nearest;
-  std::size_t least = word.size() < 4 ? 2 : 3;
-  for (const auto candidate : candidates) {
-    const std::size_t d = spec::edit_distance(word, candidate);
-    if (d < least) {
-      least = d;
-      nearest = candidate;
-    }
-  }
-  if (!nearest.empty()) return "did you mean '" + std::string{nearest} + "'?";
-  std::string all = "one of: ";
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (i != 0) all += ", ";
-    all += candidates[i];
-  }
-  return all;
-}
 
 [[nodiscard]] inline std::string quoted(std::string_view word) {
   return "'" + std::string{word} + "'";
 }
 
 }  // namespace detail
-
-/// The topics of one kind by name and alias, as a person may type them.
-[[nodiscard]] inline std::vector<std::string_view> topic_words(const protocol::Catalogue& catalogue,
-                                                               std::optional<protocol::Kind> kind = {}) {
-  std::vector<std::string_view> words;
-  for (const auto& topic : catalogue.topics) {
-    if (kind && topic.kind != *kind) continue;
-    words.push_back(topic.name);
-    words.insert(words.end(), topic.aliases.begin(), topic.aliases.end());
-  }
-  return words;
-}
 
 /// A number for a field, from "0.05m/s", "12" (in the field's unit) or the name of a value. The error is said
 /// in words, with the field's unit and range.
@@ -155,52 +170,78 @@ using Parsed = base::Result<Command, WordError>;
   return rgb;
 }
 
+/// The words of a command; the first is the verb.
+using Line = std::span<const std::string_view>;
+
 /// Reads one command at a time against a catalogue.
 class CommandParser {
  public:
-  explicit CommandParser(const protocol::Catalogue& catalogue) : catalogue_(&catalogue) {}
+  /// `program` is what stands before a command, for its usage: "amiroctl " on a command line, nothing in a
+  /// script.
+  explicit CommandParser(const protocol::Catalogue& catalogue, std::string_view program = {})
+      : catalogue_(&catalogue), program_(program) {}
 
-  /// `words[0]` is the verb. Options may stand anywhere.
-  [[nodiscard]] base::Result<Command, WordError> parse(std::span<const std::string_view> words) const {
-    if (words.empty()) return WordError{0, "no command", "one of: " + verbs()};
-    Line line;
-    for (std::size_t i = 0; i < words.size(); ++i) {
-      const bool has_value = words[i] == "--priority" || words[i] == "--for";
-      if (!has_value && words[i].starts_with("--"))
-        return WordError{i, "unknown option " + detail::quoted(words[i]),
-                         "--priority P, or --for T with drive"};
-      if (!has_value) {
-        line.words.push_back({words[i], i});
+  /// `words[0]` is the verb; no word is an option.
+  [[nodiscard]] detail::Parsed parse(Line words, const CommandOptions& options) const {
+    if (words.empty()) return no_command();
+    const std::string_view verb = words[0];
+    if (const auto error = check_count(words)) return *error;
+    if (verb == "publish") return publish(words, options.priority);
+    if (verb == "once") return once(words, options.priority);
+    if (verb == "stop") return stop(words, options.priority);
+    if (verb == "drive") return drive(words, options);
+    if (verb == "led") return led(words, options.priority);
+    if (verb == "set") return set(words, options.priority);
+    if (verb == "send") return send(words);
+    return WordError{0, "unknown command " + detail::quoted(verb), suggestion(verb, verbs())};
+  }
+
+  /// As a line of a script has it: options stand anywhere among the words, as `--for 2s` or `--for=2s`.
+  [[nodiscard]] detail::Parsed parse_line(Line line) const {
+    std::vector<std::string_view> words;
+    std::vector<std::size_t> places;  // of `words` in `line`
+    CommandOptions options;
+    std::size_t priority_at = 0;
+    std::size_t lasting_at = 0;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      if (!line[i].starts_with("--")) {
+        words.push_back(line[i]);
+        places.push_back(i);
         continue;
       }
-      if (i + 1 == words.size())
-        return WordError{i, detail::quoted(words[i]) + " lacks its value", usage(words[i])};
-      auto& option = words[i] == "--for" ? line.lasting : line.priority;
-      option = Word{words[i + 1], i + 1};
-      ++i;
+      const auto equals = line[i].find('=');
+      const std::string_view name = line[i].substr(0, equals);
+      constexpr std::string_view known[] = {"--priority", "--for"};
+      if (name != known[0] && name != known[1])
+        return WordError{i, "unknown option " + detail::quoted(name), suggestion(name, known)};
+      if (equals == std::string_view::npos && i + 1 == line.size())
+        return WordError{i, "missing value for " + std::string{name},
+                         name == "--for" ? "write --for 2s" : "write --priority high"};
+      const std::string_view text = equals == std::string_view::npos ? line[++i] : line[i].substr(equals + 1);
+      const auto wrong = [&](WordError error) {
+        return WordError{i, detail::quoted(text) + " is " + error.what, std::move(error.remedy)};
+      };
+      if (name == "--for") {
+        const auto lasting = read_lasting(text);
+        if (!lasting) return wrong(lasting.error);
+        options.lasting = *lasting;
+        lasting_at = i;
+      } else {
+        const auto priority = read_priority(text);
+        if (!priority) return wrong(priority.error);
+        options.priority = *priority;
+        priority_at = i;
+      }
     }
-    if (line.words.empty()) return WordError{0, "no command", "one of: " + verbs()};
-    std::optional<protocol::Priority> priority;  // none: the topic's own
-    if (line.priority) {
-      const auto parsed = protocol::parse_priority(line.priority->text);
-      if (!parsed)
-        return WordError{line.priority->index, detail::quoted(line.priority->text) + " is not a priority",
-                         usage("--priority")};
-      priority = *parsed;
-    }
-    const std::string_view verb = line.words[0].text;
-    if (line.lasting && verb != "drive")
-      return WordError{line.lasting->index, "--for goes with drive only", "leave it away"};
-    if (verb == "publish") return publish(line, priority);
-    if (verb == "once") return once(line, priority);
-    if (verb == "stop") return stop(line, priority);
-    if (verb == "drive") return drive(line, priority);
-    if (verb == "led") return led(line, priority);
-    if (verb == "set") return set(line, priority);
-    if (verb == "send") return send(line);
-    constexpr std::string_view known[] = {"publish", "once", "stop", "drive", "led", "set", "send"};
-    return WordError{line.words[0].index, "unknown command " + detail::quoted(verb),
-                     detail::suggestion(verb, known)};
+    if (words.empty()) return no_command();
+    if (options.lasting && words[0] != "drive")
+      return WordError{lasting_at, "--for goes with drive only", "drop --for"};
+    if (options.priority && words[0] == "send")
+      return WordError{priority_at, "a frame carries its priority in its identifier", "drop --priority"};
+    auto command = parse(words, options);
+    std::size_t& word = command.error.word;
+    if (!command) word = word < places.size() ? places[word] : places.back() + 1;
+    return command;
   }
 
   /// Everything at rest: motors first, then every publisher.
@@ -209,55 +250,51 @@ class CommandParser {
   }
 
  private:
-  struct Word {
-    std::string_view text;
-    std::size_t index;
-  };
-  struct Line {
-    std::vector<Word> words;  // without options
-    std::optional<Word> priority;
-    std::optional<Word> lasting;
-    [[nodiscard]] std::size_t size() const { return words.size(); }
-    [[nodiscard]] const Word& operator[](std::size_t i) const { return words[i]; }
-    /// Where something is missing: behind the last word.
-    [[nodiscard]] std::size_t end() const { return words.back().index + 1; }
-  };
-
-  static std::string verbs() { return "publish, once, stop, drive, led, set, send"; }
-  static std::string usage(std::string_view option) {
-    return option == "--for" ? "a time such as --for 2s" : "--priority urgent, high, medium or low";
+  static std::array<std::string_view, std::size(forms)> verbs() {
+    std::array<std::string_view, std::size(forms)> names{};
+    std::transform(std::begin(forms), std::end(forms), names.begin(), [](const Form& f) { return f.verb; });
+    return names;
   }
 
-  /// Too many words, or too few: said once for all verbs.
-  static std::optional<WordError> check_count(const Line& line, std::size_t least, std::size_t most,
-                                              std::string_view form) {
-    if (line.size() < least)
-      return WordError{line.end(), "something is missing", "write " + std::string{form}};
-    if (line.size() > most)
-      return WordError{line[most].index, detail::quoted(line[most].text) + " is too much",
-                       "write " + std::string{form}};
+  static WordError no_command() { return {0, "no command", one_of(verbs())}; }
+
+  /// Too many words, or too few, by the form of the verb.
+  [[nodiscard]] std::optional<WordError> check_count(Line line) const {
+    const std::string_view form = form_of(line[0]);
+    std::size_t count = 1;
+    for (std::string_view rest = form; !rest.empty(); ++count) {
+      const std::string_view word = rest.substr(0, rest.find(' '));
+      rest.remove_prefix(std::min(word.size() + 1, rest.size()));
+      if (word == "...") return {};
+      if (line.size() <= count && !word.starts_with('['))
+        return WordError{line.size(), "missing " + std::string{word}, usage(line[0])};
+    }
+    if (!form.empty() && line.size() > count)
+      return WordError{count, "unexpected argument " + detail::quoted(line[count]), usage(line[0])};
     return {};
   }
 
-  base::Result<const protocol::Topic*, WordError> topic(const Word& word,
+  [[nodiscard]] std::string usage(std::string_view verb) const {
+    return "usage: " + program_ + std::string{verb} + " " + std::string{form_of(verb)};
+  }
+
+  base::Result<const protocol::Topic*, WordError> topic(Line line, std::size_t at,
                                                         std::optional<protocol::Kind> kind) const {
-    const protocol::Topic* found = catalogue_->find(word.text);
+    const std::string_view word = line[at];
+    const protocol::Topic* found = find_topic(*catalogue_, word);
     if (found != nullptr && (!kind || found->kind == *kind)) return found;
     if (found != nullptr) {
       const bool actuator = found->kind == protocol::Kind::actuator;
-      return WordError{word.index,
-                       detail::quoted(word.text) + (actuator ? " is an actuator" : " is a sensor"),
+      return WordError{at, detail::quoted(word) + (actuator ? " is an actuator" : " is a sensor"),
                        actuator ? "actuators are commanded with set, drive or led; sensors are asked"
                                 : "sensors are asked with publish, once and stop"};
     }
     const auto words = topic_words(*catalogue_, kind);
-    return WordError{word.index, "no topic " + detail::quoted(word.text),
-                     detail::suggestion(word.text, words)};
+    return WordError{at, "no topic " + detail::quoted(word), suggestion(word, words)};
   }
 
-  detail::Parsed publish(const Line& line, std::optional<protocol::Priority> priority) const {
-    if (auto error = check_count(line, 2, 3, "publish TOPIC [PERIOD]")) return *error;
-    const auto sensor = topic(line[1], protocol::Kind::sensor);
+  detail::Parsed publish(Line line, std::optional<protocol::Priority> priority) const {
+    const auto sensor = topic(line, 1, protocol::Kind::sensor);
     if (!sensor) return sensor.error;
     Command command;
     command.answers = *sensor;
@@ -266,21 +303,18 @@ class CommandParser {
           protocol::encode_default_publish((*sensor)->id, priority.value_or((*sensor)->priority))};
       return command;
     }
-    const Word& word = line[2];
-    const auto period = parse_duration(word.text);
+    const std::string_view word = line[2];
+    const auto period = parse_duration(word);
     if (period.error == base::Error::bad_unit)
-      return WordError{word.index, detail::quoted(word.text) + " has no unit of time that the wire knows",
-                       "write 500ms, 2s or 900us"};
+      return WordError{2, detail::quoted(word) + " needs a unit: us, ms or s", "write 500ms, 2s or 900us"};
     if (period.error == base::Error::bad_syntax)
-      return WordError{word.index, detail::quoted(word.text) + " is not a period",
-                       "write 500ms, 2s or 900us"};
+      return WordError{2, detail::quoted(word) + " is not a period", "write 500ms, 2s or 900us"};
     const auto wire =
         period ? protocol::Period::from(*period) : base::Result<protocol::Period>{base::Error::bad_period};
     if (!wire) {
-      const bool fine =
-          !period && !word.text.starts_with('-') && word.text.find('.') != std::string_view::npos;
+      const bool fine = !period && !word.starts_with('-') && word.find('.') != std::string_view::npos;
       const base::Duration wanted = period ? *period : base::Duration{fine ? 1 : INT64_MAX};
-      return WordError{word.index, "the wire cannot carry a period of " + std::string{word.text},
+      return WordError{2, "the wire cannot carry a period of " + std::string{word},
                        "nearest: " + to_text(protocol::Period::nearest(wanted))};
     }
     command.frames = {protocol::encode(
@@ -288,9 +322,8 @@ class CommandParser {
     return command;
   }
 
-  detail::Parsed once(const Line& line, std::optional<protocol::Priority> priority) const {
-    if (auto error = check_count(line, 2, 2, "once TOPIC")) return *error;
-    const auto sensor = topic(line[1], protocol::Kind::sensor);
+  detail::Parsed once(Line line, std::optional<protocol::Priority> priority) const {
+    const auto sensor = topic(line, 1, protocol::Kind::sensor);
     if (!sensor) return sensor.error;
     Command command;
     command.answers = *sensor;
@@ -298,10 +331,9 @@ class CommandParser {
     return command;
   }
 
-  detail::Parsed stop(const Line& line, std::optional<protocol::Priority> priority) const {
-    if (auto error = check_count(line, 1, 2, "stop [TOPIC|all]")) return *error;
-    if (line.size() == 1 || line[1].text == "all") return stop_all(priority);
-    const auto any = topic(line[1], {});
+  detail::Parsed stop(Line line, std::optional<protocol::Priority> priority) const {
+    if (line.size() == 1 || line[1] == "all") return stop_all(priority);
+    const auto any = topic(line, 1, {});
     if (!any) return any.error;
     Command command;
     if ((*any)->kind == protocol::Kind::sensor) {
@@ -313,19 +345,19 @@ class CommandParser {
     return command;
   }
 
-  detail::Parsed drive(const Line& line, std::optional<protocol::Priority> priority) const {
+  detail::Parsed drive(Line line, const CommandOptions& options) const {
+    const auto priority = options.priority;
     const protocol::Topic* motors = nullptr;
     for (const auto& candidate : catalogue_->topics)
       if (candidate.role == protocol::Role::drive) motors = &candidate;
     if (motors == nullptr || motors->frames[0].fields.size() < 2)
-      return WordError{line[0].index, "robot " + detail::quoted(catalogue_->robot) + " has nothing to drive",
+      return WordError{0, "robot " + detail::quoted(catalogue_->robot) + " has nothing to drive",
                        "its spec has no actuator with role drive; use set or send"};
-    if (auto error = check_count(line, 2, 3, "drive X [Z] [--for T], or drive stop")) return *error;
     Command command;
     const can::Frame rest = set_point(*motors, {}, priority);
-    if (line[1].text == "stop") {
-      if (line.size() > 2 || line.lasting)
-        return WordError{line[0].index, "drive stop stands alone", "write drive stop"};
+    if (line[1] == "stop") {
+      if (line.size() > 2 || options.lasting)
+        return WordError{0, "drive stop takes no velocity and no --for", "usage: " + program_ + "drive stop"};
       command.frames = {rest};
       command.ends_hold = true;
       return command;
@@ -334,60 +366,52 @@ class CommandParser {
     std::vector<std::int64_t> raw(fields.size());
     for (std::size_t i = 1; i < line.size(); ++i) {
       // Bare numbers are raw, um/s and urad/s, as the thesis's sender asks for them.
-      const auto bare = base::parse_decimal(line[i].text);
+      const auto bare = base::parse_decimal(line[i]);
       base::Result<std::int64_t, std::string> value;
       if (bare && bare->exponent >= 0) {
         const auto whole = base::detail::scaled(bare->digits, bare->exponent);
         if (whole && *whole >= fields[i - 1].raw_min && *whole <= fields[i - 1].raw_max)
           value = *whole;
         else
-          value = detail::quoted(line[i].text) + " is out of range";
+          value = detail::quoted(line[i]) + " is out of range";
       } else if (bare) {
-        value =
-            detail::quoted(line[i].text) + " has no unit, and a bare number is a whole one of um/s or urad/s";
+        value = detail::quoted(line[i]) + " has no unit, and a bare number is a whole one of um/s or urad/s";
       } else {
-        value = parse_value(fields[i - 1], line[i].text);
+        value = parse_value(fields[i - 1], line[i]);
       }
-      if (!value) return WordError{line[i].index, value.error, "write 0.05m/s, 5cm/s, 0.2rad/s or -30deg/s"};
+      if (!value) return WordError{i, value.error, "write 0.05m/s, 5cm/s, 0.2rad/s or -30deg/s"};
       raw[i - 1] = *value;
     }
     command.hold = Hold{set_point(*motors, raw, priority), rest, {}};
     command.frames = {command.hold->frame};
-    if (line.lasting) {
-      const auto lasting = parse_duration(line.lasting->text);
-      if (!lasting || lasting->count() <= 0)
-        return WordError{line.lasting->index,
-                         detail::quoted(line.lasting->text) + " is not a time above zero", usage("--for")};
-      command.hold->lasting = *lasting;
-    }
+    command.hold->lasting = options.lasting.value_or(base::Duration{});
     return command;
   }
 
-  detail::Parsed led(const Line& line, std::optional<protocol::Priority> priority) const {
+  detail::Parsed led(Line line, std::optional<protocol::Priority> priority) const {
     std::vector<const protocol::Topic*> lights;
     for (const auto& candidate : catalogue_->topics)
       if (candidate.role == protocol::Role::light && candidate.frames[0].fields.size() >= 3)
         lights.push_back(&candidate);
     if (lights.empty())
-      return WordError{line[0].index, "robot " + detail::quoted(catalogue_->robot) + " has no lights",
+      return WordError{0, "robot " + detail::quoted(catalogue_->robot) + " has no lights",
                        "its spec has no actuator with role light; use set or send"};
-    if (auto error = check_count(line, 3, 3, "led N|all COLOUR|off")) return *error;
-    const Word& which = line[1];
+    const std::string_view which = line[1];
     std::vector<const protocol::Topic*> chosen;
-    if (which.text == "all") {
+    if (which == "all") {
       chosen = lights;
     } else {
-      const auto number = base::parse_unsigned(which.text);
+      const auto number = base::parse_unsigned(which);
       if (!number || *number < 1 || *number > lights.size())
-        return WordError{which.index, "no LED " + detail::quoted(which.text),
+        return WordError{1, "no LED " + detail::quoted(which),
                          "1 to " + std::to_string(lights.size()) + ", or all"};
       chosen = {lights[static_cast<std::size_t>(*number) - 1]};
     }
-    const auto rgb = parse_colour(line[2].text);
+    const auto rgb = parse_colour(line[2]);
     if (!rgb)
       return WordError{
-          line[2].index,
-          detail::quoted(line[2].text) +
+          2,
+          detail::quoted(line[2]) +
               (rgb.error == base::Error::out_of_range ? " has a component over 255" : " is not a colour"),
           "write 100,50,120 or #643278 or a name such as red, white, off"};
     Command command;
@@ -397,32 +421,31 @@ class CommandParser {
     return command;
   }
 
-  detail::Parsed set(const Line& line, std::optional<protocol::Priority> priority) const {
-    if (auto error = check_count(line, 3, SIZE_MAX - 1, "set ACTUATOR FIELD=VALUE ...")) return *error;
-    const auto actuator = topic(line[1], protocol::Kind::actuator);
+  detail::Parsed set(Line line, std::optional<protocol::Priority> priority) const {
+    const auto actuator = topic(line, 1, protocol::Kind::actuator);
     if (!actuator) return actuator.error;
     const auto fields = (*actuator)->frames[0].fields;
     std::vector<std::int64_t> raw(fields.size());
     std::vector<bool> given(fields.size());
     for (std::size_t i = 2; i < line.size(); ++i) {
-      const Word& word = line[i];
-      const auto equals = word.text.find('=');
-      const std::string_view name = word.text.substr(0, equals);
+      const std::string_view word = line[i];
+      const auto equals = word.find('=');
+      const std::string_view name = word.substr(0, equals);
       std::size_t index = 0;
       while (index < fields.size() && fields[index].name != name) ++index;
       if (equals == std::string_view::npos || index == fields.size()) {
         std::vector<std::string_view> names;
         for (const auto& field : fields) names.push_back(field.name);
-        return WordError{word.index,
-                         equals == std::string_view::npos
-                             ? detail::quoted(word.text) + " is not of the form FIELD=VALUE"
-                             : std::string{(*actuator)->name} + " has no field " + detail::quoted(name),
-                         detail::suggestion(name, names)};
+        if (index < fields.size())
+          return WordError{i, detail::quoted(word) + " is not of the form FIELD=VALUE",
+                           "write a value behind it: " + std::string{name} + "=0"};
+        return WordError{i, std::string{(*actuator)->name} + " has no field " + detail::quoted(name),
+                         suggestion(name, names)};
       }
       if (given[index])
-        return WordError{word.index, "field " + detail::quoted(name) + " is given twice", "give it once"};
-      const auto value = parse_value(fields[index], word.text.substr(equals + 1));
-      if (!value) return WordError{word.index, value.error, "for example " + std::string{name} + "=0"};
+        return WordError{i, "field " + detail::quoted(name) + " is given twice", "give it once"};
+      const auto value = parse_value(fields[index], word.substr(equals + 1));
+      if (!value) return WordError{i, value.error, "for example " + std::string{name} + "=0"};
       raw[index] = *value;
       given[index] = true;
     }
@@ -431,19 +454,14 @@ class CommandParser {
     return command;
   }
 
-  static detail::Parsed send(const Line& line) {
-    if (auto error = check_count(line, 2, 2, "send FRAME")) return *error;
-    if (line.priority)
-      return WordError{line.priority->index, "a frame carries its priority in its identifier",
-                       "leave --priority away"};
-    const auto frame = can::parse_frame(line[1].text);
+  static detail::Parsed send(Line line) {
+    const auto frame = can::parse_frame(line[1]);
     if (!frame)
       return WordError{
-          line[1].index, detail::quoted(line[1].text) + ": " + std::string{base::describe(frame.error)},
+          1, detail::quoted(line[1]) + ": " + std::string{base::describe(frame.error)},
           "write 205#01840302 (three hex digits, or eight for an extended identifier), or 205#R"};
     if (frame->format == can::Format::error)
-      return WordError{line[1].index,
-                       detail::quoted(line[1].text) + " is an error frame, which only a controller makes",
+      return WordError{1, detail::quoted(line[1]) + " is an error frame, which only a controller makes",
                        "send a data or remote frame"};
     Command command;
     command.frames = {*frame};
@@ -451,6 +469,7 @@ class CommandParser {
   }
 
   const protocol::Catalogue* catalogue_;
+  std::string program_;
 };
 
 }  // namespace ocm::cli::words

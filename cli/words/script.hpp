@@ -86,7 +86,7 @@ struct Script {
       continue;
     }
     columns.push_back(line.size() + 1);  // behind the last word: where something is missing
-    auto command = parser.parse(std::span{words}.subspan(1));
+    auto command = parser.parse_line(Line{words}.subspan(1));
     if (!command) {
       const std::size_t word = std::min(command.error.word + 1, columns.size() - 1);
       script.errors.push_back({line_number, columns[word], command.error.what, command.error.remedy});

@@ -170,7 +170,7 @@ class Frozen(Robots):
             self.assertEqual([f for f in heard["qemu"] if f[0] == identifier],
                              [f for f in heard["host"] if f[0] == identifier])
         self.assertGreater(len(heard["host"]), 300)
-        report = json.loads(self.tool("qemu", "doctor", "--json", "--watch", "100ms", code=1))
+        report = json.loads(self.tool("qemu", "doctor", "--json", "--listen", "100ms", code=1))
         self.assertIn("came late or not at all", report["findings"][0]["what"])  # told, not hidden
 
     def test_calibration_of_the_floor_is_forgotten_and_measured(self):

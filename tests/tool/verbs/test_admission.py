@@ -71,7 +71,7 @@ class Admission(Case):
         out, _ = self.run_tool("listen", "ring", "--raw", "--count", "16")
         self.assertNotRegex(out, " 4(1F|2[0-6])#")
         self.assertEqual(out.count(" 61F#"), 2)
-        out, _ = self.run_tool("doctor", "--watch", "100ms")
+        out, _ = self.run_tool("doctor", "--listen", "100ms")
         self.assertIn("proximity_ring: not_schedulable", out)
 
     def test_who_runs_already_is_not_harmed(self):

@@ -117,7 +117,7 @@ class Config(harness.Case):
         """Whatever verb is called: the whole file is judged."""
         for text, what, remedy in (
                 ('priority = "hihg"', "priority: invalid value 'hihg'", "did you mean high? expected urgent, high, medium or low"),
-                ("priority = 2", "priority: invalid value 2", "expected urgent, high, medium or low, in quotes"),
+                ("priority = 4", "priority: invalid value 4", "expected urgent, high, medium or low, or 0 to 3"),
                 ("bus = 5", "bus: invalid value 5", "expected a text, in quotes"),
                 ("bus = true", "bus: invalid value true", "expected a text, in quotes"),
                 ('bus = ["sim", "can0"]', "bus: 2 values", "expected one"),
@@ -146,7 +146,7 @@ class Config(harness.Case):
                 self.assertIn(remedy, err)
 
     def test_values_that_are_taken(self):
-        for text in ("[stats]\nbitrate = 125000", '[stats]\nbitrate = "125k"', "[replay]\nspeed = 2.5", '[replay]\nspeed = "max"',
+        for text in ("[stats]\nbitrate = 125000", "priority = 2", 'priority = "normal"', '[stats]\nbitrate = "125k"', "[replay]\nspeed = 2.5", '[replay]\nspeed = "max"',
                      "[replay]\nloop = true", "[replay]\nloop = 3", '[publish]\nwait = "1s"', "[publish]\nwait = false",
                      '[sim]\nwithout = ["light_ring", "power_management"]', "[sim]\nspeed = 10", "[sim]\nseed = 0"):
             self.write(text + "\n")

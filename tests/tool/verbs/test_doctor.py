@@ -6,7 +6,7 @@ import signal
 
 from harness import Case, main
 
-QUICK = ("--watch", "200ms", "--patience", "300ms")
+QUICK = ("--listen", "200ms", "--patience", "300ms")
 
 
 class Doctor(Case):
@@ -86,7 +86,7 @@ class Doctor(Case):
 
     def test_strangers_on_the_bus(self):
         self.start_sim()
-        doctor = self.start("doctor", "--json", "--watch", "3s")
+        doctor = self.start("doctor", "--json", "--listen", "3s")
         self.assertIn("bus: sim", doctor.stderr.readline())
         self.settle()
         self.run_tool("send", "7FF#00")
@@ -98,7 +98,7 @@ class Doctor(Case):
 
     def test_ctrl_c_ends_it(self):
         self.start_sim()
-        doctor = self.start("doctor", "--watch", "1h")
+        doctor = self.start("doctor", "--listen", "1h")
         self.assertIn("bus: sim", doctor.stderr.readline())
         self.settle()
         out, _ = self.interrupt(doctor)
@@ -106,8 +106,8 @@ class Doctor(Case):
         self.assertEqual(out, "")
 
     def test_wrong_usage(self):
-        _, err = self.run_tool("doctor", "--watch", "soon", code=2)
-        self.assertIn("--watch soon: not a time", err)
+        _, err = self.run_tool("doctor", "--listen", "soon", code=2)
+        self.assertIn("--listen soon: not a time", err)
 
 
 if __name__ == "__main__":

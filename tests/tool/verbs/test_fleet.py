@@ -27,7 +27,7 @@ class Line(Case):
 
 class Robots(Line):
     def test_all_that_are_there(self):
-        out, _ = self.tool("robots", "--json", "--watch", "1s")
+        out, _ = self.tool("robots", "--json", "--listen", "1s")
         robots = [json.loads(line) for line in out.splitlines()]
         self.assertEqual([robot["robot"] for robot in robots], ["AVR", "Arduino"])
         for robot in robots:
@@ -38,7 +38,7 @@ class Robots(Line):
             self.assertEqual(robot["body"]["width_cm"], 20)
         self.assertIn("{S,CON}", self.avr.heard)
         # The link stays; the next program takes it over, though it hears no handshake.
-        out, _ = self.tool("robots", "--watch", "1s")
+        out, _ = self.tool("robots", "--listen", "1s")
         self.assertRegex(out, r"AVR +0 +C00000000000 +idle +0 0 0 +100 %")
         self.assertEqual(self.avr.heard.count("{S,CON}"), 1)
         self.assertNotIn("drop 0", self.central.commands)
@@ -55,7 +55,7 @@ class Robots(Line):
         os.write(port, b"conn 0\n{U,9")
         time.sleep(0.1)
         os.close(port)
-        out, _ = self.tool("robots", "--watch", "1s")
+        out, _ = self.tool("robots", "--listen", "1s")
         self.assertRegex(out, r"AVR .* idle")
         self.assertEqual([line for line in self.avr.heard if line != "{S,CON}"], [])
 
@@ -175,7 +175,7 @@ class Pause(Line):
         # It drives all the same, but does not say where it is.
         out, _ = self.tool("goto", "AVR", "0", "5")
         self.assertIn("does not say where", out)
-        self.assertRegex(self.tool("robots", "--watch", "1s")[0], r"AVR .* paused")
+        self.assertRegex(self.tool("robots", "--listen", "1s")[0], r"AVR .* paused")
         self.assertEqual(self.tool("unpause", "all")[0], "AVR: goes on\nArduino: goes on\n")
         self.assertFalse(self.avr.paused)
 
@@ -189,16 +189,16 @@ class Pause(Line):
 
 class TheLine(Line):
     def test_one_program_at_a_time(self):
-        first = self.start("robots", "--watch", "5s", "--scan", "200ms")
+        first = self.start("robots", "--listen", "5s", "--scan", "200ms")
         time.sleep(1)
         _, err = self.tool("robots", code=1)
         self.assertIn("in use by another program", err)
         self.interrupt(first)
         self.assertEqual(first.returncode, 130)
-        self.tool("robots", "--watch", "100ms")
+        self.tool("robots", "--listen", "100ms")
 
     def test_the_dongle_is_unplugged(self):
-        tool = self.start("robots", "--watch", "30s", "--scan", "200ms")
+        tool = self.start("robots", "--listen", "30s", "--scan", "200ms")
         time.sleep(1.5)
         self.central.unplug()
         _, err = tool.communicate(timeout=10)
@@ -206,7 +206,7 @@ class TheLine(Line):
         self.assertIn("is gone", err)
 
     def test_another_path(self):
-        self.tool("robots", "--central", os.path.realpath(self.central.path), "--watch", "100ms")
+        self.tool("robots", "--central", os.path.realpath(self.central.path), "--listen", "100ms")
         _, err = self.run_tool("robots", "--central", "/dev/null", code=1)
         self.assertIn("no serial device", err)
         _, err = self.run_tool("robots", "--baud", "7", "--central", self.central.path, code=1)
@@ -221,7 +221,7 @@ class TheLine(Line):
             self.assertIn("amiroctl sim --robots 2", err)
         self.assertEqual(self.central.commands, [])
         # Whoever names it means it.
-        self.tool("robots", "--central", self.central.path, "--watch", "100ms")
+        self.tool("robots", "--central", self.central.path, "--listen", "100ms")
         self.assertIn("list", self.central.commands)
 
     def test_the_central_is_left_in_command_mode(self):
@@ -230,14 +230,14 @@ class TheLine(Line):
 
     def test_a_full_disk(self):
         with open("/dev/full", "w", encoding="utf-8") as full:
-            done = subprocess.run([AMIROCTL, "robots", "--watch", "100ms", "--scan", "200ms"], env=self.environment,
+            done = subprocess.run([AMIROCTL, "robots", "--listen", "100ms", "--scan", "200ms"], env=self.environment,
                                   stdin=subprocess.DEVNULL, stdout=full, stderr=subprocess.PIPE, text=True, timeout=30,
                                   check=False)
         self.assertEqual(done.returncode, 1)
         self.assertIn("No space left on device", done.stderr)
 
     def test_terminated(self):
-        tool = self.start("robots", "--watch", "30s", "--scan", "200ms")
+        tool = self.start("robots", "--listen", "30s", "--scan", "200ms")
         time.sleep(1.5)
         self.interrupt(tool, signal.SIGTERM)
         self.assertEqual(tool.returncode, 143)

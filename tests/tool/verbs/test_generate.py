@@ -33,10 +33,10 @@ class Generate(harness.Case):
         self.assertEqual(os.listdir(self.folder), ["amiro.dbc"])
 
     def test_mistakes(self):
-        for arguments, code, words in ((("pdf",), 2, "one of cpp, dbc, c, markdown, wireshark, json-schema"),
+        for arguments, code, words in ((("pdf",), 2, "one of: cpp, dbc, c, markdown, wireshark, json-schema"),
                                        (("dbc", "--priority", "big"), 2, "urgent, high, medium or low"),
                                        (("c", "--priority", "high"), 2, "--priority is for dbc"),
-                                       ((), 2, "target"), (("dbc", "-o", "/no/such/folder/x"), 1, "a folder that exists"),
+                                       ((), 2, "missing TARGET"), (("dbc", "-o", "/no/such/folder/x"), 1, "a folder that exists"),
                                        (("dbc", "-o", "/dev/full"), 1, "No space left")):
             out, err = self.run_tool("generate", *arguments, code=code)
             self.assertEqual(out, "")

@@ -9,6 +9,60 @@ import unittest
 import harness
 
 
+# What a page shows as its synopsis, line by line.
+SYNOPSES = """
+amiroctl [OPTION ...] VERB ...
+amiroctl list [OPTION ...]
+amiroctl info TOPIC [OPTION ...]
+amiroctl analyse bus [FILE] [OPTION ...]
+amiroctl analyse tasks FILE|BOARD [OPTION ...]
+amiroctl analyse chain FILE [OPTION ...]
+amiroctl analyse trace LOG [OPTION ...]
+amiroctl generate TARGET [OPTION ...]
+amiroctl publish TOPIC [PERIOD] [OPTION ...]
+amiroctl once TOPIC [OPTION ...]
+amiroctl stop [TOPIC|all] [OPTION ...]
+amiroctl drive X|stop [Z] [OPTION ...]
+amiroctl led N|all COLOUR|off [OPTION ...]
+amiroctl set ACTUATOR FIELD=VALUE ... [OPTION ...]
+amiroctl send FRAME [OPTION ...]
+amiroctl listen [TOPIC ...] [OPTION ...]
+amiroctl doctor [OPTION ...]
+amiroctl record [TOPIC ...] [OPTION ...]
+amiroctl replay FILE|- [TOPIC ...] [OPTION ...]
+amiroctl decode [FILE ...] [OPTION ...]
+amiroctl encode [FILE] [OPTION ...]
+amiroctl convert IN OUT [OPTION ...]
+amiroctl stats [FILE ...|live] [TOPIC ...] [OPTION ...]
+amiroctl plot [FILE ...|live] FIELD ... [OPTION ...]
+amiroctl run SCRIPT|- [OPTION ...]
+amiroctl sim [OPTION ...]
+amiroctl central [OPTION ...]
+amiroctl robots [OPTION ...]
+amiroctl goto ROBOT ANGLE DISTANCE [OPTION ...]
+amiroctl pause ROBOT ... [OPTION ...]
+amiroctl unpause ROBOT ... [OPTION ...]
+amiroctl map FILE ... [OPTION ...]
+amiroctl line [FILE] [OPTION ...]
+amiroctl completion bash|zsh|fish [OPTION ...]
+amiroctl man [VERB] [OPTION ...]
+""".split("\n")[1:-1]
+
+
+def rendered(page):
+    """A page as man shows it, by section: its lines without the indentation."""
+    text = subprocess.run(["mandoc", "-Tutf8", "-Owidth=200"], input=page, capture_output=True, text=True, check=True).stdout
+    sections = {}
+    heading = None
+    for line in re.sub(".\b", "", text).splitlines():  # bold and underlined are typed twice
+        if re.match(r"[A-Z][A-Z ]+|OPTIONS OF .*", line) and not line.startswith("AMIROCTL"):
+            heading = line
+            sections[heading] = []
+        elif heading is not None and line.startswith(" "):
+            sections[heading].append(line.strip())
+    return sections
+
+
 class Man(harness.Case):
     def lint(self, page):
         self.assertIsNotNone(shutil.which("mandoc"), "mandoc is missing: scripts/setup")
@@ -40,13 +94,54 @@ class Man(harness.Case):
         for line in help_text.split("Examples:\n")[1].splitlines():
             self.assertIn(" ".join(line.split()), " ".join(text.split()))
 
+    def test_synopses(self):
+        verbs = [word.split("\t")[0] for word in self.run_tool("completion", "--words", "--", "")[0].splitlines()[1:]]
+        shown = []
+        for verb in [None, *verbs]:
+            shown += filter(None, rendered(self.run_tool("man", *([verb] if verb else []))[0])["SYNOPSIS"])
+            if verb:
+                usage = re.search(r"^Usage: (.*)$", self.run_tool(verb, "--help")[0], re.M)[1]
+                self.assertTrue(verb == "analyse" or shown[-1] == usage, usage)
+        self.assertEqual(shown, SYNOPSES)
+
+    def test_the_program(self):
+        page = rendered(self.run_tool("man")[0])
+        self.assertEqual(list(page), ["NAME", "SYNOPSIS", "OPTIONS", "VERBS", "ENVIRONMENT", "FILES", "EXIT STATUS", "SEE ALSO"])
+        self.assertEqual(page["NAME"][0], "amiroctl - Ask a robot's sensors, command its actuators, watch its CAN bus.")
+        for option in ("--bus NAME", "--spec FILE", "--config FILE", "--no-color", "--version", "--help"):
+            self.assertTrue(any(option in line for line in page["OPTIONS"]), option)
+        verbs = dict(word.split("\t") for word in self.run_tool("completion", "--words", "--", "")[0].splitlines()[1:])
+        listed = dict(re.split(r"(?:, \w+)?  +", line, maxsplit=1) for line in page["VERBS"] if "  " in line)
+        self.assertEqual(listed, verbs)
+        for word in ("AMIROCTL_BUS", "AMIROCTL_SPEC", "AMIROCTL_CONFIG", "NO_COLOR", "XDG_CONFIG_HOME", "XDG_RUNTIME_DIR"):
+            self.assertTrue(any(line.startswith(word) for line in page["ENVIRONMENT"]), word)
+        self.assertIn("~/.config/amiroctl/config.toml", page["FILES"])
+        self.assertIn("2 wrong usage", page["EXIT STATUS"][0])
+        self.assertNotIn("amiroctl-amiroctl(1)", " ".join(page["SEE ALSO"]))
+        self.assertEqual(self.run_tool("man")[0], self.all_pages()["amiroctl.1"])
+
+    def all_pages(self):
+        folder = os.path.join(self.folder, "all")
+        self.run_tool("man", "--all", folder)
+        pages = {}
+        for name in os.listdir(folder):
+            with open(os.path.join(folder, name), encoding="utf-8") as file:
+                pages[name] = file.read()
+        return pages
+
+    def test_options_of_inner_verbs(self):
+        page = rendered(self.run_tool("man", "analyse")[0])
+        self.assertTrue(any(line.startswith("--queue QUEUE") for line in page["OPTIONS OF analyse bus"]))
+        self.assertTrue(any(line.startswith("--tick T") for line in page["OPTIONS OF analyse tasks"]))
+        self.assertTrue(any("amiroctl(1)" in line for line in page["OPTIONS"]))
+
     def test_ocm_generate(self):
         tool = os.path.join(os.path.dirname(harness.AMIROCTL), "ocm-generate")
         page = subprocess.run([tool, "--man"], capture_output=True, text=True, check=True).stdout
         self.assertEqual(self.lint(page), [])
 
     def test_mistakes(self):
-        self.assertIn("unknown verb no_such", self.run_tool("man", "no_such", code=2)[1])
+        self.assertIn("unknown verb 'no_such'", self.run_tool("man", "no_such", code=2)[1])
         self.run_tool("man", "--all", "/dev/null/man1", code=1)
 
 

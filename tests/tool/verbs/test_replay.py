@@ -105,7 +105,7 @@ class Replaying(Case):
         out, err = dry()
         self.assertEqual(out, [(round(when - 10, 6), frame) for when, frame in lines])
         self.assertIn("52 frames would be sent", err)
-        self.assertEqual(dry("--from", "1s", "--until", "1200ms")[0], [(0, "608#0A"), (0.1, "608#0B"), (0.2, "608#0C")])
+        self.assertEqual(dry("--since", "1s", "--until", "1200ms")[0], [(0, "608#0A"), (0.1, "608#0B"), (0.2, "608#0C")])
         self.assertEqual([frame for _, frame in dry("accel")[0]], ["609#00", "209#00"])
         self.assertEqual([frame for _, frame in dry("accel", "--only", "commands")[0]], ["209#00"])
         self.assertEqual(len(dry("--only", "sensors")[0]), 51)
@@ -206,7 +206,7 @@ class Replaying(Case):
         log = self.write_log((1, "608#01"))
         for words, hint in ((("--speed", "0"), "max"), (("--speed", "fast"), "max"), (("--loop", "x"), "--loop 3"),
                             (("--interface", "can0"), "can0=vcan1"), (("gyrro",), "did you mean 'gyro'"),
-                            (("--from", "2s", "--until", "1s"), "--until is before --from"),
+                            (("--since", "2s", "--until", "1s"), "--until is before --since"),
                             (("--only", "both"), "sensors"), (("--dry-run", "--loop", "2"), "--loop")):
             _, err = self.run_tool("replay", log, *words, code=2)
             self.assertIn(hint, err)

@@ -95,10 +95,28 @@ class Look(Case):
         _, err = self.run_tool(*ferry, "publish", "gyro", code=2)
         self.assertIn("no topic 'gyro'", err)
 
+    def test_a_topic_by_its_number(self):
+        log = os.path.join(self.folder, "a.log")
+        with open(log, "w", encoding="utf-8") as file:
+            file.write("(1.0) can0 608#0A0000000000\n(1.1) can0 61E#000000000000\n(1.2) can0 608#0B0000000000\n")
+        for by_name, by_number in ((["decode", log, "--topic", "gyro"], ["decode", log, "--topic", "0x08"]),
+                                   (["decode", log, "--csv", "--field", "gyro.x"], ["decode", log, "--csv", "--field", "0x8.x"]),
+                                   (["stats", log, "gyro", "--json"], ["stats", log, "0x08", "--json"]),
+                                   (["replay", log, "gyro", "--dry-run"], ["replay", log, "0x08", "--dry-run"]),
+                                   (["plot", log, "gyro.x", "--script"], ["plot", log, "0x08.x", "--script"]),
+                                   (["analyse", "bus", "--rates", "ring=50ms@high"], ["analyse", "bus", "--rates", "0x1f=50ms@1"])):
+            with self.subTest(by_number=by_number):
+                out, _ = self.run_tool(*by_number)
+                self.assertTrue(out)
+                self.assertEqual(out, self.run_tool(*by_name)[0])
+        self.run_tool("stats", log, "--assert", "0x08.rate>1", code=0)
+        self.run_tool("stats", log, "--assert", "0x08.rate>1000", code=1)
+
     def test_info(self):
         out, _ = self.run_tool("info", "gyro")
         for word in ("0x08", "di_wheel_drive", "deg/s", "0.0175", "608", "bytes 0..1", "Thesis"):
             self.assertIn(word.lower(), out.lower())
+        self.assertEqual(self.run_tool("info", "0x08")[0], out)
         self.assertIn("500ms", self.run_tool("info", "motors")[0])
         self.assertIn("red", self.run_tool("info", "led")[0])
 

@@ -19,7 +19,7 @@ base::Result<Command, WordError> parse(const std::string& line) {
   std::istringstream stream{line};
   for (std::string word; stream >> word;) kept.push_back(word);
   const std::vector<std::string_view> words(kept.begin(), kept.end());
-  return CommandParser{amiro::catalogue}.parse(words);
+  return CommandParser{amiro::catalogue}.parse_line(words);
 }
 
 /// The frames of a command, in candump notation.
@@ -43,6 +43,13 @@ TEST_CASE("requests become the thesis's frames") {  // thesis 4.2.1
   CHECK(frames("publish gyro 65535s") == "208#01FFFF01");
   CHECK(frames("publish ring 1s --priority high") == "11F#01E80300");
   CHECK(frames("--priority low once power") == "31E#02");
+  CHECK(frames("publish 0x1f 1s --priority 1") == frames("publish ring 1s --priority high"));  // figure 6.2
+  CHECK(frames("stop 0x1F --priority 1") == "11F#00");
+  CHECK(frames("once 0x4") == "204#02");
+  CHECK(frames("set 0x01 x=5cm/s --priority 0") == frames("set motors x=5cm/s --priority urgent"));
+  CHECK(frames("publish mag 900us --priority normal") == "205#01840302");  // 4.2.1: "with normal priority"
+  CHECK(frames("once power --priority 2") == "21E#02");
+  CHECK(frames("once power --priority 3") == "31E#02");
 }
 
 TEST_CASE("set points become the thesis's frames") {  // thesis 4.2.2, figure 6.1
@@ -75,6 +82,21 @@ TEST_CASE("stop brings the motors to rest first, then every sensor") {
   CHECK_FALSE(parse("stop gyro")->ends_hold);
 }
 
+TEST_CASE("options are values, and a script's line is split into words and values") {
+  const CommandParser parser{amiro::catalogue, "amiroctl "};
+  const std::string_view gyro[] = {"publish", "gyro", "500ms"};
+  CHECK(can::to_text(parser.parse(gyro, {})->frames[0]) == "208#01F40100");
+  CHECK(can::to_text(parser.parse(gyro, {protocol::Priority::high, {}})->frames[0]) == "108#01F40100");
+  CHECK(frames("publish gyro --priority=high 500ms") == "108#01F40100");
+  const std::string_view drive[] = {"drive", "5cm/s"};
+  CHECK(parser.parse(drive, {{}, 2s})->hold->lasting == 2s);
+  CHECK(parse("drive --for=2s 5cm/s")->hold->lasting == 2s);
+  const std::string_view option[] = {"once", "--priority"};  // no option any more, but a word
+  CHECK(parser.parse(option, {}).error.what == "no topic '--priority'");
+  const std::string_view once[] = {"once"};
+  CHECK(parser.parse(once, {}).error == WordError{1, "missing TOPIC", "usage: amiroctl once TOPIC"});
+}
+
 TEST_CASE("drive holds, until told otherwise or for a time") {
   const auto command = parse("drive 5cm/s --for 2s");
   REQUIRE(command.ok());
@@ -95,9 +117,16 @@ TEST_CASE("what is wrong is said of the word where it stands") {
   const Row rows[] = {
       {"", 0, "no command", "publish"},
       {"pubish gyro", 0, "unknown command 'pubish'", "did you mean 'publish'?"},
-      {"publish", 1, "something is missing", "publish TOPIC [PERIOD]"},
+      {"publish", 1, "missing TOPIC", "usage: publish TOPIC [PERIOD]"},
       {"publish gyr 1s", 1, "no topic 'gyr'", "did you mean 'gyro'?"},
       {"publish zzzzzz 1s", 1, "no topic 'zzzzzz'", "one of: "},
+      {"publish 0x99 1s", 1, "no topic '0x99'", "one of: "},
+      {"publish 0x108 1s", 1, "no topic '0x108'", "one of: "},
+      {"publish 0x06 1s", 1, "no topic '0x06'", "one of: "},  // a frame of the magnetometer, not a topic
+      {"publish 1f 1s", 1, "no topic '1f'", "one of: "},
+      {"publish 0x01 1s", 1, "'0x01' is an actuator", "set"},
+      {"publish gyro --priority 4", 3, "'4' is not a priority", "0 to 3"},
+      {"publish gyro --priority 00", 3, "'00' is not a priority", "0 to 3"},
       {"publish motors 1s", 1, "'motors' is an actuator", "set"},
       {"set gyro x=1", 1, "'gyro' is a sensor", "publish"},
       {"publish gyro 65.536s", 2, "cannot carry", "nearest: 65.535s"},
@@ -107,16 +136,19 @@ TEST_CASE("what is wrong is said of the word where it stands") {
       {"publish gyro -1s", 2, "cannot carry", "nearest: 1us"},
       {"publish gyro 65536s", 2, "cannot carry", "nearest: 65535s"},
       {"publish gyro 99999999999h", 2, "cannot carry", "nearest: 65535s"},
-      {"publish gyro 500", 2, "no unit of time", "500ms"},
+      {"publish gyro 500", 2, "'500' needs a unit: us, ms or s", "500ms"},
       {"publish gyro fast", 2, "not a period", "500ms"},
-      {"publish gyro 1s 2s", 3, "'2s' is too much", "publish TOPIC"},
+      {"publish gyro 1s 2s", 3, "unexpected argument '2s'", "usage: publish TOPIC"},
       {"publish gyro 1s --priority top", 4, "'top' is not a priority", "urgent, high, medium or low"},
-      {"publish gyro --priority", 2, "lacks its value", "urgent"},
+      {"publish gyro 1s --priority=top", 3, "'top' is not a priority", "urgent, high, medium or low"},
+      {"publish gyro --priority", 2, "missing value for --priority", "write --priority high"},
       {"publish gyro --for 1s", 3, "drive only", ""},
-      {"publish gyro --wat", 2, "unknown option '--wat'", ""},
-      {"once", 1, "something is missing", "once TOPIC"},
+      {"publish gyro --wat", 2, "unknown option '--wat'", "one of: --priority, --for"},
+      {"publish gyro --priorty=low", 2, "unknown option '--priorty'", "did you mean '--priority'?"},
+      {"once", 1, "missing TOPIC", "usage: once TOPIC"},
       {"stop gyr", 1, "no topic 'gyr'", "gyro"},
-      {"led", 1, "something is missing", "led N|all"},
+      {"led", 1, "missing N|all", "usage: led N|all COLOUR|off"},
+      {"led 1", 2, "missing COLOUR|off", "usage: led N|all COLOUR|off"},
       {"led 0 red", 1, "no LED '0'", "1 to 8"},
       {"led 9 red", 1, "no LED '9'", "1 to 8"},
       {"led 1 reddish", 2, "not a colour", "#643278"},
@@ -125,24 +157,28 @@ TEST_CASE("what is wrong is said of the word where it stands") {
       {"led 1 1,2,3,4", 2, "not a colour", ""},
       {"led 1 #12345", 2, "not a colour", ""},
       {"led 1 #12345G", 2, "not a colour", ""},
-      {"drive", 1, "something is missing", "drive X"},
+      {"drive", 1, "missing X|stop", "usage: drive X|stop [Z]"},
+      {"drive 1 2 3", 3, "unexpected argument '3'", "usage: drive X|stop [Z]"},
       {"drive fast", 1, "'fast' is not a number", "0.05m/s"},
       {"drive 5cm", 1, "another unit", "m/s"},
       {"drive 1.5", 1, "no unit", ""},
       {"drive 99999999999", 1, "out of range", ""},
       {"drive 99999km/s", 1, "out of range", ""},
-      {"drive stop 5", 0, "stands alone", ""},
-      {"drive 1cm/s --for 0s", 3, "not a time above zero", "--for 2s"},
-      {"drive 1cm/s --for ever", 3, "not a time above zero", "--for 2s"},
-      {"set motors", 2, "something is missing", "FIELD=VALUE"},
+      {"drive stop 5", 0, "drive stop takes no velocity", "usage: drive stop"},
+      {"drive stop --for 2s", 0, "no --for", "usage: drive stop"},
+      {"--for 2s drive stop", 2, "no --for", "usage: drive stop"},
+      {"drive 1cm/s --for 0s", 3, "not a time above zero", "write 2s"},
+      {"drive 1cm/s --for ever", 3, "not a time above zero", "write 2s"},
+      {"set motors", 2, "missing FIELD=VALUE", "usage: set ACTUATOR FIELD=VALUE ..."},
       {"set motors y=1", 2, "no field 'y'", "x"},
-      {"set motors x", 2, "not of the form FIELD=VALUE", ""},
+      {"set motors x", 2, "not of the form FIELD=VALUE", "x=0"},
+      {"set led_1 gren", 2, "no field 'gren'", "did you mean 'green'?"},
       {"set motors x=1 x=2", 3, "given twice", ""},
       {"set motors x=", 2, "is not a number", "x"},
       {"set led_1 red=256", 2, "out of range", ""},
       {"set led_1 red=-1", 2, "out of range", ""},
       {"set led_1 red=1m", 2, "has a unit", ""},
-      {"send", 1, "something is missing", "send FRAME"},
+      {"send", 1, "missing FRAME", "usage: send FRAME"},
       {"send 205", 1, "'205'", "205#01840302"},
       {"send 205#0", 1, "'205#0'", "205#01840302"},
       {"send 20#00", 1, "identifier", ""},
@@ -166,9 +202,9 @@ TEST_CASE("a robot without motors and lights has neither drive nor led, but set 
   const std::string_view drive[] = {"drive", "5cm/s"};
   const std::string_view led[] = {"led", "1", "red"};
   const std::string_view send[] = {"send", "123#"};
-  CHECK_THAT(parser.parse(drive).error.what, Catch::Contains("nothing to drive"));
-  CHECK_THAT(parser.parse(led).error.what, Catch::Contains("no lights"));
-  CHECK(parser.parse(send).ok());
+  CHECK_THAT(parser.parse_line(drive).error.what, Catch::Contains("nothing to drive"));
+  CHECK_THAT(parser.parse_line(led).error.what, Catch::Contains("no lights"));
+  CHECK(parser.parse_line(send).ok());
 }
 
 }  // namespace tool_words_command_test

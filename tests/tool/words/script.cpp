@@ -47,7 +47,7 @@ TEST_CASE("every error is told, with line and column") {
     const char* what;
   };
   const Row rows[] = {{1, 12, "no topic 'gyr'"},           {2, 1, "'soon' is not a time"},
-                      {3, 9, "something is missing"},      {4, 3, "no command"},
+                      {3, 9, "missing COLOUR|off"},        {4, 3, "no command"},
                       {5, 1, "'-1s' is not a time"},       {6, 24, "not a time above zero"},
                       {8, 1, "lies before the step at 5s"}};
   REQUIRE(script.errors.size() == std::size(rows));

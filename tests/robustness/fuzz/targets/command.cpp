@@ -14,7 +14,7 @@ using namespace ocm;
 namespace {
 
 void check(std::span<const std::string_view> words, const protocol::Catalogue& catalogue) {
-  const auto command = cli::words::CommandParser{catalogue}.parse(words);
+  const auto command = cli::words::CommandParser{catalogue}.parse_line(words);
   if (!command) {
     fuzz::expect(command.error.word <= words.size(), "an error lies at a word or behind the last");
     fuzz::expect(!command.error.what.empty() && !command.error.remedy.empty(), "an error has words");

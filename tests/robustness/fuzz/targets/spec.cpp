@@ -39,7 +39,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     const bool sensor = topic.kind == protocol::Kind::sensor;
     const std::string_view ask[] = {sensor ? "publish" : "stop", topic.name};
-    fuzz::expect(parser.parse(ask).ok(), "every topic can be commanded");
+    fuzz::expect(parser.parse(ask, {}).ok(), "every topic can be commanded");
   }
   fuzz::expect(!parser.stop_all(protocol::Priority::urgent).frames.empty() || catalogue.topics.empty() ||
                    catalogue.topics[0].kind == protocol::Kind::actuator,

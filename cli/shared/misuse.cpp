@@ -1,0 +1,111 @@
+#include "cli/shared/misuse.hpp"
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "cli/shared/messages.hpp"
+#include "cli/shared/usage.hpp"
+#include "cli/words/suggestion.hpp"
+
+namespace ocm::cli {
+namespace {
+
+Verb innermost(Verb verb) {
+  while (const Verb inner = verb.called()) verb = inner;
+  return verb;
+}
+
+/// "did you mean 'listen'?", or where the known ones are listed.
+std::string remedy_for(const std::string& typed, const std::vector<std::string>& known,
+                       const std::string& listed) {
+  const std::string_view near =
+      words::nearest(typed, std::vector<std::string_view>(known.begin(), known.end()));
+  return near.empty() ? listed : fmt::format("did you mean '{}'?", near);
+}
+
+/// Those of the verb, and of those that it is a verb of.
+std::vector<std::string> options_of(Verb verb) {
+  std::vector<std::string> names;
+  for (; verb; verb = verb.parent())
+    for (const Option& option : verb.options())
+      for (const std::string& name : option.long_names())
+        if (!option.is_hidden() && !option.is_former("--" + name)) names.push_back("--" + name);
+  return names;
+}
+
+std::string help_of(Verb program, Verb verb) {
+  const std::string path = verb.path();
+  return fmt::format("{}{}{} --help", program.name(), path.empty() ? "" : " ", path);
+}
+
+Misuse unknown_word(Verb program, Verb verb, const std::string& word) {
+  if (word.size() > 1 && word.front() == '-') {
+    const std::string name = word.substr(0, word.find('='));
+    return {
+        fmt::format("unknown option '{}'", name),
+        remedy_for(name, options_of(verb), fmt::format("`{}` lists the options", help_of(program, verb)))};
+  }
+  if (verb.verbs().empty()) return {fmt::format("unexpected argument '{}'", word), "usage: " + usage(verb)};
+  std::vector<std::string> known;
+  for (const Verb each : verb.verbs_for_all()) known.push_back(each.name());
+  return {fmt::format("unknown verb '{}'", word),
+          remedy_for(word, known, fmt::format("`{}` lists the verbs", help_of(program, verb)))};
+}
+
+/// Options that exclude each other, or of which one needs another.
+std::optional<Misuse> conflict(Verb verb) {
+  for (const Verb group : verb.choices()) {
+    std::vector<std::string> given;
+    for (const Option& option : group.options())
+      if (option.count() != 0) given.push_back(written(option));
+    if (given.size() > 1)
+      return Misuse{fmt::format("{} and {} exclude each other", given[0], given[1]), "use one of them"};
+  }
+  for (const Option& option : verb.options()) {
+    if (option.count() == 0) continue;
+    for (const Option& other : option.excluded())
+      if (other.count() != 0)
+        return Misuse{fmt::format("{} and {} exclude each other", written(option), written(other)),
+                      "use one of them"};
+    for (const Option& other : option.needed())
+      if (other.count() == 0)
+        return Misuse{fmt::format("{} needs {}", option.name(), other.name()),
+                      fmt::format("add {}, or drop {}", other.name(), option.name())};
+  }
+  return {};
+}
+
+}  // namespace
+
+Misuse misuse_of_words(Verb program, const std::string& beginning) {
+  const Verb verb = innermost(program);
+  if (const auto words = program.left_over(); !words.empty())
+    return unknown_word(program, verb, words.front());
+  if (verb == program) return {"missing VERB", beginning};
+  for (const Option& option : verb.options())
+    if (option.is_required() && option.count() == 0)
+      return {"missing " + written(option), "usage: " + usage(verb)};
+  if (!verb.verbs().empty()) return {"missing VERB", "usage: " + usage(verb)};
+  for (Verb each = verb; each; each = each.parent())
+    if (const auto found = conflict(each)) return *found;
+  return {"these words do not go together", "usage: " + usage(verb)};
+}
+
+Misuse missing_value(Verb program, const std::string& option_name) {
+  for (Verb verb = innermost(program); verb; verb = verb.parent())
+    for (const Option& option : verb.options())
+      if (option.is_named(option_name))
+        return {"missing value for " + option_name,
+                fmt::format("usage: {} {}", option_name, value_of(option))};
+  return {"missing value for " + option_name, ""};
+}
+
+void refuse(Verb program, const Misuse& misuse) {
+  const std::string path = innermost(program).path();
+  complain({path.empty() ? misuse.what : path + ": " + misuse.what, misuse.remedy});
+}
+
+}  // namespace ocm::cli

@@ -1,0 +1,20 @@
+/// What is wrong with the words of a command line, with the known word that was probably meant.
+#pragma once
+
+#include <string>
+
+#include "cli/shared/arguments.hpp"
+
+namespace ocm::cli {
+
+/// Of a command line that was refused because of its words, not of the value of one: unknown and missing
+/// words, and options that exclude or need each other. `beginning` is the remedy if there is no verb at all.
+[[nodiscard]] Misuse misuse_of_words(Verb program, const std::string& beginning);
+
+/// Of a command line that ends, or goes on with another option, where the value of this one is expected.
+[[nodiscard]] Misuse missing_value(Verb program, const std::string& option_name);
+
+/// Prints it with the verb that was called.
+void refuse(Verb program, const Misuse& misuse);
+
+}  // namespace ocm::cli

@@ -1,0 +1,37 @@
+/// Topics as people name them: by name, by alias, and by number, as the thesis's menus do. [Thesis,
+/// figure 6.2]
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "ocm/base/text.hpp"
+#include "ocm/protocol/topic.hpp"
+
+namespace ocm::cli::words {
+
+/// "gyroscope", "gyro" or "0x08"; nullptr if there is none. A number has its 0x: a spec may name a topic "be"
+/// or "add".
+[[nodiscard]] constexpr const protocol::Topic* find_topic(const protocol::Catalogue& catalogue,
+                                                          std::string_view word) noexcept {
+  if (const auto* const named = catalogue.find(word)) return named;
+  if (!word.starts_with("0x") && !word.starts_with("0X")) return nullptr;
+  const auto id = base::parse_unsigned(word.substr(2), 16);
+  if (!id || *id > 0xFF) return nullptr;
+  return catalogue.find(protocol::TopicId{static_cast<std::uint8_t>(*id)});
+}
+
+/// The topics of one kind by name and alias, for suggestions.
+[[nodiscard]] inline std::vector<std::string_view> topic_words(const protocol::Catalogue& catalogue,
+                                                               std::optional<protocol::Kind> kind = {}) {
+  std::vector<std::string_view> words;
+  for (const auto& topic : catalogue.topics) {
+    if (kind && topic.kind != *kind) continue;
+    words.push_back(topic.name);
+    words.insert(words.end(), topic.aliases.begin(), topic.aliases.end());
+  }
+  return words;
+}
+
+}  // namespace ocm::cli::words

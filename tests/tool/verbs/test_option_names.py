@@ -1,0 +1,107 @@
+"""An option means the same in every verb, and what it was called before works for one version."""
+
+import collections
+import os
+import re
+
+from harness import Case, main
+
+OPTION = re.compile(r"  (?:-\w,)?(--[a-z-]+(?:,--[a-z-]+)*)(.*?)(?:  |$)")
+# The same thing in more than one form: a speed that may be max, a bit rate beyond CAN's; robots by number and by name.
+FORMS = {"--bitrate", "--robots", "--speed"}
+LOG = "".join(f"({i / 10 + 1}) can0 608#{i:02X}\n" for i in range(20))
+
+
+class OneMeaning(Case):
+    def verbs(self):
+        for line in self.run_tool("completion", "--words", "--", "")[0].splitlines()[1:]:
+            yield [line.split("\t")[0]]
+        for inner in ("bus", "tasks", "chain", "trace"):
+            yield ["analyse", inner]
+
+    def options(self, verb):
+        """Names and the values that they take, as --help has them."""
+        text = self.run_tool(*verb, "--help")[0].split("\nExamples:")[0]
+        for match in filter(None, map(OPTION.match, text.splitlines())):
+            for name in match[1].split(","):
+                yield name, re.split(r" \(|=", match[2])[0].strip()
+
+    def test_values(self):
+        values = collections.defaultdict(lambda: collections.defaultdict(list))
+        for verb in self.verbs():
+            for name, value in self.options(verb):
+                values[name][value].append(" ".join(verb))
+        self.assertGreater(len(values), 60)
+        for name, found in values.items():
+            self.assertTrue(len(found) == 1 or name in FORMS, f"{name}: {dict(found)}")
+        for name, value in (("--from", "FORMAT"), ("--to", "FORMAT"), ("--since", "T"), ("--until", "T"), ("--listen", "T"),
+                            ("--watch", ""), ("--show", "")):
+            self.assertEqual(list(values[name]), [value], name)
+
+
+class OldNames(Case):
+    def setUp(self):
+        super().setUp()
+        self.log = os.path.join(self.folder, "a.log")
+        with open(self.log, "w", encoding="utf-8") as file:
+            file.write(LOG)
+
+    def replay(self, *arguments):
+        return self.run_tool("replay", self.log, "--dry-run", *arguments)
+
+    def test_no_help_and_no_completion_shows_them(self):
+        for verb, names in (("doctor", ["--watch"]), ("robots", ["--watch"]), ("run", ["--listen"]), ("replay", ["--from-format"])):
+            for name in names:
+                self.assertNotIn(name, self.run_tool(verb, "--help")[0])
+                self.assertNotIn(name, self.run_tool("completion", "--words", "--", verb, "--")[0].split())
+                self.assertNotIn(name, self.run_tool("man", verb)[0].replace("\\-", "-"))
+
+    def test_replay(self):
+        whole = self.replay()
+        self.assertEqual(len(whole[0].splitlines()), 20)
+        for formats in (("--from", "candump"), ("--from-format", "candump")):
+            self.assertEqual(self.replay(*formats), whole)
+        self.assertIn("no log format 'wav'", self.run_tool("replay", self.log, "--from", "wav", code=2)[1])
+        part = self.replay("--since", "1s", "--until", "1500ms")
+        self.assertEqual(len(part[0].splitlines()), 6)
+        self.assertEqual(self.replay("--from", "1s", "--until", "1500ms"), part)
+
+    def test_times_to_listen(self):
+        for verb in ("doctor", "robots"):
+            _, err = self.run_tool(verb, "--watch", "soon", code=2)
+            self.assertEqual(err, f"amiroctl: {verb}: --listen soon: not a time\n          write 500ms, 2s or 1.5s\n")
+        self.start_sim()
+        for name in ("--listen", "--watch"):
+            self.run_tool("doctor", name, "100ms")
+
+    def test_run(self):
+        script = os.path.join(self.folder, "a.script")
+        with open(script, "w", encoding="utf-8") as file:
+            file.write("0s publish gyro 100ms\n500ms stop gyro\n")
+        self.start_sim()
+        self.assertEqual(self.run_tool("run", script)[0], "")
+        for name in ("--show", "--listen"):
+            self.assertIn('"topic":"gyroscope"', self.run_tool("run", script, name)[0])
+
+    def test_config_and_environment(self):
+        """An old name that other verbs have in another meaning by now stays out of their way."""
+        config = os.path.join(self.folder, "config.toml")
+        with open(config, "w", encoding="utf-8") as file:
+            file.write('listen = "150ms"\n')
+        script = os.path.join(self.folder, "a.script")
+        with open(script, "w", encoding="utf-8") as file:
+            file.write("0s stop gyro\n")
+        self.run_tool("--config", config, "run", "--dry-run", script)
+        self.environment["AMIROCTL_LISTEN"] = "150ms"
+        self.run_tool("run", "--dry-run", script)
+        del self.environment["AMIROCTL_LISTEN"]
+        with open(config, "w", encoding="utf-8") as file:
+            file.write('[doctor]\nwatch = "soon"\n')
+        self.assertIn(f"{config}:2: watch: invalid value 'soon'", self.run_tool("--config", config, "doctor", code=2)[1])
+        with open(config, "w", encoding="utf-8") as file:
+            file.write('[run]\nlisten = "150ms"\n')
+        self.assertIn(f"{config}:2: listen: invalid value '150ms'", self.run_tool("--config", config, "run", script, code=2)[1])
+
+
+if __name__ == "__main__":
+    main(together=True)
