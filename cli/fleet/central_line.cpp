@@ -87,6 +87,30 @@ void CentralLine::flush(base::Duration limit) {
   while (port_ && now() < end && rest()) exchange();
 }
 
+bool CentralLine::halt(const std::vector<unsigned>& robots) {
+  constexpr base::Duration any_leg = 20s;
+  const auto drives = [this](unsigned index) {
+    using mapper::server::Progress;
+    const Progress progress = fleet().sender(index).progress();
+    // Without a link it stops by itself.
+    return fleet().robot(index).linked && progress != Progress::none && progress != Progress::stopped &&
+           !fleet().sender(index).standing();
+  };
+  for (const unsigned index : robots)
+    if (drives(index)) (void)server_.fleet().stop(index, now());
+  const base::Time end = now() + any_leg;
+  const int signals = interruptions();
+  const auto any = [&] { return std::any_of(robots.begin(), robots.end(), drives); };
+  while (any() && now() < end && interruptions() == signals) exchange();
+  for (const unsigned index : robots)
+    if (drives(index))
+      remark(fmt::format(
+          "{}: {} may still drive: nothing shows that it has heard the stop, which was said {} "
+          "times; its leg ends after {} cm",
+          verb_, name(index), fleet().sender(index).times_said(), mapper::server::longest_leg_cm));
+  return !any();
+}
+
 base::Time CentralLine::now() {
   return base::Time{std::chrono::steady_clock::now().time_since_epoch()};
 }

@@ -45,6 +45,10 @@ class CentralLine {
   bool run(std::optional<base::Duration> limit, const std::function<bool()>& done);
   /// As `run`; a signal ends the command.
   bool wait(base::Duration limit, const std::function<bool()>& done);
+  /// Stops those of these robots that may drive because of what this program has said, and waits, signal or
+  /// not, until each has said that it stands. A second signal ends that, and so do 20 seconds, in which any
+  /// leg has ended; then the robots of which it is not known are named on stderr. Whether it is known of all.
+  bool halt(const std::vector<unsigned>& robots);
   /// Until everything that was wished is said, signal or not.
   void flush(base::Duration limit);
 

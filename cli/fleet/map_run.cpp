@@ -120,8 +120,8 @@ End MapRun::explore(std::optional<base::Duration> limit) {
   try {
     end_ = drive(limit);
     took_ = CentralLine::now() - begin;
-    if (!options_.watch) halt();
-  } catch (const Exit&) {  // which has said that the line is gone
+    if (!options_.watch) (void)line_.halt(robots_);  // now, for a picture takes its time
+  } catch (const Exit&) {                            // which has said that the line is gone
     took_ = CentralLine::now() - begin;
     end_ = End::central_gone;
   }
@@ -202,13 +202,6 @@ End MapRun::drive(std::optional<base::Duration> limit) {
   if (interrupted() != 0) return End::interrupted;
   if (nobody_left()) return End::robots_lost;
   return done ? End::known : End::time_over;
-}
-
-void MapRun::halt() {
-  for (const unsigned index : robots_)
-    if (!lost(index) && !line_.fleet().robot(index).idle)
-      (void)line_.server().fleet().go(index, {0, 0}, CentralLine::now());
-  line_.flush(1s);
 }
 
 void MapRun::tell_lost() {

@@ -54,8 +54,6 @@ class MapRun {
 
  private:
   [[nodiscard]] End drive(std::optional<base::Duration> limit);
-  /// Now, for a picture takes its time.
-  void halt();
   void tell_lost();
   [[nodiscard]] bool lost(unsigned index) const { return line_.fleet().robot(index).lost; }
   [[nodiscard]] bool nobody_left() const;

@@ -10,8 +10,10 @@
 namespace ocm::cli {
 namespace {
 volatile std::sig_atomic_t noted_signal = 0;
+volatile std::sig_atomic_t noted_signals = 0;
 void note(int signal) {
   noted_signal = signal;
+  noted_signals = noted_signals + 1;
 }
 
 void catch_signal(int signal) {
@@ -50,6 +52,10 @@ void catch_hangups() {
 
 int interrupted() noexcept {
   return noted_signal;
+}
+
+int interruptions() noexcept {
+  return noted_signals;
 }
 
 int exit_code_after_interrupt(int code) noexcept {

@@ -11,8 +11,10 @@ void catch_interrupts();
 /// SIGHUP (the terminal is closed) and SIGQUIT too, for a verb that has something to finish. A signal that
 /// is ignored (nohup) stays so.
 void catch_hangups();
-/// The signal that came, or 0.
+/// The signal that came last, or 0.
 [[nodiscard]] int interrupted() noexcept;
+/// How many came: what still has to be finished after the first, a second one cuts short.
+[[nodiscard]] int interruptions() noexcept;
 /// 128 + signal when one came, else `code`.
 [[nodiscard]] int exit_code_after_interrupt(int code) noexcept;
 

@@ -1,6 +1,5 @@
-/// One straight piece: turn, then drive; and where the robot came to.
+/// Turn, then drive straight on; whether the robot heard it, and where it came to.
 #include <chrono>
-#include <cmath>
 #include <cstdlib>
 #include <memory>
 #include <string>
@@ -8,9 +7,10 @@
 
 #include <fmt/format.h>
 
-#include "ocm/cognitive/explorer.hpp"
+#include "ocm/client/diagnosis.hpp"
 
 #include "cli/fleet/central_line.hpp"
+#include "cli/fleet/pausing.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
@@ -21,6 +21,8 @@ namespace {
 
 using namespace std::chrono_literals;
 using cognitive::Robot;
+using mapper::server::Progress;
+using mapper::server::Sender;
 
 struct GotoOptions {
   fleet::LineOptions line;
@@ -51,60 +53,82 @@ std::string place(const mapper::link::Update& at) {
   return fmt::format("x {} cm, y {} cm, heading {} deg", at.x, at.y, at.heading);
 }
 
-/// Says where it came to; whether that is where it was sent.
-bool arrived(const std::string& name, const Robot& robot, const std::optional<mapper::link::Update>& before,
-             const mapper::link::SetPoint& wanted) {
-  if (!robot.update || !before) {
-    fmt::print("{}: idle; it does not say where\n", name);
-    return true;
-  }
-  fmt::print("{}: {}\n", name, place(*robot.update));
-  const auto target = cognitive::end_of(cognitive::pose_of(*before), wanted);
-  const float off_cm =
-      100 * cognitive::distance_m(target, cognitive::place(cognitive::pose_of(*robot.update)));
-  const float off_deg = static_cast<float>(
-      std::abs(std::remainder(robot.update->heading - before->heading - wanted.angle, 360.0)));
-  constexpr float near_cm = 8, near_deg = 8;
-  if (off_cm <= near_cm && (off_deg <= near_deg || wanted.angle == 0)) return true;
-  remark(
-      fmt::format("goto: {} stopped {:.0f} cm and {:.0f} deg away from there: is something in front of it?",
-                  name, off_cm, off_deg));
-  return false;
+/// Says where it came to, and why that is elsewhere.
+int report(const std::string& name, const Robot& robot, const Sender& sender) {
+  if (robot.update) fmt::print("{}: {}\n", name, place(*robot.update));
+  if (sender.progress() != Progress::ended) return exit_success;
+  remark(fmt::format("goto: {} heard it, but stopped {:.0f} cm and {:.0f} deg away from there{}", name,
+                     sender.off_cm(), sender.off_deg(),
+                     sender.blocked() ? ": is something in front of it?" : ""));
+  return exit_failure;
+}
+
+/// It was stopped, as far as could be, and did not come to an end by itself.
+[[noreturn]] void give_up(const GotoOptions& options, const std::string& name, const fleet::CentralLine& line,
+                          unsigned index, Progress progress, unsigned times_said, bool halted) {
+  const Robot& robot = line.fleet().robot(index);
+  const std::string_view end = halted ? "it was stopped" : "it may still drive";
+  if (robot.lost)
+    fail({fmt::format("goto: {} is lost: {}", name,
+                      robot.linked ? fmt::format("it has said nothing for its deadline; {}", end)
+                                   : "its link is gone"),
+          "a robot without a link stops; it can be connected again once it is near enough"});
+  if (progress == Progress::none)
+    fail({fmt::format("goto: the link to {} was gone for a while; a robot without a link stops", name),
+          "say it again"});
+  if (progress == Progress::heard)
+    fail({fmt::format("goto: {} has not arrived after {}; {}", name, words::to_text(options.timeout), end),
+          "give it more time: --timeout 120s"});
+  if (progress == Progress::stopping)
+    fail({fmt::format("goto: nothing shows within {} that {} has heard the stop", words::to_text(options.timeout), name),
+          "bring the central nearer, or switch the robot off"});
+  if (!robot.update)
+    fail({fmt::format("goto: {} does not say where it is, so it was not sent anywhere", name),
+          "switch it off and on: its program may hang"});
+  fail({fmt::format("goto: {} has not heard it after {} (said {}; {} % of its sentences come whole); {}",
+                    name, options.timeout, client::count(times_said, "time*"),
+                    line.fleet().quality_per_mille(index) / 10, end),
+        "bring the central nearer, or give it more time: --timeout 120s"});
 }
 
 void run(const GotoOptions& options, int& exit_code) {
   const mapper::link::SetPoint wanted{
       number("ANGLE", options.angle, "deg", mapper::link::SetPoint::fields[0]),
       number("DISTANCE", options.distance, "cm", mapper::link::SetPoint::fields[1])};
+  constexpr int longest = mapper::server::longest_leg_cm;
+  if (options.no_wait && std::abs(wanted.distance) > longest)
+    fail(
+        {fmt::format("goto: --no-wait with {} cm: nothing would be there to stop the robot", wanted.distance),
+         fmt::format("drop --no-wait, or drive at most {} cm", longest)},
+        exit_usage);
   fleet::CentralLine line{"goto", options.line};
   const unsigned index = line.connect_one(options.robot);
   const std::string name = line.name(index);
-  const auto& robot = line.fleet().robot(index);
-  // A paused robot does not say where it is, but drives.
-  (void)line.wait(2s, [&] { return robot.update.has_value() || robot.paused; });
-  const auto before = robot.update;
-  if (!line.server().fleet().go(index, wanted, fleet::CentralLine::now()))
-    fail({"goto: the central's queue is full", "try again"});
-  if (options.no_wait) return line.flush(2s);
-  const bool done = line.run(options.timeout, [&] { return robot.idle || robot.lost; });
-  if (interrupted() != 0) {
-    (void)line.server().fleet().go(index, {0, 0}, fleet::CentralLine::now());
-    throw Exit{exit_code_after_interrupt(exit_failure)};
+  const Robot& robot = line.fleet().robot(index);
+  const Sender& sender = line.fleet().sender(index);
+  const bool paused = fleet::seems_paused(line, index);
+  (void)line.server().fleet().go(index, wanted, fleet::CentralLine::now());
+  (void)line.run(options.timeout, [&] {
+    if (options.no_wait && sender.progress() == Progress::heard) return true;
+    return is_final(sender.progress()) || robot.lost;
+  });
+  const Progress progress = sender.progress();
+  const unsigned times_said = sender.times_said();
+  const bool left_to_drive = options.no_wait && progress == Progress::heard && interrupted() == 0;
+  const bool arrived = progress != Progress::none && is_final(progress);
+  const bool halted = arrived || left_to_drive || line.halt({index});
+  if (paused && !arrived)  // no time is left to see that it obeys
+    for (int times = 0; times < 3; ++times)
+      (void)line.server().fleet().pause(index, fleet::CentralLine::now());
+  if (interrupted() != 0) throw Exit{exit_code_after_interrupt(exit_failure)};
+  if (!arrived && !left_to_drive) give_up(options, name, line, index, progress, times_said, halted);
+  if (arrived) {
+    // The update behind the idle has the place.
+    (void)line.wait(2s, [&] { return robot.located || robot.lost; });
+    exit_code = report(name, robot, sender);
   }
-  if (robot.lost)
-    fail({fmt::format("goto: {} is lost: {}", name,
-                      robot.linked ? "it has said nothing for its deadline" : "its link is gone"),
-          "a robot without a link stops; it can be connected again once it is near enough"});
-  if (!done) {
-    (void)line.server().fleet().go(index, {0, 0}, fleet::CentralLine::now());
-    fail({fmt::format("goto: {} has not arrived after {}; it is told to stop", name,
-                      words::to_text(options.timeout)),
-          "give it more time: --timeout 120s"});
-  }
-  // The update behind the idle has the place.
-  const base::Time then = robot.updated;
-  (void)line.wait(500ms, [&] { return robot.updated != then || robot.paused; });
-  if (!arrived(name, robot, before, wanted)) exit_code = exit_failure;
+  if (paused && !fleet::pause_until_seen(line, index, true))
+    remark(fmt::format("goto: {} was paused, and sends updates now", name));
 }
 
 }  // namespace
@@ -114,15 +138,15 @@ void add_goto(Verb app, Session&, int& exit_code) {
                            "  amiroctl goto AVR 90 50          to the left, then 50 cm\n"
                            "  amiroctl goto AVR -45 0          turn to the right\n"
                            "  amiroctl goto AVR 0 0            stop\n"
-                           "  amiroctl goto AVR 0 100 --no-wait");
+                           "  amiroctl goto AVR 0 50 --no-wait");
   const auto options = std::make_shared<GotoOptions>();
   verb.add_option("robot", options->robot, "its name, address or index").required().type_name("ROBOT");
   verb.add_option("angle", options->angle, "degrees to the left of where it looks now")
       .required()
       .type_name("ANGLE");
   verb.add_option("distance", options->distance, "cm, then").required().type_name("DISTANCE");
-  verb.add_flag("--no-wait", options->no_wait, "do not wait until it is there");
-  add_duration(verb, "--timeout", options->timeout, "then it is told to stop");
+  verb.add_flag("--no-wait", options->no_wait, "wait until it has heard, not until it is there");
+  add_duration(verb, "--timeout", options->timeout, "then it is stopped");
   fleet::add_line_options(verb, options->line);
   verb.callback([options, &exit_code] { run(*options, exit_code); });
 }

@@ -1,5 +1,4 @@
 /// Mappers hold their tower and their updates, and go on again.
-#include <chrono>
 #include <memory>
 #include <string>
 #include <vector>
@@ -7,40 +6,22 @@
 #include <fmt/format.h>
 
 #include "cli/fleet/central_line.hpp"
+#include "cli/fleet/pausing.hpp"
 #include "cli/verbs/verbs.hpp"
 
 namespace ocm::cli {
 namespace {
-
-using namespace std::chrono_literals;
 
 struct PauseOptions {
   fleet::LineOptions line;
   std::vector<std::string> robots;
 };
 
-/// Said, and seen to be obeyed: a paused robot sends no updates. What was on its way may still come.
-bool obeys(fleet::CentralLine& line, unsigned index, bool paused) {
-  constexpr base::Duration on_its_way = 500ms, watched = 1500ms;
-  const auto& robot = line.fleet().robot(index);
-  for (int attempt = 0; attempt < 2; ++attempt) {
-    auto& said = line.server().fleet();
-    (void)(paused ? said.pause(index, fleet::CentralLine::now())
-                  : said.unpause(index, fleet::CentralLine::now()));
-    (void)line.wait(on_its_way, [] { return false; });
-    const base::Time then = robot.updated;
-    const bool updates =
-        line.wait(watched, [&] { return robot.updated != then || robot.lost; }) && !robot.lost;
-    if (updates != paused && !robot.lost) return true;
-  }
-  return false;
-}
-
 void run(std::string_view verb, const PauseOptions& options, bool paused, int& exit_code) {
   fleet::CentralLine line{verb, options.line};
   for (const unsigned index : line.connect(options.robots)) {
     const std::string name = line.name(index);
-    if (obeys(line, index, paused)) {
+    if (fleet::pause_until_seen(line, index, paused)) {
       fmt::print("{}: {}\n", name, paused ? "paused" : "goes on");
       continue;
     }

@@ -1,6 +1,7 @@
 /// The robots behind one central: what each of them is, where it is, and how good its link is. Takes the
-/// stream of packets apart, confirms handshakes, and says when a robot should be called back before its link
-/// is gone, and when it is. [Thesis 2, 4.5, 6.3, 15.3]
+/// stream of packets apart, confirms handshakes, says set points and stops until they are heard
+/// (mapper/server/sender.hpp), and says when a robot should be called back before its link is gone, and when
+/// it is. [Thesis 2, 4.5, 6.3, 15.3]
 ///
 /// Bytes in, words for robots out, time handed in; no I/O. O(1) a byte. What belongs to nobody, and what came
 /// when it could not be meant, is counted. Host only.
@@ -22,6 +23,7 @@
 #include "ocm/cognitive/map.hpp"
 #include "ocm/mapper/link/demultiplexer.hpp"
 #include "ocm/mapper/link/format.hpp"
+#include "ocm/mapper/server/sender.hpp"
 
 namespace ocm::cognitive {
 
@@ -33,7 +35,7 @@ struct FleetOptions {
   float range_m = std::numeric_limits<float>::infinity();  ///< of its radio
   float near_range = 0.9F;                                 ///< of the range: to be called back
   base::Duration deadline = std::chrono::seconds{5};       ///< silence of a robot that told none
-  base::Duration settle = std::chrono::milliseconds{300};  ///< an idle so soon is of before the set point
+  mapper::server::SenderOptions sender{};                  ///< how set points and stops are said
 };
 
 /// Why a robot should come back.
@@ -44,7 +46,8 @@ struct Robot {
   std::string name{};
   bool linked = false;     ///< the central says so
   bool confirmed = false;  ///< its handshake came, and was answered
-  bool idle = false;       ///< at its set point
+  bool idle = false;       ///< it stands, and nothing that was asked of it is left
+  bool located = false;    ///< and `update` is of since it stands
   bool paused = false;
   bool lost = false;  ///< silent for its deadline, or without a link
   std::optional<mapper::link::Handshake> handshake{};
@@ -70,6 +73,7 @@ struct FleetCounters {
   std::uint32_t early_idles = 0;  ///< right behind a set point: meant the one before
   std::uint32_t lost = 0;         ///< times that a robot was
   std::uint32_t calls = 0;        ///< times that one should have come back
+  std::uint32_t words = 0;        ///< set points and stops said, each time
 };
 
 /// Words for a robot.
@@ -82,14 +86,20 @@ class Fleet {
  public:
   static constexpr std::size_t most_robots = 128;  ///< on the list of a central
 
-  explicit Fleet(const FleetOptions& options = {}) : options_(options) {}
+  explicit Fleet(const FleetOptions& options = {}) : options_(options) {
+    for (std::size_t i = 0; i < most_robots; ++i)
+      mouths_[i].sender = mapper::server::Sender{options.sender, static_cast<std::uint32_t>(i)};
+  }
 
   /// The central has a link to this robot.
   void linked(std::size_t index, std::string_view name, base::Time now) {
     if (index >= most_robots) return;
     Robot& robot = robots_[index];
     if (robot.name != name) robot = Robot{.name = std::string{name}, .origin = robot.origin};
-    if (!robot.linked) ears_.restart(index);
+    if (!robot.linked) {
+      ears_.restart(index);
+      mouths_[index].sender.restart();
+    }
     robot.linked = true;
     robot.lost = false;
     robot.heard = now;
@@ -99,6 +109,8 @@ class Fleet {
   void unlinked(std::size_t index) {
     if (index >= most_robots || !robots_[index].linked) return;
     robots_[index].linked = false;
+    mouths_[index].sender.restart();
+    mouths_[index].confirm_at = base::never;
     lose(robots_[index]);
   }
   /// Where the frame of a robot's poses is in the world: where it stood when it began.
@@ -119,22 +131,33 @@ class Fleet {
   void feed(std::string_view bytes, base::Time now) {
     feed(bytes, now, [](std::size_t, mapper::link::Kind) {});
   }
-  /// Who is silent for too long is lost.
+  /// Who is silent for too long is lost; what was not heard is said again, to a silent robot too. Each 50 ms.
   void expire(base::Time now) {
-    for (Robot& robot : robots_)
-      if (robot.linked && !robot.lost && now - robot.heard > deadline_of(robot)) lose(robot);
+    for (std::size_t i = 0; i < most_robots; ++i) {
+      Robot& robot = robots_[i];
+      if (!robot.linked) continue;
+      if (!robot.lost && now - robot.heard > deadline_of(robot)) lose(robot);
+      speak(i, now);
+    }
   }
 
   // --- what is to be said ---
 
-  /// False when a field is out of its range: then nothing is said.
+  /// From where the robot stands, or will have been stopped; said until it is heard, in legs of at most
+  /// `mapper::server::longest_leg_cm`. {0, 0} is a stop. False when a field is out of its range: then nothing
+  /// is said.
   bool go(std::size_t index, const mapper::link::SetPoint& set_point, base::Time now) {
-    const auto words = mapper::link::write(set_point);
-    if (index >= most_robots || !words) return false;
-    Robot& robot = robots_[index];
-    robot.idle = false;
-    robot.told = now;
-    return say(index, words->view());
+    if (index >= most_robots || !mapper::link::write(set_point)) return false;
+    mouths_[index].sender.go(set_point, now);
+    robots_[index].idle = false;
+    speak(index, now);
+    return true;
+  }
+  /// Said until an idle proves that the robot stands.
+  bool stop(std::size_t index, base::Time now) { return go(index, {0, 0}, now); }
+  /// What has become of the last of them.
+  [[nodiscard]] const mapper::server::Sender& sender(std::size_t index) const {
+    return mouths_[index].sender;
   }
   bool pause(std::size_t index, base::Time now) { return hold(index, true, now); }
   bool unpause(std::size_t index, base::Time now) { return hold(index, false, now); }
@@ -144,6 +167,12 @@ class Fleet {
     Saying saying = std::move(sayings_.front());
     sayings_.pop_front();
     return saying;
+  }
+  /// What was taken for this robot has gone out, or never will. Once for each saying, in their order.
+  void out(std::size_t index, base::Time now) {
+    if (index >= most_robots) return;
+    Mouth& mouth = mouths_[index];
+    if (mouth.out != mouth.queued && ++mouth.out == mouth.words) mouth.sender.out(now);
   }
 
   // --- what is known ---
@@ -166,8 +195,47 @@ class Fleet {
   [[nodiscard]] const FleetOptions& options() const noexcept { return options_; }
 
  private:
+  /// What goes to one robot: of `queued` sayings so many are `out`; number `words` is the sender's.
+  struct Mouth {
+    mapper::server::Sender sender{};
+    std::uint32_t queued = 0;
+    std::uint32_t out = 0;
+    std::uint32_t words = 0;
+    base::Time confirm_at = base::never;  ///< once more: no update, no idle has shown that it was heard
+  };
+
+  /// Robots that share the radio do not keep step.
+  [[nodiscard]] static base::Duration confirm_again(std::size_t index) noexcept {
+    return std::chrono::milliseconds{500 + 20 * (index % 8)};
+  }
+  /// What the sender has to say, now that something was heard, or time has passed.
+  void speak(std::size_t index, base::Time now) {
+    using mapper::link::Kind;
+    Mouth& mouth = mouths_[index];
+    Robot& robot = robots_[index];
+    if (now >= mouth.confirm_at) {
+      mouth.confirm_at = now + confirm_again(index);
+      (void)say(index, mapper::link::write(Kind::confirm)->view());
+    }
+    const bool busy = !is_final(mouth.sender.progress());
+    const auto word = mouth.sender.next(now);
+    if (word.kind == Kind::set_point) {
+      ++counters_.words;
+      robot.told = now;
+      (void)say(index, mapper::link::write(word.set_point)->view());
+    }
+    if (word.kind == Kind::unpause) {
+      robot.paused = false;
+      (void)say(index, mapper::link::write(Kind::unpause)->view());
+    }
+    if (word.kind != Kind::none) mouth.words = mouth.queued;
+    if (busy && is_final(mouth.sender.progress())) robot.idle = mouth.sender.standing();
+    if (!busy && mouth.sender.standing()) robot.idle = true;
+    robot.located = robot.idle && mouth.sender.placed();
+  }
   bool say(std::size_t index, std::string_view words) {
     if (index >= most_robots) return false;
+    ++mouths_[index].queued;
     sayings_.push_back({index, std::string{words}});
     return true;
   }
@@ -175,6 +243,7 @@ class Fleet {
     if (index >= most_robots) return false;
     robots_[index].paused = paused;
     robots_[index].told = now;
+    mouths_[index].sender.disturbed(now);
     return say(index,
                mapper::link::write(paused ? mapper::link::Kind::pause : mapper::link::Kind::unpause)->view());
   }
@@ -189,11 +258,13 @@ class Fleet {
     Robot& robot = robots_[index];
     robot.heard = now;
     robot.last = kind;
+    if (kind == mapper::link::Kind::update || kind == mapper::link::Kind::idle)
+      mouths_[index].confirm_at = base::never;
     robot.lost = false;
     robot.linked = true;  // whoever speaks has a link
     switch (kind) {
       case mapper::link::Kind::handshake:
-        greet(index, robot);
+        greet(index, robot, now);
         break;
       case mapper::link::Kind::update:
         update(index, robot, now);
@@ -201,11 +272,7 @@ class Fleet {
       case mapper::link::Kind::idle:
         ++counters_.idles;
         robot.confirmed = true;
-        if (now - robot.told < options_.settle && robot.told != base::Time{}) {
-          ++counters_.early_idles;
-          break;
-        }
-        robot.idle = true;
+        if (!mouths_[index].sender.hear_idle(now)) ++counters_.early_idles;
         break;
       case mapper::link::Kind::pong:
         ++counters_.pongs;
@@ -214,9 +281,11 @@ class Fleet {
         break;
     }
     judge(index, robot);
+    speak(index, now);
   }
-  /// It is said again each second until the robot hears the answer.
-  void greet(std::size_t index, Robot& robot) {
+  /// It is said again each second until the robot hears the answer, which is repeated, too: a handshake is
+  /// two packets, and comes whole less often than the answer.
+  void greet(std::size_t index, Robot& robot, base::Time now) {
     ++counters_.handshakes;
     robot.handshake = ears_.ear(index).sentence().as<mapper::link::Handshake>().value;
     robot.origin = robot.pose();  // its pose begins at 0 again, where it stands
@@ -225,6 +294,8 @@ class Fleet {
     robot.idle = true;  // it waits for a set point
     robot.paused = false;
     robot.told = {};
+    mouths_[index].sender.restart();
+    mouths_[index].confirm_at = now + confirm_again(index);
     (void)say(index, mapper::link::answer(*robot.handshake, options_.packed).view());
   }
   void update(std::size_t index, Robot& robot, base::Time now) {
@@ -232,6 +303,7 @@ class Fleet {
     robot.confirmed = true;
     robot.update = ears_.ear(index).sentence().as<mapper::link::Update>().value;
     robot.updated = now;
+    mouths_[index].sender.hear_update(*robot.update, now);
     // Paused robots send none: it was not heard.
     constexpr base::Duration in_flight = std::chrono::seconds{1};
     if (robot.paused && now - robot.told > in_flight) robot.paused = false;
@@ -253,6 +325,7 @@ class Fleet {
   FleetOptions options_;
   mapper::link::Demultiplexer<most_robots> ears_;
   std::array<Robot, most_robots> robots_{};
+  std::array<Mouth, most_robots> mouths_{};
   std::deque<Saying> sayings_;
   FleetCounters counters_{};
 };

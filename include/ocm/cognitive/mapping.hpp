@@ -61,7 +61,10 @@ class Mapping {
       }
       const bool called = scout.call_back && !track.called;
       track.called = scout.call_back;
-      if (!called && (!fleet_->robot(scout.robot).idle || now < track.ask_at)) continue;
+      const Robot& robot = fleet_->robot(scout.robot);
+      // In the middle of a piece, too: stopped first, for it is sent from where it stands.
+      if (called && !robot.idle) (void)fleet_->stop(scout.robot, now);
+      if (!robot.idle || !robot.located || (!called && now < track.ask_at)) continue;
       track.order = explorer_.next(scout.robot, scouts, map_, now);
       obey(scout, track, now);
     }

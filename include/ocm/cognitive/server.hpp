@@ -33,11 +33,14 @@ class Server {
   void feed(std::string_view bytes, base::Time now) {
     feed(bytes, now, [](std::size_t, mapper::link::Kind) {});
   }
-  /// Time-outs, and what is to be said. At `deadline()`, and after each wish.
+  /// Time-outs, and what is to be said, once or again. At `deadline()`, after each wish, and each 50 ms.
   void expire(base::Time now) {
     fleet_.expire(now);
     while (auto saying = fleet_.take())
-      if (!client_.say(static_cast<unsigned>(saying->robot), std::move(saying->words))) ++unsaid_;
+      if (!client_.say(static_cast<unsigned>(saying->robot), std::move(saying->words))) {
+        ++unsaid_;
+        fleet_.out(saying->robot, now);  // as if the air had lost it
+      }
     client_.expire(now);
     take_events(now);
   }
@@ -67,7 +70,9 @@ class Server {
         fleet_.linked(event->index, peer != nullptr ? std::string_view{peer->name} : std::string_view{"?"},
                       now);
       if (event->kind == mapper::server::CentralEvent::Kind::lost) fleet_.unlinked(event->index);
-      if (event->kind != mapper::server::CentralEvent::Kind::said) events_.push_back(std::move(*event));
+      const bool said = event->kind == mapper::server::CentralEvent::Kind::said;
+      if (said || event->saying) fleet_.out(event->index, now);
+      if (!said) events_.push_back(std::move(*event));
     }
   }
 

@@ -20,6 +20,7 @@ class Robot:
         self.linked = self.confirmed = self.paused = False
         self.reachable = True
         self.deaf = False        # hears nothing
+        self.loses = 0           # so many of its next set points
         self.silent = False      # says nothing
         self.mumbles = False     # says that it is idle, but never where it is
         self.blocked_cm = None   # stops after so many cm
@@ -33,6 +34,9 @@ class Robot:
     def hear(self, line, now):
         self.heard.append(line)
         if self.deaf:
+            return
+        if line.startswith("{U,") and self.loses:
+            self.loses -= 1
             return
         if line == "{S,CON}":
             self.confirmed = True
@@ -48,7 +52,7 @@ class Robot:
             way = min(distance / 100, self.ray(self.heading) - 0.12)
             self.x += way * math.cos(self.heading)
             self.y += way * math.sin(self.heading)
-            self.busy_until = now + max(0.0, distance / self.speed) + 0.4
+            self.busy_until = now + (max(0.0, distance / self.speed) + 0.4 if line != "{U,0,0}" else 0.0)
             self.idled = 0.0
 
     def ray(self, angle):

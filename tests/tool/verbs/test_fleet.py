@@ -95,13 +95,67 @@ class Goto(Line):
         self.assertEqual(out, "AVR: x 10 cm, y 0 cm, heading 0 deg\n")
         self.assertIn("stopped 20 cm", err)
 
-    def test_does_not_wait(self):
-        self.avr.speed = 1
-        begin = time.monotonic()
-        out, _ = self.tool("goto", "AVR", "0", "50", "--no-wait")
+    def test_what_was_not_heard_is_said_again(self):
+        self.avr.x = self.avr.y = 0.5
+        self.avr.start = (0.5, 0.5, 0.0)
+        self.avr.loses = 3
+        out, err = self.tool("goto", "AVR", "90", "25")
+        self.assertEqual((out, err), ("AVR: x 0 cm, y 25 cm, heading 90 deg\n", ""))
+        self.assertEqual(self.avr.heard[1:], ["{U,90,25}"] * 4)
+
+    def test_a_long_way_is_driven_in_legs(self):
+        self.avr.room = (0.0, 0.0, 4.0, 1.0)
+        self.avr.y = 0.5
+        self.avr.start = (0.0, 0.5, 0.0)
+        out, _ = self.tool("goto", "AVR", "0", "150")
+        self.assertEqual(out, "AVR: x 150 cm, y 0 cm, heading 0 deg\n")
+        self.assertEqual(self.avr.heard[1:], ["{U,0,50}"] * 3)
+
+    def test_not_heard_is_no_obstacle(self):
+        self.avr.loses = 1000
+        out, err = self.tool("goto", "AVR", "90", "25", "--timeout", "3s", code=1)
         self.assertEqual(out, "")
-        self.assertLess(time.monotonic() - begin, 8)
-        self.assertEqual(self.avr.heard[-1], "{U,0,50}")
+        self.assertRegex(err, r"AVR has not heard it after 3s \(said \d+ times; 100 % of its sentences come whole\); "
+                              "it was stopped")
+        self.assertNotIn("in front of it", err)
+
+    def test_a_robot_that_does_not_say_where_it_is_goes_nowhere(self):
+        self.avr.mumbles = True
+        out, err = self.tool("goto", "AVR", "90", "25", "--timeout", "2s", code=1)
+        self.assertEqual(out, "")
+        self.assertIn("does not say where it is, so it was not sent anywhere", err)
+        self.assertNotIn("{U,90,25}", self.avr.heard)
+
+    def test_a_stop_is_said_until_it_is_heard(self):
+        self.avr.speed = 1
+        self.tool("goto", "AVR", "90", "50", "--no-wait")
+        self.avr.loses = 5
+        self.tool("goto", "AVR", "0", "0")
+        self.assertEqual(self.avr.loses, 0)
+        self.assertEqual(self.avr.heard[2:], ["{U,0,0}"] * 6)
+
+    def test_a_stop_that_no_robot_hears_fails(self):
+        self.tool("robots", "--listen", "100ms")
+        self.avr.silent = True
+        _, err = self.run_tool("goto", "AVR", "0", "0", "--timeout", "1s", "--scan", "200ms", code=1)
+        self.assertIn("says nothing", err)
+
+    def test_does_not_wait_longer_than_until_it_is_heard(self):
+        self.avr.speed = 1
+        self.avr.loses = 1
+        begin = time.monotonic()
+        out, _ = self.tool("goto", "AVR", "90", "50", "--no-wait")
+        self.assertEqual(out, "")
+        self.assertLess(time.monotonic() - begin, 12)
+        self.assertEqual(self.avr.heard[1:], ["{U,90,50}"] * 2)
+        self.avr.loses = 1000
+        _, err = self.tool("goto", "AVR", "0", "20", "--no-wait", "--timeout", "2s", code=1)
+        self.assertIn("has not heard it", err)
+
+    def test_does_not_leave_a_robot_alone_for_longer_than_a_leg(self):
+        for distance in ("61", "-61"):
+            _, err = self.run_tool("goto", "AVR", "0", distance, "--no-wait", code=2)
+            self.assertIn("at most 60 cm", err)
 
     def test_does_not_arrive_in_time_and_is_stopped(self):
         self.avr.speed = 1
@@ -120,10 +174,26 @@ class Goto(Line):
 
     def test_interrupted_it_stops_the_robot(self):
         self.avr.speed = 1
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
+            with self.subTest(number=number):
+                self.avr.heard.clear()
+                tool = self.on_the_way()
+                self.avr.loses = 3
+                self.interrupt(tool, number)
+                self.assertEqual(tool.returncode, 128 + number)
+                self.assertEqual(self.avr.loses, 0)
+                self.assertEqual(self.avr.heard[-4:], ["{U,0,0}"] * 4)
+
+    def test_a_second_signal_ends_the_stop_loudly(self):
+        self.avr.speed = 1
         tool = self.on_the_way()
-        self.interrupt(tool)
-        self.assertEqual(tool.returncode, 130)
+        self.avr.loses = 1000
+        tool.send_signal(signal.SIGINT)
         waiting.until(lambda: self.avr.heard[-1] == "{U,0,0}", "the robot is stopped")
+        _, err = self.interrupt(tool)
+        self.assertEqual(tool.returncode, 130)
+        self.assertRegex(err, r"AVR may still drive: nothing shows that it has heard the stop, which was said \d+ times; "
+                              "its leg ends after 60 cm")
 
     def test_the_link_is_lost_on_the_way(self):
         self.avr.speed = 1
@@ -137,9 +207,10 @@ class Goto(Line):
         self.avr.speed = 1
         tool = self.on_the_way()
         self.avr.silent = True
-        _, err = tool.communicate(timeout=10)
+        _, err = tool.communicate(timeout=60)  # the stop is said for 20 s
         self.assertEqual(tool.returncode, 1)
-        self.assertIn("said nothing for its deadline", err)
+        self.assertIn("said nothing for its deadline; it may still drive", err)
+        self.assertGreater(self.avr.heard.count("{U,0,0}"), 20)
 
     def test_wrong_words(self):
         for words, text in ((["AVR", "north", "5"], "ANGLE north"), (["AVR", "361", "5"], "-360 to 360"),
@@ -172,9 +243,10 @@ class Pause(Line):
         self.assertEqual(self.tool("pause", "AVR")[0], "AVR: paused\n")
         self.assertTrue(self.avr.paused)
         self.assertFalse(self.arduino.paused)
-        # It drives all the same, but does not say where it is.
+        # It says where it came to, for it goes on while it drives; then it is paused again.
         out, _ = self.tool("goto", "AVR", "0", "5")
-        self.assertIn("does not say where", out)
+        self.assertEqual(out, "AVR: x 5 cm, y 0 cm, heading 0 deg\n")
+        self.assertTrue(self.avr.paused)
         self.assertRegex(self.tool("robots", "--listen", "1s")[0], r"AVR .* paused")
         self.assertEqual(self.tool("unpause", "all")[0], "AVR: goes on\nArduino: goes on\n")
         self.assertFalse(self.avr.paused)
@@ -184,7 +256,7 @@ class Pause(Line):
         self.avr.deaf = True
         _, err = self.tool("pause", "AVR", code=1)
         self.assertIn("sends updates still", err)
-        self.assertEqual(self.avr.heard.count("{S,PAU}"), 2)
+        self.assertGreater(self.avr.heard.count("{S,PAU}"), 2)
 
 
 class TheLine(Line):

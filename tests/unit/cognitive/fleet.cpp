@@ -77,19 +77,79 @@ TEST_CASE("fleet: packed updates are updates") {
 
 TEST_CASE("fleet: idle, until it is told to go; an idle right behind the set point meant the one before") {
   Fleet fleet;
+  const std::string at_start = "[0]:AVR:{U,0,0,0,0,0,0,0,0}\n";
   fleet.feed("[0]:AVR:{S,IDL}\n", second);
   CHECK(fleet.robot(0).idle);
+  CHECK_FALSE(fleet.robot(0).located);
+  fleet.feed(at_start, second);
+  CHECK(fleet.robot(0).located);
   REQUIRE(fleet.go(0, {90, 50}, second));
   CHECK_FALSE(fleet.robot(0).idle);
   CHECK(sayings(fleet) == "0:{U,90,50}\n");
+  fleet.feed("[0]:AVR:{S,IDL}\n", second + 50ms);  // it has not even gone out
+  fleet.out(0, second + 50ms);
   fleet.feed("[0]:AVR:{S,IDL}\n", second + 100ms);
   CHECK_FALSE(fleet.robot(0).idle);
-  CHECK(fleet.counters().early_idles == 1);
-  fleet.feed("[0]:AVR:{S,IDL}\n", second + 2s);
+  CHECK(fleet.counters().early_idles == 2);
+  fleet.feed("[0]:AVR:{U,0,50,90,0,0,0,0,0}\n", second + 9s);
+  fleet.feed("[0]:AVR:{S,IDL}\n", second + 9s);
+  CHECK_FALSE(fleet.robot(0).idle);  // where it stands, the next update says
+  fleet.feed("[0]:AVR:{U,0,50,90,0,0,0,0,0}\n", second + 9s);
   CHECK(fleet.robot(0).idle);
+  CHECK(fleet.robot(0).located);
+  CHECK(fleet.sender(0).progress() == ocm::mapper::server::Progress::reached);
   CHECK_FALSE(fleet.go(0, {361, 0}, second));
   CHECK_FALSE(fleet.go(Fleet::most_robots, {0, 0}, second));
   CHECK(sayings(fleet).empty());
+}
+
+TEST_CASE("fleet: the answer to a handshake is repeated until an update or an idle shows that it was heard") {
+  Fleet fleet;
+  fleet.linked(0, "AVR", second);
+  fleet.feed(handshake, second);
+  CHECK(sayings(fleet) == "0:{S,CON}\n");
+  fleet.expire(second + 400ms);
+  CHECK(sayings(fleet).empty());
+  fleet.expire(second + 600ms);
+  CHECK(sayings(fleet) == "0:{S,CON}\n");
+  fleet.feed("[0]:AVR:{S,IDL}\n", second + 700ms);
+  fleet.expire(second + 2s);
+  CHECK(sayings(fleet).empty());
+}
+
+TEST_CASE("fleet: what was not heard is said again; a stop before all else, until the robot stands") {
+  Fleet fleet;
+  const auto hear = [&fleet](std::string_view words, Time now) {
+    fleet.feed("[0]:AVR:" + std::string{words}, now);
+  };
+  const auto said = [&fleet](Time now) {
+    std::string all = sayings(fleet);
+    for (std::size_t i = 0; i < 4; ++i) fleet.out(0, now);  // more than there are: they do not count
+    return all;
+  };
+  fleet.linked(0, "AVR", second);
+  hear("{S,IDL}\n{U,0,0,0,0,0,0,0,0}\n", second);
+  REQUIRE(fleet.go(0, {90, 50}, second));
+  CHECK(said(second) == "0:{U,90,50}\n");
+  fleet.expire(second + 900ms);
+  CHECK(said(second + 900ms).empty());  // it may drive: nothing is known
+  hear("{S,IDL}\n", second + 1s);
+  hear("{U,0,0,0,0,0,0,0,0}\n", second + 1s);
+  CHECK(said(second + 1s) == "0:{U,90,50}\n");
+  CHECK(fleet.counters().words == 2);
+  REQUIRE(fleet.stop(0, second + 1100ms));
+  CHECK(said(second + 1100ms) == "0:{U,0,0}\n");
+  unsigned stops = 0;
+  for (Time now = second + 1100ms; now < second + 2100ms; now += 50ms) {
+    fleet.expire(now);
+    stops += said(now).empty() ? 0 : 1;
+  }
+  CHECK(stops >= 2);
+  CHECK(stops <= 3);
+  hear("{S,IDL}\n", second + 2200ms);
+  CHECK(fleet.robot(0).idle);
+  fleet.expire(second + 9s);
+  CHECK(said(second + 9s).empty());
 }
 
 TEST_CASE("fleet: paused as it was told, unless updates go on") {

@@ -54,6 +54,7 @@ struct Expedition {
     }
     mapping.step(now);
     while (const auto saying = fleet.take()) {
+      fleet.out(saying->robot, now);
       ocm::mapper::link::Reader reader{ocm::mapper::link::Direction::to_robot};
       for (const char c : saying->words)
         if (reader.feed(c) == Kind::set_point)

@@ -54,6 +54,7 @@ struct CentralEvent {
   Kind kind = Kind::failed;
   unsigned index = 0;  ///< the robot's; of `listed`: how many there are
   std::string words{};
+  bool saying = false;  ///< of `failed`: words to a robot, which did not go out
 };
 
 /// What a client met. They wrap.
@@ -166,7 +167,7 @@ class CentralClient {
     command(std::string{word} + std::to_string(index) + "\n", stage, now);
   }
   void report(Event kind, unsigned index, std::string words = {}) {
-    events_.push_back({kind, index, std::move(words)});
+    events_.push_back({kind, index, std::move(words), false});
   }
   void done() {
     wishes_.pop_front();
@@ -176,6 +177,7 @@ class CentralClient {
   }
   void fail(std::string words) {
     report(Event::failed, wishes_.front().index, std::move(words));
+    events_.back().saying = wishes_.front().kind == Wish::Kind::say;
     done();
   }
   [[nodiscard]] std::string name_of(unsigned index) const {

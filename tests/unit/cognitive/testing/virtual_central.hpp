@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -116,11 +117,26 @@ class VirtualCentral {
       central.heard(robot.address, packet.bytes(), *this);
     }
   }
+  /// It is at once where it should be.
+  static void move(Robot& robot) {
+    mapper::link::Reader reader{mapper::link::Direction::to_robot};
+    for (const char c : robot.line)
+      if (reader.feed(c) == mapper::link::Kind::set_point) {
+        const auto by = reader.sentence().as<mapper::link::SetPoint>().value;
+        const double heading = (robot.update.heading + by.angle) * 3.14159265358979 / 180;
+        robot.update.heading = static_cast<std::int16_t>((robot.update.heading + by.angle) % 360);
+        robot.update.x =
+            static_cast<std::int16_t>(robot.update.x + std::lround(by.distance * std::cos(heading)));
+        robot.update.y =
+            static_cast<std::int16_t>(robot.update.y + std::lround(by.distance * std::sin(heading)));
+      }
+  }
   static void listen(Robot& robot, std::span<const std::uint8_t> bytes) {
     for (const std::uint8_t byte : bytes) {
       robot.line += static_cast<char>(byte);
       if (byte != '\n') continue;
       if (robot.line == "{S,CON}\n") robot.confirmed = true;
+      move(robot);
       robot.heard.push_back(robot.line);
       robot.line.clear();
     }

@@ -1,0 +1,64 @@
+"""amiroctl goto with simulated mappers behind a radio that loses packets: what the robot itself did is what was said."""
+
+import json
+import os
+import re
+import signal
+import time
+
+from harness import Case, main
+
+
+class Radio(Case):
+    def sim(self, loss, seed):
+        world = os.path.join(self.folder, "hall.json")
+        with open(world, "w", encoding="utf-8") as file:
+            json.dump({"name": "hall", "walls": [[[-9, -9], [9, -9], [9, 9], [-9, 9], [-9, -9]]],
+                       "central": {"at": [0, 0], "range": 100},
+                       "robots": [{"name": "AVR", "model": "avr", "at": [0, 0], "heading": 0}]}, file)
+        sim = self.start("sim", "--world", world, "--radio-loss", str(loss), "--seed", str(seed))
+        for line in sim.stderr:
+            if "Ctrl-C ends it" in line:
+                return sim
+        self.fail(f"the simulator ended with {sim.wait()}")
+
+    def place(self):
+        """Where the robot stands, and in which state."""
+        for _ in range(10):
+            out, _ = self.run_tool("robots", "--json", "--watch", "4s")
+            robots = [json.loads(line) for line in out.splitlines()]
+            if robots and robots[0]["pose"]:
+                return robots[0]
+        self.fail("the robot is not heard")
+
+    def test_arrives_at_every_loss(self):
+        for loss in (0, 0.2, 0.4):
+            with self.subTest(loss=loss):
+                sim = self.sim(loss, 3)
+                out, err = self.run_tool("goto", "AVR", "45", "25", "--timeout", "100s", timeout=120)
+                x, y, heading = map(int, re.fullmatch(r"AVR: x (-?\d+) cm, y (-?\d+) cm, heading (-?\d+) deg\n", out).groups())
+                self.assertLess(abs(x - 18) + abs(y - 18), 8, err)
+                self.assertLess(abs(heading - 45), 9)
+                _, told = self.interrupt(sim)
+                self.assertRegex(told, r"set points [1-9]\d*, arrived [1-9]")
+
+    def test_an_end_of_any_kind_stops_the_robot(self):
+        for number, seed in ((signal.SIGINT, 1), (signal.SIGTERM, 2)):
+            with self.subTest(number=number):
+                sim = self.sim(0.4, seed)
+                out, _ = self.run_tool("goto", "AVR", "0", "60", "--no-wait", timeout=120)
+                self.assertEqual(out, "")
+                goto = self.start("goto", "AVR", "0", "500")
+                time.sleep(6)
+                goto.send_signal(number)
+                _, err = goto.communicate(timeout=60)
+                self.assertEqual(goto.returncode, 128 + number)
+                self.assertNotIn("may still drive", err)
+                before = self.place()["pose"]
+                time.sleep(1)
+                self.assertEqual(self.place()["pose"], before)
+                self.interrupt(sim)
+
+
+if __name__ == "__main__":
+    main(together=True)

@@ -1,0 +1,260 @@
+#include "ocm/mapper/server/sender.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+namespace {
+
+using namespace std::chrono_literals;
+using namespace ocm::mapper::server;
+using ocm::base::Duration;
+using ocm::base::Time;
+using ocm::mapper::link::Kind;
+using ocm::mapper::link::SetPoint;
+using ocm::mapper::link::Update;
+
+constexpr Time second{1s};
+
+/// A sender whose words go out at once.
+struct Bench {
+  Sender sender;
+  Time now = second;
+  std::vector<SetPoint> said{};
+  unsigned unpauses = 0;
+
+  void speak() {
+    for (auto word = sender.next(now); word.kind != Kind::none; word = sender.next(now)) {
+      if (word.kind == Kind::unpause) ++unpauses;
+      if (word.kind == Kind::set_point) said.push_back(word.set_point);
+      sender.out(now);
+    }
+  }
+  void pass(Duration time) {
+    for (const Time end = now + time; now < end;) now += 50ms, speak();
+  }
+  void idle() { (void)sender.hear_idle(now), speak(); }
+  void at(int x, int y, int heading) {
+    Update update{};
+    update.x = static_cast<std::int16_t>(x);
+    update.y = static_cast<std::int16_t>(y);
+    update.heading = static_cast<std::int16_t>(heading);
+    sender.hear_update(update, now), speak();
+  }
+  /// It stands there, and says so.
+  void stands(int x, int y, int heading) { idle(), at(x, y, heading); }
+  void go(int angle, int distance) {
+    sender.go({static_cast<std::int16_t>(angle), static_cast<std::int16_t>(distance)}, now), speak();
+  }
+};
+
+TEST_CASE("sender: a set point that is heard is said once, and reached where the robot then stands") {
+  Bench bench;
+  bench.stands(0, 0, 0);
+  bench.go(90, 50);
+  CHECK(bench.said == std::vector<SetPoint>{{90, 50}});
+  CHECK(bench.sender.progress() == Progress::said);
+  bench.pass(600ms);
+  bench.at(0, 0, 20);
+  CHECK(bench.sender.progress() == Progress::heard);
+  bench.pass(8s);
+  bench.at(0, 49, 89);
+  CHECK(bench.sender.progress() == Progress::heard);  // it may still drive
+  bench.stands(0, 49, 89);
+  CHECK(bench.sender.progress() == Progress::reached);
+  CHECK(bench.said.size() == 1);
+}
+
+TEST_CASE("sender: not heard is said again, from where the robot stands, and never while it may drive") {
+  Bench bench;
+  bench.stands(10, 20, 30);
+  bench.go(45, 40);
+  bench.pass(5s);
+  CHECK(bench.said.size() == 1);  // silence: it may drive
+  for (int i = 0; i < 5; ++i) {
+    bench.at(10, 20, 30);
+    CHECK(bench.said.size() == 1U + static_cast<unsigned>(i));
+    bench.idle();
+    CHECK(bench.said.size() ==
+          1U + static_cast<unsigned>(i));  // how it stands, the update behind the idle says
+    bench.at(10, 20, 30);
+    CHECK(bench.said.back() == SetPoint{45, 40});
+    bench.pass(1s);
+  }
+  CHECK(bench.sender.progress() == Progress::said);
+  CHECK(bench.sender.times_said() == 6);
+  // Its compass has turned it meanwhile by some degrees: the aim is where it was.
+  bench.stands(10, 20, 33);
+  CHECK(bench.said.back() == SetPoint{42, 40});
+}
+
+TEST_CASE("sender: an idle that was under way when the word went out proves nothing") {
+  Bench bench;
+  bench.stands(0, 0, 0);
+  bench.go(0, 50);
+  bench.pass(200ms);
+  bench.stands(0, 0, 0);
+  CHECK(bench.said.size() == 1);
+  CHECK_FALSE(bench.sender.standing());
+}
+
+TEST_CASE("sender: heard, and stopped by something on the way") {
+  Bench bench;
+  bench.stands(0, 0, 0);
+  bench.go(0, 50);
+  bench.pass(3s);
+  bench.stands(20, 1, 1);
+  CHECK(bench.sender.progress() == Progress::ended);
+  CHECK(bench.sender.blocked());
+  CHECK(bench.sender.off_cm() == Approx(30).margin(0.1));
+  CHECK(bench.said.size() == 1);
+}
+
+TEST_CASE("sender: two copies that add up are driven back, and nothing is blamed for it") {
+  Bench bench;
+  bench.stands(0, 0, 0);
+  bench.go(0, 40);
+  bench.pass(2s);
+  bench.stands(70, 0, 0);
+  CHECK(bench.said.back() == SetPoint{0, -30});
+  bench.pass(2s);
+  bench.stands(40, 0, 0);
+  CHECK(bench.sender.progress() == Progress::reached);
+}
+
+TEST_CASE("sender: a robot that is not known to stand is listened to, then stopped first") {
+  Bench bench;
+  bench.go(90, 50);
+  bench.at(5, 5, 0);
+  bench.pass(1100ms);
+  CHECK(bench.said.empty());
+  bench.pass(200ms);
+  CHECK(bench.said == std::vector<SetPoint>{{0, 0}});
+  bench.stands(7, 5, 0);
+  CHECK(bench.said.back() == SetPoint{90, 50});
+  bench.pass(9s);
+  bench.stands(7, 55, 90);
+  CHECK(bench.sender.progress() == Progress::reached);
+}
+
+TEST_CASE("sender: a stop goes before all, is repeated with a bounded period, and ends with an idle only") {
+  Bench bench;
+  bench.stands(0, 0, 0);
+  bench.go(0, 50);
+  bench.pass(1s);
+  bench.sender.stop(bench.now);
+  bench.speak();
+  CHECK(bench.said.back() == SetPoint{});
+  const std::size_t before = bench.said.size();
+  bench.pass(60s);
+  CHECK(bench.said.size() - before >= 60 * 1000 / 850);  // period and jitter, in steps of 50 ms
+  CHECK(bench.said.size() - before <= 10 + 60 * 1000 / 700);
+  bench.at(30, 0, 0);
+  CHECK(bench.sender.progress() == Progress::stopping);
+  bench.idle();
+  CHECK(bench.sender.progress() == Progress::stopped);
+}
+
+TEST_CASE("sender: a stop overtakes a set point that waits for the central, and follows it at once") {
+  Sender sender;
+  Time now = second;
+  (void)sender.hear_idle(now);
+  sender.hear_update({}, now);
+  sender.go({0, 50}, now);
+  CHECK(sender.next(now).set_point == SetPoint{0, 50});
+  sender.stop(now);
+  now += 2s;
+  (void)sender.hear_idle(now);  // of before the set point
+  CHECK(sender.next(now).kind == Kind::none);
+  sender.out(now);
+  CHECK(sender.next(now).set_point == SetPoint{});
+  CHECK(sender.progress() == Progress::stopping);
+}
+
+TEST_CASE("sender: robots that share the radio do not keep step") {
+  std::vector<Time> first, other;
+  for (auto* times : {&first, &other}) {
+    Sender sender{{}, times == &first ? 0U : 1U};
+    sender.stop(second);
+    for (Time now = second; now < second + 5s; now += 5ms)
+      if (sender.next(now).kind != Kind::none) times->push_back(now), sender.out(now);
+  }
+  CHECK(first.size() > 10);
+  CHECK(first != other);
+}
+
+TEST_CASE("sender: no leg is longer than its bound, whatever was asked for") {
+  Bench bench;
+  bench.stands(0, 0, 90);
+  bench.go(-90, 32767);
+  float x = 0;
+  for (int i = 0; i < 1000 && bench.sender.progress() != Progress::reached; ++i) {
+    CHECK(std::abs(bench.said.back().distance) <= longest_leg_cm);
+    x += static_cast<float>(bench.said.back().distance);
+    bench.pass(2s);
+    bench.stands(static_cast<int>(x), 0, 0);
+  }
+  CHECK(x == Approx(32767).margin(8));
+  CHECK(bench.sender.progress() == Progress::reached);
+  CHECK(bench.said.size() == (32767 + longest_leg_cm - 1) / longest_leg_cm);
+}
+
+TEST_CASE("sender: the legs of a way are equal, aim at its end, and lead backwards, too") {
+  Bench bench;
+  bench.stands(0, 0, 0);
+  bench.go(180, -100);
+  CHECK(bench.said.back() == SetPoint{180, -50});
+  bench.pass(9s);
+  bench.stands(49, 3, 179);
+  CHECK(bench.said.back() == SetPoint{-2, -51});
+  bench.pass(9s);
+  bench.stands(100, 1, -177);
+  CHECK(bench.sender.progress() == Progress::reached);
+}
+
+TEST_CASE("sender: a short leg is not reached where it began") {
+  Bench bench;
+  bench.stands(0, 0, 0);
+  bench.go(0, 5);
+  bench.pass(1s);
+  bench.stands(0, 0, 0);
+  CHECK(bench.said.size() == 2);
+  bench.go(5, 0);
+  bench.pass(1s);
+  bench.stands(0, 0, 0);
+  CHECK(bench.sender.progress() == Progress::said);
+  bench.pass(1s);
+  bench.stands(0, 0, 4);
+  CHECK(bench.sender.progress() == Progress::reached);
+}
+
+TEST_CASE("sender: a robot that says idle but not where it is, is told to go on") {
+  Bench bench;
+  bench.go(0, 20);
+  for (int i = 0; i < 4; ++i) bench.pass(1s), bench.idle();
+  CHECK(bench.said.empty());
+  CHECK(bench.unpauses > 0);
+  bench.at(0, 0, 0);
+  CHECK(bench.said == std::vector<SetPoint>{{0, 20}});
+}
+
+TEST_CASE("sender: a handshake makes void what was asked for") {
+  Bench bench;
+  bench.stands(0, 0, 0);
+  bench.go(0, 20);
+  bench.sender.restart();
+  CHECK(bench.sender.progress() == Progress::none);
+  bench.pass(5s);
+  CHECK(bench.said.size() == 1);
+  CHECK_FALSE(bench.sender.standing());
+  bench.go(0, 20);
+  bench.sender.restart();
+  CHECK(bench.sender.progress() == Progress::waiting);
+  bench.stands(0, 0, 0);
+  CHECK(bench.said.back() == SetPoint{0, 20});
+}
+
+}  // namespace
