@@ -54,6 +54,12 @@ std::string_view words(End end) {
   switch (end) {
     case End::known:
       return "all that can be reached";
+    case End::bad_link:
+      return "not all: the link is too bad beyond,";
+    case End::out_of_range:
+      return "not all: the rest is out of the radio's range,";
+    case End::unseen:
+      return "not all: the rest could not be seen,";
     case End::time_over:
       return "what was seen until --duration was over";
     case End::interrupted:
@@ -70,6 +76,12 @@ std::string_view key(End end) {
   switch (end) {
     case End::known:
       return "known";
+    case End::bad_link:
+      return "bad_link";
+    case End::out_of_range:
+      return "out_of_range";
+    case End::unseen:
+      return "unseen";
     case End::time_over:
       return "duration";
     case End::interrupted:
@@ -96,6 +108,8 @@ cognitive::FleetOptions fleet_options(const MapOptions& options, const Known& kn
 cognitive::MappingOptions mapping_options(const MapOptions& options, const Known& known,
                                           const CentralLine& line, const std::vector<unsigned>& robots) {
   cognitive::MappingOptions mapping;
+  const cognitive::FleetOptions& fleet = line.fleet().options();
+  mapping.explorer.range_m = fleet.near_range * fleet.range_m;  // from there on it would be called back
   mapping.map.resolution_m = static_cast<float>(options.resolution_cm / 100);
   mapping.explorer.home =
       known.central ? *known.central : cognitive::place(line.fleet().robot(robots.front()).origin);
@@ -152,11 +166,13 @@ void MapRun::report(const std::optional<Agreement>& result) const {
   const auto& map = mapping_->map().counters();
   const auto& explorer = mapping_->explorer().counters();
   const double free = area_m2(mapping_->map(), cognitive::CellState::free);
+  const cognitive::Left left = mapping_->explorer().left(mapping_->map());
   if (options_.json) {
     Json out{{"seconds", static_cast<double>(took_.count()) / 1e9},
              {"done", end_ == End::known},
              {"ended", key(end_)},
              {"robots", robots_.size()},
+             {"border_known", left.known()},
              {"free_m2", free},
              {"updates", drawn.drawn},
              {"turning", drawn.turning},
@@ -171,9 +187,11 @@ void MapRun::report(const std::optional<Agreement>& result) const {
     fmt::print("{}\n", out.line());
     return;
   }
-  fmt::print("{} in {}: {:.2f} m2 free; {} drawn, {} not, because a robot turned; {}\n", words(end_),
-             span(took_), free, client::count(drawn.drawn, "update*"), drawn.turning,
-             client::count(explorer.goals, "goal*"));
+  fmt::print(
+      "{} in {}: {:.2f} m2 free, {:.0f} % of their border known; {} drawn, {} not, because a robot turned; "
+      "{}\n",
+      words(end_), span(took_), free, 100 * left.known(), client::count(drawn.drawn, "update*"),
+      drawn.turning, client::count(explorer.goals, "goal*"));
   if (result)
     fmt::print(
         "agreement with the true walls within 6 cm: precision {:.3f}, recall {:.3f}; explored {:.3f}\n",
@@ -201,7 +219,14 @@ End MapRun::drive(std::optional<base::Duration> limit) {
   });
   if (interrupted() != 0) return End::interrupted;
   if (nobody_left()) return End::robots_lost;
-  return done ? End::known : End::time_over;
+  return done ? end_of_exploring() : End::time_over;
+}
+
+End MapRun::end_of_exploring() const {
+  const cognitive::Left left = mapping_->explorer().left(mapping_->map());
+  if (left.is_known()) return End::known;
+  if (!left.not_visited()) return End::unseen;
+  return left.bad_link >= left.out_of_range ? End::bad_link : End::out_of_range;
 }
 
 void MapRun::tell_lost() {

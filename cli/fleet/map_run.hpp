@@ -31,7 +31,20 @@ struct MapOptions {
 };
 
 /// Why it ended.
-enum class End : std::uint8_t { known, time_over, interrupted, robots_lost, central_gone };
+enum class End : std::uint8_t {
+  known,
+  bad_link,      ///< the rest lies where a robot was called back
+  out_of_range,  ///< the rest lies beyond the radio's range
+  unseen,        ///< the rest was looked at in vain, or no way leads there
+  time_over,
+  interrupted,
+  robots_lost,
+  central_gone
+};
+/// Those of which the command has done what was asked for.
+[[nodiscard]] constexpr bool is_success(End end) noexcept {
+  return end == End::known || end == End::time_over || end == End::interrupted;
+}
 
 class MapRun {
  public:
@@ -55,6 +68,8 @@ class MapRun {
  private:
   [[nodiscard]] End drive(std::optional<base::Duration> limit);
   void tell_lost();
+  /// Nothing is left to do: is the place known, and if not, why?
+  [[nodiscard]] End end_of_exploring() const;
   [[nodiscard]] bool lost(unsigned index) const { return line_.fleet().robot(index).lost; }
   [[nodiscard]] bool nobody_left() const;
   [[nodiscard]] std::string names() const;

@@ -59,8 +59,8 @@ void run(const fleet::MapOptions& options, int& exit_code) {
   const auto result = run.result();
   const bool written = write_files(options.files, run, result);
   run.report(result);
-  const bool whole = end != End::robots_lost && end != End::central_gone;
-  exit_code = written ? exit_code_after_interrupt(whole ? exit_success : exit_failure) : exit_failure;
+  exit_code =
+      written ? exit_code_after_interrupt(is_success(end) ? exit_success : exit_failure) : exit_failure;
 }
 
 }  // namespace

@@ -19,6 +19,7 @@
 #include "ocm/cognitive/server.hpp"
 
 #include "sim/mapper/fleet.hpp"
+#include "unit/base/explore.hpp"
 
 namespace sim_mapper_mapping_test {
 
@@ -72,8 +73,15 @@ struct Expedition {
   double farthest_m = 0;       ///< a robot was from the central
   std::uint32_t worst = 1000;  ///< quality of a link, per mille
 
-  Expedition(const sim::WorldModel& model, std::uint64_t seed, const cognitive::FleetOptions& options)
-      : world(model, {.seed = seed}), robots(world, sim::Fleet::options_for(world, seed)), server(options) {}
+  Expedition(const sim::WorldModel& model, std::uint64_t seed, const cognitive::FleetOptions& options,
+             double loss = 0)
+      : world(model, {.seed = seed}), robots(world, radio(world, seed, loss)), server(options) {}
+  /// `loss`: of packets everywhere, besides what is lost at a distance.
+  static sim::FleetOptions radio(const sim::World& world, std::uint64_t seed, double loss) {
+    auto options = sim::Fleet::options_for(world, seed);
+    options.radio.loss_everywhere = loss;
+    return options;
+  }
 
   void advance(ocm::base::Duration time) {
     for (const Time end = now + time; now < end;) {
@@ -189,6 +197,28 @@ TEST_CASE("mapper mapping: without a call back the same robot drives on until it
   (void)expedition.explore(20min);
   CHECK(expedition.lost >= 1);
   CHECK(expedition.farthest_m > 3.5);
+}
+
+TEST_CASE("mapper mapping: at any loss it ends, and a place that is not known is not called known") {
+  unsigned known = 0, runs = 0, grown = 0;
+  for (const double loss : {0.0, 0.2, 0.3, 0.4})
+    for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(ocm::test::explored(2)); ++seed) {
+      CAPTURE(loss, seed);
+      const auto model = labyrinth();
+      Expedition expedition{model, seed, options_for(model, true), loss};
+      (void)expedition.explore(30min);
+      CHECK(expedition.mapping->done());
+      const auto left = expedition.mapping->explorer().left(expedition.mapping->map());
+      CAPTURE(left.known(), left.bad_link, left.unseen);
+      CHECK((!left.is_known() || expedition.result().explored > 0.9));
+      if (loss == 0) CHECK(left.is_known());
+      if (!left.is_known()) CHECK(left.bad_link > 0);
+      known += left.is_known() ? 1 : 0;
+      grown += expedition.mapping->explorer().counters().grown;
+      ++runs;
+    }
+  CHECK(known < runs);  // some were stopped by their links
+  CHECK(grown > 0);
 }
 
 // The figures of docs/cognitive.md: sim_tests "[.measure-mapping]"

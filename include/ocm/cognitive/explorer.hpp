@@ -40,6 +40,8 @@ struct ExplorerOptions {
   std::size_t least_gain = 3;      ///< border cells: for fewer nobody looks
   unsigned most_tries = 3;         ///< looks at a border cell
   unsigned most_pieces = 30;       ///< on the way to one goal
+  float grow_m = 0.5F;             ///< by so much the range grows again behind a call
+  unsigned most_fruitless = 6;     ///< so often without a goal that was reached
   base::Duration look = std::chrono::seconds{4};           ///< standing at the goal, for the tower to turn
   motion::Point home{};                                    ///< where a robot that is called back goes
   float range_m = std::numeric_limits<float>::infinity();  ///< from home: beyond it there are no goals
@@ -50,7 +52,8 @@ struct Scout {
   std::uint8_t robot = 0;
   Body body{};
   bool call_back = false;
-  bool lost = false;  ///< only in the way
+  bool too_far = false;  ///< it is called back because the radio does not reach farther: it never will
+  bool lost = false;     ///< only in the way
 };
 
 /// What a robot is to do now that it has nothing to do.
@@ -120,6 +123,29 @@ struct Order {
   return out;
 }
 
+/// What is left of the border between free and unknown, in cells, and why.
+struct Left {
+  std::size_t edge = 0;  ///< all free cells with something else beside them: how long a closed border is
+  std::size_t out_of_range = 0;  ///< beyond the range that was set
+  std::size_t bad_link = 0;      ///< beyond where a robot was called back
+  std::size_t unseen = 0;        ///< looked at in vain, or no way leads there
+  /// Share of the edge beyond which it is known what there is.
+  [[nodiscard]] double known() const noexcept {
+    if (edge == 0) return 0;
+    return 1 - static_cast<double>(out_of_range + bad_link + unseen) / static_cast<double>(edge);
+  }
+  /// So much of the edge is what beams leave open in a room that a robot has seen, and more is not.
+  /// [measured: docs/cognitive.md]
+  static constexpr double most_not_visited = 0.10, most_unseen = 0.25;
+  [[nodiscard]] bool not_visited() const noexcept {
+    return static_cast<double>(out_of_range + bad_link) > most_not_visited * static_cast<double>(edge);
+  }
+  [[nodiscard]] bool is_known() const noexcept {
+    return edge != 0 && !not_visited() &&
+           static_cast<double>(unseen) <= most_unseen * static_cast<double>(edge);
+  }
+};
+
 /// What became of goals. They wrap.
 struct ExplorerCounters {
   std::uint32_t goals = 0;    ///< chosen
@@ -128,6 +154,7 @@ struct ExplorerCounters {
   std::uint32_t cut_off = 0;  ///< given up: there is no way any more
   std::uint32_t pieces = 0;   ///< set points given
   std::uint32_t calls = 0;    ///< of robots that were called back
+  std::uint32_t grown = 0;    ///< times that the range grew again behind a call
   std::uint32_t blocked = 0;  ///< times that a robot had to wait for another
   friend constexpr bool operator==(const ExplorerCounters&, const ExplorerCounters&) = default;
 };
@@ -135,7 +162,10 @@ struct ExplorerCounters {
 class Explorer {
  public:
   explicit Explorer(const ExplorerOptions& options = {})
-      : options_(options), range_m_(options.range_m), tries_(0, std::size_t{1} << 24) {}
+      : options_(options),
+        range_m_(options.range_m),
+        limit_m_(options.range_m),
+        tries_(0, std::size_t{1} << 24) {}
 
   /// The robot of this number is idle: what now? `robots` are all that there are, itself among them. A robot
   /// that is not among them is done.
@@ -152,7 +182,9 @@ class Explorer {
     if (mission.goal) {
       if (const auto order = pursue(*self, mission, map, terrain, routes, now)) return *order;
     }
-    if (!choose(*self, mission, robots, map, terrain, routes)) return nothing(robot, robots, map);
+    bool chosen = choose(*self, mission, robots, map, terrain, routes);
+    while (!chosen && grow(map)) chosen = choose(*self, mission, robots, map, terrain, routes);
+    if (!chosen) return nothing(robot, robots, map);
     const auto order = pursue(*self, mission, map, terrain, routes, now);
     return order ? *order : Order{Order::Kind::wait, {}, {}};
   }
@@ -164,8 +196,20 @@ class Explorer {
     const auto at = missions_.find(robot);
     return at == missions_.end() ? std::nullopt : at->second.goal;
   }
-  /// From home: beyond there are no goals. Shrinks when robots are called back.
+  /// From home: beyond there are no goals. Shrinks when robots are called back, and grows again when nothing
+  /// is left within, as long as that leads to something.
   [[nodiscard]] float range_m() const noexcept { return range_m_; }
+  /// What of the place is not known.
+  [[nodiscard]] Left left(const Map& map) const {
+    Left left;
+    for (int y = map.box().low.y; y <= map.box().high.y; ++y)
+      for (int x = map.box().low.x; x <= map.box().high.x; ++x) left.edge += at_edge(map, {x, y}) ? 1 : 0;
+    for (const Cell c : frontiers(map, options_.least_unknown)) {
+      const float far = distance_m(map.raster().middle(c), options_.home);
+      ++(far > limit_m_ ? left.out_of_range : far > range_m_ ? left.bad_link : left.unseen);
+    }
+    return left;
+  }
   [[nodiscard]] const ExplorerCounters& counters() const noexcept { return counters_; }
 
  private:
@@ -180,6 +224,22 @@ class Explorer {
     bool homewards = false;
   };
 
+  [[nodiscard]] static bool at_edge(const Map& map, Cell c) {
+    const auto free = [&map](Cell at) { return map.state(at) == CellState::free; };
+    return free(c) &&
+           !(free({c.x + 1, c.y}) && free({c.x - 1, c.y}) && free({c.x, c.y + 1}) && free({c.x, c.y - 1}));
+  }
+  /// A bad link may have been a bad moment. True: the range is larger now.
+  bool grow(const Map& map) {
+    if (!(range_m_ < limit_m_) || left(map).bad_link == 0) return false;
+    if (counters_.reached != reached_when_grown_) fruitless_ = 0;
+    if (fruitless_ >= options_.most_fruitless) return false;
+    ++fruitless_;
+    ++counters_.grown;
+    reached_when_grown_ = counters_.reached;
+    range_m_ = std::min(range_m_ + options_.grow_m, limit_m_);
+    return true;
+  }
   [[nodiscard]] float radius(const Scout& robot) const noexcept {
     return robot.body.shape.radius_m() + options_.margin_m;
   }
@@ -349,11 +409,12 @@ class Explorer {
                            const Routes& routes) {
     const float far = distance_m(place(self.body.pose), options_.home);
     if (!mission.homewards) {
-      settle(mission);
+      leave(mission);  // it has not looked yet: that is no try
       mission.homewards = true;
       ++counters_.calls;
       constexpr float back_m = 0.20F, least_m = 0.5F;
       range_m_ = std::min(range_m_, std::max(far - back_m, least_m));
+      if (self.too_far) limit_m_ = range_m_;
     }
     const Box& box = terrain.box();
     std::optional<Cell> best;
@@ -373,6 +434,9 @@ class Explorer {
 
   ExplorerOptions options_;
   float range_m_;
+  float limit_m_;  ///< which it does not outgrow
+  unsigned fruitless_ = 0;
+  std::uint32_t reached_when_grown_ = 0;
   std::map<std::uint8_t, Mission> missions_;
   Grid<std::uint8_t> tries_;
   std::vector<Moving> stops_;  ///< where robots were stopped by something

@@ -26,6 +26,8 @@ struct MappingOptions {
   /// Degrees between two updates: while a robot turns that fast, nobody knows where its beams were.
   int most_turn_deg = 6;
   base::Duration again = std::chrono::seconds{1};  ///< before a robot that waits is asked for again
+  /// A robot that was called back waits for a good link for so long; then it is done.
+  base::Duration patience = std::chrono::minutes{2};
 };
 
 struct MappingCounters {
@@ -52,6 +54,7 @@ class Mapping {
   /// Gives orders to those who have nothing to do. Often: ten times a second.
   void step(base::Time now) {
     const std::vector<Scout> scouts = all();
+    now_ = now;
     for (const Scout& scout : scouts) {
       Track& track = tracks_[scout.robot];
       if (scout.lost) {
@@ -61,6 +64,7 @@ class Mapping {
       }
       const bool called = scout.call_back && !track.called;
       track.called = scout.call_back;
+      if (called) track.called_at = now;
       const Robot& robot = fleet_->robot(scout.robot);
       // In the middle of a piece, too: stopped first, for it is sent from where it stands.
       if (called && !robot.idle) (void)fleet_->stop(scout.robot, now);
@@ -77,7 +81,10 @@ class Mapping {
       const Track& track = tracks_[scout.robot];
       any = true;
       if (track.order.kind == Order::Kind::drive || track.order.kind == Order::Kind::look) return false;
-      if (!track.asked || (track.order.kind == Order::Kind::wait && scout.call_back)) return false;
+      // Who waited because it was called back has not been asked since.
+      if (!track.asked) return false;
+      const bool waits = track.order.kind == Order::Kind::wait && (scout.call_back || track.waits_for_link);
+      if (waits && now_ - track.called_at < options_.patience) return false;
     }
     return any;
   }
@@ -97,7 +104,9 @@ class Mapping {
     std::optional<int> heading{};  ///< of the last update, degrees
     std::vector<motion::Point> path{};
     bool asked = false;
+    bool waits_for_link = false;  ///< its order is of while it was called back
     bool called = false;
+    base::Time called_at{};
   };
 
   /// Those that said where they are.
@@ -109,6 +118,7 @@ class Mapping {
       scouts.push_back({static_cast<std::uint8_t>(i),
                         {robot.pose(), robot.shape()},
                         fleet_->call_back(i) != Advice::stay,
+                        fleet_->call_back(i) == Advice::far_away,
                         robot.lost || !robot.linked});
     }
     return scouts;
@@ -132,6 +142,7 @@ class Mapping {
   }
   void obey(const Scout& scout, Track& track, base::Time now) {
     track.asked = true;
+    track.waits_for_link = scout.call_back;
     track.ask_at = now + options_.again;
     if (track.order.kind == Order::Kind::look) track.ask_at = std::min(track.order.until, track.ask_at);
     if (track.order.kind != Order::Kind::drive) return;
@@ -145,6 +156,7 @@ class Mapping {
   Map map_;
   Explorer explorer_;
   std::array<Track, Fleet::most_robots> tracks_{};
+  base::Time now_{};  ///< of the last step
   MappingCounters counters_{};
 };
 

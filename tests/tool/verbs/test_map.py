@@ -113,13 +113,26 @@ class Map(Case):
                 self.avr.heard.clear()
                 svg, pgm = self.path(f"{code}.svg"), self.path(f"{code}.pgm")
                 tool = self.start_map(svg, pgm)
+                self.avr.loses = 3
                 out, err = self.interrupt(tool, number)
+                self.assertEqual(self.avr.heard[-4:], ["{U,0,0}"] * 4)
                 self.assertEqual(tool.returncode, code, err)
                 self.assertIn("what was seen until it was interrupted", out)
                 self.assertIn(f"map: {svg}", err)
                 self.assertEqual(ElementTree.parse(svg).getroot().tag, "{http://www.w3.org/2000/svg}svg")
                 self.check_drawn(pgm)
                 self.assertEqual(self.avr.heard[-1], "{U,0,0}")
+
+    def test_a_place_that_is_not_known_is_a_failure_and_says_why(self):
+        world = self.path("box.json")
+        with open(world, "w", encoding="utf-8") as file:
+            json.dump(WORLD | {"central": {"at": [0.6, 0.5], "range": 0.45}}, file)
+        out, _ = self.map(self.path("a.pgm"), "--world", world, "--json", code=1, duration="60s")
+        figures = json.loads(out)
+        self.assertEqual((figures["done"], figures["ended"]), (False, "out_of_range"))
+        self.assertLess(figures["border_known"], 0.9)
+        out, _ = self.map(self.path("a.pgm"), "--world", world, code=1, duration="60s")
+        self.assertRegex(out, r"not all: the rest is out of the radio's range, in \d+ s: .* m2 free, \d+ % of their border known")
 
     def test_the_robot_is_lost(self):
         file = self.path("a.pgm")

@@ -166,7 +166,7 @@ TEST_CASE("explorer: a robot that is called back goes home, and no goal is so fa
   Explorer explorer{at};
   std::array robots{scout(0, map, {12, 1})};
   REQUIRE(explorer.next(0, robots, map, Time{}).kind == Kind::drive);
-  robots[0].call_back = true;
+  robots[0].call_back = robots[0].too_far = true;
   const Order back = explorer.next(0, robots, map, Time{});
   REQUIRE(back.kind == Kind::drive);
   CHECK(std::abs(back.set_point.angle) == 180);
@@ -177,8 +177,36 @@ TEST_CASE("explorer: a robot that is called back goes home, and no goal is so fa
   robots[0] = scout(0, map, {1, 1});
   robots[0].call_back = true;
   CHECK(explorer.next(0, robots, map, Time{}).kind == Kind::wait);
-  robots[0].call_back = false;
+  robots[0].call_back = robots[0].too_far = false;
   CHECK(explorer.next(0, robots, map, Time{}).kind == Kind::done);
+  CHECK(explorer.left(map).out_of_range > 0);
+  CHECK(explorer.left(map).known() < 1);
+}
+
+TEST_CASE("explorer: behind a bad link the range grows again, until that has led to nothing several times") {
+  const Map map = map_of({"####################", "#..................", "####################"});
+  ExplorerOptions at = options();
+  at.home = {0.15F, 0.15F};
+  Explorer explorer{at};
+  std::array robots{scout(0, map, {12, 1})};
+  REQUIRE(explorer.next(0, robots, map, Time{}).kind == Kind::drive);
+  unsigned calls = 0;
+  for (; calls < 50; ++calls) {
+    robots[0] = scout(0, map, {12, 1});
+    robots[0].call_back = true;
+    (void)explorer.next(0, robots, map, Time{});
+    CHECK(explorer.range_m() < 1.0F);
+    robots[0] = scout(0, map, {1, 1});
+    if (explorer.next(0, robots, map, Time{}).kind == Kind::done) break;
+    CHECK(explorer.range_m() > 1.5F);
+  }
+  CHECK(calls >= 1);
+  CHECK(calls <= at.most_fruitless);
+  CHECK(explorer.counters().grown == at.most_fruitless);
+  const auto left = explorer.left(map);
+  CHECK(left.bad_link > 0);
+  CHECK(left.out_of_range == 0);
+  CHECK(left.known() < 1);
 }
 
 TEST_CASE("explorer: a lost robot does nothing, and is in the way") {
