@@ -14,7 +14,7 @@
 #include "unit/base/explore.hpp"
 #include "unit/base/random.hpp"
 
-namespace {
+namespace sim_mapper_heard_test {
 
 using namespace std::chrono_literals;
 namespace cognitive = ocm::cognitive;
@@ -206,4 +206,4 @@ TEST_CASE("mapper heard: a robot whose server hangs, whenever that is, stands wi
   CHECK(farthest_m < 0.70);
 }
 
-}  // namespace
+}  // namespace sim_mapper_heard_test

@@ -153,7 +153,7 @@ TEST_CASE(
     const double seconds = expedition.explore(15min);
     REQUIRE(expedition.mapping->done());
     const auto result = expedition.result();
-    // Of 60 seeds the slowest takes 262 s, the worst has precision 0.71 and recall 0.84: a robot that trusted
+    // Of 60 seeds the slowest takes 264 s, the worst has precision 0.58 and recall 0.79: a robot that trusted
     // its compass over steel. None of these is so bad.
     CHECK(seconds < 300);
     CHECK(expedition.lost == 0);
@@ -164,7 +164,7 @@ TEST_CASE(
     recall += result.recall / seeds;
     explored += result.explored / seeds;
   }
-  // Over 60 seeds 0.955, 0.991 and 0.98, and so within 0.02 over six.
+  // Over 60 seeds 0.947, 0.988 and 0.98, and so within 0.02 over six.
   CHECK(precision > 0.93);
   CHECK(recall > 0.97);
   CHECK(explored > 0.97);

@@ -14,7 +14,7 @@
 ///   farther. [docs/decisions/0026]
 /// - A paused robot says no updates: it is told to go on.
 ///
-/// Evidence and time go in, words come out; one robot. No heap, no clock, no I/O; O(1) a call; 120 bytes.
+/// Evidence and time go in, words come out; one robot. No heap, no clock, no I/O; O(1) a call; 160 bytes.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,7 @@
 
 namespace ocm::mapper::server {
 
-/// Half a minute of the slowest robot's drive would be too much without a server; docs/decisions/0026.
+/// cm. A robot without a server drives no farther, nor for longer than 20 s. [decided: docs/decisions/0026]
 inline constexpr int longest_leg_cm = 60;
 
 struct SenderOptions {

@@ -7,7 +7,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace {
+namespace mapper_server_sender_test {
 
 using namespace std::chrono_literals;
 using namespace ocm::mapper::server;
@@ -257,4 +257,4 @@ TEST_CASE("sender: a handshake makes void what was asked for") {
   CHECK(bench.said.back() == SetPoint{0, 20});
 }
 
-}  // namespace
+}  // namespace mapper_server_sender_test
