@@ -80,13 +80,14 @@ int report(const std::string& name, const Robot& robot, const Sender& sender) {
     fail({fmt::format("goto: {} has not arrived after {}; {}", name, words::to_text(options.timeout), end),
           "give it more time: --timeout 120s"});
   if (progress == Progress::stopping)
-    fail({fmt::format("goto: nothing shows within {} that {} has heard the stop", words::to_text(options.timeout), name),
+    fail({fmt::format("goto: nothing shows within {} that {} has heard the stop",
+                      words::to_text(options.timeout), name),
           "bring the central nearer, or switch the robot off"});
   if (!robot.update)
     fail({fmt::format("goto: {} does not say where it is, so it was not sent anywhere", name),
           "switch it off and on: its program may hang"});
   fail({fmt::format("goto: {} has not heard it after {} (said {}; {} % of its sentences come whole); {}",
-                    name, options.timeout, client::count(times_said, "time*"),
+                    name, words::to_text(options.timeout), client::count(times_said, "time*"),
                     line.fleet().quality_per_mille(index) / 10, end),
         "bring the central nearer, or give it more time: --timeout 120s"});
 }

@@ -25,7 +25,7 @@ class Radio(Case):
     def place(self):
         """Where the robot stands, and in which state."""
         for _ in range(10):
-            out, _ = self.run_tool("robots", "--json", "--watch", "4s")
+            out, _ = self.run_tool("robots", "--json", "--listen", "4s")
             robots = [json.loads(line) for line in out.splitlines()]
             if robots and robots[0]["pose"]:
                 return robots[0]
