@@ -35,6 +35,7 @@
 #include "cli/words/quantity.hpp"
 #include "cli/words/suggestion.hpp"
 #include "cli/words/topics.hpp"
+#include "cli/words/value.hpp"
 
 namespace ocm::cli::words {
 
@@ -100,45 +101,7 @@ namespace detail {
 
 using Parsed = base::Result<Command, WordError>;
 
-[[nodiscard]] inline std::string quoted(std::string_view word) {
-  return "'" + std::string{word} + "'";
-}
-
 }  // namespace detail
-
-/// A number for a field, from "0.05m/s", "12" (in the field's unit) or the name of a value. The error is said
-/// in words, with the field's unit and range.
-[[nodiscard]] inline base::Result<std::int64_t, std::string> parse_value(const protocol::Field& field,
-                                                                         std::string_view text) {
-  for (const auto& value : field.values)
-    if (!field.flags && value.name == text) return value.raw;
-  const auto number_text = [&field](std::int64_t raw) {
-    const auto physical = field.physical(raw);
-    return physical ? std::string{base::to_text(*physical).view()} : std::to_string(raw);
-  };
-  std::string expected = number_text(field.raw_min) + " to " + number_text(field.raw_max);
-  if (!field.unit.empty()) expected += " " + std::string{field.unit};
-  if (!field.flags && !field.values.empty()) {
-    std::string names;
-    for (const auto& value : field.values) names.append(names.empty() ? "" : ", ").append(value.name);
-    expected = names + ", or " + expected;
-  }
-  const auto quantity = parse_quantity(text);
-  if (!quantity)
-    return detail::quoted(text) +
-           (field.values.empty() || field.flags ? " is not a number: " : " has no meaning: ") +
-           std::string{field.name} + " takes " + expected;
-  if (!quantity->unit.empty() && field.unit.empty())
-    return detail::quoted(text) + " has a unit, but " + std::string{field.name} + " is a plain number, " +
-           expected;
-  const auto physical = convert(*quantity, field.unit);
-  if (physical.error == base::Error::bad_unit)
-    return detail::quoted(text) + " is in another unit: " + std::string{field.name} + " takes " + expected;
-  const auto raw = physical ? field.raw_from(*physical) : base::Result<std::int64_t>{physical.error};
-  if (!raw)
-    return detail::quoted(text) + " is out of range: " + std::string{field.name} + " takes " + expected;
-  return *raw;
-}
 
 /// "100,50,120", "#643278", "red" or "off".
 [[nodiscard]] inline base::Result<std::array<std::uint8_t, 3>> parse_colour(std::string_view text) {
@@ -345,12 +308,21 @@ class CommandParser {
     return command;
   }
 
+  /// Of the only frame of an actuator; nullptr if there is no such field, or no actuator.
+  static const protocol::Field* field_of(const protocol::Topic* actuator, std::string_view name) {
+    if (actuator != nullptr)
+      for (const auto& field : actuator->frames[0].fields)
+        if (field.name == name) return &field;
+    return nullptr;
+  }
+
   detail::Parsed drive(Line line, const CommandOptions& options) const {
     const auto priority = options.priority;
     const protocol::Topic* motors = nullptr;
     for (const auto& candidate : catalogue_->topics)
       if (candidate.role == protocol::Role::drive) motors = &candidate;
-    if (motors == nullptr || motors->frames[0].fields.size() < 2)
+    const std::array velocities = {field_of(motors, "x"), field_of(motors, "z")};
+    if (velocities[0] == nullptr || velocities[1] == nullptr)
       return WordError{0, "robot " + detail::quoted(catalogue_->robot) + " has nothing to drive",
                        "its spec has no actuator with role drive; use set or send"};
     Command command;
@@ -364,23 +336,12 @@ class CommandParser {
     }
     const auto fields = motors->frames[0].fields;
     std::vector<std::int64_t> raw(fields.size());
+    constexpr std::string_view remedies[] = {"write 0.05m/s, 5cm/s or 50000um/s",
+                                             "write 0.2rad/s or -30deg/s"};
     for (std::size_t i = 1; i < line.size(); ++i) {
-      // Bare numbers are raw, um/s and urad/s, as the thesis's sender asks for them.
-      const auto bare = base::parse_decimal(line[i]);
-      base::Result<std::int64_t, std::string> value;
-      if (bare && bare->exponent >= 0) {
-        const auto whole = base::detail::scaled(bare->digits, bare->exponent);
-        if (whole && *whole >= fields[i - 1].raw_min && *whole <= fields[i - 1].raw_max)
-          value = *whole;
-        else
-          value = detail::quoted(line[i]) + " is out of range";
-      } else if (bare) {
-        value = detail::quoted(line[i]) + " has no unit, and a bare number is a whole one of um/s or urad/s";
-      } else {
-        value = parse_value(fields[i - 1], line[i]);
-      }
-      if (!value) return WordError{i, value.error, "write 0.05m/s, 5cm/s, 0.2rad/s or -30deg/s"};
-      raw[i - 1] = *value;
+      const auto value = parse_typed_value(*velocities[i - 1], line[i]);
+      if (!value) return WordError{i, value.error, std::string{remedies[i - 1]}};
+      raw[static_cast<std::size_t>(velocities[i - 1] - fields.data())] = *value;
     }
     command.hold = Hold{set_point(*motors, raw, priority), rest, {}};
     command.frames = {command.hold->frame};
@@ -444,8 +405,10 @@ class CommandParser {
       }
       if (given[index])
         return WordError{i, "field " + detail::quoted(name) + " is given twice", "give it once"};
-      const auto value = parse_value(fields[index], word.substr(equals + 1));
-      if (!value) return WordError{i, value.error, "for example " + std::string{name} + "=0"};
+      const auto value = parse_typed_value(fields[index], word.substr(equals + 1));
+      if (!value)
+        return WordError{i, value.error,
+                         "for example " + std::string{name} + "=0" + std::string{fields[index].unit}};
       raw[index] = *value;
       given[index] = true;
     }

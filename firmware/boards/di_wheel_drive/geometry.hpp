@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <numbers>
 
+#include "ocm/topics/amiro.hpp"
+
 #include "firmware/boards/samples.hpp"
 
 namespace ocm::firmware::boards::di_wheel_drive {
@@ -17,8 +19,17 @@ inline constexpr int ticks_per_turn = 2 * 2 * 16 * 22;
 /// 0.1243 mm.
 inline constexpr double metres_per_tick = std::numbers::pi * wheel_diameter_m / ticks_per_turn;
 
-/// Fastest that a wheel is asked to go. [decided: the thesis's log shows 0.906 m/s]
-inline constexpr double greatest_wheel_speed_m_per_s = 1.0;
+/// The set point of both greatest velocities that the spec gives the motors.
+inline constexpr amiro::Motors greatest_set_point = [] {
+  constexpr double beyond = 1e6;  // of any robot; setters stay within the range
+  amiro::Motors motors;
+  motors.set_x_m_per_s(beyond);
+  motors.set_z_rad_per_s(beyond);
+  return motors;
+}();
+
+/// Fastest that a wheel is asked to go: straight ahead at the greatest velocity.
+inline constexpr double greatest_wheel_speed_m_per_s = greatest_set_point.x_m_per_s();
 
 /// Wheel speeds for a forward velocity (m/s) and an angular velocity (rad/s, counter-clockwise positive).
 /// When a wheel would be too fast both are scaled: the robot takes the same path more slowly.
@@ -30,6 +41,10 @@ inline constexpr double greatest_wheel_speed_m_per_s = 1.0;
   const double scale = fastest > greatest_wheel_speed_m_per_s ? greatest_wheel_speed_m_per_s / fastest : 1.0;
   return {left * scale, right * scale};
 }
+
+// On the spot the wheels are as fast, to the microradian a second.
+static_assert(greatest_set_point.z_rad_per_s() * wheel_base_m / 2 <= greatest_wheel_speed_m_per_s);
+static_assert((greatest_set_point.z_rad_per_s() + 2e-6) * wheel_base_m / 2 > greatest_wheel_speed_m_per_s);
 
 static_assert(wheel_speeds(0.1, 0) == WheelSpeeds{0.1, 0.1});
 static_assert(wheel_speeds(0, 2) == WheelSpeeds{-0.069, 0.069});

@@ -596,9 +596,11 @@ struct Motors {
   static constexpr ocm::base::Duration jitter = std::chrono::milliseconds{1};
   static constexpr ocm::protocol::Priority priority = ocm::protocol::Priority::medium;
 
-  /// forwards; 0.000001 m/s a bit, [-2147.483648, 2147.483647] m/s
+  /// forwards; 0.000001 m/s a bit, [-1, 1] m/s [Thesis table 4.9; range decided: the log in Thesis 6.3 shows
+  /// 0.906 m/s]
   std::int32_t x = 0;
-  /// counter-clockwise seen from above; 0.000001 rad/s a bit, [-2147.483648, 2147.483647] rad/s
+  /// counter-clockwise seen from above; 0.000001 rad/s a bit, [-28.985507, 28.985507] rad/s [Thesis table
+  /// 4.9; range decided: on the spot, each wheel at 1 m/s; they are 69 mm apart (AMiRo-OS 1.0)]
   std::int32_t z = 0;
 
   using XBits = ocm::protocol::Bits<std::int32_t, 0>;
@@ -606,11 +608,11 @@ struct Motors {
 
   [[nodiscard]] constexpr double x_m_per_s() const noexcept { return x / 1'000'000.0; }
   constexpr void set_x_m_per_s(double value) noexcept {
-    x = ocm::protocol::nearest_raw<std::int32_t>(value * 1'000'000.0, XBits::min, XBits::max);
+    x = ocm::protocol::nearest_raw<std::int32_t>(value * 1'000'000.0, -1'000'000, 1'000'000);
   }
   [[nodiscard]] constexpr double z_rad_per_s() const noexcept { return z / 1'000'000.0; }
   constexpr void set_z_rad_per_s(double value) noexcept {
-    z = ocm::protocol::nearest_raw<std::int32_t>(value * 1'000'000.0, ZBits::min, ZBits::max);
+    z = ocm::protocol::nearest_raw<std::int32_t>(value * 1'000'000.0, -28'985'507, 28'985'507);
   }
 
   [[nodiscard]] constexpr ocm::can::Payload encode(std::size_t /*frame*/ = 0) const noexcept {
@@ -1544,8 +1546,8 @@ inline constexpr std::string_view source =
 
 namespace motors {
 inline constexpr std::array<protocol::Field, 2> fields{{
-  {"x", {0, 32, protocol::ByteOrder::little}, true, {1, -6}, {}, "m/s", INT32_MIN, 2'147'483'647, {}, false},
-  {"z", {32, 32, protocol::ByteOrder::little}, true, {1, -6}, {}, "rad/s", INT32_MIN, 2'147'483'647, {}, false},
+  {"x", {0, 32, protocol::ByteOrder::little}, true, {1, -6}, {}, "m/s", -1'000'000, 1'000'000, {}, false},
+  {"z", {32, 32, protocol::ByteOrder::little}, true, {1, -6}, {}, "rad/s", -28'985'507, 28'985'507, {}, false},
 }};
 inline constexpr std::array<protocol::FrameLayout, 1> frames{{
   {"", protocol::TopicId{0x01}, 8, fields, {132, 131, 131, 131}},

@@ -59,11 +59,11 @@ TEST_CASE("set points become the thesis's frames") {  // thesis 4.2.2, figure 6.
   CHECK(frames("led all off") ==
         "23C#000000 23D#000000 23E#000000 23F#000000 240#000000 241#000000 242#000000 243#000000");
   CHECK(frames("drive 0.05m/s 0.2rad/s") == "201#50C30000400D0300");
-  CHECK(frames("drive 50000") == "201#50C3000000000000");
+  CHECK(frames("drive 50000um/s") == "201#50C3000000000000");
   CHECK(frames("drive -.1m/s") == "201#6079FEFF00000000");
-  CHECK(frames("drive 5cm/s -30deg/s") == frames("drive 50000 -523599"));  // 30 deg = 0.523599 rad
+  CHECK(frames("drive 5cm/s -30deg/s") == frames("drive 50000um/s -523599urad/s"));  // 30 deg = 0.523599 rad
   CHECK(frames("drive stop") == "201#0000000000000000");
-  CHECK(frames("set motors x=0.05m/s z=0.2") == "201#50C30000400D0300");
+  CHECK(frames("set motors x=0.05m/s z=0.2rad/s") == "201#50C30000400D0300");
   CHECK(frames("set motors z=0.2rad/s --priority urgent") == "001#00000000400D0300");
   CHECK(frames("set led_8 green=255") == "243#00FF00");
   CHECK(frames("send 205#01840302") == "205#01840302");
@@ -161,9 +161,16 @@ TEST_CASE("what is wrong is said of the word where it stands") {
       {"drive 1 2 3", 3, "unexpected argument '3'", "usage: drive X|stop [Z]"},
       {"drive fast", 1, "'fast' is not a number", "0.05m/s"},
       {"drive 5cm", 1, "another unit", "m/s"},
-      {"drive 1.5", 1, "no unit", ""},
-      {"drive 99999999999", 1, "out of range", ""},
-      {"drive 99999km/s", 1, "out of range", ""},
+      {"drive 1.5", 1, "'1.5' needs a unit: x takes -1 to 1 m/s", "write 0.05m/s, 5cm/s or 50000um/s"},
+      {"drive 500", 1, "'500' needs a unit", "50000um/s"},
+      {"drive 0 1", 2, "'1' needs a unit: z takes -28.985507 to 28.985507 rad/s",
+       "write 0.2rad/s or -30deg/s"},
+      {"drive 99999999999", 1, "needs a unit", ""},
+      {"drive 99999km/s", 1, "out of range: x takes -1 to 1 m/s", ""},
+      {"drive 2000m/s", 1, "out of range: x takes -1 to 1 m/s", ""},
+      {"drive 0.1m/s 1661deg/s", 2, "out of range: z takes", "rad/s"},
+      {"set motors x=1000001um/s", 2, "out of range: x takes -1 to 1 m/s", "x=0m/s"},
+      {"set motors x=1", 2, "'1' needs a unit: x takes -1 to 1 m/s", "for example x=0m/s"},
       {"drive stop 5", 0, "drive stop takes no velocity", "usage: drive stop"},
       {"drive stop --for 2s", 0, "no --for", "usage: drive stop"},
       {"--for 2s drive stop", 2, "no --for", "usage: drive stop"},
@@ -173,7 +180,7 @@ TEST_CASE("what is wrong is said of the word where it stands") {
       {"set motors y=1", 2, "no field 'y'", "x"},
       {"set motors x", 2, "not of the form FIELD=VALUE", "x=0"},
       {"set led_1 gren", 2, "no field 'gren'", "did you mean 'green'?"},
-      {"set motors x=1 x=2", 3, "given twice", ""},
+      {"set motors x=1cm/s x=2cm/s", 3, "given twice", ""},
       {"set motors x=", 2, "is not a number", "x"},
       {"set led_1 red=256", 2, "out of range", ""},
       {"set led_1 red=-1", 2, "out of range", ""},

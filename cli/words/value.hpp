@@ -1,0 +1,83 @@
+/// Numbers for a topic's fields, as people type them and as programs write them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "ocm/base/decimal.hpp"
+#include "ocm/base/result.hpp"
+#include "ocm/protocol/topic.hpp"
+
+#include "cli/words/quantity.hpp"
+
+namespace ocm::cli::words {
+
+namespace detail {
+
+[[nodiscard]] inline std::string quoted(std::string_view word) {
+  return "'" + std::string{word} + "'";
+}
+
+/// "x takes -1 to 1 m/s", with the names that the field's values have.
+[[nodiscard]] inline std::string takes(const protocol::Field& field) {
+  const auto number_text = [&field](std::int64_t raw) {
+    const auto physical = field.physical(raw);
+    return physical ? std::string{base::to_text(*physical).view()} : std::to_string(raw);
+  };
+  std::string expected = number_text(field.raw_min) + " to " + number_text(field.raw_max);
+  if (!field.unit.empty()) expected += " " + std::string{field.unit};
+  if (!field.flags && !field.values.empty()) {
+    std::string names;
+    for (const auto& value : field.values) names.append(names.empty() ? "" : ", ").append(value.name);
+    expected = names + ", or " + expected;
+  }
+  return std::string{field.name} + " takes " + expected;
+}
+
+/// A number with a unit. The field's own is taken off first: one such as 1/min begins like a number.
+[[nodiscard]] inline base::Result<Quantity> quantity_for(const protocol::Field& field,
+                                                         std::string_view text) {
+  if (!field.unit.empty() && text.ends_with(field.unit))
+    if (const auto number = base::parse_decimal(text.substr(0, text.size() - field.unit.size())))
+      return Quantity{*number, field.unit};
+  return parse_quantity(text);
+}
+
+}  // namespace detail
+
+/// A number for a field, from "0.05m/s", "12" (in the field's unit) or the name of a value. The error is said
+/// in words, with the field's unit and range.
+[[nodiscard]] inline base::Result<std::int64_t, std::string> parse_value(const protocol::Field& field,
+                                                                         std::string_view text) {
+  for (const auto& value : field.values)
+    if (!field.flags && value.name == text) return value.raw;
+  const auto quantity = detail::quantity_for(field, text);
+  if (!quantity)
+    return detail::quoted(text) +
+           (field.values.empty() || field.flags ? " is not a number: " : " has no meaning: ") +
+           detail::takes(field);
+  if (!quantity->unit.empty() && field.unit.empty())
+    return detail::quoted(text) + " has a unit, but " + std::string{field.name} +
+           " is a plain number: " + detail::takes(field);
+  const auto physical = convert(*quantity, field.unit);
+  if (physical.error == base::Error::bad_unit)
+    return detail::quoted(text) + " is in another unit: " + detail::takes(field);
+  const auto raw = physical ? field.raw_from(*physical) : base::Result<std::int64_t>{physical.error};
+  if (!raw) return detail::quoted(text) + " is out of range: " + detail::takes(field);
+  return *raw;
+}
+
+/// As parse_value, for what people type: where the field has a unit, so has the number. 500 may be meant in
+/// the field's metres a second or in the wire's micrometres, and a robot must not find out which. Zero is the
+/// same in all units that have no offset. [docs/decisions/0027]
+[[nodiscard]] inline base::Result<std::int64_t, std::string> parse_typed_value(const protocol::Field& field,
+                                                                               std::string_view text) {
+  const auto quantity = detail::quantity_for(field, text);
+  if (quantity && quantity->unit.empty() && !field.unit.empty() &&
+      (quantity->number.digits != 0 || field.offset.digits != 0))
+    return detail::quoted(text) + " needs a unit: " + detail::takes(field);
+  return parse_value(field, text);
+}
+
+}  // namespace ocm::cli::words

@@ -1,0 +1,155 @@
+#include "cli/words/value.hpp"
+
+#include <random>
+#include <string>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/can/text.hpp"
+#include "ocm/topics/amiro.hpp"
+
+#include "cli/words/command.hpp"
+#include "tests/unit/base/explore.hpp"
+
+namespace tool_words_value_test {
+
+using namespace ocm;
+using namespace ocm::cli::words;
+
+/// An actuator to drive whose fields have the scales that a test gives them.
+struct Motors {
+  explicit Motors(base::Decimal x_scale, base::Decimal z_scale, std::int64_t greatest = INT32_MAX)
+      : fields{{{"z",
+                 {32, 32, protocol::ByteOrder::little},
+                 true,
+                 z_scale,
+                 {},
+                 "rad/s",
+                 -greatest,
+                 greatest,
+                 {}},
+                {"x",
+                 {0, 32, protocol::ByteOrder::little},
+                 true,
+                 x_scale,
+                 {},
+                 "m/s",
+                 -greatest,
+                 greatest,
+                 {}}}} {
+    frame.id = protocol::TopicId{0x01};
+    frame.dlc = 8;
+    frame.fields = fields;
+    topic.name = "motors";
+    topic.id = frame.id;
+    topic.kind = protocol::Kind::actuator;
+    topic.role = protocol::Role::drive;
+    topic.frames = {&frame, 1};
+    catalogue.robot = "any";
+    catalogue.topics = {&topic, 1};
+  }
+  Motors(const Motors&) = delete;
+
+  [[nodiscard]] auto parse(std::vector<std::string> words) const {
+    const std::vector<std::string_view> views{words.begin(), words.end()};
+    return CommandParser{catalogue}.parse(views, {});
+  }
+
+  std::array<protocol::Field, 2> fields;  // z first: a field is found by its name
+  protocol::FrameLayout frame;
+  protocol::Topic topic;
+  protocol::Catalogue catalogue;
+};
+
+std::string text(base::Decimal number) {
+  return std::string{base::to_text(number).view()};
+}
+
+TEST_CASE("a typed number means the same whatever the scale on the wire, in drive and in set") {
+  std::mt19937_64 random{27};
+  const auto between = [&random](std::int64_t low, std::int64_t high) {
+    return std::uniform_int_distribution<std::int64_t>{low, high}(random);
+  };
+  for (int i = 0; i < test::explored(2000); ++i) {
+    const auto scale = [&between] {
+      return base::normalised(between(1, 9999), static_cast<int>(between(-9, -3)));
+    };
+    const Motors motors{scale(), scale()};
+    const protocol::Field& x = motors.fields[1];
+    const protocol::Field& z = motors.fields[0];
+    const std::int64_t x_raw = between(-1'000'000, 1'000'000);
+    const std::int64_t z_raw = between(-1'000'000, 1'000'000);
+    const base::Decimal x_value = *x.physical(x_raw);
+    const base::Decimal z_value = *z.physical(z_raw);
+    CAPTURE(text(x.scale), text(z.scale), text(x_value), text(z_value));
+    const auto typed = [](base::Decimal value, int shift, const char* unit) {
+      return text(*base::multiply(value, {1, static_cast<std::int8_t>(shift)})) + unit;
+    };
+
+    const auto driven = motors.parse({"drive", typed(x_value, 0, "m/s"), typed(z_value, 3, "mrad/s")});
+    const auto set =
+        motors.parse({"set", "motors", "x=" + typed(x_value, 6, "um/s"), "z=" + typed(z_value, 0, "rad/s")});
+    REQUIRE(driven.ok());
+    REQUIRE(set.ok());
+    CHECK(driven->frames == set->frames);
+    CHECK(driven->hold->frame == driven->frames[0]);
+    CHECK(x.raw(driven->frames[0].data) == x_raw);
+    CHECK(z.raw(driven->frames[0].data) == z_raw);
+
+    // A bare number is refused everywhere, but zero.
+    const std::string bare = text(x_value);
+    CHECK(motors.parse({"drive", bare}).ok() == (x_raw == 0));
+    CHECK(motors.parse({"drive", "0", text(z_value)}).ok() == (z_raw == 0));
+    CHECK(motors.parse({"set", "motors", "x=" + bare}).ok() == (x_raw == 0));
+    CHECK(motors.parse({"set", "motors", "z=" + text(z_value)}).ok() == (z_raw == 0));
+  }
+}
+
+TEST_CASE("the refusal of a bare number names the units") {
+  const Motors motors{{1, -3}, {1, -3}, 1000};
+  const auto drive = motors.parse({"drive", "500"});
+  CHECK(drive.error.what == "'500' needs a unit: x takes -1 to 1 m/s");
+  CHECK(drive.error.remedy == "write 0.05m/s, 5cm/s or 50000um/s");
+  const auto turn = motors.parse({"drive", "5cm/s", "1"});
+  CHECK(turn.error.word == 2);
+  CHECK(turn.error.what == "'1' needs a unit: z takes -1 to 1 rad/s");
+  CHECK(turn.error.remedy == "write 0.2rad/s or -30deg/s");
+  const auto set = motors.parse({"set", "motors", "x=1"});
+  CHECK(set.error.what == "'1' needs a unit: x takes -1 to 1 m/s");
+  CHECK(set.error.remedy == "for example x=0m/s");
+  CHECK(motors.parse({"drive", "0", "-0.0"}).ok());
+  CHECK(motors.parse({"set", "motors", "x=0"}).ok());
+}
+
+TEST_CASE("beyond its range a velocity is refused with its limits") {
+  const Motors motors{{1, -3}, {1, -3}, 1000};
+  CHECK(motors.parse({"drive", "2000m/s"}).error.what == "'2000m/s' is out of range: x takes -1 to 1 m/s");
+  CHECK(motors.parse({"drive", "1m/s", "-1rad/s"}).ok());
+  CHECK_FALSE(motors.parse({"drive", "1001mm/s"}).ok());
+  CHECK_FALSE(motors.parse({"set", "motors", "z=-1001mrad/s"}).ok());
+}
+
+TEST_CASE("zero needs a unit where the unit has an offset") {
+  protocol::Field field{
+      "target", {0, 16, protocol::ByteOrder::little}, true, {1, -1}, {-27315, -2}, "degC", 0, 4000, {}};
+  CHECK_THAT(parse_typed_value(field, "0").error, Catch::Contains("'0' needs a unit"));
+  CHECK(parse_typed_value(field, "0degC") == parse_value(field, "0"));
+  CHECK(parse_typed_value(field, "0degC").ok());
+}
+
+TEST_CASE("a unit that begins like a number is read, too") {
+  protocol::Field field{"speed", {0, 16, protocol::ByteOrder::little}, true, {1, 0}, {}, "1/min", -900, 900,
+                        {}};
+  CHECK(parse_typed_value(field, "5001/min") == 500);
+  CHECK(parse_typed_value(field, "-5.01/min") == -5);
+  CHECK_FALSE(parse_typed_value(field, "500").ok());
+}
+
+TEST_CASE("a number without a unit stays one") {
+  const auto& red = amiro::catalogue.find("led_1")->frames[0].fields[0];
+  CHECK(parse_typed_value(red, "200") == 200);
+  const auto& action = amiro::catalogue.find("floor_calibration")->frames[0].fields[0];
+  CHECK(parse_typed_value(action, "measure") == parse_value(action, "measure"));
+}
+
+}  // namespace tool_words_value_test
