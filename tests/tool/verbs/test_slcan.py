@@ -1,105 +1,14 @@
-"""amiroctl on serial CAN adapters (SLCAN): the adapter is played here on a pty, by the manual of LAWICEL's CAN232 and
-without a line of the library. python-can's slcan interface is a second host."""
+"""amiroctl on serial CAN adapters (SLCAN), played in played_adapter.py. python-can's slcan interface is a second host."""
 
 import os
-import pty
-import re
 import select
 import signal
 import subprocess
 import sys
-import threading
 import time
-import tty
 
 from harness import Case, main, waiting
-
-FRAME = re.compile(r"^(?:t([0-7][0-9A-Fa-f]{2})|T([01][0-9A-Fa-f]{7}))([0-8])((?:[0-9A-Fa-f]{2})*)$")
-
-
-class Adapter:
-    """An adapter with a robot behind it: `script` maps a frame that the host sends, in candump's notation, to the
-    lines that go up after it."""
-
-    def __init__(self, script=None, refuse=(), mute=False, stamps=True):
-        self.script, self.refuse, self.mute, self.with_stamps = script or {}, set(refuse), mute, stamps
-        self.frames, self.commands = [], []
-        self.open, self.rate, self.stamped = False, None, False
-        self.full = 0  # so many frames are refused
-        self.master, self.slave = pty.openpty()
-        tty.setraw(self.slave)
-        self.path = os.ttyname(self.slave)
-        self.ended = threading.Event()
-        self.asleep = threading.Event()  # reads nothing and answers nothing
-        self.thread = threading.Thread(target=self.run, daemon=True)
-        self.thread.start()
-
-    def run(self):
-        line = b""
-        while not self.ended.is_set():
-            if self.asleep.is_set():
-                time.sleep(0.01)
-                continue
-            if not select.select([self.master], [], [], 0.02)[0]:
-                continue
-            for byte in os.read(self.master, 4096):
-                if byte != 13:
-                    line += bytes([byte])
-                    continue
-                answer, up = self.obey(line.decode("latin-1"))
-                line = b""
-                if not self.mute:
-                    self.say(answer)
-                for text in up:
-                    self.say(text)
-
-    def obey(self, command):
-        ok, refused = "\r", "\a"
-        letter = command[:1]
-        self.commands.append(command)
-        if letter in self.refuse:
-            return refused, []
-        if letter == "":
-            return ok, []
-        if letter in "tT":
-            match = FRAME.match(command)
-            if not self.open or not match or len(match[4]) != 2 * int(match[3]):
-                return refused, []
-            if self.full:
-                self.full -= 1
-                return refused, []
-            text = f"{match[1] or match[2]}#{match[4]}".upper()
-            self.frames.append(text)
-            return ("z" if letter == "t" else "Z") + "\r", self.script.get(text, [])
-        if command == "V":
-            return "V1013\r", []
-        if command == "C":
-            was, self.open = self.open, False
-            return ok if was else refused, []
-        if command == "O":
-            if self.open or self.rate is None:
-                return refused, []
-            self.open = True
-            return ok, []
-        if command == "F":
-            return "F00\r" if self.open else refused, []
-        if re.fullmatch("S[0-8]", command) and not self.open:
-            self.rate = [10, 20, 50, 100, 125, 250, 500, 800, 1000][int(command[1])]
-            return ok, []
-        if re.fullmatch("Z[01]", command) and not self.open and self.with_stamps:
-            self.stamped = command == "Z1"
-            return ok, []
-        return refused, []
-
-    def say(self, text):
-        os.write(self.master, text.encode("latin-1"))
-
-    def unplug(self):
-        self.ended.set()
-        self.thread.join()
-        os.close(self.master)
-        os.close(self.slave)
-
+from played_adapter import Adapter, WithAdapter
 
 # Gyroscope once, and what the thesis's robot answers: x = -4 is 65532, that is -0.07 deg/s.
 GYRO_ONCE, GYRO = "208#02", "t6086FCFF00000000"
@@ -107,12 +16,7 @@ GYRO_ONCE, GYRO = "208#02", "t6086FCFF00000000"
 REST = "201#0000000000000000"
 
 
-class OnASerialLine(Case):
-    def adapter(self, **options):
-        adapter = Adapter(**options)
-        self.addCleanup(lambda: adapter.ended.is_set() or adapter.unplug())
-        return adapter
-
+class OnASerialLine(WithAdapter, Case):
     def test_once_and_its_sample(self):
         adapter = self.adapter(script={GYRO_ONCE: [GYRO + "0010\r"]})
         out, err = self.run_tool("--bus", f"slcan:{adapter.path}@500k", "once", "gyro", "--wait")
