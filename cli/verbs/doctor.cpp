@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "ocm/client/commanders.hpp"
 #include "ocm/client/diagnosis.hpp"
 #include "ocm/client/sample.hpp"
 #include "ocm/protocol/message.hpp"
@@ -51,7 +52,9 @@ class Examination {
   void listen(base::Duration duration, Done done) {
     if (done()) return;
     live_.receive_or_leave(Live::Clock::now() + duration, [&](const can::Received& received) {
-      diagnosis_.take(receiver_.take(received));
+      const auto reception = receiver_.take(received);
+      diagnosis_.take(reception);
+      commanders_.take(received, reception);
       return !done();
     });
   }
@@ -77,6 +80,8 @@ class Examination {
 
   [[nodiscard]] std::vector<Finding> findings() const {
     std::vector<Finding> all = diagnosis_.findings();
+    const auto disputes = commanders_.findings(catalogue_);
+    all.insert(all.end(), disputes.begin(), disputes.end());
     for (Finding& finding : all) finding.remedy = remedy(finding);
     const auto& counters = bus_->counters();
     const auto& seen = receiver_.counters();
@@ -120,6 +125,7 @@ class Examination {
   Live live_;
   client::Receiver receiver_;
   Diagnosis diagnosis_;
+  client::Commanders commanders_;
 };
 
 /// 90061 s as "1 d 1 h".

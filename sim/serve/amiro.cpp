@@ -13,6 +13,7 @@
 #include "sim/serve/boards.hpp"
 #include "sim/serve/clock.hpp"
 #include "sim/serve/interference.hpp"
+#include "sim/serve/turns.hpp"
 
 namespace ocm::sim {
 namespace {
@@ -116,7 +117,9 @@ Ending serve_amiro(const std::string& path, const AmiroOptions& options, const S
                            amiro::catalogue.robot, options.qemu ? " with its boards in QEMU" : "",
                            path.empty() ? "sim" : "sim:" + path, server.path(), options.bit_rate));
 
-  const auto hear = [&boards](const simulation::Delivery& delivery) {
+  Turns turns{amiro::catalogue};
+  const auto hear = [&boards, &turns](const simulation::Delivery& delivery) {
+    turns.take(delivery);
     boards.receive(delivery.frame, delivery.time);
   };
   Interference interference{options.bus_errors, options.world.seed};
@@ -143,6 +146,12 @@ Ending serve_amiro(const std::string& path, const AmiroOptions& options, const S
   if (options.bus_errors > 0)
     shell.report(
         fmt::format("                  {} error frames, {} frames repeated", bus.errors, bus.repetitions));
+  if (bus.clashes != 0)
+    shell.report(
+        fmt::format("                  {} times two senders at once with the same identifier", bus.clashes));
+  turns.each([&shell](const protocol::Topic& topic, std::uint64_t count) {
+    shell.report(fmt::format("{:<17} was commanded by two senders, in turns: {} times", topic.name, count));
+  });
   return {};
 }
 

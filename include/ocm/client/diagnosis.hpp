@@ -33,18 +33,19 @@ enum class Severity : std::uint8_t {
 /// What a finding is about, for programs that have something of their own to say about it.
 enum class Ailment : std::uint8_t {
   other,
-  no_answer,     ///< of any board
-  statusless,    ///< the board sends, but no status
-  silent,        ///< the board does not answer
-  foreign_spec,  ///< the board was built from another spec
-  bus_state,     ///< of its CAN controller
-  part_faults,   ///< parts of the board that do not answer
-  overload,      ///< releases came late or not at all
-  busy,          ///< its CPU
-  restarted,     ///< because of a watchdog or a fault
-  bus_errors,    ///< on the bus, or frames given up
-  refusals,      ///< requests that the board refused; `topic` is the last one's
-  battery_low,   ///<
+  no_answer,       ///< of any board
+  statusless,      ///< the board sends, but no status
+  silent,          ///< the board does not answer
+  foreign_spec,    ///< the board was built from another spec
+  bus_state,       ///< of its CAN controller
+  part_faults,     ///< parts of the board that do not answer
+  overload,        ///< releases came late or not at all
+  busy,            ///< its CPU
+  restarted,       ///< because of a watchdog or a fault
+  bus_errors,      ///< on the bus, or frames given up
+  refusals,        ///< requests that the board refused; `topic` is the last one's
+  battery_low,     ///<
+  two_commanders,  ///< an actuator that two programs command in turns
 };
 
 struct Finding {
