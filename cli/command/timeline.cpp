@@ -11,16 +11,37 @@
 
 namespace ocm::cli {
 
-Timeline::Timeline(transport::Bus& bus, std::string verb,
+Timeline::Timeline(transport::Bus& bus, const protocol::Catalogue& catalogue, std::string verb, Others others,
                    std::function<void(const can::Received&)> on_receive)
     : bus_(&bus),
       verb_(std::move(verb)),
       on_receive_(std::move(on_receive)),
+      others_(others),
+      other_(catalogue, verb_),
       live_(bus),
-      outgoing_(bus, verb_, still_moving) {}
+      outgoing_(bus, verb_) {}
+
+bool Timeline::listen_first(base::Duration duration) {
+  return others_ == Others::allowed || wait(Clock::now() + duration);
+}
+
+void Timeline::send(const can::Frame& frame) {
+  const bool set_point = other_.commanded(frame) != nullptr;
+  if (set_point) outgoing_.otherwise_after_the_next(still_moving);
+  outgoing_.send(frame);
+  if (set_point) moving_ = frame.data != can::Payload{};
+}
+
+void Timeline::carry_out_once(const client::Command& command) {
+  expect_awake();
+  if (command.hold && !held_ && others_ == Others::refused) other_.refuse_if_heard();
+  if (command.ends_hold) outgoing_.otherwise(still_moving);
+  for (const auto& frame : command.frames) send(frame);
+  awake_ = Clock::now();  // a slow bus is waited for
+}
 
 void Timeline::carry_out(const client::Command& command) {
-  for (const auto& frame : command.frames) outgoing_.send(frame);
+  carry_out_once(command);
   if (command.ends_hold) held_.reset();
   if (!command.hold) return;
   const auto now = Clock::now();
@@ -33,12 +54,13 @@ void Timeline::rest() {
   if (!held_) return;
   const can::Frame frame = held_->hold.rest;
   held_.reset();  // before sending: a failure must not come back here
-  outgoing_.send(frame);
+  send(frame);
 }
 
 void Timeline::finish() {
   rest();
   outgoing_.expect_all_left();
+  other_.sum_up();
   if (withheld_ != 0)
     remark(fmt::format("{}: {} set points were not sent, because the one before had not left", verb_,
                        withheld_));
@@ -47,11 +69,14 @@ void Timeline::finish() {
 void Timeline::abandon(std::string what, std::string remedy) {
   const can::Frame frame = held_->hold.rest;
   held_.reset();
+  other_.sum_up();
   // One set point may still wait somewhere; nothing but rest comes behind it.
   const auto taken = bus_->send(frame);
   const bool rests = taken && *taken && outgoing_.all_left(std::chrono::seconds{1});
-  fail({fmt::format("{}: {}; {}", verb_, what, rests ? "the motors were set to zero" : still_moving),
-        std::move(remedy)});
+  const char* const now = rests                 ? "the motors were set to zero"
+                          : outgoing_.matters() ? still_moving
+                                                : "no set point has reached the robot";
+  fail({fmt::format("{}: {}; {}", verb_, what, now), std::move(remedy)});
 }
 
 void Timeline::repeat(Clock::time_point now) {
@@ -88,18 +113,42 @@ void Timeline::repeat(Clock::time_point now) {
 bool Timeline::wait(Clock::time_point until) {
   for (;;) {
     if (interrupted() != 0) return false;
-    const auto now = Clock::now();
+    const auto now = look_at_clock();
     if (held_ && now >= held_->end) rest();
     if (held_ && now >= held_->next) repeat(now);
     if (now >= until) return true;
     auto wake = until;
     if (held_) wake = std::min({wake, held_->next, held_->end});
+    awake_ = wake;
     const Over over = live_.receive(wake, [&](const can::Received& received) {
+      other_.take(received, moving_);
       if (on_receive_) on_receive_(received);
       return true;
     });
     if (over == Over::gone) fail(bus_->failure());
   }
+}
+
+bool Timeline::wait_for_step(Clock::time_point due) {
+  if (!wait(due)) return false;
+  expect_awake();
+  return true;
+}
+
+void Timeline::expect_awake() {
+  look_at_clock();
+  if (stood_still_ < client::longest_without_set_point) return;
+  finish();
+  fail({fmt::format("{}: this program stood still for {}, and carries out no further command", verb_,
+                    words::to_text(std::chrono::duration_cast<std::chrono::milliseconds>(stood_still_))),
+        "was it stopped, or did the machine sleep? Give the command again"});
+}
+
+Timeline::Clock::time_point Timeline::look_at_clock() {
+  const auto now = Clock::now();
+  stood_still_ = std::max(stood_still_, now - awake_);
+  awake_ = now;
+  return now;
 }
 
 bool Timeline::wait_for_hold() {

@@ -3,7 +3,8 @@
 ///
 /// The robot only does what is commanded now. No set point is given to a queue while the one before it has
 /// not left; when none has left for as long as the motors' watchdog waits, or when this program stood still
-/// for so long, the hold ends, and the set point of rest is the next that can leave.
+/// for so long, the hold ends, and the set point of rest is the next that can leave. No hold begins while
+/// another program commands the motors, unless that is allowed.
 #pragma once
 
 #include <chrono>
@@ -15,6 +16,7 @@
 #include "ocm/can/bus.hpp"
 #include "ocm/transport/bus.hpp"
 
+#include "cli/command/other_commander.hpp"
 #include "cli/shared/live.hpp"
 #include "cli/shared/outgoing.hpp"
 #include "cli/words/command.hpp"
@@ -24,14 +26,26 @@ namespace ocm::cli {
 class Timeline {
  public:
   using Clock = Live::Clock;
+  /// Whether a hold begins beside another program's.
+  enum class Others : bool { refused, allowed };
   /// `verb` is for messages. `on_receive` gets every frame that comes while waiting; empty: they are
   /// discarded.
-  Timeline(transport::Bus& bus, std::string verb, std::function<void(const can::Received&)> on_receive);
+  Timeline(transport::Bus& bus, const protocol::Catalogue& catalogue, std::string verb, Others others,
+           std::function<void(const can::Received&)> on_receive);
 
-  /// Sends a command's frames and takes over, or ends, its hold.
+  /// Waits as long as it takes to hear another program that commands the motors, where one is refused. False:
+  /// a signal came first.
+  [[nodiscard]] bool listen_first(base::Duration duration = client::listen_before_hold);
+  /// Sends a command's frames and takes over, or ends, its hold. Leaves if another program commands the
+  /// motors that it would hold, and was heard.
   void carry_out(const client::Command& command);
+  /// The same without a hold: the board's watchdog ends it.
+  void carry_out_once(const client::Command& command);
   /// Waits until `until`, repeating and receiving. False: a signal came first.
   [[nodiscard]] bool wait(Clock::time_point until);
+  /// The same until a step is due; leaves if this program stood still meanwhile: what was wanted then is not
+  /// wanted now. A bus that is slow to take the steps before makes a step late, and no more.
+  [[nodiscard]] bool wait_for_step(Clock::time_point due);
   /// Until the hold is over by itself (drive --for) or a signal comes. False: a signal.
   [[nodiscard]] bool wait_for_hold();
   /// Ends a hold: sends the set point of rest. Nothing without a hold.
@@ -46,6 +60,11 @@ class Timeline {
     Clock::time_point end;
     Clock::time_point left;  ///< when a set point was last sent, with none before it under way
   };
+  void send(const can::Frame& frame);
+  /// Leaves, with the motors at rest, if this program stood still for as long as a watchdog waits.
+  void expect_awake();
+  /// The time; notes for how long this program did not look where it should have.
+  Clock::time_point look_at_clock();
   /// Sends the held set point again, if the last one has left.
   void repeat(Clock::time_point now);
   /// Ends the hold because of something that is wrong.
@@ -54,7 +73,12 @@ class Timeline {
   transport::Bus* bus_;
   std::string verb_;
   std::function<void(const can::Received&)> on_receive_;
+  Others others_;
+  OtherCommander other_;
   std::optional<Held> held_;
+  Clock::time_point awake_ = Clock::now();  ///< when this program looks at the clock next, at the latest
+  Clock::duration stood_still_{};           ///< the longest time that it was later
+  bool moving_ = false;                     ///< a set point of motors was sent, and none of rest after it
   Live live_;
   Outgoing outgoing_;
   std::uint64_t withheld_ = 0;  ///< set points that were due while none could leave

@@ -76,8 +76,26 @@ void Outgoing::expect_all_left(base::Duration patience) {
   give_up(what, not_acknowledged);
 }
 
+void Outgoing::otherwise(std::string meaning) {
+  otherwise_ = std::move(meaning);
+  always_ = true;
+}
+
+void Outgoing::otherwise_after_the_next(std::string meaning) {
+  if (!otherwise_.empty()) return;
+  otherwise_ = std::move(meaning);
+  before_ = bus_.counters().sent;
+  always_ = false;
+}
+
+bool Outgoing::matters() const {
+  if (otherwise_.empty() || always_) return !otherwise_.empty();
+  const auto delivery = bus_.delivery();
+  return bus_.counters().sent - before_ > (delivery.known ? delivery.pending : 0);
+}
+
 void Outgoing::give_up(std::string what, std::string remedy) const {
-  if (!otherwise_.empty()) what += "; " + otherwise_;
+  if (matters()) what += "; " + otherwise_;
   fail({fmt::format("{}: {}", verb_, what), std::move(remedy)});
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <string>
 
 #include "ocm/base/time.hpp"
@@ -25,6 +26,13 @@ class Outgoing {
   /// outlive it.
   Outgoing(transport::Bus& bus, std::string verb, std::string otherwise = {});
 
+  /// From now on it means this that frames do not leave.
+  void otherwise(std::string meaning);
+  /// The same, once one of the frames that are sent from now on has left: nothing was commanded before.
+  void otherwise_after_the_next(std::string meaning);
+  /// Whether it means something for the robot if frames do not leave now.
+  [[nodiscard]] bool matters() const;
+
   /// Waits for room in the queue, at most `patience`; then leaves with the bus's words.
   void send(const can::Frame& frame, base::Duration patience = std::chrono::seconds{1});
   /// Waits until all that was sent has left; leaves and says how much has not, when none has left for
@@ -39,6 +47,8 @@ class Outgoing {
   transport::Bus& bus_;
   std::string verb_;
   std::string otherwise_;
+  std::uint64_t before_ = 0;  ///< frames that were sent before it meant something
+  bool always_ = true;        ///< also if none has left since
 };
 
 }  // namespace ocm::cli

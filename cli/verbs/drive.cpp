@@ -10,16 +10,18 @@
 namespace ocm::cli {
 
 void add_drive(Verb app, Session& session, int& exit_code) {
-  auto verb = app.add_verb("drive", "set the motors, and keep them going until Ctrl-C or --for", act_group,
-                           "  amiroctl drive 0.05m/s 0.2rad/s       until Ctrl-C, then zero\n"
-                           "  amiroctl drive 5cm/s -30deg/s --for 2s\n"
-                           "  amiroctl drive 50000                  bare numbers are um/s and urad/s\n"
-                           "  amiroctl drive stop");
+  auto verb =
+      app.add_verb("drive", "set the motors, and keep them going until Ctrl-C or --for", act_group,
+                   "  amiroctl drive 0.05m/s 0.2rad/s       until Ctrl-C, then zero\n"
+                   "  amiroctl drive 5cm/s -30deg/s --for 2s\n"
+                   "  amiroctl drive 0 30deg/s              turns on the spot; only zero needs no unit\n"
+                   "  amiroctl drive stop");
   struct Options {
     Options(Verb app, Session& s)
         : commanding(app, s, "forward velocity X, angular velocity Z (left is positive); stop: zero") {}
     Commanding commanding;
     bool once = false;
+    bool force = false;
   };
   const auto options = std::make_shared<Options>(verb, session);
   const auto lasting =
@@ -29,16 +31,26 @@ void add_drive(Verb app, Session& session, int& exit_code) {
           .takes(accepted_duration());
   verb.add_flag("--once", options->once, "send one frame; the board stops the motors when none follows")
       .excludes(lasting);
+  verb.add_flag("--force", options->force, "drive even if another program commands the motors");
   verb.callback([options, &session, &exit_code] {
     const auto command = options->commanding.parse();
-    if (options->commanding.dry_run() || options->once || !command.hold)
+    if (options->commanding.dry_run() || !command.hold)
       return carry_out(session, "drive", command, options->commanding.dry_run());
     catch_interrupts();
     catch_hangups();
     const auto bus = session.open_bus();
-    Timeline timeline{*bus, "drive", {}};
-    timeline.carry_out(command);
-    const bool ended = timeline.wait_for_hold();
+    Timeline timeline{*bus,
+                      session.catalogue(),
+                      "drive",
+                      options->force ? Timeline::Others::allowed : Timeline::Others::refused,
+                      {}};
+    bool ended = timeline.listen_first();
+    if (ended && options->once) {
+      timeline.carry_out_once(command);
+    } else if (ended) {
+      timeline.carry_out(command);
+      ended = timeline.wait_for_hold();
+    }
     timeline.finish();
     if (!ended) exit_code = exit_code_after_interrupt(exit_success);
   });

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -26,6 +27,7 @@ struct RunOptions {
   std::string file;
   double speed = 1;
   bool show = false;
+  bool force = false;
   bool dry_run = false;
 };
 
@@ -73,6 +75,20 @@ words::Script checked(const std::string& file, const std::string& text,
        exit_usage);
 }
 
+/// When a step is due, from the start.
+Timeline::Clock::duration due(const words::Step& step, double speed) {
+  return std::chrono::duration_cast<Timeline::Clock::duration>(
+      std::chrono::duration<double, std::nano>(static_cast<double>(step.at.count()) / speed));
+}
+
+/// How long to listen before the start, so that another program that commands the motors is heard before the
+/// first drive: nothing where there is none, or something else to wait for.
+base::Duration listening_of(const words::Script& script, double speed) {
+  for (const auto& step : script.steps)
+    if (step.command.hold) return std::max(base::Duration{0}, client::listen_before_hold - due(step, speed));
+  return {};
+}
+
 void run(Session& session, const RunOptions& options, int& exit_code) {
   const auto& catalogue = session.catalogue();
   const auto script = checked(options.file, read_script(options.file), catalogue);
@@ -95,14 +111,14 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
       printer.write({bus->name(), log::Entry{received.time, received.frame}, reception});
     printer.flush();
   };
-  Timeline timeline{*bus, "run",
+  Timeline timeline{*bus, catalogue, "run",
+                    options.force ? Timeline::Others::allowed : Timeline::Others::refused,
                     options.show ? std::function<void(const can::Received&)>{show}
                                  : std::function<void(const can::Received&)>{}};
+  static_cast<void>(timeline.listen_first(listening_of(script, options.speed)));  // a signal is seen below
   const auto start = Timeline::Clock::now();
   for (const auto& step : script.steps) {
-    const auto at = std::chrono::duration_cast<Timeline::Clock::duration>(
-        std::chrono::duration<double, std::nano>(static_cast<double>(step.at.count()) / options.speed));
-    if (!timeline.wait(start + at)) break;
+    if (!timeline.wait_for_step(start + due(step, options.speed))) break;
     remark(fmt::format("{:>8}  {}", words::to_text(step.at), step.text));
     timeline.carry_out(step.command);
   }
@@ -130,6 +146,7 @@ void add_run(Verb app, Session& session, int& exit_code) {
       .range(0.001, 1000.0)
       .type_name("N");
   verb.add_flag("--show,--listen", options->show, "show what the sensors answer").formerly("--listen");
+  verb.add_flag("--force", options->force, "drive even if another program commands the motors");
   verb.add_flag("--dry-run", options->dry_run, "print each step's frames and send nothing");
   verb.callback([options, &session, &exit_code] { run(session, *options, exit_code); });
 }

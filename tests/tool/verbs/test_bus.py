@@ -184,8 +184,9 @@ class OnTheBus(Case):
     def test_a_bus_that_stands_still(self):
         """The simulator is stopped: its socket takes frames that nobody reads."""
         sim = self.start_sim()
+        listener = self.listen("motors", "--timeout", "20s")
         drive = self.start("drive", "5cm/s")
-        drive.stderr.readline()
+        self.assertIn("50C3000000000000", listener.stdout.readline())
         self.settle()
         sim.send_signal(signal.SIGSTOP)
         _, err = drive.communicate(timeout=10)

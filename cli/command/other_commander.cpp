@@ -1,0 +1,55 @@
+#include "cli/command/other_commander.hpp"
+
+#include <fmt/format.h>
+
+#include "ocm/can/text.hpp"
+#include "ocm/client/command.hpp"
+#include "ocm/protocol/identifier.hpp"
+
+#include "cli/shared/messages.hpp"
+#include "cli/words/quantity.hpp"
+
+namespace ocm::cli {
+
+const protocol::Topic* OtherCommander::commanded(const can::Frame& frame) const {
+  if (frame.format != can::Format::base) return nullptr;
+  const auto id = protocol::Identifier::decode(frame.id);
+  if (id.direction != protocol::Direction::command) return nullptr;
+  const protocol::FrameRef ref = index_.find(id);
+  const bool set_point = ref && ref.topic->role == protocol::Role::drive && frame.dlc == ref.layout().dlc;
+  return set_point ? ref.topic : nullptr;
+}
+
+void OtherCommander::take(const can::Received& received, bool holding) {
+  const protocol::Topic* const motors = commanded(received.frame);
+  if (motors == nullptr) return;
+  const auto now = Clock::now();
+  motors_ = motors;
+  last_ = received.frame;
+  recent_.push_back(now);
+  while (now - recent_.front() > client::listen_before_hold) recent_.pop_front();
+  if (!holding) return;
+  if (meanwhile_++ == 0)
+    remark(fmt::format(
+        "{}: another program commands {}, too: {}; the robot follows the set point that came last", verb_,
+        motors->name, can::to_text(last_).view()));
+}
+
+void OtherCommander::refuse_if_heard() {
+  const auto now = Clock::now();
+  while (!recent_.empty() && now - recent_.front() > client::listen_before_hold) recent_.pop_front();
+  if (recent_.empty()) return;
+  fail({fmt::format("{}: another program commands {}: {}, {} set point{} within {}", verb_, motors_->name,
+                    can::to_text(last_).view(), recent_.size(), recent_.size() == 1 ? "" : "s",
+                    words::to_text(client::listen_before_hold)),
+        "end that program first; --force drives all the same, and the robot follows the set point that came "
+        "last"});
+}
+
+void OtherCommander::sum_up() const {
+  if (meanwhile_ != 0)
+    remark(fmt::format("{}: {} set point{} of another program came meanwhile", verb_, meanwhile_,
+                       meanwhile_ == 1 ? "" : "s"));
+}
+
+}  // namespace ocm::cli

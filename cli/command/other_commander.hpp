@@ -1,0 +1,44 @@
+/// Another program that commands the motors which this one is about to hold, or holds: a board follows the
+/// set point that came last, so two of them take turns. A bus never hands a program its own frames, so every
+/// set point that comes is another one's.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <string>
+
+#include "ocm/can/bus.hpp"
+#include "ocm/can/frame.hpp"
+#include "ocm/host/failure.hpp"
+#include "ocm/protocol/frame_index.hpp"
+#include "ocm/protocol/topic.hpp"
+
+namespace ocm::cli {
+
+class OtherCommander {
+ public:
+  using Clock = std::chrono::steady_clock;
+  /// The catalogue must outlive it. `verb` is for messages.
+  OtherCommander(const protocol::Catalogue& catalogue, std::string verb)
+      : index_(catalogue), verb_(std::move(verb)) {}
+
+  /// The motors that the frame commands; nullptr if it is no set point of motors.
+  [[nodiscard]] const protocol::Topic* commanded(const can::Frame& frame) const;
+  /// A frame from the bus. `holding`: this program commands the motors, too, and says so, once.
+  void take(const can::Received& received, bool holding);
+  /// Leaves through cli::fail if a set point came within client::listen_before_hold.
+  void refuse_if_heard();
+  /// How many set points came while this program commanded the motors, if any did.
+  void sum_up() const;
+
+ private:
+  protocol::FrameIndex index_;
+  std::string verb_;
+  const protocol::Topic* motors_ = nullptr;  // of `last_`
+  can::Frame last_;
+  std::deque<Clock::time_point> recent_;  // of set points within client::listen_before_hold
+  std::uint64_t meanwhile_ = 0;           // set points while this program commanded the motors
+};
+
+}  // namespace ocm::cli

@@ -1,0 +1,174 @@
+"""amiroctl drive and run beside another program that commands the motors, and what they say when something ends them."""
+
+import json
+import os
+import re
+import signal
+import time
+
+from harness import Case, main
+from played_adapter import WithAdapter
+
+FORWARDS = "201#50C3000000000000"
+BACKWARDS = "-5cm/s"
+OTHER = "another program commands motors: " + FORWARDS
+
+
+class Drive(Case):
+    def script(self, text):
+        path = os.path.join(self.folder, "test.script")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+        return path
+
+    def driving(self, *arguments):
+        """A drive whose first set point was seen."""
+        listener = self.listen("motors", "--timeout", "20s")
+        drive = self.start("drive", *(arguments or ("5cm/s",)))
+        self.assertIn("50C3000000000000", listener.stdout.readline())
+        self.interrupt(listener)
+        return drive
+
+
+class TwoCommanders(Drive):
+    def test_a_second_drive_is_refused_and_the_first_goes_on(self):
+        self.start_sim()
+        first = self.driving()
+        for command in (("drive", BACKWARDS), ("drive", BACKWARDS, "--once"),
+                        ("run", self.script("0s drive -5cm/s --for 1s\n")),
+                        ("run", self.script("0s led 1 red\n300ms drive -5cm/s\n"))):
+            _, err = self.run_tool(*command, code=1)
+            self.assertRegex(err, rf"amiroctl: {command[0]}: {OTHER}, [12] set points? within 150ms\n", command)
+            self.assertIn("--force", err)
+            self.assertNotIn("MAY STILL MOVE", err)
+        _, err = self.interrupt(first)
+        self.assertEqual(first.returncode, 130)
+        self.assertNotIn("another program", err)  # none of the refused ones has sent a set point
+
+    def test_force_drives_all_the_same_and_both_sides_say_so(self):
+        sim = self.start_sim()
+        first = self.driving()
+        doctor = self.start("doctor", "--json", "--listen", "1s")
+        self.assertIn("bus: sim", doctor.stderr.readline())
+        _, second = self.run_tool("drive", BACKWARDS, "--for", "1200ms", "--force")
+        out, _ = doctor.communicate(timeout=10)
+        _, err = self.interrupt(first)
+        self.assertEqual(first.returncode, 130)
+        for text, frame in ((err, "201#B03CFFFF00000000"), (second, FORWARDS)):
+            self.assertEqual(text.count(f"drive: another program commands motors, too: {frame}"), 1, text)
+            self.assertRegex(text, r"drive: \d+ set points of another program came meanwhile")
+        findings = [f for f in json.loads(out)["findings"] if "motors" in f["what"]]
+        self.assertEqual([(f["severity"], f["board"]) for f in findings], [("warning", "di_wheel_drive")], out)
+        self.assertRegex(findings[0]["what"], "two programs command motors in turns: 201#.* and 201#")
+        self.assertEqual(doctor.returncode, 1)
+        _, err = self.interrupt(sim)
+        turns = re.search(r"motors +was commanded by two senders, in turns: (\d+) times", err)
+        self.assertGreater(int(turns[1]), 5)
+
+    def test_one_that_comes_later_is_reported_by_a_script(self):
+        self.start_sim()
+        listener = self.listen("motors", "--timeout", "20s")
+        run = self.start("run", self.script("0s drive 5cm/s\n1s stop\n"))
+        self.assertIn("50C3000000000000", listener.stdout.readline())
+        self.run_tool("set", "motors", "x=-1cm/s")
+        _, err = run.communicate(timeout=10)
+        self.assertEqual(run.returncode, 0)
+        self.assertEqual(err.count("run: another program commands motors, too: 201#F0D8FFFF00000000"), 1)
+        self.assertIn("run: 1 set point of another program came meanwhile", err)
+
+    def test_a_drive_alone_hears_no_other_and_stops_at_once(self):
+        sim = self.start_sim()
+        begin = time.monotonic()
+        _, err = self.run_tool("drive", "5cm/s", "--for", "300ms")
+        self.assertGreater(time.monotonic() - begin, 0.45)  # 150 ms to listen
+        _, again = self.run_tool("drive", BACKWARDS, "--for", "300ms")  # the zero of the first is no commander
+        _, forced = self.run_tool("drive", "5cm/s", "--once", "--force")
+        _, script = self.run_tool("run", self.script("0s drive 5cm/s\n200ms drive stop\n300ms drive 1cm/s --for 200ms\n"))
+        for text in (err, again, forced, script):
+            self.assertNotIn("another program", text)
+        _, err = self.interrupt(sim)
+        self.assertNotIn("in turns", err)
+
+    def test_stop_does_not_wait(self):
+        self.start_sim()
+        self.driving()
+        listener = self.listen("motors", "--timeout", "20s")
+        self.run_tool("drive", "stop")
+        lines = [json.loads(listener.stdout.readline())["data"] for _ in range(4)]
+        self.assertIn("0000000000000000", lines)
+
+    def test_doctor_finds_nothing_in_one_drive(self):
+        self.start_sim()
+        self.driving()
+        out, _ = self.run_tool("doctor", "--listen", "500ms")
+        self.assertIn("all is well", out)
+
+
+class Alarm(WithAdapter, Drive):
+    """THE ROBOT MAY STILL MOVE is said where it may."""
+
+    def test_not_where_nothing_was_sent(self):
+        adapter = self.adapter(refuse="t")
+        for command in (("drive", "5cm/s"), ("drive", "5cm/s", "--once"), ("run", self.script("0s drive 5cm/s\n")),
+                        ("run", self.script("0s led 1 red\n0s led 1 blue\n"))):
+            _, err = self.run_tool("--bus", f"slcan:{adapter.path}", *command, code=1)
+            self.assertRegex(err, "was not sent|did not leave|no set point has left .*; no set point has reached the robot")
+            self.assertNotIn("MAY STILL MOVE", err, command)
+
+    def test_where_a_stop_was_not_sent(self):
+        adapter = self.adapter(refuse="t")
+        for command in (("stop",), ("drive", "stop"), ("run", self.script("0s stop\n"))):
+            _, err = self.run_tool("--bus", f"slcan:{adapter.path}", *command, code=1)
+            self.assertIn("THE ROBOT MAY STILL MOVE", err, command)
+
+    def test_not_where_there_is_no_bus(self):
+        for bus in ("sim", "can7", "slcan:/dev/null@500k"):
+            for command in (("drive", "5cm/s"), ("run", self.script("0s drive 5cm/s\n"))):
+                _, err = self.run_tool("--bus", bus, *command, code=1)
+                self.assertNotIn("MAY STILL MOVE", err)
+
+
+class LateSteps(Drive):
+    def test_a_script_that_stood_still_carries_out_no_late_steps(self):
+        self.start_sim()
+        listener = self.listen("--commands", "--timeout", "20s")
+        steps = "".join(f"{1000 + 100 * i}ms led 1 {i},0,0\n" for i in range(1, 10))
+        run = self.start("run", self.script("0s led 1 red\n" + steps))
+        self.assertIn("FF0000", listener.stdout.readline())
+        run.send_signal(signal.SIGSTOP)
+        time.sleep(2)
+        run.send_signal(signal.SIGCONT)
+        _, err = run.communicate(timeout=10)
+        self.assertEqual(run.returncode, 1, err)
+        self.assertRegex(err, r"run: this program stood still for [0-9.]+m?s, and carries out no further command")
+        self.assertNotIn("MAY STILL MOVE", err)
+        self.settle()
+        out, _ = self.interrupt(listener)
+        self.assertEqual(out, "", "a late step was carried out")
+
+    def test_a_slow_bus_makes_steps_late_and_no_more(self):
+        """The queue takes 64 frames, and the bus some 24 a second: the last steps wait for more than a second."""
+        self.start_sim("--bitrate", "2000")
+        listener = self.listen("--commands", "-n", "100", "--timeout", "30s")
+        self.run_tool("run", self.script("".join(f"0s led 1 {i},0,0\n" for i in range(100))))
+        out, _ = listener.communicate(timeout=30)
+        self.assertEqual(len(self.objects(out)), 100)
+
+    def test_a_script_that_drives_and_stood_still_ends_with_zero(self):
+        self.start_sim()
+        listener = self.listen("motors", "--timeout", "20s")
+        run = self.start("run", self.script("0s drive 5cm/s\n500ms drive 6cm/s\n1s drive 7cm/s\n20s stop\n"))
+        self.assertIn("50C3000000000000", listener.stdout.readline())
+        run.send_signal(signal.SIGSTOP)
+        time.sleep(1.5)
+        run.send_signal(signal.SIGCONT)
+        _, err = run.communicate(timeout=10)
+        self.assertEqual(run.returncode, 1, err)
+        self.assertRegex(err, r"run: this program stood still for .*, and drives no further; the motors were set to zero")
+        self.settle()
+        out, _ = self.interrupt(listener)
+        self.assertEqual({line["data"] for line in self.objects(out)} - {"50C3000000000000"}, {"0000000000000000"})
+
+
+if __name__ == "__main__":
+    main()
