@@ -4,24 +4,15 @@
 
 #include "ocm/can/text.hpp"
 #include "ocm/client/command.hpp"
-#include "ocm/protocol/identifier.hpp"
 
 #include "cli/shared/messages.hpp"
+#include "cli/shared/set_points.hpp"
 #include "cli/words/quantity.hpp"
 
 namespace ocm::cli {
 
-const protocol::Topic* OtherCommander::commanded(const can::Frame& frame) const {
-  if (frame.format != can::Format::base) return nullptr;
-  const auto id = protocol::Identifier::decode(frame.id);
-  if (id.direction != protocol::Direction::command) return nullptr;
-  const protocol::FrameRef ref = index_.find(id);
-  const bool set_point = ref && ref.topic->role == protocol::Role::drive && frame.dlc == ref.layout().dlc;
-  return set_point ? ref.topic : nullptr;
-}
-
 void OtherCommander::take(const can::Received& received, bool holding) {
-  const protocol::Topic* const motors = commanded(received.frame);
+  const protocol::Topic* const motors = commanded_motors(index_, received.frame);
   if (motors == nullptr) return;
   const auto now = Clock::now();
   motors_ = motors;
@@ -29,7 +20,8 @@ void OtherCommander::take(const can::Received& received, bool holding) {
   recent_.push_back(now);
   while (now - recent_.front() > client::listen_before_hold) recent_.pop_front();
   if (!holding) return;
-  if (meanwhile_++ == 0)
+  stopped_ = stopped_ || is_rest(last_);
+  if (meanwhile_++ == 0 && !stopped_)
     remark(fmt::format(
         "{}: another program commands {}, too: {}; the robot follows the set point that came last", verb_,
         motors->name, can::to_text(last_).view()));

@@ -14,6 +14,8 @@
 #include "ocm/protocol/frame_index.hpp"
 #include "ocm/protocol/topic.hpp"
 
+#include "cli/shared/set_points.hpp"
+
 namespace ocm::cli {
 
 class OtherCommander {
@@ -23,10 +25,14 @@ class OtherCommander {
   OtherCommander(const protocol::Catalogue& catalogue, std::string verb)
       : index_(catalogue), verb_(std::move(verb)) {}
 
-  /// The motors that the frame commands; nullptr if it is no set point of motors.
-  [[nodiscard]] const protocol::Topic* commanded(const can::Frame& frame) const;
+  /// Whether the frame is a set point of motors.
+  [[nodiscard]] bool is_set_point(const can::Frame& frame) const {
+    return commanded_motors(index_, frame) != nullptr;
+  }
   /// A frame from the bus. `holding`: this program commands the motors, too, and says so, once.
   void take(const can::Received& received, bool holding);
+  /// A set point of rest came while this program commanded the motors.
+  [[nodiscard]] bool has_stopped() const { return stopped_; }
   /// Leaves through cli::fail if a set point came within client::listen_before_hold.
   void refuse_if_heard();
   /// How many set points came while this program commanded the motors, if any did.
@@ -38,6 +44,7 @@ class OtherCommander {
   const protocol::Topic* motors_ = nullptr;  // of `last_`
   can::Frame last_;
   std::deque<Clock::time_point> recent_;  // of set points within client::listen_before_hold
+  bool stopped_ = false;                  // one of `meanwhile_` was zero
   std::uint64_t meanwhile_ = 0;           // set points while this program commanded the motors
 };
 

@@ -21,15 +21,19 @@ Timeline::Timeline(transport::Bus& bus, const protocol::Catalogue& catalogue, st
       live_(bus),
       outgoing_(bus, verb_) {}
 
+Timeline::~Timeline() {
+  if (held_ && !rest_after_all() && outgoing_.matters()) remark(fmt::format("{}: {}", verb_, still_moving));
+}
+
 bool Timeline::listen_first(base::Duration duration) {
   return others_ == Others::allowed || wait(Clock::now() + duration);
 }
 
 void Timeline::send(const can::Frame& frame) {
-  const bool set_point = other_.commanded(frame) != nullptr;
+  const bool set_point = other_.is_set_point(frame);
   if (set_point) outgoing_.otherwise_after_the_next(still_moving);
   outgoing_.send(frame);
-  if (set_point) moving_ = frame.data != can::Payload{};
+  if (set_point) moving_ = !is_rest(frame);
 }
 
 void Timeline::carry_out_once(const client::Command& command) {
@@ -66,17 +70,28 @@ void Timeline::finish() {
                        withheld_));
 }
 
-void Timeline::abandon(std::string what, std::string remedy) {
+bool Timeline::rest_after_all() {
   const can::Frame frame = held_->hold.rest;
   held_.reset();
-  other_.sum_up();
   // One set point may still wait somewhere; nothing but rest comes behind it.
   const auto taken = bus_->send(frame);
-  const bool rests = taken && *taken && outgoing_.all_left(std::chrono::seconds{1});
+  return taken && *taken && outgoing_.all_left(std::chrono::seconds{1});
+}
+
+void Timeline::abandon(std::string what, std::string remedy) {
+  const bool rests = rest_after_all();
+  other_.sum_up();
   const char* const now = rests                 ? "the motors were set to zero"
                           : outgoing_.matters() ? still_moving
                                                 : "no set point has reached the robot";
   fail({fmt::format("{}: {}; {}", verb_, what, now), std::move(remedy)});
+}
+
+void Timeline::end_for_another() {
+  static_cast<void>(rest_after_all());
+  other_.sum_up();
+  fail({fmt::format("{}: another program has set the motors to zero, which ends this drive", verb_),
+        "--force drives on all the same"});
 }
 
 void Timeline::repeat(Clock::time_point now) {
@@ -102,7 +117,10 @@ void Timeline::repeat(Clock::time_point now) {
     abandon(what, not_acknowledged);
   }
   const auto taken = bus_->send(held_->hold.frame);
-  if (taken.error == base::Error::closed) fail(bus_->failure());
+  if (taken.error == base::Error::closed) {
+    held_.reset();
+    fail(bus_->failure());
+  }
   if (taken && *taken)
     held_->left = now;
   else if (++withheld_; now - held_->left >= longest)
@@ -125,7 +143,11 @@ bool Timeline::wait(Clock::time_point until) {
       if (on_receive_) on_receive_(received);
       return true;
     });
-    if (over == Over::gone) fail(bus_->failure());
+    if (over == Over::gone) {
+      held_.reset();
+      fail(bus_->failure());
+    }
+    if (held_ && others_ == Others::refused && other_.has_stopped()) end_for_another();
   }
 }
 

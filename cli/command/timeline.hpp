@@ -36,6 +36,11 @@ class Timeline {
   /// Waits as long as it takes to hear another program that commands the motors, where one is refused. False:
   /// a signal came first.
   [[nodiscard]] bool listen_first(base::Duration duration = client::listen_before_hold);
+  /// An end that nothing foresaw, such as an output that cannot be written: the motors rest all the same.
+  ~Timeline();
+  Timeline(const Timeline&) = delete;
+  Timeline& operator=(const Timeline&) = delete;
+
   /// Sends a command's frames and takes over, or ends, its hold. Leaves if another program commands the
   /// motors that it would hold, and was heard.
   void carry_out(const client::Command& command);
@@ -67,8 +72,12 @@ class Timeline {
   Clock::time_point look_at_clock();
   /// Sends the held set point again, if the last one has left.
   void repeat(Clock::time_point now);
+  /// Sends the set point of rest behind whatever waits; whether it has left.
+  [[nodiscard]] bool rest_after_all();
   /// Ends the hold because of something that is wrong.
   [[noreturn]] void abandon(std::string what, std::string remedy);
+  /// Ends the hold because another program stopped the robot.
+  [[noreturn]] void end_for_another();
 
   transport::Bus* bus_;
   std::string verb_;

@@ -1,6 +1,7 @@
 #include "cli/output/printer.hpp"
 
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <unistd.h>
 
@@ -11,8 +12,9 @@ namespace ocm::cli {
 
 void write_out(std::string_view text) {
   const int error = write_all(STDOUT_FILENO, text).error;
+  if (error == EPIPE && interrupted() == SIGPIPE) throw Exit{exit_code_after_interrupt(exit_failure)};
   if (error == EINTR)
-    fail({"interrupted: whoever reads the output takes no more of it", "the rest of it is lost"},
+    fail({"interrupted: the reader of the output takes no more of it", "the rest of it is lost"},
          exit_code_after_interrupt(exit_failure));
   if (error != 0)
     fail({fmt::format("cannot write the output: {}", std::strerror(error)),

@@ -18,6 +18,7 @@
 #include "ocm/transport/socketcan.hpp"
 
 #include "cli/shared/session.hpp"
+#include "cli/shared/set_points.hpp"
 
 namespace ocm::cli::replay {
 namespace {
@@ -44,9 +45,9 @@ canfd_frame to_raw(const log::Entry& entry) noexcept {
 
 }  // namespace
 
-Outlet::Outlet(std::unique_ptr<transport::Bus> bus)
-    : bus_(std::move(bus)), outgoing_(*bus_, "replay"), takes_fd_(allow_fd(*bus_)) {
-  // Nobody reads what comes back; one identifier is the least that a bus can be asked for.
+Outlet::Outlet(std::unique_ptr<transport::Bus> bus, const protocol::Catalogue& catalogue)
+    : bus_(std::move(bus)), outgoing_(*bus_, "replay"), takes_fd_(allow_fd(*bus_)), index_(catalogue) {
+  // What comes back is not read; one identifier is the least that a bus can be asked for.
   const can::Filter least{can::max_base_id, can::max_base_id};
   if (const auto subscribed = bus_->subscribe({&least, 1}); !subscribed) fail(subscribed.error);
 }
@@ -55,6 +56,7 @@ Outlet::Sent Outlet::send(const log::Entry& entry) {
   if (entry.format == can::Format::error) return Sent::error_frame;
   if (const auto frame = entry.classic()) {
     outgoing_.send(*frame);
+    if (commanded_motors(index_, *frame) != nullptr) set_point_ = *frame;
     return Sent::yes;
   }
   if (!takes_fd_) return Sent::fd_frame;
@@ -66,6 +68,13 @@ Outlet::Sent Outlet::send(const log::Entry& entry) {
     std::this_thread::sleep_for(std::chrono::milliseconds{1});
   }
   return Sent::yes;
+}
+
+bool Outlet::rest() {
+  if (is_rest(set_point_)) return false;
+  set_point_.data = {};
+  outgoing_.send(set_point_);
+  return true;
 }
 
 bool Outlet::send_fd(const log::Entry& entry) const {

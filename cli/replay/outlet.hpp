@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "ocm/log/entry.hpp"
+#include "ocm/protocol/frame_index.hpp"
 #include "ocm/transport/bus.hpp"
 
 #include "cli/shared/outgoing.hpp"
@@ -15,7 +16,8 @@ namespace ocm::cli::replay {
 
 class Outlet {
  public:
-  explicit Outlet(std::unique_ptr<transport::Bus> bus);
+  /// The catalogue says which frames are set points of motors.
+  Outlet(std::unique_ptr<transport::Bus> bus, const protocol::Catalogue& catalogue);
 
   enum class Sent : std::uint8_t {
     yes,
@@ -24,6 +26,9 @@ class Outlet {
   };
   /// Waits for room up to a second, then leaves through cli::fail.
   Sent send(const log::Entry& entry);
+
+  /// Sets motors to zero that the frames have left running. false: they have not.
+  bool rest();
 
   /// Waits until all has left, or leaves through cli::fail and says how much has not. CAN FD frames are not
   /// counted.
@@ -37,6 +42,8 @@ class Outlet {
   std::unique_ptr<transport::Bus> bus_;
   Outgoing outgoing_;
   bool takes_fd_;
+  protocol::FrameIndex index_;
+  can::Frame set_point_;  ///< of motors, the last that was sent
 };
 
 }  // namespace ocm::cli::replay

@@ -61,6 +61,7 @@ void Player::play(log::Reader& log) {
       goes_on = interrupted() == 0 && play(entries[i], log.interfaces());
     write_out(printed_);
   }
+  cut_short_ = true;
 }
 
 bool Player::play(const log::Entry& entry, const log::Interfaces& interfaces) {

@@ -72,6 +72,15 @@ class Player {
   /// The whole log, or as far as --until, or until a signal comes (interrupted()).
   void play(log::Reader& log);
 
+  /// Play was ended before the log's end, by --until or a signal.
+  [[nodiscard]] bool cut_short() const noexcept { return cut_short_; }
+  /// Sets motors to zero that the frames have left running. false: they have left none so.
+  bool rest() {
+    bool any = false;
+    for (Outlet& outlet : outlets_) any = outlet.rest() || any;
+    return any;
+  }
+
   /// Waits until all that was sent has left, or leaves through cli::fail and says how much has not.
   void expect_all_left() {
     for (Outlet& outlet : outlets_) outlet.expect_all_left();
@@ -96,6 +105,7 @@ class Player {
   log::Bytes printed_;
   log::Playback playback_;
   Played played_;
+  bool cut_short_ = false;
   base::Time begin_{};               ///< of the first pass
   std::optional<base::Time> first_;  ///< of the log, in this pass
   bool started_ = false;

@@ -50,6 +50,29 @@ void catch_hangups() {
   }
 }
 
+void catch_broken_pipe() {
+  catch_signal(SIGPIPE);
+}
+
+WithoutBrokenPipe::WithoutBrokenPipe() {
+  struct sigaction now {};
+  sigset_t pipe, before;
+  sigemptyset(&pipe);
+  sigaddset(&pipe, SIGPIPE);
+  blocked_ = sigaction(SIGPIPE, nullptr, &now) == 0 && now.sa_handler == SIG_DFL &&
+             pthread_sigmask(SIG_BLOCK, &pipe, &before) == 0 && sigismember(&before, SIGPIPE) == 0;
+}
+
+WithoutBrokenPipe::~WithoutBrokenPipe() {
+  if (!blocked_) return;
+  sigset_t pipe;
+  sigemptyset(&pipe);
+  sigaddset(&pipe, SIGPIPE);
+  const timespec at_once{};
+  sigtimedwait(&pipe, nullptr, &at_once);  // the one that the write may have raised
+  pthread_sigmask(SIG_UNBLOCK, &pipe, nullptr);
+}
+
 int interrupted() noexcept {
   return noted_signal;
 }

@@ -11,6 +11,21 @@ void catch_interrupts();
 /// SIGHUP (the terminal is closed) and SIGQUIT too, for a verb that has something to finish. A signal that
 /// is ignored (nohup) stays so.
 void catch_hangups();
+/// SIGPIPE too, for a verb that must not be killed between two frames: a write says EPIPE, and the verb ends
+/// as after any other signal.
+void catch_broken_pipe();
+/// As long as it lives no SIGPIPE kills this thread, unless it is caught: what is written is a message, and
+/// the command does not depend on its reader.
+class WithoutBrokenPipe {
+ public:
+  WithoutBrokenPipe();
+  ~WithoutBrokenPipe();
+  WithoutBrokenPipe(const WithoutBrokenPipe&) = delete;
+  WithoutBrokenPipe& operator=(const WithoutBrokenPipe&) = delete;
+
+ private:
+  bool blocked_ = false;
+};
 /// The signal that came last, or 0.
 [[nodiscard]] int interrupted() noexcept;
 /// How many came: what still has to be finished after the first, a second one cuts short.

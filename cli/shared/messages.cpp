@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/shared/interrupt.hpp"
 #include "cli/shared/remedies.hpp"
 
 namespace ocm::cli {
@@ -18,6 +19,7 @@ std::string& speaker() {
 }
 
 void print(std::string_view before, std::string_view text) {
+  const WithoutBrokenPipe message;  // `stop 2>&1 | true` stops
   std::fprintf(stderr, "%.*s%.*s\n", static_cast<int>(before.size()), before.data(),
                static_cast<int>(text.size()), text.data());
 }

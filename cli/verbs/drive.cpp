@@ -38,6 +38,7 @@ void add_drive(Verb app, Session& session, int& exit_code) {
       return carry_out(session, "drive", command, options->commanding.dry_run());
     catch_interrupts();
     catch_hangups();
+    catch_broken_pipe();
     const auto bus = session.open_bus();
     Timeline timeline{*bus,
                       session.catalogue(),

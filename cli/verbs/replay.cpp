@@ -136,13 +136,13 @@ std::vector<replay::Outlet> open_outlets(Session& session, const std::vector<Rou
                                          replay::PlayerOptions& player) {
   std::vector<replay::Outlet> outlets;
   std::vector<std::string> names;
-  if (routes.empty()) outlets.emplace_back(session.open_bus());
+  if (routes.empty()) outlets.emplace_back(session.open_bus(), session.catalogue());
   for (const auto& route : routes) {
     const auto known = std::find(names.begin(), names.end(), route.bus);
     player.routes.emplace_back(route.in_log, static_cast<std::size_t>(known - names.begin()));
     if (known != names.end()) continue;
     names.push_back(route.bus);
-    outlets.emplace_back(Session::open_bus(route.bus));
+    outlets.emplace_back(Session::open_bus(route.bus), session.catalogue());
   }
   return outlets;
 }
@@ -180,6 +180,7 @@ void play(Session& session, const ReplayOptions& options, int& exit_code) {
     fail({"replay: --dry-run plays once", "leave --loop away"}, exit_usage);
 
   catch_interrupts();
+  catch_hangups();
   auto log = std::make_unique<logs::OpenedLog>(options.file, options.from_format, catalogue);
   std::vector<replay::Outlet> outlets;
   std::unique_ptr<log::Writer> printer;
@@ -199,6 +200,9 @@ void play(Session& session, const ReplayOptions& options, int& exit_code) {
       if (last || interrupted() != 0 || player.played().sent == sent_before) break;
       log = std::make_unique<logs::OpenedLog>(options.file, options.from_format, catalogue);
     }
+    // Where the log was not played to its end, the set point that would have ended a drive is not sent.
+    if (player.cut_short() && player.rest())
+      remark("the motors were set to zero: the log goes on behind this");
     player.expect_all_left();
   } catch (const Exit&) {  // the bus took no more: what was sent is told all the same
     if (!options.dry_run) summarise(player, false);

@@ -101,6 +101,7 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
 
   catch_interrupts();
   catch_hangups();
+  catch_broken_pipe();
   const auto bus = session.open_bus();
   client::Receiver receiver{catalogue};
   Printer printer{make_output(isatty(STDOUT_FILENO) != 0 ? Format::pretty : Format::json, catalogue, {},

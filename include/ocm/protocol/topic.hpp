@@ -119,6 +119,7 @@ struct Catalogue {
 
   /// By name or alias; nullptr when there is none. O(topics).
   [[nodiscard]] constexpr const Topic* find(std::string_view name_or_alias) const noexcept {
+    if (name_or_alias.empty()) return nullptr;  // unused aliases are empty
     for (const Topic& topic : topics) {
       if (topic.name == name_or_alias) return &topic;
       for (const auto alias : topic.aliases)
