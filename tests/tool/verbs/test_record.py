@@ -4,14 +4,17 @@ import os
 import re
 import resource
 import signal
+import socket
+import struct
 import subprocess
 import sys
+import threading
 import time
 
 from harness import AMIROCTL, SOURCE, Case, main
 
 sys.path.insert(0, os.path.join(SOURCE, "tests", "peers", "logs"))
-from virtual_bus import Client  # noqa: E402
+from virtual_bus import FRAME, GOODBYE, HELLO, MAGIC, VERSION, Client  # noqa: E402
 
 LINE = re.compile(r"^\((\d+\.\d+)\) (\S+) (\S+)#(\S*)(?: ([RT]))?$")
 
@@ -172,6 +175,34 @@ class Recording(Case):
         for earlier, later in zip(stamps, stamps[1:]):
             self.assertLess(later - earlier, 0.02)
         self.assertIn("of the files deleted again", err)
+
+    def test_split_by_time_while_the_clock_is_set(self):
+        os.makedirs(self.path("ocm"), mode=0o700)
+        server = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        server.bind(self.path("ocm/sim.sock"))
+        os.chmod(self.path("ocm/sim.sock"), 0o600)
+        server.listen()
+        server.settimeout(10)
+
+        def serve():
+            node, _ = server.accept()
+            node.recv(32)
+            node.send(struct.pack("<B3xIIII12s", HELLO, MAGIC, VERSION, 500_000, 64, b"sim"))
+            begin = time.monotonic()
+            while (passed := time.monotonic() - begin) < 2:
+                unix = 1_700_000_000 + passed - (3600 if passed > 0.5 else 0)  # set back after half a second
+                node.send(struct.pack("<BBBxIq8s8x", FRAME, 0, 0, 0x123, int(unix * 1e9), b""))
+                time.sleep(0.01)
+            node.send(struct.pack("<BB2xI24x", GOODBYE, 1, VERSION))
+            node.close()
+
+        player = threading.Thread(target=serve)
+        player.start()
+        recorder = self.record("--bus", "sim", "-o", "part.log", "--split", "300ms")
+        recorder.communicate(timeout=10)
+        player.join()
+        server.close()
+        self.assertGreaterEqual(len(self.ring("part_")), 5)
 
     def test_a_ring_is_a_budget_over_restarts(self):
         self.start_sim()
