@@ -3,10 +3,14 @@
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <utility>
 
 #include <fmt/format.h>
+
+#include "ocm/host/descriptor.hpp"
 
 #include "cli/logs/packing.hpp"
 #include "cli/shared/interrupt.hpp"
@@ -21,6 +25,8 @@ struct LogFile::State {
   std::string path;
   int descriptor = -1;
   bool regular = false;
+  dev_t device = 0;
+  ino_t inode = 0;
   bool finished = false;
   std::uint64_t size = 0;
   std::unique_ptr<log::Writer> writer;
@@ -38,6 +44,45 @@ struct LogFile::State {
                : errno == EINTR ? "whoever reads it takes no more, and a signal ended the wait"
                                 : "what was written before can be read"};
     return false;
+  }
+
+  bool refuse(transport::Failure why) {
+    failure = std::move(why);
+    if (descriptor >= 0 && path != "-") ::close(descriptor);
+    descriptor = -1;
+    return false;
+  }
+
+  /// Empties an ordinary file only once it is locked: another program may be writing to it.
+  bool open(Existing existing) {
+    constexpr int how = O_WRONLY | O_CREAT | O_CLOEXEC;
+    constexpr ::mode_t everybody = 0666;  // less the umask
+    bool made_now = false;
+    if (path == "-") {
+      descriptor = STDOUT_FILENO;
+    } else {
+      descriptor = ::open(path.c_str(), how | O_EXCL, everybody);
+      made_now = descriptor >= 0;
+      if (!made_now && errno == EEXIST) descriptor = ::open(path.c_str(), how, everybody);
+    }
+    struct stat status {};
+    if (descriptor < 0 || ::fstat(descriptor, &status) != 0) {
+      failed("write");
+      return refuse({failure.what, "a folder that exists and may be written to is wanted"});
+    }
+    regular = S_ISREG(status.st_mode) && path != "-";  // stdout may be appended to by others
+    if (!regular) return true;
+    device = status.st_dev;
+    inode = status.st_ino;
+    // A file system without locks is written to without one.
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+      return refuse({fmt::format("another program writes {} now", path), "end it, or give another name"});
+    if (!made_now && existing == Existing::refuse) return refuse(exists_failure(path));
+    if (!made_now && ::ftruncate(descriptor, 0) != 0) {
+      failed("empty");
+      return refuse({failure.what, "give another name"});
+    }
+    return true;
   }
 
   /// A file that takes no more ends where the last call ended, so that it ends with a whole record.
@@ -75,7 +120,8 @@ struct LogFile::State {
 };
 
 transport::Outcome<std::unique_ptr<LogFile>> LogFile::create(const std::string& path, const LogFormat& format,
-                                                             const protocol::Catalogue& catalogue) {
+                                                             const protocol::Catalogue& catalogue,
+                                                             Existing existing) {
   transport::Outcome<std::unique_ptr<LogFile>> made;
   auto state = std::make_unique<State>();
   state->path = path;
@@ -91,15 +137,10 @@ transport::Outcome<std::unique_ptr<LogFile>> LogFile::create(const std::string& 
     }
     state->packer = std::move(*packer);
   }
-  state->descriptor =
-      path == "-" ? STDOUT_FILENO : ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  struct stat status {};
-  if (state->descriptor < 0 || fstat(state->descriptor, &status) != 0) {
-    state->failed("write");
-    made.error = {state->failure.what, "a folder that exists and may be written to is wanted"};
+  if (!state->open(existing)) {
+    made.error = state->failure;
     return made;
   }
-  state->regular = S_ISREG(status.st_mode) && path != "-";  // stdout may be appended to by others
   state->writer = format.writer(catalogue);
   state->writer->begin(state->bytes);
   made.value.reset(new LogFile);
@@ -155,6 +196,27 @@ std::uint64_t LogFile::size() const noexcept {
 
 const std::string& LogFile::path() const noexcept {
   return state_->path;
+}
+
+Place LogFile::place() const noexcept {
+  struct stat ours {};
+  if (!state_->regular || state_->finished || ::fstat(state_->descriptor, &ours) != 0) return Place::as_named;
+  if (ours.st_nlink == 0) return Place::deleted;
+  if (ours.st_size >= 0 && static_cast<std::uint64_t>(ours.st_size) < state_->size) return Place::emptied;
+  struct stat named {};
+  if (::stat(state_->path.c_str(), &named) == 0 && named.st_dev == state_->device &&
+      named.st_ino == state_->inode)
+    return Place::as_named;
+  return Place::elsewhere;
+}
+
+transport::Failure exists_failure(const std::string& path) {
+  return {fmt::format("{} is there already", path), "give another name, or --force to overwrite it"};
+}
+
+bool is_being_written(const std::string& path) {
+  const host::Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
+  return file && ::flock(file.get(), LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
 }
 
 void tell_losses(const log::Losses& losses, const LogFormat& format) {

@@ -16,12 +16,24 @@
 
 namespace ocm::cli::logs {
 
+/// What happens to an ordinary file that has the name already. Pipes and devices are written to in any case.
+enum class Existing : bool { refuse, overwrite };
+
+/// Where an ordinary file is, some time after it was created.
+enum class Place : std::uint8_t {
+  as_named,   ///< also what is no ordinary file
+  deleted,    ///< nothing names it any more: what is written to it is lost
+  emptied,    ///< it is shorter than what was written to it
+  elsewhere,  ///< its name is of no file, or of another
+};
+
 class LogFile {
  public:
-  /// Creates `path`, or empties it; a name that ends in .gz or .zst is compressed. The failure says what and
-  /// what to do.
+  /// Creates `path`; a name that ends in .gz or .zst is compressed. The failure says what and what to do. A
+  /// file that another program of ocm writes to is refused: theirs holds a lock (flock) while it is open.
   [[nodiscard]] static transport::Outcome<std::unique_ptr<LogFile>> create(
-      const std::string& path, const LogFormat& format, const protocol::Catalogue& catalogue);
+      const std::string& path, const LogFormat& format, const protocol::Catalogue& catalogue,
+      Existing existing);
   /// Finishes, if nobody did; what fails then is lost: call `finish`.
   ~LogFile();
 
@@ -41,6 +53,8 @@ class LogFile {
   [[nodiscard]] const log::Losses& lost() const noexcept;
   [[nodiscard]] std::uint64_t size() const noexcept;  ///< bytes written to the file
   [[nodiscard]] const std::string& path() const noexcept;
+  /// Two system calls. Before `finish`.
+  [[nodiscard]] Place place() const noexcept;
 
   LogFile(const LogFile&) = delete;
   LogFile& operator=(const LogFile&) = delete;
@@ -50,6 +64,11 @@ class LogFile {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// Of a file that is there and may not be overwritten.
+[[nodiscard]] transport::Failure exists_failure(const std::string& path);
+/// Whether a program of ocm has the file open as a LogFile.
+[[nodiscard]] bool is_being_written(const std::string& path);
 
 /// What the format could not hold, on stderr, one line; nothing when that is nothing.
 void tell_losses(const log::Losses& losses, const LogFormat& format);

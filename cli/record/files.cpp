@@ -19,18 +19,7 @@ namespace {
 /// Reading back more takes longer than anybody waits for a message.
 constexpr std::uint64_t most_to_read_back = std::uint64_t{1} << 30;
 
-transport::Failure exists_failure(const std::string& path) {
-  return {fmt::format("{} is there already", path), "give another name, or --force to overwrite it"};
-}
-
 }  // namespace
-
-std::size_t entries_before_split(std::span<const log::Entry> entries, base::Time begin,
-                                 base::Duration split) noexcept {
-  const auto later = std::find_if(entries.begin(), entries.end(),
-                                  [&](const log::Entry& entry) { return entry.time - begin >= split; });
-  return static_cast<std::size_t>(later - entries.begin());
-}
 
 Files::Files(FilesOptions options, const protocol::Catalogue& catalogue)
     : options_(std::move(options)),
@@ -38,9 +27,35 @@ Files::Files(FilesOptions options, const protocol::Catalogue& catalogue)
       name_(split_name(options_.path, options_.format->ending)) {}
 
 transport::Outcome<void> Files::open() {
+  if (auto joined = join_ring(); !joined) return joined;
   auto opened = open_next();
-  if (opened) first_path_ = path_;
+  if (!opened) return opened;
+  first_path_ = path_;
+  delete_oldest();
   return opened;
+}
+
+/// A ring is a budget of the folder: what recordings of the same name have left counts, and goes first.
+transport::Outcome<void> Files::join_ring() {
+  if (options_.ring == 0) return {};
+  const auto there = numbered_files(name_);
+  const std::string all = fmt::format("{}_*{}", name_.stem, name_.ending);
+  for (const auto& file : there)
+    if (logs::is_being_written(file.path))
+      return transport::Failure{fmt::format("another program records to {} now", file.path),
+                                "end it, or give another name"};
+  // One more than the ring has is what a recording leaves that was cut off while it changed files.
+  if (there.size() > options_.ring + 1 && !options_.overwrite)
+    return transport::Failure{fmt::format("{} files {} are there, and --ring {} would delete {} of them now",
+                                          there.size(), all, options_.ring, there.size() + 1 - options_.ring),
+                              "give another name, or --force to delete them"};
+  for (const auto& file : there) kept_.push_back(file.path);
+  if (!there.empty()) {
+    number_ = there.back().number;
+    remark(fmt::format("the ring holds {} file{} of earlier recordings, {}; the oldest go first",
+                       there.size(), there.size() == 1 ? "" : "s", all));
+  }
+  return {};
 }
 
 /// The name of the next file, with an empty file of ours in its place.
@@ -51,7 +66,8 @@ transport::Outcome<std::string> Files::claim_next() {
     std::string path = options_.split.any() ? numbered(name_, number_)
                        : number_ == 1       ? options_.path
                                             : fmt::format("{}-{}{}", name_.stem, number_, name_.ending);
-    switch (options_.overwrite ? Claimed::ours : claim(path)) {
+    // In a ring all that may be overwritten comes before the number.
+    switch (options_.overwrite && options_.ring == 0 ? Claimed::ours : claim(path)) {
       case Claimed::ours:
         return path;
       case Claimed::failed:
@@ -59,7 +75,7 @@ transport::Outcome<std::string> Files::claim_next() {
                                   "name a file in a folder that is there and that you may write to"};
       case Claimed::taken:
         // Of a name that the user gave only the later numbers may be chosen freely.
-        if (count_ == 0 && !options_.numbers_free) return exists_failure(path);
+        if (count_ == 0 && !options_.numbers_free && options_.ring == 0) return logs::exists_failure(path);
         break;
     }
   }
@@ -68,7 +84,7 @@ transport::Outcome<std::string> Files::claim_next() {
 transport::Outcome<void> Files::open_next() {
   auto path = claim_next();
   if (!path) return std::move(path.error);
-  auto file = logs::LogFile::create(*path, *options_.format, *catalogue_);
+  auto file = logs::LogFile::create(*path, *options_.format, *catalogue_, logs::Existing::overwrite);
   if (!file) return std::move(file.error);
   file_ = std::move(file.value);
   file_->without_signals();  // they are for the thread that receives
@@ -78,17 +94,27 @@ transport::Outcome<void> Files::open_next() {
   ++count_;
   entries_ = 0;
   begin_.reset();
+  elsewhere_ = false;
   std::fill(recorded_.begin(), recorded_.end(), log::Recorded{});
   return {};
 }
 
-bool Files::write(std::span<const log::Entry> entries, const log::Interfaces& interfaces) {
+/// How many of the entries still belong into the newest file.
+std::size_t Files::entries_before_split(std::span<const log::Entry> entries) {
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const base::Duration came = clock_.at(entries[i]);
+    if (!begin_) begin_ = came;
+    if (came - *begin_ >= options_.split.time) return i;
+  }
+  return entries.size();
+}
+
+bool Files::write(std::span<const log::Entry> entries, const log::Interfaces& interfaces,
+                  base::Duration now) {
+  clock_.fetched(entries, now);
   while (!entries.empty()) {
     std::size_t count = entries.size();
-    if (options_.split.time > base::Duration::zero())
-      count = begin_
-                  ? entries_before_split(entries, *begin_, options_.split.time)
-                  : 1 + entries_before_split(entries.subspan(1), entries.front().time, options_.split.time);
+    if (options_.split.time > base::Duration::zero()) count = entries_before_split(entries);
     if (count == 0) {
       if (!next_file()) return false;
       continue;
@@ -104,7 +130,6 @@ bool Files::write(std::span<const log::Entry> entries, const log::Interfaces& in
 }
 
 bool Files::append(std::span<const log::Entry> entries, const log::Interfaces& interfaces) {
-  if (!begin_) begin_ = entries.front().time;
   recorded_.resize(std::max(recorded_.size(), interfaces.size()));
   for (const auto& entry : entries) ++recorded_[entry.interface].received;
   entries_ += entries.size();
@@ -113,11 +138,31 @@ bool Files::append(std::span<const log::Entry> entries, const log::Interfaces& i
 }
 
 bool Files::flush() {
-  if (file_->flush(options_.sync)) return true;
-  return failed(file_->failure());
+  if (!file_->flush(options_.sync)) return failed(file_->failure());
+  return is_in_place();
 }
 
-bool Files::finish() {
+/// What cannot be read any more is not recorded: that ends the recording. What has another name by now is
+/// said at the end, so that all of it is there.
+bool Files::is_in_place() {
+  using logs::Place;
+  switch (file_->place()) {
+    case Place::as_named:
+      return true;
+    case Place::deleted:
+      return failed({fmt::format("{} was deleted while it was recorded, and its frames with it", path_),
+                     "record again; --split keeps what was recorded before in files of its own"});
+    case Place::emptied:
+      return failed({fmt::format("{} was emptied by another program while it was recorded", path_),
+                     "record again, to a name that no other program uses"});
+    case Place::elsewhere:
+      elsewhere_ = true;
+      break;
+  }
+  return true;
+}
+
+bool Files::finish(Next next) {
   if (finished_) return failure_.what.empty();
   finished_ = true;
   recorded_.resize(std::max(recorded_.size(), dropped_.size()));
@@ -125,17 +170,21 @@ bool Files::finish() {
   for (std::size_t i = 0; i < dropped_.size(); ++i)
     recorded_[i].dropped = dropped_[i] - std::exchange(told_dropped_[i], dropped_[i]);
   // finish whatever happens: it closes the file. What it writes then must be on the disk, too.
-  const bool told = file_->recorded(recorded_) && file_->flush(options_.sync);
+  const bool told = file_->recorded(recorded_) && file_->flush(options_.sync) && is_in_place();
   const bool done = file_->finish() && told;
   for (std::size_t i = 0; i < log::losses; ++i) {
     const auto lost = static_cast<log::Lost>(i);
     losses_.add(lost, file_->lost().count(lost));
   }
+  if (done && elsewhere_ && next == Next::none)
+    return failed(
+        {fmt::format("{} was moved while it was recorded: its frames are where it was moved to", path_),
+         "look for it there; another file may have its name now"});
   return done || failed(file_->failure());
 }
 
 bool Files::next_file() {
-  if (!finish()) return false;
+  if (!finish(Next::file)) return false;
   finished_size_ += file_->size();
   finished_entries_ += entries_;
   if (const auto opened = open_next(); !opened) {
@@ -163,6 +212,7 @@ bool Files::failed(const transport::Failure& failure) {
 
 std::uint64_t Files::readable() const {
   std::error_code unreadable;
+  if (elsewhere_) return finished_entries_ + entries_;
   // A device may have no end.
   if (path_ == "-" || !std::filesystem::is_regular_file(path_, unreadable)) return finished_entries_;
   if (entries_ == 0 || file_->size() > most_to_read_back) return finished_entries_;

@@ -1,5 +1,6 @@
 /// The file that a recording goes into, or the files: a new one at a size or a time, the oldest deleted where
-/// only the newest are kept. Every frame is in exactly one of them, in order.
+/// only the newest are kept, those of earlier recordings included. Every frame is in exactly one of them, in
+/// order. No clock is read: the time is handed in.
 #pragma once
 
 #include <cstdint>
@@ -20,6 +21,7 @@
 
 #include "cli/logs/format.hpp"
 #include "cli/logs/log_file.hpp"
+#include "cli/record/frame_clock.hpp"
 #include "cli/record/names.hpp"
 
 namespace ocm::cli::record {
@@ -27,20 +29,15 @@ namespace ocm::cli::record {
 /// When a file is full. Zero: never.
 struct Split {
   std::uint64_t size = 0;  ///< bytes that were written to it
-  base::Duration time{};   ///< from its first frame, by the frames' own times
+  base::Duration time{};   ///< from its first frame, by FrameClock
   [[nodiscard]] bool any() const noexcept { return size != 0 || time > base::Duration::zero(); }
 };
-
-/// How many of the entries still belong into a file that began at `begin`; at least those before the first
-/// that is `split` or more later. A time that goes back belongs to the file.
-[[nodiscard]] std::size_t entries_before_split(std::span<const log::Entry> entries, base::Time begin,
-                                               base::Duration split) noexcept;
 
 struct FilesOptions {
   std::string path;  ///< "-": stdout; of a recording in several files the name that is numbered
   const logs::LogFormat* format = nullptr;
   Split split;
-  std::uint64_t ring = 0;  ///< keep so many; 0: all
+  std::uint64_t ring = 0;  ///< keep so many of this name, whoever recorded them; 0: all
   bool overwrite = false;
   bool numbers_free = false;  ///< the name was not chosen by the user: a free one near it will do
   bool sync = true;
@@ -53,12 +50,15 @@ class Files {
   /// The first file. The failure names the file and says what to do.
   [[nodiscard]] transport::Outcome<void> open();
 
-  /// Each: false when a file takes no more: `failure` says why.
-  [[nodiscard]] bool write(std::span<const log::Entry> entries, const log::Interfaces& interfaces);
-  /// What was taken so far goes to the kernel, and to the disk where that is asked for.
+  /// Each: false when a file takes no more: `failure` says why. `now` is of a monotonic clock, when the
+  /// entries were fetched.
+  [[nodiscard]] bool write(std::span<const log::Entry> entries, const log::Interfaces& interfaces,
+                           base::Duration now);
+  /// What was taken so far goes to the kernel, and to the disk where that is asked for. Notices a file that
+  /// was deleted meanwhile.
   [[nodiscard]] bool flush();
   /// Once, at the end, also after a failure.
-  [[nodiscard]] bool finish();
+  [[nodiscard]] bool finish() { return finish(Next::none); }
 
   /// Of every interface, by its number: frames that were on the bus and could not be written, so far.
   void set_dropped(std::span<const std::uint64_t> dropped) {
@@ -78,11 +78,16 @@ class Files {
   [[nodiscard]] std::uint64_t readable() const;
 
  private:
+  [[nodiscard]] std::size_t entries_before_split(std::span<const log::Entry> entries);
+  [[nodiscard]] transport::Outcome<void> join_ring();
   [[nodiscard]] transport::Outcome<std::string> claim_next();
   [[nodiscard]] transport::Outcome<void> open_next();
   [[nodiscard]] bool append(std::span<const log::Entry> entries, const log::Interfaces& interfaces);
   [[nodiscard]] bool failed(const transport::Failure& failure);
   [[nodiscard]] bool next_file();
+  enum class Next : bool { file, none };
+  [[nodiscard]] bool is_in_place();
+  [[nodiscard]] bool finish(Next next);
   void delete_oldest();
 
   FilesOptions options_;
@@ -99,8 +104,10 @@ class Files {
   std::uint64_t deleted_ = 0;
   std::uint64_t finished_size_ = 0;
   std::uint64_t finished_entries_ = 0;
-  std::uint64_t entries_ = 0;        ///< in the newest file
-  std::optional<base::Time> begin_;  ///< of the newest file: its first frame
+  std::uint64_t entries_ = 0;  ///< in the newest file
+  FrameClock clock_;
+  std::optional<base::Duration> begin_;  ///< of the newest file: when its first frame came
+  bool elsewhere_ = false;               ///< the newest file has another name by now
   log::Losses losses_;
   std::vector<log::Recorded> recorded_;  ///< of the newest file
   std::vector<std::uint64_t> dropped_;

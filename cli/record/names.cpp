@@ -1,8 +1,13 @@
 #include "cli/record/names.hpp"
 
+#include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <fcntl.h>
+#include <filesystem>
 #include <sys/stat.h>
+#include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -13,19 +18,30 @@
 
 namespace ocm::cli::record {
 
-std::string default_stem(std::string_view robot, std::time_t now) {
+namespace {
+
+std::string robot_stem(std::string_view robot) {
   std::string stem;
   for (const char c : robot) {
     const bool letter = (c >= 'a' && c <= 'z') || base::is_digit(c);
     if (letter) stem += c;
     if (c >= 'A' && c <= 'Z') stem += static_cast<char>(c - 'A' + 'a');
   }
-  if (stem.empty()) stem = "robot";
+  return stem.empty() ? "robot" : stem;
+}
+
+}  // namespace
+
+std::string default_stem(std::string_view robot, std::time_t now) {
   std::tm local{};
   ::localtime_r(&now, &local);
   char moment[32];
   const std::size_t size = std::strftime(moment, sizeof moment, "-%Y-%m-%d_%H%M%S", &local);
-  return stem + std::string{moment, size};
+  return robot_stem(robot) + std::string{moment, size};
+}
+
+std::string ring_stem(std::string_view robot) {
+  return robot_stem(robot) + "-ring";
 }
 
 FileName split_name(const std::string& path, std::string_view ending) {
@@ -40,6 +56,33 @@ FileName split_name(const std::string& path, std::string_view ending) {
 
 std::string numbered(const FileName& name, std::uint64_t number) {
   return fmt::format("{}_{:03}{}", name.stem, number, name.ending);
+}
+
+std::vector<NumberedFile> numbered_files(const FileName& name) {
+  const std::filesystem::path beginning{name.stem + "_"};
+  const std::string prefix = beginning.filename();
+  std::vector<NumberedFile> files;
+  std::error_code error;
+  const auto folder = beginning.has_parent_path() ? beginning.parent_path() : std::filesystem::path{"."};
+  for (std::filesystem::directory_iterator entry{folder, error}, end; !error && entry != end;
+       entry.increment(error)) {
+    const std::string own = entry->path().filename();
+    if (own.size() <= prefix.size() + name.ending.size() || !own.starts_with(prefix) ||
+        !own.ends_with(name.ending))
+      continue;
+    const char* const last = own.data() + own.size() - name.ending.size();
+    NumberedFile file;
+    const auto [stopped, bad] = std::from_chars(own.data() + prefix.size(), last, file.number);
+    file.path = numbered(name, file.number);
+    // Of several ways to write a number only ours: drive_7.log is of somebody else.
+    std::error_code unknown;
+    if (bad == std::errc{} && stopped == last && std::filesystem::path{file.path}.filename() == own &&
+        entry->is_regular_file(unknown))
+      files.push_back(std::move(file));
+  }
+  std::sort(files.begin(), files.end(),
+            [](const NumberedFile& a, const NumberedFile& b) { return a.number < b.number; });
+  return files;
 }
 
 Claimed claim(const std::string& path) {

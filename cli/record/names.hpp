@@ -6,6 +6,7 @@
 #include <ctime>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "ocm/transport/bus.hpp"
 
@@ -13,6 +14,9 @@ namespace ocm::cli::record {
 
 /// "amiro-2026-11-21_163000", in local time; of a robot's name what a file's name can hold.
 [[nodiscard]] std::string default_stem(std::string_view robot, std::time_t now);
+/// "amiro-ring": the same for every recording, so that each finds the files of those before. Without the
+/// moment, which a robot does not know at boot if its clock has no battery.
+[[nodiscard]] std::string ring_stem(std::string_view robot);
 
 /// "drive.log.gz" with ".log" -> "drive" and ".log.gz"; where the name does not end so, all of it and
 /// nothing.
@@ -24,6 +28,13 @@ struct FileName {
 
 /// "drive_007.log": the seventh file of a recording; more digits where 999 are not enough.
 [[nodiscard]] std::string numbered(const FileName& name, std::uint64_t number);
+
+/// The files of a recording that are there, by number.
+struct NumberedFile {
+  std::uint64_t number = 0;
+  std::string path;
+};
+[[nodiscard]] std::vector<NumberedFile> numbered_files(const FileName& name);
 
 /// What a file is created for: a pipe or a device may be there already, an ordinary file may not.
 enum class Claimed : std::uint8_t { ours, taken, failed };

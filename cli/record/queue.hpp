@@ -20,6 +20,7 @@ namespace ocm::cli::record {
 
 struct Block {
   std::size_t count = 0;
+  std::chrono::steady_clock::time_point fetched;  ///< the newest of the entries
   std::array<log::Entry, log::batch> entries;
   [[nodiscard]] std::span<const log::Entry> filled() const noexcept {
     return std::span{entries}.first(count);

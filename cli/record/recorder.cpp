@@ -108,6 +108,7 @@ void Recorder::run() {
 
 /// What waits on all buses.
 std::size_t Recorder::drain() {
+  fetched_ = Clock::now();
   if (ports_.size() == 1) return drain_into_blocks(ports_.front());
   std::size_t count = 0;
   for (Port& port : ports_) count += drain_into_merge(port);
@@ -169,6 +170,7 @@ void Recorder::keep(Port& port, std::size_t count) {
   }
   received_ += count;
   block_->count += count;
+  block_->fetched = fetched_;
   if (block_->full()) hand_over();
 }
 
@@ -283,7 +285,7 @@ void Recorder::write(std::unique_ptr<Block> block) {
   if (!disk_failed_) {
     std::vector<std::uint64_t> dropped(dropped_.begin(), dropped_.end());
     files_->set_dropped(dropped);
-    if (!files_->write(block->filled(), interfaces_)) disk_failed_ = true;
+    if (!files_->write(block->filled(), interfaces_, block->fetched.time_since_epoch())) disk_failed_ = true;
     size_ = files_->size();
   }
   queue_.give_back(std::move(block));

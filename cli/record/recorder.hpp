@@ -96,6 +96,7 @@ class Recorder {
   Clock::time_point begin_;
   Clock::time_point handed_over_;
   Clock::time_point looked_;
+  Clock::time_point fetched_;
   Clock::time_point shown_;
   std::uint64_t shown_received_ = 0;
   std::vector<std::atomic<std::uint64_t>> dropped_;  ///< by number of the interface, for the writing thread

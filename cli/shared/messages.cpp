@@ -18,7 +18,8 @@ std::string& speaker() {
   return verb;
 }
 
-void print(std::string_view before, std::string_view text) {
+void print(std::string_view before, std::string_view raw) {
+  const std::string text = printable(raw);
   const WithoutBrokenPipe message;  // `stop 2>&1 | true` stops
   std::fprintf(stderr, "%.*s%.*s\n", static_cast<int>(before.size()), before.data(),
                static_cast<int>(text.size()), text.data());
@@ -28,6 +29,22 @@ void print(std::string_view before, std::string_view text) {
 
 void speak_for(std::string_view verb) {
   speaker() = verb;
+}
+
+std::string printable(std::string_view text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const bool second_set = byte == 0xC2 && i + 1 < text.size() &&
+                            (static_cast<unsigned char>(text[i + 1]) & 0xE0) == 0x80;  // U+0080 to U+009F
+    if ((byte < 0x20 && byte != '\n' && byte != '\t') || byte == 0x7F)
+      out += fmt::format("\\x{:02x}", byte);
+    else if (second_set)
+      out += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[++i]));
+    else
+      out += text[i];
+  }
+  return out;
 }
 
 void fail(const transport::Failure& failure, int code) {

@@ -19,6 +19,9 @@ struct Exit {
 
 /// From now on wrong usage is told with this verb's name before it, "analyse bus". One program runs one verb.
 void speak_for(std::string_view verb);
+/// The text with its control characters written as \x1b, line ends and tabs apart: file names, words of
+/// scripts and names in logs must not command the terminal. All messages go through it.
+[[nodiscard]] std::string printable(std::string_view text);
 /// Prints "amiroctl: what" and the remedy on stderr and leaves with `code`.
 [[noreturn]] void fail(const transport::Failure& failure, int code = exit_failure);
 /// As fail, and goes on.

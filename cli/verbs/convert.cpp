@@ -17,6 +17,7 @@ namespace {
 struct ConvertOptions {
   std::string in, out;
   std::string from, to;
+  bool force = false;
   bool strict = false;
 };
 
@@ -81,7 +82,8 @@ void convert(Session& session, const ConvertOptions& options, int& exit_code) {
   catch_interrupts();
   refuse_same_file(options);
   logs::OpenedLog in{options.in, options.from, session.catalogue()};
-  auto out = logs::LogFile::create(options.out, format, session.catalogue());
+  auto out = logs::LogFile::create(options.out, format, session.catalogue(),
+                                   options.force ? logs::Existing::overwrite : logs::Existing::refuse);
   if (!out) fail(out.error);
 
   const std::uint64_t frames = copy(in, **out);
@@ -127,6 +129,7 @@ void add_convert(Verb app, Session& session, int& exit_code) {
   verb.add_option("--to", options->to, "format of OUT; default: its ending")
       .type_name("FORMAT")
       .takes(accepted_words(logs::writable_formats()));
+  verb.add_flag("--force", options->force, "overwrite OUT if it is there");
   verb.add_flag("--strict", options->strict, "exit 1 when anything was lost or could not be read");
   verb.callback([options, &session, &exit_code] { convert(session, *options, exit_code); });
 }

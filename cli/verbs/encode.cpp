@@ -18,6 +18,7 @@ struct EncodeOptions {
   std::string in = "-";
   std::string out = "-";
   std::string to;
+  bool force = false;
   bool keep_going = false;
 };
 
@@ -37,7 +38,8 @@ void encode(Session& session, const EncodeOptions& options, int& exit_code) {
   const auto& format = wanted_format(options);
   catch_interrupts();
   FrameLines lines{options.in, session.catalogue(), options.keep_going};
-  auto out = logs::LogFile::create(options.out, format, session.catalogue());
+  auto out = logs::LogFile::create(options.out, format, session.catalogue(),
+                                   options.force ? logs::Existing::overwrite : logs::Existing::refuse);
   if (!out) fail(out.error);
   std::array<log::Entry, log::batch> entries;
   log::Interfaces interfaces;
@@ -80,6 +82,7 @@ void add_encode(Verb app, Session& session, int& exit_code) {
   verb.add_option("--to", options->to, "format of the log; default: candump")
       .type_name("FORMAT")
       .takes(accepted_words(logs::writable_formats()));
+  verb.add_flag("--force", options->force, "overwrite the log if it is there");
   verb.add_flag("--keep-going", options->keep_going, "tell bad lines and go on; exit 1 at the end");
   verb.callback([options, &session, &exit_code] { encode(session, *options, exit_code); });
 }

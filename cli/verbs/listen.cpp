@@ -67,7 +67,11 @@ void listen(Session& session, const ListenOptions& options, int& exit_code) {
   display.summarise(bus->counters().lost);
   if (over == Over::gone) fail(bus->failure());
   // As with candump -n: whoever waits for frames and gets none wants to know.
-  if (over == Over::time && options.count != 0) exit_code = exit_failure;
+  if (over == Over::time && options.count != 0) {
+    remark(fmt::format("amiroctl: listen: expected {} frames, only {} came in time", options.count,
+                       display.shown()));
+    exit_code = exit_failure;
+  }
   if (options.strict && (display.counters().faults() != 0 || bus->counters().lost != 0))
     exit_code = exit_failure;
   exit_code = exit_code_after_interrupt(exit_code);

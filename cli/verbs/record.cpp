@@ -120,9 +120,11 @@ record::FilesOptions file_options(const RecordOptions& options, const protocol::
   files.overwrite = options.force;
   files.sync = !options.no_sync;
   files.numbers_free = options.file.empty();
-  files.path = options.file.empty() ? record::default_stem(catalogue.robot, std::time(nullptr)) +
-                                          std::string{files.format->ending}
-                                    : options.file;
+  files.path = options.file;
+  if (files.path.empty())
+    files.path = (files.ring != 0 ? record::ring_stem(catalogue.robot)
+                                  : record::default_stem(catalogue.robot, std::time(nullptr))) +
+                 std::string{files.format->ending};
   if (files.path == "-" && files.split.any())
     fail({"record: --split needs a file", "name one with -o"}, exit_usage);
   if (files.ring != 0 && !files.split.any())
@@ -221,7 +223,10 @@ void add_record(Verb app, Session& session, int& exit_code) {
       .one_a_mention();
   verb.add_option("--split", options->split, "a new file after this size or time: 100MB, 10min")
       .type_name("SIZE|T");
-  verb.add_option("--ring", options->ring, "with --split: keep the newest N files").type_name("N").positive();
+  verb.add_option("--ring", options->ring,
+                  "with --split: keep the newest N files of this name, over restarts")
+      .type_name("N")
+      .positive();
   verb.add_option("-n,--count", options->count, "end after so many frames").type_name("N").positive();
   add_duration(verb, "--duration", options->duration, "end after this time");
   verb.add_flag("--no-sync", options->no_sync,

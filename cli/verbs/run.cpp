@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <span>
 #include <system_error>
 #include <unistd.h>
 
@@ -33,6 +34,9 @@ struct RunOptions {
 
 /// Far more than anybody writes by hand; a pipe that never ends must not fill the memory.
 constexpr std::size_t max_script = 16U << 20U;
+
+/// Errors of a script that are shown; the rest are counted. More than fits on a screen is not read.
+constexpr std::size_t most_told = 20;
 
 std::string read_all(std::istream& in) {
   std::string text;
@@ -67,8 +71,10 @@ words::Script checked(const std::string& file, const std::string& text,
                       const protocol::Catalogue& catalogue) {
   auto script = words::parse_script(text, catalogue);
   if (script.errors.empty()) return script;
-  for (const auto& error : script.errors)
-    fmt::print(stderr, "{}:{}:{}: {}\n    {}\n", file, error.line, error.column, error.what, error.remedy);
+  const std::size_t told = std::min(script.errors.size(), most_told);
+  for (const auto& error : std::span{script.errors}.first(told))
+    remark(fmt::format("{}:{}:{}: {}\n    {}", file, error.line, error.column, error.what, error.remedy));
+  if (told < script.errors.size()) remark(fmt::format("... and {} more", script.errors.size() - told));
   fail({fmt::format("{}: {} error{}, nothing was sent", file, script.errors.size(),
                     script.errors.size() == 1 ? "" : "s"),
         ""},

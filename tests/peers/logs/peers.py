@@ -44,7 +44,7 @@ class Case(harness.Case):
 
     def convert(self, source, target, *options):
         """amiroctl convert; returns what it remarks."""
-        return self.run_tool("convert", self.path(source), self.path(target), *options)[1]
+        return self.run_tool("convert", self.path(source), self.path(target), "--force", *options)[1]
 
     def candump_of(self, source):
         """The lines of a log in the notation of candump, with nine digits of a second."""

@@ -21,7 +21,7 @@ class Convert(Case):
 
     def test_by_ending_and_by_content(self):
         misnamed = self.file("drive.csv")  # a candump log, whatever its name
-        self.run_tool("convert", misnamed, self.path("out.log"), "--strict")
+        self.run_tool("convert", misnamed, self.path("out.log"), "--force", "--strict")
         self.assertEqual(self.text(self.path("out.log")), LOG)
         out, _ = self.run_tool("convert", "-", "-", "--to", "candump", stdin=LOG.encode())
         self.assertEqual(out.decode(), LOG)
@@ -47,30 +47,40 @@ class Convert(Case):
         self.assertEqual(result.returncode, 2)
         self.assertEqual(self.text(log), LOG)
 
+    def test_a_file_that_is_there_stays(self):
+        log, out = self.file("in.log"), self.file("out.log", "precious")
+        for arguments in (("convert", log, out), ("encode", "-o", out)):
+            _, err = self.run_tool(*arguments, code=1)
+            self.assertIn("out.log is there already", err)
+            self.assertIn("--force", err)
+            self.assertEqual(self.text(out), "precious")
+        self.run_tool("convert", log, out, "--force")
+        self.assertEqual(self.text(out), LOG)
+
     def test_what_cannot_be_read(self):
         for name, content, word in (("empty.log", "", "is empty"), ("x.bin", "\x01\x02 rubbish", "no known log format")):
-            _, err = self.run_tool("convert", self.file(name, content), self.path("out.log"), code=1)
+            _, err = self.run_tool("convert", self.file(name, content), self.path("out.log"), "--force", code=1)
             self.assertIn(word, err)
             self.assertFalse(os.path.exists(self.path("out.log")))
-        _, err = self.run_tool("convert", self.path("none.log"), self.path("out.log"), code=1)
+        _, err = self.run_tool("convert", self.path("none.log"), self.path("out.log"), "--force", code=1)
         self.assertIn("No such file", err)
-        _, err = self.run_tool("convert", self.folder, self.path("out.log"), code=1)
+        _, err = self.run_tool("convert", self.folder, self.path("out.log"), "--force", code=1)
         self.assertIn("directory", err)
 
     def test_damaged_lines_are_told_and_the_rest_is_kept(self):
         log = self.file("in.log", "(1.0) can0 123#0\n" + LOG + "(2.0) can0 12#00\n\n(3.0) can0 123#00\n")
-        _, err = self.run_tool("convert", log, self.path("out.log"))
+        _, err = self.run_tool("convert", log, self.path("out.log"), "--force")
         for word in ("line 1", "line 4", "3 frames", "2 places"):
             self.assertIn(word, err)
-        self.run_tool("convert", log, self.path("out.log"), "--strict", code=1)
+        self.run_tool("convert", log, self.path("out.log"), "--force", "--strict", code=1)
         self.assertEqual(self.text(self.path("out.log")).count("\n"), 3)
         only_bad = self.file("bad.log", "(1.0) can0 123#0\n")
-        self.run_tool("convert", only_bad, self.path("out.log"), code=1)
+        self.run_tool("convert", only_bad, self.path("out.log"), "--force", code=1)
 
     def test_losses(self):
-        _, err = self.run_tool("convert", self.file("in.log"), self.path("out.csv"))
+        _, err = self.run_tool("convert", self.file("in.log"), self.path("out.csv"), "--force")
         self.assertIn("1 directions", err)
-        self.run_tool("convert", self.file("in.log"), self.path("out.csv"), "--strict", code=1)
+        self.run_tool("convert", self.file("in.log"), self.path("out.csv"), "--force", "--strict", code=1)
 
     def test_packed(self):
         whole = self.file("in.log", "".join(map(self.candump_line, random_messages(1, 20_000))))
@@ -80,7 +90,7 @@ class Convert(Case):
             self.assertLess(os.path.getsize(packed), os.path.getsize(whole))
             self.assertEqual(subprocess.run([*unpack, packed], capture_output=True, check=True).stdout.decode(),
                              self.text(whole))
-            self.run_tool("convert", packed, self.path("again.log"), "--strict")
+            self.run_tool("convert", packed, self.path("again.log"), "--force", "--strict")
             self.assertEqual(self.text(self.path("again.log")), self.text(whole))
 
     def test_packed_by_others(self):
@@ -96,13 +106,13 @@ class Convert(Case):
         zstd = subprocess.run(["zstd", "-c"], input=text.encode(), capture_output=True, check=True).stdout
         for packed in (gzip.compress(text.encode()), zstd):
             for size in (len(packed) // 2, len(packed) - 1):
-                _, err = self.run_tool("convert", self.file("cut", packed[:size]), self.path("out.log"), code=1)
+                _, err = self.run_tool("convert", self.file("cut", packed[:size]), self.path("out.log"), "--force", code=1)
                 self.assertIn("ends in the middle", err)
                 kept = self.text(self.path("out.log"))
                 self.assertTrue(text.startswith(kept) and (kept == "" or kept.endswith("\n")))
             flipped = bytearray(packed)
             flipped[len(packed) // 2] ^= 0xFF
-            _, err = self.run_tool("convert", self.file("flipped", bytes(flipped)), self.path("out.log"), code=1)
+            _, err = self.run_tool("convert", self.file("flipped", bytes(flipped)), self.path("out.log"), "--force", code=1)
             self.assertIn("damaged", err)
 
     def test_a_pipe_from_a_live_bus(self):
@@ -150,7 +160,7 @@ class Convert(Case):
         process.wait()
         process.stdin.close()
         self.assertGreater(os.path.getsize(out), 0)
-        self.run_tool("convert", out, self.path("again.log"), "--strict")
+        self.run_tool("convert", out, self.path("again.log"), "--force", "--strict")
 
     @unittest.skipUnless(os.path.exists("/dev/full"), "no /dev/full")
     def test_a_full_disk(self):

@@ -4,14 +4,17 @@ import os
 import re
 import resource
 import signal
+import socket
+import struct
 import subprocess
 import sys
+import threading
 import time
 
 from harness import AMIROCTL, SOURCE, Case, main
 
 sys.path.insert(0, os.path.join(SOURCE, "tests", "peers", "logs"))
-from virtual_bus import Client  # noqa: E402
+from virtual_bus import FRAME, GOODBYE, HELLO, MAGIC, VERSION, Client  # noqa: E402
 
 LINE = re.compile(r"^\((\d+\.\d+)\) (\S+) (\S+)#(\S*)(?: ([RT]))?$")
 
@@ -172,6 +175,93 @@ class Recording(Case):
         for earlier, later in zip(stamps, stamps[1:]):
             self.assertLess(later - earlier, 0.02)
         self.assertIn("of the files deleted again", err)
+
+    def test_split_by_time_while_the_clock_is_set(self):
+        os.makedirs(self.path("ocm"), mode=0o700)
+        server = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        server.bind(self.path("ocm/sim.sock"))
+        os.chmod(self.path("ocm/sim.sock"), 0o600)
+        server.listen()
+        server.settimeout(10)
+
+        def serve():
+            node, _ = server.accept()
+            node.recv(32)
+            node.send(struct.pack("<B3xIIII12s", HELLO, MAGIC, VERSION, 500_000, 64, b"sim"))
+            begin = time.monotonic()
+            while (passed := time.monotonic() - begin) < 2:
+                unix = 1_700_000_000 + passed - (3600 if passed > 0.5 else 0)  # set back after half a second
+                node.send(struct.pack("<BBBxIq8s8x", FRAME, 0, 0, 0x123, int(unix * 1e9), b""))
+                time.sleep(0.01)
+            node.send(struct.pack("<BB2xI24x", GOODBYE, 1, VERSION))
+            node.close()
+
+        player = threading.Thread(target=serve)
+        player.start()
+        recorder = self.record("--bus", "sim", "-o", "part.log", "--split", "300ms")
+        recorder.communicate(timeout=10)
+        player.join()
+        server.close()
+        self.assertGreaterEqual(len(self.ring("part_")), 5)
+
+    def test_a_ring_is_a_budget_over_restarts(self):
+        self.start_sim()
+        for _ in range(4):
+            self.run_ring("bb.log")
+        self.assertEqual(self.ring("bb_"), ["bb_003.log", "bb_004.log"])
+        for _ in range(3):
+            self.run_ring()
+        self.assertEqual(self.ring("amiro-ring_"), ["amiro-ring_002.log", "amiro-ring_003.log"])
+
+    def run_ring(self, *name):
+        recorder = self.record(*(("-o", *name) if name else ()), "--split", "1h", "--ring", "2")
+        return self.interrupt(recorder)
+
+    def ring(self, beginning):
+        return sorted(name for name in os.listdir(self.folder) if name.startswith(beginning))
+
+    def test_a_ring_does_not_delete_other_recordings(self):
+        self.start_sim()
+        for number in range(1, 6):
+            open(self.path(f"bb_{number:03}.log"), "w").close()
+        words = ("record", "-o", self.path("bb.log"), "--split", "1h", "--ring", "2", "--duration", "100ms")
+        _, err = self.run_tool(*words, code=1)
+        self.assertIn("--ring 2 would delete 4 of them", err)
+        self.assertEqual(len(self.ring("bb_")), 5)
+        self.run_tool(*words, "--force")
+        self.assertEqual(self.ring("bb_"), ["bb_005.log", "bb_006.log"])
+
+    def test_a_file_that_is_deleted_is_an_error(self):
+        self.start_sim()
+        recorder = self.record("-o", "a.log")
+        self.send_numbered(10)
+        os.unlink(self.path("a.log"))
+        _, err = recorder.communicate(timeout=10)
+        self.assertEqual(recorder.returncode, 1, err)
+        self.assertIn("a.log was deleted while it was recorded", err)
+        self.assertIn("0 frames can be read, 10 were not written", err)
+
+    def test_a_file_that_is_moved_is_recorded_to_the_end(self):
+        self.start_sim()
+        recorder = self.record("-o", "a.log")
+        sent = self.send_numbered(10)
+        os.rename(self.path("a.log"), self.path("b.log"))
+        sent += self.send_numbered(10, 10)
+        self.wait_for_frames("b.log", 20)
+        _, err = self.interrupt(recorder)
+        self.assertIn("a.log was moved while it was recorded", err)
+        self.assertIn("20 frames can be read, 0 were not written", err)
+        self.assertEqual(self.frames("b.log"), sent)
+
+    def test_one_recorder_a_file(self):
+        self.start_sim()
+        first = self.record("-o", "a.log")
+        sent = self.send_numbered(10)
+        self.wait_for_frames("a.log", 10)
+        _, err = self.run_tool("record", "-o", self.path("a.log"), "--force", code=1)
+        self.assertIn("another program writes", err)
+        self.interrupt(first)
+        self.assertEqual(self.frames("a.log"), sent)
 
     def test_to_standard_output_at_once(self):
         self.start_sim()

@@ -124,5 +124,27 @@ class Look(Case):
         self.assertIn("red", self.run_tool("info", "led")[0])
 
 
+class Messages(Case):
+    def test_control_characters_do_not_reach_the_terminal(self):
+        _, err = self.run_tool("run", "-", stdin="0s \x1b[31mnope\x07 \u009b2J\n", code=2)
+        for control in "\x1b\x07\u009b":
+            self.assertNotIn(control, err)
+        self.assertIn("\\x1b[31mnope\\x07", err)
+        _, err = self.run_tool("convert", "no\x1b]0;title\x07.log", "-", "--to", "csv", code=1)
+        self.assertNotIn("\x1b", err)
+        self.assertIn("\\x1b]0;title\\x07", err)
+
+    def test_many_errors_of_a_script_are_counted(self):
+        _, err = self.run_tool("run", "-", stdin="nonsense\n" * 100_000, code=2)
+        self.assertEqual(err.count("is not a time from the start"), 20)
+        self.assertIn("... and 99980 more", err)
+        self.assertIn("100000 errors, nothing was sent", err)
+
+    def test_listen_says_how_many_it_expected(self):
+        self.start_sim()
+        _, err = self.run_tool("listen", "-n", "1000", "--timeout", "100ms", code=1)
+        self.assertIn("expected 1000 frames, only 0 came in time", err)
+
+
 if __name__ == "__main__":
     main()
