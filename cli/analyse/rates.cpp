@@ -92,7 +92,7 @@ BusSet robot_bus(const protocol::Catalogue& catalogue, const std::vector<Rate>& 
     bool found = false;
     const auto* const named = words::find_topic(catalogue, rate.name);
     for (const auto& topic : catalogue.topics) {
-      if (named != &topic && topic.group != rate.name) continue;
+      if (named != &topic && !words::is_in_group(topic, rate.name)) continue;
       found = true;
       chosen.emplace_back(&topic, &rate);
     }

@@ -29,7 +29,7 @@ transport::Outcome<Selection> Selection::of(const protocol::Catalogue& catalogue
     const auto* const named = words::find_topic(catalogue, of_topic);
     bool found = false;
     for (const auto& topic : catalogue.topics) {
-      if (named != &topic && (of_topic.empty() || topic.group != of_topic)) continue;
+      if (named != &topic && !words::is_in_group(topic, of_topic)) continue;
       topic_found = true;
       for (const auto& layout : topic.frames)
         for (const auto& field : layout.fields) {

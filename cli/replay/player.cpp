@@ -56,7 +56,10 @@ void Player::play(log::Reader& log) {
   bool goes_on = true;
   while (goes_on) {
     const std::size_t count = log.read(entries);
-    if (count == 0) return;
+    if (count == 0) {
+      cut_short_ = interrupted() != 0;  // while the last frame waited
+      return;
+    }
     for (std::size_t i = 0; i < count && goes_on; ++i)
       goes_on = interrupted() == 0 && play(entries[i], log.interfaces());
     write_out(printed_);

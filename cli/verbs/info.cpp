@@ -41,7 +41,7 @@ void print_field(const protocol::Field& field) {
 void info(const protocol::Catalogue& catalogue, const std::string& word) {
   const protocol::Topic* topic = words::find_topic(catalogue, word);
   for (const auto& candidate : catalogue.topics)
-    if (topic == nullptr && candidate.group == word) topic = &candidate;
+    if (topic == nullptr && words::is_in_group(candidate, word)) topic = &candidate;
   if (topic == nullptr) {
     const auto words = words::topic_words(catalogue);
     fail({"info: no topic '" + word + "'", words::suggestion(word, words)}, exit_usage);

@@ -96,7 +96,7 @@ void run(Session& session, const StatsOptions& options, int& exit_code) {
   const auto& catalogue = session.catalogue();
   const auto means_topic = [&catalogue](std::string_view word) {
     return std::any_of(catalogue.topics.begin(), catalogue.topics.end(), [&](const protocol::Topic& topic) {
-      return words::find_topic(catalogue, word) == &topic || topic.group == word;
+      return words::find_topic(catalogue, word) == &topic || words::is_in_group(topic, word);
     });
   };
   Words words = split_words("stats", options.words, means_topic);

@@ -15,7 +15,7 @@ std::vector<const protocol::Topic*> chosen_topics(std::string_view verb, const p
     bool found = false;
     const auto* const named = words::find_topic(catalogue, word);
     for (const auto& topic : catalogue.topics) {
-      if (named != &topic && (word.empty() || topic.group != word)) continue;
+      if (named != &topic && !words::is_in_group(topic, word)) continue;
       topics.push_back(&topic);
       found = true;
     }

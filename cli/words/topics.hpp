@@ -22,6 +22,11 @@ namespace ocm::cli::words {
   return catalogue.find(protocol::TopicId{static_cast<std::uint8_t>(*id)});
 }
 
+/// "lights" is a group of topics; an empty word is none, though topics without a group have an empty one.
+[[nodiscard]] constexpr bool is_in_group(const protocol::Topic& topic, std::string_view word) noexcept {
+  return !word.empty() && topic.group == word;
+}
+
 /// The topics of one kind by name and alias, for suggestions.
 [[nodiscard]] inline std::vector<std::string_view> topic_words(const protocol::Catalogue& catalogue,
                                                                std::optional<protocol::Kind> kind = {}) {

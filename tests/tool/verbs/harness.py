@@ -28,12 +28,14 @@ class Case(unittest.TestCase):
         for process in self._started:
             if process.poll() is None:
                 process.kill()
+            if process.stderr is not None and process.stderr.closed:  # by a test
+                process.stderr = None
             process.communicate()
         self._folder.cleanup()
 
     def start(self, *arguments, **options):
-        process = subprocess.Popen([AMIROCTL, *arguments], env=self.environment, text=True, stdin=subprocess.DEVNULL,
-                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
+        streams = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+        process = subprocess.Popen([AMIROCTL, *arguments], env=self.environment, text=True, **(streams | options))
         self._started.append(process)
         return process
 

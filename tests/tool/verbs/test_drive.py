@@ -11,6 +11,8 @@ from played_adapter import WithAdapter
 
 FORWARDS = "201#50C3000000000000"
 BACKWARDS = "-5cm/s"
+STOPPED = "another program has set the motors to zero, which ends this drive"
+ZERO = "0000000000000000"
 OTHER = "another program commands motors: " + FORWARDS
 
 
@@ -52,8 +54,9 @@ class TwoCommanders(Drive):
         self.assertIn("bus: sim", doctor.stderr.readline())
         _, second = self.run_tool("drive", BACKWARDS, "--for", "1200ms", "--force")
         out, _ = doctor.communicate(timeout=10)
-        _, err = self.interrupt(first)
-        self.assertEqual(first.returncode, 130)
+        _, err = first.communicate(timeout=10)  # the end of the second is a stop
+        self.assertEqual(first.returncode, 1)
+        self.assertIn(STOPPED, err)
         for text, frame in ((err, "201#B03CFFFF00000000"), (second, FORWARDS)):
             self.assertEqual(text.count(f"drive: another program commands motors, too: {frame}"), 1, text)
             self.assertRegex(text, r"drive: \d+ set points of another program came meanwhile")
@@ -89,19 +92,79 @@ class TwoCommanders(Drive):
         _, err = self.interrupt(sim)
         self.assertNotIn("in turns", err)
 
-    def test_stop_does_not_wait(self):
+    def test_stop_does_not_wait_and_ends_the_other_drive(self):
         self.start_sim()
-        self.driving()
-        listener = self.listen("motors", "--timeout", "20s")
+        for stop in (("drive", "stop"), ("stop",)):
+            drive = self.driving()
+            listener = self.listen("motors", "--timeout", "2s")
+            self.run_tool(*stop)
+            _, err = drive.communicate(timeout=10)
+            self.assertEqual(drive.returncode, 1)
+            self.assertIn(STOPPED, err)
+            time.sleep(0.3)
+            out, _ = self.interrupt(listener)
+            self.assertEqual([e["data"] for e in self.objects(out)][-2:], [ZERO, ZERO])  # of both
+
+    def test_with_force_a_stop_ends_nothing(self):
+        self.start_sim()
+        drive = self.driving("5cm/s", "--force")
         self.run_tool("drive", "stop")
-        lines = [json.loads(listener.stdout.readline())["data"] for _ in range(4)]
-        self.assertIn("0000000000000000", lines)
+        time.sleep(0.5)
+        self.assertIsNone(drive.poll())
+        self.interrupt(drive)
+        self.assertEqual(drive.returncode, 130)
 
     def test_doctor_finds_nothing_in_one_drive(self):
         self.start_sim()
         self.driving()
         out, _ = self.run_tool("doctor", "--listen", "500ms")
         self.assertIn("all is well", out)
+
+
+class Unforeseen(Drive):
+    """Whatever ends the command: the motors are at rest behind it."""
+
+    def last_set_points(self, command, read=None, **options):
+        """The set points of a command, whose messages are read until one has `read` in it; and how it ended."""
+        listener = self.listen("motors", "--timeout", "20s")
+        process = self.start(*command, **options)
+        if read is not None:
+            while read not in process.stderr.readline():
+                pass
+            process.stderr.close()
+        process.wait(timeout=20)
+        time.sleep(0.2)
+        out, _ = self.interrupt(listener)
+        return [e["data"] for e in self.objects(out)], process.returncode
+
+    def test_nobody_reads_the_messages(self):
+        self.start_sim()
+        reader, writer = os.pipe()
+        os.close(reader)
+        data, code = self.last_set_points(["stop"], stderr=writer)
+        self.assertEqual((data, code), ([ZERO], 0))
+        data, code = self.last_set_points(["drive", "5cm/s"], stderr=writer)
+        os.close(writer)
+        self.assertEqual((data, code), ([], 141))  # the first message ends it, before anything moves
+        script = self.script("0s drive 5cm/s\n400ms led 1 red\n5s stop\n")
+        data, code = self.last_set_points(["run", script], read="0s  drive")
+        self.assertIn("50C3000000000000", data)
+        self.assertEqual((data[-1], code), (ZERO, 141))
+
+    def test_the_output_takes_no_more(self):
+        self.start_sim()
+        script = self.script("0s drive 5cm/s\n300ms publish gyro 50ms\n5s stop\n")
+        with open("/dev/full", "wb") as full:
+            data, code = self.last_set_points(["run", script, "--show"], stdout=full)
+        self.assertIn("50C3000000000000", data)
+        self.assertEqual((data[-1], code), (ZERO, 1))
+        self.run_tool("stop")
+        reader, writer = os.pipe()
+        os.close(reader)
+        data, code = self.last_set_points(["run", script, "--show"], stdout=writer)
+        os.close(writer)
+        self.assertIn("50C3000000000000", data)
+        self.assertEqual((data[-1], code), (ZERO, 141))
 
 
 class Alarm(WithAdapter, Drive):

@@ -116,6 +116,26 @@ class Replaying(Case):
         self.assertEqual([when for when, _ in out], [0, 2, 3])
         self.assertIn("1 pauses cut", err)
 
+    def test_a_drive_that_is_cut_short_ends_with_zero(self):
+        self.start_sim()
+        log = self.write_log((1, "201#50C3000000000000"), (1.1, "201#50C3000000000000"), (4, "201#0000000000000000"))
+        frames, err = self.replayed(log, "--until", "500ms")
+        self.assertEqual([frame for _, frame in frames][-2:], ["201#50C3000000000000", "201#0000000000000000"])
+        self.assertIn("the motors were set to zero: the log goes on behind this", err)
+        for number in (signal.SIGINT, signal.SIGHUP, signal.SIGQUIT):
+            recorder = self.recording(f"{number}.log")
+            replay = self.start("replay", log)
+            time.sleep(0.5)
+            _, err = self.interrupt(replay, number)
+            self.assertEqual(replay.returncode, 128 + number)
+            self.assertIn("sent 2 frames", err)
+            self.settle()
+            self.interrupt(recorder)
+            self.assertEqual([frame for _, frame in self.lines(f"{number}.log")][-1], "201#0000000000000000")
+        frames, err = self.replayed(log, "--speed", "10")  # to its end: as it was recorded
+        self.assertEqual(len(frames), 3)
+        self.assertNotIn("set to zero", err)
+
     def test_loops(self):
         self.start_sim()
         log = self.write_log((1, "608#01"), (1.05, "608#02"))

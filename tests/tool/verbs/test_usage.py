@@ -134,6 +134,12 @@ class Messages(Case):
         self.assertNotIn("\x1b", err)
         self.assertIn("\\x1b]0;title\\x07", err)
 
+    def test_an_empty_word_is_no_topic(self):
+        for words in (["info", ""], ["publish", ""], ["stop", ""], ["listen", ""], ["listen", "", "odom"],
+                      ["plot", "live", ""], ["decode", "--topic", "", os.devnull], ["replay", os.devnull, ""]):
+            _, err = self.run_tool(*words, code=2)
+            self.assertIn("no topic ''", err, words)
+
     def test_many_errors_of_a_script_are_counted(self):
         _, err = self.run_tool("run", "-", stdin="nonsense\n" * 100_000, code=2)
         self.assertEqual(err.count("is not a time from the start"), 20)
