@@ -114,7 +114,7 @@ void Timeline::repeat(Clock::time_point now) {
     const std::string what =
         fmt::format("no set point has left {} for {}", bus_->name(), in_words(held_->left));
     if (!obstruction.what.empty()) abandon(fmt::format("{}: {}", what, obstruction.what), obstruction.remedy);
-    abandon(what, not_acknowledged);
+    abandon(what, why_none_leaves(*bus_));
   }
   const auto taken = bus_->send(held_->hold.frame);
   if (taken.error == base::Error::closed) {
@@ -125,7 +125,7 @@ void Timeline::repeat(Clock::time_point now) {
     held_->left = now;
   else if (++withheld_; now - held_->left >= longest)
     abandon(fmt::format("the transmit queue of {} has been full for {}", bus_->name(), in_words(held_->left)),
-            not_acknowledged);
+            why_none_leaves(*bus_));
 }
 
 bool Timeline::wait(Clock::time_point until) {

@@ -60,10 +60,38 @@ class Reader {
   ConfigFile& file_;
 };
 
+/// The first line with more points outside of texts than any option needs, from 1; 0: there is none. toml++
+/// follows each part of a dotted key one call deeper, and has no limit of its own.
+std::size_t too_deep(std::string_view text) {
+  constexpr int most = 1000;
+  std::size_t line = 1;
+  int points = 0;
+  char quote = 0;
+  for (const char c : text) {
+    if (c == '\n') {
+      ++line;
+      points = 0;
+      quote = 0;
+    } else if (quote != 0) {
+      if (c == quote) quote = 0;
+    } else if (c == '"' || c == '\'') {
+      quote = c;
+    } else if (c == '.' && ++points > most) {
+      return line;
+    }
+  }
+  return 0;
+}
+
 }  // namespace
 
 ConfigFile parse_config(std::string_view text) {
   ConfigFile file;
+  if (const auto line = too_deep(text); line != 0) {
+    file.problems.push_back({line, "tables within tables, more than 1000 deep",
+                             "the deepest that there is has two parts: [analyse.bus]"});
+    return file;
+  }
   try {
     Reader{file}.read(toml::parse(text), "");
   } catch (const toml::parse_error& error) {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "ocm/can/text.hpp"
+#include "ocm/transport/virtual_bus.hpp"
 
 #include "cli/shared/messages.hpp"
 
@@ -21,6 +22,12 @@ using Clock = std::chrono::steady_clock;
 constexpr base::Duration look_again = std::chrono::milliseconds{1};
 
 }  // namespace
+
+std::string why_none_leaves(const transport::Bus& bus) {
+  if (dynamic_cast<const transport::VirtualBus*>(&bus) != nullptr)
+    return "the simulator takes none: was it stopped (Ctrl-Z; `fg` lets it go on), or is the machine busy?";
+  return "no node acknowledges the frames: is a board powered and connected, and is the bit rate the same?";
+}
 
 Outgoing::Outgoing(transport::Bus& bus, std::string verb, std::string otherwise)
     : bus_(bus), verb_(std::move(verb)), otherwise_(std::move(otherwise)) {
@@ -44,7 +51,7 @@ void Outgoing::send(const can::Frame& frame, base::Duration patience) {
                 fmt::format("bring it up: sudo ip link set {} up", bus_.name()));
       give_up(fmt::format("the transmit queue of {} stays full: {} was not sent", bus_.name(),
                           can::to_text(frame).view()),
-              not_acknowledged);
+              why_none_leaves(bus_));
     }
     std::this_thread::sleep_for(look_again);
   }
@@ -73,7 +80,7 @@ void Outgoing::expect_all_left(base::Duration patience) {
   const std::string what = fmt::format("{} of {} frames did not leave {}", missing, sent, bus_.name());
   if (!delivery.obstruction.what.empty())
     give_up(fmt::format("{}: {}", what, delivery.obstruction.what), delivery.obstruction.remedy);
-  give_up(what, not_acknowledged);
+  give_up(what, why_none_leaves(bus_));
 }
 
 void Outgoing::otherwise(std::string meaning) {

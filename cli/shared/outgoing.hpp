@@ -15,9 +15,8 @@ namespace ocm::cli {
 /// What it means when a stop, or the end of a drive, did not leave.
 inline constexpr const char* still_moving =
     "THE ROBOT MAY STILL MOVE until its watchdog stops it: be ready to cut its power";
-/// What to check when a bus takes frames and none leaves.
-inline constexpr const char* not_acknowledged =
-    "no node acknowledges the frames: is a board powered and connected, and is the bit rate the same?";
+/// What to check when the bus takes frames and none leaves.
+[[nodiscard]] std::string why_none_leaves(const transport::Bus& bus);
 
 class Outgoing {
  public:

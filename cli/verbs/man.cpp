@@ -115,8 +115,11 @@ void add_man(Verb app, Session&, int&) {
     std::string folder;
   };
   const auto options = std::make_shared<Options>();
-  verb.add_option("verb", options->verb, "whose page; default: that of amiroctl").type_name("VERB");
-  verb.add_option("--all", options->folder, "write every page into this folder").type_name("FOLDER");
+  const auto whose =
+      verb.add_option("verb", options->verb, "whose page; default: that of amiroctl").type_name("VERB");
+  verb.add_option("--all", options->folder, "write every page into this folder")
+      .type_name("FOLDER")
+      .excludes(whose);
   verb.callback([options, app] {
     if (!options->folder.empty()) return write_all(app, options->folder);
     Verb chosen = options->verb.empty() ? app : Verb{};

@@ -192,6 +192,7 @@ class OnTheBus(Case):
         _, err = drive.communicate(timeout=10)
         self.assertEqual(drive.returncode, 1)
         self.assertIn("no set point has left sim for ", err)
+        self.assertIn("the simulator takes none: was it stopped (Ctrl-Z; `fg` lets it go on)", err)
         self.assertIn("THE ROBOT MAY STILL MOVE", err)
         sim.send_signal(signal.SIGCONT)
 

@@ -209,6 +209,9 @@ class Config(harness.Case):
         for text in ("\0\1\2", "[[[[", "=" * 1000, "a=" + "[" * 500, '"', "\u00e9 = 1", "x = [1,,2]", "x = [1"):
             self.write(text)
             self.run_tool("list", code=2)
+        for text in (".".join(["a"] * 30_000) + " = 1", "[" + ".".join(["a"] * 45_000) + "]"):
+            self.write("list = 1\n" + text)
+            self.assertIn(":2: tables within tables, more than 1000 deep", self.run_tool("list", code=2)[1])
         self.write("#" * 200_000)
         self.assertIn("larger than", self.run_tool("list", code=2)[1])
 

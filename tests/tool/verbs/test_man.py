@@ -143,6 +143,7 @@ class Man(harness.Case):
     def test_mistakes(self):
         self.assertIn("unknown verb 'no_such'", self.run_tool("man", "no_such", code=2)[1])
         self.run_tool("man", "--all", "/dev/null/man1", code=1)
+        self.assertIn("--all", self.run_tool("man", "publish", "--all", self.folder, code=2)[1])
 
 
 if __name__ == "__main__":
