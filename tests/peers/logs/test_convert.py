@@ -29,7 +29,7 @@ class Convert(Case):
     def test_usage(self):
         log = self.file("in.log")
         for arguments, word in (((log, "-"), "--to"), ((log, "x.nothing"), "ending"), ((log, "x", "--to", "nope"), "nope"),
-                                ((log, "x.log", "--from", "nope"), "nope"), ((log,), "out")):
+                                ((log, "x.log", "--from", "nope"), "nope"), ((log,), "OUT")):
             _, err = self.run_tool("convert", *arguments, code=2)
             self.assertIn(word, err)
             self.assertFalse(os.path.exists("x.log"))
