@@ -176,32 +176,34 @@ def _(context):
 
 @check('frames written by hand from the thesis drive the robot')
 def _(context):
-    with Robot(context) as robot, Candump('vcan0') as log:
-        cansend('204#02')                        # floor, once
-        time.sleep(0.5)
-        cansend('208#01')                        # gyroscope at the default period, 50 ms
-        time.sleep(1)
-        cansend('208#00')
-        time.sleep(0.3)
-        cansend('205#01840302')                  # magnetometer every 900 us: more than the guest can do
-        time.sleep(0.5)
-        cansend('205#00')
-
-        def quiet():
-            before = len(log.frames())
+    with Robot(context) as robot:
+        amiroctl(context, '--bus', 'vcan0', 'once', 'floor', '--wait', '10s')  # a board that has just started may have no sample
+        with Candump('vcan0') as log:
+            cansend('204#02')                        # floor, once
+            time.sleep(0.5)
+            cansend('208#01')                        # gyroscope at the default period, 50 ms
+            time.sleep(1)
+            cansend('208#00')
             time.sleep(0.3)
-            return len(log.frames()) == before
-        eventually(quiet, 'the magnetometer stops')  # a slow guest has a queue of its samples still
-        cansend('009#01640000')                  # accelerometer, urgent, 100 ms: answers are urgent too
-        time.sleep(0.45)
-        cansend('209#02')                        # once, medium: one more, and the end
-        time.sleep(0.4)
-        for refused in ('208#03', '208#', '208#0132', '208#01320003', '208#01000000', '208#R'):
-            cansend(refused)
-        cansend('23C#FF8000', '201#A086010000000000')
-        time.sleep(0.2)
-        robot.finish()
-        frames = log.finish()
+            cansend('205#01840302')                  # magnetometer every 900 us: more than the guest can do
+            time.sleep(0.5)
+            cansend('205#00')
+
+            def quiet():
+                before = len(log.frames())
+                time.sleep(0.3)
+                return len(log.frames()) == before
+            eventually(quiet, 'the magnetometer stops')  # a slow guest has a queue of its samples still
+            cansend('009#01640000')                  # accelerometer, urgent, 100 ms: answers are urgent too
+            time.sleep(0.45)
+            cansend('209#02')                        # once, medium: one more, and the end
+            time.sleep(0.4)
+            for refused in ('208#03', '208#', '208#0132', '208#01320003', '208#01000000', '208#R'):
+                cansend(refused)
+            cansend('23C#FF8000', '201#A086010000000000')
+            time.sleep(0.2)
+            robot.finish()
+            frames = log.finish()
     answers = [frame for frame in frames if int(frame.id, 16) & 0x400]
     times = {number: [frame.time for frame in answers if frame.id == number] for number in {f.id for f in answers}}
     equal(len(times.pop('604', [])), 1, 'floor, once')
