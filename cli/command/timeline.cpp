@@ -88,10 +88,10 @@ void Timeline::abandon(std::string what, std::string remedy) {
 }
 
 void Timeline::end_for_another() {
-  static_cast<void>(rest_after_all());
+  if (held_) static_cast<void>(rest_after_all());
   other_.sum_up();
-  fail({fmt::format("{}: another program has set the motors to zero, which ends this drive", verb_),
-        "--force drives on all the same"});
+  fail({fmt::format("{}: another program has set the motors to zero, which ends this {}", verb_, verb_),
+        "--force goes on all the same"});
 }
 
 void Timeline::repeat(Clock::time_point now) {
@@ -141,13 +141,13 @@ bool Timeline::wait(Clock::time_point until) {
     const Over over = live_.receive(wake, [&](const can::Received& received) {
       other_.take(received, moving_);
       if (on_receive_) on_receive_(received);
-      return true;
+      return !other_.has_stopped();  // at once, not when the next step is due
     });
     if (over == Over::gone) {
       held_.reset();
       fail(bus_->failure());
     }
-    if (held_ && others_ == Others::refused && other_.has_stopped()) end_for_another();
+    if (others_ == Others::refused && other_.has_stopped()) end_for_another();
   }
 }
 

@@ -1,4 +1,4 @@
-/// A mapper is told to pause, or to go on, until it is seen to obey: a paused robot sends no updates.
+/// Repeats a pause, or its end, until the robot shows that it obeys: a paused robot sends no updates.
 #pragma once
 
 #include "cli/fleet/central_line.hpp"

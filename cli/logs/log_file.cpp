@@ -68,7 +68,7 @@ struct LogFile::State {
     struct stat status {};
     if (descriptor < 0 || ::fstat(descriptor, &status) != 0) {
       failed("write");
-      return refuse({failure.what, "a folder that exists and may be written to is wanted"});
+      return refuse({failure.what, "name a folder that exists and can be written to"});
     }
     regular = S_ISREG(status.st_mode) && path != "-";  // stdout may be appended to by others
     if (!regular) return true;

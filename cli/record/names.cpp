@@ -74,7 +74,7 @@ std::vector<NumberedFile> numbered_files(const FileName& name) {
     NumberedFile file;
     const auto [stopped, bad] = std::from_chars(own.data() + prefix.size(), last, file.number);
     file.path = numbered(name, file.number);
-    // Of several ways to write a number only ours: drive_7.log is of somebody else.
+    // Only numbers written as here: drive_7.log in place of drive_007.log is no file of a ring.
     std::error_code unknown;
     if (bad == std::errc{} && stopped == last && std::filesystem::path{file.path}.filename() == own &&
         entry->is_regular_file(unknown))

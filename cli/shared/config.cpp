@@ -16,8 +16,7 @@
 #include "cli/shared/config_check.hpp"
 #include "cli/shared/config_file.hpp"
 #include "cli/shared/messages.hpp"
-#include "generator/spec/names.hpp"
-
+#include "cli/words/suggestion.hpp"
 namespace ocm::cli {
 namespace {
 
@@ -73,7 +72,7 @@ void remark_unknown_environment(const std::vector<Settable>& settable) {
     if (!variable.starts_with(prefix)) continue;
     const std::string name{variable.substr(prefix.size(), variable.find('=') - prefix.size())};
     if (known.count(name) != 0) continue;
-    const std::string near = spec::nearest_name(name, known);
+    const std::string_view near = words::nearest(name, known);
     remark(fmt::format("{}{} in the environment sets no option{}", prefix, name,
                        near.empty() ? "" : fmt::format("; did you mean {}{}?", prefix, near)));
   }

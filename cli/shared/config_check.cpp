@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "generator/spec/names.hpp"
+#include "cli/words/suggestion.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -33,7 +33,7 @@ std::set<std::string> verb_names(Verb program) {
 }
 
 std::string suggestion(const std::string& typed, const std::set<std::string>& known) {
-  const std::string near = spec::nearest_name(typed, known);
+  const std::string_view near = words::nearest(typed, known);
   return near.empty() ? "a key is the long name of an option, without --; `amiroctl VERB --help` lists them"
                       : fmt::format("did you mean {}?", near);
 }

@@ -17,7 +17,8 @@ struct Exit {
   int code;
 };
 
-/// From now on wrong usage is told with this verb's name before it, "analyse bus". One program runs one verb.
+/// From now on messages of wrong usage begin with this verb's name, such as "analyse bus". One program runs
+/// one verb.
 void speak_for(std::string_view verb);
 /// The text with its control characters written as \x1b, line ends and tabs apart: file names, words of
 /// scripts and names in logs must not command the terminal. All messages go through it.

@@ -21,8 +21,7 @@ Verb innermost(Verb verb) {
 /// "did you mean 'listen'?", or where the known ones are listed.
 std::string remedy_for(const std::string& typed, const std::vector<std::string>& known,
                        const std::string& listed) {
-  const std::string_view near =
-      words::nearest(typed, std::vector<std::string_view>(known.begin(), known.end()));
+  const std::string_view near = words::nearest(typed, known);
   return near.empty() ? listed : fmt::format("did you mean '{}'?", near);
 }
 

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "generator/spec/names.hpp"
+#include "cli/words/suggestion.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -66,9 +66,9 @@ std::optional<Refusal> refuse_text(const Accepted& accepted, const std::string& 
     for (const std::string& word : words) good = good || word == text;
   }
   if (good) return std::nullopt;
-  const std::string near = spec::nearest_name(text, words);
+  const std::string_view near = words::nearest(text, words);
   return Refusal{fmt::format("invalid value '{}'", text),
-                 (near.empty() ? "" : fmt::format("did you mean {}? ", near)) + "expected " +
+                 (near.empty() ? std::string{} : fmt::format("did you mean {}? ", near)) + "expected " +
                      described(accepted.expected)};
 }
 

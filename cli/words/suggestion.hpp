@@ -2,10 +2,12 @@
 #pragma once
 
 #include <algorithm>
+#include <concepts>
 #include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "generator/spec/edit_distance.hpp"
 
@@ -44,6 +46,13 @@ namespace detail {
     found = candidate;
   }
   return found;
+}
+
+/// The same of texts in any container.
+template <class Texts>
+requires(!std::convertible_to<const Texts&, std::span<const std::string_view>>) [[nodiscard]] std::string_view
+    nearest(std::string_view word, const Texts& texts) {
+  return nearest(word, std::vector<std::string_view>(texts.begin(), texts.end()));
 }
 
 /// "one of: a, b, c"

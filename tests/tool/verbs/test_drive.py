@@ -11,7 +11,7 @@ from played_adapter import WithAdapter
 
 FORWARDS = "201#50C3000000000000"
 BACKWARDS = "-5cm/s"
-STOPPED = "another program has set the motors to zero, which ends this drive"
+STOPPED = "another program has set the motors to zero, which ends this "
 ZERO = "0000000000000000"
 OTHER = "another program commands motors: " + FORWARDS
 
@@ -104,6 +104,16 @@ class TwoCommanders(Drive):
             time.sleep(0.3)
             out, _ = self.interrupt(listener)
             self.assertEqual([e["data"] for e in self.objects(out)][-2:], [ZERO, ZERO])  # of both
+
+    def test_a_stop_ends_a_script_that_has_set_motors_without_a_hold(self):
+        self.start_sim()
+        listener = self.listen("motors", "--timeout", "20s")
+        run = self.start("run", self.script("0s set motors x=5cm/s\n5s drive 5cm/s\n"))
+        self.assertIn("50C3000000000000", listener.stdout.readline())
+        self.run_tool("stop")
+        _, err = run.communicate(timeout=3)
+        self.assertEqual(run.returncode, 1)
+        self.assertIn(STOPPED + "run", err)
 
     def test_with_force_a_stop_ends_nothing(self):
         self.start_sim()
