@@ -3,6 +3,7 @@
 import os
 import re
 import signal
+import statistics
 import sys
 import time
 
@@ -182,7 +183,7 @@ class Replaying(Case):
         self.assertIn("4 odometry", line)
         listener = self.recording("out.log")
         self.run_tool("publish", "gyro", "100ms", "--priority", "high")
-        time.sleep(1.05)
+        time.sleep(1)
         self.run_tool("stop", "gyro")
         self.run_tool("once", "odom", "--wait", "3s")
         self.run_tool("once", "accel")
@@ -191,13 +192,16 @@ class Replaying(Case):
         self.interrupt(listener)
         _, err = self.interrupt(robot)
         self.assertEqual(robot.returncode, 130)
-        out = [line for line in self.lines("out.log") if int(line[1][:3], 16) & 0x400]
+        bus = self.lines("out.log")
+        out = [line for line in bus if int(line[1][:3], 16) & 0x400]
         gyro = [line for line in out if line[1].startswith("508#")]
-        self.assertIn(len(gyro), (10, 11, 12))
-        # The samples of the log in turn, its first after its last, at the period that was asked for.
+        # The samples of the log in turn, its first after its last, at the period that was asked for, from one request to
+        # the other, however long a busy machine took between them.
         self.assertEqual([frame for _, frame in gyro], [f"508#{i % 4:02X}0000000000" for i in range(len(gyro))])
-        for (earlier, _), (later, _) in zip(gyro, gyro[1:]):
-            self.assertAlmostEqual(later - earlier, 0.1, delta=0.05)
+        began, ended = [at for at, frame in bus if int(frame[:3], 16) & 0x4FF == 0x008][:2]
+        self.assertAlmostEqual(len(gyro), (ended - began) / 0.1, delta=1.5)
+        gaps = [later - earlier for (earlier, _), (later, _) in zip(gyro, gyro[1:])]
+        self.assertAlmostEqual(statistics.median(gaps), 0.1, delta=0.05)
         self.assertEqual([frame for _, frame in out[len(gyro):]], ["602#0000000000000000", "603#00000000000000FF"])
         self.assertIn("the log has no sample of it", err)
         self.assertIn("1 requests refused", err)
