@@ -86,6 +86,10 @@ TEST_CASE("a field's value is printed exactly", "[output]") {
   CHECK(printed(field_of(32, true, {1, -6}), payload(0x8000'0000)) == "-2147.483648");
   CHECK(printed(field_of(8, false, {5, -1}, {-40, 0}), payload(81)) == "0.5");
   CHECK(printed(field_of(8, false, {1, 2}), payload(12)) == "1200");
+  CHECK(printed(field_of(32, false, {1, 0}), payload(99'999'999)) == "99999999");
+  CHECK(printed(field_of(32, false, {1, 0}), payload(100'000'000)) == "100000000");
+  CHECK(printed(field_of(32, false, {1, -3}), payload(100'000'000)) == "100000");
+  CHECK(printed(field_of(32, false, {1, -8}), payload(5)) == "0.00000005");
   CHECK(printed(field_of(64, true, {1, -18}), payload(std::uint64_t{1} << 63)) == "-9.223372036854775808");
 }
 

@@ -40,8 +40,9 @@ class Usage(Case):
             self.assertIn(heading, out)
         for verb in "list info publish once stop drive led set send listen run sim central line".split():
             out, _ = self.run_tool(verb, "--help")
-            self.assertIn("Examples:", out)
-            self.assertIn(f"amiroctl {verb}" if verb != "run" else "run", out)
+            usage, examples = out.split("Examples:")
+            self.assertIn(f"amiroctl {verb} ", usage)
+            self.assertRegex(examples, rf"\bamiroctl (--?\S+ )*{verb}\b")
         self.assertIn("amiroctl ", self.run_tool("--version")[0])
 
     def test_no_bus_says_how_to_get_one(self):

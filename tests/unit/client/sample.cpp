@@ -48,6 +48,17 @@ TEST_CASE("a sample of several frames is complete with its last") {
   CHECK(receiver.counters().samples == 1);
 }
 
+TEST_CASE("a sample that lacks frames is no struct") {
+  Receiver receiver{amiro::catalogue};
+  static_cast<void>(take(receiver, "605#00D20000"));
+  static_cast<void>(take(receiver, "606#00AAF1FF"));
+  auto sample = take(receiver, "607#003E1700").sample;
+  REQUIRE(sample.as<amiro::Magnetometer>().ok());
+  sample.payloads = sample.payloads.first(2);
+  CHECK(sample.as<amiro::Magnetometer>().error == base::Error::unknown_topic);
+  CHECK(client::Sample{}.as<amiro::Magnetometer>().error == base::Error::unknown_topic);
+}
+
 TEST_CASE("a lost frame makes one incomplete sample") {
   for (const int lost : {0, 1, 2}) {
     CAPTURE(lost);

@@ -134,6 +134,12 @@ TEST_CASE("asc: decimal numbers") {
                  "15 255 0 0 1000 0",
                  decimal)
             .data[31] == 255);
+  for (const char* const byte : {"256", "-1", "FF"}) {
+    const auto log = read_all<AscReader>(decimal + "0.5 1 291x Rx d 1 " + byte + "\n");
+    CHECK(log.entries.empty());
+    REQUIRE(log.complained == 1);
+    CHECK(log.complaints[0].cause == Cause::length);
+  }
 }
 
 TEST_CASE("asc: dates in English and German, 12 and 24 hours") {
@@ -180,6 +186,18 @@ TEST_CASE("asc: relative times count from the line before, whatever it holds") {
   REQUIRE(log.entries.size() == 2);
   CHECK(log.entries[0].time == at(start + 3 * second / 4));
   CHECK(log.entries[1].time == at(start + 2 * second));
+}
+
+TEST_CASE("asc: two frames at once in a log of relative times have one time") {
+  const Zone zone{"UTC0"};
+  const auto log = read_all<AscReader>(
+      "date Tue Nov 14 10:13:20.000 pm 2023\nbase hex  timestamps relative\n"
+      "Begin Triggerblock Tue Nov 14 10:13:20.000 pm 2023\n"
+      "0.000000 Start of measurement\n0.5 1 123 Rx d 0\n0.000000 1 124 Rx d 0\n0.25 1 125 Rx d 0\n");
+  REQUIRE(log.entries.size() == 3);
+  CHECK(log.entries[0].time == at(start + second / 2));
+  CHECK(log.entries[1].time == at(start + second / 2));
+  CHECK(log.entries[2].time == at(start + 3 * second / 4));
 }
 
 TEST_CASE("asc: a block that begins at 0 has its own date") {

@@ -120,6 +120,9 @@ TEST_CASE("candump's lines are read with any end, any case and any number of dig
   CHECK(entry_of_line("(9223372034.999999) can0 1AB#").time == at_ns(9'223'372'034'999'999'000));
   // the flag that a newer kernel sets [linux/can.h, CANFD_FDF]
   CHECK(entry_of_line("(1436509052.249713) can0 123##501") == fd(0x123, can::Format::base, 1, {1}));
+  // An entry holds nothing of the line before.
+  const Log after{amid("(1436509052.249713) can0 7FF#0011223344556677\n(1436509052.249713) can0 123##501")};
+  CHECK(after.entries.at(2) == fd(0x123, can::Format::base, 1, {1}));
 }
 
 TEST_CASE("what is no line of candump's is refused by cause, and the rest is read") {

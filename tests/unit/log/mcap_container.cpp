@@ -249,6 +249,7 @@ TEST_CASE("mcap_container: names as printable ASCII") {
   CHECK(mcap::escaped("a b%/\xC3\xBC") == "a%20b%25/%C3%BC");
   CHECK(mcap::unescaped("%4") == "%4");
   CHECK(mcap::unescaped("%4G%") == "%4G%");
+  CHECK(mcap::unescaped(std::string_view{"%41", 2}) == "%4");  // what is behind the name is not read
   std::string all;
   for (int c = 0; c < 256; ++c) all += static_cast<char>(c);
   CHECK(mcap::unescaped(mcap::escaped(all)) == all);

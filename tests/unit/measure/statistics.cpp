@@ -146,6 +146,17 @@ TEST_CASE("statistics: nothing came") {
   CHECK(figures.rate_hz == 0.0);
 }
 
+TEST_CASE("statistics: they are as of the last frame, or of later, never of before") {
+  BusStatistics statistics{amiro::catalogue, 500'000};
+  for (const auto time : {1s, 2s, 3s})
+    statistics.take({Time{time}, *ocm::can::parse_frame("608#3E001E00FCFF")});
+  CHECK(statistics.figures().last == Time{3s});
+  CHECK(statistics.figures(Time{2s}).last == Time{3s});
+  CHECK(statistics.figures(Time{2s}).span() == 2s);
+  CHECK(statistics.figures(Time{5s}).last == Time{5s});
+  CHECK(statistics.figures(Time{5s}).rate_hz == 0.5);  // two distances in 4 s
+}
+
 TEST_CASE("statistics: CAN FD is counted apart, strangers only so many") {
   BusStatistics statistics{amiro::catalogue, 500'000};
   statistics.take_fd(Time{1s});

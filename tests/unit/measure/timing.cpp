@@ -175,6 +175,26 @@ TEST_CASE("timing: without a request the period is the spec's or the measured on
     CHECK(timing.missing == 1);
     CHECK(timing.lateness_ns == 2'000'000);
   }
+  SECTION("the spec's up to a quarter beside it, and the middle one of few distances") {
+    for (const int distance : {38, 62}) {
+      Stream stream{50ms};
+      for (int i = 0; i < 20; ++i) stream.sample(at(i * std::chrono::milliseconds{distance}));
+      CHECK(stream.timing(at(1s)).period_from == PeriodFrom::spec);
+    }
+    for (const int distance : {37, 63}) {
+      Stream stream{50ms};
+      for (int i = 0; i < 20; ++i) stream.sample(at(i * std::chrono::milliseconds{distance}));
+      const Timing timing = stream.timing(at(1s));
+      CHECK(timing.period_from == PeriodFrom::measured);
+      CHECK(timing.period_ns == distance * 1'000'000);
+    }
+    Stream few{50ms};
+    for (const int ms : {0, 200, 220, 1220}) few.sample(at(std::chrono::milliseconds{ms}));  // 200, 20, 1000
+    CHECK(few.timing(at(1220ms)).period_ns == 200'000'000);
+    Stream two{50ms};
+    for (const int ms : {0, 200, 220}) two.sample(at(std::chrono::milliseconds{ms}));  // 200, 20: the shorter
+    CHECK(two.timing(at(220ms)).period_ns == 20'000'000);
+  }
   SECTION("measured") {
     Stream stream{50ms};
     for (const int ms : {0, 20, 41, 60, 100, 120, 140, 160, 180, 200, 300, 320})
