@@ -1,0 +1,16 @@
+// What {fmt} 9 keeps out of its headers, compiled once for a processor that Debian's library is not of.
+#include <locale>
+
+#include <fmt/format-inl.h>
+
+FMT_BEGIN_NAMESPACE
+namespace detail {
+// The templates that its headers declare and leave to the library.
+template FMT_API dragonbox::decimal_fp<float> dragonbox::to_decimal(float) noexcept;
+template FMT_API dragonbox::decimal_fp<double> dragonbox::to_decimal(double) noexcept;
+template FMT_API thousands_sep_result<char> thousands_sep_impl<char>(locale_ref);
+template FMT_API char decimal_point_impl(locale_ref);
+template FMT_API std::locale locale_ref::get<std::locale>() const;
+template FMT_API void buffer<char>::append(const char*, const char*);
+}  // namespace detail
+FMT_END_NAMESPACE
