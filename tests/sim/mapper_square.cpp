@@ -12,25 +12,16 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/unit/base/explore.hpp"
+
 namespace sim_mapper_square_test {
 
 using namespace ocm;
 using namespace ocm::square;
 using namespace std::chrono_literals;
 
-// Sanitizers look for other things than errors of an estimate, and take thirty times as long: fewer drives.
-#if defined(__SANITIZE_ADDRESS__)
-#define OCM_SANITIZED
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define OCM_SANITIZED
-#endif
-#endif
-#ifdef OCM_SANITIZED
-constexpr std::uint64_t seeds = 10;
-#else
-constexpr std::uint64_t seeds = 100;
-#endif
+// Sanitizers look for other things than errors of an estimate: fewer drives.
+constexpr std::uint64_t seeds = test::sanitized ? 10 : 100;
 constexpr base::Duration stand = 10s;
 
 enum Estimator : std::size_t { wheels, with_gyro, always, trusted, second_robot };

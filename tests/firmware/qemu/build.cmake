@@ -8,7 +8,6 @@ if(NOT EXISTS ${BINARY}/build.ninja OR NOT EXISTS ${BINARY}/CMakeCache.txt)
                           --toolchain ${TOOLCHAIN}
                   COMMAND_ERROR_IS_FATAL ANY)
 endif()
-# Half of the processors: beside it run tests that tell time.
+# On all processors, but behind the tests that tell time beside it.
 cmake_host_system_information(RESULT jobs QUERY NUMBER_OF_LOGICAL_CORES)
-math(EXPR jobs "(${jobs} + 1) / 2")
-execute_process(COMMAND ${CMAKE_COMMAND} --build ${BINARY} --parallel ${jobs} COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND nice -n 10 ${CMAKE_COMMAND} --build ${BINARY} --parallel ${jobs} COMMAND_ERROR_IS_FATAL ANY)

@@ -76,7 +76,7 @@ class Ninja:
 
     def run(self, jobs):
         (self.folder / "build.ninja").write_text("\n".join(self.lines) + "\n")
-        return subprocess.run(["ninja", "-C", str(self.folder), "--quiet", "-k", "0", "-j", str(jobs)]).returncode
+        return subprocess.run(["nice", "-n", "10", "ninja", "-C", str(self.folder), "--quiet", "-k", "0", "-j", str(jobs)]).returncode
 
 
 def alone(ninja, header):
@@ -220,7 +220,7 @@ def main():
     parser.add_argument("part", choices=[*PARTS, "symbols", "twice"])
     parser.add_argument("--build", type=pathlib.Path, help="folder for what is made; kept between runs")
     parser.add_argument("--warnings", default="-Wall -Wextra")
-    parser.add_argument("--jobs", type=int, default=((os.cpu_count() or 1) + 1) // 2)
+    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
     for step in ("--object", "--file", "--compiler", "--output", "--common"):
         parser.add_argument(step, default="", help=argparse.SUPPRESS)
     arguments = parser.parse_args()

@@ -16,6 +16,7 @@
 #include "ocm/simulation/cpu.hpp"
 
 #include "unit/analysis/naive_cpu.hpp"
+#include "unit/base/explore.hpp"
 #include "unit/base/random.hpp"
 
 namespace analysis_cpu_properties_test {
@@ -28,11 +29,7 @@ using test::Releases;
 using test::Step;
 using test::Steps;
 
-#if defined(__OPTIMIZE__) && !defined(__arm__)
-constexpr int effort = 100;
-#else
-constexpr int effort = 2;  // sanitizers and emulators take their time
-#endif
+constexpr int effort = test::at_full_speed ? 100 : 2;
 
 double fraction(Random& random) {
   return static_cast<double>(random.word() >> 11U) * 0x1p-53;

@@ -12,6 +12,8 @@
 #include "ocm/scheduling/dispatcher.hpp"
 #include "ocm/simulation/cpu.hpp"
 
+#include "unit/base/explore.hpp"
+
 namespace scheduling_dispatcher_properties_test {
 
 using namespace ocm;
@@ -31,11 +33,7 @@ constexpr base::Time at(base::Duration offset) {
   return base::Time{offset};
 }
 constexpr base::Duration day = 24h;
-#if defined(__OPTIMIZE__) && !defined(__arm__)
-constexpr int effort = 10;
-#else
-constexpr int effort = 1;  // sanitizers and emulators take their time
-#endif
+constexpr int effort = test::at_full_speed ? 10 : 1;
 
 /// One stream, a timer that is served punctually, one day.
 struct OneDay {
