@@ -3,23 +3,21 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "ocm/analysis/board_check.hpp"
 #include "ocm/analysis/bus_check.hpp"
 #include "ocm/analysis/utilisation.hpp"
-#include "ocm/can/length.hpp"
-#include "ocm/can/text.hpp"
-#include "ocm/client/diagnosis.hpp"
-#include "ocm/client/sample.hpp"
 #include "ocm/protocol/request.hpp"
 #include "ocm/protocol/topic.hpp"
 
+#include "cli/command/traffic.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/live.hpp"
 #include "cli/shared/values.hpp"
@@ -29,158 +27,29 @@ namespace ocm::cli {
 namespace {
 
 using analysis::Explained;
-using analysis::Message;
-using client::Meaning;
 using words::to_text;
-
-/// More than any robot of this protocol has at a time: its boards have 256 numbers.
-constexpr std::size_t most_identifiers = 512;
-using BusCheck = analysis::BusCheck<most_identifiers>;
 
 /// An analysis that takes longer than some tens of milliseconds is not waited for: it counts as a miss.
 constexpr analysis::Limits limits{.terms = 1'000'000};
 
-/// What a stream is asked for, by whom.
-struct Wish {
-  const protocol::Topic* topic = nullptr;
-  protocol::Priority priority = protocol::default_priority;
-  base::Duration period{};
-};
-
-std::optional<Wish> wish_of(const client::Command& command) {
+/// The stream that a command asks for, if it does.
+std::optional<Stream> stream_of(const client::Command& command) {
   if (command.answers == nullptr || command.frames.size() != 1) return {};
   const auto request = protocol::decode_request(command.frames[0]);
   if (!request || request->mode != protocol::Mode::publish) return {};
   const bool named = command.frames[0].dlc > 1;
-  return Wish{command.answers, request->priority,
-              named ? request->period.duration() : command.answers->period.duration()};
+  return Stream{command.answers, request->priority,
+                named ? request->period.duration() : command.answers->period.duration()};
 }
 
-std::string name_of(const protocol::FrameRef& ref) {
-  const auto& frame = ref.layout();
-  return frame.name.empty() ? std::string{ref.topic->name}
-                            : fmt::format("{}/{}", ref.topic->name, frame.name);
-}
-
-/// What is on the bus, as it was heard.
-class Traffic {
- public:
-  explicit Traffic(const protocol::Catalogue& catalogue)
-      : catalogue_(catalogue), receiver_(catalogue), diagnosis_(catalogue) {}
-
-  void take(const can::Received& received) {
-    const auto reception = receiver_.take(received);
-    diagnosis_.take(reception);
-    // A request comes once, when somebody types it.
-    if (reception.meaning == Meaning::error || reception.meaning == Meaning::request) return;
-    const std::uint32_t key = can::arbitration_key(received.frame);
-    auto [place, is_new] = heard_.try_emplace(key);
-    Heard& heard = place->second;
-    if (is_new) {
-      heard.first = received.time;
-      heard.frame = received.frame;
-      if (reception.meaning != Meaning::wrong_dlc) heard.ref = reception.frame;
-    }
-    // Of an identifier that comes in several lengths the longest counts.
-    if (received.frame.dlc > heard.frame.dlc) heard.frame = received.frame;
-    heard.last = received.time;
-    ++heard.count;
-  }
-
-  /// Hands all that runs besides `wish` to `check`. `window`: how long was listened.
-  void fill(BusCheck& check, base::Duration window, const Wish& wish) {
-    for (const auto& [key, heard] : heard_) {
-      if (heard.ref.topic == wish.topic) continue;
-      put(check, key, bits_of(heard), period_of(heard, window),
-          heard.ref ? heard.ref.topic->deadline : base::Duration{}, heard.ref, 0);
-    }
-    // What a status names and was not heard comes less often than what was.
-    for (const auto& topic : catalogue_.topics)
-      if (&topic != wish.topic && diagnosis_.publishes(topic) && !heard_of(topic))
-        put_stream(check, {&topic, topic.priority, window}, false);
-    put_stream(check, wish, true);
-    // Whatever else there is, a request or what comes so seldom that it was not heard: one frame of it may be
-    // on its way when another wants to be. It goes after all, and nobody asks when it arrives.
-    static_cast<void>(
-        check.runs({.cost = analysis::bits_ns(can::worst_frame_bits(can::Format::base, can::max_dlc),
-                                              catalogue_.bit_rate),
-                    .period = std::chrono::nanoseconds{std::chrono::hours{1}}.count(),
-                    .key = somebody}));
-  }
-  /// The key of the message that stands for everything that was not heard.
-  static constexpr std::uint32_t somebody = UINT32_MAX;
-
-  struct Line {
-    std::string name;
-    std::uint32_t id = 0;
-    unsigned bits = 0;
-  };
-  [[nodiscard]] const Line& line(std::uint32_t key) const { return lines_.at(key); }
-  [[nodiscard]] std::size_t identifiers() const { return heard_.size(); }
-
- private:
-  struct Heard {
-    can::Frame frame;
-    protocol::FrameRef ref;
-    base::Time first;
-    base::Time last;
-    std::int64_t count = 0;
-  };
-
-  static unsigned bits_of(const Heard& heard) {
-    if (heard.ref)
-      return protocol::worst_bits(heard.ref.layout(), protocol::Identifier::decode(heard.frame.id).priority);
-    return can::worst_frame_bits(heard.frame.format, heard.frame.dlc);
-  }
-  /// What came n times in a window comes at most every (n + 1)th part of it, if it comes regularly, whatever
-  /// delayed it here; and where there are two or more, as often as they came.
-  static base::Duration period_of(const Heard& heard, base::Duration window) {
-    const base::Duration bound = window / (heard.count + 1);
-    return heard.count < 2 ? bound : std::max(bound, (heard.last - heard.first) / (heard.count - 1));
-  }
-  [[nodiscard]] bool heard_of(const protocol::Topic& topic) const {
-    return std::any_of(heard_.begin(), heard_.end(),
-                       [&topic](const auto& entry) { return entry.second.ref.topic == &topic; });
-  }
-
-  void put_stream(BusCheck& check, const Wish& stream, bool asked) {
-    for (std::size_t i = 0; i < stream.topic->frames.size(); ++i) {
-      const auto& frame = stream.topic->frames[i];
-      const std::uint32_t id =
-          protocol::Identifier{protocol::Direction::sensor, stream.priority, frame.id}.encode();
-      put(check, can::arbitration_key({.id = id}), protocol::worst_bits(frame, stream.priority),
-          stream.period, stream.topic->deadline, {stream.topic, static_cast<std::uint8_t>(i)}, id, asked);
-    }
-  }
-  void put(BusCheck& check, std::uint32_t key, unsigned bits, base::Duration period, base::Duration deadline,
-           const protocol::FrameRef& ref, std::uint32_t id, bool asked = false) {
-    Message message;
-    message.cost = analysis::bits_ns(bits, catalogue_.bit_rate);
-    message.period = std::max<std::int64_t>(1, period.count());
-    if (deadline.count() > 0) message.deadline = deadline.count();
-    message.key = key;
-    if (id == 0) id = heard_.at(key).frame.id;
-    lines_[key] = {ref ? name_of(ref) : "not in the spec", id, bits};
-    if (!(asked ? check.asks(message) : check.runs(message)))
-      fail({fmt::format("more than {} identifiers on the bus: its load cannot be computed", most_identifiers),
-            "is the bit rate right? --force sends the request without asking"});
-  }
-
-  const protocol::Catalogue& catalogue_;
-  client::Receiver receiver_;
-  client::Diagnosis diagnosis_;
-  std::map<std::uint32_t, Heard> heard_;
-  std::map<std::uint32_t, Line> lines_;
-};
-
-/// Returns how long was listened.
-base::Duration listen(transport::Bus& bus, Traffic& traffic, base::Duration duration) {
+void listen(transport::Bus& bus, Traffic& traffic, RefusalWatch& refusals, base::Duration duration) {
   const auto begin = Live::Clock::now();
   Live{bus}.receive_or_leave(begin + duration, [&](const can::Received& received) {
     traffic.take(received);
+    refusals.take(received);
     return true;
   });
-  return Live::Clock::now() - begin;
+  traffic.end(Live::Clock::now() - begin);
 }
 
 /// To the microsecond, for people.
@@ -188,46 +57,129 @@ std::string us(std::int64_t ns) {
   return to_text(base::Duration{(ns + (ns < 0 ? -500 : 500)) / 1000 * 1000});
 }
 
-std::string fate(const Explained& result) {
+/// A stream that is asked for against all that was heard.
+class Judgement {
+ public:
+  Judgement(const protocol::Catalogue& catalogue, Traffic& traffic, const Stream& asked)
+      : catalogue_(catalogue),
+        traffic_(traffic),
+        asked_(asked),
+        bus_(check(Traffic::Unheard::left_out)),
+        sure_bus_(check(Traffic::Unheard::may_be_late)) {}
+
+  /// Whether the bus can carry it beside what was heard.
+  [[nodiscard]] analysis::Decision decide() { return bus_->decide(asked_.period.count()); }
+  /// Whether its board would take it beside what was heard.
+  [[nodiscard]] bool board_takes() const { return board_takes(asked_.period, Traffic::Unheard::left_out); }
+
+  [[nodiscard]] const BusCheck& bus() const { return *bus_; }
+  [[nodiscard]] std::string name(std::uint32_t key) const {
+    return key == Traffic::somebody ? "any other frame" : traffic_.line(key).name;
+  }
+
+  /// The shortest period above `refused` that passes here, and that the wire carries; none: there is none
+  /// below a minute.
+  [[nodiscard]] std::optional<base::Duration> shortest(base::Duration refused) {
+    constexpr std::int64_t ms = 1'000'000;
+    constexpr std::int64_t finest = std::int64_t{UINT16_MAX} * 1000;
+    std::int64_t period = 0;
+    if (refused.count() < finest) period = least_passing(refused.count(), 1000, finest);
+    if (period == 0) period = least_passing(std::max(refused.count(), finest / ms * ms), ms, UINT16_MAX * ms);
+    if (period == 0) return {};
+    return base::Duration{period};
+  }
+
+  void print_table();
+
+ private:
+  [[nodiscard]] std::unique_ptr<BusCheck> check(Traffic::Unheard unheard) {
+    auto made = std::make_unique<BusCheck>(analysis::CanBus{.bit = analysis::bits_ns(1, catalogue_.bit_rate)},
+                                           analysis::CanTest::exact, limits);
+    traffic_.fill(*made, asked_, unheard);
+    return made;
+  }
+  [[nodiscard]] bool board_takes(base::Duration period, Traffic::Unheard unheard) const {
+    BoardCheck board{catalogue_, asked_.topic->board};
+    traffic_.fill(board, {asked_.topic, asked_.priority, period}, unheard);
+    return board.fits();
+  }
+  /// A longer period never makes anybody later, so halving finds it. In whole steps above `refused`, up to
+  /// `limit`; 0: none.
+  [[nodiscard]] std::int64_t least_passing(std::int64_t refused, std::int64_t step, std::int64_t limit) {
+    const std::int64_t period = bus_->shortest(refused, step, limit);
+    std::int64_t low = period / step - 1;
+    std::int64_t high = limit / step;
+    const auto takes = [&](std::int64_t steps) {
+      return board_takes(base::Duration{steps * step}, Traffic::Unheard::left_out);
+    };
+    if (period == 0 || !takes(high)) return 0;
+    while (high - low > 1) {
+      const std::int64_t middle = low + (high - low) / 2;
+      (takes(middle) ? high : low) = middle;
+    }
+    return high * step;
+  }
+  [[nodiscard]] std::string fate(const Explained& result, bool asked, bool surely) const;
+
+  const protocol::Catalogue& catalogue_;
+  Traffic& traffic_;
+  Stream asked_;
+  std::unique_ptr<BusCheck> bus_;       ///< with what was heard
+  std::unique_ptr<BusCheck> sure_bus_;  ///< with what may run besides
+};
+
+std::string Judgement::fate(const Explained& result, bool asked, bool surely) const {
   if (result.reason == analysis::Reason::misses_deadline)
     return fmt::format("late by {}", us(-result.slack()));
   if (result.reason == analysis::Reason::overloaded) return "never gets through";
-  return result.ok() ? "in time" : "no bound found";
+  if (!result.ok()) return "no bound found";
+  if (asked && !board_takes()) return "its board may refuse it";
+  return surely ? "in time" : "not known";
 }
 
-void print_table(const Traffic& traffic, BusCheck& check, const Wish& wish, base::Duration window,
-                 std::uint32_t bit_rate) {
-  const auto results = check.explain(wish.period.count());
-  const auto messages = check.messages();
+void Judgement::print_table() {
+  const auto sure_results = sure_bus_->explain(asked_.period.count());
+  const auto sure_messages = sure_bus_->messages();
+  const bool board_surely_takes = board_takes(asked_.period, Traffic::Unheard::may_be_late);
+  const auto surely = [&](std::uint32_t key) {
+    if (bus_->is_asked(key) && !board_surely_takes) return false;
+    for (std::size_t i = 0; i < sure_results.size(); ++i)
+      if (sure_messages[i].key == key) return sure_results[i].ok();
+    return false;
+  };
+  const auto results = bus_->explain(asked_.period.count());
+  const auto messages = bus_->messages();
   std::size_t width = 7;
   for (const auto& message : messages)
-    if (message.key != Traffic::somebody) width = std::max(width, traffic.line(message.key).name.size());
+    if (message.key != Traffic::somebody) width = std::max(width, name(message.key).size());
   fmt::print("{:<8}  {:<{}}  {:>9}  {:>9}  {:>4}  {:>9}  {:>9}  {}\n", "ID", "MESSAGE", width, "PERIOD",
              "DEADLINE", "BITS", "RESPONSE", "SLACK", "VERDICT");
+  const std::int64_t load = analysis::utilisation(messages).parts_per_million();
+  bool all_known = true;
   for (std::size_t i = 0; i < results.size(); ++i) {
-    if (messages[i].key == Traffic::somebody) continue;
-    const auto& line = traffic.line(messages[i].key);
+    const std::uint32_t key = messages[i].key;
+    if (key == Traffic::somebody) continue;
+    const auto& line = traffic_.line(key);
     const auto& result = results[i];
+    const std::string verdict = fate(result, bus_->is_asked(key), surely(key));
+    all_known = all_known && verdict != "not known";
     fmt::print("{:<8}  {:<{}}  {:>9}  {:>9}  {:>4}  {:>9}  {:>9}  {}{}\n", fmt::format("{:03X}", line.id),
                line.name, width, us(messages[i].period), us(result.deadline), line.bits,
                result.bounded() ? us(result.response) : "-", result.bounded() ? us(result.slack()) : "-",
-               fate(result), check.is_asked(messages[i].key) ? ", asked for" : "");
+               verdict, bus_->is_asked(key) ? ", asked for" : "");
   }
-  const std::int64_t load = analysis::utilisation(messages).parts_per_million();
+  if (!all_known) {
+    std::string names;
+    for (const auto* topic : traffic_.unheard(asked_))
+      names.append(names.empty() ? "" : ", ").append(topic->name);
+    fmt::print("not known: in time unless one of these runs, less often than every {}: {}\n",
+               us(traffic_.window().count()), names);
+  }
+  const auto better = shortest(base::Duration{0});
+  if (better) fmt::print("the shortest period that passes beside what was heard is {}\n", to_text(*better));
   fmt::print("load {}.{} % of {} bit/s at worst; {} identifier{} heard within {}\n", load / 10'000,
-             load / 1'000 % 10, bit_rate, traffic.identifiers(), traffic.identifiers() == 1 ? "" : "s",
-             us(window.count()));
-}
-
-/// The shortest period that passes and that the wire carries; none: there is none below a minute.
-std::optional<base::Duration> shortest(BusCheck& check, base::Duration refused) {
-  constexpr std::int64_t ms = 1'000'000;
-  std::int64_t period = 0;
-  const std::int64_t finest = std::int64_t{UINT16_MAX} * 1000;
-  if (refused.count() < finest) period = check.shortest(refused.count(), 1000, finest);
-  if (period == 0) period = check.shortest(std::max(refused.count(), finest / ms * ms), ms, UINT16_MAX * ms);
-  if (period == 0) return {};
-  return base::Duration{period};
+             load / 1'000 % 10, catalogue_.bit_rate, traffic_.identifiers(),
+             traffic_.identifiers() == 1 ? "" : "s", us(traffic_.window().count()));
 }
 
 }  // namespace
@@ -239,30 +191,38 @@ void add_admission_options(Verb verb, AdmissionOptions& options) {
 }
 
 void admit(Session& session, transport::Bus& bus, const client::Command& command,
-           const AdmissionOptions& options) {
-  const auto wish = wish_of(command);
-  if (!wish || (options.force && !options.explain)) return;
+           const AdmissionOptions& options, RefusalWatch& refusals) {
+  const auto asked = stream_of(command);
+  if (!asked || (options.force && !options.explain)) return;
   const auto& catalogue = session.catalogue();
   if (catalogue.bit_rate == 0) return;
   catch_interrupts();
   Traffic traffic{catalogue};
-  const base::Duration window = listen(bus, traffic, options.listen);
-  const auto check = std::make_unique<BusCheck>(
-      analysis::CanBus{.bit = analysis::bits_ns(1, catalogue.bit_rate)}, analysis::CanTest::exact, limits);
-  traffic.fill(*check, window, *wish);
-  const auto decision = check->decide(wish->period.count());
+  listen(bus, traffic, refusals, options.listen);
+  Judgement judgement{catalogue, traffic, *asked};
+  const auto decision = judgement.decide();
   std::string who;
+  bool own = false;
   if (decision.late != analysis::nobody) {
-    const std::uint32_t key = check->messages()[decision.late].key;
-    who = key == Traffic::somebody ? "any other frame" : traffic.line(key).name;
+    const std::uint32_t key = judgement.bus().messages()[decision.late].key;
+    who = judgement.name(key);
+    own = judgement.bus().is_asked(key);
   }
-  const bool own = decision.late != analysis::nobody && check->is_asked(check->messages()[decision.late].key);
-  if (options.explain) print_table(traffic, *check, *wish, window, catalogue.bit_rate);
-  if (decision.admitted || options.force) return;
+  if (options.explain) judgement.print_table();
+  const auto offer = [](base::Duration period) {
+    return fmt::format("the shortest period that passes is {}", to_text(period));
+  };
+  if (decision.admitted || options.force) {
+    // Its board decides about it, and says so; this is what it would take.
+    if (!judgement.board_takes())
+      if (const auto better = judgement.shortest(asked->period))
+        refusals.offer(offer(*better) + "; --explain shows all");
+    return;
+  }
 
   const Explained& why = decision.why;
   std::string what = fmt::format("publish: {} every {} at {} does not fit on the bus: {}{} ",
-                                 wish->topic->name, to_text(wish->period), protocol::name(wish->priority),
+                                 asked->topic->name, to_text(asked->period), protocol::name(asked->priority),
                                  who, own ? "" : ", which runs already,");
   if (why.reason == analysis::Reason::misses_deadline)
     what += fmt::format("would miss its deadline of {} by {}", us(why.deadline), us(-why.slack()));
@@ -270,9 +230,9 @@ void admit(Session& session, transport::Bus& bus, const client::Command& command
     what += "would never get through: it and what is more urgent ask for all there is, or more";
   else
     what += std::string{analysis::describe(why.reason)};
-  const auto better = shortest(*check, wish->period);
-  std::string remedy = better ? fmt::format("the shortest period that passes is {}", to_text(*better))
-                       : wish->priority == protocol::Priority::low
+  const auto better = judgement.shortest(asked->period);
+  std::string remedy = better ? offer(*better)
+                       : asked->priority == protocol::Priority::low
                            ? "no period passes: stop something first"
                            : "no period passes: ask at a lower priority, or stop something first";
   fail({what, remedy + "; --explain shows all, --force sends it anyway"});

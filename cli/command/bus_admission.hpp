@@ -7,6 +7,7 @@
 #include "ocm/base/time.hpp"
 #include "ocm/transport/bus.hpp"
 
+#include "cli/command/refusal_watch.hpp"
 #include "cli/shared/arguments.hpp"
 #include "cli/shared/session.hpp"
 #include "cli/words/command.hpp"
@@ -25,6 +26,6 @@ void add_admission_options(Verb verb, AdmissionOptions& options);
 /// Listens, and fails with the reason where somebody would be late; --explain prints the table to stdout. A
 /// command that starts no stream passes at once, and so does all with --force alone.
 void admit(Session& session, transport::Bus& bus, const client::Command& command,
-           const AdmissionOptions& options);
+           const AdmissionOptions& options, RefusalWatch& refusals);
 
 }  // namespace ocm::cli

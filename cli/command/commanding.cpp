@@ -8,18 +8,21 @@
 
 #include "cli/shared/outgoing.hpp"
 #include "cli/shared/values.hpp"
+#include "cli/words/quantity.hpp"
 
 namespace ocm::cli {
 
-Commanding::Commanding(Verb verb, Session& session, std::string_view words_help, bool with_priority)
+Commanding::Commanding(Verb verb, Session& session, std::string_view words_help, Sends sends)
     : verb_(verb.name()), session_(&session) {
   verb.add_option("words", words_, std::string{words_help})
       .type_name("")
       .in_usage(std::string{words::form_of(verb_)});
-  if (with_priority)
+  raw_ = sends == Sends::raw_frames;
+  if (!raw_)
     add_priority(verb, "--priority", options_.priority,
                  "urgent, high, medium or low, or 0 to 3; default: the topic's own");
   verb.add_flag("--dry-run", dry_run_, "print the frames in candump notation and send nothing");
+  if (!raw_) add_no_confirm(verb, no_confirm_);
 }
 
 client::Command Commanding::parse() const {
@@ -34,22 +37,32 @@ void print_frames(const std::vector<can::Frame>& frames) {
   for (const auto& frame : frames) fmt::print("{}\n", can::to_text(frame).view());
 }
 
-void carry_out(Session& session, std::string_view verb, const client::Command& command, bool dry_run) {
-  if (dry_run) return print_frames(command.frames);
+void add_no_confirm(Verb verb, bool& no_confirm) {
+  verb.add_flag("--no-confirm", no_confirm,
+                fmt::format("do not listen for a board's refusal; default: for {} after sending",
+                            words::to_text(client::refusal_patience)));
+}
+
+void carry_out(Session& session, const Commanding& commanding, const client::Command& command) {
+  const auto& frames = command.frames;
+  if (commanding.dry_run()) return print_frames(frames);
   const auto bus = session.open_bus();
-  Outgoing outgoing{*bus, std::string{verb}, command.ends_hold ? still_moving : ""};
-  for (const auto& frame : command.frames) outgoing.send(frame);
+  RefusalWatch refusals{session.catalogue(), commanding.verb(), commanding.confirm()};
+  refusals.prepare(*bus, frames);
+  Outgoing outgoing{*bus, commanding.verb(), command.ends_hold ? still_moving : ""};
+  for (const auto& frame : frames) outgoing.send(frame);
   outgoing.expect_all_left();
+  refusals.sent(frames);
+  refusals.listen(*bus);
+  if (command.ends_hold && frames.size() > 1) refusals.forgive_unserved();
+  refusals.leave_if_refused();
 }
 
 void add_command_verb(Verb app, Session& session, std::string_view name, std::string_view description,
-                      std::string_view group, std::string_view words_help, std::string_view examples,
-                      bool with_priority) {
+                      std::string_view group, std::string_view words_help, std::string_view examples) {
   auto verb = app.add_verb(name, description, group, examples);
-  const auto commanding = std::make_shared<Commanding>(verb, session, words_help, with_priority);
-  verb.callback([commanding, &session] {
-    carry_out(session, commanding->verb(), commanding->parse(), commanding->dry_run());
-  });
+  const auto commanding = std::make_shared<Commanding>(verb, session, words_help);
+  verb.callback([commanding, &session] { carry_out(session, *commanding, commanding->parse()); });
 }
 
 }  // namespace ocm::cli

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/command/refusal_watch.hpp"
 #include "cli/shared/arguments.hpp"
 #include "cli/shared/session.hpp"
 #include "cli/words/command.hpp"
@@ -16,14 +17,17 @@ class Commanding {
  public:
   Commanding(const Commanding&) = delete;  // the options write into its members
   Commanding& operator=(const Commanding&) = delete;
-  /// Adds the positional words, --priority and --dry-run to `verb`.
-  Commanding(Verb verb, Session& session, std::string_view words_help, bool with_priority = true);
+  /// Whether a verb knows what it sends: a frame as it is has no other priority, and is not confirmed.
+  enum class Sends : bool { raw_frames, commands };
+  /// Adds the positional words and --dry-run to `verb`; of commands --priority and --no-confirm.
+  Commanding(Verb verb, Session& session, std::string_view words_help, Sends sends = Sends::commands);
 
   /// The command, or exit_usage with a message that names the word.
   [[nodiscard]] client::Command parse() const;
   /// What the options of the command line say; a verb adds its own to them.
   [[nodiscard]] words::CommandOptions& options() { return options_; }
   [[nodiscard]] bool dry_run() const { return dry_run_; }
+  [[nodiscard]] Confirm confirm() const { return raw_ || no_confirm_ ? Confirm::no : Confirm::yes; }
   [[nodiscard]] const std::string& verb() const { return verb_; }
 
  private:
@@ -32,17 +36,22 @@ class Commanding {
   std::vector<std::string> words_;
   words::CommandOptions options_;
   bool dry_run_ = false;
+  bool raw_ = false;
+  bool no_confirm_ = false;
 };
 
-/// Sends the command's frames once, or prints them. Leaves through cli::fail unless they left this machine.
-void carry_out(Session& session, std::string_view verb, const client::Command& command, bool dry_run);
+/// --no-confirm.
+void add_no_confirm(Verb verb, bool& no_confirm);
+
+/// Sends the command's frames once, or prints them. Leaves through cli::fail unless they left this machine,
+/// and unless no board refuses them.
+void carry_out(Session& session, const Commanding& commanding, const client::Command& command);
 
 /// Prints frames in candump notation, one a line.
 void print_frames(const std::vector<can::Frame>& frames);
 
-/// A plain command verb: parse, carry out. For stop, led, set, send.
+/// A plain command verb: parse, carry out. For stop, led, set.
 void add_command_verb(Verb app, Session& session, std::string_view name, std::string_view description,
-                      std::string_view group, std::string_view words_help, std::string_view examples,
-                      bool with_priority = true);
+                      std::string_view group, std::string_view words_help, std::string_view examples);
 
 }  // namespace ocm::cli

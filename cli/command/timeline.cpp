@@ -12,14 +12,15 @@
 namespace ocm::cli {
 
 Timeline::Timeline(transport::Bus& bus, const protocol::Catalogue& catalogue, std::string verb, Others others,
-                   std::function<void(const can::Received&)> on_receive)
+                   Confirm confirm, std::function<void(const can::Received&)> on_receive)
     : bus_(&bus),
       verb_(std::move(verb)),
       on_receive_(std::move(on_receive)),
       others_(others),
       other_(catalogue, verb_),
       live_(bus),
-      outgoing_(bus, verb_) {}
+      outgoing_(bus, verb_),
+      refusals_(catalogue, verb_, confirm) {}
 
 Timeline::~Timeline() {
   if (held_ && !rest_after_all() && outgoing_.matters()) remark(fmt::format("{}: {}", verb_, still_moving));
@@ -33,6 +34,7 @@ void Timeline::send(const can::Frame& frame) {
   const bool set_point = other_.is_set_point(frame);
   if (set_point) outgoing_.otherwise_after_the_next(still_moving);
   outgoing_.send(frame);
+  refusals_.sent(frame, set_point && moving_);
   if (set_point) moving_ = !is_rest(frame);
 }
 
@@ -61,13 +63,30 @@ void Timeline::rest() {
   send(frame);
 }
 
-void Timeline::finish() {
+bool Timeline::finish() {
   rest();
   outgoing_.expect_all_left();
+  if (interrupted() == 0)
+    static_cast<void>(live_.receive(refusals_.until(), [this](const can::Received& received) {
+      refusals_.take(received);
+      if (on_receive_) on_receive_(received);
+      return true;
+    }));
+  tell_refusals();
   other_.sum_up();
   if (withheld_ != 0)
     remark(fmt::format("{}: {} set points were not sent, because the one before had not left", verb_,
                        withheld_));
+  return !refused_;
+}
+
+void Timeline::tell_refusals() {
+  const auto& refused = refusals_.refused();
+  const bool held = held_ && std::any_of(refused.begin(), refused.end(), [](const client::Refused& each) {
+                      return each.topic->role == protocol::Role::drive;
+                    });
+  refused_ = refusals_.tell() || refused_;
+  if (held) throw Exit{exit_failure};
 }
 
 bool Timeline::rest_after_all() {
@@ -121,11 +140,13 @@ void Timeline::repeat(Clock::time_point now) {
     held_.reset();
     fail(bus_->failure());
   }
-  if (taken && *taken)
+  if (taken && *taken) {
     held_->left = now;
-  else if (++withheld_; now - held_->left >= longest)
+    refusals_.sent(held_->hold.frame, true);
+  } else if (++withheld_; now - held_->left >= longest) {
     abandon(fmt::format("the transmit queue of {} has been full for {}", bus_->name(), in_words(held_->left)),
             why_none_leaves(*bus_));
+  }
 }
 
 bool Timeline::wait(Clock::time_point until) {
@@ -140,9 +161,11 @@ bool Timeline::wait(Clock::time_point until) {
     awake_ = wake;
     const Over over = live_.receive(wake, [&](const can::Received& received) {
       other_.take(received, moving_);
+      const bool refused = refusals_.take(received);
       if (on_receive_) on_receive_(received);
-      return !other_.has_stopped();  // at once, not when the next step is due
+      return !refused && !other_.has_stopped();  // at once, not when the next step is due
     });
+    tell_refusals();
     if (over == Over::gone) {
       held_.reset();
       fail(bus_->failure());
@@ -160,7 +183,7 @@ bool Timeline::wait_for_step(Clock::time_point due) {
 void Timeline::expect_awake() {
   look_at_clock();
   if (stood_still_ < client::longest_without_set_point) return;
-  finish();
+  static_cast<void>(finish());
   fail({fmt::format("{}: this program stood still for {}, and carries out no further command", verb_,
                     words::to_text(std::chrono::duration_cast<std::chrono::milliseconds>(stood_still_))),
         "was it stopped, or did the machine sleep? Give the command again"});

@@ -5,6 +5,9 @@
 /// not left; when none has left for as long as the motors' watchdog waits, or when this program stood still
 /// for so long, the hold ends, and the set point of rest is the next that can leave. No hold begins while
 /// another program commands the motors, unless that is allowed.
+///
+/// A board that refuses a set point that is held ends the command; what else a board refuses is said, and the
+/// command goes on.
 #pragma once
 
 #include <chrono>
@@ -17,6 +20,7 @@
 #include "ocm/transport/bus.hpp"
 
 #include "cli/command/other_commander.hpp"
+#include "cli/command/refusal_watch.hpp"
 #include "cli/shared/live.hpp"
 #include "cli/shared/outgoing.hpp"
 #include "cli/words/command.hpp"
@@ -31,7 +35,7 @@ class Timeline {
   /// `verb` is for messages. `on_receive` gets every frame that comes while waiting; empty: they are
   /// discarded.
   Timeline(transport::Bus& bus, const protocol::Catalogue& catalogue, std::string verb, Others others,
-           std::function<void(const can::Received&)> on_receive);
+           Confirm confirm, std::function<void(const can::Received&)> on_receive);
 
   /// Waits as long as it takes to hear another program that commands the motors, where one is refused. False:
   /// a signal came first.
@@ -55,8 +59,10 @@ class Timeline {
   [[nodiscard]] bool wait_for_hold();
   /// Ends a hold: sends the set point of rest. Nothing without a hold.
   void rest();
-  /// rest(), and what was sent has left; leaves through cli::fail, loudly, if not.
-  void finish();
+  /// rest(), and what was sent has left; leaves through cli::fail, loudly, if not. Then listens for the
+  /// refusal of what was sent last, unless a signal came. False: a board has refused something, which was
+  /// said.
+  [[nodiscard]] bool finish();
 
  private:
   struct Held {
@@ -66,6 +72,8 @@ class Timeline {
     Clock::time_point left;  ///< when a set point was last sent, with none before it under way
   };
   void send(const can::Frame& frame);
+  /// Says what a board refused; leaves if the motors are held and their board refuses that.
+  void tell_refusals();
   /// Leaves, with the motors at rest, if this program stood still for as long as a watchdog waits.
   void expect_awake();
   /// The time; notes for how long this program did not look where it should have.
@@ -90,6 +98,8 @@ class Timeline {
   bool moving_ = false;                     ///< a set point of motors was sent, and none of rest after it
   Live live_;
   Outgoing outgoing_;
+  RefusalWatch refusals_;
+  bool refused_ = false;
   std::uint64_t withheld_ = 0;  ///< set points that were due while none could leave
 };
 

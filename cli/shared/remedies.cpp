@@ -1,6 +1,42 @@
 #include "cli/shared/remedies.hpp"
 
+#include <string_view>
+
+#include <fmt/format.h>
+
 namespace ocm::cli {
+namespace {
+
+/// Where a person sees what a sensor's board could carry.
+std::string where_room_is_shown(std::string_view topic) {
+  return fmt::format(
+      "`amiroctl publish {} --dry-run --explain --listen 2s` shows what runs, and the shortest period that "
+      "passes",
+      topic);
+}
+
+/// The reasons of a refusal topic [spec/topics.json] in words.
+std::string_view in_words(std::string_view reason) {
+  struct Words {
+    std::string_view reason, words;
+  };
+  constexpr Words all[] = {{"bad_length", "the board expects another number of bytes"},
+                           {"bad_mode", "a mode that the board does not know"},
+                           {"bad_unit", "a unit of time that the board does not know"},
+                           {"bad_period", "a period that the board cannot keep"},
+                           {"out_of_range", "a value that the board does not take"},
+                           {"not_served", "nothing on the board serves it"},
+                           {"no_sample", "the part delivered no sample"},
+                           {"no_room", "the board has no room for it"},
+                           {"no_answer", "the part behind it does not answer"},
+                           {"bus_fault", "the bus of the part behind it failed"},
+                           {"not_schedulable", "a stream of the board could miss its deadline"}};
+  for (const auto& each : all)
+    if (each.reason == reason) return each.words;
+  return {};
+}
+
+}  // namespace
 
 std::string remedy(const host::Failure& failure) {
   switch (failure.cause) {
@@ -36,7 +72,34 @@ std::string remedy(const client::Finding& finding) {
   if (finding.ailment == Ailment::refusals)
     return "`amiroctl info " + std::string{finding.topic.empty() ? "?" : finding.topic} +
            "` says what it takes";
+  if (finding.ailment == Ailment::not_schedulable) return where_room_is_shown(finding.topic);
   return finding.remedy;
+}
+
+std::string remedy(const client::Refused& refused) {
+  const auto& topic = *refused.topic;
+  const std::string_view reason = refused.reason;
+  if (reason == "not_schedulable")
+    return fmt::format("ask for a longer period or stop another stream: {}", where_room_is_shown(topic.name));
+  if (reason == "not_served")
+    return fmt::format("{} accepts what its firmware serves: flash one that serves {}", refused.board,
+                       topic.name);
+  if (reason == "bad_period")
+    return fmt::format("it accepts 1us to 65535s: `amiroctl publish {} 50ms`", topic.name);
+  if (reason == "bad_length" || reason == "bad_mode" || reason == "bad_unit")
+    return fmt::format(
+        "`amiroctl info {}` says what this tool's spec accepts; `amiroctl doctor` says whether the "
+        "board was built from another one",
+        topic.name);
+  if (reason == "out_of_range")
+    return fmt::format("`amiroctl info {}` says which values it accepts", topic.name);
+  return "`amiroctl doctor` says which parts do not answer; when they do, it accepts the same again";
+}
+
+std::string describe(const client::Refused& refused) {
+  if (refused.reason.empty()) return "for a reason that the spec does not name";
+  const auto words = in_words(refused.reason);
+  return words.empty() ? std::string{refused.reason} : fmt::format("{} ({})", refused.reason, words);
 }
 
 }  // namespace ocm::cli

@@ -5,11 +5,16 @@
 #include <string>
 
 #include "ocm/client/diagnosis.hpp"
+#include "ocm/client/refusals.hpp"
 #include "ocm/host/failure.hpp"
 
 namespace ocm::cli {
 
 [[nodiscard]] std::string remedy(const host::Failure& failure);
 [[nodiscard]] std::string remedy(const client::Finding& finding);
+/// What the board would accept.
+[[nodiscard]] std::string remedy(const client::Refused& refused);
+/// A board's reason, by its name in the spec and in words.
+[[nodiscard]] std::string describe(const client::Refused& refused);
 
 }  // namespace ocm::cli

@@ -35,7 +35,7 @@ void add_drive(Verb app, Session& session, int& exit_code) {
   verb.callback([options, &session, &exit_code] {
     const auto command = options->commanding.parse();
     if (options->commanding.dry_run() || !command.hold)
-      return carry_out(session, "drive", command, options->commanding.dry_run());
+      return carry_out(session, options->commanding, command);
     catch_interrupts();
     catch_hangups();
     catch_broken_pipe();
@@ -44,6 +44,7 @@ void add_drive(Verb app, Session& session, int& exit_code) {
                       session.catalogue(),
                       "drive",
                       options->force ? Timeline::Others::allowed : Timeline::Others::refused,
+                      options->commanding.confirm(),
                       {}};
     bool ended = timeline.listen_first();
     if (ended && options->once) {
@@ -52,7 +53,7 @@ void add_drive(Verb app, Session& session, int& exit_code) {
       timeline.carry_out(command);
       ended = timeline.wait_for_hold();
     }
-    timeline.finish();
+    if (!timeline.finish()) exit_code = exit_failure;
     if (!ended) exit_code = exit_code_after_interrupt(exit_success);
   });
 }

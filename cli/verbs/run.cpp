@@ -29,6 +29,7 @@ struct RunOptions {
   double speed = 1;
   bool show = false;
   bool force = false;
+  bool no_confirm = false;
   bool dry_run = false;
 };
 
@@ -118,8 +119,11 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
       printer.write({bus->name(), log::Entry{received.time, received.frame}, reception});
     printer.flush();
   };
-  Timeline timeline{*bus, catalogue, "run",
+  Timeline timeline{*bus,
+                    catalogue,
+                    "run",
                     options.force ? Timeline::Others::allowed : Timeline::Others::refused,
+                    options.no_confirm ? Confirm::no : Confirm::yes,
                     options.show ? std::function<void(const can::Received&)>{show}
                                  : std::function<void(const can::Received&)>{}};
   static_cast<void>(timeline.listen_first(listening_of(script, options.speed)));  // a signal is seen below
@@ -130,7 +134,7 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
     timeline.carry_out(step.command);
   }
   const bool whole = interrupted() == 0 && timeline.wait_for_hold();
-  timeline.finish();
+  if (!timeline.finish()) exit_code = exit_failure;
   if (!whole) {
     remark("interrupted: the motors were set to zero; `amiroctl stop` stops the sensors too");
     exit_code = exit_code_after_interrupt(exit_success);
@@ -154,6 +158,7 @@ void add_run(Verb app, Session& session, int& exit_code) {
       .type_name("N");
   verb.add_flag("--show,--listen", options->show, "show what the sensors answer").formerly("--listen");
   verb.add_flag("--force", options->force, "drive even if another program commands the motors");
+  add_no_confirm(verb, options->no_confirm);
   verb.add_flag("--dry-run", options->dry_run, "print each step's frames and send nothing");
   verb.callback([options, &session, &exit_code] { run(session, *options, exit_code); });
 }

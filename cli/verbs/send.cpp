@@ -92,7 +92,8 @@ void add_send(Verb app, Session& session, int& exit_code) {
                            "  amiroctl send 123#R               remote frame\n"
                            "  amiroctl --bus can0 listen --json | amiroctl --bus can1 send --stdin\n"
                            "  amiroctl decode drive.log --topic motors | amiroctl send --stdin --timed");
-  const auto commanding = std::make_shared<Commanding>(verb, session, "frame in candump notation", false);
+  const auto commanding =
+      std::make_shared<Commanding>(verb, session, "frame in candump notation", Commanding::Sends::raw_frames);
   const auto options = std::make_shared<SendOptions>();
   const auto input =
       verb.add_flag("--stdin", options->from_input,
@@ -104,7 +105,7 @@ void add_send(Verb app, Session& session, int& exit_code) {
       .needs(input);
   verb.callback([commanding, options, &session, &exit_code] {
     if (options->from_input) return send_lines(session, *options, commanding->dry_run(), exit_code);
-    carry_out(session, commanding->verb(), commanding->parse(), commanding->dry_run());
+    carry_out(session, *commanding, commanding->parse());
   });
 }
 

@@ -72,22 +72,35 @@ struct SensorCost {
   return static_cast<std::uint32_t>((std::uint64_t{bits} * 1'000'000 + bit_rate - 1) / bit_rate);
 }
 
+[[nodiscard]] constexpr std::uint32_t bounded_us(base::Duration duration) noexcept {
+  return static_cast<std::uint32_t>(
+      std::min<std::int64_t>(duration.count() / 1000, std::numeric_limits<std::int32_t>::max()));
+}
+/// Rounded down, so that the stream seems no less frequent than it is; half an hour at most, and at least
+/// one.
+[[nodiscard]] constexpr std::uint32_t stream_us(base::Duration period) noexcept {
+  return static_cast<std::uint32_t>(std::clamp<std::int64_t>(
+      period.count() / 1000, 1, std::numeric_limits<std::int32_t>::max()));
+}
+/// All frames of a sample.
+template <class Frames>
+[[nodiscard]] constexpr std::uint32_t frames_us(const Frames& frames, protocol::Priority priority,
+                                                std::uint32_t bit_rate) noexcept {
+  std::uint32_t bits = 0;
+  for (const auto& frame : frames) bits += protocol::worst_bits(frame, priority);
+  return bits_us(bits, bit_rate);
+}
+
 template <class Topic, class Costs>
 [[nodiscard]] constexpr SensorCost sensor_cost(std::uint32_t bit_rate) noexcept {
   SensorCost cost;
   cost.sample_us = Costs::template sample_us<Topic>;
-  cost.deadline_us = static_cast<std::uint32_t>(
-      std::min<std::int64_t>(Topic::deadline.count() / 1000, std::numeric_limits<std::int32_t>::max()));
-  cost.shortest_us = static_cast<std::uint32_t>(std::min<std::int64_t>(
-      Topic::shortest_period.count() / 1000, std::numeric_limits<std::int32_t>::max()));
+  cost.deadline_us = bounded_us(Topic::deadline);
+  cost.shortest_us = bounded_us(Topic::shortest_period);
   // A request's priority is the level that its samples run at.
   static_assert(protocol::priority_levels == scheduling::level_count);
-  for (std::size_t level = 0; level < scheduling::level_count; ++level) {
-    std::uint32_t bits = 0;
-    for (const auto& frame : Topic::frames)
-      bits += protocol::worst_bits(frame, static_cast<protocol::Priority>(level));
-    cost.frames_us[level] = bits_us(bits, bit_rate);
-  }
+  for (std::size_t level = 0; level < scheduling::level_count; ++level)
+    cost.frames_us[level] = frames_us(Topic::frames, static_cast<protocol::Priority>(level), bit_rate);
   return cost;
 }
 
@@ -221,7 +234,7 @@ class BoardAdmission {
  public:
   constexpr base::Error admit(std::size_t stream, base::Duration period, scheduling::Level level) noexcept {
     const typename Load::Stream before = streams_[stream];
-    streams_[stream] = {microseconds(period), level};
+    streams_[stream] = {detail::stream_us(period), level};
     if (Load::fits(facts, streams_)) return base::Error::none;
     streams_[stream] = before;
     return base::Error::not_schedulable;
@@ -229,13 +242,6 @@ class BoardAdmission {
   constexpr void ended(std::size_t stream) noexcept { streams_[stream] = {}; }
 
  private:
-  /// Rounded down, so that the stream seems no less frequent than it is; half an hour at most, and at least
-  /// one.
-  static constexpr std::uint32_t microseconds(base::Duration period) noexcept {
-    constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max();
-    return static_cast<std::uint32_t>(std::clamp<std::int64_t>(period.count() / 1000, 1, most));
-  }
-
   static constexpr typename Load::Facts facts = [] {
     typename Load::Facts f;
     f.sensors = detail::SensorCosts<typename Board::sensors, Costs>::of(bit_rate);

@@ -33,19 +33,20 @@ enum class Severity : std::uint8_t {
 /// What a finding is about, for programs that have something of their own to say about it.
 enum class Ailment : std::uint8_t {
   other,
-  no_answer,       ///< of any board
-  statusless,      ///< the board sends, but no status
-  silent,          ///< the board does not answer
-  foreign_spec,    ///< the board was built from another spec
-  bus_state,       ///< of its CAN controller
-  part_faults,     ///< parts of the board that do not answer
-  overload,        ///< releases came late or not at all
-  busy,            ///< its CPU
-  restarted,       ///< because of a watchdog or a fault
-  bus_errors,      ///< on the bus, or frames given up
-  refusals,        ///< requests that the board refused; `topic` is the last one's
-  battery_low,     ///<
-  two_commanders,  ///< an actuator that two programs command in turns
+  no_answer,        ///< of any board
+  statusless,       ///< the board sends, but no status
+  silent,           ///< the board does not answer
+  foreign_spec,     ///< the board was built from another spec
+  bus_state,        ///< of its CAN controller
+  part_faults,      ///< parts of the board that do not answer
+  overload,         ///< releases came late or not at all
+  busy,             ///< its CPU
+  restarted,        ///< because of a watchdog or a fault
+  bus_errors,       ///< on the bus, or frames given up
+  refusals,         ///< requests that the board refused; `topic` is the last one's
+  not_schedulable,  ///< the same, the last one because a deadline would be missed
+  battery_low,      ///<
+  two_commanders,   ///< an actuator that two programs command in turns
 };
 
 struct Finding {
@@ -135,11 +136,11 @@ class Diagnosis {
   [[nodiscard]] const BatteryReport& battery() const noexcept { return battery_; }
   /// Whether the board publishes this sensor now, as its last status has it.
   [[nodiscard]] bool publishes(const protocol::Topic& topic) const noexcept {
-    if (topic.board >= boards_.size() || !boards_[topic.board].answered) return false;
-    const auto& sensors = sensors_[topic.board];
-    for (std::size_t i = 0; i < sensors.size() && i < 8; ++i)
-      if (sensors[i] == &topic) return (boards_[topic.board].publishing >> i & 1) != 0;
-    return false;
+    return status_bit(topic) == true;
+  }
+  /// Whether the board does not, as its last status has it. Without one neither is known.
+  [[nodiscard]] bool is_silent(const protocol::Topic& topic) const noexcept {
+    return status_bit(topic) == false;
   }
   /// The names of the sensors whose bits are set: "gyroscope, odometry".
   [[nodiscard]] std::string sensors_of(std::size_t board, std::int64_t bits) const {
@@ -219,6 +220,15 @@ class Diagnosis {
     const Sample* sample_;
   };
 
+  /// Of `publishing`; none: the board has not said, or has more sensors than bits.
+  [[nodiscard]] std::optional<bool> status_bit(const protocol::Topic& topic) const noexcept {
+    if (topic.board >= boards_.size() || !boards_[topic.board].answered) return {};
+    const auto& sensors = sensors_[topic.board];
+    for (std::size_t i = 0; i < sensors.size() && i < 8; ++i)
+      if (sensors[i] == &topic) return (boards_[topic.board].publishing >> i & 1) != 0;
+    return {};
+  }
+
   static void take_status(const Reader& reader, BoardReport& board) {
     board.answered = true;
     board.uptime_s = reader.raw("identity", "uptime");
@@ -287,11 +297,14 @@ class Diagnosis {
       const protocol::Topic* topic =
           catalogue_->find(protocol::TopicId{static_cast<std::uint8_t>(board.refused_topic)});
       const std::string_view about = topic != nullptr ? topic->name : std::string_view{};
-      tell(Ailment::refusals, Severity::note,
+      const bool late = board.reason == "not_schedulable" && topic != nullptr;
+      tell(late ? Ailment::not_schedulable : Ailment::refusals, Severity::note,
            count(static_cast<std::uint64_t>(board.refused), "request* refused so far, the last for ") +
                std::string{about.empty() ? "?" : about} + ": " +
                std::string{board.reason.empty() ? "?" : board.reason},
-           "ask only for what the spec says that it takes", about);
+           late ? "ask for a longer period, or stop another stream of the board"
+                : "ask only for what the spec says that it takes",
+           about);
     }
   }
 

@@ -1,9 +1,11 @@
 #include "cli/shared/remedies.hpp"
 
 #include <cerrno>
+#include <string>
 
 #include <catch2/catch.hpp>
 
+#include "ocm/topics/amiro.hpp"
 #include "ocm/transport/interfaces.hpp"
 
 namespace tool_output_remedies_test {
@@ -47,7 +49,30 @@ TEST_CASE("remedies: findings") {
         "`amiroctl info gyroscope` says what it takes");
   CHECK(remedy(Finding{Severity::note, "a", "b", "c", Ailment::refusals}) ==
         "`amiroctl info ?` says what it takes");
+  CHECK(
+      remedy(Finding{Severity::note, "a", "b", "c", Ailment::not_schedulable, "gyroscope"}) ==
+      "`amiroctl publish gyroscope --dry-run --explain --listen 2s` shows what runs, and the shortest period "
+      "that passes");
   CHECK(remedy(Finding{Severity::warning, "", "b", "c"}) == "c");
+}
+
+TEST_CASE("remedies: every reason of a refusal has words, and says what would be accepted") {
+  const auto* const refusal = amiro::catalogue.find("di_wheel_drive_refusal");
+  const auto* const gyroscope = amiro::catalogue.find("gyroscope");
+  const auto& reason = refusal->frames[0].fields[1];
+  REQUIRE(reason.name == "reason");
+  for (const auto& value : reason.values) {
+    if (value.name == "nothing") continue;
+    CAPTURE(value.name);
+    const client::Refused refused{gyroscope, "di_wheel_drive", value.name};
+    CHECK(cli::describe(refused).starts_with(std::string{value.name} + " ("));
+    CHECK((remedy(refused).find("accept") != std::string::npos) !=
+          (remedy(refused).find("longer period") != std::string::npos));
+  }
+  CHECK(cli::describe(client::Refused{gyroscope, "a", ""}) == "for a reason that the spec does not name");
+  CHECK(cli::describe(client::Refused{gyroscope, "a", "moody"}) == "moody");
+  CHECK(remedy(client::Refused{gyroscope, "di_wheel_drive", "not_served"}) ==
+        "di_wheel_drive accepts what its firmware serves: flash one that serves gyroscope");
 }
 
 }  // namespace tool_output_remedies_test

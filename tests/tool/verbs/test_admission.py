@@ -44,9 +44,11 @@ class Admission(Case):
         out, _ = self.run_tool("publish", "ring", "1ms", "--priority", "urgent", "--explain", code=1)
         lines = out.splitlines()
         self.assertEqual(lines[0].split(), "ID MESSAGE PERIOD DEADLINE BITS RESPONSE SLACK VERDICT".split())
-        self.assertEqual(len(lines), 1 + 17 + 1)
-        self.assertIn("in time, asked for", lines[1])
+        self.assertEqual(len(lines), 1 + 17 + 2)
+        # In time on the bus; but a board looks at a sample as a whole.
+        self.assertIn("its board may refuse it, asked for", lines[1])
         self.assertRegex(lines[8], "^426 .*never gets through, asked for")
+        self.assertEqual(lines[-2], "the shortest period that passes beside what was heard is 1.394ms")
         self.assertRegex(lines[-1], r"^load 1\d\d\.\d % of 500000 bit/s at worst; 17 identifiers heard within 10\d")
 
     def test_force_sends_what_others_could_not_bear(self):
@@ -63,7 +65,7 @@ class Admission(Case):
         self.start_sim()
         self.run_tool("publish", "ring", "50ms")
         listener = self.listen("power_management_refusal", "--count", "1", "--timeout", "5s")
-        self.run_tool("publish", "ring", "1ms", "--priority", "urgent", "--force")
+        self.run_tool("publish", "ring", "1ms", "--priority", "urgent", "--force", "--no-confirm")
         out, _ = listener.communicate(timeout=10)
         refusal = self.objects(out)[0]["fields"]
         self.assertEqual((refusal["topic"], refusal["reason"], refusal["refused"]), (0x1F, NOT_SCHEDULABLE, 1))
@@ -116,7 +118,52 @@ class Admission(Case):
         path = f"{self.folder}/fast.script"
         with open(path, "w") as script:
             script.write("0s publish ring 1ms --priority urgent\n100ms stop ring\n")
-        self.run_tool("run", path)
+        _, err = self.run_tool("run", path, code=1)  # the board does
+        self.assertIn("run: power_management refuses proximity_ring: not_schedulable", err)
+
+    def verdicts(self, *request):
+        """Of the messages that are asked for."""
+        out, _ = self.run_tool("publish", *request, "--dry-run", "--explain")
+        return re.findall(r" {2}([a-z][a-z ]*), asked for$", out, re.MULTILINE), out
+
+    def test_what_it_cannot_know_is_not_called_in_time(self):
+        self.start_sim()
+        self.run_tool("publish", "gyro", "500ms")
+        self.run_tool("publish", "accel", "500ms")
+        mag = ("mag", "900us")
+        # Both come more seldom than it listens.
+        verdicts, out = self.verdicts(*mag)
+        self.assertEqual(verdicts, ["not known"] * 3, out)
+        self.assertRegex(out, r"not known: in time unless one of these runs, less often than every 1\d\d(\.\d+)?ms: "
+                              r"odometry, .*accelerometer, .*motors")
+        # Heard, they are what the board refuses it for: its own streams of one level delay each other.
+        verdicts, out = self.verdicts(*mag, "--listen", "1200ms")
+        self.assertEqual(verdicts, ["its board may refuse it"] * 3, out)
+        offer = re.search(r"the shortest period that passes beside what was heard is (\S+)", out)[1]
+        _, err = self.run_tool("publish", *mag, "--listen", "1200ms", code=1)
+        self.assertIn("di_wheel_drive refuses magnetometer: not_schedulable", err)
+        self.assertIn(f"the shortest period that passes is {offer}; --explain shows all", err)
+        self.run_tool("publish", "mag", offer)  # and the board takes it
+        # A period that leaves time for all that may run is in time without more listening.
+        self.assertEqual(self.verdicts("mag", "50ms")[0], ["in time"] * 3)
+
+    def test_what_the_boards_report_is_known(self):
+        self.start_sim()
+        for board in ("di_wheel_drive", "power_management", "light_ring"):
+            self.run_tool("publish", f"{board}_status", "30ms")
+        drive = self.start("drive", "1cm/s")  # no status says whether there is one
+        self.settle()
+        gyro = ("gyro", "1500us", "--priority", "urgent", "--listen", "300ms")
+        verdicts, out = self.verdicts(*gyro)
+        self.assertEqual(verdicts, ["in time"], out)
+        self.assertNotIn("not known", out)
+        self.interrupt(drive)
+        # One that a status names, and that was not heard, may be of any priority.
+        self.run_tool("publish", "ring", "10s", "--priority", "urgent")
+        time.sleep(0.2)
+        verdicts, out = self.verdicts(*gyro)
+        self.assertEqual(verdicts, ["not known"], out)
+        self.assertRegex(out, "not known: .*: proximity_ring, motors")
 
     def test_a_longer_look_sees_what_comes_seldom(self):
         self.start_sim()

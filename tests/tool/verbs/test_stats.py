@@ -157,6 +157,13 @@ class Stats(Case):
         self.run_tool("stats", path, "--assert", "gyro.count>=10")
         _, err = self.run_tool("stats", path, "--assert", "gyro.gap<100ms", code=1)
         self.assertIn("it is 210 ms on can1", err)
+        # One bus is enough not to hold, also if the next one does.
+        _, err = self.run_tool("stats", path, "--assert", "gyro.count>=11", code=1)
+        self.assertIn("it is 10 on can0", err)
+        _, err = self.run_tool("stats", path, "--assert", "bus.frames==11", code=1)
+        self.assertIn("it is 10 on can0", err)
+        _, err = self.run_tool("stats", path, "--assert", "bus.frames==10", code=1)
+        self.assertIn("it is 11 on can1", err)
 
     def test_several_logs_go_on(self):
         first = self.log([(i, self.GYRO) for i in (0, 100)], "1.log")

@@ -51,6 +51,28 @@ static_assert(by_hand.chain[2].inherited == 0 && by_hand.chain[2].hands_on == 4)
 static_assert(by_hand.chain[4].inherited == 4 + 8 && by_hand.chain[4].hands_on == 12);
 static_assert(by_hand.chain[2].waits == 50 && by_hand.chain[2].until == 85);
 
+// The same with a sensor that may be released 7 late and an operator 9 late: each is over so much later, and
+// of the sensor's own jitter all is handed on, of the operator's own, too, but nothing of what came before
+// it.
+constexpr Solved solve_with_jitter() {
+  Solved solved{hops, {}};
+  solved.chain[0].jitter = 7;
+  solved.chain[2].jitter = 9;
+  solved.bound = bound_chain(solved.chain, unbounded,
+                             [](std::size_t i, std::int64_t jitter) { return in(alone[i] + jitter); });
+  return solved;
+}
+constexpr Solved jittery = solve_with_jitter();
+static_assert(jittery.chain[0].inherited == 7 && jittery.chain[0].responds == 10 + 7);
+static_assert(jittery.chain[0].hands_on == 10 + 7 - 4);
+static_assert(jittery.chain[1].inherited == 13 && jittery.chain[1].responds == 20);
+static_assert(jittery.chain[1].hands_on == 13 + 20 - 12);
+static_assert(jittery.chain[2].inherited == 9 && jittery.chain[2].responds == 5 + 9);
+static_assert(jittery.chain[2].hands_on == 5 + 9 - 1);
+static_assert(jittery.chain[3].inherited == 13 && jittery.chain[3].hands_on == 13 + 20 - 12);
+static_assert(jittery.bound.latency == 17 + 20 + (50 + 14) + 20 + 3);
+static_assert(jittery.bound.shortest == by_hand.bound.shortest);
+
 /// Plays a chain many times: each hop takes anything from its best to its worst, each grid has any phase.
 std::int64_t longest_played(const std::vector<Hop>& chain, const std::vector<std::int64_t>& worst, bool age,
                             std::mt19937& random) {
@@ -160,7 +182,15 @@ TEST_CASE("chains: what cannot be bounded has a reason and a hop") {
   std::array<Hop, 1> event{{{.activation = triggered}}};
   CHECK(bound_chain(event, 100, circle).reason == Reason::bad_input);
   std::array<Hop, 1> timeless{{{.activation = sampled}}};
-  CHECK(bound_chain(timeless, 100, circle).hop == 0);
+  const ChainBound refused = bound_chain(timeless, 100, circle);
+  CHECK(refused.reason == Reason::bad_input);
+  CHECK(refused.hop == 0);
+  // Of the later hops, too: the first at fault is named.
+  std::array<Hop, 3> wrong{{{.activation = sampled, .period = 10}, {.best = -1}, {.jitter = -1}}};
+  CHECK(bound_chain(wrong, 100, circle).reason == Reason::bad_input);
+  CHECK(bound_chain(wrong, 100, circle).hop == 1);
+  wrong[1].best = 0;
+  CHECK(bound_chain(wrong, 100, circle).hop == 2);
 }
 
 }  // namespace analysis_chain_test

@@ -131,6 +131,11 @@ TEST_CASE("text that is no frame is refused, with the reason") {
   CHECK(parse_frame(std::string_view("2\0005#", 4)).error == Error::bad_identifier);
 }
 
+// A write beyond the frame's eight bytes would not compile here; at run time it might hit nothing.
+static_assert(parse_frame("205#112233445566778899").error == Error::bad_length);
+static_assert(parse_frame("205#11.22.33.44.55.66.77.88.99").error == Error::bad_length);
+static_assert(parse_frame("205#112233445566778899AABBCCDDEEFF").error == Error::bad_length);
+
 Frame random_frame(ocm::test::Random& random) {
   Frame frame;
   frame.format = static_cast<Format>(random.below(5));

@@ -144,6 +144,7 @@ TEST_CASE("diagnosis: the battery") {
   };
   const auto [percent, plugged, expected] =
       GENERATE(Case{21, false, {}}, Case{20, false, {"warning power_management: the battery has 20 % left"}},
+               Case{11, false, {"warning power_management: the battery has 11 % left"}},
                Case{10, false, {"problem power_management: the battery has 10 % left"}}, Case{10, true, {}});
   Patient robot;
   robot.all_healthy();
@@ -152,6 +153,129 @@ TEST_CASE("diagnosis: the battery") {
   power.set_plugged(plugged);
   robot.say(power);
   CHECK(robot.findings() == expected);
+}
+
+TEST_CASE("diagnosis: each finding by itself, at its limit and before it") {
+  using Status = amiro::DiWheelDriveStatus;
+  using Bus = amiro::DiWheelDriveStatusHealth::Bus;
+  using Reset = amiro::DiWheelDriveStatusIdentity::Reset;
+  struct Case {
+    void (*ail)(Status&);
+    Lines expected;
+    Ailment ailment = Ailment::other;
+    std::string_view remedy{};
+  };
+  const Case cases[] = {
+      {[](Status& s) { s.health.load = 89; }, {}},
+      {[](Status& s) { s.health.load = 90; },
+       {"warning di_wheel_drive: its CPU is busy for 90 % of the time"},
+       Ailment::busy,
+       "ask for longer periods, or for fewer topics"},
+      {[](Status& s) { s.health.overload = 1; },
+       {"warning di_wheel_drive: 1 release came late or not at all"},
+       Ailment::overload,
+       "ask for longer periods"},
+      {[](Status& s) {
+         s.health.overload = 2;
+         s.health.publishing = 0b11;
+       },
+       {"warning di_wheel_drive: 2 releases came late or not at all"},
+       Ailment::overload,
+       "ask for longer periods; it publishes odometry, floor_proximity"},
+      {[](Status& s) { s.health.bus_errors = 1; },
+       {"note di_wheel_drive: 1 error on the bus or frames given up so far"},
+       Ailment::bus_errors},
+      {[](Status& s) { s.health.faults = 1; },
+       {"warning di_wheel_drive: no answer from the part behind odometry"},
+       Ailment::part_faults},
+      {[](Status& s) { s.health.bus = Bus::warning; },
+       {"warning di_wheel_drive: its CAN controller is in state warning"},
+       Ailment::bus_state},
+      {[](Status& s) { s.health.bus = Bus::off; },
+       {"problem di_wheel_drive: its CAN controller is in state off"},
+       Ailment::bus_state},
+      {[](Status& s) { s.identity.reset = Reset::fault; },
+       {"warning di_wheel_drive: it started again because of a fault"},
+       Ailment::restarted},
+      {[](Status& s) { s.identity.reset = Reset::watchdog; },
+       {"warning di_wheel_drive: it started again because of a watchdog"},
+       Ailment::restarted},
+      {[](Status& s) { s.identity.reset = Reset::pin; }, {}},
+      {[](Status& s) { s.identity.reset = Reset::software; }, {}},
+      {[](Status& s) { s.identity.reset = Reset::low_power; }, {}},
+      {[](Status& s) { s.identity.wire_hash += 1; },
+       {"problem di_wheel_drive: was built from another spec: its numbers may mean something else"},
+       Ailment::foreign_spec},
+  };
+  for (const Case& one : cases) {
+    Patient robot;
+    robot.all_healthy();
+    auto status = Patient::healthy<Status>();
+    one.ail(status);
+    robot.say(status);
+    CHECK(robot.findings() == one.expected);
+    for (const Finding& finding : robot.diagnosis.findings()) {
+      CHECK(finding.ailment == one.ailment);
+      if (!one.remedy.empty()) CHECK(finding.remedy == one.remedy);
+    }
+  }
+}
+
+TEST_CASE("diagnosis: refusals, by what the last one was for") {
+  struct Case {
+    std::uint8_t topic;
+    Reason reason;
+    std::uint16_t count;
+    Lines expected;
+    Ailment ailment;
+  };
+  const Case cases[] = {
+      {0x08, Reason::bad_mode, 0, {}, Ailment::other},  // none so far
+      {0x08,
+       Reason::bad_mode,
+       1,
+       {"note di_wheel_drive: 1 request refused so far, the last for gyroscope: bad_mode"},
+       Ailment::refusals},
+      {0x08,
+       Reason::not_schedulable,
+       3,
+       {"note di_wheel_drive: 3 requests refused so far, the last for gyroscope: not_schedulable"},
+       Ailment::not_schedulable},
+      {0xF0,
+       Reason::not_schedulable,
+       1,
+       {"note di_wheel_drive: 1 request refused so far, the last for ?: not_schedulable"},
+       Ailment::refusals},
+      {0x08,
+       Reason{200},
+       1,
+       {"note di_wheel_drive: 1 request refused so far, the last for gyroscope: ?"},
+       Ailment::refusals},
+  };
+  for (const Case& one : cases) {
+    Patient robot;
+    robot.all_healthy();
+    robot.say(amiro::DiWheelDriveRefusal{one.topic, one.reason, one.count, 0});
+    CHECK(robot.findings() == one.expected);
+    for (const Finding& finding : robot.diagnosis.findings()) {
+      CHECK(finding.ailment == one.ailment);
+      CHECK(finding.topic == (one.topic == 0x08 ? "gyroscope" : ""));
+    }
+  }
+}
+
+TEST_CASE("diagnosis: what a board publishes, what it does not, and what it has not said") {
+  Patient robot;
+  const auto& gyroscope = *amiro::catalogue.find("gyroscope");
+  const auto& odometry = *amiro::catalogue.find("odometry");
+  CHECK((!robot.diagnosis.publishes(gyroscope) && !robot.diagnosis.is_silent(gyroscope)));
+  auto status = Patient::healthy<amiro::DiWheelDriveStatus>();
+  status.health.publishing = 0b01000;
+  robot.say(status);
+  CHECK((robot.diagnosis.publishes(gyroscope) && !robot.diagnosis.is_silent(gyroscope)));
+  CHECK((!robot.diagnosis.publishes(odometry) && robot.diagnosis.is_silent(odometry)));
+  CHECK(!robot.diagnosis.is_silent(*amiro::catalogue.find("proximity_ring")));  // of a board that is silent
+  CHECK(!robot.diagnosis.is_silent(*amiro::catalogue.find("motors")));          // no sensor
 }
 
 TEST_CASE("diagnosis: requests and set points say nothing about a board") {

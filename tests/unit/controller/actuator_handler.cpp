@@ -50,6 +50,19 @@ TEST_CASE("a set point of the wrong length moves nothing") {
   CHECK(board.controller.counters().bad_length == 3);
 }
 
+TEST_CASE("a set point that is too long lights nothing") {
+  Mailboxes bus;
+  controller::Controller<amiro::LightRing, Mailboxes> controller{bus};
+  int calls = 0;
+  controller.accept<amiro::Led>([&calls](std::uint8_t, const amiro::Led&) { ++calls; });
+  controller.receive(frame("23C#64327800"), at(0s));
+  controller.receive(frame("23C#6432780000000000"), at(0s));
+  CHECK(calls == 0);
+  CHECK(controller.counters().bad_length == 2);
+  controller.receive(frame("23C#643278"), at(0s));
+  CHECK(calls == 1);
+}
+
 TEST_CASE("each LED gets its own set point") {
   Mailboxes bus;
   controller::Controller<amiro::LightRing, Mailboxes> controller{bus};

@@ -80,6 +80,17 @@ TEST_CASE("status: overload and frames given up") {
   CHECK(ask_status(board, 60ms).health.bus_errors == 1);
 }
 
+TEST_CASE("status: a release that comes while the last sample still waits is overload, too") {
+  Board board;
+  board.bus.room = 2;
+  board.receive("205#010A0000", 0s);  // every 10 ms, three frames: the last one waits
+  board.bus.room = 10;
+  board.controller.poll(at(35ms));  // those at 10, 20 and 30 ms are given up
+  REQUIRE(board.controller.counters().overrun == 3);
+  REQUIRE(board.controller.counters().missed + board.controller.counters().late == 0);
+  CHECK(ask_status(board, 36ms).health.overload == 3);
+}
+
 TEST_CASE("status: it can be published like any other topic") {
   Board board;
   board.receive("31B#01", 0s);  // at its own period, 1 s

@@ -1,5 +1,10 @@
 #include "ocm/controller/sensor_handler.hpp"
 
+#include <cstddef>
+#include <string_view>
+#include <utility>
+#include <vector>
+
 #include <catch2/catch.hpp>
 
 #include "unit/controller/fixture.hpp"
@@ -30,7 +35,52 @@ TEST_CASE("DLC 1 publishes at the topic's own period") {
   Board board;
   board.receive("205#01", 0s);
   REQUIRE(board.bus.frames.size() == 3);
-  CHECK(board.controller.next_event() == at(amiro::Magnetometer::period.duration()));
+  CHECK(board.controller.next_event() == at(50ms));
+  board.receive("205#00", 0s);
+  // That is also what a request without a period says; the status has another.
+  board.receive("31B#01", 0s);
+  CHECK(board.controller.next_event() == at(1s));
+  board.receive("31B#01640000", 0s);  // and with one that holds
+  CHECK(board.controller.next_event() == at(100ms));
+}
+
+/// Remembers what it was asked and told.
+struct Bookkeeper {
+  struct Entry {
+    std::size_t stream;
+    base::Duration period;  // 0: it has ended
+    scheduling::Level level;
+    friend bool operator==(const Entry&, const Entry&) = default;
+  };
+  static inline std::vector<Entry> entries;  // a controller makes its own admission
+  static base::Error admit(std::size_t stream, base::Duration period, scheduling::Level level) {
+    entries.push_back({stream, period, level});
+    return period < 1ms ? base::Error::not_schedulable : base::Error::none;
+  }
+  static void ended(std::size_t stream) { entries.push_back({stream, {}, scheduling::Level::urgent}); }
+};
+
+TEST_CASE("the admission is asked for each stream, and told when one has ended") {
+  using Entries = std::vector<Bookkeeper::Entry>;
+  Bookkeeper::entries.clear();
+  Mailboxes bus;
+  controller::Controller<amiro::DiWheelDrive, Mailboxes, scheduling::Cooperative, 0, Bookkeeper> controller{
+      bus};
+  controller.serve<amiro::Gyroscope>([] { return base::Result<amiro::Gyroscope>{amiro::Gyroscope{}}; });
+  constexpr std::size_t gyroscope = amiro::DiWheelDrive::sensors::index<amiro::Gyroscope>;
+  const auto said = [&](std::string_view text) {
+    controller.receive(frame(text), at(0s));
+    return std::exchange(Bookkeeper::entries, {});
+  };
+  CHECK(said("108#01F40100") == Entries{{gyroscope, 500ms, scheduling::Level::high}});
+  CHECK(said("208#01") == Entries{{gyroscope, 50ms, scheduling::Level::medium}});
+  CHECK(said("208#00") == Entries{{gyroscope, 0ms, scheduling::Level::urgent}});
+  CHECK(said("208#01F40100") == Entries{{gyroscope, 500ms, scheduling::Level::medium}});
+  CHECK(said("208#02") == Entries{{gyroscope, 0ms, scheduling::Level::urgent}});
+  // What is refused has not ended what runs, and what cannot be carried out is not asked.
+  CHECK(said("208#01F40102") == Entries{{gyroscope, 500us, scheduling::Level::medium}});
+  CHECK(said("208#0000").empty());
+  CHECK(said("209#01").empty());  // nothing serves it
 }
 
 TEST_CASE("the three magnetometer frames go out back to back") {  // thesis figure 7.2: 59 to 120 ms apart

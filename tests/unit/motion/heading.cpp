@@ -70,6 +70,7 @@ TEST_CASE("the variance grows without end and stays finite", "[motion]") {
     REQUIRE(is_finite(heading.variance_rad2));
     REQUIRE((heading.angle_rad > -pi && heading.angle_rad <= pi));
   }
+  CHECK(heading.variance_rad2 == two_pi * two_pi);  // a whole turn: nothing more can be unknown
 }
 
 TEST_CASE("the bias is the mean at rest, and what moves is no bias", "[motion]") {

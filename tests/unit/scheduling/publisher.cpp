@@ -139,6 +139,7 @@ constexpr bool releases_while_held_are_given_up_and_counted() {
     return false;
   publisher.done(0, at(31ms));
   if (publisher.overload(0, at(31ms)) != scheduling::Overload{0, 0, 3}) return false;
+  if (publisher.overload(at(31ms)) != 3) return false;  // of all streams and kinds
   return publisher.next_release() == at(40ms) && publisher.held(Level::low) == 1;
 }
 static_assert(releases_while_held_are_given_up_and_counted());

@@ -1,0 +1,85 @@
+#include "cli/command/refusal_watch.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "cli/shared/messages.hpp"
+#include "cli/shared/remedies.hpp"
+#include "cli/watch/subscription.hpp"
+
+namespace ocm::cli {
+namespace {
+
+/// The library takes time from its caller: here it is the steady clock's.
+base::Time now() {
+  return base::Time{std::chrono::duration_cast<base::Duration>(Live::Clock::now().time_since_epoch())};
+}
+
+}  // namespace
+
+void RefusalWatch::prepare(transport::Bus& bus, std::span<const can::Frame> frames,
+                           std::vector<const protocol::Topic*> also) {
+  if (confirm_)
+    for (const auto& frame : frames)
+      if (const auto* const topic = refusals_.refusal_topic(frame);
+          topic != nullptr && std::find(also.begin(), also.end(), topic) == also.end())
+        also.push_back(topic);
+  if (also.empty()) return;  // no filter at all would let everything pass
+  if (const auto subscribed = bus.subscribe(filters_for(also, false)); !subscribed) fail(subscribed.error);
+  while (const auto received = bus.receive(base::Duration{0})) take(*received);
+}
+
+void RefusalWatch::sent(std::span<const can::Frame> frames) {
+  for (const auto& frame : frames) sent(frame);
+}
+
+void RefusalWatch::sent(const can::Frame& frame, bool again) {
+  if (!confirm_) return;
+  ++commanded_;
+  if (again)
+    static_cast<void>(refusals_.repeated(frame, now()));
+  else
+    refusals_.sent(frame, now());
+}
+
+bool RefusalWatch::take(const can::Received& received) {
+  if (!confirm_) return false;
+  const auto refused = refusals_.take(received, now());
+  if (refused) refused_.push_back(*refused);
+  return refused.has_value();
+}
+
+Live::Clock::time_point RefusalWatch::until() const {
+  const auto time = std::max(refusals_.listen_until(), base::Time{});  // of min() the clock's would overflow
+  return Live::Clock::time_point{std::chrono::duration_cast<Live::Clock::duration>(time.time_since_epoch())};
+}
+
+void RefusalWatch::listen(transport::Bus& bus) {
+  if (until() <= Live::Clock::now() || (commanded_ == 1 && !refused_.empty())) return;
+  Live{bus}.receive_or_leave(
+      until(), [this](const can::Received& received) { return !take(received) || commanded_ != 1; });
+}
+
+void RefusalWatch::forgive_unserved() {
+  std::erase_if(refused_, [](const client::Refused& refused) {
+    return refused.reason == "not_served" && refused.topic->kind == protocol::Kind::sensor;
+  });
+}
+
+bool RefusalWatch::tell() {
+  for (const auto& refused : std::exchange(refused_, {})) {
+    complain(
+        {fmt::format("{}: {} refuses {}: {}", verb_, refused.board, refused.topic->name, describe(refused)),
+         offer_.empty() ? remedy(refused) : offer_});
+    told_ = true;
+  }
+  return told_;
+}
+
+void RefusalWatch::leave_if_refused() {
+  if (tell()) throw Exit{exit_failure};
+}
+
+}  // namespace ocm::cli
