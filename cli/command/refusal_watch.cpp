@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/shared/remedies.hpp"
 #include "cli/watch/subscription.hpp"
@@ -58,8 +59,10 @@ Live::Clock::time_point RefusalWatch::until() const {
 
 void RefusalWatch::listen(transport::Bus& bus) {
   if (until() <= Live::Clock::now() || (commanded_ == 1 && !refused_.empty())) return;
-  Live{bus}.receive_or_leave(
+  const Over over = Live{bus}.receive(
       until(), [this](const can::Received& received) { return !take(received) || commanded_ != 1; });
+  // A bus that goes now has carried what was sent; that nothing more is heard of it is no failure of that.
+  if (over == Over::signal) throw Exit{exit_code_after_interrupt(exit_failure)};
 }
 
 void RefusalWatch::forgive_unserved() {

@@ -153,7 +153,7 @@ class Admission(Case):
             self.run_tool("publish", f"{board}_status", "30ms")
         drive = self.start("drive", "1cm/s")  # no status says whether there is one
         self.settle()
-        gyro = ("gyro", "1500us", "--priority", "urgent", "--listen", "300ms")
+        gyro = ("gyro", "1500us", "--listen", "300ms")
         verdicts, out = self.verdicts(*gyro)
         self.assertEqual(verdicts, ["in time"], out)
         self.assertNotIn("not known", out)
