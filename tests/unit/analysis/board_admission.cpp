@@ -218,6 +218,12 @@ TEST_CASE("A controller answers with the reason, and what runs goes on") {
   receive("01F#01", 60ms);
   CHECK(controller.counters().requests == 2);
   CHECK(wire.frames.size() == 8);
+  // The ring's is that of a request, 50 ms; the status has another.
+  receive("21F#00", 70ms);
+  wire.frames.clear();
+  receive("339#01", 70ms);
+  CHECK(wire.frames.size() == 2);
+  CHECK(controller.next_event() == base::Time{1070ms});
 }
 
 }  // namespace analysis_board_admission_test

@@ -59,7 +59,7 @@ TEST_CASE("board_check: as a board decides that has no processor to speak of") {
     Check check{amiro::catalogue, 0};
     bool fits = true;
     for (std::size_t i = 0; i < sensors.size() && fits; ++i) {
-      const base::Duration period = std::chrono::microseconds{400 << random() % 8};
+      const base::Duration period = std::chrono::microseconds{800 << random() % 8};
       const auto level = static_cast<Level>(random() % 4);
       fits = board.admit(i, period, level) == base::Error::none;
       check.runs(*sensors[i], period, static_cast<Priority>(level));

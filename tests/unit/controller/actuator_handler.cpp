@@ -39,6 +39,8 @@ TEST_CASE("the timeout can be chosen") {
   int calls = 0;
   controller.accept<amiro::Motors>([&calls](const amiro::Motors&) { ++calls; }, 100ms);
   controller.receive(protocol::command(amiro::Motors{1, 0}), at(0ms));
+  controller.poll(at(100ms) - 1ns);
+  CHECK(calls == 1);
   controller.poll(at(100ms));
   CHECK(calls == 2);
 }

@@ -74,6 +74,8 @@ TEST_CASE("the admission is asked for each stream, and told when one has ended")
   };
   CHECK(said("108#01F40100") == Entries{{gyroscope, 500ms, scheduling::Level::high}});
   CHECK(said("208#01") == Entries{{gyroscope, 50ms, scheduling::Level::medium}});
+  constexpr std::size_t status = amiro::DiWheelDrive::sensors::index<amiro::DiWheelDriveStatus>;
+  CHECK(said("31B#01") == Entries{{status, 1s, scheduling::Level::low}});
   CHECK(said("208#00") == Entries{{gyroscope, 0ms, scheduling::Level::urgent}});
   CHECK(said("208#01F40100") == Entries{{gyroscope, 500ms, scheduling::Level::medium}});
   CHECK(said("208#02") == Entries{{gyroscope, 0ms, scheduling::Level::urgent}});

@@ -1,5 +1,9 @@
 #include "ocm/log/interfaces.hpp"
 
+#include <algorithm>
+#include <cstddef>
+#include <string>
+
 #include <catch2/catch.hpp>
 
 namespace log_interfaces_test {
@@ -31,6 +35,13 @@ TEST_CASE("a damaged log does not make interfaces without end") {
     CHECK(number == std::min(i, Interfaces::most - 1));
   }
   CHECK(interfaces.size() == Interfaces::most);
+  CHECK(interfaces.name(Interfaces::most - 1) == std::to_string(Interfaces::most - 1));
+  // Nor does one whose format numbers them.
+  Interfaces numbered;
+  for (std::size_t i = 0; i < Interfaces::most + 10; ++i)
+    CHECK(numbered.add("can0") == std::min(i, Interfaces::most - 1));
+  CHECK(numbered.size() == Interfaces::most);
+  CHECK(numbered.number("can0") == 0);
 }
 
 }  // namespace log_interfaces_test

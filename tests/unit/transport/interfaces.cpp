@@ -127,6 +127,11 @@ TEST_CASE("the kernel answers, with or without CAN") {
   REQUIRE(again.size() == found->size());
   for (std::size_t i = 0; i < again.size(); ++i) CHECK(again[i].name == (*found)[i].name);
   CHECK_FALSE(transport::query_can_interface(INT32_MAX));
+  // A machine without CAN has a loopback interface, which is none.
+  const unsigned loopback = if_nametoindex("lo");
+  REQUIRE(loopback != 0);
+  CHECK_FALSE(transport::query_can_interface(static_cast<int>(loopback)));
+  for (const CanInterface& interface : *found) CHECK(interface.name != "lo");
   for (const CanInterface& interface : *found) {
     CHECK_FALSE(interface.name.empty());
     CHECK(interface.index > 0);
