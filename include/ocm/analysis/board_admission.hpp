@@ -79,8 +79,8 @@ struct SensorCost {
 /// Rounded down, so that the stream seems no less frequent than it is; half an hour at most, and at least
 /// one.
 [[nodiscard]] constexpr std::uint32_t stream_us(base::Duration period) noexcept {
-  return static_cast<std::uint32_t>(std::clamp<std::int64_t>(
-      period.count() / 1000, 1, std::numeric_limits<std::int32_t>::max()));
+  return static_cast<std::uint32_t>(
+      std::clamp<std::int64_t>(period.count() / 1000, 1, std::numeric_limits<std::int32_t>::max()));
 }
 /// All frames of a sample.
 template <class Frames>
