@@ -128,15 +128,17 @@ class Admission(Case):
 
     def test_what_it_cannot_know_is_not_called_in_time(self):
         self.start_sim()
-        self.run_tool("publish", "gyro", "500ms")
-        self.run_tool("publish", "accel", "500ms")
         mag = ("mag", "900us")
         # Both come more seldom than it listens.
+        for sensor in ("gyro", "accel"):
+            self.run_tool("publish", sensor, "60s")
         verdicts, out = self.verdicts(*mag)
         self.assertEqual(verdicts, ["not known"] * 3, out)
         self.assertRegex(out, r"not known: in time unless one of these runs, less often than every 1\d\d(\.\d+)?ms: "
                               r"odometry, .*accelerometer, .*motors")
         # Heard, they are what the board refuses it for: its own streams of one level delay each other.
+        for sensor in ("gyro", "accel"):
+            self.run_tool("publish", sensor, "500ms")
         verdicts, out = self.verdicts(*mag, "--listen", "1200ms")
         self.assertEqual(verdicts, ["its board may refuse it"] * 3, out)
         offer = re.search(r"the shortest period that passes beside what was heard is (\S+)", out)[1]
