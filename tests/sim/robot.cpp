@@ -7,15 +7,33 @@
 
 #include <catch2/catch.hpp>
 
+#include "ocm/analysis/board_admission.hpp"
 #include "ocm/can/text.hpp"
 #include "ocm/protocol/message.hpp"
 #include "ocm/topics/amiro.hpp"
+
+#include "firmware/boards/di_wheel_drive/costs.hpp"
 
 namespace sim_robot_test {
 
 using namespace ocm;
 using namespace ocm::firmware;
 using namespace std::chrono_literals;
+
+// Where the firmware's admission and that of these boards differ: docs/verbs/sim.md has these examples.
+template <class Topic, class... Costs>
+constexpr base::Error idle_board(base::Duration period) {
+  using Board = amiro::DiWheelDrive;
+  analysis::BoardAdmission<Board, amiro::bit_rate, Costs...> admission;
+  return admission.admit(Board::sensors::index<Topic>, period, scheduling::Level::medium);
+}
+using FirmwareCosts = boards::di_wheel_drive::Costs;
+static_assert(idle_board<amiro::Accelerometer>(1ms) == base::Error::none);
+static_assert(idle_board<amiro::Accelerometer, FirmwareCosts>(1ms) == base::Error::not_schedulable);
+static_assert(idle_board<amiro::Accelerometer, FirmwareCosts>(1129us) == base::Error::not_schedulable);
+static_assert(idle_board<amiro::Accelerometer, FirmwareCosts>(1130us) == base::Error::none);
+static_assert(idle_board<amiro::Magnetometer>(900us) == base::Error::none);
+static_assert(idle_board<amiro::Magnetometer, FirmwareCosts>(900us) == base::Error::none);
 
 /// One board's place on the bus: takes `room` frames and keeps them.
 struct Port {
