@@ -41,6 +41,10 @@ COSTLY = {
     "valijson/": ("generator/spec/schema.cpp",),
 }
 
+# Headers of other projects that pages name; and names that are an example's.
+OF_OTHERS = {"serial_can_mux.hpp", "name.hpp", "theirs.hpp"}
+EXAMPLES = r"\b(?:FLOOR|NAME|theirs)\b"
+
 SOURCE = (".hpp", ".cpp", ".h", ".c")
 
 # Folders around the library, and what each reaches in no way.
@@ -456,6 +460,39 @@ def links_resolve(tree):
                 yield f"{page}:{line}: the link ({link}) leads nowhere: {target} has no heading '{anchor}'"
 
 
+def named_files_exist(tree):
+    """A file or folder of the project that a page names in code or in a link is there; so is the program unit_NAME.
+    Decisions and the changelog speak of the past; how-to pages make files, and are followed by a test."""
+    folders = {str(parent) for name in tree.files for parent in pathlib.PurePosixPath(name).parents}
+    tops = {name.split("/")[0] for name in tree.files if "/" in name}
+    paths = tree.known | folders
+    ends = {"/".join(name.split("/")[i:]) for name in tree.known for i in range(name.count("/") + 1)}
+    units = {name[len(room):].rsplit("/", 1)[0].replace("/", "_") for room in ("tests/unit/", "tests/tool/")
+             for name in tree.below(room)}
+    for page in pages(tree):
+        if page.startswith(("docs/decisions/", "docs/howto/")) or page == "CHANGELOG.md":
+            continue
+        folder = page.rpartition("/")[0]
+        text = re.sub(r"\]\([^)\n]*\)", "]", tree.text(page))  # where links lead is another rule's
+        for line, match in tree.find(page, r"(?<![\w.${}<>@:~/-])[\w.-]+(?:/[\w.*<>-]+)+", text):
+            word = match.group(0).rstrip("./")
+            if word.split("/")[0] not in tops or re.search(EXAMPLES, word):
+                continue
+            pattern = re.compile(re.sub(r"\\\*|<[^>]*>", "[^/]*", f"(?:{re.escape(folder)}/)?{re.escape(word)}"))
+            if not any(map(pattern.fullmatch, paths)):
+                yield f"{page}:{line}: there is no {word}"
+        for line, match in tree.find(page, r"`([\w./-]+\.hpp)`", text):
+            if match.group(1) not in ends | OF_OTHERS:
+                yield f"{page}:{line}: there is no {match.group(1)}; a header of another project belongs into OF_OTHERS here"
+        for line, match in tree.find(page, r"\[`?([\w./-]+\.\w+)`?\]\(([^)#\s]+)"):
+            name = match.group(1).rsplit("/", 1)[-1]
+            if re.search(r"\.(?:hpp|cpp|py|json|md)$", name) and match.group(2).rsplit("/", 1)[-1] != name:
+                yield f"{page}:{line}: the link is called {match.group(1)} and leads to {match.group(2)}"
+        for line, match in tree.find(page, r"\bunit_(\w+)"):
+            if match.group(1) not in units | {"name"}:  # a member of specs
+                yield f"{page}:{line}: there is no program {match.group(0)}: tests/unit has no such floor"
+
+
 def pages_are_linked(tree):
     """Every page of docs can be reached from another one."""
     linked = {target for page in pages(tree) for _, _, target, _ in links(tree, page) if target != page}
@@ -516,7 +553,7 @@ RULES = (floors_have_rows, includes_go_down, layers_are_apart, library_knows_no_
          namespace_is_folder, no_banned_headers, no_banned_words, headers_open_with_a_comment, headers_have_tests,
          tests_have_their_namespace, own_includes_are_full_paths, generator_is_independent, firmware_is_for_boards, rooms_are_apart,
          folders_make_no_circle, verbs_are_seen_by_main_only, no_circles_of_rooms, costly_headers_are_seen_by_few,
-         generated_files_are_reproducible, no_machine_paths, links_resolve, pages_are_linked, indexes_are_complete,
+         generated_files_are_reproducible, no_machine_paths, links_resolve, named_files_exist, pages_are_linked, indexes_are_complete,
          test_folders_have_rows, quotes_are_the_examples)
 
 

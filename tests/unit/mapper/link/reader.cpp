@@ -260,7 +260,7 @@ TEST_CASE("splices of updates that look whole are rare, and as rare as docs/mapp
   CHECK(measure(20, 20'000, 7).spliced > 0);  // there are some: text has no cure
 }
 
-// unit_line "[.measure]" prints the table of docs/mapper-link.md.
+// unit_mapper_link "[.measure]" prints the table of docs/mapper-link.md.
 TEST_CASE("line: measured rate of splices", "[.measure]") {
   std::puts("packets lost   updates   whole      spliced    spliced/heard");
   for (const int loss : {1, 2, 5, 10, 20, 30, 50}) {
