@@ -1,18 +1,19 @@
-"""An option means the same in every verb, and what it was called before works for one version."""
+"""An option means the same in every verb, and what it was called before works for one version; pages name options that exist."""
 
 import collections
 import os
+import pathlib
 import re
 
-from harness import Case, main
+from harness import SOURCE, Case, main
 
-OPTION = re.compile(r"  (?:-\w,)?(--[a-z-]+(?:,--[a-z-]+)*)(.*?)(?:  |$)")
+OPTION = re.compile(r" +(?:-\w,)?(--[a-z-]+(?:,--[a-z-]+)*)(.*?)(?:  |$)")
 # The same thing in more than one form: a speed that may be max, a bit rate beyond CAN's; robots by number and by name.
 FORMS = {"--bitrate", "--robots", "--speed"}
 LOG = "".join(f"({i / 10 + 1}) can0 608#{i:02X}\n" for i in range(20))
 
 
-class OneMeaning(Case):
+class Options(Case):
     def verbs(self):
         for line in self.run_tool("completion", "--words", "--", "")[0].splitlines()[1:]:
             yield [line.split("\t")[0]]
@@ -26,6 +27,8 @@ class OneMeaning(Case):
             for name in match[1].split(","):
                 yield name, re.split(r" \(|=", match[2])[0].strip()
 
+
+class OneMeaning(Options):
     def test_values(self):
         values = collections.defaultdict(lambda: collections.defaultdict(list))
         for verb in self.verbs():
@@ -37,6 +40,46 @@ class OneMeaning(Case):
         for name, value in (("--from", "FORMAT"), ("--to", "FORMAT"), ("--since", "T"), ("--until", "T"), ("--listen", "T"),
                             ("--watch", ""), ("--show", "")):
             self.assertEqual(list(values[name]), [value], name)
+
+
+class Pages(Options):
+    """What docs/ says of options: each one exists, and the page of a verb leaves none out."""
+
+    def setUp(self):
+        super().setUp()
+        self.common = {name for name, _ in self.options([])}
+        self.own = collections.defaultdict(set)
+        for verb in self.verbs():
+            self.own[verb[0]] |= {name for name, _ in self.options(verb)}
+        self.own["analyze"], self.own["hz"] = self.own["analyse"], self.own["stats"]
+
+    def test_command_lines(self):
+        verbs = "|".join(self.own)
+        command = re.compile(rf"(?<![\w-])amiroctl((?: +--[\w-]+(?: \S+)?)*?) +({verbs})\b([^`|;&\n]*)")
+        found = 0
+        for page in sorted(pathlib.Path(SOURCE).rglob("*.md")):
+            name = str(page.relative_to(SOURCE))
+            if name.startswith(("build", "docs/decisions", "docs/howto")) or name == "CHANGELOG.md":  # made or past; followed
+                continue
+            for number, line in enumerate(page.read_text(encoding="utf-8").splitlines(), 1):
+                for before, verb, after in command.findall(line):
+                    found += 1
+                    for option in re.findall(r"(?<![\w-])--[a-z][a-z-]*", before + after.split(" #")[0]):
+                        self.assertIn(option, self.own[verb] | self.common, f"{name}:{number}: amiroctl {verb} has no {option}")
+        self.assertGreater(found, 200)
+
+    def test_the_page_of_a_verb_names_its_options(self):
+        for verb in self.verbs():
+            page = os.path.join(SOURCE, "docs", "verbs", f"{verb[0]}.md")
+            with open(page, encoding="utf-8") as file:
+                text = file.read()
+            helped = self.run_tool(*verb, "--help")[0].split("\nExamples:")[0]
+            for line in helped.splitlines():
+                match = re.match(r" +((?:-\w,)?--[a-z-]+(?:,--[a-z-]+)*)", line)
+                names = match[1].split(",") if match else []
+                if names and not self.common & set(names):
+                    self.assertTrue(any(re.search(rf"(?<![\w-]){name}(?![\w-])", text) for name in names),
+                                    f"docs/verbs/{verb[0]}.md does not name {match[1]}")
 
 
 class OldNames(Case):
