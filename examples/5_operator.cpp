@@ -25,12 +25,14 @@ int listen(transport::Bus& bus) {
   // endsnippet
 }
 
+// snippet: operator-bus
 template <class Opened>
 int listen_on(const Opened& bus) {
   if (bus) return listen(**bus);
   std::fprintf(stderr, "%s\n%s\n", bus.error.what.c_str(), bus.error.remedy.c_str());
   return 1;
 }
+// endsnippet
 
 int main(int argc, char** argv) {
   return argc > 1 ? listen_on(transport::SocketCan::open(argv[1])) : listen_on(transport::VirtualBus::open());
