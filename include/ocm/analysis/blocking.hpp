@@ -5,7 +5,7 @@
 ///     constexpr std::array sections{Section{.task = 2, .resource = i2c, .length = 40}, Section{0, i2c, 15}};
 ///     constexpr auto tasks = with_blocking(in_order(std::array{...}), sections, Protocol::inheritance);
 ///
-/// A section can hold up level i if its task is less urgent than i, and somebody at i or above uses the
+/// A section can hold up level i if its task is less urgent than i, and a task at i or above uses the
 /// resource. Inheritance: one section of each such task, and of each such resource, at most, so the lesser of
 /// the two sums. Ceiling (a holder runs at its resource's ceiling from the moment of the claim): one section
 /// in all. Sections may nest: a row names the one that it lies inside. With inheritance, who waits inside a
@@ -217,8 +217,8 @@ constexpr Blocking blocking(std::span<const Task> tasks, std::span<const Section
 }
 
 /// Sets B, who it is of, and with inheritance the context switches of waiting, in every task of the set. The
-/// scratch has a number for each section. Task::switches is set anew. Anything but Table::good: the tasks are
-/// as before.
+/// scratch has a number for each section. Task::switches is set again. Anything but Table::good: the tasks
+/// are as before.
 [[nodiscard]] constexpr Table set_blocking(std::span<Task> tasks, std::span<const Section> sections,
                                            Protocol protocol, std::span<std::uint32_t> scratch) noexcept {
   if (scratch.size() < sections.size()) return Table::no_room;

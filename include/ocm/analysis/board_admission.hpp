@@ -11,7 +11,7 @@
 ///     reads + sends <= min(D_s, T_s)
 ///
 /// C: processor and waiting for the part; F: all frames of a sample, at their exact lengths and priority; B:
-/// one frame of anybody's, already on its way. The first is the response time on a preemptive processor, the
+/// one frame of any node, already on its way. The first is the response time on a preemptive processor, the
 /// second the sufficient one on CAN [Davis et al. 2007, equation 16], with a sample's frames as one. Streams
 /// of one level delay each other whatever their order. A board does not hear what others send, so `Costs`
 /// says which share of the bus is its own; who hears all is the operator's tool (docs/admission.md).
@@ -60,7 +60,7 @@ struct NoCosts {
 
 namespace detail {
 
-/// What is known of a sensor before anybody asks for it.
+/// What is known of a sensor before it is requested.
 struct SensorCost {
   std::uint32_t sample_us = 0;
   std::uint32_t deadline_us = 0;                                   ///< 0: none but the period
@@ -135,7 +135,7 @@ class BoardLoad {
   };
   using Streams = std::array<Stream, N>;
 
-  /// Everybody meets his deadline.
+  /// Every stream meets its deadline.
   [[nodiscard]] static constexpr bool fits(const Facts& facts, const Streams& streams) noexcept {
     if (!within_share(facts, streams)) return false;
     std::array<std::uint32_t, N> reads{};

@@ -1,5 +1,5 @@
 /// Whether one more stream fits on a CAN bus, and if not, who would be late and how often it could be sent
-/// instead. The question behind admission, for the operator's tool and whoever else knows what runs.
+/// instead. The question behind admission, for the operator's tool and other programs that know what runs.
 ///
 ///     BusCheck<512> check{{.bit = 2'000}};          // ns: 500 kbit/s
 ///     check.runs(message);                          // each frame that is on the bus already
@@ -52,7 +52,7 @@ class BusCheck {
 
   /// With the stream sent every `period` ticks, at least 1.
   constexpr Decision decide(std::int64_t period) noexcept {
-    if (period < 1 || !collect(period)) return {};  // or more than N: nobody can tell
+    if (period < 1 || !collect(period)) return {};  // or more than N: not known
     const auto results = analysis_.analyse(messages(), bus_, test_, limits_);
     std::size_t late = nobody;
     bool running_late = false;
@@ -69,7 +69,7 @@ class BusCheck {
   }
 
   /// The shortest period that is admitted, in whole `step`s, above `refused`, which is not, and up to
-  /// `limit`; 0: none is. (A longer period never makes anybody later.)
+  /// `limit`; 0: none is. (A longer period never makes another one later.)
   constexpr std::int64_t shortest(std::int64_t refused, std::int64_t step, std::int64_t limit) noexcept {
     std::int64_t low = refused / step;
     const std::int64_t end = limit / step;
@@ -136,7 +136,7 @@ class BusCheck {
     return set_.push_back(due_within_period(message)).ok();
   }
 
-  /// Somebody who runs is late: would he be without the stream?
+  /// A stream that runs is late: would it be without the new one?
   constexpr Decision blame(std::int64_t period) noexcept {
     static_cast<void>(collect(0));
     late_before_.clear();

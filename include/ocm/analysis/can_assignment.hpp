@@ -4,9 +4,9 @@
 /// optimal on CAN; this is. [Audsley 1991; Davis, Burns, Bril, Lukkien 2007, section 5]
 ///
 /// Identifiers in this library's layout: direction and topic are given, and only the two bits of priority can
-/// be chosen. All begin at low, and whoever misses goes up by one, until nobody misses or one does at urgent.
-/// That is optimal, too: a message that moves down takes away from those above it at least as much
-/// interference as it can add in blocking. So whoever misses while no message is above its place in an
+/// be chosen. All begin at low, and a message that misses goes up by one, until none misses or one does at
+/// urgent. That is optimal, too: a message that moves down takes away from those above it at least as much
+/// interference as it can add in blocking. So a message that misses while no message is above its place in an
 /// order that works must itself be below its own, and no step goes past any order that works. What is found
 /// is the least urgent one.
 ///

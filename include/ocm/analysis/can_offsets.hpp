@@ -4,7 +4,7 @@
 /// time analysis with offsets"]
 ///
 /// Nodes have clocks of their own, so each can begin its pattern anywhere. For each node the worst place of a
-/// window in its pattern is searched for anew in each step of the iteration, among those that begin with a
+/// window in its pattern is searched for again in each step of the iteration, among those that begin with a
 /// release; they are as many as the node releases in its hyperperiod. Between nodes the bound is that of
 /// can_response.hpp, with
 ///

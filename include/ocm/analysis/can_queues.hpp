@@ -72,7 +72,7 @@ struct NodeQueue {
 template <std::size_t N>
 class CanQueues {
  public:
-  /// One result a message, valid until the next call. A set of more than N, a number that means nothing and a
+  /// One result a message, valid until the next call. A set of more than N, an invalid number and a
   /// message of a node that is not there: bad_input throughout. `limits` are for each message, all passes
   /// together.
   constexpr std::span<const Explained> analyse(std::span<const Message> set, std::span<const NodeQueue> nodes,

@@ -79,7 +79,7 @@ class Demand {
 
   [[nodiscard]] constexpr std::int64_t horizon() const noexcept { return horizon_; }
   [[nodiscard]] constexpr Checked sum() const noexcept { return sum_; }
-  /// Who asks for the most, the most urgent of equals; nobody: nobody asks.
+  /// Who asks for the most, the most urgent of equals; nobody: none asks.
   [[nodiscard]] constexpr std::size_t largest() const noexcept { return largest_; }
   [[nodiscard]] constexpr std::int64_t largest_share() const noexcept { return largest_share_; }
 
@@ -159,7 +159,7 @@ constexpr std::int64_t load_parts(std::int64_t cost, std::int64_t period) noexce
 
 }  // namespace detail
 
-/// Nobody wants to see each instance.
+/// No observer of each instance.
 inline constexpr auto unobserved = [](std::size_t, std::int64_t, std::int64_t) {};
 
 /// Analyses sets of up to N messages. It holds its memory and the results of the last set.
@@ -170,7 +170,7 @@ class CanResponse {
   /// nothing, is bad_input throughout. `limits` are for each message; beyond them it is too_long.
   ///
   /// observe(m, q, response) is called for each release q = 0, 1, ... of the busy period of each message m,
-  /// the most urgent first. If no bound is found in the end, what it was told of m means nothing.
+  /// the most urgent first. If no bound is found in the end, what it got of m is void.
   template <class Observer = decltype(unobserved)>
   constexpr std::span<const Explained> analyse(std::span<const Message> set, const CanBus& bus,
                                                CanTest test = CanTest::exact, Limits limits = {},

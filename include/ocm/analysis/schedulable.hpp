@@ -118,7 +118,7 @@ template <class Set>
 concept schedulable = nobody_is_late<first_late<Set>>;
 
 /// Frame `index` of a topic, or of one of its instances (1..Topic::instances), in nanoseconds: as the topic
-/// is sent when nobody asks for anything else. Set points have no period of their own: `period` gives it.
+/// is sent unless a request changes it. Set points have no period of their own: `period` gives it.
 template <protocol::TopicType Topic, std::uint32_t bit_rate, std::size_t index = 0, std::uint8_t instance = 1,
           std::int64_t period_ns = 0>
 struct TopicFrame {
@@ -168,7 +168,7 @@ constexpr auto frames_of(protocol::TopicList<Topics...>) noexcept {
 
 }  // namespace detail
 
-/// All frames that these boards of a generated header send when nobody asks for anything else.
+/// All frames that these boards of a generated header send unless a request changes it.
 template <std::uint32_t bit_rate, class... Boards>
 using SentBy = decltype((Traffic<bits_ns(1, bit_rate)>{} + ... +
                          detail::frames_of<bit_rate>(typename Boards::sensors{})));

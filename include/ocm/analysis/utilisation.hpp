@@ -192,7 +192,7 @@ enum class Proof : std::uint8_t {
   undecided,           ///< too close to the bound for 62 binary digits
   not_rate_monotonic,  ///< a task of a shorter period is not the more urgent one: the test does not apply
   not_simple,          ///< jitter, blocking or a deadline before the period: the test does not apply
-  bad_input,           ///< a number that means nothing, or no task
+  bad_input,           ///< an invalid number, or no task
 };
 
 [[nodiscard]] constexpr std::string_view describe(Proof proof) noexcept {
@@ -208,7 +208,7 @@ enum class Proof : std::uint8_t {
     case Proof::not_simple:
       return "does not apply: jitter, blocking, or a deadline before the period";
     case Proof::bad_input:
-      return "a number that means nothing, or no task";
+      return "an invalid number, or no task";
   }
   return "unknown";
 }
@@ -252,7 +252,7 @@ constexpr Comparison layland_power(Between load, std::size_t count) noexcept {
   return low;
 }
 
-/// U <= n(2^(1/n) - 1), compared as (1 + U/n)^n <= 2: whoever needs roots rounds.
+/// U <= n(2^(1/n) - 1), compared as (1 + U/n)^n <= 2: no root is taken, so nothing is rounded.
 [[nodiscard]] constexpr Proof liu_layland(std::span<const Task> tasks) noexcept {
   if (const Proof proof = detail::applies(tasks); proof != Proof::not_proven) return proof;
   const Utilisation load = utilisation(tasks);

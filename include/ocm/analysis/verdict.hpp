@@ -1,5 +1,5 @@
 /// What an analysis says of one task or one message, and why: the bound on its response time, the instance in
-/// which it is reached, what delays it most. Whoever cannot be bounded gets a reason, never a number.
+/// which it is reached, what delays it most. What cannot be bounded gets a reason, never a number.
 ///
 /// All times are ticks of the caller: nanoseconds, bit times. Plain values, no heap.
 #pragma once
@@ -16,7 +16,7 @@ enum class Reason : std::uint8_t {
   misses_deadline,  ///< the bound is beyond the deadline
   overloaded,       ///< it and what goes before it ask for all there is, or more: the busy period never ends
   too_long,         ///< no end within the limits: more steps than allowed, or more ticks than 63 bits
-  bad_input,        ///< a number that means nothing: a period of 0, a negative jitter; `largest` says whose
+  bad_input,        ///< an invalid number: a period of 0, a negative jitter; `largest` says whose
 };
 
 [[nodiscard]] constexpr std::string_view describe(Reason reason) noexcept {
@@ -30,7 +30,7 @@ enum class Reason : std::uint8_t {
     case Reason::too_long:
       return "no bound found: its busy period is longer than the limits of the analysis";
     case Reason::bad_input:
-      return "a number that means nothing, such as a period of 0";
+      return "an invalid number, such as a period of 0";
   }
   return "unknown reason";
 }

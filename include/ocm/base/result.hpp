@@ -1,5 +1,5 @@
 /// A value or the reason why there is none: what a function returns that can fail, without exceptions.
-/// No heap; `Result<T>` is `sizeof(T)` plus the error. A result that nobody looks at does not compile
+/// No heap; `Result<T>` is `sizeof(T)` plus the error. A result that is ignored does not compile
 /// (warnings are errors here).
 #pragma once
 
@@ -18,14 +18,14 @@ enum class Error : std::uint8_t {
   bad_unit,         ///< request unit other than ms, s, us
   bad_period,       ///< period of zero, negative, or not representable on the wire
   out_of_range,     ///< number outside what its field or type holds
-  unknown_topic,    ///< nobody serves this topic
+  unknown_topic,    ///< no board serves this topic
   not_sampled,      ///< a part did not deliver a sample
   full,             ///< a bounded container or queue has no room left
   closed,           ///< the bus is gone: interface down, peer closed
   timed_out,        ///< nothing came before the deadline
   no_answer,        ///< a part did not acknowledge, or is not the one that belongs there
   bus_fault,        ///< a board-internal bus failed: arbitration lost, line stuck, wrong signal
-  not_schedulable,  ///< somebody would miss a deadline: CPU or bus cannot carry it
+  not_schedulable,  ///< a stream would miss its deadline: CPU or bus cannot carry it
 };
 
 [[nodiscard]] constexpr std::string_view describe(Error error) noexcept {
@@ -61,7 +61,7 @@ enum class Error : std::uint8_t {
     case Error::bus_fault:
       return "the bus of the part failed";
     case Error::not_schedulable:
-      return "somebody would miss a deadline";
+      return "a stream would miss its deadline";
   }
   return "unknown error";
 }

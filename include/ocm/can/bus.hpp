@@ -9,7 +9,7 @@
 
 namespace ocm::can {
 
-/// A frame and the moment at which it was complete on the bus, in the time of whoever stamped it.
+/// A frame and the moment at which it was complete on the bus, by the clock that stamped it.
 struct Received {
   base::Time time{};
   Frame frame{};

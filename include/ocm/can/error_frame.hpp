@@ -50,7 +50,7 @@ inline constexpr std::uint8_t active = 0x40;
 inline constexpr std::uint8_t transmission = 0x80;
 }  // namespace protocol_error
 
-/// Whether the controller had no room for a frame from the bus: at least one is lost, and nobody knows how
+/// Whether the controller had no room for a frame from the bus: at least one is lost, and it is not known how
 /// many.
 [[nodiscard]] constexpr bool lost_in_controller(const Frame& frame) noexcept {
   return frame.format == Format::error && (frame.id & error_class::controller) != 0 &&

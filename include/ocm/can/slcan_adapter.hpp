@@ -128,7 +128,7 @@ class CommandReader {
   LineFaults faults_{};
 };
 
-/// What an adapter is, said to whoever asks.
+/// What an adapter says of itself.
 struct AdapterInfo {
   std::uint8_t hardware = 0x10;  ///< two digits: 1.0
   std::uint8_t software = 0x10;

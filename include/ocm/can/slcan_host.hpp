@@ -207,8 +207,8 @@ class AnswerReader {
   bool ended_ = false;
 };
 
-/// What the answer to F means, as an error frame like those of linux's drivers: events are told each time,
-/// states when they are not as in `before`. Its identifier is 0 when there is nothing to tell.
+/// What the answer to F means, as an error frame like those of linux's drivers: events are reported each
+/// time, states when they are not as in `before`. Its identifier is 0 when there is nothing to tell.
 [[nodiscard]] constexpr Frame to_error_frame(std::uint8_t flags, std::uint8_t before) noexcept {
   Frame frame{.id = 0, .dlc = max_dlc, .data = {}, .format = Format::error};
   std::uint8_t& what = frame.data[1];

@@ -6,7 +6,7 @@
 /// from the end of the CRC, "the most stuff bits still to come" is therefore a table of 2^18 numbers, and one
 /// pass over 64 data bits serves every identifier and every length. The header then is a walk along one path.
 ///
-/// For hosts: 2.25 MiB, to be put on the heap by whoever wants one, and about 20 ms to build; a question then
+/// For hosts: 2.25 MiB, to be put on the heap by the caller, and about 20 ms to build; a question then
 /// takes 20 to 40 steps. The closed bound, can::worst_frame_bits, is up to 7 bits longer and needs nothing.
 #pragma once
 

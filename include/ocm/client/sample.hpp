@@ -1,7 +1,7 @@
 /// From frames to samples. A topic of several frames makes one sample: it is complete when its last frame
 /// came after all the others. There is no counter on the wire, so a frame that was lost shows as an
 /// incomplete sample, which is counted. (Losing the end of one sample and exactly the rest of the next cannot
-/// be told from a whole one.)
+/// be distinguished from a whole one.)
 ///
 /// Memory: 8 bytes a frame of the catalogue and 4 KiB of index, allocated once. O(1) a frame.
 #pragma once
@@ -68,7 +68,7 @@ struct ReceiverCounters {
   std::uint64_t incomplete =
       0;  ///< samples that lack a frame; the one that was under way at the start is not counted
   std::uint64_t errors = 0;
-  /// Frames or samples that a listener should be told of.
+  /// Frames or samples that a listener should know of.
   [[nodiscard]] constexpr std::uint64_t faults() const noexcept {
     return unknown + wrong_dlc + incomplete + errors;
   }
@@ -155,7 +155,7 @@ class Receiver {
 
   void abandon(Assembly& assembly) {
     assembly.present = 0;
-    // Whoever begins to listen in the middle of a sample has lost nothing.
+    // A program that begins to listen in the middle of a sample has lost nothing.
     if (assembly.synchronised) ++counters_.incomplete;
     assembly.synchronised = true;
   }

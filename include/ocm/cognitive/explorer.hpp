@@ -1,10 +1,10 @@
 /// Where a robot should look next: to the place from which most of the border between free and unknown is
 /// seen, for the least way. Several robots get different goals, and none plans a way close to another's. What
-/// a robot is told is one straight piece at a time, planned afresh from where it really stands.
+/// a robot gets is one straight piece at a time, planned from where it really is.
 /// [Yamauchi: A frontier-based approach for autonomous exploration, CIRA 1997; for several robots: Burgard et
 /// al., Coordinated multi-robot exploration, 2005]
 ///
-/// A border cell that was looked at in vain is looked at from nearer by, and then given up, so that it ends:
+/// A border cell that could not be seen is looked at from nearer by, and then given up, so that it ends:
 /// at most `most_tries` goals a cell. A robot that is called back goes towards home, and goals that far away
 /// are not chosen again. Ways lead through free cells only (routes.hpp).
 ///
@@ -36,8 +36,8 @@ struct ExplorerOptions {
   float view_m = 0.45F;            ///< from so far a border is looked at
   float look_m = 0.30F;            ///< what a look costs, as metres of way: many short ways or few long ones
   float apart_m = 0.60F;           ///< between the goals of two robots
-  std::size_t least_unknown = 16;  ///< cells: smaller holes between beams are nobody's goal
-  std::size_t least_gain = 3;      ///< border cells: for fewer nobody looks
+  std::size_t least_unknown = 16;  ///< cells: smaller holes between beams are no goal
+  std::size_t least_gain = 3;      ///< border cells: fewer are no goal
   unsigned most_tries = 3;         ///< looks at a border cell
   unsigned most_pieces = 30;       ///< on the way to one goal
   float grow_m = 0.5F;             ///< by so much the range grows again behind a call
@@ -128,7 +128,7 @@ struct Left {
   std::size_t edge = 0;  ///< all free cells with something else beside them: how long a closed border is
   std::size_t out_of_range = 0;  ///< beyond the range that was set
   std::size_t bad_link = 0;      ///< beyond where a robot was called back
-  std::size_t unseen = 0;        ///< looked at in vain, or no way leads there
+  std::size_t unseen = 0;        ///< could not be seen, or no way leads there
   /// Share of the edge beyond which it is known what there is.
   [[nodiscard]] double known() const noexcept {
     if (edge == 0) return 0;
@@ -189,7 +189,7 @@ class Explorer {
     return order ? *order : Order{Order::Kind::wait, {}, {}};
   }
 
-  /// The robot began anew somewhere, or is gone: its goal is free for others.
+  /// The robot restarted somewhere, or is gone: its goal is free for others.
   void forget(std::uint8_t robot) { missions_.erase(robot); }
   /// Where the robot is on its way to, if it is.
   [[nodiscard]] std::optional<motion::Point> goal(std::uint8_t robot) const {
@@ -257,7 +257,7 @@ class Explorer {
     return moving;
   }
 
-  /// Looked at, in vain or not: a try for every cell that was to be seen.
+  /// Looked at, with or without success: a try for every cell that was to be seen.
   void settle(Mission& mission) {
     for (const Cell c : mission.targets) {
       std::uint8_t* const tries = tries_.reach(c);
@@ -300,7 +300,7 @@ class Explorer {
                                                  map.state({c.x, c.y - 1}) == CellState::unknown);
     });
   }
-  /// It was told to drive, and twice did next to nothing: something is in front of it.
+  /// It was sent, and twice did next to nothing: something is in front of it.
   [[nodiscard]] static bool stands_still(const Scout& self, Mission& mission) {
     constexpr float step_m = 0.02F;
     constexpr unsigned most = 2;

@@ -3,8 +3,8 @@
 /// (mapper/server/sender.hpp), and says when a robot should be called back before its link is gone, and when
 /// it is. [Thesis 2, 4.5, 6.3, 15.3]
 ///
-/// Bytes in, words for robots out, time handed in; no I/O. O(1) a byte. What belongs to nobody, and what came
-/// when it could not be meant, is counted. Host only.
+/// Bytes in, words for robots out, time handed in; no I/O. O(1) a byte. What belongs to no robot, and what
+/// came when it could not be meant, is counted. Host only.
 #pragma once
 
 #include <array>
@@ -190,7 +190,7 @@ class Fleet {
   /// Whether, and why, the robot should come back; it stays so until the link is well, and it is nearer.
   [[nodiscard]] Advice call_back(std::size_t index) const { return robots_[index].advice; }
   [[nodiscard]] const FleetCounters& counters() const noexcept { return counters_; }
-  /// Bytes that belonged to nobody.
+  /// Bytes that belonged to no robot.
   [[nodiscard]] std::uint32_t nobodys() const noexcept { return ears_.nobodys(); }
   [[nodiscard]] const FleetOptions& options() const noexcept { return options_; }
 
@@ -261,7 +261,7 @@ class Fleet {
     if (kind == mapper::link::Kind::update || kind == mapper::link::Kind::idle)
       mouths_[index].confirm_at = base::never;
     robot.lost = false;
-    robot.linked = true;  // whoever speaks has a link
+    robot.linked = true;  // a robot that speaks has a link
     switch (kind) {
       case mapper::link::Kind::handshake:
         greet(index, robot, now);

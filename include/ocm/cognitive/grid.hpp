@@ -1,5 +1,5 @@
 /// Values on the cells of a plane, without knowing beforehand how far it goes: the stored rectangle grows to
-/// what is touched, up to a bound; beyond it nothing is stored, and the caller is told. And the cells that a
+/// what is touched, up to a bound; beyond it nothing is stored, and the result says so. And the cells that a
 /// straight line passes through.
 ///
 /// O(1) an access; growing copies, and happens once in `margin` cells. `sizeof(T)` a cell. Host only.
@@ -52,7 +52,7 @@ struct Box {
   friend constexpr bool operator==(const Box&, const Box&) = default;
 };
 
-/// Farther from the origin nobody is: 1 km. What a robot can say ends at 328 m.
+/// No robot is farther from the origin: 1 km. What a robot can say ends at 328 m.
 inline constexpr float farthest_m = 1000.0F;
 
 /// Points to cells and back.

@@ -140,7 +140,7 @@ class Map {
     return odds <= options_.free_below ? CellState::free : CellState::unknown;
   }
   [[nodiscard]] float log_odds(Cell c) const noexcept { return odds_.at(c); }
-  /// 0 to 1; 0.5 where nobody knows.
+  /// 0 to 1; 0.5 where it is not known.
   [[nodiscard]] float probability(Cell c) const noexcept {
     return 1.0F - 1.0F / (1.0F + std::exp(odds_.at(c)));
   }

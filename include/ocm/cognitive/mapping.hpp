@@ -23,7 +23,7 @@ namespace ocm::cognitive {
 struct MappingOptions {
   MapOptions map{};
   ExplorerOptions explorer{};
-  /// Degrees between two updates: while a robot turns that fast, nobody knows where its beams were.
+  /// Degrees between two updates: while a robot turns that fast, the direction of its beams is not known.
   int most_turn_deg = 6;
   base::Duration again = std::chrono::seconds{1};  ///< before a robot that waits is asked for again
   /// A robot that was called back waits for a good link for so long; then it is done.
@@ -41,7 +41,7 @@ class Mapping {
   explicit Mapping(Fleet& fleet, const MappingOptions& options = {})
       : fleet_(&fleet), options_(options), map_(options.map), explorer_(options.explorer) {}
 
-  /// To be told of each sentence, as Server::feed does.
+  /// To be called with each sentence, as Server::feed does.
   void heard(std::size_t robot, mapper::link::Kind kind) {
     if (robot >= Fleet::most_robots) return;
     if (kind == mapper::link::Kind::handshake) {
@@ -73,7 +73,7 @@ class Mapping {
       obey(scout, track, now);
     }
   }
-  /// Nobody has anything left to do, or waits for one that has.
+  /// No robot has anything left to do, or waits for one that has.
   [[nodiscard]] bool done() const {
     bool any = false;
     for (const Scout& scout : all()) {

@@ -2,7 +2,7 @@
 /// what each cell costs to reach, and the way there as straight pieces.
 ///
 /// A cell is passable when it is free and the robot's circle around it touches nothing: obstacles are
-/// inflated, to a fifth of a cell. What nobody has seen is not passable. A robot that stands closer to
+/// inflated, to a fifth of a cell. What was not seen is not passable. A robot that stands closer to
 /// something already may leave on cells that are ever farther. Costs are metres, more where it is narrow.
 /// [Dijkstra 1959; Felzenszwalb, Huttenlocher: Distance transforms of sampled functions, 2012]
 ///

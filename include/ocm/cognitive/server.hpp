@@ -33,7 +33,7 @@ class Server {
   void feed(std::string_view bytes, base::Time now) {
     feed(bytes, now, [](std::size_t, mapper::link::Kind) {});
   }
-  /// Time-outs, and what is to be said, once or again. At `deadline()`, after each wish, and each 50 ms.
+  /// Time-outs, and what is to be said, once or again. At `deadline()`, after each request, and each 50 ms.
   void expire(base::Time now) {
     fleet_.expire(now);
     while (auto saying = fleet_.take())
@@ -47,7 +47,7 @@ class Server {
   [[nodiscard]] base::Time deadline() const noexcept { return client_.deadline(); }
   /// What goes to the central.
   [[nodiscard]] std::string take() { return client_.take(); }
-  /// What became of wishes and links; the fleet knows already.
+  /// What became of requests and links; the fleet knows already.
   [[nodiscard]] std::optional<mapper::server::CentralEvent> next_event() {
     if (events_.empty()) return std::nullopt;
     mapper::server::CentralEvent event = std::move(events_.front());

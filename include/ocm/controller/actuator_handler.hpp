@@ -2,10 +2,10 @@
 /// timeout is replaced by rest (all fields zero), and so are all of them that have a timeout when the bus is
 /// lost.
 ///
-/// A set point is applied by whoever brings it: the context that calls `handle`, or the one that calls
-/// `settle` (the urgent level). If both come at once, who is applying goes on with what the other has left:
-/// `apply` of a topic is never in two contexts, and the last decision is the last one applied. That is why a
-/// rest cannot be overwritten by a set point that was decoded before and preempted.
+/// A set point is applied by the context that brings it: the context that calls `handle`, or the one that
+/// calls `settle` (the urgent level). If both come at once, who is applying goes on with what the other has
+/// left: `apply` of a topic is never in two contexts, and the last decision is the last one applied. That is
+/// why a rest cannot be overwritten by a set point that was decoded before and preempted.
 ///
 /// No heap. RAM a topic: three pointers and 8 bytes; 16 and a set point for each instance.
 #pragma once
@@ -36,7 +36,7 @@ struct ActuatorSlot {
   static_assert(Topic::instances <= 32);
   base::InlineFunction<void(std::uint8_t, const Topic&)> apply;
   std::uint32_t fresh = 0;  // bit i: wanted[i] is not applied yet
-  bool applying = false;    // somebody is, and will look at `fresh` again
+  bool applying = false;    // a context is, and will look at `fresh` again
   std::array<Topic, Topic::instances> wanted{};
   std::array<Watchdog, Topic::instances> watchdogs{};
 
@@ -148,7 +148,7 @@ class ActuatorHandler<protocol::TopicList<Topics...>> {
     apply(slot, port);
   }
 
-  /// Applies what is fresh, unless somebody is doing so.
+  /// Applies what is fresh, unless another context is doing so.
   template <class Topic, class P>
   static void apply(Slot<Topic>& slot, P& port) noexcept {
     for (bool mine = false;; mine = true) {

@@ -53,7 +53,7 @@
 
 namespace ocm::controller {
 
-/// What a controller is told of its port: a system's port itself; of the cooperative one, which is a part of
+/// What a controller needs of its port: a system's port itself; of the cooperative one, which is a part of
 /// the controller, the time at which it begins.
 template <class P>
 using PortArgument = std::conditional_t<std::same_as<P, scheduling::Cooperative>, base::Time, P&>;
@@ -79,7 +79,7 @@ class PortPlace<scheduling::Cooperative> {
 };
 }  // namespace detail
 
-/// `Tasks`: how many periodic tasks of its own the board has. `A` may refuse streams that would make somebody
+/// `Tasks`: how many periodic tasks of its own the board has. `A` may refuse streams that would make another
 /// late (docs/admission.md).
 template <class Board, can::Sender Bus, scheduling::Port P = scheduling::Cooperative, std::size_t Tasks = 0,
           scheduling::Admission A = scheduling::AdmitAll>
@@ -127,7 +127,7 @@ class Controller {
   /// void(const scheduling::Release&). The board's task number `Task`.
   template <std::size_t Task, class F>
   void every(base::Duration period, scheduling::Level level, F job) noexcept {
-    static_assert(Task < Tasks, "the controller was not told of so many tasks");
+    static_assert(Task < Tasks, "the controller has fewer tasks");
     if constexpr (std::is_invocable_v<F&, const scheduling::Release&>)
       tasks_[Task] = job;
     else
@@ -178,7 +178,8 @@ class Controller {
   }
   /// The bus has room again.
   void writable() noexcept { dispatcher_.wake(); }
-  /// Nobody can command this board any more: what has a timeout comes to rest now, not when that has passed.
+  /// No command can reach this board any more: what has a timeout comes to rest now, not when that has
+  /// passed.
   void bus_lost() noexcept {
     actuators_.lose_bus(port(), counters_);
     watch();

@@ -1,4 +1,4 @@
-/// Brings an actuator to rest when nobody has commanded it for a while: an operator that hangs, or a cable
+/// Brings an actuator to rest when no command has come for a while: an operator that hangs, or a cable
 /// that comes off, must not leave a robot driving.
 #pragma once
 

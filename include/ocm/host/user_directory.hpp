@@ -15,7 +15,7 @@
 namespace ocm::host {
 
 /// A directory of this user alone, below the first of these: $XDG_RUNTIME_DIR, when it is absolute and ours,
-/// as its specification wants; else /tmp. It may not exist yet.
+/// as its specification requires; else /tmp. It may not exist yet.
 [[nodiscard]] inline std::string user_directory() {
   const char* const runtime = std::getenv("XDG_RUNTIME_DIR");
   struct stat status {};
@@ -26,7 +26,7 @@ namespace ocm::host {
 }
 
 /// Why a directory cannot be trusted, or does not exist; nothing when it is fine: ours, no link, closed to
-/// everybody else.
+/// every other user.
 [[nodiscard]] inline std::optional<Failure> check_private(const std::string& directory) {
   struct stat status {};
   if (::lstat(directory.c_str(), &status) < 0)
@@ -34,7 +34,7 @@ namespace ocm::host {
         "cannot use the directory '" + directory + "': " + std::strerror(errno),
         "create it (mkdir -m 700 " + directory + "), or set XDG_RUNTIME_DIR to a directory of yours"};
   if (!S_ISDIR(status.st_mode))
-    return Failure{"'" + directory + "' is no directory",
+    return Failure{"'" + directory + "' is not a directory",
                    "remove it, or set XDG_RUNTIME_DIR to a directory of yours"};
   if (status.st_uid != ::geteuid())
     return Failure{"the directory '" + directory + "' belongs to another user (uid " +

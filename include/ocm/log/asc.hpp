@@ -3,9 +3,9 @@
 ///
 /// Read are 0 to 9 digits of a second's fraction, absolute and relative times, hexadecimal and decimal
 /// numbers, English and German dates. What is no frame (statistics, states of chips, comments) is passed
-/// over; so are wishes to send (TxRq), which the frame itself follows. Where a symbolic name stands in place
-/// of an identifier, the line is read if it ends with the number, as those of newer tools do. [Vector, CAN
-/// Log & Trigger ASC Logging Format; can-utils asc2log.c; python-can io/asc.py]
+/// over; so are requests to send (TxRq), which the frame itself follows. Where a symbolic name stands in
+/// place of an identifier, the line is read if it ends with the number, as those of newer tools do. [Vector,
+/// CAN Log & Trigger ASC Logging Format; can-utils asc2log.c; python-can io/asc.py]
 #pragma once
 
 #include <algorithm>

@@ -120,7 +120,7 @@ class BlfReader final : public Reader {
                              load16(time + 8), load16(time + 10), load16(time + 12)};
     if (const auto seconds = seconds_of(local))
       start_ns_ = *seconds * 1'000'000'000 + std::int64_t{load16(time + 14)} * 1'000'000;
-    else if (load16(time) != 0)  // all zeros: nobody knows
+    else if (load16(time) != 0)  // all zeros: unknown
       complain(Cause::time, {blf::start_time}, "the file's start time");
     const std::uint32_t size = packet::load32(head.data() + 4);
     if (input_->discard(std::max<std::uint64_t>(size, blf::file_header))) return true;
@@ -329,7 +329,7 @@ class BlfReader final : public Reader {
   [[nodiscard]] bool fill(const blf::Message& from, Entry& entry) {
     if (from.channel > ChannelsRead::most)
       return refuse(Cause::unsupported, "channel " + std::to_string(from.channel));
-    if (from.direction > 1) return false;  // a wish to send; the frame itself comes later
+    if (from.direction > 1) return false;  // a request to send; the frame itself comes later
     const bool extended = (from.id & blf::extended_flag) != 0;
     entry.id = from.id & ~blf::extended_flag;
     if (entry.id > (extended ? can::max_extended_id : can::max_base_id))
@@ -357,7 +357,7 @@ class BlfReader final : public Reader {
   State state_ = State::begin;
   std::int64_t start_ns_ = 0;
   ChannelsRead channels_;
-  std::string stream_;  // what containers held and nobody has taken yet, from begin_ on
+  std::string stream_;  // what containers held and is not read yet, from begin_ on
   std::size_t begin_ = 0;
   Place place_;  // of the container that was unpacked last
   bool lost_ = false;

@@ -1,4 +1,4 @@
-/// A growing run of bytes that writers append to and that whoever owns the file empties: memory is taken once
+/// A growing run of bytes that writers append to and the file's owner empties: memory is taken once
 /// and kept, nothing is cleared before it is written.
 #pragma once
 

@@ -2,9 +2,9 @@
 /// /can0/raw for each interface, in chunks (mcap_container.hpp). Nothing of an entry is lost, times before
 /// 1970 included. What is not yet in a chunk comes out with `flush`, or after a second of the log.
 ///
-/// Read are the frames of this library's channels, whoever wrote the file, packed with zstd or not; messages
+/// Read are the frames of this library's channels, by any writer, packed with zstd or not; messages
 /// of other channels are passed over. Chunks are believed up to Input::longest. Behind damage reading goes on
-/// at the next chunk; one whose checksum is wrong is told of, and read as it stands. [mcap.dev/spec]
+/// at the next chunk; one whose checksum is wrong is reported, and read unchecked. [mcap.dev/spec]
 #pragma once
 
 #include <algorithm>
@@ -115,7 +115,7 @@ class McapReader final : public Reader {
       complain(Cause::syntax, here(), "no record begins here");
       return find_chunk();
     }
-    // Only what somebody attached may be of any length.
+    // Only attachments may be of any length.
     if (length > Input::longest - mcap::record_head && kind != mcap::opcode::attachment) {
       complain(Cause::too_long, here(), name_of(kind) + " of " + std::to_string(length) + " bytes");
       return find_chunk();
@@ -250,7 +250,7 @@ class McapReader final : public Reader {
     chunk_begin_ = records_.data();
     is_packed_ = !compression.empty();
     if (chunk_whole_ && checksum != 0 && crc32(records_) != checksum)
-      complain(Cause::checksum, place, "a chunk, which is read as it stands");
+      complain(Cause::checksum, place, "a chunk, which is read unchecked");
   }
 
   [[nodiscard]] bool unpack(std::string_view compression, std::string_view packed, std::uint64_t size) {
@@ -368,7 +368,7 @@ class McapReader final : public Reader {
     return false;
   }
 
-  /// What the recorder said of a channel; anybody else's is passed over.
+  /// What the recorder said of a channel; metadata of others is ignored.
   void metadata(std::string_view content) {
     mcap::Fields fields{content};
     if (fields.string() != mcap::recorded_name) return;

@@ -155,7 +155,7 @@ class PcapWriter final : public Writer {
     out.little(pcap::magic_ns);
     out.little(std::uint16_t{2});  // version 2.4
     out.little(std::uint16_t{4});
-    out.little(std::uint64_t{0});         // time zone and accuracy, which nobody uses
+    out.little(std::uint64_t{0});         // time zone and accuracy, unused
     out.little(std::uint32_t{0x4'0000});  // packets are not longer
     out.little(static_cast<std::uint32_t>(LinkType::can_socketcan));
   }

@@ -30,7 +30,7 @@ namespace pcapng {
 namespace block {
 inline constexpr std::uint32_t section = 0x0A0D0D0A;  ///< the same in both byte orders
 inline constexpr std::uint32_t interface = 1;
-inline constexpr std::uint32_t old_packet = 2;  ///< no longer written by anybody
+inline constexpr std::uint32_t old_packet = 2;  ///< no longer written
 inline constexpr std::uint32_t simple_packet = 3;
 inline constexpr std::uint32_t statistics = 5;
 inline constexpr std::uint32_t packet = 6;
@@ -240,7 +240,7 @@ class PcapngReader final : public Reader {
     complain(Cause::syntax, here(), "a block of " + bytes + ", by its end of another length");
   }
 
-  /// Complains of the block that begins here and goes on to the next that looks whole. false: there is none.
+  /// Complains of the block that begins here and goes on to the next that looks whole. false: none left.
   bool recover() {
     complain_of_block();
     // A likely block is short: looking for the ends of long ones would take a square of the file's size.

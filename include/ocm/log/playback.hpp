@@ -3,7 +3,7 @@
 ///
 /// A time that goes back a little (frames of two interfaces, written as they were read) is due at once. One
 /// that goes back a second or more is a clock that was set, or another log behind the first: from there on
-/// distances count anew. O(1) a frame, no heap.
+/// distances count afresh. O(1) a frame, no heap.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@ class Playback {
  public:
   /// Times that go back by less are out of order; by more, the clock was set.
   static constexpr base::Duration clock_was_set = std::chrono::seconds{1};
-  /// Nobody's scheduler is better on every machine; less is not told.
+  /// No scheduler is better on every machine; less is not reported.
   static constexpr base::Duration late_from = std::chrono::milliseconds{1};
 
   explicit Playback(PlaybackOptions options = {}) noexcept : options_(options) {}

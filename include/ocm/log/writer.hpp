@@ -1,4 +1,4 @@
-/// A log format that is written. A writer appends bytes; whoever owns the file writes them out, so that the
+/// A log format that is written. A writer appends bytes; the file's owner writes them out, so that the
 /// same writer serves a file, a pipe and a test. What the format cannot hold is counted by kind.
 #pragma once
 

@@ -3,7 +3,7 @@
 ///
 /// Pure: frames and their times in, shares of time out. 500 bytes and 3 KiB of tables, O(1) a frame; a pause
 /// costs at most one step a millisecond of the window. What a CAN controller reports as an error takes time
-/// on the bus that nobody knows: it is not in the load.
+/// on the bus that is not known: it is not in the load.
 #pragma once
 
 #include <array>

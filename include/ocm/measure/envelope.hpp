@@ -2,7 +2,7 @@
 /// each keeps its first, last, lowest, highest, leftmost and rightmost point. No peak is lost, wherever it
 /// is, and few points stay as they are. [Jugel et al., M4, VLDB 2014]
 ///
-/// The columns double in width when the curve outgrows them, so nobody has to say how long it will be. About
+/// The columns double in width when the curve outgrows them, so its length need not be known. About
 /// 500 KiB a curve, allocated once; O(1) a point on average.
 #pragma once
 
@@ -31,7 +31,7 @@ class Envelope {
   Envelope() : columns_(columns) {}
 
   /// Times are expected to rise. For a curve over time leave `x` the same. After a pause of more than five
-  /// distances the curve begins anew.
+  /// distances a new curve begins.
   void add(base::Time time, double x, double y) {
     Point point{time, x, y, count_ == 0, count_};
     if (count_ == 0) origin_ = time;

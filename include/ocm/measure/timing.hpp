@@ -1,6 +1,6 @@
 /// How regularly the samples of one topic come: rate, jitter, gaps, missing samples. Times are those of the
 /// bus, one after another; all distances count, not a window of the newest. A request begins a new stretch:
-/// the distance across it is nobody's fault and in no figure.
+/// the distance across it is no fault and in no figure.
 ///
 /// Pure: reads no clock, allocates nothing; about 250 bytes a stream and O(1) a sample. Times that go back
 /// begin a new stretch, too, and are counted.
@@ -155,7 +155,7 @@ class Grid {
 class Stream {
  public:
   Stream() = default;
-  /// `usual` is the spec's period, to be recognised where nobody asks; zero: the stream has no period.
+  /// `usual` is the spec's period, to be recognised without a request; zero: the stream has no period.
   explicit Stream(base::Duration usual) noexcept : usual_(usual.count()), learns_(usual.count() > 0) {}
 
   void sample(base::Time time) noexcept {
@@ -241,7 +241,7 @@ class Stream {
     gap_ = distance;
     gap_from_ = since_;
   }
-  /// Nobody asked, so the first distances have to say what the period is.
+  /// No request, so the first distances have to say what the period is.
   void learn(std::int64_t distance) noexcept {
     early_[learned_++] = distance;
     if (learned_ == first_distances) decide();

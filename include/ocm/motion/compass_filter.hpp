@@ -7,7 +7,7 @@
 /// long time only: steel in the floor turns it by tens of degrees. It is trusted where, over the last
 /// straight drive, it turned by no more than those 2 degrees; and it corrects while the robot stands. Known
 /// weakness: a short drive inside one disturbed place passes the test [T2 figure 7.9]. Constant time; a
-/// compass that is not finite, or an R that is not positive, corrects nothing, and it is told.
+/// compass that is not finite, or an R that is not positive, corrects nothing, and the result says so.
 #pragma once
 
 #include "ocm/motion/angle.hpp"

@@ -40,7 +40,7 @@ class DirectedTicks {
     }
   }
   [[nodiscard]] constexpr std::uint32_t count() const noexcept { return count_; }
-  /// Pulses before the first command: nobody knows where they went.
+  /// Pulses before the first command: their direction is not known.
   [[nodiscard]] constexpr std::uint32_t undirected() const noexcept { return undirected_; }
 
  private:

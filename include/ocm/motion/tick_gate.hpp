@@ -17,7 +17,7 @@ struct WheelGate {
   friend bool operator==(const WheelGate&, const WheelGate&) = default;
 };
 
-/// Ticks since the movement began, in the direction in which each wheel was told to go: so rotating on the
+/// Ticks since the movement began, in the direction in which each wheel was commanded: so rotating on the
 /// spot is gated, too.
 [[nodiscard]] constexpr WheelGate gate(std::int32_t left_ticks, std::int32_t right_ticks) noexcept {
   return {left_ticks <= right_ticks, right_ticks <= left_ticks};

@@ -22,7 +22,7 @@ struct Counters {
   std::uint32_t bad_unit = 0;
   std::uint32_t bad_period = 0;
   std::uint32_t not_served = 0;       ///< this board's topic, but nothing serves it
-  std::uint32_t not_schedulable = 0;  ///< somebody would have missed a deadline
+  std::uint32_t not_schedulable = 0;  ///< a stream would have missed its deadline
   std::uint32_t failed = 0;           ///< taken, and then a part would not: calibration, storage
   // frames to the bus
   std::uint32_t samples = 0;      ///< read and handed on

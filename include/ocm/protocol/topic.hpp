@@ -157,7 +157,7 @@ struct FrameHead {
 };
 
 /// The most bits that a frame takes at a priority, intermission included: what the spec's generator found, or
-/// the closed bound where nobody looked.
+/// the closed bound where none was computed.
 template <class Frame>
 requires std::same_as<Frame, FrameHead> || std::same_as<Frame, FrameLayout>
 [[nodiscard]] constexpr unsigned worst_bits(const Frame& frame, Priority priority) noexcept {

@@ -11,7 +11,7 @@ namespace ocm::protocol {
 /// The hash of what a catalogue says of the wire: identifiers, DLCs, where each field lies and what its bits
 /// mean, who is asked and who is commanded, and the bit rate. Names, units as words, periods, sources and the
 /// order of the topics in the spec do not count. FNV-1a, 32 bits; equal hashes of different specs are
-/// possible (1 in 2^32), and are not an attack that anybody defends against. Meant for compile time: 1 us a
+/// possible (1 in 2^32), and no defence against an attack. Meant for compile time: 1 us a
 /// field.
 [[nodiscard]] constexpr std::uint32_t wire_hash(const Catalogue& catalogue) noexcept {
   // [FNV-1a: draft-eastlake-fnv, section 5: offset basis and prime for 32 bits]

@@ -1,4 +1,4 @@
-/// A queue with one place, from one context to another: what is put replaces what nobody took, and that is
+/// A queue with one place, from one context to another: what is put replaces what was not taken, and that is
 /// counted. For what is only ever wanted in its newest form: a set point, a command to the motors.
 ///
 /// The port's lock is held for one copy of a T: O(1), any context, interrupts too. sizeof(T) and 12 bytes at
@@ -34,7 +34,7 @@ class Mailbox {
     [[maybe_unused]] const auto guard = port_->lock();
     return take_locked();
   }
-  /// Nobody is to take what is in it: lost, where there is something.
+  /// What is in it is void: lost, where there is something.
   void clear() noexcept {
     [[maybe_unused]] const auto guard = port_->lock();
     clear_locked();

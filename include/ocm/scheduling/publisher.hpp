@@ -134,7 +134,7 @@ class Publisher {
     s.use = Use::none;
   }
 
-  /// Up to `now`, with what is already lost of a stream that is held, or that nobody comes to take.
+  /// Up to `now`, with what is already lost of a stream that is held, or that no context takes.
   [[nodiscard]] constexpr Overload overload(std::size_t stream, base::Time now) const noexcept {
     Stream s = streams_[stream];
     if (s.overdue_while_held(now))

@@ -5,7 +5,7 @@
 ///     const auto claim = i2c.claim();   // until it goes out of scope
 ///
 /// The mutex is the system's, with priority inheritance or a priority ceiling: while a lower level has the
-/// resource and an upper one wants it, nothing in between may run. Then a job is held up by at most one
+/// resource and an upper one claims it, nothing in between may run. Then a job is held up by at most one
 /// critical section of a lower level for each claim (inheritance), or one in all (ceiling), and never by a
 /// job that does not use the resource. Claims are not nested within one another's resource, and nested claims
 /// of two resources go in one order everywhere. [Sha, Rajkumar, Lehoczky 1990, theorems 6 and 12]
@@ -27,7 +27,7 @@ concept Lockable = requires(M& mutex) {
   mutex.unlock();
 };
 
-/// Of a system with one context, where nobody waits.
+/// Of a system with one context, where there is no wait.
 struct NoMutex {
   constexpr void lock() noexcept {}
   constexpr void unlock() noexcept {}

@@ -87,7 +87,7 @@ enum class Leftovers : std::uint8_t { send, withdraw };
 /// - The lowest can::arbitration_key wins. The losers try again after the winner.
 /// - A frame takes can::frame_bits, with the stuff bits of its content; then three bits of intermission. The
 ///   next start of frame is at once after that: a controller may answer a frame without idle time between.
-/// - Every frame is acknowledged, even when nobody else is attached.
+/// - Every frame is acknowledged, even when no other node is attached.
 /// - Two nodes that offer the same key would both believe to have won, and a bit error would follow at the
 ///   first different bit. Here the node with the lower index sends first, and it is counted as a clash.
 ///
@@ -182,7 +182,7 @@ class Arbiter {
         if (clock_.time_of(next) > now) break;
         hand_out(complete(), deliver);
       } else {
-        // Up to the boundary itself somebody may hand over a frame that wins.
+        // Up to the boundary itself a node may hand over a frame that wins.
         if (next == UINT64_MAX || clock_.time_of(next) >= now) break;
         end_silence(next);
         start();
@@ -280,7 +280,7 @@ class Arbiter {
 
   // --- frames ---
 
-  /// Holds the next arbitration, without consequences yet. false: nobody has a frame.
+  /// Holds the next arbitration, without consequences yet. false: no node has a frame.
   bool choose() const noexcept {
     if (next_) return true;
     std::uint64_t earliest = UINT64_MAX;
@@ -415,7 +415,7 @@ class Arbiter {
     return false;
   }
 
-  /// An error frame: a failure of who sent last, if anybody did, and of all who listen.
+  /// An error frame: a failure of the last sender, if any, and of all listeners.
   void count_error() noexcept {
     ++totals_.errors;
     faults_ = true;

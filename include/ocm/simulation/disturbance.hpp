@@ -11,8 +11,8 @@
 
 namespace ocm::simulation {
 
-/// Six dominant bits of whoever sees the error first; the others answer with six of their own, at the latest
-/// when these six are over. Overload flags are as long. [ISO 11898-1, error frame, overload frame]
+/// Six dominant bits of the node that sees the error first; the others answer with six of their own, at the
+/// latest when these six are over. Overload flags are as long. [ISO 11898-1, error frame, overload frame]
 inline constexpr unsigned shortest_flag_bits = 6;
 inline constexpr unsigned longest_flag_bits = 12;
 /// Recessive bits after the flags.

@@ -5,7 +5,7 @@
 /// connection hears none of it. A packet that finds no room is lost, the rest of its line goes on: that is a
 /// torn sentence. All of it is counted.
 ///
-/// Nothing happens by itself: bytes whose time has come are cut when somebody calls. O(bytes). Host side.
+/// Nothing happens by itself: bytes whose time has come are cut when a member is called. O(bytes). Host side.
 #pragma once
 
 #include <algorithm>
@@ -50,7 +50,7 @@ struct DongleModel {
 /// What was not sent, and why.
 struct DongleCounters {
   std::uint64_t unlinked = 0;  ///< bytes written without a link
-  std::uint64_t refused = 0;   ///< bytes that the UART had no room for: the writer was told
+  std::uint64_t refused = 0;   ///< bytes that the UART had no room for: the writer knows
   std::uint64_t dropped = 0;   ///< bytes that had not become a packet when the link ended
   friend bool operator==(const DongleCounters&, const DongleCounters&) = default;
 };

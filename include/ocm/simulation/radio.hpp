@@ -135,7 +135,7 @@ class Radio {
   }
   void place_central(Place place) noexcept { central_ = place; }
   void move(std::size_t robot, Place place) noexcept { robots_[robot].place = place; }
-  /// Whether the dongle wants to be found. It is not while it has a link.
+  /// Whether the dongle advertises. It is not found while it has a link.
   void advertise(std::size_t robot, bool on, base::Time now) {
     step_to(now);
     Robot& r = robots_[robot];
@@ -184,7 +184,7 @@ class Radio {
     }
     plan();
   }
-  /// The central begins anew and tells nobody: robots' dongles hear nothing, and find out by the time-out.
+  /// The central restarts without a report: robots' dongles hear nothing, and find out by the time-out.
   void restart() {
     scanning_ = false;
     attempt_.reset();
@@ -205,7 +205,7 @@ class Radio {
     }
     step_to(now);
   }
-  /// When something happens; base::never when nothing does until somebody asks for something.
+  /// When something happens; base::never when nothing does until the next call.
   [[nodiscard]] base::Time next_event() const noexcept { return next_; }
   /// Of what happens now.
   [[nodiscard]] base::Time time() const noexcept { return time_; }
@@ -274,7 +274,7 @@ class Radio {
     const double share = loss(model_, distance_m(central_, robot.place));
     return static_cast<double>(robot.luck() >> 11) * 0x1p-53 < share;
   }
-  /// Advertisements that nobody listened to are over.
+  /// Advertisements that no central heard are over.
   void listen_for(Robot& robot) const noexcept {
     if (robot.advertisement > time_) return;
     const auto missed = (time_ - robot.advertisement) / model_.advertising_interval;

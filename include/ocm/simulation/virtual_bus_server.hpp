@@ -61,7 +61,7 @@ struct VirtualBusCounters {
   std::uint64_t turned_away = 0;      ///< instead of welcomed: another user, another version, no greeting
   std::uint64_t misbehaved = 0;       ///< disconnected for what they sent; their waiting frames are withdrawn
   std::uint64_t accept_failures = 0;  ///< connections that found no file descriptor or memory
-  std::uint64_t overruns = 0;         ///< frames dropped for clients that read too slowly; each was told
+  std::uint64_t overruns = 0;         ///< frames dropped for clients that read too slowly; each was informed
   std::uint64_t withdrawn = 0;        ///< frames
 };
 
@@ -97,7 +97,7 @@ class VirtualBusServer {
   }
 
   [[nodiscard]] const std::string& path() const noexcept { return socket_.path(); }
-  /// Readable when a client wants something. An epoll descriptor; owned by the server.
+  /// Readable when a client has something to say. An epoll descriptor; owned by the server.
   [[nodiscard]] int descriptor() const noexcept { return events_.get(); }
   /// When to call `poll` at the latest: at the end of the frame on the bus. base::never when it is idle.
   /// Whatever it is, it lies in the future after `advance` to that time.
@@ -378,7 +378,7 @@ class VirtualBusServer {
   /// The client's end is closed.
   void lose(Client& client) {
     client.gone = true;
-    if (!client.welcome) return;  // somebody who only looked whether a server runs
+    if (!client.welcome) return;  // a program that only checked whether a server runs
     ++counters_.died;
     counters_.withdrawn += arbiter_.detach(client.node, Leftovers::withdraw);
   }
@@ -433,7 +433,7 @@ class VirtualBusServer {
         if (errno == EAGAIN) return;
         if (errno == EINTR || errno == ECONNABORTED) continue;
         const Turned turned = turn_away_one();
-        if (turned == Turned::nobody) return;
+        if (turned == Turned::none) return;
         ++counters_.accept_failures;
         if (turned == Turned::away) continue;
         // Nothing helps now. The listener would stay readable and keep the owner busy: look again later.
@@ -463,15 +463,15 @@ class VirtualBusServer {
     return host::Descriptor{::accept4(socket_.descriptor(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)};
   }
 
-  enum class Turned : std::uint8_t { away, nobody, failed };
+  enum class Turned : std::uint8_t { away, none, failed };
 
   /// With no descriptor left, the spare one gives room to tell a client so. The kernel says that there is
-  /// none also when nobody waits.
+  /// none also when no client waits.
   Turned turn_away_one() {
     spare_.reset();
     Client client;
     client.socket = accept_one();
-    const Turned turned = client.socket ? Turned::away : errno == EAGAIN ? Turned::nobody : Turned::failed;
+    const Turned turned = client.socket ? Turned::away : errno == EAGAIN ? Turned::none : Turned::failed;
     if (turned == Turned::away) {
       client.peer = virtual_bus::peer_of(client.socket.get());
       report(client, {.reason = virtual_bus::Reason::full});

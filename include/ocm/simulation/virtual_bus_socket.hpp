@@ -116,7 +116,7 @@ class VirtualBusSocket {
       return failure(path, errno);
     }
     if (!S_ISSOCK(status.st_mode))
-      return host::Failure{"'" + path + "' exists and is no socket", "remove it, or choose another path"};
+      return host::Failure{"'" + path + "' exists and is not a socket", "remove it, or choose another path"};
     if (status.st_uid != ::geteuid())
       return host::Failure{
           "the socket '" + path + "' belongs to another user (uid " + std::to_string(status.st_uid) + ")",

@@ -195,7 +195,8 @@ namespace detail {
       return {"not allowed to open a CAN socket" + reason,
               "a sandbox or container forbids it: run outside of it, or allow AF_CAN sockets there"};
     default:
-      return {"cannot open a CAN socket" + reason, "close other programs, or ask whoever runs this machine"};
+      return {"cannot open a CAN socket" + reason,
+              "close other programs, or ask this machine's administrator"};
   }
 }
 

@@ -1,6 +1,6 @@
 /// A pseudo terminal as a serial line to another program of this machine, which opens it like a device: by
 /// its path, /dev/pts/7, or by a link that stays the same. Programs may come and go: what is written while
-/// nobody has it open is not taken, and a new one reads nothing of what its predecessor left. Host only.
+/// no program has it open is not taken, and a new one reads nothing of what its predecessor left. Host only.
 ///
 ///     auto line = Pty::open(central_line());
 ///     if (line->attached()) line->write("found 2\n");
@@ -50,7 +50,7 @@ namespace ocm::transport {
 }
 
 /// Whether a Pty of some program has this link. One that a killed program has left may lead by now to a
-/// terminal of somebody else: who opens a link by itself asks first.
+/// terminal of another user: check before opening a link.
 [[nodiscard]] inline bool is_served(const std::string& link) noexcept {
   const host::Descriptor lock{::open((link + ".lock").c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW)};
   return lock && ::flock(lock.get(), LOCK_SH | LOCK_NB) < 0;
@@ -99,7 +99,7 @@ class Pty {
 
   /// The device.
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
-  /// What other programs are told to open.
+  /// The path that other programs open.
   [[nodiscard]] const std::string& name() const noexcept { return link_.empty() ? path_ : link_; }
   [[nodiscard]] int descriptor() const noexcept { return master_.get(); }
 
@@ -112,7 +112,7 @@ class Pty {
     leave();
     return false;
   }
-  /// How many bytes have come, the first of `room`; 0: none now, or nobody is there.
+  /// How many bytes have come, the first of `room`; 0: none now, or no program has it open.
   std::size_t read(std::span<char> room) {
     for (;;) {
       const ssize_t size = ::read(master_.get(), room.data(), room.size());
@@ -125,8 +125,8 @@ class Pty {
       return 0;
     }
   }
-  /// How many bytes were taken, the first ones; fewer: the program does not read, or nobody is there. Two
-  /// system calls: the kernel itself takes also what nobody reads.
+  /// How many bytes were taken, the first ones; fewer: the program does not read, or none has it open. Two
+  /// system calls: the kernel itself takes also what is never read.
   std::size_t write(std::string_view text) {
     std::size_t taken = 0;
     if ((look() & POLLHUP) != 0) return taken;
@@ -152,7 +152,7 @@ class Pty {
     if (attached_) renew();
     attached_ = false;
   }
-  /// Bytes as they are, and none of before. Opened and closed once, the line tells whether anybody has it
+  /// Bytes as they are, and none of before. Opened and closed once, the line tells whether any program has it
   /// open.
   void renew() const {
     const host::Descriptor line{::open(path_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)};
@@ -171,7 +171,7 @@ class Pty {
       if (!lock_)
         return host::Failure{"cannot write '" + lock + "': " + std::strerror(errno),
                              "create its folder (mkdir -p), or choose another path"};
-      // Somebody may just be asking whether it is served.
+      // Another program may just be checking whether it is served.
       for (int tries = 0; ::flock(lock_.get(), LOCK_EX | LOCK_NB) < 0; ++tries) {
         if (tries == 5)
           return host::Failure{"another program serves '" + link + "'",

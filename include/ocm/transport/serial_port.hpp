@@ -107,7 +107,8 @@ inline constexpr std::array<std::pair<std::uint32_t, speed_t>, 18> serial_speeds
       return {"'" + path + "' is in use by another program",
               "end that one: `fuser -v " + path + "` names it"};
     case ECONNREFUSED:
-      return {"nobody listens on the socket '" + path + "'" + reason, "start the board or program behind it"};
+      return {"no program listens on the socket '" + path + "'" + reason,
+              "start the board or program behind it"};
     default:
       return {"cannot open '" + path + "'" + reason, "see the kernel's log: dmesg"};
   }
@@ -125,7 +126,7 @@ inline constexpr std::array<std::pair<std::uint32_t, speed_t>, 18> serial_speeds
 [[nodiscard]] inline host::Failure line_gone(const std::string& what, int error) {
   return {what + " is gone: unplugged, or its other end closed" +
               (error == 0 || error == EIO ? "" : " (" + std::string(std::strerror(error)) + ")"),
-          "plug it in again and start anew"};
+          "plug it in again and restart"};
 }
 
 }  // namespace detail

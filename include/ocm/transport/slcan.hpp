@@ -6,7 +6,7 @@
 /// - An adapter that answers has at most `window` frames unanswered. One that it refuses (BEL: its buffer is
 ///   full) is sent again, before anything else; of one identifier only one frame is under way, so the order
 ///   within an identifier stays. Until there is room again `send` answers false.
-/// - Adapters that never answer are taken as they are: what they drop nobody knows.
+/// - Adapters that never answer are taken as they are: dropped frames cannot be counted.
 /// - Errors of the bus come as error frames: from the status flags, asked for once a second, and from the
 ///   lines that linux's driver understands too.
 /// - What is not a line of the protocol is counted (`line_faults`), and never becomes a frame.
@@ -45,7 +45,7 @@ namespace ocm::transport {
 /// What happened between this program and the adapter.
 struct SlcanCounters {
   std::uint64_t sent_again = 0;  ///< frames that the adapter had refused
-  std::uint64_t unanswered = 0;  ///< commands without an answer: whether the frame went out nobody knows
+  std::uint64_t unanswered = 0;  ///< commands without an answer: it is not known whether the frame went out
   std::uint64_t strays = 0;      ///< answers to nothing
 };
 
@@ -84,7 +84,7 @@ class Slcan final : public Bus {
 
   /// "slcan:" and the path.
   [[nodiscard]] std::string_view name() const override { return name_; }
-  /// Whether the adapter answers commands. If not, nobody knows whether frames are sent.
+  /// Whether the adapter answers commands. If not, it is not known whether frames are sent.
   [[nodiscard]] bool answers() const noexcept { return answers_; }
   /// What it says of itself after command V; empty when it does not.
   [[nodiscard]] const std::string& version() const noexcept { return version_; }
@@ -153,7 +153,8 @@ class Slcan final : public Bus {
 
  private:
   using Answer = can::slcan::Answer;
-  static constexpr std::size_t max_inbox = 65'536;  ///< frames kept for somebody who sends and never receives
+  static constexpr std::size_t max_inbox =
+      65'536;  ///< frames kept for a program that sends and never receives
   static constexpr base::Duration quiet = std::chrono::milliseconds{100};
   static constexpr base::Duration pause_before_again = std::chrono::milliseconds{2};
 
@@ -226,7 +227,7 @@ class Slcan final : public Bus {
                    "it may serve others only, or be in use: unplug it and plug it in again"))
       return problem;
     if (answers_) (void)ask("Z1\r");  // one without a clock refuses: the time of reading does
-    inbox_.clear();                   // of the channel as somebody else had it
+    inbox_.clear();                   // of the channel as another program left it
     if (auto problem = demand("O\r", "to open the channel",
                               "unplug it and plug it in again; is its firmware one for SLCAN?"))
       return problem;

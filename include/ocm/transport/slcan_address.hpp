@@ -71,7 +71,7 @@ namespace detail {
   const std::string bit_rate{rates.substr(0, comma)};
   const auto rate = detail::parse_rate(bit_rate);
   if (!rate)
-    return host::Failure{"'" + bit_rate + "' in 'slcan:" + std::string(text) + "' is no bit rate",
+    return host::Failure{"'" + bit_rate + "' in 'slcan:" + std::string(text) + "' is not a bit rate",
                          std::string(form)};
   address.options.bit_rate = *rate;
   if (!can::slcan::bit_rate_code(*rate)) {
@@ -87,7 +87,7 @@ namespace detail {
   const auto baud = detail::parse_rate(baud_text);
   if (!baud)
     return host::Failure{
-        "'" + baud_text + "' in 'slcan:" + std::string(text) + "' is no speed of a serial line",
+        "'" + baud_text + "' in 'slcan:" + std::string(text) + "' is not a speed of a serial line",
         std::string(form)};
   address.options.baud = *baud;
   const std::uint32_t nearest = detail::nearest_serial_speed(*baud);

@@ -31,7 +31,7 @@ class StampClock {
       const std::int64_t turns = rest >= base::Duration::zero() ? rest / turn : -1;
       count_ += step + turns * turn;
       offset_ = std::min(offset_ + elapsed / 5000, arrival.time_since_epoch() - count_);
-      if (arrival.time_since_epoch() - (offset_ + count_) > longest_delay)  // the adapter started anew
+      if (arrival.time_since_epoch() - (offset_ + count_) > longest_delay)  // the adapter restarted
         offset_ = arrival.time_since_epoch() - count_;
     }
     last_stamp_ = stamp;

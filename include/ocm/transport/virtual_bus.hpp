@@ -40,7 +40,7 @@ class VirtualBus final : public Bus {
     if (!address) return address.error;
     host::Descriptor socket{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0)};
     if (!socket) return connect_failure(path, errno);
-    // A server that is stopped accepts nobody, and its queue may be full.
+    // A server that is stopped accepts no client, and its queue may be full.
     const timeval limit = host::to_timeval(patience);
     ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);
     while (::connect(socket.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) < 0)
@@ -164,7 +164,7 @@ class VirtualBus final : public Bus {
 
  private:
   static constexpr std::size_t messages_at_once = 16;
-  /// Frames kept for somebody who sends and never receives.
+  /// Frames kept for a program that sends and never receives.
   static constexpr std::size_t max_inbox = 65'536;
 
   VirtualBus(host::Descriptor socket, std::string name, std::string path, std::string process)
@@ -189,7 +189,7 @@ class VirtualBus final : public Bus {
       case ENOENT:
       case ENOTDIR:
       case ECONNREFUSED:
-        return {"no simulator is running: nobody listens on '" + path + "'", "start one",
+        return {"no simulator is running: no program listens on '" + path + "'", "start one",
                 host::Cause::simulator_missing};
       case EAGAIN:
         return {"the simulator on '" + path + "' does not answer", stuck_remedy(path)};

@@ -60,7 +60,7 @@ enum class Reason : std::uint8_t {
   bad_dlc,         ///< detail: DLC
   bad_identifier,  ///< detail: identifier
   no_credit,       ///< more frames than the transmit queue has room for
-  bad_filters,     ///< detail: how many; too many, or filters that nobody announced
+  bad_filters,     ///< detail: how many; too many, or filters that were not announced
 };
 
 struct Hello {

@@ -181,7 +181,7 @@ class Adapter:
         tty.setraw(self.slave)
         fcntl.ioctl(self.slave, termios.TIOCSETD, struct.pack('i', self.N_SLCAN))
         self.name = fcntl.ioctl(self.slave, self.SIOCGIFNAME, bytes(64)).split(b'\0')[0].decode()
-        # The driver opens the channel with commands, and waits until somebody has read them.
+        # The driver opens the channel with commands, and waits until they are read.
         opening = threading.Thread(target=lambda: self.sent(2, b'O\r'))
         opening.start()
         sh('ip', 'link', 'set', self.name, 'up', 'type', 'can', 'bitrate', '500000')

@@ -1,5 +1,5 @@
 // Two serial CAN adapters, joined like two machines by a null modem cable: what the host of one sends, the
-// other hears. At one hangs the kernel's slcan driver, at the other whoever opens the pty.
+// other hears. At one hangs the kernel's slcan driver, at the other the program that opens the pty.
 //   slcan_relay            prints "INTERFACE PTY", and relays until its stdin ends; then prints counts
 #include <array>
 #include <cerrno>

@@ -116,7 +116,7 @@ class Adapter {
     ifreq request{};
     REQUIRE(ioctl(slave, SIOCGIFNAME, &request) == 0);
     name_ = request.ifr_name;
-    // The driver opens the channel with commands, and waits until somebody has read them.
+    // The driver opens the channel with commands, and waits until they are read.
     std::thread reader([this] { opening_ = sent(2s, "O\r"); });
     const int result = std::system(("ip link set " + name_ + " up type can bitrate 500000").c_str());
     reader.join();
@@ -272,7 +272,7 @@ TEST_CASE("a frame that several filters accept comes once") {
   CHECK(texts(drain(*bus)) == std::vector<std::string>{"205#01"});
 }
 
-TEST_CASE("error frames are told in words") {
+TEST_CASE("error frames are put into words") {
   const auto bus = open("vcan0");
   shell("cansend vcan0 20000040#0000000000000000");
   const auto received = bus->receive(2s);
@@ -352,9 +352,9 @@ TEST_CASE("a full queue refuses, loses nothing, and takes again") {
     REQUIRE(taken.ok());
     if (*taken) ++sent;
   }
-  REQUIRE(bus->counters().refused == 1);  // nobody reads the serial line
+  REQUIRE(bus->counters().refused == 1);  // the serial line is not read
   CHECK(bus->state() == BusState::up);
-  std::string all = adapter.sent();  // now somebody does
+  std::string all = adapter.sent();  // now it is
   REQUIRE(eventually([&] { return bus->send(frame("206#09")).value; }));
   all += adapter.sent();
   CHECK(static_cast<unsigned>(std::count(all.begin(), all.end(), '\r')) == sent + 1);
@@ -362,7 +362,7 @@ TEST_CASE("a full queue refuses, loses nothing, and takes again") {
   CHECK(bus->counters().sent == sent + 1);
 }
 
-TEST_CASE("what an adapter reports of its bus is told in words") {
+TEST_CASE("what an adapter reports of its bus is put into words") {
   Adapter adapter;
   const auto bus = open(adapter.name());
   const auto next = [&](std::string_view line) {
@@ -389,7 +389,7 @@ TEST_CASE("what an adapter reports of its bus is told in words") {
   CHECK(bus->counters().received == 12);
 }
 
-TEST_CASE("an interface that goes down is told, and goes on when it is back") {
+TEST_CASE("an interface that goes down is reported, and goes on when it is back") {
   const Vcan vcan("vcan7");
   const auto bus = open("vcan7");
   const auto begin = std::chrono::steady_clock::now();
@@ -432,7 +432,7 @@ TEST_CASE("a sender that does not listen sees the interface go down and come bac
   CHECK(bus->counters().sent == 1);
 }
 
-TEST_CASE("an interface that was down and up again before we looked is told both") {
+TEST_CASE("an interface that was down and up again before we looked is reported twice") {
   const Vcan vcan("vcan7");
   const auto bus = open("vcan7");
   shell("ip link set vcan7 down");

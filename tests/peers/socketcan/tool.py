@@ -128,7 +128,7 @@ def compare_answers(frames, zero):
     power = [frame.time - zero for frame in frames if frame.id == '61E']
     equal([round(when) for when in power], [10, 32], 'power: once, twice')
     unknown = {frame.id for frame in frames if int(frame.id, 16) & 0x400} - known
-    expect(not unknown, f'frames that nobody asked for: {unknown}')
+    expect(not unknown, f'frames without a request: {unknown}')
 
 
 def compare_physics(frames, zero):
@@ -222,7 +222,7 @@ def _(context):
     equal(len(times.pop('609', [])), 1, 'accelerometer, once')
     # 0x1B.. are the boards' status identifiers: answers to refused requests may come there.
     times = {number: stamps for number, stamps in times.items() if not 0x1B <= int(number, 16) & 0xFF <= 0x1D}
-    equal(times, {}, 'frames that nobody asked for')
+    equal(times, {}, 'frames without a request')
 
 
 @check('what the thesis printed is decoded to physical values')
@@ -325,7 +325,7 @@ def _(context):
         cansend('608#000000000002', interface='vcan1')
         eventually(lambda: '#000000000002' in listen.stdout, 'the frame after')
         expect(listen.stop() in (0, 130), f'exit code: {listen.stderr}')
-        equal(len(re.findall(r'vcan1.*down', listen.stderr)), 1, f'how often it was told: {listen.stderr}')
+        equal(len(re.findall(r'vcan1.*down', listen.stderr)), 1, f'how often it was reported: {listen.stderr}')
 
 
 @check('a drive goes on when the interface comes back, and fails in words when it does not')
@@ -362,7 +362,7 @@ def _(context):
                 matches(process.stderr, "'vcan1' is gone")
 
 
-@check('a full queue is told, and what was taken is sent')
+@check('a full queue is reported, and what was taken is sent')
 def _(context):
     frames = 2000
     script = ''.join(f'0s send 205#{i:016X}\n' for i in range(frames))
@@ -397,7 +397,7 @@ def _(context):
         matches(drive.stderr, 'is bus-off', 'THE ROBOT MAY STILL MOVE')
 
 
-@check('error frames are told in words and counted')
+@check('error frames are put into words and counted')
 def _(context):
     for strict, code in (([], 0), (['--strict'], 1)):
         with Process(context.amiroctl, '--bus', 'vcan0', 'listen', '--pretty', '-n', '2', '--timeout', '20s', *strict,
@@ -407,7 +407,7 @@ def _(context):
             matches(listen.stdout + listen.stderr, 'bus-off', 'error passive', '2 error frames')
 
 
-@check('error frames of an adapter are told in words')
+@check('error frames of an adapter are put into words')
 def _(context):
     with Adapter() as adapter:
         with Process(context.amiroctl, '--bus', adapter.name, 'listen', '--json', '-n', '3', '--timeout', '10s',

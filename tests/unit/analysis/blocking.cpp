@@ -39,7 +39,7 @@ constexpr std::array both{Section{0, 1, 1}, Section{0, 2, 1}, Section{2, 1, 8}, 
 static_assert(blocked(both, inherit) == Times{17, 17, 9, 0});
 static_assert(blocked(both, ceil) == Times{9, 9, 9, 0});
 
-// A resource of less urgent ones alone holds up nobody above them; peers are no less urgent.
+// A resource of less urgent ones alone holds up no task above them; peers are no less urgent.
 static_assert(blocked(std::array{Section{2, 1, 8}, Section{3, 1, 9}}, inherit) == Times{0, 0, 9, 0});
 constexpr auto peers = with_blocking(std::array{Task{9, 99}, Task{9, 99}},
                                      std::array{Section{0, 1, 5}, Section{1, 1, 6}}, inherit);
@@ -50,7 +50,7 @@ static_assert(peers[0].blocking == 0 && peers[1].blocking == 0);
 constexpr std::array nested{Section{0, 1, 5}, Section{3, 1, 20}, Section{3, 2, 10, 1}, Section{2, 2, 30}};
 static_assert(blocked(nested, inherit) == Times{50, 50, 20, 0});
 static_assert(blocked(nested, ceil) == Times{20, 20, 20, 0});
-// A row that holds up nobody may have one inside that does, for its own length.
+// A row that holds up no task may have one inside that does, for its own length.
 constexpr std::array inner{Section{0, 2, 5}, Section{3, 1, 20}, Section{3, 2, 10, 1}};
 static_assert(blocked(inner, inherit) == Times{10, 10, 10, 0} &&
               blocked(inner, ceil) == Times{10, 10, 10, 0});
@@ -66,7 +66,7 @@ static_assert([] {
          tasks[1].switches == 2 && blocking_of(tasks, both, scratch, inherit, 3).sections == 0;
 }());
 constexpr auto set = with_blocking(four, both, ceil);
-static_assert(set[0].switches == 2 && set[0].blocked_by == 3);  // under a ceiling nobody waits in the middle
+static_assert(set[0].switches == 2 && set[0].blocked_by == 3);  // under a ceiling no task waits in the middle
 static_assert(response_time(set, 0).response == 59 && response_time(set, 0).blocked_by == 3);
 
 // What is wrong with a table.

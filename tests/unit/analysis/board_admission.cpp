@@ -23,7 +23,7 @@ using namespace ocm::analysis;
 using namespace std::chrono_literals;
 using scheduling::Level;
 
-/// A processor that everybody notices.
+/// A processor that is slow enough to matter.
 struct Slow {
   template <class Topic>
   static constexpr std::uint32_t sample_us = 300;
@@ -78,7 +78,7 @@ TEST_CASE("A refused request changes nothing, and an ended stream makes room") {
   CHECK(admission.admit(gyroscope, 600us, Level::medium) == base::Error::none);
 }
 
-TEST_CASE("The processor counts: reading, the board's own tasks, a bus of parts that somebody holds") {
+TEST_CASE("The processor counts: reading, the board's own tasks, a bus of parts that is held") {
   Admission<amiro::DiWheelDrive, Slow> admission;
   // 50 + 300 + 120 to read at urgent, 270 + 218 or so to send: each within the period, both within the 1250
   // us after which the part has something new.

@@ -49,7 +49,7 @@ static_assert(respond(example, std::array{fifo, by_priority})[0].interference ==
 static_assert(respond(example, std::array{fifo, by_priority})[2].response == 40);
 // b now meets an a that can come 30 late: still once.
 static_assert(respond(example, std::array{fifo, by_priority})[1].response == 30);
-// One mailbox is a queue of one frame that nobody takes back; with two, c alone cannot fill them.
+// One mailbox is a queue of one frame that is not taken back; with two, c alone cannot fill them.
 static_assert(respond(example, std::array{NodeQueue{Kind::mailboxes, 1}, by_priority})[0].response == 40);
 static_assert(respond(example, std::array{NodeQueue{Kind::mailboxes, 2}, by_priority})[0].response == 20);
 static_assert(respond(example, std::array{NodeQueue{Kind::mailboxes, 2}, by_priority})[3] ==

@@ -169,7 +169,7 @@ TEST_CASE("the sweep over levels says what the formulas say of each message and 
   CHECK(falls > 100);
 }
 
-TEST_CASE("who delays a message most is told of its worst instance, the most urgent of equals") {
+TEST_CASE("who delays a message most is named for its worst instance, the most urgent of equals") {
   std::mt19937 random{2011};
   CanResponse<12> analysis;
   int in_between = 0;
@@ -257,7 +257,7 @@ TEST_CASE("CAN: huge and tiny numbers end with a reason") {
   CHECK_FALSE(jitter[1].bounded());
   CHECK(can_response_times(std::array<Message, 2>{{{.cost = 1, .period = 1}, {.cost = 1, .period = 1}}})[1]
             .reason == Reason::overloaded);
-  // 1 - U is 2 parts in 10^12: the busy period has no end that anybody would wait for.
+  // 1 - U is 2 parts in 10^12: the busy period has no end worth waiting for.
   const std::array<Message, 3> close{{{.cost = 499'999'999'999, .period = 1'000'000'000'000},
                                       {.cost = 499'999'999'999, .period = 1'000'000'000'000},
                                       {.cost = 1'000'000, .period = 1'000'000'000'000'000'000}}};
@@ -265,7 +265,7 @@ TEST_CASE("CAN: huge and tiny numbers end with a reason") {
   CHECK(analysis.analyse(close, {}, CanTest::exact, {.terms = 1'000})[2].reason == Reason::too_long);
 }
 
-TEST_CASE("2048 messages, one of them overloading the bus: all below it are told so") {
+TEST_CASE("2048 messages, one of them overloading the bus: all below it are found overloaded") {
   std::vector<Message> set(2048, Message{.cost = 130, .period = 300'000});
   const auto analysis = std::make_unique<CanResponse<2048>>();
   CHECK(analysis->analyse(set, {})[2047].response == 2048 * 130);

@@ -142,7 +142,7 @@ TEST_CASE("CAN: simulated with faults never exceeds predicted with E(t); mutants
       const std::int64_t busy = static_cast<std::int64_t>(result.instances) * set.messages[m].period;
       const auto [simulated, hits] = worst_run(set, m, model, std::min<std::int64_t>(busy + 1, 50'000));
       REQUIRE(simulated <= result.response);
-      // Flags of 12 and a delimiter of 8: C has the intermission, and nobody is error passive here.
+      // Flags of 12 and a delimiter of 8: C has the intermission, and no node is error passive here.
       const std::int64_t at_20 = test::by_the_paper(set.messages, m, {.errors = model, .error_frame = 20});
       REQUIRE(simulated <= at_20);
 

@@ -133,7 +133,7 @@ TEST_CASE("no chain that is played takes longer than was said, and the bound is 
 }
 
 TEST_CASE("frames of a chain delay each other on one bus, with the jitter that each has inherited") {
-  // A command frame, a sensor frame and one of somebody else; the sensor's task varies by 200.
+  // A command frame, a sensor frame and one of another node; the sensor's task varies by 200.
   std::array<Message, 3> bus{
       {{.cost = 130, .period = 1'000}, {.cost = 130, .period = 1'000}, {.cost = 130, .period = 5'000}}};
   CanResponse<3> analysis;

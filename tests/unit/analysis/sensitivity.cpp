@@ -39,7 +39,7 @@ static_assert(critical_scale(in_order(std::array{Task{10, 40}, Task{20, 80}})).v
 static_assert(critical_scale(in_order(std::array{Task{10, 40, 40, 40}})) == Edge{false, 0, 0});
 static_assert(critical_scale(in_order(std::array{Task{1, longest_looked_for * 4}})).missing == nobody);
 
-TEST_CASE("one tick beyond an edge somebody misses") {
+TEST_CASE("one tick beyond an edge a task misses") {
   ocm::test::Random random{6};
   int edges = 0;
   for (int i = 0; i < 500; ++i) {

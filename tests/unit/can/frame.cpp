@@ -95,7 +95,7 @@ TEST_CASE("keys order frames as the wire does") {
     const auto key_b = arbitration_key(b);
     INFO(arbitration_field(a) << " against " << arbitration_field(b));
     REQUIRE((key_a < key_b ? -1 : key_a > key_b) == wire);
-    // Nobody drops out only where both are the same to the last bit.
+    // No node drops out only where both are the same to the last bit.
     if (wire == 0) {
       REQUIRE(arbitration_field(a) == arbitration_field(b));
       ++ties;

@@ -121,7 +121,7 @@ TEST_CASE("slcan adapter: only the bit rates that its bus has") {
   CHECK(tell(adapter, bus, "V\rN\r") == "V2143\rNRING\r");
 }
 
-TEST_CASE("slcan adapter: a full bus is told, and the flags stay until they were asked for") {
+TEST_CASE("slcan adapter: a full bus is reported, and the flags stay until they were asked for") {
   Adapter adapter;
   Mailboxes bus;
   bus.room = 1;

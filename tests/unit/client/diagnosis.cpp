@@ -65,7 +65,7 @@ TEST_CASE("diagnosis: a healthy robot has no findings") {
   CHECK(robot.diagnosis.battery().state_of_charge == 90);
 }
 
-TEST_CASE("diagnosis: nobody answers") {
+TEST_CASE("diagnosis: no board answers") {
   CHECK(Patient{}.findings() == Lines{"problem : no board answers"});
 }
 

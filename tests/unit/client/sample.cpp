@@ -72,7 +72,7 @@ TEST_CASE("a lost frame makes one incomplete sample") {
   }
 }
 
-TEST_CASE("whoever joins in the middle of a sample has lost nothing") {
+TEST_CASE("a listener that joins in the middle of a sample has lost nothing") {
   Receiver receiver{amiro::catalogue};
   static_cast<void>(take(receiver, "607#01000000"));
   for (const char* text : {"605#01000000", "606#01000000", "607#01000000"})

@@ -75,7 +75,7 @@ TEST_CASE("fleet: packed updates are updates") {
   CHECK(*fleet.robot(3).update == Update{10, -20, 90, 4, 0, 30, 0, 0});
 }
 
-TEST_CASE("fleet: idle, until it is told to go; an idle right behind the set point meant the one before") {
+TEST_CASE("fleet: idle, until it is sent; an idle right behind the set point meant the one before") {
   Fleet fleet;
   const std::string at_start = "[0]:AVR:{U,0,0,0,0,0,0,0,0}\n";
   fleet.feed("[0]:AVR:{S,IDL}\n", second);
@@ -152,7 +152,7 @@ TEST_CASE("fleet: what was not heard is said again; a stop before all else, unti
   CHECK(said(second + 9s).empty());
 }
 
-TEST_CASE("fleet: paused as it was told, unless updates go on") {
+TEST_CASE("fleet: paused as requested, unless updates go on") {
   Fleet fleet;
   fleet.feed("[0]:AVR:{U,0,0,0,0,0,0,0,0}\n", second);
   REQUIRE(fleet.pause(0, second));

@@ -103,7 +103,7 @@ TEST_CASE("grid: a line is without gaps, ends where it should, and stays beside 
   }
 }
 
-TEST_CASE("grid: visits end when they are told to") {
+TEST_CASE("grid: visits end on request") {
   int n = 0;
   for_each_cell(Raster{1.0F}, {0.5F, 0.5F}, {9.5F, 0.5F}, [&](Cell) { return ++n < 3; });
   CHECK(n == 3);

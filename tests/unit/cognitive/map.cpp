@@ -156,7 +156,7 @@ TEST_CASE("map: poses that are no place are refused and counted") {
   // At the border of the world: what lies beyond it is not stored.
   CHECK(map.take({{1000.0F, 1000.0F, 0.0F}, {}}, {0, 0, 0, 0, 50, 50, 50, 50}));
   CHECK(map.counters().outside > 0);
-  // Others that are nowhere are nobody.
+  // Others without a place are ignored.
   const std::array others{Body{{nan, nan, nan}, {}}};
   CHECK(map.take({{0, 0, 0}, {}}, {0, 0, 0, 0, 50, 0, 0, 0}, others));
 }

@@ -142,7 +142,7 @@ TEST_CASE("mapping: what is seen while the robot turns is not drawn") {
   CHECK(expedition.mapping.counters().drawn == 3);
 }
 
-TEST_CASE("mapping: nobody there is not done, and neither is a robot that was not asked") {
+TEST_CASE("mapping: without robots it is not done, and neither is a robot that was not asked") {
   Fleet fleet;
   Mapping mapping{fleet};
   mapping.step(Time{1s});
@@ -192,7 +192,7 @@ TEST_CASE("mapping: who is called back does not finish its piece first") {
   CHECK_FALSE(expedition.fleet.take());  // once
 }
 
-TEST_CASE("mapping: a robot that is lost keeps nobody waiting, and goes on when it is back") {
+TEST_CASE("mapping: a robot that is lost keeps no other waiting, and goes on when it is back") {
   Expedition expedition{labyrinth(), {PerfectRobot{{0.4F, 0.4F, 0.0F}}, PerfectRobot{{2.0F, 1.4F, 3.0F}}}};
   for (int i = 0; i < 50; ++i) expedition.step();
   expedition.fleet.unlinked(1);

@@ -86,7 +86,7 @@ TEST_CASE("routes: around a wall, by hand") {
   CHECK(wide.reaches({7, 2}));
 }
 
-TEST_CASE("routes: what nobody has seen is no way") {
+TEST_CASE("routes: what was not seen is no way") {
   const Map map = map_of({"#####", "#. .#", "#####"});
   const Terrain terrain{map};
   CHECK_FALSE(Routes(terrain, middle_of(map, {1, 1}), 0.0F).reaches({3, 1}));

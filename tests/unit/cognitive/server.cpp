@@ -88,7 +88,7 @@ TEST_CASE("server: commands between the packets of robots tear no sentence") {
   CHECK(bench.central.robots[0].heard.size() == 51);  // with the answer to the handshake
 }
 
-TEST_CASE("server: a link that dies is told, and what is said into it fails in words") {
+TEST_CASE("server: a link that dies is reported, and what is said into it fails in words") {
   Bench bench;
   bench.central.add("AVR");
   bench.connect_all();

@@ -38,7 +38,7 @@ TEST_CASE("only a directory that is ours and closed to others is trusted") {
   }
   const std::string link = parent.path() + "/link";
   REQUIRE(::symlink(directory.c_str(), link.c_str()) == 0);
-  CHECK_THAT(host::check_private(link)->what, Catch::Contains("no directory"));
+  CHECK_THAT(host::check_private(link)->what, Catch::Contains("is not a directory"));
   if (::geteuid() == 0) {  // only root can give a directory away
     REQUIRE(::chmod(directory.c_str(), 0700) == 0);
     REQUIRE(::chown(directory.c_str(), 65534, 65534) == 0);

@@ -14,7 +14,7 @@ using log::testing::Zone;
 
 constexpr std::int64_t start = 1'700'000'000'123'000'000;
 
-/// In place of zlib: data that is told to repeat its first byte so often, "3x" for "xxx".
+/// In place of zlib: data that is to repeat its first byte so often, "3x" for "xxx".
 std::size_t repeat(std::string_view packed, std::span<char> into) {
   if (packed.size() < 2 || packed[0] < '0' || packed[0] > '9') return 0;
   const std::size_t times = static_cast<std::size_t>(packed[0] - '0');
@@ -143,7 +143,7 @@ TEST_CASE("blf: times of either unit, and heads of either version") {
   CHECK(entry_of(second).time == at(start + 7));
 }
 
-TEST_CASE("blf: a start that nobody knows is 0, one that cannot be is said") {
+TEST_CASE("blf: an unknown start is 0, one that cannot be is said") {
   std::string none = head;
   std::fill_n(none.begin() + 40, 16, '\0');
   const auto log = read_blf(none + container(message));
@@ -191,7 +191,7 @@ TEST_CASE("blf: objects without a container") {
   CHECK(log.complained == 0);
 }
 
-TEST_CASE("blf: frames that cannot be, and wishes to send") {
+TEST_CASE("blf: frames that cannot be, and requests to send") {
   CHECK(cause_of(object(1, 5, "0001 00 02 23010000 1122000000000000")) == Cause::unsupported);  // channel 256
   CHECK(cause_of(object(1, 5, "0100 00 02 00080000 1122000000000000")) == Cause::identifier);
   CHECK(cause_of(object(1, 5, "0100 00 02 000000A0 1122000000000000")) == Cause::identifier);

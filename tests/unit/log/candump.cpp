@@ -281,7 +281,7 @@ TEST_CASE("candump's text counts times that it cannot hold") {
   CHECK_FALSE(nine.lost().any());
 }
 
-TEST_CASE("a log with more interfaces than any has is told of, and takes no more memory") {
+TEST_CASE("a log with more interfaces than any has is reported, and takes no more memory") {
   std::string text;
   for (std::size_t i = 0; i <= log::Interfaces::most; ++i) text += "(1.0) c" + std::to_string(i) + " 123#\n";
   const Log log{text};

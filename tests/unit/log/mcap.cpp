@@ -180,7 +180,7 @@ TEST_CASE("mcap: what was recorded is believed of channels of frames only") {
   CHECK(log.recorded[0].dropped == 12);
 }
 
-TEST_CASE("mcap: a wrong checksum is told of, and the chunk is read") {
+TEST_CASE("mcap: a wrong checksum is reported, and the chunk is read") {
   CHECK(cause_of(head + said + chunk(frame, "", crc32(frame) ^ 1) + tail, 1) == Cause::checksum);
 }
 
@@ -191,7 +191,7 @@ TEST_CASE("mcap: messages that are no frames") {
     };
     CHECK(cause_of(with(message("{}")), 1) == Cause::identifier);
     CHECK(cause_of(with(message("x")), 1) == Cause::syntax);
-    CHECK(cause_of(with(message(frame, 8)), 1) == Cause::syntax);  // of a channel that nobody described
+    CHECK(cause_of(with(message(frame, 8)), 1) == Cause::syntax);  // of a channel without a description
     CHECK(cause_of(with(message(frame, 0xFFFF)), 1) == Cause::syntax);
     CHECK(cause_of(with(record(5, "x")), 1) == Cause::length);
     CHECK(cause_of(with(record(5, bytes("0900 00000000 FFFFFFFFFFFFFFFF 0000000000000000") + "{}")), 1) ==
@@ -205,7 +205,7 @@ TEST_CASE("mcap: messages that are no frames") {
   CHECK(cause_of(head + said + record(6, std::string(39, '\0')) + frame + tail, 1) == Cause::syntax);
 }
 
-TEST_CASE("mcap: other people's channels are passed over, and told of if there are no others") {
+TEST_CASE("mcap: other people's channels are skipped, and reported if there are no others") {
   const std::string theirs =
       record(3, bytes("0100") + string("std_msgs/String") + string("ros1msg") + string("")) +
       record(4, bytes("0100 0100") + string("/chatter") + string("ros1") + string(""));

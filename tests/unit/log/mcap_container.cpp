@@ -130,7 +130,7 @@ TEST_CASE("mcap_container: every index leads to its message, and all are counted
   mcap::Container container;
   std::string file;
   Bytes out;
-  const auto empty = [&] {  // as whoever owns the file does
+  const auto empty = [&] {  // as the file's owner does
     file += out.view();
     out.clear();
   };

@@ -103,7 +103,7 @@ TEST_CASE("pcap: a capture of all devices") {
   CHECK(log.entries.at(0).direction == Direction::sent);
 }
 
-TEST_CASE("pcap: what cannot be a frame is told of, and the rest read") {
+TEST_CASE("pcap: what cannot be a frame is reported, and the rest read") {
   const std::string bad_time = bytes("01000000 40420F00 10000000 10000000") + frame;  // 1'000'000 us
   const std::string cut = bytes("01000000 02000000 09000000 10000000") + frame.substr(0, 9);
   const auto log = read_all<PcapReader>(little_us + bad_time + cut + little_record);

@@ -68,7 +68,7 @@ TEST_CASE("statistics: faults by topic") {
   log.put(0ms, "608#00");        // wrong length
   log.put(1ms, "208#03");        // no such mode
   log.put(2ms, "605#01000000");  // magnetometer x, y, z
-  log.put(3ms, "655#01000000");  // nobody's
+  log.put(3ms, "655#01000000");  // of no topic
   log.put(4ms, "1F334455#01");   // nor is this
   log.put(5ms, "655#");          // the same stranger
   log.put(6ms, "608#R");         // a remote frame

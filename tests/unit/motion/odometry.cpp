@@ -40,7 +40,7 @@ static_assert(count(from(0, 0), 0x8000'0000, 0, 10, drive).counts.rejected == 1)
 
 constexpr std::uint32_t directed() {
   DirectedTicks ticks;
-  ticks.pulses(7);  // nobody knows where to
+  ticks.pulses(7);  // direction not known
   ticks.command(DirectedTicks::Direction::forward);
   ticks.pulses(5);
   ticks.command(DirectedTicks::Direction::unknown);  // a stop: the wheel rolls on

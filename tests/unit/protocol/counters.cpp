@@ -12,7 +12,7 @@ namespace protocol_counters_test {
 using ocm::base::Error;
 using ocm::protocol::Counters;
 
-TEST_CASE("every counter is told, once and by its own name") {
+TEST_CASE("every counter is reported, once and by its own name") {
   // The counters are nothing but 32-bit numbers: number them, and see whether all come out in order.
   Counters counters;
   constexpr std::size_t count = sizeof(Counters) / sizeof(std::uint32_t);

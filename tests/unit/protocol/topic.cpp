@@ -122,7 +122,7 @@ struct ForgetsToDecode {
   [[nodiscard]] ocm::can::Payload encode(std::size_t) const { return {}; }
 };
 
-TEST_CASE("a frame is as long as its spec was told, by priority; the closed bound where nobody looked") {
+TEST_CASE("a frame is as long as its spec says, by priority; the closed bound where none was computed") {
   using ocm::protocol::Priority;
   using ocm::protocol::worst_bits;
   constexpr ocm::protocol::FrameHead told{TopicId{0x10}, 4, {91, 90, 89, 88}};

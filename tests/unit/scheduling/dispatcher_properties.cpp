@@ -365,7 +365,7 @@ TEST_CASE("never two starts in one period, none after a stop, and each on the gr
   CHECK(starts > 2'000U * effort);
 }
 
-constexpr base::Duration section = 700us;  // the longest that anybody has the resource
+constexpr base::Duration section = 700us;  // the longest that any job has the resource
 
 /// Streams 0..3 at levels urgent..low, all punctual when `load` is zero; `load` more for the job of `which`.
 struct Loaded {

@@ -37,7 +37,7 @@ TEST_CASE("mailbox: what was put last is taken once", "[mailbox]") {
   CHECK(box.lost() == 0);
 }
 
-TEST_CASE("mailbox: a newer one takes the place of what nobody took, which is counted", "[mailbox]") {
+TEST_CASE("mailbox: a newer one replaces what was not taken, which is counted", "[mailbox]") {
   Port port;
   Mailbox<int, Port> box{port};
   for (int i = 1; i <= 5; ++i) box.put(i);

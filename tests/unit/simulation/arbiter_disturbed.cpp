@@ -110,7 +110,7 @@ TEST_CASE("what was broken arbitrates again: with what came meanwhile, in its ol
   }
 }
 
-TEST_CASE("on an idle bus a disturbance is a start of frame that nobody goes on with") {
+TEST_CASE("on an idle bus a disturbance is a start of frame that no node continues") {
   // Dominant at 50, recessive at 51 to 56: a stuff error, flags from 57.
   Arbiter bus;
   const NodeId node = bus.attach();
@@ -137,7 +137,7 @@ TEST_CASE("at the boundary at which a frame starts it is the frame that is distu
   CHECK(bus.counters(node).broken == 1);
 }
 
-TEST_CASE("in the first two bits of the intermission: an overload frame, which is nobody's error") {
+TEST_CASE("in the first two bits of the intermission: an overload frame, which counts as no error") {
   for (const std::uint64_t place : {0U, 1U}) {
     Arbiter bus;
     const NodeId node = bus.attach();
@@ -192,12 +192,12 @@ TEST_CASE("in an error frame: another one") {
   CHECK(bus.faults(node).transmit_errors() == 4 * 8 - 1);
 }
 
-TEST_CASE("every error frame is told of as its disturbed bit is over: whose frame it was, or nobody's") {
+TEST_CASE("every error frame is reported as its disturbed bit is over: whose frame it was, or no node's") {
   Arbiter bus;
   const NodeId node = bus.attach();
   CHECK(*bus.send(node, plain, at(0)));
   bus.disturb({10});               // the node's
-  bus.disturb({11});               // in the error frame: nobody's
+  bus.disturb({11});               // in the error frame: no node's
   bus.disturb({29 + plain_bits});  // overload: not told
   bus.disturb({400});              // on an idle bus
   std::vector<simulation::BusError> errors;

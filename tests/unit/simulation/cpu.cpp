@@ -83,7 +83,7 @@ TEST_CASE("an urgent job preempts, and the preempted one goes on where it was") 
   CHECK(setup.cpu.misuses() == 0);
 }
 
-TEST_CASE("an interrupt of its own cost takes that from whoever runs, and then has its effect") {
+TEST_CASE("an interrupt of its own cost takes that from the running job, and then has its effect") {
   Setup setup{{0us, 1us, ResourceProtocol::inheritance}};
   setup.programs = {{0, {compute(10ms)}}};
   setup.once(0, Level::urgent, 0ms);

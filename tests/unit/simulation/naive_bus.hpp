@@ -1,4 +1,4 @@
-/// A CAN bus that goes bit by bit, to judge the arbiter where the wire is disturbed: each bit somebody sends,
+/// A CAN bus that goes bit by bit, to judge the arbiter where the wire is disturbed: each bit that is sent,
 /// tells of an error, or is silent. It is slow, holds no arbitration ahead of time and skips nothing. Tests
 /// only.
 #pragma once

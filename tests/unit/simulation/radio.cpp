@@ -133,7 +133,7 @@ TEST_CASE("the share of lost packets over the distance") {
 TEST_CASE("found, connected, packets, dropped: each at its millisecond") {
   Air air;
   air.radio.advertise(0, true, at(0ms));  // at 100, 200, ...
-  CHECK(air.run(150ms) == "");            // nobody scans
+  CHECK(air.run(150ms) == "");            // without a scan
   air.radio.start_scan(at(150ms));
   CHECK(air.run(199ms) == "");
   CHECK(air.run(310ms) == "200 found 0;300 found 0;");
@@ -388,7 +388,7 @@ TEST_CASE("links that come and go: order within a link, nothing of one in the ne
         const auto central_before = air.central_linked;
         air.run(now);
         for (std::size_t i = 0; i < robots; ++i) {
-          // Whoever owns a queue drops it with its link: so do these. Numbers of the next link are higher.
+          // The owner of a queue drops it with its link: so do these. Numbers of the next link are higher.
           if (!air.dongle_linked[i]) air.to_central[i].clear();
           if (!air.central_linked[i]) air.to_robot[i].clear();
           for (auto& k = seen_robot[i]; k < air.got_robot[i].size(); ++k) {
@@ -629,7 +629,7 @@ TEST_CASE("random lives of three robots are as a plain model has them") {
           naive.robots[i].to_central.push_back(number++);
       }
     }
-    // Of a millisecond the order across robots is nobody's business.
+    // Of a millisecond the order across robots does not matter.
     const auto add = [&events](std::int64_t time, const std::string& what, std::size_t robot) {
       events.push_back(std::to_string(time) + " " + what + " " + std::to_string(robot));
     };

@@ -42,7 +42,7 @@ TEST_CASE("options and places that cannot be served") {
                Catch::Contains(std::to_string(bit_rate) + " bit/s"));
   CHECK(std::filesystem::is_empty(directory.path()));
 
-  // Somebody else starts a server there, and does not come to an end.
+  // Another program starts a server there, and does not come to an end.
   const host::Descriptor lock{::open(directory.path().c_str(), O_RDONLY | O_DIRECTORY)};
   REQUIRE(::flock(lock.get(), LOCK_EX) == 0);
   CHECK_THAT(VirtualBusServer::open({.path = directory.path() + "/s", .patience = 20ms}).error.what,
@@ -52,7 +52,7 @@ TEST_CASE("options and places that cannot be served") {
 }
 
 TEST_CASE("programs of another user are turned away, on both sides") {
-  if (::geteuid() != 0) return;  // it takes root to become somebody else
+  if (::geteuid() != 0) return;  // it takes root to become another user
   VirtualBusSetup setup;
   REQUIRE(::chmod(setup.directory.path().c_str(), 0755) == 0);
   constexpr uid_t nobody = 65534;
@@ -77,7 +77,7 @@ TEST_CASE("programs of another user are turned away, on both sides") {
   CHECK(setup.server->clients() == 0);
 }
 
-TEST_CASE("a client of another version is told which one is spoken here") {
+TEST_CASE("a client of another version learns which one is spoken here") {
   VirtualBusSetup setup;
   RawClient client{setup.path()};
   client.say(vb::Hello{.version = 7});
@@ -90,7 +90,7 @@ TEST_CASE("a client of another version is told which one is spoken here") {
   CHECK(setup.server->counters().welcomed == 0);
 }
 
-TEST_CASE("garbage disconnects who sends it, and nobody else") {
+TEST_CASE("garbage disconnects its sender, and no other client") {
   VirtualBusSetup setup;
   const auto good = setup.join();
   const auto dismiss = [&](auto&& talk) {
@@ -164,7 +164,7 @@ TEST_CASE("who sends more than it has credit for is disconnected") {
   CHECK(setup.server->counters().withdrawn == 4);
 }
 
-TEST_CASE("a client that dies loses what waits, not what is on the bus, and harms nobody") {
+TEST_CASE("a client that dies loses what waits, not what is on the bus, and harms no other") {
   VirtualBusSetup setup;
   const auto listener = setup.join();
   RawClient client{setup.path()};
@@ -209,7 +209,7 @@ TEST_CASE("a client may ask for nothing but whether a server runs") {
   CHECK(setup.reports.empty());
 }
 
-TEST_CASE("a slow client is told how much it missed, and stalls nobody") {
+TEST_CASE("a slow client learns how much it missed, and stalls no other") {
   VirtualBusSetup setup{{.output_queue = 8}};
   const auto slow = setup.join();
   const auto fast = setup.join();
@@ -257,7 +257,7 @@ TEST_CASE("a client that never reads can go on sending while it has credit, and 
   CHECK(received(*deaf).size() + deaf->counters().lost == 2000);
 }
 
-TEST_CASE("no file descriptor left: the client is told, counted, and the next one gets in") {
+TEST_CASE("no file descriptor left: the client gets the reason, is counted, and the next one gets in") {
   VirtualBusSetup setup{{.raise_descriptor_limit = false}};
   const auto good = setup.join();
   RawClient unlucky{setup.path()};
@@ -362,7 +362,7 @@ TEST_CASE("time stamps are those of the bus, in the owner's Unix time") {
   CHECK(one->time.time_since_epoch() == 1'700'000'000s + (1 + can::frame_bits(frame("605#00D20000"))) * 2us);
 }
 
-TEST_CASE("an error on the bus: each client is told in its own way, and the frame comes all the same") {
+TEST_CASE("an error on the bus: each client gets a report, and the frame comes nevertheless") {
   VirtualBusSetup setup;
   const auto sender = setup.join();
   const auto listener = setup.join();
@@ -509,7 +509,7 @@ TEST_CASE("whatever clients send, the others go on") {
 TEST_CASE("the default directory is made for the user alone, and the socket too") {
   const TemporaryDirectory runtime;
   const Environment set{"XDG_RUNTIME_DIR", runtime.path().c_str()};
-  const mode_t mask = ::umask(0);  // even when the user lets everybody in elsewhere
+  const mode_t mask = ::umask(0);  // even when the user's umask is open elsewhere
   const auto server = simulation::VirtualBusServer::open();
   ::umask(mask);
   INFO(server.error.what);

@@ -40,7 +40,7 @@ TEST_CASE("the socket of a dead server is replaced, and nothing else is") {
   CHECK(std::filesystem::file_size(path) == 8);
   std::filesystem::remove(path);
 
-  // A socket of another kind, on which somebody listens.
+  // A socket of another kind, on which a program listens.
   const auto address = vb::to_address(path);
   const host::Descriptor stream{::socket(AF_UNIX, SOCK_STREAM, 0)};
   REQUIRE(::bind(stream.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) == 0);

@@ -26,11 +26,11 @@ TEST_CASE("slcan address: device, bit rate, speed of the line") {
   };
   CHECK_THAT(refused(""), Contains("names no device"));
   CHECK_THAT(refused("@500k"), Contains("names no device"));
-  CHECK_THAT(refused("/dev/x@"), Contains("no bit rate"));
+  CHECK_THAT(refused("/dev/x@"), Contains("is not a bit rate"));
   CHECK_THAT(refused("/dev/x@fast"), Contains("'fast'") && Contains("slcan:/dev/ttyACM0@500k"));
-  CHECK_THAT(refused("/dev/x@99999999999k"), Contains("no bit rate"));
+  CHECK_THAT(refused("/dev/x@99999999999k"), Contains("is not a bit rate"));
   CHECK_THAT(refused("/dev/x@83333"), Contains("nearest is 100k") && Contains("10k, 20k, 50k, 100k, 125k"));
-  CHECK_THAT(refused("/dev/x@500k,"), Contains("no speed"));
+  CHECK_THAT(refused("/dev/x@500k,"), Contains("is not a speed"));
   CHECK_THAT(refused("/dev/x@500k,110000"), Contains("nearest is 115200"));
 }
 

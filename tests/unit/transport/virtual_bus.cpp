@@ -65,7 +65,7 @@ TEST_CASE("nobody serves a bus: the message says how to get one") {
   CHECK(none.error.cause == host::Cause::simulator_missing);
   CHECK(none.error.remedy == "start one");
   CHECK_THAT(VirtualBus::open("/tmp/" + std::string(200, 'x')).error.what, Catch::Contains("205 bytes"));
-  // A socket that nobody listens on any more.
+  // A socket that no program listens on any more.
   {
     const host::Descriptor dead{::socket(AF_UNIX, SOCK_SEQPACKET, 0)};
     const auto address = vb::to_address(path);

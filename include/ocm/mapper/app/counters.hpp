@@ -40,7 +40,7 @@ struct Counters {
   std::uint32_t collisions = 0;        ///< stops in front of something
   std::uint32_t commands_lost = 0;     ///< to the motors, replaced by a newer one
   std::uint32_t commands_stale = 0;    ///< to the motors, given before they were switched off
-  std::uint32_t motors_starved = 0;    ///< switched off since nobody said anything
+  std::uint32_t motors_starved = 0;    ///< switched off since no command came
   std::uint32_t control_skipped = 0;   ///< estimates that no control step followed
   std::uint32_t control_rejected = 0;  ///< control steps without a finite pose or time
   std::uint32_t returns = 0;           ///< begun

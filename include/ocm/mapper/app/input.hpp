@@ -29,14 +29,14 @@ requires(N > 0) class Input {
     --size_;
     return byte;
   }
-  /// They came from somebody who is gone.
+  /// They came over a link that is gone.
   constexpr void drop() noexcept {
     dropped_ += static_cast<std::uint32_t>(size_);
     size_ = 0;
   }
 
   [[nodiscard]] constexpr std::size_t size() const noexcept { return size_; }
-  /// So much has come that somebody should look, whatever it is.
+  /// So much has come that it should be read, whatever it is.
   [[nodiscard]] constexpr bool filling() const noexcept { return size_ * 2 >= N; }
   /// Bytes that found no room. It wraps, like the next.
   [[nodiscard]] constexpr std::uint32_t lost() const noexcept { return lost_; }

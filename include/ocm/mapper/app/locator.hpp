@@ -44,7 +44,7 @@ class Locator {
     compass_failed_ += readings.field ? 0U : 1U;
     const bool rolls = readings.ticks != ticks_;
     ticks_ = readings.ticks;
-    // A robot that was told to stand rolls out, and goes on turning while it does.
+    // A robot that was stopped rolls out, and goes on turning while it does.
     if (activity.movement != motion::Movement::standing || !rolls) movement_ = activity.movement;
 
     if (activity.at_rest)
@@ -68,10 +68,10 @@ class Locator {
     } else {
       zero_rad_ = motion::wrap(zero_rad_ - estimate_.pose.heading_rad);
     }
-    motion::Estimate anew;
-    anew.wheels = estimate_.wheels;
-    anew.rejected = estimate_.rejected;
-    estimate_ = anew;
+    motion::Estimate fresh;
+    fresh.wheels = estimate_.wheels;
+    fresh.rejected = estimate_.rejected;
+    estimate_ = fresh;
   }
 
   /// From now on, while the robot turns, the steps find the compass's offset.
@@ -116,7 +116,7 @@ class Locator {
  private:
   static constexpr float no_reading = std::numeric_limits<float>::quiet_NaN();
 
-  /// The heading that the field says. The field stands still, so it turns to the right as the robot turns
+  /// The heading that the field says. The field is fixed, so it turns to the right as the robot turns
   /// left.
   [[nodiscard]] float compass(sensing::Field field) const noexcept {
     return motion::difference(zero_rad_, sensing::field_angle(field, offset_));

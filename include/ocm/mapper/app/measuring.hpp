@@ -1,10 +1,10 @@
 /// What a mapper finds out about itself before it says who it is: the bias of its gyro, and in which
 /// direction it sees the field that its compass shows. At rest; a wheel that moves, or a gyro that shows a
-/// turn, begins it anew. [T2 §6.3: measured while it advertises]
+/// turn, restarts it. [T2 §6.3: measured while it advertises]
 ///
 /// It goes on for as long as the robot stands: each window of samples gives a new result, and takes the place
-/// of the last. A part that does not answer is told after some failures in a row, and asked again for ever.
-/// O(1) a sample, 48 bytes, no heap.
+/// of the last. A part that does not answer is reported after some failures in a row, and asked again for
+/// ever. O(1) a sample, 48 bytes, no heap.
 #pragma once
 
 #include <cstdint>

@@ -27,7 +27,7 @@ struct Periods {
   base::Duration movement = std::chrono::milliseconds{20};
   base::Duration tower = std::chrono::milliseconds{200};
   base::Duration supervision = std::chrono::milliseconds{100};  ///< a part of communication [decided]
-  /// Communication comes no more often than this, however fast lines come: whoever floods the line takes
+  /// Communication comes no more often than this, however fast lines come: a flooded line takes
   /// nothing from the tasks below. [decided]
   base::Duration communication_apart = std::chrono::milliseconds{20};
 };

@@ -1,4 +1,4 @@
-/// From what the pose controller wants to what each motor gets: the mapper's movement task, as a pure
+/// From the pose controller's command to what each motor gets: the mapper's movement task, as a pure
 /// step. [T2 §7.1, §7.1.1, §10.2.3]
 ///
 /// The AVR robot's motors hardly know more than on and off: one effort for both, never below what turns them,
@@ -101,7 +101,7 @@ namespace detail {
 
 }  // namespace detail
 
-/// One step. A command that is not finite stands still, like none.
+/// One step. A command that is not finite is rest, like none.
 [[nodiscard]] constexpr MotorStep move(Motors state, const motion::PoseCommand& command, WheelTicks ticks,
                                        float dt_s, const MotorModel& model) noexcept {
   const bool stands =

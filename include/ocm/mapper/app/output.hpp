@@ -51,7 +51,7 @@ class Output {
     return send(alive, [this, &update](Packets& packets) { return writer_.send(update, packets); });
   }
 
-  /// What the operator wants of the form.
+  /// The form that the operator asked for.
   void hear(link::Kind kind) noexcept {
     [[maybe_unused]] const auto claim = uart_.claim();
     writer_.hear(kind);

@@ -1,4 +1,4 @@
-/// Takes a mapper where it was told, and home: the pose controller of `motion` with the way that it came.
+/// Takes a mapper to its set point, and home: the pose controller of `motion` with the way that it came.
 ///
 /// A set point is driven from where the robot is. On the way home the places that it left are driven to, the
 /// last one first, always forwards, where its sensors look: so a set point of 1 m backwards is undone by
@@ -18,7 +18,7 @@ namespace ocm::mapper::app {
 /// How a step ended.
 enum class PilotEnd : std::uint8_t {
   none,     ///< on the way, or nowhere to go
-  arrived,  ///< at the set point: to be told, once
+  arrived,  ///< at the set point: to be reported, once
   home,     ///< there is no place left to go back to
 };
 
@@ -40,7 +40,7 @@ class Pilot {
   }
   /// Stays here.
   constexpr void stop() noexcept { controller_ = motion::stopped(controller_); }
-  /// Whoever comes now knows nothing of the way that it came.
+  /// The next operator knows nothing of the way that it came.
   constexpr void forget() noexcept { history_.clear(); }
 
   [[nodiscard]] Step go(const motion::Pose& pose, float dt_s) noexcept {

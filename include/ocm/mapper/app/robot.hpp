@@ -19,13 +19,13 @@
 /// | medium | pose controller | by the estimator, at its end |
 /// | low | tower | every 200 ms |
 ///
-/// Between tasks lie one-place queues, which count what nobody took, and two resources under the system's
+/// Between tasks lie one-place queues, which count what was not taken, and two resources under the system's
 /// mutex, which should inherit priorities: the pose, and the UART. All times are measured; a late step is a
 /// longer step. Each cause of a refusal or a loss has a counter.
 ///
 /// When the link dies the motors are off before `link_changed` returns, whatever any task was about to do,
-/// and nothing that was said or ordered over it lives on. Pose and way home do: they begin anew when the next
-/// operator confirms.
+/// and nothing that was said or ordered over it lives on. Pose and way home do: they start again when the
+/// next operator confirms.
 ///
 /// No heap, no exceptions. RAM and flash are in docs/mapper.md. Parts, port and model must outlive it.
 #pragma once
@@ -461,7 +461,7 @@ class Robot {
     idle_wanted_ = step.idle;
     if (!step.drive) return;
     orders_.put_locked({.halt = false, .set_point = set_point});
-    motion_.busy = true;  // from now on nobody says idle until this one has ended
+    motion_.busy = true;  // from now on no task says idle until this one has ended
   }
 
   void supervise(base::Time now) noexcept {

@@ -37,7 +37,7 @@ concept CentralPort = requires(P port, std::string_view text, const Address& add
   port.stop_scan();
   port.connect(address);     ///< `connected` or `closed` follows
   port.disconnect(address);  ///< ends a link, or the attempt; `closed` follows
-  port.restart();            ///< everything of the radio begins anew; no report about before follows
+  port.restart();            ///< everything of the radio restarts; no report about before follows
 };
 
 /// What was not passed on, and why. They wrap.
@@ -94,7 +94,7 @@ class Central {
     const std::size_t i = find(address);
     if (i == Robots || peers_[i].link == Link::none || peers_[i].link == Link::up) {
       ++counters_.stray_reports;
-      if (i == Robots || peers_[i].link == Link::none) port.disconnect(address);  // nobody wants it
+      if (i == Robots || peers_[i].link == Link::none) port.disconnect(address);  // not needed any more
       return;
     }
     if (peers_[i].link == Link::closing) return port.disconnect(address);  // dropped before it was there
@@ -247,7 +247,7 @@ class Central {
     drop(i, port);
   }
 
-  /// Indexes begin anew, but a robot with a link keeps its own.
+  /// Indexes start again, but a robot with a link keeps its own.
   template <class P>
   constexpr void start(P& port) {
     if (scanning_) return refuse(port, "scans already");

@@ -2,8 +2,8 @@
 /// order, taken apart again: prefixes out, a reader of text and one of packed updates a robot, and the
 /// quality of each link.
 ///
-/// No heap, constexpr; O(1) a byte; 216 bytes a robot. What belongs to nobody is counted, and given to
-/// nobody.
+/// No heap, constexpr; O(1) a byte; 216 bytes a robot. What belongs to no robot is counted, and given to
+/// none.
 #pragma once
 
 #include <array>
@@ -89,7 +89,7 @@ class Demultiplexer {
   }
   /// robot < Robots
   [[nodiscard]] constexpr const Ear& ear(std::size_t robot) const noexcept { return ears_[robot]; }
-  /// The robot has connected anew.
+  /// The robot has connected again.
   constexpr void restart(std::size_t robot) noexcept { ears_[robot].restart(); }
   /// Bytes behind a broken prefix, before the first one, or of a robot beyond the last; it wraps.
   [[nodiscard]] constexpr std::uint32_t nobodys() const noexcept { return nobodys_; }

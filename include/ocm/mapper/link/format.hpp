@@ -1,5 +1,5 @@
 /// Text or packed updates: how robot and server agree. A robot that can pack says so in the last field of its
-/// handshake; a server that wants it says `{S,BIN}` before it confirms. Older robots never offer, older
+/// handshake; a server that chooses it says `{S,BIN}` before it confirms. Older robots never offer, older
 /// servers never ask, and both stay with text. Every link begins with text. A server reads both forms at any
 /// time, so that no lost sentence parts the two.
 ///
@@ -22,7 +22,7 @@ namespace ocm::mapper::link {
   return handshake.given >= Handshake::fields.size() && handshake.formats == Handshake::packed_offer;
 }
 
-/// What a server answers to a handshake: `{S,CON}`, and before it `{S,BIN}` where that is wanted and offered.
+/// What a server answers to a handshake: `{S,CON}`, and before it `{S,BIN}` where that is chosen and offered.
 [[nodiscard]] constexpr base::Text<16> answer(const Handshake& handshake, bool want_packed) noexcept {
   base::Text<16> lines;
   if (want_packed && offers_packed(handshake)) lines << write(Kind::packed)->view();

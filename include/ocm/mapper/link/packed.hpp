@@ -139,7 +139,7 @@ class PackedReader {
     if (buffer_.size != 0) ++faults_.torn;
     buffer_.size = 0;
   }
-  /// A new link, on which the robot counts anew: any number may be the first.
+  /// A new link, on which the robot's count restarts: any number may be the first.
   constexpr void restart() noexcept {
     interrupt();
     started_ = false;

@@ -3,7 +3,7 @@
 /// a blank behind the bracket as well. [Thesis 2, listing 15.1]
 ///
 /// No heap, constexpr, O(1) a character. Nothing that looks like the beginning of a prefix is ever passed on:
-/// a broken one is counted, and what follows belongs to nobody until the next.
+/// a broken one is counted, and what follows belongs to no robot until the next.
 #pragma once
 
 #include <cstddef>
@@ -43,7 +43,7 @@ class PrefixFilter {
     text,    ///< the character is of the stream, from `source()`
     prefix,  ///< it is of a prefix
     source,  ///< it completes one: `source()` has changed, or is said again
-    nobody,  ///< it is of the stream, but nobody knows whose
+    nobody,  ///< it is of the stream, but not known whose
   };
 
   /// `known`: until the first prefix the stream is that of source 0, as on a line without a central.

@@ -1,13 +1,13 @@
-/// Speaks a central's commands for whoever has wishes: scan, connect, say this to that robot, drop. Bytes in,
+/// Turns requests into a central's commands: scan, connect, say this to that robot, drop. Bytes in,
 /// bytes out, time handed in; no I/O.
 ///
-/// A wish at a time, in their order. Before a word goes to a robot the central is in data mode with that
+/// A request at a time, in their order. Before a word goes to a robot the central is in data mode with that
 /// robot, and has said so; a command is only given in command mode. What mode a central is in at the
-/// beginning, or after an answer was lost, nobody knows: then `*` and `stop` settle it, for they are harmless
-/// in any state, and what was wished is begun anew. An answer that does not come, or is `error: ...`, ends a
-/// wish with words that say so. Reports of links are taken at any time.
+/// beginning, or after an answer was lost, it is not known: then `*` and `stop` settle it, for they are
+/// harmless in any state, and the request is restarted. An answer that does not come, or is `error: ...`,
+/// ends a request with words that say so. Reports of links are taken at any time.
 ///
-/// O(1) a byte; the queue of wishes is bounded. Host only.
+/// O(1) a byte; the queue of requests is bounded. Host only.
 #pragma once
 
 #include <chrono>
@@ -30,7 +30,7 @@ struct CentralClientOptions {
   base::Duration connect = std::chrono::seconds{10};      ///< and a link to come or go
   base::Duration again = std::chrono::milliseconds{300};  ///< before a busy central is asked again
   unsigned most_attempts = 3;
-  std::size_t most_wishes = 64;
+  std::size_t most_requests = 64;
 };
 
 /// A robot on the central's list.
@@ -42,14 +42,14 @@ struct Peer {
   friend bool operator==(const Peer&, const Peer&) = default;
 };
 
-/// What has become of wishes, and of links.
+/// What has become of requests, and of links.
 struct CentralEvent {
   enum class Kind : std::uint8_t {
     listed,     ///< the list is there: `peers()`
-    connected,  ///< a link is there, wished or not
-    lost,       ///< a link is gone, wished or not
+    connected,  ///< a link is there, requested or not
+    lost,       ///< a link is gone, requested or not
     said,       ///< the words went out; whether they were heard the robot shows
-    failed,     ///< a wish came to nothing; `words` say why
+    failed,     ///< a request failed; `words` say why
   };
   Kind kind = Kind::failed;
   unsigned index = 0;  ///< the robot's; of `listed`: how many there are
@@ -70,17 +70,19 @@ class CentralClient {
   using Options = CentralClientOptions;
   explicit CentralClient(const Options& options = {}) : options_(options) {}
 
-  // --- wishes. False when the queue is full. ---
+  // --- requests. False when the queue is full. ---
 
   /// Looks for robots so long, then lists them. Zero: lists those that are known.
-  bool scan(base::Duration time) { return wish({Wish::Kind::scan, 0, {}, time}); }
+  bool scan(base::Duration time) { return request({Request::Kind::scan, 0, {}, time}); }
   /// A link to a robot of the list; one that is there stays.
-  bool connect(unsigned index) { return wish({Wish::Kind::connect, index, {}, {}}); }
+  bool connect(unsigned index) { return request({Request::Kind::connect, index, {}, {}}); }
   /// Words to a robot with a link.
-  bool say(unsigned index, std::string words) { return wish({Wish::Kind::say, index, std::move(words), {}}); }
-  bool drop(unsigned index) { return wish({Wish::Kind::drop, index, {}, {}}); }
-  /// Command mode, for whoever comes next.
-  bool leave() { return wish({Wish::Kind::leave, 0, {}, {}}); }
+  bool say(unsigned index, std::string words) {
+    return request({Request::Kind::say, index, std::move(words), {}});
+  }
+  bool drop(unsigned index) { return request({Request::Kind::drop, index, {}, {}}); }
+  /// Command mode, for the next program.
+  bool leave() { return request({Request::Kind::leave, 0, {}, {}}); }
 
   // --- the line ---
 
@@ -92,7 +94,7 @@ class CentralClient {
           [this, now](const CentralLine& line) { hear(line, now); });
     advance(now);
   }
-  /// To be called at `deadline()`, and whenever there is a new wish.
+  /// To be called at `deadline()`, and whenever there is a new request.
   void expire(base::Time now) {
     if (now >= deadline_) late(now);
     advance(now);
@@ -109,8 +111,8 @@ class CentralClient {
     return event;
   }
 
-  /// Nothing is wished, and nothing on its way.
-  [[nodiscard]] bool idle() const noexcept { return wishes_.empty(); }
+  /// No request waits, and none is on its way.
+  [[nodiscard]] bool idle() const noexcept { return requests_.empty(); }
   [[nodiscard]] const std::vector<Peer>& peers() const noexcept { return peers_; }
   [[nodiscard]] const Peer* peer(unsigned index) const noexcept {
     for (const Peer& peer : peers_)
@@ -124,7 +126,7 @@ class CentralClient {
   using Line = CentralLine::Kind;
   using Event = CentralEvent::Kind;
 
-  struct Wish {
+  struct Request {
     enum class Kind : std::uint8_t { scan, connect, say, drop, leave };
     Kind kind = Kind::leave;
     unsigned index = 0;
@@ -133,7 +135,7 @@ class CentralClient {
   };
   /// What is waited for.
   enum class Stage : std::uint8_t {
-    begin,      ///< nothing: the wish's next command can be given
+    begin,      ///< nothing: the request's next command can be given
     settling,   ///< found, after `*` and `stop`
     leaving,    ///< command
     starting,   ///< scanning
@@ -145,14 +147,14 @@ class CentralClient {
     switching,  ///< data
     dropping,   ///< closing
     closing,    ///< closed
-    pausing,    ///< a while, then the wish is begun anew
+    pausing,    ///< a while, then the request is restarted
   };
   enum class Mode : std::uint8_t { unsure, command, data };
 
-  bool wish(Wish wish) {
-    if (wishes_.size() >= options_.most_wishes) return false;
-    if (wishes_.empty()) attempts_ = 0;
-    wishes_.push_back(std::move(wish));
+  bool request(Request request) {
+    if (requests_.size() >= options_.most_requests) return false;
+    if (requests_.empty()) attempts_ = 0;
+    requests_.push_back(std::move(request));
     return true;
   }
   void await(Stage stage, base::Time now, base::Duration time) {
@@ -170,14 +172,14 @@ class CentralClient {
     events_.push_back({kind, index, std::move(words), false});
   }
   void done() {
-    wishes_.pop_front();
+    requests_.pop_front();
     attempts_ = 0;
     stage_ = Stage::begin;
     deadline_ = base::never;
   }
   void fail(std::string words) {
-    report(Event::failed, wishes_.front().index, std::move(words));
-    events_.back().saying = wishes_.front().kind == Wish::Kind::say;
+    report(Event::failed, requests_.front().index, std::move(words));
+    events_.back().saying = requests_.front().kind == Request::Kind::say;
     done();
   }
   [[nodiscard]] std::string name_of(unsigned index) const {
@@ -191,32 +193,32 @@ class CentralClient {
 
   /// Gives commands until there is something to wait for, or nothing to do.
   void advance(base::Time now) {
-    while (!wishes_.empty() && stage_ == Stage::begin) begin(now);
+    while (!requests_.empty() && stage_ == Stage::begin) begin(now);
   }
   void begin(base::Time now) {
-    const Wish& wish = wishes_.front();
+    const Request& request = requests_.front();
     if (mode_ == Mode::unsure) {
       ++counters_.settled;
       return command("*\nstop\n", Stage::settling, now);
     }
-    if (wish.kind == Wish::Kind::say) {
-      if (mode_ != Mode::data || target_ != wish.index) return switch_to(wish.index, now);
-      out_ += wish.words;
-      report(Event::said, wish.index);
+    if (request.kind == Request::Kind::say) {
+      if (mode_ != Mode::data || target_ != request.index) return switch_to(request.index, now);
+      out_ += request.words;
+      report(Event::said, request.index);
       return done();
     }
     if (mode_ == Mode::data) return command("*", Stage::leaving, now);
-    switch (wish.kind) {
-      case Wish::Kind::scan:
+    switch (request.kind) {
+      case Request::Kind::scan:
         // `found` ends whatever line was begun: those of the list are whole.
-        return wish.time > base::Duration::zero() ? command("start\n", Stage::starting, now)
-                                                  : command("stop\nlist\n", Stage::stopping, now);
-      case Wish::Kind::connect:
-        return command("conn ", wish.index, Stage::joining, now);
-      case Wish::Kind::drop:
-        return command("drop ", wish.index, Stage::dropping, now);
-      case Wish::Kind::leave:
-      case Wish::Kind::say:
+        return request.time > base::Duration::zero() ? command("start\n", Stage::starting, now)
+                                                     : command("stop\nlist\n", Stage::stopping, now);
+      case Request::Kind::connect:
+        return command("conn ", request.index, Stage::joining, now);
+      case Request::Kind::drop:
+        return command("drop ", request.index, Stage::dropping, now);
+      case Request::Kind::leave:
+      case Request::Kind::say:
         return done();
     }
   }
@@ -254,9 +256,9 @@ class CentralClient {
     }
   }
   [[nodiscard]] bool awaits(Stage stage, unsigned index) const noexcept {
-    return stage_ == stage && !wishes_.empty() && wishes_.front().index == index;
+    return stage_ == stage && !requests_.empty() && requests_.front().index == index;
   }
-  /// Somebody has reset it: no link is left.
+  /// It was reset: no link is left.
   void reset() {
     for (Peer& peer : peers_) {
       if (peer.linked) report(Event::lost, peer.index);
@@ -268,11 +270,11 @@ class CentralClient {
   }
 
   void answer(const CentralLine& line, base::Time now) {
-    const bool own = !wishes_.empty() && line.index == wishes_.front().index;
+    const bool own = !requests_.empty() && line.index == requests_.front().index;
     if (stage_ == Stage::settling && line.kind == Line::found) return settled();
     if (stage_ == Stage::leaving && line.kind == Line::command) return settled();
     if (stage_ == Stage::starting && line.kind == Line::scanning)
-      return await(Stage::scanning, now, wishes_.front().time);
+      return await(Stage::scanning, now, requests_.front().time);
     if (stage_ == Stage::stopping && line.kind == Line::found) {
       expected_ = line.index;
       heard_.clear();
@@ -321,25 +323,25 @@ class CentralClient {
     const auto says = [&line](std::string_view what) { return line.text.starts_with(what); };
     switch (stage_) {
       case Stage::starting:
-        if (says("scans already")) return await(Stage::scanning, now, wishes_.front().time);
+        if (says("scans already")) return await(Stage::scanning, now, requests_.front().time);
         break;
       case Stage::linking:
-        if (!says("no link to ") || line.index != wishes_.front().index) return void(++counters_.strays);
+        if (!says("no link to ") || line.index != requests_.front().index) return void(++counters_.strays);
         link(line.index, false);
         break;
       case Stage::joining:
         if (says("still ")) return again(now);
         break;
       case Stage::switching:
-        if (says("no link to ")) link(wishes_.front().index, false);
+        if (says("no link to ")) link(requests_.front().index, false);
         break;
       case Stage::dropping:
         break;
-      default:  // an answer to somebody else, or an attempt of before that failed
+      default:  // an answer to another program, or an attempt of before that failed
         return void(++counters_.strays);
     }
     ++counters_.refused;
-    fail("the central refuses " + name_of(wishes_.front().index) + ": " + std::string{line.text});
+    fail("the central refuses " + name_of(requests_.front().index) + ": " + std::string{line.text});
   }
   /// The central is busy with another link: later.
   void again(base::Time now) {
@@ -364,14 +366,14 @@ class CentralClient {
         return;
       case Stage::linking: {
         ++counters_.timeouts;
-        const unsigned index = wishes_.front().index;
+        const unsigned index = requests_.front().index;
         fail("no link to " + name_of(index) + " came");
-        wishes_.push_front({Wish::Kind::drop, index, {}, {}});
+        requests_.push_front({Request::Kind::drop, index, {}, {}});
         return;
       }
       case Stage::closing:
         ++counters_.timeouts;
-        return fail("the link to " + name_of(wishes_.front().index) + " does not end");
+        return fail("the link to " + name_of(requests_.front().index) + " does not end");
       default:
         break;
     }
@@ -379,14 +381,14 @@ class CentralClient {
     mode_ = Mode::unsure;
     if (++attempts_ >= options_.most_attempts) return fail("the central does not answer");
     // The list of a scan that is over does not need another one.
-    if (stage_ == Stage::stopping || stage_ == Stage::listing) wishes_.front().time = {};
+    if (stage_ == Stage::stopping || stage_ == Stage::listing) requests_.front().time = {};
     stage_ = Stage::begin;
     deadline_ = base::never;
   }
 
   Options options_;
   CentralStream stream_;
-  std::deque<Wish> wishes_;
+  std::deque<Request> requests_;
   std::deque<CentralEvent> events_;
   std::vector<Peer> peers_;
   std::vector<Peer> heard_;  ///< of a list that has begun

@@ -153,7 +153,7 @@ class CentralStream {
     for (const char back : held) robots(back);
     robots(c);
   }
-  /// Too long for the central: nobody's where only the central speaks, a robot's otherwise.
+  /// Too long for the central: of no robot where only the central speaks, a robot's otherwise.
   template <class Robots>
   void give_back(Robots&& robots) {
     const std::string held = std::exchange(held_, {});

@@ -12,7 +12,7 @@
 /// each
 ///   given when the last has ended. So a robot whose server has died or hangs drives that far, and no
 ///   farther. [docs/decisions/0026]
-/// - A paused robot says no updates: it is told to go on.
+/// - A paused robot says no updates: it is unpaused.
 ///
 /// Evidence and time go in, words come out; one robot. No heap, no clock, no I/O; O(1) a call; 160 bytes.
 #pragma once

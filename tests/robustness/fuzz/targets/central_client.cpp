@@ -1,5 +1,5 @@
-// A client at a central that says anything: no wish is waited for without an end, a central that falls silent
-// ends them all, and after any noise a real one is heard: its robots are listed, and spoken to.
+// A client at a central that says anything: no request is waited for without an end, a central that falls
+// silent ends them all, and after any noise a real one is heard: its robots are listed, and spoken to.
 #include "ocm/mapper/server/central_client.hpp"
 
 #include <string>
@@ -31,7 +31,7 @@ constexpr std::string_view answers[] = {"scanning\n",
                                         "0:C00000000001:AVR\n",
                                         "error: still connecting 0\n"};
 
-/// A central whose radio does at once what it is told.
+/// A central whose radio obeys at once.
 class Exchange {
  public:
   explicit Exchange(CentralClient& client, base::Time now) : client_(&client), now_(now) {
@@ -39,7 +39,7 @@ class Exchange {
     for (const mapper::link::Address& address : robots) central_.found(address, "AVR", *this);
     said_.clear();
   }
-  /// Until nothing is wished, and nothing said.
+  /// Until nothing is requested, and nothing said.
   void settle() {
     for (int round = 0; round < 100 && !client_->idle(); ++round) {
       client_->expire(now_);
@@ -49,7 +49,7 @@ class Exchange {
       client_->feed(std::exchange(said_, {}), now_);
     }
     for (const char c : client_->take()) central_.feed(c, *this);
-    fuzz::expect(client_->idle(), "a central that answers ends a wish");
+    fuzz::expect(client_->idle(), "a central that answers ends a request");
   }
   [[nodiscard]] std::string heard_by(const mapper::link::Address& address) {
     std::string text;
@@ -123,8 +123,9 @@ base::Time play(CentralClient& client, fuzz::Input input) {
     }
     client.expire(now);
     (void)client.take();
-    fuzz::expect(client.idle() || client.deadline() > now, "a wish that has begun has a deadline");
-    fuzz::expect(client.idle() || client.deadline() != base::never, "no wish is waited for without an end");
+    fuzz::expect(client.idle() || client.deadline() > now, "a request that has begun has a deadline");
+    fuzz::expect(client.idle() || client.deadline() != base::never,
+                 "no request is waited for without an end");
   }
   return now;
 }
@@ -139,7 +140,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     client.expire(now);
     (void)client.take();
   }
-  fuzz::expect(client.idle(), "a central that is silent ends all wishes");
+  fuzz::expect(client.idle(), "a central that is silent ends all requests");
   (void)client.take_robots();
   (void)drain(client, CentralEvent::Kind::listed);
 

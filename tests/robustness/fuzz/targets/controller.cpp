@@ -1,4 +1,4 @@
-// A board fed with any frames at any times: every frame is counted once, no sample is read when nobody asked
+// A board fed with any frames at any times: every frame is counted once, no sample is read without a request
 // for one, and what goes out is whole samples, with their frames in order and the priority asked for.
 #include "ocm/controller/controller.hpp"
 

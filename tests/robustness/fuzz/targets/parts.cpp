@@ -16,7 +16,7 @@ namespace boards = firmware::boards;
 
 namespace {
 
-/// All that a board hears of its parts comes from the input; at its end nobody answers any more.
+/// All that a board hears of its parts comes from the input; at its end no part answers any more.
 struct Noise {
   std::span<const std::uint8_t> bytes;
   std::uint8_t next() {

@@ -1,4 +1,4 @@
-// Nanoseconds are whole: half of one is not rounded behind anybody's back.
+// Nanoseconds are whole: half of one is not rounded silently.
 // expect g++: conversion from
 // expect clang++: no viable conversion from
 #include "ocm/base/time.hpp"

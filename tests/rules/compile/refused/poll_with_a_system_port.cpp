@@ -1,4 +1,4 @@
-// With a system's port the levels have contexts of their own: nobody polls.
+// With a system's port the levels have contexts of their own: no poll.
 // expect g++: no matching function
 // expect clang++: invalid reference to function 'poll'
 #include "ocm/controller/controller.hpp"

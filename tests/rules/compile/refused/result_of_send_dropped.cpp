@@ -1,4 +1,4 @@
-// A bus that is full takes no frame: whoever sends must know.
+// A bus that is full takes no frame: the sender must know.
 // expect g++: ignoring return
 // expect clang++: ignoring return value of
 #include "ocm/client/robot.hpp"

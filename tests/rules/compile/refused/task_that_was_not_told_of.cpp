@@ -1,5 +1,5 @@
 // A controller has as many tasks of its own as its type says.
-// expect: the controller was not told of so many tasks
+// expect: the controller has fewer tasks
 #include "ocm/controller/controller.hpp"
 #include "ocm/topics/amiro.hpp"
 

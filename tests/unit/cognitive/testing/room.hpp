@@ -1,4 +1,4 @@
-/// A room with robots that do exactly what they are told, and see exactly what is there: for tests of maps
+/// A room with robots that obey exactly, and see exactly what is there: for tests of maps
 /// and explorers. No motor, no noise, no radio; time goes in steps of an update, 200 ms.
 #pragma once
 

@@ -1,4 +1,4 @@
-/// A mapper on parts that do what they are told, in virtual time, for the tests of this floor: no noise,
+/// A mapper on parts that obey exactly, in virtual time, for the tests of this floor: no noise,
 /// no slip, an empty floor with a wall where a test puts one.
 #pragma once
 

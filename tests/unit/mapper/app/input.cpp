@@ -37,7 +37,7 @@ TEST_CASE("mapper input: what is dropped is gone, and counted", "[mapper_input]"
   CHECK(input.lost() == 0);
 }
 
-TEST_CASE("mapper input: half full is when somebody should look", "[mapper_input]") {
+TEST_CASE("mapper input: half full is when it should be read", "[mapper_input]") {
   Input<4> input;
   input.push(1);
   CHECK_FALSE(input.filling());

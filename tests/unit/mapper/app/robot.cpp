@@ -502,7 +502,7 @@ TEST_CASE("mapper: a ring that fills without a sentence is emptied before it is 
   CHECK(bench.robot.counters().stray_bytes > 2800);
 }
 
-TEST_CASE("mapper: whoever floods the line gets communication every 20 ms, and no more", "[mapper]") {
+TEST_CASE("mapper: an operator who floods the line gets communication every 20 ms, and no more", "[mapper]") {
   Bench bench;
   bench.confirm();
   bench.say("{}");
@@ -633,7 +633,7 @@ TEST_CASE("mapper: a calibration that cannot end is given up, and one can be sto
   bench.run_for(500ms);
 }
 
-TEST_CASE("mapper: motors that nobody commands any more are switched off", "[mapper]") {
+TEST_CASE("mapper: motors without commands are switched off", "[mapper]") {
   Bench bench;
   bench.confirm();
   bench.say("{U,0,200}\n");

@@ -69,7 +69,7 @@ TEST_CASE("mapper: the link dies in the middle of a job: what the job was about 
 }
 
 TEST_CASE("mapper: the link dies while the tower looks: what it saw is not said", "[mapper][link]") {
-  for (const bool again : {false, true}) {  // there is a new link already, with nobody who confirmed it
+  for (const bool again : {false, true}) {  // there is a new link already, not confirmed
     Bench bench;
     bench.confirm();
     bench.run_for(1s);
@@ -86,7 +86,7 @@ TEST_CASE("mapper: the link dies while the tower looks: what it saw is not said"
   }
 }
 
-TEST_CASE("mapper: a link that nobody tells of is found dead by supervision", "[mapper][link]") {
+TEST_CASE("mapper: a dead link without a report is found by supervision", "[mapper][link]") {
   Bench bench;
   bench.confirm();
   bench.say("{U,0,100}\n");
@@ -261,7 +261,7 @@ TEST_CASE("mapper: on the way home it stops in front of things, and stays there"
   Bench bench{returning()};
   bench.confirm();
   REQUIRE(bench.drive("{U,0,90}\n"));
-  // Somebody puts a wall across the way, 30 cm from home.
+  // A wall appears across the way, 30 cm from home.
   bench.parts.distance = [&bench](float angle) {
     return -std::cos(angle) > 0.1F ? (bench.parts.pose.x_m - 0.3F) * 100.0F / -std::cos(angle) : 200.0F;
   };

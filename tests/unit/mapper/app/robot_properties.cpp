@@ -24,7 +24,7 @@ class Chaos {
 
   void step() {
     if (one_in(700)) bench_->link(!bench_->parts.link);
-    if (one_in(2000)) bench_->parts.link = !bench_->parts.link;  // and nobody tells
+    if (one_in(2000)) bench_->parts.link = !bench_->parts.link;  // without a report
     if (one_in(3000)) bench_->parts.gyro_missing = !bench_->parts.gyro_missing;
     if (one_in(3000)) bench_->parts.compass_missing = !bench_->parts.compass_missing;
     if (one_in(3000)) bench_->parts.infrared_missing[random_() % 4] ^= true;

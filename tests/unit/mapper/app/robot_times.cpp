@@ -76,7 +76,7 @@ constexpr Set shared(Set set) {
     return {};
   return set;
 }
-static_assert(shared(avr)[estimator].blocking == copy_ns, "a copy of the pose, whoever makes it");
+static_assert(shared(avr)[estimator].blocking == copy_ns, "a copy of the pose, in any task");
 static_assert(
     shared(avr)[movement].blocking == sentence_ns + copy_ns,
     "who has nothing to do with the UART, too: one section of the tower, one of the pose controller");

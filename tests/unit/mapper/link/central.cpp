@@ -256,9 +256,9 @@ TEST_CASE("central: an index stays with its robot while it has a link, whatever 
   CHECK(bench.heard(a, "x") == "[0]:AVR:x");
 }
 
-TEST_CASE("central: reports about links that are none change nothing; a link that nobody wants is ended") {
+TEST_CASE("central: reports about links that are none change nothing; a link that is not needed is ended") {
   Bench<> bench;
-  bench.found(a, "AVR");  // nobody scans
+  bench.found(a, "AVR");  // without a scan
   CHECK(bench.closed(a).empty());
   CHECK(bench.heard(a, "x").empty());
   CHECK(bench.connected(a) == "<disconnect a>");

@@ -65,7 +65,7 @@ TEST_CASE("format: an update that the queue refuses takes a number; one that can
   CHECK(UpdateWriter{false}.send({.servo = 91}, outbox).error == Error::out_of_range);
 }
 
-TEST_CASE("format: robot and server agree over the line, whoever of them is old") {
+TEST_CASE("format: robot and server agree over the line, also if one of them is old") {
   for (const bool robot_can : {false, true}) {
     for (const bool server_wants : {false, true}) {
       CAPTURE(robot_can, server_wants);

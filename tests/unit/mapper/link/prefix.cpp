@@ -49,7 +49,7 @@ TEST_CASE("prefixes are taken out of the middle of sentences, with or without th
   CHECK(s.broken == 0);
 }
 
-TEST_CASE("a broken prefix is counted, and what follows belongs to nobody until the next") {
+TEST_CASE("a broken prefix is counted, and what follows belongs to no robot until the next") {
   for (const std::string_view bad : {"[]", "[x", "[0x", "[0]x", "[0]::", "[0]   :", "[256]:A:", "[999]:A:",
                                      "[0000]", "[0]:a\n", "[0]:a{", "[0]:123456789012345678901"}) {
     INFO(bad);
@@ -63,7 +63,7 @@ TEST_CASE("a broken prefix is counted, and what follows belongs to nobody until 
   CHECK(strip("[1]:A[2]:B:x").text == "x");
 }
 
-TEST_CASE("without a central there is one source; with one, nobody until the first prefix") {
+TEST_CASE("without a central there is one source; with one, none until the first prefix") {
   CHECK(strip("{S,IDL}\n", true).text == "{S,IDL}\n");
   CHECK(strip("{S,IDL}\n").text.empty());
   CHECK(strip("{S,IDL}\n").nobody == "{S,IDL}\n");

@@ -112,7 +112,7 @@ TEST_CASE("central client: a link that is there already stays, and is said to be
   CHECK(bench.central.robots[0].heard == std::vector<std::string>{"{S,CON}\n"});
 }
 
-TEST_CASE("central client: refusals end a wish with the central's own words") {
+TEST_CASE("central client: refusals end a request with the central's own words") {
   Bench bench;
   for (const char* name : {"a", "b", "c", "d"}) bench.central.add(name);
   bench.client.scan(300ms);
@@ -159,7 +159,7 @@ TEST_CASE("central client: a robot that does not answer") {
   CHECK(bench.count(Event::connected) == 1);
 }
 
-TEST_CASE("central client: nobody at the line") {
+TEST_CASE("central client: no central at the line") {
   Bench bench;
   bench.loses = true;
   bench.client.scan(1s);
@@ -175,7 +175,7 @@ TEST_CASE("central client: nobody at the line") {
   CHECK(bench.client.idle());
 }
 
-TEST_CASE("central client: somebody resets the central") {
+TEST_CASE("central client: the central is reset") {
   Bench bench;
   bench.central.add("AVR");
   bench.client.scan(300ms);
@@ -195,7 +195,7 @@ TEST_CASE("central client: somebody resets the central") {
 
 TEST_CASE("central client: the queue is bounded") {
   CentralClientOptions options;
-  options.most_wishes = 2;
+  options.most_requests = 2;
   CentralClient client{options};
   CHECK(client.say(0, "a"));
   CHECK(client.say(0, "b"));
@@ -203,7 +203,7 @@ TEST_CASE("central client: the queue is bounded") {
 }
 
 TEST_CASE(
-    "central client: any wishes, links that die, answers that get lost: all ends, nobody hears another's "
+    "central client: any requests, links that die, answers that get lost: all ends, no robot hears another's "
     "words") {
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     CAPTURE(seed);
@@ -214,30 +214,30 @@ TEST_CASE(
     bench.central.write(random.below(2) == 0 ? "start\n" : "swit");
     bench.client.scan(300ms);
     bench.advance(2s);
-    unsigned wishes = 1, said = 0;
+    unsigned requests = 1, said = 0;
     for (int i = 0; i < 120; ++i) {
       const unsigned index = random.below(robots);
       switch (random.below(8)) {
         case 0:
           bench.client.scan(random.below(2) == 0 ? 0ms : 200ms);
-          ++wishes;
+          ++requests;
           break;
         case 1:
         case 2:
           bench.client.connect(index);
-          ++wishes;
+          ++requests;
           break;
         case 3:
         case 4:
           bench.client.say(index, "{" + std::to_string(index) + "}\n");
-          ++wishes;
+          ++requests;
           ++said;
           break;
         case 5:
           bench.central.cut(index);
           break;
         case 6:
-          if (random.below(4) == 0) bench.client.drop(index), ++wishes;
+          if (random.below(4) == 0) bench.client.drop(index), ++requests;
           break;
         default:
           bench.loses = random.below(4) == 0;
@@ -249,7 +249,7 @@ TEST_CASE(
     bench.loses = false;
     for (int i = 0; i < 120 && !bench.client.idle(); ++i) bench.advance(2s);
     REQUIRE(bench.client.idle());
-    // Settled again: what is wished now comes true.
+    // Settled again: what is requested now succeeds.
     for (auto& robot : bench.central.robots) robot.reachable = true;
     bench.client.scan(300ms);
     bench.advance(2s);
@@ -267,7 +267,7 @@ TEST_CASE(
         REQUIRE(words == "{" + std::to_string(i) + "}\n");
     CHECK(bench.count(Event::said) <= static_cast<int>(said) + 1);
     CHECK(bench.count(Event::listed) + bench.count(Event::said) + bench.count(Event::failed) > 0);
-    CHECK(wishes > 1);
+    CHECK(requests > 1);
   }
 }
 

@@ -231,7 +231,7 @@ TEST_CASE("sender: a short leg is not reached where it began") {
   CHECK(bench.sender.progress() == Progress::reached);
 }
 
-TEST_CASE("sender: a robot that says idle but not where it is, is told to go on") {
+TEST_CASE("sender: a robot that says idle but not where it is, is unpaused") {
   Bench bench;
   bench.go(0, 20);
   for (int i = 0; i < 4; ++i) bench.pass(1s), bench.idle();

@@ -62,7 +62,7 @@ TEST_CASE("host threads are a port without real-time priorities") {
   conformance::check<Threads<false>>();
 }
 
-TEST_CASE("who gets no real-time priorities is told so, and what to do") {
+TEST_CASE("who gets no real-time priorities gets the reason, and what to do") {
   HostThreads asked;
   REQUIRE(asked.start([] {}, [](Level) {}).ok());
   sched_param parameter{};
