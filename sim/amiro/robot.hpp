@@ -5,7 +5,7 @@
 ///     robot.advance(now);         // at next_event(), and when a port has room again while waiting()
 ///
 /// Time is handed in: a server passes the clock, a test whatever it likes. The boards do everything at the
-/// time at which it is due, however seldom somebody calls: a simulated robot is never late because its host
+/// time at which it is due, however seldom it is called: a simulated robot is never late because its host
 /// is. The ports must outlive the robot.
 #pragma once
 

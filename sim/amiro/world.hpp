@@ -39,7 +39,7 @@ struct WorldOptions {
   Arena arena = default_arena();
   double state_of_charge = 0.9;  ///< 0..1
   bool plugged = false;
-  /// Time stands still: nothing moves, drains or is noisy; every read gives the same for ever.
+  /// Time is frozen: nothing moves, drains or is noisy; every read gives the same for ever.
   bool frozen = false;
   DriveModel drive{};
   PowerModel power{};
@@ -85,7 +85,7 @@ class World {
   /// Set points of speed controllers that keep to them.
   void set_wheels(firmware::boards::WheelSpeeds speeds) noexcept { drive_.set(speeds); }
   /// Voltages of the motors by themselves, -1..1 of all: in the end a wheel goes that part of its greatest
-  /// speed. Whoever sets these controls the speeds himself.
+  /// speed. The caller of these controls the speeds itself.
   void set_duty(double left, double right) noexcept {
     drive_.set({left * options_.drive.greatest_speed_m_per_s, right * options_.drive.greatest_speed_m_per_s});
   }
@@ -192,7 +192,7 @@ class World {
   }
   [[nodiscard]] bool absent(Part part) const noexcept { return absent_[index(part)]; }
 
-  /// Whoever has a new sample since the last step takes it now: at the end of the step in which it fell.
+  /// Each part with a new sample since the last step takes it now: at the end of the step in which it fell.
   void take_samples() noexcept {
     const base::Duration elapsed = elapsed_ms_ * step;
     const auto take = [&](Part part, base::Duration period) {

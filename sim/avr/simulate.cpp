@@ -191,7 +191,7 @@ int behind_terminal(Robot& robot) {
     std::cerr << "ocm-avr: no pseudo terminal: " << std::strerror(errno) << "\n";
     return 1;
   }
-  const int kept = ::open(::ptsname(terminal), O_RDWR | O_NOCTTY);  // no hang-up while nobody has it open
+  const int kept = ::open(::ptsname(terminal), O_RDWR | O_NOCTTY);  // no hang-up while no program has it open
   termios raw{};
   ::tcgetattr(kept, &raw);
   ::cfmakeraw(&raw);  // a serial line echoes nothing
@@ -207,7 +207,7 @@ int behind_terminal(Robot& robot) {
     for (ssize_t i = 0; i < got; ++i) robot.send(bytes[static_cast<std::size_t>(i)]);
     if (!robot.run(1000)) return 1;
     for (const auto& heard : robot.heard)
-      if (::write(terminal, &heard.byte, 1) != 1) std::cerr << "ocm-avr: nobody reads\n";
+      if (::write(terminal, &heard.byte, 1) != 1) std::cerr << "ocm-avr: no program reads\n";
     robot.heard.clear();
     next.tv_nsec += 1'000'000;
     if (next.tv_nsec >= 1'000'000'000) {

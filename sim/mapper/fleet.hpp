@@ -85,7 +85,7 @@ class Fleet {
     for (base::Time next = next_event(); next <= now; next = next_event()) happen(std::max(next, now_));
     if (now > now_) happen(now);
   }
-  /// When somebody has something to do. Between two events the robots drive on as they did.
+  /// When a robot or the central has something to do. Between two events the robots drive on as they did.
   [[nodiscard]] base::Time next_event() const noexcept {
     base::Time next = radio_.next_event();
     for (const auto& member : members_) next = std::min(next, member->next_event());
@@ -143,7 +143,7 @@ class Fleet {
   }
   [[nodiscard]] static simulation::Place place(Vector where) noexcept { return {where.x, where.y}; }
 
-  /// What is due at `now`: the world first, so that everybody reads what is.
+  /// What is due at `now`: the world first, so that all read the same state.
   void happen(base::Time now) {
     now_ = now;
     world_.advance_to(now);

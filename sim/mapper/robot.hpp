@@ -144,7 +144,7 @@ class Robot {
     stay_outside(around, before);
   }
 
-  /// Whoever has a new sample since the last step takes it now.
+  /// Each sensor with a new sample since the last step takes it now.
   void sample(const Surroundings& around, base::Duration elapsed) noexcept {
     const auto due = [elapsed](base::Duration period, std::uint64_t& number) {
       const auto now = static_cast<std::uint64_t>(elapsed / period);

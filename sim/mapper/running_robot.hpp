@@ -1,4 +1,4 @@
-/// A mapper of the world with its application running in virtual time. What its link is, is up to whoever
+/// A mapper of the world with its application running in virtual time. Its link is chosen by the code that
 /// composes it: a dongle on a radio, or a line of its own.
 ///
 ///     RunningRobot<Dongle> robot{world.robot(0), dongle, start};

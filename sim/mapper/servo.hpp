@@ -1,4 +1,4 @@
-/// The tower's servo: it needs time to get where it is told. A lag, within a greatest speed. Pure steps of 1
+/// The tower's servo: it needs time to reach its set point. A lag, within a greatest speed. Pure steps of 1
 /// ms.
 #pragma once
 

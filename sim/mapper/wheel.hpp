@@ -2,8 +2,8 @@
 /// operations each.
 ///
 /// The encoder has one channel: it counts edges, and the motor's last command says which way, also while the
-/// wheel rolls out or is being reversed. Before the first command nobody knows, and nothing is counted. [T2
-/// §6.4.1]
+/// wheel rolls out or is being reversed. Before the first command it is not known, and nothing is counted.
+/// [T2 §6.4.1]
 #pragma once
 
 #include <algorithm>

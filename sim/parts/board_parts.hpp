@@ -1,8 +1,8 @@
 /// What a board's processor is connected to, as models that stand in a world: its I2C buses and SPI devices
-/// by their numbers, motors, pins. One interface for all boards, for whoever carries an emulated board's
+/// by their numbers, motors, pins. One interface for all boards, for the carrier of an emulated board's
 /// transfers; what each returns satisfies the concepts of firmware/drivers/bus.hpp.
 ///
-/// Host only, one thread. Whoever owns the world lets its time pass.
+/// Host only, one thread. The world's owner lets its time pass.
 #pragma once
 
 #include <array>
@@ -85,7 +85,7 @@ class BoardParts {
   BoardParts(const BoardParts&) = delete;
   BoardParts& operator=(const BoardParts&) = delete;
 
-  /// A number that the board does not have is a bus, or a device, on which nobody is.
+  /// A number that the board does not have is a bus, or a device, without parts.
   [[nodiscard]] virtual I2cBus& i2c(std::uint8_t) { return no_bus_; }
   [[nodiscard]] virtual SpiDevice& spi(std::uint8_t) { return no_device_; }
   /// On a board without motors they turn nothing.

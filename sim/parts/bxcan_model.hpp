@@ -3,7 +3,7 @@
 /// from RM0008 24 without a look at the driver. What a program must not do is recorded in `violations`.
 ///
 /// The bus is in the hands of the test: `begin` arbitrates, `end` finishes what is on the wire, `deliver`
-/// brings somebody else's frame. `on_access` runs before each access of the program to a register, so that a
+/// brings another node's frame. `on_access` runs before each access of the program to a register, so that a
 /// test can let the bus move on at any such point.
 #pragma once
 
@@ -29,7 +29,7 @@ class BxcanModel {
   /// How an attempt on the wire ends.
   enum class End : std::uint8_t {
     acknowledged,
-    lost_arbitration,  ///< somebody's lower identifier goes first
+    lost_arbitration,  ///< another node's lower identifier goes first
     no_acknowledge,
     bit_error,
   };
@@ -37,7 +37,7 @@ class BxcanModel {
 
   std::function<void()> on_access;      ///< before each access of the program
   unsigned abort_delay = 0;             ///< accesses until an abort that need not wait is seen
-  bool dominant = false;                ///< somebody holds the bus: nobody can join
+  bool dominant = false;                ///< the bus is held dominant: no node can join
   unsigned handshake_delay = 2;         ///< accesses until INAK and RFOM follow
   std::vector<std::string> violations;  ///< of the rules of the manual, by the program
   std::vector<can::Frame> transmitted;  ///< what was acknowledged, in order
@@ -142,7 +142,7 @@ class BxcanModel {
 
   // --- the bus's side ---
 
-  /// The bus is idle and everybody may start. The frame that this controller puts on the wire, if any.
+  /// The bus is idle and every node may start. The frame that this controller puts on the wire, if any.
   std::optional<can::Frame> begin() {
     if (initialising_ || asleep_ || bus_off_ || on_wire_) return std::nullopt;
     const auto next = scheduled();
@@ -182,7 +182,7 @@ class BxcanModel {
 
   [[nodiscard]] bool on_wire() const { return on_wire_.has_value(); }
 
-  /// Somebody else's frame was on the bus. Whether it passed a filter.
+  /// Another node's frame was on the bus. Whether it passed a filter.
   bool deliver(const can::Frame& received) {
     if (initialising_ || asleep_ || bus_off_) return false;
     if (rec_ > 127)
@@ -201,7 +201,7 @@ class BxcanModel {
     }
     return true;
   }
-  /// A frame of somebody else was broken.
+  /// A frame of another node was broken.
   void disturb(std::uint8_t error = 1) {
     last_error_ = error;
     ++rec_;

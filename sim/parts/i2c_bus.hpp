@@ -36,7 +36,7 @@ class I2cPart {
     if (present && !present_) power_up();
     present_ = present;
   }
-  /// Whether it is there, asked anew each time; besides `set_present`.
+  /// Whether it is there, asked each time; besides `set_present`.
   void set_presence(std::function<bool()> presence) { presence_ = std::move(presence); }
 
  protected:
@@ -66,7 +66,7 @@ class I2cBus {
   void find(std::uint8_t address7, std::vector<I2cPart*>& found) const {
     for (I2cPart* part : parts_) part->find(address7, found);
   }
-  /// Somebody holds the data line down: no START comes through.
+  /// The data line is held down: no START comes through.
   void set_stuck(bool stuck) noexcept { stuck_ = stuck; }
   /// Transfers begun, for those who bound them.
   [[nodiscard]] std::uint64_t transfers() const noexcept { return transfers_; }

@@ -36,7 +36,7 @@ class Lsm6ds3Model : public SpiDevice {
 
   /// Takes the part off the board, or puts it back: it then begins as after power-up.
   void set_present(bool present) { present_ = present; }
-  /// Whether it is there, asked anew each time; besides `set_present`.
+  /// Whether it is there, asked each time; besides `set_present`.
   void set_presence(std::function<bool()> presence) { presence_ = std::move(presence); }
   /// The next frames fail as a bus does.
   void set_stuck(bool stuck) noexcept { stuck_ = stuck; }
@@ -44,7 +44,7 @@ class Lsm6ds3Model : public SpiDevice {
   base::Status transfer(const firmware::drivers::SpiSettings& settings, std::span<const std::uint8_t> out,
                         std::span<std::uint8_t> in) override {
     if (stuck_) return base::Error::bus_fault;
-    std::fill(in.begin(), in.end(), std::uint8_t{0xFF});  // nobody drives the line, which is pulled up
+    std::fill(in.begin(), in.end(), std::uint8_t{0xFF});  // the line is not driven, and pulled up
     if (!here()) return {};
     if (settings.highest_clock_hz > 10'000'000) {
       violate("SPI clock above 10 MHz");

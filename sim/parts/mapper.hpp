@@ -2,7 +2,7 @@
 /// units: a robot of a world, or a test's script. The other way round from boards/mapper/parts.hpp: what
 /// that makes of registers, this makes registers of.
 ///
-/// Host only, one thread. Whoever owns the world lets its time pass.
+/// Host only, one thread. The world's owner lets its time pass.
 #pragma once
 
 #include <algorithm>

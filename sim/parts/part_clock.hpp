@@ -1,5 +1,5 @@
 /// The clock of the models of parts: turn-on times and write cycles go by it. It is not the world's, whose
-/// time may stand still.
+/// time may be frozen.
 #pragma once
 
 #include <functional>

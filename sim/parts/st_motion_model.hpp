@@ -41,7 +41,7 @@ class StMotionModel : public SpiDevice {
                         std::span<std::uint8_t> in) override {
     if (stuck_) return base::Error::bus_fault;
     if (!here()) {
-      std::fill(in.begin(), in.end(), std::uint8_t{0xFF});  // nobody drives the line, which is pulled up
+      std::fill(in.begin(), in.end(), std::uint8_t{0xFF});  // the line is not driven, and pulled up
       return {};
     }
     if (settings.highest_clock_hz > 10'000'000) {

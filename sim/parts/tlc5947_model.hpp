@@ -84,7 +84,7 @@ class Tlc5947Model : public SpiDevice {
   Violations* violations_;
   std::function<void(std::size_t, firmware::boards::Colour)> light_;
   std::array<bool, bits> shift_{}, latch_{};  // first the bit that came first
-  bool blank_ = true;                         // pulled up until somebody drives it
+  bool blank_ = true;                         // pulled up until it is driven
   bool latched_ = false;
   bool stuck_ = false;
 };

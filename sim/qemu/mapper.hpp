@@ -1,13 +1,13 @@
 /// A mapper whose application runs as an image in QEMU, real firmware and drivers, in a robot of
 /// the simulated world: behind the image's parts' line are register models, behind those the robot's wheels
-/// and sensors. The other end of its dongle is whoever holds this.
+/// and sensors. The other end of its dongle is the owner of this object.
 ///
 ///     auto robot = QemuMapper::start(world.robot(0), {.name = "AVR", .image = ...}, clock);
 ///     robot->set_linked(true);
 ///     robot->write("{S,CON}\n");
 ///     robot->advance([&](std::string_view said) { ... });   // whenever one of descriptors() is readable
 ///
-/// Time is real: the emulated processor runs by the host's clock. Whoever owns the world lets it pass. Host
+/// Time is real: the emulated processor runs by the host's clock. The world's owner lets it pass. Host
 /// only.
 #pragma once
 

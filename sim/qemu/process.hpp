@@ -101,7 +101,7 @@ class QemuProcess {
   explicit QemuProcess(QemuOptions options) : options_(std::move(options)) {}
 
   std::optional<transport::Failure> spawn(std::span<const host::Descriptor> theirs) {
-    // Their ends must survive exec, under numbers that nobody else has.
+    // Their ends must survive exec, under numbers that are not in use.
     constexpr int first_number = 10;
     constexpr int out_of_the_way = 40;
     std::vector<std::string> words{options_.program,

@@ -25,7 +25,7 @@ struct AmiroOptions {
 };
 
 /// The boards and any number of programs on a virtual bus, whose socket is `path`; empty: that of the user.
-/// Reports what was sent and what was lost, by cause, when it is told to stop.
+/// Reports what was sent and what was lost, by cause, when it is stopped.
 [[nodiscard]] Ending serve_amiro(const std::string& path, const AmiroOptions& options, const Shell& shell);
 
 /// The boards on a real CAN interface: the kernel is the bus. In real time, without disturbances.

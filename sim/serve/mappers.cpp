@@ -167,7 +167,7 @@ void summarise(plant::Fleet& fleet, const CentralLine& line, const Shell& shell)
                                .add(central.unsent_bytes, "bytes for links that were gone or full")
                                .add(central.dropped_packets, "packets dropped with their link")
                                .add(central.unlisted, "robots beyond the list")
-                               .add(line.unheard(), "bytes said to nobody")
+                               .add(line.unheard(), "bytes sent with no server connected")
                                .add(line.unread_lost(), "bytes that the program did not read")
                                .text();
   shell.report(fmt::format("{:<10} {}", "central", lost.empty() ? "nothing was lost" : lost.substr(2)));

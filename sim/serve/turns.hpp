@@ -1,5 +1,5 @@
 /// Set points of one actuator that two nodes send in turns: two programs that command it, each within the
-/// other's timeout. On the wire nobody can tell who sent a frame; the simulator knows.
+/// other's timeout. On the wire the sender of a frame is not known; the simulator knows it.
 #pragma once
 
 #include <array>

@@ -200,7 +200,7 @@ class Reader : private spec::Checker {
     const std::string name = line(at, false);
     if (name.size() > ocm::mapper::link::max_name ||
         !std::all_of(name.begin(), name.end(), ocm::mapper::link::fits_name))
-      tell(at, spec::quoted(name) + " is no name of a robot",
+      tell(at, spec::quoted(name) + " is not a valid name of a robot",
            "1 to 20 printed ASCII characters other than : [ ] { }");
     return name;
   }
@@ -209,13 +209,13 @@ class Reader : private spec::Checker {
     const At place = *at.member("at");
     if (const double room = plant::room_m(start, world.walls, {}); room < 0)
       tell(place,
-           "robot " + spec::quoted(start.name) + " stands in a wall: it has a radius of " +
+           "robot " + spec::quoted(start.name) + " is inside a wall: it has a radius of " +
                print(start.radius_m()) + " m, and the wall is " +
                print(std::max(0.0, start.radius_m() + room)) + " m from its middle",
            "a place with more room");
     for (const plant::Start& other : world.starts)
       if (plant::room_m(start, {}, {other}) < 0)
-        tell(place, "robot " + spec::quoted(start.name) + " stands in robot " + spec::quoted(other.name),
+        tell(place, "robot " + spec::quoted(start.name) + " overlaps robot  " + spec::quoted(other.name),
              "at least " + print(start.radius_m() + other.radius_m()) + " m from middle to middle");
   }
 };

@@ -1,4 +1,4 @@
-/// Reads a world of mappers, a JSON file that `world.schema.json` describes. Every problem is told with
+/// Reads a world of mappers, a JSON file that `world.schema.json` describes. Every problem is reported with
 /// its place, what is wrong and what would be right, as those of a spec are.
 #pragma once
 

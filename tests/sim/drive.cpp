@@ -122,7 +122,7 @@ TEST_CASE("at a slant the robot slides along the wall") {
   CHECK(drive.motion().velocity_m_per_s.x == Approx(0.2 * std::cos(30 * degree)).epsilon(1e-6));
 }
 
-TEST_CASE("whatever it is told, the robot stays in the arena and out of the boxes") {
+TEST_CASE("whatever the command, the robot stays in the arena and out of the boxes") {
   const Arena arena = default_arena();
   const Noise noise{3, 0};
   Drive drive{{}, default_start};

@@ -148,7 +148,7 @@ TEST_CASE(
     CHECK(air.progress() == Progress::reached);
     ++reached;
     CHECK_FALSE(air.drives());
-    // What is nearer than its own tolerance, it need not be told.
+    // What is nearer than its own tolerance, it need not be sent.
     if (std::abs(angle) > 2 || std::abs(distance) > 1) CHECK(air.heard() > 0);
     // Where it truly is: its own estimate drifts by a few per cent.
     const double heading = start.heading_rad + angle * ocm::sim::pi / 180;
@@ -162,7 +162,8 @@ TEST_CASE(
   CHECK(still_drive <= runs / 100);  // three seconds after the stop: some nine words, each lost by itself
 }
 
-TEST_CASE("mapper heard: a wall in front of the robot is told, and from what was not heard") {
+TEST_CASE(
+    "mapper heard: a wall in front of the robot is reported, and distinguished from what was not heard") {
   const int runs = explored(40);
   for (int run = 0; run < runs; ++run) {
     CAPTURE(run);

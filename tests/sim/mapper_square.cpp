@@ -2,7 +2,7 @@
 /// how far its estimate ends from the truth, what each sensor has a part in, and that no estimate is better
 /// than the sensors allow. docs/motion.md has the figures, `scripts/bench square` makes them.
 ///
-/// Judged by seeds 1 to 100. Whoever tunes an estimator does it on others: 1001 and on.
+/// Judged by seeds 1 to 100. Tuning an estimator uses others: 1001 and on.
 #include "tests/sim/mapper_square.hpp"
 
 #include <cmath>
@@ -167,7 +167,7 @@ TEST_CASE("square: a compass that always corrects is the best one without steel,
   CHECK(position_m(over_steel(), second_robot) > 3 * position_m(over_steel(), trusted));
 }
 
-TEST_CASE("square: the robot drives as it was told: turn, drive, stand, and no to and fro") {
+TEST_CASE("square: the robot drives as commanded: turn, drive, stand, and no to and fro") {
   for (std::uint64_t seed = 1; seed <= seeds / 10; ++seed) {
     Drive drive{open_room(), seed, mapper::app::avr_robot};
     drive.square(stand);

@@ -41,7 +41,7 @@ struct Leg {
 };
 /// [T2 table 13.1]
 inline constexpr std::array<Leg, 5> legs{{{0, 60}, {90, 130}, {90, 120}, {90, 130}, {85, 52}}};
-/// Where a robot that does what it is told is after so many of them, as seen from the start.
+/// Where a robot that obeys exactly is after this many of them, as seen from the start.
 [[nodiscard]] inline Pose ideal_after(std::size_t count) {
   Pose pose;
   for (const Leg& leg : std::span{legs}.first(count)) {
@@ -282,7 +282,7 @@ void replay(const std::vector<Step>& steps, const mapper::app::RobotModel& model
   }
 }
 
-// --- the least that anybody must miss ---
+// --- the least that any estimator must miss ---
 
 /// Standard deviations at the end of a drive.
 struct Floor {
@@ -291,8 +291,8 @@ struct Floor {
   double heading_rad = 0;
 };
 
-/// Position: wheels slip from place to place by a share that nobody sees on a straight way. The estimator is
-/// given the true heading, what the wheels slip in the mean, their true sizes, and ticks without a gap.
+/// Position: wheels slip from place to place by a share that no sensor sees on a straight way. The estimator
+/// is given the true heading, what the wheels slip in the mean, their true sizes, and ticks without a gap.
 [[nodiscard]] inline Vector position_floor_m(const Drive& drive) {
   const sim::mapper::SlipModel& slip = drive.world().robot(0).model().slip;
   const double unseen =

@@ -119,7 +119,7 @@ TEST_CASE("a wheel that is reversed counts the new way while it still turns the 
   wheel.drive(1.0F);
   run(wheel, 5);
   const std::int32_t before = count(wheel);
-  wheel.drive(-0.3F);  // too little to turn it: it rolls out forwards, but was told backwards
+  wheel.drive(-0.3F);  // too little to turn it: it rolls out forwards, but its command is backwards
   const double rolled = run(wheel, 1);
   CHECK(rolled > 7);
   CHECK(count(wheel) == Approx(before - rolled).margin(1));

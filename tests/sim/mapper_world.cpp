@@ -349,7 +349,7 @@ std::vector<double> told(std::uint64_t seed, base::Duration period, bool disturb
     if (now == 0s) world.robot(0).drive(ahead);
     if (now == 3s) world.robot(0).drive({0.5F, -1});
     if (now == 3s) world.robot(0).turn_tower(70);
-    if (disturbed)  // somebody else reads and breaks other parts
+    if (disturbed)  // another reader reads and breaks other parts
       for (int i = 0; i < 3; ++i) {
         (void)world.robot(0).field();
         (void)world.robot(0).infrared(2);

@@ -150,7 +150,7 @@ TEST_CASE("a frozen robot says exactly this") {
   CHECK(said(setup.middle) == std::vector<std::string>{"61E#003489005EFC"});  // 52 %, 137 min, -930 mW
 }
 
-TEST_CASE("drive: the robot goes where it is told, and odometry tells it") {
+TEST_CASE("drive: the robot goes where it is sent, and odometry reports it") {
   Setup setup;
   setup.say("203#01640000");      // odometry every 100 ms
   for (int i = 0; i < 10; ++i) {  // a second of 0.1 m/s
@@ -241,7 +241,7 @@ TEST_CASE("encoders that fall out stop the odometry's word until they are back")
   CHECK(texts(setup.bottom, 0x603).size() == 20);
 }
 
-TEST_CASE("a command works from when it came, however long nobody called") {
+TEST_CASE("a command works from when it came, however long ago the last call was") {
   Setup setup;
   setup.now += 10s;
   setup.say("201#A086010000000000");

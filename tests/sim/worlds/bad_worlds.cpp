@@ -14,7 +14,7 @@
 
 namespace sim_worlds_bad_worlds_test {
 
-TEST_CASE("every mistake in a world is told with its place, what is wrong and what would be right") {
+TEST_CASE("every mistake in a world is reported with its place, what is wrong and what would be right") {
   const std::string good = read("tests/sim/worlds/good.json");
   const auto table = nlohmann::json::parse(read("tests/sim/worlds/bad_worlds.json"));
   REQUIRE(table.size() >= 30);

@@ -130,7 +130,7 @@ bool accepted(std::string_view text) {
   return true;
 }
 
-TEST_CASE("a world that is cut off anywhere is told to be") {
+TEST_CASE("a world that is cut off anywhere is reported as such") {
   const std::string whole = read("tests/sim/worlds/good.json");
   const std::size_t end = whole.rfind('}');
   for (std::size_t n = 0; n <= end; ++n)
