@@ -218,7 +218,7 @@ class Checker {
                                ? base::Result<std::int64_t>{base::Error::out_of_range}
                                : base::detail::scaled(product->digits, product->exponent);
         if (whole) return Duration{*whole};
-        tell(at, spec::quoted(text) + " is no whole number of nanoseconds within 292 years",
+        tell(at, spec::quoted(text) + " is not a whole number of nanoseconds within 292 years",
              std::string{duration_form});
         return std::nullopt;
       }
@@ -290,7 +290,7 @@ class Checker {
         std::vector<std::string> present;
         for (const auto fact : facts)
           if (object.member(fact)) present.emplace_back(fact);
-        tell(entry, "source for " + spec::quoted(key) + ", which is no fact of this object",
+        tell(entry, "source for " + spec::quoted(key) + ", which is not a fact of this object",
              "default, or one of " + list_of(present));
       } else {
         source.particular.emplace_back(key, std::move(text));

@@ -160,7 +160,7 @@ class FieldReader : protected Checker {
       }
     }
     if (const auto a = at.member("offset"))
-      field.offset = decimal(*a, "what the raw number 0 stands for, such as -40").value_or(Decimal{});
+      field.offset = decimal(*a, "what the raw number 0 means, such as -40").value_or(Decimal{});
     if (typed) {
       field.raw_min = protocol::lowest(field.position.width, field.is_signed);
       field.raw_max = protocol::highest(field.position.width, field.is_signed);

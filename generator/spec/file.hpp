@@ -16,7 +16,7 @@ namespace ocm::spec {
 /// A document is at most this large.
 inline constexpr std::size_t max_document_bytes = 1'000'000;
 
-/// The text of a file; nothing, and a problem, where there is none, it cannot be read or is larger than
+/// The text of a file; nothing, and a problem, if it is missing, cannot be read or is larger than
 /// `max_document_bytes`. `example` is the path of such a file.
 [[nodiscard]] std::optional<std::string> read_document(const std::filesystem::path& file,
                                                        std::string_view what, std::string_view example,

@@ -23,7 +23,7 @@ struct Node {
   std::size_t line = 0;  ///< from 1
 
   [[nodiscard]] bool is(Kind k) const noexcept { return kind == k; }
-  /// nullptr where there is none; O(members).
+  /// nullptr if missing; O(members).
   [[nodiscard]] const Node* find(std::string_view key) const noexcept;
 };
 

@@ -48,7 +48,7 @@ class Reader : private FieldReader {
   void read_namespace(const At& at, Model& model) {
     model.name_space = name(at);
     if (model.name_space == "std" || model.name_space == "ocm")
-      tell(at, quoted(model.name_space) + " is somebody else's namespace",
+      tell(at, quoted(model.name_space) + " is a namespace of another library",
            "the robot's own name, such as \"amiro\"");
   }
 

@@ -92,7 +92,7 @@ class SentencesReader : private Checker {
       else if (key != "range" && !object.member(key) &&
                std::find(fields.begin(), fields.end(), key) == fields.end())
         tell({&node, at->path + "/" + pointer_step(key)},
-             "source for " + spec::quoted(key) + ", which is no fact of this object",
+             "source for " + spec::quoted(key) + ", which is not a fact of this object",
              "default, range, or one of " + list_of(fields));
       else
         source.particular.emplace_back(key, std::move(text));
@@ -231,7 +231,8 @@ class SentencesReader : private Checker {
     for (const auto& [text, node] : at.node->members) {
       const At value{&node, at.path + "/" + pointer_step(text)};
       if (!spec::is_name(text))
-        tell(value, spec::quoted(text) + " is no name", "small letters, digits and _, such as packed_offer");
+        tell(value, spec::quoted(text) + " is not a valid name",
+             "small letters, digits and _, such as packed_offer");
       else if (text == field.name || std::find(names.begin(), names.end(), text) != names.end())
         tell(value, spec::quoted(text) + " is an integer of the sentence, too", "another name");
       if (const auto number = integer(value, field.min, field.max)) field.values.emplace_back(text, *number);
@@ -280,7 +281,8 @@ class SentencesReader : private Checker {
         tell(at, "a second sentence " + spec::quoted(sentence.name), "another name");
       if (sentence.to_robot == other.to_robot && sentence.letter == other.letter &&
           sentence.word == other.word && sentence.text == other.text)
-        return tell(at, "it cannot be told from " + spec::quoted(other.name), "another letter, word or text");
+        return tell(at, "it cannot be distinguished from " + spec::quoted(other.name),
+                    "another letter, word or text");
     }
   }
 

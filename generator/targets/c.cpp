@@ -1,5 +1,5 @@
 /// A C99 header of its own: for firmware in C, and for code that Simulink generated. Compared with a plain
-/// translation of a DBC file it hands over whole samples: from a frame to a struct and back in one call, with
+/// translation of a DBC file it delivers whole samples: from a frame to a struct and back in one call, with
 /// scaled accessors, identifiers with priority, and the requests that no DBC can describe.
 #include <algorithm>
 #include <set>

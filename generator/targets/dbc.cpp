@@ -22,7 +22,7 @@ using spec::FieldModel;
 using spec::Model;
 using spec::TopicModel;
 
-/// The bus's other end: whoever asks and commands. No board can have this name, for it is a word of C++.
+/// The bus's other end, which asks and commands. No board can have this name, for it is a word of C++.
 constexpr std::string_view operator_node = "operator";
 
 /// Names of at most 32 characters, as the format has them; each is given out once.

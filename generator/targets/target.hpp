@@ -26,7 +26,7 @@ struct Target {
 
 [[nodiscard]] std::span<const Target> targets() noexcept;
 
-/// nullptr where there is none of this name.
+/// nullptr if there is no target of this name.
 [[nodiscard]] const Target* find_target(std::string_view name) noexcept;
 
 /// "cpp, dbc, c, ...", for messages.

@@ -39,7 +39,8 @@ class Reader {
       good = good && (std::islower(static_cast<unsigned char>(c)) != 0 ||
                       std::isdigit(static_cast<unsigned char>(c)) != 0 || c == '_');
     if (!good)
-      complain(node, "'" + text + "' is no name", "a letter, then letters, digits and _, all lower case");
+      complain(node, "'" + text + "' is not a valid name",
+               "a letter, then letters, digits and _, all lower case");
     else if (!taken.insert(text).second)
       complain(node, "'" + text + "' is there twice", "another name");
     return text;
@@ -47,12 +48,13 @@ class Reader {
   std::string string(const Node& node, std::string_view member) {
     const Node* found = node.find(member);
     if (found == nullptr) return {};
-    if (!found->is(Kind::string)) complain(*found, std::string{member} + " is no text", "put it in quotes");
+    if (!found->is(Kind::string))
+      complain(*found, std::string{member} + " is not a text", "put it in quotes");
     std::string safe;  // it goes into a comment
     for (const char c : found->text) safe += static_cast<unsigned char>(c) < 0x20 || c == '\\' ? ' ' : c;
     return safe;
   }
-  /// In nanoseconds; `otherwise` where there is none.
+  /// In nanoseconds; `otherwise` if it is missing.
   std::int64_t time(const Node& node, std::string_view member, std::int64_t least, std::int64_t otherwise) {
     const Node* found = node.find(member);
     if (found == nullptr) {
@@ -70,7 +72,7 @@ class Reader {
                                               : 0;
     const bool good = found->is(Kind::string) && error == std::errc{} && scale != 0 &&
                       count <= INT64_MAX / 2 / (scale == 0 ? 1 : scale) && count * scale >= least;
-    if (!good) complain(*found, "'" + text + "' is no such time", "a whole number of ns, us, ms or s");
+    if (!good) complain(*found, "'" + text + "' is not a valid time", "a whole number of ns, us, ms or s");
     return good ? count * scale : least;
   }
   std::int64_t number(const Node& node, std::string_view member, std::int64_t most, std::int64_t otherwise) {

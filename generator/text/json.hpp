@@ -44,7 +44,7 @@ class Json {
   [[nodiscard]] static Json array();
   [[nodiscard]] static Json object();
 
-  /// The member of that name, which is added as null where there is none yet; null becomes an object.
+  /// The member of that name, which is added as null if it is missing; null becomes an object.
   Json& operator[](std::string_view name);
   /// One more item; null becomes an array.
   void push_back(Json item);

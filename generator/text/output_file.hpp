@@ -1,4 +1,4 @@
-/// Writes a generated file so that nobody ever reads half of one.
+/// Writes a generated file so that no program ever reads half of one.
 #pragma once
 
 #include <optional>

@@ -240,7 +240,7 @@ TEST_CASE("what no schema can see of sentences is told with its place and what w
   CHECK(with("/sentences/0/name", "switch") ==
         Lines{R"(/sentences/0/name: "switch" is a word of C++; another name, such as "switch_value")"});
   CHECK(with("/sentences/2/word", "CON") ==
-        Lines{R"(/sentences/2: it cannot be told from "confirm"; another letter, word or text)"});
+        Lines{R"(/sentences/2: it cannot be distinguished from "confirm"; another letter, word or text)"});
   CHECK(
       with("/sentences/2/letter", "T") ==
       Lines{
@@ -267,7 +267,7 @@ TEST_CASE("what no schema can see of sentences is told with its place and what w
   CHECK(
       with("/sentences/1/source/width", "a ruler") ==
       Lines{
-          R"(/sentences/1/source/width: source for "width", which is no fact of this object; default, range, or one of angle, distance)"});
+          R"(/sentences/1/source/width: source for "width", which is not a fact of this object; default, range, or one of angle, distance)"});
   CHECK(with("/packed/sentence", "idle") ==
         Lines{R"(/packed/sentence: no sentence "idle" has integers; the name of one that has)"});
   CHECK(
