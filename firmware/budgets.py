@@ -6,7 +6,7 @@
     ... --budgets FILE            these instead: firmware/avr/budgets.json for what firmware/avr builds
 
 Flash is what is programmed: vectors, code, constants, initial values. RAM is variables and all stacks; what is
-left of a chip's RAM is nobody's. (An AVR's image has one stack, which takes what is left.) Images of tests have no
+left of a chip's RAM is unused. (An AVR's image has one stack, which takes what is left.) Images of tests have no
 budget. Exit code: 0 all within, 1 not, 2 usage."""
 
 import argparse

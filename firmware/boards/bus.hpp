@@ -4,7 +4,7 @@
 /// is late, which can be another one than the fast one:
 /// misses_its_deadline<FreshFrame<amiro::ProximityRing, ...>, response, deadline>, in nanoseconds.
 ///
-/// Not in it, since nobody sends them by the clock: requests, the lights' set points, calibrations; nor what
+/// Not in it, since they are not sent by the clock: requests, the lights' set points, calibrations; nor what
 /// is asked for beyond the spec's periods, which admission decides (docs/admission.md). `amiroctl analyse
 /// bus` shows the same set as a table.
 ///

@@ -14,7 +14,7 @@ namespace ocm::firmware::boards {
 template <class Topic>
 class Calibration {
  public:
-  /// `start(bool forget)` -> base::Status begins it. What cannot be done is told as a refusal.
+  /// `start(bool forget)` -> base::Status begins it. What cannot be done is reported as a refusal.
   template <class Controller, std::invocable<bool> Start>
   void apply(const Topic& command, Controller& controller, Start start) noexcept {
     using Action = typename Topic::Action;
@@ -27,7 +27,7 @@ class Calibration {
     under_way_ = true;
   }
 
-  /// Once it is over, a failure is told. `busy()` and `error()` ask the parts.
+  /// Once it is over, a failure is reported. `busy()` and `error()` ask the parts.
   template <class Controller, class Busy, class LastError>
   void look(Controller& controller, Busy busy, LastError error) noexcept {
     {

@@ -34,7 +34,7 @@ class PartSet {
   void start_parts(base::Time now) {
     for (std::size_t i = 0; i < N; ++i) with(i, [now](auto& each) { each.maintain(now); });
   }
-  /// Looks after the next part that wants it, at most one.
+  /// Looks after the next part that needs it, at most one.
   void maintain_one(base::Time now) {
     for (std::size_t i = 0; i < N; ++i) {
       bool used = false;

@@ -64,8 +64,8 @@ class Mutex {
   mutex_t mutex_;
 };
 
-/// Where one thread waits for one cause, which anybody may announce, interrupts too. An announcement without
-/// a waiter is kept, once.
+/// Where one thread waits for one cause, which any context may announce, interrupts too. An announcement
+/// without a waiter is kept, once.
 class Signal {
  public:
   /// With the lock held.
@@ -164,7 +164,7 @@ struct Stacks {
 enum class BusEvent : std::uint8_t {
   frame,     ///< one was received
   writable,  ///< there is room again for frames to send
-  lost,      ///< the bus is gone: bus-off, nobody there
+  lost,      ///< the bus is gone: bus-off, or no other node
 };
 
 /// A bus as the receiver's thread sees it: `wait` blocks until there is something, and fills `frame` if it is
@@ -204,7 +204,7 @@ class Levels {
     }
   }
 
-  /// Bytes of stack that nobody ever touched, of the three levels above low.
+  /// Bytes of stack that were never touched, of the three levels above low.
   [[nodiscard]] std::size_t untouched(Level level) const noexcept {
     return threads_[static_cast<std::size_t>(level)].untouched();
   }
@@ -245,7 +245,7 @@ class Runtime {
     levels_.run(background);
   }
 
-  /// Bytes of stack that nobody ever touched, of the receiver or of the three levels above low.
+  /// Bytes of stack that were never touched, of the receiver or of the three levels above low.
   [[nodiscard]] std::size_t untouched_receiver() const noexcept { return receiver_.untouched(); }
   [[nodiscard]] std::size_t untouched(Level level) const noexcept { return levels_.untouched(level); }
 

@@ -5,7 +5,7 @@
 /// several priority levels share locks inside its `transfer` (a mutex with priority inheritance, held for one
 /// transfer only).
 ///
-/// Errors: no_answer, nobody acknowledged the address or a byte (I2C only: SPI cannot tell); bus_fault, all
+/// Errors: no_answer, no part acknowledged the address or a byte (I2C only: SPI cannot tell); bus_fault, all
 /// else: arbitration lost, a line stuck, a time-out.
 #pragma once
 

@@ -160,7 +160,7 @@ class Bxcan {
     if (errors.state == BusState::passive && errors_.state < BusState::passive) ++counters_.passive;
     errors_ = errors;
 
-    // It does not leave its initialisation while somebody holds the bus dominant.
+    // It does not leave its initialisation while the bus is held dominant.
     const bool joined = (registers_.read(Register::msr) & msr::inak) == 0;
     const bool well = joined && errors.state < BusState::passive;
     const std::uint32_t successes = counters_.sent + counters_.received;
@@ -194,7 +194,7 @@ class Bxcan {
   struct Mailbox {
     Slot* slot = nullptr;   ///< nullptr: empty
     bool aborting = false;  ///< asked to let it go; not confirmed yet
-    bool given_up = false;  ///< ... and nobody wants it back
+    bool given_up = false;  ///< ... and it is not needed back
   };
 
   /// Lower is sent first. Base data frames only: the identifier is the arbitration key.
@@ -255,7 +255,7 @@ class Bxcan {
       // loaded again, or the note of the next frame would be lost.
       registers_.write(Register::tsr, tsr::at(tsr::rqcp, n));
       Mailbox& mailbox = mailboxes_[n];
-      if (mailbox.slot == nullptr) continue;  // a leftover of whoever had the controller before
+      if (mailbox.slot == nullptr) continue;  // a leftover of the program before
       if ((status & tsr::at(tsr::txok, n)) != 0) {
         ++counters_.sent;
         release(*mailbox.slot);

@@ -92,8 +92,8 @@ class Calibration {
   /// Asks for a measurement, now and to be kept, or for all offsets to be 0. From any context. Error::full
   /// while one is under way; the outcome is `last()`.
   base::Status request(bool forget) noexcept {
-    if (wish_.load(std::memory_order_relaxed) != Wish::none || busy()) return base::Error::full;
-    wish_.store(forget ? Wish::forget : Wish::measure, std::memory_order_release);
+    if (order_.load(std::memory_order_relaxed) != Order::none || busy()) return base::Error::full;
+    order_.store(forget ? Order::forget : Order::measure, std::memory_order_release);
     return {};
   }
 
@@ -103,7 +103,7 @@ class Calibration {
   }
   [[nodiscard]] bool busy() const noexcept {
     return doing_.load(std::memory_order_relaxed) != Doing::nothing ||
-           wish_.load(std::memory_order_relaxed) != Wish::none;
+           order_.load(std::memory_order_relaxed) != Order::none;
   }
   /// How the last request ended: what is in use may not be what is stored.
   [[nodiscard]] base::Error last() const noexcept { return last_.load(std::memory_order_relaxed); }
@@ -145,7 +145,7 @@ class Calibration {
   }
 
  private:
-  enum class Wish : std::uint8_t { none, measure, forget };
+  enum class Order : std::uint8_t { none, measure, forget };
   enum class Doing : std::uint8_t { nothing, measuring, writing, verifying };
   static constexpr std::size_t pages = CalibrationRecord::size / at24c01b::page;
 
@@ -159,16 +159,16 @@ class Calibration {
   }
 
   void take() noexcept {
-    const Wish wish = wish_.load(std::memory_order_acquire);
-    if (wish == Wish::none) return;
+    const Order order = order_.load(std::memory_order_acquire);
+    if (order == Order::none) return;
     sums_.fill(0);
     sensor_ = 0;
     taken_ = 0;
-    if (wish == Wish::measure)
+    if (order == Order::measure)
       become(Doing::measuring);
     else
       keep();
-    wish_.store(Wish::none, std::memory_order_release);
+    order_.store(Order::none, std::memory_order_release);
   }
 
   void measure(const base::Result<std::uint16_t>& counts) noexcept {
@@ -221,7 +221,7 @@ class Calibration {
 
   At24c01b<Bus> eeprom_;
   std::array<std::atomic<std::uint16_t>, Sensors> offsets_{};
-  std::atomic<Wish> wish_{Wish::none};
+  std::atomic<Order> order_{Order::none};
   std::atomic<Doing> doing_{Doing::nothing};
   std::atomic<base::Error> last_{base::Error::none};
   std::array<std::uint32_t, Sensors> sums_{};

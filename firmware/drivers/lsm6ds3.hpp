@@ -1,6 +1,6 @@
 /// Gyroscope of the LSM6DS3 on SPI: +-500 deg/s, 208 samples/s; its accelerometer stays off.
 ///
-/// One frame of 24 bytes a sample, 20 us at 10 MHz. SPI cannot tell whether anybody answers, so each frame
+/// One frame of 24 bytes a sample, 20 us at 10 MHz. SPI cannot tell whether a part answers, so each frame
 /// fetches the control registers too: a part that is away, or was reset, is noticed in the same frame.
 /// Errors: no_answer, not this part or not as configured; what the bus says. [data sheet: ST LSM6DS3,
 /// DocID026899 Rev 8; AN4650: ST application note, DocID027415 Rev 5]

@@ -83,7 +83,7 @@ class Part {
     return false;
   }
 
-  /// Nobody answers, or somebody else.
+  /// No part answers, or another one.
   [[nodiscard]] bool absent() const noexcept {
     return state_.load(std::memory_order_relaxed) == State::absent;
   }

@@ -1,7 +1,7 @@
 /// I2C multiplexer PCA9544A: four channels, so that four parts of one address can share a bus.
 ///
 /// Each transfer to a channel is two on the bus, select and talk, with `Lock` held over both: 0.05 ms more at
-/// 400 kbit/s, 0.2 ms at 100. The channel is selected anew each time, so a multiplexer that was reset does no
+/// 400 kbit/s, 0.2 ms at 100. The channel is selected each time, so a multiplexer that was reset does no
 /// harm. Errors: those of the bus.
 /// [data sheet: TI PCA9544A, SCPS146D]
 #pragma once

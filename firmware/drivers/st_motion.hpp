@@ -1,7 +1,7 @@
 /// What ST's gyroscope L3G4200D and accelerometer LIS331DLH have in common: the SPI protocol, the places of
 /// identity, control and output registers, and so the driver. What differs is a `Chip`.
 ///
-/// One frame of 15 bytes a sample, 12 us at 10 MHz. SPI cannot tell whether anybody answers, so each frame
+/// One frame of 15 bytes a sample, 12 us at 10 MHz. SPI cannot tell whether a part answers, so each frame
 /// fetches the control registers too: a part that is away, or was reset, is noticed in the same frame.
 /// Errors: no_answer, not this part or not as configured; what the bus says.
 /// [data sheets: L3G4200D, ST Doc ID 17116 Rev 3; LIS331DLH, ST Doc ID 15094 Rev 3: section 5.2 of both]

@@ -59,7 +59,7 @@ int main() {
     require(!bus.send({.id = 0x800, .dlc = 1, .data = {}, .format = can::Format::base}).ok(),
             "no such frame");
   }
-  // Heard: 7F0, then by identifier 4FF, 601, 7F1, 7F2, 7F3. The receiver is told of each place that becomes
+  // Heard: 7F0, then by identifier 4FF, 601, 7F1, 7F2, 7F3. The receiver learns of each place that becomes
   // free; those of one look are one.
   expect(bus, chibios::BusEvent::writable);
   for (bool sent = false; !sent;) {

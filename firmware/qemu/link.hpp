@@ -66,7 +66,7 @@ struct Answer {
 template <std::size_t Header, std::size_t LengthAt>
 class Reader {
  public:
-  /// True: the byte was the last of a frame. The next one begins anew.
+  /// True: the byte was the last of a frame. The next one begins a new frame.
   constexpr bool feed(std::uint8_t byte) noexcept {
     if (complete_) size_ = 0;
     bytes_[size_++] = byte;

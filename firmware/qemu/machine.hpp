@@ -15,7 +15,7 @@ namespace ocm::firmware::qemu {
 /// Counter and kernel. First thing in main().
 void start_machine() noexcept;
 
-/// Ends QEMU with this exit code, the reason on its stderr. (QEMU wants -semihosting; without it, it aborts.)
+/// Ends QEMU with this exit code, the reason on its stderr. (QEMU needs -semihosting; without it, it aborts.)
 [[noreturn]] void leave(const char* reason, int code) noexcept;
 
 /// Before an image that gives up ends QEMU, it calls this with the reason, interrupts off: for what a robot

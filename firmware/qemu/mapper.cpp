@@ -72,7 +72,7 @@ int main() {
     load.look(now);
     parts.maintain(now);
 #ifdef OCM_OVERFLOW_TEST
-    // Deeper than main()'s stack is, as soon as somebody is connected; and another thread's turn there.
+    // Deeper than main()'s stack is, as soon as a server is connected; and another thread's turn there.
     struct Deeper {
       static int call(int depth) {
         volatile char room[64] = {};

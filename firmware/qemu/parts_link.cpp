@@ -7,7 +7,7 @@ namespace ocm::firmware::qemu {
 void PartsLink::write(link::Request request, std::span<const std::uint8_t> head) noexcept {
   auto header = link::header(request);
   header[4] = static_cast<std::uint8_t>(head.size() + request.written.size());
-  const chibios::Lock lock;  // a frame stays whole, whoever posts another meanwhile
+  const chibios::Lock lock;  // a frame stays whole, also if another is posted meanwhile
   uart_->write(header);
   uart_->write(head);
   uart_->write(request.written);

@@ -4,7 +4,7 @@
 ///
 /// One line, so one mutex with priority inheritance around an exchange; with a host that answers, an exchange
 /// takes as long as the host does. One that does not answer costs `patience`, and is Error::bus_fault. For
-/// threads; what only sets something (motors, outputs, pulses) waits for nobody and may be called anywhere.
+/// threads; what only sets something (motors, outputs, pulses) does not wait and may be called anywhere.
 #pragma once
 
 #include <array>

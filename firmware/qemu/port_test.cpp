@@ -23,7 +23,7 @@ void require(bool holds, const char* what) {
   if (!holds) ocm::firmware::qemu::leave(what, 1);
 }
 
-/// Busy, not asleep: the time of whoever is preempted goes on.
+/// Busy, not asleep: the time of a preempted job goes on.
 void spin(chibios::Port& port, base::Duration time) {
   const base::Time end = port.now() + time;
   while (port.now() < end) {
@@ -67,7 +67,7 @@ struct Controller {
   void bus_lost() {}
 };
 
-/// The test itself is the receiver's thread: it is above all levels, as whoever gets a request is.
+/// The test itself is the receiver's thread: it is above all levels, as a receiver of requests is.
 struct Script {
   Controller& controller;
   chibios::BusEvent wait(ocm::can::Frame&);
@@ -90,7 +90,7 @@ void clock_survives_a_turn(chibios::Port& port) {
   const base::Time start = port.now();
   const std::uint32_t counter = OCM_TIM2_CNT;
   static_cast<void>(chibios::Signal{}.wait(300ms));
-  while (OCM_TIM2_CNT - counter < 600'000) {  // busy, and asks nobody for the time
+  while (OCM_TIM2_CNT - counter < 600'000) {  // busy, by the counter alone
   }
   const auto passed = std::chrono::microseconds{static_cast<std::uint32_t>(OCM_TIM2_CNT - counter)};
   const base::Duration error = port.now() - start - passed;
@@ -122,9 +122,9 @@ void timer_is_never_early(Controller& c) {
   c.arm(c.port.now() + 10ms);
   c.arm(c.port.now() + 40ms);
   static_cast<void>(chibios::Signal{}.wait(25ms));
-  require(c.expiries == 0, "arming anew did not replace");
+  require(c.expiries == 0, "arming again did not replace");
   static_cast<void>(chibios::Signal{}.wait(40ms));
-  require(c.expiries == 1, "the time that was armed anew did not come");
+  require(c.expiries == 1, "the time that was armed again did not come");
 }
 
 void levels_preempt(Controller& c) {
@@ -143,7 +143,7 @@ void levels_preempt(Controller& c) {
   };
   c.runs = {};
   {
-    const auto lock = c.port.lock();  // nobody moves before all are pended
+    const auto lock = c.port.lock();  // no level runs before all are pended
     for (const Level level : {Level::low, Level::medium, Level::high, Level::urgent}) c.port.pend(level);
   }
   require(c.finished.wait(1s), "levels did not finish");
@@ -154,7 +154,7 @@ void levels_preempt(Controller& c) {
   c.job = nullptr;
 }
 
-/// Low has the mutex, urgent wants it, medium has much to do: with inheritance low finishes first.
+/// Low has the mutex, urgent claims it, medium has much to do: with inheritance low finishes first.
 void holder_inherits(Controller& c) {
   c.traced = 0;
   c.job = [](Controller& self, Level level) {

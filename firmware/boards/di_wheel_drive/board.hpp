@@ -129,7 +129,7 @@ class Board : public Node<amiro::DiWheelDrive, Bus, P, (Regulated<H> ? 2 : 1), A
     if constexpr (Regulated<H>)
       controller_.template every<1>(control_period, scheduling::Level::urgent, [this] { control(); });
   }
-  /// On hardware that wants it, to be called every 10 ms or so on the low level: looks after the parts, and
+  /// On hardware that needs it, to be called every 10 ms or so on the low level: looks after the parts, and
   /// tells how a calibration ended.
   void maintain(base::Time now) noexcept requires Maintained<H> {
     hardware_->maintain(now);

@@ -1,5 +1,5 @@
 /// What DiWheelDrive's samples and tasks take of its processor, for its admission: its set of
-/// spec/tasks.json, which is schedulable as long as nobody asks for more than the defaults.
+/// spec/tasks.json, which is schedulable as long as no request asks for more than the defaults.
 #pragma once
 
 #include "ocm/analysis/task_list.hpp"

@@ -35,7 +35,7 @@
 
 namespace ocm::firmware::boards::di_wheel_drive {
 
-/// Numbers of buses and devices, for whoever has to name them. [AMiRo-OS 1.0, DiWheelDrive: global.hpp]
+/// Numbers of buses and devices, for code that names them. [AMiRo-OS 1.0, DiWheelDrive: global.hpp]
 namespace wiring {
 inline constexpr std::uint8_t compass_i2c = 1;         ///< I2C1, 400 kbit/s
 inline constexpr std::uint8_t floor_i2c = 2;           ///< I2C2, 400 kbit/s: multiplexer and EEPROM

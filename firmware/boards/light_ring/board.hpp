@@ -27,7 +27,7 @@ concept Hardware = requires(H& hardware, std::size_t light, Colour colour) {
   hardware.set_light(light, colour);
 };
 
-/// Hardware that wants to be looked after.
+/// Hardware that needs to be looked after.
 template <class H>
 concept Maintained = Hardware<H> && requires(H& hardware, base::Time now) {
   hardware.maintain(now);
@@ -47,7 +47,7 @@ class Board : public Node<amiro::LightRing, Bus, P, 0, A> {
       hardware_->set_light(instance - 1U, Colour{led.red, led.green, led.blue});
     });
   }
-  /// On hardware that wants it, to be called every 10 ms or so on the low level.
+  /// On hardware that needs it, to be called every 10 ms or so on the low level.
   void maintain(base::Time now) noexcept requires Maintained<H> { hardware_->maintain(now); }
 
  private:

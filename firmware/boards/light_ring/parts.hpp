@@ -21,7 +21,7 @@
 
 namespace ocm::firmware::boards::light_ring {
 
-/// Numbers of devices and pins, for whoever has to name them. [AMiRo-OS 1.0, LightRing: global.hpp]
+/// Numbers of devices and pins, for code that names them. [AMiRo-OS 1.0, LightRing: global.hpp]
 namespace wiring {
 inline constexpr std::uint8_t lights_spi = 1;    ///< SPI1, chip select PC4, which is XLAT
 inline constexpr std::uint8_t blank_pin = 0x01;  ///< output bit 0: PA4, BLANK; high: all lights off

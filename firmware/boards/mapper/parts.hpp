@@ -4,7 +4,7 @@
 /// [Thesis 2, chapter 5 and its pinout of the ATmega1284]
 ///
 /// `ticks`, `gyro`, `field` and `infrared` are a transfer each, for tasks; `drive`, `turn_tower`, `show`,
-/// `linked` and `send` wait for nobody and may be called anywhere. Gyro and compass are looked after by
+/// `linked` and `send` do not wait and may be called anywhere. Gyro and compass are looked after by
 /// `maintain`: one that does not answer is tried again each second, and says no_answer at once meanwhile. No
 /// heap.
 #pragma once
@@ -32,7 +32,7 @@
 
 namespace ocm::firmware::boards::mapper {
 
-/// Numbers of buses, devices, channels and pins, for whoever has to name them.
+/// Numbers of buses, devices, channels and pins, for code that names them.
 namespace wiring {
 inline constexpr std::uint8_t gyroscope_spi = 1;
 inline constexpr std::uint8_t compass_i2c = 1;

@@ -71,7 +71,7 @@ class Board : public Node<amiro::PowerManagement, Bus, P, 0, A> {
                          [this](bool forget) { return hardware_->calibrate_ring(forget); });
     });
   }
-  /// On hardware that wants it, to be called every 10 ms or so on the low level: looks after the parts, and
+  /// On hardware that needs it, to be called every 10 ms or so on the low level: looks after the parts, and
   /// tells how a calibration ended.
   void maintain(base::Time now) noexcept requires Maintained<H> {
     hardware_->maintain(now);

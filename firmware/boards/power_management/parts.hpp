@@ -28,7 +28,7 @@
 
 namespace ocm::firmware::boards::power_management {
 
-/// Numbers of buses and pins, for whoever has to name them. [AMiRo-OS 1.0, PowerManagement: global.hpp]
+/// Numbers of buses and pins, for code that names them. [AMiRo-OS 1.0, PowerManagement: global.hpp]
 namespace wiring {
 inline constexpr std::uint8_t back_i2c = 1;        ///< I2C1, 100 kbit/s: multiplexer, gauge of P8
 inline constexpr std::uint8_t front_i2c = 2;       ///< I2C2, 100 kbit/s: multiplexer, gauge of P7, EEPROM
@@ -118,7 +118,7 @@ class Parts : public PartSet<Parts<BackBus, FrontBus, Pins, Lock>, 11> {
   [[nodiscard]] bool calibrating() const noexcept { return calibration_.driver().busy(); }
   /// How the last calibration ended.
   [[nodiscard]] base::Error calibration_error() const noexcept { return calibration_.driver().last(); }
-  /// What was measured, for whoever wants counts without it; `ring()` does not take it off.
+  /// What was measured, for callers that need counts without it; `ring()` does not take it off.
   [[nodiscard]] std::uint16_t ring_offset(std::size_t sensor) const noexcept {
     return calibration_.driver().offset(sensor);
   }

@@ -16,7 +16,7 @@
 #define CH_CFG_ST_RESOLUTION                OCM_SYSTEM_TIME_BITS
 #define CH_CFG_ST_FREQUENCY                 1000000
 #define CH_CFG_ST_TIMEDELTA                 10
-#define CH_CFG_TIME_QUANTUM                 0   /* one thread a level: nobody to take turns with */
+#define CH_CFG_TIME_QUANTUM                 0   /* one thread a level: none to take turns with */
 
 #define CH_CFG_MEMCORE_SIZE                 0
 #define CH_CFG_NO_IDLE_THREAD               FALSE

@@ -95,7 +95,7 @@ void rest_and_restart() noexcept {
 
 namespace stm32 = ocm::firmware::chibios::stm32;
 
-// C++ would mangle the names, and the vectors would go to nobody.
+// C++ would mangle the names, and the vectors would lead nowhere.
 extern "C" {
 
 OSAL_IRQ_HANDLER(Vector9C) {  // lines 9 to 5

@@ -1,9 +1,9 @@
-/// What the boards say to each other beside CAN: SYS_SYNC_N, low while anybody is busy; SYS_PD_N, low when
-/// anybody wants the robot off or restarted. And the programming UART, on which the flashing tool says hello.
-/// [AMiRo-BLT main.c of each board; AMiRo-OS main.cpp]
+/// What the boards say to each other beside CAN: SYS_SYNC_N, low while any board is busy; SYS_PD_N, low when
+/// any board requests the robot off or restarted. And the programming UART, on which the flashing tool says
+/// hello. [AMiRo-BLT main.c of each board; AMiRo-OS main.cpp]
 ///
-/// When a shutdown or restart is wanted nothing of ours runs on: `prepare` brings the actuators to rest, then
-/// the bootloader has the chip, and does not come back.
+/// When a shutdown or restart is requested nothing of ours runs on: `prepare` brings the actuators to rest,
+/// then the bootloader has the chip, and does not come back.
 #pragma once
 
 #include <cstdint>

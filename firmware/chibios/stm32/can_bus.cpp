@@ -122,7 +122,7 @@ void CanBus::watch() noexcept {
 
 using ocm::firmware::chibios::stm32::bus;
 
-// C++ would mangle the names, and the vectors would go to nobody.
+// C++ would mangle the names, and the vectors would lead nowhere.
 extern "C" {
 
 OSAL_IRQ_HANDLER(STM32_CAN1_TX_HANDLER) {

@@ -73,9 +73,9 @@ class CanBus {
   std::size_t begin_ = 0;
   std::size_t size_ = 0;
   std::uint32_t missed_ = 0;
-  bool refused_ = false;   ///< `send` said no since somebody was told that there is room
+  bool refused_ = false;   ///< `send` said no since room was last announced
   bool writable_ = false;  ///< there is room again
-  bool lost_ = false;      ///< the bus went since somebody was told
+  bool lost_ = false;      ///< the bus went since that was last announced
   Signal signal_;
 };
 static_assert(can::Sender<CanBus>);

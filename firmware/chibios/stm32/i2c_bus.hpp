@@ -3,7 +3,7 @@
 ///
 /// Two things that the chip cannot do are done otherwise, both harmless to every part on these boards: a read
 /// of one byte reads two and drops the second on the F103 [ChibiOS I2Cv1: rxbytes > 1]; a transfer without
-/// any byte, by which a driver asks whether somebody is there, reads two and drops them.
+/// any byte, by which a driver asks whether a part is there, reads two and drops them.
 #pragma once
 
 #include <cstddef>

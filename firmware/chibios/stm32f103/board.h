@@ -1,4 +1,4 @@
-/// What ChibiOS wants to know of a board: its crystals. Pins are set by the boards' own code.
+/// What ChibiOS must know of a board: its crystals. Pins are set by the boards' own code.
 #ifndef BOARD_H
 #define BOARD_H
 

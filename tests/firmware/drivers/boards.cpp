@@ -100,7 +100,7 @@ TEST_CASE("DiWheelDrive in a frozen world: the same digits as the world's") {
   }
 }
 
-TEST_CASE("DiWheelDrive: before its parts are settled they say so, and nobody waits") {
+TEST_CASE("DiWheelDrive: before its parts are settled they say so, and no call waits") {
   Bottom b;
   CHECK(b.parts.gyroscope().error == Error::no_answer);
   b.parts.start(b.time.now);

@@ -37,7 +37,7 @@ inline bool complained(const ocm::sim::Violations& violations, const std::string
                      [&](const std::string& text) { return text.find(of) != std::string::npos; });
 }
 
-/// An SPI device whose frames a test may spoil on the way: the driver of somebody who read the data sheet
+/// An SPI device whose frames a test may spoil on the way: a driver whose author read the data sheet
 /// badly.
 struct SpoiledSpi {
   ocm::sim::SpiDevice* device = nullptr;

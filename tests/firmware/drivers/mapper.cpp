@@ -1,5 +1,5 @@
 // The mapper's own parts: the gyroscope LSM6DS3, the converter's volts, the servo's pulses, and all of
-// them together: what the robot's parts say through registers is what somebody put in behind the registers.
+// them together: what the robot's parts say through registers is what was put in behind the registers.
 #include "sim/parts/mapper.hpp"
 
 #include <algorithm>

@@ -40,7 +40,7 @@ base::Result<int> read(Test& part) {
 TEST_CASE("a part is started, waited for, and read") {
   Test part;
   const base::Time t0{};
-  CHECK(read(part).error == Error::no_answer);  // nobody has looked yet
+  CHECK(read(part).error == Error::no_answer);  // not looked at yet
   CHECK(part.maintain(t0));
   CHECK(read(part).error == Error::not_sampled);  // settling
   CHECK_FALSE(part.absent());
@@ -107,7 +107,7 @@ TEST_CASE("a part that flaps is started once a second at the most") {
   CHECK(part.driver().reads == 10);
 }
 
-TEST_CASE("a part that nobody reads is missed all the same") {
+TEST_CASE("a part that is never read is missed nevertheless") {
   Test part;
   base::Time now{};
   part.maintain(now);

@@ -65,11 +65,11 @@ TEST_CASE("proximity: four sensors of one address, each behind its channel") {
   CHECK(Recorder::times > 0);
 }
 
-TEST_CASE("proximity: without the multiplexer's word nobody is there") {
+TEST_CASE("proximity: without the multiplexer no sensor answers") {
   Proximity p;
   drivers::Vcnl4020<SpoiledI2c> direct{p.bus};
   CHECK(direct.start().error == Error::no_answer);
-  // One that forgets its channel reads somebody else's counts: the select must go before each transfer.
+  // One that forgets its channel reads another sensor's counts: the select must go before each transfer.
   p.bus.spoil = [](std::uint8_t& address, auto& bytes) {
     if (address == 0x77) bytes[0] = 0x04;
   };

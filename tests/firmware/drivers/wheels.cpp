@@ -130,7 +130,7 @@ TEST_CASE("held and let go: no run-away") {
   Loop loop;
   for (int i = 0; i < 100; ++i) loop.step(4000);
   loop.wheel.held = true;
-  for (int i = 0; i < 500; ++i) loop.step(4000);  // 5 s against somebody's hand
+  for (int i = 0; i < 500; ++i) loop.step(4000);  // 5 s against a hand
   CHECK(loop.duty == full_duty);
   loop.wheel.held = false;
   double sum = 0;

@@ -75,7 +75,7 @@ class Robots(RealTime, Case):
         return frames if len(frames) == count else None
 
     def record(self, name, *arguments):
-        """Listens into a file: what nobody reads must not hold the listener up. `recorded` ends it."""
+        """Listens into a file: what is not read must not hold the listener up. `recorded` ends it."""
         path = f"{self.folder}/{name}.json"
         with open(path, "wb") as file:
             listener = subprocess.Popen([os.environ["AMIROCTL"], "--bus", self.bus(name), "listen", "--json", *arguments],
@@ -199,7 +199,7 @@ class Moving(Robots):
         output = {name: self.recorded(recording) for name, recording in recordings.items()}
 
         samples = {name: self.samples(events) for name, events in output.items()}
-        # Three stops of the script fall on the very grid point of a release: which is first is nobody's promise.
+        # Three stops of the script fall on the very grid point of a release: which is first is not specified.
         on_the_edge = {"accelerometer", "proximity_ring", "odometry"}
         for topic in SENSORS:
             host, qemu = samples["host"][topic], samples["qemu"][topic]
@@ -245,7 +245,7 @@ class Moving(Robots):
         self.start_robots("--seed", "1")
         recording = self.record("qemu", "odometry")
         self.tool("qemu", "publish", "odometry", "100ms")
-        self.tool("qemu", "set", "motors", "x=0.2m/s")  # once: nobody repeats it
+        self.tool("qemu", "set", "motors", "x=0.2m/s")  # once: it is not repeated
         time.sleep(2)
         events = self.recorded(recording)
         speeds = [e["fields"]["x"] for e in events if e["frame"] == "velocity"]

@@ -37,7 +37,7 @@ ERRORS = error_numbers()
 
 
 class NoAnswer(Exception):
-    """Nobody acknowledges."""
+    """No part acknowledges."""
 
 
 class MotionSensor:
@@ -51,7 +51,7 @@ class MotionSensor:
 
     def transfer(self, mode, clock, out):
         if not self.present:
-            return b"\xff" * len(out)  # nobody drives the line
+            return b"\xff" * len(out)  # the line is not driven
         assert mode == 3 and clock <= 10_000_000, (mode, clock)
         at, answer = out[0] & 0x3F, bytearray([0])
         for byte in out[1:]:
@@ -156,7 +156,7 @@ class Parts:
 
 
 class Machine:
-    """A running image; its serial lines, named in their order, are `lines`. `news` is told when something came."""
+    """A running image; its serial lines, named in their order, are `lines`. `news` is notified when something came."""
 
     def __init__(self, name, chip, lines):
         self.news = threading.Condition()
@@ -211,7 +211,7 @@ class Machine:
                 self.news.wait(min(left, 0.02))
 
     def heard(self):
-        """For who waits in vain."""
+        """For a wait without result."""
         return ""
 
     def memory(self, start, size):
@@ -233,7 +233,7 @@ class Machine:
         return found
 
     def untouched(self, threads, names):
-        """Bytes of stack that nobody ever touched, by the fill patterns in the machine's memory: those of the threads
+        """Bytes of stack that were never touched, by the fill patterns in the machine's memory: those of the threads
         `names` in the variable that ends with `threads`, of main()'s, which is the lowest level's, and of the interrupts."""
         symbols = self.symbols()
         place = next(place for name, place in symbols.items() if name.endswith(threads) and "guard" not in name)

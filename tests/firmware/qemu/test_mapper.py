@@ -124,7 +124,7 @@ class Life(Case):
         self.assertLess(off - lost, 0.1, "at once")
         time.sleep(0.1)
         quiet = time.monotonic()
-        robot.tell("{U,0,50}")  # from nobody
+        robot.tell("{U,0,50}")  # without a link
         time.sleep(1)
         self.assertEqual([line for at, line in robot.said if at >= quiet], [])
         self.assertTrue(self.world.standing())
@@ -255,7 +255,7 @@ class Resources(Case):
                 load = robot.memory(address, size)[24]  # LoadMeter: a pointer and padding, two of 8 bytes, percent
                 print(f"{chip}: untouched bytes of stack: {free}; load {load} %")
                 self.assertGreaterEqual(min(free.values()), 96, free)
-                # QEMU's time is the host's, so that a busy host makes a busy robot: only what nobody can be is wrong.
+                # QEMU's time is the host's, so that a busy host makes a busy robot: only the impossible is wrong.
                 self.assertGreater(load, 0)
                 self.assertLess(load, 90)
 

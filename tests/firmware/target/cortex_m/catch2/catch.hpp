@@ -1,6 +1,7 @@
 /// What the unit tests use of Catch2, for a Cortex-M without exceptions and iostreams: the same test sources
-/// compile here unchanged. A failed CHECK is told and counted; a failed REQUIRE is told and ends the program,
-/// for without exceptions nothing else leaves a test case. Values are not told: the host runs the same test.
+/// compile here unchanged. A failed CHECK is reported and counted; a failed REQUIRE is reported and ends the
+/// program, for without exceptions nothing else leaves a test case. Values are not told: the host runs the
+/// same test.
 #pragma once
 
 #include <charconv>
