@@ -102,7 +102,7 @@ ChainStudy study_chain(const std::string& file, std::int64_t deadline, const Bus
   study.bound = analysis::bound_chain(study.hops, deadline, [&](std::size_t i, std::int64_t jitter) {
     const HopEntry& entry = study.entries[i];
     if (entry.set.empty()) {
-      // Given, not analysed: it takes so long from its activation on, whenever that is.
+      // Given, not analysed: its response time counts from its activation, whenever that is.
       Explained given;
       const auto response = analysis::Checked{entry.response} + (entry.sampled ? 0 : jitter);
       given.response = response.value_or(analysis::unbounded);

@@ -55,10 +55,10 @@ class Table {
                                       [&name](const Column& column) { return column.name == name; });
       const bool twice = std::find(names_.begin(), names_.end(), name) != names_.end();
       if (known == columns.end() || twice)
-        mistake(head,
-                twice ? fmt::format("column '{}' stands there twice", name)
-                      : fmt::format("unknown column '{}'", name),
-                fmt::format("the header is {}", header));
+        mistake(
+            head,
+            twice ? fmt::format("column '{}' occurs twice", name) : fmt::format("unknown column '{}'", name),
+            fmt::format("the header is {}", header));
       names_.push_back(name);
     }
     for (const Column& column : columns)
@@ -70,7 +70,7 @@ class Table {
     for (std::size_t i = 1; i < lines_.size(); ++i)
       if (lines_[i].cells.size() > names_.size())
         mistake(lines_[i], fmt::format("{} cells, the header has {}", lines_[i].cells.size(), names_.size()),
-                "a name with a comma in it stands in double quotes");
+                "write a name that contains a comma in double quotes");
   }
 
   [[nodiscard]] std::span<const Line> lines() const {
@@ -154,7 +154,7 @@ void read_identifier(Table& table, const Line& line, can::Frame& head) {
     table.mistake(line,
                   text.empty() ? std::string{"no id"}
                                : fmt::format("id '{}' {}", text,
-                                             too_large ? "has more than 29 bits" : "is no identifier"),
+                                             too_large ? "has more than 29 bits" : "is not an identifier"),
                   "such as 0x101 or 257; above 0x7FF, or with an x at the end, it has 29 bits");
     return;
   }

@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint32_t extended_flag = 0x8000'0000;
 /// Vector's pseudo message for signals without one; it is never sent.
 constexpr std::uint32_t independent_signals = 0xC000'0000;
-/// Stands for a node where there is none.
+/// The name of a missing node.
 constexpr std::string_view no_sender = "Vector__XXX";
 
 /// Words, numbers, quoted strings and punctuation, one by one.
@@ -139,7 +139,7 @@ BusSet parse_dbc(std::string_view text, const std::string& file, std::vector<Mis
       const auto value = tokens.next();
       const auto ns = value ? nanoseconds(value->text) : std::nullopt;
       if (!ns) {
-        mistake(line, "the default of GenMsgCycleTime is no time", "a number of milliseconds, 0 for none");
+        mistake(line, "the default of GenMsgCycleTime is not a time", "a number of milliseconds, 0 for none");
         continue;
       }
       usual = *ns;

@@ -15,7 +15,7 @@
 namespace ocm::cli::analyse {
 namespace {
 
-/// Whoever sends requests and set points.
+/// The node that sends requests and set points.
 constexpr std::string_view operator_node = "operator";
 
 constexpr std::string_view rate_remedy =
@@ -27,7 +27,7 @@ void read_rate(std::string_view text, std::string place, std::vector<Rate>& rate
   rate.place = std::move(place);
   const auto equals = text.rfind('=');
   if (equals == std::string_view::npos || equals == 0) {
-    mistakes.push_back({rate.place, fmt::format("'{}' is no rate", text), std::string{rate_remedy}});
+    mistakes.push_back({rate.place, fmt::format("'{}' is not a rate", text), std::string{rate_remedy}});
     return;
   }
   rate.name = text.substr(0, equals);

@@ -64,7 +64,7 @@ struct Rate {
   std::string place;  ///< for messages: "--rates gyro=1", "rates.txt:3"
 };
 
-/// More messages than a bus with 11-bit identifiers can have; the analysis takes so many.
+/// More messages than a bus with 11-bit identifiers can have; the analysis takes this many.
 inline constexpr std::size_t most_messages = 4096;
 inline constexpr std::size_t most_tasks = 4096;
 /// Clocks that offsets can count from.
@@ -81,7 +81,7 @@ void stop_at(const std::vector<Mistake>& mistakes, std::string_view file);
 
 /// The names of the sets of spec/tasks.json: the boards', and those of the robots of the theses.
 [[nodiscard]] std::vector<std::string> own_task_sets();
-/// One of them; empty where there is none of this name.
+/// One of them; empty if there is none of this name.
 [[nodiscard]] TaskSet own_tasks(std::string_view name);
 
 /// All of a file, or of standard input for "-".
@@ -92,7 +92,7 @@ struct Line {
   std::size_t number = 0;
   std::vector<std::string> cells;
 };
-/// Cells are separated by commas and may stand in double quotes; empty lines and those that begin with # are
+/// Cells are separated by commas and may be in double quotes; empty lines and those that begin with # are
 /// left out, and so are spaces around a cell.
 [[nodiscard]] std::vector<Line> split_csv(std::string_view text);
 
@@ -123,7 +123,7 @@ struct HopEntry {
 /// Words of --rates: "topic=period", "topic=period@priority", "topic=off", or the name of a file of such
 /// lines.
 [[nodiscard]] std::vector<Rate> read_rates(const std::vector<std::string>& words);
-/// A robot's sensors as they are sent when nobody asks for anything else, and its drive, changed by `rates`.
+/// A robot's sensors as they are sent unless a request changes it, and its drive, changed by `rates`.
 [[nodiscard]] BusSet robot_bus(const protocol::Catalogue& catalogue, const std::vector<Rate>& rates);
 /// Changes the periods of a set that was read.
 void apply_rates(BusSet& set, const std::vector<Rate>& rates);

@@ -77,7 +77,7 @@ struct BusModel {
 
 [[nodiscard]] Study study_bus(const BusSet& set, const BusOptions& options);
 
-/// Which identifiers may be given anew: all of them, or the two bits of priority in a robot's.
+/// Which identifiers may be assigned again: all of them, or the two bits of priority in a robot's.
 enum class Assign { nothing, identifiers, priorities };
 /// Gives the set identifiers with which all meet their deadlines, with a remark that says whether there are
 /// any; if not, it stays as it is.

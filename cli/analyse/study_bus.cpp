@@ -29,7 +29,7 @@ using analysis::Explained;
 using analysis::Message;
 using Analysis = analysis::CanResponse<most_messages>;
 
-/// Enough for whatever anybody means to build; what takes longer counts as "does not pass".
+/// Enough for any robot's bus; what takes longer counts as "does not pass".
 /// Beyond, what each message could still do is not looked for: 62 tests of the set each.
 constexpr std::size_t most_rooms = 128;
 /// [CiA 301, table 1]
@@ -56,7 +56,7 @@ class Solver {
     else
       plain_ = std::make_unique<Analysis>();
   }
-  /// `observe` as CanResponse::analyse has it; of queues and offsets it is told nothing.
+  /// `observe` as CanResponse::analyse has it; it is not called for queues and offsets.
   template <class Observer = decltype(analysis::unobserved)>
   std::span<const Explained> solve(const BusModel& model, CanTest test, analysis::Limits limits = {},
                                    Observer&& observe = Observer{}) {
@@ -126,7 +126,7 @@ void set_nodes(const BusSet& set, const BusOptions& options, BusModel& model) {
   }
 }
 
-/// Audsley's order, as indices; first the lowest level that nobody can take, or nobody.
+/// Audsley's order, as indices; first the lowest level that no message can take, or none.
 std::pair<std::size_t, std::vector<std::size_t>> best_order(BusModel model) {
   for (std::size_t i = 0; i < model.messages.size(); ++i)
     model.messages[i].key = static_cast<std::uint32_t>(i);
@@ -153,7 +153,7 @@ void assign_identifiers(BusSet& set, const BusOptions& options) {
     entries.back().head.id = set.entries[i].head.id;
   }
   set.entries = std::move(entries);
-  set.remarks.emplace_back("The identifiers are given anew: in this order all meet their deadlines.");
+  set.remarks.emplace_back("The identifiers are assigned again: in this order all meet their deadlines.");
 }
 
 /// Direction and topic stay, the priority is chosen: the least urgent one with which all are in time.
@@ -192,7 +192,7 @@ void assign_layout(BusSet& set, const BusOptions& options) {
     set.entries.back().bits = 0;  // of the new identifier
   }
   set.remarks.emplace_back(
-      "The priorities are given anew: the least urgent ones with which all meet their deadlines.");
+      "The priorities are assigned again: the least urgent ones with which all meet their deadlines.");
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 /// after what blocks it has begun; and a bar for each response against its deadline.
 ///
 /// The chart is one run of that release pattern, not the analysis: first releases as late as jitter lets them
-/// be, second ones as early. B of tasks is not drawn, as nobody says where it comes from.
+/// be, second ones as early. B of tasks is not drawn, as its origin is not known.
 #include <algorithm>
 #include <cstdint>
 #include <iterator>
@@ -53,7 +53,7 @@ class Schedule {
     };
     for (std::size_t i = 1; i < study_.rows.size(); ++i)
       if (urgency(i) > urgency(victim)) victim = i;
-    // To the end of its worst release; where there is none, some of its periods.
+    // To the end of its worst release; without one, some of its periods.
     const Row& row = study_.rows[victim];
     constexpr std::int64_t shown_periods = 3;
     analysis::Checked end = analysis::Checked{row.period} * shown_periods;

@@ -24,7 +24,7 @@ struct Measured {
   std::int64_t longest = 0;
   std::int64_t mean = 0;
   std::int64_t lateness = 0;  ///< behind the grid of its period, at most
-  std::int64_t response = 0;  ///< at least so long was the longest
+  std::int64_t response = 0;  ///< the longest was at least this
   unsigned greatest_dlc = 0;
   bool other_period = false;  ///< than assumed, so that lateness and response mean nothing
   bool exceeds = false;       ///< its bound

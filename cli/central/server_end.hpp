@@ -20,9 +20,9 @@ class ServerEnd {
   ServerEnd& operator=(const ServerEnd&) = delete;
   virtual ~ServerEnd() = default;
 
-  /// Whether there is somebody to be heard. What is said to nobody is lost.
+  /// Whether a server has the line open. What is sent while none has is lost.
   [[nodiscard]] virtual bool attached() = 0;
-  /// Nobody will ever come again.
+  /// No server can come any more.
   [[nodiscard]] virtual bool over() const = 0;
   /// What has come, the first of `room`; never waits.
   virtual std::size_t read(std::span<char> room) = 0;

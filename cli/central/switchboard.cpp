@@ -70,7 +70,7 @@ void Switchboard::discard() {
   output_.clear();
 }
 
-// --- the radio that there is none of ---
+// --- serial lines in place of a radio ---
 
 void Switchboard::start_scan() {
   scanning_ = true;
@@ -102,7 +102,7 @@ void Switchboard::look_for_robots() {
 void Switchboard::restart() {
   scanning_ = false;
   for (const auto& wire : wires_) {
-    wire->wish = Wish::none;
+    wire->order = Order::none;
     close(*wire);
   }
 }
@@ -110,15 +110,15 @@ void Switchboard::restart() {
 // --- the lines ---
 
 void Switchboard::settle(Wire& wire, base::Time now) {
-  if (wire.wish == Wish::open && !wire.port) {
-    wire.wish = Wish::none;
+  if (wire.order == Order::open && !wire.port) {
+    wire.order = Order::none;
     open(wire);
   }
-  if (wire.wish == Wish::close) {
+  if (wire.order == Order::close) {
     if (wire.close_at == base::Time{}) wire.close_at = now + farewell;
     const bool sends = wire.port && (!wire.out.empty() || wire.port.unsent() != 0);
     if (!sends || now >= wire.close_at) {
-      wire.wish = Wish::none;
+      wire.order = Order::none;
       close(wire);
       central_->closed(wire.address, *this);
     }
@@ -146,7 +146,7 @@ void Switchboard::close(Wire& wire) {
 void Switchboard::lose(Wire& wire) {
   remark(fmt::format("{}: {}", wire.robot.name, wire.port.failure().what));
   if (wire.cutter.begun() != 0) hand_over(wire);
-  wire.wish = Wish::none;
+  wire.order = Order::none;
   close(wire);
   central_->closed(wire.address, *this);
 }
@@ -163,7 +163,7 @@ void Switchboard::work(base::Time now) {
   due_ = scanning_ ? look_again_ : base::never;
   for (const auto& wire : wires_) {
     if (wire->cutter.begun() != 0) due_ = std::min(due_, wire->last_byte + silence);
-    if (wire->wish == Wish::close) due_ = std::min(due_, now + 2ms);
+    if (wire->order == Order::close) due_ = std::min(due_, now + 2ms);
   }
 }
 void Switchboard::read(Wire& wire, base::Time now) {
@@ -208,7 +208,7 @@ void Switchboard::watch(std::vector<pollfd>& inputs) const {
 }
 bool Switchboard::busy() const {
   return central_->waiting() != 0 || std::any_of(wires_.begin(), wires_.end(), [](const auto& wire) {
-           return wire->wish != Wish::none ||
+           return wire->order != Order::none ||
                   (wire->port && (!wire->out.empty() || wire->port.unsent() != 0));
          });
 }
@@ -236,7 +236,7 @@ void Switchboard::print_summary() const {
   add(central_->waiting(), "packets not sent at the end");
   add(counters.unlisted, "robots beyond the list");
   add(counters.stray_reports, "stray reports");
-  add(unheard_bytes_, "bytes said to nobody");
+  add(unheard_bytes_, "bytes sent with no server connected");
   remark(fmt::format("{:<{}}  {}", "server", width, text.empty() ? "nothing was lost" : text));
 }
 

@@ -46,7 +46,7 @@ class Switchboard {
   [[nodiscard]] base::Time due() const noexcept { return due_; }
   void watch(std::vector<pollfd>& inputs) const;
 
-  /// For the server; whoever takes of it says so.
+  /// For the server; what takes from it calls back.
   [[nodiscard]] std::string_view output() const noexcept { return output_; }
   void taken(std::size_t size) { output_.erase(0, size); }
   /// Nobody hears it.
@@ -61,18 +61,18 @@ class Switchboard {
   void say(std::string_view text) { output_ += text; }
   void start_scan();
   void stop_scan() { scanning_ = false; }
-  void connect(const mapper::link::Address& address) { wire(address).wish = Wish::open; }
-  void disconnect(const mapper::link::Address& address) { wire(address).wish = Wish::close; }
+  void connect(const mapper::link::Address& address) { wire(address).order = Order::open; }
+  void disconnect(const mapper::link::Address& address) { wire(address).order = Order::close; }
   void restart();
 
  private:
-  enum class Wish : std::uint8_t { none, open, close };
+  enum class Order : std::uint8_t { none, open, close };
   struct Wire {
     RobotLine robot;
     mapper::link::Address address{};
     transport::SerialPort port{};
-    Wish wish = Wish::none;
-    base::Time close_at{};  ///< of a wish to close: what is under way has until then
+    Order order = Order::none;
+    base::Time close_at{};  ///< of an order to close: what is under way has until then
     simulation::PacketCutter cutter{};
     base::Time last_byte{};
     std::string out{};                                ///< of a packet, what the line has not taken yet

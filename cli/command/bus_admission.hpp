@@ -1,5 +1,5 @@
 /// Before a sensor is asked for a stream: does the bus carry it, with what runs on it already? What runs is
-/// listened to for a moment, nobody is asked; docs/admission.md says what is assumed.
+/// listened to for a moment, no request is sent; docs/admission.md says what is assumed.
 #pragma once
 
 #include <chrono>
@@ -23,7 +23,7 @@ struct AdmissionOptions {
 /// --force, --explain and --listen.
 void add_admission_options(Verb verb, AdmissionOptions& options);
 
-/// Listens, and fails with the reason where somebody would be late; --explain prints the table to stdout. A
+/// Listens, and fails with the reason if a stream would be late; --explain prints the table to stdout. A
 /// command that starts no stream passes at once, and so does all with --force alone.
 void admit(Session& session, transport::Bus& bus, const client::Command& command,
            const AdmissionOptions& options, RefusalWatch& refusals);

@@ -120,7 +120,7 @@ void Timeline::repeat(Clock::time_point now) {
   };
   const auto last_turn = held_->next - client::hold_period;
   if (now - last_turn >= longest)
-    abandon(fmt::format("this program stood still for {}, and drives no further", in_words(last_turn)),
+    abandon(fmt::format("this program did not run for {}, so the drive has ended", in_words(last_turn)),
             "was it stopped, or did the machine sleep? Give the command again");
   // Late set points are dropped: each holds only at its own time.
   held_->next += client::hold_period;  // absolute: no drift
@@ -184,7 +184,7 @@ void Timeline::expect_awake() {
   look_at_clock();
   if (stood_still_ < client::longest_without_set_point) return;
   static_cast<void>(finish());
-  fail({fmt::format("{}: this program stood still for {}, and carries out no further command", verb_,
+  fail({fmt::format("{}: this program did not run for {}, so no further command is sent", verb_,
                     words::to_text(std::chrono::duration_cast<std::chrono::milliseconds>(stood_still_))),
         "was it stopped, or did the machine sleep? Give the command again"});
 }

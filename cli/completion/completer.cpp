@@ -75,7 +75,7 @@ class Completer {
     if (std::string_view{prefix_ + std::string{word}}.starts_with(typed_))
       completion_.candidates.push_back({prefix_ + std::string{word}, std::string{what}});
   }
-  /// What stands before every candidate: "--priority=".
+  /// What precedes every candidate: "--priority=".
   void set_prefix(std::string prefix) { prefix_ = std::move(prefix); }
 
   void verbs_of(Verb of) {
@@ -161,7 +161,7 @@ class Completer {
   }
 
  private:
-  /// "FILE|BOARD", "host|qemu", "[TOPIC ...]": words in capitals stand for something, others for themselves.
+  /// "FILE|BOARD", "host|qemu", "[TOPIC ...]": words in capitals are placeholders, others are literal.
   void words_of(std::string_view text, char separator) {
     while (!text.empty()) {
       const std::size_t end = std::min(text.find(separator), text.size());

@@ -26,13 +26,13 @@ using mapper::server::Peer;
 constexpr base::Duration first_word = 8s;
 /// And one of which pieces come: a handshake is two packets, and at 60 % loss whole every sixth time.
 constexpr base::Duration first_whole_word = 40s;
-/// How long a wish may take at the central, with all its time-outs.
+/// How long a request may take at the central, with all its time-outs.
 constexpr base::Duration longest_wish = 60s;
 
 transport::SerialPort open_port(std::string_view verb, const LineOptions& options) {
   const bool usual = options.path.empty();
   const std::string path = usual ? transport::central_line() : options.path;
-  // The link that a killed simulator has left may lead to a terminal of somebody else.
+  // The link that a killed simulator has left may lead to a terminal of another user.
   if (usual && !transport::is_served(path))
     fail(
         {fmt::format(
@@ -73,7 +73,7 @@ CentralLine::CentralLine(std::string_view verb, const LineOptions& options,
 }
 
 CentralLine::~CentralLine() {
-  heard_ = nullptr;  // whoever listened may be gone already
+  heard_ = nullptr;  // the listener may be gone already
   try {
     server_.expire(now());
     server_.client().leave();
@@ -184,7 +184,7 @@ void CentralLine::list(base::Duration scan) {
   (void)wait(longest_wish, [this] { return server_.client().idle(); });
   if (!failed_.empty())
     fail({fmt::format("{}: {}: {}", verb_, path(), failed_.front().words),
-          "is it a central? Unplug the dongle and plug it in again, or start the simulation anew"});
+          "is it a central? Unplug the dongle and plug it in again, or restart the simulation"});
 }
 
 const std::vector<Peer>& CentralLine::scan() {

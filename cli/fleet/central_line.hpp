@@ -36,7 +36,7 @@ class CentralLine {
   /// Leaves the central in command mode.
   ~CentralLine();
 
-  /// Everything that the robots say is told to it, too.
+  /// It is called with everything that the robots say.
   void on_heard(std::function<void(std::size_t robot, mapper::link::Kind kind)> heard) {
     heard_ = std::move(heard);
   }
@@ -49,13 +49,13 @@ class CentralLine {
   /// not, until each has said that it stands. A second signal ends that, and so do 20 seconds, in which any
   /// leg has ended; then the robots of which it is not known are named on stderr. Whether it is known of all.
   bool halt(const std::vector<unsigned>& robots);
-  /// Until everything that was wished is said, signal or not.
+  /// Until everything that was requested is sent, signal or not.
   void flush(base::Duration limit);
 
   /// All robots that the central finds: those that it has listed, and those that advertise.
   const std::vector<mapper::server::Peer>& scan();
   /// Links to the robots that are meant, by name, address or index; `all` or nothing: to all that there are.
-  /// One that is not there ends the command; one of several that cannot be reached is told.
+  /// One that is not there ends the command; one of several that cannot be reached is reported.
   std::vector<unsigned> connect(const std::vector<std::string>& names);
   /// A link to one robot, confirmed and heard.
   unsigned connect_one(const std::string& name);

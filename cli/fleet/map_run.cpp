@@ -123,7 +123,7 @@ MapRun::MapRun(const MapOptions& options, const Known& known)
   robots_ = line_.connect(options.robots);
   place_robots(line_, robots_, known_, options.starts);
   for (const unsigned index : robots_)
-    if (!line_.fleet().robot(index).update)  // paused, by whomever
+    if (!line_.fleet().robot(index).update)  // paused, by any program
       line_.server().fleet().unpause(index, CentralLine::now());
   mapping_.emplace(line_.server().fleet(), mapping_options(options, known, line_, robots_));
   line_.on_heard([this](std::size_t robot, mapper::link::Kind kind) { mapping_->heard(robot, kind); });

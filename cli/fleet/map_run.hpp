@@ -35,7 +35,7 @@ enum class End : std::uint8_t {
   known,
   bad_link,      ///< the rest lies where a robot was called back
   out_of_range,  ///< the rest lies beyond the radio's range
-  unseen,        ///< the rest was looked at in vain, or no way leads there
+  unseen,        ///< the rest could not be seen, or no way leads there
   time_over,
   interrupted,
   robots_lost,

@@ -18,14 +18,14 @@ namespace ocm::cli::fleet {
 struct DrawnRobot {
   std::string name;
   std::vector<motion::Point> path;       ///< by its own estimate
-  std::vector<motion::Point> true_path;  ///< where somebody knows it
+  std::vector<motion::Point> true_path;  ///< where it is known
 };
 
 struct MapPicture {
   std::string title;
   std::string subtitle;
   std::vector<DrawnRobot> robots;
-  std::vector<cognitive::Wall> walls;  ///< true ones; none: nobody knows
+  std::vector<cognitive::Wall> walls;  ///< true ones; none: not known
 };
 
 /// Whether a map can be written to a file of that name: its ending says how.

@@ -53,7 +53,7 @@ std::size_t FileSource::read_some(std::span<char> into) {
       return 0;
     }
     const ssize_t count = ::read(descriptor_, into.data(), into.size());
-    if (count == 0 && interrupted() != 0) continue;  // whoever wrote the pipe got the signal, too
+    if (count == 0 && interrupted() != 0) continue;  // the program at the other end got the signal, too
     if (count >= 0) {
       position_ += static_cast<std::uint64_t>(count);
       return static_cast<std::size_t>(count);

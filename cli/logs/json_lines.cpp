@@ -53,7 +53,7 @@ bool JsonLineParser::scan(std::string_view line) {
   record_.field_count = 0;
   const auto broken = [&] {
     return refuse(log::Cause::syntax, "no JSON object in one line: " + shown(line),
-                  "one object a line is wanted, as decode --json prints it; jq needs -c");
+                  "expected one object a line, as decode --json prints it; jq needs -c");
   };
   JsonScanner scanner{line};
   if (!scanner.take('{')) return broken();
@@ -125,8 +125,8 @@ bool JsonLineParser::take_time(log::Entry& entry) {
   const auto ns = base::parse_unsigned(text);
   const std::uint64_t most = static_cast<std::uint64_t>(INT64_MAX) + (negative ? 1 : 0);
   if (!ns || *ns > most)
-    return refuse(log::Cause::time, "time_ns " + shown(record_.time.text) + " is no time",
-                  "whole nanoseconds of 64 bits are wanted");
+    return refuse(log::Cause::time, "time_ns " + shown(record_.time.text) + " is not a time",
+                  "expected whole nanoseconds of 64 bits");
   entry.time = base::Time{base::Duration{static_cast<std::int64_t>(negative ? 0 - *ns : *ns)}};
   return true;
 }
@@ -135,7 +135,7 @@ bool JsonLineParser::take_bus(std::string_view& bus) {
   bus = record_.bus.text;
   if (!record_.bus.escaped) return true;
   if (!unescape(bus, bus_))
-    return refuse(log::Cause::syntax, "bus " + shown(bus) + " is no JSON string", "check its backslashes");
+    return refuse(log::Cause::syntax, "bus " + shown(bus) + " is not a JSON string", "check its backslashes");
   bus = bus_;
   return true;
 }
@@ -152,8 +152,8 @@ bool JsonLineParser::take_id(log::Entry& entry, Meaning& meaning) {
   const auto id = base::parse_unsigned(text, 16);
   const bool wide = text.size() == 8;
   if (!id || (!wide && text.size() != 3) || !record_.id.is_string)
-    return refuse(log::Cause::identifier, "id " + shown(text) + " is no identifier",
-                  "three hexadecimal digits are wanted, or eight for an extended one");
+    return refuse(log::Cause::identifier, "id " + shown(text) + " is not an identifier",
+                  "expected three hexadecimal digits, or eight for an extended identifier");
   entry.id = static_cast<std::uint32_t>(*id);
   entry.format = wide ? can::Format::extended : can::Format::base;
   if (wide && (entry.id & can::error_frame_flag) != 0) {
@@ -193,7 +193,7 @@ bool JsonLineParser::agrees(const log::Entry& entry, const Meaning& meaning) {
 /// The identifier from the topic.
 bool JsonLineParser::take_topic(log::Entry& entry, Meaning& meaning) {
   using protocol::Direction;
-  if (!record_.topic) return refuse(log::Cause::identifier, "neither id nor topic", "one of them is wanted");
+  if (!record_.topic) return refuse(log::Cause::identifier, "neither id nor topic", "give one of them");
   const auto* const topic = catalogue_->find(record_.topic.text);
   if (topic == nullptr) {
     const auto words = words::topic_words(*catalogue_);
@@ -238,7 +238,7 @@ bool JsonLineParser::take_remote(log::Entry& entry) {
   if (!length || text.size() > 1 || *length > can::max_dlc || entry.format == can::Format::error ||
       record_.has_fd)
     return refuse(log::Cause::length, "data " + shown(record_.data.text) + " is no remote frame's",
-                  "R is wanted, or R0 to R8, and neither fd nor an error frame's id");
+                  "expected R or R0 to R8, with neither fd nor an error frame's id");
   entry.format = entry.format == can::Format::base ? can::Format::base_remote : can::Format::extended_remote;
   entry.length = static_cast<std::uint8_t>(*length);
   return true;
@@ -247,7 +247,7 @@ bool JsonLineParser::take_remote(log::Entry& entry) {
 bool JsonLineParser::take_data(log::Entry& entry, const Meaning& meaning) {
   if (!record_.data) {
     if (!record_.has_fields || (meaning.requested == nullptr && !meaning.frame))
-      return refuse(log::Cause::length, "no data", "data is wanted, or fields of a topic");
+      return refuse(log::Cause::length, "no data", "expected data, or fields of a topic");
     if (meaning.frame) entry.length = meaning.frame.layout().dlc;
     return true;
   }
@@ -264,7 +264,7 @@ bool JsonLineParser::take_data(log::Entry& entry, const Meaning& meaning) {
     const int low = i + 1 < text.size() ? base::hex_digit(text[i + 1]) : -1;
     if (high < 0 || low < 0 || !record_.data.is_string)
       return refuse(log::Cause::syntax, "data " + shown(text) + " is not hexadecimal",
-                    "two digits a byte are wanted");
+                    "expected two digits a byte");
     entry.data[i / 2] = static_cast<std::uint8_t>(high << 4 | low);
   }
   entry.length = static_cast<std::uint8_t>(length);
@@ -280,7 +280,7 @@ bool JsonLineParser::take_extras(log::Entry& entry) {
   if (record_.direction) {
     const std::string_view text = record_.direction.text;
     if (text != "received" && text != "sent")
-      return refuse(log::Cause::syntax, "direction " + shown(text), "received or sent is wanted");
+      return refuse(log::Cause::syntax, "direction " + shown(text), "expected received or sent");
     entry.direction = text == "sent" ? log::Direction::sent : log::Direction::received;
   }
   if (record_.raw_dlc) {
@@ -288,7 +288,7 @@ bool JsonLineParser::take_extras(log::Entry& entry) {
     if (!code || *code <= can::max_dlc || *code > 15 || entry.length != can::max_dlc || record_.has_fd ||
         entry.format == can::Format::error)
       return refuse(log::Cause::length, "raw_dlc " + shown(record_.raw_dlc.text),
-                    "9 to 15 is wanted, with a classic frame of 8 bytes");
+                    "expected 9 to 15, with a classic frame of 8 bytes");
     entry.raw_dlc = static_cast<std::uint8_t>(*code);
   }
   return true;
@@ -366,7 +366,7 @@ bool JsonLineParser::put_request(log::Entry& entry, const protocol::Topic& topic
         seconds ? base::divide_rounded(*seconds, {1, -9}) : base::Result<std::int64_t>{seconds.error};
     if (!ns || !protocol::Period::from(base::Duration{*ns}))
       return refuse(log::Cause::syntax, "period " + shown(period_text.text) + " is none that a request has",
-                    "seconds are wanted that are 1 to 65535 whole us, ms or s");
+                    "expected seconds that are 1 to 65535 whole us, ms or s");
     period = base::Duration{*ns};
   }
   // What the data says already, as JsonText shows it, stays as it is.

@@ -1,4 +1,4 @@
-/// JSON lines of `listen --json` and `decode --json` as a log: read back bit by bit, whoever was at them in
+/// JSON lines of `listen --json` and `decode --json` as a log: read back bit by bit, edited or not in
 /// between. A line is a frame:
 ///
 /// - `id` and `data` make the frame; `fields` are put over `data`, so that an edited value counts and the
@@ -61,7 +61,7 @@ class JsonLineParser {
     std::array<NamedText, 64> fields;  // a frame has 64 bits
     std::size_t field_count = 0;
   };
-  /// What the identifier stands for.
+  /// What the identifier means.
   struct Meaning {
     const protocol::Topic* requested = nullptr;
     protocol::FrameRef frame;

@@ -9,7 +9,7 @@
 
 namespace ocm::cli::logs {
 
-/// A value as it stands in the line: of a string what is between its quotes.
+/// A value as written in the line: of a string what is between its quotes.
 struct JsonValue {
   std::string_view text;
   bool is_string = false;
@@ -116,7 +116,7 @@ class JsonScanner {
   const char* end_;
 };
 
-/// The text that the inside of a JSON string stands for; the counterpart of append_json. false: no JSON.
+/// The text that the inside of a JSON string means; the counterpart of append_json. false: no JSON.
 [[nodiscard]] bool unescape(std::string_view text, std::string& out);
 
 }  // namespace ocm::cli::logs

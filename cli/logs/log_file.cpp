@@ -41,7 +41,7 @@ struct LogFile::State {
     failure = {fmt::format("cannot {} {}: {}", doing, path == "-" ? "the standard output" : path,
                            std::strerror(errno)),
                errno == ENOSPC  ? "free some space; what was written before can be read"
-               : errno == EINTR ? "whoever reads it takes no more, and a signal ended the wait"
+               : errno == EINTR ? "its reader takes no more, and a signal ended the wait"
                                 : "what was written before can be read"};
     return false;
   }

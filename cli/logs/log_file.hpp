@@ -34,7 +34,7 @@ class LogFile {
   [[nodiscard]] static transport::Outcome<std::unique_ptr<LogFile>> create(
       const std::string& path, const LogFormat& format, const protocol::Catalogue& catalogue,
       Existing existing);
-  /// Finishes, if nobody did; what fails then is lost: call `finish`.
+  /// Finishes, if that was not done; what fails then is lost: call `finish`.
   ~LogFile();
 
   /// For a thread that no signal reaches: a pipe is then written so that a signal is seen all the same.
@@ -46,7 +46,7 @@ class LogFile {
   bool recorded(std::span<const log::Recorded> recorded);
   /// Hands all that was taken so far to the kernel; with `to_disk` waits until the disk has it (fdatasync).
   bool flush(bool to_disk = false);
-  /// What stands at the end of the format, flush, close.
+  /// Writes the end of the format, flushes and closes.
   bool finish();
 
   [[nodiscard]] const transport::Failure& failure() const noexcept;

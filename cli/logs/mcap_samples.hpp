@@ -35,7 +35,7 @@ class McapSamples {
            const log::Interfaces& interfaces);
 
  private:
-  /// A field's value, and what stands before it.
+  /// A field's value, and the text before it.
   struct Value {
     std::string before;
     FieldText text;

@@ -59,11 +59,11 @@ OpenedLog::OpenedLog(std::string path, std::string_view format, const protocol::
   const auto readable = [&](const log::Source& source) {
     if (!source.failure().empty() && interrupted() != 0) throw Exit{exit_code_after_interrupt(exit_failure)};
     if (!source.failure().empty())
-      fail({fmt::format("cannot read {}: {}", shown(path_), source.failure()), "a log to read is wanted"});
+      fail({fmt::format("cannot read {}: {}", shown(path_), source.failure()), "expected a log"});
   };
   readable(*file);
   if (file->beginning().empty())
-    fail({fmt::format("{} is empty", shown(path_)), "a log with frames is wanted"});
+    fail({fmt::format("{} is empty", shown(path_)), "expected a log that contains frames"});
   file_ = std::move(file);
   if (packing != Packing::none) {
     auto unpacked = unpack(packing, *file_);

@@ -12,7 +12,7 @@
 namespace ocm::cli {
 namespace {
 
-/// Pieces are copied in blocks of so many bytes, beyond their end, too.
+/// Pieces are copied in blocks of this many bytes, beyond their end, too.
 constexpr std::size_t block = 32;
 constexpr std::string_view line_begin = R"({"time_ns":")";
 

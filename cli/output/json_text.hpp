@@ -38,10 +38,10 @@ class JsonText {
   };
   struct FieldPiece {
     FieldText value;
-    Piece after;  ///< what stands behind the value: the next field's name, or the units
+    Piece after;  ///< what follows the value: the next field's name, or the units
   };
   enum class Kind : std::uint8_t { unknown, fields, request };
-  /// What an identifier stands for.
+  /// What an identifier means.
   struct Known {
     Kind kind = Kind::unknown;
     bool selected = true;
@@ -68,7 +68,7 @@ class JsonText {
   std::array<Known, can::max_base_id + 1> known_{};
   std::vector<FieldPiece> fields_;
   std::string pieces_;
-  std::size_t room_ = 0;  ///< for any line without what stands before the identifier
+  std::size_t room_ = 0;  ///< for any line without what precedes the identifier
   bool everything_;
   std::array<BusText, 16> buses_;
 };

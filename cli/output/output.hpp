@@ -27,7 +27,7 @@ struct Event {
 using Buffer = log::Bytes;
 
 /// Formats by way of another buffer, and allocates nothing for what is short. In output.cpp alone, because it
-/// compiles all of fmt anew.
+/// compiles all of fmt again.
 void vappend_formatted(Buffer& out, fmt::string_view text, fmt::format_args arguments);
 /// For what is rarely written.
 template <class... Arguments>

@@ -24,7 +24,7 @@ constexpr std::string_view dim = "\033[2m";
 constexpr std::string_view bold = "\033[1m";
 constexpr std::string_view red = "\033[31m";
 
-/// What stands before a value and behind it, and how wide it may become.
+/// What is printed before and after a value, and how wide it may become.
 struct Column {
   FieldText value;
   std::size_t frame = 0;
@@ -162,7 +162,7 @@ class Pretty final : public Output {
         columns.push_back({FieldText{field}, i, std::move(before), std::move(unit), false, width_of(field)});
       }
     }
-    // One unit for all stands at the end.
+    // One unit for all comes at the end.
     const bool one_unit = std::all_of(columns.begin(), columns.end(),
                                       [&](const Column& column) { return column.unit == columns[0].unit; });
     for (auto& column : columns) {

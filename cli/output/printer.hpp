@@ -11,7 +11,7 @@
 namespace ocm::cli {
 
 /// Writes all of it to stdout. Leaves with exit_failure when stdout takes no more (a full disk, a closed
-/// file), and after a signal when whoever reads stands still.
+/// file), and after a signal when the reader has stopped.
 void write_out(std::string_view text);
 /// The same, and empties the buffer.
 void write_out(Buffer& buffer);

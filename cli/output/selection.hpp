@@ -1,4 +1,4 @@
-/// Which fields a person wants to see: `gyroscope.x`, `odometry.velocity.x`, `power` (all of it).
+/// Which fields to show: `gyroscope.x`, `odometry.velocity.x`, `power` (all of it).
 #pragma once
 
 #include <span>

@@ -73,7 +73,7 @@ std::string quoted(std::string_view text) {
 }
 
 transport::Outcome<std::string> draw(std::string_view script) {
-  // Files and not pipes: nobody waits for anybody, and half a picture is not taken for one.
+  // Files and not pipes: neither side waits for the other, and half a picture is not taken for one.
   const File in{std::tmpfile()}, out{std::tmpfile()}, said{std::tmpfile()};
   if (!in || !out || !said || std::fwrite(script.data(), 1, script.size(), in.get()) != script.size() ||
       std::fflush(in.get()) != 0)
@@ -93,7 +93,7 @@ transport::Outcome<std::string> draw(std::string_view script) {
   const int error = posix_spawnp(&child, name, &actions, nullptr, arguments, environ);
   posix_spawn_file_actions_destroy(&actions);
   if (error == ENOENT)
-    return transport::Failure{"there is no gnuplot, which draws the pictures",
+    return transport::Failure{"gnuplot is missing, which draws the pictures",
                               "install it: sudo apt install gnuplot-nox"};
   if (error != 0)
     return transport::Failure{fmt::format("gnuplot cannot be started: {}", std::strerror(error)), ""};

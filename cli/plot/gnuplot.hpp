@@ -19,10 +19,10 @@ enum class Kind : std::uint8_t { svg, png, pdf };
 /// By the ending of a file's name, if it is one of a picture.
 [[nodiscard]] std::optional<Kind> kind_of_file(std::string_view name);
 
-/// gnuplot's commands for a picture of so many pixels; 100 of them are an inch of paper.
+/// gnuplot's commands for a picture of this many pixels; 100 of them are an inch of paper.
 [[nodiscard]] std::string terminal(Kind kind, unsigned width, unsigned height);
 
-/// Colours that are told apart by everybody. [Okabe, Ito 2008]
+/// Colours that colour-blind people can distinguish. [Okabe, Ito 2008]
 inline constexpr std::array colours{"#0072B2", "#D55E00", "#009E73", "#CC79A7",
                                     "#E69F00", "#56B4E9", "#000000", "#999933"};
 

@@ -22,7 +22,7 @@ namespace ocm::cli::record {
 using Filters = std::vector<can_filter>;
 
 /// "123:7FF", "18FF1234:1FFFFFFF", and with ~ in place of : for all that do not match, as candump has them.
-/// Eight digits stand for an extended identifier.
+/// Eight digits are an extended identifier.
 [[nodiscard]] transport::Outcome<can_filter> parse_filter(std::string_view text);
 
 /// Whether a frame passes one of the filters, or there is none. Error frames always do.
@@ -50,7 +50,7 @@ class Capture {
   [[nodiscard]] virtual const transport::Failure& failure() const = 0;  ///< why it is closed
   [[nodiscard]] virtual std::uint64_t lost() const = 0;                 ///< frames, before this program
   [[nodiscard]] virtual std::uint32_t bit_rate() const = 0;             ///< bit/s; 0: not known
-  /// Whether frames wait in somebody's queue with their times on them, so that they may be fetched later.
+  /// Whether frames wait in a queue with their times on them, so that they may be fetched later.
   [[nodiscard]] virtual bool keeps_times() const = 0;
   /// Whether something of this name can come back after it was closed: an adapter that is plugged in again.
   [[nodiscard]] virtual bool may_return() const = 0;

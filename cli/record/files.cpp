@@ -16,7 +16,7 @@
 namespace ocm::cli::record {
 namespace {
 
-/// Reading back more takes longer than anybody waits for a message.
+/// Reading back more would delay a message too long.
 constexpr std::uint64_t most_to_read_back = std::uint64_t{1} << 30;
 
 }  // namespace
@@ -199,7 +199,7 @@ void Files::delete_oldest() {
   while (options_.ring != 0 && kept_.size() > options_.ring) {
     if (::unlink(kept_.front().c_str()) == 0)
       ++deleted_;
-    else if (errno != ENOENT)  // somebody may have taken it away, which is what we want
+    else if (errno != ENOENT)  // another program may have removed it, which is the aim
       remark(fmt::format("cannot delete {}: {}", kept_.front(), std::strerror(errno)));
     kept_.pop_front();
   }

@@ -37,9 +37,9 @@ struct FilesOptions {
   std::string path;  ///< "-": stdout; of a recording in several files the name that is numbered
   const logs::LogFormat* format = nullptr;
   Split split;
-  std::uint64_t ring = 0;  ///< keep so many of this name, earlier recordings included; 0: all
+  std::uint64_t ring = 0;  ///< keep this many of the name, earlier recordings included; 0: all
   bool overwrite = false;
-  bool numbers_free = false;  ///< the name was not chosen by the user: a free one near it will do
+  bool numbers_free = false;  ///< the name was not chosen by the user: a free one near it may be taken
   bool sync = true;
 };
 

@@ -1,4 +1,4 @@
-/// When frames came, by the monotonic clock, to the precision of their own times. Those alone will not do:
+/// When frames came, by the monotonic clock, to the precision of their own times. Those alone are not enough:
 /// the clock of a robot without a battery for it is set minutes after it has started, by years, and back
 /// again.
 #pragma once

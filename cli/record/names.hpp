@@ -38,7 +38,7 @@ struct NumberedFile {
 
 /// What a file is created for: a pipe or a device may be there already, an ordinary file may not.
 enum class Claimed : std::uint8_t { ours, taken, failed };
-/// Creates `path` empty where nothing is there, so that nobody else gets the name. `errno` says why it
+/// Creates `path` empty where nothing is there, so that no other program gets the name. `errno` says why it
 /// failed.
 [[nodiscard]] Claimed claim(const std::string& path);
 

@@ -26,11 +26,11 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 using transport::BusState;
 
-/// A frame waits so long for others before it goes to the writing thread.
+/// A frame waits this long for others before it goes to the writing thread.
 constexpr milliseconds hand_over_period{100};
 /// The kernel's queue has its time on each frame already: fetching them in a bunch costs less.
 constexpr milliseconds fetch_pause{4};
-/// A bunch of so many came before the pause was over: the bus is too busy for one.
+/// A bunch of this many came before the pause was over: the bus is too busy for one.
 constexpr std::size_t busy = Capture::batch;
 constexpr milliseconds look_period{200};
 constexpr milliseconds longest_wait{200};  // bounds how long a signal that comes just before goes unseen
@@ -162,7 +162,7 @@ std::span<log::Entry> Recorder::room_in_block() {
       static_cast<std::size_t>(std::min<std::uint64_t>(room.size(), limits_.count - received_)));
 }
 
-/// So many entries were put where `room_in_block` said.
+/// This many entries were put where `room_in_block` said.
 void Recorder::keep(Port& port, std::size_t count) {
   if (block_ == nullptr) {
     port.lost_here += count;

@@ -39,14 +39,14 @@ struct Port {
 };
 
 struct Limits {
-  std::uint64_t count = 0;     ///< end after so many frames; 0: never
+  std::uint64_t count = 0;     ///< end after this many frames; 0: never
   base::Duration duration{};   ///< end after this time; 0: never
   std::uint32_t bit_rate = 0;  ///< of buses that do not say theirs
 };
 
 class Recorder {
  public:
-  /// `files` is open. `live`: whoever reads it waits for each frame (a pipe).
+  /// `files` is open. `live`: its reader waits for each frame (a pipe).
   Recorder(std::vector<Port> ports, Filters filters, Files& files, Limits limits, bool live);
   ~Recorder();
 

@@ -21,7 +21,7 @@ class Outlet {
 
   enum class Sent : std::uint8_t {
     yes,
-    error_frame,  ///< a report of somebody's controller: nothing for the wire
+    error_frame,  ///< a report of a controller: nothing for the wire
     fd_frame,     ///< this bus has none
   };
   /// Waits for room up to a second, then leaves through cli::fail.

@@ -1,4 +1,4 @@
-/// Sends the frames of a log, each at its time, to the buses that their interfaces stand for.
+/// Sends the frames of a log, each at its time, to the buses that their interfaces map to.
 #pragma once
 
 #include <cstdint>
@@ -50,7 +50,7 @@ struct PlayerOptions {
   log::PlaybackOptions playback;
   bool at_once = false;  ///< --speed max
   Span span;
-  /// Name of an interface in the log, and the bus that stands for it. Empty: all go to the only outlet.
+  /// Name of an interface in the log, and the bus that replaces it. Empty: all go to the only outlet.
   std::vector<std::pair<std::string, std::size_t>> routes;
 };
 
@@ -58,7 +58,7 @@ struct PlayerOptions {
 struct Played {
   std::uint64_t sent = 0;
   std::uint64_t not_chosen = 0;  ///< another topic, or outside of --from and --until
-  std::uint64_t no_route = 0;    ///< of an interface that stands for no bus
+  std::uint64_t no_route = 0;    ///< of an interface without a bus
   std::uint64_t error_frames = 0;
   std::uint64_t fd_frames = 0;
 };

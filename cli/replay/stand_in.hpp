@@ -39,7 +39,7 @@ class StandIn {
   /// A frame of the bus, at `now`.
   Answer take(const can::Frame& frame, base::Time now);
 
-  /// When the next sample is due; base::never: nobody asked.
+  /// When the next sample is due; base::never: no request.
   [[nodiscard]] base::Time next() const { return publisher_->next_release(); }
   /// The frames of a sample that is due at `now`, of the most urgent one first; empty: none is. After the
   /// last sample of a topic comes its first. Valid until the next call.

@@ -96,7 +96,7 @@ ConfigFile parse_config(std::string_view text) {
     Reader{file}.read(toml::parse(text), "");
   } catch (const toml::parse_error& error) {
     file.problems.push_back({error.source().begin.line, std::string{error.description()},
-                             "a line is key = value or [verb], a text stands in quotes: bus = \"can0\""});
+                             "a line is key = value or [verb], a text is written in quotes: bus = \"can0\""});
   }
   return file;
 }

@@ -36,12 +36,12 @@ class WithoutBrokenPipe {
 /// How far a write came.
 struct Written {
   std::size_t bytes = 0;
-  int error = 0;  ///< errno where not all was written; EINTR: a signal came, and nobody took the rest
+  int error = 0;  ///< errno where not all was written; EINTR: a signal came, and the rest was not taken
 };
 /// Whether signals end the writes of this thread.
 enum class Signals : bool { reach, blocked };
-/// Writes all of `text`, and waits for whoever reads behind a pipe. After a signal for a second at most,
-/// while nothing is taken: a reader that stands still does not keep the command from ending. Where signals
+/// Writes all of `text`, and waits for a reader behind a pipe. After a signal for a second at most,
+/// while nothing is taken: a reader that has stopped does not keep the command from ending. Where signals
 /// are blocked a pipe is written page by page, so that no write outlasts one.
 [[nodiscard]] Written write_all(int descriptor, std::string_view text, Signals signals = Signals::reach);
 

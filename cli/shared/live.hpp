@@ -14,7 +14,7 @@ namespace ocm::cli {
 
 /// Why a wait for frames is over.
 enum class Over : std::uint8_t {
-  enough,  ///< the verb has what it wanted
+  enough,  ///< the verb has what it needs
   time,
   signal,  ///< interrupted() says which
   gone,    ///< the bus is closed: its failure() says why

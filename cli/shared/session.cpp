@@ -30,7 +30,7 @@ void Session::add_options(Verb app) {
       .environment("AMIROCTL_SPEC")
       .type_name("FILE");
   app.add_option("--config", config_file,
-                 "options that stand on no command line, as TOML; default: ~/.config/amiroctl/config.toml")
+                 "configuration file (TOML); default: ~/.config/amiroctl/config.toml")
       .environment("AMIROCTL_CONFIG")
       .type_name("FILE");
   app.after_parsing([this, app] { apply_config(app, config_file); });

@@ -170,7 +170,7 @@ transport::Outcome<Assertion> Assertion::parse(std::string_view text, const prot
 
   const std::string_view left = trimmed(text.substr(0, begin));
   const std::size_t point = left.rfind('.');
-  if (point == std::string_view::npos) return wrong("says no quantity", std::string{form});
+  if (point == std::string_view::npos) return wrong("has no quantity", std::string{form});
   const std::string_view subject = left.substr(0, point);
   const std::string_view name = left.substr(point + 1);
 

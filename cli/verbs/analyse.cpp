@@ -70,7 +70,7 @@ void read_errors(std::string_view text, BusOptions& options) {
     }
   }
   if (options.error_every > 0 && options.error_burst == 0) {
-    if (has_burst) wrong("no faults at once, but one every so often");
+    if (has_burst) wrong("every=TIME needs burst=N");
     options.error_burst = 1;
   }
 }
@@ -224,8 +224,7 @@ void add_bus_options(Verb verb, Options& options) {
       .one_of({"generic", "exact"});
   verb.add_option("--test", options.test, "exact (default), or sufficient: one instance, for D <= T")
       .one_of({"exact", "sufficient"});
-  verb.add_option("--errors", options.errors,
-                  "burst=N,every=TIME: so many faults at once, and one more every TIME")
+  verb.add_option("--errors", options.errors, "burst=N,every=TIME: N faults at once, and one more every TIME")
       .type_name("MODEL");
 }
 
@@ -233,7 +232,7 @@ void add_bus_options(Verb verb, Options& options) {
 
 void add_analyse(Verb app, Session& session, int& exit_code) {
   auto verb =
-      app.add_verb("analyse", "whether every message and every task is always in time", look_group,
+      app.add_verb("analyse", "schedulability analysis of bus and tasks", look_group,
                    "  amiroctl analyse bus\n"
                    "  amiroctl analyse bus --rates gyro=50ms ring=2ms@high\n"
                    "  amiroctl analyse bus messages.csv --bitrate 125k --svg worst-case.svg\n"

@@ -139,7 +139,7 @@ void add_central(Verb app, Session&, int& exit_code) {
   verb.add_option("--baud", options->baud, "of the robots' lines").type_name("N").show_default();
   const auto pty =
       verb.add_option("--pty", options->link,
-                      "the server is whoever opens LINK, a pseudo terminal; default: the line that "
+                      "serve the program that opens LINK, a pseudo terminal; default: the line that "
                       "`robots`, `goto` and others open")
           .expected(0, 1)
           .type_name("[LINK]");

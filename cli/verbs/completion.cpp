@@ -10,7 +10,7 @@
 
 // Each shell asks the tool itself, by `amiroctl completion --words -- WORD ...`, so that a script never grows
 // old, and topics of another --spec are known. The answer's first line is "words" or "files" (then names of
-// files will do, too); each further line a candidate, or a candidate, a tab and what it is.
+// files are candidates, too); each further line a candidate, or a candidate, a tab and what it is.
 
 namespace ocm::cli {
 namespace {

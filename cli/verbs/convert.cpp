@@ -64,7 +64,7 @@ void refuse_same_file(const ConvertOptions& options) {
 std::uint64_t copy(logs::OpenedLog& in, logs::LogFile& out) {
   std::array<log::Entry, log::batch> entries;
   std::uint64_t frames = 0;
-  const bool live = in.size() == 0;  // whoever reads behind a pipe wants frames when they come
+  const bool live = in.size() == 0;  // a reader behind a pipe needs frames as they come
   while (interrupted() == 0) {
     const std::size_t count = in.reader().read(entries);
     if (count == 0) break;

@@ -83,7 +83,7 @@ void add_encode(Verb app, Session& session, int& exit_code) {
       .type_name("FORMAT")
       .takes(accepted_words(logs::writable_formats()));
   verb.add_flag("--force", options->force, "overwrite the log if it is there");
-  verb.add_flag("--keep-going", options->keep_going, "tell bad lines and go on; exit 1 at the end");
+  verb.add_flag("--keep-going", options->keep_going, "report bad lines and go on; exit 1 at the end");
   verb.callback([options, &session, &exit_code] { encode(session, *options, exit_code); });
 }
 

@@ -98,10 +98,9 @@ void run(const GotoOptions& options, int& exit_code) {
       number("DISTANCE", options.distance, "cm", mapper::link::SetPoint::fields[1])};
   constexpr int longest = mapper::server::longest_leg_cm;
   if (options.no_wait && std::abs(wanted.distance) > longest)
-    fail(
-        {fmt::format("goto: --no-wait with {} cm: nothing would be there to stop the robot", wanted.distance),
-         fmt::format("drop --no-wait, or drive at most {} cm", longest)},
-        exit_usage);
+    fail({fmt::format("goto: --no-wait with {} cm: nothing would stop the robot", wanted.distance),
+          fmt::format("drop --no-wait, or drive at most {} cm", longest)},
+         exit_usage);
   fleet::CentralLine line{"goto", options.line};
   const unsigned index = line.connect_one(options.robot);
   const std::string name = line.name(index);
@@ -135,7 +134,7 @@ void run(const GotoOptions& options, int& exit_code) {
 }  // namespace
 
 void add_goto(Verb app, Session&, int& exit_code) {
-  auto verb = app.add_verb("goto", "turn a mapper and drive it a piece", mapper_group,
+  auto verb = app.add_verb("goto", "turn a mapper, then drive it a given distance", mapper_group,
                            "  amiroctl goto AVR 90 50          to the left, then 50 cm\n"
                            "  amiroctl goto AVR -45 0          turn to the right\n"
                            "  amiroctl goto AVR 0 0            stop\n"

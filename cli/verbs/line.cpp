@@ -1,5 +1,5 @@
 /// What robots and their server say over the mapper's link, as JSON lines: whole sentences only; what is
-/// damaged is counted and told at the end.
+/// damaged is counted and reported at the end.
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -250,7 +250,7 @@ bool summarise(const Streams& streams, bool to_robot) {
     remark(i == Streams::nameless ? text : fmt::format("[{}] {}: {}", i, stream.name(), text));
   }
   if (streams.broken_prefixes() == 0) return damaged;
-  remark(fmt::format("broken prefixes: {}, and behind them {} that may be anybody's",
+  remark(fmt::format("broken prefixes: {}, and after them {} whose robot is unknown",
                      streams.broken_prefixes(), counted(streams.nobodys(), "character")));
   return true;
 }
@@ -283,7 +283,7 @@ void run_line(const LineOptions& options, int& exit_code) {
   const auto wanted = options.to_robot ? "what a server said to a robot" : "what a robot said";
   if (!source.failure().empty())
     fail({fmt::format("cannot read {}: {}", shown_name, source.failure()),
-          fmt::format("a file with {} is wanted", wanted)});
+          fmt::format("expected a file with {}", wanted)});
   Streams streams{options.to_robot};
   const std::uint64_t shown = show(source, streams, options.count);
   const bool damaged = summarise(streams, options.to_robot);

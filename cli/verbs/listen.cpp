@@ -66,7 +66,7 @@ void listen(Session& session, const ListenOptions& options, int& exit_code) {
   display.flush();
   display.summarise(bus->counters().lost);
   if (over == Over::gone) fail(bus->failure());
-  // As with candump -n: whoever waits for frames and gets none wants to know.
+  // As with candump -n: frames that were expected and did not come are a failure.
   if (over == Over::time && options.count != 0) {
     remark(fmt::format("amiroctl: listen: expected {} frames, only {} came in time", options.count,
                        display.shown()));

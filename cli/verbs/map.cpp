@@ -30,7 +30,7 @@ void check_files(const std::vector<std::string>& files) {
     }
 }
 
-/// All that can be written; what cannot is told, each.
+/// Writes all that can be written, and reports each file that cannot.
 bool write_files(const std::vector<std::string>& files, const MapRun& run,
                  const std::optional<Agreement>& result) {
   bool all = true;
@@ -78,7 +78,7 @@ void add_map(Verb app, Session&, int& exit_code) {
       .type_name("FILE ...");
   verb.add_option("--robots", options->robots, "names, addresses or indexes; default: all")
       .type_name("ROBOT ...");
-  add_duration(verb, "--duration", options->duration, "at most so long; default: until all is known");
+  add_duration(verb, "--duration", options->duration, "at most this long; default: until all is known");
   verb.add_option("--start", options->starts, "where a robot was switched on: metres, degrees")
       .type_name("NAME=X,Y,DEG");
   verb.add_option("--world", options->world,
@@ -87,10 +87,10 @@ void add_map(Verb app, Session&, int& exit_code) {
   verb.add_option("--resolution", options->resolution_cm, "side of a cell in cm")
       .type_name("CM")
       .show_default();
-  verb.add_option("--range", options->range_m, "of the central's radio in m: nobody is sent farther")
+  verb.add_option("--range", options->range_m, "range of the central's radio in m: no robot is sent farther")
       .type_name("M");
   verb.add_option("--title", options->title, "default: the robots").type_name("TEXT");
-  verb.add_flag("--watch", options->watch, "draw only; somebody else drives");
+  verb.add_flag("--watch", options->watch, "draw only; another program drives");
   verb.add_flag("--json", options->json, "figures as an object");
   fleet::add_line_options(verb, options->line);
   verb.callback([options, &exit_code] { run(*options, exit_code); });

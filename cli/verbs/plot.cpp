@@ -168,7 +168,7 @@ void add_plot(Verb app, Session& session, int& exit_code) {
   verb.add_option("--size", options->size, "in pixels; default: as is right for what is drawn")
       .type_name("WIDTHxHEIGHT");
   verb.add_option("--title", options->title, "default: the robot and the log").type_name("TEXT");
-  verb.add_flag("--script", options->script, "write what gnuplot would be told, and draw nothing");
+  verb.add_flag("--script", options->script, "print gnuplot's commands, and draw nothing");
   add_watch_options(verb, options->watch);
   verb.callback([options, &session, &exit_code] { run(session, *options, exit_code); });
 }

@@ -58,7 +58,7 @@ const logs::LogFormat& chosen_format(const RecordOptions& options) {
   if (format == nullptr && !options.to.empty())
     fail({fmt::format("record: no format '{}'", options.to), "one of: " + format_names()}, exit_usage);
   if (format == nullptr)
-    fail({fmt::format("record: the name {} says no format", options.file),
+    fail({fmt::format("record: unknown file extension of {}", options.file),
           fmt::format("end it in .log (candump), .pcapng, ..., or --to one of: {}", format_names())},
          exit_usage);
   if (format->writer == nullptr)
@@ -134,7 +134,7 @@ record::FilesOptions file_options(const RecordOptions& options, const protocol::
   return files;
 }
 
-/// Whether somebody reads what is written while it is written.
+/// Whether another program reads the file while it is written.
 bool is_live(const std::string& path) {
   struct stat what {};
   const int found = path == "-" ? ::fstat(STDOUT_FILENO, &what) : ::stat(path.c_str(), &what);
@@ -174,7 +174,7 @@ void run_record(Session& session, const RecordOptions& options, int& exit_code) 
 
   catch_interrupts();
   catch_hangups();
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is told of like a full disk
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is reported like a full disk
   auto ports = open_ports(session, filters);
   record::Files files{std::move(chosen), catalogue};
   if (const auto opened = files.open(); !opened) fail(opened.error);

@@ -177,7 +177,7 @@ void play(Session& session, const ReplayOptions& options, int& exit_code) {
   if (options.passes != 1 && options.file == "-")
     fail({"replay: --loop needs a file", "what came on the standard input is gone"}, exit_usage);
   if (options.passes != 1 && options.dry_run)
-    fail({"replay: --dry-run plays once", "leave --loop away"}, exit_usage);
+    fail({"replay: --dry-run plays once", "drop --loop"}, exit_usage);
 
   catch_interrupts();
   catch_hangups();
@@ -204,7 +204,7 @@ void play(Session& session, const ReplayOptions& options, int& exit_code) {
     if (player.cut_short() && player.rest())
       remark("the motors were set to zero: the log goes on behind this");
     player.expect_all_left();
-  } catch (const Exit&) {  // the bus took no more: what was sent is told all the same
+  } catch (const Exit&) {  // the bus took no more: what was sent is reported all the same
     if (!options.dry_run) summarise(player, false);
     throw;
   }

@@ -30,7 +30,7 @@ std::string_view state_of(const Robot& robot) {
   if (!robot.linked) return "no link";
   if (robot.lost) return "silent";
   if (robot.paused || (robot.idle && !robot.update))
-    return "paused";  // by whomever: it says that it is idle only
+    return "paused";  // by any program: it only reports that it is idle
   if (!robot.confirmed) return "connected";
   return robot.idle ? "idle" : "moving";
 }

@@ -33,7 +33,7 @@ struct RunOptions {
   bool dry_run = false;
 };
 
-/// Far more than anybody writes by hand; a pipe that never ends must not fill the memory.
+/// Far more than a person writes by hand; a pipe that never ends must not fill the memory.
 constexpr std::size_t max_script = 16U << 20U;
 
 /// Errors of a script that are shown; the rest are counted. More than fits on a screen is not read.

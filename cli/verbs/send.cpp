@@ -101,7 +101,7 @@ void add_send(Verb app, Session& session, int& exit_code) {
   input.excludes(verb.option("words"));
   verb.add_flag("--timed", options->timed, "with the distances of their times; default: at once")
       .needs(input);
-  verb.add_flag("--keep-going", options->keep_going, "tell bad lines and go on; exit 1 at the end")
+  verb.add_flag("--keep-going", options->keep_going, "report bad lines and go on; exit 1 at the end")
       .needs(input);
   verb.callback([commanding, options, &session, &exit_code] {
     if (options->from_input) return send_lines(session, *options, commanding->dry_run(), exit_code);

@@ -33,8 +33,7 @@ int exit_code_of(const sim::Ending& ending) {
 // --- the AMiRo ---
 
 void add_boards(Verb verb, sim::AmiroOptions& options, std::string& boards) {
-  verb.add_flag("--frozen", options.world.frozen,
-                "time stands still in the world: nothing moves, nothing is noisy");
+  verb.add_flag("--frozen", options.world.frozen, "freeze the world's time: nothing moves, no noise");
   verb.add_option("--without", options.without, "switch a board off").type_name("BOARD").delimiter(',');
   verb.add_option("--speed", options.speed, "how many times faster than real time")
       .range(0.001, 1000.0)
@@ -85,7 +84,7 @@ constexpr std::array<const char*, 5> mapper_options{"--lines", "--radio-loss", "
                                                     "--radio-repeats", "--links"};
 
 void add_mappers(Verb verb, sim::MapperOptions& options) {
-  verb.add_option("--robots", options.robots, "so many mappers instead of the AMiRo, and their central")
+  verb.add_option("--robots", options.robots, "N mappers instead of the AMiRo, and their central")
       .range(1U, 128U)
       .type_name("N");
   verb.add_option("--world", options.world,

@@ -35,7 +35,7 @@ base::Time unix_time() {
   return base::Time{std::chrono::system_clock::now().time_since_epoch()};
 }
 
-/// A table on a terminal that is drawn anew over the last one.
+/// A table on a terminal that is drawn again over the last one.
 class Screen {
  public:
   Screen() : terminal_(isatty(STDOUT_FILENO) != 0) {}
@@ -62,7 +62,7 @@ class Screen {
     if (line.size() - before - after <= columns) return line;
     return line.substr(0, before + columns) + (coloured ? "\x1b[0m" : "");
   }
-  /// In place of so many lines above.
+  /// In place of this many lines above.
   static void print(const std::vector<std::string>& lines, std::size_t rows, std::size_t columns,
                     std::size_t drawn = 0) {
     std::string text;
@@ -110,7 +110,7 @@ void run(Session& session, const StatsOptions& options, int& exit_code) {
   const auto report = [&](std::optional<base::Time> now) {
     return stats::Report{catalogue.robot, watching.source(), collector.buses(now)};
   };
-  // In a pipe, whoever said when it ends waits for the end.
+  // In a pipe, a command with a given end prints at the end.
   const bool tell = table && (screen.terminal() || !watching.ends());
   watching.run([&](auto entries, const auto& interfaces) { collector.take(entries, interfaces); },
                [&](auto interface, auto frames) { collector.lost(interface, frames); },

@@ -16,7 +16,7 @@ FrameLines::FrameLines(std::string path, const protocol::Catalogue& catalogue, b
       json_(catalogue),
       keep_going_(keep_going) {
   if (!source_.failure().empty())
-    fail({fmt::format("cannot read {}: {}", path_, source_.failure()), "a file of JSON lines is wanted"});
+    fail({fmt::format("cannot read {}: {}", path_, source_.failure()), "expected a file of JSON lines"});
 }
 
 bool FrameLines::next(log::Entry& entry, std::string_view& bus) {
@@ -32,7 +32,7 @@ bool FrameLines::next(log::Entry& entry, std::string_view& bus) {
     const auto begin = line.find_first_not_of(" \t");
     if (begin == std::string_view::npos) continue;
     if (taken == Input::Line::too_long)
-      problem_ = {log::Cause::too_long, "a line of more than 16 MiB", "a frame a line is wanted"};
+      problem_ = {log::Cause::too_long, "a line of more than 16 MiB", "expected a frame a line"};
     else if (parse(line.substr(begin), entry, bus))
       return true;
     ++bad_;

@@ -28,7 +28,7 @@ Words split_words(std::string_view verb, const std::vector<std::string>& words,
   Words split;
   bool live = false;
   for (const auto& word : words) {
-    std::error_code unreadable;  // a file that cannot be looked at is told of when it is opened
+    std::error_code unreadable;  // a file that cannot be examined is reported when it is opened
     if (word == "live")
       live = true;
     else if (!means_something(word) && (word == "-" || word.find('/') != std::string::npos ||
@@ -50,8 +50,7 @@ Watching::Watching(Session& session, const WatchOptions& options, std::vector<st
       duration_(options.duration),
       count_(options.count) {
   if (live() && !format_.empty())
-    fail({"--from " + format_ + " is the format of a log, and there is none",
-          "name the log, or leave --from away"},
+    fail({"--from " + format_ + " is the format of a log, and there is none", "name the log, or drop --from"},
          exit_usage);
 }
 

@@ -58,7 +58,7 @@ class Watching {
 
   /// Hands on all frames until the logs are at their end, the limits are reached or a signal comes. On a live
   /// bus calls `each_second` as well, whether or not something came. Leaves through `fail` when there is no
-  /// bus or a log cannot be read at all; places that could not be read are told of on stderr.
+  /// bus or a log cannot be read at all; places that could not be read are reported on stderr.
   void run(const Take& take, const Lost& lost, const std::function<void()>& each_second = {});
 
  private:

@@ -139,7 +139,7 @@ using Line = std::span<const std::string_view>;
 /// Reads one command at a time against a catalogue.
 class CommandParser {
  public:
-  /// `program` is what stands before a command, for its usage: "amiroctl " on a command line, nothing in a
+  /// `program` is what precedes a command in its usage: "amiroctl " on a command line, nothing in a
   /// script.
   explicit CommandParser(const protocol::Catalogue& catalogue, std::string_view program = {})
       : catalogue_(&catalogue), program_(program) {}

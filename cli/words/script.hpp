@@ -40,7 +40,7 @@ struct Script {
   std::vector<ScriptError> errors;  ///< when there is one, do not run the steps
 };
 
-/// Steps stand in the order of their times; equal times are carried out in the order of the lines.
+/// Steps are in the order of their times; equal times are carried out in the order of the lines.
 [[nodiscard]] inline Script parse_script(std::string_view text, const protocol::Catalogue& catalogue) {
   const CommandParser parser{catalogue};
   Script script;

@@ -157,11 +157,11 @@ TEST_CASE("JSON lines: an edited value counts, unused bits stay", "[output]") {
   CHECK(frame_of(far) == "608#FF7FFFFF0000");
   CHECK(frame_of(replaced(far, "573.4225", "5.734225e2")) == "608#FF7FFFFF0000");
   CHECK(has(frame_of(replaced(far, "573.4225", "570")), "out of range"));
-  // Keys as jq -S sorts them, blanks, keys that nobody knows.
+  // Keys as jq -S sorts them, blanks, unknown keys.
   CHECK(
       frame_of(R"( { "data" : "0300FFFF0000" , "x":[1,{"y":null}], "fields":{"z":0.0175}, "id":"608" } )") ==
       "608#0300FFFF0100");
-  // Value names: what has a name may be told by it.
+  // Value names: what has a name may be written as it.
   CHECK(frame_of(R"({"topic":"floor_calibration","fields":{"action":"measure"}})") == "20A#01");
 }
 

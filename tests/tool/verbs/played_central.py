@@ -1,6 +1,6 @@
 """A central with mappers, played on a pseudo terminal: what the verbs for mappers talk to in tests. Written from
 docs/mapper-link.md, not from the library: commands, answers, packets of 20 bytes with their prefix; robots that shake hands,
-drive in a rectangular room as soon as they are told, and see its walls."""
+drive in a rectangular room on command, and see its walls."""
 
 import fcntl
 import math

@@ -472,7 +472,7 @@ class Trace(Analyse):
         self.assertIn("bit rate", " ".join(self.trace(close, code=1)[1]["broken"]))
 
     def test_the_robot(self):
-        """Requests in the log say the periods; what nobody asked for is not in the set."""
+        """Requests in the log say the periods; what was not requested is not in the set."""
         frames = [(0, "208#01320000")] + [(1000 + i * 50000, "608#000000000000") for i in range(50)]
         out, _ = self.run_tool("analyse", "trace", self.log(frames), "--json")
         found = json.loads(out)

@@ -162,10 +162,10 @@ class OnTheBus(Case):
                 out, _ = self.interrupt(listener)
                 self.assertEqual(self.objects(out)[-1]["data"], "0000000000000000", (command, number))
 
-    def test_a_drive_that_stood_still_does_not_go_on(self):
+    def test_a_drive_that_was_stopped_does_not_go_on(self):
         self.start_sim()
-        stood_still = r"drive: this program stood still for 1(\.\d+s|\d{3}ms|s), and drives no further; the motors were set to zero"
-        for stopped, words in ((False, stood_still), (True, "another program has set the motors to zero|" + stood_still)):
+        did_not_run = r"drive: this program did not run for 1(\.\d+s|\d{3}ms|s), so the drive has ended; the motors were set to zero"
+        for stopped, words in ((False, did_not_run), (True, "another program has set the motors to zero|" + did_not_run)):
             listener = self.listen("motors", "--timeout", "20s")
             drive = self.start("drive", "5cm/s")
             self.assertIn("50C3000000000000", listener.stdout.readline())
@@ -184,7 +184,7 @@ class OnTheBus(Case):
             self.assertEqual(set(frames[rest:]), {"0000000000000000"}, "it drove on")
 
     def test_a_bus_that_stands_still(self):
-        """The simulator is stopped: its socket takes frames that nobody reads."""
+        """The simulator is stopped: its socket takes frames that are never read."""
         sim = self.start_sim()
         listener = self.listen("motors", "--timeout", "20s")
         drive = self.start("drive", "5cm/s")
@@ -238,7 +238,7 @@ class OnTheBus(Case):
         self.assertEqual(values[0], values[1])
 
     def test_interference_costs_time_and_no_sample(self):
-        """Frames that are disturbed come again; listeners are told of each error frame."""
+        """Frames that are disturbed come again; listeners get each error frame."""
         sim = self.start_sim("--bus-errors", "400", "--seed", "3")
         self.run_tool("publish", "gyro", "5ms")  # some ten of 200 frames are hit
         out, err = self.run_tool("listen", "--json", "--timeout", "1s")

@@ -42,7 +42,7 @@ class Robot:
             try:
                 if select.select([self.master], [], [], 0.05)[0]:
                     self.heard += os.read(self.master, 4096)
-            except OSError:  # nobody has the line open
+            except OSError:  # no program has the line open
                 time.sleep(0.02)
             if until is not None and until.encode() in self.heard:
                 break
@@ -411,7 +411,7 @@ class OnAPseudoTerminal(Case):
         self.assertEqual(self.read(line, b"connected 0\n"), b"scanning\nconnecting 0\nconnected 0\n")
         os.close(line)
         self.settle()
-        self.robot.say("{S,IDL}\n")  # nobody hears it
+        self.robot.say("{S,IDL}\n")  # no program hears it
         self.settle()
         line = self.open()
         self.robot.say("{U,1,2,3,4,5,6,7,8}\n")
@@ -420,7 +420,7 @@ class OnAPseudoTerminal(Case):
         self.assertEqual(self.robot.hear("{U,90,50}\n"), "{U,90,50}\n")
         _, error = self.interrupt(self.process)
         self.assertEqual(self.process.returncode, 130)
-        self.assertIn("16 bytes said to nobody", error)
+        self.assertIn("16 bytes sent with no server connected", error)
         self.assertEqual(os.listdir(os.path.dirname(self.link)), ["line"])
 
     def test_words_of_a_program_that_has_gone_already(self):

@@ -285,14 +285,14 @@ class TheLine(Line):
         self.assertIn("no speed 7", err)
 
     def test_a_link_that_a_killed_program_has_left(self):
-        # It may lead to a terminal of somebody else by now: not a byte goes there.
+        # It may lead to a terminal of another user by now: not a byte goes there.
         self.central.abandon()
         for words in (["robots"], ["goto", "AVR", "0", "0"], ["pause", "AVR"], ["unpause", "AVR"], ["map", "a.svg"]):
             _, err = self.tool(*words, code=1)
             self.assertIn("there is no central at", err)
             self.assertIn("amiroctl sim --robots 2", err)
         self.assertEqual(self.central.commands, [])
-        # Whoever names it means it.
+        # A user who names it means it.
         self.tool("robots", "--central", self.central.path, "--listen", "100ms")
         self.assertIn("list", self.central.commands)
 

@@ -111,7 +111,7 @@ class Line(Case):
         self.assertIn("[0] AVR: 4 whole sentences, 5 damaged (1 packed and corrupt, 1 packed and torn, "
                       "2 packed and lost, 1 packed and repeated)", err)
         self.assertIn("[3] B: 1 whole sentence, 0 damaged; link quality 100 %", err)
-        # Nobody packs what is said to a robot.
+        # What is said to a robot is never packed.
         heard, _ = self.line(good + b"{S,CON}", "--to-robot")
         self.assertEqual([line["type"] for line in heard], ["confirm"])
 

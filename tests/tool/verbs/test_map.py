@@ -206,10 +206,10 @@ class Map(Case):
         self.check_drawn(file)
 
     def test_without_gnuplot(self):
-        """Said before any robot drives for it: here there is none, and nobody looks for one."""
+        """Said before any robot drives for it: here there is none, and none is looked for."""
         self.environment["PATH"] = self.folder
         _, err = self.run_tool("map", self.path("a.pgm"), self.path("a.svg"), code=1)
-        self.assertIn("a.svg: there is no gnuplot", err)
+        self.assertIn("a.svg: gnuplot is missing", err)
         self.assertIn("gnuplot-nox; or write a .pgm", err)
         self.assertFalse(os.path.exists(self.path("a.pgm")))
 

@@ -163,7 +163,7 @@ class Plot(Case):
         with open(picture, "w", encoding="ascii") as file:
             file.write("old")
         _, err = self.run_tool("plot", self.gyro(), "gyro.z", "-o", picture, code=1)
-        self.assertIn("there is no gnuplot", err)
+        self.assertIn("gnuplot is missing", err)
         self.assertIn("sudo apt install gnuplot-nox", err)
         with open(picture, encoding="ascii") as file:
             self.assertEqual(file.read(), "old")

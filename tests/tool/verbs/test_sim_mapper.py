@@ -201,7 +201,7 @@ class Simulated(Case):
         sim.wait()
         links = os.path.join(self.folder, "ocm", "line")
         self.assertEqual(sorted(os.listdir(links)), ["AVR", "AVR.lock"])
-        other, mine = os.openpty()  # a terminal of somebody else, which may have got the number
+        other, mine = os.openpty()  # a terminal of another user, which may have got the number
         os.unlink(os.path.join(links, "AVR"))
         os.symlink(os.ttyname(mine), os.path.join(links, "AVR"))
         out, _ = self.run_tool("central", stdin="start\nlist\n")

@@ -136,7 +136,7 @@ class Stats(Case):
         path = self.log([(0, self.GYRO)])
         for expression, what, remedy in (
                 ("gyro", "compares nothing", "TOPIC.QUANTITY>NUMBER"),
-                ("gyro>1", "says no quantity", "TOPIC.QUANTITY>NUMBER"),
+                ("gyro>1", "has no quantity", "TOPIC.QUANTITY>NUMBER"),
                 ("gyroscoope.rate>1", "no topic 'gyroscoope'", "did you mean 'gyroscope'?"),
                 ("gyro.rat>1", "no quantity 'rat'", "did you mean 'rate'?"),
                 ("bus.gap>1s", "no quantity 'gap' of the bus", "one of: rate"),

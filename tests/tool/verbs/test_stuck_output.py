@@ -1,4 +1,4 @@
-"""Where the output cannot go: a pipe whose reader stands still, and a device that is full. A signal ends the command all
+"""Where the output cannot go: a pipe whose reader has stopped, and a device that is full. A signal ends the command all
 the same, with its exit code; a full device ends it by itself."""
 
 import fcntl

@@ -1,4 +1,4 @@
-"""What a person sees: on a terminal the pretty view, in colour where it is wanted."""
+"""What a person sees: on a terminal the pretty view, in colour where it is asked for."""
 
 import os
 import pty

@@ -31,7 +31,7 @@ TEST_CASE("steps, comments, colours and frames") {
   CHECK(script.steps[2].text == "send 205#00");
 }
 
-TEST_CASE("every error is told, with line and column") {
+TEST_CASE("every error is reported, with line and column") {
   const auto script = parse_script(
       "1s publish gyr 500ms\n"
       "soon publish gyro\n"
