@@ -79,6 +79,6 @@ int main() {
     const Run done = run(robots, robots == 100 ? 60 : 300);
     std::printf("%7zu %23.2f ms %14.0f %18.0f\n", robots, 1e3 * done.processor_s_a_second,
                 done.updates_a_second, 1 / done.processor_s_a_second);
-    if (done.updates_a_second < 4 * static_cast<double>(robots)) return EXIT_FAILURE;  // somebody is silent
+    if (done.updates_a_second < 4 * static_cast<double>(robots)) return EXIT_FAILURE;  // a robot is silent
   }
 }

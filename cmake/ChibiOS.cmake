@@ -27,7 +27,7 @@ endif()
 #   [HAL STM32F4xx driver...] the platform folder and its drivers: I2Cv1/i2c SPIv1/spi ...; without HAL the kernel alone, whose
 #                             alarm comes from chcore_timer_alt.h in a CONFIG folder)
 #
-# An object library: vectors and start-up code must be linked although nobody refers to them.
+# An object library: vectors and start-up code must be linked although no code refers to them.
 function(ocm_add_chibios target)
   cmake_parse_arguments(arg "" "FAMILY" "DEFINES;OPTIONS;CONFIG;HAL" ${ARGN})
   set(os ${OCM_CHIBIOS}/os)

@@ -24,7 +24,7 @@ struct Camera {
 using Tasks = analysis::TaskList<Balance, Camera>;
 static_assert(analysis::schedulable<Tasks>);
 
-// What the compass and the floor sensors send when nobody asks for anything else, and set points for the
+// What the compass and the floor sensors send unless a request changes it, and set points for the
 // motors every 100 ms.
 template <class Topic, std::size_t frame = 0, std::int64_t period = 0>
 using Frame = analysis::TopicFrame<Topic, amiro::bit_rate, frame, 1, period>;

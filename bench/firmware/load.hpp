@@ -106,7 +106,7 @@ class LoadBus {
     arrived_ = true;
     signal_.raise_locked();
   }
-  /// Asks for a topic: anew, when it is published already.
+  /// Asks for a topic: again, when it is published already.
   void ask(std::size_t topic) noexcept {
     const chibios::Lock lock;
     const Asked& a = (*asked_)[topic];

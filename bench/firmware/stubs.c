@@ -1,5 +1,5 @@
-// Parts, bus and port of the two: constant samples, a bus that takes what it is told to, a clock that
-// somebody sets. What was sent and applied goes into a sum, by which the two are compared.
+// Parts, bus and port of the two: constant samples, a bus that takes what it is set to, a clock that
+// is set. What was sent and applied goes into a sum, by which the two are compared.
 #include "stubs.h"
 
 #include <string.h>

@@ -1,4 +1,4 @@
-/// What the stubs of work.h show and can be told.
+/// What the stubs of work.h show, and how they are set.
 #ifndef OCM_BENCH_FIRMWARE_STUBS_H
 #define OCM_BENCH_FIRMWARE_STUBS_H
 

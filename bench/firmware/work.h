@@ -35,7 +35,7 @@ void part_calibrate_floor(uint8_t action);
 void task(int number);
 extern const uint32_t wire_hash;  ///< of the spec, for the status
 
-/// Interrupts off; returns what `unlock` wants.
+/// Interrupts off; returns what `unlock` takes.
 static inline uint32_t port_lock(void) {
   uint32_t mask;
   __asm volatile("mrs %0, primask\n\tcpsid i" : "=r"(mask)::"memory");

@@ -35,13 +35,13 @@ class FreeRtosPort {
   }
 
   /// arm: the alarm cannot reach further than half the counter, and then goes off for nothing. That is
-  /// harmless, and counts the wraps when nobody else asks for the time.
+  /// harmless, and counts the wraps when no other call asks for the time.
   void arm(Time when) noexcept {
     armed_ = when;
     set_alarm();
   }
 
-  /// pend: FreeRTOS wants no calls from a critical section, so the level's task is woken as the lock goes.
+  /// pend: FreeRTOS allows no calls from a critical section, so the level's task is woken as the lock goes.
   void pend(Level level) noexcept { pended_[index(level)] = true; }
 
   class [[nodiscard]] Guard {

@@ -57,7 +57,7 @@ struct Kernel {
   }
   void run_timer();
 };
-inline std::unique_ptr<Kernel> kernel;  // whoever tests makes one, and ends it
+inline std::unique_ptr<Kernel> kernel;  // a test makes one, and ends it
 inline thread_local Task* self = nullptr;
 inline thread_local bool in_interrupt = false;
 

@@ -402,7 +402,7 @@ def generated_files_are_reproducible(tree):
 
 
 def no_machine_paths(tree):
-    """No path of somebody's machine, and no name of tools that are not of the project."""
+    """No path of one machine, and no name of tools that are not of the project."""
     for name in tree.files:
         for line, match in tree.find(name, MACHINE_PATHS):
             yield f"{name}:{line}: a path of one machine: {match.group(0).strip()}"

@@ -1,4 +1,4 @@
-// A program of somebody who has ocm. Two source files include everything: what is not inline does not link.
+// A program that uses ocm. Two source files include everything: what is not inline does not link.
 #include <cstdio>
 #include <ocm/can/text.hpp>
 

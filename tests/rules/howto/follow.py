@@ -206,7 +206,7 @@ class Terminals:
 
     def start(self, step, where):
         output = tempfile.TemporaryFile(mode="w+")
-        # Of its own group, as in a terminal; and Ctrl-C counts, also where this program was told to ignore it.
+        # Of its own group, as in a terminal; and Ctrl-C counts, also where this program was started to ignore it.
         process = subprocess.Popen(["bash", "-e", "-c", step.text], cwd=self.root, env=self.environment, text=True,
                                    stdin=subprocess.DEVNULL, stdout=output, stderr=output, start_new_session=True,
                                    preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
