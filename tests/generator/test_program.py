@@ -116,7 +116,7 @@ class Program(unittest.TestCase):
         self.assertIn("own = true", done.stdout)
         for changes, said in (({"cost": "0us"}, "'0us' is not a valid time"), ({"cost": 120}, "'120' is not a valid time"),
                               ({"period": "10 ms"}, "'10 ms' is not a valid time"), ({"period": "-1s"}, "'-1s'"),
-                              ({"period": "99999999999999s"}, "is no such time"), ({"level": -1}, "level is out of range"),
+                              ({"period": "99999999999999s"}, "is not a valid time"), ({"level": -1}, "level is out of range"),
                               ({"level": 1.5}, "level is out of range"), ({"name": "Control"}, "'Control' is not a valid name"),
                               ({"own": 1}, "own is not true or false"), ({"prio": 1}, "unknown member prio")):
             done = made(**changes)

@@ -44,7 +44,7 @@ class Wireshark(Case):
             found = self.dissect(robot, [(s["id"], bytes.fromhex(s["data"])) for s in expected])
             for sample, fields in zip(expected, found):
                 if not sample["data"]:
-                    continue  # Wireshark hands frames without data to nobody
+                    continue  # Wireshark passes frames without data to no dissector
                 self.assertIsNotNone(fields, sample)
                 self.assertEqual(self.value(fields, robot, "topic"), sample["topic"])
                 self.assertEqual(int(self.value(fields, robot, "priority")),

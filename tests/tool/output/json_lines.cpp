@@ -201,7 +201,7 @@ TEST_CASE("JSON lines: what contradicts itself or is none is refused in words", 
   wrong("{} x", "no JSON object");
   wrong(R"({"id":"608"})", "no data");
   wrong(R"({"id":"8FF","data":""})", "too large");
-  wrong(R"({"id":"60","data":""})", "no identifier");
+  wrong(R"({"id":"60","data":""})", "is not an identifier");
   wrong(R"({"id":"608","data":"0"})", "not hexadecimal");
   wrong(R"({"id":"608","data":"000102030405060708"})", "data of 9 bytes");
   wrong(R"({"id":"608","fd":{},"data":"000102030405060708"})", "data of 9 bytes; CAN FD has");
@@ -209,7 +209,7 @@ TEST_CASE("JSON lines: what contradicts itself or is none is refused in words", 
   wrong(R"({"id":"20000040","data":"R"})", "no remote frame");
   wrong(R"({"id":"608","data":"00","raw_dlc":9})", "raw_dlc");
   wrong(R"({"id":"608","data":"00","direction":"left"})", "received or sent");
-  wrong(R"({"id":"608","data":"00","time_ns":"9223372036854775808"})", "no time");
+  wrong(R"({"id":"608","data":"00","time_ns":"9223372036854775808"})", "is not a time");
   wrong(R"({"topic":"gyr","fields":{}})", "did you mean 'gyro'");
   wrong(R"({"topic":"magnetometer","fields":{}})", "several frames; frame is one of: x, y, z");
   wrong(R"({"topic":"gyro","frame":"request","fields":{"mode":"publish","period":1e-7}})", "period");

@@ -85,7 +85,7 @@ class Config(harness.Case):
                 ('[lissten]\npretty = true\n', 2, "[lissten] is not a verb", "did you mean listen?"),
                 ('[list]\nzzzzz = true\n', 2, "unknown key zzzzz", "a key is the long name of an option"),
                 ("\nbus = sim\n", 2, "could not determine value type", 'bus = "can0"'),
-                ('bus = "sim\n', 1, "Error while parsing string", "a text stands in quotes"),
+                ('bus = "sim\n', 1, "Error while parsing string", "a text is written in quotes"),
                 ("bus\n", 1, "expected '='", 'key = value'),
                 ("bus =\n", 1, "expected value", "quotes"),
                 ("[list\n", 1, "expected ']'", "[verb]"),

@@ -122,7 +122,7 @@ class Line(Case):
                                  {"robot": 0, "name": "A", "type": "idle", "values": {}},
                                  {"robot": 255, "name": "Z", "type": "idle", "values": {}}])
         self.assertIn("0 whole sentences, 1 damaged (1 unclosed)", err)
-        self.assertIn("broken prefixes: 2, and behind them 23 characters", err)
+        self.assertIn("broken prefixes: 2, and after them 23 characters", err)
 
     def test_exit_codes(self):
         self.line(b"{S,IDL}\n", "--strict")

@@ -36,7 +36,7 @@ TEST_CASE("the socket of a dead server is replaced, and nothing else is") {
 
   std::ofstream{path} << "precious";
   const auto refused = VirtualBusSocket::open(path, 1s);
-  CHECK_THAT(refused.error.what, Catch::Contains("no socket") && Catch::Contains(path));
+  CHECK_THAT(refused.error.what, Catch::Contains("is not a socket") && Catch::Contains(path));
   CHECK(std::filesystem::file_size(path) == 8);
   std::filesystem::remove(path);
 
