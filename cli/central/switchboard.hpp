@@ -49,7 +49,7 @@ class Switchboard {
   /// For the server; what takes from it calls back.
   [[nodiscard]] std::string_view output() const noexcept { return output_; }
   void taken(std::size_t size) { output_.erase(0, size); }
-  /// Nobody hears it.
+  /// No server hears it.
   void discard();
 
   /// Whether robots' packets wait for their lines.

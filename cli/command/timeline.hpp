@@ -2,7 +2,7 @@
 /// the bus meanwhile, and repeats a held set point every 100 ms. Shared by drive and run.
 ///
 /// The robot only does what is commanded now. No set point is given to a queue while the one before it has
-/// not left; when none has left for as long as the motors' watchdog waits, or when this program stood still
+/// not left; when none has left for as long as the motors' watchdog waits, or when this program did not run
 /// for so long, the hold ends, and the set point of rest is the next that can leave. No hold begins while
 /// another program commands the motors, unless that is allowed.
 ///
@@ -52,8 +52,8 @@ class Timeline {
   void carry_out_once(const client::Command& command);
   /// Waits until `until`, repeating and receiving. False: a signal came first.
   [[nodiscard]] bool wait(Clock::time_point until);
-  /// The same until a step is due; leaves if this program stood still meanwhile: what was wanted then is not
-  /// wanted now. A bus that is slow to take the steps before makes a step late, and no more.
+  /// The same until a step is due; leaves if this program did not run meanwhile: the command is then
+  /// out of date. A bus that is slow to take the steps before makes a step late, and no more.
   [[nodiscard]] bool wait_for_step(Clock::time_point due);
   /// Until the hold is over by itself (drive --for) or a signal comes. False: a signal.
   [[nodiscard]] bool wait_for_hold();
@@ -74,7 +74,7 @@ class Timeline {
   void send(const can::Frame& frame);
   /// Says what a board refused; leaves if the motors are held and their board refuses that.
   void tell_refusals();
-  /// Leaves, with the motors at rest, if this program stood still for as long as a watchdog waits.
+  /// Leaves, with the motors at rest, if this program did not run for as long as a watchdog waits.
   void expect_awake();
   /// The time; notes for how long this program did not look where it should have.
   Clock::time_point look_at_clock();

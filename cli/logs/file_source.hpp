@@ -1,4 +1,4 @@
-/// The bytes of a file or of a pipe, read in the pieces that are asked for; the kernel is told that all of it
+/// The bytes of a file or of a pipe, read in the pieces that are asked for; the kernel expects that all of it
 /// will be read, so that it reads ahead.
 #pragma once
 

@@ -1,5 +1,5 @@
 /// Frames from lines of text, for the verbs that take them one by one: JSON lines, lines of a candump log,
-/// frames in candump's notation, one way or another in each line. A line that cannot be read is told with
+/// frames in candump's notation, one way or another in each line. A line that cannot be read is reported with
 /// file, line and remedy; then it is over, or the next one is looked at.
 #pragma once
 

@@ -79,12 +79,11 @@ class Page {
                  "");
     out_.line();
     if (!model_.description.empty()) out_.comment(sentence(model_.description), "");
-    out_.comment(
-        std::to_string(model_.bit_rate) +
-            " bit/s. An identifier is 0x400 for what a sensor says and  0 for what a board receives, "
-            "+ 0x100 times the priority (0 urgent, 1 high, 2 medium, 3 low), + the number below. "
-            "A value is the raw number times the scale, plus the offset where there is one.",
-        "");
+    out_.comment(std::to_string(model_.bit_rate) +
+                     " bit/s. An identifier is 0x400 for what a sensor says and 0 for what a board receives, "
+                     "+ 0x100 times the priority (0 urgent, 1 high, 2 medium, 3 low), + the number below. "
+                     "A value is the raw number times the scale, plus the offset where there is one.",
+                 "");
     contents();
     for (std::size_t i = 0; i < model_.boards.size(); ++i) board(i);
     return out_.take();

@@ -1,6 +1,6 @@
 // PowerManagement on its own chip. Pins: AMiRo-OS boards/PowerManagement/board.h, version 1.1;
 // docs/boards/power_management.md. It holds the power and the reset of the other boards in its hands:
-// POWER_EN, SYS_REG_EN and SYS_WARMRST_N are high when the bootloader hands over, and stay so.
+// POWER_EN, SYS_REG_EN and SYS_WARMRST_N are high when the bootloader starts the program, and stay so.
 #include <array>
 
 #include "ocm/topics/amiro.hpp"

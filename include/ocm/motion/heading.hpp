@@ -90,7 +90,7 @@ struct Turn {
 }
 
 /// Mean and variance of a gyro at rest, reading by reading, without keeping them [Welford 1962]. The mean is
-/// the bias; the robot has to stand still meanwhile.
+/// the bias; the robot must be at rest meanwhile.
 class GyroBias {
  public:
   /// `moving_rad_s`: what is faster cannot be bias, is counted as rejected and left out.

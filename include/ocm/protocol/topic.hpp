@@ -1,6 +1,6 @@
 /// What is known about a robot's topics: which frames, which fields, which units, whose board. The generator
-/// writes these as constexpr data; a tool loads the same types from a spec at run time. Views only: whoever
-/// made the catalogue owns the text.
+/// writes these as constexpr data; a tool loads the same types from a spec at run time. Views only: the
+/// catalogue's maker owns the text.
 #pragma once
 
 #include <array>

@@ -400,7 +400,7 @@ class VirtualBus final : public Bus {
   std::uint64_t granted_ = 0;  ///< credit when nothing is under way
   bool ended_ = false;         ///< nothing more comes from the server; frames may still wait in the inbox
   Failure ending_;             ///< why
-  Failure failure_;            ///< the same, once the caller was told
+  Failure failure_;            ///< the same, once the caller knows it
   BusCounters counters_;
   std::vector<can::Filter> filters_;
   std::vector<can::Received> inbox_;

@@ -45,6 +45,9 @@ COSTLY = {
 OF_OTHERS = {"serial_can_mux.hpp", "name.hpp", "theirs.hpp"}
 EXAMPLES = r"\b(?:FLOOR|NAME|theirs)\b"
 
+IDIOMS = re.compile(r"\b(?:(?:no|some|any|every)body|who(?:m)?ever|wish(?:es|ed)?|anew|(?:is|are|be|was|were)\s+told|(?:is|are)\s+wanted"
+                    r"|stands?\s+still|stood\s+still|in\s+vain|in\s+one\s+breath|of\s+its\s+own\s+accord)\b", re.IGNORECASE)
+
 SOURCE = (".hpp", ".cpp", ".h", ".c")
 
 # Folders around the library, and what each reaches in no way.
@@ -493,6 +496,18 @@ def named_files_exist(tree):
                 yield f"{page}:{line}: there is no program {match.group(0)}: tests/unit has no such floor"
 
 
+def words_are_plain(tree):
+    """No idiom where a plain word does, in pages and in what programs print: `no board`, `is reported`, `expected ...`."""
+    string = re.compile(r'"(?:\\.|[^"\\\n])*"')
+    for name in pages(tree) + tree.below("cli/", "firmware/", "generator/", "include/", "sim/"):
+        if name.startswith("docs/decisions/") or name == "CHANGELOG.md":  # the past
+            continue
+        for line, match in tree.find(name, IDIOMS):
+            row = tree.text(name).split("\n")[line - 1]
+            if name.endswith(".md") or any(match.group(0) in text for text in string.findall(row)):
+                yield f"{name}:{line}: '{match.group(0)}': say who or what does it, in the field's word"
+
+
 def pages_are_linked(tree):
     """Every page of docs can be reached from another one."""
     linked = {target for page in pages(tree) for _, _, target, _ in links(tree, page) if target != page}
@@ -553,7 +568,7 @@ RULES = (floors_have_rows, includes_go_down, layers_are_apart, library_knows_no_
          namespace_is_folder, no_banned_headers, no_banned_words, headers_open_with_a_comment, headers_have_tests,
          tests_have_their_namespace, own_includes_are_full_paths, generator_is_independent, firmware_is_for_boards, rooms_are_apart,
          folders_make_no_circle, verbs_are_seen_by_main_only, no_circles_of_rooms, costly_headers_are_seen_by_few,
-         generated_files_are_reproducible, no_machine_paths, links_resolve, named_files_exist, pages_are_linked, indexes_are_complete,
+         generated_files_are_reproducible, no_machine_paths, links_resolve, named_files_exist, words_are_plain, pages_are_linked, indexes_are_complete,
          test_folders_have_rows, quotes_are_the_examples)
 
 

@@ -26,7 +26,7 @@ struct Readings {
 
 /// What the robot is about while it is located.
 struct Activity {
-  motion::Movement movement = motion::Movement::standing;  ///< what the motors were told
+  motion::Movement movement = motion::Movement::standing;  ///< what the motors were set to
   bool at_rest = true;  ///< they are off until an operator confirms: time to measure
   bool calibrating = false;
 };
