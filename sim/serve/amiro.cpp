@@ -137,6 +137,7 @@ Ending serve_amiro(const std::string& path, const AmiroOptions& options, const S
     server.poll(now, hear);
     wait_for(server.descriptor(), boards, clock.until(std::min(server.next_event(), boards.next_event())));
   }
+  server.end();  // counts what slow clients lost by it
   boards.summarise(shell);
   const auto& bus = arbiter.totals();
   const auto& clients = server.counters();

@@ -16,11 +16,13 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstdint>
 #include <cstring>
 #include <fcntl.h>
 #include <functional>
 #include <memory>
+#include <poll.h>
 #include <string>
 #include <string_view>
 #include <sys/epoll.h>
@@ -31,6 +33,7 @@
 #include "ocm/can/filter.hpp"
 #include "ocm/host/descriptor.hpp"
 #include "ocm/host/failure.hpp"
+#include "ocm/host/system_time.hpp"
 #include "ocm/simulation/arbiter.hpp"
 #include "ocm/simulation/error_report.hpp"
 #include "ocm/simulation/record_queue.hpp"
@@ -50,7 +53,10 @@ struct VirtualBusOptions {
                                        ///< the kernel; at least 1
   bool raise_descriptor_limit = true;  ///< to the hard limit of the process, so that more clients fit
   base::Duration patience = std::chrono::seconds{1};  ///< with another server that starts just now
-  std::function<void(std::string_view)> report{};     ///< told a sentence when a client is turned away
+  /// At its end the server waits so long for clients that are behind; what they have not read by then is
+  /// counted.
+  base::Duration last_flush = std::chrono::milliseconds{500};
+  std::function<void(std::string_view)> report{};  ///< told a sentence when a client is turned away
 };
 
 /// What happened to clients and their frames. What happened on the bus is in `arbiter().totals()`.
@@ -91,9 +97,15 @@ class VirtualBusServer {
   VirtualBusServer(const VirtualBusServer&) = delete;
   VirtualBusServer& operator=(const VirtualBusServer&) = delete;
 
-  /// Tells the clients; the socket goes with it.
-  ~VirtualBusServer() {
+  /// As `end`; the socket goes with it.
+  ~VirtualBusServer() { end(); }
+
+  /// Hands out what waits for the clients, at most for `last_flush`, and disconnects them. What each of them
+  /// lost is told to it, and in `counters().overruns`.
+  void end() {
+    flush_all(options_.last_flush);
     for (auto& client : clients_) dismiss(*client, {.reason = virtual_bus::Reason::ended});
+    clients_.clear();
   }
 
   [[nodiscard]] const std::string& path() const noexcept { return socket_.path(); }
@@ -167,6 +179,23 @@ class VirtualBusServer {
     std::vector<can::Filter> filters;
     std::vector<can::Filter> coming_filters;
     std::size_t missing_filters = 0;
+
+    /// Something waits for it.
+    [[nodiscard]] bool owed() const noexcept { return output.size() != 0 || credit != 0 || lost != 0; }
+  };
+
+  /// What a client has to know beside frames: how many of its own are sent, and how many it missed. Room for
+  /// a goodbye.
+  struct Accounts {
+    explicit Accounts(const Client& client) {
+      add(virtual_bus::Type::credit, client.credit);
+      add(virtual_bus::Type::overrun, client.lost);
+    }
+    void add(virtual_bus::Type type, std::uint64_t number) {
+      if (number != 0) records[count++] = to_record(virtual_bus::Count{.type = type, .count = number});
+    }
+    std::array<virtual_bus::Record, 3> records;
+    std::size_t count = 0;
   };
 
   VirtualBusServer(VirtualBusOptions options, VirtualBusSocket socket, host::Descriptor events,
@@ -230,20 +259,13 @@ class VirtualBusServer {
   }
 
   void flush(Client& client) {
-    while (!client.deaf && !client.blocked &&
-           (client.output.size() != 0 || client.credit != 0 || client.lost != 0)) {
+    while (!client.deaf && !client.blocked && client.owed()) {
       // Credit and losses go first and need no place in the queue: they always get through.
-      std::array<virtual_bus::Record, 2> accounts;
-      std::size_t count = 0;
-      const auto add = [&](virtual_bus::Type type, std::uint64_t number) {
-        if (number != 0) accounts[count++] = to_record(virtual_bus::Count{.type = type, .count = number});
-      };
-      add(virtual_bus::Type::credit, client.credit);
-      add(virtual_bus::Type::overrun, client.lost);
-      const std::size_t records = std::min(client.output.size(), virtual_bus::max_records - count);
+      Accounts accounts{client};
+      const std::size_t records = std::min(client.output.size(), virtual_bus::max_records - accounts.count);
       const auto pieces = client.output.front(records);
-      std::array<iovec, 3> all{iovec{accounts.data(), count * virtual_bus::record_size}, pieces[0],
-                               pieces[1]};
+      std::array<iovec, 3> all{iovec{accounts.records.data(), accounts.count * virtual_bus::record_size},
+                               pieces[0], pieces[1]};
       msghdr message{};
       message.msg_iov = all.data();
       message.msg_iovlen = all.size();
@@ -258,6 +280,25 @@ class VirtualBusServer {
         client.deaf = true;  // what it sent before it died is still to be read
         client.output.clear();
       }
+    }
+  }
+
+  /// Until nothing waits for any client, or the time is over: a client that is stopped does not keep us.
+  void flush_all(base::Duration limit) {
+    const auto end = std::chrono::steady_clock::now() + limit;
+    for (;;) {
+      std::vector<pollfd> behind;
+      for (auto& client : clients_) {
+        if (client->gone) continue;
+        flush(*client);
+        if (!client->deaf && client->owed()) behind.push_back({client->socket.get(), POLLOUT, 0});
+      }
+      const base::Duration rest = end - std::chrono::steady_clock::now();
+      if (behind.empty() || rest <= base::Duration::zero()) return;
+      const timespec wait = host::to_timespec(rest);
+      if (::ppoll(behind.data(), behind.size(), &wait, nullptr) < 0 && errno != EINTR) return;
+      // Who has room again is tried again; a socket that is still full says so at once.
+      for (auto& client : clients_) client->blocked = false;
     }
   }
 
@@ -386,6 +427,7 @@ class VirtualBusServer {
   void refuse(Client& client, const virtual_bus::Goodbye& goodbye) {
     ++(client.welcome ? counters_.misbehaved : counters_.turned_away);
     report(client, goodbye);
+    flush(client);
     dismiss(client, goodbye);
     counters_.withdrawn += arbiter_.detach(client.node, Leftovers::withdraw);
     client.gone = true;
@@ -397,10 +439,22 @@ class VirtualBusServer {
                       " was disconnected: " + virtual_bus::describe(goodbye));
   }
 
-  /// The last word; lost when the client's socket is full.
-  static void dismiss(Client& client, const virtual_bus::Goodbye& goodbye) {
-    const virtual_bus::Record record = to_record(goodbye);
-    ::send(client.socket.get(), record.data(), record.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+  /// The last message: the frames that still wait are lost to the client, and it is told how many. It gets
+  /// through to a client whose socket is full, because the socket is made larger for it.
+  void dismiss(Client& client, const virtual_bus::Goodbye& goodbye) {
+    client.lost += client.output.size();
+    counters_.overruns += client.output.size();
+    client.output.clear();
+    Accounts accounts{client};
+    accounts.records[accounts.count++] = to_record(goodbye);
+    const std::size_t size = accounts.count * virtual_bus::record_size;
+    for (const int option : {0, SO_SNDBUF, SO_SNDBUFFORCE}) {
+      // The kernel takes twice its limit (net.core.wmem_max), and a socket begins with once.
+      constexpr int more = 1 << 24;
+      if (option != 0) ::setsockopt(client.socket.get(), SOL_SOCKET, option, &more, sizeof more);
+      if (::send(client.socket.get(), accounts.records.data(), size, MSG_DONTWAIT | MSG_NOSIGNAL) >= 0)
+        return;
+    }
   }
 
   // --- connections ---

@@ -11,7 +11,7 @@ import sys
 import threading
 import time
 
-from harness import AMIROCTL, SOURCE, Case, main
+from harness import AMIROCTL, SOURCE, Case, main, waiting
 
 sys.path.insert(0, os.path.join(SOURCE, "tests", "peers", "logs"))
 from virtual_bus import FRAME, GOODBYE, HELLO, MAGIC, VERSION, Client  # noqa: E402
@@ -300,6 +300,24 @@ class Recording(Case):
         self.assertEqual(recorder.returncode, 1)
         self.assertIn("was ended", err)
         self.assertEqual(self.frames("a.log"), sent)
+
+    def test_a_simulator_that_ends_while_we_are_behind(self):
+        sim = self.start_sim("--bitrate", "1000000")
+        recorder = self.record("-o", "a.log")
+        recorder.send_signal(signal.SIGSTOP)
+        sent = self.send_numbered(12_000)  # more than the kernel and the simulator keep for a program
+        waiting.until_asleep(sim.pid)
+        _, said_sim = self.interrupt(sim)
+        recorder.send_signal(signal.SIGCONT)
+        _, err = recorder.communicate(timeout=10)
+        self.assertEqual(recorder.returncode, 1)
+        self.assertIn("was ended", err)
+        written = self.frames("a.log")
+        self.assertEqual(written, sent[:len(written)])
+        lost = len(sent) - len(written)
+        self.assertGreater(lost, 0)
+        self.assertIn(f"{lost} lost in the receive queue", err)
+        self.assertIn(f"{lost} frames lost by slow ones", said_sim)
 
     def test_a_file_that_may_not_grow_keeps_what_it_has(self):
         self.start_sim()

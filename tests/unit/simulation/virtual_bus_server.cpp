@@ -239,6 +239,62 @@ TEST_CASE("a slow client learns how much it missed, and stalls no other") {
   CHECK(setup.server->counters().overruns == dropped);
 }
 
+TEST_CASE("the server ends while a client is behind: what it reads in time it gets, the rest is counted") {
+  constexpr std::size_t frames = 10'000;
+  VirtualBusSetup setup{{.last_flush = 10ms}};
+  const auto asleep = setup.join();
+  for (std::size_t i = 0; i < frames; ++i) setup.send("605#0001020304050607");
+  setup.run();
+  setup.server->end();
+  const std::uint64_t dropped = setup.server->counters().overruns;
+  setup.server.reset();
+  const std::size_t heard = received(*asleep).size();
+  CHECK(heard > 0);
+  CHECK(asleep->counters().lost > 0);
+  CHECK(asleep->counters().lost == dropped);
+  CHECK(heard + dropped == frames);
+  CHECK_THAT(asleep->failure().what, Catch::Contains("was ended"));
+}
+
+TEST_CASE("the server waits at its end for a client that reads, and not for one that is gone") {
+  constexpr std::size_t frames = 5000;  // more than the kernel holds
+  VirtualBusSetup setup{{.output_queue = frames, .last_flush = 30s}};
+  const auto late = setup.join();
+  RawClient dead{setup.path()};
+  dead.greet();
+  for (std::size_t i = 0; i < frames; ++i) setup.send("605#0001020304050607");
+  setup.run();
+  std::thread end{[&] { setup.server.reset(); }};
+  std::size_t heard = 0;
+  while (heard < frames && late->receive(10s)) ++heard;
+  dead.close();
+  end.join();
+  CHECK(heard == frames);
+  CHECK(late->counters().lost == 0);
+  CHECK(late->receive(1h).error == base::Error::closed);
+  CHECK_THAT(late->failure().what, Catch::Contains("was ended"));
+}
+
+TEST_CASE("a client that misbehaves while it is behind learns why it is disconnected, and what it missed") {
+  constexpr std::size_t frames = 10'000;
+  VirtualBusSetup setup;
+  RawClient client{setup.path()};
+  client.greet();
+  for (std::size_t i = 0; i < frames; ++i) setup.send("605#");
+  setup.run();
+  client.say(vb::FrameRecord{.dlc = 200});
+  setup.poll();
+  const auto records = client.heard();
+  REQUIRE(records.size() >= 2);
+  CHECK(vb::type_of(records.back()) == vb::Type::goodbye);
+  CHECK(vb::from_record<vb::Goodbye>(records.back()).reason == vb::Reason::bad_dlc);
+  const vb::Record& overrun = records[records.size() - 2];
+  REQUIRE(vb::type_of(overrun) == vb::Type::overrun);
+  // All but a hello, the overrun and the goodbye are frames.
+  CHECK(records.size() - 3 + vb::from_record<vb::Count>(overrun).count == frames);
+  CHECK(setup.server->counters().overruns == vb::from_record<vb::Count>(overrun).count);
+}
+
 TEST_CASE("a client that never reads can go on sending while it has credit, and gets it back later") {
   VirtualBusSetup setup{{.transmit_queue = 2, .output_queue = 4}};
   const auto deaf = setup.join();
