@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "ocm/analysis/task_list.hpp"
 #include "ocm/analysis/task_sets.hpp"
 
@@ -6,13 +8,12 @@
 namespace ocm::cli::analyse {
 namespace {
 
-/// Levels count down from 0, the most urgent; priorities of a set count up.
+/// Levels begin with 0, the most urgent; priorities of a set end with 1, the least urgent.
 template <class... Tasks>
 TaskSet set_of(analysis::TaskList<Tasks...>) {
+  const std::int64_t levels = 1 + std::max({static_cast<std::int64_t>(Tasks::task.level)...});
   TaskSet set;
-  (set.entries.push_back(
-       {std::string{Tasks::name}, -static_cast<std::int64_t>(Tasks::task.level), Tasks::task, 0}),
-   ...);
+  (set.entries.push_back({std::string{Tasks::name}, levels - Tasks::task.level, Tasks::task, 0}), ...);
   std::stable_sort(set.entries.begin(), set.entries.end(),
                    [](const TaskEntry& a, const TaskEntry& b) { return a.priority > b.priority; });
   return set;

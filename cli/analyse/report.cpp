@@ -46,6 +46,12 @@ std::string to_json(const Study& study) {
   for (const auto& queue : study.queues)
     object["queues"].push_back(
         {{"node", queue.node}, {"frames", queue.frames > 0 ? Json(queue.frames) : Json(nullptr)}});
+  for (const auto& test : study.tests)
+    object["utilisation_tests"].push_back({{"name", test.key},
+                                           {"value", test.value},
+                                           {"bound", test.bound},
+                                           {"proven", test.proven},
+                                           {"verdict", test.verdict}});
   return object.lines();
 }
 
@@ -144,6 +150,10 @@ std::string to_table(const Study& study, const Advice& advice, bool colour) {
     text += queue.frames > 0 ? fmt::format("{} has {} frame{} waiting or on the bus at most.\n", queue.node,
                                            queue.frames, queue.frames == 1 ? "" : "s")
                              : fmt::format("There is no bound on how many frames of {} wait.\n", queue.node);
+  if (!study.tests.empty())
+    text += "Tests of the utilisation alone (sufficient, not necessary; R above is exact):\n";
+  for (const auto& test : study.tests)
+    text += fmt::format("  {}: {:.4f}, bound {:.4f}: {}\n", test.title, test.value, test.bound, test.verdict);
   for (const std::string& remark : study.remarks) text += remark + "\n";
   return text;
 }

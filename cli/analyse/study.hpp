@@ -45,6 +45,16 @@ struct Study {
     std::int64_t frames = 0;  ///< that wait or are sent at once, at most; 0: no bound
   };
   std::vector<Queue> queues;  ///< of the nodes of which the queue was given
+  /// What the utilisation alone proves, of tasks: sufficient, and not necessary.
+  struct QuickTest {
+    std::string key;    ///< "liu_layland"
+    std::string title;  ///< "Liu and Layland, sum of C/T"
+    double value = 0;
+    double bound = 0;  ///< the greatest value that proves anything
+    bool proven = false;
+    std::string verdict;
+  };
+  std::vector<QuickTest> tests;
   [[nodiscard]] bool passes() const;
   [[nodiscard]] double utilisation() const;
 };

@@ -24,6 +24,38 @@ std::vector<Task> tasks_of(const TaskSet& set) {
   return tasks;
 }
 
+/// What the processor takes for itself is in no C of the set, and the tests see nothing else.
+bool takes_nothing(const analysis::Processor& processor) {
+  return processor.context_switch == 0 && processor.interrupt == 0 && processor.lock == 0 &&
+         processor.tick_period == 0;
+}
+
+std::vector<Study::QuickTest> quick_tests(const std::vector<Task>& tasks,
+                                          const analysis::Processor& processor) {
+  double sum = 0, product = 1;
+  for (const Task& task : tasks) {
+    const double load = static_cast<double>(task.cost) / static_cast<double>(task.period);
+    sum += load;
+    product *= load + 1;
+  }
+  const auto test = [&](std::string key, std::string title, double value, double bound,
+                        analysis::Proof proof) {
+    if (takes_nothing(processor))
+      return Study::QuickTest{std::move(key),
+                              std::move(title),
+                              value,
+                              bound,
+                              proof == analysis::Proof::proven,
+                              std::string{analysis::describe(proof)}};
+    return Study::QuickTest{
+        std::move(key), std::move(title), value, bound, false, "does not apply: the system takes time, too"};
+  };
+  const double liu_layland_bound = static_cast<double>(analysis::liu_layland_bound(tasks.size())) / 1'000'000;
+  return {test("liu_layland", "Liu and Layland, sum of C/T", sum, liu_layland_bound,
+               analysis::liu_layland(tasks)),
+          test("hyperbolic", "hyperbolic, product of C/T + 1", product, 2, analysis::hyperbolic(tasks))};
+}
+
 }  // namespace
 
 Study study_tasks(const TaskSet& set, const analysis::Processor& processor) {
@@ -46,6 +78,7 @@ Study study_tasks(const TaskSet& set, const analysis::Processor& processor) {
                           {}});
   }
   for (std::size_t i = 0; i < study.rows.size(); ++i) study.rows[i].why = explain(study, i);
+  study.tests = quick_tests(tasks, processor);
   study.head = "fixed priorities, preemptive";
   if (processor.context_switch > 0)
     study.head += fmt::format(", {} a context switch", time_text(processor.context_switch));

@@ -34,5 +34,7 @@ struct LogFormat {
 [[nodiscard]] std::vector<std::string> writable_formats();
 /// By the ending of a file's name, without .gz and .zst; nullptr: it says nothing.
 [[nodiscard]] const LogFormat* format_of_name(std::string_view file);
+/// Whether a word names a file, there or not: it has a slash or the ending of a log, packed or not.
+[[nodiscard]] bool names_file(std::string_view word);
 
 }  // namespace ocm::cli::logs

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <concepts>
+#include <iterator>
 
 #include "ocm/log/asc.hpp"
 #include "ocm/log/blf.hpp"
@@ -59,6 +61,8 @@ constexpr LogFormat formats[] = {
      make_reader<JsonLinesReader>, make_writer<JsonLinesWriter>},
 };
 
+constexpr std::string_view packed_endings[] = {".gz", ".zst"};
+
 }  // namespace
 
 std::span<const LogFormat> log_formats() {
@@ -86,11 +90,17 @@ const LogFormat* find_format(std::string_view name) {
 }
 
 const LogFormat* format_of_name(std::string_view file) {
-  for (const std::string_view packed : {".gz", ".zst"})
+  for (const std::string_view packed : packed_endings)
     if (file.ends_with(packed)) file.remove_suffix(packed.size());
   for (const LogFormat& format : formats)
     if (!format.ending.empty() && file.ends_with(format.ending)) return &format;
   return nullptr;
+}
+
+bool names_file(std::string_view word) {
+  return word.find('/') != std::string_view::npos || format_of_name(word) != nullptr ||
+         std::any_of(std::begin(packed_endings), std::end(packed_endings),
+                     [word](std::string_view packed) { return word.ends_with(packed); });
 }
 
 }  // namespace ocm::cli::logs

@@ -104,17 +104,6 @@ std::uint64_t understood(const Display& display) {
   return seen.frames - seen.unknown - seen.wrong_dlc - seen.errors;
 }
 
-void tell_another_bus(const Display& display, const protocol::Catalogue& catalogue) {
-  const std::uint64_t frames = display.counters().frames + display.fd();
-  if (frames == 0) return remark("no frame to decode");
-  const std::uint64_t foreign = display.counters().unknown + display.fd();
-  if (foreign < frames - frames / 10) return;
-  remark(
-      fmt::format("{} of {} frames are of no topic of {}: a log of another bus? --spec FILE names the "
-                  "topics of another robot",
-                  foreign, frames, catalogue.robot));
-}
-
 void decode(Session& session, const DecodeOptions& options, int& exit_code) {
   const auto& catalogue = session.catalogue();
   catch_interrupts();
@@ -127,7 +116,8 @@ void decode(Session& session, const DecodeOptions& options, int& exit_code) {
   }
   const Display& display = decoding.display;
   display.summarise(0);
-  tell_another_bus(display, catalogue);
+  if (display.counters().frames + display.fd() == 0) remark("no frame to decode");
+  display.tell_contradictions("a log of another bus?");
   const bool not_all = decoding.unreadable || display.fd() != 0 || display.counters().faults() != 0;
   if (understood(display) == 0 || decoding.ended_early || (options.strict && not_all))
     exit_code = exit_failure;

@@ -238,6 +238,12 @@ std::string describe(const Stream& stream) {
   return text;
 }
 
+/// A new link is trusted: what was never a sentence, whole or damaged, says nothing about it.
+std::string quality(const Stream& stream) {
+  if (stream.sentences() == 0) return stream.damaged() == 0 ? "unknown" : "0 %";
+  return fmt::format("{} %", stream.ear().quality().per_mille() / 10);
+}
+
 /// Whether anything of the stream was not of a whole sentence.
 bool summarise(const Streams& streams, bool to_robot) {
   bool damaged = false;
@@ -246,7 +252,7 @@ bool summarise(const Streams& streams, bool to_robot) {
     if (!stream.said_anything()) continue;
     damaged |= stream.damaged() != 0 || stream.stray() != 0;
     std::string text = describe(stream);
-    if (!to_robot) text += fmt::format("; link quality {} %", stream.ear().quality().per_mille() / 10);
+    if (!to_robot) text += "; link quality " + quality(stream);
     remark(i == Streams::nameless ? text : fmt::format("[{}] {}: {}", i, stream.name(), text));
   }
   if (streams.broken_prefixes() == 0) return damaged;

@@ -65,6 +65,7 @@ void listen(Session& session, const ListenOptions& options, int& exit_code) {
   while (over == Over::time && Clock::now() < end());
   display.flush();
   display.summarise(bus->counters().lost);
+  display.tell_contradictions("another robot?");
   if (over == Over::gone) fail(bus->failure());
   // As with candump -n: frames that were expected and did not come are a failure.
   if (over == Over::time && options.count != 0) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/logs/format.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/words/suggestion.hpp"
 #include "cli/words/topics.hpp"
@@ -20,6 +21,10 @@ std::vector<const protocol::Topic*> chosen_topics(std::string_view verb, const p
       found = true;
     }
     if (found) continue;
+    if (logs::names_file(word))
+      fail({fmt::format("{}: no topic '{}', which names a file", verb, word),
+            "decode, stats and plot read logs; `amiroctl list` shows the topics"},
+           exit_usage);
     const auto names = words::topic_words(catalogue);
     fail({fmt::format("{}: no topic '{}'", verb, word), words::suggestion(word, names)}, exit_usage);
   }

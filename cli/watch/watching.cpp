@@ -31,8 +31,8 @@ Words split_words(std::string_view verb, const std::vector<std::string>& words,
     std::error_code unreadable;  // a file that cannot be examined is reported when it is opened
     if (word == "live")
       live = true;
-    else if (!means_something(word) && (word == "-" || word.find('/') != std::string::npos ||
-                                        std::filesystem::exists(word, unreadable)))
+    else if (!means_something(word) &&
+             (word == "-" || logs::names_file(word) || std::filesystem::exists(word, unreadable)))
       split.files.push_back(word);
     else
       split.others.push_back(word);

@@ -474,12 +474,11 @@ static inline int64_t @_nearest(double value, int64_t least, int64_t most) {
   void write_make_frame(const TopicModel& topic, const std::vector<Slot>& slots) {
     const std::string name = robot_ + "_" + topic.name;
     const bool several = slots.size() > 1;
-    const std::string index = several || topic.is_group ? ", uint8_t index" : "";
+    const std::string index = several ? ", uint8_t index" : topic.is_group ? ", uint8_t number" : "";
     const std::string identifier =
         robot_ + (topic.kind == protocol::Kind::sensor ? "_sample_id(" : "_command_id(");
     if (topic.is_group)
-      comment("Number `index`, from 0 to " + std::to_string(topic.count - 1) +
-              "; any other is that of the last.");
+      comment("Number 1 to " + std::to_string(topic.count) + "; 0 is the first, any other the last.");
     if (several)
       comment("Frame `index`, from 0 to " + std::to_string(slots.size() - 1) +
               ", in the order in which they are sent; any other is the last.");
@@ -494,10 +493,11 @@ static inline int64_t @_nearest(double value, int64_t least, int64_t most) {
       out_.line(slot.stem + "_encode(" + slot.member + ", frame.data);");
     };
     if (!several) {
-      const std::string last = std::to_string(topic.count - 1);
-      fill(slots.front(), topic.is_group ? "(uint8_t)(" + hex(slots.front().id) + "u + (index < " + last +
-                                               " ? index : " + last + "u))"
-                                         : hex(slots.front().id));
+      const std::string count = std::to_string(topic.count), last = std::to_string(topic.count - 1);
+      fill(slots.front(), topic.is_group
+                              ? "(uint8_t)(" + hex(slots.front().id) + "u + (number < 1u ? 0u : number < " +
+                                    count + "u ? number - 1u : " + last + "u))"
+                              : hex(slots.front().id));
     } else {
       out_.line("switch (index) {");
       for (std::size_t i = 0; i < slots.size(); ++i) {
@@ -516,7 +516,7 @@ static inline int64_t @_nearest(double value, int64_t least, int64_t most) {
     const std::string name = robot_ + "_" + topic.name;
     const bool sensor = topic.kind == protocol::Kind::sensor;
     std::string says = "Whatever the priority. ";
-    says += topic.is_group ? "Which of them it was for, from 0; "
+    says += topic.is_group ? "The number of the one it was for, from 1; "
             : slots.size() > 1
                 ? "Which frame it was, from 0; a sample is complete when its last frame came after "
                   "all others; "
@@ -537,7 +537,7 @@ static inline int64_t @_nearest(double value, int64_t least, int64_t most) {
     };
     if (topic.is_group) {
       out_.line("if (index >= " + std::to_string(topic.count) + "u) return " + macro_ + "_FOREIGN;");
-      decode(slots.front(), "index");
+      decode(slots.front(), "index + 1");
     } else if (slots.size() == 1) {
       out_.line("if (" + robot_ + "_topic_of(frame->id) != " + hex(slots.front().id) + "u) return " + macro_ +
                 "_FOREIGN;");

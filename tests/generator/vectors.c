@@ -97,9 +97,11 @@ static void set_points(void) {
   EXPECT(motors.x == 1000000);
   amiro_motors_set_x_m_per_s(&motors, huge * huge - huge * huge); /* not a number */
   EXPECT(motors.x == 0);
-  frame = amiro_led_frame(&led, 4, AMIRO_MEDIUM);
+  frame = amiro_led_frame(&led, 5, AMIRO_MEDIUM); /* LED 5, as in the thesis and on the command line: led_5 */
   EXPECT(is(&frame, 0x240, 3, "\x64\x32\x78"));
-  EXPECT(amiro_led_take(&led, &frame) == 4);
+  EXPECT(amiro_led_take(&led, &frame) == 5);
+  EXPECT(amiro_led_frame(&led, 1, AMIRO_MEDIUM).id == 0x23C && amiro_led_frame(&led, 8, AMIRO_MEDIUM).id == 0x243);
+  EXPECT(amiro_led_frame(&led, 0, AMIRO_MEDIUM).id == 0x23C && amiro_led_frame(&led, 255, AMIRO_MEDIUM).id == 0x243);
   frame.id = 0x244;
   EXPECT(amiro_led_take(&led, &frame) == AMIRO_FOREIGN);
   amiro_odometry_pose_encode(&pose, data);

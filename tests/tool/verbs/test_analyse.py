@@ -274,7 +274,7 @@ class Tasks(Analyse):
     def responses(self, rows, code=0, *options):
         text = TASKS + "".join(f"{','.join(str(cell) for cell in row)}\n" for row in rows)
         found = self.tasks(text, *options, code=code)
-        self.assertEqual(list(found), ["utilisation", "tasks"])
+        self.assertEqual(list(found), ["utilisation", "tasks", "utilisation_tests"])
         return self.column(found["tasks"], "response_ns"), found
 
     def test_text_books(self):
@@ -324,6 +324,35 @@ class Tasks(Analyse):
             self.assertTrue(all(task["schedulable"] for task in report["tasks"]))
         _, err = self.run_tool("analyse", "tasks", "di_wheel_driver", code=1)
         self.assertIn("di_wheel_driver", err)
+
+    def test_priorities_of_a_named_set(self):
+        """A greater number is more urgent, as in a CSV file; none is below 1."""
+        report = json.loads(self.run_tool("analyse", "tasks", "thesis_avr", "--json")[0])
+        self.assertEqual([task["priority"] for task in report["tasks"]], ["8", "7", "6", "5", "4", "3", "2", "1"])
+        report = json.loads(self.run_tool("analyse", "tasks", "di_wheel_drive", "--json")[0])
+        self.assertEqual([task["priority"] for task in report["tasks"]], list("432222211"))
+
+    def test_tests_of_the_utilisation(self):
+        """[Liu, Layland 1973] n(2^(1/n) - 1), 0.8284 of two tasks; [Bini, Buttazzo, Buttazzo 2003] product of U + 1."""
+        def tests(rows, code, *options):
+            _, whole = self.responses(rows, code, *options)
+            return {test["name"]: test for test in whole["utilisation_tests"]}
+
+        both = tests([("a", 2, 40, 100), ("b", 1, 80, 200)], 0)
+        self.assertAlmostEqual(both["liu_layland"]["bound"], 2 * (2 ** .5 - 1), places=5)
+        self.assertAlmostEqual(both["liu_layland"]["value"], .8)
+        self.assertTrue(both["liu_layland"]["proven"])
+        one = tests([("a", 2, 60, 100), ("b", 1, 50, 200)], 0)  # 0.85; 1.6 * 1.25 = 2
+        self.assertEqual([one[name]["proven"] for name in ("liu_layland", "hyperbolic")], [False, True])
+        self.assertAlmostEqual(one["hyperbolic"]["value"], 2)
+        for options in (("--context-switch", "1ns"), ("--lock", "1ns"), ("--interrupt", "1ns"), ("--tick", "50ns")):
+            for test in tests([("a", 2, 10, 100), ("b", 1, 20, 200)], 0, *options).values():
+                self.assertFalse(test["proven"])
+                self.assertIn("does not apply", test["verdict"])
+        out, _ = self.run_tool("analyse", "tasks", "thesis_avr")
+        self.assertIn("Liu and Layland, sum of C/T: 0.1054, bound 0.7241: does not apply: a task of a shorter period", out)
+        self.assertIn("hyperbolic, product of C/T + 1: 1.1", out)
+        self.assertNotIn("utilisation_tests", self.run_tool("analyse", "bus", "--json")[0])
 
     def test_blocking_and_jitter(self):
         found, _ = self.responses([("a", 2, 10, 100, "", 5, 7), ("b", 1, 20, 200, "", "", "")])

@@ -137,6 +137,12 @@ class Line(Case):
                                       (["-n", "0"], 2, "--count"), (["--what"], 2, "--what")):
             self.assertIn(word, self.line(b"", *arguments, code=code)[1])
 
+    def test_noise_has_no_link_quality(self):
+        for said, quality in ((b"\xff\x00" * 50 + b"x" * 200, "link quality unknown"), (b"{U,1,2,3}\n", "link quality 0 %")):
+            _, err = self.line(said, code=1)
+            self.assertIn(quality, err)
+            self.assertNotIn("100 %", err)
+
     def test_a_long_stream_in_any_pieces(self):
         """Sentences across every border of the blocks that are read; and the order is kept."""
         count = 20000

@@ -147,6 +147,10 @@ class Plot(Case):
             _, err = self.run_tool("plot", path, *arguments, code=2)
             self.assertIn(what, err)
 
+    def test_a_log_that_is_missing(self):
+        _, err = self.run_tool("plot", "nofile.log", "gyro.z", code=1)
+        self.assertIn("cannot read nofile.log: No such file", err)
+
     def test_nothing_to_draw_is_an_error(self):
         picture = os.path.join(self.folder, "none.svg")
         _, err = self.run_tool("plot", self.gyro(), "accel.x", "-o", picture, code=1)

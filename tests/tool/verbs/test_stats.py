@@ -203,6 +203,14 @@ class Stats(Case):
         self.assertIn("did you mean 'gyroscope'?", err)
         _, err = self.run_tool("stats", os.path.join(self.folder, "none.log"), code=1)
         self.assertIn("none.log", err)
+        for word in ("nofile.log", "nofile.log.gz", "drive.pcapng", "no/such"):  # here is no simulator: no bus is looked for
+            _, err = self.run_tool("stats", word, code=1)
+            self.assertIn(f"cannot read {word}: No such file", err)
+            self.assertNotIn("one of:", err)
+        for verb in ("listen", "record"):
+            _, err = self.run_tool(verb, "drive.log", code=2)
+            self.assertIn(f"{verb}: no topic 'drive.log', which names a file", err)
+            self.assertNotIn("one of:", err)
         path = self.log([(0, self.GYRO)])
         _, err = self.run_tool("stats", path, "live", code=2)
         self.assertIn("live is the bus", err)
