@@ -5,6 +5,7 @@
 #include "ocm/log/asc.hpp"
 #include "ocm/log/blf.hpp"
 #include "ocm/log/candump.hpp"
+#include "ocm/log/candump_screen.hpp"
 #include "ocm/log/csv.hpp"
 #include "ocm/log/pcap.hpp"
 #include "ocm/log/pcapng.hpp"
@@ -55,6 +56,8 @@ constexpr LogFormat formats[] = {
      make_reader<log::CandumpReader>, make_writer<log::CandumpWriter>},
     {"candump-ns", ".log", "the same with nine digits of a second, which other tools take for something else",
      nullptr, make_reader<log::CandumpReader>, make_writer<log::CandumpNanoWriter>},
+    {"candump-screen", "", "what candump shows on a terminal", log::CandumpScreenReader::recognises,
+     make_reader<log::CandumpScreenReader>, nullptr},
     {"csv", ".csv", "comma-separated values, as python-can writes them", log::CsvReader::recognises,
      make_reader<log::CsvReader>, make_writer<log::CsvWriter>},
     {"json", ".jsonl", "JSON lines, as decode and listen print them", JsonLinesReader::recognises,

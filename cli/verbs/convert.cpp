@@ -107,7 +107,7 @@ std::string list_of_formats() {
       "  amiroctl convert drive.log.gz drive.csv --strict   exit 1 when anything is lost\n"
       "Formats:\n";
   for (const logs::LogFormat& format : logs::log_formats())
-    text += fmt::format("  {:<11} {:<8} {}{}\n", format.name, format.ending, format.description,
+    text += fmt::format("  {:<14} {:<8} {}{}\n", format.name, format.ending, format.description,
                         format.writer == nullptr   ? " (read only)"
                         : format.reader == nullptr ? " (written only)"
                                                    : "");

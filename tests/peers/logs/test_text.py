@@ -1,5 +1,6 @@
 """candump's text and CSV against python-can and can-utils, both ways, on random frames."""
 
+import re
 import shutil
 import subprocess
 import unittest
@@ -48,6 +49,19 @@ class CandumpText(Case):
         self.assertEqual(len(before.splitlines()), 500)
         self.assertEqual(after, before)
 
+    @unittest.skipUnless(shutil.which("log2long"), "can-utils is not installed")
+    def test_what_candump_shows_in_ours(self):
+        """log2long prints with candump's own function: all but directions and flags of CAN FD comes back."""
+        log = self.path("ours.log")
+        self.write_candump(log, random_messages(6, 2000))
+        screen = self.path("screen.txt")
+        with open(screen, "w", encoding="ascii") as file:
+            file.write(self.filter(["log2long"], log))
+        again = self.path("again.log")
+        self.run_tool("convert", screen, again, "--strict")
+        expected = [re.sub("##.", "##0", line[:-2]) for line in self.text(log).splitlines()]
+        self.assertEqual(self.text(again).splitlines(), expected)
+
     @unittest.skipUnless(shutil.which("log2asc"), "can-utils is not installed")
     def test_nine_digits_are_for_us_only(self):
         """Why six digits are the default: can-utils takes a fraction of nine for microseconds."""
@@ -57,7 +71,7 @@ class CandumpText(Case):
         out = self.filter(["log2asc", "can0"], log)
         self.assertIn("   0.249713 1  123", out)  # and not 0.000249713
         _, err = self.run_tool("convert", log, self.path("six.log"))
-        self.assertIn("1 digits of the time", err)
+        self.assertIn("candump has no room for digits of the time of 1 frame\n", err)
         self.assertIn("candump-ns", err)
         self.run_tool("convert", log, self.path("six.log"), "--strict", code=1)
         self.run_tool("convert", log, self.path("nine.log"), "--to", "candump-ns", "--strict")

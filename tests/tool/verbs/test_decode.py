@@ -84,8 +84,28 @@ class Decode(Case):
         self.run_tool("decode", stdin=good + "what\n")
         _, err = self.run_tool("decode", stdin="(0.0) can0 7FF#11\n" * 9, code=1)
         self.assertIn("9 of 9 frames are of no topic of AMiRo: a log of another bus? --spec", err)
+        _, err = self.run_tool("decode", stdin="(0.0) can0 608#112233445566\n" * 3 + "(0.0) can0 7FF#11\n" * 2
+                               + "(0.0) can0 605#1122\n" * 3)
+        self.assertIn("5 of 8 frames contradict the spec of AMiRo (2 of no topic, 3 of wrong length, such as 605 with "
+                      "2 bytes in place of 4)", err)
+        _, err = self.run_tool("decode", stdin="(0.0) can0 608#112233445566\n" * 19 + "(0.0) can0 7FF#11\n")
+        self.assertNotIn("contradict", err)
         _, err = self.run_tool("decode", "--topic", "ring", stdin=LOG, code=1)
         self.assertIn("no frame to decode", err)
+
+    def test_what_candump_shows_on_a_terminal(self):
+        """As pasted, with the prompt and all. [can-utils candump.c]"""
+        out, err = self.run_tool("decode", "--json", stdin="$ candump -t a -x can0\n"
+                                 " (1436509052.249713)  can0  RX - -  608   [6]  03 00 FF FF 00 00\n"
+                                 " (1436509052.349713)  can0  TX - -  208   [4]  01 F4 01 00\n^C\n")
+        heard = self.objects(out)
+        self.assertEqual([line["bus"] for line in heard], ["can0", "can0"])
+        self.assertEqual(heard[0]["topic"], "gyroscope")
+        self.assertEqual(heard[0]["time_ns"], "1436509052249713000")
+        self.assertIn("line 1: not of the expected form: $ candump", err)
+        self.assertIn("2 places could not be read", err)
+        raw, _ = self.run_tool("decode", "--raw", stdin="  can0  605   [4]  00 D2 00 00\n")
+        self.assertEqual(raw, "(0000000000.000000) can0 605#00D20000\n")
 
     def test_wrong_usage(self):
         for arguments, word in ((["--field", "gyro.w"], "no field 'gyro.w'"), (["--field", "gyra"], "no topic 'gyra'"),

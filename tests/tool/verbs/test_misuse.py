@@ -402,7 +402,7 @@ write 500ms, 2s or 1.5s
 
 decode --from wav
 decode: no log format 'wav'
-there are: pcapng, pcap, mcap, blf, asc, candump, candump-ns, csv, json
+there are: pcapng, pcap, mcap, blf, asc, candump, candump-ns, candump-screen, csv, json
 
 encode --keepgoing
 encode: unknown option '--keepgoing'
