@@ -30,6 +30,13 @@ std::optional<std::uint32_t> code_unit(std::string_view text) {
   return unit ? std::optional{static_cast<std::uint32_t>(*unit)} : std::nullopt;
 }
 
+/// Of `\\xff`, which append_json makes of a byte that is no UTF-8; -1: it is none.
+int byte_in_words(std::string_view text) {
+  if (text.size() < 5 || !text.starts_with(R"(\\x)")) return -1;
+  const int high = base::hex_digit(text[3]), low = base::hex_digit(text[4]);
+  return high < 0 || low < 0 ? -1 : high << 4 | low;
+}
+
 }  // namespace
 
 bool unescape(std::string_view text, std::string& out) {
@@ -48,12 +55,18 @@ bool unescape(std::string_view text, std::string& out) {
         append_utf8(out, 0x10000 + ((*unit - 0xD800) << 10) + (*low - 0xDC00));
         text.remove_prefix(6);
       } else if (*unit >= 0xDC80 && *unit <= 0xDCFF) {
-        out += static_cast<char>(*unit & 0xFF);  // a byte that was no UTF-8 [PEP 383]
+        // A byte that is no UTF-8, as earlier versions wrote it. [PEP 383]
+        out += static_cast<char>(*unit & 0xFF);
       } else if (*unit >= 0xD800 && *unit < 0xE000) {
         return false;
       } else {
         append_utf8(out, *unit);
       }
+      continue;
+    }
+    if (const int byte = byte_in_words(text); byte >= 0) {
+      out += static_cast<char>(byte);
+      text.remove_prefix(5);
       continue;
     }
     constexpr std::string_view letters = "\"\\/bfnrt";

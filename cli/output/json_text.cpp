@@ -36,6 +36,12 @@ std::size_t utf8_length(std::string_view text) {
   return overlong || beyond ? 0 : length;
 }
 
+/// Whether it begins as a byte in words does: a backslash, x and two digits.
+bool is_byte_text(std::string_view text) {
+  return text.size() >= 4 && text[0] == '\\' && text[1] == 'x' && base::hex_digit(text[2]) >= 0 &&
+         base::hex_digit(text[3]) >= 0;
+}
+
 std::string json_string(std::string_view text) {
   std::string out{'"'};
   append_json(out, text);
@@ -82,8 +88,8 @@ void append_json(std::string& out, std::string_view text) {
   while (!text.empty()) {
     const std::size_t length = utf8_length(text);
     const auto byte = static_cast<unsigned char>(text.front());
-    if (length == 0)
-      out += fmt::format("\\udc{:02x}", byte);
+    if (length == 0 || is_byte_text(text))
+      out += fmt::format("\\\\x{:02x}", byte);
     else if (byte < 0x20)
       out += fmt::format("\\u{:04x}", byte);
     else {

@@ -18,8 +18,10 @@
 
 namespace ocm::cli {
 
-/// Appends `text` as the inside of a JSON string. Bytes that are no UTF-8 become lone surrogates, U+DC80 to
-/// U+DCFF, as Python's surrogateescape has them: a line stays valid JSON, and nothing is lost. [PEP 383]
+/// Appends `text` as the inside of a JSON string. A byte that is no UTF-8 becomes text, `\xff`, as messages
+/// show it; a backslash that would begin such a text becomes `\x5c`. So nothing is lost, which U+FFFD would
+/// do: two interfaces could get one name. Lone surrogates are no Unicode, and strict readers refuse them.
+/// [RFC 8259, 8.2]
 void append_json(std::string& out, std::string_view text);
 
 class JsonText {
