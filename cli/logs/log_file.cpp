@@ -225,9 +225,10 @@ void tell_losses(const log::Losses& losses, const LogFormat& format) {
   for (std::size_t i = 0; i < log::losses; ++i) {
     const auto lost = static_cast<log::Lost>(i);
     if (losses.count(lost) == 0) continue;
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", losses.count(lost), log::describe(lost));
+    text += fmt::format("{}{} {} frame{}", text.empty() ? "" : ", ", log::describe(lost), losses.count(lost),
+                        losses.count(lost) == 1 ? "" : "s");
   }
-  remark(fmt::format("lost, because {} has no room for it: {}", format.name, text));
+  remark(fmt::format("{} has no room for {}", format.name, text));
   const LogFormat* const finer = find_format(fmt::format("{}-ns", format.name));
   if (losses.count(log::Lost::time_digits) != 0 && finer != nullptr)
     remark(fmt::format("{} keeps all digits: {}", finer->name, finer->description));

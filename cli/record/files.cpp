@@ -174,7 +174,8 @@ bool Files::finish(Next next) {
   const bool done = file_->finish() && told;
   for (std::size_t i = 0; i < log::losses; ++i) {
     const auto lost = static_cast<log::Lost>(i);
-    losses_.add(lost, file_->lost().count(lost));
+    // No format has less than microseconds, and no bus of at most 1 Mbit/s says more: a bit takes that long.
+    if (lost != log::Lost::time_digits) losses_.add(lost, file_->lost().count(lost));
   }
   if (done && elsewhere_ && next == Next::none)
     return failed(

@@ -391,7 +391,7 @@ class AscWriter final : public Writer {
     if (!entries.empty() && !started_) start(out, entries.front().time.time_since_epoch().count());
     for (const Entry& entry : entries) {
       const auto channel = channels_.of(entry.interface, interfaces);
-      if (!channel.names_it) losses_.add(Lost::interface);
+      if (!channel.names_it && !interfaces.name(entry.interface).empty()) losses_.add(Lost::interface);
       out.grow_to(line(out.room(longest_line), entry, channel.number));
     }
   }

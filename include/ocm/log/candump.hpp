@@ -358,7 +358,7 @@ class CandumpWriter : public Writer {
       c = '_';
       name.changed = true;
     }
-    if (name.text.empty()) name = {"can" + std::to_string(number), true};
+    if (name.text.empty()) name.text = "can" + std::to_string(number);
     return name;
   }
 

@@ -174,8 +174,9 @@ class CsvWriter final : public Writer {
     out.append('\n');
   }
 
-  void write(Bytes& out, std::span<const Entry> entries, const Interfaces&) override {
+  void write(Bytes& out, std::span<const Entry> entries, const Interfaces& interfaces) override {
     for (const Entry& entry : entries) {
+      if (!interfaces.name(entry.interface).empty()) losses_.add(Lost::interface);
       count_losses(entry);
       char* const begin = out.room(longest_row);
       out.grow_to(row(begin, entry));
@@ -186,7 +187,6 @@ class CsvWriter final : public Writer {
   static constexpr std::size_t longest_row = 22 + 11 + 6 + 4 + csv::max_base64 + 8;
 
   void count_losses(const Entry& entry) noexcept {
-    losses_.add(Lost::interface);
     if (entry.direction != Direction::unknown) losses_.add(Lost::direction);
     if (entry.raw_dlc != 0) losses_.add(Lost::raw_dlc);
     // Over 8 bytes the length alone tells that it is CAN FD.

@@ -163,7 +163,8 @@ class PcapWriter final : public Writer {
   void write(Bytes& out, std::span<const Entry> entries, const Interfaces& interfaces) override {
     for (const Entry& entry : entries) {
       if (entry.direction != Direction::unknown) losses_.add(Lost::direction);
-      if (interfaces.name(entry.interface) != pcap::only_interface) losses_.add(Lost::interface);
+      const std::string_view name = interfaces.name(entry.interface);
+      if (!name.empty() && name != pcap::only_interface) losses_.add(Lost::interface);
       append(out, entry);
     }
   }

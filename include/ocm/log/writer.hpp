@@ -19,7 +19,7 @@ enum class Lost : std::uint8_t {
   entry,        ///< the whole entry: the format has no such frames. All others: it was written without that
   time_digits,  ///< digits of its time, beyond the format's finest
   direction,
-  interface,  ///< its name; the format has numbers, or none
+  interface,  ///< its name; the format has numbers, or none. An empty name is none
   fd_flags,
   raw_dlc,
   remote_length,
@@ -27,15 +27,16 @@ enum class Lost : std::uint8_t {
 };
 inline constexpr std::size_t losses = 8;
 
+/// Goes before the number of frames of which it is lost: "the direction of" 2 frames.
 [[nodiscard]] constexpr std::string_view describe(Lost lost) noexcept {
-  constexpr std::string_view words[losses] = {"frames that the format cannot hold",
-                                              "digits of the time",
-                                              "directions",
-                                              "names of interfaces",
-                                              "flags of CAN FD",
-                                              "length codes over 8",
-                                              "lengths of remote frames",
-                                              "details of error frames"};
+  constexpr std::string_view words[losses] = {"all of",
+                                              "digits of the time of",
+                                              "the direction of",
+                                              "the name of the interface of",
+                                              "flags of CAN FD of",
+                                              "the length code over 8 of",
+                                              "the length of remote",
+                                              "the kind of error of"};
   return words[static_cast<std::size_t>(lost)];
 }
 

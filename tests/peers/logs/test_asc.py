@@ -85,7 +85,7 @@ class CanUtils(peers.Case):
     def test_error_frames(self):
         self.save("in.log", "(1700000000.000000) can1 20000004#0001000000000000\n")
         done = self.convert("in.log", "out.asc")
-        self.assertIn("1 details of error frames", done)
+        self.assertIn("the kind of error of 1 frame", done)
         self.assertIn("can1 20000080#0000000000000000", self.run_peer("asc2log", "-I", "out.asc"))
         self.run_peer("log2asc", "-I", "in.log", "-O", "theirs.asc", "can0", "can1")
         self.assertEqual(self.candump_of("theirs.asc"), ["(1700000000.000000000) can1 20000080#0000000000000000"])

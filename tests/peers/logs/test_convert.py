@@ -79,7 +79,7 @@ class Convert(Case):
 
     def test_losses(self):
         _, err = self.run_tool("convert", self.file("in.log"), self.path("out.csv"), "--force")
-        self.assertIn("1 directions", err)
+        self.assertIn("the direction of 1 frame", err)
         self.run_tool("convert", self.file("in.log"), self.path("out.csv"), "--force", "--strict", code=1)
 
     def test_packed(self):
