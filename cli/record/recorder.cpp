@@ -18,6 +18,7 @@
 #include "cli/record/names.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
+#include "cli/shared/terminal.hpp"
 
 namespace ocm::cli::record {
 namespace {
@@ -258,6 +259,9 @@ void Recorder::show_progress() {
   const auto folder = std::filesystem::absolute(files_->first_path(), error).parent_path();
   const auto space = std::filesystem::space(folder, error);
   if (!error) text += fmt::format(", {} free", size_text(space.available));
+  // A line that breaks could not be erased. Its last column is left free: some terminals go on to the next
+  // line.
+  text.resize(std::min(text.size(), terminal_size(STDERR_FILENO).columns - 1));
   erase_line();
   fmt::print(stderr, "{}", text);
   std::fflush(stderr);

@@ -65,6 +65,11 @@ std::string period(const Timing& timing) {
                                                    : fmt::format("{} ({})", text, name(timing.period_from));
 }
 
+/// What can be left out of a table that is too wide, the least important first: what is missing, the gaps,
+/// the load and the faults stay.
+constexpr std::array<std::size_t, 7> dispensable{1, 7, 6, 5, 4, 2, 3};
+constexpr std::size_t gap_column = 9;
+
 std::string gap(const Timing& timing, base::Time first) {
   if (timing.gap_ns == 0) return "-";
   return fmt::format("{} at {}", time(timing.gap_ns), time((timing.gap_from - first).count()));
@@ -210,7 +215,8 @@ Json to_object(const Bus& bus, const Shown& shown) {
 
 }  // namespace
 
-std::vector<std::string> to_table(const Report& report, const Shown& shown, bool colour) {
+std::vector<std::string> to_table(const Report& report, const Shown& shown, bool colour,
+                                  std::size_t columns) {
   std::vector<std::string> lines;
   for (const Bus& bus : report.buses) {
     if (!lines.empty()) lines.emplace_back();
@@ -225,11 +231,32 @@ std::vector<std::string> to_table(const Report& report, const Shown& shown, bool
     std::array<std::size_t, head.size()> widths{};
     for (const Row& row : rows)
       for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+    std::size_t blanks = 2;  // between two columns
+    const auto total = [&widths, &blanks] {
+      std::size_t sum = 0;
+      for (const std::size_t width : widths) sum += width == 0 ? 0 : width + blanks;
+      return sum - blanks;
+    };
+    for (const std::size_t i : dispensable)
+      if (total() > columns) widths[i] = 0;
+    if (total() > columns) {  // when the gap was is not as important as how long
+      widths[gap_column] = 0;
+      for (Row& row : rows) {
+        std::string& text = row[gap_column];
+        text = &row == rows.data() ? "GAP" : text.substr(0, text.find(" at "));
+        widths[gap_column] = std::max(widths[gap_column], text.size());
+      }
+    }
+    if (total() > columns) blanks = 1;
+    if (const std::size_t over = total(); over > columns)  // but a few letters name a topic
+      widths[0] -= std::min(over - columns, widths[0] - std::min<std::size_t>(widths[0], 6));
     for (std::size_t n = 0; n < rows.size(); ++n) {
       std::string line;
       for (std::size_t i = 0; i < head.size(); ++i) {
+        if (widths[i] == 0) continue;
+        rows[n][i].resize(std::min(rows[n][i].size(), widths[i]));
         const bool words = i <= 1 || i + 1 == head.size();
-        line += i == 0 ? "" : "  ";
+        line.append(i == 0 ? 0 : blanks, ' ');
         line += words ? fmt::format("{:<{}}", rows[n][i], widths[i])
                       : fmt::format("{:>{}}", rows[n][i], widths[i]);
       }

@@ -1,6 +1,7 @@
 /// Figures as a table for a person, as one JSON object, or as CSV.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,7 +17,10 @@ namespace ocm::cli::stats {
 using Shown = std::vector<const protocol::Topic*>;
 
 /// Lines without an end; every line is one on the terminal, colours take no room.
-[[nodiscard]] std::vector<std::string> to_table(const Report& report, const Shown& shown, bool colour);
+/// Where it is wider than `columns`, it has fewer of its own; the lines below the table are as long as they
+/// are.
+[[nodiscard]] std::vector<std::string> to_table(const Report& report, const Shown& shown, bool colour,
+                                                std::size_t columns = SIZE_MAX);
 [[nodiscard]] std::string to_json(const Report& report, const Shown& shown,
                                   std::span<const Assertion> assertions);
 [[nodiscard]] std::string to_csv(const Report& report, const Shown& shown);

@@ -3,7 +3,6 @@
 #include <chrono>
 #include <memory>
 #include <string>
-#include <sys/ioctl.h>
 #include <unistd.h>
 #include <utility>
 #include <vector>
@@ -12,6 +11,7 @@
 
 #include "cli/output/printer.hpp"
 #include "cli/shared/interrupt.hpp"
+#include "cli/shared/terminal.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/stats/assertion.hpp"
 #include "cli/stats/report.hpp"
@@ -43,11 +43,13 @@ class Screen {
 
   void show(const std::vector<std::string>& lines) {
     if (!terminal_) return print(lines, SIZE_MAX, SIZE_MAX);
-    winsize size{};
-    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || size.ws_row < 2)
-      size = {24, 80, 0, 0};
-    const std::size_t before = std::exchange(drawn_, std::min<std::size_t>(lines.size(), size.ws_row - 1U));
-    print(lines, drawn_, size.ws_col, before);
+    const auto [columns, rows] = terminal_size(STDOUT_FILENO);
+    const std::size_t before = std::exchange(drawn_, std::min(lines.size(), rows - 1));
+    print(lines, drawn_, columns, before);
+  }
+  /// What a table that is drawn again should fit into.
+  [[nodiscard]] std::size_t columns() const {
+    return terminal_ ? terminal_size(STDOUT_FILENO).columns : SIZE_MAX;
   }
   /// The last one, in full.
   void finish(const std::vector<std::string>& lines) { print(lines, SIZE_MAX, SIZE_MAX, drawn_); }
@@ -112,12 +114,13 @@ void run(Session& session, const StatsOptions& options, int& exit_code) {
   };
   // In a pipe, a command with a given end prints at the end.
   const bool tell = table && (screen.terminal() || !watching.ends());
-  watching.run([&](auto entries, const auto& interfaces) { collector.take(entries, interfaces); },
-               [&](auto interface, auto frames) { collector.lost(interface, frames); },
-               [&] {
-                 if (tell && collector.any())
-                   screen.show(stats::to_table(report(unix_time()), shown, session.colour()));
-               });
+  watching.run(
+      [&](auto entries, const auto& interfaces) { collector.take(entries, interfaces); },
+      [&](auto interface, auto frames) { collector.lost(interface, frames); },
+      [&] {
+        if (tell && collector.any())
+          screen.show(stats::to_table(report(unix_time()), shown, session.colour(), screen.columns()));
+      });
 
   std::optional<base::Time> now;
   if (watching.live() && collector.any()) now = unix_time();

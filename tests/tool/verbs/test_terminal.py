@@ -1,19 +1,23 @@
 """What a person sees: on a terminal the pretty view, in colour where it is asked for."""
 
+import fcntl
 import os
 import pty
 import re
+import struct
 import subprocess
+import termios
 
 from harness import AMIROCTL, Case, main
 
 
 class Terminal(Case):
-    def on_terminal(self, *arguments, **environment):
-        """Runs the tool on a pseudo terminal of its own; returns what it showed."""
+    def on_terminal(self, *arguments, columns=0, errors=False, **environment):
+        """Runs the tool on a pseudo terminal of its own; returns what it showed. 0 columns: it does not say."""
         primary, secondary = pty.openpty()
+        fcntl.ioctl(secondary, termios.TIOCSWINSZ, struct.pack("HHHH", 50 if columns else 0, columns, 0, 0))
         process = subprocess.Popen([AMIROCTL, *arguments], env={**self.environment, "TERM": "xterm", **environment},
-                                   stdin=secondary, stdout=secondary, stderr=subprocess.DEVNULL)
+                                   stdin=secondary, stdout=secondary, stderr=secondary if errors else subprocess.DEVNULL)
         os.close(secondary)
         shown = b""
         while True:
@@ -52,6 +56,28 @@ class Terminal(Case):
             shown = self.on_terminal("listen", "-n", "2", "--timeout", "5s", *arguments, **environment)
             self.assertNotIn("\033[", shown)
             self.assertIn("gyroscope", shown)
+
+    def test_live_stats_fit_the_width(self):
+        """What is drawn again in place has no line that breaks, and what matters is in sight."""
+        for columns in (40, 80, 120, 200):
+            shown = self.on_terminal("stats", "--duration", "1500ms", "--no-color", columns=columns)
+            live = shown.partition("\033[")[0].replace("\r\n", "\n").splitlines()  # up to where it is drawn anew
+            self.assertTrue(live, shown)
+            self.assertLessEqual(max(map(len, live)), columns)
+            for word in ("TOPIC", "MISSING", "GAP", "LOAD", "FAULTS"):
+                self.assertIn(word, live[0])
+            if columns in (40, 200):
+                self.assertEqual("JITTER" in live[0], columns == 200)
+            self.assertRegex("\n".join(live), r"(?m)^gyro")
+
+    def test_progress_of_a_recording_fits_the_width(self):
+        for columns in (40, 200):
+            shown = self.on_terminal("record", "-o", os.path.join(self.folder, f"{columns}.log"), "--duration", "1500ms",
+                                     columns=columns, errors=True)
+            progress = re.findall(r"\r\033\[K(\d+ frames, [^\r\n\033]*)", shown)
+            self.assertTrue(progress, shown)
+            self.assertLess(max(map(len, progress)), columns)
+            self.assertEqual("free" in progress[0], columns == 200)
 
     def test_json_when_asked_for(self):
         shown = self.on_terminal("listen", "--json", "-n", "2", "--timeout", "5s")
