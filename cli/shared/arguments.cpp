@@ -95,7 +95,11 @@ template <class Number>
 CLI::Option* only_numbers(CLI::Option* option, std::string_view what, std::string_view remedy) {
   return add_check(option, "", [what, remedy](const std::string& text) {
     Number number{};
-    return CLI::detail::lexical_cast(text, number) ? std::string{} : wrong(text, what, remedy);
+    if (CLI::detail::lexical_cast(text, number)) return std::string{};
+    const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+    return digits ? wrong(text, "too large",
+                          fmt::format("the greatest is {}", std::numeric_limits<Number>::max()))
+                  : wrong(text, what, remedy);
   });
 }
 

@@ -43,8 +43,7 @@ void info(const protocol::Catalogue& catalogue, const std::string& word) {
   for (const auto& candidate : catalogue.topics)
     if (topic == nullptr && words::is_in_group(candidate, word)) topic = &candidate;
   if (topic == nullptr) {
-    const auto words = words::topic_words(catalogue);
-    fail({"info: no topic '" + word + "'", words::suggestion(word, words)}, exit_usage);
+    fail({"info: no topic '" + word + "'", words::topic_suggestion(catalogue, word)}, exit_usage);
   }
   const bool sensor = topic->kind == protocol::Kind::sensor;
   const auto& board = catalogue.boards[topic->board];

@@ -4,7 +4,6 @@
 
 #include "cli/logs/format.hpp"
 #include "cli/shared/messages.hpp"
-#include "cli/words/suggestion.hpp"
 #include "cli/words/topics.hpp"
 
 namespace ocm::cli {
@@ -25,8 +24,8 @@ std::vector<const protocol::Topic*> chosen_topics(std::string_view verb, const p
       fail({fmt::format("{}: no topic '{}', which names a file", verb, word),
             "decode, stats and plot read logs; `amiroctl list` shows the topics"},
            exit_usage);
-    const auto names = words::topic_words(catalogue);
-    fail({fmt::format("{}: no topic '{}'", verb, word), words::suggestion(word, names)}, exit_usage);
+    fail({fmt::format("{}: no topic '{}'", verb, word), words::topic_suggestion(catalogue, word)},
+         exit_usage);
   }
   return topics;
 }

@@ -252,8 +252,7 @@ class CommandParser {
                        actuator ? "actuators are commanded with set, drive or led; sensors are asked"
                                 : "sensors are asked with publish, once and stop"};
     }
-    const auto words = topic_words(*catalogue_, kind);
-    return WordError{at, "no topic " + detail::quoted(word), suggestion(word, words)};
+    return WordError{at, "no topic " + detail::quoted(word), topic_suggestion(*catalogue_, word, kind)};
   }
 
   detail::Parsed publish(Line line, std::optional<protocol::Priority> priority) const {

@@ -2,12 +2,16 @@
 /// figure 6.2]
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "ocm/base/text.hpp"
 #include "ocm/protocol/topic.hpp"
+
+#include "cli/words/suggestion.hpp"
 
 namespace ocm::cli::words {
 
@@ -37,6 +41,23 @@ namespace ocm::cli::words {
     words.insert(words.end(), topic.aliases.begin(), topic.aliases.end());
   }
   return words;
+}
+
+/// What to say of a word that is no topic: it may be a number that lacks its 0x, hexadecimal or decimal; else
+/// as of any mistyped word.
+[[nodiscard]] inline std::string topic_suggestion(const protocol::Catalogue& catalogue, std::string_view word,
+                                                  std::optional<protocol::Kind> kind = {}) {
+  for (const unsigned radix : {16U, 10U}) {
+    const auto number = base::parse_unsigned(word, radix);
+    if (!number || *number > 0xFF) continue;
+    const auto* const topic = catalogue.find(protocol::TopicId{static_cast<std::uint8_t>(*number)});
+    if (topic == nullptr || (kind && topic->kind != *kind)) continue;
+    base::Text<8> id;
+    id << "0x";
+    id.hex(*number, 2);
+    return "did you mean '" + std::string{id.view()} + "' (" + std::string{topic->name} + ")?";
+  }
+  return suggestion(word, topic_words(catalogue, kind));
 }
 
 }  // namespace ocm::cli::words

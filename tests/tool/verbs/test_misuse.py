@@ -36,6 +36,14 @@ info gyr
 info: no topic 'gyr'
 did you mean 'gyro'?
 
+info 8
+info: no topic '8'
+did you mean '0x08' (gyroscope)?
+
+info 30
+info: no topic '30'
+did you mean '0x1E' (power_status)?
+
 analyse
 analyse: missing VERB
 usage: amiroctl analyse bus|tasks|chain|trace ...
@@ -163,6 +171,10 @@ usage: amiroctl publish TOPIC [PERIOD]
 publish gyro 500
 publish: '500' needs a unit: us, ms or s
 write 500ms, 2s or 900us
+
+publish 1F 1s
+publish: no topic '1F'
+did you mean '0x1F' (proximity_ring)?
 
 publish gyr
 publish: no topic 'gyr'
@@ -311,6 +323,10 @@ add --stdin, or drop --timed
 listen --jsno
 listen: unknown option '--jsno'
 did you mean '--json'?
+
+listen 08
+listen: no topic '08'
+did you mean '0x08' (gyroscope)?
 
 listen gyr
 listen: no topic 'gyr'
@@ -503,6 +519,10 @@ did you mean 'qemu'?
 sim --speed 0
 sim: --speed 0: out of range
 write a number from 0.001 to 1000
+
+sim --bitrate 99999999999
+sim: --bitrate 99999999999: too large
+the greatest is 4294967295
 
 sim --bitrate x
 sim: --bitrate x: not a whole number

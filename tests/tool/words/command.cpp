@@ -123,7 +123,7 @@ TEST_CASE("what is wrong is said of the word where it stands") {
       {"publish 0x99 1s", 1, "no topic '0x99'", "one of: "},
       {"publish 0x108 1s", 1, "no topic '0x108'", "one of: "},
       {"publish 0x06 1s", 1, "no topic '0x06'", "one of: "},  // a frame of the magnetometer, not a topic
-      {"publish 1f 1s", 1, "no topic '1f'", "one of: "},
+      {"publish 1f 1s", 1, "no topic '1f'", "did you mean '0x1F' (proximity_ring)?"},
       {"publish 0x01 1s", 1, "'0x01' is an actuator", "set"},
       {"publish gyro --priority 4", 3, "'4' is not a priority", "0 to 3"},
       {"publish gyro --priority 00", 3, "'00' is not a priority", "0 to 3"},
