@@ -74,7 +74,7 @@ class Judgement {
 
   [[nodiscard]] const BusCheck& bus() const { return *bus_; }
   [[nodiscard]] std::string name(std::uint32_t key) const {
-    return key == Traffic::somebody ? "any other frame" : traffic_.line(key).name;
+    return key == Traffic::any_other ? "any other frame" : traffic_.line(key).name;
   }
 
   /// The shortest period above `refused` that passes here, and that the wire carries; none: there is none
@@ -103,7 +103,7 @@ class Judgement {
     traffic_.fill(board, {asked_.topic, asked_.priority, period}, unheard);
     return board.fits();
   }
-  /// A longer period never makes anybody later, so halving finds it. In whole steps above `refused`, up to
+  /// A longer period makes no message later, so halving finds it. In whole steps above `refused`, up to
   /// `limit`; 0: none.
   [[nodiscard]] std::int64_t least_passing(std::int64_t refused, std::int64_t step, std::int64_t limit) {
     const std::int64_t period = bus_->shortest(refused, step, limit);
@@ -151,14 +151,14 @@ void Judgement::print_table() {
   const auto messages = bus_->messages();
   std::size_t width = 7;
   for (const auto& message : messages)
-    if (message.key != Traffic::somebody) width = std::max(width, name(message.key).size());
+    if (message.key != Traffic::any_other) width = std::max(width, name(message.key).size());
   fmt::print("{:<8}  {:<{}}  {:>9}  {:>9}  {:>4}  {:>9}  {:>9}  {}\n", "ID", "MESSAGE", width, "PERIOD",
              "DEADLINE", "BITS", "RESPONSE", "SLACK", "VERDICT");
   const std::int64_t load = analysis::utilisation(messages).parts_per_million();
   bool all_known = true;
   for (std::size_t i = 0; i < results.size(); ++i) {
     const std::uint32_t key = messages[i].key;
-    if (key == Traffic::somebody) continue;
+    if (key == Traffic::any_other) continue;
     const auto& line = traffic_.line(key);
     const auto& result = results[i];
     const std::string verdict = fate(result, bus_->is_asked(key), surely(key));

@@ -26,7 +26,7 @@ class RefusalWatch {
   RefusalWatch(const protocol::Catalogue& catalogue, std::string verb, Confirm confirm)
       : refusals_(catalogue), verb_(std::move(verb)), confirm_(confirm == Confirm::yes) {}
 
-  /// Before `frames` are sent, on a bus of which nothing else is wanted but `also`: has it deliver the
+  /// Before `frames` are sent, on a bus of which only `also` is needed besides: has it deliver the
   /// refusals of their boards, and takes those that came before.
   void prepare(transport::Bus& bus, std::span<const can::Frame> frames,
                std::vector<const protocol::Topic*> also = {});
@@ -41,11 +41,11 @@ class RefusalWatch {
   /// Listens until then, or until the only board that was spoken to has refused.
   void listen(transport::Bus& bus);
 
-  /// What was refused since it was told last.
+  /// What was refused since the last `tell`.
   [[nodiscard]] const std::vector<client::Refused>& refused() const { return refused_; }
   /// What could be asked for instead, if that is known: goes in place of a remedy.
   void offer(std::string instead) { offer_ = std::move(instead); }
-  /// A sensor that nothing serves is as silent as a stop wants it.
+  /// A sensor that the board does not serve is silent already, which is what a stop is for.
   void forgive_unserved();
   /// Says what was refused, on stderr. True: something was, now or before.
   bool tell();

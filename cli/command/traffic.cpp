@@ -28,7 +28,7 @@ std::string name_of(const protocol::FrameRef& ref) {
 void Traffic::take(const can::Received& received) {
   const auto reception = receiver_.take(received);
   diagnosis_.take(reception);
-  // A request comes once, when somebody types it.
+  // A request comes once, when a person types it.
   if (reception.meaning == Meaning::error || reception.meaning == Meaning::request) return;
   const std::uint32_t key = can::arbitration_key(received.frame);
   auto [place, is_new] = heard_.try_emplace(key);
@@ -62,7 +62,8 @@ void Traffic::fill(BusCheck& check, const Stream& asked, Unheard unheard_streams
     put(check, key, bits_of(heard), period_of(heard),
         heard.ref ? heard.ref.topic->deadline : base::Duration{}, heard.ref, 0);
   }
-  // What was not heard comes less often than what was; who asked for it, at which priority, is not known.
+  // What was not heard comes less often than what was; which program asked for it, at which priority, is not
+  // known.
   for (const auto* topic : unheard(asked))
     if (unheard_streams == Unheard::may_be_late)
       put_stream(check, {topic, protocol::Priority::urgent, window_}, false);
@@ -70,11 +71,11 @@ void Traffic::fill(BusCheck& check, const Stream& asked, Unheard unheard_streams
       put_stream(check, {topic, topic->priority, window_}, false);
   put_stream(check, asked, true);
   // Whatever else there is, a request or what comes so seldom that it was not heard: one frame of it may be
-  // on its way when another wants to be. It goes after all, and nobody asks when it arrives.
+  // on its way when another becomes due. It is the least urgent, and has no deadline.
   static_cast<void>(check.runs(
       {.cost = analysis::bits_ns(can::worst_frame_bits(can::Format::base, can::max_dlc), catalogue_.bit_rate),
        .period = std::chrono::nanoseconds{std::chrono::hours{1}}.count(),
-       .key = somebody}));
+       .key = any_other}));
 }
 
 void Traffic::fill(BoardCheck& check, const Stream& asked, Unheard unheard_streams) const {

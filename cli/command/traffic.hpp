@@ -55,7 +55,7 @@ class Traffic {
   [[nodiscard]] std::vector<const protocol::Topic*> unheard(const Stream& asked) const;
 
   /// The key of the message that stands for everything that was not heard.
-  static constexpr std::uint32_t somebody = UINT32_MAX;
+  static constexpr std::uint32_t any_other = UINT32_MAX;
 
   struct Line {
     std::string name;

@@ -8,7 +8,7 @@
 ///
 /// A refusal names the number that it is for and a reason, but not who has asked: one that another program
 /// earns within the same while, for the same number, looks like this program's. Several in a row come as one,
-/// the last. While somebody publishes a refusal topic, a refusal comes with its next sample only, perhaps
+/// the last. While a refusal topic is published, a refusal comes with its next sample only, perhaps
 /// after the while.
 ///
 /// Pure: sends nothing, reads no clock. O(1) a frame.

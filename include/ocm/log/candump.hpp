@@ -121,6 +121,18 @@ struct Line {
   return text.find_first_not_of(" \t\r") == std::string_view::npos;
 }
 
+/// Whether any line of a log's beginning is one of a format's, which `is_one` says; its last may be cut.
+template <class IsOne>
+[[nodiscard]] bool any_line(std::string_view beginning, IsOne is_one) {
+  while (!beginning.empty()) {
+    const auto end = beginning.find('\n');
+    if (is_one(beginning.substr(0, end))) return true;
+    if (end == std::string_view::npos) return false;
+    beginning.remove_prefix(end + 1);
+  }
+  return false;
+}
+
 }  // namespace candump
 
 class CandumpReader final : public Reader {
@@ -129,13 +141,7 @@ class CandumpReader final : public Reader {
 
   /// Whether a line of what is shown is one of candump's.
   [[nodiscard]] static bool recognises(std::string_view beginning) {
-    while (!beginning.empty()) {
-      const auto end = beginning.find('\n');
-      if (!candump::parse_line(beginning.substr(0, end)).wrong) return true;
-      if (end == std::string_view::npos) return false;
-      beginning.remove_prefix(end + 1);
-    }
-    return false;
+    return candump::any_line(beginning, [](auto line) { return !candump::parse_line(line).wrong; });
   }
 
   [[nodiscard]] std::size_t read(std::span<Entry> into) override {

@@ -229,13 +229,7 @@ class CandumpScreenReader final : public Reader {
 
   /// Whether a line of what is shown is one of candump's.
   [[nodiscard]] static bool recognises(std::string_view beginning) {
-    while (!beginning.empty()) {
-      const auto end = beginning.find('\n');
-      if (!candump_screen::parse_line(beginning.substr(0, end)).wrong) return true;
-      if (end == std::string_view::npos) return false;
-      beginning.remove_prefix(end + 1);
-    }
-    return false;
+    return candump::any_line(beginning, [](auto line) { return !candump_screen::parse_line(line).wrong; });
   }
 
   [[nodiscard]] std::size_t read(std::span<Entry> into) override {
