@@ -93,13 +93,10 @@ class Admission(Case):
             begin = time.monotonic()
             self.run_tool("publish", "gyro", "50ms", *arguments)
             return time.monotonic() - begin
-        seconds()  # warm
-        free = min(seconds("--force") for _ in range(3))
-        asked = min(seconds() for _ in range(3))
-        longer = min(seconds("--listen", "600ms") for _ in range(2))
-        # Differences, so that a slow machine counts on both sides.
-        self.assertGreater(asked - free, 0.05)
-        self.assertGreater(longer - asked, 0.25)
+        # Each is a bound that a slow machine cannot break: it takes as long as it listens, and does not listen when forced.
+        self.assertGreater(seconds(), 0.1)
+        self.assertGreater(seconds("--listen", "600ms"), 0.6)
+        self.assertLess(seconds("--force", "--listen", "30s"), 30)
 
     def test_dry_run_needs_no_bus(self):
         out, _ = self.run_tool("publish", "ring", "1ms", "--priority", "urgent", "--dry-run")

@@ -206,10 +206,15 @@ class LateSteps(Drive):
         self.start_sim()
         listener = self.listen("--commands", "--timeout", "20s")
         steps = "".join(f"{1000 + 100 * i}ms led 1 {i},0,0\n" for i in range(1, 10))
-        run = self.start("run", self.script("0s led 1 red\n" + steps))
+        run = self.start("run", self.script("0s led 1 red\n" + steps + "60s led 1 blue\n"))
         self.assertIn("FF0000", listener.stdout.readline())
         run.send_signal(signal.SIGSTOP)
         time.sleep(2)
+        # On a busy machine it was stopped after some of the steps: those come before this one.
+        self.run_tool("led", "2", "green")
+        for line in listener.stdout:
+            if "00FF00" in line:
+                break
         run.send_signal(signal.SIGCONT)
         _, err = run.communicate(timeout=10)
         self.assertEqual(run.returncode, 1, err)

@@ -154,11 +154,10 @@ class OnTheSimulatedRobot(Case):
             begin = time.monotonic()
             self.run_tool("once", "gyro", *arguments)
             return time.monotonic() - begin
-        seconds()  # warm
-        # Differences, so that a slow machine counts on both sides.
-        self.assertGreater(min(seconds() for _ in range(3)) - min(seconds("--no-confirm") for _ in range(3)), 0.08)
-        # A sample says as much as silence.
-        self.assertLess(min(seconds("--wait") for _ in range(5)), min(seconds() for _ in range(3)))
+        self.assertGreater(seconds(), 0.1)
+        # A sample says as much as silence. The shortest of several, so that a busy machine counts on neither side.
+        waited, silent = zip(*((seconds("--wait"), seconds()) for _ in range(6)))
+        self.assertLess(min(waited), min(silent))
 
 
 if __name__ == "__main__":
