@@ -1,6 +1,7 @@
 /// The names of the CAN interfaces of a log, numbered in the order in which they come up.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <string>

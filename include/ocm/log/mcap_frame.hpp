@@ -20,6 +20,7 @@
 #include <cstring>
 #include <optional>
 #include <string_view>
+#include <system_error>
 
 #include "ocm/base/swar.hpp"
 #include "ocm/base/text.hpp"

@@ -6,6 +6,7 @@ import re
 import sys
 
 import house
+import standard
 
 LAYERS = ("controller", "reflective", "cognitive")
 
@@ -246,6 +247,21 @@ def no_banned_words(tree):
         for pattern, why in BANNED_WORDS.items():
             for line, _ in tree.find(name, pattern, code):
                 yield f"{name}:{line}: {why}"
+
+
+def standard_headers_are_included(tree):
+    """What a header uses of std comes by its own includes, or by those of the project's headers that it includes: it can be
+    included first (tests/rules/compile compiles each alone, with all of std at hand)."""
+    for name in dict.fromkeys([name for name, _ in tree.headers()] + list(board_headers(tree))):
+        brought = {what for reached in (name, *closure(tree, name)) for _, quoted, what in tree.includes(reached) if not quoted}
+        missing = {}
+        for line, match in tree.find(name, standard.USE, house.without_comments(tree.text(name))):
+            by = standard.BROUGHT_BY.get(match.group(1), ())
+            if not brought.intersection(by):
+                missing.setdefault(match.group(1), (line, by))
+        for what, (line, by) in missing.items():
+            yield (f"{name}:{line}: std::{what} needs <{sorted(by)[0]}>, which nothing here includes" if by else
+                   f"{name}:{line}: std::{what} is not known: give it a line in tests/rules/architecture/standard.py")
 
 
 def headers_open_with_a_comment(tree):
@@ -565,7 +581,7 @@ def quotes_are_the_examples(tree):
 
 
 RULES = (floors_have_rows, includes_go_down, layers_are_apart, library_knows_no_tool, mapper_knows_no_can, no_circles,
-         namespace_is_folder, no_banned_headers, no_banned_words, headers_open_with_a_comment, headers_have_tests,
+         namespace_is_folder, no_banned_headers, no_banned_words, standard_headers_are_included, headers_open_with_a_comment, headers_have_tests,
          tests_have_their_namespace, own_includes_are_full_paths, generator_is_independent, firmware_is_for_boards, rooms_are_apart,
          folders_make_no_circle, verbs_are_seen_by_main_only, no_circles_of_rooms, costly_headers_are_seen_by_few,
          generated_files_are_reproducible, no_machine_paths, links_resolve, named_files_exist, words_are_plain, pages_are_linked, indexes_are_complete,

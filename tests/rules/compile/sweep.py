@@ -2,10 +2,11 @@
 """Compiles what must compile, and what must not: sweep.py PART --build DIR [--warnings FLAGS] [--jobs N].
 
     host      all headers of include/ocm together with GCC and with Clang; and each alone with Clang, but for those that `board`
-              compiles alone: the compilers have one standard library, so a header that brings what it uses for one does
-              for the other
+              compiles alone: a header that brings what it uses for one compiler does for the other
     board     what runs on a board, firmware/boards and firmware/drivers with it, without exceptions and RTTI: each header
               alone for Cortex-M0, and all together for Cortex-M0, M3, M4 and with the host's GCC and Clang
+              (Alone, but for the standard library, of which most is at hand, parsed once: that takes most of the time. That a header
+              includes what it uses of it is a rule of tests/rules/architecture, which knows what each name needs.)
     closure   each generated header in a tree that holds nothing but the floors below it
     vectors   vectors.cpp (the wire as static_asserts) with all five; boards.cpp and parts.cpp as object code for the three
               Cortex-M, in which no symbol of a heap, of exceptions, RTTI or streams may be missing
@@ -27,6 +28,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
 sys.path.insert(0, str(ROOT / "tests/rules/architecture"))
 import house
+import standard
 
 GCC, CLANG, ARM = "g++", "clang++-14", "arm-none-eabi-g++"
 STANDARD = "-std=c++20"
@@ -45,8 +47,9 @@ FORBIDDEN = re.compile(r"_Zn[wa]|_Zd[la]|^(?:malloc|calloc|realloc|free|abort|_s
 class Ninja:
     """A build.ninja and the files that it compiles."""
 
-    def __init__(self, folder, warnings):
+    def __init__(self, folder, warnings, roots=(ROOT / "include", ROOT)):
         self.folder = folder
+        self.roots = roots
         self.warnings = warnings
         self.lines = ["ninja_required_version = 1.8", "rule run", "  command = $command", "  description = $out",
                       "  depfile = $out.d", "  deps = gcc"]
@@ -69,19 +72,31 @@ class Ninja:
         self.lines += [f"build {output}: run {source} | {HERE / 'sweep.py'} {' '.join(map(str, implicit))}",
                        f"  command = {escaped}"]
 
-    def syntax(self, output, source, compiler, include=None, flags=""):
-        include = include or f"-I{ROOT / 'include'} -I{ROOT}"
+    def syntax(self, output, source, compiler, include=None, flags="", implicit=()):
+        include = include or " ".join(f"-I{root}" for root in self.roots)
         self.add(output, source, f"{compiler} {STANDARD} {include} {self.warnings} -Werror {flags} -fsyntax-only -MD "
-                                 f"-MF {output}.d -MT {output} {source} && touch {output}")
+                                 f"-MF {output}.d -MT {output} {source} && touch {output}", implicit)
+
+    def path(self, header):
+        """The file that is included by this name."""
+        return next(path for path in (root / header for root in self.roots) if path.is_file())
+
+    def alone(self, name, compiler, headers):
+        """Each header by itself, after what all of them use of the standard library, which is parsed once."""
+        used = {what for header in headers for _, quoted, what in house.includes(self.path(header).read_text()) if not quoted}
+        at_hand = self.source("standard.hpp", "".join(f"#include <{header}>\n" for header in sorted(used & set(standard.HEADERS))))
+        parsed = at_hand.name + (".pch" if compiler == CLANG else ".gch")
+        self.add(parsed, at_hand, f"{compiler} {STANDARD} {self.warnings} -x c++-header -MD -MF {parsed}.d -MT {parsed} "
+                                  f"-o {parsed} {at_hand}")
+        flags = f"-include-pch {parsed}" if compiler == CLANG else f"-Winvalid-pch -include {at_hand.name}"
+        for header in headers:
+            # Twice: it must guard itself, too.
+            source = self.source(f"alone/{header.replace('/', '_')}.cpp", f'#include "{header}"\n#include "{header}"\n')
+            self.syntax(f"{name}/{header}", source, compiler, flags=flags, implicit=[parsed])
 
     def run(self, jobs):
         (self.folder / "build.ninja").write_text("\n".join(self.lines) + "\n")
         return subprocess.run(["nice", "-n", "10", "ninja", "-C", str(self.folder), "--quiet", "-k", "0", "-j", str(jobs)]).returncode
-
-
-def alone(ninja, header):
-    """A file that includes the header, twice: it must bring what it uses, and guard itself."""
-    return ninja.source(f"alone/{header.replace('/', '_')}.cpp", f'#include "{header}"\n#include "{header}"\n')
 
 
 def library(floors=None):
@@ -97,8 +112,7 @@ def on_board():
 
 
 def host(ninja):
-    for header in sorted(set(library()) - set(library(on_board()))):
-        ninja.syntax(f"{CLANG}/{header}", alone(ninja, header), CLANG)
+    ninja.alone(CLANG, CLANG, sorted(set(library()) - set(library(on_board()))))
     together = ninja.source("together.cpp", "".join(f'#include "{header}"\n' for header in library()))
     for compiler in (GCC, CLANG):
         ninja.syntax(f"{compiler}/together", together, compiler)
@@ -108,8 +122,7 @@ def board(ninja):
     boards = [path.relative_to(ROOT).as_posix() for folder in ("firmware/boards", "firmware/drivers")
               for path in sorted((ROOT / folder).rglob("*.hpp"))]
     headers = list(library(on_board())) + boards
-    for header in headers:
-        ninja.syntax(f"m0/{header}", alone(ninja, header), CORES["m0"])
+    ninja.alone("m0", CORES["m0"], headers)
     # Whether a header brings what it uses does not depend on the core: one file for the other compilers.
     together = ninja.source("together.cpp", "".join(f'#include "{header}"\n' for header in headers))
     for name, compiler in {GCC: f"{GCC} {BARE}", CLANG: f"{CLANG} {BARE}", **CORES}.items():

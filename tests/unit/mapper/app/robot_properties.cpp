@@ -10,11 +10,14 @@
 #include "ocm/mapper/app/robot.hpp"
 #include "ocm/mapper/link/reader.hpp"
 
+#include "unit/base/explore.hpp"
 #include "unit/mapper/app/app_testing.hpp"
 
 namespace mapper_app_robot_properties_test {
 
 using namespace app_testing;
+
+const auto random_runs = static_cast<std::uint32_t>(ocm::test::explored(40) / ocm::test::coarser(5));
 
 /// An operator without sense, on a link that comes and goes, with parts that fail now and then.
 template <class Bench>
@@ -155,10 +158,10 @@ void survives(std::uint32_t seeds, int time_ms) {
 }
 
 TEST_CASE("mapper: random operators, links and faults", "[mapper][properties]") {
-  survives<Bench>(40, 60'000);
+  survives<Bench>(random_runs, 60'000);
 }
 TEST_CASE("mapper: the same with levels that preempt each other anywhere", "[mapper][properties]") {
-  survives<BasicBench<Preemptive>>(40, 60'000);
+  survives<BasicBench<Preemptive>>(random_runs, 60'000);
 }
 
 /// A robot that turns by 20 degrees; at the `nth` end of a critical section of the pose controller since then
