@@ -105,6 +105,7 @@ class Dispatcher {
   // What `run` is made of, for a port that calls jobs itself
   [[nodiscard]] bool take(Level level, Release& release) noexcept {
     [[maybe_unused]] const auto guard = port_->lock();
+    if constexpr (LevelWatcher<P>) port_->ran(level);
     return publisher_.take_due(port_->now(), level, release);
   }
   void done(std::size_t stream) noexcept {

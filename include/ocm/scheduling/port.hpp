@@ -27,4 +27,11 @@ concept Port = requires(P& port, base::Time when, Level level) {
   { port.lock() } -> std::destructible;
 };
 
+/// A port that also wants to know which levels still run (level_watch.hpp):
+/// - `ran(level)`: the level has asked for work. Called with the lock held.
+template <class P>
+concept LevelWatcher = Port<P> && requires(P& port, Level level) {
+  port.ran(level);
+};
+
 }  // namespace ocm::scheduling
