@@ -42,7 +42,7 @@ enum class Ailment : std::uint8_t {
   part_faults,      ///< parts of the board that do not answer
   overload,         ///< releases came late or not at all
   busy,             ///< its CPU
-  restarted,        ///< because of a watchdog or a fault
+  restarted,        ///< because of a watchdog, a fault or another breakdown
   bus_errors,       ///< on the bus, or frames given up
   refusals,         ///< requests that the board refused; `topic` is the last one's
   not_schedulable,  ///< the same, the last one because a deadline would be missed
@@ -64,6 +64,26 @@ struct Finding {
   const std::size_t star = what.find('*');
   return std::to_string(number) + " " + std::string{what.substr(0, star)} + (number == 1 ? "" : "s") +
          std::string{what.substr(star + 1)};
+}
+
+/// Why a board started, if it broke down before: by the spec's name of the cause. Empty: it did not.
+[[nodiscard]] constexpr std::string_view breakdown_in_words(std::string_view reset) noexcept {
+  struct Words {
+    std::string_view name;
+    std::string_view words;
+  };
+  constexpr Words all[]{
+      {"watchdog", "a watchdog"},
+      {"fault", "a fault"},
+      {"memory_fault", "a memory fault of its processor"},
+      {"bus_fault", "a bus fault of its processor"},
+      {"usage_fault", "a usage fault of its processor"},
+      {"kernel_halt", "a halt of its kernel"},
+      {"clock_failure", "a failure of its clock"},
+  };
+  for (const Words& each : all)
+    if (each.name == reset) return each.words;
+  return {};
 }
 
 /// What one board says of itself. Raw numbers, as they came.
@@ -287,9 +307,11 @@ class Diagnosis {
       tell(Ailment::busy, Severity::warning,
            "its CPU is busy for " + std::to_string(*board.load) + " % of the time",
            "ask for longer periods, or for fewer topics");
-    if (board.reset == "watchdog" || board.reset == "fault")
-      tell(Ailment::restarted, Severity::warning, "it started again because of a " + std::string{board.reset},
-           "a firmware that hung or crashed: note what was asked of it before");
+    if (const std::string_view breakdown = breakdown_in_words(board.reset); !breakdown.empty())
+      tell(Ailment::restarted, Severity::warning, "it started again because of " + std::string{breakdown},
+           board.reset == "clock_failure"
+               ? "have the board's crystal checked"
+               : "a firmware that hung or crashed: note what was asked of it before");
     if (board.bus_errors != 0)
       tell(Ailment::bus_errors, Severity::note,
            count(static_cast<std::uint64_t>(board.bus_errors), "error* on the bus or frames given up so far"),

@@ -776,6 +776,11 @@ struct DiWheelDriveStatusIdentity {
     watchdog = 4,
     low_power = 5,
     fault = 6,
+    memory_fault = 7,
+    bus_fault = 8,
+    usage_fault = 9,
+    kernel_halt = 10,
+    clock_failure = 11,
   };
 
   std::uint32_t uptime = 0;     ///< since the start; stays at its end; [0, 16777215] s
@@ -991,6 +996,11 @@ struct PowerManagementStatusIdentity {
     watchdog = 4,
     low_power = 5,
     fault = 6,
+    memory_fault = 7,
+    bus_fault = 8,
+    usage_fault = 9,
+    kernel_halt = 10,
+    clock_failure = 11,
   };
 
   std::uint32_t uptime = 0;     ///< since the start; stays at its end; [0, 16777215] s
@@ -1206,6 +1216,11 @@ struct LightRingStatusIdentity {
     watchdog = 4,
     low_power = 5,
     fault = 6,
+    memory_fault = 7,
+    bus_fault = 8,
+    usage_fault = 9,
+    kernel_halt = 10,
+    clock_failure = 11,
   };
 
   std::uint32_t uptime = 0;     ///< since the start; stays at its end; [0, 16777215] s
@@ -1603,9 +1618,12 @@ inline constexpr std::string_view source =
 }  // namespace ring_calibration
 
 namespace di_wheel_drive_status_identity {
-inline constexpr std::array<protocol::NamedValue, 7> reset_names{{{0, "unknown"}, {1, "power"}, {2, "pin"},
-                                                                  {3, "software"}, {4, "watchdog"},
-                                                                  {5, "low_power"}, {6, "fault"}}};
+inline constexpr std::array<protocol::NamedValue, 12> reset_names{{{0, "unknown"}, {1, "power"}, {2, "pin"},
+                                                                   {3, "software"}, {4, "watchdog"},
+                                                                   {5, "low_power"}, {6, "fault"},
+                                                                   {7, "memory_fault"}, {8, "bus_fault"},
+                                                                   {9, "usage_fault"}, {10, "kernel_halt"},
+                                                                   {11, "clock_failure"}}};
 inline constexpr std::array<protocol::Field, 3> fields{{
   {"uptime", {0, 24, protocol::ByteOrder::little}, false, {1, 0}, {}, "s", 0, 16'777'215, {}, false},
   {"reset", {24, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, reset_names, false},
@@ -1656,9 +1674,12 @@ inline constexpr std::string_view source =
 }  // namespace di_wheel_drive_refusal
 
 namespace power_management_status_identity {
-inline constexpr std::array<protocol::NamedValue, 7> reset_names{{{0, "unknown"}, {1, "power"}, {2, "pin"},
-                                                                  {3, "software"}, {4, "watchdog"},
-                                                                  {5, "low_power"}, {6, "fault"}}};
+inline constexpr std::array<protocol::NamedValue, 12> reset_names{{{0, "unknown"}, {1, "power"}, {2, "pin"},
+                                                                   {3, "software"}, {4, "watchdog"},
+                                                                   {5, "low_power"}, {6, "fault"},
+                                                                   {7, "memory_fault"}, {8, "bus_fault"},
+                                                                   {9, "usage_fault"}, {10, "kernel_halt"},
+                                                                   {11, "clock_failure"}}};
 inline constexpr std::array<protocol::Field, 3> fields{{
   {"uptime", {0, 24, protocol::ByteOrder::little}, false, {1, 0}, {}, "s", 0, 16'777'215, {}, false},
   {"reset", {24, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, reset_names, false},
@@ -1709,9 +1730,12 @@ inline constexpr std::string_view source =
 }  // namespace power_management_refusal
 
 namespace light_ring_status_identity {
-inline constexpr std::array<protocol::NamedValue, 7> reset_names{{{0, "unknown"}, {1, "power"}, {2, "pin"},
-                                                                  {3, "software"}, {4, "watchdog"},
-                                                                  {5, "low_power"}, {6, "fault"}}};
+inline constexpr std::array<protocol::NamedValue, 12> reset_names{{{0, "unknown"}, {1, "power"}, {2, "pin"},
+                                                                   {3, "software"}, {4, "watchdog"},
+                                                                   {5, "low_power"}, {6, "fault"},
+                                                                   {7, "memory_fault"}, {8, "bus_fault"},
+                                                                   {9, "usage_fault"}, {10, "kernel_halt"},
+                                                                   {11, "clock_failure"}}};
 inline constexpr std::array<protocol::Field, 3> fields{{
   {"uptime", {0, 24, protocol::ByteOrder::little}, false, {1, 0}, {}, "s", 0, 16'777'215, {}, false},
   {"reset", {24, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, reset_names, false},
