@@ -13,9 +13,9 @@ foreach(image "di_wheel_drive;qemu_m3_busy" "power_management;qemu_m4_busy")
   list(GET image 1 chip)
   foreach(spread 3000 180)  # us between two requests: 180 is as fast as the bus brings them
     ocm_add_image(BOARD load_${spread}_${board} CHIP ${chip} MAIN_STACK 0x800
-      SOURCES ${repository}/bench/firmware/load_${board}.cpp qemu/machine.cpp DEFINES OCM_LOAD_SPREAD_US=${spread})
+      SOURCES ${repository}/bench/firmware/load_${board}.cpp qemu/machine.cpp qemu/give_up.cpp DEFINES OCM_LOAD_SPREAD_US=${spread})
   endforeach()
 endforeach()
 ocm_add_image(BOARD load_without_control_di_wheel_drive CHIP qemu_m3_busy MAIN_STACK 0x800
-  SOURCES ${repository}/bench/firmware/load_di_wheel_drive.cpp qemu/machine.cpp
+  SOURCES ${repository}/bench/firmware/load_di_wheel_drive.cpp qemu/machine.cpp qemu/give_up.cpp
   DEFINES OCM_LOAD_SPREAD_US=3000 OCM_LOAD_WITHOUT_CONTROL)

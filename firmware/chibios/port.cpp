@@ -57,6 +57,13 @@ void Port::arm(base::Time when) noexcept {
   if (expire_ != nullptr) set_timer();
 }
 
+bool Port::all_run(base::Time now) noexcept {
+  const Lock lock;
+  if (watch_.due(now))
+    for (Signal& level : pended_) level.raise_locked();
+  return watch_.complete();
+}
+
 // The timer always runs, for at most a quarter of the counter's turn: that is what keeps the clock right.
 void Port::set_timer() noexcept {
   const base::Duration left = target_ == base::never ? base::Duration::max() : target_ - now();

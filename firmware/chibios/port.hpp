@@ -6,13 +6,13 @@
 ///     static Port port;
 ///     static Board board{parts, can, port};
 ///     static Runtime runtime{port, board.controller(), can};
-///     runtime.run([](base::Time now) { parts.maintain(now); });  // main()'s thread is the lowest level's
-///     now
+///     runtime.run([](base::Time now) { parts.maintain(now); }, feed);  // main()'s thread is the lowest
+///     level's now; `feed()` is called as long as every level runs (scheduling/level_watch.hpp)
 ///
 /// Time: 64-bit nanoseconds since the kernel's start, in steps of 1 us. The kernel's own counter turns over
 /// every 65 ms (16 bits) or 71 minutes (32 bits): the port looks at it at least four times a turn.
 /// Threads: receiver > urgent > high > medium > low; low is main()'s own, so its stack is main()'s.
-/// Costs: RAM of Port 88 bytes, of Runtime three stacks and the receiver's; lock and unlock some 20
+/// Costs: RAM of Port 112 bytes, of Runtime three stacks and the receiver's; lock and unlock some 20
 /// instructions.
 #pragma once
 
@@ -26,11 +26,15 @@
 #include "ocm/base/time.hpp"
 #include "ocm/can/frame.hpp"
 #include "ocm/protocol/identifier.hpp"
+#include "ocm/scheduling/level_watch.hpp"
 #include "ocm/scheduling/port.hpp"
 
 namespace ocm::firmware::chibios {
 
 using scheduling::Level;
+
+/// How often the levels are called up, to prove that they run.
+inline constexpr base::Duration watch_period = std::chrono::milliseconds{100};
 
 /// The kernel locked: no other thread, no interrupt that talks to the kernel. From threads, interrupts and
 /// where it is locked already. Its end lets a more urgent thread in that became ready meanwhile.
@@ -102,6 +106,7 @@ class Port {
   void arm(base::Time when) noexcept;
   void pend(Level level) noexcept { pended_[static_cast<std::size_t>(level)].raise_locked(); }
   [[nodiscard]] Lock lock() noexcept { return Lock{}; }
+  void ran(Level level) noexcept { watch_.ran(level); }
 
   /// From now on the timer's interrupt calls `expire(object)`. The kernel runs already.
   void start(void (*expire)(void*), void* object) noexcept;
@@ -111,6 +116,10 @@ class Port {
     return pended_[static_cast<std::size_t>(level)].wait(timeout);
   }
 
+  /// At the lowest level, between its jobs: calls the levels up when it is time. True: every level has run
+  /// since that was last so.
+  [[nodiscard]] bool all_run(base::Time now) noexcept;
+
   /// Time in which no thread had anything to do, interrupts during it included.
   [[nodiscard]] base::Duration idle() noexcept;
 
@@ -119,12 +128,13 @@ class Port {
   static void timer_expired(void* self);
 
   std::array<Signal, scheduling::level_count> pended_{};
+  scheduling::LevelWatch watch_{watch_period};
   virtual_timer_t timer_{};
   base::Time target_ = base::never;
   void (*expire_)(void*) = nullptr;
   void* object_ = nullptr;
 };
-static_assert(scheduling::Port<Port>);
+static_assert(scheduling::LevelWatcher<Port>);
 
 /// How the stack of a thread stands: bytes that it never touched.
 [[nodiscard]] std::size_t untouched(const std::uint8_t* lowest, std::size_t size) noexcept;
@@ -148,6 +158,11 @@ class Thread {
 
 /// How often a board looks after its parts. [firmware/boards/*/parts.hpp, maintain]
 inline constexpr base::Duration background_period = std::chrono::milliseconds{10};
+
+/// Nothing is fed.
+struct NoWatchdog {
+  void operator()() const noexcept {}
+};
 
 /// The kernel's priority of a level's thread.
 [[nodiscard]] constexpr tprio_t priority_of(Level level) noexcept {
@@ -184,9 +199,10 @@ class Levels {
   Levels& operator=(const Levels&) = delete;
 
   /// Makes the calling thread the lowest level, which between its jobs calls `background(now)` every
-  /// `background_period`: what is not urgent and belongs to no topic.
-  template <class F>
-  [[noreturn]] void run(F background) noexcept {
+  /// `background_period`: what is not urgent and belongs to no topic. `feed()` is called each time that every
+  /// level has run since the last time, some ten times a second.
+  template <class F, class Feed = NoWatchdog>
+  [[noreturn]] void run(F background, Feed feed = {}) noexcept {
     port_->start([](void* self) { static_cast<Levels*>(self)->work_->expire(); }, this);
     start_level<Level::urgent>();
     start_level<Level::high>();
@@ -195,6 +211,7 @@ class Levels {
     base::Time next = port_->now();
     for (;;) {
       const base::Time now = port_->now();
+      if (port_->all_run(now)) feed();
       if (now >= next) {
         background(now);
         next = now + background_period;
@@ -238,11 +255,11 @@ class Runtime {
   Runtime& operator=(const Runtime&) = delete;
 
   /// As Levels::run.
-  template <class F>
-  [[noreturn]] void run(F background) noexcept {
+  template <class F, class Feed = NoWatchdog>
+  [[noreturn]] void run(F background, Feed feed = {}) noexcept {
     receiver_.start(
         priority_of(Level::urgent) + 1, [](void* self) { static_cast<Runtime*>(self)->receive(); }, this);
-    levels_.run(background);
+    levels_.run(background, feed);
   }
 
   /// Bytes of stack that were never touched, of the receiver or of the three levels above low.

@@ -1,6 +1,10 @@
+#include <array>
+#include <cstdint>
+
 #include "firmware/boards/di_wheel_drive/board.hpp"
 #include "firmware/boards/di_wheel_drive/costs.hpp"
 #include "firmware/boards/di_wheel_drive/parts.hpp"
+#include "firmware/chibios/fault.hpp"
 #include "firmware/chibios/port.hpp"
 #include "firmware/qemu/machine.hpp"
 #include "firmware/qemu/main.hpp"
@@ -9,6 +13,13 @@
 namespace qemu = ocm::firmware::qemu;
 namespace di_wheel_drive = ocm::firmware::boards::di_wheel_drive;
 namespace wiring = di_wheel_drive::wiring;
+
+void ocm::firmware::chibios::bring_to_rest() noexcept {
+  constexpr std::array<std::uint8_t, 4> no_duty{};
+  constexpr std::array<std::uint8_t, 1> no_power{};
+  qemu::PartsLink::post_at_last({.kind = qemu::link::Kind::outputs, .written = no_power});
+  qemu::PartsLink::post_at_last({.kind = qemu::link::Kind::set_duty, .written = no_duty});
+}
 
 int main() {
   qemu::start_machine();

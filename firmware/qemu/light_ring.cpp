@@ -1,6 +1,10 @@
+#include <array>
+#include <cstdint>
+
 #include "firmware/boards/light_ring/board.hpp"
 #include "firmware/boards/light_ring/costs.hpp"
 #include "firmware/boards/light_ring/parts.hpp"
+#include "firmware/chibios/fault.hpp"
 #include "firmware/chibios/port.hpp"
 #include "firmware/qemu/machine.hpp"
 #include "firmware/qemu/main.hpp"
@@ -9,6 +13,11 @@
 namespace qemu = ocm::firmware::qemu;
 namespace light_ring = ocm::firmware::boards::light_ring;
 namespace wiring = light_ring::wiring;
+
+void ocm::firmware::chibios::bring_to_rest() noexcept {
+  constexpr std::array<std::uint8_t, 1> blank{wiring::blank_pin};
+  qemu::PartsLink::post_at_last({.kind = qemu::link::Kind::outputs, .written = blank});
+}
 
 int main() {
   qemu::start_machine();

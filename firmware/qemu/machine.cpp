@@ -8,7 +8,6 @@ namespace {
 
 constinit systime_t alarm_time = 0;
 constinit bool alarm_set = false;
-constinit void (*last_words)(const char*) = nullptr;
 
 struct Handler {
   void (*received)(void*) = nullptr;
@@ -48,15 +47,6 @@ std::uint32_t semihosting(std::uint32_t operation, const void* argument) noexcep
   return r0;
 }
 
-// Locked for good, so that last words may call what locks.
-[[noreturn]] void give_up(const char* reason, int code) noexcept {
-  __set_BASEPRI(CORTEX_BASEPRI_KERNEL);
-  void (*const words)(const char*) = last_words;
-  last_words = nullptr;  // a fault in them is the end
-  if (words != nullptr) words(reason);
-  leave(reason, code);
-}
-
 }  // namespace
 
 void start_machine() noexcept {
@@ -68,20 +58,20 @@ void start_machine() noexcept {
   chSysInit();
 }
 
-void leave(const char* reason, int code) noexcept {
+void say(const char* text) noexcept {
   constexpr std::uint32_t write0 = 0x04;
+  semihosting(write0, text);
+}
+
+void leave(const char* reason, int code) noexcept {
   constexpr std::uint32_t exit_extended = 0x20;
   constexpr std::uint32_t application_exit = 0x20026;
-  semihosting(write0, reason);
-  semihosting(write0, "\n");
+  say(reason);
+  say("\n");
   const std::array<std::uint32_t, 2> block{application_exit, static_cast<std::uint32_t>(code)};
   semihosting(exit_extended, block.data());
   for (;;) {
   }
-}
-
-void before_giving_up(void (*words)(const char* reason)) noexcept {
-  last_words = words;
 }
 
 void busy_wait(std::uint32_t us) noexcept {
@@ -196,14 +186,4 @@ CH_IRQ_HANDLER(SysTick_Handler) {
 OCM_UART_INTERRUPT(VectorD4, 0)
 OCM_UART_INTERRUPT(VectorD8, 1)
 OCM_UART_INTERRUPT(VectorDC, 2)
-
-void HardFault_Handler() {
-  ocm::firmware::qemu::give_up("hard fault", 3);
-}
-void ocm_halted(const char* reason) {
-  ocm::firmware::qemu::give_up(reason != nullptr ? reason : "the kernel halted", 2);
-}
-void abort() {
-  ocm::firmware::qemu::give_up("abort", 4);
-}
 }

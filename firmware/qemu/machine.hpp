@@ -15,11 +15,14 @@ namespace ocm::firmware::qemu {
 /// Counter and kernel. First thing in main().
 void start_machine() noexcept;
 
-/// Ends QEMU with this exit code, the reason on its stderr. (QEMU needs -semihosting; without it, it aborts.)
+/// On QEMU's stderr. (QEMU needs -semihosting; without it, it aborts.)
+void say(const char* text) noexcept;
+
+/// Ends QEMU with this exit code, the reason on its stderr.
 [[noreturn]] void leave(const char* reason, int code) noexcept;
 
-/// Before an image that gives up ends QEMU, it calls this with the reason, interrupts off: for what a robot
-/// has to do then. nullptr: nothing.
+/// Of an image that has give_up.cpp. Before one that gives up ends QEMU, it calls this with the reason,
+/// interrupts off: for what a robot has to do then. nullptr: nothing.
 void before_giving_up(void (*last_words)(const char* reason)) noexcept;
 
 /// Waits without the kernel, wherever that is. Microseconds.

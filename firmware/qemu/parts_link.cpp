@@ -19,6 +19,12 @@ void PartsLink::post(link::Request request) noexcept {
   if (request.written.size() <= link::max_bytes) write(request, {});
 }
 
+void PartsLink::post_at_last(link::Request request) noexcept {
+  UartRegisters uart{uart_number};
+  uart.write(link::header(request));
+  uart.write(request.written);
+}
+
 base::Status PartsLink::exchange(link::Request request, std::span<std::uint8_t> read,
                                  std::span<const std::uint8_t> head) noexcept {
   if (head.size() + request.written.size() > link::max_bytes || read.size() > link::max_bytes)
@@ -34,6 +40,8 @@ base::Status PartsLink::exchange(link::Request request, std::span<std::uint8_t> 
     std::uint8_t byte = 0;
     if (!uart_->read(byte)) {
       waiting = signal_.wait(patience);
+      if (!waiting)
+        reader_ = {};  // half an answer, to the program before a restart, is not finished any more
     } else if (reader_.feed(byte) && reader_.answer().sequence == request.sequence) {
       const link::Answer answer = reader_.answer();
       if (answer.status != base::Error::none) {

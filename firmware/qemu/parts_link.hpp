@@ -37,6 +37,9 @@ class PartsLink {
                         std::span<const std::uint8_t> head = {}) noexcept;
   /// Sends `request` and waits for nothing, as a write to a register does not. Any context, interrupts too.
   void post(link::Request request) noexcept;
+  /// The same without lock, variable or interrupt: for a program that cannot go on.
+  static void post_at_last(link::Request request) noexcept;
+  static constexpr unsigned uart_number = 2;
 
  private:
   void write(link::Request request, std::span<const std::uint8_t> head) noexcept;

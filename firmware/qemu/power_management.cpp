@@ -1,6 +1,7 @@
 #include "firmware/boards/power_management/board.hpp"
 #include "firmware/boards/power_management/costs.hpp"
 #include "firmware/boards/power_management/parts.hpp"
+#include "firmware/chibios/fault.hpp"
 #include "firmware/chibios/port.hpp"
 #include "firmware/qemu/machine.hpp"
 #include "firmware/qemu/main.hpp"
@@ -9,6 +10,8 @@
 namespace qemu = ocm::firmware::qemu;
 namespace power_management = ocm::firmware::boards::power_management;
 namespace wiring = power_management::wiring;
+
+void ocm::firmware::chibios::bring_to_rest() noexcept {}  // nothing of this board moves or shines
 
 int main() {
   qemu::start_machine();

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "firmware/chibios/fault.hpp"
 #include "firmware/chibios/stm32/chip.hpp"
+#include "firmware/chibios/stm32/watchdog.hpp"
 
 extern "C" {
 extern const std::uint32_t _vectors[];  // ChibiOS's: where this program begins
@@ -12,7 +14,6 @@ namespace ocm::firmware::chibios::stm32 {
 namespace {
 
 constinit SignalPins signals{};
-constinit void (*bring_to_rest)() = nullptr;
 constinit ConnectDetector connect{};
 
 // The same on both chips. [RM0008 table 63, RM0090 table 62]
@@ -48,9 +49,8 @@ void power_down_fell() noexcept {
 
 }  // namespace
 
-void obey_shutdown(const SignalPins& pins, void (*prepare)()) noexcept {
+void obey_shutdown(const SignalPins& pins) noexcept {
   signals = pins;
-  bring_to_rest = prepare;
 
   // A pulse of 1 ms means restart, so it must be an interrupt. [AMiRo-BLT, blCallbackShutdownRestart]
   const std::uint32_t line = 1U << pins.power_down_pad;
@@ -72,9 +72,8 @@ void say_ready() noexcept {
 }
 
 void shut_down(Shutdown kind) noexcept {
-  __disable_irq();
-  if (bring_to_rest != nullptr) bring_to_rest();
-  SysTick->CTRL = 0;  // the bootloader's time is SysTick, polled
+  leave_only_watchdog();  // SysTick is off, too: the bootloader polls it for its time
+  bring_to_rest();
   BootloaderTable table{};
   const auto* const words = reinterpret_cast<const volatile std::uint32_t*>(bootloader_table_address);
   std::copy_n(words, table.size(), table.begin());
@@ -82,12 +81,6 @@ void shut_down(Shutdown kind) noexcept {
   if (const std::uint32_t address = bootloader_function(table, kind, application); address != 0) {
     reinterpret_cast<void (*)()>(address)();
   }
-  restart_chip();
-}
-
-void rest_and_restart() noexcept {
-  __disable_irq();
-  if (bring_to_rest != nullptr) bring_to_rest();
   restart_chip();
 }
 

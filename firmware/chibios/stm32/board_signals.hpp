@@ -2,8 +2,8 @@
 /// any board requests the robot off or restarted. And the programming UART, on which the flashing tool says
 /// hello. [AMiRo-BLT main.c of each board; AMiRo-OS main.cpp]
 ///
-/// When a shutdown or restart is requested nothing of ours runs on: `prepare` brings the actuators to rest,
-/// then the bootloader has the chip, and does not come back.
+/// When a shutdown or restart is requested nothing of ours runs on but the watchdog's interrupt: the
+/// actuators are brought to rest (fault.hpp), then the bootloader has the chip, and does not come back.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,8 @@ struct SignalPins {
   char power_down_port = 'C';
 };
 
-/// From now on SYS_PD_N and the UART are obeyed. `prepare` is called with interrupts off, once.
-void obey_shutdown(const SignalPins& pins, void (*prepare)()) noexcept;
+/// From now on SYS_PD_N and the UART are obeyed.
+void obey_shutdown(const SignalPins& pins) noexcept;
 
 /// Lets SYS_SYNC_N go: this board is ready. Other boards' programs wait for it.
 void say_ready() noexcept;
@@ -29,8 +29,5 @@ void say_ready() noexcept;
 /// Into the bootloader, with all boards. By the bootloader's own function; where its table is not one that we
 /// know, by a reset of this chip.
 [[noreturn]] void shut_down(Shutdown kind) noexcept;
-
-/// Actuators to rest, then a reset of this chip alone: for a program that cannot go on.
-[[noreturn]] void rest_and_restart() noexcept;
 
 }  // namespace ocm::firmware::chibios::stm32

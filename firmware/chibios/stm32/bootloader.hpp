@@ -11,6 +11,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "firmware/chibios/restart_note.hpp"
+
 namespace ocm::firmware::chibios::stm32 {
 
 /// Where the table is on all three boards: offset 0x1C0 in the flash. [amiroblt.h, BL_CALLBACK_TABLE_OFFSET]
@@ -57,9 +59,6 @@ inline constexpr std::size_t first_function = 4;
   const bool code = address >= 0x0800'0000 && address < application_address && (address & 1) != 0;
   return code ? address : 0;
 }
-
-/// Why a board started, as its status says it. [spec/topics.json, field reset]
-enum class ResetCause : std::uint8_t { unknown, power, pin, software, watchdog, low_power, fault };
 
 /// From the reset flags as RCC_CSR has them in its upper byte, or the bootloader in the third byte of backup
 /// register 0 (on PowerManagement; it clears RCC_CSR). A reset of any kind also pulls the pin, so the pin

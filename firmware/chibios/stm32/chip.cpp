@@ -3,11 +3,12 @@
 #include <ch.h>
 #include <hal.h>
 
-#include "firmware/chibios/stm32/board_signals.hpp"
+#include "firmware/chibios/fault.hpp"
 
 namespace ocm::firmware::chibios::stm32 {
 
 void start_chip(const PALConfig& pins) noexcept {
+  RCC->CR |= RCC_CR_CSSON;  // a crystal that stops is an NMI, and the chip goes on with its own oscillator
   rccEnablePWRInterface(FALSE);
   dmaInit();
   palInit(&pins);
@@ -24,6 +25,7 @@ void start_chip(const PALConfig& pins) noexcept {
 }
 
 ResetCause reset_cause() noexcept {
+  if (const ResetCause noted = take_noted_cause(); noted != ResetCause::unknown) return noted;
   const ResetCause cause = cause_in_csr(RCC->CSR);
 #if !defined(STM32F103xE)
   if (cause == ResetCause::unknown) return cause_in_backup(RTC->BKP0R);
@@ -34,6 +36,7 @@ ResetCause reset_cause() noexcept {
 void restart_chip() noexcept {
 #if !defined(STM32F103xE)
   constexpr std::uint32_t restart = 0x04;  // shutdown_pri_reason, the lowest byte [amiroblt.h]
+  RCC->APB1ENR |= RCC_APB1ENR_PWREN;       // a fault may come before start_chip()
   PWR->CR |= PWR_CR_DBP;
   RTC->BKP0R = restart;
 #endif
@@ -44,15 +47,14 @@ void restart_chip() noexcept {
 
 }  // namespace ocm::firmware::chibios::stm32
 
+void ocm::firmware::chibios::restart(ResetCause /*cause*/) noexcept {
+  stm32::restart_chip();
+}
+
 extern "C" {
 
 /// Called by the start-up code before anything is in RAM.
 void __early_init() {
   stm32_clock_init();
-}
-
-/// The kernel found itself broken: actuators to rest, and from the beginning.
-void ocm_halted(const char* /*reason*/) {
-  ocm::firmware::chibios::stm32::rest_and_restart();
 }
 }

@@ -13,8 +13,9 @@ namespace ocm::firmware::chibios::stm32 {
 /// Pins, buses' drivers, system timer, kernel. First thing in main(); clocks run since before.
 void start_chip(const PALConfig& pins) noexcept;
 
-/// What is known of why this program started. The bootloader of the F103 boards clears the flags before they
-/// can be read; that of PowerManagement keeps a copy.
+/// What is known of why this program started: first the note of the program before it (fault.hpp), then the
+/// chip's flags. The bootloader of the F103 boards clears the flags before they can be read; that of
+/// PowerManagement keeps a copy. To be asked once.
 [[nodiscard]] ResetCause reset_cause() noexcept;
 
 /// Resets this chip in a way that its bootloader takes for a restart: that of PowerManagement blinks SOS for

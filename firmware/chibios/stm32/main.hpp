@@ -9,11 +9,13 @@
 #include "ocm/controller/report.hpp"
 #include "ocm/topics/amiro.hpp"
 
+#include "firmware/chibios/fault.hpp"
 #include "firmware/chibios/load.hpp"
 #include "firmware/chibios/port.hpp"
 #include "firmware/chibios/stm32/board_signals.hpp"
 #include "firmware/chibios/stm32/can_bus.hpp"
 #include "firmware/chibios/stm32/chip.hpp"
+#include "firmware/chibios/stm32/watchdog.hpp"
 #include "firmware/drivers/bxcan_filter.hpp"
 
 namespace ocm::firmware::chibios::stm32 {
@@ -53,16 +55,20 @@ template <class Type, template <class, class, class, class> class Board, class C
   parts.start(port.now());
   static constexpr auto filters = drivers::bxcan::filter_banks_of<Type>();
   // A controller that does not answer has no clock or is broken: nothing of this board would be heard of.
-  if (!can.start(port, bit_timing<Type, amiro::catalogue.bit_rate>, filters).ok()) rest_and_restart();
+  if (!can.start(port, bit_timing<Type, amiro::catalogue.bit_rate>, filters).ok())
+    rest_and_restart(ResetCause::software);
   using Admission = analysis::BoardAdmission<Type, amiro::bit_rate, Costs>;
   static Board<Parts, CanBus, Port, Admission> board{parts, can, port};
   board.controller().report([] { return vitals.health(); });
   static Runtime runtime{port, board.controller(), can};
   say_ready();
-  runtime.run([](base::Time now) {
-    vitals.look(now);
-    board.maintain(now);
-  });
+  start_watchdog();
+  runtime.run(
+      [](base::Time now) {
+        vitals.look(now);
+        board.maintain(now);
+      },
+      feed_watchdog);
 }
 
 }  // namespace ocm::firmware::chibios::stm32

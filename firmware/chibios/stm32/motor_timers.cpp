@@ -64,4 +64,13 @@ void MotorTimers::set_duty(std::int16_t left, std::int16_t right) noexcept {
   pwm.CCR4 = width(-right);
 }
 
+void MotorTimers::stop() noexcept {
+  TIM_TypeDef& pwm = *TIM2;
+  pwm.CCR1 = 0;
+  pwm.CCR2 = 0;
+  pwm.CCR3 = 0;
+  pwm.CCR4 = 0;
+  pwm.EGR = 1;  // now, and not at the end of the period
+}
+
 }  // namespace ocm::firmware::chibios::stm32

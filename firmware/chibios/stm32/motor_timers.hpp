@@ -17,6 +17,8 @@ class MotorTimers {
   void start() noexcept;
   [[nodiscard]] std::array<std::uint16_t, 2> encoders() noexcept;
   void set_duty(std::int16_t left, std::int16_t right) noexcept;
+  /// No voltage, at once: for a program that cannot go on. Needs no object.
+  static void stop() noexcept;
 };
 static_assert(drivers::MotorTimers<MotorTimers>);
 

@@ -7,6 +7,7 @@
 #include "firmware/boards/di_wheel_drive/board.hpp"
 #include "firmware/boards/di_wheel_drive/costs.hpp"
 #include "firmware/boards/di_wheel_drive/parts.hpp"
+#include "firmware/chibios/fault.hpp"
 #include "firmware/chibios/stm32/board_signals.hpp"
 #include "firmware/chibios/stm32/chip.hpp"
 #include "firmware/chibios/stm32/i2c_bus.hpp"
@@ -68,16 +69,16 @@ constexpr std::uint8_t motor_power = 2;  // on port B
 constexpr std::uint32_t i2c_bit_rate = 400'000;      // [AMiRo-OS global.hpp]
 constexpr std::uint32_t spi1_clock_hz = 72'000'000;  // APB2
 
-void rest() {
-  stm32::MotorTimers{}.set_duty(0, 0);
-  palClearPad(GPIOB, motor_power);
-}
-
 }  // namespace
+
+void chibios::bring_to_rest() noexcept {
+  palClearPad(GPIOB, motor_power);
+  stm32::MotorTimers::stop();
+}
 
 int main() {
   stm32::start_chip(pin_setup);
-  stm32::obey_shutdown({GPIOC, 1, 8}, &rest);
+  stm32::obey_shutdown({GPIOC, 1, 8});
   static stm32::I2cBus compass{I2CD1, {GPIOB, 8, PAL_MODE_STM32_ALTERNATE_OPENDRAIN}, i2c_bit_rate};
   static stm32::I2cBus floor{I2CD2, {GPIOB, 10, PAL_MODE_STM32_ALTERNATE_OPENDRAIN}, i2c_bit_rate};
   static stm32::SpiBus motion{SPID1, spi1_clock_hz};

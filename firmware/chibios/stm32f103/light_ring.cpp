@@ -6,6 +6,7 @@
 #include "firmware/boards/light_ring/board.hpp"
 #include "firmware/boards/light_ring/costs.hpp"
 #include "firmware/boards/light_ring/parts.hpp"
+#include "firmware/chibios/fault.hpp"
 #include "firmware/chibios/stm32/board_signals.hpp"
 #include "firmware/chibios/stm32/chip.hpp"
 #include "firmware/chibios/stm32/main.hpp"
@@ -46,15 +47,15 @@ constexpr std::uint8_t blank = 4;  // on port A
 
 constexpr std::uint32_t spi1_clock_hz = 72'000'000;  // APB2
 
-void rest() {
+}  // namespace
+
+void chibios::bring_to_rest() noexcept {
   palSetPad(GPIOA, blank);
 }
 
-}  // namespace
-
 int main() {
   stm32::start_chip(pin_setup);
-  stm32::obey_shutdown({GPIOD, 2, 14}, &rest);
+  stm32::obey_shutdown({GPIOD, 2, 14});
   static stm32::SpiBus lights_bus{SPID1, spi1_clock_hz};
   static stm32::SpiDevice lights{lights_bus, GPIOC, 4};
   static stm32::OnePin dark{GPIOA, blank};

@@ -8,6 +8,7 @@
 #include "firmware/boards/power_management/board.hpp"
 #include "firmware/boards/power_management/costs.hpp"
 #include "firmware/boards/power_management/parts.hpp"
+#include "firmware/chibios/fault.hpp"
 #include "firmware/chibios/stm32/board_signals.hpp"
 #include "firmware/chibios/stm32/chip.hpp"
 #include "firmware/chibios/stm32/i2c_bus.hpp"
@@ -85,13 +86,13 @@ static_assert((pin_setup.PCData.odr >> 14 & 1) == 1 &&
 constexpr std::uint32_t i2c_bit_rate = 100'000;  // the gauges' highest [BQ27500 data sheet, 7.12]
 constexpr iomode_t i2c_mode = PAL_MODE_ALTERNATE(4) | PAL_STM32_OTYPE_OPENDRAIN;
 
-void rest() {}  // nothing of this board moves or shines
-
 }  // namespace
+
+void chibios::bring_to_rest() noexcept {}  // nothing of this board moves or shines
 
 int main() {
   stm32::start_chip(pin_setup);
-  stm32::obey_shutdown({GPIOC, 12, 13}, &rest);
+  stm32::obey_shutdown({GPIOC, 12, 13});
   static stm32::I2cBus back{I2CD1, {GPIOB, 8, i2c_mode}, i2c_bit_rate};
   static stm32::I2cBus front{I2CD2, {GPIOB, 10, i2c_mode}, i2c_bit_rate};
   static stm32::OnePin plugged{GPIOC, 8};

@@ -12,11 +12,15 @@ CHIPS = {
     "stm32f405": Chip(0x08008000, 0x08100000, 0x20020000, 82, 0x188),
 }
 RAM = 0x20000000
+NOTE, NOTE_SIZE = 0x20008000, 16  # why the program restarts: read by the next one, so nothing else may be there
+# Exceptions that must lead to rest and a restart: their numbers. [ARMv7-M B1.5.2]
+FAULTS = {"NMI": 2, "HardFault": 3, "MemManage": 4, "BusFault": 5, "UsageFault": 6}
 BLOCK = 512  # the bootloader writes its checksum together with the rest of this first block
 
 # Interrupts that must not be the start-up code's endless loop: CAN1 transmit, receive, status change; lines 9 to 5
 # and 15 to 10 (SYS_PD_N is on one of them); USART1, on which the flashing tool knocks. The same on both chips.
-OBEYED = {"CAN1_TX": 19, "CAN1_RX0": 20, "CAN1_SCE": 22, "EXTI9_5": 23, "EXTI15_10": 40, "USART1": 37}
+# WWDG's early interrupt is the watchdog's.
+OBEYED = {"WWDG": 0, "CAN1_TX": 19, "CAN1_RX0": 20, "CAN1_SCE": 22, "EXTI9_5": 23, "EXTI15_10": 40, "USART1": 37}
 
 Section = namedtuple("Section", "name address size writable loaded")
 Image = namedtuple("Image", "memory sections symbols entry")  # memory: address -> byte, as flashed
@@ -119,6 +123,14 @@ def faults(image, chip):
     for name, interrupt in OBEYED.items():
         if vector(interrupt) == nobody:
             found.append(f"nobody serves {name}")
+
+    for name, number in FAULTS.items():
+        if word(image.memory, base + 4 * number) in (nobody, 0):
+            found.append(f"nobody serves {name}")
+    if image.symbols.get("ocm_restart_note", (0, 0))[0] != NOTE:
+        found.append("the note on the restart is elsewhere")
+    found += [f"{section.name}: over the note on the restart" for section in image.sections
+              if section.address < NOTE + NOTE_SIZE and section.address + section.size > NOTE]
 
     stack, reset = word(image.memory, base), word(image.memory, base + 4)
     if not RAM < stack <= chip.ram_end or stack % 8:

@@ -84,6 +84,17 @@ class Check(unittest.TestCase):
         for name, number in images.OBEYED.items():
             self.expect(f"nobody serves {name}", memory=self.memory(0x08006040 + 4 * number, nobody))
 
+    def test_fault_to_nobody(self):
+        nobody = self.image.symbols["_unhandled_exception"][0] | 1
+        for name, number in images.FAULTS.items():
+            self.expect(f"nobody serves {name}", memory=self.memory(0x08006000 + 4 * number, nobody))
+
+    def test_note_on_the_restart(self):
+        self.expect("is elsewhere", symbols={**self.image.symbols, "ocm_restart_note": (0x20000000, 0)})
+        for address in (images.NOTE - 4, images.NOTE, images.NOTE + 15):
+            section = images.Section(".bss", address, 5, True, False)
+            self.expect("over the note", sections=[*self.image.sections, section])
+
     def test_vector_in_the_slot(self):
         self.expect("no such interrupt", memory=self.memory(0x08006150, self.image.entry))
 

@@ -156,15 +156,17 @@ class Parts:
 
 
 class Machine:
-    """A running image; its serial lines, named in their order, are `lines`. `news` is notified when something came."""
+    """A running image; its serial lines, named in their order, are `lines`. `news` is notified when something came. One
+    that restarts ends, unless it `restarts`: a fault is no part of a test that does not ask for it."""
 
-    def __init__(self, name, chip, lines):
+    def __init__(self, name, chip, lines, restarts=False):
         self.news = threading.Condition()
         self._folder = tempfile.TemporaryDirectory(prefix="ocm-qemu-")
         listeners = {line: self._listen(line) for line in (*lines, "qmp")}
         self.image = os.path.join(IMAGES, f"{name}_{chip}.elf")
         self.process = subprocess.Popen(
             [QEMU, "-M", MACHINES[chip], "-nographic", "-monitor", "none", "-semihosting", "-kernel", self.image,
+             *([] if restarts else ["-no-reboot"]),
              *(f for line in lines for f in ("-serial", f"unix:{self._path(line)}")),
              "-qmp", f"unix:{self._path('qmp')}"],
             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
@@ -277,8 +279,8 @@ class Machine:
 class Board(Machine):
     """A board on its bus. Frames that it sent are in `frames`: (time, id, data)."""
 
-    def __init__(self, name, parts, chip=None):
-        super().__init__(name, chip or CHIPS[name], ("can", "parts"))
+    def __init__(self, name, parts, chip=None, restarts=False):
+        super().__init__(name, chip or CHIPS[name], ("can", "parts"), restarts)
         self.parts = parts
         self.frames = []
         self.answers = []        # lines that are no frames: "z", "V1010", "\a", ...
@@ -350,8 +352,8 @@ class Board(Machine):
 
 
 class Case(RealTime):
-    def boot(self, name, parts, chip=None):
-        board = Board(name, parts, chip)
+    def boot(self, name, parts, chip=None, restarts=False):
+        board = Board(name, parts, chip, restarts)
         self.addCleanup(board.end)
         return board
 
