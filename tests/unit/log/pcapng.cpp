@@ -125,6 +125,7 @@ TEST_CASE("pcapng: every resolution and offset of time") {
   CHECK(time_read("0900 0100 FF 000000", 0xFFFF'FFFF, 0xFFFF'FFFF) == 0);    // 2^-127
   CHECK(time_read("0900 0100 09 000000 0E00 0800 E803000000000000", 0, 5) == 1'000'000'000'005);
   CHECK(time_read("0900 0100 09 000000 0E00 0800 FFFFFFFFFFFFFFFF", 0, 1'000'000'001) == 1);
+  CHECK(time_read("0900 0100 09 000000 0E00 0800 FEFFFFFFFFFFFFFF", 0, 5) == -1'999'999'995);  // before 1970
   CHECK(time_read("0900 0100 09 000000", 0x7FFF'FFFF, 0xFFFF'FFFF) == INT64_MAX);
   CHECK(time_read("0900 0100 09 000000", 0x8000'0000, 0) == -1);
   CHECK(time_read("0900 0100 00 000000", 2, 0x2551'0000) == 9'216'000'000'000'000'000);
@@ -227,6 +228,45 @@ TEST_CASE("pcapng: statistics count from the section's beginning, the last tell"
   CHECK(log.recorded[0].dropped == 4);
 }
 
+TEST_CASE("pcapng: statistics are of the interface that they name, and of nothing else") {
+  const std::string can8 = interface_with("0200 0400 63616E38");
+  const std::string ethernet = block(1, bytes("0100 0000 00000000"));
+  // isb_ifdrop 2 and isb_osdrop 3 add up; isb_ifrecv 5; isb_filteraccept (6) and a count of four bytes are
+  // passed over.
+  const std::string of_can8 =
+      block(5, bytes("01000000 00000000 00000000 0500 0800 0200000000000000 0700 0800 0300000000000000"
+                     "0400 0800 0500000000000000 0600 0800 0900000000000000 0400 0400 07000000"));
+  const std::string of_ethernet = block(5, bytes("02000000 00000000 00000000 0400 0800 0500000000000000"));
+  const auto log =
+      read_all<PcapngReader>(little_section + little_can7 + can8 + ethernet + of_can8 + of_ethernet);
+  CHECK(log.complained == 0);
+  REQUIRE(log.recorded.size() == 2);
+  CHECK(log.recorded[0].received == 0);
+  CHECK(log.recorded[0].dropped == 0);
+  CHECK(log.recorded[1].received == 5);
+  CHECK(log.recorded[1].dropped == 5);
+
+  const std::string big_statistics =
+      bytes("00000005 00000024 00000000 00000000 00000000 0004 0008 0000000100000002 00000024");
+  const auto big = read_all<PcapngReader>(big_section + big_can7 + big_statistics);
+  REQUIRE(big.recorded.size() == 1);
+  CHECK(big.recorded[0].received == 0x1'0000'0002);
+
+  for (const std::string& wrong :
+       {block(5, bytes("01000000 00000000 00000000")),  // interface 1 is not described
+        block(5, bytes("00000000 00000000"))}) {        // no room for the time
+    const auto refused = read_all<PcapngReader>(little_section + little_can7 + wrong + little_packet);
+    CHECK(refused.entries.size() == 1);
+    CHECK(refused.recorded.empty());
+    REQUIRE(refused.complained == 1);
+    CHECK(refused.complaints[0].detail == "statistics of an interface that is not described");
+    CHECK(refused.complaints[0].place.number == little_section.size() + little_can7.size());
+  }
+  const auto without_options =
+      read_all<PcapngReader>(little_section + little_can7 + block(5, bytes("00000000 00000000 00000000")));
+  CHECK(without_options.complained == 0);
+}
+
 TEST_CASE("pcapng: interfaces are described when they come up") {
   Interfaces interfaces;
   interfaces.add("can0");
@@ -274,6 +314,67 @@ TEST_CASE("pcapng: behind damage reading goes on") {
   }
 }
 
+TEST_CASE("pcapng: behind damage, a block is what has a known type, is short, and says its length twice") {
+  // Between damage and a packet is a block with another packet in it: 1 entry where it is taken for a block,
+  // 2 where it is not.
+  const std::string damage = bytes("FFFFFFFF FFFFFFFF FFFFFFFF FFFFFFFF");
+  const auto entries = [&](const std::string& between) {
+    const auto log = read_all<PcapngReader>(little_section + little_can7 + damage + between + little_packet);
+    return log.entries.size();
+  };
+  const auto long_block = [](std::size_t size) {
+    return block(0, little_packet + std::string(size - 12 - little_packet.size(), '\0'));
+  };
+  CHECK(entries("") == 1);
+  CHECK(entries(block(0, little_packet)) == 1);
+  CHECK(entries(block(7, little_packet)) == 2);
+  CHECK(entries(long_block(65536)) == 1);
+  CHECK(entries(long_block(65540)) == 2);
+  std::string other_end = block(0, little_packet);
+  other_end[other_end.size() - 4] ^= 4;
+  CHECK(entries(other_end) == 2);
+}
+
+TEST_CASE("pcapng: behind damage, a section tells the byte order, and half a section does not") {
+  const std::string damage = bytes("FFFFFFFF FFFFFFFF FFFFFFFF");
+  const auto log =
+      read_all<PcapngReader>(little_section + little_can7 + damage + big_section + big_can7 + big_packet);
+  CHECK(log.entries.size() == 1);
+  CHECK(log.complained == 1);
+  const std::string torn = bytes("0A0D0D0A 0000001C 1A2B3C4D 0001 0000");  // of the other byte order
+  const auto same = read_all<PcapngReader>(little_section + little_can7 + damage + torn + little_packet);
+  CHECK(same.entries.size() == 1);
+  CHECK(same.complained == 1);
+  const auto never = read_all<PcapngReader>(damage + torn + big_packet);
+  CHECK(never.entries.empty());
+  REQUIRE(never.complained == 1);
+  CHECK(never.complaints[0].detail == "no section begins here");
+}
+
+TEST_CASE("pcapng: a complaint says what is wrong with the block, and where it begins") {
+  const std::string head = little_section + little_can7;
+  const auto complaint = [&](const std::string& block) {
+    const auto log = read_all<PcapngReader>(head + block);
+    REQUIRE(log.complained == 1);
+    CHECK(log.complaints[0].place.number == head.size());
+    return log.complaints[0].detail;
+  };
+  CHECK(complaint(bytes("06000000 3C00")) == "the beginning of a block");
+  CHECK(complaint(little_packet.substr(0, 30)) == "a block, 30 of 60 bytes");
+  CHECK(complaint(bytes("06000000 08000000 00000000")) == "a block of 8 bytes");
+  CHECK(complaint(bytes("06000000 0D000000 00000000 00000000")) == "a block of 13 bytes");
+  CHECK(complaint(bytes("06000000 10000000 00000000 14000000")) ==
+        "a block of 16 bytes, by its end of another length");
+  CHECK(complaint(block(6, bytes("00000000 00000000 00000000 00000000"))) == "a packet without its head");
+  CHECK(complaint(block(2, bytes("00000000 00000000 00000000 00000000"))) == "a packet without its head");
+  CHECK(complaint(block(1, bytes("E300 0000"))) == "an interface without its head");
+  CHECK(complaint(block(6, bytes("01000000 00000000 00000000 00000000 00000000"))) ==
+        "a packet of interface 1, not described");
+  CHECK(complaint(block(6, bytes("00000000 00000000 00000000 01000000 01000000"))) ==
+        "a packet longer than its block");
+  CHECK(complaint(block(6, bytes("00000000 00000000 00000000 00000000 00000000"))) == "a packet of 0 bytes");
+}
+
 TEST_CASE("pcapng: any bit flipped, and every entry can exist") {
   const std::string whole = little_section + little_can7 + little_packet + little_packet;
   for (std::size_t bit = 0; bit < whole.size() * 8; ++bit) {
@@ -313,6 +414,14 @@ TEST_CASE("pcapng: a time before 1970 is counted as lost") {
   const std::string file = log::testing::write_all(writer, {{Entry{at(-5), {1, 0, {}}}}}, interfaces);
   CHECK(writer.lost().count(Lost::time_digits) == 1);
   CHECK(read_all<PcapngReader>(file).entries.at(0).time == at(0));
+
+  PcapngWriter at_zero;  // 1970 itself is not before it
+  const std::vector<Entry> from_zero{{at(0), {1, 0, {}}}, {at(7), {1, 0, {}}}, {at(-5), {1, 0, {}}}};
+  const std::string whole =
+      log::testing::write_all(at_zero, from_zero, interfaces, std::vector<Recorded>{{3, 0}});
+  CHECK(at_zero.lost().count(Lost::time_digits) == 1);
+  // Statistics are of the latest time, 7 ns. [draft-ietf-opsawg-pcapng, 4.6: interface, time high, time low]
+  CHECK(whole.find(bytes("05000000 34000000 00000000 00000000 07000000")) != std::string::npos);
 }
 
 TEST_CASE("pcapng: what it is not") {
