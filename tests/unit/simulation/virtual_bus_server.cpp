@@ -239,6 +239,66 @@ TEST_CASE("a slow client learns how much it missed, and stalls no other") {
   CHECK(setup.server->counters().overruns == dropped);
 }
 
+TEST_CASE("more than a message holds goes out in several: credit and losses first, frames in order") {
+  VirtualBusSetup setup{{.output_queue = 200}};
+  RawClient client{setup.path()};
+  client.greet();
+  setup.poll();
+  CHECK(client.heard().size() == 1);  // hello
+  // While the owner only advances, all waits.
+  const auto wait_for = [&](unsigned frames) {
+    client.say(frame("100#"));
+    setup.poll();
+    for (unsigned i = 0; i < frames; ++i)
+      CHECK(*setup.server->arbiter().send(setup.port, {.id = 0x200 + i}, setup.now));
+    setup.now += 1s;
+    setup.server->advance(setup.now, [](const simulation::Delivery&) {});
+    CHECK(client.heard().empty());
+    setup.poll();
+  };
+  const auto messages = [&] {
+    std::vector<std::vector<vb::Record>> all;
+    std::array<vb::Record, vb::max_records + 1> message{};
+    for (ssize_t size = 0;
+         (size = ::recv(client.descriptor(), message.data(), sizeof message, MSG_DONTWAIT)) > 0;)
+      all.emplace_back(message.begin(), message.begin() + size / static_cast<ssize_t>(vb::record_size));
+    return all;
+  };
+  const auto check_frames = [](const std::vector<vb::Record>& message, std::size_t from, unsigned first) {
+    for (std::size_t i = from; i < message.size(); ++i, ++first) {
+      REQUIRE(vb::type_of(message[i]) == vb::Type::frame);
+      REQUIRE(vb::from_record<vb::FrameRecord>(message[i]).id == 0x200 + first);
+    }
+  };
+
+  wait_for(130);  // one credit and 130 frames; a message has 128
+  auto all = messages();
+  REQUIRE(all.size() == 2);
+  REQUIRE(all[0].size() == 128);
+  REQUIRE(all[1].size() == 3);
+  CHECK(vb::type_of(all[0][0]) == vb::Type::credit);
+  CHECK(vb::from_record<vb::Count>(all[0][0]).count == 1);
+  check_frames(all[0], 1, 0);
+  check_frames(all[1], 0, 127);
+
+  wait_for(300);  // the queue has 200: a hundred are lost
+  all = messages();
+  REQUIRE(all.size() == 2);
+  REQUIRE(all[0].size() == 128);
+  REQUIRE(all[1].size() == 74);
+  CHECK(vb::type_of(all[0][0]) == vb::Type::credit);
+  CHECK(vb::from_record<vb::Count>(all[0][0]).count == 1);
+  REQUIRE(vb::type_of(all[0][1]) == vb::Type::overrun);
+  CHECK(vb::from_record<vb::Count>(all[0][1]).count == 100);
+  check_frames(all[0], 2, 0);
+  check_frames(all[1], 0, 126);
+
+  wait_for(127);  // one message, full
+  all = messages();
+  REQUIRE(all.size() == 1);
+  CHECK(all[0].size() == 128);
+}
+
 TEST_CASE("the server ends while a client is behind: what it reads in time it gets, the rest is counted") {
   constexpr std::size_t frames = 10'000;
   VirtualBusSetup setup{{.last_flush = 10ms}};
