@@ -3,15 +3,21 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "ocm/client/diagnosis.hpp"
 #include "ocm/client/refusals.hpp"
+#include "ocm/client/sample.hpp"
 #include "ocm/host/failure.hpp"
+#include "ocm/transport/bus.hpp"
 
 namespace ocm::cli {
 
 [[nodiscard]] std::string remedy(const host::Failure& failure);
 [[nodiscard]] std::string remedy(const client::Finding& finding);
+/// What was counted while this program listened, a warning for each counter that is not zero.
+[[nodiscard]] std::vector<client::Finding> findings_of(const transport::BusCounters& bus,
+                                                       const client::ReceiverCounters& seen);
 /// What the board would accept.
 [[nodiscard]] std::string remedy(const client::Refused& refused);
 /// A board's reason, by its name in the spec and in words.

@@ -83,19 +83,8 @@ class Examination {
     const auto disputes = commanders_.findings(catalogue_);
     all.insert(all.end(), disputes.begin(), disputes.end());
     for (Finding& finding : all) finding.remedy = remedy(finding);
-    const auto& counters = bus_->counters();
-    const auto& seen = receiver_.counters();
-    const auto add = [&all](std::uint64_t number, std::string_view what, std::string_view remedy) {
-      if (number != 0)
-        all.push_back({Severity::warning, "", client::count(number, what), std::string{remedy}});
-    };
-    add(counters.error_frames, "error frame* from the CAN controller of this machine",
-        "check cable, termination and bit rate; `amiroctl listen` shows what they say");
-    add(counters.lost, "frame* lost on the way to this program", "this machine is too busy");
-    add(seen.unknown, "frame* that the spec does not know",
-        "another program or robot on the bus, or another spec: `amiroctl listen` shows them");
-    add(seen.wrong_dlc, "frame* of a wrong length", "a board or a program with another spec");
-    add(seen.incomplete, "incomplete sample*", "frames are lost on the bus");
+    const auto counted = findings_of(bus_->counters(), receiver_.counters());
+    all.insert(all.end(), counted.begin(), counted.end());
     return all;
   }
 

@@ -91,6 +91,18 @@ TEST_CASE("JSON lines: what each kind of frame looks like", "[output]") {
   auto long_code = entry_of("601#0102030405060708");
   long_code.raw_dlc = 12;
   CHECK(has(line_of(long_code), R"("data":"0102030405060708","raw_dlc":12})"));
+  long_code.direction = log::Direction::received;
+  CHECK(has(line_of(long_code), R"("data":"0102030405060708","direction":"received","raw_dlc":12})"));
+  entry.flags = log::flag::fd | log::flag::error_state;
+  entry.direction = log::Direction::unknown;
+  CHECK(has(line_of(entry), R"("data":"01020304","fd":{"brs":false,"esi":true}})"));
+  CHECK(has(line_of(entry_of("605#R")), R"("data":"R"})"));
+  CHECK(has(line_of(entry_of("208#01")),
+            R"("fields":{"mode":"publish","period":0.05},"units":{"period":"s"},"data":"01"})"));
+  CHECK(has(line_of(entry_of("208#00")), R"("fields":{"mode":"stop"},"units":{"period":"s"},"data":"00"})"));
+  CHECK(has(line_of(entry_of("208#02")), R"("fields":{"mode":"once"},"units":{"period":"s"},"data":"02"})"));
+  CHECK(has(line_of(entry_of("208#07")), R"("frame":"request","error":")"));
+  CHECK(has(line_of(entry_of("20000040#0000000000000000")), R"("id":"20000040","error":"error frame: )"));
   CHECK(has(line_of(entry_of("608#0300FFFF0000"), "a\"b\\\x01\xFF"), R"("bus":"a\"b\\\u0001\\xff")"));
   // What looks like UTF-8 and is none: overlong, a surrogate, beyond U+10FFFF. [RFC 3629]
   CHECK(has(line_of(entry_of("608#0300FFFF0000"), "\xC0\x80"), R"("bus":"\\xc0\\x80")"));
@@ -100,6 +112,52 @@ TEST_CASE("JSON lines: what each kind of frame looks like", "[output]") {
   CHECK(has(line_of(entry_of("608#0300FFFF0000"), "a\\x41"), R"("bus":"a\\x5cx41")"));
   CHECK(has(line_of(entry_of("608#0300FFFF0000"), "a\\xg1"), R"("bus":"a\\xg1")"));
   CHECK(has(line_of(entry_of("608#0300FFFF0000"), "caf\xC3\xA9"), "\"bus\":\"caf\xC3\xA9\""));
+}
+
+TEST_CASE("JSON lines: the first and the last character of each length of UTF-8, and what lies between",
+          "[output]") {
+  const auto inside = [](std::string_view text) {
+    std::string out;
+    cli::append_json(out, text);
+    return out;
+  };
+  // [RFC 3629, 4]: 00..7F | C2..DF t | E0 A0..BF t | E1..EC t t | ED 80..9F t | EE..EF t t | F0 90..BF t t |
+  // F1..F3 t t t | F4 80..8F t t, where t is 80..BF.
+  for (const std::string_view text :
+       {" ", "\x7F", "\xC2\x80", "\xDF\xBF", "\xE0\xA0\x80", "\xE0\xBF\xBF", "\xED\x80\x80", "\xED\x9F\xBF",
+        "\xEE\x80\x80", "\xEF\xBF\xBF", "\xF0\x90\x80\x80", "\xF0\xBF\xBF\xBF", "\xF3\x80\x80\x80",
+        "\xF4\x80\x80\x80", "\xF4\x8F\xBF\xBF"})
+    CHECK(inside(text) == text);
+  CHECK(inside("\x1F\"\\/") == R"(\u001f\"\\/)");
+  CHECK(inside("\x80") == R"(\\x80)");
+  CHECK(inside("\xBF") == R"(\\xbf)");
+  CHECK(inside("\xC1\xBF") == R"(\\xc1\\xbf)");
+  CHECK(inside("\xC2") == R"(\\xc2)");         // cut off
+  CHECK(inside("\xC2\x7F") == "\\\\xc2\x7F");  // no byte that goes on
+  CHECK(inside("\xC2\xC0") == R"(\\xc2\\xc0)");
+  CHECK(inside("\xE1\x80") == R"(\\xe1\\x80)");
+  CHECK(inside("\xE1\x80 ") == R"(\\xe1\\x80 )");
+  CHECK(inside("\xE0\x9F\xBF") == R"(\\xe0\\x9f\\xbf)");
+  CHECK(inside("\xED\xA0\x80") == R"(\\xed\\xa0\\x80)");
+  CHECK(inside("\xF0\x8F\xBF\xBF") == R"(\\xf0\\x8f\\xbf\\xbf)");
+  CHECK(inside("\xF1\x80\x80 ") == R"(\\xf1\\x80\\x80 )");
+  CHECK(inside("\xF5\x80\x80\x80") == R"(\\xf5\\x80\\x80\\x80)");
+  CHECK(inside("\\x4") == R"(\\x4)");  // too short for a byte in words
+  CHECK(inside("\\x41") == R"(\\x5cx41)");
+  CHECK(inside("\\y41") == R"(\\y41)");
+  CHECK(inside("\\x4g") == R"(\\x4g)");
+}
+
+TEST_CASE("JSON lines: twenty interfaces, each under its own name", "[output]") {
+  cli::JsonText text{amiro::catalogue};
+  for (int round = 0; round < 2; ++round)
+    for (std::uint16_t i = 0; i < 20; ++i) {  // more than are kept ready
+      auto entry = entry_of("608#0300FFFF0000");
+      entry.interface = i;
+      log::Bytes out;
+      text.write(out, "can" + std::to_string(i), entry);
+      CHECK(has(std::string{out.view()}, "\"bus\":\"can" + std::to_string(i) + "\""));
+    }
 }
 
 TEST_CASE("JSON lines: chosen fields only", "[output]") {

@@ -56,6 +56,29 @@ TEST_CASE("remedies: findings") {
   CHECK(remedy(Finding{Severity::warning, "", "b", "c"}) == "c");
 }
 
+TEST_CASE("remedies: each counter is a finding of its own, and zero is none") {
+  CHECK(cli::findings_of({.sent = 1, .received = 2, .refused = 3}, {.frames = 4, .samples = 5, .commands = 6})
+            .empty());
+  const auto all =
+      cli::findings_of({.lost = 1, .error_frames = 2}, {.unknown = 1, .wrong_dlc = 4, .incomplete = 5});
+  REQUIRE(all.size() == 5);
+  for (const auto& finding : all) {
+    CHECK(finding.severity == client::Severity::warning);
+    CHECK(finding.board.empty());
+  }
+  CHECK(all[0].what == "2 error frames from the CAN controller of this machine");
+  CHECK(all[0].remedy == "check cable, termination and bit rate; `amiroctl listen` shows what they say");
+  CHECK(all[1].what == "1 frame lost on the way to this program");
+  CHECK(all[1].remedy == "this machine is too busy");
+  CHECK(all[2].what == "1 frame that the spec does not know");
+  CHECK(all[2].remedy ==
+        "another program or robot on the bus, or another spec: `amiroctl listen` shows them");
+  CHECK(all[3].what == "4 frames of a wrong length");
+  CHECK(all[3].remedy == "a board or a program with another spec");
+  CHECK(all[4].what == "5 incomplete samples");
+  CHECK(all[4].remedy == "frames are lost on the bus");
+}
+
 TEST_CASE("remedies: every reason of a refusal has words, and says what would be accepted") {
   const auto* const refusal = amiro::catalogue.find("di_wheel_drive_refusal");
   const auto* const gyroscope = amiro::catalogue.find("gyroscope");

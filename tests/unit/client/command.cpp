@@ -31,6 +31,14 @@ TEST_CASE("a set point has the actuator's identifier, and zero where nothing is 
         set_point(topic("led_1"), std::array<std::int64_t, 3>{1, 2, 3}));
 }
 
+TEST_CASE("a set point that is held comes in time for the board's watchdog") {
+  // [spec/topics.json: watchdog of motors, 500 ms]
+  CHECK(client::longest_without_set_point == std::chrono::milliseconds{500});
+  CHECK(4 * client::hold_period < client::longest_without_set_point);
+  // Who listens hears the set point of another program that is late by half a period.
+  CHECK(client::listen_before_hold == client::hold_period + client::hold_period / 2);
+}
+
 TEST_CASE("the priority of a set point is the topic's own unless one is given") {
   const auto& motors = topic("motors");
   CHECK(protocol::Identifier::decode(set_point(motors, {}).id).priority == motors.priority);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -292,6 +293,33 @@ TEST_CASE("diagnosis: what a board publishes, what it does not, and what it has 
   CHECK((!robot.diagnosis.publishes(odometry) && robot.diagnosis.is_silent(odometry)));
   CHECK(!robot.diagnosis.is_silent(*amiro::catalogue.find("proximity_ring")));  // of a board that is silent
   CHECK(!robot.diagnosis.is_silent(*amiro::catalogue.find("motors")));          // no sensor
+}
+
+TEST_CASE("diagnosis: a board with more sensors than its status has bits: of those beyond nothing is known") {
+  std::vector<ocm::protocol::Topic> topics{amiro::catalogue.topics.begin(), amiro::catalogue.topics.end()};
+  std::vector<const ocm::protocol::Topic*> sensors;
+  for (auto& topic : topics) {
+    if (topic.kind != ocm::protocol::Kind::sensor) continue;
+    topic.board = 0;
+    if (topic.role == ocm::protocol::Role::status && topic.name != "di_wheel_drive_status")
+      topic.role = ocm::protocol::Role::none;
+    sensors.push_back(&topic);
+  }
+  REQUIRE(sensors.size() > 8);
+  const ocm::protocol::Catalogue crowded{"crowded", 500'000, amiro::catalogue.boards, topics};
+  Receiver receiver{crowded};
+  Diagnosis diagnosis{crowded};
+  auto status = Patient::healthy<amiro::DiWheelDriveStatus>();
+  status.health.publishing = 0x40;
+  for (std::size_t i = 0; i < status.frames.size(); ++i)
+    diagnosis.take(receiver.take({{}, ocm::protocol::sample_frame(status, Priority::low, i)}));
+  REQUIRE(diagnosis.boards()[0].answered);
+  CHECK(diagnosis.publishes(*sensors[6]));
+  CHECK(diagnosis.is_silent(*sensors[7]));
+  CHECK_FALSE(diagnosis.is_silent(*sensors[8]));
+  CHECK_FALSE(diagnosis.publishes(*sensors[8]));
+  const std::string names = diagnosis.sensors_of(0, 0x1FF);
+  CHECK(std::count(names.begin(), names.end(), ',') == 7);
 }
 
 TEST_CASE("diagnosis: requests and set points say nothing about a board") {

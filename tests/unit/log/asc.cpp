@@ -33,6 +33,7 @@ Cause cause_of(std::string_view line) {
   REQUIRE(log.entries.empty());
   REQUIRE(log.complained == 1);
   CHECK(log.complaints[0].place == Place{3, true});
+  CHECK(log.complaints[0].detail.substr(0, 20) == line.substr(0, 20));  // long ones are cut
   return log.complaints[0].cause;
 }
 /// The nanoseconds since 1970 that a date is read as, -1 for none.
