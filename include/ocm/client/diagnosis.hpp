@@ -266,7 +266,7 @@ class Diagnosis {
   void take_battery(const Reader& reader) {
     battery_.answered = true;
     for (const protocol::FrameLayout& frame : battery_.topic->frames)
-      battery_.state_of_charge = reader.raw(frame.name, "state_of_charge");
+      static_cast<void>(reader.find(frame.name, "state_of_charge", battery_.state_of_charge));
     battery_.plugged = reader.flag("plugged");
   }
 

@@ -156,6 +156,53 @@ TEST_CASE("diagnosis: the battery") {
   CHECK(robot.findings() == expected);
 }
 
+TEST_CASE("diagnosis: a battery that says its charge in the first of two frames, and nothing of a charger") {
+  using ocm::protocol::Field;
+  const auto& power = *amiro::catalogue.find("power_status");
+  std::vector<Field> charge, others;
+  for (const Field& field : power.frames[0].fields) {
+    if (field.flags) continue;
+    (field.name == "state_of_charge" ? charge : others).push_back(field);
+  }
+  auto first = power.frames[0], second = power.frames[0];
+  first.name = "charge";
+  first.fields = charge;
+  second.name = "others";
+  second.id.value += 1;
+  second.fields = others;
+  const std::vector frames{first, second};
+  auto topic = power;
+  topic.frames = frames;
+  const std::vector topics{topic};
+  const ocm::protocol::Catalogue catalogue{"other", 500'000, amiro::catalogue.boards, topics};
+  Receiver receiver{catalogue};
+  Diagnosis diagnosis{catalogue};
+  amiro::PowerStatus empty;
+  empty.state_of_charge = 7;
+  auto frame = ocm::protocol::sample_frame(empty, Priority::low, 0);
+  diagnosis.take(receiver.take({{}, frame}));
+  CHECK_FALSE(diagnosis.battery().answered);
+  frame.id += 1;
+  diagnosis.take(receiver.take({{}, frame}));
+  REQUIRE(diagnosis.battery().answered);
+  CHECK(diagnosis.battery().state_of_charge == 7);
+  CHECK_FALSE(diagnosis.battery().plugged);
+  REQUIRE(diagnosis.findings().size() == 1);
+  CHECK(diagnosis.findings()[0].severity == Severity::problem);
+  CHECK(diagnosis.findings()[0].ailment == Ailment::battery_low);
+}
+
+TEST_CASE("diagnosis: a topic of a board that the catalogue lacks is passed over") {
+  const auto boards = amiro::catalogue.boards.first(1);
+  const ocm::protocol::Catalogue lacking{"lacking", 500'000, boards, amiro::catalogue.topics};
+  Receiver receiver{lacking};
+  Diagnosis diagnosis{lacking};
+  amiro::PowerStatus power;  // of the second board
+  diagnosis.take(receiver.take({{}, ocm::protocol::sample_frame(power, Priority::low, 0)}));
+  CHECK(diagnosis.boards().size() == 1);
+  CHECK_FALSE(diagnosis.battery().answered);
+}
+
 TEST_CASE("diagnosis: each finding by itself, at its limit and before it") {
   using Status = amiro::DiWheelDriveStatus;
   using Bus = amiro::DiWheelDriveStatusHealth::Bus;

@@ -69,6 +69,17 @@ TEST_CASE("refusals: of what another program has sent are not this one's") {
   CHECK(!program.hear(amiro::PowerManagementRefusal{0x05, {}, 1, 0}, 1ms));  // of another board
 }
 
+TEST_CASE("refusals: frames of no topic, other samples and reports of the controller are none") {
+  Program program;
+  program.send(publish_mag);
+  for (const can::Frame& frame :
+       {can::Frame{.id = 0x7FF}, can::Frame{.id = 0x605, .format = can::Format::extended},
+        can::Frame{.id = 4, .dlc = 8, .format = can::Format::error},
+        protocol::sample_frame(amiro::Gyroscope{}, protocol::Priority::low, 0)})
+    CHECK(!program.refusals.take({{}, frame}, program.now));
+  CHECK(program.hear(0x05, Reason::not_schedulable, 1));
+}
+
 TEST_CASE("refusals: one that was heard before is not news when it is published again") {
   Program program;
   CHECK(!program.hear(0x05, Reason::not_schedulable, 7));

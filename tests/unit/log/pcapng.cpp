@@ -394,6 +394,19 @@ TEST_CASE("pcapng: a block of gigabytes takes no memory") {
   CHECK(log.complaints[0].cause == Cause::too_long);
 }
 
+TEST_CASE("pcapng: the longest block that is read, and one that is longer") {
+  const auto with_block_of = [](std::size_t size) {
+    return read_all<PcapngReader>(little_section + little_can7 + block(0, std::string(size - 12, '\xFF')) +
+                                  little_packet);
+  };
+  const auto longest = with_block_of(Input::longest);
+  CHECK(longest.entries.size() == 1);
+  CHECK(longest.complained == 0);
+  const auto longer = with_block_of(Input::longest + 4);
+  REQUIRE(longer.complained == 1);
+  CHECK(longer.complaints[0].cause == Cause::too_long);
+}
+
 TEST_CASE("pcapng: a live pipe hands on what is there") {
   const std::string head = little_section + little_can7;
   const std::string file = head + little_packet + little_packet.substr(0, 30);
