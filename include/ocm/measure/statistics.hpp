@@ -72,7 +72,7 @@ class BusStatistics {
     for (const auto& topic : catalogue.topics) {
       const bool sensor = topic.kind == protocol::Kind::sensor;
       topics_.push_back(
-          {{&topic, {}, {}, 0, 0, 0, 0, 0}, Stream{sensor ? topic.period.duration() : base::Duration{0}}, 0});
+          {{.topic = &topic, .timing = {}}, Stream{sensor ? topic.period.duration() : base::Duration{0}}});
     }
   }
 

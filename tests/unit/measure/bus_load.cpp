@@ -74,6 +74,10 @@ TEST_CASE("bus_load: times that go back, a little and a lot, and before 1970") {
   CHECK(load.worst_until() == Time{-10s});
   load.add(Time{Time::max() - Time{}}, 21);
   CHECK(load.worst_bits() == 21);
+  BusLoad early;
+  early.add(Time{-60ms}, 5);
+  early.add(Time{-120ms}, 5);  // within the window of the first frame, not of 1970
+  CHECK(early.worst_bits() == 10);
   BusLoad back;
   back.add(Time{100ms}, 5);
   back.add(Time{0ms}, 7);  // just out of the window

@@ -66,6 +66,15 @@ TEST_CASE("timing: lateness looks at a hundred samples at a time") {
   CHECK(timing.missing == 0);
 }
 
+TEST_CASE("timing: samples in time are among the hundred, too") {
+  Stream stream{50ms};
+  stream.asked(at(0ns), 100ms);
+  for (int i = 0; i <= 60; ++i) stream.sample(at(i * 100ms));
+  for (int i = 1; i <= 60; ++i) stream.sample(at(6s + i * 100'010us));
+  // 60 distances in time and 39 late ones before the next hundred begin.
+  CHECK(stream.timing(at(12'001ms)).lateness_ns == 39 * 10'000);
+}
+
 TEST_CASE("timing: missing samples") {
   SECTION("one, and three in a row") {
     const Timing timing = stream_of({0, 100, 300, 400, 800, 900}, 100ms).timing(at(900ms));
@@ -163,6 +172,21 @@ TEST_CASE("timing: who fell silent before he was asked again was silent all the 
   CHECK(timing.missing == 9);
   CHECK(timing.gap_ns == 1'000'000'000);
   CHECK(timing.distances == 1);
+}
+
+TEST_CASE("timing: who fell silent before he was stopped was silent all the same") {
+  Stream stream = stream_of({0, 100}, 100ms);
+  stream.stopped(at(1100ms));
+  const Timing timing = stream.timing(at(5s));
+  CHECK(timing.missing == 9);
+  CHECK(timing.gap_ns == 1'000'000'000);
+}
+
+TEST_CASE("timing: a request begins another grid: lateness does not add up across it") {
+  Stream stream = stream_of({0, 100, 203}, 100ms);
+  stream.asked(at(250ms), 100ms);
+  for (const int ms : {300, 400, 503}) stream.sample(at(std::chrono::milliseconds{ms}));
+  CHECK(stream.timing(at(503ms)).lateness_ns == 3'000'000);
 }
 
 TEST_CASE("timing: without a request the period is the spec's or the measured one") {
