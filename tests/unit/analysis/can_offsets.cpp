@@ -161,6 +161,13 @@ TEST_CASE("offsets: what cannot be bounded has a reason") {
   for (Message& m : set) m.period = unbounded - 7;
   CHECK(analysis.analyse(set, {})[3].response == 80);
   CHECK(analysis.analyse(spread, {}, {.terms = 3})[3].reason == Reason::too_long);
+  // A bus that is full to the last bit has no room for a frame below, nor for an error.
+  constexpr std::array<Message, 3> full{
+      {{.cost = 5, .period = 10}, {.cost = 5, .period = 10}, {.cost = 1, .period = 1'000}}};
+  CHECK(analysis.analyse(std::span{full}.first(2), {.bit = 1})[1].response == 10);
+  CHECK(analysis.analyse(std::span{full}.first(2), {.bit = 1, .errors = {.burst = 3}})[1].reason ==
+        Reason::overloaded);
+  CHECK(analysis.analyse(full, {.bit = 1})[1].reason == Reason::overloaded);
 }
 
 }  // namespace analysis_can_offsets_test

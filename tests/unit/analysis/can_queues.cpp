@@ -179,6 +179,30 @@ std::vector<Release> random_releases(std::mt19937& random, const std::vector<Mes
   return releases;
 }
 
+TEST_CASE("queues: a bus that is full to the last bit has no room for a frame below, nor for an error") {
+  constexpr std::array<Message, 3> full{
+      {{.cost = 5, .period = 10}, {.cost = 5, .period = 10}, {.cost = 1, .period = 1'000}}};
+  constexpr std::array queues{by_priority};
+  constexpr CanBus calm{.bit = 1}, disturbed{.bit = 1, .errors = {.burst = 3}};
+  CanQueues<3> analysis;
+  const auto second = [&](std::size_t messages, const CanBus& bus) {
+    return analysis.analyse(std::span{full}.first(messages), queues, bus)[1];
+  };
+  CHECK(second(2, calm).response == 10);
+  CHECK(second(2, disturbed).reason == Reason::overloaded);
+  CHECK(second(3, calm).reason == Reason::overloaded);
+}
+
+TEST_CASE("queues: a busy bus is analysed to its end, unless the caller allows less work") {
+  // 1/3 + 1/4 of the bus above one frame as long as thousands of theirs.
+  constexpr std::array<Message, 3> busy{
+      {{.cost = 1, .period = 3}, {.cost = 1, .period = 4}, {.cost = 4'164, .period = 10'000}}};
+  constexpr std::array queues{by_priority};
+  CanQueues<3> analysis;
+  CHECK(analysis.analyse(busy, queues, {})[2].ok());
+  CHECK(analysis.analyse(busy, queues, {}, {.terms = 200})[2].reason == Reason::too_long);
+}
+
 TEST_CASE("where every queue is by priority, it is the exact analysis") {
   std::mt19937 random{2011};
   CanQueues<8> queues;
