@@ -132,6 +132,12 @@ class Stats(Case):
             self.assertIn(f"does not hold: {expression}: {measured}", err)
             self.assertIn("gyroscope", out)
 
+    def test_a_gap_is_measured_from_a_request_on(self):
+        path = self.log([(0, "208#01640000"), (1000, "655#")])
+        self.run_tool("stats", path, "--assert", "gyro.gap==1s", "--assert", "gyro.missing==9")
+        _, err = self.run_tool("stats", path, "--assert", "gyro.rate>=0", code=1)
+        self.assertIn("does not hold: gyro.rate>=0: nothing was measured", err)
+
     def test_a_bad_expression_is_wrong_usage_with_a_remedy(self):
         path = self.log([(0, self.GYRO)])
         for expression, what, remedy in (
