@@ -90,7 +90,7 @@ Row row(const TopicFigures& topic, base::Time first) {
   };
   fault(topic.incomplete, "incomplete");
   fault(topic.wrong_dlc, "of wrong length");
-  fault(topic.bad_requests, "bad requests");
+  fault(topic.bad_requests, topic.bad_requests == 1 ? "bad request" : "bad requests");
   fault(timing.backwards, "back in time");
   return {std::string{topic.topic->name},
           priorities(topic),

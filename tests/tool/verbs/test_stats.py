@@ -108,6 +108,30 @@ class Stats(Case):
         self.assertAlmostEqual(report["buses"][0]["load_percent"], 4 * bus["load_percent"])
         self.assertEqual(report["buses"][0]["bit_rate"], 125000)
 
+    def test_the_table_says_what_the_figures_are(self):
+        # The log of test_period_jitter_and_gap_by_hand. A gyroscope's frame is 44 + 48 bits, 8 stuff bits and 3 between frames;
+        # the request 44 + 32 + 5 + 3. 5 * 103 bits of 500 kbit/s in 2.501 s are 0.0412 %, 103 + 84 in 100 ms 0.374 %.
+        path = self.log([(0, "108#01F40100")] + [(ms, self.GYRO) for ms in (1, 501, 1004, 1501, 2501)])
+        out, _ = self.run_tool("stats", path)
+        rows = out.splitlines()
+        self.assertEqual(rows[1].split(), "gyroscope high 5 1.6 Hz 500 ms 625 ms 216.5 ms 3 ms 1 1.000 s at 1.501 s 0.0412 %".split())
+        self.assertEqual(rows[2], "can0: 6 frames in 2.501 s (1.999 Hz); load 0.0412 % at 500 kbit/s, 0.374 % in the worst "
+                                  "100 ms, until 1 ms")
+        out, _ = self.run_tool("stats", path, "--bitrate", "83333")
+        self.assertIn(" at 83.333 kbit/s, ", out)
+
+    def test_faults_and_strangers_in_the_table(self):
+        strangers = ["6F0#", "6F1#", "6F2#", "6F2#", "6F3#", "6F4#", "6F5#R", "6F0#", "6F0#"]
+        path = self.log([(0, "608#00"), (1, "208#03"), (2, self.GYRO), (52, "708#000000000000"), (102, "708#000000000000")]
+                        + [(103 + i, frame) for i, frame in enumerate(strangers)])
+        out, _ = self.run_tool("stats", path)
+        rows = out.splitlines()
+        self.assertTrue(rows[1].startswith("gyroscope  high 1, low 2        3  20 Hz  50 ms (spec)  50 ms"), rows[1])
+        self.assertTrue(rows[1].endswith("  1 of wrong length, 1 bad request"), rows[1])
+        self.assertEqual(rows[3], "  9 frames that no topic has (6F0 3, 6F2 2, 6F1 1, 6F3 1, 6F4 1, ...)")
+        out, _ = self.run_tool("stats", self.log([(0, self.GYRO), (1, "6F5#R"), (2, "6F5#")], "remote.log"))
+        self.assertIn("2 frames that no topic has (6F5#R 1, 6F5 1)", out)
+
     def test_assertions(self):
         path = self.log([(0, "108#01F40100")] + [(1 + 500 * i, self.GYRO) for i in range(5)])
         holds = ["gyro.rate>1.9", "gyro.rate == 2Hz", "gyroscope.count==5", "gyro.period<=500ms", "gyro.jitter<1us",
