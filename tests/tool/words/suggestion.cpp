@@ -26,6 +26,22 @@ TEST_CASE("the nearest known word is named") {
   CHECK(nearest("", {}) == "");
 }
 
+TEST_CASE(
+    "a word of up to five letters may have one edit, a longer one two; the first of equally near ones is "
+    "named") {
+  const std::vector<std::string_view> known{"power", "motors"};
+  CHECK(nearest("poxer", known) == "power");
+  CHECK(nearest("poxxr", known) == "");
+  CHECK(nearest("moxxrs", known) == "motors");
+  CHECK(nearest("moxxxs", known) == "");
+  const std::vector<std::string_view> equal{"bat", "hat"};
+  CHECK(nearest("cat", equal) == "bat");
+  // The beginning of a word: from three letters on.
+  const std::vector<std::string_view> one{"odometry"};
+  CHECK(nearest("odo", one) == "odometry");
+  CHECK(nearest("od", one) == "");
+}
+
 TEST_CASE("without a near word all are listed") {
   const std::vector<std::string_view> known{"run", "map"};
   CHECK(suggestion("rnu", known) == "did you mean 'run'?");
