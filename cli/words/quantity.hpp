@@ -27,7 +27,7 @@ struct Quantity {
   if (end < text.size() && (text[end] == '-' || text[end] == '+')) ++end;
   while (end < text.size() && (base::is_digit(text[end]) || text[end] == '.')) ++end;
   // An exponent only where digits follow, so that "1e" stays a number with a unit.
-  if (end > 0 && end < text.size() && (text[end] == 'e' || text[end] == 'E')) {
+  if (end < text.size() && (text[end] == 'e' || text[end] == 'E')) {
     std::size_t exponent = end + 1;
     if (exponent < text.size() && (text[exponent] == '-' || text[exponent] == '+')) ++exponent;
     if (exponent < text.size() && base::is_digit(text[exponent])) {

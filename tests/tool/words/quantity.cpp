@@ -23,6 +23,11 @@ static_assert(parse_duration("500").error == base::Error::bad_unit);
 static_assert(parse_duration("500mss").error == base::Error::bad_unit);
 static_assert(parse_duration("").error == base::Error::bad_syntax);
 static_assert(parse_duration("ms").error == base::Error::bad_syntax);
+static_assert(parse_duration("e3s").error == base::Error::bad_syntax);
+static_assert(parse_quantity("1e").value.unit == "e");
+static_assert(parse_quantity("1e-").value.unit == "e-");
+static_assert(parse_quantity("1e3e5").value.unit == "e5");
+static_assert(parse_quantity("+2E-1W").value.unit == "W");
 static_assert(parse_duration("1.5ns").error == base::Error::out_of_range);
 static_assert(parse_duration("99999999999h").error == base::Error::out_of_range);
 

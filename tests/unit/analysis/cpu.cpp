@@ -151,6 +151,10 @@ static_assert(response_times(in_order(std::array{Task{most, most}}), {.context_s
 static_assert(response_times(in_order(std::array{Task{most / 2, most}}), {.scale = most})[0].reason !=
               Reason::schedulable);
 
+// Who has nothing to wait for waits for nobody, whatever the set says.
+static_assert(response_time(in_order(std::array{Task{.cost = 1, .period = 9, .blocked_by = 9}}), 0)
+                  .blocked_by == nobody);
+
 TEST_CASE("an analysis that does not converge ends with a reason") {
   // U is below 1 by 10^-12, and the busy period of some 10^12 instances.
   const auto tasks =
