@@ -92,7 +92,7 @@ struct Script {
       script.errors.push_back({line_number, columns[word], command.error.what, command.error.remedy});
       continue;
     }
-    const std::size_t begin = words.size() > 1 ? columns[1] - 1 : 0;
+    const std::size_t begin = columns[1] - 1;  // without a second word there is no command
     const std::size_t end = columns[words.size() - 1] - 1 + words.back().size();
     script.steps.push_back(
         {*at, std::move(*command), line_number, std::string{line.substr(begin, end - begin)}});
