@@ -1,6 +1,9 @@
 #include "cli/words/command.hpp"
 
+#include <array>
 #include <sstream>
+#include <string>
+#include <utility>
 
 #include <catch2/catch.hpp>
 
@@ -56,6 +59,20 @@ TEST_CASE("set points become the thesis's frames") {  // thesis 4.2.2, figure 6.
   CHECK(frames("led 5 100,50,120") == "240#643278");
   CHECK(frames("led 5 #643278") == "240#643278");
   CHECK(frames("led 1 red") == "23C#FF0000");
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 12> colours{{{"off", "000000"},
+                                                                                   {"black", "000000"},
+                                                                                   {"white", "FFFFFF"},
+                                                                                   {"red", "FF0000"},
+                                                                                   {"green", "00FF00"},
+                                                                                   {"blue", "0000FF"},
+                                                                                   {"yellow", "FFFF00"},
+                                                                                   {"cyan", "00FFFF"},
+                                                                                   {"magenta", "FF00FF"},
+                                                                                   {"orange", "FF8000"},
+                                                                                   {"purple", "8000FF"},
+                                                                                   {"pink", "FF60A0"}}};
+  for (const auto& [name, digits] : colours)
+    CHECK(frames("led 1 " + std::string{name}) == "23C#" + std::string{digits});
   CHECK(frames("led all off") ==
         "23C#000000 23D#000000 23E#000000 23F#000000 240#000000 241#000000 242#000000 243#000000");
   CHECK(frames("drive 0.05m/s 0.2rad/s") == "201#50C30000400D0300");

@@ -128,17 +128,20 @@ Cause refusal_of(std::string_view line) {
 }
 
 TEST_CASE("what candump never shows is refused by cause, and the rest is read") {
-  for (const char* line : {"$ candump can0", "^C", "  can0  605", "  can0  6055   [0]", "  can0  60   [0]",
-                           "  can0  605   [x]", "  can0  605   (4)  00 D2 00 00", " (soon)  can0  605   [0]",
-                           " (1.5  can0  605   [0]", "  can0  RX ? -  605   [0]", "  can0  605   [4]  0`0",
-                           "  can0  20000004   [8]  remote request", "\tcontroller-problem{}"})
+  for (const char* line :
+       {"$ candump can0", "^C", "  can0  605", "  can0  6055   [0]", "  can0  60   [0]", "  can0  605   [x]",
+        "  can0  605   (4)  00 D2 00 00", "  can0  605   <4>  00 D2 00 00", "  can0  605   {4]  00 D2 00 00",
+        "  can0  605   [4}  00 D2 00 00", " (soon)  can0  605   [0]", " (1.5  can0  605   [0]",
+        "  can0  RX ? -  605   [0]", "  can0  605   [4]  0`0", "  can0  20000004   [8]  remote request",
+        "\tcontroller-problem{}"})
     CHECK(refusal_of(line) == Cause::syntax);
   CHECK(refusal_of("  can0  800   [0]") == Cause::identifier);
   CHECK(refusal_of("  can0  40000000   [0]") == Cause::identifier);
   for (const char* line :
-       {"  can0  605   [9]  00 01 02 03 04 05 06 07 08", "  can0  605   [4]  00 D2 00",
-        "  can0  605   [4]  00 D2 00 00 00", "  can0  123  [09]  00 01 02 03 04 05 06 07 08",
-        "  can0  605   [1]  0", "  can0  605   [1]  ERRORFRAME", "  can0  605   [2]  01`02`03"})
+       {"  can0  605   [9]  00 01 02 03 04 05 06 07 08", "  can0  605   [9]  00 01 02 03 04 05 06 07",
+        "  can0  605   [4]  00 D2 00", "  can0  605   [4]  00 D2 00 00 00",
+        "  can0  123  [09]  00 01 02 03 04 05 06 07 08", "  can0  605   [1]  0",
+        "  can0  605   [1]  ERRORFRAME", "  can0  605   [2]  01`02`03"})
     CHECK(refusal_of(line) == Cause::length);
   CHECK(refusal_of(" (9999999999.000000)  can0  605   [0]") == Cause::time);
 }
