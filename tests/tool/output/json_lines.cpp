@@ -267,8 +267,15 @@ TEST_CASE("JSON lines: what contradicts itself or is none is refused in words", 
   wrong(R"({"id":"608","data":"000102030405060708"})", "data of 9 bytes");
   wrong(R"({"id":"608","fd":{},"data":"000102030405060708"})", "data of 9 bytes; CAN FD has");
   wrong(R"({"id":"608","data":"R9"})", "no remote frame");
+  wrong(R"({"id":"608","data":"R04"})", "no remote frame");
+  wrong(R"({"id":"608","data":"Rx"})", "no remote frame");
+  wrong(R"({"id":"608","data":"R4","fd":{}})", "no remote frame");
   wrong(R"({"id":"20000040","data":"R"})", "no remote frame");
   wrong(R"({"id":"608","data":"00","raw_dlc":9})", "raw_dlc");
+  for (const std::string_view code : {"8", "16", "x"})
+    wrong(R"({"id":"4FF","data":"0011223344556677","raw_dlc":)" + std::string{code} + "}", "raw_dlc");
+  wrong(R"({"id":"4FF","fd":{},"data":"0011223344556677","raw_dlc":9})", "raw_dlc");
+  wrong(R"({"id":"20000040","data":"0000000000000000","raw_dlc":9})", "raw_dlc");
   wrong(R"({"id":"608","data":"00","direction":"left"})", "received or sent");
   wrong(R"({"id":"608","data":"00","time_ns":"9223372036854775808"})", "is not a time");
   wrong(R"({"topic":"gyr","fields":{}})", "did you mean 'gyro'");

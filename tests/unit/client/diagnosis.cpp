@@ -66,6 +66,21 @@ TEST_CASE("diagnosis: a healthy robot has no findings") {
   CHECK(robot.diagnosis.battery().state_of_charge == 90);
 }
 
+TEST_CASE("diagnosis: before anything came all numbers are zero") {
+  const Patient robot;
+  for (const BoardReport& board : robot.diagnosis.boards()) {
+    CHECK_FALSE(board.heard);
+    CHECK_FALSE(board.answered);
+    CHECK_FALSE(board.load);
+    for (const std::int64_t number : {board.uptime_s, board.wire_hash, board.publishing, board.faults,
+                                      board.overload, board.bus_errors, board.refused, board.refused_topic})
+      CHECK(number == 0);
+  }
+  CHECK_FALSE(robot.diagnosis.battery().answered);
+  CHECK(robot.diagnosis.battery().state_of_charge == 0);
+  CHECK_FALSE(robot.diagnosis.battery().plugged);
+}
+
 TEST_CASE("diagnosis: no board answers") {
   CHECK(Patient{}.findings() == Lines{"problem : no board answers"});
 }

@@ -1,0 +1,61 @@
+#include "cli/logs/json_scanner.hpp"
+
+#include <string>
+#include <string_view>
+
+#include <catch2/catch.hpp>
+
+namespace tool_output_json_scanner_test {
+
+using ocm::cli::logs::unescape;
+
+/// The text that the inside of a JSON string stands for; "(none)": it is none.
+std::string text_of(std::string_view inside) {
+  std::string out;
+  return unescape(inside, out) ? out : "(none)";
+}
+
+TEST_CASE("JSON strings: each escape", "[output]") {  // [RFC 8259, 7]
+  CHECK(text_of("") == "");
+  CHECK(text_of("can0") == "can0");
+  CHECK(text_of(R"(\"\\\/\b\f\n\r\t)") == "\"\\/\b\f\n\r\t");
+  for (const std::string_view wrong :
+       {R"(\)", R"(\a)", R"(\u)", R"(\u12)", R"(\u123)", R"(\u12g4)", R"(\x41)"})
+    CHECK(text_of(wrong) == "(none)");
+}
+
+TEST_CASE("JSON strings: the first and last code of each length of UTF-8", "[output]") {  // [RFC 3629, 3]
+  CHECK(text_of(R"(\u007f)") == "\x7F");
+  CHECK(text_of(R"(\u0080)") == "\xC2\x80");
+  CHECK(text_of(R"(\u07FF)") == "\xDF\xBF");
+  CHECK(text_of(R"(\u0800)") == "\xE0\xA0\x80");
+  CHECK(text_of(R"(\ud7ff)") == "\xED\x9F\xBF");
+  CHECK(text_of(R"(\ue000)") == "\xEE\x80\x80");
+  CHECK(text_of(R"(\uffff)") == "\xEF\xBF\xBF");
+  CHECK(text_of(R"(\ud800\udc00)") == "\xF0\x90\x80\x80");
+  CHECK(text_of(R"(\ud83d\ude00!)") == "\xF0\x9F\x98\x80!");
+  CHECK(text_of(R"(\udbff\udfff)") == "\xF4\x8F\xBF\xBF");
+}
+
+TEST_CASE("JSON strings: half a pair is none, and a byte of old logs is that byte", "[output]") {
+  CHECK(text_of(R"(\ud800)") == "(none)");
+  CHECK(text_of(R"(\ud800\u0041)") == "(none)");
+  CHECK(text_of(R"(\ud800\ue000)") == "(none)");
+  CHECK(text_of(R"(\udbff)") == "(none)");
+  CHECK(text_of(R"(\udc00)") == "(none)");
+  CHECK(text_of(R"(\udc7f)") == "(none)");
+  CHECK(text_of(R"(\udc80)") == "\x80");  // [PEP 383]
+  CHECK(text_of(R"(\udcff)") == "\xFF");
+  CHECK(text_of(R"(\udd00)") == "(none)");
+  CHECK(text_of(R"(\udfff)") == "(none)");
+}
+
+TEST_CASE("JSON strings: a byte in words", "[output]") {
+  CHECK(text_of(R"(\\xff)") == "\xFF");
+  CHECK(text_of(R"(a\\x5cb)") == "a\\b");
+  CHECK(text_of(R"(\\xf)") == "\\xf");
+  CHECK(text_of(R"(\\xg0)") == "\\xg0");
+  CHECK(text_of(R"(\\x0g)") == "\\x0g");
+}
+
+}  // namespace tool_output_json_scanner_test
