@@ -134,6 +134,7 @@ TEST_CASE("JSON lines: the first and the last character of each length of UTF-8,
   CHECK(inside("\xC1\xBF") == R"(\\xc1\\xbf)");
   CHECK(inside("\xC2") == R"(\\xc2)");         // cut off
   CHECK(inside("\xC2\x7F") == "\\\\xc2\x7F");  // no byte that goes on
+  CHECK(inside(std::string_view{"\xC2\x80"}.substr(0, 1)) == R"(\\xc2)");
   CHECK(inside("\xC2\xC0") == R"(\\xc2\\xc0)");
   CHECK(inside("\xE1\x80") == R"(\\xe1\\x80)");
   CHECK(inside("\xE1\x80 ") == R"(\\xe1\\x80 )");
