@@ -35,6 +35,15 @@ constexpr auto best = [] {
 }();
 static_assert(best == std::array<std::int64_t, 6>{1, 550, 360, 250, 345, 345});
 
+// Where any order does, the result is by D - J: the second comes first, late as it may be offered.
+constexpr bool by_deadline_less_jitter = [] {
+  CanResponse<2> analysis;
+  std::array<Message, 2> set{{{.cost = 1, .period = 1'000, .deadline = 900},
+                              {.cost = 1, .period = 2'000, .deadline = 1'000, .jitter = 500}}};
+  return assign_priorities<2>(set, {}, analysis) == nobody && set[0].period == 2'000;
+}();
+static_assert(by_deadline_less_jitter);
+
 bool all_meet(const std::vector<Message>& set) {
   CanResponse<8> analysis;
   const auto results = analysis.analyse(set, {});
