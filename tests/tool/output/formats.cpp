@@ -12,8 +12,9 @@ namespace tool_output_formats_test {
 
 using namespace ocm;
 
-/// What an output makes of frames that come 1 ms apart.
-std::string shown(std::unique_ptr<cli::Output> output, const std::vector<std::string>& frames) {
+/// What an output makes of frames that come this far apart.
+std::string shown(std::unique_ptr<cli::Output> output, const std::vector<std::string>& frames,
+                  base::Duration step = std::chrono::milliseconds{1}) {
   client::Receiver receiver{amiro::catalogue};
   log::Bytes out;
   output->begin(out);
@@ -22,7 +23,7 @@ std::string shown(std::unique_ptr<cli::Output> output, const std::vector<std::st
     const log::Entry entry{time, *can::parse_frame(text)};
     const auto reception = cli::understand(receiver, entry);
     output->write(out, {"can0", entry, reception});
-    time += std::chrono::milliseconds{1};
+    time += step;
   }
   return std::string{out.view()};
 }
@@ -68,6 +69,22 @@ TEST_CASE("pretty lines are for a person", "[output]") {
   const std::string chosen = shown(cli::make_pretty(amiro::catalogue, selection({"gyro.y"}), false), frames);
   CHECK(std::count(chosen.begin(), chosen.end(), '\n') == 1);
   CHECK(chosen.find("y   -0.0175 deg/s") != std::string::npos);
+}
+
+TEST_CASE("pretty lines say the time since the first frame, and how far before it a frame came", "[output]") {
+  const std::vector<std::string> two{"4FF#00", "4FF#00"};
+  const auto second = [&](base::Duration step) {
+    const std::string text = shown(cli::make_pretty(amiro::catalogue, {}, false), two, step);
+    const std::string line = text.substr(text.find('\n') + 1);
+    return line.substr(0, line.find("  -"));
+  };
+  using std::chrono::microseconds;
+  CHECK(second(microseconds{999'999}) == "    0.999999");
+  CHECK(second(microseconds{1'000'000}) == "    1.000000");
+  CHECK(second(microseconds{10'000'001}) == "   10.000001");
+  CHECK(second(microseconds{9'999'000'000}) == " 9999.000000");
+  CHECK(second(microseconds{10'000'000'000}) == "10000.000000");
+  CHECK(second(microseconds{-1'500'000}) == "-    1.500000");
 }
 
 TEST_CASE("raw lines are candump's", "[output]") {
