@@ -151,6 +151,11 @@ static_assert(response_times(in_order(std::array{Task{most, most}}), {.context_s
 static_assert(response_times(in_order(std::array{Task{most / 2, most}}), {.scale = most})[0].reason !=
               Reason::schedulable);
 
+// Costs of more than 33 bits: twice the processor is too much.
+static_assert(
+    response_time(in_order(std::array{Task{1LL << 33, (1LL << 33) + 1}, Task{1LL << 33, (1LL << 33) + 1}}), 1)
+        .reason == Reason::overloaded);
+
 // Who has nothing to wait for waits for nobody, whatever the set says.
 static_assert(response_time(in_order(std::array{Task{.cost = 1, .period = 9, .blocked_by = 9}}), 0)
                   .blocked_by == nobody);
