@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <new>
 
 #include "cli/shared/arguments.hpp"
 #include "cli/shared/session.hpp"
@@ -27,9 +28,7 @@ int finish(int code) {
   return exit_failure;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   Program program{"amiroctl", "Ask a robot's sensors, command its actuators, watch its CAN bus.",
                   "amiroctl " OCM_VERSION,
                   "Exit codes: 0 done, 1 error, 2 wrong usage, 128 + signal when interrupted.\n"
@@ -43,18 +42,31 @@ int main(int argc, char** argv) {
   session.add_options(program.root());
   int exit_code = exit_success;
   for (const AddVerb add : verbs) add(program.root(), session, exit_code);
+  switch (program.run(argc, argv)) {
+    case Program::Outcome::done:
+      return finish(exit_code);
+    case Program::Outcome::told:
+      return finish(exit_success);
+    case Program::Outcome::refused:
+      break;
+  }
+  return finish(exit_usage);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
   try {
-    switch (program.run(argc, argv)) {
-      case Program::Outcome::done:
-        return finish(exit_code);
-      case Program::Outcome::told:
-        return finish(exit_success);
-      case Program::Outcome::refused:
-        break;
-    }
-    return finish(exit_usage);
+    return run(argc, argv);
   } catch (const Exit& exit) {
     return exit.code;
+  } catch (const std::bad_alloc&) {
+    // Without fmt, which would need memory.
+    std::fputs(
+        "amiroctl: out of memory; what it was doing is not complete\n"
+        "          end other programs, or raise the limit (ulimit -v), and try again\n",
+        stderr);
+    return exit_failure;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "amiroctl: %s\n", error.what());
     return exit_failure;

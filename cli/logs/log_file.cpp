@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
+#include <new>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -36,6 +37,22 @@ struct LogFile::State {
   transport::Failure failure;
 
   Signals signals = Signals::reach;
+
+  bool broken = false;  ///< the writer was cut off: it takes no more, and what came before can be written
+
+  /// Runs `append`; where that has no memory, nothing of what it appended is written.
+  template <class Append>
+  void whole(Append append) {
+    if (broken) throw std::bad_alloc{};
+    const std::size_t before = bytes.size();
+    try {
+      append();
+    } catch (const std::bad_alloc&) {
+      bytes.cut(before);
+      broken = true;
+      throw;
+    }
+  }
 
   bool failed(std::string_view doing) {
     failure = {fmt::format("cannot {} {}: {}", doing, path == "-" ? "the standard output" : path,
@@ -137,14 +154,16 @@ transport::Outcome<std::unique_ptr<LogFile>> LogFile::create(const std::string& 
     }
     state->packer = std::move(*packer);
   }
+  // Takes what memory it takes before a file that is there is emptied.
+  state->writer = format.writer(catalogue);
+  state->writer->begin(state->bytes);
+  std::unique_ptr<LogFile> file{new LogFile};
   if (!state->open(existing)) {
     made.error = state->failure;
     return made;
   }
-  state->writer = format.writer(catalogue);
-  state->writer->begin(state->bytes);
-  made.value.reset(new LogFile);
-  made.value->state_ = std::move(state);
+  file->state_ = std::move(state);
+  made.value = std::move(file);
   return made;
 }
 
@@ -153,21 +172,26 @@ void LogFile::without_signals() noexcept {
 }
 
 LogFile::~LogFile() {
-  if (state_ != nullptr) finish();
+  if (state_ == nullptr) return;
+  try {
+    finish();
+  } catch (const std::bad_alloc&) {
+    // As documented: what fails here is lost.
+  }
 }
 
 bool LogFile::write(std::span<const log::Entry> entries, const log::Interfaces& interfaces) {
-  state_->writer->write(state_->bytes, entries, interfaces);
+  state_->whole([&] { state_->writer->write(state_->bytes, entries, interfaces); });
   return state_->empty_when_full();
 }
 
 bool LogFile::recorded(std::span<const log::Recorded> recorded) {
-  state_->writer->recorded(state_->bytes, recorded);
+  state_->whole([&] { state_->writer->recorded(state_->bytes, recorded); });
   return state_->empty_when_full();
 }
 
 bool LogFile::flush(bool to_disk) {
-  state_->writer->flush(state_->bytes);
+  state_->whole([&] { state_->writer->flush(state_->bytes); });
   if (!state_->empty_out(Packer::Until::here)) return false;
   if (to_disk && state_->regular && ::fdatasync(state_->descriptor) != 0) return state_->failed("write");
   return true;
@@ -176,7 +200,7 @@ bool LogFile::flush(bool to_disk) {
 bool LogFile::finish() {
   if (state_->finished) return state_->failure.what.empty();
   state_->finished = true;
-  state_->writer->finish(state_->bytes);
+  if (!state_->broken) state_->whole([&] { state_->writer->finish(state_->bytes); });
   bool done = state_->empty_out(Packer::Until::ended);
   if (state_->path != "-" && ::close(state_->descriptor) != 0 && done) done = state_->failed("write");
   return done;

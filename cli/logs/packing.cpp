@@ -188,9 +188,9 @@ class ZstdPacker final : public Packer {
     for (;;) {
       ZSTD_outBuffer piece{piece_.data(), piece_.size(), 0};
       const std::size_t left = ZSTD_compressStream2(stream_, &piece, &in, end);
+      if (ZSTD_isError(left) != 0) throw std::bad_alloc{};  // nothing else can fail here
       out.append(piece_.data(), piece.pos);
       if (end == ZSTD_e_continue ? in.pos == in.size : left == 0) return;
-      if (ZSTD_isError(left) != 0) throw std::bad_alloc{};  // nothing else can fail here
     }
   }
 

@@ -105,6 +105,7 @@ void Recorder::run() {
   queue_.close();
   writer_.join();
   if (on_terminal_) erase_line();
+  if (writer_failure_ != nullptr) std::rethrow_exception(writer_failure_);
 }
 
 /// What waits on all buses.
@@ -271,7 +272,17 @@ void Recorder::show_progress() {
 
 // --- the thread that writes ---
 
+/// An exception that leaves a thread would end the program with what was received before unwritten.
 void Recorder::write_all() {
+  try {
+    write_blocks();
+  } catch (...) {
+    writer_failure_ = std::current_exception();
+    disk_failed_ = true;
+  }
+}
+
+void Recorder::write_blocks() {
   auto flushed = Clock::now();
   while (!queue_.finished()) {
     if (auto block = queue_.pop(flush_period)) write(std::move(block));

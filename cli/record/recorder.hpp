@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <exception>
 #include <memory>
 #include <span>
 #include <string>
@@ -74,6 +75,7 @@ class Recorder {
   void wait();
   void show_progress();
   void write_all();
+  void write_blocks();
   void write(std::unique_ptr<Block> block);
 
   using Clock = std::chrono::steady_clock;
@@ -101,6 +103,7 @@ class Recorder {
   std::uint64_t shown_received_ = 0;
   std::vector<std::atomic<std::uint64_t>> dropped_;  ///< by number of the interface, for the writing thread
   std::atomic<bool> disk_failed_{false};
+  std::exception_ptr writer_failure_;   ///< what ended the writing thread; read once it is joined
   std::atomic<std::uint64_t> size_{0};  ///< of the files
   std::thread writer_;
 };

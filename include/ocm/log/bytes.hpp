@@ -17,6 +17,8 @@ class Bytes {
   [[nodiscard]] std::string_view view() const noexcept { return {bytes_.get(), size_}; }
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   void clear() noexcept { size_ = 0; }
+  /// Back to the `size` that it had: what was appended since is gone.
+  void cut(std::size_t size) noexcept { size_ = size; }
 
   /// Room for `count` bytes at the end, not yet part of the run: write there, then `grow` by what was
   /// written.

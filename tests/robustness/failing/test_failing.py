@@ -1,0 +1,196 @@
+"""Each write of `convert` and `record` fails once, and each allocation: never a crash, a silent loss, or an older file destroyed."""
+
+import os
+import random
+import re
+import subprocess
+import sys
+
+sys.path.insert(0, os.path.join(os.environ["OCM_SOURCE_DIR"], "tests", "tool", "verbs"))
+from harness import AMIROCTL, Case, main  # noqa: E402
+
+FAILING = os.environ["FAILING"]
+EXPLORE = int(os.environ.get("OCM_EXPLORE", "1"))
+NEVER = 10**9
+ENDINGS = ("log", "csv", "asc", "pcap", "pcapng", "mcap", "jsonl", "log.gz", "csv.zst")
+OLDER = b"an older file\n"
+
+
+class Failing(Case):
+    def setUp(self):
+        super().setUp()
+        self.log = self.path("in.log")
+        with open(self.log, "w") as log:
+            for i in range(60):
+                log.write(f"(1700000000.{i * 1000:06d}) can0 {0x600 + i % 16:03X}#1122334455667788\n")
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def clean(self):
+        for name in os.listdir(self.folder):
+            if name.startswith("out"):
+                os.unlink(self.path(name))
+
+    def failing(self, plan, *arguments):
+        """Runs amiroctl by the plan; the result, and how many calls of the plan's kind it made."""
+        calls = self.path("calls")
+        environment = self.environment | {"OCM_FAIL": plan, "OCM_FAIL_CALLS": calls, "LD_PRELOAD": FAILING}
+        result = subprocess.run([AMIROCTL, *arguments], env=environment, cwd=self.folder, capture_output=True,
+                                stdin=subprocess.DEVNULL, timeout=30)
+        if result.returncode < 0:
+            self.fail(f"{arguments}, {plan}: signal {-result.returncode}: {result.stderr.decode()}")
+        with open(calls) as file:
+            return result, int(file.read())
+
+    def judge(self, what, result):
+        """An error is said in one line that begins with the program's name, and only an error is."""
+        words = result.stderr.decode()
+        if result.returncode == 0:
+            return
+        self.assertEqual(result.returncode, 1, f"{what}: {words}")
+        self.assertRegex(words, r"(?m)^amiroctl: \w.{8}", what)
+        self.assertNotIn("std::", words, what)
+        self.assertNotIn("terminate", words, what)
+
+    def frames(self, name, whole=True):
+        """How many frames can be read back; a file that is not whole may end with an error."""
+        result = subprocess.run([AMIROCTL, "convert", self.path(name), "-", "--to", "candump"], env=self.environment,
+                                capture_output=True, text=True, timeout=30)
+        if whole:
+            self.assertEqual(result.returncode, 0, result.stderr)
+        return len(result.stdout.splitlines())
+
+    def walk_files(self, run, whole, broken=lambda *_: None, prepare=lambda: None):
+        """Fails call after call until the program makes fewer."""
+        for error in ("ENOSPC", "EIO"):
+            number, calls = 0, 0
+            while number <= calls or number == 0:
+                number += 1
+                self.clean()
+                prepare()
+                result, calls = self.failing(f"file:{error}:{number}", *run)
+                what = f"{run}, file call {number} of {calls}: {error}"
+                self.judge(what, result)
+                if result.returncode == 0:
+                    whole(what, result)
+                else:
+                    self.assertLessEqual(number, calls, what)
+                    broken(what, result)
+            self.assertGreater(number, 3, run)
+
+    def memory_numbers(self, run):
+        """All that come with the log, some of the many before it: building the verbs takes most of them."""
+        _, least = self.failing(f"memory:ENOMEM:{NEVER}", "convert", "--help")
+        self.clean()
+        _, all_of_them = self.failing(f"memory:ENOMEM:{NEVER}", *run)
+        chosen = random.Random(run[-1])
+        early = {chosen.randrange(1, least) for _ in range(3 * EXPLORE)}
+        late = range(max(1, min(least, all_of_them) - 20), all_of_them + 1)
+        return sorted(early | set(chosen.sample(late, min(len(late), 20 * EXPLORE))))
+
+    def walk_memory(self, run, whole):
+        for number in self.memory_numbers(run):
+            for more in ("", "+"):
+                self.clean()
+                result, calls = self.failing(f"memory:ENOMEM:{number}{more}", *run)
+                what = f"{run}, allocation {number}{more} of {calls}"
+                self.judge(what, result)
+                if result.returncode == 0:
+                    whole(what, result)
+
+    # --- convert ---
+
+    def expect_all(self, name):
+        def whole(what, _):
+            self.assertEqual(self.frames(name), 60, what)
+        return whole
+
+    def test_convert_says_each_failing_write(self):
+        for ending in ENDINGS:
+            with self.subTest(ending):
+                self.walk_files(("convert", "in.log", f"out.{ending}"), self.expect_all(f"out.{ending}"))
+
+    def test_convert_says_each_failing_allocation(self):
+        for ending in ENDINGS:
+            with self.subTest(ending):
+                self.walk_memory(("convert", "in.log", f"out.{ending}"), self.expect_all(f"out.{ending}"))
+
+    def test_convert_leaves_an_older_file(self):
+        def prepare():
+            with open(self.path("out.log"), "wb") as file:
+                file.write(OLDER)
+
+        def still_there(*_):
+            with open(self.path("out.log"), "rb") as file:
+                self.assertEqual(file.read(), OLDER)
+
+        for plan in ("file:EIO:1", "file:ENOSPC:2", f"memory:ENOMEM:{NEVER}"):
+            prepare()
+            result, _ = self.failing(plan, "convert", "in.log", "out.log")
+            self.assertEqual(result.returncode, 1, plan)
+            still_there()
+        # Where it may be overwritten, memory fails before it is emptied, or once there is something to write.
+        run = ("convert", "in.log", "out.log", "--force")
+        for number in self.memory_numbers(run):
+            prepare()
+            result, _ = self.failing(f"memory:ENOMEM:{number}", *run)
+            self.judge(f"{run}, allocation {number}", result)
+
+    # --- record ---
+
+    def start_traffic(self):
+        """A frame each millisecond."""
+        self.start_sim()
+        self.run_tool("publish", "gyro", "1ms", "--no-confirm")
+
+    def all_frames(self, whole=True):
+        names = [name for name in os.listdir(self.folder) if name.startswith("out")]
+        return sum(self.frames(name, whole) for name in names if os.path.getsize(self.path(name)) > 0)
+
+    def expect_what_it_said(self, what, result):
+        """What it says to be readable is."""
+        told = re.search(r"(\d+) frames can be read", result.stderr.decode())
+        if told is not None:
+            self.assertEqual(self.all_frames(whole=False), int(told[1]), what)
+
+    def expect_recorded(self, count):
+        def whole(what, _):
+            self.assertEqual(self.all_frames(), count, what)
+        return whole
+
+    def test_record_says_each_failing_write(self):
+        self.start_traffic()
+        for ending in ENDINGS:
+            with self.subTest(ending):
+                self.walk_files(("record", "-n", "10", "-o", f"out.{ending}"), self.expect_recorded(10),
+                                self.expect_what_it_said)
+
+    def test_record_in_several_files_says_each_failing_write(self):
+        self.start_traffic()
+        self.walk_files(("record", "-n", "60", "-o", "out.log", "--split", "20ms"), self.expect_recorded(60),
+                        self.expect_what_it_said)
+
+    def test_a_ring_keeps_what_it_has_until_there_is_something_new(self):
+        self.start_traffic()
+
+        def prepare():
+            for number in (1, 2):
+                with open(self.path(f"out_00{number}.log"), "wb") as file:
+                    file.write(OLDER)
+
+        def enough(what, _):
+            names = sorted(name for name in os.listdir(self.folder) if name.startswith("out"))
+            self.assertGreaterEqual(len(names), 2, what)
+
+        self.walk_files(("record", "-n", "60", "-o", "out.log", "--split", "20ms", "--ring", "2"), enough, enough, prepare)
+
+    def test_record_says_each_failing_allocation(self):
+        self.start_traffic()
+        for ending in ("log", "mcap", "csv.zst"):
+            with self.subTest(ending):
+                self.walk_memory(("record", "-n", "10", "-o", f"out.{ending}"), self.expect_recorded(10))
+
+
+if __name__ == "__main__":
+    main()
