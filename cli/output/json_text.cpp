@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "ocm/base/utf8.hpp"
 #include "ocm/can/error_frame.hpp"
 #include "ocm/can/text.hpp"
 #include "ocm/protocol/request.hpp"
@@ -15,26 +16,6 @@ namespace {
 /// Pieces are copied in blocks of this many bytes, beyond their end, too.
 constexpr std::size_t block = 32;
 constexpr std::string_view line_begin = R"({"time_ns":")";
-
-/// How many bytes of `text` are one character of UTF-8; 0: they are none. [RFC 3629]
-std::size_t utf8_length(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned first = byte(0);
-  const std::size_t length = first < 0x80   ? 1
-                             : first < 0xC2 ? 0
-                             : first < 0xE0 ? 2
-                             : first < 0xF0 ? 3
-                             : first < 0xF5 ? 4
-                                            : 0;
-  if (length == 0 || text.size() < length) return 0;
-  for (std::size_t i = 1; i < length; ++i)
-    if ((byte(i) & 0xC0) != 0x80) return 0;
-  if (length < 3) return length;
-  const unsigned second = byte(1);
-  const bool overlong = (first == 0xE0 && second < 0xA0) || (first == 0xF0 && second < 0x90);
-  const bool beyond = (first == 0xED && second > 0x9F) || (first == 0xF4 && second > 0x8F);
-  return overlong || beyond ? 0 : length;
-}
 
 /// Whether it begins as a byte in words does: a backslash, x and two digits.
 bool is_byte_text(std::string_view text) {
@@ -86,7 +67,7 @@ constexpr std::size_t end_room = 2 * log::max_fd_length + 128;
 
 void append_json(std::string& out, std::string_view text) {
   while (!text.empty()) {
-    const std::size_t length = utf8_length(text);
+    const std::size_t length = base::utf8_length(text);
     const auto byte = static_cast<unsigned char>(text.front());
     if (length == 0 || is_byte_text(text))
       out += fmt::format("\\\\x{:02x}", byte);

@@ -1,10 +1,12 @@
 #include "cli/shared/config.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdlib>
+#include <fcntl.h>
 #include <filesystem>
-#include <fstream>
 #include <optional>
+#include <poll.h>
 #include <set>
 #include <string_view>
 #include <unistd.h>
@@ -13,10 +15,13 @@
 
 #include <fmt/format.h>
 
+#include "ocm/host/descriptor.hpp"
+
 #include "cli/shared/config_check.hpp"
 #include "cli/shared/config_file.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/words/suggestion.hpp"
+
 namespace ocm::cli {
 namespace {
 
@@ -52,6 +57,15 @@ void apply_environment(Verb verb) {
       if (value == nullptr || *value == '\0') continue;
       // A name of an earlier version may mean something else in other verbs by now.
       const bool may_be_another = option.is_former("--" + key);
+      // --wait, or --wait 2s: true is the option without a value, as in the file.
+      const bool bare = option.most_values() > 0 && option.least_values() == 0;
+      const std::string_view truth{value};
+      if (bare && truth == "false") break;
+      if (bare && truth == "true") {
+        if (const auto misuse = option.give(key, {}))
+          fail({fmt::format("{}={}", name, misuse->what), misuse->remedy + ", or unset it"}, exit_usage);
+        break;
+      }
       const auto refusal = refuse_text(option.accepted(), value);
       if (refusal && may_be_another) break;
       if (refusal) fail({fmt::format("{}={}: {}", name, value, refusal->what), refusal->remedy}, exit_usage);
@@ -100,18 +114,44 @@ void apply_setting(Verb verb, const Setting& setting, const std::string& file) {
   }
 }
 
+/// Whether something comes that can be read, or the end. A pipe to which no program writes has neither.
+bool comes(int descriptor) {
+  constexpr int patience_ms = 2000;
+  pollfd file{descriptor, POLLIN, 0};
+  return ::poll(&file, 1, patience_ms) > 0;
+}
+
+/// At most one byte more than a config file has; what is wrong, if anything is.
+std::optional<std::string> read_into(std::string& text, int descriptor) {
+  text.resize(max_config_bytes + 1);
+  std::size_t size = 0;
+  while (size < text.size()) {
+    if (!comes(descriptor)) return "it is a pipe, and no program writes to it";
+    const ssize_t count = ::read(descriptor, text.data() + size, text.size() - size);
+    if (count < 0 && (errno == EINTR || errno == EAGAIN)) continue;
+    if (count < 0) return "it cannot be read";
+    if (count == 0) break;
+    size += static_cast<std::size_t>(count);
+  }
+  text.resize(size);
+  return std::nullopt;
+}
+
 std::string read_file(const std::string& file, bool must_exist) {
   std::error_code error;
   const bool exists = std::filesystem::exists(file, error);
   if (!exists && !must_exist) return {};
-  std::ifstream in{file, std::ios::binary};
-  std::string text(max_config_bytes + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  if (in.bad() || (text.empty() && !in.eof()))
-    fail({fmt::format("{}: {}", file, exists ? "it cannot be read" : "there is no such file"),
-          "--config names the config file; without it " + default_config_file() +
-              " is read where there is one"},
+  std::string text;
+  // Without waiting for a writer: a pipe may never have one.
+  const host::Descriptor in{::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
+  std::optional<std::string> problem;
+  if (!in)
+    problem = exists ? "it cannot be read" : "there is no such file";
+  else
+    problem = read_into(text, in.get());
+  if (problem)
+    fail({fmt::format("{}: {}", file, *problem), "--config names the config file; without it " +
+                                                     default_config_file() + " is read where there is one"},
          exit_usage);
   if (text.size() > max_config_bytes)
     fail({fmt::format("{}: larger than {} bytes", file, max_config_bytes), "a config file is smaller"},
@@ -139,6 +179,7 @@ void apply_config(Verb program, const std::string& file) {
   const std::string path = file.empty() ? default_config_file() : file;
   if (path.empty()) return;
   ConfigFile config = parse_config(read_file(path, !file.empty()));
+  for (const EmptyTable& table : config.empty_tables) check_table(program, table, config.problems);
   for (const Setting& setting : config.settings) check_setting(program, setting, settable, config.problems);
   if (!config.problems.empty()) {
     std::stable_sort(config.problems.begin(), config.problems.end(),

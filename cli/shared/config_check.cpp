@@ -59,6 +59,10 @@ ConfigProblem misplaced(const Setting& setting, const std::string& table,
   return {setting.line, fmt::format("unknown key {}", setting.key), suggestion(setting.key, keys)};
 }
 
+ConfigProblem no_verb(Verb program, const std::string& table, std::size_t line) {
+  return {line, fmt::format("[{}] is not a verb", table), suggestion(table, verb_names(program))};
+}
+
 }  // namespace
 
 bool can_be_set(const Option& option) {
@@ -86,6 +90,10 @@ std::vector<Settable> all_settable(Verb program) {
   return settable;
 }
 
+void check_table(Verb program, const EmptyTable& table, std::vector<ConfigProblem>& problems) {
+  if (!find_table(program, table.name)) problems.push_back(no_verb(program, table.name, table.line));
+}
+
 std::optional<Refusal> refuse(const Option& option, const std::vector<OptionValue>& values) {
   if (values.empty()) return Refusal{"an array without a value", "leave the line out"};
   if (option.most_values() <= 1 && values.size() > 1)
@@ -101,8 +109,7 @@ void check_setting(Verb program, const Setting& setting, const std::vector<Setta
                    std::vector<ConfigProblem>& problems) {
   const Verb verb = find_table(program, setting.table);
   if (!verb) {
-    problems.push_back({setting.line, fmt::format("[{}] is not a verb", setting.table),
-                        suggestion(setting.table, verb_names(program))});
+    problems.push_back(no_verb(program, setting.table, setting.line));
     return;
   }
   const std::string table = table_name(verb);

@@ -26,6 +26,9 @@ struct Settable {
 /// The verb of a table, "analyse.bus"; the program for "".
 [[nodiscard]] Verb find_table(Verb program, std::string_view table);
 
+/// What is wrong with a table that sets nothing: that it is of no verb.
+void check_table(Verb program, const EmptyTable& table, std::vector<ConfigProblem>& problems);
+
 /// Why an option does not take the values of a setting.
 [[nodiscard]] std::optional<Refusal> refuse(const Option& option, const std::vector<OptionValue>& values);
 /// What is wrong with a setting, if anything is. Above all tables it is for every verb that has the option,

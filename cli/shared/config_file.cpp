@@ -16,6 +16,7 @@ class Reader {
     for (const auto& [key, node] : table) {
       const std::string inner = name.empty() ? std::string{key.str()} : fmt::format("{}.{}", name, key.str());
       if (const auto* deeper = node.as_table()) {
+        if (deeper->empty()) file_.empty_tables.push_back({inner, key.source().begin.line});
         read(*deeper, inner);
         continue;
       }

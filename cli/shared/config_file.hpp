@@ -23,8 +23,15 @@ struct ConfigProblem {
   std::string remedy;
 };
 
+/// A table without a key: it sets nothing, and may be misspelt all the same.
+struct EmptyTable {
+  std::string name;
+  std::size_t line = 0;
+};
+
 struct ConfigFile {
   std::vector<Setting> settings;
+  std::vector<EmptyTable> empty_tables;
   std::vector<ConfigProblem> problems;
 };
 

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "ocm/base/utf8.hpp"
+
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/remedies.hpp"
 
@@ -32,17 +34,21 @@ void speak_for(std::string_view verb) {
 }
 
 std::string printable(std::string_view text) {
+  const auto escaped = [](char byte) { return fmt::format("\\x{:02x}", static_cast<unsigned char>(byte)); };
   std::string out;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    const bool second_set = byte == 0xC2 && i + 1 < text.size() &&
-                            (static_cast<unsigned char>(text[i + 1]) & 0xE0) == 0x80;  // U+0080 to U+009F
-    if ((byte < 0x20 && byte != '\n' && byte != '\t') || byte == 0x7F)
-      out += fmt::format("\\x{:02x}", byte);
-    else if (second_set)
-      out += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[++i]));
+  while (!text.empty()) {
+    const std::size_t length = base::utf8_length(text);
+    const auto first = static_cast<unsigned char>(text[0]);
+    const bool control = (first < 0x20 && first != '\n' && first != '\t') || first == 0x7F;
+    // U+0080 to U+009F, of which a terminal takes some for the beginning of a sequence
+    const bool second_set = length == 2 && first == 0xC2 && static_cast<unsigned char>(text[1]) < 0xA0;
+    if (second_set)
+      out += escaped(text[1]);
+    else if (length == 0 || control)  // a byte that is no UTF-8 may be such a control in eight bits
+      out += escaped(text[0]);
     else
-      out += text[i];
+      out += text.substr(0, length);
+    text.remove_prefix(std::max<std::size_t>(length, 1));
   }
   return out;
 }

@@ -1,7 +1,10 @@
 /// Fields as a picture: over time, or one against another; of a log, or of the bus for a while.
 #include <chrono>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <unistd.h>
 #include <utility>
 #include <vector>
@@ -42,20 +45,38 @@ plot::Kind kind_of(const std::string& output) {
   fail({fmt::format("plot: {}: no kind of picture", output), "end it in .svg, .png or .pdf"}, exit_usage);
 }
 
+constexpr std::uint64_t least_side = 200, most_side = 16'384;
+
+struct Size {
+  std::uint64_t width = 0, height = 0;
+};
+
+std::optional<Size> parse_size(std::string_view text) {
+  const std::size_t times = text.find('x');
+  if (times == std::string_view::npos) return std::nullopt;
+  const auto width = base::parse_unsigned(text.substr(0, times));
+  const auto height = base::parse_unsigned(text.substr(times + 1));
+  const auto fits = [](const auto& side) { return side && *side >= least_side && *side <= most_side; };
+  if (!fits(width) || !fits(height)) return std::nullopt;
+  return Size{*width, *height};
+}
+
+std::string a_size() {
+  return fmt::format("WIDTHxHEIGHT in pixels, {} to {} each, such as 1200x600", least_side, most_side);
+}
+
+Accepted accepted_size() {
+  return {ValueKind::text, false, a_size(), {}, [](const std::string& text) {
+            return parse_size(text).has_value();
+          }};
+}
+
 void read_size(const std::string& text, plot::Picture& picture) {
   if (text.empty()) return;
-  const std::size_t times = text.find('x');
-  const auto width = base::parse_unsigned(std::string_view{text}.substr(0, times));
-  const auto height =
-      times == std::string::npos ? width : base::parse_unsigned(std::string_view{text}.substr(times + 1));
-  constexpr std::uint64_t least = 200, most = 16'384;
-  const auto fits = [](const auto& side) { return side && *side >= least && *side <= most; };
-  if (times == std::string::npos || !fits(width) || !fits(height))
-    fail({fmt::format("--size {}: no size", text),
-          fmt::format("write WIDTHxHEIGHT in pixels, {} to {} each, such as 1200x600", least, most)},
-         exit_usage);
-  picture.width = static_cast<unsigned>(*width);
-  picture.height = static_cast<unsigned>(*height);
+  const auto size = parse_size(text);
+  if (!size) fail({fmt::format("--size {}: no size", text), "write " + a_size()}, exit_usage);
+  picture.width = static_cast<unsigned>(size->width);
+  picture.height = static_cast<unsigned>(size->height);
 }
 
 std::vector<plot::Wanted> read_fields(const std::vector<std::string>& words,
@@ -166,7 +187,8 @@ void add_plot(Verb app, Session& session, int& exit_code) {
                   ".svg, .png or .pdf; - is SVG on stdout. Default: plot.svg on a terminal, otherwise -")
       .type_name("FILE");
   verb.add_option("--size", options->size, "in pixels; default: as is right for what is drawn")
-      .type_name("WIDTHxHEIGHT");
+      .type_name("WIDTHxHEIGHT")
+      .takes(accepted_size());
   verb.add_option("--title", options->title, "default: the robot and the log").type_name("TEXT");
   verb.add_flag("--script", options->script, "print gnuplot's commands, and draw nothing");
   add_watch_options(verb, options->watch);

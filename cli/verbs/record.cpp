@@ -66,17 +66,29 @@ const logs::LogFormat& chosen_format(const RecordOptions& options) {
   return *format;
 }
 
-record::Split parse_split(const std::string& text) {
+constexpr const char* a_split = "a size or a time, such as 100MB, 64MiB, 10min or 1h";
+
+/// Never, where it is neither a size nor a time.
+record::Split read_split(const std::string& text) {
   record::Split split;
-  if (text.empty()) return split;
   if (const auto time = words::parse_duration(text); time && time->count() > 0)
     split.time = *time;
   else
     split.size = record::parse_size(text);
+  return split;
+}
+
+record::Split parse_split(const std::string& text) {
+  if (text.empty()) return {};
+  const record::Split split = read_split(text);
   if (!split.any())
     fail({fmt::format("--split {}: neither a size nor a time", text), "write 100MB, 64MiB, 10min or 1h"},
          exit_usage);
   return split;
+}
+
+Accepted accepted_split() {
+  return {ValueKind::text, true, a_split, {}, [](const std::string& text) { return read_split(text).any(); }};
 }
 
 record::Filters chosen_filters(const RecordOptions& options, const protocol::Catalogue& catalogue) {
@@ -222,7 +234,8 @@ void add_record(Verb app, Session& session, int& exit_code) {
       .type_name("ID:MASK")
       .one_a_mention();
   verb.add_option("--split", options->split, "a new file after this size or time: 100MB, 10min")
-      .type_name("SIZE|T");
+      .type_name("SIZE|T")
+      .takes(accepted_split());
   verb.add_option("--ring", options->ring,
                   "with --split: keep the newest N files of this name, over restarts")
       .type_name("N")

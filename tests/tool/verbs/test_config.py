@@ -137,6 +137,8 @@ class Config(harness.Case):
                 ("[replay]\nloop = 0", "loop: invalid value 0", "how many times, at least 1"),
                 ('[convert]\nto = "candum"', "to: invalid value 'candum'", "did you mean candump?"),
                 ('[convert]\nto = "blf"', "to: invalid value 'blf'", "expected pcapng"),
+                ('[record]\nsplit = "nonsense"', "split: invalid value 'nonsense'", "expected a size or a time, such as 100MB"),
+                ('[plot]\nsize = "200"', "size: invalid value '200'", "expected WIDTHxHEIGHT in pixels, 200 to 16384 each"),
                 ('[stats]\nbitrate = "5G"', "bitrate: invalid value '5G'", "500k or 125000")):
             self.write(text + "\n")
             for verb in (["list"], ["publish", "mag", "900us", "--dry-run"]):
@@ -147,7 +149,8 @@ class Config(harness.Case):
 
     def test_values_that_are_taken(self):
         for text in ("[stats]\nbitrate = 125000", "priority = 2", 'priority = "normal"', '[stats]\nbitrate = "125k"', "[replay]\nspeed = 2.5", '[replay]\nspeed = "max"',
-                     "[replay]\nloop = true", "[replay]\nloop = 3", '[publish]\nwait = "1s"', "[publish]\nwait = false",
+                     "[replay]\nloop = true", "[replay]\nloop = 3", '[record]\nsplit = "10min"', "[record]\nsplit = 100000",
+                     '[plot]\nsize = "200x200"', "[listen]\n[analyse.bus]", '[publish]\nwait = "1s"', "[publish]\nwait = false",
                      '[sim]\nwithout = ["light_ring", "power_management"]', "[sim]\nspeed = 10", "[sim]\nseed = 0"):
             self.write(text + "\n")
             self.run_tool("list")
@@ -189,6 +192,29 @@ class Config(harness.Case):
         self.assertEqual(self.run_tool("publish", "mag", "900us")[0].strip(), "205#01840302")
         self.environment["AMIROCTL_DRY_RUN"] = "maybe"
         self.assertIn("AMIROCTL_DRY_RUN=maybe: ", self.run_tool("publish", "mag", "900us", code=2)[1])
+
+    def test_an_option_of_the_environment_without_its_value(self):
+        log = os.path.join(self.folder, "a.log")
+        with open(log, "w", encoding="utf-8") as file:
+            file.write("(1.0) can0 605#00D20000\n")
+        self.environment["AMIROCTL_LOOP"] = "true"
+        self.assertIn("plays once", self.run_tool("replay", log, "--dry-run", code=2)[1])
+        self.environment["AMIROCTL_LOOP"] = "false"
+        self.run_tool("replay", log, "--dry-run")
+
+    def test_a_table_without_a_key(self):
+        for text in ("[lisen]", "lisen = {}", "[lisen.deeper]"):
+            self.write("# a comment\n" + text + "\n")
+            _, err = self.run_tool("list", code=2)
+            self.assertIn(f"{self.file}:2: [lisen", err)
+            self.assertIn("is not a verb", err)
+
+    def test_a_pipe_to_which_no_program_writes(self):
+        os.mkfifo(os.path.join(self.folder, "pipe"))
+        _, err = self.run_tool("--config", os.path.join(self.folder, "pipe"), "list", code=2)
+        self.assertIn("it is a pipe, and no program writes to it", err)
+        self.environment["AMIROCTL_CONFIG"] = "/dev/stdin"
+        self.assertIn('"topic"', self.run_tool("list", stdin="[list]\njson = true\n")[0])
 
     def test_variables_that_set_nothing_are_named(self):
         self.environment.update(AMIROCTL_PRIORTY="high", AMIROCTL_ZZZZZZZZZZ="1", AMIROCTL_DRY_RUN="true", AMIROCTL_BUS="sim",

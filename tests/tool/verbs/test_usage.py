@@ -135,6 +135,12 @@ class Messages(Case):
         self.assertNotIn("\x1b", err)
         self.assertIn("\\x1b]0;title\\x07", err)
 
+    def test_eight_bit_controls_do_not_reach_the_terminal(self):
+        """A terminal that is set to eight bits takes 0x9b for the beginning of a sequence."""
+        result = subprocess.run([AMIROCTL, "info", b"a\x9b2Jb\xc2\xffc\xc3\xa9"], env=self.environment, capture_output=True)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn(rb"no topic 'a\x9b2Jb\xc2\xffc" + b"\xc3\xa9'", result.stderr)
+
     def test_an_empty_word_is_no_topic(self):
         for words in (["info", ""], ["publish", ""], ["stop", ""], ["listen", ""], ["listen", "", "odom"],
                       ["plot", "live", ""], ["decode", "--topic", "", os.devnull], ["replay", os.devnull, ""]):

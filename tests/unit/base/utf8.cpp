@@ -5,6 +5,7 @@
 namespace base_utf8_test {
 
 using ocm::base::columns;
+using ocm::base::utf8_length;
 
 static_assert(columns("") == 0);
 static_assert(columns("gyro") == 4);
@@ -18,5 +19,12 @@ TEST_CASE("What is no UTF-8 is counted, too") {
   CHECK(columns("\x80\x80") == 0);
   CHECK(columns("a\xC2") == 2);
 }
+
+static_assert(utf8_length("") == 0);
+static_assert(utf8_length("ab") == 1);
+static_assert(utf8_length("\xC2\xB0x") == 2);
+static_assert(utf8_length("\xC2x") == 0 && utf8_length("\xC2") == 0 && utf8_length("\x9B") == 0);
+static_assert(utf8_length("\xC0\xAF") == 0, "longer than needed [RFC 3629, 3]");
+static_assert(utf8_length("\xED\xA0\x80") == 0, "a half of a pair of UTF-16");
 
 }  // namespace base_utf8_test
