@@ -1,10 +1,10 @@
 /// Loaded before a program (LD_PRELOAD), makes the N-th call of one kind fail, and tells how many there were.
 ///
-///     OCM_FAIL=write:ENOSPC:3 LD_PRELOAD=libfailing.so amiroctl convert a.log b.csv
+///     OCM_FAIL=file:ENOSPC:3 LD_PRELOAD=libfailing.so amiroctl convert a.log b.csv
 ///
 /// Kinds: `file` (what reaches a file or a folder for writing: open, write, ftruncate, fdatasync, fsync,
-/// rename, close, mkstemp) and `memory` (malloc and what is built on it; fails from the N-th call on when the
-/// number has a + after it). The total goes to the file OCM_FAIL_CALLS at the end.
+/// rename, unlink, close, mkstemp) and `memory` (malloc and what is built on it; fails from the N-th call on
+/// when the number has a + after it). The total goes to the file OCM_FAIL_CALLS at the end.
 #include <atomic>
 #include <cerrno>
 #include <cstdarg>
