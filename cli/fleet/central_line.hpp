@@ -57,6 +57,9 @@ class CentralLine {
   /// Links to the robots that are meant, by name, address or index; `all` or nothing: to all that there are.
   /// One that is not there ends the command; one of several that cannot be reached is reported.
   std::vector<unsigned> connect(const std::vector<std::string>& names);
+  /// Asks those of these robots that were connected before, by another program, for their handshakes, and
+  /// waits for a moment. A robot that does not know the question stays without one.
+  void introduce(const std::vector<unsigned>& robots);
   /// A link to one robot, confirmed and heard.
   unsigned connect_one(const std::string& name);
   /// Ends the command: the central finds none of this name. Lists those that it finds.

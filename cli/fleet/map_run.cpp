@@ -38,7 +38,8 @@ void place_robots(CentralLine& line, const std::vector<unsigned>& robots, const 
            exit_usage);
     if (!line.fleet().robot(index).handshake)
       remark(
-          fmt::format("map: {} was connected before, and does not say its size again: taken as usual", name));
+          fmt::format("map: {} was connected before, and does not say its size when asked: the usual one is taken; "
+                      "switch the robot off and on before `map`", name));
   }
 }
 
@@ -121,6 +122,7 @@ cognitive::MappingOptions mapping_options(const MapOptions& options, const Known
 MapRun::MapRun(const MapOptions& options, const Known& known)
     : options_(options), known_(known), line_("map", options.line, fleet_options(options, known)) {
   robots_ = line_.connect(options.robots);
+  line_.introduce(robots_);
   place_robots(line_, robots_, known_, options.starts);
   for (const unsigned index : robots_)
     if (!line_.fleet().robot(index).update)  // paused, by any program

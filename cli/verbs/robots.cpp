@@ -58,6 +58,7 @@ Json to_json(const fleet::CentralLine& line, const Peer& peer) {
                    {"length_cm", robot.handshake->length},
                    {"axle_offset_cm", robot.handshake->axle_offset},
                    {"tower_offset_cm", robot.handshake->tower_offset},
+                   {"sensor_out_cm", robot.handshake->sensor_out},
                    {"deadline_ms", robot.handshake->deadline},
                    {"packed", mapper::link::offers_packed(*robot.handshake)}};
   return out;
@@ -81,7 +82,7 @@ void run(const RobotsOptions& options, int& exit_code) {
   if (options.list)
     (void)line.scan();
   else
-    (void)line.connect({});
+    line.introduce(line.connect({}));
   if (!options.list) (void)line.wait(options.listen, [] { return false; });
   const std::vector<Peer> peers = line.server().client().peers();
   if (options.json)

@@ -118,6 +118,13 @@ class Robot {
     const Vector field = sim::mapper::own_field(model_.compass, noise(Part::compass));
     return {static_cast<float>(field.x), static_cast<float>(field.y)};
   }
+  /// Metres that its wheels say for each one that it gets on, on the floor of its model: what driving a
+  /// measured way would find.
+  [[nodiscard]] float wheels_say_per_m() const noexcept {
+    const double believed = model_.drive.m_per_tick();
+    const double true_m = (left_m_per_tick_ + right_m_per_tick_) / 2;
+    return static_cast<float>(believed / true_m * (1 + model_.slip.straight));
+  }
 
   // --- for the world ---
 

@@ -35,13 +35,20 @@ concept RobotLink = requires(L& link, std::span<const std::uint8_t> bytes, base:
   return kind == RobotKind::avr ? ocm::mapper::app::avr_robot : ocm::mapper::app::arduino_robot;
 }
 
+/// And with what its owner has measured of it.
+[[nodiscard]] inline ocm::mapper::app::RobotModel as_its_owner_has_it(const Robot& body) noexcept {
+  using namespace ocm::mapper::app;
+  return wheels_calibrated(calibrated(application_of(body.model().kind), body.own_field()),
+                           body.wheels_say_per_m());
+}
+
 template <RobotLink Link>
 class RunningRobot {
  public:
-  /// As its owner has it: its compass was calibrated, once, in an undisturbed place.
+  /// As its owner has it: its compass was calibrated, once, in an undisturbed place, and its wheels on a
+  /// measured way.
   RunningRobot(Robot& body, Link& link, base::Time start)
-      : RunningRobot(body, link, start,
-                     ocm::mapper::app::calibrated(application_of(body.model().kind), body.own_field())) {}
+      : RunningRobot(body, link, start, as_its_owner_has_it(body)) {}
   RunningRobot(Robot& body, Link& link, base::Time start, const ocm::mapper::app::RobotModel& model)
       : body_(&body),
         model_(model),

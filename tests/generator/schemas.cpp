@@ -94,8 +94,8 @@ std::vector<std::string> told(const Json& sentences) {
 // In spec/sentences.json: a sentence of a word, one of integers, one of fixed text.
 constexpr const char* confirm = "/sentences/0";
 constexpr const char* set_point = "/sentences/1";
-constexpr const char* ping = "/sentences/6";
-constexpr const char* handshake = "/sentences/7";
+constexpr const char* ping = "/sentences/7";
+constexpr const char* handshake = "/sentences/8";
 
 TEST_CASE("the sentences keep to their schema") {
   const Spec sentences{"sentences"};
@@ -193,13 +193,13 @@ TEST_CASE("what the schema of the sentences must see: a value that cannot be") {
       {"/sentences/1/fields/0/range", {0, 32768}},
       {"/sentences/1/fields/0/range", {"0", "1"}},
       {"/sentences/1/fields/0/default", 0},
-      {"/sentences/7/fields/9/values", {20225}},
-      {"/sentences/7/fields/9/values", {{"Offer", 1}}},
-      {"/sentences/7/fields/9/values", {{"offer", "1"}}},
-      {"/sentences/7/fields/9/values", {{"offer", 32768}}},
-      {"/sentences/7/integers", {0, 16}},
-      {"/sentences/7/integers", {1, 17}},
-      {"/sentences/7/integers", 10},
+      {"/sentences/8/fields/9/values", {20225}},
+      {"/sentences/8/fields/9/values", {{"Offer", 1}}},
+      {"/sentences/8/fields/9/values", {{"offer", "1"}}},
+      {"/sentences/8/fields/9/values", {{"offer", 32768}}},
+      {"/sentences/8/integers", {0, 16}},
+      {"/sentences/8/integers", {1, 17}},
+      {"/sentences/8/integers", 10},
       // One that is of two sorts at once.
       {"/sentences/0/fields", sentences.json()["sentences"][1]["fields"]},
       {"/sentences/0/text", "{}"},
@@ -257,12 +257,12 @@ TEST_CASE("what no schema can see of sentences is told with its place and what w
       Lines{
           "/sentences/1/fields/0/range: 360 is greater than -360; two whole numbers, [smallest, greatest]"});
   CHECK(
-      with("/sentences/7/fields/9/values", {{"width", 1}}) ==
+      with("/sentences/8/fields/9/values", {{"width", 1}}) ==
       Lines{
           R"(/sentences/7/fields/9/values/width: "width" is an integer of the sentence, too; another name)"});
   CHECK(with("/sentences/1/fields/0/values", {{"back", 361}}).size() == 1);  // out of its range
-  CHECK(with("/sentences/7/integers", {11, 16}) ==
-        Lines{"/sentences/7/integers: 10 fields are outside of it; a number below and one above, or leave it "
+  CHECK(with("/sentences/8/integers", {11, 16}) ==
+        Lines{"/sentences/8/integers: 10 fields are outside of it; a number below and one above, or leave it "
               "out"});
   CHECK(
       with("/sentences/1/source/width", "a ruler") ==

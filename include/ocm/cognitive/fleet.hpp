@@ -111,6 +111,7 @@ class Fleet {
     robots_[index].linked = false;
     mouths_[index].sender.restart();
     mouths_[index].confirm_at = base::never;
+    mouths_[index].asked_until = {};
     lose(robots_[index]);
   }
   /// Where the frame of a robot's poses is in the world: where it stood when it began.
@@ -162,6 +163,14 @@ class Fleet {
   bool pause(std::size_t index, base::Time now) { return hold(index, true, now); }
   bool unpause(std::size_t index, base::Time now) { return hold(index, false, now); }
   bool ping(std::size_t index) { return say(index, mapper::link::write(mapper::link::Kind::ping)->view()); }
+  /// To a robot that was confirmed before: its handshake, which it says to no second program by itself. One
+  /// that does not know the word is silent; what is known of its place stays.
+  bool ask_who(std::size_t index, base::Time now) {
+    if (index >= most_robots) return false;
+    constexpr base::Duration answers = std::chrono::seconds{2};
+    mouths_[index].asked_until = now + answers;
+    return say(index, mapper::link::write(mapper::link::Kind::who)->view());
+  }
   [[nodiscard]] std::optional<Saying> take() {
     if (sayings_.empty()) return std::nullopt;
     Saying saying = std::move(sayings_.front());
@@ -201,6 +210,7 @@ class Fleet {
     std::uint32_t queued = 0;
     std::uint32_t out = 0;
     std::uint32_t words = 0;
+    base::Time asked_until{};             ///< a handshake until then is an answer
     base::Time confirm_at = base::never;  ///< once more: no update, no idle has shown that it was heard
   };
 
@@ -287,7 +297,10 @@ class Fleet {
   /// two packets, and comes whole less often than the answer.
   void greet(std::size_t index, Robot& robot, base::Time now) {
     ++counters_.handshakes;
+    const bool confirmed_before = robot.confirmed;
     robot.handshake = ears_.ear(index).sentence().as<mapper::link::Handshake>().value;
+    // A robot that has begun again says it each second: a later one is no answer.
+    if (confirmed_before && now < mouths_[index].asked_until) return;
     robot.origin = robot.pose();  // its pose begins at 0 again, where it stands
     robot.update.reset();
     robot.confirmed = true;

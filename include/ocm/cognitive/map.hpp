@@ -58,6 +58,8 @@ struct Shape {
     for (std::size_t i = 0; i < headings.size(); ++i)
       shape.tower.sensor_heading_deg[i] = static_cast<float>(headings[i] % 360);
   }
+  if (handshake.given >= 11 && handshake.sensor_out >= 0 && handshake.sensor_out <= most_cm)
+    shape.tower.sensor_out_m.fill(metres(handshake.sensor_out));
   return shape;
 }
 

@@ -37,6 +37,16 @@ struct CorrectedHeading {
   return {{angle_rad, prior.variance_rad2 * (compass_variance_rad2 / sum)}, false};
 }
 
+/// Whether the compass may mean the heading that is believed: no farther off than `sigmas` times what both
+/// can be wrong by together, `spread_rad` being that of a compass that nothing disturbs. What is farther off
+/// is steel. No positive `sigmas`: always.
+[[nodiscard]] constexpr bool agrees(Heading prior, float compass_rad, float spread_rad,
+                                    float sigmas) noexcept {
+  if (!(sigmas > 0.0F) || !is_finite(compass_rad)) return true;  // a reading that is no number is counted
+  const float off_rad = difference(compass_rad, prior.angle_rad);
+  return off_rad * off_rad <= sigmas * sigmas * (prior.variance_rad2 + spread_rad * spread_rad);
+}
+
 /// When a compass corrects.
 enum class CompassRule : unsigned char {
   standing_where_trusted,  ///< the AVR robot

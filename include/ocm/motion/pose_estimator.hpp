@@ -23,6 +23,8 @@ struct EstimatorModel {
   float compass_variance_rad2 = 0.0F;  ///< the thesis' COMPASS_FACTOR: high
   float compass_spread_rad = motion::compass_spread_rad;
   CompassRule compass_rule = CompassRule::standing_where_trusted;
+  float compass_gate = 0.0F;              ///< sigmas; 0: whatever it says, see agrees()
+  float compass_undisturbed_rad = 0.05F;  ///< spread of a compass with its offset, away from steel
 };
 
 /// The second robot: gyro alone, and the compass corrects all the time. [T2 §14.3]
@@ -78,7 +80,8 @@ struct Estimate {
   state.pose = moved(state.pose, {advance.distance_m, turn.angle_rad});
 
   state.compass = judge(state.compass, readings.movement, readings.compass_rad, model.compass_spread_rad);
-  if (may_correct(state.compass, readings.movement, model.compass_rule)) {
+  if (may_correct(state.compass, readings.movement, model.compass_rule) &&
+      agrees(heading, readings.compass_rad, model.compass_undisturbed_rad, model.compass_gate)) {
     const auto corrected = correct(heading, readings.compass_rad, model.compass_variance_rad2);
     heading = corrected.heading;
     state.compass_used = !corrected.rejected;

@@ -38,7 +38,7 @@ class Life(Case):
         times = [at for at, _ in robot.of("{H,")]
         self.assertLess(times[0] - connected, 0.3)
         self.assertAlmostEqual((times[3] - times[0]) / 3, 1, delta=0.1)
-        self.assertEqual({line for _, line in robot.said}, {"{H,20,20,1,3,0,90,180,270,5000,20225}"})
+        self.assertEqual({line for _, line in robot.said}, {"{H,20,20,1,3,0,90,180,270,5000,20225,3}"})
         lamps = self.world.lamps(connected + 0.3)
         self.assertEqual({levels for _, levels in lamps}, {GREEN, GREEN | YELLOW}, "yellow at each handshake")
 

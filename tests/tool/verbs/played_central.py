@@ -23,6 +23,7 @@ class Robot:
         self.loses = 0           # so many of its next set points
         self.silent = False      # says nothing
         self.mumbles = False     # says that it is idle, but never where it is
+        self.knows_who = True    # and answers {S,WHO}
         self.blocked_cm = None   # stops after so many cm
         self.busy_until = 0.0
         self.speed = 100.0       # cm/s
@@ -30,6 +31,7 @@ class Robot:
         self.heard = []
         self.spoke = 0.0
         self.idled = 0.0
+        self.asked = False
 
     def hear(self, line, now):
         self.heard.append(line)
@@ -44,6 +46,8 @@ class Robot:
             self.paused = True
         elif line == "{S,UNP}":
             self.paused = False
+        elif line == "{S,WHO}" and self.knows_who:
+            self.asked = True
         elif line.startswith("{U,"):
             angle, distance = map(int, line[3:-1].split(","))
             self.heading += math.radians(angle)
@@ -84,12 +88,14 @@ class Robot:
         """What it has to say now."""
         if self.silent:
             return ""
+        handshake = "{H,20,20,0,0,0,90,180,270,2000,0}\n"
         if not self.confirmed:
             if now - self.spoke < 0.3:
                 return ""
             self.spoke = now
-            return "{H,20,20,0,0,0,90,180,270,2000,0}\n"
-        text = ""
+            return handshake
+        text = handshake if self.asked else ""
+        self.asked = False
         if not self.paused and not self.mumbles and now - self.spoke >= 0.05:
             self.spoke = now
             text += self.update()

@@ -37,11 +37,17 @@ class Robots(Line):
             self.assertEqual(robot["pose"], {"x_cm": 0, "y_cm": 0, "heading_deg": 0})
             self.assertEqual(robot["body"]["width_cm"], 20)
         self.assertIn("{S,CON}", self.avr.heard)
-        # The link stays; the next program takes it over, though it hears no handshake.
+        # The link stays; the next program takes it over, and asks for the handshake.
         out, _ = self.tool("robots", "--listen", "1s")
         self.assertRegex(out, r"AVR +0 +C00000000000 +idle +0 0 0 +100 %")
         self.assertEqual(self.avr.heard.count("{S,CON}"), 1)
         self.assertNotIn("drop 0", self.central.commands)
+        out, _ = self.tool("robots", "--json", "--listen", "1s")
+        self.assertEqual([json.loads(line)["body"]["width_cm"] for line in out.splitlines()], [20, 20])
+        # A robot with a program that does not know the question.
+        self.avr.knows_who = False
+        out, _ = self.tool("robots", "--json", "--listen", "1s")
+        self.assertEqual([json.loads(line)["body"] is None for line in out.splitlines()], [True, False])
 
     def test_a_list_connects_nobody(self):
         out, _ = self.tool("robots", "--list")
@@ -57,7 +63,7 @@ class Robots(Line):
         os.close(port)
         out, _ = self.tool("robots", "--listen", "1s")
         self.assertRegex(out, r"AVR .* idle")
-        self.assertEqual([line for line in self.avr.heard if line != "{S,CON}"], [])
+        self.assertEqual([line for line in self.avr.heard if line not in ("{S,CON}", "{S,WHO}")], [])
 
     def test_nobody_is_there(self):
         self.central.robots = []

@@ -79,18 +79,18 @@ class Line(Case):
         self.assertEqual([line["type"] for line in heard], ["handshake", "handshake", "pong", "idle", "update"])
         self.assertEqual(heard[0]["values"], {
             "width": 20, "length": 30, "axle_offset": -1, "tower_offset": 4, "sensor1": 0, "sensor2": 90,
-            "sensor3": 180, "sensor4": 270, "deadline": 2000, "formats": 20225, "more": [7, 8]})
+            "sensor3": 180, "sensor4": 270, "deadline": 2000, "formats": 20225, "sensor_out": 7, "more": [8]})
         self.assertEqual(heard[1]["values"], {"width": 15})
         self.assertEqual(heard[4], update(1, 2, -3, 4, 5, 6, 7, 8, robot=None, name=None))
         self.assertEqual(err, "5 whole sentences, 0 damaged; link quality 100 %\n")
 
     def test_what_is_said_to_a_robot(self):
-        said = b"{S,CON}\n{U,90,-130}\n{S,PAU}\n{S,UNP}\n{S,BIN}\n{S,TXT}\n{}\n{ }\n[2]:B:{U,361,0}\n{S,IDL}\n"
+        said = b"{S,CON}\n{U,90,-130}\n{S,PAU}\n{S,UNP}\n{S,BIN}\n{S,TXT}\n{S,WHO}\n{}\n{ }\n[2]:B:{U,361,0}\n{S,IDL}\n"
         heard, err = self.line(said, "--to-robot")
         self.assertEqual([line["type"] for line in heard],
-                         ["confirm", "set_point", "pause", "unpause", "packed", "text", "ping", "ping"])
+                         ["confirm", "set_point", "pause", "unpause", "packed", "text", "who", "ping", "ping"])
         self.assertEqual(heard[1]["values"], {"angle": 90, "distance": -130})
-        self.assertIn("8 whole sentences, 0 damaged\n", err)
+        self.assertIn("9 whole sentences, 0 damaged\n", err)
         self.assertIn("[2] B: 0 whole sentences, 2 damaged (1 unknown, 1 out of range)\n", err)
         _, err = self.line(said[:-8], code=1)  # the other direction
         self.assertIn("--to-robot", err)

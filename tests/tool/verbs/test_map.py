@@ -168,6 +168,14 @@ class Map(Case):
         self.assertIn("no update came", err)
         self.assertFalse(os.path.exists(file))
 
+    def test_a_robot_that_was_connected_before_is_asked_for_its_size(self):
+        for knows, drawn_as_usual in ((True, False), (False, True)):
+            with self.subTest(knows=knows):
+                self.avr.knows_who = knows
+                self.run_tool("robots", "--scan", "200ms", "--listen", "200ms")
+                _, err = self.map(self.path("a.pgm"), duration="4s")
+                self.assertEqual("the usual one is taken" in err, drawn_as_usual, err)
+
     def test_two_robots_need_their_starts(self):
         self.central.robots.append(Robot("Arduino", pose=(0.8, 0.5, 0.0)))
         _, err = self.map(self.path("a.pgm"), code=2)

@@ -101,6 +101,24 @@ class Simulated(Case):
         self.assertRegex(error, r"packets to it 2; from it \d+\n")
         self.assertEqual(os.listdir(os.path.join(self.folder, "ocm")), ["line"])
 
+    def test_verbs_one_after_the_other_know_the_robots_bodies(self):
+        """In the README's order: the first verb hears the handshakes, and the links stay up."""
+        self.sim("--robots", "2", "--world", "labyrinth", "--speed", "10")
+        for attempt in range(2):
+            out, _ = self.run_tool("robots", "--json", "--listen", "500ms")
+            for line in out.splitlines():
+                body = json.loads(line)["body"]
+                self.assertIsNotNone(body, f"{attempt}: {line}")
+                self.assertEqual(body["sensor_out_cm"], 3)
+        before = json.loads(self.run_tool("robots", "--json")[0].splitlines()[0])["pose"]
+        self.run_tool("goto", "AVR", "0", "20")
+        file = os.path.join(self.folder, "labyrinth.pgm")
+        _, error = self.run_tool("map", file, "--world", "labyrinth", "--duration", "3s")
+        self.assertNotIn("usual", error)
+        # Its frame is still that of where it was switched on.
+        after = json.loads(self.run_tool("robots", "--json")[0].splitlines()[0])["pose"]
+        self.assertNotEqual(before, after)
+
     def test_lost_packets_are_told(self):
         sim = self.sim("--robots", "2", "--speed", "10", "--radio-loss", "0.2", "--seed", "3")
         line = self.central()

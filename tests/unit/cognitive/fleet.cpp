@@ -117,6 +117,38 @@ TEST_CASE("fleet: the answer to a handshake is repeated until an update or an id
   CHECK(sayings(fleet).empty());
 }
 
+TEST_CASE("fleet: a robot of another program's link says who it is when it is asked, and its place stays") {
+  Fleet fleet;
+  fleet.linked(0, "AVR", second);
+  fleet.set_origin(0, {1.0F, 2.0F, 0.0F});
+  fleet.feed("[0]:AVR:{U,50,0,0,0,0,0,0,0}\n", second);
+  CHECK_FALSE(fleet.robot(0).handshake);
+  REQUIRE(fleet.ask_who(0, second));
+  CHECK(sayings(fleet) == "0:{S,WHO}\n");
+  for (const auto late : {100ms, 600ms}) {  // it was asked twice
+    fleet.feed(handshake, second + late);
+    REQUIRE(fleet.robot(0).handshake);
+    CHECK(fleet.robot(0).handshake->width == 15);
+    CHECK(fleet.robot(0).pose().x_m == Approx(1.5F));
+    CHECK(sayings(fleet).empty());
+  }
+  // Unasked it has begun again: its frame begins where it was.
+  fleet.feed(handshake, second + 3s);
+  CHECK(sayings(fleet) == "0:{S,CON}\n");
+  CHECK_FALSE(fleet.robot(0).update);
+  CHECK(fleet.robot(0).origin.x_m == Approx(1.5F));
+  CHECK_FALSE(fleet.ask_who(Fleet::most_robots, second));
+}
+
+TEST_CASE("fleet: a robot that was not confirmed is confirmed, asked or not") {
+  Fleet fleet;
+  fleet.linked(0, "AVR", second);
+  REQUIRE(fleet.ask_who(0, second));
+  (void)sayings(fleet);
+  fleet.feed(handshake, second + 100ms);
+  CHECK(sayings(fleet) == "0:{S,CON}\n");
+}
+
 TEST_CASE("fleet: what was not heard is said again; a stop before all else, until the robot stands") {
   Fleet fleet;
   const auto hear = [&fleet](std::string_view words, Time now) {

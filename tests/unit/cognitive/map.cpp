@@ -99,6 +99,27 @@ TEST_CASE("map: a handshake that cannot be is not believed, a short one is compl
   CHECK(shape_of(old).tower.sensor_heading_deg[1] == 90.0F);
 }
 
+TEST_CASE("map: a distance begins at the sensor's face, which the handshake has in front of the tower's axis") {
+  const auto wall_at = [](const Handshake& handshake) {
+    MapOptions options;
+    options.resolution_m = 0.01F;
+    Map map{options};
+    map.take({{0.005F, 0.005F, 0.0F}, shape_of(handshake)}, {0, 0, 0, 0, 40, 0, 0, 0});
+    int x = 0;
+    while (x < 100 && map.log_odds({x, 0}) <= 0.0F) ++x;
+    return x;
+  };
+  Handshake handshake{.sensor2 = 90, .sensor3 = 180, .sensor4 = 270, .sensor_out = 3};
+  CHECK(wall_at(handshake) == 43);
+  handshake.given = 10;  // of a robot that does not say it
+  CHECK(wall_at(handshake) == 40);
+  handshake.given = 11;
+  for (const int wrong : {-3, 101, 32767}) {
+    handshake.sensor_out = static_cast<std::int16_t>(wrong);
+    CHECK(wall_at(handshake) == 40);
+  }
+}
+
 TEST_CASE("map: near things: under 10 cm nothing is freed, and little is said") {
   MapOptions options = cells_of_10_cm();
   options.beam.unsure_m = 0.0F;

@@ -30,6 +30,14 @@ static_assert(correct({1.0F, 0.01F}, 1.4F, 0.0F).rejected && correct({1.0F, 0.01
 static_assert(correct({1.0F, 0.01F}, 1.4F, nan).rejected);
 static_assert(correct({1.0F, 0.0F}, 1.4F, 0.03F).heading == Heading{1.0F, 0.0F}, "nothing to learn");
 
+// sqrt(0.0016 + 0.0009) = 0.05: two sigmas are 0.1.
+static_assert(agrees({1.0F, 0.0016F}, 1.09F, 0.03F, 2.0F) && agrees({1.0F, 0.0016F}, 0.91F, 0.03F, 2.0F));
+static_assert(!agrees({1.0F, 0.0016F}, 1.11F, 0.03F, 2.0F) && !agrees({1.0F, 0.0016F}, 0.89F, 0.03F, 2.0F));
+static_assert(agrees({1.0F, 0.0016F}, 1.11F, 0.03F, 3.0F));
+static_assert(agrees({pi, 0.0016F}, -pi + 0.05F, 0.03F, 2.0F), "around the back");
+static_assert(agrees({1.0F, 0.0016F}, 2.5F, 0.03F, 0.0F), "no gate");
+static_assert(agrees({1.0F, 0.0016F}, nan, 0.03F, 2.0F), "no number: correct() rejects and counts it");
+
 TEST_CASE("the variance stays positive and falls, the angle stays in its range", "[motion]") {
   Random random{4};
   for (int round = 0; round < 2000; ++round) {

@@ -64,6 +64,26 @@ TEST_CASE("a disturbed place turns nothing", "[motion]") {
   CHECK_FALSE(e.compass_used);
 }
 
+TEST_CASE("a compass that is farther off than two sigmas turns nothing, where the model has the gate",
+          "[motion]") {
+  EstimatorModel gated = model;
+  gated.compass_variance_rad2 = 0.01F;
+  gated.compass_rule = CompassRule::always;
+  gated.compass_undisturbed_rad = 0.05F;
+  for (const float gate : {0.0F, 2.0F}) {
+    gated.compass_gate = gate;
+    Estimate state = begun();
+    state.heading_variance_rad2 = 0.0F;
+    const float far = 0.6F;  // of sigma 0.05 and little
+    const Estimate after = estimate(state, {0, 0, 0.0F, far, Movement::standing}, dt, gated);
+    CHECK(after.compass_used == (gate == 0.0F));
+    CHECK(after.rejected.compass == 0);
+    const Estimate near_it = estimate(state, {0, 0, 0.0F, 0.05F, Movement::standing}, dt, gated);
+    CHECK(near_it.compass_used);
+    CHECK(near_it.pose.heading_rad > 0.0F);
+  }
+}
+
 TEST_CASE("the second robot turns by its gyro, and its compass speaks always", "[motion]") {
   const EstimatorModel second = gyro_and_compass(model);
   Estimate e = estimate({}, {}, dt, second);

@@ -90,7 +90,8 @@ inline constexpr link::Handshake usual_handshake{.width = 20,
                                                  .sensor2 = 90,
                                                  .sensor3 = 180,
                                                  .sensor4 = 270,
-                                                 .deadline = 5000};
+                                                 .deadline = 5000,
+                                                 .sensor_out = 3};
 
 inline constexpr motion::PidModel heading_pid{
     .kp = 2.0F, .ki = 0.2F, .kd = 0.05F, .derivative_filter_s = 0.05F, .derivative_of_reference = 1.0F};
@@ -113,6 +114,8 @@ inline constexpr RobotModel avr_robot = [] {
   model.estimator.heading.wheel_variance_rad2_per_s = motion::wheel_variance_rad2(drive);
   model.estimator.most_ticks = 66;               // of a second: a step is never as late as that
   model.estimator.compass_variance_rad2 = 0.5F;  // so that it takes seconds to correct [T2 §7.4; decided]
+  // Steel turns a compass by more than it and the heading can be wrong by. [decided; docs/cognitive.md]
+  model.estimator.compass_gate = 2.0F;
   model.controller.heading = detail::heading_pid;
   model.controller.distance = detail::distance_pid;
   model.controller.heading_tolerance_rad = motion::radians(2.0F);
@@ -145,6 +148,16 @@ inline constexpr RobotModel arduino_robot = [] {
 [[nodiscard]] constexpr RobotModel calibrated(RobotModel model, sensing::Field offset) noexcept {
   model.compass.calibrated = true;
   model.compass.offset = offset;
+  return model;
+}
+
+/// A robot of this type whose wheels were calibrated: driven straight on for a measured way, they said
+/// `said_per_m` metres for each one that it got on. Wheels slip, so they say too much. [T2 table 13.1] The
+/// wheelbase goes with the radius: what they say of a turn, for which the gyro's weight was found, stays.
+[[nodiscard]] constexpr RobotModel wheels_calibrated(RobotModel model, float said_per_m) noexcept {
+  motion::Drive& drive = model.estimator.drive;
+  drive.wheel_radius_m /= said_per_m;
+  drive.wheelbase_m /= said_per_m;
   return model;
 }
 

@@ -437,6 +437,9 @@ class Robot {
       case link::Kind::ping:
         if (apply(Event::ping).answer) say(link::Kind::pong, moment(), counters_.pongs);
         return;
+      case link::Kind::who:
+        if (apply(Event::who).answer) say_handshake(moment());
+        return;
       default:
         return;
     }
@@ -483,6 +486,9 @@ class Robot {
     shaken_links_ = at.links + 1;
     last_handshake_ = now;
     handshaken_ = true;
+    say_handshake(at);
+  }
+  void say_handshake(const Moment& at) noexcept {
     if (output_.say(model_->handshake, alive(at))) count(counters_.handshakes);
   }
   void come_home(base::Time now) noexcept {

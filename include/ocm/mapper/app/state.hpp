@@ -43,6 +43,7 @@ enum class Event : std::uint8_t {
   stop,           ///< {U,0,0}
   format,         ///< {S,BIN} or {S,TXT}
   ping,           ///< {}
+  who,            ///< {S,WHO}
   calibrate,      ///< by the robot's own program
   calibrated,     ///< the turn is done, or given up
   return_due,     ///< the link has been gone for so long that the robot is to come home
@@ -50,7 +51,7 @@ enum class Event : std::uint8_t {
   parts_failed,   ///< gyro or compass do not answer, and never did
   parts_answered  ///< they do now
 };
-inline constexpr std::size_t event_count = 15;
+inline constexpr std::size_t event_count = 16;
 
 /// What an event makes of a state.
 struct Step {
@@ -61,7 +62,7 @@ struct Step {
   bool drop = false;        ///< what waits for this link, or came from it, is gone
   bool drive = false;       ///< the set point is taken
   bool idle = false;        ///< say so
-  bool answer = false;      ///< the ping
+  bool answer = false;      ///< the ping, or who it is
   friend constexpr bool operator==(const Step&, const Step&) = default;
 };
 
@@ -110,6 +111,11 @@ namespace detail {
   if (!obeys(state) && state != State::calibrating) return refused(state);
   return {.state = obeys(state) ? state : State::confirmed, .motors_off = true, .idle = true};
 }
+/// Who is connected says so each second anyway.
+[[nodiscard]] constexpr Step on_who(State state) noexcept {
+  if (!has_link(state)) return refused(state);
+  return {.state = state, .answer = state != State::connected};
+}
 [[nodiscard]] constexpr Step on_calibrate(State state) noexcept {
   if (state != State::confirmed) return refused(state);
   return {.state = State::calibrating, .motors_off = true};
@@ -145,6 +151,8 @@ namespace detail {
       return detail::has_link(state) ? detail::to(state) : detail::refused(state);
     case Event::ping:
       return detail::has_link(state) ? Step{.state = state, .answer = true} : detail::refused(state);
+    case Event::who:
+      return detail::on_who(state);
     case Event::calibrate:
       return detail::on_calibrate(state);
     case Event::calibrated:

@@ -1,5 +1,5 @@
-/// Text or packed updates: how robot and server agree. A robot that can pack says so in the last field of its
-/// handshake; a server that chooses it says `{S,BIN}` before it confirms. Older robots never offer, older
+/// Text or packed updates: how robot and server agree. A robot that can pack says so in the field `formats` of
+/// its handshake; a server that chooses it says `{S,BIN}` before it confirms. Older robots never offer, older
 /// servers never ask, and both stay with text. Every link begins with text. A server reads both forms at any
 /// time, so that no lost sentence parts the two.
 ///
@@ -19,7 +19,8 @@
 namespace ocm::mapper::link {
 
 [[nodiscard]] constexpr bool offers_packed(const Handshake& handshake) noexcept {
-  return handshake.given >= Handshake::fields.size() && handshake.formats == Handshake::packed_offer;
+  constexpr std::uint8_t with_formats = 10;  // integers; older robots say no more
+  return handshake.given >= with_formats && handshake.formats == Handshake::packed_offer;
 }
 
 /// What a server answers to a handshake: `{S,CON}`, and before it `{S,BIN}` where that is chosen and offered.

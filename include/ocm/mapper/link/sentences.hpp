@@ -31,6 +31,7 @@ enum class Kind : std::uint8_t {
   unpause,    ///< `{S,UNP}` go on as before the pause
   packed,     ///< `{S,BIN}` send updates packed; only to a robot whose handshake offers it
   text,       ///< `{S,TXT}` send updates as text again
+  who,        ///< `{S,WHO}` say the handshake again; nothing else changes
   ping,       ///< `{}` are you there; printed with a blank between the braces, which is read as well
   handshake,  ///< `{H,...}` what robot this is, each second from the connection until confirmed
   update,     ///< `{U,x,y,heading,servo,s1,s2,s3,s4}` pose and what the tower sees
@@ -46,6 +47,7 @@ enum class Kind : std::uint8_t {
   if (kind == Kind::unpause) return "unpause";
   if (kind == Kind::packed) return "packed";
   if (kind == Kind::text) return "text";
+  if (kind == Kind::who) return "who";
   if (kind == Kind::ping) return "ping";
   if (kind == Kind::handshake) return "handshake";
   if (kind == Kind::update) return "update";
@@ -74,7 +76,7 @@ struct SetPoint {
 
 /// `{H,...}` what robot this is, each second from the connection until confirmed. [Thesis 2, table 4.4, 17.1
 /// and 17.4: robot data, with the offsets of axle and tower; it fixes no list; fields decided: order, units
-/// and the last field]
+/// and the last two fields]
 struct Handshake {
   std::int16_t width = 0;         ///< cm, of the robot
   std::int16_t length = 0;        ///< cm, of the robot
@@ -86,16 +88,17 @@ struct Handshake {
   std::int16_t sensor4 = 0;       ///< deg, where it looks when the tower is at 0
   std::int16_t deadline = 0;      ///< ms, without a word from the robot after which it counts as lost
   std::int16_t formats = 0;       ///< packed_offer: can send packed updates; others: text only
+  std::int16_t sensor_out = 0;    ///< cm, from the tower's axis to its sensors' faces
   /// integers in the sentence, 1 to 16: fields that were not given are 0, integers beyond the last field are
   /// let go
-  std::uint8_t given = 10;
+  std::uint8_t given = 11;
 
   static constexpr Kind kind = Kind::handshake;
   static constexpr Direction direction = Direction::from_robot;
   static constexpr char letter = 'H';
   static constexpr std::size_t fewest_integers = 1, most_integers = 16;
   static constexpr std::int16_t packed_offer = 20225;  ///< of formats
-  static constexpr std::array<Field<Handshake>, 10> fields{{
+  static constexpr std::array<Field<Handshake>, 11> fields{{
       {&Handshake::width, "width", "cm"},
       {&Handshake::length, "length", "cm"},
       {&Handshake::axle_offset, "axle_offset", "cm"},
@@ -106,6 +109,7 @@ struct Handshake {
       {&Handshake::sensor4, "sensor4", "deg"},
       {&Handshake::deadline, "deadline", "ms"},
       {&Handshake::formats, "formats", ""},
+      {&Handshake::sensor_out, "sensor_out", "cm"},
   }};
   friend constexpr bool operator==(const Handshake&, const Handshake&) = default;
 };
@@ -154,12 +158,13 @@ struct Word {
 };
 inline constexpr char word_letter = 'S';
 inline constexpr std::size_t word_length = 3;
-inline constexpr std::array<Word, 6> words{{
+inline constexpr std::array<Word, 7> words{{
     {Kind::confirm, Direction::to_robot, "CON"},
     {Kind::pause, Direction::to_robot, "PAU"},
     {Kind::unpause, Direction::to_robot, "UNP"},
     {Kind::packed, Direction::to_robot, "BIN"},
     {Kind::text, Direction::to_robot, "TXT"},
+    {Kind::who, Direction::to_robot, "WHO"},
     {Kind::idle, Direction::from_robot, "IDL"},
 }};
 

@@ -53,6 +53,7 @@ TEST_CASE("mapper locator: the compass turns with the robot, to the same side", 
   RobotModel model = calibrated(mapper::app::avr_robot, {});
   model.estimator.compass_rule = motion::CompassRule::always;
   model.estimator.compass_variance_rad2 = 1e-9F;
+  model.estimator.compass_gate = 0.0F;
   Locator locator{model};
   rest(locator, 0.0F, 2.0F);
   locator.begin_at_zero();
@@ -67,6 +68,7 @@ TEST_CASE("mapper locator: a compass that was never calibrated corrects nothing,
   RobotModel model = mapper::app::avr_robot;
   model.estimator.compass_rule = motion::CompassRule::always;
   model.estimator.compass_variance_rad2 = 1e-9F;
+  model.estimator.compass_gate = 0.0F;
   Locator locator{model};
   rest(locator, 0.0F, 0.0F);
   locator.begin_at_zero();
@@ -88,6 +90,7 @@ TEST_CASE("mapper locator: confirmed while it rolls out, the compass keeps its w
   RobotModel model = calibrated(mapper::app::avr_robot, {});
   model.estimator.compass_rule = motion::CompassRule::always;
   model.estimator.compass_variance_rad2 = 1e-9F;
+  model.estimator.compass_gate = 0.0F;
   Locator locator{model};
   rest(locator, 0.0F, 0.0F);
   locator.begin_at_zero();

@@ -53,4 +53,13 @@ TEST_CASE("mapper models: a calibration belongs to one robot, not to its type", 
   CHECK(mine.handshake == avr_robot.handshake);
 }
 
+TEST_CASE("mapper models: wheels that say too much of a way say the same of a turn", "[mapper_models]") {
+  const auto& before = avr_robot.estimator.drive;
+  const auto mine = wheels_calibrated(avr_robot, 1.025F);
+  const auto& after = mine.estimator.drive;
+  CHECK(after.valid());
+  CHECK(near(after.m_per_tick() * 1.025F, before.m_per_tick()));
+  CHECK(near(after.m_per_tick() / after.wheelbase_m, before.m_per_tick() / before.wheelbase_m));
+}
+
 }  // namespace mapper_app_models_test

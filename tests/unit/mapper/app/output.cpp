@@ -38,7 +38,7 @@ TEST_CASE("mapper output: sentences, as the thesis has them", "[mapper_output]")
   CHECK(setup.output.say(mapper::link::Update{1, -2, 90, 45, 10, 0, 80, 33}, alive));
   CHECK(setup.output.say(mapper::link::Handshake{.width = 20, .length = 21, .sensor2 = 90, .deadline = 5000},
                          alive));
-  CHECK(setup.parts.sent == "{S,IDL}\n\t!\n{U,1,-2,90,45,10,0,80,33}\n{H,20,21,0,0,0,90,0,0,5000,20225}\n");
+  CHECK(setup.parts.sent == "{S,IDL}\n\t!\n{U,1,-2,90,45,10,0,80,33}\n{H,20,21,0,0,0,90,0,0,5000,20225,0}\n");
   CHECK(setup.output.counters().unsent == 0);
   CHECK(Mutex::claims == 5);
   CHECK(Mutex::depth == 0);
@@ -49,7 +49,7 @@ TEST_CASE("mapper output: a robot that cannot pack offers nothing, and stays wit
   setup.output.hear(mapper::link::Kind::packed);
   (void)setup.output.say(mapper::link::Handshake{.deadline = 5000}, alive);
   (void)setup.output.say(mapper::link::Update{}, alive);
-  CHECK(setup.parts.sent == "{H,0,0,0,0,0,0,0,0,5000,0}\n{U,0,0,0,0,0,0,0,0}\n");
+  CHECK(setup.parts.sent == "{H,0,0,0,0,0,0,0,0,5000,0,0}\n{U,0,0,0,0,0,0,0,0}\n");
 }
 
 TEST_CASE("mapper output: packed until the operator or the next link says otherwise", "[mapper_output]") {

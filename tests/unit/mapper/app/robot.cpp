@@ -19,7 +19,7 @@ namespace mapper_app_robot_test {
 using namespace app_testing;
 using ocm::test::near;
 
-const std::string handshake = "{H,20,20,1,3,0,90,180,270,5000,20225}\n";
+const std::string handshake = "{H,20,20,1,3,0,90,180,270,5000,20225,3}\n";
 constexpr mapper::app::Lights green{.green = true};
 constexpr mapper::app::Lights yellow{.yellow = true};
 constexpr mapper::app::Lights both{.green = true, .yellow = true};
@@ -316,6 +316,25 @@ TEST_CASE("mapper: a ping is answered, with a link, in any state", "[mapper]") {
   bench.say("{S,CON}\n{S,PAU}\n{ }\n");
   bench.run_for(25ms);
   CHECK(bench.heard("\t!\n") == 1);
+}
+
+TEST_CASE("mapper: asked who it is it says its handshake again, and goes on as before", "[mapper]") {
+  Bench bench;
+  bench.confirm();
+  bench.say("{U,0,100}\n");
+  bench.run_for(2s);
+  const motion::Pose pose = bench.robot.pose();
+  bench.heard();
+  bench.say("{S,WHO}\n");
+  bench.run_for(25ms);
+  CHECK(bench.heard("{H,20,20,1,3,0,90,180,270,5000,20225,3}\n") == 1);
+  CHECK(bench.is(State::confirmed));
+  CHECK(bench.robot.busy());
+  CHECK(bench.robot.pose().x_m >= pose.x_m);
+  bench.say("{S,PAU}\n{S,WHO}\n");
+  bench.run_for(25ms);
+  CHECK(bench.heard("{H,") == 2);
+  CHECK(bench.is(State::paused));
 }
 
 TEST_CASE("mapper: packed updates, where the operator asks for them", "[mapper]") {

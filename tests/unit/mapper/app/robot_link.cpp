@@ -191,7 +191,7 @@ TEST_CASE("mapper: nothing that was meant for the dead link is said to the next"
     bench.run_for(1500ms);
     CAPTURE(ms);
     const std::string said = bench.heard();
-    CHECK(said == "{H,20,20,1,3,0,90,180,270,5000,20225}\n{H,20,20,1,3,0,90,180,270,5000,20225}\n");
+    CHECK(said == "{H,20,20,1,3,0,90,180,270,5000,20225,3}\n{H,20,20,1,3,0,90,180,270,5000,20225,3}\n");
     bench.say("{S,CON}\n");
     bench.run_for(1s);
     CHECK(bench.heard("{U,0,0,0,") > 3);  // from 0, and as text

@@ -15,6 +15,7 @@ using ocm::base::Error;
 
 constexpr Handshake old_robot{.width = 15, .length = 20, .given = 9};
 constexpr Handshake new_robot{.width = 15, .length = 20, .formats = Handshake::packed_offer, .given = 10};
+static_assert(offers_packed(Handshake{.formats = Handshake::packed_offer, .sensor_out = 3}));
 
 static_assert(offers_packed(new_robot));
 static_assert(!offers_packed(old_robot));

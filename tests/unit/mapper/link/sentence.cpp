@@ -39,7 +39,7 @@ static_assert(*write(SetPoint{0, 0}) == "{U,0,0}\n");
 // [Thesis 2, listing 15.1, first and last]
 static_assert(*write(ocm::test::first_of_listing) == "{U,-177,-61,-68,49,0,0,0,0}\n");
 static_assert(*write(ocm::test::last_of_listing) == "{U,-177,-60,142,29,0,16,0,0}\n");
-static_assert(*write(Handshake{15, 20, 2, 3, 0, 90, 180, 270, 1000, 0, 10}) ==
+static_assert(*write(Handshake{15, 20, 2, 3, 0, 90, 180, 270, 1000, 0, 0, 10}) ==
               "{H,15,20,2,3,0,90,180,270,1000,0}\n");
 static_assert(*write(Handshake{.width = 15, .given = 1}) == "{H,15}\n");
 
@@ -51,10 +51,11 @@ static_assert(write(Update{.servo = 91}).error == Error::out_of_range);
 static_assert(write(Update{.servo = -1}).error == Error::out_of_range);
 static_assert(write(Update{.s4 = 256}).error == Error::out_of_range);
 static_assert(write(Handshake{.given = 0}).error == Error::bad_length);
-static_assert(write(Handshake{.given = 11}).error == Error::bad_length);
+static_assert(write(Handshake{.given = 12}).error == Error::bad_length);
 
 constexpr std::int16_t least = INT16_MIN;
-constexpr Handshake longest{least, least, least, least, least, least, least, least, least, least, 10};
+constexpr Handshake longest{least, least, least, least, least, least,
+                            least, least, least, least, least, 11};
 static_assert(write(longest)->view().size() == max_line && !write(longest)->overflowed());
 // What is said to a robot fits one packet, so that it comes whole or not at all. [Thesis 2, 15.3]
 static_assert(write(SetPoint{-360, least})->view().size() <= 20);
@@ -143,7 +144,7 @@ TEST_CASE("each sentence of sentences.json is written and read as it says, and t
     CHECK(ocm::test::read(other, text + "\n").empty());
   }
   const std::set<std::string> known{"confirm", "set_point", "pause",  "unpause", "packed", "text",
-                                    "ping",    "handshake", "update", "idle",    "pong"};
+                                    "who",     "ping",      "handshake", "update", "idle",   "pong"};
   CHECK(written == known);
   CHECK(known.size() == static_cast<std::size_t>(Kind::pong));  // every kind but none
 }

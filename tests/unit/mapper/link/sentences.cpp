@@ -14,24 +14,24 @@ static_assert(Update::letter == 'U' && Update::direction == Direction::from_robo
 static_assert(Handshake::letter == 'H' && Handshake::direction == Direction::from_robot);
 static_assert(word_letter == 'S' && word_length == 3);
 static_assert(SetPoint::kind == Kind::set_point && Update::kind == Kind::update);
-static_assert(static_cast<int>(Kind::none) == 0 && static_cast<int>(Kind::pong) == 11);
+static_assert(static_cast<int>(Kind::none) == 0 && static_cast<int>(Kind::pong) == 12);
 
 static_assert(SetPoint::fields.size() == 2 && SetPoint::fields[0].min == -360 &&
               SetPoint::fields[0].max == 360);
 static_assert(SetPoint::fields[1].min == -32768 && SetPoint::fields[1].unit == "cm");
 static_assert(Update::fields.size() == 8 && Update::fields[3].name == "servo" && Update::fields[3].max == 90);
 static_assert(Update::fields[4].member == &Update::s1 && Update::fields[7].max == 255);
-static_assert(Handshake::fields.size() == 10 && Handshake{}.given == 10);
+static_assert(Handshake::fields.size() == 11 && Handshake{}.given == 11);
 static_assert(Handshake::fewest_integers == 1 && Handshake::most_integers == max_integers);
 
 // [Thesis 2, table 4.1 and 16.1]
 static_assert(max_packet == 20 && max_integers == 16);
 
 TEST_CASE("words and fixed texts, each with its direction") {
-  CHECK(words.size() == 6);
+  CHECK(words.size() == 7);
   CHECK(words[0].kind == Kind::confirm);
   CHECK(words[0].text == "CON");
-  CHECK(words[5].direction == Direction::from_robot);
+  CHECK(words[6].direction == Direction::from_robot);
   CHECK(fixed_text(Kind::ping) == "{}");
   CHECK(fixed_text(Kind::pong) == "\t!");
   CHECK(fixed_text(Kind::idle).empty());
