@@ -29,22 +29,6 @@ constexpr base::Duration first_whole_word = 40s;
 /// How long a request may take at the central, with all its time-outs.
 constexpr base::Duration longest_wish = 60s;
 
-transport::SerialPort open_port(std::string_view verb, const LineOptions& options) {
-  const bool usual = options.path.empty();
-  const std::string path = usual ? transport::central_line() : options.path;
-  // The link that a killed simulator has left may lead to a terminal of another user.
-  if (usual && !transport::is_served(path))
-    fail(
-        {fmt::format(
-             "{}: there is no central at '{}'{}", verb, path,
-             transport::VirtualBus::running() ? "; the simulator that runs is an AMiRo, which has none" : ""),
-         "start one (amiroctl sim --robots 2, or amiroctl central --pty), or name a dongle: --central "
-         "/dev/ttyACM0"});
-  auto port = transport::SerialPort::open(path, options.baud);
-  if (!port) fail({fmt::format("{}: {}", verb, port.error.what), port.error.remedy});
-  return std::move(*port);
-}
-
 /// "AVR (index 0, address C00000000000), ...": those of this name, or all.
 std::string listed(const std::vector<Peer>& peers, std::string_view name = {}) {
   std::string text;
@@ -61,13 +45,36 @@ void add_line_options(Verb verb, LineOptions& options) {
   verb.add_option("--central", options.path,
                   "the central's serial line; default: that of `sim --robots` or `central --pty`")
       .type_name("PATH");
-  verb.add_option("--baud", options.baud, "of the central's line").type_name("N").show_default();
+  add_dongle_options(verb, options.dongle);
   add_duration(verb, "--scan", options.scan, "how long to look for robots that are not listed");
 }
 
+Dongle CentralLine::open_line(std::string_view verb, const LineOptions& options) {
+  catch_interrupts();
+  const bool usual = options.path.empty();
+  if (!usual) return open_dongle(verb, options.path, options.dongle);
+  // The link that a killed simulator has left may lead to a terminal of another user.
+  const std::string path = transport::central_line();
+  if (!transport::is_served(path))
+    fail(
+        {fmt::format(
+             "{}: there is no central at '{}'{}", verb, path,
+             transport::VirtualBus::running() ? "; the simulator that runs is an AMiRo, which has none" : ""),
+         "start one (amiroctl sim --robots 2, or amiroctl central --pty), or name a dongle: --central "
+         "/dev/ttyACM0"});
+  DongleOptions ours = options.dongle;
+  ours.kind = "ours";
+  return open_dongle(verb, path, ours);
+}
+
 CentralLine::CentralLine(std::string_view verb, const LineOptions& options,
-                         const cognitive::FleetOptions& fleet)
-    : verb_(verb), scan_(options.scan), port_(open_port(verb, options)), server_(fleet) {
+                         const cognitive::FleetOptions& fleet, Dongle dongle)
+    : verb_(verb),
+      scan_(options.scan),
+      port_(std::move(dongle.port)),
+      dongle_(dongle.dialect),
+      server_(fleet) {
+  dongle_.from_dongle(dongle.heard, now());
   catch_interrupts();
   catch_hangups();
 }
@@ -85,7 +92,9 @@ CentralLine::~CentralLine() {
 void CentralLine::flush(base::Duration limit) {
   const base::Time end = now() + limit;
   server_.expire(now());
-  const auto rest = [this] { return !server_.client().idle() || !unsent_.empty() || port_.unsent() != 0; };
+  const auto rest = [this] {
+    return !server_.client().idle() || !dongle_.idle() || !unsent_.empty() || port_.unsent() != 0;
+  };
   while (port_ && now() < end && rest()) exchange();
 }
 
@@ -123,7 +132,8 @@ std::string CentralLine::name(unsigned index) const {
 }
 
 void CentralLine::write() {
-  unsent_ += server_.take();
+  dongle_.from_client(server_.take(), now());
+  unsent_ += dongle_.take_for_dongle();
   if (unsent_.empty()) return;
   const auto taken = port_.write(unsent_);
   if (!taken) {
@@ -149,10 +159,12 @@ void CentralLine::exchange() {
       fail({fmt::format("{}: {}", verb_, failure.what), failure.remedy});
     }
     if (*size == 0) break;
-    server_.feed({room.data(), *size}, now(), [this](std::size_t robot, mapper::link::Kind kind) {
-      if (heard_) heard_(robot, kind);
-    });
+    dongle_.from_dongle({room.data(), *size}, now());
   }
+  dongle_.expire(now());
+  server_.feed(dongle_.take_for_client(), now(), [this](std::size_t robot, mapper::link::Kind kind) {
+    if (heard_) heard_(robot, kind);
+  });
   take_events();
   write();
 }

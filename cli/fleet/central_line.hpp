@@ -11,26 +11,29 @@
 
 #include "ocm/base/time.hpp"
 #include "ocm/cognitive/server.hpp"
+#include "ocm/mapper/server/dialect.hpp"
 #include "ocm/transport/serial_port.hpp"
 
+#include "cli/fleet/dongle.hpp"
 #include "cli/shared/arguments.hpp"
 
 namespace ocm::cli::fleet {
 
 struct LineOptions {
   std::string path;  ///< empty: that of a simulation or of `amiroctl central --pty`
-  std::uint32_t baud = 115'200;
+  DongleOptions dongle{};
   base::Duration scan = std::chrono::seconds{3};
 };
 
-/// --central, --baud and --scan.
+/// --central, --baud, --flow, --dongle and --scan.
 void add_line_options(Verb verb, LineOptions& options);
 
 /// Ends the command with words that say what is wrong and what to do, wherever it cannot go on.
 class CentralLine {
  public:
   /// `verb` is for messages.
-  CentralLine(std::string_view verb, const LineOptions& options, const cognitive::FleetOptions& fleet = {});
+  CentralLine(std::string_view verb, const LineOptions& options, const cognitive::FleetOptions& fleet = {})
+      : CentralLine(verb, options, fleet, open_line(verb, options)) {}
   CentralLine(const CentralLine&) = delete;
   CentralLine& operator=(const CentralLine&) = delete;
   /// Leaves the central in command mode.
@@ -72,6 +75,9 @@ class CentralLine {
   [[nodiscard]] const std::string& path() const noexcept { return port_.path(); }
 
  private:
+  CentralLine(std::string_view verb, const LineOptions& options, const cognitive::FleetOptions& fleet,
+              Dongle dongle);
+  [[nodiscard]] static Dongle open_line(std::string_view verb, const LineOptions& options);
   /// What the central has not taken yet goes first.
   void exchange();
   void write();
@@ -82,6 +88,7 @@ class CentralLine {
   std::string verb_;
   base::Duration scan_{};
   transport::SerialPort port_;
+  mapper::server::Translator dongle_;
   cognitive::Server server_;
   std::function<void(std::size_t, mapper::link::Kind)> heard_;
   std::string unsent_;

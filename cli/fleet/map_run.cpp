@@ -37,9 +37,10 @@ void place_robots(CentralLine& line, const std::vector<unsigned>& robots, const 
             fmt::format("say where each was switched on: --start {}=0.5,0.5,90, or --world FILE", name)},
            exit_usage);
     if (!line.fleet().robot(index).handshake)
-      remark(
-          fmt::format("map: {} was connected before, and does not say its size when asked: the usual one is taken; "
-                      "switch the robot off and on before `map`", name));
+      remark(fmt::format(
+          "map: {} was connected before, and does not say its size when asked: the usual one is taken; "
+          "switch the robot off and on before `map`",
+          name));
   }
 }
 

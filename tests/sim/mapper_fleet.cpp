@@ -150,19 +150,24 @@ TEST_CASE("fleet: two robots of different make, at once, each to its own place")
 TEST_CASE("fleet: a robot that drives out of range stops there; back in range, nothing old is heard") {
   WorldModel model = room({{"AVR", RobotKind::avr, {}}}, 20);
   model.central.range_m = 1;
-  Server server{model};
-  server.begin();
-  server.type("{U,0,1000}\n");
-  server.run(60s);
-  CHECK(server.log.find("lost 0\n") != std::string::npos);
-  const double stopped = server.fleet.robot(0).pose().x_m;
-  CHECK(stopped > 1);     // it was lost beyond the range
-  CHECK(stopped < 1.75);  // and stopped within the time-out: 4 s at most 0.1 m/s, and the way to roll out
-  server.run(10s);
-  CHECK(server.fleet.robot(0).pose().x_m - stopped < 0.001);
-  CHECK(server.fleet.robot(0).application().state() == mapper::app::State::advertising);
-  CHECK(server.fleet.dongle(0).outbox().dropped + server.fleet.dongle(0).counters().dropped > 0);
-  CHECK(server.ears.ear(0).quality().per_mille() < 1000);
+  std::uint64_t dropped = 0;  // whether a packet waits when the link dies is chance
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    CAPTURE(seed);
+    Server server{model, seed};
+    server.begin();
+    server.type("{U,0,1000}\n");
+    server.run(60s);
+    CHECK(server.log.find("lost 0\n") != std::string::npos);
+    const double stopped = server.fleet.robot(0).pose().x_m;
+    CHECK(stopped > 1);     // it was lost beyond the range
+    CHECK(stopped < 1.75);  // and stopped within the time-out: 4 s at most 0.1 m/s, and the way to roll out
+    server.run(10s);
+    CHECK(server.fleet.robot(0).pose().x_m - stopped < 0.001);
+    CHECK(server.fleet.robot(0).application().state() == mapper::app::State::advertising);
+    dropped += server.fleet.dongle(0).outbox().dropped + server.fleet.dongle(0).counters().dropped;
+    CHECK(server.ears.ear(0).quality().per_mille() < 1000);
+  }
+  CHECK(dropped > 0);
 }
 
 TEST_CASE("fleet: equal seeds give equal talks, other seeds others") {

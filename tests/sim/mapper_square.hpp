@@ -262,6 +262,7 @@ inline constexpr std::size_t variant_count = 5;
   wheels.estimator.heading.gyro_weight = 0;
   mapper::app::RobotModel always = model;
   always.estimator.compass_rule = motion::CompassRule::always;
+  always.estimator.compass_gate = 0;
   mapper::app::RobotModel second = model;
   second.estimator = motion::gyro_and_compass(second.estimator);
   return {{{"encoders", wheels},

@@ -68,6 +68,7 @@ class Mapping {
       const Robot& robot = fleet_->robot(scout.robot);
       // In the middle of a piece, too: stopped first, for it is sent from where it stands.
       if (called && !robot.idle) (void)fleet_->stop(scout.robot, now);
+      if (track.path.empty()) continue;  // the map does not show yet what it sees
       if (!robot.idle || !robot.located || (!called && now < track.ask_at)) continue;
       track.order = explorer_.next(scout.robot, scouts, map_, now);
       obey(scout, track, now);

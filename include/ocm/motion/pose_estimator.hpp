@@ -31,6 +31,7 @@ struct EstimatorModel {
 [[nodiscard]] constexpr EstimatorModel gyro_and_compass(EstimatorModel model) noexcept {
   model.heading.source = HeadingSource::gyro;
   model.compass_rule = CompassRule::always;
+  model.compass_gate = 0.0F;
   return model;
 }
 

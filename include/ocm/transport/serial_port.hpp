@@ -1,5 +1,6 @@
 /// A serial device (/dev/ttyACM0, a pty) taken for this program alone and set to bytes as they are: no echo,
-/// no line editing, no flow control. When its owner goes it gets its settings back. Host only.
+/// no line editing, no flow control but RTS and CTS where that is asked for. When its owner goes it gets its
+/// settings back. Host only.
 ///
 ///     auto port = SerialPort::open("/dev/ttyUSB0", 38'400);
 ///     if (!port) { /* port.error.what, port.error.remedy */ }
@@ -131,6 +132,9 @@ inline constexpr std::array<std::pair<std::uint32_t, speed_t>, 18> serial_speeds
 
 }  // namespace detail
 
+/// How each side holds the other back.
+enum class SerialFlow : std::uint8_t { none, rts_cts };
+
 class SerialPort {
  public:
   /// No port.
@@ -156,7 +160,8 @@ class SerialPort {
 
   /// What was in the line before is thrown away. The failure says what is wrong and what to do: no such
   /// device, none at all, not allowed, in use, taken by the kernel, a speed that it does not have.
-  [[nodiscard]] static host::Outcome<SerialPort> open(const std::string& path, std::uint32_t baud = 115'200) {
+  [[nodiscard]] static host::Outcome<SerialPort> open(const std::string& path, std::uint32_t baud = 115'200,
+                                                      SerialFlow flow = SerialFlow::none) {
     SerialPort port;
     port.path_ = path;
     // Looked at first: opening a FIFO or a tape has effects of its own.
@@ -165,7 +170,7 @@ class SerialPort {
     if (!S_ISCHR(status.st_mode)) return detail::no_serial_device(path);
     port.line_ = host::Descriptor{::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)};
     if (!port.line_) return detail::open_failure(path, errno);
-    if (auto problem = port.take(baud)) return std::move(*problem);
+    if (auto problem = port.take(baud, flow)) return std::move(*problem);
     return port;
   }
 
@@ -219,7 +224,7 @@ class SerialPort {
   }
 
  private:
-  [[nodiscard]] std::optional<host::Failure> take(std::uint32_t baud) {
+  [[nodiscard]] std::optional<host::Failure> take(std::uint32_t baud, SerialFlow flow) {
     termios settings{};
     if (::tcgetattr(line_.get(), &settings) < 0) return detail::no_serial_device(path_);
     int discipline = 0;
@@ -235,6 +240,7 @@ class SerialPort {
     ::cfmakeraw(&settings);
     settings.c_cflag |= CLOCAL | CREAD;
     settings.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS | CSTOPB);
+    if (flow == SerialFlow::rts_cts) settings.c_cflag |= CRTSCTS;
     settings.c_iflag &= ~static_cast<tcflag_t>(IXOFF);
     settings.c_cc[VMIN] = 1;
     settings.c_cc[VTIME] = 0;

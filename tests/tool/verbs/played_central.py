@@ -167,8 +167,12 @@ class Central:
             for index, robot in enumerate(self.listed):
                 text = robot.say(now) if robot.linked else ""
                 while text:
-                    self.write(f"[{index}]:{robot.name}:{text[:20]}")
+                    self.write(self.serve_text(index, robot, text[:20]))
                     text = text[20:]
+
+    def serve_text(self, index, robot, text):
+        """A packet of a robot as it goes to the server."""
+        return f"[{index}]:{robot.name}:{text}"
 
     def feed(self, char):
         if self.target is not None:

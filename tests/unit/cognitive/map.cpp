@@ -99,7 +99,8 @@ TEST_CASE("map: a handshake that cannot be is not believed, a short one is compl
   CHECK(shape_of(old).tower.sensor_heading_deg[1] == 90.0F);
 }
 
-TEST_CASE("map: a distance begins at the sensor's face, which the handshake has in front of the tower's axis") {
+TEST_CASE(
+    "map: a distance begins at the sensor's face, which the handshake has in front of the tower's axis") {
   const auto wall_at = [](const Handshake& handshake) {
     MapOptions options;
     options.resolution_m = 0.01F;

@@ -21,10 +21,10 @@ using E = Event;
 
 constexpr std::array states{S::advertising, S::connected, S::confirmed,           S::paused,
                             S::calibrating, S::returning, S::initialisation_fault};
-constexpr std::array events{E::link_up,    E::link_down,  E::confirm,  E::pause,        E::unpause,
-                            E::set_point,  E::stop,       E::format,   E::ping,         E::who,
-                            E::calibrate,  E::calibrated, E::return_due, E::returned, E::parts_failed,
-                            E::parts_answered};
+constexpr std::array events{E::link_up,    E::link_down, E::confirm,      E::pause,
+                            E::unpause,    E::set_point, E::stop,         E::format,
+                            E::ping,       E::who,       E::calibrate,    E::calibrated,
+                            E::return_due, E::returned,  E::parts_failed, E::parts_answered};
 static_assert(states.size() == mapper::app::state_count && events.size() == mapper::app::event_count);
 
 /// What is done, a letter each: refused, motors off, zero the pose, drop the link's queues, drive, idle is

@@ -54,8 +54,7 @@ static_assert(write(Handshake{.given = 0}).error == Error::bad_length);
 static_assert(write(Handshake{.given = 12}).error == Error::bad_length);
 
 constexpr std::int16_t least = INT16_MIN;
-constexpr Handshake longest{least, least, least, least, least, least,
-                            least, least, least, least, least, 11};
+constexpr Handshake longest{least, least, least, least, least, least, least, least, least, least, least, 11};
 static_assert(write(longest)->view().size() == max_line && !write(longest)->overflowed());
 // What is said to a robot fits one packet, so that it comes whole or not at all. [Thesis 2, 15.3]
 static_assert(write(SetPoint{-360, least})->view().size() <= 20);
@@ -143,8 +142,8 @@ TEST_CASE("each sentence of sentences.json is written and read as it says, and t
     Reader other{to_robot ? Direction::from_robot : Direction::to_robot};
     CHECK(ocm::test::read(other, text + "\n").empty());
   }
-  const std::set<std::string> known{"confirm", "set_point", "pause",  "unpause", "packed", "text",
-                                    "who",     "ping",      "handshake", "update", "idle",   "pong"};
+  const std::set<std::string> known{"confirm", "set_point", "pause",     "unpause", "packed", "text",
+                                    "who",     "ping",      "handshake", "update",  "idle",   "pong"};
   CHECK(written == known);
   CHECK(known.size() == static_cast<std::size_t>(Kind::pong));  // every kind but none
 }

@@ -1,0 +1,108 @@
+"""amiroctl at dongles that are not our central: each kind is found out, spoken to, and left as the next program needs it."""
+
+import json
+import os
+import time
+
+
+from harness import Case, main, waiting
+from played_central import Central, Robot
+from played_dongles import BaseFirmware, Silent, Thesis
+
+
+class Dongles(Case):
+    def play(self, kind, *names):
+        self.robots = [Robot(name, pose=(0.4 + 0.3 * i, 0.5, 0.0)) for i, name in enumerate(names or ["AVR"])]
+        self.dongle = kind(self.folder, self.robots, link="dongle")
+        self.addCleanup(self.dongle.close)
+        return self.robots[0]
+
+    def tool(self, verb, *arguments, code=0):
+        return self.run_tool(verb, *arguments, "--central", self.dongle.path, "--scan", "200ms", code=code)
+
+    def check_verbs(self, *options):
+        out, _ = self.tool("robots", "--json", "--listen", "500ms", *options)
+        robot = json.loads(out.splitlines()[0])
+        self.assertEqual((robot["robot"], robot["index"], robot["address"]), ("AVR", 0, "C00000000000"))
+        self.assertEqual((robot["linked"], robot["confirmed"], robot["state"]), (True, True, "idle"))
+        self.assertEqual(robot["body"]["width_cm"], 20)
+        out, _ = self.tool("goto", "AVR", "90", "20", *options)
+        self.assertRegex(out, r"^AVR: x -?\d+ cm, y -?\d+ cm, heading -?\d+ deg\n$")
+        self.assertIn("{U,90,20}", self.robots[0].heard)
+        self.robots[0].heard.clear()
+        self.assertEqual(self.tool("pause", "AVR", *options)[0], "AVR: paused\n")
+        self.assertEqual(self.tool("unpause", "AVR", *options)[0], "AVR: goes on\n")
+        waiting.until(lambda: self.dongle.target is None, "command mode")
+
+    def test_the_base_firmware(self):
+        for prefixes in (False, True):
+            with self.subTest(prefixes=prefixes):
+                self.play(BaseFirmware)
+                self.dongle.prefixes = prefixes
+                self.check_verbs()
+                self.assertEqual(self.dongle.commands.count("AT+CONN=0"), 1)  # the next verb takes the link over
+                self.check_verbs("--dongle", "at")
+                self.dongle.close()
+                os.unlink(self.dongle.path)
+                self.dongle.close = lambda: None
+
+    def test_the_base_firmware_with_two_robots(self):
+        self.play(BaseFirmware, "AVR", "Arduino")
+        self.dongle.prefixes = True
+        out, _ = self.tool("robots", "--json")
+        self.assertEqual([json.loads(line)["robot"] for line in out.splitlines()], ["AVR", "Arduino"])
+        self.tool("goto", "Arduino", "0", "10")
+        self.assertIn("{U,0,10}", self.robots[1].heard)
+        self.assertNotIn("{U,0,10}", self.robots[0].heard)
+
+    def test_the_base_firmware_was_left_in_data_mode(self):
+        self.play(BaseFirmware)
+        self.tool("robots", "--listen", "100ms")
+        self.dongle.target = self.robots[0]
+        self.check_verbs()
+
+    def test_the_base_firmware_cannot_reach_a_robot(self):
+        robot = self.play(BaseFirmware)
+        robot.reachable = False
+        _, err = self.tool("goto", "AVR", "0", "10", code=1)
+        self.assertIn("no link to", err)
+
+    def test_the_thesiss_own(self):
+        self.play(Thesis)
+        self.check_verbs()
+        self.assertNotIn("HANGS", self.dongle.commands)
+        self.check_verbs("--dongle", "thesis")
+        self.assertNotIn("HANGS", self.dongle.commands)
+
+    def test_the_thesiss_own_cannot_reach_a_robot(self):
+        robot = self.play(Thesis)
+        robot.reachable = False
+        _, err = self.tool("goto", "AVR", "0", "10", code=1)
+        self.assertIn("no link to", err)
+
+    def test_ours(self):
+        self.play(Central)
+        self.check_verbs()
+        self.check_verbs("--dongle", "ours")
+
+    def test_one_that_answers_nothing(self):
+        self.play(Silent)
+        begin = time.monotonic()
+        _, err = self.tool("robots", code=1)
+        self.assertLess(time.monotonic() - begin, 15)
+        self.assertIn(f"nothing at {self.dongle.path} answers as a central does, at 38400 or 115200 baud", err)
+        for remedy in ("--baud N", "--flow rtscts", "--dongle thesis"):
+            self.assertIn(remedy, err)
+        _, err = self.tool("robots", "--baud", "9600", "--flow", "rtscts", code=1)
+        self.assertIn("at 9600 baud with RTS/CTS", err)
+        self.assertIn("--flow none", err)
+
+    def test_wrong_words(self):
+        self.play(Central)
+        for option in ("--flow", "--dongle"):
+            _, err = self.tool("robots", option, "perhaps", code=2)
+            self.assertIn(option, err)
+
+
+if __name__ == "__main__":
+    main(together=True)
