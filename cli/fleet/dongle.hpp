@@ -29,7 +29,7 @@ struct Dongle {
 
 /// Asks the dongle what it is, unless that is given: as our central, with `*` and `stop`, then as the base
 /// firmware, with `AT?.`; one that says anything else that can be read is the thesis's. Leaves it in command
-/// mode. Ends the command where nothing answers. Up to three seconds.
+/// mode. Ends the command where nothing answers. Up to four seconds.
 [[nodiscard]] Dongle open_dongle(std::string_view verb, const std::string& path,
                                  const DongleOptions& options);
 

@@ -88,9 +88,10 @@ class Simulated(Case):
             text = line.read().replace("[0]:AVR:", "")
             updates = re.findall(UPDATE, text)
             x, y, heading = map(int, updates[-1]) if updates else (0, 0, 0)
-            if abs(y - 50) < 15 and abs(heading - 90) < 10 and "{S,IDL}" in text:
+            near = [match.end() for match in re.finditer(UPDATE, text) if abs(int(match[2]) - 50) < 15]
+            if near and abs(heading - 90) < 10 and "{S,IDL}" in text[near[0]:]:
                 break
-        self.assertIn("{S,IDL}", text)
+        self.assertIn("{S,IDL}", text[near[0]:])
         self.assertLess(abs(x), 15)
         self.assertLess(abs(y - 50), 15)
         self.assertLess(abs(heading - 90), 10)

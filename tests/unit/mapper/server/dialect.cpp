@@ -18,7 +18,8 @@ TEST_CASE("dialect: a line of a list, behind a robot's words too, with or withou
   CHECK(robot.index == 0);
   CHECK(robot.address == "C0000000000A");
   CHECK(robot.name == "AVR");
-  REQUIRE(detail::parse_listed("{U,1,2,312:c0:00:00:00:00:0b:B", robot));
+  REQUIRE(detail::parse_listed("{S,IDL}12:c0:00:00:00:00:0b:B", robot));
+  CHECK(robot.index == 12);
   CHECK(robot.address == "c0000000000b");
   CHECK(robot.name == "B");
   for (const char* none : {"", ":", "0:C0:AVR", "0:C0000000000A:", "x:C0000000000A:AVR", "0:G0000000000A:A"})
