@@ -206,10 +206,10 @@ TEST_CASE("what the schema of the sentences must see: a value that cannot be") {
       {"/sentences/0/integers", {1, 2}},
       {"/sentences/1/word", "CON"},
       {"/sentences/1/text", "{}"},
-      {"/sentences/6/letter", "S"},
-      {"/sentences/6/word", "CON"},
-      {"/sentences/6/integers", {1, 2}},
-      {"/sentences/6/text", ""},
+      {"/sentences/7/letter", "S"},
+      {"/sentences/7/word", "CON"},
+      {"/sentences/7/integers", {1, 2}},
+      {"/sentences/7/text", ""},
       {"/packed/version", 0},
       {"/packed/tag", 127},
       {"/packed/tag", 256},
@@ -259,10 +259,10 @@ TEST_CASE("what no schema can see of sentences is told with its place and what w
   CHECK(
       with("/sentences/8/fields/9/values", {{"width", 1}}) ==
       Lines{
-          R"(/sentences/7/fields/9/values/width: "width" is an integer of the sentence, too; another name)"});
+          R"(/sentences/8/fields/9/values/width: "width" is an integer of the sentence, too; another name)"});
   CHECK(with("/sentences/1/fields/0/values", {{"back", 361}}).size() == 1);  // out of its range
-  CHECK(with("/sentences/8/integers", {11, 16}) ==
-        Lines{"/sentences/8/integers: 10 fields are outside of it; a number below and one above, or leave it "
+  CHECK(with("/sentences/8/integers", {12, 16}) ==
+        Lines{"/sentences/8/integers: 11 fields are outside of it; a number below and one above, or leave it "
               "out"});
   CHECK(
       with("/sentences/1/source/width", "a ruler") ==

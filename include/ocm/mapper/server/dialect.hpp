@@ -9,8 +9,8 @@
 ///   are read; that a link is there is proved by a packet of the robot, that a command was heard by nothing.
 ///   [Thesis 2, table 4.2]
 ///
-/// Where the base firmware writes no prefixes, what comes belongs to the robot of the last link or switch. A link that ends is not reported by these dongles: a robot that is silent for its
-/// deadline is lost.
+/// Where the base firmware writes no prefixes, what comes belongs to the robot of the last link or switch. A
+/// link that ends is not reported by these dongles: a robot that is silent for its deadline is lost.
 ///
 /// Bytes in, bytes out, time handed in; no I/O. O(1) a byte. Host only.
 #pragma once
