@@ -9,7 +9,7 @@ import subprocess
 import unittest
 
 IMAGE = os.path.join(os.environ["OCM_IMAGES"], "link_echo_atmega1284p.elf")
-HANDSHAKE = b"{H,20,20,0,0,0,90,180,270,5000,20225}\n"
+HANDSHAKE = b"{H,20,20,0,0,0,90,180,270,5000,20225,0}\n"
 COUNTERS = ("torn", "unclosed", "headless", "unknown", "bad_number", "wrong_count", "out_of_range", "too_long", "heard",
             "stray")
 
