@@ -145,13 +145,13 @@ std::string to_text(double value, Unit unit, int digits) {
   return fmt::format("{:.{}f} s", value / 1e9, value < 1e10 ? digits - 1 : 1);
 }
 
-transport::Outcome<Assertion> Assertion::parse(std::string_view text, const protocol::Catalogue& catalogue) {
+transport::Outcome<Assertion::Parts> Assertion::read(std::string_view text) {
   const auto wrong = [text](std::string what, std::string remedy) {
     return transport::Failure{fmt::format("--assert {}: {}", text, what), std::move(remedy)};
   };
-  constexpr std::string_view form = "write TOPIC.QUANTITY>NUMBER, such as gyro.rate>1.9 or bus.load<40%";
+  const std::string form = fmt::format("write {}", assertion_form);
   const std::size_t begin = text.find_first_of("<>=!");
-  if (begin == std::string_view::npos) return wrong("compares nothing", std::string{form});
+  if (begin == std::string_view::npos) return wrong("compares nothing", form);
   std::size_t end = begin + 1;
   if (end < text.size() && text[end] == '=') ++end;
   struct Sign {
@@ -170,34 +170,45 @@ transport::Outcome<Assertion> Assertion::parse(std::string_view text, const prot
 
   const std::string_view left = trimmed(text.substr(0, begin));
   const std::size_t point = left.rfind('.');
-  if (point == std::string_view::npos) return wrong("has no quantity", std::string{form});
-  const std::string_view subject = left.substr(0, point);
+  if (point == std::string_view::npos) return wrong("has no quantity", form);
   const std::string_view name = left.substr(point + 1);
-
-  Assertion assertion;
-  assertion.text_ = text;
-  assertion.relation_ = known->relation;
-  const bool bus = subject == "bus";
-  if (!bus) {
-    assertion.topic_ = words::find_topic(catalogue, subject);
-    if (assertion.topic_ == nullptr) {
-      auto words = words::topic_words(catalogue);
-      words.push_back("bus");
-      return wrong(fmt::format("no topic '{}'", subject), words::suggestion(subject, words));
-    }
-  }
+  Parts parts;
+  parts.subject = left.substr(0, point);
+  parts.relation = known->relation;
+  const bool bus = parts.subject == "bus";
   for (const Quantity& quantity : quantities)
     if (quantity.name == name && (bus ? quantity.of_bus != nullptr : quantity.of_topic != nullptr))
-      assertion.quantity_ = &quantity;
-  if (assertion.quantity_ == nullptr)
+      parts.quantity = &quantity;
+  if (parts.quantity == nullptr)
     return wrong(fmt::format("no quantity '{}' of {}", name, bus ? "the bus" : "a topic"),
                  words::suggestion(name, names_of(bus)));
   const std::string_view right = trimmed(text.substr(end));
-  auto limit = parse_limit(right, assertion.quantity_->unit);
+  auto limit = parse_limit(right, parts.quantity->unit);
   if (!limit)
     return wrong(fmt::format("'{}' is nothing to compare a {} with", right, name), "write " + limit.error);
-  assertion.limit_ = *limit;
-  return assertion;
+  parts.limit = *limit;
+  return parts;
+}
+
+bool Assertion::is_well_formed(std::string_view text) {
+  return static_cast<bool>(read(text));
+}
+
+transport::Outcome<Assertion> Assertion::parse(std::string_view text, const protocol::Catalogue& catalogue) {
+  const auto parts = read(text);
+  if (!parts) return parts.error;
+  Assertion assertion;
+  assertion.text_ = text;
+  assertion.quantity_ = parts->quantity;
+  assertion.relation_ = parts->relation;
+  assertion.limit_ = parts->limit;
+  if (parts->subject == "bus") return assertion;
+  assertion.topic_ = words::find_topic(catalogue, parts->subject);
+  if (assertion.topic_ != nullptr) return assertion;
+  auto words = words::topic_words(catalogue);
+  words.push_back("bus");
+  return transport::Failure{fmt::format("--assert {}: no topic '{}'", text, parts->subject),
+                            words::suggestion(parts->subject, words)};
 }
 
 bool Assertion::holds(double measured) const noexcept {

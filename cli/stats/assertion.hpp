@@ -23,11 +23,16 @@ enum class Unit : std::uint8_t { none, hertz, time, percent };
 
 struct Quantity;
 
+inline constexpr const char* assertion_form = "TOPIC.QUANTITY>NUMBER, such as gyro.rate>1.9 or bus.load<40%";
+
 class Assertion {
  public:
   /// "TOPIC.QUANTITY OP NUMBER", or "bus.QUANTITY...". The failure says what would be right.
   [[nodiscard]] static transport::Outcome<Assertion> parse(std::string_view text,
                                                            const protocol::Catalogue& catalogue);
+
+  /// Whether it is right but for its topic, which only a catalogue knows.
+  [[nodiscard]] static bool is_well_formed(std::string_view text);
 
   struct Verdict {
     bool holds = false;
@@ -41,6 +46,14 @@ class Assertion {
 
  private:
   enum class Relation : std::uint8_t { less, at_most, greater, at_least, equal, other };
+  struct Parts {
+    std::string_view subject;
+    const Quantity* quantity = nullptr;
+    Relation relation = Relation::equal;
+    double limit = 0;
+  };
+  /// The failure says what would be right.
+  [[nodiscard]] static transport::Outcome<Parts> read(std::string_view text);
   [[nodiscard]] bool holds(double measured) const noexcept;
 
   std::string text_;

@@ -162,6 +162,7 @@ void add_stats(Verb app, Session& session, int& exit_code) {
   verb.add_option("--assert", options->assertions,
                   "exit 1 unless this holds, such as 'gyro.rate>1.9'; may be given again")
       .type_name("EXPRESSION")
+      .takes({ValueKind::text, false, stats::assertion_form, {}, stats::Assertion::is_well_formed})
       .one_a_mention();
   add_bit_rate(verb, "--bitrate", options->bit_rate, "such as 500k or 125000; default: the spec's");
   const auto json = verb.add_flag("--json", options->json, "one object, for programs");

@@ -139,6 +139,8 @@ class Config(harness.Case):
                 ('[convert]\nto = "blf"', "to: invalid value 'blf'", "expected pcapng"),
                 ('[record]\nsplit = "nonsense"', "split: invalid value 'nonsense'", "expected a size or a time, such as 100MB"),
                 ('[plot]\nsize = "200"', "size: invalid value '200'", "expected WIDTHxHEIGHT in pixels, 200 to 16384 each"),
+                ('[stats]\nassert = "gyro>1"', "assert: invalid value 'gyro>1'", "expected TOPIC.QUANTITY>NUMBER, such as gyro.rate>1.9"),
+                ('[stats]\nassert = ["gyro.rate>1", "bus.load<fast"]', "assert: invalid value 'bus.load<fast'", "bus.load<40%"),
                 ('[stats]\nbitrate = "5G"', "bitrate: invalid value '5G'", "500k or 125000")):
             self.write(text + "\n")
             for verb in (["list"], ["publish", "mag", "900us", "--dry-run"]):
@@ -150,7 +152,7 @@ class Config(harness.Case):
     def test_values_that_are_taken(self):
         for text in ("[stats]\nbitrate = 125000", "priority = 2", 'priority = "normal"', '[stats]\nbitrate = "125k"', "[replay]\nspeed = 2.5", '[replay]\nspeed = "max"',
                      "[replay]\nloop = true", "[replay]\nloop = 3", '[record]\nsplit = "10min"', "[record]\nsplit = 100000",
-                     '[plot]\nsize = "200x200"', "[listen]\n[analyse.bus]", '[publish]\nwait = "1s"', "[publish]\nwait = false",
+                     '[stats]\nassert = ["gyro.rate>1.9", "of_another_robot.gap<=120ms"]', '[plot]\nsize = "200x200"', "[listen]\n[analyse.bus]", '[publish]\nwait = "1s"', "[publish]\nwait = false",
                      '[sim]\nwithout = ["light_ring", "power_management"]', "[sim]\nspeed = 10", "[sim]\nseed = 0"):
             self.write(text + "\n")
             self.run_tool("list")
