@@ -72,6 +72,13 @@ AnyBus open_bus(const BusName& name) {
   return any(transport::SocketCan::open(name.address));
 }
 
+void expect_answer(std::string_view name) {
+  const BusName parsed = parse_bus_name(name);
+  if (parsed.kind != BusName::Kind::simulated) return;
+  // What is connected cannot ask; a new client is greeted.
+  if (const auto greeted = transport::VirtualBus::open(parsed.address); !greeted) fail(greeted.error);
+}
+
 std::string only_bus() {
   std::vector<std::string> found;
   for (const auto& interface : transport::can_interfaces())

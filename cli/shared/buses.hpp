@@ -21,6 +21,11 @@ struct BusName {
 /// Says on stderr what an adapter cannot tell.
 [[nodiscard]] transport::Outcome<std::unique_ptr<transport::Bus>> open_bus(const BusName& name);
 
+/// Leaves with a message if the other end of a bus is known not to answer: a simulator that is stopped keeps
+/// its clients, and is as silent as a robot at rest. Of other buses nothing is known. Takes up to two
+/// seconds.
+void expect_answer(std::string_view name);
+
 /// The only interface that is up, or the simulator; leaves with a message where there is none, or several.
 [[nodiscard]] std::string only_bus();
 

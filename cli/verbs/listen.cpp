@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/shared/buses.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/live.hpp"
 #include "cli/shared/values.hpp"
@@ -67,6 +68,7 @@ void listen(Session& session, const ListenOptions& options, int& exit_code) {
   display.summarise(bus->counters().lost);
   display.tell_contradictions("another robot?");
   if (over == Over::gone) fail(bus->failure());
+  if (over == Over::time) expect_answer(bus->name());
   // As with candump -n: frames that were expected and did not come are a failure.
   if (over == Over::time && options.count != 0) {
     remark(fmt::format("amiroctl: listen: expected {} frames, only {} came in time", options.count,

@@ -16,6 +16,7 @@
 #include "cli/record/capture.hpp"
 #include "cli/record/files.hpp"
 #include "cli/record/recorder.hpp"
+#include "cli/shared/buses.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/shared/values.hpp"
@@ -204,6 +205,8 @@ void run_record(Session& session, const RecordOptions& options, int& exit_code) 
     fail(files.failure(), exit_code_after_interrupt(exit_failure));
   }
   if (!recorder.ended().what.empty()) fail(recorder.ended());
+  if (options.duration && interrupted() == 0 && (options.count == 0 || recorder.received() < options.count))
+    for (const auto& port : recorder.ports()) expect_answer(port.name);
   if (options.strict && lost != 0) exit_code = exit_failure;
   exit_code = exit_code_after_interrupt(exit_code);
 }

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "cli/logs/opened_log.hpp"
+#include "cli/shared/buses.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/live.hpp"
 #include "cli/shared/values.hpp"
@@ -62,6 +63,7 @@ std::string Watching::source() const {
 
 int Watching::ending(int code) const {
   if (!gone_.what.empty()) fail(gone_);
+  if (time_is_up_) expect_answer(bus_);
   return broke_off_ ? static_cast<int>(exit_failure) : code;
 }
 
@@ -129,6 +131,7 @@ void Watching::listen(const Take& take, const Lost& lost, const std::function<vo
     }
     if (over == Over::gone) gone_ = bus->failure();
     const auto now = Clock::now();
+    time_is_up_ = over == Over::time && now >= end;
     if (done_ || over == Over::gone || over == Over::signal || now >= end) return;
     if (now >= tick) {
       each_second();

@@ -52,8 +52,8 @@ class Watching {
   [[nodiscard]] bool ends() const noexcept { return !live() || duration_ || count_ != 0; }
   /// "drive.log", "2 logs", "can0": for people. Of a bus only once it runs.
   [[nodiscard]] std::string source() const;
-  /// After `run`, to be said once the results are out: the bus went away, or a log broke off. Leaves through
-  /// `fail` for a bus; the exit code for a log, `code` when all is well.
+  /// After `run`, to be said once the results are out: the bus went away or does not answer, or a log broke
+  /// off. Leaves through `fail` for a bus; the exit code for a log, `code` when all is well.
   [[nodiscard]] int ending(int code) const;
 
   /// Hands on all frames until the logs are at their end, the limits are reached or a signal comes. On a live
@@ -77,6 +77,7 @@ class Watching {
   bool done_ = false;
   std::string bus_;
   transport::Failure gone_;
+  bool time_is_up_ = false;  ///< of a bus
   bool broke_off_ = false;
 };
 

@@ -198,6 +198,23 @@ class OnTheBus(Case):
         self.assertIn("THE ROBOT MAY STILL MOVE", err)
         sim.send_signal(signal.SIGCONT)
 
+    def test_a_simulator_that_is_stopped_is_no_quiet_bus(self):
+        sim = self.start_sim()
+        log = os.path.join(self.folder, "a.log")
+        verbs = [self.start(*verb) for verb in (["listen", "--timeout", "1s"], ["stats", "--duration", "1s"],
+                                                ["record", "-o", log, "--duration", "1s"])]
+        for verb in verbs:
+            self.assertIn("bus: sim", verb.stderr.readline())
+        self.settle()
+        sim.send_signal(signal.SIGSTOP)
+        for verb in verbs:
+            _, err = verb.communicate(timeout=20)
+            self.assertEqual(verb.returncode, 1, err)
+            self.assertRegex(err, r"amiroctl: the simulator( \(process \d+\))? does not answer")
+            self.assertIn("it may be stopped (Ctrl-Z)", err)
+        sim.send_signal(signal.SIGCONT)
+        self.run_tool("listen", "--timeout", "100ms")
+
     def test_the_robot_moves_and_its_watchdog_stops_it(self):
         self.start_sim()
         self.run_tool("drive", "10cm/s", "--once")
