@@ -70,6 +70,12 @@ Outlet::Sent Outlet::send(const log::Entry& entry) {
   return Sent::yes;
 }
 
+void Outlet::expect_open() const {
+  auto received = bus_->receive(base::Duration::zero());
+  while (received) received = bus_->receive(base::Duration::zero());
+  if (received.error == base::Error::closed) fail(bus_->failure());
+}
+
 bool Outlet::rest() {
   if (is_rest(set_point_)) return false;
   set_point_.data = {};

@@ -27,6 +27,11 @@ class Outlet {
   /// Waits for room up to a second, then leaves through cli::fail.
   Sent send(const log::Entry& entry);
 
+  /// Leaves through cli::fail when the bus is gone. Waits for nothing.
+  void expect_open() const;
+  /// Readable when `expect_open` may have something to say.
+  [[nodiscard]] int descriptor() const { return bus_->descriptor(); }
+
   /// Sets motors to zero that the frames have left running. false: they have not.
   bool rest();
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <poll.h>
 #include <time.h>
 
 #include "ocm/host/system_time.hpp"
@@ -12,16 +13,22 @@
 
 namespace ocm::cli::replay {
 
+namespace {
+
+/// A signal that comes just before a wait is seen after so long at most.
+constexpr base::Duration longest_wait = std::chrono::milliseconds{200};
+
+}  // namespace
+
 base::Time monotonic_now() {
   return base::Time{std::chrono::steady_clock::now().time_since_epoch()};
 }
 
 void wait_until(base::Time time) {
-  // In pieces, so that a signal that comes just before the wait is seen soon.
   while (interrupted() == 0) {
     const base::Time now = monotonic_now();
     if (now >= time) return;
-    const base::Time step = std::min(time, now + base::Duration{std::chrono::milliseconds{200}});
+    const base::Time step = std::min(time, now + longest_wait);
     const timespec until = host::to_timespec(step.time_since_epoch());
     ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
   }
@@ -95,7 +102,8 @@ void Player::send(const log::Entry& entry, const log::Interfaces& interfaces) {
   }
   if (!options_.at_once) {
     const base::Time due = playback_.due(entry.time);
-    wait_until(due);
+    watch_until(due - std::chrono::milliseconds{2});
+    wait_until(due);  // to the microsecond
     if (interrupted() != 0) return;
     playback_.sent(due, monotonic_now());
   }
@@ -109,6 +117,21 @@ void Player::send(const log::Entry& entry, const log::Interfaces& interfaces) {
     case Outlet::Sent::fd_frame:
       ++played_.fd_frames;
       return;
+  }
+}
+
+void Player::watch_until(base::Time time) const {
+  std::vector<pollfd> buses;
+  while (interrupted() == 0) {
+    const base::Time now = monotonic_now();
+    if (now >= time) return;
+    buses.clear();
+    for (const Outlet& outlet : outlets_) {
+      outlet.expect_open();
+      buses.push_back({outlet.descriptor(), POLLIN, 0});
+    }
+    const timespec wait = host::to_timespec(std::min(time - now, longest_wait));
+    ::ppoll(buses.data(), buses.size(), &wait, nullptr);
   }
 }
 

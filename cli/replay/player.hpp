@@ -96,6 +96,8 @@ class Player {
   bool play(const log::Entry& entry, const log::Interfaces& interfaces);
   void send(const log::Entry& entry, const log::Interfaces& interfaces);
   void print(const log::Entry& entry, const log::Interfaces& interfaces);
+  /// Until `time`, or a signal; leaves through cli::fail as soon as a bus is gone.
+  void watch_until(base::Time time) const;
   [[nodiscard]] std::optional<std::size_t> route(std::uint16_t interface, const log::Interfaces& interfaces);
 
   PlayerOptions options_;

@@ -37,6 +37,21 @@ class Replaying(Case):
                 return recorder
         self.fail(f"record ended with {recorder.wait()}")
 
+    def test_a_simulator_that_ends_during_a_pause_of_the_log_is_seen_at_once(self):
+        for end in (signal.SIGKILL, signal.SIGINT):
+            sim = self.start_sim()
+            replay = self.start("replay", self.write_log((0, "605#00D20000"), (60, "605#00D20000")))
+            self.assertIn("bus: sim", replay.stderr.readline())
+            self.settle()
+            begin = time.monotonic()
+            sim.send_signal(end)
+            _, err = replay.communicate(timeout=20)
+            self.assertLess(time.monotonic() - begin, 10)
+            self.assertEqual(replay.returncode, 1)
+            self.assertRegex(err, r"amiroctl: the simulator .* (is gone|was ended)")
+            self.assertIn("sent 1 frames", err)
+            sim.wait()
+
     def replayed(self, log, *arguments, code=0):
         """What comes on the bus when a log is replayed, with its times; and what replay says."""
         name = f"out{len(os.listdir(self.folder))}.log"
