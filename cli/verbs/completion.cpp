@@ -17,12 +17,29 @@ namespace {
 
 constexpr std::string_view bash = R"sh(# Completion of amiroctl in bash. Made by: amiroctl completion bash
 _amiroctl() {
-  local line=${COMP_LINE:0:COMP_POINT} words kind candidate word before
-  read -ra words <<<"$line"
-  [[ $line == *[[:space:]] ]] && words+=("")
-  word=${words[${#words[@]} - 1]}
-  before=${word%"${word##*[=:]}"}  # bash completes only what follows the last of = and :
+  local line=${COMP_LINE:0:COMP_POINT} words=() word= begun= quote= redirected= before= c i kind candidate
+  # Words as bash would make them: without quotes and redirections, ~/ in place.
+  for ((i = 0; i < ${#line}; i++)); do
+    c=${line:i:1}
+    if [[ $quote && $c == "$quote" ]]; then quote=
+    elif [[ $quote == "'" ]]; then word+=$c
+    elif [[ $c == \\ ]]; then ((++i)); word+=${line:i:1} begun=1
+    elif [[ $quote ]]; then word+=$c
+    elif [[ $c == [\'\"] ]]; then quote=$c begun=1 before=$word
+    elif [[ $c == [[:space:]\<\>] ]]; then
+      [[ $c == [\<\>] && $word == [0-9\&] ]] && begun=
+      if [[ $begun && ! $redirected ]]; then words+=("$word"); fi
+      [[ $begun ]] && redirected=
+      [[ $c == [\<\>] ]] && redirected=1
+      word= begun=
+    elif [[ ! $begun && ${line:i} == '~/'*[[:space:]]* ]]; then word=$HOME begun=1
+    else word+=$c begun=1
+    fi
+  done
   COMPREPLY=()
+  if [[ $redirected ]]; then compopt -o default; return 0; fi
+  words+=("$word")
+  [[ $quote ]] || before=${word%"${word##*[=:]}"}  # bash completes only what follows the last of = and :
   while IFS= read -r candidate; do
     if [[ -z $kind ]]; then kind=$candidate; continue; fi
     candidate=${candidate%%$'\t'*}
@@ -40,7 +57,9 @@ constexpr std::string_view zsh = R"sh(#compdef amiroctl
 _amiroctl() {
   local -a lines names shown open opened
   local line name
-  lines=("${(@f)$("${words[1]}" completion --words -- "${(@)words[2,CURRENT-1]}" "$PREFIX" 2>/dev/null)}")
+  local -a typed
+  typed=("${(@Q)${(@)words[1,CURRENT-1]/#\~\//${(q)HOME}/}}")  # without quotes, ~/ in place
+  lines=("${(@f)$("${typed[1]}" completion --words -- "${(@)typed[2,-1]}" "$PREFIX" 2>/dev/null)}")
   for line in "${(@)lines[2,-1]}"; do
     name=${line%%$'\t'*}
     [[ -n $name ]] || continue

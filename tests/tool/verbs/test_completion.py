@@ -116,6 +116,19 @@ class Shells(harness.Case):
         self.assertEqual(self.bash("amiroctl run "), ["compopt -o default", ""])
         self.assertEqual(self.bash(f"amiroctl --spec {OTHER} publish fo"), ["fork_status", "fork"])
 
+    def test_bash_after_quotes_a_tilde_and_redirections(self):
+        shutil.copy(OTHER, os.path.join(self.folder, "my robot.json"))
+        for line in ("--spec ~/my\\ robot.json publish fo", '--spec "my robot.json" publish fo', "stop --spec my\\ robot.json fo",
+                     '--spec "' + self.folder + '/my robot.json" publish fo'):
+            self.assertEqual(self.bash("amiroctl " + line), ["fork_status", "fork"], line)
+        for line in ('publish "gy', "listen 2>errors gy", "listen >lines.txt 2>&1 gy", "listen < lines.txt gy", "listen &>both gy"):
+            self.assertEqual(self.bash("amiroctl " + line), ["gyroscope", "gyro"], line)
+        for line in ("listen > dr", "listen gyro >", "listen 2>dr", "listen >> "):
+            self.assertEqual(self.bash("amiroctl " + line), ["compopt -o default", ""], line)
+        self.assertEqual(self.bash('amiroctl publish gyro --priority="h'), ["high"])
+        self.assertEqual(self.bash('amiroctl publish gyro "--priority=h'), ["--priority=high"])
+        self.assertEqual(self.bash("~/bin/amiroctl publish gy"), ["gyroscope", "gyro"])
+
     def test_zsh(self):
         # compadd and _files as the completion system would have them: only they are put in place of the real ones.
         script = """
@@ -130,6 +143,11 @@ class Shells(harness.Case):
                          ["compdef _amiroctl amiroctl", "gyroscope", "gyro"])
         self.assertEqual(self.shell("zsh", script % "amiroctl set motors ''")[1:], ["x=", "z="])
         self.assertEqual(self.shell("zsh", script % "amiroctl run ''")[1:], ["files"])
+        # zsh gives words as they are typed.
+        shutil.copy(OTHER, os.path.join(self.folder, "my robot.json"))
+        for spec in (r"'~/my\ robot.json'", "'\"my robot.json\"'", r"'my\ robot.json'"):
+            self.assertEqual(self.shell("zsh", script % f"amiroctl --spec {spec} publish fo")[1:], ["fork_status", "fork"], spec)
+        self.assertEqual(self.shell("zsh", script % "'~/bin/amiroctl' publish gy")[1:], ["gyroscope", "gyro"])
 
     def test_zsh_loads_it(self):
         self.assertEqual(self.shell("zsh", """
