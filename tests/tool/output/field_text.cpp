@@ -93,6 +93,32 @@ TEST_CASE("a field's value is printed exactly", "[output]") {
   CHECK(printed(field_of(64, true, {1, -18}), payload(std::uint64_t{1} << 63)) == "-9.223372036854775808");
 }
 
+TEST_CASE("values of 16 digits and more are printed exactly", "[output]") {
+  constexpr std::uint64_t whole_numbers[] = {
+      1'234'567'890'123'456,     9'999'999'999'999'999,     10'000'000'000'000'000,
+      10'000'000'000'000'001,    12'345'678'000'000'000,    12'345'678'900'000'000,
+      99'999'999'999'999'999,    100'000'000'000'000'000,   300'000'000'000'000'000,
+      999'999'999'999'999'999,   1'000'000'000'000'000'000, 1'000'000'000'000'000'010,
+      1'234'567'890'123'456'789, 9'223'372'036'854'775'807};
+  for (const std::uint64_t number : whole_numbers) {
+    const std::string digits = std::to_string(number);
+    const std::uint64_t negative = ~number + 1;
+    CHECK(printed(field_of(64, true, {1, 0}), payload(number)) == digits);
+    CHECK(printed(field_of(64, true, {1, 0}), payload(negative)) == "-" + digits);
+    for (std::size_t places = 1; places <= 18; ++places) {
+      const std::string padded =
+          std::string(digits.size() > places ? 0 : places + 1 - digits.size(), '0') + digits;
+      std::string text =
+          padded.substr(0, padded.size() - places) + "." + padded.substr(padded.size() - places);
+      text.erase(text.find_last_not_of('0') + 1);
+      if (text.ends_with('.')) text.pop_back();
+      const auto field = field_of(64, true, {1, static_cast<std::int8_t>(-static_cast<int>(places))});
+      CHECK(printed(field, payload(number)) == text);
+      CHECK(printed(field, payload(negative)) == "-" + text);
+    }
+  }
+}
+
 TEST_CASE("a field's value is what the catalogue says, for every field and any bits", "[output]") {
   check_fields(amiro::catalogue, 2000);
   const auto other = spec::load(std::string{OCM_SOURCE_DIR} + "/examples/other-robot/topics.json");
