@@ -18,6 +18,7 @@
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/live.hpp"
 #include "cli/shared/outgoing.hpp"
+#include "cli/shared/terminal.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/words/quantity.hpp"
 
@@ -45,7 +46,7 @@ void send_and_await(Session& session, transport::Bus& open_bus, RefusalWatch& re
 
   client::Receiver receiver{catalogue};
   Printer printer{make_output(isatty(STDOUT_FILENO) != 0 ? Format::pretty : Format::json, catalogue, {},
-                              session.colour())};
+                              session.colour(), columns_of_output)};
   const Over over =
       Live{*bus}.receive_or_leave(Live::Clock::now() + timeout, [&](const can::Received& received) {
         if (refusals.take(received)) return false;

@@ -10,7 +10,7 @@ client::Reception understand(client::Receiver& receiver, const log::Entry& entry
 }
 
 std::unique_ptr<Output> make_output(Format format, const protocol::Catalogue& catalogue,
-                                    const Selection& selection, bool colour) {
+                                    const Selection& selection, bool colour, Columns columns) {
   switch (format) {
     case Format::json:
       return make_json(catalogue, selection);
@@ -21,7 +21,7 @@ std::unique_ptr<Output> make_output(Format format, const protocol::Catalogue& ca
     case Format::pretty:
       break;
   }
-  return make_pretty(catalogue, selection, colour);
+  return make_pretty(catalogue, selection, colour, columns);
 }
 
 void vappend_formatted(Buffer& out, fmt::string_view text, fmt::format_args arguments) {

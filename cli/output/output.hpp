@@ -2,6 +2,7 @@
 /// frame from a bus are shown alike: both are entries.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -57,11 +58,16 @@ class Output {
 
 enum class Format { pretty, json, csv, raw };
 
+/// The width of the terminal, which may change while a verb runs. None: a line is as long as it is.
+using Columns = std::size_t (*)();
+
 /// The catalogue outlives the output. With a selection, only its fields, and only frames that have one.
 [[nodiscard]] std::unique_ptr<Output> make_output(Format format, const protocol::Catalogue& catalogue,
-                                                  const Selection& selection, bool colour);
+                                                  const Selection& selection, bool colour,
+                                                  Columns columns = nullptr);
 [[nodiscard]] std::unique_ptr<Output> make_pretty(const protocol::Catalogue& catalogue,
-                                                  const Selection& selection, bool colour);
+                                                  const Selection& selection, bool colour,
+                                                  Columns columns = nullptr);
 [[nodiscard]] std::unique_ptr<Output> make_json(const protocol::Catalogue& catalogue,
                                                 const Selection& selection);
 [[nodiscard]] std::unique_ptr<Output> make_csv(const protocol::Catalogue& catalogue,

@@ -2,6 +2,7 @@
 /// their units in columns. Samples of several frames appear when they are complete.
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstring>
 #include <string>
 #include <unordered_map>
@@ -14,6 +15,7 @@
 
 #include "cli/output/field_text.hpp"
 #include "cli/output/output.hpp"
+#include "cli/shared/folding.hpp"
 #include "cli/words/quantity.hpp"
 
 namespace ocm::cli {
@@ -36,13 +38,13 @@ struct Column {
 
 class Pretty final : public Output {
  public:
-  Pretty(const protocol::Catalogue& catalogue, const Selection& selection, bool colour)
-      : colour_(colour), everything_(selection.everything()) {
-    std::size_t width = 0;
-    for (const auto& topic : catalogue.topics) width = std::max(width, base::columns(topic.name));
+  Pretty(const protocol::Catalogue& catalogue, const Selection& selection, bool colour, Columns columns)
+      : colour_(colour), everything_(selection.everything()), terminal_columns_(columns) {
+    for (const auto& topic : catalogue.topics) name_width_ = std::max(name_width_, base::columns(topic.name));
     for (const auto& topic : catalogue.topics) {
-      const std::string name = painted(bold, fmt::format("{:<{}}  ", topic.name, width));
-      topics_.emplace(&topic, TopicText{name, columns_of(topic, selection)});
+      const std::string name = painted(bold, fmt::format("{:<{}}  ", topic.name, name_width_));
+      const std::string narrow = painted(bold, topic.name) + "  ";
+      topics_.emplace(&topic, TopicText{name, narrow, columns_of(topic, selection)});
     }
     constexpr std::array<std::string_view, 4> codes{"\033[31m", "\033[33m", "\033[32m", "\033[36m"};
     for (std::size_t i = 0; i < codes.size(); ++i)
@@ -56,7 +58,53 @@ class Pretty final : public Output {
     if (meaning == Meaning::part) return false;
     const bool data = meaning == Meaning::sample || meaning == Meaning::set_point;
     if (!everything_ && (!data || topics_.at(event.reception.topic).columns.empty())) return false;
-    switch (meaning) {
+    width_ = terminal_columns_ == nullptr ? SIZE_MAX : terminal_columns_();
+    const std::size_t begin = out.size();
+    breaks_.clear();
+    write_line(out, event);
+    if (width_ != SIZE_MAX) fit(out, begin);
+    out.append('\n');
+    return true;
+  }
+
+ private:
+  struct TopicText {
+    std::string name;    ///< as wide as the longest
+    std::string narrow;  ///< as wide as it is
+    std::vector<Column> columns;
+  };
+
+  static constexpr std::size_t before_name = 22;  ///< columns of time and priority
+  /// Columns beside the names: with less than this, names take no column of their own.
+  static constexpr std::size_t value_room = 40;
+
+  [[nodiscard]] bool has_column_of_names() const {
+    return width_ == SIZE_MAX || before_name + name_width_ + value_room <= width_;
+  }
+
+  /// The line that begins at `begin` may go on in another one from here.
+  void may_break(const Buffer& out) {
+    if (width_ != SIZE_MAX) breaks_.push_back(out.size());
+  }
+
+  /// The last line of `out` as several, if the terminal has not the room for it.
+  void fit(Buffer& out, std::size_t begin) {
+    const std::string line{out.view().substr(begin)};
+    if (extent(line).words <= width_) return;
+    Folding folding{width_, has_column_of_names() ? before_name : 4};
+    std::size_t at = 0;
+    breaks_.push_back(out.size());
+    for (const std::size_t end : breaks_) {
+      folding.add(std::string_view{line}.substr(at, end - begin - at));
+      at = end - begin;
+    }
+    out.cut(begin);
+    out.append(folding.text());
+  }
+
+  void write_line(Buffer& out, const Event& event) {
+    using client::Meaning;
+    switch (event.reception.meaning) {
       case Meaning::part:
         break;
       case Meaning::sample:
@@ -89,15 +137,7 @@ class Pretty final : public Output {
             red, fmt::format("{:<7} error frame: {}", "-", can::describe(*event.entry.classic()).view())));
         break;
     }
-    out.append('\n');
-    return true;
   }
-
- private:
-  struct TopicText {
-    std::string name;
-    std::vector<Column> columns;
-  };
 
   [[nodiscard]] std::string painted(std::string_view code, std::string_view text) const {
     return colour_ ? fmt::format("{}{}{}", code, text, plain) : std::string{text};
@@ -135,13 +175,17 @@ class Pretty final : public Output {
     *to++ = ' ';
     if (colour_) to = std::copy(plain.begin(), plain.end(), to);
     out.append({text, static_cast<std::size_t>(to - text)});
+    may_break(out);
   }
 
   void head(Buffer& out, const Event& event, std::string_view arrow) {
     time(out, event);
     const auto priority = protocol::Identifier::decode(event.entry.id).priority;
     out.append(priorities_[static_cast<std::size_t>(priority)]);
-    out.append(topics_.at(event.reception.topic).name);
+    may_break(out);
+    const TopicText& topic = topics_.at(event.reception.topic);
+    out.append(has_column_of_names() ? topic.name : topic.narrow);
+    may_break(out);
     out.append(arrow);
   }
 
@@ -203,8 +247,9 @@ class Pretty final : public Output {
     out.append(text);
   }
 
-  void values(Buffer& out, const protocol::Topic& topic, std::span<const can::Payload> payloads) const {
+  void values(Buffer& out, const protocol::Topic& topic, std::span<const can::Payload> payloads) {
     for (const Column& column : topics_.at(&topic).columns) {
+      may_break(out);
       out.append(column.before);
       const can::Payload& data = payloads[column.frame];
       const auto& field = column.value.field();
@@ -247,6 +292,10 @@ class Pretty final : public Output {
 
   bool colour_;
   bool everything_;
+  Columns terminal_columns_;
+  std::size_t width_ = SIZE_MAX;     ///< of the terminal, now
+  std::size_t name_width_ = 0;       ///< of the longest name of a topic
+  std::vector<std::size_t> breaks_;  ///< of the line that is written: where it may go on in another
   bool started_ = false;
   base::Time begin_{};
   std::array<std::string, protocol::priority_levels> priorities_;
@@ -256,8 +305,8 @@ class Pretty final : public Output {
 }  // namespace
 
 std::unique_ptr<Output> make_pretty(const protocol::Catalogue& catalogue, const Selection& selection,
-                                    bool colour) {
-  return std::make_unique<Pretty>(catalogue, selection, colour);
+                                    bool colour, Columns columns) {
+  return std::make_unique<Pretty>(catalogue, selection, colour, columns);
 }
 
 }  // namespace ocm::cli

@@ -1,16 +1,20 @@
 #include "cli/shared/arguments.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <limits>
 #include <map>
 #include <set>
+#include <sstream>
 #include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "cli/shared/folding.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/shared/misuse.hpp"
+#include "cli/shared/terminal.hpp"
 #include "cli/shared/usage.hpp"
 #include "cli/words/suggestion.hpp"
 
@@ -165,6 +169,16 @@ std::vector<Verb> handles(const std::vector<CLI::App*>& apps) {
   std::vector<Verb> verbs;
   for (CLI::App* app : apps) verbs.emplace_back(app);
   return verbs;
+}
+
+/// A help as wide as the terminal is.
+void print_help(const std::string& text) {
+  const std::size_t columns = columns_of_output();
+  for (std::string_view rest = text; !rest.empty();) {
+    const std::string_view line = rest.substr(0, rest.find('\n'));
+    std::fputs((folded_help(line, columns) + '\n').c_str(), stdout);
+    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+  }
 }
 
 /// "-.1m/s" is a number and not an option: "-0.1m/s" is what the parser of options takes for one.
@@ -577,7 +591,9 @@ Program::Outcome Program::run(int argc, char** argv) {
     app_->parse(words_of(argc, argv));
     return Outcome::done;
   } catch (const CLI::Success& asked) {
-    app_->exit(asked);
+    std::ostringstream text;
+    app_->exit(asked, text, text);
+    print_help(text.str());
     return Outcome::told;
   } catch (const CLI::ParseError& error) {
     const bool of_a_value = error.get_name() == "ValidationError" || error.get_name() == "ArgumentMismatch" ||

@@ -1,8 +1,10 @@
 #include "cli/shared/messages.hpp"
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <string>
+#include <unistd.h>
 
 #include <fmt/format.h>
 
@@ -23,6 +25,11 @@ std::string& speaker() {
 void print(std::string_view before, std::string_view raw) {
   const std::string text = printable(raw);
   const WithoutBrokenPipe message;  // `stop 2>&1 | true` stops
+  static bool echo_erased = false;
+  if (!echo_erased && interrupted() == SIGINT && isatty(STDERR_FILENO) != 0) {
+    std::fputs("\r\x1b[K", stderr);  // the terminal has shown ^C
+    echo_erased = true;
+  }
   std::fprintf(stderr, "%.*s%.*s\n", static_cast<int>(before.size()), before.data(),
                static_cast<int>(text.size()), text.data());
 }

@@ -1,8 +1,11 @@
-/// The size of a terminal, for what is shown there again and again in place: a line that breaks stays behind.
+/// The size of a terminal: what is shown there fits its width, and in its height where it is drawn again in
+/// place.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <sys/ioctl.h>
+#include <unistd.h>
 
 namespace ocm::cli {
 
@@ -16,6 +19,13 @@ struct TerminalSize {
   winsize size{};
   if (::ioctl(descriptor, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || size.ws_row < 2) return {};
   return {size.ws_col, size.ws_row};
+}
+
+/// Columns of the terminal that stdout is; as many as there can be if it is none, or does not say.
+[[nodiscard]] inline std::size_t columns_of_output() noexcept {
+  winsize size{};
+  const bool said = isatty(STDOUT_FILENO) != 0 && ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0;
+  return said && size.ws_col != 0 ? size.ws_col : SIZE_MAX;
 }
 
 }  // namespace ocm::cli

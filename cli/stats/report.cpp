@@ -12,6 +12,7 @@
 #include "ocm/log/complaints.hpp"
 
 #include "cli/output/csv_cell.hpp"
+#include "cli/shared/folding.hpp"
 #include "cli/shared/json.hpp"
 #include "cli/words/quantity.hpp"
 
@@ -213,6 +214,17 @@ Json to_object(const Bus& bus, const Shown& shown) {
           {"topics", topics}};
 }
 
+/// Each line on its own, so that a colour ends with the line.
+void add_folded(std::vector<std::string>& lines, const std::string& line, std::size_t columns,
+                std::string_view colour = "") {
+  const std::string text = folded(line, columns, 4);
+  for (std::string_view rest = text; !rest.empty();) {
+    const std::string_view part = rest.substr(0, rest.find('\n'));
+    lines.push_back(colour.empty() ? std::string{part} : fmt::format("{}{}\x1b[0m", colour, part));
+    rest.remove_prefix(std::min(part.size() + 1, rest.size()));
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> to_table(const Report& report, const Shown& shown, bool colour,
@@ -261,10 +273,9 @@ std::vector<std::string> to_table(const Report& report, const Shown& shown, bool
                       : fmt::format("{:>{}}", rows[n][i], widths[i]);
       }
       line.erase(line.find_last_not_of(' ') + 1);
-      lines.push_back(colour && bad[n] ? "\x1b[33m" + line + "\x1b[0m" : line);
+      add_folded(lines, line, columns, colour && bad[n] ? "\x1b[33m" : "");
     }
-    const auto about = summary(bus);
-    lines.insert(lines.end(), about.begin(), about.end());
+    for (const std::string& line : summary(bus)) add_folded(lines, line, columns);
   }
   return lines;
 }

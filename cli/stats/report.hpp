@@ -17,8 +17,7 @@ namespace ocm::cli::stats {
 using Shown = std::vector<const protocol::Topic*>;
 
 /// Lines without an end; every line is one on the terminal, colours take no room.
-/// Where it is wider than `columns`, it has fewer of its own; the lines below the table are as long as they
-/// are.
+/// Where it is wider than `columns`, it has fewer of its own; lines that are wider even so go on below.
 [[nodiscard]] std::vector<std::string> to_table(const Report& report, const Shown& shown, bool colour,
                                                 std::size_t columns = SIZE_MAX);
 [[nodiscard]] std::string to_json(const Report& report, const Shown& shown,

@@ -17,6 +17,7 @@
 #include "cli/command/timeline.hpp"
 #include "cli/output/printer.hpp"
 #include "cli/shared/interrupt.hpp"
+#include "cli/shared/terminal.hpp"
 #include "cli/verbs/verbs.hpp"
 #include "cli/words/quantity.hpp"
 #include "cli/words/script.hpp"
@@ -112,7 +113,7 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
   const auto bus = session.open_bus();
   client::Receiver receiver{catalogue};
   Printer printer{make_output(isatty(STDOUT_FILENO) != 0 ? Format::pretty : Format::json, catalogue, {},
-                              session.colour())};
+                              session.colour(), columns_of_output)};
   const auto show = [&](const can::Received& received) {
     const auto reception = receiver.take(received);
     if (reception.meaning != client::Meaning::request && reception.meaning != client::Meaning::set_point)

@@ -41,35 +41,24 @@ class Screen {
   Screen() : terminal_(isatty(STDOUT_FILENO) != 0) {}
   [[nodiscard]] bool terminal() const noexcept { return terminal_; }
 
+  /// The lines fit `columns`.
   void show(const std::vector<std::string>& lines) {
-    if (!terminal_) return print(lines, SIZE_MAX, SIZE_MAX);
-    const auto [columns, rows] = terminal_size(STDOUT_FILENO);
-    const std::size_t before = std::exchange(drawn_, std::min(lines.size(), rows - 1));
-    print(lines, drawn_, columns, before);
+    if (!terminal_) return print(lines, lines.size());
+    const std::size_t before =
+        std::exchange(drawn_, std::min(lines.size(), terminal_size(STDOUT_FILENO).rows - 1));
+    print(lines, drawn_, before);
   }
-  /// What a table that is drawn again should fit into.
-  [[nodiscard]] std::size_t columns() const {
-    return terminal_ ? terminal_size(STDOUT_FILENO).columns : SIZE_MAX;
-  }
+  /// What a table should fit into.
+  [[nodiscard]] static std::size_t columns() { return columns_of_output(); }
   /// The last one, in full.
-  void finish(const std::vector<std::string>& lines) { print(lines, SIZE_MAX, SIZE_MAX, drawn_); }
+  void finish(const std::vector<std::string>& lines) { print(lines, lines.size(), drawn_); }
 
  private:
-  /// A line that breaks would take two of those that go away with the next table. Colours take no room, and
-  /// are what a line ends with.
-  static std::string cut(const std::string& line, std::size_t columns) {
-    const bool coloured = line.starts_with("\x1b[");
-    const std::size_t before = coloured ? 5 : 0;
-    const std::size_t after = coloured ? 4 : 0;
-    if (line.size() - before - after <= columns) return line;
-    return line.substr(0, before + columns) + (coloured ? "\x1b[0m" : "");
-  }
-  /// In place of this many lines above.
-  static void print(const std::vector<std::string>& lines, std::size_t rows, std::size_t columns,
-                    std::size_t drawn = 0) {
+  /// In place of this many lines above. From the first column on: the terminal may have written ^C there.
+  static void print(const std::vector<std::string>& lines, std::size_t rows, std::size_t drawn = 0) {
     std::string text;
-    if (drawn > 0) text = fmt::format("\x1b[{}A\x1b[J", drawn);
-    for (std::size_t i = 0; i < std::min(rows, lines.size()); ++i) text += cut(lines[i], columns) + '\n';
+    if (drawn > 0) text = fmt::format("\r\x1b[{}A\x1b[J", drawn);
+    for (std::size_t i = 0; i < std::min(rows, lines.size()); ++i) text += lines[i] + '\n';
     write_out(text);
   }
 
@@ -119,7 +108,7 @@ void run(Session& session, const StatsOptions& options, int& exit_code) {
       [&](auto interface, auto frames) { collector.lost(interface, frames); },
       [&] {
         if (tell && collector.any())
-          screen.show(stats::to_table(report(unix_time()), shown, session.colour(), screen.columns()));
+          screen.show(stats::to_table(report(unix_time()), shown, session.colour(), Screen::columns()));
       });
 
   std::optional<base::Time> now;
@@ -130,7 +119,7 @@ void run(Session& session, const StatsOptions& options, int& exit_code) {
   else if (options.csv)
     write_out(stats::to_csv(result, shown));
   else
-    screen.finish(stats::to_table(result, shown, session.colour()));
+    screen.finish(stats::to_table(result, shown, session.colour(), Screen::columns()));
   if (!collector.any() && interrupted() == 0) {
     remark(fmt::format("amiroctl: stats: no frame came from {}", watching.source()));
     exit_code = exit_failure;

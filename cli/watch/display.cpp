@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "cli/shared/terminal.hpp"
+
 namespace ocm::cli {
 namespace {
 
@@ -45,7 +47,8 @@ void add_display_options(Verb verb, DisplayOptions& options) {
 Display::Display(std::string_view verb, Session& session, const DisplayOptions& options)
     : receiver_(session.catalogue()),
       printer_(make_output(format_of(options), session.catalogue(),
-                           selection_of(verb, session.catalogue(), options), session.colour())) {
+                           selection_of(verb, session.catalogue(), options), session.colour(),
+                           columns_of_output)) {
   printer_.flush();
 }
 

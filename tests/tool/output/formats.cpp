@@ -1,4 +1,6 @@
+#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -7,6 +9,7 @@
 #include "ocm/topics/amiro.hpp"
 
 #include "cli/output/output.hpp"
+#include "cli/shared/folding.hpp"
 
 namespace tool_output_formats_test {
 
@@ -69,6 +72,40 @@ TEST_CASE("pretty lines are for a person", "[output]") {
   const std::string chosen = shown(cli::make_pretty(amiro::catalogue, selection({"gyro.y"}), false), frames);
   CHECK(std::count(chosen.begin(), chosen.end(), '\n') == 1);
   CHECK(chosen.find("y   -0.0175 deg/s") != std::string::npos);
+}
+
+template <std::size_t columns>
+std::size_t terminal() {
+  return columns;
+}
+
+TEST_CASE("pretty lines fit a terminal, and no number is broken", "[output]") {
+  const std::string whole = shown(cli::make_pretty(amiro::catalogue, {}, false), frames);
+  const auto words = [](const std::string& text) {
+    std::vector<std::string> found;
+    std::istringstream in{text};
+    for (std::string word; in >> word;) found.push_back(word);
+    return found;
+  };
+  for (const auto& [columns, size] : {std::pair<cli::Columns, std::size_t>{terminal<40>, 40},
+                                      {terminal<57>, 57},
+                                      {terminal<80>, 80},
+                                      {terminal<120>, 120},
+                                      {terminal<200>, 200}})
+    for (const bool colour : {false, true}) {
+      const std::string text = shown(cli::make_pretty(amiro::catalogue, {}, colour, columns), frames);
+      CAPTURE(text);
+      std::istringstream lines{text};
+      for (std::string line; std::getline(lines, line);) CHECK(cli::extent(line).all <= size);
+      if (!colour) CHECK(words(text) == words(whole));
+    }
+  CHECK(shown(cli::make_pretty(amiro::catalogue, {}, false, terminal<200>), frames) == whole);
+  CHECK(shown(cli::make_pretty(amiro::catalogue, {}, false, terminal<40>), {frames[0]}) ==
+        "    0.000000  medium  gyroscope\n"
+        "    x    0.0525  y   -0.0175\n"
+        "    z         0 deg/s\n");
+  CHECK(shown(cli::make_pretty(amiro::catalogue, {}, false, terminal<80>), {frames[0]}) ==
+        "    0.000000  medium  gyroscope  x    0.0525  y   -0.0175  z         0 deg/s\n");
 }
 
 TEST_CASE("pretty lines say the time since the first frame, and how far before it a frame came", "[output]") {

@@ -61,14 +61,42 @@ class Terminal(Case):
         """What is drawn again in place has no line that breaks, and what matters is in sight."""
         for columns in (40, 80, 120, 200):
             shown = self.on_terminal("stats", "--duration", "1500ms", "--no-color", columns=columns)
-            live = shown.partition("\033[")[0].replace("\r\n", "\n").splitlines()  # up to where it is drawn anew
+            live, _, last = shown.replace("\r\n", "\n").partition("\r\033[")  # up to where it is drawn anew
+            live, last = live.splitlines(), last.partition("\033[J")[2].splitlines()
             self.assertTrue(live, shown)
-            self.assertLessEqual(max(map(len, live)), columns)
+            self.assertTrue(last, shown)
+            self.assertLessEqual(max(map(len, live + last)), columns)
+            self.assertIn("TOPIC", last[0])
             for word in ("TOPIC", "MISSING", "GAP", "LOAD", "FAULTS"):
                 self.assertIn(word, live[0])
             if columns in (40, 200):
                 self.assertEqual("JITTER" in live[0], columns == 200)
             self.assertRegex("\n".join(live), r"(?m)^gyro")
+
+    def test_a_table_that_just_fits_stays_as_it_is(self):
+        """Whatever the width: on a terminal as wide as a table is, the table is the same."""
+        log = os.path.join(self.folder, "gyro.log")
+        with open(log, "w", encoding="utf-8") as file:
+            file.write("".join(f"({i / 10:.6f}) can0 608#0300FFFF0000\n" for i in range(20) if i not in (7, 8)))
+        tables = {}
+
+        def table(columns):
+            if columns not in tables:
+                shown = self.on_terminal("stats", log, "--no-color", columns=columns).replace("\r\n", "\n")
+                tables[columns] = shown.splitlines()[:2]
+                self.assertLessEqual(max(map(len, shown.splitlines())), columns)
+            return tables[columns]
+
+        columns = 400
+        forms = []
+        while columns >= 40:
+            forms.append(table(columns))
+            width = max(map(len, table(columns)))
+            self.assertEqual(table(width), table(columns))
+            self.assertNotEqual(table(width - 1), table(columns))
+            columns = width - 1
+        self.assertGreater(len(forms), 9)
+        self.assertIn("PRIORITY", forms[0][0])
 
     def test_progress_of_a_recording_fits_the_width(self):
         for columns in (40, 200):
