@@ -13,11 +13,42 @@ namespace {
 
 using namespace ocm::cli;
 
+// In the order of --help.
+// clang-format off
 constexpr AddVerb verbs[] = {
-    add_list,   add_info,    add_analyse, add_generate, add_publish, add_once,       add_stop,    add_drive,
-    add_led,    add_set,     add_send,    add_listen,   add_doctor,  add_record,     add_replay,  add_decode,
-    add_encode, add_convert, add_stats,   add_plot,     add_run,     add_sim,        add_central, add_robots,
-    add_goto,   add_pause,   add_unpause, add_map,      add_line,    add_completion, add_man};
+    add_list,
+    add_info,
+    add_analyse,
+    add_generate,
+    add_publish,
+    add_once,
+    add_stop,
+    add_drive,
+    add_led,
+    add_set,
+    add_send,
+    add_listen,
+    add_doctor,
+    add_record,
+    add_replay,
+    add_decode,
+    add_encode,
+    add_convert,
+    add_stats,
+    add_plot,
+    add_run,
+    add_sim,
+    add_central,
+    add_robots,
+    add_goto,
+    add_pause,
+    add_unpause,
+    add_map,
+    add_line,
+    add_completion,
+    add_man,
+};
+// clang-format on
 
 /// What was printed must have arrived: a full disk shows when the last of it is written.
 int finish(int code) {

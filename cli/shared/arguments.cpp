@@ -591,6 +591,10 @@ Program::Outcome Program::run(int argc, char** argv) {
     app_->parse(words_of(argc, argv));
     return Outcome::done;
   } catch (const CLI::Success& asked) {
+    if (!root().called() && !root().left_over().empty()) {  // help on a verb that there is not
+      refuse(root(), misuse_of_words(root(), beginning_));
+      return Outcome::refused;
+    }
     std::ostringstream text;
     app_->exit(asked, text, text);
     print_help(text.str());

@@ -715,7 +715,9 @@ class Misuse(Case):
     def test_verbs(self):
         for typed, remedy in (("lisen", "did you mean 'listen'?"), ("lsit", "did you mean 'list'?"),
                               ("rec", "did you mean 'record'?"), ("frobnicate", "`amiroctl --help` lists the verbs")):
-            self.refused([typed], f"amiroctl: unknown verb '{typed}'\n          {remedy}\n")
+            said = f"amiroctl: unknown verb '{typed}'\n          {remedy}\n"
+            self.refused([typed], said)
+            self.refused([typed, "--help"], said)
         self.refused(["--bsu", "sim"], "amiroctl: sim: unknown option '--bsu'\n          did you mean '--bus'?\n")
         self.refused(["--bus"], "amiroctl: missing value for --bus\n          usage: --bus NAME\n")
 

@@ -1,7 +1,7 @@
-/// Text or packed updates: how robot and server agree. A robot that can pack says so in the field `formats` of
-/// its handshake; a server that chooses it says `{S,BIN}` before it confirms. Older robots never offer, older
-/// servers never ask, and both stay with text. Every link begins with text. A server reads both forms at any
-/// time, so that no lost sentence parts the two.
+/// Text or packed updates: how robot and server agree. A robot that can pack says so in the field `formats`
+/// of its handshake; a server that chooses it says `{S,BIN}` before it confirms. Older robots never offer,
+/// older servers never ask, and both stay with text. Every link begins with text. A server reads both forms
+/// at any time, so that no lost sentence parts the two.
 ///
 /// No heap, constexpr; O(1).
 #pragma once
