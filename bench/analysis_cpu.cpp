@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "ocm/analysis/assignment.hpp"
-#include "ocm/analysis/cpu.hpp"
 #include "ocm/analysis/sensitivity.hpp"
+#include "ocm/analysis/task_response.hpp"
 
 #include "bench/best_of.hpp"
 

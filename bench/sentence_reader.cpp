@@ -6,6 +6,8 @@
 // All of them refuse the same of a whole line: a wrong number of integers, one out of its range, one that is
 // not as a robot prints it (strtok's way alone; sscanf cannot tell 007 from 7). Only mapper::link::Reader
 // counts causes, and finds a sentence behind a torn one; the others give up the line.
+#include "ocm/mapper/link/sentence_reader.hpp"
+
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
@@ -17,7 +19,6 @@
 #include <vector>
 
 #include "ocm/mapper/link/packet.hpp"
-#include "ocm/mapper/link/reader.hpp"
 
 #include "tests/unit/mapper/link/link_testing.hpp"
 

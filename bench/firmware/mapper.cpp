@@ -10,8 +10,8 @@
 #include "ocm/mapper/app/models.hpp"
 #include "ocm/mapper/link/format.hpp"
 #include "ocm/mapper/link/packet.hpp"
-#include "ocm/mapper/link/reader.hpp"
 #include "ocm/mapper/link/sentence.hpp"
+#include "ocm/mapper/link/sentence_reader.hpp"
 #include "ocm/motion/pose_controller.hpp"
 #include "ocm/motion/pose_estimator.hpp"
 

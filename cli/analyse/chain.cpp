@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "ocm/analysis/cpu.hpp"
+#include "ocm/analysis/task_response.hpp"
 
 #include "cli/shared/json.hpp"
 #include "cli/shared/messages.hpp"

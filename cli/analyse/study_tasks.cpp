@@ -1,11 +1,11 @@
-/// Task sets through the analysis of ocm/analysis/cpu.hpp.
+/// Task sets through the analysis of ocm/analysis/task_response.hpp.
 #include <algorithm>
 
 #include <fmt/format.h>
 
 #include "ocm/analysis/assignment.hpp"
-#include "ocm/analysis/cpu.hpp"
 #include "ocm/analysis/sensitivity.hpp"
+#include "ocm/analysis/task_response.hpp"
 
 #include "cli/analyse/search.hpp"
 #include "cli/analyse/study.hpp"

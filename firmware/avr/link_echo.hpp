@@ -11,8 +11,8 @@
 #include "ocm/base/result.hpp"
 #include "ocm/mapper/link/format.hpp"
 #include "ocm/mapper/link/packet.hpp"
-#include "ocm/mapper/link/reader.hpp"
 #include "ocm/mapper/link/sentence.hpp"
+#include "ocm/mapper/link/sentence_reader.hpp"
 
 namespace ocm::firmware::avr {
 

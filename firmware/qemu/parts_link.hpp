@@ -18,8 +18,8 @@
 
 #include "firmware/chibios/port.hpp"
 #include "firmware/drivers/bus.hpp"
-#include "firmware/qemu/link.hpp"
 #include "firmware/qemu/machine.hpp"
+#include "firmware/qemu/parts_frames.hpp"
 
 namespace ocm::firmware::qemu {
 

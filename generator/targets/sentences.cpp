@@ -183,7 +183,8 @@ std::string sentences_header(const spec::SentencesModel& model, std::string_view
   out.line("///");
   out.comment(
       "The facts: which sentences there are, their fields with unit and range, their letters and words. "
-      "ocm/mapper/link/sentence.hpp writes them, reader.hpp reads them. No heap; everything is constexpr.");
+      "ocm/mapper/link/sentence.hpp writes them, sentence_reader.hpp reads them. No heap; everything is "
+      "constexpr.");
   for (const char* text : {"#pragma once", "", "#include <array>", "#include <cstddef>", "#include <cstdint>",
                            "#include <string_view>", "", "#include \"ocm/mapper/link/field.hpp\"", "",
                            "namespace ocm::mapper::link {", ""})

@@ -1,6 +1,6 @@
 #include "generator/targets/target.hpp"
 
-#include "generator/targets/header.hpp"
+#include "generator/targets/cpp.hpp"
 
 namespace ocm::generate {
 namespace {

@@ -20,7 +20,7 @@
 
 #include "firmware/boards/mapper/parts.hpp"
 #include "firmware/drivers/bus.hpp"
-#include "firmware/qemu/link.hpp"
+#include "firmware/qemu/parts_frames.hpp"
 #include "sim/parts/hmc5883l_model.hpp"
 #include "sim/parts/i2c_bus.hpp"
 #include "sim/parts/lsm6ds3_model.hpp"

@@ -1,4 +1,5 @@
-/// A request on the parts' line of an emulated board (firmware/qemu/link.hpp) as a transfer on a model.
+/// A request on the parts' line of an emulated board (firmware/qemu/parts_frames.hpp) as a transfer on a
+/// model.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +8,7 @@
 
 #include "ocm/base/result.hpp"
 
-#include "firmware/qemu/link.hpp"
+#include "firmware/qemu/parts_frames.hpp"
 #include "sim/parts/i2c_bus.hpp"
 #include "sim/parts/spi_device.hpp"
 

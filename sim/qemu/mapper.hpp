@@ -23,7 +23,7 @@
 #include "ocm/base/result.hpp"
 #include "ocm/transport/bus.hpp"
 
-#include "firmware/qemu/link.hpp"
+#include "firmware/qemu/parts_frames.hpp"
 #include "sim/mapper/parts.hpp"
 #include "sim/mapper/robot.hpp"
 #include "sim/parts/mapper.hpp"

@@ -30,7 +30,7 @@
 #include "ocm/host/descriptor.hpp"
 #include "ocm/transport/bus.hpp"
 
-#include "firmware/qemu/link.hpp"
+#include "firmware/qemu/parts_frames.hpp"
 
 namespace ocm::sim {
 
@@ -170,7 +170,7 @@ class QemuProcess {
   std::vector<host::Descriptor> lines_;
 };
 
-/// The host's end of a parts' line: requests in, answers out. (firmware/qemu/link.hpp)
+/// The host's end of a parts' line: requests in, answers out. (firmware/qemu/parts_frames.hpp)
 class PartsServer {
  public:
   /// Answers what has come: `answer(const firmware::qemu::link::Request&, std::span<std::uint8_t>) ->

@@ -24,7 +24,7 @@
 #include "ocm/transport/bus.hpp"
 
 #include "firmware/drivers/bxcan_filter.hpp"
-#include "firmware/qemu/link.hpp"
+#include "firmware/qemu/parts_frames.hpp"
 #include "sim/amiro/world.hpp"
 #include "sim/parts/board_parts.hpp"
 #include "sim/parts/di_wheel_drive.hpp"

@@ -18,7 +18,7 @@
 #include "ocm/base/time.hpp"
 #include "ocm/mapper/app/locator.hpp"
 #include "ocm/mapper/app/models.hpp"
-#include "ocm/mapper/link/reader.hpp"
+#include "ocm/mapper/link/sentence_reader.hpp"
 #include "ocm/motion/pose.hpp"
 
 #include "sim/mapper/running_robot.hpp"

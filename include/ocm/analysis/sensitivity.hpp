@@ -16,7 +16,7 @@
 #include <span>
 
 #include "ocm/analysis/checked.hpp"
-#include "ocm/analysis/cpu.hpp"
+#include "ocm/analysis/task_response.hpp"
 #include "ocm/analysis/task_set.hpp"
 #include "ocm/analysis/verdict.hpp"
 

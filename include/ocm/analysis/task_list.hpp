@@ -5,7 +5,8 @@
 ///     };
 ///     static_assert(ocm::analysis::schedulable<ocm::analysis::TaskList<Encoder, Estimator>>);
 ///
-/// The sets of spec/tasks.json are such lists (task_sets.hpp). Cost: one analysis at compile time (cpu.hpp).
+/// The sets of spec/tasks.json are such lists (task_sets.hpp). Cost: one analysis at compile time
+/// (task_response.hpp).
 #pragma once
 
 #include <array>
@@ -14,8 +15,8 @@
 #include <string_view>
 
 #include "ocm/analysis/board_admission.hpp"
-#include "ocm/analysis/cpu.hpp"
 #include "ocm/analysis/schedulable.hpp"
+#include "ocm/analysis/task_response.hpp"
 #include "ocm/analysis/task_set.hpp"
 #include "ocm/scheduling/port.hpp"
 

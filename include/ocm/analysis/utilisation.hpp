@@ -188,7 +188,7 @@ template <class Items>
 /// What a test of the utilisation says. All are sufficient and none is necessary: not_proven is no miss.
 enum class Proof : std::uint8_t {
   proven,              ///< every task meets its deadline
-  not_proven,          ///< the bound is exceeded: response times tell (cpu.hpp)
+  not_proven,          ///< the bound is exceeded: response times tell (task_response.hpp)
   undecided,           ///< too close to the bound for 62 binary digits
   not_rate_monotonic,  ///< a task of a shorter period is not the more urgent one: the test does not apply
   not_simple,          ///< jitter, blocking or a deadline before the period: the test does not apply

@@ -48,7 +48,7 @@ class Robot:
         return self.run(ms)
 
     def counters(self):
-        """Of the reader, behind its sentence of 34 bytes. [ocm/mapper/link/reader.hpp; an AVR aligns nothing]"""
+        """Of the reader, behind its sentence of 34 bytes. [ocm/mapper/link/sentence_reader.hpp; an AVR aligns nothing]"""
         self.tell(f"peek {symbol('echo') + 34} 40")
         memory = bytes.fromhex(self.process.stdout.readline().split()[1])
         return dict(zip(COUNTERS, struct.unpack("<10I", memory)))

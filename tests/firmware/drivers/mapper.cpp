@@ -19,7 +19,7 @@
 #include "firmware/boards/mapper/parts.hpp"
 #include "firmware/drivers/gp2y0a21yk.hpp"
 #include "firmware/drivers/lsm6ds3.hpp"
-#include "firmware/qemu/link.hpp"
+#include "firmware/qemu/parts_frames.hpp"
 #include "sim/parts/lsm6ds3_model.hpp"
 #include "tests/firmware/drivers/fixture.hpp"
 

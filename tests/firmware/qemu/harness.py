@@ -21,7 +21,7 @@ QEMU = shutil.which("qemu-system-arm")
 MACHINES = {"qemu_m3": "netduino2", "qemu_m4": "netduinoplus2"}
 CHIPS = {"di_wheel_drive": "qemu_m3", "light_ring": "qemu_m3", "power_management": "qemu_m4"}
 
-# The parts' line: kinds and errors. [firmware/qemu/link.hpp; include/ocm/base/result.hpp]
+# The parts' line: kinds and errors. [firmware/qemu/parts_frames.hpp; include/ocm/base/result.hpp]
 I2C, SPI, SET_DUTY, ENCODERS, INPUTS, OUTPUTS, CONVERT, SET_PULSE = 1, 2, 3, 4, 5, 6, 7, 8
 
 

@@ -12,8 +12,8 @@
 #include <catch2/catch.hpp>
 
 #include "ocm/base/time.hpp"
-#include "ocm/mapper/link/reader.hpp"
 #include "ocm/mapper/link/sentence.hpp"
+#include "ocm/mapper/link/sentence_reader.hpp"
 
 #include "sim/mapper/world.hpp"
 #include "sim/qemu/mapper.hpp"

@@ -6,7 +6,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "ocm/analysis/cpu.hpp"
+#include "ocm/analysis/task_response.hpp"
 
 namespace analysis_blocking_test {
 

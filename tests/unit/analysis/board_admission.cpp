@@ -11,7 +11,7 @@
 #include <catch2/catch.hpp>
 
 #include "ocm/analysis/can_response.hpp"
-#include "ocm/analysis/cpu.hpp"
+#include "ocm/analysis/task_response.hpp"
 #include "ocm/can/text.hpp"
 #include "ocm/controller/controller.hpp"
 #include "ocm/topics/amiro.hpp"

@@ -7,7 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include "ocm/cognitive/agreement.hpp"
-#include "ocm/mapper/link/reader.hpp"
+#include "ocm/mapper/link/sentence_reader.hpp"
 
 #include "unit/base/random.hpp"
 #include "unit/cognitive/testing/room.hpp"

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "ocm/mapper/link/reader.hpp"
+#include "ocm/mapper/link/sentence_reader.hpp"
 #include "ocm/motion/pose_estimator.hpp"
 #include "ocm/scheduling/publisher.hpp"
 

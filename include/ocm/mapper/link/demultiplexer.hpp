@@ -13,8 +13,8 @@
 #include "ocm/mapper/link/packed.hpp"
 #include "ocm/mapper/link/prefix.hpp"
 #include "ocm/mapper/link/quality.hpp"
-#include "ocm/mapper/link/reader.hpp"
 #include "ocm/mapper/link/sentence.hpp"
+#include "ocm/mapper/link/sentence_reader.hpp"
 
 namespace ocm::mapper::link {
 

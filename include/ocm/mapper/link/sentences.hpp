@@ -4,7 +4,8 @@
 /// ended by a line feed.
 ///
 /// The facts: which sentences there are, their fields with unit and range, their letters and words.
-/// ocm/mapper/link/sentence.hpp writes them, reader.hpp reads them. No heap; everything is constexpr.
+/// ocm/mapper/link/sentence.hpp writes them, sentence_reader.hpp reads them. No heap; everything is
+/// constexpr.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
 /// An update that lies whole in memory, as on a server that reads a robot's line in blocks: a number a step,
 /// its characters in one word, and no jump that depends on its length or sign. The reader's short cut
-/// (reader.hpp): what is not taken here, right or wrong, the reader takes a character at a time.
+/// (sentence_reader.hpp): what is not taken here, right or wrong, the reader takes a character at a time.
 ///
 /// No heap, constexpr, any byte order and alignment; O(1), some 50 instructions a number on a 64-bit machine.
 #pragma once

@@ -1,7 +1,7 @@
 // What a robot or a server may hear: a sentence is taken exactly as it would be written; each opening brace
 // has one outcome; after any noise the next sentence is heard; and in blocks all is as character by
 // character.
-#include "ocm/mapper/link/reader.hpp"
+#include "ocm/mapper/link/sentence_reader.hpp"
 
 #include "tests/robustness/fuzz/fuzz.hpp"
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "firmware/qemu/link.hpp"
+#include "firmware/qemu/parts_frames.hpp"
 #include "sim/qemu/robot.hpp"
 #include "tests/robustness/fuzz/fuzz.hpp"
 

@@ -14,8 +14,8 @@
 
 #include "ocm/base/time.hpp"
 #include "ocm/mapper/link/central.hpp"
-#include "ocm/mapper/link/reader.hpp"
 #include "ocm/mapper/link/sentence.hpp"
+#include "ocm/mapper/link/sentence_reader.hpp"
 
 namespace ocm::test {
 

@@ -8,7 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include "ocm/mapper/app/robot.hpp"
-#include "ocm/mapper/link/reader.hpp"
+#include "ocm/mapper/link/sentence_reader.hpp"
 
 #include "unit/base/explore.hpp"
 #include "unit/mapper/app/app_testing.hpp"

@@ -13,7 +13,7 @@
 #include <catch2/catch.hpp>
 
 #include "ocm/analysis/blocking.hpp"
-#include "ocm/analysis/cpu.hpp"
+#include "ocm/analysis/task_response.hpp"
 #include "ocm/analysis/task_sets.hpp"
 #include "ocm/mapper/app/robot.hpp"
 #include "ocm/simulation/cpu.hpp"

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "ocm/mapper/link/reader.hpp"
 #include "ocm/mapper/link/sentence.hpp"
+#include "ocm/mapper/link/sentence_reader.hpp"
 
 #include "unit/base/random.hpp"
 

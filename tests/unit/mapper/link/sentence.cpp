@@ -11,7 +11,7 @@
 
 #include "ocm/mapper/link/format.hpp"
 #include "ocm/mapper/link/packed.hpp"
-#include "ocm/mapper/link/reader.hpp"
+#include "ocm/mapper/link/sentence_reader.hpp"
 
 #include "unit/mapper/link/link_testing.hpp"
 

@@ -7,7 +7,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "ocm/mapper/link/reader.hpp"
+#include "ocm/mapper/link/sentence_reader.hpp"
 
 #include "unit/mapper/link/link_testing.hpp"
 

@@ -1,4 +1,4 @@
-#include "ocm/mapper/link/reader.hpp"
+#include "ocm/mapper/link/sentence_reader.hpp"
 
 #include <cstdio>
 #include <string>
@@ -11,7 +11,7 @@
 
 #include "unit/mapper/link/link_testing.hpp"
 
-namespace mapper_link_reader_test {
+namespace mapper_link_sentence_reader_test {
 
 using namespace ocm::mapper::link;
 using ocm::test::Random;
@@ -270,4 +270,4 @@ TEST_CASE("line: measured rate of splices", "[.measure]") {
   }
 }
 
-}  // namespace mapper_link_reader_test
+}  // namespace mapper_link_sentence_reader_test

@@ -12,14 +12,14 @@
 #include <catch2/catch.hpp>
 
 #include "ocm/analysis/blocking.hpp"
-#include "ocm/analysis/cpu.hpp"
+#include "ocm/analysis/task_response.hpp"
 #include "ocm/simulation/cpu.hpp"
 
-#include "unit/analysis/naive_cpu.hpp"
+#include "unit/analysis/naive_task_response.hpp"
 #include "unit/base/explore.hpp"
 #include "unit/base/random.hpp"
 
-namespace analysis_cpu_properties_test {
+namespace analysis_task_response_properties_test {
 
 using namespace ocm;
 using namespace ocm::analysis;
@@ -410,4 +410,4 @@ TEST_CASE("a bound that is two ticks too low is noticed") {
   CHECK(hold(without, {.jitter = true, .resources = true}, Protocol::ceiling, 100 * effort, 14).beyond > 0);
 }
 
-}  // namespace analysis_cpu_properties_test
+}  // namespace analysis_task_response_properties_test

@@ -6,10 +6,10 @@
 
 #include <catch2/catch.hpp>
 
-#include "ocm/analysis/cpu.hpp"
+#include "ocm/analysis/task_response.hpp"
 #include "ocm/analysis/utilisation.hpp"
 
-namespace analysis_cpu_robots_test {
+namespace analysis_task_response_robots_test {
 
 using namespace ocm::analysis;
 
@@ -102,4 +102,4 @@ TEST_CASE("who delays the tower most") {
   CHECK(tower.slack() == 190'555'700);
 }
 
-}  // namespace analysis_cpu_robots_test
+}  // namespace analysis_task_response_robots_test

@@ -1,4 +1,4 @@
-#include "ocm/analysis/cpu.hpp"
+#include "ocm/analysis/task_response.hpp"
 
 #include <array>
 #include <limits>
@@ -9,7 +9,7 @@
 
 #include "unit/base/random.hpp"
 
-namespace analysis_cpu_test {
+namespace analysis_task_response_test {
 
 using namespace ocm::analysis;
 
@@ -238,4 +238,4 @@ TEST_CASE("two thousand tasks") {
   CHECK(response_time(tasks, 2047).reason == Reason::overloaded);
 }
 
-}  // namespace analysis_cpu_test
+}  // namespace analysis_task_response_test

@@ -1,5 +1,5 @@
 // The parts' line between an emulated board and its host, both readers.
-#include "firmware/qemu/link.hpp"
+#include "firmware/qemu/parts_frames.hpp"
 
 #include <algorithm>
 #include <array>

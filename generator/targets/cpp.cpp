@@ -1,4 +1,4 @@
-#include "generator/targets/header.hpp"
+#include "generator/targets/cpp.hpp"
 
 #include <algorithm>
 #include <cstdint>
