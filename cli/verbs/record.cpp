@@ -44,10 +44,7 @@ struct RecordOptions {
 };
 
 std::string format_names() {
-  std::string names;
-  for (const auto& format : logs::log_formats())
-    if (format.writer != nullptr) names += fmt::format("{}{}", names.empty() ? "" : ", ", format.name);
-  return names;
+  return fmt::format("{}", fmt::join(logs::writable_formats(), ", "));
 }
 
 /// --to, or what the file's name ends in; candump where neither says anything.

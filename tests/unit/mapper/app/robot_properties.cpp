@@ -17,7 +17,7 @@ namespace mapper_app_robot_properties_test {
 
 using namespace app_testing;
 
-const auto random_runs = static_cast<std::uint32_t>(ocm::test::explored(40) / ocm::test::coarser(5));
+const auto random_runs = static_cast<std::uint32_t>(ocm::test::explored(40));
 
 /// An operator without sense, on a link that comes and goes, with parts that fail now and then.
 template <class Bench>
