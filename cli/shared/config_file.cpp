@@ -14,13 +14,15 @@ class Reader {
 
   void read(const toml::table& table, const std::string& name) {
     for (const auto& [key, node] : table) {
-      const std::string inner = name.empty() ? std::string{key.str()} : fmt::format("{}.{}", name, key.str());
+      // An empty name, which TOML has in quotes, is none of ours, and not that of the tables above all.
+      const std::string own = key.str().empty() ? "\"\"" : std::string{key.str()};
+      const std::string inner = name.empty() ? own : fmt::format("{}.{}", name, own);
       if (const auto* deeper = node.as_table()) {
         if (deeper->empty()) file_.empty_tables.push_back({inner, key.source().begin.line});
         read(*deeper, inner);
         continue;
       }
-      Setting setting{name, std::string{key.str()}, {}, key.source().begin.line};
+      Setting setting{name, own, {}, key.source().begin.line};
       if (read(node, setting)) file_.settings.push_back(std::move(setting));
     }
   }

@@ -211,6 +211,13 @@ class Config(harness.Case):
             self.assertIn(f"{self.file}:2: [lisen", err)
             self.assertIn("is not a verb", err)
 
+    def test_a_table_without_a_name(self):
+        """TOML has it, in quotes. It is not what stands above all tables."""
+        self.write('[""]\nbus = "sim"\n')
+        _, err = self.run_tool("list", code=2)
+        self.assertIn(f"{self.file}:2: ", err)
+        self.assertIn('""', err)
+
     def test_a_pipe_to_which_no_program_writes(self):
         os.mkfifo(os.path.join(self.folder, "pipe"))
         _, err = self.run_tool("--config", os.path.join(self.folder, "pipe"), "list", code=2)
