@@ -180,7 +180,7 @@ def _(context):
         amiroctl(context, '--bus', 'vcan0', 'once', 'floor', '--wait', '10s')  # a board that has just started may have no sample
         with Candump('vcan0') as log:
             cansend('204#02')                        # floor, once
-            time.sleep(0.5)
+            eventually(lambda: any(frame.id == '604' for frame in log.frames()), 'floor, once: an answer')
             cansend('208#01')                        # gyroscope at the default period, 50 ms
             time.sleep(1)
             cansend('208#00')

@@ -138,7 +138,7 @@ class OnTheBus(Case):
         self.start_sim()
         listener = self.listen("motors", "--timeout", "20s")
         drive = self.start("drive", "5cm/s")
-        time.sleep(0.5)
+        self.assertIn("50C3000000000000", listener.stdout.readline())
         self.interrupt(drive)
         self.assertEqual(drive.returncode, 130)
         self.settle()
