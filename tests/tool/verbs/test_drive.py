@@ -205,13 +205,13 @@ class LateSteps(Drive):
     def test_a_script_that_stood_still_carries_out_no_late_steps(self):
         self.start_sim()
         listener = self.listen("--commands", "--timeout", "20s")
-        steps = "".join(f"{1000 + 100 * i}ms led 1 {i},0,0\n" for i in range(1, 10))
-        run = self.start("run", self.script("0s led 1 red\n" + steps + "60s led 1 blue\n"))
+        # For a minute: on a busy machine it is stopped after some of them.
+        steps = "".join(f"{1000 + 100 * i}ms led 1 {i % 256},0,0\n" for i in range(1, 600))
+        run = self.start("run", self.script("0s led 1 red\n" + steps))
         self.assertIn("FF0000", listener.stdout.readline())
         run.send_signal(signal.SIGSTOP)
         time.sleep(2)
-        # On a busy machine it was stopped after some of the steps: those come before this one.
-        self.run_tool("led", "2", "green")
+        self.run_tool("led", "2", "green")  # behind the steps before
         for line in listener.stdout:
             if "00FF00" in line:
                 break
