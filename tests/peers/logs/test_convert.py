@@ -140,7 +140,7 @@ class Convert(Case):
                     break
                 time.sleep(0.01)
             process.send_signal(number)
-            _, err = process.communicate(timeout=10)
+            _, err = process.communicate(timeout=60)
             self.assertEqual(process.returncode, 128 + number)
             self.assertEqual(self.text(out), LOG)
             self.assertIn(b"beginning only", err)

@@ -233,7 +233,7 @@ class FullDisk(OnTheBus):
                     client.send(IDENTIFIER, i.to_bytes(4, "big") + random.randbytes(4))
                     i += 1
                 client.close()
-                err = recorder.communicate(timeout=20)[1]
+                err = recorder.communicate(timeout=60)[1]
                 self.assertEqual(recorder.returncode, 1, err)
                 self.assertIn("No space left", err)
                 self.assertRegex(err, r"\d+ frames can be read, [1-9]\d* were not written")

@@ -96,8 +96,8 @@ class Process:
                        f'{self.command} listens on {listens_on}')
 
     def read(self, file):
-        file.seek(0)
-        return file.read()
+        # Not by seek(): the program writes at the same offset, and would write over what it has written.
+        return os.pread(file.fileno(), os.fstat(file.fileno()).st_size, 0).decode()
 
     stdout = property(lambda self: self.read(self.out))
     stderr = property(lambda self: self.read(self.err))

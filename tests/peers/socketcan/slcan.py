@@ -22,7 +22,7 @@ class Relay:
     def finish(self):
         """Frames that the kernel sent, and the tool; lines that were none: none."""
         sh('ip', 'link', 'set', self.name, 'down')
-        out, _ = self.process.communicate(timeout=20)
+        out, _ = self.process.communicate(timeout=60)
         counts = re.fullmatch(r'kernel sent (\d+), faults (\d+); other sent (\d+), faults (\d+)\n', out)
         expect(counts, f'what the relay said: {out!r}')
         equal((counts[2], counts[4]), ('0', '0'), 'lines that the adapters did not understand')

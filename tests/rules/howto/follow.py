@@ -250,8 +250,8 @@ class Terminals:
 
 
 def printed(output):
-    output.seek(0)
-    return output.read()
+    # Not by seek(): the program writes at the same offset, and would write over what it has written.
+    return os.pread(output.fileno(), os.fstat(output.fileno()).st_size, 0).decode()
 
 
 def copy(source, build, root):

@@ -67,7 +67,7 @@ class Case(unittest.TestCase):
 
     def interrupt(self, process, number=signal.SIGINT):
         process.send_signal(number)
-        return process.communicate(timeout=10)
+        return process.communicate(timeout=60)
 
     @staticmethod
     def objects(text):

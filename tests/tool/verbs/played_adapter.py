@@ -8,6 +8,8 @@ import threading
 import time
 import tty
 
+import waiting  # the harness has put its folder on the path
+
 FRAME = re.compile(r"^(?:t([0-7][0-9A-Fa-f]{2})|T([01][0-9A-Fa-f]{7}))([0-8])((?:[0-9A-Fa-f]{2})*)$")
 
 
@@ -23,6 +25,7 @@ class Adapter:
         self.master, self.slave = pty.openpty()
         tty.setraw(self.slave)
         self.path = os.ttyname(self.slave)
+        self.quiet_looks = 0  # so many times there was nothing to read, one after another
         self.ended = threading.Event()
         self.asleep = threading.Event()  # reads nothing and answers nothing
         self.thread = threading.Thread(target=self.run, daemon=True)
@@ -32,10 +35,13 @@ class Adapter:
         line = b""
         while not self.ended.is_set():
             if self.asleep.is_set():
+                self.quiet_looks = 0
                 time.sleep(0.01)
                 continue
             if not select.select([self.master], [], [], 0.02)[0]:
+                self.quiet_looks += 1
                 continue
+            self.quiet_looks = 0
             for byte in os.read(self.master, 4096):
                 if byte != 13:
                     line += bytes([byte])
@@ -84,6 +90,11 @@ class Adapter:
             self.stamped = command == "Z1"
             return ok, []
         return refused, []
+
+    def read_all(self):
+        """Returns when it has obeyed all that was on the line, and nothing more comes for 0.2 s."""
+        self.quiet_looks = -1  # the look that is under way may have been before the last byte
+        waiting.until(lambda: self.quiet_looks >= 10, "the adapter has read all of the line")
 
     def say(self, text):
         os.write(self.master, text.encode("latin-1"))

@@ -66,7 +66,7 @@ class Admission(Case):
         self.run_tool("publish", "ring", "50ms")
         listener = self.listen("power_management_refusal", "--count", "1", "--timeout", "5s")
         self.run_tool("publish", "ring", "1ms", "--priority", "urgent", "--force", "--no-confirm")
-        out, _ = listener.communicate(timeout=10)
+        out, _ = listener.communicate(timeout=60)
         refusal = self.objects(out)[0]["fields"]
         self.assertEqual((refusal["topic"], refusal["reason"], refusal["refused"]), (0x1F, NOT_SCHEDULABLE, 1))
         # What ran goes on as it did.

@@ -15,7 +15,7 @@ class OnTheBus(Case):
         listener = self.listen("gyro", "-n", "3", "--timeout", "10s")
         _, err = self.run_tool("publish", "gyro", "100ms")
         self.assertEqual(err.splitlines(), ["bus: sim (the only one there is; --bus chooses)"])
-        out, err = listener.communicate(timeout=15)
+        out, err = listener.communicate(timeout=60)
         self.assertEqual(listener.returncode, 0, err)
         samples = self.objects(out)
         self.assertEqual(len(samples), 3)
@@ -67,7 +67,7 @@ class OnTheBus(Case):
         listener = self.listen("--commands", "-n", "3", "--timeout", "10s")
         self.run_tool("stop", "mag")
         self.run_tool("publish", "gyro", "5s", "--priority", "high")
-        out, _ = listener.communicate(timeout=15)
+        out, _ = listener.communicate(timeout=60)
         stop, publish, sample = self.objects(out)
         self.assertEqual((stop["id"], stop["fields"]["mode"]), ("205", "stop"))
         self.assertEqual((publish["id"], publish["fields"]), ("108", {"mode": "publish", "period": 5}))
@@ -79,7 +79,7 @@ class OnTheBus(Case):
             listener = self.listen("--timeout", "1s", *strict)
             self.run_tool("send", "6F0#00")
             self.run_tool("send", "608#0000")
-            _, err = listener.communicate(timeout=15)
+            _, err = listener.communicate(timeout=60)
             self.assertEqual(listener.returncode, code, err)
             self.assertIn("1 of unknown identifier", err)
             self.assertIn("1 of wrong length", err)
@@ -102,7 +102,7 @@ class OnTheBus(Case):
         sim = self.start_sim()
         listener = self.listen()
         self.interrupt(sim)
-        _, err = listener.communicate(timeout=10)
+        _, err = listener.communicate(timeout=60)
         self.assertEqual(listener.returncode, 1)
         self.assertIn("sim", err)
 
@@ -111,7 +111,7 @@ class OnTheBus(Case):
         self.run_tool("publish", "gyro", "10ms")
         pipe = subprocess.Popen(f"'{AMIROCTL}' listen --json | head -2", shell=True, text=True, env=self.environment,
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-        out, _ = pipe.communicate(timeout=10)
+        out, _ = pipe.communicate(timeout=60)
         self.assertEqual(len(self.objects(out)), 2)
 
     def test_a_full_disk_is_told(self):
@@ -174,7 +174,7 @@ class OnTheBus(Case):
             if stopped:
                 self.run_tool("stop")
             drive.send_signal(signal.SIGCONT)
-            _, err = drive.communicate(timeout=10)
+            _, err = drive.communicate(timeout=60)
             self.assertEqual(drive.returncode, 1)
             self.assertRegex(err, words)
             self.settle()
@@ -191,7 +191,7 @@ class OnTheBus(Case):
         self.assertIn("50C3000000000000", listener.stdout.readline())
         self.settle()
         sim.send_signal(signal.SIGSTOP)
-        _, err = drive.communicate(timeout=10)
+        _, err = drive.communicate(timeout=60)
         self.assertEqual(drive.returncode, 1)
         self.assertIn("no set point has left sim for ", err)
         self.assertIn("the simulator takes none: was it stopped (Ctrl-Z; `fg` lets it go on)", err)
@@ -208,7 +208,7 @@ class OnTheBus(Case):
         self.settle()
         sim.send_signal(signal.SIGSTOP)
         for verb in verbs:
-            _, err = verb.communicate(timeout=20)
+            _, err = verb.communicate(timeout=60)
             self.assertEqual(verb.returncode, 1, err)
             self.assertRegex(err, r"amiroctl: the simulator( \(process \d+\))? does not answer")
             self.assertIn("it may be stopped (Ctrl-Z)", err)

@@ -91,7 +91,7 @@ class Talk:
             self.process.stdin.close()
         else:
             self.process.send_signal(number)
-        got = self.process.wait(timeout=20)
+        got = self.process.wait(timeout=60)
         error = self.process.stderr.read()
         self.reader.join(timeout=5)
         if got != code:
@@ -270,7 +270,7 @@ class OnSerialLines(Case):
         for _ in range(100):
             robot.say("{S,IDL}\n" * 500)
         process.send_signal(signal.SIGINT)
-        out, error = process.communicate(timeout=20)
+        out, error = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 130)
         lost = int(re.search(r", (\d+) lost: the server did not read", error.decode())[1])
         kept = out.decode().count("[0]:AVR:{S,IDL}\n")
@@ -304,7 +304,7 @@ class OnSerialLines(Case):
         process.stdout.close()
         process.stdin.write(b"start\n")
         process.stdin.flush()
-        self.assertEqual(process.wait(timeout=10), 0)
+        self.assertEqual(process.wait(timeout=60), 0)
         process.stdin.close()
         process.stderr.close()
 
@@ -478,7 +478,7 @@ class AtATerminal(Case):
         for words in ("start\r\n", "scanning\r\n", "0:020000000000:AVR\r\n"):  # the first by the terminal's own echo
             self.assertIn(words, text)
         os.write(master, b"\x04")  # Ctrl-D
-        self.assertEqual(process.wait(timeout=10), 0)
+        self.assertEqual(process.wait(timeout=60), 0)
         process.stderr.close()
         os.close(master)
 

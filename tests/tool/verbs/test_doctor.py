@@ -67,7 +67,7 @@ class Doctor(Case):
         self.start_sim()
         listener = self.listen("di_wheel_drive_refusal", "-n", "1")
         self.run_tool("send", "201#01")
-        out, _ = listener.communicate(timeout=10)
+        out, _ = listener.communicate(timeout=60)
         self.assertEqual(json.loads(out)["fields"],
                          {"topic": 1, "reason": 3, "refused": 1, "not_sampled": 0})
 
@@ -91,7 +91,7 @@ class Doctor(Case):
         self.settle()
         self.run_tool("send", "7FF#00")
         self.run_tool("send", "608#00")
-        out, _ = doctor.communicate(timeout=10)
+        out, _ = doctor.communicate(timeout=60)
         self.assertEqual(doctor.returncode, 1)
         self.assertEqual([w[2] for w in self.what(json.loads(out))],
                          ["1 frame that the spec does not know", "1 frame of a wrong length"])

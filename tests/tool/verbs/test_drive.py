@@ -53,8 +53,8 @@ class TwoCommanders(Drive):
         doctor = self.start("doctor", "--json", "--listen", "1s")
         self.assertIn("bus: sim", doctor.stderr.readline())
         _, second = self.run_tool("drive", BACKWARDS, "--for", "1200ms", "--force")
-        out, _ = doctor.communicate(timeout=10)
-        _, err = first.communicate(timeout=10)  # the end of the second is a stop
+        out, _ = doctor.communicate(timeout=60)
+        _, err = first.communicate(timeout=60)  # the end of the second is a stop
         self.assertEqual(first.returncode, 1)
         self.assertIn(STOPPED, err)
         for text, frame in ((err, "201#B03CFFFF00000000"), (second, FORWARDS)):
@@ -74,7 +74,7 @@ class TwoCommanders(Drive):
         run = self.start("run", self.script("0s drive 5cm/s\n1s stop\n"))
         self.assertIn("50C3000000000000", listener.stdout.readline())
         self.run_tool("set", "motors", "x=-1cm/s")
-        _, err = run.communicate(timeout=10)
+        _, err = run.communicate(timeout=60)
         self.assertEqual(run.returncode, 0)
         self.assertEqual(err.count("run: another program commands motors, too: 201#F0D8FFFF00000000"), 1)
         self.assertIn("run: 1 set point of another program came meanwhile", err)
@@ -98,7 +98,7 @@ class TwoCommanders(Drive):
             drive = self.driving()
             listener = self.listen("motors", "--timeout", "2s")
             self.run_tool(*stop)
-            _, err = drive.communicate(timeout=10)
+            _, err = drive.communicate(timeout=60)
             self.assertEqual(drive.returncode, 1)
             self.assertIn(STOPPED, err)
             time.sleep(0.3)
@@ -108,10 +108,10 @@ class TwoCommanders(Drive):
     def test_a_stop_ends_a_script_that_has_set_motors_without_a_hold(self):
         self.start_sim()
         listener = self.listen("motors", "--timeout", "20s")
-        run = self.start("run", self.script("0s set motors x=5cm/s\n5s drive 5cm/s\n"))
+        run = self.start("run", self.script("0s set motors x=5cm/s\n60s drive 5cm/s\n"))
         self.assertIn("50C3000000000000", listener.stdout.readline())
         self.run_tool("stop")
-        _, err = run.communicate(timeout=3)
+        _, err = run.communicate(timeout=30)
         self.assertEqual(run.returncode, 1)
         self.assertIn(STOPPED + "run", err)
 
@@ -142,7 +142,7 @@ class Unforeseen(Drive):
             while read not in process.stderr.readline():
                 pass
             process.stderr.close()
-        process.wait(timeout=20)
+        process.wait(timeout=60)
         time.sleep(0.2)
         out, _ = self.interrupt(listener)
         return [e["data"] for e in self.objects(out)], process.returncode
@@ -216,7 +216,7 @@ class LateSteps(Drive):
             if "00FF00" in line:
                 break
         run.send_signal(signal.SIGCONT)
-        _, err = run.communicate(timeout=10)
+        _, err = run.communicate(timeout=60)
         self.assertEqual(run.returncode, 1, err)
         self.assertRegex(err, r"run: this program did not run for [0-9.]+m?s, so no further command is sent")
         self.assertNotIn("MAY STILL MOVE", err)
@@ -240,7 +240,7 @@ class LateSteps(Drive):
         run.send_signal(signal.SIGSTOP)
         time.sleep(1.5)
         run.send_signal(signal.SIGCONT)
-        _, err = run.communicate(timeout=10)
+        _, err = run.communicate(timeout=60)
         self.assertEqual(run.returncode, 1, err)
         self.assertRegex(err, r"run: this program did not run for .*, so the drive has ended; the motors were set to zero")
         self.settle()

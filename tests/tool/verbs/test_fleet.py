@@ -205,7 +205,7 @@ class Goto(Line):
         self.avr.speed = 1
         tool = self.on_the_way()
         self.central.drop(self.avr)
-        _, err = tool.communicate(timeout=10)
+        _, err = tool.communicate(timeout=60)
         self.assertEqual(tool.returncode, 1)
         self.assertIn("AVR is lost: its link is gone", err)
 
@@ -279,7 +279,7 @@ class TheLine(Line):
         tool = self.start("robots", "--listen", "30s", "--scan", "200ms")
         time.sleep(1.5)
         self.central.unplug()
-        _, err = tool.communicate(timeout=10)
+        _, err = tool.communicate(timeout=60)
         self.assertEqual(tool.returncode, 1)
         self.assertIn("is gone", err)
 

@@ -175,7 +175,7 @@ class Line(Case):
         self.assertEqual(self.objects(process.stdout.readline())[0]["type"], "idle")
         os.close(line)
         os.close(robot)
-        _, err = process.communicate(timeout=10)
+        _, err = process.communicate(timeout=60)
         self.assertIn("1 whole sentence, 0 damaged", err)
 
     def test_a_reader_that_goes_away_and_a_full_disk(self):

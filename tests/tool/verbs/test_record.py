@@ -72,7 +72,7 @@ class Recording(Case):
         self.start_sim()
         recorder = self.record("-o", "a.log", "-n", "20")
         self.run_tool("publish", "gyro", "50ms")
-        self.assertEqual(recorder.wait(10), 0)
+        self.assertEqual(recorder.wait(timeout=60), 0)
         with open(self.path("a.log")) as file:
             stamps = [float(LINE.match(line)[1]) for line in file if "608#" in line]
         self.assertEqual(len(stamps), 19)  # and the request
@@ -130,7 +130,7 @@ class Recording(Case):
         raw = self.record("-o", "raw.log", "--filter", "609:7FF", "-n", "5")
         others = self.record("-o", "others.log", "--raw-ids", "608~7FF", "-n", "5")
         for recorder in (topic, raw, others):
-            self.assertEqual(recorder.wait(10), 0)
+            self.assertEqual(recorder.wait(timeout=60), 0)
         self.assertEqual({number for number, _ in self.frames("topic.log")}, {"608"})
         self.assertEqual({number for number, _ in self.frames("raw.log")}, {"609"})
         self.assertEqual({number for number, _ in self.frames("others.log")}, {"609"})
@@ -199,7 +199,7 @@ class Recording(Case):
         player = threading.Thread(target=serve)
         player.start()
         recorder = self.record("--bus", "sim", "-o", "part.log", "--split", "300ms")
-        recorder.communicate(timeout=10)
+        recorder.communicate(timeout=60)
         player.join()
         server.close()
         self.assertGreaterEqual(len(self.ring("part_")), 5)
@@ -236,7 +236,7 @@ class Recording(Case):
         recorder = self.record("-o", "a.log")
         self.send_numbered(10)
         os.unlink(self.path("a.log"))
-        _, err = recorder.communicate(timeout=10)
+        _, err = recorder.communicate(timeout=60)
         self.assertEqual(recorder.returncode, 1, err)
         self.assertIn("a.log was deleted while it was recorded", err)
         self.assertIn("0 frames can be read, 10 were not written", err)
@@ -296,7 +296,7 @@ class Recording(Case):
         sent = self.send_numbered(50)
         self.settle()
         self.interrupt(sim)
-        _, err = recorder.communicate(timeout=10)
+        _, err = recorder.communicate(timeout=60)
         self.assertEqual(recorder.returncode, 1)
         self.assertIn("was ended", err)
         self.assertEqual(self.frames("a.log"), sent)
@@ -309,7 +309,7 @@ class Recording(Case):
         waiting.until_asleep(sim.pid)
         _, said_sim = self.interrupt(sim)
         recorder.send_signal(signal.SIGCONT)
-        _, err = recorder.communicate(timeout=10)
+        _, err = recorder.communicate(timeout=60)
         self.assertEqual(recorder.returncode, 1)
         self.assertIn("was ended", err)
         written = self.frames("a.log")
@@ -325,7 +325,7 @@ class Recording(Case):
         recorder = self.record("-o", "a.log", "--no-sync",
                                preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
         sent = self.send_numbered(3000)
-        _, err = recorder.communicate(timeout=20)
+        _, err = recorder.communicate(timeout=60)
         self.assertEqual(recorder.returncode, 1, err)
         written = self.frames("a.log")
         self.assertEqual(written, sent[:len(written)])
@@ -368,7 +368,7 @@ class Recording(Case):
         except OSError:
             pass  # the end of a terminal
         os.close(ours)
-        self.assertEqual(recorder.wait(5), 0)
+        self.assertEqual(recorder.wait(timeout=60), 0)
         said = text.decode()
         self.assertRegex(said, r"\d+ frames, [12]\d\d/s, sim [3-6] % full, 0 lost, [0-9.]+ (bytes|kB), "
                                r"[0-9.]+ \S+ free")

@@ -67,7 +67,7 @@ class StuckOutput(Case):
                 self.wait_for_handler(process)
                 time.sleep(0.3)
                 process.send_signal(signal.SIGINT)
-                self.assertEqual(process.wait(timeout=15), 128 + signal.SIGINT)
+                self.assertEqual(process.wait(timeout=60), 128 + signal.SIGINT)
                 os.close(reader)
 
     def test_a_slow_reader_gets_whole_lines(self):
@@ -84,7 +84,7 @@ class StuckOutput(Case):
                 time.sleep(0.2)
                 with os.fdopen(reader, encoding="utf-8") as out:
                     lines = out.read().lstrip("\n").splitlines(keepends=True)
-                self.assertEqual(process.wait(timeout=15), 128 + signal.SIGINT)
+                self.assertEqual(process.wait(timeout=60), 128 + signal.SIGINT)
                 self.assertGreater(len(lines), 0)
                 self.assertTrue(lines[-1].endswith("}\n"))
                 for line in lines:
@@ -98,7 +98,7 @@ class StuckOutput(Case):
                           ["replay", self.log, "--dry-run"], ["plot", self.log, "gyro.z", "-o", "-"], ["listen"]):
             with self.subTest(arguments=arguments), open("/dev/full", "w", encoding="utf-8") as full:
                 process = self.start_to(full, *arguments)
-                _, err = process.communicate(timeout=15)
+                _, err = process.communicate(timeout=60)
                 self.assertEqual(process.returncode, 1, err)
                 self.assertIn("No space left on device", err)
                 self.assertNotIn("sent ", err)

@@ -29,7 +29,7 @@ class Terminal(Case):
                 break
             shown += piece
         os.close(primary)
-        self.assertEqual(process.wait(timeout=10), 0)
+        self.assertEqual(process.wait(timeout=60), 0)
         return shown.decode()
 
     def setUp(self):

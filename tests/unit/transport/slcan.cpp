@@ -30,9 +30,13 @@ std::string text(const can::Frame& f) {
 /// What the adapter puts on its bus.
 struct Wire {
   std::size_t room = SIZE_MAX;
+  std::size_t refused = 0;
   std::vector<can::Frame> sent;
   base::Result<bool> send(const can::Frame& f) {
-    if (sent.size() >= room) return false;
+    if (sent.size() >= room) {
+      ++refused;
+      return false;
+    }
     sent.push_back(f);
     return true;
   }
@@ -394,10 +398,10 @@ TEST_CASE("slcan: what a full adapter refuses is sent again, in the order of eac
   const auto bus = open(device.path(), options);
   device.with([&] { device.wire.room = 3; });
   std::atomic<bool> done = false;
-  std::thread drain([&] {  // the CAN bus takes one now and then
+  std::thread drain([&] {  // the CAN bus takes one now and then, once the adapter is full
     while (!done) {
       std::this_thread::sleep_for(1ms);
-      device.with([&] { ++device.wire.room; });
+      device.with([&] { device.wire.room += device.wire.refused != 0 ? 1 : 0; });
     }
   });
   for (std::uint8_t i = 0; i < 60; ++i) send(*bus, {0x100U + i % 5U, 1, {i}});
