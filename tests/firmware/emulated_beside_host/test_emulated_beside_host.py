@@ -34,17 +34,17 @@ class Robots(RealTime, Case):
 
     def start_robots(self, *arguments):
         self.sims = {}
+        self.addCleanup(self.end_robots)
         for name, more in (("host", ()), ("qemu", ("--boards", "qemu", "--images", IMAGES))):
             self.sims[name] = self.start_sim("--bus", self.bus(name), *more, *arguments)
         # An emulated board needs a moment until it knows its parts.
         self.until(lambda: self.asked("qemu", "odometry") is not None)
 
-    def tearDown(self):
-        for sim in getattr(self, "sims", {}).values():  # in order, so that it sees the end of its emulators
+    def end_robots(self):
+        for sim in self.sims.values():  # in order, so that it sees the end of its emulators
             if sim.poll() is None:
                 sim.terminate()
-                sim.communicate(timeout=10)
-        super().tearDown()
+                sim.communicate(timeout=60)
 
     def bus(self, name):
         return f"sim:{self.folder}/{name}.sock"

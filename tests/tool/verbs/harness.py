@@ -23,8 +23,10 @@ class Case(unittest.TestCase):
         self.folder = self._folder.name
         self.environment = {"PATH": os.environ["PATH"], "XDG_RUNTIME_DIR": self.folder, "HOME": self.folder}
         self._started = []
+        self.addCleanup(self._end)
 
-    def tearDown(self):
+    def _end(self):
+        """Also where setUp fails, after which no tearDown is called: nothing stays behind."""
         for process in self._started:
             if process.poll() is None:
                 process.kill()

@@ -13,14 +13,14 @@ COLUMNS = (40, 80, 120, 200)
 class Screens(harness.Case):
     def setUp(self):
         super().setUp()
+        self.addCleanup(self.end_terminal)
         self.assertIsNotNone(shutil.which("tmux"), "tmux is missing: scripts/setup")
         self.start_sim("--frozen")
         for topic in ("gyro", "odom", "power"):
             self.run_tool("publish", topic, "100ms")
 
-    def tearDown(self):
+    def end_terminal(self):
         subprocess.run(self.command("kill-server"), env=self.environment, stderr=subprocess.DEVNULL, check=False)
-        super().tearDown()
 
     def command(self, *words):
         return ["tmux", "-f", "/dev/null", "-S", os.path.join(self.folder, "tmux"), *words]
