@@ -39,15 +39,18 @@ struct Log {
   std::vector<std::string> remarks;
 };
 
-/// What could not be read, as mistakes at their places.
+/// What could not be read, as mistakes at their places. A last line that is cut off is none: what is before
+/// it is what the bus carried until its writer was killed.
 std::vector<Mistake> mistakes_of(const log::Reader& reader, const std::string& file) {
   std::vector<Mistake> mistakes;
-  for (const log::Complaint& complaint : reader.complaints().first())
+  for (const log::Complaint& complaint : reader.complaints().first()) {
+    if (complaint.cause == log::Cause::cut_line) continue;
     mistakes.push_back(
         {fmt::format("{}:{}{}", file, complaint.place.is_line ? "" : "byte ", complaint.place.number),
          fmt::format("no frame of a log: {}: {}", log::describe(complaint.cause), complaint.detail),
          "(1436509052.249713) can0 605#00D20000, as candump -l writes it, or another format of "
          "amiroctl convert"});
+  }
   return mistakes;
 }
 
@@ -85,6 +88,8 @@ Log read_log(const std::string& file, const protocol::Catalogue& catalogue) {
   if (mistakes.empty() && log.arrivals.empty())
     mistakes.push_back({file, "no frame", "a log as candump -l writes it"});
   stop_at(mistakes, file);
+  if (reader.complaints().count(log::Cause::cut_line) > 0)
+    log.remarks.emplace_back("The log's last line is cut off (its writer was ended): it was passed over.");
   if (others > 0)
     log.remarks.push_back(fmt::format("Only the frames of {}: {} of other interfaces were passed over.",
                                       reader.interfaces().name(*interface), others));

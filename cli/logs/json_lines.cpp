@@ -412,8 +412,10 @@ std::size_t JsonLinesReader::read(std::span<log::Entry> into) {
     if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
     std::string_view bus;
     if (!parser_.parse(line, into[count], bus)) {
-      const bool cut = taken == Input::Line::last && !line.ends_with('}');
-      complain(cut ? log::Cause::truncated : parser_.problem().cause, place, parser_.problem().what);
+      const log::Cause cause = parser_.problem().cause;
+      const bool whole =
+          std::count(line.begin(), line.end(), '{') == std::count(line.begin(), line.end(), '}');
+      complain(whole ? cause : cause_of_line(cause, taken), place, parser_.problem().what);
       continue;
     }
     into[count].interface = interfaces_.number(bus);

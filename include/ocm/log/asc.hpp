@@ -150,16 +150,18 @@ class AscReader final : public Reader {
       const auto taken = input_->take_line(line, count == 0 ? Input::Wait::yes : Input::Wait::no);
       if (taken == Input::Line::none || taken == Input::Line::later) break;
       line_ = line;
+      taken_ = taken;
       if (taken == Input::Line::too_long) {
         refuse(Cause::too_long);
         continue;
       }
-      const Found found = take(line, into[count]);
       // Half a line may look like a whole one, or like no frame.
-      if (taken == Input::Line::last && (found == Found::event || !input_->failure().empty())) {
+      if (taken == Input::Line::last && !input_->failure().empty()) {
         refuse(Cause::truncated);
         break;
       }
+      const Found found = take(line, into[count]);
+      if (found == Found::event && taken == Input::Line::last) refuse(Cause::cut_line);
       if (found == Found::frame) ++count;
     }
     return count;
@@ -173,7 +175,7 @@ class AscReader final : public Reader {
   };
 
   Found refuse(Cause cause) {
-    complain(cause, {input_->line_number(), true}, line_);
+    complain(cause_of_line(cause, taken_), {input_->line_number(), true}, line_);
     return Found::nothing;
   }
 
@@ -373,13 +375,14 @@ class AscReader final : public Reader {
     return true;
   }
 
-  std::string_view line_;                // that is being read
-  unsigned base_ = 16;                   // of numbers
-  bool relative_ = false;                // each time to that of the line before
-  std::int64_t start_ = 0;               // what times count from, ns
-  std::int64_t passed_ = 0;              // since then
-  std::int64_t time_ = 0;                // of the line
-  std::optional<std::int64_t> trigger_;  // date of a block of which no time was seen yet
+  std::string_view line_;                   // that is being read
+  Input::Line taken_ = Input::Line::whole;  // how it ends
+  unsigned base_ = 16;                      // of numbers
+  bool relative_ = false;                   // each time to that of the line before
+  std::int64_t start_ = 0;                  // what times count from, ns
+  std::int64_t passed_ = 0;                 // since then
+  std::int64_t time_ = 0;                   // of the line
+  std::optional<std::int64_t> trigger_;     // date of a block of which no time was seen yet
   ChannelsRead channels_;
 };
 

@@ -302,7 +302,7 @@ class CandumpReader final : public Reader {
     if (candump::is_blank(text)) return Step::nothing;
     const candump::Line line = candump::parse_line(text);
     if (line.wrong) {
-      complain(*line.wrong, place, text);
+      complain(text.front() == '(' ? cause_of_line(*line.wrong, taken) : *line.wrong, place, text);
       return Step::nothing;
     }
     entry = line.entry;

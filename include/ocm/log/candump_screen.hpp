@@ -244,7 +244,7 @@ class CandumpScreenReader final : public Reader {
       } else if (taken == Input::Line::last && !input_->failure().empty()) {
         complain(Cause::truncated, place, text);  // half a line may look like a whole one
         break;
-      } else if (take(text, place, into[count])) {
+      } else if (take(text, place, taken, into[count])) {
         ++count;
       }
     }
@@ -255,12 +255,13 @@ class CandumpScreenReader final : public Reader {
   /// How relative times count.
   enum class Relative : std::uint8_t { unknown, from_the_first, from_the_one_before };
 
-  bool take(std::string_view text, Place place, Entry& entry) {
+  bool take(std::string_view text, Place place, Input::Line taken, Entry& entry) {
     if (candump::is_blank(text) || (text.front() == '\t' && after_error_)) return false;  // -e, in words
     if (take_drops(text)) return false;
     candump_screen::Line line = candump_screen::parse_line(text);
     if (line.wrong) {
-      complain(*line.wrong, place, text);
+      // What follows on a terminal, a prompt or ^C, has no blank at its beginning.
+      complain(text.front() == ' ' ? cause_of_line(*line.wrong, taken) : *line.wrong, place, text);
       return false;
     }
     entry = line.entry;

@@ -22,15 +22,23 @@ enum class Cause : std::uint8_t {
   checksum,     ///< the format's own check fails
   compressed,   ///< compressed data that cannot be unpacked
   truncated,    ///< the log ends in the middle
+  cut_line,     ///< the last line of a text has no end, and is no whole one
   input,        ///< the file itself cannot be read any further
 };
-inline constexpr std::size_t causes = 10;
+inline constexpr std::size_t causes = 11;
 
 [[nodiscard]] constexpr std::string_view describe(Cause cause) noexcept {
-  constexpr std::string_view words[causes] = {
-      "not of the expected form", "identifier out of range", "length that no frame has", "no valid time",
-      "longer than any log has",  "not a CAN frame",         "wrong checksum",           "cannot be unpacked",
-      "ends in the middle",       "cannot be read"};
+  constexpr std::string_view words[causes] = {"not of the expected form",
+                                              "identifier out of range",
+                                              "length that no frame has",
+                                              "no valid time",
+                                              "longer than any log has",
+                                              "not a CAN frame",
+                                              "wrong checksum",
+                                              "cannot be unpacked",
+                                              "ends in the middle",
+                                              "last line cut off: its writer was ended",
+                                              "cannot be read"};
   return words[static_cast<std::size_t>(cause)];
 }
 

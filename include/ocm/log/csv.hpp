@@ -158,7 +158,7 @@ class CsvReader final : public Reader {
       if (row.empty() || (place.number == 1 && row == csv::head)) continue;
       const auto wrong = taken == Input::Line::too_long ? Cause::too_long : csv::parse_row(row, into[count]);
       if (wrong)
-        complain(*wrong, place, row);
+        complain(cause_of_line(*wrong, taken), place, row);
       else
         into[count++].interface = interfaces_.number("can0");
     }

@@ -45,6 +45,13 @@ class Reader {
   /// Something that was passed over, at the line or byte where it begins.
   void complain(Cause cause, Place place, std::string_view detail) { complaints_.add(cause, place, detail); }
 
+  /// Why a line is refused: one without its end is cut off, whatever else is wrong with it. A writer that is
+  /// killed within write(2) leaves what Linux had copied, up to the end of a page.
+  [[nodiscard]] Cause cause_of_line(Cause cause, Input::Line taken) const noexcept {
+    if (taken != Input::Line::last) return cause;
+    return input_->failure().empty() ? Cause::cut_line : Cause::truncated;
+  }
+
   Input* input_;
   Interfaces interfaces_;
   Complaints complaints_;

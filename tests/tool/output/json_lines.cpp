@@ -291,8 +291,12 @@ TEST_CASE("JSON lines: a log that is cut or damaged anywhere gives entries that 
     const auto log = log::testing::read_all<JsonLinesReader>(text.substr(0, size), amiro::catalogue);
     const bool whole = size + 1 == gyroscope.size() + 1 || size + 1 == text.size();
     CHECK(log.complained == (size % (gyroscope.size() + 1) == 0 || whole ? 0U : 1U));
+    for (const auto& complaint : log.complaints) CHECK(complaint.cause == log::Cause::cut_line);
     CHECK(log.entries.size() == (size + 1) / (gyroscope.size() + 1));
   }
+  const auto whole = log::testing::read_all<JsonLinesReader>(R"({"id":"608","data":"0"})", amiro::catalogue);
+  REQUIRE(whole.complained == 1);
+  CHECK(whole.complaints[0].cause == log::Cause::syntax);  // its end is missing, and no more
   std::mt19937 random{5};
   for (int i = 0; i < 20'000; ++i) {
     std::string damaged = text;

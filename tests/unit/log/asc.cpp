@@ -379,6 +379,18 @@ TEST_CASE("asc: any bit flipped, and every entry can exist") {
   }
 }
 
+TEST_CASE("asc: a log that is cut anywhere loses its last line, and says so") {
+  const std::string frame = "0.0 1 123 Rx d 2 11 22";
+  const std::string text = head + frame + "\n" + frame;
+  for (std::size_t size = head.size() + frame.size() + 2; size < text.size(); ++size) {
+    const auto log = read_all<AscReader>(text.substr(0, size));
+    INFO(text.substr(0, size));
+    REQUIRE(log.entries.size() >= 1);
+    REQUIRE(log.complained == (log.entries.size() == 2 ? 0U : 1U));
+    if (log.complained != 0) CHECK(log.complaints[0].cause == Cause::cut_line);
+  }
+}
+
 TEST_CASE("asc: a line without an end takes no memory") {
   std::string file = head;
   file.append(Input::longest + 10, '0');

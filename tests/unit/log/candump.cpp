@@ -232,6 +232,10 @@ TEST_CASE("candump's log that is cut anywhere loses its last line at most") {
     REQUIRE(log.entries.size() >= whole);
     REQUIRE(log.entries.size() <= whole + 1);
     for (std::size_t i = 0; i < whole; ++i) REQUIRE(log.entries[i] == entries[i]);
+    const bool rest = size > 0 && text[size - 1] != '\n';
+    const bool refused = rest && log.entries.size() == whole;
+    REQUIRE(log.reader.complaints().count(Cause::cut_line) == (refused ? 1 : 0));
+    REQUIRE(log.reader.complaints().total() == (refused ? 1 : 0));
     // Where the source knows that it was cut, half a line is none.
     test::Drops drops{std::string_view{text}.substr(0, size), 50, "cut"};
     log::Input input{drops};
@@ -240,9 +244,14 @@ TEST_CASE("candump's log that is cut anywhere loses its last line at most") {
     std::size_t count = 0;
     while (const std::size_t more = reader.read(some)) count += more;
     REQUIRE(count == whole);
-    const bool rest = size > 0 && text[size - 1] != '\n';
     REQUIRE(reader.complaints().count(Cause::truncated) == (rest ? 1 : 0));
   }
+}
+
+TEST_CASE("candump's last line that is no beginning of one is not taken for one that is cut off") {
+  const Log log{"(1.0) can0 123#\nhello"};
+  CHECK(log.entries.size() == 1);
+  CHECK(log.reader.complaints().count(Cause::syntax) == 1);
 }
 
 TEST_CASE("candump's lines come out of a pipe when they come in") {

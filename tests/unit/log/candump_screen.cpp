@@ -146,6 +146,19 @@ TEST_CASE("what candump never shows is refused by cause, and the rest is read") 
   CHECK(refusal_of(" (9999999999.000000)  can0  605   [0]") == Cause::time);
 }
 
+TEST_CASE("a last line of candump's that is cut off is said to be, a prompt is not") {
+  const std::string line = "  can0  605   [4]  00 D2 00 00";
+  for (std::size_t size = 1; size < line.size(); ++size) {
+    const Log log{line + "\n" + line.substr(0, size)};
+    INFO(size);
+    CHECK(log.entries.size() == 1);
+    CHECK(log.reader.complaints().count(Cause::cut_line) == (size > 2 ? 1 : 0));  // blanks are no line
+    CHECK(log.reader.complaints().total() == (size > 2 ? 1 : 0));
+  }
+  for (const char* after : {"^C", "me@robot:~$ "})
+    CHECK(Log{line + "\n" + after}.reader.complaints().count(Cause::syntax) == 1);
+}
+
 TEST_CASE("other logs are not taken for it") {
   for (const char* line : {"(1436509052.249713) can0 605#00D20000", "", "\n", "time,topic,field,value,unit"})
     CHECK_FALSE(log::CandumpScreenReader::recognises(line));

@@ -156,6 +156,13 @@ TEST_CASE("rows that are cut anywhere lose the last at most") {
       count += more;
     }
     REQUIRE(count == whole);
+    // Of a file, the row without its end is read where it is whole, and else said to be cut off.
+    const test::ReadLog<log::CsvReader> file{std::string_view{text}.substr(0, size)};
+    REQUIRE(file.entries.size() >= whole);
+    for (std::size_t i = 0; i < file.entries.size(); ++i) REQUIRE(file.entries[i] == entries[i]);
+    const bool refused = text[size - 1] != '\n' && file.entries.size() == whole;
+    REQUIRE(file.reader.complaints().count(Cause::cut_line) == (refused ? 1 : 0));
+    REQUIRE(file.reader.complaints().total() == (refused ? 1 : 0));
   }
 }
 
