@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """What scripts/test asks of ctest.
 
-    runs.py select BUILD NAME...   the tests that the names mean, each a test's name or a regular expression of all of it:
+    runs.py select BUILD PARTS NAME...   the tests that the names mean, each a test's name or a regular expression of all of it:
                                    on stdout a regular expression for `ctest -R`, then the targets that they run, a line each.
-                                   Exit 2 where a name means none, with the nearest ones.
+                                   Exit 2 where a name means none, with the nearest ones, of the PARTS of scripts/test,
+                                   "release style", too.
     runs.py report JUNIT...        of ctest's --output-junit: how many tests passed, which failed, which were skipped, whole
                                    or in part, which took longest. Exit 1 where one was skipped that may not be: scripts/setup
                                    has installed what all of them need.
@@ -59,16 +60,21 @@ def programs(build, names):
     return found
 
 
-def select(build, wanted):
+def near(word, known):
+    """What a misspelt word may have meant: the nearest, then those that hold it."""
+    found = difflib.get_close_matches(word, known, n=3, cutoff=0.4)
+    return found + [name for name in known if word in name and name not in found][:3]
+
+
+def select(build, parts, wanted):
     tests = known(build)
     chosen = set()
     for pattern in wanted:
         found = matching(tests, pattern)
         if not found:
-            near = difflib.get_close_matches(pattern, tests, n=3, cutoff=0.4)
-            near += [name for name in tests if pattern in name and name not in near][:3]
-            print(f"test: no test '{pattern}'" + (f"; near it: {', '.join(near)}" if near else "") +
-                  "; all: ctest --preset release -N", file=sys.stderr)
+            found = [f"the part {name}" for name in near(pattern, parts)] + near(pattern, tests)
+            print(f"test: no part and no test '{pattern}'" + (f"; near it: {', '.join(found)}" if found else "") +
+                  f"; parts: {', '.join(parts)}; all tests: ctest --preset release -N", file=sys.stderr)
             return 2
         chosen.update(found)
     print(f"^({'|'.join(sorted(map(re.escape, chosen)))})$")
@@ -111,8 +117,8 @@ def report(files):
 
 
 def main(arguments):
-    if len(arguments) >= 3 and arguments[0] == "select":
-        return select(arguments[1], arguments[2:])
+    if len(arguments) >= 4 and arguments[0] == "select":
+        return select(arguments[1], arguments[2].split(), arguments[3:])
     if arguments and arguments[0] == "report":
         return report(arguments[1:])
     print(__doc__, file=sys.stderr)

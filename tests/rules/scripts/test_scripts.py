@@ -1,0 +1,125 @@
+"""scripts/ as its user meets it: a misspelt word costs no build, and the summary of scripts/test names what does not build.
+
+Each runs in a copy of the little that it reads, where cmake, ctest and apt-get are stand-ins: nothing is built or installed.
+"""
+
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(os.environ["OCM_SOURCE_DIR"])
+BUILDERS = ("cmake", "ctest", "apt-get", "sudo", "npm", "ninja")
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="ocm-scripts-")
+        self.addCleanup(folder.cleanup)
+        self.tree = pathlib.Path(folder.name) / "tree"
+        for part in ("scripts", "bench", "tests/robustness/fuzz/targets"):
+            shutil.copytree(ROOT / part, self.tree / part)
+        shutil.copy(ROOT / "tests" / "runs.py", self.tree / "tests" / "runs.py")
+        self.programs = pathlib.Path(folder.name) / "bin"
+        self.programs.mkdir()
+        for name in BUILDERS:
+            self.stand_in(name, f"echo {name} >>{self.tree}/called; exit 1")
+
+    def stand_in(self, name, text, folder=None):
+        path = (folder or self.programs) / name
+        path.write_text(f"#!/bin/bash\n{text}\n", encoding="utf-8")
+        path.chmod(0o755)
+
+    def run_script(self, name, *arguments):
+        environment = dict(os.environ, PATH=f"{self.programs}:{os.environ['PATH']}", TMPDIR=str(self.programs))
+        return subprocess.run([self.tree / "scripts" / name, *arguments], env=environment, stdin=subprocess.DEVNULL,
+                              capture_output=True, text=True, check=False, timeout=60)
+
+
+class Misspelt(Case):
+    # Arguments, and the message.
+    WORDS = {
+        "bench": [("--lst", "no option '--lst'; did you mean '--list'?"), ("codc", "no benchmark 'codc'; did you mean 'codec'?")],
+        "build": [("frimware", "no build 'frimware'; did you mean 'firmware'?"), ("x", "no build 'x'; there are firmware, avr, operator")],
+        "demo": [("--hlep", "no option '--hlep'; did you mean '--help'?"),
+                 ("now", "unexpected argument 'now'; it takes none, see scripts/demo --help")],
+        "figures": [("--hlep", "no option '--hlep'; did you mean '--help'?"), ("nothing", "no folder 'nothing'; expected a build folder")],
+        "fuzz": [("--lits", "no option '--lits'; did you mean '--list'?"), ("1s quantiti", "no target 'quantiti'; did you mean 'quantity'?"),
+                 ("soon", "'soon' is no time above zero: 10, 10m or 90s; see scripts/fuzz --help")],
+        "guest": [("--fecth", "no option '--fecth'; did you mean '--fetch'?"),
+                  ("-q", "no option '-q'; there are -s DIR, -t SECONDS, -m SIZE, -v, --fetch, --help"),
+                  ("-t", "-t needs a value; see scripts/guest --help")],
+        "mutate": [("--room include/ocm/log --lst", "error: no option '--lst'; did you mean '--list'?"),
+                   ("--rom x", "error: no option '--rom'; did you mean '--room'?")],
+        "pictures": [("terminl", "no picture 'terminl'; did you mean 'terminal'?"), ("--hlep", "no option '--hlep'; did you mean '--help'?")],
+        "setup": [("--lst", "no option '--lst'; did you mean '--list'?"), ("--tool now", "'now' behind --tool, which takes nothing; see scripts/setup --help"),
+                  ("--all", "no option '--all'; there are --tool, --firmware, --avr, --operator, --pictures, --list, --help")],
+        "suggest": [("word", "expected a word and the known ones; see scripts/suggest --help")],
+        "test": [("--qiuck", "no option '--qiuck'; did you mean '--quick'?"),
+                 ("style", "'style' is no option; only a part, or a test: scripts/test --only style")],
+    }
+
+    def test_every_script_names_the_word_and_the_nearest(self):
+        scripts = [path.name for path in (ROOT / "scripts").iterdir() if path.is_file() and os.access(path, os.X_OK)]
+        self.assertEqual(sorted(scripts), sorted(self.WORDS), "each script has its words here")
+        for script, cases in self.WORDS.items():
+            for arguments, message in cases:
+                with self.subTest(script=script, arguments=arguments):
+                    done = self.run_script(script, *arguments.split())
+                    self.assertEqual(done.returncode, 2, done.stderr)
+                    self.assertEqual(done.stderr.splitlines()[-1], f"{script}: {message}")
+                    self.assertFalse((self.tree / "called").exists(), "nothing is built for it")
+
+
+class Bench(Case):
+    def test_the_list_needs_no_build(self):
+        done = self.run_script("bench", "--list")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertFalse((self.tree / "called").exists())
+        listed = done.stdout.split()
+        text = (ROOT / "bench" / "CMakeLists.txt").read_text(encoding="utf-8")
+        built = set(re.findall(r"add_executable\(bench_(\w+)", text))
+        built |= {name for names in re.findall(r"foreach\(name ([^)]*)\)", text) for name in names.split()}
+        self.assertLessEqual(built, set(listed), "each program that is built")
+        for name in ("start_up", "convert", "decode"):  # scripts, and folders with one
+            self.assertIn(name, listed)
+        self.assertEqual(listed, sorted(set(listed)))
+
+
+class Summary(Case):
+    def setUp(self):
+        super().setUp()
+        self.stand_in("setup", "", self.tree / "scripts")
+
+    def test_what_does_not_configure_is_named(self):
+        self.stand_in("cmake", r'[[ $* != *release* ]] || { printf "CMake Error at CMakeLists.txt:7 (message):\n  no such thing\n\n"; exit 1; }')
+        done = self.run_script("test", "--only", "release")
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stdout.split("--- summary ---")[1],
+                         r"release, configure +FAILED +\d+ s\n    CMake Error at CMakeLists.txt:7 \(message\): no such thing\n")
+
+    def test_what_does_not_build_is_named(self):
+        for printed, error in (("x.hpp:3:1: warning: w\nx.cpp:5:2: error: expected ;\ny.cpp:1:1: error: second", "x.cpp:5:2: error: expected ;"),
+                               ("x.o: undefined reference to f", "x.o: undefined reference to f"), ("killed", "killed")):
+            self.stand_in("cmake", f'[[ $* != *--build* ]] || {{ echo "[1/2] compiling"; echo "{printed}" >&2; exit 1; }}')
+            done = self.run_script("test", "--only", "sanitize")
+            self.assertEqual(done.returncode, 1)
+            summary = done.stdout.split("--- summary ---")[1]
+            self.assertRegex(summary, rf"sanitize, configure +passed +\d+ s\n(.*\n)*sanitize, build +FAILED +\d+ s\n    {re.escape(error)}\n")
+            self.assertRegex(summary, r"\nall +FAILED")
+
+    def test_a_misspelt_part(self):
+        self.stand_in("cmake", "")
+        self.stand_in("ctest", """echo '{"tests": [{"name": "unit_can"}, {"name": "cli_style_x"}]}'""")
+        for word, near in (("sty", "the part style, cli_style_x"), ("fzuz", "the part fuzz"), ("sanitise", "the part sanitize"), ("unit_cam", "unit_can")):
+            done = self.run_script("test", "--only", word)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertRegex(done.stderr.splitlines()[-1], f"^test: no part and no test '{word}'; near it: .*{near}.*; "
+                             "parts: release, sanitize, fuzz, style; all tests: ctest --preset release -N$")
+
+
+if __name__ == "__main__":
+    unittest.main()
