@@ -6,6 +6,7 @@
 #include <new>
 
 #include "cli/shared/arguments.hpp"
+#include "cli/shared/memory.hpp"
 #include "cli/shared/session.hpp"
 #include "cli/verbs/verbs.hpp"
 
@@ -92,11 +93,7 @@ int main(int argc, char** argv) {
   } catch (const Exit& exit) {
     return exit.code;
   } catch (const std::bad_alloc&) {
-    // Without fmt, which would need memory.
-    std::fputs(
-        "amiroctl: out of memory; what it was doing is not complete\n"
-        "          end other programs, or raise the limit (ulimit -v), and try again\n",
-        stderr);
+    say_out_of_memory();
     return exit_failure;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "amiroctl: %s\n", error.what());

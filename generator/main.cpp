@@ -2,9 +2,9 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <exception>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <new>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -149,19 +149,22 @@ std::string wrong_usage(const Arguments& arguments) {
   return {};
 }
 
+bool written = false;  ///< the file is in its place, and all that is left is to end
+
 int run(const Arguments& arguments) {
   const auto put = [&](const std::string& text) {
     if (arguments.check) return success;
     const auto problem = generate::write_file(*arguments.output, text);
-    return problem ? complain(*problem) : success;
+    if (problem) return complain(*problem);
+    written = true;
+    return success;
   };
   const std::string name = std::filesystem::path{arguments.file}.filename().string();
   if (arguments.tasks) {
-    std::ifstream in{arguments.file, std::ios::binary};
-    const std::string json{std::istreambuf_iterator<char>{in}, {}};
-    if (!in) return complain({arguments.file, "cannot be read", "a file with task sets"});
     std::vector<spec::Problem> problems;
-    const std::string text = generate::tasks_header(json, name, problems);
+    const auto json = spec::read_document(arguments.file, "a file of task sets", "spec/tasks.json", problems);
+    if (!json) return complain(problems);
+    const std::string text = generate::tasks_header(*json, name, problems);
     return problems.empty() ? put(text) : complain(problems);
   }
   if (arguments.sentences) {
@@ -178,9 +181,7 @@ int run(const Arguments& arguments) {
   return put(target.make(loaded.spec->model(), {name, arguments.priority}));
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   Arguments arguments;
   bool only_names = false;
   for (int i = 1; i < argc; ++i) {
@@ -230,4 +231,28 @@ int main(int argc, char** argv) {
   }
   if (const std::string wrong = wrong_usage(arguments); !wrong.empty()) return complain_usage(wrong);
   return run(arguments);
+}
+
+/// In the words of amiroctl. It ends here, and not where an exception is caught: nlohmann::json takes memory
+/// while it is destroyed, and destroys what it has only half made, so that it survives no std::bad_alloc. No
+/// file is half written: between its beginning and its end nothing is allocated.
+[[noreturn]] void end_without_memory() {
+  if (written) ::_exit(success);
+  std::fputs(
+      "ocm-generate: out of memory; what it was doing is not complete\n"
+      "              end other programs, or raise the limit (ulimit -v), and try again\n",
+      stderr);
+  ::_exit(failure);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::set_new_handler(end_without_memory);
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "ocm-generate: %s\n", error.what());
+    return failure;
+  }
 }

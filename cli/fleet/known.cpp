@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/shared/memory.hpp"
 #include "cli/shared/messages.hpp"
 #include "sim/worlds/reader.hpp"
 
@@ -17,6 +18,7 @@ using sim::mapper::WorldModel;
 
 std::optional<WorldModel> load_world(const std::string& name) {
   if (name.empty()) return std::nullopt;
+  const EndsWithoutMemory ends;
   auto loaded = sim::worlds::find(name);
   if (loaded.world) return std::move(*loaded.world);
   for (std::size_t i = 1; i < loaded.problems.size(); ++i) remark(sim::worlds::in_words(loaded.problems[i]));

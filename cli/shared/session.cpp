@@ -11,6 +11,7 @@
 
 #include "cli/shared/buses.hpp"
 #include "cli/shared/config.hpp"
+#include "cli/shared/memory.hpp"
 #include "generator/robot_spec.hpp"
 #include "generator/spec/spec.hpp"
 
@@ -43,6 +44,7 @@ const protocol::Catalogue& Session::catalogue() {
 
 const spec::Spec& Session::spec() {
   if (spec_ == nullptr) {
+    const EndsWithoutMemory ends;
     auto loaded = spec_file.empty() ? spec::parse(generate::robot_spec_text(), generate::robot_spec_name)
                                     : spec::load(spec_file);
     for (const auto& problem : loaded.problems)

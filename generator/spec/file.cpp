@@ -1,12 +1,30 @@
 #include "generator/spec/file.hpp"
 
 #include <algorithm>
-#include <fstream>
+#include <cerrno>
+#include <fcntl.h>
 #include <system_error>
+#include <unistd.h>
 
 #include "ocm/base/text.hpp"
 
 namespace ocm::spec {
+namespace {
+
+/// Fills `text` from the front; how much there was. Nothing: the file cannot be read.
+std::optional<std::size_t> read_all(int file, std::string& text) {
+  std::size_t size = 0;
+  while (size < text.size()) {
+    const ssize_t n = ::read(file, text.data() + size, text.size() - size);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return std::nullopt;
+    if (n == 0) break;
+    size += static_cast<std::size_t>(n);
+  }
+  return size;
+}
+
+}  // namespace
 
 std::optional<std::string> read_document(const std::filesystem::path& file, std::string_view what,
                                          std::string_view example, std::vector<Problem>& problems) {
@@ -23,13 +41,15 @@ std::optional<std::string> read_document(const std::filesystem::path& file, std:
   if (std::filesystem::is_directory(status))
     return failed("it is a folder",
                   "the path of the " + std::string{what.substr(what.find(' ') + 1)} + " within it");
-  std::ifstream in{file, std::ios::binary};
-  if (!in) return failed("it cannot be opened", "a file that you may read");
   // One byte more than allowed is enough to know that it is too much; a device has no end.
   std::string text(max_document_bytes + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (in.bad()) return failed("it cannot be read", "a readable file");
-  text.resize(static_cast<std::size_t>(in.gcount()));
+  // No stream: it takes memory of its own, and reports that there is none as a file that cannot be opened.
+  const int in = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (in < 0) return failed("it cannot be opened", "a file that you may read");
+  const auto size = read_all(in, text);
+  ::close(in);
+  if (!size) return failed("it cannot be read", "a readable file");
+  text.resize(*size);
   if (text.size() > max_document_bytes)
     return failed("the file is larger than " + std::to_string(max_document_bytes) + " bytes",
                   std::string{what} + " is smaller");

@@ -1,8 +1,9 @@
-"""Each write of `convert` and `record` fails once, and each allocation: never a crash, a silent loss, or an older file destroyed."""
+"""Each write of `convert`, `record` and ocm-generate fails once, and each allocation: never a crash, a silent loss, or an older file destroyed."""
 
 import os
 import random
 import re
+import shutil
 import subprocess
 import sys
 
@@ -16,7 +17,7 @@ ENDINGS = ("log", "csv", "asc", "pcap", "pcapng", "mcap", "jsonl", "log.gz", "cs
 OLDER = b"an older file\n"
 
 
-class Failing(Case):
+class Base(Case):
     def setUp(self):
         super().setUp()
         self.log = self.path("in.log")
@@ -32,11 +33,13 @@ class Failing(Case):
             if name.startswith("out"):
                 os.unlink(self.path(name))
 
+    program = AMIROCTL
+
     def failing(self, plan, *arguments):
-        """Runs amiroctl by the plan; the result, and how many calls of the plan's kind it made."""
+        """Runs the program by the plan; the result, and how many calls of the plan's kind it made."""
         calls = self.path("calls")
         environment = self.environment | {"OCM_FAIL": plan, "OCM_FAIL_CALLS": calls, "LD_PRELOAD": FAILING}
-        result = subprocess.run([AMIROCTL, *arguments], env=environment, cwd=self.folder, capture_output=True,
+        result = subprocess.run([self.program, *arguments], env=environment, cwd=self.folder, capture_output=True,
                                 stdin=subprocess.DEVNULL, timeout=30)
         if result.returncode < 0:
             self.fail(f"{arguments}, {plan}: signal {-result.returncode}: {result.stderr.decode()}")
@@ -49,7 +52,7 @@ class Failing(Case):
         if result.returncode == 0:
             return
         self.assertEqual(result.returncode, 1, f"{what}: {words}")
-        self.assertRegex(words, r"(?m)^amiroctl: \w.{8}", what)
+        self.assertRegex(words, rf"(?m)^{os.path.basename(self.program)}: \w.{{8}}", what)
         self.assertNotIn("std::", words, what)
         self.assertNotIn("terminate", words, what)
 
@@ -99,6 +102,8 @@ class Failing(Case):
                 if result.returncode == 0:
                     whole(what, result)
 
+
+class Failing(Base):
     # --- convert ---
 
     def expect_all(self, name):
@@ -136,6 +141,15 @@ class Failing(Case):
             prepare()
             result, _ = self.failing(f"memory:ENOMEM:{number}", *run)
             self.judge(f"{run}, allocation {number}", result)
+
+    def test_a_spec_says_each_failing_allocation(self):
+        """Its JSON takes memory while it is destroyed, too: where there is none, that is no crash."""
+        shutil.copy(os.path.join(os.environ["OCM_SOURCE_DIR"], "spec", "topics.json"), self.path("in.json"))
+        self.walk_memory(("--spec", "in.json", "list"), lambda *_: None)
+        _, calls = self.failing(f"memory:ENOMEM:{NEVER}", "--spec", "in.json", "list")
+        for number in random.Random(1).sample(range(1, calls), 60 * EXPLORE):  # reading the spec takes most of them
+            result, _ = self.failing(f"memory:ENOMEM:{number}+", "--spec", "in.json", "list")
+            self.judge(f"allocation {number}+ of {calls}", result)
 
     # --- record ---
 
@@ -190,6 +204,51 @@ class Failing(Case):
         for ending in ("log", "mcap", "csv.zst"):
             with self.subTest(ending):
                 self.walk_memory(("record", "-n", "10", "-o", f"out.{ending}"), self.expect_recorded(10))
+
+
+class Generate(Base):
+    """The same of ocm-generate, whose file is replaced in one step: the older one stays, and no other one is left."""
+
+    program = os.environ["OCM_GENERATE"]
+    run_of = ("in.json", "-o", "out.hpp")
+
+    def setUp(self):
+        super().setUp()
+        shutil.copy(os.path.join(os.environ["OCM_SOURCE_DIR"], "spec", "topics.json"), self.path("in.json"))
+
+    def older(self):
+        self.clean()
+        with open(self.path("out.hpp"), "wb") as file:
+            file.write(OLDER)
+
+    def judge_file(self, what, result, whole):
+        with open(self.path("out.hpp"), "rb") as file:
+            self.assertEqual(file.read(), whole if result.returncode == 0 else OLDER, what)
+        self.assertEqual([name for name in os.listdir(self.folder) if name.startswith("out")], ["out.hpp"], what)
+
+    def whole(self):
+        """What it writes, and how many allocations that takes."""
+        self.older()
+        _, calls = self.failing(f"memory:ENOMEM:{NEVER}", *self.run_of)
+        with open(self.path("out.hpp"), "rb") as file:
+            return file.read(), calls
+
+    def test_it_says_each_failing_allocation(self):
+        whole, calls = self.whole()
+        self.assertGreater(len(whole), 1000)
+        chosen = random.Random(1)
+        numbers = {*range(1, 21), *range(calls - 20, calls + 1), *chosen.sample(range(1, calls), 40 * EXPLORE)}
+        for number in sorted(numbers):
+            for more in ("", "+"):
+                self.older()
+                result, _ = self.failing(f"memory:ENOMEM:{number}{more}", *self.run_of)
+                what = f"allocation {number}{more} of {calls}"
+                if result.returncode != 0:
+                    self.assertEqual(result.returncode, 1, what)
+                    self.assertEqual(result.stderr.decode(),
+                                     "ocm-generate: out of memory; what it was doing is not complete\n"
+                                     "              end other programs, or raise the limit (ulimit -v), and try again\n", what)
+                self.judge_file(what, result, whole)
 
 
 if __name__ == "__main__":

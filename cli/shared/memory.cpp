@@ -1,0 +1,24 @@
+#include "cli/shared/memory.hpp"
+
+#include <cstdio>
+#include <unistd.h>
+
+#include "cli/shared/messages.hpp"
+
+namespace ocm::cli {
+
+void say_out_of_memory() noexcept {
+  // Without fmt, which would need memory.
+  std::fputs(
+      "amiroctl: out of memory; what it was doing is not complete\n"
+      "          end other programs, or raise the limit (ulimit -v), and try again\n",
+      stderr);
+}
+
+EndsWithoutMemory::EndsWithoutMemory() noexcept
+    : before_(std::set_new_handler([] {
+        say_out_of_memory();
+        ::_exit(exit_failure);
+      })) {}
+
+}  // namespace ocm::cli
