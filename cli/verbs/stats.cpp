@@ -17,6 +17,7 @@
 #include "cli/stats/report.hpp"
 #include "cli/verbs/verbs.hpp"
 #include "cli/watch/chosen_topics.hpp"
+#include "cli/watch/contradictions.hpp"
 #include "cli/watch/watching.hpp"
 #include "cli/words/command.hpp"
 
@@ -83,6 +84,18 @@ std::uint32_t chosen_bit_rate(std::optional<std::uint32_t> given, const protocol
   fail({"stats: the spec says no bit rate", "--bitrate gives it, such as --bitrate 500k"}, exit_usage);
 }
 
+/// Of each bus, for its figures are its own.
+void tell_contradictions(const stats::Report& report, std::string_view guess) {
+  for (const stats::Bus& bus : report.buses) {
+    const auto& counters = bus.figures.counters;
+    const std::uint64_t fd = bus.figures.fd_frames;
+    const std::string beginning = report.buses.size() > 1 ? bus.name + ": " : "";
+    cli::tell_contradictions({counters.frames + fd - counters.errors, counters.unknown + fd,
+                              counters.wrong_dlc, bus.figures.wrong_length},
+                             report.robot, guess, beginning);
+  }
+}
+
 void run(Session& session, const StatsOptions& options, int& exit_code) {
   const auto& catalogue = session.catalogue();
   const auto means_topic = [&catalogue](std::string_view word) {
@@ -120,6 +133,7 @@ void run(Session& session, const StatsOptions& options, int& exit_code) {
     write_out(stats::to_csv(result, shown));
   else
     screen.finish(stats::to_table(result, shown, session.colour(), Screen::columns()));
+  tell_contradictions(result, watching.live() ? "another robot?" : "a log of another bus?");
   if (!collector.any() && interrupted() == 0) {
     remark(fmt::format("amiroctl: stats: no frame came from {}", watching.source()));
     exit_code = exit_failure;

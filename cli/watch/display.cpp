@@ -4,7 +4,9 @@
 
 #include <fmt/format.h>
 
+#include "cli/shared/messages.hpp"
 #include "cli/shared/terminal.hpp"
+#include "cli/watch/contradictions.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -70,26 +72,9 @@ void Display::summarise(std::uint64_t lost) const {
 
 void Display::tell_contradictions(std::string_view guess) const {
   const auto& seen = receiver_.counters();
-  const std::uint64_t frames = seen.frames + fd_ - seen.errors;
-  const std::uint64_t foreign = seen.unknown + fd_;
-  const std::string_view robot = receiver_.catalogue().robot;
-  if (frames == 0 || 10 * (foreign + seen.wrong_dlc) < frames) return;
-  if (foreign >= frames - frames / 10) {
-    remark(
-        fmt::format("{} of {} frames are of no topic of {}: {} --spec FILE names the topics of another robot",
-                    foreign, frames, robot, guess));
-    return;
-  }
-  std::string why;
-  if (foreign != 0) why = fmt::format("{} of no topic", foreign);
-  if (wrong_length_)
-    why += fmt::format("{}{} of wrong length, such as {:03X} with {} bytes in place of {}",
-                       why.empty() ? "" : ", ", seen.wrong_dlc, wrong_length_->entry.id,
-                       wrong_length_->entry.length, wrong_length_->right);
-  remark(
-      fmt::format("{} of {} frames contradict the spec of {} ({}): the others may be of another robot, too, "
-                  "and mean something else. --spec FILE names its topics",
-                  foreign + seen.wrong_dlc, frames, robot, why));
+  const Contradictions found{seen.frames + fd_ - seen.errors, seen.unknown + fd_, seen.wrong_dlc,
+                             wrong_length_};
+  cli::tell_contradictions(found, receiver_.catalogue().robot, guess);
 }
 
 }  // namespace ocm::cli

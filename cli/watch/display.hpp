@@ -10,6 +10,7 @@
 
 #include "ocm/client/sample.hpp"
 #include "ocm/log/entry.hpp"
+#include "ocm/measure/statistics.hpp"
 
 #include "cli/output/printer.hpp"
 #include "cli/shared/arguments.hpp"
@@ -36,7 +37,7 @@ class Display {
     reception_ = cli::understand(receiver_, entry);
     fd_ += entry.is_fd() ? 1 : 0;
     if (reception_.meaning == client::Meaning::wrong_dlc && !wrong_length_)
-      wrong_length_ = {entry, reception_.frame.layout().dlc};
+      wrong_length_ = {entry.id, entry.length, reception_.frame.layout().dlc};
     return reception_;
   }
   /// Whether there was anything to show.
@@ -52,21 +53,16 @@ class Display {
   [[nodiscard]] const client::ReceiverCounters& counters() const noexcept { return receiver_.counters(); }
   /// What came, and every fault by its cause, on stderr.
   void summarise(std::uint64_t lost) const;
-  /// Says so on stderr when a tenth of the frames or more contradict the spec: another robot's frames may
-  /// look like this one's. `guess` is what is said when nearly all do: "a log of another bus?".
+  /// On stderr, if it is so: `guess` is what is said when nearly all do.
   void tell_contradictions(std::string_view guess) const;
 
  private:
-  struct WrongLength {
-    log::Entry entry;
-    std::uint8_t right = 0;
-  };
   client::Receiver receiver_;
   client::Reception reception_;
   Printer printer_;
   std::uint64_t shown_ = 0;
   std::uint64_t fd_ = 0;
-  std::optional<WrongLength> wrong_length_;  ///< the first
+  std::optional<measure::WrongLength> wrong_length_;  ///< the first
 };
 
 }  // namespace ocm::cli

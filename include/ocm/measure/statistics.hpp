@@ -43,13 +43,21 @@ struct Stranger {
   std::uint64_t count = 0;
 };
 
+/// A frame with a topic's identifier and a length that the topic has not.
+struct WrongLength {
+  std::uint32_t id = 0;
+  std::uint8_t length = 0;
+  std::uint8_t right = 0;
+};
+
 struct BusFigures {
-  std::vector<TopicFigures> topics;   ///< those of which anything came, in the order of the catalogue
-  std::vector<Stranger> strangers;    ///< the first BusStatistics::most_strangers
-  client::ReceiverCounters counters;  ///< `frames` with error frames, without CAN FD
-  std::uint64_t fd_frames = 0;        ///< CAN FD, which no topic has; not in the load
-  std::uint64_t overflows = 0;        ///< error frames that say that frames were lost in the CAN controller
-  base::Time first{};                 ///< frame of any kind
+  std::vector<TopicFigures> topics;         ///< those of which anything came, in the order of the catalogue
+  std::vector<Stranger> strangers;          ///< the first BusStatistics::most_strangers
+  client::ReceiverCounters counters;        ///< `frames` with error frames, without CAN FD
+  std::optional<WrongLength> wrong_length;  ///< the first; counters.wrong_dlc has how many
+  std::uint64_t fd_frames = 0;              ///< CAN FD, which no topic has; not in the load
+  std::uint64_t overflows = 0;  ///< error frames that say that frames were lost in the CAN controller
+  base::Time first{};           ///< frame of any kind
   base::Time last{};
   std::uint32_t bit_rate = 0;
   double rate_hz = 0;        ///< frames, error frames not counted
@@ -98,6 +106,8 @@ class BusStatistics {
       case client::Meaning::wrong_dlc:
         stranger_bits_ += bits;
         ++entry.figures.wrong_dlc;
+        if (!wrong_length_)
+          wrong_length_ = {received.frame.id, received.frame.dlc, reception.frame.layout().dlc};
         return;
       case client::Meaning::sample:
       case client::Meaning::set_point: {
@@ -125,6 +135,7 @@ class BusStatistics {
     BusFigures out;
     out.counters = receiver_.counters();
     out.strangers = strangers_;
+    out.wrong_length = wrong_length_;
     out.fd_frames = fd_frames_;
     out.overflows = overflows_;
     out.first = first_;
@@ -195,6 +206,7 @@ class BusStatistics {
   client::Receiver receiver_;
   std::vector<Entry> topics_;
   std::vector<Stranger> strangers_;
+  std::optional<WrongLength> wrong_length_;
   BusLoad load_;
   bool any_ = false;
   base::Time first_{};

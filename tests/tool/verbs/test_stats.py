@@ -132,6 +132,35 @@ class Stats(Case):
         out, _ = self.run_tool("stats", self.log([(0, self.GYRO), (1, "6F5#R"), (2, "6F5#")], "remote.log"))
         self.assertIn("2 frames that no topic has (6F5#R 1, 6F5 1)", out)
 
+    CONTRADICTIONS = ("5 of 8 frames contradict the spec of AMiRo (2 of no topic, 3 of wrong length, such as 605 with 2 bytes in "
+                      "place of 4): the others may be of another robot, too, and mean something else. --spec FILE names its topics\n")
+
+    def test_frames_of_another_robot(self):
+        """As decode and listen have it."""
+        frames = [(i, frame) for i, frame in enumerate(["608#112233445566"] * 3 + ["7FF#11"] * 2 + ["605#1122"] * 3)]
+        path = self.log(frames)
+        for form in ((), ("--json",), ("--csv",)):
+            _, err = self.run_tool("stats", *form, path)
+            self.assertEqual(err, self.CONTRADICTIONS)
+        _, err = self.run_tool("stats", self.log([(i, "7FF#11") for i in range(9)], "foreign.log"))
+        self.assertEqual(err, "9 of 9 frames are of no topic of AMiRo: a log of another bus? --spec FILE names the topics of "
+                              "another robot\n")
+        _, err = self.run_tool("stats", self.log([(i, "608#112233445566") for i in range(19)] + [(19, "7FF#11")], "few.log"))
+        self.assertEqual(err, "")
+        # Of several interfaces that one is named.
+        two = [(ms, frame, "can1") for ms, frame in frames] + [(9 + i, "608#112233445566", "can0") for i in range(200)]
+        _, err = self.run_tool("stats", self.log(two, "two.log"))
+        self.assertEqual(err, "can1: " + self.CONTRADICTIONS)
+
+    def test_frames_of_another_robot_live(self):
+        self.start_sim("--without", "di_wheel_drive,power_management,light_ring")
+        stats = self.start("stats", "--json", "-n", "8")
+        self.assertIn("bus: sim", stats.stderr.readline())
+        self.settle()
+        self.run_tool("send", "--stdin", stdin="608#112233445566\n" * 3 + "7FF#11\n" * 2 + "605#1122\n" * 3)
+        _, err = stats.communicate(timeout=20)
+        self.assertEqual(err, self.CONTRADICTIONS)
+
     def test_assertions(self):
         path = self.log([(0, "108#01F40100")] + [(1 + 500 * i, self.GYRO) for i in range(5)])
         holds = ["gyro.rate>1.9", "gyro.rate == 2Hz", "gyroscope.count==5", "gyro.period<=500ms", "gyro.jitter<1us",
