@@ -36,3 +36,12 @@ def until_asleep(*pids, looks=5, limit=30):
         seen = seen + 1 if all(map(asleep, pids)) else 0
         return seen >= looks
     until(all_asleep, f"processes {pids} come to rest", limit)
+
+
+def printed(file):
+    """All that a running program has printed into a file that was handed to it. Read by position: the program writes at
+    the offset that it shares with us, and over what it has written when that is set back for reading."""
+    text = b""
+    while piece := os.pread(file.fileno(), 1 << 20, len(text)):
+        text += piece
+    return text.decode(errors="replace")

@@ -87,20 +87,16 @@ class Process:
     """A program in the background; stdout and stderr go to files."""
     def __init__(self, *command, listens_on=None, **options):
         self.command = ' '.join(command)
-        self.out = tempfile.TemporaryFile('w+')
-        self.err = tempfile.TemporaryFile('w+')
+        self.out = tempfile.TemporaryFile()
+        self.err = tempfile.TemporaryFile()
         before = listeners(listens_on) if listens_on else 0
         self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=self.out, stderr=self.err, **options)
         if listens_on:
             eventually(lambda: listeners(listens_on) > before or self.process.poll() is not None,
                        f'{self.command} listens on {listens_on}')
 
-    def read(self, file):
-        # Not by seek(): the program writes at the same offset, and would write over what it has written.
-        return os.pread(file.fileno(), os.fstat(file.fileno()).st_size, 0).decode()
-
-    stdout = property(lambda self: self.read(self.out))
-    stderr = property(lambda self: self.read(self.err))
+    stdout = property(lambda self: waiting.printed(self.out))
+    stderr = property(lambda self: waiting.printed(self.err))
 
     def send_signal(self, number):
         self.process.send_signal(number)

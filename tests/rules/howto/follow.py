@@ -205,7 +205,7 @@ class Terminals:
                 raise PageError(f"{where}: {command} prints {printed!r}, not {expected!r}")
 
     def start(self, step, where):
-        output = tempfile.TemporaryFile(mode="w+")
+        output = tempfile.TemporaryFile()
         # Of its own group, as in a terminal; and Ctrl-C counts, also where this program was started to ignore it.
         process = subprocess.Popen(["bash", "-e", "-c", step.text], cwd=self.root, env=self.environment, text=True,
                                    stdin=subprocess.DEVNULL, stdout=output, stderr=output, start_new_session=True,
@@ -213,13 +213,13 @@ class Terminals:
         self.beside.append((where, process, output))
 
         def ready():
-            return step.ready in printed(output) or process.poll() is not None
+            return step.ready in waiting.printed(output) or process.poll() is not None
         try:
             waiting.until(ready, step.ready)
         except AssertionError:
             pass
-        if step.ready not in printed(output):
-            raise PageError(f"{where}: '{step.ready}' was not printed, but: {printed(output)}")
+        if step.ready not in waiting.printed(output):
+            raise PageError(f"{where}: '{step.ready}' was not printed, but: {waiting.printed(output)}")
 
     def interrupt(self, where="end"):
         if not self.beside:
@@ -232,7 +232,7 @@ class Terminals:
             except subprocess.TimeoutExpired:
                 os.killpg(process.pid, signal.SIGKILL)
                 process.wait()
-        print(f"--- Ctrl-C: what {begun} printed\n" + "".join(printed(output).splitlines(True)[-20:]), end="")
+        print(f"--- Ctrl-C: what {begun} printed\n" + "".join(waiting.printed(output).splitlines(True)[-20:]), end="")
         output.close()
         if process.returncode not in (0, 128 + signal.SIGINT, -signal.SIGINT):
             raise PageError(f"{begun}: the commands ended with {process.returncode}, not as Ctrl-C ends them")
@@ -247,11 +247,6 @@ class Terminals:
                 failure = failure or error
         if failure:
             raise failure
-
-
-def printed(output):
-    # Not by seek(): the program writes at the same offset, and would write over what it has written.
-    return os.pread(output.fileno(), os.fstat(output.fileno()).st_size, 0).decode()
 
 
 def copy(source, build, root):
