@@ -580,11 +580,19 @@ BA_ "GenMsgCycleTime" BO_ 2566844672 100;
             self.assertEqual(other[4], "Engine")
 
     def test_mistakes(self):
-        for text, word in (("BO_ 1 A: 64 X\n", ":1: 'A' has 64 bytes"), ("BO_ 2048 A: 8 X\n", ":1: 'A'"),
-                           ("BO_ 1 A: 8 X\n", "cycle time"), ("\nBO_ A 8\n", ":2: BO_"), ("", "no message"),
-                           ('BO_ 1 A: 8 X\nBA_ "GenMsgCycleTime" BO_ 1 soon;', ":2: GenMsgCycleTime")):
+        for text, word in (("BO_ 1 A: 64 X\n", ":1: 'A' has 64 bytes"),
+                           ("BO_ 1 A: 8 X\n", "cycle time"), ("\nBO_ A 8\n", ":2: BO_"), ("", "no statement of DBC"), ("BU_: A\n", "no message"),
+                           ('BO_ 1 A: 8 X\nBA_ "GenMsgCycleTime" BO_ 1 soon;', "cycle time")):
             _, err = self.run_tool("analyse", "bus", self.file(text, "car.dbc"), code=2)
             self.assertIn(word, err)
+
+    def test_what_is_doubtful_is_said(self):
+        """Up to five places; the set is analysed all the same."""
+        text = 'BO_ 2048 A: 8 X\nBA_ "GenMsgCycleTime" BO_ 2048 10;\n' + 'CM_ BO_ 9 "of nothing";\n' * 6
+        out, _ = self.run_tool("analyse", "bus", self.file(text, "car.dbc"))
+        self.assertIn("car.dbc:1: the identifier 2048 of A has more than 11 bits", out)
+        self.assertEqual(out.count("which is not in the file"), 4)
+        self.assertIn("car.dbc: 2 more doubtful places.", out)
 
 
 if __name__ == "__main__":
