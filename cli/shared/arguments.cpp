@@ -369,6 +369,17 @@ bool Option::is_decided() const {
   return false;
 }
 
+std::optional<Misuse> Option::misuse_of(const std::string& text) const {
+  try {
+    for (int i = 0;; ++i) {
+      std::string value = text;
+      if (const std::string error = (*option_->get_validator(i))(value); !error.empty()) return split(error);
+    }
+  } catch (const CLI::OptionNotFound&) {  // that was the last one
+    return {};
+  }
+}
+
 std::optional<Misuse> Option::give(const std::string& key, const std::vector<std::string>& values) const {
   try {
     if (option_->get_items_expected_max() == 0 || (option_->get_items_expected_min() == 0 && values.empty()))
@@ -379,7 +390,7 @@ std::optional<Misuse> Option::give(const std::string& key, const std::vector<std
     root_of(owner_).given.insert(option_);
   } catch (const CLI::ParseError& error) {
     option_->clear();
-    Misuse misuse = misuse_of(error);
+    Misuse misuse = cli::misuse_of(error);
     if (const std::string before = name() + " "; misuse.what.starts_with(before))
       misuse.what.erase(0, before.size());
     return misuse;
@@ -422,9 +433,13 @@ Option Verb::add_value(const std::string& names, TakeValue take, const std::stri
   // CLI11 checks each text once, before it would convert it: here the check is the conversion.
   auto* option = app_->add_option_function<std::string>(
       names, [](const std::string&) {}, help);
-  add_check(option, "", [take = std::move(take)](const std::string& text) {
+  add_check(option, "", [take = std::move(take), declared = Option{option, app_}](const std::string& text) {
     const auto misuse = take(text);
-    return misuse ? wrong(text, misuse->what, misuse->remedy) : std::string{};
+    if (!misuse) return std::string{};
+    // Of one or two characters any short word is near: 4 is no misspelt 0.
+    const std::string_view near =
+        text.size() < 3 ? std::string_view{} : words::nearest(text, declared.accepted().words);
+    return wrong(text, misuse->what, near.empty() ? misuse->remedy : fmt::format("did you mean '{}'?", near));
   });
   return {option, app_};
 }

@@ -84,6 +84,9 @@ class Option {
 
   /// Whether it has a value by now, or another one that excludes it has.
   [[nodiscard]] bool is_decided() const;
+  /// What the command line says of this text as its value: "soon: not a time". Of one that it refuses; it
+  /// takes any other one.
+  [[nodiscard]] std::optional<Misuse> misuse_of(const std::string& text) const;
   /// As if the command line had it, as --key; without a value where it needs none. What is wrong with the
   /// values, after the key: "soon: not a time".
   [[nodiscard]] std::optional<Misuse> give(const std::string& key,

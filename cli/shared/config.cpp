@@ -66,9 +66,9 @@ void apply_environment(Verb verb) {
           fail({fmt::format("{}={}", name, misuse->what), misuse->remedy + ", or unset it"}, exit_usage);
         break;
       }
-      const auto refusal = refuse_text(option.accepted(), value);
+      const auto refusal = refuse(option, std::string{value});
       if (refusal && may_be_another) break;
-      if (refusal) fail({fmt::format("{}={}: {}", name, value, refusal->what), refusal->remedy}, exit_usage);
+      if (refusal) fail({fmt::format("{}={}", name, refusal->what), refusal->remedy}, exit_usage);
       if (const auto misuse = option.give(key, {value}); misuse && !may_be_another)
         fail({fmt::format("{}={}", name, misuse->what), misuse->remedy + ", or unset it"}, exit_usage);
       break;
@@ -100,7 +100,7 @@ void apply_setting(Verb verb, const Setting& setting, const std::string& file) {
     // Only above all tables: another verb takes it.
     if (const auto refusal = refuse(option, setting.values)) {
       if (option.is_former("--" + setting.key)) continue;  // it has another meaning in that verb by now
-      leave(file, {{setting.line, fmt::format("{}: {}", setting.key, refusal->what),
+      leave(file, {{setting.line, fmt::format("{} {}", setting.key, refusal->what),
                     refusal->remedy + "; what is for another verb, write in its table"}});
     }
     std::vector<std::string> values;
@@ -110,7 +110,7 @@ void apply_setting(Verb verb, const Setting& setting, const std::string& file) {
       values.clear();
     }
     if (const auto misuse = option.give(setting.key, values))
-      leave(file, {{setting.line, fmt::format("{} = {}", setting.key, misuse->what), misuse->remedy}});
+      leave(file, {{setting.line, fmt::format("{} {}", setting.key, misuse->what), misuse->remedy}});
   }
 }
 

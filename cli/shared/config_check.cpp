@@ -26,20 +26,28 @@ std::string table_name(Verb table) {
   return name;
 }
 
-std::set<std::string> verb_names(Verb program) {
-  std::set<std::string> names;
-  for (const Verb verb : program.verbs()) names.insert(verb.name());
-  return names;
+/// As the command line says it, of names without --.
+std::string suggestion(std::string_view typed, const std::set<std::string>& known, Verb verb,
+                       std::string_view listed) {
+  typed.remove_prefix(std::min(typed.find_first_not_of('-'), typed.size()));
+  const std::string_view near = words::nearest(typed, known);
+  const std::string path = verb.path();
+  return near.empty()
+             ? fmt::format("`amiroctl{}{} --help` lists the {}", path.empty() ? "" : " ", path, listed)
+             : fmt::format("did you mean '{}'?", near);
 }
 
-std::string suggestion(const std::string& typed, const std::set<std::string>& known) {
-  const std::string_view near = words::nearest(typed, known);
-  return near.empty() ? "a key is the long name of an option, without --; `amiroctl VERB --help` lists them"
-                      : fmt::format("did you mean {}?", near);
+/// What the command line says of a text that it refuses, too. A remedy of its own is none here.
+std::optional<Refusal> as_on_the_command_line(const Option& option, const std::string& text,
+                                              const Refusal& refusal) {
+  const auto misuse = option.misuse_of(text);
+  if (!misuse) return refusal;
+  return Refusal{misuse->what,
+                 misuse->remedy.find("--") == std::string::npos ? misuse->remedy : refusal.remedy};
 }
 
 /// Of a key that is no option of its table: the tables in which it is one, or the key that was meant.
-ConfigProblem misplaced(const Setting& setting, const std::string& table,
+ConfigProblem misplaced(const Setting& setting, Verb verb, const std::string& table,
                         const std::vector<Settable>& settable) {
   std::set<std::string> keys;
   std::string tables;
@@ -56,11 +64,24 @@ ConfigProblem misplaced(const Setting& setting, const std::string& table,
   if (!tables.empty())
     return {setting.line, fmt::format("{} has no effect in [{}]", setting.key, setting.table),
             fmt::format("write it above the first table, or in {}", tables)};
-  return {setting.line, fmt::format("unknown key {}", setting.key), suggestion(setting.key, keys)};
+  return {setting.line, fmt::format("unknown option '{}'", setting.key),
+          suggestion(setting.key, keys, verb, "options")};
 }
 
 ConfigProblem no_verb(Verb program, const std::string& table, std::size_t line) {
-  return {line, fmt::format("[{}] is not a verb", table), suggestion(table, verb_names(program))};
+  // The verbs of the deepest table that is one.
+  Verb verb = program;
+  std::string_view rest = table;
+  std::string word;
+  for (Verb inner = program; inner && !rest.empty();) {
+    verb = inner;
+    word = rest.substr(0, rest.find('.'));
+    rest.remove_prefix(std::min(word.size() + 1, rest.size()));
+    inner = find_table(verb, word);
+  }
+  std::set<std::string> names;
+  for (const Verb each : verb.verbs()) names.insert(each.name());
+  return {line, fmt::format("[{}]: unknown verb '{}'", table, word), suggestion(word, names, verb, "verbs")};
 }
 
 }  // namespace
@@ -94,14 +115,24 @@ void check_table(Verb program, const EmptyTable& table, std::vector<ConfigProble
   if (!find_table(program, table.name)) problems.push_back(no_verb(program, table.name, table.line));
 }
 
+std::optional<Refusal> refuse(const Option& option, const std::string& text) {
+  const auto refusal = refuse_text(option.accepted(), text);
+  return refusal ? as_on_the_command_line(option, text, *refusal) : std::nullopt;
+}
+
 std::optional<Refusal> refuse(const Option& option, const std::vector<OptionValue>& values) {
-  if (values.empty()) return Refusal{"an array without a value", "leave the line out"};
+  if (values.empty()) return Refusal{"is an array without a value", "leave the line out"};
   if (option.most_values() <= 1 && values.size() > 1)
-    return Refusal{fmt::format("{} values", values.size()), "expected one"};
+    return Refusal{"is given more than once", "give it once"};
   const bool bare = option.most_values() > 0 && option.least_values() == 0;  // --loop, or --loop 3
   if (bare && values.front().kind == ValueKind::truth) return std::nullopt;
   for (const OptionValue& value : values)
-    if (auto refusal = refuse_value(option.accepted(), value)) return refusal;
+    if (const auto refusal = refuse_value(option.accepted(), value)) {
+      auto told = as_on_the_command_line(option, value.text, *refusal);
+      if (!suits(option.accepted(), value.kind) && !told->remedy.ends_with("quotes"))
+        told->remedy += quotes(option.accepted());
+      return told;
+    }
   return std::nullopt;
 }
 
@@ -123,9 +154,9 @@ void check_setting(Verb program, const Setting& setting, const std::vector<Setta
     taken = taken || !refusal;
   }
   if (!found)
-    problems.push_back(misplaced(setting, table, settable));
+    problems.push_back(misplaced(setting, verb, table, settable));
   else if (!taken)
-    problems.push_back({setting.line, fmt::format("{}: {}", setting.key, first->what), first->remedy});
+    problems.push_back({setting.line, fmt::format("{} {}", setting.key, first->what), first->remedy});
 }
 
 }  // namespace ocm::cli

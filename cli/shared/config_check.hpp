@@ -29,7 +29,9 @@ struct Settable {
 /// What is wrong with a table that sets nothing: that it is of no verb.
 void check_table(Verb program, const EmptyTable& table, std::vector<ConfigProblem>& problems);
 
-/// Why an option does not take the values of a setting.
+/// Why an option does not take a text, from the environment, in the words of the command line.
+[[nodiscard]] std::optional<Refusal> refuse(const Option& option, const std::string& text);
+/// Why an option does not take the values of a setting, in the words of the command line.
 [[nodiscard]] std::optional<Refusal> refuse(const Option& option, const std::vector<OptionValue>& values);
 /// What is wrong with a setting, if anything is. Above all tables it is for every verb that has the option,
 /// and some verb must take its value.

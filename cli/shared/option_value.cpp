@@ -23,11 +23,21 @@ std::string described(const std::string& expected) {
   return expected.empty() ? "a text" : expected;
 }
 
+std::string_view not_of(ValueKind kind) {
+  return kind == ValueKind::text     ? "not a text"
+         : kind == ValueKind::number ? "not a number"
+                                     : "neither true nor false";
+}
+
+}  // namespace
+
 bool suits(const Accepted& accepted, ValueKind kind) {
   return kind == accepted.kind || (kind == ValueKind::number && accepted.number_too);
 }
 
-}  // namespace
+std::string_view quotes(const Accepted& accepted) {
+  return accepted.kind == ValueKind::text ? ", in quotes" : ", without quotes";
+}
 
 Accepted accepted_words(std::vector<std::string> words) {
   std::string expected = alternatives(words);
@@ -66,22 +76,17 @@ std::optional<Refusal> refuse_text(const Accepted& accepted, const std::string& 
     for (const std::string& word : words) good = good || word == text;
   }
   if (good) return std::nullopt;
-  const std::string_view near = words::nearest(text, words);
-  return Refusal{fmt::format("invalid value '{}'", text),
-                 (near.empty() ? std::string{} : fmt::format("did you mean {}? ", near)) + "expected " +
-                     described(accepted.expected)};
+  if (!words.empty())
+    return Refusal{text + ": unknown value",
+                   words::suggestion(text, std::vector<std::string_view>(words.begin(), words.end()))};
+  return Refusal{text + ": invalid value", "write " + described(accepted.expected)};
 }
 
 std::optional<Refusal> refuse_value(const Accepted& accepted, const OptionValue& value) {
-  if (suits(accepted, value.kind)) {
-    auto refusal = refuse_text(accepted, value.text);
-    if (refusal && value.kind != ValueKind::text) refusal->what = "invalid value " + value.text;
-    return refusal;
-  }
-  const bool in_quotes = value.kind == ValueKind::text;
-  return Refusal{in_quotes ? fmt::format("invalid value '{}'", value.text) : "invalid value " + value.text,
-                 fmt::format("expected {}, {} quotes", described(accepted.expected),
-                             accepted.kind == ValueKind::text ? "in" : "without")};
+  if (suits(accepted, value.kind)) return refuse_text(accepted, value.text);
+  const char* const quote = value.kind == ValueKind::text ? "'" : "";
+  return Refusal{fmt::format("{0}{1}{0}: {2}", quote, value.text, not_of(accepted.kind)),
+                 fmt::format("write {}{}", described(accepted.expected), quotes(accepted))};
 }
 
 }  // namespace ocm::cli

@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace ocm::cli {
@@ -27,7 +28,7 @@ struct Accepted {
   std::function<bool(const std::string&)> holds;  ///< empty: any
 };
 
-/// What is wrong with a value, and what is accepted instead.
+/// What is wrong with a value, from the value on, and what is accepted instead: "hihg: unknown value".
 struct Refusal {
   std::string what;
   std::string remedy;
@@ -41,6 +42,10 @@ struct Refusal {
 /// true or false.
 [[nodiscard]] Accepted accepted_truth();
 
+/// Whether a config file may have a value that is written so.
+[[nodiscard]] bool suits(const Accepted& accepted, ValueKind kind);
+/// ", in quotes" or ", without quotes": behind the remedy for a value that is not written so.
+[[nodiscard]] std::string_view quotes(const Accepted& accepted);
 /// A value as an option's text, from the environment: quotes do not matter there.
 [[nodiscard]] std::optional<Refusal> refuse_text(const Accepted& accepted, const std::string& text);
 /// A value of a config file.

@@ -140,10 +140,10 @@ class OldNames(Case):
         del self.environment["AMIROCTL_LISTEN"]
         with open(config, "w", encoding="utf-8") as file:
             file.write('[doctor]\nwatch = "soon"\n')
-        self.assertIn(f"{config}:2: watch: invalid value 'soon'", self.run_tool("--config", config, "doctor", code=2)[1])
+        self.assertIn(f"{config}:2: watch soon: not a time", self.run_tool("--config", config, "doctor", code=2)[1])
         with open(config, "w", encoding="utf-8") as file:
             file.write('[run]\nlisten = "150ms"\n')
-        self.assertIn(f"{config}:2: listen: invalid value '150ms'", self.run_tool("--config", config, "run", script, code=2)[1])
+        self.assertIn(f"{config}:2: listen 150ms: neither true nor false", self.run_tool("--config", config, "run", script, code=2)[1])
 
 
 if __name__ == "__main__":
