@@ -56,10 +56,8 @@ struct SelectorRange {
 struct Signal {
   enum class Number : std::uint8_t { integer, float32, float64 };
 
-  std::string name;         ///< the long one where there is one
-  std::uint16_t start = 0;  ///< DBC's count, as ocm::protocol::Position
-  std::uint16_t width = 0;
-  protocol::ByteOrder order = protocol::ByteOrder::little;
+  std::string name;  ///< the long one where there is one
+  protocol::Position position;
   bool is_signed = false;
   Number number = Number::integer;
   base::Decimal scale{1, 0};
@@ -75,8 +73,8 @@ struct Signal {
   std::vector<Attribute> attributes;         ///< those that have no member here
 
   bool is_selector = false;
-  std::optional<std::size_t>
-      selector;  ///< index in Message::signals of what says whether this one is there; none: always
+  /// Index in Message::signals of what says whether this one is there; none: it always is.
+  std::optional<std::size_t> selector;
   std::vector<SelectorRange> selected;  ///< the raw bits of the selector with which it is there
   std::size_t line = 0;
 };

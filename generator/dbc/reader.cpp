@@ -30,35 +30,6 @@ struct SignalAt {
   std::size_t signal = 0;
 };
 
-/// The last byte that a signal reaches into.
-unsigned last_byte(const Signal& signal) noexcept {
-  const unsigned from = signal.order == protocol::ByteOrder::little
-                            ? signal.start
-                            : signal.start / 8U * 8U + (7U - signal.start % 8U);
-  return (from + signal.width - 1U) / 8U;
-}
-
-/// The bits of a byte that a signal takes.
-std::uint8_t bits_in_byte(const Signal& signal, unsigned byte) noexcept {
-  const bool little = signal.order == protocol::ByteOrder::little;
-  const unsigned from = little ? signal.start : signal.start / 8U * 8U + (7U - signal.start % 8U);
-  const unsigned to = from + signal.width;  // behind the last
-  std::uint8_t bits = 0;
-  for (unsigned i = 0; i < 8; ++i) {
-    const unsigned bit = 8 * byte + i;
-    if (bit >= from && bit < to) bits = static_cast<std::uint8_t>(bits | (little ? 1U << i : 0x80U >> i));
-  }
-  return bits;
-}
-
-bool overlap(const Signal& a, const Signal& b) noexcept {
-  const unsigned first = std::max(a.start / 8U, b.start / 8U);
-  const unsigned last = std::min(last_byte(a), last_byte(b));
-  for (unsigned byte = first; byte <= last; ++byte)
-    if ((bits_in_byte(a, byte) & bits_in_byte(b, byte)) != 0) return true;
-  return false;
-}
-
 bool have_common(const std::vector<SelectorRange>& a, const std::vector<SelectorRange>& b) noexcept {
   return std::any_of(a.begin(), a.end(), [&](const SelectorRange& one) {
     return std::any_of(b.begin(), b.end(), [&](const SelectorRange& other) {
@@ -214,10 +185,10 @@ class Resolver {
     if (signal == nullptr) return nothing_there(statement.subject, "the type");
     if (statement.type == 0) return;
     const unsigned width = statement.type == 1 ? 32 : 64;
-    if (statement.type == 3 || signal->signal.width != width) {
+    if (statement.type == 3 || signal->signal.position.width != width) {
       problems_.push_back({statement.subject.line,
                            signal->signal.name + " is a floating-point number of " +
-                               std::to_string(signal->signal.width) + " bits",
+                               std::to_string(signal->signal.position.width) + " bits",
                            "1 is float32, with 32 bits, and 2 float64, with 64"});
       return;
     }
@@ -443,17 +414,17 @@ class Resolver {
 
   void check(const Message& message) {
     for (const Signal& signal : message.signals)
-      if (last_byte(signal) >= message.length)
+      if (signal.position.bytes() > message.length)
         doubt(signal.line,
-              signal.name + " ends in byte " + std::to_string(last_byte(signal)) + " of " + message.name +
-                  ", which has " + std::to_string(message.length) + " bytes",
+              signal.name + " ends in byte " + std::to_string(signal.position.bytes() - 1) + " of " +
+                  message.name + ", which has " + std::to_string(message.length) + " bytes",
               "it is there in longer frames only");
     if (message.signals.size() > most_compared) return;
     for (std::size_t i = 0; i < message.signals.size(); ++i)
       for (std::size_t j = i + 1; j < message.signals.size(); ++j) {
         const Signal& a = message.signals[i];
         const Signal& b = message.signals[j];
-        if (!overlap(a, b) || exclude(message, a, b)) continue;
+        if (!a.position.overlaps(b.position) || exclude(message, a, b)) continue;
         doubt(b.line, a.name + " and " + b.name + " of " + message.name + " have bits in common",
               "each is read by itself");
         return;

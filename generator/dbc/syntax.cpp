@@ -311,7 +311,7 @@ class Parser {
     if (!character(':') || !place(signal) || !conversion(signal)) return false;
     if (lexer_.peek().is_string()) signal.unit = unescaped(lexer_.take().text);
     names_of_line(signal.receivers);
-    if (signal.width == 0) {
+    if (signal.position.width == 0) {
       doubt(line_, signal.name + " has no bits", "left out");
       return true;
     }
@@ -343,8 +343,8 @@ class Parser {
     if (!unsigned_number(start, 511, "the first bit, 0 to 511") || !character('|') ||
         !unsigned_number(width, 64, bits))
       return false;
-    signal.start = static_cast<std::uint16_t>(start);
-    signal.width = static_cast<std::uint16_t>(width);
+    signal.position.start = static_cast<std::uint16_t>(start);
+    signal.position.width = static_cast<std::uint8_t>(width);
     if (!character('@')) return false;
     const Token token = lexer_.peek();
     static constexpr std::string_view form = "the byte order, 0 or 1, and the sign, + or -";
@@ -355,7 +355,7 @@ class Parser {
       text += lexer_.take().text;  // "@1 +"
     if (text.size() != 2 || (text[0] != '0' && text[0] != '1') || (text[1] != '+' && text[1] != '-'))
       return wrong(token, form);
-    signal.order = text[0] == '0' ? protocol::ByteOrder::big : protocol::ByteOrder::little;
+    signal.position.order = text[0] == '0' ? protocol::ByteOrder::big : protocol::ByteOrder::little;
     signal.is_signed = text[1] == '-';
     return true;
   }

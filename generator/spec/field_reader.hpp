@@ -195,7 +195,7 @@ class FieldReader : protected Checker {
 
   void read_position(const At& at, protocol::ByteOrder order, bool typed, FieldModel& field) {
     field.position.order = order;
-    field.position.start = 255;  // until the place is known; overlaps nothing
+    field.position.start = UINT16_MAX;  // until the place is known; overlaps nothing
     const auto byte = at.member("byte");
     const auto bit = at.member("bit");
     if (byte && bit) tell(*bit, "both \"byte\" and \"bit\"", "one of them says where the field begins");
@@ -208,7 +208,7 @@ class FieldReader : protected Checker {
     const auto n = static_cast<unsigned>(*number);
     const bool big = order == protocol::ByteOrder::big;
     const unsigned start = !byte ? n : big ? 8 * n + 7 : 8 * n;
-    field.position.start = static_cast<std::uint8_t>(start);
+    field.position.start = static_cast<std::uint16_t>(start);
     if (!typed || field.position.mask() != 0) return;
     const unsigned width = field.position.width;
     const unsigned most = 64 - (big ? start / 8 * 8 + 7 - start % 8 : start);

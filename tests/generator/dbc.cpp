@@ -76,9 +76,9 @@ TEST_CASE("dbc: a message with its signals") {
   CHECK(engine.comment == "of the\nengine");
   CHECK(engine.line == 11);
   const Signal& rpm = signal(engine, "Rpm");
-  CHECK(rpm.start == 7);
-  CHECK(rpm.width == 16);
-  CHECK(rpm.order == protocol::ByteOrder::big);
+  CHECK(rpm.position.start == 7);
+  CHECK(rpm.position.width == 16);
+  CHECK(rpm.position.order == protocol::ByteOrder::big);
   CHECK_FALSE(rpm.is_signed);
   CHECK(rpm.scale == base::Decimal{25, -2});
   CHECK(rpm.has_range);
@@ -86,7 +86,7 @@ TEST_CASE("dbc: a message with its signals") {
   CHECK(rpm.unit == "rpm");
   CHECK(rpm.comment == "at the \"crank\"");
   const Signal& torque = signal(engine, "Torque");
-  CHECK(torque.order == protocol::ByteOrder::little);
+  CHECK(torque.position.order == protocol::ByteOrder::little);
   CHECK(torque.is_signed);
   CHECK(torque.offset == base::Decimal{-1, 2});
   CHECK(torque.receivers == std::vector<std::string>{"Dash"});

@@ -11,6 +11,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <type_traits>
 
 #include "ocm/can/frame.hpp"
@@ -19,11 +20,14 @@ namespace ocm::protocol {
 
 enum class ByteOrder : std::uint8_t { little, big };
 
-/// A field's place in the eight bytes of a frame.
+/// A field's place in a frame of up to 64 bytes.
 struct Position {
-  std::uint8_t start = 0;  ///< 0..63, see above
-  std::uint8_t width = 0;  ///< 1..64
+  std::uint16_t start = 0;  ///< 0..511, see above; 0..63 in a classic frame
+  std::uint8_t width = 0;   ///< 1..64
   ByteOrder order = ByteOrder::little;
+
+  /// How many bytes a frame must have to hold the field.
+  [[nodiscard]] constexpr unsigned bytes() const noexcept { return (first_bit() + width + 7U) / 8U; }
 
   /// The bits that the field takes, as a mask over the frame: bit b of the mask is bit b of the frame. 0 when
   /// the field does not fit into eight bytes.
@@ -37,6 +41,28 @@ struct Position {
       bit = order == ByteOrder::little ? bit + 1 : bit % 8 != 0 ? bit - 1 : bit + 15;
     }
     return mask;
+  }
+  /// The bits of byte `index` that the field takes.
+  [[nodiscard]] constexpr std::uint8_t bits_in_byte(unsigned index) const noexcept {
+    unsigned bits = 0;
+    for (unsigned i = 0; i < 8; ++i) {
+      const unsigned bit = 8 * index + i;
+      if (bit < first_bit() || bit >= first_bit() + width) continue;
+      bits |= order == ByteOrder::little ? 1U << i : 0x80U >> i;
+    }
+    return static_cast<std::uint8_t>(bits);
+  }
+  /// Whether two fields have a bit in common.
+  [[nodiscard]] constexpr bool overlaps(const Position& other) const noexcept {
+    const unsigned end = bytes() < other.bytes() ? bytes() : other.bytes();
+    for (unsigned byte = (start > other.start ? start : other.start) / 8U; byte < end; ++byte)
+      if ((bits_in_byte(byte) & other.bits_in_byte(byte)) != 0) return true;
+    return false;
+  }
+  /// The field's first bit, counted through each byte from the end at which the byte order begins: a field's
+  /// bits then follow each other without a jump.
+  [[nodiscard]] constexpr unsigned first_bit() const noexcept {
+    return order == ByteOrder::little ? start : start / 8U * 8U + (7U - start % 8U);
   }
   friend constexpr bool operator==(const Position&, const Position&) = default;
 };
@@ -96,6 +122,40 @@ constexpr void put(can::Payload& data, Position position, std::int64_t value) no
   std::uint64_t word = detail::load(data, position.order);
   word = (word & ~mask) | (static_cast<std::uint64_t>(value) << shift & mask);
   detail::store(data, word, position.order);
+}
+
+/// The same for a frame of any length, which must hold the field: `data.size() >= position.bytes()`.
+[[nodiscard]] constexpr std::int64_t get(std::span<const std::uint8_t> data, Position position,
+                                         bool is_signed) noexcept {
+  const unsigned first = position.first_bit();
+  const unsigned last = first + position.width - 1U;
+  std::uint64_t bits = 0;
+  if (position.order == ByteOrder::little) {
+    for (unsigned i = last / 8 + 1;
+         i-- > first / 8;)  // a byte of which the lowest bits are above: shifted off
+      bits = 8 * i >= first ? bits << 8 | data[i] : bits << (8 - first % 8) | data[i] >> first % 8;
+  } else {
+    const unsigned below = 7 - last % 8;  // bits of the last byte that are not the field's
+    for (unsigned i = first / 8; i <= last / 8; ++i)
+      bits = i < last / 8 ? bits << 8 | data[i] : bits << (8 - below) | data[i] >> below;
+  }
+  bits &= detail::low_mask(position.width);
+  return is_signed ? detail::sign_extended(bits, position.width) : static_cast<std::int64_t>(bits);
+}
+/// Only the lowest `width` bits of `value` are put; the frame's other bits are kept.
+constexpr void put(std::span<std::uint8_t> data, Position position, std::int64_t value) noexcept {
+  const unsigned first = position.first_bit();
+  const unsigned last = first + position.width - 1U;
+  const bool little = position.order == ByteOrder::little;
+  const auto bits = static_cast<std::uint64_t>(value) & detail::low_mask(position.width);
+  for (unsigned i = first / 8; i <= last / 8; ++i) {
+    // How far the field's lowest bit is above the lowest of this byte; below it, when negative.
+    const int shift = little ? static_cast<int>(first) - static_cast<int>(8 * i)
+                             : static_cast<int>(8 * i + 7) - static_cast<int>(last);
+    const std::uint64_t byte = shift >= 0 ? bits << shift : bits >> -shift;
+    const unsigned mask = position.bits_in_byte(i);
+    data[i] = static_cast<std::uint8_t>((data[i] & ~mask) | (byte & mask));
+  }
 }
 
 /// Compile-time form: a field of type T at a fixed position. T holds the width; the generator takes the

@@ -1,5 +1,9 @@
 #include "ocm/protocol/codec.hpp"
 
+#include <array>
+#include <span>
+#include <vector>
+
 #include <catch2/catch.hpp>
 
 #include "unit/protocol/codec_sweep.hpp"
@@ -60,10 +64,10 @@ static_assert(Bits<std::int8_t, 10, 1>::get({0x00, 0x04}) == -1);
 // --- positions ---
 
 TEST_CASE("a position's mask are its bits, or nothing when it does not fit") {
-  for (int start = 0; start < 256; ++start)
+  for (int start = 0; start < 600; ++start)
     for (int width = 0; width < 256; ++width)
       for (const auto order : {ByteOrder::little, ByteOrder::big}) {
-        const Position p{static_cast<std::uint8_t>(start), static_cast<std::uint8_t>(width), order};
+        const Position p{static_cast<std::uint16_t>(start), static_cast<std::uint8_t>(width), order};
         std::uint64_t expected = 0;
         bool fits = width >= 1 && width <= 64 && start <= 63;
         for (int i = 0; fits && i < width; ++i) {
@@ -149,7 +153,7 @@ TEST_CASE("the run-time form agrees with bit after bit, everywhere") {
   for (int start = 0; start < 64; ++start)
     for (int width = 1; width <= 64; ++width)
       for (const auto order : {ByteOrder::little, ByteOrder::big}) {
-        const Position p{static_cast<std::uint8_t>(start), static_cast<std::uint8_t>(width), order};
+        const Position p{static_cast<std::uint16_t>(start), static_cast<std::uint8_t>(width), order};
         if (p.mask() == 0) continue;
         ++positions;
         for (int round = 0; round < 4; ++round) {
@@ -166,6 +170,70 @@ TEST_CASE("the run-time form agrees with bit after bit, everywhere") {
         }
       }
   CHECK(positions == 2 * 64 * 65 / 2);
+}
+
+// --- frames of any length ---
+
+// A decoder of CAN databases shows -806 and -1075 for these. [DBC: `12|12@1-` and `35|12@0-` in 00 A0 CD 00
+// 0B CD 00 00]
+constexpr std::array<std::uint8_t, 8> two_signals{0x00, 0xA0, 0xCD, 0x00, 0x0B, 0xCD, 0x00, 0x00};
+static_assert(get(std::span{two_signals}, {12, 12, ByteOrder::little}, true) == -806);
+static_assert(get(std::span{two_signals}, {35, 12, ByteOrder::big}, true) == -1075);
+static_assert(get(two_signals, {12, 12, ByteOrder::little}, true) == -806);
+static_assert(get(two_signals, {35, 12, ByteOrder::big}, true) == -1075);
+
+static_assert(Position{0, 8, ByteOrder::little}.bytes() == 1);
+static_assert(Position{1, 8, ByteOrder::little}.bytes() == 2);
+static_assert(Position{7, 8, ByteOrder::big}.bytes() == 1);
+static_assert(Position{6, 8, ByteOrder::big}.bytes() == 2);
+static_assert(Position{511, 8, ByteOrder::big}.bytes() == 64);
+static_assert(Position{448, 64, ByteOrder::little}.bytes() == 64);
+
+TEST_CASE("a field of a longer frame agrees with bit after bit, wherever it is") {
+  Random random{2};
+  int positions = 0;
+  for (int start = 0; start < 512; ++start)
+    for (int width = 1; width <= 64; width += 1 + start % 3)
+      for (const auto order : {ByteOrder::little, ByteOrder::big}) {
+        const Position p{static_cast<std::uint16_t>(start), static_cast<std::uint8_t>(width), order};
+        const bool fits = ocm::test::frame_bit(p, order == ByteOrder::little ? width - 1 : 0, 64) >= 0;
+        INFO("start " << start << ", width " << width << (order == ByteOrder::big ? ", big" : ", little"));
+        REQUIRE((p.bytes() <= 64) == fits);
+        if (!fits) continue;
+        ++positions;
+        std::vector<std::uint8_t> before(p.bytes());  // as short as it may be, for sanitizers to see
+        for (auto& byte : before) byte = static_cast<std::uint8_t>(random.word());
+        const std::uint64_t value = random.word();
+        auto data = before;
+        put(std::span{data}, p, static_cast<std::int64_t>(value));
+        REQUIRE(data == ocm::test::put_by_bits(before, p, value));
+        for (const bool is_signed : {false, true})
+          REQUIRE(static_cast<std::uint64_t>(get(std::span<const std::uint8_t>{data}, p, is_signed)) ==
+                  ocm::test::get_by_bits(data, p, is_signed));
+      }
+  CHECK(positions > 20'000);
+}
+
+TEST_CASE("two fields overlap where they have a bit in common") {
+  Random random{3};
+  const auto any = [&random] {
+    const bool big = random.word() % 2 != 0;
+    return Position{static_cast<std::uint16_t>(random.word() % 64),
+                    static_cast<std::uint8_t>(1 + random.word() % 20),
+                    big ? ByteOrder::big : ByteOrder::little};
+  };
+  int overlapping = 0;
+  for (int round = 0; round < 20'000; ++round) {
+    const Position a = any();
+    const Position b = any();
+    if (a.mask() == 0 || b.mask() == 0) continue;
+    const bool common = (a.mask() & b.mask()) != 0;
+    INFO(a.start << "|" << int{a.width} << " " << b.start << "|" << int{b.width});
+    REQUIRE(a.overlaps(b) == common);
+    REQUIRE(b.overlaps(a) == common);
+    overlapping += common ? 1 : 0;
+  }
+  CHECK(overlapping > 1000);
 }
 
 }  // namespace protocol_codec_test

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <type_traits>
 #include <utility>
 
@@ -19,13 +20,13 @@ using protocol::Position;
 
 /// The frame's bit that holds bit `i` of the field, 0 the least significant: DBC's numbering, from its
 /// definition by walking, not by arithmetic on masks. -1 where the frame ends.
-inline int frame_bit(Position p, int i) {
-  if (p.order == ByteOrder::little) return p.start + i <= 63 ? p.start + i : -1;
+inline int frame_bit(Position p, int i, int bytes = 8) {
+  if (p.order == ByteOrder::little) return p.start + i < 8 * bytes ? p.start + i : -1;
   int bit = p.start;  // the most significant
   for (int k = p.width - 1; k > i; --k) {
     if (bit % 8 != 0)
       --bit;
-    else if (bit / 8 < 7)
+    else if (bit / 8 < bytes - 1)
       bit = 8 * (bit / 8 + 1) + 7;
     else
       return -1;
@@ -33,24 +34,27 @@ inline int frame_bit(Position p, int i) {
   return bit;
 }
 
-inline bool bit_of(const Payload& data, int bit) {
+inline bool bit_of(std::span<const std::uint8_t> data, int bit) {
   return (data[static_cast<std::size_t>(bit / 8)] >> (bit % 8) & 1) != 0;
 }
 
-inline Payload put_by_bits(Payload data, Position p, std::uint64_t value) {
+/// Of a frame of eight bytes, or of any length.
+template <class Data>
+Data put_by_bits(Data data, Position p, std::uint64_t value) {
   for (int i = 0; i < p.width; ++i) {
-    const int bit = frame_bit(p, i);
+    const int bit = frame_bit(p, i, static_cast<int>(data.size()));
     auto& byte = data[static_cast<std::size_t>(bit / 8)];
     byte = static_cast<std::uint8_t>((byte & ~(1U << bit % 8)) | (value >> i & 1) << bit % 8);
   }
   return data;
 }
 
-inline std::uint64_t get_by_bits(const Payload& data, Position p, bool is_signed) {
+inline std::uint64_t get_by_bits(std::span<const std::uint8_t> data, Position p, bool is_signed) {
+  const int bytes = static_cast<int>(data.size());
   std::uint64_t value = 0;
   for (int i = 63; i >= 0; --i) {
     const int from = i < p.width ? i : is_signed ? p.width - 1 : -1;
-    value = value << 1 | (from >= 0 && bit_of(data, frame_bit(p, from)) ? 1 : 0);
+    value = value << 1 | (from >= 0 && bit_of(data, frame_bit(p, from, bytes)) ? 1 : 0);
   }
   return value;
 }

@@ -23,11 +23,12 @@ void check_findings(const std::vector<dbc::Finding>& findings) {
 }
 
 void check_signal(const dbc::Message& message, const dbc::Signal& signal) {
-  fuzz::expect(!signal.name.empty() && signal.width >= 1 && signal.width <= 64 && signal.start < 512,
+  fuzz::expect(!signal.name.empty() && signal.position.width >= 1 && signal.position.width <= 64 &&
+                   signal.position.start < 512,
                "a signal has a name and bits");
   fuzz::expect(dbc::is_utf8(signal.unit) && dbc::is_utf8(signal.comment), "text is UTF-8");
   fuzz::expect(signal.number == dbc::Signal::Number::integer ||
-                   signal.width == (signal.number == dbc::Signal::Number::float32 ? 32 : 64),
+                   signal.position.width == (signal.number == dbc::Signal::Number::float32 ? 32 : 64),
                "a floating-point number has the width of one");
   fuzz::expect(signal.selector.has_value() != signal.selected.empty(), "a selector has values");
   std::size_t above = 0;
