@@ -25,16 +25,12 @@ struct Field {
   friend bool operator==(const Field&, const Field&) = default;
 };
 
-/// Upside down, x and y change places. [T2 §11.2.2: the Arduino robot]
-enum class CompassMount : std::uint8_t { upright, upside_down };
-
-/// Of the field in the frame of the part, (-pi, pi]; NaN where the field is no number or has no direction.
-[[nodiscard]] inline float field_angle(Field field, Field offset,
-                                       CompassMount mount = CompassMount::upright) noexcept {
+/// Of the field in the robot's frame, (-pi, pi]; NaN where the field is no number or has no direction.
+[[nodiscard]] inline float field_angle(Field field, Field offset) noexcept {
   const float x = field.x - offset.x;
   const float y = field.y - offset.y;
   if (!motion::all_finite(x, y) || (x == 0.0F && y == 0.0F)) return std::numeric_limits<float>::quiet_NaN();
-  return motion::wrap(mount == CompassMount::upright ? std::atan2(y, x) : std::atan2(x, y));
+  return motion::wrap(std::atan2(y, x));
 }
 
 class CompassCalibration {

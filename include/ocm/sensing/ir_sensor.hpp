@@ -3,12 +3,11 @@
 ///   V = a / d + b      between 10 and 80 cm, typically 2.3 V and 0.4 V
 ///
 /// The two typical voltages of the data sheet fix a and b; single sensors differ (0.25 to 0.55 V at 80 cm),
-/// so a sensor can have a table of its own, which is interpolated in 1/d. Best is 10 to 40 cm. Below 5 cm a
-/// sensor reads like far away, and no single reading can tell: `plausible` compares with the one before.
-/// constexpr, constant time (a table: its length). A voltage that is no number reads as nothing.
+/// so a sensor can have a curve of its own, through two points that were measured. Best is 10 to 40 cm. Below
+/// 5 cm a sensor reads like far away, and no single reading can tell. constexpr, constant time. A voltage
+/// that is no number reads as nothing.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -72,52 +71,9 @@ constexpr IrReading ir_reading(float distance_cm) noexcept {
   return above > 0.0F ? detail::ir_reading(curve.slope_v_cm / above) : IrReading{};
 }
 
-/// A sensor's own calibration: measured points, from near to far, so with falling voltages.
-struct IrPoint {
-  float distance_cm = 0.0F;
-  float volts = 0.0F;
-};
-
-template <std::size_t N>
-requires(N >= 2) struct IrTable {
-  std::array<IrPoint, N> points{};
-
-  /// In order: to be asked once, in a static_assert. A table out of order gives wrong distances, no worse.
-  [[nodiscard]] constexpr bool valid() const noexcept {
-    for (std::size_t i = 0; i < N; ++i) {
-      if (!motion::all_finite(points[i].distance_cm, points[i].volts) || points[i].distance_cm <= 0.0F)
-        return false;
-      if (i > 0 && points[i].distance_cm <= points[i - 1].distance_cm) return false;
-      if (i > 0 && points[i].volts >= points[i - 1].volts) return false;
-    }
-    return true;
-  }
-};
-
-/// Along the curve through the two points around the voltage; outside the table along its first or last
-/// curve.
-template <std::size_t N>
-[[nodiscard]] constexpr IrReading ir_distance(float volts, const IrTable<N>& table) noexcept {
-  std::size_t far = 1;
-  while (far + 1 < N && volts < table.points[far].volts) ++far;
-  const IrPoint& a = table.points[far - 1];
-  const IrPoint& b = table.points[far];
-  return ir_distance(volts, ir_curve(a.distance_cm, a.volts, b.distance_cm, b.volts));
-}
-
 /// Volts of an analogue-to-digital converter of `bits`, whose full scale is the reference.
 [[nodiscard]] constexpr float adc_volts(std::uint32_t count, unsigned bits, float reference_v) noexcept {
   return static_cast<float>(count) * reference_v / static_cast<float>((std::uint64_t{1} << bits) - 1);
-}
-
-/// A reading in the light of the one before, from the same place of the tower. Something that was near and is
-/// gone or far, although the robot can have moved by `moved_cm` only, is taken for too near still: it may
-/// well have come below 5 cm. The distance stays the last one. A robot that turned knows nothing from before:
-/// then the reading before is IrReading{}.
-[[nodiscard]] constexpr IrReading plausible(IrReading before, IrReading now, float moved_cm) noexcept {
-  const bool was_near = before.range != IrRange::nothing && before.distance_cm - moved_cm < ir_blind_cm;
-  const bool is_far = now.range == IrRange::nothing || now.distance_cm > before.distance_cm + moved_cm;
-  return was_near && is_far ? IrReading{before.distance_cm, IrRange::too_near} : now;
 }
 
 }  // namespace ocm::sensing
