@@ -42,6 +42,7 @@ constexpr AddVerb verbs[] = {
     add_central,
     add_robots,
     add_goto,
+    add_calibrate,
     add_pause,
     add_unpause,
     add_map,

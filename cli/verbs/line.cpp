@@ -153,6 +153,10 @@ void put_values(Buffer& out, const mapper::link::Sentence& sentence) {
   switch (sentence.kind) {
     case mapper::link::Kind::set_point:
       return put_values<mapper::link::SetPoint>(out, sentence);
+    case mapper::link::Kind::calibrate:
+      return put_values<mapper::link::Calibrate>(out, sentence);
+    case mapper::link::Kind::calibration:
+      return put_values<mapper::link::Calibration>(out, sentence);
     case mapper::link::Kind::handshake:
       return put_values<mapper::link::Handshake>(out, sentence);
     case mapper::link::Kind::update:

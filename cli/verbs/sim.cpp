@@ -80,8 +80,8 @@ int run_amiro(const sim::AmiroOptions& options, Session& session) {
 
 // --- mappers ---
 
-constexpr std::array<const char*, 5> mapper_options{"--lines", "--radio-loss", "--radio-range",
-                                                    "--radio-repeats", "--links"};
+constexpr std::array<const char*, 6> mapper_options{"--lines",         "--radio-loss", "--radio-range",
+                                                    "--radio-repeats", "--links",      "--uncalibrated"};
 
 void add_mappers(Verb verb, sim::MapperOptions& options) {
   verb.add_option("--robots", options.robots, "N mappers instead of the AMiRo, and their central")
@@ -99,6 +99,7 @@ void add_mappers(Verb verb, sim::MapperOptions& options) {
       .range(0.01, 10'000.0)
       .type_name("METRES");
   verb.add_flag("--radio-repeats", options.repeats, "the radio repeats what was lost, as Bluetooth does");
+  verb.add_flag("--uncalibrated", options.uncalibrated, "mappers whose compass was never calibrated");
   verb.add_option("--links", options.links, "robots that the central can have a link with; default: all")
       .range(1U, 128U)
       .type_name("N");

@@ -35,6 +35,7 @@ void add_generate(Verb app, Session& session, int& exit_code);
 void add_central(Verb app, Session& session, int& exit_code);
 void add_robots(Verb app, Session& session, int& exit_code);
 void add_goto(Verb app, Session& session, int& exit_code);
+void add_calibrate(Verb app, Session& session, int& exit_code);
 void add_pause(Verb app, Session& session, int& exit_code);
 void add_unpause(Verb app, Session& session, int& exit_code);
 void add_map(Verb app, Session& session, int& exit_code);

@@ -212,8 +212,8 @@ class SentencesReader : private Checker {
           tell(*text, "a second integer " + spec::quoted(field.name), "another name");
       }
       static constexpr std::pair<std::string_view, std::string_view> units[] = {
-          {"", ""}, {"cm", "cm"}, {"deg", "deg"}, {"ms", "ms"}};
-      if (const auto unit = require(item, "unit", R"("cm", "deg", "ms", or "" for a count)"))
+          {"", ""}, {"cm", "cm"}, {"deg", "deg"}, {"ms", "ms"}, {"mG", "mG"}};
+      if (const auto unit = require(item, "unit", R"("cm", "deg", "ms", "mG", or "" for a count)"))
         field.unit = one_of(*unit, units).value_or("");
       if (const auto text = require(item, "description", "what the integer says"))
         field.description = line(*text, false);

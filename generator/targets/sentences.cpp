@@ -86,10 +86,12 @@ void write_struct(Writer& out, const SentenceModel& sentence) {
   if (sentence.integers)
     out.line("static constexpr std::size_t fewest_integers = " + std::to_string(sentence.integers->first) +
              ", most_integers = " + std::to_string(sentence.integers->second) + ";");
+  Remarked values;
   for (const IntegerModel& field : sentence.fields)
     for (const auto& [name, value] : field.values)
-      out.line("static constexpr std::int16_t " + name + " = " + std::to_string(value) + ";  ///< of " +
-               field.name);
+      values.emplace_back("static constexpr std::int16_t " + name + " = " + std::to_string(value) + ";",
+                          "of " + field.name);
+  out.remarked(values);
   out.open("static constexpr std::array<Field<" + type + ">, " + count + "> fields{{");
   for (const IntegerModel& field : sentence.fields) {
     std::string row = "  {&" + type + "::" + field.name + ", \"" + field.name + "\", \"" + field.unit + "\"";

@@ -34,6 +34,7 @@ namespace ocm::sim::mapper {
 struct FleetOptions {
   simulation::RadioModel radio;
   simulation::DongleModel dongle;
+  bool calibrated = true;  ///< the robots' memories keep a calibration of their compasses
 };
 
 class Fleet {
@@ -61,6 +62,7 @@ class Fleet {
     const std::size_t robots = std::min(world.size(), max_robots);
     for (std::size_t i = 0; i < robots; ++i) {
       dongles_.push_back(std::make_unique<Dongle>(options.dongle));
+      if (options.calibrated) calibrate(world.robot(i));
       members_.push_back(std::make_unique<Member>(world.robot(i), *dongles_.back(), now_));
       radio_.add(place(world.robot(i).pose().position()));
       radio_.advertise(i, true, now_);

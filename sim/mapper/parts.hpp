@@ -36,6 +36,8 @@ class WorldParts {
   void drive(motion::Efforts efforts) noexcept { robot_.drive(efforts); }
   void turn_tower(std::int32_t degrees) noexcept { robot_.turn_tower(degrees); }
   void show(ocm::mapper::app::Lights lights) noexcept { robot_.show(lights); }
+  void store(const sensing::CompassFit& fit) { robot_.store(fit); }
+  [[nodiscard]] base::Result<sensing::CompassFit> stored() const { return robot_.stored(); }
   [[nodiscard]] bool linked() { return linked_(); }
   [[nodiscard]] std::size_t send(std::span<const std::uint8_t> bytes) { return send_(bytes); }
 

@@ -69,6 +69,8 @@ class Robot {
   /// [0, 90] degrees.
   void turn_tower(std::int32_t degrees) noexcept { servo_.turn(degrees); }
   void show(ocm::mapper::app::Lights lights) noexcept { lights_ = lights; }
+  /// Into a memory that needs no power: it outlives the application.
+  void store(const sensing::CompassFit& fit) noexcept { memory_ = fit; }
 
   // --- what its parts deliver; Error::not_sampled when they are absent ---
 
@@ -91,6 +93,8 @@ class Robot {
     if (absent(Part::infrared)) return base::Error::not_sampled;
     return infrared_reading(model_.infrared, noise(Part::infrared), infrared_, sensor);
   }
+
+  [[nodiscard]] base::Result<sensing::CompassFit> stored() const noexcept { return memory_; }
 
   // --- what others do to it ---
 
@@ -272,6 +276,7 @@ class Robot {
   int unhindered_steps_ = 0;
   bool touching_ = false;
   ocm::mapper::app::Lights lights_{};
+  base::Result<sensing::CompassFit> memory_{base::Error::not_sampled};
   std::array<bool, part_count> absent_{};
   GyroSample gyro_{};
   CompassSample compass_{};

@@ -8,6 +8,7 @@
 /// Host only. Its jobs take no time. It must stay where it is.
 #pragma once
 
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -35,18 +36,23 @@ concept RobotLink = requires(L& link, std::span<const std::uint8_t> bytes, base:
   return kind == RobotKind::avr ? ocm::mapper::app::avr_robot : ocm::mapper::app::arduino_robot;
 }
 
-/// And with what its owner has measured of it.
+/// And with what its owner has measured of its wheels.
 [[nodiscard]] inline ocm::mapper::app::RobotModel as_its_owner_has_it(const Robot& body) noexcept {
-  using namespace ocm::mapper::app;
-  return wheels_calibrated(calibrated(application_of(body.model().kind), body.own_field()),
-                           body.wheels_say_per_m());
+  return ocm::mapper::app::wheels_calibrated(application_of(body.model().kind), body.wheels_say_per_m());
+}
+/// What a calibration of its compass would find, in an undisturbed place, without noise; into its memory,
+/// unless that keeps one.
+inline void calibrate(Robot& body) noexcept {
+  if (body.stored()) return;
+  const sensing::Field own = body.own_field();
+  const auto seen = body.field();
+  body.store({.offset = own, .field = seen ? std::hypot(seen->x - own.x, seen->y - own.y) : 0.0F});
 }
 
 template <RobotLink Link>
 class RunningRobot {
  public:
-  /// As its owner has it: its compass was calibrated, once, in an undisturbed place, and its wheels on a
-  /// measured way.
+  /// As its owner has it: its wheels were calibrated on a measured way. Its compass is as its memory has it.
   RunningRobot(Robot& body, Link& link, base::Time start)
       : RunningRobot(body, link, start, as_its_owner_has_it(body)) {}
   RunningRobot(Robot& body, Link& link, base::Time start, const ocm::mapper::app::RobotModel& model)

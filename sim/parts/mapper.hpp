@@ -21,6 +21,7 @@
 #include "firmware/boards/mapper/parts.hpp"
 #include "firmware/drivers/bus.hpp"
 #include "firmware/qemu/parts_frames.hpp"
+#include "sim/parts/at24c01b_model.hpp"
 #include "sim/parts/hmc5883l_model.hpp"
 #include "sim/parts/i2c_bus.hpp"
 #include "sim/parts/lsm6ds3_model.hpp"
@@ -57,10 +58,12 @@ class RobotModels {
                   [&parts] {
                     return Lsm6ds3Model::Rates{0, 0, *parts.gyro()};
                   }),
-        compass(violations_, now, [&parts] { return microgauss(*parts.field()); }) {
+        compass(violations_, now, [&parts] { return microgauss(*parts.field()); }),
+        memory(violations_, now) {
     gyroscope.set_presence([&parts] { return parts.gyro().ok(); });
     compass.set_presence([&parts] { return parts.field().ok(); });
     bus_.attach(compass);
+    bus_.attach(memory);
   }
 
   /// What the board asks its host. Error::bad_mode: no such question; bad_length: not with so many bytes.
@@ -116,6 +119,7 @@ class RobotModels {
  public:
   Lsm6ds3Model gyroscope;
   Hmc5883lModel compass;
+  At24c01bModel memory;
 
  private:
   [[nodiscard]] static firmware::boards::MagneticField microgauss(sensing::Field gauss) {

@@ -181,6 +181,7 @@ Ending serve_fleet(plant::World& world, const MapperOptions& options, const Shel
   fleet_options.radio.loss_everywhere = options.radio_loss;
   fleet_options.radio.repeats = options.repeats;
   if (options.radio_range > 0) fleet_options.radio.range_m = options.radio_range;
+  fleet_options.calibrated = !options.uncalibrated;
   if (options.links != 0) fleet_options.radio.links = options.links;
   const auto fleet = std::make_unique<plant::Fleet>(world, fleet_options);
   shell.report(fmt::format("simulated {} mapper{} in '{}', their central on {}; Ctrl-C ends it",
@@ -236,6 +237,7 @@ Ending serve_lines(plant::World& world, const MapperOptions& options, const Shel
     std::replace(name.begin(), name.end(), '/', '_');
     auto opened = transport::Pty::open(transport::robot_lines() + "/" + name);
     if (!opened) return Ending{opened.error};
+    if (!options.uncalibrated) plant::calibrate(world.robot(i));
     lines.push_back(std::make_unique<OwnLine>(std::move(*opened)));
     robots.push_back(std::make_unique<LinedRobot>(world.robot(i), *lines.back(), world.time()));
   }

@@ -94,8 +94,8 @@ std::vector<std::string> told(const Json& sentences) {
 // In spec/sentences.json: a sentence of a word, one of integers, one of fixed text.
 constexpr const char* confirm = "/sentences/0";
 constexpr const char* set_point = "/sentences/1";
-constexpr const char* ping = "/sentences/7";
-constexpr const char* handshake = "/sentences/8";
+constexpr const char* ping = "/sentences/8";
+constexpr const char* handshake = "/sentences/9";
 
 TEST_CASE("the sentences keep to their schema") {
   const Spec sentences{"sentences"};
@@ -193,23 +193,23 @@ TEST_CASE("what the schema of the sentences must see: a value that cannot be") {
       {"/sentences/1/fields/0/range", {0, 32768}},
       {"/sentences/1/fields/0/range", {"0", "1"}},
       {"/sentences/1/fields/0/default", 0},
-      {"/sentences/8/fields/9/values", {20225}},
-      {"/sentences/8/fields/9/values", {{"Offer", 1}}},
-      {"/sentences/8/fields/9/values", {{"offer", "1"}}},
-      {"/sentences/8/fields/9/values", {{"offer", 32768}}},
-      {"/sentences/8/integers", {0, 16}},
-      {"/sentences/8/integers", {1, 17}},
-      {"/sentences/8/integers", 10},
+      {"/sentences/9/fields/9/values", {20225}},
+      {"/sentences/9/fields/9/values", {{"Offer", 1}}},
+      {"/sentences/9/fields/9/values", {{"offer", "1"}}},
+      {"/sentences/9/fields/9/values", {{"offer", 32768}}},
+      {"/sentences/9/integers", {0, 16}},
+      {"/sentences/9/integers", {1, 17}},
+      {"/sentences/9/integers", 10},
       // One that is of two sorts at once.
       {"/sentences/0/fields", sentences.json()["sentences"][1]["fields"]},
       {"/sentences/0/text", "{}"},
       {"/sentences/0/integers", {1, 2}},
       {"/sentences/1/word", "CON"},
       {"/sentences/1/text", "{}"},
-      {"/sentences/7/letter", "S"},
-      {"/sentences/7/word", "CON"},
-      {"/sentences/7/integers", {1, 2}},
-      {"/sentences/7/text", ""},
+      {"/sentences/8/letter", "S"},
+      {"/sentences/8/word", "CON"},
+      {"/sentences/8/integers", {1, 2}},
+      {"/sentences/8/text", ""},
       {"/packed/version", 0},
       {"/packed/tag", 127},
       {"/packed/tag", 256},
@@ -257,12 +257,12 @@ TEST_CASE("what no schema can see of sentences is told with its place and what w
       Lines{
           "/sentences/1/fields/0/range: 360 is greater than -360; two whole numbers, [smallest, greatest]"});
   CHECK(
-      with("/sentences/8/fields/9/values", {{"width", 1}}) ==
+      with("/sentences/9/fields/9/values", {{"width", 1}}) ==
       Lines{
-          R"(/sentences/8/fields/9/values/width: "width" is an integer of the sentence, too; another name)"});
+          R"(/sentences/9/fields/9/values/width: "width" is an integer of the sentence, too; another name)"});
   CHECK(with("/sentences/1/fields/0/values", {{"back", 361}}).size() == 1);  // out of its range
-  CHECK(with("/sentences/8/integers", {12, 16}) ==
-        Lines{"/sentences/8/integers: 11 fields are outside of it; a number below and one above, or leave it "
+  CHECK(with("/sentences/9/integers", {12, 16}) ==
+        Lines{"/sentences/9/integers: 11 fields are outside of it; a number below and one above, or leave it "
               "out"});
   CHECK(
       with("/sentences/1/source/width", "a ruler") ==

@@ -122,9 +122,8 @@ TEST_CASE("square: so it does where it turns around first, and drives on at once
   std::vector<Outcome> outcomes;
   for (std::uint64_t seed = 1; seed <= seeds / 4; ++seed) {
     Drive drive{open_room(), seed, mapper::app::avr_robot, Drive::Compass::as_in_model};
-    REQUIRE(drive.robot().application().calibrate_compass());
-    drive.run(30s);
-    REQUIRE(drive.robot().application().calibration());
+    drive.calibrate();
+    REQUIRE(drive.robot().application().compass().taken);
     drive.square(stand);
     outcomes.push_back(outcome_of(drive));
   }

@@ -149,14 +149,7 @@ class Drive {
         robot_(world_.robot(0), wire_, world_.time(), model_),
         now_(world_.time()),
         next_step_(now_) {
-    run(std::chrono::seconds{3});  // its sensors are measured
-    wire_.link(true);
-    robot_.link_changed(now_);
-    require([this] { return wire_.handshakes() > 0; }, std::chrono::seconds{5}, "no handshake");
-    say("{S,CON}\n");
-    require([this] { return robot_.application().state() == mapper::app::State::confirmed; },
-            std::chrono::seconds{1}, "not confirmed");
-    start_ = world_.robot(0).pose();
+    confirm();
   }
   Drive(const Drive&) = delete;
   Drive& operator=(const Drive&) = delete;
@@ -175,6 +168,20 @@ class Drive {
       idle_.push_back(relative(world_.robot(0).pose(), start_));
       run(pause);
     }
+  }
+  /// The link ends, and the next operator confirms the robot where it stands.
+  void confirm_again() {
+    wire_.link(false);
+    robot_.link_changed(now_);
+    confirm();
+  }
+  /// Around once for its compass.
+  void calibrate() {
+    say("{C,1}\n");
+    run(std::chrono::milliseconds{100});
+    require([this] { return robot_.application().state() == mapper::app::State::confirmed; },
+            std::chrono::minutes{1}, "not around");
+    run(std::chrono::seconds{20});
   }
   void say(std::string_view sentence) {
     robot_.receive({reinterpret_cast<const std::uint8_t*>(sentence.data()), sentence.size()}, now_);
@@ -199,6 +206,17 @@ class Drive {
   [[nodiscard]] const World& world() const noexcept { return world_; }
 
  private:
+  void confirm() {
+    run(std::chrono::seconds{3});  // its sensors are measured
+    const unsigned before = wire_.handshakes();
+    wire_.link(true);
+    robot_.link_changed(now_);
+    require([&] { return wire_.handshakes() > before; }, std::chrono::seconds{5}, "no handshake");
+    say("{S,CON}\n");
+    require([this] { return robot_.application().state() == mapper::app::State::confirmed; },
+            std::chrono::seconds{1}, "not confirmed");
+    start_ = world_.robot(0).pose();
+  }
   void run_to(base::Time until) {
     for (base::Time next = robot_.next_event(); next <= until; next = robot_.next_event()) pass(next);
     pass(until);
@@ -243,9 +261,10 @@ class Drive {
                                                                     std::uint64_t seed,
                                                                     const mapper::app::RobotModel& model) {
   Drive turn{world, seed, model, Drive::Compass::as_in_model};
-  if (!turn.robot().application().calibrate_compass()) return base::Error::not_sampled;
-  turn.run(std::chrono::seconds{30});
-  return turn.robot().application().calibration();
+  turn.calibrate();
+  const mapper::app::CompassReport found = turn.robot().application().compass();
+  if (found.verdict != mapper::link::Calibration::good) return base::Error::not_sampled;
+  return found.fit.offset;
 }
 
 /// An estimator that a drive can be replayed through.

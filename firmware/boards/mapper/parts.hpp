@@ -1,12 +1,14 @@
 /// The parts of the mapper: what its application asks for (ocm/mapper/app/parts.hpp), by the real
 /// drivers. Thesis 2's AVR robot: gyroscope LSM6DS3 on SPI, compass HMC5883L on I2C, four GP2Y0A21YK on a
 /// converter, a servo, two motors with counters, two lamps, and the line to the dongle with its pin 19.
-/// [Thesis 2, chapter 5 and its pinout of the ATmega1284]
+/// [Thesis 2, chapter 5 and its pinout of the ATmega1284] And a memory for the compass's calibration: the
+/// thesis typed its offset into the program; here an EEPROM AT24C01B on the compass's bus, as on the AMiRo's
+/// boards. [decided: docs/decisions/0029]
 ///
 /// `ticks`, `gyro`, `field` and `infrared` are a transfer each, for tasks; `drive`, `turn_tower`, `show`,
-/// `linked` and `send` do not wait and may be called anywhere. Gyro and compass are looked after by
-/// `maintain`: one that does not answer is tried again each second, and says no_answer at once meanwhile. No
-/// heap.
+/// `linked` and `send` do not wait and may be called anywhere; `store` and `stored` do not wait, and belong
+/// to one task. Gyro, compass and memory are looked after by `maintain`: one that does not answer is tried
+/// again each second, and says no_answer at once meanwhile. No heap.
 #pragma once
 
 #include <array>
@@ -24,6 +26,7 @@
 
 #include "firmware/boards/part_set.hpp"
 #include "firmware/drivers/bus.hpp"
+#include "firmware/drivers/compass_memory.hpp"
 #include "firmware/drivers/gp2y0a21yk.hpp"
 #include "firmware/drivers/hmc5883l.hpp"
 #include "firmware/drivers/lsm6ds3.hpp"
@@ -48,6 +51,7 @@ inline constexpr std::uint8_t yellow_pin = 0x02;
 namespace part {
 inline constexpr std::uint8_t gyroscope = 0x01;
 inline constexpr std::uint8_t compass = 0x02;
+inline constexpr std::uint8_t memory = 0x04;
 }  // namespace part
 
 /// The AVR's own converter, against its supply. [ATmega1284P data sheet 23.1: 10 bits]
@@ -77,13 +81,14 @@ template <drivers::I2c CompassBus, drivers::Spi GyroscopeDevice, drivers::Conver
           drivers::MotorTimers Motors, drivers::PulseTimer Servo, drivers::Outputs Pins, Dongle Line,
           drivers::Mutex Lock = drivers::NoMutex>
 class Parts
-    : public PartSet<Parts<CompassBus, GyroscopeDevice, Infrared, Motors, Servo, Pins, Line, Lock>, 2> {
+    : public PartSet<Parts<CompassBus, GyroscopeDevice, Infrared, Motors, Servo, Pins, Line, Lock>, 3> {
  public:
   /// All must outlive the parts.
   Parts(CompassBus& compass, GyroscopeDevice& gyroscope, Infrared& infrared, Motors& motors, Servo& servo,
         Pins& pins, Line& line)
       : gyroscope_(gyroscope),
         compass_(compass),
+        memory_(compass),
         infrared_{Sensor{infrared, wiring::first_infrared_channel, converter_scale},
                   Sensor{infrared, wiring::first_infrared_channel + 1, converter_scale},
                   Sensor{infrared, wiring::first_infrared_channel + 2, converter_scale},
@@ -102,8 +107,12 @@ class Parts
     turn_tower(sensing::servo_least_deg);
     this->start_parts(now);
   }
-  /// To be called every 10 ms or so on a low level.
-  void maintain(base::Time now) { this->maintain_one(now); }
+  /// To be called every 10 ms or so on a low level: looks after one part, or writes a piece of what is to be
+  /// kept.
+  void maintain(base::Time now) {
+    if (memory_.running() && memory_.driver().busy()) return memory_.driver().step();
+    this->maintain_one(now);
+  }
 
   // --- what the application asks for ---
 
@@ -139,6 +148,8 @@ class Parts
   }
   [[nodiscard]] bool linked() { return line_->linked(); }
   [[nodiscard]] std::size_t send(std::span<const std::uint8_t> bytes) { return line_->send(bytes); }
+  void store(const sensing::CompassFit& fit) { memory_.driver().store(fit); }
+  [[nodiscard]] base::Result<sensing::CompassFit> stored() { return memory_.driver().stored(); }
 
   /// Bits of `part`.
   [[nodiscard]] std::uint8_t absent() const noexcept {
@@ -147,17 +158,20 @@ class Parts
 
  private:
   using Sensor = drivers::Gp2y0a21yk<Infrared>;
-  friend class PartSet<Parts, 2>;
+  friend class PartSet<Parts, 3>;
   template <class Self, class F>
   static void pick(Self& self, std::size_t number, F what) {
     if (number == 0)
       what(self.gyroscope_);
-    else
+    else if (number == 1)
       what(self.compass_);
+    else
+      what(self.memory_);
   }
 
   drivers::Part<drivers::Lsm6ds3<GyroscopeDevice>> gyroscope_;
   drivers::Part<drivers::Hmc5883l<CompassBus>> compass_;
+  drivers::Part<drivers::CompassMemory<CompassBus>> memory_;
   std::array<Sensor, 4> infrared_;
   std::array<drivers::WheelCounter, 2> wheels_;
   Motors* motors_;

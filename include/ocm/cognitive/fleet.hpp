@@ -23,6 +23,7 @@
 #include "ocm/cognitive/map.hpp"
 #include "ocm/mapper/link/demultiplexer.hpp"
 #include "ocm/mapper/link/format.hpp"
+#include "ocm/mapper/server/calibrator.hpp"
 #include "ocm/mapper/server/sender.hpp"
 
 namespace ocm::cognitive {
@@ -70,10 +71,11 @@ struct FleetCounters {
   std::uint32_t updates = 0;
   std::uint32_t idles = 0;
   std::uint32_t pongs = 0;
-  std::uint32_t early_idles = 0;  ///< right behind a set point: meant the one before
-  std::uint32_t lost = 0;         ///< times that a robot was
-  std::uint32_t calls = 0;        ///< times that one should have come back
-  std::uint32_t words = 0;        ///< set points and stops said, each time
+  std::uint32_t calibrations = 0;  ///< sentences about the compass
+  std::uint32_t early_idles = 0;   ///< right behind a set point: meant the one before
+  std::uint32_t lost = 0;          ///< times that a robot was
+  std::uint32_t calls = 0;         ///< times that one should have come back
+  std::uint32_t words = 0;         ///< set points and stops said, each time
 };
 
 /// Words for a robot.
@@ -98,7 +100,7 @@ class Fleet {
     if (robot.name != name) robot = Robot{.name = std::string{name}, .origin = robot.origin};
     if (!robot.linked) {
       ears_.restart(index);
-      mouths_[index].sender.restart();
+      forget_words(index);
     }
     robot.linked = true;
     robot.lost = false;
@@ -109,7 +111,7 @@ class Fleet {
   void unlinked(std::size_t index) {
     if (index >= most_robots || !robots_[index].linked) return;
     robots_[index].linked = false;
-    mouths_[index].sender.restart();
+    forget_words(index);
     mouths_[index].confirm_at = base::never;
     mouths_[index].asked_until = {};
     lose(robots_[index]);
@@ -150,6 +152,7 @@ class Fleet {
   bool go(std::size_t index, const mapper::link::SetPoint& set_point, base::Time now) {
     if (index >= most_robots || !mapper::link::write(set_point)) return false;
     mouths_[index].sender.go(set_point, now);
+    mouths_[index].calibrator.restart();
     robots_[index].idle = false;
     speak(index, now);
     return true;
@@ -159,6 +162,19 @@ class Fleet {
   /// What has become of the last of them.
   [[nodiscard]] const mapper::server::Sender& sender(std::size_t index) const {
     return mouths_[index].sender;
+  }
+  /// It turns around once for its compass, where it stands; said until it is heard, and asked for until it
+  /// has said how that ended. `only_ask`: how the last one ended. A stop or a set point ends it. A paused
+  /// robot does not hear it.
+  bool calibrate(std::size_t index, base::Time now, bool only_ask = false) {
+    if (index >= most_robots) return false;
+    mouths_[index].calibrator.begin(now, only_ask);
+    speak(index, now);
+    return true;
+  }
+  /// What has become of the last of them.
+  [[nodiscard]] const mapper::server::Calibrator& calibrator(std::size_t index) const {
+    return mouths_[index].calibrator;
   }
   bool pause(std::size_t index, base::Time now) { return hold(index, true, now); }
   bool unpause(std::size_t index, base::Time now) { return hold(index, false, now); }
@@ -207,6 +223,7 @@ class Fleet {
   /// What goes to one robot: of `queued` sayings so many are `out`; number `words` is the sender's.
   struct Mouth {
     mapper::server::Sender sender{};
+    mapper::server::Calibrator calibrator{};
     std::uint32_t queued = 0;
     std::uint32_t out = 0;
     std::uint32_t words = 0;
@@ -239,8 +256,10 @@ class Fleet {
       (void)say(index, mapper::link::write(Kind::unpause)->view());
     }
     if (word.kind != Kind::none) mouth.words = mouth.queued;
+    if (const auto order = mouth.calibrator.next(now)) (void)say(index, mapper::link::write(*order)->view());
     if (busy && is_final(mouth.sender.progress())) robot.idle = mouth.sender.standing();
     if (!busy && mouth.sender.standing()) robot.idle = true;
+    if (mouth.calibrator.may_turn()) robot.idle = false;
     robot.located = robot.idle && mouth.sender.placed();
   }
   bool say(std::size_t index, std::string_view words) {
@@ -256,6 +275,11 @@ class Fleet {
     mouths_[index].sender.disturbed(now);
     return say(index,
                mapper::link::write(paused ? mapper::link::Kind::pause : mapper::link::Kind::unpause)->view());
+  }
+  /// The robot stands, and knows of nothing that was said.
+  void forget_words(std::size_t index) {
+    mouths_[index].sender.restart();
+    mouths_[index].calibrator.restart();
   }
   void lose(Robot& robot) {
     if (!robot.lost) ++counters_.lost;
@@ -287,6 +311,11 @@ class Fleet {
       case mapper::link::Kind::pong:
         ++counters_.pongs;
         break;
+      case mapper::link::Kind::calibration:
+        ++counters_.calibrations;
+        robot.confirmed = true;
+        mouths_[index].calibrator.hear(*ears_.ear(index).sentence().as<mapper::link::Calibration>(), now);
+        break;
       default:
         break;
     }
@@ -307,7 +336,7 @@ class Fleet {
     robot.idle = true;  // it waits for a set point
     robot.paused = false;
     robot.told = {};
-    mouths_[index].sender.restart();
+    forget_words(index);
     mouths_[index].confirm_at = now + confirm_again(index);
     (void)say(index, mapper::link::answer(*robot.handshake, options_.packed).view());
   }

@@ -3,12 +3,17 @@
 ///
 ///   offset = (max + min) / 2, for each axis;  heading = atan2(y - offset_y, x - offset_x)
 ///
-/// A minimum and a maximum for each axis; no samples are kept. A turn that was not all around, a field too
-/// weak to have a direction, or a circle that is none gives no offset but an error. Readings that are not
-/// finite are counted. Calibrate in several places: an offset that differs shows a disturbed one.
+/// How good that is shows in the circle: `CompassFit::error_rad` is how far its worst part lies inside or
+/// outside of it, as an angle. A field that is stretched, or changes while the robot turns, turns the compass
+/// by so much. The circle is looked at in 16 parts, each the mean of its readings, so that noise counts for
+/// little; no samples are kept. 192 bytes, no heap. Readings that are not finite are counted. Steel beside
+/// the robot that turns the whole field shows nothing: calibrate in several places, an offset that differs
+/// shows a disturbed one.
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
@@ -33,8 +38,19 @@ struct Field {
   return motion::wrap(std::atan2(y, x));
 }
 
+/// What a turn around found.
+struct CompassFit {
+  Field offset{};          ///< the robot's own field
+  float field = 0.0F;      ///< of the earth: the circle's radius
+  float error_rad = 0.0F;  ///< what the compass is wrong by, at most: how far the circle is from one
+  friend bool operator==(const CompassFit&, const CompassFit&) = default;
+};
+
 class CompassCalibration {
  public:
+  /// Parts of the turn.
+  static constexpr std::size_t parts = 16;
+
   /// `turned_rad` is how far the robot turned since the last reading, by its wheels or its gyro. False if the
   /// reading was rejected.
   constexpr bool add(Field field, float turned_rad) noexcept {
@@ -51,6 +67,9 @@ class CompassCalibration {
     ++count_;
     least_ = {field.x < least_.x ? field.x : least_.x, field.y < least_.y ? field.y : least_.y};
     most_ = {field.x > most_.x ? field.x : most_.x, field.y > most_.y ? field.y : most_.y};
+    Part& part = parts_[part_of(turned_rad_)];
+    part.sum = {part.sum.x + field.x, part.sum.y + field.y};
+    part.count += part.count == UINT16_MAX ? 0U : 1U;
     return true;
   }
 
@@ -59,22 +78,44 @@ class CompassCalibration {
     return motion::magnitude(turned_rad_) >= motion::two_pi - motion::radians(5.0F);
   }
 
-  /// Not around yet: Error::not_sampled. A span of an axis below `least_span`, or spans that differ by more
-  /// than a third, so that it was no circle: Error::out_of_range.
-  [[nodiscard]] constexpr base::Result<Field> offset(float least_span) const noexcept {
+  /// Error::not_sampled: not around yet. Error::no_answer: there was no reading in a part of the turn.
+  /// Error::out_of_range: no circle at all.
+  [[nodiscard]] base::Result<CompassFit> fit() const noexcept {
     if (!complete()) return base::Error::not_sampled;
-    const float x = most_.x - least_.x;
-    const float y = most_.y - least_.y;
-    const float small = x < y ? x : y;
-    const float large = x < y ? y : x;
-    if (!(small > 0.0F) || small < least_span || large > small * 4.0F / 3.0F)
+    CompassFit found;
+    found.offset = {least_.x + (most_.x - least_.x) / 2.0F, least_.y + (most_.y - least_.y) / 2.0F};
+    std::array<float, parts> radius{};
+    for (std::size_t i = 0; i < parts; ++i) {
+      if (parts_[i].count == 0) return base::Error::no_answer;
+      const auto count = static_cast<float>(parts_[i].count);
+      const float x = parts_[i].sum.x / count - found.offset.x;
+      const float y = parts_[i].sum.y / count - found.offset.y;
+      radius[i] = std::sqrt(x * x + y * y);
+      found.field += radius[i] / static_cast<float>(parts);
+    }
+    for (const float each : radius) {
+      const float off_rad = motion::magnitude(each - found.field) / found.field;
+      if (!(off_rad <= found.error_rad)) found.error_rad = off_rad;
+    }
+    if (!motion::all_finite(found.offset.x, found.offset.y, found.error_rad))
       return base::Error::out_of_range;
-    return Field{least_.x + x / 2.0F, least_.y + y / 2.0F};
+    return found;
   }
   [[nodiscard]] constexpr std::uint32_t count() const noexcept { return count_; }
   [[nodiscard]] constexpr std::uint32_t rejected() const noexcept { return rejected_; }
 
  private:
+  struct Part {
+    Field sum{};
+    std::uint16_t count = 0;
+  };
+  /// What is beyond a whole turn belongs to the last part.
+  [[nodiscard]] static constexpr std::size_t part_of(float turned_rad) noexcept {
+    const float part = motion::magnitude(turned_rad) / motion::two_pi * static_cast<float>(parts);
+    return part < static_cast<float>(parts - 1) ? static_cast<std::size_t>(part) : parts - 1;
+  }
+
+  std::array<Part, parts> parts_{};
   Field least_{};
   Field most_{};
   float turned_rad_ = 0.0F;

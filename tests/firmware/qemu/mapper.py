@@ -49,12 +49,34 @@ class Hmc5883l(I2cRegisters):
     def __init__(self, world):
         super().__init__(dict(enumerate(b"H43", 10)))
         self.world = world
+        self.own = (0.0, 0.0)  # gauss: the robot's own field, ahead and to the left
 
     def transfer(self, write, asked):
         heading = self.world.heading
-        field = (0.15 * math.cos(heading), 0.4, -0.15 * math.sin(heading))  # gauss; north is ahead at the start
+        ahead, left = self.own
+        field = (0.15 * math.cos(heading) + ahead, 0.4, -0.15 * math.sin(heading) + left)  # north is ahead at the start
         self.registers.update(enumerate(struct.pack(">3h", *(round(axis * 390) for axis in field)), 3))
         return super().transfer(write, asked)
+
+
+class Eeprom:
+    """AT24C01B: 128 bytes in pages of 8; for 5 ms after a page it does not acknowledge. [AT24C01B data sheet]"""
+
+    def __init__(self):
+        self.bytes = bytearray(b"\xff" * 128)
+        self.at, self.written = 0, -1.0
+
+    def transfer(self, write, asked):
+        if time.monotonic() - self.written < 0.005:
+            raise harness.NoAnswer
+        if write:
+            self.at = write[0]
+            assert len(write) == 1 or self.at % 8 + len(write) - 1 <= 8, "over the end of a page"
+            self.bytes[self.at:self.at + len(write) - 1] = write[1:]
+            self.written = time.monotonic() if len(write) > 1 else self.written
+        read = bytes(self.bytes[(self.at + i) % 128] for i in range(asked))
+        self.at = (self.at + asked) % 128
+        return read
 
 
 class World(harness.Parts):
@@ -66,12 +88,14 @@ class World(harness.Parts):
         self._speeds, self._ticks, self._at = [0.0, 0.0], [0.0, 0.0], time.monotonic()
         self._lock = threading.Lock()
         self.gyroscope, self.compass = Lsm6ds3(self), Hmc5883l(self)
-        self.spi, self.i2c = {1: self.gyroscope}, {(1, 0x1E): self.compass}
+        self.memory = Eeprom()
+        self.slip = 0.0  # what the wheels say too much of a turn, as a part of it
+        self.spi, self.i2c = {1: self.gyroscope}, {(1, 0x1E): self.compass, (1, 0x50): self.memory}
         self.converter = {channel: 61 for channel in range(4)}  # 0.3 V: nothing within 80 cm
 
     def turn_rate(self):
         per_tick = 2 * math.pi * WHEEL_RADIUS / TICKS_PER_TURN
-        return (self._speeds[1] - self._speeds[0]) * per_tick / WHEELBASE
+        return (self._speeds[1] - self._speeds[0]) * per_tick / WHEELBASE / (1 + self.slip)
 
     def advance(self):
         """To now: each wheel follows its motor within a tenth of a second, and hardly less at part duty. [Thesis 2, 10.2.3]"""
@@ -170,6 +194,10 @@ class Robot(harness.Machine):
     def updates(self, since=0.0):
         """(time, [x, y, heading, servo, s1, s2, s3, s4])"""
         return [(at, [int(number) for number in line[3:-1].split(",")]) for at, line in self.of("{U,", since)]
+
+    def compass(self, since=0.0):
+        """(time, [number, verdict, x, y, field, error, use])"""
+        return [(at, [int(number) for number in line[3:-1].split(",")]) for at, line in self.of("{C,", since)]
 
     def packed(self, since=0.0):
         return [(at, line) for at, line in list(self.said) if at >= since and isinstance(line, bytes)]

@@ -162,6 +162,88 @@ def bits(packed):
     return number
 
 
+class Compass(Case):
+    """The robot's own field is a third of the earth's, and its wheels slip when it turns: without its compass the
+    heading drifts away."""
+
+    GOOD, TURNING, STORED = 2, 1, 2
+
+    def switch_on(self, world):
+        robot = self.start(world)
+        robot.confirm()
+        self.zero = world.heading
+        return robot
+
+    def drive_about(self, robot, rounds):
+        """Turns, drives straight on, where the compass shows that it can be trusted, and rests, where it corrects. By how
+        much the heading is off then."""
+        for _ in range(rounds):
+            told = robot.tell("{U,150,12}")
+            robot.wait(lambda told=told: robot.of("{S,IDL}", told + 0.5), 30, "the end of a round")
+            time.sleep(8)
+        said = robot.updates()[-1][1][2]
+        self.world.advance()
+        off = said - math.degrees(self.world.heading - self.zero)
+        return abs((off + 180) % 360 - 180)
+
+    def ask(self, robot):
+        asked = robot.tell("{C,0}")
+        robot.wait(lambda: robot.compass(asked), 2, "how the compass is")
+        return robot.compass(asked)[0][1]
+
+    def corrects(self, since):
+        return any(levels == GREEN | YELLOW for _, levels in self.world.lamps(since))
+
+    def test_uncalibrated_calibrates_corrects_and_still_does_when_switched_on_again(self):
+        world = World()
+        world.compass.own = (0.05, -0.03)
+        world.slip = 0.1
+        robot = self.switch_on(world)
+        self.assertEqual(self.ask(robot), [0] * 7)
+        begun = time.monotonic()
+        uncalibrated = self.drive_about(robot, 4)
+        self.assertFalse(self.corrects(begun), "a compass that was never calibrated does not correct")
+        self.assertGreater(uncalibrated, 10, "and so the heading drifts with the wheels")
+
+        told = robot.tell("{C,7}")
+        robot.tell("{C,7}")  # a copy of the word changes nothing
+        robot.wait(lambda: robot.of("{S,IDL}", told + 1), 30, "the end of the turn")
+        robot.wait(lambda: robot.compass()[-1][1][1] == self.GOOD, 2, "the result")
+        said = [numbers for _, numbers in robot.compass(told)]
+        self.assertEqual({tuple(numbers[:2]) for numbers in said[:-1]}, {(7, self.TURNING)})
+        number, verdict, x, y, field, error, _ = said[-1]
+        self.assertEqual((number, verdict), (7, self.GOOD))
+        for figure, truth in ((x, 50), (y, -30), (field, 150)):
+            self.assertAlmostEqual(figure, truth, delta=5)
+        self.assertLessEqual(error, 3)
+        robot.wait(lambda: self.ask(robot)[-1] == self.STORED, 3, "stored")
+
+        robot.lose()
+        time.sleep(3)  # it measures where its compass has its zero
+        robot.connect()
+        robot.wait(lambda: robot.of("{H,", time.monotonic() - 1), 10, "a handshake")
+        self.zero = world.heading
+        robot.tell("{S,CON}")
+        begun = time.monotonic()
+        calibrated = self.drive_about(robot, 4)
+        print(f"heading off by {uncalibrated:.1f} deg without a calibration, by {calibrated:.1f} deg with one")
+        self.assertLess(calibrated, 5)
+        self.assertTrue(self.corrects(begun))
+        self.doCleanups()
+
+        # Switched off and on again, with the same memory.
+        again = World()
+        again.compass.own, again.slip = world.compass.own, world.slip
+        again.memory.bytes = world.memory.bytes
+        robot = self.switch_on(again)
+        answer = self.ask(robot)
+        self.assertEqual(answer[:2] + answer[-1:], [0, self.GOOD, self.STORED])
+        self.assertEqual(answer[2:5], [x, y, field])
+        begun = time.monotonic()
+        self.assertLess(self.drive_about(robot, 1), 5)
+        self.assertTrue(self.corrects(begun))
+
+
 class Trouble(Case):
     def fault_and_recovery(self, take_away, put_back):
         world = World()

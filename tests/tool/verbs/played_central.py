@@ -24,6 +24,12 @@ class Robot:
         self.silent = False      # says nothing
         self.mumbles = False     # says that it is idle, but never where it is
         self.knows_who = True    # and answers {S,WHO}
+        self.knows_compass = True  # and {C,number}
+        self.calibration = 0     # number of the last one
+        self.compass = (0, 0, 0, 0, 0, 0)       # what it says of that: verdict, x, y, field, error, use
+        self.finds = [(2, 41, -57, 152, 1, 2)]  # what it says after a turn, one after the other
+        self.turn_s = 1.0
+        self.turning_until = None
         self.blocked_cm = None   # stops after so many cm
         self.busy_until = 0.0
         self.speed = 100.0       # cm/s
@@ -31,7 +37,7 @@ class Robot:
         self.heard = []
         self.spoke = 0.0
         self.idled = 0.0
-        self.asked = False
+        self.asked = self.asked_compass = False
 
     def hear(self, line, now):
         self.heard.append(line)
@@ -48,6 +54,10 @@ class Robot:
             self.paused = False
         elif line == "{S,WHO}" and self.knows_who:
             self.asked = True
+        elif line.startswith("{C,"):
+            self.hear_calibrate(int(line[3:-1]), now)
+        elif line == "{U,0,0}" and self.turning_until is not None:
+            self.compass, self.turning_until, self.idled = (4, 0, 0, 0, 0, 0), None, 0.0
         elif line.startswith("{U,"):
             angle, distance = map(int, line[3:-1].split(","))
             self.heading += math.radians(angle)
@@ -58,6 +68,31 @@ class Robot:
             self.y += way * math.sin(self.heading)
             self.busy_until = now + (max(0.0, distance / self.speed) + 0.4 if line != "{U,0,0}" else 0.0)
             self.idled = 0.0
+
+    def hear_calibrate(self, number, now):
+        if not self.knows_compass or not self.confirmed or self.loses:
+            self.loses -= 1 if self.loses else 0
+            return
+        if number not in (0, self.calibration):
+            if self.paused:
+                return
+            self.calibration, self.turning_until = number, now + self.turn_s
+        self.asked_compass = True
+
+    def say_compass(self):
+        said = (1, 0, 0, 0, 0, 0) if self.turning_until is not None else self.compass
+        self.asked_compass = False
+        return "{C," + ",".join(map(str, (self.calibration, *said))) + "}\n"
+
+    def say_turning(self, now):
+        """While it turns it says that, and nothing else."""
+        text = self.say_compass() if self.asked_compass or now - self.spoke >= 1 else ""
+        self.spoke = now if text else self.spoke
+        if now >= self.turning_until:
+            self.turning_until, self.idled = None, now
+            self.compass = self.finds[0]
+            text = self.say_compass() + "{S,IDL}\n"
+        return text
 
     def ray(self, angle):
         x0, y0, x1, y1 = self.room
@@ -94,7 +129,13 @@ class Robot:
                 return ""
             self.spoke = now
             return handshake
-        text = handshake if self.asked else ""
+        if self.turning_until is not None:
+            return self.say_turning(now)
+        if len(self.finds) > 1 and self.asked_compass and self.compass == self.finds[0]:
+            self.finds.pop(0)
+            self.compass = self.finds[0]
+        text = self.say_compass() if self.asked_compass else ""
+        text += handshake if self.asked else ""
         self.asked = False
         if not self.paused and not self.mumbles and now - self.spoke >= 0.05:
             self.spoke = now

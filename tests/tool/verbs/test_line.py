@@ -74,23 +74,28 @@ class Line(Case):
         self.assertEqual(list(heard[0]), ["robot", "name", "type", "values"])
 
     def test_every_sentence_of_a_robot_without_prefixes(self):
-        heard, err = self.line(b"{H,20,30,-1,4,0,90,180,270,2000,20225,7,8}\n{H,15}\n\t!\n{S,IDL}{U,1,2,-3,4,5,6,7,8}")
+        heard, err = self.line(b"{H,20,30,-1,4,0,90,180,270,2000,20225,7,8}\n{H,15}\n\t!\n{S,IDL}{U,1,2,-3,4,5,6,7,8}"
+                               b"{C,7,2,41,-57,152,1,2}\n")
         self.assertEqual({(line["robot"], line["name"]) for line in heard}, {(None, None)})
-        self.assertEqual([line["type"] for line in heard], ["handshake", "handshake", "pong", "idle", "update"])
+        self.assertEqual([line["type"] for line in heard], ["handshake", "handshake", "pong", "idle", "update", "calibration"])
         self.assertEqual(heard[0]["values"], {
             "width": 20, "length": 30, "axle_offset": -1, "tower_offset": 4, "sensor1": 0, "sensor2": 90,
             "sensor3": 180, "sensor4": 270, "deadline": 2000, "formats": 20225, "sensor_out": 7, "more": [8]})
         self.assertEqual(heard[1]["values"], {"width": 15})
         self.assertEqual(heard[4], update(1, 2, -3, 4, 5, 6, 7, 8, robot=None, name=None))
-        self.assertEqual(err, "5 whole sentences, 0 damaged; link quality 100 %\n")
+        self.assertEqual(heard[5]["values"],
+                         {"number": 7, "verdict": 2, "x": 41, "y": -57, "field": 152, "error": 1, "use": 2})
+        self.assertEqual(err, "6 whole sentences, 0 damaged; link quality 100 %\n")
 
     def test_what_is_said_to_a_robot(self):
-        said = b"{S,CON}\n{U,90,-130}\n{S,PAU}\n{S,UNP}\n{S,BIN}\n{S,TXT}\n{S,WHO}\n{}\n{ }\n[2]:B:{U,361,0}\n{S,IDL}\n"
+        said = b"{S,CON}\n{U,90,-130}\n{S,PAU}\n{S,UNP}\n{S,BIN}\n{S,TXT}\n{S,WHO}\n{C,7}\n{}\n{ }\n[2]:B:{U,361,0}\n{S,IDL}\n"
         heard, err = self.line(said, "--to-robot")
         self.assertEqual([line["type"] for line in heard],
-                         ["confirm", "set_point", "pause", "unpause", "packed", "text", "who", "ping", "ping"])
+                         ["confirm", "set_point", "pause", "unpause", "packed", "text", "who", "calibrate",
+                          "ping", "ping"])
         self.assertEqual(heard[1]["values"], {"angle": 90, "distance": -130})
-        self.assertIn("9 whole sentences, 0 damaged\n", err)
+        self.assertEqual(heard[7]["values"], {"number": 7})
+        self.assertIn("10 whole sentences, 0 damaged\n", err)
         self.assertIn("[2] B: 0 whole sentences, 2 damaged (1 unknown, 1 out of range)\n", err)
         _, err = self.line(said[:-8], code=1)  # the other direction
         self.assertIn("--to-robot", err)

@@ -580,6 +580,22 @@ goto a 1 2 --timeout soon
 goto: --timeout soon: not a time
 write 500ms, 2s or 1.5s
 
+calibrate
+calibrate: missing ROBOT
+usage: amiroctl calibrate ROBOT [OPTION ...]
+
+calibrate a --bawd 1
+calibrate: unknown option '--bawd'
+did you mean '--baud'?
+
+calibrate a --baud fast
+calibrate: --baud fast: not a whole number
+write a whole number, such as 10
+
+calibrate a --timeout soon
+calibrate: --timeout soon: not a time
+write 500ms, 2s or 1.5s
+
 pause
 pause: missing ROBOT
 usage: amiroctl pause ROBOT ... [OPTION ...]

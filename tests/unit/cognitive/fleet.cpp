@@ -117,6 +117,53 @@ TEST_CASE("fleet: the answer to a handshake is repeated until an update or an id
   CHECK(sayings(fleet).empty());
 }
 
+TEST_CASE("fleet: a calibration is said until it is heard, and its end is known") {
+  using Phase = ocm::mapper::server::Calibrator::Phase;
+  Fleet fleet;
+  fleet.linked(0, "AVR", second);
+  fleet.feed("[0]:AVR:{U,0,0,0,0,0,0,0,0}\n{S,IDL}\n", second);
+  CHECK(fleet.robot(0).idle);
+  REQUIRE(fleet.calibrate(0, second));
+  CHECK(sayings(fleet) == "0:{C,0}\n");
+  fleet.feed("[0]:AVR:{C,3,0,0,0,0,0,0}\n", second + 100ms);
+  CHECK(sayings(fleet) == "0:{C,4}\n");
+  CHECK_FALSE(fleet.robot(0).idle);  // it may turn
+  fleet.expire(second + 1s);
+  CHECK(sayings(fleet) == "0:{C,4}\n");
+  for (Time now = second + 1s; now < second + 9s; now += 1s) {
+    fleet.feed("[0]:AVR:{C,4,1,0,0,0,0,0}\n", now);
+    fleet.expire(now + 900ms);
+  }
+  CHECK(sayings(fleet).empty());
+  CHECK_FALSE(fleet.robot(0).lost);
+  CHECK(fleet.calibrator(0).phase() == Phase::turning);
+  fleet.feed("[0]:AVR:{C,4,2,41,-57,152,1,2}\n{S,IDL}\n", second + 10s);
+  CHECK(fleet.calibrator(0).phase() == Phase::done);
+  CHECK(fleet.calibrator(0).result().x == 41);
+  CHECK(fleet.robot(0).idle);
+  CHECK(fleet.counters().calibrations == 10);
+  CHECK_FALSE(fleet.calibrate(Fleet::most_robots, second));
+}
+
+TEST_CASE("fleet: a stop, a set point, a handshake and the end of the link end a calibration") {
+  using Phase = ocm::mapper::server::Calibrator::Phase;
+  for (int end = 0; end < 4; ++end) {
+    Fleet fleet;
+    fleet.linked(0, "AVR", second);
+    REQUIRE(fleet.calibrate(0, second));
+    fleet.feed("[0]:AVR:{C,3,0,0,0,0,0,0}\n", second + 100ms);
+    CHECK(fleet.calibrator(0).phase() == Phase::ordering);
+    if (end == 0) fleet.stop(0, second + 1s);
+    if (end == 1) fleet.go(0, {0, 20}, second + 1s);
+    if (end == 2) fleet.feed(handshake, second + 1s);
+    if (end == 3) fleet.unlinked(0);
+    CHECK(fleet.calibrator(0).phase() == Phase::none);
+    (void)sayings(fleet);
+    fleet.expire(second + 1900ms);
+    CHECK(sayings(fleet).find("{C,") == std::string::npos);
+  }
+}
+
 TEST_CASE("fleet: a robot of another program's link says who it is when it is asked, and its place stays") {
   Fleet fleet;
   fleet.linked(0, "AVR", second);

@@ -35,18 +35,19 @@ struct Counters {
   std::uint32_t links_lost = 0;
 
   // Driving
-  std::uint32_t set_points = 0;        ///< begun
-  std::uint32_t arrived = 0;           ///< ended where they should
-  std::uint32_t collisions = 0;        ///< stops in front of something
-  std::uint32_t commands_lost = 0;     ///< to the motors, replaced by a newer one
-  std::uint32_t commands_stale = 0;    ///< to the motors, given before they were switched off
-  std::uint32_t motors_starved = 0;    ///< switched off since no command came
-  std::uint32_t control_skipped = 0;   ///< estimates that no control step followed
-  std::uint32_t control_rejected = 0;  ///< control steps without a finite pose or time
-  std::uint32_t returns = 0;           ///< begun
-  std::uint32_t returns_blocked = 0;   ///< ended in front of something
-  std::uint32_t places_forgotten = 0;  ///< of the way home
-  std::uint32_t calibrations_failed = 0;
+  std::uint32_t set_points = 0;           ///< begun
+  std::uint32_t arrived = 0;              ///< ended where they should
+  std::uint32_t collisions = 0;           ///< stops in front of something
+  std::uint32_t commands_lost = 0;        ///< to the motors, replaced by a newer one
+  std::uint32_t commands_stale = 0;       ///< to the motors, given before they were switched off
+  std::uint32_t motors_starved = 0;       ///< switched off since no command came
+  std::uint32_t control_skipped = 0;      ///< estimates that no control step followed
+  std::uint32_t control_rejected = 0;     ///< control steps without a finite pose or time
+  std::uint32_t returns = 0;              ///< begun
+  std::uint32_t returns_blocked = 0;      ///< ended in front of something
+  std::uint32_t places_forgotten = 0;     ///< of the way home
+  std::uint32_t calibrations = 0;         ///< turns for the compass that were begun
+  std::uint32_t calibrations_failed = 0;  ///< those that ended without a calibration
 
   // Parts that did not answer
   std::uint32_t gyro = 0;

@@ -1,7 +1,7 @@
 /// Where a mapper is: the estimator of `motion`, with what it needs to know first, the gyro's bias and
 /// where the compass has its zero, and with the calibration of the compass. [T2 §6.3, §7.4, §8.1]
 ///
-/// One step a reading, O(1): 30-odd float operations, a sine, a cosine and an arc tangent; 188 bytes, no
+/// One step a reading, O(1): 30-odd float operations, a sine, a cosine and an arc tangent; SIZE bytes, no
 /// heap, no clock. A part that does not answer is counted and left out of the step.
 #pragma once
 
@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "ocm/base/result.hpp"
+#include "ocm/mapper/app/compass.hpp"
 #include "ocm/mapper/app/measuring.hpp"
 #include "ocm/mapper/app/models.hpp"
 #include "ocm/mapper/app/parts.hpp"
@@ -81,15 +82,25 @@ class Locator {
   }
   /// It has turned around once.
   [[nodiscard]] constexpr bool turned_around() const noexcept { return calibration_.complete(); }
-  /// The offset, which is the robot's from now on; or why it stays as it was, see CompassCalibration::offset.
-  base::Result<sensing::Field> end_calibration() noexcept {
-    const auto found = calibration_.offset(model_->compass.least_span);
-    if (found) {
-      calibrated_ = true;
-      offset_ = *found;  // and the compass goes on from the heading that the robot has
+  /// How that ended. A good offset is the robot's from now on, and a poor one if it has none; else it keeps
+  /// what it had.
+  CompassReport end_calibration() noexcept {
+    const auto found = calibration_.fit();
+    if (!found) return {.verdict = judge(found.error, calibration_.count())};
+    CompassReport report{.verdict = judge(*found, model_->compass), .fit = *found};
+    report.taken = report.verdict == link::Calibration::good ||
+                   (report.verdict == link::Calibration::poor && !calibrated_);
+    if (report.taken) {
+      use(found->offset);  // and the compass goes on from the heading that the robot has
       zero_rad_ = motion::wrap(estimate_.pose.heading_rad + sensing::field_angle(last_field_, offset_));
     }
-    return found;
+    return report;
+  }
+  /// An offset that was found before. It counts from `begin_at_zero` on, which finds where the compass has
+  /// its zero.
+  constexpr void use(sensing::Field offset) noexcept {
+    calibrated_ = true;
+    offset_ = offset;
   }
 
   [[nodiscard]] constexpr const motion::Estimate& estimate() const noexcept { return estimate_; }

@@ -54,14 +54,20 @@ struct Measuring {
 };
 
 /// An offset belongs to one robot, not to its type: without one the compass would be wrong by tens of degrees
-/// at some headings, so it does not correct until the robot has turned around for it. Then the offset is to
-/// be stored, and put in here at the next start. [T2 §5.2, §8.1]
+/// at some headings, so it does not correct until the robot has turned around for it. Then the parts keep the
+/// offset. [T2 §5.2, §8.1]
 struct CompassUse {
   bool calibrated = false;
-  sensing::Field offset{};                ///< the robot's own field
-  float least_span = 0.0F;                ///< a circle that is smaller is none; unit of the field
-  float calibration_effort = 0.5F;        ///< of the turn
-  bool calibrate_when_confirmed = false;  ///< as the thesis's build for calibration did [T2 §8.1]
+  sensing::Field offset{};  ///< the robot's own field, in gauss
+  /// Gauss: a field that is weaker has no direction. The earth's is 0.1 to 0.4, horizontally, but for the
+  /// poles. [decided]
+  float least_field = 0.05F;
+  /// A calibration is good within that: what the estimator takes a compass away from steel for,
+  /// EstimatorModel::compass_undisturbed_rad. [decided]
+  float good_rad = motion::radians(3.0F);
+  /// And useless beyond that: a circle that is wider by a third one way than the other. [decided]
+  float most_rad = motion::radians(8.0F);
+  float calibration_effort = 0.5F;  ///< of the turn
 };
 
 struct RobotModel {
@@ -144,7 +150,7 @@ inline constexpr RobotModel arduino_robot = [] {
   return model;
 }();
 
-/// A robot of this type whose compass was calibrated: `offset` is what Robot::calibration found.
+/// A robot of this type whose compass was calibrated: `offset` is what its turn found.
 [[nodiscard]] constexpr RobotModel calibrated(RobotModel model, sensing::Field offset) noexcept {
   model.compass.calibrated = true;
   model.compass.offset = offset;

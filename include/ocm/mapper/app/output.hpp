@@ -39,6 +39,11 @@ class Output {
     return send(alive, [&line](Packets& packets) { return line ? packets.put(line->view()) : line.error; });
   }
   template <class Alive>
+  bool say(const link::Calibration& calibration, Alive alive) noexcept {
+    const auto line = link::write(calibration);
+    return send(alive, [&line](Packets& packets) { return line ? packets.put(line->view()) : line.error; });
+  }
+  template <class Alive>
   bool say(link::Handshake handshake, Alive alive) noexcept {
     return send(alive, [this, &handshake](Packets& packets) -> base::Status {
       handshake.formats = writer_.offer();

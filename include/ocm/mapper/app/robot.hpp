@@ -33,9 +33,11 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include "ocm/base/result.hpp"
 #include "ocm/base/time.hpp"
+#include "ocm/mapper/app/compass.hpp"
 #include "ocm/mapper/app/counters.hpp"
 #include "ocm/mapper/app/input.hpp"
 #include "ocm/mapper/app/load.hpp"
@@ -55,7 +57,6 @@
 #include "ocm/scheduling/mailbox.hpp"
 #include "ocm/scheduling/port.hpp"
 #include "ocm/scheduling/resource.hpp"
-#include "ocm/sensing/compass_calibration.hpp"
 #include "ocm/sensing/tower.hpp"
 
 namespace ocm::mapper::app {
@@ -81,6 +82,8 @@ class Robot {
         commands_(port),
         located_(port),
         locator_(model),
+        compass_{.verdict = model.compass.calibrated ? link::Calibration::good : link::Calibration::none,
+                 .fit = {.offset = model.compass.offset}},
         output_(parts, port, model.can_pack),
         pilot_(model.controller) {}
   Robot(Parts&, Port&, const RobotModel&&) = delete;  // the model must outlive the robot
@@ -143,10 +146,6 @@ class Robot {
     dispatcher_.done(release.stream);
   }
 
-  /// Turns the robot around once to find its own magnetism. False: not in this state. When it is done the
-  /// robot says idle, and `calibration` has the result.
-  bool calibrate_compass() noexcept { return !apply(Event::calibrate).refused; }
-
   // Looking on
   [[nodiscard]] State state() const noexcept {
     [[maybe_unused]] const auto guard = port_->lock();
@@ -160,11 +159,10 @@ class Robot {
     [[maybe_unused]] const auto claim = located_.claim();
     return locator_;
   }
-  /// What the last calibration found, to be stored and put into the model; Error::not_sampled: there was
-  /// none, Error::timed_out, Error::out_of_range: it failed, and the offset stays as it was.
-  [[nodiscard]] base::Result<sensing::Field> calibration() noexcept {
+  /// How the last calibration of the compass ended, or what is stored.
+  [[nodiscard]] CompassReport compass() noexcept {
     [[maybe_unused]] const auto claim = located_.claim();
-    return calibrated_;
+    return compass_;
   }
   /// On the way to a set point.
   [[nodiscard]] bool busy() const noexcept {
@@ -376,7 +374,8 @@ class Robot {
   void attend_communication() noexcept {
     dispatcher_.once(stream(Task::communication), Level::high, [this] {
       const base::Time soonest = last_communication_ + model_->periods.communication_apart;
-      const base::Time due = line_waits_ || idle_wanted_ ? port_->now() : supervision_due_;
+      const bool wanted = line_waits_ || idle_wanted_ || compass_wanted_;
+      const base::Time due = wanted ? port_->now() : supervision_due_;
       return due < soonest ? soonest : due;
     });
   }
@@ -389,7 +388,8 @@ class Robot {
       line_waits_ = false;
     }
     hear_all();
-    if (take_idle()) say_idle(moment());
+    if (take(compass_wanted_)) end_calibration();
+    if (take(idle_wanted_)) say_idle(moment());
     if (now >= supervision_due_) supervise(now);
     {
       [[maybe_unused]] const auto guard = port_->lock();
@@ -434,6 +434,8 @@ class Robot {
       case link::Kind::text:
         if (!apply(Event::format).refused) output_.hear(kind);
         return;
+      case link::Kind::calibrate:
+        return hear_calibrate();
       case link::Kind::ping:
         if (apply(Event::ping).answer) say(link::Kind::pong, moment(), counters_.pongs);
         return;
@@ -447,12 +449,30 @@ class Robot {
   void hear_confirm() noexcept {
     if (state() == State::connected) {
       [[maybe_unused]] const auto claim = located_.claim();
+      if (!locator_.calibrated()) use_stored();
       locator_.begin_at_zero();
     }
-    const Step step = apply(Event::confirm);
-    if (!step.reset) return;
-    last_idle_ = port_->now();
-    if (model_->compass.calibrate_when_confirmed) (void)apply(Event::calibrate);
+    if (apply(Event::confirm).reset) last_idle_ = port_->now();
+  }
+  /// The calibration of before it was switched off.
+  void use_stored() noexcept {
+    const auto kept = parts_->stored();
+    if (!kept) return;
+    locator_.use(kept->offset);
+    compass_ = {.verdict = judge(*kept, model_->compass), .fit = *kept};
+  }
+  /// A number that is new begins; that of the last one only asks, so a copy of a word changes nothing.
+  void hear_calibrate() noexcept {
+    const std::int16_t number = reader_.sentence().as<link::Calibrate>()->number;
+    const bool asks = number == 0 || number == calibration_;
+    if (!apply(asks ? Event::compass : Event::calibrate).answer) return;
+    if (!asks) {
+      calibration_ = number;
+      count(counters_.calibrations);
+      [[maybe_unused]] const auto claim = located_.claim();
+      compass_ = {.verdict = link::Calibration::stopped};  // unless it comes to an end
+    }
+    say_compass(moment());
   }
   void hear_set_point() noexcept {
     const auto wanted = reader_.sentence().as<link::SetPoint>();
@@ -478,6 +498,7 @@ class Robot {
     handshaken_ = false;
     if (at.state == State::connected) say_who(at, now);
     if (at.state == State::advertising) come_home(now);
+    if (at.state == State::calibrating && now - last_compass_ >= model_->times.idle) say_compass(at);
     if (obeys(at.state) && !at.motion.busy && now - last_idle_ >= model_->times.idle) say_idle(at);
     show();
   }
@@ -522,12 +543,34 @@ class Robot {
     last_idle_ = port_->now();
     say(link::Kind::idle, at, counters_.idles);
   }
-  /// Whether idle is to be said; a set point that was heard meanwhile has taken it back.
-  [[nodiscard]] bool take_idle() noexcept {
+  void say_compass(const Moment& at) noexcept {
+    using Said = link::Calibration;
+    last_compass_ = port_->now();
+    CompassReport report;
+    bool calibrated = false;
+    {
+      [[maybe_unused]] const auto claim = located_.claim();
+      report = compass_;
+      calibrated = locator_.calibrated();
+    }
+    const auto kept = parts_->stored();
+    const bool safe = kept && (!report.taken || *kept == report.fit);
+    if (at.state == State::calibrating) report = {.verdict = Said::turning};
+    const std::int16_t use = !calibrated ? Said::unused : safe ? Said::stored : Said::until_off;
+    (void)output_.say(app::calibration(calibration_, report, use), alive(at));
+  }
+  /// What the turn found is kept, and said.
+  void end_calibration() noexcept {
+    const CompassReport report = compass();
+    if (report.taken) parts_->store(report.fit);
+    const Moment at = moment();
+    if (obeys(at.state)) say_compass(at);
+  }
+  /// Whether that is to be done. An idle that was wanted is taken back by a set point that was heard
+  /// meanwhile.
+  [[nodiscard]] bool take(bool& wanted) noexcept {
     [[maybe_unused]] const auto guard = port_->lock();
-    const bool wanted = idle_wanted_;
-    idle_wanted_ = false;
-    return wanted;
+    return std::exchange(wanted, false);
   }
   /// The next job of communication says so.
   void want_idle() noexcept {
@@ -558,7 +601,7 @@ class Robot {
     motion::PoseCommand command;
     bool ended = false;
     if (at.state == State::calibrating) {
-      command = turn_around();
+      command = turn_around(at);
     } else if (may_drive(at.state)) {
       const motion::Pose pose = this->pose();
       ended = order && obey(*order, at, pose);
@@ -568,7 +611,6 @@ class Robot {
       if (step.end == PilotEnd::arrived) count(counters_.arrived);
       ended = ended || step.end == PilotEnd::arrived;
     }
-    was_calibrating_ = at.state == State::calibrating;
     publish(at, command);
     if (ended) want_idle();
   }
@@ -588,20 +630,32 @@ class Robot {
     return drove;
   }
   /// Around once, while the estimator looks at the field; then the offset is known, or why not.
-  motion::PoseCommand turn_around() noexcept {
+  motion::PoseCommand turn_around(const Moment& at) noexcept {
     const base::Time now = port_->now();
-    if (!was_calibrating_) calibration_began_ = now;
+    const bool first = calibration_epoch_ != at.epoch;  // each begins with the motors switched off
+    if (first) calibration_began_ = now;
+    calibration_epoch_ = at.epoch;
     const bool late = now - calibration_began_ > model_->times.calibration_limit;
     bool done = false;
     {
       [[maybe_unused]] const auto claim = located_.claim();
-      if (!was_calibrating_) locator_.begin_calibration();
+      if (first) locator_.begin_calibration();
       done = late || locator_.turned_around();
-      if (done) calibrated_ = late ? base::Error::timed_out : locator_.end_calibration();
     }
     if (!done) return {motion::Movement::rotating, 0.0F, model_->compass.calibration_effort, false};
-    if (!calibration()) count(counters_.calibrations_failed);
-    if (apply(Event::calibrated).idle) want_idle();
+    bool taken = false;
+    {
+      [[maybe_unused]] const auto claim = located_.claim();
+      compass_ = locator_.end_calibration();  // before the state says that it is over: who asks then hears it
+      taken = compass_.taken;
+    }
+    if (!taken) count(counters_.calibrations_failed);
+    const Step step = apply(Event::calibrated);
+    {
+      [[maybe_unused]] const auto guard = port_->lock();
+      compass_wanted_ = true;
+    }
+    if (step.idle) want_idle();
     return {};
   }
   void publish(const Moment& at, const motion::PoseCommand& command) noexcept {
@@ -677,6 +731,7 @@ class Robot {
   bool may_return_ = false;
   bool line_waits_ = false;
   bool idle_wanted_ = false;
+  bool compass_wanted_ = false;  ///< a calibration has ended: to be kept, and said
   bool control_due_ = false;
   bool compass_at_rest_ = false;
   bool ready_ = false;  ///< gyro and compass are measured
@@ -687,7 +742,7 @@ class Robot {
 
   scheduling::Resource<Mutex, Port> located_;  ///< for the next two
   Locator locator_;
-  base::Result<sensing::Field> calibrated_{base::Error::not_sampled};
+  CompassReport compass_;
   Output<Parts, Port, Mutex> output_;  ///< brings its own
 
   // Of one task each
@@ -703,14 +758,16 @@ class Robot {
   std::uint32_t shaken_links_ = 0;  ///< one more than the link that heard the last handshake
   base::Time last_handshake_{};
   base::Time last_idle_{};
+  base::Time last_compass_{};
+  std::int16_t calibration_ = 0;  ///< number of the last one
   bool handshaken_ = false;
   base::Time last_control_{};  // pose controller
   base::Time calibration_began_{};
   Pilot pilot_;
   std::uint32_t controlled_epoch_ = 0;
   std::uint32_t controlled_resets_ = 0;
-  bool was_calibrating_ = false;
-  sensing::Sweep sweep_{};  // tower
+  std::uint32_t calibration_epoch_ = 0;  ///< in which it turns around
+  sensing::Sweep sweep_{};               // tower
 };
 
 template <RobotParts Parts, scheduling::Port Port, scheduling::Lockable Mutex>

@@ -44,14 +44,15 @@ enum class Event : std::uint8_t {
   format,         ///< {S,BIN} or {S,TXT}
   ping,           ///< {}
   who,            ///< {S,WHO}
-  calibrate,      ///< by the robot's own program
+  calibrate,      ///< {C,number} of a new one
+  compass,        ///< {C,number} of the last one: what became of it
   calibrated,     ///< the turn is done, or given up
   return_due,     ///< the link has been gone for so long that the robot is to come home
   returned,       ///< home, or as near as it gets
   parts_failed,   ///< gyro or compass do not answer, and never did
   parts_answered  ///< they do now
 };
-inline constexpr std::size_t event_count = 16;
+inline constexpr std::size_t event_count = 17;
 
 /// What an event makes of a state.
 struct Step {
@@ -62,7 +63,7 @@ struct Step {
   bool drop = false;        ///< what waits for this link, or came from it, is gone
   bool drive = false;       ///< the set point is taken
   bool idle = false;        ///< say so
-  bool answer = false;      ///< the ping, or who it is
+  bool answer = false;      ///< the ping, who it is, or how the compass is
   friend constexpr bool operator==(const Step&, const Step&) = default;
 };
 
@@ -118,7 +119,7 @@ namespace detail {
 }
 [[nodiscard]] constexpr Step on_calibrate(State state) noexcept {
   if (state != State::confirmed) return refused(state);
-  return {.state = State::calibrating, .motors_off = true};
+  return {.state = State::calibrating, .motors_off = true, .answer = true};
 }
 [[nodiscard]] constexpr Step on_calibrated(State state) noexcept {
   if (state != State::calibrating) return to(state);
@@ -155,6 +156,8 @@ namespace detail {
       return detail::on_who(state);
     case Event::calibrate:
       return detail::on_calibrate(state);
+    case Event::compass:
+      return detail::has_link(state) ? Step{.state = state, .answer = true} : detail::refused(state);
     case Event::calibrated:
       return detail::on_calibrated(state);
     case Event::return_due:

@@ -60,6 +60,12 @@ template <class T>
 [[nodiscard]] constexpr base::Result<Line> write(const Update& sentence) noexcept {
   return detail::write(sentence, Update::fields.size());
 }
+[[nodiscard]] constexpr base::Result<Line> write(const Calibrate& sentence) noexcept {
+  return detail::write(sentence, Calibrate::fields.size());
+}
+[[nodiscard]] constexpr base::Result<Line> write(const Calibration& sentence) noexcept {
+  return detail::write(sentence, Calibration::fields.size());
+}
 /// The first `given` fields; Error::bad_length when that is 0 or more than there are.
 [[nodiscard]] constexpr base::Result<Line> write(const Handshake& sentence) noexcept {
   if (sentence.given == 0 || sentence.given > Handshake::fields.size()) return base::Error::bad_length;

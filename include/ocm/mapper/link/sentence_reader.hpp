@@ -137,8 +137,8 @@ class Reader {
   /// Whether a sentence that way begins with it.
   [[nodiscard]] constexpr bool is_letter(char c) const noexcept {
     if (c == word_letter) return true;
-    if (direction_ == Direction::to_robot) return c == SetPoint::letter;
-    return c == Update::letter || c == Handshake::letter;
+    if (direction_ == Direction::to_robot) return c == SetPoint::letter || c == Calibrate::letter;
+    return c == Update::letter || c == Handshake::letter || c == Calibration::letter;
   }
   constexpr void inside(char c) noexcept {
     switch (state_) {
@@ -230,17 +230,24 @@ class Reader {
         return known(kind_of_word(direction_, {word_.data(), word_size_}));
       case State::number:
         if (!end_number()) return Kind::none;
-        if (letter_ == Handshake::letter)
-          return checked(Kind::handshake, detail::fit<Handshake>(sentence_, Handshake::fewest_integers,
-                                                                 Handshake::most_integers));
-        if (direction_ == Direction::to_robot)
-          return checked(Kind::set_point, detail::fit<SetPoint>(sentence_));
-        return checked(Kind::update, detail::fit<Update>(sentence_));
+        return direction_ == Direction::to_robot ? whole_to_robot() : whole_from_robot();
       case State::outside:
       case State::skipping:
         break;
     }
     return Kind::none;
+  }
+  [[nodiscard]] constexpr Kind whole_to_robot() noexcept {
+    if (letter_ == Calibrate::letter) return checked(Kind::calibrate, detail::fit<Calibrate>(sentence_));
+    return checked(Kind::set_point, detail::fit<SetPoint>(sentence_));
+  }
+  [[nodiscard]] constexpr Kind whole_from_robot() noexcept {
+    if (letter_ == Handshake::letter)
+      return checked(Kind::handshake,
+                     detail::fit<Handshake>(sentence_, Handshake::fewest_integers, Handshake::most_integers));
+    if (letter_ == Calibration::letter)
+      return checked(Kind::calibration, detail::fit<Calibration>(sentence_));
+    return checked(Kind::update, detail::fit<Update>(sentence_));
   }
   [[nodiscard]] constexpr Kind known(Kind kind) noexcept {
     if (kind == Kind::none) ++faults_.unknown;

@@ -26,18 +26,20 @@ inline constexpr std::size_t max_integers = 16;
 /// Which sentence; none: not one, or not yet.
 enum class Kind : std::uint8_t {
   none,
-  confirm,    ///< `{S,CON}` the handshake has come: start
-  set_point,  ///< `{U,angle,distance}` new set point, relative to the present pose; 0, 0 stops
-  pause,      ///< `{S,PAU}` hold the tower and send no updates; control goes on
-  unpause,    ///< `{S,UNP}` go on as before the pause
-  packed,     ///< `{S,BIN}` send updates packed; only to a robot whose handshake offers it
-  text,       ///< `{S,TXT}` send updates as text again
-  who,        ///< `{S,WHO}` say the handshake again; nothing else changes
-  ping,       ///< `{}` are you there; printed with a blank between the braces, which is read as well
-  handshake,  ///< `{H,...}` what robot this is, each second from the connection until confirmed
-  update,     ///< `{U,x,y,heading,servo,s1,s2,s3,s4}` pose and what the tower sees
-  idle,       ///< `{S,IDL}` at the set point, once and then at an interval; also when paused
-  pong,       ///< `\t!` answers a ping
+  confirm,      ///< `{S,CON}` the handshake has come: start
+  set_point,    ///< `{U,angle,distance}` new set point, relative to the present pose; 0, 0 stops
+  pause,        ///< `{S,PAU}` hold the tower and send no updates; control goes on
+  unpause,      ///< `{S,UNP}` go on as before the pause
+  packed,       ///< `{S,BIN}` send updates packed; only to a robot whose handshake offers it
+  text,         ///< `{S,TXT}` send updates as text again
+  who,          ///< `{S,WHO}` say the handshake again; nothing else changes
+  calibrate,    ///< `{C,number}` turn around once for the compass; the last one's number only asks
+  ping,         ///< `{}` are you there; printed with a blank between the braces, which is read as well
+  handshake,    ///< `{H,...}` what robot this is, each second from the connection until confirmed
+  update,       ///< `{U,x,y,heading,servo,s1,s2,s3,s4}` pose and what the tower sees
+  calibration,  ///< `{C,number,verdict,x,y,field,error,use}` the compass, while it turns and when asked
+  idle,         ///< `{S,IDL}` at the set point, once and then at an interval; also when paused
+  pong,         ///< `\t!` answers a ping
 };
 
 /// As the spec calls it.
@@ -49,9 +51,11 @@ enum class Kind : std::uint8_t {
   if (kind == Kind::packed) return "packed";
   if (kind == Kind::text) return "text";
   if (kind == Kind::who) return "who";
+  if (kind == Kind::calibrate) return "calibrate";
   if (kind == Kind::ping) return "ping";
   if (kind == Kind::handshake) return "handshake";
   if (kind == Kind::update) return "update";
+  if (kind == Kind::calibration) return "calibration";
   if (kind == Kind::idle) return "idle";
   if (kind == Kind::pong) return "pong";
   return "none";
@@ -73,6 +77,22 @@ struct SetPoint {
       {&SetPoint::distance, "distance", "cm"},
   }};
   friend constexpr bool operator==(const SetPoint&, const SetPoint&) = default;
+};
+
+/// `{C,number}` turn around once for the compass; the last one's number only asks. [decided:
+/// docs/decisions/0029]
+struct Calibrate {
+  /// another one than the last: begin; 0: only ask; [0, 9999] [decided: two copies of a word begin one
+  /// calibration]
+  std::int16_t number = 0;
+
+  static constexpr Kind kind = Kind::calibrate;
+  static constexpr Direction direction = Direction::to_robot;
+  static constexpr char letter = 'C';
+  static constexpr std::array<Field<Calibrate>, 1> fields{{
+      {&Calibrate::number, "number", "", 0, 9999},
+  }};
+  friend constexpr bool operator==(const Calibrate&, const Calibrate&) = default;
 };
 
 /// `{H,...}` what robot this is, each second from the connection until confirmed. [Thesis 2, table 4.4, 17.1
@@ -149,6 +169,52 @@ struct Update {
       {&Update::s4, "s4", "cm", 0, 255},
   }};
   friend constexpr bool operator==(const Update&, const Update&) = default;
+};
+
+/// `{C,number,verdict,x,y,field,error,use}` the compass, while it turns and when asked. [decided:
+/// docs/decisions/0029]
+struct Calibration {
+  /// of the last one; 0: none since it was switched on; [0, 9999]
+  std::int16_t number = 0;
+  /// none: not calibrated; turning: not done yet; the others: how the last one ended, or what is stored; [0,
+  /// 8]
+  std::int16_t verdict = 0;
+  /// mG, field of the robot itself, ahead; [-2000, 2000] [HMC5883L data sheet: 1.3 G at the usual gain]
+  std::int16_t x = 0;
+  /// mG, and to its left; [-2000, 2000]
+  std::int16_t y = 0;
+  /// mG, of the earth, where the robot turned, horizontally; [0, 2000]
+  std::int16_t field = 0;
+  /// deg, the compass is wrong by, at most: what was not a circle; [0, 180]
+  std::int16_t error = 0;
+  /// of the calibration that the robot corrects by; until_off: not stored, or not yet; [0, 2]
+  std::int16_t use = 0;
+
+  static constexpr Kind kind = Kind::calibration;
+  static constexpr Direction direction = Direction::from_robot;
+  static constexpr char letter = 'C';
+  static constexpr std::int16_t none = 0;        ///< of verdict
+  static constexpr std::int16_t turning = 1;     ///< of verdict
+  static constexpr std::int16_t good = 2;        ///< of verdict
+  static constexpr std::int16_t poor = 3;        ///< of verdict
+  static constexpr std::int16_t stopped = 4;     ///< of verdict
+  static constexpr std::int16_t incomplete = 5;  ///< of verdict
+  static constexpr std::int16_t disturbed = 6;   ///< of verdict
+  static constexpr std::int16_t weak = 7;        ///< of verdict
+  static constexpr std::int16_t silent = 8;      ///< of verdict
+  static constexpr std::int16_t unused = 0;      ///< of use
+  static constexpr std::int16_t until_off = 1;   ///< of use
+  static constexpr std::int16_t stored = 2;      ///< of use
+  static constexpr std::array<Field<Calibration>, 7> fields{{
+      {&Calibration::number, "number", "", 0, 9999},
+      {&Calibration::verdict, "verdict", "", 0, 8},
+      {&Calibration::x, "x", "mG", -2000, 2000},
+      {&Calibration::y, "y", "mG", -2000, 2000},
+      {&Calibration::field, "field", "mG", 0, 2000},
+      {&Calibration::error, "error", "deg", 0, 180},
+      {&Calibration::use, "use", "", 0, 2},
+  }};
+  friend constexpr bool operator==(const Calibration&, const Calibration&) = default;
 };
 
 /// A sentence of a word behind `word_letter`.

@@ -27,6 +27,10 @@ bool is_as_written(const mapper::link::Sentence& sentence, std::string_view text
       return is_as_written<mapper::link::Update>(sentence, text);
     case Kind::set_point:
       return is_as_written<mapper::link::SetPoint>(sentence, text);
+    case Kind::calibrate:
+      return is_as_written<mapper::link::Calibrate>(sentence, text);
+    case Kind::calibration:
+      return is_as_written<mapper::link::Calibration>(sentence, text);
     case Kind::handshake:
       return is_as_written<mapper::link::Handshake>(sentence, text);
     case Kind::ping:

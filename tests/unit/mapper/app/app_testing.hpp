@@ -54,7 +54,8 @@ class IdealParts {
   base::Result<sensing::Field> field() {
     if (compass_missing) return base::Error::no_answer;
     const float angle = north_rad - pose.heading_rad;
-    return sensing::Field{0.2F * std::cos(angle) + own_field.x, 0.2F * std::sin(angle) + own_field.y};
+    return sensing::Field{earth * (1 + soft_iron) * std::cos(angle) + own_field.x,
+                          earth * std::sin(angle) + own_field.y};
   }
   base::Result<float> infrared(std::size_t sensor) {
     if (on_infrared) on_infrared();
@@ -77,6 +78,12 @@ class IdealParts {
     sent.append(reinterpret_cast<const char*>(bytes.data()), taken);
     return taken;
   }
+
+  void store(const sensing::CompassFit& fit) {
+    ++stores;
+    if (!memory_missing) memory = fit;
+  }
+  base::Result<sensing::CompassFit> stored() { return memory; }
 
   /// What happens in a millisecond.
   void step() {
@@ -118,6 +125,11 @@ class IdealParts {
   float gyro_bias = 0.03F;
   float north_rad = 1.1F;
   sensing::Field own_field{};
+  float soft_iron = 0.0F;  ///< what the field is stronger ahead, as a part of it
+  float earth = 0.2F;
+  base::Result<sensing::CompassFit> memory{base::Error::not_sampled};  ///< outlives a robot
+  bool memory_missing = false;
+  int stores = 0;
   std::function<void()> on_ticks;  ///< an interrupt in the middle of a job
   std::function<void()> on_infrared;
   std::function<void(std::span<const std::uint8_t>)> on_send;

@@ -79,7 +79,7 @@ TEST_CASE("mapper locator: a compass that was never calibrated corrects nothing,
   for (int i = 0; i < 400 && !locator.turned_around(); ++i)
     locator.step({{}, 0.9F, field_at(0.9F * dt * static_cast<float>(i))}, {Movement::rotating, false, true},
                  dt);
-  REQUIRE(locator.end_calibration().ok());
+  REQUIRE(locator.end_calibration().taken);
   CHECK(locator.calibrated());
   const float turned = locator.estimate().pose.heading_rad;
   for (int i = 0; i < 5; ++i) locator.step({{}, 0.0F, field_at(1.0F)}, standing, dt);
@@ -171,9 +171,10 @@ TEST_CASE("mapper locator: a turn finds the robot's own field, and the heading s
   CHECK(steps < 240);  // 360 degrees at 0.9 rad/s are 232.7
   const float before = locator.estimate().pose.heading_rad;
   const auto found = locator.end_calibration();
-  REQUIRE(found.ok());
-  CHECK(near(found->x, own.x, 0.002F));
-  CHECK(near(found->y, own.y, 0.002F));
+  CHECK(found.verdict == mapper::link::Calibration::good);
+  REQUIRE(found.taken);
+  CHECK(near(found.fit.offset.x, own.x, 0.002F));
+  CHECK(near(found.fit.offset.y, own.y, 0.002F));
   CHECK(near(locator.offset().x, own.x, 0.002F));
   CHECK(locator.estimate().pose.heading_rad == before);
 }
@@ -187,8 +188,31 @@ TEST_CASE("mapper locator: a turn that was not all around keeps the offset that 
   for (int i = 0; i < 100; ++i)
     locator.step({{}, 0.9F, field_at(0.9F * dt * static_cast<float>(i))}, {Movement::rotating, false, true},
                  dt);
-  CHECK(locator.end_calibration().error == base::Error::not_sampled);
+  const auto found = locator.end_calibration();
+  CHECK(found.verdict == mapper::link::Calibration::incomplete);
+  CHECK_FALSE(found.taken);
   CHECK(locator.offset() == Field{0.01F, 0.02F});
+}
+
+TEST_CASE("mapper locator: a poor calibration is taken only by a robot that has none", "[mapper_locator]") {
+  for (const bool had_one : {false, true}) {
+    RobotModel model = mapper::app::avr_robot;
+    if (had_one) model = calibrated(model, {0.01F, 0.02F});
+    Locator locator{model};
+    rest(locator, 0.0F, 0.0F);
+    locator.begin_at_zero();
+    locator.begin_calibration();
+    for (int i = 0; !locator.turned_around(); ++i) {
+      Field field = field_at(0.9F * dt * static_cast<float>(i));
+      field.x *= 1.2F;  // an ellipse: 5 degrees
+      locator.step({{}, 0.9F, field}, {Movement::rotating, false, true}, dt);
+    }
+    const auto found = locator.end_calibration();
+    CHECK(found.verdict == mapper::link::Calibration::poor);
+    CHECK(found.taken == !had_one);
+    CHECK(locator.calibrated());
+    CHECK((locator.offset() == Field{0.01F, 0.02F}) == had_one);
+  }
 }
 
 }  // namespace mapper_app_locator_test

@@ -17,14 +17,24 @@ struct Parts {
   void show(mapper::app::Lights) {}
   bool linked() { return false; }
   std::size_t send(std::span<const std::uint8_t> bytes) { return bytes.size(); }
+  void store(const sensing::CompassFit&) {}
+  base::Result<sensing::CompassFit> stored() { return base::Error::not_sampled; }
 };
 static_assert(RobotParts<Parts>);
 
 struct WithoutTower : private Parts {
   using Parts::drive, Parts::field, Parts::gyro, Parts::infrared, Parts::linked, Parts::send, Parts::show,
-      Parts::ticks;
+      Parts::store, Parts::stored, Parts::ticks;
 };
 static_assert(!RobotParts<WithoutTower>);
+
+/// A robot that forgets its calibration when it is switched off has to say so: `stored` is always
+/// not_sampled.
+struct WithoutMemory : private Parts {
+  using Parts::drive, Parts::field, Parts::gyro, Parts::infrared, Parts::linked, Parts::send, Parts::show,
+      Parts::ticks, Parts::turn_tower;
+};
+static_assert(!RobotParts<WithoutMemory>);
 
 /// A gyro that cannot fail is none.
 struct SureGyro : Parts {

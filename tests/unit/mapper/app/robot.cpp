@@ -460,7 +460,9 @@ TEST_CASE("mapper: what the state does not allow is refused and counted", "[mapp
   CHECK(bench.robot.counters().refused == 4);
   CHECK(bench.robot.counters().heard == 4);
   CHECK(bench.parts.efforts == motion::Efforts{});
-  CHECK_FALSE(bench.robot.calibrate_compass());
+  bench.say("{C,1}\n");
+  bench.run_for(25ms);
+  CHECK(bench.is(State::connected));
   CHECK(bench.robot.counters().refused == 5);
 }
 
@@ -590,66 +592,188 @@ TEST_CASE("mapper: parts that fail later are counted, and it drives on", "[mappe
     CHECK(update.s1 + update.s2 + update.s3 + update.s4 == 0);
 }
 
-// [T2 §8.1]
-TEST_CASE("mapper: turns around once for its compass, says idle, and keeps what it found", "[mapper]") {
-  for (const bool by_model : {true, false}) {
-    RobotModel model = mapper::app::avr_robot;
-    model.compass.calibrate_when_confirmed = by_model;
-    Bench bench{model};
-    bench.parts.own_field = {0.04F, -0.06F};
-    bench.run_for(3s);
-    bench.link(true);
-    bench.run_for(200ms);
-    bench.say("{S,CON}\n");
+// [T2 §8.1; docs/decisions/0029]
+TEST_CASE("mapper: turns around once for its compass, says how good that is, and keeps what it found",
+          "[mapper]") {
+  Bench bench;
+  bench.parts.own_field = {0.04F, -0.06F};
+  bench.confirm();
+  bench.say("{C,0}\n");
+  bench.run_for(25ms);
+  CHECK(bench.heard("{C,0,0,0,0,0,0,0}\n") == 1);
+  bench.say("{C,7}\n");
+  bench.run_for(25ms);
+  CHECK(bench.is(State::calibrating));
+  CHECK(bench.heard("{C,7,1,0,0,0,0,0}\n") == 1);
+  bench.heard();
+  bench.say("{U,0,50}\n{S,PAU}\n{C,8}\n");  // not now
+  bench.run_for(3s);
+  CHECK(bench.heard("{C,7,1,0,0,0,0,0}\n") == 3);
+  bench.heard();
+  REQUIRE(bench.run_until([&] { return bench.is(State::confirmed); }, 20s));
+  CHECK(bench.robot.counters().refused == 3);
+  CHECK(bench.heard("{U") == 0);
+  bench.run_for(50ms);
+  CHECK(bench.heard("{S,IDL}\n") == 1);
+  CHECK(bench.heard("{C,7,2,40,-60,199,0,2}\n") == 1);
+  const auto found = bench.robot.compass();
+  CHECK(found.verdict == mapper::link::Calibration::good);
+  CHECK(near(found.fit.offset.x, 0.04F, 0.003F));
+  CHECK(near(found.fit.offset.y, -0.06F, 0.003F));
+  REQUIRE(bench.parts.memory.ok());
+  CHECK(*bench.parts.memory == found.fit);
+  CHECK(bench.robot.locator().calibrated());
+  bench.run_for(500ms);
+  CHECK(bench.parts.still());
+  CHECK(near(bench.parts.pose, {0, 0, bench.parts.pose.heading_rad}, 0.01F, 1));
+
+  // A copy of the word that comes late begins nothing: it says the result again.
+  bench.heard();
+  bench.say("{C,7}\n{C,7}\n");
+  bench.run_for(25ms);
+  CHECK(bench.is(State::confirmed));
+  CHECK(bench.heard("{C,7,2,40,-60,199,0,2}\n") == 2);
+  CHECK(bench.robot.counters().calibrations == 1);
+  CHECK(bench.parts.stores == 1);
+}
+
+TEST_CASE("mapper: a calibration outlives being switched off, and is used from the first confirmation on",
+          "[mapper]") {
+  Bench bench;
+  bench.parts.own_field = {0.04F, -0.06F};
+  bench.parts.memory = sensing::CompassFit{{0.04F, -0.06F}, 0.2F, motion::radians(1.0F)};
+  bench.run_for(3s);
+  CHECK_FALSE(bench.robot.locator().calibrated());
+  bench.link(true);
+  bench.run_for(200ms);
+  bench.say("{S,CON}\n");
+  bench.run_for(50ms);
+  CHECK(bench.robot.locator().calibrated());
+  bench.heard();
+  bench.say("{C,0}\n");
+  bench.run_for(25ms);
+  CHECK(bench.heard("{C,0,2,40,-60,200,1,2}\n") == 1);
+  // It corrects: yellow while the robot rests where the compass is trusted.
+  REQUIRE(bench.drive("{U,0,20}\n"));
+  bench.run_for(1s);
+  CHECK(bench.parts.lights.yellow);
+}
+
+TEST_CASE("mapper: without a calibration the compass corrects nothing", "[mapper]") {
+  Bench bench;
+  bench.parts.own_field = {0.04F, -0.06F};
+  bench.confirm();
+  REQUIRE(bench.drive("{U,0,20}\n"));
+  bench.each_step = [&] { CHECK_FALSE(bench.parts.lights.yellow); };
+  bench.run_for(1s);
+}
+
+TEST_CASE("mapper: a memory that does not answer: the calibration is used, and said to be until off",
+          "[mapper]") {
+  Bench bench;
+  bench.parts.memory_missing = true;
+  bench.confirm();
+  bench.say("{C,1}\n");
+  REQUIRE(bench.run_until([&] { return bench.heard("{S,IDL}\n") != 0; }, 30s));
+  CHECK(bench.heard("{C,1,2,0,0,199,0,1}\n") == 1);
+  bench.parts.memory = bench.robot.compass().fit;  // it was busy
+  bench.heard();
+  bench.say("{C,1}\n");
+  bench.run_for(25ms);
+  CHECK(bench.heard("{C,1,2,0,0,199,0,2}\n") == 1);
+}
+
+TEST_CASE("mapper: how a calibration ends badly is said, with the reason", "[mapper]") {
+  RobotModel model = mapper::app::avr_robot;
+  model.times.calibration_limit = 20s;
+  Bench bench{model};
+  bench.confirm();
+  const auto verdict = [&](std::string_view expected) {
+    bench.say("{C,5}\n");
     bench.run_for(25ms);
-    if (!by_model) CHECK(bench.robot.calibrate_compass());
-    CHECK(bench.is(State::calibrating));
-    CHECK(bench.robot.calibration().error == base::Error::not_sampled);
-    bench.heard();
-    bench.say("{U,0,50}\n{S,PAU}\n");  // not now
-    REQUIRE(bench.run_until([&] { return bench.is(State::confirmed); }, 20s));
-    CHECK(bench.robot.counters().refused == 2);
-    CHECK(bench.heard("{U") == 0);
+    REQUIRE(bench.is(State::calibrating));
+    REQUIRE(bench.run_until([&] { return bench.is(State::confirmed); }, 30s));
     bench.run_for(50ms);
-    CHECK(bench.heard("{S,IDL}\n") == 1);
-    REQUIRE(bench.robot.calibration().ok());
-    CHECK(near(bench.robot.calibration()->x, 0.04F, 0.003F));
-    CHECK(near(bench.robot.calibration()->y, -0.06F, 0.003F));
-    bench.run_for(500ms);
-    CHECK(bench.parts.still());
-    CHECK(near(bench.parts.pose, {0, 0, bench.parts.pose.heading_rad}, 0.01F, 1));
+    CAPTURE(bench.parts.sent);
+    CHECK(bench.heard(expected) == 1);
+    CHECK(bench.parts.efforts == motion::Efforts{});
+  };
+  SECTION("an ellipse: poor, but better than none") {
+    bench.parts.soft_iron = 0.2F;
+    verdict("{C,5,3,");
+    CHECK(bench.robot.locator().calibrated());
+    CHECK(bench.parts.stores == 1);
+    CHECK(bench.robot.counters().calibrations_failed == 0);
+  }
+  SECTION("more than that: disturbed, and useless") {
+    bench.parts.soft_iron = 0.6F;
+    verdict("{C,5,6,");
+    CHECK_FALSE(bench.robot.locator().calibrated());
+    CHECK(bench.parts.stores == 0);
+    CHECK(bench.robot.counters().calibrations_failed == 1);
+  }
+  SECTION("a field without strength") {
+    bench.parts.earth = 0.02F;
+    verdict("{C,5,7,0,0,20,0,0}\n");
+  }
+  SECTION("a compass that says nothing") {
+    bench.parts.compass_missing = true;
+    verdict("{C,5,8,0,0,0,0,0}\n");
+  }
+  SECTION("a gyro that says nothing: it does not see itself turn") {
+    bench.parts.gyro_missing = true;
+    verdict("{C,5,5,0,0,0,0,0}\n");
+  }
+  SECTION("a good one is not replaced by a poor one") {
+    bench.parts.own_field = {0.04F, -0.06F};
+    verdict("{C,5,2,40,-60,199,0,2}\n");
+    bench.parts.soft_iron = 0.2F;
+    bench.say("{C,6}\n");
+    REQUIRE(bench.run_until([&] { return bench.heard("{C,6,3,") != 0; }, 30s));
+    CHECK(bench.robot.locator().offset() == bench.parts.memory->offset);
+    CHECK(near(bench.robot.locator().offset().x, 0.04F, 0.003F));
+    CHECK(bench.parts.stores == 1);
   }
 }
 
-TEST_CASE("mapper: a calibration that cannot end is given up, and one can be stopped", "[mapper]") {
-  RobotModel model = mapper::app::avr_robot;
-  model.times.calibration_limit = 5s;
-  Bench bench{model};
+TEST_CASE("mapper: a calibration can be stopped, and one that was is told", "[mapper]") {
+  Bench bench;
   bench.confirm();
-  SECTION("a gyro that says nothing") {
-    bench.parts.gyro_missing = true;
-    CHECK(bench.robot.calibrate_compass());
-    CHECK(bench.run_until([&] { return bench.is(State::confirmed); }, 6s));
-    CHECK(bench.robot.calibration().error == base::Error::timed_out);
-    CHECK(bench.robot.counters().calibrations_failed == 1);
-  }
+  bench.say("{C,1}\n");
+  bench.run_for(1s);
+  CHECK(bench.parts.efforts != motion::Efforts{});
   SECTION("{U,0,0}") {
-    CHECK(bench.robot.calibrate_compass());
-    bench.run_for(1s);
-    CHECK(bench.parts.efforts != motion::Efforts{});
     bench.say("{U,0,0}\n");
     bench.run_for(25ms);
     CHECK(bench.is(State::confirmed));
+    bench.say("{C,1}\n");
+    bench.run_for(25ms);
+    CHECK(bench.heard("{C,1,4,0,0,0,0,0}\n") == 1);
   }
   SECTION("a lost link") {
-    CHECK(bench.robot.calibrate_compass());
-    bench.run_for(1s);
     bench.link(false);
     CHECK(bench.is(State::advertising));
+    CHECK(bench.robot.compass().verdict == mapper::link::Calibration::stopped);
   }
   CHECK(bench.parts.efforts == motion::Efforts{});
   bench.each_step = [&] { CHECK(bench.parts.efforts == motion::Efforts{}); };
   bench.run_for(500ms);
+  CHECK_FALSE(bench.robot.locator().calibrated());
+}
+
+TEST_CASE("mapper: stopped and begun again at once, it turns around all of the way", "[mapper]") {
+  Bench bench;
+  bench.parts.own_field = {0.04F, -0.06F};
+  bench.confirm();
+  bench.say("{C,1}\n");
+  bench.run_for(5s);
+  bench.preempt("{U,0,0}{C,2}\n");  // between two steps of the pose controller
+  REQUIRE(bench.is(State::calibrating));
+  const base::Time begun = bench.now;
+  REQUIRE(bench.run_until([&] { return bench.is(State::confirmed); }, 30s));
+  CHECK(bench.now - begun > 6s);
+  bench.run_for(50ms);
+  CHECK(bench.heard("{C,2,2,40,-60,199,0,2}\n") == 1);
 }
 
 TEST_CASE("mapper: motors without commands are switched off", "[mapper]") {

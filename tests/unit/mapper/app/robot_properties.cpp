@@ -33,7 +33,6 @@ class Chaos {
     if (one_in(3000)) bench_->parts.infrared_missing[random_() % 4] ^= true;
     if (one_in(3000)) bench_->parts.room = one_in(2) ? 10'000 : random_() % 20;
     if (one_in(5000)) wall_ = one_in(2) ? 200.0F : 5.0F + static_cast<float>(random_() % 60);
-    if (one_in(4000)) (void)bench_->robot.calibrate_compass();
     if (one_in(60)) bench_->say(sentence());
     if (one_in(500)) bench_->robot.receive(static_cast<std::uint8_t>(random_()));
   }
@@ -49,9 +48,10 @@ class Chaos {
   std::string sentence() {
     constexpr std::string_view words[] = {"{S,CON}\n", "{S,CON}\n", "{S,PAU}\n", "{S,UNP}\n",
                                           "{S,BIN}\n", "{S,TXT}\n", "{U,0,0}\n", "{}\n",
-                                          "{U,1",      "0,30}\n",   "{S,CON"};
+                                          "{U,1",      "0,30}\n",   "{S,CON",    "{C,0}\n"};
     const std::uint32_t which = random_() % 16;
     if (which < std::size(words)) return std::string{words[which]};
+    if (one_in(20)) return "{C," + std::to_string(random_() % 10'000) + "}\n";
     const int angle = static_cast<int>(random_() % 721) - 360;
     const int distance = static_cast<int>(random_() % 100) - 50;
     return "{U," + std::to_string(angle) + "," + std::to_string(distance) + "}\n";

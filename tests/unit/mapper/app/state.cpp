@@ -21,14 +21,14 @@ using E = Event;
 
 constexpr std::array states{S::advertising, S::connected, S::confirmed,           S::paused,
                             S::calibrating, S::returning, S::initialisation_fault};
-constexpr std::array events{E::link_up,    E::link_down, E::confirm,      E::pause,
-                            E::unpause,    E::set_point, E::stop,         E::format,
-                            E::ping,       E::who,       E::calibrate,    E::calibrated,
-                            E::return_due, E::returned,  E::parts_failed, E::parts_answered};
+constexpr std::array events{E::link_up,      E::link_down,     E::confirm,    E::pause,      E::unpause,
+                            E::set_point,    E::stop,          E::format,     E::ping,       E::who,
+                            E::calibrate,    E::compass,       E::calibrated, E::return_due, E::returned,
+                            E::parts_failed, E::parts_answered};
 static_assert(states.size() == mapper::app::state_count && events.size() == mapper::app::event_count);
 
 /// What is done, a letter each: refused, motors off, zero the pose, drop the link's queues, drive, idle is
-/// said, the ping or the question who it is is answered.
+/// said, the ping, or who it is or how its compass is, is answered.
 std::string done(const Step& step) {
   std::string result;
   const auto add = [&result](bool is, char letter) {
@@ -53,15 +53,15 @@ struct Cell {
 constexpr S adv = S::advertising, con = S::connected, run = S::confirmed, pau = S::paused,
             cal = S::calibrating, ret = S::returning, bad = S::initialisation_fault;
 // clang-format off
-constexpr Cell table[7][16] = {
-    // up         down         CON         PAU         UNP         U           U,0,0        BIN TXT    ping        WHO         calibrate   calibrated   due         returned     failed     answered
-    {{con, ""},  {adv, ""},   {adv, "R"}, {adv, "R"}, {adv, "R"}, {adv, "R"}, {adv, "R"},  {adv, "R"}, {adv, "R"}, {adv, "R"}, {adv, "R"}, {adv, ""},   {ret, ""},  {adv, ""},   {bad, ""}, {adv, ""}},
-    {{con, ""},  {adv, "MD"}, {run, "Z"}, {con, "R"}, {con, "R"}, {con, "R"}, {con, "R"},  {con, ""},  {con, "A"}, {con, ""},  {con, "R"}, {con, ""},   {con, ""},  {con, ""},   {con, ""}, {con, ""}},
-    {{run, ""},  {adv, "MD"}, {run, ""},  {pau, "I"}, {run, ""},  {run, "U"}, {run, "MI"}, {run, ""},  {run, "A"}, {run, "A"}, {cal, "M"}, {run, ""},   {run, ""},  {run, ""},   {run, ""}, {run, ""}},
-    {{pau, ""},  {adv, "MD"}, {pau, ""},  {pau, "I"}, {run, ""},  {pau, "U"}, {pau, "MI"}, {pau, ""},  {pau, "A"}, {pau, "A"}, {pau, "R"}, {pau, ""},   {pau, ""},  {pau, ""},   {pau, ""}, {pau, ""}},
-    {{cal, ""},  {adv, "MD"}, {cal, ""},  {cal, "R"}, {cal, "R"}, {cal, "R"}, {run, "MI"}, {cal, ""},  {cal, "A"}, {cal, "A"}, {cal, "R"}, {run, "MI"}, {cal, ""},  {cal, ""},   {cal, ""}, {cal, ""}},
-    {{con, "M"}, {ret, ""},   {ret, "R"}, {ret, "R"}, {ret, "R"}, {ret, "R"}, {ret, "R"},  {ret, "R"}, {ret, "R"}, {ret, "R"}, {ret, "R"}, {ret, ""},   {ret, ""},  {adv, "M"},  {ret, ""}, {ret, ""}},
-    {{bad, ""},  {bad, ""},   {bad, "R"}, {bad, "R"}, {bad, "R"}, {bad, "R"}, {bad, "R"},  {bad, "R"}, {bad, "R"}, {bad, "R"}, {bad, "R"}, {bad, ""},   {bad, ""},  {bad, ""},   {bad, ""}, {adv, ""}},
+constexpr Cell table[7][17] = {
+    // up          down         CON         PAU         UNP         U           U,0,0        BIN TXT     ping        WHO         calibrate    compass     calibrated   due        returned    failed     answered
+    {{con, ""},  {adv, ""},   {adv, "R"}, {adv, "R"}, {adv, "R"}, {adv, "R"}, {adv, "R"},  {adv, "R"}, {adv, "R"}, {adv, "R"}, {adv, "R"},  {adv, "R"}, {adv, ""},   {ret, ""}, {adv, ""},  {bad, ""}, {adv, ""}},
+    {{con, ""},  {adv, "MD"}, {run, "Z"}, {con, "R"}, {con, "R"}, {con, "R"}, {con, "R"},  {con, ""},  {con, "A"}, {con, ""},  {con, "R"},  {con, "A"}, {con, ""},   {con, ""}, {con, ""},  {con, ""}, {con, ""}},
+    {{run, ""},  {adv, "MD"}, {run, ""},  {pau, "I"}, {run, ""},  {run, "U"}, {run, "MI"}, {run, ""},  {run, "A"}, {run, "A"}, {cal, "MA"}, {run, "A"}, {run, ""},   {run, ""}, {run, ""},  {run, ""}, {run, ""}},
+    {{pau, ""},  {adv, "MD"}, {pau, ""},  {pau, "I"}, {run, ""},  {pau, "U"}, {pau, "MI"}, {pau, ""},  {pau, "A"}, {pau, "A"}, {pau, "R"},  {pau, "A"}, {pau, ""},   {pau, ""}, {pau, ""},  {pau, ""}, {pau, ""}},
+    {{cal, ""},  {adv, "MD"}, {cal, ""},  {cal, "R"}, {cal, "R"}, {cal, "R"}, {run, "MI"}, {cal, ""},  {cal, "A"}, {cal, "A"}, {cal, "R"},  {cal, "A"}, {run, "MI"}, {cal, ""}, {cal, ""},  {cal, ""}, {cal, ""}},
+    {{con, "M"}, {ret, ""},   {ret, "R"}, {ret, "R"}, {ret, "R"}, {ret, "R"}, {ret, "R"},  {ret, "R"}, {ret, "R"}, {ret, "R"}, {ret, "R"},  {ret, "R"}, {ret, ""},   {ret, ""}, {adv, "M"}, {ret, ""}, {ret, ""}},
+    {{bad, ""},  {bad, ""},   {bad, "R"}, {bad, "R"}, {bad, "R"}, {bad, "R"}, {bad, "R"},  {bad, "R"}, {bad, "R"}, {bad, "R"}, {bad, "R"},  {bad, "R"}, {bad, ""},   {bad, ""}, {bad, ""},  {bad, ""}, {adv, ""}},
 };
 // clang-format on
 

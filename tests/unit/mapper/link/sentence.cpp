@@ -42,6 +42,10 @@ static_assert(*write(ocm::test::last_of_listing) == "{U,-177,-60,142,29,0,16,0,0
 static_assert(*write(Handshake{15, 20, 2, 3, 0, 90, 180, 270, 1000, 0, 0, 10}) ==
               "{H,15,20,2,3,0,90,180,270,1000,0}\n");
 static_assert(*write(Handshake{.width = 15, .given = 1}) == "{H,15}\n");
+// [docs/decisions/0029]
+static_assert(*write(Calibrate{7}) == "{C,7}\n");
+static_assert(*write(Calibration{7, Calibration::good, 41, -57, 152, 1, Calibration::stored}) ==
+              "{C,7,2,41,-57,152,1,2}\n");
 
 // --- bounds ------------------------------------------------------------------------------------------------
 
@@ -50,6 +54,8 @@ static_assert(write(SetPoint{-361, 0}).error == Error::out_of_range);
 static_assert(write(Update{.servo = 91}).error == Error::out_of_range);
 static_assert(write(Update{.servo = -1}).error == Error::out_of_range);
 static_assert(write(Update{.s4 = 256}).error == Error::out_of_range);
+static_assert(write(Calibrate{-1}).error == Error::out_of_range);
+static_assert(write(Calibration{.verdict = 9}).error == Error::out_of_range);
 static_assert(write(Handshake{.given = 0}).error == Error::bad_length);
 static_assert(write(Handshake{.given = 12}).error == Error::bad_length);
 
@@ -59,6 +65,9 @@ static_assert(write(longest)->view().size() == max_line && !write(longest)->over
 // What is said to a robot fits one packet, so that it comes whole or not at all. [Thesis 2, 15.3]
 static_assert(write(SetPoint{-360, least})->view().size() <= 20);
 static_assert(write(Kind::confirm)->view().size() <= 20);
+static_assert(write(Calibrate{9999})->view().size() <= 20);
+static_assert(write(Calibration{9999, 8, -2000, -2000, 2000, 180, 2})->view().size() <= 2 * 20,
+              "what comes back takes two");
 
 static_assert(kind_of_word(Direction::to_robot, "CON") == Kind::confirm);
 static_assert(kind_of_word(Direction::from_robot, "CON") == Kind::none);
@@ -109,6 +118,8 @@ TEST_CASE("sentences.json and the structs say the same of every field") {
   check_fields<SetPoint>(all, "set_point");
   check_fields<Update>(all, "update");
   check_fields<Handshake>(all, "handshake");
+  check_fields<Calibrate>(all, "calibrate");
+  check_fields<Calibration>(all, "calibration");
   CHECK(entry(all, "handshake")["integers"] == json::array({1, max_integers}));
   CHECK(all["packet"]["bytes"] == max_packet);
 }
@@ -135,6 +146,8 @@ TEST_CASE("each sentence of sentences.json is written and read as it says, and t
     std::string again;
     if (kind == Kind::set_point) again = write(SetPoint{})->view();
     if (kind == Kind::update) again = write(Update{})->view();
+    if (kind == Kind::calibrate) again = write(Calibrate{})->view();
+    if (kind == Kind::calibration) again = write(Calibration{})->view();
     if (kind == Kind::handshake) again = write(Handshake{})->view();
     if (again.empty()) again = write(kind)->view();
     CHECK(again == text + "\n");
@@ -142,8 +155,9 @@ TEST_CASE("each sentence of sentences.json is written and read as it says, and t
     Reader other{to_robot ? Direction::from_robot : Direction::to_robot};
     CHECK(ocm::test::read(other, text + "\n").empty());
   }
-  const std::set<std::string> known{"confirm", "set_point", "pause",     "unpause", "packed", "text",
-                                    "who",     "ping",      "handshake", "update",  "idle",   "pong"};
+  const std::set<std::string> known{"confirm", "set_point", "pause",       "unpause",   "packed",
+                                    "text",    "who",       "ping",        "calibrate", "handshake",
+                                    "update",  "idle",      "calibration", "pong"};
   CHECK(written == known);
   CHECK(known.size() == static_cast<std::size_t>(Kind::pong));  // every kind but none
 }

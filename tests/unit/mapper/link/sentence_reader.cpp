@@ -44,6 +44,9 @@ static_assert(only("{S,IDL}\n").kind == Kind::idle);
 static_assert(only("\t!\n").kind == Kind::pong);
 static_assert(only("\t ! \n").kind == Kind::pong);  // as printed
 static_assert(only("{U,-177,-61,-68,49,0,0,0,0}\n").as<Update>().value == ocm::test::first_of_listing);
+static_assert(only("{C,7}\n", Direction::to_robot).as<Calibrate>().value == Calibrate{7});
+static_assert(only("{C,7,2,41,-57,152,1,2}\n").as<Calibration>().value ==
+              Calibration{7, Calibration::good, 41, -57, 152, 1, 2});
 static_assert(only("{H,15,20}\n").as<Handshake>().value == Handshake{.width = 15, .length = 20, .given = 2});
 
 // The brace completes it: the line feed may be lost.

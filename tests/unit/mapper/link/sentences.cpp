@@ -14,7 +14,7 @@ static_assert(Update::letter == 'U' && Update::direction == Direction::from_robo
 static_assert(Handshake::letter == 'H' && Handshake::direction == Direction::from_robot);
 static_assert(word_letter == 'S' && word_length == 3);
 static_assert(SetPoint::kind == Kind::set_point && Update::kind == Kind::update);
-static_assert(static_cast<int>(Kind::none) == 0 && static_cast<int>(Kind::pong) == 12);
+static_assert(static_cast<int>(Kind::none) == 0 && static_cast<int>(Kind::pong) == 14);
 
 static_assert(SetPoint::fields.size() == 2 && SetPoint::fields[0].min == -360 &&
               SetPoint::fields[0].max == 360);
@@ -22,6 +22,12 @@ static_assert(SetPoint::fields[1].min == -32768 && SetPoint::fields[1].unit == "
 static_assert(Update::fields.size() == 8 && Update::fields[3].name == "servo" && Update::fields[3].max == 90);
 static_assert(Update::fields[4].member == &Update::s1 && Update::fields[7].max == 255);
 static_assert(Handshake::fields.size() == 11 && Handshake{}.given == 11);
+static_assert(Calibrate::letter == 'C' && Calibrate::direction == Direction::to_robot);
+static_assert(Calibration::letter == 'C' && Calibration::direction == Direction::from_robot);
+static_assert(Calibrate::fields.size() == 1 && Calibration::fields.size() == 7);
+static_assert(Calibration::none == 0 && Calibration::turning == 1 && Calibration::good == 2);
+static_assert(Calibration::silent == 8 && Calibration::fields[1].max == Calibration::silent);
+static_assert(Calibration::unused == 0 && Calibration::until_off == 1 && Calibration::stored == 2);
 static_assert(Handshake::fewest_integers == 1 && Handshake::most_integers == max_integers);
 
 // [Thesis 2, table 4.1 and 16.1]

@@ -58,6 +58,12 @@ class SharedParts {
   auto send(std::span<const std::uint8_t> bytes) {
     return locked([=](IdealParts& parts) { return parts.send(bytes); });
   }
+  void store(const sensing::CompassFit& fit) {
+    locked([&](IdealParts& parts) { parts.store(fit); });
+  }
+  auto stored() {
+    return locked([](IdealParts& parts) { return parts.stored(); });
+  }
 
  private:
   std::mutex mutex_;

@@ -1,0 +1,140 @@
+"""amiroctl calibrate: a mapper's compass, on a central that is played on a pseudo terminal, and on the simulated robots."""
+
+import signal
+import time
+
+from harness import Case, main, waiting
+from played_central import Central, Robot
+
+GOOD = "AVR: good: within 1 deg; field of the robot x 41 mG, y -57 mG, of the earth 152 mG; stored\n"
+
+
+class Played(Case):
+    def setUp(self):
+        super().setUp()
+        self.avr = Robot("AVR")
+        self.central = Central(self.folder, [self.avr], link="ocm/central")
+        self.addCleanup(self.central.close)
+
+    def calibrate(self, *options, code=0):
+        return self.run_tool("calibrate", "AVR", *options, "--scan", "200ms", code=code)
+
+    def test_turns_around_once_and_says_how_good_it_is(self):
+        self.assertEqual(self.calibrate(), (GOOD, ""))
+        words = [line for line in self.avr.heard if line.startswith("{C,")]
+        self.assertEqual(words[:2], ["{C,0}", "{C,1}"])
+        self.assertEqual(set(words[2:]) - {"{C,1}"}, set())
+        # Another one is another number.
+        self.assertEqual(self.calibrate()[0], GOOD)
+        self.assertEqual(self.avr.calibration, 2)
+        # And how good it was can be asked without a turn.
+        heard = len(self.avr.heard)
+        self.assertEqual(self.calibrate("--show"), (GOOD, ""))
+        self.assertEqual(self.avr.calibration, 2)
+        self.assertNotIn("{C,3}", self.avr.heard[heard:])
+
+    def test_what_was_not_heard_is_said_again(self):
+        self.avr.loses = 3
+        self.assertEqual(self.calibrate(), (GOOD, ""))
+        self.assertEqual(self.avr.calibration, 1)
+        self.assertEqual(self.avr.loses, 0)
+
+    def test_it_is_asked_until_it_has_stored_it(self):
+        self.avr.finds = [(2, 41, -57, 152, 1, 1), (2, 41, -57, 152, 1, 2)]
+        self.assertEqual(self.calibrate(), (GOOD, ""))
+
+    def test_one_that_cannot_store_it(self):
+        self.avr.finds = [(2, 41, -57, 152, 1, 1)]
+        out, err = self.calibrate(code=1)
+        self.assertEqual(out, GOOD.replace("stored", "not stored"))
+        self.assertIn("AVR has not stored it: it is lost when the robot is switched off", err)
+
+    def test_each_end_that_is_not_good(self):
+        for finds, said, remedy in (
+                ((3, 41, -57, 152, 6, 2), "AVR may be wrong by 6 deg", "in another place"),
+                ((4, 0, 0, 0, 0, 0), "AVR was stopped before it had turned around; its compass corrects nothing", "again"),
+                ((5, 0, 0, 0, 0, 0), "AVR has not seen itself turn around", "free to turn"),
+                ((6, 41, -57, 152, 30, 2), "the field changed while AVR turned: its compass would be wrong by 30 deg; it keeps "
+                 "the calibration that it had", "in another place"),
+                ((7, 0, 0, 20, 0, 0), "the field around AVR is too weak, 20 mG", "in another place"),
+                ((8, 0, 0, 0, 0, 0), "the compass of AVR does not answer", "cable")):
+            self.avr.finds = [finds]
+            self.avr.turn_s = 0.2
+            out, err = self.calibrate(code=1)
+            self.assertEqual(out, "" if finds[0] != 3 else
+                             "AVR: poor: within 6 deg; field of the robot x 41 mG, y -57 mG, of the earth 152 mG; stored\n")
+            self.assertIn(said, err)
+            self.assertIn(remedy, err)
+
+    def test_never_calibrated(self):
+        out, err = self.calibrate("--show", code=1)
+        self.assertEqual(out, "")
+        self.assertIn("AVR was never calibrated", err)
+        self.assertEqual(self.avr.calibration, 0)
+
+    def test_a_robot_whose_program_does_not_know_the_sentence(self):
+        self.avr.knows_compass = False
+        began = time.monotonic()
+        out, err = self.calibrate(code=1)
+        self.assertEqual(out, "")
+        self.assertRegex(err, r"AVR does not say how its compass is \(asked 1\d times\)")
+        self.assertIn("too old", err)
+        self.assertLess(time.monotonic() - began, 40)
+
+    def test_a_paused_robot_is_paused_again(self):
+        self.run_tool("pause", "AVR", "--scan", "200ms")
+        self.assertEqual(self.calibrate(), (GOOD, ""))
+        self.assertTrue(self.avr.paused)
+
+    def test_one_that_does_not_come_to_an_end_is_stopped(self):
+        self.avr.turn_s = 1000
+        out, err = self.calibrate("--timeout", "2s", code=1)
+        self.assertIn("AVR has not said how it ended after 2s; it was stopped", err)
+        self.assertEqual((out, self.avr.turning_until), ("", None))
+        self.assertIn("{U,0,0}", self.avr.heard)
+
+    def test_interrupted_it_stops_the_robot(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            self.avr.turn_s = 1000
+            tool = self.start("calibrate", "AVR", "--scan", "200ms")
+            waiting.until(lambda: self.avr.turning_until is not None, "the turn")
+            tool.send_signal(number)
+            tool.communicate(timeout=20)
+            self.assertEqual(tool.returncode, 128 + number)
+            self.assertIsNone(self.avr.turning_until)
+
+    def test_the_link_is_lost_on_the_way(self):
+        self.avr.turn_s = 1000
+        tool = self.start("calibrate", "AVR", "--scan", "200ms")
+        waiting.until(lambda: self.avr.turning_until is not None, "the turn")
+        self.avr.turning_until = None
+        self.central.drop(self.avr)
+        _, err = tool.communicate(timeout=20)
+        self.assertEqual(tool.returncode, 1)
+        self.assertIn("AVR is lost: its link is gone", err)
+
+
+class OnSimulatedRobots(Case):
+    def sim(self, *arguments):
+        sim = self.start("sim", *arguments)
+        for line in sim.stderr:
+            if "Ctrl-C ends it" in line:
+                return
+        self.fail(f"the simulator ended with {sim.wait()}")
+
+    def test_uncalibrated_calibrates_and_keeps_it(self):
+        self.sim("--robots", "1", "--speed", "10", "--uncalibrated")
+        _, err = self.run_tool("calibrate", "AVR", "--show", code=1)
+        self.assertIn("AVR was never calibrated", err)
+        out, _ = self.run_tool("calibrate", "AVR")
+        self.assertRegex(out, r"^AVR: good: within [0-3] deg; field of the robot x -?\d+ mG, y -?\d+ mG, of the earth 1\d\d mG; "
+                              r"stored\n$")
+        self.assertEqual(self.run_tool("calibrate", "AVR", "--show")[0], out)
+
+    def test_robots_are_calibrated_unless_it_is_said(self):
+        self.sim("--robots", "1", "--speed", "10")
+        self.assertRegex(self.run_tool("calibrate", "AVR", "--show")[0], "^AVR: good: within 0 deg; .* stored\n$")
+
+
+if __name__ == "__main__":
+    main()
