@@ -52,9 +52,10 @@ class Calibration {
 
   /// Fetches what is stored, unless something was measured since. An EEPROM without a record is no error.
   base::Result<base::Duration> start() {
-    const auto found = store_.load(Sensors);
-    if (!found) return found.error;
-    if (*found && !changed_) use((*found)->offsets);
+    const auto done = store_.load(Sensors, [this](const auto& offsets) {
+      if (!changed_) use(offsets);
+    });
+    if (!done) return done.error;
     return base::Duration{0};
   }
   base::Status check() { return store_.ready(); }
@@ -118,9 +119,7 @@ class Calibration {
   }
 
   void write() {
-    const auto done = store_.step();
-    if (!done) return end(done.error);
-    if (*done) end(base::Error::none);
+    if (store_.step()) end(store_.error());
   }
 
   RecordStore<Bus> store_;

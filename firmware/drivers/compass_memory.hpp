@@ -74,18 +74,19 @@ class CompassMemory {
   }
   /// Fetches what is stored. An EEPROM without a record is no error.
   base::Result<base::Duration> start() {
-    const auto found = store_.load(compass_memory::numbers);
-    if (!found) return found.error;
-    if (*found && !busy()) know(compass_memory::fit((*found)->offsets));
+    const auto done = store_.load(compass_memory::numbers, [this](const compass_memory::Numbers& words) {
+      if (!busy()) know(compass_memory::fit(words));
+    });
+    if (!done) return done.error;
     return base::Duration{0};
   }
   base::Status check() { return store_.ready(); }
   /// One step of what was asked for. What could not be written stays unknown.
   void step() {
     if (!writing_) return take();
-    const auto done = store_.step();
-    writing_ = done && !*done;
-    if (done && *done) know(written_);
+    if (!store_.step()) return;
+    writing_ = false;
+    if (store_.error() == base::Error::none) know(written_);
   }
 
  private:

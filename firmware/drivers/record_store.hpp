@@ -81,19 +81,22 @@ class RecordStore {
 
   explicit RecordStore(Bus& bus) noexcept : eeprom_(bus) {}
 
-  /// The newest record of `count` numbers; an EEPROM without one is no error.
-  base::Result<std::optional<CalibrationRecord>> load(std::uint8_t count) {
-    std::array<std::optional<CalibrationRecord>, 2> found;
+  /// Each record of so many numbers, the newest last: `found(numbers)`. None is no error.
+  template <class Found>
+  base::Status load(std::uint8_t count, Found found) {
+    bool any = false;
+    stored_ = 0;
     for (std::size_t slot = 0; slot < 2; ++slot) {
       CalibrationRecord::Bytes bytes{};
-      if (const auto done = eeprom_.read(calibration_slots[slot], bytes); !done) return done.error;
-      found[slot] = decode(bytes);
-      if (found[slot] && found[slot]->count != count) found[slot].reset();
+      if (const auto done = eeprom_.read(calibration_slots[slot], bytes); !done) return done;
+      const auto record = decode(bytes);
+      if (!record || record->count != count || (any && !later(record->sequence, sequence_))) continue;
+      any = true;
+      stored_ = slot;
+      sequence_ = record->sequence;
+      found(record->offsets);
     }
-    const bool second = found[1] && (!found[0] || later(found[1]->sequence, found[0]->sequence));
-    stored_ = second ? 1 : 0;
-    if (found[stored_]) sequence_ = found[stored_]->sequence;
-    return found[stored_];
+    return {};
   }
   base::Status ready() { return eeprom_.ready(); }
 
@@ -103,35 +106,38 @@ class RecordStore {
     page_ = 0;
     tries_ = 0;
   }
-  /// A page, or all of it read again. True: it is in. An error: it was given up.
-  base::Result<bool> step() { return page_ == pages ? verify() : write(); }
+  /// A page, or all of it read again. True: that was the last step, and `error` is how it ended.
+  bool step() {
+    const base::Status done = page_ == pages ? verify() : write();
+    if (done) return page_ > pages;
+    error_ = done.error;
+    return ++tries_ == most_tries;  // else busy with the page before, or away
+  }
+  [[nodiscard]] base::Error error() const noexcept { return error_; }
 
  private:
   static constexpr std::size_t pages = CalibrationRecord::size / at24c01b::page;
 
   [[nodiscard]] std::uint8_t slot() const noexcept { return calibration_slots[1 - stored_]; }
 
-  base::Result<bool> write() {
+  base::Status write() {
     const std::size_t first = page_ * at24c01b::page;
     const auto bytes = std::span<const std::uint8_t>{image_}.subspan(first, at24c01b::page);
     const auto done = eeprom_.write(static_cast<std::uint8_t>(slot() + first), bytes);
-    if (!done) return again(done.error);
-    tries_ = 0;
-    ++page_;
-    return false;
+    if (done) ++page_, tries_ = 0;
+    return done;
   }
-  base::Result<bool> verify() {
+  base::Status verify() {
     CalibrationRecord::Bytes bytes{};
-    const auto done = eeprom_.read(slot(), bytes);
-    if (!done) return again(done.error);
-    if (bytes != image_) return base::Error::bus_fault;
+    if (const auto done = eeprom_.read(slot(), bytes); !done) return done;
+    if (bytes != image_) {
+      tries_ = most_tries - 1;  // once more would read the same
+      return base::Error::bus_fault;
+    }
     stored_ = 1 - stored_;
-    return true;
-  }
-  /// Not acknowledged: still busy with the page before, or away.
-  base::Result<bool> again(base::Error error) noexcept {
-    if (++tries_ == most_tries) return error;
-    return false;
+    ++page_;
+    error_ = base::Error::none;
+    return {};
   }
 
   At24c01b<Bus> eeprom_;
@@ -140,6 +146,7 @@ class RecordStore {
   std::size_t stored_ = 0;  // the slot that holds the newest record
   std::uint8_t sequence_ = 0;
   std::uint8_t tries_ = 0;
+  base::Error error_ = base::Error::none;
 };
 
 }  // namespace ocm::firmware::drivers

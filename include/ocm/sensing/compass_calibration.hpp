@@ -6,7 +6,7 @@
 /// How good that is shows in the circle: `CompassFit::error_rad` is how far its worst part lies inside or
 /// outside of it, as an angle. A field that is stretched, or changes while the robot turns, turns the compass
 /// by so much. The circle is looked at in 16 parts, each the mean of its readings, so that noise counts for
-/// little; no samples are kept. 192 bytes, no heap. Readings that are not finite are counted. Steel beside
+/// little; no samples are kept. 220 bytes, no heap. Readings that are not finite are counted. Steel beside
 /// the robot that turns the whole field shows nothing: calibrate in several places, an offset that differs
 /// shows a disturbed one.
 #pragma once

@@ -183,6 +183,8 @@ struct Robot {
   void drive(motion::Efforts e) { efforts = e; }
   void turn_tower(std::int32_t degrees) { tower = degrees; }
   void show(mapper::app::Lights l) { lights = l; }
+  void store(const sensing::CompassFit&) {}
+  base::Result<sensing::CompassFit> stored() { return Error::not_sampled; }
   bool linked() { return true; }
   std::size_t send(std::span<const std::uint8_t> bytes) { return bytes.size(); }
 };
@@ -326,6 +328,39 @@ TEST_CASE("a gyro or compass of the mapper that goes away is said at once, and c
   whole.robot.magnetic = sensing::Field{0.1F, 0.1F};
   whole.maintain(1200ms);
   CHECK(whole.parts.field().ok());
+}
+
+TEST_CASE("the mapper's parts keep a calibration across a restart, and go on without a memory") {
+  Whole whole;
+  whole.parts.start(whole.time.now);
+  whole.maintain(200ms);
+  constexpr sensing::CompassFit fit{{0.041F, -0.057F}, 0.152F, 0.02F};
+  whole.parts.store(fit);
+  CHECK_FALSE(whole.parts.stored().ok());
+  whole.maintain(200ms);
+  REQUIRE(whole.parts.stored().ok());
+  CHECK(*whole.parts.stored() == fit);
+  CHECK(whole.models.violations().none());
+
+  Whole again;
+  again.models.memory.bytes() = whole.models.memory.bytes();
+  again.parts.start(again.time.now);
+  REQUIRE(again.parts.stored().ok());
+  CHECK(again.parts.stored()->offset.y == Approx(-0.057).margin(5e-5));
+
+  Whole without;
+  without.models.memory.set_present(false);
+  without.parts.start(without.time.now);
+  without.maintain(200ms);
+  CHECK(without.parts.absent() == boards::mapper::part::memory);
+  CHECK(without.parts.field().ok());
+  without.parts.store(fit);
+  without.maintain(2s);
+  CHECK_FALSE(without.parts.stored().ok());
+  CHECK(without.parts.gyro().ok());
+  without.models.memory.set_present(true);
+  without.maintain(2s);  // it is written once the memory answers
+  CHECK(without.parts.stored().ok());
 }
 
 TEST_CASE("what no mapper has is refused, and nothing is harmed") {

@@ -1,7 +1,7 @@
 /// Where a mapper is: the estimator of `motion`, with what it needs to know first, the gyro's bias and
 /// where the compass has its zero, and with the calibration of the compass. [T2 §6.3, §7.4, §8.1]
 ///
-/// One step a reading, O(1): 30-odd float operations, a sine, a cosine and an arc tangent; SIZE bytes, no
+/// One step a reading, O(1): 30-odd float operations, a sine, a cosine and an arc tangent; 380 bytes, no
 /// heap, no clock. A part that does not answer is counted and left out of the step.
 #pragma once
 

@@ -35,21 +35,16 @@ class Output {
   /// all of it.
   template <class Alive>
   bool say(link::Kind kind, Alive alive) noexcept {
-    const auto line = link::write(kind);
-    return send(alive, [&line](Packets& packets) { return line ? packets.put(line->view()) : line.error; });
+    return say(link::write(kind), alive);
   }
   template <class Alive>
   bool say(const link::Calibration& calibration, Alive alive) noexcept {
-    const auto line = link::write(calibration);
-    return send(alive, [&line](Packets& packets) { return line ? packets.put(line->view()) : line.error; });
+    return say(link::write(calibration), alive);
   }
   template <class Alive>
   bool say(link::Handshake handshake, Alive alive) noexcept {
-    return send(alive, [this, &handshake](Packets& packets) -> base::Status {
-      handshake.formats = writer_.offer();
-      const auto line = link::write(handshake);
-      return line ? packets.put(line->view()) : base::Status{line.error};
-    });
+    handshake.formats = writer_.offer();  // the same at any time
+    return say(link::write(handshake), alive);
   }
   template <class Alive>
   bool say(const link::Update& update, Alive alive) noexcept {
@@ -75,6 +70,10 @@ class Output {
  private:
   using Packets = link::Outbox<link::packets_of(link::max_line)>;
 
+  template <class Alive>
+  bool say(const base::Result<link::Line>& line, Alive alive) noexcept {
+    return send(alive, [&line](Packets& packets) { return line ? packets.put(line->view()) : line.error; });
+  }
   template <class Alive, class Write>
   bool send(Alive alive, Write write) noexcept {
     Packets packets;

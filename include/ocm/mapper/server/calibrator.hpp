@@ -8,7 +8,7 @@
 /// - A calibration that was taken is being stored when the robot says how it ended: it is asked for a moment
 ///   longer, until it is.
 ///
-/// Evidence and time go in, words come out; one robot. No heap, no clock, no I/O; O(1) a call; 64 bytes.
+/// Evidence and time go in, words come out; one robot. No heap, no clock, no I/O; O(1) a call; 40 bytes.
 #pragma once
 
 #include <chrono>
