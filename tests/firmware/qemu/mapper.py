@@ -89,13 +89,17 @@ class World(harness.Parts):
         self._lock = threading.Lock()
         self.gyroscope, self.compass = Lsm6ds3(self), Hmc5883l(self)
         self.memory = Eeprom()
-        self.slip = 0.0  # what the wheels say too much of a turn, as a part of it
         self.spi, self.i2c = {1: self.gyroscope}, {(1, 0x1E): self.compass, (1, 0x50): self.memory}
         self.converter = {channel: 61 for channel in range(4)}  # 0.3 V: nothing within 80 cm
 
     def turn_rate(self):
         per_tick = 2 * math.pi * WHEEL_RADIUS / TICKS_PER_TURN
-        return (self._speeds[1] - self._speeds[0]) * per_tick / WHEELBASE / (1 + self.slip)
+        return (self._speeds[1] - self._speeds[0]) * per_tick / WHEELBASE
+
+    def turn_by_hand(self, degrees):
+        """Neither its wheels nor its gyro see that: as if they were wrong by so much."""
+        with self._lock:
+            self.heading += math.radians(degrees)
 
     def advance(self):
         """To now: each wheel follows its motor within a tenth of a second, and hardly less at part duty. [Thesis 2, 10.2.3]"""
