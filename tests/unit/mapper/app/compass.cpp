@@ -22,13 +22,17 @@ constexpr std::int16_t verdict(float field, float error_deg) {
 // [docs/decisions/0029]
 static_assert(verdict(0.15F, 0.0F) == Calibration::good && verdict(0.15F, 2.9F) == Calibration::good);
 static_assert(verdict(0.15F, 3.1F) == Calibration::poor && verdict(0.15F, 7.9F) == Calibration::poor);
-static_assert(verdict(0.15F, 8.1F) == Calibration::disturbed &&
-              verdict(0.15F, nan) == Calibration::disturbed);
-static_assert(verdict(0.049F, 0.0F) == Calibration::weak && verdict(nan, 0.0F) == Calibration::weak);
+static_assert(verdict(0.15F, 8.1F) == Calibration::disturbed);
+static_assert(verdict(0.049F, 0.0F) == Calibration::weak);
 static_assert(judge(base::Error::not_sampled, 200) == Calibration::incomplete);
 static_assert(judge(base::Error::not_sampled, 0) == Calibration::silent);
 static_assert(judge(base::Error::no_answer, 200) == Calibration::silent);
 static_assert(judge(base::Error::out_of_range, 200) == Calibration::weak);
+
+TEST_CASE("mapper compass: figures that are no numbers are not good", "[mapper_compass]") {
+  CHECK(judge(sensing::CompassFit{.field = 0.15F, .error_rad = nan}, usual) == Calibration::disturbed);
+  CHECK(judge(sensing::CompassFit{.field = nan}, usual) == Calibration::weak);
+}
 
 TEST_CASE("mapper compass: a report as a sentence, to the nearest milligauss and degree",
           "[mapper_compass]") {
