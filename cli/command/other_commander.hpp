@@ -3,7 +3,6 @@
 /// set point that comes is another one's.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <string>
@@ -14,13 +13,13 @@
 #include "ocm/protocol/frame_index.hpp"
 #include "ocm/protocol/topic.hpp"
 
+#include "cli/shared/clock.hpp"
 #include "cli/shared/set_points.hpp"
 
 namespace ocm::cli {
 
 class OtherCommander {
  public:
-  using Clock = std::chrono::steady_clock;
   /// The catalogue must outlive it. `verb` is for messages.
   OtherCommander(const protocol::Catalogue& catalogue, std::string verb)
       : index_(catalogue), verb_(std::move(verb)) {}

@@ -13,9 +13,9 @@
 namespace ocm::cli {
 namespace {
 
-/// The library takes time from its caller: here it is the steady clock's.
+/// The library takes time from its caller.
 base::Time now() {
-  return base::Time{std::chrono::duration_cast<base::Duration>(Live::Clock::now().time_since_epoch())};
+  return base::Time{Live::Clock::now().time_since_epoch()};
 }
 
 }  // namespace
@@ -54,7 +54,7 @@ bool RefusalWatch::take(const can::Received& received) {
 
 Live::Clock::time_point RefusalWatch::until() const {
   const auto time = std::max(refusals_.listen_until(), base::Time{});  // of min() the clock's would overflow
-  return Live::Clock::time_point{std::chrono::duration_cast<Live::Clock::duration>(time.time_since_epoch())};
+  return Live::Clock::time_point{time.time_since_epoch()};
 }
 
 void RefusalWatch::listen(transport::Bus& bus) {

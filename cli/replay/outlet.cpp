@@ -9,7 +9,6 @@
 #include <net/if.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -17,7 +16,8 @@
 #include "ocm/can/filter.hpp"
 #include "ocm/transport/socketcan.hpp"
 
-#include "cli/shared/session.hpp"
+#include "cli/shared/clock.hpp"
+#include "cli/shared/messages.hpp"
 #include "cli/shared/set_points.hpp"
 
 namespace ocm::cli::replay {
@@ -60,12 +60,12 @@ Outlet::Sent Outlet::send(const log::Entry& entry) {
     return Sent::yes;
   }
   if (!takes_fd_) return Sent::fd_frame;
-  const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds{1};
+  const auto give_up = Clock::now() + std::chrono::seconds{1};
   while (!send_fd(entry)) {
-    if (std::chrono::steady_clock::now() >= give_up)
+    if (Clock::now() >= give_up)
       fail({fmt::format("{} takes no more CAN FD frames: {}", name(), std::strerror(errno)),
             "is it up, and does a node that knows CAN FD acknowledge?"});
-    std::this_thread::sleep_for(std::chrono::milliseconds{1});
+    sleep_for(std::chrono::milliseconds{1});
   }
   return Sent::yes;
 }

@@ -4,11 +4,9 @@
 #include <array>
 #include <chrono>
 #include <poll.h>
-#include <time.h>
-
-#include "ocm/host/system_time.hpp"
 
 #include "cli/output/printer.hpp"
+#include "cli/shared/clock.hpp"
 #include "cli/shared/interrupt.hpp"
 
 namespace ocm::cli::replay {
@@ -21,7 +19,7 @@ constexpr base::Duration longest_wait = std::chrono::milliseconds{200};
 }  // namespace
 
 base::Time monotonic_now() {
-  return base::Time{std::chrono::steady_clock::now().time_since_epoch()};
+  return base::Time{Clock::now().time_since_epoch()};
 }
 
 void wait_until(base::Time time) {
@@ -29,8 +27,7 @@ void wait_until(base::Time time) {
     const base::Time now = monotonic_now();
     if (now >= time) return;
     const base::Time step = std::min(time, now + longest_wait);
-    const timespec until = host::to_timespec(step.time_since_epoch());
-    ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
+    sleep_until(Clock::time_point{step.time_since_epoch()});
   }
 }
 
@@ -130,8 +127,7 @@ void Player::watch_until(base::Time time) const {
       outlet.expect_open();
       buses.push_back({outlet.descriptor(), POLLIN, 0});
     }
-    const timespec wait = host::to_timespec(std::min(time - now, longest_wait));
-    ::ppoll(buses.data(), buses.size(), &wait, nullptr);
+    static_cast<void>(wait_for_input(buses, std::min(time - now, longest_wait)));
   }
 }
 

@@ -3,12 +3,13 @@
 /// does with a frame is the verb's.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <functional>
 
 #include "ocm/can/bus.hpp"
 #include "ocm/transport/bus.hpp"
+
+#include "cli/shared/clock.hpp"
 
 namespace ocm::cli {
 
@@ -31,7 +32,7 @@ class StateWatch {
 
 class Live {
  public:
-  using Clock = std::chrono::steady_clock;
+  using Clock = cli::Clock;
   /// Gets a frame; false: that was enough.
   using Take = std::function<bool(const can::Received&)>;
 

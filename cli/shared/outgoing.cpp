@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -10,12 +9,11 @@
 #include "ocm/can/text.hpp"
 #include "ocm/transport/virtual_bus.hpp"
 
+#include "cli/shared/clock.hpp"
 #include "cli/shared/messages.hpp"
 
 namespace ocm::cli {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 /// A full queue of a CAN interface cannot be waited for (ENOBUFS is not signalled by poll), and nothing tells
 /// when a frame has left.
@@ -53,7 +51,7 @@ void Outgoing::send(const can::Frame& frame, base::Duration patience) {
                           can::to_text(frame).view()),
               why_none_leaves(bus_));
     }
-    std::this_thread::sleep_for(look_again);
+    sleep_for(look_again);
   }
 }
 
@@ -68,7 +66,7 @@ bool Outgoing::all_left(base::Duration patience) {
     }
     if (!delivery.known || delivery.pending == 0) return delivery.obstruction.what.empty();
     if (!delivery.obstruction.what.empty() || Clock::now() >= late) return false;
-    std::this_thread::sleep_for(look_again);
+    sleep_for(look_again);
   }
 }
 

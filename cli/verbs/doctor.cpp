@@ -29,7 +29,6 @@ using client::BoardReport;
 using client::Diagnosis;
 using client::Finding;
 using client::Severity;
-using SteadyClock = std::chrono::steady_clock;
 
 struct DoctorOptions {
   base::Duration listen = std::chrono::seconds{1};

@@ -29,7 +29,6 @@ struct ListenOptions {
 };
 
 void listen(Session& session, const ListenOptions& options, int& exit_code) {
-  using Clock = Live::Clock;
   const auto& catalogue = session.catalogue();
   const auto topics = chosen_topics("listen", catalogue, options.topics);
   constexpr base::Duration without_end = base::Duration::max() / 4;

@@ -2,13 +2,13 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
 
 #include <fmt/format.h>
 
 #include "ocm/can/text.hpp"
 
 #include "cli/command/commanding.hpp"
+#include "cli/shared/clock.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/outgoing.hpp"
 #include "cli/verbs/verbs.hpp"
@@ -26,7 +26,6 @@ struct SendOptions {
 /// Holds frames back until as much time has passed since the first as between their times.
 class Pace {
  public:
-  using Clock = std::chrono::steady_clock;
   /// false: a signal came.
   [[nodiscard]] bool wait_for(base::Time time) {
     if (!first_) {
@@ -39,7 +38,7 @@ class Pace {
       const auto left = at - Clock::now();
       if (left.count() <= 0) return true;
       // In pieces, so that a signal that comes just before the wait is seen soon.
-      std::this_thread::sleep_for(std::min<Clock::duration>(left, std::chrono::milliseconds{200}));
+      sleep_for(std::min<Clock::duration>(left, std::chrono::milliseconds{200}));
     }
   }
 

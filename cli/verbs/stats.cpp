@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "cli/output/printer.hpp"
+#include "cli/shared/clock.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/terminal.hpp"
 #include "cli/shared/values.hpp"
@@ -31,10 +32,6 @@ struct StatsOptions {
   std::optional<std::uint32_t> bit_rate;
   bool json = false, csv = false;
 };
-
-base::Time unix_time() {
-  return base::Time{std::chrono::system_clock::now().time_since_epoch()};
-}
 
 /// A table on a terminal that is drawn again over the last one.
 class Screen {

@@ -1,0 +1,33 @@
+/// Time as the tool has it: here, and nowhere else in what sends, receives, records and plays, a clock is
+/// read and is waited. clock.cpp asks the kernel. A test links tests/tool/clock/virtual_clock.cpp in its
+/// place: there time passes only when the code under test waits, so that hours take milliseconds and a run
+/// can be repeated.
+#pragma once
+
+#include <poll.h>
+#include <span>
+
+#include "ocm/base/time.hpp"
+
+namespace ocm::cli {
+
+/// Goes on at its own pace while the wall clock is set (CLOCK_MONOTONIC). Also while the program is stopped.
+struct Clock {
+  using duration = base::Duration;
+  using rep = duration::rep;
+  using period = duration::period;
+  using time_point = std::chrono::time_point<Clock, duration>;
+  static constexpr bool is_steady = true;
+  [[nodiscard]] static time_point now() noexcept;
+};
+
+/// The wall clock's, as on frames: it can be set.
+[[nodiscard]] base::Time unix_time() noexcept;
+
+/// Each ends early when a signal was caught.
+void sleep_for(base::Duration duration) noexcept;
+void sleep_until(Clock::time_point time) noexcept;
+/// Until one of them is readable, or that much time has passed. Whether one is.
+[[nodiscard]] bool wait_for_input(std::span<pollfd> inputs, base::Duration longest) noexcept;
+
+}  // namespace ocm::cli
