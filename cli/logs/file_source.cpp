@@ -11,7 +11,7 @@
 
 namespace ocm::cli::logs {
 
-FileSource::FileSource(const std::string& path) {
+FileSource::FileSource(const std::string& path, Reading reading) : reading_(reading) {
   descriptor_ = path == "-" ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   struct stat status {};
   if (descriptor_ < 0 || fstat(descriptor_, &status) != 0) {
@@ -45,15 +45,19 @@ std::size_t FileSource::read(std::span<char> into) {
   return count;
 }
 
+bool FileSource::cut_off() const {
+  return reading_ == Reading::until_a_signal && interrupted() != 0;
+}
+
 std::size_t FileSource::read_some(std::span<char> into) {
   for (;;) {
     if (!failure_.empty()) return 0;
-    if (interrupted() != 0) {
+    if (cut_off()) {
       failure_ = "interrupted";
       return 0;
     }
     const ssize_t count = ::read(descriptor_, into.data(), into.size());
-    if (count == 0 && interrupted() != 0) continue;  // the program at the other end got the signal, too
+    if (count == 0 && cut_off()) continue;  // the program at the other end got the signal, too
     if (count >= 0) {
       position_ += static_cast<std::uint64_t>(count);
       return static_cast<std::size_t>(count);

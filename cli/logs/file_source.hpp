@@ -11,15 +11,18 @@
 
 namespace ocm::cli::logs {
 
+/// Whether a signal that was caught, which ends the command, ends the reading, too.
+enum class Reading : bool { until_a_signal, to_the_end };
+
 class FileSource final : public log::Source {
  public:
   /// "-": stdin. What went wrong is in `failure`.
-  explicit FileSource(const std::string& path);
+  explicit FileSource(const std::string& path, Reading reading = Reading::until_a_signal);
   ~FileSource() override;
 
   /// The first bytes, up to four, which `read` hands out all the same. Waits for a pipe.
   [[nodiscard]] std::string_view beginning();
-  /// Ends early, with a failure, when a signal was caught that ends the command.
+  /// Ends early, with a failure, when a signal was caught, unless it is to read to the end.
   std::size_t read(std::span<char> into) override;
   [[nodiscard]] const std::string& failure() const override { return failure_; }
 
@@ -29,7 +32,10 @@ class FileSource final : public log::Source {
  private:
   std::size_t read_some(std::span<char> into);
 
+  [[nodiscard]] bool cut_off() const;
+
   int descriptor_ = -1;
+  Reading reading_;
   std::uint64_t size_ = 0;
   std::uint64_t position_ = 0;
   char head_[4] = {};

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "cli/logs/file_source.hpp"
 #include "cli/logs/packing.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
@@ -51,10 +50,11 @@ std::string shown(const std::string& path) {
 
 }  // namespace
 
-OpenedLog::OpenedLog(std::string path, std::string_view format, const protocol::Catalogue& catalogue)
+OpenedLog::OpenedLog(std::string path, std::string_view format, const protocol::Catalogue& catalogue,
+                     Reading reading)
     : path_(std::move(path)) {
   if (!format.empty()) format_ = &named(format);
-  auto file = std::make_unique<FileSource>(path_);
+  auto file = std::make_unique<FileSource>(path_, reading);
   const Packing packing = packing_of(file->beginning());
   const auto readable = [&](const log::Source& source) {
     if (!source.failure().empty() && interrupted() != 0) throw Exit{exit_code_after_interrupt(exit_failure)};

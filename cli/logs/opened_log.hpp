@@ -10,6 +10,7 @@
 #include "ocm/log/reader.hpp"
 #include "ocm/protocol/topic.hpp"
 
+#include "cli/logs/file_source.hpp"
 #include "cli/logs/format.hpp"
 
 namespace ocm::cli::logs {
@@ -18,7 +19,8 @@ class OpenedLog {
  public:
   /// Opens `path` ("-": stdin), as `format` (empty: find out). Leaves through cli::fail, in words, when it
   /// cannot be read, is a directory, is empty (0 bytes), or is of no known format.
-  OpenedLog(std::string path, std::string_view format, const protocol::Catalogue& catalogue);
+  OpenedLog(std::string path, std::string_view format, const protocol::Catalogue& catalogue,
+            Reading reading = Reading::until_a_signal);
   ~OpenedLog();
 
   [[nodiscard]] log::Reader& reader() noexcept { return *reader_; }

@@ -169,6 +169,10 @@ bool Files::finish(Next next) {
   told_dropped_.resize(recorded_.size());
   for (std::size_t i = 0; i < dropped_.size(); ++i)
     recorded_[i].dropped = dropped_[i] - std::exchange(told_dropped_[i], dropped_[i]);
+  // A file without a frame does not have the names of the interfaces yet.
+  const bool any_dropped = std::any_of(recorded_.begin(), recorded_.end(),
+                                       [](const log::Recorded& recorded) { return recorded.dropped != 0; });
+  if (entries_ == 0 && any_dropped) static_cast<void>(file_->write({}, *interfaces_));
   // finish whatever happens: it closes the file. What it writes then must be on the disk, too.
   const bool told = file_->recorded(recorded_) && file_->flush(options_.sync) && is_in_place();
   const bool done = file_->finish() && told;
@@ -218,7 +222,8 @@ std::uint64_t Files::readable() const {
   if (path_ == "-" || !std::filesystem::is_regular_file(path_, unreadable)) return finished_entries_;
   if (entries_ == 0 || file_->size() > most_to_read_back) return finished_entries_;
   try {
-    logs::OpenedLog log{path_, options_.format->name, *catalogue_};
+    logs::OpenedLog log{path_, options_.format->name, *catalogue_,
+                        logs::Reading::to_the_end};  // Ctrl-C may have ended the recording
     std::array<log::Entry, log::batch> entries;
     std::uint64_t count = 0;
     while (const std::size_t more = log.reader().read(entries)) count += more;

@@ -61,8 +61,10 @@ class Files {
   [[nodiscard]] bool finish() { return finish(Next::none); }
 
   /// Of every interface, by its number: frames that were on the bus and could not be written, so far.
-  void set_dropped(std::span<const std::uint64_t> dropped) {
+  /// `interfaces` must outlive this, or its `finish`.
+  void set_dropped(std::span<const std::uint64_t> dropped, const log::Interfaces& interfaces) {
     dropped_.assign(dropped.begin(), dropped.end());
+    interfaces_ = &interfaces;
   }
 
   [[nodiscard]] const transport::Failure& failure() const noexcept { return failure_; }
@@ -111,6 +113,7 @@ class Files {
   log::Losses losses_;
   std::vector<log::Recorded> recorded_;  ///< of the newest file
   std::vector<std::uint64_t> dropped_;
+  const log::Interfaces* interfaces_ = nullptr;
   std::vector<std::uint64_t> told_dropped_;  ///< in the files before
 };
 

@@ -16,11 +16,13 @@
 #include "ocm/log/entry.hpp"
 #include "ocm/log/reader.hpp"
 
+#include "cli/shared/clock.hpp"
+
 namespace ocm::cli::record {
 
 struct Block {
   std::size_t count = 0;
-  std::chrono::steady_clock::time_point fetched;  ///< the newest of the entries
+  Clock::time_point fetched;  ///< the newest of the entries
   std::array<log::Entry, log::batch> entries;
   [[nodiscard]] std::span<const log::Entry> filled() const noexcept {
     return std::span{entries}.first(count);
@@ -66,7 +68,8 @@ class Queue {
   /// The oldest filled block; null: none came within `patience`, or the queue is closed and empty.
   [[nodiscard]] std::unique_ptr<Block> pop(std::chrono::milliseconds patience) {
     std::unique_lock lock{mutex_};
-    something_.wait_for(lock, patience, [this] { return closed_ || !filled_.empty(); });
+    if (patience.count() > 0)
+      something_.wait_for(lock, patience, [this] { return closed_ || !filled_.empty(); });
     if (filled_.empty()) return nullptr;
     auto block = std::move(filled_.front());
     filled_.pop_front();

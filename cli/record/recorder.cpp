@@ -5,6 +5,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <poll.h>
 #include <unistd.h>
@@ -13,7 +14,6 @@
 #include <fmt/format.h>
 
 #include "ocm/can/error_frame.hpp"
-#include "ocm/host/system_time.hpp"
 
 #include "cli/record/names.hpp"
 #include "cli/shared/interrupt.hpp"
@@ -31,12 +31,15 @@ using transport::BusState;
 constexpr milliseconds hand_over_period{100};
 /// The kernel's queue has its time on each frame already: fetching them in a bunch costs less.
 constexpr milliseconds fetch_pause{4};
+/// Rounds of reading one bus between two looks at the clock, and the frames that they fetch at most.
+constexpr int rounds_a_look = 16;
+constexpr std::size_t one_look = rounds_a_look * Capture::batch;
+/// So long what came before the end is fetched.
+constexpr seconds longest_end{1};
 /// A bunch of this many came before the pause was over: the bus is too busy for one.
 constexpr std::size_t busy = Capture::batch;
 constexpr milliseconds look_period{200};
 constexpr milliseconds longest_wait{200};  // bounds how long a signal that comes just before goes unseen
-/// What was received goes to the kernel, and to the disk, at least so often.
-constexpr milliseconds flush_period{1000};
 
 /// Signals are for the thread that receives: its waits end with them.
 class SignalsBlocked {
@@ -58,23 +61,27 @@ void erase_line() {
   fmt::print(stderr, "\r\x1b[K");
 }
 
+/// Gives each its number in the log.
+log::Interfaces number(std::vector<Port>& ports) {
+  log::Interfaces interfaces;
+  for (Port& port : ports) port.number = interfaces.add(port.capture->name());
+  return interfaces;
+}
+
 }  // namespace
 
-Recorder::Recorder(std::vector<Port> ports, Filters filters, Files& files, Limits limits, bool live)
+Recorder::Recorder(std::vector<Port> ports, Reopen reopen, Files& files, Limits limits, bool live)
     : ports_(std::move(ports)),
-      filters_(std::move(filters)),
+      reopen_(std::move(reopen)),
       files_(&files),
       limits_(limits),
       live_(live),
       on_terminal_(isatty(STDERR_FILENO) != 0),
-      dropped_(ports_.size()) {
-  for (Port& port : ports_) {
-    port.number = interfaces_.add(port.capture->name());
-    patient_ = patient_ && port.capture->keeps_times();
-  }
+      interfaces_(number(ports_)),
+      queue_(limits.blocks),
+      writing_(queue_, files, interfaces_, live) {
+  for (const Port& port : ports_) patient_ = patient_ && port.capture->keeps_times();
   begin_ = handed_over_ = looked_ = shown_ = Clock::now();
-  const SignalsBlocked blocked;
-  writer_ = std::thread{[this] { write_all(); }};
 }
 
 Recorder::~Recorder() {
@@ -83,10 +90,20 @@ Recorder::~Recorder() {
 }
 
 void Recorder::run() {
-  const auto end = limits_.duration > base::Duration::zero()
-                       ? begin_ + std::chrono::duration_cast<Clock::duration>(limits_.duration)
-                       : Clock::time_point::max();
-  while (interrupted() == 0 && !disk_failed_ && ended_.what.empty()) {
+  {
+    const SignalsBlocked blocked;
+    writer_ = std::thread{[this] { writing_.run(); }};
+  }
+  receive();
+  writer_.join();
+  if (on_terminal_) erase_line();
+  if (writing_.failure() != nullptr) std::rethrow_exception(writing_.failure());
+}
+
+void Recorder::receive() {
+  const auto end =
+      limits_.duration > base::Duration::zero() ? begin_ + limits_.duration : Clock::time_point::max();
+  while (interrupted() == 0 && !writing_.failed() && ended_.what.empty()) {
     const std::size_t count = drain();
     if (limits_.count != 0 && received_ >= limits_.count) break;
     const auto now = Clock::now();
@@ -97,15 +114,12 @@ void Recorder::run() {
     if (count < busy) wait();
   }
   // What came before the end is recorded; what comes now is not.
-  if (limits_.count == 0) static_cast<void>(drain());
+  if (limits_.count == 0) drain_to_the_end();
   emit(merge_.take_all());
   look();
   hand_over();
   lasted_ = Clock::now() - begin_;
   queue_.close();
-  writer_.join();
-  if (on_terminal_) erase_line();
-  if (writer_failure_ != nullptr) std::rethrow_exception(writer_failure_);
 }
 
 /// What waits on all buses.
@@ -118,10 +132,17 @@ std::size_t Recorder::drain() {
   return count;
 }
 
+/// After a stop of this program thousands of frames may wait. A flood has no end, and is cut off.
+void Recorder::drain_to_the_end() {
+  const auto cut_off = Clock::now() + longest_end;
+  while (drain() >= one_look && Clock::now() < cut_off) {
+  }
+}
+
 std::size_t Recorder::drain_into_blocks(Port& port) {
   std::size_t count = 0;
   // Bounded, so that a flood does not keep us from looking at the clock.
-  for (int round = 0; round < 16; ++round) {
+  for (int round = 0; round < rounds_a_look; ++round) {
     const std::span<log::Entry> room = room_in_block();
     const std::size_t more = room.empty() ? 0 : port.capture->read(room, port.number);
     account(port, room.first(more));
@@ -135,7 +156,7 @@ std::size_t Recorder::drain_into_blocks(Port& port) {
 std::size_t Recorder::drain_into_merge(Port& port) {
   std::array<log::Entry, Capture::batch> entries;
   std::size_t count = 0;
-  for (int round = 0; round < 16; ++round) {
+  for (int round = 0; round < rounds_a_look; ++round) {
     const std::size_t more = port.capture->read(entries, port.number);
     account(port, std::span{entries}.first(more));
     merge_.add(std::span{entries}.first(more));
@@ -188,8 +209,8 @@ void Recorder::account(Port& port, std::span<const log::Entry> entries) {
 
 void Recorder::hand_over() {
   handed_over_ = Clock::now();
+  for (const Port& port : ports_) writing_.set_dropped(port.number, port.lost());
   if (block_ == nullptr || block_->count == 0) return;
-  for (const Port& port : ports_) dropped_[port.number] = port.lost();
   queue_.push(std::move(block_));
 }
 
@@ -205,7 +226,7 @@ void Recorder::look(Port& port) {
   }
   port.capture->look();
   const BusState state = port.capture->state();
-  dropped_[port.number] = port.lost();
+  writing_.set_dropped(port.number, port.lost());
   if (state == std::exchange(port.state, state)) return;
   if (on_terminal_) erase_line();
   if (state == BusState::up) remark(fmt::format("{} is up again", port.name));
@@ -219,7 +240,7 @@ void Recorder::look(Port& port) {
 }
 
 void Recorder::reopen(Port& port) {
-  auto opened = open_capture(port.name, filters_);
+  auto opened = reopen_(port.name);
   if (!opened) return;
   port.lost_before += port.capture->lost();
   port.capture = std::move(opened.value);
@@ -233,14 +254,12 @@ void Recorder::wait() {
   auto limit = longest_wait;
   if (block_ != nullptr && block_->count != 0) limit = hand_over_period;
   std::array<pollfd, 64> entries{};
-  nfds_t count = 0;
+  std::size_t count = 0;
   for (const Port& port : ports_) {
     if (port.state != BusState::closed && count < entries.size())
       entries[count++] = {port.capture->descriptor(), POLLIN, 0};
   }
-  if (::poll(entries.data(), count, static_cast<int>(limit.count())) <= 0 || !patient_ || live_) return;
-  const timespec time = host::to_timespec(fetch_pause);
-  ::nanosleep(&time, nullptr);
+  if (wait_for_input(std::span{entries}.first(count), limit) && patient_ && !live_) sleep_for(fetch_pause);
 }
 
 void Recorder::show_progress() {
@@ -255,7 +274,7 @@ void Recorder::show_progress() {
     const std::uint32_t rate = port.capture->bit_rate() != 0 ? port.capture->bit_rate() : limits_.bit_rate;
     text += fmt::format(", {} {:.0f} % full", port.name, 100 * port.load.take(passed, rate));
   }
-  text += fmt::format(", {} lost, {}", lost, size_text(size_));
+  text += fmt::format(", {} lost, {}", lost, size_text(writing_.size()));
   std::error_code error;
   const auto folder = std::filesystem::absolute(files_->first_path(), error).parent_path();
   const auto space = std::filesystem::space(folder, error);
@@ -268,42 +287,6 @@ void Recorder::show_progress() {
   std::fflush(stderr);
   shown_ = now;
   shown_received_ = received_;
-}
-
-// --- the thread that writes ---
-
-/// An exception that leaves a thread would end the program with what was received before unwritten.
-void Recorder::write_all() {
-  try {
-    write_blocks();
-  } catch (...) {
-    writer_failure_ = std::current_exception();
-    disk_failed_ = true;
-  }
-}
-
-void Recorder::write_blocks() {
-  auto flushed = Clock::now();
-  while (!queue_.finished()) {
-    if (auto block = queue_.pop(flush_period)) write(std::move(block));
-    if (disk_failed_ || (!live_ && Clock::now() - flushed < flush_period)) continue;
-    flushed = Clock::now();
-    if (!files_->flush()) disk_failed_ = true;
-    size_ = files_->size();
-  }
-  std::vector<std::uint64_t> dropped(dropped_.begin(), dropped_.end());
-  files_->set_dropped(dropped);
-  if (!files_->finish()) disk_failed_ = true;
-}
-
-void Recorder::write(std::unique_ptr<Block> block) {
-  if (!disk_failed_) {
-    std::vector<std::uint64_t> dropped(dropped_.begin(), dropped_.end());
-    files_->set_dropped(dropped);
-    if (!files_->write(block->filled(), interfaces_, block->fetched.time_since_epoch())) disk_failed_ = true;
-    size_ = files_->size();
-  }
-  queue_.give_back(std::move(block));
 }
 
 }  // namespace ocm::cli::record

@@ -2,12 +2,12 @@
 /// costs no frames. What does get lost is counted where it is lost.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
-#include <exception>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -20,6 +20,8 @@
 #include "cli/record/files.hpp"
 #include "cli/record/merge.hpp"
 #include "cli/record/queue.hpp"
+#include "cli/record/writing.hpp"
+#include "cli/shared/clock.hpp"
 
 namespace ocm::cli::record {
 
@@ -40,19 +42,26 @@ struct Port {
 };
 
 struct Limits {
-  std::uint64_t count = 0;     ///< end after this many frames; 0: never
-  base::Duration duration{};   ///< end after this time; 0: never
-  std::uint32_t bit_rate = 0;  ///< of buses that do not say theirs
+  std::uint64_t count = 0;                   ///< end after this many frames; 0: never
+  base::Duration duration{};                 ///< end after this time; 0: never
+  std::uint32_t bit_rate = 0;                ///< of buses that do not say theirs
+  std::size_t blocks = Queue::default_most;  ///< that wait for the disk at most
 };
+
+/// Opens a bus again that was closed and is back.
+using Reopen = std::function<transport::Outcome<std::unique_ptr<Capture>>(std::string_view name)>;
 
 class Recorder {
  public:
   /// `files` is open. `live`: its reader waits for each frame (a pipe).
-  Recorder(std::vector<Port> ports, Filters filters, Files& files, Limits limits, bool live);
+  Recorder(std::vector<Port> ports, Reopen reopen, Files& files, Limits limits, bool live);
   ~Recorder();
 
-  /// Until a limit, a signal, the end of the bus or of the disk.
+  /// Until a limit, a signal, the end of the bus or of the disk; all that was received is then written.
   void run();
+  /// The half of it that receives, for a caller that steps the other half, `writing`, itself.
+  void receive();
+  [[nodiscard]] Writing& writing() noexcept { return writing_; }
 
   [[nodiscard]] const std::vector<Port>& ports() const noexcept { return ports_; }
   [[nodiscard]] std::uint64_t received() const noexcept { return received_; }
@@ -62,6 +71,7 @@ class Recorder {
 
  private:
   [[nodiscard]] std::size_t drain();
+  void drain_to_the_end();
   [[nodiscard]] std::size_t drain_into_blocks(Port& port);
   [[nodiscard]] std::size_t drain_into_merge(Port& port);
   void emit(std::span<const log::Entry> entries);
@@ -74,14 +84,9 @@ class Recorder {
   void reopen(Port& port);
   void wait();
   void show_progress();
-  void write_all();
-  void write_blocks();
-  void write(std::unique_ptr<Block> block);
-
-  using Clock = std::chrono::steady_clock;
 
   std::vector<Port> ports_;
-  Filters filters_;
+  Reopen reopen_;
   Files* files_;
   Limits limits_;
   bool live_;
@@ -101,10 +106,7 @@ class Recorder {
   Clock::time_point fetched_;
   Clock::time_point shown_;
   std::uint64_t shown_received_ = 0;
-  std::vector<std::atomic<std::uint64_t>> dropped_;  ///< by number of the interface, for the writing thread
-  std::atomic<bool> disk_failed_{false};
-  std::exception_ptr writer_failure_;   ///< what ended the writing thread; read once it is joined
-  std::atomic<std::uint64_t> size_{0};  ///< of the files
+  Writing writing_;
   std::thread writer_;
 };
 

@@ -190,7 +190,8 @@ void run_record(Session& session, const RecordOptions& options, int& exit_code) 
   if (const auto opened = files.open(); !opened) fail(opened.error);
   remark(fmt::format("recording to {}; Ctrl-C ends",
                      files.path() == "-" ? "the standard output" : files.path()));
-  record::Recorder recorder{std::move(ports), filters, files, limits, live};
+  const auto reopen = [&filters](std::string_view name) { return record::open_capture(name, filters); };
+  record::Recorder recorder{std::move(ports), reopen, files, limits, live};
   recorder.run();
 
   const std::uint64_t lost = summarise(recorder, files);
