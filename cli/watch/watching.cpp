@@ -10,7 +10,6 @@
 #include "cli/logs/opened_log.hpp"
 #include "cli/shared/buses.hpp"
 #include "cli/shared/interrupt.hpp"
-#include "cli/shared/live.hpp"
 #include "cli/shared/values.hpp"
 
 namespace ocm::cli {
@@ -108,36 +107,11 @@ void Watching::read(const std::string& file, const Take& take, const Lost& lost)
 }
 
 void Watching::listen(const Take& take, const Lost& lost, const std::function<void()>& each_second) {
-  using Clock = Live::Clock;
   const auto bus = session_->open_bus();
   bus_ = bus->name();
-  log::Interfaces interfaces;
-  const std::uint16_t interface = interfaces.number(bus_);
-  Live live{*bus};
-  const auto end = duration_ ? Clock::now() + *duration_ : Clock::time_point::max();
-  auto tick = each_second ? Clock::now() + std::chrono::seconds{1} : Clock::time_point::max();
-  std::uint64_t told = 0;
-  for (;;) {
-    const Over over = live.receive(std::min(end, tick), [&](const can::Received& received) {
-      const log::Entry entry{received.time, received.frame, interface};
-      ++taken_;
-      take({&entry, 1}, interfaces);
-      if (count_ != 0 && taken_ >= count_) done_ = true;
-      return !done_;
-    });
-    if (const auto missed = bus->counters().lost; missed != told) {
-      lost(bus_, missed - told);
-      told = missed;
-    }
-    if (over == Over::gone) gone_ = bus->failure();
-    const auto now = Clock::now();
-    time_is_up_ = over == Over::time && now >= end;
-    if (done_ || over == Over::gone || over == Over::signal || now >= end) return;
-    if (now >= tick) {
-      each_second();
-      tick += std::chrono::seconds{1};
-    }
-  }
+  const Over over = cli::listen(*bus, {duration_, count_}, take, lost, each_second);
+  if (over == Over::gone) gone_ = bus->failure();
+  time_is_up_ = over == Over::time;
 }
 
 }  // namespace ocm::cli

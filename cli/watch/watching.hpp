@@ -16,6 +16,7 @@
 
 #include "cli/shared/arguments.hpp"
 #include "cli/shared/session.hpp"
+#include "cli/watch/listening.hpp"
 
 namespace ocm::cli {
 
@@ -40,10 +41,8 @@ struct Words {
 
 class Watching {
  public:
-  /// Entries in order; the names of their interfaces.
-  using Take = std::function<void(std::span<const log::Entry>, const log::Interfaces&)>;
-  /// Frames that are known to be lost, by interface.
-  using Lost = std::function<void(std::string_view interface, std::uint64_t frames)>;
+  using Take = TakeEntries;
+  using Lost = TakeLost;
 
   Watching(Session& session, const WatchOptions& options, std::vector<std::string> files);
 
