@@ -1,0 +1,182 @@
+// Drives and their set points, on a bus and a clock that are made of a seed: stops of the program, a bus that
+// is full, stuck, down or away, signals, other programs. The robot does only what is commanded now, and rests
+// at the end.
+#include <csignal>
+
+#include "ocm/topics/amiro.hpp"
+
+#include "cli/command/timeline.hpp"
+#include "cli/shared/messages.hpp"
+#include "cli/shared/set_points.hpp"
+#include "tests/tool/clock/played_bus.hpp"
+#include "tests/unit/base/explore.hpp"
+
+namespace tool_clock_command_test {
+
+using namespace ocm;
+using namespace ocm::test;
+using cli::Timeline;
+
+constexpr Duration watchdog = client::longest_without_set_point;
+
+/// `drive 0.1m/s 0 --for lasting`
+client::Command drive(Duration lasting) {
+  const cli::words::CommandParser parser{amiro::catalogue};
+  const std::vector<std::string_view> words{"drive", "0.1m/s", "0"};
+  auto command = parser.parse_line(words);
+  REQUIRE(command.ok());
+  command->hold->lasting = lasting;
+  return *command;
+}
+
+class Run {
+ public:
+  explicit Run(std::uint64_t seed)
+      : world_(seed), lasting_(world_.chance(0.2) ? 0s : world_.between(1ms, 5s)) {
+    PlayedBus::Conditions bus;
+    bus.room = world_.between<std::size_t>(1, 20);
+    bus.frame_time = world_.between(100us, world_.chance(0.1) ? 80ms : 1ms);
+    bus.knows_delivery = world_.chance(0.7);
+    const auto sometime = [this] { return World::start + world_.between(0s, 6s); };
+    const auto times = [&](std::vector<PlayedBus::Time>& list) {
+      const Moment from = sometime();
+      list.push_back({from, from + world_.between(1ms, world_.chance(0.3) ? 60s : 1s)});
+      calm_ = false;
+    };
+    if (world_.chance(0.3)) times(bus.stuck);
+    if (world_.chance(0.2)) times(bus.down);
+    if (world_.chance(0.1)) bus.gone = sometime(), calm_ = false;
+    while (world_.chance(0.4)) {
+      world_.stop(sometime(), world_.between(1ms, world_.chance(0.2) ? 60s : 2s));
+      calm_ = false;
+    }
+    while (world_.chance(0.3)) world_.set_wall_clock(sometime(), world_.between(-3s, 3s));
+    if (world_.chance(0.3) || lasting_ == 0s) world_.interrupt(sometime(), SIGINT);
+    if (world_.chance(0.1)) {  // another program, which drives or stops
+      can::Frame theirs = drive(0s).frames.front();
+      if (world_.chance(0.5)) theirs.data = {};
+      bus.incoming.push_back({sometime(), theirs});
+      others_ = true;
+    }
+    bus_.emplace(world_, std::move(bus));
+  }
+
+  void go() {
+    const auto command = drive(lasting_);
+    set_point_ = command.frames.front();
+    bool left = false;
+    try {
+      Timeline timeline{*bus_,
+                        amiro::catalogue,
+                        "drive",
+                        Timeline::Others::refused,
+                        world_.chance(0.5) ? cli::Confirm::yes : cli::Confirm::no,
+                        {}};
+      if (timeline.listen_first()) {
+        begun_ = world_.now();
+        timeline.carry_out(command);
+        whole_ = timeline.wait_for_hold();
+      }
+      static_cast<void>(timeline.finish());
+    } catch (const cli::Exit& exit) {
+      left = true;
+      CHECK(exit.code != 0);
+    }
+    ended_ = world_.now();
+    refuses_ = !bus_->takes();
+    // What lies in the queue leaves once it can.
+    world_.wait_until(world_.now() + 200s);
+    world_.wait_until(world_.now() + 200s);
+    judge(left);
+  }
+
+ private:
+  void judge(bool left) {
+    const auto& sent = bus_->sent();
+    for (const auto& each : sent) CHECK((each.frame == set_point_ || cli::is_rest(each.frame)));
+    const bool gone = ended_ >= bus_->conditions().gone;
+    judge_end(sent, gone, left);
+    judge_age(sent);
+    if (calm_ && !others_) judge_calm(sent, left);
+  }
+
+  /// A drive that has begun ends with rest, wherever the bus takes it.
+  void judge_end(const std::vector<PlayedBus::Sent>& sent, bool gone, bool left) {
+    if (sent.empty() || gone) return;
+    const bool rests = cli::is_rest(sent.back().frame);
+    CHECK(std::count_if(sent.begin(), sent.end(),
+                        [](const auto& each) { return cli::is_rest(each.frame); }) <= 1);
+    if (!left) {
+      CHECK(rests);
+      if (bus_->conditions().knows_delivery) CHECK(sent.back().left <= ended_);
+    }
+    if (!refuses_) CHECK(rests);
+  }
+
+  /// No set point comes to the robot that is older than its watchdog waits: but one, where the program was
+  /// stopped between its look at the clock and its send, or the bus was stuck with one in the queue.
+  void judge_age(const std::vector<PlayedBus::Sent>& sent) {
+    std::size_t old = 0;
+    for (std::size_t i = 0; i < sent.size(); ++i) {
+      const auto& each = sent[i];
+      if (cli::is_rest(each.frame) || each.left == Moment::max()) continue;
+      if (bus_->conditions().knows_delivery && each.left - each.taken >= watchdog) ++old;
+      // After a stop, at most one more.
+      if (i + 1 < sent.size() && !cli::is_rest(sent[i + 1].frame) &&
+          sent[i + 1].taken - each.taken >= watchdog + client::hold_period) {
+        INFO("set points at " << (each.taken - World::start).count() << " and "
+                              << (sent[i + 1].taken - World::start).count());
+        if (world_.was_stopped(each.taken, sent[i + 1].taken, watchdog))
+          ++old;
+        else
+          CHECK(bus_->conditions().knows_delivery);
+      }
+    }
+    CHECK(old <= 1);
+    // Of those that wait at once only one is a set point that moves.
+    if (!bus_->conditions().knows_delivery) return;
+    for (std::size_t i = 1; i < sent.size(); ++i)
+      if (!cli::is_rest(sent[i].frame)) CHECK(sent[i - 1].left <= sent[i].taken);
+  }
+
+  /// Nothing went wrong: each set point at its time, for as long as was asked.
+  void judge_calm(const std::vector<PlayedBus::Sent>& sent, bool left) {
+    CHECK(!left);
+    if (sent.empty()) return;
+    const Moment end = std::min(lasting_ > 0s ? begun_ + lasting_ : Moment::max(), world_.signal_at());
+    CHECK(whole_ == (world_.signal_at() > begun_ + lasting_ && lasting_ > 0s));
+    CHECK(cli::is_rest(sent.back().frame));
+    CHECK(sent.back().taken >= end);
+    CHECK(sent.back().taken < end + 5ms + 2 * bus_->conditions().frame_time);
+    const auto periods = (end - begun_) / client::hold_period;
+    const auto set_points = static_cast<std::int64_t>(sent.size()) - 1;
+    CHECK(std::abs(set_points - 1 - periods) <= 1);
+    for (std::size_t i = 1; i + 1 < sent.size(); ++i) {
+      const Duration apart =
+          sent[i].taken - sent[0].taken - static_cast<std::int64_t>(i) * client::hold_period;
+      CHECK(std::chrono::abs(apart) < 2ms);
+    }
+  }
+
+  World world_;
+  Duration lasting_;
+  std::optional<PlayedBus> bus_;
+  can::Frame set_point_;
+  bool calm_ = true;
+  bool others_ = false;
+  bool whole_ = false;
+  bool refuses_ = false;  ///< the bus takes no frame at the end
+  Moment begun_ = World::start;
+  Moment ended_{};
+};
+
+TEST_CASE("drive: whatever happens to program and bus, at most one set point is old, and rest comes last") {
+  const auto runs = static_cast<std::uint64_t>(explored(3000));
+  const Silence silence;
+  for (std::uint64_t seed = 1; seed <= runs; ++seed) {
+    INFO("seed " << seed);
+    Run{seed}.go();
+  }
+}
+
+}  // namespace tool_clock_command_test

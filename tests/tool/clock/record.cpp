@@ -1,0 +1,390 @@
+// The recorder, on buses, a disk and a clock that are made of a seed: stops of the program, a wall clock that
+// is set, adapters that come and go, a slow disk, a full one. What was on a bus is in the files or is
+// counted.
+#include <csignal>
+#include <cstring>
+#include <deque>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <unistd.h>
+
+#include "ocm/topics/amiro.hpp"
+
+#include "cli/logs/opened_log.hpp"
+#include "cli/record/recorder.hpp"
+#include "cli/shared/messages.hpp"
+#include "tests/tool/clock/world.hpp"
+#include "tests/unit/base/explore.hpp"
+
+namespace tool_clock_record_test {
+
+using namespace ocm;
+using namespace ocm::test;
+namespace record = cli::record;
+using transport::BusState;
+
+constexpr Duration year = std::chrono::hours{24 * 365};
+
+/// All that is on one bus, and what of it has reached a program.
+struct Line {
+  struct Away {
+    Moment from, until;
+  };
+  std::string name;
+  int descriptor = 0;
+  std::vector<Moment> arrivals;  ///< a frame each, whose data are its number
+  std::vector<Away> away;        ///< an adapter that is pulled out
+  std::size_t room = 0;          ///< frames that wait for the program
+  Duration ahead{};              ///< of the wall clock: an adapter has a clock of its own
+  bool comes_back = true;
+  std::size_t next = 0;                 ///< of `arrivals`
+  std::uint64_t offered = 0;            ///< came while the program had it open
+  std::deque<std::uint32_t> waiting{};  ///< numbers
+};
+
+class PlayedCapture final : public record::Capture {
+ public:
+  PlayedCapture(const World& world, Line& line) : world_(&world), line_(&line) {
+    line.waiting.clear();
+    for (const auto& away : line.away)
+      if (away.until > world.now()) closes_ = std::min(closes_, away.from);
+    while (line.next < line.arrivals.size() && line.arrivals[line.next] < world.now()) ++line.next;
+  }
+
+  std::size_t read(std::span<log::Entry> into, std::uint16_t interface) override {
+    catch_up();
+    std::size_t count = 0;
+    while (count < std::min(into.size(), batch) && !line_->waiting.empty()) {
+      const std::uint32_t number = line_->waiting.front();
+      line_->waiting.pop_front();
+      can::Frame frame{0x601, 4, {}};
+      std::memcpy(frame.data.data(), &number, sizeof number);
+      into[count++] = {world_->wall_at(line_->arrivals[number]) + line_->ahead, frame, interface};
+    }
+    if (count == 0) look();
+    return count;
+  }
+  void look() override {
+    catch_up();
+    closed_ = line_->waiting.empty() && world_->now() >= closes_;
+    if (closed_) failure_ = {line_->name + " is gone", "plug it in"};
+  }
+  std::string_view name() const override { return line_->name; }
+  int descriptor() const override { return line_->descriptor; }
+  BusState state() const override { return closed_ ? BusState::closed : BusState::up; }
+  const transport::Failure& failure() const override { return failure_; }
+  std::uint64_t lost() const override { return lost_; }
+  std::uint32_t bit_rate() const override { return 0; }
+  bool keeps_times() const override { return true; }
+  bool may_return() const override { return line_->comes_back; }
+
+  [[nodiscard]] Moment readable() const {
+    if (!line_->waiting.empty()) return World::start;
+    const bool more = line_->next < line_->arrivals.size();
+    return std::min(more ? line_->arrivals[line_->next] : Moment::max(), closes_);
+  }
+
+ private:
+  void catch_up() {
+    const Moment now = world_->now();
+    while (line_->next < line_->arrivals.size() && line_->arrivals[line_->next] <= now &&
+           line_->arrivals[line_->next] < closes_) {
+      ++line_->offered;
+      if (line_->waiting.size() < line_->room)
+        line_->waiting.push_back(static_cast<std::uint32_t>(line_->next));
+      else
+        ++lost_;
+      ++line_->next;
+    }
+  }
+
+  const World* world_;
+  Line* line_;
+  Moment closes_ = Moment::max();
+  bool closed_ = false;
+  std::uint64_t lost_ = 0;
+  transport::Failure failure_;
+};
+
+/// A folder for one program's runs, which is emptied before each.
+class Folder {
+ public:
+  Folder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "ocm-clock-XXXXXX").string();
+    REQUIRE(::mkdtemp(pattern.data()) != nullptr);
+    path_ = pattern;
+  }
+  ~Folder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  void empty() const {
+    for (const auto& file : std::filesystem::directory_iterator{path_}) std::filesystem::remove(file);
+  }
+  [[nodiscard]] std::set<std::string> files() const {
+    std::set<std::string> names;
+    for (const auto& file : std::filesystem::directory_iterator{path_}) names.insert(file.path().string());
+    return names;
+  }
+  [[nodiscard]] std::string operator/(const std::string& name) const { return path_ + "/" + name; }
+
+ private:
+  std::string path_;
+};
+
+/// What one file holds.
+struct Read {
+  std::vector<log::Entry> entries;
+  std::vector<log::Recorded> recorded;
+  std::vector<std::string> names;
+};
+
+Read read_file(const std::string& path, std::string_view format) {
+  Read read;
+  if (std::filesystem::file_size(path) == 0) return read;
+  const World later{0};  // the signal of the run ends no reading here
+  cli::logs::OpenedLog log{path, format, amiro::catalogue};
+  std::array<log::Entry, log::batch> entries;
+  while (const std::size_t count = log.reader().read(entries))
+    read.entries.insert(read.entries.end(), entries.begin(),
+                        entries.begin() + static_cast<std::ptrdiff_t>(count));
+  CHECK(log.reader().complaints().total() == 0);
+  read.recorded = log.reader().recorded();
+  const auto& interfaces = log.reader().interfaces();
+  for (std::uint16_t i = 0; i < interfaces.size(); ++i) read.names.emplace_back(interfaces.name(i));
+  return read;
+}
+
+std::uint32_t number_of(const log::Entry& entry) {
+  std::uint32_t number = 0;
+  std::memcpy(&number, entry.data.data(), sizeof number);
+  return number;
+}
+
+class Run {
+ public:
+  Run(std::uint64_t seed, const Folder& folder) : world_(seed), folder_(&folder) {
+    make_lines();
+    make_troubles();
+    make_options();
+  }
+
+  void go() {
+    folder_->empty();
+    record::Files files{options_, amiro::catalogue};
+    REQUIRE(files.open().ok());
+    std::vector<record::Port> ports;
+    for (Line& line : lines_) {
+      record::Port port;
+      port.name = line.name;
+      port.capture = open(line);
+      ports.push_back(std::move(port));
+    }
+    const auto reopen =
+        [this](std::string_view name) -> transport::Outcome<std::unique_ptr<record::Capture>> {
+      for (Line& line : lines_)
+        if (line.name == name && !is_away(line)) return std::unique_ptr<record::Capture>{open(line)};
+      return transport::Failure{"away", ""};
+    };
+    world_.disk = [this](int, std::string_view text) { return take(text); };
+    record::Recorder recorder{std::move(ports), reopen, files, limits_, false};
+    world_.beside = [&] {
+      for (int i = 0; i < 4 && world_.now() >= disk_free_; ++i)
+        static_cast<void>(recorder.writing().step(0ms));
+      if (options_.ring != 0 && world_.chance(0.001)) CHECK(folder_->files().size() <= options_.ring + 1);
+    };
+    recorder.receive();
+    ended_ = world_.now();
+    world_.beside = nullptr;
+    while (recorder.writing().step(0ms)) world_.wait_until(std::max(disk_free_, world_.now() + 1ms));
+    REQUIRE(recorder.writing().failure() == nullptr);
+    judge(recorder, files);
+  }
+
+ private:
+  void make_lines() {
+    const int buses = world_.chance(0.5) ? 1 : world_.between(2, 3);
+    for (int i = 0; i < buses; ++i) {
+      Line line;
+      line.name = "can" + std::to_string(i);
+      line.descriptor = 1000 + i;
+      line.room = world_.between<std::size_t>(50, 5000);
+      line.ahead = world_.chance(0.1) ? world_.between(-1s, 1s) : 0s;
+      line.comes_back = world_.chance(0.8);
+      Moment at = World::start;
+      const auto frames = world_.between(0, 3000);
+      const Duration usual = world_.between(100us, 3ms);
+      for (int k = 0; k < frames; ++k) {
+        at += world_.chance(0.002) ? world_.between(0s, 3s) : world_.between(50us, 2 * usual);
+        line.arrivals.push_back(at);
+      }
+      for (Moment away = World::start; world_.chance(0.3);) {
+        away += world_.between(1ms, 3s);
+        line.away.push_back({away, away + world_.between(1ms, 2s)});
+        away = line.away.back().until;
+      }
+      std::erase_if(line.arrivals, [&](Moment when) {
+        return std::any_of(line.away.begin(), line.away.end(),
+                           [when](const Line::Away& away) { return when >= away.from && when < away.until; });
+      });
+      lines_.push_back(std::move(line));
+    }
+  }
+
+  void make_troubles() {
+    const auto sometime = [this] { return World::start + world_.between(0s, 8s); };
+    const bool is_interrupted = world_.chance(0.4);
+    const Moment interrupt = sometime();
+    if (is_interrupted) world_.interrupt(interrupt, SIGTERM);
+    if (is_interrupted && world_.chance(0.4)) world_.stop(interrupt - world_.between(0s, 4s), 4s);
+    while (world_.chance(0.4)) world_.stop(sometime(), world_.between(1ms, world_.chance(0.2) ? 20s : 2s));
+    while (world_.chance(0.3)) {
+      steps_of_the_clock_ = true;
+      const Duration by =
+          world_.chance(0.3) ? world_.between(-50 * year, 50 * year) : world_.between(-3s, 3s);
+      world_.set_wall_clock(sometime(), by);
+    }
+    slow_disk_ = world_.chance(0.4);
+    if (world_.chance(0.25)) disk_left_ = world_.between<std::uint64_t>(0, 100'000);
+  }
+
+  void make_options() {
+    options_.format = cli::logs::find_format(world_.chance(0.5) ? "candump-ns" : "pcapng");
+    REQUIRE(options_.format != nullptr);
+    options_.path = *folder_ / ("run" + std::string{options_.format->ending});
+    options_.sync = false;
+    if (world_.chance(0.6)) {
+      if (world_.chance(0.5))
+        options_.split.size = world_.between<std::uint64_t>(2'000, 100'000);
+      else
+        options_.split.time = world_.between(50ms, 2s);
+      if (world_.chance(0.5)) options_.ring = world_.between<std::uint64_t>(1, 5);
+    }
+    if (world_.chance(0.3)) limits_.count = world_.between<std::uint64_t>(1, 4000);
+    limits_.duration = world_.between(1ms, 8s);
+    if (world_.chance(0.6)) limits_.blocks = world_.between<std::size_t>(1, 6);
+  }
+
+  std::unique_ptr<PlayedCapture> open(Line& line) {
+    auto capture = std::make_unique<PlayedCapture>(world_, line);
+    world_.inputs[line.descriptor] = [raw = capture.get()] { return raw->readable(); };
+    return capture;
+  }
+  bool is_away(const Line& line) const {
+    return std::any_of(line.away.begin(), line.away.end(), [this](const Line::Away& away) {
+      return world_.now() >= away.from && world_.now() < away.until;
+    });
+  }
+
+  cli::Written take(std::string_view text) {
+    disk_free_ = world_.now() + Duration{static_cast<std::int64_t>(10 * text.size())};
+    if (slow_disk_ && world_.chance(0.3)) disk_free_ += world_.between(0s, 3s);
+    if (text.size() <= disk_left_) {
+      disk_left_ -= text.size();
+      return {text.size(), 0};
+    }
+    disk_was_full_ = true;
+    return {std::exchange(disk_left_, 0), ENOSPC};
+  }
+
+  void judge(const record::Recorder& recorder, const record::Files& files) {
+    CHECK(files.failure().what.empty() != disk_was_full_);
+    const auto left = folder_->files();
+    if (options_.ring != 0) CHECK(left.size() <= options_.ring);
+    CHECK(left.size() + files.deleted() ==
+          files.count() + (disk_was_full_ ? left.size() + files.deleted() - files.count() : 0));
+    std::map<std::string, std::uint64_t> found;
+    std::map<std::string, std::uint64_t> dropped;
+    std::map<std::string, std::uint32_t> last;
+    base::Time newest = base::Time::min();
+    std::uint64_t all = 0;
+    for (const auto& path : left) {  // numbered: in order
+      const Read read = read_file(path, options_.format->name == "pcapng" ? "pcapng" : "candump");
+      Moment first{}, until{};
+      for (const auto& entry : read.entries) {
+        const std::string& name = read.names[entry.interface];
+        const std::uint32_t number = number_of(entry);
+        const Line& line = lines_[static_cast<std::size_t>(name.back() - '0')];
+        const auto before = last.find(name);
+        if (before != last.end() && number <= before->second) {
+          FAIL_CHECK(name << ": frame " << number << " comes behind " << before->second);
+          return;
+        }
+        last[name] = number;
+        ++found[name];
+        ++all;
+        if (!steps_of_the_clock_ && before_each_other() && entry.time < newest) {
+          FAIL_CHECK("frame " << number << " of " << name << " is older than the one before");
+          return;
+        }
+        newest = entry.time;
+        const Moment came = line.arrivals[number];
+        if (&entry == &read.entries.front()) first = until = came;
+        first = std::min(first, came), until = std::max(until, came);
+      }
+      for (std::size_t i = 0; i < read.recorded.size(); ++i)
+        dropped[read.names[i]] += read.recorded[i].dropped;
+      // A bunch of frames that were fetched together may come into a file that is full by its size.
+      if (options_.split.size != 0)
+        CHECK(std::filesystem::file_size(path) < options_.split.size + 256 * 120 + 1000);
+    }
+    if (disk_was_full_) {
+      CHECK(all <= recorder.received());
+      if (options_.ring == 0) CHECK(files.readable() == all);
+      return;
+    }
+    if (limits_.count != 0) CHECK(recorder.received() <= limits_.count);
+    if (options_.ring == 0) CHECK(all == recorder.received());
+    std::uint64_t here = 0;
+    for (std::size_t i = 0; i < lines_.size(); ++i) {
+      const Line& line = lines_[i];
+      const record::Port& port = recorder.ports()[i];
+      INFO(line.name << ": offered " << line.offered << ", wait " << line.waiting.size() << ", read "
+                     << port.received << ", lost " << port.lost() << ", of them here " << port.lost_here
+                     << ", in files " << found[line.name]);
+      here += port.lost_here;
+      CHECK(port.received + port.lost() - port.lost_here == line.offered - line.waiting.size());
+      if (options_.ring == 0 && limits_.count == 0)
+        CHECK(found[line.name] + port.lost() == line.offered - line.waiting.size());
+      if (options_.ring == 0 && options_.format->name == "pcapng") CHECK(dropped[line.name] == port.lost());
+      // What came before the end is not left behind.
+      if (limits_.count == 0 && !line.waiting.empty() && recorder.ended().what.empty()) {
+        const Moment end = std::min(World::start + limits_.duration, world_.signal_at());
+        CHECK(line.arrivals[line.waiting.front()] >= end);
+      }
+    }
+    if (limits_.blocks > 16) CHECK(here == 0);
+  }
+  /// Whether the times of all buses are of one clock.
+  bool before_each_other() const {
+    return std::all_of(lines_.begin(), lines_.end(), [](const Line& line) { return line.ahead == 0s; });
+  }
+
+  World world_;
+  const Folder* folder_;
+  std::vector<Line> lines_;
+  record::FilesOptions options_;
+  record::Limits limits_;
+  Moment disk_free_ = World::start;
+  std::uint64_t disk_left_ = UINT64_MAX;
+  bool slow_disk_ = false;
+  bool disk_was_full_ = false;
+  bool steps_of_the_clock_ = false;
+  Moment ended_{};
+};
+
+TEST_CASE("recorder: whatever happens to program, clock, buses and disk, no frame is lost without a count") {
+  const Folder folder;
+  const auto runs = static_cast<std::uint64_t>(explored(1200));
+  for (std::uint64_t seed = 1; seed <= runs; ++seed) {
+    INFO("seed " << seed);
+    const Silence silence;
+    Run{seed, folder}.go();
+  }
+}
+
+}  // namespace tool_clock_record_test

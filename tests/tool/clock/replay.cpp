@@ -1,0 +1,237 @@
+// The player of logs, on logs, buses and a clock that are made of a seed: times that go back, pauses, stops
+// of the program, a bus that is full, stuck, down or away, signals. Frames go out in the order of the log,
+// none before it is due, and each that was read is counted.
+#include <csignal>
+#include <cstring>
+
+#include "ocm/topics/amiro.hpp"
+
+#include "cli/replay/player.hpp"
+#include "cli/shared/messages.hpp"
+#include "cli/shared/set_points.hpp"
+#include "tests/tool/clock/played_bus.hpp"
+#include "tests/unit/base/explore.hpp"
+
+namespace tool_clock_replay_test {
+
+using namespace ocm;
+using namespace ocm::test;
+namespace replay = cli::replay;
+
+/// Set points of the motors.
+constexpr std::uint32_t motors = protocol::Identifier{
+    protocol::Direction::command, protocol::Priority::medium,
+    protocol::TopicId{0x01}}.encode();
+
+/// A log that is there already, read in pieces of any size.
+class PlayedLog final : public log::Reader {
+ public:
+  PlayedLog(World& world, log::Input& input, std::vector<log::Entry> entries, std::size_t buses)
+      : Reader(input), world_(&world), entries_(std::move(entries)) {
+    for (std::size_t i = 0; i < buses; ++i) static_cast<void>(interfaces_.add("can" + std::to_string(i)));
+  }
+  std::size_t read(std::span<log::Entry> into) override {
+    const std::size_t left = entries_.size() - next_;
+    const std::size_t count = std::min({left, into.size(), world_->between<std::size_t>(1, 300)});
+    for (std::size_t i = 0; i < count; ++i) into[i] = entries_[next_++];
+    return count;
+  }
+
+ private:
+  World* world_;
+  std::vector<log::Entry> entries_;
+  std::size_t next_ = 0;
+};
+
+/// When frames are due by the rules of ocm/log/playback.hpp, a step at a time, in seconds from the first.
+class Due {
+ public:
+  Due(double speed, Duration longest) : speed_(speed), longest_(longest) {}
+  [[nodiscard]] double of(base::Time time) {
+    if (!newest_) newest_ = time;
+    const Duration step = time - *newest_;
+    if (step < 0s && step > -1s) return due_;
+    newest_ = time;
+    if (step > 0s) due_ += std::chrono::duration<double>(std::min(step, longest_)).count() / speed_;
+    return due_;
+  }
+
+ private:
+  double speed_;
+  Duration longest_;
+  std::optional<base::Time> newest_;
+  double due_ = 0;
+};
+
+class Run {
+ public:
+  explicit Run(std::uint64_t seed) : world_(seed), buses_(world_.between<std::size_t>(1, 2)) {
+    make_log();
+    options_.playback.speed = world_.chance(0.5) ? 1 : world_.between(1, 40) / 4.0;
+    if (world_.chance(0.5)) options_.playback.longest_gap = world_.between(1ms, 3s);
+    options_.at_once = world_.chance(0.1);
+    if (world_.chance(0.2)) options_.span.until = world_.between(0s, 5s);
+    for (std::size_t i = 0; i < buses_; ++i)
+      if (buses_ > 1) options_.routes.emplace_back("can" + std::to_string(i), i);
+    if (buses_ > 1 && world_.chance(0.3)) options_.routes.pop_back();
+    const auto sometime = [this] { return World::start + world_.between(0s, 8s); };
+    while (world_.chance(0.3)) {
+      calm_ = false;
+      world_.stop(sometime(), world_.between(1ms, 5s));
+    }
+    while (world_.chance(0.3)) world_.set_wall_clock(sometime(), world_.between(-3s, 3s));
+    if (world_.chance(0.3)) world_.interrupt(sometime(), SIGINT);
+  }
+
+  void go() {
+    std::vector<replay::Outlet> outlets;
+    std::vector<PlayedBus*> buses;
+    for (std::size_t i = 0; i < buses_; ++i) {
+      auto bus = std::make_unique<PlayedBus>(world_, conditions(), "can" + std::to_string(i),
+                                             500 + static_cast<int>(i));
+      buses.push_back(bus.get());
+      outlets.emplace_back(std::move(bus), amiro::catalogue);
+    }
+    log::MemorySource nothing{""};
+    log::Input input{nothing};
+    PlayedLog log{world_, input, entries_, buses_};
+    replay::Player player{options_, replay::Selection{amiro::catalogue, {}, replay::Only::all},
+                          std::move(outlets), nullptr};
+    bool left = false;
+    begun_ = world_.now();
+    try {
+      player.play(log);
+      ended_ = world_.now();
+      if (player.cut_short()) static_cast<void>(player.rest());
+      player.expect_all_left();
+    } catch (const cli::Exit&) {
+      left = true;
+    }
+    judge(player, buses, left);
+  }
+
+ private:
+  void make_log() {
+    base::Time time{std::chrono::hours{500'000}};
+    const auto count = world_.between<std::uint32_t>(1, 400);
+    for (std::uint32_t number = 0; number < count; ++number) {
+      const double kind = world_.between(0, 999) / 1000.0;
+      if (kind < 0.01)
+        time += world_.between(1s, 60s);
+      else if (kind < 0.03)
+        time -= world_.between(0s, 999ms);
+      else if (kind < 0.04)
+        time -= world_.between(1s, std::chrono::hours{24 * 365 * 20});
+      else
+        time += world_.between(0us, 30ms);
+      can::Frame frame{0x601, 4, {}};
+      if (world_.chance(0.1)) frame = {motors, 8, {}};
+      std::memcpy(frame.data.data(), &number, sizeof number);
+      if (world_.chance(0.02)) frame.data = {};
+      log::Entry entry{time, frame, world_.between<std::uint16_t>(0, static_cast<std::uint16_t>(buses_ - 1))};
+      if (world_.chance(0.02)) entry.flags = log::flag::fd;
+      if (world_.chance(0.02)) entry.format = can::Format::error;
+      entries_.push_back(entry);
+    }
+  }
+
+  PlayedBus::Conditions conditions() {
+    PlayedBus::Conditions bus;
+    bus.room = world_.between<std::size_t>(1, 50);
+    bus.frame_time = world_.between(20us, 300us);
+    const auto sometime = [this] { return World::start + world_.between(0s, 6s); };
+    const auto times = [&](std::vector<PlayedBus::Time>& list) {
+      const Moment from = sometime();
+      list.push_back({from, from + world_.between(1ms, world_.chance(0.3) ? 60s : 500ms)});
+      calm_ = false;
+      troubled_ = true;
+    };
+    if (world_.chance(0.1)) times(bus.stuck);
+    if (world_.chance(0.1)) times(bus.down);
+    if (world_.chance(0.1)) {
+      bus.gone = sometime();
+      calm_ = false;
+      troubled_ = true;
+    }
+    return bus;
+  }
+
+  void judge(const replay::Player& player, const std::vector<PlayedBus*>& buses, bool left) {
+    if (left) CHECK(troubled_);
+    const auto& played = player.played();
+    const std::uint64_t counted =
+        played.sent + played.not_chosen + played.no_route + played.error_frames + played.fd_frames;
+    CHECK(counted <= entries_.size());
+    if (!left && !player.cut_short() && world_.signal() == 0) CHECK(counted == entries_.size());
+    judge_frames(buses, played.sent, left, player.cut_short());
+    if (!left && player.cut_short())
+      for (auto* const bus : buses) judge_rest(*bus);
+    // A signal is seen soon, unless a bus takes nothing for a second.
+    if (!left && calm_ && world_.signal_at() < ended_) CHECK(ended_ - world_.signal_at() < 250ms);
+  }
+
+  void judge_frames(const std::vector<PlayedBus*>& buses, std::uint64_t counted, bool left, bool rested) {
+    std::vector<std::size_t> next(buses.size());
+    Due due{options_.playback.speed, options_.playback.longest_gap};
+    std::uint64_t sent = 0;
+    const base::Time first = entries_.front().time;
+    static_cast<void>(due.of(first));  // counts from it, even if it goes nowhere
+    for (const auto& entry : entries_) {
+      if (options_.span.is_behind(entry.time - first)) break;
+      const bool routed = options_.routes.empty() || entry.interface < options_.routes.size();
+      if (!routed) continue;
+      const std::size_t outlet = options_.routes.empty() ? 0 : entry.interface;
+      const double at = due.of(entry.time);
+      const auto frame = entry.classic();
+      if (!frame || entry.format == can::Format::error) continue;
+      auto& bus = *buses[outlet];
+      if (next[outlet] >= bus.sent().size() || sent == counted) break;
+      const auto& each = bus.sent()[next[outlet]++];
+      ++sent;
+      if (each.frame != *frame) {
+        FAIL_CHECK("frame " << sent << " of the log is not the next one on " << bus.name());
+        return;
+      }
+      if (options_.at_once) continue;
+      const double taken = std::chrono::duration<double>(each.taken - begun_).count();
+      if (taken < at - 1e-5) FAIL_CHECK("frame " << sent << " was sent at " << taken << ", due at " << at);
+      // A bus that is full takes its time.
+      if (calm_ && taken > at + 0.02 + 400 * 300e-6)
+        FAIL_CHECK("frame " << sent << " was sent at " << taken << ", due at " << at);
+    }
+    CHECK(sent == counted);
+    std::size_t on_buses = 0;
+    for (auto* const bus : buses) on_buses += bus->sent().size();
+    CHECK(on_buses >= counted);
+    CHECK(on_buses <= counted + (rested ? buses.size() : left ? 1 : 0));
+  }
+
+  static void judge_rest(PlayedBus& bus) {
+    const protocol::FrameIndex index{amiro::catalogue};
+    const can::Frame* last = nullptr;
+    for (const auto& each : bus.sent())
+      if (cli::commanded_motors(index, each.frame) != nullptr) last = &each.frame;
+    if (last != nullptr) CHECK(cli::is_rest(*last));
+  }
+
+  World world_;
+  std::size_t buses_;
+  std::vector<log::Entry> entries_;
+  replay::PlayerOptions options_;
+  bool calm_ = true;
+  bool troubled_ = false;  ///< a bus may end the replay
+  Moment begun_{};
+  Moment ended_{};
+};
+
+TEST_CASE(
+    "replay: whatever happens to program and bus, frames keep their order, wait until due and are counted") {
+  const auto runs = static_cast<std::uint64_t>(explored(1500));
+  const Silence silence;
+  for (std::uint64_t seed = 1; seed <= runs; ++seed) {
+    INFO("seed " << seed);
+    Run{seed}.go();
+  }
+}
+
+}  // namespace tool_clock_replay_test
