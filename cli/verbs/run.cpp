@@ -37,9 +37,6 @@ struct RunOptions {
 /// Far more than a person writes by hand; a pipe that never ends must not fill the memory.
 constexpr std::size_t max_script = 16U << 20U;
 
-/// Errors of a script that are shown; the rest are counted. More than fits on a screen is not read.
-constexpr std::size_t most_told = 20;
-
 std::string read_all(std::istream& in) {
   std::string text;
   char piece[65'536];
@@ -73,7 +70,7 @@ words::Script checked(const std::string& file, const std::string& text,
                       const protocol::Catalogue& catalogue) {
   auto script = words::parse_script(text, catalogue);
   if (script.errors.empty()) return script;
-  const std::size_t told = std::min(script.errors.size(), most_told);
+  const std::size_t told = std::min(script.errors.size(), words::most_explained);  // the rest are counted
   for (const auto& error : std::span{script.errors}.first(told))
     remark(fmt::format("{}:{}:{}: {}\n    {}", file, error.line, error.column, error.what, error.remedy));
   if (told < script.errors.size()) remark(fmt::format("... and {} more", script.errors.size() - told));

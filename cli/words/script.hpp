@@ -40,9 +40,13 @@ struct Script {
   std::vector<ScriptError> errors;  ///< when there is one, do not run the steps
 };
 
+/// Errors with a suggestion of what was meant; the remedy of the others is to correct these first. More than
+/// fits on a screen is not read.
+inline constexpr std::size_t most_explained = 20;
+
 /// Steps are in the order of their times; equal times are carried out in the order of the lines.
 [[nodiscard]] inline Script parse_script(std::string_view text, const protocol::Catalogue& catalogue) {
-  const CommandParser parser{catalogue};
+  CommandParser parser{catalogue};
   Script script;
   std::size_t line_number = 0;
   while (!text.empty()) {
@@ -86,6 +90,7 @@ struct Script {
       continue;
     }
     columns.push_back(line.size() + 1);  // behind the last word: where something is missing
+    parser.set_suggesting(script.errors.size() < most_explained);
     auto command = parser.parse_line(Line{words}.subspan(1));
     if (!command) {
       const std::size_t word = std::min(command.error.word + 1, columns.size() - 1);

@@ -31,7 +31,7 @@ namespace detail {
   std::string_view found;
   std::size_t least = word.size() < 6 ? 1 : 2;
   for (const auto candidate : candidates) {
-    const std::size_t distance = spec::edit_distance(word, candidate);
+    const std::size_t distance = spec::edit_distance(word, candidate, least);
     if (distance > least) continue;
     if (!found.empty() && distance == least &&
         detail::common_prefix(word, candidate) <= detail::common_prefix(word, found))

@@ -29,7 +29,7 @@ std::string nearest_name(std::string_view typed, const Candidates& candidates) {
   std::string best;
   std::size_t best_distance = 1 + typed.size() / 3;
   for (const auto& candidate : candidates) {
-    const std::size_t distance = edit_distance(typed, candidate);
+    const std::size_t distance = edit_distance(typed, candidate, best_distance);
     if (distance <= best_distance && (best.empty() || distance < best_distance)) {
       best = candidate;
       best_distance = distance;

@@ -106,4 +106,15 @@ TEST_CASE("the standalone demo is what the thesis lists, with its misprints mend
   }
 }
 
+TEST_CASE("a script names what was probably meant for as many errors as are shown") {
+  std::string text;
+  for (std::size_t i = 0; i <= most_explained; ++i) text += "0s publsh gyro\n";
+  const auto script = parse_script(text, amiro::catalogue);
+  REQUIRE(script.errors.size() == most_explained + 1);
+  CHECK(script.errors.front().remedy == "did you mean 'publish'?");
+  CHECK(script.errors[most_explained - 1].remedy == "did you mean 'publish'?");
+  CHECK(script.errors.back().what == "unknown command 'publsh'");
+  CHECK(script.errors.back().remedy == "correct the errors before this one first");
+}
+
 }  // namespace tool_words_script_test

@@ -6,6 +6,7 @@
 
 namespace tool_words_suggestion_test {
 
+using namespace ocm;
 using namespace ocm::cli::words;
 
 TEST_CASE("the nearest known word is named") {
@@ -40,6 +41,40 @@ TEST_CASE(
   const std::vector<std::string_view> one{"odometry"};
   CHECK(nearest("odo", one) == "odometry");
   CHECK(nearest("od", one) == "");
+}
+
+TEST_CASE("a bounded edit distance is the whole one, or one more than the bound") {
+  // All words of up to four letters out of three, and the plain definition beside it.
+  std::vector<std::string> all{""};
+  for (std::size_t i = 0; all[i].size() < 4; ++i)
+    for (const char letter : {'a', 'b', 'c'}) all.push_back(all[i] + letter);
+  const auto plain = [](const std::string& a, const std::string& b) {
+    std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+    for (std::size_t i = 0; i <= a.size(); ++i)
+      for (std::size_t j = 0; j <= b.size(); ++j) {
+        if (i == 0 || j == 0) {
+          d[i][j] = i + j;
+          continue;
+        }
+        d[i][j] =
+            std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
+        if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+          d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+      }
+    return d[a.size()][b.size()];
+  };
+  std::size_t wrong = 0;
+  for (const auto& a : all)
+    for (const auto& b : all) {
+      const std::size_t whole = plain(a, b);
+      for (std::size_t most = 0; most < 5; ++most)
+        if (spec::edit_distance(a, b, most) != std::min(whole, most + 1)) ++wrong;
+    }
+  CHECK(wrong == 0);
+  const std::string longer(70, 'x');
+  CHECK(spec::edit_distance(longer, longer + "y", 100) == 0);  // of the first 64
+  CHECK(spec::edit_distance(longer, "", 100) == 64);
+  CHECK(spec::edit_distance(longer, std::string(64, 'y'), 64) == 64);
 }
 
 TEST_CASE("without a near word all are listed") {
