@@ -96,7 +96,11 @@ class Terminal(Case):
             self.assertNotEqual(table(width - 1), table(columns))
             columns = width - 1
         self.assertGreater(len(forms), 9)
-        self.assertIn("PRIORITY", forms[0][0])
+        # The least important goes first.
+        names = ["PRIORITY", "LATE", "JITTER", "MEAN", "PERIOD", "SAMPLES", "RATE"]
+        gone = [[name for name in names if name not in form[0]] for form in forms]
+        self.assertEqual([each for i, each in enumerate(gone) if i == 0 or each != gone[i - 1]],
+                         [names[:i] for i in range(len(names) + 1)])
 
     def test_progress_of_a_recording_fits_the_width(self):
         for columns in (40, 200):

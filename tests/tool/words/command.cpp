@@ -55,6 +55,20 @@ TEST_CASE("requests become the thesis's frames") {  // thesis 4.2.1
   CHECK(frames("once power --priority 3") == "31E#02");
 }
 
+TEST_CASE("a request says whose sample answers it; what is not answered does not") {
+  const auto answered_by = [](const char* line) {
+    const auto command = parse(line);
+    INFO(line);
+    REQUIRE(command.ok());
+    return command->answers == nullptr ? std::string_view{} : command->answers->name;
+  };
+  CHECK(answered_by("publish gyro 500ms") == "gyroscope");
+  CHECK(answered_by("publish mag") == "magnetometer");
+  CHECK(answered_by("once floor") == "floor_proximity");
+  CHECK(answered_by("stop gyro").empty());
+  CHECK(answered_by("led 1 red").empty());
+}
+
 TEST_CASE("set points become the thesis's frames") {  // thesis 4.2.2, figure 6.1
   CHECK(frames("led 5 100,50,120") == "240#643278");
   CHECK(frames("led 5 #643278") == "240#643278");
@@ -142,6 +156,7 @@ TEST_CASE("what is wrong is said of the word where it stands") {
       {"publish 0x06 1s", 1, "no topic '0x06'", "one of: "},  // a frame of the magnetometer, not a topic
       {"publish 1f 1s", 1, "no topic '1f'", "did you mean '0x1F' (proximity_ring)?"},
       {"publish 0x01 1s", 1, "'0x01' is an actuator", "set"},
+      {"publish motor 1s", 1, "no topic 'motor'", "one of: "},  // actuators are not asked
       {"publish gyro --priority 4", 3, "'4' is not a priority", "0 to 3"},
       {"publish gyro --priority 00", 3, "'00' is not a priority", "0 to 3"},
       {"publish motors 1s", 1, "'motors' is an actuator", "set"},
