@@ -33,7 +33,11 @@ bool Timeline::listen_first(base::Duration duration) {
 void Timeline::send(const can::Frame& frame) {
   const bool set_point = other_.is_set_point(frame);
   if (set_point) outgoing_.otherwise_after_the_next(still_moving);
+  outgoing_.looks_from(awake_);
   outgoing_.send(frame);
+  // A slow bus is waited for; a stop of this program meanwhile is none.
+  awake_ = outgoing_.looked();
+  stood_still_ = std::max(stood_still_, outgoing_.stood_still());
   refusals_.sent(frame, set_point && moving_);
   if (set_point) moving_ = !is_rest(frame);
 }
@@ -43,7 +47,6 @@ void Timeline::carry_out_once(const client::Command& command) {
   if (command.hold && !held_ && others_ == Others::refused) other_.refuse_if_heard();
   if (command.ends_hold) outgoing_.otherwise(still_moving);
   for (const auto& frame : command.frames) send(frame);
-  awake_ = Clock::now();  // a slow bus is waited for
 }
 
 void Timeline::carry_out(const client::Command& command) {

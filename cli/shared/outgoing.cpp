@@ -35,15 +35,16 @@ Outgoing::Outgoing(transport::Bus& bus, std::string verb, std::string otherwise)
 }
 
 void Outgoing::send(const can::Frame& frame, base::Duration patience) {
-  const auto late = Clock::now() + patience;
+  const auto late = look() + patience;
   for (;;) {
     const auto taken = bus_.send(frame);
+    const auto now = look();
     if (taken.error == base::Error::closed) fail(bus_.failure());
     if (!taken)
       fail({fmt::format("{} cannot be sent: {}", can::to_text(frame).view(), base::describe(taken.error)),
             "only data and remote frames with a valid identifier and up to 8 bytes can"});
     if (*taken) return;
-    if (Clock::now() >= late) {
+    if (now >= late) {
       if (bus_.state() == transport::BusState::down)
         give_up(fmt::format("{} is down: {} was not sent", bus_.name(), can::to_text(frame).view()),
                 fmt::format("bring it up: sudo ip link set {} up", bus_.name()));
@@ -53,6 +54,12 @@ void Outgoing::send(const can::Frame& frame, base::Duration patience) {
     }
     sleep_for(look_again);
   }
+}
+
+Clock::time_point Outgoing::look() {
+  const auto now = Clock::now();
+  stood_still_ = std::max(stood_still_, now - looked_);
+  return looked_ = now;
 }
 
 bool Outgoing::all_left(base::Duration patience) {

@@ -10,6 +10,8 @@
 #include "ocm/can/frame.hpp"
 #include "ocm/transport/bus.hpp"
 
+#include "cli/shared/clock.hpp"
+
 namespace ocm::cli {
 
 /// What it means when a stop, or the end of a drive, did not leave.
@@ -34,6 +36,12 @@ class Outgoing {
 
   /// Waits for room in the queue, at most `patience`; then leaves with the bus's words.
   void send(const can::Frame& frame, base::Duration patience = std::chrono::seconds{1});
+  /// The looks at the clock of `send`, each millisecond, go on from a look of the caller.
+  void looks_from(Clock::time_point look) noexcept { looked_ = look; }
+  [[nodiscard]] Clock::time_point looked() const noexcept { return looked_; }  ///< the last one
+  /// The longest time between two of them: this program did not run. A bus that takes its time makes it no
+  /// longer.
+  [[nodiscard]] base::Duration stood_still() const noexcept { return stood_still_; }
   /// Waits until all that was sent has left; leaves and says how much has not, when none has left for
   /// `patience`.
   void expect_all_left(base::Duration patience = std::chrono::milliseconds{500});
@@ -41,11 +49,15 @@ class Outgoing {
   [[nodiscard]] bool all_left(base::Duration patience);
 
  private:
+  /// The time.
+  Clock::time_point look();
   [[noreturn]] void give_up(std::string what, std::string remedy) const;
 
   transport::Bus& bus_;
   std::string verb_;
   std::string otherwise_;
+  Clock::time_point looked_ = Clock::now();
+  base::Duration stood_still_{};
   std::uint64_t before_ = 0;  ///< frames that were sent before it meant something
   bool always_ = true;        ///< also if none has left since
 };

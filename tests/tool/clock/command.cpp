@@ -179,4 +179,43 @@ TEST_CASE("drive: whatever happens to program and bus, at most one set point is 
   }
 }
 
+/// A command every 100 ms, as `run` carries out a script; the program is stopped, mostly while it sends.
+void play_script(std::uint64_t seed) {
+  World world{seed};
+  PlayedBus bus{world, {}};
+  const cli::words::CommandParser parser{amiro::catalogue};
+  const std::vector<std::string_view> words{"led", "1", "red"};
+  const auto command = parser.parse_line(words);
+  REQUIRE(command.ok());
+  Timeline timeline{bus, amiro::catalogue, "run", Timeline::Others::refused, cli::Confirm::no, {}};
+  const Moment begin = world.now();
+  const int step = world.between(1, 18);
+  const Moment stopped = begin + step * 100ms + world.between(0us, world.chance(0.8) ? 6us : 100ms);
+  // It would have slept until the next step.
+  const Duration lasting = world.between(watchdog + 100ms, 10 * watchdog);
+  world.stop(stopped, lasting);
+  bool left = false;
+  try {
+    for (int i = 1; i <= 20 && timeline.wait_for_step(begin + i * 100ms); ++i) timeline.carry_out(*command);
+    static_cast<void>(timeline.finish());
+  } catch (const cli::Exit& exit) {
+    left = true;
+    CHECK(exit.code == 1);
+  }
+  INFO("step " << step << ", stopped at " << (stopped - begin).count() << " ns");
+  CHECK(left);
+  const auto& sent = bus.sent();
+  CHECK(std::count_if(sent.begin(), sent.end(),
+                      [&](const auto& each) { return each.taken >= stopped + lasting; }) <= 1);
+}
+
+TEST_CASE("drive: of a script whose program was stopped, whenever that was, one step at most is late") {
+  const auto runs = static_cast<std::uint64_t>(explored(2000));
+  const Silence silence;
+  for (std::uint64_t seed = 1; seed <= runs; ++seed) {
+    INFO("seed " << seed);
+    play_script(seed);
+  }
+}
+
 }  // namespace tool_clock_command_test
