@@ -31,9 +31,11 @@ using transport::BusState;
 constexpr milliseconds hand_over_period{100};
 /// The kernel's queue has its time on each frame already: fetching them in a bunch costs less.
 constexpr milliseconds fetch_pause{4};
-/// Rounds of reading one bus between two looks at the clock, and the frames that they fetch at most.
+/// Rounds of reading one bus between two looks at the clock.
 constexpr int rounds_a_look = 16;
-constexpr std::size_t one_look = rounds_a_look * Capture::batch;
+/// Of several buses so many looks are gathered before any frame is handed on, where more wait than one look
+/// fetches: what is fetched next from one bus may be older than what came from another. Then it is a flood.
+constexpr int looks_held_back = 16;
 /// So long what came before the end is fetched.
 constexpr seconds longest_end{1};
 /// A bunch of this many came before the pause was over: the bus is too busy for one.
@@ -127,7 +129,14 @@ std::size_t Recorder::drain() {
   fetched_ = Clock::now();
   if (ports_.size() == 1) return drain_into_blocks(ports_.front());
   std::size_t count = 0;
-  for (Port& port : ports_) count += drain_into_merge(port);
+  bool all = true;
+  for (Port& port : ports_) {
+    const std::size_t more = drain_into_merge(port);
+    all = all && more < rounds_a_look * Capture::batch;
+    count += more;
+  }
+  if (!all && ++held_back_ < looks_held_back) return count;
+  held_back_ = 0;
   emit(merge_.take());
   return count;
 }
@@ -135,7 +144,7 @@ std::size_t Recorder::drain() {
 /// After a stop of this program thousands of frames may wait. A flood has no end, and is cut off.
 void Recorder::drain_to_the_end() {
   const auto cut_off = Clock::now() + longest_end;
-  while (drain() >= one_look && Clock::now() < cut_off) {
+  while (drain() >= busy && Clock::now() < cut_off) {
   }
 }
 

@@ -95,6 +95,7 @@ class Recorder {
   log::Interfaces interfaces_;
   Queue queue_;
   Merge merge_;
+  int held_back_ = 0;  ///< looks at several buses since the merge was asked
   std::unique_ptr<Block> block_;
   Block unwanted_;              ///< what is put here is lost: the queue is full
   std::uint64_t received_ = 0;  ///< frames that are recorded
