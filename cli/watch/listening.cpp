@@ -30,7 +30,8 @@ Over listen(transport::Bus& bus, const ListenLimits& limits, const TakeEntries& 
     if (now >= tick) {
       each_second();
       tick += std::chrono::seconds{1};
-      if (tick <= now) tick = now + std::chrono::seconds{1};
+      // After a stop of this program: not at once again.
+      if (tick - now <= std::chrono::milliseconds{500}) tick = now + std::chrono::seconds{1};
     }
   }
 }

@@ -55,7 +55,7 @@ class Run {
         },
         [&] {
           ++seconds;
-          bunched = bunched || (seconds > 1 && world_.now() - last_second < 1ms);
+          bunched = bunched || (seconds > 1 && world_.now() - last_second < 500ms);
           last_second = world_.now();
         });
     const Duration passed = world_.now() - World::start;
