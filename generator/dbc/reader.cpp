@@ -22,7 +22,7 @@ struct SignalKey {
 };
 struct SignalHash {
   std::size_t operator()(const SignalKey& key) const noexcept {
-    return std::hash<std::string_view>{}(key.name) ^ key.id * std::size_t{0x9E37'79B9'7F4A'7C15};
+    return std::hash<std::string_view>{}(key.name) ^ key.id * std::size_t{0x9E37'79B1};
   }
 };
 struct SignalAt {
