@@ -56,7 +56,9 @@ def programs(build, names):
         for line in file.read_text(encoding="utf-8").splitlines():
             name = re.match(r"(?:add_test|set_tests_properties)\((?:\[=\[)?([\w.-]+)", line)
             if name and name[1] in names:
-                found |= {os.path.normpath(path) for path in re.findall(r"/[^\s:;=\"]+", line)}
+                quoted = [part for text in re.findall(r'"([^"]*)"', line) for part in re.split("[:;=]", text)]
+                words = re.findall(r"/[^\s:;=\"]+", line)
+                found |= {os.path.normpath(path) for path in quoted + words if path.startswith("/")}
     return found
 
 

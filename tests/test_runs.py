@@ -6,6 +6,9 @@ import sys
 import tempfile
 import unittest
 
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import runs  # noqa: E402
+
 RUNS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "runs.py")
 
 
@@ -44,6 +47,18 @@ class Report(unittest.TestCase):
         code, text = self.report(("logs_durability", "run", "OK (skipped=1)"))
         self.assertEqual(code, 0)
         self.assertIn("  skipped: 1 cases of logs_durability", text)
+
+
+class Programs(unittest.TestCase):
+    def test_paths_may_have_blanks(self):
+        with tempfile.TemporaryDirectory(prefix="a tree ") as folder:
+            with open(os.path.join(folder, "CTestTestfile.cmake"), "w", encoding="utf-8") as file:
+                file.write(f'add_test(unit_can "{folder}/unit_can")\n'
+                           f'set_tests_properties(unit_can PROPERTIES  ENVIRONMENT "AMIROCTL={folder}/amiroctl;N=1")\n'
+                           f'add_test(unit_base "{folder}/unit_base")\n')
+            found = runs.programs(folder, {"unit_can"})
+        self.assertLessEqual({f"{folder}/unit_can", f"{folder}/amiroctl"}, found)
+        self.assertNotIn(f"{folder}/unit_base", found)
 
 
 if __name__ == "__main__":

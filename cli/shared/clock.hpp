@@ -4,6 +4,7 @@
 /// can be repeated.
 #pragma once
 
+#include <algorithm>
 #include <poll.h>
 #include <span>
 
@@ -23,6 +24,19 @@ struct Clock {
 
 /// The wall clock's, as on frames: it can be set.
 [[nodiscard]] base::Time unix_time() noexcept;
+
+/// Up to when a bus has been listened to since this was made, by the clock of its frames: the wall clock. Of
+/// a step forward, after which no frame may have come yet, it takes nothing: that was no silence.
+class ListenedUntil {
+ public:
+  [[nodiscard]] base::Time now() const noexcept {
+    return std::min(unix_time(), begin_ + (Clock::now() - steady_begin_));
+  }
+
+ private:
+  base::Time begin_ = unix_time();
+  Clock::time_point steady_begin_ = Clock::now();
+};
 
 /// Each ends early when a signal was caught.
 void sleep_for(base::Duration duration) noexcept;

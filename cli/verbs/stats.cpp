@@ -106,6 +106,7 @@ void run(Session& session, const StatsOptions& options, int& exit_code) {
   stats::Collector collector{catalogue, chosen_bit_rate(options.bit_rate, catalogue)};
   Watching watching{session, options.watch, std::move(words.files)};
 
+  const ListenedUntil listened;
   const bool table = !options.json && !options.csv;
   Screen screen;
   const auto report = [&](std::optional<base::Time> now) {
@@ -118,11 +119,11 @@ void run(Session& session, const StatsOptions& options, int& exit_code) {
       [&](auto interface, auto frames) { collector.lost(interface, frames); },
       [&] {
         if (tell && collector.any())
-          screen.show(stats::to_table(report(unix_time()), shown, session.colour(), Screen::columns()));
+          screen.show(stats::to_table(report(listened.now()), shown, session.colour(), Screen::columns()));
       });
 
   std::optional<base::Time> now;
-  if (watching.live() && collector.any()) now = unix_time();
+  if (watching.live() && collector.any()) now = listened.now();
   const auto result = report(now);
   if (options.json)
     write_out(stats::to_json(result, shown, assertions));

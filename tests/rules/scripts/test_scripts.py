@@ -33,9 +33,9 @@ class Case(unittest.TestCase):
         path.write_text(f"#!/bin/bash\n{text}\n", encoding="utf-8")
         path.chmod(0o755)
 
-    def run_script(self, name, *arguments):
-        environment = dict(os.environ, PATH=f"{self.programs}:{os.environ['PATH']}", TMPDIR=str(self.programs))
-        return subprocess.run([self.tree / "scripts" / name, *arguments], env=environment, stdin=subprocess.DEVNULL,
+    def run_script(self, name, *arguments, path=None, **variables):
+        environment = dict(os.environ, PATH=f"{self.programs}:{os.environ['PATH']}", TMPDIR=str(self.programs), **variables)
+        return subprocess.run([path or self.tree / "scripts" / name, *arguments], env=environment, stdin=subprocess.DEVNULL,
                               capture_output=True, text=True, check=False, timeout=60)
 
 
@@ -87,6 +87,66 @@ class Bench(Case):
         for name in ("start_up", "convert", "decode"):  # scripts, and folders with one
             self.assertIn(name, listed)
         self.assertEqual(listed, sorted(set(listed)))
+
+
+class Build(Case):
+    """Whatever an earlier run has left in build/."""
+
+    def setUp(self):
+        super().setUp()
+        self.stand_in("setup", "", self.tree / "scripts")
+        self.stand_in("cmake", f'echo "$@" >>{self.tree}/called')
+        self.build = self.tree / "build"
+
+    def called(self):
+        return (self.tree / "called").read_text(encoding="utf-8").splitlines()
+
+    def test_a_copied_tree_does_not_compile_the_original(self):
+        self.build.mkdir()
+        (self.build / "build.ninja").touch()
+        (self.build / "CMakeCache.txt").write_text("CMAKE_HOME_DIRECTORY:INTERNAL=/the/original\n", encoding="utf-8")
+        done = self.run_script("build")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("build/ compiles the sources in /the/original, not these; rm -rf build, and try again", done.stderr)
+        self.assertFalse((self.tree / "called").exists())
+
+    def test_its_own_folder_is_used_as_it_is_also_through_a_link(self):
+        self.build.mkdir()
+        (self.build / "build.ninja").touch()
+        link = self.tree.parent / "link"
+        link.symlink_to(self.tree)
+        (self.build / "CMakeCache.txt").write_text(f"CMAKE_HOME_DIRECTORY:INTERNAL={link}\n", encoding="utf-8")
+        self.assertEqual(self.run_script("build").returncode, 0)
+        self.assertEqual([line.split()[0] for line in self.called()], ["--build"])
+
+    def test_what_a_failed_configuration_has_found_out_is_forgotten(self):
+        (self.build / "CMakeFiles").mkdir(parents=True)
+        (self.build / "CMakeCache.txt").write_text("CMAKE_EXECUTABLE_FORMAT:INTERNAL=Unknown\n", encoding="utf-8")
+        self.assertEqual(self.run_script("build").returncode, 0)
+        self.assertEqual(sorted(path.name for path in self.build.iterdir()), [".lock"])
+        self.assertEqual([line.split()[0] for line in self.called()], ["--preset", "--build"])
+
+    def test_two_at_once_take_turns(self):
+        self.stand_in("cmake", f"echo begin >>{self.tree}/called; sleep 0.2; echo end >>{self.tree}/called")
+        both = [subprocess.Popen([self.tree / "scripts" / "build"], env=dict(os.environ, PATH=f"{self.programs}:{os.environ['PATH']}"),
+                                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) for _ in range(2)]
+        self.assertEqual([process.wait(timeout=60) for process in both], [0, 0])
+        self.assertEqual(self.called(), ["begin", "end"] * 4)
+
+
+class Everywhere(Case):
+    def test_by_a_link_to_the_script_itself(self):
+        for script in ("bench", "fuzz"):
+            link = self.tree.parent / script
+            link.symlink_to(self.tree / "scripts" / script)
+            self.assertEqual(self.run_script(script, "--list", path=link).stdout, self.run_script(script, "--list").stdout)
+
+    def test_how_many_at_once_is_a_number(self):
+        for script, words in (("test", ("--only", "style")), ("fuzz", ("1s",))):
+            for jobs in ("0", "abc", "-1", "2x"):
+                done = self.run_script(script, *words, OCM_JOBS=jobs)
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertIn(f"{script}: OCM_JOBS is '{jobs}', which is no number above zero", done.stderr)
 
 
 class Summary(Case):

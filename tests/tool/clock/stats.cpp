@@ -4,6 +4,7 @@
 
 #include "ocm/topics/amiro.hpp"
 
+#include "cli/shared/clock.hpp"
 #include "cli/stats/figures.hpp"
 #include "cli/watch/listening.hpp"
 #include "tests/tool/clock/played_bus.hpp"
@@ -86,6 +87,24 @@ class Run {
   cli::ListenLimits limits_;
   bool stopped_ = false;
 };
+
+TEST_CASE("stats: a step of the wall clock is no silence") {
+  World world{1};
+  const cli::ListenedUntil listened;
+  const base::Time begin = cli::unix_time();
+  world.set_wall_clock(World::start + 1s, 1h);
+  world.set_wall_clock(World::start + 3s, -2h);
+  const auto is_near = [](base::Time a, base::Time b) {
+    return a - b < 1ms && b - a < 1ms;
+  };  // looks take time
+  world.pass(500ms);
+  CHECK(is_near(listened.now(), begin + 500ms));
+  world.pass(1500ms);
+  CHECK(is_near(cli::unix_time(), begin + 1h + 2s));
+  CHECK(is_near(listened.now(), begin + 2s));
+  world.pass(2s);
+  CHECK(is_near(listened.now(), begin - 1h + 4s));  // as the frames that come now
+}
 
 TEST_CASE("stats: whatever happens to program and bus, each frame is in the figures or counted as lost") {
   const auto runs = static_cast<std::uint64_t>(explored(1500));
