@@ -56,7 +56,8 @@ class OnASerialLine(WithAdapter, Case):
             file.write("0s led 1 red\n0s led 1 blue\n")
         _, err = self.run_tool("--bus", f"slcan:{adapter.path}", "run", script, code=1)
         self.assertLess(time.monotonic() - begin, 10)
-        self.assertIn(f"slcan:{adapter.path} stays full", err)
+        # How far the second one came when it was given up depends on the machine.
+        self.assertRegex(err, f"slcan:{adapter.path} stays full|frames? did not leave slcan:{adapter.path}")
 
     def test_an_adapter_that_falls_asleep_while_driving(self):
         """No set point is given to a line from which the last one has not left: none waits for the day it wakes."""
@@ -79,17 +80,26 @@ class OnASerialLine(WithAdapter, Case):
 
     def test_commands_to_an_adapter_that_sleeps(self):
         for words in ("stop", "publish gyro 100ms", "led 1 red", "send 123#00"):
-            adapter = self.adapter()
-            script = os.path.join(self.folder, "one.script")
-            with open(script, "w", encoding="utf-8") as file:
-                file.write(f"0s led 1 off\n1s {words}\n")
-            run = self.start("--bus", f"slcan:{adapter.path}", "run", script)
-            waiting.until(lambda: adapter.frames, "a frame, which it answers")
-            time.sleep(0.2)  # it has; the second step is far
-            adapter.asleep.set()
-            _, err = run.communicate(timeout=60)
-            self.assertEqual(run.returncode, 1, (words, err))
+            for _ in range(5):
+                code, err = self.command_to_an_adapter_that_falls_asleep(words)
+                # The adapter is played here: on a busy machine it may answer the first command too late, and then counts as one
+                # that never does, of which it is not known what has left; or it falls asleep after the second step.
+                if code == 1:
+                    break
+            self.assertEqual(code, 1, (words, err))
             self.assertRegex(err, "did not leave|stays full")
+
+    def command_to_an_adapter_that_falls_asleep(self, words):
+        adapter = self.adapter()
+        script = os.path.join(self.folder, "one.script")
+        with open(script, "w", encoding="utf-8") as file:
+            file.write(f"0s led 1 off\n2s {words}\n")
+        run = self.start("--bus", f"slcan:{adapter.path}", "run", script)
+        waiting.until(lambda: adapter.frames, "a frame, which it answers")
+        adapter.read_all()  # the second step is far
+        adapter.asleep.set()
+        _, err = run.communicate(timeout=60)
+        return run.returncode, err
 
     def test_listen_with_garbage_between(self):
         adapter = self.adapter()
