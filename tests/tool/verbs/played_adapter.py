@@ -9,6 +9,7 @@ import time
 import tty
 
 import waiting  # the harness has put its folder on the path
+from realtime import RealTime
 
 FRAME = re.compile(r"^(?:t([0-7][0-9A-Fa-f]{2})|T([01][0-9A-Fa-f]{7}))([0-8])((?:[0-9A-Fa-f]{2})*)$")
 
@@ -106,8 +107,9 @@ class Adapter:
         os.close(self.slave)
 
 
-class WithAdapter:
-    """For test cases: adapters that are unplugged at the end."""
+class WithAdapter(RealTime):
+    """For test cases: adapters that are unplugged at the end. They answer in time where the machine has the time: the tool
+    takes one that says nothing for 300 ms for one that never does."""
 
     def adapter(self, **options):
         adapter = Adapter(**options)
