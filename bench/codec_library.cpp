@@ -1,5 +1,5 @@
 // The same work with the generated header, and with its catalogue.
-#include "ocm/protocol/frame_index.hpp"
+#include "ocm/client/frame_index.hpp"
 #include "ocm/protocol/identifier.hpp"
 #include "ocm/protocol/topic.hpp"
 #include "ocm/topics/amiro.hpp"
@@ -86,7 +86,7 @@ std::uint64_t decode_by_library(std::span<const can::Frame> frames) {
 }
 
 std::uint64_t decode_by_catalogue(std::span<const can::Frame> frames) {
-  static constexpr protocol::FrameIndex index{amiro::catalogue};
+  static const client::FrameIndex index{amiro::catalogue};
   static constexpr std::uint64_t weights[] = {1, 3, 5, 9};
   std::uint64_t sum = 0;
   for (const can::Frame& frame : frames) {

@@ -105,9 +105,7 @@ BusSet robot_bus(const protocol::Catalogue& catalogue, const std::vector<Rate>& 
   BusSet set;
   std::string left_out;
   for (const auto& topic : catalogue.topics) {
-    const bool sensor = topic.kind == protocol::Kind::sensor;
-    base::Duration period{};
-    if (sensor) period = topic.period.duration();
+    base::Duration period = topic.usual_period();
     if (topic.role == protocol::Role::drive) period = client::hold_period;
     protocol::Priority priority = topic.priority;
     bool off = false;
@@ -122,18 +120,20 @@ BusSet robot_bus(const protocol::Catalogue& catalogue, const std::vector<Rate>& 
       left_out += (left_out.empty() ? "" : ", ") + std::string{topic.name};
       continue;
     }
-    for (const auto& frame : topic.frames) {
+    for (std::size_t i = 0; i < topic.frames.size(); ++i) {
+      const protocol::FrameRef ref{&topic, static_cast<std::uint8_t>(i)};
+      const auto& frame = ref.layout();
       BusEntry entry;
       entry.name =
           frame.name.empty() ? std::string{topic.name} : fmt::format("{}.{}", topic.name, frame.name);
-      const auto direction = sensor ? protocol::Direction::sensor : protocol::Direction::command;
-      entry.head.id = protocol::Identifier{direction, priority, frame.id}.encode();
-      entry.head.dlc = frame.dlc;
+      entry.head.id = protocol::identifier_of(ref, priority);
+      entry.head.format = protocol::format_of(frame);
+      entry.head.dlc = frame.dlc();
       entry.bits = frame.worst_bits[static_cast<std::size_t>(priority)];
       entry.period = period.count();
       entry.deadline = topic.deadline.count() == 0 ? analysis::implicit_deadline : topic.deadline.count();
       entry.overwritten = true;
-      entry.node = sensor ? catalogue.boards[topic.board].name : operator_node;
+      entry.node = topic.kind == protocol::Kind::actuator ? operator_node : catalogue.board_name(topic);
       entry.jitter = topic.jitter.count();
       set.entries.push_back(std::move(entry));
     }

@@ -9,8 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "ocm/client/frame_index.hpp"
 #include "ocm/measure/bus_load.hpp"
-#include "ocm/protocol/frame_index.hpp"
 #include "ocm/protocol/request.hpp"
 
 #include "cli/analyse/report.hpp"
@@ -107,7 +107,7 @@ Log read_log(const std::string& file, const protocol::Catalogue& catalogue) {
 
 /// The topics that are in the log, with the periods that requests in it ask for.
 BusSet set_of(const Log& log, const protocol::Catalogue& catalogue, std::vector<Rate> rates) {
-  const protocol::FrameIndex index{catalogue};
+  const client::FrameIndex index{catalogue};
   struct Seen {
     bool sent = false;
     protocol::Priority priority = protocol::default_priority;
@@ -258,7 +258,7 @@ TraceStudy study_trace(const std::string& log_file, const std::string& set_file,
   std::vector<Meter> meters(set.entries.size());
   std::map<std::uint32_t, std::pair<can::Frame, std::size_t>> strangers;
   std::int64_t bits = 0;
-  const protocol::FrameIndex index{catalogue};
+  const client::FrameIndex index{catalogue};
   std::size_t requests = 0;
   std::size_t too_close = 0;
   std::int64_t before = 0;

@@ -9,8 +9,8 @@
 
 #include "ocm/can/bus.hpp"
 #include "ocm/can/frame.hpp"
+#include "ocm/client/frame_index.hpp"
 #include "ocm/host/failure.hpp"
-#include "ocm/protocol/frame_index.hpp"
 #include "ocm/protocol/topic.hpp"
 
 #include "cli/shared/clock.hpp"
@@ -38,7 +38,7 @@ class OtherCommander {
   void sum_up() const;
 
  private:
-  protocol::FrameIndex index_;
+  client::FrameIndex index_;
   std::string verb_;
   const protocol::Topic* motors_ = nullptr;  // of `last_`
   can::Frame last_;

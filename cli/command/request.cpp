@@ -69,7 +69,7 @@ void send_and_await(Session& session, transport::Bus& open_bus, RefusalWatch& re
             ? fmt::format("{} frames came, {} of wrong length: does the robot run another protocol version?",
                           counters.frames, counters.wrong_dlc)
             : fmt::format("is board {} powered and on {}? Is the bit rate {} bit/s? See `amiroctl listen`",
-                          catalogue.boards[topic.board].name, bus->name(), catalogue.bit_rate)});
+                          catalogue.board_name(topic), bus->name(), catalogue.bit_rate)});
 }
 
 }  // namespace

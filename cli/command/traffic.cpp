@@ -109,13 +109,13 @@ bool Traffic::heard_of(const protocol::Topic& topic) const {
 }
 
 void Traffic::put_stream(BusCheck& check, const Stream& stream, bool asked) {
-  const auto direction = stream.topic->kind == protocol::Kind::sensor ? protocol::Direction::sensor
-                                                                      : protocol::Direction::command;
   for (std::size_t i = 0; i < stream.topic->frames.size(); ++i) {
     const auto& frame = stream.topic->frames[i];
-    const std::uint32_t id = protocol::Identifier{direction, stream.priority, frame.id}.encode();
-    put(check, can::arbitration_key({.id = id}), protocol::worst_bits(frame, stream.priority), stream.period,
-        stream.topic->deadline, {stream.topic, static_cast<std::uint8_t>(i)}, id, asked);
+    const std::uint32_t id =
+        protocol::identifier_of({stream.topic, static_cast<std::uint8_t>(i)}, stream.priority);
+    put(check, can::arbitration_key({.id = id, .format = protocol::format_of(frame)}),
+        protocol::worst_bits(frame, stream.priority), stream.period, stream.topic->deadline,
+        {stream.topic, static_cast<std::uint8_t>(i)}, id, asked);
   }
 }
 

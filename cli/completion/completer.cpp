@@ -46,7 +46,7 @@ Line read_line(Verb program, Session& session, const std::vector<std::string>& w
   for (std::size_t i = 0; i + 1 < words.size(); ++i) {
     const std::string& word = words[i];
     if (line.waiting) {
-      if (line.waiting->is_named("--spec")) session.spec_file = word;
+      if (line.waiting->is_named("--spec")) session.spec_files.push_back(word);
       line.waiting.reset();
     } else if (line.only_positionals || word.size() < 2 || word.front() != '-') {
       const Verb verb = line.positionals.empty() ? find_verb(line.verb, word) : Verb{};
@@ -57,7 +57,7 @@ Line read_line(Verb program, Session& session, const std::vector<std::string>& w
     } else if (word == "--") {
       line.only_positionals = true;
     } else if (const std::size_t equals = word.find('='); equals != std::string::npos) {
-      if (word.substr(0, equals) == "--spec") session.spec_file = word.substr(equals + 1);
+      if (word.substr(0, equals) == "--spec") session.spec_files.push_back(word.substr(equals + 1));
     } else if (const auto option = find_option(line.verb, word); option && wants_value(*option)) {
       line.waiting = option;
     }
@@ -94,7 +94,7 @@ class Completer {
     for (const auto& topic : session_.catalogue().topics) {
       const bool sensor = topic.kind == protocol::Kind::sensor;
       if (which != Of::all && sensor != (which == Of::sensors)) continue;
-      const std::string board{session_.catalogue().boards[topic.board].name};
+      const std::string board{session_.catalogue().board_name(topic)};
       const std::string what = (sensor ? "sensor of " : "actuator of ") + board;
       add(std::string{topic.name} + std::string{tail}, what);
       for (const auto alias : topic.aliases) add(std::string{alias} + std::string{tail}, what);

@@ -20,13 +20,22 @@ std::string shown(std::string_view text) {
   return '"' + log::Complaints::printable(text) + '"';
 }
 
+/// The shortest frame that holds the layout.
+std::uint8_t length_of(const log::Entry& entry, const protocol::FrameLayout& layout) {
+  return entry.is_fd() ? log::fd_length(log::fd_dlc(layout.length)) : layout.dlc();
+}
+
 }  // namespace
 
 JsonLineParser::JsonLineParser(const protocol::Catalogue& catalogue)
     : catalogue_(&catalogue), index_(catalogue) {
   for (const auto& topic : catalogue.topics)
     for (const auto& layout : topic.frames)
-      for (const auto& field : layout.fields) texts_[&layout].emplace_back(field);
+      for (const auto& field : layout.fields) {
+        auto& texts = texts_[&layout];
+        texts.fields.emplace_back(field);
+        texts.multiplexed = texts.multiplexed || field.selector != protocol::no_selector;
+      }
 }
 
 bool JsonLineParser::refuse(log::Cause cause, std::string what, std::string remedy) {
@@ -94,7 +103,8 @@ bool JsonLineParser::scan_fields(JsonScanner& scanner) {
   if (scanner.take('}')) return true;
   do {
     if (record_.field_count == record_.fields.size())
-      return refuse(log::Cause::syntax, "more than 64 fields", "a frame has 64 bits");
+      return refuse(log::Cause::syntax, fmt::format("more than {} fields", record_.fields.size()),
+                    "a frame has at most 512 bits");
     auto& named = record_.fields[record_.field_count++];
     if (!scanner.take_key(named.name) || !scanner.take_value(named.value)) return false;
   } while (scanner.take(','));
@@ -141,10 +151,10 @@ bool JsonLineParser::take_bus(std::string_view& bus) {
 }
 
 JsonLineParser::Meaning JsonLineParser::meaning_of(const log::Entry& entry) const {
-  if (entry.format != can::Format::base || record_.has_fd) return {};
-  const auto id = protocol::Identifier::decode(entry.id);
-  if (const auto* requested = index_.requested(id)) return {requested, {}};
-  return {nullptr, index_.find(id)};
+  const client::Subject subject = index_.subject(entry.id, entry.format);
+  if (!subject || (record_.has_fd && !subject.topic->is_message())) return {};
+  if (subject.is_request()) return {subject.topic, {}};
+  return {nullptr, subject.frame};
 }
 
 bool JsonLineParser::take_id(log::Entry& entry, Meaning& meaning) {
@@ -181,7 +191,8 @@ bool JsonLineParser::agrees(const log::Entry& entry, const Meaning& meaning) {
       return contradiction("topic", name);
   }
   const bool of_topic = meaning.requested != nullptr || meaning.frame;
-  if (record_.priority && of_topic &&
+  const bool of_message = meaning.frame && meaning.frame.topic->is_message();
+  if (record_.priority && of_topic && !of_message &&
       record_.priority.text != name(protocol::Identifier::decode(entry.id).priority))
     return contradiction("priority", record_.priority.text);
   if (record_.frame && of_topic &&
@@ -200,6 +211,7 @@ bool JsonLineParser::take_topic(log::Entry& entry, Meaning& meaning) {
     return refuse(log::Cause::identifier, "no topic " + shown(record_.topic.text),
                   words::suggestion(record_.topic.text, words));
   }
+  if (topic->is_message()) return take_message(entry, meaning, *topic);
   auto priority = topic->priority;
   if (record_.priority) {
     const auto parsed = protocol::parse_priority(record_.priority.text);
@@ -221,15 +233,26 @@ bool JsonLineParser::take_topic(log::Entry& entry, Meaning& meaning) {
     const bool meant = record_.frame ? record_.frame.text == frame_name(frame) : topic->frames.size() == 1;
     if (!meant) continue;
     meaning.frame = frame;
-    entry.id =
-        protocol::Identifier{sensor ? Direction::sensor : Direction::command, priority, frame.layout().id}
-            .encode();
+    entry.id = protocol::identifier_of(frame, priority);
     return true;
   }
   return refuse(log::Cause::identifier,
                 record_.frame ? fmt::format("{} has no frame {}", topic->name, shown(record_.frame.text))
                               : fmt::format("{} has several frames", topic->name),
                 "frame is one of: " + names);
+}
+
+/// The identifier of a message; one of J1939 is sent with any priority and by any source.
+bool JsonLineParser::take_message(log::Entry& entry, Meaning& meaning, const protocol::Topic& message) {
+  meaning.frame = {&message, 0};
+  const protocol::Address& address = meaning.frame.layout().address;
+  if (address.by == protocol::Address::By::pgn)
+    return refuse(log::Cause::identifier, fmt::format("{} without id", message.name),
+                  "a J1939 message may have any priority and source: give the id that it was sent with");
+  entry.id = address.number;
+  entry.format = address.extended ? can::Format::extended : can::Format::base;
+  if (meaning.frame.layout().fd) entry.flags |= log::flag::fd;
+  return true;
 }
 
 bool JsonLineParser::take_remote(log::Entry& entry) {
@@ -246,9 +269,10 @@ bool JsonLineParser::take_remote(log::Entry& entry) {
 
 bool JsonLineParser::take_data(log::Entry& entry, const Meaning& meaning) {
   if (!record_.data) {
+    if (record_.has_fd) entry.flags = record_.fd_flags;
     if (!record_.has_fields || (meaning.requested == nullptr && !meaning.frame))
       return refuse(log::Cause::length, "no data", "expected data, or fields of a topic");
-    if (meaning.frame) entry.length = meaning.frame.layout().dlc;
+    if (meaning.frame) entry.length = length_of(entry, meaning.frame.layout());
     return true;
   }
   const std::string_view text = record_.data.text;
@@ -301,22 +325,26 @@ bool JsonLineParser::put_fields(log::Entry& entry, const Meaning& meaning) {
                   "leave them out, or name the robot's topics with --spec");
   if (meaning.requested != nullptr) return put_request(entry, *meaning.requested);
   const auto& layout = meaning.frame.layout();
-  if (entry.length != layout.dlc)
+  if (!layout.accepts(entry.length))
     return refuse(log::Cause::length,
                   fmt::format("data of {} bytes with fields of {}", entry.length, meaning.frame.topic->name),
-                  fmt::format("it has {} bytes; leave data or fields out", layout.dlc));
-  can::Payload data;
-  std::memcpy(data.data(), entry.data.data(), data.size());
-  const std::span<const FieldText> texts = texts_[&layout];  // none for a frame without fields
+                  fmt::format("it has {} bytes; leave data or fields out", layout.length));
+  const std::span data{entry.data.data(), entry.length};
+  const auto& [texts, multiplexed] = texts_[&layout];  // none for a frame without fields
+  // Selectors first: they say which fields there are.
+  if (multiplexed)
+    for (std::size_t i = 0; i < record_.field_count; ++i)
+      if (!put_field(data, layout, record_.fields[i], texts, i, Part::selectors)) return false;
+  const Part rest = multiplexed ? Part::others : Part::all;
   for (std::size_t i = 0; i < record_.field_count; ++i)
-    if (!put_field(data, record_.fields[i], texts, i)) return false;
-  std::memcpy(entry.data.data(), data.data(), data.size());
+    if (!put_field(data, layout, record_.fields[i], texts, i, rest)) return false;
   return true;
 }
 
 /// `hint`: where the field is if the line has all of them, in their order.
-bool JsonLineParser::put_field(can::Payload& data, const NamedText& named, std::span<const FieldText> fields,
-                               std::size_t hint) {
+bool JsonLineParser::put_field(std::span<std::uint8_t> data, const protocol::FrameLayout& layout,
+                               const NamedText& named, std::span<const FieldText> fields, std::size_t hint,
+                               Part part) {
   std::size_t i = hint < fields.size() && fields[hint].field().name == named.name ? hint : 0;
   while (i < fields.size() && fields[i].field().name != named.name) ++i;
   if (i == fields.size()) {
@@ -326,11 +354,15 @@ bool JsonLineParser::put_field(can::Payload& data, const NamedText& named, std::
                   names.empty() ? "the frame has none" : words::suggestion(named.name, names));
   }
   const auto& field = fields[i].field();
+  if (part != Part::all && layout.selects(i) != (part == Part::selectors)) return true;
   const std::string_view text = named.value.text;
+  if (part != Part::selectors && !layout.has(field, data))
+    return refuse(log::Cause::syntax, "field " + shown(named.name) + " is not in this frame",
+                  "its selector says so, or the frame is too short; leave one of them out");
   char present[FieldText::room];
-  const auto size = static_cast<std::size_t>(fields[i].print(present, data) - present);
+  const auto size = static_cast<std::size_t>(fields[i].print(present, data.data()) - present);
   if (text == std::string_view{present, size}) return true;
-  if (!named.value.is_string) {
+  if (!named.value.is_string && !field.is_float()) {
     const auto number = base::parse_decimal(text);
     if (number && *number == physical(field, data)) return true;  // 2.50, 1e-06
     if (const auto raw = number ? field.raw_from(*number) : base::Result<std::int64_t>{number.error}) {

@@ -20,9 +20,9 @@
 #include <unordered_map>
 #include <vector>
 
+#include "ocm/client/frame_index.hpp"
 #include "ocm/log/reader.hpp"
 #include "ocm/log/writer.hpp"
-#include "ocm/protocol/frame_index.hpp"
 #include "ocm/protocol/topic.hpp"
 
 #include "cli/logs/json_scanner.hpp"
@@ -58,7 +58,7 @@ class JsonLineParser {
     JsonValue time, bus, id, priority, topic, frame, data, direction, raw_dlc;
     bool has_fd = false, has_fields = false;
     std::uint8_t fd_flags = 0;
-    std::array<NamedText, 64> fields;  // a frame has 64 bits
+    std::array<NamedText, 512> fields;  // a frame has 512 bits
     std::size_t field_count = 0;
   };
   /// What the identifier means.
@@ -80,14 +80,21 @@ class JsonLineParser {
   bool take_data(log::Entry& entry, const Meaning& meaning);
   bool take_remote(log::Entry& entry);
   bool put_fields(log::Entry& entry, const Meaning& meaning);
-  bool put_field(can::Payload& data, const NamedText& named, std::span<const FieldText> fields,
-                 std::size_t hint);
+  enum class Part : std::uint8_t { all, selectors, others };
+  bool put_field(std::span<std::uint8_t> data, const protocol::FrameLayout& layout, const NamedText& named,
+                 std::span<const FieldText> fields, std::size_t hint, Part part);
+  bool take_message(log::Entry& entry, Meaning& meaning, const protocol::Topic& message);
   bool put_request(log::Entry& entry, const protocol::Topic& topic);
   [[nodiscard]] Meaning meaning_of(const log::Entry& entry) const;
 
   const protocol::Catalogue* catalogue_;
-  protocol::FrameIndex index_;
-  std::unordered_map<const protocol::FrameLayout*, std::vector<FieldText>> texts_;
+  client::FrameIndex index_;
+  /// The fields of a layout.
+  struct Texts {
+    std::vector<FieldText> fields;
+    bool multiplexed = false;
+  };
+  std::unordered_map<const protocol::FrameLayout*, Texts> texts_;
   Record record_;
   base::Time last_{};
   std::string bus_;

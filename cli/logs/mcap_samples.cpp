@@ -71,26 +71,30 @@ McapSamples::McapSamples(const protocol::Catalogue& catalogue) : catalogue_(&cat
     text.room = 2;
     for (const protocol::FrameLayout& frame : topic.frames) {
       const FrameText& made = text.frames.emplace_back(text_of(frame, topic.frames.size() == 1));
-      for (const Value& value : made.values) text.room += value.before.size() + FieldText::room;
-      text.room += made.end.size() + 1;
+      for (const Value& value : made.values) text.room += 1 + value.before.size() + FieldText::room;
+      text.room += made.begin.size() + made.end.size() + 1;
     }
   }
 }
 
 McapSamples::FrameText McapSamples::text_of(const protocol::FrameLayout& frame, bool alone) {
-  FrameText made;
-  std::string before = alone ? "" : quoted(frame.name) + ":{";
+  FrameText made{alone ? "" : quoted(frame.name) + ":{", {}, alone ? "" : "}", &frame};
   for (const protocol::Field& field : frame.fields) {
-    made.values.push_back({before + quoted(field.name) + ':', FieldText{field}});
-    before = ",";
+    made.values.push_back({quoted(field.name) + ':', FieldText{field}});
+    made.varies = made.varies || frame.may_lack(field);
   }
-  if (made.values.empty()) made.end = before;
-  if (!alone) made.end += '}';
   return made;
 }
 
-char* McapSamples::print(char* to, const FrameText& frame, const can::Payload& data) {
-  for (const Value& value : frame.values) to = value.text.print(copy(to, value.before), data);
+char* McapSamples::print(char* to, const FrameText& frame, std::span<const std::uint8_t> data) {
+  to = copy(to, frame.begin);
+  bool first = true;
+  for (const Value& value : frame.values) {
+    if (frame.varies && !frame.layout->has(value.text.field(), data)) continue;
+    if (!first) *to++ = ',';
+    first = false;
+    to = value.text.print_json(copy(to, value.before), data.data());
+  }
   return copy(to, frame.end);
 }
 
@@ -126,12 +130,10 @@ void McapSamples::put(log::Bytes& out, log::mcap::Container& container, const lo
   if (is_sample) {
     for (std::size_t i = 0; i < text.frames.size(); ++i) {
       if (i != 0) *to++ = ',';
-      to = print(to, text.frames[i], reception.sample.payloads[i]);
+      to = print(to, text.frames[i], reception.sample.data(i));
     }
   } else {
-    can::Payload data;
-    std::copy_n(entry.data.begin(), data.size(), data.begin());
-    to = print(to, text.frames[reception.frame.frame], data);
+    to = print(to, text.frames[reception.frame.frame], entry.bytes());
   }
   *to++ = '}';
   container.end_message(to);

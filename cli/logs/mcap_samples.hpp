@@ -41,8 +41,11 @@ class McapSamples {
     FieldText text;
   };
   struct FrameText {
+    std::string begin;
     std::vector<Value> values;
     std::string end;
+    const protocol::FrameLayout* layout = nullptr;
+    bool varies = false;  // not every frame has every field
   };
   struct TopicText {
     std::vector<FrameText> frames;
@@ -58,7 +61,7 @@ class McapSamples {
   };
 
   static FrameText text_of(const protocol::FrameLayout& frame, bool alone);
-  static char* print(char* to, const FrameText& frame, const can::Payload& data);
+  static char* print(char* to, const FrameText& frame, std::span<const std::uint8_t> data);
   std::uint16_t channel(log::Bytes& out, log::mcap::Container& container, Heard& heard,
                         const protocol::Topic& topic, std::string_view interface);
 

@@ -38,12 +38,6 @@ const protocol::FrameLayout* layout_of(const client::Reception& reception) {
   return data ? &reception.frame.layout() : nullptr;
 }
 
-can::Payload payload_of(const log::Entry& entry) {
-  can::Payload data;
-  std::copy_n(entry.data.begin(), data.size(), data.begin());
-  return data;
-}
-
 /// By number of a topic's frame, in an array that all topics share: what is made once for a frame.
 template <class T>
 class PerFrame {
@@ -74,7 +68,7 @@ class LongCsv final : public Output {
         for (const auto& field : layout.fields)
           lines_[{&topic, static_cast<std::uint8_t>(i)}].push_back(
               {FieldText{field}, ',' + cell(topic.name) + ',' + cell(frame + std::string{field.name}) + ',',
-               ',' + cell(field.unit) + '\n'});
+               ',' + cell(field.unit) + '\n', layout.may_lack(field)});
       }
   }
 
@@ -85,12 +79,13 @@ class LongCsv final : public Output {
     char time[40];
     const auto time_size =
         static_cast<std::size_t>(put_seconds(time, event.entry.time.time_since_epoch().count()) - time);
-    const can::Payload data = payload_of(event.entry);
+    const auto& layout = event.reception.frame.layout();
     for (const Line& line : lines_[event.reception.frame]) {
+      if (line.varies && !layout.has(line.value.field(), event.entry.bytes())) continue;
       char* to = out.room(time_size + line.before.size() + FieldText::room + line.after.size());
       to = put_text(to, {time, time_size});
       to = put_text(to, line.before);
-      to = line.value.print(to, data);
+      to = line.value.print(to, event.entry.data.data());
       out.grow_to(put_text(to, line.after));
     }
     return true;
@@ -100,6 +95,7 @@ class LongCsv final : public Output {
   struct Line {
     FieldText value;
     std::string before, after;
+    bool varies;  // not every frame has it
   };
   PerFrame<std::vector<Line>> lines_;
 };
@@ -112,7 +108,8 @@ class WideCsv final : public Output {
       const auto& chosen = selection.fields()[i];
       head_ += ',' + cell(chosen.name);
       const auto number = static_cast<std::uint8_t>(chosen.layout - chosen.topic->frames.data());
-      cells_[{chosen.topic, number}].push_back({FieldText{*chosen.field}, i});
+      cells_[{chosen.topic, number}].push_back(
+          {FieldText{*chosen.field}, i, chosen.layout->may_lack(*chosen.field)});
     }
   }
 
@@ -126,7 +123,6 @@ class WideCsv final : public Output {
     if (layout_of(event.reception) == nullptr) return false;
     const auto& cells = cells_[event.reception.frame];  // in the order of the columns
     if (cells.empty()) return false;
-    const can::Payload data = payload_of(event.entry);
     char* to = out.room(40 + cells.size() * FieldText::room + columns_ + 1);
     to = put_seconds(to, event.entry.time.time_since_epoch().count());
     std::size_t column = 0;
@@ -137,7 +133,9 @@ class WideCsv final : public Output {
     for (const Cell& cell : cells) {
       put_commas(cell.column + 1 - column);
       column = cell.column + 1;
-      to = cell.value.print(to, data);
+      if (cell.varies && !event.reception.frame.layout().has(cell.value.field(), event.entry.bytes()))
+        continue;
+      to = cell.value.print(to, event.entry.data.data());
     }
     put_commas(columns_ - column);
     *to++ = '\n';
@@ -149,6 +147,7 @@ class WideCsv final : public Output {
   struct Cell {
     FieldText value;
     std::size_t column;
+    bool varies;
   };
   PerFrame<std::vector<Cell>> cells_;
   std::size_t columns_;

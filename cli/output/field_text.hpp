@@ -1,6 +1,7 @@
 /// A field's physical value as text, exactly: the same characters as
 /// base::to_text(field.physical(field.raw(data))), in a few nanoseconds. What the field's scale and offset
-/// say is worked out once: physical = (raw * factor + offset) / 10^places, in whole numbers.
+/// say is worked out once: physical = (raw * factor + offset) / 10^places, in whole numbers. A float has as
+/// few digits as give it back; what is no number is NaN, Infinity or -Infinity.
 #pragma once
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <span>
 
 #include "ocm/base/decimal.hpp"
 #include "ocm/protocol/codec.hpp"
@@ -17,8 +19,10 @@
 
 namespace ocm::cli {
 
-/// A field's value in `data`, exactly; the raw number where scale and offset lead beyond 63 bits.
-[[nodiscard]] inline base::Decimal physical(const protocol::Field& field, const can::Payload& data) {
+/// An integer field's value in a frame that holds it, exactly; the raw number where scale and offset lead
+/// beyond 63 bits.
+[[nodiscard]] inline base::Decimal physical(const protocol::Field& field,
+                                            std::span<const std::uint8_t> data) {
   const std::int64_t raw = field.raw(data);
   const auto value = field.physical(raw);
   return value ? *value : base::normalised(raw, 0);
@@ -31,15 +35,22 @@ class FieldText {
 
   /// `field` must outlive this.
   explicit FieldText(const protocol::Field& field) : field_(&field), fast_(work_out(field)) {
-    shift_ = protocol::detail::shift_of(field.position);
     mask_ = protocol::detail::low_mask(field.position.width);
     sign_ = field.is_signed ? std::uint64_t{1} << (field.position.width - 1) : 0;
     swapped_ = field.position.order == protocol::ByteOrder::big;
+    const unsigned first = field.position.first_bit();
+    // Eight bytes that hold the field, within the first eight or 64: see can::FrameView.
+    byte_ = field.position.bytes() <= 8 ? 0 : std::min(first / 8, 56U);
+    const unsigned within = first - 8 * byte_;
+    in_word_ = within + field.position.width <= 64;
+    if (in_word_) shift_ = swapped_ ? 64 - within - field.position.width : within;
+    fast_ = fast_ && in_word_;
   }
 
-  /// Writes the value of the field in `data`; returns the end.
-  char* print(char* to, const can::Payload& data) const noexcept {
-    if (!fast_) return print_slowly(to, data);
+  /// Writes the value of the field in `data`, which holds it and has room behind it as can::FrameView says;
+  /// returns the end.
+  char* print(char* to, const std::uint8_t* data) const noexcept {
+    if (!fast_) return print_slowly(to, raw(data));
     const std::int64_t value = raw(data) * factor_ + offset_;
     const std::uint64_t magnitude = base::detail::magnitude(value);
     *to = '-';
@@ -58,10 +69,19 @@ class FieldText {
     return last == 0 ? to : to + 1 + last;
   }
 
+  char* print(char* to, const can::Payload& data) const noexcept { return print(to, data.data()); }
+  /// The same as JSON, which has no numbers for NaN and the infinities: strings, as protocol buffers have
+  /// them.
+  char* print_json(char* to, const std::uint8_t* data) const noexcept {
+    return is_float_ ? print_json_float(to, raw(data)) : print(to, data);
+  }
+
   [[nodiscard]] const protocol::Field& field() const noexcept { return *field_; }
   /// As field().raw(data).
-  [[nodiscard]] std::int64_t raw(const can::Payload& data) const noexcept {
-    auto word = std::bit_cast<std::uint64_t>(data);
+  [[nodiscard]] std::int64_t raw(const std::uint8_t* data) const noexcept {
+    if (!in_word_) return raw_of_nine(data);
+    std::uint64_t word = 0;
+    std::memcpy(&word, data + byte_, sizeof word);
     if (swapped_) word = __builtin_bswap64(word);
     const std::uint64_t bits = word >> shift_ & mask_;
     return static_cast<std::int64_t>((bits ^ sign_) - sign_);
@@ -70,6 +90,7 @@ class FieldText {
  private:
   /// Whether the whole numbers suffice for every raw number that the field can have.
   bool work_out(const protocol::Field& field) noexcept {
+    if (field.is_float()) return false;
     const base::Decimal scale = field.scale;
     const base::Decimal offset = field.offset;
     int exponent = std::min<int>(scale.exponent, offset.digits == 0 ? scale.exponent : offset.exponent);
@@ -93,11 +114,10 @@ class FieldText {
     return true;
   }
 
-  char* print_slowly(char* to, const can::Payload& data) const noexcept {
-    const auto text = base::to_text(physical(*field_, data));
-    std::copy(text.view().begin(), text.view().end(), to);
-    return to + text.view().size();
-  }
+  char* print_slowly(char* to, std::int64_t raw) const noexcept;
+  char* print_json_float(char* to, std::int64_t raw) const noexcept;
+  /// Of a field of which the bits are in nine bytes.
+  [[nodiscard]] std::int64_t raw_of_nine(const std::uint8_t* data) const noexcept;
 
   /// Up to 19 digits, and up to 18 of them behind the point: 24 digits in three words.
   char* print_long(char* to, std::uint64_t magnitude) const noexcept {
@@ -126,12 +146,15 @@ class FieldText {
   }
 
   const protocol::Field* field_;
+  bool is_float_ = field_->is_float();
   std::int64_t factor_ = 1;
   std::int64_t offset_ = 0;
   std::uint64_t mask_ = 0;
   std::uint64_t sign_ = 0;
   unsigned shift_ = 0;
   int places_ = 0;
+  unsigned byte_ = 0;
+  bool in_word_ = true;
   bool swapped_ = false;
   bool fast_;
 };

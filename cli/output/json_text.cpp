@@ -82,7 +82,10 @@ void append_json(std::string& out, std::string_view text) {
 }
 
 JsonText::JsonText(const protocol::Catalogue& catalogue, const Selection& selection)
-    : everything_(selection.everything()) {
+    : catalogue_(&catalogue),
+      index_(catalogue),
+      messages_(catalogue.topics.size()),
+      everything_(selection.everything()) {
   for (const auto& topic : catalogue.topics) {
     for (std::size_t i = 0; i < topic.frames.size(); ++i)
       know({&topic, static_cast<std::uint8_t>(i)}, selection);
@@ -108,48 +111,70 @@ JsonText::Piece JsonText::keep(std::string_view text) {
 
 void JsonText::know(protocol::FrameRef frame, const Selection& selection) {
   const auto& layout = frame.layout();
-  const auto first_field = static_cast<std::uint32_t>(fields_.size());
+  Known known;
+  known.kind = Kind::fields;
+  known.selected = selection.has(layout);
+  known.first_field = static_cast<std::uint32_t>(fields_.size());
+  known.frame = frame;
   std::string names = "{";  // up to the first value
   std::string units = R"(,"units":{)";
   std::size_t size = 0;
   for (const auto& field : layout.fields) {
     if (!selection.has(layout, field)) continue;
     const std::string name = json_string(field.name) + ':';
-    if (fields_.size() == first_field) {
+    const std::string unit = name + json_string(field.unit);
+    if (fields_.size() == known.first_field) {
       names += name;
     } else {
       fields_.back().after = keep("," + name);
       units += ',';
     }
-    units += name + json_string(field.unit);
-    fields_.push_back({FieldText{field}, {}});
-    size += FieldText::room + name.size() + block;
+    units += unit;
+    known.varies = known.varies || layout.may_lack(field);
+    fields_.push_back({FieldText{field}, {}, {}, {}});
+    if (frame.topic->is_message()) {
+      fields_.back().name = keep(name);
+      fields_.back().unit = keep(unit);
+    }
+    size += FieldText::room + name.size() + unit.size() + 2 * block;
   }
+  known.fields = static_cast<std::uint16_t>(fields_.size() - known.first_field);
   units += R"(},"data":")";
-  if (fields_.size() == first_field)
+  if (known.varies)
+    names = "{";
+  else if (known.fields == 0)
     names += "}" + units;
   else
     fields_.back().after = keep("}" + units);
 
-  for (std::size_t level = 0; level < protocol::priority_levels; ++level) {
-    const bool sensor = frame.topic->kind == protocol::Kind::sensor;
-    const auto priority = static_cast<protocol::Priority>(level);
-    const std::uint32_t id =
-        protocol::Identifier{sensor ? protocol::Direction::sensor : protocol::Direction::command, priority,
-                             layout.id}
-            .encode();
-    const std::string head =
-        fmt::format(R"({:03X}","priority":"{}","topic":{},"frame":{},"fields":{})", id, name(priority),
-                    json_string(frame.topic->name), json_string(frame_name(frame)), names);
-    auto& known = known_[id];
-    known.kind = Kind::fields;
-    known.selected = selection.has(layout);
-    known.fields = static_cast<std::uint8_t>(fields_.size() - first_field);
-    known.first_field = first_field;
-    known.head = keep(head);
-    known.frame = frame;
-    room_ = std::max(room_, head.size() + size + units.size() + 2 * block);
+  const auto head = [&](std::string_view before) {
+    const std::string text =
+        fmt::format(R"({}"topic":{},"frame":{},"fields":{})", before, json_string(frame.topic->name),
+                    json_string(frame_name(frame)), names);
+    known.head = keep(text);
+    room_ = std::max(room_, text.size() + size + units.size() + 128 + 2 * block);
+  };
+  if (frame.topic->is_message()) {
+    head(",");
+    messages_[static_cast<std::size_t>(frame.topic - catalogue_->topics.data())] = known;
+    if (layout.address.by == protocol::Address::By::identifier && !layout.address.extended)
+      if (Known& place = known_[layout.address.number]; place.kind == Kind::unknown) place = known;
+    return;
   }
+  for (std::size_t level = 0; level < protocol::priority_levels; ++level) {
+    const auto priority = static_cast<protocol::Priority>(level);
+    const std::uint32_t id = protocol::identifier_of(frame, priority);
+    head(fmt::format(R"({:03X}","priority":"{}",)", id, name(priority)));
+    known_[id] = known;
+  }
+}
+
+const JsonText::Known& JsonText::known_of(const log::Entry& entry) const noexcept {
+  static constexpr Known nothing{};
+  if (entry.format == can::Format::base && !entry.is_fd()) return known_[entry.id & can::max_base_id];
+  const client::Subject subject = index_.subject(entry.id, entry.format);
+  if (!subject || !subject.topic->is_message()) return nothing;
+  return messages_[static_cast<std::size_t>(subject.topic - catalogue_->topics.data())];
 }
 
 char* JsonText::put(char* to, Piece piece) const noexcept {
@@ -178,28 +203,74 @@ const std::string& JsonText::bus_text(std::string_view bus, std::uint16_t number
   return kept.text;
 }
 
+/// The identifier of a message, and what it says by J1939.
+char* JsonText::put_identity(char* to, const log::Entry& entry, const Known& known) const noexcept {
+  to = put_hex(to, entry.id, can::is_extended(entry.format) ? 8 : 3);
+  *to++ = '"';
+  if (known.frame.layout().address.by != protocol::Address::By::pgn) return to;
+  const auto id = j1939::Identifier::decode(entry.id);
+  const auto put_text = [&to](std::string_view text) { to = std::copy(text.begin(), text.end(), to); };
+  put_text(R"(,"priority":)");
+  to = put_unsigned(to, id.priority);
+  put_text(R"(,"pgn":")");
+  to = put_hex(to, id.pgn, 5);
+  put_text(R"(","source":)");
+  to = put_unsigned(to, id.source);
+  put_text(R"(,"destination":)");
+  return put_unsigned(to, id.destination);
+}
+
+/// Of a message, those that are in the frame.
+char* JsonText::put_fields(char* to, const Known& known, const log::Entry& entry) const noexcept {
+  const auto& layout = known.frame.layout();
+  const FieldPiece* const begin = fields_.data() + known.first_field;
+  const auto each = [&](auto put_one) {
+    bool first = true;
+    for (const FieldPiece* piece = begin; piece != begin + known.fields; ++piece) {
+      if (!layout.has(piece->value.field(), entry.bytes())) continue;
+      if (!first) *to++ = ',';
+      first = false;
+      put_one(*piece);
+    }
+  };
+  const auto put_text = [&to](std::string_view text) { to = std::copy(text.begin(), text.end(), to); };
+  each([&](const FieldPiece& piece) { to = piece.value.print_json(put(to, piece.name), entry.data.data()); });
+  put_text(R"(},"units":{)");
+  each([&](const FieldPiece& piece) { to = put(to, piece.unit); });
+  put_text(R"(},"data":")");
+  return to;
+}
+
 bool JsonText::write(log::Bytes& out, std::string_view bus, const log::Entry& entry) {
-  const bool ordinary = entry.format == can::Format::base && !entry.is_fd();
-  static constexpr Known nothing{};
-  const Known& known = ordinary ? known_[entry.id & can::max_base_id] : nothing;
-  const bool data = known.kind == Kind::fields && entry.length == known.frame.layout().dlc;
+  const Known& known = known_of(entry);
+  const bool data = known.kind == Kind::fields && known.frame.layout().accepts(entry.length) &&
+                    !can::is_remote(entry.format);
   if (!everything_ && !(data && known.selected)) return false;
   const std::string& text = bus_text(bus, entry.interface);
   if (!data) {
     write_rest(out, text, known, entry);
     return true;
   }
-  can::Payload payload;
-  std::memcpy(payload.data(), entry.data.data(), payload.size());
   char* to = out.room(room_ + line_begin.size() + 32 + text.size());
-  to = put(put_begin(to, text, entry), known.head);
-  const FieldPiece* field = fields_.data() + known.first_field;
-  for (unsigned i = 0; i < known.fields; ++i) {
-    to = put(field[i].value.print(to, payload), field[i].after);
+  to = put_begin(to, text, entry);
+  if (known.frame.topic->is_message()) to = put_identity(to, entry, known);
+  to = put(to, known.head);
+  if (known.varies) {
+    to = put_fields(to, known, entry);
+  } else {
+    const FieldPiece* field = fields_.data() + known.first_field;
+    for (unsigned i = 0; i < known.fields; ++i)
+      to = put(field[i].value.print_json(to, entry.data.data()), field[i].after);
   }
-  put_hex(to, payload);  // all eight: of how many is not guessed
-  to += 2 * entry.length;
-  if (entry.direction == log::Direction::unknown && entry.raw_dlc == 0) {
+  if (entry.length <= can::max_dlc) {
+    can::Payload payload;
+    std::memcpy(payload.data(), entry.data.data(), payload.size());
+    put_hex(to, payload);  // all eight: of how many is not guessed
+    to += 2 * entry.length;
+  } else {
+    to = put_hex(to, entry.bytes());
+  }
+  if (entry.direction == log::Direction::unknown && entry.raw_dlc == 0 && !entry.is_fd()) {
     std::memcpy(to, "\"}\n", 3);
     to += 3;
   } else {
@@ -220,10 +291,14 @@ void JsonText::write_rest(log::Bytes& out, std::string_view bus_text, const Know
   const auto priority = protocol::Identifier::decode(entry.id).priority;
   if (known.kind == Kind::request)
     write_request(out, known, entry);
+  else if (known.kind == Kind::fields && known.frame.topic->is_message())
+    append_formatted(out, R"(,"topic":{},"frame":{},"error":"{} bytes, fewer than {}")",
+                     json_string(known.frame.topic->name), json_string(frame_name(known.frame)),
+                     entry.bytes().size(), known.frame.layout().length);
   else if (known.kind == Kind::fields)
     append_formatted(out, R"(,"priority":"{}","topic":{},"frame":{},"error":"DLC {} instead of {}")",
                      name(priority), json_string(known.frame.topic->name),
-                     json_string(frame_name(known.frame)), entry.length, known.frame.layout().dlc);
+                     json_string(frame_name(known.frame)), entry.length, known.frame.layout().length);
   else if (entry.format == can::Format::error)
     append_formatted(out, R"(,"error":"error frame: {}")", can::describe(*entry.classic()).view());
   else

@@ -1,7 +1,9 @@
 /// Frames as JSON lines, one object a frame with stable keys: time_ns (a string: it has more digits than a
 /// double), bus, id, priority, topic, frame, fields, units, data; and where they say something direction, fd,
-/// raw_dlc. What is the same in every frame of an identifier is made once, so that a line is a few copies
-/// with numbers between them. Nothing of the frame is left out: cli/logs/json_lines.hpp reads it back.
+/// raw_dlc. A message has no priority; one of J1939 has priority, pgn, source and destination of its
+/// identifier. A field that is not in the frame has no key. What is the same in every frame of an identifier
+/// is made once, so that a line is a few copies with numbers between them. Nothing of the frame is left out:
+/// cli/logs/json_lines.hpp reads it back.
 #pragma once
 
 #include <array>
@@ -9,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "ocm/client/frame_index.hpp"
 #include "ocm/log/bytes.hpp"
 #include "ocm/log/entry.hpp"
 #include "ocm/protocol/topic.hpp"
@@ -41,15 +44,18 @@ class JsonText {
   struct FieldPiece {
     FieldText value;
     Piece after;  ///< what follows the value: the next field's name, or the units
+    Piece name;   ///< for what is not in every frame, with its colon
+    Piece unit;   ///< of it, with name and colon
   };
   enum class Kind : std::uint8_t { unknown, fields, request };
   /// What an identifier means.
   struct Known {
     Kind kind = Kind::unknown;
     bool selected = true;
-    std::uint8_t fields = 0;
+    bool varies = false;  ///< not every frame has every field
+    std::uint16_t fields = 0;
     std::uint32_t first_field = 0;
-    Piece head;  ///< from the identifier to the first value
+    Piece head;  ///< of a topic from the identifier, of a message from behind it, to the first value
     protocol::FrameRef frame;
   };
   /// An interface's name, ready to be printed.
@@ -60,6 +66,9 @@ class JsonText {
 
   Piece keep(std::string_view text);
   void know(protocol::FrameRef frame, const Selection& selection);
+  [[nodiscard]] const Known& known_of(const log::Entry& entry) const noexcept;
+  [[nodiscard]] char* put_identity(char* to, const log::Entry& entry, const Known& known) const noexcept;
+  [[nodiscard]] char* put_fields(char* to, const Known& known, const log::Entry& entry) const noexcept;
   char* put(char* to, Piece piece) const noexcept;
   char* put_begin(char* to, std::string_view bus_text, const log::Entry& entry) const noexcept;
   const std::string& bus_text(std::string_view bus, std::uint16_t number);
@@ -67,7 +76,10 @@ class JsonText {
                   const log::Entry& entry) const;
   void write_request(log::Bytes& out, const Known& known, const log::Entry& entry) const;
 
+  const protocol::Catalogue* catalogue_;
+  client::FrameIndex index_;
   std::array<Known, can::max_base_id + 1> known_{};
+  std::vector<Known> messages_;  // by number in the catalogue, those of 29 bits and of CAN FD
   std::vector<FieldPiece> fields_;
   std::string pieces_;
   std::size_t room_ = 0;  ///< for any line without what precedes the identifier

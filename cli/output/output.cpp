@@ -5,8 +5,7 @@
 namespace ocm::cli {
 
 client::Reception understand(client::Receiver& receiver, const log::Entry& entry) {
-  const auto frame = entry.classic();
-  return frame ? receiver.take({entry.time, *frame}) : client::Reception{};
+  return receiver.take(entry.view(), entry.time);
 }
 
 std::unique_ptr<Output> make_output(Format format, const protocol::Catalogue& catalogue,

@@ -11,6 +11,7 @@
 #include "ocm/base/utf8.hpp"
 #include "ocm/can/error_frame.hpp"
 #include "ocm/can/text.hpp"
+#include "ocm/j1939/identifier.hpp"
 #include "ocm/protocol/request.hpp"
 
 #include "cli/output/field_text.hpp"
@@ -34,6 +35,7 @@ struct Column {
   std::string unit;    ///< with a blank before it; empty where none is shown
   bool unit_of_all = false;
   std::size_t width = 0;
+  bool varies = false;  ///< not every frame has it
 };
 
 class Pretty final : public Output {
@@ -109,12 +111,12 @@ class Pretty final : public Output {
         break;
       case Meaning::sample:
         head(out, event, "");
-        values(out, *event.reception.topic, event.reception.sample.payloads);
+        values(out, *event.reception.topic,
+               [&](std::size_t frame) { return event.reception.sample.data(frame); });
         break;
       case Meaning::set_point: {
         head(out, event, "<- ");
-        const can::Payload payload = event.entry.classic()->data;
-        values(out, *event.reception.topic, std::span{&payload, 1});
+        values(out, *event.reception.topic, [&](std::size_t) { return event.entry.bytes(); });
         break;
       }
       case Meaning::request:
@@ -123,8 +125,10 @@ class Pretty final : public Output {
         break;
       case Meaning::wrong_dlc:
         head(out, event, "");
-        out.append(painted(red, fmt::format("DLC {} instead of {}: {}", event.entry.length,
-                                            event.reception.frame.layout().dlc, frame_text(event.entry))));
+        out.append(painted(
+            red,
+            fmt::format("{} {} instead of {}: {}", event.reception.topic->is_message() ? "bytes" : "DLC",
+                        event.entry.length, event.reception.frame.layout().length, frame_text(event.entry))));
         break;
       case Meaning::unknown:
         time(out, event);
@@ -180,13 +184,24 @@ class Pretty final : public Output {
 
   void head(Buffer& out, const Event& event, std::string_view arrow) {
     time(out, event);
-    const auto priority = protocol::Identifier::decode(event.entry.id).priority;
-    out.append(priorities_[static_cast<std::size_t>(priority)]);
+    out.append(priority_of(event));
     may_break(out);
     const TopicText& topic = topics_.at(event.reception.topic);
     out.append(has_column_of_names() ? topic.name : topic.narrow);
     may_break(out);
     out.append(arrow);
+  }
+
+  /// A topic's in words; of a message its identifier, or by J1939 the priority, source and destination in it.
+  [[nodiscard]] std::string priority_of(const Event& event) const {
+    const auto& topic = *event.reception.topic;
+    if (!topic.is_message())
+      return priorities_[static_cast<std::size_t>(protocol::Identifier::decode(event.entry.id).priority)];
+    if (topic.frames[0].address.by != protocol::Address::By::pgn)
+      return painted(dim, fmt::format("{:>7} ", fmt::format("{:0{}X}", event.entry.id,
+                                                            can::is_extended(event.entry.format) ? 8 : 3)));
+    const auto id = j1939::Identifier::decode(event.entry.id);
+    return painted(dim, fmt::format("{} {:02X}>{:02X} ", id.priority, id.source, id.destination));
   }
 
   [[nodiscard]] std::vector<Column> columns_of(const protocol::Topic& topic,
@@ -203,7 +218,8 @@ class Pretty final : public Output {
         }
         std::string before = (columns.empty() ? "" : "  ") + painted(dim, label) + ' ';
         std::string unit = field.unit.empty() ? std::string{} : ' ' + std::string{field.unit};
-        columns.push_back({FieldText{field}, i, std::move(before), std::move(unit), false, width_of(field)});
+        columns.push_back({FieldText{field}, i, std::move(before), std::move(unit), false, width_of(field),
+                           layout.may_lack(field)});
       }
     }
     // One unit for all comes at the end.
@@ -247,19 +263,23 @@ class Pretty final : public Output {
     out.append(text);
   }
 
-  void values(Buffer& out, const protocol::Topic& topic, std::span<const can::Payload> payloads) {
+  /// `data_of` a frame of the topic: its bytes.
+  template <class DataOf>
+  void values(Buffer& out, const protocol::Topic& topic, DataOf data_of) {
     for (const Column& column : topics_.at(&topic).columns) {
+      const std::span<const std::uint8_t> bytes = data_of(column.frame);
+      const std::uint8_t* const data = bytes.data();
+      const auto& field = column.value.field();
+      if (column.varies && !topic.frames[column.frame].has(field, bytes)) continue;
       may_break(out);
       out.append(column.before);
-      const can::Payload& data = payloads[column.frame];
-      const auto& field = column.value.field();
       char number[FieldText::room];
       bool named = false;
       if (field.values.empty() && !field.flags) {
         const char* const end = column.value.print(number, data);
         put_right(out, {number, static_cast<std::size_t>(end - number)}, column.width);
       } else {
-        const std::int64_t raw = field.raw(data);
+        const std::int64_t raw = column.value.raw(data);
         std::string text = names_of(field, raw);
         if (text.empty())
           text.assign(number, static_cast<std::size_t>(column.value.print(number, data) - number));

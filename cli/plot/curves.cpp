@@ -49,12 +49,6 @@ std::string names(const Chosen& fields) {
   return text;
 }
 
-double value_of(const protocol::Field& field, const can::Payload& data) {
-  const std::int64_t raw = field.raw(data);
-  const auto physical = field.physical(raw);
-  return physical ? physical->as_double() : static_cast<double>(raw);
-}
-
 }  // namespace
 
 transport::Outcome<std::vector<Wanted>> parse_fields(const protocol::Catalogue& catalogue,
@@ -91,16 +85,15 @@ void Curves::take(std::span<const log::Entry> entries) {
   for (const log::Entry& entry : entries) {
     begin_ = begin_ ? std::min(*begin_, entry.time) : entry.time;
     end_ = std::max(end_, entry.time);
-    if (entry.format != can::Format::base || entry.is_fd()) continue;
-    const auto frame = index_.find(protocol::Identifier::decode(entry.id));
-    if (!frame || frame.layout().dlc != entry.length) continue;
+    const auto frame = index_.subject(entry.id, entry.format).frame;
+    if (!frame || !frame.layout().accepts(entry.length)) continue;
+    if (entry.is_fd() && !frame.topic->is_message()) continue;
     const auto uses = uses_.find(&frame.layout());
     if (uses == uses_.end()) continue;
-    can::Payload data;
-    std::copy_n(entry.data.begin(), data.size(), data.begin());
     for (const Use& use : uses->second) {
+      if (!frame.layout().has(*use.field, entry.bytes())) continue;
       Curve& curve = curves_[use.curve];
-      const double value = value_of(*use.field, data);
+      const double value = use.field->value(use.field->raw(entry.bytes()));
       if (use.is_x)
         curve.x = value;
       else if (!curve.wanted.x)

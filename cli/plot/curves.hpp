@@ -9,9 +9,9 @@
 #include <unordered_map>
 #include <vector>
 
+#include "ocm/client/frame_index.hpp"
 #include "ocm/log/entry.hpp"
 #include "ocm/measure/envelope.hpp"
-#include "ocm/protocol/frame_index.hpp"
 #include "ocm/protocol/topic.hpp"
 #include "ocm/transport/bus.hpp"
 
@@ -57,7 +57,7 @@ class Curves {
     const protocol::Field* field = nullptr;
     bool is_x = false;
   };
-  protocol::FrameIndex index_;
+  client::FrameIndex index_;
   std::unordered_map<const protocol::FrameLayout*, std::vector<Use>> uses_;  // x before y
   std::vector<Curve> curves_;
   std::optional<base::Time> begin_;

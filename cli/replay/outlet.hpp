@@ -6,8 +6,8 @@
 #include <memory>
 #include <string_view>
 
+#include "ocm/client/frame_index.hpp"
 #include "ocm/log/entry.hpp"
-#include "ocm/protocol/frame_index.hpp"
 #include "ocm/transport/bus.hpp"
 
 #include "cli/shared/outgoing.hpp"
@@ -47,7 +47,7 @@ class Outlet {
   std::unique_ptr<transport::Bus> bus_;
   Outgoing outgoing_;
   bool takes_fd_;
-  protocol::FrameIndex index_;
+  client::FrameIndex index_;
   can::Frame set_point_;  ///< of motors, the last that was sent
 };
 

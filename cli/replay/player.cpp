@@ -37,11 +37,15 @@ Selection::Selection(const protocol::Catalogue& catalogue, std::vector<const pro
 
 bool Selection::has(const log::Entry& entry) const {
   if (topics_.empty() && only_ == Only::all) return true;
-  if (entry.format != can::Format::base || entry.is_fd()) return false;
-  const auto id = protocol::Identifier::decode(entry.id);
-  const bool command = id.direction == protocol::Direction::command;
-  if (only_ != Only::all && command != (only_ == Only::commands)) return false;
-  const auto* topic = index_.subject(id).topic;
+  const auto* topic = index_.subject(entry.id, entry.format).topic;
+  if (entry.is_fd() && (topic == nullptr || !topic->is_message())) return false;
+  if (topic == nullptr || !topic->is_message()) {
+    if (entry.format != can::Format::base) return false;
+    const bool command = protocol::Identifier::decode(entry.id).direction == protocol::Direction::command;
+    if (only_ != Only::all && command != (only_ == Only::commands)) return false;
+  } else if (only_ == Only::commands) {
+    return false;
+  }
   return topics_.empty() || std::find(topics_.begin(), topics_.end(), topic) != topics_.end();
 }
 

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "ocm/base/time.hpp"
+#include "ocm/client/frame_index.hpp"
 #include "ocm/log/entry.hpp"
 #include "ocm/log/playback.hpp"
 #include "ocm/log/reader.hpp"
 #include "ocm/log/writer.hpp"
-#include "ocm/protocol/frame_index.hpp"
 #include "ocm/protocol/topic.hpp"
 
 #include "cli/replay/outlet.hpp"
@@ -30,7 +30,7 @@ class Selection {
   [[nodiscard]] bool has(const log::Entry& entry) const;
 
  private:
-  protocol::FrameIndex index_;
+  client::FrameIndex index_;
   std::vector<const protocol::Topic*> topics_;
   Only only_;
 };

@@ -15,11 +15,12 @@ StandIn::StandIn(const protocol::Catalogue& catalogue)
 bool StandIn::learn(const can::Frame& frame) {
   const auto reception = receiver_.take({{}, frame});
   if (reception.meaning != client::Meaning::sample) return true;
-  const auto& payloads = reception.sample.payloads;
-  if (frames_ + payloads.size() > most_frames) return false;
+  if (reception.topic->is_message()) return true;  // is asked for by no request
+  const std::size_t count = reception.topic->frames.size();
+  if (frames_ + count > most_frames) return false;
   auto& recorded = recordings_[index(*reception.topic)].payloads;
-  recorded.insert(recorded.end(), payloads.begin(), payloads.end());
-  frames_ += payloads.size();
+  for (std::size_t i = 0; i < count; ++i) recorded.push_back(reception.sample.payload(i));
+  frames_ += count;
   return true;
 }
 
@@ -65,7 +66,7 @@ const std::vector<can::Frame>& StandIn::due(base::Time now) {
     auto& [payloads, next] = recordings_[release.stream];
     for (const auto& layout : layouts) {
       const protocol::Identifier id{protocol::Direction::sensor, priority, layout.id};
-      sample_.push_back({id.encode(), layout.dlc, payloads[next++]});
+      sample_.push_back({id.encode(), layout.dlc(), payloads[next++]});
     }
     if (next == payloads.size()) next = 0;
     break;

@@ -10,8 +10,8 @@
 #include "ocm/base/time.hpp"
 #include "ocm/can/bus.hpp"
 #include "ocm/can/frame.hpp"
+#include "ocm/client/frame_index.hpp"
 #include "ocm/client/sample.hpp"
-#include "ocm/protocol/frame_index.hpp"
 #include "ocm/protocol/topic.hpp"
 #include "ocm/scheduling/publisher.hpp"
 
@@ -58,7 +58,7 @@ class StandIn {
 
   const protocol::Catalogue* catalogue_;
   client::Receiver receiver_;
-  protocol::FrameIndex index_;
+  client::FrameIndex index_;
   std::vector<Recording> recordings_;
   std::unique_ptr<scheduling::Publisher<most_topics>> publisher_;
   std::size_t frames_ = 0;

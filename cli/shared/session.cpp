@@ -1,7 +1,9 @@
 #include "cli/shared/session.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <span>
 #include <unistd.h>
 #include <utility>
 
@@ -13,9 +15,23 @@
 #include "cli/shared/config.hpp"
 #include "cli/shared/memory.hpp"
 #include "generator/robot_spec.hpp"
+#include "generator/spec/merge.hpp"
 #include "generator/spec/spec.hpp"
 
 namespace ocm::cli {
+namespace {
+
+/// So many doubts are told one by one: a file may have hundreds.
+constexpr std::size_t most_doubts = 3;
+
+/// On stderr, all of them, and the end; nothing when there are none.
+void stop_at(const std::vector<spec::Problem>& problems) {
+  for (const auto& problem : problems)
+    fmt::print(stderr, "amiroctl: {}: {}\n          {}\n", problem.place, problem.what, problem.remedy);
+  if (!problems.empty()) throw Exit{exit_failure};
+}
+
+}  // namespace
 
 Session::Session() = default;
 Session::~Session() = default;
@@ -27,9 +43,13 @@ void Session::add_options(Verb app) {
          "the only interface that is up or sim")
       .environment("AMIROCTL_BUS")
       .type_name("NAME");
-  app.add_option("--spec", spec_file, "topics of another robot, as JSON; default: the AMiRo's, compiled in")
+  app.add_option("--spec", spec_files,
+                 "what is said on another bus: a robot's topics as JSON, or messages as DBC; may be given "
+                 "again; default: the AMiRo's, compiled in")
       .environment("AMIROCTL_SPEC")
-      .type_name("FILE");
+      .type_name("FILE")
+      .one_a_mention();
+  app.add_flag("--strict-spec", strict_spec_, "refuse a DBC file with doubtful places");
   app.add_option("--config", config_file,
                  "configuration file (TOML); default: ~/.config/amiroctl/config.toml")
       .environment("AMIROCTL_CONFIG")
@@ -39,20 +59,39 @@ void Session::add_options(Verb app) {
 }
 
 const protocol::Catalogue& Session::catalogue() {
-  return spec_file.empty() ? amiro::catalogue : spec().catalogue();
+  return spec_files.empty() ? amiro::catalogue : spec().catalogue();
 }
 
 const spec::Spec& Session::spec() {
   if (spec_ == nullptr) {
     const EndsWithoutMemory ends;
-    auto loaded = spec_file.empty() ? spec::parse(generate::robot_spec_text(), generate::robot_spec_name)
-                                    : spec::load(spec_file);
-    for (const auto& problem : loaded.problems)
-      fmt::print(stderr, "amiroctl: {}: {}\n          {}\n", problem.place, problem.what, problem.remedy);
-    if (loaded.spec == nullptr) throw Exit{exit_failure};
-    spec_ = std::move(loaded.spec);
+    if (spec_files.empty()) {
+      spec_ = std::move(spec::parse(generate::robot_spec_text(), generate::robot_spec_name).spec);
+      return *spec_;
+    }
+    spec_ = load(spec_files.front());
+    for (std::size_t i = 1; i < spec_files.size(); ++i) {
+      spec::Model all = spec_->model();
+      std::vector<spec::Problem> problems;
+      spec::merge(all, load(spec_files[i])->model(), spec_files[i], problems);
+      stop_at(problems);
+      spec_ = std::make_unique<spec::Spec>(std::move(all));
+    }
   }
   return *spec_;
+}
+
+std::unique_ptr<spec::Spec> Session::load(const std::string& file) const {
+  auto loaded = spec::load(file);
+  if (strict_spec_) stop_at(loaded.doubts);
+  stop_at(loaded.problems);
+  const std::size_t told = std::min(loaded.doubts.size(), most_doubts);
+  for (const auto& doubt : std::span{loaded.doubts}.first(told))
+    remark(fmt::format("{}: {}; {}", doubt.place, doubt.what, doubt.remedy));
+  if (told < loaded.doubts.size())
+    remark(fmt::format("{}: {} more doubtful places; --strict-spec shows all and refuses", file,
+                       loaded.doubts.size() - told));
+  return std::move(loaded.spec);
 }
 
 std::unique_ptr<transport::Bus> Session::open_bus(std::string_view name) {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "ocm/protocol/topic.hpp"
 #include "ocm/transport/bus.hpp"
@@ -25,7 +26,7 @@ class Session {
   /// The options that every verb takes.
   void add_options(Verb app);
 
-  /// The AMiRo's, compiled in, or that of --spec.
+  /// The AMiRo's, compiled in, or that of --spec; of several, all that they say.
   [[nodiscard]] const protocol::Catalogue& catalogue();
   /// The same with all that its spec says, read when it is asked for.
   [[nodiscard]] const spec::Spec& spec();
@@ -39,11 +40,14 @@ class Session {
   [[nodiscard]] bool colour() const;
 
   std::string bus_name;
-  std::string spec_file;
+  std::vector<std::string> spec_files;
   std::string config_file;
 
  private:
+  [[nodiscard]] std::unique_ptr<spec::Spec> load(const std::string& file) const;
+
   bool no_colour_ = false;
+  bool strict_spec_ = false;
   std::unique_ptr<spec::Spec> spec_;
 };
 

@@ -16,7 +16,7 @@ void Collector::take(std::span<const log::Entry> entries, const log::Interfaces&
     if (const auto frame = entry.classic())
       statistics.take({entry.time, *frame});
     else
-      statistics.take_fd(entry.time);
+      statistics.take_fd(entry.view(), entry.time);
   }
 }
 

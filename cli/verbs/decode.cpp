@@ -116,9 +116,9 @@ void decode(Session& session, const DecodeOptions& options, int& exit_code) {
   }
   const Display& display = decoding.display;
   display.summarise(0);
-  if (display.counters().frames + display.fd() == 0) remark("no frame to decode");
+  if (display.counters().frames == 0) remark("no frame to decode");
   display.tell_contradictions("a log of another bus?");
-  const bool not_all = decoding.unreadable || display.fd() != 0 || display.counters().faults() != 0;
+  const bool not_all = decoding.unreadable || display.counters().faults() != 0;
   if (understood(display) == 0 || decoding.ended_early || (options.strict && not_all))
     exit_code = exit_failure;
   exit_code = exit_code_after_interrupt(exit_code);

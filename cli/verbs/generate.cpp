@@ -45,7 +45,7 @@ void generate_file(Session& session, const GenerateOptions& options) {
     fail({fmt::format("generate: unknown target '{}'", options.target), remedy_for(options.target)},
          exit_usage);
   generate::Options how{std::string{generate::robot_spec_name}, std::nullopt};
-  if (!session.spec_file.empty()) how.spec_name = base_name(session.spec_file);
+  if (!session.spec_files.empty()) how.spec_name = base_name(session.spec_files.front());
   if (target->name == "dbc")
     how.priority = options.priority;
   else if (options.priority_typed)  // that of a config file is for other verbs

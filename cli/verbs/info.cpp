@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "ocm/j1939/identifier.hpp"
+
 #include "cli/verbs/verbs.hpp"
 #include "cli/words/command.hpp"
 #include "cli/words/quantity.hpp"
@@ -19,7 +21,17 @@ std::string bound(const protocol::Field& field, std::int64_t raw) {
   return physical ? number(*physical) : std::to_string(raw);
 }
 
-void print_field(const protocol::Field& field) {
+/// "rpm is 3 or 5..7", for a field that is in some frames only.
+std::string presence(const protocol::FrameLayout& layout, const protocol::Field& field) {
+  if (field.selector >= layout.fields.size()) return {};
+  std::string ranges;
+  for (const auto& [first, last] : field.selected)
+    ranges += fmt::format("{}{}", ranges.empty() ? "" : ", ",
+                          first == last ? std::to_string(first) : fmt::format("{}..{}", first, last));
+  return fmt::format("  when {} is {}", layout.fields[field.selector].name, ranges);
+}
+
+void print_field(const protocol::FrameLayout& layout, const protocol::Field& field) {
   const auto position = field.position;
   const std::string place =
       position.start % 8 == 0 && position.width % 8 == 0 && position.order == protocol::ByteOrder::little
@@ -27,15 +39,44 @@ void print_field(const protocol::Field& field) {
                 ? fmt::format("byte {}", position.start / 8)
                 : fmt::format("bytes {}..{}", position.start / 8, (position.start + position.width) / 8 - 1)
           : fmt::format("bit {}, {} wide", position.start, position.width);
-  fmt::print("    {:<14} {:<14} {}{:<3} {:<3}  1 bit = {}{}{}  [{}, {}]{}{}\n", field.name, place,
-             field.is_signed ? 'i' : 'u', position.width,
+  const bool states = field.min != field.max;
+  fmt::print("    {:<14} {:<14} {}{:<3} {:<3}  1 bit = {}{}{}  [{}, {}]{}{}{}\n", field.name, place,
+             field.is_float()  ? 'f'
+             : field.is_signed ? 'i'
+                               : 'u',
+             position.width,
              position.width <= 8                             ? ""
              : position.order == protocol::ByteOrder::little ? "LE"
                                                              : "BE",
-             number(field.scale), field.unit.empty() ? "" : " ", field.unit, bound(field, field.raw_min),
-             bound(field, field.raw_max), field.unit.empty() ? "" : " ", field.unit);
+             number(field.scale), field.unit.empty() ? "" : " ", field.unit,
+             states             ? number(field.min)
+             : field.is_float() ? "any"
+                                : bound(field, field.raw_min),
+             states             ? number(field.max)
+             : field.is_float() ? "any"
+                                : bound(field, field.raw_max),
+             field.unit.empty() ? "" : " ", field.unit, presence(layout, field));
   for (const auto& value : field.values)
     fmt::print("      {} {:<6} {}\n", field.flags ? "bit" : "  =", value.raw, value.name);
+}
+
+void message(const protocol::Catalogue& catalogue, const protocol::Topic& topic) {
+  const auto& layout = topic.frames[0];
+  const auto sender = catalogue.board_name(topic);
+  const auto [by, extended, number] = layout.address;
+  fmt::print("{} (message{}{}, id {:0{}X})\n", topic.name, sender.empty() ? "" : " of ", sender, number,
+             extended ? 8 : 3);
+  if (by == protocol::Address::By::pgn) {
+    const auto id = j1939::Identifier::decode(number);
+    fmt::print("  J1939      parameter group {} (0x{:05X}), here at priority {} from source {}\n", id.pgn,
+               id.pgn, id.priority, id.source);
+  }
+  fmt::print("  period     {}\n", topic.cycle.count() != 0 ? words::to_text(topic.cycle) : "none is stated");
+  if (topic.shortest_period.count() != 0)
+    fmt::print("  distance   at least {}\n", words::to_text(topic.shortest_period));
+  fmt::print("  frame      {} bytes{}\n", layout.length, layout.fd ? ", CAN FD" : "");
+  for (const auto& field : layout.fields) print_field(layout, field);
+  if (!topic.source.empty()) fmt::print("  source     {}\n", topic.source);
 }
 
 void info(const protocol::Catalogue& catalogue, const std::string& word) {
@@ -46,8 +87,8 @@ void info(const protocol::Catalogue& catalogue, const std::string& word) {
     fail({"info: no topic '" + word + "'", words::topic_suggestion(catalogue, word)}, exit_usage);
   }
   const bool sensor = topic->kind == protocol::Kind::sensor;
-  const auto& board = catalogue.boards[topic->board];
-  fmt::print("{} ({} of {}, id 0x{:02X})\n", topic->name, sensor ? "sensor" : "actuator", board.name,
+  if (topic->is_message()) return message(catalogue, *topic);
+  fmt::print("{} ({} of {}, id 0x{:02X})\n", topic->name, name(topic->kind), catalogue.board_name(*topic),
              topic->id.value);
   if (!topic->aliases.empty()) {
     fmt::print("  aliases   ");
@@ -63,12 +104,13 @@ void info(const protocol::Catalogue& catalogue, const std::string& word) {
   } else if (topic->timeout.count() != 0) {
     fmt::print("  timeout    at rest {} after the last set point\n", words::to_text(topic->timeout));
   }
-  for (const auto& layout : topic->frames) {
-    const auto direction = sensor ? protocol::Direction::sensor : protocol::Direction::command;
+  for (std::size_t i = 0; i < topic->frames.size(); ++i) {
+    const protocol::FrameRef frame{topic, static_cast<std::uint8_t>(i)};
+    const auto& layout = frame.layout();
     fmt::print("  frame      {}{}id 0x{:02X}, on the bus {:03X} at medium priority, DLC {}\n", layout.name,
                layout.name.empty() ? "" : ": ", layout.id.value,
-               protocol::Identifier{direction, protocol::default_priority, layout.id}.encode(), layout.dlc);
-    for (const auto& field : layout.fields) print_field(field);
+               protocol::identifier_of(frame, protocol::default_priority), layout.length);
+    for (const auto& field : layout.fields) print_field(layout, field);
   }
   fmt::print("  source     {}\n", topic->source);
 }

@@ -17,16 +17,28 @@ std::string aliases_of(const protocol::Topic& topic) {
   return text;
 }
 
+/// A topic's number, or a message's identifier with as many digits as its format has.
+std::string id_of(const protocol::Topic& topic) {
+  if (!topic.is_message()) return fmt::format("0x{:02X}", topic.id.value);
+  const auto& address = topic.frames[0].address;
+  return fmt::format("0x{:0{}X}", address.number, address.extended ? 8 : 3);
+}
+
+std::string period_of(const protocol::Topic& topic) {
+  if (topic.kind == protocol::Kind::sensor) return words::to_text(topic.period);
+  return topic.cycle.count() != 0 ? words::to_text(topic.cycle) : "-";
+}
+
 void list_json(const protocol::Catalogue& catalogue) {
   for (const auto& topic : catalogue.topics) {
     Json line;
     line["topic"] = topic.name;
     line["aliases"] = topic.aliases;
-    line["id"] = fmt::format("0x{:02X}", topic.id.value);
-    line["kind"] = topic.kind == protocol::Kind::sensor ? "sensor" : "actuator";
-    line["board"] = catalogue.boards[topic.board].name;
+    line["id"] = id_of(topic);
+    line["kind"] = name(topic.kind);
+    line["board"] = catalogue.board_name(topic);
     line["frames"] = topic.frames.size();
-    if (topic.kind == protocol::Kind::sensor) line["period_ns"] = topic.period.duration().count();
+    if (const auto period = topic.usual_period(); period.count() != 0) line["period_ns"] = period.count();
     fmt::print("{}\n", line.line());
   }
 }
@@ -35,20 +47,21 @@ void list_table(const protocol::Catalogue& catalogue) {
   std::size_t name_width = 5;
   std::size_t alias_width = 7;
   std::size_t board_width = 5;
+  std::size_t id_width = 4;
   for (const auto& topic : catalogue.topics) {
     name_width = std::max(name_width, topic.name.size());
     alias_width = std::max(alias_width, aliases_of(topic).size());
-    board_width = std::max(board_width, catalogue.boards[topic.board].name.size());
+    board_width = std::max(board_width, catalogue.board_name(topic).size());
+    id_width = std::max(id_width, id_of(topic).size());
   }
-  fmt::print("{:<{}}  {:<{}}  {:<4}  {:<8}  {:<{}}  {:>6}  {:>7}\n", "TOPIC", name_width, "ALIASES",
-             alias_width, "ID", "KIND", "BOARD", board_width, "FRAMES", "PERIOD");
-  for (const auto& topic : catalogue.topics) {
-    const bool sensor = topic.kind == protocol::Kind::sensor;
-    fmt::print("{:<{}}  {:<{}}  0x{:02X}  {:<8}  {:<{}}  {:>6}  {:>7}\n", topic.name, name_width,
-               aliases_of(topic), alias_width, topic.id.value, sensor ? "sensor" : "actuator",
-               catalogue.boards[topic.board].name, board_width, topic.frames.size(),
-               sensor ? words::to_text(topic.period) : "-");
-  }
+  const auto print = [&](const auto&... columns) {
+    fmt::print("{:<{}}  {:<{}}  {:<{}}  {:<8}  {:<{}}  {:>6}  {:>7}\n", columns...);
+  };
+  print("TOPIC", name_width, "ALIASES", alias_width, "ID", id_width, "KIND", "BOARD", board_width, "FRAMES",
+        "PERIOD");
+  for (const auto& topic : catalogue.topics)
+    print(topic.name, name_width, aliases_of(topic), alias_width, id_of(topic), id_width, name(topic.kind),
+          catalogue.board_name(topic), board_width, topic.frames.size(), period_of(topic));
 }
 
 }  // namespace

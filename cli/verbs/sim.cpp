@@ -60,7 +60,7 @@ int run_amiro(const sim::AmiroOptions& options, Session& session) {
   if (!options.qemu && !options.images.empty())
     fail({"sim: --images without --boards qemu", "add --boards qemu, or leave --images out"}, exit_usage);
   catch_interrupts();
-  if (!session.spec_file.empty()) remark("the simulated robot is the AMiRo, whatever --spec says");
+  if (!session.spec_files.empty()) remark("the simulated robot is the AMiRo, whatever --spec says");
   const BusName bus_name = parse_bus_name(session.bus_name.empty() ? "sim" : session.bus_name);
   if (bus_name.kind == BusName::Kind::simulated)
     return exit_code_of(

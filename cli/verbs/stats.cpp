@@ -85,9 +85,8 @@ std::uint32_t chosen_bit_rate(std::optional<std::uint32_t> given, const protocol
 void tell_contradictions(const stats::Report& report, std::string_view guess) {
   for (const stats::Bus& bus : report.buses) {
     const auto& counters = bus.figures.counters;
-    const std::uint64_t fd = bus.figures.fd_frames;
     const std::string beginning = report.buses.size() > 1 ? bus.name + ": " : "";
-    cli::tell_contradictions({counters.frames + fd - counters.errors, counters.unknown + fd,
+    cli::tell_contradictions({counters.frames - counters.errors, counters.unknown + counters.fd,
                               counters.wrong_dlc, bus.figures.wrong_length},
                              report.robot, guess, beginning);
   }

@@ -56,13 +56,13 @@ Display::Display(std::string_view verb, Session& session, const DisplayOptions& 
 
 void Display::summarise(std::uint64_t lost) const {
   const auto& seen = receiver_.counters();
-  std::string text = fmt::format("{} frames, {} samples", seen.frames + fd_, seen.samples);
+  std::string text = fmt::format("{} frames, {} samples", seen.frames, seen.samples);
   const auto add = [&text](std::uint64_t count, std::string_view what) {
     if (count != 0) text += fmt::format(", {} {}", count, what);
   };
   add(seen.commands, "commands");
   add(seen.unknown, "of unknown identifier");
-  add(fd_, "of CAN FD");
+  add(seen.fd, "of CAN FD");
   add(seen.wrong_dlc, "of wrong length");
   add(seen.incomplete, "incomplete samples");
   add(seen.errors, "error frames");
@@ -72,7 +72,7 @@ void Display::summarise(std::uint64_t lost) const {
 
 void Display::tell_contradictions(std::string_view guess) const {
   const auto& seen = receiver_.counters();
-  const Contradictions found{seen.frames + fd_ - seen.errors, seen.unknown + fd_, seen.wrong_dlc,
+  const Contradictions found{seen.frames - seen.errors, seen.unknown + seen.fd, seen.wrong_dlc,
                              wrong_length_};
   cli::tell_contradictions(found, receiver_.catalogue().robot, guess);
 }

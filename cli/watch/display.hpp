@@ -35,9 +35,8 @@ class Display {
   /// What the entry means, which is counted and kept for `show`. Valid until the next.
   const client::Reception& understand(const log::Entry& entry) {
     reception_ = cli::understand(receiver_, entry);
-    fd_ += entry.is_fd() ? 1 : 0;
     if (reception_.meaning == client::Meaning::wrong_dlc && !wrong_length_)
-      wrong_length_ = {entry.id, entry.length, reception_.frame.layout().dlc};
+      wrong_length_ = {entry.id, entry.length, reception_.frame.layout().length};
     return reception_;
   }
   /// Whether there was anything to show.
@@ -49,7 +48,6 @@ class Display {
   void flush() { printer_.flush(); }
 
   [[nodiscard]] std::uint64_t shown() const noexcept { return shown_; }  ///< lines, or frames with --csv
-  [[nodiscard]] std::uint64_t fd() const noexcept { return fd_; }
   [[nodiscard]] const client::ReceiverCounters& counters() const noexcept { return receiver_.counters(); }
   /// What came, and every fault by its cause, on stderr.
   void summarise(std::uint64_t lost) const;
@@ -61,7 +59,6 @@ class Display {
   client::Reception reception_;
   Printer printer_;
   std::uint64_t shown_ = 0;
-  std::uint64_t fd_ = 0;
   std::optional<measure::WrongLength> wrong_length_;  ///< the first
 };
 

@@ -1,9 +1,11 @@
 /// Numbers for a topic's fields, as people type them and as programs write them.
 #pragma once
 
+#include <charconv>
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 #include "ocm/base/decimal.hpp"
 #include "ocm/base/result.hpp"
@@ -25,7 +27,13 @@ namespace detail {
     const auto physical = field.physical(raw);
     return physical ? std::string{base::to_text(*physical).view()} : std::to_string(raw);
   };
-  std::string expected = number_text(field.raw_min) + " to " + number_text(field.raw_max);
+  const auto stated = [&field](base::Decimal bound, std::int64_t raw, auto number) {
+    return field.min == field.max ? number(raw) : std::string{base::to_text(bound).view()};
+  };
+  std::string expected = field.is_float() && field.min == field.max
+                             ? std::string{"any number"}
+                             : stated(field.min, field.raw_min, number_text) + " to " +
+                                   stated(field.max, field.raw_max, number_text);
   if (!field.unit.empty()) expected += " " + std::string{field.unit};
   if (!field.flags && !field.values.empty()) {
     std::string names;
@@ -33,6 +41,18 @@ namespace detail {
     expected = names + ", or " + expected;
   }
   return std::string{field.name} + " takes " + expected;
+}
+
+/// What a float's text says, with the field's unit or without: the nearest double, or NaN, Infinity.
+[[nodiscard]] inline base::Result<double> parse_float(const protocol::Field& field, std::string_view text) {
+  if (!field.unit.empty() && text.ends_with(field.unit)) text.remove_suffix(field.unit.size());
+  while (text.ends_with(' ')) text.remove_suffix(1);
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc::result_out_of_range) return base::Error::out_of_range;
+  if (error != std::errc{} || end != text.data() + text.size()) return base::Error::bad_syntax;
+  return value;
 }
 
 /// A number with a unit. The field's own is taken off first: one such as 1/min begins like a number.
@@ -52,6 +72,14 @@ namespace detail {
                                                                          std::string_view text) {
   for (const auto& value : field.values)
     if (!field.flags && value.name == text) return value.raw;
+  if (field.is_float()) {
+    const auto value = detail::parse_float(field, text);
+    const auto bits = value ? field.float_from(*value) : base::Result<std::int64_t>{value.error};
+    if (bits) return *bits;
+    // A number in another unit goes on below.
+    if (bits.error == base::Error::out_of_range)
+      return detail::quoted(text) + " is out of range: " + detail::takes(field);
+  }
   const auto quantity = detail::quantity_for(field, text);
   if (!quantity)
     return detail::quoted(text) +
@@ -63,7 +91,9 @@ namespace detail {
   const auto physical = convert(*quantity, field.unit);
   if (physical.error == base::Error::bad_unit)
     return detail::quoted(text) + " is in another unit: " + detail::takes(field);
-  const auto raw = physical ? field.raw_from(*physical) : base::Result<std::int64_t>{physical.error};
+  const auto raw = !physical          ? base::Result<std::int64_t>{physical.error}
+                   : field.is_float() ? field.float_from(physical->as_double())
+                                      : field.raw_from(*physical);
   if (!raw) return detail::quoted(text) + " is out of range: " + detail::takes(field);
   return *raw;
 }

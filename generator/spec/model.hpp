@@ -1,5 +1,5 @@
-/// A robot as its spec tells it, checked and complete: what the generator writes from, and what the catalogue
-/// is made of.
+/// A robot, or another bus, as its spec tells it, checked and complete: what the generator writes from, and
+/// what the catalogue is made of.
 #pragma once
 
 #include <cstdint>
@@ -39,6 +39,20 @@ struct Source {
   }
 };
 
+/// What a DBC file says of an object by a name of its own; kept as it is written.
+struct AttributeModel {
+  std::string name;
+  std::string text;
+  friend bool operator==(const AttributeModel&, const AttributeModel&) = default;
+};
+
+/// A range that a source states, physical, in its own words.
+struct RangeModel {
+  base::Decimal min;
+  base::Decimal max;
+  friend bool operator==(const RangeModel&, const RangeModel&) = default;
+};
+
 struct ValueModel {
   std::string name;
   std::int64_t raw = 0;  ///< of a flag: the number of its bit
@@ -59,6 +73,15 @@ struct FieldModel {
   std::vector<ValueModel> values;
   bool flags = false;
   Source source;  ///< empty: as the frame's
+
+  // Of a message's field only.
+  protocol::Number number = protocol::Number::integer;
+  std::string selector;                           ///< the field that selects this one; empty: none
+  std::vector<protocol::SelectorRange> selected;  ///< the selector's raw bits with which it is there
+  std::optional<std::int64_t> start;              ///< raw; of a float its bits
+  std::optional<RangeModel> range;                ///< as stated; raw_min and raw_max follow from it
+  std::vector<std::string> receivers;             ///< names of boards
+  std::vector<AttributeModel> attributes;
 
   /// The values are all that the field can be, so that it is an enumeration: they have names and no unit.
   [[nodiscard]] bool is_enumeration() const noexcept { return !values.empty() && !flags && unit.empty(); }
@@ -95,6 +118,26 @@ struct TopicModel {
   Source source;
 };
 
+/// A frame that is only sent: known by its identifier, not by a topic's number.
+struct MessageModel {
+  std::string name;
+  std::string description;
+  std::vector<std::string> aliases;
+  protocol::Address address;
+  std::uint16_t length = 0;  ///< bytes, 0..64; of J1939, whose transport protocol cuts it, to 1785
+  bool fd = false;
+  std::uint8_t board = protocol::no_board;  ///< who sends it
+  std::vector<std::string> other_senders;
+  std::vector<FieldModel> fields;  ///< with receivers
+  base::Duration period{};         ///< 0: none is stated
+  base::Duration shortest_period{};
+  base::Duration deadline{};
+  base::Duration jitter{};
+  std::string send_type;  ///< as the source calls it, such as "Cyclic"
+  std::vector<AttributeModel> attributes;
+  Source source;
+};
+
 struct BoardModel {
   std::string name;
   std::string description;
@@ -102,6 +145,7 @@ struct BoardModel {
   std::optional<std::uint32_t> clock_hz;
   std::optional<std::uint32_t> can_clock_hz;
   Source source;
+  std::vector<AttributeModel> attributes;
 };
 
 struct Model {
@@ -113,6 +157,8 @@ struct Model {
   Source defaults_source;
   std::vector<BoardModel> boards;
   std::vector<TopicModel> topics;
+  std::vector<MessageModel> messages;
+  std::vector<AttributeModel> attributes;  ///< of the bus
 };
 
 }  // namespace ocm::spec

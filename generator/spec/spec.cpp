@@ -3,7 +3,9 @@
 #include <deque>
 #include <string>
 
+#include "generator/dbc/reader.hpp"
 #include "generator/spec/file.hpp"
+#include "generator/spec/from_dbc.hpp"
 #include "generator/spec/json.hpp"
 #include "generator/spec/reader.hpp"
 #include "generator/spec/worst_bits.hpp"
@@ -19,6 +21,7 @@ struct Spec::Storage {
   Model model;
   std::deque<std::string> texts;
   std::deque<std::vector<protocol::NamedValue>> values;
+  std::deque<std::vector<protocol::SelectorRange>> ranges;
   std::deque<std::vector<protocol::Field>> fields;
   std::deque<std::vector<protocol::FrameLayout>> frames;
   std::deque<std::vector<std::string_view>> aliases;
@@ -28,21 +31,47 @@ struct Spec::Storage {
 
   std::string_view keep(std::string text) { return texts.emplace_back(std::move(text)); }
 
-  std::span<const protocol::Field> make_fields(const FrameModel& frame) {
+  std::span<const protocol::Field> make_fields(const std::vector<FieldModel>& models) {
     auto& list = fields.emplace_back();
-    for (const FieldModel& field : frame.fields) {
+    for (const FieldModel& field : models) {
       auto& names = values.emplace_back();
       for (const ValueModel& value : field.values) names.push_back({value.raw, value.name});
-      list.push_back({field.name, field.position, field.is_signed, field.scale, field.offset, field.unit,
-                      field.raw_min, field.raw_max, names, field.flags});
+      protocol::Field& out = list.emplace_back(
+          protocol::Field{field.name, field.position, field.is_signed, field.scale, field.offset, field.unit,
+                          field.raw_min, field.raw_max, names, field.flags, field.number});
+      for (std::size_t i = 0; i < models.size() && !field.selector.empty(); ++i)
+        if (models[i].name == field.selector) out.selector = static_cast<std::uint16_t>(i);
+      out.selected = ranges.emplace_back(field.selected);
+      out.start = field.start.value_or(0);
+      if (field.range) out.min = field.range->min, out.max = field.range->max;
     }
     return list;
+  }
+
+  void add_message(const MessageModel& message) {
+    protocol::FrameLayout layout;
+    layout.length = message.length;
+    layout.fields = make_fields(message.fields);
+    layout.address = message.address;
+    layout.fd = message.fd;
+    protocol::Topic out;
+    out.name = message.name;
+    out.aliases = aliases.emplace_back(message.aliases.begin(), message.aliases.end());
+    out.kind = protocol::Kind::message;
+    out.board = message.board;
+    out.frames = frames.emplace_back(1, layout);
+    out.cycle = message.period;
+    out.shortest_period = message.shortest_period;
+    out.deadline = message.deadline;
+    out.jitter = message.jitter;
+    out.source = keep(message.source.joined());
+    topics.push_back(out);
   }
 
   std::span<const protocol::FrameLayout> make_frames(const TopicModel& topic, std::uint8_t instance) {
     auto& list = frames.emplace_back();
     for (const FrameModel& frame : topic.frames) {
-      const auto its_fields = make_fields(frame);
+      const auto its_fields = make_fields(frame.fields);
       for (unsigned i = 0; i < frame.count; ++i) {
         const bool numbered = !frame.name.empty() && frame.is_array;
         const std::string_view name =
@@ -85,6 +114,7 @@ struct Spec::Storage {
       else
         for (unsigned i = 1; i <= topic.count; ++i) add_topic(topic, static_cast<std::uint8_t>(i));
     }
+    for (const MessageModel& message : model.messages) add_message(message);
     catalogue = {model.robot, model.bit_rate, boards, topics};
   }
 };
@@ -103,6 +133,33 @@ const Model& Spec::model() const noexcept {
   return storage_->model;
 }
 
+namespace {
+
+Loaded parse_dbc(std::string_view text, std::string_view file_name) {
+  Loaded loaded;
+  const auto told = [&](const std::vector<dbc::Finding>& findings) {
+    std::vector<Problem> problems;
+    for (const dbc::Finding& finding : findings)
+      problems.push_back(
+          {std::string{file_name} + ':' + std::to_string(finding.line), finding.what, finding.remedy});
+    return problems;
+  };
+  dbc::Reading reading = dbc::read(text);
+  loaded.problems = told(reading.problems);
+  loaded.doubts = told(reading.doubts);
+  if (!reading.document) return loaded;
+  Model model = model_of(std::move(*reading.document), file_name, loaded.doubts);
+  if (model.messages.empty())
+    loaded.problems.push_back({std::string{file_name}, "the file has no message",
+                               "BO_ 257 Engine: 8 Gateway begins one; CM_ \"IMPORT other.dbc\" names a file "
+                               "that goes in front of this one"});
+  else
+    loaded.spec = std::make_unique<Spec>(std::move(model));
+  return loaded;
+}
+
+}  // namespace
+
 Loaded parse(std::string_view text, std::string_view file_name) {
   Loaded loaded;
   if (text.size() > max_spec_bytes) {
@@ -111,6 +168,7 @@ Loaded parse(std::string_view text, std::string_view file_name) {
                                "a spec has at most " + std::to_string(max_spec_bytes)});
     return loaded;
   }
+  if (is_dbc(text, file_name)) return parse_dbc(text, file_name);
   const Node root = parse_json(text, file_name, loaded.problems);
   if (!has_document(loaded.problems)) return loaded;
   Model model = read_model(root, file_name, loaded.problems);

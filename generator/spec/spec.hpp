@@ -1,5 +1,5 @@
-/// Reads a robot's spec, a JSON file that `topics.schema.json` describes, into the catalogue that the library
-/// works with. Used by the tool at run time and by the generator.
+/// Reads a robot's spec, a JSON file that `topics.schema.json` describes, or a DBC file, into the catalogue
+/// that the library works with. Used by the tool at run time and by the generator.
 #pragma once
 
 #include <filesystem>
@@ -35,6 +35,7 @@ class Spec {
 struct Loaded {
   std::unique_ptr<Spec> spec;
   std::vector<Problem> problems;
+  std::vector<Problem> doubts;  ///< of a DBC file: loaded as others load it, and perhaps not as it was meant
 };
 
 /// A spec is at most this large.

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "ocm/base/time.hpp"
-#include "ocm/protocol/frame_index.hpp"
+#include "ocm/client/frame_index.hpp"
 #include "ocm/protocol/identifier.hpp"
 #include "ocm/protocol/topic.hpp"
 #include "ocm/simulation/arbiter.hpp"
@@ -54,7 +54,7 @@ class Turns {
     std::uint64_t turns = 0;
   };
 
-  protocol::FrameIndex index_;
+  client::FrameIndex index_;
   std::array<Senders, 256> senders_{};
 };
 

@@ -50,7 +50,7 @@ void compare(const protocol::Topic& a, const protocol::Topic& b) {
   for (std::size_t i = 0; i < a.frames.size(); ++i) {
     CHECK(a.frames[i].name == b.frames[i].name);
     CHECK(a.frames[i].id == b.frames[i].id);
-    CHECK(a.frames[i].dlc == b.frames[i].dlc);
+    CHECK(a.frames[i].length == b.frames[i].length);
     CHECK(a.frames[i].worst_bits == b.frames[i].worst_bits);
     CHECK(a.frames[i].worst_bits[0] != 0);
     REQUIRE(a.frames[i].fields.size() == b.frames[i].fields.size());

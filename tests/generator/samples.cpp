@@ -62,7 +62,7 @@ int main(int argc, char** argv) {
         const auto priority = static_cast<protocol::Priority>(random() % 4);
         can::Frame frame;
         frame.id = protocol::Identifier{direction, priority, layout.id}.encode();
-        frame.dlc = layout.dlc;
+        frame.dlc = layout.dlc();
         const auto data = payload(static_cast<unsigned>(round), random);
         for (std::size_t i = 0; i < frame.dlc; ++i) frame.data[i] = data[i];
         const std::string text{can::to_text(frame).view()};

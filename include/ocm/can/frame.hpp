@@ -60,4 +60,22 @@ struct Frame {
   return base_id << 21 | std::uint32_t{3} << 19 | extension << 1 | rtr;
 }
 
+/// A frame of either kind to look at: classic, or CAN FD with up to 64 bytes.
+struct FrameView {
+  std::uint32_t id = 0;
+  Format format = Format::base;
+  bool fd = false;
+  /// What it carries; none of a remote frame. Behind fewer than eight bytes, or fewer than 64 where there are
+  /// more than eight, the memory goes on to that size, so that a field is read in one step.
+  std::span<const std::uint8_t> bytes;
+
+  constexpr FrameView() = default;
+  constexpr FrameView(std::uint32_t id_, Format format_, bool fd_,
+                      std::span<const std::uint8_t> bytes_) noexcept
+      : id(id_), format(format_), fd(fd_), bytes(bytes_) {}
+  /// The frame must outlive the view.
+  constexpr explicit FrameView(const Frame& frame) noexcept
+      : id(frame.id), format(frame.format), bytes(frame.bytes()) {}
+};
+
 }  // namespace ocm::can

@@ -46,7 +46,7 @@ struct Command {
   frame.id =
       protocol::Identifier{protocol::Direction::command, priority.value_or(actuator.priority), layout.id}
           .encode();
-  frame.dlc = layout.dlc;
+  frame.dlc = layout.dlc();
   for (std::size_t i = 0; i < raw.size() && i < layout.fields.size(); ++i)
     protocol::put(frame.data, layout.fields[i].position, raw[i]);
   return frame;

@@ -208,7 +208,7 @@ class Diagnosis {
         if (frames[i].name != frame) continue;
         for (const protocol::Field& f : frames[i].fields) {
           if (f.name != field) continue;
-          raw = f.raw(sample_->payloads[i]);
+          raw = f.raw(sample_->data(i));
           return &f;
         }
       }
@@ -233,7 +233,7 @@ class Diagnosis {
         for (const protocol::Field& f : frames[i].fields)
           if (f.flags)
             for (const protocol::NamedValue& bit : f.values)
-              if (bit.name == flag_name) return (f.raw(sample_->payloads[i]) >> bit.raw & 1) != 0;
+              if (bit.name == flag_name) return (f.raw(sample_->data(i)) >> bit.raw & 1) != 0;
       return false;
     }
 

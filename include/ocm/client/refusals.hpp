@@ -25,8 +25,8 @@
 #include "ocm/can/bus.hpp"
 #include "ocm/can/frame.hpp"
 #include "ocm/client/diagnosis.hpp"
+#include "ocm/client/frame_index.hpp"
 #include "ocm/client/sample.hpp"
-#include "ocm/protocol/frame_index.hpp"
 #include "ocm/protocol/identifier.hpp"
 #include "ocm/protocol/topic.hpp"
 
@@ -111,7 +111,7 @@ class Refusals {
   }
 
   const protocol::Catalogue* catalogue_;
-  protocol::FrameIndex index_;
+  client::FrameIndex index_;
   Receiver receiver_;
   Diagnosis diagnosis_;
   std::vector<std::optional<std::int64_t>> known_;     // how many each board has refused, as it said last

@@ -3,7 +3,10 @@
 /// incomplete sample, which is counted. (Losing the end of one sample and exactly the rest of the next cannot
 /// be distinguished from a whole one.)
 ///
-/// Memory: 8 bytes a frame of the catalogue and 4 KiB of index, allocated once. O(1) a frame.
+/// A plain message is a sample by itself.
+///
+/// Memory: 8 bytes a frame of the catalogue, 64 of one longer than that, and the index, allocated once. O(1)
+/// a frame.
 #pragma once
 
 #include <algorithm>
@@ -17,26 +20,42 @@
 #include "ocm/base/time.hpp"
 #include "ocm/can/bus.hpp"
 #include "ocm/can/frame.hpp"
-#include "ocm/protocol/frame_index.hpp"
+#include "ocm/client/frame_index.hpp"
 #include "ocm/protocol/identifier.hpp"
 #include "ocm/protocol/topic.hpp"
 
 namespace ocm::client {
 
-/// A complete sample of a topic. `payloads` is valid until the next frame is taken.
+/// A complete sample of a topic, or a message. Valid until the next frame is taken.
 struct Sample {
   const protocol::Topic* topic = nullptr;
-  protocol::Priority priority = protocol::default_priority;
-  base::Time time{};  ///< of its last frame
-  std::span<const can::Payload> payloads;
+  protocol::Priority priority = protocol::default_priority;  ///< a topic's
+  base::Time time{};                                         ///< of its last frame
+  /// Of all its frames, eight bytes each; of a message what came, which is at least as long as its layout.
+  std::span<const std::uint8_t> bytes;
+
+  /// What frame `index` carries, with room to read as can::FrameView says.
+  [[nodiscard]] std::span<const std::uint8_t> data(std::size_t index) const noexcept {
+    if (topic->is_message()) return bytes;
+    return bytes.subspan(index * sizeof(can::Payload), topic->frames[index].length);
+  }
+  /// A topic's frame as it came; the bytes beyond its length are zero.
+  [[nodiscard]] can::Payload payload(std::size_t index) const noexcept {
+    can::Payload payload;
+    std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(index * payload.size()), payload.size(),
+                payload.begin());
+    return payload;
+  }
 
   /// As the struct of the generated header; unknown_topic when the sample is of another topic.
   template <protocol::TopicType T>
   [[nodiscard]] base::Result<T> as() const noexcept {
-    if (topic == nullptr || topic->id != T::id || payloads.size() != T::frames.size())
+    constexpr std::size_t count = T::frames.size();
+    if (topic == nullptr || topic->is_message() || topic->id != T::id ||
+        bytes.size() != count * sizeof(can::Payload))
       return base::Error::unknown_topic;
-    std::array<can::Payload, T::frames.size()> frames;
-    std::copy(payloads.begin(), payloads.end(), frames.begin());
+    std::array<can::Payload, count> frames;
+    for (std::size_t i = 0; i < count; ++i) frames[i] = payload(i);
     return T::decode(frames);
   }
 };
@@ -44,18 +63,18 @@ struct Sample {
 /// What a frame turned out to be.
 enum class Meaning : std::uint8_t {
   part,       ///< of a sample that is not complete yet
-  sample,     ///< the last frame of a complete sample
+  sample,     ///< the last frame of a complete sample, or a message
   request,    ///< an operator asks a sensor
   set_point,  ///< an operator commands an actuator
-  unknown,    ///< no topic has this identifier, or the frame is remote or extended
-  wrong_dlc,  ///< a topic's identifier with a length that it does not have
+  unknown,    ///< no topic and no message has this identifier, or the frame is remote
+  wrong_dlc,  ///< a length that the topic has not, or that the message is longer than
   error,      ///< a report of the CAN controller
 };
 
 struct Reception {
   Meaning meaning = Meaning::unknown;
   protocol::FrameRef frame;                ///< for part, sample, set_point, wrong_dlc
-  const protocol::Topic* topic = nullptr;  ///< wherever there is one
+  const protocol::Topic* topic = nullptr;  ///< wherever there is one; a message's too
   Sample sample;                           ///< for Meaning::sample
 };
 
@@ -64,13 +83,14 @@ struct ReceiverCounters {
   std::uint64_t samples = 0;
   std::uint64_t commands = 0;
   std::uint64_t unknown = 0;
+  std::uint64_t fd = 0;  ///< CAN FD frames that no message has; no topic has any
   std::uint64_t wrong_dlc = 0;
   std::uint64_t incomplete =
       0;  ///< samples that lack a frame; the one that was under way at the start is not counted
   std::uint64_t errors = 0;
   /// Frames or samples that a listener should know of.
   [[nodiscard]] constexpr std::uint64_t faults() const noexcept {
-    return unknown + wrong_dlc + incomplete + errors;
+    return unknown + fd + wrong_dlc + incomplete + errors;
   }
 };
 
@@ -80,26 +100,23 @@ class Receiver {
   explicit Receiver(const protocol::Catalogue& catalogue) : catalogue_(&catalogue), index_(catalogue) {
     assemblies_.reserve(catalogue.topics.size());
     for (const protocol::Topic& topic : catalogue.topics) {
-      assemblies_.push_back({payloads_.size(), 0, false});
-      payloads_.resize(payloads_.size() + topic.frames.size());
+      assemblies_.push_back({bytes_.size(), 0, false});
+      bytes_.resize(bytes_.size() + (topic.is_message() ? 0 : sizeof(can::Payload) * topic.frames.size()));
     }
   }
 
   [[nodiscard]] Reception take(const can::Received& received) {
-    const can::Frame& frame = received.frame;
+    return take(can::FrameView{received.frame}, received.time);
+  }
+  [[nodiscard]] Reception take(const can::FrameView& frame, base::Time time) {
     ++counters_.frames;
     if (frame.format == can::Format::error) {
       ++counters_.errors;
       return {Meaning::error, {}, nullptr, {}};
     }
-    if (frame.format != can::Format::base) {
-      ++counters_.unknown;
-      return {};
-    }
-    const auto id = protocol::Identifier::decode(frame.id);
-    const protocol::Subject subject = index_.subject(id);
-    if (!subject) {
-      ++counters_.unknown;
+    const Subject subject = index_.subject(frame.id, frame.format);
+    if (!subject || (frame.fd && !subject.topic->is_message())) {
+      ++(frame.fd ? counters_.fd : counters_.unknown);
       return {};
     }
     if (subject.is_request()) {
@@ -107,15 +124,17 @@ class Receiver {
       return {Meaning::request, {}, subject.topic, {}};
     }
     const protocol::FrameRef ref = subject.frame;
-    if (frame.dlc != ref.layout().dlc) {
+    if (!ref.layout().accepts(frame.bytes.size())) {
       ++counters_.wrong_dlc;
       return {Meaning::wrong_dlc, ref, ref.topic, {}};
     }
+    if (ref.topic->is_message()) return message(frame, time, ref);
+    const auto id = protocol::Identifier::decode(frame.id);
     if (id.direction == protocol::Direction::command) {
       ++counters_.commands;
       return {Meaning::set_point, ref, ref.topic, {}};
     }
-    return assemble(received, id.priority, ref);
+    return assemble(frame, time, id.priority, ref);
   }
 
   [[nodiscard]] const ReceiverCounters& counters() const noexcept { return counters_; }
@@ -123,12 +142,23 @@ class Receiver {
 
  private:
   struct Assembly {
-    std::size_t first;      // of the topic's payloads
+    std::size_t first;      // of the topic's bytes
     std::uint64_t present;  // bit i: frame i of the sample under way has come
     bool synchronised;      // the sample under way was seen from its beginning
   };
 
-  Reception assemble(const can::Received& received, protocol::Priority priority, protocol::FrameRef ref) {
+  Reception message(const can::FrameView& frame, base::Time time, protocol::FrameRef ref) {
+    ++counters_.samples;
+    const std::size_t room = frame.bytes.size() <= sizeof(can::Payload) ? sizeof(can::Payload) : 64;
+    std::copy_n(frame.bytes.data(), room, message_.begin());
+    return {Meaning::sample,
+            ref,
+            ref.topic,
+            {ref.topic, protocol::default_priority, time, std::span{message_}.first(frame.bytes.size())}};
+  }
+
+  Reception assemble(const can::FrameView& frame, base::Time time, protocol::Priority priority,
+                     protocol::FrameRef ref) {
     const std::size_t count = ref.topic->frames.size();
     Assembly& assembly = assemblies_[static_cast<std::size_t>(ref.topic - catalogue_->topics.data())];
     const std::uint64_t bit = std::uint64_t{1} << ref.frame;
@@ -136,7 +166,8 @@ class Receiver {
     // sample.
     if (assembly.present >> ref.frame != 0) abandon(assembly);
     assembly.present |= bit;
-    payloads_[assembly.first + ref.frame] = received.frame.data;
+    std::copy_n(frame.bytes.data(), sizeof(can::Payload),
+                &bytes_[assembly.first + sizeof(can::Payload) * ref.frame]);
     if (ref.frame + std::size_t{1} != count) return {Meaning::part, ref, ref.topic, {}};
 
     const std::uint64_t all = count == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << count) - 1;
@@ -147,10 +178,11 @@ class Receiver {
     assembly.present = 0;
     assembly.synchronised = true;
     ++counters_.samples;
-    return {Meaning::sample,
-            ref,
-            ref.topic,
-            {ref.topic, priority, received.time, std::span{payloads_}.subspan(assembly.first, count)}};
+    return {
+        Meaning::sample,
+        ref,
+        ref.topic,
+        {ref.topic, priority, time, std::span{bytes_}.subspan(assembly.first, sizeof(can::Payload) * count)}};
   }
 
   void abandon(Assembly& assembly) {
@@ -161,9 +193,10 @@ class Receiver {
   }
 
   const protocol::Catalogue* catalogue_;
-  protocol::FrameIndex index_;
+  FrameIndex index_;
   std::vector<Assembly> assemblies_;
-  std::vector<can::Payload> payloads_;
+  std::vector<std::uint8_t> bytes_;         // of topics
+  std::array<std::uint8_t, 64> message_{};  // that came last
   ReceiverCounters counters_;
 };
 

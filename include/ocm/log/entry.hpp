@@ -48,6 +48,8 @@ struct Entry {
   [[nodiscard]] std::span<const std::uint8_t> bytes() const noexcept {
     return {data.data(), can::is_remote(format) ? std::size_t{0} : length};
   }
+  /// To look at; valid as long as the entry.
+  [[nodiscard]] can::FrameView view() const noexcept { return {id, format, is_fd(), bytes()}; }
   /// As a board knows frames; nothing for a CAN FD frame.
   [[nodiscard]] std::optional<can::Frame> classic() const noexcept {
     if (is_fd()) return std::nullopt;

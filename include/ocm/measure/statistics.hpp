@@ -46,16 +46,16 @@ struct Stranger {
 /// A frame with a topic's identifier and a length that the topic has not.
 struct WrongLength {
   std::uint32_t id = 0;
-  std::uint8_t length = 0;
-  std::uint8_t right = 0;
+  std::size_t length = 0;
+  std::size_t right = 0;
 };
 
 struct BusFigures {
   std::vector<TopicFigures> topics;         ///< those of which anything came, in the order of the catalogue
   std::vector<Stranger> strangers;          ///< the first BusStatistics::most_strangers
-  client::ReceiverCounters counters;        ///< `frames` with error frames, without CAN FD
+  client::ReceiverCounters counters;        ///< `frames` with error frames and CAN FD
   std::optional<WrongLength> wrong_length;  ///< the first; counters.wrong_dlc has how many
-  std::uint64_t fd_frames = 0;              ///< CAN FD, which no topic has; not in the load
+  std::uint64_t fd_frames = 0;              ///< CAN FD, of messages or not; not in the load
   std::uint64_t overflows = 0;  ///< error frames that say that frames were lost in the CAN controller
   base::Time first{};           ///< frame of any kind
   base::Time last{};
@@ -78,9 +78,7 @@ class BusStatistics {
       : bit_rate_(bit_rate), receiver_(catalogue) {
     topics_.reserve(catalogue.topics.size());
     for (const auto& topic : catalogue.topics) {
-      const bool sensor = topic.kind == protocol::Kind::sensor;
-      topics_.push_back(
-          {{.topic = &topic, .timing = {}}, Stream{sensor ? topic.period.duration() : base::Duration{0}}});
+      topics_.push_back({{.topic = &topic, .timing = {}}, Stream{topic.usual_period()}});
     }
   }
 
@@ -105,14 +103,13 @@ class BusStatistics {
         return take_request(entry, received);
       case client::Meaning::wrong_dlc:
         stranger_bits_ += bits;
-        ++entry.figures.wrong_dlc;
-        if (!wrong_length_)
-          wrong_length_ = {received.frame.id, received.frame.dlc, reception.frame.layout().dlc};
-        return;
+        return note_length(entry, can::FrameView{received.frame}, reception);
       case client::Meaning::sample:
       case client::Meaning::set_point: {
-        const auto id = protocol::Identifier::decode(received.frame.id);
-        ++entry.figures.by_priority[static_cast<std::size_t>(id.priority)];
+        if (!reception.topic->is_message()) {
+          const auto id = protocol::Identifier::decode(received.frame.id);
+          ++entry.figures.by_priority[static_cast<std::size_t>(id.priority)];
+        }
         entry.stream.sample(received.time);
         break;
       }
@@ -122,9 +119,16 @@ class BusStatistics {
     entry.bits += bits;
   }
   /// A CAN FD frame came.
-  void take_fd(base::Time time) {
+  void take_fd(const can::FrameView& frame, base::Time time) {
     begin(time);
     ++fd_frames_;
+    const client::Reception reception = receiver_.take(frame, time);
+    if (reception.topic == nullptr) return;
+    Entry& entry = topics_[static_cast<std::size_t>(reception.topic - receiver_.catalogue().topics.data())];
+    if (reception.meaning == client::Meaning::sample)
+      entry.stream.sample(time);
+    else
+      note_length(entry, frame, reception);
   }
 
   /// Whether any frame came.
@@ -192,6 +196,10 @@ class BusStatistics {
     // Without a period it is the topic's own.
     const auto period = received.frame.dlc == 1 ? topic.period : request->period;
     entry.stream.asked(received.time, period.duration());
+  }
+  void note_length(Entry& entry, const can::FrameView& frame, const client::Reception& reception) {
+    ++entry.figures.wrong_dlc;
+    if (!wrong_length_) wrong_length_ = {frame.id, frame.bytes.size(), reception.frame.layout().length};
   }
   void note_stranger(const can::Frame& frame) {
     for (Stranger& stranger : strangers_)

@@ -1,16 +1,20 @@
-/// What is known about a robot's topics: which frames, which fields, which units, whose board. The generator
-/// writes these as constexpr data; a tool loads the same types from a spec at run time. Views only: the
-/// catalogue's maker owns the text.
+/// What is known about a bus: a robot's topics, which are asked for and commanded, and plain messages, which
+/// are only sent; which frames, which fields, which units, whose board. The generator writes these as
+/// constexpr data; a tool loads the same types from a spec at run time. Views only: the catalogue's maker
+/// owns the text.
 #pragma once
 
 #include <array>
+#include <bit>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string_view>
 #include <type_traits>
 
+#include "ocm/base/binary64.hpp"
 #include "ocm/base/decimal.hpp"
 #include "ocm/base/time.hpp"
 #include "ocm/can/length.hpp"
@@ -27,7 +31,24 @@ struct NamedValue {
   friend constexpr bool operator==(const NamedValue&, const NamedValue&) = default;
 };
 
-/// One number in a frame. physical = raw * scale + offset, in `unit`.
+/// What a field's bits are.
+enum class Number : std::uint8_t {
+  integer,
+  float32,  ///< IEEE 754, 32 bits wide
+  float64,  ///< IEEE 754, 64 bits wide
+};
+
+/// Raw bits of a selector, both ends included.
+struct SelectorRange {
+  std::uint64_t first = 0;
+  std::uint64_t last = 0;
+  friend constexpr bool operator==(const SelectorRange&, const SelectorRange&) = default;
+};
+
+/// What a field is whose presence no other field decides.
+inline constexpr std::uint16_t no_selector = 0xFFFF;
+
+/// One number in a frame. physical = raw * scale + offset, in `unit`. The raw number of a float is its bits.
 struct Field {
   std::string_view name;
   Position position{};
@@ -39,9 +60,37 @@ struct Field {
   std::int64_t raw_max = 0;
   std::span<const NamedValue> values;  ///< names of values, or of flags
   bool flags = false;                  ///< `values` names bits, several of which may be set
+  Number number = Number::integer;
+  /// Which field of the frame says whether this one is there: its index; no_selector: it always is.
+  std::uint16_t selector = no_selector;
+  std::span<const SelectorRange> selected{};  ///< the raw bits of the selector with which it is there
+  std::int64_t start = 0;                     ///< raw; what is sent where nothing else is said
+  /// The range that the source states, physical, in its own words: advice, which senders leave. Both 0: none,
+  /// or no other than raw_min and raw_max.
+  base::Decimal min{};
+  base::Decimal max{};
 
+  [[nodiscard]] constexpr bool is_float() const noexcept { return number != Number::integer; }
   [[nodiscard]] constexpr std::int64_t raw(const can::Payload& data) const noexcept {
     return get(data, position, is_signed);
+  }
+  /// The frame must hold the field: see FrameLayout::has.
+  [[nodiscard]] constexpr std::int64_t raw(std::span<const std::uint8_t> data) const noexcept {
+    return get(data, position, is_signed);
+  }
+  /// A float's value before scale and offset.
+  [[nodiscard]] constexpr double unscaled(std::int64_t raw_value) const noexcept {
+    return number == Number::float32 ? double{std::bit_cast<float>(static_cast<std::uint32_t>(raw_value))}
+                                     : base::from_binary64(static_cast<std::uint64_t>(raw_value));
+  }
+  /// As a double, of any kind of number.
+  [[nodiscard]] constexpr double value(std::int64_t raw_value) const noexcept {
+    const bool unsigned_64 = !is_signed && position.width == 64;
+    const double plain = is_float()    ? unscaled(raw_value)
+                         : unsigned_64 ? static_cast<double>(static_cast<std::uint64_t>(raw_value))
+                                       : static_cast<double>(raw_value);
+    if (scale == base::Decimal{1, 0} && offset.digits == 0) return plain;
+    return plain * scale.as_double() + offset.as_double();
   }
   /// Exact; out_of_range only for scales that no sensor has.
   [[nodiscard]] constexpr base::Result<base::Decimal> physical(std::int64_t raw_value) const noexcept {
@@ -49,7 +98,17 @@ struct Field {
     if (!scaled) return scaled.error;
     return base::add(*scaled, offset);
   }
-  /// The raw number nearest to a physical value; out_of_range beyond the field's range.
+  /// The bits of the float nearest to a physical value; out_of_range where it is too large for 32 bits.
+  [[nodiscard]] constexpr base::Result<std::int64_t> float_from(double physical_value) const noexcept {
+    const bool plain = scale == base::Decimal{1, 0} && offset.digits == 0;
+    const double value = plain ? physical_value : (physical_value - offset.as_double()) / scale.as_double();
+    if (number == Number::float64) return static_cast<std::int64_t>(base::to_binary64(value));
+    constexpr double greatest = std::numeric_limits<float>::max();
+    const bool finite = value - value == 0;  // neither infinite nor NaN
+    if (finite && (value > greatest || value < -greatest)) return base::Error::out_of_range;
+    return std::int64_t{std::bit_cast<std::uint32_t>(static_cast<float>(value))};
+  }
+  /// An integer field's raw number nearest to a physical value; out_of_range beyond the field's range.
   [[nodiscard]] constexpr base::Result<std::int64_t> raw_from(base::Decimal physical_value) const noexcept {
     const auto above_offset = base::subtract(physical_value, offset);
     if (!above_offset) return above_offset.error;
@@ -64,20 +123,84 @@ struct Field {
 /// is sent: the priority is in the identifier, and with it changes where stuff bits fall. 0: not known.
 using BitsByPriority = std::array<std::uint8_t, priority_levels>;
 
-/// One frame of a topic.
+/// By what a frame is known on the bus.
+struct Address {
+  enum class By : std::uint8_t {
+    topic,       ///< the number of a topic in an 11-bit identifier, at any priority
+    identifier,  ///< all of its 11 or 29 bits
+    pgn,         ///< J1939's parameter group; source, destination and priority are any
+  };
+  By by = By::topic;
+  bool extended = false;     ///< 29 bits
+  std::uint32_t number = 0;  ///< the identifier with which it is sent; a topic's is FrameLayout::id
+  friend constexpr bool operator==(const Address&, const Address&) = default;
+};
+
+/// One frame of a topic, or a message's only one.
 struct FrameLayout {
   std::string_view name;  ///< within the topic: "velocity", "x", "sensor_1"; empty for a topic's only frame
   TopicId id{};
-  std::uint8_t dlc = 0;
+  std::uint16_t length = 0;  ///< bytes; 0..8, with CAN FD to 64, by the transport protocol of J1939 to 1785
   std::span<const Field> fields;
   BitsByPriority worst_bits{};
+  Address address{};
+  bool fd = false;  ///< sent as CAN FD
+
+  /// The length code as a classic frame.
+  [[nodiscard]] constexpr std::uint8_t dlc() const noexcept {
+    return static_cast<std::uint8_t>(length < can::max_dlc ? length : can::max_dlc);
+  }
+  /// Whether a frame of so many bytes can be this one. A topic's length is exact; of a message, whose bytes
+  /// beyond the last field mean nothing, a frame may be longer.
+  [[nodiscard]] constexpr bool accepts(std::size_t bytes) const noexcept {
+    return address.by == Address::By::topic ? bytes == length : bytes >= length;
+  }
+  /// Whether field `index` says which other fields are there. O(fields).
+  [[nodiscard]] constexpr bool selects(std::size_t index) const noexcept {
+    for (const Field& field : fields)
+      if (field.selector == index) return true;
+    return false;
+  }
+  /// Whether a frame of this layout may be without `field`.
+  [[nodiscard]] constexpr bool may_lack(const Field& field) const noexcept {
+    return field.selector != no_selector || field.position.bytes() > length;
+  }
+  /// Whether `field`, one of `fields`, is in a frame: the frame is long enough, and selectors, which may be
+  /// selected by others themselves, say so. O(selectors above the field).
+  [[nodiscard]] constexpr bool has(const Field& field, std::span<const std::uint8_t> data) const noexcept {
+    const Field* at = &field;
+    for (std::size_t depth = 0; depth <= fields.size(); ++depth) {
+      if (at->position.bytes() > data.size()) return false;
+      if (at->selector == no_selector) return true;
+      if (at->selector >= fields.size()) return false;
+      const Field& selector = fields[at->selector];
+      if (selector.position.bytes() > data.size()) return false;
+      const auto bits = static_cast<std::uint64_t>(get(data, selector.position, false));
+      bool selected = false;
+      for (const SelectorRange& range : at->selected)
+        selected = selected || (range.first <= bits && bits <= range.last);
+      if (!selected) return false;
+      at = &selector;
+    }
+    return false;  // fields that select one another in a circle
+  }
 };
 
-enum class Kind : std::uint8_t { sensor, actuator };
+/// A sensor is asked for samples, an actuator takes set points; a message is sent, and that is all that is
+/// known of it.
+enum class Kind : std::uint8_t { sensor, actuator, message };
+
+[[nodiscard]] constexpr std::string_view name(Kind kind) noexcept {
+  constexpr std::string_view names[] = {"sensor", "actuator", "message"};
+  return names[static_cast<std::uint8_t>(kind)];
+}
 
 /// What a topic is for, so that a tool that does not know the robot can use it: `drive` takes velocities,
 /// `light` a colour; `status` tells how its board is, `refusal` which request the board refused, and why.
 enum class Role : std::uint8_t { none, drive, light, status, refusal };
+
+/// Of a message of which no sender is known.
+inline constexpr std::uint8_t no_board = 0xFF;
 
 struct Topic {
   std::string_view name;
@@ -85,17 +208,25 @@ struct Topic {
   TopicId id{};  ///< requests (sensor) or set points (actuator) carry it
   Kind kind = Kind::sensor;
   Role role = Role::none;
-  std::uint8_t board = 0;               ///< index into Catalogue::boards
+  std::uint8_t board = 0;  ///< index into Catalogue::boards: who has it, or sends it; or no_board
   std::span<const FrameLayout> frames;  ///< in the order in which they are sent
   Priority priority = default_priority;
   Period period = default_period;    ///< sensors: sent so often when a request names no period
-  base::Duration shortest_period{};  ///< sensors: how often the part delivers something new
+  base::Duration shortest_period{};  ///< sensors: how often the part delivers something new; messages: the
+                                     ///< shortest distance of two, where one is stated
   base::Duration deadline{};         ///< from release to the end of the last frame; 0: none given
   base::Duration jitter{};           ///< of the release
   base::Duration timeout{};   ///< actuators: set point goes to zero when none came for so long; 0: never
   std::string_view group;     ///< "led" for led_1..led_8; empty otherwise
   std::uint8_t instance = 0;  ///< 1..8 within the group
   std::string_view source;    ///< where the facts come from
+  base::Duration cycle{};     ///< messages: sent so often; 0: no period is stated
+
+  [[nodiscard]] constexpr bool is_message() const noexcept { return kind == Kind::message; }
+  /// How often it is sent unless asked otherwise; 0 for what has no period.
+  [[nodiscard]] constexpr base::Duration usual_period() const noexcept {
+    return kind == Kind::sensor ? period.duration() : cycle;
+  }
 };
 
 struct Board {
@@ -127,13 +258,28 @@ struct Catalogue {
     }
     return nullptr;
   }
+  /// Who has a topic or sends a message; empty where that is not known.
+  [[nodiscard]] constexpr std::string_view board_name(const Topic& topic) const noexcept {
+    return topic.board < boards.size() ? boards[topic.board].name : std::string_view{};
+  }
   /// Whose request or set point has this number.
   [[nodiscard]] constexpr const Topic* find(TopicId id) const noexcept {
     for (const Topic& topic : topics)
-      if (topic.id == id) return &topic;
+      if (topic.id == id && !topic.is_message()) return &topic;
     return nullptr;
   }
 };
+
+/// The identifier with which a frame of a topic is sent at a priority; a message has one of its own.
+[[nodiscard]] constexpr std::uint32_t identifier_of(FrameRef frame, Priority priority) noexcept {
+  const FrameLayout& layout = frame.layout();
+  if (layout.address.by != Address::By::topic) return layout.address.number;
+  const auto direction = frame.topic->kind == Kind::sensor ? Direction::sensor : Direction::command;
+  return Identifier{direction, priority, layout.id}.encode();
+}
+[[nodiscard]] constexpr can::Format format_of(const FrameLayout& layout) noexcept {
+  return layout.address.extended ? can::Format::extended : can::Format::base;
+}
 
 /// What a board needs of a topic's type; what the generator writes satisfies it.
 template <class T>
@@ -162,7 +308,11 @@ template <class Frame>
 requires std::same_as<Frame, FrameHead> || std::same_as<Frame, FrameLayout>
 [[nodiscard]] constexpr unsigned worst_bits(const Frame& frame, Priority priority) noexcept {
   const unsigned exact = frame.worst_bits[static_cast<std::size_t>(priority)];
-  return exact != 0 ? exact : can::worst_frame_bits(can::Format::base, frame.dlc);
+  if (exact != 0) return exact;
+  if constexpr (std::same_as<Frame, FrameHead>)
+    return can::worst_frame_bits(can::Format::base, frame.dlc);
+  else
+    return can::worst_frame_bits(format_of(frame), frame.length);
 }
 
 /// The types of a board's sensors or actuators.

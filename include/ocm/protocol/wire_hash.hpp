@@ -26,7 +26,11 @@ namespace ocm::protocol {
   for (const Topic& topic : catalogue.topics) {
     std::uint32_t hash = mix(mix(basis, topic.id.value), static_cast<std::uint64_t>(topic.kind));
     for (const FrameLayout& frame : topic.frames) {
-      hash = mix(mix(hash, frame.id.value), frame.dlc);
+      hash = mix(mix(hash, frame.id.value), frame.length);
+      if (topic.is_message()) {
+        hash = mix(hash, static_cast<std::uint64_t>(frame.address.by));
+        hash = mix(mix(hash, frame.address.extended ? 1 : 0), frame.address.number);
+      }
       for (const Field& field : frame.fields) {
         const Position p = field.position;
         hash = mix(mix(mix(hash, p.start), p.width), static_cast<std::uint64_t>(p.order));

@@ -6,7 +6,7 @@ algorithm: all_of any_of clamp copy copy_n count_if equal erase_if fill fill_n f
     none_of nth_element reverse rotate sort unique
 array: array begin end get swap tuple_size
 atomic: atomic memory_order_acquire memory_order_relaxed memory_order_release
-bit: bit_cast countr_zero endian
+bit: bit_cast bit_ceil countr_zero endian
 charconv: from_chars to_chars
 chrono: chrono chrono_literals nano
 cmath: abs atan2 ceil cos exp floor fmod hypot llround lround pow remainder sin sqrt

@@ -207,7 +207,7 @@ class Run {
   }
 
   static void judge_rest(PlayedBus& bus) {
-    const protocol::FrameIndex index{amiro::catalogue};
+    const client::FrameIndex index{amiro::catalogue};
     const can::Frame* last = nullptr;
     for (const auto& each : bus.sent())
       if (cli::commanded_motors(index, each.frame) != nullptr) last = &each.frame;

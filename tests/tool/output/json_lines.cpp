@@ -7,7 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include "ocm/can/text.hpp"
-#include "ocm/protocol/frame_index.hpp"
+#include "ocm/client/frame_index.hpp"
 #include "ocm/topics/amiro.hpp"
 
 #include "cli/output/output.hpp"
@@ -188,8 +188,8 @@ TEST_CASE("JSON lines: any entries come back bit by bit", "[output]") {
     entry.id = (entry.id & 0x700U) |
                static_cast<std::uint32_t>(random() % 0x60);  // mostly topics, and often with their length
     if (random() % 4 == 0) continue;
-    const auto ref = protocol::FrameIndex{amiro::catalogue}.find(protocol::Identifier::decode(entry.id));
-    if (ref && entry.raw_dlc == 0) entry.length = ref.layout().dlc;
+    const auto ref = client::FrameIndex{amiro::catalogue}.find(protocol::Identifier::decode(entry.id));
+    if (ref && entry.raw_dlc == 0) entry.length = ref.layout().dlc();
     for (std::size_t j = 0; j < 8; ++j)
       entry.data[j] = static_cast<std::uint8_t>(j < entry.length ? random() : 0);
   }

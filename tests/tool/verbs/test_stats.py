@@ -85,7 +85,7 @@ class Stats(Case):
         report, _ = self.report(path)
         bus = report["buses"][0]
         self.assertEqual(bus["bus"], "can0")
-        self.assertEqual((bus["frames"], bus["errors"], bus["overflows"], bus["fd_frames"]), (6, 2, 1, 1))
+        self.assertEqual((bus["frames"], bus["errors"], bus["overflows"], bus["fd_frames"]), (7, 2, 1, 1))
         self.assertEqual((bus["unknown"], bus["wrong_length"], bus["commands"]), (3, 1, 1))
         self.assertEqual(bus["unknown_ids"], [{"id": "655", "count": 2}, {"id": "1F334455", "count": 1}])
         gyro = bus["topics"][1]

@@ -38,7 +38,7 @@ struct Motors {
                  greatest,
                  {}}}} {
     frame.id = protocol::TopicId{0x01};
-    frame.dlc = 8;
+    frame.length = 8;
     frame.fields = fields;
     topic.name = "motors";
     topic.id = frame.id;

@@ -54,7 +54,7 @@ TEST_CASE("a sample that lacks frames is no struct") {
   static_cast<void>(take(receiver, "606#00AAF1FF"));
   auto sample = take(receiver, "607#003E1700").sample;
   REQUIRE(sample.as<amiro::Magnetometer>().ok());
-  sample.payloads = sample.payloads.first(2);
+  sample.bytes = sample.bytes.first(16);
   CHECK(sample.as<amiro::Magnetometer>().error == base::Error::unknown_topic);
   CHECK(client::Sample{}.as<amiro::Magnetometer>().error == base::Error::unknown_topic);
 }

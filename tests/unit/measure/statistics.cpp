@@ -102,7 +102,7 @@ TEST_CASE("statistics: incomplete samples are their topic's") {
     part.id = ocm::protocol::Identifier{ocm::protocol::Direction::sensor, ocm::protocol::Priority::low,
                                         topic->frames[frame].id}
                   .encode();
-    part.dlc = topic->frames[frame].dlc;
+    part.dlc = topic->frames[frame].dlc();
     log.statistics.take({Time{ms * 1ms}, part});
   };
   for (std::size_t frame = 0; frame < 3; ++frame) put(static_cast<int>(frame), frame);
@@ -159,7 +159,7 @@ TEST_CASE("statistics: they are as of the last frame, or of later, never of befo
 
 TEST_CASE("statistics: CAN FD is counted apart, strangers only so many") {
   BusStatistics statistics{amiro::catalogue, 500'000};
-  statistics.take_fd(Time{1s});
+  statistics.take_fd({0, ocm::can::Format::base, true, {}}, Time{1s});
   for (std::uint32_t id = 0; id < 100; ++id)
     statistics.take({Time{2s}, {id, 0, {}, ocm::can::Format::extended}});
   const auto figures = statistics.figures();

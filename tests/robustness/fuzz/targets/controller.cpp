@@ -5,7 +5,7 @@
 #include <array>
 #include <type_traits>
 
-#include "ocm/protocol/frame_index.hpp"
+#include "ocm/client/frame_index.hpp"
 #include "ocm/topics/amiro.hpp"
 
 #include "tests/robustness/fuzz/fuzz.hpp"
@@ -55,7 +55,7 @@ class Account {
         "a board sends sensor data");
     Stream& stream = streams_[ref.topic->id.value];
     fuzz::expect(stream.pending, "a board sends what it has read");
-    fuzz::expect(frame.dlc == ref.layout().dlc && ref.frame == stream.next,
+    fuzz::expect(frame.dlc == ref.layout().dlc() && ref.frame == stream.next,
                  "a sample's frames come in order");
     fuzz::expect(id.priority == stream.sampled || tells_refusals(ref.topic->id),
                  "a sample has the priority asked for");
@@ -80,7 +80,7 @@ class Account {
     return amiro::catalogue.find(topic)->role == protocol::Role::refusal;
   }
 
-  protocol::FrameIndex index_{amiro::catalogue};
+  client::FrameIndex index_{amiro::catalogue};
   std::array<Stream, 256> streams_{};
 };
 

@@ -30,7 +30,7 @@ void check(fuzz::Input input, const protocol::Catalogue& catalogue) {
         receiver.take({base::Time{base::Duration{static_cast<std::int64_t>(++taken)}}, frame});
     const bool placed = reception.meaning == Meaning::part || reception.meaning == Meaning::sample ||
                         reception.meaning == Meaning::set_point;
-    fuzz::expect(!placed || reception.frame.layout().dlc == frame.dlc,
+    fuzz::expect(!placed || reception.frame.layout().dlc() == frame.dlc,
                  "a frame that is taken has its length");
     fuzz::expect(!reception.frame || reception.frame.topic == reception.topic, "a frame is one of its topic");
     if (reception.meaning == Meaning::part) ++parts;
@@ -39,11 +39,10 @@ void check(fuzz::Input input, const protocol::Catalogue& catalogue) {
     if (reception.meaning != Meaning::sample) continue;
 
     const auto& sample = reception.sample;
-    fuzz::expect(sample.topic == reception.topic && sample.payloads.size() == sample.topic->frames.size(),
+    fuzz::expect(sample.topic == reception.topic && sample.bytes.size() == 8 * sample.topic->frames.size(),
                  "a sample is whole");
-    for (std::uint8_t i = 0; i < sample.payloads.size(); ++i)
-      fuzz::expect(sample.payloads[i] == latest[std::tuple{sample.topic, i}],
-                   "a sample holds what came last");
+    for (std::uint8_t i = 0; i < sample.topic->frames.size(); ++i)
+      fuzz::expect(sample.payload(i) == latest[std::tuple{sample.topic, i}], "a sample holds what came last");
     check_typed(sample, amiro::DiWheelDrive::sensors{});
     check_typed(sample, amiro::PowerManagement::sensors{});
   }

@@ -26,7 +26,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     fuzz::expect(catalogue.find(topic.name) == &topic && catalogue.find(topic.id) == &topic,
                  "a topic is found by its name and by its id");
     for (const auto& layout : topic.frames) {
-      fuzz::expect(layout.dlc <= can::max_dlc, "a frame has at most 8 bytes");
+      fuzz::expect(layout.length <= can::max_dlc, "a frame has at most 8 bytes");
       can::Payload payload;
       payload.fill(0xA5);
       for (const auto& field : layout.fields) {
@@ -35,7 +35,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (const auto physical = field.physical(field.raw_min)) (void)field.raw_from(*physical);
       }
       const auto id = protocol::Identifier{protocol::Direction::sensor, topic.priority, layout.id}.encode();
-      (void)receiver.take({base::Time{}, can::Frame{.id = id, .dlc = layout.dlc, .data = payload}});
+      (void)receiver.take({base::Time{}, can::Frame{.id = id, .dlc = layout.dlc(), .data = payload}});
     }
     const bool sensor = topic.kind == protocol::Kind::sensor;
     const std::string_view ask[] = {sensor ? "publish" : "stop", topic.name};

@@ -1,0 +1,175 @@
+#include "generator/spec/from_dbc.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <filesystem>
+#include <string>
+#include <unordered_map>
+#include <utility>
+
+#include "ocm/base/text.hpp"
+#include "ocm/can/frame.hpp"
+
+namespace ocm::spec {
+namespace {
+
+/// What a catalogue's layout can hold: CAN FD, or J1939's transport protocol.
+constexpr unsigned most_bytes = 64;
+constexpr unsigned most_bytes_j1939 = 1785;
+
+char lower(char c) noexcept {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
+/// 0: none, or longer than can be counted.
+base::Duration duration_of(const std::optional<base::Decimal>& milliseconds) {
+  if (!milliseconds) return {};
+  const auto ns = base::divide_rounded(*milliseconds, base::Decimal{1, -6});
+  return base::Duration{ns && *ns > 0 ? *ns : 0};
+}
+
+std::vector<AttributeModel> attributes_of(std::vector<dbc::Attribute>& attributes) {
+  std::vector<AttributeModel> out;
+  for (dbc::Attribute& attribute : attributes)
+    out.push_back({std::move(attribute.name), std::move(attribute.text)});
+  return out;
+}
+
+class Converter {
+ public:
+  Converter(std::string_view file_name, std::vector<Problem>& doubts)
+      : file_name_(file_name), doubts_(doubts) {}
+
+  Model convert(dbc::Document document) {
+    Model model;
+    model.robot = std::filesystem::path{file_name_}.stem().string();
+    model.description = std::move(document.comment);
+    model.attributes = attributes_of(document.attributes);
+    model.bit_rate = bit_rate(model.attributes);
+    boards(document, model);
+    for (dbc::Message& message : document.messages) add(message, model);
+    return model;
+  }
+
+ private:
+  void doubt(std::size_t line, std::string what, std::string remedy) {
+    doubts_.push_back({file_name_ + ':' + std::to_string(line), std::move(what), std::move(remedy)});
+  }
+
+  /// The attribute that many files give it in, in bit/s; 0: none that a bus can have.
+  static std::uint32_t bit_rate(const std::vector<AttributeModel>& attributes) {
+    for (const AttributeModel& attribute : attributes) {
+      if (attribute.name != "Baudrate") continue;
+      const auto rate = base::parse_unsigned(attribute.text);
+      if (rate && *rate >= 1'000 && *rate <= 1'000'000) return static_cast<std::uint32_t>(*rate);
+    }
+    return 0;
+  }
+
+  void boards(dbc::Document& document, Model& model) {
+    for (dbc::Node& node : document.nodes) {
+      if (model.boards.size() == protocol::no_board) {
+        doubt(1, std::to_string(document.nodes.size()) + " nodes",
+              "the first " + std::to_string(protocol::no_board) +
+                  " are kept: messages of others have no sender");
+        break;
+      }
+      boards_.try_emplace(node.name, static_cast<std::uint8_t>(model.boards.size()));
+      BoardModel board;
+      board.name = std::move(node.name);
+      board.description = std::move(node.comment);
+      board.attributes = attributes_of(node.attributes);
+      model.boards.push_back(std::move(board));
+    }
+  }
+
+  void add(dbc::Message& message, Model& model) {
+    using Format = dbc::Message::Format;
+    const bool j1939 = message.format == Format::j1939;
+    const unsigned most = j1939 ? most_bytes_j1939 : most_bytes;
+    if (message.length > most)
+      return doubt(message.line, message.name + " has " + std::to_string(message.length) + " bytes",
+                   "it is left out: a frame has at most " + std::to_string(most));
+    MessageModel out;
+    out.name = std::move(message.name);
+    out.description = std::move(message.comment);
+    out.address = {j1939 ? protocol::Address::By::pgn : protocol::Address::By::identifier,
+                   message.format != Format::base, message.id};
+    out.length = message.length;
+    out.fd = message.fd;
+    if (const auto board = boards_.find(message.sender); board != boards_.end()) out.board = board->second;
+    out.other_senders = std::move(message.other_senders);
+    out.period = duration_of(message.cycle_ms);
+    out.shortest_period = duration_of(message.delay_ms);
+    out.send_type = std::move(message.send_type);
+    out.attributes = attributes_of(message.attributes);
+    out.source.general = file_name_ + ':' + std::to_string(message.line);
+    for (const dbc::Signal& signal : message.signals) out.fields.push_back(field(signal, message));
+    model.messages.push_back(std::move(out));
+  }
+
+  static FieldModel field(const dbc::Signal& signal, const dbc::Message& message) {
+    FieldModel out;
+    out.name = signal.name;
+    out.description = signal.comment;
+    out.position = signal.position;
+    out.number = static_cast<protocol::Number>(signal.number);
+    out.is_signed = signal.is_signed && out.number == protocol::Number::integer;
+    out.scale = signal.scale;
+    out.offset = signal.offset;
+    out.unit = signal.unit;
+    out.raw_min = protocol::lowest(signal.position.width, out.is_signed);
+    out.raw_max = protocol::highest(signal.position.width, out.is_signed);
+    if (signal.has_range) out.range = RangeModel{signal.min, signal.max};
+    for (const dbc::NamedValue& value : signal.values) out.values.push_back({value.name, value.raw});
+    if (signal.selector) {
+      out.selector = message.signals[*signal.selector].name;
+      for (const auto& [first, last] : signal.selected) out.selected.push_back({first, last});
+    }
+    if (signal.start_value) out.start = start_of(out, *signal.start_value);
+    out.receivers = signal.receivers;
+    auto attributes = signal.attributes;
+    out.attributes = attributes_of(attributes);
+    return out;
+  }
+
+  /// A start value is raw, not scaled; a float's is its number.
+  static std::optional<std::int64_t> start_of(const FieldModel& field, base::Decimal start) {
+    if (field.number == protocol::Number::float32)
+      return std::int64_t{std::bit_cast<std::uint32_t>(static_cast<float>(start.as_double()))};
+    if (field.number == protocol::Number::float64) return std::bit_cast<std::int64_t>(start.as_double());
+    const auto raw = base::divide_rounded(start, {1, 0});
+    return raw ? std::optional{*raw} : std::nullopt;
+  }
+
+  std::string file_name_;
+  std::vector<Problem>& doubts_;
+  std::unordered_map<std::string, std::uint8_t> boards_;
+};
+
+}  // namespace
+
+bool is_dbc(std::string_view text, std::string_view file_name) noexcept {
+  constexpr std::string_view ending = ".dbc";
+  const auto tail = file_name.substr(file_name.size() - std::min(file_name.size(), ending.size()));
+  if (std::equal(tail.begin(), tail.end(), ending.begin(), ending.end(),
+                 [](char a, char b) { return lower(a) == b; }))
+    return true;
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  const auto begin = text.find_first_not_of(" \t\r\n");
+  if (begin == std::string_view::npos) return false;
+  text.remove_prefix(begin);
+  constexpr std::array<std::string_view, 7> words{"VERSION", "NS_", "BS_", "BU_", "BO_", "CM_", "VAL_TABLE_"};
+  return std::any_of(words.begin(), words.end(), [&](std::string_view word) {
+    constexpr std::string_view ends = " \t\r\n:\"";
+    return text.starts_with(word) && text.size() > word.size() &&
+           ends.find(text[word.size()]) != std::string_view::npos;
+  });
+}
+
+Model model_of(dbc::Document document, std::string_view file_name, std::vector<Problem>& doubts) {
+  return Converter{file_name, doubts}.convert(std::move(document));
+}
+
+}  // namespace ocm::spec

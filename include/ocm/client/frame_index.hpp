@@ -1,0 +1,118 @@
+/// Which topic or message a frame is of: the one place that knows. Built from a catalogue; one or two steps a
+/// frame, whatever their number.
+///
+///     const client::FrameIndex index{catalogue};
+///     const auto subject = index.subject(frame.id, frame.format);
+///     if (subject.is_request()) ...
+///
+/// An identifier of 11 bits is a topic's before it is a message's; one of 29 bits is a message's whose exact
+/// identifier it is before it is the one of its parameter group [SAE J1939-21]. Memory: 48 KiB, and 24 bytes
+/// a message, allocated once.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "ocm/can/frame.hpp"
+#include "ocm/j1939/identifier.hpp"
+#include "ocm/protocol/identifier.hpp"
+#include "ocm/protocol/topic.hpp"
+
+namespace ocm::client {
+
+/// What a frame is about: a request to a topic, or a frame of a topic or message.
+struct Subject {
+  const protocol::Topic* topic = nullptr;  ///< nullptr: the catalogue does not know the identifier
+  protocol::FrameRef frame{};              ///< sensor data, a set point or a message; empty for a request
+  [[nodiscard]] constexpr bool is_request() const noexcept { return topic != nullptr && !frame; }
+  constexpr explicit operator bool() const noexcept { return topic != nullptr; }
+};
+
+class FrameIndex {
+ public:
+  FrameIndex() : FrameIndex(protocol::Catalogue{}) {}
+  /// The catalogue must outlive the index. Of two messages with one identifier the first is found.
+  explicit FrameIndex(const protocol::Catalogue& catalogue) : base_(can::max_base_id + std::size_t{1}) {
+    std::size_t wide = 0;
+    for (const auto& topic : catalogue.topics) wide += topic.is_message() ? 1 : 0;
+    wide_.resize(std::bit_ceil(2 * wide + 2));  // half of it stays empty: few steps
+    for (const auto& topic : catalogue.topics)
+      if (!topic.is_message()) add_topic(topic);
+    for (const auto& topic : catalogue.topics)
+      if (topic.is_message()) add_message(topic);
+  }
+
+  /// Nothing for remote and error frames.
+  [[nodiscard]] Subject subject(std::uint32_t id, can::Format format) const noexcept {
+    if (format == can::Format::base) return base_[id & can::max_base_id];
+    if (format != can::Format::extended) return {};
+    const protocol::FrameRef exact = look_up(id);
+    const protocol::FrameRef frame = exact ? exact : look_up(group_key(j1939::pgn_of(id)));
+    return {frame.topic, frame};
+  }
+  /// The same of a topic's identifier alone: no message.
+  [[nodiscard]] Subject subject(protocol::Identifier id) const noexcept {
+    const Subject found = base_[id.encode()];
+    return found.topic != nullptr && !found.topic->is_message() ? found : Subject{};
+  }
+  /// Sensor data, or an actuator's set point; empty for requests and unknown identifiers.
+  [[nodiscard]] protocol::FrameRef find(protocol::Identifier id) const noexcept { return subject(id).frame; }
+  /// The sensor that a command frame asks; nullptr otherwise.
+  [[nodiscard]] const protocol::Topic* requested(protocol::Identifier id) const noexcept {
+    const Subject found = subject(id);
+    return found.is_request() ? found.topic : nullptr;
+  }
+
+ private:
+  struct Wide {
+    std::uint32_t key = 0;
+    protocol::FrameRef frame{};
+  };
+  /// Above every identifier of 29 bits.
+  [[nodiscard]] static constexpr std::uint32_t group_key(std::uint32_t pgn) noexcept {
+    return std::uint32_t{1} << 29 | pgn;
+  }
+
+  void add_topic(const protocol::Topic& topic) {
+    using protocol::Direction;
+    const bool sensor = topic.kind == protocol::Kind::sensor;
+    for (std::size_t level = 0; level < protocol::priority_levels; ++level) {
+      const auto priority = static_cast<protocol::Priority>(level);
+      if (sensor) base_[protocol::Identifier{Direction::command, priority, topic.id}.encode()] = {&topic, {}};
+      const auto direction = sensor ? Direction::sensor : Direction::command;
+      for (std::size_t i = 0; i < topic.frames.size(); ++i)
+        base_[protocol::Identifier{direction, priority, topic.frames[i].id}.encode()] = {
+            &topic, {&topic, static_cast<std::uint8_t>(i)}};
+    }
+  }
+  void add_message(const protocol::Topic& message) {
+    const protocol::FrameRef frame{&message, 0};
+    const protocol::Address& address = frame.layout().address;
+    if (address.by == protocol::Address::By::pgn)
+      return insert(group_key(j1939::pgn_of(address.number)), frame);
+    if (address.extended) return insert(address.number, frame);
+    Subject& place = base_[address.number & can::max_base_id];
+    if (!place) place = {&message, frame};
+  }
+  void insert(std::uint32_t key, protocol::FrameRef frame) {
+    std::size_t at = place_of(key);
+    while (wide_[at].frame && wide_[at].key != key) at = (at + 1) & (wide_.size() - 1);
+    if (!wide_[at].frame) wide_[at] = {key, frame};
+  }
+  [[nodiscard]] protocol::FrameRef look_up(std::uint32_t key) const noexcept {
+    std::size_t at = place_of(key);
+    while (wide_[at].frame && wide_[at].key != key) at = (at + 1) & (wide_.size() - 1);
+    return wide_[at].frame;
+  }
+  /// Fibonacci hashing: identifiers that follow one another come to places far apart. [Knuth, TAOCP 3, 6.4]
+  [[nodiscard]] std::size_t place_of(std::uint32_t key) const noexcept {
+    return key * 0x9E37'79B9U >> (32U - static_cast<unsigned>(std::countr_zero(wide_.size())));
+  }
+
+  std::vector<Subject> base_;  // by identifier of 11 bits
+  std::vector<Wide> wide_;     // a power of two, and at least one place is empty
+};
+
+}  // namespace ocm::client
