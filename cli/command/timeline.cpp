@@ -50,8 +50,20 @@ void Timeline::carry_out_once(const client::Command& command) {
 }
 
 void Timeline::carry_out(const client::Command& command) {
+  for (const auto& frame : command.frames)
+    repeated_.erase(std::remove_if(repeated_.begin(), repeated_.end(),
+                                   [&](const Repeated& each) {
+                                     return each.frame.id == frame.id && each.frame.format == frame.format;
+                                   }),
+                    repeated_.end());
+  const auto begin = Clock::now();
   carry_out_once(command);
   if (command.ends_hold) held_.reset();
+  if (command.repeat) {
+    const auto [period, lasting] = *command.repeat;
+    const auto end = lasting.count() > 0 ? begin + lasting : Clock::time_point::max();
+    for (const auto& frame : command.frames) repeated_.push_back({frame, period, begin + period, end, begin});
+  }
   if (!command.hold) return;
   const auto now = Clock::now();
   const auto& hold = *command.hold;
@@ -80,6 +92,12 @@ bool Timeline::finish() {
   if (withheld_ != 0)
     remark(fmt::format("{}: {} set points were not sent, because the one before had not left", verb_,
                        withheld_));
+  if (left_out_ != 0)
+    remark(fmt::format("{}: {} frames were not sent, because this program ran too late for their time", verb_,
+                       left_out_));
+  if (not_taken_ != 0)
+    remark(fmt::format("{}: {} frames were not sent, because {} had not taken those before", verb_,
+                       not_taken_, bus_->name()));
   return !refused_;
 }
 
@@ -152,15 +170,58 @@ void Timeline::repeat(Clock::time_point now) {
   }
 }
 
+void Timeline::repeat_due(Clock::time_point now) {
+  for (std::size_t i = 0; i < repeated_.size();) {
+    if (now >= repeated_[i].next && repeated_[i].next < repeated_[i].end) send_again(repeated_[i], now);
+    if (repeated_[i].next >= repeated_[i].end && now >= repeated_[i].end)
+      repeated_.erase(repeated_.begin() + static_cast<std::ptrdiff_t>(i));
+    else
+      ++i;
+  }
+}
+
+void Timeline::send_again(Repeated& repeated, Clock::time_point now) {
+  repeated.next += repeated.period;  // absolute: no drift
+  if (repeated.next <= now) {
+    const auto late =
+        (std::min(now, repeated.end - Clock::duration{1}) - repeated.next) / repeated.period + 1;
+    left_out_ += static_cast<std::uint64_t>(late);
+    repeated.next += late * repeated.period;
+  }
+  const auto delivery = bus_->delivery();
+  const auto& obstruction = delivery.obstruction;
+  // One of each may be under way: they may all be due at once.
+  bool taken = obstruction.what.empty() && !(delivery.known && delivery.pending > repeated_.size());
+  if (taken) {
+    const auto sent = bus_->send(repeated.frame);
+    if (sent.error == base::Error::closed) fail(bus_->failure());
+    taken = sent && *sent;
+  }
+  if (taken) {
+    repeated.left = now;
+    return refusals_.sent(repeated.frame);
+  }
+  ++not_taken_;
+  if (now - repeated.left < std::max<Clock::duration>(client::longest_without_set_point, 2 * repeated.period))
+    return;  // an interface may come back
+  const std::string what =
+      fmt::format("{}: {} has taken no frame for {}", verb_, bus_->name(),
+                  words::to_text(std::chrono::duration_cast<std::chrono::milliseconds>(now - repeated.left)));
+  if (!obstruction.what.empty()) fail({fmt::format("{}: {}", what, obstruction.what), obstruction.remedy});
+  fail({what, why_none_leaves(*bus_)});
+}
+
 bool Timeline::wait(Clock::time_point until) {
   for (;;) {
     if (interrupted() != 0) return false;
     const auto now = look_at_clock();
     if (held_ && now >= held_->end) rest();
     if (held_ && now >= held_->next) repeat(now);
+    repeat_due(now);
     if (now >= until) return true;
     auto wake = until;
     if (held_) wake = std::min({wake, held_->next, held_->end});
+    for (const Repeated& each : repeated_) wake = std::min(wake, std::min(each.next, each.end));
     awake_ = wake;
     const Over over = live_.receive(wake, [&](const can::Received& received) {
       other_.take(received, moving_);
@@ -199,9 +260,13 @@ Timeline::Clock::time_point Timeline::look_at_clock() {
   return now;
 }
 
-bool Timeline::wait_for_hold() {
-  while (held_)
-    if (!wait(std::min(held_->end, Clock::now() + std::chrono::hours{1}))) return false;
+bool Timeline::wait_for_end() {
+  while (held_ || !repeated_.empty()) {
+    auto until = Clock::now() + std::chrono::hours{1};
+    if (held_) until = std::min(until, held_->end);
+    for (const Repeated& each : repeated_) until = std::min(until, each.end);
+    if (!wait(until)) return false;
+  }
   return true;
 }
 

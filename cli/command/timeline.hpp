@@ -6,6 +6,9 @@
 /// for so long, the hold ends, and the set point of rest is the next that can leave. No hold begins while
 /// another program commands the motors, unless that is allowed.
 ///
+/// Frames that are sent again and again go at times that do not drift. A turn that comes too late, because
+/// this program did not run or the bus did not take what came before, is left out and counted.
+///
 /// A board that refuses a set point that is held ends the command; what else a board refuses is said, and the
 /// command goes on.
 #pragma once
@@ -15,6 +18,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "ocm/can/bus.hpp"
 #include "ocm/transport/bus.hpp"
@@ -45,8 +49,8 @@ class Timeline {
   Timeline(const Timeline&) = delete;
   Timeline& operator=(const Timeline&) = delete;
 
-  /// Sends a command's frames and takes over, or ends, its hold. Leaves if another program commands the
-  /// motors that it would hold, and was heard.
+  /// Sends a command's frames, again and again if it says so, and takes over, or ends, its hold. Leaves if
+  /// another program commands the motors that it would hold, and was heard.
   void carry_out(const client::Command& command);
   /// The same without a hold: the board's watchdog ends it.
   void carry_out_once(const client::Command& command);
@@ -55,8 +59,9 @@ class Timeline {
   /// The same until a step is due; leaves if this program did not run meanwhile: the command is then
   /// out of date. A bus that is slow to take the steps before makes a step late, and no more.
   [[nodiscard]] bool wait_for_step(Clock::time_point due);
-  /// Until the hold is over by itself (drive --for) or a signal comes. False: a signal.
-  [[nodiscard]] bool wait_for_hold();
+  /// Until the hold, and all that is sent again and again, is over by itself (--for) or a signal comes.
+  /// False: a signal.
+  [[nodiscard]] bool wait_for_end();
   /// Ends a hold: sends the set point of rest. Nothing without a hold.
   void rest();
   /// rest(), and what was sent has left; leaves through cli::fail, loudly, if not. Then listens for the
@@ -71,6 +76,13 @@ class Timeline {
     Clock::time_point end;
     Clock::time_point left;  ///< when a set point was last sent, with none before it under way
   };
+  struct Repeated {
+    can::Frame frame;
+    base::Duration period;
+    Clock::time_point next;
+    Clock::time_point end;
+    Clock::time_point left;  ///< when one was last sent, and little was under way
+  };
   void send(const can::Frame& frame);
   /// Says what a board refused; leaves if the motors are held and their board refuses that.
   void tell_refusals();
@@ -80,6 +92,9 @@ class Timeline {
   Clock::time_point look_at_clock();
   /// Sends the held set point again, if the last one has left.
   void repeat(Clock::time_point now);
+  /// Sends what is sent again and again and is due; removes what is over.
+  void repeat_due(Clock::time_point now);
+  void send_again(Repeated& repeated, Clock::time_point now);
   /// Sends the set point of rest behind whatever waits; whether it has left.
   [[nodiscard]] bool rest_after_all();
   /// Ends the hold because of something that is wrong.
@@ -93,6 +108,7 @@ class Timeline {
   Others others_;
   OtherCommander other_;
   std::optional<Held> held_;
+  std::vector<Repeated> repeated_;          ///< one an identifier
   Clock::time_point awake_ = Clock::now();  ///< when this program looks at the clock next, at the latest
   Clock::duration stood_still_{};           ///< the longest time that it was later
   bool moving_ = false;                     ///< a set point of motors was sent, and none of rest after it
@@ -100,7 +116,9 @@ class Timeline {
   Outgoing outgoing_;
   RefusalWatch refusals_;
   bool refused_ = false;
-  std::uint64_t withheld_ = 0;  ///< set points that were due while none could leave
+  std::uint64_t withheld_ = 0;   ///< set points that were due while none could leave
+  std::uint64_t left_out_ = 0;   ///< turns of what is repeated: this program was late,
+  std::uint64_t not_taken_ = 0;  ///< or the bus did not take what came before
 };
 
 }  // namespace ocm::cli

@@ -51,7 +51,7 @@ void add_drive(Verb app, Session& session, int& exit_code) {
       timeline.carry_out_once(command);
     } else if (ended) {
       timeline.carry_out(command);
-      ended = timeline.wait_for_hold();
+      ended = timeline.wait_for_end();
     }
     if (!timeline.finish()) exit_code = exit_failure;
     if (!ended) exit_code = exit_code_after_interrupt(exit_success);

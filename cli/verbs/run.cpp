@@ -131,7 +131,7 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
     remark(fmt::format("{:>8}  {}", words::to_text(step.at), step.text));
     timeline.carry_out(step.command);
   }
-  const bool whole = interrupted() == 0 && timeline.wait_for_hold();
+  const bool whole = interrupted() == 0 && timeline.wait_for_end();
   if (!timeline.finish()) exit_code = exit_failure;
   if (!whole) {
     remark("interrupted: the motors were set to zero; `amiroctl stop` stops the sensors too");

@@ -1,13 +1,44 @@
+#include <memory>
+
 #include "cli/command/commanding.hpp"
+#include "cli/command/timeline.hpp"
+#include "cli/shared/interrupt.hpp"
+#include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
 
 namespace ocm::cli {
 
-void add_set(Verb app, Session& session, int&) {
-  add_command_verb(app, session, "set", "set any actuator, field by field, once", act_group,
-                   "ACTUATOR FIELD=VALUE ...; a value has its field's unit, what is not given is zero",
-                   "  amiroctl set motors x=0.05m/s z=-30deg/s\n"
-                   "  amiroctl set led_3 red=255 blue=40");
+void add_set(Verb app, Session& session, int& exit_code) {
+  auto verb = app.add_verb("set", "set an actuator, or send a message, field by field", act_group,
+                           "  amiroctl set motors x=0.05m/s z=-30deg/s\n"
+                           "  amiroctl set led_3 red=255 blue=40\n"
+                           "  amiroctl --spec car.dbc set Engine rpm=2500 gear=third --every 10ms --for 5s");
+  const auto commanding = std::make_shared<Commanding>(verb, session,
+                                                       "an actuator's field is zero where it is not given, a "
+                                                       "message's at its start value; units as in the spec");
+  auto& options = commanding->options();
+  const auto every = verb.add_value("--every", take_into(options.every, words::read_every),
+                                    "send it again and again until Ctrl-C or --for")
+                         .type_name("T")
+                         .takes(accepted_duration());
+  verb.add_value("--for", take_into(options.lasting, words::read_lasting), "how long to send it")
+      .type_name("T")
+      .takes(accepted_duration())
+      .needs(every);
+  verb.add_flag("--force", options.force, "also values beyond the range that the spec states");
+  verb.callback([commanding, &session, &exit_code] {
+    const auto command = commanding->parse();
+    if (commanding->dry_run() || !command.repeat) return carry_out(session, *commanding, command);
+    catch_interrupts();
+    catch_hangups();
+    catch_broken_pipe();
+    const auto bus = session.open_bus();
+    Timeline timeline{*bus, session.catalogue(), "set", Timeline::Others::allowed, commanding->confirm(), {}};
+    timeline.carry_out(command);
+    const bool ended = timeline.wait_for_end();
+    if (!timeline.finish()) exit_code = exit_failure;
+    if (!ended) exit_code = exit_code_after_interrupt(exit_success);
+  });
 }
 
 }  // namespace ocm::cli

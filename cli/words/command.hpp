@@ -2,7 +2,8 @@
 ///
 ///     publish TOPIC [PERIOD]     once TOPIC     stop [TOPIC|all]
 ///     drive X [Z] [--for T] | drive stop        led N|all COLOUR|off
-///     set ACTUATOR FIELD=VALUE ...              send FRAME
+///     set ACTUATOR|MESSAGE FIELD=VALUE ... [--every T [--for T]] [--force]
+///     send FRAME
 ///
 /// each with `--priority P`. A script has the options among the words; the command line has read them already
 /// and hands them over as values. A command becomes frames; an error names the word that is wrong. drive and
@@ -32,10 +33,12 @@
 #include "ocm/protocol/request.hpp"
 #include "ocm/protocol/topic.hpp"
 
+#include "cli/words/message.hpp"
 #include "cli/words/quantity.hpp"
 #include "cli/words/suggestion.hpp"
 #include "cli/words/topics.hpp"
 #include "cli/words/value.hpp"
+#include "cli/words/word_error.hpp"
 
 namespace ocm::cli::words {
 
@@ -43,18 +46,12 @@ using client::Command;
 using client::Hold;
 using client::set_point;
 
-/// What is wrong with a command: at which word (its index), and what would be right.
-struct WordError {
-  std::size_t word = 0;
-  std::string what;
-  std::string remedy;
-  friend bool operator==(const WordError&, const WordError&) = default;
-};
-
 /// What a command's options say, as values.
 struct CommandOptions {
   std::optional<protocol::Priority> priority;  ///< none: the topic's own
   std::optional<base::Duration> lasting;       ///< of drive; none: until something else is commanded
+  std::optional<base::Duration> every{};       ///< of set: sent again and again
+  bool force = false;                          ///< of set: also beyond a range that is only stated
 };
 
 /// The value of --priority: a name, "normal" as the thesis also calls medium [Thesis 4.2.1], or its number in
@@ -76,6 +73,13 @@ struct CommandOptions {
   return WordError{0, "not a time above zero", "write 2s, 500ms or 1min"};
 }
 
+/// The value of --every. The error is as that of read_priority.
+[[nodiscard]] inline base::Result<base::Duration, WordError> read_every(std::string_view text) {
+  const auto every = parse_duration(text);
+  if (every && *every >= client::shortest_repeat) return *every;
+  return WordError{0, "not a time of 100us or more", "write 10ms, 1s or 500us"};
+}
+
 /// The words behind a verb, as its usage shows them: those in brackets may be missing, and ... is any number
 /// more.
 struct Form {
@@ -87,7 +91,7 @@ inline constexpr Form forms[] = {{"publish", "TOPIC [PERIOD]"},
                                  {"stop", "[TOPIC|all]"},
                                  {"drive", "X|stop [Z]"},
                                  {"led", "N|all COLOUR|off"},
-                                 {"set", "ACTUATOR FIELD=VALUE ..."},
+                                 {"set", "ACTUATOR|MESSAGE FIELD=VALUE ..."},
                                  {"send", "FRAME"}};
 
 /// The words of a verb's form; empty if no command has the name.
@@ -154,7 +158,7 @@ class CommandParser {
     if (verb == "stop") return stop(words, options.priority);
     if (verb == "drive") return drive(words, options);
     if (verb == "led") return led(words, options.priority);
-    if (verb == "set") return set(words, options.priority);
+    if (verb == "set") return set(words, options);
     if (verb == "send") return send(words);
     return WordError{0, "unknown command " + detail::quoted(verb),
                      suggest([&] { return suggestion(verb, verbs()); })};
@@ -167,6 +171,8 @@ class CommandParser {
     CommandOptions options;
     std::size_t priority_at = 0;
     std::size_t lasting_at = 0;
+    std::size_t set_at = 0;  // of an option that goes with set only, and its name
+    std::string_view set_option;
     for (std::size_t i = 0; i < line.size(); ++i) {
       if (!line[i].starts_with("--")) {
         words.push_back(line[i]);
@@ -175,32 +181,49 @@ class CommandParser {
       }
       const auto equals = line[i].find('=');
       const std::string_view name = line[i].substr(0, equals);
-      constexpr std::string_view known[] = {"--priority", "--for"};
-      if (name != known[0] && name != known[1])
-        return WordError{i, "unknown option " + detail::quoted(name),
+      if (line[i] == "--force") {
+        options.force = true;
+        set_at = i;
+        set_option = name;
+        continue;
+      }
+      constexpr std::string_view known[] = {"--priority", "--for", "--every", "--force"};
+      constexpr std::string_view examples[] = {"--priority high", "--for 2s", "--every 10ms"};
+      const std::size_t option = static_cast<std::size_t>(std::find(known, known + 3, name) - known);
+      if (option == std::size(examples))
+        return WordError{i, "unknown option " + detail::quoted(line[i].substr(0, equals)),
                          suggest([&] { return suggestion(name, known); })};
       if (equals == std::string_view::npos && i + 1 == line.size())
         return WordError{i, "missing value for " + std::string{name},
-                         name == "--for" ? "write --for 2s" : "write --priority high"};
+                         "write " + std::string{examples[option]}};
       const std::string_view text = equals == std::string_view::npos ? line[++i] : line[i].substr(equals + 1);
       const auto wrong = [&](WordError error) {
         return WordError{i, detail::quoted(text) + " is " + error.what, std::move(error.remedy)};
       };
-      if (name == "--for") {
+      if (name == "--priority") {
+        const auto priority = read_priority(text);
+        if (!priority) return wrong(priority.error);
+        options.priority = *priority;
+        priority_at = i;
+      } else if (name == "--for") {
         const auto lasting = read_lasting(text);
         if (!lasting) return wrong(lasting.error);
         options.lasting = *lasting;
         lasting_at = i;
       } else {
-        const auto priority = read_priority(text);
-        if (!priority) return wrong(priority.error);
-        options.priority = *priority;
-        priority_at = i;
+        const auto every = read_every(text);
+        if (!every) return wrong(every.error);
+        options.every = *every;
+        set_at = i;
+        set_option = name;
       }
     }
     if (words.empty()) return no_command();
-    if (options.lasting && words[0] != "drive")
-      return WordError{lasting_at, "--for goes with drive only", "drop --for"};
+    if (options.lasting && words[0] != "drive" && words[0] != "set")
+      return WordError{lasting_at, "--for goes with drive, and with set --every, only", "drop --for"};
+    if (!set_option.empty() && words[0] != "set")
+      return WordError{set_at, std::string{set_option} + " goes with set only",
+                       "drop " + std::string{set_option}};
     if (options.priority && words[0] == "send")
       return WordError{priority_at, "a frame carries its priority in its identifier", "drop --priority"};
     auto command = parse(words, options);
@@ -388,12 +411,50 @@ class CommandParser {
     return command;
   }
 
-  detail::Parsed set(Line line, std::optional<protocol::Priority> priority) const {
-    const auto actuator = topic(line, 1, protocol::Kind::actuator);
-    if (!actuator) return actuator.error;
-    const auto fields = (*actuator)->frames[0].fields;
-    std::vector<std::int64_t> raw(fields.size());
-    std::vector<bool> given(fields.size());
+  detail::Parsed set(Line line, const CommandOptions& options) const {
+    const auto found = settable(line);
+    if (!found) return found.error;
+    const protocol::Topic& target = **found;
+    const auto given = given_fields(line, target, options.force);
+    if (!given) return given.error;
+    if (options.lasting && !options.every)
+      return WordError{0, "--for without --every", "write how often it is sent, such as --every 100ms"};
+    Command command;
+    if (target.is_message()) {
+      if (options.priority)
+        return WordError{0, "a message carries its priority in its identifier", "drop --priority"};
+      auto frame = compose(target, *given);
+      if (!frame) return frame.error;
+      command.frames = {*frame};
+    } else {
+      if (options.every && target.role == protocol::Role::drive)
+        return WordError{0, std::string{target.name} + " is not set again and again",
+                         "use drive, which ends with a set point of zero"};
+      std::vector<std::int64_t> raw(given->size());
+      for (std::size_t i = 0; i < raw.size(); ++i)
+        if ((*given)[i]) raw[i] = (*given)[i]->raw;
+      command.frames = {set_point(target, raw, options.priority)};
+    }
+    if (options.every)
+      command.repeat = client::Repeat{*options.every, options.lasting.value_or(base::Duration{})};
+    return command;
+  }
+
+  /// An actuator or a message.
+  base::Result<const protocol::Topic*, WordError> settable(Line line) const {
+    const auto found = topic(line, 1, {});
+    if (found && (*found)->kind != protocol::Kind::sensor) return *found;
+    // What is no topic, or a sensor, is told as before there were messages where there are none.
+    for (const auto& each : catalogue_->topics)
+      if (each.is_message() && !found) return found.error;
+    return topic(line, 1, protocol::Kind::actuator);
+  }
+
+  /// The words FIELD=VALUE, from the third word on.
+  base::Result<GivenFields, WordError> given_fields(Line line, const protocol::Topic& target,
+                                                    bool force) const {
+    const auto fields = target.frames[0].fields;
+    GivenFields given(fields.size());
     for (std::size_t i = 2; i < line.size(); ++i) {
       const std::string_view word = line[i];
       const auto equals = word.find('=');
@@ -406,21 +467,25 @@ class CommandParser {
         if (index < fields.size())
           return WordError{i, detail::quoted(word) + " is not of the form FIELD=VALUE",
                            "write a value behind it: " + std::string{name} + "=0"};
-        return WordError{i, std::string{(*actuator)->name} + " has no field " + detail::quoted(name),
+        return WordError{i, std::string{target.name} + " has no field " + detail::quoted(name),
                          suggest([&] { return suggestion(name, names); })};
       }
       if (given[index])
         return WordError{i, "field " + detail::quoted(name) + " is given twice", "give it once"};
-      const auto value = parse_typed_value(fields[index], word.substr(equals + 1));
+      protocol::Field field = fields[index];
+      if (force) field.min = field.max = {};  // what counts is what the bits hold
+      const std::string_view text = word.substr(equals + 1);
+      // The number of a message is physical wherever messages are known; it needs no unit.
+      // [docs/decisions/0027]
+      const auto value = target.is_message() ? parse_value(field, text) : parse_typed_value(field, text);
       if (!value)
-        return WordError{i, value.error,
-                         "for example " + std::string{name} + "=0" + std::string{fields[index].unit}};
-      raw[index] = *value;
-      given[index] = true;
+        return WordError{i, value.error, "for example " + std::string{name} + "=0" + std::string{field.unit}};
+      if (!is_in_stated_range(field, *value))
+        return WordError{i, detail::quoted(text) + " is beyond the stated range: " + detail::takes(field),
+                         "many stated ranges are wrong: --force sends what the bits can hold"};
+      given[index] = Given{*value, i};
     }
-    Command command;
-    command.frames = {set_point(**actuator, raw, priority)};
-    return command;
+    return given;
   }
 
   static detail::Parsed send(Line line) {

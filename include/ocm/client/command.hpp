@@ -31,8 +31,17 @@ inline constexpr base::Duration longest_without_set_point{500'000'000};
 /// holds one repeats it within this time, late as it may be by half a period. [decided]
 inline constexpr base::Duration listen_before_hold{150'000'000};
 
+/// That the frames of a command are sent again and again.
+struct Repeat {
+  base::Duration period{};
+  base::Duration lasting{};  ///< zero: until something else with their identifier is sent
+};
+/// What has a shorter period would leave no time to anything else. [decided]
+inline constexpr base::Duration shortest_repeat{100'000};
+
 struct Command {
   std::vector<can::Frame> frames;            ///< to send now, in this order
+  std::optional<Repeat> repeat;              ///< of `frames`
   std::optional<Hold> hold;                  ///< drive
   bool ends_hold = false;                    ///< drive stop, stop, stop all
   const protocol::Topic* answers = nullptr;  ///< whose sample answers a publish or once

@@ -1,0 +1,133 @@
+/// A plain message from its fields as people type them: what is not given is at its start value, and
+/// selectors follow the fields that they select.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ocm/base/decimal.hpp"
+#include "ocm/base/result.hpp"
+#include "ocm/base/text.hpp"
+#include "ocm/can/frame.hpp"
+#include "ocm/protocol/codec.hpp"
+#include "ocm/protocol/topic.hpp"
+
+#include "cli/words/value.hpp"
+#include "cli/words/word_error.hpp"
+
+namespace ocm::cli::words {
+
+/// A field that was given: its raw number, and at which word.
+struct Given {
+  std::int64_t raw = 0;
+  std::size_t word = 0;
+};
+/// By the index of the field.
+using GivenFields = std::vector<std::optional<Given>>;
+
+namespace detail {
+
+[[nodiscard]] constexpr std::uint64_t bits_of(const protocol::Field& field, std::int64_t raw) noexcept {
+  const unsigned width = field.position.width;
+  return static_cast<std::uint64_t>(raw) & (width < 64 ? (std::uint64_t{1} << width) - 1 : UINT64_MAX);
+}
+
+[[nodiscard]] inline bool selects(const protocol::Field& field, std::uint64_t bits) noexcept {
+  for (const auto& range : field.selected)
+    if (range.first <= bits && bits <= range.last) return true;
+  return false;
+}
+
+/// A selector's bits as its raw number.
+[[nodiscard]] constexpr std::int64_t raw_of(const protocol::Field& selector, std::uint64_t bits) noexcept {
+  const unsigned unused = 64U - selector.position.width;
+  return selector.is_signed ? static_cast<std::int64_t>(bits << unused) >> unused
+                            : static_cast<std::int64_t>(bits);
+}
+
+/// "speed is there only with page=2"
+[[nodiscard]] inline std::string presence(const protocol::Field& field, const protocol::Field& selector) {
+  const auto value = [&selector](std::uint64_t bits) {
+    const std::int64_t raw = raw_of(selector, bits);
+    for (const auto& named : selector.values)
+      if (named.raw == raw) return std::string{named.name};
+    const auto physical = selector.physical(raw);
+    return physical ? std::string{base::to_text(*physical).view()} : std::to_string(raw);
+  };
+  std::string values;
+  for (const auto& [first, last] : field.selected) {
+    values += (values.empty() ? "" : ", ") + value(first);
+    if (last != first) values += " to " + value(last);
+  }
+  return std::string{field.name} + " is there only with " + std::string{selector.name} + "=" + values;
+}
+
+}  // namespace detail
+
+/// Whether a number lies in the range that the field's source states; all do where none is stated.
+[[nodiscard]] inline bool is_in_stated_range(const protocol::Field& field, std::int64_t raw) noexcept {
+  if (field.min == field.max) return true;
+  for (const auto& named : field.values)
+    if (named.raw == raw) return true;  // a name is stated, too: "not available" lies beyond most ranges
+  if (!field.is_float())
+    if (const auto physical = field.physical(raw))
+      return base::compare(field.min, *physical) <= 0 && base::compare(*physical, field.max) <= 0;
+  const double value = field.value(raw);
+  return field.min.as_double() <= value && value <= field.max.as_double();
+}
+
+/// The message's frame, with the identifier with which it is sent. A selector that is not given takes a value
+/// with which the given fields are there, its start value if that is one. O(fields^2).
+[[nodiscard]] inline base::Result<can::Frame, WordError> compose(const protocol::Topic& message,
+                                                                 GivenFields given) {
+  const protocol::FrameLayout& layout = message.frames[0];
+  if (layout.fd || layout.length > can::max_dlc)
+    return WordError{1,
+                     std::string{message.name} + " is a message of " + std::to_string(layout.length) +
+                         " bytes" + (layout.fd ? " in CAN FD" : ""),
+                     "set sends classic frames, of 8 bytes at most"};
+  const auto fields = layout.fields;
+  std::vector<std::int64_t> raw(fields.size());
+  for (std::size_t i = 0; i < fields.size(); ++i) raw[i] = given[i] ? given[i]->raw : fields[i].start;
+
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    std::size_t at = i;
+    if (!given[i]) continue;
+    // A circle of selectors would be as long as there are fields.
+    for (std::size_t depth = 0; depth < fields.size() && fields[at].selector < fields.size(); ++depth) {
+      const std::size_t selector = fields[at].selector;
+      const bool fits = detail::selects(fields[at], detail::bits_of(fields[selector], raw[selector]));
+      if (!fits && (given[selector] || fields[at].selected.empty()))
+        return WordError{
+            given[i]->word, detail::presence(fields[at], fields[selector]),
+            "give fields that are in one frame, or leave " + std::string{fields[selector].name} + " out"};
+      if (!fits) raw[selector] = detail::raw_of(fields[selector], fields[at].selected[0].first);
+      given[selector] = Given{raw[selector], given[i]->word};  // decided now, for the fields that follow
+      at = selector;
+    }
+  }
+
+  const auto is_there = [&](std::size_t at) {
+    for (std::size_t depth = 0; depth <= fields.size(); ++depth) {
+      const std::size_t selector = fields[at].selector;
+      if (selector >= fields.size()) return true;
+      if (!detail::selects(fields[at], detail::bits_of(fields[selector], raw[selector]))) return false;
+      at = selector;
+    }
+    return false;
+  };
+  can::Frame frame;
+  frame.id = layout.address.number;
+  frame.format = protocol::format_of(layout);
+  frame.dlc = layout.dlc();
+  for (std::size_t i = 0; i < fields.size(); ++i)
+    if (fields[i].position.bytes() <= layout.length && is_there(i))
+      protocol::put(frame.data, fields[i].position, raw[i]);
+  return frame;
+}
+
+}  // namespace ocm::cli::words
