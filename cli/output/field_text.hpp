@@ -44,29 +44,16 @@ class FieldText {
     const unsigned within = first - 8 * byte_;
     in_word_ = within + field.position.width <= 64;
     if (in_word_) shift_ = swapped_ ? 64 - within - field.position.width : within;
-    fast_ = fast_ && in_word_;
+    whole_numbers_ = fast_;
+    // Of an unsigned word the highest bit is no sign.
+    fast_ = fast_ && in_word_ && (field.is_signed || field.position.width < 64);
   }
 
   /// Writes the value of the field in `data`, which holds it and has room behind it as can::FrameView says;
   /// returns the end.
   char* print(char* to, const std::uint8_t* data) const noexcept {
     if (!fast_) return print_slowly(to, raw(data));
-    const std::int64_t value = raw(data) * factor_ + offset_;
-    const std::uint64_t magnitude = base::detail::magnitude(value);
-    *to = '-';
-    to += value < 0 ? 1 : 0;
-    if (magnitude >= ten_to_8 || places_ >= 8) return print_long(to, magnitude);
-    const std::uint64_t digits = eight_digits(static_cast<std::uint32_t>(magnitude));
-    const int whole = 8 - places_;  // digits before the point, at least one of which is written
-    const int first = std::min(std::countr_zero(digits | std::uint64_t{1} << 56) / 8, whole - 1);
-    const std::uint64_t text = digits | ascii_zeros;
-    put_word(to, text >> 8 * first);
-    to += whole - first;
-    if (places_ == 0) return to;
-    *to = '.';
-    put_word(to + 1, text >> 8 * whole);
-    const int last = (71 - std::countl_zero(digits >> 8 * whole)) / 8;  // of the digits behind the point
-    return last == 0 ? to : to + 1 + last;
+    return print_whole(to, raw(data) * factor_ + offset_);
   }
 
   char* print(char* to, const can::Payload& data) const noexcept { return print(to, data.data()); }
@@ -114,6 +101,25 @@ class FieldText {
     return true;
   }
 
+  /// value / 10^places.
+  char* print_whole(char* to, std::int64_t value) const noexcept {
+    const std::uint64_t magnitude = base::detail::magnitude(value);
+    *to = '-';
+    to += value < 0 ? 1 : 0;
+    if (magnitude >= ten_to_8 || places_ >= 8) return print_long(to, magnitude);
+    const std::uint64_t digits = eight_digits(static_cast<std::uint32_t>(magnitude));
+    const int whole = 8 - places_;  // digits before the point, at least one of which is written
+    const int first = std::min(std::countr_zero(digits | std::uint64_t{1} << 56) / 8, whole - 1);
+    const std::uint64_t text = digits | ascii_zeros;
+    put_word(to, text >> 8 * first);
+    to += whole - first;
+    if (places_ == 0) return to;
+    *to = '.';
+    put_word(to + 1, text >> 8 * whole);
+    const int last = (71 - std::countl_zero(digits >> 8 * whole)) / 8;  // of the digits behind the point
+    return last == 0 ? to : to + 1 + last;
+  }
+
   char* print_slowly(char* to, std::int64_t raw) const noexcept;
   char* print_json_float(char* to, std::int64_t raw) const noexcept;
   /// Of a field of which the bits are in nine bytes.
@@ -156,6 +162,7 @@ class FieldText {
   unsigned byte_ = 0;
   bool in_word_ = true;
   bool swapped_ = false;
+  bool whole_numbers_ = false;  ///< factor, offset and places hold
   bool fast_;
 };
 

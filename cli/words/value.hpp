@@ -12,6 +12,7 @@
 #include "ocm/protocol/topic.hpp"
 
 #include "cli/words/quantity.hpp"
+#include "cli/words/wide_number.hpp"
 
 namespace ocm::cli::words {
 
@@ -55,6 +56,14 @@ namespace detail {
   return value;
 }
 
+/// An integer's text, with the field's unit or without, where its digits are too many for a Decimal.
+[[nodiscard]] inline base::Result<std::int64_t> parse_wide(const protocol::Field& field,
+                                                           std::string_view text) {
+  if (!field.unit.empty() && text.ends_with(field.unit)) text.remove_suffix(field.unit.size());
+  while (text.ends_with(' ')) text.remove_suffix(1);
+  return field.is_float() ? base::Result<std::int64_t>{base::Error::bad_syntax} : wide_raw_from(field, text);
+}
+
 /// A number with a unit. The field's own is taken off first: one such as 1/min begins like a number.
 [[nodiscard]] inline base::Result<Quantity> quantity_for(const protocol::Field& field,
                                                          std::string_view text) {
@@ -81,6 +90,8 @@ namespace detail {
       return detail::quoted(text) + " is out of range: " + detail::takes(field);
   }
   const auto quantity = detail::quantity_for(field, text);
+  if (!quantity || !field.raw_from(quantity->number))
+    if (const auto wide = detail::parse_wide(field, text)) return *wide;
   if (!quantity)
     return detail::quoted(text) +
            (field.values.empty() || field.flags ? " is not a number: " : " has no meaning: ") +

@@ -244,6 +244,33 @@ TEST_CASE("JSON lines: frames from topic and fields", "[output]") {
         "208#01020001");
 }
 
+TEST_CASE("JSON lines: a CAN FD frame of fields alone is zero elsewhere, whatever its place held before",
+          "[output]") {
+  protocol::Field field;
+  field.name = "count";
+  field.position = {0, 8, protocol::ByteOrder::little};
+  field.raw_max = 255;
+  protocol::FrameLayout layout;
+  layout.length = 64;
+  layout.fields = {&field, 1};
+  layout.address = {protocol::Address::By::identifier, false, 0x123};
+  layout.fd = true;
+  protocol::Topic topic;
+  topic.name = "Wide";
+  topic.kind = protocol::Kind::message;
+  topic.frames = {&layout, 1};
+  protocol::Catalogue catalogue;
+  catalogue.topics = {&topic, 1};
+  JsonLineParser parser{catalogue};
+  log::Entry entry;
+  entry.data.fill(0xEE);
+  std::string_view bus;
+  REQUIRE(parser.parse(R"({"topic":"Wide","fields":{"count":7}})", entry, bus));
+  REQUIRE(entry.length == 64);
+  CHECK(entry.data[0] == 7);
+  for (std::size_t i = 1; i < 64; ++i) CHECK(entry.data[i] == 0);
+}
+
 TEST_CASE("JSON lines: what contradicts itself or is none is refused in words", "[output]") {
   const auto wrong = [](std::string_view line, std::string_view part) {
     const std::string answer = frame_of(line);

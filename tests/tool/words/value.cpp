@@ -152,4 +152,28 @@ TEST_CASE("a number without a unit stays one") {
   CHECK(parse_typed_value(action, "measure") == parse_value(action, "measure"));
 }
 
+TEST_CASE("a number with more digits than a Decimal has is a raw number all the same") {
+  protocol::Field word{"word", {0, 64, protocol::ByteOrder::little}, false, {1, 0}, {}, "s", 0, INT64_MAX,
+                       {}};
+  CHECK(parse_value(word, "18446744073709551615") == -1);
+  CHECK(parse_value(word, "18446744073709551615 s") == -1);
+  CHECK(parse_value(word, "9223372036854775808s") == INT64_MIN);
+  CHECK_FALSE(parse_value(word, "18446744073709551616").ok());
+  CHECK_FALSE(parse_value(word, "-1").ok());
+  CHECK_FALSE(parse_value(word, "18446744073709551615m").ok());
+  CHECK_FALSE(parse_value(word, std::string(60, '9')).ok());
+  word.scale = {123, -3};
+  CHECK(parse_value(word, "2268949521066274848.645") == -1);
+  CHECK(parse_value(word, "2268949521066274848.6") == -1);  // the nearest
+  word.scale = {-1, 2};
+  word.offset = {5, -1};
+  CHECK(parse_value(word, "-1844674407370955161499.5") == -1);
+  protocol::Field number{
+      "n", {0, 64, protocol::ByteOrder::little}, true, {123457, -9}, {}, "", INT64_MIN, INT64_MAX, {}};
+  CHECK(parse_value(number, "-1138689841553980.056928256") == INT64_MIN);
+  CHECK(parse_value(number, "1138689841553980.056804799") == INT64_MAX);
+  number.raw_max = 1'000'000'000'000'000'000;  // a range that is stated
+  CHECK_FALSE(parse_value(number, "1138689841553980.056804799").ok());
+}
+
 }  // namespace tool_words_value_test
