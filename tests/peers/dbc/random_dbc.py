@@ -75,7 +75,7 @@ class Builder:
         if floating:
             length = chance.choice((32, 64))
         if length is None:
-            length = chance.choice((1, 2, chance.randrange(1, 17), chance.randrange(1, 65), 8, 16))
+            length = chance.choice((1, 2, chance.randrange(1, 17), chance.randrange(1, 65), 8, 16, chance.choice((63, 64, 64))))
         place = self.place(free, length)
         if place is None:
             return None

@@ -1,0 +1,284 @@
+"""What amiroctl says of frames by a DBC file is what the second reader says, and canmatrix where it reads the file: random
+databases and random frames of them, and the files of the folder that OCM_DBC_FILES names, if it is set."""
+
+import collections
+import csv
+import io
+import json
+import os
+import pathlib
+import random
+import re
+import struct
+import subprocess
+import tempfile
+import unittest
+from fractions import Fraction
+
+import dbc_bits
+import random_dbc
+import second_reader
+import write_dbc
+
+AMIROCTL = os.environ["AMIROCTL"]
+EXPLORE = int(os.environ.get("OCM_EXPLORE", "1"))
+FOLDER = os.environ.get("OCM_DBC_FILES")
+SEEDS = range(12 * EXPLORE)
+FRAMES = 300
+
+
+def canmatrix():
+    """canmatrix prints to the standard output which formats it lacks."""
+    import contextlib
+    with contextlib.redirect_stdout(io.StringIO()):
+        import canmatrix.formats
+    return __import__("canmatrix")
+
+
+def number_of(identifier, extended):
+    return "%08X" % identifier if extended else "%03X" % identifier
+
+
+def log_of(frames):
+    return "".join("(%d.%06d) can0 %s%s%s\n" % (micros // 1_000_000, micros % 1_000_000, number_of(identifier, extended),
+                                               "##1" if fd else "#", data.hex().upper())
+                   for micros, _, identifier, extended, fd, data in frames)
+
+
+def is_near(signal, raw, physical, text):
+    """Whether this text is the value: exact where 63 bits of decimal digits hold it, and else the nearest that a double holds."""
+    if physical != physical or physical in (float("inf"), float("-inf")):
+        return text == {"nan": "NaN", "inf": "Infinity", "-inf": "-Infinity"}[str(physical)]
+    try:
+        printed = Fraction(text)
+    except ValueError:
+        return False
+    plain = signal.scale == 1 and signal.offset == 0
+    product = abs(Fraction(raw) * signal.scale)
+    if signal.floating and plain:  # the shortest decimal number that is this float again
+        kind = "<f" if signal.length == 32 else "<d"
+        return struct.pack(kind, float(text)) == struct.pack(kind, raw)
+    if signal.floating:
+        least = Fraction(1, 1 << 1074)  # the smallest double
+        return abs(printed - physical) <= (product / (1 << (24 if signal.length == 32 else 52)) + (product + abs(signal.offset)) / (1 << 51)
+                                           + (2 + abs(signal.scale)) * least)
+    if plain or digits(physical) < 1 << 63 and digits(Fraction(raw) * signal.scale) < 1 << 63:
+        return printed == physical
+    return abs(printed - physical) <= (product + abs(signal.offset)) / (1 << 52)
+
+
+def digits(value):
+    """The decimal digits of a number, as an integer without its point."""
+    value = abs(value)
+    while value.denominator != 1:
+        value *= 10
+    return value.numerator
+
+
+class Tool:
+    def __init__(self, case, folder, spec):
+        self.case, self.folder, self.spec = case, pathlib.Path(folder), spec
+
+    def run(self, *arguments, stdin=b"", code=0):
+        result = subprocess.run([AMIROCTL, *map(str, arguments), "--spec", str(self.spec)], input=stdin, capture_output=True, timeout=120,
+                                env={"PATH": os.environ["PATH"], "HOME": str(self.folder), "XDG_RUNTIME_DIR": str(self.folder)})
+        self.case.assertEqual(result.returncode, code, (arguments, result.stderr.decode()[-2000:]))
+        return result.stdout.decode()
+
+
+class Decode(unittest.TestCase):
+    def setUp(self):
+        self._folder = tempfile.TemporaryDirectory(prefix="ocm-test-")
+        self.folder = pathlib.Path(self._folder.name)
+
+    def tearDown(self):
+        self._folder.cleanup()
+
+    def written(self, seed):
+        """A random database, its file, and random frames in a log."""
+        database = random_dbc.database(seed)
+        text = write_dbc.write(database, seed)
+        spec, log = self.folder / f"{seed}.dbc", self.folder / f"{seed}.log"
+        spec.write_bytes(text.encode("cp1252" if seed % 3 == 0 else "utf-8"))
+        frames = random_dbc.frames(seed, database, FRAMES)
+        log.write_text(log_of(frames))
+        return database, frames, spec, log
+
+    def assert_values(self, where, message, data, fields):
+        """The fields, texts by name, are what the second reader finds: no more, no less, in the file's order."""
+        expected = second_reader.decode(message, data)
+        self.assertEqual(sorted(fields), sorted(expected), where)
+        for name, (raw, physical) in expected.items():
+            self.assertTrue(is_near(message.signal(name), raw, physical, fields[name]),
+                            f"{where}: {message.name}.{name} of {data.hex()}: {fields[name]} in place of "
+                            f"{physical if isinstance(physical, float) else float(physical)} ({physical}), raw {raw}, {message.signal(name)}")
+
+    def lines(self, text):
+        return [json.loads(line, parse_int=str, parse_float=str) for line in text.splitlines()]
+
+    def check_json(self, tool, where, frames, log, *options):
+        text = tool.run("decode", "--json", *options, log)
+        lines = self.lines(text)
+        self.assertEqual(len(lines), len(frames), where)
+        for line, (micros, message, identifier, extended, fd, data) in zip(lines, frames):
+            self.assertEqual((line["id"], line["time_ns"], line["data"]),
+                             (number_of(identifier, extended), str(micros * 1000), data.hex().upper()), where)
+            self.assertEqual("fd" in line, fd, where)
+            if message is None:
+                self.assertNotIn("fields", line)
+                continue
+            self.assertEqual(line.get("topic"), message.name, line)
+            self.assert_values(where, message, data, line["fields"])
+            self.assertEqual(line["units"], {name: message.signal(name).unit for name in line["fields"]}, where)
+        return text, lines
+
+    def test_all_signals_of_random_frames(self):
+        for seed in SEEDS:
+            _, frames, spec, log = self.written(seed)
+            self.check_json(Tool(self, self.folder, spec), f"seed {seed}", frames, log, "--strict-spec")
+
+    def test_csv(self):
+        """Long, a line a field; wide, a line a frame with the columns that were asked for."""
+        for seed in SEEDS:
+            database, frames, spec, log = self.written(seed)
+            tool = Tool(self, self.folder, spec)
+            expected = [(micros, message, name, data) for micros, message, *_, data in frames if message
+                        for name in sorted(second_reader.decode(message, data))]
+            rows = list(csv.DictReader(io.StringIO(tool.run("decode", "--csv", log))))
+            self.assertEqual([(row["time"], row["topic"], row["field"]) for row in sorted(rows, key=lambda row: (row["time"], row["field"]))],
+                             [("%d.%09d" % (micros // 1_000_000, micros % 1_000_000 * 1000), message.name, name)
+                              for micros, message, name, _ in expected], f"seed {seed}")
+            by_place = {(row["time"], row["field"]): row for row in rows}
+            for micros, message, name, data in expected:
+                row = by_place["%d.%09d" % (micros // 1_000_000, micros % 1_000_000 * 1000), name]
+                signal = message.signal(name)
+                self.assertTrue(is_near(signal, *second_reader.decode(message, data)[name], row["value"]), (seed, row))
+                self.assertEqual(row["unit"], signal.unit)
+            message = next(message for message in database.messages if any(message is frame[1] for frame in frames))
+            signal = random.Random(seed).choice(message.signals)
+            wide = list(csv.DictReader(io.StringIO(tool.run("decode", "--csv", log, "--field", f"{message.name}.{signal.name}"))))
+            values = [second_reader.decode(message, frame[5]).get(signal.name) for frame in frames if frame[1] is message]
+            texts = [row[f"{message.name}.{signal.name}"] for row in wide]
+            self.assertEqual([text for text in texts if text] == [], all(value is None for value in values))
+            if len(texts) == len(values):  # a frame without the field is an empty cell, or no line
+                pairs = zip(texts, values)
+            else:
+                pairs = zip([text for text in texts if text], [value for value in values if value is not None], strict=True)
+            for text, value in pairs:
+                self.assertTrue(text == "" if value is None else is_near(signal, *value, text), (seed, signal, text, value))
+
+    def test_encode_gives_the_used_bits_back(self):
+        """Fields alone, without data: with the identifier, and with the message's name in its place."""
+        checked = 0
+        for seed in SEEDS:
+            _, frames, spec, log = self.written(seed)
+            tool = Tool(self, self.folder, spec)
+            plain = []
+            for line, frame in zip(tool.run("decode", "--json", log).splitlines(), frames):
+                if frame[1] is not None:
+                    values = json.loads(line, parse_int=str, parse_float=str)
+                    plain.append((line.replace(f',"data":"{values["data"]}"', "").replace(
+                        f'"id":"{values["id"]}",', "" if seed % 2 else f'"id":"{values["id"]}",'), frame))
+            back = tool.run("encode", "--force", stdin="\n".join(line for line, _ in plain).encode()).splitlines()
+            self.assertEqual(len(back), len(plain), f"seed {seed}")
+            for text, (line, (_, message, identifier, extended, fd, data)) in zip(back, plain):
+                frame = text.split()[2]
+                number, _, hexadecimal = frame.partition("##" if fd else "#")
+                self.assertEqual(number, number_of(identifier, extended), (seed, line))
+                found = bytes.fromhex(hexadecimal[1:] if fd else hexadecimal)
+                self.assertEqual(len(found), len(data), (seed, line))
+                present = second_reader.decode(message, data)
+                self.assertEqual(list(second_reader.decode(message, found)), list(present), (seed, line, text))
+                for name, (raw, physical) in present.items():
+                    signal = message.signal(name)
+                    again, value = second_reader.decode(message, found)[name]
+                    if not signal.floating:
+                        self.assertEqual(again, raw, f"seed {seed}: {signal}: {line} {text}")
+                    elif raw - raw != 0:
+                        self.assertEqual(str(again), str(raw), (seed, signal, line, text))
+                    else:  # within what a double keeps of the value, and the float of the scaled one
+                        width = abs(Fraction(raw) * signal.scale) / (1 << (23 if signal.length == 32 else 50)) + abs(signal.offset) / (1 << 49)
+                        self.assertLessEqual(abs(value - physical), width + signal.scale.__abs__() * Fraction(2)**-148, (seed, signal, line, text))
+                    checked += 1
+                used = dbc_bits.mask(len(data), [message.signal(name).bits() for name in present])
+                self.assertEqual(bytes(byte & ~bits & 0xFF for byte, bits in zip(found, used)), bytes(len(data)), (seed, line, text))
+        self.assertGreater(checked, 1000)
+
+    def test_encode_keeps_data_to_the_byte(self):
+        for seed in SEEDS:
+            _, _, spec, log = self.written(seed)
+            tool = Tool(self, self.folder, spec)
+            self.assertEqual(tool.run("encode", stdin=tool.run("decode", "--json", log).encode()), log.read_text(), f"seed {seed}")
+
+    def test_stats(self):
+        for seed in SEEDS:
+            _, frames, spec, log = self.written(seed)
+            found = json.loads(Tool(self, self.folder, spec).run("stats", "--json", "--bitrate", "500k", log))
+            times = collections.defaultdict(list)
+            for micros, message, *_ in frames:
+                times[message.name if message else None].append(micros)
+            bus = found["buses"][0]
+            self.assertEqual((bus["frames"], bus["unknown"], bus["wrong_length"], bus["fd_frames"]),
+                             (len(frames), len(times.pop(None, [])), 0, sum(frame[4] for frame in frames)), f"seed {seed}")
+            topics = {topic["topic"]: topic for topic in bus["topics"] if topic["count"]}
+            self.assertEqual({name: topic["count"] for name, topic in topics.items()}, {name: len(seen) for name, seen in times.items()})
+            for name, seen in times.items():
+                if len(seen) > 1:
+                    self.assertAlmostEqual(topics[name]["mean_ns"], 1000 * (seen[-1] - seen[0]) / (len(seen) - 1), delta=1, msg=(seed, name))
+
+    def test_canmatrix_agrees(self):
+        """A third opinion: raw numbers of messages without selectors. Its decoder takes one selector, and shows what is absent."""
+        reader = canmatrix()
+        compared = 0
+        for seed in SEEDS:
+            database, frames, spec, log = self.written(seed)
+            # It leaves out a type whose colon is missing.
+            spec.write_bytes(re.sub(rb"(SIG_VALTYPE_ \d+ \w+) ?:? ?", rb"\1 : ", spec.read_bytes()))
+            theirs = {(frame.arbitration_id.id, bool(frame.arbitration_id.extended)): frame for frame in reader.formats.loadp_flat(
+                str(spec), dbcImportEncoding="cp1252" if seed % 3 == 0 else "utf-8").frames}
+            for line, (_, message, identifier, extended, _, data) in zip(
+                    self.lines(Tool(self, self.folder, spec).run("decode", "--json", log)), frames):
+                if message is None or any(signal.is_selector for signal in message.signals):
+                    continue
+                for name, value in theirs[identifier, extended].decode(data).items():
+                    signal = message.signal(name)
+                    if signal.floating and value.raw_value != value.raw_value:
+                        self.assertEqual(line["fields"][name], "NaN")
+                    elif signal.floating and value.raw_value - value.raw_value != 0:
+                        self.assertIn("Infinity", line["fields"][name])
+                    else:
+                        self.assertTrue(is_near(signal, value.raw_value, Fraction(value.raw_value) * signal.scale + signal.offset,
+                                                line["fields"][name]), (seed, message.name, name, value.raw_value, line))
+                    compared += 1
+        self.assertGreater(compared, 500)
+
+    @unittest.skipUnless(FOLDER, "OCM_DBC_FILES names no folder")
+    def test_files_of_a_folder(self):
+        """Real files: those that amiroctl takes are decoded as the second reader decodes them."""
+        taken = 0
+        for spec in sorted(pathlib.Path(FOLDER).rglob("*.dbc")):
+            database = second_reader.read(spec.read_bytes())
+            messages = [message for message in database.messages if message.signals and message.length and not message.j1939]
+            if not messages:
+                continue
+            chance = random.Random(spec.name)
+            frames = []
+            for index in range(5 * len(messages)):
+                message = messages[index % len(messages)]
+                length = next(size for size in (*range(9), *random_dbc.FD_LENGTHS) if size >= message.length)
+                data = random_dbc.data_of(chance, message) if all(max(signal.bits()) < 8 * message.length for signal in message.signals) \
+                    else chance.randbytes(message.length)
+                frames.append((1_000_000 + index, message, message.number, message.extended, length > 8, data.ljust(length, b"\0")))
+            log = self.folder / "real.log"
+            log.write_text(log_of(frames))
+            tool = Tool(self, self.folder, spec)
+            with self.subTest(spec.name):
+                for line, frame in zip(self.lines(tool.run("decode", "--json", log)), frames):
+                    self.assertEqual(line.get("topic"), frame[1].name, line)
+                    self.assert_values(spec.name, frame[1], frame[5][:frame[1].length], line["fields"])
+                taken += 1
+        self.assertGreater(taken, 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
