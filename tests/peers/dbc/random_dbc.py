@@ -6,7 +6,7 @@ import struct
 from fractions import Fraction
 
 import dbc_bits
-from second_reader import Database, Message, Signal
+from second_reader import Database, Message, Signal, group
 
 FD_LENGTHS = (12, 16, 20, 24, 32, 48, 64)
 UNITS = ("", "", "km/h", "%", "°C", "rpm", "m/s^2", "º/s")
@@ -41,9 +41,9 @@ class Builder:
         while len(database.messages) < messages:
             extended = chance.random() < 0.4
             number = chance.randrange(1 << (29 if extended else 11))
-            if (number, extended) in taken:
+            if (number, extended) in taken or (extended and group(number) in taken):
                 continue
-            taken.add((number, extended))
+            taken.update({(number, extended), group(number) if extended else None})
             database.messages.append(self.message(number, extended, database.nodes))
         return database
 
@@ -53,6 +53,8 @@ class Builder:
         length = chance.choice(FD_LENGTHS) if fd else chance.randrange(1, 9)
         message = Message(number, extended, self.name("M"), length, chance.choice(nodes))
         message.frame_format = ("Extended" if extended else "Standard") + ("CAN_FD" if fd else "CAN")
+        if extended and not fd and chance.random() < 0.3:
+            message.frame_format, message.j1939 = "J1939PG", True
         if chance.random() < 0.5:
             message.attributes["GenMsgCycleTime"] = Fraction(chance.randrange(1, 1000))
         message.comment = chance.choice(("", "", 'a "word"', "two\nlines"))
@@ -162,21 +164,36 @@ def data_of(chance, message):
     return bytes(data)
 
 
+def sent_as(chance, message):
+    """An identifier that a message may have: one of J1939 has any priority, source and, where it has one, destination."""
+    number = message.number
+    if message.j1939 and chance.random() < 0.7:
+        number = number & 0x03FFFF00 | chance.randrange(8) << 26 | chance.randrange(256)
+        if (number >> 16 & 0xFF) < 240:
+            number = number & ~0xFF00 | chance.randrange(256) << 8
+    return number
+
+
 def frames(seed, database, count):
-    """(micros, message or None, identifier, extended, fd, data); one in twenty is of no message."""
+    """(micros, message or None, identifier, extended, fd, data); one in twenty is of no message, and a few classic ones are
+    longer than their message, or too short for it."""
     chance = random.Random(seed)
     micros = 1_436_509_052_249_713
-    known = {(message.number, message.extended) for message in database.messages}
     found = []
     while len(found) < count:
         micros += chance.randrange(1, 20_000)
         if chance.random() < 0.05:
             extended = chance.random() < 0.5
             number = chance.randrange(1 << (29 if extended else 11))
-            if (number, extended) not in known:
+            if database.find(number, extended) is None:
                 found.append((micros, None, number, extended, False, chance.randbytes(chance.randrange(9))))
-        else:
-            message = chance.choice(database.messages)
-            fd = message.frame_format.endswith("FD")
-            found.append((micros, message, message.number, message.extended, fd, data_of(chance, message)))
+            continue
+        message = chance.choice(database.messages)
+        fd = message.frame_format.endswith("FD")
+        data = data_of(chance, message)
+        if not fd and chance.random() < 0.1:
+            data += chance.randbytes(chance.randrange(9 - message.length))
+        elif not fd and chance.random() < 0.05:
+            data = data[:chance.randrange(message.length)]
+        found.append((micros, message, sent_as(chance, message), message.extended, fd, data))
     return found

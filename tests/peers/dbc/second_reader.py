@@ -73,6 +73,21 @@ class Database:
     def message(self, name):
         return next((message for message in self.messages if message.name == name), None)
 
+    def find(self, number, extended):
+        """Whose frame this is: the exact identifier counts first, and then the parameter group of J1939."""
+        for message in self.messages:
+            if (message.number, message.extended) == (number, extended):
+                return message
+        for message in self.messages:
+            if extended and message.j1939 and group(message.number) == group(number):
+                return message
+        return None
+
+
+def group(number):
+    """The PGN of 29 bits: below format 240 the byte behind the format is a destination. [SAE J1939-21]"""
+    return number >> 8 & (0x3FF00 if (number >> 16 & 0xFF) < 240 else 0x3FFFF)
+
 
 class Text(str):
     """What stands in quotation marks; other tokens are plain words."""

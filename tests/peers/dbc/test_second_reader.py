@@ -97,13 +97,23 @@ class Vectors(unittest.TestCase):
         self.assertEqual(signal.comment, 'one "word";\r\nBO_ 5 Not: 8 A')
         self.assertEqual(found.nodes, ["A", "B"])
 
+    def test_parameter_groups(self):
+        self.assertEqual(second_reader.group(0x0CF00400), 0xF004)
+        self.assertEqual(second_reader.group(0x18EAFF00), 0xEA00)
+        found = second_reader.read('BO_ 2364540158 EEC1: 8 N\nBO_ 2565537536 Request: 3 N\nBO_ 2364539920 Exact: 8 N\n'
+                                   'BA_DEF_ BO_ "VFrameFormat" ENUM "StandardCAN","ExtendedCAN","reserved","J1939PG";\n'
+                                   'BA_DEF_DEF_ "VFrameFormat" "J1939PG";\nBA_ "VFrameFormat" BO_ 2364539920 1;')
+        named = lambda number, extended=True: getattr(found.find(number, extended), "name", None)
+        self.assertEqual([named(0x0CF004FE), named(0x18F00400), named(0x18F00500)], ["EEC1", "EEC1", None])
+        self.assertEqual([named(0x18EA21F9), named(0x0CF00410), named(0x410, False)], ["Request", "Exact", None])
+
     def test_cp1252(self):
         self.assertEqual(second_reader.read(b'BO_ 1 M: 8 N\n SG_ s : 0|8@1+ (1,0) [0|0] "\xba/s" N').messages[0].signals[0].unit, "º/s")
 
 
 class Random(unittest.TestCase):
     def test_what_is_written_is_read(self):
-        extended = nested = floats = fd = long = 0
+        extended = nested = floats = fd = long = j1939 = 0
         for seed in range(30 * EXPLORE):
             database = random_dbc.database(seed)
             found = second_reader.read(write_dbc.write(database, seed).encode())
@@ -119,7 +129,8 @@ class Random(unittest.TestCase):
                 floats += any(s.floating for s in message.signals)
                 fd += message.frame_format.endswith("FD")
                 long += len(message.name) > 32
-        for count in (extended, nested, floats, fd, long):
+                j1939 += message.j1939
+        for count in (extended, nested, floats, fd, long, j1939):
             self.assertGreater(count, 5)  # the databases have what they are for
 
     def test_pages_may_lie_over_one_another_and_nothing_else(self):
