@@ -87,27 +87,20 @@ class Tool:
     def run(self, *arguments, stdin=b"", code=0):
         result = subprocess.run([AMIROCTL, *map(str, arguments), "--spec", str(self.spec)], input=stdin, capture_output=True, timeout=120,
                                 env={"PATH": os.environ["PATH"], "HOME": str(self.folder), "XDG_RUNTIME_DIR": str(self.folder)})
+        self.errors = result.stderr.decode()
         self.case.assertEqual(result.returncode, code, (arguments, result.stderr.decode()[-2000:]))
         return result.stdout.decode()
 
 
-class Decode(unittest.TestCase):
+class Case(unittest.TestCase):
+    """A folder, and what a log must decode to."""
+
     def setUp(self):
         self._folder = tempfile.TemporaryDirectory(prefix="ocm-test-")
         self.folder = pathlib.Path(self._folder.name)
 
     def tearDown(self):
         self._folder.cleanup()
-
-    def written(self, seed):
-        """A random database, its file, and random frames in a log."""
-        database = random_dbc.database(seed)
-        text = write_dbc.write(database, seed)
-        spec, log = self.folder / f"{seed}.dbc", self.folder / f"{seed}.log"
-        spec.write_bytes(text.encode("cp1252" if seed % 3 == 0 else "utf-8"))
-        frames = random_dbc.frames(seed, database, FRAMES)
-        log.write_text(log_of(frames))
-        return database, frames, spec, log
 
     def assert_values(self, where, message, data, fields):
         """The fields, texts by name, are what the second reader finds: no more, no less, in the file's order."""
@@ -138,6 +131,18 @@ class Decode(unittest.TestCase):
             self.assert_values(where, message, data, line["fields"])
             self.assertEqual(line["units"], {name: message.signal(name).unit for name in line["fields"]}, where)
         return text, lines
+
+
+class Decode(Case):
+    def written(self, seed):
+        """A random database, its file, and random frames in a log."""
+        database = random_dbc.database(seed)
+        text = write_dbc.write(database, seed)
+        spec, log = self.folder / f"{seed}.dbc", self.folder / f"{seed}.log"
+        spec.write_bytes(text.encode("cp1252" if seed % 3 == 0 else "utf-8"))
+        frames = random_dbc.frames(seed, database, FRAMES)
+        log.write_text(log_of(frames))
+        return database, frames, spec, log
 
     def test_all_signals_of_random_frames(self):
         for seed in SEEDS:
