@@ -1,11 +1,13 @@
+#include <algorithm>
 #include <array>
-#include <bitset>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
+
+#include "ocm/client/frame_index.hpp"
 
 #include "cli/logs/opened_log.hpp"
 #include "cli/shared/interrupt.hpp"
@@ -27,40 +29,33 @@ struct DecodeOptions {
   bool strict = false;
 };
 
-/// Which frames are looked at: those of the chosen topics, within the chosen time.
+/// Which frames are looked at: those of the chosen topics and messages, within the chosen time.
 class Window {
  public:
-  Window(const protocol::Catalogue& catalogue, const DecodeOptions& options) {
+  Window(const protocol::Catalogue& catalogue, const DecodeOptions& options)
+      : chosen_(chosen_topics("decode", catalogue, options.topics)) {
     since_ = options.since.value_or(since_);
     until_ = options.until.value_or(until_);
-    all_topics_ = options.topics.empty();
-    for (const auto* topic : chosen_topics("decode", catalogue, options.topics)) choose(*topic);
+    if (!chosen_.empty()) index_ = client::FrameIndex{catalogue};
   }
 
   [[nodiscard]] bool has(const log::Entry& entry) {
     if (!begin_) begin_ = entry.time;
     const base::Duration at = entry.time - *begin_;
     if (at < since_ || at > until_) return false;
-    return all_topics_ ||
-           (entry.format == can::Format::base && !entry.is_fd() && ids_[entry.id & can::max_base_id]);
+    return chosen_.empty() || is_of_chosen(entry);
   }
 
  private:
-  /// Its data, and what is said to it.
-  void choose(const protocol::Topic& topic) {
-    using protocol::Direction;
-    for (std::size_t level = 0; level < protocol::priority_levels; ++level) {
-      const auto priority = static_cast<protocol::Priority>(level);
-      ids_.set(protocol::Identifier{Direction::command, priority, topic.id}.encode());
-      const bool sensor = topic.kind == protocol::Kind::sensor;
-      for (const auto& layout : topic.frames)
-        ids_.set(protocol::Identifier{sensor ? Direction::sensor : Direction::command, priority, layout.id}
-                     .encode());
-    }
+  /// Its data, and what is said to it. No topic has frames of CAN FD.
+  [[nodiscard]] bool is_of_chosen(const log::Entry& entry) const {
+    const auto* const topic = index_.subject(entry.id, entry.format).topic;
+    return topic != nullptr && (topic->is_message() || !entry.is_fd()) &&
+           std::find(chosen_.begin(), chosen_.end(), topic) != chosen_.end();
   }
 
-  bool all_topics_ = true;
-  std::bitset<can::max_base_id + 1> ids_;
+  std::vector<const protocol::Topic*> chosen_;  // none: all
+  client::FrameIndex index_;
   std::optional<base::Time> begin_;
   base::Duration since_ = base::Duration::min();
   base::Duration until_ = base::Duration::max();

@@ -25,8 +25,7 @@ class Examples(test_decode.Case):
             frames = random_dbc.frames(name, database, 500 * test_decode.EXPLORE)
             log = self.folder / "example.log"
             log.write_text(test_decode.log_of(frames))
-            with self.subTest(name):
-                yield test_decode.Tool(self, self.folder, spec), database, frames, log
+            yield test_decode.Tool(self, self.folder, spec), database, frames, log
 
     def test_they_tell_a_bus(self):
         for tool, database, _, _ in self.each():
