@@ -89,13 +89,13 @@ class Completer {
           add("--" + names.front(), option.description());
   }
 
-  enum class Of { sensors, actuators, all };
+  enum class Of { sensors, settable, all };
   void topics(Of which, std::string_view tail = {}) {
     for (const auto& topic : session_.catalogue().topics) {
-      const bool sensor = topic.kind == protocol::Kind::sensor;
-      if (which != Of::all && sensor != (which == Of::sensors)) continue;
+      if (which == Of::sensors && topic.kind != protocol::Kind::sensor) continue;
+      if (which == Of::settable && topic.kind == protocol::Kind::sensor) continue;
       const std::string board{session_.catalogue().board_name(topic)};
-      const std::string what = (sensor ? "sensor of " : "actuator of ") + board;
+      const std::string what = std::string{protocol::name(topic.kind)} + (board.empty() ? "" : " of ") + board;
       add(std::string{topic.name} + std::string{tail}, what);
       for (const auto alias : topic.aliases) add(std::string{alias} + std::string{tail}, what);
     }
@@ -149,7 +149,7 @@ class Completer {
       return topics(Of::all);
     }
     if (verb == "set" || verb == "encode")
-      return index == 0 ? topics(verb == "set" ? Of::actuators : Of::all) : fields(line.positionals[0]);
+      return index == 0 ? topics(verb == "set" ? Of::settable : Of::all) : fields(line.positionals[0]);
     if (verb == "led") return index == 0 ? lights() : index == 1 ? colours() : void();
     if (verb == "drive") return add("stop");
     std::size_t number = 0;

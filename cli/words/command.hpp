@@ -276,10 +276,14 @@ class CommandParser {
     const protocol::Topic* found = find_topic(*catalogue_, word);
     if (found != nullptr && (!kind || found->kind == *kind)) return found;
     if (found != nullptr) {
-      const bool actuator = found->kind == protocol::Kind::actuator;
-      return WordError{at, detail::quoted(word) + (actuator ? " is an actuator" : " is a sensor"),
-                       actuator ? "actuators are commanded with set, drive or led; sensors are asked"
-                                : "sensors are asked with publish, once and stop"};
+      constexpr std::string_view kinds[] = {" is a sensor", " is an actuator", " is a message"};
+      constexpr std::string_view remedies[] = {
+          "sensors are asked with publish, once and stop",
+          "actuators are commanded with set, drive or led; sensors are asked",
+          "messages are sent with set, and come when their sender likes: see listen"};
+      const auto kind_of_found = static_cast<std::size_t>(found->kind);
+      return WordError{at, detail::quoted(word) + std::string{kinds[kind_of_found]},
+                       std::string{remedies[kind_of_found]}};
     }
     return WordError{at, "no topic " + detail::quoted(word),
                      suggest([&] { return topic_suggestion(*catalogue_, word, kind); })};
@@ -330,6 +334,8 @@ class CommandParser {
     Command command;
     if ((*any)->kind == protocol::Kind::sensor) {
       command.frames = {protocol::stop((*any)->id, priority.value_or((*any)->priority))};
+    } else if ((*any)->is_message()) {
+      return topic(line, 1, protocol::Kind::sensor).error;
     } else {
       command.frames = {set_point(**any, {}, priority)};
       command.ends_hold = (*any)->role == protocol::Role::drive;

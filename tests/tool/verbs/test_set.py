@@ -1,0 +1,98 @@
+"""amiroctl set with the messages of a DBC file: what arrives is what was meant, at its time."""
+
+import json
+import os
+import re
+import time
+
+from harness import Case, main
+
+CAR = os.path.join(os.environ["OCM_SOURCE_DIR"], "examples", "small_car.dbc")
+
+
+class Set(Case):
+    def listening(self, *arguments):
+        listener = self.start("--spec", CAR, "listen", "--json", "--timeout", "20s", *arguments)
+        self.assertIn("bus: sim", listener.stderr.readline())
+        return listener
+
+    def heard(self, listener):
+        out, _ = self.interrupt(listener)
+        return [json.loads(line) for line in out.splitlines()]
+
+    def test_a_message_arrives_with_its_values(self):
+        self.start_sim()
+        listener = self.listening("-n", "1")
+        self.run_tool("--spec", CAR, "set", "Engine", "Speed=2500", "Torque=-20.5Nm", "Running=1")
+        out, _ = listener.communicate(timeout=30)
+        heard = json.loads(out)
+        self.assertEqual((heard["id"], heard["topic"]), ("100", "Engine"))
+        self.assertEqual((heard["fields"]["Speed"], heard["fields"]["Torque"], heard["fields"]["Running"]),
+                         (2500, -20.5, 1))
+
+    def test_again_and_again_at_its_times(self):
+        self.start_sim()
+        listener = self.listening()
+        started = time.monotonic()
+        _, err = self.run_tool("--spec", CAR, "set", "Engine", "Speed=1000", "--every", "10ms", "--for", "1s")
+        self.assertGreaterEqual(time.monotonic() - started, 1.0)
+        times = [int(line["time_ns"]) for line in self.heard(listener)]
+        # At 0, 10, ... 990 ms; on a busy machine some turns are left out, and said.
+        left_out = sum(int(count) for count in re.findall(r"(\d+) frames were not sent", err))
+        self.assertEqual(len(times) + left_out, 100, err)
+        self.assertGreater(len(times), 50)
+        # No drift: the last ones are as near to their turns as the first ones, whatever came between.
+        self.assertLess(abs((times[-1] - times[0]) / 1e9 - 0.99), 0.1, err)
+
+    def test_without_an_end_until_it_is_interrupted(self):
+        self.start_sim()
+        listener = self.listening("-n", "3")
+        sender = self.start("--spec", CAR, "set", "Lights", "Beam=1", "--every", "20ms")
+        listener.communicate(timeout=30)
+        self.interrupt(sender)
+        self.assertEqual(sender.returncode, 130)
+
+    def test_several_at_once_in_a_script_and_each_replaces_its_own(self):
+        self.start_sim()
+        script = os.path.join(self.folder, "several.script")
+        with open(script, "w", encoding="utf-8") as file:
+            file.write("0s set Engine Speed=1000 --every 20ms --for 600ms\n"
+                       "0s set Lights Beam=1 --every 50ms\n"
+                       "300ms set Engine Speed=2000 --every 20ms --for 300ms\n"
+                       "500ms set Lights Beam=0\n")
+        listener = self.listening()
+        _, err = self.run_tool("--spec", CAR, "run", script)
+        lines = self.heard(listener)
+        speeds = [line["fields"]["Speed"] for line in lines if line["topic"] == "Engine"]
+        self.assertEqual(speeds, sorted(speeds))  # none of the old ones after the new
+        left_out = sum(int(count) for count in re.findall(r"(\d+) frames were not sent", err))
+        # 15 turns each, and one that is due together with the line that replaces it; fewer where some are left out.
+        for speed in (1000, 2000):
+            self.assertGreaterEqual(speeds.count(speed), 15 - left_out, err)
+            self.assertLessEqual(speeds.count(speed), 16, err)
+        beams = [line["data"] for line in lines if line["topic"] == "Lights"]
+        self.assertEqual(set(beams), {"0100", "0000"})
+        self.assertEqual(beams.index("0000"), len(beams) - 1)  # once, and last
+
+    def test_a_bus_that_goes_ends_it_in_words(self):
+        sim = self.start_sim()
+        listener = self.listening("-n", "3")
+        sender = self.start("--spec", CAR, "set", "Engine", "Speed=1", "--every", "20ms")
+        listener.communicate(timeout=30)
+        self.interrupt(sim)
+        _, err = sender.communicate(timeout=30)
+        self.assertEqual(sender.returncode, 1, err)
+        self.assertRegex(err, r"amiroctl: .+\n")
+
+    def test_beyond_its_range(self):
+        _, err = self.run_tool("--spec", CAR, "set", "Engine", "Speed=9000", "--dry-run", code=2)
+        self.assertEqual(err, "amiroctl: set: '9000' is beyond the stated range: Speed takes 0 to 8000 rpm\n"
+                              "          many stated ranges are wrong: --force sends what the bits can hold\n")
+        out, _ = self.run_tool("--spec", CAR, "set", "Engine", "Speed=9000", "--dry-run", "--force")
+        self.assertTrue(out.startswith("100#A08C"), out)  # 36000 quarters
+        _, err = self.run_tool("--spec", CAR, "set", "Engine", "Speed=1", "--for", "1s", code=2)
+        self.assertIn("--every", err)
+
+
+if __name__ == "__main__":
+    main()

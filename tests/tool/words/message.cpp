@@ -1,0 +1,182 @@
+// set with plain messages: what is not given is at its start value, selectors follow, ranges are told.
+#include "cli/words/message.hpp"
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/can/text.hpp"
+#include "ocm/protocol/topic.hpp"
+
+#include "cli/words/command.hpp"
+
+namespace tool_words_message_test {
+
+using namespace ocm;
+using namespace ocm::cli::words;
+using protocol::ByteOrder;
+using protocol::Field;
+using protocol::NamedValue;
+using protocol::no_selector;
+using protocol::SelectorRange;
+
+constexpr NamedValue gears[] = {{0, "neutral"}, {1, "first"}, {7, "broken"}};
+constexpr SelectorRange page_1[] = {{1, 1}};
+constexpr SelectorRange pages_2_to_3[] = {{2, 3}};
+constexpr SelectorRange inner_5[] = {{5, 5}};
+
+constexpr Field field(std::string_view name, protocol::Position position, bool is_signed = false) {
+  Field field;
+  field.name = name;
+  field.position = position;
+  field.is_signed = is_signed;
+  field.raw_min = protocol::lowest(position.width, is_signed);
+  field.raw_max = protocol::highest(position.width, is_signed);
+  return field;
+}
+
+constexpr std::array<Field, 4> engine_fields = [] {
+  std::array<Field, 4> fields{
+      field("rpm", {0, 16, ByteOrder::little}), field("gear", {16, 3, ByteOrder::little}),
+      field("heat", {24, 8, ByteOrder::little}, true), field("torque", {32, 32, ByteOrder::little})};
+  fields[0].scale = {25, -2};
+  fields[0].unit = "rpm";
+  fields[0].min = {0, 0};
+  fields[0].max = {3000, 0};
+  fields[1].values = gears;
+  fields[1].max = {2, 0};
+  fields[2].offset = {-40, 0};
+  fields[2].start = 40;  // 0 degrees
+  fields[3].number = protocol::Number::float32;
+  return fields;
+}();
+
+constexpr std::array<Field, 5> paged_fields = [] {
+  std::array<Field, 5> fields{field("page", {0, 8, ByteOrder::little}), field("a", {8, 8, ByteOrder::little}),
+                              field("inner", {8, 4, ByteOrder::little}),
+                              field("b", {16, 8, ByteOrder::little}),
+                              field("always", {24, 8, ByteOrder::little})};
+  fields[1].selector = 0;
+  fields[1].selected = page_1;
+  fields[2].selector = 0;
+  fields[2].selected = pages_2_to_3;
+  fields[3].selector = 2;
+  fields[3].selected = inner_5;
+  fields[1].start = 0x11;
+  fields[4].start = 0x44;
+  return fields;
+}();
+
+constexpr protocol::FrameLayout layout(std::span<const Field> fields, std::uint32_t identifier, bool extended,
+                                       std::uint16_t length) {
+  protocol::FrameLayout layout;
+  layout.length = length;
+  layout.fields = fields;
+  layout.address = {protocol::Address::By::identifier, extended, identifier};
+  return layout;
+}
+
+constexpr std::array engine_frames{layout(engine_fields, 0x100, false, 8)};
+constexpr std::array paged_frames{layout(paged_fields, 0x18FEF100, true, 5)};
+constexpr std::array long_frames{layout({}, 0x200, false, 64)};
+
+constexpr protocol::Topic message(std::string_view name, std::span<const protocol::FrameLayout> frames) {
+  protocol::Topic topic;
+  topic.name = name;
+  topic.kind = protocol::Kind::message;
+  topic.board = protocol::no_board;
+  topic.frames = frames;
+  return topic;
+}
+
+constexpr std::array topics{message("Engine", engine_frames), message("Paged", paged_frames),
+                            message("Long", long_frames)};
+constexpr protocol::Catalogue catalogue{"car", 500'000, {}, topics};
+
+auto parse(const std::string& line) {
+  std::vector<std::string_view> words;
+  for (std::size_t begin = 0; begin <= line.size();) {
+    const std::size_t end = std::min(line.find(' ', begin), line.size());
+    words.push_back(std::string_view{line}.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return CommandParser{catalogue}.parse_line(words);
+}
+
+std::string frame(const std::string& line) {
+  const auto command = parse(line);
+  INFO(line << ": " << command.error.what);
+  REQUIRE(command.ok());
+  REQUIRE(command->frames.size() == 1);
+  return std::string{can::to_text(command->frames[0]).view()};
+}
+
+TEST_CASE("a message is sent with physical values, and start values for the rest") {
+  CHECK(frame("set Engine rpm=2500") == "100#1027002800000000");  // 2500 / 0.25 = 0x2710; heat starts at 40
+  CHECK(frame("set Engine rpm=2500rpm heat=-40") == "100#1027000000000000");
+  CHECK(frame("set Engine gear=first heat=87") == "100#0000017F00000000");
+  CHECK(frame("set Engine gear=broken") == "100#0000072800000000");  // named, though beyond the stated range
+  CHECK(frame("set Engine torque=1.5") == "100#000000280000C03F");   // IEEE 754: 3FC00000
+  CHECK(frame("set Engine torque=-Infinity") == "100#00000028000080FF");
+}
+
+TEST_CASE("a selector that is not given follows the fields that are") {
+  CHECK(frame("set Paged a=3") == "18FEF100#0103004400");
+  CHECK(frame("set Paged page=1") == "18FEF100#0111004400");  // a at its start
+  CHECK(frame("set Paged page=9") == "18FEF100#0900004400");
+  CHECK(frame("set Paged b=7") == "18FEF100#0205074400");  // the first page with inner, inner=5
+  CHECK(frame("set Paged page=3 b=7") == "18FEF100#0305074400");
+  CHECK(frame("set Paged inner=4 always=0") == "18FEF100#0204000000");
+}
+
+TEST_CASE("fields that are never in one frame are refused at the word") {
+  struct Row {
+    std::string line;
+    std::size_t word;
+    std::string what;
+  };
+  const Row rows[] = {
+      {"set Paged page=2 a=1", 3, "a is there only with page=1"},
+      {"set Paged a=1 inner=1", 3, "inner is there only with page=2 to 3"},
+      {"set Paged inner=4 b=1", 3, "b is there only with inner=5"},
+      {"set Engine rpm=3000.25", 2, "'3000.25' is beyond the stated range: rpm takes 0 to 3000 rpm"},
+      {"set Engine rpm=20000", 2, "'20000' is out of range: rpm takes 0 to 3000 rpm"},
+      {"set Engine rpm=20000 --force", 2, "'20000' is out of range: rpm takes 0 to 16383.75 rpm"},
+      {"set Engine gear=5", 2,
+       "'5' is beyond the stated range: gear takes neutral, first, broken, or 0 to 2"},
+      {"set Engine heat=88", 2, "'88' is out of range: heat takes -168 to 87"},
+      {"set Engine torque=1e39", 2, "'1e39' is out of range: torque takes any number"},
+      {"set Engine speed=1", 2, "Engine has no field 'speed'"},
+      {"set Engine rpm=1 rpm=2", 3, "field 'rpm' is given twice"},
+      {"set Engine rpm", 2, "'rpm' is not of the form FIELD=VALUE"},
+      {"set Long a=1", 2, "Long has no field 'a'"},
+      {"set Engine rpm=1 --priority high", 0, "a message carries its priority in its identifier"},
+      {"publish Engine 1s", 1, "'Engine' is a message"},
+  };
+  for (const Row& row : rows) {
+    const auto command = parse(row.line);
+    INFO(row.line << ": " << command.error.what);
+    CHECK_FALSE(command.ok());
+    CHECK(command.error.word == row.word);
+    CHECK(command.error.what == row.what);
+    CHECK_FALSE(command.error.remedy.empty());
+  }
+  CHECK(frame("set Engine rpm=3000.25 --force") == "100#E12E002800000000");  // 12001 quarters
+  CHECK(compose(topics[2], {}).error.what == "Long is a message of 64 bytes");
+}
+
+TEST_CASE("a message is sent again and again with --every") {
+  using namespace std::chrono_literals;
+  const auto command = parse("set Engine rpm=1 --every 10ms --for=2s");
+  REQUIRE(command.ok());
+  REQUIRE(command->repeat.has_value());
+  CHECK(command->repeat->period == 10ms);
+  CHECK(command->repeat->lasting == 2s);
+  CHECK(parse("set Engine rpm=1 --every 10ms")->repeat->lasting == 0s);
+  CHECK_FALSE(parse("set Engine rpm=1")->repeat.has_value());
+}
+
+}  // namespace tool_words_message_test
