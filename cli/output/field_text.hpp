@@ -9,7 +9,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <span>
+#include <utility>
 
 #include "ocm/base/decimal.hpp"
 #include "ocm/protocol/codec.hpp"
@@ -47,13 +49,17 @@ class FieldText {
     whole_numbers_ = fast_;
     // Of an unsigned word the highest bit is no sign.
     fast_ = fast_ && in_word_ && (field.is_signed || field.position.width < 64);
+    if (fast_ && field.position.width <= most_tabled_bits) tabulate();
   }
 
   /// Writes the value of the field in `data`, which holds it and has room behind it as can::FrameView says;
   /// returns the end.
   char* print(char* to, const std::uint8_t* data) const noexcept {
-    if (!fast_) return print_slowly(to, raw(data));
-    return print_whole(to, raw(data) * factor_ + offset_);
+    if (fast_) return print_whole(to, raw(data) * factor_ + offset_);
+    if (table_ == nullptr) return print_slowly(to, raw(data));
+    const ShortText& text = table_[bits(data)];
+    std::memcpy(to, &text, sizeof text);  // all 16 bytes: of how many is not guessed
+    return to + text.size;
   }
 
   char* print(char* to, const can::Payload& data) const noexcept { return print(to, data.data()); }
@@ -67,14 +73,41 @@ class FieldText {
   /// As field().raw(data).
   [[nodiscard]] std::int64_t raw(const std::uint8_t* data) const noexcept {
     if (!in_word_) return raw_of_nine(data);
-    std::uint64_t word = 0;
-    std::memcpy(&word, data + byte_, sizeof word);
-    if (swapped_) word = __builtin_bswap64(word);
-    const std::uint64_t bits = word >> shift_ & mask_;
-    return static_cast<std::int64_t>((bits ^ sign_) - sign_);
+    return static_cast<std::int64_t>((bits(data) ^ sign_) - sign_);
   }
 
  private:
+  /// Of up to this many bits all texts are worked out once: most fields of a car are so narrow. Wider ones
+  /// would take the room of the processor's caches.
+  static constexpr unsigned most_tabled_bits = 5;
+  struct ShortText {
+    char characters[15];
+    std::uint8_t size;
+  };
+
+  /// The field's bits, where eight bytes hold them.
+  [[nodiscard]] std::uint64_t bits(const std::uint8_t* data) const noexcept {
+    std::uint64_t word = 0;
+    std::memcpy(&word, data + byte_, sizeof word);
+    if (swapped_) word = __builtin_bswap64(word);
+    return word >> shift_ & mask_;
+  }
+
+  void tabulate() {
+    const std::size_t count = std::size_t{1} << field_->position.width;
+    auto table = std::make_unique<ShortText[]>(count);
+    for (std::size_t number = 0; number < count; ++number) {
+      char text[room];
+      const auto raw_number = static_cast<std::int64_t>((number ^ sign_) - sign_);
+      const auto size = static_cast<std::size_t>(print_whole(text, raw_number * factor_ + offset_) - text);
+      if (size > sizeof table[number].characters) return;  // a scale of many digits
+      std::copy_n(text, size, table[number].characters);
+      table[number].size = static_cast<std::uint8_t>(size);
+    }
+    table_ = std::move(table);
+    fast_ = false;
+  }
+
   /// Whether the whole numbers suffice for every raw number that the field can have.
   bool work_out(const protocol::Field& field) noexcept {
     if (field.is_float()) return false;
@@ -162,8 +195,9 @@ class FieldText {
   unsigned byte_ = 0;
   bool in_word_ = true;
   bool swapped_ = false;
-  bool whole_numbers_ = false;  ///< factor, offset and places hold
-  bool fast_;
+  bool whole_numbers_ = false;          ///< factor, offset and places hold
+  bool fast_;                           ///< print_whole is enough, and no table is there
+  std::unique_ptr<ShortText[]> table_;  ///< by the field's bits; none: they are too many
 };
 
 }  // namespace ocm::cli
