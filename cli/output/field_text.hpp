@@ -58,7 +58,7 @@ class FieldText {
     if (fast_) return print_whole(to, raw(data) * factor_ + offset_);
     if (table_ == nullptr) return print_slowly(to, raw(data));
     const ShortText& text = table_[bits(data)];
-    std::memcpy(to, &text, sizeof text);  // all 16 bytes: of how many is not guessed
+    std::memcpy(to, &text, sizeof text);  // all 8 bytes: of how many is not guessed
     return to + text.size;
   }
 
@@ -81,7 +81,7 @@ class FieldText {
   /// would take the room of the processor's caches.
   static constexpr unsigned most_tabled_bits = 5;
   struct ShortText {
-    char characters[15];
+    char characters[7];
     std::uint8_t size;
   };
 
