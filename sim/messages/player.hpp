@@ -1,0 +1,165 @@
+/// A bus that nobody has: the messages of a catalogue, each at its period, with fields that move.
+///
+///     sim::MessagePlayer player{catalogue, {.seed = 7}};
+///     player.advance(now, [&](const sim::PlayedMessage& message, const can::Frame& frame, base::Time due) {
+///       ... frame goes onto the bus at `due`, sent by node message.board ...
+///     });
+///
+/// Time is handed in. What is sent depends on the catalogue, the seed and the time, however seldom `advance`
+/// is called. O(log messages) a frame, and O(fields squared) for its content. The catalogue must outlive it.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <queue>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ocm/base/time.hpp"
+#include "ocm/can/frame.hpp"
+#include "ocm/j1939/identifier.hpp"
+#include "ocm/protocol/topic.hpp"
+
+#include "sim/messages/motion.hpp"
+#include "sim/messages/pages.hpp"
+#include "sim/physics/noise.hpp"
+
+namespace ocm::sim {
+
+struct PlayOptions {
+  std::uint64_t seed = 1;
+  /// How far apart messages without a period are, on average; 0: they are not sent.
+  base::Duration sporadic{};
+};
+
+/// A message that is played, or why it is not.
+struct PlayedMessage {
+  const protocol::Topic* topic = nullptr;
+  std::uint8_t board = protocol::no_board;
+  std::uint32_t id = 0;  ///< with which it is sent
+};
+
+/// Messages that stay out, by cause, in the order of the catalogue.
+struct LeftOut {
+  std::vector<const protocol::Topic*> without_period;
+  std::vector<const protocol::Topic*> too_long;  ///< CAN FD, or more than eight bytes: no classic frame
+};
+
+/// The identifier of a message. A J1939 message whose source is the null address, with which a node may not
+/// send, gets one that its sender may choose for itself, 128 to 247 [SAE J1939-81]: one a node.
+[[nodiscard]] constexpr std::uint32_t played_identifier(const protocol::Topic& message) noexcept {
+  const auto& address = message.frames[0].address;
+  auto id = j1939::Identifier::decode(address.number);
+  if (address.by != protocol::Address::By::pgn || id.source != j1939::null_address) return address.number;
+  id.source = static_cast<std::uint8_t>(128U + message.board % 120U);
+  return id.encode();
+}
+
+class MessagePlayer {
+ public:
+  explicit MessagePlayer(const protocol::Catalogue& catalogue, PlayOptions options = {}) : options_(options) {
+    std::uint64_t number = 0;
+    for (const auto& topic : catalogue.topics) {
+      if (!topic.is_message() || topic.frames.empty()) continue;
+      const auto& layout = topic.frames[0];
+      if (topic.cycle.count() <= 0 && options.sporadic.count() <= 0)
+        left_out_.without_period.push_back(&topic);
+      else if (layout.fd || layout.length > can::max_dlc)
+        left_out_.too_long.push_back(&topic);
+      else
+        take(topic, number);
+      number += 1 + layout.fields.size();
+    }
+  }
+
+  [[nodiscard]] std::size_t size() const noexcept { return messages_.size(); }
+  [[nodiscard]] const LeftOut& left_out() const noexcept { return left_out_; }
+  /// Played messages of a node, protocol::no_board: of unknown senders.
+  [[nodiscard]] std::size_t sent_by(std::uint8_t board) const noexcept {
+    return static_cast<std::size_t>(std::count_if(
+        messages_.begin(), messages_.end(), [board](const Message& m) { return m.played.board == board; }));
+  }
+
+  /// When the next message is due; the end of time where there is none.
+  [[nodiscard]] base::Time next_event() const noexcept {
+    return due_.empty() ? base::Time::max() : due_.top().first;
+  }
+
+  /// Calls `send(message, frame, due)` for everything that is due until `now`, in its order.
+  template <class Send>
+  void advance(base::Time now, Send send) {
+    while (!due_.empty() && due_.top().first <= now) {
+      const auto [due, index] = due_.top();
+      due_.pop();
+      Message& message = messages_[index];
+      send(std::as_const(message.played), content(message, due), due);
+      ++message.sent;
+      due_.push({due + distance(message), index});
+    }
+  }
+
+ private:
+  struct Message {
+    PlayedMessage played;
+    Pages pages;
+    std::vector<FieldMotion> motions;
+    std::uint64_t key = 0;
+    std::uint64_t sent = 0;
+  };
+  using Due = std::pair<base::Time, std::size_t>;
+
+  void take(const protocol::Topic& topic, std::uint64_t number) {
+    const auto& layout = topic.frames[0];
+    Message message{{&topic, topic.board, played_identifier(topic)},
+                    Pages{layout},
+                    {},
+                    split_mix(split_mix(options_.seed, 0), number)};
+    for (const auto& field : layout.fields) message.motions.emplace_back(field, options_.seed, ++number);
+    // Nodes are not switched on in one moment: each message begins somewhere in its first period.
+    const base::Duration period = topic.cycle.count() > 0 ? topic.cycle : options_.sporadic;
+    const auto phase =
+        split_mix(message.key, ~std::uint64_t{0} >> 1) % static_cast<std::uint64_t>(period.count());
+    due_.push({base::Time{base::Duration{static_cast<std::int64_t>(phase)}}, messages_.size()});
+    messages_.push_back(std::move(message));
+  }
+
+  /// Without a period: evenly between half and one and a half of what was asked for, and never nearer than
+  /// the spec allows.
+  [[nodiscard]] base::Duration distance(const Message& message) const noexcept {
+    const auto& topic = *message.played.topic;
+    if (topic.cycle.count() > 0) return topic.cycle;
+    const auto mean = static_cast<std::uint64_t>(options_.sporadic.count());
+    const auto wanted =
+        static_cast<std::int64_t>(mean - mean / 2 + split_mix(message.key, message.sent) % mean);
+    return std::max(base::Duration{wanted}, topic.shortest_period);
+  }
+
+  [[nodiscard]] static can::Frame content(const Message& message, base::Time now) noexcept {
+    const auto& layout = message.played.topic->frames[0];
+    can::Frame frame;
+    frame.id = message.played.id;
+    frame.format = protocol::format_of(layout);
+    frame.dlc = layout.dlc();
+    const std::span<std::uint8_t> data{frame.data.data(), frame.dlc};
+    // Selectors first, since they decide what else is there, and last, should a field lie over one.
+    message.pages.put(message.sent, data);
+    for (std::size_t i = 0; i < layout.fields.size(); ++i) {
+      const auto& field = layout.fields[i];
+      if (!message.pages.chosen(i) && layout.has(field, data))
+        protocol::put(data, field.position, message.motions[i].at(now));
+    }
+    message.pages.put(message.sent, data);
+    return frame;
+  }
+
+  PlayOptions options_;
+  LeftOut left_out_;
+  std::vector<Message> messages_;
+  std::priority_queue<Due, std::vector<Due>, std::greater<>> due_;
+};
+
+}  // namespace ocm::sim
