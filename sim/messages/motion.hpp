@@ -76,7 +76,10 @@ class FieldMotion {
   /// `number`: another one for each field. The field must outlive it.
   FieldMotion(const protocol::Field& field, std::uint64_t seed, std::uint64_t number)
       : field_(&field), key_(split_mix(split_mix(seed, 1), number)) {
-    if (field.is_float()) return plan_float();
+    if (field.is_float()) {
+      plan_float();
+      return;
+    }
     const auto stated = stated_range(field);
     range_ = has_stated_range(field) && stated ? *stated : near_start(field);
     if (field.position.width == 1 && !has_stated_range(field)) range_ = bits();

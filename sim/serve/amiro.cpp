@@ -13,6 +13,7 @@
 #include "sim/serve/boards.hpp"
 #include "sim/serve/clock.hpp"
 #include "sim/serve/interference.hpp"
+#include "sim/serve/messages.hpp"
 #include "sim/serve/turns.hpp"
 
 namespace ocm::sim {
@@ -113,6 +114,11 @@ Ending serve_amiro(const std::string& path, const AmiroOptions& options, const S
   if (!made) return Ending{made.error};
   Boards& boards = **made;
   if (auto started = wait_until_ready(boards, clock, shell); !started.well()) return started;
+  const protocol::Catalogue none;
+  MessageNodes messages{options.messages != nullptr ? *options.messages : none,
+                        {options.world.seed, options.sporadic},
+                        arbiter};
+  report_left_out(messages.player(), shell);
   shell.report(fmt::format("simulated {}{} on --bus {} ({}), {} bit/s; Ctrl-C ends it",
                            amiro::catalogue.robot, options.qemu ? " with its boards in QEMU" : "",
                            path.empty() ? "sim" : "sim:" + path, server.path(), options.bit_rate));
@@ -123,22 +129,27 @@ Ending serve_amiro(const std::string& path, const AmiroOptions& options, const S
     boards.receive(delivery.frame, delivery.time);
   };
   Interference interference{options.bus_errors, options.world.seed};
+  const auto next_event = [&server, &messages] {
+    return std::min(server.next_event(), messages.next_event());
+  };
   while (!shell.stop()) {
     const base::Time now = clock.now();
     interference.disturb(arbiter, now);
     // Whatever falls due until now, in the order in which it does.
     for (;;) {
-      const base::Time next = std::min(server.next_event(), boards.next_event());
+      const base::Time next = std::min(next_event(), boards.next_event());
       if (next > now) break;
       server.advance(next, hear);
+      messages.advance(next);
       if (!boards.advance(next)) return Ending{boards.failure()};
     }
     if (options.qemu && !boards.advance(now)) return Ending{boards.failure()};
     server.poll(now, hear);
-    wait_for(server.descriptor(), boards, clock.until(std::min(server.next_event(), boards.next_event())));
+    wait_for(server.descriptor(), boards, clock.until(std::min(next_event(), boards.next_event())));
   }
   server.end();  // counts what slow clients lost by it
   boards.summarise(shell);
+  messages.summarise(shell);
   const auto& bus = arbiter.totals();
   const auto& clients = server.counters();
   shell.report(fmt::format(

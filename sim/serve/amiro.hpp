@@ -10,6 +10,7 @@
 #include "ocm/transport/bus.hpp"
 
 #include "sim/amiro/world.hpp"
+#include "sim/messages/player.hpp"
 #include "sim/serve/shell.hpp"
 
 namespace ocm::sim {
@@ -22,6 +23,9 @@ struct AmiroOptions {
   std::uint32_t bit_rate = amiro::bit_rate;
   double bus_errors = 0;  ///< bits a second that nodes see wrong, on average
   double speed = 1;
+  /// Whose messages other nodes send on the robot's virtual bus; it must outlive the simulation.
+  const protocol::Catalogue* messages = nullptr;
+  base::Duration sporadic{};  ///< PlayOptions::sporadic
 };
 
 /// The boards and any number of programs on a virtual bus, whose socket is `path`; empty: that of the user.

@@ -1,0 +1,177 @@
+#include "sim/serve/messages.hpp"
+
+#include <chrono>
+#include <deque>
+#include <poll.h>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "ocm/simulation/virtual_bus_server.hpp"
+
+#include "sim/serve/clock.hpp"
+#include "sim/serve/interference.hpp"
+
+namespace ocm::sim {
+namespace {
+
+/// Frames that may wait for a full CAN interface; beyond that they are dropped and counted.
+constexpr std::size_t longest_wait = 1000;
+
+constexpr std::string_view of_unknown_sender = "unknown sender";
+
+void wait_for(int descriptor, base::Duration wait) {
+  pollfd input{descriptor, POLLIN, 0};
+  const timespec limit{0, static_cast<long>(wait.count())};
+  ::ppoll(&input, 1, &limit, nullptr);
+}
+
+std::string names(const std::vector<const protocol::Topic*>& messages) {
+  std::string text;
+  for (const auto* message : messages) text += fmt::format("{}{}", text.empty() ? "" : ", ", message->name);
+  return text;
+}
+
+std::string_view name_of(const protocol::Catalogue& catalogue) {
+  return catalogue.robot.empty() ? std::string_view{"bus"} : catalogue.robot;
+}
+
+}  // namespace
+
+MessageNodes::MessageNodes(const protocol::Catalogue& catalogue, const PlayOptions& options,
+                           simulation::Arbiter& wire)
+    : player_(catalogue, options), wire_(&wire), nodes_(catalogue.boards.size() + 1) {
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const bool known = i < catalogue.boards.size();
+    nodes_[i].name = known ? catalogue.boards[i].name : of_unknown_sender;
+    const auto sent = player_.sent_by(known ? static_cast<std::uint8_t>(i) : protocol::no_board);
+    // Room for two of each message: one that still waits when the next is due.
+    if (sent != 0) nodes_[i].id = wire.attach({simulation::QueueOrder::by_identifier, 2 * sent});
+  }
+}
+
+void MessageNodes::advance(base::Time now) {
+  player_.advance(now, [this](const PlayedMessage& message, const can::Frame& frame, base::Time due) {
+    Node& node = message.board + std::size_t{1} < nodes_.size() ? nodes_[message.board] : nodes_.back();
+    const auto taken = wire_->send(node.id, frame, due);
+    ++(taken && *taken ? node.handed_over : node.refused);
+  });
+}
+
+void MessageNodes::summarise(const Shell& shell) const {
+  for (const Node& node : nodes_) {
+    if (node.handed_over == 0 && node.refused == 0) continue;
+    shell.report(fmt::format("{:<17} sent {}{}", node.name, node.handed_over,
+                             node.refused == 0 ? "" : fmt::format(", {} found the bus full", node.refused)));
+  }
+}
+
+void report_left_out(const MessagePlayer& player, const Shell& shell) {
+  const auto& left = player.left_out();
+  if (!left.without_period.empty())
+    shell.report(fmt::format("not sent, since the spec states no period: {} (--sporadic 1s sends them too)",
+                             names(left.without_period)));
+  if (!left.too_long.empty())
+    shell.report(fmt::format("not sent, since no classic CAN frame holds them: {}", names(left.too_long)));
+}
+
+Ending nothing_to_play(const MessagePlayer& player, const protocol::Catalogue& catalogue) {
+  if (player.size() != 0) return {};
+  const auto& left = player.left_out();
+  if (left.without_period.empty())
+    return Ending{{fmt::format("sim: no message of '{}' fits into a classic CAN frame", name_of(catalogue)),
+                   "longer frames cannot be simulated: give a spec with messages of at most 8 bytes"},
+                  true};
+  return Ending{
+      {fmt::format("sim: no message of '{}' has a period that could be played", name_of(catalogue)),
+       "add --sporadic 1s to send all about once a second, or state periods (DBC: GenMsgCycleTime)"},
+      true};
+}
+
+Ending serve_messages(const std::string& path, const protocol::Catalogue& catalogue,
+                      const MessagesOptions& options, const Shell& shell) {
+  if (auto nothing = nothing_to_play(MessagePlayer{catalogue, options.play}, catalogue); !nothing.well())
+    return nothing;
+  simulation::VirtualBusOptions bus_options;
+  bus_options.path = path;
+  bus_options.name = name_of(catalogue);
+  bus_options.bit_rate = options.bit_rate;
+  bus_options.to_unix_time = std::chrono::system_clock::now().time_since_epoch();
+  bus_options.report = shell.report;
+  auto opened = simulation::VirtualBusServer::open(bus_options);
+  if (!opened) return Ending{opened.error};
+  auto& server = **opened;
+  auto& wire = server.arbiter();
+  MessageNodes nodes{catalogue, options.play, wire};
+  report_left_out(nodes.player(), shell);
+  shell.report(fmt::format("simulated {} messages of {} on --bus {} ({}), {} bit/s; Ctrl-C ends it",
+                           nodes.player().size(), name_of(catalogue), path.empty() ? "sim" : "sim:" + path,
+                           server.path(), options.bit_rate));
+  const SimulatedClock clock{options.speed};
+  const auto hear = [](const simulation::Delivery&) {};
+  Interference interference{options.bus_errors, options.play.seed};
+  while (!shell.stop()) {
+    const base::Time now = clock.now();
+    interference.disturb(wire, now);
+    for (;;) {
+      const base::Time next = std::min(server.next_event(), nodes.next_event());
+      if (next > now) break;
+      server.advance(next, hear);
+      nodes.advance(next);
+    }
+    server.poll(now, hear);
+    wait_for(server.descriptor(), clock.until(std::min(server.next_event(), nodes.next_event())));
+  }
+  server.end();  // counts what slow clients lost by it
+  nodes.summarise(shell);
+  const auto& bus = wire.totals();
+  const auto& clients = server.counters();
+  shell.report(fmt::format(
+      "bus               {} frames, {} clients, {} turned away, {} misbehaved, {} frames lost by slow ones",
+      bus.frames, clients.welcomed, clients.turned_away, clients.misbehaved, clients.overruns));
+  if (options.bus_errors > 0)
+    shell.report(
+        fmt::format("                  {} error frames, {} frames repeated", bus.errors, bus.repetitions));
+  if (bus.clashes != 0)
+    shell.report(
+        fmt::format("                  {} times two senders at once with the same identifier", bus.clashes));
+  return {};
+}
+
+Ending serve_messages(transport::Bus& bus, const protocol::Catalogue& catalogue,
+                      const MessagesOptions& options, const Shell& shell) {
+  MessagePlayer player{catalogue, options.play};
+  if (auto nothing = nothing_to_play(player, catalogue); !nothing.well()) return nothing;
+  report_left_out(player, shell);
+  shell.report(fmt::format("simulated {} messages of {} on {}; Ctrl-C ends it", player.size(),
+                           name_of(catalogue), bus.name()));
+  const SimulatedClock clock{1};
+  std::deque<can::Frame> waiting;
+  std::uint64_t sent = 0;
+  std::uint64_t dropped = 0;
+  while (!shell.stop()) {
+    player.advance(clock.now(), [&](const PlayedMessage&, const can::Frame& frame, base::Time) {
+      if (waiting.size() < longest_wait)
+        waiting.push_back(frame);
+      else
+        ++dropped;
+    });
+    while (!waiting.empty()) {
+      const auto taken = bus.send(waiting.front());
+      if (!taken && taken.error == base::Error::closed) return Ending{bus.failure()};
+      if (taken && !*taken) break;
+      ++(taken ? sent : dropped);
+      waiting.pop_front();
+    }
+    while (bus.receive(base::Duration{0})) {
+    }
+    if (bus.state() == transport::BusState::closed) return Ending{bus.failure()};
+    wait_for(bus.descriptor(), waiting.empty() ? clock.until(player.next_event())
+                                               : base::Duration{std::chrono::milliseconds{1}});
+  }
+  shell.report(fmt::format("bus               {} frames sent, {} dropped: the bus was full", sent,
+                           dropped + waiting.size()));
+  return {};
+}
+
+}  // namespace ocm::sim
