@@ -1,5 +1,5 @@
-/// A simulated robot: the AMiRo on a virtual bus or on a CAN interface, or mappers. What runs is in
-/// sim/serve.
+/// A simulated robot: the AMiRo on a virtual bus or on a CAN interface, mappers, or the messages of a spec.
+/// What runs is in sim/serve.
 #include <array>
 #include <cstdlib>
 #include <memory>
@@ -15,9 +15,12 @@
 #include "cli/shared/messages.hpp"
 #include "cli/shared/remedies.hpp"
 #include "cli/shared/session.hpp"
+#include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
+#include "cli/words/command.hpp"
 #include "sim/serve/amiro.hpp"
 #include "sim/serve/mappers.hpp"
+#include "sim/serve/messages.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -60,7 +63,8 @@ int run_amiro(const sim::AmiroOptions& options, Session& session) {
   if (!options.qemu && !options.images.empty())
     fail({"sim: --images without --boards qemu", "add --boards qemu, or leave --images out"}, exit_usage);
   catch_interrupts();
-  if (!session.spec_files.empty()) remark("the simulated robot is the AMiRo, whatever --spec says");
+  if (!session.spec_files.empty() && options.messages == nullptr)
+    remark("the simulated robot is the AMiRo, whatever --spec says");
   const BusName bus_name = parse_bus_name(session.bus_name.empty() ? "sim" : session.bus_name);
   if (bus_name.kind == BusName::Kind::simulated)
     return exit_code_of(
@@ -69,6 +73,10 @@ int run_amiro(const sim::AmiroOptions& options, Session& session) {
     fail({"sim: --bus-errors with --bus " + session.bus_name,
           "leave one out: a real bus has errors of its own"},
          exit_usage);
+  if (options.messages != nullptr)
+    fail({"sim: a robot and messages with --bus " + session.bus_name,
+          "both play on a virtual bus only: leave --bus out, or one of the specs"},
+         exit_usage);
   const auto bus = session.open_bus();
   StateWatch watch;
   const auto stop = [&bus, &watch] {
@@ -76,6 +84,73 @@ int run_amiro(const sim::AmiroOptions& options, Session& session) {
     return interrupted() != 0;
   };
   return exit_code_of(sim::serve_amiro(*bus, options, {stop, remark}));
+}
+
+// --- the messages of a spec ---
+
+/// What a spec asks to be played.
+enum class Cast { amiro, messages, both };
+
+bool is_of_amiro(const protocol::Topic& topic) {
+  const auto* own = amiro::catalogue.find(topic.name);
+  return own != nullptr && own->id == topic.id && own->kind == topic.kind &&
+         own->frames.size() == topic.frames.size();
+}
+
+Cast cast_of(Session& session) {
+  if (session.spec_files.empty()) return Cast::amiro;
+  bool messages = false;
+  bool topics = false;
+  bool foreign = false;
+  for (const auto& topic : session.catalogue().topics) {
+    messages = messages || topic.is_message();
+    topics = topics || !topic.is_message();
+    foreign = foreign || (!topic.is_message() && !is_of_amiro(topic));
+  }
+  // A spec with neither, such as a DBC file of nodes only, has nothing to say as a robot's either.
+  if (!messages) return topics ? Cast::amiro : Cast::messages;
+  if (foreign)
+    remark(
+        "only the messages of the spec are played: its topics are not the AMiRo's, and no other robot's "
+        "boards are simulated");
+  return topics && !foreign ? Cast::both : Cast::messages;
+}
+
+/// What is meant for the AMiRo's boards.
+void refuse_boards_of_messages(Verb verb) {
+  for (const char* option : {"--boards", "--images", "--without", "--frozen"})
+    if (verb.count(option) != 0)
+      fail({fmt::format("sim: {} with the messages of a spec", option), "they have no boards: leave one out"},
+           exit_usage);
+}
+
+int run_messages(Verb verb, const sim::AmiroOptions& options, Session& session) {
+  refuse_boards_of_messages(verb);
+  catch_interrupts();
+  const auto& catalogue = session.catalogue();
+  sim::MessagesOptions play{.play = {options.world.seed, options.sporadic},
+                            .bus_errors = options.bus_errors,
+                            .speed = options.speed};
+  if (verb.count("--bitrate") != 0)
+    play.bit_rate = options.bit_rate;
+  else if (catalogue.bit_rate != 0)
+    play.bit_rate = catalogue.bit_rate;
+  const BusName bus_name = parse_bus_name(session.bus_name.empty() ? "sim" : session.bus_name);
+  if (bus_name.kind == BusName::Kind::simulated)
+    return exit_code_of(
+        sim::serve_messages(bus_name.address, catalogue, play, {[] { return interrupted() != 0; }, remark}));
+  for (const char* option : {"--bus-errors", "--bitrate", "--speed"})
+    if (verb.count(option) != 0)
+      fail({fmt::format("sim: {} with --bus {}", option, session.bus_name),
+            "leave one out: it is for the virtual bus"},
+           exit_usage);
+  const auto bus = session.open_bus();
+  StateWatch watch;
+  const auto stop = [&bus, &watch] {
+    watch.look(*bus);
+    return interrupted() != 0;
+  };
+  return exit_code_of(sim::serve_messages(*bus, catalogue, play, {stop, remark}));
 }
 
 // --- mappers ---
@@ -115,7 +190,8 @@ bool wants_mappers(Verb verb) {
 
 /// What is meant for the AMiRo's boards and their bus.
 void refuse_boards_options(Verb verb, const Session& session) {
-  for (const char* option : {"--bus-errors", "--boards", "--images", "--without", "--frozen", "--bitrate"})
+  for (const char* option :
+       {"--bus-errors", "--boards", "--images", "--without", "--frozen", "--bitrate", "--sporadic"})
     if (verb.count(option) != 0)
       fail({fmt::format("sim: {} with mappers", option), "they have no bus and no boards: leave one out"},
            exit_usage);
@@ -139,20 +215,26 @@ int run_mappers(const sim::MapperOptions& options) {
 }  // namespace
 
 void add_sim(Verb app, Session& session, int& exit_code) {
-  auto verb = app.add_verb("sim", "a simulated robot, on a virtual bus or on a CAN interface", play_group,
-                           "  amiroctl sim                       a virtual bus for this user, as --bus sim\n"
-                           "  amiroctl sim --bus vcan0           the three boards on a CAN interface\n"
-                           "  amiroctl sim --seed 7 --speed 10\n"
-                           "  amiroctl sim --without light_ring  a board that is switched off\n"
-                           "  amiroctl sim --bus-errors 20       interference: 20 broken bits a second\n"
-                           "  amiroctl sim --boards qemu         the boards' firmware, emulated\n"
-                           "  amiroctl sim --robots 2            mappers in a room, and their central\n"
-                           "  amiroctl sim --world labyrinth --radio-loss 0.1");
+  auto verb = app.add_verb(
+      "sim", "a simulated robot, or a spec's messages, on a virtual bus or a CAN interface", play_group,
+      "  amiroctl sim                       a virtual bus for this user, as --bus sim\n"
+      "  amiroctl sim --bus vcan0           the three boards on a CAN interface\n"
+      "  amiroctl sim --seed 7 --speed 10\n"
+      "  amiroctl sim --without light_ring  a board that is switched off\n"
+      "  amiroctl sim --bus-errors 20       interference: 20 broken bits a second\n"
+      "  amiroctl sim --boards qemu         the boards' firmware, emulated\n"
+      "  amiroctl sim --spec car.dbc        a bus with the messages of a DBC file\n"
+      "  amiroctl sim --robots 2            mappers in a room, and their central\n"
+      "  amiroctl sim --world labyrinth --radio-loss 0.1");
   const auto options = std::make_shared<sim::AmiroOptions>();
   verb.add_option("--seed", options->world.seed, "of all noise; equal seeds give equal robots")
       .type_name("N");
   const auto boards = std::make_shared<std::string>("host");
   add_boards(verb, *options, *boards);
+  verb.add_value("--sporadic", take_into(options->sporadic, words::read_every),
+                 "also send messages without a period, about T apart; default: they are not sent")
+      .type_name("T")
+      .takes(accepted_duration());
   const auto mappers = std::make_shared<sim::MapperOptions>();
   add_mappers(verb, *mappers);
   verb.callback([options, boards, mappers, verb, &session, &exit_code] {
@@ -162,9 +244,14 @@ void add_sim(Verb app, Session& session, int& exit_code) {
     if (wants_mappers(verb)) {
       refuse_boards_options(verb, session);
       exit_code = run_mappers(*mappers);
-    } else {
-      exit_code = run_amiro(*options, session);
+      return;
     }
+    const Cast cast = cast_of(session);
+    if (cast == Cast::amiro && verb.count("--sporadic") != 0)
+      fail({"sim: --sporadic without messages", "add --spec FILE with messages, or leave it out"},
+           exit_usage);
+    if (cast == Cast::both) options->messages = &session.catalogue();
+    exit_code = cast == Cast::messages ? run_messages(verb, *options, session) : run_amiro(*options, session);
   });
 }
 
