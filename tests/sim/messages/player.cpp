@@ -1,0 +1,103 @@
+#include "sim/messages/player.hpp"
+
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "generator/spec/spec.hpp"
+
+namespace sim_messages_player_test {
+
+using namespace ocm;
+using namespace std::chrono_literals;
+
+struct Sent {
+  std::string name;
+  can::Frame frame;
+  base::Time due;
+  const protocol::Topic* topic;
+};
+
+const spec::Spec& bus() {
+  static const auto loaded = spec::load(std::filesystem::path{OCM_BUS_DBC});
+  REQUIRE(loaded.spec != nullptr);
+  return *loaded.spec;
+}
+
+std::vector<Sent> played(sim::PlayOptions options, base::Duration lasting = 60s) {
+  sim::MessagePlayer player{bus().catalogue(), options};
+  std::vector<Sent> sent;
+  player.advance(base::Time{lasting}, [&](const auto& message, const can::Frame& frame, base::Time due) {
+    sent.push_back({std::string{message.topic->name}, frame, due, message.topic});
+  });
+  return sent;
+}
+
+TEST_CASE("Every message with a period keeps it exactly for a minute") {
+  std::map<std::string, base::Time> last;
+  std::map<std::string, int> count;
+  for (const auto& each : played({.seed = 3})) {
+    if (count[each.name]++ != 0) CHECK(each.due - last[each.name] == each.topic->cycle);
+    last[each.name] = each.due;
+  }
+  CHECK(count.size() == 3);
+  CHECK(std::abs(count["Fast"] - 6000) <= 1);
+  CHECK(std::abs(count["Pages"] - 1200) <= 1);
+  CHECK(std::abs(count["Group"] - 3000) <= 1);
+}
+
+TEST_CASE("One seed plays the same, two seeds do not") {
+  const auto frames = [](std::uint64_t seed) {
+    std::vector<can::Frame> all;
+    for (const auto& each : played({.seed = seed}, 5s)) all.push_back(each.frame);
+    return all;
+  };
+  CHECK(frames(1) == frames(1));
+  CHECK(frames(1) != frames(2));
+}
+
+TEST_CASE("Values stay within their ranges, move, and every page is there") {
+  std::map<std::string, std::set<std::int64_t>> seen;
+  for (const auto& each : played({.seed = 5}))
+    for (const auto& field : each.topic->frames[0].fields) {
+      if (!each.topic->frames[0].has(field, each.frame.bytes())) continue;
+      const auto raw = field.raw(each.frame.data);
+      seen[std::string{field.name}].insert(raw);
+      if (!sim::has_stated_range(field)) continue;
+      CHECK(field.value(raw) >= field.min.as_double());
+      CHECK(field.value(raw) <= field.max.as_double());
+    }
+  CHECK(seen["Page"] == std::set<std::int64_t>{0, 7, 9});
+  CHECK(seen["Sub"] == std::set<std::int64_t>{1, 2});
+  CHECK(seen["Gear"] == std::set<std::int64_t>{-1, 0, 5});
+  CHECK(seen["On"] == std::set<std::int64_t>{0, 1});
+  for (const char* name : {"A", "B", "C", "D", "Speed", "Torque", "Free", "Level"}) {
+    CAPTURE(name);
+    CHECK(seen[name].size() > 3);
+  }
+}
+
+TEST_CASE("What is not played is listed by cause; without a period only on request") {
+  const sim::MessagePlayer player{bus().catalogue(), {}};
+  REQUIRE(player.left_out().without_period.size() == 1);
+  CHECK(player.left_out().without_period[0]->name == "Button");
+  REQUIRE(player.left_out().too_long.size() == 1);
+  CHECK(player.left_out().too_long[0]->name == "Long");
+  int buttons = 0;
+  for (const auto& each : played({.seed = 1, .sporadic = 1s})) buttons += each.name == "Button";
+  CHECK(buttons > 50);
+  CHECK(buttons < 70);
+}
+
+TEST_CASE("A parameter group is sent from an address that a node may have") {
+  for (const auto& each : played({.seed = 1}, 1s))
+    if (each.name == "Group") CHECK(each.frame.id == 0x0CF00480);
+}
+
+}  // namespace sim_messages_player_test
