@@ -22,14 +22,14 @@ class SimMessages(Case):
         sim, said = self.play("--seed", "7")
         self.assertIn("no period: Button", said)
         self.assertIn("no classic CAN frame holds them: Long", said)
-        out, _ = self.run_tool("listen", "--spec", SPEC, "--bus", "sim", "--json", "--for", "2s")
+        out, _ = self.run_tool("listen", "--spec", SPEC, "--bus", "sim", "--json", "--timeout", "2s")
         rows = self.objects(out)
         text = json.dumps(rows)
         for name in ("Fast", "Pages", "Group"):
             self.assertIn(f'"{name}"', text)
         for name in ("Button", "Long"):
             self.assertNotIn(f'"{name}"', text)
-        out, _ = self.run_tool("stats", "--spec", SPEC, "--bus", "sim", "--json", "--for", "3s")
+        out, _ = self.run_tool("stats", "--spec", SPEC, "--bus", "sim", "--json", "--duration", "3s")
         seen = {t["topic"]: t for t in json.loads(out)["buses"][0]["topics"]}
         for name, period in (("Fast", 10e6), ("Pages", 50e6), ("Group", 20e6)):
             self.assertEqual(seen[name]["period_ns"], period)
@@ -42,7 +42,7 @@ class SimMessages(Case):
     def test_sporadic_messages_on_request(self):
         _, said = self.play("--sporadic", "100ms")
         self.assertNotIn("Button", said)
-        out, _ = self.run_tool("listen", "--spec", SPEC, "--bus", "sim", "--json", "--for", "2s")
+        out, _ = self.run_tool("listen", "--spec", SPEC, "--bus", "sim", "--json", "--timeout", "2s")
         self.assertIn('"Button"', out)
 
     def test_without_any_period(self):
