@@ -29,7 +29,8 @@ class SimMessages(Case):
             self.assertIn(f'"{name}"', text)
         for name in ("Button", "Long"):
             self.assertNotIn(f'"{name}"', text)
-        out, _ = self.run_tool("stats", "--spec", SPEC, "--bus", "sim", "--json", "--duration", "3s")
+        out, _ = self.run_tool("stats", "--spec", SPEC, "--bus", "sim", "--json", "--duration", "3s",
+                               "--bitrate", "500k")
         seen = {t["topic"]: t for t in json.loads(out)["buses"][0]["topics"]}
         for name, period in (("Fast", 10e6), ("Pages", 50e6), ("Group", 20e6)):
             self.assertEqual(seen[name]["period_ns"], period)
