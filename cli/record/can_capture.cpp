@@ -92,16 +92,17 @@ transport::Outcome<std::unique_ptr<Capture>> CanCapture::open(std::string_view n
   return std::unique_ptr<Capture>{std::move(capture)};
 }
 
+std::unique_ptr<CanCapture> CanCapture::of(host::Descriptor socket, std::string_view name, int index) {
+  std::unique_ptr<CanCapture> capture{new CanCapture(name)};
+  capture->socket_ = std::move(socket);
+  capture->index_ = index;
+  return capture;
+}
+
 std::size_t CanCapture::read(std::span<log::Entry> into, std::uint16_t interface) {
   if (state_ == BusState::closed) return 0;
-  const std::size_t room = std::min(into.size(), batch);
-  for (std::size_t i = 0; i < room; ++i) messages_[i].msg_hdr.msg_controllen = sizeof slots_[i].control;
-  const int count =
-      ::recvmmsg(socket_.get(), messages_.data(), static_cast<unsigned>(room), MSG_DONTWAIT, nullptr);
-  if (count <= 0) {
-    if (count < 0 && errno != EAGAIN && errno != EINTR) lose(errno);
-    return 0;
-  }
+  const int count = receive(std::min(into.size(), batch));
+  if (count <= 0) return 0;
   state_ = BusState::up;
   const auto filled = static_cast<std::size_t>(count);
   for (std::size_t i = 0; i < filled; ++i) {
@@ -114,6 +115,28 @@ std::size_t CanCapture::read(std::span<log::Entry> into, std::uint16_t interface
     read_control(message.msg_hdr, into[i]);
   }
   return filled;
+}
+
+int CanCapture::receive(std::size_t room) {
+  // The kernel reports an error of the socket once, before the frames that wait in it: they still count. One
+  // that does not go away ends it.
+  for (int attempt = 0; attempt < most_errors; ++attempt) {
+    for (std::size_t i = 0; i < room; ++i) messages_[i].msg_hdr.msg_controllen = sizeof slots_[i].control;
+    const int count =
+        ::recvmmsg(socket_.get(), messages_.data(), static_cast<unsigned>(room), MSG_DONTWAIT, nullptr);
+    if (count >= 0) return count;
+    if (errno == EINTR) return 0;
+    if (errno == EAGAIN) {
+      if (leaving_ != 0) close();
+      return 0;
+    }
+    if (errno == ENETDOWN)
+      state_ = BusState::down;
+    else
+      leaving_ = errno;
+  }
+  if (leaving_ != 0) close();
+  return 0;
 }
 
 void CanCapture::read_control(msghdr& message, log::Entry& entry) {
@@ -133,30 +156,39 @@ void CanCapture::read_control(msghdr& message, log::Entry& entry) {
 
 void CanCapture::look() {
   if (state_ == BusState::closed) return;
-  // SO_RXQ_OVFL comes only with a frame that arrives after the loss, and none may come for a long time.
+  count_drops();
+  // By index: the interface may have been renamed, or another may have taken the name.
+  ifreq request{};
+  request.ifr_ifindex = index_;
+  if (::ioctl(socket_.get(), SIOCGIFNAME, &request) < 0 ||
+      ::ioctl(socket_.get(), SIOCGIFFLAGS, &request) < 0) {
+    leaving_ = ENODEV;
+    if (!frames_wait()) close();
+    return;
+  }
+  state_ = (request.ifr_flags & IFF_UP) != 0 ? BusState::up : BusState::down;
+}
+
+/// SO_RXQ_OVFL comes only with a frame that arrives after the loss, and none may come for a long time.
+void CanCapture::count_drops() {
   std::array<std::uint32_t, SK_MEMINFO_VARS> memory{};
   socklen_t size = sizeof memory;
   if (::getsockopt(socket_.get(), SOL_SOCKET, SO_MEMINFO, memory.data(), &size) == 0 &&
       size > SK_MEMINFO_DROPS * sizeof memory[0])
     lost_ += drops_.advance(memory[SK_MEMINFO_DROPS]);
-
-  // By index: the interface may have been renamed, or another may have taken the name.
-  ifreq request{};
-  request.ifr_ifindex = index_;
-  if (::ioctl(socket_.get(), SIOCGIFNAME, &request) < 0 || ::ioctl(socket_.get(), SIOCGIFFLAGS, &request) < 0)
-    return lose(ENODEV);
-  state_ = (request.ifr_flags & IFF_UP) != 0 ? BusState::up : BusState::down;
 }
 
-void CanCapture::lose(int error) {
-  if (error == ENETDOWN) {
-    state_ = BusState::down;
-    return;
-  }
+/// Unless the kernel says that none do: an error that it reports first says nothing of frames.
+bool CanCapture::frames_wait() const {
+  return ::recv(socket_.get(), nullptr, 0, MSG_PEEK | MSG_DONTWAIT) >= 0 || errno != EAGAIN;
+}
+
+void CanCapture::close() {
+  count_drops();
   state_ = BusState::closed;
-  failure_ = error == ENODEV || error == ENXIO
+  failure_ = leaving_ == ENODEV || leaving_ == ENXIO
                  ? transport::detail::gone_failure(name_)
-                 : transport::detail::system_failure(name_, "receive from", error);
+                 : transport::detail::system_failure(name_, "receive from", leaving_);
 }
 
 }  // namespace ocm::cli::record

@@ -26,6 +26,9 @@ class CanCapture final : public Capture {
  public:
   [[nodiscard]] static transport::Outcome<std::unique_ptr<Capture>> open(std::string_view name,
                                                                          const Filters& filters);
+  /// Of a raw socket that is bound to the interface of this index.
+  [[nodiscard]] static std::unique_ptr<CanCapture> of(host::Descriptor socket, std::string_view name,
+                                                      int index);
 
   [[nodiscard]] std::size_t read(std::span<log::Entry> into, std::uint16_t interface) override;
   void look() override;
@@ -48,15 +51,22 @@ class CanCapture final : public Capture {
         std::array<std::byte, CMSG_SPACE(sizeof(timespec)) + CMSG_SPACE(sizeof(std::uint32_t))> control{};
   };
 
+  /// Errors of the socket in a row: down, and gone, each reported once, and one more.
+  static constexpr int most_errors = 4;
+
   explicit CanCapture(std::string_view name);
   void read_control(msghdr& message, log::Entry& entry);
-  void lose(int error);
+  [[nodiscard]] int receive(std::size_t room);
+  void count_drops();
+  [[nodiscard]] bool frames_wait() const;
+  void close();
 
   host::Descriptor socket_;
   std::string name_;
   int index_ = 0;
   std::uint32_t bit_rate_ = 0;
   transport::BusState state_ = transport::BusState::up;
+  int leaving_ = 0;  ///< the error after which it is closed, once no frame waits any more
   transport::Failure failure_;
   std::uint64_t lost_ = 0;
   transport::detail::DropCounter drops_;
