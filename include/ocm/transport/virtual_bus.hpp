@@ -50,6 +50,14 @@ class VirtualBus final : public Bus {
       return Failure{"the simulator on '" + path + "' belongs to another user" +
                          (peer ? " (uid " + std::to_string(peer->uid) + ")" : ""),
                      "start one of your own", host::Cause::simulator_foreign};
+    return on(std::move(socket), std::move(name), path, patience);
+  }
+
+  /// On a socket that is connected with a server; `path` is where, for messages.
+  [[nodiscard]] static Outcome<std::unique_ptr<VirtualBus>> on(host::Descriptor socket, std::string name,
+                                                               const std::string& path,
+                                                               base::Duration patience) {
+    const auto peer = virtual_bus::peer_of(socket.get());
     std::unique_ptr<VirtualBus> bus{
         new VirtualBus(std::move(socket), std::move(name), path, virtual_bus::process_text(peer))};
     if (auto problem = bus->greet(patience)) return std::move(*problem);
@@ -286,7 +294,11 @@ class VirtualBus final : public Bus {
 
   void take_in(const virtual_bus::Record& record) {
     using virtual_bus::Type;
-    switch (virtual_bus::type_of(record)) {
+    const Type type = virtual_bus::type_of(record);
+    // A server greets first, and once.
+    const bool greeted = bit_rate_ != 0;
+    if (type != Type::goodbye && greeted == (type == Type::hello)) return end(not_understood());
+    switch (type) {
       case Type::frame: {
         const auto content = virtual_bus::from_record<virtual_bus::FrameRecord>(record);
         const auto frame = virtual_bus::decode(content);
@@ -294,9 +306,12 @@ class VirtualBus final : public Bus {
         keep({base::Time{base::Duration{content.time_ns}}, *frame});
         return;
       }
-      case Type::credit:
-        credit_ += virtual_bus::from_record<virtual_bus::Count>(record).count;
+      case Type::credit: {
+        const auto back = virtual_bus::from_record<virtual_bus::Count>(record).count;
+        if (back > granted_ - credit_) return end(not_understood());  // for frames that were never sent
+        credit_ += back;
         return;
+      }
       case Type::overrun:
         counters_.lost += virtual_bus::from_record<virtual_bus::Count>(record).count;
         return;

@@ -39,6 +39,10 @@ class RawServer {
     opener.join();
     return opened;
   }
+  template <std::size_t n>
+  void say(const std::array<vb::Record, n>& records) {
+    send(records.data(), sizeof records);
+  }
   template <class T>
   void say(const T& content) {
     const vb::Record record = vb::to_record(content);
@@ -295,6 +299,47 @@ TEST_CASE("what a server may answer to a greeting") {
   CHECK_THAT(answer(vb::Hello{.bit_rate = 0}), Catch::Contains("does not know"));
   CHECK_THAT(answer(vb::FilterRecord{}), Catch::Contains("does not know"));
   CHECK_THAT(answer(vb::FrameRecord{.dlc = 9}), Catch::Contains("does not know"));
+  // What comes before a greeting, though it would be right behind one.
+  CHECK_THAT(answer(frame("605#")), Catch::Contains("does not know"));
+  for (const auto type : {vb::Type::credit, vb::Type::overrun})
+    CHECK_THAT(answer(vb::Count{.type = type}), Catch::Contains("does not know"));
+}
+
+TEST_CASE("a server that greets late is left, also where the greeting follows in the same message") {
+  RawServer server;
+  const std::array records{vb::to_record(frame("605#")),
+                           vb::to_record(vb::Hello{.bit_rate = 1000, .credit = 2})};
+  const auto bus = server.open(records, false);
+  CHECK_FALSE(bus);
+  CHECK_THAT(bus.error.what, Catch::Contains("does not know"));
+}
+
+TEST_CASE("a server that greets twice is left: credit and bit rate stay what they were") {
+  RawServer server;
+  const auto bus = server.open(vb::Hello{.bit_rate = 1000, .credit = 2}, false);
+  REQUIRE(bus);
+  CHECK(*(*bus)->send(frame("100#")));
+  server.say(frame("605#"));
+  server.say(vb::Hello{.bit_rate = 500, .credit = 9});
+  server.say(frame("606#"));
+  CHECK(received(**bus) == Texts{"605#"});
+  CHECK((*bus)->receive(1h).error == base::Error::closed);
+  CHECK_THAT((*bus)->failure().what, Catch::Contains("does not know"));
+  CHECK((*bus)->bit_rate() == 1000);
+  CHECK((*bus)->credit() == 1);
+}
+
+TEST_CASE("a server that gives back more credit than it took is left") {
+  for (const std::uint64_t count : {std::uint64_t{2}, UINT64_MAX}) {
+    RawServer server;
+    const auto bus = server.open(vb::Hello{.bit_rate = 1000, .credit = 2}, false);
+    REQUIRE(bus);
+    CHECK(*(*bus)->send(frame("100#")));
+    server.say(vb::Count{.type = vb::Type::credit, .count = count});
+    CHECK((*bus)->receive(1h).error == base::Error::closed);
+    CHECK_THAT((*bus)->failure().what, Catch::Contains("does not know"));
+    CHECK((*bus)->credit() == 1);
+  }
 }
 
 TEST_CASE("a server that talks nonsense is left") {
