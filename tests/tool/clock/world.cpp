@@ -126,7 +126,9 @@ int exit_code_after_interrupt(int code) noexcept {
   return signal != 0 ? 128 + signal : code;
 }
 
-WithoutBrokenPipe::WithoutBrokenPipe() = default;
+WithoutBrokenPipe::WithoutBrokenPipe() {
+  static_cast<void>(blocked_);  // there is no pipe
+}
 WithoutBrokenPipe::~WithoutBrokenPipe() = default;
 
 Written write_all(int descriptor, std::string_view text, Signals) {
