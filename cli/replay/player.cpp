@@ -79,7 +79,8 @@ bool Player::play(const log::Entry& entry, const log::Interfaces& interfaces) {
   if (!first_) {
     first_ = entry.time;
     if (!started_) begin_ = printer_ != nullptr ? base::Time{} : monotonic_now();
-    playback_.begin(started_ ? playback_.last_due() : begin_, entry.time + options_.span.from);
+    playback_.begin(started_ ? playback_.last_due() : begin_,
+                    log::Playback::later(entry.time, options_.span.from));
     started_ = true;
   }
   const base::Duration offset = log::Playback::distance(entry.time, *first_);

@@ -79,6 +79,14 @@ class Playback {
     return base::Duration{a > b ? longest : -longest};
   }
 
+  /// The sum, or the last or first time that there is.
+  [[nodiscard]] static base::Time later(base::Time time, base::Duration by) noexcept {
+    std::int64_t result = 0;
+    if (!__builtin_add_overflow(time.time_since_epoch().count(), by.count(), &result))
+      return base::Time{base::Duration{result}};
+    return by < base::Duration::zero() ? base::Time::min() : base::Time::max();
+  }
+
  private:
   static constexpr std::int64_t longest = std::numeric_limits<std::int64_t>::max();
 

@@ -110,6 +110,9 @@ TEST_CASE("times from one end of the clock to the other are played without overf
   CHECK(playback.due(base::Time::min()) == base::never);
   CHECK(Playback::distance(base::Time::max(), base::Time::min()) == base::Duration::max());
   CHECK(Playback::distance(base::Time::min(), base::Time::max()) == -base::Duration::max());
+  CHECK(Playback::later(base::Time::max() - 1s, 2s) == base::Time::max());
+  CHECK(Playback::later(base::Time::min() + 1s, -2s) == base::Time::min());
+  CHECK(Playback::later(at(1s), -3s) == at(-2s));
   Playback slow{{.speed = 1e-6}};
   slow.begin(at(0s), at(0s));
   CHECK(slow.due(at(100h * 24 * 365)) == base::never);
