@@ -12,6 +12,7 @@
 #include "cli/shared/buses.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/live.hpp"
+#include "cli/shared/memory.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/shared/remedies.hpp"
 #include "cli/shared/session.hpp"
@@ -207,6 +208,7 @@ void refuse_boards_options(Verb verb, const Session& session) {
 }
 
 int run_mappers(const sim::MapperOptions& options) {
+  const EndsWithoutMemory ends;  // a world is a document of JSON
   catch_interrupts();
   catch_hangups();  // the lines' links must go with it
   return exit_code_of(sim::serve_mappers(options, {[] { return interrupted() != 0; }, remark}));

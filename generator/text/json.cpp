@@ -1,39 +1,59 @@
 #include "generator/text/json.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
 namespace ocm::generate {
 
+/// A value at a time: a tree of nlohmann's takes memory while it is destroyed, and survives no
+/// std::bad_alloc.
 struct JsonPrinter {
-  using Tree = nlohmann::ordered_json;
+  using Value = nlohmann::json;
 
-  static Tree tree(const Json& json) {
+  std::string out{};
+  bool indented = false;
+
+  void print(const Json& json, std::size_t depth = 0) {
     switch (json.kind_) {
       case Json::Kind::null:
-        return nullptr;
+        return put(nullptr);
       case Json::Kind::boolean:
-        return json.whole_ != 0;
+        return put(json.whole_ != 0);
       case Json::Kind::whole:
-        return static_cast<std::int64_t>(json.whole_);
+        return put(static_cast<std::int64_t>(json.whole_));
       case Json::Kind::natural:
-        return json.whole_;
+        return put(json.whole_);
       case Json::Kind::real:
-        return json.real_;
+        return put(json.real_);
       case Json::Kind::text:
-        return json.text_;
-      case Json::Kind::array: {
-        Tree array = Tree::array();
-        for (const Json& item : json.items_) array.push_back(tree(item));
-        return array;
-      }
+        return put(json.text_);
+      case Json::Kind::array:
       case Json::Kind::object:
         break;
     }
-    Tree object = Tree::object();
-    for (std::size_t i = 0; i < json.items_.size(); ++i) object[json.names_[i]] = tree(json.items_[i]);
-    return object;
+    const bool is_object = json.kind_ == Json::Kind::object;
+    out += is_object ? '{' : '[';
+    for (std::size_t i = 0; i < json.items_.size(); ++i) {
+      if (i != 0) out += ',';
+      end_line(depth + 1);
+      if (is_object) {
+        put(json.names_[i]);
+        out += indented ? ": " : ":";
+      }
+      print(json.items_[i], depth + 1);
+    }
+    if (!json.items_.empty()) end_line(depth);
+    out += is_object ? '}' : ']';
+  }
+
+ private:
+  void put(const Value& value) { out += value.dump(-1, ' ', false, Value::error_handler_t::replace); }
+  void end_line(std::size_t depth) {
+    if (!indented) return;
+    out += '\n';
+    out.append(2 * depth, ' ');
   }
 };
 
@@ -69,11 +89,16 @@ void Json::push_back(Json item) {
 }
 
 std::string Json::line() const {
-  return JsonPrinter::tree(*this).dump(-1, ' ', false, JsonPrinter::Tree::error_handler_t::replace);
+  JsonPrinter printer{{}, false};
+  printer.print(*this);
+  return std::move(printer.out);
 }
 
 std::string Json::lines() const {
-  return JsonPrinter::tree(*this).dump(2, ' ', false, JsonPrinter::Tree::error_handler_t::replace) + "\n";
+  JsonPrinter printer{{}, true};
+  printer.print(*this);
+  printer.out += '\n';
+  return std::move(printer.out);
 }
 
 }  // namespace ocm::generate

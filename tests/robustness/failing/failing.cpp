@@ -3,8 +3,9 @@
 ///     OCM_FAIL=file:ENOSPC:3 LD_PRELOAD=libfailing.so amiroctl convert a.log b.csv
 ///
 /// Kinds: `file` (what reaches a file or a folder for writing: open, write, ftruncate, fdatasync, fsync,
-/// rename, unlink, close, mkstemp) and `memory` (malloc and what is built on it; fails from the N-th call on
-/// when the number has a + after it). The total goes to the file OCM_FAIL_CALLS at the end.
+/// rename, unlink, close, mkstemp), `sync` (fdatasync and fsync alone) and `memory` (malloc and what is built
+/// on it; fails from the N-th call on when the number has a + after it). The total goes to the file
+/// OCM_FAIL_CALLS at the end.
 #include <atomic>
 #include <cerrno>
 #include <cstdarg>
@@ -26,7 +27,7 @@ void* __libc_realloc(void* old, std::size_t size);
 
 namespace {
 
-enum class Kind : char { none, file, memory };
+enum class Kind : char { none, file, sync, memory };
 
 struct Plan {
   Kind kind = Kind::none;
@@ -42,7 +43,9 @@ Plan plan;
 void read_plan() {
   const char* text = std::getenv("OCM_FAIL");
   if (text == nullptr) return;
-  plan.kind = std::strncmp(text, "memory", 6) == 0 ? Kind::memory : Kind::file;
+  plan.kind = std::strncmp(text, "memory", 6) == 0 ? Kind::memory
+              : std::strncmp(text, "sync", 4) == 0 ? Kind::sync
+                                                   : Kind::file;
   const char* const error = std::strchr(text, ':');
   if (error == nullptr) return;
   plan.error = std::strncmp(error, ":ENOSPC", 7) == 0 ? ENOSPC
@@ -154,10 +157,10 @@ int ftruncate64(int file, off64_t size) __THROW {
   return ftruncate(file, size);
 }
 int fsync(int file) {
-  return fails(Kind::file) ? -1 : static_cast<int>(::syscall(SYS_fsync, file));
+  return fails(Kind::file) || fails(Kind::sync) ? -1 : static_cast<int>(::syscall(SYS_fsync, file));
 }
 int fdatasync(int file) {
-  return fails(Kind::file) ? -1 : static_cast<int>(::syscall(SYS_fdatasync, file));
+  return fails(Kind::file) || fails(Kind::sync) ? -1 : static_cast<int>(::syscall(SYS_fdatasync, file));
 }
 int rename(const char* from, const char* to) __THROW {
   return fails(Kind::file) ? -1 : static_cast<int>(::syscall(SYS_rename, from, to));

@@ -1,11 +1,14 @@
 """Each write of `convert`, `record` and ocm-generate fails once, and each allocation: never a crash, a silent loss, or an older file destroyed."""
 
+import json
 import os
 import random
 import re
 import shutil
+import signal
 import subprocess
 import sys
+import time
 
 sys.path.insert(0, os.path.join(os.environ["OCM_SOURCE_DIR"], "tests", "tool", "verbs"))
 from harness import AMIROCTL, Case, main  # noqa: E402
@@ -151,6 +154,62 @@ class Failing(Base):
             result, _ = self.failing(f"memory:ENOMEM:{number}+", "--spec", "in.json", "list")
             self.judge(f"allocation {number}+ of {calls}", result)
 
+    # --- what prints ---
+
+    def sample_of(self, run, most=30):
+        """Some of all its allocations, the last ones among them."""
+        _, calls = self.failing(f"memory:ENOMEM:{NEVER}", *run)
+        chosen = random.Random(" ".join(run))
+        return sorted({*chosen.sample(range(1, calls), min(calls - 1, most * EXPLORE)), *range(max(1, calls - 5), calls + 1)})
+
+    def test_what_prints_json_says_each_failing_allocation(self):
+        """It is whole, or exit code 1 and words on stderr."""
+        for run in (("list", "--json"), ("stats", "in.log", "--json"), ("analyse", "bus", "--json"),
+                    ("analyse", "tasks", "di_wheel_drive", "--json")):
+            whole, _ = self.failing(f"memory:ENOMEM:{NEVER}", *run)
+            with self.subTest(run):
+                self.assertEqual(whole.returncode, 0, whole.stderr.decode())
+                for document in whole.stdout.splitlines() if run[0] == "list" else [whole.stdout]:
+                    json.loads(document)
+                for number in self.sample_of(run):
+                    for more in ("", "+"):
+                        result, calls = self.failing(f"memory:ENOMEM:{number}{more}", *run)
+                        what = f"{run}, allocation {number}{more} of {calls}"
+                        self.judge(what, result)
+                        if result.returncode == 0:
+                            self.assertEqual(result.stdout, whole.stdout, what)
+
+    def test_a_simulator_says_each_failing_allocation(self):
+        """Of a fleet in a world of its own: it ends with words, or serves until it is told to end."""
+        shutil.copy(os.path.join(os.environ["OCM_SOURCE_DIR"], "sim", "worlds", "square.json"), self.path("here.json"))
+        run = ("sim", "--robots", "2", "--world", "here.json")
+        calls = self.simulate(f"memory:ENOMEM:{NEVER}", run)[1]
+        chosen = random.Random(7)
+        for number in sorted(chosen.sample(range(1, calls), 25 * EXPLORE)):
+            for more in ("", "+"):
+                (code, words), _ = self.simulate(f"memory:ENOMEM:{number}{more}", run)
+                what = f"{run}, allocation {number}{more} of {calls}: {words}"
+                self.assertIn(code, (1, 128 + signal.SIGTERM), what)
+                self.assertNotIn("terminate", words, what)
+                if code == 1:
+                    self.assertRegex(words, r"(?m)^amiroctl: \w.{8}", what)
+
+    def simulate(self, plan, run):
+        """Until it serves, and then until SIGTERM; its exit code and words, and how many calls it made."""
+        calls = self.path("calls")
+        environment = self.environment | {"OCM_FAIL": plan, "OCM_FAIL_CALLS": calls, "LD_PRELOAD": FAILING}
+        with subprocess.Popen([AMIROCTL, *run], env=environment, cwd=self.folder, stdin=subprocess.DEVNULL,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT) as sim:
+            try:
+                said = sim.stdout.readline()  # what it serves, or why not
+                time.sleep(0.1)
+                sim.terminate()
+                rest, _ = sim.communicate(timeout=30)
+            finally:
+                sim.kill()
+        with open(calls) as file:
+            return (sim.returncode, (said + rest).decode()), int(file.read())
+
     # --- record ---
 
     def start_traffic(self):
@@ -184,6 +243,25 @@ class Failing(Base):
         self.start_traffic()
         self.walk_files(("record", "-n", "60", "-o", "out.log", "--split", "20ms"), self.expect_recorded(60),
                         self.expect_what_it_said)
+
+    def test_record_says_that_the_disk_did_not_take_it(self):
+        """fdatasync alone fails, at the end and between the files of a split: what was written is not safe, and that is an error."""
+        self.start_traffic()
+        for run, least in ((("record", "-n", "10", "-o", "out.log"), 1),
+                           (("record", "-n", "60", "-o", "out.log", "--split", "20ms"), 3)):
+            for error, words in (("ENOSPC", "No space left on device"), ("EIO", "Input/output error")):
+                with self.subTest(run=run, error=error):
+                    self.clean()
+                    result, calls = self.failing(f"sync:{error}:{NEVER}", *run)
+                    self.assertEqual(result.returncode, 0, result.stderr.decode())
+                    self.assertGreaterEqual(calls, least, "the disk is waited for")
+                    for number in range(1, least + 1):
+                        self.clean()
+                        result, _ = self.failing(f"sync:{error}:{number}", *run)
+                        what = f"{run}, wait {number} of {calls}: {error}: {result.stderr.decode()}"
+                        self.assertEqual(result.returncode, 1, what)
+                        self.assertRegex(result.stderr.decode(), rf"(?m)^amiroctl: .*out\S*\.log.*{words}", what)
+                        self.expect_what_it_said(what, result)
 
     def test_a_ring_keeps_what_it_has_until_there_is_something_new(self):
         self.start_traffic()
