@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "ocm/base/text.hpp"
@@ -105,11 +106,29 @@ class Converter {
     out.send_type = std::move(message.send_type);
     out.attributes = attributes_of(message.attributes);
     out.source.general = file_name_ + ':' + std::to_string(message.line);
-    for (const dbc::Signal& signal : message.signals) out.fields.push_back(field(signal, message));
+    const auto names = names_of(message.signals);
+    for (const dbc::Signal& signal : message.signals) out.fields.push_back(field(signal, names));
+    for (std::size_t i = 0; i < names.size(); ++i) out.fields[i].name = names[i];
     model.messages.push_back(std::move(out));
   }
 
-  static FieldModel field(const dbc::Signal& signal, const dbc::Message& message) {
+  /// Two signals of one name are told apart by a number: a selector is found by its name.
+  static std::vector<std::string> names_of(const std::vector<dbc::Signal>& signals) {
+    std::unordered_set<std::string> taken;
+    for (const dbc::Signal& signal : signals) taken.insert(signal.name);
+    std::unordered_map<std::string, unsigned> times;
+    std::vector<std::string> names;
+    for (const dbc::Signal& signal : signals) {
+      unsigned& number = times[signal.name];
+      std::string name = signal.name;
+      if (++number != 1)
+        while (!taken.insert(name = signal.name + '_' + std::to_string(number)).second) ++number;
+      names.push_back(std::move(name));
+    }
+    return names;
+  }
+
+  static FieldModel field(const dbc::Signal& signal, const std::vector<std::string>& names) {
     FieldModel out;
     out.name = signal.name;
     out.description = signal.comment;
@@ -124,7 +143,7 @@ class Converter {
     if (signal.has_range) out.range = RangeModel{signal.min, signal.max};
     for (const dbc::NamedValue& value : signal.values) out.values.push_back({value.name, value.raw});
     if (signal.selector) {
-      out.selector = message.signals[*signal.selector].name;
+      out.selector = names[*signal.selector];
       for (const auto& [first, last] : signal.selected) out.selected.push_back({first, last});
     }
     if (signal.start_value) out.start = start_of(out, *signal.start_value);
