@@ -1,4 +1,6 @@
 // The compiled catalogue and the one that is loaded from the same spec say the same.
+#include <array>
+
 #include <catch2/catch.hpp>
 
 #include "ocm/topics/amiro.hpp"
@@ -96,6 +98,21 @@ TEST_CASE("a moved spec keeps its catalogue where it is") {
   CHECK(&moved.catalogue() == catalogue);
   CHECK(moved.catalogue().robot.data() == name);
   compare(amiro::catalogue, moved.catalogue());
+}
+
+TEST_CASE("two signals of one name are told apart, and a selector stays the one that it was") {
+  const auto loaded = ocm::spec::parse(
+      "BO_ 1 A: 8 X\n SG_ S M : 0|4@1+ (1,0) [0|0] \"\" X\n SG_ S m3 : 8|8@1+ (1,0) [0|0] \"\" X\n"
+      " SG_ S_2 : 16|8@1+ (1,0) [0|0] \"\" X\n SG_ S : 24|8@1+ (1,0) [0|0] \"\" X\n",
+      "a.dbc");
+  REQUIRE(loaded.spec != nullptr);
+  const auto& layout = loaded.spec->catalogue().topics[0].frames[0];
+  REQUIRE(layout.fields.size() == 4);
+  const char* const names[] = {"S", "S_3", "S_2", "S_4"};
+  for (std::size_t i = 0; i < 4; ++i) CHECK(layout.fields[i].name == names[i]);
+  CHECK(layout.fields[1].selector == 0);
+  CHECK(layout.has(layout.fields[1], std::array<std::uint8_t, 8>{3}));
+  CHECK_FALSE(layout.has(layout.fields[1], std::array<std::uint8_t, 8>{2}));
 }
 
 TEST_CASE("every fact of the AMiRo has a source") {
