@@ -6,7 +6,7 @@ algorithm: all_of any_of clamp copy copy_n count_if equal erase_if fill fill_n f
     none_of nth_element reverse rotate sort unique
 array: array begin end get swap tuple_size
 atomic: atomic memory_order_acquire memory_order_relaxed memory_order_release
-bit: bit_cast bit_ceil countr_zero endian
+bit: bit_cast bit_ceil countl_zero countr_zero endian
 charconv: from_chars to_chars
 chrono: chrono chrono_literals nano
 cmath: abs atan2 ceil cos exp floor fmod hypot llround lround pow remainder sin sqrt
@@ -33,7 +33,7 @@ string: begin end erase_if string to_string
 string_view: begin end string_view
 system_error: errc error_code generic_category
 tuple: get tuple
-type_traits: conditional_t is_enum_v is_integral_v is_invocable_r_v is_invocable_v is_same_v is_signed_v is_trivially_copyable_v
+type_traits: conditional_t is_enum_v is_floating_point_v is_integral_v is_invocable_r_v is_invocable_v is_same_v is_signed_v is_trivially_copyable_v
     is_void_v make_signed_t remove_cvref_t
 utility: as_const declval exchange forward get index_sequence index_sequence_for make_index_sequence move pair swap
 vector: begin end erase_if vector
