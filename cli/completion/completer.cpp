@@ -95,7 +95,8 @@ class Completer {
       if (which == Of::sensors && topic.kind != protocol::Kind::sensor) continue;
       if (which == Of::settable && topic.kind == protocol::Kind::sensor) continue;
       const std::string board{session_.catalogue().board_name(topic)};
-      const std::string what = std::string{protocol::name(topic.kind)} + (board.empty() ? "" : " of ") + board;
+      const std::string what =
+          std::string{protocol::name(topic.kind)} + (board.empty() ? "" : " of ") + board;
       add(std::string{topic.name} + std::string{tail}, what);
       for (const auto alias : topic.aliases) add(std::string{alias} + std::string{tail}, what);
     }
