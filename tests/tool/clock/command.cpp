@@ -75,7 +75,7 @@ class Run {
       if (timeline.listen_first()) {
         begun_ = world_.now();
         timeline.carry_out(command);
-        whole_ = timeline.wait_for_hold();
+        whole_ = timeline.wait_for_end();
       }
       static_cast<void>(timeline.finish());
     } catch (const cli::Exit& exit) {
