@@ -178,7 +178,11 @@ int run(const Arguments& arguments) {
   const auto loaded = spec::load(arguments.file);
   if (!loaded.spec) return complain(loaded.problems);
   const auto& target = arguments.target != nullptr ? *arguments.target : generate::targets().front();
-  return put(target.make(loaded.spec->model(), {name, arguments.priority}));
+  const spec::Model& model = loaded.spec->model();
+  if (model.topics.empty())
+    return complain({arguments.file, "it has no topics, only messages",
+                     "files are made from topics; messages cannot be written yet"});
+  return put(target.make(model, {name, arguments.priority}));
 }
 
 int run(int argc, char** argv) {

@@ -104,6 +104,7 @@ BusSet robot_bus(const protocol::Catalogue& catalogue, const std::vector<Rate>& 
 
   BusSet set;
   std::string left_out;
+  std::string not_classic;
   for (const auto& topic : catalogue.topics) {
     base::Duration period = topic.usual_period();
     if (topic.role == protocol::Role::drive) period = client::hold_period;
@@ -116,6 +117,11 @@ BusSet robot_bus(const protocol::Catalogue& catalogue, const std::vector<Rate>& 
       if (rate->has_priority) priority = rate->priority;
     }
     if (off) continue;
+    const auto& first = topic.frames[0];  // a message's only one
+    if (first.fd || first.length > can::max_dlc) {
+      not_classic += (not_classic.empty() ? "" : ", ") + std::string{topic.name};
+      continue;
+    }
     if (period.count() == 0) {
       left_out += (left_out.empty() ? "" : ", ") + std::string{topic.name};
       continue;
@@ -147,6 +153,9 @@ BusSet robot_bus(const protocol::Catalogue& catalogue, const std::vector<Rate>& 
         fmt::format("Not in the set, as they have no period: requests, {}. --rates TOPIC=PERIOD "
                     "counts a topic's set points.",
                     left_out));
+  if (!not_classic.empty())
+    set.remarks.push_back(fmt::format(
+        "Not in the set, as they are not classic frames: {}. Their load comes on top.", not_classic));
   return set;
 }
 

@@ -50,7 +50,15 @@ void generate_file(Session& session, const GenerateOptions& options) {
     how.priority = options.priority;
   else if (options.priority_typed)  // that of a config file is for other verbs
     fail({fmt::format("generate {}: --priority is for dbc", target->name), "drop --priority"}, exit_usage);
-  const std::string text = target->make(session.spec().model(), how);
+  const spec::Model& model = session.spec().model();
+  if (model.topics.empty())
+    fail({fmt::format("generate {}: {} has no topics, only messages", target->name, how.spec_name),
+          "files are made from topics; messages cannot be written yet"});
+  if (!model.messages.empty())
+    remark(fmt::format(
+        "generate {}: the messages of the spec are left out, {} of them: files are made from topics",
+        target->name, model.messages.size()));
+  const std::string text = target->make(model, how);
   write_file(options.output, text);
 }
 

@@ -44,6 +44,16 @@ class Generate(harness.Case):
         _, err = self.run_tool("--spec", "/no/such/spec.json", "generate", "dbc", code=1)
         self.assertIn("/no/such/spec.json: there is no such file", err)
 
+    def test_messages_are_not_left_out_without_a_word(self):
+        car = os.path.join(harness.SOURCE, "examples", "small_car.dbc")
+        out, err = self.run_tool("--spec", car, "generate", "c", code=1)
+        self.assertEqual((out, err), ("", "amiroctl: generate c: small_car.dbc has no topics, only messages\n"
+                                          "          files are made from topics; messages cannot be written yet\n"))
+        robot = os.path.join(harness.SOURCE, "spec", "topics.json")
+        out, err = self.run_tool("--spec", robot, "--spec", car, "generate", "c")
+        self.assertIn("gyroscope", out)
+        self.assertEqual(err, "generate c: the messages of the spec are left out, 11 of them: files are made from topics\n")
+
 
 if __name__ == "__main__":
     harness.main()
