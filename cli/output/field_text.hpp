@@ -57,7 +57,7 @@ class FieldText {
   char* print(char* to, const std::uint8_t* data) const noexcept {
     if (fast_) return print_whole(to, raw(data) * factor_ + offset_);
     if (table_ == nullptr) return print_slowly(to, raw(data));
-    const ShortText& text = table_[bits(data)];
+    const ShortText& text = table_[static_cast<std::size_t>(bits(data))];
     std::memcpy(to, &text, sizeof text);  // all 8 bytes: of how many is not guessed
     return to + text.size;
   }

@@ -94,7 +94,7 @@ class FieldMotion {
         static_cast<std::uint64_t>(std::max<std::int64_t>(now.time_since_epoch().count(), 0));
     const std::uint64_t step = elapsed / step_;
     if (field_->flags && !field_->is_float()) return some_flags(step);
-    if (!named_.empty()) return named_[split_mix(key_, step) % named_.size()];
+    if (!named_.empty()) return named_[static_cast<std::size_t>(split_mix(key_, step) % named_.size())];
     const double share = wandered(step, static_cast<double>(elapsed % step_) / static_cast<double>(step_));
     if (field_->is_float()) return nearest_float(share);
     return part_of(range_, share);
