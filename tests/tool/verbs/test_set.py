@@ -41,8 +41,10 @@ class Set(Case):
         left_out = sum(int(count) for count in re.findall(r"(\d+) frames were not sent", err))
         self.assertEqual(len(times) + left_out, 100, err)
         self.assertGreater(len(times), 50)
-        # No drift: the last ones are as near to their turns as the first ones, whatever came between.
-        self.assertLess(abs((times[-1] - times[0]) / 1e9 - 0.99), 0.1, err)
+        # No drift: the last one is near to its turn, whatever came between; turns at the end may be left out.
+        lasted = (times[-1] - times[0]) / 1e9
+        self.assertLess(lasted, 0.99 + 0.2, err)
+        self.assertGreater(lasted, 0.99 - 0.2 - 0.01 * left_out, err)
 
     def test_without_an_end_until_it_is_interrupted(self):
         self.start_sim()
@@ -66,10 +68,11 @@ class Set(Case):
         speeds = [line["fields"]["Speed"] for line in lines if line["topic"] == "Engine"]
         self.assertEqual(speeds, sorted(speeds))  # none of the old ones after the new
         left_out = sum(int(count) for count in re.findall(r"(\d+) frames were not sent", err))
-        # 15 turns each, and one that is due together with the line that replaces it; fewer where some are left out.
-        for speed in (1000, 2000):
+        # 15 turns each, and one that is due together with the line that replaces it; fewer where some are left out. On a
+        # busy machine that line comes late, and the first goes on, at most for its own 600 ms.
+        for speed, most in ((1000, 31), (2000, 16)):
             self.assertGreaterEqual(speeds.count(speed), 15 - left_out, err)
-            self.assertLessEqual(speeds.count(speed), 16, err)
+            self.assertLessEqual(speeds.count(speed), most, err)
         beams = [line["data"] for line in lines if line["topic"] == "Lights"]
         self.assertEqual(set(beams), {"0100", "0000"})
         self.assertEqual(beams.index("0000"), len(beams) - 1)  # once, and last
