@@ -3,6 +3,7 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <poll.h>
 #include <string>
 
 #include <catch2/catch.hpp>
@@ -84,6 +85,9 @@ TEST_CASE("pty: programs come and go, and none reads what was for another") {
     CHECK(pty->attached());
     CHECK(first.read().empty());
     CHECK(pty->write("for the first\n") == 14);
+    // The kernel hands it on when it has time; it must not be echoed by what comes next.
+    pollfd arrived{first.descriptor(), POLLIN, 0};
+    REQUIRE(::poll(&arrived, 1, 10'000) == 1);
     // What it does to the line goes with it.
     termios settings{};
     REQUIRE(::tcgetattr(first.descriptor(), &settings) == 0);
