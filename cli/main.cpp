@@ -36,8 +36,11 @@ constexpr AddVerb verbs[] = {
     add_encode,
     add_convert,
     add_stats,
+    add_top,
     add_plot,
     add_run,
+    add_operate,
+    add_operator,
     add_sim,
     add_central,
     add_robots,
@@ -89,6 +92,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  keep_memory();
   try {
     return run(argc, argv);
   } catch (const Exit& exit) {

@@ -179,9 +179,16 @@ int run(const Arguments& arguments) {
   if (!loaded.spec) return complain(loaded.problems);
   const auto& target = arguments.target != nullptr ? *arguments.target : generate::targets().front();
   const spec::Model& model = loaded.spec->model();
-  if (model.topics.empty())
-    return complain({arguments.file, "it has no topics, only messages",
-                     "files are made from topics; messages cannot be written yet"});
+  if (!arguments.check && !generate::has_any(target, model))
+    return complain({arguments.file,
+                     "it has only " + std::string{target.of_topics ? "messages" : "topics"} +
+                         ", which --to " + std::string{target.name} + " has no place for",
+                     target.of_topics ? "messages become " + generate::message_target_names()
+                                      : "topics are in the spec already"});
+  if (!arguments.check)
+    for (const std::string& what : generate::left_out(target, model))
+      std::fprintf(stderr, "%s: --to %s leaves out: %s\n", arguments.file.c_str(),
+                   std::string{target.name}.c_str(), printable(what).c_str());
   return put(target.make(model, {name, arguments.priority}));
 }
 

@@ -27,7 +27,8 @@ struct Place {
 };
 
 Place place_of(const std::string& name, const std::string& path, const BusOptions& options,
-               const protocol::Catalogue& catalogue, const std::vector<Rate>& rates) {
+               const protocol::Catalogue& catalogue, const spec::Model* model,
+               const std::vector<Rate>& rates) {
   Place place;
   if (name != "robot" && is_task_set(path)) {
     for (TaskEntry& entry : read_tasks(path).entries) {
@@ -38,9 +39,9 @@ Place place_of(const std::string& name, const std::string& path, const BusOption
   }
   BusOptions how = options;
   if (name == "robot") how.lengths = Lengths::exact;
-  const BusSet set = name == "robot" ? robot_bus(catalogue, rates) : read_bus(path);
+  const BusSet set = name == "robot" ? robot_bus(catalogue, model, rates) : read_bus(path);
   place.is_bus = true;
-  place.bus = model_of(set, how);
+  place.bus = model_of(set, at_rates_of(set, how));
   for (const BusEntry& entry : set.entries) place.names.push_back(entry.name);
   return place;
 }
@@ -63,7 +64,8 @@ std::string why(const ChainStudy& study) {
 }  // namespace
 
 ChainStudy study_chain(const std::string& file, std::int64_t deadline, const BusOptions& options,
-                       const protocol::Catalogue& catalogue, const std::vector<Rate>& rates) {
+                       const protocol::Catalogue& catalogue, const spec::Model* model,
+                       const std::vector<Rate>& rates) {
   ChainStudy study;
   study.entries = read_chain(file);
   study.deadline = deadline;
@@ -80,7 +82,7 @@ ChainStudy study_chain(const std::string& file, std::int64_t deadline, const Bus
     if (!entry.set.empty()) {
       if (!places.contains(entry.set))
         places.emplace(entry.set,
-                       place_of(entry.set, (folder / entry.set).string(), options, catalogue, rates));
+                       place_of(entry.set, (folder / entry.set).string(), options, catalogue, model, rates));
       const Place& place = places.at(entry.set);
       member = static_cast<std::size_t>(std::find(place.names.begin(), place.names.end(), entry.name) -
                                         place.names.begin());

@@ -23,7 +23,7 @@ struct ChainStudy {
 /// exact.
 [[nodiscard]] ChainStudy study_chain(const std::string& file, std::int64_t deadline,
                                      const BusOptions& options, const protocol::Catalogue& catalogue,
-                                     const std::vector<Rate>& rates);
+                                     const spec::Model* model, const std::vector<Rate>& rates);
 
 [[nodiscard]] std::string to_json(const ChainStudy& study);
 [[nodiscard]] std::string to_csv(const ChainStudy& study);

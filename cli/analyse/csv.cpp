@@ -17,6 +17,7 @@
 
 #include "cli/analyse/set.hpp"
 #include "cli/shared/messages.hpp"
+#include "generator/spec/from_dbc.hpp"
 
 namespace ocm::cli::analyse {
 namespace {
@@ -114,15 +115,16 @@ class Table {
   std::vector<std::string> names_;
 };
 
-constexpr std::string_view bus_header = "name,id,dlc,period_ns,deadline_ns,jitter_ns,node,offset_ns";
-constexpr std::array<Column, 8> bus_columns{{{"name", true},
+constexpr std::string_view bus_header = "name,id,dlc,period_ns,deadline_ns,jitter_ns,node,offset_ns,fd";
+constexpr std::array<Column, 9> bus_columns{{{"name", true},
                                              {"id", true},
                                              {"dlc", true},
                                              {"period_ns", true},
                                              {"deadline_ns", false},
                                              {"jitter_ns", false},
                                              {"node", false},
-                                             {"offset_ns", false}}};
+                                             {"offset_ns", false},
+                                             {"fd", false}}};
 constexpr std::string_view task_header = "name,priority,C_ns,T_ns,D_ns,J_ns,B_ns";
 constexpr std::array<Column, 7> task_columns{{{"name", true},
                                               {"priority", true},
@@ -141,7 +143,7 @@ constexpr std::array<Column, 6> chain_columns{{{"hop", true},
                                                {"period_ns", false}}};
 
 /// "0x101", "257", "0x18FF0102", "257x" (29 bits, though it is small).
-void read_identifier(Table& table, const Line& line, can::Frame& head) {
+void read_identifier(Table& table, const Line& line, can::AnyFrame& head) {
   const std::string_view text = table.cell(line, "id");
   std::string_view digits = text;
   const bool hex = digits.starts_with("0x") || digits.starts_with("0X");
@@ -162,6 +164,26 @@ void read_identifier(Table& table, const Line& line, can::Frame& head) {
   head.format = marked || *id > can::max_base_id ? can::Format::extended : can::Format::base;
 }
 
+/// Bytes, and whether it is CAN FD: "no", "brs" (its data at the rate of the data), "nobrs"; empty: by the
+/// bytes.
+void read_length(Table& table, const Line& line, can::AnyFrame& head) {
+  const std::int64_t bytes = table.number(line, "dlc", 0);
+  const std::string_view fd = table.cell(line, "fd");
+  const bool classic = fd == "no" || (fd.empty() && bytes <= can::max_dlc);
+  if (!fd.empty() && fd != "no" && fd != "brs" && fd != "nobrs")
+    return table.mistake(line, fmt::format("fd '{}'", fd),
+                         "no: classic; brs: CAN FD with the bit-rate switch; nobrs: CAN FD without");
+  if (classic && bytes > can::max_dlc)
+    return table.mistake(line, fmt::format("dlc '{}' is above 8", bytes), "0 to 8; of CAN FD up to 64");
+  if (!classic && (bytes > can::max_fd_length || !can::is_fd_length(static_cast<std::size_t>(bytes))))
+    return table.mistake(line, fmt::format("dlc '{}' is no length of CAN FD", bytes),
+                         "0 to 8, 12, 16, 20, 24, 32, 48 or 64 bytes");
+  head.length = static_cast<std::uint8_t>(bytes);
+  if (classic) return;
+  head.flags = can::frame_flag::fd;
+  if (fd != "nobrs") head.flags |= can::frame_flag::bit_rate_switch;
+}
+
 BusSet bus_from(Table& table, const std::string& file) {
   BusSet set;
   for (const Line& line : table.lines()) {
@@ -169,12 +191,7 @@ BusSet bus_from(Table& table, const std::string& file) {
     entry.name = table.cell(line, "name");
     entry.line = line.number;
     read_identifier(table, line, entry.head);
-    const std::int64_t dlc = table.number(line, "dlc", 0);
-    if (dlc > can::max_dlc)
-      table.mistake(line, fmt::format("dlc '{}' is above 8", dlc),
-                    "0 to 8: classic CAN; CAN FD is not covered");
-    else
-      entry.head.dlc = static_cast<std::uint8_t>(dlc);
+    read_length(table, line, entry.head);
     entry.period = table.number(line, "period_ns", 1);
     entry.deadline = table.number(line, "deadline_ns", 1, analysis::implicit_deadline);
     entry.jitter = table.number(line, "jitter_ns", 0, 0);
@@ -225,17 +242,15 @@ std::string read_text(const std::string& file) {
   return text;
 }
 
-BusSet read_bus(const std::string& file) {
+BusSet read_bus(const std::string& file, const std::vector<Rate>& rates) {
   std::string text = read_text(file);
-  if (file.ends_with(".dbc") || file.ends_with(".DBC")) {
-    std::vector<Mistake> mistakes;
-    BusSet set = parse_dbc(text, file, mistakes);
-    stop_at(mistakes, file);
-    return set;
-  }
+  const auto first = text.find_first_not_of(" \t\r\n");
+  const bool json = file.ends_with(".json") || (first != std::string::npos && text[first] == '{');
+  if (json || spec::is_dbc(text, file)) return read_spec(text, file, rates);
   Table table{std::move(text), file, bus_columns, bus_header};
   BusSet set = bus_from(table, file);
   stop_at(table.mistakes, file);
+  apply_rates(set, rates);
   return set;
 }
 

@@ -1,6 +1,7 @@
 /// A robot's own traffic as a set of messages, and periods that differ from the spec's.
 #include <algorithm>
 #include <filesystem>
+#include <span>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -11,9 +12,13 @@
 #include "cli/shared/messages.hpp"
 #include "cli/words/command.hpp"
 #include "cli/words/quantity.hpp"
+#include "generator/spec/spec.hpp"
 
 namespace ocm::cli::analyse {
 namespace {
+
+/// So many doubts are told one by one: a file may have hundreds, of which few matter for the load.
+constexpr std::size_t most_doubts = 5;
 
 /// The node that sends requests and set points.
 constexpr std::string_view operator_node = "operator";
@@ -85,7 +90,8 @@ std::vector<Rate> read_rates(const std::vector<std::string>& words) {
   return rates;
 }
 
-BusSet robot_bus(const protocol::Catalogue& catalogue, const std::vector<Rate>& rates) {
+BusSet robot_bus(const protocol::Catalogue& catalogue, const spec::Model* model,
+                 const std::vector<Rate>& rates, const std::string& source) {
   std::vector<Mistake> mistakes;
   std::vector<std::pair<const protocol::Topic*, const Rate*>> chosen;
   for (const Rate& rate : rates) {
@@ -100,11 +106,15 @@ BusSet robot_bus(const protocol::Catalogue& catalogue, const std::vector<Rate>& 
     if (!found)
       mistakes.push_back(
           {rate.place, fmt::format("no topic '{}'", rate.name), words::suggestion(rate.name, words)});
+    if (rate.has_priority && named != nullptr && named->is_message())
+      mistakes.push_back(
+          {rate.place, fmt::format("'{}' has the priority of its identifier", rate.name), "leave out the @"});
   }
 
   BusSet set;
-  std::string left_out;
-  std::string not_classic;
+  set.bit_rate = catalogue.bit_rate;
+  bool has_topics = false;
+  std::size_t messages = 0;  // messages of a catalogue are in the order of their model
   for (const auto& topic : catalogue.topics) {
     base::Duration period = topic.usual_period();
     if (topic.role == protocol::Role::drive) period = client::hold_period;
@@ -116,14 +126,21 @@ BusSet robot_bus(const protocol::Catalogue& catalogue, const std::vector<Rate>& 
       if (!off) period = rate->period;
       if (rate->has_priority) priority = rate->priority;
     }
+    const spec::MessageModel* message = nullptr;
+    if (topic.is_message() && model != nullptr && messages < model->messages.size())
+      message = &model->messages[messages++];
+    has_topics = has_topics || !topic.is_message();
     if (off) continue;
-    const auto& first = topic.frames[0];  // a message's only one
-    if (first.fd || first.length > can::max_dlc) {
-      not_classic += (not_classic.empty() ? "" : ", ") + std::string{topic.name};
+    if (message != nullptr) {
+      const bool rated =
+          std::any_of(chosen.begin(), chosen.end(), [&](const auto& each) { return each.first == &topic; });
+      if (auto entry =
+              entry_of(*message, catalogue.board_name(topic), rated ? period.count() : 0, set.left_out))
+        set.entries.push_back(std::move(*entry));
       continue;
     }
     if (period.count() == 0) {
-      left_out += (left_out.empty() ? "" : ", ") + std::string{topic.name};
+      set.left_out.push_back({std::string{topic.name}, LeftOut::Reason::no_period});
       continue;
     }
     for (std::size_t i = 0; i < topic.frames.size(); ++i) {
@@ -134,7 +151,7 @@ BusSet robot_bus(const protocol::Catalogue& catalogue, const std::vector<Rate>& 
           frame.name.empty() ? std::string{topic.name} : fmt::format("{}.{}", topic.name, frame.name);
       entry.head.id = protocol::identifier_of(ref, priority);
       entry.head.format = protocol::format_of(frame);
-      entry.head.dlc = frame.dlc();
+      entry.head.length = frame.dlc();
       entry.bits = frame.worst_bits[static_cast<std::size_t>(priority)];
       entry.period = period.count();
       entry.deadline = topic.deadline.count() == 0 ? analysis::implicit_deadline : topic.deadline.count();
@@ -144,18 +161,43 @@ BusSet robot_bus(const protocol::Catalogue& catalogue, const std::vector<Rate>& 
       set.entries.push_back(std::move(entry));
     }
   }
-  if (mistakes.empty() && set.entries.empty())
+  if (model != nullptr) {
+    set.data_bit_rate = model->data_bit_rate;
+    for (const std::string& name : model->too_long) set.left_out.push_back({name, LeftOut::Reason::too_long});
+  }
+  if (mistakes.empty() && set.entries.empty() && set.left_out.empty())
     mistakes.push_back({"--rates", "every topic is off", "leave one on"});
-  order_bus(set, catalogue.robot, mistakes);
-  stop_at(mistakes, "--rates");
-  if (!left_out.empty())
-    set.remarks.push_back(
-        fmt::format("Not in the set, as they have no period: requests, {}. --rates TOPIC=PERIOD "
-                    "counts a topic's set points.",
-                    left_out));
-  if (!not_classic.empty())
-    set.remarks.push_back(fmt::format(
-        "Not in the set, as they are not classic frames: {}. Their load comes on top.", not_classic));
+  else if (mistakes.empty() && set.entries.empty())
+    mistakes.push_back(
+        {source,
+         fmt::format("no message has a cycle time or a shortest distance, of {}", set.left_out.size()),
+         "--rates NAME=PERIOD gives one; in a DBC file BA_ \"GenMsgCycleTime\" BO_ 257 10; says "
+         "every 10 ms"});
+  order_bus(set, source, mistakes);
+  stop_at(mistakes, source);
+  limit_clocks(set);
+  if (has_topics)
+    set.remarks.emplace_back("Requests are not in the set: each can delay a frame by its own length.");
+  if (std::any_of(set.entries.begin(), set.entries.end(),
+                  [](const BusEntry& entry) { return entry.any_id != 0; }))
+    set.remarks.emplace_back(
+        "A parameter group of J1939 counts once, with the priority that the spec gives it: as one node sends "
+        "it.");
+  return set;
+}
+
+BusSet read_spec(std::string_view text, const std::string& file, const std::vector<Rate>& rates) {
+  const spec::Loaded loaded = spec::parse(text, file);
+  std::vector<Mistake> mistakes;
+  for (const spec::Problem& problem : loaded.problems)
+    mistakes.push_back({problem.place, problem.what, problem.remedy});
+  stop_at(mistakes, file);
+  BusSet set = robot_bus(loaded.spec->catalogue(), &loaded.spec->model(), rates, file);
+  const std::size_t told = std::min(loaded.doubts.size(), most_doubts);
+  for (const spec::Problem& doubt : std::span{loaded.doubts}.first(told))
+    set.remarks.push_back(fmt::format("{}: {}; {}.", doubt.place, doubt.what, doubt.remedy));
+  if (told < loaded.doubts.size())
+    set.remarks.push_back(fmt::format("{}: {} more doubtful places.", file, loaded.doubts.size() - told));
   return set;
 }
 

@@ -34,15 +34,30 @@ std::string verdict_of(const analysis::Explained& result) {
 
 std::string to_json(const Study& study) {
   Json rows = Json::array();
-  for (const Row& row : study.rows)
-    rows.push_back({{"name", row.name},
-                    {"response_ns", row.result.bounded() ? Json(row.result.response) : Json(nullptr)},
-                    {"deadline_ns", row.result.deadline},
-                    {"schedulable", row.result.ok()},
-                    {"instances_ns", row.instances},
-                    {"why", row.why},
-                    {is_bus(study) ? "id" : "priority", row.rank}});
+  for (const Row& row : study.rows) {
+    Json one{{"name", row.name},
+             {"response_ns", row.result.bounded() ? Json(row.result.response) : Json(nullptr)},
+             {"deadline_ns", row.result.deadline},
+             {"schedulable", row.result.ok()},
+             {"instances_ns", row.instances},
+             {"why", row.why},
+             {is_bus(study) ? "id" : "priority", row.rank}};
+    if (is_bus(study)) {
+      one["period_ns"] = row.period;
+      one["sporadic"] = row.sporadic;
+      one["bits"] = row.bits;
+      one["data_bits"] = row.data_bits;
+    }
+    rows.push_back(one);
+  }
   Json object{{"utilisation", study.utilisation()}, {is_bus(study) ? "messages" : "tasks", rows}};
+  if (is_bus(study)) {
+    Json left_out = Json::array();
+    for (const LeftOut& each : study.left_out)
+      left_out.push_back(
+          {{"name", each.name}, {"reason", key_of(each.reason)}, {"why", text_of(each.reason)}});
+    object["left_out"] = left_out;
+  }
   for (const auto& queue : study.queues)
     object["queues"].push_back(
         {{"node", queue.node}, {"frames", queue.frames > 0 ? Json(queue.frames) : Json(nullptr)}});
@@ -71,6 +86,23 @@ std::string to_csv(const Study& study) {
   return text;
 }
 
+std::string left_out_text(const std::vector<LeftOut>& left_out) {
+  if (left_out.empty()) return {};
+  std::string text = fmt::format("Not counted: {} message{}, with what they send on top of these bounds.\n",
+                                 left_out.size(), left_out.size() == 1 ? "" : "s");
+  for (const auto reason : {LeftOut::Reason::no_period, LeftOut::Reason::no_distance, LeftOut::Reason::events,
+                            LeftOut::Reason::transport_protocol, LeftOut::Reason::too_long}) {
+    std::string names;
+    std::size_t count = 0;
+    for (const LeftOut& each : left_out) {
+      if (each.reason != reason) continue;
+      names += (count++ == 0 ? "" : ", ") + each.name;
+    }
+    if (count > 0) text += fmt::format("  {} ({}): {}\n", text_of(reason), count, names);
+  }
+  return text;
+}
+
 std::string to_table(const Study& study, const Advice& advice, bool colour) {
   const bool bus = is_bus(study);
   const bool rooms = !advice.rooms.empty();
@@ -86,8 +118,8 @@ std::string to_table(const Study& study, const Advice& advice, bool colour) {
     const auto& r = row.result;
     std::vector<std::string> line{row.name, row.rank};
     if (bus) line.push_back(row.size);
-    line.insert(line.end(), {time_text(row.cost), time_text(row.period), time_text(r.deadline),
-                             row.jitter == 0 ? "-" : time_text(row.jitter),
+    line.insert(line.end(), {time_text(row.cost), time_text(row.period) + (row.sporadic ? "+" : ""),
+                             time_text(r.deadline), row.jitter == 0 ? "-" : time_text(row.jitter),
                              r.blocking == 0 || !r.bounded() ? "-" : time_text(r.blocking),
                              r.bounded() ? time_text(r.response) : "none",
                              r.bounded() ? time_text(r.slack()) : "-", verdict_of(r)});
@@ -146,6 +178,8 @@ std::string to_table(const Study& study, const Advice& advice, bool colour) {
               "deadlines.\n"
             : "LEAST T, MOST C: the shortest period and the greatest cost of that task, others as they are, "
               "with which all meet their deadlines.\n";
+  if (std::any_of(study.rows.begin(), study.rows.end(), [](const Row& row) { return row.sporadic; }))
+    text += "T with a +: the shortest distance of two that are sent on events; they may come less often.\n";
   for (const auto& queue : study.queues)
     text += queue.frames > 0 ? fmt::format("{} has {} frame{} waiting or on the bus at most.\n", queue.node,
                                            queue.frames, queue.frames == 1 ? "" : "s")
@@ -154,6 +188,7 @@ std::string to_table(const Study& study, const Advice& advice, bool colour) {
     text += "Tests of the utilisation alone (sufficient, not necessary; R above is exact):\n";
   for (const auto& test : study.tests)
     text += fmt::format("  {}: {:.4f}, bound {:.4f}: {}\n", test.title, test.value, test.bound, test.verdict);
+  text += left_out_text(study.left_out);
   for (const std::string& remark : study.remarks) text += remark + "\n";
   return text;
 }

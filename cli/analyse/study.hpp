@@ -11,6 +11,7 @@
 #include "ocm/analysis/task_set.hpp"
 #include "ocm/analysis/utilisation.hpp"
 #include "ocm/analysis/verdict.hpp"
+#include "ocm/can/fd_bits.hpp"
 
 #include "cli/analyse/set.hpp"
 
@@ -30,6 +31,9 @@ struct Row {
   analysis::Explained result;
   std::vector<std::int64_t> instances;  ///< responses in the busy period; none where there is no bound
   std::string why;
+  unsigned bits = 0;       ///< of a frame, at the bit rate
+  unsigned data_bits = 0;  ///< at that of the data of CAN FD
+  bool sporadic = false;   ///< on no grid: T is the shortest distance of two
 };
 
 /// Rows are in order of priority, the most urgent first.
@@ -39,7 +43,8 @@ struct Study {
   analysis::Utilisation load;
   bool with_errors = false;          ///< an error model takes its share on top of the load
   std::string head;                  ///< bit rate and assumptions, or the processor's
-  std::vector<std::string> remarks;  ///< what is not in the set
+  std::vector<LeftOut> left_out;     ///< what is sent and not in the set, or not all of it
+  std::vector<std::string> remarks;  ///< other things to know
   struct Queue {
     std::string node;
     std::int64_t frames = 0;  ///< that wait or are sent at once, at most; 0: no bound
@@ -62,7 +67,9 @@ struct Study {
 enum class Lengths { generic, exact };
 
 struct BusOptions {
-  std::int64_t bit_rate = 0;
+  std::int64_t bit_rate = 0;        ///< 0: that of the set
+  std::int64_t data_bit_rate = 0;   ///< of CAN FD; 0: that of the set
+  std::int64_t usual_bit_rate = 0;  ///< where the set has none
   Lengths lengths = Lengths::generic;
   analysis::CanTest test = analysis::CanTest::exact;
   std::int64_t error_burst = 0;
@@ -77,12 +84,15 @@ struct BusOptions {
 /// A set ready for the analysis: nanoseconds, in the order of the entries.
 struct BusModel {
   std::vector<analysis::Message> messages;
-  std::vector<unsigned> bits;
+  std::vector<can::FdBits> bits;  ///< of a classic frame all nominal
   analysis::CanBus bus;
   std::vector<std::string> nodes;           ///< Message::node is an index; a message of no node has its own
   std::vector<analysis::NodeQueue> queues;  ///< one a node; empty: each offers its most urgent frame
   bool offsets = false;
 };
+/// With the bit rates that hold for a set.
+[[nodiscard]] BusOptions at_rates_of(const BusSet& set, BusOptions options);
+/// `options` are at_rates_of the set.
 [[nodiscard]] BusModel model_of(const BusSet& set, const BusOptions& options);
 
 [[nodiscard]] Study study_bus(const BusSet& set, const BusOptions& options);

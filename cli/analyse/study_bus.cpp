@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <span>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,6 +14,7 @@
 #include "ocm/analysis/can_offsets.hpp"
 #include "ocm/analysis/can_queues.hpp"
 #include "ocm/analysis/checked.hpp"
+#include "ocm/can/fd_worst_bits.hpp"
 #include "ocm/can/worst_bits.hpp"
 #include "ocm/protocol/identifier.hpp"
 
@@ -41,8 +43,54 @@ std::string bit_rate_text(std::int64_t rate) {
   return rate % 1000 == 0 ? fmt::format("{} kbit/s", rate / 1000) : fmt::format("{} bit/s", rate);
 }
 
-std::string id_text(const can::Frame& head) {
+std::string id_text(const can::AnyFrame& head) {
   return can::is_extended(head.format) ? fmt::format("0x{:08X}", head.id) : fmt::format("0x{:03X}", head.id);
+}
+
+std::string size_text(const can::AnyFrame& head, const can::FdBits& bits) {
+  if (bits.data == 0)
+    return fmt::format("{} B{}, {} bits", head.length, head.is_fd() ? " FD" : "", bits.nominal);
+  return fmt::format("{} B FD, {} + {} bits", head.length, bits.nominal, bits.data);
+}
+
+/// The longest frames of a CAN FD message. Where no rate is known for its data, all of it counts at that of
+/// the rest, with the switch or without: longer than it is.
+can::FdBits longest_fd(const can::AnyFrame& head, const BusOptions& options) {
+  const auto bits = [&](bool switches) {
+    return options.lengths == Lengths::exact ? can::fd_worst_bits(head.id, head.format, head.length, switches)
+                                             : can::fd_worst_bits(head.format, head.length, switches);
+  };
+  const bool switches = (head.flags & can::frame_flag::bit_rate_switch) != 0;
+  if (!switches || options.data_bit_rate != 0) return bits(switches);
+  const can::FdBits fast = bits(true);
+  return {std::max(fast.nominal + fast.data, bits(false).nominal), 0};
+}
+
+/// Of any message; `exact` is made when it is needed first.
+can::FdBits longest_of(const BusEntry& entry, const BusOptions& options,
+                       std::unique_ptr<can::WorstBits>& exact) {
+  const can::AnyFrame& head = entry.head;
+  if (head.is_fd()) {
+    if (options.lengths == Lengths::generic || entry.any_id == 0) return longest_fd(head, options);
+    BusOptions any = options;  // a parameter group: the closed bound
+    any.lengths = Lengths::generic;
+    return longest_fd(head, any);
+  }
+  if (options.lengths == Lengths::generic) return {can::worst_frame_bits(head.format, head.length), 0};
+  if (entry.bits != 0) return {entry.bits, 0};
+  // A group to one address is 65536 identifiers, and each variant of a set asks again.
+  static std::map<std::tuple<std::uint32_t, std::uint32_t, can::Format, std::uint8_t>, unsigned> known;
+  const auto [at, is_new] = known.try_emplace({head.id, entry.any_id, head.format, head.length}, 0);
+  if (!is_new) return {at->second, 0};
+  if (exact == nullptr) exact = std::make_unique<can::WorstBits>();
+  at->second = exact->bits_of_any(head.id, entry.any_id, head.format, head.length);
+  return {at->second, 0};
+}
+
+std::int64_t cost_of(const can::FdBits& bits, const BusOptions& options) {
+  const auto rate = static_cast<std::uint32_t>(options.bit_rate);
+  const auto data_rate = static_cast<std::uint32_t>(std::max(options.data_bit_rate, options.bit_rate));
+  return analysis::bits_ns(bits, rate, data_rate);
 }
 
 /// The analysis that a model needs. Where queues are given, offsets do not count: that is safe.
@@ -61,13 +109,27 @@ class Solver {
   std::span<const Explained> solve(const BusModel& model, CanTest test, analysis::Limits limits = {},
                                    Observer&& observe = Observer{}) {
     if (queues_) return queues_->analyse(model.messages, model.queues, model.bus, limits);
-    if (offsets_) return offsets_->analyse(model.messages, model.bus, limits);
+    if (offsets_) return with_offsets(model, test, limits);
     return plain_->analyse(model.messages, model.bus, test, limits, observe);
   }
   /// Whether a test of the whole set is quick enough for thousands of them.
-  [[nodiscard]] bool fast() const { return plain_ != nullptr; }
+  [[nodiscard]] bool fast() const { return queues_ == nullptr && offsets_ == nullptr; }
 
  private:
+  /// Patterns may be too long to search; without offsets there may be a bound all the same.
+  std::span<const Explained> with_offsets(const BusModel& model, CanTest test, analysis::Limits limits) {
+    const auto results = offsets_->analyse(model.messages, model.bus, limits);
+    const auto gave_up = [](const Explained& result) { return result.reason == analysis::Reason::too_long; };
+    if (std::none_of(results.begin(), results.end(), gave_up)) return results;
+    if (plain_ == nullptr) plain_ = std::make_unique<Analysis>();
+    const auto without = plain_->analyse(model.messages, model.bus, test, limits);
+    best_.assign(results.begin(), results.end());
+    for (std::size_t i = 0; i < best_.size(); ++i)
+      if (gave_up(best_[i])) best_[i] = without[i];
+    return best_;
+  }
+
+  std::vector<Explained> best_;
   std::unique_ptr<Analysis> plain_;
   std::unique_ptr<analysis::CanQueues<most_messages>> queues_;
   std::unique_ptr<analysis::CanOffsets<most_messages, most_clocks>> offsets_;
@@ -100,16 +162,19 @@ std::vector<std::string> names_of(const std::vector<std::string>& nodes) {
 
 /// Names of nodes become numbers.
 void set_nodes(const BusSet& set, const BusOptions& options, BusModel& model) {
+  model.offsets = options.test == CanTest::exact && options.queues.empty() &&
+                  std::any_of(set.entries.begin(), set.entries.end(),
+                              [](const BusEntry& entry) { return entry.offset > 0; });
   for (std::size_t i = 0; i < set.entries.size(); ++i) {
     const BusEntry& entry = set.entries[i];
-    const auto known = entry.node.empty() ? model.nodes.end()
-                                          : std::find(model.nodes.begin(), model.nodes.end(), entry.node);
+    // What comes on events comes by no clock.
+    const bool own = entry.node.empty() || (model.offsets && entry.sporadic);
+    const auto known =
+        own ? model.nodes.end() : std::find(model.nodes.begin(), model.nodes.end(), entry.node);
     model.messages[i].node = static_cast<std::uint16_t>(known - model.nodes.begin());
     model.messages[i].offset = entry.offset;
-    model.offsets = model.offsets || entry.offset > 0;
-    if (known == model.nodes.end()) model.nodes.push_back(entry.node);
+    if (known == model.nodes.end()) model.nodes.push_back(own ? std::string{} : entry.node);
   }
-  model.offsets = model.offsets && options.test == CanTest::exact;
   if (model.offsets && model.nodes.size() > most_clocks)
     fail({fmt::format("analyse bus: offsets by more than {} clocks", most_clocks),
           "a message of no node has a clock of its own: name the nodes, or leave out the offsets"},
@@ -168,7 +233,7 @@ void assign_layout(BusSet& set, const BusOptions& options) {
     unsigned bits = 0;  // whatever its priority will be
     for (unsigned level = 0; level < protocol::priority_levels; ++level) {
       const protocol::Identifier tried{id.direction, static_cast<protocol::Priority>(level), id.topic};
-      bits = std::max(bits, lengths->bits(tried.encode(), can::Format::base, set.entries[i].head.dlc));
+      bits = std::max(bits, lengths->bits(tried.encode(), can::Format::base, set.entries[i].head.length));
     }
     topic.message.cost = analysis::bits_ns(bits, static_cast<std::uint32_t>(options.bit_rate));
     topics.push_back(topic);
@@ -202,27 +267,34 @@ void assign(BusSet& set, const BusOptions& options, Assign what) {
   if (what == Assign::priorities) assign_layout(set, options);
 }
 
+BusOptions at_rates_of(const BusSet& set, BusOptions options) {
+  if (options.bit_rate == 0) options.bit_rate = set.bit_rate != 0 ? set.bit_rate : options.usual_bit_rate;
+  if (options.bit_rate == 0)
+    fail({"analyse: the spec says no bit rate", "--bitrate gives it, such as --bitrate 500k"}, exit_usage);
+  if (options.data_bit_rate == 0)
+    options.data_bit_rate = set.data_bit_rate;
+  else if (options.data_bit_rate < options.bit_rate)
+    fail({fmt::format("--data-bitrate: {} is slower than the rest of the frame, {}",
+                      bit_rate_text(options.data_bit_rate), bit_rate_text(options.bit_rate)),
+          "the data of CAN FD are sent at least as fast"},
+         exit_usage);
+  return options;
+}
+
 BusModel model_of(const BusSet& set, const BusOptions& options) {
   BusModel model;
-  const auto rate = static_cast<std::uint32_t>(options.bit_rate);
   std::unique_ptr<can::WorstBits> exact;
   for (const BusEntry& entry : set.entries) {
-    unsigned bits = can::worst_frame_bits(entry.head.format, entry.head.dlc);
-    if (options.lengths == Lengths::exact && entry.bits != 0) {
-      bits = entry.bits;
-    } else if (options.lengths == Lengths::exact) {
-      if (exact == nullptr) exact = std::make_unique<can::WorstBits>();
-      bits = exact->bits(entry.head.id, entry.head.format, entry.head.dlc);
-    }
+    const can::FdBits bits = longest_of(entry, options, exact);
     model.bits.push_back(bits);
-    model.messages.push_back({.cost = analysis::bits_ns(bits, rate),
+    model.messages.push_back({.cost = cost_of(bits, options),
                               .period = entry.period,
                               .deadline = entry.deadline_at(entry.period),
                               .jitter = entry.jitter,
                               .key = can::arbitration_key(entry.head)});
   }
   set_nodes(set, options, model);
-  model.bus.bit = analysis::bits_ns(1, rate);
+  model.bus.bit = analysis::bits_ns(1, static_cast<std::uint32_t>(options.bit_rate));
   model.bus.errors = {.burst = options.error_burst, .every = options.error_every};
   return model;
 }
@@ -246,30 +318,44 @@ Study study_bus(const BusSet& set, const BusOptions& options) {
     if (results[i].bounded() && instances[i].empty()) instances[i] = {results[i].response};
     study.rows.push_back({entry.name,
                           id_text(entry.head),
-                          fmt::format("{} B, {} bits", entry.head.dlc, model.bits[i]),
+                          size_text(entry.head, model.bits[i]),
                           message.cost,
                           message.period,
                           message.jitter,
                           results[i],
                           std::move(instances[i]),
-                          {}});
+                          {},
+                          model.bits[i].nominal,
+                          model.bits[i].data,
+                          entry.sporadic});
   }
   for (std::size_t i = 0; i < study.rows.size(); ++i) study.rows[i].why = explain(study, i);
-  study.head = fmt::format("{}, {} lengths, {} test", bit_rate_text(options.bit_rate),
+  const bool fd = std::any_of(set.entries.begin(), set.entries.end(),
+                              [](const BusEntry& entry) { return entry.head.is_fd(); });
+  study.head = fmt::format("{}{}, {} lengths, {} test", bit_rate_text(options.bit_rate),
+                           fd && options.data_bit_rate != 0
+                               ? fmt::format(" and {} for data", bit_rate_text(options.data_bit_rate))
+                               : "",
                            options.lengths == Lengths::exact ? "exact" : "generic",
                            options.test == CanTest::exact ? "exact" : "sufficient");
   if (options.error_burst > 0)
     study.head += options.error_every > 0 ? fmt::format(", {} errors at once and one more every {}",
                                                         options.error_burst, time_text(options.error_every))
                                           : fmt::format(", {} errors at most", options.error_burst);
-  if (model.offsets && model.queues.empty()) study.head += ", with offsets";
+  if (model.offsets) study.head += ", with offsets";
   if (!model.queues.empty()) study.head += ", with queues";
   for (const BusOptions::Queue& queue : options.queues) {
     const auto node = std::find(model.nodes.begin(), model.nodes.end(), queue.node) - model.nodes.begin();
     study.queues.push_back(
         {queue.node, analysis::queue_bound(model.messages, results, static_cast<std::uint16_t>(node))});
   }
+  study.left_out = set.left_out;
   study.remarks = set.remarks;
+  if (fd && options.data_bit_rate == 0)
+    study.remarks.emplace_back(
+        "No data bit rate is given: CAN FD frames count at the bit rate, longer than they are. "
+        "--data-bitrate "
+        "gives it.");
   return study;
 }
 

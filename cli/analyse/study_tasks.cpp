@@ -75,7 +75,10 @@ Study study_tasks(const TaskSet& set, const analysis::Processor& processor) {
                           tasks[i].jitter,
                           result,
                           std::move(instances),
-                          {}});
+                          {},
+                          0,
+                          0,
+                          false});
   }
   for (std::size_t i = 0; i < study.rows.size(); ++i) study.rows[i].why = explain(study, i);
   study.tests = quick_tests(tasks, processor);

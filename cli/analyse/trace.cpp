@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "ocm/can/fd_bits.hpp"
 #include "ocm/client/frame_index.hpp"
 #include "ocm/measure/bus_load.hpp"
 #include "ocm/protocol/request.hpp"
@@ -29,8 +30,9 @@ constexpr std::int64_t resolution = 1000;
 
 struct Arrival {
   std::int64_t time = 0;
-  unsigned bits = 0;  ///< with its stuff bits and the intermission
-  can::Frame frame;
+  can::FdBits bits;  ///< with its stuff bits and the intermission
+  std::uint8_t length = 0;
+  can::Frame frame;  ///< of CAN FD without its data
 };
 
 struct Log {
@@ -54,29 +56,36 @@ std::vector<Mistake> mistakes_of(const log::Reader& reader, const std::string& f
   return mistakes;
 }
 
+Arrival arrival_of(const log::Entry& entry, std::int64_t time) {
+  if (const auto frame = entry.classic())
+    return {time, {measure::bits_on_bus(*frame), 0}, frame->dlc, *frame};
+  can::FdBits bits = can::fd_frame_bits(entry.frame());
+  bits.nominal += can::intermission_bits;
+  can::Frame head;
+  head.id = entry.id;
+  head.format = entry.format;
+  return {time, bits, entry.length, head};
+}
+
 Log read_log(const std::string& file, const protocol::Catalogue& catalogue) {
   logs::OpenedLog opened{file, {}, catalogue};
   log::Reader& reader = opened.reader();
   Log log;
   std::size_t others = 0;
-  std::size_t flexible = 0;
   std::size_t backwards = 0;
   std::optional<std::uint16_t> interface;
   std::array<log::Entry, log::batch> entries;
   while (const std::size_t count = reader.read(entries)) {
     for (const log::Entry& entry : std::span{entries}.first(count)) {
       if (!interface) interface = entry.interface;
-      const auto frame = entry.classic();
       if (entry.interface != *interface) {
         ++others;
-      } else if (!frame) {
-        ++flexible;
-      } else if (frame->format == can::Format::error) {
+      } else if (entry.format == can::Format::error) {
         ++log.errors;
       } else {
         const std::int64_t time = entry.time.time_since_epoch().count();
         if (!log.arrivals.empty() && time < log.arrivals.back().time) ++backwards;
-        log.arrivals.push_back({time, measure::bits_on_bus(*frame), *frame});
+        log.arrivals.push_back(arrival_of(entry, time));
       }
     }
   }
@@ -93,9 +102,6 @@ Log read_log(const std::string& file, const protocol::Catalogue& catalogue) {
   if (others > 0)
     log.remarks.push_back(fmt::format("Only the frames of {}: {} of other interfaces were passed over.",
                                       reader.interfaces().name(*interface), others));
-  if (flexible > 0)
-    log.remarks.push_back(
-        fmt::format("{} CAN FD frames were passed over: the analysis knows classic ones only.", flexible));
   if (backwards > 0) {
     log.remarks.push_back(
         fmt::format("{} frames are older than the one before them: sorted by time.", backwards));
@@ -175,16 +181,17 @@ BusSet set_of(const Log& log, const protocol::Catalogue& catalogue, std::vector<
   }
   const bool any = std::any_of(all.begin(), all.end(), [](const Rate& rate) { return !rate.off; });
   if (!any) fail({"the log has no frame of any topic", "--set FILE.csv gives the messages of another bus"});
-  BusSet set = robot_bus(catalogue, all);
+  BusSet set = robot_bus(catalogue, nullptr, all);
   set.remarks = std::move(remarks);
   return set;
 }
 
 class Meter {
  public:
-  void add(std::int64_t time, const can::Frame& frame, unsigned bits, std::int64_t period) {
-    measured_.greatest_dlc = std::max<unsigned>(measured_.greatest_dlc, frame.dlc);
-    least_bits_ = measured_.count == 0 ? bits : std::min(least_bits_, bits);
+  /// `takes`: the frame, nanoseconds.
+  void add(std::int64_t time, unsigned length, std::int64_t takes, std::int64_t period) {
+    measured_.greatest_length = std::max(measured_.greatest_length, length);
+    least_time_ = measured_.count == 0 ? takes : std::min(least_time_, takes);
     if (measured_.count == 0) {
       first_ = time;
       restart();
@@ -207,11 +214,10 @@ class Meter {
     last_ = time;
     ++measured_.count;
   }
-  [[nodiscard]] Measured finish(std::int64_t bit_rate) const {
+  [[nodiscard]] Measured finish() const {
     Measured result = measured_;
     if (result.count > 1) result.mean = (last_ - first_) / static_cast<std::int64_t>(result.count - 1);
-    if (result.count > 0)
-      result.response = result.lateness + static_cast<std::int64_t>(least_bits_) * 1'000'000'000 / bit_rate;
+    if (result.count > 0) result.response = result.lateness + least_time_;
     return result;
   }
 
@@ -221,7 +227,7 @@ class Meter {
     in_window_ = 0;
   }
   Measured measured_;
-  unsigned least_bits_ = 0;
+  std::int64_t least_time_ = 0;
   std::int64_t first_ = 0;
   std::int64_t last_ = 0;
   std::int64_t behind_ = 0;  ///< the grid that the first of the window starts
@@ -237,16 +243,23 @@ bool TraceStudy::passes() const {
          std::none_of(measured.begin(), measured.end(), [](const Measured& m) { return m.exceeds; });
 }
 
-TraceStudy study_trace(const std::string& log_file, const std::string& set_file, const BusOptions& options,
+TraceStudy study_trace(const std::string& log_file, const std::string& set_file, const BusOptions& how,
                        const protocol::Catalogue& catalogue, std::vector<Rate> rates) {
   const Log log = read_log(log_file, catalogue);
   BusSet set;
   if (set_file.empty()) {
     set = set_of(log, catalogue, std::move(rates));
   } else {
-    set = read_bus(set_file);
-    apply_rates(set, rates);
+    set = read_bus(set_file, rates);
   }
+  const BusOptions options = at_rates_of(set, how);
+  // Rounded down: what was measured is at least that.
+  const auto takes = [&options](const can::FdBits& bits) {
+    const std::int64_t data_rate =
+        options.data_bit_rate != 0 ? options.data_bit_rate : spec::max_data_bit_rate;
+    return std::int64_t{bits.nominal} * 1'000'000'000 / options.bit_rate +
+           std::int64_t{bits.data} * 1'000'000'000 / data_rate;
+  };
   TraceStudy trace;
   trace.study = study_bus(set, options);
   trace.study.remarks.insert(trace.study.remarks.end(), log.remarks.begin(), log.remarks.end());
@@ -257,7 +270,7 @@ TraceStudy study_trace(const std::string& log_file, const std::string& set_file,
   for (std::size_t i = 0; i < set.entries.size(); ++i) rows[can::arbitration_key(set.entries[i].head)] = i;
   std::vector<Meter> meters(set.entries.size());
   std::map<std::uint32_t, std::pair<can::Frame, std::size_t>> strangers;
-  std::int64_t bits = 0;
+  std::int64_t busy = 0;
   const client::FrameIndex index{catalogue};
   std::size_t requests = 0;
   std::size_t too_close = 0;
@@ -265,14 +278,15 @@ TraceStudy study_trace(const std::string& log_file, const std::string& set_file,
   for (std::size_t n = 0; n < log.arrivals.size(); ++n) {
     const Arrival& arrival = log.arrivals[n];
     if (n > 0) {
-      bits += arrival.bits;
-      const std::int64_t needs = static_cast<std::int64_t>(arrival.bits) * 1'000'000'000 / options.bit_rate;
+      const std::int64_t needs = takes(arrival.bits);
+      busy += needs;
       if (arrival.time - before + resolution < needs) ++too_close;
     }
     before = arrival.time;
     const auto row = rows.find(can::arbitration_key(arrival.frame));
     if (row != rows.end()) {
-      meters[row->second].add(arrival.time, arrival.frame, arrival.bits, set.entries[row->second].period);
+      meters[row->second].add(arrival.time, arrival.length, takes(arrival.bits),
+                              set.entries[row->second].period);
     } else if (set_file.empty() && !can::is_extended(arrival.frame.format) &&
                index.requested(protocol::Identifier::decode(arrival.frame.id)) != nullptr) {
       ++requests;
@@ -287,20 +301,18 @@ TraceStudy study_trace(const std::string& log_file, const std::string& set_file,
         fmt::format("{} request{} from the operator, not in the set: each can delay a frame by its "
                     "own length.",
                     requests, requests == 1 ? "" : "s"));
-  if (trace.span > 0)
-    trace.load = static_cast<double>(bits) * 1e9 / static_cast<double>(options.bit_rate) /
-                 static_cast<double>(trace.span);
+  if (trace.span > 0) trace.load = static_cast<double>(busy) / static_cast<double>(trace.span);
 
   // What the log contradicts.
   auto& broken = trace.broken;
   for (std::size_t i = 0; i < set.entries.size(); ++i) {
     const BusEntry& entry = set.entries[i];
     const auto& result = trace.study.rows[i].result;
-    trace.measured.push_back(meters[i].finish(options.bit_rate));
+    trace.measured.push_back(meters[i].finish());
     Measured& m = trace.measured.back();
-    if (m.greatest_dlc > entry.head.dlc)
+    if (m.greatest_length > entry.head.length)
       broken.push_back(fmt::format("length: {} came with {} bytes, {} were assumed", entry.name,
-                                   m.greatest_dlc, entry.head.dlc));
+                                   m.greatest_length, entry.head.length));
     // A tenth of a percent is more than two quartz clocks differ by.
     m.other_period = m.count > 2 && m.mean < entry.period - entry.period / 1000 - resolution;
     m.exceeds =

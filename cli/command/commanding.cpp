@@ -4,8 +4,9 @@
 
 #include <fmt/format.h>
 
-#include "ocm/can/text.hpp"
+#include "ocm/can/any_text.hpp"
 
+#include "cli/command/operated_bus.hpp"
 #include "cli/shared/outgoing.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/words/quantity.hpp"
@@ -33,8 +34,8 @@ client::Command Commanding::parse() const {
   return std::move(command.value);
 }
 
-void print_frames(const std::vector<can::Frame>& frames) {
-  for (const auto& frame : frames) fmt::print("{}\n", can::to_text(frame).view());
+void print_frames(const client::Command& command) {
+  command.each_frame([](const can::AnyFrame& frame) { fmt::print("{}\n", can::to_text(frame).view()); });
 }
 
 void add_no_confirm(Verb verb, bool& no_confirm) {
@@ -45,12 +46,15 @@ void add_no_confirm(Verb verb, bool& no_confirm) {
 
 void carry_out(Session& session, const Commanding& commanding, const client::Command& command) {
   const auto& frames = command.frames;
-  if (commanding.dry_run()) return print_frames(frames);
-  const auto bus = session.open_bus();
+  if (commanding.dry_run()) return print_frames(command);
+  // A stop goes to the robot at once, and so does a frame that is sent as it is.
+  const std::string& verb = commanding.verb();
+  const bool guarded = verb == "drive" || verb == "led" || verb == "set";
+  const auto bus = guarded ? open_to_command(session, verb) : session.open_bus();
   RefusalWatch refusals{session.catalogue(), commanding.verb(), commanding.confirm()};
   refusals.prepare(*bus, frames);
   Outgoing outgoing{*bus, commanding.verb(), command.ends_hold ? still_moving : ""};
-  for (const auto& frame : frames) outgoing.send(frame);
+  command.each_frame([&](const can::AnyFrame& frame) { outgoing.send(frame); });
   outgoing.expect_all_left();
   refusals.sent(frames);
   refusals.listen(*bus);

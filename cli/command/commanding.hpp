@@ -26,6 +26,8 @@ class Commanding {
   [[nodiscard]] client::Command parse() const;
   /// What the options of the command line say; a verb adds its own to them.
   [[nodiscard]] words::CommandOptions& options() { return options_; }
+  /// Those of the command line.
+  [[nodiscard]] const std::vector<std::string>& words() const { return words_; }
   [[nodiscard]] bool dry_run() const { return dry_run_; }
   [[nodiscard]] Confirm confirm() const { return raw_ || no_confirm_ ? Confirm::no : Confirm::yes; }
   [[nodiscard]] const std::string& verb() const { return verb_; }
@@ -47,8 +49,8 @@ void add_no_confirm(Verb verb, bool& no_confirm);
 /// and unless no board refuses them.
 void carry_out(Session& session, const Commanding& commanding, const client::Command& command);
 
-/// Prints frames in candump notation, one a line.
-void print_frames(const std::vector<can::Frame>& frames);
+/// Prints a command's frames in candump notation, one a line.
+void print_frames(const client::Command& command);
 
 /// A plain command verb: parse, carry out. For stop, led, set.
 void add_command_verb(Verb app, Session& session, std::string_view name, std::string_view description,

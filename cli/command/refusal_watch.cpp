@@ -5,10 +5,10 @@
 
 #include <fmt/format.h>
 
+#include "cli/shared/filters.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/shared/remedies.hpp"
-#include "cli/watch/subscription.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -28,7 +28,8 @@ void RefusalWatch::prepare(transport::Bus& bus, std::span<const can::Frame> fram
           topic != nullptr && std::find(also.begin(), also.end(), topic) == also.end())
         also.push_back(topic);
   if (also.empty()) return;  // no filter at all would let everything pass
-  if (const auto subscribed = bus.subscribe(filters_for(also, false)); !subscribed) fail(subscribed.error);
+  if (const auto filters = bus_filters(filters_for(also, false)))
+    if (const auto subscribed = bus.subscribe(*filters); !subscribed) fail(subscribed.error);
   while (const auto received = bus.receive(base::Duration{0})) take(*received);
 }
 

@@ -89,11 +89,11 @@ void add_request_options(Verb verb, Session& session, std::string_view words_hel
   verb.callback([options, wait, &session] {
     const auto command = options->commanding.parse();
     const bool dry_run = options->commanding.dry_run();
-    if (dry_run && !options->admission.explain) return print_frames(command.frames);
+    if (dry_run && !options->admission.explain) return print_frames(command);
     const auto bus = session.open_bus();
     RefusalWatch refusals{session.catalogue(), options->commanding.verb(), options->commanding.confirm()};
     admit(session, *bus, command, options->admission, refusals);
-    if (dry_run) return print_frames(command.frames);
+    if (dry_run) return print_frames(command);
     if (wait.count() != 0)
       return send_and_await(session, *bus, refusals, options->commanding.verb(), command, options->wait);
     refusals.prepare(*bus, command.frames);

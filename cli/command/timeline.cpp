@@ -30,6 +30,10 @@ bool Timeline::listen_first(base::Duration duration) {
   return others_ == Others::allowed || wait(Clock::now() + duration);
 }
 
+void Timeline::expect_no_other() {
+  if (others_ == Others::refused) other_.refuse_if_heard();
+}
+
 void Timeline::send(const can::Frame& frame) {
   const bool set_point = other_.is_set_point(frame);
   if (set_point) outgoing_.otherwise_after_the_next(still_moving);
@@ -42,27 +46,38 @@ void Timeline::send(const can::Frame& frame) {
   if (set_point) moving_ = !is_rest(frame);
 }
 
+void Timeline::send_fd(const can::AnyFrame& frame) {
+  outgoing_.looks_from(awake_);
+  outgoing_.send(frame);
+  awake_ = outgoing_.looked();
+  stood_still_ = std::max(stood_still_, outgoing_.stood_still());
+}
+
 void Timeline::carry_out_once(const client::Command& command) {
   expect_awake();
-  if (command.hold && !held_ && others_ == Others::refused) other_.refuse_if_heard();
+  if (command.hold && !held_) expect_no_other();
   if (command.ends_hold) outgoing_.otherwise(still_moving);
   for (const auto& frame : command.frames) send(frame);
+  for (const auto& frame : command.fd_frames) send_fd(frame);
 }
 
 void Timeline::carry_out(const client::Command& command) {
-  for (const auto& frame : command.frames)
+  command.each_frame([this](const can::AnyFrame& frame) {
     repeated_.erase(std::remove_if(repeated_.begin(), repeated_.end(),
                                    [&](const Repeated& each) {
                                      return each.frame.id == frame.id && each.frame.format == frame.format;
                                    }),
                     repeated_.end());
+  });
   const auto begin = Clock::now();
   carry_out_once(command);
   if (command.ends_hold) held_.reset();
   if (command.repeat) {
     const auto [period, lasting] = *command.repeat;
     const auto end = lasting.count() > 0 ? begin + lasting : Clock::time_point::max();
-    for (const auto& frame : command.frames) repeated_.push_back({frame, period, begin + period, end, begin});
+    command.each_frame([&, each = period](const can::AnyFrame& frame) {
+      repeated_.push_back({frame, each, begin + each, end, begin});
+    });
   }
   if (!command.hold) return;
   const auto now = Clock::now();
@@ -193,13 +208,14 @@ void Timeline::send_again(Repeated& repeated, Clock::time_point now) {
   // One of each may be under way: they may all be due at once.
   bool taken = obstruction.what.empty() && !(delivery.known && delivery.pending > repeated_.size());
   if (taken) {
-    const auto sent = bus_->send(repeated.frame);
+    const auto sent = bus_->send_any(repeated.frame);
     if (sent.error == base::Error::closed) fail(bus_->failure());
     taken = sent && *sent;
   }
   if (taken) {
     repeated.left = now;
-    return refusals_.sent(repeated.frame);
+    if (const auto classic = repeated.frame.classic()) refusals_.sent(*classic);
+    return;
   }
   ++not_taken_;
   if (now - repeated.left < std::max<Clock::duration>(client::longest_without_set_point, 2 * repeated.period))

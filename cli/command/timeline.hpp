@@ -44,6 +44,9 @@ class Timeline {
   /// Waits as long as it takes to hear another program that commands the motors, where one is refused. False:
   /// a signal came first.
   [[nodiscard]] bool listen_first(base::Duration duration = client::listen_before_hold);
+  /// Leaves if another program that commands the motors was heard, where one is refused. Before a hold that
+  /// may begin later; `carry_out` looks, too.
+  void expect_no_other();
   /// An end that nothing foresaw, such as an output that cannot be written: the motors rest all the same.
   ~Timeline();
   Timeline(const Timeline&) = delete;
@@ -77,13 +80,15 @@ class Timeline {
     Clock::time_point left;  ///< when a set point was last sent, with none before it under way
   };
   struct Repeated {
-    can::Frame frame;
+    can::AnyFrame frame;
     base::Duration period;
     Clock::time_point next;
     Clock::time_point end;
     Clock::time_point left;  ///< when one was last sent, and little was under way
   };
   void send(const can::Frame& frame);
+  /// What is no set point: a robot has no CAN FD.
+  void send_fd(const can::AnyFrame& frame);
   /// Says what a board refused; leaves if the motors are held and their board refuses that.
   void tell_refusals();
   /// Leaves, with the motors at rest, if this program did not run for as long as a watchdog waits.

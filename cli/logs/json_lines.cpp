@@ -27,8 +27,8 @@ std::uint8_t length_of(const log::Entry& entry, const protocol::FrameLayout& lay
 
 }  // namespace
 
-JsonLineParser::JsonLineParser(const protocol::Catalogue& catalogue)
-    : catalogue_(&catalogue), index_(catalogue) {
+JsonLineParser::JsonLineParser(const protocol::Catalogue& catalogue, Values values)
+    : catalogue_(&catalogue), values_(values), index_(catalogue) {
   for (const auto& topic : catalogue.topics)
     for (const auto& layout : topic.frames)
       for (const auto& field : layout.fields) {
@@ -251,7 +251,7 @@ bool JsonLineParser::take_message(log::Entry& entry, Meaning& meaning, const pro
                   "a J1939 message may have any priority and source: give the id that it was sent with");
   entry.id = address.number;
   entry.format = address.extended ? can::Format::extended : can::Format::base;
-  if (meaning.frame.layout().fd) entry.flags |= log::flag::fd;
+  if (meaning.frame.layout().fd) entry.flags |= can::fd_flags(meaning.frame.layout().bit_rate_switch);
   return true;
 }
 
@@ -360,21 +360,30 @@ bool JsonLineParser::put_field(std::span<std::uint8_t> data, const protocol::Fra
   if (part != Part::selectors && !layout.has(field, data))
     return refuse(log::Cause::syntax, "field " + shown(named.name) + " is not in this frame",
                   "its selector says so, or the frame is too short; leave one of them out");
-  char present[FieldText::room];
-  const auto size = static_cast<std::size_t>(fields[i].print(present, data.data()) - present);
-  if (text == std::string_view{present, size}) return true;
+  if (record_.data) {
+    char present[FieldText::room];
+    const auto size = static_cast<std::size_t>(fields[i].print(present, data.data()) - present);
+    if (text == std::string_view{present, size}) return true;
+  }
   if (!named.value.is_string && !field.is_float()) {
     const auto number = base::parse_decimal(text);
-    const bool whole_word = !field.is_signed && field.position.width == 64;      // a Decimal has one bit less
-    if (number && !whole_word && *number == physical(field, data)) return true;  // 2.50, 1e-06
-    if (const auto raw = number ? field.raw_from(*number) : base::Result<std::int64_t>{number.error}) {
-      protocol::put(data, field.position, *raw);
-      return true;
-    }
+    const auto present_number = field.physical(field.raw(data));
+    if (record_.data && number && present_number && *number == *present_number) return true;  // 2.50, 1e-06
+    if (const auto raw = number ? field.raw_from(*number) : base::Result<std::int64_t>{number.error})
+      return give(data, field, text, *raw);
   }
   const auto raw = words::parse_value(field, text);
   if (!raw) return refuse(log::Cause::syntax, raw.error, "leave the field out, and data counts");
-  protocol::put(data, field.position, *raw);
+  return give(data, field, text, *raw);
+}
+
+/// A number that is not the text of what is there; it may be the same, as of a float with other digits.
+bool JsonLineParser::give(std::span<std::uint8_t> data, const protocol::Field& field, std::string_view text,
+                          std::int64_t raw) {
+  const bool edited = !record_.data || raw != field.raw(data);
+  if (values_ == Values::as_stated && edited && !words::is_in_stated_range(field, raw))
+    return refuse(log::Cause::syntax, words::beyond_stated_range(field, text), words::force_beyond_range);
+  protocol::put(data, field.position, raw);
   return true;
 }
 

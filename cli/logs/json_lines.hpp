@@ -5,6 +5,7 @@
 ///   bits of no field stay. A field that says what `data` says changes nothing, be it out of range.
 /// - Without `data` the frame is of zeros and `fields`; without `id` it is `topic`'s, at `priority` and, of a
 ///   topic with several, its `frame`.
+/// - An edited value beyond the range that the spec states is refused if the reader asks for that.
 /// - What contradicts itself (an id of another topic, another priority) is refused, not guessed at.
 ///
 /// Keys in any order; unknown ones are passed over. No allocation a line. A line that cannot be read costs
@@ -38,10 +39,16 @@ struct JsonProblem {
   std::string remedy;
 };
 
+/// Which values a line may give a field that its data does not say.
+enum class Values : std::uint8_t {
+  of_bits,    ///< all that the bits hold
+  as_stated,  ///< those of the range that the spec states
+};
+
 class JsonLineParser {
  public:
   /// The catalogue must outlive the parser.
-  explicit JsonLineParser(const protocol::Catalogue& catalogue);
+  explicit JsonLineParser(const protocol::Catalogue& catalogue, Values values = Values::of_bits);
 
   /// Reads one line into `entry` (but for its interface) and `bus` (empty: not said; holds as long as the
   /// line and until the next). A line without `time_ns` has the time of the one before. false: `problem`.
@@ -87,7 +94,11 @@ class JsonLineParser {
   bool put_request(log::Entry& entry, const protocol::Topic& topic);
   [[nodiscard]] Meaning meaning_of(const log::Entry& entry) const;
 
+  bool give(std::span<std::uint8_t> data, const protocol::Field& field, std::string_view text,
+            std::int64_t raw);
+
   const protocol::Catalogue* catalogue_;
+  Values values_;
   client::FrameIndex index_;
   /// The fields of a layout.
   struct Texts {

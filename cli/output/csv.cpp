@@ -1,13 +1,15 @@
 /// CSV with a head line, time in seconds with nine digits. Long, a line a field: time,topic,field,value,unit;
 /// fields of topics with several frames are named frame.field. With chosen fields wide, a line a frame that
-/// has one: time, and a column a field in the order of the choice, named topic.field; the cells of fields of
-/// other frames are empty.
+/// has one of them: time, and a column a field in the order of the choice, named topic.field; the cells of
+/// fields of other frames are empty. Where the spec has parameter groups of J1939, four more columns say what
+/// the identifier does: priority,pgn,source,destination.
 #include <algorithm>
 #include <array>
 #include <cstring>
 #include <string>
 #include <vector>
 
+#include "cli/output/digits.hpp"
 #include "cli/output/field_text.hpp"
 #include "cli/output/output.hpp"
 
@@ -38,6 +40,45 @@ const protocol::FrameLayout* layout_of(const client::Reception& reception) {
   return data ? &reception.frame.layout() : nullptr;
 }
 
+/// The last columns, of J1939; none where the catalogue has no parameter group.
+class GroupColumns {
+ public:
+  explicit GroupColumns(const protocol::Catalogue& catalogue)
+      : are_there_(std::any_of(catalogue.topics.begin(), catalogue.topics.end(),
+                               [](const protocol::Topic& topic) { return is_group(topic.frames[0]); })) {}
+
+  /// Names, and the end of the line.
+  [[nodiscard]] std::string_view head() const noexcept {
+    return are_there_ ? ",priority,pgn,source,destination\n" : "\n";
+  }
+  /// At most so many characters.
+  static constexpr std::size_t room = 24;
+  char* print(char* to, const Event& event) const {
+    const bool of_group = are_there_ && is_group(event.reception.frame.layout());
+    if (are_there_ && !of_group) to = put_text(to, ",,,,");
+    if (of_group) {
+      const auto* const message = event.reception.transported;
+      const auto id = message != nullptr ? message->id : j1939::Identifier::decode(event.entry.id);
+      *to++ = ',';
+      to = put_unsigned(to, id.priority);
+      *to++ = ',';
+      to = put_hex(to, id.pgn, 5);
+      *to++ = ',';
+      to = put_unsigned(to, id.source);
+      *to++ = ',';
+      to = put_unsigned(to, id.destination);
+    }
+    *to++ = '\n';
+    return to;
+  }
+
+ private:
+  [[nodiscard]] static bool is_group(const protocol::FrameLayout& layout) noexcept {
+    return layout.address.by == protocol::Address::By::pgn;
+  }
+  bool are_there_;
+};
+
 /// By number of a topic's frame, in an array that all topics share: what is made once for a frame.
 template <class T>
 class PerFrame {
@@ -60,7 +101,7 @@ class PerFrame {
 
 class LongCsv final : public Output {
  public:
-  explicit LongCsv(const protocol::Catalogue& catalogue) : lines_(catalogue) {
+  explicit LongCsv(const protocol::Catalogue& catalogue) : lines_(catalogue), group_(catalogue) {
     for (const auto& topic : catalogue.topics)
       for (std::size_t i = 0; i < topic.frames.size(); ++i) {
         const auto& layout = topic.frames[i];
@@ -68,25 +109,32 @@ class LongCsv final : public Output {
         for (const auto& field : layout.fields)
           lines_[{&topic, static_cast<std::uint8_t>(i)}].push_back(
               {FieldText{field}, ',' + cell(topic.name) + ',' + cell(frame + std::string{field.name}) + ',',
-               ',' + cell(field.unit) + '\n', layout.may_lack(field)});
+               ',' + cell(field.unit), layout.may_lack(field)});
       }
   }
 
-  void begin(Buffer& out) override { out.append("time,topic,field,value,unit\n"); }
+  void begin(Buffer& out) override {
+    out.append("time,topic,field,value,unit");
+    out.append(group_.head());
+  }
 
   bool write(Buffer& out, const Event& event) override {
     if (layout_of(event.reception) == nullptr) return false;
     char time[40];
     const auto time_size =
         static_cast<std::size_t>(put_seconds(time, event.entry.time.time_since_epoch().count()) - time);
+    char end[GroupColumns::room];
+    const auto end_size = static_cast<std::size_t>(group_.print(end, event) - end);
     const auto& layout = event.reception.frame.layout();
+    const auto bytes = bytes_of(event);
     for (const Line& line : lines_[event.reception.frame]) {
-      if (line.varies && !layout.has(line.value.field(), event.entry.bytes())) continue;
-      char* to = out.room(time_size + line.before.size() + FieldText::room + line.after.size());
+      if (line.varies && !layout.has(line.value.field(), bytes)) continue;
+      char* to = out.room(time_size + line.before.size() + FieldText::room + line.after.size() + end_size);
       to = put_text(to, {time, time_size});
       to = put_text(to, line.before);
-      to = line.value.print(to, event.entry.data.data());
-      out.grow_to(put_text(to, line.after));
+      to = line.value.print(to, bytes.data());
+      to = put_text(to, line.after);
+      out.grow_to(put_text(to, {end, end_size}));
     }
     return true;
   }
@@ -98,12 +146,13 @@ class LongCsv final : public Output {
     bool varies;  // not every frame has it
   };
   PerFrame<std::vector<Line>> lines_;
+  GroupColumns group_;
 };
 
 class WideCsv final : public Output {
  public:
   WideCsv(const protocol::Catalogue& catalogue, const Selection& selection)
-      : cells_(catalogue), columns_(selection.fields().size()) {
+      : cells_(catalogue), columns_(selection.fields().size()), group_(catalogue) {
     for (std::size_t i = 0; i < columns_; ++i) {
       const auto& chosen = selection.fields()[i];
       head_ += ',' + cell(chosen.name);
@@ -116,14 +165,20 @@ class WideCsv final : public Output {
   void begin(Buffer& out) override {
     out.append("time");
     out.append(head_);
-    out.append('\n');
+    out.append(group_.head());
   }
 
   bool write(Buffer& out, const Event& event) override {
     if (layout_of(event.reception) == nullptr) return false;
     const auto& cells = cells_[event.reception.frame];  // in the order of the columns
-    if (cells.empty()) return false;
-    char* to = out.room(40 + cells.size() * FieldText::room + columns_ + 1);
+    const auto& layout = event.reception.frame.layout();
+    const auto bytes = bytes_of(event);
+    const bool may_lack_any = event.reception.transported != nullptr;  // of any length
+    const auto is_there = [&](const Cell& cell) {
+      return !(cell.varies || may_lack_any) || layout.has(cell.value.field(), bytes);
+    };
+    if (std::none_of(cells.begin(), cells.end(), is_there)) return false;
+    char* to = out.room(40 + cells.size() * FieldText::room + columns_ + GroupColumns::room);
     to = put_seconds(to, event.entry.time.time_since_epoch().count());
     std::size_t column = 0;
     const auto put_commas = [&](std::size_t count) {
@@ -133,13 +188,11 @@ class WideCsv final : public Output {
     for (const Cell& cell : cells) {
       put_commas(cell.column + 1 - column);
       column = cell.column + 1;
-      if (cell.varies && !event.reception.frame.layout().has(cell.value.field(), event.entry.bytes()))
-        continue;
-      to = cell.value.print(to, event.entry.data.data());
+      if (!is_there(cell)) continue;
+      to = cell.value.print(to, bytes.data());
     }
     put_commas(columns_ - column);
-    *to++ = '\n';
-    out.grow_to(to);
+    out.grow_to(group_.print(to, event));
     return true;
   }
 
@@ -152,6 +205,7 @@ class WideCsv final : public Output {
   PerFrame<std::vector<Cell>> cells_;
   std::size_t columns_;
   std::string head_;
+  GroupColumns group_;
 };
 
 }  // namespace

@@ -1,7 +1,9 @@
 #include "cli/output/field_text.hpp"
 
 #include <cmath>
+#include <map>
 #include <string_view>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -77,10 +79,46 @@ char* put_float(char* to, Float value) noexcept {
 
 }  // namespace
 
+namespace detail {
+
+FieldShape::FieldShape(const protocol::Field& field)
+    : sign_(field.is_signed ? std::uint64_t{1} << (field.position.width - 1) : 0),
+      whole_numbers_(work_out(field)) {
+  if (whole_numbers_ && field.position.width <= most_tabled_bits) tabulate(field.position.width);
+}
+
+void FieldShape::tabulate(unsigned width) {
+  const std::size_t count = std::size_t{1} << width;
+  auto table = std::make_unique<ShortText[]>(count);
+  for (std::size_t bits = 0; bits < count; ++bits) {
+    char text[FieldText::room];
+    const auto size = static_cast<std::size_t>(print_raw(text, raw(bits)) - text);
+    if (size > sizeof table[bits].characters) return;  // a scale of many digits
+    std::copy_n(text, size, table[bits].characters);
+    table[bits].size = static_cast<std::uint8_t>(size);
+  }
+  table_ = std::move(table);
+}
+
+const FieldShape& shape_of(const protocol::Field& field) {
+  using Key = std::tuple<unsigned, bool, protocol::Number, std::int64_t, int, std::int64_t, int>;
+  static std::map<Key, FieldShape> shapes;
+  const Key key{field.position.width, field.is_signed,     field.number,         field.scale.digits,
+                field.scale.exponent, field.offset.digits, field.offset.exponent};
+  return shapes.try_emplace(key, field).first->second;
+}
+
+}  // namespace detail
+
+char* FieldText::print_untabled(char* to, const std::uint8_t* data) const noexcept {
+  if (way_ == Way::whole) return shape_->print_raw(to, shape_->raw(bits(data)));
+  return print_slowly(to, raw(data));
+}
+
 char* FieldText::print_slowly(char* to, std::int64_t raw) const noexcept {
   const protocol::Field& field = *field_;
-  if (whole_numbers_ && (raw >= 0 || field.is_signed || field.position.width < 64))
-    return print_whole(to, raw * factor_ + offset_);
+  if (shape_->whole_numbers() && (raw >= 0 || field.is_signed || field.position.width < 64))
+    return shape_->print_raw(to, raw);
   const bool plain = field.scale == base::Decimal{1, 0} && field.offset.digits == 0;
   if (field.number == protocol::Number::float32 && plain)
     return put_float(to, static_cast<float>(field.unscaled(raw)));
@@ -99,7 +137,7 @@ char* FieldText::print_json_float(char* to, std::int64_t raw) const noexcept {
   return to + 1;
 }
 
-std::int64_t FieldText::raw_of_nine(const std::uint8_t* data) const noexcept {
+std::int64_t FieldText::raw_by_bytes(const std::uint8_t* data) const noexcept {
   return field_->raw(std::span{data, field_->position.bytes()});
 }
 

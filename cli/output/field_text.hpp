@@ -21,93 +21,41 @@
 
 namespace ocm::cli {
 
-/// An integer field's value in a frame that holds it, exactly; the raw number where scale and offset lead
-/// beyond 63 bits.
-[[nodiscard]] inline base::Decimal physical(const protocol::Field& field,
-                                            std::span<const std::uint8_t> data) {
-  const std::int64_t raw = field.raw(data);
-  const auto value = field.physical(raw);
-  return value ? *value : base::normalised(raw, 0);
-}
+namespace detail {
 
-class FieldText {
+/// What width, sign, kind of number, scale and offset of a field say of its text. Of thousands of fields few
+/// are different, so that those which all share stay in the processor's first cache.
+class FieldShape {
  public:
-  /// Most bytes that `print` may write, those behind the end of the text included.
-  static constexpr std::size_t room = 160;
+  explicit FieldShape(const protocol::Field& field);
 
-  /// `field` must outlive this.
-  explicit FieldText(const protocol::Field& field) : field_(&field), fast_(work_out(field)) {
-    mask_ = protocol::detail::low_mask(field.position.width);
-    sign_ = field.is_signed ? std::uint64_t{1} << (field.position.width - 1) : 0;
-    swapped_ = field.position.order == protocol::ByteOrder::big;
-    const unsigned first = field.position.first_bit();
-    // Eight bytes that hold the field, within the first eight or 64: see can::FrameView.
-    byte_ = field.position.bytes() <= 8 ? 0 : std::min(first / 8, 56U);
-    const unsigned within = first - 8 * byte_;
-    in_word_ = within + field.position.width <= 64;
-    if (in_word_) shift_ = swapped_ ? 64 - within - field.position.width : within;
-    whole_numbers_ = fast_;
-    // Of an unsigned word the highest bit is no sign.
-    fast_ = fast_ && in_word_ && (field.is_signed || field.position.width < 64);
-    if (fast_ && field.position.width <= most_tabled_bits) tabulate();
+  /// Whether raw * factor + offset is right, in 63 bits, for every raw number.
+  [[nodiscard]] bool whole_numbers() const noexcept { return whole_numbers_; }
+  [[nodiscard]] bool tabled() const noexcept { return table_ != nullptr; }
+  [[nodiscard]] std::int64_t raw(std::uint64_t bits) const noexcept {
+    return static_cast<std::int64_t>((bits ^ sign_) - sign_);
   }
-
-  /// Writes the value of the field in `data`, which holds it and has room behind it as can::FrameView says;
-  /// returns the end.
-  char* print(char* to, const std::uint8_t* data) const noexcept {
-    if (fast_) return print_whole(to, raw(data) * factor_ + offset_);
-    if (table_ == nullptr) return print_slowly(to, raw(data));
-    const ShortText& text = table_[static_cast<std::size_t>(bits(data))];
-    std::memcpy(to, &text, sizeof text);  // all 8 bytes: of how many is not guessed
-    return to + text.size;
-  }
-
-  char* print(char* to, const can::Payload& data) const noexcept { return print(to, data.data()); }
-  /// The same as JSON, which has no numbers for NaN and the infinities: strings, as protocol buffers have
-  /// them.
-  char* print_json(char* to, const std::uint8_t* data) const noexcept {
-    return is_float_ ? print_json_float(to, raw(data)) : print(to, data);
-  }
-
-  [[nodiscard]] const protocol::Field& field() const noexcept { return *field_; }
-  /// As field().raw(data).
-  [[nodiscard]] std::int64_t raw(const std::uint8_t* data) const noexcept {
-    if (!in_word_) return raw_of_nine(data);
-    return static_cast<std::int64_t>((bits(data) ^ sign_) - sign_);
-  }
-
- private:
-  /// Of up to this many bits all texts are worked out once: most fields of a car are so narrow. Wider ones
-  /// would take the room of the processor's caches.
-  static constexpr unsigned most_tabled_bits = 5;
+  /// tabled(): a text by the field's bits. A table of its own, so that a value costs one look into memory.
   struct ShortText {
     char characters[7];
     std::uint8_t size;
   };
-
-  /// The field's bits, where eight bytes hold them.
-  [[nodiscard]] std::uint64_t bits(const std::uint8_t* data) const noexcept {
-    std::uint64_t word = 0;
-    std::memcpy(&word, data + byte_, sizeof word);
-    if (swapped_) word = __builtin_bswap64(word);
-    return word >> shift_ & mask_;
+  [[nodiscard]] const ShortText* table() const noexcept { return table_.get(); }
+  static char* print_tabled(char* to, const ShortText* table, std::uint64_t bits) noexcept {
+    const ShortText& text = table[static_cast<std::size_t>(bits)];
+    std::memcpy(to, &text, sizeof text);  // all 8 bytes: of how many is not guessed
+    return to + text.size;
+  }
+  /// whole_numbers()
+  char* print_raw(char* to, std::int64_t raw) const noexcept {
+    return print_whole(to, raw * factor_ + offset_);
   }
 
-  void tabulate() {
-    const std::size_t count = std::size_t{1} << field_->position.width;
-    auto table = std::make_unique<ShortText[]>(count);
-    for (std::size_t number = 0; number < count; ++number) {
-      char text[room];
-      const auto raw_number = static_cast<std::int64_t>((number ^ sign_) - sign_);
-      const auto size = static_cast<std::size_t>(print_whole(text, raw_number * factor_ + offset_) - text);
-      if (size > sizeof table[number].characters) return;  // a scale of many digits
-      std::copy_n(text, size, table[number].characters);
-      table[number].size = static_cast<std::uint8_t>(size);
-    }
-    table_ = std::move(table);
-    fast_ = false;
-  }
+ private:
+  /// Of up to this many bits all texts are worked out once: most fields of a car are so narrow.
+  static constexpr unsigned most_tabled_bits = 8;
 
+  void tabulate(unsigned width);
   /// Whether the whole numbers suffice for every raw number that the field can have.
   bool work_out(const protocol::Field& field) noexcept {
     if (field.is_float()) return false;
@@ -153,11 +101,6 @@ class FieldText {
     return last == 0 ? to : to + 1 + last;
   }
 
-  char* print_slowly(char* to, std::int64_t raw) const noexcept;
-  char* print_json_float(char* to, std::int64_t raw) const noexcept;
-  /// Of a field of which the bits are in nine bytes.
-  [[nodiscard]] std::int64_t raw_of_nine(const std::uint8_t* data) const noexcept;
-
   /// Up to 19 digits, and up to 18 of them behind the point: 24 digits in three words.
   char* print_long(char* to, std::uint64_t magnitude) const noexcept {
     const auto digits_of = [](std::uint64_t number) {
@@ -184,20 +127,104 @@ class FieldText {
     return to + (last - whole);
   }
 
-  const protocol::Field* field_;
-  bool is_float_ = field_->is_float();
   std::int64_t factor_ = 1;
   std::int64_t offset_ = 0;
-  std::uint64_t mask_ = 0;
   std::uint64_t sign_ = 0;
-  unsigned shift_ = 0;
   int places_ = 0;
-  unsigned byte_ = 0;
-  bool in_word_ = true;
+  bool whole_numbers_ = false;
+  std::unique_ptr<ShortText[]>
+      table_;  ///< by the field's bits; none: they are too many, or the texts too long
+};
+
+/// The shape of a field; the same one for all fields that have it. It is kept until the program ends.
+[[nodiscard]] const FieldShape& shape_of(const protocol::Field& field);
+
+}  // namespace detail
+
+class FieldText {
+ public:
+  /// Most bytes that `print` may write, those behind the end of the text included.
+  static constexpr std::size_t room = 160;
+
+  /// `field` must outlive this.
+  explicit FieldText(const protocol::Field& field) : field_(&field) {
+    const detail::FieldShape& shape = detail::shape_of(field);
+    shape_ = &shape;
+    const unsigned width = field.position.width;
+    const unsigned first = field.position.first_bit();
+    // Eight bytes that hold the field, within the first eight or 64, or with eight more behind them: see
+    // can::FrameView and j1939::Transported.
+    const unsigned end = field.position.bytes();
+    const unsigned byte = end <= 8 ? 0 : end <= 64 ? std::min(first / 8, 56U) : first / 8;
+    const unsigned within = first - 8 * byte;
+    byte_ = static_cast<std::uint16_t>(byte);
+    swapped_ = field.position.order == protocol::ByteOrder::big;
+    is_float_ = field.is_float();
+    in_word_ = within + width <= 64;
+    if (!in_word_) return;
+    left_ = static_cast<std::uint8_t>(swapped_ ? within : 64 - within - width);
+    right_ = static_cast<std::uint8_t>(64 - width);
+    if (shape.tabled()) {
+      way_ = Way::tabled;
+      table_ = shape.table();
+    } else if (shape.whole_numbers() &&
+               (field.is_signed || width < 64))  // of an unsigned word the highest bit is no sign
+      way_ = Way::whole;
+  }
+
+  /// Writes the value of the field in `data`, which holds it and has room behind it as can::FrameView says;
+  /// returns the end.
+  char* print(char* to, const std::uint8_t* data) const noexcept {
+    if (way_ == Way::tabled) return detail::FieldShape::print_tabled(to, table_, bits(data));
+    return print_untabled(to, data);
+  }
+
+  char* print(char* to, const can::Payload& data) const noexcept { return print(to, data.data()); }
+  /// The same as JSON, which has no numbers for NaN and the infinities: strings, as protocol buffers have
+  /// them.
+  char* print_json(char* to, const std::uint8_t* data) const noexcept {
+    if (way_ == Way::tabled) return detail::FieldShape::print_tabled(to, table_, bits(data));
+    return is_float_ ? print_json_float(to, raw(data)) : print_untabled(to, data);
+  }
+
+  [[nodiscard]] const protocol::Field& field() const noexcept { return *field_; }
+  /// As field().raw(data).
+  [[nodiscard]] std::int64_t raw(const std::uint8_t* data) const noexcept {
+    return in_word_ && way_ != Way::tabled ? shape_->raw(bits(data)) : raw_by_bytes(data);
+  }
+
+ private:
+  enum class Way : std::uint8_t { slow, whole, tabled };
+
+  /// The field's bits, where eight bytes hold them.
+  [[nodiscard]] std::uint64_t bits(const std::uint8_t* data) const noexcept {
+    std::uint64_t word = 0;
+    std::memcpy(&word, data + byte_, sizeof word);
+    if (swapped_) word = __builtin_bswap64(word);
+    return word << left_ >> right_;
+  }
+
+  /// Apart, so that what most fields need is inlined where they are printed.
+  char* print_untabled(char* to, const std::uint8_t* data) const noexcept;
+  char* print_slowly(char* to, std::int64_t raw) const noexcept;
+  char* print_json_float(char* to, std::int64_t raw) const noexcept;
+  /// Of a field of which the bits are in nine bytes, too, and of one whose table is known and not its shape.
+  [[nodiscard]] std::int64_t raw_by_bytes(const std::uint8_t* data) const noexcept;
+
+  // 24 bytes: the fields of thousands of messages come in random order, and are to stay in the processor's
+  // second cache.
+  const protocol::Field* field_;
+  union {
+    const detail::FieldShape* shape_;
+    const detail::FieldShape::ShortText* table_;  ///< Way::tabled
+  };
+  std::uint16_t byte_ = 0;
+  std::uint8_t left_ = 0;
+  std::uint8_t right_ = 0;
+  Way way_ = Way::slow;
   bool swapped_ = false;
-  bool whole_numbers_ = false;          ///< factor, offset and places hold
-  bool fast_;                           ///< print_whole is enough, and no table is there
-  std::unique_ptr<ShortText[]> table_;  ///< by the field's bits; none: they are too many
+  bool in_word_ = true;
+  bool is_float_ = false;
 };
 
 }  // namespace ocm::cli

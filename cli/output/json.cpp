@@ -8,7 +8,12 @@ namespace {
 class Json final : public Output {
  public:
   Json(const protocol::Catalogue& catalogue, const Selection& selection) : text_(catalogue, selection) {}
-  bool write(Buffer& out, const Event& event) override { return text_.write(out, event.bus, event.entry); }
+  bool write(Buffer& out, const Event& event) override {
+    const auto& reception = event.reception;
+    if (reception.meaning != client::Meaning::transport && reception.transported == nullptr)
+      return text_.write(out, event.bus, event.entry);
+    return text_.write_transport(out, event.bus, event.entry, reception);
+  }
 
  private:
   JsonText text_;

@@ -13,8 +13,9 @@
 namespace ocm::cli {
 namespace {
 
-/// Pieces are copied in blocks of this many bytes, beyond their end, too.
-constexpr std::size_t block = 32;
+/// So many bytes of a piece are copied at once, beyond its end, too: few names are longer, and how long they
+/// are is not guessed.
+constexpr std::size_t block = 48;
 constexpr std::string_view line_begin = R"({"time_ns":")";
 
 /// Whether it begins as a byte in words does: a backslash, x and two digits.
@@ -116,41 +117,41 @@ void JsonText::know(protocol::FrameRef frame, const Selection& selection) {
   known.selected = selection.has(layout);
   known.first_field = static_cast<std::uint32_t>(fields_.size());
   known.frame = frame;
-  std::string names = "{";  // up to the first value
+  known.message = frame.topic->is_message();
+  known.pgn = layout.address.by == protocol::Address::By::pgn;
+  known.least = layout.any_length() ? 0 : layout.length;
+  known.most = layout.accepts(layout.length + std::size_t{1}) ? UINT16_MAX : layout.length;
+  std::vector<std::string> names;
   std::string units = R"(,"units":{)";
+  std::vector<std::string> with_units;
   std::size_t size = 0;
   for (const auto& field : layout.fields) {
     if (!selection.has(layout, field)) continue;
-    const std::string name = json_string(field.name) + ':';
-    const std::string unit = name + json_string(field.unit);
-    if (fields_.size() == known.first_field) {
-      names += name;
-    } else {
-      fields_.back().after = keep("," + name);
-      units += ',';
-    }
-    units += unit;
+    names.push_back(json_string(field.name) + ':');
+    with_units.push_back(names.back() + json_string(field.unit));
+    units += (names.size() == 1 ? "" : ",") + with_units.back();
     known.varies = known.varies || layout.may_lack(field);
-    fields_.push_back({FieldText{field}, {}, {}, {}});
-    if (frame.topic->is_message()) {
-      fields_.back().name = keep(name);
-      fields_.back().unit = keep(unit);
-    }
-    size += FieldText::room + name.size() + unit.size() + 2 * block;
+    fields_.push_back({FieldText{field}, {}});
+    size += FieldText::room + names.back().size() + with_units.back().size() + 2 * block;
   }
-  known.fields = static_cast<std::uint16_t>(fields_.size() - known.first_field);
+  known.fields = static_cast<std::uint16_t>(names.size());
+  present_.resize(std::max(present_.size(), names.size()));
+  labels_.resize(fields_.size());
   units += R"(},"data":")";
-  if (known.varies)
-    names = "{";
-  else if (known.fields == 0)
-    names += "}" + units;
-  else
-    fields_.back().after = keep("}" + units);
+  // In the order in which they are written, and nothing between them that is not: of thousands of fields they
+  // are to stay in the processor's second cache.
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (known.varies)
+      labels_[known.first_field + i] = {keep(names[i]), keep(with_units[i])};
+    else
+      fields_[known.first_field + i].after = keep(i + 1 < names.size() ? "," + names[i + 1] : "}" + units);
+  }
+  const std::string first = known.varies ? "{" : names.empty() ? "{}" + units : "{" + names.front();
 
   const auto head = [&](std::string_view before) {
     const std::string text =
         fmt::format(R"({}"topic":{},"frame":{},"fields":{})", before, json_string(frame.topic->name),
-                    json_string(frame_name(frame)), names);
+                    json_string(frame_name(frame)), first);
     known.head = keep(text);
     room_ = std::max(room_, text.size() + size + units.size() + 128 + 2 * block);
   };
@@ -179,11 +180,8 @@ const JsonText::Known& JsonText::known_of(const log::Entry& entry) const noexcep
 
 char* JsonText::put(char* to, Piece piece) const noexcept {
   const char* const from = pieces_.data() + piece.begin;
-  std::size_t i = 0;
-  do {
-    std::memcpy(to + i, from + i, block);
-    i += block;
-  } while (i < piece.size);
+  std::memcpy(to, from, block);
+  if (piece.size > block) std::memcpy(to + block, from + block, piece.size - block);
   return to + piece.size;
 }
 
@@ -203,14 +201,11 @@ const std::string& JsonText::bus_text(std::string_view bus, std::uint16_t number
   return kept.text;
 }
 
-/// The identifier of a message, and what it says by J1939.
-char* JsonText::put_identity(char* to, const log::Entry& entry, const Known& known) const noexcept {
-  to = put_hex(to, entry.id, can::is_extended(entry.format) ? 8 : 3);
-  *to++ = '"';
-  if (known.frame.layout().address.by != protocol::Address::By::pgn) return to;
-  const auto id = j1939::Identifier::decode(entry.id);
+namespace {
+
+char* put_j1939(char* to, const j1939::Identifier& id) {
   const auto put_text = [&to](std::string_view text) { to = std::copy(text.begin(), text.end(), to); };
-  put_text(R"(,"priority":)");
+  put_text(R"("priority":)");
   to = put_unsigned(to, id.priority);
   put_text(R"(,"pgn":")");
   to = put_hex(to, id.pgn, 5);
@@ -219,33 +214,55 @@ char* JsonText::put_identity(char* to, const log::Entry& entry, const Known& kno
   put_text(R"(,"destination":)");
   return put_unsigned(to, id.destination);
 }
+constexpr std::size_t j1939_room = 80;
 
-/// Of a message, those that are in the frame.
-char* JsonText::put_fields(char* to, const Known& known, const log::Entry& entry) const noexcept {
+}  // namespace
+
+/// The identifier of a message, and what it says by J1939.
+char* JsonText::put_identity(char* to, const log::Entry& entry, const Known& known) const noexcept {
+  to = put_hex(to, entry.id, can::is_extended(entry.format) ? 8 : 3);
+  *to++ = '"';
+  if (!known.pgn) return to;
+  *to++ = ',';
+  return put_j1939(to, j1939::Identifier::decode(entry.id));
+}
+
+/// Which of a message's fields are in its bytes: how many of `present_`.
+std::size_t JsonText::find_present(const Known& known, std::span<const std::uint8_t> bytes) noexcept {
   const auto& layout = known.frame.layout();
-  const FieldPiece* const begin = fields_.data() + known.first_field;
-  const auto each = [&](auto put_one) {
-    bool first = true;
-    for (const FieldPiece* piece = begin; piece != begin + known.fields; ++piece) {
-      if (!layout.has(piece->value.field(), entry.bytes())) continue;
-      if (!first) *to++ = ',';
-      first = false;
-      put_one(*piece);
-    }
-  };
+  const FieldPiece* const fields = fields_.data() + known.first_field;
+  std::size_t count = 0;
+  for (std::uint16_t i = 0; i < known.fields; ++i)
+    if (layout.has(fields[i].value.field(), bytes)) present_[count++] = i;
+  return count;
+}
+
+/// The first `count` of `present_`.
+char* JsonText::put_fields(char* to, const Known& known, std::span<const std::uint8_t> bytes,
+                           std::size_t count) const noexcept {
+  const FieldPiece* const fields = fields_.data() + known.first_field;
+  const Labels* const labels = labels_.data() + known.first_field;
   const auto put_text = [&to](std::string_view text) { to = std::copy(text.begin(), text.end(), to); };
-  each([&](const FieldPiece& piece) { to = piece.value.print_json(put(to, piece.name), entry.data.data()); });
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i != 0) *to++ = ',';
+    to = fields[present_[i]].value.print_json(put(to, labels[present_[i]].name), bytes.data());
+  }
   put_text(R"(},"units":{)");
-  each([&](const FieldPiece& piece) { to = put(to, piece.unit); });
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i != 0) *to++ = ',';
+    to = put(to, labels[present_[i]].unit);
+  }
   put_text(R"(},"data":")");
   return to;
 }
 
 bool JsonText::write(log::Bytes& out, std::string_view bus, const log::Entry& entry) {
   const Known& known = known_of(entry);
-  const bool data = known.kind == Kind::fields && known.frame.layout().accepts(entry.length) &&
+  const bool data = known.kind == Kind::fields && entry.length >= known.least && entry.length <= known.most &&
                     !can::is_remote(entry.format);
   if (!everything_ && !(data && known.selected)) return false;
+  const std::size_t present = data && known.varies ? find_present(known, entry.bytes()) : 0;
+  if (!everything_ && known.varies && present == 0) return false;
   const std::string& text = bus_text(bus, entry.interface);
   if (!data) {
     write_rest(out, text, known, entry);
@@ -253,10 +270,10 @@ bool JsonText::write(log::Bytes& out, std::string_view bus, const log::Entry& en
   }
   char* to = out.room(room_ + line_begin.size() + 32 + text.size());
   to = put_begin(to, text, entry);
-  if (known.frame.topic->is_message()) to = put_identity(to, entry, known);
+  if (known.message) to = put_identity(to, entry, known);
   to = put(to, known.head);
   if (known.varies) {
-    to = put_fields(to, known, entry);
+    to = put_fields(to, known, entry.bytes(), present);
   } else {
     const FieldPiece* field = fields_.data() + known.first_field;
     for (unsigned i = 0; i < known.fields; ++i)
@@ -278,6 +295,45 @@ bool JsonText::write(log::Bytes& out, std::string_view bus, const log::Entry& en
   }
   out.grow_to(to);
   return true;
+}
+
+bool JsonText::write_transport(log::Bytes& out, std::string_view bus, const log::Entry& entry,
+                               const client::Reception& reception) {
+  const j1939::Transported* const message = reception.transported;
+  const Known* const known =
+      message == nullptr || reception.topic == nullptr
+          ? nullptr
+          : &messages_[static_cast<std::size_t>(reception.topic - catalogue_->topics.data())];
+  if (!everything_ && (known == nullptr || !known->selected || find_present(*known, message->data) == 0))
+    return false;
+  const std::string& text = bus_text(bus, entry.interface);
+  char* to = put_begin(out.room(line_begin.size() + 64 + text.size() + j1939_room), text, entry);
+  to = put_hex(to, entry.id, 8);
+  const auto put_text = [&to](std::string_view piece) { to = std::copy(piece.begin(), piece.end(), to); };
+  put_text(R"(",)");
+  const auto id = j1939::Identifier::decode(entry.id);
+  to = put_j1939(to, id);
+  put_text(id.pgn == j1939::transfer_group ? R"(,"transport":"packet")" : R"(,"transport":"control")");
+  out.grow_to(to);
+  if (message != nullptr) write_message(out, known, *message);
+  out.append(R"(,"data":")");
+  out.grow_to(put_end(put_data(out.room(end_room), entry), entry));
+  return true;
+}
+
+/// `known`: none of a message that no spec has.
+void JsonText::write_message(log::Bytes& out, const Known* known, const j1939::Transported& message) {
+  out.append(R"(,"message":{)");
+  out.grow_to(put_j1939(out.room(j1939_room), message.id));
+  if (known != nullptr) {
+    append_formatted(out, R"(,"topic":{},"fields":{{)", json_string(known->frame.topic->name));
+    const std::size_t present = find_present(*known, message.data);
+    out.grow_to(put_fields(out.room(room_), *known, message.data, present));
+  } else {
+    out.append(R"(,"error":"unknown identifier","data":")");
+  }
+  out.grow_to(put_hex(out.room(2 * message.data.size() + block), message.data));
+  out.append("\"}");
 }
 
 void JsonText::write_rest(log::Bytes& out, std::string_view bus_text, const Known& known,

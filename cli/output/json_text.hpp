@@ -1,8 +1,9 @@
 /// Frames as JSON lines, one object a frame with stable keys: time_ns (a string: it has more digits than a
 /// double), bus, id, priority, topic, frame, fields, units, data; and where they say something direction, fd,
 /// raw_dlc. A message has no priority; one of J1939 has priority, pgn, source and destination of its
-/// identifier. A field that is not in the frame has no key. What is the same in every frame of an identifier
-/// is made once, so that a line is a few copies with numbers between them. Nothing of the frame is left out:
+/// identifier. A frame of J1939's transport protocol has `transport`, and in `message` what it completes. A
+/// field that is not in the frame has no key. What is the same in every frame of an identifier is made once,
+/// so that a line is a few copies with numbers between them. Nothing of the frame is left out:
 /// cli/logs/json_lines.hpp reads it back.
 #pragma once
 
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "ocm/client/frame_index.hpp"
+#include "ocm/client/sample.hpp"
 #include "ocm/log/bytes.hpp"
 #include "ocm/log/entry.hpp"
 #include "ocm/protocol/topic.hpp"
@@ -34,6 +36,9 @@ class JsonText {
 
   /// Appends one line. false: nothing of the frame was selected.
   bool write(log::Bytes& out, std::string_view bus, const log::Entry& entry);
+  /// The same of a frame of J1939's transport protocol, with the message that it completes in it.
+  bool write_transport(log::Bytes& out, std::string_view bus, const log::Entry& entry,
+                       const client::Reception& reception);
 
  private:
   /// Characters of `pieces_`.
@@ -44,15 +49,23 @@ class JsonText {
   struct FieldPiece {
     FieldText value;
     Piece after;  ///< what follows the value: the next field's name, or the units
-    Piece name;   ///< for what is not in every frame, with its colon
-    Piece unit;   ///< of it, with name and colon
+  };
+  /// Of a field that is not in every frame, with colons.
+  struct Labels {
+    Piece name;
+    Piece unit;  ///< name and unit
   };
   enum class Kind : std::uint8_t { unknown, fields, request };
-  /// What an identifier means.
+  /// What an identifier means; with a copy of what is asked of every frame, so that neither topic nor layout
+  /// need be looked at.
   struct Known {
     Kind kind = Kind::unknown;
     bool selected = true;
-    bool varies = false;  ///< not every frame has every field
+    bool varies = false;      ///< not every frame has every field
+    bool message = false;     ///< no topic
+    bool pgn = false;         ///< J1939's
+    std::uint16_t least = 0;  ///< bytes of a frame
+    std::uint16_t most = 0;
     std::uint16_t fields = 0;
     std::uint32_t first_field = 0;
     Piece head;  ///< of a topic from the identifier, of a message from behind it, to the first value
@@ -68,7 +81,10 @@ class JsonText {
   void know(protocol::FrameRef frame, const Selection& selection);
   [[nodiscard]] const Known& known_of(const log::Entry& entry) const noexcept;
   [[nodiscard]] char* put_identity(char* to, const log::Entry& entry, const Known& known) const noexcept;
-  [[nodiscard]] char* put_fields(char* to, const Known& known, const log::Entry& entry) const noexcept;
+  std::size_t find_present(const Known& known, std::span<const std::uint8_t> bytes) noexcept;
+  [[nodiscard]] char* put_fields(char* to, const Known& known, std::span<const std::uint8_t> bytes,
+                                 std::size_t count) const noexcept;
+  void write_message(log::Bytes& out, const Known* known, const j1939::Transported& message);
   char* put(char* to, Piece piece) const noexcept;
   char* put_begin(char* to, std::string_view bus_text, const log::Entry& entry) const noexcept;
   const std::string& bus_text(std::string_view bus, std::uint16_t number);
@@ -81,6 +97,9 @@ class JsonText {
   std::array<Known, can::max_base_id + 1> known_{};
   std::vector<Known> messages_;  // by number in the catalogue, those of 29 bits and of CAN FD
   std::vector<FieldPiece> fields_;
+  std::vector<Labels> labels_;  // of the same number as fields_
+  std::vector<std::uint16_t>
+      present_;  // which fields are in the frame at hand; as many as the most that one has
   std::string pieces_;
   std::size_t room_ = 0;  ///< for any line without what precedes the identifier
   bool everything_;

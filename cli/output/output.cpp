@@ -5,7 +5,7 @@
 namespace ocm::cli {
 
 client::Reception understand(client::Receiver& receiver, const log::Entry& entry) {
-  return receiver.take(entry.view(), entry.time);
+  return receiver.take(entry.view(), entry.time, entry.interface);
 }
 
 std::unique_ptr<Output> make_output(Format format, const protocol::Catalogue& catalogue,

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -43,6 +44,12 @@ void append_formatted(Buffer& out, fmt::format_string<Arguments...> text, Argume
 
 /// What an entry means; the receiver counts all but CAN FD frames, of which it knows nothing.
 [[nodiscard]] client::Reception understand(client::Receiver& receiver, const log::Entry& entry);
+
+/// The bytes with the fields of a topic's frame or a message: of the frame, or of the message that it
+/// completes.
+[[nodiscard]] inline std::span<const std::uint8_t> bytes_of(const Event& event) {
+  return event.reception.transported != nullptr ? event.reception.transported->data : event.entry.bytes();
+}
 
 /// Writes events as text into a buffer, which `Printer` empties.
 class Output {

@@ -15,6 +15,7 @@
 #include "ocm/protocol/request.hpp"
 
 #include "cli/output/field_text.hpp"
+#include "cli/output/named_value.hpp"
 #include "cli/output/output.hpp"
 #include "cli/shared/folding.hpp"
 #include "cli/words/quantity.hpp"
@@ -57,9 +58,9 @@ class Pretty final : public Output {
   bool write(Buffer& out, const Event& event) override {
     using client::Meaning;
     const Meaning meaning = event.reception.meaning;
-    if (meaning == Meaning::part) return false;
+    if (meaning == Meaning::part || meaning == Meaning::transport) return false;
     const bool data = meaning == Meaning::sample || meaning == Meaning::set_point;
-    if (!everything_ && (!data || topics_.at(event.reception.topic).columns.empty())) return false;
+    if (!everything_ && !(data && has_chosen(event))) return false;
     width_ = terminal_columns_ == nullptr ? SIZE_MAX : terminal_columns_();
     const std::size_t begin = out.size();
     breaks_.clear();
@@ -79,6 +80,15 @@ class Pretty final : public Output {
   static constexpr std::size_t before_name = 22;  ///< columns of time and priority
   /// Columns beside the names: with less than this, names take no column of their own.
   static constexpr std::size_t value_room = 40;
+
+  /// Whether a sample or set point has a field that was chosen.
+  [[nodiscard]] bool has_chosen(const Event& event) const {
+    const auto& topic = *event.reception.topic;
+    const auto& columns = topics_.at(&topic).columns;
+    return std::any_of(columns.begin(), columns.end(), [&](const Column& column) {
+      return !column.varies || topic.frames[column.frame].has(column.value.field(), bytes_of(event));
+    });
+  }
 
   [[nodiscard]] bool has_column_of_names() const {
     return width_ == SIZE_MAX || before_name + name_width_ + value_room <= width_;
@@ -108,6 +118,7 @@ class Pretty final : public Output {
     using client::Meaning;
     switch (event.reception.meaning) {
       case Meaning::part:
+      case Meaning::transport:
         break;
       case Meaning::sample:
         head(out, event, "");
@@ -132,6 +143,11 @@ class Pretty final : public Output {
         break;
       case Meaning::unknown:
         time(out, event);
+        if (const auto* const message = event.reception.transported) {
+          append_formatted(out, "{} unknown group {:05X}:", route_of(message->id), message->id.pgn);
+          for (const std::uint8_t byte : message->data) append_formatted(out, " {:02X}", byte);
+          break;
+        }
         append_formatted(out, "{:<7} {}: {}", "-", event.entry.is_fd() ? "CAN FD" : "unknown",
                          frame_text(event.entry));
         break;
@@ -192,6 +208,11 @@ class Pretty final : public Output {
     out.append(arrow);
   }
 
+  /// Priority, source and destination.
+  static std::string route_of(const j1939::Identifier& id) {
+    return fmt::format("{} {:02X}>{:02X}", id.priority, id.source, id.destination);
+  }
+
   /// A topic's in words; of a message its identifier, or by J1939 the priority, source and destination in it.
   [[nodiscard]] std::string priority_of(const Event& event) const {
     const auto& topic = *event.reception.topic;
@@ -200,8 +221,9 @@ class Pretty final : public Output {
     if (topic.frames[0].address.by != protocol::Address::By::pgn)
       return painted(dim, fmt::format("{:>7} ", fmt::format("{:0{}X}", event.entry.id,
                                                             can::is_extended(event.entry.format) ? 8 : 3)));
-    const auto id = j1939::Identifier::decode(event.entry.id);
-    return painted(dim, fmt::format("{} {:02X}>{:02X} ", id.priority, id.source, id.destination));
+    const auto* const message = event.reception.transported;
+    return painted(
+        dim, route_of(message != nullptr ? message->id : j1939::Identifier::decode(event.entry.id)) + ' ');
   }
 
   [[nodiscard]] std::vector<Column> columns_of(const protocol::Topic& topic,
@@ -240,19 +262,6 @@ class Pretty final : public Output {
     // A whole bound says nothing of the digits behind the point.
     if (field.scale.exponent < 0) width = std::max(width, static_cast<std::size_t>(2 - field.scale.exponent));
     return std::min<std::size_t>(width, 11);
-  }
-
-  /// The names of a value that has some; empty otherwise.
-  static std::string names_of(const protocol::Field& field, std::int64_t raw) {
-    std::string text;
-    for (const auto& value : field.values) {
-      const bool applies = field.flags ? (raw >> value.raw & 1) != 0 : raw == value.raw;
-      if (!applies) continue;
-      if (!text.empty()) text += '|';
-      text += value.name;
-    }
-    if (!text.empty() || !field.flags) return text;
-    return raw == 0 ? "-" : fmt::format("0x{:X}", raw);
   }
 
   static void put_right(Buffer& out, std::string_view text, std::size_t width) {

@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "ocm/base/text.hpp"
-
 #include "cli/record/can_capture.hpp"
 #include "cli/shared/buses.hpp"
 
@@ -24,7 +22,7 @@ class BusCapture final : public Capture {
   std::size_t read(std::span<log::Entry> into, std::uint16_t interface) override {
     std::size_t count = 0;
     while (count < std::min(into.size(), batch)) {
-      const auto received = bus_->receive(base::Duration{0});
+      const auto received = bus_->receive_any(base::Duration{0});
       if (!received) {
         closed_ = received.error == base::Error::closed;
         break;
@@ -52,39 +50,7 @@ class BusCapture final : public Capture {
   bool closed_ = false;
 };
 
-canid_t raw_id(const log::Entry& entry) noexcept {
-  canid_t id = entry.id;
-  if (can::is_extended(entry.format)) id |= CAN_EFF_FLAG;
-  if (can::is_remote(entry.format)) id |= CAN_RTR_FLAG;
-  return id;
-}
-
 }  // namespace
-
-bool passes(const log::Entry& entry, std::span<const can_filter> filters) noexcept {
-  if (filters.empty() || entry.format == can::Format::error) return true;
-  const canid_t id = raw_id(entry);
-  return std::any_of(filters.begin(), filters.end(), [id](const can_filter& filter) {
-    const bool opposite = (filter.can_id & CAN_INV_FILTER) != 0;
-    const canid_t wanted = filter.can_id & ~canid_t{CAN_INV_FILTER};
-    return ((id & filter.can_mask) == (wanted & filter.can_mask)) != opposite;
-  });
-}
-
-transport::Outcome<can_filter> parse_filter(std::string_view text) {
-  const transport::Failure refused{fmt::format("--filter {}: not a filter", text),
-                                   "write id:mask in hexadecimal, such as 600:700 or 18FF0000:1FFF0000; "
-                                   "id~mask for all the others"};
-  const auto sign = text.find_first_of(":~");
-  if (sign == std::string_view::npos) return refused;
-  const auto id = base::parse_unsigned(text.substr(0, sign), 16);
-  const auto mask = base::parse_unsigned(text.substr(sign + 1), 16);
-  if (!id || !mask || *id > CAN_EFF_MASK || *mask > UINT32_MAX) return refused;
-  can_filter filter{static_cast<canid_t>(*id), static_cast<canid_t>(*mask) & ~canid_t{CAN_ERR_FLAG}};
-  if (sign == 8) filter.can_id |= CAN_EFF_FLAG;
-  if (text[sign] == '~') filter.can_id |= CAN_INV_FILTER;
-  return filter;
-}
 
 transport::Outcome<std::unique_ptr<Capture>> open_capture(std::string_view name, const Filters& filters) {
   const BusName parsed = parse_bus_name(name);

@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <linux/can.h>
 #include <memory>
 #include <span>
 #include <string>
@@ -15,18 +14,9 @@
 #include "ocm/log/entry.hpp"
 #include "ocm/transport/bus.hpp"
 
+#include "cli/shared/filters.hpp"
+
 namespace ocm::cli::record {
-
-/// As the kernel compares: `(id & mask) == (filter.id & mask)`, with the format's bits in the identifier
-/// (CAN_EFF_FLAG, CAN_RTR_FLAG) and CAN_INV_FILTER for the opposite. [linux/can.h]
-using Filters = std::vector<can_filter>;
-
-/// "123:7FF", "18FF1234:1FFFFFFF", and with ~ in place of : for all that do not match, as candump has them.
-/// Eight digits are an extended identifier.
-[[nodiscard]] transport::Outcome<can_filter> parse_filter(std::string_view text);
-
-/// Whether a frame passes one of the filters, or there is none. Error frames always do.
-[[nodiscard]] bool passes(const log::Entry& entry, std::span<const can_filter> filters) noexcept;
 
 class Capture {
  public:

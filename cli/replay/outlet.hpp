@@ -1,5 +1,5 @@
-/// A bus that recorded frames are sent to, as long as it takes: CAN FD frames too where it is a CAN interface
-/// that carries them.
+/// A bus that recorded frames are sent to, as long as it takes: CAN FD frames too where it carries
+/// them.
 #pragma once
 
 #include <cstdint>
@@ -35,15 +35,12 @@ class Outlet {
   /// Sets motors to zero that the frames have left running. false: they have not.
   bool rest();
 
-  /// Waits until all has left, or leaves through cli::fail and says how much has not. CAN FD frames are not
-  /// counted.
+  /// Waits until all has left, or leaves through cli::fail and says how much has not.
   void expect_all_left() { outgoing_.expect_all_left(); }
 
   [[nodiscard]] std::string_view name() const { return bus_->name(); }
 
  private:
-  [[nodiscard]] bool send_fd(const log::Entry& entry) const;
-
   std::unique_ptr<transport::Bus> bus_;
   Outgoing outgoing_;
   bool takes_fd_;

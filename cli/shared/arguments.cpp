@@ -505,17 +505,38 @@ void Verb::after_parsing(std::function<void()> run) const {
   app_->parse_complete_callback(std::move(run));
 }
 
+namespace {
+
+/// One that was added, of this verb or of a group of its options. As CLI::App::get_option, which may not
+/// throw where memory is short: it is noexcept inside, and copies names.
+CLI::Option* find_option(CLI::App& app, const std::string& name) {
+  for (CLI::Option* const each : app.get_options())
+    if (each->check_name(name)) return each;
+  for (CLI::App* const group : app.get_subcommands([](const CLI::App*) { return true; }))
+    if (group->get_name().empty())
+      if (CLI::Option* const found = find_option(*group, name)) return found;
+  return nullptr;
+}
+
+CLI::Option& known_option(CLI::App& app, const std::string& name) {
+  CLI::Option* const found = find_option(app, name);
+  if (found == nullptr) throw CLI::OptionNotFound(name);
+  return *found;
+}
+
+}  // namespace
+
 std::size_t Verb::count(const std::string& option) const {
-  return app_->count(option);
+  return known_option(*app_, option).count();
 }
 
 bool Verb::is_typed(const std::string& option) const {
-  const CLI::Option* found = app_->get_option(option);
-  return found->count() != 0 && root_of(app_).given.count(found) == 0;
+  const CLI::Option& found = known_option(*app_, option);
+  return found.count() != 0 && root_of(app_).given.count(&found) == 0;
 }
 
 Option Verb::option(const std::string& name) const {
-  return {app_->get_option(name), app_};
+  return {&known_option(*app_, name), app_};
 }
 
 std::string Verb::name() const {

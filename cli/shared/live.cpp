@@ -1,6 +1,7 @@
 #include "cli/shared/live.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include <fmt/format.h>
 
@@ -23,7 +24,13 @@ void StateWatch::look(const transport::Bus& bus) {
   if (state_ == transport::BusState::up) remark(fmt::format("{} is up again", bus.name()));
 }
 
-Over Live::receive(Clock::time_point until, const Take& take) {
+void Live::wait_for_both(Clock::duration longest) {
+  std::array inputs{pollfd{beside_.descriptor, POLLIN, 0}, pollfd{bus_->descriptor(), POLLIN, 0}};
+  if (wait_for_input(inputs, longest) && inputs[0].revents != 0) beside_.serve();
+}
+
+template <class Ask, class GiveTo>
+Over Live::receive_next(Clock::time_point until, const Ask& ask, const GiveTo& take) {
   bool all_taken = !idle_;
   while (interrupted() == 0) {
     Clock::duration left{0};
@@ -32,7 +39,8 @@ Over Live::receive(Clock::time_point until, const Take& take) {
       if (left.count() <= 0) return Over::time;
       left = std::min(left, longest_wait);
     }
-    const auto received = bus_->receive(left);
+    const bool waits_here = beside_.descriptor >= 0 && left.count() > 0;
+    const auto received = ask(waits_here ? Clock::duration{0} : left);
     state_.look(*bus_);
     if (received) {
       all_taken = !idle_;
@@ -40,10 +48,21 @@ Over Live::receive(Clock::time_point until, const Take& take) {
       continue;
     }
     if (received.error == base::Error::closed) return Over::gone;
+    if (waits_here) wait_for_both(left);
     if (!all_taken) idle_();
     all_taken = true;
   }
   return Over::signal;
+}
+
+Over Live::receive(Clock::time_point until, const Take& take) {
+  return receive_next(
+      until, [this](base::Duration left) { return bus_->receive(left); }, take);
+}
+
+Over Live::receive_any(Clock::time_point until, const TakeAny& take) {
+  return receive_next(
+      until, [this](base::Duration left) { return bus_->receive_any(left); }, take);
 }
 
 Over Live::receive_or_leave(Clock::time_point until, const Take& take) {

@@ -30,6 +30,13 @@ class StateWatch {
   transport::BusState state_ = transport::BusState::up;
 };
 
+/// Something else that is waited for, such as the socket of another program: when it is readable, it is
+/// served, between two frames.
+struct Beside {
+  int descriptor = -1;
+  std::function<void()> serve{};
+};
+
 class Live {
  public:
   using Clock = cli::Clock;
@@ -38,17 +45,30 @@ class Live {
 
   /// `bus` must outlive it. `idle`, where there is one, is called before each wait, when no frame is left to
   /// take; the time is looked at then only, so that nothing of what came in time is left.
-  explicit Live(transport::Bus& bus, std::function<void()> idle = {}) : bus_(&bus), idle_(std::move(idle)) {}
+  explicit Live(transport::Bus& bus, std::function<void()> idle = {}, Beside beside = {})
+      : bus_(&bus), idle_(std::move(idle)), beside_(std::move(beside)) {}
 
-  /// Gives every frame to `take` until `until`.
+  /// Gets a frame of either kind.
+  using TakeAny = std::function<bool(const transport::ReceivedAny&)>;
+
+  /// Gives every classic frame to `take` until `until`.
   [[nodiscard]] Over receive(Clock::time_point until, const Take& take);
+  /// Gives every frame to `take`, CAN FD ones too.
+  [[nodiscard]] Over receive_any(Clock::time_point until, const TakeAny& take);
   /// The same for who cannot go on without the bus: leaves with its failure when it is gone, and after a
   /// signal.
   Over receive_or_leave(Clock::time_point until, const Take& take);
 
  private:
+  template <class Ask, class GiveTo>
+  [[nodiscard]] Over receive_next(Clock::time_point until, const Ask& ask, const GiveTo& take);
+
+  /// Until a frame may be there, or time is up; serves what is beside.
+  void wait_for_both(Clock::duration longest);
+
   transport::Bus* bus_;
   std::function<void()> idle_;
+  Beside beside_;
   StateWatch state_;
 };
 

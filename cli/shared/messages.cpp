@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <string>
 #include <unistd.h>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -22,8 +24,22 @@ std::string& speaker() {
   return verb;
 }
 
+/// Messages that are kept for later, where they are.
+struct Kept {
+  bool keeps = false;
+  std::vector<std::string> lines;
+};
+Kept& kept() {
+  static Kept messages;
+  return messages;
+}
+
 void print(std::string_view before, std::string_view raw) {
   const std::string text = printable(raw);
+  if (kept().keeps) {
+    kept().lines.push_back(std::string{before} + text);
+    return;
+  }
   const WithoutBrokenPipe message;  // `stop 2>&1 | true` stops
   static bool echo_erased = false;
   if (!echo_erased && interrupted() == SIGINT && isatty(STDERR_FILENO) != 0) {
@@ -80,6 +96,24 @@ void complain(const transport::Failure& failure) {
 
 void remark(std::string_view text) {
   print("", text);
+}
+
+HeldMessages::HeldMessages() {
+  kept().keeps = true;
+}
+
+HeldMessages::~HeldMessages() {
+  kept().keeps = false;
+  const WithoutBrokenPipe message;
+  for (const std::string& line : std::exchange(kept().lines, {})) std::fprintf(stderr, "%s\n", line.c_str());
+}
+
+std::size_t HeldMessages::count() {
+  return kept().lines.size();
+}
+
+std::string_view HeldMessages::newest() {
+  return kept().lines.empty() ? std::string_view{} : kept().lines.back();
 }
 
 void add_count(std::string& text, std::uint64_t count, std::string_view what) {

@@ -29,6 +29,18 @@ void speak_for(std::string_view verb);
 void complain(const transport::Failure& failure);
 /// A remark for the person at the terminal, on stderr.
 void remark(std::string_view text);
+/// As long as it lives, messages are kept, because a screen is where they would be written; then they are
+/// written. One at a time.
+class HeldMessages {
+ public:
+  HeldMessages();
+  ~HeldMessages();
+  HeldMessages(const HeldMessages&) = delete;
+  HeldMessages& operator=(const HeldMessages&) = delete;
+  /// How many there are, and the newest; empty: none.
+  [[nodiscard]] static std::size_t count();
+  [[nodiscard]] static std::string_view newest();
+};
 /// Adds ", COUNT what" to a summary, where there is something to count.
 void add_count(std::string& text, std::uint64_t count, std::string_view what);
 

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "ocm/can/text.hpp"
+#include "ocm/can/any_text.hpp"
 #include "ocm/transport/virtual_bus.hpp"
 
 #include "cli/shared/clock.hpp"
@@ -34,16 +34,22 @@ Outgoing::Outgoing(transport::Bus& bus, std::string verb, std::string otherwise)
   give_up(fmt::format("{}; nothing was sent", delivery.obstruction.what), delivery.obstruction.remedy);
 }
 
-void Outgoing::send(const can::Frame& frame, base::Duration patience) {
+void Outgoing::send(const can::AnyFrame& frame, base::Duration patience) {
   const auto late = look() + patience;
   for (;;) {
-    const auto taken = bus_.send(frame);
+    const auto taken = bus_.send_any(frame);
     const auto now = look();
     if (taken.error == base::Error::closed) fail(bus_.failure());
-    if (!taken)
+    if (!taken) {
+      if (auto obstacle = frame.is_fd() ? bus_.fd_obstacle() : transport::Failure{}; !obstacle.what.empty())
+        give_up(fmt::format("{} is a CAN FD frame, and {}", can::to_text(frame).view(), obstacle.what),
+                obstacle.remedy);
       fail({fmt::format("{} cannot be sent: {}", can::to_text(frame).view(), base::describe(taken.error)),
-            "only data and remote frames with a valid identifier and up to 8 bytes can"});
+            "only data and remote frames with a valid identifier can, of up to 8 bytes; CAN FD of up to 64"});
+    }
     if (*taken) return;
+    if (const auto delivery = bus_.delivery(); delivery.refused)
+      give_up(delivery.obstruction.what, delivery.obstruction.remedy);
     if (now >= late) {
       if (bus_.state() == transport::BusState::down)
         give_up(fmt::format("{} is down: {} was not sent", bus_.name(), can::to_text(frame).view()),

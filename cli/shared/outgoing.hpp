@@ -7,7 +7,7 @@
 #include <string>
 
 #include "ocm/base/time.hpp"
-#include "ocm/can/frame.hpp"
+#include "ocm/can/any_frame.hpp"
 #include "ocm/transport/bus.hpp"
 
 #include "cli/shared/clock.hpp"
@@ -34,8 +34,9 @@ class Outgoing {
   /// Whether it means something for the robot if frames do not leave now.
   [[nodiscard]] bool matters() const;
 
-  /// Waits for room in the queue, at most `patience`; then leaves with the bus's words.
-  void send(const can::Frame& frame, base::Duration patience = std::chrono::seconds{1});
+  /// Waits for room in the queue, at most `patience`; then leaves with the bus's words. Leaves with them,
+  /// too, if the bus carries no CAN FD frames and this is one.
+  void send(const can::AnyFrame& frame, base::Duration patience = std::chrono::seconds{1});
   /// The looks at the clock of `send`, each millisecond, go on from a look of the caller.
   void looks_from(Clock::time_point look) noexcept { looked_ = look; }
   [[nodiscard]] Clock::time_point looked() const noexcept { return looked_; }  ///< the last one

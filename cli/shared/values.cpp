@@ -7,10 +7,12 @@
 
 #include "cli/words/command.hpp"
 #include "cli/words/quantity.hpp"
+#include "generator/spec/model.hpp"
 
 namespace ocm::cli {
 namespace {
 
+constexpr const char* a_data_bit_rate = "1 to 16000000 bits a second, such as 2M or 5000000";
 constexpr const char* a_bit_rate = "1 to 1000000 bits a second, such as 500k or 125000";
 
 base::Result<base::Duration, words::WordError> read_duration(std::string_view text) {
@@ -19,7 +21,8 @@ base::Result<base::Duration, words::WordError> read_duration(std::string_view te
   return words::WordError{0, "not a time", "write 500ms, 2s or 1.5s"};
 }
 
-base::Result<std::uint32_t, words::WordError> read_bit_rate(std::string_view digits) {
+/// Bits a second, whole; 0: none, or more than `most`.
+std::uint32_t bits_a_second(std::string_view digits, std::int64_t most) {
   std::int64_t unit = 1;
   if (digits.ends_with('k') || digits.ends_with('K')) unit = 1000;
   if (digits.ends_with('M')) unit = 1'000'000;
@@ -27,10 +30,19 @@ base::Result<std::uint32_t, words::WordError> read_bit_rate(std::string_view dig
   const auto number = base::parse_decimal(digits);
   const auto rate = number ? base::multiply(*number, {unit, 0}) : number;
   const auto whole = rate ? base::divide_rounded(*rate, {1, 0}) : base::Result<std::int64_t>{rate.error};
-  // Bits a second, whole; classic CAN ends at a million.
-  if (whole && *whole >= 1 && *whole <= 1'000'000 && base::compare(*rate, {*whole, 0}) == 0)
+  if (whole && *whole >= 1 && *whole <= most && base::compare(*rate, {*whole, 0}) == 0)
     return static_cast<std::uint32_t>(*whole);
+  return 0;
+}
+
+/// Classic CAN, and what CAN FD begins with, ends at a million.
+base::Result<std::uint32_t, words::WordError> read_bit_rate(std::string_view digits) {
+  if (const std::uint32_t rate = bits_a_second(digits, 1'000'000); rate != 0) return rate;
   return words::WordError{0, "no bit rate of CAN", a_bit_rate};
+}
+base::Result<std::uint32_t, words::WordError> read_data_bit_rate(std::string_view digits) {
+  if (const std::uint32_t rate = bits_a_second(digits, spec::max_data_bit_rate); rate != 0) return rate;
+  return words::WordError{0, "no bit rate of the data of CAN FD", a_data_bit_rate};
 }
 
 }  // namespace
@@ -56,6 +68,15 @@ Option add_bit_rate(Verb verb, const std::string& names, std::optional<std::uint
                     const std::string& help) {
   const auto option = verb.add_value(names, take_into(value, read_bit_rate), help);
   return option.type_name("RATE").takes(accepted_bit_rate());
+}
+
+Option add_data_bit_rate(Verb verb, const std::string& names, std::optional<std::uint32_t>& value,
+                         const std::string& help) {
+  const auto option = verb.add_value(names, take_into(value, read_data_bit_rate), help);
+  return option.type_name("RATE").takes(
+      {ValueKind::text, true, a_data_bit_rate, {}, [](const std::string& text) {
+         return static_cast<bool>(read_data_bit_rate(text));
+       }});
 }
 
 Accepted accepted_duration() {

@@ -37,6 +37,9 @@ Option add_priority(Verb verb, const std::string& names, std::optional<protocol:
 /// A bit rate in bit/s: "500000", "500k", "83.333k", "1M", if classic CAN has it.
 Option add_bit_rate(Verb verb, const std::string& names, std::optional<std::uint32_t>& value,
                     const std::string& help);
+/// The same of the data of CAN FD, to 16 Mbit/s.
+Option add_data_bit_rate(Verb verb, const std::string& names, std::optional<std::uint32_t>& value,
+                         const std::string& help);
 
 /// What such options are declared to take.
 [[nodiscard]] Accepted accepted_duration();

@@ -6,8 +6,8 @@ Collector::Part& Collector::find(std::string_view name) {
   if (last_ != nullptr && last_->name == name) return *last_;
   for (Part& part : parts_)
     if (part.name == name) return *(last_ = &part);
-  return *(last_ = &parts_.emplace_back(
-               Part{std::string{name}, measure::BusStatistics{*catalogue_, bit_rate_}, 0}));
+  return *(last_ =
+               &parts_.emplace_back(Part{std::string{name}, measure::BusStatistics{*catalogue_, rates_}, 0}));
 }
 
 void Collector::take(std::span<const log::Entry> entries, const log::Interfaces& interfaces) {
@@ -16,7 +16,7 @@ void Collector::take(std::span<const log::Entry> entries, const log::Interfaces&
     if (const auto frame = entry.classic())
       statistics.take({entry.time, *frame});
     else
-      statistics.take_fd(entry.view(), entry.time);
+      statistics.take_fd(entry.frame(), entry.time);
   }
 }
 

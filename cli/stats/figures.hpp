@@ -33,8 +33,8 @@ struct Report {
 /// with its figures.
 class Collector {
  public:
-  Collector(const protocol::Catalogue& catalogue, std::uint32_t bit_rate)
-      : catalogue_(&catalogue), bit_rate_(bit_rate) {}
+  Collector(const protocol::Catalogue& catalogue, measure::BitRates rates)
+      : catalogue_(&catalogue), rates_(rates) {}
 
   void take(std::span<const log::Entry> entries, const log::Interfaces& interfaces);
   void lost(std::string_view interface, std::uint64_t frames) { find(interface).drops += frames; }
@@ -51,7 +51,7 @@ class Collector {
   Part& find(std::string_view name);
 
   const protocol::Catalogue* catalogue_;
-  std::uint32_t bit_rate_;
+  measure::BitRates rates_;
   std::deque<Part> parts_;  // in place: `last_` points into it
   Part* last_ = nullptr;
 };

@@ -124,6 +124,14 @@ std::string strangers(const BusFigures& figures) {
   return sorted.size() > most ? text + ", ..." : text;
 }
 
+/// "500", or "500 and 2000" where frames of CAN FD are in the load at the second.
+std::string kbit_per_second(const BusFigures& figures) {
+  const auto [nominal, data] = figures.bit_rates;
+  std::string text = fmt::format("{}", nominal / 1000.0);
+  if (figures.fd_frames != 0 && data != 0) text += fmt::format(" and {}", data / 1000.0);
+  return text;
+}
+
 /// What a bus carried, and what went wrong on it.
 std::vector<std::string> summary(const Bus& bus) {
   const BusFigures& figures = bus.figures;
@@ -133,7 +141,7 @@ std::vector<std::string> summary(const Bus& bus) {
       "{}: {} in {} ({}); load {} at {} kbit/s, {} in the worst 100 ms, until {}",
       log::Complaints::printable(bus.name), client::count(counters.frames - counters.errors, "frame*"),
       time(figures.span().count()), to_text(figures.rate_hz, Unit::hertz),
-      to_text(figures.load * 100, Unit::percent), figures.bit_rate / 1000.0,
+      to_text(figures.load * 100, Unit::percent), kbit_per_second(figures),
       to_text(figures.worst_load * 100, Unit::percent), time((figures.worst_until - figures.first).count())));
   std::string faults;
   const auto fault = [&faults](std::uint64_t count, std::string_view what) {
@@ -143,9 +151,10 @@ std::vector<std::string> summary(const Bus& bus) {
   fault(counters.errors, "error frame*");
   fault(figures.overflows, "overflow* of the CAN controller");
   fault(bus.drops, "frame* lost");
-  fault(figures.fd_frames, "CAN FD frame*, not in the load");
-  fault(counters.unknown, "frame* that no topic has");
-  if (counters.unknown != 0) faults += fmt::format(" ({})", strangers(figures));
+  fault(figures.fd_frames - figures.not_in_load, "CAN FD frame*");
+  fault(figures.not_in_load, "CAN FD frame*, not in the load without --data-bitrate");
+  fault(counters.unknown + counters.fd, "frame* that no topic has");
+  if (counters.unknown + counters.fd != 0) faults += fmt::format(" ({})", strangers(figures));
   if (!faults.empty()) lines.push_back("  " + faults);
   return lines;
 }
@@ -196,7 +205,8 @@ Json to_object(const Bus& bus, const Shown& shown) {
           {"last_ns", fmt::format("{}", figures.last.time_since_epoch().count())},
           {"frames", counters.frames - counters.errors},
           {"rate_hz", figures.rate_hz},
-          {"bit_rate", figures.bit_rate},
+          {"bit_rate", figures.bit_rates.nominal},
+          {"data_bit_rate", figures.bit_rates.data != 0 ? Json(figures.bit_rates.data) : Json(nullptr)},
           {"load_percent", figures.load * 100},
           {"request_load_percent", figures.request_load * 100},
           {"unknown_load_percent", figures.stranger_load * 100},
@@ -209,7 +219,8 @@ Json to_object(const Bus& bus, const Shown& shown) {
           {"incomplete", counters.incomplete},
           {"wrong_length", counters.wrong_dlc},
           {"fd_frames", figures.fd_frames},
-          {"unknown", counters.unknown},
+          {"fd_frames_not_in_load", figures.not_in_load},
+          {"unknown", counters.unknown + counters.fd},
           {"unknown_ids", unknown},
           {"topics", topics}};
 }

@@ -11,10 +11,12 @@
 #include "cli/analyse/set.hpp"
 #include "cli/analyse/study.hpp"
 #include "cli/analyse/trace.hpp"
+#include "cli/shared/messages.hpp"
 #include "cli/shared/output_file.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
 #include "cli/words/quantity.hpp"
+#include "generator/spec/spec.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -25,6 +27,7 @@ struct Options {
   std::string file;
   std::vector<std::string> rates;
   std::optional<std::uint32_t> bit_rate;
+  std::optional<std::uint32_t> data_bit_rate;
   std::string lengths;
   std::string test = "exact";
   std::string errors;
@@ -118,7 +121,9 @@ Assign assignment(const Options& options, const BusOptions& how, const BusSet& s
 
 BusOptions bus_options(const Options& options, const protocol::Catalogue& catalogue) {
   BusOptions result;
-  result.bit_rate = options.bit_rate.value_or(catalogue.bit_rate);
+  result.bit_rate = options.bit_rate.value_or(0);
+  result.data_bit_rate = options.data_bit_rate.value_or(0);
+  result.usual_bit_rate = catalogue.bit_rate;
   const bool own = options.file.empty();
   const std::string lengths = options.lengths.empty() ? (own ? "exact" : "generic") : options.lengths;
   result.lengths = lengths == "exact" ? Lengths::exact : Lengths::generic;
@@ -130,28 +135,30 @@ BusOptions bus_options(const Options& options, const protocol::Catalogue& catalo
   return result;
 }
 
+/// The spec that --spec names; the compiled one has no messages.
+const spec::Model* model_of(Session& session) {
+  return session.spec_files.empty() ? nullptr : &session.spec().model();
+}
+
 template <class Advise>
 int show(const Study& study, const Options& options, const Session& session, Advise advise) {
   if (!options.svg.empty()) write_file(options.svg, to_svg(study));
   if (options.json)
     fmt::print("{}", to_json(study));
-  else if (options.csv)
+  else if (options.csv) {
     fmt::print("{}", to_csv(study));
-  else if (options.svg != "-")
+    if (!study.left_out.empty()) remark(left_out_text(study.left_out));
+  } else if (options.svg != "-")
     fmt::print("{}", to_table(study, advise(), session.colour()));
   return study.passes() ? exit_success : exit_failure;
 }
 
 int bus(const Options& options, Session& session) {
   const auto rates = read_rates(options.rates);
-  const BusOptions how = bus_options(options, session.catalogue());
-  BusSet set;
-  if (options.file.empty()) {
-    set = robot_bus(session.catalogue(), rates);
-  } else {
-    set = read_bus(options.file);
-    apply_rates(set, rates);
-  }
+  BusOptions how = bus_options(options, session.catalogue());
+  BusSet set = options.file.empty() ? robot_bus(session.catalogue(), model_of(session), rates)
+                                    : read_bus(options.file, rates);
+  how = at_rates_of(set, how);
   assign(set, how, assignment(options, how, set));
   const Study study = study_bus(set, how);
   return show(study, options, session, [&] { return advise_bus(set, how, study); });
@@ -191,7 +198,7 @@ int tasks(const Options& options, Session& session) {
 int chain(const Options& options, Session& session) {
   const std::int64_t deadline = options.deadline ? options.deadline->count() : analysis::unbounded;
   const ChainStudy study = study_chain(options.file, deadline, bus_options(options, session.catalogue()),
-                                       session.catalogue(), read_rates(options.rates));
+                                       session.catalogue(), model_of(session), read_rates(options.rates));
   fmt::print("{}", options.json ? to_json(study) : options.csv ? to_csv(study) : to_table(study));
   return study.bound.ok() ? exit_success : exit_failure;
 }
@@ -218,6 +225,8 @@ void add_bus_options(Verb verb, Options& options) {
                   "topic=period, topic=period@priority or topic=off, several; or a file of such lines")
       .type_name("RATE");
   add_bit_rate(verb, "--bitrate", options.bit_rate, "such as 500k or 125000; default: the spec's");
+  add_data_bit_rate(verb, "--data-bitrate", options.data_bit_rate,
+                    "of CAN FD behind its bit-rate switch, such as 2M; default: the spec's");
   verb.add_option("--lengths", options.lengths,
                   "generic: the longest that any identifier could make a frame; exact: of its identifier. "
                   "Default: generic for a FILE, exact for the robot")
@@ -245,9 +254,10 @@ void add_analyse(Verb app, Session& session, int& exit_code) {
 
   const auto of_bus = std::make_shared<Options>();
   auto bus_verb = verb.add_inner_verb("bus", "the messages of a CAN bus: the robot's own, or a FILE's");
-  bus_verb.add_option("FILE", of_bus->file,
-                      "CSV (name,id,dlc,period_ns,deadline_ns,jitter_ns,node,offset_ns) or DBC; none: the "
-                      "robot's topics");
+  bus_verb.add_option(
+      "FILE", of_bus->file,
+      "CSV (name,id,dlc,period_ns,deadline_ns,jitter_ns,node,offset_ns,fd) or a spec, DBC or JSON; "
+      "none: the robot's topics");
   add_bus_options(bus_verb, *of_bus);
   bus_verb
       .add_option("--queue", of_bus->queues,

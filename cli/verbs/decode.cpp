@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <array>
 #include <memory>
 #include <optional>
@@ -7,13 +6,11 @@
 
 #include <fmt/format.h>
 
-#include "ocm/client/frame_index.hpp"
-
 #include "cli/logs/opened_log.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
-#include "cli/watch/chosen_topics.hpp"
+#include "cli/watch/choice.hpp"
 #include "cli/watch/display.hpp"
 
 namespace ocm::cli {
@@ -21,7 +18,7 @@ namespace {
 
 struct DecodeOptions {
   std::vector<std::string> files;
-  std::vector<std::string> topics;
+  ChoiceOptions choice;
   DisplayOptions display;
   std::string from;
   std::optional<base::Duration> since, until;
@@ -29,33 +26,27 @@ struct DecodeOptions {
   bool strict = false;
 };
 
-/// Which frames are looked at: those of the chosen topics and messages, within the chosen time.
+/// Which frames are looked at: the chosen ones, within the chosen time.
 class Window {
  public:
   Window(const protocol::Catalogue& catalogue, const DecodeOptions& options)
-      : chosen_(chosen_topics("decode", catalogue, options.topics)) {
+      : choice_("decode", catalogue, options.choice) {
     since_ = options.since.value_or(since_);
     until_ = options.until.value_or(until_);
-    if (!chosen_.empty()) index_ = client::FrameIndex{catalogue};
   }
 
+  /// A condition holds by what came before the window, too.
   [[nodiscard]] bool has(const log::Entry& entry) {
     if (!begin_) begin_ = entry.time;
     const base::Duration at = entry.time - *begin_;
-    if (at < since_ || at > until_) return false;
-    return chosen_.empty() || is_of_chosen(entry);
+    return choice_.has(entry) && at >= since_ && at <= until_;
+  }
+  [[nodiscard]] bool shows(const log::Entry& entry, const client::Reception& reception) {
+    return choice_.shows(entry, reception);
   }
 
  private:
-  /// Its data, and what is said to it. No topic has frames of CAN FD.
-  [[nodiscard]] bool is_of_chosen(const log::Entry& entry) const {
-    const auto* const topic = index_.subject(entry.id, entry.format).topic;
-    return topic != nullptr && (topic->is_message() || !entry.is_fd()) &&
-           std::find(chosen_.begin(), chosen_.end(), topic) != chosen_.end();
-  }
-
-  std::vector<const protocol::Topic*> chosen_;  // none: all
-  client::FrameIndex index_;
+  Choice choice_;
   std::optional<base::Time> begin_;
   base::Duration since_ = base::Duration::min();
   base::Duration until_ = base::Duration::max();
@@ -74,8 +65,8 @@ struct Decoding {
     for (const auto& entry : entries) {
       if (over()) return;
       if (!window.has(entry)) continue;
-      display.understand(entry);
-      display.show(interfaces.name(entry.interface), entry);
+      if (window.shows(entry, display.understand(entry)))
+        display.show(interfaces.name(entry.interface), entry);
     }
   }
 
@@ -96,7 +87,7 @@ struct Decoding {
 /// Frames that are of topics of this robot.
 std::uint64_t understood(const Display& display) {
   const auto& seen = display.counters();
-  return seen.frames - seen.unknown - seen.wrong_dlc - seen.errors;
+  return seen.frames - seen.unknown - seen.wrong_dlc - seen.errors - seen.transport;
 }
 
 void decode(Session& session, const DecodeOptions& options, int& exit_code) {
@@ -109,11 +100,11 @@ void decode(Session& session, const DecodeOptions& options, int& exit_code) {
     logs::OpenedLog log{file, options.from, catalogue};
     decoding.read(log);
   }
-  const Display& display = decoding.display;
+  Display& display = decoding.display;
   display.summarise(0);
   if (display.counters().frames == 0) remark("no frame to decode");
   display.tell_contradictions("a log of another bus?");
-  const bool not_all = decoding.unreadable || display.counters().faults() != 0;
+  const bool not_all = decoding.unreadable || display.any_fault();
   if (understood(display) == 0 || decoding.ended_early || (options.strict && not_all))
     exit_code = exit_failure;
   exit_code = exit_code_after_interrupt(exit_code);
@@ -126,6 +117,7 @@ void add_decode(Verb app, Session& session, int& exit_code) {
       app.add_verb("decode", "say what the frames of a log mean", log_group,
                    "  amiroctl decode drive.log | jq -c .fields\n"
                    "  amiroctl decode drive.pcapng --csv --field gyroscope.z --field odom.velocity.x\n"
+                   "  amiroctl --spec car.dbc decode drive.log --where 'Engine.Speed>3000'\n"
                    "  amiroctl decode drive.log.zst --topic power --since 10s --until 1min --pretty\n"
                    "  candump -L can0 | amiroctl decode --pretty\n"
                    "  amiroctl decode drive.log | amiroctl encode    the log again, to the byte");
@@ -134,9 +126,10 @@ void add_decode(Verb app, Session& session, int& exit_code) {
                   "logs of any format, one after another; default: - (standard input)")
       .type_name("[FILE ...]");
   add_display_options(verb, options->display);
-  verb.add_option("--topic", options->topics, "only this topic; repeatable")
+  verb.add_option("--topic", options->choice.topics, "only this topic; repeatable")
       .type_name("TOPIC")
       .one_a_mention();
+  add_choice_options(verb, options->choice);
   verb.add_option("--from", options->from, "the format of the logs; default: what they begin with says it")
       .type_name("FORMAT")
       .takes(accepted_words(logs::readable_formats()));

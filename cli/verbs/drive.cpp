@@ -2,6 +2,8 @@
 #include <string>
 
 #include "cli/command/commanding.hpp"
+#include "cli/command/key_drive.hpp"
+#include "cli/command/operated_bus.hpp"
 #include "cli/command/timeline.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/values.hpp"
@@ -15,6 +17,7 @@ void add_drive(Verb app, Session& session, int& exit_code) {
                    "  amiroctl drive 0.05m/s 0.2rad/s       until Ctrl-C, then zero\n"
                    "  amiroctl drive 5cm/s -30deg/s --for 2s\n"
                    "  amiroctl drive 0 30deg/s              turns on the spot; only zero needs no unit\n"
+                   "  amiroctl drive --keys                 while an arrow key is held; q quits\n"
                    "  amiroctl drive stop");
   struct Options {
     Options(Verb app, Session& s)
@@ -22,6 +25,7 @@ void add_drive(Verb app, Session& session, int& exit_code) {
     Commanding commanding;
     bool once = false;
     bool force = false;
+    bool keys = false;
   };
   const auto options = std::make_shared<Options>(verb, session);
   const auto lasting =
@@ -29,23 +33,30 @@ void add_drive(Verb app, Session& session, int& exit_code) {
                      "how long to drive")
           .type_name("T")
           .takes(accepted_duration());
-  verb.add_flag("--once", options->once, "send one frame; the board stops the motors when none follows")
-      .excludes(lasting);
+  const auto once =
+      verb.add_flag("--once", options->once, "send one frame; the board stops the motors when none follows")
+          .excludes(lasting);
+  verb.add_flag("--keys", options->keys,
+                "drive while a key is held: arrows, or u i o j l m , . as in teleop; X and Z are the speeds")
+      .excludes(lasting)
+      .excludes(once)
+      .excludes(verb.option("--dry-run"));
   verb.add_flag("--force", options->force, "drive even if another program commands the motors");
   verb.callback([options, &session, &exit_code] {
+    const auto others = options->force ? Timeline::Others::allowed : Timeline::Others::refused;
+    if (options->keys) {
+      exit_code = drive_by_keys(session, {options->commanding.words(), options->commanding.options(), others,
+                                          options->commanding.confirm()});
+      return;
+    }
     const auto command = options->commanding.parse();
     if (options->commanding.dry_run() || !command.hold)
       return carry_out(session, options->commanding, command);
     catch_interrupts();
     catch_hangups();
     catch_broken_pipe();
-    const auto bus = session.open_bus();
-    Timeline timeline{*bus,
-                      session.catalogue(),
-                      "drive",
-                      options->force ? Timeline::Others::allowed : Timeline::Others::refused,
-                      options->commanding.confirm(),
-                      {}};
+    const auto bus = open_to_command(session, "drive");
+    Timeline timeline{*bus, session.catalogue(), "drive", others, options->commanding.confirm(), {}};
     bool ended = timeline.listen_first();
     if (ended && options->once) {
       timeline.carry_out_once(command);

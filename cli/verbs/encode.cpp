@@ -37,7 +37,8 @@ const logs::LogFormat& wanted_format(const EncodeOptions& options) {
 void encode(Session& session, const EncodeOptions& options, int& exit_code) {
   const auto& format = wanted_format(options);
   catch_interrupts();
-  FrameLines lines{options.in, session.catalogue(), options.keep_going};
+  FrameLines lines{options.in, session.catalogue(), options.keep_going,
+                   options.force ? logs::Values::of_bits : logs::Values::as_stated};
   auto out = logs::LogFile::create(options.out, format, session.catalogue(),
                                    options.force ? logs::Existing::overwrite : logs::Existing::refuse);
   if (!out) fail(out.error);
@@ -82,7 +83,8 @@ void add_encode(Verb app, Session& session, int& exit_code) {
   verb.add_option("--to", options->to, "format of the log; default: candump")
       .type_name("FORMAT")
       .takes(accepted_words(logs::writable_formats()));
-  verb.add_flag("--force", options->force, "overwrite the log if it is there");
+  verb.add_flag("--force", options->force,
+                "overwrite the log if it is there; also values beyond the range that the spec states");
   verb.add_flag("--keep-going", options->keep_going, "report bad lines and go on; exit 1 at the end");
   verb.callback([options, &session, &exit_code] { encode(session, *options, exit_code); });
 }

@@ -51,13 +51,13 @@ void generate_file(Session& session, const GenerateOptions& options) {
   else if (options.priority_typed)  // that of a config file is for other verbs
     fail({fmt::format("generate {}: --priority is for dbc", target->name), "drop --priority"}, exit_usage);
   const spec::Model& model = session.spec().model();
-  if (model.topics.empty())
-    fail({fmt::format("generate {}: {} has no topics, only messages", target->name, how.spec_name),
-          "files are made from topics; messages cannot be written yet"});
-  if (!model.messages.empty())
-    remark(fmt::format(
-        "generate {}: the messages of the spec are left out, {} of them: files are made from topics",
-        target->name, model.messages.size()));
+  if (!generate::has_any(*target, model))
+    fail({fmt::format("generate {}: {} has only {}, which it has no place for", target->name, how.spec_name,
+                      target->of_topics ? "messages" : "topics"),
+          target->of_topics ? "messages become " + generate::message_target_names()
+                            : "topics are in the spec already"});
+  for (const std::string& what : generate::left_out(*target, model))
+    remark(fmt::format("generate {}: left out: {}", target->name, what));
   const std::string text = target->make(model, how);
   write_file(options.output, text);
 }

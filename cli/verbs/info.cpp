@@ -8,17 +8,13 @@
 #include "cli/verbs/verbs.hpp"
 #include "cli/words/command.hpp"
 #include "cli/words/quantity.hpp"
+#include "cli/words/value.hpp"
 
 namespace ocm::cli {
 namespace {
 
 std::string number(base::Decimal decimal) {
   return std::string{base::to_text(decimal).view()};
-}
-
-std::string bound(const protocol::Field& field, std::int64_t raw) {
-  const auto physical = field.physical(raw);
-  return physical ? number(*physical) : std::to_string(raw);
 }
 
 /// "rpm is 3 or 5..7", for a field that is in some frames only.
@@ -51,10 +47,10 @@ void print_field(const protocol::FrameLayout& layout, const protocol::Field& fie
              number(field.scale), field.unit.empty() ? "" : " ", field.unit,
              states             ? number(field.min)
              : field.is_float() ? "any"
-                                : bound(field, field.raw_min),
+                                : words::physical_text(field, field.raw_min),
              states             ? number(field.max)
              : field.is_float() ? "any"
-                                : bound(field, field.raw_max),
+                                : words::physical_text(field, words::greatest_raw(field)),
              field.unit.empty() ? "" : " ", field.unit, presence(layout, field));
   for (const auto& value : field.values)
     fmt::print("      {} {:<6} {}\n", field.flags ? "bit" : "  =", value.raw, value.name);

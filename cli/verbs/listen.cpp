@@ -11,15 +11,14 @@
 #include "cli/shared/live.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
-#include "cli/watch/chosen_topics.hpp"
+#include "cli/watch/choice.hpp"
 #include "cli/watch/display.hpp"
-#include "cli/watch/subscription.hpp"
 
 namespace ocm::cli {
 namespace {
 
 struct ListenOptions {
-  std::vector<std::string> topics;
+  ChoiceOptions choice;
   DisplayOptions display;
   bool commands = false;
   bool strict = false;
@@ -30,28 +29,30 @@ struct ListenOptions {
 
 void listen(Session& session, const ListenOptions& options, int& exit_code) {
   const auto& catalogue = session.catalogue();
-  const auto topics = chosen_topics("listen", catalogue, options.topics);
+  Choice choice{"listen", catalogue, options.choice};
   constexpr base::Duration without_end = base::Duration::max() / 4;
   const base::Duration timeout = options.timeout.value_or(without_end);
   const base::Duration idle = options.idle_timeout.value_or(without_end);
   catch_interrupts();
   const auto bus = session.open_bus();
-  if (!topics.empty()) {
-    const auto filters = filters_for(topics, options.commands);
-    if (const auto subscribed = bus->subscribe(filters); !subscribed) fail(subscribed.error);
-  }
+  choice.subscribe(*bus, options.commands);
+  const auto& topics = choice.topics();
   const bool commands_wanted =
       options.commands || std::any_of(topics.begin(), topics.end(), [](const protocol::Topic* topic) {
         return topic->kind == protocol::Kind::actuator;
       });
 
   Display display{"listen", session, options.display};
+  const ListenedUntil listened;
   const auto begin = Clock::now();
   auto last = begin;
   const auto end = [&] { return std::min(begin + timeout, last + idle); };
-  const auto take = [&](const can::Received& received) {
+  const auto take = [&](const transport::ReceivedAny& received) {
     const log::Entry entry{received.time, received.frame};
-    const auto meaning = display.understand(entry).meaning;
+    if (!choice.has(entry)) return true;
+    const client::Reception& reception = display.understand(entry);
+    if (!choice.shows(entry, reception)) return true;
+    const auto meaning = reception.meaning;
     using client::Meaning;
     const bool command = meaning == Meaning::request || meaning == Meaning::set_point;
     if (command && !commands_wanted) return true;
@@ -61,10 +62,10 @@ void listen(Session& session, const ListenOptions& options, int& exit_code) {
   };
   Live live{*bus, [&] { display.flush(); }};
   Over over = Over::time;
-  do over = live.receive(end(), take);
+  do over = live.receive_any(end(), take);
   while (over == Over::time && Clock::now() < end());
   display.flush();
-  display.summarise(bus->counters().lost);
+  display.summarise(bus->counters().lost, listened.now());
   display.tell_contradictions("another robot?");
   if (over == Over::gone) fail(bus->failure());
   if (over == Over::time) expect_answer(bus->name());
@@ -74,8 +75,7 @@ void listen(Session& session, const ListenOptions& options, int& exit_code) {
                        display.shown()));
     exit_code = exit_failure;
   }
-  if (options.strict && (display.counters().faults() != 0 || bus->counters().lost != 0))
-    exit_code = exit_failure;
+  if (options.strict && (display.any_fault() || bus->counters().lost != 0)) exit_code = exit_failure;
   exit_code = exit_code_after_interrupt(exit_code);
 }
 
@@ -88,10 +88,13 @@ void add_listen(Verb app, Session& session, int& exit_code) {
       "  amiroctl listen gyro odom --pretty\n"
       "  amiroctl listen --json -n 10 | jq .fields\n"
       "  amiroctl listen --raw > drive.log      a candump log\n"
+      "  amiroctl listen --where 'gyro.z>90'    only while it turns that fast\n"
       "  amiroctl listen --strict --timeout 10s  exit 1 when anything was lost or unknown");
   const auto options = std::make_shared<ListenOptions>();
-  verb.add_option("topics", options->topics, "only these; default: everything").type_name("[TOPIC ...]");
+  verb.add_option("topics", options->choice.topics, "only these; default: everything")
+      .type_name("[TOPIC ...]");
   add_display_options(verb, options->display);
+  add_choice_options(verb, options->choice);
   verb.add_flag("--commands", options->commands, "show requests and set points too");
   verb.add_flag("--strict", options->strict, "exit 1 when frames were lost, unknown, wrong or incomplete");
   verb.add_option("-n,--count", options->count, "end after so many").type_name("N").positive();

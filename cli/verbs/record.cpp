@@ -17,12 +17,12 @@
 #include "cli/record/files.hpp"
 #include "cli/record/recorder.hpp"
 #include "cli/shared/buses.hpp"
+#include "cli/shared/filters.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
 #include "cli/watch/chosen_topics.hpp"
-#include "cli/watch/subscription.hpp"
 #include "cli/words/quantity.hpp"
 
 namespace ocm::cli {
@@ -89,13 +89,10 @@ Accepted accepted_split() {
   return {ValueKind::text, true, a_split, {}, [](const std::string& text) { return read_split(text).any(); }};
 }
 
-record::Filters chosen_filters(const RecordOptions& options, const protocol::Catalogue& catalogue) {
-  record::Filters filters;
-  const auto topics = chosen_topics("record", catalogue, options.topics);
-  for (const auto& filter : filters_for(topics, options.commands))
-    filters.push_back(transport::to_socketcan(filter));
+Filters chosen_filters(const RecordOptions& options, const protocol::Catalogue& catalogue) {
+  Filters filters = filters_for(chosen_topics("record", catalogue, options.topics), options.commands);
   for (const auto& text : options.filters) {
-    const auto filter = record::parse_filter(text);
+    const auto filter = parse_filter(text);
     if (!filter) fail(filter.error, exit_usage);
     filters.push_back(*filter);
   }
@@ -103,7 +100,7 @@ record::Filters chosen_filters(const RecordOptions& options, const protocol::Cat
 }
 
 /// --bus can0,can1: several at once.
-std::vector<record::Port> open_ports(Session& session, const record::Filters& filters) {
+std::vector<record::Port> open_ports(Session& session, const Filters& filters) {
   if (session.bus_name.empty())
     static_cast<void>(session.open_bus());  // says which it is, or that there is none or several
   else

@@ -11,6 +11,7 @@
 #include "ocm/base/decimal.hpp"
 #include "ocm/can/text.hpp"
 
+#include "cli/command/operated_bus.hpp"
 #include "cli/logs/format.hpp"
 #include "cli/logs/opened_log.hpp"
 #include "cli/replay/player.hpp"
@@ -136,13 +137,13 @@ std::vector<replay::Outlet> open_outlets(Session& session, const std::vector<Rou
                                          replay::PlayerOptions& player) {
   std::vector<replay::Outlet> outlets;
   std::vector<std::string> names;
-  if (routes.empty()) outlets.emplace_back(session.open_bus(), session.catalogue());
+  if (routes.empty()) outlets.emplace_back(open_to_command(session, "replay"), session.catalogue());
   for (const auto& route : routes) {
     const auto known = std::find(names.begin(), names.end(), route.bus);
     player.routes.emplace_back(route.in_log, static_cast<std::size_t>(known - names.begin()));
     if (known != names.end()) continue;
     names.push_back(route.bus);
-    outlets.emplace_back(Session::open_bus(route.bus), session.catalogue());
+    outlets.emplace_back(open_to_command(session, "replay", route.bus), session.catalogue());
   }
   return outlets;
 }

@@ -14,6 +14,7 @@
 #include "ocm/can/text.hpp"
 
 #include "cli/command/commanding.hpp"
+#include "cli/command/operated_bus.hpp"
 #include "cli/command/timeline.hpp"
 #include "cli/output/printer.hpp"
 #include "cli/shared/interrupt.hpp"
@@ -99,15 +100,16 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
   const auto script = checked(options.file, read_script(options.file), catalogue);
   if (options.dry_run) {
     for (const auto& step : script.steps)
-      for (const auto& frame : step.command.frames)
+      step.command.each_frame([&](const can::AnyFrame& frame) {
         fmt::print("{:<8} {}\n", words::to_text(step.at), can::to_text(frame).view());
+      });
     return;
   }
 
   catch_interrupts();
   catch_hangups();
   catch_broken_pipe();
-  const auto bus = session.open_bus();
+  const auto bus = open_to_command(session, "run");
   client::Receiver receiver{catalogue};
   Printer printer{make_output(isatty(STDOUT_FILENO) != 0 ? Format::pretty : Format::json, catalogue, {},
                               session.colour(), columns_of_output)};

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "ocm/can/text.hpp"
+#include "ocm/can/any_text.hpp"
 
 #include "cli/command/commanding.hpp"
 #include "cli/shared/clock.hpp"
@@ -51,31 +51,40 @@ void send_lines(Session& session, const SendOptions& options, bool dry_run, int&
   catch_interrupts();
   const auto bus = dry_run ? nullptr : session.open_bus();
   std::optional<Outgoing> outgoing;
-  if (bus != nullptr) outgoing.emplace(*bus, "send");
+  std::optional<transport::Failure> obstacle;  // in the way of CAN FD frames
+  if (bus != nullptr) {
+    outgoing.emplace(*bus, "send");
+    obstacle = bus->fd_obstacle();
+  }
   FrameLines lines{"-", session.catalogue(), options.keep_going};
   Pace pace;
   std::uint64_t sent = 0;
   std::uint64_t errors = 0;
-  std::uint64_t fd = 0;
+  std::uint64_t fd = 0;  ///< that the bus cannot carry
   log::Entry entry;
   std::string_view from;
   while (lines.next(entry, from)) {
-    const auto frame = entry.classic();
-    if (!frame || frame->format == can::Format::error) {
-      ++(frame ? errors : fd);
+    if (entry.format == can::Format::error) {
+      ++errors;
+      continue;
+    }
+    const can::AnyFrame frame = entry.frame();
+    if (frame.is_fd() && obstacle && !obstacle->what.empty()) {
+      ++fd;
       continue;
     }
     if (options.timed && !pace.wait_for(entry.time)) break;
     if (dry_run)
-      print_frames({*frame});
+      fmt::print("{}\n", can::to_text(frame).view());
     else
-      outgoing->send(*frame);
+      outgoing->send(frame);
     ++sent;
   }
   if (outgoing) outgoing->expect_all_left();
   std::string text = fmt::format("{} frames {}", sent, dry_run ? "read" : "sent");
   if (errors != 0) text += fmt::format(", {} error frames are reports and were not", errors);
-  if (fd != 0) text += fmt::format(", {} CAN FD frames were not: only classic frames can be", fd);
+  if (fd != 0)
+    text += fmt::format(", {} CAN FD frames were not: {} ({})", fd, obstacle->what, obstacle->remedy);
   if (lines.bad_lines() != 0) text += fmt::format(", {} lines could not be read", lines.bad_lines());
   remark(text);
   if (lines.failed() || fd != 0) exit_code = exit_failure;
@@ -89,6 +98,7 @@ void add_send(Verb app, Session& session, int& exit_code) {
                            "  amiroctl send 205#01840302        magnetometer every 900us, as in the thesis\n"
                            "  amiroctl send 1F334455#DEADBEEF   extended identifier\n"
                            "  amiroctl send 123#R               remote frame\n"
+                           "  amiroctl send 123##1DEAD          CAN FD, data at the higher bit rate\n"
                            "  amiroctl --bus can0 listen --json | amiroctl --bus can1 send --stdin\n"
                            "  amiroctl decode drive.log --topic motors | amiroctl send --stdin --timed");
   const auto commanding =

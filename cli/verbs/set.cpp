@@ -1,6 +1,7 @@
 #include <memory>
 
 #include "cli/command/commanding.hpp"
+#include "cli/command/operated_bus.hpp"
 #include "cli/command/timeline.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/values.hpp"
@@ -32,7 +33,7 @@ void add_set(Verb app, Session& session, int& exit_code) {
     catch_interrupts();
     catch_hangups();
     catch_broken_pipe();
-    const auto bus = session.open_bus();
+    const auto bus = open_to_command(session, "set");
     Timeline timeline{*bus, session.catalogue(), "set", Timeline::Others::allowed, commanding->confirm(), {}};
     timeline.carry_out(command);
     const bool ended = timeline.wait_for_end();

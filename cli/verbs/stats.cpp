@@ -21,6 +21,7 @@
 #include "cli/watch/contradictions.hpp"
 #include "cli/watch/watching.hpp"
 #include "cli/words/command.hpp"
+#include "generator/spec/spec.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -29,7 +30,7 @@ struct StatsOptions {
   std::vector<std::string> words;
   WatchOptions watch;
   std::vector<std::string> assertions;
-  std::optional<std::uint32_t> bit_rate;
+  std::optional<std::uint32_t> bit_rate, data_bit_rate;
   bool json = false, csv = false;
 };
 
@@ -75,9 +76,11 @@ std::vector<stats::Assertion> read_assertions(const std::vector<std::string>& te
   return assertions;
 }
 
-std::uint32_t chosen_bit_rate(std::optional<std::uint32_t> given, const protocol::Catalogue& catalogue) {
-  if (given) return *given;
-  if (catalogue.bit_rate != 0) return catalogue.bit_rate;
+measure::BitRates chosen_bit_rates(Session& session, const StatsOptions& options) {
+  const std::uint32_t of_spec = session.spec_files.empty() ? 0 : session.spec().model().data_bit_rate;
+  const measure::BitRates rates{options.bit_rate.value_or(session.catalogue().bit_rate),
+                                options.data_bit_rate.value_or(of_spec)};
+  if (rates.nominal != 0) return rates;
   fail({"stats: the spec says no bit rate", "--bitrate gives it, such as --bitrate 500k"}, exit_usage);
 }
 
@@ -102,7 +105,7 @@ void run(Session& session, const StatsOptions& options, int& exit_code) {
   Words words = split_words("stats", options.words, means_topic);
   const auto shown = chosen_topics("stats", catalogue, words.others);
   const auto assertions = read_assertions(options.assertions, catalogue);
-  stats::Collector collector{catalogue, chosen_bit_rate(options.bit_rate, catalogue)};
+  stats::Collector collector{catalogue, chosen_bit_rates(session, options)};
   Watching watching{session, options.watch, std::move(words.files)};
 
   const ListenedUntil listened;
@@ -165,6 +168,8 @@ void add_stats(Verb app, Session& session, int& exit_code) {
       .takes({ValueKind::text, false, stats::assertion_form, {}, stats::Assertion::is_well_formed})
       .one_a_mention();
   add_bit_rate(verb, "--bitrate", options->bit_rate, "such as 500k or 125000; default: the spec's");
+  add_data_bit_rate(verb, "--data-bitrate", options->data_bit_rate,
+                    "of CAN FD behind its bit-rate switch, such as 2M; default: the spec's");
   const auto json = verb.add_flag("--json", options->json, "one object, for programs");
   verb.add_flag("--csv", options->csv, "a line a topic, times in nanoseconds").excludes(json);
   verb.callback([options, &session, &exit_code] { run(session, *options, exit_code); });

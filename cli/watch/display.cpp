@@ -1,5 +1,6 @@
 #include "cli/watch/display.hpp"
 
+#include <algorithm>
 #include <unistd.h>
 
 #include <fmt/format.h>
@@ -47,14 +48,20 @@ void add_display_options(Verb verb, DisplayOptions& options) {
 }
 
 Display::Display(std::string_view verb, Session& session, const DisplayOptions& options)
-    : receiver_(session.catalogue()),
+    : receiver_(session.catalogue(), client::Transport::together),
       printer_(make_output(format_of(options), session.catalogue(),
                            selection_of(verb, session.catalogue(), options), session.colour(),
                            columns_of_output)) {
   printer_.flush();
 }
 
-void Display::summarise(std::uint64_t lost) const {
+bool Display::any_fault() noexcept {
+  const auto transport = receiver_.transport_counters(last_);
+  return counters().faults() != 0 || transport.lost() + transport.malformed != 0;
+}
+
+void Display::summarise(std::uint64_t lost, base::Time until) {
+  last_ = std::max(last_, until);
   const auto& seen = receiver_.counters();
   std::string text = fmt::format("{} frames, {} samples", seen.frames, seen.samples);
   const auto add = [&text](std::uint64_t count, std::string_view what) {
@@ -67,6 +74,30 @@ void Display::summarise(std::uint64_t lost) const {
   add(seen.incomplete, "incomplete samples");
   add(seen.errors, "error frames");
   add(lost, "lost in the receive queue");
+  remark(text);
+  summarise_transport();
+}
+
+/// Nothing where there was none.
+void Display::summarise_transport() {
+  const std::uint64_t frames = counters().transport;
+  const j1939::TransportCounters seen = receiver_.transport_counters(last_);
+  if (frames + seen.complete == 0) return;
+  std::string text = fmt::format("transport protocol of J1939: {} messages put together, {} other frames",
+                                 seen.complete, frames);
+  const auto add = [&text](std::uint64_t count, std::string_view what) {
+    if (count != 0) text += fmt::format(", {} {}", count, what);
+  };
+  add(seen.lost_packet, "messages lost a packet");
+  add(seen.wrong_sequence, "had a packet of a wrong number");
+  add(seen.aborted, "aborted");
+  add(seen.timed_out, "timed out");
+  add(seen.replaced, "followed by the next before the end");
+  add(seen.no_session, "too many at a time");
+  add(seen.bad_size, "of an impossible size");
+  add(receiver_.transports_open(), "not at the end yet");
+  add(seen.stray, "packets of no message");
+  add(seen.malformed, "frames of another form");
   remark(text);
 }
 

@@ -35,6 +35,7 @@ class Display {
   /// What the entry means, which is counted and kept for `show`. Valid until the next.
   const client::Reception& understand(const log::Entry& entry) {
     reception_ = cli::understand(receiver_, entry);
+    last_ = entry.time;
     if (reception_.meaning == client::Meaning::wrong_dlc && !wrong_length_)
       wrong_length_ = {entry.id, entry.length, reception_.frame.layout().length};
     return reception_;
@@ -49,16 +50,22 @@ class Display {
 
   [[nodiscard]] std::uint64_t shown() const noexcept { return shown_; }  ///< lines, or frames with --csv
   [[nodiscard]] const client::ReceiverCounters& counters() const noexcept { return receiver_.counters(); }
-  /// What came, and every fault by its cause, on stderr.
-  void summarise(std::uint64_t lost) const;
+  /// Whether any frame or message was lost, unknown, wrong or incomplete. To be asked after `summarise`.
+  [[nodiscard]] bool any_fault() noexcept;
+  /// What came, and every fault by its cause, on stderr. `until`: up to when was listened, if that is later
+  /// than the last frame.
+  void summarise(std::uint64_t lost, base::Time until = {});
   /// On stderr, if it is so: `guess` is what is said when nearly all do.
   void tell_contradictions(std::string_view guess) const;
 
  private:
+  void summarise_transport();
+
   client::Receiver receiver_;
   client::Reception reception_;
   Printer printer_;
   std::uint64_t shown_ = 0;
+  base::Time last_{};
   std::optional<measure::WrongLength> wrong_length_;  ///< the first
 };
 

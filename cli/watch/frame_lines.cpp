@@ -9,11 +9,12 @@
 
 namespace ocm::cli {
 
-FrameLines::FrameLines(std::string path, const protocol::Catalogue& catalogue, bool keep_going)
+FrameLines::FrameLines(std::string path, const protocol::Catalogue& catalogue, bool keep_going,
+                       logs::Values values)
     : path_(path == "-" ? "standard input" : path),
       source_(path),
       input_(source_),
-      json_(catalogue),
+      json_(catalogue, values),
       keep_going_(keep_going) {
   if (!source_.failure().empty())
     fail({fmt::format("cannot read {}: {}", path_, source_.failure()), "expected a file of JSON lines"});
@@ -63,7 +64,7 @@ bool FrameLines::parse_log_line(std::string_view line, log::Entry& entry, std::s
     bus = parsed.interface;
     wrong = parsed.wrong;
   } else {
-    const auto frame = can::parse_frame(line.substr(0, line.find_last_not_of(" \t") + 1));
+    const auto frame = can::parse_any_frame(line.substr(0, line.find_last_not_of(" \t") + 1));
     entry = log::Entry{{}, *frame};
     bus = {};
     if (!frame) wrong = log::candump::cause_of(frame.error);

@@ -19,7 +19,8 @@ namespace ocm::cli {
 class FrameLines {
  public:
   /// `path`: "-" is the standard input. Leaves through cli::fail when it cannot be read.
-  FrameLines(std::string path, const protocol::Catalogue& catalogue, bool keep_going);
+  FrameLines(std::string path, const protocol::Catalogue& catalogue, bool keep_going,
+             logs::Values values = logs::Values::of_bits);
 
   /// The next frame; waits for it. `bus` is empty where the line does not say, and holds until the next call.
   /// false: the end, a signal, or a bad line.

@@ -15,7 +15,7 @@ Over listen(transport::Bus& bus, const ListenLimits& limits, const TakeEntries& 
   std::uint64_t taken = 0;
   std::uint64_t told = 0;
   for (;;) {
-    const Over over = live.receive(std::min(end, tick), [&](const can::Received& received) {
+    const Over over = live.receive_any(std::min(end, tick), [&](const transport::ReceivedAny& received) {
       const log::Entry entry{received.time, received.frame, interface};
       take({&entry, 1}, interfaces);
       return ++taken != limits.count;

@@ -25,8 +25,8 @@
 #include "ocm/base/result.hpp"
 #include "ocm/base/text.hpp"
 #include "ocm/base/time.hpp"
+#include "ocm/can/any_text.hpp"
 #include "ocm/can/frame.hpp"
-#include "ocm/can/text.hpp"
 #include "ocm/client/command.hpp"
 #include "ocm/protocol/codec.hpp"
 #include "ocm/protocol/identifier.hpp"
@@ -429,9 +429,9 @@ class CommandParser {
     if (target.is_message()) {
       if (options.priority)
         return WordError{0, "a message carries its priority in its identifier", "drop --priority"};
-      auto frame = compose(target, *given);
+      const auto frame = compose(target, *given);
       if (!frame) return frame.error;
-      command.frames = {*frame};
+      put(command, *frame);
     } else {
       if (options.every && target.role == protocol::Role::drive)
         return WordError{0, std::string{target.name} + " is not set again and again",
@@ -487,25 +487,36 @@ class CommandParser {
       if (!value)
         return WordError{i, value.error, "for example " + std::string{name} + "=0" + std::string{field.unit}};
       if (!is_in_stated_range(field, *value))
-        return WordError{i, detail::quoted(text) + " is beyond the stated range: " + detail::takes(field),
-                         "many stated ranges are wrong: --force sends what the bits can hold"};
+        return WordError{i, beyond_stated_range(field, text), force_beyond_range};
       given[index] = Given{*value, i};
     }
     return given;
   }
 
   static detail::Parsed send(Line line) {
-    const auto frame = can::parse_frame(line[1]);
-    if (!frame)
+    const auto frame = can::parse_any_frame(line[1]);
+    const auto error = frame ? can::validate(*frame).error : frame.error;
+    if (error == base::Error::bad_length && line[1].find("##") != std::string_view::npos)
+      return WordError{1, detail::quoted(line[1]) + ": " + std::string{base::describe(error)},
+                       "CAN FD has frames of 0 to 8, 12, 16, 20, 24, 32, 48 and 64 bytes"};
+    if (error != base::Error::none)
       return WordError{
-          1, detail::quoted(line[1]) + ": " + std::string{base::describe(frame.error)},
-          "write 205#01840302 (three hex digits, or eight for an extended identifier), or 205#R"};
+          1, detail::quoted(line[1]) + ": " + std::string{base::describe(error)},
+          "write 205#01840302 (three hex digits, or eight for an extended identifier), 205#R, or "
+          "205##101840302 for CAN FD"};
     if (frame->format == can::Format::error)
       return WordError{1, detail::quoted(line[1]) + " is an error frame, which only a controller makes",
                        "send a data or remote frame"};
     Command command;
-    command.frames = {*frame};
+    put(command, *frame);
     return command;
+  }
+
+  static void put(Command& command, const can::AnyFrame& frame) {
+    if (const auto classic = frame.classic())
+      command.frames = {*classic};
+    else
+      command.fd_frames = {frame};
   }
 
   /// The known word that is near to a mistyped one is looked for only where it is shown.

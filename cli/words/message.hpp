@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,7 +13,7 @@
 #include "ocm/base/decimal.hpp"
 #include "ocm/base/result.hpp"
 #include "ocm/base/text.hpp"
-#include "ocm/can/frame.hpp"
+#include "ocm/can/any_frame.hpp"
 #include "ocm/protocol/codec.hpp"
 #include "ocm/protocol/topic.hpp"
 
@@ -55,8 +56,7 @@ namespace detail {
     const std::int64_t raw = raw_of(selector, bits);
     for (const auto& named : selector.values)
       if (named.raw == raw) return std::string{named.name};
-    const auto physical = selector.physical(raw);
-    return physical ? std::string{base::to_text(*physical).view()} : std::to_string(raw);
+    return physical_text(selector, raw);
   };
   std::string values;
   for (const auto& [first, last] : field.selected) {
@@ -80,16 +80,24 @@ namespace detail {
   return field.min.as_double() <= value && value <= field.max.as_double();
 }
 
+/// What is wrong with a value that is not, and what helps.
+[[nodiscard]] inline std::string beyond_stated_range(const protocol::Field& field, std::string_view text) {
+  return detail::quoted(text) + " is beyond the stated range: " + detail::takes(field);
+}
+inline constexpr const char* force_beyond_range =
+    "many stated ranges are wrong: --force takes what the bits can hold";
+
 /// The message's frame, with the identifier with which it is sent. A selector that is not given takes a value
 /// with which the given fields are there, its start value if that is one. O(fields^2).
-[[nodiscard]] inline base::Result<can::Frame, WordError> compose(const protocol::Topic& message,
-                                                                 GivenFields given) {
+[[nodiscard]] inline base::Result<can::AnyFrame, WordError> compose(const protocol::Topic& message,
+                                                                    GivenFields given) {
   const protocol::FrameLayout& layout = message.frames[0];
-  if (layout.fd || layout.length > can::max_dlc)
+  if (layout.length > (layout.fd ? can::max_fd_length : can::max_dlc))
     return WordError{1,
                      std::string{message.name} + " is a message of " + std::to_string(layout.length) +
                          " bytes" + (layout.fd ? " in CAN FD" : ""),
-                     "set sends classic frames, of 8 bytes at most"};
+                     layout.fd ? "a frame of CAN FD has 64 bytes at most"
+                               : "a classic frame has 8 bytes at most; state CAN FD in the spec"};
   const auto fields = layout.fields;
   std::vector<std::int64_t> raw(fields.size());
   for (std::size_t i = 0; i < fields.size(); ++i) raw[i] = given[i] ? given[i]->raw : fields[i].start;
@@ -120,13 +128,18 @@ namespace detail {
     }
     return false;
   };
-  can::Frame frame;
+  can::AnyFrame frame;
   frame.id = layout.address.number;
   frame.format = protocol::format_of(layout);
-  frame.dlc = layout.dlc();
+  frame.length = static_cast<std::uint8_t>(layout.length);
+  if (layout.fd) {  // what a message does not fill of the frames that there are is zero
+    frame.length = can::fd_length(can::fd_dlc(layout.length));
+    frame.flags = can::fd_flags(layout.bit_rate_switch);
+  }
+  const std::span<std::uint8_t> data{frame.data};
   for (std::size_t i = 0; i < fields.size(); ++i)
     if (fields[i].position.bytes() <= layout.length && is_there(i))
-      protocol::put(frame.data, fields[i].position, raw[i]);
+      protocol::put(data, fields[i].position, raw[i]);
   return frame;
 }
 

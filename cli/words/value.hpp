@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <cstdint>
+#include <cstdio>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -16,6 +17,23 @@
 
 namespace ocm::cli::words {
 
+/// The greatest raw number that a field takes; of an unsigned word, for which raw_max has no room, its bits.
+[[nodiscard]] constexpr std::int64_t greatest_raw(const protocol::Field& field) noexcept {
+  const bool any_word =
+      !field.is_signed && field.position.width == 64 && field.raw_min == 0 && field.raw_max == INT64_MAX;
+  return any_word ? -1 : field.raw_max;
+}
+
+/// A raw number in the field's unit; 15 digits of it where a Decimal has not the room for all.
+[[nodiscard]] inline std::string physical_text(const protocol::Field& field, std::int64_t raw) {
+  if (const auto physical = field.physical(raw)) return std::string{base::to_text(*physical).view()};
+  const bool plain = field.scale == base::Decimal{1, 0} && field.offset.digits == 0;
+  if (plain) return std::to_string(static_cast<std::uint64_t>(raw));  // of a signed field it is a Decimal
+  char text[32];
+  std::snprintf(text, sizeof text, "%.15g", field.value(raw));
+  return text;
+}
+
 namespace detail {
 
 [[nodiscard]] inline std::string quoted(std::string_view word) {
@@ -24,17 +42,13 @@ namespace detail {
 
 /// "x takes -1 to 1 m/s", with the names that the field's values have.
 [[nodiscard]] inline std::string takes(const protocol::Field& field) {
-  const auto number_text = [&field](std::int64_t raw) {
-    const auto physical = field.physical(raw);
-    return physical ? std::string{base::to_text(*physical).view()} : std::to_string(raw);
+  const auto stated = [&field](base::Decimal bound, std::int64_t raw) {
+    return field.min == field.max ? physical_text(field, raw) : std::string{base::to_text(bound).view()};
   };
-  const auto stated = [&field](base::Decimal bound, std::int64_t raw, auto number) {
-    return field.min == field.max ? number(raw) : std::string{base::to_text(bound).view()};
-  };
-  std::string expected = field.is_float() && field.min == field.max
-                             ? std::string{"any number"}
-                             : stated(field.min, field.raw_min, number_text) + " to " +
-                                   stated(field.max, field.raw_max, number_text);
+  std::string expected =
+      field.is_float() && field.min == field.max
+          ? std::string{"any number"}
+          : stated(field.min, field.raw_min) + " to " + stated(field.max, greatest_raw(field));
   if (!field.unit.empty()) expected += " " + std::string{field.unit};
   if (!field.flags && !field.values.empty()) {
     std::string names;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 namespace ocm::dbc {
 namespace {
@@ -31,6 +32,15 @@ void append_utf8(std::string& out, char32_t code) {
 
 bool is_utf8(std::string_view bytes) noexcept {
   for (std::size_t i = 0; i < bytes.size();) {
+    // Nearly all of it has 7 bits: eight characters at once.
+    if (i + 8 <= bytes.size()) {
+      std::uint64_t eight = 0;
+      std::memcpy(&eight, bytes.data() + i, 8);
+      if ((eight & 0x8080'8080'8080'8080) == 0) {
+        i += 8;
+        continue;
+      }
+    }
     const auto at = [&](std::size_t j) {
       return i + j < bytes.size() ? static_cast<std::uint8_t>(bytes[i + j]) : std::uint8_t{0};
     };
@@ -56,11 +66,14 @@ bool is_utf8(std::string_view bytes) noexcept {
   return true;
 }
 
+std::optional<std::string_view> as_utf8(std::string_view bytes) noexcept {
+  if (!is_utf8(bytes)) return std::nullopt;
+  if (bytes.substr(0, 3) == "\xEF\xBB\xBF") bytes.remove_prefix(3);
+  return bytes;
+}
+
 std::string to_utf8(std::string_view bytes) {
-  if (is_utf8(bytes)) {
-    if (bytes.substr(0, 3) == "\xEF\xBB\xBF") bytes.remove_prefix(3);
-    return std::string{bytes};
-  }
+  if (const auto same = as_utf8(bytes)) return std::string{*same};
   std::string text;
   text.reserve(bytes.size() + bytes.size() / 8);
   for (const char c : bytes) {
@@ -68,6 +81,46 @@ std::string to_utf8(std::string_view bytes) {
     append_utf8(text, byte >= 0x80 && byte < 0xA0 ? char32_t{cp1252[byte - 0x80U]} : char32_t{byte});
   }
   return text;
+}
+
+namespace {
+
+/// The byte of a character, at the front of a text of UTF-8, which is cut off. Nothing: there is none.
+std::optional<char> take_cp1252(std::string_view& utf8) noexcept {
+  const auto first = static_cast<std::uint8_t>(utf8[0]);
+  const std::size_t length = std::min<std::size_t>(first < 0x80   ? 1
+                                                   : first < 0xE0 ? 2
+                                                   : first < 0xF0 ? 3
+                                                                  : 4,
+                                                   utf8.size());
+  char32_t code = length == 1 ? first : first & (0xFFU >> (length + 1));
+  for (std::size_t i = 1; i < length; ++i) code = code << 6 | (static_cast<std::uint8_t>(utf8[i]) & 0x3FU);
+  utf8.remove_prefix(length);
+  if (code < 0x80 || (code >= 0xA0 && code <= 0xFF)) return static_cast<char>(code);
+  const auto at = std::find(cp1252.begin(), cp1252.end(), code);
+  if (at == cp1252.end() || code == 0xFFFD) return std::nullopt;
+  return static_cast<char>(0x80 + (at - cp1252.begin()));
+}
+
+}  // namespace
+
+bool has_cp1252(std::string_view utf8) noexcept {
+  while (!utf8.empty())
+    if (!take_cp1252(utf8)) return false;
+  return true;
+}
+
+std::optional<std::string> to_cp1252(std::string_view utf8) {
+  std::string bytes;
+  bytes.reserve(utf8.size());
+  for (std::string_view rest = utf8; !rest.empty();) {
+    const auto byte = take_cp1252(rest);
+    if (!byte) return std::nullopt;
+    bytes += *byte;
+  }
+  // Bytes that read as UTF-8 would be taken for it.
+  if (bytes != utf8 && is_utf8(bytes)) return std::nullopt;
+  return bytes;
 }
 
 }  // namespace ocm::dbc

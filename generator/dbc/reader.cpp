@@ -1,6 +1,7 @@
 #include "generator/dbc/reader.hpp"
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <unordered_map>
 #include <utility>
@@ -55,13 +56,17 @@ class Resolver {
     for (auto& statement : statements_.attributes) attribute(statement);
     for (auto& statement : statements_.messages) multiplexing(statement);
     for (auto& statement : statements_.messages) meaning(statement.message);
+    send_types_of_signals();
     long_names();
     Document document = std::move(statements_.document);
+    document.messages.reserve(statements_.messages.size());
     for (std::size_t i = 0; i < statements_.messages.size(); ++i) {
       auto& [message, written_id, signals] = statements_.messages[i];
       std::vector<Signal>& to =
           message.name == "VECTOR__INDEPENDENT_SIG_MSG" ? document.independent : message.signals;
+      to.reserve(to.size() + signals.size());
       for (auto& statement : signals) to.push_back(std::move(statement.signal));
+      std::vector<SignalStatement>{}.swap(signals);  // for what is made next
       if (&to == &document.independent || replaced_[i]) continue;
       check(message);
       document.messages.push_back(std::move(message));
@@ -80,6 +85,11 @@ class Resolver {
     auto& messages = statements_.messages;
     replaced_.resize(messages.size());
     std::unordered_map<std::string_view, std::size_t> names;
+    std::size_t signals = 0;
+    for (const MessageStatement& message : messages) signals += message.signals.size();
+    signals_.reserve(signals);  // it would hash all names again each time that it grows
+    by_id_.reserve(messages.size());
+    names.reserve(messages.size());
     for (std::size_t i = 0; i < messages.size(); ++i) {
       MessageStatement& message = messages[i];
       const auto [at, is_new] = by_id_.try_emplace(message.written_id, i);
@@ -311,7 +321,9 @@ class Resolver {
             each.signal.name + " does not say which of the selectors of " + message.name + " it is of",
             "read as of " + root.name + "; SG_MUL_VAL_ would say it");
     each.signal.selector = index;
-    each.signal.selected.push_back({*each.page, *each.page});
+    // SG_MUL_VAL_ may have said it already, in its ranges.
+    const SelectorRange own{*each.page, *each.page};
+    if (!have_common(each.signal.selected, {own})) each.signal.selected.push_back(own);
   }
   /// The signal that SG_MUL_VAL_ names, or a problem.
   [[nodiscard]] std::optional<std::size_t> selector_of(const MessageStatement& statement,
@@ -356,7 +368,34 @@ class Resolver {
     return *number;
   }
 
+  /// What an attribute's default says of all objects that do not give it becomes an attribute of each, where
+  /// it means something that its absence does not.
+  void give_default(std::vector<Attribute>& attributes, Of of, std::string_view name,
+                    std::string_view absent) {
+    const AttributeDefinition* defined = definition(of, name);
+    if (defined == nullptr || !defined->default_text || *defined->default_text == absent ||
+        defined->default_text->empty())
+      return;
+    if (std::none_of(attributes.begin(), attributes.end(),
+                     [&](const Attribute& attribute) { return attribute.name == name; }))
+      attributes.push_back({std::string{name}, *defined->default_text});
+  }
+
+  /// A signal that is sent when it changes makes its message come at any time.
+  void send_types_of_signals() {
+    const AttributeDefinition* defined = definition(Of::signal, "GenSigSendType");
+    if (defined == nullptr || !defined->default_text) return;
+    const std::string_view usual = *defined->default_text;
+    if (!usual.starts_with("On") && !usual.starts_with("IfActive")) return;
+    for (auto& statement : statements_.messages)
+      for (SignalStatement& each : statement.signals)
+        give_default(each.signal.attributes, Of::signal, "GenSigSendType", {});
+  }
+
   void meaning(Message& message) {
+    for (const std::string_view name : {"GenMsgStartDelayTime", "GenMsgCycleTimeFast"})
+      give_default(message.attributes, Of::message, name, "0");
+    give_default(message.attributes, Of::message, "CANFD_BRS", "1");
     message.cycle_ms = positive(take(message.attributes, Of::message, "GenMsgCycleTime"));
     message.delay_ms = positive(take(message.attributes, Of::message, "GenMsgDelayTime"));
     message.send_type = take(message.attributes, Of::message, "GenMsgSendType");
@@ -394,6 +433,11 @@ class Resolver {
     const auto rename = [&](std::string& node) {
       if (const auto at = nodes.find(node); at != nodes.end()) node = at->second;
     };
+    const auto has_default = [&](std::string_view name) {
+      const AttributeDefinition* defined = definition(Of::signal, name);
+      return defined != nullptr && defined->default_text.has_value();
+    };
+    const bool defaults = has_default("GenSigStartValue") || has_default("SystemSignalLongSymbol");
     for (auto& [message, written_id, signals] : statements_.messages) {
       if (std::string name = take(message.attributes, Of::message, "SystemMessageLongSymbol"); !name.empty())
         message.name = std::move(name);
@@ -401,7 +445,9 @@ class Resolver {
       for (auto& sender : message.other_senders) rename(sender);
       for (SignalStatement& each : signals) {
         Signal& signal = each.signal;
-        for (auto& receiver : signal.receivers) rename(receiver);
+        if (!nodes.empty())
+          for (auto& receiver : signal.receivers) rename(receiver);
+        if (signal.attributes.empty() && !defaults) continue;
         if (const auto start = take(signal.attributes, Of::signal, "GenSigStartValue"); !start.empty())
           if (const auto number = base::parse_decimal(start)) signal.start_value = *number;
         if (std::string name = take(signal.attributes, Of::signal, "SystemSignalLongSymbol"); !name.empty())
@@ -419,7 +465,7 @@ class Resolver {
               signal.name + " ends in byte " + std::to_string(signal.position.bytes() - 1) + " of " +
                   message.name + ", which has " + std::to_string(message.length) + " bytes",
               "it is there in longer frames only");
-    if (message.signals.size() > most_compared) return;
+    if (message.signals.size() > most_compared || are_apart(message)) return;
     for (std::size_t i = 0; i < message.signals.size(); ++i)
       for (std::size_t j = i + 1; j < message.signals.size(); ++j) {
         const Signal& a = message.signals[i];
@@ -429,6 +475,21 @@ class Resolver {
               "each is read by itself");
         return;
       }
+  }
+  /// Whether no two signals have a bit in common, whatever their selectors say; not looked for beyond 64
+  /// bytes. Most messages are so, and need not be compared signal by signal.
+  [[nodiscard]] static bool are_apart(const Message& message) noexcept {
+    std::array<std::uint8_t, 64> taken{};
+    for (const Signal& signal : message.signals) {
+      const unsigned end = signal.position.bytes();
+      if (end > taken.size()) return false;
+      for (unsigned byte = signal.position.start / 8U; byte < end; ++byte) {
+        const std::uint8_t bits = signal.position.bits_in_byte(byte);
+        if ((taken[byte] & bits) != 0) return false;
+        taken[byte] = static_cast<std::uint8_t>(taken[byte] | bits);
+      }
+    }
+    return true;
   }
   /// Whether there is a selector, of both or above them, by which one is there only without the other.
   [[nodiscard]] static bool exclude(const Message& message, const Signal& a, const Signal& b) {
@@ -454,7 +515,9 @@ class Resolver {
 
 Reading read(std::string_view bytes) {
   Reading reading;
-  const std::string text = to_utf8(bytes);
+  const auto same = as_utf8(bytes);  // the text must outlive its statements
+  const std::string converted = same ? std::string{} : to_utf8(bytes);
+  const std::string_view text = same ? *same : std::string_view{converted};
   Statements statements = parse(text, reading.problems, reading.doubts);
   if (reading.problems.empty()) {
     Document document = Resolver{std::move(statements), reading.problems, reading.doubts}.resolve();

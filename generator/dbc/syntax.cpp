@@ -293,6 +293,7 @@ class Parser {
               "read as 29 bits, which are written " + std::to_string(message.id | extended_flag));
       }
     }
+    statement.signals.reserve(4);
     statements_.messages.push_back(std::move(statement));
     return true;
   }
@@ -340,7 +341,7 @@ class Parser {
     std::uint64_t start = 0;
     std::uint64_t width = 0;
     static constexpr std::string_view bits = "a number of bits, at most 64";
-    if (!unsigned_number(start, 511, "the first bit, 0 to 511") || !character('|') ||
+    if (!unsigned_number(start, 8 * 1785 - 1, "the first bit, 0 to 14279") || !character('|') ||
         !unsigned_number(width, 64, bits))
       return false;
     signal.position.start = static_cast<std::uint16_t>(start);

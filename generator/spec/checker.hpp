@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <initializer_list>
 #include <optional>
@@ -45,9 +46,9 @@ struct At {
   return std::string{describe(node.kind)};
 }
 [[nodiscard]] inline std::string hex(std::uint64_t number) {
-  base::Text<20> text;
+  base::Text<18> text;
   text << "0x";
-  text.hex(number, number > 0xFF ? 3 : 2);
+  text.hex(number, std::max(2, (static_cast<int>(std::bit_width(number)) + 3) / 4));
   return std::string{text.view()};
 }
 [[nodiscard]] inline std::string print(Decimal number) {
@@ -84,10 +85,12 @@ class Checker {
 
   // --- telling ---
 
+  [[nodiscard]] std::string place(const At& at) const {
+    return std::string{file_name_} + ":" + std::to_string(at.node->line) + ": " +
+           (at.path.empty() ? "/" : at.path);
+  }
   void tell(const At& at, std::string what, std::string remedy) {
-    problems_.push_back({std::string{file_name_} + ":" + std::to_string(at.node->line) + ": " +
-                             (at.path.empty() ? "/" : at.path),
-                         std::move(what), std::move(remedy)});
+    problems_.push_back({place(at), std::move(what), std::move(remedy)});
   }
 
   // --- reading JSON ---
@@ -121,6 +124,10 @@ class Checker {
   /// One line of text for people.
   [[nodiscard]] std::string line(const At& at, bool may_be_empty = true) {
     if (!is_kind(at, Kind::string, "a line of text in double quotes")) return {};
+    if (at.node->text.size() > 1000) {
+      tell(at, "a text of " + std::to_string(at.node->text.size()) + " bytes", "at most 1000");
+      return {};
+    }
     for (const char c : at.node->text) {
       if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) {
         tell(at, "the text has a line break or another control character", "one line of plain text");

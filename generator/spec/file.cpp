@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <system_error>
 #include <unistd.h>
 
@@ -11,23 +12,33 @@
 namespace ocm::spec {
 namespace {
 
-/// Fills `text` from the front; how much there was. Nothing: the file cannot be read.
-std::optional<std::size_t> read_all(int file, std::string& text) {
-  std::size_t size = 0;
-  while (size < text.size()) {
-    const ssize_t n = ::read(file, text.data() + size, text.size() - size);
-    if (n < 0 && errno == EINTR) continue;
+/// The bytes of a file, and of one that is too large one more than is allowed: a device has no end. Nothing:
+/// it cannot be read.
+std::optional<std::string> read_all(int file, std::size_t most) {
+  std::string text;
+  // A file says how long it is, and one byte more says that it has ended.
+  struct stat known {};
+  const bool is_file = ::fstat(file, &known) == 0 && S_ISREG(known.st_mode) && known.st_size > 0;
+  std::size_t room = is_file ? static_cast<std::size_t>(known.st_size) + 1 : 64 * 1024;
+  while (text.size() <= most) {
+    const std::size_t size = text.size();
+    text.resize(std::min(std::max(size + 1, room), most + 1));
+    room = 2 * text.size();
+    ssize_t n = 0;
+    do n = ::read(file, text.data() + size, text.size() - size);
+    while (n < 0 && errno == EINTR);
     if (n < 0) return std::nullopt;
+    text.resize(size + static_cast<std::size_t>(n));
     if (n == 0) break;
-    size += static_cast<std::size_t>(n);
   }
-  return size;
+  return text;
 }
 
 }  // namespace
 
 std::optional<std::string> read_document(const std::filesystem::path& file, std::string_view what,
-                                         std::string_view example, std::vector<Problem>& problems) {
+                                         std::string_view example, std::vector<Problem>& problems,
+                                         std::size_t most) {
   const auto failed = [&](std::string problem, std::string remedy) {
     problems.push_back({file.string(), std::move(problem), std::move(remedy)});
     return std::nullopt;
@@ -41,17 +52,14 @@ std::optional<std::string> read_document(const std::filesystem::path& file, std:
   if (std::filesystem::is_directory(status))
     return failed("it is a folder",
                   "the path of the " + std::string{what.substr(what.find(' ') + 1)} + " within it");
-  // One byte more than allowed is enough to know that it is too much; a device has no end.
-  std::string text(max_document_bytes + 1, '\0');
   // No stream: it takes memory of its own, and reports that there is none as a file that cannot be opened.
   const int in = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
   if (in < 0) return failed("it cannot be opened", "a file that you may read");
-  const auto size = read_all(in, text);
+  auto text = read_all(in, most);
   ::close(in);
-  if (!size) return failed("it cannot be read", "a readable file");
-  text.resize(*size);
-  if (text.size() > max_document_bytes)
-    return failed("the file is larger than " + std::to_string(max_document_bytes) + " bytes",
+  if (!text) return failed("it cannot be read", "a readable file");
+  if (text->size() > most)
+    return failed("the file is larger than " + std::to_string(most) + " bytes",
                   std::string{what} + " is smaller");
   return text;
 }

@@ -13,14 +13,15 @@
 
 namespace ocm::spec {
 
-/// A document is at most this large.
-inline constexpr std::size_t max_document_bytes = 1'000'000;
+/// A document is at most this large, unless its kind is smaller.
+inline constexpr std::size_t max_document_bytes = 10'000'000;
 
 /// The text of a file; nothing, and a problem, if it is missing, cannot be read or is larger than
-/// `max_document_bytes`. `example` is the path of such a file.
+/// `most` bytes. `example` is the path of such a file.
 [[nodiscard]] std::optional<std::string> read_document(const std::filesystem::path& file,
                                                        std::string_view what, std::string_view example,
-                                                       std::vector<Problem>& problems);
+                                                       std::vector<Problem>& problems,
+                                                       std::size_t most = max_document_bytes);
 
 /// Whether there is a document to judge: after a syntax error there is none, after a member that is there
 /// twice there is.

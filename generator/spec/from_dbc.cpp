@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <filesystem>
 #include <string>
 #include <unordered_map>
@@ -14,10 +13,6 @@
 
 namespace ocm::spec {
 namespace {
-
-/// What a catalogue's layout can hold: CAN FD, or J1939's transport protocol.
-constexpr unsigned most_bytes = 64;
-constexpr unsigned most_bytes_j1939 = 1785;
 
 char lower(char c) noexcept {
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
@@ -47,8 +42,11 @@ class Converter {
     model.robot = std::filesystem::path{file_name_}.stem().string();
     model.description = std::move(document.comment);
     model.attributes = attributes_of(document.attributes);
-    model.bit_rate = bit_rate(model.attributes);
+    model.bit_rate = bit_rate(model.attributes, "Baudrate", 1'000'000);
+    model.data_bit_rate = bit_rate(model.attributes, "BaudrateCANFD", max_data_bit_rate);
+    if (model.data_bit_rate < model.bit_rate) model.data_bit_rate = 0;
     boards(document, model);
+    model.messages.reserve(document.messages.size());
     for (dbc::Message& message : document.messages) add(message, model);
     return model;
   }
@@ -59,11 +57,12 @@ class Converter {
   }
 
   /// The attribute that many files give it in, in bit/s; 0: none that a bus can have.
-  static std::uint32_t bit_rate(const std::vector<AttributeModel>& attributes) {
+  static std::uint32_t bit_rate(const std::vector<AttributeModel>& attributes, std::string_view name,
+                                std::uint32_t most) {
     for (const AttributeModel& attribute : attributes) {
-      if (attribute.name != "Baudrate") continue;
+      if (attribute.name != name) continue;
       const auto rate = base::parse_unsigned(attribute.text);
-      if (rate && *rate >= 1'000 && *rate <= 1'000'000) return static_cast<std::uint32_t>(*rate);
+      if (rate && *rate >= 1'000 && *rate <= most) return static_cast<std::uint32_t>(*rate);
     }
     return 0;
   }
@@ -88,10 +87,12 @@ class Converter {
   void add(dbc::Message& message, Model& model) {
     using Format = dbc::Message::Format;
     const bool j1939 = message.format == Format::j1939;
-    const unsigned most = j1939 ? most_bytes_j1939 : most_bytes;
-    if (message.length > most)
+    const unsigned most = MessageModel::most_bytes(j1939);
+    if (message.length > most) {
+      model.too_long.push_back(message.name);
       return doubt(message.line, message.name + " has " + std::to_string(message.length) + " bytes",
                    "it is left out: a frame has at most " + std::to_string(most));
+    }
     MessageModel out;
     out.name = std::move(message.name);
     out.description = std::move(message.comment);
@@ -105,15 +106,28 @@ class Converter {
     out.shortest_period = duration_of(message.delay_ms);
     out.send_type = std::move(message.send_type);
     out.attributes = attributes_of(message.attributes);
-    out.source.general = file_name_ + ':' + std::to_string(message.line);
-    const auto names = names_of(message.signals);
-    for (const dbc::Signal& signal : message.signals) out.fields.push_back(field(signal, names));
-    for (std::size_t i = 0; i < names.size(); ++i) out.fields[i].name = names[i];
+    out.source.general =
+        std::filesystem::path{file_name_}.filename().string() + ':' + std::to_string(message.line);
+    auto signals = std::move(message.signals);  // freed with this message, for the next one's fields
+    const auto names = names_of(signals);
+    out.fields.reserve(signals.size());
+    for (dbc::Signal& signal : signals) out.fields.push_back(field(signal, signals, names));
+    for (std::size_t i = 0; i < out.fields.size(); ++i)
+      out.fields[i].name = names.empty() ? std::move(signals[i].name) : names[i];
     model.messages.push_back(std::move(out));
   }
 
-  /// Two signals of one name are told apart by a number: a selector is found by its name.
+  static bool are_unique(const std::vector<dbc::Signal>& signals) {
+    std::vector<std::string_view> names;
+    names.reserve(signals.size());
+    for (const dbc::Signal& signal : signals) names.emplace_back(signal.name);
+    std::sort(names.begin(), names.end());
+    return std::adjacent_find(names.begin(), names.end()) == names.end();
+  }
+  /// Two signals of one name are told apart by a number: a selector is found by its name. Empty where there
+  /// are no such two: they have their own names.
   static std::vector<std::string> names_of(const std::vector<dbc::Signal>& signals) {
+    if (are_unique(signals)) return {};
     std::unordered_set<std::string> taken;
     for (const dbc::Signal& signal : signals) taken.insert(signal.name);
     std::unordered_map<std::string, unsigned> times;
@@ -128,38 +142,30 @@ class Converter {
     return names;
   }
 
-  static FieldModel field(const dbc::Signal& signal, const std::vector<std::string>& names) {
+  /// All but its name, which selectors are still looked up by.
+  static FieldModel field(dbc::Signal& signal, const std::vector<dbc::Signal>& all,
+                          const std::vector<std::string>& names) {
     FieldModel out;
-    out.name = signal.name;
-    out.description = signal.comment;
+    out.description = std::move(signal.comment);
     out.position = signal.position;
     out.number = static_cast<protocol::Number>(signal.number);
     out.is_signed = signal.is_signed && out.number == protocol::Number::integer;
     out.scale = signal.scale;
     out.offset = signal.offset;
-    out.unit = signal.unit;
+    out.unit = std::move(signal.unit);
     out.raw_min = protocol::lowest(signal.position.width, out.is_signed);
     out.raw_max = protocol::highest(signal.position.width, out.is_signed);
     if (signal.has_range) out.range = RangeModel{signal.min, signal.max};
-    for (const dbc::NamedValue& value : signal.values) out.values.push_back({value.name, value.raw});
+    out.values.reserve(signal.values.size());
+    for (dbc::NamedValue& value : signal.values) out.values.push_back({std::move(value.name), value.raw});
     if (signal.selector) {
-      out.selector = names[*signal.selector];
+      out.selector = names.empty() ? all[*signal.selector].name : names[*signal.selector];
       for (const auto& [first, last] : signal.selected) out.selected.push_back({first, last});
     }
-    if (signal.start_value) out.start = start_of(out, *signal.start_value);
-    out.receivers = signal.receivers;
-    auto attributes = signal.attributes;
-    out.attributes = attributes_of(attributes);
+    if (signal.start_value) out.start = out.start_from(*signal.start_value);
+    out.receivers = std::move(signal.receivers);
+    out.attributes = attributes_of(signal.attributes);
     return out;
-  }
-
-  /// A start value is raw, not scaled; a float's is its number.
-  static std::optional<std::int64_t> start_of(const FieldModel& field, base::Decimal start) {
-    if (field.number == protocol::Number::float32)
-      return std::int64_t{std::bit_cast<std::uint32_t>(static_cast<float>(start.as_double()))};
-    if (field.number == protocol::Number::float64) return std::bit_cast<std::int64_t>(start.as_double());
-    const auto raw = base::divide_rounded(start, {1, 0});
-    return raw ? std::optional{*raw} : std::nullopt;
   }
 
   std::string file_name_;

@@ -153,9 +153,9 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     return add(std::move(node));
   }
   bool short_enough(const std::string& value) {
-    if (value.size() <= max_text) return true;
+    if (value.size() <= document_.max_text) return true;
     problems_.push_back({place(), "a text of " + std::to_string(value.size()) + " bytes",
-                         "at most " + std::to_string(max_text)});
+                         "at most " + std::to_string(document_.max_text)});
     return false;
   }
   Node* put(Node node) {

@@ -40,17 +40,17 @@ struct Document {
   std::string_view what = "a spec";
   std::string_view members = "robot, namespace, bus, boards and topics";  ///< of its outermost object
   std::string_view schema = "topics.schema.json";
-  int levels = 7;  ///< how deep it is nested at most
+  int levels = 7;               ///< how deep it is nested at most
+  std::size_t max_text = 1000;  ///< bytes of a text
 };
 
 /// Reads `text`. Appends to `problems` where it is not JSON, nested deeper than `max_depth`, has a text
-/// longer than `max_text` bytes or a member twice; then the node is not to be used. Throws std::bad_alloc
-/// only.
+/// longer than the document's `max_text` or a member twice; then the node is not to be used. Throws
+/// std::bad_alloc only.
 [[nodiscard]] Node parse_json(std::string_view text, std::string_view file_name,
                               std::vector<Problem>& problems, const Document& document = {});
 
 inline constexpr std::size_t max_depth = 32;
-inline constexpr std::size_t max_text = 1000;
 
 /// What stands for `~` and `/` in a JSON pointer. [RFC 6901]
 [[nodiscard]] std::string pointer_step(std::string_view key);

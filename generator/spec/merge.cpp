@@ -83,6 +83,7 @@ class Merger {
       topic.board = boards[topic.board];
       into_.topics.push_back(std::move(topic));
     }
+    into_.too_long.insert(into_.too_long.end(), from.too_long.begin(), from.too_long.end());
     for (MessageModel& message : from.messages) {
       claim(message.name);
       if (message.board != protocol::no_board) message.board = boards[message.board];
@@ -100,6 +101,11 @@ class Merger {
       tell("its bus has " + std::to_string(from.bit_rate) + " bit/s, that of " + into_.robot + " " +
                std::to_string(into_.bit_rate),
            "specs of one bus have one bit rate");
+    if (into_.data_bit_rate == 0) into_.data_bit_rate = from.data_bit_rate;
+    if (from.data_bit_rate != 0 && from.data_bit_rate != into_.data_bit_rate)
+      tell("its bus has " + std::to_string(from.data_bit_rate) + " bit/s for data, that of " + into_.robot +
+               " " + std::to_string(into_.data_bit_rate),
+           "specs of one bus have one data bit rate");
   }
   void claim(const std::string& name) {
     const auto other = names_.find(name);

@@ -2,6 +2,8 @@
 /// what the catalogue is made of.
 #pragma once
 
+#include <bit>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -38,6 +40,10 @@ struct Source {
     return line;
   }
 };
+
+/// Behind the bit-rate switch of CAN FD, bit/s: what the attribute BaudrateCANFD can be. Controllers reach 8
+/// M.
+inline constexpr std::uint32_t max_data_bit_rate = 16'000'000;
 
 /// What a DBC file says of an object by a name of its own; kept as it is written.
 struct AttributeModel {
@@ -82,6 +88,22 @@ struct FieldModel {
   std::optional<RangeModel> range;                ///< as stated; raw_min and raw_max follow from it
   std::vector<std::string> receivers;             ///< names of boards
   std::vector<AttributeModel> attributes;
+
+  /// The raw number of a start value as specs give it: raw, not scaled; of a float its number. Nothing where
+  /// it is more than 64 bits hold.
+  [[nodiscard]] std::optional<std::int64_t> start_from(base::Decimal value) const noexcept {
+    if (number == protocol::Number::float32) {
+      const auto real = static_cast<float>(value.as_double());
+      return std::isfinite(real) ? std::optional<std::int64_t>{std::bit_cast<std::uint32_t>(real)}
+                                 : std::nullopt;
+    }
+    if (number == protocol::Number::float64) {
+      const double real = value.as_double();
+      return std::isfinite(real) ? std::optional{std::bit_cast<std::int64_t>(real)} : std::nullopt;
+    }
+    const auto raw = base::divide_rounded(value, {1, 0});
+    return raw ? std::optional{*raw} : std::nullopt;
+  }
 
   /// The values are all that the field can be, so that it is an enumeration: they have names and no unit.
   [[nodiscard]] bool is_enumeration() const noexcept { return !values.empty() && !flags && unit.empty(); }
@@ -136,6 +158,10 @@ struct MessageModel {
   std::string send_type;  ///< as the source calls it, such as "Cyclic"
   std::vector<AttributeModel> attributes;
   Source source;
+
+  [[nodiscard]] bool is_j1939() const noexcept { return address.by == protocol::Address::By::pgn; }
+  /// What a catalogue's layout can hold: CAN FD, or J1939's transport protocol.
+  [[nodiscard]] static constexpr unsigned most_bytes(bool j1939) noexcept { return j1939 ? 1785 : 64; }
 };
 
 struct BoardModel {
@@ -153,11 +179,13 @@ struct Model {
   std::string name_space;
   std::string description;
   std::uint32_t bit_rate = 0;
+  std::uint32_t data_bit_rate = 0;  ///< of CAN FD frames behind the switch; 0: none is stated
   Source bus_source;
   Source defaults_source;
   std::vector<BoardModel> boards;
   std::vector<TopicModel> topics;
   std::vector<MessageModel> messages;
+  std::vector<std::string> too_long;       ///< messages of the source that no frame can carry: left out
   std::vector<AttributeModel> attributes;  ///< of the bus
 };
 

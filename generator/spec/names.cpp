@@ -43,6 +43,13 @@ bool is_name(std::string_view text) noexcept {
   return true;
 }
 
+bool is_word(std::string_view text) noexcept {
+  static constexpr std::string_view apart = ":;,|@()[]\"";
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
+    return static_cast<unsigned char>(c) > ' ' && c != '\x7F' && apart.find(c) == std::string_view::npos;
+  });
+}
+
 bool is_reserved(std::string_view name) noexcept {
   return std::binary_search(std::begin(reserved), std::end(reserved), name);
 }

@@ -11,6 +11,9 @@ namespace ocm::spec {
 /// Lower-case letters, digits and single underscores, a letter first, no underscore last: "sensor_1".
 [[nodiscard]] bool is_name(std::string_view text) noexcept;
 
+/// A name as DBC files have them: no blank, and no character that means something there.
+[[nodiscard]] bool is_word(std::string_view text) noexcept;
+
 /// A word that C++ keeps for itself, or that a compiler defines as a macro.
 [[nodiscard]] bool is_reserved(std::string_view name) noexcept;
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "generator/spec/field_reader.hpp"
+#include "generator/spec/message_reader.hpp"
 #include "generator/spec/names.hpp"
 
 namespace ocm::spec {
@@ -20,25 +21,35 @@ constexpr std::array<std::string_view, 9> namespace_members{
 
 class Reader : private FieldReader {
  public:
-  using FieldReader::FieldReader;
+  Reader(std::string_view file_name, std::vector<Problem>& problems, std::vector<Problem>& doubts)
+      : FieldReader(file_name, problems), messages_(file_name, problems, doubts) {}
 
   Model read(const Node& node) {
     const At root{&node, ""};
     Model model;
     if (!is_object(root, "a spec is an object with robot, namespace, bus, boards and topics")) return model;
     check_keys(root, {"$schema", "robot", "namespace", "description", "byte_order", "bus", "defaults",
-                      "boards", "topics"});
+                      "boards", "topics", "messages", "attributes"});
+    // A bus of messages has what its DBC file has; a robot's topics become a header, with sources.
+    const bool topics = root.member("topics") || !root.member("messages");
     if (const auto at = require(root, "robot", "the robot's name")) model.robot = line(*at, false);
-    if (const auto at = require(root, "namespace", "the C++ namespace of the generated header"))
+    if (const auto at = topics ? require(root, "namespace", "the C++ namespace of the generated header")
+                               : root.member("namespace"))
       read_namespace(*at, model);
-    if (const auto at = root.member("description")) model.description = line(*at);
+    if (const auto at = root.member("description")) model.description = description(*at, topics);
     order_ = read_order(root, protocol::ByteOrder::little);
-    if (const auto at = require(root, "bus", R"({"bit_rate": 500000, "source": "..."})"))
-      read_bus(*at, model);
+    if (const auto at =
+            topics ? require(root, "bus", R"({"bit_rate": 500000, "source": "..."})") : root.member("bus"))
+      read_bus(*at, topics, model);
     if (const auto at = root.member("defaults")) read_defaults(*at, model);
-    if (const auto at = require(root, "boards", "the list of the boards on the bus")) read_boards(*at, model);
-    if (const auto at = require(root, "topics", "the list of what is said on the bus"))
+    if (const auto at =
+            topics ? require(root, "boards", "the list of the boards on the bus") : root.member("boards"))
+      read_boards(*at, topics, model);
+    if (const auto at =
+            topics ? require(root, "topics", "the list of what is said on the bus") : std::nullopt)
       read_topics(*at, model);
+    if (const auto at = root.member("messages")) messages_.read(*at, order_, topic_names_, model);
+    model.attributes = messages_.attributes(root);
     return model;
   }
 
@@ -52,12 +63,25 @@ class Reader : private FieldReader {
            "the robot's own name, such as \"amiro\"");
   }
 
-  void read_bus(const At& at, Model& model) {
+  /// A comment of a DBC file may have several lines; what goes into a header, one.
+  [[nodiscard]] std::string description(const At& at, bool topics) {
+    if (topics) return line(at);
+    return is_kind(at, Kind::string, "a text in double quotes") ? at.node->text : std::string{};
+  }
+
+  void read_bus(const At& at, bool topics, Model& model) {
     if (!is_object(at, R"({"bit_rate": 500000, "source": "..."})")) return;
-    check_keys(at, {"bit_rate", "source"});
-    model.bus_source = read_source(at, {"bit_rate"}, false);
+    check_keys(at, {"bit_rate", "data_bit_rate", "source"});
+    model.bus_source = read_source(at, {"bit_rate", "data_bit_rate"}, !topics);
     if (const auto rate = require(at, "bit_rate", "bits per second, such as 500000"))
       model.bit_rate = static_cast<std::uint32_t>(integer(*rate, 1'000, 1'000'000).value_or(0));
+    if (const auto rate = at.member("data_bit_rate")) {
+      model.data_bit_rate = static_cast<std::uint32_t>(integer(*rate, 1'000, max_data_bit_rate).value_or(0));
+      if (model.data_bit_rate != 0 && model.data_bit_rate < model.bit_rate)
+        tell(*rate,
+             "the data of CAN FD would be slower than the rest, " + std::to_string(model.bit_rate) + " bit/s",
+             "at least \"bit_rate\"");
+    }
   }
 
   /// What every topic has that does not say otherwise.
@@ -81,11 +105,11 @@ class Reader : private FieldReader {
            "another name for one of them");
   }
 
-  void read_boards(const At& at, Model& model) {
+  void read_boards(const At& at, bool topics, Model& model) {
     static constexpr std::string_view form =
         R"(a list of boards: [{"name": "main_board", "mcu": "STM32F103", "source": "..."}])";
     if (!is_kind(at, Kind::array, form)) return;
-    if (at.node->items.empty()) tell(at, "the list is empty", "at least one board");
+    if (at.node->items.empty() && topics) tell(at, "the list is empty", "at least one board");
     if (at.node->items.size() > 255)
       return tell(at, std::to_string(at.node->items.size()) + " boards",
                   "at most 255: a topic keeps its board in 8 bits");
@@ -93,27 +117,30 @@ class Reader : private FieldReader {
       const At board_at = at.item(i);
       BoardModel board;
       if (is_object(board_at, R"({"name": "main_board", "mcu": "STM32F103", "source": "..."})")) {
-        check_keys(board_at, {"name", "description", "mcu", "clock_hz", "can_clock_hz", "source"});
+        check_keys(board_at,
+                   {"name", "description", "mcu", "clock_hz", "can_clock_hz", "source", "attributes"});
         if (const auto a = require(board_at, "name", "what topics call it")) {
-          board.name = name(*a);
-          if (!board.name.empty()) claim_board(*a, board.name);
+          board.name = topics ? name(*a) : messages_.word(*a);
+          if (!board.name.empty()) claim_board(*a, board.name, topics);
         }
-        if (const auto a = board_at.member("description")) board.description = line(*a);
-        if (const auto a = require(board_at, "mcu", "the microcontroller, such as \"STM32F103\""))
+        if (const auto a = board_at.member("description")) board.description = description(*a, topics);
+        if (const auto a = topics ? require(board_at, "mcu", "the microcontroller, such as \"STM32F103\"")
+                                  : board_at.member("mcu"))
           board.mcu = line(*a, false);
         board.clock_hz = read_clock(board_at, "clock_hz");
         board.can_clock_hz = read_clock(board_at, "can_clock_hz");
-        board.source = read_source(board_at, {"mcu", "clock_hz", "can_clock_hz"}, false);
+        board.source = read_source(board_at, {"mcu", "clock_hz", "can_clock_hz"}, !topics);
+        board.attributes = messages_.attributes(board_at);
       }
       model.boards.push_back(std::move(board));  // also a bad one: the others keep their numbers
     }
     boards_known_ = !boards_.empty();
   }
-  void claim_board(const At& at, const std::string& board) {
+  void claim_board(const At& at, const std::string& board, bool topics) {
     const auto [other, is_new] = boards_.emplace(board, at.path);
-    if (is_new)
+    if (is_new && topics)
       claim_type(at, board);
-    else
+    else if (!is_new)
       tell(at, "a second board " + quoted(board) + " (see " + other->second + ")",
            "a name of its own for each board");
   }
@@ -516,6 +543,7 @@ class Reader : private FieldReader {
     bool good;  ///< nothing was wrong with it
   };
 
+  MessageReader messages_;
   protocol::ByteOrder order_ = protocol::ByteOrder::little;
   TopicModel defaults_;
   bool boards_known_ = false;
@@ -530,8 +558,9 @@ class Reader : private FieldReader {
 
 }  // namespace
 
-Model read_model(const Node& root, std::string_view file_name, std::vector<Problem>& problems) {
-  return Reader{file_name, problems}.read(root);
+Model read_model(const Node& root, std::string_view file_name, std::vector<Problem>& problems,
+                 std::vector<Problem>& doubts) {
+  return Reader{file_name, problems, doubts}.read(root);
 }
 
 }  // namespace ocm::spec

@@ -11,8 +11,10 @@
 
 namespace ocm::spec {
 
-/// Appends every problem that it finds. The model is complete only when it found none.
-[[nodiscard]] Model read_model(const Node& root, std::string_view file_name, std::vector<Problem>& problems);
+/// Appends every problem that it finds, and of messages every doubt. The model is complete only when it found
+/// no problem.
+[[nodiscard]] Model read_model(const Node& root, std::string_view file_name, std::vector<Problem>& problems,
+                               std::vector<Problem>& doubts);
 
 /// What the JSON schema finds, where `problems` has nothing yet: the two say the same of a spec's form, but
 /// the reader says it better.

@@ -32,16 +32,23 @@ struct Spec::Storage {
   std::string_view keep(std::string text) { return texts.emplace_back(std::move(text)); }
 
   std::span<const protocol::Field> make_fields(const std::vector<FieldModel>& models) {
+    if (models.empty()) return {};
     auto& list = fields.emplace_back();
+    list.reserve(models.size());
     for (const FieldModel& field : models) {
-      auto& names = values.emplace_back();
-      for (const ValueModel& value : field.values) names.push_back({value.raw, value.name});
+      std::span<const protocol::NamedValue> names;
+      if (!field.values.empty()) {
+        auto& named = values.emplace_back();
+        named.reserve(field.values.size());
+        for (const ValueModel& value : field.values) named.push_back({value.raw, value.name});
+        names = named;
+      }
       protocol::Field& out = list.emplace_back(
           protocol::Field{field.name, field.position, field.is_signed, field.scale, field.offset, field.unit,
                           field.raw_min, field.raw_max, names, field.flags, field.number});
       for (std::size_t i = 0; i < models.size() && !field.selector.empty(); ++i)
         if (models[i].name == field.selector) out.selector = static_cast<std::uint16_t>(i);
-      out.selected = ranges.emplace_back(field.selected);
+      if (!field.selected.empty()) out.selected = ranges.emplace_back(field.selected);
       out.start = field.start.value_or(0);
       if (field.range) out.min = field.range->min, out.max = field.range->max;
     }
@@ -54,6 +61,8 @@ struct Spec::Storage {
     layout.fields = make_fields(message.fields);
     layout.address = message.address;
     layout.fd = message.fd;
+    for (const AttributeModel& attribute : message.attributes)
+      if (attribute.name == "CANFD_BRS" && attribute.text == "0") layout.bit_rate_switch = false;
     protocol::Topic out;
     out.name = message.name;
     out.aliases = aliases.emplace_back(message.aliases.begin(), message.aliases.end());
@@ -107,6 +116,7 @@ struct Spec::Storage {
   }
 
   void make_catalogue() {
+    topics.reserve(model.topics.size() + model.messages.size());
     for (const BoardModel& board : model.boards) boards.push_back({board.name, board.mcu});
     for (const TopicModel& topic : model.topics) {
       if (!topic.is_group)
@@ -169,11 +179,12 @@ Loaded parse(std::string_view text, std::string_view file_name) {
     return loaded;
   }
   if (is_dbc(text, file_name)) return parse_dbc(text, file_name);
-  const Node root = parse_json(text, file_name, loaded.problems);
+  const Node root = parse_json(text, file_name, loaded.problems, {.max_text = max_spec_text});
   if (!has_document(loaded.problems)) return loaded;
-  Model model = read_model(root, file_name, loaded.problems);
+  Model model = read_model(root, file_name, loaded.problems, loaded.doubts);
   validate_by_schema(root, file_name, loaded.problems);
   sort_by_line(loaded.problems, file_name);
+  sort_by_line(loaded.doubts, file_name);
   if (loaded.problems.empty()) loaded.spec = std::make_unique<Spec>(std::move(model));
   return loaded;
 }

@@ -35,11 +35,14 @@ class Spec {
 struct Loaded {
   std::unique_ptr<Spec> spec;
   std::vector<Problem> problems;
-  std::vector<Problem> doubts;  ///< of a DBC file: loaded as others load it, and perhaps not as it was meant
+  std::vector<Problem>
+      doubts;  ///< of messages: loaded as other programs load them, and perhaps not as it was meant
 };
 
 /// A spec is at most this large.
 inline constexpr std::size_t max_spec_bytes = max_document_bytes;
+/// A text in it, such as the comment of a message.
+inline constexpr std::size_t max_spec_text = 20'000;
 
 /// Any bytes are a problem at worst: throws std::bad_alloc only. `file_name` is for the places.
 [[nodiscard]] Loaded parse(std::string_view text, std::string_view file_name);

@@ -7,6 +7,7 @@
 
 #include "generator/spec/names.hpp"
 #include "generator/spec/worst_bits.hpp"
+#include "generator/targets/cpp_messages.hpp"
 #include "generator/text/conversion.hpp"
 #include "generator/text/words.hpp"
 #include "generator/text/writer.hpp"
@@ -613,50 +614,100 @@ void write_catalogue(Writer& out, const Model& model) {
   out.line("inline constexpr std::uint32_t wire_hash = ocm::protocol::wire_hash(catalogue);");
 }
 
+std::string sentence(std::string text) {
+  return text.ends_with('.') ? text : text + '.';
+}
+
+/// That of the spec; of a bus that names none its own name, as C++ has it.
+std::string name_space(const Model& model) {
+  if (!model.name_space.empty()) return model.name_space;
+  std::string name = cpp_name(model.robot);
+  for (char& c : name)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return spec::is_reserved(name) || name == "ocm" || name == "std" ? name + "_" : name;
+}
+
 }  // namespace
 
 std::string header(const Model& model, std::string_view spec_name) {
+  const bool topics = !model.topics.empty();
+  const bool messages = !model.messages.empty();
+  const std::string space = name_space(model);
   Writer out;
   out.comment("Made by ocm-generate from " + std::string{spec_name} +
                   ". Do not edit: change the spec, and generate again.",
               "// ");
   out.line();
-  out.comment("The topics of " + model.robot +
-              (model.description.empty() ? "." : ": " + model.description + "."));
-  out.line("///");
-  out.comment(
-      "Members of a frame are raw numbers, as they travel. name_unit() is the physical value, rounded once "
-      "where "
-      "raw number times scale stays below 2^53; set_name_unit() takes the nearest raw number within the "
-      "field's "
-      "range, and the one nearest to zero for not a number. encode() puts the nearest number that the width "
-      "holds. `frames` has of each frame the id, the DLC, and the most bits that it takes on the bus at each "
-      "priority, whatever its content. No heap, no exceptions; everything is constexpr.");
+  const std::string_view what = topics && messages ? "topics and messages" : topics ? "topics" : "messages";
+  out.comment("The " + std::string{what} + " of " + model.robot +
+              (model.description.empty() ? "." : ": " + sentence(comment_text(model.description))));
+  if (topics) {
+    out.line("///");
+    out.comment(
+        "Members of a frame are raw numbers, as they travel. name_unit() is the physical value, rounded once "
+        "where "
+        "raw number times scale stays below 2^53; set_name_unit() takes the nearest raw number within the "
+        "field's "
+        "range, and the one nearest to zero for not a number. encode() puts the nearest number that the "
+        "width "
+        "holds. `frames` has of each frame the id, the DLC, and the most bits that it takes on the bus at "
+        "each "
+        "priority, whatever its content. No heap, no exceptions; everything is constexpr.");
+  }
+  if (messages) {
+    out.line("///");
+    out.comment(
+        "A message is its bytes, which begin with the start values; what they mean is read and put in place. "
+        "Name() is the physical value, the named one or the number, Name_raw() the bits; set_Name() takes "
+        "the "
+        "nearest that the width holds. Of a multiplexed field Name() is empty where the selector says that "
+        "it "
+        "is not there, and set_Name() is false. ocm/protocol/message.hpp makes frames of them, and reads "
+        "them.");
+  }
   if (const std::string source = model.defaults_source.joined(); !source.empty()) {
     out.line("///");
     out.comment("Where a period, deadline, jitter, priority or timeout names no source: [" + source + "]");
   }
   out.line("#pragma once");
   out.line();
-  for (const char* name : {"array", "chrono", "cstddef", "cstdint", "string_view"})
-    out.line(std::string{"#include <"} + name + ">");
+  std::vector<std::string_view> standard{"array", "chrono", "cstddef", "cstdint", "string_view"};
+  if (messages) standard = {"array", "bit", "cstddef", "cstdint", "optional", "span", "string_view"};
+  if (messages && topics) standard.insert(standard.begin() + 2, "chrono");
+  for (const std::string_view name : standard) out.line("#include <" + std::string{name} + ">");
   out.line();
-  for (const char* name :
-       {"ocm/base/time.hpp", "ocm/can/frame.hpp", "ocm/protocol/codec.hpp", "ocm/protocol/identifier.hpp",
-        "ocm/protocol/physical.hpp", "ocm/protocol/request.hpp", "ocm/protocol/topic.hpp",
-        "ocm/protocol/wire_hash.hpp"})
-    out.line("#include \"" + std::string{name} + "\"");
+  std::vector<std::string_view> own{"ocm/base/time.hpp",         "ocm/can/frame.hpp",
+                                    "ocm/protocol/codec.hpp",    "ocm/protocol/identifier.hpp",
+                                    "ocm/protocol/physical.hpp", "ocm/protocol/request.hpp",
+                                    "ocm/protocol/topic.hpp",    "ocm/protocol/wire_hash.hpp"};
+  if (messages) {
+    own.insert(own.begin(), "ocm/base/binary64.hpp");
+    own.insert(std::find(own.begin(), own.end(), "ocm/protocol/physical.hpp"),
+               {"ocm/protocol/message.hpp", "ocm/protocol/message_field.hpp"});
+    if (!topics)
+      for (const std::string_view name :
+           {"ocm/protocol/identifier.hpp", "ocm/protocol/request.hpp", "ocm/protocol/wire_hash.hpp",
+            "ocm/protocol/physical.hpp", "ocm/can/frame.hpp"})
+        std::erase(own, name);
+  }
+  for (const std::string_view name : own) out.line("#include \"" + std::string{name} + "\"");
   out.line();
-  out.line("namespace " + model.name_space + " {");
+  out.line("namespace " + space + " {");
   out.line();
-  out.comment(with_source("Bits per second on the bus.", model.bus_source.joined()));
-  out.line("inline constexpr std::uint32_t bit_rate = " + grouped(model.bit_rate) + ";");
-  out.line();
+  if (model.bit_rate != 0) {
+    out.comment(with_source("Bits per second on the bus.", model.bus_source.joined()));
+    out.line("inline constexpr std::uint32_t bit_rate = " + grouped(model.bit_rate) + ";");
+    out.line();
+  }
   for (const TopicModel& topic : model.topics) write_topic(out, model, topic);
-  write_catalogue(out, model);
-  out.line();
-  for (std::size_t i = 0; i < model.boards.size(); ++i) write_board(out, model, i);
-  out.line("}  // namespace " + model.name_space);
+  if (messages) write_messages(out, model);
+  if (topics) {
+    write_catalogue(out, model);
+    out.line();
+    for (std::size_t i = 0; i < model.boards.size(); ++i)
+      if (!model.boards[i].mcu.empty()) write_board(out, model, i);
+  }
+  out.line("}  // namespace " + space);
   return out.take();
 }
 

@@ -2,14 +2,19 @@
 /// priority is changed moves to another identifier, so each frame is there once a priority, as
 /// Gyroscope_high; and each sensor's request beside its samples, as GyroscopeRequest_high.
 ///
+/// Plain messages are there as they are (dbc_messages.hpp).
+///
 /// There is no public standard of the format; what is written here is read alike by canmatrix, cantools and
-/// the `analyse` verb. Text is Latin-1, as those expect. No field is a floating-point number, so there is no
-/// SIG_VALTYPE_.
+/// our own reader.
 #include <algorithm>
 #include <set>
+#include <string>
 #include <vector>
 
+#include "generator/dbc/encoding.hpp"
 #include "generator/spec/names.hpp"
+#include "generator/targets/dbc_messages.hpp"
+#include "generator/targets/dbc_names.hpp"
 #include "generator/targets/target.hpp"
 #include "generator/text/messages.hpp"
 #include "generator/text/words.hpp"
@@ -25,38 +30,17 @@ using spec::TopicModel;
 /// The bus's other end, which asks and commands. No board can have this name, for it is a word of C++.
 constexpr std::string_view operator_node = "operator";
 
-/// Names of at most 32 characters, as the format has them; each is given out once.
-class Names {
- public:
-  static constexpr std::size_t longest = 32;
-
-  std::string unique(const std::string& full, const std::string& suffix = {}) {
-    for (unsigned number = 1;; ++number) {
-      const std::string tail = (number == 1 ? "" : "_" + std::to_string(number)) + suffix;
-      std::string name = full.substr(0, longest - tail.size()) + tail;
-      if (taken_.insert(name).second) return name;
-    }
-  }
-
- private:
-  std::set<std::string> taken_;
-};
-
-/// What the format can say of UTF-8: U+0080 to U+00FF as one byte, others as a question mark.
-std::string latin_1(std::string_view text) {
+/// A character that Windows-1252 has not becomes a question mark: a topic's text must not make the whole file
+/// UTF-8, which few programs expect.
+std::string legible(std::string_view text) {
   std::string out;
   for (std::size_t i = 0; i < text.size();) {
-    const auto byte = static_cast<unsigned char>(text[i++]);
-    if (byte < 0x80) {
-      out += text[i - 1];
-      continue;
-    }
-    unsigned continued = 0;
-    unsigned last = 0;
-    for (; i < text.size() && (static_cast<unsigned char>(text[i]) & 0xC0) == 0x80; ++i, ++continued)
-      last = static_cast<unsigned char>(text[i]) & 0x3FU;
-    const bool fits = continued == 1 && (byte == 0xC2 || byte == 0xC3);
-    out += fits ? static_cast<char>((byte & 0x03U) << 6 | last) : '?';
+    std::size_t length = 1;
+    while (i + length < text.size() && (static_cast<unsigned char>(text[i + length]) & 0xC0) == 0x80)
+      ++length;
+    const std::string_view character = text.substr(i, length);
+    out += dbc::has_cp1252(character) ? character : std::string_view{"?"};
+    i += length;
   }
   return out;
 }
@@ -64,7 +48,7 @@ std::string latin_1(std::string_view text) {
 /// A text within quotes. Readers disagree on how to escape one, so that there is none.
 std::string text_of(std::string text) {
   std::replace(text.begin(), text.end(), '"', '\'');
-  return '"' + latin_1(text) + '"';
+  return '"' + legible(text) + '"';
 }
 
 std::string sentence(std::string_view text) {
@@ -85,7 +69,12 @@ class Dbc {
         if (topic.kind == protocol::Kind::sensor) request(topic, priority);
       for (const Message& each : messages(model_)) message(each, priority);
     }
-    return head() + messages_ + "\n" + comments() + definitions() + attributes_ + values_;
+    define();
+    DbcParts parts = dbc_messages(model_, nodes_, message_names_, defined_);
+    return dbc_bytes(head() + messages_ + parts.messages + "\n" + parts.senders + comments() +
+                     parts.comments + definitions_ + parts.definitions + defaults_ + parts.defaults +
+                     attributes_ + parts.attributes + values_ + parts.values + parts.numbers +
+                     parts.selectors);
   }
 
  private:
@@ -127,14 +116,14 @@ class Dbc {
     const std::string id = begin(
         spec::pascal_case(message.topic_name) + spec::pascal_case(message.frame_name), priority,
         message.identifier(priority), message.frame->dlc, sensor ? board : operator_node, std::move(comment));
-    Names signal_names;
+    DbcNames signal_names;
     for (const FieldModel& field : message.frame->fields)
       signal(message, field, id, signal_names, sensor ? operator_node : board);
     if (sensor && priority == topic.priority)
       attributes_ += "BA_ \"GenMsgCycleTime\" BO_ " + id + " " + milliseconds(topic) + ";\n";
   }
 
-  void signal(const Message& message, const FieldModel& field, const std::string& id, Names& names,
+  void signal(const Message& message, const FieldModel& field, const std::string& id, DbcNames& names,
               std::string_view receiver) {
     const std::string name = names.unique(field.name);
     if (name != field.name) long_symbol("SystemSignalLongSymbol", "SG_ " + id + " " + name, field.name);
@@ -193,56 +182,86 @@ class Dbc {
   }
 
   std::string head() const {
-    std::string text = "VERSION \"\"\n\nNS_ :\n\nBS_:\n\nBU_: " + std::string{operator_node};
+    std::string text = "VERSION \"\"\n\nNS_ :\n\nBS_:\n\nBU_:";
+    if (has_topics()) text.append(" ").append(operator_node);
     for (const auto& name : nodes_) text += " " + name;
     return text + "\n";
   }
 
   std::string comments() const {
-    std::string text =
-        "CM_ " +
-        text_of("Made by ocm-generate from " + options_.spec_name + ": the topics of " + model_.robot +
-                (model_.description.empty() ? "" : ", " + model_.description) +
-                ". Identifiers: bit 10 is 0 for requests and set points, 1 for samples; bits 9 to 8 are the "
-                "priority, 0 the most urgent; bits 7 to 0 the topic.") +
-        ";\n";
+    std::string text;
+    if (has_topics())
+      text = "CM_ " +
+             text_of(
+                 "Made by ocm-generate from " + options_.spec_name + ": the topics of " + model_.robot +
+                 (model_.description.empty() ? "" : ", " + model_.description) +
+                 ". Identifiers: bit 10 is 0 for requests and set points, 1 for samples; bits 9 to 8 are the "
+                 "priority, 0 the most urgent; bits 7 to 0 the topic.") +
+             ";\n";
+    else if (!model_.description.empty())
+      text = "CM_ " + dbc_text(model_.description) + ";\n";
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       const auto& board = model_.boards[i];
-      text += "CM_ BU_ " + nodes_[i] + " " +
-              text_of(sentence(board.description) + board.mcu + ". [" + board.source.joined() + "]") + ";\n";
+      if (!board.mcu.empty())
+        text += "CM_ BU_ " + nodes_[i] + " " +
+                text_of(sentence(board.description) + board.mcu + ". [" + board.source.joined() + "]") +
+                ";\n";
+      else if (!board.description.empty())
+        text += "CM_ BU_ " + nodes_[i] + " " + dbc_text(board.description) + ";\n";
     }
     return text + comments_;
   }
 
-  /// What the attributes are: a period need not be a whole number of milliseconds.
-  std::string definitions() const {
-    const bool whole = std::all_of(model_.topics.begin(), model_.topics.end(), [](const TopicModel& topic) {
-      return topic.period.duration().count() % 1'000'000 == 0;
-    });
-    std::string text = "BA_DEF_ \"BusType\" STRING ;\nBA_DEF_ \"Baudrate\" INT 1000 1000000;\n";
-    text += std::string{"BA_DEF_ BO_ \"GenMsgCycleTime\" "} + (whole ? "INT" : "FLOAT") + " 0 65535000;\n";
-    std::string defaults =
-        "BA_DEF_DEF_ \"BusType\" \"CAN\";\nBA_DEF_DEF_ \"Baudrate\" 500000;\n"
-        "BA_DEF_DEF_ \"GenMsgCycleTime\" 0;\n";
-    if (has_long_names_) {
-      text +=
-          "BA_DEF_ BU_ \"SystemNodeLongSymbol\" STRING ;\n"
-          "BA_DEF_ BO_ \"SystemMessageLongSymbol\" STRING ;\n"
-          "BA_DEF_ SG_ \"SystemSignalLongSymbol\" STRING ;\n";
-      for (const char* of : {"Node", "Message", "Signal"})
-        defaults += std::string{"BA_DEF_DEF_ \"System"} + of + "LongSymbol\" \"\";\n";
-    }
-    return text + defaults + "BA_ \"BusType\" \"CAN\";\nBA_ \"Baudrate\" " + std::to_string(model_.bit_rate) +
-           ";\n";
+  // --- what the attributes are ---
+
+  /// `of` is the kind of object with a blank behind it, or nothing for the whole bus.
+  void define(const std::string& of, const std::string& name, const std::string& type,
+              const std::string& value) {
+    definitions_ += "BA_DEF_ " + of + "\"" + name + "\" " + type + ";\n";
+    defaults_ += "BA_DEF_DEF_ \"" + name + "\" " + value + ";\n";
+    defined_.insert(of + name);
   }
+  void define() {
+    std::string bus;
+    const auto of_bus = [&](const char* name, const char* type, const char* usual, const std::string& value) {
+      const auto& attributes = model_.attributes;  // those of a DBC file are written with its others
+      if (std::any_of(attributes.begin(), attributes.end(),
+                      [&](const auto& each) { return each.name == name; }))
+        return;
+      define("", name, type, usual);
+      bus += "BA_ \"" + std::string{name} + "\" " + value + ";\n";
+    };
+    if (has_topics()) of_bus("BusType", "STRING ", "\"CAN\"", "\"CAN\"");
+    if (model_.bit_rate != 0)
+      of_bus("Baudrate", "INT 1000 1000000", "500000", std::to_string(model_.bit_rate));
+    if (model_.data_bit_rate != 0)
+      of_bus("BaudrateCANFD", "INT 1000 16000000", "2000000", std::to_string(model_.data_bit_rate));
+    attributes_ = bus + attributes_;
+    // A period need not be a whole number of milliseconds.
+    const auto is_whole = [](base::Duration period) { return period.count() % 1'000'000 == 0; };
+    const bool whole =
+        std::all_of(model_.topics.begin(), model_.topics.end(),
+                    [&](const TopicModel& topic) { return is_whole(topic.period.duration()); }) &&
+        std::all_of(model_.messages.begin(), model_.messages.end(),
+                    [&](const spec::MessageModel& message) { return is_whole(message.period); });
+    if (has_topics()) define("BO_ ", "GenMsgCycleTime", whole ? "INT 0 65535000" : "FLOAT 0 65535000", "0");
+    if (!has_long_names_) return;
+    define("BU_ ", "SystemNodeLongSymbol", "STRING ", "\"\"");
+    define("BO_ ", "SystemMessageLongSymbol", "STRING ", "\"\"");
+    define("SG_ ", "SystemSignalLongSymbol", "STRING ", "\"\"");
+  }
+  [[nodiscard]] bool has_topics() const { return !model_.topics.empty(); }
 
   const Model& model_;
   const Options& options_;
-  Names node_names_;
-  Names message_names_;
+  DbcNames node_names_;
+  DbcNames message_names_;
   std::vector<std::string> nodes_;  ///< by the board's index
   std::string messages_;
   std::string comments_;
+  std::string definitions_;
+  std::string defaults_;
+  std::set<std::string> defined_;  ///< kinds of objects and names of attributes
   std::string attributes_;
   std::string values_;
   bool has_long_names_ = false;

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "generator/spec/model.hpp"
 
@@ -22,6 +23,8 @@ struct Target {
   /// The file's text. The same model and options give the same bytes. The model must come from a spec without
   /// problems.
   std::string (*make)(const spec::Model& model, const Options& options);
+  bool of_topics = true;     ///< it has the model's topics
+  bool of_messages = false;  ///< it has the model's plain messages
 };
 
 [[nodiscard]] std::span<const Target> targets() noexcept;
@@ -32,6 +35,16 @@ struct Target {
 /// "cpp, dbc, c, ...", for messages.
 [[nodiscard]] std::string target_names();
 
+/// Whether a file of this target would have anything of the model in it.
+[[nodiscard]] bool has_any(const Target& target, const spec::Model& model) noexcept;
+
+/// What of the model the target's file cannot say, a line each.
+[[nodiscard]] std::vector<std::string> left_out(const Target& target, const spec::Model& model);
+
+/// "cpp, spec, dbc": the targets that have plain messages, for messages.
+[[nodiscard]] std::string message_target_names();
+
+[[nodiscard]] std::string make_spec(const spec::Model& model, const Options& options);
 [[nodiscard]] std::string make_dbc(const spec::Model& model, const Options& options);
 [[nodiscard]] std::string make_c(const spec::Model& model, const Options& options);
 [[nodiscard]] std::string make_markdown(const spec::Model& model, const Options& options);

@@ -1,7 +1,8 @@
 /// A bus that nobody has: the messages of a catalogue, each at its period, with fields that move.
 ///
 ///     sim::MessagePlayer player{catalogue, {.seed = 7}};
-///     player.advance(now, [&](const sim::PlayedMessage& message, const can::Frame& frame, base::Time due) {
+///     player.advance(now, [&](const sim::PlayedMessage& message, const can::AnyFrame& frame, base::Time due)
+///     {
 ///       ... frame goes onto the bus at `due`, sent by node message.board ...
 ///     });
 ///
@@ -20,7 +21,7 @@
 #include <vector>
 
 #include "ocm/base/time.hpp"
-#include "ocm/can/frame.hpp"
+#include "ocm/can/any_frame.hpp"
 #include "ocm/j1939/identifier.hpp"
 #include "ocm/protocol/topic.hpp"
 
@@ -34,6 +35,7 @@ struct PlayOptions {
   std::uint64_t seed = 1;
   /// How far apart messages without a period are, on average; 0: they are not sent.
   base::Duration sporadic{};
+  bool fd = true;  ///< whether there is a bus that carries CAN FD
 };
 
 /// A message that is played, or why it is not.
@@ -46,7 +48,8 @@ struct PlayedMessage {
 /// Messages that stay out, by cause, in the order of the catalogue.
 struct LeftOut {
   std::vector<const protocol::Topic*> without_period;
-  std::vector<const protocol::Topic*> too_long;  ///< CAN FD, or more than eight bytes: no classic frame
+  std::vector<const protocol::Topic*> no_fd;     ///< CAN FD, where the bus has none
+  std::vector<const protocol::Topic*> too_long;  ///< more bytes than a frame has: 8, CAN FD 64
 };
 
 /// The identifier of a message. A J1939 message whose source is the null address, with which a node may not
@@ -68,7 +71,9 @@ class MessagePlayer {
       const auto& layout = topic.frames[0];
       if (topic.cycle.count() <= 0 && options.sporadic.count() <= 0)
         left_out_.without_period.push_back(&topic);
-      else if (layout.fd || layout.length > can::max_dlc)
+      else if (layout.fd && !options.fd)
+        left_out_.no_fd.push_back(&topic);
+      else if (layout.length > (layout.fd ? can::max_fd_length : can::max_dlc))
         left_out_.too_long.push_back(&topic);
       else
         take(topic, number);
@@ -138,13 +143,17 @@ class MessagePlayer {
     return std::max(base::Duration{wanted}, topic.shortest_period);
   }
 
-  [[nodiscard]] static can::Frame content(const Message& message, base::Time now) noexcept {
+  [[nodiscard]] static can::AnyFrame content(const Message& message, base::Time now) noexcept {
     const auto& layout = message.played.topic->frames[0];
-    can::Frame frame;
+    can::AnyFrame frame;
     frame.id = message.played.id;
     frame.format = protocol::format_of(layout);
-    frame.dlc = layout.dlc();
-    const std::span<std::uint8_t> data{frame.data.data(), frame.dlc};
+    frame.length = static_cast<std::uint8_t>(layout.length);
+    const std::span<std::uint8_t> data{frame.data.data(), frame.length};
+    if (layout.fd) {  // filled up with zeros to a length that there is
+      frame.flags = can::fd_flags(layout.bit_rate_switch);
+      frame.length = can::fd_length(can::fd_dlc(layout.length));
+    }
     // Selectors first, since they decide what else is there, and last, should a field lie over one.
     message.pages.put(message.sent, data);
     for (std::size_t i = 0; i < layout.fields.size(); ++i) {

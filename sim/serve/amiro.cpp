@@ -95,6 +95,7 @@ Ending serve_amiro(const std::string& path, const AmiroOptions& options, const S
   bus_options.path = path;
   bus_options.name = amiro::catalogue.robot;
   bus_options.bit_rate = options.bit_rate;
+  bus_options.data_bit_rate = options.data_bit_rate;
   bus_options.to_unix_time = std::chrono::system_clock::now().time_since_epoch();
   bus_options.report = shell.report;
   auto opened = simulation::VirtualBusServer::open(bus_options);
@@ -125,6 +126,7 @@ Ending serve_amiro(const std::string& path, const AmiroOptions& options, const S
 
   Turns turns{amiro::catalogue};
   const auto hear = [&boards, &turns](const simulation::Delivery& delivery) {
+    if (delivery.fd != nullptr) return;  // no frame of the robot's; the simulated boards bear it
     turns.take(delivery);
     boards.receive(delivery.frame, delivery.time);
   };

@@ -21,7 +21,8 @@ struct AmiroOptions {
   bool qemu = false;
   std::string images;  ///< the folder of those for QEMU; empty: where they are expected
   std::uint32_t bit_rate = amiro::bit_rate;
-  double bus_errors = 0;  ///< bits a second that nodes see wrong, on average
+  std::uint32_t data_bit_rate = 0;  ///< of CAN FD frames of others; 0: `bit_rate`
+  double bus_errors = 0;            ///< bits a second that nodes see wrong, on average
   double speed = 1;
   /// Whose messages other nodes send on the robot's virtual bus; it must outlive the simulation.
   const protocol::Catalogue* messages = nullptr;

@@ -51,9 +51,9 @@ MessageNodes::MessageNodes(const protocol::Catalogue& catalogue, const PlayOptio
 }
 
 void MessageNodes::advance(base::Time now) {
-  player_.advance(now, [this](const PlayedMessage& message, const can::Frame& frame, base::Time due) {
+  player_.advance(now, [this](const PlayedMessage& message, const can::AnyFrame& frame, base::Time due) {
     Node& node = message.board + std::size_t{1} < nodes_.size() ? nodes_[message.board] : nodes_.back();
-    const auto taken = wire_->send(node.id, frame, due);
+    const auto taken = wire_->send_any(node.id, frame, due);
     ++(taken && *taken ? node.handed_over : node.refused);
   });
 }
@@ -66,21 +66,27 @@ void MessageNodes::summarise(const Shell& shell) const {
   }
 }
 
-void report_left_out(const MessagePlayer& player, const Shell& shell) {
+void report_left_out(const MessagePlayer& player, const Shell& shell, const host::Failure& no_fd) {
   const auto& left = player.left_out();
   if (!left.without_period.empty())
     shell.report(fmt::format("not sent, since the spec states no period: {} (--sporadic 1s sends them too)",
                              names(left.without_period)));
+  if (!left.no_fd.empty())
+    shell.report(fmt::format("not sent, since {}: {}; {}", no_fd.what, names(left.no_fd), no_fd.remedy));
   if (!left.too_long.empty())
-    shell.report(fmt::format("not sent, since no classic CAN frame holds them: {}", names(left.too_long)));
+    shell.report(fmt::format("not sent, since no frame holds them: {}", names(left.too_long)));
 }
 
-Ending nothing_to_play(const MessagePlayer& player, const protocol::Catalogue& catalogue) {
+Ending nothing_to_play(const MessagePlayer& player, const protocol::Catalogue& catalogue,
+                       const host::Failure& no_fd) {
   if (player.size() != 0) return {};
   const auto& left = player.left_out();
+  if (!left.no_fd.empty())
+    return Ending{{fmt::format("sim: no message of '{}' can be sent: {}", name_of(catalogue), no_fd.what),
+                   no_fd.remedy}};
   if (left.without_period.empty())
-    return Ending{{fmt::format("sim: no message of '{}' fits into a classic CAN frame", name_of(catalogue)),
-                   "longer frames cannot be simulated: give a spec with messages of at most 8 bytes"},
+    return Ending{{fmt::format("sim: no message of '{}' fits into a frame", name_of(catalogue)),
+                   "give a spec with messages of at most 8 bytes, or 64 in CAN FD"},
                   true};
   return Ending{
       {fmt::format("sim: no message of '{}' has a period that could be played", name_of(catalogue)),
@@ -96,6 +102,7 @@ Ending serve_messages(const std::string& path, const protocol::Catalogue& catalo
   bus_options.path = path;
   bus_options.name = name_of(catalogue);
   bus_options.bit_rate = options.bit_rate;
+  bus_options.data_bit_rate = options.data_bit_rate;
   bus_options.to_unix_time = std::chrono::system_clock::now().time_since_epoch();
   bus_options.report = shell.report;
   auto opened = simulation::VirtualBusServer::open(bus_options);
@@ -140,30 +147,33 @@ Ending serve_messages(const std::string& path, const protocol::Catalogue& catalo
 
 Ending serve_messages(transport::Bus& bus, const protocol::Catalogue& catalogue,
                       const MessagesOptions& options, const Shell& shell) {
-  MessagePlayer player{catalogue, options.play};
-  if (auto nothing = nothing_to_play(player, catalogue); !nothing.well()) return nothing;
-  report_left_out(player, shell);
+  const host::Failure no_fd = bus.fd_obstacle();
+  PlayOptions play = options.play;
+  play.fd = no_fd.what.empty();
+  MessagePlayer player{catalogue, play};
+  if (auto nothing = nothing_to_play(player, catalogue, no_fd); !nothing.well()) return nothing;
+  report_left_out(player, shell, no_fd);
   shell.report(fmt::format("simulated {} messages of {} on {}; Ctrl-C ends it", player.size(),
                            name_of(catalogue), bus.name()));
   const SimulatedClock clock{1};
-  std::deque<can::Frame> waiting;
+  std::deque<can::AnyFrame> waiting;
   std::uint64_t sent = 0;
   std::uint64_t dropped = 0;
   while (!shell.stop()) {
-    player.advance(clock.now(), [&](const PlayedMessage&, const can::Frame& frame, base::Time) {
+    player.advance(clock.now(), [&](const PlayedMessage&, const can::AnyFrame& frame, base::Time) {
       if (waiting.size() < longest_wait)
         waiting.push_back(frame);
       else
         ++dropped;
     });
     while (!waiting.empty()) {
-      const auto taken = bus.send(waiting.front());
+      const auto taken = bus.send_any(waiting.front());
       if (!taken && taken.error == base::Error::closed) return Ending{bus.failure()};
       if (taken && !*taken) break;
       ++(taken ? sent : dropped);
       waiting.pop_front();
     }
-    while (bus.receive(base::Duration{0})) {
+    while (bus.receive_any(base::Duration{0})) {
     }
     if (bus.state() == transport::BusState::closed) return Ending{bus.failure()};
     wait_for(bus.descriptor(), waiting.empty() ? clock.until(player.next_event())

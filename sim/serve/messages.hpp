@@ -18,7 +18,8 @@ namespace ocm::sim {
 struct MessagesOptions {
   PlayOptions play;
   std::uint32_t bit_rate = 500'000;
-  double bus_errors = 0;  ///< bits a second that nodes see wrong, on average
+  std::uint32_t data_bit_rate = 0;  ///< of CAN FD frames with bit-rate switch; 0: `bit_rate`
+  double bus_errors = 0;            ///< bits a second that nodes see wrong, on average
   double speed = 1;
 };
 
@@ -46,10 +47,11 @@ class MessageNodes {
   std::vector<Node> nodes_;  // by board; the last: unknown senders
 };
 
-/// Reports by name which messages are not played, and why.
-void report_left_out(const MessagePlayer& player, const Shell& shell);
+/// Reports by name which messages are not played, and why; `no_fd`: what keeps those of CAN FD away.
+void report_left_out(const MessagePlayer& player, const Shell& shell, const host::Failure& no_fd = {});
 /// Why nothing can be played, when that is so.
-[[nodiscard]] Ending nothing_to_play(const MessagePlayer& player, const protocol::Catalogue& catalogue);
+[[nodiscard]] Ending nothing_to_play(const MessagePlayer& player, const protocol::Catalogue& catalogue,
+                                     const host::Failure& no_fd = {});
 
 /// On a virtual bus, whose socket is `path`; empty: that of the user.
 [[nodiscard]] Ending serve_messages(const std::string& path, const protocol::Catalogue& catalogue,

@@ -224,10 +224,10 @@ class Reader : private spec::Checker {
 
 Loaded parse(std::string_view text, std::string_view file_name) {
   Loaded loaded;
-  if (text.size() > spec::max_document_bytes) {
+  if (text.size() > max_world_bytes) {
     loaded.problems.push_back({std::string{file_name},
                                "the file has " + std::to_string(text.size()) + " bytes",
-                               "a world has at most " + std::to_string(spec::max_document_bytes)});
+                               "a world has at most " + std::to_string(max_world_bytes)});
     return loaded;
   }
   const spec::Node root = spec::parse_json(text, file_name, loaded.problems, document);
@@ -242,7 +242,7 @@ Loaded parse(std::string_view text, std::string_view file_name) {
 
 Loaded load(const std::filesystem::path& file) {
   Loaded loaded;
-  const auto text = spec::read_document(file, "a world", "sim/worlds/square.json", loaded.problems);
+  const auto text = spec::read_document(file, "a world", "sim/worlds/square.json", loaded.problems, max_world_bytes);
   return text ? parse(*text, file.string()) : std::move(loaded);
 }
 

@@ -2,6 +2,7 @@
 /// its place, what is wrong and what would be right, as those of a spec are.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -22,6 +23,9 @@ struct Loaded {
   std::optional<WorldModel> world;
   std::vector<Problem> problems;
 };
+
+/// A file of a world is at most this large.
+inline constexpr std::size_t max_world_bytes = 1'000'000;
 
 /// Any bytes are a problem at worst: throws std::bad_alloc only. `file_name` is for the places.
 [[nodiscard]] Loaded parse(std::string_view text, std::string_view file_name);

@@ -1,4 +1,5 @@
-// bad_specs.json: what is changed in good.json, and all that must be said about it.
+// bad_specs.json: what is changed in good.json, and all that must be said about it; bad_messages.json of
+// good_messages.json.
 #include <algorithm>
 #include <fstream>
 #include <sstream>
@@ -25,35 +26,51 @@ std::vector<std::string> printed(const std::vector<ocm::spec::Problem>& problems
   return lines;
 }
 
-TEST_CASE("the spec that the bad ones are made from is good") {
-  const auto loaded = ocm::spec::parse(read("tests/generator/good.json"), "good.json");
-  CHECK(printed(loaded.problems).empty());
-  CHECK(loaded.spec != nullptr);
+/// The table of what is wrong, and the spec that it changes.
+struct Mistakes {
+  const char* table;
+  const char* good;
+  std::size_t rows;  ///< at least
+};
+constexpr Mistakes all_mistakes[] = {
+    {"tests/generator/bad_specs.json", "tests/generator/good.json", 100},
+    {"tests/generator/bad_messages.json", "tests/generator/good_messages.json", 60},
+};
+
+TEST_CASE("the specs that the bad ones are made from are good") {
+  for (const Mistakes& each : all_mistakes) {
+    const auto loaded = ocm::spec::parse(read(each.good), each.good);
+    CHECK(printed(loaded.problems).empty());
+    CHECK(printed(loaded.doubts).empty());
+    CHECK(loaded.spec != nullptr);
+  }
 }
 
 TEST_CASE("every mistake is told with its place, what is wrong and what would be right") {
-  const std::string good = read("tests/generator/good.json");
-  const auto table = nlohmann::json::parse(read("tests/generator/bad_specs.json"));
-  REQUIRE(table.size() > 100);
-  for (const auto& row : table) {
-    const std::string from = row.at("replace");
-    const std::string to = row.at("by");
-    CAPTURE(from, to);
-    std::string text = good;
-    const auto at = text.find(from);
-    REQUIRE(at != std::string::npos);
-    text.replace(at, from.size(), to);
-    const auto loaded = ocm::spec::parse(text, "bad.json");
-    CHECK(printed(loaded.problems) == row.at("problems").get<std::vector<std::string>>());
-    CHECK(loaded.spec == nullptr);
+  for (const Mistakes& each : all_mistakes) {
+    const std::string good = read(each.good);
+    const auto table = nlohmann::json::parse(read(each.table));
+    REQUIRE(table.size() >= each.rows);
+    for (const auto& row : table) {
+      const std::string from = row.at("replace");
+      const std::string to = row.at("by");
+      CAPTURE(each.good, from, to);
+      std::string text = good;
+      const auto at = text.find(from);
+      REQUIRE(at != std::string::npos);
+      text.replace(at, from.size(), to);
+      const auto loaded = ocm::spec::parse(text, "bad.json");
+      CHECK(printed(loaded.problems) == row.at("problems").get<std::vector<std::string>>());
+      CHECK(loaded.spec == nullptr);
 
-    // An editor has only the schema: what is a matter of form it must see as well.
-    std::vector<ocm::spec::Problem> syntax;
-    const auto root = ocm::spec::parse_json(text, "bad.json", syntax);
-    if (!syntax.empty()) continue;
-    std::vector<ocm::spec::Problem> by_schema;
-    ocm::spec::validate_by_schema(root, "bad.json", by_schema);
-    CHECK(by_schema.empty() != row.at("schema").get<bool>());
+      // An editor has only the schema: what is a matter of form it must see as well.
+      std::vector<ocm::spec::Problem> syntax;
+      const auto root = ocm::spec::parse_json(text, "bad.json", syntax);
+      if (!syntax.empty()) continue;
+      std::vector<ocm::spec::Problem> by_schema;
+      ocm::spec::validate_by_schema(root, "bad.json", by_schema);
+      CHECK(by_schema.empty() != row.at("schema").get<bool>());
+    }
   }
 }
 
@@ -93,10 +110,10 @@ TEST_CASE("what is no spec at all") {
   CHECK(only("{\n\n  \"robot\": \"a\xC3\"}").place == "f:3:15");
   CHECK(only(std::string(100'000, '[')) ==
         Problem{"f:1", "nested deeper than 32 levels", "a spec needs 7 levels at most"});
-  CHECK(only("[\"" + std::string(5'000, 'a') + "\"]") ==
-        Problem{"f:1", "a text of 5000 bytes", "at most 1000"});
-  CHECK(only(std::string(1'000'001, ' ')) ==
-        Problem{"f", "the file has 1000001 bytes", "a spec has at most 1000000"});
+  CHECK(only("[\"" + std::string(20'001, 'a') + "\"]") ==
+        Problem{"f:1", "a text of 20001 bytes", "at most 20000"});
+  CHECK(only(std::string(10'000'001, ' ')) ==
+        Problem{"f", "the file has 10000001 bytes", "a spec has at most 10000000"});
   CHECK(only(std::string(2, '\0')).place == "f:1:1");
   CHECK(ocm::spec::parse("{}", "f").problems.size() == 5);
 }
@@ -105,7 +122,7 @@ TEST_CASE("a file that is not there, or is no file") {
   const auto only = [](const std::filesystem::path& file) { return ocm::spec::load(file).problems.at(0); };
   CHECK(only("/nonexistent/spec.json").what == "there is no such file");
   CHECK(only("/").what == "it is a folder");
-  CHECK(only("/dev/zero").what == "the file is larger than 1000000 bytes");
+  CHECK(only("/dev/zero").what == "the file is larger than 10000000 bytes");
   CHECK(only("/dev/null").what == "the file is empty");
 }
 

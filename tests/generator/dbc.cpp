@@ -211,7 +211,7 @@ TEST_CASE("dbc: what would make frames mean something else is a problem") {
             .at(0)
             .rfind("1: SG_: a signal before the first message", 0) == 0);
   const std::string message = "BO_ 1 A: 8 X\n SG_ S ";
-  for (const char* bad : {": 512|8@1+ (1,0)", ": 0|65@1+ (1,0)", ": 0|8@2+ (1,0)", ": 0|8@1 (1,0)",
+  for (const char* bad : {": 14280|8@1+ (1,0)", ": 0|65@1+ (1,0)", ": 0|8@2+ (1,0)", ": 0|8@1 (1,0)",
                           ": 0|8@1+ (1)", "n3 : 0|8@1+ (1,0)", "m : 0|8@1+ (1,0)", ": 0|8@1+ (one,0)"}) {
     CAPTURE(bad);
     CHECK(problems(message + bad + " [0|0] \"\" X\n").size() == 1);
@@ -262,7 +262,7 @@ TEST_CASE("dbc: one selector: pages, ranges, both") {
   CHECK(signal(plain, "P1").selected == std::vector<dbc::SelectorRange>{{1, 1}});
   CHECK(selector(plain, "Other").empty());
   const Message ranges = message(text + "SG_MUL_VAL_ 1 P1 Page 1-1, 4-6, 9-9;\n");
-  CHECK(signal(ranges, "P1").selected == std::vector<dbc::SelectorRange>{{1, 1}, {4, 6}, {9, 9}, {1, 1}});
+  CHECK(signal(ranges, "P1").selected == std::vector<dbc::SelectorRange>{{1, 1}, {4, 6}, {9, 9}});
   CHECK(problems(text + "SG_MUL_VAL_ 1 P1 Page 6-4;\n").size() == 1);
   CHECK(problems(text + "SG_MUL_VAL_ 1 P1 Nothing 1-1;\n") ==
         std::vector<std::string>{

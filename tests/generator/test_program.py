@@ -197,6 +197,12 @@ class Program(unittest.TestCase):
         done = run(self.spec, "--check")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
+    def test_the_messages_of_the_page_are_good(self):
+        page = (ROOT / "docs" / "spec.md").read_text().split("## Plain messages")[1]
+        self.spec.write_text(page.split("```json\n")[1].split("```")[0])
+        done = run(self.spec, "--check")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
     def test_a_spec_that_is_missing(self):
         done = run(self.folder / "nothing.json", "-o", self.header)
         self.assertEqual(done.returncode, 1)

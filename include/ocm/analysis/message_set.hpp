@@ -12,6 +12,7 @@
 #include "ocm/analysis/checked.hpp"
 #include "ocm/analysis/verdict.hpp"
 #include "ocm/base/time.hpp"
+#include "ocm/can/fd_bits.hpp"
 #include "ocm/can/frame.hpp"
 #include "ocm/protocol/identifier.hpp"
 #include "ocm/protocol/topic.hpp"
@@ -82,6 +83,14 @@ constexpr void sort_by_key(std::span<Message> set) noexcept {
 /// Nanoseconds that `bits` take at a bit rate of at least 1, rounded up: a bound stays one.
 [[nodiscard]] constexpr std::int64_t bits_ns(std::int64_t bits, std::uint32_t bit_rate) noexcept {
   return ceil_div(Checked{bits} * 1'000'000'000, std::int64_t{bit_rate}).value_or(unbounded);
+}
+
+/// The same of a CAN FD frame, each part at its own bit rate.
+[[nodiscard]] constexpr std::int64_t bits_ns(const can::FdBits& bits, std::uint32_t bit_rate,
+                                             std::uint32_t data_bit_rate) noexcept {
+  return (Checked{bits_ns(std::int64_t{bits.nominal}, bit_rate)} +
+          bits_ns(std::int64_t{bits.data}, data_bit_rate))
+      .value_or(unbounded);
 }
 
 /// A frame of a spec as a message, in nanoseconds.

@@ -13,7 +13,10 @@ struct Filter {
 
   /// Base data frames only: the robot's protocol has no others.
   [[nodiscard]] constexpr bool accepts(const Frame& frame) const noexcept {
-    return frame.format == Format::base && (frame.id & mask) == (id & mask);
+    return accepts(frame.id, frame.format);
+  }
+  [[nodiscard]] constexpr bool accepts(std::uint32_t frame_id, Format format) const noexcept {
+    return format == Format::base && (frame_id & mask) == (id & mask);
   }
   friend constexpr bool operator==(const Filter&, const Filter&) = default;
 };

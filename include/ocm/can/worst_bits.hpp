@@ -10,6 +10,7 @@
 /// takes 20 to 40 steps. The closed bound, can::worst_frame_bits, is up to 7 bits longer and needs nothing.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -44,6 +45,17 @@ class WorstBits {
     const Walk walk = header(frame);
     return walk.bits + static_cast<unsigned>(8 * frame.bytes().size()) + 15 + trailer_bits +
            intermission_bits + most(walk, frame.bytes().size());
+  }
+
+  /// The most that any identifier can take that differs from `id` in bits of `free` alone: a parameter group
+  /// of J1939, from any source. 2^(bits of `free`) steps.
+  [[nodiscard]] unsigned bits_of_any(std::uint32_t id, std::uint32_t free, Format format,
+                                     std::uint8_t dlc) const noexcept {
+    unsigned greatest = 0;
+    for (std::uint32_t part = free;; part = (part - 1) & free) {
+      greatest = std::max(greatest, bits((id & ~free) | part, format, dlc));
+      if (part == 0) return greatest;
+    }
   }
 
   /// A frame that takes so many bits: the lowest of those, its data read as one number from byte 0 on.

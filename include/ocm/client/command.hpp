@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ocm/base/time.hpp"
+#include "ocm/can/any_frame.hpp"
 #include "ocm/can/frame.hpp"
 #include "ocm/protocol/codec.hpp"
 #include "ocm/protocol/identifier.hpp"
@@ -41,10 +42,18 @@ inline constexpr base::Duration shortest_repeat{100'000};
 
 struct Command {
   std::vector<can::Frame> frames;            ///< to send now, in this order
-  std::optional<Repeat> repeat;              ///< of `frames`
+  std::vector<can::AnyFrame> fd_frames;      ///< to send behind them: a robot takes none, other buses do
+  std::optional<Repeat> repeat;              ///< of `frames` and `fd_frames`
   std::optional<Hold> hold;                  ///< drive
   bool ends_hold = false;                    ///< drive stop, stop, stop all
   const protocol::Topic* answers = nullptr;  ///< whose sample answers a publish or once
+
+  /// Calls `take(const can::AnyFrame&)` for each frame to send now.
+  template <class Take>
+  void each_frame(Take take) const {
+    for (const auto& frame : frames) take(can::AnyFrame{frame});
+    for (const auto& frame : fd_frames) take(frame);
+  }
 };
 
 /// The set point of an actuator; fields that `raw` does not give are zero. O(fields).

@@ -3,10 +3,11 @@
 /// incomplete sample, which is counted. (Losing the end of one sample and exactly the rest of the next cannot
 /// be distinguished from a whole one.)
 ///
-/// A plain message is a sample by itself.
+/// A plain message is a sample by itself. One of J1939 may come in several frames by its transport protocol:
+/// the packet that completes it is the sample.
 ///
-/// Memory: 8 bytes a frame of the catalogue, 64 of one longer than that, and the index, allocated once. O(1)
-/// a frame.
+/// Memory: 8 bytes a frame of the catalogue, 64 of one longer than that, and the index, allocated once; with
+/// the transport protocol 60 KiB more. O(1) a frame.
 #pragma once
 
 #include <algorithm>
@@ -21,6 +22,7 @@
 #include "ocm/can/bus.hpp"
 #include "ocm/can/frame.hpp"
 #include "ocm/client/frame_index.hpp"
+#include "ocm/j1939/transport.hpp"
 #include "ocm/protocol/identifier.hpp"
 #include "ocm/protocol/topic.hpp"
 
@@ -31,7 +33,7 @@ struct Sample {
   const protocol::Topic* topic = nullptr;
   protocol::Priority priority = protocol::default_priority;  ///< a topic's
   base::Time time{};                                         ///< of its last frame
-  /// Of all its frames, eight bytes each; of a message what came, which is at least as long as its layout.
+  /// Of all its frames, eight bytes each; of a message what came.
   std::span<const std::uint8_t> bytes;
 
   /// What frame `index` carries, with room to read as can::FrameView says.
@@ -69,6 +71,7 @@ enum class Meaning : std::uint8_t {
   unknown,    ///< no topic and no message has this identifier, or the frame is remote
   wrong_dlc,  ///< a length that the topic has not, or that the message is longer than
   error,      ///< a report of the CAN controller
+  transport,  ///< a frame of J1939's transport protocol that completes no message
 };
 
 struct Reception {
@@ -76,6 +79,9 @@ struct Reception {
   protocol::FrameRef frame;                ///< for part, sample, set_point, wrong_dlc
   const protocol::Topic* topic = nullptr;  ///< wherever there is one; a message's too
   Sample sample;                           ///< for Meaning::sample
+  /// The message that this packet completes: Meaning::sample, however short it is, or unknown. Valid until
+  /// the next frame is taken.
+  const j1939::Transported* transported = nullptr;
 };
 
 struct ReceiverCounters {
@@ -88,16 +94,22 @@ struct ReceiverCounters {
   std::uint64_t incomplete =
       0;  ///< samples that lack a frame; the one that was under way at the start is not counted
   std::uint64_t errors = 0;
+  std::uint64_t transport = 0;  ///< frames of J1939's transport protocol that complete no message
   /// Frames or samples that a listener should know of.
   [[nodiscard]] constexpr std::uint64_t faults() const noexcept {
     return unknown + fd + wrong_dlc + incomplete + errors;
   }
 };
 
+/// Whether messages of J1939's transport protocol are put together, if the catalogue has J1939 at all.
+enum class Transport : std::uint8_t { as_frames, together };
+
 /// Understands the frames of one robot. The catalogue must outlive it.
 class Receiver {
  public:
-  explicit Receiver(const protocol::Catalogue& catalogue) : catalogue_(&catalogue), index_(catalogue) {
+  explicit Receiver(const protocol::Catalogue& catalogue, Transport transport = Transport::as_frames)
+      : catalogue_(&catalogue), index_(catalogue) {
+    if (transport == Transport::together && has_groups(catalogue)) transport_.resize(1);
     assemblies_.reserve(catalogue.topics.size());
     for (const protocol::Topic& topic : catalogue.topics) {
       assemblies_.push_back({bytes_.size(), 0, false});
@@ -108,12 +120,69 @@ class Receiver {
   [[nodiscard]] Reception take(const can::Received& received) {
     return take(can::FrameView{received.frame}, received.time);
   }
-  [[nodiscard]] Reception take(const can::FrameView& frame, base::Time time) {
+  /// `bus` tells several apart where nodes of different ones have the same addresses of J1939.
+  [[nodiscard]] Reception take(const can::FrameView& frame, base::Time time, std::uint16_t bus = 0) {
     ++counters_.frames;
     if (frame.format == can::Format::error) {
       ++counters_.errors;
       return {Meaning::error, {}, nullptr, {}};
     }
+    if (!transport_.empty() && frame.format == can::Format::extended && !frame.fd &&
+        j1939::is_transport(frame.id))
+      return take_transport(frame, time, bus);
+    return take_frame(frame, time);
+  }
+
+  [[nodiscard]] const ReceiverCounters& counters() const noexcept { return counters_; }
+  /// How the messages of J1939's transport protocol ended until `now`.
+  [[nodiscard]] j1939::TransportCounters transport_counters(base::Time now) noexcept {
+    if (transport_.empty()) return {};
+    transport_[0].expire(now);
+    return transport_[0].counters();
+  }
+  /// Messages of it that are under way.
+  [[nodiscard]] std::size_t transports_open() const noexcept {
+    return transport_.empty() ? 0 : transport_[0].open();
+  }
+  [[nodiscard]] const protocol::Catalogue& catalogue() const noexcept { return *catalogue_; }
+
+ private:
+  struct Assembly {
+    std::size_t first;      // of the topic's bytes
+    std::uint64_t present;  // bit i: frame i of the sample under way has come
+    bool synchronised;      // the sample under way was seen from its beginning
+  };
+  /// As many messages at a time: one a sender is usual.
+  using TransportSessions = j1939::Transport<32>;
+
+  [[nodiscard]] static bool has_groups(const protocol::Catalogue& catalogue) noexcept {
+    return std::any_of(catalogue.topics.begin(), catalogue.topics.end(), [](const protocol::Topic& topic) {
+      return topic.is_message() && topic.frames[0].address.by == protocol::Address::By::pgn;
+    });
+  }
+
+  Reception take_transport(const can::FrameView& frame, base::Time time, std::uint16_t bus) {
+    if (transport_[0].take(frame.id, frame.bytes, time, bus) != j1939::Heard::message) {
+      // A spec may describe the protocol's own frames.
+      if (index_.subject(frame.id, frame.format)) return take_frame(frame, time);
+      ++counters_.transport;
+      return {Meaning::transport, {}, nullptr, {}};
+    }
+    const j1939::Transported& whole = transport_[0].message();
+    const Subject subject = index_.subject(whole.id.encode(), can::Format::extended);
+    if (!subject) {
+      ++counters_.unknown;
+      return {Meaning::unknown, {}, nullptr, {}, &whole};
+    }
+    ++counters_.samples;
+    return {Meaning::sample,
+            subject.frame,
+            subject.topic,
+            {subject.topic, protocol::default_priority, time, whole.data},
+            &whole};
+  }
+
+  Reception take_frame(const can::FrameView& frame, base::Time time) {
     const Subject subject = index_.subject(frame.id, frame.format);
     if (!subject || (frame.fd && !subject.topic->is_message())) {
       ++(frame.fd ? counters_.fd : counters_.unknown);
@@ -136,16 +205,6 @@ class Receiver {
     }
     return assemble(frame, time, id.priority, ref);
   }
-
-  [[nodiscard]] const ReceiverCounters& counters() const noexcept { return counters_; }
-  [[nodiscard]] const protocol::Catalogue& catalogue() const noexcept { return *catalogue_; }
-
- private:
-  struct Assembly {
-    std::size_t first;      // of the topic's bytes
-    std::uint64_t present;  // bit i: frame i of the sample under way has come
-    bool synchronised;      // the sample under way was seen from its beginning
-  };
 
   Reception message(const can::FrameView& frame, base::Time time, protocol::FrameRef ref) {
     ++counters_.samples;
@@ -195,8 +254,9 @@ class Receiver {
   const protocol::Catalogue* catalogue_;
   FrameIndex index_;
   std::vector<Assembly> assemblies_;
-  std::vector<std::uint8_t> bytes_;         // of topics
-  std::array<std::uint8_t, 64> message_{};  // that came last
+  std::vector<std::uint8_t> bytes_;           // of topics
+  std::array<std::uint8_t, 64> message_{};    // that came last
+  std::vector<TransportSessions> transport_;  // one or none
   ReceiverCounters counters_;
 };
 

@@ -27,7 +27,7 @@ struct Identifier {
 
   [[nodiscard]] constexpr std::uint32_t encode() const noexcept {
     const std::uint32_t group = is_pdu1(pgn) ? (pgn & 0x3'FF00) | destination : pgn & 0x3'FFFF;
-    return (priority & 7U) << 26 | group << 8 | source;
+    return std::uint32_t{priority & 7U} << 26 | group << 8 | source;
   }
   /// Every number of 29 bits is an identifier; higher bits are cut off.
   [[nodiscard]] static constexpr Identifier decode(std::uint32_t id) noexcept {

@@ -19,6 +19,7 @@
 
 #include "ocm/base/swar.hpp"
 #include "ocm/base/text.hpp"
+#include "ocm/can/any_text.hpp"
 #include "ocm/can/text.hpp"
 #include "ocm/log/reader.hpp"
 #include "ocm/log/writer.hpp"
@@ -50,36 +51,6 @@ struct Line {
   }
 }
 
-/// `##`, a digit of flags and the data of a CAN FD frame, behind its identifier.
-[[nodiscard]] inline base::Error parse_fd(std::string_view id, std::string_view rest, Entry& entry) noexcept {
-  using base::Error;
-  char head[9] = {};
-  if (id.size() >= sizeof head) return Error::bad_identifier;
-  id.copy(head, id.size());
-  head[id.size()] = '#';
-  const auto frame = can::parse_frame({head, id.size() + 1});
-  if (!frame) return frame.error;
-  if (frame->format == can::Format::error) return Error::bad_syntax;
-  entry.id = frame->id;
-  entry.format = frame->format;
-  if (rest.empty() || base::hex_digit(rest.front()) < 0) return Error::bad_syntax;
-  entry.flags = static_cast<std::uint8_t>(base::hex_digit(rest.front())) | flag::fd;
-  rest.remove_prefix(1);
-  std::size_t length = 0;
-  for (std::size_t i = 0; i < rest.size(); i += 2) {
-    if (rest[i] == '.' && i > 0) ++i;  // one, between bytes
-    if (i + 1 >= rest.size()) return Error::bad_syntax;
-    const int high = base::hex_digit(rest[i]);
-    const int low = base::hex_digit(rest[i + 1]);
-    if (high < 0 || low < 0) return Error::bad_syntax;
-    if (length == max_fd_length) return Error::bad_length;
-    entry.data[length++] = static_cast<std::uint8_t>(high << 4 | low);
-  }
-  if (!is_fd_length(length)) return Error::bad_length;
-  entry.length = static_cast<std::uint8_t>(length);
-  return Error::none;
-}
-
 /// A classic frame, with `_9` to `_F` behind 8 bytes (or behind the 8 that a remote frame asks for).
 [[nodiscard]] inline base::Error parse_classic(std::string_view text, Entry& entry) noexcept {
   using base::Error;
@@ -105,10 +76,14 @@ struct Line {
   }
   line.interface = words->interface;
   line.entry.time = words->time;
-  const auto fd = words->frame.find("##");
-  const auto error = fd == std::string_view::npos
-                         ? parse_classic(words->frame, line.entry)
-                         : parse_fd(words->frame.substr(0, fd), words->frame.substr(fd + 2), line.entry);
+  base::Error error{};
+  if (words->frame.find("##") == std::string_view::npos) {
+    error = parse_classic(words->frame, line.entry);
+  } else {
+    const auto frame = can::parse_any_frame(words->frame);
+    error = frame.error;
+    line.entry = Entry{line.entry.time, *frame};
+  }
   if (error != base::Error::none) line.wrong = cause_of(error);
   if (line.interface.size() > longest_name) line.wrong = Cause::syntax;
   line.entry.direction = words->direction == 'R'   ? Direction::received

@@ -9,21 +9,21 @@
 #include <span>
 
 #include "ocm/base/time.hpp"
+#include "ocm/can/any_frame.hpp"
 #include "ocm/can/frame.hpp"
 
 namespace ocm::log {
 
-inline constexpr std::uint8_t max_fd_length = 64;  ///< data bytes of a CAN FD frame [ISO 11898-1:2015]
+using can::fd_dlc;
+using can::fd_length;
+using can::is_fd_length;
+using can::max_fd_length;
 
 /// Who put the frame on the bus, as seen from where it was recorded.
 enum class Direction : std::uint8_t { unknown, received, sent };
 
-/// Bits of Entry::flags, with the values of [linux/can.h] (CANFD_BRS, CANFD_ESI, CANFD_FDF).
-namespace flag {
-inline constexpr std::uint8_t bit_rate_switch = 0x01;
-inline constexpr std::uint8_t error_state = 0x02;  ///< the sender is error passive
-inline constexpr std::uint8_t fd = 0x04;           ///< a CAN FD frame
-}  // namespace flag
+/// Bits of Entry::flags: bit_rate_switch, error_state, fd.
+namespace flag = can::frame_flag;
 
 struct Entry {
   base::Time time{};     ///< since 1970 (UTC) where the format knows it, since the log's beginning otherwise
@@ -43,6 +43,14 @@ struct Entry {
       : time(when), id(frame.id), interface(from), format(frame.format), length(frame.dlc) {
     std::copy(frame.data.begin(), frame.data.end(), data.begin());
   }
+  Entry(base::Time when, const can::AnyFrame& frame, std::uint16_t from = 0) noexcept
+      : time(when),
+        id(frame.id),
+        interface(from),
+        format(frame.format),
+        length(frame.length),
+        flags(frame.flags),
+        data(frame.data) {}
 
   [[nodiscard]] bool is_fd() const noexcept { return (flags & flag::fd) != 0; }
   [[nodiscard]] std::span<const std::uint8_t> bytes() const noexcept {
@@ -60,6 +68,17 @@ struct Entry {
     std::copy_n(data.begin(), frame.data.size(), frame.data.begin());
     return frame;
   }
+  /// As a bus takes it.
+  [[nodiscard]] can::AnyFrame frame() const noexcept {
+    can::AnyFrame out;
+    out.id = id;
+    out.format = format;
+    out.length = length;
+    out.flags = flags & flag::all;
+    const auto from = bytes();
+    std::copy(from.begin(), from.end(), out.data.begin());
+    return out;
+  }
   friend bool operator==(const Entry& a, const Entry& b) noexcept {
     const auto x = a.bytes(), y = b.bytes();
     return a.time == b.time && a.id == b.id && a.interface == b.interface && a.format == b.format &&
@@ -67,24 +86,5 @@ struct Entry {
            a.direction == b.direction && std::equal(x.begin(), x.end(), y.begin(), y.end());
   }
 };
-
-/// The lengths that a CAN FD frame can have: 0..8, 12, 16, 20, 24, 32, 48, 64 [ISO 11898-1:2015].
-[[nodiscard]] constexpr bool is_fd_length(std::size_t length) noexcept {
-  return length <= 8 || length == 12 || length == 16 || length == 20 || length == 24 || length == 32 ||
-         length == 48 || length == 64;
-}
-
-/// The length that a length code stands for; codes over 15 as 15. [ISO 11898-1:2015]
-[[nodiscard]] constexpr std::uint8_t fd_length(unsigned dlc) noexcept {
-  constexpr std::uint8_t lengths[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64};
-  return lengths[dlc < 16 ? dlc : 15];
-}
-
-/// The smallest length code whose length holds `length` bytes.
-[[nodiscard]] constexpr std::uint8_t fd_dlc(std::size_t length) noexcept {
-  std::uint8_t dlc = 0;
-  while (dlc < 15 && fd_length(dlc) < length) ++dlc;
-  return dlc;
-}
 
 }  // namespace ocm::log

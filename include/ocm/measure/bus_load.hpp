@@ -10,8 +10,11 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "ocm/base/time.hpp"
+#include "ocm/can/any_frame.hpp"
+#include "ocm/can/fd_bits.hpp"
 #include "ocm/can/length.hpp"
 
 namespace ocm::measure {
@@ -98,6 +101,24 @@ inline constexpr StuffTables stuff_tables;
 /// What a frame takes of the bus until the next one may begin: can::frame_bits and the intermission.
 [[nodiscard]] constexpr unsigned bits_on_bus(const can::Frame& frame) noexcept {
   return detail::stuff_tables.bits(frame) + can::trailer_bits + can::intermission_bits;
+}
+
+/// Bits a second. Behind its switch a CAN FD frame goes at another rate than before.
+struct BitRates {
+  std::uint32_t nominal = 0;  ///< above zero
+  std::uint32_t data = 0;     ///< 0: not known
+};
+
+/// The same of a frame of either kind, to the nearest bit at the nominal rate: of bits at that of the data,
+/// more go into the time of one. Nothing where the frame switches and the other rate is not known.
+[[nodiscard]] constexpr std::optional<unsigned> bits_on_bus(const can::AnyFrame& frame,
+                                                            BitRates rates) noexcept {
+  if (const auto classic = frame.classic()) return bits_on_bus(*classic);
+  const can::FdBits bits = can::fd_frame_bits(frame);
+  if (bits.data == 0) return bits.nominal + can::intermission_bits;
+  if (rates.data == 0) return std::nullopt;
+  const std::uint64_t data = (std::uint64_t{bits.data} * rates.nominal + rates.data / 2) / rates.data;
+  return bits.nominal + can::intermission_bits + static_cast<unsigned>(data);
 }
 
 /// Bits in the window of 100 ms that ends now, in steps of a millisecond: a burst is seen whole wherever it

@@ -55,17 +55,18 @@ struct BusFigures {
   std::vector<Stranger> strangers;          ///< the first BusStatistics::most_strangers
   client::ReceiverCounters counters;        ///< `frames` with error frames and CAN FD
   std::optional<WrongLength> wrong_length;  ///< the first; counters.wrong_dlc has how many
-  std::uint64_t fd_frames = 0;              ///< CAN FD, of messages or not; not in the load
+  std::uint64_t fd_frames = 0;              ///< CAN FD, of messages or not
+  std::uint64_t not_in_load = 0;            ///< of these, those whose data go at a bit rate that is not known
   std::uint64_t overflows = 0;  ///< error frames that say that frames were lost in the CAN controller
   base::Time first{};           ///< frame of any kind
   base::Time last{};
-  std::uint32_t bit_rate = 0;
+  BitRates bit_rates;
   double rate_hz = 0;        ///< frames, error frames not counted
   double load = 0;           ///< share of time from the first frame's end to the last's, 0..1
   double request_load = 0;   ///< of these, requests
   double stranger_load = 0;  ///< of these, frames that no topic has, or not so
   double worst_load = 0;     ///< in the worst BusLoad::window
-  base::Time worst_until{};  ///< when that ended
+  base::Time worst_until{};  ///< when that ended; `first` where no frame is in the load
   [[nodiscard]] base::Duration span() const noexcept { return last - first; }
 };
 
@@ -73,37 +74,40 @@ class BusStatistics {
  public:
   static constexpr std::size_t most_strangers = 32;
 
-  /// The catalogue must outlive it. `bit_rate` is above zero.
-  BusStatistics(const protocol::Catalogue& catalogue, std::uint32_t bit_rate)
-      : bit_rate_(bit_rate), receiver_(catalogue) {
+  /// The catalogue must outlive it.
+  BusStatistics(const protocol::Catalogue& catalogue, BitRates rates) : rates_(rates), receiver_(catalogue) {
     topics_.reserve(catalogue.topics.size());
     for (const auto& topic : catalogue.topics) {
       topics_.push_back({{.topic = &topic, .timing = {}}, Stream{topic.usual_period()}});
     }
   }
 
-  void take(const can::Received& received) {
+  /// What the frame turned out to be.
+  client::Reception take(const can::Received& received) {
     begin(received.time);
     const auto incomplete = receiver_.counters().incomplete;
     const client::Reception reception = receiver_.take(received);
     if (reception.meaning == client::Meaning::error) {
       if (can::lost_in_controller(received.frame)) ++overflows_;
-      return;
+      return reception;
     }
-    const unsigned bits = count_bits(received);
+    const unsigned bits = count_bits(received.time, bits_on_bus(received.frame));
     if (reception.topic == nullptr) {
       stranger_bits_ += bits;
-      return note_stranger(received.frame);
+      note_stranger(received.frame.id, received.frame.format);
+      return reception;
     }
     Entry& entry = topics_[static_cast<std::size_t>(reception.topic - receiver_.catalogue().topics.data())];
     entry.figures.incomplete += receiver_.counters().incomplete - incomplete;
     switch (reception.meaning) {
       case client::Meaning::request:
         request_bits_ += bits;
-        return take_request(entry, received);
+        take_request(entry, received);
+        return reception;
       case client::Meaning::wrong_dlc:
         stranger_bits_ += bits;
-        return note_length(entry, can::FrameView{received.frame}, reception);
+        note_length(entry, can::FrameView{received.frame}, reception);
+        return reception;
       case client::Meaning::sample:
       case client::Meaning::set_point: {
         if (!reception.topic->is_message()) {
@@ -117,18 +121,30 @@ class BusStatistics {
         break;
     }
     entry.bits += bits;
+    return reception;
   }
   /// A CAN FD frame came.
-  void take_fd(const can::FrameView& frame, base::Time time) {
+  client::Reception take_fd(const can::AnyFrame& frame, base::Time time) {
     begin(time);
     ++fd_frames_;
-    const client::Reception reception = receiver_.take(frame, time);
-    if (reception.topic == nullptr) return;
+    const auto known = bits_on_bus(frame, rates_);
+    if (!known) ++not_in_load_;
+    const unsigned bits = count_bits(time, known.value_or(0));
+    const client::Reception reception = receiver_.take(frame.view(), time);
+    if (reception.topic == nullptr) {
+      stranger_bits_ += bits;
+      note_stranger(frame.id, frame.format);
+      return reception;
+    }
     Entry& entry = topics_[static_cast<std::size_t>(reception.topic - receiver_.catalogue().topics.data())];
-    if (reception.meaning == client::Meaning::sample)
+    if (reception.meaning == client::Meaning::sample) {
       entry.stream.sample(time);
-    else
-      note_length(entry, frame, reception);
+      entry.bits += bits;
+    } else {
+      stranger_bits_ += bits;
+      note_length(entry, frame.view(), reception);
+    }
+    return reception;
   }
 
   /// Whether any frame came.
@@ -141,16 +157,17 @@ class BusStatistics {
     out.strangers = strangers_;
     out.wrong_length = wrong_length_;
     out.fd_frames = fd_frames_;
+    out.not_in_load = not_in_load_;
     out.overflows = overflows_;
     out.first = first_;
     out.last = now ? std::max(*now, last_) : last_;
-    out.bit_rate = bit_rate_;
-    const auto load = [&](std::uint64_t bits) { return share(bits, out.span(), bit_rate_); };
+    out.bit_rates = rates_;
+    const auto load = [&](std::uint64_t bits) { return share(bits, out.span(), rates_.nominal); };
     out.load = load(bits_);
     out.request_load = load(request_bits_);
     out.stranger_load = load(stranger_bits_);
-    out.worst_load = share(load_.worst_bits(), BusLoad::window, bit_rate_);
-    out.worst_until = load_.worst_until();
+    out.worst_load = share(load_.worst_bits(), BusLoad::window, rates_.nominal);
+    out.worst_until = load_.worst_bits() == 0 ? first_ : load_.worst_until();
     if (frames_ > 0 && out.span().count() > 0)
       out.rate_hz = static_cast<double>(frames_ - 1) * 1e9 / static_cast<double>(out.span().count());
     for (const Entry& entry : topics_) {
@@ -177,9 +194,8 @@ class BusStatistics {
     last_ = std::max(last_, time);
   }
   /// Those that count for the average: the first frame had begun before the time that is looked at.
-  unsigned count_bits(const can::Received& received) noexcept {
-    const unsigned bits = bits_on_bus(received.frame);
-    load_.add(received.time, bits);
+  unsigned count_bits(base::Time time, unsigned bits) noexcept {
+    load_.add(time, bits);
     if (frames_++ == 0) return 0;
     bits_ += bits;
     return bits;
@@ -201,16 +217,16 @@ class BusStatistics {
     ++entry.figures.wrong_dlc;
     if (!wrong_length_) wrong_length_ = {frame.id, frame.bytes.size(), reception.frame.layout().length};
   }
-  void note_stranger(const can::Frame& frame) {
+  void note_stranger(std::uint32_t id, can::Format format) {
     for (Stranger& stranger : strangers_)
-      if (stranger.id == frame.id && stranger.format == frame.format) {
+      if (stranger.id == id && stranger.format == format) {
         ++stranger.count;
         return;
       }
-    if (strangers_.size() < most_strangers) strangers_.push_back({frame.id, frame.format, 1});
+    if (strangers_.size() < most_strangers) strangers_.push_back({id, format, 1});
   }
 
-  std::uint32_t bit_rate_;
+  BitRates rates_;
   client::Receiver receiver_;
   std::vector<Entry> topics_;
   std::vector<Stranger> strangers_;
@@ -221,6 +237,7 @@ class BusStatistics {
   base::Time last_{};
   std::uint64_t frames_ = 0;
   std::uint64_t fd_frames_ = 0;
+  std::uint64_t not_in_load_ = 0;
   std::uint64_t overflows_ = 0;
   std::uint64_t bits_ = 0;
   std::uint64_t request_bits_ = 0;

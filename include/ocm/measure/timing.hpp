@@ -41,6 +41,8 @@ struct Timing {
   std::uint64_t backwards = 0;  ///< samples older than the one before
   std::int64_t period_ns = 0;   ///< the newest, also when it was stopped since; 0: none
   PeriodFrom period_from = PeriodFrom::nothing;
+  bool due = false;    ///< samples are to come, every period: they were asked for, or have come so
+  base::Time since{};  ///< the last sample, or the request if that is newer
 };
 
 namespace detail {
@@ -211,6 +213,8 @@ class Stream {
     timing.backwards = backwards_;
     timing.period_ns = ended.period_;
     timing.period_from = ended.from_;
+    timing.due = ended.due_ && ended.state_ != State::idle;
+    timing.since = since_;
     return timing;
   }
 

@@ -20,9 +20,9 @@ namespace ocm::protocol {
 
 enum class ByteOrder : std::uint8_t { little, big };
 
-/// A field's place in a frame of up to 64 bytes.
+/// A field's place in a frame, or in a message of several frames.
 struct Position {
-  std::uint16_t start = 0;  ///< 0..511, see above; 0..63 in a classic frame
+  std::uint16_t start = 0;  ///< see above; 0..63 in a classic frame, at most 14279
   std::uint8_t width = 0;   ///< 1..64
   ByteOrder order = ByteOrder::little;
 

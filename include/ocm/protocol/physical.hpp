@@ -3,6 +3,7 @@
 
 #include <concepts>
 #include <cstdint>
+#include <type_traits>
 
 namespace ocm::protocol {
 
@@ -14,9 +15,13 @@ template <std::integral T>
   if (value != value) return min > 0 ? min : max < 0 ? max : T{0};
   if (value <= static_cast<double>(min)) return min;
   if (value >= static_cast<double>(max)) return max;
-  const auto whole = static_cast<std::int64_t>(value);  // towards zero; the difference below is exact
+  using Whole = std::conditional_t<std::is_unsigned_v<T> && sizeof(T) == 8, std::uint64_t, std::int64_t>;
+  const auto whole = static_cast<Whole>(value);  // towards zero; the difference below is exact
   const double rest = value - static_cast<double>(whole);
-  return static_cast<T>(whole + (rest >= 0.5 ? 1 : rest <= -0.5 ? -1 : 0));
+  if constexpr (std::is_unsigned_v<Whole>)
+    return static_cast<T>(whole + (rest >= 0.5 ? 1 : 0));
+  else
+    return static_cast<T>(whole + (rest >= 0.5 ? 1 : rest <= -0.5 ? -1 : 0));
 }
 
 }  // namespace ocm::protocol

@@ -92,9 +92,16 @@ struct Field {
     if (scale == base::Decimal{1, 0} && offset.digits == 0) return plain;
     return plain * scale.as_double() + offset.as_double();
   }
-  /// Exact; out_of_range only for scales that no sensor has.
+  /// Exact; out_of_range for scales that no sensor has, and for nine in ten of the unsigned words of 64 bits
+  /// from 2^63 on, which have more digits than a Decimal.
   [[nodiscard]] constexpr base::Result<base::Decimal> physical(std::int64_t raw_value) const noexcept {
-    const auto scaled = base::multiply({raw_value, 0}, scale);
+    base::Decimal plain{raw_value, 0};
+    if (raw_value < 0 && !is_signed && position.width == 64) {  // the highest bit is no sign
+      const auto word = static_cast<std::uint64_t>(raw_value);
+      if (word % 10 != 0) return base::Error::out_of_range;
+      plain = {static_cast<std::int64_t>(word / 10), 1};
+    }
+    const auto scaled = base::multiply(plain, scale);
     if (!scaled) return scaled.error;
     return base::add(*scaled, offset);
   }
@@ -144,7 +151,8 @@ struct FrameLayout {
   std::span<const Field> fields;
   BitsByPriority worst_bits{};
   Address address{};
-  bool fd = false;  ///< sent as CAN FD
+  bool fd = false;              ///< sent as CAN FD
+  bool bit_rate_switch = true;  ///< of CAN FD: its data go at a bit rate of their own
 
   /// The length code as a classic frame.
   [[nodiscard]] constexpr std::uint8_t dlc() const noexcept {
@@ -153,7 +161,12 @@ struct FrameLayout {
   /// Whether a frame of so many bytes can be this one. A topic's length is exact; of a message, whose bytes
   /// beyond the last field mean nothing, a frame may be longer.
   [[nodiscard]] constexpr bool accepts(std::size_t bytes) const noexcept {
-    return address.by == Address::By::topic ? bytes == length : bytes >= length;
+    return address.by == Address::By::topic ? bytes == length : bytes >= length || any_length();
+  }
+  /// A parameter group of more than eight bytes: what of it fits into one frame is sent in one. [SAE
+  /// J1939-21, 5.10; trouble codes (DM1) are such a list]
+  [[nodiscard]] constexpr bool any_length() const noexcept {
+    return address.by == Address::By::pgn && length > can::max_dlc;
   }
   /// Whether field `index` says which other fields are there. O(fields).
   [[nodiscard]] constexpr bool selects(std::size_t index) const noexcept {
@@ -163,7 +176,7 @@ struct FrameLayout {
   }
   /// Whether a frame of this layout may be without `field`.
   [[nodiscard]] constexpr bool may_lack(const Field& field) const noexcept {
-    return field.selector != no_selector || field.position.bytes() > length;
+    return field.selector != no_selector || field.position.bytes() > length || any_length();
   }
   /// Whether `field`, one of `fields`, is in a frame: the frame is long enough, and selectors, which may be
   /// selected by others themselves, say so. O(selectors above the field).

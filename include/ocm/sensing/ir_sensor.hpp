@@ -58,8 +58,7 @@ inline constexpr IrCurve typical_ir_curve = ir_curve(ir_nearest_cm, 2.3F, ir_far
 namespace detail {
 
 constexpr IrReading ir_reading(float distance_cm) noexcept {
-  if (!motion::is_finite(distance_cm) || distance_cm <= 0.0F || distance_cm > ir_farthest_cm + 0.001F)
-    return {};
+  if (!(distance_cm > 0.0F && distance_cm <= ir_farthest_cm + 0.001F)) return {};
   return {distance_cm, distance_cm < ir_nearest_cm - 0.001F ? IrRange::too_near : IrRange::useful};
 }
 

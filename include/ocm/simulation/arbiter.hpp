@@ -21,11 +21,14 @@
 
 #include "ocm/base/result.hpp"
 #include "ocm/base/time.hpp"
+#include "ocm/can/any_frame.hpp"
+#include "ocm/can/fd_bits.hpp"
 #include "ocm/can/frame.hpp"
 #include "ocm/can/length.hpp"
 #include "ocm/simulation/bit_clock.hpp"
 #include "ocm/simulation/disturbance.hpp"
 #include "ocm/simulation/fault_confinement.hpp"
+#include "ocm/simulation/fd_store.hpp"
 #include "ocm/simulation/transmit_queue.hpp"
 
 namespace ocm::simulation {
@@ -42,14 +45,15 @@ struct NodeId {
   friend constexpr bool operator==(const NodeId&, const NodeId&) = default;
 };
 
-/// A frame that was sent. Boundaries count bits from the bus's epoch.
+/// A frame that was sent. Boundaries count from the bus's epoch.
 struct Delivery {
-  can::Frame frame{};
-  NodeId from{};            ///< may have left meanwhile
-  std::uint64_t start = 0;  ///< boundary at which its start of frame began
-  std::uint64_t end = 0;    ///< boundary at which the last bit of its end of frame was over
-  base::Time time{};        ///< of `end`: receivers have the frame now
-  bool sent = true;         ///< false: its sender saw an error in the last bit and will repeat it
+  can::Frame frame{};                 ///< of a CAN FD frame the identifier alone
+  NodeId from{};                      ///< may have left meanwhile
+  std::uint64_t start = 0;            ///< boundary at which its start of frame began
+  std::uint64_t end = 0;              ///< boundary at which the last bit of its end of frame was over
+  base::Time time{};                  ///< of `end`: receivers have the frame now
+  bool sent = true;                   ///< false: its sender saw an error in the last bit and will repeat it
+  const can::AnyFrame* fd = nullptr;  ///< a CAN FD frame, valid until the next delivery; null: a classic one
 };
 
 /// An error frame. Overload frames are none.
@@ -64,6 +68,7 @@ struct NodeCounters {
   std::uint64_t broken = 0;   ///< times that a frame of it was disturbed
 };
 
+/// Bits: those of the bus's clock, as boundaries.
 struct BusTotals {
   std::uint64_t frames = 0;
   std::uint64_t busy_bits = 0;    ///< of complete frames, each with its intermission: all of them is load 1
@@ -85,9 +90,11 @@ enum class Leftovers : std::uint8_t { send, withdraw };
 /// - On an idle bus a frame starts at the first bit boundary at or after its hand-over; all that was handed
 ///   over by then takes part in the arbitration.
 /// - The lowest can::arbitration_key wins. The losers try again after the winner.
-/// - A frame takes can::frame_bits, with the stuff bits of its content; then three bits of intermission. The
-///   next start of frame is at once after that: a controller may answer a frame without idle time between.
-/// - Every frame is acknowledged, even when no other node is attached.
+/// - A frame takes can::frame_bits, with the stuff bits of its content; then three bits of intermission. A
+/// CAN
+///   FD frame takes can::fd_frame_bits, each part at its bit rate. The next start of frame is at once after
+///   that: a controller may answer a frame without idle time between.
+/// - Every frame is acknowledged, even when no other node is attached. Every node knows CAN FD, or bears it.
 /// - Two nodes that offer the same key would both believe to have won, and a bit error would follow at the
 ///   first different bit. Here the node with the lower index sends first, and it is counted as a clash.
 ///
@@ -104,11 +111,17 @@ enum class Leftovers : std::uint8_t { send, withdraw };
 ///   it follows a frame of its own. One that is bus-off keeps its frames, and sends them when 128 times 11
 ///   recessive bits have passed: the end of each frame, and of each error frame, has one such sequence.
 ///   Deliveries are not for it, which is for the caller to heed.
+///
+/// Boundaries are those of the shortest bits, of which each other bit has `data_factor`: without CAN FD, or
+/// where it has the same bit rate, a boundary is one of every bit. The grid of a frame's bits begins anew at
+/// the end of the frame before it, as nodes synchronise to each start of frame. A disturbance lasts a bit of
+/// the arbitration, wherever it falls.
 class Arbiter {
  public:
-  /// `bit_rate`: 1 to 1'000'000'000 bit/s. Boundary 0 is at `epoch`.
-  explicit Arbiter(std::uint32_t bit_rate = 500'000, base::Time epoch = {})
-      : clock_(bit_rate, epoch), now_(epoch) {}
+  /// `bit_rate`: 1 to 1'000'000'000 bit/s. Boundary 0 is at `epoch`. `data_factor`: how many times faster the
+  /// data of CAN FD frames with bit-rate switch are, at least 1; times `bit_rate` 1'000'000'000 at most.
+  explicit Arbiter(std::uint32_t bit_rate = 500'000, base::Time epoch = {}, std::uint32_t data_factor = 1)
+      : clock_(bit_rate * data_factor, epoch), now_(epoch), bit_(data_factor) {}
 
   /// A new node, with an empty queue. Takes memory for the whole queue, 32 bytes a frame.
   [[nodiscard]] NodeId attach(NodeOptions options = {}) {
@@ -133,6 +146,7 @@ class Arbiter {
     node->repeats = leftovers == Leftovers::send;
     const std::size_t withdrawn = node->repeats ? 0 : node->queue.size();
     if (withdrawn != 0) {
+      for (std::size_t i = 0; i < withdrawn; ++i) fd_.release(node->queue[i].fd);
       node->queue.clear();
       if (!on_bus_) next_.reset();
     }
@@ -154,9 +168,18 @@ class Arbiter {
       ++totals_.refused;
       return false;
     }
-    node->queue.push({frame, can::arbitration_key(frame), clock_.boundary_from(std::max(at, now_))});
+    node->queue.push({frame, can::arbitration_key(frame), 0, clock_.boundary_from(std::max(at, now_))});
     if (!on_bus_) next_.reset();
     return true;
+  }
+  /// A frame of either kind. Memory is taken for CAN FD frames that wait, and kept.
+  base::Result<bool> send_any(NodeId id, const can::AnyFrame& frame, base::Time at) {
+    if (const auto classic = frame.classic()) return send(id, *classic, at);
+    if (const auto valid = can::validate(frame); !valid) return valid.error;
+    const can::Frame head{.id = frame.id, .format = frame.format};
+    const auto taken = send(id, head, at);  // the frame is the last of its queue now
+    if (taken && *taken) find(id)->queue.newest().fd = fd_.keep(frame);
+    return taken;
   }
   /// At the present time.
   base::Result<bool> send(NodeId id, const can::Frame& frame) noexcept { return send(id, frame, now_); }
@@ -176,7 +199,7 @@ class Arbiter {
     for (;;) {
       const std::uint64_t next = on_bus_ ? next_->end : choose() ? next_->start : UINT64_MAX;
       if (disturbances_.any_before(next)) {
-        if (clock_.time_of(disturbances_.front().boundary + 1) > now) break;
+        if (clock_.time_of(disturbances_.front().boundary + bit_) > now) break;
         disturb_now(deliver, complain);
       } else if (on_bus_) {
         if (clock_.time_of(next) > now) break;
@@ -199,13 +222,15 @@ class Arbiter {
   /// it. base::never when nothing lies ahead.
   [[nodiscard]] base::Time next_event() const noexcept {
     const std::uint64_t end = on_bus_ || choose() ? next_->end : UINT64_MAX;
-    if (disturbances_.any_before(end)) return clock_.time_of(disturbances_.front().boundary + 1);
+    if (disturbances_.any_before(end)) return clock_.time_of(disturbances_.front().boundary + bit_);
     return end == UINT64_MAX ? base::never : clock_.time_of(end);
   }
 
   /// The latest time handed to `advance`, or that of the frame being delivered.
   [[nodiscard]] base::Time now() const noexcept { return now_; }
   [[nodiscard]] const BitClock& clock() const noexcept { return clock_; }
+  /// Boundaries of its clock in a bit of the arbitration.
+  [[nodiscard]] std::uint32_t data_factor() const noexcept { return static_cast<std::uint32_t>(bit_); }
   [[nodiscard]] const BusTotals& totals() const noexcept { return totals_; }
   /// Zeros for a node that has left.
   [[nodiscard]] NodeCounters counters(NodeId id) const noexcept {
@@ -290,6 +315,7 @@ class Arbiter {
 
     Next next;
     next.start = std::max(earliest, idle_from_);
+    if (bit_ != 1) next.start += (bit_ - (next.start - idle_from_) % bit_) % bit_;  // on the grid of bits
     const WaitingFrame* best = nullptr;
     for (std::size_t index = 0; index < nodes_.size(); ++index) {
       const Node& node = nodes_[index];
@@ -306,9 +332,15 @@ class Arbiter {
       next.clash = false;
     }
     next.item = *best;
-    next.end = next.start + can::frame_bits(best->frame);
+    next.end = next.start + length(*best);
     next_ = next;
     return true;
+  }
+
+  [[nodiscard]] std::uint64_t length(const WaitingFrame& item) const noexcept {
+    if (item.fd == 0) return bit_ * can::frame_bits(item.frame);
+    const can::FdBits bits = can::fd_frame_bits(fd_[item.fd]);
+    return bit_ * bits.nominal + bits.data;
   }
 
   /// The silence before it has ended.
@@ -320,22 +352,27 @@ class Arbiter {
   }
 
   Delivery complete() noexcept {
+    const std::uint32_t fd = next_->item.fd;
     const Delivery delivery = taken_off();
+    fd_.release(fd);
     ++totals_.frames;
     Node& sender = nodes_[delivery.from.index];
     ++sender.counters.sent;
     if (faults_) {
       for (Node& node : nodes_) &node == &sender ? node.faults.sent() : node.faults.received();
     }
-    begin_silence(delivery.start, delivery.end + can::intermission_bits, totals_.busy_bits);
+    begin_silence(delivery.start, delivery.end + bit_ * can::intermission_bits, totals_.busy_bits);
     release_if_done(sender);
     return delivery;
   }
 
   /// The frame under way is on the bus no more.
   Delivery taken_off() noexcept {
-    const Delivery delivery{next_->item.frame, next_->from, next_->start, next_->end,
-                            clock_.time_of(next_->end)};
+    Delivery delivery{next_->item.frame, next_->from, next_->start, next_->end, clock_.time_of(next_->end)};
+    if (next_->item.fd != 0) {
+      delivered_ = fd_[next_->item.fd];
+      delivery.fd = &delivered_;
+    }
     next_.reset();
     on_bus_ = false;
     return delivery;
@@ -352,7 +389,7 @@ class Arbiter {
   template <class Deliver, class Complain>
   void disturb_now(Deliver& deliver, Complain& complain) {
     const Disturbance disturbance = disturbances_.pop();
-    const BusError error{on_bus_ ? next_->from : NodeId{}, clock_.time_of(disturbance.boundary + 1)};
+    const BusError error{on_bus_ ? next_->from : NodeId{}, clock_.time_of(disturbance.boundary + bit_)};
     const std::uint64_t errors = totals_.errors;
     std::optional<Delivery> received;
     if (on_bus_)
@@ -375,12 +412,13 @@ class Arbiter {
       sender.queue.put_back(position, item);
       ++totals_.repetitions;
     } else {
+      fd_.release(item.fd);
       ++totals_.withdrawn;
     }
     count_error();
-    begin_silence(delivery.start, disturbance.over(), totals_.error_bits);
+    begin_silence(delivery.start, disturbance.over(bit_), totals_.error_bits);
     release_if_done(sender);
-    if (disturbance.boundary + 1 != delivery.end) return std::nullopt;
+    if (disturbance.boundary + bit_ < delivery.end) return std::nullopt;
     delivery.sent = false;
     if (sender.repeats) ++totals_.duplicates;
     return delivery;
@@ -390,17 +428,17 @@ class Arbiter {
   void disturb_silence(Disturbance disturbance) noexcept {
     const std::uint64_t boundary = disturbance.boundary;
     end_silence(boundary);
-    if (boundary + can::intermission_bits < idle_from_) {  // in an error frame
+    if (boundary + bit_ * can::intermission_bits < idle_from_) {  // in an error frame
       count_error();
-    } else if (boundary + 1 < idle_from_) {
+    } else if (boundary + bit_ < idle_from_) {
       ++totals_.overloads;
     } else {
       if (can_start_at(boundary)) return start();
       last_sender_ = {};
-      disturbance.boundary += stuff_error_bits;
+      disturbance.boundary += bit_ * stuff_error_bits;
       count_error();
     }
-    begin_silence(boundary, disturbance.over(), totals_.error_bits);
+    begin_silence(boundary, disturbance.over(bit_), totals_.error_bits);
     next_.reset();
   }
 
@@ -443,9 +481,10 @@ class Arbiter {
   [[nodiscard]] std::uint64_t barred_until(const Node& node, bool sent_last) const noexcept {
     switch (node.faults.state()) {
       case FaultState::bus_off:  // the first sequence ends with the intermission
-        return idle_from_ + std::uint64_t{node.faults.sequences_left() - 1} * FaultConfinement::sequence_bits;
+        return idle_from_ +
+               std::uint64_t{node.faults.sequences_left() - 1} * FaultConfinement::sequence_bits * bit_;
       case FaultState::error_passive:
-        return sent_last ? idle_from_ + FaultConfinement::suspend_bits : 0;
+        return sent_last ? idle_from_ + FaultConfinement::suspend_bits * bit_ : 0;
       case FaultState::error_active:
         break;
     }
@@ -461,12 +500,15 @@ class Arbiter {
   /// Sequences of 11 recessive bits since something was sent. The first is the end of that, from its last
   /// delimiter on, with the intermission.
   [[nodiscard]] std::uint64_t sequences_until(std::uint64_t boundary) const noexcept {
-    return boundary < idle_from_ ? 0 : 1 + (boundary - idle_from_) / FaultConfinement::sequence_bits;
+    return boundary < idle_from_ ? 0 : 1 + (boundary - idle_from_) / (FaultConfinement::sequence_bits * bit_);
   }
 
   BitClock clock_;
   base::Time now_;
+  std::uint64_t bit_;  ///< boundaries in a bit of the arbitration
   std::vector<Node> nodes_;
+  FdStore fd_;
+  can::AnyFrame delivered_;           ///< the last CAN FD frame that was
   mutable std::optional<Next> next_;  ///< a cache until `on_bus_`
   bool on_bus_ = false;
   bool faults_ = false;          ///< some node's counters are not clean

@@ -26,10 +26,10 @@ struct Disturbance {
   std::uint64_t boundary = 0;  ///< at which the bit begins
   unsigned flag_bits =
       shortest_flag_bits;  ///< of all flags together, 6 to 12; others are taken as the nearest
-  /// From the disturbed bit on: until a frame can start again.
-  [[nodiscard]] constexpr std::uint64_t over() const noexcept {
-    return boundary + 1 + std::clamp(flag_bits, shortest_flag_bits, longest_flag_bits) + delimiter_bits +
-           can::intermission_bits;
+  /// From the disturbed bit on: until a frame can start again. `bit`: boundaries in a bit.
+  [[nodiscard]] constexpr std::uint64_t over(std::uint64_t bit = 1) const noexcept {
+    return boundary + bit * (1 + std::clamp(flag_bits, shortest_flag_bits, longest_flag_bits) +
+                             delimiter_bits + can::intermission_bits);
   }
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <span>
 #include <sys/uio.h>
 #include <vector>
 
@@ -25,6 +26,16 @@ class RecordQueue {
     }
     ring_[wrap(head_ + size_++)] = record;
     return true;
+  }
+  /// All of them or none.
+  bool push(std::span<const transport::virtual_bus::Record> records, std::size_t limit) {
+    if (size_ > limit || records.size() > limit - size_) return false;
+    for (const auto& record : records) push(record, limit);
+    return true;
+  }
+  /// The i-th oldest, i below size().
+  [[nodiscard]] const transport::virtual_bus::Record& operator[](std::size_t i) const noexcept {
+    return ring_[wrap(head_ + i)];
   }
   /// The oldest `count` records, in up to two pieces.
   [[nodiscard]] std::array<iovec, 2> front(std::size_t count) noexcept {

@@ -21,6 +21,7 @@ enum class QueueOrder : std::uint8_t {
 struct WaitingFrame {
   can::Frame frame{};
   std::uint32_t key = 0;    ///< can::arbitration_key
+  std::uint32_t fd = 0;     ///< where the rest of a CAN FD frame is kept (FdStore); 0: a classic frame
   std::uint64_t ready = 0;  ///< first boundary at which it may start
 };
 
@@ -43,6 +44,8 @@ class TransmitQueue {
   /// The i-th oldest, i below size().
   [[nodiscard]] const WaitingFrame& operator[](std::size_t i) const noexcept { return ring_[place(i)]; }
 
+  /// What was pushed last, and nothing was taken since.
+  [[nodiscard]] WaitingFrame& newest() noexcept { return ring_[place(size_ - 1)]; }
   /// There is room.
   void push(const WaitingFrame& item) noexcept { ring_[place(size_++)] = item; }
   /// What the node offers at a start of frame: its position, or size() for nothing.

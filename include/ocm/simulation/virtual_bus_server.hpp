@@ -33,24 +33,30 @@
 #include "ocm/can/filter.hpp"
 #include "ocm/host/descriptor.hpp"
 #include "ocm/host/failure.hpp"
+#include "ocm/host/local_listener.hpp"
+#include "ocm/host/local_socket.hpp"
 #include "ocm/host/system_time.hpp"
 #include "ocm/simulation/arbiter.hpp"
 #include "ocm/simulation/error_report.hpp"
 #include "ocm/simulation/record_queue.hpp"
-#include "ocm/simulation/virtual_bus_socket.hpp"
 #include "ocm/transport/virtual_bus_protocol.hpp"
 
 namespace ocm::simulation {
+
+namespace virtual_bus = transport::virtual_bus;
 
 struct VirtualBusOptions {
   std::string path{};                  ///< of the socket; empty: virtual_bus::default_path()
   std::string name = "sim";            ///< of the bus or robot, for clients to show; 11 bytes are kept
   std::uint32_t bit_rate = 500'000;    ///< 1 to 1'000'000'000 bit/s
+  std::uint32_t data_bit_rate = 0;     ///< of CAN FD frames with bit-rate switch: `bit_rate` or a multiple of
+                                       ///< it, up to 255 times; 0: `bit_rate`
   base::Time epoch{};                  ///< the first boundary of a bit, in the time handed to `poll`
-  base::Duration to_unix_time{};       ///< added to the bus's time in the stamps that clients get
+  base::Duration to_unix_time{};       ///< added to the bus's time in the stamps that
+                                       ///< clients get
   std::size_t transmit_queue = 64;     ///< frames of a client that may wait for the bus, at least 1
-  std::size_t output_queue = 4096;     ///< frames that may wait for a client to read them, besides 200 KiB in
-                                       ///< the kernel; at least 1
+  std::size_t output_queue = 4096;     ///< frames that may wait for a client to read them, besides 200 KiB
+                                       ///< in the kernel; at least 1
   bool raise_descriptor_limit = true;  ///< to the hard limit of the process, so that more clients fit
   base::Duration patience = std::chrono::seconds{1};  ///< with another server that starts just now
   /// At its end the server waits so long for clients that are behind; what they have not read by then is
@@ -65,10 +71,12 @@ struct VirtualBusCounters {
   std::uint64_t left = 0;             ///< in order; their waiting frames are sent
   std::uint64_t died = 0;             ///< without a word; their waiting frames are withdrawn
   std::uint64_t turned_away = 0;      ///< instead of welcomed: another user, another version, no greeting
-  std::uint64_t misbehaved = 0;       ///< disconnected for what they sent; their waiting frames are withdrawn
+  std::uint64_t misbehaved = 0;       ///< disconnected for what they sent; their
+                                      ///< waiting frames are withdrawn
   std::uint64_t accept_failures = 0;  ///< connections that found no file descriptor or memory
   std::uint64_t overruns = 0;         ///< frames dropped for clients that read too slowly; each was informed
   std::uint64_t withdrawn = 0;        ///< frames
+  std::uint64_t fd_withheld = 0;      ///< CAN FD frames that a client of an earlier version does not know
 };
 
 class VirtualBusServer {
@@ -80,7 +88,20 @@ class VirtualBusServer {
     if (options.bit_rate < 1 || options.bit_rate > BitClock::max_bit_rate)
       return host::Failure{"no bus runs at " + std::to_string(options.bit_rate) + " bit/s",
                            "choose a bit rate from 1 to 1000000000; the robot's is 500000"};
-    auto socket = VirtualBusSocket::open(std::move(options.path), options.patience);
+    if (options.data_bit_rate == 0) options.data_bit_rate = options.bit_rate;
+    if (options.data_bit_rate % options.bit_rate != 0 ||
+        options.data_bit_rate / options.bit_rate > most_faster ||
+        options.data_bit_rate > BitClock::max_bit_rate)
+      return host::Failure{"no data of CAN FD runs at " + std::to_string(options.data_bit_rate) +
+                               " bit/s on a bus of " + std::to_string(options.bit_rate),
+                           "choose the bit rate of the bus, or a whole multiple of it, such "
+                           "as " +
+                               std::to_string(std::min(4 * std::uint64_t{options.bit_rate},
+                                                       std::uint64_t{BitClock::max_bit_rate} /
+                                                           options.bit_rate * options.bit_rate)) +
+                               "; at most " + std::to_string(most_faster) + " times"};
+    std::string path = options.path.empty() ? virtual_bus::default_path() : options.path;
+    auto socket = host::LocalListener::open(std::move(path), options.patience, service);
     if (!socket) return std::move(socket.error);
     host::Descriptor events{::epoll_create1(EPOLL_CLOEXEC)};
     host::Descriptor spare{::open("/dev/null", O_RDONLY | O_CLOEXEC)};
@@ -88,7 +109,7 @@ class VirtualBusServer {
     event.events = EPOLLIN;
     event.data.ptr = nullptr;
     if (!events || !spare || ::epoll_ctl(events.get(), EPOLL_CTL_ADD, socket->descriptor(), &event) < 0)
-      return VirtualBusSocket::failure(socket->path(), errno);
+      return host::LocalListener::failure(socket->path(), errno, service);
     if (options.raise_descriptor_limit) raise_limit();
     return std::unique_ptr<VirtualBusServer>(new VirtualBusServer(std::move(options), std::move(socket.value),
                                                                   std::move(events), std::move(spare)));
@@ -157,12 +178,13 @@ class VirtualBusServer {
     if (const auto valid = can::validate(frame); !valid) return valid;
     const virtual_bus::Record record = virtual_bus::to_record(frame, time + options_.to_unix_time);
     for (auto& client : clients_)
-      if (client->welcome) push(*client, record);
+      if (client->welcome) push(*client, {&record, 1});
     return {};
   }
 
  private:
   static constexpr std::size_t messages_at_once = 64;
+  static constexpr std::uint32_t most_faster = 255;
   static constexpr base::Duration accept_pause = std::chrono::milliseconds{100};
 
   struct Client {
@@ -179,6 +201,8 @@ class VirtualBusServer {
     std::vector<can::Filter> filters;
     std::vector<can::Filter> coming_filters;
     std::size_t missing_filters = 0;
+    bool fd = false;  ///< it knows CAN FD
+    virtual_bus::FdAssembly coming;
 
     /// Something waits for it.
     [[nodiscard]] bool owed() const noexcept { return output.size() != 0 || credit != 0 || lost != 0; }
@@ -198,13 +222,15 @@ class VirtualBusServer {
     std::size_t count = 0;
   };
 
-  VirtualBusServer(VirtualBusOptions options, VirtualBusSocket socket, host::Descriptor events,
+  static constexpr host::LocalService service{"a virtual bus", "a simulator", host::Cause::simulator_running};
+
+  VirtualBusServer(VirtualBusOptions options, host::LocalListener socket, host::Descriptor events,
                    host::Descriptor spare)
       : options_(std::move(options)),
         socket_(std::move(socket)),
         events_(std::move(events)),
         spare_(std::move(spare)),
-        arbiter_(options_.bit_rate, options_.epoch),
+        arbiter_(options_.bit_rate, options_.epoch, options_.data_bit_rate / options_.bit_rate),
         buffer_(messages_at_once * virtual_bus::max_message) {
     options_.transmit_queue = std::clamp<std::size_t>(options_.transmit_queue, 1, UINT32_MAX);
     options_.output_queue = std::max<std::size_t>(options_.output_queue, 1);
@@ -226,6 +252,7 @@ class VirtualBusServer {
   // --- from the bus to the clients ---
 
   void distribute(const Delivery& delivery) {
+    if (delivery.fd != nullptr) return distribute_fd(delivery);
     const virtual_bus::Record record =
         virtual_bus::to_record(delivery.frame, delivery.time + options_.to_unix_time);
     for (auto& client : clients_) {
@@ -233,7 +260,22 @@ class VirtualBusServer {
       if (client->node == delivery.from)
         client->credit += delivery.sent ? 1 : 0;
       else if (passes(*client, delivery.frame))
-        push(*client, record);
+        push(*client, {&record, 1});
+    }
+  }
+
+  void distribute_fd(const Delivery& delivery) {
+    const auto records = virtual_bus::to_fd_records(*delivery.fd, delivery.time + options_.to_unix_time);
+    for (auto& client : clients_) {
+      if (!client->welcome || client->gone) continue;
+      if (client->node == delivery.from)
+        client->credit += delivery.sent ? 1 : 0;
+      else if (!passes(*client, delivery.frame))
+        continue;
+      else if (client->fd)
+        push(*client, records.all());
+      else
+        ++counters_.fd_withheld;
     }
   }
 
@@ -242,7 +284,8 @@ class VirtualBusServer {
     for (auto& client : clients_) {
       if (!client->welcome || client->gone) continue;
       const can::Frame frame = error_report(arbiter_.faults(client->node), client->node == error.sender);
-      push(*client, virtual_bus::to_record(frame, error.time + options_.to_unix_time));
+      const virtual_bus::Record record = virtual_bus::to_record(frame, error.time + options_.to_unix_time);
+      push(*client, {&record, 1});
     }
   }
 
@@ -252,8 +295,9 @@ class VirtualBusServer {
                        [&](const can::Filter& filter) { return filter.accepts(frame); });
   }
 
-  void push(Client& client, const virtual_bus::Record& record) {
-    if (client.deaf || client.output.push(record, options_.output_queue)) return;
+  /// The records of one frame.
+  void push(Client& client, std::span<const virtual_bus::Record> records) {
+    if (client.deaf || client.output.push(records, options_.output_queue)) return;
     ++client.lost;
     ++counters_.overruns;
   }
@@ -362,9 +406,22 @@ class VirtualBusServer {
         return refuse(client, {.reason = Reason::no_hello, .detail = number});
       if (hello.version != virtual_bus::version)
         return refuse(client, {.reason = Reason::bad_version, .detail = hello.version});
+      client.fd = hello.fd != 0;
       return welcome(client);
     }
+    if (client.coming.waits() && type != Type::fd_data)
+      return refuse(client, {.reason = Reason::torn_fd_frame, .detail = number});
     switch (type) {
+      case Type::fd_frame:
+      case Type::fd_data: {
+        if (!client.fd) break;
+        const auto whole = client.coming.take(record);
+        if (!whole) return refuse(client, whole.error);
+        if (!*whole) return;
+        const auto taken = arbiter_.send_any(client.node, client.coming.frame(), now);
+        if (!taken || !*taken) refuse(client, {.reason = Reason::no_credit});
+        return;
+      }
       case Type::frame: {
         const auto frame = virtual_bus::decode(virtual_bus::from_record<virtual_bus::FrameRecord>(record));
         if (!frame) return refuse(client, frame.error);
@@ -408,6 +465,7 @@ class VirtualBusServer {
     client.welcome = true;
     client.node = arbiter_.attach({QueueOrder::fifo, options_.transmit_queue});
     virtual_bus::Hello hello;
+    hello.fd = static_cast<std::uint8_t>(arbiter_.data_factor());
     hello.bit_rate = options_.bit_rate;
     hello.credit = static_cast<std::uint32_t>(options_.transmit_queue);
     std::copy_n(options_.name.begin(), std::min(options_.name.size(), hello.name.size() - 1),
@@ -435,15 +493,16 @@ class VirtualBusServer {
 
   void report(const Client& client, const virtual_bus::Goodbye& goodbye) const {
     if (options_.report)
-      options_.report("a client" + virtual_bus::process_text(client.peer) +
+      options_.report("a client" + host::process_text(client.peer) +
                       " was disconnected: " + virtual_bus::describe(goodbye));
   }
 
   /// The last message: the frames that still wait are lost to the client, and it is told how many. It gets
   /// through to a client whose socket is full, because the socket is made larger for it.
   void dismiss(Client& client, const virtual_bus::Goodbye& goodbye) {
-    client.lost += client.output.size();
-    counters_.overruns += client.output.size();
+    const std::uint64_t unread = frames_in(client.output);
+    client.lost += unread;
+    counters_.overruns += unread;
     client.output.clear();
     Accounts accounts{client};
     accounts.records[accounts.count++] = to_record(goodbye);
@@ -455,6 +514,15 @@ class VirtualBusServer {
       if (::send(client.socket.get(), accounts.records.data(), size, MSG_DONTWAIT | MSG_NOSIGNAL) >= 0)
         return;
     }
+  }
+
+  /// A frame of CAN FD whose first record is on its way counts, too: without
+  /// its rest it is lost.
+  [[nodiscard]] static std::uint64_t frames_in(const RecordQueue& queue) noexcept {
+    std::uint64_t frames = 0;
+    for (std::size_t i = 0; i < queue.size(); ++i)
+      if (i == 0 || virtual_bus::type_of(queue[i]) != virtual_bus::Type::fd_data) ++frames;
+    return frames;
   }
 
   // --- connections ---
@@ -495,7 +563,7 @@ class VirtualBusServer {
         accept_again_ = now + accept_pause;
         return;
       }
-      client->peer = virtual_bus::peer_of(client->socket.get());
+      client->peer = host::peer_of(client->socket.get());
       if (!client->peer || client->peer->uid != ::geteuid()) {
         refuse(*client, {.reason = virtual_bus::Reason::other_user,
                          .detail = client->peer ? client->peer->uid : UINT32_MAX});
@@ -527,7 +595,7 @@ class VirtualBusServer {
     client.socket = accept_one();
     const Turned turned = client.socket ? Turned::away : errno == EAGAIN ? Turned::none : Turned::failed;
     if (turned == Turned::away) {
-      client.peer = virtual_bus::peer_of(client.socket.get());
+      client.peer = host::peer_of(client.socket.get());
       report(client, {.reason = virtual_bus::Reason::full});
       dismiss(client, {.reason = virtual_bus::Reason::full});
     }
@@ -537,7 +605,7 @@ class VirtualBusServer {
   }
 
   VirtualBusOptions options_;
-  VirtualBusSocket socket_;
+  host::LocalListener socket_;
   host::Descriptor events_;
   host::Descriptor spare_;
   Arbiter arbiter_;

@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "ocm/base/result.hpp"
 #include "ocm/base/time.hpp"
+#include "ocm/can/any_frame.hpp"
 #include "ocm/can/bus.hpp"
 #include "ocm/can/filter.hpp"
 #include "ocm/can/frame.hpp"
@@ -24,6 +26,14 @@ struct BusCounters {
   std::uint64_t lost = 0;          ///< frames that were on the bus and never reached this reader
   std::uint64_t refused = 0;       ///< sends that the queue had no room for (each retry counts)
   std::uint64_t error_frames = 0;  ///< reports of the CAN controller among the received
+  std::uint64_t passed_over = 0;   ///< CAN FD frames that came while `receive` was asked, not `receive_any`
+};
+
+/// As can::Received, of either kind.
+struct ReceivedAny {
+  base::Time time{};
+  can::AnyFrame frame{};
+  friend constexpr bool operator==(const ReceivedAny&, const ReceivedAny&) = default;
 };
 
 /// Whether the bus can carry frames now.
@@ -39,6 +49,7 @@ struct Delivery {
   bool known = false;         ///< whether the bus can tell; if not, `pending` says nothing
   std::uint64_t pending = 0;  ///< frames that were taken and have not left, as far as the bus knows
   Failure obstruction{};      ///< why nothing can leave now; empty: nothing is known to be in the way
+  bool refused = false;       ///< the obstruction is a decision, which waiting does not change
 };
 
 /// A bus as a host program sees it. Satisfies can::Bus.
@@ -58,6 +69,23 @@ class Bus {
   /// Waits at most `timeout` (zero: not at all) for a frame. Frames are stamped by the bus (Unix time).
   /// Error::timed_out also comes early, when a signal was caught or `state` has changed.
   virtual base::Result<can::Received> receive(base::Duration timeout) = 0;
+  /// `send`, of a frame of either kind. Error::bad_length, too, of a CAN FD frame that this bus cannot carry:
+  /// `fd_obstacle` says why.
+  virtual base::Result<bool> send_any(const can::AnyFrame& frame) {
+    if (const auto classic = frame.classic()) return send(*classic);
+    return base::Error::bad_length;
+  }
+  /// `receive`, of frames of either kind: that one passes over CAN FD frames, and counts them.
+  virtual base::Result<ReceivedAny> receive_any(base::Duration timeout) {
+    const auto received = receive(timeout);
+    if (!received) return received.error;
+    return ReceivedAny{received->time, received->frame};
+  }
+  /// Why this bus carries no CAN FD frame now; empty: it does.
+  [[nodiscard]] virtual Failure fd_obstacle() const {
+    return {"'" + std::string(name()) + "' carries no CAN FD frames",
+            "use a CAN interface in FD mode, or the simulated bus"};
+  }
   /// Only frames that pass one of the filters are received from now on (none: all). Error frames always are.
   virtual Outcome<void> subscribe(std::span<const can::Filter> filters) = 0;
   /// To poll for input once `receive(zero)` has answered Error::timed_out: until then frames may wait inside

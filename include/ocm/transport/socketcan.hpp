@@ -1,7 +1,7 @@
 /// A CAN interface of Linux (can0, vcan0, slcan0, ...) as a bus: one CAN_RAW socket. Host only.
 ///
 /// - Every frame on the interface is seen, also those that other programs on this machine send; not our own.
-///   CAN FD frames are not: the kernel keeps them from a socket that did not ask for them.
+/// - CAN FD frames too, where the interface carries them (its MTU is 72, and not 16).
 /// - Frames carry the kernel's receive time in nanoseconds (Unix time), taken when the driver handed them
 ///   over.
 /// - Up to 64 frames are read with one system call.
@@ -32,8 +32,10 @@
 #include <sys/socket.h>
 #include <sys/uio.h>
 #include <time.h>
+#include <type_traits>
 #include <vector>
 
+#include "ocm/can/any_frame.hpp"
 #include "ocm/can/text.hpp"
 #include "ocm/host/descriptor.hpp"
 #include "ocm/host/system_time.hpp"
@@ -68,6 +70,30 @@ namespace ocm::transport {
   if (can::is_remote(frame.format)) raw.can_id |= CAN_RTR_FLAG;
   if (frame.format == can::Format::error) raw.can_id |= CAN_ERR_FLAG;
   raw.can_dlc = frame.dlc;
+  std::copy(frame.bytes().begin(), frame.bytes().end(), std::begin(raw.data));
+  return raw;
+}
+
+/// A CAN FD frame as the kernel writes it. A length that there is not becomes the next that there is, with
+/// zeros.
+[[nodiscard]] inline can::AnyFrame from_socketcan(const canfd_frame& raw) noexcept {
+  can::AnyFrame frame;
+  const bool extended = (raw.can_id & CAN_EFF_FLAG) != 0;
+  frame.id = raw.can_id & (extended ? CAN_EFF_MASK : CAN_SFF_MASK);
+  frame.format = extended ? can::Format::extended : can::Format::base;
+  frame.flags = static_cast<std::uint8_t>((raw.flags & (CANFD_BRS | CANFD_ESI)) | can::frame_flag::fd);
+  const std::uint8_t given = std::min(raw.len, can::max_fd_length);
+  frame.length = can::fd_length(can::fd_dlc(given));
+  std::copy_n(std::begin(raw.data), given, frame.data.begin());
+  return frame;
+}
+
+/// The other way, of a CAN FD frame. `frame` must be valid (can::validate).
+[[nodiscard]] inline canfd_frame to_socketcan_fd(const can::AnyFrame& frame) noexcept {
+  canfd_frame raw{};
+  raw.can_id = frame.id | (can::is_extended(frame.format) ? CAN_EFF_FLAG : 0);
+  raw.len = frame.length;
+  raw.flags = static_cast<__u8>(frame.flags & (CANFD_BRS | CANFD_ESI));
   std::copy(frame.bytes().begin(), frame.bytes().end(), std::begin(raw.data));
   return raw;
 }
@@ -143,6 +169,19 @@ class DropCounter {
           "sudo ip link set " + std::string(name) + " up" + (has_bit_rate ? " type can bitrate 500000" : "")};
 }
 
+/// An interface whose frames have room for eight bytes: CAN FD is off there.
+[[nodiscard]] inline Failure no_fd_failure(std::string_view name, std::span<const CanInterface> existing) {
+  const auto found = std::find_if(existing.begin(), existing.end(),
+                                  [name](const CanInterface& interface) { return interface.name == name; });
+  const bool is_virtual = found != existing.end() && (found->kind == "vcan" || found->kind == "vxcan");
+  const std::string link = "sudo ip link set " + std::string(name);
+  return {
+      "interface '" + std::string(name) + "' carries no CAN FD frames: its MTU is 16, and not 72",
+      link + " down; " + link +
+          (is_virtual ? " mtu 72; " + link + " up"
+                      : " up type can bitrate 500000 dbitrate 2000000 fd on, if its controller has CAN FD")};
+}
+
 [[nodiscard]] inline Failure gone_failure(std::string_view name) {
   return {"interface '" + std::string(name) + "' is gone: unplugged or deleted",
           "plug it in, bring it up (sudo ip link set " + std::string(name) +
@@ -206,67 +245,32 @@ class SocketCan final : public Bus {
     if (frame.format == can::Format::error) return base::Error::bad_identifier;  // nothing for the wire
     if (const auto valid = can::validate(frame); !valid) return valid.error;
     const can_frame raw = to_socketcan(frame);
-    for (;;) {
-      if (::send(socket_.get(), &raw, sizeof raw, MSG_DONTWAIT | MSG_NOSIGNAL) == sizeof raw) {
-        ++counters_.sent;
-        state_ = BusState::up;
-        return true;
-      }
-      switch (errno) {
-        case EINTR:
-          continue;
-        case EAGAIN:
-        case ENOBUFS:
-        case ENOMEM:
-          ++counters_.refused;
-          return false;
-        default:
-          break;
-      }
-      if (lose("send on", errno) == BusState::closed) return base::Error::closed;
-      ++counters_.refused;
-      return false;
-    }
+    return hand_over(&raw, sizeof raw);
+  }
+
+  /// A CAN FD frame for an interface without CAN FD is refused with Error::bad_length.
+  base::Result<bool> send_any(const can::AnyFrame& frame) override {
+    if (const auto classic = frame.classic()) return send(*classic);
+    if (state_ == BusState::closed) return base::Error::closed;
+    if (const auto valid = can::validate(frame); !valid) return valid.error;
+    const canfd_frame raw = to_socketcan_fd(frame);
+    return hand_over(&raw, sizeof raw);
+  }
+
+  /// Asks the kernel: the interface may have been set up anew.
+  [[nodiscard]] Failure fd_obstacle() const override {
+    if (mtu() == CANFD_MTU || state_ == BusState::closed) return {};
+    return detail::no_fd_failure(name_, can_interfaces());
   }
 
   /// A signal that is caught while this waits ends it with Error::timed_out; one that comes just before does
   /// not, so wait no longer than the signal may take. When the interface goes down or comes back the same
   /// error comes at once, and `state` has changed; while it is down it is looked at every 50 ms.
   base::Result<can::Received> receive(base::Duration timeout) override {
-    can::Received received;
-    if (take(received)) return received;
-    const auto begin = std::chrono::steady_clock::now();
-    for (;;) {
-      const bool was_closed = state_ == BusState::closed;
-      switch (fill()) {
-        case Filled::frames:
-          if (take(received)) return received;
-          continue;
-        case Filled::changed:
-          if (state_ != BusState::closed) return base::Error::timed_out;
-          if (!was_closed)
-            continue;  // the kernel tells of the end first; what waits in the queue still counts
-          return base::Error::closed;
-        case Filled::interrupted:
-          return base::Error::timed_out;
-        case Filled::nothing:
-          read_drops();
-          if (state_ == BusState::closed) return base::Error::closed;
-          break;
-      }
-      if (state_ == BusState::down) {
-        const BusState now = interface_state(socket_.get(), index_);
-        if (now == BusState::closed) return close(detail::gone_failure(name_));
-        if (now == BusState::up) {
-          state_ = BusState::up;
-          return base::Error::timed_out;
-        }
-      }
-      base::Duration rest = timeout - (std::chrono::steady_clock::now() - begin);
-      if (timeout <= base::Duration::zero() || rest <= base::Duration::zero()) return base::Error::timed_out;
-      if (state_ == BusState::down) rest = std::min(rest, look_while_down);
-      if (!wait(rest)) return base::Error::timed_out;
-    }
+    return receive_next<can::Received>(timeout);
+  }
+  base::Result<ReceivedAny> receive_any(base::Duration timeout) override {
+    return receive_next<ReceivedAny>(timeout);
   }
 
   /// The kernel filters: what does not pass costs this process nothing. At most 512 filters. Frames that
@@ -321,7 +325,7 @@ class SocketCan final : public Bus {
 
   /// Where recvmmsg puts one frame and what comes with it.
   struct Slot {
-    can_frame frame{};
+    canfd_frame frame{};  ///< a classic frame fills the first 16 bytes
     iovec place{};
     alignas(cmsghdr) std::array<std::byte, control_size> control{};
   };
@@ -334,6 +338,85 @@ class SocketCan final : public Bus {
       messages_[i].msg_hdr.msg_iov = &slot.place;
       messages_[i].msg_hdr.msg_iovlen = 1;
       messages_[i].msg_hdr.msg_control = slot.control.data();
+    }
+  }
+
+  /// `receive` and `receive_any`.
+  template <class R>
+  base::Result<R> receive_next(base::Duration timeout) {
+    R received;
+    if (take(received)) return received;
+    const auto begin = std::chrono::steady_clock::now();
+    for (;;) {
+      const bool was_closed = state_ == BusState::closed;
+      switch (fill()) {
+        case Filled::frames:
+          if (take(received)) return received;
+          continue;
+        case Filled::changed:
+          if (state_ != BusState::closed) return base::Error::timed_out;
+          if (!was_closed)
+            continue;  // the kernel tells of the end first; what waits in the queue still counts
+          return base::Error::closed;
+        case Filled::interrupted:
+          return base::Error::timed_out;
+        case Filled::nothing:
+          read_drops();
+          if (state_ == BusState::closed) return base::Error::closed;
+          break;
+      }
+      if (state_ == BusState::down) {
+        const BusState now = interface_state(socket_.get(), index_);
+        if (now == BusState::closed) return close(detail::gone_failure(name_));
+        if (now == BusState::up) {
+          state_ = BusState::up;
+          return base::Error::timed_out;
+        }
+      }
+      base::Duration rest = timeout - (std::chrono::steady_clock::now() - begin);
+      if (timeout <= base::Duration::zero() || rest <= base::Duration::zero()) return base::Error::timed_out;
+      if (state_ == BusState::down) rest = std::min(rest, look_while_down);
+      if (!wait(rest)) return base::Error::timed_out;
+    }
+  }
+
+  /// Of the interface, by index; 0 where it is gone.
+  [[nodiscard]] int mtu() const noexcept {
+    ifreq request{};
+    request.ifr_ifindex = index_;
+    const int socket = socket_.get();
+    return ::ioctl(socket, SIOCGIFNAME, &request) == 0 && ::ioctl(socket, SIOCGIFMTU, &request) == 0
+               ? request.ifr_mtu
+               : 0;
+  }
+
+  /// To the kernel: can_frame or canfd_frame.
+  base::Result<bool> hand_over(const void* raw, std::size_t size) {
+    for (;;) {
+      if (::send(socket_.get(), raw, size, MSG_DONTWAIT | MSG_NOSIGNAL) == static_cast<ssize_t>(size)) {
+        ++counters_.sent;
+        state_ = BusState::up;
+        return true;
+      }
+      const int error = errno;
+      switch (error) {
+        case EINTR:
+          continue;
+        case EAGAIN:
+        case ENOBUFS:
+        case ENOMEM:
+          ++counters_.refused;
+          return false;
+        case EINVAL:  // what the kernel answers to 72 bytes where the interface has room for 16
+        case EMSGSIZE:
+          if (size == CANFD_MTU && mtu() == CAN_MTU) return base::Error::bad_length;
+          break;
+        default:
+          break;
+      }
+      if (lose("send on", error) == BusState::closed) return base::Error::closed;
+      ++counters_.refused;
+      return false;
     }
   }
 
@@ -359,8 +442,9 @@ class SocketCan final : public Bus {
     };
     const can_err_mask_t all_errors = CAN_ERR_MASK;
     const int on = 1;
-    if (!set(SOL_CAN_RAW, CAN_RAW_ERR_FILTER, all_errors) || !set(SOL_SOCKET, SO_TIMESTAMPNS, on) ||
-        !set(SOL_SOCKET, SO_RXQ_OVFL, on))
+    // Also where the interface has no CAN FD now: it may be set up anew while this socket is open.
+    if (!set(SOL_CAN_RAW, CAN_RAW_ERR_FILTER, all_errors) || !set(SOL_CAN_RAW, CAN_RAW_FD_FRAMES, on) ||
+        !set(SOL_SOCKET, SO_TIMESTAMPNS, on) || !set(SOL_SOCKET, SO_RXQ_OVFL, on))
       return errno;
     if (!set(SOL_SOCKET, SO_RCVBUFFORCE, options.receive_buffer_bytes) &&
         !set(SOL_SOCKET, SO_RCVBUF, options.receive_buffer_bytes))
@@ -396,16 +480,29 @@ class SocketCan final : public Bus {
     return Filled::changed;
   }
 
-  /// The next frame of the batch, if one is left.
-  [[nodiscard]] bool take(can::Received& received) {
+  /// The next frame of the batch that is of the wanted kind, if one is left.
+  template <class R>
+  [[nodiscard]] bool take(R& received) {
     while (next_ < filled_) {
       const std::size_t i = next_++;
-      received.frame = from_socketcan(slots_[i].frame);
       received.time = base::Time::min();
       read_control(messages_[i].msg_hdr, received.time);
       if (received.time == base::Time::min()) received.time = unix_time();
+      if (messages_[i].msg_len == CANFD_MTU) {
+        if constexpr (std::is_same_v<R, ReceivedAny>) {
+          received.frame = from_socketcan(slots_[i].frame);
+        } else {
+          ++counters_.passed_over;
+          continue;
+        }
+      } else {
+        can_frame raw;
+        std::memcpy(&raw, &slots_[i].frame, sizeof raw);
+        received.frame = from_socketcan(raw);
+      }
       const bool error = received.frame.format == can::Format::error;
-      if (!error && received.time <= filtered_since_ && !passes(received.frame)) continue;
+      if (!error && received.time <= filtered_since_ && !passes(received.frame.id, received.frame.format))
+        continue;
       ++counters_.received;
       if (error) ++counters_.error_frames;
       return true;
@@ -413,9 +510,10 @@ class SocketCan final : public Bus {
     return false;
   }
 
-  [[nodiscard]] bool passes(const can::Frame& frame) const noexcept {
-    return filters_.empty() || std::any_of(filters_.begin(), filters_.end(),
-                                           [&](const can::Filter& filter) { return filter.accepts(frame); });
+  [[nodiscard]] bool passes(std::uint32_t id, can::Format format) const noexcept {
+    return filters_.empty() || std::any_of(filters_.begin(), filters_.end(), [&](const can::Filter& filter) {
+             return filter.accepts(id, format);
+           });
   }
 
   void read_control(msghdr& message, base::Time& time) noexcept {

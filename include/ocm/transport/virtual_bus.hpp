@@ -14,15 +14,20 @@
 #include <chrono>
 #include <cstdint>
 #include <cstring>
+#include <deque>
 #include <memory>
 #include <poll.h>
+#include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "ocm/can/any_frame.hpp"
 #include "ocm/can/filter.hpp"
 #include "ocm/host/descriptor.hpp"
+#include "ocm/host/local_socket.hpp"
 #include "ocm/host/system_time.hpp"
 #include "ocm/transport/bus.hpp"
 #include "ocm/transport/virtual_bus_protocol.hpp"
@@ -36,7 +41,7 @@ class VirtualBus final : public Bus {
       std::string path = {}, base::Duration patience = std::chrono::seconds{2}) {
     std::string name = path.empty() ? "sim" : "sim:" + path;
     if (path.empty()) path = virtual_bus::default_path();
-    const auto address = virtual_bus::to_address(path);
+    const auto address = host::to_address(path);
     if (!address) return address.error;
     host::Descriptor socket{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0)};
     if (!socket) return connect_failure(path, errno);
@@ -45,7 +50,7 @@ class VirtualBus final : public Bus {
     ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);
     while (::connect(socket.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) < 0)
       if (errno != EINTR) return connect_failure(path, errno);
-    const auto peer = virtual_bus::peer_of(socket.get());
+    const auto peer = host::peer_of(socket.get());
     if (!peer || peer->uid != ::geteuid())
       return Failure{"the simulator on '" + path + "' belongs to another user" +
                          (peer ? " (uid " + std::to_string(peer->uid) + ")" : ""),
@@ -57,16 +62,16 @@ class VirtualBus final : public Bus {
   [[nodiscard]] static Outcome<std::unique_ptr<VirtualBus>> on(host::Descriptor socket, std::string name,
                                                                const std::string& path,
                                                                base::Duration patience) {
-    const auto peer = virtual_bus::peer_of(socket.get());
+    const auto peer = host::peer_of(socket.get());
     std::unique_ptr<VirtualBus> bus{
-        new VirtualBus(std::move(socket), std::move(name), path, virtual_bus::process_text(peer))};
+        new VirtualBus(std::move(socket), std::move(name), path, host::process_text(peer))};
     if (auto problem = bus->greet(patience)) return std::move(*problem);
     return bus;
   }
 
   /// Whether a server listens on the default path, or on `path`. Waits for nothing.
   [[nodiscard]] static bool running(const std::string& path = virtual_bus::default_path()) {
-    const auto address = virtual_bus::to_address(path);
+    const auto address = host::to_address(path);
     const host::Descriptor socket{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
     if (!address || !socket) return false;
     return ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) == 0 ||
@@ -89,6 +94,9 @@ class VirtualBus final : public Bus {
   [[nodiscard]] std::string_view bus_name() const noexcept { return bus_name_; }
   /// bit/s
   [[nodiscard]] std::uint32_t bit_rate() const noexcept override { return bit_rate_; }
+  /// Of the data of CAN FD frames with bit-rate switch, bit/s; 0: the server
+  /// does not know CAN FD.
+  [[nodiscard]] std::uint32_t data_bit_rate() const noexcept { return data_factor_ * bit_rate_; }
   /// Frames that `send` takes before it has to hear from the server.
   [[nodiscard]] std::uint64_t credit() const noexcept { return credit_; }
 
@@ -98,36 +106,31 @@ class VirtualBus final : public Bus {
     if (closed()) return base::Error::closed;
     if (frame.format == can::Format::error) return base::Error::bad_identifier;
     if (const auto valid = can::validate(frame); !valid) return valid.error;
-    // Credit comes first in a message, but many messages may wait before that.
-    while (credit_ == 0 && fill()) {
-    }
     const virtual_bus::Record record = virtual_bus::to_record(frame);
-    if (credit_ != 0 && write(&record, 1)) {
-      --credit_;
-      ++counters_.sent;
-      return true;
-    }
+    return hand_over({&record, 1});
+  }
+  base::Result<bool> send_any(const can::AnyFrame& frame) override {
+    if (const auto classic = frame.classic()) return send(*classic);
     if (closed()) return base::Error::closed;
-    ++counters_.refused;
-    return false;
+    if (const auto valid = can::validate(frame); !valid) return valid.error;
+    if (data_factor_ == 0) return base::Error::bad_length;
+    return hand_over(virtual_bus::to_fd_records(frame).all());
+  }
+  [[nodiscard]] Failure fd_obstacle() const override {
+    if (data_factor_ != 0 || ended_) return {};
+    return {"the simulator" + process_ + " on '" + path_ +
+                "' carries no CAN FD frames: it is of an earlier version",
+            "start it again, of the version of this program"};
   }
 
   /// A signal that is caught while this waits ends it at once with Error::timed_out; one that comes just
   /// before does not, so wait no longer than the signal may take. After the end of the server the frames that
   /// still waited come first, then Error::closed.
   base::Result<can::Received> receive(base::Duration timeout) override {
-    can::Received received;
-    if (take(received)) return received;
-    const auto begin = std::chrono::steady_clock::now();
-    for (;;) {
-      if (closed()) return base::Error::closed;
-      const bool filled = fill();
-      if (take(received)) return received;
-      if (filled) continue;
-      if (timeout <= base::Duration::zero()) return base::Error::timed_out;
-      const base::Duration rest = timeout - (std::chrono::steady_clock::now() - begin);
-      if (rest <= base::Duration::zero() || !wait(POLLIN, rest)) return base::Error::timed_out;
-    }
+    return receive_next<can::Received>(timeout);
+  }
+  base::Result<ReceivedAny> receive_any(base::Duration timeout) override {
+    return receive_next<ReceivedAny>(timeout);
   }
 
   /// The server filters, so that what does not pass costs this process nothing. At most 512 filters. May wait
@@ -188,6 +191,38 @@ class VirtualBus final : public Bus {
     }
   }
 
+  /// A frame, as records. Credit comes first in a message, but many messages
+  /// may wait before that.
+  base::Result<bool> hand_over(std::span<const virtual_bus::Record> records) {
+    while (credit_ == 0 && fill()) {
+    }
+    if (credit_ != 0 && write(records.data(), records.size())) {
+      --credit_;
+      ++counters_.sent;
+      return true;
+    }
+    if (closed()) return base::Error::closed;
+    ++counters_.refused;
+    return false;
+  }
+
+  /// `receive` and `receive_any`.
+  template <class R>
+  base::Result<R> receive_next(base::Duration timeout) {
+    R received;
+    if (take(received)) return received;
+    const auto begin = std::chrono::steady_clock::now();
+    for (;;) {
+      if (closed()) return base::Error::closed;
+      const bool filled = fill();
+      if (take(received)) return received;
+      if (filled) continue;
+      if (timeout <= base::Duration::zero()) return base::Error::timed_out;
+      const base::Duration rest = timeout - (std::chrono::steady_clock::now() - begin);
+      if (rest <= base::Duration::zero() || !wait(POLLIN, rest)) return base::Error::timed_out;
+    }
+  }
+
   [[nodiscard]] static std::string stuck_remedy(const std::string& path) {
     return "it may be stopped (Ctrl-Z): continue it (fg) or end it; `fuser " + path + "` names its process";
   }
@@ -217,7 +252,7 @@ class VirtualBus final : public Bus {
 
   /// Says hello and waits for the answer.
   [[nodiscard]] std::optional<Failure> greet(base::Duration patience) {
-    const virtual_bus::Record hello = to_record(virtual_bus::Hello{});
+    const virtual_bus::Record hello = to_record(virtual_bus::Hello{.fd = 1});
     bool said = write(&hello, 1);
     const auto give_up = std::chrono::steady_clock::now() + patience;
     while (bit_rate_ == 0 && !ended_) {
@@ -300,10 +335,18 @@ class VirtualBus final : public Bus {
     if (type != Type::goodbye && greeted == (type == Type::hello)) return end(not_understood());
     switch (type) {
       case Type::frame: {
+        if (coming_.waits()) return end(not_understood());
         const auto content = virtual_bus::from_record<virtual_bus::FrameRecord>(record);
         const auto frame = virtual_bus::decode(content);
         if (!frame) return end(not_understood());
-        keep({base::Time{base::Duration{content.time_ns}}, *frame});
+        keep({{base::Time{base::Duration{content.time_ns}}, *frame}, false});
+        return;
+      }
+      case Type::fd_frame:
+      case Type::fd_data: {
+        const auto whole = coming_.take(record);
+        if (!whole) return end(not_understood());
+        if (*whole) keep({{coming_.time(), {}}, true}, &coming_.frame());
         return;
       }
       case Type::credit: {
@@ -322,6 +365,7 @@ class VirtualBus final : public Bus {
         if (hello.magic != virtual_bus::magic || hello.version != virtual_bus::version || hello.bit_rate == 0)
           return end(not_understood());
         bit_rate_ = hello.bit_rate;
+        data_factor_ = hello.fd;
         credit_ = granted_ = hello.credit;
         bus_name_.assign(hello.name.data(), ::strnlen(hello.name.data(), hello.name.size()));
         return;
@@ -333,7 +377,13 @@ class VirtualBus final : public Bus {
     end(not_understood());
   }
 
-  void keep(const can::Received& received) {
+  /// A frame that was read; the data of CAN FD ones are in a list of their own.
+  struct Kept {
+    can::Received classic;
+    bool fd = false;
+  };
+
+  void keep(const Kept& kept, const can::AnyFrame* fd = nullptr) {
     if (next_ == inbox_.size() || inbox_.size() == max_inbox) {
       inbox_.erase(inbox_.begin(), inbox_.begin() + static_cast<std::ptrdiff_t>(next_));
       next_ = 0;
@@ -342,25 +392,44 @@ class VirtualBus final : public Bus {
       ++counters_.lost;
       return;
     }
-    inbox_.push_back(received);
+    inbox_.push_back(kept);
+    if (fd != nullptr) fd_inbox_.push_back(*fd);
   }
 
-  /// The next frame that was read and passes the filters: what the server sent before it knew them does not.
-  [[nodiscard]] bool take(can::Received& received) {
+  /// The next frame of the wanted kind that was read and passes the filters:
+  /// what the server sent before it knew them does not.
+  template <class R>
+  [[nodiscard]] bool take(R& received) {
     while (next_ < inbox_.size()) {
-      received = inbox_[next_++];
-      const bool error = received.frame.format == can::Format::error;
-      if (!error && !passes(received.frame)) continue;
+      const Kept& kept = inbox_[next_++];
+      received.time = kept.classic.time;
+      if (kept.fd) {
+        const can::AnyFrame frame = fd_inbox_.front();
+        fd_inbox_.pop_front();
+        if (!passes(frame.id, frame.format)) continue;
+        if constexpr (std::is_same_v<R, ReceivedAny>) {
+          received.frame = frame;
+        } else {
+          ++counters_.passed_over;
+          continue;
+        }
+      } else {
+        const can::Frame& frame = kept.classic.frame;
+        const bool error = frame.format == can::Format::error;
+        if (!error && !passes(frame.id, frame.format)) continue;
+        if (error) ++counters_.error_frames;
+        received.frame = frame;
+      }
       ++counters_.received;
-      if (error) ++counters_.error_frames;
       return true;
     }
     return false;
   }
 
-  [[nodiscard]] bool passes(const can::Frame& frame) const noexcept {
-    return filters_.empty() || std::any_of(filters_.begin(), filters_.end(),
-                                           [&](const can::Filter& filter) { return filter.accepts(frame); });
+  [[nodiscard]] bool passes(std::uint32_t id, can::Format format) const noexcept {
+    return filters_.empty() || std::any_of(filters_.begin(), filters_.end(), [&](const can::Filter& filter) {
+             return filter.accepts(id, format);
+           });
   }
 
   // --- the end ---
@@ -411,6 +480,7 @@ class VirtualBus final : public Bus {
   std::string process_;
   std::string bus_name_;
   std::uint32_t bit_rate_ = 0;
+  std::uint32_t data_factor_ = 0;  ///< of the data of CAN FD frames; 0: the server does not know them
   std::uint64_t credit_ = 0;
   std::uint64_t granted_ = 0;  ///< credit when nothing is under way
   bool ended_ = false;         ///< nothing more comes from the server; frames may still wait in the inbox
@@ -418,7 +488,9 @@ class VirtualBus final : public Bus {
   Failure failure_;            ///< the same, once the caller knows it
   BusCounters counters_;
   std::vector<can::Filter> filters_;
-  std::vector<can::Received> inbox_;
+  std::vector<Kept> inbox_;
+  std::deque<can::AnyFrame> fd_inbox_;  ///< those of the inbox that were not taken
+  virtual_bus::FdAssembly coming_;
   std::size_t next_ = 0;  ///< in the inbox
   std::vector<std::byte> buffer_;
   std::array<iovec, messages_at_once> places_{};

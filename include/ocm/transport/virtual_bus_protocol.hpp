@@ -4,6 +4,10 @@
 ///
 /// A message of the SOCK_SEQPACKET socket is 1 to 128 records of 32 bytes. The client opens with `hello`, the
 /// server answers with its own or with `goodbye`. Hello and goodbye keep their layout in every version.
+///
+/// CAN FD came later, within version 1: who knows it says so in its hello, where others say zero. A CAN FD
+/// frame is a record `fd_frame` with up to 16 bytes of its data and as many records `fd_data` as the rest
+/// needs. They follow each other, but for credit and overrun between them.
 #pragma once
 
 #include <algorithm>
@@ -13,13 +17,13 @@
 #include <cstdint>
 #include <cstring>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
-#include <sys/socket.h>
-#include <sys/un.h>
 
 #include "ocm/base/text.hpp"
 #include "ocm/base/time.hpp"
+#include "ocm/can/any_frame.hpp"
 #include "ocm/can/bus.hpp"
 #include "ocm/can/frame.hpp"
 #include "ocm/host/failure.hpp"
@@ -44,6 +48,8 @@ enum class Type : std::uint8_t {
   filters,    ///< client: so many filters follow, and replace those of before once all are there
   filter,     ///< client
   goodbye,    ///< server: why you are disconnected; client: send what waits, I leave
+  fd_frame,   ///< as frame, of CAN FD
+  fd_data,    ///< the rest of its data, in order
 };
 
 /// Why the server disconnects a client.
@@ -61,11 +67,17 @@ enum class Reason : std::uint8_t {
   bad_identifier,  ///< detail: identifier
   no_credit,       ///< more frames than the transmit queue has room for
   bad_filters,     ///< detail: how many; too many, or filters that were not announced
+  bad_fd_length,   ///< of a CAN FD frame; detail: length
+  bad_fd_flags,    ///< detail: flags
+  torn_fd_frame,   ///< detail: the type of record that came instead of the rest of a CAN FD frame
 };
 
 struct Hello {
   Type type = Type::hello;
-  std::array<std::uint8_t, 3> unused{};
+  /// 0: it does not know CAN FD. From a client 1; from a server how many times faster than the others the
+  /// bits of the data are.
+  std::uint8_t fd = 0;
+  std::array<std::uint8_t, 2> unused{};
   std::uint32_t magic = virtual_bus::magic;
   std::uint32_t version = virtual_bus::version;
   std::uint32_t bit_rate = 0;   ///< of the bus, bit/s; 0 from a client
@@ -82,6 +94,24 @@ struct FrameRecord {
   std::int64_t time_ns = 0;  ///< Unix time of the end of the frame; 0 from a client
   std::array<std::uint8_t, 8> data{};
   std::array<std::uint8_t, 8> unused_too{};
+};
+
+struct FdFrameRecord {
+  static constexpr std::size_t room = 16;
+  Type type = Type::fd_frame;
+  std::uint8_t format = 0;  ///< can::Format, base or extended
+  std::uint8_t length = 0;
+  std::uint8_t flags = 0;  ///< can::frame_flag
+  std::uint32_t id = 0;
+  std::int64_t time_ns = 0;  ///< as of a FrameRecord
+  std::array<std::uint8_t, room> data{};
+};
+
+struct FdDataRecord {
+  static constexpr std::size_t room = 24;
+  Type type = Type::fd_data;
+  std::array<std::uint8_t, 7> unused{};
+  std::array<std::uint8_t, room> data{};
 };
 
 /// credit, overrun, filters
@@ -145,6 +175,80 @@ template <class T>
   return frame;
 }
 
+inline constexpr std::size_t max_fd_records = 3;
+
+/// A CAN FD frame as records.
+struct FdRecords {
+  std::array<Record, max_fd_records> records{};
+  std::size_t count = 0;
+  [[nodiscard]] std::span<const Record> all() const noexcept { return std::span{records}.first(count); }
+};
+
+[[nodiscard]] constexpr FdRecords to_fd_records(const can::AnyFrame& frame, base::Time time = {}) noexcept {
+  FdFrameRecord first{.format = static_cast<std::uint8_t>(frame.format),
+                      .length = frame.length,
+                      .flags = frame.flags,
+                      .id = frame.id,
+                      .time_ns = time.time_since_epoch().count()};
+  std::copy_n(frame.data.begin(), first.room, first.data.begin());
+  FdRecords out;
+  out.records[out.count++] = to_record(first);
+  for (std::size_t at = first.room; at < frame.length; at += FdDataRecord::room) {
+    FdDataRecord more;
+    std::copy_n(frame.data.begin() + static_cast<std::ptrdiff_t>(at), more.room, more.data.begin());
+    out.records[out.count++] = to_record(more);
+  }
+  return out;
+}
+
+/// Puts CAN FD frames together from their records.
+class FdAssembly {
+ public:
+  /// Whether the rest of a frame is still to come.
+  [[nodiscard]] constexpr bool waits() const noexcept { return missing_ != 0; }
+  /// Takes `fd_frame`, or `fd_data` where one is waited for. true: the frame is whole.
+  [[nodiscard]] constexpr base::Result<bool, Goodbye> take(const Record& record) noexcept {
+    const auto refuse = [](Reason reason, std::uint64_t detail) {
+      return Goodbye{.reason = reason, .detail = detail};
+    };
+    if (type_of(record) == Type::fd_data && waits()) {
+      const auto more = from_record<FdDataRecord>(record);
+      const std::size_t size = std::min(missing_, more.room);
+      std::copy_n(more.data.begin(), size,
+                  frame_.data.begin() + static_cast<std::ptrdiff_t>(frame_.length - missing_));
+      missing_ -= size;
+      return !waits();
+    }
+    if (type_of(record) != Type::fd_frame || waits())
+      return refuse(Reason::torn_fd_frame, static_cast<std::uint64_t>(type_of(record)));
+    const auto first = from_record<FdFrameRecord>(record);
+    if (first.format > static_cast<std::uint8_t>(can::Format::extended))
+      return refuse(Reason::bad_format, first.format);
+    if (!can::is_fd_length(first.length)) return refuse(Reason::bad_fd_length, first.length);
+    frame_ = {};
+    frame_.id = first.id;
+    frame_.format = static_cast<can::Format>(first.format);
+    frame_.length = first.length;
+    frame_.flags = first.flags;
+    if ((first.flags & can::frame_flag::fd) == 0 || (first.flags & ~can::frame_flag::all) != 0)
+      return refuse(Reason::bad_fd_flags, first.flags);
+    if (!can::validate(frame_)) return refuse(Reason::bad_identifier, first.id);
+    time_ = base::Time{base::Duration{first.time_ns}};
+    const std::size_t size = std::min<std::size_t>(first.length, first.room);
+    std::copy_n(first.data.begin(), size, frame_.data.begin());
+    missing_ = first.length - size;
+    return !waits();
+  }
+  /// The last one, if it is whole.
+  [[nodiscard]] constexpr const can::AnyFrame& frame() const noexcept { return frame_; }
+  [[nodiscard]] constexpr base::Time time() const noexcept { return time_; }
+
+ private:
+  can::AnyFrame frame_;
+  base::Time time_{};
+  std::size_t missing_ = 0;  ///< bytes
+};
+
 /// What a disconnected client did, or what happened to it: "it sent a frame with DLC 200".
 [[nodiscard]] inline std::string describe(const Goodbye& goodbye) {
   const std::string detail = std::to_string(goodbye.detail);
@@ -178,6 +282,12 @@ template <class T>
       return "it sent more frames than its transmit queue has room for";
     case Reason::bad_filters:
       return "it sent filters that it had not announced, or more than 512 (" + detail + ")";
+    case Reason::bad_fd_length:
+      return "it sent a CAN FD frame of " + detail + " bytes, a length that such frames do not have";
+    case Reason::bad_fd_flags:
+      return "it sent a CAN FD frame with flags " + detail;
+    case Reason::torn_fd_frame:
+      return "it sent a part of a CAN FD frame alone (a record of type " + detail + ")";
   }
   return "reason " + std::to_string(static_cast<unsigned>(goodbye.reason));
 }
@@ -186,31 +296,6 @@ template <class T>
 
 [[nodiscard]] inline std::string default_path() {
   return host::user_directory() + "/sim.sock";
-}
-
-/// Paths are limited to 107 bytes by the kernel.
-[[nodiscard]] inline host::Outcome<sockaddr_un> to_address(const std::string& path) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  if (path.empty() || path.size() >= sizeof address.sun_path || path.find('\0') != std::string::npos)
-    return host::Failure{
-        "'" + path + "' cannot be the path of a socket: it has " + std::to_string(path.size()) + " bytes",
-        "use a path of 1 to " + std::to_string(sizeof address.sun_path - 1) + " bytes"};
-  std::copy(path.begin(), path.end(), std::begin(address.sun_path));
-  return address;
-}
-
-/// Who is at the other end of a connected socket: process and user as of connect or listen.
-[[nodiscard]] inline std::optional<ucred> peer_of(int socket) noexcept {
-  ucred peer{};
-  socklen_t size = sizeof peer;
-  if (::getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &peer, &size) < 0) return std::nullopt;
-  return peer;
-}
-
-/// " (process 1234)", or nothing when it is not known.
-[[nodiscard]] inline std::string process_text(const std::optional<ucred>& peer) {
-  return peer && peer->pid > 0 ? " (process " + std::to_string(peer->pid) + ")" : "";
 }
 
 }  // namespace ocm::transport::virtual_bus

@@ -318,6 +318,8 @@ def selected(message, signal, data):
     if signal.selector is None:
         return True
     by = message.signal(signal.selector)
+    if max(by.bits()) >= 8 * len(data):
+        return False
     return selected(message, by, data) and any(low <= dbc_bits.take(data, by.bits()) <= high for low, high in signal.ranges)
 
 

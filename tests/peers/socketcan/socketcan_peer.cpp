@@ -17,6 +17,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "ocm/can/any_text.hpp"
 #include "ocm/can/error_frame.hpp"
 #include "ocm/can/text.hpp"
 #include "ocm/transport/socketcan.hpp"
@@ -170,6 +171,88 @@ TEST_CASE("what cansend sends is received", "[plain]") {
   CHECK(bus->name() == "vcan0");
   CHECK(bus->state() == BusState::up);
   CHECK(bus->failure().what.empty());
+}
+
+TEST_CASE("CAN FD frames and classic ones are received and sent on one socket") {
+  const Vcan interface { "vcan7", false };
+  shell("ip link set vcan7 mtu 72");
+  shell("ip link set vcan7 up");
+  const auto ours = open("vcan7");
+  const auto theirs = open("vcan7");
+  CHECK(ours->fd_obstacle() == transport::Failure{});
+  const std::vector<std::string> both = {
+      "123##1DEADBEEF", "123#DEADBEEF", "1F334455##0" + std::string(128, 'A'), "7FF##2", "456#R", "000##311"};
+  for (const std::string& one : both) {
+    shell("cansend vcan7 " + one);
+    const auto received = ours->receive_any(2s);
+    REQUIRE(received);
+    CHECK(can::to_text(received->frame).view() == one);
+    CHECK(now() - received->time < 2s);
+  }
+  while (theirs->receive_any(0ms)) {
+  }
+  const auto candump = [&](const std::string& way) {
+    shell("timeout 10 candump -L -n " + std::to_string(both.size()) + " vcan7 >/tmp/" + way + ".fd &");
+  };
+  const long before = listeners("vcan7");
+  candump("sent");
+  REQUIRE(eventually([&] { return listeners("vcan7") > before; }));
+  for (const std::string& one : both) REQUIRE(ours->send_any(*can::parse_any_frame(one)).value);
+  for (const std::string& one : both) {
+    const auto received = theirs->receive_any(2s);
+    REQUIRE(received);
+    CHECK(can::to_text(received->frame).view() == one);
+  }
+  std::vector<std::string> lines;
+  REQUIRE(eventually([&] {
+    std::ifstream in("/tmp/sent.fd");
+    lines.clear();
+    for (std::string line; std::getline(in, line);) lines.push_back(line);
+    return lines.size() == both.size();
+  }));
+  for (std::size_t i = 0; i < both.size(); ++i) {
+    const auto words = can::split_log_line(lines[i]);
+    REQUIRE(words);
+    // candump 2020.11 writes the flags as the kernel has them, with FDF.
+    CHECK(can::to_text(*can::parse_any_frame(words->frame)).view() == both[i]);
+  }
+  CHECK(ours->counters().sent == both.size());
+  // Who asks for classic frames alone gets these alone, and the others are counted.
+  shell("cansend vcan7 123##1AA");
+  shell("cansend vcan7 124#BB");
+  const auto classic = ours->receive(2s);
+  REQUIRE(classic);
+  CHECK(text(classic->frame) == "124#BB");
+  CHECK(ours->counters().passed_over == 1);
+  // A filter says nothing of the kind.
+  const can::Filter only{0x123, 0x7FF};
+  REQUIRE(ours->subscribe({&only, 1}));
+  for (const char* one : {"124##1AA", "123##1CC", "123#DD"}) shell(std::string("cansend vcan7 ") + one);
+  CHECK(can::to_text(ours->receive_any(2s)->frame).view() == "123##1CC");
+  CHECK(can::to_text(ours->receive_any(2s)->frame).view() == "123#DD");
+}
+
+TEST_CASE("a CAN FD frame for an interface without CAN FD is refused in words, and taken once it has it") {
+  const Vcan interface { "vcan7", false };
+  shell("ip link set vcan7 mtu 16");
+  shell("ip link set vcan7 up");
+  const auto bus = open("vcan7");
+  const auto fd = *can::parse_any_frame("123##1DEAD");
+  CHECK(bus->send_any(fd).error == base::Error::bad_length);
+  CHECK(bus->fd_obstacle().what == "interface 'vcan7' carries no CAN FD frames: its MTU is 16, and not 72");
+  CHECK(bus->fd_obstacle().remedy.find("ip link set vcan7 mtu 72") != std::string::npos);
+  CHECK(bus->send_any(can::AnyFrame{frame("123#DEAD")}).value);
+  CHECK(bus->state() == BusState::up);
+  CHECK(bus->counters().sent == 1);
+  shell("ip link set vcan7 down");
+  shell("ip link set vcan7 mtu 72");
+  shell("ip link set vcan7 up");
+  CHECK(eventually([&] {
+    static_cast<void>(bus->receive(0ms));
+    const auto taken = bus->send_any(fd);
+    return taken && *taken;
+  }));
+  CHECK(bus->fd_obstacle() == transport::Failure{});
 }
 
 TEST_CASE("what is sent, candump reads", "[plain]") {

@@ -434,3 +434,68 @@ def _(context):
     expect(lost, f'nothing is said of lost frames: {listen.stderr}')
     expect(int(lost[1]) > 1000, f'only {lost[1]} lost: the check did not fill the queue')
     equal(len(listen.stdout.splitlines()) + int(lost[1]), sent + 1, 'shown and lost')
+
+
+FD_SPEC = """VERSION ""
+BU_: Radar
+BO_ 291 Objects: 64 Radar
+ SG_ count : 0|8@1+ (1,0) [0|255] "" Radar
+ SG_ last : 504|8@1+ (1,0) [0|255] "" Radar
+BA_DEF_ BO_ "VFrameFormat" ENUM "StandardCAN","ExtendedCAN","reserved","J1939PG","r4","r5","r6","r7","r8","r9","r10","r11","r12","r13","StandardCAN_FD","ExtendedCAN_FD";
+BA_DEF_ BO_ "GenMsgCycleTime" INT 0 10000;
+BA_DEF_DEF_ "VFrameFormat" "StandardCAN";
+BA_DEF_DEF_ "GenMsgCycleTime" 0;
+BA_ "VFrameFormat" BO_ 291 14;
+BA_ "GenMsgCycleTime" BO_ 291 20;
+"""
+
+
+@check('CAN FD: what send and set send, candump and python-can read; what cansend sends, listen shows')
+def _(context):
+    sent = ['123##1DEAD', '1F334455##0' + '5A' * 48, '123#DEAD', '7FF##3']
+    message = '07' + '00' * 62 + '09'
+    with Vcan('vcan9', up=False) as vcan:
+        sh('ip', 'link', 'set', 'vcan9', 'mtu', '72')
+        vcan.up()
+        with open('/tmp/fd.dbc', 'w') as file:
+            file.write(FD_SPEC)
+        with Candump('vcan9') as log, can.Bus(interface='socketcan', channel='vcan9', fd=True) as bus:
+            for frame in sent:
+                amiroctl(context, '--bus', 'vcan9', 'send', frame)
+            amiroctl(context, '--bus', 'vcan9', '--spec', '/tmp/fd.dbc', 'set', 'Objects', 'count=7', 'last=9')
+            theirs = [bus.recv(5) for _ in range(len(sent) + 1)]
+            log.finish()
+            shown = re.findall(r'^\(\S+\) \S+ (\S+)', log.stdout, re.M)
+        # candump 2020.11 writes the flags as the kernel has them, with FDF (4).
+        equal([re.sub('##(.)', lambda flags: f'##{int(flags[1], 16) & 3}', frame) for frame in shown],
+              [*sent, f'123##1{message}'], 'candump')
+        equal([(m.arbitration_id, m.is_fd, m.bitrate_switch, m.error_state_indicator, bytes(m.data)) for m in theirs],
+              [(0x123, True, True, False, b'\xDE\xAD'), (0x1F334455, True, False, False, b'\x5A' * 48),
+               (0x123, False, False, False, b'\xDE\xAD'), (0x7FF, True, True, True, b''),
+               (0x123, True, True, False, bytes.fromhex(message))], 'python-can')
+        with Process(context.amiroctl, '--bus', 'vcan9', 'listen', '--json', '-n', '2', '--timeout', '20s',
+                     listens_on='vcan9') as listen:
+            cansend('123##1AABB', '124#CC', interface='vcan9')
+            equal(listen.wait(), 0, f'exit code of listen ({listen.stderr})')
+            lines = [json.loads(line) for line in listen.stdout.splitlines()]
+        equal([(line.get('fd'), line['data']) for line in lines],
+              [({'brs': True, 'esi': False}, 'AABB'), (None, 'CC')], 'listen')
+        with Process(context.amiroctl, '--bus', 'vcan9', '--spec', '/tmp/fd.dbc', 'listen', 'Objects', '--json', '-n', '1',
+                     '--timeout', '20s', listens_on='vcan9') as listen:
+            cansend(f'123##1{message}', interface='vcan9')
+            equal(listen.wait(), 0, f'exit code of listen ({listen.stderr})')
+            equal(json.loads(listen.stdout)['fields'], {'count': 7, 'last': 9}, 'fields')
+
+
+@check('CAN FD: an interface without it is named, with what to type')
+def _(context):
+    with Vcan('vcan9', up=False) as vcan:
+        sh('ip', 'link', 'set', 'vcan9', 'mtu', '16')
+        vcan.up()
+        with Candump('vcan9') as log:
+            _, stderr = amiroctl(context, '--bus', 'vcan9', 'send', '123##1DEAD', code=1)
+            matches(stderr, r"123##1DEAD is a CAN FD frame", r"interface 'vcan9' carries no CAN FD frames", r'MTU is 16',
+                    r'ip link set vcan9 mtu 72')
+            amiroctl(context, '--bus', 'vcan9', 'send', '123#DEAD')
+            log.finish()
+            equal(re.findall(r'^\(\S+\) \S+ (\S+)', log.stdout, re.M), ['123#DEAD'], 'candump')

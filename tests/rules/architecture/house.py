@@ -51,6 +51,12 @@ def read_floors(root):
     return floors
 
 
+def direct(floors, floor):
+    """What a floor may include and reaches through nothing else: the arrows of docs/images/house.svg."""
+    return [below for below in floor.may_include
+            if not any(below in floors[other].reach for other in floor.may_include if other != below)]
+
+
 def floor_of(floors, path):
     """The floor of a path below include/ocm: the innermost of its folders that has a row; else its outermost folder."""
     folders = path.split("/")[:-1]

@@ -34,7 +34,7 @@ string_view: begin end string_view
 system_error: errc error_code generic_category
 tuple: get tuple
 type_traits: conditional_t is_enum_v is_floating_point_v is_integral_v is_invocable_r_v is_invocable_v is_same_v is_signed_v is_trivially_copyable_v
-    is_void_v make_signed_t remove_cvref_t
+    is_unsigned_v is_void_v make_signed_t remove_cvref_t
 utility: as_const declval exchange forward get index_sequence index_sequence_for make_index_sequence move pair swap
 vector: begin end erase_if vector
 """

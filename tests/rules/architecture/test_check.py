@@ -26,6 +26,9 @@ GOOD = {
                             "| 5 | `skiff/oars` | | `base` | board, host |\n"
                             "| 6 | `transport` | | `base` | host |\n"
                             "\n<!-- end of floors -->\n",
+    "docs/images/house.svg": "<title>house</title>" + "".join(f"<title>{what}</title>\n" for what in (
+        "base", "topics", "controller", "reflective", "skiff/oars", "transport", "base&#45;&gt;topics", "topics&#45;&gt;controller",
+        "topics&#45;&gt;reflective", "base&#45;&gt;skiff/oars", "base&#45;&gt;transport")),
     "docs/README.md": "# Pages\n\n[architecture](architecture.md)\n",
     "include/ocm/base/result.hpp": "/// A value or the reason why there is none.\n#pragma once\n#include <new>\n"
                                    "#include <string_view>\nnamespace ocm::base {\nstruct Result {};\n"
@@ -94,6 +97,8 @@ PLANTED = [
     ("floors_have_rows", replaced(PAGE, "<!-- end", ROW.format("`base`") + "<!-- end"), "docs/architecture.md:1:"),
     ("floors_have_rows", {"include/ocm/attic/a.hpp": "/// Nobody knows why this is here.\nnamespace ocm::attic {}\n",
                           "tests/unit/attic/a.cpp": ""}, "include/ocm/attic/a.hpp:1:"),
+    ("house_is_drawn", replaced("docs/images/house.svg", "<title>transport</title>", ""), "house.svg:1: lacks transport; draw it"),
+    ("house_is_drawn", replaced(PAGE, "| 6 | `transport` | | `base` |", "| 6 | `transport` | | `topics` |"), "house.svg:1: still has base->transport; draw it"),
     ("includes_go_down", added(RESULT, '#include "ocm/transport/bus.hpp"\n'), RESULT + ":12:"),
     ("includes_go_down", added("include/ocm/transport/bus.hpp", '#include "ocm/topics/ferry.hpp"\n'), "bus.hpp:7:"),
     ("includes_go_down", added(BOARD, '#include "result.hpp"\n'), BOARD + ":5:"),

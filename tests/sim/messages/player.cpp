@@ -19,7 +19,7 @@ using namespace std::chrono_literals;
 
 struct Sent {
   std::string name;
-  can::Frame frame;
+  can::AnyFrame frame;
   base::Time due;
   const protocol::Topic* topic;
 };
@@ -33,7 +33,7 @@ const spec::Spec& bus() {
 std::vector<Sent> played(sim::PlayOptions options, base::Duration lasting = 60s) {
   sim::MessagePlayer player{bus().catalogue(), options};
   std::vector<Sent> sent;
-  player.advance(base::Time{lasting}, [&](const auto& message, const can::Frame& frame, base::Time due) {
+  player.advance(base::Time{lasting}, [&](const auto& message, const can::AnyFrame& frame, base::Time due) {
     sent.push_back({std::string{message.topic->name}, frame, due, message.topic});
   });
   return sent;
@@ -46,7 +46,7 @@ TEST_CASE("Every message with a period keeps it exactly for a minute") {
     if (count[each.name]++ != 0) CHECK(each.due - last[each.name] == each.topic->cycle);
     last[each.name] = each.due;
   }
-  CHECK(count.size() == 3);
+  CHECK(count.size() == 5);
   CHECK(std::abs(count["Fast"] - 6000) <= 1);
   CHECK(std::abs(count["Pages"] - 1200) <= 1);
   CHECK(std::abs(count["Group"] - 3000) <= 1);
@@ -54,7 +54,7 @@ TEST_CASE("Every message with a period keeps it exactly for a minute") {
 
 TEST_CASE("One seed plays the same, two seeds do not") {
   const auto frames = [](std::uint64_t seed) {
-    std::vector<can::Frame> all;
+    std::vector<can::AnyFrame> all;
     for (const auto& each : played({.seed = seed}, 5s)) all.push_back(each.frame);
     return all;
   };
@@ -67,7 +67,7 @@ TEST_CASE("Values stay within their ranges, move, and every page is there") {
   for (const auto& each : played({.seed = 5}))
     for (const auto& field : each.topic->frames[0].fields) {
       if (!each.topic->frames[0].has(field, each.frame.bytes())) continue;
-      const auto raw = field.raw(each.frame.data);
+      const auto raw = field.raw(each.frame.bytes());
       seen[std::string{field.name}].insert(raw);
       if (!sim::has_stated_range(field)) continue;
       CHECK(field.value(raw) >= field.min.as_double());
@@ -77,7 +77,7 @@ TEST_CASE("Values stay within their ranges, move, and every page is there") {
   CHECK(seen["Sub"] == std::set<std::int64_t>{1, 2});
   CHECK(seen["Gear"] == std::set<std::int64_t>{-1, 0, 5});
   CHECK(seen["On"] == std::set<std::int64_t>{0, 1});
-  for (const char* name : {"A", "B", "C", "D", "Speed", "Torque", "Free", "Level"}) {
+  for (const char* name : {"A", "B", "C", "D", "Speed", "Torque", "Free", "Level", "Value", "End"}) {
     CAPTURE(name);
     CHECK(seen[name].size() > 3);
   }
@@ -88,11 +88,35 @@ TEST_CASE("What is not played is listed by cause; without a period only on reque
   REQUIRE(player.left_out().without_period.size() == 1);
   CHECK(player.left_out().without_period[0]->name == "Button");
   REQUIRE(player.left_out().too_long.size() == 1);
-  CHECK(player.left_out().too_long[0]->name == "Long");
+  CHECK(player.left_out().too_long[0]->name == "Parts");
+  CHECK(player.left_out().no_fd.empty());
+  const sim::MessagePlayer classic{bus().catalogue(), {.fd = false}};
+  REQUIRE(classic.left_out().no_fd.size() == 2);
+  CHECK(classic.left_out().no_fd[0]->name == "Long");
+  CHECK(classic.left_out().no_fd[1]->name == "Odd");
+  CHECK(classic.size() + 2 == player.size());
   int buttons = 0;
   for (const auto& each : played({.seed = 1, .sporadic = 1s})) buttons += each.name == "Button";
   CHECK(buttons > 50);
   CHECK(buttons < 70);
+}
+
+TEST_CASE("Messages of CAN FD are frames of CAN FD, of a length that there is") {
+  std::map<std::string, int> count;
+  for (const auto& each : played({.seed = 1}, 2s)) {
+    CHECK(can::validate(each.frame).ok());
+    const bool fd = each.name == "Long" || each.name == "Odd";
+    CHECK(each.frame.is_fd() == fd);
+    if (!fd) continue;
+    ++count[each.name];
+    namespace flag = can::frame_flag;
+    CHECK(each.frame.flags ==
+          (each.name == "Long" ? flag::fd | flag::bit_rate_switch : flag::fd));  // CANFD_BRS
+    CHECK(each.frame.length == (each.name == "Long" ? 32 : 12));
+    if (each.name == "Odd") CHECK((each.frame.data[10] | each.frame.data[11]) == 0);
+  }
+  CHECK(count["Long"] == 20);
+  CHECK(count["Odd"] == 20);
 }
 
 TEST_CASE("A parameter group is sent from an address that a node may have") {

@@ -12,6 +12,13 @@ import waiting  # the harness has put its folder on the path
 from realtime import RealTime
 
 FRAME = re.compile(r"^(?:t([0-7][0-9A-Fa-f]{2})|T([01][0-9A-Fa-f]{7}))([0-8])((?:[0-9A-Fa-f]{2})*)$")
+BAD_LENGTH, BAD_PERIOD, NOT_SERVED, NOT_SCHEDULABLE = 3, 6, 8, 15
+DI_WHEEL_DRIVE, POWER_MANAGEMENT, LIGHT_RING = 0x1D, 0x3B, 0x59
+
+
+def refusal(number, reason, board=DI_WHEEL_DRIVE, count=1):
+    """What the board says, as the adapter passes it on."""
+    return f"t7{board:02X}6{number:02X}{reason:02X}{count:02X}00000000" + "10\r"
 
 
 class Adapter:

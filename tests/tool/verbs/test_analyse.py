@@ -2,6 +2,7 @@
 
 import json
 import os
+import random
 import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
@@ -39,9 +40,10 @@ class Analyse(Case):
 class Bus(Analyse):
     def test_the_second_release_is_the_worst(self):
         found = self.bus(DAVIS, "--bitrate", "125k", code=1)
-        self.assertEqual(list(found), ["utilisation", "messages"])
+        self.assertEqual(list(found), ["utilisation", "messages", "left_out"])
         self.assertEqual(list(found["messages"][0]),
-                         ["name", "response_ns", "deadline_ns", "schedulable", "instances_ns", "why", "id"])
+                         ["name", "response_ns", "deadline_ns", "schedulable", "instances_ns", "why", "id", "period_ns",
+                          "sporadic", "bits", "data_bits"])
         self.assertEqual(self.column(found["messages"], "response_ns"), {"a": 2000000, "b": 3000000, "c": 3500000})
         self.assertEqual(self.column(found["messages"], "deadline_ns"), {"a": 2500000, "b": 3250000, "c": 3250000})
         self.assertEqual(self.column(found["messages"], "schedulable"), {"a": True, "b": True, "c": False})
@@ -191,7 +193,9 @@ class Bus(Analyse):
                 ("name,id,dlc\na,1,8\n", "set.csv:1", "period_ns"),
                 (BUS + "a,1,8,1000\n\nb,zwei,8,1000\n", "set.csv:4", "'zwei'"),
                 (BUS + "a,0x20000000,8,1000\n", "set.csv:2", "29 bits"),
-                (BUS + "a,1,9,1000\n", "set.csv:2", "CAN FD"),
+                (BUS + "a,1,9,1000\n", "set.csv:2", "12, 16"),
+                (BUS.strip() + ",fd\na,1,16,1000,,,no\n", "set.csv:2", "above 8"),
+                (BUS.strip() + ",fd\na,1,8,1000,,,slow\n", "set.csv:2", "'slow'"),
                 (BUS + "a,1,8,0\n", "set.csv:2", "period_ns '0'"),
                 (BUS + "a,1,8,-5\n", "set.csv:2", "'-5'"),
                 (BUS + "a,1,8,1e6\n", "set.csv:2", "'1e6'"),
@@ -210,7 +214,8 @@ class Bus(Analyse):
         self.assertIn("none.csv", err)
         path = self.file(DAVIS)
         for options in (["--bitrate", "0"], ["--bitrate", "2M"], ["--bitrate", "fast"], ["--errors", "some"],
-                        ["--errors", "burst=0,every=1s"], ["--test", "rough"], ["--json", "--csv"]):
+                        ["--errors", "burst=0,every=1s"], ["--data-bitrate", "17M"],
+                        ["--bitrate", "500k", "--data-bitrate", "250k"], ["--test", "rough"], ["--json", "--csv"]):
             self.run_tool("analyse", "bus", path, *options, code=2)
         self.run_tool("analyse", code=2)
 
@@ -555,7 +560,21 @@ BA_ "GenMsgCycleTime" BO_ 2566844672 100;
         self.assertEqual(self.column(found["messages"], "deadline_ns"), {"Speed": 10000000, "Wide": 100000000})
         self.assertEqual(found["messages"][0]["response_ns"], (160 + 125) * 8000)
         out, _ = self.run_tool("analyse", "bus", os.path.join(self.folder, "car.dbc"))
-        self.assertIn("no cycle time: Rare", out)
+        self.assertIn("Not counted: 1 message,", out)
+        self.assertIn("no cycle time and no shortest distance (1): Rare", out)
+        self.assertEqual(found["left_out"], [{"name": "Rare", "reason": "no_period",
+                                              "why": "no cycle time and no shortest distance"}])
+        out, err = self.run_tool("analyse", "bus", os.path.join(self.folder, "car.dbc"), "--csv")
+        self.assertEqual(len(out.splitlines()), 3)
+        self.assertIn("no cycle time and no shortest distance (1): Rare", err)
+
+    def test_a_rate_for_what_has_none(self):
+        found = self.bus(self.TEXT, "--bitrate", "125k", "--rates", "Rare=50ms", "Speed=off", name="car.dbc")
+        self.assertEqual(self.column(found["messages"], "period_ns"), {"Rare": 50000000, "Wide": 100000000})
+        self.assertEqual(found["left_out"], [])
+        for rates, word in (("Rar=50ms", "'Rar'"), ("Rare=50ms@high", "priority of its identifier")):
+            _, err = self.run_tool("analyse", "bus", os.path.join(self.folder, "car.dbc"), "--rates", rates, code=2)
+            self.assertIn(word, err)
 
     def test_what_another_reader_sees(self):
         """Names, identifiers, cycle times and senders of canmatrix are those that were analysed."""
@@ -580,8 +599,7 @@ BA_ "GenMsgCycleTime" BO_ 2566844672 100;
             self.assertEqual(other[4], "Engine")
 
     def test_mistakes(self):
-        for text, word in (("BO_ 1 A: 64 X\n", ":1: 'A' has 64 bytes"),
-                           ("BO_ 1 A: 8 X\n", "cycle time"), ("\nBO_ A 8\n", ":2: BO_"), ("", "no statement of DBC"), ("BU_: A\n", "no message"),
+        for text, word in (("BO_ 1 A: 8 X\n", "car.dbc: no message has a cycle time"), ("\nBO_ A 8\n", ":2: BO_"), ("", "no statement of DBC"), ("BU_: A\n", "no message"),
                            ('BO_ 1 A: 8 X\nBA_ "GenMsgCycleTime" BO_ 1 soon;', "cycle time")):
             _, err = self.run_tool("analyse", "bus", self.file(text, "car.dbc"), code=2)
             self.assertIn(word, err)
@@ -593,6 +611,249 @@ BA_ "GenMsgCycleTime" BO_ 2566844672 100;
         self.assertIn("car.dbc:1: the identifier 2048 of A has more than 11 bits", out)
         self.assertEqual(out.count("which is not in the file"), 4)
         self.assertIn("car.dbc: 2 more doubtful places.", out)
+
+
+class FlexibleData(Analyse):
+    """CAN FD: figures by hand. 500 kbit/s and 2 Mbit/s, so 2 us and 500 ns a bit."""
+    TEXT = '''VERSION ""
+BU_: Engine Dash
+BO_ 256 Fast: 64 Engine
+BO_ 257 Slow: 8 Dash
+BO_ 258 Odd: 10 Dash
+BO_ 259 Plain: 2 Dash
+BA_DEF_ BO_ "GenMsgCycleTime" INT 0 65535;
+BA_DEF_DEF_ "GenMsgCycleTime" 10;
+BA_DEF_ BO_ "VFrameFormat" ENUM "StandardCAN","StandardCAN_FD";
+BA_DEF_DEF_ "VFrameFormat" "StandardCAN";
+BA_DEF_ BO_ "CANFD_BRS" ENUM "0","1";
+BA_DEF_DEF_ "CANFD_BRS" "1";
+BA_DEF_ "Baudrate" INT 0 1000000;
+BA_DEF_ "BaudrateCANFD" INT 0 16000000;
+BA_ "Baudrate" 500000;
+BA_ "BaudrateCANFD" 2000000;
+BA_ "VFrameFormat" BO_ 259 1;
+BA_ "CANFD_BRS" BO_ 259 0;
+'''
+
+    def rows(self, *options, text=None, name="fd.dbc"):
+        return {row["name"]: row for row in self.bus(text or self.TEXT, *options, name=name)["messages"]}
+
+    def test_by_hand(self):
+        rows = self.rows()
+        # Any identifier: 17 bits to BRS and 3 stuff bits, ACK 2, EOF 7, intermission 3. Behind BRS: ESI, DLC 4, the data
+        # and a stuff bit for each four of its bits, CRC field 27 or 32, delimiter 1.
+        self.assertEqual((rows["Fast"]["bits"], rows["Fast"]["data_bits"]), (32, 5 + 512 + 128 + 32 + 1))
+        self.assertEqual((rows["Slow"]["bits"], rows["Slow"]["data_bits"]), (135, 0))
+        # 10 bytes are sent in a frame of 12. DLC 1001 ends with a run of one: the fifth bit of the data is stuffed first.
+        self.assertEqual((rows["Odd"]["bits"], rows["Odd"]["data_bits"]), (32, 5 + 96 + 23 + 27 + 1))
+        # No switch: all at one rate. DLC 0010 behind res, BRS and ESI 000: a stuff bit behind five zeros. It ends with a run of
+        # one: three stuff bits in 16 bits, before the fifth, the ninth and the thirteenth.
+        self.assertEqual((rows["Plain"]["bits"], rows["Plain"]["data_bits"]), (20 + 5 + 1 + 16 + 3 + 27 + 1 + 12, 0))
+        cost = {"Fast": 64000 + 339000, "Slow": 270000, "Odd": 64000 + 76000, "Plain": 2000 * 85}
+        responses = {name: row["response_ns"] for name, row in rows.items()}
+        self.assertEqual(responses["Fast"], cost["Fast"] + cost["Slow"])
+        self.assertEqual(responses["Slow"], cost["Fast"] + cost["Slow"] + cost["Plain"])
+        self.assertEqual(responses["Odd"], sum(cost.values()))
+        self.assertEqual(responses["Plain"], sum(cost.values()))
+
+    def test_its_own_identifier(self):
+        # 00100000000 behind SOF: five zeros behind the 1, a stuff bit, then three, RRS and IDE: another one.
+        self.assertEqual(self.rows("--lengths", "exact")["Fast"]["bits"], 17 + 2 + 12)
+
+    def test_other_rates(self):
+        fast = self.rows("--data-bitrate", "5M")["Fast"]
+        self.assertEqual(fast["response_ns"], 64000 + 678 * 200 + 270000)
+        out, _ = self.run_tool("analyse", "bus", os.path.join(self.folder, "fd.dbc"))
+        for word in ("500 kbit/s and 2 Mbit/s for data", "64 B FD, 32 + 678 bits"):
+            self.assertIn(word, out)
+        # No rate for the data: safe, and said. Odd is the longest below.
+        text = self.TEXT.replace('BA_ "BaudrateCANFD" 2000000;', "")
+        self.assertEqual(self.rows(text=text)["Fast"]["response_ns"], (32 + 678 + 32 + 152) * 2000)
+        out, _ = self.run_tool("analyse", "bus", os.path.join(self.folder, "fd.dbc"))
+        self.assertIn("No data bit rate", out)
+
+    def test_errors_are_at_the_rate_of_arbitration(self):
+        # 31 bits of 2 us and the longest frame again.
+        fast = self.rows("--errors", "burst=1")["Fast"]
+        self.assertEqual(fast["response_ns"], 270000 + 403000 + 62000 + 403000)
+
+    def test_table(self):
+        text = ("name,id,dlc,period_ns,fd\nFast,0x100,64,10000000,\nSlow,0x101,8,10000000,no\n"
+                "Odd,0x102,12,10000000,brs\nPlain,0x103,2,10000000,nobrs\n")
+        rows = self.rows("--bitrate", "500k", "--data-bitrate", "2M", text=text, name="fd.csv")
+        for name, row in self.rows().items():
+            self.assertEqual((row["bits"], row["data_bits"], row["response_ns"]),
+                             (rows[name]["bits"], rows[name]["data_bits"], rows[name]["response_ns"]), name)
+
+    def test_every_way_to_a_spec(self):
+        """The DBC file, as FILE and by --spec, and the JSON that it becomes, which keeps the data bit rate; and back."""
+        dbc = self.file(self.TEXT, "fd.dbc")
+        json_file = os.path.join(self.folder, "fd.json")
+        self.run_tool("--spec", dbc, "generate", "spec", "-o", json_file)
+        with open(json_file, encoding="utf-8") as file:
+            self.assertEqual(json.load(file)["bus"], {"bit_rate": 500000, "data_bit_rate": 2000000})
+        back = os.path.join(self.folder, "back.dbc")
+        self.run_tool("--spec", json_file, "generate", "dbc", "-o", back)
+        wanted, _ = self.run_tool("analyse", "bus", dbc, "--json")
+        for arguments in (["analyse", "bus", json_file], ["--spec", dbc, "analyse", "bus"],
+                          ["--spec", json_file, "analyse", "bus"], ["analyse", "bus", back]):
+            self.assertEqual(self.run_tool(*arguments, "--lengths", "generic", "--json")[0], wanted, arguments)
+        for rate, word in ((400000, "at least"), (17000000, "16000000")):
+            path = self.file(json.dumps({"robot": "x", "bus": {"bit_rate": 500000, "data_bit_rate": rate},
+                                         "messages": [{"name": "A", "id": 1, "fields": []}]}), "bad.json")
+            _, err = self.run_tool("analyse", "bus", path, code=2)
+            self.assertIn("data_bit_rate", err)
+            self.assertIn(word, err)
+
+    def test_a_log(self):
+        """FD frames of a log are measured at both rates, and are in its load."""
+        self.file(self.TEXT, "fd.dbc")
+        data = "55" * 64
+        log = self.file("".join(f"(1000.{i * 10000 + 403:06}) can0 100##1{data}\n" for i in range(90)), "x.log")
+        out, _ = self.run_tool("analyse", "trace", log, "--set", os.path.join(self.folder, "fd.dbc"), "--json")
+        found = json.loads(out)
+        row = next(row for row in found["messages"] if row["name"] == "Fast")
+        self.assertEqual((found["broken"], found["frames"], row["count"]), ([], 90, 90))
+        # 0x55 has no stuff bits; BRS 1, ESI 0 and DLC 1111 with a zero behind it neither.
+        self.assertEqual(row["measured_ns"], 31 * 2000 + (5 + 512 + 32 + 1) * 500)
+        self.assertAlmostEqual(found["measured_utilisation"], row["measured_ns"] / 1e7, places=4)
+
+
+class Sporadic(Analyse):
+    """What a DBC file says of when a message is sent, by the attributes of Vector's interaction layer."""
+    TEXT = '''VERSION ""
+BU_: Engine Dash
+BO_ 1 Cyclic: 8 Engine
+ SG_ a : 0|8@1+ (1,0) [0|0] "" Dash
+BO_ 2 Event: 8 Engine
+BO_ 3 Unbound: 8 Engine
+BO_ 4 Both: 8 Dash
+BO_ 5 BothUnbound: 8 Dash
+BO_ 6 Active: 8 Dash
+BO_ 7 Silent: 8 Dash
+BO_ 8 Changes: 8 Dash
+ SG_ b : 0|8@1+ (1,0) [0|0] "" Engine
+BA_DEF_ BO_ "GenMsgCycleTime" INT 0 65535;
+BA_DEF_ BO_ "GenMsgCycleTimeFast" INT 0 65535;
+BA_DEF_ BO_ "GenMsgDelayTime" INT 0 65535;
+BA_DEF_ BO_ "GenMsgStartDelayTime" INT 0 65535;
+BA_DEF_ BO_ "GenMsgSendType" ENUM "Cyclic","spontaneous","CyclicAndSpontaneous","CyclicIfActive","NoMsgSendType";
+BA_DEF_ SG_ "GenSigSendType" ENUM "Cyclic","OnChange","NoSigSendType";
+BA_DEF_DEF_ "GenMsgCycleTime" 0;
+BA_DEF_DEF_ "GenMsgSendType" "NoMsgSendType";
+BA_DEF_DEF_ "GenSigSendType" "NoSigSendType";
+BA_ "GenMsgSendType" BO_ 1 0;
+BA_ "GenMsgCycleTime" BO_ 1 20;
+BA_ "GenMsgSendType" BO_ 2 1;
+BA_ "GenMsgDelayTime" BO_ 2 30;
+BA_ "GenMsgSendType" BO_ 3 1;
+BA_ "GenMsgSendType" BO_ 4 2;
+BA_ "GenMsgCycleTime" BO_ 4 100;
+BA_ "GenMsgDelayTime" BO_ 4 15;
+BA_ "GenMsgSendType" BO_ 5 2;
+BA_ "GenMsgCycleTime" BO_ 5 100;
+BA_ "GenMsgSendType" BO_ 6 3;
+BA_ "GenMsgCycleTime" BO_ 6 200;
+BA_ "GenMsgCycleTimeFast" BO_ 6 40;
+BA_ "GenMsgCycleTime" BO_ 8 60;
+BA_ "GenSigSendType" SG_ 8 b 1;
+'''
+
+    def test_the_shortest_distance(self):
+        found = self.bus(self.TEXT, name="car.dbc")
+        self.assertEqual(self.column(found["messages"], "period_ns"),
+                         {"Cyclic": 20000000, "Event": 30000000, "Both": 15000000, "BothUnbound": 100000000,
+                          "Active": 40000000, "Changes": 60000000})
+        self.assertEqual(self.column(found["messages"], "sporadic"),
+                         {"Cyclic": False, "Event": True, "Both": True, "BothUnbound": True, "Active": True, "Changes": True})
+        self.assertEqual({entry["name"]: entry["reason"] for entry in found["left_out"]},
+                         {"Unbound": "no_distance", "BothUnbound": "events", "Silent": "no_period", "Changes": "events"})
+        out, _ = self.run_tool("analyse", "bus", os.path.join(self.folder, "car.dbc"))
+        for word in ("Not counted: 4 messages", "without a shortest distance (1): Unbound", "(2): BothUnbound, Changes",
+                     "30ms+", "T with a +"):
+            self.assertIn(word, out)
+
+    def test_defaults_count(self):
+        """An attribute that a message does not give has its default, in the JSON of the file, too."""
+        text = self.TEXT.replace('"GenSigSendType" "NoSigSendType"', '"GenSigSendType" "OnChange"')
+        found = self.bus(text, name="car.dbc")
+        self.assertIn({"name": "Cyclic", "reason": "events",
+                       "why": "in the set by the cycle, not with what they send on events"}, found["left_out"])
+        path = os.path.join(self.folder, "car.json")
+        self.run_tool("--spec", os.path.join(self.folder, "car.dbc"), "generate", "spec", "-o", path)
+        out, _ = self.run_tool("analyse", "bus", path, "--bitrate", "500k", "--json")
+        self.assertEqual(json.loads(out), found)
+
+    def test_start_delays_are_offsets(self):
+        """Two of one node, half a period apart, never delay a third one both; one that is also sent on events may."""
+        text = ('BU_: Left Right\nBO_ 1 a: 0 Left\nBO_ 2 b: 0 Left\nBO_ 3 c: 0 Right\n'
+                'BA_DEF_ BO_ "GenMsgSendType" ENUM "Cyclic","CyclicAndEvent";\n' +
+                "".join(f'BA_ "GenMsgCycleTime" BO_ {i} 1;\n' for i in (1, 2, 3)) +
+                'BA_ "GenMsgStartDelayTime" BO_ 2 0.5;\n')
+        found = self.bus(text, "--bitrate", "1M", name="car.dbc")
+        self.assertEqual(found["messages"][2]["response_ns"], 110000)
+        out, _ = self.run_tool("analyse", "bus", os.path.join(self.folder, "car.dbc"), "--bitrate", "1M")
+        self.assertIn("with offsets", out)
+        text += 'BA_ "GenMsgSendType" BO_ 2 1;\nBA_ "GenMsgDelayTime" BO_ 2 1;\n'
+        self.assertEqual(self.bus(text, "--bitrate", "1M", name="car.dbc")["messages"][2]["response_ns"], 165000)
+        # More clocks than can be counted from: without offsets, and said.
+        many = "BU_: " + " ".join(f"N{i}" for i in range(1, 80)) + "\n"
+        many += "".join(f"BO_ {i} m{i}: 0 N{i}\n" for i in range(1, 80))
+        many += "".join(f'BA_ "GenMsgCycleTime" BO_ {i} 1000;\nBA_ "GenMsgStartDelayTime" BO_ {i} 5;\n'
+                        for i in range(1, 80))
+        out, _ = self.run_tool("analyse", "bus", self.file(many, "many.dbc"))
+        self.assertIn("79 clocks, of 64", out)
+
+    def test_no_message_is_dropped_in_silence(self):
+        """Whatever a file says: each message is in the set, or left out with a reason; J1939's long ones, too."""
+        chance = random.Random(14)
+        types = ["Cyclic", "spontaneous", "CyclicAndSpontaneous", "IfActive", "NoMsgSendType", "BAF"]
+        reasons = set()
+        for _ in range(15):
+            lines, names = ["BU_: X"], []
+            attributes = ['BA_DEF_ BO_ "GenMsgSendType" ENUM ' + ",".join(f'"{each}"' for each in types) + ";",
+                          'BA_DEF_ BO_ "VFrameFormat" ENUM "StandardCAN","ExtendedCAN","StandardCAN_FD","J1939PG";']
+            for i in range(chance.randrange(5, 60)):
+                length = chance.choice([0, 1, 8, 8, 9, 12, 33, 64, 65, 100, 1785])
+                wide = chance.random() < .4
+                number = 0x98FE0000 + 256 * i if wide else i + 1
+                names.append(f"M{i}")
+                lines.append(f"BO_ {number} M{i}: {length} X")
+                for name, top in (("GenMsgCycleTime", 400), ("GenMsgDelayTime", 40), ("GenMsgStartDelayTime", 9)):
+                    if chance.random() < .4:
+                        attributes.append(f'BA_ "{name}" BO_ {number} {chance.randrange(top)};')
+                if chance.random() < .7:
+                    attributes.append(f'BA_ "GenMsgSendType" BO_ {number} {chance.randrange(len(types))};')
+                if wide and chance.random() < .5:
+                    attributes.append(f'BA_ "VFrameFormat" BO_ {number} 3;')
+            lines.append("BO_ 2000 Last: 8 X")
+            names.append("Last")
+            attributes.append('BA_ "GenMsgCycleTime" BO_ 2000 1000;')
+            path = self.file("\n".join(lines + attributes) + "\n", "any.dbc")
+            ran = subprocess.run([os.environ["AMIROCTL"], "analyse", "bus", path, "--json", "--bitrate", "1M"],
+                                 capture_output=True, text=True, check=False)
+            self.assertIn(ran.returncode, (0, 1), ran.stderr)
+            found = json.loads(ran.stdout)
+            counted = {row["name"] for row in found["messages"]}
+            left = [entry["name"] for entry in found["left_out"]]
+            self.assertEqual(len(left), len(set(left)))
+            self.assertEqual(counted | set(left), set(names))
+            self.assertEqual(counted & set(left),
+                             {entry["name"] for entry in found["left_out"] if entry["reason"] == "events"})
+            reasons |= {entry["reason"] for entry in found["left_out"]}
+        self.assertEqual(reasons, {"no_period", "no_distance", "events", "transport_protocol", "too_long"})
+
+    def test_parameter_groups(self):
+        """Exact: the longest of any source. 0x18FEF1FE with the source that makes it longest, found by trying them all."""
+        text = ('BO_ 2566844926 Group: 8 X\nBA_DEF_ BO_ "VFrameFormat" ENUM "a","b","c","J1939PG";\n'
+                'BA_ "VFrameFormat" BO_ 2566844926 3;\nBA_ "GenMsgCycleTime" BO_ 2566844926 100;\n')
+        group = self.bus(text, "--lengths", "exact", name="truck.dbc")["messages"][0]["bits"]
+        table = BUS + "".join(f"m{i},{0x18FEF100 + i},8,1000000000,,\n" for i in range(256))
+        each = [row["bits"] for row in self.bus(table, "--lengths", "exact")["messages"]]
+        self.assertEqual(group, max(each))
+        self.assertLess(min(each), group)
+        out, _ = self.run_tool("analyse", "bus", os.path.join(self.folder, "truck.dbc"))
+        self.assertIn("parameter group of J1939 counts once", out)
 
 
 if __name__ == "__main__":

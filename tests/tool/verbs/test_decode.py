@@ -6,7 +6,7 @@ import os
 import re
 import subprocess
 
-from harness import AMIROCTL, Case, main
+from harness import AMIROCTL, SOURCE, Case, main
 
 # One frame of every kind. [docs/verbs/listen.md; candump's notation: can-utils lib.h]
 LOG = """\
@@ -67,6 +67,79 @@ class Decode(Case):
         self.assertEqual(len(lines("--since", "100ms", "--until", "1s")), 3)
         self.assertEqual(len(lines("--pretty")), 11)  # two frames of a sample are one line
         self.assertEqual("\n".join(lines("--raw")) + "\n", LOG)
+
+    def test_frames_are_chosen_by_identifier_sender_group_and_condition(self):
+        car = "".join(f"({number}.0) can0 {frame}\n" for number, frame in enumerate((
+            "100#0019000000000000",  # Engine.Speed 1600
+            "130#0000000000000000",  # Driving
+            "100#E02E000000000000",  # Engine.Speed 3000
+            "130#2710000000000000",  # Driving.Speed 100
+            "400#0100030000000000",  # Service.FaultCode 3
+            "400#0000000000000000",  # Service without it
+            "100#E12E000000000000",  # Engine.Speed 3000.25
+            "00000100#00",  # of nobody
+            "130#4E20000000000000")))  # Driving.Speed 200
+
+        def times(*arguments, spec="small_car.dbc", log=car, code=0):
+            out, _ = self.run_tool("--spec", os.path.join(SOURCE, "examples", spec), "decode", "--json", *arguments, stdin=log, code=code)
+            return [int(event["time_ns"]) // 10**9 for event in self.objects(out)]
+
+        self.assertEqual(times("--topic", "Engine"), [0, 2, 6])
+        self.assertEqual(times("--sender", "EngineControl"), [0, 2, 6])
+        self.assertEqual(times("--sender", "EngineControl", "--topic", "Service"), [0, 2, 4, 5, 6])
+        self.assertEqual(times("--filter", "100:7FF"), [0, 2, 6, 7])  # as candump: the format is not asked
+        self.assertEqual(times("--filter", "00000100:9FFFFFFF", code=1), [7])
+        self.assertEqual(times("--filter", "100~700"), [4, 5])
+        self.assertEqual(times("--where", "Engine.Speed>=3000"), [2, 6])
+        self.assertEqual(times("--where", "Engine.Speed > 3000rpm"), [6])
+        self.assertEqual(times("--where", "Engine.Speed=3000"), [2])
+        self.assertEqual(times("--where", "Engine.Speed!=3000"), [0, 6])
+        self.assertEqual(times("--where", "Service.FaultCode<=3"), [4])  # where it is there
+        self.assertEqual(times("--where", "Service.FaultCode<3", code=1), [])
+        # While it holds: others are shown by what it said last.
+        self.assertEqual(times("--topic", "Driving", "--where", "Engine.Speed>=3000"), [3, 8])
+        self.assertEqual(times("--topic", "Driving", "--where", "Engine.Speed>=3000", "--where", "Driving.Speed>150"), [8])
+        self.assertEqual(times("--where", "Engine.Running=stopped", "--where", "Engine.Speed>2000"), [2, 6])
+        truck = "(1.0) can0 0CF00400#FFFFFFE02E0000FF\n(2.0) can0 18FEF100#FFFFFFFFFFFFFFFF\n(3.0) can0 18F00403#FFFFFF00000000FF\n"
+        self.assertEqual(times("--pgn", "F004", spec="truck.dbc", log=truck), [1, 3])
+        self.assertEqual(times("--pgn", "0xFEF1", spec="truck.dbc", log=truck), [2])
+        gyro = self.run_tool("decode", "--where", "gyro.x>0.05", stdin=LOG)[0]
+        self.assertEqual([event["data"] for event in self.objects(gyro)], ["0300FFFF0000"])
+        # Both frames of a sample are shown, and requests are none.
+        odometry = self.run_tool("decode", "--where", "odom.velocity.x=0.05", stdin=LOG)[0]
+        self.assertEqual([event["frame"] for event in self.objects(odometry)], ["velocity", "pose"])
+
+    def test_frames_without_a_chosen_field_are_passed_over(self):
+        """One that is in some frames only: neither objects without fields nor lines without a number."""
+        car = os.path.join(SOURCE, "examples", "small_car.dbc")
+        log = "".join(f"({number}.0) can0 {frame}\n" for number, frame in enumerate((
+            "400#0000000000000000",  # Service's other pages
+            "400#0100030000000000",  # FaultCode 3, FaultCount 0
+            "400#0200000000000000",
+            "100#0019000000000000")))
+        fields = ("--field", "Service.FaultCode", "--field", "Service.FaultCount")
+        out, err = self.run_tool("--spec", car, "decode", "--json", *fields, stdin=log)
+        self.assertEqual([event["fields"] for event in self.objects(out)], [{"FaultCode": 3, "FaultCount": 0}])
+        out, _ = self.run_tool("--spec", car, "decode", "--csv", *fields, "--field", "Engine.Speed", stdin=log)
+        self.assertEqual(out.splitlines(), ["time,Service.FaultCode,Service.FaultCount,Engine.Speed",
+                                            "1.000000000,3,0,", "3.000000000,,,1600"])
+        out, _ = self.run_tool("--spec", car, "decode", "--pretty", *fields, stdin=log)
+        self.assertEqual(len(out.splitlines()), 1)
+        self.assertIn("FaultCode", out)
+        out, _ = self.run_tool("--spec", car, "decode", "--json", "-n", "1", "--field", "Service.OperatingTime", stdin=log)
+        self.assertEqual([event["fields"] for event in self.objects(out)], [{"OperatingTime": 0}])
+
+    def test_choices_that_cannot_be(self):
+        for arguments, words in ((("--where", "Engine.Speed"), "'Engine.Speed': not a condition\n          write a field, =, !="),
+                                 (("--where", "Engine.Sped>3"), "no field 'Engine.Sped'\n          did you mean 'Engine.Speed'?"),
+                                 (("--where", "Engine>3"), "'Engine' has 7 fields\n          name one, such as Engine.Speed"),
+                                 (("--where", "Engine.Speed>fast"), "'fast' is no value of it\n          Speed takes 0 to 8000 rpm"),
+                                 (("--sender", "Brake"), "no such board\n          did you mean 'Brakes'?"),
+                                 (("--filter", "100"), "decode: --filter 100: not a filter"),
+                                 (("--pgn", "40000"), "--pgn 40000: not a parameter group"),
+                                 (("--pgn", "EA21"), "write 0EA00")):
+            _, err = self.run_tool("--spec", os.path.join(SOURCE, "examples", "small_car.dbc"), "decode", *arguments, stdin=LOG, code=2)
+            self.assertIn(words, err)
 
     def test_several_files_packed_and_plain(self):
         plain = self.file("a.log", LOG)
@@ -171,6 +244,33 @@ class Encode(Case):
         out, _ = self.run_tool("encode", stdin=json.dumps(line))
         self.assertEqual(out, "(1436509052.249713) can0 408#0400FFFF0000\n")
 
+    def test_stated_ranges(self):
+        """An edited value beyond the range that the spec states needs --force; what was on the bus does not."""
+        car = ("--spec", os.path.join(SOURCE, "examples", "small_car.dbc"))
+        seen = "(0000000001.000000) can0 100#FFFF000000FFB000\n"  # Speed 16383.75 of at most 8000
+        line = self.run_tool(*car, "decode", "--json", stdin=seen)[0]
+        self.assertEqual(self.run_tool(*car, "encode", stdin=line)[0], seen)
+        edited = json.loads(line)
+        edited["fields"]["Speed"] = 9000
+        _, err = self.run_tool(*car, "encode", stdin=json.dumps(edited), code=1)
+        self.assertIn("standard input:1: '9000' is beyond the stated range: Speed takes 0 to 8000 rpm\n"
+                      "          many stated ranges are wrong: --force takes what the bits can hold", err)
+        out, _ = self.run_tool(*car, "encode", "--force", stdin=json.dumps(edited))
+        self.assertEqual(out, "(0000000001.000000) can0 100#A08C000000FFB000\n")
+        _, err = self.run_tool(*car, "encode", "--force", stdin=line.replace("16383.75", "16384"), code=1)
+        self.assertIn("'16384' is out of range", err)
+        # A float that other programs print with other digits is the same number, and no edit.
+        cells = '{"topic":"BatteryCells","fields":{"Cell_1":%s}}'
+        trip = "(0000000001.000000) can0 310#0000C04700000000\n"  # Distance 98304 of at most 10000, a float
+        line = self.run_tool(*car, "decode", "--json", stdin=trip)[0]
+        self.assertIn('"Distance":98304', line)
+        self.assertEqual(self.run_tool(*car, "encode", stdin=line.replace("98304", "98304.00000000001"))[0], trip)
+        # Without data every value is one that somebody wrote.
+        _, err = self.run_tool(*car, "encode", stdin=cells % "0", code=1)
+        self.assertIn("Cell_1 takes 2 to 4.5 V", err)
+        out, _ = self.run_tool(*car, "encode", stdin=cells % "3.7")
+        self.assertTrue(out.split()[-1].startswith("500##1889000"), out)
+
     def test_bad_lines(self):
         lines = '{"id":"123","data":"11"}\n{"id":"123"}\n{"id":"124","data":"22"}\n'
         out, err = self.run_tool("encode", stdin=lines, code=1)
@@ -198,8 +298,9 @@ class Send(Case):
         self.assertEqual(out.split(), ["605#01", "123#R", "201#50C30000400D0300"])
         out, err = self.run_tool("send", "--stdin", "--dry-run", stdin=lines + "what\n", code=1)
         self.assertIn("standard input:4:", err)
-        _, err = self.run_tool("send", "--stdin", "--dry-run", stdin=LOG, code=1)
-        self.assertIn("1 error frames are reports and were not, 1 CAN FD frames were not", err)
+        out, err = self.run_tool("send", "--stdin", "--dry-run", stdin=LOG)
+        self.assertIn("608##10300FFFF00001122", out.split())
+        self.assertIn("1 error frames are reports and were not", err)
         self.run_tool("send", "--stdin", "605#01", code=2)
         self.run_tool("send", "--timed", "605#01", code=2)
 

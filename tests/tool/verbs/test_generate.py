@@ -1,12 +1,16 @@
 """amiroctl generate: the same bytes as ocm-generate, from the compiled-in spec or another."""
 
+import json
 import os
+import pathlib
 import subprocess
 
 import harness
 
 TARGETS = ("cpp", "dbc", "c", "markdown", "wireshark", "json-schema")
 SPEC = os.path.join(harness.SOURCE, "spec", "topics.json")
+CAR = os.path.join(harness.SOURCE, "examples", "small_car.dbc")
+TOOL = os.path.join(os.path.dirname(harness.AMIROCTL), "ocm-generate")
 OTHER = os.path.join(harness.SOURCE, "examples", "other-robot", "topics.json")
 
 
@@ -15,12 +19,11 @@ class Generate(harness.Case):
         return subprocess.run(command, env=self.environment, capture_output=True, check=True, timeout=30).stdout
 
     def test_the_same_bytes_as_ocm_generate(self):
-        tool = os.path.join(os.path.dirname(harness.AMIROCTL), "ocm-generate")
         for target, *options in [(name,) for name in TARGETS] + [("dbc", "--priority", "low")]:
             own = self.bytes_of(harness.AMIROCTL, "generate", target, *options)
-            self.assertEqual(own, self.bytes_of(tool, SPEC, "--to", target, *options, "-o", "-"), target)
+            self.assertEqual(own, self.bytes_of(TOOL, SPEC, "--to", target, *options, "-o", "-"), target)
             other = self.bytes_of(harness.AMIROCTL, "--spec", OTHER, "generate", target, *options)
-            self.assertEqual(other, self.bytes_of(tool, OTHER, "--to", target, *options, "-o", "-"), target)
+            self.assertEqual(other, self.bytes_of(TOOL, OTHER, "--to", target, *options, "-o", "-"), target)
             self.assertNotEqual(own, other)
 
     def test_a_file_is_replaced(self):
@@ -33,7 +36,7 @@ class Generate(harness.Case):
         self.assertEqual(os.listdir(self.folder), ["amiro.dbc"])
 
     def test_mistakes(self):
-        for arguments, code, words in ((("pdf",), 2, "one of: cpp, dbc, c, markdown, wireshark, json-schema"),
+        for arguments, code, words in ((("pdf",), 2, "one of: cpp, spec, dbc, c, markdown, wireshark, json-schema"),
                                        (("dbc", "--priority", "big"), 2, "urgent, high, medium or low"),
                                        (("c", "--priority", "high"), 2, "--priority is for dbc"),
                                        ((), 2, "missing TARGET"), (("dbc", "-o", "/no/such/folder/x"), 1, "a folder that exists"),
@@ -45,14 +48,36 @@ class Generate(harness.Case):
         self.assertIn("/no/such/spec.json: there is no such file", err)
 
     def test_messages_are_not_left_out_without_a_word(self):
-        car = os.path.join(harness.SOURCE, "examples", "small_car.dbc")
-        out, err = self.run_tool("--spec", car, "generate", "c", code=1)
-        self.assertEqual((out, err), ("", "amiroctl: generate c: small_car.dbc has no topics, only messages\n"
-                                          "          files are made from topics; messages cannot be written yet\n"))
-        robot = os.path.join(harness.SOURCE, "spec", "topics.json")
-        out, err = self.run_tool("--spec", robot, "--spec", car, "generate", "c")
+        out, err = self.run_tool("--spec", CAR, "generate", "c", code=1)
+        self.assertEqual((out, err), ("", "amiroctl: generate c: small_car.dbc has only messages, which it has no place for\n"
+                                          "          messages become cpp, spec, dbc\n"))
+        out, err = self.run_tool("--spec", SPEC, "--spec", CAR, "generate", "c")
         self.assertIn("gyroscope", out)
-        self.assertEqual(err, "generate c: the messages of the spec are left out, 11 of them: files are made from topics\n")
+        self.assertEqual(err, "generate c: left out: all 11 messages\n")
+        _, err = self.run_tool("--spec", SPEC, "generate", "spec", code=1)
+        self.assertIn("generate spec: topics.json has only topics, which it has no place for\n          topics are in the spec already", err)
+
+    def test_a_dbc_file_becomes_a_spec_that_every_verb_takes_for_it(self):
+        spec, back = os.path.join(self.folder, "small_car.json"), os.path.join(self.folder, "small_car.dbc")
+        self.assertEqual(self.run_tool("--spec", CAR, "generate", "spec", "-o", spec), ("", ""))
+        self.assertEqual(self.run_tool("--spec", spec, "generate", "dbc", "-o", back), ("", ""))
+        self.assertEqual(self.bytes_of(TOOL, CAR, "--to", "spec", "-o", "-"), pathlib.Path(spec).read_bytes())
+        frames = "(0.0) can0 100#00112233445566FF\n(0.1) can0 200#0102030405060708\n(0.2) can0 1A0#0102030405060708\n"
+        log = os.path.join(self.folder, "drive.log")
+        pathlib.Path(log).write_text(frames, encoding="ascii")
+        for arguments in (("list",), ("list", "--json"), ("decode", log), ("decode", log, "--json")):
+            with self.subTest(arguments=arguments):
+                as_dbc = self.run_tool("--spec", CAR, *arguments)
+                self.assertEqual(self.run_tool("--spec", spec, *arguments), as_dbc)
+                self.assertEqual(self.run_tool("--spec", back, *arguments), as_dbc)
+
+    def test_topics_and_messages_in_one_dbc_file(self):
+        both = os.path.join(self.folder, "both.dbc")
+        self.run_tool("--spec", SPEC, "--spec", CAR, "generate", "dbc", "--priority", "medium", "-o", both)
+        listed = json.loads("[" + ",".join(self.run_tool("--spec", both, "list", "--json")[0].splitlines()) + "]")
+        names = {each.get("topic") or each.get("name") for each in listed}
+        self.assertIn("Gyroscope", names)
+        self.assertIn("Wheels", names)
 
 
 if __name__ == "__main__":

@@ -34,8 +34,15 @@ amiroctl decode [FILE ...] [OPTION ...]
 amiroctl encode [FILE] [OPTION ...]
 amiroctl convert IN OUT [OPTION ...]
 amiroctl stats [FILE ...|live] [TOPIC ...] [OPTION ...]
+amiroctl top [FILE|live] [TOPIC ...] [OPTION ...]
 amiroctl plot [FILE ...|live] FIELD ... [OPTION ...]
 amiroctl run SCRIPT|- [OPTION ...]
+amiroctl operate FILE [OPTION ...]
+amiroctl operator status [OPTION ...]
+amiroctl operator why [OPTION ...]
+amiroctl operator switch CONFIGURATION [OPTION ...]
+amiroctl operator hold [OPTION ...]
+amiroctl operator resume [OPTION ...]
 amiroctl sim [OPTION ...]
 amiroctl central [OPTION ...]
 amiroctl robots [OPTION ...]
@@ -102,7 +109,7 @@ class Man(harness.Case):
             shown += filter(None, rendered(self.run_tool("man", *([verb] if verb else []))[0])["SYNOPSIS"])
             if verb:
                 usage = re.search(r"^Usage: (.*)$", self.run_tool(verb, "--help")[0], re.M)[1]
-                self.assertTrue(verb == "analyse" or shown[-1] == usage, usage)
+                self.assertTrue(verb in ("analyse", "operator") or shown[-1] == usage, usage)
         self.assertEqual(shown, SYNOPSES)
 
     def test_the_program(self):

@@ -310,7 +310,7 @@ usage: amiroctl send FRAME
 
 send 123
 send: '123': not of the expected form
-write 205#01840302 (three hex digits, or eight for an extended identifier), or 205#R
+write 205#01840302 (three hex digits, or eight for an extended identifier), 205#R, or 205##101840302 for CAN FD
 
 send --stdin 123#
 send: FRAME and --stdin exclude each other
@@ -452,6 +452,22 @@ convert a b --to wav
 convert: no log format 'wav'
 --to names a format: pcapng, pcap, mcap, mcap-raw, asc, candump, candump-ns, csv, json
 
+top --intervall 1s
+top: unknown option '--intervall'
+did you mean '--interval'?
+
+top gyr
+top: no topic 'gyr'
+did you mean 'gyro'?
+
+top --interval soon
+top: --interval soon: not a time
+write 500ms, 2s or 1.5s
+
+top --interval 1ms
+top: --interval 1ms: twenty pictures a second are the most
+write --interval 50ms, or longer
+
 stats --asert x
 stats: unknown option '--asert'
 did you mean '--assert'?
@@ -483,6 +499,38 @@ did you mean 'gyro'?
 plot gyro.z --size big
 plot: --size big: no size
 write WIDTHxHEIGHT in pixels, 200 to 16384 each, such as 1200x600
+
+operate
+operate: missing FILE
+usage: amiroctl operate FILE [OPTION ...]
+
+operate a --chekc
+operate: unknown option '--chekc'
+did you mean '--check'?
+
+operate a b --check
+operate: unexpected argument 'b'
+usage: amiroctl operate FILE [OPTION ...]
+
+operate a --check --bitrate fast
+operate: --bitrate fast: no bit rate of CAN
+1 to 1000000 bits a second, such as 500k or 125000
+
+operator
+operator: missing VERB
+usage: amiroctl operator status|why|switch|hold|resume ...
+
+operator statsu
+operator: unknown verb 'statsu'
+did you mean 'status'?
+
+operator status --jsno
+operator status: unknown option '--jsno'
+did you mean '--json'?
+
+operator switch
+operator switch: missing CONFIGURATION
+usage: amiroctl operator switch CONFIGURATION [OPTION ...]
 
 run
 run: missing SCRIPT|-
@@ -691,6 +739,7 @@ ALONE = {
     "doctor": (1, "amiroctl: no bus: no CAN interface is up and no simulator runs"),
     "record": (1, "amiroctl: no bus: no CAN interface is up and no simulator runs"),
     "stats": (1, "amiroctl: no bus: no CAN interface is up and no simulator runs"),
+    "top": (1, "amiroctl: no bus: no CAN interface is up and no simulator runs"),
     "decode": (1, "amiroctl: the standard input is empty"),
     "encode": (0, "0 frames encoded"),
     "line": (1, "no whole sentence in the standard input: it is read as what a robot said; --to-robot reads the other direction"),

@@ -9,7 +9,8 @@ from harness import SOURCE, Case, main
 
 OPTION = re.compile(r" +(?:-\w,)?(--[a-z-]+(?:,--[a-z-]+)*)(.*?)(?:  |$)")
 # The same thing in more than one form: a speed that may be max, a bit rate beyond CAN's; robots by number and by name.
-FORMS = {"--bitrate", "--robots", "--speed"}
+FORMS = {"--bitrate", "--data-bitrate", "--robots", "--speed"}
+INNER = {"analyse": ("bus", "tasks", "chain", "trace"), "operator": ("status", "why", "switch", "hold", "resume")}
 LOG = "".join(f"({i / 10 + 1}) can0 608#{i:02X}\n" for i in range(20))
 
 
@@ -17,8 +18,9 @@ class Options(Case):
     def verbs(self):
         for line in self.run_tool("completion", "--words", "--", "")[0].splitlines()[1:]:
             yield [line.split("\t")[0]]
-        for inner in ("bus", "tasks", "chain", "trace"):
-            yield ["analyse", inner]
+        for verb, inner in INNER.items():
+            for name in inner:
+                yield [verb, name]
 
     def options(self, verb):
         """Names and the values that they take, as --help has them."""

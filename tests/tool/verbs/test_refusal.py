@@ -4,16 +4,9 @@ import os
 import time
 
 from harness import Case, main
-from played_adapter import WithAdapter
+from played_adapter import BAD_LENGTH, BAD_PERIOD, LIGHT_RING, NOT_SCHEDULABLE, NOT_SERVED, POWER_MANAGEMENT, WithAdapter, refusal
 
 FORWARDS, REST = "201#50C3000000000000", "201#0000000000000000"
-BAD_LENGTH, BAD_PERIOD, NOT_SERVED, NOT_SCHEDULABLE = 3, 6, 8, 15
-DI_WHEEL_DRIVE, POWER_MANAGEMENT, LIGHT_RING = 0x1D, 0x3B, 0x59
-
-
-def refusal(number, reason, board=DI_WHEEL_DRIVE, count=1):
-    """What the board says, as the adapter passes it on."""
-    return f"t7{board:02X}6{number:02X}{reason:02X}{count:02X}00000000" + "10\r"
 
 
 class OnARobotThatRefuses(WithAdapter, Case):

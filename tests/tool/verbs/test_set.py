@@ -90,7 +90,7 @@ class Set(Case):
     def test_beyond_its_range(self):
         _, err = self.run_tool("--spec", CAR, "set", "Engine", "Speed=9000", "--dry-run", code=2)
         self.assertEqual(err, "amiroctl: set: '9000' is beyond the stated range: Speed takes 0 to 8000 rpm\n"
-                              "          many stated ranges are wrong: --force sends what the bits can hold\n")
+                              "          many stated ranges are wrong: --force takes what the bits can hold\n")
         out, _ = self.run_tool("--spec", CAR, "set", "Engine", "Speed=9000", "--dry-run", "--force")
         self.assertTrue(out.startswith("100#A08C"), out)  # 36000 quarters
         _, err = self.run_tool("--spec", CAR, "set", "Engine", "Speed=1", "--for", "1s", code=2)

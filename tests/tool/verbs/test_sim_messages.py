@@ -18,16 +18,28 @@ class SimMessages(Case):
                 return sim, "".join(said)
         self.fail("".join(said))
 
+    def test_listen_shows_what_is_chosen(self):
+        """The bus leaves out what is not looked at; what it cannot tell apart, the tool does."""
+        car = os.path.join(SOURCE, "examples", "small_car.dbc")
+        self.start_sim("--spec", car)
+        for arguments, topics in ((("Engine",), {"Engine"}), (("--sender", "Brakes"), {"Wheels", "Driving"}),
+                                  (("--filter", "100:7FF"), {"Engine"}), (("--filter", "100:7FF", "Wheels"), {"Engine", "Wheels"}),
+                                  (("--where", "Engine.Speed>=0"), {"Engine"}),
+                                  (("Wheels", "--where", "Engine.Speed>=0"), {"Wheels"})):
+            out, err = self.run_tool("listen", "--spec", car, "--bus", "sim", "--json", "--timeout", "500ms", *arguments)
+            self.assertEqual({event["topic"] for event in self.objects(out)}, topics, arguments)
+            self.assertNotIn("unknown", err)
+
     def test_listen_and_stats_find_what_is_declared(self):
         sim, said = self.play("--seed", "7")
         self.assertIn("no period: Button", said)
-        self.assertIn("no classic CAN frame holds them: Long", said)
+        self.assertIn("no frame holds them: Parts", said)
         out, _ = self.run_tool("listen", "--spec", SPEC, "--bus", "sim", "--json", "--timeout", "2s")
         rows = self.objects(out)
         text = json.dumps(rows)
-        for name in ("Fast", "Pages", "Group"):
+        for name in ("Fast", "Pages", "Group", "Long", "Odd"):
             self.assertIn(f'"{name}"', text)
-        for name in ("Button", "Long"):
+        for name in ("Button", "Parts"):
             self.assertNotIn(f'"{name}"', text)
         out, _ = self.run_tool("stats", "--spec", SPEC, "--bus", "sim", "--json", "--duration", "3s",
                                "--bitrate", "500k")
@@ -39,6 +51,46 @@ class SimMessages(Case):
         _, err = self.interrupt(sim)
         self.assertRegex(err, r"Engine +sent \d+\n")
         self.assertNotIn("found the bus full", err)
+
+    def test_messages_of_can_fd_are_played_decoded_and_set(self):
+        self.play()
+        out, _ = self.run_tool("listen", "--spec", SPEC, "--bus", "sim", "--json", "--timeout", "2s")
+        rows = [row for row in self.objects(out) if "fd" in row]
+        self.assertEqual({row["topic"] for row in rows}, {"Long", "Odd"})
+        for row in rows:
+            self.assertEqual(row["fd"], {"brs": row["topic"] == "Long", "esi": False})  # Odd: CANFD_BRS is 0
+            self.assertEqual(len(row["data"]), 64 if row["topic"] == "Long" else 24)
+        listener = self.listen("--spec", SPEC, "--timeout", "10s")
+        self.run_tool("set", "--spec", SPEC, "--bus", "sim", "Odd", "End=77", "--every", "20ms", "--for", "200ms")
+        out, _ = self.interrupt(listener)
+        ours = [row for row in self.objects(out) if row.get("fields", {}).get("End") == 77]
+        self.assertGreaterEqual(len(ours), 9)
+        self.assertEqual(ours[0]["data"], "00" * 9 + "4D" + "0000")
+        self.assertEqual(ours[0]["fd"], {"brs": False, "esi": False})
+
+    def test_the_bit_rate_of_data(self):
+        _, said = self.play("--bitrate", "250000", "--data-bitrate", "1000000")
+        self.assertIn("250000 bit/s", said)
+        _, err = self.run_tool("sim", "--bus", "sim:" + os.path.join(self.folder, "s"), "--spec", SPEC, "--data-bitrate",
+                               "750000", code=1)
+        self.assertIn("750000 bit/s", err)
+        self.assertIn("such as 2000000", err)
+
+    def test_the_bit_rates_of_the_spec(self):
+        """With the AMiRo's topics in it as well, which are at another bit rate there."""
+        with open(os.path.join(SOURCE, "spec", "topics.json"), encoding="utf-8") as file:
+            both = json.load(file)
+        both["bus"] |= {"bit_rate": 250000, "data_bit_rate": 1000000}
+        both["messages"] = [{"name": "Extra", "id": "0x7F0", "length": 1, "period": "20ms", "fields": []}]
+        path = os.path.join(self.folder, "both.json")
+        with open(path, "w", encoding="utf-8") as file:
+            json.dump(both, file)
+        for arguments, rate in (((), 250000), (("--bitrate", "500000"), 500000)):
+            sim = self.start("sim", "--spec", path, *arguments)
+            said = next(line for line in sim.stderr if "Ctrl-C ends it" in line)
+            self.assertIn("simulated AMiRo on --bus sim", said)
+            self.assertIn(f", {rate} bit/s", said)
+            self.interrupt(sim)
 
     def test_sporadic_messages_on_request(self):
         _, said = self.play("--sporadic", "100ms")

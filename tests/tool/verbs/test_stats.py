@@ -86,14 +86,14 @@ class Stats(Case):
         bus = report["buses"][0]
         self.assertEqual(bus["bus"], "can0")
         self.assertEqual((bus["frames"], bus["errors"], bus["overflows"], bus["fd_frames"]), (7, 2, 1, 1))
-        self.assertEqual((bus["unknown"], bus["wrong_length"], bus["commands"]), (3, 1, 1))
-        self.assertEqual(bus["unknown_ids"], [{"id": "655", "count": 2}, {"id": "1F334455", "count": 1}])
+        self.assertEqual((bus["unknown"], bus["wrong_length"], bus["commands"]), (4, 1, 1))
+        self.assertEqual(bus["unknown_ids"], [{"id": "655", "count": 3}, {"id": "1F334455", "count": 1}])
         gyro = bus["topics"][1]
         self.assertEqual((gyro["topic"], gyro["wrong_length"], gyro["requests"], gyro["bad_requests"]),
                          ("gyroscope", 1, 1, 1))
         out, _ = self.run_tool("stats", path)
-        self.assertIn("2 error frames, 1 overflow of the CAN controller, 1 CAN FD frame, not in the load, "
-                      "3 frames that no topic has (655 2, 1F334455 1)", out)
+        self.assertIn("2 error frames, 1 overflow of the CAN controller, 1 CAN FD frame, not in the "
+                      "load without --data-bitrate, 4 frames that no topic has (655 3, 1F334455 1)", out)
 
     def test_load_is_of_exact_bits(self):
         # 205#01840302 has 44 + 32 + 5 bits and 3 of intermission: tests/unit/can/length.cpp. Ten of them in

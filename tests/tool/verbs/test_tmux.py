@@ -1,56 +1,20 @@
 """What stays on the screen of a real terminal: tmux, of several widths. Needs tmux."""
 
-import os
-import shlex
-import shutil
-import subprocess
-
 import harness
+import screens
 
 COLUMNS = (40, 80, 120, 200)
 
 
-class Screens(harness.Case):
+class Screens(screens.Screens):
     def setUp(self):
         super().setUp()
-        self.addCleanup(self.end_terminal)
-        self.assertIsNotNone(shutil.which("tmux"), "tmux is missing: scripts/setup")
         self.start_sim("--frozen")
         for topic in ("gyro", "odom", "power"):
             self.run_tool("publish", topic, "100ms")
 
-    def end_terminal(self):
-        subprocess.run(self.command("kill-server"), env=self.environment, stderr=subprocess.DEVNULL, check=False)
-
-    def command(self, *words):
-        return ["tmux", "-f", "/dev/null", "-S", os.path.join(self.folder, "tmux"), *words]
-
-    def tmux(self, *words):
-        done = subprocess.run(self.command(*words), env={**self.environment, "TERM": "xterm"}, capture_output=True,
-                              text=True, timeout=20)
-        self.assertEqual((done.returncode, done.stderr), (0, ""), words)
-        return done.stdout
-
     def open(self, columns, *arguments):
-        """Runs the tool on a screen of its own, which stays when it ends, and ends with the word END."""
-        line = shlex.join([harness.AMIROCTL, "--bus", "sim", *arguments]) + "; printf 'END %d' $?; sleep 100"
-        self.tmux("new-session", "-d", "-s", f"of{columns}", "-x", str(columns), "-y", "60", line)
-
-    def screen(self, columns, joined=True):
-        """Lines as the program wrote them: one that it left to the terminal to break is longer than the screen."""
-        lines = self.tmux("capture-pane", "-p", *(["-J"] if joined else []), "-t", f"of{columns}").splitlines()
-        return [line.rstrip() for line in lines]
-
-    def ended(self, columns):
-        harness.waiting.until(lambda: any(line.startswith("END ") for line in self.screen(columns)), "its end")
-        lines = self.screen(columns)
-        while not lines[-1]:
-            lines.pop()
-        return lines
-
-    def fits(self, columns, lines):
-        self.assertTrue(lines)
-        self.assertLessEqual(max(map(len, lines)), columns, "\n".join(lines))
+        super().open(columns, "--bus", "sim", *arguments)
 
     def test_listen(self):
         for columns in COLUMNS:

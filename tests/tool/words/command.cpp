@@ -229,6 +229,9 @@ TEST_CASE("what is wrong is said of the word where it stands") {
       {"send 20#00", 1, "identifier", ""},
       {"send 205#001122334455667788", 1, "length", ""},
       {"send 20000004#", 1, "is an error frame", ""},
+      {"send 123##", 1, "not of the expected form", "205##101840302"},
+      {"send 123##8AA", 1, "not of the expected form", "205##101840302"},
+      {"send 123##0112233445566778899", 1, "length", "12, 16, 20, 24, 32, 48 and 64"},
       {"send 205#00 --priority low", 3, "in its identifier", ""},
   };
   for (const auto& row : rows) {

@@ -8,7 +8,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "ocm/can/text.hpp"
+#include "ocm/can/any_text.hpp"
 #include "ocm/protocol/topic.hpp"
 
 #include "cli/words/command.hpp"
@@ -83,6 +83,21 @@ constexpr std::array engine_frames{layout(engine_fields, 0x100, false, 8)};
 constexpr std::array paged_frames{layout(paged_fields, 0x18FEF100, true, 5)};
 constexpr std::array long_frames{layout({}, 0x200, false, 64)};
 
+constexpr std::array<Field, 2> radar_fields{field("first", {0, 8, ByteOrder::little}),
+                                            field("last", {72, 8, ByteOrder::little})};
+constexpr std::array radar_frames{[] {
+  protocol::FrameLayout radar = layout(radar_fields, 0x300, false, 10);
+  radar.fd = true;
+  return radar;
+}()};
+
+constexpr std::array slow_radar_frames{[] {
+  protocol::FrameLayout radar = radar_frames[0];
+  radar.address.number = 0x301;
+  radar.bit_rate_switch = false;
+  return radar;
+}()};
+
 constexpr protocol::Topic message(std::string_view name, std::span<const protocol::FrameLayout> frames) {
   protocol::Topic topic;
   topic.name = name;
@@ -93,7 +108,8 @@ constexpr protocol::Topic message(std::string_view name, std::span<const protoco
 }
 
 constexpr std::array topics{message("Engine", engine_frames), message("Paged", paged_frames),
-                            message("Long", long_frames)};
+                            message("Long", long_frames), message("Radar", radar_frames),
+                            message("SlowRadar", slow_radar_frames)};
 constexpr protocol::Catalogue catalogue{"car", 500'000, {}, topics};
 
 auto parse(const std::string& line) {
@@ -121,6 +137,21 @@ TEST_CASE("a message is sent with physical values, and start values for the rest
   CHECK(frame("set Engine gear=broken") == "100#0000072800000000");  // named, though beyond the stated range
   CHECK(frame("set Engine torque=1.5") == "100#000000280000C03F");   // IEEE 754: 3FC00000
   CHECK(frame("set Engine torque=-Infinity") == "100#00000028000080FF");
+}
+
+TEST_CASE("a message of CAN FD is sent as one, filled up to a length that there is") {
+  const auto command = parse("set Radar last=255 first=1");
+  REQUIRE(command.ok());
+  CHECK(command->frames.empty());
+  REQUIRE(command->fd_frames.size() == 1);
+  CHECK(can::validate(command->fd_frames[0]).ok());
+  CHECK(can::to_text(command->fd_frames[0]).view() == "300##1010000000000000000FF0000");  // 10 bytes: 12
+  std::size_t count = 0;
+  command->each_frame([&](const can::AnyFrame& each) { count += each == command->fd_frames[0] ? 1 : 0; });
+  CHECK(count == 1);
+  const auto slow = parse("set SlowRadar first=1");
+  REQUIRE(slow.ok());
+  CHECK(can::to_text(slow->fd_frames[0]).view() == "301##0010000000000000000000000");  // one bit rate
 }
 
 TEST_CASE("a selector that is not given follows the fields that are") {

@@ -153,8 +153,12 @@ TEST_CASE("a number without a unit stays one") {
 }
 
 TEST_CASE("a number with more digits than a Decimal has is a raw number all the same") {
+  const auto has = [](const std::string& text, std::string_view part) {
+    return text.find(part) != std::string::npos;
+  };
   protocol::Field word{"word", {0, 64, protocol::ByteOrder::little}, false, {1, 0}, {}, "s", 0, INT64_MAX,
                        {}};
+  CHECK(has(parse_value(word, "-1").error, "word takes 0 to 18446744073709551615 s"));
   CHECK(parse_value(word, "18446744073709551615") == -1);
   CHECK(parse_value(word, "18446744073709551615 s") == -1);
   CHECK(parse_value(word, "9223372036854775808s") == INT64_MIN);
@@ -162,7 +166,11 @@ TEST_CASE("a number with more digits than a Decimal has is a raw number all the 
   CHECK_FALSE(parse_value(word, "-1").ok());
   CHECK_FALSE(parse_value(word, "18446744073709551615m").ok());
   CHECK_FALSE(parse_value(word, std::string(60, '9')).ok());
+  word.raw_max = 10;  // a range that is stated
+  CHECK(has(parse_value(word, "11").error, "word takes 0 to 10 s"));
+  word.raw_max = INT64_MAX;
   word.scale = {123, -3};
+  CHECK(has(parse_value(word, "-1").error, "word takes 0 to 2.26894952106627e+18 s"));
   CHECK(parse_value(word, "2268949521066274848.645") == -1);
   CHECK(parse_value(word, "2268949521066274848.6") == -1);  // the nearest
   word.scale = {-1, 2};

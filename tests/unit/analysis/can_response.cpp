@@ -223,9 +223,9 @@ TEST_CASE("a bit that is shorter than a tick: all that comes at 0 still goes fir
 
 TEST_CASE("CAN: numbers that mean nothing are named, and nothing is computed from them") {
   for (const Message bad :
-       {Message{.cost = 0, .period = 10}, Message{.cost = 1, .period = 0}, Message{.cost = -5, .period = 10},
-        Message{.cost = 5, .period = -10}, Message{.cost = 5, .period = 10, .deadline = 0},
-        Message{.cost = 5, .period = 10, .jitter = -1}}) {
+       {Message{.period = 10}, Message{.cost = 0, .period = 10}, Message{.cost = 1, .period = 0},
+        Message{.cost = -5, .period = 10}, Message{.cost = 5, .period = -10},
+        Message{.cost = 5, .period = 10, .deadline = 0}, Message{.cost = 5, .period = 10, .jitter = -1}}) {
     const auto results = can_response_times(std::array<Message, 2>{{{.cost = 1, .period = 10}, bad}});
     for (const Explained& result : results) {
       CHECK(result.reason == Reason::bad_input);
@@ -257,6 +257,9 @@ TEST_CASE("CAN: huge and tiny numbers end with a reason") {
   CHECK_FALSE(jitter[1].bounded());
   CHECK(can_response_times(std::array<Message, 2>{{{.cost = 1, .period = 1}, {.cost = 1, .period = 1}}})[1]
             .reason == Reason::overloaded);
+  // 2^33 of 2^34 - 2^29, twice: 1.03.
+  constexpr Message half{.cost = 8'589'934'592, .period = 16'642'998'272};
+  CHECK(can_response_times(std::array<Message, 2>{half, half})[1].reason == Reason::overloaded);
   // 1 - U is 2 parts in 10^12: the busy period has no end worth waiting for.
   const std::array<Message, 3> close{{{.cost = 499'999'999'999, .period = 1'000'000'000'000},
                                       {.cost = 499'999'999'999, .period = 1'000'000'000'000},

@@ -21,6 +21,11 @@ static_assert(bits_ns(2, 666'667) == 3'000);
 static_assert(bits_ns(1, 3) == 333'333'334);
 static_assert(bits_ns(unbounded, 1) == unbounded);
 
+// CAN FD: 29 bits of 2 us and 160 of 200 ns; where both rates are one, all bits of it.
+static_assert(bits_ns({29, 160}, 500'000, 5'000'000) == 58'000 + 32'000);
+static_assert(bits_ns({29, 160}, 500'000, 500'000) == bits_ns(189, 500'000));
+static_assert(bits_ns({1, 1}, 3, 7) == 333'333'334 + 142'857'143);
+
 // E(t), with frames of 100 bits: a burst of 2, and one more after each 1000.
 constexpr CanBus noisy{.bit = 1, .errors = {.burst = 2, .every = 1'000}};
 static_assert(error_delay(noisy, 100, 1).value() == 2 * 131);

@@ -98,6 +98,8 @@ static_assert([] {
 constexpr Explained overloaded =
     response_times(in_order(std::array{Task{5, 10}, Task{11, 20}, Task{1, 1000}}))[1];
 static_assert(overloaded.reason == Reason::overloaded && !overloaded.bounded() && overloaded.largest == 1);
+// Of two that ask for the same, the one above.
+static_assert(response_times(in_order(std::array{Task{6, 10}, Task{6, 10}}))[1].largest == 0);
 // Those above the overload do not notice.
 static_assert(response_times(in_order(std::array{Task{5, 10}, Task{11, 20}}))[0].ok());
 static_assert(response_times(in_order(std::array{Task{11, 10}}))[0].reason == Reason::overloaded);

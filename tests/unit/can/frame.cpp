@@ -18,7 +18,7 @@ using ocm::test::Random;
 static_assert(sizeof(Frame) == 16);
 
 TEST_CASE("a frame is valid when its identifier and length fit its format") {
-  STATIC_REQUIRE(validate({}).ok());
+  STATIC_REQUIRE(validate(Frame{}).ok());
   STATIC_REQUIRE(validate({0x7FF, 8, {}, Format::base}).ok());
   STATIC_REQUIRE(validate({0x800, 8, {}, Format::base}).error == Error::bad_identifier);
   STATIC_REQUIRE(validate({0x800, 0, {}, Format::base_remote}).error == Error::bad_identifier);

@@ -109,6 +109,24 @@ TEST_CASE("the longest base frame of eight bytes takes 133 bits, 2 below the clo
   CHECK(worst().bits(0x78, Format::base, 8) == 133);
 }
 
+TEST_CASE("of a parameter group: the longest of all sources and destinations, one by one") {
+  for (const std::uint32_t id : {0x18EA'0000U, 0x0CF0'04FEU, 0x18FE'F1FEU}) {
+    const std::uint32_t free = (id >> 16 & 0xFF) < 240 ? 0xFFFF : 0xFF;
+    for (const std::uint8_t dlc : {std::uint8_t{3}, std::uint8_t{8}}) {
+      unsigned most = 0;
+      unsigned least = 1000;
+      for (std::uint32_t other = id & ~free; other <= (id | free); ++other) {
+        const unsigned bits = worst().bits(other, Format::extended, dlc);
+        most = std::max(most, bits);
+        least = std::min(least, bits);
+      }
+      CHECK(worst().bits_of_any(id, free, Format::extended, dlc) == most);
+      CHECK(least < most);
+    }
+  }
+  CHECK(worst().bits_of_any(0x123, 0, Format::base, 8) == worst().bits(0x123, Format::base, 8));
+}
+
 TEST_CASE("a frame that cannot exist has no length") {
   CHECK(worst().bits(0x800, Format::base, 0) == 0);
   CHECK(worst().bits(0x2000'0000, Format::extended, 0) == 0);

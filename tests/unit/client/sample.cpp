@@ -127,4 +127,107 @@ TEST_CASE("random loss: every whole sample comes out") {
   CHECK(receiver.counters().incomplete > 0);
 }
 
+// --- J1939's transport protocol: a broadcast of 17 bytes [SAE J1939-21, figure C3] ---
+
+constexpr protocol::Field byte_at(std::string_view name, std::uint16_t bit) {
+  protocol::Field field;
+  field.name = name;
+  field.position = {bit, 8};
+  return field;
+}
+constexpr protocol::Field group_fields[] = {byte_at("first", 0), byte_at("last", 128),
+                                            byte_at("absent", 136)};
+constexpr protocol::FrameLayout group_frames[] = {[] {
+  protocol::FrameLayout layout;
+  layout.length = 20;
+  layout.fields = group_fields;
+  layout.address = {protocol::Address::By::pgn, true, 0x18FEECFE};
+  return layout;
+}()};
+constexpr protocol::Topic groups[] = {[] {
+  protocol::Topic topic;
+  topic.name = "VI";
+  topic.kind = protocol::Kind::message;
+  topic.frames = group_frames;
+  return topic;
+}()};
+constexpr protocol::Catalogue truck{"truck", 250'000, {}, groups};
+
+constexpr std::string_view announcement = "1CECFF00#20110003FFECFE00";
+constexpr std::string_view packets[] = {"1CEBFF00#0101020304050607", "1CEBFF00#0208090A0B0C0D0E",
+                                        "1CEBFF00#030F1011FFFFFFFF"};
+
+TEST_CASE("the packet that completes a message is the sample") {
+  Receiver receiver{truck, client::Transport::together};
+  CHECK(take(receiver, announcement).meaning == Meaning::transport);
+  CHECK(take(receiver, packets[0], 1ms).meaning == Meaning::transport);
+  CHECK(receiver.transports_open() == 1);
+  CHECK(take(receiver, packets[1], 2ms).meaning == Meaning::transport);
+  const auto last = take(receiver, packets[2], 3ms);
+  REQUIRE(last.meaning == Meaning::sample);
+  REQUIRE(last.transported != nullptr);
+  CHECK(last.transported->id == j1939::Identifier{7, 0xFEEC, 255, 0});
+  CHECK(last.topic == &groups[0]);
+  CHECK(last.sample.time == base::Time{3ms});
+  const auto bytes = last.sample.data(0);
+  REQUIRE(bytes.size() == 17);
+  CHECK(group_fields[0].raw(bytes) == 0x01);
+  CHECK(group_fields[1].raw(bytes) == 0x11);
+  CHECK_FALSE(last.frame.layout().has(group_fields[2], bytes));  // byte 17, which did not come
+  CHECK(receiver.counters().frames == 4);
+  CHECK(receiver.counters().samples == 1);
+  CHECK(receiver.counters().transport == 3);
+  CHECK(receiver.counters().faults() == 0);
+  CHECK(receiver.transports_open() == 0);
+  CHECK(receiver.transport_counters(base::Time{3ms}).complete == 1);
+}
+
+TEST_CASE("a message of an unknown group is whole, and unknown") {
+  Receiver receiver{truck, client::Transport::together};
+  static_cast<void>(take(receiver, "1CECFF00#20110003FFEDFE00"));
+  for (const auto packet : {packets[0], packets[1]}) static_cast<void>(take(receiver, packet));
+  const auto last = take(receiver, packets[2]);
+  CHECK(last.meaning == Meaning::unknown);
+  REQUIRE(last.transported != nullptr);
+  CHECK(last.transported->id.pgn == 0xFEED);
+  CHECK(last.transported->data.size() == 17);
+  CHECK(receiver.counters().unknown == 1);
+}
+
+TEST_CASE("what does not come to its end is counted by the time that is handed in") {
+  Receiver receiver{truck, client::Transport::together};
+  static_cast<void>(take(receiver, announcement));
+  CHECK(receiver.transport_counters(base::Time{j1939::timeout::t1}).timed_out == 0);
+  CHECK(receiver.transport_counters(base::Time{j1939::timeout::t1 + 1ns}).timed_out == 1);
+  CHECK(receiver.transports_open() == 0);
+}
+
+TEST_CASE("messages of two buses do not mix") {
+  Receiver receiver{truck, client::Transport::together};
+  const auto on = [&](std::string_view text, std::uint16_t bus) {
+    const auto frame = can::parse_frame(text);
+    REQUIRE(frame.ok());
+    return receiver.take(can::FrameView{*frame}, base::Time{}, bus).meaning;
+  };
+  for (const auto text : {announcement, packets[0], packets[1]})
+    for (const std::uint16_t bus : {std::uint16_t{1}, std::uint16_t{2}})
+      CHECK(on(text, bus) == Meaning::transport);
+  CHECK(on(packets[2], 1) == Meaning::sample);
+  CHECK(on(packets[2], 2) == Meaning::sample);
+}
+
+TEST_CASE("nothing is put together unless asked for, of frames of 11 bits, or without a parameter group") {
+  Receiver as_frames{truck};
+  Receiver robot{amiro::catalogue, client::Transport::together};
+  for (const auto text : {announcement, packets[0], packets[1], packets[2]}) {
+    CHECK(take(as_frames, text).meaning == Meaning::unknown);
+    CHECK(take(robot, text).meaning == Meaning::unknown);
+  }
+  CHECK(as_frames.transport_counters({}).announced == 0);
+  Receiver receiver{truck, client::Transport::together};
+  CHECK(take(receiver, "400#20110003FFECFE00").meaning == Meaning::unknown);
+  CHECK(take(receiver, "1CECFF00#R8").meaning == Meaning::unknown);
+  CHECK(receiver.transports_open() == 0);
+}
+
 }  // namespace client_sample_test

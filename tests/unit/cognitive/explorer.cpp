@@ -61,6 +61,8 @@ TEST_CASE("explorer: frontiers by hand") {
   const auto all = frontiers(map, 1);
   CHECK(all == std::vector<Cell>{{1, 1}, {3, 1}, {2, 2}, {3, 2}});
   CHECK(frontiers(map, 2) == std::vector<Cell>{{3, 2}});
+  // What is around the map is unknown, too.
+  CHECK(frontiers(map_of({"##", "..", "##"}), 1) == std::vector<Cell>{{0, 1}, {1, 1}});
   CHECK(frontiers(Map{}, 1).empty());
   CHECK(frontiers(map_of({"###", "#.#", "###"}), 1).empty());
 }
@@ -94,6 +96,16 @@ TEST_CASE("explorer: drives to where the border is seen, looks, and gives it up 
   CHECK(looks == options().most_tries);
   CHECK_FALSE(explorer.goal(0));
   CHECK(robots[0].body.pose.x_m < 1.0F);
+}
+
+TEST_CASE("explorer: what is left of the border") {
+  CHECK(Left{}.known() == 0.0);
+  CHECK_FALSE(Left{}.is_known());
+  CHECK(Left{10, 1, 1, 3}.known() == Approx(0.5));
+  // All free cells of the first and last line are at the edge, and so are those in between.
+  const Explorer explorer{options()};
+  CHECK(explorer.left(map_of({"...", "...", "..."})).edge == 8);
+  CHECK(explorer.left(map_of({"#.#", "...", "#.#"})).edge == 4);
 }
 
 TEST_CASE("explorer: nothing to do") {

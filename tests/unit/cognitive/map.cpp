@@ -97,6 +97,12 @@ TEST_CASE("map: a handshake that cannot be is not believed, a short one is compl
   old.length = 14;
   CHECK(shape_of(old).width_m == Approx(0.12F));
   CHECK(shape_of(old).tower.sensor_heading_deg[1] == 90.0F);
+  // What was not given says nothing, whatever stands there.
+  old.given = 3;
+  old.tower_offset = 50;
+  CHECK(shape_of(old).tower.ahead_of_axle_m == Shape{}.tower.ahead_of_axle_m);
+  old.given = 4;
+  CHECK(shape_of(old).tower.ahead_of_axle_m == Approx(0.5F));
 }
 
 TEST_CASE(

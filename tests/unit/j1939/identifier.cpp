@@ -15,6 +15,9 @@ static_assert(Identifier::decode(0x0CF0'0400) == Identifier{3, 0xF004, 255, 0x00
 // A request (group EA00, PDU1) to all and to one. [SAE J1939-21]
 static_assert(Identifier::decode(0x18EA'FF00) == Identifier{6, 0xEA00, 255, 0x00});
 static_assert(Identifier::decode(0x18EA'05F9) == Identifier{6, 0xEA00, 0x05, 0xF9});
+// Whom all hear, and who has no address yet. [SAE J1939-81]
+static_assert(ocm::j1939::global_address == 255 && ocm::j1939::null_address == 254);
+static_assert(Identifier{} == Identifier{6, 0, 255, 254});
 // The data page is a part of the number.
 static_assert(pgn_of(0x19F0'0423) == 0x1F004);
 static_assert(pgn_of(0x1CEF'1234) == 0xEF00);

@@ -16,6 +16,27 @@ TEST_CASE("an entry keeps what a classic frame has, and gives it back") {
   CHECK(*entry.classic() == frame);
 }
 
+TEST_CASE("an entry of a frame of either kind is that frame again") {
+  can::AnyFrame frame;
+  frame.id = 0x1F334455;
+  frame.format = can::Format::extended;
+  frame.length = 12;
+  frame.flags = can::frame_flag::fd | can::frame_flag::bit_rate_switch;
+  frame.data[11] = 0xAB;
+  const log::Entry entry{base::Time{base::Duration{5}}, frame, 3};
+  CHECK(entry.time == base::Time{base::Duration{5}});
+  CHECK(entry.interface == 3);
+  CHECK(entry.is_fd());
+  CHECK(entry.frame() == frame);
+  const can::Frame classic{0x205, 2, {1, 2}};
+  CHECK(log::Entry{{}, classic}.frame() == can::AnyFrame{classic});
+  // What lies behind the data, and flags that a bus does not have, stay in the log.
+  log::Entry odd{{}, classic};
+  odd.data[40] = 0xFF;
+  odd.flags = 0xF8;
+  CHECK(odd.frame() == can::AnyFrame{classic});
+}
+
 TEST_CASE("a CAN FD entry is no classic frame; a remote one has no bytes") {
   Entry entry;
   entry.flags = log::flag::fd;

@@ -19,6 +19,26 @@ TEST_CASE("bus_load: a frame takes its stuff bits and the intermission") {
   STATIC_REQUIRE(bits_on_bus(Frame{0x205, 4, {0x01, 0x84, 0x03, 0x02}}) == 44 + 32 + 5 + 3);
 }
 
+TEST_CASE("bus_load: of CAN FD the bits behind the switch go at their own rate") {
+  using ocm::can::AnyFrame;
+  namespace flag = ocm::can::frame_flag;
+  constexpr AnyFrame classic{Frame{0x205, 4, {0x01, 0x84, 0x03, 0x02}}};
+  STATIC_REQUIRE(bits_on_bus(classic, {500'000}) == 84U);
+  AnyFrame frame;
+  frame.id = 0x123;
+  frame.length = 64;
+  frame.data.fill(0x55);
+  frame.flags = flag::fd;
+  const auto whole = ocm::can::fd_frame_bits(frame);
+  CHECK(bits_on_bus(frame, {500'000}) == whole.nominal + 3);
+  frame.flags |= flag::bit_rate_switch;
+  const auto bits = ocm::can::fd_frame_bits(frame);
+  REQUIRE(bits.data > 500);
+  CHECK_FALSE(bits_on_bus(frame, {500'000}).has_value());
+  CHECK(bits_on_bus(frame, {500'000, 500'000}) == bits.nominal + 3 + bits.data);
+  CHECK(bits_on_bus(frame, {500'000, 1'000'000}) == bits.nominal + 3 + (bits.data + 1) / 2);
+}
+
 TEST_CASE("bus_load: the tables count as the bits do") {
   std::mt19937 random{9};
   using ocm::can::Format;

@@ -15,7 +15,7 @@ using ocm::base::Time;
 
 /// A bus of 500 kbit/s to put frames on, in candump's notation.
 struct Recorded {
-  BusStatistics statistics{amiro::catalogue, 500'000};
+  BusStatistics statistics{amiro::catalogue, {500'000}};
   void put(ocm::base::Duration time, std::string_view frame) {
     const auto parsed = ocm::can::parse_frame(frame);
     REQUIRE(parsed);
@@ -53,7 +53,7 @@ TEST_CASE("statistics: a request without a period asks for the topic's own") {
   topic.period = {20, ocm::protocol::PeriodUnit::milliseconds};
   auto catalogue = amiro::catalogue;
   catalogue.topics = {&topic, 1};
-  BusStatistics statistics{catalogue, 500'000};
+  BusStatistics statistics{catalogue, {500'000}};
   statistics.take({Time{0ms}, {0x208, 1, {1}}});
   statistics.take({Time{1ms}, {0x608, 6, {}}});
   const auto figures = statistics.figures(Time{1001ms});
@@ -90,6 +90,17 @@ TEST_CASE("statistics: faults by topic") {
   CHECK(figures.strangers[0].count == 2);
   CHECK(figures.strangers[1].format == ocm::can::Format::extended);
   CHECK(figures.strangers[2].format == ocm::can::Format::base_remote);
+}
+
+TEST_CASE("statistics: of frames with a wrong length the first is named") {
+  Recorded log;
+  log.put(0ms, "608#0001");
+  log.put(1ms, "605#00");
+  const auto first = log.statistics.figures().wrong_length;
+  REQUIRE(first);
+  CHECK(first->id == 0x608);
+  CHECK(first->length == 2);
+  CHECK(first->right == 6);
 }
 
 TEST_CASE("statistics: incomplete samples are their topic's") {
@@ -138,7 +149,7 @@ TEST_CASE("statistics: the load is of exact bits, and its parts make the whole")
 }
 
 TEST_CASE("statistics: nothing came") {
-  const BusStatistics statistics{amiro::catalogue, 500'000};
+  const BusStatistics statistics{amiro::catalogue, {500'000}};
   CHECK_FALSE(statistics.any());
   const auto figures = statistics.figures();
   CHECK(figures.topics.empty());
@@ -147,7 +158,7 @@ TEST_CASE("statistics: nothing came") {
 }
 
 TEST_CASE("statistics: they are as of the last frame, or of later, never of before") {
-  BusStatistics statistics{amiro::catalogue, 500'000};
+  BusStatistics statistics{amiro::catalogue, {500'000}};
   for (const auto time : {1s, 2s, 3s})
     statistics.take({Time{time}, *ocm::can::parse_frame("608#3E001E00FCFF")});
   CHECK(statistics.figures().last == Time{3s});
@@ -157,9 +168,42 @@ TEST_CASE("statistics: they are as of the last frame, or of later, never of befo
   CHECK(statistics.figures(Time{5s}).rate_hz == 0.5);  // two distances in 4 s
 }
 
+ocm::can::AnyFrame fd_frame(std::uint32_t id, std::size_t length, bool switches) {
+  ocm::can::AnyFrame frame;
+  frame.id = id;
+  frame.length = static_cast<std::uint8_t>(length);
+  frame.flags = ocm::can::frame_flag::fd;
+  if (switches) frame.flags |= ocm::can::frame_flag::bit_rate_switch;
+  return frame;
+}
+
+TEST_CASE("statistics: CAN FD is in the load by both bit rates, if they are known") {
+  const auto frame = fd_frame(0x123, 64, true);
+  const auto bits = ocm::can::fd_frame_bits(frame);
+  for (const std::uint32_t data_rate : {0U, 500'000U, 2'000'000U}) {
+    BusStatistics statistics{amiro::catalogue, {500'000, data_rate}};
+    for (int i = 0; i <= 100; ++i) statistics.take_fd(frame, Time{i * 10ms});
+    const auto figures = statistics.figures();
+    CHECK(figures.fd_frames == 101);
+    CHECK(figures.not_in_load == (data_rate == 0 ? 101 : 0));
+    CHECK(figures.rate_hz == Approx(100));
+    const double seconds =
+        data_rate == 0 ? 0 : (bits.nominal + 3) / 500e3 + bits.data / static_cast<double>(data_rate);
+    CHECK(figures.load == Approx(100 * seconds).epsilon(1e-3));
+    CHECK(figures.stranger_load == figures.load);
+    CHECK((figures.worst_until == figures.first) == (data_rate == 0));
+    REQUIRE(figures.strangers.size() == 1);
+    CHECK(figures.strangers[0].count == 101);
+  }
+  BusStatistics statistics{amiro::catalogue, {500'000}};
+  for (int i = 0; i <= 1; ++i) statistics.take_fd(fd_frame(0x123, 64, false), Time{i * 10ms});
+  CHECK(statistics.figures().not_in_load == 0);  // at one bit rate from end to end
+  CHECK(statistics.figures().load == Approx((bits.nominal + bits.data + 3) / 5000.0).epsilon(5e-3));
+}
+
 TEST_CASE("statistics: CAN FD is counted apart, strangers only so many") {
-  BusStatistics statistics{amiro::catalogue, 500'000};
-  statistics.take_fd({0, ocm::can::Format::base, true, {}}, Time{1s});
+  BusStatistics statistics{amiro::catalogue, {500'000}};
+  statistics.take_fd(fd_frame(0, 0, true), Time{1s});
   for (std::uint32_t id = 0; id < 100; ++id)
     statistics.take({Time{2s}, {id, 0, {}, ocm::can::Format::extended}});
   const auto figures = statistics.figures();

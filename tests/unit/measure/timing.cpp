@@ -39,6 +39,26 @@ TEST_CASE("timing: a perfect stream") {
   CHECK(timing.period_from == PeriodFrom::request);
 }
 
+TEST_CASE("timing: samples are due from the request on, until one to stop") {
+  Stream stream{50ms};
+  CHECK_FALSE(stream.timing(at(1s)).due);
+  stream.asked(at(1s), 100ms);
+  CHECK(stream.timing(at(9s)).due);
+  CHECK(stream.timing(at(9s)).since == at(1s));
+  stream.sample(at(1100ms));
+  CHECK(stream.timing(at(9s)).due);
+  CHECK(stream.timing(at(9s)).since == at(1100ms));
+  stream.stopped(at(1150ms));
+  CHECK_FALSE(stream.timing(at(9s)).due);
+  stream.sample(at(2s));  // asked for once
+  CHECK_FALSE(stream.timing(at(9s)).due);
+  // Without a request, once they have come so.
+  Stream unasked{50ms};
+  unasked.sample(at(0ms));
+  unasked.sample(at(50ms));
+  CHECK(unasked.timing(at(60ms)).due);
+}
+
 TEST_CASE("timing: jitter, spread and lateness by hand") {
   // Distances 100, 103, 97, 100 ms: mean 100, squares 0 + 9 + 9 + 0, deviation sqrt(18 / 4) = 2.12132 ms.
   // Off the grid: 0, 0, 3, 0, 0.

@@ -11,6 +11,8 @@ namespace protocol_message_test {
 using ocm::can::Frame;
 using ocm::protocol::command;
 using ocm::protocol::frame_id;
+using ocm::protocol::message_frame;
+using ocm::protocol::message_from;
 using ocm::protocol::Priority;
 using ocm::protocol::sample_frame;
 using ocm::protocol::TopicId;
@@ -44,6 +46,37 @@ TEST_CASE("a sample comes back from its frames") {
   constexpr Scale sample{-123456, 0x80};
   STATIC_REQUIRE(Scale::decode({sample_frame(sample).data, sample_frame(sample, Priority::low, 1).data}) ==
                  sample);
+}
+
+/// As the generator writes them.
+template <ocm::protocol::Address::By By, bool Extended, std::uint32_t Number>
+struct Plain {
+  static constexpr ocm::protocol::Address address{By, Extended, Number};
+  static constexpr std::size_t length = 2;
+  static constexpr bool fd = false;
+  std::array<std::uint8_t, 8> bytes{0x12, 0x34};
+};
+using By = ocm::protocol::Address::By;
+using Short = Plain<By::identifier, false, 0x123>;
+using Wide = Plain<By::identifier, true, 0x123>;
+using Group = Plain<By::pgn, true, 0x18F0'04FE>;
+
+TEST_CASE("a plain message is its bytes, in a frame of its identifier") {
+  STATIC_REQUIRE(message_frame(Short{}) == frame("123#1234"));
+  STATIC_REQUIRE(message_frame(Wide{}) == frame("00000123#1234"));
+  STATIC_REQUIRE(message_from<Short>(frame("123#ABCD"))->bytes[1] == 0xCD);
+  STATIC_REQUIRE(message_from<Short>(frame("123#ABCDEF"))->bytes[2] == 0);  // beyond it, and without meaning
+  STATIC_REQUIRE(!message_from<Short>(frame("123#AB")));
+  STATIC_REQUIRE(!message_from<Short>(frame("124#ABCD")));
+  STATIC_REQUIRE(!message_from<Short>(frame("00000123#ABCD")));
+  STATIC_REQUIRE(!message_from<Wide>(frame("123#ABCD")));
+  STATIC_REQUIRE(!message_from<Short>(frame("123#R2")));
+}
+
+TEST_CASE("a message of J1939 is its parameter group, whoever sends it") {
+  STATIC_REQUIRE(message_from<Group>(frame("0CF00400#ABCD"))->bytes[0] == 0xAB);
+  STATIC_REQUIRE(!message_from<Group>(frame("0CF00500#ABCD")));
+  STATIC_REQUIRE(message_frame(Group{}) == frame("18F004FE#1234"));
 }
 
 }  // namespace protocol_message_test

@@ -24,6 +24,11 @@ TEST_CASE("a raw number stays within the range") {
   STATIC_REQUIRE(nearest_raw<std::int16_t>(-1e300, low, high) == -32768);
   STATIC_REQUIRE(nearest_raw<std::uint8_t>(101.0, 0, 100) == 100);
   STATIC_REQUIRE(nearest_raw<std::int64_t>(1e19, INT64_MIN, INT64_MAX) == INT64_MAX);
+  // Beyond what an int64_t holds.
+  STATIC_REQUIRE(nearest_raw<std::uint64_t>(1e19, 0, UINT64_MAX) == 10'000'000'000'000'000'000U);
+  STATIC_REQUIRE(nearest_raw<std::uint64_t>(-1, 0, UINT64_MAX) == 0);
+  STATIC_REQUIRE(nearest_raw<std::uint64_t>(2.5, 0, UINT64_MAX) == 3);
+  STATIC_REQUIRE(nearest_raw<std::uint64_t>(2e19, 0, UINT64_MAX) == UINT64_MAX);
   CHECK(nearest_raw<std::int16_t>(-std::numeric_limits<double>::infinity(), low, high) == -32768);
 }
 

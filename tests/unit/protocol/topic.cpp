@@ -1,5 +1,10 @@
 #include "ocm/protocol/topic.hpp"
 
+#include <array>
+#include <limits>
+#include <span>
+#include <vector>
+
 #include <catch2/catch.hpp>
 
 #include "unit/base/random.hpp"
@@ -35,6 +40,23 @@ TEST_CASE("a raw number becomes exactly the physical value, and back") {
     REQUIRE(weight.raw_from(*weight.physical(raw)) == raw);
 }
 
+TEST_CASE("the highest bit of an unsigned word is no sign") {
+  Field field;
+  field.position = {0, 64, ocm::protocol::ByteOrder::little};
+  const auto of = [&field](std::uint64_t word) { return field.physical(static_cast<std::int64_t>(word)); };
+  CHECK(*of(9'223'372'036'854'775'807) == Decimal{9'223'372'036'854'775'807, 0});
+  CHECK(of(9'223'372'036'854'775'808U).error == Error::out_of_range);  // 19 digits, beyond 2^63
+  CHECK(*of(9'223'372'036'854'775'810U) == Decimal{922'337'203'685'477'581, 1});
+  CHECK(*of(18'446'744'073'709'551'610U) == Decimal{1'844'674'407'370'955'161, 1});
+  CHECK(of(UINT64_MAX).error == Error::out_of_range);
+  field.scale = {5, -1};
+  CHECK(*of(18'446'744'073'709'551'610U) == Decimal{9'223'372'036'854'775'805, 0});
+  field.offset = {-1, 0};
+  CHECK(*of(10'000'000'000'000'000'000U) == Decimal{4'999'999'999'999'999'999, 0});
+  field.is_signed = true;
+  CHECK(*of(UINT64_MAX) == Decimal{-15, -1});
+}
+
 TEST_CASE("a physical value between two raw numbers goes to the nearer, halves away from zero") {
   STATIC_REQUIRE(*weight.raw_from({10012, -2}) == 0);   // 0.48 of a step
   STATIC_REQUIRE(*weight.raw_from({100125, -3}) == 1);  // half a step
@@ -54,6 +76,123 @@ TEST_CASE("a physical value outside of the field's range is refused") {
 TEST_CASE("a field reads itself from a frame") {
   STATIC_REQUIRE(weight.raw({0xFF, 0xFF, 0xFF, 0xFE}) == -2);
   STATIC_REQUIRE(ocm::test::state_fields[0].raw({0x81}) == 0x81);
+}
+
+// raw * 0.5 + 10 as a float of 32 bits, and one without scale of 64.
+using ocm::protocol::Number;
+constexpr Field number(Number kind, std::uint8_t width, Decimal scale = {1, 0}, Decimal offset = {}) {
+  Field field{};
+  field.position = {0, width};
+  field.number = kind;
+  field.scale = scale;
+  field.offset = offset;
+  return field;
+}
+constexpr Field level = number(Number::float32, 32, {5, -1}, {1, 1});
+constexpr Field angle = number(Number::float64, 64);
+constexpr Field moved = number(Number::float32, 32, {1, 0}, {3, 0});
+constexpr Field doubled = number(Number::float32, 32, {2, 0});
+
+TEST_CASE("a float is read and written with its scale and offset") {
+  // IEEE 754: 1 is 3F800000, 1.5 is 3FC00000, -2 is C0000000; 1 in 64 bits is 3FF0...
+  STATIC_REQUIRE(level.is_float());
+  STATIC_REQUIRE_FALSE(weight.is_float());
+  STATIC_REQUIRE(level.value(0x3F80'0000) == 10.5);
+  STATIC_REQUIRE(level.value(0xC000'0000) == 9.0);
+  STATIC_REQUIRE(moved.value(0x3FC0'0000) == 4.5);
+  STATIC_REQUIRE(doubled.value(0x3FC0'0000) == 3.0);
+  STATIC_REQUIRE(angle.value(0x3FF0'0000'0000'0000) == 1.0);
+  STATIC_REQUIRE(*level.float_from(10.5) == 0x3F80'0000);
+  STATIC_REQUIRE(*level.float_from(9.0) == 0xC000'0000);
+  STATIC_REQUIRE(*moved.float_from(4.5) == 0x3FC0'0000);
+  STATIC_REQUIRE(*doubled.float_from(3.0) == 0x3FC0'0000);
+  STATIC_REQUIRE(*angle.float_from(1.0) == 0x3FF0'0000'0000'0000);
+}
+
+TEST_CASE("a float of 32 bits holds up to 3.4e38, and infinity; what is between is refused") {
+  constexpr double greatest = std::numeric_limits<float>::max();
+  STATIC_REQUIRE(*moved.float_from(-greatest) == 0xFF7F'FFFF);
+  STATIC_REQUIRE(*doubled.float_from(2 * greatest) == 0x7F7F'FFFF);
+  STATIC_REQUIRE(doubled.float_from(2.1 * greatest).error == Error::out_of_range);
+  STATIC_REQUIRE(doubled.float_from(-2.1 * greatest).error == Error::out_of_range);
+  CHECK(*doubled.float_from(std::numeric_limits<double>::infinity()) == 0x7F80'0000);
+  CHECK(*doubled.float_from(-std::numeric_limits<double>::infinity()) == 0xFF80'0000);
+  CHECK((*doubled.float_from(std::numeric_limits<double>::quiet_NaN()) & 0x7FFF'FFFF) > 0x7F80'0000);
+  CHECK(*angle.float_from(1e300) == 0x7E37'E43C'8800'759C);
+}
+
+TEST_CASE("an integer's value is exact up to 53 bits, unsigned ones above 2^63, too") {
+  constexpr Field all = number(Number::integer, 64);
+  STATIC_REQUIRE(all.value(-1) == 18'446'744'073'709'551'616.0);
+  STATIC_REQUIRE(weight.value(-401) == -0.25);
+}
+
+TEST_CASE("a field is in a frame that is long enough for it, and for what selects it") {
+  using ocm::protocol::SelectorRange;
+  static constexpr std::array<SelectorRange, 2> one_or_five{{{1, 1}, {5, 9}}};
+  std::array<Field, 3> fields{number(Number::integer, 8), number(Number::integer, 8),
+                              number(Number::integer, 8)};
+  fields[0].position.start = 16;  // the selector, behind what it selects
+  fields[1].position.start = 0;
+  fields[1].selector = 0;
+  fields[1].selected = one_or_five;
+  fields[2].position.start = 8;
+  const ocm::protocol::FrameLayout layout{"", {}, 3, fields};
+  const auto has = [&](std::size_t field, std::vector<std::uint8_t> data) {
+    const std::size_t size = data.size();
+    data.resize(8);
+    return layout.has(fields[field], std::span{data}.first(size));
+  };
+  CHECK(has(1, {0, 0, 1}));
+  CHECK(has(1, {0, 0, 9}));
+  CHECK_FALSE(has(1, {0, 0, 2}));
+  CHECK_FALSE(has(1, {0, 0, 0}));
+  // The byte of the selector did not come, whatever lies behind the frame.
+  CHECK_FALSE(has(1, {7, 7}));
+  CHECK(has(2, {7, 7}));
+  CHECK_FALSE(has(2, {7}));
+  CHECK_FALSE(has(0, {7, 7}));
+}
+
+TEST_CASE("which lengths a frame may have") {
+  using ocm::protocol::Address;
+  using Sizes = std::vector<std::size_t>;
+  ocm::protocol::FrameLayout layout{"", {}, 8, {}};
+  const auto accepted = [&](Address::By by, std::uint16_t length) {
+    layout.address.by = by;
+    layout.length = length;
+    Sizes sizes;
+    for (const std::size_t size : Sizes{0, 3, 7, 8, 9, 64, 1785})
+      if (layout.accepts(size)) sizes.push_back(size);
+    return sizes;
+  };
+  CHECK(accepted(Address::By::topic, 7) == Sizes{7});
+  CHECK(accepted(Address::By::identifier, 8) == Sizes{8, 9, 64, 1785});
+  CHECK(accepted(Address::By::identifier, 9) == Sizes{9, 64, 1785});
+  CHECK(accepted(Address::By::pgn, 8) == Sizes{8, 9, 64, 1785});
+  // What of a longer group fits into a frame is sent in one.
+  CHECK(accepted(Address::By::pgn, 9) == Sizes{0, 3, 7, 8, 9, 64, 1785});
+}
+
+TEST_CASE("a field may be lacking: selected, beyond the message, or in a group of any length") {
+  using ocm::protocol::Address;
+  std::array<Field, 2> fields{number(Number::integer, 8), number(Number::integer, 8)};
+  fields[1].position.start = 64;
+  ocm::protocol::FrameLayout layout{"", {}, 9, fields};
+  layout.address.by = Address::By::identifier;
+  CHECK_FALSE(layout.may_lack(fields[0]));
+  CHECK_FALSE(layout.may_lack(fields[1]));
+  layout.length = 8;
+  CHECK_FALSE(layout.may_lack(fields[0]));
+  CHECK(layout.may_lack(fields[1]));
+  layout.address.by = Address::By::pgn;
+  CHECK_FALSE(layout.may_lack(fields[0]));
+  layout.length = 9;
+  CHECK(layout.may_lack(fields[0]));
+  CHECK(layout.may_lack(fields[1]));
+  layout.address.by = Address::By::identifier;
+  fields[0].selector = 1;
+  CHECK(layout.may_lack(fields[0]));
 }
 
 TEST_CASE("the catalogue's decoder agrees with the typed one") {

@@ -200,6 +200,25 @@ TEST_CASE("what waits is resumed by the level that began it, before anything new
   CHECK(setup.dispatcher.overload(0).overrun == 3);
 }
 
+TEST_CASE("all that wait on a level are resumed, each once") {
+  Setup setup;
+  bool room = false;
+  setup.job = [&](const Release&) { return room ? Outcome::done : Outcome::waits; };
+  for (const std::size_t stream : {std::size_t{0}, std::size_t{2}, std::size_t{3}})
+    setup.dispatcher.once(stream, Level::low, [] { return at(0ms); });
+  setup.pass_to(1ms);
+  CHECK(setup.releases.size() == 3);
+  room = true;
+  setup.dispatcher.wake();
+  setup.pass_to(2ms);
+  REQUIRE(setup.releases.size() == 6);
+  for (std::size_t i = 3; i < 6; ++i) CHECK(setup.releases[i].resumed);
+  CHECK(setup.releases[3].stream == 0);
+  CHECK(setup.releases[4].stream == 2);
+  CHECK(setup.releases[5].stream == 3);
+  CHECK_FALSE(setup.dispatcher.waiting());
+}
+
 TEST_CASE("room that comes between a job's look and its end is not overlooked") {
   Setup setup;
   int calls = 0;

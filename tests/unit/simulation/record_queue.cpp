@@ -41,6 +41,19 @@ TEST_CASE("records come out in the order in which they went in, up to the limit"
   CHECK(queue.size() == 0);
 }
 
+TEST_CASE("several records go in together or not at all") {
+  RecordQueue queue;
+  const std::array three{record(1), record(2), record(3)};
+  CHECK(queue.push(three, 4));
+  CHECK_FALSE(queue.push(three, 4));
+  CHECK(queue.size() == 3);
+  CHECK(queue.push(std::span{three}.first(1), 4));
+  CHECK_FALSE(queue.push(std::span{three}.first(1), 3));  // a limit below what is there
+  CHECK(front(queue, 4) == std::deque<std::uint64_t>{1, 2, 3, 1});
+  queue.pop(3);
+  CHECK(vb::from_record<vb::Count>(queue[0]).count == 1);
+}
+
 TEST_CASE("it is a queue, however it grows and turns") {
   ocm::test::Random random{7};
   RecordQueue queue;

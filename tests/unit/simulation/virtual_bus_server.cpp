@@ -141,6 +141,93 @@ TEST_CASE("garbage disconnects its sender, and no other client") {
   CHECK(setup.on_bus == Texts{"605#00", "205#01"});
 }
 
+TEST_CASE("a client of before CAN FD goes on among those that know it, and hears classic frames alone") {
+  VirtualBusSetup setup;
+  RawClient old{setup.path()};
+  old.greet();
+  const auto sender = setup.join();
+  const auto listener = setup.join();
+  setup.poll();
+  const auto greeting = old.heard();
+  REQUIRE(greeting.size() == 1);
+  CHECK(vb::from_record<vb::Hello>(greeting[0]).version == 1);
+  old.say(vb::FrameRecord{.dlc = 1, .id = 0x111, .data = {7}});
+  for (const char* text : {"123##1AABB", "124#CC", "125##0DD"}) CHECK(*sender->send_any(any(text)));
+  setup.run();
+  CHECK(received_any(*listener) == Texts{"111#07", "123##1AABB", "124#CC", "125##0DD"});
+  std::vector<vb::Type> types;
+  for (const vb::Record& record : old.heard()) types.push_back(vb::type_of(record));
+  CHECK(types == std::vector{vb::Type::credit, vb::Type::frame});
+  CHECK(setup.server->counters().fd_withheld == 2);
+  CHECK_FALSE(old.closed);
+  // What it never learned is garbage from it, as it was.
+  old.say(vb::FdFrameRecord{.length = 1, .flags = 5, .id = 1});
+  setup.poll();
+  CHECK(old.dismissal().reason == vb::Reason::unknown_record);
+}
+
+TEST_CASE("parts of CAN FD frames in any disorder disconnect their sender") {
+  const auto records = vb::to_fd_records(any("123##1" + std::string(128, 'A'))).records;
+  const auto reason_of = [&](const std::vector<vb::Record>& said) {
+    VirtualBusSetup setup;
+    RawClient client{setup.path()};
+    client.say(vb::Hello{.fd = 1});
+    client.send(said.data(), said.size() * vb::record_size);
+    setup.poll();
+    CHECK(setup.server->counters().misbehaved == 1);
+    return client.dismissal().reason;
+  };
+  const vb::Record classic = vb::to_record(frame("124#"));
+  CHECK(reason_of({records[1]}) == vb::Reason::torn_fd_frame);
+  CHECK(reason_of({records[0], records[0]}) == vb::Reason::torn_fd_frame);
+  CHECK(reason_of({records[0], records[1], classic}) == vb::Reason::torn_fd_frame);
+  CHECK(reason_of({records[0], records[1], records[2], records[2]}) == vb::Reason::torn_fd_frame);
+  CHECK(reason_of({vb::to_record(vb::FdFrameRecord{.length = 9, .flags = 4})}) == vb::Reason::bad_fd_length);
+  CHECK(reason_of({vb::to_record(vb::FdFrameRecord{.flags = 0x14})}) == vb::Reason::bad_fd_flags);
+}
+
+TEST_CASE("a slow client misses CAN FD frames whole, and learns how many") {
+  VirtualBusSetup setup{{.output_queue = 64}};
+  RawClient slow{setup.path()};
+  slow.say(vb::Hello{.fd = 1});
+  const auto sender = setup.join();
+  std::uint64_t sent = 0;
+  while (setup.server->counters().overruns < 10) {
+    if (*sender->send_any(any("123##1" + std::string(sent % 3 == 0 ? 128 : 2, 'A')))) ++sent;
+    setup.run();
+    REQUIRE(sent < 100'000);
+  }
+  setup.server->end();  // what waits there is lost to it, too
+  std::uint64_t whole = 0;
+  std::uint64_t lost = 0;
+  vb::FdAssembly assembly;
+  for (const vb::Record& record : slow.heard()) {
+    if (vb::type_of(record) == vb::Type::overrun) lost += vb::from_record<vb::Count>(record).count;
+    if (vb::type_of(record) != vb::Type::fd_frame && vb::type_of(record) != vb::Type::fd_data) continue;
+    const auto part = assembly.take(record);
+    REQUIRE(part);
+    whole += *part ? 1 : 0;
+  }
+  CHECK(whole + lost == sent);
+  CHECK(lost == setup.server->counters().overruns);
+}
+
+TEST_CASE("the data of CAN FD run at a whole multiple of the bus's bit rate") {
+  const auto failure = [](std::uint32_t bit_rate, std::uint32_t data_bit_rate) {
+    const TemporaryDirectory directory;
+    const auto opened = simulation::VirtualBusServer::open(
+        {.path = directory.path() + "/s", .bit_rate = bit_rate, .data_bit_rate = data_bit_rate});
+    return opened ? std::string{} : opened.error.what + "; " + opened.error.remedy;
+  };
+  CHECK(failure(500'000, 0).empty());
+  CHECK(failure(500'000, 500'000).empty());
+  CHECK(failure(500'000, 8'000'000).empty());
+  CHECK_THAT(failure(500'000, 750'000),
+             Catch::Contains("750000 bit/s") && Catch::Contains("such as 2000000"));
+  CHECK_THAT(failure(500'000, 250'000), Catch::Contains("250000 bit/s"));
+  CHECK_THAT(failure(1'000, 256'000), Catch::Contains("at most 255 times"));
+}
+
 TEST_CASE("frames before the garbage in the same message are withdrawn with their sender") {
   VirtualBusSetup setup;
   RawClient client{setup.path()};

@@ -16,13 +16,20 @@ static_assert(can::Bus<transport::Bus>);
 class Plain final : public transport::Bus {
  public:
   [[nodiscard]] std::string_view name() const override { return "plain"; }
-  base::Result<bool> send(const can::Frame&) override { return true; }
-  base::Result<can::Received> receive(base::Duration) override { return base::Error::timed_out; }
+  base::Result<bool> send(const can::Frame& frame) override {
+    sent = frame;
+    return true;
+  }
+  base::Result<can::Received> receive(base::Duration) override {
+    if (sent.id == 0) return base::Error::timed_out;
+    return can::Received{base::Time{base::Duration{7}}, sent};
+  }
   transport::Outcome<void> subscribe(std::span<const can::Filter>) override { return {}; }
   [[nodiscard]] int descriptor() const override { return -1; }
   [[nodiscard]] const transport::BusCounters& counters() const override { return counters_; }
   [[nodiscard]] const Failure& failure() const override { return reason; }
   Failure reason;
+  can::Frame sent;
 
  private:
   transport::BusCounters counters_;
@@ -33,6 +40,23 @@ TEST_CASE("a bus without a state of its own is up until it failed") {
   CHECK(bus.state() == BusState::up);
   bus.reason = {"pulled out", "put it in"};
   CHECK(bus.state() == BusState::closed);
+}
+
+TEST_CASE("a bus that knows classic frames alone takes those of either kind, and refuses CAN FD") {
+  Plain bus;
+  CHECK(bus.receive_any(base::Duration{0}).error == base::Error::timed_out);
+  const can::Frame frame{0x123, 2, {1, 2}};
+  CHECK(bus.send_any(frame).value);
+  CHECK(bus.sent == frame);
+  const auto back = bus.receive_any(base::Duration{0});
+  REQUIRE(back);
+  CHECK(back->frame == can::AnyFrame{frame});
+  CHECK(back->time == base::Time{base::Duration{7}});
+  can::AnyFrame fd{frame};
+  fd.flags = can::frame_flag::fd;
+  CHECK(bus.send_any(fd).error == base::Error::bad_length);
+  CHECK(bus.fd_obstacle().what == "'plain' carries no CAN FD frames");
+  CHECK_FALSE(bus.fd_obstacle().remedy.empty());
 }
 
 }  // namespace transport_bus_test

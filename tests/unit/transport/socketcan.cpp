@@ -6,6 +6,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "ocm/can/any_text.hpp"
+
 namespace transport_socketcan_test {
 
 using namespace ocm;
@@ -48,6 +50,36 @@ TEST_CASE("bytes beyond the length and impossible lengths do not get in") {
   CHECK(remote == frame("123#R3"));
   const auto long_one = transport::from_socketcan(raw(0x123, 15, {1, 2, 3, 4, 5, 6, 7, 8}));
   CHECK(long_one == frame("123#0102030405060708"));
+}
+
+TEST_CASE("CAN FD frames to and from the kernel's form") {
+  for (const char* text : {"123##1DEAD", "7FF##0", "1F334455##2112233445566778899AABBCC", "000##3"}) {
+    CAPTURE(text);
+    const auto fd = can::parse_any_frame(text);
+    REQUIRE(fd);
+    CHECK(transport::from_socketcan(transport::to_socketcan_fd(*fd)) == *fd);
+  }
+  const canfd_frame kernel = transport::to_socketcan_fd(*can::parse_any_frame("1F334455##3AABBCC"));
+  CHECK(kernel.can_id == (0x1F334455 | CAN_EFF_FLAG));
+  CHECK(kernel.len == 3);
+  CHECK(kernel.flags == (CANFD_BRS | CANFD_ESI));  // the kernel sets FDF itself
+  CHECK(kernel.data[2] == 0xCC);
+  CHECK(kernel.data[3] == 0);
+}
+
+TEST_CASE("impossible lengths of CAN FD and bytes beyond the length do not get in") {
+  canfd_frame kernel{};
+  std::fill(std::begin(kernel.data), std::end(kernel.data), __u8{0xEE});
+  kernel.can_id = 0x123;
+  kernel.len = 9;
+  const auto nine = transport::from_socketcan(kernel);
+  CHECK(nine.length == 12);
+  CHECK(nine.data[8] == 0xEE);
+  CHECK(nine.data[9] == 0);
+  kernel.len = 200;
+  CHECK(transport::from_socketcan(kernel).length == 64);
+  kernel.flags = 0xFF;
+  CHECK(can::validate(transport::from_socketcan(kernel)).ok());
 }
 
 TEST_CASE("a filter in the kernel accepts what can::Filter accepts") {
@@ -102,6 +134,12 @@ TEST_CASE("each failure names the interface and the remedy") {
   CHECK(down_failure("can0", some).remedy == "sudo ip link set can0 up type can bitrate 500000");
   CHECK(down_failure("vcan0", some).remedy == "sudo ip link set vcan0 up");
   CHECK(down_failure("can9", {}).remedy == "sudo ip link set can9 up type can bitrate 500000");
+  CHECK(no_fd_failure("vcan0", some).what ==
+        "interface 'vcan0' carries no CAN FD frames: its MTU is 16, and not 72");
+  CHECK(no_fd_failure("vcan0", some).remedy ==
+        "sudo ip link set vcan0 down; sudo ip link set vcan0 mtu 72; sudo ip link set vcan0 up");
+  CHECK_THAT(no_fd_failure("can0", some).remedy,
+             Catch::Contains("ip link set can0 up type can bitrate 500000 dbitrate 2000000 fd on"));
   CHECK_THAT(gone_failure("can0").what, Catch::Contains("'can0' is gone"));
   CHECK(system_failure("can0", "send on", EIO).what ==
         std::string("cannot send on interface 'can0': ") + std::strerror(EIO));

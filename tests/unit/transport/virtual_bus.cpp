@@ -20,7 +20,7 @@ static_assert(can::Bus<VirtualBus>);
 class RawServer {
  public:
   RawServer() {
-    const auto address = vb::to_address(path());
+    const auto address = host::to_address(path());
     REQUIRE(::bind(listener_.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) == 0);
     REQUIRE(::listen(listener_.get(), 1) == 0);
   }
@@ -72,7 +72,7 @@ TEST_CASE("nobody serves a bus: the message says how to get one") {
   // A socket that no program listens on any more.
   {
     const host::Descriptor dead{::socket(AF_UNIX, SOCK_SEQPACKET, 0)};
-    const auto address = vb::to_address(path);
+    const auto address = host::to_address(path);
     REQUIRE(::bind(dead.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) == 0);
   }
   CHECK_FALSE(VirtualBus::running(path));
@@ -106,6 +106,91 @@ TEST_CASE("two clients send within one bit time: the lower identifier wins") {
   CHECK(received(*listener) == Texts{"205#01", "608#00"});
   CHECK(received(*a) == Texts{"205#01"});  // nobody hears its own
   CHECK(received(*b) == Texts{"608#00"});
+}
+
+TEST_CASE("CAN FD frames get through as they are, among classic ones") {
+  VirtualBusSetup setup{{.bit_rate = 500'000, .data_bit_rate = 2'000'000}};
+  const auto a = setup.join();
+  const auto b = setup.join();
+  CHECK(a->bit_rate() == 500'000);
+  CHECK(a->data_bit_rate() == 2'000'000);
+  CHECK(a->fd_obstacle() == transport::Failure{});
+  Texts sent;
+  for (unsigned dlc = 0; dlc < 16; ++dlc) {
+    can::AnyFrame one = any(dlc % 2 == 0 ? "123##1" : "1F334455##2");
+    one.length = can::fd_length(dlc);
+    for (std::size_t i = 0; i < one.length; ++i) one.data[i] = static_cast<std::uint8_t>(255 - i);
+    CHECK(*a->send_any(one));
+    sent.emplace_back(can::to_text(one).view());
+    CHECK(*a->send_any(frame("123#00")));
+    sent.emplace_back("123#00");
+  }
+  setup.run();
+  CHECK(received_any(*b) == sent);
+  CHECK(setup.on_bus == sent);
+  CHECK(b->counters().received == sent.size());
+  CHECK(a->delivery().pending == 0);
+  CHECK(received_any(*a).empty());  // not its own
+  auto nine = any("123##1");
+  nine.length = 9;
+  CHECK(a->send_any(nine).error == base::Error::bad_length);
+}
+
+TEST_CASE("who asks for classic frames gets these alone, and the others are counted") {
+  VirtualBusSetup setup;
+  const auto a = setup.join();
+  const auto b = setup.join();
+  for (const char* text : {"123##1AA", "124#BB", "125##0CC", "126#DD"}) CHECK(*a->send_any(any(text)));
+  setup.run();
+  CHECK(received(*b) == Texts{"124#BB", "126#DD"});
+  CHECK(b->counters().passed_over == 2);
+  CHECK(b->counters().received == 2);
+}
+
+TEST_CASE("filters hold for CAN FD frames too, also for those that came before") {
+  VirtualBusSetup setup;
+  const auto a = setup.join();
+  const auto b = setup.join();
+  const can::Filter only{0x123, 0x7FF};
+  for (const char* text : {"123##1AA", "124##1BB"}) CHECK(*a->send_any(any(text)));
+  setup.run();
+  REQUIRE(b->subscribe({&only, 1}));
+  setup.poll();
+  for (const char* text : {"124##1CC", "123##1DD", "00000123##1EE", "123#FF"}) CHECK(*a->send_any(any(text)));
+  setup.run();
+  CHECK(received_any(*b) == Texts{"123##1AA", "123##1DD", "123#FF"});
+}
+
+TEST_CASE("a server of an earlier version carries classic frames, and a CAN FD frame is refused in words") {
+  RawServer server;
+  const auto bus = server.open(vb::Hello{.bit_rate = 500'000, .credit = 5}, false);
+  REQUIRE(bus);
+  CHECK((*bus)->data_bit_rate() == 0);
+  CHECK((*bus)->send_any(any("123##1AA")).error == base::Error::bad_length);
+  CHECK_THAT((*bus)->fd_obstacle().what,
+             Catch::Contains("carries no CAN FD frames") && Catch::Contains("sim.sock"));
+  CHECK(*(*bus)->send_any(frame("123#AA")));
+  CHECK((*bus)->state() == BusState::up);
+}
+
+TEST_CASE("credit may come between the parts of a CAN FD frame, another frame may not") {
+  RawServer server;
+  auto bus = server.open(vb::Hello{.fd = 1, .bit_rate = 500'000, .credit = 5}, false);
+  REQUIRE(bus);
+  CHECK(*(*bus)->send_any(frame("001#")));
+  const std::string longest = "123##1" + std::string(128, 'A');
+  const auto records = vb::to_fd_records(any(longest)).records;
+  server.say(records[0]);
+  CHECK((*bus)->receive_any(0ns).error == base::Error::timed_out);
+  server.say(
+      std::array{vb::to_record(vb::Count{.type = vb::Type::credit, .count = 1}), records[1], records[2]});
+  const auto whole = (*bus)->receive_any(0ns);
+  REQUIRE(whole);
+  CHECK(can::to_text(whole->frame).view() == longest);
+  CHECK((*bus)->credit() == 5);
+  server.say(std::array{records[0], vb::to_record(frame("124#"))});
+  CHECK((*bus)->receive_any(0ns).error == base::Error::closed);
+  CHECK_THAT((*bus)->failure().what, Catch::Contains("does not know"));
 }
 
 TEST_CASE("every frame gets through as it is") {

@@ -9,6 +9,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "ocm/can/any_text.hpp"
 #include "ocm/can/text.hpp"
 #include "ocm/simulation/virtual_bus_server.hpp"
 #include "ocm/transport/virtual_bus.hpp"
@@ -35,11 +36,24 @@ inline Texts received(transport::VirtualBus& bus) {
   return texts;
 }
 
+/// The same, of frames of either kind.
+inline Texts received_any(transport::VirtualBus& bus) {
+  Texts texts;
+  while (const auto one = bus.receive_any(0ns)) texts.emplace_back(can::to_text(one->frame).view());
+  return texts;
+}
+
+inline can::AnyFrame any(std::string_view text) {
+  const auto parsed = can::parse_any_frame(text);
+  REQUIRE(parsed.ok());
+  return *parsed;
+}
+
 /// A client that says what it likes.
 class RawClient {
  public:
   explicit RawClient(const std::string& path) {
-    const auto address = vb::to_address(path);
+    const auto address = host::to_address(path);
     REQUIRE(address);
     socket_ = host::Descriptor{::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK, 0)};
     REQUIRE(socket_);
@@ -123,7 +137,8 @@ struct VirtualBusSetup {
   void poll() {
     do {
       server->poll(now, [this](const simulation::Delivery& delivery) {
-        on_bus.emplace_back(can::to_text(delivery.frame).view());
+        const can::AnyFrame frame = delivery.fd != nullptr ? *delivery.fd : can::AnyFrame{delivery.frame};
+        on_bus.emplace_back(can::to_text(frame).view());
       });
     } while (readable(server->descriptor()));
   }

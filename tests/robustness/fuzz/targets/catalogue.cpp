@@ -1,13 +1,16 @@
-// A catalogue that nobody has seen before, from a DBC file of any bytes, and any frames on it: behind the
-// file's first zero byte. A frame is found by the rule that frame_index.hpp states, a field is read bit by
-// bit, and what is present is worked out by recursion: index, receiver, codec, text and JSON must say the
-// same.
+// A catalogue that nobody has seen before, from a DBC file or a JSON spec of any bytes, and any frames on it:
+// behind the file's first zero byte. A frame is found by the rule that frame_index.hpp states, a field is
+// read bit by bit, what is present is worked out by recursion, and a topic's sample is a list of what came:
+// index, receiver, codec, text and JSON must say the same.
+#include <algorithm>
+#include <bit>
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ocm/client/sample.hpp"
@@ -158,10 +161,56 @@ bool is_there(const FrameLayout& layout, const Field& field, Bytes data) {
 
 // --- the catalogue ---
 
+/// A raw number's physical value, from the field's own words; nothing where it has more digits than a number
+/// of the language.
+std::optional<long double> value_of(const Field& field, std::int64_t raw) {
+  long double plain = static_cast<long double>(raw);
+  if (field.number == protocol::Number::float32)
+    plain = std::bit_cast<float>(static_cast<std::uint32_t>(raw));
+  else if (field.number == protocol::Number::float64)
+    plain = std::bit_cast<double>(raw);
+  else if (!field.is_signed)
+    plain = static_cast<long double>(static_cast<std::uint64_t>(raw));
+  const auto number = [](const base::Decimal& decimal) {
+    return static_cast<long double>(decimal.digits) * std::pow(10.0L, decimal.exponent);
+  };
+  const long double value = plain * number(field.scale) + number(field.offset);
+  return std::isfinite(value) && std::abs(value) < 1e300L ? std::optional{value} : std::nullopt;
+}
+
+/// What is asked of a field with one of its raw numbers.
+void check_values(const Field& field, std::int64_t raw) {
+  if (const auto value = value_of(field, raw)) {
+    // Scale and offset are rounded to doubles, and so are product and sum.
+    const long double scaled =
+        std::abs(*value) + 2 * std::abs(static_cast<long double>(field.offset.as_double()));
+    fuzz::expect(std::abs(static_cast<long double>(field.value(raw)) - *value) <= scaled * 1e-12L + 1e-300L,
+                 "a value is raw * scale + offset");
+  }
+  const bool plain = field.scale == base::Decimal{1, 0} && field.offset.digits == 0;
+  if (field.is_float()) {
+    const double value = field.value(raw);
+    const auto again = field.float_from(value);
+    if (plain && !std::isnan(value))
+      fuzz::expect(again.ok() && *again == raw, "a float that is encoded again has the same bits");
+    if (again && !std::isnan(value) && field.scale.digits != 0)
+      fuzz::expect(field.number == protocol::Number::float64 || *again >> 32 == 0, "a float32 has 32 bits");
+    return;
+  }
+  const auto physical = field.physical(raw);
+  if (!physical || field.scale.digits == 0) return;
+  const auto again = field.raw_from(*physical);
+  const bool in_range = field.raw_min <= raw && raw <= field.raw_max;
+  if (again)
+    fuzz::expect(in_range && *again == raw, "a value that is encoded again has the same bits");
+  else
+    fuzz::expect(!in_range || again.error != base::Error::bad_syntax, "out of range, or too many digits");
+}
+
 void check_field(const FrameLayout& layout, const Field& field) {
   fuzz::expect(!field.name.empty(), "a field has a name");
   const auto& position = field.position;
-  fuzz::expect(position.width >= 1 && position.width <= 64 && position.start < 512, "a field has bits");
+  fuzz::expect(position.width >= 1 && position.width <= 64 && position.start < 8 * 1785, "a field has bits");
   fuzz::expect(fits(position, position.bytes()) && !fits(position, position.bytes() - 1U),
                "bytes() holds it, and no less");
   fuzz::expect(dbc::is_utf8(field.name) && dbc::is_utf8(field.unit), "text is UTF-8");
@@ -173,33 +222,127 @@ void check_field(const FrameLayout& layout, const Field& field) {
         at->selector < layout.fields.size() && ++above <= layout.fields.size() && !at->selected.empty(),
         "selectors are fields, have values and go in no circle");
   for (const auto& value : field.values) fuzz::expect(dbc::is_utf8(value.name), "text is UTF-8");
+  fuzz::expect(
+      layout.may_lack(field) == (field.selector != protocol::no_selector || !fits(position, layout.length)),
+      "a field that may lack is selected, or beyond the length");
+  const std::size_t index = static_cast<std::size_t>(&field - layout.fields.data());
+  fuzz::expect(
+      layout.selects(index) == std::any_of(layout.fields.begin(), layout.fields.end(),
+                                           [&](const Field& other) { return other.selector == index; }),
+      "a selector is one that another field names");
+  check_values(field, field.start);
 }
 
-void check_catalogue(const protocol::Catalogue& catalogue) {
-  fuzz::expect(!catalogue.topics.empty(), "a catalogue has messages");
-  for (const Topic& topic : catalogue.topics) {
-    fuzz::expect(topic.is_message() && topic.frames.size() == 1 && !topic.name.empty(),
-                 "a DBC file has messages");
-    const FrameLayout& layout = topic.frames[0];
-    const auto& address = layout.address;
-    fuzz::expect(address.by != protocol::Address::By::topic &&
-                     address.number <= (address.extended ? can::max_extended_id : can::max_base_id),
-                 "a message has an identifier");
-    fuzz::expect(topic.board == protocol::no_board || topic.board < catalogue.boards.size(),
-                 "a sender is known");
+void check_topic(const protocol::Catalogue& catalogue, const Topic& topic) {
+  fuzz::expect(topic.board < catalogue.boards.size() && !topic.frames.empty(),
+               "a topic has a board and frames");
+  fuzz::expect(catalogue.find(topic.id) == &topic, "a topic is found by its number");
+  const bool sensor = topic.kind == protocol::Kind::sensor;
+  fuzz::expect(topic.usual_period() == (sensor ? topic.period.duration() : base::Duration{}),
+               "a sensor has a period");
+  fuzz::expect(protocol::name(topic.kind) == (sensor ? "sensor" : "actuator"), "a topic has a kind");
+  for (std::size_t i = 0; i < topic.frames.size(); ++i) {
+    const protocol::FrameRef frame{&topic, static_cast<std::uint8_t>(i)};
+    const FrameLayout& layout = frame.layout();
+    fuzz::expect(layout.length <= can::max_dlc && layout.dlc() == layout.length && !layout.fd &&
+                     layout.address.by == protocol::Address::By::topic &&
+                     protocol::format_of(layout) == can::Format::base,
+                 "a topic's frame is a classic one of 11 bits");
+    for (unsigned level = 0; level < protocol::priority_levels; ++level) {
+      const std::uint32_t id = (sensor ? 0x400U : 0U) | level << 8 | layout.id.value;
+      const auto priority = static_cast<protocol::Priority>(level);
+      fuzz::expect(protocol::identifier_of(frame, priority) == id,
+                   "an identifier is direction, priority, number");
+      // Zeros and ones in turn of four are among the longest contents.
+      can::Frame longest{.id = id, .dlc = layout.dlc()};
+      std::fill_n(longest.data.begin(), layout.dlc(), std::uint8_t{0x0F});
+      const unsigned worst = protocol::worst_bits(layout, priority);
+      fuzz::expect(can::frame_bits(longest) + can::intermission_bits <= worst &&
+                       worst <= can::worst_frame_bits(can::Format::base, layout.length),
+                   "no frame is longer than the longest");
+    }
+    fuzz::expect(layout.accepts(layout.length) && !layout.accepts(layout.length + 1U),
+                 "a topic's frame has its length");
     for (const Field& field : layout.fields) check_field(layout, field);
   }
 }
 
-/// By the rule: an exact identifier before a parameter group, and of two the first.
-const Topic* find(const protocol::Catalogue& catalogue, std::uint32_t id, can::Format format) {
-  if (format != can::Format::base && format != can::Format::extended) return nullptr;
+void check_message(const Topic& message) {
+  fuzz::expect(message.frames.size() == 1, "a message is one frame");
+  const FrameLayout& layout = message.frames[0];
+  const auto& address = layout.address;
+  fuzz::expect(address.by != protocol::Address::By::topic &&
+                   address.number <= (address.extended ? can::max_extended_id : can::max_base_id),
+               "a message has an identifier");
+  fuzz::expect(protocol::identifier_of({&message, 0}, protocol::Priority::urgent) == address.number,
+               "a message's identifier has no priority of ours");
+  fuzz::expect(layout.accepts(layout.length) && layout.accepts(layout.length + 1U) &&
+                   (layout.length == 0 || !layout.accepts(layout.length - 1U)),
+               "a message may be longer");
+  fuzz::expect(layout.dlc() == std::min<unsigned>(layout.length, can::max_dlc), "a length code");
+  fuzz::expect(protocol::worst_bits(layout, protocol::Priority::low) ==
+                   can::worst_frame_bits(protocol::format_of(layout), layout.length),
+               "a message has the closed bound");
+  fuzz::expect(message.usual_period() == message.cycle && protocol::name(message.kind) == "message",
+               "a message has a cycle");
+  for (const Field& field : layout.fields) check_field(layout, field);
+}
+
+void check_catalogue(const protocol::Catalogue& catalogue) {
+  fuzz::expect(!catalogue.topics.empty(), "a catalogue has messages or topics");
+  fuzz::expect(catalogue.find(std::string_view{}) == nullptr, "nothing has no name");
+  fuzz::expect(catalogue.find(": no name") == nullptr, "no name has a colon");
+  const auto by_name = [&](std::string_view name) -> const Topic* {
+    for (const Topic& topic : catalogue.topics)
+      if (topic.name == name ||
+          std::find(topic.aliases.begin(), topic.aliases.end(), name) != topic.aliases.end())
+        return &topic;
+    return nullptr;
+  };
+  bool messages = false;
+  for (const Topic& topic : catalogue.topics) {
+    fuzz::expect(!topic.name.empty() && catalogue.find(topic.name) == by_name(topic.name), "a name is found");
+    for (const auto alias : topic.aliases)
+      fuzz::expect(catalogue.find(alias) == (alias.empty() ? nullptr : by_name(alias)), "an alias is found");
+    fuzz::expect(topic.board == protocol::no_board || topic.board < catalogue.boards.size(),
+                 "a sender is known");
+    fuzz::expect(catalogue.board_name(topic) ==
+                     (topic.board < catalogue.boards.size() ? catalogue.boards[topic.board].name : ""),
+                 "a sender has a name");
+    messages = messages || topic.is_message();
+    fuzz::expect(topic.is_message() || !messages, "topics come before messages");
+    topic.is_message() ? check_message(topic) : check_topic(catalogue, topic);
+  }
+  for (unsigned id = 0; id <= 0xFF; ++id) {
+    const Topic* const found = catalogue.find(protocol::TopicId{static_cast<std::uint8_t>(id)});
+    fuzz::expect(found == nullptr || (!found->is_message() && found->id.value == id),
+                 "a number is a topic's");
+  }
+}
+
+/// What a frame is of: a topic that is asked, or a frame of a topic or message.
+struct Found {
+  const Topic* topic = nullptr;
+  std::optional<std::size_t> frame;
+};
+
+/// By the rule: topics before messages; an exact identifier before a parameter group, and of two the first.
+Found find(const protocol::Catalogue& catalogue, std::uint32_t id, can::Format format) {
+  if (format != can::Format::base && format != can::Format::extended) return {};
   const bool extended = format == can::Format::extended;
+  for (const Topic& topic : catalogue.topics) {
+    if (topic.is_message() || extended) continue;
+    const bool sensor = topic.kind == protocol::Kind::sensor;
+    const bool from_board = (id & 0x400) != 0;
+    if (sensor && !from_board && topic.id.value == (id & 0xFF)) return {&topic, std::nullopt};
+    for (std::size_t i = 0; i < topic.frames.size(); ++i)
+      if (sensor == from_board && topic.frames[i].id.value == (id & 0xFF)) return {&topic, i};
+  }
   for (const Topic& topic : catalogue.topics) {
     const auto& address = topic.frames[0].address;
     if (address.by == protocol::Address::By::identifier && address.extended == extended &&
         address.number == id)
-      return &topic;
+      return {&topic, 0};
   }
   // Of a group below 240 the byte behind it is the destination. [SAE J1939-21, 5.2]
   const auto group = [](std::uint32_t number) {
@@ -208,10 +351,16 @@ const Topic* find(const protocol::Catalogue& catalogue, std::uint32_t id, can::F
   for (const Topic& topic : catalogue.topics) {
     const auto& address = topic.frames[0].address;
     if (extended && address.by == protocol::Address::By::pgn && group(address.number) == group(id))
-      return &topic;
+      return {&topic, 0};
   }
-  return nullptr;
+  return {};
 }
+
+/// What came of a topic's sample, as a list.
+struct Sequence {
+  std::vector<std::pair<std::size_t, std::vector<std::uint8_t>>> frames;
+  bool synchronised = false;
+};
 
 /// What a frame carries, with exactly the room behind it that can::FrameView promises.
 class Data {
@@ -230,38 +379,53 @@ class Data {
 class Bus {
  public:
   explicit Bus(const protocol::Catalogue& catalogue)
-      : catalogue_(catalogue), receiver_(catalogue), json_(catalogue) {
-    for (const Topic& topic : catalogue.topics) {
-      const auto& address = topic.frames[0].address;
-      const auto subject = index_of().subject(address.number, protocol::format_of(topic.frames[0]));
-      fuzz::expect(subject.topic == find(catalogue, address.number, protocol::format_of(topic.frames[0])) &&
-                       subject.frame,
-                   "a message's own identifier is found");
-    }
+      : catalogue_(catalogue), receiver_(catalogue), json_(catalogue), sequences_(catalogue.topics.size()) {
+    for (const Topic& topic : catalogue.topics)
+      for (std::size_t i = 0; i < topic.frames.size(); ++i) {
+        const std::uint32_t id =
+            protocol::identifier_of({&topic, static_cast<std::uint8_t>(i)}, topic.priority);
+        const auto found = check_index(id, protocol::format_of(topic.frames[i]));
+        fuzz::expect(found.frame.has_value(), "a frame's own identifier is found");
+        // Its neighbours, its other priorities, and the other direction.
+        for (const std::uint32_t other : {0x001U, 0x100U, 0x200U, 0x400U})
+          check_index((id ^ other) & can::max_base_id, can::Format::base);
+      }
   }
 
   void take(fuzz::Input& input) {
     log::Entry entry;
     const std::uint8_t how = input.byte();
     const Topic& topic = catalogue_.topics[input.byte() % catalogue_.topics.size()];
-    const FrameLayout& layout = topic.frames[0];
-    entry.id = layout.address.number;
+    // Mostly the frame that comes next, so that there are whole samples.
+    const std::size_t place = static_cast<std::size_t>(&topic - catalogue_.topics.data());
+    const std::size_t next = sequences_[place].frames.empty() ? 0 : sequences_[place].frames.back().first + 1;
+    const std::size_t frame = ((how & 0x20) != 0 ? input.byte() : next) % topic.frames.size();
+    const FrameLayout& layout = topic.frames[frame];
+    const auto priority = static_cast<protocol::Priority>(topic.is_message() ? 0 : input.byte() & 3);
+    entry.id = protocol::identifier_of({&topic, static_cast<std::uint8_t>(frame)}, priority);
     entry.format = protocol::format_of(layout);
     if ((how & 1) != 0) {
       entry.id = input.number<std::uint32_t>() &
                  (can::is_extended(entry.format) ? can::max_extended_id : can::max_base_id);
-    } else if ((how & 2) != 0) {  // of another sender, destination and priority
-      entry.id ^= input.number<std::uint32_t>() & (can::is_extended(entry.format) ? 0x1C00'FFFFU : 0U);
+    } else if ((how & 2) != 0) {  // of another sender, destination and priority; a topic's request
+      entry.id ^= can::is_extended(entry.format) ? input.number<std::uint32_t>() & 0x1C00'FFFFU
+                  : topic.is_message()           ? 0U
+                                                 : 0x400U;
     }
-    if (how >> 2 == 1) entry.format = can::Format::base_remote;
-    if (how >> 2 == 2) entry.format = can::Format::error;
-    if (how >> 2 == 3) entry.format = can::Format::extended, entry.id |= 0x1000'0000;
+    const unsigned kind = how >> 2 & 7;
+    if (kind == 1) entry.format = can::Format::base_remote;
+    if (kind == 2) entry.format = can::Format::error;
+    if (kind == 3) entry.format = can::Format::extended, entry.id |= 0x1000'0000;
     if (!can::is_extended(entry.format) && entry.format != can::Format::error) entry.id &= can::max_base_id;
     const std::size_t length =
         (how & 0x80) != 0 ? input.byte() : std::min<std::size_t>(layout.length, log::max_fd_length);
     entry.length = log::fd_length(log::fd_dlc(std::min<std::size_t>(length, log::max_fd_length)));
     if (entry.length > 8 || (how & 0x40) != 0) entry.flags = log::flag::fd;
     if (entry.is_fd() && (can::is_remote(entry.format) || entry.format == can::Format::error)) return;
+    // As logs have it: who sent it, and a length code above 8.
+    if (kind == 4) entry.direction = static_cast<log::Direction>(input.byte() % 3);
+    if (kind == 5 && entry.length == 8 && !entry.is_fd() && entry.format != can::Format::error)
+      entry.raw_dlc = static_cast<std::uint8_t>(9 + input.byte() % 7);
     const auto data = input.bytes(can::is_remote(entry.format) ? 0 : entry.length);
     std::copy(data.begin(), data.end(), entry.data.begin());
     std::fill(entry.data.begin() + static_cast<std::ptrdiff_t>(data.size()), entry.data.end(),
@@ -271,45 +435,105 @@ class Bus {
 
   void finish() const {
     const auto& c = receiver_.counters();
-    fuzz::expect(
-        c.frames == taken_ && c.frames == c.samples + c.unknown + c.fd + c.wrong_dlc + c.errors + c.commands,
-        "every frame is counted once");
+    fuzz::expect(c.frames == taken_ &&
+                     c.frames == c.samples + c.unknown + c.fd + c.wrong_dlc + c.errors + c.commands + parts_,
+                 "every frame is counted once");
+    fuzz::expect(c.incomplete == incomplete_, "every sample that lacks a frame is counted");
   }
 
  private:
-  [[nodiscard]] const client::FrameIndex& index_of() const { return index_; }
+  Found check_index(std::uint32_t id, can::Format format) const {
+    const Found rule = find(catalogue_, id, format);
+    const auto subject = index_.subject(id, format);
+    fuzz::expect(subject.topic == rule.topic && static_cast<bool>(subject) == (rule.topic != nullptr),
+                 "a frame is found by the rule");
+    fuzz::expect(subject.is_request() == (rule.topic != nullptr && !rule.frame),
+                 "a request is found by the rule");
+    if (rule.frame)
+      fuzz::expect(subject.frame.topic == rule.topic && subject.frame.frame == *rule.frame,
+                   "and which frame it is");
+    if (format != can::Format::base) return rule;
+    const bool of_topic = rule.topic != nullptr && !rule.topic->is_message();
+    const auto number = protocol::Identifier::decode(id);
+    fuzz::expect(index_.subject(number).topic == (of_topic ? rule.topic : nullptr),
+                 "a topic's is no message's");
+    fuzz::expect(index_.requested(number) == (of_topic && !rule.frame ? rule.topic : nullptr),
+                 "who is asked");
+    fuzz::expect(static_cast<bool>(index_.find(number)) == (of_topic && rule.frame.has_value()),
+                 "whose data it is");
+    return rule;
+  }
+
+  /// What a topic's frame makes of its sample; `bytes` of a whole one.
+  client::Meaning assemble(const Topic& topic, std::size_t frame, Bytes data,
+                           std::vector<std::uint8_t>& bytes) {
+    Sequence& sequence = sequences_[static_cast<std::size_t>(&topic - catalogue_.topics.data())];
+    const auto give_up = [&] {
+      incomplete_ += sequence.synchronised ? 1 : 0;
+      sequence.synchronised = true;
+      sequence.frames.clear();
+    };
+    if (!sequence.frames.empty() && sequence.frames.back().first >= frame) give_up();
+    sequence.frames.emplace_back(frame, std::vector<std::uint8_t>(data.begin(), data.end()));
+    sequence.frames.back().second.resize(8);
+    if (frame + 1 == topic.frames.size() && sequence.frames.size() == topic.frames.size()) {
+      for (const auto& [number, part] : sequence.frames) bytes.insert(bytes.end(), part.begin(), part.end());
+      sequence.synchronised = true;
+      sequence.frames.clear();
+      return client::Meaning::sample;
+    }
+    if (frame + 1 == topic.frames.size()) give_up();
+    ++parts_;
+    return client::Meaning::part;
+  }
 
   void take(const log::Entry& entry) {
     using client::Meaning;
     const Data data{entry.bytes()};
     const bool error = entry.format == can::Format::error;
-    const Topic* const topic = error ? nullptr : find(catalogue_, entry.id, entry.format);
-    const auto subject = index_.subject(entry.id, entry.format);
-    fuzz::expect(error || subject.topic == topic, "a frame is found by the rule");
+    Found found = error ? Found{} : check_index(entry.id, entry.format);
+    if (found.topic != nullptr && entry.is_fd() && !found.topic->is_message()) found = {};
+    const Topic* const topic = found.topic;
+    const bool message = topic != nullptr && topic->is_message();
+    const bool fits_length = found.frame && topic->frames[*found.frame].accepts(data.bytes().size());
     ++taken_;
-    const auto reception =
-        receiver_.take({entry.id, entry.format, entry.is_fd(), data.bytes()}, base::Time{base::Duration{1}});
-    const bool long_enough = topic != nullptr && data.bytes().size() >= topic->frames[0].length;
+    std::vector<std::uint8_t> bytes;
     const Meaning meaning = error              ? Meaning::error
                             : topic == nullptr ? Meaning::unknown
-                            : long_enough      ? Meaning::sample
-                                               : Meaning::wrong_dlc;
+                            : !found.frame     ? Meaning::request
+                            : !fits_length     ? Meaning::wrong_dlc
+                            : message          ? Meaning::sample
+                            : topic->kind == protocol::Kind::actuator
+                                ? Meaning::set_point
+                                : assemble(*topic, *found.frame, data.bytes(), bytes);
+    const auto reception =
+        receiver_.take({entry.id, entry.format, entry.is_fd(), data.bytes()}, base::Time{base::Duration{1}});
     fuzz::expect(reception.meaning == meaning && (error || reception.topic == topic),
                  "a frame is what it is");
+    if (meaning == Meaning::sample && message) bytes.assign(data.bytes().begin(), data.bytes().end());
     if (meaning == Meaning::sample)
-      fuzz::expect(std::equal(data.bytes().begin(), data.bytes().end(), reception.sample.bytes.begin(),
-                              reception.sample.bytes.end()),
-                   "a message is what came");
-    if (topic != nullptr) check(topic->frames[0], data.bytes());
+      fuzz::expect(std::equal(bytes.begin(), bytes.end(), reception.sample.bytes.begin(),
+                              reception.sample.bytes.end()) &&
+                       reception.sample.topic == topic,
+                   "a sample is what came");
+    if (meaning == Meaning::sample)
+      for (std::size_t i = 0; i < topic->frames.size(); ++i) {
+        const auto part = reception.sample.data(i);
+        fuzz::expect(message || (part.size() == topic->frames[i].length &&
+                                 part.data() == &reception.sample.bytes[8 * i]),
+                     "a frame of a sample has its length");
+      }
+    const bool readable = fits_length && !can::is_remote(entry.format);
+    if (found.frame) check(topic->frames[*found.frame], data.bytes());
 
     log::Bytes line;
     fuzz::expect(json_.write(line, "can0", entry), "every frame is shown");
     const std::string_view text = line.view();
     fuzz::expect(text.ends_with('\n') && dbc::is_utf8(text) && Json{text.substr(0, text.size() - 1)}.whole(),
                  "a line is JSON");
-    if (meaning != Meaning::sample) return;
-    for (const Field& field : topic->frames[0].fields) {
-      if (!is_there(topic->frames[0], field, data.bytes())) continue;
+    if (!readable) return;
+    for (const Field& field : topic->frames[*found.frame].fields) {
+      if (!is_there(topic->frames[*found.frame], field, data.bytes())) continue;
       std::string key = "\"";
       cli::append_json(key, field.name);
       fuzz::expect(text.find(key + "\":") != std::string_view::npos, "every field that is there is shown");
@@ -329,9 +553,15 @@ class Bus {
       const bool negative = field.is_signed && (bits >> (width - 1) & 1U) != 0;
       const std::uint64_t extended = negative && width < 64 ? bits | ~std::uint64_t{0} << width : bits;
       fuzz::expect(static_cast<std::uint64_t>(raw) == extended, "a field is its bits");
+      if (field.position.bytes() <= can::max_dlc) {
+        can::Payload payload{};
+        std::copy_n(data.begin(), std::min(data.size(), payload.size()), payload.begin());
+        fuzz::expect(field.raw(payload) == raw, "of eight bytes as of any");
+      }
       protocol::put(std::span{again}, field.position, raw);
       for (const unsigned bit : bits_of(field.position))
         used[bit / 8] = static_cast<std::uint8_t>(used[bit / 8] | 1U << bit % 8);
+      check_values(field, raw);
       check_text(field, data, raw);
     }
     for (std::size_t i = 0; i < data.size(); ++i)
@@ -364,7 +594,10 @@ class Bus {
   client::FrameIndex index_{catalogue_};
   client::Receiver receiver_;
   cli::JsonText json_;
+  std::vector<Sequence> sequences_;  // a topic
   std::uint64_t taken_ = 0;
+  std::uint64_t parts_ = 0;
+  std::uint64_t incomplete_ = 0;
 };
 
 void check_problems(const std::vector<spec::Problem>& problems) {
@@ -378,7 +611,7 @@ void check_problems(const std::vector<spec::Problem>& problems) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto all = fuzz::text_of(data, size);
   const auto text = all.substr(0, all.find('\0'));
-  const auto loaded = spec::parse(text, "x.dbc");
+  const auto loaded = spec::parse(text, text.starts_with('{') ? "x.json" : "x.dbc");
   fuzz::expect((loaded.spec == nullptr) != loaded.problems.empty(), "a file is a catalogue or has problems");
   check_problems(loaded.problems);
   check_problems(loaded.doubts);

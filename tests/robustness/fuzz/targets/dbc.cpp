@@ -1,12 +1,13 @@
-// What others call a DBC file, or CSV: whatever is in it, a set that comes out without a mistake can be
-// analysed, its identifiers differ, and every mistake has its place and its remedy. The readers belong to a
-// program and not to a library: they are compiled here, with fmt in its headers.
+// What others call a DBC file, or CSV: whatever is in it, each message is in the set that is analysed or left
+// out with a reason, its identifiers differ, and every mistake has its place and its remedy. The readers
+// belong to a program and not to a library: they are compiled here, with fmt in its headers.
 #define FMT_HEADER_ONLY
-#include "cli/analyse/dbc.cpp"
-
+#include "cli/analyse/messages.cpp"
 #include "cli/analyse/order.cpp"
 #include "cli/analyse/split.cpp"
 #include "generator/dbc/encoding.hpp"
+#include "generator/dbc/reader.hpp"
+#include "generator/spec/spec.hpp"
 #include "tests/robustness/fuzz/fuzz.hpp"
 
 using namespace ocm;
@@ -37,6 +38,43 @@ void check_signal(const dbc::Message& message, const dbc::Signal& signal) {
                  "selectors do not go in a circle");
 }
 
+/// What the analysis of a bus makes of it.
+void check_set(std::string_view text) {
+  const auto loaded = spec::parse(text, "x.dbc");
+  if (!loaded.spec) return;
+  BusSet set;
+  for (const spec::MessageModel& message : loaded.spec->model().messages) {
+    const std::size_t left_out = set.left_out.size();
+    const std::size_t in_set = set.entries.size();
+    for (const std::int64_t rate : {std::int64_t{1'000'000}, std::int64_t{0}}) {
+      set.left_out.resize(left_out);
+      set.entries.resize(in_set);
+      if (auto entry = entry_of(message, "", rate, set.left_out)) set.entries.push_back(std::move(*entry));
+    }
+    const bool counted = set.entries.size() > in_set;
+    const bool told = set.left_out.size() > left_out;
+    fuzz::expect(counted || told, "a message is in the set, or is left out with a reason");
+    if (told)
+      fuzz::expect(set.left_out.back().name == message.name && !key_of(set.left_out.back().reason).empty() &&
+                       counted == (set.left_out.back().reason == LeftOut::Reason::events),
+                   "what is left out is named");
+  }
+  std::vector<Mistake> mistakes;
+  order_bus(set, "x.dbc", mistakes);
+  limit_clocks(set);
+  for (const Mistake& mistake : mistakes)
+    fuzz::expect(mistake.place.starts_with("x.dbc") && !mistake.what.empty() && !mistake.remedy.empty(),
+                 "a mistake has its place and its remedy");
+  for (std::size_t i = 0; i < set.entries.size(); ++i) {
+    const BusEntry& entry = set.entries[i];
+    fuzz::expect(can::validate(entry.head).ok(), "its frames can exist");
+    fuzz::expect(entry.period > 0 && entry.jitter >= 0 && entry.offset >= 0, "its numbers mean something");
+    fuzz::expect(i == 0 || !mistakes.empty() ||
+                     can::arbitration_key(set.entries[i - 1].head) < can::arbitration_key(entry.head),
+                 "it is in the order of arbitration, and identifiers differ");
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -52,22 +90,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                    "an identifier is within its format");
       for (const dbc::Signal& signal : message.signals) check_signal(message, signal);
     }
-  std::vector<Mistake> mistakes;
-  const BusSet set = parse_dbc(text, "x.dbc", mistakes);
-  for (const Mistake& mistake : mistakes)
-    fuzz::expect(mistake.place.starts_with("x.dbc") && !mistake.what.empty() && !mistake.remedy.empty(),
-                 "a mistake has its place and its remedy");
-  if (mistakes.empty()) {
-    fuzz::expect(!set.entries.empty() && set.entries.size() <= most_messages,
-                 "a set without a mistake has messages");
-    for (std::size_t i = 0; i < set.entries.size(); ++i) {
-      const BusEntry& entry = set.entries[i];
-      fuzz::expect(can::validate(entry.head).ok(), "its frames can exist");
-      fuzz::expect(entry.period > 0 && entry.jitter >= 0, "its numbers mean something");
-      fuzz::expect(i == 0 || can::arbitration_key(set.entries[i - 1].head) < can::arbitration_key(entry.head),
-                   "it is in the order of arbitration, and identifiers differ");
-    }
-  }
+  check_set(text);
   std::size_t before = 0;
   for (const Line& line : split_csv(text)) {
     fuzz::expect(line.number > before, "lines of a table have numbers that grow");

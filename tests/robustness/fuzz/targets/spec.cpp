@@ -1,6 +1,8 @@
 // Specs: any text is a spec or has problems in words; what is a spec can be worked with.
 #include "generator/spec/spec.hpp"
 
+#include <algorithm>
+
 #include "ocm/client/sample.hpp"
 
 #include "cli/words/command.hpp"
@@ -17,10 +19,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (!loaded.spec) return 0;
 
   const protocol::Catalogue& catalogue = loaded.spec->catalogue();
-  fuzz::expect(!catalogue.robot.empty() && !catalogue.topics.empty(), "a spec has a robot with topics");
+  fuzz::expect(!catalogue.robot.empty() && !catalogue.topics.empty(),
+               "a spec has a robot with topics or messages");
   client::Receiver receiver{catalogue};
   const cli::words::CommandParser parser{catalogue};
+  std::size_t topics = 0;
   for (const auto& topic : catalogue.topics) {
+    if (topic.is_message()) continue;  // the target `catalogue` looks at them
+    ++topics;
     fuzz::expect(topic.board < catalogue.boards.size(), "a topic has a board");
     fuzz::expect(!topic.frames.empty(), "a topic has frames");
     fuzz::expect(catalogue.find(topic.name) == &topic && catalogue.find(topic.id) == &topic,
@@ -41,8 +47,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string_view ask[] = {sensor ? "publish" : "stop", topic.name};
     fuzz::expect(parser.parse(ask, {}).ok(), "every topic can be commanded");
   }
-  fuzz::expect(!parser.stop_all(protocol::Priority::urgent).frames.empty() || catalogue.topics.empty() ||
-                   catalogue.topics[0].kind == protocol::Kind::actuator,
+  fuzz::expect(!parser.stop_all(protocol::Priority::urgent).frames.empty() ||
+                   catalogue.topics[0].kind != protocol::Kind::sensor,
                "what can run can be stopped");
+  fuzz::expect(topics == loaded.spec->model().topics.size() ||
+                   std::any_of(loaded.spec->model().topics.begin(), loaded.spec->model().topics.end(),
+                               [](const auto& topic) { return topic.is_group; }),
+               "every topic is in the catalogue");
   return 0;
 }

@@ -22,6 +22,11 @@ class Server {
 
   void add(const vb::Record& record) { records_.push_back(record); }
   [[nodiscard]] bool full() const { return records_.size() == vb::max_records; }
+  /// In this message, or the next.
+  void add_whole(const vb::Record& record) {
+    if (full()) flush();
+    add(record);
+  }
   void flush() {
     if (records_.empty()) return;
     send(records_.data(), records_.size() * vb::record_size);
@@ -62,9 +67,10 @@ class Server {
   std::uint64_t granted = 0;
   std::uint64_t credit = 0;  ///< what the client has left once it has read all
   std::uint64_t overruns = 0;
-  std::deque<can::Received> frames{};  ///< that the client has not received
-  std::vector<can::Filter> filters{};  ///< that the client has told
-  std::deque<can::Frame> expected{};   ///< that the client has sent, and the server has not heard
+  std::deque<transport::ReceivedAny> frames{};  ///< that the client has not received
+  std::vector<can::Filter> filters{};           ///< that the client has told
+  std::deque<can::AnyFrame> expected{};         ///< that the client has sent, and the server has not heard
+  bool knows_fd = false;
   bool greeting_heard = false, goodbye_heard = false;
 
  private:
@@ -81,14 +87,22 @@ class Server {
         greeted = hello.magic == vb::magic && hello.version == vb::version && hello.bit_rate != 0;
         ended = !greeted;
         bit_rate = hello.bit_rate;
+        knows_fd = hello.fd != 0;
         granted = credit = hello.credit;
         return;
       }
       case vb::Type::frame: {
         const auto said = vb::from_record<vb::FrameRecord>(record);
         const auto frame = vb::decode(said);
-        ended = !frame.ok();
-        if (frame) frames.push_back({base::Time{base::Duration{said.time_ns}}, *frame});
+        ended = !frame.ok() || said_.waits();
+        if (!ended) frames.push_back({base::Time{base::Duration{said.time_ns}}, *frame});
+        return;
+      }
+      case vb::Type::fd_frame:
+      case vb::Type::fd_data: {
+        const auto whole = said_.take(record);
+        ended = !whole.ok();
+        if (!ended && *whole) frames.push_back({said_.time(), said_.frame()});
         return;
       }
       case vb::Type::credit:
@@ -109,7 +123,8 @@ class Server {
     switch (type) {
       case vb::Type::hello: {
         const auto hello = vb::from_record<vb::Hello>(record);
-        fuzz::expect(hello.magic == vb::magic && hello.version == vb::version, "its greeting is one");
+        fuzz::expect(hello.magic == vb::magic && hello.version == vb::version && hello.fd == 1,
+                     "its greeting is one");
         greeting_heard = true;
         return;
       }
@@ -117,6 +132,16 @@ class Server {
         const auto frame = vb::decode(vb::from_record<vb::FrameRecord>(record));
         fuzz::expect(frame.ok() && !expected.empty() && expected.front() == *frame,
                      "the frames that it took for sent come, in order");
+        expected.pop_front();
+        return;
+      }
+      case vb::Type::fd_frame:
+      case vb::Type::fd_data: {
+        const auto whole = of_client_.take(record);
+        fuzz::expect(whole.ok(), "the records of a CAN FD frame are one");
+        if (!*whole) return;
+        fuzz::expect(!expected.empty() && expected.front() == of_client_.frame(),
+                     "the CAN FD frames that it took for sent come, in order");
         expected.pop_front();
         return;
       }
@@ -146,6 +171,7 @@ class Server {
   host::Descriptor socket_;
   std::vector<vb::Record> records_{};
   std::vector<can::Filter> heard_{};
+  vb::FdAssembly said_, of_client_;
   std::uint64_t left_ = 0;
 };
 
@@ -184,11 +210,17 @@ class Scene {
     switch (what) {
       case 0:
       case 1:
-        return server_->add(vb::to_record(vb::Hello{.bit_rate = 1000, .credit = input.byte() % 8U}));
+        return server_->add(vb::to_record(vb::Hello{
+            .fd = static_cast<std::uint8_t>(what * 4), .bit_rate = 1000, .credit = input.byte() % 8U}));
       case 2:
       case 3: {
-        const auto time = input.number<std::int64_t>();
-        return server_->add(vb::to_record(input.frame(), base::Time{base::Duration{time}}));
+        const base::Time time{base::Duration{input.number<std::int64_t>()}};
+        if (what == 2) return server_->add(vb::to_record(input.frame(), time));
+        // The last record may be missing, or another one may come in its place.
+        const auto records = vb::to_fd_records(fd_frame(input), time);
+        const std::size_t missing = input.byte() % 16U == 0 ? 1 : 0;
+        for (const auto& record : records.all().first(records.count - missing)) server_->add_whole(record);
+        return;
       }
       case 4:
         return server_->add(vb::to_record(vb::Count{.type = vb::Type::credit, .count = input.byte() % 4U}));
@@ -227,6 +259,18 @@ class Scene {
     }
   }
 
+  /// Mostly one that can exist.
+  static can::AnyFrame fd_frame(fuzz::Input& input) {
+    can::AnyFrame frame{input.frame()};
+    frame.flags = static_cast<std::uint8_t>((input.byte() % 4U) | can::frame_flag::fd);
+    if (can::is_remote(frame.format)) return frame;
+    frame.length = can::fd_length(input.byte() % 16U);
+    frame.data = {};
+    const auto data = input.bytes(frame.length);
+    std::copy(data.begin(), data.end(), frame.data.begin());
+    return frame;
+  }
+
   void open() {
     auto opened = transport::VirtualBus::on(std::move(ours_), "sim", "/tmp/sim.sock", base::Duration{0});
     server_->listen();
@@ -252,12 +296,17 @@ class Scene {
   void act(unsigned what, fuzz::Input& input) {
     switch (what) {
       case 10:
-        send(input.frame());
+        if (input.byte() % 2U == 0)
+          send(input.frame());
+        else
+          send(fd_frame(input));
         break;
-      case 11:
-        for (int count = input.byte() % 8; count > 0 && receive(); --count) {
+      case 11: {
+        const std::uint8_t how = input.byte();
+        for (int count = how % 8; count > 0 && receive((how & 0x80) == 0); --count) {
         }
         break;
+      }
       case 12: {
         std::vector<can::Filter> filters(input.byte() % 4U);
         for (auto& filter : filters) filter = {input.number<std::uint16_t>(), input.number<std::uint16_t>()};
@@ -280,10 +329,11 @@ class Scene {
     fuzz::expect(server_->ended || server_->expected.empty(), "what was sent has come");
   }
 
-  void send(const can::Frame& frame) {
-    const bool valid = frame.format != can::Format::error && can::validate(frame).ok();
+  void send(const can::AnyFrame& frame) {
+    const bool valid = frame.format != can::Format::error && can::validate(frame).ok() &&
+                       (!frame.is_fd() || server_->knows_fd);
     server_->expected.push_back(frame);
-    const auto sent = bus_->send(frame);
+    const auto sent = bus_->send_any(frame);
     const bool taken = sent.ok() && *sent;
     if (!taken) server_->expected.pop_back();
     if (taken) ++sent_;
@@ -295,17 +345,21 @@ class Scene {
     if (taken) --server_->credit;
   }
 
-  /// The next frame that passes the filters, or none, exactly when there is one.
-  bool receive() {
+  /// The next frame that passes the filters, or none, exactly when there is one; not `any`: classic frames
+  /// alone.
+  bool receive(bool any = true) {
     auto& frames = server_->frames;
     const auto& filters = server_->filters;
-    const auto passes = [&](const can::Frame& frame) {
+    const auto passes = [&](const can::AnyFrame& frame) {
       return frame.format == can::Format::error || filters.empty() ||
              std::any_of(filters.begin(), filters.end(),
-                         [&](const auto& each) { return each.accepts(frame); });
+                         [&](const auto& each) { return each.accepts(frame.id, frame.format); });
     };
-    while (!frames.empty() && !passes(frames.front().frame)) frames.pop_front();
-    const auto received = bus_->receive(base::Duration{0});
+    while (!frames.empty() && (!passes(frames.front().frame) || (!any && frames.front().frame.is_fd()))) {
+      passed_over_ += passes(frames.front().frame) ? 1 : 0;
+      frames.pop_front();
+    }
+    const auto received = next(any);
     fuzz::expect(received.ok() == !frames.empty(), "a frame comes exactly when one was said");
     if (received) {
       fuzz::expect(received->time == frames.front().time && received->frame == frames.front().frame,
@@ -319,11 +373,19 @@ class Scene {
     return false;
   }
 
+  base::Result<transport::ReceivedAny> next(bool any) {
+    if (any) return bus_->receive_any(base::Duration{0});
+    const auto classic = bus_->receive(base::Duration{0});
+    if (!classic) return classic.error;
+    return transport::ReceivedAny{classic->time, classic->frame};
+  }
+
   void finish() {
     while (receive()) {
     }
     const auto& c = bus_->counters();
-    fuzz::expect(c.received == received_ && c.sent == sent_ && c.lost == server_->overruns,
+    fuzz::expect(c.received == received_ && c.sent == sent_ && c.lost == server_->overruns &&
+                     c.passed_over == passed_over_,
                  "every frame is counted once");
     const bool closed = bus_->state() == transport::BusState::closed;
     fuzz::expect(closed == server_->ended, "the end is seen");
@@ -346,6 +408,7 @@ class Scene {
   bool refused_ = false;
   std::uint64_t sent_ = 0;
   std::uint64_t received_ = 0;
+  std::uint64_t passed_over_ = 0;
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "ocm/simulation/virtual_bus_server.hpp"
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <poll.h>
 #include <string>
@@ -38,7 +39,7 @@ class Directory {
 class Peer {
  public:
   explicit Peer(const std::string& path) : socket_(::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0)) {
-    const auto address = vb::to_address(path);
+    const auto address = host::to_address(path);
     fuzz::expect(::connect(socket_.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) == 0,
                  "a client can connect");
   }
@@ -85,8 +86,19 @@ class Peer {
       case vb::Type::frame:
         fuzz::expect(vb::decode(vb::from_record<vb::FrameRecord>(record)).ok(),
                      "a frame on the bus can exist");
+        fuzz::expect(!assembly_.waits(), "no frame comes before the one before it is whole");
         ++frames;
         return;
+      case vb::Type::fd_frame:
+      case vb::Type::fd_data: {
+        const auto whole = assembly_.take(record);
+        fuzz::expect(whole.ok(), "the records of a CAN FD frame are one");
+        if (*whole) {
+          fuzz::expect(can::validate(assembly_.frame()).ok(), "a CAN FD frame on the bus can exist");
+          ++frames;
+        }
+        return;
+      }
       case vb::Type::credit:
         credit += vb::from_record<vb::Count>(record).count;
         return;
@@ -105,6 +117,7 @@ class Peer {
 
   host::Descriptor socket_;
   bool greeted_ = false;
+  vb::FdAssembly assembly_;
 };
 
 class Scene {
@@ -113,13 +126,14 @@ class Scene {
     simulation::VirtualBusOptions options;
     options.path = directory().socket();
     options.transmit_queue = 4;
+    options.data_bit_rate = 4 * options.bit_rate;
     options.raise_descriptor_limit = false;
     options.report = [](std::string_view text) { fuzz::expect(!text.empty(), "a report has words"); };
     auto opened = simulation::VirtualBusServer::open(std::move(options));
     fuzz::expect(opened.ok(), "the server opens");
     server_ = std::move(opened.value);
-    witness_.emplace(server_->path());
-    witness_->say(vb::Hello{});
+    witness_ = std::make_unique<Peer>(server_->path());
+    witness_->say(vb::Hello{.fd = 1});
     poll();
   }
 
@@ -149,7 +163,7 @@ class Scene {
           break;
         case 4:
           if (!peer) peer.emplace(server_->path());
-          peer->say(vb::Hello{});
+          peer->say(vb::Hello{.fd = static_cast<std::uint8_t>(what >> 3 & 1)});
           break;
         default:  // whole records
           if (!peer) peer.emplace(server_->path());
@@ -181,6 +195,10 @@ class Scene {
     server_->poll(now_, [this](const simulation::Delivery& delivery) {
       fuzz::expect(can::validate(delivery.frame).ok() && delivery.frame.format != can::Format::error,
                    "what is on the bus can be there");
+      if (delivery.fd != nullptr)
+        fuzz::expect(
+            delivery.fd->is_fd() && can::validate(*delivery.fd).ok() && delivery.fd->id == delivery.frame.id,
+            "a CAN FD frame on the bus can be there");
       fuzz::expect(delivery.time <= now_, "nothing is delivered before its time");
       ++delivered_;
     });
@@ -221,7 +239,7 @@ class Scene {
 
   std::unique_ptr<simulation::VirtualBusServer> server_;
   std::array<std::optional<Peer>, 3> peers_;
-  std::optional<Peer> witness_;
+  std::unique_ptr<Peer> witness_;
   base::Time now_{base::Duration{1'000'000'000}};
   std::uint64_t delivered_ = 0;
   std::uint64_t own_ = 0;  ///< frames of the witness

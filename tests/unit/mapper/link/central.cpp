@@ -218,6 +218,16 @@ TEST_CASE(
   CHECK(bench.taken(a).empty());
 }
 
+TEST_CASE("central: a reset ends a scan, too") {
+  Bench<> bench;
+  (void)bench.type("start\n");
+  CHECK(bench.central.scanning());
+  (void)bench.type("*reset\n");
+  CHECK_FALSE(bench.central.scanning());
+  bench.found(a, "AVR");
+  CHECK(bench.central.counters().stray_reports == 1);
+}
+
 TEST_CASE("central: a full queue drops whole ends of lines, counted, and takes the next line again") {
   Bench<8, 3, 2> bench;
   bench.one_link();

@@ -1,0 +1,205 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "cli/operate/study.hpp"
+#include "cli/shared/json.hpp"
+#include "cli/words/quantity.hpp"
+
+namespace ocm::cli::operate {
+namespace {
+
+using reflective::none;
+
+std::string percent(std::int64_t per_mille) {
+  return per_mille == analysis::unbounded ? std::string{"no bound"}
+                                          : fmt::format("{}.{} %", per_mille / 10, per_mille % 10);
+}
+
+/// The condition that a bound is of; empty: a request.
+std::string watched(const Study& study, const reflective::Latency& latency) {
+  const auto& tables = study.file->tables;
+  const std::uint16_t c = latency.condition;
+  return c == none ? std::string{} : std::string{tables.conditions[c].name};
+}
+
+Json nanoseconds(std::int64_t ns) {
+  return ns == analysis::unbounded ? Json(nullptr) : Json(ns);
+}
+
+std::string in_quotes(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '\n') {
+      out += "\\n";
+      continue;
+    }
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + "\"";
+}
+
+}  // namespace
+
+std::string to_table(const Study& study) {
+  const auto& tables = study.file->tables;
+  const auto count = [](std::size_t n, std::string_view what) {
+    return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
+  };
+  std::string text = fmt::format("operator {}: {}, {}, {}, at {} bit/s\n", tables.name,
+                                 count(tables.configurations.size(), "configuration"),
+                                 count(tables.monitors.size(), "monitor"),
+                                 count(tables.transitions.size(), "transition"), study.bit_rate);
+  std::size_t width = std::string_view{"the start"}.size();
+  for (const auto& configuration : tables.configurations) width = std::max(width, configuration.name.size());
+
+  text += "\nconfigurations: load of the bus, and the latest end of each sample against its deadline\n";
+  for (std::size_t c = 0; c < study.configurations.size(); ++c) {
+    const auto& bound = study.configurations[c];
+    const auto role = c == tables.initial && c == tables.fall_back ? " (initial, fall-back)"
+                      : c == tables.initial                        ? " (initial)"
+                      : c == tables.fall_back                      ? " (fall-back)"
+                                                                   : "";
+    text +=
+        fmt::format("  {:<{}}  {:>7}{}\n", tables.configurations[c].name, width, percent(bound.load), role);
+    for (const StreamBound& stream : bound.streams)
+      text += fmt::format("    {} every {} at {} priority: {} of {}\n", tables.topic(stream.topic).name,
+                          words::to_text(stream.period), name(stream.priority), milliseconds(stream.response),
+                          milliseconds(stream.deadline));
+  }
+
+  text += fmt::format(
+      "\nchanges: over before the next one may begin, {} later (settle). Asynchronous, unchanged streams go "
+      "on;\n"
+      "load while old and new streams overlap [Real, Crespo 2004, Real-Time Systems 26(2)]\n",
+      words::to_text(tables.settle));
+  for (const ChangeBound& change : study.changes)
+    text += fmt::format(
+        "  {:<{}} -> {:<{}}  {:>7}  over after {}\n",
+        change.from == none ? std::string_view{"the start"} : tables.configurations[change.from].name, width,
+        tables.configurations[change.to].name, width, percent(change.load), milliseconds(change.over_after));
+
+  text += "\nreactions: from the event to the end of the last set point on the bus, at most\n";
+  for (const ReactionBound& reaction : study.reactions) {
+    const auto& transition = tables.transitions[reaction.transition];
+    text += fmt::format("  {}: {} -> {}\n", transition.cause, tables.configurations[reaction.from].name,
+                        tables.configurations[transition.to].name);
+    if (!reaction.seen) {
+      text += "    never: this configuration does not ask for what the monitor looks at\n";
+      continue;
+    }
+    const std::string_view end = reaction.commands ? "" : " (to the decision: nothing is commanded on entry)";
+    const auto bound = [&](const reflective::Latency& latency) {
+      if (const auto what = watched(study, latency); !what.empty()) text += fmt::format("    {}\n", what);
+      text += fmt::format("      {}{}\n", sum_of(latency), end);
+    };
+    for (const reflective::Latency& latency : reaction.conditions) bound(latency);
+    if (reaction.conditions.empty()) bound(reaction.latency);
+    if (reaction.latency.bounded)
+      text +=
+          fmt::format("      {} while a change is under way\n", milliseconds(reaction.latency.at_worst()));
+  }
+  text += study.passes() ? "\nin time\n"
+                         : fmt::format("\nNOT IN TIME: {}\n", count(study.doubts.size(), "reason"));
+  return text;
+}
+
+std::string to_json(const Study& study) {
+  const auto& tables = study.file->tables;
+  const auto name_of = [&](std::uint16_t c) {
+    return c == none ? Json(nullptr) : Json(tables.configurations[c].name);
+  };
+  Json configurations = Json::array();
+  for (std::size_t c = 0; c < study.configurations.size(); ++c) {
+    Json streams = Json::array();
+    for (const StreamBound& stream : study.configurations[c].streams)
+      streams.push_back({{"topic", tables.topic(stream.topic).name},
+                         {"period_ns", stream.period.count()},
+                         {"priority", name(stream.priority)},
+                         {"response_ns", nanoseconds(stream.response)},
+                         {"deadline_ns", stream.deadline}});
+    configurations.push_back({{"name", tables.configurations[c].name},
+                              {"load_per_mille", nanoseconds(study.configurations[c].load)},
+                              {"streams", streams}});
+  }
+  Json changes = Json::array();
+  for (const ChangeBound& change : study.changes)
+    changes.push_back({{"from", name_of(change.from)},
+                       {"to", name_of(change.to)},
+                       {"over_after_ns", nanoseconds(change.over_after)},
+                       {"load_per_mille", nanoseconds(change.load)}});
+  Json reactions = Json::array();
+  for (const ReactionBound& reaction : study.reactions) {
+    const auto& transition = tables.transitions[reaction.transition];
+    Json one{{"cause", transition.cause},
+             {"from", name_of(reaction.from)},
+             {"to", name_of(transition.to)},
+             {"on_request", transition.monitor == reflective::by_request},
+             {"seen", reaction.seen},
+             {"commands", reaction.commands},
+             {"at_most_ns", nanoseconds(reaction.latency.total())},
+             {"while_changing_ns", nanoseconds(reaction.latency.at_worst())}};
+    const auto with_parts = [&](Json& of, const reflective::Latency& latency) {
+      if (!latency.bounded) return;
+      Json parts = Json::object();
+      for (const auto& part : latency.parts()) parts[part.name] = part.time;
+      of["parts_ns"] = parts;
+      if (latency.condition != none) of["condition"] = watched(study, latency);
+    };
+    with_parts(one, reaction.latency);
+    Json conditions = Json::array();
+    for (const reflective::Latency& latency : reaction.conditions) {
+      Json each{{"at_most_ns", nanoseconds(latency.total())}};
+      with_parts(each, latency);
+      conditions.push_back(each);
+    }
+    if (!reaction.conditions.empty()) one["conditions"] = conditions;
+    reactions.push_back(one);
+  }
+  Json doubts = Json::array();
+  for (const auto& doubt : study.doubts)
+    doubts.push_back({{"place", doubt.place}, {"what", doubt.what}, {"remedy", doubt.remedy}});
+  Json object{{"operator", tables.name},
+              {"bit_rate", study.bit_rate},
+              {"initial", name_of(tables.initial)},
+              {"fall_back", name_of(tables.fall_back)},
+              {"settle_ns", tables.settle.count()},
+              {"configurations", configurations},
+              {"changes", changes},
+              {"reactions", reactions},
+              {"in_time", study.passes()},
+              {"doubts", doubts}};
+  return object.lines();
+}
+
+std::string to_dot(const Study& study) {
+  const auto& tables = study.file->tables;
+  std::string text = fmt::format(
+      "digraph {} {{\n  rankdir=LR;\n  node [fontname=\"DejaVu Sans\", fontsize=11, shape=box, "
+      "style=rounded];\n"
+      "  edge [fontname=\"DejaVu Sans\", fontsize=9];\n  start [shape=point, label=\"\"];\n",
+      in_quotes(tables.name));
+  for (std::size_t c = 0; c < study.configurations.size(); ++c) {
+    const auto& configuration = tables.configurations[c];
+    std::string label = std::string{configuration.name};
+    label += fmt::format("\n{} of the bus", percent(study.configurations[c].load));
+    for (const auto& stream : configuration.streams)
+      label += fmt::format("\n{} {}", tables.topic(stream.topic).name, words::to_text(stream.period));
+    text += fmt::format("  c{} [label={}{}];\n", c, in_quotes(label),
+                        c == tables.fall_back ? ", peripheries=2" : "");
+  }
+  text += fmt::format("  start -> c{};\n", tables.initial);
+  for (const ReactionBound& reaction : study.reactions) {
+    if (!reaction.seen) continue;
+    const auto& transition = tables.transitions[reaction.transition];
+    const bool asked = transition.monitor == reflective::by_request;
+    text += fmt::format(
+        "  c{} -> c{} [label={}{}];\n", reaction.from, transition.to,
+        in_quotes(fmt::format("{}\n{}", transition.cause, milliseconds(reaction.latency.total()))),
+        asked ? ", style=dashed" : "");
+  }
+  return text + "}\n";
+}
+
+}  // namespace ocm::cli::operate

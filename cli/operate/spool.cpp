@@ -1,0 +1,85 @@
+#include "cli/operate/spool.hpp"
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "cli/logs/format.hpp"
+
+namespace ocm::cli::operate {
+
+namespace fs = std::filesystem;
+
+Spool::Spool(std::string folder, std::string name, base::Duration lasting,
+             const protocol::Catalogue& catalogue)
+    : folder_(std::move(folder)), name_(std::move(name)), lasting_(lasting), catalogue_(&catalogue) {}
+
+std::string Spool::path(int number) const {
+  return (fs::path{folder_} / fmt::format("{}.running-{}.log", name_, number)).string();
+}
+
+transport::Outcome<std::optional<std::string>> Spool::recover(const std::string& path) {
+  std::error_code error;
+  std::vector<fs::path> left;
+  for (const int number : {0, 1}) {
+    const fs::path file{this->path(number)};
+    if (!fs::exists(file, error)) continue;
+    if (logs::is_being_written(file.string()))
+      return transport::Failure{
+          fmt::format("an operator with the name {} keeps its black box in {}", name_, folder_),
+          "another --black-box, or another name in the operator file"};
+    left.push_back(file);
+  }
+  if (left.empty()) return std::optional<std::string>{};
+  const auto written = [&](const fs::path& file) { return fs::last_write_time(file, error); };
+  if (left.size() == 2 && written(left[1]) < written(left[0])) std::swap(left[0], left[1]);
+  if (left.size() == 2) {
+    std::ofstream older{left[0], std::ios::binary | std::ios::app};
+    const std::ifstream newer{left[1], std::ios::binary};
+    if (fs::file_size(left[1], error) != 0) older << newer.rdbuf();
+    older.close();
+    if (!older)
+      return transport::Failure{fmt::format("{} cannot be joined to {}", left[1].string(), left[0].string()),
+                                "is the disk full?"};
+    fs::remove(left[1], error);
+  }
+  fs::rename(left[0], path, error);
+  if (error)
+    return transport::Failure{fmt::format("{}: {}", path, error.message()),
+                              fmt::format("what the last run has left is in {}", left[0].string())};
+  return std::optional{path};
+}
+
+transport::Outcome<void> Spool::append(std::span<const log::Entry> entries,
+                                       const log::Interfaces& interfaces) {
+  if (entries.empty()) return {};
+  const base::Time first = entries.front().time;
+  // A clock that was set begins a new file, too.
+  if (!file_ || first < begin_ || first - begin_ >= lasting_) {
+    file_.reset();
+    number_ = 1 - number_;
+    auto file = logs::LogFile::create(path(number_), *logs::find_format("candump"), *catalogue_,
+                                      logs::Existing::overwrite);
+    if (!file) return std::move(file.error);
+    file_ = std::move(*file);
+    file_->without_signals();
+    begin_ = first;
+  }
+  if (file_->write(entries, interfaces) && file_->flush()) return {};
+  transport::Failure failure = file_->failure();
+  file_.reset();
+  return failure;
+}
+
+void Spool::end() {
+  file_.reset();
+  std::error_code error;
+  for (const int number : {0, 1}) fs::remove(path(number), error);
+}
+
+}  // namespace ocm::cli::operate

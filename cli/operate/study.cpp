@@ -1,0 +1,147 @@
+#include "cli/operate/study.hpp"
+
+#include <algorithm>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "ocm/base/decimal.hpp"
+
+#include "cli/words/quantity.hpp"
+
+namespace ocm::cli::operate {
+namespace {
+
+using reflective::Doubt;
+using reflective::none;
+/// Of the largest operator: 32 streams of 8 frames, requests and refusals, twice in a change.
+using Proof = reflective::Proof<1024>;
+
+std::string_view name_of(const OperatorFile& file, std::uint16_t configuration) {
+  return configuration == none ? std::string_view{"the start"}
+                               : file.tables.configurations[configuration].name;
+}
+
+spec::Problem problem_of(const OperatorFile& file, const Doubt& doubt) {
+  const auto& tables = file.tables;
+  const std::string of = doubt.from == none
+                             ? fmt::format("in \"{}\"", name_of(file, doubt.configuration))
+                             : fmt::format("in the change from \"{}\" to \"{}\"", name_of(file, doubt.from),
+                                           name_of(file, doubt.configuration));
+  const std::string& place = file.parts[doubt.configuration].of.place;
+  switch (doubt.kind) {
+    case Doubt::Kind::too_many:
+      return {place, fmt::format("{} there are more frames than the analysis has room for", of),
+              "fewer streams, or fewer others"};
+    case Doubt::Kind::late: {
+      const std::string topic = doubt.topic == none ? std::string{"what others send"}
+                                                    : fmt::format("{}", tables.topic(doubt.topic).name);
+      const std::string how =
+          doubt.why.bounded()
+              ? fmt::format("takes up to {}, its deadline is {}", milliseconds(doubt.why.response),
+                            milliseconds(doubt.why.deadline))
+              : std::string{"has no bound: the bus is overloaded at its priority"};
+      return {place, fmt::format("{} {} {}", of, topic, how),
+              "longer periods, fewer streams, or a more urgent priority for it"};
+    }
+    case Doubt::Kind::unsettled:
+      return {file.settle_place,
+              fmt::format("{} may take {}, which is longer than \"settle\"",
+                          doubt.from == none
+                              ? fmt::format("the start in \"{}\"", name_of(file, doubt.configuration))
+                              : "the change" + of.substr(std::string_view{"in the change"}.size()),
+                          milliseconds(doubt.needs)),
+              doubt.needs == analysis::unbounded
+                  ? std::string{"longer periods or fewer streams"}
+                  : fmt::format("\"settle\": \"{}ms\" or longer", (doubt.needs + 999'999) / 1'000'000)};
+    case Doubt::Kind::restless: {
+      const bool field = tables.conditions[doubt.condition].watched == reflective::Watched::field;
+      return {file.condition_items[doubt.condition].place,
+              fmt::format(
+                  "{} the samples of {} may be {} apart, so that {}", of, tables.topic(doubt.topic).name,
+                  milliseconds(doubt.needs),
+                  field ? "its values go stale after three periods" : "it holds although nothing is wrong"),
+              field ? std::string{"a longer period, or shorter \"settle\" and \"reaction\""}
+                    : fmt::format("\"above\": \"{}ms\" or longer", doubt.needs / 1'000'000 + 1)};
+    }
+  }
+  return {place, "unknown", ""};
+}
+
+}  // namespace
+
+Study study(const OperatorFile& file, std::uint32_t bit_rate) {
+  Study result;
+  result.file = &file;
+  result.bit_rate = bit_rate;
+  const auto& tables = file.tables;
+  const auto proof = std::make_unique<Proof>(tables, bit_rate);
+  const auto count = static_cast<std::uint16_t>(tables.configurations.size());
+
+  for (std::uint16_t c = 0; c < count; ++c) {
+    ConfigurationBound bound;
+    bound.load = proof->load(c);
+    for (const auto& stream : tables.configurations[c].streams) {
+      const auto& topic = tables.topic(stream.topic);
+      const std::int64_t period = stream.period.count();
+      const std::int64_t deadline =
+          topic.deadline.count() == 0 ? period : std::min(period, topic.deadline.count());
+      bound.streams.push_back(
+          {stream.topic, stream.period, stream.priority, proof->response(c, stream.topic), deadline});
+    }
+    result.configurations.push_back(std::move(bound));
+  }
+
+  const auto change = [&](std::uint16_t from, std::uint16_t to) {
+    result.changes.push_back({from, to, proof->settling(from, to), proof->load(from, to)});
+  };
+  change(none, tables.initial);
+  for (std::uint16_t from = 0; from < count; ++from)
+    for (std::uint16_t to = 0; to < count; ++to)
+      if (std::any_of(tables.transitions.begin(), tables.transitions.end(),
+                      [&](const auto& t) { return t.to == to && tables.leaves(t, from); }))
+        change(from, to);
+
+  for (std::uint16_t t = 0; t < tables.transitions.size(); ++t) {
+    const auto& transition = tables.transitions[t];
+    for (std::uint16_t from = 0; from < count; ++from) {
+      if (!tables.leaves(transition, from)) continue;
+      const bool seen = transition.monitor == reflective::by_request ||
+                        reflective::sees(tables, from, tables.monitors[transition.monitor]);
+      ReactionBound reaction{
+          t, from, seen, !tables.configurations[transition.to].entry.empty(), proof->latency(t, from), {}};
+      if (seen && transition.monitor != reflective::by_request) {
+        std::vector<std::uint16_t> looked_at;
+        for (const auto& term : tables.monitors[transition.monitor].terms)
+          if (term.op == reflective::Op::condition &&
+              std::find(looked_at.begin(), looked_at.end(), term.condition) == looked_at.end())
+            looked_at.push_back(term.condition);
+        if (looked_at.size() > 1)
+          for (const std::uint16_t c : looked_at) reaction.conditions.push_back(proof->latency(t, from, c));
+      }
+      result.reactions.push_back(std::move(reaction));
+    }
+  }
+  proof->check([&](const Doubt& doubt) {
+    auto problem = problem_of(file, doubt);
+    if (std::find(result.doubts.begin(), result.doubts.end(), problem) == result.doubts.end())
+      result.doubts.push_back(std::move(problem));
+  });
+  return result;
+}
+
+std::string milliseconds(std::int64_t ns) {
+  if (ns == analysis::unbounded) return "no bound";
+  return fmt::format("{} ms", base::to_text(base::normalised(ns, -6)).view());
+}
+
+std::string sum_of(const reflective::Latency& latency) {
+  std::string text;
+  for (const auto& part : latency.parts())
+    if (part.time != 0)
+      text += fmt::format("{}{} {}", text.empty() ? " = " : " + ",
+                          base::to_text(base::normalised(part.time, -6)).view(), part.name);
+  return milliseconds(latency.total()) + text;
+}
+
+}  // namespace ocm::cli::operate

@@ -1,0 +1,45 @@
+/// A terminal that is drawn on and read key by key: ncurses, seen by curses.cpp alone.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "ocm/transport/bus.hpp"
+
+#include "cli/shared/terminal.hpp"
+#include "cli/top/view.hpp"
+
+namespace ocm::cli::top {
+
+struct CursesOptions {
+  bool colour = true;
+  bool mouse = false;
+};
+
+/// From its making to its end the terminal is this program's; then it is as it was.
+class Curses {
+ public:
+  /// The failure says what is missing: no terminal, one that cannot move its cursor, or ncurses.
+  [[nodiscard]] static transport::Outcome<std::unique_ptr<Curses>> open(const CursesOptions& options);
+  ~Curses();
+  Curses(const Curses&) = delete;
+  Curses& operator=(const Curses&) = delete;
+
+  /// Whether it has the characters of UTF-8.
+  [[nodiscard]] bool unicode() const noexcept;
+  [[nodiscard]] TerminalSize size() const;
+  void draw(const Picture& picture);
+  /// A key that was pressed, without waiting; none: there is none.
+  [[nodiscard]] std::optional<Key> key();
+  /// What to poll for keys.
+  [[nodiscard]] int input() const noexcept;
+  /// The terminal is gone: nobody will press a key any more.
+  [[nodiscard]] bool gone() const noexcept;
+
+ private:
+  struct State;
+  explicit Curses(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace ocm::cli::top

@@ -1,0 +1,90 @@
+#include "cli/top/feed.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "cli/shared/interrupt.hpp"
+#include "cli/shared/messages.hpp"
+
+namespace ocm::cli::top {
+
+// Asked without a wait, `idle` says that nothing is left: see Live.
+LiveFeed::LiveFeed(std::unique_ptr<transport::Bus> bus) : bus_(std::move(bus)), live_(*bus_, [] {}) {
+  interfaces_.number(bus_->name());
+}
+
+Over LiveFeed::pump(Models& models) {
+  const Over over = live_.receive_any(Clock::now(), [&](const transport::ReceivedAny& received) {
+    models.take({received.time, received.frame, 0}, interfaces_);
+    return true;
+  });
+  if (const auto missed = bus_->counters().lost; missed != told_) {
+    models.lost(bus_->name(), missed - told_);
+    told_ = missed;
+  }
+  return over;
+}
+
+LogFeed::LogFeed(std::string path, std::string format, const protocol::Catalogue& catalogue)
+    : path_(std::move(path)), format_(std::move(format)), catalogue_(&catalogue), batch_(log::batch) {
+  std::error_code unreadable;
+  if (path_ == "-" || std::filesystem::is_fifo(path_, unreadable))
+    fail({"a log that comes through a pipe cannot be wound", "write it to a file, and give that to top"},
+         exit_usage);
+  logs::OpenedLog log{path_, format_, catalogue};
+  bool any = false;
+  base::Time last{};
+  while (interrupted() == 0) {
+    const std::size_t count = log.reader().read(batch_);
+    if (count == 0) break;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!any) first_ = last = batch_[i].time;
+      any = true;
+      last = std::max(last, batch_[i].time);
+    }
+  }
+  log.complain();
+  if (!any && interrupted() == 0)
+    fail({fmt::format("{}: no frame in it", path_), "amiroctl info FILE says what is in a log"});
+  playing_.length = last - first_;
+  rewind();
+}
+
+void LogFeed::rewind() {
+  log_ = std::make_unique<logs::OpenedLog>(path_, format_, *catalogue_);
+  next_ = size_ = 0;
+  playing_.at = {};
+  playing_.ended = false;
+}
+
+void LogFeed::go_to(base::Duration at, Models& models) {
+  at = std::clamp(at, base::Duration{0}, playing_.length);
+  while (interrupted() == 0) {
+    if (next_ == size_) {
+      next_ = 0;
+      size_ = log_->reader().read(batch_);
+      if (size_ == 0) break;
+    }
+    const log::Entry& entry = batch_[next_];
+    if (entry.time - first_ > at) break;
+    models.take(entry, log_->reader().interfaces());
+    ++next_;
+  }
+  playing_.at = at;
+  playing_.ended = at >= playing_.length;
+  models.until(now());
+}
+
+void LogFeed::play(base::Duration time, Models& models) {
+  const double ns = static_cast<double>(time.count()) * playing_.speed;
+  go_to(playing_.at + base::Duration{static_cast<std::int64_t>(ns)}, models);
+}
+
+void LogFeed::faster(double factor) noexcept {
+  playing_.speed = std::clamp(playing_.speed * factor, 1.0 / 64, 1024.0);
+}
+
+}  // namespace ocm::cli::top

@@ -1,0 +1,72 @@
+/// Where `top` gets its frames from: a live bus, or a log that is played and can be wound.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ocm/base/time.hpp"
+#include "ocm/log/entry.hpp"
+#include "ocm/log/interfaces.hpp"
+#include "ocm/log/reader.hpp"
+#include "ocm/protocol/topic.hpp"
+#include "ocm/transport/bus.hpp"
+
+#include "cli/logs/opened_log.hpp"
+#include "cli/shared/clock.hpp"
+#include "cli/shared/live.hpp"
+#include "cli/top/models.hpp"
+
+namespace ocm::cli::top {
+
+/// All that came from a bus, taken now and then: waking up at every frame would cost more than the frames.
+class LiveFeed {
+ public:
+  explicit LiveFeed(std::unique_ptr<transport::Bus> bus);
+
+  [[nodiscard]] std::string name() const { return std::string{bus_->name()}; }
+  [[nodiscard]] const transport::Bus& bus() const noexcept { return *bus_; }
+  /// Gives all that is waiting to the models. Over::time: there is more to come.
+  [[nodiscard]] Over pump(Models& models);
+
+ private:
+  std::unique_ptr<transport::Bus> bus_;
+  Live live_;
+  log::Interfaces interfaces_;
+  std::uint64_t told_ = 0;
+};
+
+/// A log that is played: its time goes on with the clock, so many times as fast.
+class LogFeed {
+ public:
+  /// Looks through the whole file for its length. Leaves through `fail` where it cannot be read; a signal
+  /// ends the looking.
+  LogFeed(std::string path, std::string format, const protocol::Catalogue& catalogue);
+
+  /// The clock has gone on by so much.
+  void play(base::Duration time, Models& models);
+  /// To this distance from the first frame; backwards the models are to be empty, and the log is read anew.
+  void go_to(base::Duration at, Models& models);
+  [[nodiscard]] bool is_behind(base::Duration at) const noexcept { return at < playing_.at; }
+  /// The next `go_to` reads from the beginning.
+  void rewind();
+  void faster(double factor) noexcept;
+
+  [[nodiscard]] const Playing& playing() const noexcept { return playing_; }
+  [[nodiscard]] base::Time now() const noexcept { return first_ + playing_.at; }
+
+ private:
+  std::string path_;
+  std::string format_;
+  const protocol::Catalogue* catalogue_;
+  std::unique_ptr<logs::OpenedLog> log_;
+  std::vector<log::Entry> batch_;
+  std::size_t next_ = 0;  ///< of the batch
+  std::size_t size_ = 0;
+  base::Time first_{};
+  Playing playing_;
+};
+
+}  // namespace ocm::cli::top

@@ -1,0 +1,151 @@
+#include <csignal>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "cli/operate/control.hpp"
+#include "cli/operate/runner.hpp"
+#include "cli/operate/study.hpp"
+#include "cli/shared/drawing_program.hpp"
+#include "cli/shared/interrupt.hpp"
+#include "cli/shared/messages.hpp"
+#include "cli/shared/operator_link.hpp"
+#include "cli/shared/output_file.hpp"
+#include "cli/shared/values.hpp"
+#include "cli/verbs/verbs.hpp"
+
+namespace ocm::cli {
+namespace {
+
+struct OperateOptions {
+  std::string file;
+  bool check = false;
+  std::string svg;
+  bool json = false;
+  std::optional<std::uint32_t> bit_rate;
+  operate::BlackBoxOptions black_box;
+};
+
+/// On stderr, all of them.
+void tell(std::span<const spec::Problem> problems) {
+  for (const auto& problem : problems)
+    complain({fmt::format("{}: {}", problem.place, problem.what), problem.remedy});
+}
+
+int check(const OperateOptions& options, const operate::OperatorFile& file, std::uint32_t bit_rate) {
+  const auto study = operate::study(file, bit_rate);
+  if (!options.svg.empty()) {
+    const auto picture = drawn_by({"dot", "-Tsvg"}, operate::to_dot(study), "sudo apt install graphviz");
+    if (!picture)
+      fail({fmt::format("operate: {}: {}", options.svg, picture.error.what), picture.error.remedy});
+    write_file(options.svg, *picture);
+  }
+  if (options.json)
+    fmt::print("{}", operate::to_json(study));
+  else if (options.svg != "-")
+    fmt::print("{}", operate::to_table(study));
+  tell(study.doubts);
+  return study.passes() ? exit_success : exit_failure;
+}
+
+/// What can be run: no mistake, and in time.
+std::unique_ptr<operate::OperatorFile> load_or_leave(const OperateOptions& options,
+                                                     const protocol::Catalogue& catalogue,
+                                                     std::uint32_t bit_rate) {
+  auto loaded = operate::load(options.file, catalogue, bit_rate);
+  tell(loaded.problems);
+  if (!loaded.file) throw Exit{exit_failure};
+  return std::move(loaded.file);
+}
+
+/// The operator of this bus: there is one.
+std::unique_ptr<operate::Control> open_control(const transport::Bus& bus) {
+  auto control = operate::Control::open(bus.name());
+  if (control) return std::move(*control);
+  if (control.error.process == 0)
+    fail({fmt::format("operate: {}", control.error.what), control.error.remedy});
+  const auto other = OperatorLink::connect(bus.name(), "operate");
+  fail({fmt::format("operate: {} has {} already", other && *other ? (*other)->who() : control.error.what,
+                    bus.name()),
+        fmt::format("`amiroctl operator status` says what it does; kill {} ends it", control.error.process)});
+}
+
+int run(const OperateOptions& options, Session& session, std::uint32_t bit_rate) {
+  const auto& catalogue = session.catalogue();
+  static_cast<void>(
+      load_or_leave(options, catalogue, bit_rate));  // a mistake is said before a bus is missing
+  catch_interrupts();
+  catch_hangups();
+  catch_broken_pipe();
+  std::signal(SIGXFSZ, SIG_IGN);  // a black box that may not grow is reported like a full disk
+  const auto bus = session.open_bus();
+  const auto control = open_control(*bus);
+  if (!options.bit_rate && bus->bit_rate() != 0) bit_rate = bus->bit_rate();
+  const auto file = load_or_leave(options, catalogue, bit_rate);
+  const auto study = operate::study(*file, bit_rate);
+  if (!study.passes()) {
+    tell(study.doubts);
+    fail({fmt::format("operate: {} may act too late on this bus, and is not run", options.file),
+          "amiroctl operate FILE --check shows all of it"});
+  }
+  operate::RunOptions how;
+  how.json = options.json;
+  how.bit_rate = bit_rate;
+  how.black_box = options.black_box;
+  operate::Runner runner{*bus, *control, catalogue, *file, how};
+  const Over over = runner.run();
+  if (over == Over::signal) runner.rest();
+  runner.sum_up();
+  if (over == Over::gone) fail(bus->failure());
+  return exit_code_after_interrupt(exit_success);
+}
+
+int operate_file(const OperateOptions& options, Session& session) {
+  const auto& catalogue = session.catalogue();
+  const std::uint32_t bit_rate = options.bit_rate.value_or(catalogue.bit_rate);
+  if (bit_rate == 0)
+    fail({"operate: the spec states no bit rate", "--bitrate RATE, such as --bitrate 500k"}, exit_usage);
+  if (!options.check) return run(options, session, bit_rate);
+  return check(options, *load_or_leave(options, catalogue, bit_rate), bit_rate);
+}
+
+}  // namespace
+
+void add_operate(Verb app, Session& session, int& exit_code) {
+  auto verb = app.add_verb(
+      "operate", "watch the robot and switch its configurations, within proved bounds", act_group,
+      "  amiroctl operate guard.operator.json           until Ctrl-C, then all is at rest\n"
+      "  amiroctl operate guard.operator.json --check   what is proved of it\n"
+      "  amiroctl operate guard.operator.json --check --svg guard.svg\n"
+      "  amiroctl operate guard.operator.json --black-box /var/log/ocm --json");
+  const auto options = std::make_shared<OperateOptions>();
+  verb.add_option("FILE", options->file, "an operator, JSON: configurations, monitors and transitions")
+      .required();
+  const auto check_flag =
+      verb.add_flag("--check", options->check, "only say what is wrong with it, and by when it acts");
+  verb.add_option("--svg", options->svg,
+                  "draw the state machine into FILE, with Graphviz; - for standard output")
+      .type_name("FILE")
+      .needs(check_flag);
+  verb.add_flag("--json", options->json, "for programs: one object with --check, else one an event");
+  add_bit_rate(verb, "--bitrate", options->bit_rate,
+               "of the bus, such as 500k; default: as it says, else the spec's");
+  const auto box =
+      verb.add_option("--black-box", options->black_box.folder,
+                      "keep the last seconds before each fall-back in this folder, as candump logs")
+          .type_name("FOLDER")
+          .excludes(check_flag);
+  add_duration(verb, "--black-box-time", options->black_box.lasting, "how much of it").needs(box);
+  verb.add_option("--black-box-files", options->black_box.files, "how many of them; the oldest are deleted")
+      .type_name("N")
+      .range(1U, 10'000U)
+      .show_default()
+      .needs(box);
+  verb.callback([options, &session, &exit_code] { exit_code = operate_file(*options, session); });
+}
+
+}  // namespace ocm::cli

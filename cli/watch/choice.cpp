@@ -1,0 +1,165 @@
+#include "cli/watch/choice.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "ocm/base/text.hpp"
+#include "ocm/j1939/identifier.hpp"
+
+#include "cli/shared/messages.hpp"
+#include "cli/watch/chosen_topics.hpp"
+#include "cli/words/suggestion.hpp"
+
+namespace ocm::cli {
+namespace {
+
+bool contains(const std::vector<const protocol::Topic*>& topics, const protocol::Topic* topic) {
+  return std::find(topics.begin(), topics.end(), topic) != topics.end();
+}
+
+/// What a board sends: its sensors' data, or its messages.
+void add_sent_by(std::string_view verb, const protocol::Catalogue& catalogue, const std::string& sender,
+                 std::vector<const protocol::Topic*>& topics) {
+  const auto known = [&](const protocol::Board& board) { return board.name == sender; };
+  if (std::none_of(catalogue.boards.begin(), catalogue.boards.end(), known)) {
+    std::vector<std::string_view> names;
+    for (const auto& board : catalogue.boards) names.push_back(board.name);
+    fail({fmt::format("{}: --sender {}: no such board", verb, sender), words::suggestion(sender, names)},
+         exit_usage);
+  }
+  for (const auto& topic : catalogue.topics)
+    if (catalogue.board_name(topic) == sender && topic.kind != protocol::Kind::actuator)
+      topics.push_back(&topic);
+}
+
+can_filter filter_of_group(std::string_view verb, const std::string& text) {
+  std::string_view digits = text;
+  if (digits.starts_with("0x")) digits.remove_prefix(2);
+  const auto pgn = base::parse_unsigned(digits, 16);
+  if (!pgn || *pgn > 0x3'FFFF)
+    fail({fmt::format("{}: --pgn {}: not a parameter group", verb, text),
+          "write its number in hexadecimal, such as F004; at most 3FFFF"},
+         exit_usage);
+  const auto group = static_cast<std::uint32_t>(*pgn);
+  if (j1939::is_pdu1(group) && (group & 0xFF) != 0)
+    fail({fmt::format("{}: --pgn {}: its last byte is a destination, which is no part of the group", verb,
+                      text),
+          fmt::format("write {:05X}", group & 0x3'FF00)},
+         exit_usage);
+  return group_filter(group);
+}
+
+}  // namespace
+
+void add_choice_options(Verb verb, ChoiceOptions& options) {
+  verb.add_option("--sender", options.senders, "only what this board sends; repeatable")
+      .type_name("BOARD")
+      .one_a_mention();
+  verb.add_option("--filter", options.filters,
+                  "only frames with id & mask, hexadecimal as candump has it: 600:700; repeatable")
+      .type_name("ID:MASK")
+      .one_a_mention();
+  verb.add_option("--pgn", options.groups, "only this parameter group of J1939, hexadecimal; repeatable")
+      .type_name("PGN")
+      .one_a_mention();
+  verb.add_option("--where", options.conditions,
+                  "only while this holds, such as 'Engine.Speed>3000'; repeatable, all must")
+      .type_name("CONDITION")
+      .one_a_mention();
+}
+
+Choice::Choice(std::string_view verb, const protocol::Catalogue& catalogue, const ChoiceOptions& options)
+    : topics_(chosen_topics(verb, catalogue, options.topics)) {
+  for (const std::string& sender : options.senders) add_sent_by(verb, catalogue, sender, topics_);
+  for (const std::string& text : options.filters) {
+    const auto filter = parse_filter(text);
+    if (!filter) fail({fmt::format("{}: {}", verb, filter.error.what), filter.error.remedy}, exit_usage);
+    filters_.push_back(*filter);
+  }
+  for (const std::string& text : options.groups) filters_.push_back(filter_of_group(verb, text));
+  read_conditions(verb, catalogue, options.conditions);
+  // A sender that sends nothing is a choice, too.
+  everything_ = topics_.empty() && filters_.empty() && conditions_.empty() && options.senders.empty();
+  if (everything_) return;
+  index_ = client::FrameIndex{catalogue};
+  if (topics_.empty() && filters_.empty() && options.senders.empty())
+    for (const Held& held : conditions_) topics_.push_back(held.of.topic);
+}
+
+void Choice::read_conditions(std::string_view verb, const protocol::Catalogue& catalogue,
+                             const std::vector<std::string>& conditions) {
+  for (const std::string& text : conditions) {
+    const std::string beginning = fmt::format("{}: --where '{}': ", verb, text);
+    const auto parts = words::split_condition(text);
+    if (!parts)
+      fail({beginning + "not a condition",
+            "write a field, =, !=, <, <=, > or >=, and a value: 'Engine.Speed>3000'"},
+           exit_usage);
+    const std::vector<std::string> word{std::string{parts->field}};
+    const auto selection = Selection::of(catalogue, word);
+    if (!selection) fail({beginning + selection.error.what, selection.error.remedy}, exit_usage);
+    const auto fields = selection->fields();
+    if (fields.size() != 1)
+      fail({beginning + fmt::format("'{}' has {} fields", parts->field, fields.size()),
+            fmt::format("name one, such as {}", fields[0].name)},
+           exit_usage);
+    auto condition = words::Condition::of(*fields[0].field, parts->comparison, parts->value);
+    if (!condition)
+      fail({beginning + fmt::format("'{}' is no value of it", parts->value), condition.error}, exit_usage);
+    conditions_.push_back({fields[0], std::move(*condition)});
+  }
+}
+
+bool Choice::is_chosen(const log::Entry& entry) {
+  if (is_transport(entry)) return true;  // what it completes, `shows` is asked
+  client::Subject subject = index_.subject(entry.id, entry.format);
+  if (subject.topic != nullptr && !subject.topic->is_message() && entry.is_fd())
+    subject = {};  // no topic has frames of CAN FD
+  return conditions_hold(subject, entry.bytes()) && is_meant(subject.topic, entry.id, entry.format);
+}
+
+bool Choice::is_chosen_packet(const log::Entry& entry, const client::Reception& reception) {
+  const auto* const message = reception.transported;
+  if (message == nullptr) {
+    const client::Subject own = index_.subject(entry.id, entry.format);
+    return conditions_hold(own, entry.bytes()) && is_meant(own.topic, entry.id, entry.format);
+  }
+  return conditions_hold({reception.topic, reception.frame}, message->data) &&
+         (is_meant(reception.topic, message->id.encode(), can::Format::extended) ||
+          is_meant(nullptr, entry.id, entry.format));
+}
+
+bool Choice::conditions_hold(const client::Subject& subject, std::span<const std::uint8_t> data) {
+  bool all = true;
+  for (Held& held : conditions_) {
+    // A request says nothing of it; another frame of a topic belongs to the same sample.
+    if (subject.topic == held.of.topic && subject.is_request()) all = false;
+    if (subject.frame && &subject.frame.layout() == held.of.layout) {
+      const bool has_field =
+          held.of.layout->accepts(data.size()) && held.of.layout->has(*held.of.field, data);
+      if (has_field) held.holds = held.condition.holds(held.of.field->raw(data));
+      all = all && has_field;
+    }
+    all = all && held.holds;
+  }
+  return all;
+}
+
+bool Choice::is_meant(const protocol::Topic* topic, std::uint32_t id, can::Format format) const {
+  return (topic != nullptr && contains(topics_, topic)) ||
+         (!filters_.empty() && passes(id, format, filters_));
+}
+
+void Choice::subscribe(transport::Bus& bus, bool commands) const {
+  if (everything_) return;
+  std::vector<const protocol::Topic*> looked_at = topics_;
+  for (const Held& held : conditions_) looked_at.push_back(held.of.topic);
+  Filters filters = filters_for(looked_at, commands);
+  filters.insert(filters.end(), filters_.begin(), filters_.end());
+  const auto simple = bus_filters(filters);
+  if (!simple || simple->empty()) return;  // this program filters, then
+  if (const auto subscribed = bus.subscribe(*simple); !subscribed) fail(subscribed.error);
+}
+
+}  // namespace ocm::cli

@@ -1,0 +1,420 @@
+// Plain messages in our JSON: what the reader makes of each member, what it doubts, and that a spec becomes a
+// DBC file and comes back as it was.
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "generator/spec/spec.hpp"
+#include "generator/targets/target.hpp"
+
+namespace generator_messages_test {
+
+using namespace ocm;
+using namespace std::chrono_literals;
+using protocol::Address;
+using protocol::ByteOrder;
+using protocol::Number;
+using spec::FieldModel;
+using spec::MessageModel;
+using spec::Model;
+
+std::string read(const std::filesystem::path& file) {
+  std::ifstream in{file, std::ios::binary};
+  REQUIRE(in);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+std::vector<std::string> printed(const std::vector<spec::Problem>& problems) {
+  std::vector<std::string> lines;
+  for (const auto& p : problems) lines.push_back(p.place + ": " + p.what + "; " + p.remedy);
+  return lines;
+}
+Model parse(const std::string& text, const std::vector<std::string>& doubts = {},
+            const std::string& name = "f.json") {
+  auto loaded = spec::parse(text, name);
+  INFO(text);
+  CHECK(printed(loaded.problems).empty());
+  CHECK(printed(loaded.doubts) == doubts);
+  REQUIRE(loaded.spec);
+  return loaded.spec->model();
+}
+/// One message with these fields.
+std::string of_fields(const std::string& fields, const std::string& more = {}) {
+  return R"({"robot": "r", "messages": [{"name": "M", "id": 1)" + more + R"(, "fields": [)" + fields + "]}]}";
+}
+
+TEST_CASE("messages: every member") {
+  const Model model =
+      parse(read(std::filesystem::path{OCM_SOURCE_DIR} / "tests/generator/good_messages.json"));
+  CHECK(model.description == "two lines:\nof a comment");
+  CHECK(model.bit_rate == 250'000);
+  CHECK(model.attributes == std::vector<spec::AttributeModel>{{"BusType", "CAN"}});
+  REQUIRE(model.boards.size() == 2);
+  CHECK(model.boards[0].attributes == std::vector<spec::AttributeModel>{{"Maker", "ours"}});
+  REQUIRE(model.messages.size() == 3);
+
+  const MessageModel& engine = model.messages[0];
+  CHECK(engine.name == "EEC1");
+  CHECK(engine.aliases == std::vector<std::string>{"eec"});
+  CHECK(engine.is_j1939());
+  CHECK(engine.address.extended);
+  CHECK(engine.address.number == 0x18F0'04FE);  // priority 6, source 254: the null address [SAE J1939-21]
+  CHECK(engine.length == 8);
+  CHECK_FALSE(engine.fd);
+  CHECK(engine.board == 0);
+  CHECK(engine.period == 20ms);
+  CHECK(engine.send_type == "Cyclic");
+  CHECK(engine.description == "engine's speed");
+  CHECK(engine.attributes == std::vector<spec::AttributeModel>{{"Group", "engine"}});
+  CHECK(engine.source.general == "by hand");
+  const FieldModel& speed = engine.fields[0];
+  CHECK(speed.position.start == 24);
+  CHECK(speed.position.width == 16);
+  CHECK(speed.position.order == ByteOrder::little);
+  CHECK(base::compare(speed.scale, {125, -3}) == 0);
+  CHECK(speed.unit == "rpm");
+  REQUIRE(speed.range);
+  CHECK(base::compare(speed.range->max, {8'031'875, -3}) == 0);
+  CHECK(speed.receivers == std::vector<std::string>{"Dash"});
+  CHECK(speed.start == 800);
+  CHECK(engine.fields[1].values.at(1).name == "on");
+  CHECK(base::compare(engine.fields[2].offset, {-125, 0}) == 0);
+
+  const MessageModel& service = model.messages[1];
+  CHECK(service.address == Address{Address::By::identifier, false, 0x7DF});
+  CHECK(service.fd);
+  CHECK(service.other_senders == std::vector<std::string>{"Engine"});
+  CHECK(service.shortest_period == 5ms);
+  CHECK(service.deadline == 10ms);
+  CHECK(service.jitter == 1ms);
+  CHECK(service.fields[1].number == Number::float32);
+  CHECK(service.fields[1].selector == "Mode");
+  CHECK(service.fields[1].selected == std::vector<protocol::SelectorRange>{{1, 1}, {4, 7}});
+  CHECK(service.fields[2].flags);
+  CHECK(service.fields[3].position.start == 71);  // the highest bit of byte 8
+  CHECK(service.fields[3].position.order == ByteOrder::big);
+  CHECK(service.fields[3].is_signed);
+  CHECK(service.fields[3].values.size() == 2);
+
+  CHECK(model.messages[2].address == Address{Address::By::identifier, true, 0x18FE'F100});
+  CHECK(model.messages[2].length == 0);
+}
+
+TEST_CASE("messages: the length is that of the shortest frame that has all fields") {
+  const auto length = [](unsigned byte) {
+    return parse(of_fields(R"({"name": "a", "type": "u8", "byte": )" + std::to_string(byte) + "}"))
+        .messages[0];
+  };
+  CHECK(length(0).length == 1);
+  CHECK(length(7).length == 8);
+  CHECK_FALSE(length(7).fd);
+  CHECK(length(8).length == 12);  // [ISO 11898-1, DLC 9 to 15]
+  CHECK(length(8).fd);
+  CHECK(length(24).length == 32);
+  CHECK(length(63).length == 64);
+}
+
+TEST_CASE("messages: a start value is raw, and of a float its number") {
+  const Model model = parse(of_fields(R"({"name": "a", "type": "u8", "byte": 0, "scale": 2, "start": 7},
+    {"name": "b", "type": "f32", "byte": 1, "start": 1.5})"));
+  CHECK(model.messages[0].fields[0].start == 7);
+  CHECK(model.messages[0].fields[1].start == 0x3FC0'0000);
+}
+
+TEST_CASE("messages: what other programs load is loaded with a doubt") {
+  parse(of_fields(R"({"name": "a", "type": "u8", "byte": 0}, {"name": "b", "type": "u8", "bit": 4})"),
+        {R"(f.json:1: /messages/0/fields/1: "a" and "b" have bits in common; each is read by itself)"});
+  parse(
+      of_fields(R"({"name": "a", "type": "u8", "byte": 4})", R"(, "length": 4)"),
+      {R"(f.json:1: /messages/0/fields/0: "a" ends in byte 4, and the message has 4 bytes; it is there in longer frames only)"});
+  parse(of_fields(R"({"name": "a", "type": "u4", "byte": 0, "values": {"far": 16}})"),
+        {"f.json:1: /messages/0/fields/0/values/far: 16 is no value of 4 bits; it is kept, and never comes"});
+  parse(of_fields(R"({"name": "a", "type": "u4", "byte": 0, "scale": 0})"),
+        {"f.json:1: /messages/0/fields/0/scale: a scale of zero; every value is the offset"});
+  parse(
+      of_fields(R"({"name": "a", "type": "u4", "byte": 0, "receivers": ["X"]})"),
+      {R"(f.json:1: /messages/0/fields/0/receivers/0: there is no board "X"; it is kept; add it to "boards")"});
+  parse(
+      R"({"robot": "r", "messages": [{"name": "M", "id": 1, "fields": []}, {"name": "M", "id": 1, "fields": []}]})",
+      {R"(f.json:1: /messages/1/name: the name "M" is that of another message (see /messages/0/name); both are kept; give one another name)",
+       "f.json:1: /messages/1/id: its identifier is that of another message (see /messages/0); the first one "
+       "counts"});
+  // Groups of J1939 differ by more than their sources.
+  parse(
+      R"({"robot": "r", "messages": [{"name": "A", "pgn": 65262, "fields": []}, {"name": "B", "pgn": 65263, "fields": []}]})");
+}
+
+TEST_CASE("messages: parts that are never there together have no bits in common") {
+  const std::string mode = R"({"name": "mode", "type": "u8", "byte": 0})";
+  const auto part = [](const char* name, const char* selected) {
+    return std::string{R"(, {"name": ")"} + name +
+           R"(", "type": "u8", "byte": 1, "selector": "mode", "selected": )" + selected + "}";
+  };
+  parse(of_fields(mode + part("a", "[1]") + part("b", "[[2, 9]]")));
+  parse(of_fields(mode + part("a", "[3]") + part("b", "[[2, 9]]")),
+        {R"(f.json:1: /messages/0/fields/2: "a" and "b" have bits in common; each is read by itself)"});
+}
+
+TEST_CASE("messages: topics and messages in one spec") {
+  std::string text = read(std::filesystem::path{OCM_SOURCE_DIR} / "tests/generator/good.json");
+  text.insert(text.rfind('}'),
+              R"(, "messages": [{"name": "Extra", "id": "0x7F0", "sender": "main_board", "fields": []}])");
+  const Model model = parse(text);
+  CHECK_FALSE(model.topics.empty());
+  REQUIRE(model.messages.size() == 1);
+  CHECK(model.messages[0].board == 0);
+  text.replace(text.find("\"Extra\""), 7, "\"lamp_1\"");
+  const auto loaded = spec::parse(text, "f.json");
+  REQUIRE(loaded.problems.size() == 1);
+  CHECK(loaded.problems[0].what.starts_with("a second topic or message is called \"lamp_1\""));
+}
+
+// --- there and back ---
+
+/// All that both formats can say. Sources are left out, which are the file's lines.
+void check_same(const FieldModel& a, const FieldModel& b) {
+  CAPTURE(a.name);
+  CHECK(a.name == b.name);
+  CHECK(a.description == b.description);
+  CHECK(a.position.start == b.position.start);
+  CHECK(a.position.width == b.position.width);
+  CHECK(a.position.order == b.position.order);
+  CHECK(a.is_signed == b.is_signed);
+  CHECK(base::compare(a.scale, b.scale) == 0);
+  CHECK(base::compare(a.offset, b.offset) == 0);
+  CHECK(a.unit == b.unit);
+  CHECK(a.number == b.number);
+  CHECK(a.selector == b.selector);
+  CHECK(a.selected == b.selected);
+  CHECK(a.start == b.start);
+  CHECK(a.receivers == b.receivers);
+  CHECK(a.attributes == b.attributes);
+  REQUIRE(a.range.has_value() == b.range.has_value());
+  if (a.range) CHECK(base::compare(a.range->min, b.range->min) == 0);
+  if (a.range) CHECK(base::compare(a.range->max, b.range->max) == 0);
+  REQUIRE(a.values.size() == b.values.size());
+  for (std::size_t i = 0; i < a.values.size(); ++i) {
+    CHECK(a.values[i].name == b.values[i].name);
+    CHECK(a.values[i].raw == b.values[i].raw);
+  }
+}
+void check_same(const MessageModel& a, const MessageModel& b) {
+  CAPTURE(a.name);
+  CHECK(a.name == b.name);
+  CHECK(a.description == b.description);
+  CHECK(a.address == b.address);
+  CHECK(a.length == b.length);
+  CHECK(a.fd == b.fd);
+  CHECK(a.board == b.board);
+  CHECK(a.other_senders == b.other_senders);
+  CHECK(a.period == b.period);
+  CHECK(a.shortest_period == b.shortest_period);
+  CHECK(a.send_type == b.send_type);
+  CHECK(a.attributes == b.attributes);
+  REQUIRE(a.fields.size() == b.fields.size());
+  for (std::size_t i = 0; i < a.fields.size(); ++i) check_same(a.fields[i], b.fields[i]);
+}
+void check_same(const Model& a, const Model& b) {
+  CHECK(a.description == b.description);
+  CHECK(a.bit_rate == b.bit_rate);
+  CHECK(a.attributes == b.attributes);
+  REQUIRE(a.boards.size() == b.boards.size());
+  for (std::size_t i = 0; i < a.boards.size(); ++i) {
+    CHECK(a.boards[i].name == b.boards[i].name);
+    CHECK(a.boards[i].description == b.boards[i].description);
+    CHECK(a.boards[i].attributes == b.boards[i].attributes);
+  }
+  REQUIRE(a.messages.size() == b.messages.size());
+  for (std::size_t i = 0; i < a.messages.size(); ++i) check_same(a.messages[i], b.messages[i]);
+}
+/// As JSON, and as DBC: each is read as the model that it was written from.
+void check_both_ways(const Model& model) {
+  const std::string json = generate::make_spec(model, {"x", std::nullopt});
+  INFO(json);
+  const auto from_json = spec::parse(json, "x.json");
+  CHECK(printed(from_json.problems) == std::vector<std::string>{});
+  REQUIRE(from_json.spec);
+  check_same(model, from_json.spec->model());
+  const std::string dbc = generate::make_dbc(model, {"x", std::nullopt});
+  INFO(dbc);
+  const auto from_dbc = spec::parse(dbc, "x.dbc");
+  CHECK(printed(from_dbc.problems) == std::vector<std::string>{});
+  REQUIRE(from_dbc.spec);
+  check_same(model, from_dbc.spec->model());
+}
+
+TEST_CASE("messages: DBC files become our JSON, and go back") {
+  std::size_t files = 0;
+  for (const auto& entry :
+       std::filesystem::directory_iterator{std::filesystem::path{OCM_SOURCE_DIR} / "examples"}) {
+    if (entry.path().extension() != ".dbc") continue;
+    CAPTURE(entry.path());
+    const auto loaded = spec::load(entry.path());
+    REQUIRE(loaded.spec);
+    check_both_ways(loaded.spec->model());
+    ++files;
+  }
+  CHECK(files >= 2);
+}
+
+/// Messages as nobody would think of them, of what both formats can say.
+class RandomModel {
+ public:
+  explicit RandomModel(unsigned seed) : random_(seed) {}
+
+  Model make() {
+    Model model;
+    model.robot = "x";
+    if (one_in(2)) model.description = text();
+    if (one_in(2)) {
+      model.bit_rate = 250'000;
+      model.attributes.push_back({"Baudrate", "250000"});
+    }
+    add_attributes(model.attributes);
+    for (std::uint64_t i = up_to(3); i-- > 0;) {
+      model.boards.push_back({});
+      model.boards.back().name = name();
+      if (one_in(2)) model.boards.back().description = text();
+      add_attributes(model.boards.back().attributes);
+    }
+    const bool starts = one_in(3);
+    for (std::uint64_t i = 1 + up_to(4); i-- > 0;) model.messages.push_back(message(model, starts));
+    return model;
+  }
+
+ private:
+  std::uint64_t up_to(std::uint64_t most) {
+    return std::uniform_int_distribution<std::uint64_t>{0, most}(random_);
+  }
+  bool one_in(std::uint64_t n) { return up_to(n - 1) == 0; }
+  /// Each time another one; sometimes longer than DBC has it, sometimes with characters that it has not.
+  std::string name() {
+    static constexpr std::string_view letters = "abcXYZ_0189";
+    std::string out = "n" + std::to_string(++names_) + (one_in(8) ? "-\u00e4." : "");
+    for (std::uint64_t i = one_in(5) ? 20 + up_to(30) : up_to(6); i-- > 0;)
+      out += letters[up_to(letters.size() - 1)];
+    return out;
+  }
+  std::string text() {
+    static constexpr std::string_view parts[] = {"a",     " ",      "\"", "\\", "\n", ";", "\u00e4\u00b0",
+                                                 "BO_ 1", "\u20ac", "1"};
+    std::string out;
+    for (std::uint64_t i = up_to(8); i-- > 0;) out += parts[up_to(std::size(parts) - 1)];
+    if (one_in(20)) out += "\u4e2d";  // in no code page of Windows' Latin
+    return out + "x";                 // not a backslash
+  }
+  base::Decimal decimal() {
+    return base::normalised(static_cast<std::int64_t>(up_to(20'000)) - 10'000,
+                            static_cast<int>(up_to(8)) - 6);
+  }
+  void add_attributes(std::vector<spec::AttributeModel>& to) {
+    if (one_in(3)) to.push_back({"Whole", std::to_string(up_to(100))});
+    if (one_in(3)) to.push_back({"Any", one_in(2) ? "0.5" : text()});
+    if (one_in(3)) to.push_back({"Text", text()});
+  }
+
+  MessageModel message(const Model& model, bool starts) {
+    MessageModel out;
+    out.name = name();
+    if (one_in(2)) out.description = text();
+    out.address.by = Address::By::identifier;
+    out.address.extended = one_in(2);
+    if (out.address.extended && one_in(3)) out.address.by = Address::By::pgn;
+    out.address.number = static_cast<std::uint32_t>(up_to(out.address.extended ? 0x1FFF'FFFF : 0x7FF));
+    const std::uint64_t most = out.is_j1939() ? 200 : one_in(2) ? 8 : 64;
+    out.length = static_cast<std::uint16_t>(up_to(most));
+    out.fd = !out.is_j1939() && (out.length > 8 || one_in(8));
+    if (!model.boards.empty() && one_in(2))
+      out.board = static_cast<std::uint8_t>(up_to(model.boards.size() - 1));
+    if (out.board != protocol::no_board && one_in(4)) out.other_senders.push_back(name());
+    if (one_in(2)) out.period = std::chrono::microseconds{1 + up_to(2'000'000)};
+    if (one_in(4)) out.shortest_period = std::chrono::milliseconds{1 + up_to(1000)};
+    if (one_in(3)) out.send_type = one_in(2) ? "Cyclic" : text();
+    add_attributes(out.attributes);
+    if (out.length == 0) return out;
+    for (std::uint64_t i = up_to(6); i-- > 0;) out.fields.push_back(field(out, starts));
+    return out;
+  }
+
+  FieldModel field(const MessageModel& message, bool starts) {
+    FieldModel out;
+    out.name = name();
+    if (one_in(3)) out.description = text();
+    out.position.order = one_in(2) ? ByteOrder::little : ByteOrder::big;
+    const std::uint64_t kind = message.length >= 8 ? up_to(5) : 5;
+    if (kind < 2) out.number = kind == 0 ? Number::float32 : Number::float64;
+    const unsigned most = std::min<unsigned>(64, 8U * message.length);
+    do {
+      out.position.width = static_cast<std::uint8_t>(kind == 0 ? 32 : kind == 1 ? 64 : 1 + up_to(most - 1));
+      out.position.start = static_cast<std::uint16_t>(up_to(8U * message.length - 1));
+    } while (out.position.bytes() > message.length);
+    out.is_signed = kind > 1 && one_in(2);
+    if (one_in(2)) out.scale = decimal();
+    if (out.scale.digits == 0) out.scale = {1, 0};
+    if (one_in(2)) out.offset = decimal();
+    if (one_in(2)) out.unit = text();
+    if (one_in(3))
+      out.range = spec::RangeModel{{-5, 0}, base::normalised(static_cast<std::int64_t>(up_to(1000)) + 1, -2)};
+    if (kind > 1 && one_in(3))
+      for (std::uint64_t i = up_to(4); i-- > 0;)
+        out.values.push_back({text(), static_cast<std::int64_t>(up_to(5)) - (out.is_signed ? 2 : 0)});
+    if (starts || one_in(4)) {
+      const auto start =
+          out.start_from(kind < 2 ? decimal() : base::Decimal{static_cast<std::int64_t>(up_to(1)), 0});
+      out.start = start;
+    }
+    if (one_in(3)) out.receivers.push_back(name());
+    add_attributes(out.attributes);
+    if (!message.fields.empty() && one_in(2)) select(message, out);
+    return out;
+  }
+  /// By any field before it, so that there is no circle.
+  void select(const MessageModel& message, FieldModel& out) {
+    const FieldModel& selector = message.fields[up_to(message.fields.size() - 1)];
+    if (selector.number != Number::integer) return;
+    out.selector = selector.name;
+    std::uint64_t first = 0;
+    for (std::uint64_t i = 1 + up_to(2); i-- > 0;) {
+      first += up_to(9);
+      const std::uint64_t last = first + (one_in(2) ? 0 : up_to(5));
+      out.selected.push_back({first, last});
+      first = last + 1;
+    }
+  }
+
+  std::mt19937_64 random_;
+  unsigned names_ = 0;
+};
+
+TEST_CASE("messages: any that both formats can say come back from each as they were") {
+  for (unsigned seed = 1; seed <= 300; ++seed) {
+    CAPTURE(seed);
+    check_both_ways(RandomModel{seed}.make());
+  }
+}
+
+TEST_CASE("messages: what a DBC file has no place for is told") {
+  const auto* dbc = generate::find_target("dbc");
+  REQUIRE(dbc != nullptr);
+  const Model model = parse(R"({"robot": "r", "messages": [
+    {"name": "A", "alias": ["a"], "id": 1, "deadline": "1ms", "jitter": "1ms",
+     "fields": [{"name": "f", "type": "u8", "byte": 0, "flags": {"x": 0}, "range": [0, 0], "unit": "\\"}]},
+    {"name": "B", "alias": ["b"], "id": 2, "fields": []}]})");
+  CHECK(generate::left_out(*dbc, model) ==
+        std::vector<std::string>{
+            "other names of A and 1 more", "deadlines of A", "jitter of A", "names of flags of A",
+            "the end of texts at a backslash, which gets a blank behind it, of A", "a range of [0, 0] of A"});
+  const auto* c = generate::find_target("c");
+  REQUIRE(c != nullptr);
+  CHECK(generate::left_out(*c, model) == std::vector<std::string>{"all 2 messages"});
+  CHECK_FALSE(generate::has_any(*c, model));
+  CHECK(generate::has_any(*dbc, model));
+}
+
+}  // namespace generator_messages_test

@@ -1,0 +1,353 @@
+#include "cli/top/view.hpp"
+
+#include <algorithm>
+#include <random>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/base/utf8.hpp"
+
+#include "tool/top/bus.hpp"
+
+namespace top_view_test {
+
+using namespace ocm::test;
+using namespace ocm::cli::top;
+using ocm::base::columns;
+using ocm::cli::TerminalSize;
+using ocm::protocol::Mode;
+using Kind = Key::Kind;
+
+constexpr TerminalSize usual{80, 24};
+
+Key letter(std::string text) {
+  return {Kind::character, std::move(text)};
+}
+
+/// A bus with a scale, a lamp and a stranger.
+struct Robot {
+  Robot() {
+    models.of("can0");
+    for (int i = 0; i < 20; ++i) weigh(model(), i * 100ms, {4 * i, 7});
+    const auto lamp = ocm::protocol::Identifier{ocm::protocol::Direction::command,
+                                                ocm::protocol::Priority::low, ocm::protocol::TopicId{0x30}};
+    model().take(entry(1950ms, lamp.encode(), {42}));
+    model().take(entry(1960ms, 0x7FF, {0xDE, 0xAD}));
+  }
+  Model& model() { return models.of("can0"); }
+  std::vector<std::string> draw(TerminalSize size = usual) {
+    buses = models.buses();
+    return text(view.draw(scene(), size));
+  }
+  Scene scene() {
+    Scene scene;
+    scene.robot = "example";
+    scene.source = "can0";
+    scene.buses = buses;
+    scene.now = now;
+    scene.playing = playing;
+    return scene;
+  }
+  /// The line that begins with these letters; empty: none.
+  std::string line(std::string_view beginning, TerminalSize size = usual) {
+    for (const std::string& line : draw(size))
+      if (line.starts_with(beginning)) return line;
+    return {};
+  }
+  std::vector<std::string> names() {
+    std::vector<std::string> names;
+    const auto lines = draw();
+    for (std::size_t i = 4; i + 1 < lines.size(); ++i)
+      if (!lines[i].empty())
+        names.push_back(lines[i].substr(0, lines[i].find(' ', lines[i].find_first_not_of(' '))));
+    return names;
+  }
+
+  Models models{catalogue, 250'000};
+  View view{true};
+  std::vector<Bus> buses;
+  ocm::base::Time now = morning + 2s;
+  std::optional<Playing> playing;
+};
+
+using Names = std::vector<std::string>;
+
+TEST_CASE("top: a picture by hand") {
+  Robot robot;
+  const auto lines = robot.draw();
+  REQUIRE(lines.size() == 24);
+  CHECK(lines[0] == "can0 example");
+  CHECK(lines[2] == "42 frames  1 unknown");
+  CHECK(lines[3] == "NAME         HZ JITTER    AGE    BUS VALUES" + std::string(37, ' '));
+  CHECK(robot.line("scale") == "scale      10.0    0us  100ms   0.6% weight 119 g  state stable");
+  CHECK(robot.line("7FF") == "7FF           -      -   40ms  <0.1% DE AD");
+  CHECK(lines[23].starts_with("? help  q quit"));
+}
+
+TEST_CASE("top: fits every terminal, and breaks no number") {
+  Robot robot;
+  robot.view.press(letter("*"));
+  robot.draw();
+  robot.view.press(letter("*"));
+  robot.draw();
+  robot.view.press(Key{Kind::down});
+  robot.view.press(letter(" "));
+  for (const bool help : {false, true}) {
+    if (help) robot.view.press(letter("?"));
+    for (std::size_t width = 1; width <= 220; ++width)
+      for (const std::size_t rows : {2U, 3U, 5U, 8U, 24U, 70U}) {
+        const auto lines = robot.draw({width, rows});
+        CAPTURE(width, rows);
+        REQUIRE(lines.size() == rows);
+        for (const auto& line : lines) REQUIRE(columns(line) <= width);
+      }
+  }
+  robot.view.press(letter("x"));
+  for (std::size_t width = 40; width <= 220; ++width) {
+    const std::string line = robot.line("scale", {width, 24});
+    CAPTURE(width, line);
+    if (line.find("weight") != std::string::npos) REQUIRE(line.find("weight 119 g") != std::string::npos);
+  }
+  CHECK(robot.line("scale", {40, 24}).find("10.0") != std::string::npos);
+  CHECK(robot.line("scale", {200, 24}).find("CHANGED") == std::string::npos);
+  CHECK(robot.draw({200, 24})[3].find("CHANGED FAULTS     COUNT VALUES") != std::string::npos);
+}
+
+TEST_CASE("top: what is missing comes first") {
+  Robot robot;
+  CHECK(robot.names() == Names{"scale", "lamp_1", "7FF"});
+  for (int i = 0; i < 5; ++i) robot.model().take(entry(2s, 0x7FE, {1}));
+  ask(robot.model(), 2s, Mode::publish, {100, ocm::protocol::PeriodUnit::milliseconds});
+  robot.view.press(letter(">"));  // by name
+  robot.now = morning + 2s;
+  CHECK(robot.names() == Names{"7FE", "7FF", "lamp_1", "scale"});
+  robot.now = morning + 2200ms;
+  CHECK(robot.names() == Names{"scale", "7FE", "7FF", "lamp_1"});
+  CHECK(robot.draw()[0].find("1 late") != std::string::npos);
+  CHECK(robot.line("scale").find("due every 100ms") != std::string::npos);
+  robot.now = morning + 2400ms;
+  CHECK(robot.draw()[0].find("1 missing") != std::string::npos);
+}
+
+TEST_CASE("top: orders") {
+  Robot robot;
+  CHECK(robot.names() == Names{"scale", "lamp_1", "7FF"});
+  robot.view.press(letter("I"));
+  CHECK(robot.names() == Names{"7FF", "lamp_1", "scale"});
+  robot.view.press(letter("I"));
+  robot.view.press(letter(">"));
+  CHECK(robot.names() == Names{"7FF", "lamp_1", "scale"});
+  robot.view.press(letter(">"));
+  CHECK(robot.names() == Names{"scale", "lamp_1", "7FF"});  // the only one with a rate
+  robot.view.press(letter("<"));
+  robot.view.press(letter("<"));
+  robot.view.press(letter("<"));  // the last: by count
+  CHECK(robot.names()[0] == "scale");
+  CHECK(robot.draw()[0].find("  by count") != std::string::npos);
+  // All orders are reached, and the first again.
+  for (int i = 0; i < 8; ++i) robot.view.press(Key{Kind::function, {}, 6});
+  CHECK(robot.draw()[0].find("  by count") != std::string::npos);
+}
+
+TEST_CASE("top: only names with these letters") {
+  Robot robot;
+  robot.view.press(letter("/"));
+  robot.view.press(letter("L"));
+  robot.view.press(letter("A"));
+  robot.view.press(letter("q"));  // a letter like any other
+  CHECK(robot.draw().back().starts_with("/LAq_"));
+  CHECK(robot.names() == Names{"no"});  // no name has these letters
+  robot.view.press(Key{Kind::backspace});
+  CHECK(robot.names() == Names{"lamp_1"});
+  robot.view.press(Key{Kind::enter});
+  CHECK(robot.draw()[0].find("/LA") != std::string::npos);
+  // A field's name counts, too.
+  robot.view.press(letter("/"));
+  for (const char* text : {"s", "t", "a", "t", "e"}) robot.view.press(letter(text));
+  CHECK(robot.names() == Names{"scale"});
+  robot.view.press(Key{Kind::escape});
+  CHECK(robot.names() == Names{"lamp_1"});
+  robot.view.press(Key{Kind::escape});
+  CHECK(robot.names().size() == 3);
+  // A character of two bytes is deleted whole.
+  robot.view.press(letter("/"));
+  robot.view.press(letter("ä"));
+  robot.view.press(Key{Kind::backspace});
+  CHECK(robot.draw().back().starts_with("/_"));
+}
+
+TEST_CASE("top: a row opens into a line a field, and the cursor stays where it is") {
+  Robot robot;
+  robot.draw();
+  robot.view.press(Key{Kind::down});
+  robot.view.press(Key{Kind::enter});
+  CHECK(robot.names() == Names{"scale", "  weight", "  state", "lamp_1", "7FF"});
+  CHECK(robot.line("  weight").find(" 119 g") != std::string::npos);
+  robot.view.press(Key{Kind::down});
+  robot.view.press(Key{Kind::down});
+  robot.view.press(letter("-"));  // on a field: closes its row
+  CHECK(robot.names() == Names{"scale", "lamp_1", "7FF"});
+  robot.view.press(letter("+"));
+  CHECK(robot.names().size() == 5);
+  robot.view.press(letter("*"));
+  CHECK(robot.names().size() == 3);
+  robot.view.press(letter("*"));
+  CHECK(robot.names() == Names{"scale", "  weight", "  state", "lamp_1", "  level", "7FF"});
+  // A stranger has nothing to open.
+  robot.view.press(Key{Kind::end});
+  robot.view.press(letter("+"));
+  robot.view.press(letter(" "));
+  CHECK(robot.names().size() == 6);
+}
+
+TEST_CASE("top: a field's graph") {
+  Robot robot;
+  robot.draw();
+  robot.view.press(Key{Kind::home});
+  robot.view.press(Key{Kind::enter});
+  robot.draw();
+  robot.view.press(Key{Kind::down});
+  robot.view.press(letter(" "));
+  CHECK(robot.view.graphs(0) == std::set<FieldKey>{{0, 0, 0}});
+  CHECK(robot.view.graphs(1).empty());
+  CHECK(robot.models.follow(robot.view));
+  CHECK_FALSE(robot.models.follow(robot.view));
+  for (int i = 0; i < 8; ++i) {
+    weigh(robot.model(), 2s + i * 250ms, {4 * i, 7});
+    robot.models.until(morning + 2s + i * 250ms);
+  }
+  robot.now = morning + 3750ms;
+  CHECK(robot.line("  weight").find(" ▁▂▃▄▅▆▇█ 100..107") != std::string::npos);
+  // It stays when its row is closed.
+  robot.view.press(letter("-"));
+  CHECK(robot.names() == Names{"scale", "  weight", "lamp_1", "7FF"});
+  robot.view = View{false};
+  robot.draw();
+  robot.view.press(Key{Kind::home});
+  robot.view.press(letter(" "));
+  CHECK(robot.line("  weight").find(" _.-:=+*# 100..107") != std::string::npos);
+  CHECK(robot.names() == Names{"scale", "  weight", "  state", "lamp_1", "7FF"});
+  robot.view.press(letter(" "));
+  CHECK(robot.names() == Names{"scale", "lamp_1", "7FF"});
+}
+
+TEST_CASE("top: a list that is longer than the screen follows the cursor") {
+  Robot robot;
+  for (std::uint32_t id = 0x740; id < 0x780; ++id) robot.model().take(entry(1990ms, id, {1}));
+  CHECK(robot.names().size() == 19);  // 24 lines, 4 above and 1 below
+  CHECK(robot.names().front() == "scale");
+  robot.view.press(Key{Kind::end});
+  CHECK(robot.names().back() == "77F");
+  robot.view.press(Key{Kind::up});
+  CHECK(robot.names().back() == "77F");
+  robot.view.press(Key{Kind::page_up});
+  robot.view.press(Key{Kind::page_up});
+  robot.view.press(letter("k"));
+  CHECK(robot.names().front() == "759");
+  robot.view.press(Key{Kind::home});
+  CHECK(robot.names().front() == "scale");
+  robot.view.press(Key{Kind::page_down});
+  robot.view.press(letter("j"));
+  CHECK(robot.names().back() == "750");
+  // A click in the first line of the list.
+  robot.view.press(Key{Kind::click, {}, 4});
+  robot.view.press(letter("k"));
+  CHECK(robot.names().front() == "scale");
+}
+
+TEST_CASE("top: topics that were asked for, and all of the spec") {
+  Robot robot;
+  robot.view.press(letter("a"));
+  CHECK(robot.names() == Names{"scale", "lamp_1", "lamp_2", "lamp_3", "7FF"});
+  CHECK(robot.line("lamp_3").find("nothing came") != std::string::npos);
+  robot.view.press(letter("a"));
+  robot.view.only({&catalogue.topics[3], &catalogue.topics[0]});
+  CHECK(robot.names() == Names{"scale", "lamp_3"});
+}
+
+TEST_CASE("top: keys for the program") {
+  Robot robot;
+  robot.draw();
+  using Effect = ocm::cli::top::Effect;
+  CHECK(robot.view.press(letter("q")).kind == Effect::Kind::quit);
+  CHECK(robot.view.press(Key{Kind::function, {}, 10}).kind == Effect::Kind::quit);
+  CHECK(robot.view.press(letter("p")).kind == Effect::Kind::pause);
+  CHECK(robot.view.press(Key{Kind::left}).by == -10s);
+  CHECK(robot.view.press(letter(".")).by == 1s);
+  CHECK(robot.view.press(letter("]")).kind == Effect::Kind::faster);
+  CHECK(robot.view.press(letter("0")).kind == Effect::Kind::rewind);
+  // Any key leaves the help, and does nothing else.
+  robot.view.press(letter("?"));
+  CHECK(robot.draw()[0].starts_with("Up Down"));
+  CHECK(robot.view.press(letter("q")).kind == Effect::Kind::none);
+  CHECK(robot.draw()[0] == "can0 example");
+}
+
+TEST_CASE("top: the bar of a log") {
+  Robot robot;
+  robot.playing = Playing{15s, 60s, 2, false};
+  const std::string bar = robot.draw()[22];
+  CHECK(bar.starts_with("15.0 of 60.0 s [====="));
+  CHECK(bar.ends_with("] x2"));
+  CHECK(std::count(bar.begin(), bar.end(), '=') == 15);
+  robot.playing = Playing{0s, 0s, 1, true};
+  CHECK(robot.draw({40, 24})[22].ends_with(" end"));
+}
+
+TEST_CASE("top: several buses have a line each, and their name before each row") {
+  Robot robot;
+  weigh(robot.models.of("can1"), 1s, {0, 0});
+  const auto lines = robot.draw();
+  CHECK(lines[1].starts_with("can0 ["));
+  CHECK(lines[3].starts_with("can1 ["));
+  CHECK_FALSE(robot.line("can0:scale").empty());
+  CHECK_FALSE(robot.line("can1:scale").empty());
+}
+
+TEST_CASE("top: whatever is pressed, it draws") {
+  std::mt19937 random{16};
+  Robot robot;
+  robot.playing = Playing{1s, 2s, 1, false};
+  const std::vector<std::string> texts{"/", " ", "+", "-", "*", "a", "<", ">", "I",
+                                       "p", "?", "j", "k", "g", "G", "e", "ä"};
+  for (int i = 0; i < 20'000; ++i) {
+    Key key{static_cast<Kind>(random() % 14), {}, static_cast<unsigned>(random() % 30)};
+    if (key.kind == Kind::character || random() % 2 == 0) key = letter(texts[random() % texts.size()]);
+    robot.view.press(key);
+    if (i % 10 == 0) weigh(robot.model(), 2s + i * 1ms, {i, i % 2 == 0 ? std::uint8_t{7} : std::uint8_t{0}});
+    robot.now = morning + 2s + i * 1ms;
+    if (i % 5 != 0) continue;
+    const TerminalSize size{1 + random() % 130, 2 + random() % 40};
+    const auto lines = robot.draw(size);
+    REQUIRE(lines.size() == size.rows);
+    for (const auto& line : lines) REQUIRE(columns(line) <= size.columns);
+  }
+}
+
+TEST_CASE("top: times and numbers in six columns") {
+  CHECK(short_time(0s) == "0us");
+  CHECK(short_time(999us) == "999us");
+  CHECK(short_time(1ms) == "1.0ms");
+  CHECK(short_time(9'900us) == "9.9ms");
+  CHECK(short_time(10ms) == "10ms");
+  CHECK(short_time(999ms) == "999ms");
+  CHECK(short_time(1s) == "1.0s");
+  CHECK(short_time(99s) == "99.0s");
+  CHECK(short_time(100s) == "2m");
+  CHECK(short_time(2h) == "2h");
+  CHECK(short_time(240h) == "10d");
+  CHECK(short_time(-5ms) == "-5.0ms");
+  CHECK(short_number(0.5) == "0.50");
+  CHECK(short_number(10) == "10.0");
+  CHECK(short_number(1000) == "1000");
+  CHECK(short_number(999'999) == "999999");
+  CHECK(short_number(1.5e6) == "1500k");
+  std::mt19937_64 random{3};
+  for (int i = 0; i < 20'000; ++i) {
+    const auto ns = static_cast<std::int64_t>(random() >> (2 + random() % 62));
+    REQUIRE(short_time(ocm::base::Duration{ns}).size() <= 7);
+    REQUIRE(short_number(static_cast<double>(ns % 100'000'000) / 1000).size() <= 6);
+  }
+}
+
+}  // namespace top_view_test

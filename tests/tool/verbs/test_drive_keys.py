@@ -1,0 +1,157 @@
+"""amiroctl drive --keys: a person's keys on a pseudo terminal, and the set points that a listener hears."""
+
+import fcntl
+import os
+import pty
+import signal
+import struct
+import subprocess
+import termios
+import time
+
+import harness
+
+REST = "0000000000000000"
+UP, LEFT = b"\x1b[A", b"\x1b[D"
+
+
+class Keys(harness.Case):
+    def setUp(self):
+        super().setUp()
+        self.start_sim("--frozen")
+        self.listener = self.listen("motors", "--commands")
+
+    def drive(self, *arguments):
+        """Returns when it takes keys."""
+        primary, secondary = pty.openpty()
+        fcntl.ioctl(secondary, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 100, 0, 0))
+        self.before = termios.tcgetattr(secondary)
+        process = subprocess.Popen([harness.AMIROCTL, "drive", "--keys", *arguments], stdin=secondary, stdout=secondary,
+                                   stderr=subprocess.PIPE, text=True, start_new_session=True,
+                                   env={**self.environment, "TERM": "xterm"})
+        self._started.append(process)
+        self.secondary, self.primary = secondary, primary
+        self.addCleanup(self.close)
+        self.shown = b""
+        self.shows(b"rests")
+        return process
+
+    def close(self):
+        for descriptor in (self.primary, self.secondary):
+            if descriptor is not None:
+                os.close(descriptor)
+        self.primary = self.secondary = None
+
+    def shows(self, text):
+        while text not in self.shown:
+            self.shown += os.read(self.primary, 4096)
+        self.shown = self.shown.partition(text)[2]
+
+    def hold(self, key, seconds):
+        """As a terminal does: at once, after half a second, and then 25 times a second."""
+        end = time.monotonic() + seconds
+        os.write(self.primary, key)
+        time.sleep(min(0.5, seconds))
+        while time.monotonic() < end:
+            os.write(self.primary, key)
+            time.sleep(0.04)
+
+    def set_points(self, process, code=0):
+        """All that were sent, once it has ended."""
+        _, said = process.communicate(timeout=30)
+        self.assertEqual(process.returncode, code, said)
+        self.settle()
+        out, _ = self.interrupt(self.listener)
+        return [(int(each["time_ns"]) / 1e9, each["data"]) for each in self.objects(out)], said
+
+    def test_drives_while_a_key_is_held(self):
+        process = self.drive()
+        begin = time.time()
+        self.hold(UP, 1.5)
+        released = time.time()
+        self.shows(b"forward")
+        self.shows(b"rests")
+        os.write(self.primary, b"q")
+        points, _ = self.set_points(process)
+        moving = [(at, data) for at, data in points if data != REST]
+        self.assertEqual({data for _, data in moving}, {"A086010000000000"})  # 100,000 um/s
+        self.assertLess(moving[0][0], begin + 0.3)
+        self.assertGreater(moving[-1][0], released - 0.3)
+        self.assertGreaterEqual(len(moving), 12)  # ten a second
+        rest = next(at for at, data in points if data == REST)
+        self.assertLess(rest, released + 0.7)  # 250 ms, on a machine that may be busy
+        self.assertEqual(points[-1][1], REST)
+
+    def test_two_directions_and_space(self):
+        process = self.drive("20cm/s", "90deg/s")
+        os.write(self.primary, b"u")
+        self.shows(b"forward, left")
+        pressed = time.time()
+        os.write(self.primary, b" ")
+        self.shows(b"stop")
+        os.write(self.primary, b"+")
+        self.shows(b"25cm/s 112deg/s")
+        os.write(self.primary, LEFT)
+        self.shows(b"left")
+        os.write(self.primary, b"\x04")
+        points, _ = self.set_points(process)
+        self.assertEqual([points[0][1][:8], points[-1][1]], ["400D0300", REST])
+        rest = next(at for at, data in points if data == REST)
+        self.assertLess(rest, pressed + 0.3)  # at once, not after the wait for a repetition
+        self.assertTrue(any(data.startswith("00000000") and data != REST for _, data in points))
+
+    def test_no_faster_than_the_spec_allows(self):
+        process = self.drive("90cm/s")
+        os.write(self.primary, b"+")
+        self.shows(b"no faster")
+        os.write(self.primary, b"-i")
+        self.shows(b"72cm/s 36deg/s  forward")
+        os.write(self.primary, b"q")
+        points, _ = self.set_points(process)
+        self.assertEqual({data[:8] for _, data in points if data != REST}, {"80FC0A00"})  # 720,000 um/s
+
+    def test_every_end_rests_the_motors(self):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
+            with self.subTest(signal=number):
+                self.listener = self.listen("motors", "--commands")
+                process = self.drive()
+                os.write(self.primary, UP)
+                self.shows(b"forward")
+                process.send_signal(number)
+                points, _ = self.set_points(process, 128 + number)
+                self.assertEqual(termios.tcgetattr(self.secondary), self.before)
+                self.assertEqual(points[-1][1], REST)
+                self.close()
+
+    def test_a_terminal_that_is_gone(self):
+        process = self.drive()
+        os.write(self.primary, UP)
+        self.shows(b"forward")
+        self.close()
+        _, said = process.communicate(timeout=30)
+        self.assertNotEqual(process.returncode, 0, said)
+        self.settle()
+        out, _ = self.interrupt(self.listener)
+        self.assertEqual(self.objects(out)[-1]["data"], REST)
+
+    def test_another_commander(self):
+        other = self.start("drive", "5cm/s")
+        harness.waiting.until(lambda: self.listener.stdout.readline(), "its set points")
+        primary, secondary = pty.openpty()
+        refused = subprocess.run([harness.AMIROCTL, "drive", "--keys"], stdin=secondary, stdout=secondary, text=True,
+                                 stderr=subprocess.PIPE, env=self.environment, timeout=30)
+        os.close(primary)
+        os.close(secondary)
+        self.assertEqual(refused.returncode, 1)
+        self.assertIn("another program commands motors", refused.stderr)
+        self.interrupt(other)
+
+    def test_refused(self):
+        for arguments, what in (((), "--keys reads keys of a terminal"), (("fast",), "'fast' is no speed"),
+                                (("2000m/s",), "out of range"), (("--for", "1s"), "--for"), (("--once",), "--once")):
+            _, said = self.run_tool("drive", "--keys", *arguments, code=2)
+            self.assertIn(what, said)
+
+
+if __name__ == "__main__":
+    harness.main()

@@ -1,0 +1,767 @@
+"""amiroctl operate: operator files, what is wrong with them, what is proved of them, and what happens when they run."""
+
+import configparser
+import json
+import os
+import random
+import resource
+import shutil
+import signal
+import socket
+import subprocess
+import time
+import unittest
+import xml.etree.ElementTree
+
+from harness import AMIROCTL, SOURCE, Case, main, waiting
+from played_adapter import NOT_SCHEDULABLE, WithAdapter, refusal
+
+GUARD = os.path.join(SOURCE, "examples", "guard.operator.json")
+
+
+def guard():
+    with open(GUARD, encoding="utf-8") as file:
+        return json.load(file)
+
+
+class Operate(Case):
+    def write(self, document, name="test.operator.json"):
+        path = os.path.join(self.folder, name)
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(document if isinstance(document, str) else json.dumps(document, indent=1))
+        return path
+
+    def refused(self, change, *expected, code=1, document=None):
+        """What is wrong once `change` was made to the guard: each text, and the line of a place in the file."""
+        document = guard() if document is None else document
+        change(document)
+        path = self.write(document)
+        _, err = self.run_tool("operate", path, "--check", code=code)
+        for text in expected:
+            self.assertIn(text, err)
+        self.assertRegex(err, r"test\.operator\.json:\d+")
+        return err
+
+    def line_of(self, text, document):
+        return next(i for i, line in enumerate(json.dumps(document, indent=1).splitlines(), 1) if text in line)
+
+
+class Checked(Operate):
+    def test_the_example_is_in_time_and_every_sum_is_that_of_its_parts(self):
+        out, err = self.run_tool("operate", GUARD, "--check", "--json")
+        self.assertEqual(err, "")
+        study = json.loads(out)
+        self.assertTrue(study["in_time"])
+        self.assertEqual([each["name"] for each in study["configurations"]], ["idle", "driving", "stopped"])
+        for reaction in study["reactions"]:
+            self.assertEqual(reaction["at_most_ns"], sum(reaction["parts_ns"].values()), reaction)
+            for each in reaction.get("conditions", []):
+                self.assertEqual(each["at_most_ns"], sum(each["parts_ns"].values()), each)
+            if "conditions" in reaction:
+                self.assertEqual(reaction["at_most_ns"], max(each["at_most_ns"] for each in reaction["conditions"]))
+        for change in study["changes"]:
+            self.assertLessEqual(change["over_after_ns"], study["settle_ns"])
+        near = next(r for r in study["reactions"] if r["cause"] == "obstacle")
+        self.assertEqual(near["condition"], "age of ring above 250ms")
+        sensor = next(c for c in near["conditions"] if c["condition"] == "ring.sensor_1>20000")
+        self.assertEqual(sensor["parts_ns"]["period"], 50_000_000)
+        self.assertEqual(sensor["parts_ns"]["jitter"], 1_000_000)
+
+    def test_a_table_for_people_shows_the_sums(self):
+        out, _ = self.run_tool("operate", GUARD, "--check")
+        self.assertIn("operator guard: 3 configurations, 4 monitors, 8 transitions, at 500000 bit/s", out)
+        self.assertRegex(out, r"ring\.sensor_1>20000\n +[0-9.]+ ms = 50 period \+ 1 jitter \+ [0-9.]+ bus \+ 5 reading \+ ")
+        self.assertIn("[Real, Crespo 2004", out)
+        self.assertTrue(out.endswith("\nin time\n"))
+
+    def test_a_slower_bus_is_not_in_time_and_says_why_with_a_place(self):
+        out, err = self.run_tool("operate", GUARD, "--check", "--bitrate", "50k", code=1)
+        self.assertIn("NOT IN TIME", out)
+        with open(GUARD, encoding="utf-8") as file:
+            document = file.read().splitlines()
+        settle = next(i for i, line in enumerate(document, 1) if '"settle"' in line)
+        self.assertIn(f"guard.operator.json:{settle}: /settle: the change", err)
+        self.assertRegex(err, r'"settle": "\d+ms" or longer')
+        longer = guard()
+        longer["settle"] = "400ms"
+        for monitor in longer["monitors"]:
+            if monitor["name"] == "obstacle":
+                monitor["when"]["any"][2]["above"] = "2s"
+        longer["configurations"][1]["streams"][0]["period"] = "200ms"
+        longer["configurations"][1]["streams"][1]["period"] = "200ms"
+        longer["configurations"][2]["streams"][0]["period"] = "200ms"
+        _, err = self.run_tool("operate", self.write(longer), "--check", "--bitrate", "50k", code=1)
+        self.assertNotIn("/settle", err)
+        self.assertIn("its deadline is 50 ms", err)
+
+    def test_a_healthy_stream_that_reaches_an_age_is_restless(self):
+        def change(document):
+            document["monitors"][0]["when"]["any"][2]["above"] = "51ms"
+        err = self.refused(change, "in \"driving\" the samples of proximity_ring may be", "holds although nothing is wrong",
+                           "\"above\": \"")
+        least = int(err.split('"above": "')[1].split("ms")[0])
+
+        def mended(document):
+            document["monitors"][0]["when"]["any"][2]["above"] = f"{max(least, 120)}ms"
+        document = guard()
+        mended(document)
+        self.run_tool("operate", self.write(document), "--check")
+
+    def test_what_others_send_counts(self):
+        alone = json.loads(self.run_tool("operate", GUARD, "--check", "--json")[0])
+        document = guard()
+        document["others"] = [{"topic": "gyro", "period": "5ms", "priority": "high"}, {"topic": "motors", "period": "100ms"}]
+        among = json.loads(self.run_tool("operate", self.write(document), "--check", "--json")[0])
+        for before, after in zip(alone["configurations"], among["configurations"]):
+            self.assertGreater(after["load_per_mille"], before["load_per_mille"])
+
+
+class Mistakes(Operate):
+    def test_unknown_words_are_named_with_the_one_that_was_meant(self):
+        def topic(document):
+            document["configurations"][1]["streams"][0]["topic"] = "rnig"
+        document = guard()
+        topic(document)
+        line = self.line_of('"rnig"', document)
+        self.refused(topic, f"test.operator.json:{line}: /configurations/1/streams/0/topic: there is no topic \"rnig\"",
+                     "did you mean 'ring'?")
+
+        def field(document):
+            document["monitors"][1]["when"] = "odometry.velocity.xx>0.15m/s"
+        self.refused(field, "/monitors/1/when: no field 'odometry.velocity.xx'", "did you mean 'odometry.velocity.x'?")
+
+        def configuration(document):
+            document["transitions"][0]["to"] = "stoped"
+        self.refused(configuration, "/transitions/0/to: there is no configuration \"stoped\"", "did you mean \"stopped\"?")
+
+        def monitor(document):
+            document["transitions"][0]["when"] = "obstacl"
+        self.refused(monitor, "/transitions/0/when: there is no monitor \"obstacl\"", "did you mean \"obstacle\"?")
+
+        def member(document):
+            document["configurations"][1]["stream"] = []
+        self.refused(member, "/configurations/1/stream: unknown member \"stream\"", "did you mean \"streams\"?")
+
+        def several(document):
+            document["monitors"][1]["when"] = "ring>20000"
+        self.refused(several, "\"ring\" has 8 fields", "name one, such as")
+
+    def test_limits_and_set_points_outside_the_spec(self):
+        def limit(document):
+            document["configurations"][1]["limits"][0]["max"] = "2m/s"
+        self.refused(limit, "/configurations/1/limits/0/max: '2m/s' is out of range", "x takes -1 to 1 m/s")
+
+        def turned_round(document):
+            document["configurations"][1]["limits"][0].update(min="0.1m/s", max="-0.1m/s")
+        self.refused(turned_round, "/configurations/1/limits/0: a limit is outside the range of its field, or is empty")
+
+        def unit(document):
+            document["configurations"][0]["entry"][0]["values"]["x"] = "3"
+        self.refused(unit, "/configurations/0/entry/0/values/x: '3' needs a unit")
+
+        def beyond(document):
+            document["configurations"][1]["entry"] = [{"topic": "motors", "values": {"x": "0.2m/s"}}]
+        self.refused(beyond, "/configurations/1/entry/0: a set point is beyond the limit", "\"limits\" of \"driving\"")
+
+    def test_ways_between_configurations(self):
+        def unreachable(document):
+            document["configurations"].append({"name": "dancing"})
+            document["transitions"].append({"from": "dancing", "to": "stopped", "on_request": True, "cause": "enough"})
+        self.refused(unreachable, "/configurations/3: nothing leads to \"dancing\"", "add a transition to it")
+
+        def trapped(document):
+            document["configurations"].append({"name": "trapped"})
+            document["transitions"] = [{"from": "driving", "to": "stopped", "when": "obstacle"},
+                                       {"from": "stopped", "to": "driving", "when": "clear"},
+                                       {"from": "idle", "to": "driving", "on_request": True},
+                                       {"from": "idle", "to": "trapped", "on_request": True}]
+        self.refused(trapped, "/configurations/3: nothing leads from \"trapped\" to the fall-back",
+                     "add a transition to \"stopped\"")
+
+        def at_once(document):
+            document["transitions"].append({"from": "driving", "to": "idle", "when": "too_fast"})
+        err = self.refused(at_once, "in \"driving\" it can fire at once with the transition of line", "\"precedence\"")
+        self.assertIn("which leads to \"idle\"", err)
+
+        def in_order(document):
+            at_once(document)
+            document["transitions"][-1]["precedence"] = 1
+        document = guard()
+        in_order(document)
+        self.run_tool("operate", self.write(document), "--check")
+
+        def apart(document):
+            document["monitors"].append({"name": "slow", "when": "odometry.velocity.x<0.05m/s"})
+            document["transitions"] = [t for t in document["transitions"] if t.get("when") not in ("obstacle", "bad_bus")]
+            document["transitions"].append({"from": "driving", "to": "idle", "when": "slow"})
+        document = guard()
+        apart(document)
+        self.run_tool("operate", self.write(document), "--check")  # no value is above the one and below the other
+
+        def unseen(document):
+            document["configurations"][1]["streams"].pop(1)
+        self.refused(unseen, "its monitor looks at \"odometry\", which \"driving\" does not ask for", "add the stream")
+
+    def test_conditions_that_say_nothing(self):
+        for when, what in (("ring.sensor_1>70000", "is no condition on values"),
+                           ("ring.sensor_1", "is not a condition"),
+                           ("ring.sensor_1>fast", "is no condition on values"),
+                           ("motors.x>0m/s", "is an actuator, which sends no samples"),
+                           ({"age": "ring"}, "no \"above\""),
+                           ({"age": "ring", "gap": "ring", "above": "1s"}, "both \"age\" and \"gap\""),
+                           ({"above": "1s"}, "it says nothing of what is watched"),
+                           ({"rate": "ring", "window": "1s"}, "neither \"above\" nor \"below\""),
+                           ({"bus_state": "warning", "above": 3}, "\"above\" means nothing beside \"bus_state\""),
+                           ({"bus_load": True, "window": "1s", "above": "170%"}, "is no load of a bus"),
+                           ({"all": []}, "an empty list"),
+                           (7, "7 is not an object")):
+            def change(document):
+                document["monitors"][1]["when"] = when
+            self.refused(change, "/monitors/1/when", what)
+
+    def test_any_file_is_a_problem_at_worst(self):
+        for text in ("", "{", "[]", "null", '{"name": 3}', '{"name": "a", "name": "b"}', "\x00"):
+            _, err = self.run_tool("operate", self.write(text), "--check", code=1)
+            self.assertIn("test.operator.json:1", err)
+        _, err = self.run_tool("operate", os.path.join(self.folder, "none.json"), "--check", code=1)
+        self.assertIn("there is no such file", err)
+        _, err = self.run_tool("operate", self.write(guard()), "--bitrate", "0", "--check", code=2)
+
+    def test_every_member_of_the_guard_may_be_missing_or_wrong(self):
+        """No change of one value makes the program fall: it says what is wrong, or takes it."""
+        changes = 0
+
+        def visit(node, path):
+            keys = list(node) if isinstance(node, dict) else range(len(node)) if isinstance(node, list) else []
+            for key in keys:
+                yield path + [key]
+                yield from visit(node[key], path + [key])
+        for path in visit(guard(), []):
+            for value in (None, "none", -1):
+                document = guard()
+                at = document
+                for step in path[:-1]:
+                    at = at[step]
+                if value is None:
+                    del at[path[-1]]
+                else:
+                    at[path[-1]] = value
+                file = self.write(document, "changed.json")
+                result = self.run_any("operate", file, "--check", "--json")
+                self.assertIn(result.returncode, (0, 1), f"{path}: {result.stderr}")
+                if result.returncode == 1:
+                    self.assertIn("changed.json:", result.stderr)
+                changes += 1
+        self.assertGreater(changes, 300)
+
+    def run_any(self, *arguments):
+        return subprocess.run([AMIROCTL, *arguments], env=self.environment, text=True, capture_output=True, timeout=60)
+
+
+ODOMETRY = {"topic": "odometry", "period": "50ms", "priority": "high"}
+HALT = {
+    "name": "halt", "initial": "driving", "fall_back": "halted",
+    "settle": "100ms", "retry": "500ms", "reaction": "30ms", "handling": "5ms",
+    "configurations": [
+        {"name": "driving", "streams": [ODOMETRY], "limits": [{"field": "motors.x", "min": "-0.1m/s", "max": "0.1m/s"}]},
+        {"name": "halted", "streams": [ODOMETRY], "entry": [{"topic": "motors", "repeat": "100ms"}]},
+    ],
+    "monitors": [
+        {"name": "too_fast", "when": {"any": ["odometry.velocity.x>0.03m/s", {"age": "odometry", "above": "400ms"}]}},
+        {"name": "still", "when": "odometry.velocity.x<0.01m/s", "for": "300ms"},
+    ],
+    "transitions": [
+        {"from": "driving", "to": "halted", "when": "too_fast"},
+        {"from": "halted", "to": "driving", "when": "still"},
+    ],
+}
+REST = "001#0000000000000000"
+
+
+class Operating(Operate):
+    def operate(self, *options, document=None, bus=None):
+        """An operator that has begun."""
+        operator = self.start(*(("--bus", bus) if bus else ()), "operate", self.write(document or HALT), "--json", *options)
+        self.assertEqual(self.event(operator)["event"], "started")
+        return operator
+
+    def event(self, operator, name=None):
+        """The next event, of that name."""
+        for line in operator.stdout:
+            event = json.loads(line)
+            if name is None or event["event"] == name:
+                return event
+        self.fail(f"the operator ended with {operator.wait()}: {operator.stderr.read()}")
+
+    def raw_frames(self, *topics):
+        listener = self.start("listen", "--raw", "--commands", *topics)
+        self.assertIn("bus: sim", listener.stderr.readline())
+        self.settle()
+        return listener
+
+    def frames(self, listener):
+        out, _ = self.interrupt(listener)
+        found = []
+        for line in out.splitlines():
+            time, _, frame = line.split()[:3]
+            found.append((float(time.strip("()")), frame))
+        return found
+
+
+class Running(Operating):
+    def test_it_halts_what_is_too_fast_and_lets_it_go_on(self):
+        self.start_sim()
+        operator = self.operate()
+        listener = self.raw_frames("motors", "odometry")
+        drive = self.start("drive", "5cm/s", "--for", "700ms", "--force")
+        event = self.event(operator, "switched")
+        self.assertEqual((event["from"], event["to"], event["cause"]), ("driving", "halted", "too_fast"))
+        self.assertEqual(event["conditions"], ["odometry.velocity.x>0.03m/s"])
+        drive.communicate(timeout=30)
+        event = self.event(operator, "switched")
+        self.assertEqual((event["from"], event["to"], event["cause"]), ("halted", "driving", "still"))
+        frames = self.frames(listener)
+        self.assertIn("201#50C3000000000000", [frame for _, frame in frames])
+        rest = [time for time, frame in frames if frame == REST]
+        self.assertGreater(len(rest), 3)
+        for before, after in zip(rest, rest[1:]):
+            self.assertGreater(after - before, 0.02)
+        # From the frame that showed it to the set point: what the proof says without the sampling, unless it was late.
+        shown = next(time for time, frame in frames if frame.startswith("502#") and
+                     int.from_bytes(bytes.fromhex(frame[4:12]), "little", signed=True) > 30_000)
+        _, err = self.interrupt(operator)
+        self.assertEqual(operator.returncode, 130)
+        if "later than" not in err:
+            study = json.loads(self.run_tool("operate", self.write(HALT), "--check", "--json")[0])
+            parts = study["reactions"][0]["conditions"][0]["parts_ns"]
+            self.assertLess(rest[0] - shown, (parts["reading"] + parts["command"]) * 1e-9)
+
+    def test_it_ends_with_all_at_rest_and_its_streams_stopped(self):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            with self.subTest(signal=number):
+                sim = self.start_sim()
+                operator = self.operate()
+                listener = self.raw_frames()
+                out, err = self.interrupt(operator, number)
+                self.assertEqual(operator.returncode, 128 + number)
+                self.assertEqual(json.loads(out.splitlines()[-1])["event"], "ended")
+                self.assertIn("0 changes", err)
+                frames = [frame for _, frame in self.frames(listener)]
+                self.assertIn(REST, frames)
+                self.assertIn("103#00", frames)  # stop, at the stream's priority
+                _, err = self.run_tool("listen", "odometry", "--timeout", "300ms", "-n", "1", code=1)
+                self.interrupt(sim)
+
+    def test_a_silent_board_is_noticed_and_asked_again(self):
+        self.start_sim()
+        operator = self.operate()
+        self.run_tool("stop", "odometry", "--priority", "high", "--no-confirm")
+        event = self.event(operator, "switched")
+        self.assertEqual(event["conditions"], ["age of odometry above 400ms"])
+        self.assertEqual(self.event(operator, "asked_again")["topic"], "odometry")
+        self.assertEqual(self.event(operator, "switched")["cause"], "still")
+        _, err = self.interrupt(operator)
+        self.assertRegex(err, r"2 changes, .*1 silent streams asked for again")
+
+    def test_the_seconds_before_a_fall_back_are_kept_and_bounded(self):
+        self.start_sim()
+        box = os.path.join(self.folder, "box")
+        operator = self.operate("--black-box", box, "--black-box-time", "2s", "--black-box-files", "2")
+        kept = []
+        for _ in range(3):
+            drive = self.start("drive", "5cm/s", "--for", "300ms", "--force")
+            recorded = self.event(operator, "recorded")
+            kept.append(recorded)
+            drive.communicate(timeout=30)
+            self.event(operator, "switched")
+        self.interrupt(operator)
+        self.assertEqual(sorted(os.listdir(box)), sorted(os.path.basename(each["file"]) for each in kept[1:]))
+        for each in kept[1:]:
+            out, _ = self.run_tool("decode", each["file"])
+            samples = self.objects(out)
+            velocities = [sample["fields"]["x"] for sample in samples if sample["frame"] == "velocity"]
+            self.assertGreater(velocities[-1], 0.03)
+            self.assertLess(min(velocities), 0.03)
+            with open(each["file"], encoding="utf-8") as file:
+                lines = file.read().splitlines()
+            self.assertEqual(len(lines), each["frames"])
+            self.assertTrue(any("201#50C3" in line for line in lines))
+            times = [float(line.split()[0].strip("()")) for line in lines]
+            self.assertLess(max(times) - min(times), 2.1)
+
+    def test_what_a_killed_operator_saw_is_kept_by_the_next_one(self):
+        self.start_sim()
+        box = os.path.join(self.folder, "box")
+        operator = self.operate("--black-box", box, "--black-box-time", "1s")
+        second = os.path.join(box, "halt.running-1.log")
+        waiting.until(lambda: os.path.exists(second) and os.path.getsize(second) > 0, "a second file is begun")
+        killed_at = time.time()
+        operator.kill()
+        operator.wait()
+        self.assertEqual(len(os.listdir(box)), 2)
+        operator = self.start("operate", self.write(HALT), "--json", "--black-box", box)
+        event = self.event(operator, "recovered")
+        self.assertEqual(os.listdir(box), [os.path.basename(event["file"])])
+        with open(event["file"], encoding="utf-8") as file:
+            times = [float(line.split()[0].strip("()")) for line in file]
+        self.assertEqual(times, sorted(times))
+        self.assertGreater(times[-1], killed_at - 1)
+        self.assertGreater(times[-1] - times[0], 0.9)
+        self.assertLess(times[-1] - times[0], 3)
+        out, _ = self.run_tool("decode", event["file"])
+        self.assertIn("velocity", {sample["frame"] for sample in self.objects(out)})
+        self.event(operator, "started")
+        self.interrupt(operator)
+        self.assertEqual(os.listdir(box), [os.path.basename(event["file"])])  # it ended by itself
+
+    def test_of_two_operators_with_one_name_the_second_gets_another_black_box(self):
+        self.start_sim()
+        other = os.path.join(self.folder, "other.sock")
+        self.start_sim("--bus", f"sim:{other}")
+        box = os.path.join(self.folder, "box")
+        self.operate("--black-box", box)
+        waiting.until(lambda: os.listdir(box), "the black box is begun")
+        _, err = self.run_tool("--bus", f"sim:{other}", "operate", self.write(HALT), "--black-box", box, code=1)
+        self.assertIn(f"an operator with the name halt keeps its black box in {box}", err)
+
+    def test_a_black_box_on_a_full_disk_is_counted_and_the_operator_goes_on(self):
+        self.start_sim()
+        operator = self.start("operate", self.write(HALT), "--json", "--black-box", os.path.join(self.folder, "box"),
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (500, 500)))
+        self.event(operator, "started")
+        drive = self.start("drive", "5cm/s", "--for", "300ms", "--force")
+        self.event(operator, "switched")
+        self.event(operator, "switched")
+        drive.communicate(timeout=30)
+        _, err = self.interrupt(operator)
+        self.assertRegex(err, r"[0-9]+ frames that a kill would have lost from the black box")
+        self.assertRegex(err, r"1 recordings")
+        self.assertIn("File too large", err)
+
+    def test_a_bus_that_is_gone_ends_it_and_says_so(self):
+        sim = self.start_sim()
+        box = os.path.join(self.folder, "box")
+        operator = self.operate("--black-box", box)
+        self.interrupt(sim)
+        _, err = operator.communicate(timeout=30)
+        self.assertEqual(operator.returncode, 1)
+        self.assertIn("0 changes", err)
+        self.assertEqual(len(os.listdir(box)), 1)
+
+    def test_nobody_reads_its_output_and_it_goes_on(self):
+        self.start_sim()
+        reader, writer = os.pipe()
+        os.set_blocking(writer, False)
+        try:  # full, before it begins
+            while True:
+                os.write(writer, b" " * 4096)
+        except BlockingIOError:
+            os.set_blocking(writer, True)
+        operator = self.start("operate", self.write(HALT), stdout=writer)
+        os.close(writer)
+        listener = self.raw_frames("motors")
+        self.assertIn("bus: sim", operator.stderr.readline())
+        self.settle()
+        drive = self.start("drive", "5cm/s", "--for", "400ms", "--force")
+        drive.communicate(timeout=30)
+        self.assertIn(REST, [frame for _, frame in self.frames(listener)])
+        self.interrupt(operator)
+        self.assertEqual(operator.returncode, 130)
+        os.close(reader)
+
+    def test_what_may_be_late_is_not_run(self):
+        self.start_sim()
+        document = json.loads(json.dumps(HALT))
+        document["settle"] = "10ms"
+        listener = self.raw_frames()
+        _, err = self.run_tool("operate", self.write(document), code=1)
+        self.assertIn("may act too late on this bus, and is not run", err)
+        self.assertIn("/settle", err)
+        self.assertEqual(self.frames(listener), [])
+        document["initial"] = "drivin"
+        _, err = self.run_tool("operate", self.write(document), code=1)
+        self.assertIn("did you mean \"driving\"?", err)
+
+
+GUARDED = json.loads(json.dumps(HALT)) | {
+    "configurations": [
+        {"name": "driving", "streams": [ODOMETRY], "commanders": ["drive", "set"],
+         "limits": [{"field": "motors.x", "min": "-0.02m/s", "max": "0.02m/s"}]},
+        {"name": "slow", "streams": [ODOMETRY],
+         "limits": [{"field": "motors.x", "min": "-0.01m/s", "max": "0.01m/s", "per_second": "0.02m/s"}]},
+        {"name": "halted", "streams": [ODOMETRY], "commanders": [], "entry": [{"topic": "motors", "repeat": "100ms"}]},
+    ],
+    "transitions": HALT["transitions"] + [{"from": ["driving", "halted"], "to": "slow", "on_request": True},
+                                          {"from": ["slow"], "to": "driving", "on_request": True},
+                                          {"from": ["slow", "driving"], "to": "halted", "on_request": True},
+                                          {"from": "slow", "to": "halted", "when": "too_fast"}],
+}
+
+
+def x_of(frame):
+    """Of a set point of the motors, in um/s."""
+    return int.from_bytes(bytes.fromhex(frame[4:12]), "little", signed=True)
+
+
+class Asked(Operating):
+    """amiroctl operator, and other programs that command the robot while an operator runs."""
+
+    def test_it_says_what_it_does_and_why(self):
+        self.start_sim()
+        operator = self.operate(document=GUARDED)
+        status = json.loads(self.run_tool("operator", "status", "--json")[0])
+        self.assertEqual((status["operator"], status["configuration"], status["on_hold"]), ("halt", "driving", False))
+        self.assertEqual(status["streams"][0]["topic"], "odometry")
+        self.assertEqual(status["set_points"], {"passed": 0, "limited": 0, "refused": 0})
+        out, _ = self.run_tool("operator", "status")
+        self.assertRegex(out, "^operator halt is in driving since [0-9]+")
+        self.assertRegex(out, "(?m)^  odometry +every 50ms +last [0-9]+(us|ms) ago$")
+        out, _ = self.run_tool("operator", "switch", "slow")
+        self.assertRegex(out, "driving -> slow|slow follows when the last change is over")
+        self.assertEqual(self.event(operator, "switched")["to"], "slow")
+        why = json.loads(self.run_tool("operator", "why", "--json")[0])
+        self.assertEqual([(change["from"], change["to"]) for change in why["changes"]],
+                         [(None, "driving"), ("driving", "slow")])
+        self.assertEqual({way["to"] for way in why["leaves"]}, {"driving", "halted"})
+        out, _ = self.run_tool("operator", "why")
+        self.assertRegex(out, "driving -> slow: ")
+        self.assertIn("to halted by too_fast, now no (odometry.velocity.x>0.03m/s: no, age of odometry above 400ms: no)", out)
+        _, err = self.run_tool("operator", "switch", "slwo", code=1)
+        self.assertIn('operator halt has no configuration "slwo"', err)
+        self.assertIn("one of driving, slow, halted", err)
+        self.interrupt(operator)
+        _, err = self.run_tool("operator", "status", code=1)
+        self.assertIn("no operator of yours runs on sim", err)
+
+    def test_on_hold_it_guards_and_does_not_go_on_by_itself(self):
+        self.start_sim()
+        document = json.loads(json.dumps(HALT))
+        operator = self.operate(document=document)
+        self.assertIn("is on hold", self.run_tool("operator", "hold")[0])
+        self.event(operator, "held")
+        drive = self.start("--bus", "sim", "send", "201#50C3000000000000")  # past the operator
+        drive.communicate(timeout=30)
+        self.assertEqual(self.event(operator, "switched")["to"], "halted")
+        self.settle()
+        waiting.until(lambda: json.loads(self.run_tool("operator", "status", "--json")[0])["monitors"]["still"] == "yes",
+                      "the robot is still")
+        status = json.loads(self.run_tool("operator", "status", "--json")[0])
+        self.assertEqual((status["configuration"], status["on_hold"]), ("halted", True))
+        self.assertIn("goes on", self.run_tool("operator", "resume")[0])
+        self.assertEqual(self.event(operator, "switched")["to"], "driving")
+
+    def test_set_points_of_other_programs_are_held_within_its_limits(self):
+        self.start_sim()
+        operator = self.operate(document=GUARDED)
+        listener = self.raw_frames("motors")
+        _, err = self.run_tool("drive", "5cm/s", "--for", "500ms")
+        self.assertRegex(err, r"drive: operator halt \(process [0-9]+\) guards the robot")
+        self.assertRegex(err, r"drive: operator halt \(process [0-9]+\) limits motors\.x")
+        self.assertEqual(self.event(operator, "commanded")["by"], "drive")
+        self.assertEqual(self.event(operator, "limited")["fields"], "motors.x")
+        _, err = self.run_tool("set", "motors", "x=1cm/s")
+        self.assertNotIn("limits", err)
+        frames = [frame for _, frame in self.frames(listener)]
+        self.assertEqual({x_of(frame) for frame in frames}, {20_000, 10_000, 0})
+        self.assertEqual(len([frame for frame in frames if x_of(frame) == 20_000]) in range(4, 8), True, frames)
+        _, err = self.interrupt(operator)
+        self.assertRegex(err, "[0-9]+ set points passed on, [0-9]+ set points limited")
+
+    def test_a_drive_comes_up_as_fast_as_it_may(self):
+        self.start_sim()
+        operator = self.operate(document=GUARDED)
+        self.run_tool("operator", "switch", "slow")
+        self.event(operator, "switched")
+        listener = self.raw_frames("motors")
+        self.run_tool("drive", "5cm/s", "--for", "1s")
+        frames = self.frames(listener)
+        values = [x_of(frame) for _, frame in frames]
+        self.assertEqual(max(values), 10_000)
+        for (before, a), (after, b) in zip(frames, frames[1:]):
+            self.assertLessEqual(x_of(b) - x_of(a), 20_000 * (after - before) + 1500)
+        self.assertEqual(values[-1], 0)
+
+    def test_who_may_not_command_is_refused_and_rest_never_is(self):
+        self.start_sim()
+        self.operate(document=GUARDED)
+        script = os.path.join(self.folder, "a.script")
+        with open(script, "w", encoding="utf-8") as file:
+            file.write("0s drive 1cm/s\n1s stop\n")
+        _, err = self.run_tool("run", script, code=1)
+        self.assertIn("operator halt is in driving, where run may not command motors", err)
+        self.run_tool("operator", "switch", "halted")
+        _, err = self.run_tool("set", "motors", "x=1cm/s", code=1)
+        self.assertIn("operator halt is in halted, where set may not command motors", err)
+        self.run_tool("set", "motors", "x=0m/s")
+        self.run_tool("stop")
+
+    def test_a_drive_that_the_operator_ends_rests_and_says_so(self):
+        self.start_sim()
+        operator = self.operate(document=GUARDED)
+        listener = self.raw_frames("motors")
+        drive = self.start("drive", "1cm/s")
+        self.event(operator, "commanded")
+        self.run_tool("operator", "switch", "halted")
+        _, err = drive.communicate(timeout=30)
+        self.assertEqual(drive.returncode, 1)
+        self.assertRegex(err, "operator halt is in halted, where drive may not command motors|another program has set the motors to zero")
+        frames = [frame for _, frame in self.frames(listener)]
+        self.assertEqual({x_of(frame) for frame in frames[frames.index(REST):]}, {0})
+
+    def test_an_operator_that_is_stopped_or_killed_leaves_no_drive_moving(self):
+        self.start_sim()
+        for number in (signal.SIGSTOP, signal.SIGKILL):
+            with self.subTest(signal=number):
+                operator = self.operate(document=GUARDED)
+                drive = self.start("drive", "1cm/s")
+                self.event(operator, "commanded")
+                listener = self.raw_frames("motors")
+                operator.send_signal(number)
+                _, err = drive.communicate(timeout=30)
+                self.assertEqual(drive.returncode, 1)
+                self.assertRegex(err, r"operator halt \(process [0-9]+\) (does not answer|has ended|is gone)")
+                self.assertEqual(x_of(self.frames(listener)[-1][1]), 0)
+                if number == signal.SIGSTOP:
+                    _, err = self.run_tool("operator", "status", code=1)
+                    self.assertIn("does not answer", err)
+                    operator.kill()
+                operator.wait()
+
+    def test_a_second_operator_is_refused_by_name(self):
+        self.start_sim()
+        operator = self.operate(document=GUARDED)
+        _, err = self.run_tool("operate", self.write(HALT, "second.json"), code=1)
+        self.assertIn(f"operate: operator halt (process {operator.pid}) has sim already", err)
+        other = os.path.join(self.folder, "other.sock")
+        self.start_sim("--bus", f"sim:{other}")
+        self.operate(bus=f"sim:{other}")  # another robot
+
+    def test_what_is_said_to_its_socket_is_a_refusal_at_worst(self):
+        self.start_sim()
+        operator = self.operate(document=GUARDED)
+        path = os.path.join(self.environment["XDG_RUNTIME_DIR"], "ocm", "operator-sim.sock")
+        self.assertEqual(os.stat(path).st_mode & 0o777, 0o600)
+        chance = random.Random(5)
+        words = [b"status", b"why json", b"switch ", b"switch halted", b"send ", b"send 201#", b"send 201#50C3000000000000",
+                 b"send 201#R", b"send 12345678#00", b"send 605#00", b"delivery", b"hold", b"resume", b"", b"\0", b"hello 1 x"]
+        for _ in range(300):
+            client = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+            client.connect(path)
+            client.settimeout(5)
+            if chance.random() < 0.8:
+                client.send(b"hello 1 drive")
+                self.assertEqual(client.recv(100), b"ok\nhalt")
+            word = chance.choice(words) + bytes(chance.randrange(256) for _ in range(chance.choice((0, 0, 5, 5000))))
+            if word:
+                client.send(word)
+                if chance.random() < 0.8:
+                    answer = client.recv(60_000)
+                    self.assertIn(answer.split(b"\n")[0], (b"ok", b"no", b"wait", b""), word[:50])
+            client.close()
+        greedy = [socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) for _ in range(70)]
+        for client in greedy:
+            client.connect(path)
+        self.assertEqual(self.interrupt(operator) and operator.returncode, 130)
+        for client in greedy:
+            client.close()
+        self.assertFalse(os.path.exists(path))
+
+    def test_a_program_that_reads_no_answer_holds_up_nothing(self):
+        self.start_sim()
+        operator = self.operate(document=GUARDED)
+        path = os.path.join(self.environment["XDG_RUNTIME_DIR"], "ocm", "operator-sim.sock")
+        client = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        client.connect(path)
+        client.send(b"hello 1 drive")
+        with self.assertRaises(OSError):
+            while True:
+                client.send(b"why json")
+        drive = self.start("send", "201#50C3000000000000")
+        drive.communicate(timeout=30)
+        self.assertEqual(self.event(operator, "switched")["to"], "halted")
+        client.close()
+
+
+class AsAService(Operating):
+    def test_systemd_is_told_what_it_does_and_that_it_runs(self):
+        self.start_sim()
+        path = os.path.join(self.folder, "notify")
+        with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as notify:
+            notify.bind(path)
+            notify.settimeout(30)
+            self.environment |= {"NOTIFY_SOCKET": path, "WATCHDOG_USEC": "400000"}
+            operator = self.operate()
+            said = []
+            while said.count("WATCHDOG=1") < 3:
+                said.append(notify.recv(1000).decode())
+            self.assertIn("READY=1\nSTATUS=operator halt on sim", said)
+            self.assertIn("STATUS=operator halt is in driving", said)
+            operator.send_signal(signal.SIGTERM)
+            while said[-1] != "STOPPING=1":
+                said.append(notify.recv(1000).decode())
+            operator.communicate(timeout=30)
+
+    def test_the_unit_file_is_one(self):
+        unit = configparser.ConfigParser(strict=False, interpolation=None)
+        unit.optionxform = str
+        unit.read(os.path.join(SOURCE, "examples", "amiroctl-operator.service"))
+        self.assertEqual(unit["Service"]["Type"], "notify")
+        verify = shutil.which("systemd-analyze")
+        if verify:
+            file = os.path.join(self.folder, "amiroctl-operator@.service")
+            with open(os.path.join(SOURCE, "examples", "amiroctl-operator.service"), encoding="utf-8") as text:
+                content = text.read().replace("/usr/bin/amiroctl", AMIROCTL)
+            with open(file, "w", encoding="utf-8") as text:
+                text.write(content)
+            result = subprocess.run([verify, "verify", "--man=no", file], text=True, capture_output=True, timeout=60)
+            self.assertEqual(result.stderr, "")
+
+
+class OnAnAdapter(WithAdapter, Operating):
+    def test_a_refused_request_is_named_and_can_be_a_cause(self):
+        document = json.loads(json.dumps(HALT))
+        document["monitors"].append({"name": "refused", "when": {"refusals": True}})
+        document["transitions"].append({"from": "driving", "to": "halted", "when": "refused", "precedence": 1})
+        played = self.adapter(script={"103#01320000": [refusal(0x03, NOT_SCHEDULABLE)]})
+        operator = self.operate(document=document, bus=f"slcan:{played.path}")
+        event = self.event(operator, "refused")
+        self.assertEqual((event["topic"], event["board"], event["reason"]), ("odometry", "di_wheel_drive", "not_schedulable"))
+        event = self.event(operator, "switched")
+        self.assertEqual((event["cause"], event["conditions"]), ("refused", ["refusals above 0"]))
+        self.interrupt(operator)
+        self.assertEqual(operator.returncode, 130)
+        self.assertEqual(played.frames[-2:], [REST, "103#00"])
+
+    def test_a_robot_that_says_nothing_is_stopped(self):
+        played = self.adapter()
+        document = json.loads(json.dumps(HALT))
+        operator = self.operate(document=document, bus=f"slcan:{played.path}")
+        self.event(operator, "switched")  # nothing comes: the stream is too old
+        _, err = self.interrupt(operator)
+        self.assertIn("1 changes", err)
+        self.assertEqual(played.frames[-2:], [REST, "103#00"])
+
+
+class Drawn(Operate):
+    @unittest.skipUnless(shutil.which("dot"), "Graphviz is not installed")
+    def test_the_state_machine_is_drawn_with_its_bounds(self):
+        picture = os.path.join(self.folder, "guard.svg")
+        self.run_tool("operate", GUARD, "--check", "--svg", picture)
+        text = "".join(xml.etree.ElementTree.parse(picture).getroot().itertext())
+        study = json.loads(self.run_tool("operate", GUARD, "--check", "--json")[0])
+        for configuration in study["configurations"]:
+            self.assertIn(configuration["name"], text)
+        for reaction in study["reactions"]:
+            self.assertIn(f"{reaction['at_most_ns'] / 1e6:.6f}".rstrip("0").rstrip(".") + " ms", text)
+        out, _ = self.run_tool("operate", GUARD, "--check", "--svg", "-")
+        xml.etree.ElementTree.fromstring(out)
+
+    def test_without_graphviz_it_says_what_to_install(self):
+        self.environment["PATH"] = self.folder
+        _, err = self.run_tool("operate", GUARD, "--check", "--svg", os.path.join(self.folder, "a.svg"), code=1)
+        self.assertIn("a.svg: dot is missing", err)
+        self.assertIn("sudo apt install graphviz", err)
+
+
+if __name__ == "__main__":
+    main()

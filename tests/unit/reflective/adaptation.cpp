@@ -1,0 +1,56 @@
+#include "ocm/reflective/adaptation.hpp"
+
+#include <chrono>
+#include <random>
+
+#include <catch2/catch.hpp>
+
+namespace reflective_adaptation_test {
+
+using namespace ocm;
+using namespace ocm::reflective;
+using namespace std::chrono_literals;
+
+constexpr Adaptation ring{
+    .magnitude = true, .from = 10, .to = 110, .at_from = 200ms, .at_to = 50ms, .grain = 10ms};
+static_assert(adapted_period(ring, 0) == 200ms && adapted_period(ring, 10) == 200ms);
+static_assert(adapted_period(ring, 110) == 50ms && adapted_period(ring, INT64_MAX) == 50ms);
+static_assert(adapted_period(ring, -110) == 50ms && adapted_period(ring, INT64_MIN) == 50ms);
+static_assert(adapted_period(ring, 60) == 120ms);  // 125, towards the shorter
+constexpr Adaptation slower{.from = -50, .to = 50, .at_from = 10ms, .at_to = 20ms, .grain = 1ms};
+static_assert(adapted_period(slower, -50) == 10ms && adapted_period(slower, 0) == 15ms);
+static_assert(adapted_period(slower, 50) == 20ms);
+
+TEST_CASE("adaptation: within its bounds, in grains, and never back, for any numbers") {
+  std::mt19937_64 random{5};
+  for (int run = 0; run < 20'000; ++run) {
+    Adaptation a;
+    a.magnitude = random() % 2 == 0;
+    const int shift = static_cast<int>(random() % 63);
+    a.from = static_cast<std::int64_t>(random()) >> shift;
+    a.to = static_cast<std::int64_t>(random()) >> shift;
+    if (a.from == a.to) continue;
+    if (a.from > a.to) std::swap(a.from, a.to);
+    a.grain = base::Duration{1'000 * (1 + static_cast<std::int64_t>(random() % 5'000))};
+    const base::Duration shortest{1'000 * (1 + static_cast<std::int64_t>(random() % 1'000'000))};
+    a.at_from = shortest + static_cast<std::int64_t>(random() % 1000) * a.grain;
+    a.at_to = shortest;
+    if (random() % 2 == 0) std::swap(a.at_from, a.at_to);
+    const bool shorter = a.at_to < a.at_from;
+    base::Duration last = a.at_from;
+    for (int i = 0; i <= 20; ++i) {
+      std::int64_t value =
+          a.from +
+          static_cast<std::int64_t>((static_cast<std::uint64_t>(a.to) - static_cast<std::uint64_t>(a.from)) /
+                                    20 * static_cast<unsigned>(i));
+      if (a.magnitude && value < 0) value = 0;
+      const base::Duration period = adapted_period(a, value);
+      if (period < a.shortest() || period > a.longest()) FAIL("out of bounds in run " << run);
+      if ((period - a.shortest()) % a.grain != 0ns) FAIL("between grains in run " << run);
+      if (!a.magnitude && (shorter ? period > last : period < last)) FAIL("back in run " << run);
+      last = period;
+    }
+  }
+}
+
+}  // namespace reflective_adaptation_test

@@ -1,0 +1,240 @@
+#include "ocm/reflective/proof.hpp"
+
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "unit/reflective/guard.hpp"
+
+namespace reflective_proof_test {
+
+using namespace ocm;
+using namespace ocm::reflective;
+using namespace ocm::test;
+using namespace std::chrono_literals;
+
+// Two frames by hand, at 1 Mbit/s and with the closed bounds for lengths: a tick of 1000 ns is a bit.
+constexpr std::array<protocol::Field, 1> byte{
+    {{.name = "value", .position = {0, 8}, .unit = {}, .raw_min = 0, .raw_max = 255, .values = {}}}};
+constexpr protocol::FrameLayout layout(std::uint8_t id, std::uint16_t length, bool has_field) {
+  protocol::FrameLayout result;
+  result.id = protocol::TopicId{id};
+  result.length = length;
+  if (has_field) result.fields = byte;
+  return result;
+}
+constexpr std::array<protocol::FrameLayout, 1> watched_frames{layout(1, 1, true)};
+constexpr std::array<protocol::FrameLayout, 1> long_frames{layout(2, 8, false)};
+constexpr std::array<protocol::FrameLayout, 1> motor_frames{layout(3, 1, true)};
+constexpr protocol::Topic topic(std::string_view name, std::uint8_t id, protocol::Kind kind,
+                                std::span<const protocol::FrameLayout> frames, base::Duration jitter) {
+  protocol::Topic result;
+  result.name = name;
+  result.id = protocol::TopicId{id};
+  result.kind = kind;
+  result.frames = frames;
+  result.jitter = jitter;
+  return result;
+}
+constexpr std::array<protocol::Topic, 3> topics{{
+    topic("watched", 1, protocol::Kind::sensor, watched_frames, 2ms),
+    topic("long", 2, protocol::Kind::sensor, long_frames, 0ms),
+    topic("motor", 3, protocol::Kind::actuator, motor_frames, 0ms),
+}};
+constexpr std::array<protocol::Board, 1> boards{{{"board", "none"}}};
+constexpr protocol::Catalogue catalogue{"two frames", 1'000'000, boards, topics};
+
+constexpr std::array<Stream, 2> streams{
+    {{0, 20ms, protocol::Priority::high}, {1, 50ms, protocol::Priority::low}}};
+constexpr std::array<Stream, 1> after{{{0, 20ms, protocol::Priority::high}}};
+constexpr std::array<SetPoint, 1> stop{{{2, {}, protocol::Priority::urgent, 0ns}}};
+constexpr std::array<Configuration, 2> configurations{
+    {{"moving", streams, {}, {}, {}}, {"still", after, {}, stop, {}}}};
+constexpr std::array<Condition, 3> conditions{{
+    {.name = "high", .topic = 0, .limit = 100},
+    {.name = "silent", .watched = Watched::age, .topic = 0, .limit = 60'000'000},
+    {.name = "slow", .watched = Watched::rate, .is = Is::below, .topic = 0, .limit = 2, .window = 100ms},
+}};
+constexpr std::array<Term, 1> when_high{{{.condition = 0}}};
+constexpr std::array<Term, 3> when_either{{{.condition = 0}, {.condition = 1}, {.op = Op::any}}};
+constexpr std::array<Term, 1> when_slow{{{.condition = 2}}};
+constexpr std::array<Monitor, 3> monitors{
+    {{"high", when_high, {}}, {"either", when_either, 30ms}, {"slow", when_slow, {}}}};
+constexpr std::array<Transition, 4> transitions{
+    {{"high", 0, 1, 0, 0}, {"either", 0, 1, 1, 1}, {"slow", 0, 1, 2, 2}, {"asked", 1, 0, by_request, 0}}};
+constexpr Operator make() {
+  Operator op;
+  op.catalogue = &catalogue;
+  op.configurations = configurations;
+  op.conditions = conditions;
+  op.monitors = monitors;
+  op.transitions = transitions;
+  op.fall_back = 1;
+  op.settle = 10ms;
+  op.reaction = 3ms;
+  op.handling = 1ms;
+  return op;
+}
+constexpr Operator tables = make();
+static_assert(first_mistake(tables).kind == Mistake::no_mistake);
+
+// Lengths with intermission: 1 byte 65 bits, 8 bytes 135, a stop 65, a request of 4 bytes 95.
+constexpr Latency latency(std::size_t transition) {
+  return Proof<16>{tables, 1'000'000}.latency(transition, 0);
+}
+constexpr Latency high = latency(0);
+static_assert(high.bounded && high.period == 20'000'000 && high.jitter == 2'000'000 &&
+              high.reading == 3'000'000);
+static_assert(high.bus == (135 + 65) * 1000);      // behind the long one
+static_assert(high.command == (135 + 65) * 1000);  // so is the set point
+static_assert(high.total() == 20'000'000 + 2'000'000 + 200'000 + 3'000'000 + 200'000);
+static_assert(high.at_worst() == high.total() + 10'000'000);
+constexpr Latency either = latency(1);
+static_assert(either.condition == 1 && either.limit == 60'000'000 && either.period == 0);
+static_assert(either.lasting == 30'000'000 && either.timer == 2 * 3'000'000);
+static_assert(either.total() ==
+              200'000 + 3'000'000 + 60'000'000 + 3'000'000 + 30'000'000 + 3'000'000 + 200'000);
+constexpr Latency slow = latency(2);
+static_assert(slow.window == 200'000'000 && slow.timer == 3'000'000);
+static_assert(Proof<16>{tables, 1'000'000}.latency(3, 1).total() == 3'000'000);  // asked; commands nothing
+// Of a monitor with several conditions each has its own.
+static_assert(Proof<16>{tables, 1'000'000}.latency(1, 0, 0).total() == high.total() + 33'000'000);
+static_assert(Proof<16>{tables, 1'000'000}.latency(1, 0, 1).total() == either.total());
+static_assert(Proof<16>{tables, 1'000'000}.response(0, 0) == high.jitter + high.bus);
+static_assert(Proof<16>{tables, 1'000'000}.response(1, 1) == analysis::unbounded);  // does not stream it
+static_assert(Proof<16>{tables, 1'000'000}.load(0, 1) > Proof<16>{tables, 1'000'000}.load(0));
+static_assert(!Proof<16>{tables, 1'000'000}.latency(0, 1).bounded);              // does not leave from there
+
+// From moving to still: the set point and the stop; then what the long one, which may have been released just
+// before, needs behind them and the watched one, which goes on.
+constexpr std::int64_t settling = Proof<32>{tables, 1'000'000}.settling(0, 1);
+static_assert(settling == 3'000'000 + (135 + 65 + 65) * 1000 + 1'000'000 + (65 + 65 + 65 + 135) * 1000);
+
+constexpr bool is_in_time(const Operator& op, std::uint32_t bit_rate) {
+  bool fine = true;
+  Proof<32>{op, bit_rate}.check([&](const Doubt&) { fine = false; });
+  return fine;
+}
+static_assert(is_in_time(tables, 1'000'000));
+
+std::vector<Doubt> doubts(const Operator& op, std::uint32_t bit_rate = 1'000'000) {
+  std::vector<Doubt> all;
+  Proof<32>{op, bit_rate}.check([&](const Doubt& doubt) { all.push_back(doubt); });
+  return all;
+}
+
+TEST_CASE("proof: a change that takes longer than it may, to the nanosecond") {
+  Operator op = tables;
+  op.settle = base::Duration{settling};
+  CHECK(doubts(op).empty());
+  op.settle -= 1ns;
+  const auto all = doubts(op);
+  REQUIRE(all.size() == 1);
+  CHECK(all[0].kind == Doubt::Kind::unsettled);
+  CHECK(all[0].needs == settling);
+  CHECK((all[0].from == 0 && all[0].configuration == 1));
+}
+
+TEST_CASE("proof: configurations fit, but not the change between them") {
+  std::vector<Stream> slow_one{{0, 10ms, protocol::Priority::high}};
+  std::vector<Stream> fast{{1, 360us, protocol::Priority::low}};
+  std::vector<Configuration> both{{"a", slow_one, {}, {}, {}}, {"b", fast, {}, {}, {}}};
+  std::vector<Transition> asked{{"there", 0, 1}, {"back", 1, 0}};
+  Operator op = tables;
+  op.configurations = both;
+  op.transitions = asked;
+  op.monitors = {};
+  op.conditions = {};
+  op.settle = 20ms;
+  // Alone 135 bits. In the change a stop, a request and the other's frame go before it: 65 + 95 + 65.
+  CHECK(doubts(op).empty());
+  fast[0].period = 359us;
+  const auto all = doubts(op);
+  REQUIRE(all.size() == 2);  // there and back
+  CHECK((all[0].kind == Doubt::Kind::late && all[0].from == 0 && all[0].configuration == 1 &&
+         all[0].topic == 1));
+  CHECK(all[0].why.response == 360'000);
+  CHECK((all[1].kind == Doubt::Kind::late && all[1].from == 1 && all[1].configuration == 0 &&
+         all[1].topic == 1));
+}
+
+TEST_CASE("proof: an age that a healthy stream reaches") {
+  std::vector<Condition> changed{conditions.begin(), conditions.end()};
+  Operator op = tables;
+  op.conditions = changed;
+  const std::int64_t least = 20'000'000 + 2'000'000 + 200'000 + 3'000'000;
+  changed[1].limit = least + 1;
+  CHECK(doubts(op).empty());
+  changed[1].limit = least;
+  const auto all = doubts(op);
+  REQUIRE(all.size() == 1);
+  CHECK(all[0].kind == Doubt::Kind::restless);
+  CHECK((all[0].condition == 1 && all[0].configuration == 0 && all[0].needs == least));
+}
+
+TEST_CASE("proof: values that would be stale before the next ones come") {
+  Operator op = tables;
+  op.reaction = 38ms;  // 60 ms is 3 periods
+  op.settle = 100ms;
+  std::size_t stale = 0;
+  for (const Doubt& doubt : doubts(op))
+    stale += doubt.kind == Doubt::Kind::restless && doubt.condition == 0 ? 1U : 0U;
+  CHECK(stale == 2);
+}
+
+TEST_CASE("proof: more messages than it has room for are no proof") {
+  std::vector<Doubt> all;
+  Proof<2>{tables, 1'000'000}.check([&](const Doubt& doubt) { all.push_back(doubt); });
+  REQUIRE_FALSE(all.empty());
+  CHECK(all.back().kind == Doubt::Kind::too_many);
+  CHECK_FALSE((Proof<2>{tables, 1'000'000}.latency(0, 0).bounded));
+}
+
+TEST_CASE("proof: what others send delays both ways") {
+  std::vector<analysis::Message> others{{.cost = 135'000, .period = 5'000'000, .key = 0}};
+  Operator op = tables;
+  op.others = others;
+  Proof<32> proof{op, 1'000'000};
+  CHECK(proof.latency(0, 0).bus == 200'000 + 135'000);
+  CHECK(proof.latency(0, 0).command == 200'000 + 135'000);
+  others[0].key = ~0U;  // less urgent than all: it blocks no longer than the long one
+  CHECK(proof.latency(0, 0).total() == high.total());
+}
+
+TEST_CASE("proof: what may be queued before the set point counts") {
+  Operator op = tables;
+  op.retry = 500ms;
+  // Both streams of the configuration may be asked for again just then: 95 bits each.
+  CHECK(Proof<32>{op, 1'000'000}.latency(0, 0).command == (135 + 65 + 2 * 95) * 1000);
+}
+
+TEST_CASE(
+    "proof: an adapted stream counts at its shortest period on the bus, at its longest for what it shows") {
+  std::vector<Adaptation> adaptations{
+      {.stream = 0, .topic = 0, .from = 0, .to = 100, .at_from = 30ms, .at_to = 10ms}};
+  std::vector<Configuration> changed{configurations.begin(), configurations.end()};
+  changed[0].adaptations = adaptations;
+  Operator op = tables;
+  op.configurations = changed;
+  REQUIRE(first_mistake(op).kind == Mistake::no_mistake);
+  Proof<32> proof{op, 1'000'000};
+  CHECK(proof.latency(0, 0).period == 30'000'000);
+  const std::int64_t adapted = proof.load(0);
+  CHECK(adapted > Proof<32>{tables, 1'000'000}.load(0));
+}
+
+TEST_CASE("proof: the guard of the AMiRo, at 500 kbit/s") {
+  Proof<256> proof{guard::tables, amiro::bit_rate};
+  std::vector<Doubt> all;
+  proof.check([&](const Doubt& doubt) { all.push_back(doubt); });
+  CHECK(all.empty());
+  const Latency obstacle = proof.latency(0, guard::driving);
+  CHECK(obstacle.bounded);
+  // The age of 250 ms takes longer than the value.
+  CHECK(obstacle.condition == guard::silent);
+  CHECK(obstacle.limit == 250'000'000);
+  CHECK(obstacle.command > 0);
+  CHECK(obstacle.total() < 300'000'000);
+}
+
+}  // namespace reflective_proof_test

@@ -1,0 +1,342 @@
+/// Random operators and robots in virtual time: what is measured is never above what was proved.
+#include <array>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/reflective/check.hpp"
+#include "ocm/reflective/proof.hpp"
+
+#include "unit/reflective/virtual_robot.hpp"
+
+namespace reflective_proof_properties_test {
+
+using namespace ocm;
+using namespace ocm::reflective;
+using namespace ocm::test;
+using namespace std::chrono_literals;
+using Ns = std::int64_t;
+constexpr std::uint32_t bit_rate = 1'000'000;
+
+/// The tables of one operator with its robot's catalogue, all in one place.
+struct Tables {
+  std::array<protocol::Field, 1> field{};
+  std::vector<std::vector<protocol::FrameLayout>> frames;
+  std::vector<protocol::Topic> topics;
+  std::array<protocol::Board, 1> boards{{{"board", "none"}}};
+  protocol::Catalogue catalogue;
+  std::vector<std::vector<Stream>> streams;
+  std::vector<std::vector<SetPoint>> entries;
+  std::vector<Configuration> configurations;
+  std::vector<Condition> conditions;
+  std::vector<std::vector<Term>> terms;
+  std::vector<Monitor> monitors;
+  std::vector<Transition> transitions;
+  Operator op;
+
+  Tables() {
+    field[0].name = "value";
+    field[0].position = {0, 8};
+    field[0].raw_max = 255;
+  }
+  Tables(const Tables&) = delete;
+  Tables& operator=(const Tables&) = delete;
+
+  void add_topic(protocol::Kind kind, std::vector<std::uint16_t> lengths, Ns jitter = 0) {
+    std::vector<protocol::FrameLayout> layouts;
+    for (const std::uint16_t length : lengths) {
+      protocol::FrameLayout layout;
+      layout.id = protocol::TopicId{static_cast<std::uint8_t>(1 + 10 * topics.size() + layouts.size())};
+      layout.length = length;
+      if (layouts.empty()) layout.fields = field;
+      layouts.push_back(layout);
+    }
+    frames.push_back(layouts);
+    protocol::Topic topic;
+    topic.id = layouts[0].id;
+    topic.kind = kind;
+    topic.jitter = base::Duration{jitter};
+    topics.push_back(topic);
+  }
+  /// Once all is there: the views.
+  void close() {
+    for (std::size_t t = 0; t < topics.size(); ++t) topics[t].frames = frames[t];
+    catalogue = {"random", bit_rate, boards, topics};
+    configurations.resize(streams.size());
+    for (std::size_t c = 0; c < streams.size(); ++c) configurations[c] = {{}, streams[c], {}, entries[c], {}};
+    monitors.resize(terms.size());
+    for (std::size_t m = 0; m < terms.size(); ++m) monitors[m].terms = terms[m];
+    op.catalogue = &catalogue;
+    op.configurations = configurations;
+    op.conditions = conditions;
+    op.monitors = monitors;
+    op.transitions = transitions;
+  }
+};
+
+// --- a bound that is reached -------------------------------------------------------------------------------
+
+/// Two streams, as in proof.cpp, and a long one that gets in the way whenever that is worst: it is released
+/// just before the sample and, since its period is what lies between, again just before the set point.
+struct Worst {
+  Tables t;
+  Ns total = 0;
+  Ns measured = 0;
+
+  Worst(bool falls_silent, Ns lasting) {
+    t.add_topic(protocol::Kind::sensor, {1}, 2'000'000);
+    t.add_topic(protocol::Kind::sensor, {8});
+    t.add_topic(protocol::Kind::actuator, {1});
+    t.streams = {{{0, 20ms, protocol::Priority::high}, {1, 3ms, protocol::Priority::low}},
+                 {{0, 20ms, protocol::Priority::high}}};
+    t.entries = {{}, {{2, {}, protocol::Priority::urgent, 0ns}}};
+    // (R - J) + reaction, with the timers and what else must pass, is a multiple of 3 ms.
+    if (falls_silent)
+      t.conditions = {
+          {.watched = Watched::age, .topic = 0, .limit = 60'000'000 + (lasting > 0 ? 400'000 : 200'000)}};
+    else
+      t.conditions = {{.topic = 0, .limit = 100}};
+    t.terms = {{{.condition = 0}}};
+    t.transitions = {{"event", 0, 1, 0, 0}, {"asked", 1, 0, by_request, 0}};
+    t.close();
+    t.monitors[0].lasting = base::Duration{lasting};
+    t.op.fall_back = 1;
+    t.op.reaction = 2'800'001ns;  // the set point comes just after the long frame
+    t.op.handling = 4ms;
+    t.op.settle = 15ms;
+    REQUIRE(first_mistake(t.op).kind == Mistake::no_mistake);
+    Proof<64> proof{t.op, bit_rate};
+    proof.check([](const Doubt& doubt) {
+      FAIL("doubt " << static_cast<int>(doubt.kind) << " needs " << doubt.needs);
+    });
+    total = proof.latency(0, 0).total();
+
+    VirtualRobot robot{t.op, bit_rate};
+    constexpr Ns sample = 500'000'000;  // about when
+    Ns event = -1;
+    // Samples of the long one are looked at in no time, or else they would be the timers' steps.
+    robot.reaction = [&](std::uint16_t topic) { return topic == 1 ? 0 : t.op.reaction.count(); };
+    // The phase of both: the watched one is taken at once, the long one when it is worst.
+    Ns watched_at = -1;
+    robot.handling = [&](std::uint16_t topic) -> Ns {
+      if (topic == 0) watched_at = robot.now();
+      if (topic != 1) return 0;
+      // A sample that is 2 ms late comes 20 k + 2 ms after the first; one that is not, for the age, 20 k.
+      const Ns worst = watched_at + 20'000'000 * 30 + (falls_silent ? 0 : 2'000'000) - 1;
+      return (worst - robot.now()) % 3'000'000;
+    };
+    robot.jitter = [&](std::uint16_t topic, Ns) -> Ns {
+      return topic == 0 && event >= 0 && !falls_silent ? 2'000'000 : 0;
+    };
+    robot.sampled = [&](std::uint16_t topic, Ns now) {
+      if (topic != 0 || event >= 0 || now < sample) return;
+      // The last one before the 30th.
+      const Ns last = watched_at + 20'000'000 * (falls_silent ? 30 : 29);
+      if (now != last) return;
+      event = now;
+      robot.watch();
+      if (falls_silent)
+        robot.silent[0] = true;
+      else
+        robot.values[0] = 200;
+    };
+    robot.start();
+    robot.run(2'000'000'000);
+    REQUIRE(robot.acted);
+    REQUIRE(event >= 0);
+    measured = robot.acted->at - event;
+  }
+};
+
+TEST_CASE("proof properties: the bound is reached, so one that is a microsecond too small is caught") {
+  // The blocking frames begin a nanosecond before what they block.
+  SECTION("a value") {
+    const Worst worst{false, 0};
+    CHECK(worst.total == 20'000'000 + 2'000'000 + 200'000 + 2'800'001 + 200'000);
+    CHECK(worst.measured <= worst.total);
+    CHECK(worst.measured > worst.total - 1'000);
+  }
+  SECTION("a stream that falls silent") {
+    const Worst worst{true, 0};
+    CHECK(worst.measured <= worst.total);
+    CHECK(worst.measured > worst.total - 1'000);
+  }
+  SECTION("and lasts") {
+    const Worst worst{true, 30'000'000};
+    CHECK(worst.measured <= worst.total);
+    CHECK(worst.measured > worst.total - 1'000);
+  }
+}
+
+// --- random ones ---------------------------------------------------------------------------------------------
+
+class Random {
+ public:
+  explicit Random(std::uint32_t seed) : random_(seed) {}
+  Ns up_to(Ns most) { return std::uniform_int_distribution<Ns>{0, most}(random_); }
+  /// Often one of the ends.
+  Ns extreme(Ns most) {
+    const Ns choice = up_to(3);
+    return choice == 0 ? 0 : choice == 1 ? up_to(most) : most;
+  }
+  bool one_in(Ns n) { return up_to(n - 1) == 0; }
+
+ private:
+  std::mt19937 random_;
+};
+
+/// A fall-back that stops something, and one to three others, each with a monitor of some of its streams.
+/// False: one that the proof refuses.
+bool make(Tables& t, Random& random) {
+  const auto sensors = static_cast<std::uint16_t>(1 + random.up_to(3));
+  for (std::uint16_t s = 0; s < sensors; ++s) {
+    std::vector<std::uint16_t> lengths{static_cast<std::uint16_t>(1 + random.up_to(7))};
+    for (Ns more = random.up_to(2); more > 0; --more)
+      lengths.push_back(static_cast<std::uint16_t>(random.up_to(8)));
+    t.add_topic(protocol::Kind::sensor, lengths, random.one_in(2) ? 0 : random.up_to(2'000'000));
+  }
+  const std::uint16_t motor = sensors;
+  t.add_topic(protocol::Kind::actuator, {static_cast<std::uint16_t>(1 + random.up_to(7))});
+  t.op.reaction = base::Duration{random.up_to(3'000'000)};
+  t.op.handling = base::Duration{random.up_to(1'000'000)};
+  if (random.one_in(2)) t.op.retry = 200ms;
+
+  constexpr Ns periods[] = {5, 10, 12, 20, 35, 50};
+  const auto count = static_cast<std::uint16_t>(2 + random.up_to(2));
+  for (std::uint16_t c = 0; c < count; ++c) {
+    t.streams.emplace_back();
+    for (std::uint16_t s = 0; s < sensors; ++s)
+      if (random.one_in(2) || (c > 0 && s == sensors - 1 && t.streams[c].empty()))
+        t.streams[c].push_back(
+            {s, periods[random.up_to(5)] * 1ms, static_cast<protocol::Priority>(random.up_to(3))});
+    t.entries.emplace_back();
+    if (c == 0 || random.one_in(3))
+      t.entries[c].push_back(
+          {motor, {}, static_cast<protocol::Priority>(random.up_to(3)), random.one_in(3) ? 100ms : 0ms});
+    t.transitions.push_back({"asked", any_configuration, c, by_request, 0});
+  }
+  for (std::uint16_t s = 0; s < sensors; ++s) {
+    t.conditions.push_back({.topic = s, .limit = 100, .hysteresis = random.up_to(50)});
+    t.conditions.push_back({.watched = Watched::age, .topic = s, .limit = 1});
+  }
+  for (std::uint16_t c = 1; c < count; ++c) {
+    t.terms.emplace_back();
+    for (const Stream& stream : t.streams[c]) {
+      if (!t.terms.back().empty() && random.one_in(2)) continue;
+      const auto kind = static_cast<std::uint16_t>(random.up_to(1));
+      t.terms.back().push_back({.condition = static_cast<std::uint16_t>(2 * stream.topic + kind)});
+      if (t.terms.back().size() > 1) t.terms.back().push_back({.op = Op::any});
+    }
+    t.transitions.push_back({"event", c, 0, static_cast<std::uint16_t>(c - 1), 0});
+  }
+  t.close();
+  for (Monitor& monitor : t.monitors)
+    if (random.one_in(2)) monitor.lasting = base::Duration{random.up_to(40'000'000)};
+
+  // As tight as the proof lets it be.
+  t.op.settle = 30ms;
+  Ns settle = 0;
+  Proof<128> proof{t.op, bit_rate};
+  for (std::uint16_t from = 0; from < count; ++from)
+    for (std::uint16_t to = 0; to < count; ++to)
+      if (from != to) settle = std::max(settle, proof.settling(from, to));
+  if (settle > 30'000'000) return false;
+  if (random.one_in(2)) t.op.settle = base::Duration{settle + settle / 4};
+  for (std::uint16_t c = 0; c < t.conditions.size(); c += 2) t.conditions[c + 1].limit = 1;
+  std::vector<Ns> limits(t.conditions.size(), 1);
+  Proof<128>{t.op, bit_rate}.check([&](const Doubt& doubt) {
+    if (doubt.kind == Doubt::Kind::restless && t.conditions[doubt.condition].watched == Watched::age)
+      limits[doubt.condition] = std::max(limits[doubt.condition], doubt.needs + 1);
+  });
+  for (std::size_t c = 1; c < t.conditions.size(); c += 2) t.conditions[c].limit = limits[c];
+  bool fine = first_mistake(t.op).kind == Mistake::no_mistake;
+  REQUIRE(fine);
+  Proof<128>{t.op, bit_rate}.check([&](const Doubt&) { fine = false; });
+  return fine;
+}
+
+struct Campaign {
+  int operators = 0, refused = 0, acted = 0, fell_back = 0, entering = 0;
+  double closest = 0;
+
+  void run(std::uint32_t seed) {
+    Random random{seed};
+    Tables t;
+    if (!make(t, random)) {
+      ++refused;
+      return;
+    }
+    ++operators;
+    VirtualRobot robot{t.op, bit_rate};
+    robot.handling = [&](std::uint16_t) { return random.extreme(t.op.handling.count()); };
+    robot.jitter = [&](std::uint16_t topic, Ns) { return random.extreme(t.topics[topic].jitter.count()); };
+    robot.reaction = [&](std::uint16_t) { return random.extreme(t.op.reaction.count()); };
+    robot.stepped = [&](Ns) {
+      if (robot.supervisor().configuration() >= t.configurations.size())
+        FAIL("in no configuration, seed " << seed);
+      if (robot.supervisor().next() <= base::Time{base::Duration{robot.now()}})
+        FAIL("due at once, seed " << seed);
+    };
+    const auto count = static_cast<Ns>(t.configurations.size());
+    for (Ns when = 20'000'000; when < 500'000'000; when += random.up_to(150'000'000))
+      robot.request(when, static_cast<std::uint16_t>(random.up_to(count - 1)));
+    const auto last = static_cast<std::uint16_t>(1 + random.up_to(count - 2));
+    const Ns asked = 500'000'000;
+    robot.request(asked, last);
+
+    // Something happens to a topic that the monitor of the last one looks at, at any time or as soon as it
+    // has just been looked at; or it happened long before.
+    const Term& term = t.terms[last - 1U][0];
+    const std::uint16_t topic = t.conditions[term.condition].topic;
+    const bool is_age = t.conditions[term.condition].watched == Watched::age;
+    Ns event = -1;
+    const auto happen = [&] {
+      if (event >= 0) return;
+      event = robot.now();
+      robot.watch();
+      if (is_age)
+        robot.silent[topic] = true;
+      else
+        robot.values[topic] = 200;
+    };
+    const Ns from = random.one_in(4) ? random.up_to(asked) : asked + random.up_to(200'000'000);
+    const bool after_sample = random.one_in(2);
+    robot.sampled = [&](std::uint16_t sampled, Ns now) {
+      if (after_sample && sampled == topic && now >= from) happen();
+    };
+    robot.at(after_sample ? from + 300'000'000 : from, happen);
+    robot.start();
+    robot.run(2'000'000'000);
+
+    // In the fall-back, or where it was asked to before anything had happened and nothing looks at the topic.
+    if (robot.supervisor().configuration() == 0) ++fell_back;
+    if (!robot.acted) return;
+    ++acted;
+    const Latency latency = Proof<128>{t.op, bit_rate}.latency(robot.acted->transition, robot.acted->from);
+    if (!latency.bounded) FAIL("no bound, seed " << seed);
+    const Ns settled = robot.acted->entered + t.op.settle.count();
+    if (event < settled) ++entering;
+    const Ns measured = robot.acted->at - std::max(event, settled);
+    const Ns at_worst = robot.acted->at - std::max(event, robot.acted->entered);
+    if (measured > latency.total() || at_worst > latency.at_worst())
+      FAIL("seed " << seed << ": " << measured << " and not " << latency.total() << "; from entry "
+                   << at_worst);
+    closest = std::max(closest, static_cast<double>(measured) / static_cast<double>(latency.total()));
+  }
+};
+
+TEST_CASE("proof properties: 10000 random operators and robots are never later than proved") {
+  Campaign campaign;
+  std::uint32_t seed = 1;
+  for (; campaign.operators < 10'000; ++seed) campaign.run(seed);
+  INFO("refused " << campaign.refused << ", acted " << campaign.acted << ", entering " << campaign.entering);
+  INFO("fell back " << campaign.fell_back << ", closest " << campaign.closest);
+  CHECK(campaign.acted > 5'000);
+  CHECK(campaign.entering > 500);
+  CHECK(campaign.fell_back == campaign.operators);
+  CHECK(campaign.closest > 0.99);
+}
+
+}  // namespace reflective_proof_properties_test
