@@ -5,8 +5,8 @@
 
 namespace ocm::cli {
 
-/// The allocator keeps what it has: a process that lives for milliseconds, and begins by building a large spec,
-/// would give memory back and fetch it again, page by page. First of all in main.
+/// The allocator keeps what it has: a process that lives for milliseconds, and begins by building a large
+/// spec, would give memory back and fetch it again, page by page. First of all in main.
 void keep_memory() noexcept;
 
 /// The message, on stderr. Takes no memory itself.

@@ -35,8 +35,8 @@ void stop_at(const std::vector<spec::Problem>& problems) {
 
 Session::Session() = default;
 Session::~Session() {
-  // The process ends, and the kernel takes a large spec back at once; piece by piece that takes a millisecond. It
-  // stays where checks for leaks see it.
+  // The process ends, and the kernel takes a large spec back at once; piece by piece that takes a
+  // millisecond. It stays where checks for leaks see it.
   [[maybe_unused]] static spec::Spec* kept = nullptr;
   kept = spec_.release();
 }

@@ -242,7 +242,8 @@ Loaded parse(std::string_view text, std::string_view file_name) {
 
 Loaded load(const std::filesystem::path& file) {
   Loaded loaded;
-  const auto text = spec::read_document(file, "a world", "sim/worlds/square.json", loaded.problems, max_world_bytes);
+  const auto text =
+      spec::read_document(file, "a world", "sim/worlds/square.json", loaded.problems, max_world_bytes);
   return text ? parse(*text, file.string()) : std::move(loaded);
 }
 

@@ -103,7 +103,7 @@ static_assert(Proof<16>{tables, 1'000'000}.latency(1, 0, 1).total() == either.to
 static_assert(Proof<16>{tables, 1'000'000}.response(0, 0) == high.jitter + high.bus);
 static_assert(Proof<16>{tables, 1'000'000}.response(1, 1) == analysis::unbounded);  // does not stream it
 static_assert(Proof<16>{tables, 1'000'000}.load(0, 1) > Proof<16>{tables, 1'000'000}.load(0));
-static_assert(!Proof<16>{tables, 1'000'000}.latency(0, 1).bounded);              // does not leave from there
+static_assert(!Proof<16>{tables, 1'000'000}.latency(0, 1).bounded);  // does not leave from there
 
 // From moving to still: the set point and the stop; then what the long one, which may have been released just
 // before, needs behind them and the watched one, which goes on.
