@@ -39,10 +39,10 @@ TEST_CASE("adaptation: within its bounds, in grains, and never back, for any num
     const bool shorter = a.at_to < a.at_from;
     base::Duration last = a.at_from;
     for (int i = 0; i <= 20; ++i) {
-      std::int64_t value =
-          a.from +
-          static_cast<std::int64_t>((static_cast<std::uint64_t>(a.to) - static_cast<std::uint64_t>(a.from)) /
-                                    20 * static_cast<unsigned>(i));
+      // Without sign: the whole range does not fit in one with sign.
+      const auto from = static_cast<std::uint64_t>(a.from);
+      const auto step = (static_cast<std::uint64_t>(a.to) - from) / 20;
+      auto value = static_cast<std::int64_t>(from + step * static_cast<unsigned>(i));
       if (a.magnitude && value < 0) value = 0;
       const base::Duration period = adapted_period(a, value);
       if (period < a.shortest() || period > a.longest()) FAIL("out of bounds in run " << run);
