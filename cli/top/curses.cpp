@@ -75,7 +75,9 @@ transport::Failure obstacle() {
             "TERM=xterm-256color amiroctl top, or install ncurses-term"};
   char cup[] = "cup";
   const char* const moves = ::tigetstr(cup);
-  if (moves == nullptr || moves == reinterpret_cast<const char*>(-1))
+  const bool can_move = moves != nullptr && moves != reinterpret_cast<const char*>(-1);
+  ::del_curterm(::cur_term);  // newterm makes its own
+  if (!can_move)
     return {fmt::format("TERM is '{}', a terminal that cannot move its cursor", name), std::string{remedy}};
   return {};
 }
