@@ -105,7 +105,10 @@ class Translator {
  private:
   static constexpr unsigned most_robots = 32;  ///< asked for, of a list whose length is not known
   static constexpr base::Duration answer = std::chrono::milliseconds{800};
-  static constexpr base::Duration listing = std::chrono::milliseconds{500};  ///< of the thesis's dongle
+  static constexpr base::Duration listing =
+      std::chrono::milliseconds{500};  ///< between lines, of the thesis's dongle
+  /// To the first line behind a scan: the dongle may still end that, or have no robot to list.
+  static constexpr base::Duration scanned = std::chrono::seconds{2};
   static constexpr base::Duration linking = std::chrono::seconds{9};
   static constexpr base::Duration fresh =
       std::chrono::milliseconds{2500};  ///< a robot that has a link speaks
@@ -393,11 +396,10 @@ class Translator {
         return done();
       case Kind::stop:
         if (!scanning_ && list_known_) return tell_found();
-        if (scanning_) to_dongle_ += "stop\n";
-        scanning_ = false;
         list_.clear();
         line_.clear();
-        return send("list\n", now, listing);
+        if (!std::exchange(scanning_, false)) return send("list\n", now, listing);
+        return send("stop\nlist\n", now, scanned);
       case Kind::list:
         tell_list();
         return done();

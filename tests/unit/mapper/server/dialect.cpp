@@ -82,4 +82,23 @@ TEST_CASE(
   CHECK(translator.take_for_client() == "error: no link to 2\n");
 }
 
+TEST_CASE("dialect: behind a scan the thesis's dongle has two seconds to its first line") {
+  Translator translator{Dialect::thesis};
+  translator.from_client("start\nstop\n", begin);
+  CHECK(translator.take_for_dongle() == "start\nstop\nlist\n");
+  CHECK(translator.take_for_client() == "scanning\n");
+  translator.expire(begin + 1999ms);
+  CHECK(translator.take_for_client().empty());
+  translator.from_dongle("0:0123456789AB:AVR\n", begin + 1999ms);
+  translator.expire(begin + 2498ms);
+  CHECK(translator.take_for_client().find("found") == std::string::npos);
+  translator.expire(begin + 2499ms);
+  CHECK(translator.take_for_client().find("found 1\n") != std::string::npos);
+  // None: the same words later are answered of the list.
+  translator.from_client("*start\nstop\n", begin + 10s);
+  (void)translator.take_for_client();
+  translator.expire(begin + 12s);
+  CHECK(translator.take_for_client() == "found 0\n");
+}
+
 }  // namespace mapper_server_dialect_test
