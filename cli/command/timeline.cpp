@@ -80,10 +80,12 @@ void Timeline::carry_out(const client::Command& command) {
     });
   }
   if (!command.hold) return;
-  const auto now = Clock::now();
+  const auto now = look_at_clock();
   const auto& hold = *command.hold;
   const auto end = hold.lasting.count() > 0 ? now + hold.lasting : Clock::time_point::max();
   held_ = Held{hold, now + client::hold_period, end, now};
+  // Just as its first set point left: no turn has been missed yet.
+  if (stood_still_ >= client::longest_without_set_point) end_for_a_stop(stood_still_);
 }
 
 void Timeline::rest() {
@@ -149,15 +151,19 @@ void Timeline::end_for_another() {
         "--force goes on all the same"});
 }
 
+void Timeline::end_for_a_stop(Clock::duration lasting) {
+  abandon(fmt::format("this program did not run for {}, so the drive has ended",
+                      words::to_text(std::chrono::duration_cast<std::chrono::milliseconds>(lasting))),
+          "was it stopped, or did the machine sleep? Give the command again");
+}
+
 void Timeline::repeat(Clock::time_point now) {
   constexpr auto longest = client::longest_without_set_point;
   const auto in_words = [now](Clock::time_point since) {
     return words::to_text(std::chrono::duration_cast<std::chrono::milliseconds>(now - since));
   };
   const auto last_turn = held_->next - client::hold_period;
-  if (now - last_turn >= longest)
-    abandon(fmt::format("this program did not run for {}, so the drive has ended", in_words(last_turn)),
-            "was it stopped, or did the machine sleep? Give the command again");
+  if (now - last_turn >= longest) end_for_a_stop(now - last_turn);
   // Late set points are dropped: each holds only at its own time.
   held_->next += client::hold_period;  // absolute: no drift
   if (held_->next <= now) held_->next = now + client::hold_period;

@@ -104,6 +104,8 @@ class Timeline {
   [[nodiscard]] bool rest_after_all();
   /// Ends the hold because of something that is wrong.
   [[noreturn]] void abandon(std::string what, std::string remedy);
+  /// Ends the hold because this program did not run for so long.
+  [[noreturn]] void end_for_a_stop(Clock::duration lasting);
   /// Ends the command, a hold or not, because another program stopped the robot that it has set in motion.
   [[noreturn]] void end_for_another();
 

@@ -179,6 +179,44 @@ TEST_CASE("drive: whatever happens to program and bus, at most one set point is 
   }
 }
 
+/// When set points were taken in a drive of two seconds; the program is stopped at a moment, long enough.
+std::vector<Moment> driven(std::optional<Moment> stopped, bool& left) {
+  World world{1};
+  PlayedBus bus{world, {}};
+  const auto command = drive(2s);
+  if (stopped) world.stop(*stopped, 2 * watchdog);
+  left = false;
+  try {
+    Timeline timeline{bus, amiro::catalogue, "drive", Timeline::Others::refused, cli::Confirm::no, {}};
+    if (timeline.listen_first()) {
+      timeline.carry_out(command);
+      static_cast<void>(timeline.wait_for_end());
+    }
+    static_cast<void>(timeline.finish());
+  } catch (const cli::Exit&) {
+    left = true;
+  }
+  std::vector<Moment> moving;
+  for (const auto& each : bus.sent())
+    if (!cli::is_rest(each.frame)) moving.push_back(each.taken);
+  CHECK((moving.empty() || cli::is_rest(bus.sent().back().frame)));
+  return moving;
+}
+
+TEST_CASE("drive: a stop of the program just as the first set point leaves ends it, too") {
+  const Silence silence;
+  bool left = false;
+  const Moment first = driven({}, left).front();
+  CHECK_FALSE(left);
+  for (Duration late = -5us; late < 50us; late += 100ns) {
+    INFO("stopped " << late.count() << " ns after it");
+    const Moment stopped = first + late;
+    const auto moving = driven(stopped, left);
+    CHECK(left);
+    CHECK(std::count_if(moving.begin(), moving.end(), [&](Moment time) { return time > stopped; }) <= 1);
+  }
+}
+
 /// A command every 100 ms, as `run` carries out a script; the program is stopped, mostly while it sends.
 void play_script(std::uint64_t seed) {
   World world{seed};
