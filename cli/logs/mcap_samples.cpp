@@ -12,7 +12,7 @@
 namespace ocm::cli::logs {
 namespace {
 
-std::string quoted(std::string_view text) {
+std::string json_string(std::string_view text) {
   std::string out{'"'};
   append_json(out, text);
   return out += '"';
@@ -36,8 +36,8 @@ std::string fields_schema(const protocol::FrameLayout& frame) {
   for (const protocol::Field& field : frame.fields) {
     const std::string about = description(field);
     properties +=
-        fmt::format(R"({}{}:{{"type":"number"{}{}}})", properties.empty() ? "" : ",", quoted(field.name),
-                    about.empty() ? "" : R"(,"description":)", about.empty() ? "" : quoted(about));
+        fmt::format(R"({}{}:{{"type":"number"{}{}}})", properties.empty() ? "" : ",", json_string(field.name),
+                    about.empty() ? "" : R"(,"description":)", about.empty() ? "" : json_string(about));
   }
   return object(properties);
 }
@@ -56,13 +56,13 @@ std::string mcap_schema(const protocol::Topic& topic) {
     std::string properties;
     for (std::size_t i = 0; i < topic.frames.size(); ++i)
       properties += fmt::format("{}{}:{{{}}}", i == 0 ? "" : ",",
-                                quoted(frame_name({&topic, static_cast<std::uint8_t>(i)})),
+                                json_string(frame_name({&topic, static_cast<std::uint8_t>(i)})),
                                 fields_schema(topic.frames[i]));
     type = object(properties);
   }
   return fmt::format(
       R"({{"$schema":"https://json-schema.org/draft/2020-12/schema","title":{},"description":{},{}}})",
-      quoted(topic.name), quoted(topic.source), type);
+      json_string(topic.name), json_string(topic.source), type);
 }
 
 McapSamples::McapSamples(const protocol::Catalogue& catalogue) : catalogue_(&catalogue) {
@@ -78,9 +78,9 @@ McapSamples::McapSamples(const protocol::Catalogue& catalogue) : catalogue_(&cat
 }
 
 McapSamples::FrameText McapSamples::text_of(const protocol::FrameLayout& frame, bool alone) {
-  FrameText made{alone ? "" : quoted(frame.name) + ":{", {}, alone ? "" : "}", &frame};
+  FrameText made{alone ? "" : json_string(frame.name) + ":{", {}, alone ? "" : "}", &frame};
   for (const protocol::Field& field : frame.fields) {
-    made.values.push_back({quoted(field.name) + ':', FieldText{field}});
+    made.values.push_back({json_string(field.name) + ':', FieldText{field}});
     made.varies = made.varies || frame.may_lack(field);
   }
   return made;

@@ -4,6 +4,7 @@
 #include <array>
 #include <ctime>
 #include <filesystem>
+#include <iterator>
 #include <span>
 #include <system_error>
 #include <utility>
@@ -55,8 +56,15 @@ void BlackBox::add(const log::Entry& entry, Clock::time_point now) {
     kept_.pop_front();
     ++dropped_;
   }
-  kept_.push_back({now, entry});
-  fresh_.push_back(entry);
+  const auto later = [&entry](const log::Entry& other) {
+    return other.time > entry.time && other.time - entry.time <= settling;
+  };
+  auto place = kept_.end();
+  while (place != kept_.begin() && later(std::prev(place)->entry)) --place;
+  kept_.insert(place, {now, entry});
+  auto fresh = fresh_.end();
+  while (fresh != fresh_.begin() && later(*std::prev(fresh))) --fresh;
+  fresh_.insert(fresh, entry);
 }
 
 std::optional<std::string> BlackBox::recover(base::Time wall) {
@@ -67,8 +75,16 @@ std::optional<std::string> BlackBox::recover(base::Time wall) {
   return std::move(*left);
 }
 
-std::vector<log::Entry> BlackBox::take_fresh() {
-  return std::exchange(fresh_, {});
+std::vector<log::Entry> BlackBox::take_fresh(base::Time wall) {
+  // A clock that was set back does not keep anything here: what is later than now is settled, too.
+  const auto settled = [wall](const log::Entry& entry) {
+    return entry.time > wall || wall - entry.time > settling;
+  };
+  auto last = fresh_.end();
+  while (last != fresh_.begin() && !settled(*std::prev(last))) --last;
+  std::vector<log::Entry> taken{fresh_.begin(), last};
+  fresh_.erase(fresh_.begin(), last);
+  return taken;
 }
 
 void BlackBox::end() {

@@ -1,6 +1,7 @@
 /// The last seconds of the bus, kept in memory, and written as a log when something went wrong: what led to a
 /// fall-back. Bounded in memory and on the disk. What it keeps is on the disk, too, all but the last half
-/// second: a run that is killed loses no more.
+/// second: a run that is killed loses no more. In the order of time: a frame that was received is stamped by
+/// the kernel or the bus, and may be read only after a later one was sent.
 #pragma once
 
 #include <cstddef>
@@ -33,6 +34,8 @@ class BlackBox {
  public:
   /// More frames than 1 Mbit/s has in 10 s.
   static constexpr std::size_t most_entries = 250'000;
+  /// How long after a later entry an earlier one still finds its place.
+  static constexpr base::Duration settling{100'000'000};
 
   /// Leaves through cli::fail if the folder cannot be made. `name` is the operator's. The catalogue must
   /// outlive it.
@@ -44,8 +47,8 @@ class BlackBox {
   /// What a run before has left that was killed, if one was: the file. Leaves if it cannot be kept.
   [[nodiscard]] std::optional<std::string> recover(base::Time wall);
 
-  /// What was added since the last call, for `spool`.
-  [[nodiscard]] std::vector<log::Entry> take_fresh();
+  /// What is older than `settling` and was not taken before, for `spool`.
+  [[nodiscard]] std::vector<log::Entry> take_fresh(base::Time wall);
   /// On one thread, which may be another one.
   [[nodiscard]] transport::Outcome<void> spool(std::span<const log::Entry> entries) {
     return spool_.append(entries, interfaces_);

@@ -35,6 +35,9 @@ constexpr std::size_t most_changes = 20;
 constexpr base::Duration retry_sending{1'000'000};
 /// The state of a bus shows in its object after a wait, without a frame.
 constexpr base::Duration longest_wait{50'000'000};
+/// So many frames that wait are taken before what time asks for: they came first, and a storm of them does
+/// not hold that up.
+constexpr int most_before_time = 64;
 /// What a run that is killed loses of its black box.
 constexpr base::Duration keep_up_every{500'000'000};
 
@@ -48,7 +51,8 @@ Runner::Runner(transport::Bus& bus, Control& control, const protocol::Catalogue&
       file_(&file),
       options_(&options),
       box_(options.black_box, file.name, std::string{bus.name()}, catalogue),
-      live_(bus, {}, {control.descriptor(), [&control] { control.serve(); }}),
+      live_(bus, [this] { nothing_waited_ = now(); },
+            {control.descriptor(), [&control] { control.serve(); }}),
       receiver_(catalogue),
       index_(catalogue),
       refusals_(catalogue),
@@ -60,7 +64,7 @@ Runner::Runner(transport::Bus& bus, Control& control, const protocol::Catalogue&
 }
 
 Over Runner::run() {
-  const base::Time begin = now();
+  const base::Time begin = nothing_waited_ = now();
   if (window_.count() > 0) window_end_ = begin + window_;
   if (box_.keeps()) keep_up_at_ = begin + keep_up_every;
   if (const auto left = box_.recover(unix_time()))
@@ -73,17 +77,18 @@ Over Runner::run() {
     base::Time until = std::min({supervisor_.next(), window_end_, keep_up_at_, now() + longest_wait});
     if (!queue_.empty()) until = std::min(until, now() + retry_sending);
     service_.runs(Clock::now());
+    int taken = 0;
     const Over over =
-        live_.receive_any(Clock::time_point{until.time_since_epoch()}, [this](const auto& received) {
+        live_.receive_any(Clock::time_point{until.time_since_epoch()}, [&](const auto& received) {
           take(received);
-          return queue_.empty() && supervisor_.next() > now();
+          if (!queue_.empty() || supervisor_.next() < until) return false;  // it waits for less time now
+          return ++taken < most_before_time || until > now();
         });
     if (over == Over::signal || over == Over::gone) {
       if (over == Over::gone) record();
       return over;
     }
     look_at_bus();
-    flush();
     const base::Time at = now();
     if (window_end_ <= at) end_window(at);
     if (keep_up_at_ <= at) keep_up(at);
@@ -92,6 +97,7 @@ Over Runner::run() {
       step({}, at);
       judge(late);
     }
+    flush();  // behind the step: it may have replaced what waits
   }
 }
 
@@ -135,7 +141,9 @@ void Runner::take(const transport::ReceivedAny& received) {
   if (reception.meaning != client::Meaning::sample) return;
   const auto topic = static_cast<std::uint16_t>(reception.topic - catalogue_->topics.data());
   const std::uint64_t sent = counters_.sent;
-  step({.kind = Event::Kind::sample, .topic = topic, .bytes = reception.sample.bytes}, at);
+  // By the wall clock, which may be set: but it came after the last time that none waited.
+  const auto age = std::clamp(unix_time() - received.time, base::Duration{}, at - nothing_waited_);
+  step({.kind = Event::Kind::sample, .topic = topic, .bytes = reception.sample.bytes, .age = age}, at);
   // What it sent must have been handed over in time, counted from the frame.
   if (counters_.sent != sent) judge(unix_time() - received.time);
 }
@@ -234,7 +242,7 @@ void Runner::record() {
 
 void Runner::keep_up(base::Time at) {
   keep_up_at_ = at + keep_up_every;
-  auto fresh = box_.take_fresh();
+  auto fresh = box_.take_fresh(unix_time());
   if (fresh.empty()) return;
   const std::size_t frames = fresh.size();
   const bool taken = background_.post([this, fresh = std::move(fresh)] {

@@ -109,6 +109,7 @@ class Runner {
   client::Refusals refusals_;
   reflective::Supervisor<room> supervisor_;
   std::deque<can::Frame> queue_;
+  base::Time nothing_waited_{};  ///< when the last frame that waited had been taken
   reflective::BusState controller_ = reflective::BusState::active;  ///< as error frames say
   reflective::BusState bus_state_ = reflective::BusState::active;
   base::Duration window_{};  ///< of the load; 0: no condition looks at it

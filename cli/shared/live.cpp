@@ -48,9 +48,11 @@ Over Live::receive_next(Clock::time_point until, const Ask& ask, const GiveTo& t
       continue;
     }
     if (received.error == base::Error::closed) return Over::gone;
-    if (waits_here) wait_for_both(left);
     if (!all_taken) idle_();
     all_taken = true;
+    if (!waits_here) continue;
+    wait_for_both(left);
+    all_taken = !idle_;  // what has come meanwhile goes before the time
   }
   return Over::signal;
 }

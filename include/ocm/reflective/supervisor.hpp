@@ -67,6 +67,9 @@ struct Event {
   /// Of a topic: its frames, eight bytes each; of a message what came.
   std::span<const std::uint8_t> bytes{};
   std::int64_t value = 0;
+  /// sample: since it was on the bus. An operator that did not run for a while does not take it for a new
+  /// one.
+  base::Duration age{};
 };
 
 struct Action {
@@ -223,8 +226,9 @@ class Supervisor {
 
   constexpr void sample(const Event& event, base::Time now) noexcept {
     const auto streams = here().streams;
+    const base::Time at = now - std::max(event.age, base::Duration{});
     for (std::size_t s = 0; s < streams.size(); ++s)
-      if (streams[s].topic == event.topic) streams_[s].last = now;
+      if (streams[s].topic == event.topic) streams_[s].last = std::max(streams_[s].last, at);
     for (std::size_t c = 0; c < tables_->conditions.size(); ++c) {
       const Condition& condition = tables_->conditions[c];
       if (condition.topic != event.topic) continue;
@@ -233,8 +237,10 @@ class Supervisor {
         take_field(c, event);
       } else if (condition.watched == Watched::age || condition.watched == Watched::gap) {
         if (!state.watching) continue;
-        state.late = condition.watched == Watched::gap && holds(condition, (now - state.last).count(), false);
-        state.last = now;
+        const base::Time later = std::max(state.last, at);
+        state.late =
+            condition.watched == Watched::gap && holds(condition, (later - state.last).count(), false);
+        state.last = later;
       } else if (condition.watched == Watched::rate) {
         roll(c, now);
         ++state.count;

@@ -223,6 +223,31 @@ TEST_CASE("supervisor: a silent stream is noticed, and asked for again, bounded"
   CHECK(again == std::vector{entered + 1s, entered + 2s, entered + 3s, entered + 4s});
 }
 
+TEST_CASE("supervisor: a sample is as old as it was on the bus, not as it was read") {
+  Run run;
+  run.ask(60ms, guard::driving);
+  run.ring(100ms, nothing);
+  // The operator did not run for 200 ms; what came 20 ms after the last one is 180 ms old.
+  run.now += 200ms;
+  run.take(run.supervisor.step(
+      {.kind = Kind::sample, .topic = guard::ring, .bytes = nothing.bytes, .age = 180ms}, run.now));
+  CHECK(run.supervisor.heard(0) == run.now - 180ms);
+  CHECK(run.supervisor.configuration() == guard::driving);
+  run.pass(run.now + 69ms);
+  CHECK(run.supervisor.configuration() == guard::driving);
+  run.pass(run.now + 1ms);
+  CHECK(run.supervisor.configuration() == guard::stopped);
+  // One that is older than the last adds nothing, and none is of the future.
+  run.ring(0ms, nothing);
+  const auto heard = run.supervisor.heard(0);
+  run.take(run.supervisor.step(
+      {.kind = Kind::sample, .topic = guard::ring, .bytes = nothing.bytes, .age = 1s}, run.now));
+  CHECK(run.supervisor.heard(0) == heard);
+  run.take(run.supervisor.step(
+      {.kind = Kind::sample, .topic = guard::ring, .bytes = nothing.bytes, .age = -1s}, run.now));
+  CHECK(run.supervisor.heard(0) == run.now);
+}
+
 TEST_CASE("supervisor: set points are repeated") {
   Run run;
   run.ask(60ms, guard::stopped);

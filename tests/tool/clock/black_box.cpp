@@ -1,0 +1,69 @@
+// What the black box of an operator keeps is in the order of time, whatever order it came in.
+#include "cli/operate/black_box.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "ocm/topics/amiro.hpp"
+
+#include "tests/tool/clock/world.hpp"
+
+namespace tool_clock_black_box_test {
+
+using namespace ocm;
+using namespace ocm::test;
+namespace operate = cli::operate;
+
+bool in_order(const auto& entries) {
+  return std::is_sorted(entries.begin(), entries.end(),
+                        [](const log::Entry& a, const log::Entry& b) { return a.time < b.time; });
+}
+
+TEST_CASE("black box: what was received late finds its place, on the disk and in a recording") {
+  World world{1};
+  const std::string folder =
+      std::filesystem::temp_directory_path() / ("ocm-black-box-" + std::to_string(world.random()));
+  const operate::BlackBoxOptions options{folder, 10s, 20};
+  operate::BlackBox box{options, "test", "can0", amiro::catalogue};
+  std::vector<log::Entry> spooled;
+  const auto take = [&] {
+    const auto fresh = box.take_fresh(cli::unix_time());
+    CHECK(in_order(fresh));
+    for (const auto& entry : fresh) CHECK(cli::unix_time() - entry.time > operate::BlackBox::settling);
+    spooled.insert(spooled.end(), fresh.begin(), fresh.end());
+  };
+  for (int i = 0; i < 2000; ++i) {
+    world.pass(world.between(0ms, 4ms));
+    // Stamped before it is read.
+    const Duration late = world.chance(0.2) ? world.between(0ms, 99ms) : 0ms;
+    box.add(log::Entry{cli::unix_time() - late, can::Frame{0x608, 6, {}}}, cli::Clock::now());
+    if (i % 100 == 99) take();
+  }
+  CHECK(spooled.size() < 2000);
+  world.pass(operate::BlackBox::settling + 1ms);
+  take();
+  CHECK(spooled.size() == 2000);
+  CHECK(in_order(spooled));
+  CHECK(box.take_fresh(cli::unix_time()).empty());
+  const auto recording = box.take(cli::Clock::now(), cli::unix_time());
+  CHECK(recording.entries.size() == 2000);
+  CHECK(in_order(recording.entries));
+  std::filesystem::remove_all(folder);
+}
+
+TEST_CASE("black box: a clock that is set back holds nothing back") {
+  World world{1};
+  const std::string folder =
+      std::filesystem::temp_directory_path() / ("ocm-black-box-" + std::to_string(world.random()));
+  world.set_wall_clock(World::start + 1s, -1h);
+  operate::BlackBox box{{folder, 10s, 20}, "test", "can0", amiro::catalogue};
+  for (int i = 0; i < 20; ++i) {
+    world.pass(100ms);
+    box.add(log::Entry{cli::unix_time(), can::Frame{0x608, 6, {}}}, cli::Clock::now());
+  }
+  world.pass(200ms);
+  CHECK(box.take_fresh(cli::unix_time()).size() == 20);
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace tool_clock_black_box_test
