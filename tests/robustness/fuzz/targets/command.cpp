@@ -20,10 +20,12 @@ void check(std::span<const std::string_view> words, const protocol::Catalogue& c
     fuzz::expect(!command.error.what.empty() && !command.error.remedy.empty(), "an error has words");
     return;
   }
-  fuzz::expect(!command->frames.empty(), "a command sends something");
+  fuzz::expect(!command->frames.empty() || !command->fd_frames.empty(), "a command sends something");
   for (const auto& frame : command->frames)
     fuzz::expect(can::validate(frame).ok() && frame.format != can::Format::error,
                  "a command's frames can be sent");
+  for (const auto& frame : command->fd_frames)
+    fuzz::expect(can::validate(frame).ok() && frame.is_fd(), "a command's CAN FD frames can be sent");
   if (command->hold) {
     fuzz::expect(command->hold->frame == command->frames.front(), "what is held is what was sent");
     fuzz::expect(
