@@ -1,4 +1,7 @@
-// What happens to a mapper when its link dies, at any moment.
+// What the tasks share, in the moment that matters most: the link dies, at any time, and what was said,
+// ordered or decided before is void.
+#include "ocm/mapper/app/shared.hpp"
+
 #include <cmath>
 #include <string>
 #include <utility>
@@ -11,7 +14,7 @@
 #include "unit/mapper/app/app_testing.hpp"
 #include "unit/motion/near.hpp"
 
-namespace mapper_app_robot_link_test {
+namespace mapper_app_shared_test {
 
 using namespace app_testing;
 using ocm::test::coarser;
@@ -329,4 +332,4 @@ TEST_CASE("mapper: a hundred links, each as good as the first", "[mapper][link]"
   CHECK(bench.robot.counters().links_lost == 100);
 }
 
-}  // namespace mapper_app_robot_link_test
+}  // namespace mapper_app_shared_test
