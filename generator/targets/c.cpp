@@ -6,6 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "generator/targets/c_messages.hpp"
+#include "generator/targets/c_text.hpp"
+#include "generator/targets/message_fields.hpp"
 #include "generator/targets/target.hpp"
 #include "generator/text/conversion.hpp"
 #include "generator/text/messages.hpp"
@@ -20,174 +23,13 @@ using spec::FrameModel;
 using spec::Model;
 using spec::TopicModel;
 
-std::string upper(std::string text) {
-  for (char& c : text)
-    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-  return text;
-}
-
-/// C has no ' between thousands.
-std::string plain(std::string text) {
-  text.erase(std::remove(text.begin(), text.end(), '\''), text.end());
-  return text;
-}
-
 /// The one word of C99 that C++ has not, so that a spec allows it. [ISO C99, 6.4.1]
 std::string member(const std::string& name) {
   return name == "restrict" ? "restrict_" : name;
 }
 
-unsigned type_width(const FieldModel& field) {
-  const unsigned width = field.position.width;
-  return width <= 8 ? 8 : width <= 16 ? 16 : width <= 32 ? 32 : 64;
-}
-
-std::string type_of(const FieldModel& field) {
-  return (field.is_signed ? "int" : "uint") + std::to_string(type_width(field)) + "_t";
-}
-
-/// What the bits of a field are shifted in: no more than 32 where that will do, for a Cortex-M's sake.
-bool is_wide(const FieldModel& field) {
-  return field.position.width > 32;
-}
-std::string word_type(const FieldModel& field) {
-  return is_wide(field) ? "uint64_t" : "uint32_t";
-}
-
-std::string literal(std::int64_t number) {
-  if (number == INT64_MIN) return "INT64_MIN";
-  if (number == INT32_MIN) return "INT32_MIN";
-  const std::string digits = std::to_string(number);
-  if (number > UINT32_MAX || number < INT32_MIN) return "INT64_C(" + digits + ")";
-  return number > INT32_MAX ? digits + "u" : digits;
-}
-
-std::string word_literal(std::uint64_t number, bool wide) {
-  base::Text<24> text;
-  text << (wide ? "UINT64_C(0x" : "0x");
-  text.hex(number, number > 0xFFFF'FFFF ? 16 : number > 0xFFFF ? 8 : number > 0xFF ? 4 : 2);
-  text << (wide ? ")" : "u");
-  return std::string{text.view()};
-}
-
-/// The part of a field that lies in one byte of the frame.
-struct Piece {
-  unsigned byte = 0;   ///< of the frame
-  unsigned shift = 0;  ///< of the piece's lowest bit, within the byte
-  unsigned from = 0;   ///< the piece's lowest bit, within the field
-  unsigned width = 0;
-};
-
-std::vector<Piece> pieces_of(protocol::Position at) {
-  std::vector<Piece> pieces;
-  const bool little = at.order == protocol::ByteOrder::little;
-  const unsigned begin = protocol::detail::shift_of(at);
-  for (unsigned bit = 0; bit < at.width;) {
-    const unsigned place = begin + bit;
-    const unsigned width = std::min(8 - place % 8, at.width - bit);
-    pieces.push_back({little ? place / 8 : 7 - place / 8, place % 8, bit, width});
-    bit += width;
-  }
-  return pieces;
-}
-
-std::string shifted(std::string text, std::string_view by, unsigned count) {
-  return count == 0 ? text : "(" + text + " " + std::string{by} + " " + std::to_string(count) + ")";
-}
-
-std::string masked(std::string text, unsigned width) {
-  return width == 8 ? text : "(" + text + " & " + word_literal((1U << width) - 1, false) + ")";
-}
-
-class Header {
- public:
-  Header(const Model& model, const Options& options)
-      : model_(model), options_(options), robot_(model.name_space), macro_(upper(robot_)) {}
-
-  std::string make() {
-    opening();
-    protocol_part();
-    for (const TopicModel& topic : model_.topics) write_topic(topic);
-    out_.line("#ifdef __cplusplus");
-    out_.line("}");
-    out_.line("#endif");
-    out_.line();
-    out_.line("#endif");
-    return out_.take();
-  }
-
- private:
-  // --- names -----------------------------------------------------------------------------------------------
-
-  /// Words joined by underscores may meet: what does so gets one more.
-  std::string unique(std::string name) {
-    while (!taken_.insert(name).second) name += '_';
-    return name;
-  }
-  std::string stem(const TopicModel& topic, const FrameModel& frame) const {
-    return robot_ + "_" + topic.name + (is_aggregate(topic) ? "_" + frame.name : "");
-  }
-
-  // --- the robot -------------------------------------------------------------------------------------------
-
-  void opening() {
-    out_.comment("Made by ocm-generate from " + options_.spec_name +
-                     ". Do not edit: change the spec, and generate again.",
-                 "// ");
-    out_.line("//");
-    out_.comment(
-        "The topics of " + model_.robot + (model_.description.empty() ? "" : ": " + model_.description) +
-            ", for C99 and C++11. No other file is needed, nothing is to be linked, and there is no heap.",
-        "// ");
-    out_.line("//");
-    out_.comment(
-        "A struct has raw numbers, as they travel. _x_unit() is the physical value of x, and set_x_unit() "
-        "takes "
-        "the nearest raw number within the field's range (not a number: the one nearest to zero). _frame() "
-        "makes the CAN frame of a struct, _take() fills the struct from one. _encode() puts the nearest "
-        "number "
-        "that the width holds.",
-        "// ");
-    out_.line("#ifndef " + macro_ + "_TOPICS_H");
-    out_.line("#define " + macro_ + "_TOPICS_H");
-    out_.line();
-    out_.line("#include <stdint.h>");
-    out_.line();
-    out_.line("#ifdef __cplusplus");
-    out_.line("extern \"C\" {");
-    out_.line("#endif");
-    out_.line();
-    comment(with_source("Bits per second on the bus.", model_.bus_source.joined()));
-    define("BIT_RATE", std::to_string(model_.bit_rate) + "u");
-    out_.line();
-  }
-
-  void comment(std::string_view text) { out_.comment(text, "// "); }
-
-  void define(const std::string& name, const std::string& value) {
-    out_.line("#define " + unique(macro_ + "_" + name) + " " + value);
-  }
-
-  /// Text of the protocol, the same for every robot but for its name: @ stands for amiro, $ for AMIRO.
-  void with_names(std::string_view text) {
-    std::string named;
-    for (const char c : text) {
-      if (c == '@')
-        named += robot_;
-      else if (c == '$')
-        named += macro_;
-      else
-        named += c;
-    }
-    while (!named.empty()) {
-      const std::size_t end = named.find('\n');
-      out_.line(named.substr(0, end));
-      named.erase(0, end == std::string::npos ? end : end + 1);
-    }
-  }
-
-  void protocol_part() {
-    with_names(R"(// --- identifiers and requests
+/// Text of the protocol, the same for every robot but for its name: @ stands for amiro, $ for AMIRO.
+constexpr std::string_view request_part = R"(// --- identifiers and requests
 
 typedef struct @_frame {
   uint16_t id;  // 11 bits
@@ -275,7 +117,8 @@ static inline int @_read_request(const @_frame* frame, @_request* request) {
   return 0;
 }
 
-// --- numbers ---
+)";
+constexpr std::string_view number_part = R"(// --- numbers ---
 
 static inline uint32_t @_at_most_u32(uint32_t number, uint32_t most) { return number < most ? number : most; }
 static inline uint64_t @_at_most_u64(uint64_t number, uint64_t most) { return number < most ? number : most; }
@@ -296,8 +139,103 @@ static inline int64_t @_nearest(double value, int64_t least, int64_t most) {
   rest = value - (double)whole;
   return whole + (rest >= 0.5 ? 1 : rest <= -0.5 ? -1 : 0);
 }
-)");
+)";
+
+class Header {
+ public:
+  Header(const Model& model, const Options& options)
+      : model_(model), options_(options), robot_(name_space_of(model)), macro_(upper(robot_)) {}
+
+  std::string make() {
+    opening();
+    if (!model_.topics.empty()) with_names(request_part);
+    with_names(number_part);
     out_.line();
+    for (const TopicModel& topic : model_.topics) write_topic(topic);
+    write_c_messages(out_, model_, taken_);
+    out_.line("#ifdef __cplusplus");
+    out_.line("}");
+    out_.line("#endif");
+    out_.line();
+    out_.line("#endif");
+    return out_.take();
+  }
+
+ private:
+  // --- names -----------------------------------------------------------------------------------------------
+
+  /// Words joined by underscores may meet: what does so gets one more.
+  std::string unique(std::string name) {
+    while (!taken_.insert(name).second) name += '_';
+    return name;
+  }
+  std::string stem(const TopicModel& topic, const FrameModel& frame) const {
+    return robot_ + "_" + topic.name + (is_aggregate(topic) ? "_" + frame.name : "");
+  }
+
+  // --- the robot -------------------------------------------------------------------------------------------
+
+  void opening() {
+    out_.comment("Made by ocm-generate from " + options_.spec_name +
+                     ". Do not edit: change the spec, and generate again.",
+                 "// ");
+    out_.line("//");
+    const bool topics = !model_.topics.empty(), messages = !model_.messages.empty();
+    out_.comment(std::string{topics && messages ? "The topics and messages of "
+                             : messages         ? "The messages of "
+                                                : "The topics of "} +
+                     model_.robot + (model_.description.empty() ? "" : ": " + model_.description) +
+                     ", for C99 and C++11. No other file is needed, nothing is to be linked, and there is no "
+                     "heap.",
+                 "// ");
+    out_.line("//");
+    if (topics)
+      out_.comment(
+          "A struct has raw numbers, as they travel. _x_unit() is the physical value of x, and set_x_unit() "
+          "takes the nearest raw number within the field's range (not a number: the one nearest to zero). "
+          "_frame() makes the CAN frame of a struct, _take() fills the struct from one. _encode() puts the "
+          "nearest number that the width holds.",
+          "// ");
+    if (topics && messages) out_.line("//");
+    if (messages) out_.comment(c_messages_say, "// ");
+    const std::string guard = macro_ + (topics ? "_TOPICS_H" : "_MESSAGES_H");
+    out_.line("#ifndef " + guard);
+    out_.line("#define " + guard);
+    out_.line();
+    out_.line("#include <stdint.h>");
+    if (messages) out_.line("#include <string.h>");
+    out_.line();
+    out_.line("#ifdef __cplusplus");
+    out_.line("extern \"C\" {");
+    out_.line("#endif");
+    out_.line();
+    if (model_.bit_rate == 0) return;
+    comment(with_source("Bits per second on the bus.", model_.bus_source.joined()));
+    define("BIT_RATE", std::to_string(model_.bit_rate) + "u");
+    out_.line();
+  }
+
+  void comment(std::string_view text) { out_.comment(text, "// "); }
+
+  void define(const std::string& name, const std::string& value) {
+    out_.line("#define " + unique(macro_ + "_" + name) + " " + value);
+  }
+
+  void with_names(std::string_view text) {
+    std::string named;
+    for (const char c : text) {
+      if (c == '@')
+        named += robot_;
+      else if (c == '$')
+        named += macro_;
+      else
+        named += c;
+    }
+    while (!named.empty()) {
+      const std::size_t end = named.find('\n');
+      out_.line(named.substr(0, end));
+      named.erase(0, end == std::string::npos ? end : end + 1);
+    }
   }
 
   // --- one frame -------------------------------------------------------------------------------------------
@@ -400,12 +338,12 @@ static inline int64_t @_nearest(double value, int64_t least, int64_t most) {
       const Conversion c = conversion(field);
       const std::string raw = "(double)value->" + member(field.name);
       out_.open("static inline double " + unique(name + "_" + what) + "(const " + name + "_t* value) {");
-      out_.line("return " + plain(to_physical(c, raw)) + ";");
+      out_.line("return " + without_marks(to_physical(c, raw)) + ";");
       out_.close("}");
       out_.open("static inline void " + unique(name + "_set_" + what) + "(" + name + "_t* value, double " +
                 field.unit_name + "_) {");
       out_.line("value->" + member(field.name) + " = (" + type_of(field) + ")" + robot_ + "_nearest(" +
-                plain(to_raw(c, field.unit_name + "_")) + ", " + literal(field.raw_min) + ", " +
+                without_marks(to_raw(c, field.unit_name + "_")) + ", " + literal(field.raw_min) + ", " +
                 literal(field.raw_max) + ");");
       out_.close("}");
     }

@@ -8,6 +8,7 @@
 #include "generator/spec/names.hpp"
 #include "generator/spec/worst_bits.hpp"
 #include "generator/targets/cpp_messages.hpp"
+#include "generator/targets/message_fields.hpp"
 #include "generator/text/conversion.hpp"
 #include "generator/text/words.hpp"
 #include "generator/text/writer.hpp"
@@ -618,21 +619,12 @@ std::string sentence(std::string text) {
   return text.ends_with('.') ? text : text + '.';
 }
 
-/// That of the spec; of a bus that names none its own name, as C++ has it.
-std::string name_space(const Model& model) {
-  if (!model.name_space.empty()) return model.name_space;
-  std::string name = cpp_name(model.robot);
-  for (char& c : name)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return spec::is_reserved(name) || name == "ocm" || name == "std" ? name + "_" : name;
-}
-
 }  // namespace
 
 std::string header(const Model& model, std::string_view spec_name) {
   const bool topics = !model.topics.empty();
   const bool messages = !model.messages.empty();
-  const std::string space = name_space(model);
+  const std::string space = name_space_of(model);
   Writer out;
   out.comment("Made by ocm-generate from " + std::string{spec_name} +
                   ". Do not edit: change the spec, and generate again.",

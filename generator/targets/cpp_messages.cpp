@@ -8,6 +8,7 @@
 #include "ocm/base/text.hpp"
 
 #include "generator/spec/names.hpp"
+#include "generator/targets/message_fields.hpp"
 #include "generator/text/conversion.hpp"
 #include "generator/text/words.hpp"
 
@@ -18,37 +19,6 @@ using protocol::Number;
 using spec::FieldModel;
 using spec::MessageModel;
 using spec::Model;
-
-// --- names -------------------------------------------------------------------------------------------------
-
-/// Two underscores in a row are for the compiler's own names.
-std::string joined(std::string name, std::string_view behind) {
-  if (name.ends_with('_') && behind.starts_with('_')) name.pop_back();
-  return name.append(behind);
-}
-
-/// Names of one scope, each given out once.
-class Scope {
- public:
-  explicit Scope(std::set<std::string> taken) : taken_(std::move(taken)) {}
-
-  /// A name of which no other in the scope has any of `forms`, "_raw" and the like; with a number behind it
-  /// where it must be.
-  std::string claim(const std::string& name, const std::vector<std::pair<std::string, std::string>>& forms) {
-    for (unsigned number = 1;; ++number) {
-      const std::string candidate = number == 1 ? name : joined(name, "_" + std::to_string(number));
-      if (std::any_of(forms.begin(), forms.end(), [&](const auto& form) {
-            return taken_.contains(joined(form.first + candidate, form.second));
-          }))
-        continue;
-      for (const auto& [before, behind] : forms) taken_.insert(joined(before + candidate, behind));
-      return candidate;
-    }
-  }
-
- private:
-  std::set<std::string> taken_;
-};
 
 /// A message's own names, which no field can have; with those of parameters.
 const std::set<std::string>& own_members() {
@@ -86,17 +56,6 @@ std::string number_literal(std::int64_t number, bool is_signed) {
                     : grouped(static_cast<std::uint64_t>(number));
 }
 
-std::string hexadecimal(std::uint64_t number, int digits) {
-  base::Text<20> text;
-  text << "0x";
-  text.hex(number, digits);
-  return std::string{text.view()};
-}
-
-std::string duration(base::Duration time) {
-  return print(base::normalised(time.count(), -6)) + " ms";
-}
-
 // --- one message -------------------------------------------------------------------------------------------
 
 /// How C++ calls a field, and what it is there.
@@ -117,14 +76,8 @@ class StructWriter {
       : out_(out), model_(model), message_(message), type_(std::move(type)) {
     std::set<std::string> taken = own_members();
     taken.insert(type_);  // a member of the type's own name would be a constructor
-    Scope scope{std::move(taken)};
-    for (const FieldModel& field : message.fields) {
-      // What ends beyond the message is in longer frames only, which a struct of its length cannot hold.
-      if (field.position.bytes() > message.length)
-        beyond_.push_back(field.name);
-      else
-        members_.push_back(member(field, scope));
-    }
+    Scope scope{taken};
+    for (const auto* const field : fields_within(message)) members_.push_back(member(*field, scope));
   }
 
   void write() {
@@ -132,7 +85,8 @@ class StructWriter {
     out_.open("struct " + type_ + " {");
     constants();
     for (const Member& each : members_) values(each);
-    out_.line("ocm::protocol::MessageBytes<" + std::to_string(size()) + "> bytes{" + start() + "};");
+    out_.line("ocm::protocol::MessageBytes<" + std::to_string(held_bytes(message_)) + "> bytes{" + start() +
+              "};");
     for (const Member& each : members_) accessors(each);
     out_.line();
     out_.comment(
@@ -147,9 +101,6 @@ class StructWriter {
   }
 
  private:
-  /// A frame of up to eight bytes is handled as eight, in one step.
-  [[nodiscard]] std::size_t size() const { return std::max<std::size_t>(message_.length, 8); }
-
   static std::string integer_type(unsigned width, bool is_signed) {
     const char* bits = width <= 8 ? "8" : width <= 16 ? "16" : width <= 32 ? "32" : "64";
     return std::string{"std::"} + (is_signed ? "int" : "uint") + bits + "_t";
@@ -198,29 +149,16 @@ class StructWriter {
   }
 
   void head() {
-    const auto [address, length] = std::pair{message_.address, message_.length};
     std::string text = comment_text(message_.name) + ". ";
     if (!message_.description.empty()) text += comment_text(message_.description) + " ";
-    text += std::to_string(length) + " bytes";
-    if (message_.fd) text += " of CAN FD";
-    if (message_.is_j1939())
-      text += ", parameter group " + hexadecimal(j1939_group(), 5);
-    else
-      text += ", identifier " + hexadecimal(address.number, address.extended ? 8 : 3);
-    if (message_.period.count() != 0) text += ", every " + duration(message_.period);
-    text += ".";
-    if (!beyond_.empty()) {
+    text += address_text(message_);
+    if (const auto beyond = fields_beyond(message_); !beyond.empty()) {
       text += " Beyond its length, and not here:";
-      for (const std::string& each : beyond_) text += " " + comment_text(each);
+      for (const std::string& each : beyond) text += " " + comment_text(each);
       text += ".";
     }
     out_.comment(with_source(std::move(text), comment_text(message_.source.joined())));
   }
-  [[nodiscard]] std::uint32_t j1939_group() const {
-    const std::uint32_t group = message_.address.number >> 8 & 0x3'FFFF;
-    return (group >> 8 & 0xFF) < 240 ? group & 0x3'FF00 : group;
-  }
-
   void constants() {
     const auto& address = message_.address;
     out_.line("static constexpr std::string_view name = " + literal_of(message_.name) + ";");
@@ -253,43 +191,13 @@ class StructWriter {
     out_.close("};");
   }
 
-  /// The bytes in which each field that is there has its start value.
+  /// The bytes that it begins with.
   std::string start() const {
-    std::vector<std::uint8_t> bytes(size());
-    for (const Member& each : members_)
-      if (each.field->selector.empty()) put_start(each, bytes);
-    // Selectors before what they select, however deep; a circle cannot be.
-    for (std::size_t depth = 0; depth < members_.size(); ++depth)
-      for (const Member& each : members_)
-        if (!each.field->selector.empty() && levels(each) == depth + 1 && is_there(each, bytes))
-          put_start(each, bytes);
+    auto bytes = start_bytes(message_);
     while (!bytes.empty() && bytes.back() == 0) bytes.pop_back();
     std::string text;
     for (const std::uint8_t byte : bytes) text += (text.empty() ? "" : ", ") + hexadecimal(byte, 2);
     return text;
-  }
-  static void put_start(const Member& member, std::vector<std::uint8_t>& bytes) {
-    protocol::put(std::span<std::uint8_t>{bytes}, member.field->position, member.field->start.value_or(0));
-  }
-  [[nodiscard]] std::size_t levels(const Member& member) const {
-    std::size_t count = 0;
-    for (const Member* at = &member; at != nullptr && !at->field->selector.empty();
-         at = find(at->field->selector))
-      ++count;
-    return count;
-  }
-  [[nodiscard]] bool is_there(const Member& member, const std::vector<std::uint8_t>& bytes) const {
-    for (const Member* at = &member; !at->field->selector.empty();) {
-      const Member* selector = find(at->field->selector);
-      if (selector == nullptr) return false;
-      const auto raw = static_cast<std::uint64_t>(
-          protocol::get(std::span<const std::uint8_t>{bytes}, selector->field->position, false));
-      if (std::none_of(at->field->selected.begin(), at->field->selected.end(),
-                       [&](const auto& range) { return range.first <= raw && raw <= range.last; }))
-        return false;
-      at = selector;
-    }
-    return true;
   }
 
   // --- accessors ---
@@ -335,20 +243,6 @@ class StructWriter {
                    " == static_cast<" + member.raw_type + ">(value_);");
   }
 
-  /// In order, with what overlaps or follows as one, up to the greatest that the selector can be.
-  static std::vector<protocol::SelectorRange> merged(std::vector<protocol::SelectorRange> ranges,
-                                                     std::uint64_t most) {
-    std::sort(ranges.begin(), ranges.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    std::vector<protocol::SelectorRange> out;
-    for (const auto& [first, last] : ranges) {
-      if (first > most) break;
-      if (out.empty() || (out.back().last != UINT64_MAX && first > out.back().last + 1))
-        out.push_back({first, std::min(last, most)});
-      else
-        out.back().last = std::max(out.back().last, std::min(last, most));
-    }
-    return out;
-  }
   void presence(const Member& member) {
     const Member* selector = find(member.field->selector);
     const std::string head = "[[nodiscard]] constexpr bool has_" + member.name + "() const noexcept";
@@ -446,7 +340,6 @@ class StructWriter {
   const MessageModel& message_;
   std::string type_;
   std::vector<Member> members_;
-  std::vector<std::string> beyond_;
 };
 
 }  // namespace
@@ -483,7 +376,7 @@ void write_messages(Writer& out, const Model& model) {
       taken.insert(spec::pascal_case(topic.name) + spec::pascal_case(frame.name));
   }
   for (const auto& board : model.boards) taken.insert(spec::pascal_case(board.name));
-  Scope scope{std::move(taken)};
+  Scope scope{taken};
   for (const MessageModel& message : model.messages)
     StructWriter{out, model, message, scope.claim(cpp_name(message.name), {{"", ""}})}.write();
 }

@@ -14,7 +14,7 @@ constexpr Target table[] = {
     {"cpp", "C++20 header: structs, encoders and decoders, the catalogue", make_cpp, true, true},
     {"spec", "our JSON of plain messages, from a DBC file", make_spec, false, true},
     {"dbc", "CAN database, for canmatrix, cantools, SavvyCAN, BUSMASTER and the like", make_dbc, true, true},
-    {"c", "C99 header: structs, encoders and decoders, requests; needs nothing else", make_c},
+    {"c", "C99 header: structs, encoders and decoders, requests; needs nothing else", make_c, true, true},
     {"markdown", "reference of topics, frames and fields, for people", make_markdown},
     {"wireshark", "dissector in Lua, for Wireshark and tshark", make_wireshark},
     {"json-schema", "JSON schema of the lines that `amiroctl listen --json` prints", make_json_schema},
