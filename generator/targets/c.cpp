@@ -6,8 +6,10 @@
 #include <utility>
 #include <vector>
 
+#include "generator/targets/c_helpers.hpp"
 #include "generator/targets/c_messages.hpp"
 #include "generator/targets/c_text.hpp"
+#include "generator/targets/cpp_messages.hpp"
 #include "generator/targets/message_fields.hpp"
 #include "generator/targets/target.hpp"
 #include "generator/text/conversion.hpp"
@@ -28,7 +30,7 @@ std::string member(const std::string& name) {
   return name == "restrict" ? "restrict_" : name;
 }
 
-/// Text of the protocol, the same for every robot but for its name: @ stands for amiro, $ for AMIRO.
+/// Text of the protocol, for `named`.
 constexpr std::string_view request_part = R"(// --- identifiers and requests
 
 typedef struct @_frame {
@@ -118,41 +120,28 @@ static inline int @_read_request(const @_frame* frame, @_request* request) {
 }
 
 )";
-constexpr std::string_view number_part = R"(// --- numbers ---
-
-static inline uint32_t @_at_most_u32(uint32_t number, uint32_t most) { return number < most ? number : most; }
-static inline uint64_t @_at_most_u64(uint64_t number, uint64_t most) { return number < most ? number : most; }
-static inline int32_t @_held_i32(int32_t number, int32_t least, int32_t most) {
-  return number < least ? least : number > most ? most : number;
-}
-static inline int64_t @_held_i64(int64_t number, int64_t least, int64_t most) {
-  return number < least ? least : number > most ? most : number;
-}
-// The nearest whole number, halves away from zero, within [least, most].
-static inline int64_t @_nearest(double value, int64_t least, int64_t most) {
-  int64_t whole = 0;
-  double rest = 0;
-  if (value != value) return least > 0 ? least : most < 0 ? most : 0;
-  if (value <= (double)least) return least;
-  if (value >= (double)most) return most;
-  whole = (int64_t)value;
-  rest = value - (double)whole;
-  return whole + (rest >= 0.5 ? 1 : rest <= -0.5 ? -1 : 0);
-}
-)";
-
 class Header {
  public:
   Header(const Model& model, const Options& options)
-      : model_(model), options_(options), robot_(name_space_of(model)), macro_(upper(robot_)) {}
+      : model_(model),
+        options_(options),
+        robot_(name_space_of(model)),
+        macro_(upper(robot_)),
+        taken_(names_of_helpers(robot_)) {
+    if (!model_.topics.empty()) taken_.merge(names_in(request_part, robot_));
+    if (model_.bit_rate != 0) taken_.insert(macro_ + "_BIT_RATE");
+  }
 
   std::string make() {
-    opening();
-    if (!model_.topics.empty()) with_names(request_part);
-    with_names(number_part);
-    out_.line();
     for (const TopicModel& topic : model_.topics) write_topic(topic);
     write_c_messages(out_, model_, taken_);
+    const std::string body = out_.take();
+    const std::string helpers = helpers_of(body, robot_);
+    out_ = Writer{};
+    opening(helpers.find("memcpy") != std::string::npos);
+    if (!model_.topics.empty()) out_.text(named(request_part, robot_));
+    out_.text(helpers);
+    out_.text(body);
     out_.line("#ifdef __cplusplus");
     out_.line("}");
     out_.line("#endif");
@@ -175,18 +164,20 @@ class Header {
 
   // --- the robot -------------------------------------------------------------------------------------------
 
-  void opening() {
+  void opening(bool copies) {
     out_.comment("Made by ocm-generate from " + options_.spec_name +
                      ". Do not edit: change the spec, and generate again.",
                  "// ");
     out_.line("//");
     const bool topics = !model_.topics.empty(), messages = !model_.messages.empty();
-    out_.comment(std::string{topics && messages ? "The topics and messages of "
-                             : messages         ? "The messages of "
-                                                : "The topics of "} +
-                     model_.robot + (model_.description.empty() ? "" : ": " + model_.description) +
-                     ", for C99 and C++11. No other file is needed, nothing is to be linked, and there is no "
-                     "heap.",
+    std::string what = topics && messages ? "The topics and messages of "
+                       : messages         ? "The messages of "
+                                          : "The topics of ";
+    what += model_.robot;
+    if (!model_.description.empty()) what += ": " + model_.description;
+    out_.comment(comment_text(std::move(what)), "// ");
+    out_.line("//");
+    out_.comment("For C99 and C++11. No other file is needed, nothing is to be linked, and there is no heap.",
                  "// ");
     out_.line("//");
     if (topics)
@@ -203,7 +194,7 @@ class Header {
     out_.line("#define " + guard);
     out_.line();
     out_.line("#include <stdint.h>");
-    if (messages) out_.line("#include <string.h>");
+    if (copies) out_.line("#include <string.h>");
     out_.line();
     out_.line("#ifdef __cplusplus");
     out_.line("extern \"C\" {");
@@ -211,7 +202,7 @@ class Header {
     out_.line();
     if (model_.bit_rate == 0) return;
     comment(with_source("Bits per second on the bus.", model_.bus_source.joined()));
-    define("BIT_RATE", std::to_string(model_.bit_rate) + "u");
+    out_.line("#define " + macro_ + "_BIT_RATE " + std::to_string(model_.bit_rate) + "u");
     out_.line();
   }
 
@@ -221,28 +212,11 @@ class Header {
     out_.line("#define " + unique(macro_ + "_" + name) + " " + value);
   }
 
-  void with_names(std::string_view text) {
-    std::string named;
-    for (const char c : text) {
-      if (c == '@')
-        named += robot_;
-      else if (c == '$')
-        named += macro_;
-      else
-        named += c;
-    }
-    while (!named.empty()) {
-      const std::size_t end = named.find('\n');
-      out_.line(named.substr(0, end));
-      named.erase(0, end == std::string::npos ? end : end + 1);
-    }
-  }
-
   // --- one frame -------------------------------------------------------------------------------------------
 
   void write_struct(const std::string& name, const FrameModel& frame) {
     std::vector<std::pair<std::string, std::string>> lines;
-    out_.open("typedef struct " + name + "_t {");
+    out_.open("typedef struct " + unique(name + "_t") + " {");
     for (const FieldModel& field : frame.fields) {
       std::string text = remark(field);
       if (field.flags || !field.values.empty()) text = text.empty() ? "see below" : text + "; see below";
@@ -263,17 +237,6 @@ class Header {
                                : literal(value.raw));
   }
 
-  std::string clamped(const FieldModel& field, const std::string& number) const {
-    const unsigned width = field.position.width;
-    if (width == type_width(field)) return number;
-    const bool wide = is_wide(field);
-    if (!field.is_signed)
-      return robot_ + (wide ? "_at_most_u64(" : "_at_most_u32(") + number + ", " +
-             word_literal((std::uint64_t{1} << width) - 1, wide) + ")";
-    return robot_ + (wide ? "_held_i64(" : "_held_i32(") + number + ", " +
-           literal(protocol::lowest(width, true)) + ", " + literal(protocol::highest(width, true)) + ")";
-  }
-
   void write_encode(const std::string& name, const FrameModel& frame) {
     out_.open("static inline void " + unique(name + "_encode") + "(const " + name +
               "_t* value, uint8_t data[8]) {");
@@ -281,7 +244,7 @@ class Header {
     for (const FieldModel& field : frame.fields) {
       const std::string bits = field.name + "_bits";
       out_.line("const " + word_type(field) + " " + bits + " = (" + word_type(field) + ")" +
-                clamped(field, "value->" + member(field.name)) + ";");
+                held(field, "value->" + member(field.name), robot_) + ";");
       for (const Piece& piece : pieces_of(field.position))
         bytes[piece.byte].push_back(
             shifted(masked(shifted(bits, ">>", piece.from), piece.width), "<<", piece.shift));
@@ -398,7 +361,7 @@ class Header {
     if (topic.is_group) define(name_macro + "_COUNT", std::to_string(topic.count) + "u");
     if (sensor) define(name_macro + "_FRAMES", std::to_string(frame_count(topic)) + "u");
     if (is_aggregate(topic)) {
-      out_.open("typedef struct " + name + "_t {");
+      out_.open("typedef struct " + unique(name + "_t") + " {");
       for (const FrameModel& frame : topic.frames)
         out_.line(stem(topic, frame) + "_t " + member(frame.name) +
                   (frame.is_array ? "[" + std::to_string(frame.count) + "]" : "") + ";");

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "generator/targets/c_helpers.hpp"
 #include "generator/targets/c_text.hpp"
 #include "generator/targets/cpp_messages.hpp"
 #include "generator/targets/message_fields.hpp"
@@ -63,10 +64,11 @@ class MessageWriter {
  private:
   void comment(std::string_view text) { out_.comment(text, "// "); }
   void define(const std::string& name, const std::string& value) {
-    std::string full = macro_ + "_" + name;
+    std::string full = joined(macro_, "_" + name);
     while (!taken_.insert(full).second) full += '_';
     out_.line("#define " + full + " " + value);
   }
+  void define_of(const char* name, const std::string& value) { define(joined(stem(), name), value); }
   [[nodiscard]] std::string stem() const { return upper(type_.substr(robot_.size() + 1)); }
   [[nodiscard]] std::string function(const std::string& name) const { return joined(type_, "_" + name); }
   [[nodiscard]] const std::string* name_of(const FieldModel* wanted) const {
@@ -95,18 +97,18 @@ class MessageWriter {
     }
     comment(with_source(std::move(text), comment_text(message_.source.joined())));
     const auto& address = message_.address;
-    define(stem() + "_ID", hexadecimal(address.number, address.extended ? 8 : 3) + "u");
-    define(stem() + "_EXTENDED", address.extended ? "1" : "0");
-    define(stem() + "_LENGTH", std::to_string(message_.length) + "u");
-    define(stem() + "_FD", message_.fd ? "1" : "0");
+    define_of("_ID", hexadecimal(address.number, address.extended ? 8 : 3) + "u");
+    define_of("_EXTENDED", address.extended ? "1" : "0");
+    define_of("_LENGTH", std::to_string(message_.length) + "u");
+    define_of("_FD", message_.fd ? "1" : "0");
     if (message_.period.count() != 0)
-      define(stem() + "_PERIOD_US", std::to_string(message_.period.count() / 1000) + "u");
+      define_of("_PERIOD_US", std::to_string(message_.period.count() / 1000) + "u");
   }
 
   void values() {
     for (const auto& [field, name] : names_)
       for (const auto& value : field->values)
-        define(stem() + "_" + upper(name) + "_" + upper(cpp_name(value.name)),
+        define(joined(joined(stem(), "_" + upper(name)), "_" + upper(cpp_name(value.name))),
                field->flags ? word_literal(std::uint64_t{1} << value.raw, is_wide(*field))
                : !field->is_signed && field->position.width > 32
                    ? word_literal(static_cast<std::uint64_t>(value.raw), true)
@@ -145,7 +147,8 @@ class MessageWriter {
     out_.open("static inline int " + function("decode") + "(" + type_ +
               "* message, const uint8_t* data, unsigned length) {");
     out_.line("unsigned i;");
-    out_.line("if (length < " + std::to_string(message_.length) + "u) return 0;");
+    out_.line(message_.length == 0 ? "(void)length;"
+                                   : "if (length < " + std::to_string(message_.length) + "u) return 0;");
     if (message_.length < held_bytes(message_) || message_.length == 0)
       out_.line("for (i = 0; i < " + std::to_string(held_bytes(message_)) + "u; ++i) message->bytes[i] = 0;");
     if (message_.length != 0)
@@ -188,7 +191,8 @@ class MessageWriter {
       out_.open("static inline int " + function("set_" + name) + "(" + type_ + "* message, " + type +
                 " value) {");
       if (is_plain(field)) {
-        out_.line("const " + word_type(field) + " bits = (" + word_type(field) + ")value;");
+        out_.line("const " + word_type(field) + " bits = (" + word_type(field) + ")" +
+                  held(field, "value", robot_) + ";");
         out_.line("if (!" + has + "(message)) return 0;");
         put_bits(field);
       } else {
@@ -284,7 +288,8 @@ class MessageWriter {
   }
   void write(const FieldModel& field, const std::string& type, const std::string& name) {
     out_.open("static inline void " + function(name) + "(" + type_ + "* message, " + type + " value) {");
-    out_.line("const " + word_type(field) + " bits = (" + word_type(field) + ")value;");
+    out_.line("const " + word_type(field) + " bits = (" + word_type(field) + ")" +
+              held(field, "value", robot_) + ";");
     put_bits(field);
     out_.close("}");
   }
@@ -338,61 +343,9 @@ class MessageWriter {
   std::vector<std::pair<const FieldModel*, std::string>> names_;
 };
 
-bool has_number(const Model& model, auto wanted) {
-  for (const auto& message : model.messages)
-    for (const auto& field : message.fields)
-      if (wanted(field)) return true;
-  return false;
-}
-
 }  // namespace
 
 void write_c_messages(Writer& out, const Model& model, std::set<std::string>& taken) {
-  if (model.messages.empty()) return;
-  const std::string robot = name_space_of(model);
-  const auto helper = [&](std::string_view text) {
-    std::string named;
-    for (const char c : text) named += c == '@' ? robot : std::string{c};
-    for (std::size_t begin = 0; begin < named.size();) {
-      const std::size_t end = named.find('\n', begin);
-      out.line(named.substr(begin, end - begin));
-      begin = end + 1;
-    }
-    out.line();
-  };
-  if (has_number(model, [](const FieldModel& f) { return f.number == Number::float32; }))
-    helper(R"(static inline float @_float_of(uint32_t bits) {
-  float value;
-  memcpy(&value, &bits, sizeof value);
-  return value;
-}
-static inline uint32_t @_bits_of_float(float value) {
-  uint32_t bits;
-  memcpy(&bits, &value, sizeof bits);
-  return bits;
-}
-)");
-  if (has_number(model, [](const FieldModel& f) { return f.number == Number::float64; }))
-    helper(R"(// Where double has 64 bits.
-static inline double @_double_of(uint64_t bits) {
-  double value;
-  memcpy(&value, &bits, sizeof value);
-  return value;
-}
-static inline uint64_t @_bits_of_double(double value) {
-  uint64_t bits;
-  memcpy(&bits, &value, sizeof bits);
-  return bits;
-}
-)");
-  if (has_number(model, [](const FieldModel& f) { return !f.is_signed && f.position.width == 64; }))
-    helper(R"(static inline uint64_t @_nearest_u64(double value) {
-  if (!(value > 0)) return 0;
-  if (value >= 18446744073709551615.0) return UINT64_MAX;
-  if (value >= 9007199254740992.0) return (uint64_t)value;
-  return (uint64_t)@_nearest(value, 0, INT64_MAX);
-}
-)");
   for (const MessageModel& message : model.messages) MessageWriter{out, model, message, taken}.write();
 }
 

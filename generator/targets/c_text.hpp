@@ -51,7 +51,7 @@ namespace ocm::generate {
 }
 
 [[nodiscard]] inline std::string word_literal(std::uint64_t number, bool wide) {
-  base::Text<24> text;
+  base::Text<32> text;  // UINT64_C() and 18 characters
   text << (wide ? "UINT64_C(0x" : "0x");
   text.hex(number, number > 0xFFFF'FFFF ? 16 : number > 0xFFFF ? 8 : number > 0xFF ? 4 : 2);
   text << (wide ? ")" : "u");

@@ -15,6 +15,8 @@ inline constexpr std::size_t columns = 110;
 class Writer {
  public:
   void line(std::string_view text = {});
+  /// Whole lines, as they are.
+  void text(std::string_view lines) { text_ += lines; }
   /// A line, and what follows is indented.
   void open(std::string_view text);
   void close(std::string_view text);

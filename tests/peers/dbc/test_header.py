@@ -4,16 +4,14 @@ import json
 import os
 import pathlib
 import random
-import re
 import shutil
 import subprocess
 import tempfile
 import unittest
 
-import dbc_bits
 import random_dbc
-import second_reader
 import write_dbc
+from headers import check, raw_spelled, selectors_first, spelled
 
 SOURCE = pathlib.Path(os.environ["OCM_SOURCE_DIR"])
 GENERATE = os.environ["OCM_GENERATE"]
@@ -76,22 +74,13 @@ CASES
 """
 
 
-def spelled(name):
-    """As docs/generate.md says."""
-    return re.sub("[^A-Za-z0-9]+", "_", name)
-
-
-def depth(message, signal):
-    return 0 if signal.selector is None else 1 + depth(message, message.signal(signal.selector))
-
-
 def case(index, message):
     lines = [f"case {index}: {{", f"const auto read = bus::{spelled(message.name)}::decode(std::span<const std::uint8_t>{{data}});",
              "if (!read) { std::cout << \"short\\n\"; break; }", "const auto message = *read;",
              f"bus::{spelled(message.name)} raw, physical;", "raw.bytes = physical.bytes = {};"]
-    for signal in sorted(message.signals, key=lambda signal: depth(message, signal)):
+    for signal in selectors_first(message):
         name = spelled(signal.name)
-        both = f"{name}, {name.removesuffix('_')}_raw"
+        both = f"{name}, {raw_spelled(signal.name)}"
         lines.append(f"{'ALWAYS' if signal.selector is None else 'SOMETIMES'}({both})")
         lines.append(f"PUT_RAW({both})" if signal.selector is None else f"if (message.has_{name}()) {{ PUT_RAW({both}) }}")
         lines.append(f"{'PUT' if signal.selector is None else 'PUT_SOMETIMES'}({name})")
@@ -109,28 +98,6 @@ class Header(unittest.TestCase):
         subprocess.run([compiler, *FLAGS, f"-I{folder}", folder / "main.cpp", "-o", folder / "main"], check=True)
         return database, folder / "main"
 
-    def check(self, where, message, data, lines):
-        found = {words[0]: words[1:] for words in (line.split() for line in lines)}
-        expected = {spelled(name): (name, *values) for name, values in second_reader.decode(message, data).items()}
-        self.assertEqual(set(found) - {"raw:", "physical:"}, set(expected), where)
-        put, back = bytes.fromhex(found["raw:"][0]), bytes.fromhex(found["physical:"][0])
-        used = sum(1 << bit for name, *_ in expected.values() for bit in message.signal(name).bits())
-        self.assertEqual(int.from_bytes(put, "little") & used, int.from_bytes(data[:message.length], "little") & used, where)
-        for spelling, (name, raw, physical) in expected.items():
-            signal = message.signal(name)
-            place = f"{where}: {message.name}.{name} of {data.hex()}: {found[spelling]}, {signal}"
-            bits = dbc_bits.take(data, signal.bits())
-            self.assertEqual(int(found[spelling][0]), bits if signal.floating else raw, place)
-            value = float(found[spelling][1])
-            if isinstance(physical, float):  # not a number, or infinite
-                self.assertEqual(str(value), str(physical), place)
-                continue
-            # Rounded once a step: the division is by a whole number.
-            scale = max(abs(physical), abs(signal.offset), abs(physical - signal.offset))
-            self.assertLessEqual(abs(second_reader.Fraction(value) - physical), scale * second_reader.Fraction(2) ** -50, place)
-            if not signal.floating and signal.length <= 40:
-                self.assertEqual(dbc_bits.take(back, signal.bits()), bits, place)
-
     def check_compiler(self, compiler, seed):
         if shutil.which(compiler) is None:
             self.fail(f"{compiler} is missing")
@@ -144,7 +111,7 @@ class Header(unittest.TestCase):
             answers = done.stdout.split("\n.\n")
             self.assertEqual(len(answers), len(frames) + 1)
             for (index, message, data), answer in zip(frames, answers):
-                self.check(f"seed {seed}, message {index}", message, data, answer.split("\n"))
+                check(self, f"seed {seed}, message {index}", message, data, answer.split("\n"))
             short = subprocess.run([program], input=f"0 {'00' * (database.messages[0].length - 1)}\n", check=True,
                                    capture_output=True, text=True)
             self.assertEqual(short.stdout, "short\n.\n")

@@ -48,12 +48,12 @@ class Generate(harness.Case):
         self.assertIn("/no/such/spec.json: there is no such file", err)
 
     def test_messages_are_not_left_out_without_a_word(self):
-        out, err = self.run_tool("--spec", CAR, "generate", "c", code=1)
-        self.assertEqual((out, err), ("", "amiroctl: generate c: small_car.dbc has only messages, which it has no place for\n"
-                                          "          messages become cpp, spec, dbc\n"))
-        out, err = self.run_tool("--spec", SPEC, "--spec", CAR, "generate", "c")
+        out, err = self.run_tool("--spec", CAR, "generate", "markdown", code=1)
+        self.assertEqual((out, err), ("", "amiroctl: generate markdown: small_car.dbc has only messages, which it has no place for\n"
+                                          "          messages become cpp, spec, dbc, c\n"))
+        out, err = self.run_tool("--spec", SPEC, "--spec", CAR, "generate", "markdown")
         self.assertIn("gyroscope", out)
-        self.assertEqual(err, "generate c: left out: all 11 messages\n")
+        self.assertEqual(err, "generate markdown: left out: all 11 messages\n")
         _, err = self.run_tool("--spec", SPEC, "generate", "spec", code=1)
         self.assertIn("generate spec: topics.json has only topics, which it has no place for\n          topics are in the spec already", err)
 
