@@ -17,7 +17,8 @@ constexpr Target table[] = {
     {"c", "C99 header: structs, encoders and decoders, requests; needs nothing else", make_c, true, true},
     {"markdown", "reference of topics, frames and fields, for people", make_markdown},
     {"wireshark", "dissector in Lua, for Wireshark and tshark", make_wireshark},
-    {"json-schema", "JSON schema of the lines that `amiroctl listen --json` prints", make_json_schema},
+    {"json-schema", "JSON schema of the lines that `amiroctl listen --json` prints", make_json_schema, true,
+     true},
 };
 
 }  // namespace

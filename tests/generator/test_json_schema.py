@@ -48,6 +48,31 @@ class Schema(unittest.TestCase):
 
 
 class RealLines(harness.Case):
+    def schema(self, *specs):
+        """Of several specs it is amiroctl that makes it."""
+        text, _ = self.run_tool(*specs, "generate", "json-schema")
+        return jsonschema.Draft7Validator(json.loads(text))
+
+    def check(self, schema, lines):
+        for line in lines:
+            self.assertEqual([e.message for e in schema.iter_errors(line)], [], line)
+
+    def test_of_simulated_messages(self):
+        """Those of a car and of a truck, each alone, and beside the AMiRo's topics."""
+        car, truck, fast = ROOT / "examples" / "small_car.dbc", ROOT / "examples" / "truck.dbc", os.path.join(self.folder, "fast.dbc")
+        with open(fast, "w", encoding="utf-8") as file:  # at the others' bit rate
+            file.write(truck.read_text(encoding="utf-8").replace("250000", "500000"))
+        for files in ((car,), (truck,), (SPECS["amiro"], fast, car)):
+            specs = [word for file in files for word in ("--spec", str(file))]
+            schema = self.schema(*specs)
+            sim = self.start_sim(*specs)
+            listener = self.start("listen", "--json", "-n", "60", *specs)
+            out, _ = listener.communicate(timeout=60)
+            self.check(schema, self.objects(out))
+            topics = {line.get("topic") for line in self.objects(out)}
+            self.assertTrue({"Engine", "EEC1"} & topics, topics)
+            self.interrupt(sim)
+
     def test_of_a_simulated_robot(self):
         schema = jsonschema.Draft7Validator(json.loads(generate(SPECS["amiro"], "--to", "json-schema", "-o", "-")))
         self.start_sim()
@@ -63,8 +88,7 @@ class RealLines(harness.Case):
         topics = {line.get("topic") for line in lines if "fields" in line}
         self.assertLessEqual({"magnetometer", "power_status", "proximity_ring", "motors", "led_5"}, topics)
         self.assertTrue(any("error" in line for line in lines))
-        for line in lines:
-            self.assertEqual([e.message for e in schema.iter_errors(line)], [], line)
+        self.check(schema, lines)
 
 
 if __name__ == "__main__":
