@@ -50,7 +50,7 @@ class Generate(harness.Case):
     def test_messages_are_not_left_out_without_a_word(self):
         out, err = self.run_tool("--spec", CAR, "generate", "markdown", code=1)
         self.assertEqual((out, err), ("", "amiroctl: generate markdown: small_car.dbc has only messages, which it has no place for\n"
-                                          "          messages become cpp, spec, dbc, c, json-schema\n"))
+                                          "          messages become cpp, spec, dbc, c, wireshark, json-schema\n"))
         out, err = self.run_tool("--spec", SPEC, "--spec", CAR, "generate", "markdown")
         self.assertIn("gyroscope", out)
         self.assertEqual(err, "generate markdown: left out: all 11 messages\n")
