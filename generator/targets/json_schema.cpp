@@ -37,12 +37,6 @@ std::string identifier(std::uint16_t id) {
   return std::string{text.view()};
 }
 
-/// The value of a raw number where 63 bits of decimal digits hold it: beyond that what is printed is rounded.
-base::Result<base::Decimal> exact(const FieldModel& field, std::int64_t raw) {
-  const auto product = base::multiply({raw, 0}, field.scale);
-  return product ? base::add(*product, field.offset) : product;
-}
-
 Json schema_of(const FieldModel& field) {
   const auto width = field.position.width;
   Json schema{{"type", "number"}};
@@ -51,8 +45,8 @@ Json schema_of(const FieldModel& field) {
     schema["type"] = std::array{"number", "string"};
     schema["pattern"] = "^(NaN|-?Infinity)$";
   } else if (width < 64) {
-    auto low = exact(field, protocol::lowest(width, field.is_signed));
-    auto high = exact(field, protocol::highest(width, field.is_signed));
+    auto low = exact_physical(field, protocol::lowest(width, field.is_signed));
+    auto high = exact_physical(field, protocol::highest(width, field.is_signed));
     if (field.scale.digits < 0) std::swap(low, high);
     if (low) schema["minimum"] = number(*low);
     if (high) schema["maximum"] = number(*high);

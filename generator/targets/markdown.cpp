@@ -1,8 +1,14 @@
-/// The reference of a robot's topics: what its spec says, for people.
+/// The reference of a robot's topics and of plain messages: what the spec says, for people.
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <set>
 #include <string_view>
+#include <utility>
 
 #include "ocm/can/text.hpp"
 
+#include "generator/targets/message_fields.hpp"
 #include "generator/targets/target.hpp"
 #include "generator/text/messages.hpp"
 #include "generator/text/words.hpp"
@@ -14,6 +20,7 @@ namespace {
 using base::Duration;
 using spec::FieldModel;
 using spec::FrameModel;
+using spec::MessageModel;
 using spec::Model;
 using spec::TopicModel;
 
@@ -67,29 +74,120 @@ std::string values(const FieldModel& field) {
   return text;
 }
 
+/// Text of any source, which means nothing in Markdown, on one line.
+std::string prose(std::string_view text) {
+  const auto is_word = [](char c) {
+    return static_cast<unsigned char>(c) >= 0x80 || (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') ||
+           (c >= 'A' && c <= 'Z');
+  };
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (static_cast<unsigned char>(c) < ' ' || c == '\x7F') {
+      if (!out.empty() && out.back() != ' ') out += ' ';
+      continue;
+    }
+    const bool inside = i > 0 && i + 1 < text.size() && is_word(text[i - 1]) && is_word(text[i + 1]);
+    // What begins a list or a heading where a line is broken before it.
+    const bool alone =
+        (i == 0 || text[i - 1] == ' ') && std::string_view{"+-=>#"}.find(c) != std::string_view::npos;
+    if (std::string_view{"\\`*<[]|~"}.find(c) != std::string_view::npos || (c == '_' && !inside) || alone)
+      out += '\\';
+    out += c;
+  }
+  return out;
+}
+
+/// In a table's cell, whatever it has in it.
+std::string code_cell(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '|') out += '\\';
+    if (static_cast<unsigned char>(c) >= ' ' && c != '\x7F') out += c;
+  }
+  if (out.find('`') == std::string::npos) return "`" + out + "`";
+  return "`` " + out + " ``";
+}
+
+std::string joined_names(const std::vector<std::string>& names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + prose(name);
+  return out;
+}
+
+/// Where a heading is found in the page. [GitHub: lower case, blanks as hyphens, no other punctuation]
+class Anchors {
+ public:
+  std::string of(std::string_view heading) {
+    std::string anchor;
+    for (const char c : heading) {
+      if (c >= 'A' && c <= 'Z')
+        anchor += static_cast<char>(c - 'A' + 'a');
+      else if (c == ' ')
+        anchor += '-';
+      else if (c == '-' || c == '_' || (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') ||
+               static_cast<unsigned char>(c) >= 0x80)
+        anchor += c;
+    }
+    const unsigned count = counts_[anchor]++;
+    return count == 0 ? anchor : anchor + "-" + std::to_string(count);
+  }
+
+ private:
+  std::map<std::string, unsigned> counts_;
+};
+
 class Page {
  public:
   Page(const Model& model, const Options& options) : model_(model), options_(options) {}
 
   std::string make() {
-    out_.line("# Topics of " + model_.robot);
+    const bool topics = !model_.topics.empty(), messages = !model_.messages.empty();
+    const std::string title = (topics && messages ? "Topics and messages of "
+                               : messages         ? "Messages of "
+                                                  : "Topics of ") +
+                              prose(model_.robot);
+    anchors_.of(title);
+    // The parts first: the tables of contents lead to their headings.
+    for (std::size_t i = 0; i < model_.boards.size(); ++i) board(i);
+    if (std::any_of(model_.messages.begin(), model_.messages.end(),
+                    [&](const auto& m) { return !is_sent(m); }))
+      of_no_board();
+    const std::string parts = std::exchange(out_, Writer{}).take();
+    out_.line("# " + title);
     out_.line();
     out_.comment("Made by `ocm-generate " + options_.spec_name +
                      " --to markdown`. Do not edit: change the spec, and generate again.",
                  "");
     out_.line();
-    if (!model_.description.empty()) out_.comment(sentence(model_.description), "");
-    out_.comment(std::to_string(model_.bit_rate) +
-                     " bit/s. An identifier is 0x400 for what a sensor says and 0 for what a board receives, "
-                     "+ 0x100 times the priority (0 urgent, 1 high, 2 medium, 3 low), + the number below. "
-                     "A value is the raw number times the scale, plus the offset where there is one.",
-                 "");
-    contents();
-    for (std::size_t i = 0; i < model_.boards.size(); ++i) board(i);
+    if (!model_.description.empty())
+      out_.comment(topics ? sentence(model_.description) : ended(prose(model_.description)), "");
+    if (topics)
+      how_topics_are_sent();
+    else if (model_.bit_rate != 0)
+      out_.comment(rate() + ".", "");
+    if (topics) contents();
+    if (messages) message_contents();
+    out_.text(parts);
     return out_.take();
   }
 
  private:
+  [[nodiscard]] std::string rate() const {
+    std::string text = std::to_string(model_.bit_rate) + " bit/s";
+    if (model_.data_bit_rate != 0)
+      text += ", " + std::to_string(model_.data_bit_rate) + " bit/s behind the bit-rate switch of CAN FD";
+    return text;
+  }
+
+  void how_topics_are_sent() {
+    out_.comment(rate() +
+                     ". An identifier is 0x400 for what a sensor says and 0 for what a board receives, "
+                     "+ 0x100 times the priority (0 urgent, 1 high, 2 medium, 3 low), + the number below. "
+                     "A value is the raw number times the scale, plus the offset where there is one.",
+                 "");
+  }
+
   void contents() {
     out_.line();
     out_.line("| topic | alias | number | board | | asked with |");
@@ -113,21 +211,41 @@ class Page {
 
   void board(std::size_t index) {
     const auto& board = model_.boards[index];
-    out_.line();
-    out_.line("## " + board.name);
-    out_.line();
-    out_.comment(
-        with_source(sentence(board.description) + (board.description.empty() ? "" : " ") + board.mcu + ".",
-                    board.source.joined()),
-        "");
+    heading("## ", board.name);
+    const bool has_topics = std::any_of(model_.topics.begin(), model_.topics.end(),
+                                        [&](const auto& topic) { return topic.board == index; });
+    std::string text = has_topics ? sentence(board.description) : ended(prose(board.description));
+    if (!board.mcu.empty()) text += (text.empty() ? "" : " ") + board.mcu + ".";
+    const bool sends = has_topics || std::any_of(model_.messages.begin(), model_.messages.end(),
+                                                 [&](const auto& message) { return message.board == index; });
+    if (!sends) text += std::string{text.empty() ? "" : " "} + "Sends none of them.";
+    if (!text.empty()) out_.line();
+    out_.comment(with_source(std::move(text), board.source.joined()), "");
     for (const TopicModel& topic : model_.topics)
       if (topic.board == index) this->topic(topic);
+    for (const MessageModel& message : model_.messages)
+      if (message.board == index) this->message(message);
+  }
+
+  void of_no_board() {
+    heading("## ", "Of no stated sender");
+    for (const MessageModel& message : model_.messages)
+      if (!is_sent(message)) this->message(message);
+  }
+  [[nodiscard]] bool is_sent(const MessageModel& message) const {
+    return message.board < model_.boards.size();
+  }
+
+  /// Gives the anchor.
+  std::string heading(const char* level, const std::string& text) {
+    out_.line();
+    out_.line(level + prose(text));
+    return anchors_.of(text);
   }
 
   void topic(const TopicModel& topic) {
     const bool sensor = topic.kind == protocol::Kind::sensor;
-    out_.line();
-    out_.line("### " + topic.name);
+    heading("### ", topic.name);
     out_.line();
     if (!topic.description.empty()) out_.comment(sentence(topic.description), "");
     std::string facts = (sensor ? "Sensor " : "Actuator ") + numbers(topic.id, topic.count);
@@ -162,6 +280,120 @@ class Page {
     for (const FieldModel& field : frame.fields) out_.line(row(field));
   }
 
+  // --- plain messages ---
+
+  static std::string ended(std::string text) {
+    if (!text.empty() && std::string_view{".!?:"}.find(text.back()) == std::string_view::npos) text += '.';
+    return text;
+  }
+
+  void message_contents() {
+    out_.line();
+    out_.line("| message | identifier | bytes | period | sender | |");
+    out_.line("|---|---|---|---|---|---|");
+    for (const MessageModel& message : model_.messages) {
+      const auto& address = message.address;
+      const std::string id = message.is_j1939() ? "group " + code(hexadecimal(group_of(address), 5))
+                                                : code(hexadecimal(address.number, address.extended ? 8 : 3));
+      out_.line("| [" + prose(message.name) + "](#" + places_.at(&message) + ") | " + id + " | " +
+                std::to_string(message.length) + (message.fd ? ", FD" : "") + " | " +
+                (message.period.count() == 0 ? "" : time_text(message.period)) + " | " +
+                (is_sent(message) ? prose(model_.boards[message.board].name) : "") + " | " +
+                prose(message.description) + " |");
+    }
+  }
+
+  void message(const MessageModel& message) {
+    places_.emplace(&message, heading("### ", message.name));
+    out_.line();
+    if (!message.description.empty()) out_.comment(ended(prose(message.description)), "");
+    std::string facts = capitalised(address_text(message));
+    if (!message.send_type.empty()) facts += " Sent as " + prose(message.send_type) + ".";
+    if (message.shortest_period.count() != 0)
+      facts += " At least " + time_text(message.shortest_period) + " apart.";
+    if (message.deadline.count() != 0) facts += " Deadline " + time_text(message.deadline) + ".";
+    if (message.jitter.count() != 0) facts += " Jitter " + time_text(message.jitter) + ".";
+    if (!message.other_senders.empty()) facts += " Also sent by " + joined_names(message.other_senders) + ".";
+    if (!message.aliases.empty()) facts += " Also called " + joined_names(message.aliases) + ".";
+    out_.comment(facts, "");
+    if (!message.fields.empty()) {
+      out_.line();
+      out_.line("| field | place | type | scale | range | |");
+      out_.line("|---|---|---|---|---|---|");
+      for (const FieldModel& field : message.fields) out_.line(message_row(message, field));
+    }
+    if (message.source.joined().empty()) return;
+    out_.line();
+    out_.comment("Source: " + prose(message.source.joined()) + ".", "");
+  }
+
+  static std::string selection(const FieldModel& field) {
+    std::string text;
+    for (const auto& [first, last] : field.selected)
+      text += (text.empty() ? "" : ", ") + std::to_string(first) +
+              (first == last ? "" : " to " + std::to_string(last));
+    return "Where " + code_cell(field.selector) + " is " + text + ".";
+  }
+
+  static std::string range_text(const FieldModel& field) {
+    const std::string unit = field.unit.empty() ? "" : " " + prose(field.unit);
+    if (field.range) return print(field.range->min) + " to " + print(field.range->max) + unit;
+    const auto width = field.position.width;
+    if (field.number != protocol::Number::integer || (width == 64 && !field.is_signed)) return {};
+    auto low = exact_physical(field, protocol::lowest(width, field.is_signed));
+    auto high = exact_physical(field, protocol::highest(width, field.is_signed));
+    if (!low || !high) return {};
+    if (field.scale.digits < 0) std::swap(low, high);
+    return print(*low) + " to " + print(*high) + unit;
+  }
+
+  static std::string start_text(const FieldModel& field) {
+    if (field.start.value_or(0) == 0) return {};
+    std::string text;
+    if (field.number == protocol::Number::integer) {
+      const auto value = exact_physical(field, *field.start);
+      if (!value || (field.position.width == 64 && !field.is_signed && *field.start < 0)) return {};
+      text = print(*value);
+    } else {
+      const double raw =
+          field.number == protocol::Number::float32
+              ? static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(*field.start)))
+              : std::bit_cast<double>(*field.start);
+      char digits[32];
+      const double value = raw * field.scale.as_double() + field.offset.as_double();
+      text.assign(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
+    }
+    return "Starts at " + text + (field.unit.empty() ? "" : " " + prose(field.unit)) + ".";
+  }
+
+  static std::string message_row(const MessageModel& message, const FieldModel& field) {
+    const std::string unit = field.unit.empty() ? "" : " " + prose(field.unit);
+    std::string scale = field.scale == base::Decimal{1, 0} && unit.empty() ? "" : print(field.scale) + unit;
+    if (field.offset.digits != 0) scale += ", from " + print(field.offset) + unit;
+    std::string named;
+    for (const auto& value : field.values)
+      named += (named.empty() ? "" : ", ") + std::string{field.flags ? "bit " : ""} +
+               (value.raw < 0 && !field.is_signed ? std::to_string(static_cast<std::uint64_t>(value.raw))
+                                                  : std::to_string(value.raw)) +
+               " " + code_cell(value.name);
+    if (!named.empty()) named += ".";
+    std::string text;
+    for (const std::string& more :
+         {field.selector.empty() ? "" : selection(field), ended(prose(field.description)), named,
+          start_text(field), field.receivers.empty() ? "" : "To " + joined_names(field.receivers) + ".",
+          field.position.bytes() > message.length ? std::string{"Beyond the length: in longer frames only."}
+                                                  : "",
+          field.source.joined().empty() ? "" : prose("[" + field.source.joined() + "]")})
+      if (!more.empty()) text += (text.empty() ? "" : " ") + more;
+    const char* const kind = field.number != protocol::Number::integer ? "f" : field.is_signed ? "i" : "u";
+    const bool is_named = field.flags || field.is_enumeration();
+    return "| " + prose(field.name) + " | " + place(field) + " | " + kind +
+           std::to_string(field.position.width) + " | " + scale + " | " +
+           (is_named ? "" : range_text(field)) + " | " + text + " |";
+  }
+
+  // --- topics ---
+
   static std::string row(const FieldModel& field) {
     const std::string unit = field.unit.empty() ? "" : " " + field.unit;
     std::string scale =
@@ -182,6 +414,8 @@ class Page {
   const Model& model_;
   const Options& options_;
   Writer out_;
+  Anchors anchors_;
+  std::map<const MessageModel*, std::string> places_;  ///< the anchors of messages
 };
 
 }  // namespace

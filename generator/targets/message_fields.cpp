@@ -89,7 +89,7 @@ std::string hexadecimal(std::uint64_t number, int digits) {
 }
 
 std::string address_text(const MessageModel& message) {
-  std::string text = std::to_string(message.length) + " bytes";
+  std::string text = std::to_string(message.length) + (message.length == 1 ? " byte" : " bytes");
   if (message.fd) text += " of CAN FD";
   if (message.is_j1939())
     text += ", parameter group " + hexadecimal(group_of(message.address), 5);

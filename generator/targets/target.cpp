@@ -15,7 +15,7 @@ constexpr Target table[] = {
     {"spec", "our JSON of plain messages, from a DBC file", make_spec, false, true},
     {"dbc", "CAN database, for canmatrix, cantools, SavvyCAN, BUSMASTER and the like", make_dbc, true, true},
     {"c", "C99 header: structs, encoders and decoders, requests; needs nothing else", make_c, true, true},
-    {"markdown", "reference of topics, frames and fields, for people", make_markdown},
+    {"markdown", "reference of topics, messages and fields, for people", make_markdown, true, true},
     {"wireshark", "dissector in Lua, for Wireshark and tshark", make_wireshark, true, true},
     {"json-schema", "JSON schema of the lines that `amiroctl listen --json` prints", make_json_schema, true,
      true},

@@ -62,8 +62,13 @@ std::size_t frame_count(const TopicModel& topic) {
   return count;
 }
 
+base::Result<Decimal> exact_physical(const FieldModel& field, std::int64_t raw) {
+  const auto product = base::multiply({raw, 0}, field.scale);
+  return product ? base::add(*product, field.offset) : product;
+}
+
 Decimal physical(const FieldModel& field, std::int64_t raw) {
-  return *base::add(*base::multiply({raw, 0}, field.scale), field.offset);
+  return *exact_physical(field, raw);
 }
 
 Range range_of(const FieldModel& field) {

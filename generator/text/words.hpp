@@ -38,7 +38,10 @@ namespace ocm::generate {
 /// A name for each frame of the topic is needed: it has several, or an array of them.
 [[nodiscard]] bool is_aggregate(const spec::TopicModel& topic);
 
-/// The physical value of a raw number of the field, exactly.
+/// The physical value of a raw number of the field, exactly: an error where 63 bits of decimal digits do not
+/// hold it, as of wide fields of plain messages.
+[[nodiscard]] base::Result<base::Decimal> exact_physical(const spec::FieldModel& field, std::int64_t raw);
+/// Of a topic's field, which they hold.
 [[nodiscard]] base::Decimal physical(const spec::FieldModel& field, std::int64_t raw);
 
 /// Lowest and highest physical value that the spec allows.

@@ -410,11 +410,16 @@ TEST_CASE("messages: what a DBC file has no place for is told") {
         std::vector<std::string>{
             "other names of A and 1 more", "deadlines of A", "jitter of A", "names of flags of A",
             "the end of texts at a backslash, which gets a blank behind it, of A", "a range of [0, 0] of A"});
-  const auto* markdown = generate::find_target("markdown");
-  REQUIRE(markdown != nullptr);
-  CHECK(generate::left_out(*markdown, model) == std::vector<std::string>{"all 2 messages"});
-  CHECK_FALSE(generate::has_any(*markdown, model));
   CHECK(generate::has_any(*dbc, model));
+  const generate::Target of_topics{"own", "", nullptr};
+  CHECK(generate::left_out(of_topics, model) == std::vector<std::string>{"all 2 messages"});
+  CHECK_FALSE(generate::has_any(of_topics, model));
+  Model topics;
+  topics.topics.resize(3);
+  const auto* spec = generate::find_target("spec");
+  REQUIRE(spec != nullptr);
+  CHECK(generate::left_out(*spec, topics) == std::vector<std::string>{"all 3 topics"});
+  CHECK_FALSE(generate::has_any(*spec, topics));
 }
 
 }  // namespace generator_messages_test

@@ -47,13 +47,29 @@ class Generate(harness.Case):
         _, err = self.run_tool("--spec", "/no/such/spec.json", "generate", "dbc", code=1)
         self.assertIn("/no/such/spec.json: there is no such file", err)
 
-    def test_messages_are_not_left_out_without_a_word(self):
-        out, err = self.run_tool("--spec", CAR, "generate", "markdown", code=1)
-        self.assertEqual((out, err), ("", "amiroctl: generate markdown: small_car.dbc has only messages, which it has no place for\n"
-                                          "          messages become cpp, spec, dbc, c, wireshark, json-schema\n"))
-        out, err = self.run_tool("--spec", SPEC, "--spec", CAR, "generate", "markdown")
-        self.assertIn("gyroscope", out)
-        self.assertEqual(err, "generate markdown: left out: all 11 messages\n")
+    def test_every_target_has_the_messages(self):
+        for target in TARGETS:
+            path = os.path.join(self.folder, "file")
+            self.assertEqual(self.run_tool("--spec", CAR, "generate", target, "-o", path), ("", ""))
+            text = pathlib.Path(path).read_bytes()
+            self.assertIn(b"Transmission", text)
+            self.assertEqual(text, self.bytes_of(TOOL, CAR, "--to", target, "-o", "-"))
+            self.assertEqual(self.run_tool("--spec", SPEC, "--spec", CAR, "generate", target, "-o", path), ("", ""))
+            for word in (b"Transmission", b"Gyroscope" if target in ("cpp", "dbc") else b"gyroscope"):
+                self.assertIn(word, pathlib.Path(path).read_bytes(), target)
+
+    def test_headers_of_both_compile(self):
+        for target, compiler, name in (("c", ["gcc", "-std=c99"], "both.h"), ("cpp", ["g++", "-std=c++20", f"-I{harness.SOURCE}/include"], "both.hpp")):
+            path = os.path.join(self.folder, name)
+            self.run_tool("--spec", SPEC, "--spec", CAR, "generate", target, "-o", path)
+            main = os.path.join(self.folder, f"main{'.c' if target == 'c' else '.cpp'}")
+            pathlib.Path(main).write_text(f'#include "{name}"\nint main(void) {{ return 0; }}\n', encoding="ascii")
+            subprocess.run([*compiler, "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-fsyntax-only", main], check=True, timeout=120)
+
+    def test_topics_are_not_left_out_without_a_word(self):
+        out, err = self.run_tool("--spec", SPEC, "--spec", CAR, "generate", "spec")
+        self.assertIn("Transmission", out)
+        self.assertRegex(err, "^generate spec: left out: all [0-9]+ topics\n$")
         _, err = self.run_tool("--spec", SPEC, "generate", "spec", code=1)
         self.assertIn("generate spec: topics.json has only topics, which it has no place for\n          topics are in the spec already", err)
 
