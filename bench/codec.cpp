@@ -4,12 +4,13 @@
 #include "bench/codec.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <random>
 #include <string_view>
 #include <vector>
+
+#include "bench/times.hpp"
 
 namespace {
 
@@ -41,27 +42,6 @@ Work make_work(std::size_t count, bool random_order) {
   return work;
 }
 
-/// ns a frame, round after round.
-class Times {
- public:
-  template <class F>
-  void round(std::size_t frames, F&& run) {
-    const auto start = std::chrono::steady_clock::now();
-    run();
-    const std::chrono::duration<double, std::nano> took = std::chrono::steady_clock::now() - start;
-    ns_.push_back(took.count() / static_cast<double>(frames));
-  }
-  [[nodiscard]] double best() const { return *std::min_element(ns_.begin(), ns_.end()); }
-  [[nodiscard]] double median() const {
-    std::vector<double> sorted = ns_;
-    std::sort(sorted.begin(), sorted.end());
-    return sorted[sorted.size() / 2];
-  }
-
- private:
-  std::vector<double> ns_;
-};
-
 struct Decoder {
   const char* name;
   std::uint64_t (*run)(std::span<const Frame>);
@@ -73,13 +53,6 @@ struct Encoder {
   void (*run)(std::span<const Numbers>, Payload*);
   Times times{};
 };
-
-/// `reference`: what the ratio is to.
-void print(const char* what, const char* order, const char* name, const Times& times,
-           const Times& reference) {
-  std::printf("%-7s %-9s %-13s median %6.2f  best %6.2f ns/frame  %5.2f x by hand\n", what, order, name,
-              times.median(), times.best(), times.median() / reference.median());
-}
 
 [[noreturn]] void differ(const char* what, const char* one, const char* other) {
   std::fprintf(stderr, "codec: %s: %s and %s give different results\n", what, one, other);
