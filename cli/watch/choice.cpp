@@ -25,7 +25,8 @@ void add_sent_by(std::string_view verb, const protocol::Catalogue& catalogue, co
   if (std::none_of(catalogue.boards.begin(), catalogue.boards.end(), known)) {
     std::vector<std::string_view> names;
     for (const auto& board : catalogue.boards) names.push_back(board.name);
-    fail({fmt::format("{}: --sender {}: no such board", verb, sender), words::suggestion(sender, names)},
+    fail({fmt::format("{}: --sender {}: no such board", verb, sender),
+          names.empty() ? "the spec names no board" : words::suggestion(sender, names)},
          exit_usage);
   }
   for (const auto& topic : catalogue.topics)

@@ -69,19 +69,39 @@ class Converter {
 
   void boards(dbc::Document& document, Model& model) {
     for (dbc::Node& node : document.nodes) {
-      if (model.boards.size() == protocol::no_board) {
-        doubt(1, std::to_string(document.nodes.size()) + " nodes",
-              "the first " + std::to_string(protocol::no_board) +
-                  " are kept: messages of others have no sender");
-        break;
-      }
-      boards_.try_emplace(node.name, static_cast<std::uint8_t>(model.boards.size()));
       BoardModel board;
       board.name = std::move(node.name);
       board.description = std::move(node.comment);
       board.attributes = attributes_of(node.attributes);
-      model.boards.push_back(std::move(board));
+      add_board(std::move(board), model);
     }
+    // Many files have no BU_, or name only some nodes there.
+    const auto undeclared = [&](const std::string& name) {
+      if (name.empty() || boards_.find(name) != boards_.end()) return;
+      BoardModel board;
+      board.name = name;
+      add_board(std::move(board), model);
+    };
+    for (const dbc::Message& message : document.messages) {
+      undeclared(message.sender);
+      for (const std::string& sender : message.other_senders) undeclared(sender);
+    }
+    for (const dbc::Message& message : document.messages)
+      for (const dbc::Signal& signal : message.signals)
+        for (const std::string& receiver : signal.receivers) undeclared(receiver);
+    if (left_out_ != 0)
+      doubt(
+          1, std::to_string(model.boards.size() + left_out_) + " nodes",
+          "the first " + std::to_string(protocol::no_board) + " are kept: messages of others have no sender");
+  }
+  void add_board(BoardModel board, Model& model) {
+    const bool is_full = model.boards.size() == protocol::no_board;
+    const auto number = is_full ? protocol::no_board : static_cast<std::uint8_t>(model.boards.size());
+    if (!boards_.try_emplace(board.name, number).second) return;
+    if (is_full)
+      ++left_out_;
+    else
+      model.boards.push_back(std::move(board));
   }
 
   void add(dbc::Message& message, Model& model) {
@@ -170,7 +190,8 @@ class Converter {
 
   std::string file_name_;
   std::vector<Problem>& doubts_;
-  std::unordered_map<std::string, std::uint8_t> boards_;
+  std::unordered_map<std::string, std::uint8_t> boards_;  ///< no_board: one too many
+  std::size_t left_out_ = 0;                              ///< boards
 };
 
 }  // namespace

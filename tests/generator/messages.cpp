@@ -239,6 +239,7 @@ void check_both_ways(const Model& model) {
   INFO(json);
   const auto from_json = spec::parse(json, "x.json");
   CHECK(printed(from_json.problems) == std::vector<std::string>{});
+  for (const auto& doubt : from_json.doubts) CHECK_FALSE(doubt.what.starts_with("there is no board"));
   REQUIRE(from_json.spec);
   check_same(model, from_json.spec->model());
   const std::string dbc = generate::make_dbc(model, {"x", std::nullopt});
@@ -261,6 +262,35 @@ TEST_CASE("messages: DBC files become our JSON, and go back") {
     ++files;
   }
   CHECK(files >= 2);
+}
+
+TEST_CASE("messages: nodes that a DBC file does not declare are boards, and its JSON is without doubts") {
+  const std::string text =
+      "BU_: Motor\n"
+      "BO_ 1 A: 8 Motor\n SG_ a : 0|8@1+ (1,0) [0|0] \"\" XXX,Dash\n"
+      "BO_ 2 B: 8 XXX\n SG_ b : 0|8@1+ (1,0) [0|0] \"\" Vector__XXX\n"
+      "BO_ 3 C: 8 Vector__XXX\n"
+      "BO_TX_BU_ 2 : XXX,Spare;\n";
+  const Model model = parse(text, {}, "f.dbc");
+  std::vector<std::string> boards;
+  for (const auto& board : model.boards) boards.push_back(board.name);
+  CHECK(boards == std::vector<std::string>{"Motor", "XXX", "Spare", "Dash"});
+  CHECK(model.messages[0].board == 0);
+  CHECK(model.messages[1].board == 1);
+  CHECK(model.messages[2].board == protocol::no_board);
+  check_same(model, parse(generate::make_spec(model, {"f.dbc", std::nullopt}), {}));
+  check_both_ways(model);
+}
+
+TEST_CASE("messages: more nodes than a catalogue has place for") {
+  std::string text;
+  for (int i = 0; i < 300; ++i)
+    text += "BO_ " + std::to_string(i) + " M" + std::to_string(i) + ": 8 N" + std::to_string(i) + "\n";
+  const Model model =
+      parse(text, {"f.dbc:1: 300 nodes; the first 255 are kept: messages of others have no sender"}, "f.dbc");
+  CHECK(model.boards.size() == 255);
+  CHECK(model.messages[254].board == 254);
+  CHECK(model.messages[255].board == protocol::no_board);
 }
 
 /// Messages as nobody would think of them, of what both formats can say.
@@ -319,7 +349,12 @@ class RandomModel {
     if (one_in(3)) to.push_back({"Text", text()});
   }
 
-  MessageModel message(const Model& model, bool starts) {
+  /// Of a board that there is from now on.
+  std::string board(Model& model) {
+    model.boards.emplace_back();
+    return model.boards.back().name = name();
+  }
+  MessageModel message(Model& model, bool starts) {
     MessageModel out;
     out.name = name();
     if (one_in(2)) out.description = text();
@@ -332,17 +367,17 @@ class RandomModel {
     out.fd = !out.is_j1939() && (out.length > 8 || one_in(8));
     if (!model.boards.empty() && one_in(2))
       out.board = static_cast<std::uint8_t>(up_to(model.boards.size() - 1));
-    if (out.board != protocol::no_board && one_in(4)) out.other_senders.push_back(name());
+    if (out.board != protocol::no_board && one_in(4)) out.other_senders.push_back(board(model));
     if (one_in(2)) out.period = std::chrono::microseconds{1 + up_to(2'000'000)};
     if (one_in(4)) out.shortest_period = std::chrono::milliseconds{1 + up_to(1000)};
     if (one_in(3)) out.send_type = one_in(2) ? "Cyclic" : text();
     add_attributes(out.attributes);
     if (out.length == 0) return out;
-    for (std::uint64_t i = up_to(6); i-- > 0;) out.fields.push_back(field(out, starts));
+    for (std::uint64_t i = up_to(6); i-- > 0;) out.fields.push_back(field(model, out, starts));
     return out;
   }
 
-  FieldModel field(const MessageModel& message, bool starts) {
+  FieldModel field(Model& model, const MessageModel& message, bool starts) {
     FieldModel out;
     out.name = name();
     if (one_in(3)) out.description = text();
@@ -369,7 +404,7 @@ class RandomModel {
           out.start_from(kind < 2 ? decimal() : base::Decimal{static_cast<std::int64_t>(up_to(1)), 0});
       out.start = start;
     }
-    if (one_in(3)) out.receivers.push_back(name());
+    if (one_in(3)) out.receivers.push_back(board(model));
     add_attributes(out.attributes);
     if (!message.fields.empty() && one_in(2)) select(message, out);
     return out;

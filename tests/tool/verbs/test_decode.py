@@ -109,6 +109,15 @@ class Decode(Case):
         odometry = self.run_tool("decode", "--where", "odom.velocity.x=0.05", stdin=LOG)[0]
         self.assertEqual([event["frame"] for event in self.objects(odometry)], ["velocity", "pose"])
 
+    def test_senders_that_a_dbc_file_does_not_declare(self):
+        spec = self.file("f.dbc", b'BO_ 1 A: 1 XXX\n SG_ a : 0|8@1+ (1,0) [0|0] "" XXX\nBO_ 2 B: 1 Dash\n')
+        out, _ = self.run_tool("--spec", spec, "decode", "--json", "--sender", "XXX", stdin="(1.0) can0 001#05\n(2.0) can0 002#05\n")
+        self.assertEqual([event["topic"] for event in self.objects(out)], ["A"])
+        self.assertIn("XXX", self.run_tool("--spec", spec, "list")[0])
+        spec = self.file("g.dbc", b"BO_ 1 A: 1 Vector__XXX\n")
+        _, err = self.run_tool("--spec", spec, "decode", "--sender", "XXX", code=2)
+        self.assertIn("no such board\n          the spec names no board", err)
+
     def test_frames_without_a_chosen_field_are_passed_over(self):
         """One that is in some frames only: neither objects without fields nor lines without a number."""
         car = os.path.join(SOURCE, "examples", "small_car.dbc")
