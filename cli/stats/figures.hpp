@@ -27,6 +27,7 @@ struct Report {
   std::string_view robot;
   std::string source;
   std::vector<Bus> buses;
+  std::vector<const protocol::Topic*> never_came{};  ///< see Collector::never_came
 };
 
 /// Sorts frames by the interface that they came over. A log of another interface of the same name goes on
@@ -41,6 +42,8 @@ class Collector {
   [[nodiscard]] bool any() const noexcept;
   /// As of the last frame, or of `now`.
   [[nodiscard]] std::vector<Bus> buses(std::optional<base::Time> now = {}) const;
+  /// Messages with a stated period that came on none of the buses, though one was looked at for as long.
+  [[nodiscard]] std::vector<const protocol::Topic*> never_came(const std::vector<Bus>& buses) const;
 
  private:
   struct Part {

@@ -95,6 +95,18 @@ void tell_contradictions(const stats::Report& report, std::string_view guess) {
   }
 }
 
+bool any_shown(const stats::Report& report, const stats::Shown& shown) {
+  for (const stats::Bus& bus : report.buses)
+    for (const auto& topic : bus.figures.topics)
+      if (std::find(shown.begin(), shown.end(), topic.topic) != shown.end()) return true;
+  return false;
+}
+std::vector<std::string_view> names_of(const stats::Shown& shown) {
+  std::vector<std::string_view> names;
+  for (const auto* topic : shown) names.push_back(topic->name);
+  return names;
+}
+
 void run(Session& session, const StatsOptions& options, int& exit_code) {
   const auto& catalogue = session.catalogue();
   const auto means_topic = [&catalogue](std::string_view word) {
@@ -112,7 +124,9 @@ void run(Session& session, const StatsOptions& options, int& exit_code) {
   const bool table = !options.json && !options.csv;
   Screen screen;
   const auto report = [&](std::optional<base::Time> now) {
-    return stats::Report{catalogue.robot, watching.source(), collector.buses(now)};
+    stats::Report all{catalogue.robot, watching.source(), collector.buses(now)};
+    all.never_came = collector.never_came(all.buses);
+    return all;
   };
   // In a pipe, a command with a given end prints at the end.
   const bool tell = table && (screen.terminal() || !watching.ends());
@@ -133,9 +147,15 @@ void run(Session& session, const StatsOptions& options, int& exit_code) {
     write_out(stats::to_csv(result, shown));
   else
     screen.finish(stats::to_table(result, shown, session.colour(), Screen::columns()));
+  // A CSV file has a line for what came on a bus.
+  if (const std::string text = stats::never_came_text(result, shown); options.csv && !text.empty())
+    remark(text);
   tell_contradictions(result, watching.live() ? "another robot?" : "a log of another bus?");
   if (!collector.any() && interrupted() == 0) {
     remark(fmt::format("amiroctl: stats: no frame came from {}", watching.source()));
+    exit_code = exit_failure;
+  } else if (!shown.empty() && !any_shown(result, shown) && interrupted() == 0) {
+    remark(fmt::format("amiroctl: stats: nothing came of {}", fmt::join(names_of(shown), ", ")));
     exit_code = exit_failure;
   }
   for (const auto& assertion : assertions) {

@@ -74,11 +74,15 @@ class BusStatistics {
  public:
   static constexpr std::size_t most_strangers = 32;
 
-  /// The catalogue must outlive it.
-  BusStatistics(const protocol::Catalogue& catalogue, BitRates rates) : rates_(rates), receiver_(catalogue) {
+  /// The catalogue must outlive it. `transport`: whether a message of several frames of J1939's transport
+  /// protocol is a sample, which needs 60 KiB more where the catalogue has J1939.
+  BusStatistics(const protocol::Catalogue& catalogue, BitRates rates,
+                client::Transport transport = client::Transport::as_frames)
+      : rates_(rates), receiver_(catalogue, transport) {
     topics_.reserve(catalogue.topics.size());
     for (const auto& topic : catalogue.topics) {
-      topics_.push_back({{.topic = &topic, .timing = {}}, Stream{topic.usual_period()}});
+      const Usual usual = topic.is_message() ? Usual::stated : Usual::if_seen;
+      topics_.push_back({{.topic = &topic, .timing = {}}, Stream{topic.usual_period(), usual}});
     }
   }
 
@@ -92,9 +96,13 @@ class BusStatistics {
       return reception;
     }
     const unsigned bits = count_bits(received.time, bits_on_bus(received.frame));
+    if (reception.meaning == client::Meaning::transport) return reception;
     if (reception.topic == nullptr) {
       stranger_bits_ += bits;
-      note_stranger(received.frame.id, received.frame.format);
+      if (reception.transported != nullptr)
+        note_stranger(reception.transported->id.encode(), can::Format::extended);
+      else
+        note_stranger(received.frame.id, received.frame.format);
       return reception;
     }
     Entry& entry = topics_[static_cast<std::size_t>(reception.topic - receiver_.catalogue().topics.data())];
