@@ -88,6 +88,8 @@ class JsonText {
   char* put(char* to, Piece piece) const noexcept;
   char* put_begin(char* to, std::string_view bus_text, const log::Entry& entry) const noexcept;
   const std::string& bus_text(std::string_view bus, std::uint16_t number);
+  /// What a remote frame is of; nullptr: its identifier is unknown.
+  [[nodiscard]] const protocol::Topic* remote_topic(const log::Entry& entry) const noexcept;
   void write_rest(log::Bytes& out, std::string_view bus_text, const Known& known,
                   const log::Entry& entry) const;
   void write_request(log::Bytes& out, const Known& known, const log::Entry& entry) const;

@@ -166,6 +166,7 @@ std::vector<std::string> summary(const Bus& bus) {
   fault(bus.drops, "frame* lost");
   fault(figures.fd_frames - figures.not_in_load, "CAN FD frame*");
   fault(figures.not_in_load, "CAN FD frame*, not in the load without --data-bitrate");
+  fault(counters.remote, "remote frame*");
   fault(counters.transport, "frame* of the transport protocol of J1939");
   fault(counters.unknown + counters.fd, "frame* that no topic or message has");
   if (counters.unknown + counters.fd != 0) faults += fmt::format(" ({})", strangers(figures));
@@ -234,6 +235,7 @@ Json to_object(const Bus& bus, const Shown& shown) {
           {"wrong_length", counters.wrong_dlc},
           {"fd_frames", figures.fd_frames},
           {"fd_frames_not_in_load", figures.not_in_load},
+          {"remote", counters.remote},
           {"transport", counters.transport},
           {"unknown", counters.unknown + counters.fd},
           {"unknown_ids", unknown},

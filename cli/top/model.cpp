@@ -173,7 +173,7 @@ Summary Model::summary(base::Time now) const {
   out.lost = lost_;
   out.incomplete = figures.counters.incomplete;
   out.wrong_length = figures.counters.wrong_dlc;
-  out.unknown = figures.counters.unknown + figures.counters.fd;
+  out.unknown = figures.counters.unknown + figures.counters.remote + figures.counters.fd;
   out.not_in_load = figures.not_in_load;
   out.not_shown = not_shown_;
   return out;

@@ -55,7 +55,8 @@ class Window {
 struct Decoding {
   Display display;
   Window window;
-  std::uint64_t most = 0;  ///< lines to show; 0: all
+  std::uint64_t most = 0;    ///< lines to show; 0: all
+  std::uint64_t frames = 0;  ///< of the logs, chosen or not
   bool unreadable = false;
   bool ended_early = false;
 
@@ -64,6 +65,7 @@ struct Decoding {
   void take(std::span<const log::Entry> entries, const log::Interfaces& interfaces) {
     for (const auto& entry : entries) {
       if (over()) return;
+      ++frames;
       if (!window.has(entry)) continue;
       if (window.shows(entry, display.understand(entry)))
         display.show(interfaces.name(entry.interface), entry);
@@ -87,7 +89,7 @@ struct Decoding {
 /// Frames that are of topics of this robot.
 std::uint64_t understood(const Display& display) {
   const auto& seen = display.counters();
-  return seen.frames - seen.unknown - seen.wrong_dlc - seen.errors - seen.transport;
+  return seen.frames - seen.unknown - seen.remote - seen.wrong_dlc - seen.errors - seen.transport;
 }
 
 void decode(Session& session, const DecodeOptions& options, int& exit_code) {
@@ -102,10 +104,13 @@ void decode(Session& session, const DecodeOptions& options, int& exit_code) {
   }
   Display& display = decoding.display;
   display.summarise(0);
-  if (display.counters().frames == 0) remark("no frame to decode");
-  display.tell_contradictions("a log of another bus?");
+  if (decoding.frames == 0)
+    remark("no frame to decode");
+  else if (display.shown() == 0 && !decoding.over())
+    remark(fmt::format("none of {} frames matches", decoding.frames));
+  display.tell_contradictions(Seen::in_log);
   const bool not_all = decoding.unreadable || display.any_fault();
-  if (understood(display) == 0 || decoding.ended_early || (options.strict && not_all))
+  if (understood(display) == 0 || display.shown() == 0 || decoding.ended_early || (options.strict && not_all))
     exit_code = exit_failure;
   exit_code = exit_code_after_interrupt(exit_code);
 }

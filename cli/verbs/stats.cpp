@@ -85,13 +85,13 @@ measure::BitRates chosen_bit_rates(Session& session, const StatsOptions& options
 }
 
 /// Of each bus, for its figures are its own.
-void tell_contradictions(const stats::Report& report, std::string_view guess) {
+void tell_contradictions(const stats::Report& report, const protocol::Catalogue& catalogue, Seen where) {
   for (const stats::Bus& bus : report.buses) {
     const auto& counters = bus.figures.counters;
     const std::string beginning = report.buses.size() > 1 ? bus.name + ": " : "";
     cli::tell_contradictions({counters.frames - counters.errors, counters.unknown + counters.fd,
                               counters.wrong_dlc, bus.figures.wrong_length},
-                             report.robot, guess, beginning);
+                             catalogue, where, beginning);
   }
 }
 
@@ -150,7 +150,7 @@ void run(Session& session, const StatsOptions& options, int& exit_code) {
   // A CSV file has a line for what came on a bus.
   if (const std::string text = stats::never_came_text(result, shown); options.csv && !text.empty())
     remark(text);
-  tell_contradictions(result, watching.live() ? "another robot?" : "a log of another bus?");
+  tell_contradictions(result, catalogue, watching.live() ? Seen::live : Seen::in_log);
   if (!collector.any() && interrupted() == 0) {
     remark(fmt::format("amiroctl: stats: no frame came from {}", watching.source()));
     exit_code = exit_failure;

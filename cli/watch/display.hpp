@@ -15,6 +15,7 @@
 #include "cli/output/printer.hpp"
 #include "cli/shared/arguments.hpp"
 #include "cli/shared/session.hpp"
+#include "cli/watch/contradictions.hpp"
 
 namespace ocm::cli {
 
@@ -55,8 +56,8 @@ class Display {
   /// What came, and every fault by its cause, on stderr. `until`: up to when was listened, if that is later
   /// than the last frame.
   void summarise(std::uint64_t lost, base::Time until = {});
-  /// On stderr, if it is so: `guess` is what is said when nearly all do.
-  void tell_contradictions(std::string_view guess) const;
+  /// On stderr, if it is so.
+  void tell_contradictions(Seen where) const;
 
  private:
   void summarise_transport();

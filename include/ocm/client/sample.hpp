@@ -68,7 +68,8 @@ enum class Meaning : std::uint8_t {
   sample,     ///< the last frame of a complete sample, or a message
   request,    ///< an operator asks a sensor
   set_point,  ///< an operator commands an actuator
-  unknown,    ///< no topic and no message has this identifier, or the frame is remote
+  unknown,    ///< no topic and no message has this identifier
+  remote,     ///< a remote frame with the identifier of a topic or message
   wrong_dlc,  ///< a length that the topic has not, or that the message is longer than
   error,      ///< a report of the CAN controller
   transport,  ///< a frame of J1939's transport protocol that completes no message
@@ -89,7 +90,8 @@ struct ReceiverCounters {
   std::uint64_t samples = 0;
   std::uint64_t commands = 0;
   std::uint64_t unknown = 0;
-  std::uint64_t fd = 0;  ///< CAN FD frames that no message has; no topic has any
+  std::uint64_t remote = 0;  ///< remote frames of known identifiers
+  std::uint64_t fd = 0;      ///< CAN FD frames that no message has; no topic has any
   std::uint64_t wrong_dlc = 0;
   std::uint64_t incomplete =
       0;  ///< samples that lack a frame; the one that was under way at the start is not counted
@@ -97,7 +99,7 @@ struct ReceiverCounters {
   std::uint64_t transport = 0;  ///< frames of J1939's transport protocol that complete no message
   /// Frames or samples that a listener should know of.
   [[nodiscard]] constexpr std::uint64_t faults() const noexcept {
-    return unknown + fd + wrong_dlc + incomplete + errors;
+    return unknown + remote + fd + wrong_dlc + incomplete + errors;
   }
 };
 
@@ -182,7 +184,14 @@ class Receiver {
             &whole};
   }
 
+  Reception take_remote(const can::FrameView& frame) {
+    const Subject subject = index_.subject(frame.id, can::data_format(frame.format));
+    ++(subject ? counters_.remote : counters_.unknown);
+    return {subject ? Meaning::remote : Meaning::unknown, {}, subject.topic, {}};
+  }
+
   Reception take_frame(const can::FrameView& frame, base::Time time) {
+    if (can::is_remote(frame.format)) return take_remote(frame);
     const Subject subject = index_.subject(frame.id, frame.format);
     if (!subject || (frame.fd && !subject.topic->is_message())) {
       ++(frame.fd ? counters_.fd : counters_.unknown);

@@ -64,7 +64,7 @@ struct BusFigures {
   double rate_hz = 0;        ///< frames, error frames not counted
   double load = 0;           ///< share of time from the first frame's end to the last's, 0..1
   double request_load = 0;   ///< of these, requests
-  double stranger_load = 0;  ///< of these, frames that no topic has, or not so
+  double stranger_load = 0;  ///< of these, frames that no topic has, or not so: remote, of another length
   double worst_load = 0;     ///< in the worst BusLoad::window
   base::Time worst_until{};  ///< when that ended; `first` where no frame is in the load
   [[nodiscard]] base::Duration span() const noexcept { return last - first; }
@@ -97,6 +97,10 @@ class BusStatistics {
     }
     const unsigned bits = count_bits(received.time, bits_on_bus(received.frame));
     if (reception.meaning == client::Meaning::transport) return reception;
+    if (reception.meaning == client::Meaning::remote) {
+      stranger_bits_ += bits;
+      return reception;
+    }
     if (reception.topic == nullptr) {
       stranger_bits_ += bits;
       if (reception.transported != nullptr)

@@ -165,7 +165,7 @@ class Transport(Case):
         self.assertEqual(groups("--pgn", "EB00"), ["0FEEC", "0FEEB"])
         self.assertEqual(groups("--sender", "Engine"), ["0FEEC", "0FEEB"])
         self.assertEqual(groups("--where", "VI.Last>25"), ["0FEEC"])
-        self.assertEqual(count("--where", "VI.Last>26"), 0)
+        self.assertEqual(count("--where", "VI.Last>26", code=1), 0)
         self.assertEqual(groups("--topic", "CI", "--where", "VI.Last=26"), ["0FEEB"])
         self.assertEqual(groups("--topic", "CI", "--where", "VI.Last=27"), [])
         self.assertEqual(groups("--where", "VI.Absent>=0"), [])
