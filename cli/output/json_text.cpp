@@ -82,12 +82,14 @@ void append_json(std::string& out, std::string_view text) {
   }
 }
 
-JsonText::JsonText(const protocol::Catalogue& catalogue, const Selection& selection)
+JsonText::JsonText(const protocol::Catalogue& catalogue, const Selection& selection,
+                   std::string_view interface)
     : catalogue_(&catalogue),
-      index_(catalogue),
+      index_(interface.empty() ? client::FrameIndex{catalogue} : client::FrameIndex{catalogue, interface}),
       messages_(catalogue.topics.size()),
       everything_(selection.everything()) {
   for (const auto& topic : catalogue.topics) {
+    if (!interface.empty() && !topic.is_on(interface)) continue;
     for (std::size_t i = 0; i < topic.frames.size(); ++i)
       know({&topic, static_cast<std::uint8_t>(i)}, selection);
     if (topic.kind != protocol::Kind::sensor) continue;

@@ -31,8 +31,10 @@ void append_json(std::string& out, std::string_view text);
 
 class JsonText {
  public:
-  /// The catalogue must outlive this. With a selection, only its fields, and only frames that have one.
-  explicit JsonText(const protocol::Catalogue& catalogue, const Selection& selection = {});
+  /// The catalogue must outlive this. With a selection, only its fields, and only frames that have one. With
+  /// an interface, without the topics that are on another.
+  explicit JsonText(const protocol::Catalogue& catalogue, const Selection& selection = {},
+                    std::string_view interface = {});
 
   /// Appends one line. false: nothing of the frame was selected.
   bool write(log::Bytes& out, std::string_view bus, const log::Entry& entry);

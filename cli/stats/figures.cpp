@@ -9,7 +9,7 @@ Collector::Part& Collector::find(std::string_view name) {
   if (last_ != nullptr && last_->name == name) return *last_;
   for (Part& part : parts_)
     if (part.name == name) return *(last_ = &part);
-  measure::BusStatistics statistics{*catalogue_, rates_, client::Transport::together};
+  measure::BusStatistics statistics{*catalogue_, rates_of_(name), client::Transport::together, name};
   return *(last_ = &parts_.emplace_back(Part{std::string{name}, std::move(statistics), 0}));
 }
 

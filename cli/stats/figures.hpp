@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "ocm/base/time.hpp"
@@ -34,8 +36,10 @@ struct Report {
 /// with its figures.
 class Collector {
  public:
-  Collector(const protocol::Catalogue& catalogue, measure::BitRates rates)
-      : catalogue_(&catalogue), rates_(rates) {}
+  /// `rates_of`: the bit rates of an interface.
+  Collector(const protocol::Catalogue& catalogue,
+            std::function<measure::BitRates(std::string_view interface)> rates_of)
+      : catalogue_(&catalogue), rates_of_(std::move(rates_of)) {}
 
   void take(std::span<const log::Entry> entries, const log::Interfaces& interfaces);
   void lost(std::string_view interface, std::uint64_t frames) { find(interface).drops += frames; }
@@ -54,7 +58,7 @@ class Collector {
   Part& find(std::string_view name);
 
   const protocol::Catalogue* catalogue_;
-  measure::BitRates rates_;
+  std::function<measure::BitRates(std::string_view)> rates_of_;
   std::deque<Part> parts_;  // in place: `last_` points into it
   Part* last_ = nullptr;
 };

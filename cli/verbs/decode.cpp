@@ -41,6 +41,7 @@ class Window {
     const base::Duration at = entry.time - *begin_;
     return choice_.has(entry) && at >= since_ && at <= until_;
   }
+  void on_interface(std::uint16_t number, std::string_view name) { choice_.on_interface(number, name); }
   [[nodiscard]] bool shows(const log::Entry& entry, const client::Reception& reception) {
     return choice_.shows(entry, reception);
   }
@@ -63,6 +64,11 @@ struct Decoding {
   [[nodiscard]] bool over() const { return interrupted() != 0 || (most != 0 && display.shown() >= most); }
 
   void take(std::span<const log::Entry> entries, const log::Interfaces& interfaces) {
+    for (std::size_t i = 0; i < interfaces.size() && display.has_buses(); ++i) {
+      const auto number = static_cast<std::uint16_t>(i);
+      window.on_interface(number, interfaces.name(number));
+      display.on_interface(number, interfaces.name(number));
+    }
     for (const auto& entry : entries) {
       if (over()) return;
       ++frames;

@@ -43,6 +43,8 @@ void listen(Session& session, const ListenOptions& options, int& exit_code) {
       });
 
   Display display{"listen", session, options.display};
+  choice.on_interface(0, bus->name());
+  display.on_interface(0, bus->name());
   const ListenedUntil listened;
   const auto begin = Clock::now();
   auto last = begin;

@@ -76,12 +76,18 @@ std::vector<stats::Assertion> read_assertions(const std::vector<std::string>& te
   return assertions;
 }
 
-measure::BitRates chosen_bit_rates(Session& session, const StatsOptions& options) {
-  const std::uint32_t of_spec = session.spec_files.empty() ? 0 : session.spec().model().data_bit_rate;
-  const measure::BitRates rates{options.bit_rate.value_or(session.catalogue().bit_rate),
-                                options.data_bit_rate.value_or(of_spec)};
+/// Those that are typed, else those that the spec has for the interface.
+measure::BitRates chosen_bit_rates(Session& session, const StatsOptions& options,
+                                   std::string_view interface) {
+  spec::BusModel bus;
+  bus.bit_rate = session.catalogue().bit_rate;
+  if (!session.spec_files.empty()) bus = session.spec().model().bus(interface);
+  const measure::BitRates rates{options.bit_rate.value_or(bus.bit_rate),
+                                options.data_bit_rate.value_or(bus.data_bit_rate)};
   if (rates.nominal != 0) return rates;
-  fail({"stats: the spec says no bit rate", "--bitrate gives it, such as --bitrate 500k"}, exit_usage);
+  const std::string of = session.catalogue().has_buses() ? fmt::format(" of {}", interface) : "";
+  fail({fmt::format("stats: the spec says no bit rate{}", of), "--bitrate gives it, such as --bitrate 500k"},
+       exit_usage);
 }
 
 /// Of each bus, for its figures are its own.
@@ -117,7 +123,9 @@ void run(Session& session, const StatsOptions& options, int& exit_code) {
   Words words = split_words("stats", options.words, means_topic);
   const auto shown = chosen_topics("stats", catalogue, words.others);
   const auto assertions = read_assertions(options.assertions, catalogue);
-  stats::Collector collector{catalogue, chosen_bit_rates(session, options)};
+  if (!catalogue.has_buses()) static_cast<void>(chosen_bit_rates(session, options, {}));  // at once
+  stats::Collector collector{
+      catalogue, [&](std::string_view interface) { return chosen_bit_rates(session, options, interface); }};
   Watching watching{session, options.watch, std::move(words.files)};
 
   const ListenedUntil listened;

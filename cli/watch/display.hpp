@@ -41,6 +41,9 @@ class Display {
       wrong_length_ = {entry.id, entry.length, reception_.frame.layout().length};
     return reception_;
   }
+  /// Frames of interface `number` come over the one of this name: topics of others are none of theirs.
+  void on_interface(std::uint16_t number, std::string_view name) { receiver_.on_interface(number, name); }
+  [[nodiscard]] bool has_buses() const noexcept { return receiver_.has_buses(); }
   /// Whether there was anything to show.
   bool show(std::string_view bus, const log::Entry& entry) {
     const bool shown = printer_.write({bus, entry, reception_});

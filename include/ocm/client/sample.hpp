@@ -122,7 +122,8 @@ class Receiver {
   [[nodiscard]] Reception take(const can::Received& received) {
     return take(can::FrameView{received.frame}, received.time);
   }
-  /// `bus` tells several apart where nodes of different ones have the same addresses of J1939.
+  /// `bus` tells several apart where nodes of different ones have the same addresses of J1939, and topics are
+  /// on one of them only.
   [[nodiscard]] Reception take(const can::FrameView& frame, base::Time time, std::uint16_t bus = 0) {
     ++counters_.frames;
     if (frame.format == can::Format::error) {
@@ -132,8 +133,13 @@ class Receiver {
     if (!transport_.empty() && frame.format == can::Format::extended && !frame.fd &&
         j1939::is_transport(frame.id))
       return take_transport(frame, time, bus);
-    return take_frame(frame, time);
+    return take_frame(frame, time, bus);
   }
+
+  /// Frames of `bus` come over the interface of this name: topics that are on another are none of theirs.
+  void on_interface(std::uint16_t bus, std::string_view name) { index_.name(bus, name); }
+  /// Whether names of interfaces matter.
+  [[nodiscard]] bool has_buses() const noexcept { return index_.has_buses(); }
 
   [[nodiscard]] const ReceiverCounters& counters() const noexcept { return counters_; }
   /// How the messages of J1939's transport protocol ended until `now`.
@@ -166,12 +172,12 @@ class Receiver {
   Reception take_transport(const can::FrameView& frame, base::Time time, std::uint16_t bus) {
     if (transport_[0].take(frame.id, frame.bytes, time, bus) != j1939::Heard::message) {
       // A spec may describe the protocol's own frames.
-      if (index_.subject(frame.id, frame.format)) return take_frame(frame, time);
+      if (index_.of(bus).subject(frame.id, frame.format)) return take_frame(frame, time, bus);
       ++counters_.transport;
       return {Meaning::transport, {}, nullptr, {}};
     }
     const j1939::Transported& whole = transport_[0].message();
-    const Subject subject = index_.subject(whole.id.encode(), can::Format::extended);
+    const Subject subject = index_.of(bus).subject(whole.id.encode(), can::Format::extended);
     if (!subject) {
       ++counters_.unknown;
       return {Meaning::unknown, {}, nullptr, {}, &whole};
@@ -184,15 +190,15 @@ class Receiver {
             &whole};
   }
 
-  Reception take_remote(const can::FrameView& frame) {
-    const Subject subject = index_.subject(frame.id, can::data_format(frame.format));
+  Reception take_remote(const can::FrameView& frame, std::uint16_t bus) {
+    const Subject subject = index_.of(bus).subject(frame.id, can::data_format(frame.format));
     ++(subject ? counters_.remote : counters_.unknown);
     return {subject ? Meaning::remote : Meaning::unknown, {}, subject.topic, {}};
   }
 
-  Reception take_frame(const can::FrameView& frame, base::Time time) {
-    if (can::is_remote(frame.format)) return take_remote(frame);
-    const Subject subject = index_.subject(frame.id, frame.format);
+  Reception take_frame(const can::FrameView& frame, base::Time time, std::uint16_t bus) {
+    if (can::is_remote(frame.format)) return take_remote(frame, bus);
+    const Subject subject = index_.of(bus).subject(frame.id, frame.format);
     if (!subject || (frame.fd && !subject.topic->is_message())) {
       ++(frame.fd ? counters_.fd : counters_.unknown);
       return {};
@@ -261,7 +267,7 @@ class Receiver {
   }
 
   const protocol::Catalogue* catalogue_;
-  FrameIndex index_;
+  InterfaceIndexes index_;
   std::vector<Assembly> assemblies_;
   std::vector<std::uint8_t> bytes_;           // of topics
   std::array<std::uint8_t, 64> message_{};    // that came last

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "ocm/base/time.hpp"
@@ -75,10 +76,12 @@ class BusStatistics {
   static constexpr std::size_t most_strangers = 32;
 
   /// The catalogue must outlive it. `transport`: whether a message of several frames of J1939's transport
-  /// protocol is a sample, which needs 60 KiB more where the catalogue has J1939.
+  /// protocol is a sample, which needs 60 KiB more where the catalogue has J1939. `interface`: the name of
+  /// the bus, of which topics that are on another are unknown.
   BusStatistics(const protocol::Catalogue& catalogue, BitRates rates,
-                client::Transport transport = client::Transport::as_frames)
+                client::Transport transport = client::Transport::as_frames, std::string_view interface = {})
       : rates_(rates), receiver_(catalogue, transport) {
+    if (!interface.empty()) receiver_.on_interface(0, interface);
     topics_.reserve(catalogue.topics.size());
     for (const auto& topic : catalogue.topics) {
       const Usual usual = topic.is_message() ? Usual::stated : Usual::if_seen;
