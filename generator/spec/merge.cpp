@@ -95,6 +95,7 @@ class Merger {
       tell(name + " has the " + text_of(key) + " of " + other->name + " in " + into_.robot,
            "leave one of the files out, or name their interfaces: --spec can0=FILE");
     });
+    add_attributes(from);
     const std::vector<std::uint8_t> boards = add_boards(from);
     std::size_t names = 0;
     for (TopicModel& topic : from.topics) {
@@ -120,6 +121,18 @@ class Merger {
 
   void tell(std::string what, std::string remedy) {
     problems_.push_back({place_, std::move(what), std::move(remedy)});
+  }
+  /// Of one name the first counts.
+  void add_attributes(Model& from) {
+    const auto add = [](auto& to, auto& all, auto same) {
+      for (auto& each : all)
+        if (std::none_of(to.begin(), to.end(), [&](const auto& other) { return same(each, other); }))
+          to.push_back(std::move(each));
+    };
+    add(into_.attributes, from.attributes, [](const auto& a, const auto& b) { return a.name == b.name; });
+    add(into_.definitions, from.definitions,
+        [](const auto& a, const auto& b) { return a.of == b.of && a.name == b.name; });
+    into_.not_kept.insert(into_.not_kept.end(), from.not_kept.begin(), from.not_kept.end());
   }
   template <class Known>
   [[nodiscard]] static const Owner* find(const Known& known, const typename Known::key_type& key,

@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -50,6 +51,27 @@ struct AttributeModel {
   std::string name;
   std::string text;
   friend bool operator==(const AttributeModel&, const AttributeModel&) = default;
+};
+
+/// What a DBC file says of an attribute itself: BA_DEF_ with its BA_DEF_DEF_. Of those that become members
+/// here, such as GenMsgCycleTime, there is none.
+struct AttributeDefinitionModel {
+  enum class Of : std::uint8_t { bus, board, message, field };
+  enum class Type : std::uint8_t { integer, hexadecimal, floating, string, enumeration };
+  Of of = Of::bus;
+  std::string name;
+  Type type = Type::string;
+  std::string min;  ///< as written; empty: none
+  std::string max;
+  std::vector<std::string> values;          ///< of an enumeration, by number
+  std::optional<std::string> default_text;  ///< an enumeration's is one of its values
+  friend bool operator==(const AttributeDefinitionModel&, const AttributeDefinitionModel&) = default;
+};
+
+/// What a source has and a model does not.
+struct NotKept {
+  std::string what;  ///< "SIG_GROUP_"
+  std::size_t count = 0;
 };
 
 /// A range that a source states, physical, in its own words.
@@ -196,7 +218,9 @@ struct Model {
   std::vector<MessageModel> messages;
   std::vector<std::string> too_long;       ///< messages of the source that no frame can carry: left out
   std::vector<AttributeModel> attributes;  ///< of the bus
-  std::vector<BusModel> buses;             ///< those that specs were given for, with their bit rates
+  std::vector<AttributeDefinitionModel> definitions;
+  std::vector<NotKept> not_kept;
+  std::vector<BusModel> buses;  ///< those that specs were given for, with their bit rates
 
   /// From now on all of it is on this interface only.
   void put_on(const std::string& bus) {

@@ -1,5 +1,6 @@
 // Plain messages in our JSON: what the reader makes of each member, what it doubts, and that a spec becomes a
 // DBC file and comes back as it was.
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -230,6 +231,8 @@ void check_same(const Model& a, const Model& b) {
     CHECK(a.boards[i].description == b.boards[i].description);
     CHECK(a.boards[i].attributes == b.boards[i].attributes);
   }
+  for (const auto& definition : a.definitions)  // what has none gets one in DBC
+    CHECK(std::find(b.definitions.begin(), b.definitions.end(), definition) != b.definitions.end());
   REQUIRE(a.messages.size() == b.messages.size());
   for (std::size_t i = 0; i < a.messages.size(); ++i) check_same(a.messages[i], b.messages[i]);
 }
@@ -291,6 +294,67 @@ TEST_CASE("messages: more nodes than a catalogue has place for") {
   CHECK(model.boards.size() == 255);
   CHECK(model.messages[254].board == 254);
   CHECK(model.messages[255].board == protocol::no_board);
+}
+
+TEST_CASE("messages: what a DBC file says of its attributes themselves is kept both ways") {
+  const std::string text =
+      "BU_: N\nBO_ 1 A: 8 N\n SG_ a : 0|8@1+ (1,0) [0|0] \"\" N\nBO_ 2 B: 8 N\n"
+      "BA_DEF_ \"Protocol\" STRING ;\nBA_DEF_DEF_ \"Protocol\" \"a \\\"car\\\"\";\n"
+      "BA_DEF_ \"ProtocolType\" STRING ;\nBA_DEF_DEF_ \"ProtocolType\" \"J1939\";\n"
+      "BA_DEF_ BO_ \"VFrameFormat\" ENUM \"StandardCAN\",\"ExtendedCAN\";\n"
+      "BA_DEF_ BU_ \"Layer\" HEX 0 255;\nBA_DEF_DEF_ \"Layer\" 16;\n"
+      "BA_DEF_ BO_ \"Support\" ENUM \"No\",\"Yes\",\"Maybe, not\";\nBA_DEF_DEF_ \"Support\" \"Yes\";\n"
+      "BA_DEF_ BO_ \"Digit\" ENUM \"1\",\"0\";\nBA_DEF_DEF_ \"Digit\" \"0\";\n"
+      "BA_DEF_ SG_ \"Weight\" FLOAT -1.5E+10 2.5;\nBA_DEF_DEF_ \"Weight\" 0.25;\n"
+      "BA_DEF_ SG_ \"Unused\" INT 0 7;\n"
+      "BA_ \"Support\" BO_ 1 2;\nBA_ \"Digit\" BO_ 1 \"1\";\nBA_ \"Weight\" SG_ 1 a 1;\nBA_ \"Layer\" BU_ N "
+      "17;\n";
+  const Model model = parse(text, {}, "f.dbc");
+  REQUIRE(model.definitions.size() == 7);
+  CHECK(model.definitions[3].values == std::vector<std::string>{"No", "Yes", "Maybe, not"});
+  CHECK(model.definitions[3].default_text == "Yes");
+  CHECK(model.definitions[5].min == "-1.5E+10");
+  CHECK(model.messages[0].attributes ==
+        std::vector<spec::AttributeModel>{{"Support", "Maybe, not"}, {"Digit", "1"}});
+  check_both_ways(model);
+  // And from one to the other.
+  const Model from_json = parse(generate::make_spec(model, {"f.dbc", std::nullopt}));
+  CHECK(from_json.definitions == model.definitions);
+  CHECK(parse(generate::make_dbc(from_json, {"f.json", std::nullopt}), {}, "f.dbc").definitions ==
+        model.definitions);
+}
+
+TEST_CASE("messages: definitions of attributes that cannot be") {
+  const auto problem = [](const std::string& definition) {
+    const auto loaded = spec::parse(R"({"robot": "r", "messages": [{"name": "M", "id": 1, "fields": []}],
+      "attribute_definitions": [)" + definition +
+                                        "]}",
+                                    "f.json");
+    REQUIRE_FALSE(loaded.problems.empty());
+    return loaded.problems[0].what;
+  };
+  CHECK(problem(R"({"of": "message", "name": "a", "type": "enum"})") == "an enumeration without \"values\"");
+  CHECK(problem(R"({"of": "message", "name": "a", "type": "int", "values": ["x"]})") ==
+        "\"values\" of another type");
+  CHECK(problem(R"({"of": "signal", "name": "a", "type": "int"})") == "\"signal\" is not known here");
+  CHECK(problem(R"({"of": "bus", "name": "a", "type": "int", "min": "1"})") == "one bound of two");
+  CHECK(problem(R"({"of": "bus", "name": "a", "type": "string", "min": "1", "max": "2"})") ==
+        "\"1\" is no bound of this type");
+}
+
+TEST_CASE("messages: what our JSON and a new DBC file do not keep of a DBC file is named with its number") {
+  const Model model = parse(
+      "VERSION \"3\"\nBU_: N\nVAL_TABLE_ T 0 \"a\" ;\nBO_ 1 A: 8 N\n SG_ a : 0|8@1+ (1,0) [0|0] \"\" N\n"
+      "BO_ 3221225472 VECTOR__INDEPENDENT_SIG_MSG: 0 Vector__XXX\n SG_ o : 0|8@1+ (1,0) [0|0] \"\" N\n"
+      " SG_ p : 0|8@1+ (1,0) [0|0] \"\" N\nEV_ e: 0 [0|0] \"\" 0 1 DUMMY_NODE_VECTOR0 Vector__XXX;\n"
+      "BA_DEF_REL_ BU_SG_REL_ \"R\" INT 0 1;\nBA_DEF_ EV_ \"E\" INT 0 1;\n"
+      "SIG_GROUP_ 1 G 1 : a;\nSIG_GROUP_ 1 H 1 : a;\n",
+      {}, "f.dbc");
+  for (const char* name : {"dbc", "spec"})
+    CHECK(generate::left_out(*generate::find_target(name), model) ==
+          std::vector<std::string>{
+              "1 BA_DEF_ EV_", "1 VERSION", "1 VAL_TABLE_, the values of which are with their signals",
+              "2 signals of VECTOR__INDEPENDENT_SIG_MSG", "1 EV_", "1 BA_DEF_REL_", "2 SIG_GROUP_"});
 }
 
 /// Messages as nobody would think of them, of what both formats can say.
