@@ -48,6 +48,7 @@ bool JsonLineParser::parse(std::string_view line, log::Entry& entry, std::string
   entry = log::Entry{};
   Meaning meaning;
   if (!take_time(entry) || !take_bus(bus)) return false;
+  if (index_.has_buses()) index_.name(interface_ = interfaces_.number(bus), bus);
   if (!(record_.id ? take_id(entry, meaning) : take_topic(entry, meaning))) return false;
   if (!take_data(entry, meaning) || !take_extras(entry)) return false;
   if (record_.has_fields && !put_fields(entry, meaning)) return false;
@@ -151,7 +152,7 @@ bool JsonLineParser::take_bus(std::string_view& bus) {
 }
 
 JsonLineParser::Meaning JsonLineParser::meaning_of(const log::Entry& entry) const {
-  const client::Subject subject = index_.subject(entry.id, entry.format);
+  const client::Subject subject = index_.of(interface_).subject(entry.id, entry.format);
   if (!subject || (record_.has_fd && !subject.topic->is_message())) return {};
   if (subject.is_request()) return {subject.topic, {}};
   return {nullptr, subject.frame};

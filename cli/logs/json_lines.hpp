@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "ocm/client/frame_index.hpp"
+#include "ocm/log/interfaces.hpp"
 #include "ocm/log/reader.hpp"
 #include "ocm/log/writer.hpp"
 #include "ocm/protocol/topic.hpp"
@@ -99,7 +100,9 @@ class JsonLineParser {
 
   const protocol::Catalogue* catalogue_;
   Values values_;
-  client::FrameIndex index_;
+  client::InterfaceIndexes index_;
+  std::uint16_t interface_ = 0;  // of the line
+  log::Interfaces interfaces_;   // of the lines, where their names matter
   /// The fields of a layout.
   struct Texts {
     std::vector<FieldText> fields;

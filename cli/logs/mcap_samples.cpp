@@ -117,7 +117,10 @@ void McapSamples::put(log::Bytes& out, log::mcap::Container& container, const lo
   if (entry.interface >= most_interfaces) return;
   if (heard_.size() <= entry.interface) heard_.resize(entry.interface + std::size_t{1});
   auto& heard = heard_[entry.interface];
-  if (heard == nullptr) heard = std::make_unique<Heard>(*catalogue_);
+  if (heard == nullptr) {
+    heard = std::make_unique<Heard>(*catalogue_);
+    heard->receiver.on_interface(entry.interface, interfaces.name(entry.interface));
+  }
   const client::Reception reception = understand(heard->receiver, entry);
   const bool is_sample = reception.meaning == client::Meaning::sample;
   if (!is_sample && reception.meaning != client::Meaning::set_point) return;

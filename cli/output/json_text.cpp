@@ -82,12 +82,14 @@ void append_json(std::string& out, std::string_view text) {
   }
 }
 
-JsonText::JsonText(const protocol::Catalogue& catalogue, const Selection& selection)
+JsonText::JsonText(const protocol::Catalogue& catalogue, const Selection& selection,
+                   std::string_view interface)
     : catalogue_(&catalogue),
-      index_(catalogue),
+      index_(interface.empty() ? client::FrameIndex{catalogue} : client::FrameIndex{catalogue, interface}),
       messages_(catalogue.topics.size()),
       everything_(selection.everything()) {
   for (const auto& topic : catalogue.topics) {
+    if (!interface.empty() && !topic.is_on(interface)) continue;
     for (std::size_t i = 0; i < topic.frames.size(); ++i)
       know({&topic, static_cast<std::uint8_t>(i)}, selection);
     if (topic.kind != protocol::Kind::sensor) continue;
@@ -336,6 +338,10 @@ void JsonText::write_message(log::Bytes& out, const Known* known, const j1939::T
   out.append("\"}");
 }
 
+const protocol::Topic* JsonText::remote_topic(const log::Entry& entry) const noexcept {
+  return index_.subject(entry.id, can::data_format(entry.format)).topic;
+}
+
 void JsonText::write_rest(log::Bytes& out, std::string_view bus_text, const Known& known,
                           const log::Entry& entry) const {
   char* to = put_begin(out.room(line_begin.size() + 32 + bus_text.size() + 16), bus_text, entry);
@@ -357,6 +363,8 @@ void JsonText::write_rest(log::Bytes& out, std::string_view bus_text, const Know
                      json_string(frame_name(known.frame)), entry.length, known.frame.layout().length);
   else if (entry.format == can::Format::error)
     append_formatted(out, R"(,"error":"error frame: {}")", can::describe(*entry.classic()).view());
+  else if (const auto* topic = can::is_remote(entry.format) ? remote_topic(entry) : nullptr)
+    append_formatted(out, R"(,"topic":{},"error":"remote frame")", json_string(topic->name));
   else
     out.append(entry.is_fd() ? std::string_view{R"(,"error":"CAN FD frame")"}
                              : std::string_view{R"(,"error":"unknown identifier")"});

@@ -31,8 +31,10 @@ void append_json(std::string& out, std::string_view text);
 
 class JsonText {
  public:
-  /// The catalogue must outlive this. With a selection, only its fields, and only frames that have one.
-  explicit JsonText(const protocol::Catalogue& catalogue, const Selection& selection = {});
+  /// The catalogue must outlive this. With a selection, only its fields, and only frames that have one. With
+  /// an interface, without the topics that are on another.
+  explicit JsonText(const protocol::Catalogue& catalogue, const Selection& selection = {},
+                    std::string_view interface = {});
 
   /// Appends one line. false: nothing of the frame was selected.
   bool write(log::Bytes& out, std::string_view bus, const log::Entry& entry);
@@ -88,6 +90,8 @@ class JsonText {
   char* put(char* to, Piece piece) const noexcept;
   char* put_begin(char* to, std::string_view bus_text, const log::Entry& entry) const noexcept;
   const std::string& bus_text(std::string_view bus, std::uint16_t number);
+  /// What a remote frame is of; nullptr: its identifier is unknown.
+  [[nodiscard]] const protocol::Topic* remote_topic(const log::Entry& entry) const noexcept;
   void write_rest(log::Bytes& out, std::string_view bus_text, const Known& known,
                   const log::Entry& entry) const;
   void write_request(log::Bytes& out, const Known& known, const log::Entry& entry) const;

@@ -141,6 +141,10 @@ class Pretty final : public Output {
             fmt::format("{} {} instead of {}: {}", event.reception.topic->is_message() ? "bytes" : "DLC",
                         event.entry.length, event.reception.frame.layout().length, frame_text(event.entry))));
         break;
+      case Meaning::remote:
+        head(out, event, "");
+        append_formatted(out, "remote frame: {}", frame_text(event.entry));
+        break;
       case Meaning::unknown:
         time(out, event);
         if (const auto* const message = event.reception.transported) {

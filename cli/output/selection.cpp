@@ -29,7 +29,8 @@ transport::Outcome<Selection> Selection::of(const protocol::Catalogue& catalogue
     const auto* const named = words::find_topic(catalogue, of_topic);
     bool found = false;
     for (const auto& topic : catalogue.topics) {
-      if (named != &topic && !words::is_in_group(topic, of_topic)) continue;
+      const bool is_named = named != nullptr && topic.name == named->name;  // on several interfaces
+      if (!is_named && !words::is_in_group(topic, of_topic)) continue;
       topic_found = true;
       for (const auto& layout : topic.frames)
         for (const auto& field : layout.fields) {

@@ -81,11 +81,13 @@ Curves::Curves(const protocol::Catalogue& catalogue, const std::vector<Wanted>& 
   }
 }
 
-void Curves::take(std::span<const log::Entry> entries) {
+void Curves::take(std::span<const log::Entry> entries, const log::Interfaces& interfaces) {
+  for (std::size_t i = 0; i < interfaces.size() && index_.has_buses(); ++i)
+    index_.name(static_cast<std::uint16_t>(i), interfaces.name(static_cast<std::uint16_t>(i)));
   for (const log::Entry& entry : entries) {
     begin_ = begin_ ? std::min(*begin_, entry.time) : entry.time;
     end_ = std::max(end_, entry.time);
-    const auto frame = index_.subject(entry.id, entry.format).frame;
+    const auto frame = index_.of(entry.interface).subject(entry.id, entry.format).frame;
     if (!frame || !frame.layout().accepts(entry.length)) continue;
     if (entry.is_fd() && !frame.topic->is_message()) continue;
     const auto uses = uses_.find(&frame.layout());

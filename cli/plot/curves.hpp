@@ -11,6 +11,7 @@
 
 #include "ocm/client/frame_index.hpp"
 #include "ocm/log/entry.hpp"
+#include "ocm/log/interfaces.hpp"
 #include "ocm/measure/envelope.hpp"
 #include "ocm/protocol/topic.hpp"
 #include "ocm/transport/bus.hpp"
@@ -43,7 +44,7 @@ class Curves {
   /// The catalogue must outlive it.
   Curves(const protocol::Catalogue& catalogue, const std::vector<Wanted>& wanted);
 
-  void take(std::span<const log::Entry> entries);
+  void take(std::span<const log::Entry> entries, const log::Interfaces& interfaces);
 
   [[nodiscard]] const std::vector<Curve>& all() const noexcept { return curves_; }
   /// Of the first frame, whatever it was.
@@ -57,7 +58,7 @@ class Curves {
     const protocol::Field* field = nullptr;
     bool is_x = false;
   };
-  client::FrameIndex index_;
+  client::InterfaceIndexes index_;
   std::unordered_map<const protocol::FrameLayout*, std::vector<Use>> uses_;  // x before y
   std::vector<Curve> curves_;
   std::optional<base::Time> begin_;

@@ -88,6 +88,7 @@ std::vector<client::Finding> findings_of(const transport::BusCounters& bus,
   add(bus.lost, "frame* lost on the way to this program", "this machine is too busy");
   add(seen.unknown, "frame* that the spec does not know",
       "another program or robot on the bus, or another spec: `amiroctl listen` shows them");
+  add(seen.remote, "remote frame*", "the protocol has none: another program or robot on the bus");
   add(seen.wrong_dlc, "frame* of a wrong length", "a board or a program with another spec");
   add(seen.incomplete, "incomplete sample*", "frames are lost on the bus");
   return all;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <span>
+#include <system_error>
 #include <unistd.h>
 #include <utility>
 
@@ -31,6 +33,31 @@ void stop_at(const std::vector<spec::Problem>& problems) {
   if (!problems.empty()) throw Exit{exit_failure};
 }
 
+/// What --spec takes: a file, for all interfaces or for one.
+struct SpecWord {
+  std::string interface;  ///< empty: all
+  std::string file;
+};
+SpecWord split(const std::string& word) {
+  const auto equals = word.find('=');
+  std::error_code error;
+  if (equals == std::string::npos || equals == 0 || std::filesystem::exists(word, error)) return {"", word};
+  return {word.substr(0, equals), word.substr(equals + 1)};
+}
+
+/// A file that is there twice for one interface has all its names twice.
+void refuse_twice(const std::vector<std::string>& words) {
+  for (std::size_t i = 0; i < words.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const SpecWord a = split(words[j]);
+      const SpecWord b = split(words[i]);
+      std::error_code error;
+      if (a.interface == b.interface && std::filesystem::equivalent(a.file, b.file, error))
+        fail({fmt::format("--spec {}: the same file as --spec {}", words[i], words[j]), "give it once"},
+             exit_usage);
+    }
+}
+
 }  // namespace
 
 Session::Session() = default;
@@ -48,9 +75,10 @@ void Session::add_options(Verb app) {
          "the only interface that is up or sim")
       .environment("AMIROCTL_BUS")
       .type_name("NAME");
-  app.add_option("--spec", spec_files,
-                 "what is said on another bus: a robot's topics as JSON, or messages as DBC; may be given "
-                 "again; default: the AMiRo's, compiled in")
+  app.add_option(
+         "--spec", spec_files,
+         "what is said on another bus: a robot's topics as JSON, or messages as DBC; can0=FILE: on that "
+         "interface only; may be given again; default: the AMiRo's, compiled in")
       .environment("AMIROCTL_SPEC")
       .type_name("FILE")
       .one_a_mention();
@@ -74,19 +102,21 @@ const spec::Spec& Session::spec() {
       spec_ = std::move(spec::parse(generate::robot_spec_text(), generate::robot_spec_name).spec);
       return *spec_;
     }
-    spec_ = load(spec_files.front());
+    refuse_twice(spec_files);
+    spec::Model all = load(spec_files.front());
     for (std::size_t i = 1; i < spec_files.size(); ++i) {
-      spec::Model all = spec_->model();
       std::vector<spec::Problem> problems;
-      spec::merge(all, load(spec_files[i])->model(), spec_files[i], problems);
+      spec::merge(all, load(spec_files[i]), split(spec_files[i]).file, problems);
       stop_at(problems);
-      spec_ = std::make_unique<spec::Spec>(std::move(all));
     }
+    all.share_bit_rate();
+    spec_ = std::make_unique<spec::Spec>(std::move(all));
   }
   return *spec_;
 }
 
-std::unique_ptr<spec::Spec> Session::load(const std::string& file) const {
+spec::Model Session::load(const std::string& word) const {
+  const auto [interface, file] = split(word);
   auto loaded = spec::load(file);
   if (strict_spec_) stop_at(loaded.doubts);
   stop_at(loaded.problems);
@@ -96,7 +126,33 @@ std::unique_ptr<spec::Spec> Session::load(const std::string& file) const {
   if (told < loaded.doubts.size())
     remark(fmt::format("{}: {} more doubtful places; --strict-spec shows all and refuses", file,
                        loaded.doubts.size() - told));
-  return std::move(loaded.spec);
+  spec::Model model = loaded.spec->take_model();
+  if (!interface.empty()) model.put_on(interface);
+  return model;
+}
+
+const protocol::Catalogue& Session::catalogue_on_bus(bool opens_bus) {
+  const protocol::Catalogue& all = catalogue();
+  if (!all.has_buses() || (bus_name.empty() && !opens_bus)) return all;
+  if (spec_on_bus_ == nullptr) {
+    const std::string bus = bus_name.empty() ? only_bus() : bus_name;
+    spec::Model model = spec().model();
+    const auto is_elsewhere = [&bus](const auto& object) { return !object.bus.empty() && object.bus != bus; };
+    std::erase_if(model.topics, is_elsewhere);
+    std::erase_if(model.messages, is_elsewhere);
+    spec_on_bus_ = std::make_unique<spec::Spec>(std::move(model));
+  }
+  return spec_on_bus_->catalogue();
+}
+
+void Session::refuse_interfaces(std::string_view verb) {
+  for (const std::string& word : spec_files) {
+    const auto [interface, file] = split(word);
+    if (!interface.empty())
+      fail({fmt::format("{}: --spec {}: it is about one bus, whatever its name", verb, word),
+            fmt::format("--spec {}", file)},
+           exit_usage);
+  }
 }
 
 std::unique_ptr<transport::Bus> Session::open_bus(std::string_view name) {

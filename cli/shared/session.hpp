@@ -14,7 +14,8 @@
 
 namespace ocm::spec {
 class Spec;
-}
+struct Model;
+}  // namespace ocm::spec
 
 namespace ocm::cli {
 
@@ -30,6 +31,11 @@ class Session {
   [[nodiscard]] const protocol::Catalogue& catalogue();
   /// The same with all that its spec says, read when it is asked for.
   [[nodiscard]] const spec::Spec& spec();
+  /// What is on the bus that is commanded: --spec can1=FILE is nothing that can0 takes. The bus is --bus, or
+  /// the only one; where none is known, as with --dry-run, all that there is.
+  [[nodiscard]] const protocol::Catalogue& catalogue_on_bus(bool opens_bus);
+  /// Of a verb that is about one bus which has no name: exit_usage where --spec names interfaces.
+  void refuse_interfaces(std::string_view verb);
 
   /// The bus of --bus, AMIROCTL_BUS, or the only one there is; says on stderr which.
   [[nodiscard]] std::unique_ptr<transport::Bus> open_bus();
@@ -44,11 +50,12 @@ class Session {
   std::string config_file;
 
  private:
-  [[nodiscard]] std::unique_ptr<spec::Spec> load(const std::string& file) const;
+  [[nodiscard]] spec::Model load(const std::string& word) const;
 
   bool no_colour_ = false;
   bool strict_spec_ = false;
   std::unique_ptr<spec::Spec> spec_;
+  std::unique_ptr<spec::Spec> spec_on_bus_;
 };
 
 }  // namespace ocm::cli

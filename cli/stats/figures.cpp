@@ -1,13 +1,16 @@
 #include "cli/stats/figures.hpp"
 
+#include <algorithm>
+#include <utility>
+
 namespace ocm::cli::stats {
 
 Collector::Part& Collector::find(std::string_view name) {
   if (last_ != nullptr && last_->name == name) return *last_;
   for (Part& part : parts_)
     if (part.name == name) return *(last_ = &part);
-  return *(last_ =
-               &parts_.emplace_back(Part{std::string{name}, measure::BusStatistics{*catalogue_, rates_}, 0}));
+  measure::BusStatistics statistics{*catalogue_, rates_of_(name), client::Transport::together, name};
+  return *(last_ = &parts_.emplace_back(Part{std::string{name}, std::move(statistics), 0}));
 }
 
 void Collector::take(std::span<const log::Entry> entries, const log::Interfaces& interfaces) {
@@ -24,6 +27,23 @@ bool Collector::any() const noexcept {
   for (const Part& part : parts_)
     if (part.statistics.any()) return true;
   return false;
+}
+
+std::vector<const protocol::Topic*> Collector::never_came(const std::vector<Bus>& buses) const {
+  base::Duration longest{};
+  std::vector<bool> came(catalogue_->topics.size());
+  for (const Bus& bus : buses) {
+    longest = std::max(longest, bus.figures.span());
+    for (const auto& topic : bus.figures.topics)
+      came[static_cast<std::size_t>(topic.topic - catalogue_->topics.data())] = true;
+  }
+  std::vector<const protocol::Topic*> out;
+  for (std::size_t i = 0; i < came.size(); ++i) {
+    const protocol::Topic& topic = catalogue_->topics[i];
+    if (!came[i] && topic.is_message() && topic.cycle.count() > 0 && topic.cycle <= longest)
+      out.push_back(&topic);
+  }
+  return out;
 }
 
 std::vector<Bus> Collector::buses(std::optional<base::Time> now) const {

@@ -31,8 +31,11 @@ std::string time(std::int64_t ns) {
   return time(static_cast<double>(ns));
 }
 
+bool is_shown(const protocol::Topic* topic, const Shown& shown) {
+  return shown.empty() || std::find(shown.begin(), shown.end(), topic) != shown.end();
+}
 bool is_shown(const TopicFigures& topic, const Shown& shown) {
-  return shown.empty() || std::find(shown.begin(), shown.end(), topic.topic) != shown.end();
+  return is_shown(topic.topic, shown);
 }
 
 std::string_view name(PeriodFrom from) {
@@ -41,7 +44,7 @@ std::string_view name(PeriodFrom from) {
 }
 
 bool has_lateness(const Timing& timing) {
-  return timing.distances != 0 &&
+  return timing.distances != 0 && !timing.faster &&
          (timing.period_from == PeriodFrom::request || timing.period_from == PeriodFrom::spec);
 }
 
@@ -132,6 +135,16 @@ std::string kbit_per_second(const BusFigures& figures) {
   return text;
 }
 
+/// "Driving (20 ms), Wheels (20 ms)": the first of them.
+std::string names_of(const std::vector<const protocol::Topic*>& messages, std::size_t most) {
+  const std::size_t named = std::min(messages.size(), most);
+  std::string text;
+  for (std::size_t i = 0; i < named; ++i)
+    text += fmt::format("{}{} ({})", i == 0 ? "" : ", ", messages[i]->name, time(messages[i]->cycle.count()));
+  if (named < messages.size()) text += fmt::format(" and {} more", messages.size() - named);
+  return text;
+}
+
 /// What a bus carried, and what went wrong on it.
 std::vector<std::string> summary(const Bus& bus) {
   const BusFigures& figures = bus.figures;
@@ -153,7 +166,9 @@ std::vector<std::string> summary(const Bus& bus) {
   fault(bus.drops, "frame* lost");
   fault(figures.fd_frames - figures.not_in_load, "CAN FD frame*");
   fault(figures.not_in_load, "CAN FD frame*, not in the load without --data-bitrate");
-  fault(counters.unknown + counters.fd, "frame* that no topic has");
+  fault(counters.remote, "remote frame*");
+  fault(counters.transport, "frame* of the transport protocol of J1939");
+  fault(counters.unknown + counters.fd, "frame* that no topic or message has");
   if (counters.unknown + counters.fd != 0) faults += fmt::format(" ({})", strangers(figures));
   if (!faults.empty()) lines.push_back("  " + faults);
   return lines;
@@ -220,9 +235,18 @@ Json to_object(const Bus& bus, const Shown& shown) {
           {"wrong_length", counters.wrong_dlc},
           {"fd_frames", figures.fd_frames},
           {"fd_frames_not_in_load", figures.not_in_load},
+          {"remote", counters.remote},
+          {"transport", counters.transport},
           {"unknown", counters.unknown + counters.fd},
           {"unknown_ids", unknown},
           {"topics", topics}};
+}
+
+std::vector<const protocol::Topic*> never_came(const Report& report, const Shown& shown) {
+  std::vector<const protocol::Topic*> out;
+  for (const auto* message : report.never_came)
+    if (is_shown(message, shown)) out.push_back(message);
+  return out;
 }
 
 /// Each line on its own, so that a colour ends with the line.
@@ -288,12 +312,26 @@ std::vector<std::string> to_table(const Report& report, const Shown& shown, bool
     }
     for (const std::string& line : summary(bus)) add_folded(lines, line, columns);
   }
+  if (const std::string text = never_came_text(report, shown); !text.empty())
+    add_folded(lines, text, columns, colour ? "\x1b[33m" : "");
   return lines;
 }
 
+std::string never_came_text(const Report& report, const Shown& shown) {
+  constexpr std::size_t most = 10;
+  const auto missing = never_came(report, shown);
+  return missing.empty() ? std::string{}
+                         : "never came: " + names_of(missing, shown.empty() ? most : missing.size());
+}
+
 std::string to_json(const Report& report, const Shown& shown, std::span<const Assertion> assertions) {
-  Json out{{"robot", report.robot}, {"source", report.source}, {"buses", Json::array()}};
+  Json out{{"robot", report.robot},
+           {"source", report.source},
+           {"buses", Json::array()},
+           {"never_came", Json::array()}};
   for (const Bus& bus : report.buses) out["buses"].push_back(to_object(bus, shown));
+  for (const auto* message : never_came(report, shown))
+    out["never_came"].push_back({{"topic", message->name}, {"period_ns", message->cycle.count()}});
   if (!assertions.empty()) out["assertions"] = Json::array();
   for (const Assertion& assertion : assertions) {
     const auto verdict = assertion.check(report.buses);

@@ -22,6 +22,8 @@ using Shown = std::vector<const protocol::Topic*>;
                                                 std::size_t columns = SIZE_MAX);
 [[nodiscard]] std::string to_json(const Report& report, const Shown& shown,
                                   std::span<const Assertion> assertions);
+/// "never came: Driving (20 ms)", of those that are shown; empty: there is no such message.
+[[nodiscard]] std::string never_came_text(const Report& report, const Shown& shown);
 [[nodiscard]] std::string to_csv(const Report& report, const Shown& shown);
 
 }  // namespace ocm::cli::stats

@@ -36,11 +36,12 @@ std::size_t room_for(std::size_t bytes) {
 
 }  // namespace
 
-Model::Model(const protocol::Catalogue& catalogue, std::uint32_t bit_rate, std::uint32_t data_bit_rate)
+Model::Model(const protocol::Catalogue& catalogue, std::uint32_t bit_rate, std::uint32_t data_bit_rate,
+             std::string_view interface)
     : catalogue_(&catalogue),
       bit_rate_(bit_rate),
       rates_{std::max(bit_rate, 1U), data_bit_rate},
-      statistics_(catalogue, rates_),
+      statistics_(catalogue, rates_, client::Transport::as_frames, interface),
       subjects_(catalogue.topics.size()) {}
 
 void Model::take_sample(Subject& subject, base::Time time, std::span<const std::uint8_t> bytes) {
@@ -173,7 +174,7 @@ Summary Model::summary(base::Time now) const {
   out.lost = lost_;
   out.incomplete = figures.counters.incomplete;
   out.wrong_length = figures.counters.wrong_dlc;
-  out.unknown = figures.counters.unknown + figures.counters.fd;
+  out.unknown = figures.counters.unknown + figures.counters.remote + figures.counters.fd;
   out.not_in_load = figures.not_in_load;
   out.not_shown = not_shown_;
   return out;

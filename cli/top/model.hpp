@@ -80,7 +80,8 @@ class Model {
   static constexpr std::size_t history_size = 240;
 
   /// The catalogue must outlive it. Without a bit rate, 0, nothing is known of the load.
-  Model(const protocol::Catalogue& catalogue, std::uint32_t bit_rate, std::uint32_t data_bit_rate = 0);
+  Model(const protocol::Catalogue& catalogue, std::uint32_t bit_rate, std::uint32_t data_bit_rate = 0,
+        std::string_view interface = {});
 
   void take(const log::Entry& entry);
   void lost(std::uint64_t frames) noexcept { lost_ += frames; }

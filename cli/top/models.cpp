@@ -6,7 +6,7 @@ Model& Models::of(std::string_view name) {
   if (last_ < models_.size() && models_[last_].name == name) return models_[last_].model;
   for (last_ = 0; last_ < models_.size(); ++last_)
     if (models_[last_].name == name) return models_[last_].model;
-  return models_.emplace_back(Named{std::string{name}, Model{*catalogue_, rates_.nominal, rates_.data}})
+  return models_.emplace_back(Named{std::string{name}, Model{*catalogue_, rates_.nominal, rates_.data, name}})
       .model;
 }
 

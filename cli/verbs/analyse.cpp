@@ -137,6 +137,7 @@ BusOptions bus_options(const Options& options, const protocol::Catalogue& catalo
 
 /// The spec that --spec names; the compiled one has no messages.
 const spec::Model* model_of(Session& session) {
+  session.refuse_interfaces("analyse");
   return session.spec_files.empty() ? nullptr : &session.spec().model();
 }
 

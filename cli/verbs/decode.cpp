@@ -41,6 +41,7 @@ class Window {
     const base::Duration at = entry.time - *begin_;
     return choice_.has(entry) && at >= since_ && at <= until_;
   }
+  void on_interface(std::uint16_t number, std::string_view name) { choice_.on_interface(number, name); }
   [[nodiscard]] bool shows(const log::Entry& entry, const client::Reception& reception) {
     return choice_.shows(entry, reception);
   }
@@ -55,15 +56,22 @@ class Window {
 struct Decoding {
   Display display;
   Window window;
-  std::uint64_t most = 0;  ///< lines to show; 0: all
+  std::uint64_t most = 0;    ///< lines to show; 0: all
+  std::uint64_t frames = 0;  ///< of the logs, chosen or not
   bool unreadable = false;
   bool ended_early = false;
 
   [[nodiscard]] bool over() const { return interrupted() != 0 || (most != 0 && display.shown() >= most); }
 
   void take(std::span<const log::Entry> entries, const log::Interfaces& interfaces) {
+    for (std::size_t i = 0; i < interfaces.size() && display.has_buses(); ++i) {
+      const auto number = static_cast<std::uint16_t>(i);
+      window.on_interface(number, interfaces.name(number));
+      display.on_interface(number, interfaces.name(number));
+    }
     for (const auto& entry : entries) {
       if (over()) return;
+      ++frames;
       if (!window.has(entry)) continue;
       if (window.shows(entry, display.understand(entry)))
         display.show(interfaces.name(entry.interface), entry);
@@ -87,7 +95,7 @@ struct Decoding {
 /// Frames that are of topics of this robot.
 std::uint64_t understood(const Display& display) {
   const auto& seen = display.counters();
-  return seen.frames - seen.unknown - seen.wrong_dlc - seen.errors - seen.transport;
+  return seen.frames - seen.unknown - seen.remote - seen.wrong_dlc - seen.errors - seen.transport;
 }
 
 void decode(Session& session, const DecodeOptions& options, int& exit_code) {
@@ -102,10 +110,13 @@ void decode(Session& session, const DecodeOptions& options, int& exit_code) {
   }
   Display& display = decoding.display;
   display.summarise(0);
-  if (display.counters().frames == 0) remark("no frame to decode");
-  display.tell_contradictions("a log of another bus?");
+  if (decoding.frames == 0)
+    remark("no frame to decode");
+  else if (display.shown() == 0 && !decoding.over())
+    remark(fmt::format("none of {} frames matches", decoding.frames));
+  display.tell_contradictions(Seen::in_log);
   const bool not_all = decoding.unreadable || display.any_fault();
-  if (understood(display) == 0 || decoding.ended_early || (options.strict && not_all))
+  if (understood(display) == 0 || display.shown() == 0 || decoding.ended_early || (options.strict && not_all))
     exit_code = exit_failure;
   exit_code = exit_code_after_interrupt(exit_code);
 }

@@ -40,6 +40,7 @@ std::string remedy_for(std::string_view target) {
 }
 
 void generate_file(Session& session, const GenerateOptions& options) {
+  session.refuse_interfaces("generate");
   const auto* target = generate::find_target(options.target);
   if (target == nullptr)
     fail({fmt::format("generate: unknown target '{}'", options.target), remedy_for(options.target)},

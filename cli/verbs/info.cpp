@@ -67,6 +67,7 @@ void message(const protocol::Catalogue& catalogue, const protocol::Topic& topic)
     fmt::print("  J1939      parameter group {} (0x{:05X}), here at priority {} from source {}\n", id.pgn,
                id.pgn, id.priority, id.source);
   }
+  if (!topic.bus.empty()) fmt::print("  bus        {}\n", topic.bus);
   fmt::print("  period     {}\n", topic.cycle.count() != 0 ? words::to_text(topic.cycle) : "none is stated");
   if (topic.shortest_period.count() != 0)
     fmt::print("  distance   at least {}\n", words::to_text(topic.shortest_period));
@@ -83,7 +84,11 @@ void info(const protocol::Catalogue& catalogue, const std::string& word) {
     fail({"info: no topic '" + word + "'", words::topic_suggestion(catalogue, word)}, exit_usage);
   }
   const bool sensor = topic->kind == protocol::Kind::sensor;
-  if (topic->is_message()) return message(catalogue, *topic);
+  if (topic->is_message()) {
+    for (const auto& same : catalogue.topics)  // on several interfaces, or twice in a file
+      if (same.is_message() && same.name == topic->name) message(catalogue, same);
+    return;
+  }
   fmt::print("{} ({} of {}, id 0x{:02X})\n", topic->name, name(topic->kind), catalogue.board_name(*topic),
              topic->id.value);
   if (!topic->aliases.empty()) {

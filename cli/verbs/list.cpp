@@ -37,6 +37,7 @@ void list_json(const protocol::Catalogue& catalogue) {
     line["id"] = id_of(topic);
     line["kind"] = name(topic.kind);
     line["board"] = catalogue.board_name(topic);
+    if (!topic.bus.empty()) line["bus"] = topic.bus;
     line["frames"] = topic.frames.size();
     if (const auto period = topic.usual_period(); period.count() != 0) line["period_ns"] = period.count();
     fmt::print("{}\n", line.line());
@@ -54,14 +55,16 @@ void list_table(const protocol::Catalogue& catalogue) {
     board_width = std::max(board_width, catalogue.board_name(topic).size());
     id_width = std::max(id_width, id_of(topic).size());
   }
-  const auto print = [&](const auto&... columns) {
-    fmt::print("{:<{}}  {:<{}}  {:<{}}  {:<8}  {:<{}}  {:>6}  {:>7}\n", columns...);
+  const bool has_buses = catalogue.has_buses();
+  const auto print = [&](std::string_view bus, const auto&... columns) {
+    fmt::print("{:<{}}  {:<{}}  {:<{}}  {:<8}  {:<{}}  {:>6}  {:>7}", columns...);
+    fmt::print("{}{}\n", has_buses && !bus.empty() ? "  " : "", has_buses ? bus : std::string_view{});
   };
-  print("TOPIC", name_width, "ALIASES", alias_width, "ID", id_width, "KIND", "BOARD", board_width, "FRAMES",
-        "PERIOD");
+  print("BUS", "TOPIC", name_width, "ALIASES", alias_width, "ID", id_width, "KIND", "BOARD", board_width,
+        "FRAMES", "PERIOD");
   for (const auto& topic : catalogue.topics)
-    print(topic.name, name_width, aliases_of(topic), alias_width, id_of(topic), id_width, name(topic.kind),
-          catalogue.board_name(topic), board_width, topic.frames.size(), period_of(topic));
+    print(topic.bus, topic.name, name_width, aliases_of(topic), alias_width, id_of(topic), id_width,
+          name(topic.kind), catalogue.board_name(topic), board_width, topic.frames.size(), period_of(topic));
 }
 
 }  // namespace

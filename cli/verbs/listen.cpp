@@ -43,6 +43,8 @@ void listen(Session& session, const ListenOptions& options, int& exit_code) {
       });
 
   Display display{"listen", session, options.display};
+  choice.on_interface(0, bus->name());
+  display.on_interface(0, bus->name());
   const ListenedUntil listened;
   const auto begin = Clock::now();
   auto last = begin;
@@ -66,7 +68,7 @@ void listen(Session& session, const ListenOptions& options, int& exit_code) {
   while (over == Over::time && Clock::now() < end());
   display.flush();
   display.summarise(bus->counters().lost, listened.now());
-  display.tell_contradictions("another robot?");
+  display.tell_contradictions(Seen::live);
   if (over == Over::gone) fail(bus->failure());
   if (over == Over::time) expect_answer(bus->name());
   // As with candump -n: frames that were expected and did not come are a failure.

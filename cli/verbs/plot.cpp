@@ -141,7 +141,7 @@ void run(Session& session, const PlotOptions& options, int& exit_code) {
 
   plot::Curves curves{catalogue, wanted};
   Watching watching{session, options.watch, std::move(words.files)};
-  watching.run([&](auto entries, const auto&) { curves.take(entries); }, {});
+  watching.run([&](auto entries, const auto& interfaces) { curves.take(entries, interfaces); }, {});
   tell_missing(curves);
   if (curves.points() == 0) {
     if (interrupted() == 0)

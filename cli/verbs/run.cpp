@@ -96,7 +96,7 @@ base::Duration listening_of(const words::Script& script, double speed) {
 }
 
 void run(Session& session, const RunOptions& options, int& exit_code) {
-  const auto& catalogue = session.catalogue();
+  const auto& catalogue = session.catalogue_on_bus(false);
   const auto script = checked(options.file, read_script(options.file), catalogue);
   if (options.dry_run) {
     for (const auto& step : script.steps)

@@ -107,6 +107,7 @@ bool is_of_amiro(const protocol::Topic& topic) {
 }
 
 Cast cast_of(Session& session) {
+  session.refuse_interfaces("sim");
   if (session.spec_files.empty()) return Cast::amiro;
   bool messages = false;
   bool topics = false;

@@ -76,23 +76,41 @@ std::vector<stats::Assertion> read_assertions(const std::vector<std::string>& te
   return assertions;
 }
 
-measure::BitRates chosen_bit_rates(Session& session, const StatsOptions& options) {
-  const std::uint32_t of_spec = session.spec_files.empty() ? 0 : session.spec().model().data_bit_rate;
-  const measure::BitRates rates{options.bit_rate.value_or(session.catalogue().bit_rate),
-                                options.data_bit_rate.value_or(of_spec)};
+/// Those that are typed, else those that the spec has for the interface.
+measure::BitRates chosen_bit_rates(Session& session, const StatsOptions& options,
+                                   std::string_view interface) {
+  spec::BusModel bus;
+  bus.bit_rate = session.catalogue().bit_rate;
+  if (!session.spec_files.empty()) bus = session.spec().model().bus(interface);
+  const measure::BitRates rates{options.bit_rate.value_or(bus.bit_rate),
+                                options.data_bit_rate.value_or(bus.data_bit_rate)};
   if (rates.nominal != 0) return rates;
-  fail({"stats: the spec says no bit rate", "--bitrate gives it, such as --bitrate 500k"}, exit_usage);
+  const std::string of = session.catalogue().has_buses() ? fmt::format(" of {}", interface) : "";
+  fail({fmt::format("stats: the spec says no bit rate{}", of), "--bitrate gives it, such as --bitrate 500k"},
+       exit_usage);
 }
 
 /// Of each bus, for its figures are its own.
-void tell_contradictions(const stats::Report& report, std::string_view guess) {
+void tell_contradictions(const stats::Report& report, const protocol::Catalogue& catalogue, Seen where) {
   for (const stats::Bus& bus : report.buses) {
     const auto& counters = bus.figures.counters;
     const std::string beginning = report.buses.size() > 1 ? bus.name + ": " : "";
     cli::tell_contradictions({counters.frames - counters.errors, counters.unknown + counters.fd,
                               counters.wrong_dlc, bus.figures.wrong_length},
-                             report.robot, guess, beginning);
+                             catalogue, where, beginning);
   }
+}
+
+bool any_shown(const stats::Report& report, const stats::Shown& shown) {
+  for (const stats::Bus& bus : report.buses)
+    for (const auto& topic : bus.figures.topics)
+      if (std::find(shown.begin(), shown.end(), topic.topic) != shown.end()) return true;
+  return false;
+}
+std::vector<std::string_view> names_of(const stats::Shown& shown) {
+  std::vector<std::string_view> names;
+  for (const auto* topic : shown) names.push_back(topic->name);
+  return names;
 }
 
 void run(Session& session, const StatsOptions& options, int& exit_code) {
@@ -105,14 +123,18 @@ void run(Session& session, const StatsOptions& options, int& exit_code) {
   Words words = split_words("stats", options.words, means_topic);
   const auto shown = chosen_topics("stats", catalogue, words.others);
   const auto assertions = read_assertions(options.assertions, catalogue);
-  stats::Collector collector{catalogue, chosen_bit_rates(session, options)};
+  if (!catalogue.has_buses()) static_cast<void>(chosen_bit_rates(session, options, {}));  // at once
+  stats::Collector collector{
+      catalogue, [&](std::string_view interface) { return chosen_bit_rates(session, options, interface); }};
   Watching watching{session, options.watch, std::move(words.files)};
 
   const ListenedUntil listened;
   const bool table = !options.json && !options.csv;
   Screen screen;
   const auto report = [&](std::optional<base::Time> now) {
-    return stats::Report{catalogue.robot, watching.source(), collector.buses(now)};
+    stats::Report all{catalogue.robot, watching.source(), collector.buses(now)};
+    all.never_came = collector.never_came(all.buses);
+    return all;
   };
   // In a pipe, a command with a given end prints at the end.
   const bool tell = table && (screen.terminal() || !watching.ends());
@@ -133,9 +155,15 @@ void run(Session& session, const StatsOptions& options, int& exit_code) {
     write_out(stats::to_csv(result, shown));
   else
     screen.finish(stats::to_table(result, shown, session.colour(), Screen::columns()));
-  tell_contradictions(result, watching.live() ? "another robot?" : "a log of another bus?");
+  // A CSV file has a line for what came on a bus.
+  if (const std::string text = stats::never_came_text(result, shown); options.csv && !text.empty())
+    remark(text);
+  tell_contradictions(result, catalogue, watching.live() ? Seen::live : Seen::in_log);
   if (!collector.any() && interrupted() == 0) {
     remark(fmt::format("amiroctl: stats: no frame came from {}", watching.source()));
+    exit_code = exit_failure;
+  } else if (!shown.empty() && !any_shown(result, shown) && interrupted() == 0) {
+    remark(fmt::format("amiroctl: stats: nothing came of {}", fmt::join(names_of(shown), ", ")));
     exit_code = exit_failure;
   }
   for (const auto& assertion : assertions) {

@@ -25,7 +25,8 @@ void add_sent_by(std::string_view verb, const protocol::Catalogue& catalogue, co
   if (std::none_of(catalogue.boards.begin(), catalogue.boards.end(), known)) {
     std::vector<std::string_view> names;
     for (const auto& board : catalogue.boards) names.push_back(board.name);
-    fail({fmt::format("{}: --sender {}: no such board", verb, sender), words::suggestion(sender, names)},
+    fail({fmt::format("{}: --sender {}: no such board", verb, sender),
+          names.empty() ? "the spec names no board" : words::suggestion(sender, names)},
          exit_usage);
   }
   for (const auto& topic : catalogue.topics)
@@ -82,7 +83,7 @@ Choice::Choice(std::string_view verb, const protocol::Catalogue& catalogue, cons
   // A sender that sends nothing is a choice, too.
   everything_ = topics_.empty() && filters_.empty() && conditions_.empty() && options.senders.empty();
   if (everything_) return;
-  index_ = client::FrameIndex{catalogue};
+  index_ = client::InterfaceIndexes{catalogue};
   if (topics_.empty() && filters_.empty() && options.senders.empty())
     for (const Held& held : conditions_) topics_.push_back(held.of.topic);
 }
@@ -113,7 +114,7 @@ void Choice::read_conditions(std::string_view verb, const protocol::Catalogue& c
 
 bool Choice::is_chosen(const log::Entry& entry) {
   if (is_transport(entry)) return true;  // what it completes, `shows` is asked
-  client::Subject subject = index_.subject(entry.id, entry.format);
+  client::Subject subject = index_.of(entry.interface).subject(entry.id, entry.format);
   if (subject.topic != nullptr && !subject.topic->is_message() && entry.is_fd())
     subject = {};  // no topic has frames of CAN FD
   return conditions_hold(subject, entry.bytes()) && is_meant(subject.topic, entry.id, entry.format);
@@ -122,7 +123,7 @@ bool Choice::is_chosen(const log::Entry& entry) {
 bool Choice::is_chosen_packet(const log::Entry& entry, const client::Reception& reception) {
   const auto* const message = reception.transported;
   if (message == nullptr) {
-    const client::Subject own = index_.subject(entry.id, entry.format);
+    const client::Subject own = index_.of(entry.interface).subject(entry.id, entry.format);
     return conditions_hold(own, entry.bytes()) && is_meant(own.topic, entry.id, entry.format);
   }
   return conditions_hold({reception.topic, reception.frame}, message->data) &&

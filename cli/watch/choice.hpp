@@ -54,6 +54,9 @@ class Choice {
   /// looked at.
   void subscribe(transport::Bus& bus, bool commands) const;
 
+  /// Frames of interface `number` come over the one of this name: topics of others are none of theirs.
+  void on_interface(std::uint16_t number, std::string_view name) { index_.name(number, name); }
+
  private:
   struct Held {
     ChosenField of;
@@ -77,7 +80,7 @@ class Choice {
   std::vector<const protocol::Topic*> topics_;
   Filters filters_;  ///< of identifiers and parameter groups
   std::vector<Held> conditions_;
-  client::FrameIndex index_;
+  client::InterfaceIndexes index_;
 };
 
 }  // namespace ocm::cli

@@ -15,7 +15,8 @@ std::vector<const protocol::Topic*> chosen_topics(std::string_view verb, const p
     bool found = false;
     const auto* const named = words::find_topic(catalogue, word);
     for (const auto& topic : catalogue.topics) {
-      if (named != &topic && !words::is_in_group(topic, word)) continue;
+      const bool is_named = named != nullptr && topic.name == named->name;  // on several interfaces
+      if (!is_named && !words::is_in_group(topic, word)) continue;
       topics.push_back(&topic);
       found = true;
     }

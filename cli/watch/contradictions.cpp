@@ -1,5 +1,6 @@
 #include "cli/watch/contradictions.hpp"
 
+#include <algorithm>
 #include <string>
 
 #include <fmt/format.h>
@@ -8,25 +9,48 @@
 
 namespace ocm::cli {
 
-void tell_contradictions(const Contradictions& found, std::string_view robot, std::string_view guess,
+namespace {
+
+/// What frames are of and not of, by what the spec has.
+struct Wording {
+  std::string_view of;      ///< "topic"
+  std::string_view named;   ///< what --spec FILE names
+  std::string_view others;  ///< whose the others may be
+};
+
+Wording wording_of(const protocol::Catalogue& catalogue) {
+  const auto is_message = [](const protocol::Topic& topic) { return topic.is_message(); };
+  const auto begin = catalogue.topics.begin();
+  const auto end = catalogue.topics.end();
+  if (std::none_of(begin, end, is_message)) return {"topic", "topics", "robot"};
+  if (std::all_of(begin, end, is_message)) return {"message", "messages", "bus"};
+  return {"topic or message", "topics or messages", "bus"};
+}
+
+}  // namespace
+
+void tell_contradictions(const Contradictions& found, const protocol::Catalogue& catalogue, Seen where,
                          std::string_view beginning) {
   const auto& [frames, foreign, wrong_length, first] = found;
   if (frames == 0 || 10 * (foreign + wrong_length) < frames) return;
+  const Wording words = wording_of(catalogue);
   if (foreign >= frames - frames / 10) {
-    remark(fmt::format(
-        "{}{} of {} frames are of no topic of {}: {} --spec FILE names the topics of another robot",
-        beginning, foreign, frames, robot, guess));
+    const std::string guess =
+        where == Seen::in_log ? "a log of another bus?" : fmt::format("another {}?", words.others);
+    remark(fmt::format("{}{} of {} frames are of no {} of {}: {} --spec FILE names the {} of another {}",
+                       beginning, foreign, frames, words.of, catalogue.robot, guess, words.named,
+                       words.others));
     return;
   }
   std::string why;
-  if (foreign != 0) why = fmt::format("{} of no topic", foreign);
+  if (foreign != 0) why = fmt::format("{} of no {}", foreign, words.of);
   if (first)
     why += fmt::format("{}{} of wrong length, such as {:03X} with {} bytes in place of {}",
                        why.empty() ? "" : ", ", wrong_length, first->id, first->length, first->right);
   remark(fmt::format(
-      "{}{} of {} frames contradict the spec of {} ({}): the others may be of another robot, too, "
-      "and mean something else. --spec FILE names its topics",
-      beginning, foreign + wrong_length, frames, robot, why));
+      "{}{} of {} frames contradict the spec of {} ({}): the others may be of another {}, too, "
+      "and mean something else. --spec FILE names its {}",
+      beginning, foreign + wrong_length, frames, catalogue.robot, why, words.others, words.named));
 }
 
 }  // namespace ocm::cli

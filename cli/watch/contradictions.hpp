@@ -17,9 +17,12 @@ struct Contradictions {
   std::optional<measure::WrongLength> first;  ///< of wrong length
 };
 
-/// Says so on stderr when a tenth of the frames or more contradict the spec of `robot`. `guess` is what is
-/// said when nearly all do: "a log of another bus?". `beginning` goes before: "can1: ".
-void tell_contradictions(const Contradictions& found, std::string_view robot, std::string_view guess,
+/// Where the frames came from, which says what else they may be.
+enum class Seen : std::uint8_t { live, in_log };
+
+/// Says so on stderr when a tenth of the frames or more contradict the spec, in the words of what it has:
+/// topics, messages or both. `beginning` goes before: "can1: ".
+void tell_contradictions(const Contradictions& found, const protocol::Catalogue& catalogue, Seen where,
                          std::string_view beginning = {});
 
 }  // namespace ocm::cli

@@ -69,6 +69,7 @@ void Display::summarise(std::uint64_t lost, base::Time until) {
   };
   add(seen.commands, "commands");
   add(seen.unknown, "of unknown identifier");
+  add(seen.remote, "remote");
   add(seen.fd, "of CAN FD");
   add(seen.wrong_dlc, "of wrong length");
   add(seen.incomplete, "incomplete samples");
@@ -101,11 +102,11 @@ void Display::summarise_transport() {
   remark(text);
 }
 
-void Display::tell_contradictions(std::string_view guess) const {
+void Display::tell_contradictions(Seen where) const {
   const auto& seen = receiver_.counters();
   const Contradictions found{seen.frames - seen.errors, seen.unknown + seen.fd, seen.wrong_dlc,
                              wrong_length_};
-  cli::tell_contradictions(found, receiver_.catalogue().robot, guess);
+  cli::tell_contradictions(found, receiver_.catalogue(), where);
 }
 
 }  // namespace ocm::cli

@@ -15,6 +15,7 @@
 #include "cli/output/printer.hpp"
 #include "cli/shared/arguments.hpp"
 #include "cli/shared/session.hpp"
+#include "cli/watch/contradictions.hpp"
 
 namespace ocm::cli {
 
@@ -40,6 +41,9 @@ class Display {
       wrong_length_ = {entry.id, entry.length, reception_.frame.layout().length};
     return reception_;
   }
+  /// Frames of interface `number` come over the one of this name: topics of others are none of theirs.
+  void on_interface(std::uint16_t number, std::string_view name) { receiver_.on_interface(number, name); }
+  [[nodiscard]] bool has_buses() const noexcept { return receiver_.has_buses(); }
   /// Whether there was anything to show.
   bool show(std::string_view bus, const log::Entry& entry) {
     const bool shown = printer_.write({bus, entry, reception_});
@@ -55,8 +59,8 @@ class Display {
   /// What came, and every fault by its cause, on stderr. `until`: up to when was listened, if that is later
   /// than the last frame.
   void summarise(std::uint64_t lost, base::Time until = {});
-  /// On stderr, if it is so: `guess` is what is said when nearly all do.
-  void tell_contradictions(std::string_view guess) const;
+  /// On stderr, if it is so.
+  void tell_contradictions(Seen where) const;
 
  private:
   void summarise_transport();

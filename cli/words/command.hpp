@@ -2,7 +2,7 @@
 ///
 ///     publish TOPIC [PERIOD]     once TOPIC     stop [TOPIC|all]
 ///     drive X [Z] [--for T] | drive stop        led N|all COLOUR|off
-///     set ACTUATOR|MESSAGE FIELD=VALUE ... [--every T [--for T]] [--force]
+///     set ACTUATOR|MESSAGE [FIELD=VALUE ...] [--every T [--for T]] [--force]
 ///     send FRAME
 ///
 /// each with `--priority P`. A script has the options among the words; the command line has read them already
@@ -91,7 +91,7 @@ inline constexpr Form forms[] = {{"publish", "TOPIC [PERIOD]"},
                                  {"stop", "[TOPIC|all]"},
                                  {"drive", "X|stop [Z]"},
                                  {"led", "N|all COLOUR|off"},
-                                 {"set", "ACTUATOR|MESSAGE FIELD=VALUE ..."},
+                                 {"set", "ACTUATOR|MESSAGE [FIELD=VALUE ...]"},
                                  {"send", "FRAME"}};
 
 /// The words of a verb's form; empty if no command has the name.
@@ -257,7 +257,7 @@ class CommandParser {
     for (std::string_view rest = form; !rest.empty(); ++count) {
       const std::string_view word = rest.substr(0, rest.find(' '));
       rest.remove_prefix(std::min(word.size() + 1, rest.size()));
-      if (word == "...") return {};
+      if (word == "..." || word == "...]") return {};
       if (line.size() <= count && !word.starts_with('['))
         return WordError{line.size(), "missing " + std::string{word}, usage(line[0])};
     }
@@ -421,6 +421,8 @@ class CommandParser {
     const auto found = settable(line);
     if (!found) return found.error;
     const protocol::Topic& target = **found;
+    // A message may have no fields, or all at their start values; set points of zero are said.
+    if (!target.is_message() && line.size() == 2) return WordError{2, "missing FIELD=VALUE", usage(line[0])};
     const auto given = given_fields(line, target, options.force);
     if (!given) return given.error;
     if (options.lasting && !options.every)

@@ -92,6 +92,11 @@ inline constexpr const char* force_beyond_range =
 [[nodiscard]] inline base::Result<can::AnyFrame, WordError> compose(const protocol::Topic& message,
                                                                     GivenFields given) {
   const protocol::FrameLayout& layout = message.frames[0];
+  if (layout.address.by == protocol::Address::By::pgn && layout.length > can::max_dlc)
+    return WordError{1,
+                     std::string{message.name} + " is a message of " + std::to_string(layout.length) +
+                         " bytes, which J1939 sends in several frames by its transport protocol",
+                     "this tool receives such messages and sends none; `send` sends single frames"};
   if (layout.length > (layout.fd ? can::max_fd_length : can::max_dlc))
     return WordError{1,
                      std::string{message.name} + " is a message of " + std::to_string(layout.length) +

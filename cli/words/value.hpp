@@ -7,12 +7,14 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
 #include "ocm/base/decimal.hpp"
 #include "ocm/base/result.hpp"
 #include "ocm/protocol/topic.hpp"
 
 #include "cli/words/quantity.hpp"
+#include "cli/words/suggestion.hpp"
 #include "cli/words/wide_number.hpp"
 
 namespace ocm::cli::words {
@@ -56,6 +58,23 @@ namespace detail {
     expected = names + ", or " + expected;
   }
   return std::string{field.name} + " takes " + expected;
+}
+
+/// "did you mean 'Reverse'? ", whatever the case; empty: no name of a value is near.
+[[nodiscard]] inline std::string near_name(const protocol::Field& field, std::string_view text) {
+  const auto lower = [](std::string_view word) {
+    std::string out{word};
+    for (char& c : out)
+      if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return out;
+  };
+  std::vector<std::string> names;
+  for (const auto& value : field.values) names.push_back(lower(value.name));
+  const std::string word = lower(text);
+  const std::string_view found = nearest(word, names);
+  for (std::size_t i = 0; i < names.size() && !found.empty(); ++i)
+    if (names[i] == found) return "did you mean " + quoted(field.values[i].name) + "? ";
+  return {};
 }
 
 /// What a float's text says, with the field's unit or without: the nearest double, or NaN, Infinity.
@@ -106,10 +125,11 @@ namespace detail {
   const auto quantity = detail::quantity_for(field, text);
   if (!quantity || !field.raw_from(quantity->number))
     if (const auto wide = detail::parse_wide(field, text)) return *wide;
-  if (!quantity)
-    return detail::quoted(text) +
-           (field.values.empty() || field.flags ? " is not a number: " : " has no meaning: ") +
-           detail::takes(field);
+  if (!quantity) {
+    const bool has_names = !field.values.empty() && !field.flags;
+    return detail::quoted(text) + (has_names ? " has no meaning: " : " is not a number: ") +
+           (has_names ? detail::near_name(field, text) : std::string{}) + detail::takes(field);
+  }
   if (!quantity->unit.empty() && field.unit.empty())
     return detail::quoted(text) + " has a unit, but " + std::string{field.name} +
            " is a plain number: " + detail::takes(field);

@@ -36,6 +36,7 @@ class Parser {
       }
       any = true;
       line_ = first.line;
+      keyword_ = rule->keyword;
       wrong_.clear();
       if ((this->*rule->read)()) continue;
       const bool over =
@@ -544,7 +545,7 @@ class Parser {
       if (next.first_of_line && next.is_word() && find(next.text) != nullptr) break;
       if (lexer_.take().is(';')) break;
     }
-    statements_.document.unused.push_back({{}, line_});
+    statements_.document.unused.push_back({std::string{keyword_}, line_});
     return true;
   }
 
@@ -553,6 +554,7 @@ class Parser {
   std::vector<Finding>& doubts_;
   Statements statements_;
   std::size_t line_ = 1;  ///< where the statement begins
+  std::string_view keyword_;
   std::string wrong_;
   std::size_t wrong_line_ = 1;
 };

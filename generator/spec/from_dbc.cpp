@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <iterator>
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
@@ -42,6 +43,8 @@ class Converter {
     model.robot = std::filesystem::path{file_name_}.stem().string();
     model.description = std::move(document.comment);
     model.attributes = attributes_of(document.attributes);
+    definitions(document, model);
+    note_what_is_not_kept(document, model);
     model.bit_rate = bit_rate(model.attributes, "Baudrate", 1'000'000);
     model.data_bit_rate = bit_rate(model.attributes, "BaudrateCANFD", max_data_bit_rate);
     if (model.data_bit_rate < model.bit_rate) model.data_bit_rate = 0;
@@ -54,6 +57,45 @@ class Converter {
  private:
   void doubt(std::size_t line, std::string what, std::string remedy) {
     doubts_.push_back({file_name_ + ':' + std::to_string(line), std::move(what), std::move(remedy)});
+  }
+
+  /// Those that become members have none: their values say all.
+  static bool becomes_member(const dbc::AttributeDefinition& definition) noexcept {
+    static constexpr std::pair<dbc::Of, std::string_view> members[] = {
+        {dbc::Of::message, "GenMsgCycleTime"},         {dbc::Of::message, "GenMsgDelayTime"},
+        {dbc::Of::message, "GenMsgSendType"},          {dbc::Of::message, "VFrameFormat"},
+        {dbc::Of::message, "SystemMessageLongSymbol"}, {dbc::Of::signal, "GenSigStartValue"},
+        {dbc::Of::signal, "SystemSignalLongSymbol"},   {dbc::Of::node, "SystemNodeLongSymbol"}};
+    return std::any_of(std::begin(members), std::end(members), [&](const auto& member) {
+      return member.first == definition.of && member.second == definition.name;
+    });
+  }
+  static void definitions(dbc::Document& document, Model& model) {
+    using Out = AttributeDefinitionModel;
+    std::size_t of_variables = 0;
+    for (dbc::AttributeDefinition& each : document.definitions) {
+      if (each.of == dbc::Of::variable) ++of_variables;
+      if (each.of == dbc::Of::variable || becomes_member(each)) continue;
+      model.definitions.push_back({static_cast<Out::Of>(each.of), std::move(each.name),
+                                   static_cast<Out::Type>(each.type), std::move(each.min),
+                                   std::move(each.max), std::move(each.names), std::move(each.default_text)});
+    }
+    if (of_variables != 0) model.not_kept.push_back({"BA_DEF_ EV_", of_variables});
+  }
+  static void note_what_is_not_kept(const dbc::Document& document, Model& model) {
+    const auto note = [&](std::string_view what, std::size_t count) {
+      if (count == 0) return;
+      for (NotKept& known : model.not_kept)
+        if (known.what == what) {
+          known.count += count;
+          return;
+        }
+      model.not_kept.push_back({std::string{what}, count});
+    };
+    note("VERSION", document.version.empty() ? 0 : 1);
+    note("VAL_TABLE_, the values of which are with their signals", document.tables.size());
+    note("signals of VECTOR__INDEPENDENT_SIG_MSG", document.independent.size());
+    for (const dbc::Unused& statement : document.unused) note(statement.keyword, 1);
   }
 
   /// The attribute that many files give it in, in bit/s; 0: none that a bus can have.
@@ -69,19 +111,39 @@ class Converter {
 
   void boards(dbc::Document& document, Model& model) {
     for (dbc::Node& node : document.nodes) {
-      if (model.boards.size() == protocol::no_board) {
-        doubt(1, std::to_string(document.nodes.size()) + " nodes",
-              "the first " + std::to_string(protocol::no_board) +
-                  " are kept: messages of others have no sender");
-        break;
-      }
-      boards_.try_emplace(node.name, static_cast<std::uint8_t>(model.boards.size()));
       BoardModel board;
       board.name = std::move(node.name);
       board.description = std::move(node.comment);
       board.attributes = attributes_of(node.attributes);
-      model.boards.push_back(std::move(board));
+      add_board(std::move(board), model);
     }
+    // Many files have no BU_, or name only some nodes there.
+    const auto undeclared = [&](const std::string& name) {
+      if (name.empty() || boards_.find(name) != boards_.end()) return;
+      BoardModel board;
+      board.name = name;
+      add_board(std::move(board), model);
+    };
+    for (const dbc::Message& message : document.messages) {
+      undeclared(message.sender);
+      for (const std::string& sender : message.other_senders) undeclared(sender);
+    }
+    for (const dbc::Message& message : document.messages)
+      for (const dbc::Signal& signal : message.signals)
+        for (const std::string& receiver : signal.receivers) undeclared(receiver);
+    if (left_out_ != 0)
+      doubt(
+          1, std::to_string(model.boards.size() + left_out_) + " nodes",
+          "the first " + std::to_string(protocol::no_board) + " are kept: messages of others have no sender");
+  }
+  void add_board(BoardModel board, Model& model) {
+    const bool is_full = model.boards.size() == protocol::no_board;
+    const auto number = is_full ? protocol::no_board : static_cast<std::uint8_t>(model.boards.size());
+    if (!boards_.try_emplace(board.name, number).second) return;
+    if (is_full)
+      ++left_out_;
+    else
+      model.boards.push_back(std::move(board));
   }
 
   void add(dbc::Message& message, Model& model) {
@@ -170,7 +232,8 @@ class Converter {
 
   std::string file_name_;
   std::vector<Problem>& doubts_;
-  std::unordered_map<std::string, std::uint8_t> boards_;
+  std::unordered_map<std::string, std::uint8_t> boards_;  ///< no_board: one too many
+  std::size_t left_out_ = 0;                              ///< boards
 };
 
 }  // namespace

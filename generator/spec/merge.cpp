@@ -29,7 +29,19 @@ std::string text_of(const Key& key) {
   return (key.group ? "parameter group " : "identifier ") + hex;
 }
 
-/// Calls take(key, name) for all that a model says on the bus.
+/// Whether what is on one is on the other; an empty name is any.
+bool meet(std::string_view a, std::string_view b) noexcept {
+  return a.empty() || b.empty() || a == b;
+}
+
+/// What has a name or a key, and where it is.
+struct Owner {
+  std::string name;
+  std::string_view kind;  ///< "topic", "message"
+  std::string bus;
+};
+
+/// Calls take(key, name, bus) for all that a model says on the bus.
 template <class Take>
 void each_key(const Model& model, Take take) {
   using protocol::Direction;
@@ -41,7 +53,7 @@ void each_key(const Model& model, Take take) {
                  protocol::Identifier{direction, static_cast<protocol::Priority>(level),
                                       protocol::TopicId{static_cast<std::uint8_t>(id)}}
                      .encode()},
-             topic.name);
+             topic.name, topic.bus);
     };
     for (unsigned instance = 0; instance < topic.count; ++instance) {
       if (sensor) all_priorities(Direction::command, topic.id + instance);
@@ -54,7 +66,7 @@ void each_key(const Model& model, Take take) {
     const bool group = message.address.by == protocol::Address::By::pgn;
     take(Key{group, message.address.extended,
              group ? j1939::pgn_of(message.address.number) : message.address.number},
-         message.name);
+         message.name, message.bus);
   }
 }
 
@@ -62,56 +74,101 @@ class Merger {
  public:
   Merger(Model& into, const std::string& place, std::vector<Problem>& problems)
       : into_(into), place_(place), problems_(problems) {
-    each_key(into, [&](const Key& key, const std::string& name) { keys_.emplace(key, name); });
-    for (const TopicModel& topic : into.topics) names_.emplace(topic.name, "topic");
-    for (const MessageModel& message : into.messages) names_.emplace(message.name, "message");
+    each_key(into, [&](const Key& key, const std::string& name, const std::string& bus) {
+      keys_.emplace(key, Owner{name, {}, bus});
+    });
+    for (const TopicModel& topic : into.topics)
+      names_.emplace(topic.name, Owner{topic.name, "topic", topic.bus});
+    for (const MessageModel& message : into.messages)
+      names_.emplace(message.name, Owner{message.name, "message", message.bus});
   }
 
   void add(Model from) {
-    rate(from);
+    rates(from);
     std::string_view told;  // a topic has many identifiers: one conflict is enough
-    each_key(from, [&](const Key& key, const std::string& name) {
-      const auto other = keys_.find(key);
-      if (other == keys_.end() || name == told) return;
+    std::size_t conflicts = 0;
+    each_key(from, [&](const Key& key, const std::string& name, const std::string& bus) {
+      const Owner* const other = find(keys_, key, bus);
+      if (other == nullptr || name == told) return;
       told = name;
-      tell(name + " has the " + text_of(key) + " of " + other->second + " in " + into_.robot,
-           "leave one of the files out, or name their buses: --spec can0=FILE");
+      if (++conflicts > most_told) return;
+      tell(name + " has the " + text_of(key) + " of " + other->name + " in " + into_.robot,
+           "leave one of the files out, or name their interfaces: --spec can0=FILE");
     });
+    add_attributes(from);
     const std::vector<std::uint8_t> boards = add_boards(from);
+    std::size_t names = 0;
     for (TopicModel& topic : from.topics) {
-      claim(topic.name);
+      names += is_free(topic.name, topic.bus, names < most_told) ? 0 : 1;
       topic.board = boards[topic.board];
       into_.topics.push_back(std::move(topic));
     }
     into_.too_long.insert(into_.too_long.end(), from.too_long.begin(), from.too_long.end());
     for (MessageModel& message : from.messages) {
-      claim(message.name);
+      names += is_free(message.name, message.bus, names < most_told) ? 0 : 1;
       if (message.board != protocol::no_board) message.board = boards[message.board];
       into_.messages.push_back(std::move(message));
     }
+    const std::size_t more = conflicts + names - std::min(conflicts, most_told) - std::min(names, most_told);
+    if (more != 0)
+      tell(std::to_string(more) + " more conflicts with " + into_.robot,
+           "is it the same file, or another version of it?");
   }
 
  private:
+  /// So many of a kind are told one by one.
+  static constexpr std::size_t most_told = 3;
+
   void tell(std::string what, std::string remedy) {
     problems_.push_back({place_, std::move(what), std::move(remedy)});
   }
-  void rate(const Model& from) {
-    if (into_.bit_rate == 0) into_.bit_rate = from.bit_rate;
-    if (from.bit_rate != 0 && from.bit_rate != into_.bit_rate)
-      tell("its bus has " + std::to_string(from.bit_rate) + " bit/s, that of " + into_.robot + " " +
-               std::to_string(into_.bit_rate),
-           "specs of one bus have one bit rate");
-    if (into_.data_bit_rate == 0) into_.data_bit_rate = from.data_bit_rate;
-    if (from.data_bit_rate != 0 && from.data_bit_rate != into_.data_bit_rate)
-      tell("its bus has " + std::to_string(from.data_bit_rate) + " bit/s for data, that of " + into_.robot +
-               " " + std::to_string(into_.data_bit_rate),
-           "specs of one bus have one data bit rate");
+  /// Of one name the first counts.
+  void add_attributes(Model& from) {
+    const auto add = [](auto& to, auto& all, auto same) {
+      for (auto& each : all)
+        if (std::none_of(to.begin(), to.end(), [&](const auto& other) { return same(each, other); }))
+          to.push_back(std::move(each));
+    };
+    add(into_.attributes, from.attributes, [](const auto& a, const auto& b) { return a.name == b.name; });
+    add(into_.definitions, from.definitions,
+        [](const auto& a, const auto& b) { return a.of == b.of && a.name == b.name; });
+    into_.not_kept.insert(into_.not_kept.end(), from.not_kept.begin(), from.not_kept.end());
   }
-  void claim(const std::string& name) {
-    const auto other = names_.find(name);
-    if (other == names_.end()) return;
-    tell("a second " + name + ": " + into_.robot + " has a " + std::string{other->second} + " of that name",
-         "another name for one of them");
+  template <class Known>
+  [[nodiscard]] static const Owner* find(const Known& known, const typename Known::key_type& key,
+                                         std::string_view bus) {
+    const auto [begin, end] = known.equal_range(key);
+    for (auto at = begin; at != end; ++at)
+      if (meet(at->second.bus, bus)) return &at->second;
+    return nullptr;
+  }
+  void rates(Model& from) {
+    for (BusModel& bus : from.buses) {
+      const auto known = std::find_if(into_.buses.begin(), into_.buses.end(),
+                                      [&](const BusModel& other) { return other.name == bus.name; });
+      if (known == into_.buses.end()) {
+        into_.buses.push_back(std::move(bus));
+        continue;
+      }
+      rate(known->bit_rate, bus.bit_rate, "");
+      rate(known->data_bit_rate, bus.data_bit_rate, " for data");
+    }
+    rate(into_.bit_rate, from.bit_rate, "");
+    rate(into_.data_bit_rate, from.data_bit_rate, " for data");
+  }
+  void rate(std::uint32_t& into, std::uint32_t from, const std::string& what) {
+    if (into == 0) into = from;
+    if (from != 0 && from != into)
+      tell("its bus has " + std::to_string(from) + " bit/s" + what + ", that of " + into_.robot + " " +
+               std::to_string(into),
+           "specs of one bus have one" + (what.empty() ? std::string{} : std::string{" data"}) + " bit rate");
+  }
+  bool is_free(const std::string& name, const std::string& bus, bool is_told) {
+    const Owner* const other = find(names_, name, bus);
+    if (other != nullptr && is_told)
+      tell("a second " + name + ": " + into_.robot + " has a " + std::string{other->kind} + " of that name",
+           "another name for one of them, or interfaces: --spec can0=FILE");
+    return other == nullptr;
   }
   /// Where the boards of `from` are now.
   std::vector<std::uint8_t> add_boards(Model& from) {
@@ -134,8 +191,8 @@ class Merger {
   Model& into_;
   const std::string& place_;
   std::vector<Problem>& problems_;
-  std::map<Key, std::string> keys_;
-  std::map<std::string, std::string_view> names_;
+  std::multimap<Key, Owner> keys_;
+  std::multimap<std::string, Owner> names_;
 };
 
 }  // namespace

@@ -53,7 +53,57 @@ class MessageReader : private Checker {
     return out;
   }
 
+  [[nodiscard]] std::vector<AttributeDefinitionModel> attribute_definitions(const At& at) {
+    std::vector<AttributeDefinitionModel> out;
+    if (!is_kind(at, Kind::array, "a list of definitions")) return out;
+    for (std::size_t i = 0; i < at.node->items.size(); ++i) {
+      const At item = at.item(i);
+      if (is_object(
+              item,
+              R"({"of": "message", "name": "GenMsgILSupport", "type": "enum", "values": ["No", "Yes"]})"))
+        out.push_back(attribute_definition(item));
+    }
+    return out;
+  }
+
  private:
+  [[nodiscard]] AttributeDefinitionModel attribute_definition(const At& at) {
+    using Of = AttributeDefinitionModel::Of;
+    using Type = AttributeDefinitionModel::Type;
+    static constexpr std::pair<std::string_view, Of> objects[] = {
+        {"bus", Of::bus}, {"board", Of::board}, {"message", Of::message}, {"field", Of::field}};
+    static constexpr std::pair<std::string_view, Type> types[] = {{"int", Type::integer},
+                                                                  {"hex", Type::hexadecimal},
+                                                                  {"float", Type::floating},
+                                                                  {"string", Type::string},
+                                                                  {"enum", Type::enumeration}};
+    check_keys(at, {"of", "name", "type", "min", "max", "values", "default"});
+    AttributeDefinitionModel out;
+    if (const auto a = require(at, "of", R"(what has it: "message")"))
+      out.of = one_of(*a, objects).value_or(out.of);
+    if (const auto a = require(at, "name", "what the attribute is called")) out.name = text(*a);
+    if (const auto a = require(at, "type", R"("int", "hex", "float", "string" or "enum")"))
+      out.type = one_of(*a, types).value_or(out.type);
+    if (const auto a = at.member("min")) out.min = text(*a);
+    if (const auto a = at.member("max")) out.max = text(*a);
+    if (const auto a = at.member("default")) out.default_text = text(*a);
+    const auto values = at.member("values");
+    if (values && is_kind(*values, Kind::array, R"(a list of texts: ["No", "Yes"])"))
+      for (std::size_t i = 0; i < values->node->items.size(); ++i)
+        out.values.push_back(text(values->item(i)));
+    const bool is_enumeration = out.type == Type::enumeration;
+    if (is_enumeration != values.has_value())
+      tell(values.value_or(at),
+           is_enumeration ? "an enumeration without \"values\"" : "\"values\" of another type",
+           R"("type": "enum", "values": ["No", "Yes"])");
+    const bool is_number = !is_enumeration && out.type != Type::string;
+    if (out.min.empty() != out.max.empty()) tell(at, "one bound of two", R"("min" and "max", or neither)");
+    for (const char* bound : {"min", "max"})
+      if (const auto a = at.member(bound); a && !(is_number && base::parse_decimal(a->node->text)))
+        tell(*a, shown(*a->node) + " is no bound of this type", R"(of a number, as text: "65535")");
+    return out;
+  }
+
   enum class Format : std::uint8_t { base, extended, j1939 };
   static constexpr std::string_view word_form = "a name without blanks and punctuation, such as \"Engine_1\"";
 

@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -50,6 +51,27 @@ struct AttributeModel {
   std::string name;
   std::string text;
   friend bool operator==(const AttributeModel&, const AttributeModel&) = default;
+};
+
+/// What a DBC file says of an attribute itself: BA_DEF_ with its BA_DEF_DEF_. Of those that become members
+/// here, such as GenMsgCycleTime, there is none.
+struct AttributeDefinitionModel {
+  enum class Of : std::uint8_t { bus, board, message, field };
+  enum class Type : std::uint8_t { integer, hexadecimal, floating, string, enumeration };
+  Of of = Of::bus;
+  std::string name;
+  Type type = Type::string;
+  std::string min;  ///< as written; empty: none
+  std::string max;
+  std::vector<std::string> values;          ///< of an enumeration, by number
+  std::optional<std::string> default_text;  ///< an enumeration's is one of its values
+  friend bool operator==(const AttributeDefinitionModel&, const AttributeDefinitionModel&) = default;
+};
+
+/// What a source has and a model does not.
+struct NotKept {
+  std::string what;  ///< "SIG_GROUP_"
+  std::size_t count = 0;
 };
 
 /// A range that a source states, physical, in its own words.
@@ -138,6 +160,7 @@ struct TopicModel {
   base::Duration jitter{};
   base::Duration timeout{};
   Source source;
+  std::string bus;  ///< the only interface that it is on; empty: any
 };
 
 /// A frame that is only sent: known by its identifier, not by a topic's number.
@@ -158,6 +181,7 @@ struct MessageModel {
   std::string send_type;  ///< as the source calls it, such as "Cyclic"
   std::vector<AttributeModel> attributes;
   Source source;
+  std::string bus;  ///< the only interface that it is on; empty: any
 
   [[nodiscard]] bool is_j1939() const noexcept { return address.by == protocol::Address::By::pgn; }
   /// What a catalogue's layout can hold: CAN FD, or J1939's transport protocol.
@@ -174,6 +198,13 @@ struct BoardModel {
   std::vector<AttributeModel> attributes;
 };
 
+/// An interface that a spec was given for.
+struct BusModel {
+  std::string name;
+  std::uint32_t bit_rate = 0;
+  std::uint32_t data_bit_rate = 0;
+};
+
 struct Model {
   std::string robot;
   std::string name_space;
@@ -187,6 +218,39 @@ struct Model {
   std::vector<MessageModel> messages;
   std::vector<std::string> too_long;       ///< messages of the source that no frame can carry: left out
   std::vector<AttributeModel> attributes;  ///< of the bus
+  std::vector<AttributeDefinitionModel> definitions;
+  std::vector<NotKept> not_kept;
+  std::vector<BusModel> buses;  ///< those that specs were given for, with their bit rates
+
+  /// From now on all of it is on this interface only.
+  void put_on(const std::string& bus) {
+    for (TopicModel& topic : topics) topic.bus = bus;
+    for (MessageModel& message : messages) message.bus = bus;
+    buses = {{bus, bit_rate, data_bit_rate}};
+    bit_rate = data_bit_rate = 0;
+  }
+  /// Where no spec holds for all interfaces, the bit rate that all of them have is that of the bus.
+  void share_bit_rate() {
+    const auto share = [this](std::uint32_t& of_all, std::uint32_t BusModel::*rate) {
+      if (of_all != 0 || buses.empty()) return;
+      const std::uint32_t first = buses.front().*rate;
+      for (const BusModel& each : buses)
+        if (each.*rate != first) return;
+      of_all = first;
+    };
+    share(bit_rate, &BusModel::bit_rate);
+    share(data_bit_rate, &BusModel::data_bit_rate);
+  }
+  /// The bit rates of an interface: its own, or those that hold for all.
+  [[nodiscard]] BusModel bus(std::string_view interface) const {
+    BusModel out{std::string{interface}, bit_rate, data_bit_rate};
+    for (const BusModel& own : buses) {
+      if (own.name != interface) continue;
+      if (own.bit_rate != 0) out.bit_rate = own.bit_rate;
+      if (own.data_bit_rate != 0) out.data_bit_rate = own.data_bit_rate;
+    }
+    return out;
+  }
 };
 
 }  // namespace ocm::spec

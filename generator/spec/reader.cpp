@@ -29,7 +29,7 @@ class Reader : private FieldReader {
     Model model;
     if (!is_object(root, "a spec is an object with robot, namespace, bus, boards and topics")) return model;
     check_keys(root, {"$schema", "robot", "namespace", "description", "byte_order", "bus", "defaults",
-                      "boards", "topics", "messages", "attributes"});
+                      "boards", "topics", "messages", "attributes", "attribute_definitions"});
     // A bus of messages has what its DBC file has; a robot's topics become a header, with sources.
     const bool topics = root.member("topics") || !root.member("messages");
     if (const auto at = require(root, "robot", "the robot's name")) model.robot = line(*at, false);
@@ -50,6 +50,8 @@ class Reader : private FieldReader {
       read_topics(*at, model);
     if (const auto at = root.member("messages")) messages_.read(*at, order_, topic_names_, model);
     model.attributes = messages_.attributes(root);
+    if (const auto at = root.member("attribute_definitions"))
+      model.definitions = messages_.attribute_definitions(*at);
     return model;
   }
 

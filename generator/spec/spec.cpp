@@ -2,6 +2,7 @@
 
 #include <deque>
 #include <string>
+#include <utility>
 
 #include "generator/dbc/reader.hpp"
 #include "generator/spec/file.hpp"
@@ -73,6 +74,7 @@ struct Spec::Storage {
     out.shortest_period = message.shortest_period;
     out.deadline = message.deadline;
     out.jitter = message.jitter;
+    out.bus = message.bus;
     out.source = keep(message.source.joined());
     topics.push_back(out);
   }
@@ -109,6 +111,7 @@ struct Spec::Storage {
     out.deadline = topic.deadline;
     out.jitter = topic.jitter;
     out.timeout = topic.timeout;
+    out.bus = topic.bus;
     if (instance != 0) out.group = topic.name;
     out.instance = instance;
     out.source = keep(topic.source.joined());
@@ -138,6 +141,9 @@ Spec::~Spec() = default;
 
 const protocol::Catalogue& Spec::catalogue() const noexcept {
   return storage_->catalogue;
+}
+Model Spec::take_model() {
+  return std::move(std::exchange(storage_, nullptr)->model);
 }
 const Model& Spec::model() const noexcept {
   return storage_->model;

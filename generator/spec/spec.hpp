@@ -25,6 +25,8 @@ class Spec {
 
   [[nodiscard]] const protocol::Catalogue& catalogue() const noexcept;
   [[nodiscard]] const Model& model() const noexcept;
+  /// The model for another spec; this one and its catalogue are no more.
+  [[nodiscard]] Model take_model();
 
  private:
   struct Storage;

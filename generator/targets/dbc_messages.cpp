@@ -58,6 +58,7 @@ class MessagesWriter {
     if (needs_formats()) frame_formats();
     start_values();
     long_names();
+    for (const auto& definition : model_.definitions) define(definition);
     const auto network = [this](const auto& take) { take("", model_.attributes); };
     const auto boards = [this](const auto& take) {
       for (const auto& board : model_.boards) take("BU_ " + nodes_.at(board.name) + " ", board.attributes);
@@ -183,6 +184,41 @@ class MessagesWriter {
     if (!value.empty())
       out_.defaults.append("BA_DEF_DEF_ \"").append(name).append("\" ").append(value).append(";\n");
   }
+  /// "BO_ ", and nothing for the bus.
+  [[nodiscard]] static std::string_view word_of(spec::AttributeDefinitionModel::Of of) noexcept {
+    static constexpr std::string_view words[] = {"", "BU_ ", "BO_ ", "SG_ "};
+    return words[static_cast<std::size_t>(of)];
+  }
+  void define(const spec::AttributeDefinitionModel& definition) {
+    using Type = spec::AttributeDefinitionModel::Type;
+    static constexpr std::string_view types[] = {"INT", "HEX", "FLOAT", "STRING", "ENUM"};
+    std::string type{types[static_cast<std::size_t>(definition.type)]};
+    if (!definition.min.empty()) type += " " + definition.min + " " + definition.max;
+    std::string names;
+    for (const std::string& value : definition.values) names += (names.empty() ? " " : ",") + dbc_text(value);
+    std::string usual;
+    if (definition.default_text) {
+      const bool is_text = definition.type == Type::string || definition.type == Type::enumeration;
+      usual = is_text || !is_number(*definition.default_text) ? dbc_text(*definition.default_text)
+                                                              : *definition.default_text;
+    }
+    define(word_of(definition.of), definition.name, type + names, usual);
+  }
+  /// As the attribute's definition has it: an enumeration's by number, if that cannot be one of its names.
+  [[nodiscard]] std::optional<std::string> value_by_definition(std::string_view of,
+                                                               const AttributeModel& attribute) const {
+    using Type = spec::AttributeDefinitionModel::Type;
+    for (const auto& definition : model_.definitions) {
+      if (word_of(definition.of) != of || definition.name != attribute.name) continue;
+      const auto& values = definition.values;
+      const auto at = std::find(values.begin(), values.end(), attribute.text);
+      const bool numbers = std::any_of(values.begin(), values.end(), is_number);
+      if (at != values.end() && !numbers) return std::to_string(at - values.begin());
+      const bool is_text = definition.type == Type::string || definition.type == Type::enumeration;
+      return is_text || !is_number(attribute.text) ? dbc_text(attribute.text) : attribute.text;
+    }
+    return std::nullopt;
+  }
   void set(std::string_view name, const std::string& object, const std::string& value) {
     out_.attributes.append("BA_ \"")
         .append(name)
@@ -237,9 +273,9 @@ class MessagesWriter {
   }
 
   [[nodiscard]] bool needs_formats() const {
-    const bool by_protocol =
-        std::any_of(model_.attributes.begin(), model_.attributes.end(),
-                    [](const AttributeModel& attribute) { return attribute.name == "ProtocolType"; });
+    const auto is_protocol = [](const auto& each) { return each.name == "ProtocolType"; };
+    const bool by_protocol = std::any_of(model_.attributes.begin(), model_.attributes.end(), is_protocol) ||
+                             std::any_of(model_.definitions.begin(), model_.definitions.end(), is_protocol);
     return by_protocol ||
            std::any_of(model_.messages.begin(), model_.messages.end(),
                        [](const MessageModel& message) { return message.fd || message.is_j1939(); });
@@ -317,9 +353,11 @@ class MessagesWriter {
                                    : "0");
     each([&](const std::string& object, const std::vector<AttributeModel>& list) {
       for (const AttributeModel& attribute : list)
-        out_.attributes += "BA_ \"" + attribute.name + "\" " + object +
-                           (type_of(attribute.name).number ? attribute.text : dbc_text(attribute.text)) +
-                           ";\n";
+        out_.attributes +=
+            "BA_ \"" + attribute.name + "\" " + object +
+            value_by_definition(of, attribute)
+                .value_or(type_of(attribute.name).number ? attribute.text : dbc_text(attribute.text)) +
+            ";\n";
     });
   }
 

@@ -171,6 +171,20 @@ ByteOrder usual_order(const Model& model) {
   return more > 0 ? ByteOrder::big : ByteOrder::little;
 }
 
+std::string definition_of(const spec::AttributeDefinitionModel& definition) {
+  static constexpr std::string_view objects[] = {"bus", "board", "message", "field"};
+  static constexpr std::string_view types[] = {"int", "hex", "float", "string", "enum"};
+  Members out;
+  out.add_text("of", objects[static_cast<std::size_t>(definition.of)]);
+  out.add("name", json(definition.name));
+  out.add_text("type", types[static_cast<std::size_t>(definition.type)]);
+  out.add_text("min", definition.min);
+  out.add_text("max", definition.max);
+  out.add_names("values", definition.values);
+  if (definition.default_text) out.add("default", json(*definition.default_text));
+  return out.object();
+}
+
 std::string list_of(const std::vector<std::string>& items) {
   std::string text;
   for (const std::string& item : items) text += (text.empty() ? "" : ",\n") + item;
@@ -217,6 +231,9 @@ std::string make_spec(const Model& model, const Options&) {
       attributes.add(attribute.name, json(attribute.text));
     add("attributes", attributes.object());
   }
+  std::vector<std::string> definitions;
+  for (const auto& definition : model.definitions) definitions.push_back("    " + definition_of(definition));
+  if (!definitions.empty()) add("attribute_definitions", list_of(definitions));
   std::string text;
   for (const std::string& member : members) text += (text.empty() ? "" : ",\n") + member;
   return "{\n" + text + "\n}\n";

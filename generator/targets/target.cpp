@@ -44,6 +44,8 @@ std::vector<std::string> left_out(const Target& target, const spec::Model& model
   };
   if (!target.of_topics) all(model.topics.size(), "topics");
   if (!target.of_messages) all(model.messages.size(), "messages");
+  if (target.make == make_dbc || target.make == make_spec)
+    for (const auto& [what, count] : model.not_kept) out.push_back(std::to_string(count) + " " + what);
   if (target.make == make_dbc)
     for (std::string& each : lost_in_dbc(model)) out.push_back(std::move(each));
   return out;

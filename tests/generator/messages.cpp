@@ -1,5 +1,6 @@
 // Plain messages in our JSON: what the reader makes of each member, what it doubts, and that a spec becomes a
 // DBC file and comes back as it was.
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -230,6 +231,8 @@ void check_same(const Model& a, const Model& b) {
     CHECK(a.boards[i].description == b.boards[i].description);
     CHECK(a.boards[i].attributes == b.boards[i].attributes);
   }
+  for (const auto& definition : a.definitions)  // what has none gets one in DBC
+    CHECK(std::find(b.definitions.begin(), b.definitions.end(), definition) != b.definitions.end());
   REQUIRE(a.messages.size() == b.messages.size());
   for (std::size_t i = 0; i < a.messages.size(); ++i) check_same(a.messages[i], b.messages[i]);
 }
@@ -239,6 +242,7 @@ void check_both_ways(const Model& model) {
   INFO(json);
   const auto from_json = spec::parse(json, "x.json");
   CHECK(printed(from_json.problems) == std::vector<std::string>{});
+  for (const auto& doubt : from_json.doubts) CHECK_FALSE(doubt.what.starts_with("there is no board"));
   REQUIRE(from_json.spec);
   check_same(model, from_json.spec->model());
   const std::string dbc = generate::make_dbc(model, {"x", std::nullopt});
@@ -261,6 +265,96 @@ TEST_CASE("messages: DBC files become our JSON, and go back") {
     ++files;
   }
   CHECK(files >= 2);
+}
+
+TEST_CASE("messages: nodes that a DBC file does not declare are boards, and its JSON is without doubts") {
+  const std::string text =
+      "BU_: Motor\n"
+      "BO_ 1 A: 8 Motor\n SG_ a : 0|8@1+ (1,0) [0|0] \"\" XXX,Dash\n"
+      "BO_ 2 B: 8 XXX\n SG_ b : 0|8@1+ (1,0) [0|0] \"\" Vector__XXX\n"
+      "BO_ 3 C: 8 Vector__XXX\n"
+      "BO_TX_BU_ 2 : XXX,Spare;\n";
+  const Model model = parse(text, {}, "f.dbc");
+  std::vector<std::string> boards;
+  for (const auto& board : model.boards) boards.push_back(board.name);
+  CHECK(boards == std::vector<std::string>{"Motor", "XXX", "Spare", "Dash"});
+  CHECK(model.messages[0].board == 0);
+  CHECK(model.messages[1].board == 1);
+  CHECK(model.messages[2].board == protocol::no_board);
+  check_same(model, parse(generate::make_spec(model, {"f.dbc", std::nullopt}), {}));
+  check_both_ways(model);
+}
+
+TEST_CASE("messages: more nodes than a catalogue has place for") {
+  std::string text;
+  for (int i = 0; i < 300; ++i)
+    text += "BO_ " + std::to_string(i) + " M" + std::to_string(i) + ": 8 N" + std::to_string(i) + "\n";
+  const Model model =
+      parse(text, {"f.dbc:1: 300 nodes; the first 255 are kept: messages of others have no sender"}, "f.dbc");
+  CHECK(model.boards.size() == 255);
+  CHECK(model.messages[254].board == 254);
+  CHECK(model.messages[255].board == protocol::no_board);
+}
+
+TEST_CASE("messages: what a DBC file says of its attributes themselves is kept both ways") {
+  const std::string text =
+      "BU_: N\nBO_ 1 A: 8 N\n SG_ a : 0|8@1+ (1,0) [0|0] \"\" N\nBO_ 2 B: 8 N\n"
+      "BA_DEF_ \"Protocol\" STRING ;\nBA_DEF_DEF_ \"Protocol\" \"a \\\"car\\\"\";\n"
+      "BA_DEF_ \"ProtocolType\" STRING ;\nBA_DEF_DEF_ \"ProtocolType\" \"J1939\";\n"
+      "BA_DEF_ BO_ \"VFrameFormat\" ENUM \"StandardCAN\",\"ExtendedCAN\";\n"
+      "BA_DEF_ BU_ \"Layer\" HEX 0 255;\nBA_DEF_DEF_ \"Layer\" 16;\n"
+      "BA_DEF_ BO_ \"Support\" ENUM \"No\",\"Yes\",\"Maybe, not\";\nBA_DEF_DEF_ \"Support\" \"Yes\";\n"
+      "BA_DEF_ BO_ \"Digit\" ENUM \"1\",\"0\";\nBA_DEF_DEF_ \"Digit\" \"0\";\n"
+      "BA_DEF_ SG_ \"Weight\" FLOAT -1.5E+10 2.5;\nBA_DEF_DEF_ \"Weight\" 0.25;\n"
+      "BA_DEF_ SG_ \"Unused\" INT 0 7;\n"
+      "BA_ \"Support\" BO_ 1 2;\nBA_ \"Digit\" BO_ 1 \"1\";\nBA_ \"Weight\" SG_ 1 a 1;\nBA_ \"Layer\" BU_ N "
+      "17;\n";
+  const Model model = parse(text, {}, "f.dbc");
+  REQUIRE(model.definitions.size() == 7);
+  CHECK(model.definitions[3].values == std::vector<std::string>{"No", "Yes", "Maybe, not"});
+  CHECK(model.definitions[3].default_text == "Yes");
+  CHECK(model.definitions[5].min == "-1.5E+10");
+  CHECK(model.messages[0].attributes ==
+        std::vector<spec::AttributeModel>{{"Support", "Maybe, not"}, {"Digit", "1"}});
+  check_both_ways(model);
+  // And from one to the other.
+  const Model from_json = parse(generate::make_spec(model, {"f.dbc", std::nullopt}));
+  CHECK(from_json.definitions == model.definitions);
+  CHECK(parse(generate::make_dbc(from_json, {"f.json", std::nullopt}), {}, "f.dbc").definitions ==
+        model.definitions);
+}
+
+TEST_CASE("messages: definitions of attributes that cannot be") {
+  const auto problem = [](const std::string& definition) {
+    const auto loaded = spec::parse(R"({"robot": "r", "messages": [{"name": "M", "id": 1, "fields": []}],
+      "attribute_definitions": [)" + definition +
+                                        "]}",
+                                    "f.json");
+    REQUIRE_FALSE(loaded.problems.empty());
+    return loaded.problems[0].what;
+  };
+  CHECK(problem(R"({"of": "message", "name": "a", "type": "enum"})") == "an enumeration without \"values\"");
+  CHECK(problem(R"({"of": "message", "name": "a", "type": "int", "values": ["x"]})") ==
+        "\"values\" of another type");
+  CHECK(problem(R"({"of": "signal", "name": "a", "type": "int"})") == "\"signal\" is not known here");
+  CHECK(problem(R"({"of": "bus", "name": "a", "type": "int", "min": "1"})") == "one bound of two");
+  CHECK(problem(R"({"of": "bus", "name": "a", "type": "string", "min": "1", "max": "2"})") ==
+        "\"1\" is no bound of this type");
+}
+
+TEST_CASE("messages: what our JSON and a new DBC file do not keep of a DBC file is named with its number") {
+  const Model model = parse(
+      "VERSION \"3\"\nBU_: N\nVAL_TABLE_ T 0 \"a\" ;\nBO_ 1 A: 8 N\n SG_ a : 0|8@1+ (1,0) [0|0] \"\" N\n"
+      "BO_ 3221225472 VECTOR__INDEPENDENT_SIG_MSG: 0 Vector__XXX\n SG_ o : 0|8@1+ (1,0) [0|0] \"\" N\n"
+      " SG_ p : 0|8@1+ (1,0) [0|0] \"\" N\nEV_ e: 0 [0|0] \"\" 0 1 DUMMY_NODE_VECTOR0 Vector__XXX;\n"
+      "BA_DEF_REL_ BU_SG_REL_ \"R\" INT 0 1;\nBA_DEF_ EV_ \"E\" INT 0 1;\n"
+      "SIG_GROUP_ 1 G 1 : a;\nSIG_GROUP_ 1 H 1 : a;\n",
+      {}, "f.dbc");
+  for (const char* name : {"dbc", "spec"})
+    CHECK(generate::left_out(*generate::find_target(name), model) ==
+          std::vector<std::string>{
+              "1 BA_DEF_ EV_", "1 VERSION", "1 VAL_TABLE_, the values of which are with their signals",
+              "2 signals of VECTOR__INDEPENDENT_SIG_MSG", "1 EV_", "1 BA_DEF_REL_", "2 SIG_GROUP_"});
 }
 
 /// Messages as nobody would think of them, of what both formats can say.
@@ -319,7 +413,12 @@ class RandomModel {
     if (one_in(3)) to.push_back({"Text", text()});
   }
 
-  MessageModel message(const Model& model, bool starts) {
+  /// Of a board that there is from now on.
+  std::string board(Model& model) {
+    model.boards.emplace_back();
+    return model.boards.back().name = name();
+  }
+  MessageModel message(Model& model, bool starts) {
     MessageModel out;
     out.name = name();
     if (one_in(2)) out.description = text();
@@ -332,17 +431,17 @@ class RandomModel {
     out.fd = !out.is_j1939() && (out.length > 8 || one_in(8));
     if (!model.boards.empty() && one_in(2))
       out.board = static_cast<std::uint8_t>(up_to(model.boards.size() - 1));
-    if (out.board != protocol::no_board && one_in(4)) out.other_senders.push_back(name());
+    if (out.board != protocol::no_board && one_in(4)) out.other_senders.push_back(board(model));
     if (one_in(2)) out.period = std::chrono::microseconds{1 + up_to(2'000'000)};
     if (one_in(4)) out.shortest_period = std::chrono::milliseconds{1 + up_to(1000)};
     if (one_in(3)) out.send_type = one_in(2) ? "Cyclic" : text();
     add_attributes(out.attributes);
     if (out.length == 0) return out;
-    for (std::uint64_t i = up_to(6); i-- > 0;) out.fields.push_back(field(out, starts));
+    for (std::uint64_t i = up_to(6); i-- > 0;) out.fields.push_back(field(model, out, starts));
     return out;
   }
 
-  FieldModel field(const MessageModel& message, bool starts) {
+  FieldModel field(Model& model, const MessageModel& message, bool starts) {
     FieldModel out;
     out.name = name();
     if (one_in(3)) out.description = text();
@@ -369,7 +468,7 @@ class RandomModel {
           out.start_from(kind < 2 ? decimal() : base::Decimal{static_cast<std::int64_t>(up_to(1)), 0});
       out.start = start;
     }
-    if (one_in(3)) out.receivers.push_back(name());
+    if (one_in(3)) out.receivers.push_back(board(model));
     add_attributes(out.attributes);
     if (!message.fields.empty() && one_in(2)) select(message, out);
     return out;

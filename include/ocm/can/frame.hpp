@@ -25,6 +25,13 @@ enum class Format : std::uint8_t { base, extended, base_remote, extended_remote,
   return format == Format::base_remote || format == Format::extended_remote;
 }
 
+/// That of data frames with such an identifier.
+[[nodiscard]] constexpr Format data_format(Format format) noexcept {
+  return format == Format::base_remote       ? Format::base
+         : format == Format::extended_remote ? Format::extended
+                                             : format;
+}
+
 /// Always eight bytes; those beyond the DLC are zero, so that frames compare as values.
 using Payload = std::array<std::uint8_t, 8>;
 

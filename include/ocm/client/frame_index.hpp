@@ -11,8 +11,12 @@
 #pragma once
 
 #include <bit>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "ocm/can/frame.hpp"
@@ -34,15 +38,11 @@ class FrameIndex {
  public:
   FrameIndex() : FrameIndex(protocol::Catalogue{}) {}
   /// The catalogue must outlive the index. Of two messages with one identifier the first is found.
-  explicit FrameIndex(const protocol::Catalogue& catalogue) : base_(can::max_base_id + std::size_t{1}) {
-    std::size_t wide = 0;
-    for (const auto& topic : catalogue.topics) wide += topic.is_message() ? 1 : 0;
-    wide_.resize(std::bit_ceil(2 * wide + 2));  // half of it stays empty: few steps
-    for (const auto& topic : catalogue.topics)
-      if (!topic.is_message()) add_topic(topic);
-    for (const auto& topic : catalogue.topics)
-      if (topic.is_message()) add_message(topic);
-  }
+  explicit FrameIndex(const protocol::Catalogue& catalogue)
+      : FrameIndex(catalogue, [](const protocol::Topic&) { return true; }) {}
+  /// Of what is on this interface.
+  FrameIndex(const protocol::Catalogue& catalogue, std::string_view interface)
+      : FrameIndex(catalogue, [interface](const protocol::Topic& topic) { return topic.is_on(interface); }) {}
 
   /// Nothing for remote and error frames.
   [[nodiscard]] Subject subject(std::uint32_t id, can::Format format) const noexcept {
@@ -66,6 +66,19 @@ class FrameIndex {
   }
 
  private:
+  template <class IsThere>
+  requires std::predicate<IsThere, const protocol::Topic&> FrameIndex(const protocol::Catalogue& catalogue,
+                                                                      IsThere is_there)
+      : base_(can::max_base_id + std::size_t{1}) {
+    std::size_t wide = 0;
+    for (const auto& topic : catalogue.topics) wide += topic.is_message() ? 1 : 0;
+    wide_.resize(std::bit_ceil(2 * wide + 2));  // half of it stays empty: few steps
+    for (const auto& topic : catalogue.topics)
+      if (!topic.is_message() && is_there(topic)) add_topic(topic);
+    for (const auto& topic : catalogue.topics)
+      if (topic.is_message() && is_there(topic)) add_message(topic);
+  }
+
   struct Wide {
     std::uint32_t key = 0;
     protocol::FrameRef frame{};
@@ -113,6 +126,40 @@ class FrameIndex {
 
   std::vector<Subject> base_;  // by identifier of 11 bits
   std::vector<Wide> wide_;     // a power of two, and at least one place is empty
+};
+
+/// An index for each interface of a log, where the catalogue has topics that are on one only; else the same
+/// for all. A log numbers its interfaces, and another log anew.
+class InterfaceIndexes {
+ public:
+  InterfaceIndexes() : InterfaceIndexes(protocol::Catalogue{}) {}
+  /// The catalogue must outlive it, and so must its topics.
+  explicit InterfaceIndexes(const protocol::Catalogue& catalogue)
+      : catalogue_(catalogue), has_buses_(catalogue.has_buses()), any_(catalogue) {}
+
+  /// Whether names of interfaces matter.
+  [[nodiscard]] bool has_buses() const noexcept { return has_buses_; }
+  /// From now on interface `number` has this name.
+  void name(std::uint16_t number, std::string_view name) {
+    if (!has_buses_) return;
+    if (named_.size() <= number) named_.resize(number + std::size_t{1});
+    if (auto& known = named_[number]; !known || known->name != name)
+      known.emplace(Named{std::string{name}, FrameIndex{catalogue_, name}});
+  }
+  /// Of an interface without a name: all that there is.
+  [[nodiscard]] const FrameIndex& of(std::uint16_t number) const noexcept {
+    return number < named_.size() && named_[number] ? named_[number]->index : any_;
+  }
+
+ private:
+  struct Named {
+    std::string name;
+    FrameIndex index;
+  };
+  protocol::Catalogue catalogue_;
+  bool has_buses_;
+  FrameIndex any_;
+  std::vector<std::optional<Named>> named_;
 };
 
 }  // namespace ocm::client

@@ -68,7 +68,8 @@ enum class Meaning : std::uint8_t {
   sample,     ///< the last frame of a complete sample, or a message
   request,    ///< an operator asks a sensor
   set_point,  ///< an operator commands an actuator
-  unknown,    ///< no topic and no message has this identifier, or the frame is remote
+  unknown,    ///< no topic and no message has this identifier
+  remote,     ///< a remote frame with the identifier of a topic or message
   wrong_dlc,  ///< a length that the topic has not, or that the message is longer than
   error,      ///< a report of the CAN controller
   transport,  ///< a frame of J1939's transport protocol that completes no message
@@ -89,7 +90,8 @@ struct ReceiverCounters {
   std::uint64_t samples = 0;
   std::uint64_t commands = 0;
   std::uint64_t unknown = 0;
-  std::uint64_t fd = 0;  ///< CAN FD frames that no message has; no topic has any
+  std::uint64_t remote = 0;  ///< remote frames of known identifiers
+  std::uint64_t fd = 0;      ///< CAN FD frames that no message has; no topic has any
   std::uint64_t wrong_dlc = 0;
   std::uint64_t incomplete =
       0;  ///< samples that lack a frame; the one that was under way at the start is not counted
@@ -97,7 +99,7 @@ struct ReceiverCounters {
   std::uint64_t transport = 0;  ///< frames of J1939's transport protocol that complete no message
   /// Frames or samples that a listener should know of.
   [[nodiscard]] constexpr std::uint64_t faults() const noexcept {
-    return unknown + fd + wrong_dlc + incomplete + errors;
+    return unknown + remote + fd + wrong_dlc + incomplete + errors;
   }
 };
 
@@ -120,7 +122,8 @@ class Receiver {
   [[nodiscard]] Reception take(const can::Received& received) {
     return take(can::FrameView{received.frame}, received.time);
   }
-  /// `bus` tells several apart where nodes of different ones have the same addresses of J1939.
+  /// `bus` tells several apart where nodes of different ones have the same addresses of J1939, and topics are
+  /// on one of them only.
   [[nodiscard]] Reception take(const can::FrameView& frame, base::Time time, std::uint16_t bus = 0) {
     ++counters_.frames;
     if (frame.format == can::Format::error) {
@@ -130,8 +133,13 @@ class Receiver {
     if (!transport_.empty() && frame.format == can::Format::extended && !frame.fd &&
         j1939::is_transport(frame.id))
       return take_transport(frame, time, bus);
-    return take_frame(frame, time);
+    return take_frame(frame, time, bus);
   }
+
+  /// Frames of `bus` come over the interface of this name: topics that are on another are none of theirs.
+  void on_interface(std::uint16_t bus, std::string_view name) { index_.name(bus, name); }
+  /// Whether names of interfaces matter.
+  [[nodiscard]] bool has_buses() const noexcept { return index_.has_buses(); }
 
   [[nodiscard]] const ReceiverCounters& counters() const noexcept { return counters_; }
   /// How the messages of J1939's transport protocol ended until `now`.
@@ -164,12 +172,12 @@ class Receiver {
   Reception take_transport(const can::FrameView& frame, base::Time time, std::uint16_t bus) {
     if (transport_[0].take(frame.id, frame.bytes, time, bus) != j1939::Heard::message) {
       // A spec may describe the protocol's own frames.
-      if (index_.subject(frame.id, frame.format)) return take_frame(frame, time);
+      if (index_.of(bus).subject(frame.id, frame.format)) return take_frame(frame, time, bus);
       ++counters_.transport;
       return {Meaning::transport, {}, nullptr, {}};
     }
     const j1939::Transported& whole = transport_[0].message();
-    const Subject subject = index_.subject(whole.id.encode(), can::Format::extended);
+    const Subject subject = index_.of(bus).subject(whole.id.encode(), can::Format::extended);
     if (!subject) {
       ++counters_.unknown;
       return {Meaning::unknown, {}, nullptr, {}, &whole};
@@ -182,8 +190,15 @@ class Receiver {
             &whole};
   }
 
-  Reception take_frame(const can::FrameView& frame, base::Time time) {
-    const Subject subject = index_.subject(frame.id, frame.format);
+  Reception take_remote(const can::FrameView& frame, std::uint16_t bus) {
+    const Subject subject = index_.of(bus).subject(frame.id, can::data_format(frame.format));
+    ++(subject ? counters_.remote : counters_.unknown);
+    return {subject ? Meaning::remote : Meaning::unknown, {}, subject.topic, {}};
+  }
+
+  Reception take_frame(const can::FrameView& frame, base::Time time, std::uint16_t bus) {
+    if (can::is_remote(frame.format)) return take_remote(frame, bus);
+    const Subject subject = index_.of(bus).subject(frame.id, frame.format);
     if (!subject || (frame.fd && !subject.topic->is_message())) {
       ++(frame.fd ? counters_.fd : counters_.unknown);
       return {};
@@ -252,7 +267,7 @@ class Receiver {
   }
 
   const protocol::Catalogue* catalogue_;
-  FrameIndex index_;
+  InterfaceIndexes index_;
   std::vector<Assembly> assemblies_;
   std::vector<std::uint8_t> bytes_;           // of topics
   std::array<std::uint8_t, 64> message_{};    // that came last

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "ocm/base/time.hpp"
@@ -64,7 +65,7 @@ struct BusFigures {
   double rate_hz = 0;        ///< frames, error frames not counted
   double load = 0;           ///< share of time from the first frame's end to the last's, 0..1
   double request_load = 0;   ///< of these, requests
-  double stranger_load = 0;  ///< of these, frames that no topic has, or not so
+  double stranger_load = 0;  ///< of these, frames that no topic has, or not so: remote, of another length
   double worst_load = 0;     ///< in the worst BusLoad::window
   base::Time worst_until{};  ///< when that ended; `first` where no frame is in the load
   [[nodiscard]] base::Duration span() const noexcept { return last - first; }
@@ -74,11 +75,17 @@ class BusStatistics {
  public:
   static constexpr std::size_t most_strangers = 32;
 
-  /// The catalogue must outlive it.
-  BusStatistics(const protocol::Catalogue& catalogue, BitRates rates) : rates_(rates), receiver_(catalogue) {
+  /// The catalogue must outlive it. `transport`: whether a message of several frames of J1939's transport
+  /// protocol is a sample, which needs 60 KiB more where the catalogue has J1939. `interface`: the name of
+  /// the bus, of which topics that are on another are unknown.
+  BusStatistics(const protocol::Catalogue& catalogue, BitRates rates,
+                client::Transport transport = client::Transport::as_frames, std::string_view interface = {})
+      : rates_(rates), receiver_(catalogue, transport) {
+    if (!interface.empty()) receiver_.on_interface(0, interface);
     topics_.reserve(catalogue.topics.size());
     for (const auto& topic : catalogue.topics) {
-      topics_.push_back({{.topic = &topic, .timing = {}}, Stream{topic.usual_period()}});
+      const Usual usual = topic.is_message() ? Usual::stated : Usual::if_seen;
+      topics_.push_back({{.topic = &topic, .timing = {}}, Stream{topic.usual_period(), usual}});
     }
   }
 
@@ -92,9 +99,17 @@ class BusStatistics {
       return reception;
     }
     const unsigned bits = count_bits(received.time, bits_on_bus(received.frame));
+    if (reception.meaning == client::Meaning::transport) return reception;
+    if (reception.meaning == client::Meaning::remote) {
+      stranger_bits_ += bits;
+      return reception;
+    }
     if (reception.topic == nullptr) {
       stranger_bits_ += bits;
-      note_stranger(received.frame.id, received.frame.format);
+      if (reception.transported != nullptr)
+        note_stranger(reception.transported->id.encode(), can::Format::extended);
+      else
+        note_stranger(received.frame.id, received.frame.format);
       return reception;
     }
     Entry& entry = topics_[static_cast<std::size_t>(reception.topic - receiver_.catalogue().topics.data())];

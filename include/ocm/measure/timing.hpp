@@ -20,7 +20,7 @@ namespace ocm::measure {
 enum class PeriodFrom : std::uint8_t {
   nothing,   ///< there is none: neither is measured
   request,   ///< an operator asked for it
-  spec,      ///< no request came; the topic's usual period, which the samples have
+  spec,      ///< no request came; the topic's usual period, which the samples have, or that of a message
   measured,  ///< no request came; the median of the first distances
 };
 
@@ -41,6 +41,9 @@ struct Timing {
   std::uint64_t backwards = 0;  ///< samples older than the one before
   std::int64_t period_ns = 0;   ///< the newest, also when it was stopped since; 0: none
   PeriodFrom period_from = PeriodFrom::nothing;
+  /// Samples come clearly more often than the stated period: on events, too, or from several senders. Then
+  /// they have no lateness.
+  bool faster = false;
   bool due = false;    ///< samples are to come, every period: they were asked for, or have come so
   base::Time since{};  ///< the last sample, or the request if that is newer
 };
@@ -154,11 +157,24 @@ class Grid {
 
 }  // namespace detail
 
+/// What the spec's period is where no request came.
+enum class Usual : std::uint8_t {
+  if_seen,  ///< a topic's, which may have been asked for before the log began: the period if samples have it
+  stated,   ///< a message's: the period, however the samples come
+};
+
 class Stream {
  public:
   Stream() = default;
-  /// `usual` is the spec's period, to be recognised without a request; zero: the stream has no period.
-  explicit Stream(base::Duration usual) noexcept : usual_(usual.count()), learns_(usual.count() > 0) {}
+  /// `usual` is the spec's period; zero: the stream has no period.
+  explicit Stream(base::Duration usual, Usual is = Usual::if_seen) noexcept
+      : usual_(usual.count()), learns_(usual.count() > 0), stated_(learns_ && is == Usual::stated) {
+    if (!stated_) return;
+    period_ = usual_;
+    from_ = PeriodFrom::spec;
+    due_ = true;
+    grid_.start(period_);
+  }
 
   void sample(base::Time time) noexcept {
     ++count_;
@@ -206,7 +222,8 @@ class Stream {
     timing.count = count_;
     ended.distances_.into(timing);
     // A period that was measured is not exact enough to lay a grid by.
-    if (ended.from_ != PeriodFrom::measured) timing.lateness_ns = ended.grid_.lateness();
+    if (ended.from_ != PeriodFrom::measured && !ended.faster_) timing.lateness_ns = ended.grid_.lateness();
+    timing.faster = ended.faster_;
     timing.missing = ended.grid_.missing();
     timing.gap_ns = ended.gap_;
     timing.gap_from = ended.gap_from_;
@@ -245,7 +262,7 @@ class Stream {
     gap_ = distance;
     gap_from_ = since_;
   }
-  /// No request, so the first distances have to say what the period is.
+  /// No request, so the first distances have to say what the period is; of a stated one, how they compare.
   void learn(std::int64_t distance) noexcept {
     early_[learned_++] = distance;
     if (learned_ == first_distances) decide();
@@ -255,7 +272,8 @@ class Stream {
     const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>((learned_ - 1) / 2);
     std::nth_element(sorted.begin(), middle, sorted.begin() + static_cast<std::ptrdiff_t>(learned_));
     const std::int64_t off = *middle > usual_ ? *middle - usual_ : usual_ - *middle;
-    const bool as_usual = off <= usual_ / 4;
+    faster_ = stated_ && *middle < usual_ - usual_ / 4;
+    const bool as_usual = stated_ || off <= usual_ / 4;
     period_ = as_usual ? usual_ : *middle;
     from_ = as_usual ? PeriodFrom::spec : period_ > 0 ? PeriodFrom::measured : PeriodFrom::nothing;
     due_ = true;
@@ -277,6 +295,8 @@ class Stream {
   PeriodFrom from_ = PeriodFrom::nothing;
   bool due_ = false;  // samples, every period
   bool learns_ = false;
+  bool stated_ = false;
+  bool faster_ = false;
   std::array<std::int64_t, first_distances> early_{};
   std::size_t learned_ = 0;
 };

@@ -234,8 +234,12 @@ struct Topic {
   std::uint8_t instance = 0;  ///< 1..8 within the group
   std::string_view source;    ///< where the facts come from
   base::Duration cycle{};     ///< messages: sent so often; 0: no period is stated
+  std::string_view bus{};     ///< the only interface that it is on; empty: any
 
   [[nodiscard]] constexpr bool is_message() const noexcept { return kind == Kind::message; }
+  [[nodiscard]] constexpr bool is_on(std::string_view interface) const noexcept {
+    return bus.empty() || bus == interface;
+  }
   /// How often it is sent unless asked otherwise; 0 for what has no period.
   [[nodiscard]] constexpr base::Duration usual_period() const noexcept {
     return kind == Kind::sensor ? period.duration() : cycle;
@@ -270,6 +274,12 @@ struct Catalogue {
         if (alias == name_or_alias) return &topic;
     }
     return nullptr;
+  }
+  /// Whether some topics are on one interface only. O(topics).
+  [[nodiscard]] constexpr bool has_buses() const noexcept {
+    for (const Topic& topic : topics)
+      if (!topic.bus.empty()) return true;
+    return false;
   }
   /// Who has a topic or sends a message; empty where that is not known.
   [[nodiscard]] constexpr std::string_view board_name(const Topic& topic) const noexcept {

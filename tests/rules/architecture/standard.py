@@ -10,7 +10,7 @@ bit: bit_cast bit_ceil countl_zero countr_zero endian
 charconv: from_chars to_chars
 chrono: chrono chrono_literals nano
 cmath: abs atan2 ceil cos exp floor fmod hypot llround lround pow remainder sin sqrt
-concepts: convertible_to destructible integral invocable same_as
+concepts: convertible_to destructible integral invocable predicate same_as
 cstddef: byte ptrdiff_t size_t
 cstdint: int16_t int32_t int64_t int8_t uint16_t uint32_t uint64_t uint8_t uintptr_t
 cstdlib: abs getenv size_t

@@ -109,6 +109,45 @@ class Decode(Case):
         odometry = self.run_tool("decode", "--where", "odom.velocity.x=0.05", stdin=LOG)[0]
         self.assertEqual([event["frame"] for event in self.objects(odometry)], ["velocity", "pose"])
 
+    def test_a_choice_that_nothing_matches(self):
+        car = os.path.join(SOURCE, "examples", "small_car.dbc")
+        log = "(1.0) can0 100#0019000000000000\n" * 7
+        for choice in (("--pgn", "F004"), ("--where", "Engine.Speed>7000"), ("--topic", "Driving"), ("--field", "Driving.Speed")):
+            out, err = self.run_tool("--spec", car, "decode", "--json", *choice, stdin=log, code=1)
+            self.assertEqual(out, "")
+            self.assertIn("none of 7 frames matches\n", err)
+
+    def test_remote_frames_of_known_identifiers(self):
+        car = os.path.join(SOURCE, "examples", "small_car.dbc")
+        log = "(1.0) can0 100#0019000000000000\n(1.1) can0 100#R8\n(1.2) can0 101#R\n"
+        out, err = self.run_tool("--spec", car, "decode", "--json", stdin=log)
+        events = self.objects(out)
+        self.assertEqual((events[1]["topic"], events[1]["error"], events[1]["data"]), ("Engine", "remote frame", "R8"))
+        self.assertEqual(events[2]["error"], "unknown identifier")
+        self.assertIn("1 of unknown identifier, 1 remote\n", err)
+        self.assertEqual(self.run_tool("--spec", car, "encode", "--to", "candump", stdin=out)[0].splitlines()[1].split()[-1], "100#R8")
+        out, _ = self.run_tool("--spec", car, "decode", "--pretty", stdin=log)
+        self.assertRegex(out.splitlines()[1], r"100 Engine +remote frame: 100#R8$")
+        self.run_tool("--spec", car, "decode", "--strict", stdin=log, code=1)
+
+    def test_contradictions_of_messages_speak_of_messages(self):
+        car = os.path.join(SOURCE, "examples", "small_car.dbc")
+        _, err = self.run_tool("--spec", car, "decode", stdin="(0.0) can0 7FF#11\n" * 9, code=1)
+        self.assertIn("9 of 9 frames are of no message of small_car: a log of another bus? --spec FILE names the messages of "
+                      "another bus\n", err)
+        _, err = self.run_tool("--spec", car, "decode", stdin="(0.0) can0 7FF#11\n(0.1) can0 100#0019000000000000\n" * 4)
+        self.assertIn("4 of 8 frames contradict the spec of small_car (4 of no message): the others may be of another bus, too, and "
+                      "mean something else. --spec FILE names its messages\n", err)
+
+    def test_senders_that_a_dbc_file_does_not_declare(self):
+        spec = self.file("f.dbc", b'BO_ 1 A: 1 XXX\n SG_ a : 0|8@1+ (1,0) [0|0] "" XXX\nBO_ 2 B: 1 Dash\n')
+        out, _ = self.run_tool("--spec", spec, "decode", "--json", "--sender", "XXX", stdin="(1.0) can0 001#05\n(2.0) can0 002#05\n")
+        self.assertEqual([event["topic"] for event in self.objects(out)], ["A"])
+        self.assertIn("XXX", self.run_tool("--spec", spec, "list")[0])
+        spec = self.file("g.dbc", b"BO_ 1 A: 1 Vector__XXX\n")
+        _, err = self.run_tool("--spec", spec, "decode", "--sender", "XXX", code=2)
+        self.assertIn("no such board\n          the spec names no board", err)
+
     def test_frames_without_a_chosen_field_are_passed_over(self):
         """One that is in some frames only: neither objects without fields nor lines without a number."""
         car = os.path.join(SOURCE, "examples", "small_car.dbc")
@@ -164,7 +203,7 @@ class Decode(Case):
         _, err = self.run_tool("decode", stdin="(0.0) can0 608#112233445566\n" * 19 + "(0.0) can0 7FF#11\n")
         self.assertNotIn("contradict", err)
         _, err = self.run_tool("decode", "--topic", "ring", stdin=LOG, code=1)
-        self.assertIn("no frame to decode", err)
+        self.assertIn("none of 12 frames matches", err)
 
     def test_what_candump_shows_on_a_terminal(self):
         """As pasted, with the prompt and all. [can-utils candump.c]"""

@@ -278,7 +278,7 @@ write 100,50,120 or #643278 or a name such as red, white, off
 
 set
 set: missing ACTUATOR|MESSAGE
-usage: amiroctl set ACTUATOR|MESSAGE FIELD=VALUE ...
+usage: amiroctl set ACTUATOR|MESSAGE [FIELD=VALUE ...]
 
 set motors x=1 --dri-run
 set: unknown option '--dri-run'

@@ -93,7 +93,7 @@ class Stats(Case):
                          ("gyroscope", 1, 1, 1))
         out, _ = self.run_tool("stats", path)
         self.assertIn("2 error frames, 1 overflow of the CAN controller, 1 CAN FD frame, not in the "
-                      "load without --data-bitrate, 4 frames that no topic has (655 3, 1F334455 1)", out)
+                      "load without --data-bitrate, 4 frames that no topic or message has (655 3, 1F334455 1)", out)
 
     def test_load_is_of_exact_bits(self):
         # 205#01840302 has 44 + 32 + 5 bits and 3 of intermission: tests/unit/can/length.cpp. Ten of them in
@@ -128,9 +128,60 @@ class Stats(Case):
         rows = out.splitlines()
         self.assertTrue(rows[1].startswith("gyroscope  high 1, low 2        3  20 Hz  50 ms (spec)  50 ms"), rows[1])
         self.assertTrue(rows[1].endswith("  1 of wrong length, 1 bad request"), rows[1])
-        self.assertEqual(rows[3], "  9 frames that no topic has (6F0 3, 6F2 2, 6F1 1, 6F3 1, 6F4 1, ...)")
+        self.assertEqual(rows[3], "  9 frames that no topic or message has (6F0 3, 6F2 2, 6F1 1, 6F3 1, 6F4 1, ...)")
         out, _ = self.run_tool("stats", self.log([(0, self.GYRO), (1, "6F5#R"), (2, "6F5#")], "remote.log"))
-        self.assertIn("2 frames that no topic has (6F5#R 1, 6F5 1)", out)
+        self.assertIn("2 frames that no topic or message has (6F5#R 1, 6F5 1)", out)
+
+    CAR = os.path.join(os.environ["OCM_SOURCE_DIR"], "examples", "small_car.dbc")
+
+    def test_messages_have_the_period_that_the_file_states(self):
+        """Engine, stated at 10 ms, comes every 20 ms: 299 of 599 are missing."""
+        path = self.log([(20 * i, "100#0000000000000000") for i in range(300)] + [(6000, "110#00000000")])
+        report, _ = self.report("--spec", self.CAR, path)
+        engine = report["buses"][0]["topics"][0]
+        self.assertEqual((engine["topic"], engine["period_ns"], engine["period_from"]), ("Engine", 10_000_000, "spec"))
+        self.assertEqual((engine["missing"], engine["mean_ns"]), (300, 20e6))  # the last one before the end, too
+        out, _ = self.run_tool("--spec", self.CAR, "stats", path, "Engine")
+        self.assertEqual(out.splitlines()[1].split()[2:9], "300 50 Hz 10 ms (spec)".split() + ["20"])
+
+    def test_messages_that_never_came(self):
+        frames = [(10 * i, "100#0000000000000000") for i in range(30)] + [(20 * i, "110#00000000") for i in range(15)]
+        path = self.log(sorted(frames))  # 290 ms: shorter than the periods of Trip and BatteryCells
+        out, _ = self.run_tool("--spec", self.CAR, "stats", path)
+        never = "never came: Wheels (20 ms), Driving (20 ms), Doors (100 ms), Lights (100 ms), Battery (100 ms), Service (200 ms)"
+        self.assertEqual(out.splitlines()[-1], never)
+        report, _ = self.report("--spec", self.CAR, path)
+        self.assertEqual(report["never_came"][:2], [{"topic": "Wheels", "period_ns": 20_000_000}, {"topic": "Driving", "period_ns": 20_000_000}])
+        _, err = self.run_tool("--spec", self.CAR, "stats", path, "--csv")
+        self.assertIn(never, err)
+        # Of what is shown, and without anything of it an error.
+        out, _ = self.run_tool("--spec", self.CAR, "stats", path, "Engine", "Driving")
+        self.assertEqual(out.splitlines()[-1], "never came: Driving (20 ms)")
+        out, err = self.run_tool("--spec", self.CAR, "stats", path, "Driving", "LockCommand", code=1)
+        self.assertEqual(out.splitlines()[-1], "never came: Driving (20 ms)")
+        self.assertIn("amiroctl: stats: nothing came of Driving, LockCommand\n", err)
+        report, _ = self.report(self.log([(0, self.GYRO), (500, self.GYRO)]))
+        self.assertEqual(report["never_came"], [])  # a topic comes when it is asked for
+
+    def test_a_message_of_the_transport_protocol_came(self):
+        """SAE J1939-21: 16 bytes of VI, announced to all and sent in three packets."""
+        truck = os.path.join(self.folder, "truck.dbc")
+        with open(truck, "w", encoding="ascii") as file:
+            file.write(f'BO_ {0x98FEECFE} VI: 16 Motor\n SG_ First : 0|8@1+ (1,0) [0|0] "" Dash\n'
+                       'BA_DEF_ BO_ "VFrameFormat" ENUM "StandardCAN","ExtendedCAN","reserved","J1939PG";\n'
+                       'BA_DEF_DEF_ "VFrameFormat" "J1939PG";\nBA_DEF_ "Baudrate" INT 0 1000000;\nBA_DEF_DEF_ "Baudrate" 250000;\n'
+                       'BA_ "Baudrate" 250000;\n')
+        packets = ["1CECFF00#20100003FFECFE00", "1CEBFF00#0100000000000000", "1CEBFF00#0200000000000000", "1CEBFF00#030000FFFFFFFFFF"]
+        path = self.log([(1000 * turn + 50 * i, frame) for turn in range(3) for i, frame in enumerate(packets)])
+        report, _ = self.report("--spec", truck, path)
+        bus = report["buses"][0]
+        self.assertEqual([(topic["topic"], topic["count"]) for topic in bus["topics"]], [("VI", 3)])
+        self.assertEqual((bus["transport"], bus["unknown"]), (9, 0))
+        out, _ = self.run_tool("--spec", truck, "stats", path)
+        self.assertIn("  9 frames of the transport protocol of J1939\n", out)
+        path = self.log([(50 * i, frame.replace("ECFE00", "ECFA00")) for i, frame in enumerate(packets)])
+        report, _ = self.report("--spec", truck, path)
+        self.assertEqual(report["buses"][0]["unknown_ids"], [{"id": "1CFAEC00", "count": 1}])
 
     CONTRADICTIONS = ("5 of 8 frames contradict the spec of AMiRo (2 of no topic, 3 of wrong length, such as 605 with 2 bytes in "
                       "place of 4): the others may be of another robot, too, and mean something else. --spec FILE names its topics\n")

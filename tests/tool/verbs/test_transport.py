@@ -165,10 +165,10 @@ class Transport(Case):
         self.assertEqual(groups("--pgn", "EB00"), ["0FEEC", "0FEEB"])
         self.assertEqual(groups("--sender", "Engine"), ["0FEEC", "0FEEB"])
         self.assertEqual(groups("--where", "VI.Last>25"), ["0FEEC"])
-        self.assertEqual(count("--where", "VI.Last>26"), 0)
+        self.assertEqual(count("--where", "VI.Last>26", code=1), 0)
         self.assertEqual(groups("--topic", "CI", "--where", "VI.Last=26"), ["0FEEB"])
-        self.assertEqual(groups("--topic", "CI", "--where", "VI.Last=27"), [])
-        self.assertEqual(groups("--where", "VI.Absent>=0"), [])
+        self.assertEqual(groups("--topic", "CI", "--where", "VI.Last=27", code=1), [])
+        self.assertEqual(groups("--where", "VI.Absent>=0", code=1), [])
         fields = [event["message"]["fields"] for event in self.objects(self.decode(log, "--json", "--field", "CI.End")[0])]
         self.assertEqual(fields, [{"End": 87}])
 

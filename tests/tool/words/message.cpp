@@ -197,6 +197,30 @@ TEST_CASE("fields that are never in one frame are refused at the word") {
   }
   CHECK(frame("set Engine rpm=3000.25 --force") == "100#E12E002800000000");  // 12001 quarters
   CHECK(compose(topics[2], {}).error.what == "Long is a message of 64 bytes");
+  // Of J1939 CAN FD is no remedy.
+  protocol::FrameLayout group = layout({}, 0x18FEEC00, true, 17);
+  group.address.by = protocol::Address::By::pgn;
+  protocol::Topic identification = topics[2];
+  identification.frames = {&group, 1};
+  const auto several = compose(identification, {});
+  CHECK(several.error.what ==
+        "Long is a message of 17 bytes, which J1939 sends in several frames by its transport protocol");
+  CHECK(several.error.remedy.find("FD") == std::string::npos);
+}
+
+TEST_CASE("a message without fields, or with all at their start values, is sent as it is named") {
+  CHECK(frame("set Engine") == frame("set Engine torque=0"));
+}
+
+TEST_CASE("a mistyped name of a value is met by the near one, whatever its case") {
+  for (const char* word : {"Neutral", "neutrel", "NEUTRAL"}) {
+    const auto command = parse("set Engine gear=" + std::string{word});
+    CHECK(command.error.what == "'" + std::string{word} +
+                                    "' has no meaning: did you mean 'neutral'? gear takes "
+                                    "neutral, first, broken, or 0 to 2");
+  }
+  CHECK(parse("set Engine gear=xyz").error.what ==
+        "'xyz' has no meaning: gear takes neutral, first, broken, or 0 to 2");
 }
 
 TEST_CASE("a message is sent again and again with --every") {

@@ -125,6 +125,45 @@ TEST_CASE("a message is known by its identifier and format, or by its group") {
   CHECK_FALSE(index.find(Identifier::decode(0x123)));         // no frame of a topic
 }
 
+TEST_CASE("an interface has what is on it and what is on any, by its newest name") {
+  using ocm::can::Format;
+  std::array<ocm::protocol::FrameLayout, 3> on_buses{layout_at(By::identifier, false, 0x100),
+                                                     layout_at(By::identifier, false, 0x100),
+                                                     layout_at(By::identifier, false, 0x200)};
+  std::array<ocm::protocol::Topic, 3> topics;
+  constexpr std::array<std::string_view, 3> called{"car", "radar", "both"};
+  constexpr std::array<std::string_view, 3> buses{"can0", "can1", ""};
+  for (std::size_t i = 0; i < topics.size(); ++i) {
+    topics[i].name = called[i];
+    topics[i].bus = buses[i];
+    topics[i].kind = ocm::protocol::Kind::message;
+    topics[i].frames = {&on_buses[i], 1};
+  }
+  ocm::client::InterfaceIndexes indexes{ocm::protocol::Catalogue{"any", 500'000, {}, topics}};
+  const auto name_of = [&](std::uint16_t interface, std::uint32_t id) -> std::string_view {
+    const auto subject = indexes.of(interface).subject(id, Format::base);
+    return subject ? subject.topic->name : std::string_view{};
+  };
+  REQUIRE(indexes.has_buses());
+  indexes.name(0, "can0");
+  indexes.name(3, "can1");
+  indexes.name(4, "vcan0");
+  CHECK(name_of(0, 0x100) == "car");
+  CHECK(name_of(3, 0x100) == "radar");
+  CHECK(name_of(4, 0x100).empty());
+  for (const std::uint16_t interface : {std::uint16_t{0}, std::uint16_t{3}, std::uint16_t{4}})
+    CHECK(name_of(interface, 0x200) == "both");
+  CHECK(name_of(1, 0x100) == "car");  // without a name: all that there is
+  CHECK(name_of(9, 0x200) == "both");
+  indexes.name(0, "can1");  // another log numbers anew
+  CHECK(name_of(0, 0x100) == "radar");
+
+  ocm::client::InterfaceIndexes same{catalogue};
+  same.name(0, "can0");
+  CHECK_FALSE(same.has_buses());
+  CHECK(&same.of(0) == &same.of(7));
+}
+
 TEST_CASE("an index finds each of many messages, and none beside them") {
   std::vector<ocm::protocol::FrameLayout> many;
   for (std::uint32_t i = 0; i < 3000; ++i) many.push_back(layout_at(By::identifier, true, 7 * i));

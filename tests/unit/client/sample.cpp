@@ -88,16 +88,19 @@ TEST_CASE("what a frame is") {
   CHECK(take(receiver, "23C#FFFFFF").topic->name == "led_1");
   CHECK(take(receiver, "608#3E001E").meaning == Meaning::wrong_dlc);
   CHECK(take(receiver, "6FF#").meaning == Meaning::unknown);
-  CHECK(take(receiver, "606#R").meaning == Meaning::unknown);
+  CHECK(take(receiver, "606#R").meaning == Meaning::remote);
+  CHECK(take(receiver, "605#R4").topic->name == "magnetometer");
+  CHECK(take(receiver, "6FF#R").meaning == Meaning::unknown);
   CHECK(take(receiver, "00000608#3E001E00FCFF").meaning == Meaning::unknown);
   CHECK(take(receiver, "20000040#0000000000000000").meaning == Meaning::error);
   const auto& counters = receiver.counters();
-  CHECK(counters.frames == 8);
+  CHECK(counters.frames == 10);
   CHECK(counters.commands == 3);
   CHECK(counters.unknown == 3);
+  CHECK(counters.remote == 2);
   CHECK(counters.wrong_dlc == 1);
   CHECK(counters.errors == 1);
-  CHECK(counters.faults() == 5);
+  CHECK(counters.faults() == 7);
 }
 
 TEST_CASE("random loss: every whole sample comes out") {

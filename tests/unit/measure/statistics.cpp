@@ -82,14 +82,14 @@ TEST_CASE("statistics: faults by topic") {
   CHECK(gyroscope->requests == 1);
   CHECK(gyroscope->bad_requests == 1);
   CHECK(gyroscope->timing.count == 0);
-  CHECK(figures.counters.unknown == 5);
+  CHECK(figures.counters.unknown == 4);
+  CHECK(figures.counters.remote == 1);
   CHECK(figures.counters.errors == 2);
   CHECK(figures.overflows == 1);
-  REQUIRE(figures.strangers.size() == 4);
+  REQUIRE(figures.strangers.size() == 3);
   CHECK(figures.strangers[0].id == 0x655);
   CHECK(figures.strangers[0].count == 2);
   CHECK(figures.strangers[1].format == ocm::can::Format::extended);
-  CHECK(figures.strangers[2].format == ocm::can::Format::base_remote);
 }
 
 TEST_CASE("statistics: of frames with a wrong length the first is named") {

@@ -146,6 +146,45 @@ TEST_CASE("timing: silence at the end, where samples are due") {
   CHECK(stopped.period_ns == 100'000'000);
 }
 
+Stream stated(Duration distance, int samples) {
+  Stream stream{10ms, Usual::stated};
+  for (int i = 0; i < samples; ++i) stream.sample(at(i * distance));
+  return stream;
+}
+
+TEST_CASE("timing: a stated period is the period, however samples come") {
+  // Each second one is missing: a period that is only looked for would be 20 ms.
+  const Timing half = stated(20ms, 301).timing(at(6s));
+  CHECK(half.period_from == PeriodFrom::spec);
+  CHECK(half.period_ns == 10'000'000);
+  CHECK(half.missing == 300);
+  CHECK(half.mean_ns == 2e7);
+  CHECK_FALSE(half.faster);
+  const Timing on_time = stated(10ms, 100).timing(at(990ms));
+  CHECK(on_time.missing == 0);
+  CHECK(on_time.lateness_ns == 0);
+  // One sample, or few: what comes after them was due.
+  CHECK(stated(10ms, 1).timing(at(100ms)).missing == 9);
+  CHECK(stated(10ms, 2).timing(at(110ms)).missing == 9);
+  CHECK(stated(10ms, 2).timing(at(110ms)).due);
+}
+
+TEST_CASE("timing: before the first sample nothing is due, stated or not") {
+  const Timing none = stated(10ms, 0).timing(at(5s));
+  CHECK_FALSE(none.due);
+  CHECK(none.missing == 0);
+  CHECK(none.gap_ns == 0);
+}
+
+TEST_CASE("timing: samples that come more often than stated have no lateness") {
+  const Timing events = stated(5ms, 100).timing(at(500ms));
+  CHECK(events.faster);
+  CHECK(events.lateness_ns == 0);
+  CHECK(events.missing == 0);
+  CHECK(events.period_ns == 10'000'000);
+  CHECK_FALSE(stated(8ms, 100).timing(at(800ms)).faster);  // within a quarter: a clock that runs fast
+}
+
 TEST_CASE("timing: asked, and nothing ever comes") {
   Stream stream{50ms};
   stream.asked(at(1s), 100ms);

@@ -435,8 +435,8 @@ class Bus {
 
   void finish() const {
     const auto& c = receiver_.counters();
-    fuzz::expect(c.frames == taken_ &&
-                     c.frames == c.samples + c.unknown + c.fd + c.wrong_dlc + c.errors + c.commands + parts_,
+    fuzz::expect(c.frames == taken_ && c.frames == c.samples + c.unknown + c.remote + c.fd + c.wrong_dlc +
+                                                       c.errors + c.commands + parts_,
                  "every frame is counted once");
     fuzz::expect(c.incomplete == incomplete_, "every sample that lacks a frame is counted");
   }
@@ -493,6 +493,8 @@ class Bus {
     const bool error = entry.format == can::Format::error;
     Found found = error ? Found{} : check_index(entry.id, entry.format);
     if (found.topic != nullptr && entry.is_fd() && !found.topic->is_message()) found = {};
+    const bool remote = can::is_remote(entry.format);
+    if (remote) found.topic = find(catalogue_, entry.id, can::data_format(entry.format)).topic;
     const Topic* const topic = found.topic;
     const bool message = topic != nullptr && topic->is_message();
     const bool fits_length = found.frame && topic->frames[*found.frame].accepts(data.bytes().size());
@@ -500,6 +502,7 @@ class Bus {
     std::vector<std::uint8_t> bytes;
     const Meaning meaning = error              ? Meaning::error
                             : topic == nullptr ? Meaning::unknown
+                            : remote           ? Meaning::remote
                             : !found.frame     ? Meaning::request
                             : !fits_length     ? Meaning::wrong_dlc
                             : message          ? Meaning::sample

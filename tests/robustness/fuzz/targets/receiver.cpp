@@ -48,7 +48,7 @@ void check(fuzz::Input input, const protocol::Catalogue& catalogue) {
   }
   const auto& c = receiver.counters();
   fuzz::expect(c.frames == taken, "every frame is counted");
-  fuzz::expect(c.frames == c.errors + c.unknown + c.commands + c.wrong_dlc + c.samples + parts,
+  fuzz::expect(c.frames == c.errors + c.unknown + c.remote + c.commands + c.wrong_dlc + c.samples + parts,
                "every frame is counted once");
   fuzz::expect(c.incomplete <= parts, "an incomplete sample has a part");
 }
