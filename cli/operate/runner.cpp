@@ -72,6 +72,7 @@ Over Runner::run() {
          fmt::format("the last run of operator {} was killed; its last seconds are in {}", file_->tables.name,
                      *left));
   carry_out(supervisor_.start(begin), begin);
+  look_at_bus();  // a monitor that looks at its state would know nothing of it until it changes
   service_.ready(fmt::format("operator {} on {}", file_->tables.name, bus_->name()));
   for (;;) {
     base::Time until = std::min({supervisor_.next(), window_end_, keep_up_at_, now() + longest_wait});
@@ -173,8 +174,9 @@ void Runner::look_at_bus() {
 
 void Runner::set_bus_state(BusState state) {
   if (state == bus_state_) return;
+  const bool news = bus_state_ || state != BusState::active;
   bus_state_ = state;
-  tell("bus_state", {{"state", name_of(state)}}, fmt::format("the bus is {}", name_of(state)));
+  if (news) tell("bus_state", {{"state", name_of(state)}}, fmt::format("the bus is {}", name_of(state)));
   step({.kind = Event::Kind::bus_state, .value = static_cast<std::int64_t>(state)}, now());
 }
 

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <deque>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -111,7 +112,7 @@ class Runner {
   std::deque<can::Frame> queue_;
   base::Time nothing_waited_{};  ///< when the last frame that waited had been taken
   reflective::BusState controller_ = reflective::BusState::active;  ///< as error frames say
-  reflective::BusState bus_state_ = reflective::BusState::active;
+  std::optional<reflective::BusState> bus_state_;                   ///< as the supervisor knows it
   base::Duration window_{};  ///< of the load; 0: no condition looks at it
   base::Time window_end_ = base::never;
   base::Time keep_up_at_ = base::never;
