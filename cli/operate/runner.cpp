@@ -89,6 +89,7 @@ Over Runner::run() {
       if (over == Over::gone) record();
       return over;
     }
+    control_->serve();  // the loop above may have had no time for a wait
     look_at_bus();
     const base::Time at = now();
     if (window_end_ <= at) end_window(at);
@@ -355,7 +356,7 @@ std::string Runner::hold(const Caller& caller, bool held) {
     tell(held ? "held" : "resumed", {{"by", caller.verb}, {"process", caller.process}},
          fmt::format("{} (process {}) {}", caller.verb, caller.process,
                      held ? "holds it: monitors lead to the fall-back only" : "lets it go on"));
-  if (!held) step({}, now());
+  step({}, now());
   return yes(fmt::format("operator {} {}{}: it is in {}\n", tables.name, was == held ? "already " : "",
                          held ? "is on hold, and guards the robot" : "goes on",
                          tables.configurations[supervisor_.configuration()].name));

@@ -545,7 +545,9 @@ class Asked(Operating):
         self.settle()
         waiting.until(lambda: json.loads(self.run_tool("operator", "status", "--json")[0])["monitors"]["still"] == "yes",
                       "the robot is still")
-        status = json.loads(self.run_tool("operator", "status", "--json")[0])
+        for _ in range(10):  # it answers for as long as it is on hold, beyond the 300 ms of "still", too
+            time.sleep(0.05)
+            status = json.loads(self.run_tool("operator", "status", "--json")[0])
         self.assertEqual((status["configuration"], status["on_hold"]), ("halted", True))
         self.assertIn("goes on", self.run_tool("operator", "resume")[0])
         self.assertEqual(self.event(operator, "switched")["to"], "driving")

@@ -138,6 +138,7 @@ TEST_CASE("supervisor: while it is held, monitors lead to the fall-back only, an
   CHECK(run.supervisor.monitor(1) == Truth::yes);  // clear
   CHECK(run.supervisor.configuration() == guard::stopped);
   CHECK(run.supervisor.on_hold());
+  CHECK(run.supervisor.next() > run.now);  // what is held back is not due
   run.supervisor.hold(false);
   run.step(1ns);
   CHECK(run.supervisor.configuration() == guard::driving);
