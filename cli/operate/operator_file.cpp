@@ -37,7 +37,7 @@ constexpr spec::Document document{.what = "an operator",
 constexpr std::size_t max_operator_bytes = 1'000'000;
 
 constexpr std::string_view condition_form =
-    "\"ring.sensor_1>20000\", or an object with one of where, age, gap, rate, refusals, bus_load, bus_state, "
+    "\"ring.sensor_4>3000\", or an object with one of where, age, gap, rate, refusals, bus_load, bus_state, "
     "all, any and not";
 constexpr std::string_view commanding[] = {"drive", "led", "replay", "run", "set"};
 constexpr std::string_view kinds[] = {"where",    "age",       "gap", "rate", "refusals",
@@ -383,7 +383,7 @@ class Reader : private spec::Checker {
       of.place = place(item);
       auto& terms = file_.terms.emplace_back();
       reflective::Monitor& monitor = file_.monitors.emplace_back();
-      if (!is_object(item, R"({"name": "obstacle", "when": "ring.sensor_1>20000"})")) continue;
+      if (!is_object(item, R"({"name": "obstacle", "when": "ring.sensor_4>3000"})")) continue;
       check_keys(item, {"name", "when", "for"});
       if (const auto text = require(item, "name", "what it is called")) of.text = name(*text);
       if (const auto when = require(item, "when", condition_form)) expression(*when, terms);
@@ -471,12 +471,12 @@ class Reader : private spec::Checker {
   }
 
   void where(const At& object, const At& at, std::vector<reflective::Term>& terms) {
-    const auto text = word(at, "a field, a comparison and a value: \"ring.sensor_1>20000\"");
+    const auto text = word(at, "a field, a comparison and a value: \"ring.sensor_4>3000\"");
     if (!text) return;
     const auto parts = words::split_condition(*text);
     if (!parts)
       return tell(at, spec::quoted(*text) + " is not a condition",
-                  "a field, =, !=, <, <=, > or >=, and a value: \"ring.sensor_1>20000\"");
+                  "a field, =, !=, <, <=, > or >=, and a value: \"ring.sensor_4>3000\"");
     const auto of = field(at, std::string{parts->field});
     if (!of) return;
     if (catalogue_.topics[of->topic].kind == protocol::Kind::actuator)

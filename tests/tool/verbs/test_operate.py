@@ -63,14 +63,14 @@ class Checked(Operate):
             self.assertLessEqual(change["over_after_ns"], study["settle_ns"])
         near = next(r for r in study["reactions"] if r["cause"] == "obstacle")
         self.assertEqual(near["condition"], "age of ring above 250ms")
-        sensor = next(c for c in near["conditions"] if c["condition"] == "ring.sensor_1>20000")
+        sensor = next(c for c in near["conditions"] if c["condition"] == "ring.sensor_4>3000")
         self.assertEqual(sensor["parts_ns"]["period"], 50_000_000)
         self.assertEqual(sensor["parts_ns"]["jitter"], 1_000_000)
 
     def test_a_table_for_people_shows_the_sums(self):
         out, _ = self.run_tool("operate", GUARD, "--check")
         self.assertIn("operator guard: 3 configurations, 4 monitors, 8 transitions, at 500000 bit/s", out)
-        self.assertRegex(out, r"ring\.sensor_1>20000\n +[0-9.]+ ms = 50 period \+ 1 jitter \+ [0-9.]+ bus \+ 5 reading \+ ")
+        self.assertRegex(out, r"ring\.sensor_4>3000\n +[0-9.]+ ms = 50 period \+ 1 jitter \+ [0-9.]+ bus \+ 5 reading \+ ")
         self.assertIn("[Real, Crespo 2004", out)
         self.assertTrue(out.endswith("\nin time\n"))
 
@@ -86,7 +86,7 @@ class Checked(Operate):
         longer["settle"] = "400ms"
         for monitor in longer["monitors"]:
             if monitor["name"] == "obstacle":
-                monitor["when"]["any"][2]["above"] = "2s"
+                monitor["when"]["any"][-1]["above"] = "2s"
         longer["configurations"][1]["streams"][0]["period"] = "200ms"
         longer["configurations"][1]["streams"][1]["period"] = "200ms"
         longer["configurations"][2]["streams"][0]["period"] = "200ms"
@@ -96,13 +96,13 @@ class Checked(Operate):
 
     def test_a_healthy_stream_that_reaches_an_age_is_restless(self):
         def change(document):
-            document["monitors"][0]["when"]["any"][2]["above"] = "51ms"
+            document["monitors"][0]["when"]["any"][-1]["above"] = "51ms"
         err = self.refused(change, "in \"driving\" the samples of proximity_ring may be", "holds although nothing is wrong",
                            "\"above\": \"")
         least = int(err.split('"above": "')[1].split("ms")[0])
 
         def mended(document):
-            document["monitors"][0]["when"]["any"][2]["above"] = f"{max(least, 120)}ms"
+            document["monitors"][0]["when"]["any"][-1]["above"] = f"{max(least, 120)}ms"
         document = guard()
         mended(document)
         self.run_tool("operate", self.write(document), "--check")
@@ -143,7 +143,7 @@ class Mistakes(Operate):
         self.refused(member, "/configurations/1/stream: unknown member \"stream\"", "did you mean \"streams\"?")
 
         def several(document):
-            document["monitors"][1]["when"] = "ring>20000"
+            document["monitors"][1]["when"] = "ring>3000"
         self.refused(several, "\"ring\" has 8 fields", "name one, such as")
 
     def test_limits_and_set_points_outside_the_spec(self):
