@@ -10,6 +10,11 @@
 #include "cli/words/quantity.hpp"
 
 namespace ocm::cli {
+namespace {
+
+constexpr const char* ask_why = "`amiroctl operator why` says why it is there, and what leads from there";
+
+}  // namespace
 
 Timeline::Timeline(transport::Bus& bus, const protocol::Catalogue& catalogue, std::string verb, Others others,
                    Confirm confirm, std::function<void(const can::Received&)> on_receive)
@@ -31,7 +36,17 @@ bool Timeline::listen_first(base::Duration duration) {
 }
 
 void Timeline::expect_no_other() {
-  if (others_ == Others::refused) other_.refuse_if_heard();
+  if (others_ == Others::allowed || !other_.is_heard()) return;
+  if (const auto own = commanded_by_operator(); own.again_and_again)
+    fail({fmt::format("{}: {} is in {}, where it commands {} itself", verb_, own.who, own.configuration,
+                      other_.motors()),
+          ask_why});
+  other_.refuse_if_heard();
+}
+
+Guarded::Own Timeline::commanded_by_operator() {
+  auto* const guarded = dynamic_cast<Guarded*>(bus_);
+  return guarded == nullptr ? Guarded::Own{} : guarded->commands_itself(other_.last());
 }
 
 void Timeline::send(const can::Frame& frame) {
@@ -147,6 +162,10 @@ void Timeline::abandon(std::string what, std::string remedy) {
 void Timeline::end_for_another() {
   if (held_) static_cast<void>(rest_after_all());
   other_.sum_up();
+  if (const auto own = commanded_by_operator(); !own.who.empty())
+    fail({fmt::format("{}: {} is in {} and has set the motors to zero, which ends this {}", verb_, own.who,
+                      own.configuration, verb_),
+          ask_why});
   fail({fmt::format("{}: another program has set the motors to zero, which ends this {}", verb_, verb_),
         "--force goes on all the same"});
 }

@@ -23,6 +23,7 @@
 #include "ocm/can/bus.hpp"
 #include "ocm/transport/bus.hpp"
 
+#include "cli/command/guarded.hpp"
 #include "cli/command/other_commander.hpp"
 #include "cli/command/refusal_watch.hpp"
 #include "cli/shared/live.hpp"
@@ -108,6 +109,8 @@ class Timeline {
   [[noreturn]] void end_for_a_stop(Clock::duration lasting);
   /// Ends the command, a hold or not, because another program stopped the robot that it has set in motion.
   [[noreturn]] void end_for_another();
+  /// Whether the set point that came last is of the operator that guards the bus.
+  [[nodiscard]] Guarded::Own commanded_by_operator();
 
   transport::Bus* bus_;
   std::string verb_;

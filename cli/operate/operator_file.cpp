@@ -214,6 +214,8 @@ class Reader : private spec::Checker {
       if (const auto list = item.member("limits")) read_limits(*list, parts);
       if (const auto list = item.member("entry")) read_entry(*list, parts);
       if (const auto list = item.member("commanders")) read_commanders(*list, parts);
+      if (const auto list = item.member("commanders"); list && parts.commanders)
+        judge_commanders(*list, parts);
     }
   }
 
@@ -314,6 +316,24 @@ class Reader : private spec::Checker {
       if (std::find(std::begin(commanding), std::end(commanding), verb) == std::end(commanding))
         tell(item, spec::quoted(verb) + " commands nothing", "one of " + spec::list_of(commanding));
       list.push_back(verb);
+    }
+  }
+
+  /// A verb that commands one kind of actuator alone cannot command what the operator repeats there.
+  void judge_commanders(const At& at, const OperatorFile::Parts& parts) {
+    for (const auto& own : parts.entry) {
+      if (own.topic == none || own.repeat.count() <= 0) continue;
+      const auto& topic = catalogue_.topics[own.topic];
+      const std::string_view verb = topic.role == protocol::Role::drive   ? "drive"
+                                    : topic.role == protocol::Role::light ? "led"
+                                                                          : "";
+      if (verb.empty() ||
+          std::find(parts.commanders->begin(), parts.commanders->end(), verb) == parts.commanders->end())
+        continue;
+      tell(at,
+           spec::quoted(verb) + " may command " + spec::quoted(topic.name) +
+               ", of which \"entry\" repeats a set point",
+           "leave out " + spec::quoted(verb) + ", or \"repeat\"");
     }
   }
 

@@ -30,6 +30,13 @@ std::string_view name_of(BusState state) {
   return names[static_cast<std::size_t>(state)];
 }
 
+/// A measured time, of which no more than four digits say something; rounded up.
+std::string measured(base::Duration time) {
+  std::int64_t step = 1;
+  while (time.count() / step >= 10'000) step *= 10;
+  return words::to_text(base::Duration{(time.count() + step - 1) / step * step});
+}
+
 /// That `why` tells.
 constexpr std::size_t most_changes = 20;
 constexpr base::Duration retry_sending{1'000'000};
@@ -226,7 +233,7 @@ void Runner::judge(base::Duration late) {
   if (counters_.late == 1)
     tell("late", {{"took_ns", late.count()}},
          fmt::format("a step took {}, which is longer than \"reaction\": the bounds do not hold for it",
-                     words::to_text(late)));
+                     measured(late)));
 }
 
 void Runner::record() {
@@ -311,6 +318,7 @@ std::string Runner::answer(Caller& caller, std::string_view request) {
     if (!delivery.obstruction.what.empty()) return no(delivery.obstruction.what, delivery.obstruction.remedy);
     return yes(delivery.known ? std::to_string(delivery.pending) : "unknown");
   }
+  if (request.starts_with(operator_commands)) return commands(request.substr(operator_commands.size()));
   constexpr std::string_view switches = "switch ", sends = "send ";
   if (request.starts_with(switches)) return switch_to(caller, request.substr(switches.size()));
   if (request.starts_with(sends)) return pass_on(caller, request.substr(sends.size()));
@@ -367,6 +375,22 @@ bool Runner::may_command(const Caller& caller) const {
   return !commanders || std::find(commanders->begin(), commanders->end(), caller.verb) != commanders->end();
 }
 
+const reflective::SetPoint* Runner::own_set_point(std::uint16_t topic) const {
+  for (const auto& set_point : file_->configurations[supervisor_.configuration()].entry)
+    if (set_point.topic == topic) return &set_point;
+  return nullptr;
+}
+
+std::string Runner::commands(std::string_view text) const {
+  const auto frame = can::parse_frame(text);
+  const auto found = frame ? index_.subject(frame->id, frame->format) : client::Subject{};
+  if (!found.frame) return no(fmt::format("{} commands no actuator", printable(text)), "a frame of the spec");
+  const auto* const own = own_set_point(static_cast<std::uint16_t>(found.topic - catalogue_->topics.data()));
+  if (own == nullptr) return yes();
+  return yes(fmt::format("{}\n{}", own->repeat.count() > 0 ? operator_repeats : "once",
+                         file_->configurations[supervisor_.configuration()].name));
+}
+
 std::string Runner::pass_on(Caller& caller, std::string_view text) {
   auto frame = can::parse_frame(text);
   const auto found = frame ? index_.subject(frame->id, frame->format) : client::Subject{};
@@ -386,6 +410,14 @@ std::string Runner::pass_on(Caller& caller, std::string_view text) {
     ++commands_.refused;
     return no(fmt::format("operator {} is in {}, where {} may not command {}", tables.name,
                           tables.configurations[supervisor_.configuration()].name, caller.verb, topic.name),
+              "`amiroctl operator why` says why it is there");
+  }
+  // The board would follow the two in turns.
+  const auto* const own = own_set_point(number);
+  if (!rests && own != nullptr && own->repeat.count() > 0) {
+    ++commands_.refused;
+    return no(fmt::format("operator {} is in {}, where it commands {} itself", tables.name,
+                          tables.configurations[supervisor_.configuration()].name, topic.name),
               "`amiroctl operator why` says why it is there");
   }
   if (!queue_.empty()) return wait();
@@ -478,7 +510,7 @@ void Runner::sum_up() {
   add_count(text, bus_->counters().lost, "frames lost");
   if (counters_.late != 0)
     text += fmt::format(", {} steps later than \"reaction\", up to {}", counters_.late,
-                        words::to_text(base::Duration{counters_.latest}));
+                        measured(base::Duration{counters_.latest}));
   remark(text);
 }
 

@@ -91,6 +91,9 @@ class Runner {
   [[nodiscard]] std::string hold(const Caller& caller, bool held);
   [[nodiscard]] std::string pass_on(Caller& caller, std::string_view text);
   [[nodiscard]] bool may_command(const Caller& caller) const;
+  /// What it commands itself where it is; null: not that actuator.
+  [[nodiscard]] const reflective::SetPoint* own_set_point(std::uint16_t topic) const;
+  [[nodiscard]] std::string commands(std::string_view text) const;
   /// Tells once a program and topic.
   void tell_command(Caller& caller, std::uint16_t topic, const std::string& limited);
   [[nodiscard]] Answers answers() const { return {*file_, supervisor_, changes_, commands_}; }

@@ -163,6 +163,12 @@ class Mistakes(Operate):
             document["configurations"][1]["entry"] = [{"topic": "motors", "values": {"x": "0.2m/s"}}]
         self.refused(beyond, "/configurations/1/entry/0: a set point is beyond the limit", "\"limits\" of \"driving\"")
 
+    def test_what_it_repeats_no_verb_of_its_own_may_command(self):
+        def both(document):
+            document["configurations"][2]["commanders"] = ["led", "drive"]
+        self.refused(both, "/configurations/2/commanders: \"drive\" may command \"motors\", of which \"entry\" repeats a set point",
+                     "leave out \"drive\"")
+
     def test_ways_between_configurations(self):
         def unreachable(document):
             document["configurations"].append({"name": "dancing"})
@@ -351,6 +357,21 @@ class Running(Operating):
                 self.assertIn("103#00", frames)  # stop, at the stream's priority
                 _, err = self.run_tool("listen", "odometry", "--timeout", "300ms", "-n", "1", code=1)
                 self.interrupt(sim)
+
+    def test_a_late_step_is_told_in_as_many_digits_as_say_something(self):
+        self.start_sim()
+        document = json.loads(json.dumps(HALT))
+        document["initial"] = "halted"  # where a step is due each 100 ms
+        document["transitions"] = [HALT["transitions"][0], {"from": "halted", "to": "driving", "on_request": True}]
+        operator = self.start("operate", self.write(document))
+        self.assertIn("operator halt is in halted\n", operator.stdout.readline())
+        operator.send_signal(signal.SIGSTOP)
+        time.sleep(0.3)
+        operator.send_signal(signal.SIGCONT)
+        late = next(line for line in operator.stdout if line.startswith("a step took"))
+        _, err = self.interrupt(operator)
+        self.assertRegex(late, r"a step took [0-9.]{1,5}m?s, which is longer than \"reaction\"")
+        self.assertRegex(err, r"steps later than \"reaction\", up to [0-9.]{1,5}m?s\b")
 
     def test_a_silent_board_is_noticed_and_asked_again(self):
         self.start_sim()
@@ -597,6 +618,30 @@ class Asked(Operating):
         self.run_tool("set", "motors", "x=0m/s")
         self.run_tool("stop")
 
+    def test_what_it_repeats_itself_no_program_commands(self):
+        """HALT's halted repeats rest and names no commanders: two that command take turns."""
+        self.start_sim()
+        document = json.loads(json.dumps(HALT))
+        document["transitions"].append({"from": "driving", "to": "halted", "on_request": True})
+        document["transitions"] = [each for each in document["transitions"] if each.get("when") != "still"]
+        operator = self.operate(document=document)
+        self.run_tool("operator", "switch", "halted")
+        self.event(operator, "switched")
+        listener = self.raw_frames("motors")
+        _, err = self.run_tool("drive", "5cm/s", "--for", "500ms", code=1)
+        self.assertRegex(err, r"drive: operator halt \(process [0-9]+\) is in halted, where it commands motors itself")
+        self.assertNotIn("another program", err)
+        for command in (("drive", "5cm/s", "--for", "500ms", "--force"), ("set", "motors", "x=5cm/s")):
+            _, err = self.run_tool(*command, code=1)
+            self.assertIn("operator halt is in halted, where it commands motors itself", err)
+        self.run_tool("led", "1", "red")
+        self.run_tool("stop")
+        frames = [frame for _, frame in self.frames(listener)]
+        self.assertGreater(len(frames), 3)
+        self.assertEqual({x_of(frame) for frame in frames}, {0})
+        _, err = self.interrupt(operator)
+        self.assertIn("2 set points refused", err)
+
     def test_a_drive_that_the_operator_ends_rests_and_says_so(self):
         self.start_sim()
         operator = self.operate(document=GUARDED)
@@ -606,7 +651,8 @@ class Asked(Operating):
         self.run_tool("operator", "switch", "halted")
         _, err = drive.communicate(timeout=30)
         self.assertEqual(drive.returncode, 1)
-        self.assertRegex(err, "operator halt is in halted, where drive may not command motors|another program has set the motors to zero")
+        self.assertRegex(err, "operator halt is in halted, where drive may not command motors|"
+                              r"operator halt \(process [0-9]+\) is in halted and has set the motors to zero, which ends this drive")
         frames = [frame for _, frame in self.frames(listener)]
         self.assertEqual({x_of(frame) for frame in frames[frames.index(REST):]}, {0})
 
@@ -763,6 +809,14 @@ class Drawn(Operate):
         _, err = self.run_tool("operate", GUARD, "--check", "--svg", os.path.join(self.folder, "a.svg"), code=1)
         self.assertIn("a.svg: dot is missing", err)
         self.assertIn("sudo apt install graphviz", err)
+
+    def test_without_graphviz_what_is_proved_is_shown_all_the_same(self):
+        self.environment["PATH"] = self.folder
+        whole, _ = self.run_tool("operate", GUARD, "--check")
+        out, _ = self.run_tool("operate", GUARD, "--check", "--svg", os.path.join(self.folder, "a.svg"), code=1)
+        self.assertEqual(out, whole)
+        _, err = self.run_tool("operate", GUARD, "--check", "--bitrate", "50k", "--svg", os.path.join(self.folder, "a.svg"), code=1)
+        self.assertIn("/settle: the change", err)
 
 
 if __name__ == "__main__":
