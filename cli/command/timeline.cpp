@@ -57,6 +57,7 @@ void Timeline::send(const can::Frame& frame) {
   // A slow bus is waited for; a stop of this program meanwhile is none.
   awake_ = outgoing_.looked();
   stood_still_ = std::max(stood_still_, outgoing_.stood_still());
+  behind_ = set_point ? 0 : behind_ + 1;
   refusals_.sent(frame, set_point && moving_);
   if (set_point) moving_ = !is_rest(frame);
 }
@@ -66,6 +67,7 @@ void Timeline::send_fd(const can::AnyFrame& frame) {
   outgoing_.send(frame);
   awake_ = outgoing_.looked();
   stood_still_ = std::max(stood_still_, outgoing_.stood_still());
+  ++behind_;
 }
 
 void Timeline::carry_out_once(const client::Command& command) {
@@ -188,7 +190,7 @@ void Timeline::repeat(Clock::time_point now) {
   if (held_->next <= now) held_->next = now + client::hold_period;
   const auto delivery = bus_->delivery();
   const auto& obstruction = delivery.obstruction;
-  if (!obstruction.what.empty() || (delivery.known && delivery.pending != 0)) {
+  if (!obstruction.what.empty() || (delivery.known && delivery.pending > behind_)) {
     ++withheld_;
     if (now - held_->left < longest) return;  // an interface may come back
     const std::string what =
@@ -203,6 +205,7 @@ void Timeline::repeat(Clock::time_point now) {
   }
   if (taken && *taken) {
     held_->left = now;
+    behind_ = 0;
     refusals_.sent(held_->hold.frame, true);
   } else if (++withheld_; now - held_->left >= longest) {
     abandon(fmt::format("the transmit queue of {} has been full for {}", bus_->name(), in_words(held_->left)),
@@ -239,6 +242,7 @@ void Timeline::send_again(Repeated& repeated, Clock::time_point now) {
   }
   if (taken) {
     repeated.left = now;
+    ++behind_;
     if (const auto classic = repeated.frame.classic()) refusals_.sent(*classic);
     return;
   }

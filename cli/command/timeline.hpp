@@ -126,6 +126,9 @@ class Timeline {
   Outgoing outgoing_;
   RefusalWatch refusals_;
   bool refused_ = false;
+  /// Frames that were sent since the last set point: a queue keeps the order, so that it has left once no
+  /// more than they wait.
+  std::uint64_t behind_ = 0;
   std::uint64_t withheld_ = 0;   ///< set points that were due while none could leave
   std::uint64_t left_out_ = 0;   ///< turns of what is repeated: this program was late,
   std::uint64_t not_taken_ = 0;  ///< or the bus did not take what came before

@@ -215,6 +215,7 @@ void Runner::flush() {
     if (!taken || !*taken) return;  // closed: the next wait says so
     const can::Frame& frame = queue_.front();
     ++counters_.sent;
+    ++handed_over_;
     bits_ += measure::bits_on_bus(frame);
     refusals_.sent(frame, now());
     log::Entry entry{unix_time(), frame};
@@ -316,7 +317,10 @@ std::string Runner::answer(Caller& caller, std::string_view request) {
   if (request == "delivery") {
     const auto delivery = bus_->delivery();
     if (!delivery.obstruction.what.empty()) return no(delivery.obstruction.what, delivery.obstruction.remedy);
-    return yes(delivery.known ? std::to_string(delivery.pending) : "unknown");
+    if (!delivery.known) return yes("unknown");
+    // What was handed over behind this program's last frame is none of its frames.
+    const std::uint64_t behind = handed_over_ - caller.handed_over;
+    return yes(std::to_string(delivery.pending > behind ? delivery.pending - behind : 0));
   }
   if (request.starts_with(operator_commands)) return commands(request.substr(operator_commands.size()));
   constexpr std::string_view switches = "switch ", sends = "send ";
@@ -438,6 +442,7 @@ std::string Runner::pass_on(Caller& caller, std::string_view text) {
   const auto taken = bus_->send(*frame);
   if (!taken || !*taken) return wait();
   ++commands_.passed;
+  caller.handed_over = ++handed_over_;
   if (!limited.empty()) ++commands_.limited;
   bits_ += measure::bits_on_bus(*frame);
   log::Entry entry{unix_time(), *frame};

@@ -120,6 +120,7 @@ class Runner {
   base::Time window_end_ = base::never;
   base::Time keep_up_at_ = base::never;
   std::uint64_t bits_ = 0;
+  std::uint64_t handed_over_ = 0;  ///< frames that the bus took, its own and those of others
   RunCounters counters_;
   CommandCounters commands_;
   std::deque<Change> changes_;

@@ -642,6 +642,16 @@ class Asked(Operating):
         _, err = self.interrupt(operator)
         self.assertIn("2 set points refused", err)
 
+    def test_frames_of_a_script_hold_up_none_of_its_set_points(self):
+        self.start_sim()
+        self.operate(document=HALT)
+        script = os.path.join(self.folder, "a.script")
+        with open(script, "w", encoding="utf-8") as file:
+            file.write("0s drive 1cm/s\n" + "".join(f"{n}00ms led {n} red\n" for n in range(1, 8)) + "800ms drive stop\n")
+        for _ in range(3):
+            _, err = self.run_tool("run", script)
+            self.assertNotIn("were not sent", err)
+
     def test_a_drive_that_the_operator_ends_rests_and_says_so(self):
         self.start_sim()
         operator = self.operate(document=GUARDED)
