@@ -122,6 +122,15 @@ transport::Delivery OperatedBus::delivery() {
   return delivery;
 }
 
+Guarded::Own OperatedBus::commands_itself(const can::Frame& frame) {
+  const auto answer = link_->ask(fmt::format("{}{}", operator_commands, can::to_text(frame).view()));
+  if (answer.kind != OperatorAnswer::Kind::ok || answer.text.empty()) return {};
+  const std::string_view text = answer.text;
+  const auto line = text.find('\n');
+  return {link_->who(), std::string{text.substr(line == std::string_view::npos ? text.size() : line + 1)},
+          text.substr(0, line) == operator_repeats};
+}
+
 namespace {
 
 std::unique_ptr<transport::Bus> with_operator(std::unique_ptr<transport::Bus> bus, Session& session,

@@ -12,13 +12,14 @@
 #include "ocm/protocol/topic.hpp"
 #include "ocm/transport/bus.hpp"
 
+#include "cli/command/guarded.hpp"
 #include "cli/shared/clock.hpp"
 #include "cli/shared/operator_link.hpp"
 #include "cli/shared/session.hpp"
 
 namespace ocm::cli {
 
-class OperatedBus final : public transport::Bus {
+class OperatedBus final : public transport::Bus, public Guarded {
  public:
   /// The catalogue must outlive it. `verb` is for messages.
   OperatedBus(std::unique_ptr<transport::Bus> bus, std::unique_ptr<OperatorLink> link,
@@ -40,6 +41,7 @@ class OperatedBus final : public transport::Bus {
   [[nodiscard]] transport::Delivery delivery() override;
   [[nodiscard]] std::uint32_t bit_rate() const noexcept override { return bus_->bit_rate(); }
   [[nodiscard]] const transport::Failure& failure() const override { return bus_->failure(); }
+  [[nodiscard]] Own commands_itself(const can::Frame& frame) override;
 
  private:
   /// Whether the frame commands an actuator.

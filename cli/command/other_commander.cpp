@@ -27,10 +27,14 @@ void OtherCommander::take(const can::Received& received, bool holding) {
         motors->name, can::to_text(last_).view()));
 }
 
-void OtherCommander::refuse_if_heard() {
+bool OtherCommander::is_heard() {
   const auto now = Clock::now();
   while (!recent_.empty() && now - recent_.front() > client::listen_before_hold) recent_.pop_front();
-  if (recent_.empty()) return;
+  return !recent_.empty();
+}
+
+void OtherCommander::refuse_if_heard() {
+  if (!is_heard()) return;
   fail({fmt::format("{}: another program commands {}: {}, {} set point{} within {}", verb_, motors_->name,
                     can::to_text(last_).view(), recent_.size(), recent_.size() == 1 ? "" : "s",
                     words::to_text(client::listen_before_hold)),

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <deque>
 #include <string>
+#include <string_view>
 
 #include "ocm/can/bus.hpp"
 #include "ocm/can/frame.hpp"
@@ -34,6 +35,11 @@ class OtherCommander {
   [[nodiscard]] bool has_stopped() const { return stopped_; }
   /// Leaves through cli::fail if a set point came within client::listen_before_hold.
   void refuse_if_heard();
+  /// Whether one came within that time.
+  [[nodiscard]] bool is_heard();
+  /// The last set point that came.
+  [[nodiscard]] const can::Frame& last() const { return last_; }
+  [[nodiscard]] std::string_view motors() const { return motors_ == nullptr ? "" : motors_->name; }
   /// How many set points came while this program commanded the motors, if any did.
   void sum_up() const;
 

@@ -10,6 +10,11 @@
 #include "cli/words/quantity.hpp"
 
 namespace ocm::cli {
+namespace {
+
+constexpr const char* ask_why = "`amiroctl operator why` says why it is there, and what leads from there";
+
+}  // namespace
 
 Timeline::Timeline(transport::Bus& bus, const protocol::Catalogue& catalogue, std::string verb, Others others,
                    Confirm confirm, std::function<void(const can::Received&)> on_receive)
@@ -31,7 +36,17 @@ bool Timeline::listen_first(base::Duration duration) {
 }
 
 void Timeline::expect_no_other() {
-  if (others_ == Others::refused) other_.refuse_if_heard();
+  if (others_ == Others::allowed || !other_.is_heard()) return;
+  if (const auto own = commanded_by_operator(); own.again_and_again)
+    fail({fmt::format("{}: {} is in {}, where it commands {} itself", verb_, own.who, own.configuration,
+                      other_.motors()),
+          ask_why});
+  other_.refuse_if_heard();
+}
+
+Guarded::Own Timeline::commanded_by_operator() {
+  auto* const guarded = dynamic_cast<Guarded*>(bus_);
+  return guarded == nullptr ? Guarded::Own{} : guarded->commands_itself(other_.last());
 }
 
 void Timeline::send(const can::Frame& frame) {
@@ -42,6 +57,7 @@ void Timeline::send(const can::Frame& frame) {
   // A slow bus is waited for; a stop of this program meanwhile is none.
   awake_ = outgoing_.looked();
   stood_still_ = std::max(stood_still_, outgoing_.stood_still());
+  behind_ = set_point ? 0 : behind_ + 1;
   refusals_.sent(frame, set_point && moving_);
   if (set_point) moving_ = !is_rest(frame);
 }
@@ -51,6 +67,7 @@ void Timeline::send_fd(const can::AnyFrame& frame) {
   outgoing_.send(frame);
   awake_ = outgoing_.looked();
   stood_still_ = std::max(stood_still_, outgoing_.stood_still());
+  ++behind_;
 }
 
 void Timeline::carry_out_once(const client::Command& command) {
@@ -147,6 +164,10 @@ void Timeline::abandon(std::string what, std::string remedy) {
 void Timeline::end_for_another() {
   if (held_) static_cast<void>(rest_after_all());
   other_.sum_up();
+  if (const auto own = commanded_by_operator(); !own.who.empty())
+    fail({fmt::format("{}: {} is in {} and has set the motors to zero, which ends this {}", verb_, own.who,
+                      own.configuration, verb_),
+          ask_why});
   fail({fmt::format("{}: another program has set the motors to zero, which ends this {}", verb_, verb_),
         "--force goes on all the same"});
 }
@@ -169,7 +190,7 @@ void Timeline::repeat(Clock::time_point now) {
   if (held_->next <= now) held_->next = now + client::hold_period;
   const auto delivery = bus_->delivery();
   const auto& obstruction = delivery.obstruction;
-  if (!obstruction.what.empty() || (delivery.known && delivery.pending != 0)) {
+  if (!obstruction.what.empty() || (delivery.known && delivery.pending > behind_)) {
     ++withheld_;
     if (now - held_->left < longest) return;  // an interface may come back
     const std::string what =
@@ -184,6 +205,7 @@ void Timeline::repeat(Clock::time_point now) {
   }
   if (taken && *taken) {
     held_->left = now;
+    behind_ = 0;
     refusals_.sent(held_->hold.frame, true);
   } else if (++withheld_; now - held_->left >= longest) {
     abandon(fmt::format("the transmit queue of {} has been full for {}", bus_->name(), in_words(held_->left)),
@@ -220,6 +242,7 @@ void Timeline::send_again(Repeated& repeated, Clock::time_point now) {
   }
   if (taken) {
     repeated.left = now;
+    ++behind_;
     if (const auto classic = repeated.frame.classic()) refusals_.sent(*classic);
     return;
   }

@@ -23,6 +23,7 @@
 #include "ocm/can/bus.hpp"
 #include "ocm/transport/bus.hpp"
 
+#include "cli/command/guarded.hpp"
 #include "cli/command/other_commander.hpp"
 #include "cli/command/refusal_watch.hpp"
 #include "cli/shared/live.hpp"
@@ -108,6 +109,8 @@ class Timeline {
   [[noreturn]] void end_for_a_stop(Clock::duration lasting);
   /// Ends the command, a hold or not, because another program stopped the robot that it has set in motion.
   [[noreturn]] void end_for_another();
+  /// Whether the set point that came last is of the operator that guards the bus.
+  [[nodiscard]] Guarded::Own commanded_by_operator();
 
   transport::Bus* bus_;
   std::string verb_;
@@ -123,6 +126,9 @@ class Timeline {
   Outgoing outgoing_;
   RefusalWatch refusals_;
   bool refused_ = false;
+  /// Frames that were sent since the last set point: a queue keeps the order, so that it has left once no
+  /// more than they wait.
+  std::uint64_t behind_ = 0;
   std::uint64_t withheld_ = 0;   ///< set points that were due while none could leave
   std::uint64_t left_out_ = 0;   ///< turns of what is repeated: this program was late,
   std::uint64_t not_taken_ = 0;  ///< or the bus did not take what came before

@@ -21,6 +21,7 @@ struct Caller {
   std::int64_t process = 0;
   std::vector<std::uint16_t> commanded;  ///< topics; each was told once
   std::vector<std::uint16_t> limited;
+  std::uint64_t handed_over = 0;  ///< frames of all to the bus, up to the last one of this program
 };
 
 /// Answers of the protocol.

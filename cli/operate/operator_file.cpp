@@ -37,7 +37,7 @@ constexpr spec::Document document{.what = "an operator",
 constexpr std::size_t max_operator_bytes = 1'000'000;
 
 constexpr std::string_view condition_form =
-    "\"ring.sensor_1>20000\", or an object with one of where, age, gap, rate, refusals, bus_load, bus_state, "
+    "\"ring.sensor_4>3000\", or an object with one of where, age, gap, rate, refusals, bus_load, bus_state, "
     "all, any and not";
 constexpr std::string_view commanding[] = {"drive", "led", "replay", "run", "set"};
 constexpr std::string_view kinds[] = {"where",    "age",       "gap", "rate", "refusals",
@@ -214,6 +214,8 @@ class Reader : private spec::Checker {
       if (const auto list = item.member("limits")) read_limits(*list, parts);
       if (const auto list = item.member("entry")) read_entry(*list, parts);
       if (const auto list = item.member("commanders")) read_commanders(*list, parts);
+      if (const auto list = item.member("commanders"); list && parts.commanders)
+        judge_commanders(*list, parts);
     }
   }
 
@@ -317,6 +319,24 @@ class Reader : private spec::Checker {
     }
   }
 
+  /// A verb that commands one kind of actuator alone cannot command what the operator repeats there.
+  void judge_commanders(const At& at, const OperatorFile::Parts& parts) {
+    for (const auto& own : parts.entry) {
+      if (own.topic == none || own.repeat.count() <= 0) continue;
+      const auto& topic = catalogue_.topics[own.topic];
+      const std::string_view verb = topic.role == protocol::Role::drive   ? "drive"
+                                    : topic.role == protocol::Role::light ? "led"
+                                                                          : "";
+      if (verb.empty() ||
+          std::find(parts.commanders->begin(), parts.commanders->end(), verb) == parts.commanders->end())
+        continue;
+      tell(at,
+           spec::quoted(verb) + " may command " + spec::quoted(topic.name) +
+               ", of which \"entry\" repeats a set point",
+           "leave out " + spec::quoted(verb) + ", or \"repeat\"");
+    }
+  }
+
   void read_entry(const At& at, OperatorFile::Parts& parts) {
     if (!is_list(at, "a list of set points")) return;
     for (std::size_t i = 0; i < at.node->items.size(); ++i) {
@@ -383,7 +403,7 @@ class Reader : private spec::Checker {
       of.place = place(item);
       auto& terms = file_.terms.emplace_back();
       reflective::Monitor& monitor = file_.monitors.emplace_back();
-      if (!is_object(item, R"({"name": "obstacle", "when": "ring.sensor_1>20000"})")) continue;
+      if (!is_object(item, R"({"name": "obstacle", "when": "ring.sensor_4>3000"})")) continue;
       check_keys(item, {"name", "when", "for"});
       if (const auto text = require(item, "name", "what it is called")) of.text = name(*text);
       if (const auto when = require(item, "when", condition_form)) expression(*when, terms);
@@ -471,12 +491,12 @@ class Reader : private spec::Checker {
   }
 
   void where(const At& object, const At& at, std::vector<reflective::Term>& terms) {
-    const auto text = word(at, "a field, a comparison and a value: \"ring.sensor_1>20000\"");
+    const auto text = word(at, "a field, a comparison and a value: \"ring.sensor_4>3000\"");
     if (!text) return;
     const auto parts = words::split_condition(*text);
     if (!parts)
       return tell(at, spec::quoted(*text) + " is not a condition",
-                  "a field, =, !=, <, <=, > or >=, and a value: \"ring.sensor_1>20000\"");
+                  "a field, =, !=, <, <=, > or >=, and a value: \"ring.sensor_4>3000\"");
     const auto of = field(at, std::string{parts->field});
     if (!of) return;
     if (catalogue_.topics[of->topic].kind == protocol::Kind::actuator)

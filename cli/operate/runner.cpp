@@ -30,6 +30,13 @@ std::string_view name_of(BusState state) {
   return names[static_cast<std::size_t>(state)];
 }
 
+/// A measured time, of which no more than four digits say something; rounded up.
+std::string measured(base::Duration time) {
+  std::int64_t step = 1;
+  while (time.count() / step >= 10'000) step *= 10;
+  return words::to_text(base::Duration{(time.count() + step - 1) / step * step});
+}
+
 /// That `why` tells.
 constexpr std::size_t most_changes = 20;
 constexpr base::Duration retry_sending{1'000'000};
@@ -72,6 +79,7 @@ Over Runner::run() {
          fmt::format("the last run of operator {} was killed; its last seconds are in {}", file_->tables.name,
                      *left));
   carry_out(supervisor_.start(begin), begin);
+  look_at_bus();  // a monitor that looks at its state would know nothing of it until it changes
   service_.ready(fmt::format("operator {} on {}", file_->tables.name, bus_->name()));
   for (;;) {
     base::Time until = std::min({supervisor_.next(), window_end_, keep_up_at_, now() + longest_wait});
@@ -88,6 +96,7 @@ Over Runner::run() {
       if (over == Over::gone) record();
       return over;
     }
+    control_->serve();  // the loop above may have had no time for a wait
     look_at_bus();
     const base::Time at = now();
     if (window_end_ <= at) end_window(at);
@@ -173,8 +182,9 @@ void Runner::look_at_bus() {
 
 void Runner::set_bus_state(BusState state) {
   if (state == bus_state_) return;
+  const bool news = bus_state_ || state != BusState::active;
   bus_state_ = state;
-  tell("bus_state", {{"state", name_of(state)}}, fmt::format("the bus is {}", name_of(state)));
+  if (news) tell("bus_state", {{"state", name_of(state)}}, fmt::format("the bus is {}", name_of(state)));
   step({.kind = Event::Kind::bus_state, .value = static_cast<std::int64_t>(state)}, now());
 }
 
@@ -205,6 +215,7 @@ void Runner::flush() {
     if (!taken || !*taken) return;  // closed: the next wait says so
     const can::Frame& frame = queue_.front();
     ++counters_.sent;
+    ++handed_over_;
     bits_ += measure::bits_on_bus(frame);
     refusals_.sent(frame, now());
     log::Entry entry{unix_time(), frame};
@@ -223,7 +234,7 @@ void Runner::judge(base::Duration late) {
   if (counters_.late == 1)
     tell("late", {{"took_ns", late.count()}},
          fmt::format("a step took {}, which is longer than \"reaction\": the bounds do not hold for it",
-                     words::to_text(late)));
+                     measured(late)));
 }
 
 void Runner::record() {
@@ -306,8 +317,12 @@ std::string Runner::answer(Caller& caller, std::string_view request) {
   if (request == "delivery") {
     const auto delivery = bus_->delivery();
     if (!delivery.obstruction.what.empty()) return no(delivery.obstruction.what, delivery.obstruction.remedy);
-    return yes(delivery.known ? std::to_string(delivery.pending) : "unknown");
+    if (!delivery.known) return yes("unknown");
+    // What was handed over behind this program's last frame is none of its frames.
+    const std::uint64_t behind = handed_over_ - caller.handed_over;
+    return yes(std::to_string(delivery.pending > behind ? delivery.pending - behind : 0));
   }
+  if (request.starts_with(operator_commands)) return commands(request.substr(operator_commands.size()));
   constexpr std::string_view switches = "switch ", sends = "send ";
   if (request.starts_with(switches)) return switch_to(caller, request.substr(switches.size()));
   if (request.starts_with(sends)) return pass_on(caller, request.substr(sends.size()));
@@ -353,7 +368,7 @@ std::string Runner::hold(const Caller& caller, bool held) {
     tell(held ? "held" : "resumed", {{"by", caller.verb}, {"process", caller.process}},
          fmt::format("{} (process {}) {}", caller.verb, caller.process,
                      held ? "holds it: monitors lead to the fall-back only" : "lets it go on"));
-  if (!held) step({}, now());
+  step({}, now());
   return yes(fmt::format("operator {} {}{}: it is in {}\n", tables.name, was == held ? "already " : "",
                          held ? "is on hold, and guards the robot" : "goes on",
                          tables.configurations[supervisor_.configuration()].name));
@@ -362,6 +377,22 @@ std::string Runner::hold(const Caller& caller, bool held) {
 bool Runner::may_command(const Caller& caller) const {
   const auto& commanders = file_->parts[supervisor_.configuration()].commanders;
   return !commanders || std::find(commanders->begin(), commanders->end(), caller.verb) != commanders->end();
+}
+
+const reflective::SetPoint* Runner::own_set_point(std::uint16_t topic) const {
+  for (const auto& set_point : file_->configurations[supervisor_.configuration()].entry)
+    if (set_point.topic == topic) return &set_point;
+  return nullptr;
+}
+
+std::string Runner::commands(std::string_view text) const {
+  const auto frame = can::parse_frame(text);
+  const auto found = frame ? index_.subject(frame->id, frame->format) : client::Subject{};
+  if (!found.frame) return no(fmt::format("{} commands no actuator", printable(text)), "a frame of the spec");
+  const auto* const own = own_set_point(static_cast<std::uint16_t>(found.topic - catalogue_->topics.data()));
+  if (own == nullptr) return yes();
+  return yes(fmt::format("{}\n{}", own->repeat.count() > 0 ? operator_repeats : "once",
+                         file_->configurations[supervisor_.configuration()].name));
 }
 
 std::string Runner::pass_on(Caller& caller, std::string_view text) {
@@ -385,6 +416,14 @@ std::string Runner::pass_on(Caller& caller, std::string_view text) {
                           tables.configurations[supervisor_.configuration()].name, caller.verb, topic.name),
               "`amiroctl operator why` says why it is there");
   }
+  // The board would follow the two in turns.
+  const auto* const own = own_set_point(number);
+  if (!rests && own != nullptr && own->repeat.count() > 0) {
+    ++commands_.refused;
+    return no(fmt::format("operator {} is in {}, where it commands {} itself", tables.name,
+                          tables.configurations[supervisor_.configuration()].name, topic.name),
+              "`amiroctl operator why` says why it is there");
+  }
   if (!queue_.empty()) return wait();
   std::vector<std::int64_t> raw;
   for (const auto& field : layout.fields) raw.push_back(field.raw(frame->data));
@@ -403,6 +442,7 @@ std::string Runner::pass_on(Caller& caller, std::string_view text) {
   const auto taken = bus_->send(*frame);
   if (!taken || !*taken) return wait();
   ++commands_.passed;
+  caller.handed_over = ++handed_over_;
   if (!limited.empty()) ++commands_.limited;
   bits_ += measure::bits_on_bus(*frame);
   log::Entry entry{unix_time(), *frame};
@@ -475,7 +515,7 @@ void Runner::sum_up() {
   add_count(text, bus_->counters().lost, "frames lost");
   if (counters_.late != 0)
     text += fmt::format(", {} steps later than \"reaction\", up to {}", counters_.late,
-                        words::to_text(base::Duration{counters_.latest}));
+                        measured(base::Duration{counters_.latest}));
   remark(text);
 }
 

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <deque>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -90,6 +91,9 @@ class Runner {
   [[nodiscard]] std::string hold(const Caller& caller, bool held);
   [[nodiscard]] std::string pass_on(Caller& caller, std::string_view text);
   [[nodiscard]] bool may_command(const Caller& caller) const;
+  /// What it commands itself where it is; null: not that actuator.
+  [[nodiscard]] const reflective::SetPoint* own_set_point(std::uint16_t topic) const;
+  [[nodiscard]] std::string commands(std::string_view text) const;
   /// Tells once a program and topic.
   void tell_command(Caller& caller, std::uint16_t topic, const std::string& limited);
   [[nodiscard]] Answers answers() const { return {*file_, supervisor_, changes_, commands_}; }
@@ -111,11 +115,12 @@ class Runner {
   std::deque<can::Frame> queue_;
   base::Time nothing_waited_{};  ///< when the last frame that waited had been taken
   reflective::BusState controller_ = reflective::BusState::active;  ///< as error frames say
-  reflective::BusState bus_state_ = reflective::BusState::active;
+  std::optional<reflective::BusState> bus_state_;                   ///< as the supervisor knows it
   base::Duration window_{};  ///< of the load; 0: no condition looks at it
   base::Time window_end_ = base::never;
   base::Time keep_up_at_ = base::never;
   std::uint64_t bits_ = 0;
+  std::uint64_t handed_over_ = 0;  ///< frames that the bus took, its own and those of others
   RunCounters counters_;
   CommandCounters commands_;
   std::deque<Change> changes_;

@@ -1,4 +1,4 @@
-/// A condition as people type it, `ring.sensor_1>20000`, as one on raw numbers: which of them fulfil it.
+/// A condition as people type it, `ring.sensor_4>3000`, as one on raw numbers: which of them fulfil it.
 #pragma once
 
 #include <cstdint>

@@ -3,7 +3,8 @@
 ///
 /// A request is one message, "status" or "send 201#50C3000000000000"; so is its answer: a first line "ok",
 /// "wait" or "no", and what is to be said after it. Of "no" that is what is wrong, and on the next line the
-/// remedy. The first request is "hello 1 VERB", whose answer is the operator's name.
+/// remedy. The first request is "hello 1 VERB", whose answer is the operator's name. To "commands FRAME" it
+/// answers whether it commands that actuator itself: nothing, or "repeats" or "once", and where it is.
 #pragma once
 
 #include <cstdint>
@@ -18,6 +19,8 @@
 namespace ocm::cli {
 
 inline constexpr std::string_view operator_hello = "hello 1 ";
+inline constexpr std::string_view operator_commands = "commands ";
+inline constexpr std::string_view operator_repeats = "repeats";
 inline constexpr std::size_t longest_operator_message = 60'000;
 
 /// Where the operator of a bus listens: by the name that the bus has for itself.

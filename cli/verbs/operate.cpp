@@ -38,17 +38,18 @@ void tell(std::span<const spec::Problem> problems) {
 
 int check(const OperateOptions& options, const operate::OperatorFile& file, std::uint32_t bit_rate) {
   const auto study = operate::study(file, bit_rate);
+  // First what is known without Graphviz.
+  if (options.json)
+    fmt::print("{}", operate::to_json(study));
+  else if (options.svg != "-")
+    fmt::print("{}", operate::to_table(study));
+  tell(study.doubts);
   if (!options.svg.empty()) {
     const auto picture = drawn_by({"dot", "-Tsvg"}, operate::to_dot(study), "sudo apt install graphviz");
     if (!picture)
       fail({fmt::format("operate: {}: {}", options.svg, picture.error.what), picture.error.remedy});
     write_file(options.svg, *picture);
   }
-  if (options.json)
-    fmt::print("{}", operate::to_json(study));
-  else if (options.svg != "-")
-    fmt::print("{}", operate::to_table(study));
-  tell(study.doubts);
   return study.passes() ? exit_success : exit_failure;
 }
 

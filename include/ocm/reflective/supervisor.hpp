@@ -147,7 +147,7 @@ class Supervisor {
     limiter_.commanded(topic, raw, now);
   }
 
-  /// From the next step on.
+  /// From the next step on: make one, since `next()` is as before until then.
   constexpr void hold(bool held) noexcept { on_hold_ = held; }
   [[nodiscard]] constexpr bool on_hold() const noexcept { return on_hold_; }
 
@@ -360,9 +360,13 @@ class Supervisor {
   }
   [[nodiscard]] constexpr bool fires(const Transition& transition, base::Time now) const noexcept {
     if (transition.monitor == by_request) return requested_ != none && requested_ == transition.to;
-    if (on_hold_ && transition.to != tables_->fall_back) return false;
+    if (held_back(transition)) return false;
     const auto at = since_[transition.monitor].fires_at(tables_->monitors[transition.monitor].lasting);
     return at != base::never && at <= now;
+  }
+
+  [[nodiscard]] constexpr bool held_back(const Transition& transition) const noexcept {
+    return on_hold_ && transition.monitor != by_request && transition.to != tables_->fall_back;
   }
 
   constexpr void enter(std::uint16_t to, std::uint16_t transition, base::Time now, bool first) noexcept {
@@ -500,7 +504,8 @@ class Supervisor {
         due(state.last + base::Duration{condition.limit});
     }
     for (const Transition& transition : tables_->transitions) {
-      if (!tables_->leaves(transition, current_)) continue;
+      // What is held back is not due, or else it would be until it is let go.
+      if (!tables_->leaves(transition, current_) || held_back(transition)) continue;
       if (transition.monitor == by_request) {
         if (requested_ != none && requested_ == transition.to) due(std::max(settled_, now));
         continue;

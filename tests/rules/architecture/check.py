@@ -526,6 +526,14 @@ def named_files_exist(tree):
                 yield f"{page}:{line}: there is no program {match.group(0)}: tests/unit has no such floor"
 
 
+def tables_are_whole(tree):
+    """A table begins with its header: behind a blank line in its middle the rows are text."""
+    for page in pages(tree):
+        text = re.sub(r"(?ms)^( *)```.*?^\1```", lambda m: re.sub(r"[^\n]", " ", m.group(0)), tree.text(page))
+        for line, _ in tree.find(page, r"(?m)(?:\A|(?<=\n\n))\|.*\n(?!\|[ :|-]+\|\n)", text):
+            yield f"{page}:{line}: rows of a table without its header: leave out the blank line above"
+
+
 def words_are_plain(tree):
     """No idiom where a plain word does, in pages and in what programs print: `no board`, `is reported`, `expected ...`."""
     string = re.compile(r'"(?:\\.|[^"\\\n])*"')
@@ -598,8 +606,8 @@ RULES = (floors_have_rows, house_is_drawn, includes_go_down, layers_are_apart, l
          namespace_is_folder, no_banned_headers, no_banned_words, standard_headers_are_included, headers_open_with_a_comment, headers_have_tests,
          tests_have_their_namespace, own_includes_are_full_paths, generator_is_independent, firmware_is_for_boards, rooms_are_apart,
          folders_make_no_circle, verbs_are_seen_by_main_only, no_circles_of_rooms, costly_headers_are_seen_by_few,
-         generated_files_are_reproducible, no_machine_paths, links_resolve, named_files_exist, words_are_plain, pages_are_linked, indexes_are_complete,
-         test_folders_have_rows, quotes_are_the_examples)
+         generated_files_are_reproducible, no_machine_paths, links_resolve, named_files_exist, tables_are_whole, words_are_plain, pages_are_linked,
+         indexes_are_complete, test_folders_have_rows, quotes_are_the_examples)
 
 
 def check(root, rules=RULES):

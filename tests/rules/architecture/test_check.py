@@ -170,6 +170,7 @@ PLANTED = [
     ("named_files_exist", added(README, "see `base/gone.hpp`\n"), "README.md:12:"),
     ("named_files_exist", added(README, "[gone.hpp](include/ocm/base/result.hpp)\n"), "README.md:12:"),
     ("named_files_exist", added(README, "    build/unit_gone '[times]'\n"), "README.md:12:"),
+    ("tables_are_whole", added(README, "\n| a | b |\n|---|---|\n\n| 1 | 2 |\n"), "README.md:16:"),
     ("words_are_plain", added(README, "What is lost, nobody knows.\n"), "README.md:12:"),
     ("words_are_plain", added(README, "A bad line is\ntold.\n"), "README.md:12:"),
     ("words_are_plain", added("cli/main.cpp", 'auto text = "a log is wanted";\n'), "cli/main.cpp:2:"),

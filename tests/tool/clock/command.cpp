@@ -247,6 +247,38 @@ void play_script(std::uint64_t seed) {
                       [&](const auto& each) { return each.taken >= stopped + lasting; }) <= 1);
 }
 
+TEST_CASE("drive: another frame just before a set point is due holds no set point up") {
+  const Silence silence;
+  for (const int microseconds : {0, 10, 50, 150, 240, 400, 1000}) {
+    const Duration before = std::chrono::microseconds{microseconds};
+    INFO(microseconds << " us before");
+    World world{1};
+    PlayedBus bus{world, {}};
+    Timeline timeline{bus, amiro::catalogue, "run", Timeline::Others::refused, cli::Confirm::no, {}};
+    const auto start = world.now();
+    timeline.carry_out(drive(0s));
+    const auto first = bus.sent().front().taken;
+    const cli::words::CommandParser parser{amiro::catalogue};
+    const std::vector<std::string_view> words{"led", "1", "red"};
+    const auto led = parser.parse_line(words);
+    REQUIRE(led.ok());
+    for (int turn = 1; turn <= 20; ++turn) {
+      REQUIRE(timeline.wait_for_step(first + turn * client::hold_period - before));
+      timeline.carry_out(*led);
+    }
+    timeline.rest();
+    Moment last = start;
+    int set_points = 0;
+    for (const auto& each : bus.sent()) {
+      if (each.frame.id == led->frames.front().id) continue;
+      CHECK(each.taken - last < client::hold_period + 2ms);
+      last = each.taken;
+      ++set_points;
+    }
+    CHECK(set_points > 20);
+  }
+}
+
 TEST_CASE("drive: of a script whose program was stopped, whenever that was, one step at most is late") {
   const auto runs = static_cast<std::uint64_t>(explored(2000));
   const Silence silence;

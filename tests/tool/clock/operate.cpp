@@ -1,6 +1,7 @@
 // The loop of `operate`, on a bus and a clock that are made of a seed: obstacles, silent boards, stops of the
 // program, a wall clock that is set, a bus that is stuck, down, passive or away, signals. It never commands
-// motion by what it could know to be out of date, it stops in time, and every end is at rest.
+// motion by what it could know to be out of date, it stops in time, drives again once all is clear, and every
+// end is at rest.
 #include <algorithm>
 #include <csignal>
 #include <mutex>
@@ -47,9 +48,10 @@ constexpr std::string_view file_text = R"({
 })";
 
 constexpr Duration lasting = 8s;
-constexpr Duration oldest = 250ms;   // of a sample while it drives
-constexpr Duration stale = 150ms;    // three periods of the ring
-constexpr Duration cleared = 300ms;  // without an obstacle before it drives again
+constexpr Duration oldest = 250ms;     // of a sample while it drives
+constexpr Duration stale = 150ms;      // three periods of the ring
+constexpr Duration cleared = 300ms;    // without an obstacle before it drives again
+constexpr Duration drives_again = 1s;  // of all clear, and it does
 constexpr Duration settle = 60ms;
 constexpr Duration reaction = 5ms;
 constexpr Duration repeat = 100ms;
@@ -57,6 +59,9 @@ constexpr Duration repeat = 100ms;
 const protocol::Topic& ring() {
   return *amiro::catalogue.find("ring");
 }
+
+/// How often it had to drive again, in all runs.
+int drove_again = 0;
 
 class Run {
  public:
@@ -178,6 +183,8 @@ class Run {
     }
     if (calm_)
       for (const Moment obstacle : near_) judge_stop(motors, obstacle);
+    if (calm_)
+      for (const Moment sample : far_) judge_motion_again(motors, sample);
     if (over == cli::Over::gone) CHECK(bus.conditions().gone <= ended_);
     if (over != cli::Over::signal) return;
     CHECK(ended_ >= World::start + lasting);
@@ -238,6 +245,25 @@ class Run {
     if (!cli::is_rest(later[-1].frame))
       FAIL_CHECK("no rest by " << at(by) << ", an obstacle was seen at " << at(obstacle));
   }
+  /// Once all has been clear for long enough, it drives again.
+  void judge_motion_again(const std::vector<PlayedBus::Sent>& motors, Moment sample) {
+    const Moment since = sample - drives_again;
+    if (since < World::start || sample > World::start + lasting) return;
+    if (passive_.from <= sample && passive_.until > since) return;
+    const auto after = std::upper_bound(near_.begin(), near_.end(), since);
+    if (after != near_.end() && *after <= sample) return;
+    Moment heard = since;
+    for (auto each = std::lower_bound(far_.begin(), far_.end(), since); each != far_.end() && *each <= sample;
+         ++each) {
+      if (*each - heard >= stale) return;
+      heard = *each;
+    }
+    const auto later = std::upper_bound(motors.begin(), motors.end(), sample,
+                                        [](Moment time, const auto& each) { return time < each.taken; });
+    if (later == motors.begin() || cli::is_rest(later[-1].frame))
+      FAIL_CHECK("it does not drive at " << at(sample) << ", although all is clear since " << at(since));
+    ++drove_again;
+  }
   [[nodiscard]] bool in_trouble(Moment time) const {
     return std::any_of(trouble_.begin(), trouble_.end(),
                        [time](const PlayedBus::Time& each) { return each.has(time); });
@@ -263,6 +289,7 @@ TEST_CASE("operate: whatever happens, it does not drive by what is out of date, 
     INFO("seed " << seed);
     Run{seed}.go();
   }
+  CHECK(drove_again > 10 * static_cast<int>(runs));
 }
 
 }  // namespace tool_clock_operate_test

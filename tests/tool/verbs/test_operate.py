@@ -63,14 +63,14 @@ class Checked(Operate):
             self.assertLessEqual(change["over_after_ns"], study["settle_ns"])
         near = next(r for r in study["reactions"] if r["cause"] == "obstacle")
         self.assertEqual(near["condition"], "age of ring above 250ms")
-        sensor = next(c for c in near["conditions"] if c["condition"] == "ring.sensor_1>20000")
+        sensor = next(c for c in near["conditions"] if c["condition"] == "ring.sensor_4>3000")
         self.assertEqual(sensor["parts_ns"]["period"], 50_000_000)
         self.assertEqual(sensor["parts_ns"]["jitter"], 1_000_000)
 
     def test_a_table_for_people_shows_the_sums(self):
         out, _ = self.run_tool("operate", GUARD, "--check")
         self.assertIn("operator guard: 3 configurations, 4 monitors, 8 transitions, at 500000 bit/s", out)
-        self.assertRegex(out, r"ring\.sensor_1>20000\n +[0-9.]+ ms = 50 period \+ 1 jitter \+ [0-9.]+ bus \+ 5 reading \+ ")
+        self.assertRegex(out, r"ring\.sensor_4>3000\n +[0-9.]+ ms = 50 period \+ 1 jitter \+ [0-9.]+ bus \+ 5 reading \+ ")
         self.assertIn("[Real, Crespo 2004", out)
         self.assertTrue(out.endswith("\nin time\n"))
 
@@ -86,7 +86,7 @@ class Checked(Operate):
         longer["settle"] = "400ms"
         for monitor in longer["monitors"]:
             if monitor["name"] == "obstacle":
-                monitor["when"]["any"][2]["above"] = "2s"
+                monitor["when"]["any"][-1]["above"] = "2s"
         longer["configurations"][1]["streams"][0]["period"] = "200ms"
         longer["configurations"][1]["streams"][1]["period"] = "200ms"
         longer["configurations"][2]["streams"][0]["period"] = "200ms"
@@ -96,13 +96,13 @@ class Checked(Operate):
 
     def test_a_healthy_stream_that_reaches_an_age_is_restless(self):
         def change(document):
-            document["monitors"][0]["when"]["any"][2]["above"] = "51ms"
+            document["monitors"][0]["when"]["any"][-1]["above"] = "51ms"
         err = self.refused(change, "in \"driving\" the samples of proximity_ring may be", "holds although nothing is wrong",
                            "\"above\": \"")
         least = int(err.split('"above": "')[1].split("ms")[0])
 
         def mended(document):
-            document["monitors"][0]["when"]["any"][2]["above"] = f"{max(least, 120)}ms"
+            document["monitors"][0]["when"]["any"][-1]["above"] = f"{max(least, 120)}ms"
         document = guard()
         mended(document)
         self.run_tool("operate", self.write(document), "--check")
@@ -143,7 +143,7 @@ class Mistakes(Operate):
         self.refused(member, "/configurations/1/stream: unknown member \"stream\"", "did you mean \"streams\"?")
 
         def several(document):
-            document["monitors"][1]["when"] = "ring>20000"
+            document["monitors"][1]["when"] = "ring>3000"
         self.refused(several, "\"ring\" has 8 fields", "name one, such as")
 
     def test_limits_and_set_points_outside_the_spec(self):
@@ -162,6 +162,12 @@ class Mistakes(Operate):
         def beyond(document):
             document["configurations"][1]["entry"] = [{"topic": "motors", "values": {"x": "0.2m/s"}}]
         self.refused(beyond, "/configurations/1/entry/0: a set point is beyond the limit", "\"limits\" of \"driving\"")
+
+    def test_what_it_repeats_no_verb_of_its_own_may_command(self):
+        def both(document):
+            document["configurations"][2]["commanders"] = ["led", "drive"]
+        self.refused(both, "/configurations/2/commanders: \"drive\" may command \"motors\", of which \"entry\" repeats a set point",
+                     "leave out \"drive\"")
 
     def test_ways_between_configurations(self):
         def unreachable(document):
@@ -351,6 +357,21 @@ class Running(Operating):
                 self.assertIn("103#00", frames)  # stop, at the stream's priority
                 _, err = self.run_tool("listen", "odometry", "--timeout", "300ms", "-n", "1", code=1)
                 self.interrupt(sim)
+
+    def test_a_late_step_is_told_in_as_many_digits_as_say_something(self):
+        self.start_sim()
+        document = json.loads(json.dumps(HALT))
+        document["initial"] = "halted"  # where a step is due each 100 ms
+        document["transitions"] = [HALT["transitions"][0], {"from": "halted", "to": "driving", "on_request": True}]
+        operator = self.start("operate", self.write(document))
+        self.assertIn("operator halt is in halted\n", operator.stdout.readline())
+        operator.send_signal(signal.SIGSTOP)
+        time.sleep(0.3)
+        operator.send_signal(signal.SIGCONT)
+        late = next(line for line in operator.stdout if line.startswith("a step took"))
+        _, err = self.interrupt(operator)
+        self.assertRegex(late, r"a step took [0-9.]{1,5}m?s, which is longer than \"reaction\"")
+        self.assertRegex(err, r"steps later than \"reaction\", up to [0-9.]{1,5}m?s\b")
 
     def test_a_silent_board_is_noticed_and_asked_again(self):
         self.start_sim()
@@ -545,7 +566,9 @@ class Asked(Operating):
         self.settle()
         waiting.until(lambda: json.loads(self.run_tool("operator", "status", "--json")[0])["monitors"]["still"] == "yes",
                       "the robot is still")
-        status = json.loads(self.run_tool("operator", "status", "--json")[0])
+        for _ in range(10):  # it answers for as long as it is on hold, beyond the 300 ms of "still", too
+            time.sleep(0.05)
+            status = json.loads(self.run_tool("operator", "status", "--json")[0])
         self.assertEqual((status["configuration"], status["on_hold"]), ("halted", True))
         self.assertIn("goes on", self.run_tool("operator", "resume")[0])
         self.assertEqual(self.event(operator, "switched")["to"], "driving")
@@ -595,6 +618,40 @@ class Asked(Operating):
         self.run_tool("set", "motors", "x=0m/s")
         self.run_tool("stop")
 
+    def test_what_it_repeats_itself_no_program_commands(self):
+        """HALT's halted repeats rest and names no commanders: two that command take turns."""
+        self.start_sim()
+        document = json.loads(json.dumps(HALT))
+        document["transitions"].append({"from": "driving", "to": "halted", "on_request": True})
+        document["transitions"] = [each for each in document["transitions"] if each.get("when") != "still"]
+        operator = self.operate(document=document)
+        self.run_tool("operator", "switch", "halted")
+        self.event(operator, "switched")
+        listener = self.raw_frames("motors")
+        _, err = self.run_tool("drive", "5cm/s", "--for", "500ms", code=1)
+        self.assertRegex(err, r"drive: operator halt \(process [0-9]+\) is in halted, where it commands motors itself")
+        self.assertNotIn("another program", err)
+        for command in (("drive", "5cm/s", "--for", "500ms", "--force"), ("set", "motors", "x=5cm/s")):
+            _, err = self.run_tool(*command, code=1)
+            self.assertIn("operator halt is in halted, where it commands motors itself", err)
+        self.run_tool("led", "1", "red")
+        self.run_tool("stop")
+        frames = [frame for _, frame in self.frames(listener)]
+        self.assertGreater(len(frames), 3)
+        self.assertEqual({x_of(frame) for frame in frames}, {0})
+        _, err = self.interrupt(operator)
+        self.assertIn("2 set points refused", err)
+
+    def test_frames_of_a_script_hold_up_none_of_its_set_points(self):
+        self.start_sim()
+        self.operate(document=HALT)
+        script = os.path.join(self.folder, "a.script")
+        with open(script, "w", encoding="utf-8") as file:
+            file.write("0s drive 1cm/s\n" + "".join(f"{n}00ms led {n} red\n" for n in range(1, 8)) + "800ms drive stop\n")
+        for _ in range(3):
+            _, err = self.run_tool("run", script)
+            self.assertNotIn("were not sent", err)
+
     def test_a_drive_that_the_operator_ends_rests_and_says_so(self):
         self.start_sim()
         operator = self.operate(document=GUARDED)
@@ -604,7 +661,8 @@ class Asked(Operating):
         self.run_tool("operator", "switch", "halted")
         _, err = drive.communicate(timeout=30)
         self.assertEqual(drive.returncode, 1)
-        self.assertRegex(err, "operator halt is in halted, where drive may not command motors|another program has set the motors to zero")
+        self.assertRegex(err, "operator halt is in halted, where drive may not command motors|"
+                              r"operator halt \(process [0-9]+\) is in halted and has set the motors to zero, which ends this drive")
         frames = [frame for _, frame in self.frames(listener)]
         self.assertEqual({x_of(frame) for frame in frames[frames.index(REST):]}, {0})
 
@@ -761,6 +819,14 @@ class Drawn(Operate):
         _, err = self.run_tool("operate", GUARD, "--check", "--svg", os.path.join(self.folder, "a.svg"), code=1)
         self.assertIn("a.svg: dot is missing", err)
         self.assertIn("sudo apt install graphviz", err)
+
+    def test_without_graphviz_what_is_proved_is_shown_all_the_same(self):
+        self.environment["PATH"] = self.folder
+        whole, _ = self.run_tool("operate", GUARD, "--check")
+        out, _ = self.run_tool("operate", GUARD, "--check", "--svg", os.path.join(self.folder, "a.svg"), code=1)
+        self.assertEqual(out, whole)
+        _, err = self.run_tool("operate", GUARD, "--check", "--bitrate", "50k", "--svg", os.path.join(self.folder, "a.svg"), code=1)
+        self.assertIn("/settle: the change", err)
 
 
 if __name__ == "__main__":

@@ -21,7 +21,9 @@ inline constexpr std::uint16_t power = topic_index(amiro::catalogue, "power");
 inline constexpr std::uint16_t motors = topic_index(amiro::catalogue, "motors");
 
 enum : std::uint16_t { idle, driving, stopped };
-enum : std::uint16_t { near, silent, clear, bad_bus };
+enum : std::uint16_t { near, silent, clear, bad_bus, near_right, clear_right };
+/// Of the ring: sensors 4 and 5, which look ahead.
+inline constexpr std::uint16_t front_left = 3, front_right = 4;
 
 inline constexpr std::array<Stream, 1> idle_streams{{{power, 1000ms}}};
 inline constexpr std::array<Stream, 3> driving_streams{{
@@ -41,15 +43,21 @@ inline constexpr std::array<Configuration, 3> configurations{{
     {"stopped", stopped_streams, {}, keep_stopped, {}},
 }};
 
-inline constexpr std::array<Condition, 4> conditions{{
-    {.name = "near", .topic = ring, .limit = 20'000, .hysteresis = 5'000},
+inline constexpr std::array<Condition, 6> conditions{{
+    {.name = "near, left", .topic = ring, .frame = front_left, .limit = 3'000, .hysteresis = 150},
     {.name = "silent", .watched = Watched::age, .topic = ring, .limit = 250'000'000},
-    {.name = "far", .is = Is::below, .topic = ring, .limit = 10'000},
+    {.name = "far, left", .is = Is::below, .topic = ring, .frame = front_left, .limit = 2'800},
     {.name = "bus", .watched = Watched::bus_state, .limit = 1},
+    {.name = "near, right", .topic = ring, .frame = front_right, .limit = 3'000, .hysteresis = 150},
+    {.name = "far, right", .is = Is::below, .topic = ring, .frame = front_right, .limit = 2'800},
 }};
-inline constexpr std::array<Term, 3> near_or_silent{
-    {{.condition = near}, {.condition = silent}, {.op = Op::any}}};
-inline constexpr std::array<Term, 1> when_clear{{{.condition = clear}}};
+inline constexpr std::array<Term, 5> near_or_silent{{{.condition = near},
+                                                     {.condition = near_right},
+                                                     {.op = Op::any},
+                                                     {.condition = silent},
+                                                     {.op = Op::any}}};
+inline constexpr std::array<Term, 3> when_clear{
+    {{.condition = clear}, {.condition = clear_right}, {.op = Op::all}}};
 inline constexpr std::array<Term, 1> when_bad{{{.condition = bad_bus}}};
 inline constexpr std::array<Monitor, 3> monitors{{
     {"obstacle", near_or_silent, {}},
