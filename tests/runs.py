@@ -5,12 +5,15 @@
                                    on stdout a regular expression for `ctest -R`, then the targets that they run, a line each.
                                    Exit 2 where a name means none, with the nearest ones, of the PARTS of scripts/test,
                                    "release style", too.
-    runs.py report JUNIT...        of ctest's --output-junit: how many tests passed, which failed, which were skipped, whole
-                                   or in part, which took longest. Exit 1 where one was skipped that may not be: scripts/setup
-                                   has installed what all of them need.
+    runs.py report [--left-out FILE]... JUNIT...
+                                   of ctest's --output-junit: how many tests passed, which failed, which were skipped, whole
+                                   or in part, which took longest; of the FILEs, which CMake has left out because a program is
+                                   missing. Exit 1 where one was skipped that may not be, or left out: scripts/setup has
+                                   installed what all of them need.
 """
 
 import difflib
+import fnmatch
 import json
 import os
 import pathlib
@@ -74,6 +77,10 @@ def select(build, parts, wanted):
     for pattern in wanted:
         found = matching(tests, pattern)
         if not found:
+            for names, reason in left_out(os.path.join(build, "left_out.txt")):
+                if fnmatch.fnmatchcase(pattern, names):
+                    print(f"test: '{pattern}' is left out: {reason}; scripts/setup installs what the tests need", file=sys.stderr)
+                    return 1
             found = [f"the part {name}" for name in near(pattern, parts)] + near(pattern, tests)
             print(f"test: no part and no test '{pattern}'" + (f"; near it: {', '.join(found)}" if found else "") +
                   f"; parts: {', '.join(parts)}; all tests: ctest --preset release -N", file=sys.stderr)
@@ -95,7 +102,14 @@ def skipped_in(case):
     return sum(map(int, re.findall(r"^(?:OK|FAILED) \(.*?skipped=(\d+)", case.findtext("system-out") or "", re.MULTILINE)))
 
 
-def report(files):
+def left_out(path):
+    """What tests/CMakeLists.txt has not registered: [(names, with * for any characters, the reason)]."""
+    if not os.path.exists(path):
+        return []
+    return [tuple(line.split("\t", 1)) for line in pathlib.Path(path).read_text(encoding="utf-8").splitlines()]
+
+
+def report(files, left_out_files=()):
     cases = [case for path in files if os.path.exists(path)
              for case in xml.etree.ElementTree.parse(path).getroot().iter("testcase")]
     by = {}
@@ -111,18 +125,27 @@ def report(files):
             print(f"  {title}: {case.get('name')}")
     for case in within:
         print(f"  skipped: {skipped_in(case)} cases of {case.get('name')}")
+    missing = sorted({entry for path in left_out_files for entry in left_out(path)})
+    for names, reason in missing:
+        print(f"  left out: {names}: {reason}")
     print("slowest: " + ", ".join(f"{case.get('name')} {float(case.get('time')):.0f} s" for case in slowest))
     unwanted = [case.get("name") for case in skipped + within if case.get("name") not in MAY_SKIP]
     if unwanted:
         print(f"FAILED: skipped, though all that they need is installed: {', '.join(unwanted)}; their output says why")
-    return 1 if unwanted else 0
+    if missing:
+        print("FAILED: tests are left out because a program is missing; scripts/setup installs it, then configure again")
+    return 1 if unwanted or missing else 0
 
 
 def main(arguments):
     if len(arguments) >= 4 and arguments[0] == "select":
         return select(arguments[1], arguments[2].split(), arguments[3:])
     if arguments and arguments[0] == "report":
-        return report(arguments[1:])
+        files, without = arguments[1:], []
+        while len(files) > 2 and files[0] == "--left-out":
+            without.append(files[1])
+            files = files[2:]
+        return report(files, without)
     print(__doc__, file=sys.stderr)
     return 2
 

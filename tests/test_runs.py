@@ -1,6 +1,8 @@
 """What scripts/test says of a run: a test that was skipped is seen, and fails it."""
 
 import os
+import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -9,6 +11,8 @@ import unittest
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import runs  # noqa: E402
 
+# Programs without which the same tests are registered.
+NOT_NEEDED = {"OCM_CCACHE", "OCM_SYSTEM_PYTHON"}
 RUNS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "runs.py")
 
 
@@ -47,6 +51,39 @@ class Report(unittest.TestCase):
         code, text = self.report(("logs_durability", "run", "OK (skipped=1)"))
         self.assertEqual(code, 0)
         self.assertIn("  skipped: 1 cases of logs_durability", text)
+
+
+    def test_what_is_left_out_fails_the_run(self):
+        with tempfile.TemporaryDirectory() as folder:
+            left_out, junit = os.path.join(folder, "left_out.txt"), os.path.join(folder, "junit.xml")
+            with open(junit, "w", encoding="utf-8") as file:
+                file.write('<testsuite><testcase name="unit_can" status="run" time="1"/></testsuite>')
+            for text, code in (("qemu_*\tno qemu-system-arm\nreadme\tno jq\n", 1), ("", 0)):
+                with open(left_out, "w", encoding="utf-8") as file:
+                    file.write(text)
+                done = subprocess.run([sys.executable, "-B", RUNS, "report", "--left-out", left_out, "--left-out", left_out, junit],
+                                      capture_output=True, text=True, check=False)
+                self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+                self.assertEqual(done.stdout.count("  left out: qemu_*: no qemu-system-arm\n  left out: readme: no jq\n"), code)
+                self.assertEqual("tests are left out because a program is missing" in done.stdout, bool(code))
+
+
+class Registered(unittest.TestCase):
+    """A suite that needs a program which may be missing says so: tests/CMakeLists.txt collects what is left out."""
+
+    def test_each_program_that_is_not_required(self):
+        root = pathlib.Path(__file__).resolve().parent
+        seen = 0
+        for file in sorted(root.rglob("CMakeLists.txt")):
+            text = file.read_text(encoding="utf-8")
+            for variable, options in re.findall(r"\bfind_(?:program|path|library)\((\w+)([^)]*)\)", text):
+                if "REQUIRED" in options or variable in NOT_NEEDED:
+                    continue
+                seen += 1
+                with self.subTest(file=str(file.relative_to(root)), variable=variable):
+                    guard = re.search(rf"\bif\([^)]*\b{variable}\b[^)]*\)(.*?)\nendif\(\)", text, re.DOTALL)
+                    self.assertTrue(guard and "ocm_leave_out(" in guard[1])
+        self.assertGreaterEqual(seen, 15)
 
 
 class Programs(unittest.TestCase):

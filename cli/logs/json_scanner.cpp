@@ -3,24 +3,13 @@
 #include <cstdint>
 #include <optional>
 
+#include "ocm/base/utf8.hpp"
+
 namespace ocm::cli::logs {
 namespace {
 
 void append_utf8(std::string& out, std::uint32_t code) {
-  const auto byte = [&out](std::uint32_t value) { out += static_cast<char>(value); };
-  if (code < 0x80) return byte(code);
-  if (code < 0x800) {
-    byte(0xC0 | code >> 6);
-  } else {
-    if (code < 0x10000) {
-      byte(0xE0 | code >> 12);
-    } else {
-      byte(0xF0 | code >> 18);
-      byte(0x80 | (code >> 12 & 0x3F));
-    }
-    byte(0x80 | (code >> 6 & 0x3F));
-  }
-  byte(0x80 | (code & 0x3F));
+  out += base::utf8_of(code).view();
 }
 
 /// Four hexadecimal digits of a \u; nothing when there are none.

@@ -70,6 +70,18 @@ class HelpText : public CLI::Formatter {
     return text;
   }
 
+  /// Options of add_choice: as the other groups, below a heading that says that they exclude each other.
+  std::string make_expanded(const CLI::App* choice) const override {
+    if (!choice->get_name().empty() || choice->get_group().empty())
+      return CLI::Formatter::make_expanded(choice);
+    std::string text =
+        fmt::format("\n{}, at most one ({}):\n", choice->get_group(), choice->get_description());
+    for (const CLI::Option* option : choice->get_options())
+      if (!option->get_group().empty() && option != choice->get_help_ptr())
+        text += make_option(option, false);
+    return text;
+  }
+
  private:
   std::set<std::pair<const CLI::Option*, std::string>> former_;
 };
@@ -638,6 +650,10 @@ Program::Outcome Program::run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     const bool of_a_value = error.get_name() == "ValidationError" || error.get_name() == "ArgumentMismatch" ||
                             error.get_name() == "ConversionError";
+    if (const auto misuse = of_a_value ? std::nullopt : misuse_before_verb(root(), {argv + 1, argv + argc})) {
+      complain({misuse->what, misuse->remedy});
+      return Outcome::refused;
+    }
     Misuse misuse = of_a_value ? misuse_of(error) : misuse_of_words(root(), beginning_);
     constexpr std::string_view missing = "missing value for ";
     if (misuse.what.starts_with(missing)) misuse = missing_value(root(), misuse.what.substr(missing.size()));

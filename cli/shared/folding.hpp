@@ -10,6 +10,8 @@
 #include <string>
 #include <string_view>
 
+#include "ocm/base/utf8.hpp"
+
 namespace ocm::cli {
 
 /// What a text takes on a terminal. Sequences of colours (ESC [ ... m) take nothing.
@@ -25,8 +27,7 @@ struct Extent {
       i = std::min(text.find('m', i), text.size());
       continue;
     }
-    if ((static_cast<unsigned char>(text[i]) & 0xC0U) == 0x80U)
-      continue;  // goes on with a character of UTF-8
+    if (base::continues_character(text[i])) continue;
     ++found.all;
     if (text[i] != ' ') found.words = found.all;
   }

@@ -93,6 +93,17 @@ Misuse misuse_of_words(Verb program, const std::string& beginning) {
   return {"these words do not go together", "usage: " + usage(verb)};
 }
 
+std::optional<Misuse> misuse_before_verb(Verb program, const std::vector<std::string>& words) {
+  const Verb verb = program.called();
+  const auto left = program.left_over();
+  if (!verb || left.empty() || left.front().size() < 2 || left.front().front() != '-') return {};
+  for (const std::string& word : words) {
+    if (word == left.front()) return unknown_word(program, program, word);
+    if (verb.is_named(word)) return {};
+  }
+  return {};
+}
+
 Misuse missing_value(Verb program, const std::string& option_name) {
   for (Verb verb = innermost(program); verb; verb = verb.parent())
     for (const Option& option : verb.options())

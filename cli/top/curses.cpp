@@ -13,6 +13,8 @@
 
 #include <fmt/format.h>
 
+#include "ocm/base/utf8.hpp"
+
 #ifdef OCM_HAS_CURSES
 #define NCURSES_NOMACROS 1
 #define NCURSES_WIDECHAR 1
@@ -105,9 +107,8 @@ bool speaks_unicode() {
 std::string ascii(std::string_view text) {
   std::string out;
   for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if ((byte & 0xC0U) == 0x80U) continue;
-    out += byte < 0x80 ? c : '?';
+    if (base::continues_character(c)) continue;
+    out += base::utf8_length({&c, 1}) == 1 ? c : '?';
   }
   return out;
 }
@@ -150,12 +151,7 @@ std::optional<Key> named_key(int code) {
 }
 
 std::string utf8(wint_t character) {
-  const auto code = static_cast<std::uint32_t>(character);
-  const auto tail = [](std::uint32_t bits) { return static_cast<char>(0x80U | (bits & 0x3FU)); };
-  if (code < 0x80) return {static_cast<char>(code)};
-  if (code < 0x800) return {static_cast<char>(0xC0U | code >> 6), tail(code)};
-  if (code < 0x10000) return {static_cast<char>(0xE0U | code >> 12), tail(code >> 6), tail(code)};
-  return {static_cast<char>(0xF0U | code >> 18), tail(code >> 12), tail(code >> 6), tail(code)};
+  return std::string{base::utf8_of(static_cast<char32_t>(character)).view()};
 }
 
 }  // namespace

@@ -77,7 +77,12 @@ void Model::take(const log::Entry& entry) {
   newest_ = newest_ && !goes_back ? std::max(*newest_, entry.time) : entry.time;
   const client::Reception reception =
       classic ? statistics_.take({entry.time, *classic}) : statistics_.take_fd(entry.frame(), entry.time);
-  if (reception.meaning == Meaning::error) return;
+  if (reception.meaning == Meaning::error) {
+    if (const auto state = classic ? can::controller_state(*classic) : std::nullopt) controller_ = state;
+    if (const auto counters = classic ? can::error_counters(*classic) : std::nullopt)
+      error_counters_ = counters;
+    return;
+  }
   const unsigned bits =
       classic ? measure::bits_on_bus(*classic) : measure::bits_on_bus(entry.frame(), rates_).value_or(0);
   load_.add(entry.time, bits);
@@ -128,7 +133,7 @@ std::vector<Row> Model::rows(base::Time now, bool all) const {
     row.topic = topic;
     row.name = std::move(name);
     row.count = subject.count;
-    row.recent = subject.times.figures();
+    row.recent = subject.times.figures(now);
     if (bit_rate_ != 0) row.share = subject.load.share(now, begin_, bit_rate_);
     row.newest = sample_of(topic, subject);
     if (subject.count > 0) {
@@ -177,6 +182,8 @@ Summary Model::summary(base::Time now) const {
   out.unknown = figures.counters.unknown + figures.counters.remote + figures.counters.fd;
   out.not_in_load = figures.not_in_load;
   out.not_shown = not_shown_;
+  out.controller = controller_;
+  out.error_counters = error_counters_;
   return out;
 }
 

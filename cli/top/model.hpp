@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "ocm/base/time.hpp"
+#include "ocm/can/error_frame.hpp"
 #include "ocm/client/sample.hpp"
 #include "ocm/log/entry.hpp"
 #include "ocm/measure/recent.hpp"
@@ -70,6 +71,8 @@ struct Summary {
   std::uint64_t unknown = 0;      ///< frames
   std::uint64_t not_in_load = 0;  ///< CAN FD frames whose data go at a bit rate that is not known
   std::uint64_t not_shown = 0;    ///< frames of unknown identifiers that have no row
+  std::optional<can::ControllerState> controller;    ///< as the newest report says; none came: nothing
+  std::optional<can::ErrorCounters> error_counters;  ///< likewise
 };
 
 class Model {
@@ -132,6 +135,8 @@ class Model {
   std::map<FieldKey, std::deque<double>> histories_;
   std::optional<base::Time> newest_;
   base::Time begin_{};  ///< of the first frame, or of the first since the clock was set back
+  std::optional<can::ControllerState> controller_;
+  std::optional<can::ErrorCounters> error_counters_;
   std::uint64_t not_shown_ = 0;
   std::uint64_t lost_ = 0;
 };

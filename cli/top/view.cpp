@@ -12,11 +12,14 @@
 
 #include "cli/output/field_text.hpp"
 #include "cli/output/named_value.hpp"
+#include "cli/shared/folding.hpp"
 
 namespace ocm::cli::top {
 namespace {
 
 using namespace std::chrono_literals;
+
+constexpr std::size_t room_for_both = 36;  ///< "due every 100ms " and a value
 
 /// Puts pieces behind each other, as far as there is room.
 class Writer {
@@ -109,9 +112,10 @@ constexpr std::array<std::pair<Sort, std::string_view>, 8> sorts{{{Sort::spec, "
                                                                   {Sort::changed, "last change"},
                                                                   {Sort::count, "count"}}};
 
-void load_bar(Writer& line, double load) {
+/// `right` columns beside it are for what follows.
+void load_bar(Writer& line, double load, std::size_t right) {
   const std::string words = fmt::format(" {:>6} ", percent(load));
-  const std::size_t beside = words.size() + 2 + line.room() / 3;
+  const std::size_t beside = words.size() + 2 + std::max(line.room() / 3, right);
   const std::size_t bar = std::min<std::size_t>(40, line.room() - std::min(line.room(), beside));
   const auto filled =
       static_cast<std::size_t>(std::lround(std::clamp(load, 0.0, 1.0) * static_cast<double>(bar)));
@@ -144,6 +148,19 @@ bool is_before(Sort sort, const Row& a, const Row& b) {
       return a.count > b.count;
   }
   return false;
+}
+
+Style style_of(can::ControllerState state) {
+  switch (state) {
+    case can::ControllerState::active:
+      return Style::dim;
+    case can::ControllerState::warning:
+      return Style::warning;
+    case can::ControllerState::passive:
+    case can::ControllerState::bus_off:
+      break;
+  }
+  return Style::bad;
 }
 
 Style style_of(const Row& row) {
@@ -294,8 +311,9 @@ void View::heads(Picture& picture, const Scene& scene, const Rows& rows, std::si
     const Summary sum = bus.model->summary(scene.now);
     Writer line{width};
     if (scene.buses.size() > 1) line.put(left(bus.name, name) + ' ', Style::bold);
-    if (sum.load_known) load_bar(line, sum.load);
-    line.put_whole(fmt::format("{} frames/s", short_number(sum.rate_hz)));
+    const std::string rate = fmt::format("{} frames/s", short_number(sum.rate_hz));
+    if (sum.load_known) load_bar(line, sum.load, rate.size());
+    if (!line.put_whole(rate)) line.put(std::string(line.room(), ' '));  // what follows is worth less
     if (sum.load_known)
       line.put_whole(fmt::format("  worst {}", percent(sum.worst_load)), Style::dim);
     else
@@ -303,12 +321,18 @@ void View::heads(Picture& picture, const Scene& scene, const Rows& rows, std::si
     picture.push_back(line.take());
 
     Writer counters{width};
+    if (sum.controller)
+      counters.put_whole(fmt::format("{}  ", can::name(*sum.controller)), style_of(*sum.controller));
+    if (sum.error_counters)
+      counters.put_whole(
+          fmt::format("TEC {} REC {}  ", sum.error_counters->transmit, sum.error_counters->receive),
+          sum.controller ? style_of(*sum.controller) : Style::dim);
     counters.put_whole(fmt::format("{} frames", sum.frames), Style::dim);
     const auto count = [&](std::uint64_t number, std::string_view what, Style bad) {
       if (number > 0) counters.put_whole(fmt::format("  {} {}", number, what), bad);
     };
-    count(sum.errors, "error frames", Style::bad);
-    count(sum.overflows, "overflows", Style::bad);
+    count(sum.errors, sum.errors == 1 ? "error frame" : "error frames", Style::bad);
+    count(sum.overflows, sum.overflows == 1 ? "overflow" : "overflows", Style::bad);
     count(sum.lost, "lost", Style::bad);
     count(sum.incomplete, "incomplete", Style::warning);
     count(sum.wrong_length, "of a wrong length", Style::warning);
@@ -365,7 +389,8 @@ Line View::row_line(const Columns& columns, const Scene& scene, const Item& item
     if (selected) line.fill(width, Style::selected);
     return line.take();
   };
-  if (row.health != Health::fine && row.period)
+  // Of a topic with values only where there is room for one beside it; the colour says it, too.
+  if (row.health != Health::fine && row.period && (!has_bytes(row) || line.room() >= room_for_both))
     line.put_whole(fmt::format("due every {} ", short_time(*row.period)), style);
   if (row.topic == nullptr) {
     const auto& bytes = row.newest.bytes;
@@ -392,8 +417,11 @@ Line View::row_line(const Columns& columns, const Scene& scene, const Item& item
       widest = std::max(widest, base::columns(value));
       const std::string label = (first ? "" : "  ") + label_of(*row.topic, frame, field) + ' ';
       const std::string unit = field.unit.empty() ? std::string{} : ' ' + std::string{field.unit};
-      // A number is shown whole or not at all.
+      // A number is shown whole or not at all; the first one rather without its name than not.
       if (base::columns(label) + widest + base::columns(unit) > line.room()) {
+        if (first)
+          (void)(line.put_whole(label + value + unit, style) || line.put_whole(value + unit, style) ||
+                 line.put_whole(value, style));
         line.put(unicode_ ? " …" : " >", faint);
         return finished();
       }
@@ -532,6 +560,8 @@ Line View::time_bar(const Playing& playing, bool paused, std::size_t width) cons
   return line.take();
 }
 
+/// Keys and what they do; a text without keys. Lines that a screen is too narrow for are broken between
+/// words; those that it is too low for are not there.
 Picture View::help(TerminalSize size) const {
   static constexpr std::string_view lines[] = {
       "Up Down PgUp PgDn Home End   move; also j k g G",
@@ -552,22 +582,26 @@ Picture View::help(TerminalSize size) const {
       "Any key leaves this page.",
   };
   Picture picture;
+  // On a narrow terminal keys and words are closer together.
+  const std::size_t key_columns = size.columns < 80 ? 0 : 29;
   for (const std::string_view text : lines) {
-    if (picture.size() == size.rows) break;
-    Writer line{size.columns};
-    // On a narrow terminal keys and words are closer together.
-    const std::size_t gap = text.find("   ");
-    if (size.columns < 80 && gap != std::string_view::npos && gap > 0) {
-      line.put(text.substr(0, gap), Style::bold);
-      line.put("  ");
-      line.put(text.substr(std::min(text.find_first_not_of(' ', gap), text.size())));
-    } else if (gap != std::string_view::npos) {
-      line.put(text.substr(0, 29), Style::bold);
-      line.put(text.substr(29));
-    } else {
-      line.put(text);
+    const std::size_t gap = std::min(text.find("   "), text.size());
+    const std::string_view words = text.substr(std::min(text.find_first_not_of(' ', gap), text.size()));
+    std::string keys{text.substr(0, words.empty() ? 0 : gap)};
+    if (!keys.empty()) keys = left(keys, std::max(key_columns, base::columns(keys) + 2));
+    const std::string folded = cli::folded(keys + std::string{words.empty() ? text : words}, size.columns,
+                                           keys.empty()       ? 0
+                                           : key_columns == 0 ? 2
+                                                              : key_columns);
+    for (std::size_t begin = 0; begin <= folded.size() && picture.size() < size.rows;) {
+      const std::size_t end = std::min(folded.find('\n', begin), folded.size());
+      Writer line{size.columns};
+      if (begin == 0) line.put(std::string_view{folded}.substr(0, std::min(keys.size(), end)), Style::bold);
+      const std::size_t rest = begin == 0 ? std::min(keys.size(), end) : begin;
+      line.put(std::string_view{folded}.substr(rest, end - rest));
+      picture.push_back(line.take());
+      begin = end + 1;
     }
-    picture.push_back(line.take());
   }
   picture.resize(size.rows);
   return picture;
@@ -653,8 +687,7 @@ Effect View::type(const Key& key) {
       filter_ += key.text;
       break;
     case Key::Kind::backspace:
-      while (!filter_.empty() && (static_cast<unsigned char>(filter_.back()) & 0xC0U) == 0x80U)
-        filter_.pop_back();
+      while (!filter_.empty() && base::continues_character(filter_.back())) filter_.pop_back();
       if (!filter_.empty()) filter_.pop_back();
       break;
     case Key::Kind::enter:

@@ -14,9 +14,6 @@ namespace ocm::dbc {
 /// 8F, 90, 9D): they become U+FFFD.
 [[nodiscard]] std::string to_utf8(std::string_view bytes);
 
-/// Whether all of it is UTF-8. [RFC 3629]
-[[nodiscard]] bool is_utf8(std::string_view bytes) noexcept;
-
 /// Whether code page 1252 has all characters of a text.
 [[nodiscard]] bool has_cp1252(std::string_view utf8) noexcept;
 

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "ocm/base/utf8.hpp"
+
 #include "generator/dbc/encoding.hpp"
 #include "generator/spec/names.hpp"
 #include "generator/targets/dbc_messages.hpp"
@@ -36,8 +38,7 @@ std::string legible(std::string_view text) {
   std::string out;
   for (std::size_t i = 0; i < text.size();) {
     std::size_t length = 1;
-    while (i + length < text.size() && (static_cast<unsigned char>(text[i + length]) & 0xC0) == 0x80)
-      ++length;
+    while (i + length < text.size() && base::continues_character(text[i + length])) ++length;
     const std::string_view character = text.substr(i, length);
     out += dbc::has_cp1252(character) ? character : std::string_view{"?"};
     i += length;

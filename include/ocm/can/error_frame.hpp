@@ -3,7 +3,9 @@
 /// constexpr, no heap; one pass over the classes.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "ocm/base/text.hpp"
@@ -55,6 +57,47 @@ inline constexpr std::uint8_t transmission = 0x80;
 [[nodiscard]] constexpr bool lost_in_controller(const Frame& frame) noexcept {
   return frame.format == Format::error && (frame.id & error_class::controller) != 0 &&
          (frame.data[1] & controller_error::rx_overflow) != 0;
+}
+
+/// The state of a CAN controller, as its error counters give it. [ISO 11898-1]
+enum class ControllerState : std::uint8_t {
+  active,
+  warning,  ///< a counter from 96 on
+  passive,  ///< a counter from 128 on
+  bus_off,  ///< the transmit counter beyond 255: it neither sends nor receives
+};
+
+[[nodiscard]] constexpr std::string_view name(ControllerState state) noexcept {
+  constexpr std::string_view names[] = {"error active", "error warning", "error passive", "bus-off"};
+  return names[static_cast<std::size_t>(state)];
+}
+
+/// The state that an error frame reports; nothing: it reports none.
+[[nodiscard]] constexpr std::optional<ControllerState> controller_state(const Frame& frame) noexcept {
+  if (frame.format != Format::error) return {};
+  if ((frame.id & error_class::bus_off) != 0) return ControllerState::bus_off;
+  if ((frame.id & error_class::controller) != 0) {
+    namespace bits = controller_error;
+    const unsigned what = frame.data[1];
+    if ((what & (bits::rx_passive | bits::tx_passive)) != 0) return ControllerState::passive;
+    if ((what & (bits::rx_warning | bits::tx_warning)) != 0) return ControllerState::warning;
+    if ((what & bits::active) != 0) return ControllerState::active;
+  }
+  if ((frame.id & error_class::restarted) != 0) return ControllerState::active;
+  return {};
+}
+
+/// TEC and REC.
+struct ErrorCounters {
+  std::uint8_t transmit = 0;
+  std::uint8_t receive = 0;
+  friend constexpr bool operator==(ErrorCounters, ErrorCounters) = default;
+};
+
+/// Those that an error frame reports, as drivers do since Linux 6.0; nothing: it reports none.
+[[nodiscard]] constexpr std::optional<ErrorCounters> error_counters(const Frame& frame) noexcept {
+  if (frame.format != Format::error || (frame.id & error_class::counters) == 0) return {};
+  return ErrorCounters{frame.data[6], frame.data[7]};
 }
 
 using ErrorText = base::Text<704>;

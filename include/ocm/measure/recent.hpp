@@ -15,8 +15,9 @@
 
 namespace ocm::measure {
 
-/// The distances between the newest samples: of the last two seconds, but always the newest one, and sixteen
-/// at most.
+/// The distances between the newest samples: of the last two seconds, sixteen at most. The newest one counts
+/// for longer, until the next sample is twice as late as it was: a stream that stops has no figures soon, and
+/// a slow one has them between its samples.
 class RecentTimes {
  public:
   static constexpr std::size_t most = 16;
@@ -47,15 +48,18 @@ class RecentTimes {
     size_ = 0;
   }
 
-  [[nodiscard]] Figures figures() const noexcept {
+  [[nodiscard]] Figures figures(base::Time now) const noexcept {
     const auto newest = [this](std::size_t i) {
       return static_cast<double>(distances_[(next_ + most - 1 - i) % most]);
     };
     Figures out;
+    const double silence = std::max(0.0, static_cast<double>((now - last_).count()));
+    constexpr auto in_window = static_cast<double>(window.count());
+    if (size_ == 0 || silence > std::max(in_window, 2 * newest(0))) return out;
     double reach = 0;
     while (out.distances < size_) {
       const double further = reach + newest(out.distances);
-      if (out.distances > 0 && further > static_cast<double>(window.count())) break;
+      if (out.distances > 0 && silence + further > in_window) break;
       reach = further;
       ++out.distances;
     }

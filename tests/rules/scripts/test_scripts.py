@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import tempfile
 import unittest
+import unittest.mock
 
 ROOT = pathlib.Path(os.environ["OCM_SOURCE_DIR"])
 BUILDERS = ("cmake", "ctest", "apt-get", "sudo", "npm", "ninja")
@@ -170,6 +171,39 @@ class Summary(Case):
             summary = done.stdout.split("--- summary ---")[1]
             self.assertRegex(summary, rf"sanitize, configure +passed +\d+ s\n(.*\n)*sanitize, build +FAILED +\d+ s\n    {re.escape(error)}\n")
             self.assertRegex(summary, r"\nall +FAILED")
+
+    def test_without_shellcheck_style_fails(self):
+        # A folder with all programs of this machine but that one.
+        programs = self.tree.parent / "all"
+        programs.mkdir()
+        for folder in os.environ["PATH"].split(":"):
+            for file in pathlib.Path(folder).iterdir() if pathlib.Path(folder).is_dir() else ():
+                if file.name != "shellcheck" and not (programs / file.name).is_symlink():
+                    (programs / file.name).symlink_to(file)
+        shutil.copy(ROOT / ".clang-format", self.tree)
+        subprocess.run(["git", "init", "-q", self.tree], check=True)
+        for path, code in ((str(programs), 1), (os.environ["PATH"], 0)):
+            with unittest.mock.patch.dict(os.environ, PATH=path):
+                done = self.run_script("test", "--only", "style")
+            self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+            self.assertEqual("style: shellcheck is missing, so no script was checked" in done.stdout, bool(code))
+
+    def test_what_cmake_leaves_out_fails_a_run_of_all(self):
+        self.stand_in("cmake", f"mkdir -p {self.tree}/build; printf 'qemu_*\\tno qemu-system-arm\\n' >{self.tree}/build/left_out.txt")
+        self.stand_in("ctest", "exit 0")
+        done = self.run_script("test", "--only", "release")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("  left out: qemu_*: no qemu-system-arm\n", done.stdout)
+
+    def test_a_test_that_is_left_out_is_said_to_be(self):
+        (self.tree / "build").mkdir()
+        (self.tree / "build" / "left_out.txt").write_text("qemu_*\tno qemu-system-arm\n", encoding="utf-8")
+        self.stand_in("cmake", "")
+        self.stand_in("ctest", """echo '{"tests": [{"name": "unit_can"}]}'""")
+        done = self.run_script("test", "--only", "qemu_boards")
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertEqual(done.stderr.splitlines()[-1],
+                         "test: 'qemu_boards' is left out: no qemu-system-arm; scripts/setup installs what the tests need")
 
     def test_a_misspelt_part(self):
         self.stand_in("cmake", "")

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <random>
+#include <sstream>
 
 #include <catch2/catch.hpp>
 
@@ -111,6 +112,80 @@ TEST_CASE("top: fits every terminal, and breaks no number") {
   CHECK(robot.line("scale", {40, 24}).find("10.0") != std::string::npos);
   CHECK(robot.line("scale", {200, 24}).find("CHANGED") == std::string::npos);
   CHECK(robot.draw({200, 24})[3].find("CHANGED FAULTS     COUNT VALUES") != std::string::npos);
+}
+
+TEST_CASE("top: the help cuts no word, at any width from 40 columns on") {
+  const auto words_of = [](const std::vector<std::string>& lines) {
+    std::vector<std::string> words;
+    for (const auto& line : lines) {
+      std::istringstream text{line};
+      for (std::string word; text >> word;) words.push_back(word);
+    }
+    return words;
+  };
+  Robot robot;
+  robot.view.press(letter("?"));
+  const auto words = words_of(robot.draw({220, 70}));
+  CHECK(words.size() > 100);
+  for (std::size_t width = 40; width < 220; ++width) {
+    CAPTURE(width);
+    REQUIRE(words_of(robot.draw({width, 70})) == words);
+  }
+  // On the usual screen all of it, and nothing is below its end.
+  CHECK(words_of(robot.draw(usual)) == words);
+}
+
+TEST_CASE("top: a narrow screen has the rate of the frames, and a value a row") {
+  Robot robot;
+  for (int i = 0; i < 1500; ++i) robot.model().take(entry(1000ms + i * 600us, 0x7FF, {0xDE, 0xAD}));
+  for (std::size_t width = 40; width <= 120; ++width) {
+    CAPTURE(width);
+    const auto lines = robot.draw({width, 24});
+    REQUIRE(lines[1].find(" frames/s") != std::string::npos);
+    REQUIRE(robot.line("scale", {width, 24}).find("119") != std::string::npos);
+  }
+  CHECK(robot.line("scale", {40, 24}).find("weight 119 g") != std::string::npos);
+  CHECK(robot.draw({40, 24})[1].find("frames/s") != std::string::npos);
+}
+
+TEST_CASE("top: a value that has no room beside its name is there without it") {
+  Robot robot;
+  weigh(robot.models.of("a-long-name-of-a-bus"), 1900ms, {2'147'483'647, 7});
+  // A name of two buses takes the room.
+  for (std::size_t width = 40; width <= 60; ++width) {
+    bool found = false;
+    for (const auto& line : robot.draw({width, 24}))
+      found = found || (line.starts_with("a-long-n") && line.find("536871011.75") != std::string::npos);
+    CAPTURE(width);
+    CHECK(found);
+  }
+}
+
+TEST_CASE("top: HZ and JITTER end when nothing comes any more") {
+  Robot robot;
+  CHECK(robot.line("scale").starts_with("scale      10.0    0us"));
+  robot.now = morning + 3800ms;
+  CHECK(robot.line("scale").starts_with("scale      10.0    0us"));
+  robot.now = morning + 14s;
+  CHECK(robot.line("scale").starts_with("scale         -      -  12.1s"));
+}
+
+TEST_CASE("top: the state and the counters of the CAN controller, where it reports them") {
+  namespace cls = ocm::can::error_class;
+  namespace what = ocm::can::controller_error;
+  Robot robot;
+  CHECK(robot.draw()[2] == "42 frames  1 unknown");
+  const auto report = [&](std::uint32_t id, std::initializer_list<int> bytes) {
+    robot.model().take(entry(1990ms, id, bytes, ocm::can::Format::error));
+  };
+  report(cls::controller | cls::counters, {0, what::tx_warning, 0, 0, 0, 0, 104, 3});
+  CHECK(robot.draw()[2] == "error warning  TEC 104 REC 3  43 frames  1 error frame  1 unknown");
+  report(cls::protocol, {0, 0, 4, 0, 0, 0, 0, 0});  // says nothing of either
+  CHECK(robot.draw()[2].starts_with("error warning  TEC 104 REC 3  "));
+  report(cls::bus_off, {0, 0, 0, 0, 0, 0, 0, 0});
+  CHECK(robot.draw()[2].starts_with("bus-off  TEC 104 REC 3  "));
+  report(cls::restarted | cls::counters, {0, 0, 0, 0, 0, 0, 0, 0});
+  CHECK(robot.draw({40, 24})[2].starts_with("error active  TEC 0 REC 0  46 frames"));
 }
 
 TEST_CASE("top: what is missing comes first") {

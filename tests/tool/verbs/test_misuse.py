@@ -1,5 +1,7 @@
 """Every verb with nothing, a misspelt option, a word too many and a wrong value: the whole messages."""
 
+import re
+
 from harness import Case, main
 
 # What is typed, what is said is wrong, and the remedy. A new verb gets rows of its own.
@@ -632,6 +634,10 @@ calibrate
 calibrate: missing ROBOT
 usage: amiroctl calibrate ROBOT [OPTION ...]
 
+calibrate a b
+calibrate: unexpected argument 'b'
+usage: amiroctl calibrate ROBOT [OPTION ...]
+
 calibrate a --bawd 1
 calibrate: unknown option '--bawd'
 did you mean '--baud'?
@@ -757,6 +763,10 @@ BEGINNING = """amiroctl: missing VERB
 """
 
 
+# Of what is said about a row: neither an unknown, missing or surplus word, nor options that exclude or need each other.
+WRONG_VALUE = r"(?!unknown option|unexpected argument|missing |.* exclude each other|.* needs --)"
+
+
 def rows():
     for block in MISUSE.strip().split("\n\n"):
         typed, what, remedy = block.split("\n")
@@ -783,7 +793,11 @@ class Misuse(Case):
             said = f"amiroctl: unknown verb '{typed}'\n          {remedy}\n"
             self.refused([typed], said)
             self.refused([typed, "--help"], said)
-        self.refused(["--bsu", "sim"], "amiroctl: sim: unknown option '--bsu'\n          did you mean '--bus'?\n")
+        # An option before the verb is one of the program, whatever its value is.
+        for typed in (["--bsu", "sim"], ["--bsu", "can0", "listen"], ["--bsu=sim", "listen", "--json"]):
+            self.refused(typed, "amiroctl: unknown option '--bsu'\n          did you mean '--bus'?\n")
+        self.refused(["--jsno", "listen"], "amiroctl: unknown option '--jsno'\n          `amiroctl --help` lists the options\n")
+        self.refused(["--bus", "sim", "listen", "--bsu"], "amiroctl: listen: unknown option '--bsu'\n          did you mean '--bus'?\n")
         self.refused(["--bus"], "amiroctl: missing value for --bus\n          usage: --bus NAME\n")
 
     def test_verbs_that_need_no_word(self):
@@ -802,6 +816,11 @@ class Misuse(Case):
                 mine = [(typed, what) for typed, what, _ in table if typed[0] == verb]
                 self.assertTrue(any("unknown option" in what for _, what in mine), "no misspelt option")
                 self.assertTrue(verb in ALONE or any(typed == [verb] for typed, _ in mine), "not alone")
+                # A verb that takes any number of words refuses none for their number.
+                usage = self.run_tool(verb, "--help")[0].split("Usage: ")[1].split("\n")[0]
+                if " ..." not in usage.replace("[OPTION ...]", ""):
+                    self.assertTrue(any("unexpected argument" in what for _, what in mine), "no word too many")
+                self.assertTrue(any(re.match(WRONG_VALUE, what.removeprefix(verb).lstrip(": ")) for _, what in mine), "no wrong value")
                 self.assertGreaterEqual(len(mine), 3)
                 for _, what in mine:
                     self.assertTrue(what.startswith(verb), what)

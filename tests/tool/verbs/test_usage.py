@@ -38,12 +38,17 @@ class Usage(Case):
         out, _ = self.run_tool("--help")
         for heading in ("Ask sensors", "Command actuators", "Watch the bus", "Exit codes"):
             self.assertIn(heading, out)
-        for verb in "list info publish once stop drive led set send listen run sim central line".split():
+        for verb in "list info publish once stop drive led set send listen decode run sim central line".split():
             out, _ = self.run_tool(verb, "--help")
             usage, examples = out.split("Examples:")
             self.assertIn(f"amiroctl {verb} ", usage)
             self.assertRegex(examples, rf"\bamiroctl (--?\S+ )*{verb}\b")
+            self.assertEqual(out.count("--help"), 1)
+            self.assertNotRegex(out, r"(?i)option group|are allowed")  # words of the parser, not ours
         self.assertIn("amiroctl ", self.run_tool("--version")[0])
+        for verb in ("listen", "decode"):
+            self.assertIn("\n\nFormat, at most one (default: pretty on a terminal, JSON lines otherwise):\n  --pretty ",
+                          self.run_tool(verb, "--help")[0])
 
     def test_no_bus_says_how_to_get_one(self):
         self.refused(["once", "gyro"], "amiroctl sim", "ip link set can0 up", code=1)

@@ -86,6 +86,29 @@ static_assert(!can::lost_in_controller(*can::parse_frame("20000004#0002000000000
 static_assert(!can::lost_in_controller(*can::parse_frame("20000040#0001000000000000")));
 static_assert(!can::lost_in_controller(*can::parse_frame("00000004#0001000000000000")));
 
+constexpr auto state(std::string_view text) {
+  return can::controller_state(*can::parse_frame(text));
+}
+using State = can::ControllerState;
+static_assert(state("20000040#0004000000000000") == State::bus_off);
+static_assert(state("20000004#0030000000000000") == State::passive);
+static_assert(state("20000004#0018000000000000") == State::passive,
+              "one side is passive, the other is not yet");
+static_assert(state("20000004#0008000000000000") == State::warning);
+static_assert(state("20000004#0040000000000000") == State::active);
+static_assert(state("20000100#0000000000000000") == State::active, "restarted");
+static_assert(state("20000104#0008000000000000") == State::warning);
+static_assert(!state("20000004#0001000000000000"), "an overflow says nothing of it");
+static_assert(!state("20000088#0000040000000000") && !state("20000200#0000000000000102"));
+static_assert(!state("00000040#00") && !state("205#01"));
+static_assert(can::name(State::passive) == "error passive");
+
+static_assert(can::error_counters(*can::parse_frame("20000200#0000000000000102")) ==
+              can::ErrorCounters{1, 2});
+static_assert(!can::error_counters(*can::parse_frame("20000004#0008000000006000")),
+              "a driver that has none leaves zeros");
+static_assert(!can::error_counters(*can::parse_frame("00000200#0000000000000102")));
+
 TEST_CASE("the longest description of an error frame fits") {
   std::size_t longest = 0;
   bool overflowed = false;

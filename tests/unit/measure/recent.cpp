@@ -21,6 +21,12 @@ constexpr Time at(Duration since) {
   return Time{since};
 }
 
+/// As of the newest sample.
+auto figures_of(std::initializer_list<int> milliseconds) {
+  RecentTimes times;
+  for (const int ms : milliseconds) times.add(at(std::chrono::milliseconds{ms}));
+  return times.figures(at(std::chrono::milliseconds{*(milliseconds.end() - 1)}));
+}
 RecentTimes times_of(std::initializer_list<int> milliseconds) {
   RecentTimes times;
   for (const int ms : milliseconds) times.add(at(std::chrono::milliseconds{ms}));
@@ -28,43 +34,61 @@ RecentTimes times_of(std::initializer_list<int> milliseconds) {
 }
 
 TEST_CASE("recent times: by hand") {
-  CHECK(RecentTimes{}.figures().distances == 0);
-  CHECK(times_of({5}).figures().distances == 0);
-  CHECK(times_of({5}).figures().rate_hz == 0.0);
+  CHECK(RecentTimes{}.figures(at(0s)).distances == 0);
+  CHECK(figures_of({5}).distances == 0);
+  CHECK(figures_of({5}).rate_hz == 0.0);
   // 100, 110, 90, 100 ms: squares 0 + 100 + 100 + 0, deviation sqrt(50) = 7.0711 ms.
-  const auto figures = times_of({0, 100, 210, 300, 400}).figures();
+  const auto figures = figures_of({0, 100, 210, 300, 400});
   CHECK(figures.distances == 4);
   CHECK(figures.rate_hz == Approx(10.0));
   CHECK(figures.jitter_ns == Approx(7.0710678e6));
 }
 
 TEST_CASE("recent times: of two seconds, but always the newest distance, and of sixteen at most") {
-  CHECK(times_of({0, 1000, 2000, 3000, 4000}).figures().distances == 2);
-  CHECK(times_of({0, 1000, 1990, 2990}).figures().distances == 2);
-  const auto slow = times_of({0, 10'000, 40'000}).figures();
+  CHECK(figures_of({0, 1000, 2000, 3000, 4000}).distances == 2);
+  CHECK(figures_of({0, 1000, 1990, 2990}).distances == 2);
+  const auto slow = figures_of({0, 10'000, 40'000});
   CHECK(slow.distances == 1);
   CHECK(slow.rate_hz == Approx(1.0 / 30));
   RecentTimes many;
   for (int ms = 0; ms < 100; ++ms) many.add(at(std::chrono::milliseconds{ms}));
-  CHECK(many.figures().distances == 16);
-  CHECK(many.figures().rate_hz == Approx(1000));
-  CHECK(many.figures().jitter_ns == Approx(0).margin(1e-3));
+  CHECK(many.figures(at(99ms)).distances == 16);
+  CHECK(many.figures(at(99ms)).rate_hz == Approx(1000));
+  CHECK(many.figures(at(99ms)).jitter_ns == Approx(0).margin(1e-3));
 }
 
 TEST_CASE(
     "recent times: what came before a pause that was meant, or a clock that was set back, is forgotten") {
   RecentTimes times = times_of({0, 10, 20});
   times.restart();
-  CHECK(times.figures().distances == 0);
+  CHECK(times.figures(at(20ms)).distances == 0);
   times.add(at(5s));
-  CHECK(times.figures().distances == 0);
+  CHECK(times.figures(at(5s)).distances == 0);
   times.add(at(5100ms));
-  CHECK(times.figures().rate_hz == Approx(10));
+  CHECK(times.figures(at(5100ms)).rate_hz == Approx(10));
   times.add(at(1s));
-  CHECK(times.figures().distances == 0);
+  CHECK(times.figures(at(1s)).distances == 0);
   times.add(at(1s));  // two at the same time: no rate can be said
-  CHECK(times.figures().distances == 1);
-  CHECK(times.figures().rate_hz == 0.0);
+  CHECK(times.figures(at(1s)).distances == 1);
+  CHECK(times.figures(at(1s)).rate_hz == 0.0);
+}
+
+TEST_CASE(
+    "recent times: a stream that stopped has no figures after two seconds, a slow one between its samples") {
+  const RecentTimes fast = times_of({0, 100, 200, 300, 400});
+  CHECK(fast.figures(at(400ms)).distances == 4);
+  CHECK(fast.figures(at(2'000ms)).distances == 4);
+  CHECK(fast.figures(at(2'001ms)).distances == 3);
+  CHECK(fast.figures(at(2'400ms)).rate_hz == Approx(10));
+  CHECK(fast.figures(at(2'401ms)).distances == 0);
+  CHECK(fast.figures(at(2'401ms)).rate_hz == 0.0);
+  CHECK(fast.figures(at(12s)).jitter_ns == 0.0);
+  // A clock that was set back: as of the newest sample.
+  CHECK(fast.figures(at(-5s)).distances == 4);
+  const RecentTimes slow = times_of({0, 10'000});
+  CHECK(slow.figures(at(29s)).rate_hz == Approx(0.1));
+  CHECK(slow.figures(at(30s)).distances == 1);
+  CHECK(slow.figures(at(30'001ms)).distances == 0);
 }
 
 TEST_CASE("recent load: by hand") {

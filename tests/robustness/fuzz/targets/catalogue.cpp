@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "ocm/base/utf8.hpp"
 #include "ocm/client/sample.hpp"
 
 #include "cli/output/field_text.hpp"
@@ -213,7 +214,7 @@ void check_field(const FrameLayout& layout, const Field& field) {
   fuzz::expect(position.width >= 1 && position.width <= 64 && position.start < 8 * 1785, "a field has bits");
   fuzz::expect(fits(position, position.bytes()) && !fits(position, position.bytes() - 1U),
                "bytes() holds it, and no less");
-  fuzz::expect(dbc::is_utf8(field.name) && dbc::is_utf8(field.unit), "text is UTF-8");
+  fuzz::expect(ocm::base::is_utf8(field.name) && ocm::base::is_utf8(field.unit), "text is UTF-8");
   fuzz::expect(!field.is_float() || position.width == (field.number == protocol::Number::float32 ? 32 : 64),
                "a float has the width of one");
   std::size_t above = 0;
@@ -221,7 +222,7 @@ void check_field(const FrameLayout& layout, const Field& field) {
     fuzz::expect(
         at->selector < layout.fields.size() && ++above <= layout.fields.size() && !at->selected.empty(),
         "selectors are fields, have values and go in no circle");
-  for (const auto& value : field.values) fuzz::expect(dbc::is_utf8(value.name), "text is UTF-8");
+  for (const auto& value : field.values) fuzz::expect(ocm::base::is_utf8(value.name), "text is UTF-8");
   fuzz::expect(
       layout.may_lack(field) == (field.selector != protocol::no_selector || !fits(position, layout.length)),
       "a field that may lack is selected, or beyond the length");
@@ -532,8 +533,9 @@ class Bus {
     log::Bytes line;
     fuzz::expect(json_.write(line, "can0", entry), "every frame is shown");
     const std::string_view text = line.view();
-    fuzz::expect(text.ends_with('\n') && dbc::is_utf8(text) && Json{text.substr(0, text.size() - 1)}.whole(),
-                 "a line is JSON");
+    fuzz::expect(
+        text.ends_with('\n') && ocm::base::is_utf8(text) && Json{text.substr(0, text.size() - 1)}.whole(),
+        "a line is JSON");
     if (!readable) return;
     for (const Field& field : topic->frames[*found.frame].fields) {
       if (!is_there(topic->frames[*found.frame], field, data.bytes())) continue;

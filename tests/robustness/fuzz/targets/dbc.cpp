@@ -2,6 +2,8 @@
 // out with a reason, its identifiers differ, and every mistake has its place and its remedy. The readers
 // belong to a program and not to a library: they are compiled here, with fmt in its headers.
 #define FMT_HEADER_ONLY
+#include "ocm/base/utf8.hpp"
+
 #include "cli/analyse/messages.cpp"
 #include "cli/analyse/order.cpp"
 #include "cli/analyse/split.cpp"
@@ -27,7 +29,7 @@ void check_signal(const dbc::Message& message, const dbc::Signal& signal) {
   fuzz::expect(!signal.name.empty() && signal.position.width >= 1 && signal.position.width <= 64 &&
                    signal.position.start < 512,
                "a signal has a name and bits");
-  fuzz::expect(dbc::is_utf8(signal.unit) && dbc::is_utf8(signal.comment), "text is UTF-8");
+  fuzz::expect(ocm::base::is_utf8(signal.unit) && ocm::base::is_utf8(signal.comment), "text is UTF-8");
   fuzz::expect(signal.number == dbc::Signal::Number::integer ||
                    signal.position.width == (signal.number == dbc::Signal::Number::float32 ? 32 : 64),
                "a floating-point number has the width of one");

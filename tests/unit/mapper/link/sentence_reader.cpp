@@ -163,7 +163,7 @@ void check_round_trip(Random& random, Direction direction) {
   CHECK(reader.heard() == 2000);
 }
 
-TEST_CASE("line: what is written is read equal") {
+TEST_CASE("sentence: what is written is read equal") {
   Random random{1};
   check_round_trip<SetPoint>(random, Direction::to_robot);
   check_round_trip<Update>(random, Direction::from_robot);
@@ -264,7 +264,7 @@ TEST_CASE("splices of updates that look whole are rare, and as rare as docs/mapp
 }
 
 // unit_mapper_link "[.measure]" prints the table of docs/mapper-link.md.
-TEST_CASE("line: measured rate of splices", "[.measure]") {
+TEST_CASE("sentence: measured rate of splices", "[.measure]") {
   std::puts("packets lost   updates   whole      spliced    spliced/heard");
   for (const int loss : {1, 2, 5, 10, 20, 30, 50}) {
     const Splices s = measure(loss, 1'000'000, 20'260'000);

@@ -29,7 +29,7 @@ std::string said(Kind kind, unsigned index, std::string_view text = "") {
          std::string{text} + ">";
 }
 
-TEST_CASE("central stream: lines of the central, word for word as line/central.hpp says them") {
+TEST_CASE("central stream: lines of the central, word for word as mapper/link/central.hpp says them") {
   CHECK(parse_central_line("scanning").kind == Kind::scanning);
   CHECK(parse_central_line("found 2").kind == Kind::found);
   CHECK(parse_central_line("found 2").index == 2);
