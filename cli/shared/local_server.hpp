@@ -53,7 +53,7 @@ class LocalServer {
   [[nodiscard]] static transport::Outcome<std::unique_ptr<LocalServer>> open(const std::string& path,
                                                                              const host::LocalService& what);
 
-  /// What is referred to must outlive the server. Before it nobody is answered.
+  /// What is referred to must outlive the server. Before it no program is answered.
   void begin(Desk desk) { desk_ = std::move(desk); }
   [[nodiscard]] int descriptor() const noexcept { return events_.get(); }
   /// Takes what there is, and waits for nothing.
