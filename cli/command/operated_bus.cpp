@@ -135,7 +135,7 @@ namespace {
 
 std::unique_ptr<transport::Bus> with_operator(std::unique_ptr<transport::Bus> bus, Session& session,
                                               std::string_view verb) {
-  auto link = OperatorLink::connect(bus->name(), verb);
+  auto link = connect_operator(bus->name(), verb);
   if (!link) fail({fmt::format("{}: {}", verb, link.error.what), link.error.remedy});
   if (*link == nullptr) return bus;
   remark(fmt::format("{}: {} guards the robot: set points go through it", verb, (*link)->who()));

@@ -1,9 +1,7 @@
 #include "cli/fleet/central_line.hpp"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
-#include <poll.h>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,6 +9,7 @@
 #include "ocm/transport/pty.hpp"
 #include "ocm/transport/virtual_bus.hpp"
 
+#include "cli/fleet/line_time.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/shared/values.hpp"
@@ -19,15 +18,21 @@ namespace ocm::cli::fleet {
 namespace {
 
 using namespace std::chrono_literals;
-using mapper::server::CentralEvent;
 using mapper::server::Peer;
 
+constexpr host::LocalService service{"a central's line", "a program with a central's line",
+                                     host::Cause::other, false};
+/// How long to look for robots that are not listed.
+constexpr base::Duration usual_scan = 3s;
 /// How long a robot may take from its link to its first word: it measures its gyro first.
 constexpr base::Duration first_word = 8s;
 /// And one of which pieces come: a handshake is two packets, and at 60 % loss whole every sixth time.
 constexpr base::Duration first_whole_word = 40s;
 /// How long a request may take at the central, with all its time-outs.
 constexpr base::Duration longest_wish = 60s;
+/// How long the program that has the line may take to answer: it may look for the kind of its dongle, at two
+/// speeds.
+constexpr base::Duration longest_opening = 10s;
 
 /// "AVR (index 0, address C00000000000), ...": those of this name, or all.
 std::string listed(const std::vector<Peer>& peers, std::string_view name = {}) {
@@ -46,13 +51,18 @@ void add_line_options(Verb verb, LineOptions& options) {
                   "the central's serial line; default: that of `sim --robots` or `central --pty`")
       .type_name("PATH");
   add_dongle_options(verb, options.dongle);
-  add_duration(verb, "--scan", options.scan, "how long to look for robots that are not listed");
+  add_duration(verb, "--scan", options.scan, "how long to look for robots that are not listed; default: 3s");
 }
 
-Dongle CentralLine::open_line(std::string_view verb, const LineOptions& options) {
-  catch_interrupts();
-  const bool usual = options.path.empty();
-  if (!usual) return open_dongle(verb, options.path, options.dongle);
+namespace {
+
+/// The path of the line, and how to speak on it.
+struct Place {
+  std::string path;
+  DongleOptions dongle;
+};
+Place place_of(std::string_view verb, const LineOptions& options) {
+  if (!options.path.empty()) return {options.path, options.dongle};
   // The link that a killed simulator has left may lead to a terminal of another user.
   const std::string path = transport::central_line();
   if (!transport::is_served(path))
@@ -62,116 +72,76 @@ Dongle CentralLine::open_line(std::string_view verb, const LineOptions& options)
              transport::VirtualBus::running() ? "; the simulator that runs is an AMiRo, which has none" : ""),
          "start one (amiroctl sim --robots 2, or amiroctl central --pty), or name a dongle: --central "
          "/dev/ttyACM0"});
-  DongleOptions ours = options.dongle;
-  ours.kind = "ours";
-  return open_dongle(verb, path, ours);
+  Place place{path, options.dongle};
+  place.dongle.kind = "ours";
+  return place;
 }
 
-CentralLine::CentralLine(std::string_view verb, const LineOptions& options,
-                         const cognitive::FleetOptions& fleet, Dongle dongle)
-    : verb_(verb),
-      scan_(options.scan),
-      port_(std::move(dongle.port)),
-      dongle_(dongle.dialect),
-      server_(fleet) {
-  dongle_.from_dongle(dongle.heard, now());
-  catch_interrupts();
-  catch_hangups();
-}
-
-CentralLine::~CentralLine() {
-  heard_ = nullptr;  // the listener may be gone already
-  try {
-    server_.expire(now());
-    server_.client().leave();
-    flush(1s);
-  } catch (const Exit&) {  // the line is gone, which is said
+/// Who serves the line answers; else this program does. The socket is there first, so that of two programs
+/// that start together one joins the other.
+std::unique_ptr<LineEnd> open_end(std::string_view verb, const LineOptions& options, Need need,
+                                  const cognitive::FleetOptions& fleet) {
+  const Place place = place_of(verb, options);
+  const std::string socket = local_socket("line", digits_of_path(place.path));
+  const std::string what = fmt::format("the program that has '{}'", place.path);
+  const base::Time end = line_time() + longest_opening;
+  for (transport::Failure why;; sleep_for(50ms)) {
+    if (interrupted() != 0) throw Exit{exit_code_after_interrupt(exit_failure)};
+    if (line_time() >= end) fail({fmt::format("{}: {}", verb, why.what), why.remedy});
+    auto link = LocalLink::connect(socket, what, verb);
+    if (!link) {  // it still opens the line, is about to end, or is stopped
+      why = std::move(link.error);
+      continue;
+    }
+    if (*link && (*link)->greeting().empty()) {
+      why = {fmt::format("{}{} is about to end, and still has the line", what, (*link)->process()),
+             "wait until the programs that have joined it have ended"};
+      continue;
+    }
+    if (*link) {
+      (*link)->set_who((*link)->greeting() + (*link)->process());
+      if (need == Need::own)
+        fail({fmt::format("{}: {} has the central's line", verb, (*link)->who()),
+              fmt::format("{} needs it for itself: end that one first", verb)});
+      return std::make_unique<JoinedLine>(verb, std::move(*link));
+    }
+    auto served = LocalServer::open(socket, service);
+    if (!served && served.error.process != 0) {  // since a moment
+      why = std::move(served.error);
+      continue;
+    }
+    if (!served) remark(fmt::format("{}: no other program can join: {}", verb, served.error.what));
+    return std::make_unique<OwnLine>(verb, open_dongle(verb, place.path, place.dongle), fleet,
+                                     served ? std::move(*served) : nullptr);
   }
 }
 
-void CentralLine::flush(base::Duration limit) {
-  const base::Time end = now() + limit;
-  server_.expire(now());
-  const auto rest = [this] {
-    return !server_.client().idle() || !dongle_.idle() || !unsent_.empty() || port_.unsent() != 0;
-  };
-  while (port_ && now() < end && rest()) exchange();
+}  // namespace
+
+std::unique_ptr<JoinedLine> join_line(std::string_view verb, const LineOptions& options) {
+  const Place place = place_of(verb, options);
+  auto link = LocalLink::connect(local_socket("line", digits_of_path(place.path)),
+                                 fmt::format("the program that has '{}'", place.path), verb);
+  if (!link) fail({fmt::format("{}: {}", verb, link.error.what), link.error.remedy});
+  if (!*link || (*link)->greeting().empty()) return nullptr;
+  (*link)->set_who((*link)->greeting() + (*link)->process());
+  return std::make_unique<JoinedLine>(verb, std::move(*link));
 }
 
-bool CentralLine::halt(const std::vector<unsigned>& robots) {
-  constexpr base::Duration any_leg = 20s;
-  const auto drives = [this](unsigned index) {
-    using mapper::server::Progress;
-    const Progress progress = fleet().sender(index).progress();
-    // Without a link it stops by itself.
-    return fleet().robot(index).linked && progress != Progress::none && progress != Progress::stopped &&
-           !fleet().sender(index).standing();
-  };
-  for (const unsigned index : robots)
-    if (drives(index)) (void)server_.fleet().stop(index, now());
-  const base::Time end = now() + any_leg;
-  const int signals = interruptions();
-  const auto any = [&] { return std::any_of(robots.begin(), robots.end(), drives); };
-  while (any() && now() < end && interruptions() == signals) exchange();
-  for (const unsigned index : robots)
-    if (drives(index))
-      remark(fmt::format(
-          "{}: {} may still drive: nothing shows that it has heard the stop, which was said {} "
-          "times; its leg ends after {} cm",
-          verb_, name(index), fleet().sender(index).times_said(), mapper::server::longest_leg_cm));
-  return !any();
+CentralLine::CentralLine(std::string_view verb, const LineOptions& options, Need need,
+                         const cognitive::FleetOptions& fleet)
+    : verb_(verb), scan_(options.scan) {
+  catch_interrupts();
+  catch_hangups();
+  end_ = open_end(verb, options, need, fleet);
 }
 
 base::Time CentralLine::now() {
-  return base::Time{std::chrono::steady_clock::now().time_since_epoch()};
+  return line_time();
 }
 
-std::string CentralLine::name(unsigned index) const {
-  const Peer* const peer = server_.client().peer(index);
-  return peer != nullptr ? peer->name : fmt::format("robot {}", index);
-}
-
-void CentralLine::write() {
-  dongle_.from_client(server_.take(), now());
-  unsent_ += dongle_.take_for_dongle();
-  if (unsent_.empty()) return;
-  const auto taken = port_.write(unsent_);
-  if (!taken) {
-    auto failure = port_.failure();
-    port_.close();
-    fail({fmt::format("{}: {}", verb_, failure.what), failure.remedy});
-  }
-  unsent_.erase(0, *taken);
-}
-
-void CentralLine::exchange() {
-  server_.expire(now());
-  write();
-  pollfd line{port_.descriptor(), static_cast<short>(unsent_.empty() ? POLLIN : POLLIN | POLLOUT), 0};
-  const auto until = std::clamp<base::Duration>(server_.deadline() - now(), 1ms, 50ms);
-  (void)::poll(&line, 1, static_cast<int>(until / 1ms));
-  std::array<char, 4096> room;
-  for (;;) {
-    const auto size = port_.read(room);
-    if (!size) {
-      auto failure = port_.failure();
-      port_.close();
-      fail({fmt::format("{}: {}", verb_, failure.what), failure.remedy});
-    }
-    if (*size == 0) break;
-    dongle_.from_dongle({room.data(), *size}, now());
-  }
-  dongle_.expire(now());
-  server_.feed(dongle_.take_for_client(), now(), [this](std::size_t robot, mapper::link::Kind kind) {
-    if (heard_) heard_(robot, kind);
-  });
-  take_events();
-  write();
-}
-
-void CentralLine::take_events() {
-  while (auto event = server_.next_event())
-    if (event->kind == CentralEvent::Kind::failed) failed_.push_back(std::move(*event));
+bool CentralLine::halt(const std::vector<unsigned>& robots) {
+  return fleet::halt(*end_, verb_, robots, [this](unsigned index) { return end_->is_charge(index); });
 }
 
 bool CentralLine::run(std::optional<base::Duration> limit, const std::function<bool()>& done) {
@@ -179,7 +149,7 @@ bool CentralLine::run(std::optional<base::Duration> limit, const std::function<b
   while (interrupted() == 0) {
     if (done()) return true;
     if (limit && now() - begin >= *limit) return false;
-    exchange();
+    end_->exchange();
   }
   return false;
 }
@@ -191,21 +161,21 @@ bool CentralLine::wait(base::Duration limit, const std::function<bool()>& done) 
 }
 
 void CentralLine::list(base::Duration scan) {
-  failed_.clear();
-  server_.client().scan(scan);
-  (void)wait(longest_wish, [this] { return server_.client().idle(); });
-  if (!failed_.empty())
-    fail({fmt::format("{}: {}: {}", verb_, path(), failed_.front().words),
+  (void)end_->take_failed();
+  end_->scan(scan);
+  (void)wait(longest_wish, [this] { return end_->idle(); });
+  if (const auto failed = end_->take_failed(); !failed.empty())
+    fail({fmt::format("{}: {}: {}", verb_, end_->path(), failed.front()),
           "is it a central? Unplug the dongle and plug it in again, or restart the simulation"});
 }
 
 const std::vector<Peer>& CentralLine::scan() {
-  list(scan_);
-  return server_.client().peers();
+  list(scan_.value_or(usual_scan));
+  return end_->peers();
 }
 
 std::optional<unsigned> CentralLine::find(const std::string& name) const {
-  const auto& peers = server_.client().peers();
+  const auto& peers = end_->peers();
   const auto count = std::count_if(peers.begin(), peers.end(), [&](const Peer& p) { return p.name == name; });
   if (count > 1)
     fail({fmt::format("{}: {} robots are called '{}'", verb_, count, name),
@@ -219,7 +189,7 @@ std::optional<unsigned> CentralLine::find(const std::string& name) const {
 }
 
 void CentralLine::unknown(const std::string& name) const {
-  const auto& peers = server_.client().peers();
+  const auto& peers = end_->peers();
   fail({fmt::format("{}: the central finds no robot '{}'", verb_, name),
         peers.empty() ? "it finds none at all: is the robot switched on, and near?"
                       : fmt::format("it finds {}", listed(peers))});
@@ -227,12 +197,16 @@ void CentralLine::unknown(const std::string& name) const {
 
 std::vector<unsigned> CentralLine::connect(const std::vector<std::string>& names) {
   const bool all = names.empty() || std::find(names.begin(), names.end(), "all") != names.end();
-  list(0s);
-  if (all || std::any_of(names.begin(), names.end(), [this](const auto& name) { return !find(name); }))
-    list(scan_);
+  // While one program scans, no other speaks to its robots: what the other one has found will do.
+  const bool known = joined() != nullptr && !end_->peers().empty();
+  if (!known) list(0s);
+  const bool look =
+      all ? !known || scan_.has_value()
+          : std::any_of(names.begin(), names.end(), [this](const auto& name) { return !find(name); });
+  if (look) list(scan_.value_or(usual_scan));
   std::vector<unsigned> wanted;
   if (all)
-    for (const Peer& peer : server_.client().peers()) wanted.push_back(peer.index);
+    for (const Peer& peer : end_->peers()) wanted.push_back(peer.index);
   if (!all)
     for (const std::string& name : names) {
       const auto index = find(name);
@@ -242,22 +216,29 @@ std::vector<unsigned> CentralLine::connect(const std::vector<std::string>& names
   if (wanted.empty())
     fail({fmt::format("{}: the central finds no robot", verb_),
           "is one switched on, and near? --scan 10s looks for longer"});
-  failed_.clear();
-  for (const unsigned index : wanted) server_.client().connect(index);
-  (void)wait(longest_wish, [this] { return server_.client().idle(); });
-  for (const CentralEvent& event : failed_) {
-    if (wanted.size() == 1)
-      fail({fmt::format("{}: {}", verb_, event.words), "is it near enough? `amiroctl robots` lists robots"});
-    remark(fmt::format("{}: {}", verb_, event.words));
+  (void)end_->take_failed();
+  std::vector<std::string> meant;
+  for (const unsigned index : wanted) {
+    meant.push_back(robot(index).address);
+    end_->connect(index);
   }
-  std::erase_if(wanted, [this](unsigned index) { return !fleet().robot(index).linked; });
+  (void)wait(longest_wish, [this] { return end_->idle(); });
+  for (const std::string& words : end_->take_failed()) {
+    if (wanted.size() == 1)
+      fail({fmt::format("{}: {}", verb_, words), "is it near enough? `amiroctl robots` lists robots"});
+    remark(fmt::format("{}: {}", verb_, words));
+  }
+  for (std::size_t i = 0; i < wanted.size(); ++i)
+    if (robot(wanted[i]).address != meant[i])
+      fail({fmt::format("{}: another program has looked for robots, and the list has changed", verb_),
+            "say it again"});
+  std::erase_if(wanted, [this](unsigned index) { return !robot(index).linked; });
   if (wanted.empty()) fail({fmt::format("{}: no robot could be connected", verb_), "are they near enough?"});
   const base::Time begin = now();
   (void)wait(first_whole_word, [&] {
     return std::all_of(wanted.begin(), wanted.end(), [&](unsigned index) {
-      const bool pieces = fleet().ear(index).text().faults().total() != 0;
-      return fleet().robot(index).last != mapper::link::Kind::none ||
-             (!pieces && now() - begin >= first_word);
+      const RobotNow now_is = robot(index);
+      return now_is.last != mapper::link::Kind::none || (now_is.torn == 0 && now() - begin >= first_word);
     });
   });
   return wanted;
@@ -267,19 +248,19 @@ void CentralLine::introduce(const std::vector<unsigned>& robots) {
   constexpr base::Duration again = 500ms;
   constexpr int times = 6;  // a handshake is two packets: at 30 % loss one of six comes whole in 98 of 100
   const auto strange = [this](unsigned index) {
-    const cognitive::Robot& robot = fleet().robot(index);
-    return robot.linked && robot.last != mapper::link::Kind::none && !robot.handshake;
+    const RobotNow now_is = robot(index);
+    return now_is.linked && now_is.last != mapper::link::Kind::none && !now_is.handshake;
   };
   for (int time = 0; time < times && std::any_of(robots.begin(), robots.end(), strange); ++time) {
     for (const unsigned index : robots)
-      if (strange(index)) (void)server_.fleet().ask_who(index, now());
+      if (strange(index)) end_->ask_who(index);
     (void)wait(again, [&] { return std::none_of(robots.begin(), robots.end(), strange); });
   }
 }
 
 unsigned CentralLine::connect_one(const std::string& name) {
   const unsigned index = connect({name}).front();
-  if (fleet().robot(index).last == mapper::link::Kind::none)
+  if (robot(index).last == mapper::link::Kind::none)
     fail({fmt::format("{}: {} has a link, but says nothing", verb_, name),
           "switch it off and on: its program may hang"});
   return index;

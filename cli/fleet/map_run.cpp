@@ -21,7 +21,7 @@ using cognitive::Agreement;
 /// Where robots began decides how their maps fit together.
 void place_robots(CentralLine& line, const std::vector<unsigned>& robots, const Known& known,
                   const std::vector<std::string>& starts) {
-  const auto& peers = line.server().client().peers();
+  const auto& peers = line.end().peers();
   for (const std::string& text : starts)
     if (const std::string name = parse_start(text).name; std::none_of(
             peers.begin(), peers.end(), [&](const mapper::server::Peer& p) { return p.name == name; }))
@@ -31,12 +31,12 @@ void place_robots(CentralLine& line, const std::vector<unsigned>& robots, const 
     const auto start = std::find_if(known.starts.begin(), known.starts.end(),
                                     [&](const Start& s) { return s.name == name; });
     if (start != known.starts.end())
-      line.server().fleet().set_origin(index, start->pose);
+      line.own()->server().fleet().set_origin(index, start->pose);
     else if (robots.size() > 1)
       fail({fmt::format("map: no start pose for {}, and {} robots draw one map", name, robots.size()),
             fmt::format("say where each was switched on: --start {}=0.5,0.5,90, or --world FILE", name)},
            exit_usage);
-    if (!line.fleet().robot(index).handshake)
+    if (!line.robot(index).handshake)
       remark(fmt::format(
           "map: {} was connected before, and does not say its size when asked: the usual one is taken; "
           "switch the robot off and on before `map`",
@@ -110,45 +110,58 @@ cognitive::FleetOptions fleet_options(const MapOptions& options, const Known& kn
 cognitive::MappingOptions mapping_options(const MapOptions& options, const Known& known,
                                           const CentralLine& line, const std::vector<unsigned>& robots) {
   cognitive::MappingOptions mapping;
-  const cognitive::FleetOptions& fleet = line.fleet().options();
+  const cognitive::FleetOptions& fleet = line.own()->server().fleet().options();
   mapping.explorer.range_m = fleet.near_range * fleet.range_m;  // from there on it would be called back
+  mapping.robots.assign(robots.begin(), robots.end());
   mapping.map.resolution_m = static_cast<float>(options.resolution_cm / 100);
   mapping.explorer.home =
-      known.central ? *known.central : cognitive::place(line.fleet().robot(robots.front()).origin);
+      known.central ? *known.central : cognitive::place(line.robot(robots.front()).origin);
   return mapping;
 }
 
 }  // namespace
 
 MapRun::MapRun(const MapOptions& options, const Known& known)
-    : options_(options), known_(known), line_("map", options.line, fleet_options(options, known)) {
+    : options_(options), known_(known), line_("map", options.line, Need::own, fleet_options(options, known)) {
   robots_ = line_.connect(options.robots);
   line_.introduce(robots_);
   place_robots(line_, robots_, known_, options.starts);
   for (const unsigned index : robots_)
-    if (!line_.fleet().robot(index).update)  // paused, by any program
-      line_.server().fleet().unpause(index, CentralLine::now());
-  mapping_.emplace(line_.server().fleet(), mapping_options(options, known, line_, robots_));
-  line_.on_heard([this](std::size_t robot, mapper::link::Kind kind) { mapping_->heard(robot, kind); });
+    if (!line_.robot(index).update)  // paused, by any program
+      line_.end().unpause(index);
+  mapping_.emplace(line_.own()->server().fleet(), mapping_options(options, known, line_, robots_));
+  if (!options_.watch) line_.own()->owner().explores();
+  line_.own()->owner().on_draw([this](std::string_view form) { return draw(form); });
+  line_.own()->on_heard([this](std::size_t robot, mapper::link::Kind kind) { mapping_->heard(robot, kind); });
 }
 
 End MapRun::explore(std::optional<base::Duration> limit) {
-  const base::Time begin = CentralLine::now();
+  begin_ = CentralLine::now();
   try {
     end_ = drive(limit);
-    took_ = CentralLine::now() - begin;
+    took_ = CentralLine::now() - begin_;
     if (!options_.watch) (void)line_.halt(robots_);  // now, for a picture takes its time
-  } catch (const Exit&) {                            // which has said that the line is gone
-    took_ = CentralLine::now() - begin;
+    line_.own()->finish();
+  } catch (const Exit&) {  // which has said that the line is gone
+    took_ = CentralLine::now() - begin_;
     end_ = End::central_gone;
   }
   return end_;
 }
 
+std::string MapRun::draw(std::string_view form) const {
+  if (!any()) return {};
+  if (form == "pgm") return to_pgm(map());
+  if (form == "yaml") return to_yaml(map(), "map.pgm");
+  return to_script(map(), picture(result()),
+                   plot::kind_of_file(fmt::format("map.{}", form)).value_or(plot::Kind::svg));
+}
+
 MapPicture MapRun::picture(const std::optional<Agreement>& result) const {
   MapPicture picture;
+  const base::Duration took = took_ != base::Duration::zero() ? took_ : CentralLine::now() - begin_;
   picture.title = !options_.title.empty() ? options_.title : "map by " + names();
-  picture.subtitle = fmt::format("{}, {:.2f} m\u00b2 free", span(took_),
+  picture.subtitle = fmt::format("{}, {:.2f} m\u00b2 free", span(took),
                                  area_m2(mapping_->map(), cognitive::CellState::free));
   if (result)
     picture.subtitle += fmt::format("; precision {:.3f}, recall {:.3f}, explored {:.3f}", result->precision,
@@ -209,6 +222,7 @@ End MapRun::drive(std::optional<base::Duration> limit) {
     const base::Time now = CentralLine::now();
     if (now < next) return false;
     next = now + 100ms;
+    tell_held();
     if (!options_.watch) mapping_->step(now);
     if (terminal && now - told >= 10s) {
       told = now;
@@ -230,6 +244,24 @@ End MapRun::end_of_exploring() const {
   if (left.is_known()) return End::known;
   if (!left.not_visited()) return End::unseen;
   return left.bad_link >= left.out_of_range ? End::bad_link : End::out_of_range;
+}
+
+void MapRun::tell_held() {
+  for (const unsigned index : robots_) {
+    const bool held = line_.own()->owner().held(index);
+    const auto at = std::find(held_.begin(), held_.end(), index);
+    if (held == (at != held_.end())) continue;
+    mapping_->hold(index, held);
+    if (held) {
+      held_.push_back(index);
+      if (options_.watch) continue;  // it sends none
+      remark(fmt::format("map: {} is held by {}; the others go on. To let it go on: amiroctl unpause {}",
+                         line_.name(index), line_.own()->owner().holder(index), line_.name(index)));
+    } else {
+      held_.erase(at);
+      if (!options_.watch) remark(fmt::format("map: {} goes on", line_.name(index)));
+    }
+  }
 }
 
 void MapRun::tell_lost() {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ocm/cognitive/agreement.hpp"
@@ -68,9 +69,13 @@ class MapRun {
  private:
   [[nodiscard]] End drive(std::optional<base::Duration> limit);
   void tell_lost();
+  /// Robots that other programs have ordered about are left alone.
+  void tell_held();
+  /// For a program that looks on (owner.hpp).
+  [[nodiscard]] std::string draw(std::string_view form) const;
   /// Nothing is left to do: is the place known, and if not, why?
   [[nodiscard]] End end_of_exploring() const;
-  [[nodiscard]] bool lost(unsigned index) const { return line_.fleet().robot(index).lost; }
+  [[nodiscard]] bool lost(unsigned index) const { return line_.robot(index).lost; }
   [[nodiscard]] bool nobody_left() const;
   [[nodiscard]] std::string names() const;
 
@@ -80,6 +85,8 @@ class MapRun {
   std::vector<unsigned> robots_;
   std::optional<cognitive::Mapping> mapping_;
   std::vector<unsigned> lost_;
+  std::vector<unsigned> held_;
+  base::Time begin_{};
   base::Duration took_{};
   End end_ = End::known;
 };

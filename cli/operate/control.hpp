@@ -1,5 +1,5 @@
-/// The socket on which programs of the same user speak to an operator: cli/shared/operator_link.hpp says how.
-/// Readable when there is something to do; what one program sends, or does not read, holds up nothing.
+/// The socket on which programs of the same user speak to an operator (cli/shared/operator_link.hpp), and
+/// what the operator remembers of each.
 #pragma once
 
 #include <cstdint>
@@ -9,31 +9,25 @@
 #include <string_view>
 #include <vector>
 
-#include "ocm/host/descriptor.hpp"
-#include "ocm/host/local_listener.hpp"
 #include "ocm/transport/bus.hpp"
+
+#include "cli/shared/local_server.hpp"
 
 namespace ocm::cli::operate {
 
+using answers::no;
+using answers::wait;
+using answers::yes;
+
 /// A program that is connected.
-struct Caller {
-  std::string verb;  ///< as it calls itself; empty: it has not said so
-  std::int64_t process = 0;
+struct Caller : LocalCaller {
   std::vector<std::uint16_t> commanded;  ///< topics; each was told once
   std::vector<std::uint16_t> limited;
   std::uint64_t handed_over = 0;  ///< frames of all to the bus, up to the last one of this program
 };
 
-/// Answers of the protocol.
-[[nodiscard]] std::string yes(std::string_view text = {});
-[[nodiscard]] std::string wait();
-[[nodiscard]] std::string no(std::string_view what, std::string_view remedy);
-
 class Control {
  public:
-  static constexpr std::size_t most_callers = 64;
-  static constexpr int most_requests = 32;  ///< of all callers together, between two looks at the bus
-
   /// The answer to a request.
   using Take = std::function<std::string(Caller& caller, std::string_view request)>;
 
@@ -41,32 +35,17 @@ class Control {
   [[nodiscard]] static transport::Outcome<std::unique_ptr<Control>> open(std::string_view bus);
 
   /// `name` is the operator's, which it says to who greets.
-  void begin(std::string name, Take take);
-  [[nodiscard]] int descriptor() const noexcept { return events_.get(); }
+  void begin(const std::string& name, Take take);
+  [[nodiscard]] int descriptor() const noexcept { return server_->descriptor(); }
   /// Takes what there is, and waits for nothing.
-  void serve();
+  void serve() { server_->serve(); }
   /// Programs that were disconnected: they did not greet, or did not read their answers.
-  [[nodiscard]] std::uint64_t turned_away() const noexcept { return turned_away_; }
+  [[nodiscard]] std::uint64_t turned_away() const noexcept { return server_->turned_away(); }
 
  private:
-  struct Connection {
-    host::Descriptor socket;
-    Caller caller;
-  };
-  Control(host::LocalListener listener, host::Descriptor events)
-      : listener_(std::move(listener)), events_(std::move(events)) {}
+  explicit Control(std::unique_ptr<LocalServer> server) : server_(std::move(server)) {}
 
-  void accept();
-  /// false: it is to be disconnected.
-  [[nodiscard]] bool take(Connection& connection);
-  [[nodiscard]] std::string answer(Caller& caller, std::string_view request);
-
-  host::LocalListener listener_;
-  host::Descriptor events_;
-  std::vector<std::unique_ptr<Connection>> connections_;
-  std::string name_;
-  Take take_;
-  std::uint64_t turned_away_ = 0;
+  std::unique_ptr<LocalServer> server_;
 };
 
 }  // namespace ocm::cli::operate

@@ -17,7 +17,7 @@ namespace ocm::cli {
 namespace {
 
 using namespace std::chrono_literals;
-using cognitive::Robot;
+using fleet::RobotNow;
 using mapper::server::Calibrator;
 using Result = mapper::link::Calibration;
 
@@ -96,20 +96,20 @@ int report(const std::string& name, const Result& result) {
 }
 
 /// It did not say how it ended. It was stopped, as far as could be.
-[[noreturn]] void give_up(const CalibrateOptions& options, const std::string& name, const Robot& robot,
-                          const Calibrator& calibrator, bool halted) {
+[[noreturn]] void give_up(const CalibrateOptions& options, const std::string& name, const RobotNow& robot,
+                          const RobotNow& last, bool halted) {
   const std::string_view end = halted ? "it was stopped" : "it may still turn";
   if (robot.lost)
     fail({fmt::format("calibrate: {} is lost: {}", name,
                       robot.linked ? fmt::format("it has said nothing for its deadline; {}", end)
                                    : "its link is gone"),
           "a robot without a link stops; it can be connected again once it is near enough"});
-  if (calibrator.phase() == Calibrator::Phase::none)
+  if (last.compass == Calibrator::Phase::none)
     fail({fmt::format("calibrate: the link to {} was gone for a while; a robot without a link stops", name),
           "say it again"});
-  if (calibrator.phase() == Calibrator::Phase::asking)
+  if (last.compass == Calibrator::Phase::asking)
     fail({fmt::format("calibrate: {} does not say how its compass is (asked {} times)", name,
-                      calibrator.times_said()),
+                      last.compass_asked),
           "its program may be too old to calibrate by a command; or bring the central nearer"});
   fail({fmt::format("calibrate: {} has not said how it ended after {}; {}", name,
                     words::to_text(options.timeout), end),
@@ -121,29 +121,34 @@ void run(const CalibrateOptions& options, int& exit_code) {
   fleet::CentralLine line{"calibrate", options.line};
   const unsigned index = line.connect_one(options.robot);
   const std::string name = line.name(index);
-  const Robot& robot = line.fleet().robot(index);
-  const Calibrator& calibrator = line.fleet().calibrator(index);
   // A paused robot does not begin.
   const bool paused = !options.show && fleet::seems_paused(line, index);
   if (paused && !fleet::pause_until_seen(line, index, false))
     fail({fmt::format("calibrate: {} is paused, and does not go on", name), "amiroctl unpause says why"});
 
-  (void)line.server().fleet().calibrate(index, fleet::CentralLine::now(), options.show);
+  if (const auto refused = line.end().calibrate(index, options.show))
+    fail({fmt::format("calibrate: {}", refused->what), refused->remedy});
+  const auto overtaken = [&] { return !options.show && !line.end().is_ours(index); };
   const auto over = [&] {
-    return calibrator.phase() == Phase::none || calibrator.phase() == Phase::done || robot.lost;
+    const RobotNow robot = line.robot(index);
+    return robot.compass == Phase::none || robot.compass == Phase::done || robot.lost || overtaken();
   };
-  const bool knows = line.run(answers_within, [&] { return over() || calibrator.phase() != Phase::asking; });
+  const bool knows =
+      line.run(answers_within, [&] { return over() || line.robot(index).compass != Phase::asking; });
   if (knows) (void)line.run(options.timeout, over);
-  const Calibrator last = calibrator;  // a stop makes it void
-  const bool done = last.phase() == Phase::done;
+  const RobotNow last = line.robot(index);  // a stop makes it void
+  const bool done = last.compass == Phase::done;
   bool halted = true;
-  if (last.may_turn()) {
-    (void)line.server().fleet().stop(index, fleet::CentralLine::now());
+  if (last.may_turn() && !overtaken()) {
+    (void)line.end().go(index, {});
     halted = line.halt({index});
   }
   if (interrupted() != 0) throw Exit{exit_code_after_interrupt(exit_failure)};
-  if (!done) give_up(options, name, robot, last, halted);
-  exit_code = report(name, last.result());
+  if (!done && overtaken())
+    fail({fmt::format("calibrate: another program has stopped {} or sent it: {}", name, last.by),
+          "calibrate it again once that is over"});
+  if (!done) give_up(options, name, line.robot(index), last, halted);
+  exit_code = report(name, last.calibration);
   if (paused && !fleet::pause_until_seen(line, index, true))
     remark(fmt::format("calibrate: {} was paused, and sends updates now", name));
 }

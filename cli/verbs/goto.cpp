@@ -20,9 +20,8 @@ namespace ocm::cli {
 namespace {
 
 using namespace std::chrono_literals;
-using cognitive::Robot;
+using fleet::RobotNow;
 using mapper::server::Progress;
-using mapper::server::Sender;
 
 struct GotoOptions {
   fleet::LineOptions line;
@@ -54,19 +53,17 @@ std::string place(const mapper::link::Update& at) {
 }
 
 /// Says where it came to, and why that is elsewhere.
-int report(const std::string& name, const Robot& robot, const Sender& sender) {
+int report(const std::string& name, const RobotNow& robot) {
   if (robot.update) fmt::print("{}: {}\n", name, place(*robot.update));
-  if (sender.progress() != Progress::ended) return exit_success;
+  if (robot.progress != Progress::ended) return exit_success;
   remark(fmt::format("goto: {} heard it, but stopped {:.0f} cm and {:.0f} deg away from there{}", name,
-                     sender.off_cm(), sender.off_deg(),
-                     sender.blocked() ? ": is something in front of it?" : ""));
+                     robot.off_cm, robot.off_deg, robot.blocked ? ": is something in front of it?" : ""));
   return exit_failure;
 }
 
 /// It was stopped, as far as could be, and did not come to an end by itself.
-[[noreturn]] void give_up(const GotoOptions& options, const std::string& name, const fleet::CentralLine& line,
-                          unsigned index, Progress progress, unsigned times_said, bool halted) {
-  const Robot& robot = line.fleet().robot(index);
+[[noreturn]] void give_up(const GotoOptions& options, const std::string& name, const RobotNow& robot,
+                          Progress progress, unsigned times_said, bool halted) {
   const std::string_view end = halted ? "it was stopped" : "it may still drive";
   if (robot.lost)
     fail({fmt::format("goto: {} is lost: {}", name,
@@ -88,7 +85,7 @@ int report(const std::string& name, const Robot& robot, const Sender& sender) {
           "switch it off and on: its program may hang"});
   fail({fmt::format("goto: {} has not heard it after {} (said {}; {} % of its sentences come whole); {}",
                     name, words::to_text(options.timeout), client::count(times_said, "time*"),
-                    line.fleet().quality_per_mille(index) / 10, end),
+                    robot.quality_per_mille / 10, end),
         "bring the central nearer, or give it more time: --timeout 120s"});
 }
 
@@ -104,28 +101,36 @@ void run(const GotoOptions& options, int& exit_code) {
   fleet::CentralLine line{"goto", options.line};
   const unsigned index = line.connect_one(options.robot);
   const std::string name = line.name(index);
-  const Robot& robot = line.fleet().robot(index);
-  const Sender& sender = line.fleet().sender(index);
   const bool paused = fleet::seems_paused(line, index);
-  (void)line.server().fleet().go(index, wanted, fleet::CentralLine::now());
+  if (const auto refused = line.end().go(index, wanted))
+    fail({fmt::format("goto: {}", refused->what), refused->remedy});
   (void)line.run(options.timeout, [&] {
-    if (options.no_wait && sender.progress() == Progress::heard) return true;
-    return is_final(sender.progress()) || robot.lost;
+    const RobotNow robot = line.robot(index);
+    if (options.no_wait && robot.progress == Progress::heard) return true;
+    return is_final(robot.progress) || robot.lost || !line.end().is_ours(index);
   });
-  const Progress progress = sender.progress();
-  const unsigned times_said = sender.times_said();
+  const RobotNow last = line.robot(index);
+  if (!line.end().is_ours(index))
+    fail({fmt::format("goto: another program has stopped {} or sent it: {}", name, last.by),
+          "`amiroctl robots` shows what it does now"},
+         exit_code_after_interrupt(exit_failure));
+  const Progress progress = last.progress;
+  const unsigned times_said = last.times_said;
   const bool left_to_drive = options.no_wait && progress == Progress::heard && interrupted() == 0;
   const bool arrived = progress != Progress::none && is_final(progress);
+  if (left_to_drive) line.end().leave(index);
   const bool halted = arrived || left_to_drive || line.halt({index});
   if (paused && !arrived)  // no time is left to see that it obeys
-    for (int times = 0; times < 3; ++times)
-      (void)line.server().fleet().pause(index, fleet::CentralLine::now());
+    for (int times = 0; times < 3; ++times) line.end().pause(index);
   if (interrupted() != 0) throw Exit{exit_code_after_interrupt(exit_failure)};
-  if (!arrived && !left_to_drive) give_up(options, name, line, index, progress, times_said, halted);
+  if (!arrived && !left_to_drive) give_up(options, name, line.robot(index), progress, times_said, halted);
   if (arrived) {
     // The update behind the idle has the place.
-    (void)line.wait(2s, [&] { return robot.located || robot.lost; });
-    exit_code = report(name, robot, sender);
+    (void)line.wait(2s, [&] {
+      const RobotNow robot = line.robot(index);
+      return robot.located || robot.lost;
+    });
+    exit_code = report(name, line.robot(index));
   }
   if (paused && !fleet::pause_until_seen(line, index, true))
     remark(fmt::format("goto: {} was paused, and sends updates now", name));

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "cli/fleet/map_run.hpp"
+#include "cli/fleet/map_view.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
@@ -48,6 +49,13 @@ void run(const fleet::MapOptions& options, int& exit_code) {
     fail({fmt::format("map: --resolution {}: no size of a cell", options.resolution_cm),
           "write centimetres, 0.5 to 50"},
          exit_usage);
+  if (options.watch)
+    if (const auto other = fleet::join_line("map", options.line)) {
+      catch_interrupts();
+      catch_hangups();
+      exit_code = fleet::view_map(options, *other);
+      return;
+    }
   const fleet::Known known = fleet::known_of(options.world, options.starts);
   MapRun run{options, known};
   const End end = run.explore(options.duration);
@@ -90,7 +98,8 @@ void add_map(Verb app, Session&, int& exit_code) {
   verb.add_option("--range", options->range_m, "range of the central's radio in m: no robot is sent farther")
       .type_name("M");
   verb.add_option("--title", options->title, "default: the robots").type_name("TEXT");
-  verb.add_flag("--watch", options->watch, "draw only; another program drives");
+  verb.add_flag("--watch", options->watch,
+                "draw only: what another `amiroctl map` draws, or while a server elsewhere drives");
   verb.add_flag("--json", options->json, "figures as an object");
   fleet::add_line_options(verb, options->line);
   verb.callback([options, &exit_code] { run(*options, exit_code); });

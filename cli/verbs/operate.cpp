@@ -69,7 +69,7 @@ std::unique_ptr<operate::Control> open_control(const transport::Bus& bus) {
   if (control) return std::move(*control);
   if (control.error.process == 0)
     fail({fmt::format("operate: {}", control.error.what), control.error.remedy});
-  const auto other = OperatorLink::connect(bus.name(), "operate");
+  const auto other = connect_operator(bus.name(), "operate");
   fail({fmt::format("operate: {} has {} already", other && *other ? (*other)->who() : control.error.what,
                     bus.name()),
         fmt::format("`amiroctl operator status` says what it does; kill {} ends it", control.error.process)});

@@ -15,7 +15,7 @@ namespace {
 /// Prints the answer; leaves with what is wrong.
 void ask(Session& session, std::string_view verb, const std::string& request) {
   const std::string bus = session.bus_name.empty() ? only_bus() : session.bus_name;
-  const auto link = OperatorLink::connect(bus, "operator");
+  const auto link = connect_operator(bus, "operator");
   if (!link) fail({fmt::format("operator {}: {}", verb, link.error.what), link.error.remedy});
   if (*link == nullptr)
     fail({fmt::format("operator {}: no operator of yours runs on {}", verb, bus),

@@ -25,7 +25,7 @@ void run(std::string_view verb, const PauseOptions& options, bool paused, int& e
       fmt::print("{}: {}\n", name, paused ? "paused" : "goes on");
       continue;
     }
-    remark(line.fleet().robot(index).lost
+    remark(line.robot(index).lost
                ? fmt::format("{}: {} is lost", verb, name)
                : fmt::format("{}: {} {}", verb, name, paused ? "sends updates still" : "sends no updates"));
     exit_code = exit_failure;

@@ -16,7 +16,7 @@
 namespace ocm::cli {
 namespace {
 
-using cognitive::Robot;
+using fleet::RobotNow;
 using mapper::server::Peer;
 
 struct RobotsOptions {
@@ -26,42 +26,9 @@ struct RobotsOptions {
   bool list = false;
 };
 
-std::string_view state_of(const Robot& robot) {
-  if (!robot.linked) return "no link";
-  if (robot.lost) return "silent";
-  if (robot.paused || (robot.idle && !robot.update))
-    return "paused";  // by any program: it only reports that it is idle
-  if (!robot.confirmed) return "connected";
-  return robot.idle ? "idle" : "moving";
-}
-
-std::string pose_of(const Robot& robot) {
+std::string pose_of(const RobotNow& robot) {
   if (!robot.update) return "-";
   return fmt::format("{} {} {}", robot.update->x, robot.update->y, robot.update->heading);
-}
-
-Json to_json(const fleet::CentralLine& line, const Peer& peer) {
-  const Robot& robot = line.fleet().robot(peer.index);
-  Json out{
-      {"robot", peer.name}, {"index", peer.index}, {"address", peer.address}, {"state", state_of(robot)}};
-  out["linked"] = robot.linked;
-  out["confirmed"] = robot.confirmed;
-  out["idle"] = robot.idle;
-  out["quality"] = robot.linked ? Json(line.fleet().quality_per_mille(peer.index) / 1000.0) : Json();
-  out["pose"] = Json();
-  if (robot.update)
-    out["pose"] = {
-        {"x_cm", robot.update->x}, {"y_cm", robot.update->y}, {"heading_deg", robot.update->heading}};
-  out["body"] = Json();
-  if (robot.handshake)
-    out["body"] = {{"width_cm", robot.handshake->width},
-                   {"length_cm", robot.handshake->length},
-                   {"axle_offset_cm", robot.handshake->axle_offset},
-                   {"tower_offset_cm", robot.handshake->tower_offset},
-                   {"sensor_out_cm", robot.handshake->sensor_out},
-                   {"deadline_ms", robot.handshake->deadline},
-                   {"packed", mapper::link::offers_packed(*robot.handshake)}};
-  return out;
 }
 
 void print_table(const fleet::CentralLine& line, const std::vector<Peer>& peers) {
@@ -70,10 +37,10 @@ void print_table(const fleet::CentralLine& line, const std::vector<Peer>& peers)
   fmt::print("{:<{}}  {:<5}  {:<12}  {:<9}  {:>16}  {:>7}\n", "ROBOT", width, "INDEX", "ADDRESS", "STATE",
              "X Y DEG [cm]", "QUALITY");
   for (const Peer& peer : peers) {
-    const Robot& robot = line.fleet().robot(peer.index);
+    const RobotNow robot = line.robot(peer.index);
     fmt::print("{:<{}}  {:<5}  {:<12}  {:<9}  {:>16}  {:>7}\n", peer.name, width, peer.index, peer.address,
-               state_of(robot), pose_of(robot),
-               robot.linked ? fmt::format("{} %", line.fleet().quality_per_mille(peer.index) / 10) : "-");
+               fleet::state_of(robot), pose_of(robot),
+               robot.linked ? fmt::format("{} %", robot.quality_per_mille / 10) : "-");
   }
 }
 
@@ -84,9 +51,9 @@ void run(const RobotsOptions& options, int& exit_code) {
   else
     line.introduce(line.connect({}));
   if (!options.list) (void)line.wait(options.listen, [] { return false; });
-  const std::vector<Peer> peers = line.server().client().peers();
+  const std::vector<Peer> peers = line.end().peers();
   if (options.json)
-    for (const Peer& peer : peers) fmt::print("{}\n", to_json(line, peer).line());
+    for (const Peer& peer : peers) fmt::print("{}\n", fleet::to_json(line.robot(peer.index)).line());
   else
     print_table(line, peers);
   if (peers.empty()) exit_code = exit_failure;

@@ -28,6 +28,8 @@ struct MappingOptions {
   base::Duration again = std::chrono::seconds{1};  ///< before a robot that waits is asked for again
   /// A robot that was called back waits for a good link for so long; then it is done.
   base::Duration patience = std::chrono::minutes{2};
+  /// Which robots draw and are sent: where the others began is not known. Empty: all that there are.
+  std::vector<std::size_t> robots{};
 };
 
 struct MappingCounters {
@@ -43,14 +45,24 @@ class Mapping {
 
   /// To be called with each sentence, as Server::feed does.
   void heard(std::size_t robot, mapper::link::Kind kind) {
-    if (robot >= Fleet::most_robots) return;
+    if (robot >= Fleet::most_robots || !takes_part(robot)) return;
     if (kind == mapper::link::Kind::handshake) {
-      tracks_[robot] = Track{.path = std::move(tracks_[robot].path)};
+      tracks_[robot] = Track{.path = std::move(tracks_[robot].path), .held = tracks_[robot].held};
       explorer_.forget(static_cast<std::uint8_t>(robot));
     }
     if (kind == mapper::link::Kind::update) draw(robot);
   }
 
+  /// A robot that is held is left alone, for another program drives it; what it sees is drawn. What was left
+  /// to it is left to the others.
+  void hold(std::size_t robot, bool held) {
+    if (robot >= Fleet::most_robots || tracks_[robot].held == held) return;
+    tracks_[robot].held = held;
+    tracks_[robot].order = {};
+    tracks_[robot].asked = false;
+    tracks_[robot].called = false;
+    explorer_.forget(static_cast<std::uint8_t>(robot));
+  }
   /// Gives orders to those who have nothing to do. Often: ten times a second.
   void step(base::Time now) {
     const std::vector<Scout> scouts = all();
@@ -62,6 +74,7 @@ class Mapping {
         explorer_.forget(scout.robot);
         continue;
       }
+      if (track.held) continue;
       const bool called = scout.call_back && !track.called;
       track.called = scout.call_back;
       if (called) track.called_at = now;
@@ -74,13 +87,14 @@ class Mapping {
       obey(scout, track, now);
     }
   }
-  /// No robot has anything left to do, or waits for one that has.
+  /// No robot has anything left to do, or waits for one that has. A robot that is held may have.
   [[nodiscard]] bool done() const {
     bool any = false;
     for (const Scout& scout : all()) {
       if (scout.lost) continue;
       const Track& track = tracks_[scout.robot];
       any = true;
+      if (track.held) return false;
       if (track.order.kind == Order::Kind::drive || track.order.kind == Order::Kind::look) return false;
       // Who waited because it was called back has not been asked since.
       if (!track.asked) return false;
@@ -105,17 +119,22 @@ class Mapping {
     std::optional<int> heading{};  ///< of the last update, degrees
     std::vector<motion::Point> path{};
     bool asked = false;
+    bool held = false;            ///< another program drives it
     bool waits_for_link = false;  ///< its order is of while it was called back
     bool called = false;
     base::Time called_at{};
   };
 
+  [[nodiscard]] bool takes_part(std::size_t robot) const {
+    return options_.robots.empty() ||
+           std::find(options_.robots.begin(), options_.robots.end(), robot) != options_.robots.end();
+  }
   /// Those that said where they are.
   [[nodiscard]] std::vector<Scout> all() const {
     std::vector<Scout> scouts;
     for (std::size_t i = 0; i < Fleet::most_robots; ++i) {
       const Robot& robot = fleet_->robot(i);
-      if (!robot.update) continue;
+      if (!robot.update || !takes_part(i)) continue;
       scouts.push_back({static_cast<std::uint8_t>(i),
                         {robot.pose(), robot.shape()},
                         fleet_->call_back(i) != Advice::stay,

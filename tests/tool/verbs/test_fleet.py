@@ -1,9 +1,11 @@
 """Mappers behind a central: robots, goto, pause, unpause, on a central that is played on a pseudo terminal."""
 
+import fcntl
 import json
 import os
 import signal
 import subprocess
+import termios
 import time
 
 from harness import AMIROCTL, Case, main, waiting
@@ -266,13 +268,13 @@ class Pause(Line):
 
 
 class TheLine(Line):
-    def test_one_program_at_a_time(self):
-        first = self.start("robots", "--listen", "5s", "--scan", "200ms")
-        time.sleep(1)
+    def test_a_program_of_others_has_the_line(self):
+        port = os.open(self.central.path, os.O_RDWR | os.O_NOCTTY)
+        fcntl.ioctl(port, termios.TIOCEXCL)
+        fcntl.flock(port, fcntl.LOCK_EX)
         _, err = self.tool("robots", code=1)
         self.assertIn("in use by another program", err)
-        self.interrupt(first)
-        self.assertEqual(first.returncode, 130)
+        os.close(port)
         self.tool("robots", "--listen", "100ms")
 
     def test_the_dongle_is_unplugged(self):

@@ -192,6 +192,36 @@ TEST_CASE("mapping: who is called back does not finish its piece first") {
   CHECK_FALSE(expedition.fleet.take());  // once
 }
 
+TEST_CASE("mapping: a robot that is held is left alone, and the others go on") {
+  Expedition expedition{labyrinth(), {PerfectRobot{{0.4F, 0.4F, 0.0F}}, PerfectRobot{{2.0F, 1.4F, 3.0F}}}};
+  for (int i = 0; i < 50; ++i) expedition.step();
+  expedition.mapping.hold(1, true);
+  CHECK_FALSE(expedition.mapping.explorer().goal(1));
+  for (int i = 0; i < 50 && !expedition.robots[1].idle(); ++i) expedition.step();  // its last piece ends
+  const auto stood = expedition.robots[1].pose();
+  const auto drawn = expedition.mapping.counters().drawn;
+  for (int i = 0; i < 9000; ++i) expedition.step();
+  CHECK(distance_m(place(expedition.robots[1].pose()), place(stood)) < 0.001F);
+  CHECK(expedition.mapping.counters().drawn > drawn);
+  CHECK(expedition.result().explored > 0.8);  // by the other
+  CHECK_FALSE(expedition.mapping.done());     // it may have something left to do
+  expedition.mapping.hold(1, false);
+  expedition.mapping.hold(Fleet::most_robots, true);  // there is no such robot
+  CHECK(expedition.run() < 1800);
+  CHECK(expedition.result().explored > 0.97);
+}
+
+TEST_CASE("mapping: robots that do not take part are neither drawn nor sent") {
+  MappingOptions options;
+  options.robots = {0};
+  Expedition expedition{
+      labyrinth(), {PerfectRobot{{0.4F, 0.4F, 0.0F}}, PerfectRobot{{2.0F, 1.4F, 3.0F}}}, {}, options};
+  CHECK(expedition.run() < 1800);
+  CHECK(expedition.mapping.path(1).empty());
+  CHECK(distance_m(place(expedition.robots[1].pose()), {2.0F, 1.4F}) < 0.001F);
+  CHECK(expedition.mapping.path(0).size() > 10);
+}
+
 TEST_CASE("mapping: a robot that is lost keeps no other waiting, and goes on when it is back") {
   Expedition expedition{labyrinth(), {PerfectRobot{{0.4F, 0.4F, 0.0F}}, PerfectRobot{{2.0F, 1.4F, 3.0F}}}};
   for (int i = 0; i < 50; ++i) expedition.step();

@@ -1,0 +1,135 @@
+#include "cli/fleet/robot_now.hpp"
+
+#include <chrono>
+#include <string>
+
+#include <catch2/catch.hpp>
+
+namespace fleet_robot_now_test {
+
+using namespace std::chrono_literals;
+using namespace ocm;
+using cli::fleet::parse_row;
+using cli::fleet::RobotNow;
+using cli::fleet::state_of;
+using cli::fleet::to_row;
+using mapper::server::Calibrator;
+using mapper::server::Progress;
+
+RobotNow some_robot() {
+  RobotNow robot;
+  robot.name = "Arduino 2";
+  robot.linked = robot.confirmed = robot.located = robot.paused = robot.held = robot.blocked = true;
+  robot.handshake = mapper::link::Handshake{20, 18, -3, 4, 0, 90, 180, 270, 5000, 20225, 3};
+  robot.update = mapper::link::Update{-120, 7, -179, 45, 0, 12, 255, 80};
+  robot.updated = base::Time{123'456'789'012ns};
+  robot.heard = base::Time{123'456'789'013ns};
+  robot.last = mapper::link::Kind::update;
+  robot.advice = cognitive::Advice::bad_link;
+  robot.index = 127;
+  robot.address = "C00000000001";
+  robot.quality_per_mille = 637;
+  robot.pieces = 4'000'000'000;
+  robot.torn = 17;
+  robot.progress = Progress::ended;
+  robot.times_said = 4;
+  robot.off_cm = 20.46F;
+  robot.off_deg = 0.1F;
+  robot.compass = Calibrator::Phase::turning;
+  robot.compass_asked = 3;
+  robot.calibration = {7, 2, 41, -57, 152, 1, 2};
+  robot.order = 18'446'744'073'709'551'615U;
+  robot.by = "goto (process 1234)";
+  return robot;
+}
+
+TEST_CASE("robot now: a row says all of a robot") {
+  const RobotNow robot = some_robot();
+  const auto again = parse_row(to_row(robot));
+  REQUIRE(again);
+  CHECK(to_row(*again) == to_row(robot));
+  CHECK(again->name == robot.name);
+  CHECK(again->address == robot.address);
+  CHECK((again->linked && again->confirmed && again->located && again->paused && again->held &&
+         again->blocked));
+  CHECK_FALSE((again->idle || again->lost || again->standing));
+  CHECK(again->handshake == robot.handshake);
+  CHECK(again->update == robot.update);
+  CHECK(again->updated == robot.updated);
+  CHECK(again->heard == robot.heard);
+  CHECK(again->last == robot.last);
+  CHECK(again->advice == robot.advice);
+  CHECK(again->quality_per_mille == 637);
+  CHECK(again->pieces == robot.pieces);
+  CHECK(again->progress == Progress::ended);
+  CHECK(again->off_cm == robot.off_cm);  // rounded once, where it is printed
+  CHECK(again->compass == Calibrator::Phase::turning);
+  CHECK(again->calibration == robot.calibration);
+  CHECK(again->order == robot.order);
+  CHECK(again->by == robot.by);
+  // And of one that has said nothing.
+  const auto nothing = parse_row(to_row(RobotNow{}));
+  REQUIRE(nothing);
+  CHECK_FALSE((nothing->handshake || nothing->update));
+}
+
+TEST_CASE("robot now: what a name holds does not divide rows") {
+  RobotNow robot = some_robot();
+  robot.name = "a\tlinked=0\nidle";
+  const std::string row = to_row(robot);
+  CHECK(row.find('\n') == std::string::npos);
+  const auto again = parse_row(row);
+  REQUIRE(again);
+  CHECK(again->name == "a_linked=0_idle");
+  CHECK(again->linked);
+}
+
+TEST_CASE("robot now: what is no row") {
+  for (const char* row : {"",
+                          "index=0",
+                          "name=A",
+                          "index=0\tname",
+                          "index=128\tname=A",
+                          "index=-1\tname=A",
+                          "index=0\tname=A\tlinked=2",
+                          "index=0\tname=A\tlinked=",
+                          "index=0\tname=A\tupdate=1,2,3",
+                          "index=0\tname=A\tupdate=0,0,0,0,0,0,0,0,0",
+                          "index=0\tname=A\tupdate=0,0,361,0,0,0,0,0",
+                          "index=0\tname=A\tupdate=0,0,0,0,0,0,0,256",
+                          "index=0\tname=A\tquality=1001",
+                          "index=0\tname=A\tprogress=Said",
+                          "index=0\tname=A\tprogress=",
+                          "index=0\tname=A\toff_cm=nan",
+                          "index=0\tname=A\toff_cm=inf",
+                          "index=0\tname=A\tlast=nobody",
+                          "index=0\tname=A\torder=-1",
+                          "index=0\tname=A\tcalibration=0,9,0,0,0,0,0",
+                          "index=0 name=A"}) {
+    CAPTURE(row);
+    CHECK_FALSE(parse_row(row));
+  }
+  // A newer program says more.
+  const auto newer = parse_row("name=A\tindex=5\tcolour=blue");
+  REQUIRE(newer);
+  CHECK(newer->index == 5);
+}
+
+TEST_CASE("robot now: its state in a word") {
+  RobotNow robot;
+  CHECK(state_of(robot) == "no link");
+  robot.linked = true;
+  CHECK(state_of(robot) == "connected");
+  robot.confirmed = robot.idle = true;
+  CHECK(state_of(robot) == "paused");
+  robot.update.emplace();
+  CHECK(state_of(robot) == "idle");
+  robot.idle = false;
+  CHECK(state_of(robot) == "moving");
+  robot.held = true;
+  CHECK(state_of(robot) == "held");
+  robot.lost = true;
+  CHECK(state_of(robot) == "silent");
+}
+
+}  // namespace fleet_robot_now_test

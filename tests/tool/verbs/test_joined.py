@@ -1,0 +1,417 @@
+"""Many programs on one central's line: the first has it, the others join; who stops what, and what each says when one
+of them dies, hangs, or says nonsense."""
+
+import glob
+import json
+import os
+import re
+import signal
+import socket
+import stat
+import time
+
+from harness import Case, main, waiting
+from test_fleet import Line
+
+
+class Joined(Line):
+    """A program has the line, and its robots are linked."""
+
+    def setUp(self):
+        super().setUp()
+        self.avr.room = self.arduino.room = (-2.0, -2.0, 4.0, 4.0)
+
+    def own(self, *arguments):
+        owner = self.start(*(arguments or ("robots", "--listen", "100s")), "--scan", "200ms")
+        waiting.until(lambda: self.avr.linked and self.avr.confirmed, "the owner has linked its robots")
+        return owner
+
+    def line_socket(self):
+        found = glob.glob(os.path.join(self.folder, "ocm", "line-*.sock"))
+        self.assertEqual(len(found), 1)
+        return found[0]
+
+    def drive(self, *arguments):
+        """A slow drive that has begun."""
+        self.avr.speed = 1
+        before = self.avr.heard.count("{U,90,50}")
+        tool = self.start("goto", "AVR", "90", "50", *arguments)
+        waiting.until(lambda: self.avr.heard.count("{U,90,50}") > before, "it drives")
+        return tool
+
+    def stopped(self):
+        waiting.until(lambda: self.avr.heard[-1] == "{U,0,0}", "the robot is stopped")
+
+    def ended(self, tool, code):
+        out, err = tool.communicate(timeout=60)
+        self.assertEqual(tool.returncode, code, out + err)
+        return out, err
+
+
+class TogetherOnALine(Joined):
+    def test_robots_and_goto_while_another_has_the_line(self):
+        self.own()
+        out, err = self.tool("robots", "--json")
+        self.assertEqual(err, "")
+        robots = [json.loads(line) for line in out.splitlines()]
+        self.assertEqual([(robot["robot"], robot["state"], robot["held"]) for robot in robots],
+                         [("AVR", "idle", False), ("Arduino", "idle", False)])
+        self.assertEqual(robots[0]["body"]["width_cm"], 20)
+        out, err = self.tool("goto", "AVR", "90", "25")
+        self.assertEqual((out, err), ("AVR: x 0 cm, y 25 cm, heading 90 deg\n", ""))
+        self.assertEqual(self.tool("pause", "all")[0], "AVR: paused\nArduino: paused\n")
+        self.assertTrue(self.avr.paused and self.arduino.paused)
+        self.assertEqual(self.tool("unpause", "AVR")[0], "AVR: goes on\n")
+        out, _ = self.tool("calibrate", "AVR")
+        self.assertIn("AVR: good: within 1 deg", out)
+        self.assertIn("AVR: good: within 1 deg", self.tool("calibrate", "AVR", "--show")[0])
+        _, err = self.tool("goto", "Nobody", "0", "0", code=1)
+        self.assertIn("it finds AVR (index 0, address C00000000000)", err)
+        self.assertEqual(self.avr.heard.count("{S,CON}"), 1)
+
+    def test_only_this_user_can_join(self):
+        self.own()
+        self.assertEqual(stat.S_IMODE(os.stat(self.line_socket()).st_mode), 0o600)
+        self.assertEqual(stat.S_IMODE(os.stat(os.path.dirname(self.line_socket())).st_mode), 0o700)
+
+    def test_the_line_by_another_name_of_it(self):
+        owner = self.own()
+        out, _ = self.tool("robots", "--central", os.path.realpath(self.central.path))
+        self.assertRegex(out, r"AVR .* idle")
+        self.interrupt(owner)
+        self.assertEqual(glob.glob(os.path.join(self.folder, "ocm", "line-*.sock")), [])
+
+    def test_programs_that_start_together(self):
+        tools = [self.start("robots", "--scan", "200ms", "--listen", "500ms") for _ in range(6)]
+        for tool in tools:
+            out, _ = self.ended(tool, 0)
+            self.assertRegex(out, r"AVR .* idle")
+
+    def test_a_lossy_radio(self):
+        self.own()
+        self.avr.loses = 3
+        out, err = self.tool("goto", "AVR", "90", "25")
+        self.assertEqual((out, err), ("AVR: x 0 cm, y 25 cm, heading 90 deg\n", ""))
+        self.assertEqual(self.avr.heard[-4:], ["{U,90,25}"] * 4)
+        self.avr.loses = 1000
+        _, err = self.tool("goto", "AVR", "90", "25", "--timeout", "3s", code=1)
+        self.assertRegex(err, r"AVR has not heard it after 3s \(said \d+ times; 100 % of its sentences come whole\)")
+
+    def test_does_not_wait(self):
+        self.own()
+        self.avr.speed = 5
+        self.tool("goto", "AVR", "90", "20", "--no-wait")
+        time.sleep(1)  # a stop would be said at once
+        self.assertEqual(self.avr.heard[-1], "{U,90,20}")
+
+    def test_a_map_has_the_line_for_itself(self):
+        self.own()
+        _, err = self.tool("map", os.path.join(self.folder, "a.svg"), code=1)
+        self.assertRegex(err, r"map: robots \(process \d+\) has the central's line")
+        _, err = self.tool("map", os.path.join(self.folder, "a.svg"), "--watch", code=1)
+        self.assertRegex(err, r"robots \(process \d+\) draws no map")
+
+
+class WhoStopsWhat(Joined):
+    def test_interrupted_it_stops_the_robot(self):
+        self.own()
+        for number in (signal.SIGINT, signal.SIGTERM):
+            with self.subTest(number=number):
+                tool = self.drive()
+                self.avr.loses = 3
+                self.interrupt(tool, number)
+                self.assertEqual(tool.returncode, 128 + number)
+                self.assertEqual(self.avr.loses, 0)
+                self.assertEqual(self.avr.heard[-4:], ["{U,0,0}"] * 4)
+
+    def test_killed_it_leaves_no_robot_that_drives(self):
+        self.own()
+        tool = self.drive()
+        self.avr.loses = 3
+        tool.kill()
+        self.stopped()
+        waiting.until(lambda: self.avr.loses == 0, "the stop is repeated")
+        self.assertRegex(self.tool("robots", "--listen", "1s")[0], r"AVR .* idle")
+
+    def test_stopped_it_leaves_no_robot_that_drives(self):
+        self.own()
+        tool = self.drive()
+        tool.send_signal(signal.SIGSTOP)
+        self.stopped()
+        tool.send_signal(signal.SIGCONT)
+        _, err = self.ended(tool, 1)
+        self.assertRegex(err, r"another program has stopped AVR or sent it: robots \(process \d+\): "
+                              r"goto \(process \d+\) said nothing for 2 s")
+
+    def test_another_program_stops_it(self):
+        self.own()
+        tool = self.drive()
+        self.assertEqual(self.tool("goto", "AVR", "0", "0")[1], "")
+        _, err = self.ended(tool, 1)
+        self.assertRegex(err, r"goto: another program has stopped AVR or sent it: goto \(process \d+\)")
+
+    def test_another_program_stops_what_the_owner_drives(self):
+        self.avr.speed = 1
+        owner = self.own("goto", "AVR", "90", "50")
+        waiting.until(lambda: "{U,90,50}" in self.avr.heard, "it drives")
+        self.assertEqual(self.tool("goto", "AVR", "0", "0")[1], "")
+        _, err = self.ended(owner, 1)
+        self.assertRegex(err, r"goto: another program has stopped AVR or sent it: goto \(process \d+\)")
+
+    def test_two_programs_do_not_send_one_robot(self):
+        self.own()
+        tool = self.drive()
+        _, err = self.tool("goto", "AVR", "0", "5", code=1)
+        self.assertRegex(err, r"goto: AVR is driven by goto \(process \d+\)\s+wait until that is over, or stop it: "
+                              "amiroctl goto AVR 0 0")
+        _, err = self.tool("calibrate", "AVR", code=1)
+        self.assertIn("AVR is driven by goto", err)
+        self.assertEqual(self.tool("goto", "Arduino", "0", "5")[1], "")
+        self.assertEqual(self.avr.heard[-1], "{U,90,50}")
+        self.interrupt(tool)
+
+
+class TheOwnerEnds(Joined):
+    def test_done_it_serves_the_others_until_they_are(self):
+        owner = self.own("robots", "--listen", "1s")
+        self.avr.speed = 25
+        tool = self.start("goto", "AVR", "90", "50")
+        out, _ = self.ended(tool, 0)
+        self.assertEqual(out, "AVR: x 0 cm, y 50 cm, heading 90 deg\n")
+        out, err = self.ended(owner, 0)
+        self.assertRegex(out, "AVR .* (idle|moving)")
+        self.assertRegex(err, r"robots: done; it serves the central's line until goto \(process \d+\) has ended")
+
+    def test_no_more_programs_join_one_that_is_done(self):
+        owner = self.own("robots", "--listen", "1s")
+        tool = self.drive()
+        waiting.until(lambda: "done; it serves" in owner.stderr.readline(), "the owner is done")
+        late = self.start("robots", "--listen", "100ms", "--scan", "100ms")
+        time.sleep(0.5)
+        self.assertIsNone(late.poll())
+        self.interrupt(tool)
+        self.assertRegex(self.ended(late, 0)[0], r"AVR .* (idle|moving)")
+        self.ended(owner, 0)
+
+    def test_interrupted_it_stops_their_robots(self):
+        owner = self.own()
+        tool = self.drive()
+        self.avr.loses = 3
+        self.interrupt(owner)
+        self.assertEqual(owner.returncode, 130)
+        self.assertEqual(self.avr.loses, 0)
+        self.assertEqual(self.avr.heard[-4:], ["{U,0,0}"] * 4)
+        _, err = self.ended(tool, 1)
+        self.assertRegex(err, r"another program has stopped AVR or sent it: robots \(process \d+\)")
+
+    def test_killed(self):
+        owner = self.own()
+        tool = self.drive()
+        owner.kill()
+        _, err = self.ended(tool, 1)
+        self.assertRegex(err, r"goto: robots \(process \d+\) (has ended|is gone)\s+AVR may still drive: at the latest it "
+                              "stops after 60 cm; to stop it: amiroctl goto AVR 0 0")
+        self.assertEqual(self.tool("goto", "AVR", "0", "0")[1], "")
+        self.assertEqual(self.avr.heard[-1], "{U,0,0}")
+
+    def test_stopped(self):
+        owner = self.own()
+        tool = self.drive()
+        owner.send_signal(signal.SIGSTOP)
+        _, err = self.ended(tool, 1)
+        self.assertRegex(err, r"robots \(process \d+\) does not answer\s+AVR may still drive")
+        _, err = self.tool("robots", code=1)
+        self.assertRegex(err, r"robots: the program that has '.*' \(process \d+\) does not answer\s+was it stopped")
+        owner.send_signal(signal.SIGCONT)
+        self.stopped()
+        self.assertRegex(self.tool("robots", "--listen", "1s")[0], r"AVR .* idle")
+
+    def test_the_dongle_is_unplugged(self):
+        owner = self.own()
+        tool = self.drive()
+        self.central.unplug()
+        self.assertIn("is gone", self.ended(owner, 1)[1])
+        self.assertRegex(self.ended(tool, 1)[1], r"robots \(process \d+\) (has ended|is gone)")
+
+
+class Hostile(Joined):
+    def setUp(self):
+        super().setUp()
+        self.own()
+
+    def call(self, greet=True):
+        caller = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self.addCleanup(caller.close)
+        caller.settimeout(10)
+        caller.connect(self.line_socket())
+        if greet:
+            self.assertEqual(self.ask(caller, b"hello 1 stranger"), b"ok\nrobots")
+        return caller
+
+    @staticmethod
+    def ask(caller, request):
+        caller.send(request)
+        return caller.recv(65536)
+
+    def goto_works(self):
+        self.assertEqual(self.tool("goto", "Arduino", "10", "5")[1], "")
+
+    def test_words_that_are_no_request(self):
+        caller = self.call()
+        for words in (b"no such", b"go", b"go 0", b"go 0 90", b"go 0 361 5", b"go 0 90 40000", b"go 128 1 1", b"go -1 1 1",
+                      b"go 0 1 1 1", b"go  0 1 1", b"go AVR 1 1", b"scan", b"scan 60001", b"scan -1", b"stop 0 ", b" stop 0",
+                      b"stop 0\n", b"map", b"map exe", b"more -1", b"\0", b"robots 999999999999999999999", b"GO 0 1 1"):
+            with self.subTest(words=words):
+                self.assertTrue(self.ask(caller, words).startswith(b"no\nthat is no request"), words)
+        self.assertEqual([line for line in self.avr.heard if line.startswith("{U")], [])
+        self.assertTrue(self.ask(caller, b"robots").startswith(b"ok\nidle\n"))
+        self.assertIn(b'"robot":"AVR"', self.ask(caller, b"json"))
+        self.goto_works()
+
+    def test_who_does_not_greet_is_turned_away(self):
+        for words in (b"go 0 90 50", b"robots", b"hello 2 goto", b"hello 1 ", b"hello 1 a\tb", b"hello 1 \x1b[2J", b"x" * 60000):
+            with self.subTest(words=words):
+                self.assertEqual(self.ask(self.call(greet=False), words), b"")
+        caller = self.call()
+        self.assertEqual(self.ask(caller, b"hello 1 another"), b"")  # one name each
+        self.assertEqual([line for line in self.avr.heard if line.startswith("{U")], [])
+        self.goto_works()
+
+    def test_too_long_is_not_taken_for_its_beginning(self):
+        caller = self.call()
+        self.assertEqual(self.ask(caller, b"go 0 90 50" + b" " * 60000), b"")
+        self.assertEqual(self.ask(self.call(), b"")[:0], b"")
+        self.assertEqual([line for line in self.avr.heard if line.startswith("{U")], [])
+        self.goto_works()
+
+    def test_endless_requests_hold_up_nothing(self):
+        callers = [self.call() for _ in range(8)]
+        for caller in callers:
+            caller.setblocking(False)
+        end = time.monotonic() + 3
+        tool = self.start("goto", "Arduino", "10", "5")
+        while time.monotonic() < end:  # answers are not read
+            for caller in callers:
+                try:
+                    caller.send(b"robots")
+                except OSError:
+                    pass
+        _, err = self.ended(tool, 0)
+        self.assertEqual(err, "")
+        self.goto_works()
+
+    def test_more_callers_than_there_is_room_for(self):
+        callers = []
+        for _ in range(70):
+            caller = self.call(greet=False)
+            try:
+                if self.ask(caller, b"hello 1 many") == b"ok\nrobots":
+                    callers.append(caller)
+            except OSError:
+                pass
+        self.assertLessEqual(len(callers), 64)
+        self.assertGreater(len(callers), 60)
+        for caller in callers:
+            caller.close()
+        self.goto_works()
+
+    def test_who_sends_a_robot_and_is_gone(self):
+        caller = self.call()
+        self.avr.speed = 1
+        self.assertRegex(self.ask(caller, b"go 0 90 50"), rb"ok\n\d+")
+        waiting.until(lambda: "{U,90,50}" in self.avr.heard, "it drives")
+        caller.close()
+        self.stopped()
+
+
+class BesideAMap(Case):
+    """Simulated robots draw a map while others watch it and stop robots by hand."""
+
+    def setUp(self):
+        super().setUp()
+        self.start_sim("--robots", "2", "--world", "labyrinth")
+        self.map = self.start("map", self.path("room.pgm"), "--world", "labyrinth")
+        waiting.until(lambda: self.moving() == {"AVR", "Arduino"}, "both explore", 60)
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def states(self):
+        if not glob.glob(os.path.join(self.folder, "ocm", "line-*.sock")):
+            return {}
+        out, _ = self.run_tool("robots", "--json", "--listen", "100ms")
+        return {robot["robot"]: robot for robot in self.objects(out)}
+
+    def moving(self):
+        """Those that are not where they began."""
+        return {name for name, robot in self.states().items() if robot["pose"] and
+                any(abs(value) > 2 for value in robot["pose"].values())}
+
+    def place(self, name):
+        return self.states()[name]["pose"]
+
+    def test_a_robot_is_stopped_by_hand_and_held_and_the_other_goes_on(self):
+        self.run_tool("goto", "AVR", "0", "0")
+        states = self.states()
+        self.assertEqual(states["AVR"]["state"], "held")
+        self.assertTrue(states["AVR"]["held"] and not states["Arduino"]["held"])
+        place, other = states["AVR"]["pose"], states["Arduino"]["pose"]
+        waiting.until(lambda: self.place("Arduino") != other, "the other goes on", 60)
+        time.sleep(3)  # the explorer asks once a second
+        for what, value in self.place("AVR").items():
+            self.assertLessEqual(abs(value - place[what]), 3)  # it rolled out
+        # By hand it goes where it is sent; then it is held still.
+        out, _ = self.run_tool("goto", "AVR", "90", "0")
+        self.assertRegex(out, r"AVR: x -?\d+ cm, y -?\d+ cm, heading -?\d+ deg")
+        self.assertEqual(self.states()["AVR"]["state"], "held")
+        self.assertEqual(self.run_tool("unpause", "AVR")[0], "AVR: goes on\n")
+        self.assertNotEqual(self.states()["AVR"]["state"], "held")
+        place = self.place("AVR")
+        waiting.until(lambda: self.place("AVR") != place, "it explores again", 60)
+        _, err = self.interrupt(self.map)
+        self.assertEqual(self.map.returncode, 130)
+        self.assertRegex(err, r"map: AVR is held by goto \(process \d+\); the others go on. To let it go on: "
+                              r"amiroctl unpause AVR\n")
+        self.assertIn("map: AVR goes on\n", err)
+
+    def test_a_program_that_dies_stops_its_robot_only(self):
+        self.run_tool("goto", "AVR", "0", "0")
+        tool = self.start("goto", "AVR", "180", "50")
+        waiting.until(lambda: self.states()["AVR"]["idle"] is False, "it drives")
+        tool.kill()
+        waiting.until(lambda: self.states()["AVR"]["idle"], "it is stopped")
+        other = self.place("Arduino")
+        waiting.until(lambda: self.place("Arduino") != other, "the other goes on", 60)
+        self.assertEqual(self.states()["AVR"]["state"], "held")
+
+    def test_watched_it_grows(self):
+        seen = self.path("seen.pgm")
+        watch = self.start("map", seen, self.path("seen.svg"), "--watch")
+        known = []
+
+        def grown():
+            try:
+                with open(seen, "rb") as file:
+                    data = file.read()
+                with open(seen.replace(".pgm", ".yaml"), encoding="ascii") as file:
+                    self.assertEqual(file.readline(), "image: seen.pgm\n")
+            except FileNotFoundError:
+                return False
+            head = re.match(rb"P5\n#[^\n]*\n(\d+) (\d+)\n255\n", data)
+            if not head:
+                return False  # it is just being written
+            known.append(len(data) - head.end() - data[head.end():].count(205))
+            return known[-1] > known[0] + 50
+        waiting.until(grown, "the picture grows", 60)
+        self.interrupt(self.map)
+        self.assertEqual(self.map.returncode, 130)
+        out, err = watch.communicate(timeout=60)
+        self.assertEqual(watch.returncode, 0, err)
+        self.assertRegex(out, r"what map \(process \d+\) drew in \d+ s, drawn \d+ times\n")
+        self.assertRegex(err, r"map \(process \d+\) (has ended|is gone)")
+        with open(self.path("seen.svg"), encoding="utf-8") as file:
+            self.assertIn("map by AVR, Arduino", file.read())
+
+
+if __name__ == "__main__":
+    main(together=True)
