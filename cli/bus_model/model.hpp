@@ -21,7 +21,7 @@
 #include "ocm/measure/statistics.hpp"
 #include "ocm/protocol/topic.hpp"
 
-namespace ocm::cli::top {
+namespace ocm::cli::bus_model {
 
 /// Whether samples come when they are due.
 enum class Health : std::uint8_t {
@@ -135,4 +135,4 @@ class Model {
   std::uint64_t lost_ = 0;
 };
 
-}  // namespace ocm::cli::top
+}  // namespace ocm::cli::bus_model
