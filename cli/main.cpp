@@ -37,6 +37,7 @@ constexpr AddVerb verbs[] = {
     add_convert,
     add_stats,
     add_top,
+    add_serve,
     add_plot,
     add_run,
     add_operate,

@@ -7,8 +7,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <span>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -19,7 +17,7 @@
 #include "ocm/log/mcap_container.hpp"
 #include "ocm/protocol/topic.hpp"
 
-#include "cli/output/field_text.hpp"
+#include "cli/output/sample_text.hpp"
 
 namespace ocm::cli::logs {
 
@@ -35,21 +33,8 @@ class McapSamples {
            const log::Interfaces& interfaces);
 
  private:
-  /// A field's value, and the text before it.
-  struct Value {
-    std::string before;
-    FieldText text;
-  };
-  struct FrameText {
-    std::string begin;
-    std::vector<Value> values;
-    std::string end;
-    const protocol::FrameLayout* layout = nullptr;
-    bool varies = false;  // not every frame has every field
-  };
   struct TopicText {
-    std::vector<FrameText> frames;
-    std::size_t room = 0;
+    SampleText sample;
     std::uint16_t schema = 0;  // 0: not written yet
   };
   /// What is known of an interface.
@@ -60,8 +45,6 @@ class McapSamples {
     std::vector<std::uint16_t> channels;  // by number of the topic; 0: not written yet
   };
 
-  static FrameText text_of(const protocol::FrameLayout& frame, bool alone);
-  static char* print(char* to, const FrameText& frame, std::span<const std::uint8_t> data);
   std::uint16_t channel(log::Bytes& out, log::mcap::Container& container, Heard& heard,
                         const protocol::Topic& topic, std::string_view interface);
 
@@ -69,8 +52,5 @@ class McapSamples {
   std::vector<TopicText> topics_;
   std::vector<std::unique_ptr<Heard>> heard_;  // by number of the interface
 };
-
-/// The schema of a topic's messages, in JSON Schema.
-[[nodiscard]] std::string mcap_schema(const protocol::Topic& topic);
 
 }  // namespace ocm::cli::logs

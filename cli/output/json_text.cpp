@@ -24,12 +24,6 @@ bool is_byte_text(std::string_view text) {
          base::hex_digit(text[3]) >= 0;
 }
 
-std::string json_string(std::string_view text) {
-  std::string out{'"'};
-  append_json(out, text);
-  return out += '"';
-}
-
 /// The bytes as hexadecimal digits, or R and the length that a remote frame asks for, as candump has them.
 char* put_data(char* to, const log::Entry& entry) {
   if (!can::is_remote(entry.format)) return put_hex(to, entry.bytes());
@@ -65,6 +59,12 @@ char* put_end(char* to, const log::Entry& entry) {
 constexpr std::size_t end_room = 2 * log::max_fd_length + 128;
 
 }  // namespace
+
+std::string json_string(std::string_view text) {
+  std::string out{'"'};
+  append_json(out, text);
+  return out += '"';
+}
 
 void append_json(std::string& out, std::string_view text) {
   while (!text.empty()) {

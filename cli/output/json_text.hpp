@@ -28,6 +28,8 @@ namespace ocm::cli {
 /// do: two interfaces could get one name. Lone surrogates are no Unicode, and strict readers refuse them.
 /// [RFC 8259, 8.2]
 void append_json(std::string& out, std::string_view text);
+/// The same with the quotes.
+[[nodiscard]] std::string json_string(std::string_view text);
 
 class JsonText {
  public:

@@ -7,12 +7,12 @@
 #include <span>
 #include <utility>
 
+#include "cli/bus_model/feed.hpp"
+#include "cli/bus_model/models.hpp"
 #include "cli/shared/clock.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/top/curses.hpp"
-#include "cli/top/feed.hpp"
-#include "cli/top/models.hpp"
 #include "cli/top/view.hpp"
 #include "generator/spec/spec.hpp"
 
@@ -20,6 +20,8 @@ namespace ocm::cli::top {
 namespace {
 
 using namespace std::chrono_literals;
+using bus_model::LiveFeed;
+using bus_model::LogFeed;
 
 /// So often frames are taken, whether or not something is drawn: what a bus may keep for a reader is finite.
 constexpr base::Duration pump_interval = 20ms;
@@ -83,7 +85,8 @@ class Top {
       models_.until(unix_time());
       return over;
     }
-    if (!paused_) log_->play(passed, models_);
+    if (!paused_) log_->play(passed, taken());
+    models_.until(log_->now());
     return interrupted() == 0 ? Over::time : Over::signal;
   }
 
@@ -93,14 +96,29 @@ class Top {
     if (log_->is_behind(at))
       from_the_beginning_to(at);
     else
-      log_->go_to(at, models_);
+      log_->go_to(at, taken());
+    models_.until(log_->now());
+  }
+  [[nodiscard]] LogFeed::Take taken() {
+    return [this](const log::Entry& entry, const log::Interfaces& interfaces) {
+      models_.take(entry, interfaces);
+    };
+  }
+  /// Keeps what the view draws graphs of; whether there is anything new among it.
+  bool follow() {
+    bool any = false;
+    for (std::size_t bus = 0; bus < models_.buses().size(); ++bus)
+      any = models_.follow(bus, view_.graphs(bus)) || any;
+    return any;
   }
   void from_the_beginning_to(base::Duration at) {
     models_ = new_models();
     log_->rewind();
-    log_->go_to(base::Duration{0}, models_);  // the buses are known, so that graphs have a place
-    models_.follow(view_);
-    log_->go_to(at, models_);
+    log_->go_to(base::Duration{0}, taken());  // the buses are known, so that graphs have a place
+    models_.until(log_->now());
+    follow();
+    log_->go_to(at, taken());
+    models_.until(log_->now());
   }
 
   /// false: quit.
@@ -111,7 +129,7 @@ class Top {
       if (!obey(view_.press(*key))) return false;
     }
     // A graph that is new shows what was before, too.
-    if (any && models_.follow(view_) && log_) from_the_beginning_to(log_->playing().at);
+    if (any && follow() && log_) from_the_beginning_to(log_->playing().at);
     return true;
   }
 

@@ -14,10 +14,21 @@
 
 #include "ocm/base/time.hpp"
 
+#include "cli/bus_model/model.hpp"
+#include "cli/bus_model/models.hpp"
+#include "cli/bus_model/playing.hpp"
 #include "cli/shared/terminal.hpp"
-#include "cli/top/model.hpp"
 
 namespace ocm::cli::top {
+
+using bus_model::Bus;
+using bus_model::FieldKey;
+using bus_model::Health;
+using bus_model::Model;
+using bus_model::Models;
+using bus_model::Playing;
+using bus_model::Row;
+using bus_model::Summary;
 
 enum class Style : std::uint8_t { plain, dim, bold, heading, sorted, selected, good, warning, bad };
 
@@ -68,20 +79,6 @@ struct Effect {
 };
 
 enum class Sort : std::uint8_t { spec, name, rate, jitter, age, share, changed, count };
-
-/// Of a log: where it is.
-struct Playing {
-  base::Duration at{};
-  base::Duration length{};
-  double speed = 1;
-  bool ended = false;
-};
-
-/// One of the buses that are shown.
-struct Bus {
-  std::string name;
-  const Model* model = nullptr;
-};
 
 /// What is drawn.
 struct Scene {

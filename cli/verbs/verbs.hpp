@@ -24,6 +24,7 @@ void add_record(Verb app, Session& session, int& exit_code);
 void add_replay(Verb app, Session& session, int& exit_code);
 void add_stats(Verb app, Session& session, int& exit_code);
 void add_top(Verb app, Session& session, int& exit_code);
+void add_serve(Verb app, Session& session, int& exit_code);
 void add_plot(Verb app, Session& session, int& exit_code);
 void add_doctor(Verb app, Session& session, int& exit_code);
 void add_run(Verb app, Session& session, int& exit_code);

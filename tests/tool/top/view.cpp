@@ -8,7 +8,7 @@
 
 #include "ocm/base/utf8.hpp"
 
-#include "tool/top/bus.hpp"
+#include "tool/bus_model/bus.hpp"
 
 namespace top_view_test {
 
@@ -285,8 +285,8 @@ TEST_CASE("top: a field's graph") {
   robot.view.press(letter(" "));
   CHECK(robot.view.graphs(0) == std::set<FieldKey>{{0, 0, 0}});
   CHECK(robot.view.graphs(1).empty());
-  CHECK(robot.models.follow(robot.view));
-  CHECK_FALSE(robot.models.follow(robot.view));
+  CHECK(robot.models.follow(0, robot.view.graphs(0)));
+  CHECK_FALSE(robot.models.follow(0, robot.view.graphs(0)));
   for (int i = 0; i < 8; ++i) {
     weigh(robot.model(), 2s + i * 250ms, {4 * i, 7});
     robot.models.until(morning + 2s + i * 250ms);

@@ -470,6 +470,26 @@ top --interval 1ms
 top: --interval 1ms: twenty pictures a second are the most
 write --interval 50ms, or longer
 
+serve --adress 1
+serve: unknown option '--adress'
+did you mean '--address'?
+
+serve gyr
+serve: gyr is no log
+name a log, or nothing for the bus
+
+serve --port 70000
+serve: --port 70000: out of range
+write a number from 0 to 65535
+
+serve --address 0.0.0.0
+serve: --address 0.0.0.0 is open to other machines, and without TLS all that they see and send is open, too
+give --certificate and --key, or leave --address out: ssh -L 8484:localhost:8484 ROBOT brings the page to your machine
+
+serve --certificate x.pem
+serve: --certificate without --key
+give both, as PEM files
+
 stats --asert x
 stats: unknown option '--asert'
 did you mean '--assert'?
@@ -746,6 +766,7 @@ ALONE = {
     "record": (1, "amiroctl: no bus: no CAN interface is up and no simulator runs"),
     "stats": (1, "amiroctl: no bus: no CAN interface is up and no simulator runs"),
     "top": (1, "amiroctl: no bus: no CAN interface is up and no simulator runs"),
+    "serve": (1, "amiroctl: no bus: no CAN interface is up and no simulator runs"),
     "decode": (1, "amiroctl: the standard input is empty"),
     "encode": (0, "0 frames encoded"),
     "line": (1, "no whole sentence in the standard input: it is read as what a robot said; --to-robot reads the other direction"),

@@ -1,4 +1,4 @@
-#include "cli/top/model.hpp"
+#include "cli/bus_model/model.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -10,7 +10,7 @@
 #include "ocm/measure/bus_load.hpp"
 #include "ocm/protocol/identifier.hpp"
 
-namespace ocm::cli::top {
+namespace ocm::cli::bus_model {
 namespace {
 
 using client::Meaning;
@@ -208,4 +208,4 @@ std::vector<double> Model::history(FieldKey field) const {
   return {at->second.begin(), at->second.end()};
 }
 
-}  // namespace ocm::cli::top
+}  // namespace ocm::cli::bus_model

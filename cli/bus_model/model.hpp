@@ -22,7 +22,7 @@
 #include "ocm/measure/statistics.hpp"
 #include "ocm/protocol/topic.hpp"
 
-namespace ocm::cli::top {
+namespace ocm::cli::bus_model {
 
 /// Whether samples come when they are due.
 enum class Health : std::uint8_t {
@@ -141,4 +141,4 @@ class Model {
   std::uint64_t lost_ = 0;
 };
 
-}  // namespace ocm::cli::top
+}  // namespace ocm::cli::bus_model

@@ -1,6 +1,6 @@
-#include "cli/top/models.hpp"
+#include "cli/bus_model/models.hpp"
 
-namespace ocm::cli::top {
+namespace ocm::cli::bus_model {
 
 Model& Models::of(std::string_view name) {
   if (last_ < models_.size() && models_[last_].name == name) return models_[last_].model;
@@ -18,10 +18,9 @@ void Models::until(base::Time now) {
     for (Named& named : models_) named.model.tick();
 }
 
-bool Models::follow(const View& view) {
+bool Models::follow(std::size_t bus, const std::set<FieldKey>& fields) {
   bool any = false;
-  for (std::size_t bus = 0; bus < models_.size(); ++bus)
-    for (const FieldKey& field : view.graphs(bus)) any = models_[bus].model.follow(field) || any;
+  for (const FieldKey& field : fields) any = models_[bus].model.follow(field) || any;
   return any;
 }
 
@@ -31,4 +30,4 @@ std::vector<Bus> Models::buses() const {
   return buses;
 }
 
-}  // namespace ocm::cli::top
+}  // namespace ocm::cli::bus_model

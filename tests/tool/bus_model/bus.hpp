@@ -10,8 +10,8 @@
 #include "ocm/log/entry.hpp"
 #include "ocm/protocol/request.hpp"
 
-#include "cli/top/model.hpp"
-#include "cli/top/models.hpp"
+#include "cli/bus_model/model.hpp"
+#include "cli/bus_model/models.hpp"
 #include "cli/top/view.hpp"
 #include "unit/protocol/example_topics.hpp"
 
@@ -34,7 +34,7 @@ inline log::Entry entry(base::Duration at, std::uint32_t id, std::initializer_li
 }
 
 /// Both frames of the scale's sample.
-inline void weigh(cli::top::Model& model, base::Duration at, const Scale& scale) {
+inline void weigh(cli::bus_model::Model& model, base::Duration at, const Scale& scale) {
   using protocol::Direction;
   using protocol::Identifier;
   for (std::size_t i = 0; i < 2; ++i) {
@@ -46,7 +46,8 @@ inline void weigh(cli::top::Model& model, base::Duration at, const Scale& scale)
   }
 }
 
-inline void ask(cli::top::Model& model, base::Duration at, protocol::Mode mode, protocol::Period period) {
+inline void ask(cli::bus_model::Model& model, base::Duration at, protocol::Mode mode,
+                protocol::Period period) {
   model.take(
       {morning + at, protocol::encode(protocol::Request{Scale::id, mode, period, protocol::Priority::high})});
 }

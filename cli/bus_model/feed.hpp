@@ -1,7 +1,8 @@
-/// Where `top` gets its frames from: a live bus, or a log that is played and can be wound.
+/// Where what shows a bus gets its frames from: a live bus, or a log that is played and can be wound.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,12 +15,13 @@
 #include "ocm/protocol/topic.hpp"
 #include "ocm/transport/bus.hpp"
 
+#include "cli/bus_model/models.hpp"
+#include "cli/bus_model/playing.hpp"
 #include "cli/logs/opened_log.hpp"
 #include "cli/shared/clock.hpp"
 #include "cli/shared/live.hpp"
-#include "cli/top/models.hpp"
 
-namespace ocm::cli::top {
+namespace ocm::cli::bus_model {
 
 /// All that came from a bus, taken now and then: waking up at every frame would cost more than the frames.
 class LiveFeed {
@@ -45,16 +47,21 @@ class LogFeed {
   /// ends the looking.
   LogFeed(std::string path, std::string format, const protocol::Catalogue& catalogue);
 
+  /// Gets each frame that is passed.
+  using Take = std::function<void(const log::Entry& entry, const log::Interfaces& interfaces)>;
+
   /// The clock has gone on by so much.
-  void play(base::Duration time, Models& models);
-  /// To this distance from the first frame; backwards the models are to be empty, and the log is read anew.
-  void go_to(base::Duration at, Models& models);
+  void play(base::Duration time, const Take& take);
+  /// To this distance from the first frame; backwards only behind `rewind`.
+  void go_to(base::Duration at, const Take& take);
   [[nodiscard]] bool is_behind(base::Duration at) const noexcept { return at < playing_.at; }
   /// The next `go_to` reads from the beginning.
   void rewind();
   void faster(double factor) noexcept;
 
   [[nodiscard]] const Playing& playing() const noexcept { return playing_; }
+  /// Of the whole log.
+  [[nodiscard]] const std::vector<std::string>& interfaces() const noexcept { return interfaces_; }
   [[nodiscard]] base::Time now() const noexcept { return first_ + playing_.at; }
 
  private:
@@ -66,7 +73,8 @@ class LogFeed {
   std::size_t next_ = 0;  ///< of the batch
   std::size_t size_ = 0;
   base::Time first_{};
+  std::vector<std::string> interfaces_;
   Playing playing_;
 };
 
-}  // namespace ocm::cli::top
+}  // namespace ocm::cli::bus_model

@@ -1,4 +1,4 @@
-#include "cli/top/feed.hpp"
+#include "cli/bus_model/feed.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -9,7 +9,7 @@
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
 
-namespace ocm::cli::top {
+namespace ocm::cli::bus_model {
 
 // Asked without a wait, `idle` says that nothing is left: see Live.
 LiveFeed::LiveFeed(std::unique_ptr<transport::Bus> bus) : bus_(std::move(bus)), live_(*bus_, [] {}) {
@@ -32,7 +32,7 @@ LogFeed::LogFeed(std::string path, std::string format, const protocol::Catalogue
     : path_(std::move(path)), format_(std::move(format)), catalogue_(&catalogue), batch_(log::batch) {
   std::error_code unreadable;
   if (path_ == "-" || std::filesystem::is_fifo(path_, unreadable))
-    fail({"a log that comes through a pipe cannot be wound", "write it to a file, and give that to top"},
+    fail({"a log that comes through a pipe cannot be wound", "write it to a file, and name that"},
          exit_usage);
   logs::OpenedLog log{path_, format_, catalogue};
   bool any = false;
@@ -50,6 +50,8 @@ LogFeed::LogFeed(std::string path, std::string format, const protocol::Catalogue
   if (!any && interrupted() == 0)
     fail({fmt::format("{}: no frame in it", path_), "amiroctl info FILE says what is in a log"});
   playing_.length = last - first_;
+  const log::Interfaces& named = log.reader().interfaces();
+  for (std::uint16_t i = 0; i < named.size(); ++i) interfaces_.emplace_back(named.name(i));
   rewind();
 }
 
@@ -60,7 +62,7 @@ void LogFeed::rewind() {
   playing_.ended = false;
 }
 
-void LogFeed::go_to(base::Duration at, Models& models) {
+void LogFeed::go_to(base::Duration at, const Take& take) {
   at = std::clamp(at, base::Duration{0}, playing_.length);
   while (interrupted() == 0) {
     if (next_ == size_) {
@@ -70,21 +72,20 @@ void LogFeed::go_to(base::Duration at, Models& models) {
     }
     const log::Entry& entry = batch_[next_];
     if (entry.time - first_ > at) break;
-    models.take(entry, log_->reader().interfaces());
+    take(entry, log_->reader().interfaces());
     ++next_;
   }
   playing_.at = at;
   playing_.ended = at >= playing_.length;
-  models.until(now());
 }
 
-void LogFeed::play(base::Duration time, Models& models) {
+void LogFeed::play(base::Duration time, const Take& take) {
   const double ns = static_cast<double>(time.count()) * playing_.speed;
-  go_to(playing_.at + base::Duration{static_cast<std::int64_t>(ns)}, models);
+  go_to(playing_.at + base::Duration{static_cast<std::int64_t>(ns)}, take);
 }
 
 void LogFeed::faster(double factor) noexcept {
   playing_.speed = std::clamp(playing_.speed * factor, 1.0 / 64, 1024.0);
 }
 
-}  // namespace ocm::cli::top
+}  // namespace ocm::cli::bus_model

@@ -1,18 +1,18 @@
-#include "cli/top/model.hpp"
+#include "cli/bus_model/model.hpp"
 
 #include <cmath>
 
 #include <catch2/catch.hpp>
 
-#include "tool/top/bus.hpp"
+#include "tool/bus_model/bus.hpp"
 
 namespace top_model_test {
 
 using namespace ocm::test;
-using ocm::cli::top::FieldKey;
-using ocm::cli::top::Health;
-using ocm::cli::top::Model;
-using ocm::cli::top::Row;
+using ocm::cli::bus_model::FieldKey;
+using ocm::cli::bus_model::Health;
+using ocm::cli::bus_model::Model;
+using ocm::cli::bus_model::Row;
 using ocm::protocol::Mode;
 using ocm::protocol::Period;
 using ocm::protocol::PeriodUnit;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,10 +16,15 @@
 #include "ocm/log/interfaces.hpp"
 #include "ocm/protocol/topic.hpp"
 
-#include "cli/top/model.hpp"
-#include "cli/top/view.hpp"
+#include "cli/bus_model/model.hpp"
 
-namespace ocm::cli::top {
+namespace ocm::cli::bus_model {
+
+/// One of the buses that are shown.
+struct Bus {
+  std::string name;
+  const Model* model = nullptr;
+};
 
 class Models {
  public:
@@ -38,8 +44,8 @@ class Models {
   void lost(std::string_view name, std::uint64_t frames) { of(name).lost(frames); }
   /// It is so late by now.
   void until(base::Time now);
-  /// Keeps what the view draws graphs of; whether there is anything new among it.
-  bool follow(const View& view);
+  /// Keeps these fields of a bus, by its number in buses(); whether there is anything new among them.
+  bool follow(std::size_t bus, const std::set<FieldKey>& fields);
 
   [[nodiscard]] std::vector<Bus> buses() const;
 
@@ -55,4 +61,4 @@ class Models {
   std::optional<base::Time> next_tick_;
 };
 
-}  // namespace ocm::cli::top
+}  // namespace ocm::cli::bus_model

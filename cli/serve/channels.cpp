@@ -1,0 +1,99 @@
+#include "cli/serve/channels.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "cli/output/output.hpp"
+
+namespace ocm::cli::serve {
+
+Channels::Channels(const protocol::Catalogue& catalogue, std::span<const std::string> interfaces)
+    : topics_(catalogue.topics.size()) {
+  const std::size_t room = topics_ == 0 ? 1 : std::max<std::size_t>(most / topics_, 1);
+  interfaces_.assign(interfaces.begin(),
+                     interfaces.begin() + static_cast<std::ptrdiff_t>(std::min(interfaces.size(), room)));
+  for (const std::string& interface : interfaces_)
+    for (const protocol::Topic& topic : catalogue.topics)
+      all_.push_back({static_cast<std::uint32_t>(all_.size()),
+                      interfaces_.size() == 1 ? fmt::format("/{}", topic.name)
+                                              : fmt::format("/{}/{}", interface, topic.name),
+                      fmt::format("{}.{}", catalogue.robot, topic.name), sample_schema(topic)});
+  for (const std::string_view name : state_names)
+    all_.push_back({static_cast<std::uint32_t>(all_.size()), fmt::format("/ocm/{}", name),
+                    fmt::format("ocm.{}", name), R"({"type":"object"})"});
+}
+
+Publisher::Publisher(const protocol::Catalogue& catalogue, const Channels& channels, Viewers& viewers)
+    : catalogue_(&catalogue), channels_(&channels), viewers_(&viewers) {
+  texts_.reserve(catalogue.topics.size());
+  for (const protocol::Topic& topic : catalogue.topics) texts_.emplace_back(topic);
+  forget();
+}
+
+void Publisher::forget() {
+  receivers_.clear();
+  for (std::size_t i = 0; i < channels_->interfaces().size(); ++i)
+    receivers_.emplace_back(*catalogue_, client::Transport::together);
+}
+
+client::Reception Publisher::take(const log::Entry& entry, std::string_view interface) {
+  const auto interfaces = channels_->interfaces();
+  if (last_ >= interfaces.size() || interfaces[last_] != interface)
+    last_ = static_cast<std::size_t>(std::find(interfaces.begin(), interfaces.end(), interface) -
+                                     interfaces.begin());
+  if (last_ >= interfaces.size()) return {};
+  const client::Reception reception = understand(receivers_[last_], entry);
+  const bool is_sample = reception.meaning == client::Meaning::sample;
+  if (!is_sample && reception.meaning != client::Meaning::set_point) return reception;
+
+  const auto number = static_cast<std::size_t>(reception.topic - catalogue_->topics.data());
+  const std::uint32_t channel = channels_->of(last_, number);
+  if (!viewers_->wanted(channel)) return reception;
+  const SampleText& text = texts_[number];
+  std::string payload(text.room(), '\0');
+  char* const end = is_sample ? text.print(payload.data(), reception.sample)
+                              : text.print(payload.data(), reception.frame.frame, entry.bytes());
+  payload.resize(static_cast<std::size_t>(end - payload.data()));
+  payload.shrink_to_fit();
+  const auto time_ns = static_cast<std::uint64_t>(entry.time.time_since_epoch().count());
+  if (holds_back_)
+    kept_[channel] = Kept{time_ns, std::move(payload)};
+  else
+    viewers_->publish(channel, time_ns, std::move(payload));
+  return reception;
+}
+
+void Publisher::hold_back() {
+  holds_back_ = true;
+  kept_.assign(channels_->all().size(), {});
+}
+
+void Publisher::go_on() {
+  holds_back_ = false;
+  for (std::size_t channel = 0; channel < kept_.size(); ++channel)
+    if (!kept_[channel].payload.empty())
+      viewers_->publish(static_cast<std::uint32_t>(channel), kept_[channel].time_ns,
+                        std::move(kept_[channel].payload));
+  kept_.clear();
+}
+
+client::ReceiverCounters Publisher::counters() const {
+  client::ReceiverCounters sum;
+  for (const client::Receiver& receiver : receivers_) {
+    const client::ReceiverCounters& one = receiver.counters();
+    sum.frames += one.frames;
+    sum.samples += one.samples;
+    sum.commands += one.commands;
+    sum.unknown += one.unknown;
+    sum.fd += one.fd;
+    sum.wrong_dlc += one.wrong_dlc;
+    sum.incomplete += one.incomplete;
+    sum.errors += one.errors;
+    sum.transport += one.transport;
+  }
+  return sum;
+}
+
+}  // namespace ocm::cli::serve

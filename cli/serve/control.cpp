@@ -1,0 +1,169 @@
+#include "cli/serve/control.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "cli/serve/commands.hpp"
+#include "cli/serve/foxglove.hpp"
+#include "cli/serve/sessions.hpp"
+#include "cli/shared/outgoing.hpp"
+#include "cli/shared/remedies.hpp"
+#include "cli/shared/set_points.hpp"
+
+namespace ocm::cli::serve {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// So soon rest is tried again that the bus did not take.
+constexpr base::Duration rest_again = 10ms;
+
+/// Refusals take their time from here.
+base::Time steady_now() {
+  return base::Time{Clock::now().time_since_epoch()};
+}
+
+}  // namespace
+
+Control::Control(transport::Bus& bus, const protocol::Catalogue& catalogue, Viewers& viewers, Sent sent,
+                 Obstacle obstacle)
+    : bus_(&bus),
+      catalogue_(&catalogue),
+      viewers_(&viewers),
+      sent_(std::move(sent)),
+      obstacle_(std::move(obstacle)),
+      index_(catalogue),
+      refusals_(catalogue) {}
+
+void Control::refuse(ViewerId viewer, std::string_view why) {
+  viewers_->tell(viewer, foxglove::status(foxglove::Level::error, why));
+}
+
+std::string Control::why_not_taken() {
+  const auto delivery = bus_->delivery();
+  if (!delivery.obstruction.what.empty())
+    return fmt::format("{}; {}", delivery.obstruction.what, delivery.obstruction.remedy);
+  return fmt::format("the bus takes no frame: {}", why_none_leaves(*bus_));
+}
+
+bool Control::send(const can::AnyFrame& frame) {
+  const auto taken = bus_->send_any(frame);
+  if (!taken || !*taken) return false;
+  if (const auto classic = frame.classic()) refusals_.sent(*classic, steady_now());
+  sent_(frame);
+  return true;
+}
+
+void Control::send_all(ViewerId viewer, const Driver::Frames& frames) {
+  for (const can::Frame& frame : frames) {
+    if (is_rest(frame)) {
+      rests_.push_back(frame);
+      continue;
+    }
+    // No set point waits behind another: the robot does what is commanded now.
+    const auto delivery = bus_->delivery();
+    if (delivery.known && delivery.pending != 0) continue;
+    if (!send(can::AnyFrame{frame})) refuse(viewer, why_not_taken());
+  }
+  while (!rests_.empty() && send(can::AnyFrame{rests_.front()})) rests_.pop_front();
+}
+
+void Control::drive(ViewerId viewer, const client::Hold& hold) {
+  if (!is_rest(hold.frame) && !driver_.holds(hold.frame.id)) {
+    if (const std::string why = obstacle_(); !why.empty()) return refuse(viewer, why);
+    if (other_heard_ && Clock::now() - other_ < client::listen_before_hold)
+      return refuse(viewer, "another program commands the motors: end it first, or stop the robot");
+  }
+  Driver::Frames frames;
+  const std::string why = driver_.drive(viewer, hold, Clock::now(), frames);
+  if (!why.empty()) refuse(viewer, why);
+  send_all(viewer, frames);
+}
+
+void Control::command(ViewerId viewer, const client::Command& command) {
+  if (command.hold) return drive(viewer, *command.hold);
+  if (command.ends_hold) {  // also where another drives
+    Driver::Frames frames;
+    driver_.rest(frames);
+    send_all(viewer, frames);
+  } else if (const std::string why = obstacle_(); !why.empty()) {
+    return refuse(viewer, why);
+  }
+  bool all = true;
+  command.each_frame([&](const can::AnyFrame& frame) { all = send(frame) && all; });
+  if (!all) refuse(viewer, why_not_taken());
+}
+
+void Control::carry_out(const Order& order) {
+  switch (order.kind) {
+    case Order::Kind::publish: {
+      const auto parsed = command_of(*catalogue_, order.topic, order.payload);
+      if (!parsed) return refuse(order.viewer, fmt::format("{}: {}", order.topic, parsed.error));
+      return command(order.viewer, *parsed);
+    }
+    case Order::Kind::parameter: {
+      const protocol::Topic* const sensor = sensor_of(*catalogue_, order.topic);
+      if (sensor == nullptr) return;
+      const auto parsed = period_command(*catalogue_, sensor->name, order.value);
+      if (!parsed) return refuse(order.viewer, fmt::format("{}: {}", order.topic, parsed.error));
+      return command(order.viewer, *parsed);
+    }
+    case Order::Kind::gone: {
+      Driver::Frames frames;
+      driver_.gone(order.viewer, frames);
+      return send_all(order.viewer, frames);
+    }
+    case Order::Kind::playback:
+      return;  // a bus is not wound
+  }
+}
+
+void Control::heard(const can::Received& received) {
+  if (const auto refused = refusals_.take(received, steady_now()))
+    refuse(0, fmt::format("{} refuses {}: {}; {}", refused->board, refused->topic->name, describe(*refused),
+                          remedy(*refused)));
+  if (commanded_motors(index_, received.frame) == nullptr) return;
+  if (!is_rest(received.frame)) {
+    other_ = Clock::now();
+    other_heard_ = true;
+  } else if (driver_.drives()) {
+    // It stopped the robot that a viewer drives: the stop holds.
+    Driver::Frames frames;
+    driver_.rest(frames);
+    send_all(0, frames);
+    refuse(0, "another program has stopped the robot");
+  }
+}
+
+void Control::advance() {
+  Driver::Frames frames;
+  if (driver_.advance(Clock::now(), frames))
+    refuse(0, "the page that drove was silent for half a second: the motors rest");
+  send_all(0, frames);
+}
+
+std::optional<Clock::time_point> Control::next() const {
+  auto next = driver_.next();
+  if (!rests_.empty()) {
+    const auto again = Clock::now() + rest_again;
+    next = next ? std::min(*next, again) : again;
+  }
+  return next;
+}
+
+bool Control::rest() {
+  Driver::Frames frames;
+  driver_.rest(frames);
+  send_all(0, frames);
+  const auto late = Clock::now() + client::longest_without_set_point;
+  while (!rests_.empty() && Clock::now() < late) {
+    sleep_for(rest_again);
+    send_all(0, {});
+  }
+  return rests_.empty();
+}
+
+}  // namespace ocm::cli::serve

@@ -1,0 +1,73 @@
+#include "cli/serve/driver.hpp"
+
+#include <algorithm>
+
+namespace ocm::cli::serve {
+
+std::string Driver::drive(ViewerId viewer, const client::Hold& hold, Clock::time_point now, Frames& out) {
+  const bool is_rest = hold.frame.data == hold.rest.data;
+  const auto held = std::find_if(held_.begin(), held_.end(),
+                                 [&](const Held& each) { return each.hold.frame.id == hold.frame.id; });
+  if (is_rest) {  // from any viewer: a stop is not refused
+    out.push_back(hold.rest);
+    if (held != held_.end()) held_.erase(held);
+    return {};
+  }
+  if (held != held_.end() && held->viewer != viewer) return "another viewer drives; stop it first, or wait";
+  if (held == held_.end()) {
+    out.push_back(hold.frame);
+    held_.push_back({viewer, hold, now, now + client::hold_period});
+    return {};
+  }
+  held->heard = now;
+  // A page says the same many times a second: what it said is on the bus already, and is repeated in time.
+  if (held->hold.frame.data != hold.frame.data) {
+    out.push_back(hold.frame);
+    held->next = now + client::hold_period;
+  }
+  held->hold = hold;
+  return {};
+}
+
+void Driver::gone(ViewerId viewer, Frames& out) {
+  std::erase_if(held_, [&](const Held& each) {
+    if (each.viewer == viewer) out.push_back(each.hold.rest);
+    return each.viewer == viewer;
+  });
+}
+
+void Driver::rest(Frames& out) {
+  for (const Held& each : held_) out.push_back(each.hold.rest);
+  held_.clear();
+}
+
+bool Driver::advance(Clock::time_point now, Frames& out) {
+  const std::size_t before = held_.size();
+  std::erase_if(held_, [&](Held& each) {
+    if (now - each.heard >= patience) {
+      out.push_back(each.hold.rest);
+      return true;
+    }
+    if (now >= each.next) {
+      out.push_back(each.hold.frame);
+      each.next = now + client::hold_period;
+    }
+    return false;
+  });
+  return held_.size() != before;
+}
+
+std::optional<Clock::time_point> Driver::next() const {
+  std::optional<Clock::time_point> next;
+  for (const Held& each : held_) {
+    const auto due = std::min(each.next, each.heard + patience);
+    next = next ? std::min(*next, due) : due;
+  }
+  return next;
+}
+
+bool Driver::holds(std::uint32_t id) const noexcept {
+  return std::any_of(held_.begin(), held_.end(), [id](const Held& each) { return each.hold.frame.id == id; });
+}
+
+}  // namespace ocm::cli::serve

@@ -1,0 +1,54 @@
+/// Who drives by the page, and for how long: a set point of motors is repeated as long as the viewer goes on
+/// giving one, and is at rest when it has given none for half a second, says rest, or has gone. Pure: the
+/// time is handed in, and frames come out.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ocm/base/time.hpp"
+#include "ocm/can/frame.hpp"
+#include "ocm/client/command.hpp"
+
+#include "cli/serve/viewers.hpp"
+#include "cli/shared/clock.hpp"
+
+namespace ocm::cli::serve {
+
+class Driver {
+ public:
+  using Frames = std::vector<can::Frame>;
+  /// Without a word of its viewer for so long, the motors rest. [decided: as long as the watchdog of motors
+  /// waits, spec/topics.json]
+  static constexpr base::Duration patience = client::longest_without_set_point;
+
+  /// The viewer drives with this from now on; the first set point is appended to `out`. One drives at a
+  /// time: the error says that another one does, unless this one commands rest.
+  [[nodiscard]] std::string drive(ViewerId viewer, const client::Hold& hold, Clock::time_point now,
+                                  Frames& out);
+  /// The viewer has gone.
+  void gone(ViewerId viewer, Frames& out);
+  /// All motors rest, also where another drives.
+  void rest(Frames& out);
+  /// What is due by now: set points again, or rest where a viewer was silent. True: it was.
+  bool advance(Clock::time_point now, Frames& out);
+  /// When `advance` has something to do next.
+  [[nodiscard]] std::optional<Clock::time_point> next() const;
+  [[nodiscard]] bool drives() const noexcept { return !held_.empty(); }
+  /// Whether the frame is a set point of motors that are held.
+  [[nodiscard]] bool holds(std::uint32_t id) const noexcept;
+
+ private:
+  struct Held {
+    ViewerId viewer = 0;
+    client::Hold hold;
+    Clock::time_point heard;  ///< the viewer's newest word
+    Clock::time_point next;   ///< when it is repeated
+  };
+  std::vector<Held> held_;  ///< one a drive
+};
+
+}  // namespace ocm::cli::serve

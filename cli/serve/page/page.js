@@ -1,0 +1,220 @@
+// The page: what comes from the server goes to where it is shown; what is pressed goes to the server.
+import {Wire} from './wire.js';
+import {Graphs} from './graphs.js';
+import {Picture} from './robot.js';
+import {Drive} from './drive.js';
+import {showBuses, showBoards, showBounds, showOperator} from './states.js';
+
+const by = id => document.getElementById(id);
+const token = location.hash.slice(1);
+const graphs = new Graphs(by('graphs'));
+const picture = new Picture(by('picture'), by('picture-text'));
+const rows = new Map();      // of the table, by channel, frame and field
+const topics = new Map();    // of the robot, by channel
+const rates = new Map();     // rows of the bus, by interface and name
+let robot;
+let paused = false;
+let jumps;
+let changed = false;         // since it was drawn
+
+function element(name, text, className) {
+  const made = document.createElement(name);
+  if (text !== undefined) made.textContent = text;
+  if (className) made.className = className;
+  return made;
+}
+
+function say({level = 0, message, id}) {
+  const box = by('messages');
+  const key = id ?? message;
+  for (const each of [...box.children]) if (each.dataset.key === key) each.remove();
+  const line = element('p', message, level === 2 ? 'error' : '');
+  line.dataset.key = key;
+  box.prepend(line);
+  while (box.children.length > 4) box.lastChild.remove();
+  setTimeout(() => line.remove(), 10000);
+}
+
+function valueText(field, value) {
+  if (value === undefined) return '';
+  if (field.values) {
+    const names = field.flags ? field.values.filter(each => Math.floor(value / 2 ** each.raw) % 2 === 1)
+      : field.values.filter(each => each.raw === value);
+    return `${value} ${names.map(each => each.name).join(' ')}`.trim();
+  }
+  return field.unit ? `${value} ${field.unit}` : `${value}`;
+}
+
+function frameOf(topic, frame, message) {
+  return topic.frames.length > 1 ? message[frame.name] : message;
+}
+
+// A line a field, when the first of it comes.
+function rowsOf(topic) {
+  const body = by('values').tBodies[0];
+  for (const frame of topic.frames) {
+    const key = `${topic.channel}|${frame.name}`;
+    for (const field of frame.fields) {
+      const id = `${key}|${field.name}`;
+      if (rows.has(id)) continue;
+      const line = element('tr');
+      const first = field === topic.frames[0].fields[0] && frame === topic.frames[0];
+      const name = element('th', topic.channel.slice(1));
+      name.scope = 'row';
+      const path = topic.frames.length > 1 ? `${frame.name}.${field.name}` : field.name;
+      const value = element('td', '', 'number');
+      value.dataset.field = `${topic.channel}.${path}`;
+      const box = element('input');
+      box.type = 'checkbox';
+      box.setAttribute('aria-label', `Graph of ${topic.channel.slice(1)} ${path}`);
+      box.addEventListener('change', () => {
+        graphs.choose(key, field.name, field.unit, `${topic.channel.slice(1)}${frame.name && topic.frames.length > 1 ? `.${frame.name}` : ''}`, box.checked);
+      });
+      const choice = element('td');
+      choice.append(box);
+      line.append(name, element('td', path), value, choice);
+      const timing = first ? [0, 1, 2, 3].map(() => element('td', '', 'number')) : [];
+      if (first) line.append(...timing);
+      else line.append(...[0, 1, 2, 3].map(() => element('td')));
+      body.append(line);
+      rows.set(id, {topic, frame, field, line, value, timing, text: `${topic.channel} ${path}`.toLowerCase()});
+    }
+  }
+  topic.rows = true;
+}
+
+const newest = new Map();    // messages by channel
+function take(channel, message, timeNs) {
+  changed = true;
+  const topic = topics.get(channel);
+  if (topic === undefined) return;
+  if (!topic.rows) rowsOf(topic);
+  newest.set(channel, topic.frames.length > 1 ? {...newest.get(channel), ...message} : message);
+  const time = Number(timeNs / 1000n) / 1000;
+  for (const frame of topic.frames) {
+    const fields = frameOf(topic, frame, message);
+    if (fields) graphs.add(`${channel}|${frame.name}`, time, fields);
+  }
+  picture.take(channel, newest.get(channel));
+}
+
+function setRobot(state) {
+  robot = state;
+  topics.clear();
+  for (const topic of robot.topics) topics.set(topic.channel, topic);
+  by('title').textContent = `${robot.robot}, ${robot.source}`;
+  document.title = `${robot.robot}, ${robot.source}`;
+  by('robot').hidden = !picture.set(robot.topics);
+  by('boards').hidden = !robot.boards.length;
+  by('playback').hidden = robot.live;
+  const may = robot.commands && wire.capabilities?.includes('clientPublish');
+  by('command').hidden = by('ask').hidden = !may || !robot.boards.length;
+  by('drive').hidden = by('stop').hidden = !may || !picture.topic('drive');
+  if (may && picture.topic('drive')) drive.set(picture.topic('drive'));
+  wire.subscribe(robot.topics.map(topic => topic.channel));
+  if (by('silent').checked) robot.topics.forEach(topic => topic.rows || rowsOf(topic));
+}
+
+function setPlayback(state) {
+  if (jumps !== undefined && jumps !== state.jumps) {  // what came before does not go on
+    graphs.forget();
+    picture.forget();
+    newest.clear();
+  }
+  jumps = state.jumps;
+  const bar = by('bar');
+  bar.max = state.length_s;
+  bar.step = state.length_s / 1000;
+  if (document.activeElement !== bar || !bar.dataset.held) bar.value = state.at_s;
+  by('bar-text').textContent = `${state.at_s.toFixed(1)} of ${state.length_s.toFixed(1)} s${state.ended ? ', end' : ''}`;
+  by('play').textContent = state.paused ? 'Play log' : 'Pause log';
+  by('play').dataset.paused = state.paused;
+}
+
+const states = {
+  '/ocm/robot': setRobot,
+  '/ocm/playback': setPlayback,
+  '/ocm/bus': state => {
+    rates.clear();
+    for (const bus of state.buses) for (const row of bus.rows) rates.set(`${bus.name}|${row.name}`, row);
+    if (!paused) showBuses(by('buses'), state);
+  },
+  '/ocm/boards': state => { if (!paused) showBoards(by('board-table'), by('findings'), state); },
+  '/ocm/bounds': state => { if (!paused) showBounds(by('bounds'), by('bounds-text'), by('bounds-table'), state); },
+  '/ocm/operator': state => { if (!paused) showOperator(by('operator'), by('operator-text'), state); },
+};
+
+const wire = new Wire(token, {
+  info: () => {},
+  channels: () => wire.subscribe(Object.keys(states)),
+  message: (topic, message, timeNs) => (states[topic] ?? (each => take(topic, each, timeNs)))(message),
+  status: say,
+  state: text => {
+    by('link').textContent = text === 'lost' ? 'connection lost, trying again' : text;
+    by('link').classList.toggle('lost', text === 'lost');
+  },
+});
+const drive = new Drive(by('pad'), [by('forward-speed'), by('turn-speed')], [by('forward-unit'), by('turn-unit')],
+  (channel, message) => wire.publish(channel, message));
+
+function drawValues() {
+  const filter = by('filter').value.toLowerCase();
+  for (const row of rows.values()) {
+    const hidden = !row.text.includes(filter);
+    if (row.line.hidden !== hidden) row.line.hidden = hidden;
+    if (hidden) continue;
+    const message = newest.get(row.topic.channel);
+    const text = message ? valueText(row.field, frameOf(row.topic, row.frame, message)?.[row.field.name]) : '';
+    if (row.value.textContent !== text) row.value.textContent = text;
+    if (row.timing.length === 0) continue;
+    const rate = rates.get(`${row.topic.interface}|${row.topic.name}`);
+    const cells = rate ? [
+      rate.rate_hz === null ? '' : rate.rate_hz.toFixed(1),
+      rate.jitter_ms === null ? '' : `${rate.jitter_ms.toFixed(2)} ms`,
+      rate.age_s === null ? '' : rate.age_s < 1 ? `${(rate.age_s * 1000).toFixed(0)} ms` : `${rate.age_s.toFixed(1)} s`,
+      rate.share === null ? '' : `${(rate.share * 100).toFixed(1)} %`,
+    ] : ['', '', '', ''];
+    if (rate && rate.health !== 'fine') cells[2] += ` ${rate.health}`;
+    cells.forEach((cell, i) => { if (row.timing[i].textContent !== cell) row.timing[i].textContent = cell; });
+    row.timing[2].className = rate && rate.health !== 'fine' ? `number ${rate.health}` : 'number';
+  }
+}
+
+setInterval(() => {
+  if (paused || document.hidden) return;
+  drawValues();
+  if (changed) graphs.drawAll();
+  changed = false;
+  if (!by('robot').hidden) picture.draw();
+}, 200);
+
+by('pause').addEventListener('click', () => {
+  paused = !paused;
+  by('pause').textContent = paused ? 'Go on' : 'Pause';
+  by('pause').setAttribute('aria-pressed', paused);
+});
+by('stop').addEventListener('click', () => drive.stop());
+by('all').addEventListener('click', () => graphs.showAll());
+by('minutes').addEventListener('change', () => {
+  graphs.spanMs = Number(by('minutes').value) * 60e3;
+  graphs.drawAll();
+});
+by('silent').addEventListener('change', () => {
+  if (by('silent').checked) robot?.topics.forEach(topic => topic.rows || rowsOf(topic));
+});
+by('filter').addEventListener('input', drawValues);
+by('ask').addEventListener('click', () => {
+  for (const topic of robot.topics)
+    if (topic.role === 'status' || topic.role === 'refusal') wire.publish('/ocm/command', {line: `once ${topic.name}`});
+});
+by('command').addEventListener('submit', event => {
+  event.preventDefault();
+  wire.publish('/ocm/command', {line: by('line').value});
+  by('line').select();
+});
+by('play').addEventListener('click', () => wire.publish('/ocm/playback', {paused: by('play').dataset.paused !== 'true'}));
+by('speed').addEventListener('change', () => wire.publish('/ocm/playback', {speed: Number(by('speed').value)}));
+by('bar').addEventListener('pointerdown', () => { by('bar').dataset.held = '1'; });
+by('bar').addEventListener('pointerup', () => { delete by('bar').dataset.held; });
+by('bar').addEventListener('change', () => wire.publish('/ocm/playback', {at_s: Number(by('bar').value)}));
+matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => graphs.recolour());

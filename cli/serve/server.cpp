@@ -1,0 +1,297 @@
+#include "cli/serve/server.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <poll.h>
+#include <span>
+#include <sys/random.h>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "ocm/client/commanders.hpp"
+#include "ocm/client/diagnosis.hpp"
+#include "ocm/log/interfaces.hpp"
+
+#include "cli/bus_model/feed.hpp"
+#include "cli/bus_model/models.hpp"
+#include "cli/command/operated_bus.hpp"
+#include "cli/serve/channels.hpp"
+#include "cli/serve/commands.hpp"
+#include "cli/serve/control.hpp"
+#include "cli/serve/foxglove.hpp"
+#include "cli/serve/operator_watch.hpp"
+#include "cli/serve/orders.hpp"
+#include "cli/serve/sessions.hpp"
+#include "cli/serve/state.hpp"
+#include "cli/serve/viewers.hpp"
+#include "cli/shared/clock.hpp"
+#include "cli/shared/interrupt.hpp"
+#include "cli/shared/live.hpp"
+#include "cli/shared/messages.hpp"
+#include "cli/shared/outgoing.hpp"
+#include "cli/shared/remedies.hpp"
+#include "generator/spec/spec.hpp"
+
+namespace ocm::cli::serve {
+namespace {
+
+using namespace std::chrono_literals;
+using bus_model::LogFeed;
+using bus_model::Models;
+
+constexpr base::Duration bus_interval = 250ms;  // from one state of the bus to the next
+constexpr base::Duration boards_interval = 1s;
+constexpr base::Duration playback_interval = 100ms;
+constexpr base::Duration play_step = 20ms;  // of a log
+constexpr unsigned most_unsent = 64;        // frames, until viewers hear of them
+
+/// So many random bytes, in hexadecimal digits.
+std::string random_text(std::size_t bytes) {
+  std::vector<unsigned char> numbers(bytes);
+  if (::getrandom(numbers.data(), bytes, 0) != static_cast<ssize_t>(bytes))
+    fail({"the kernel gives no random numbers", "serve needs them for its token"});
+  std::string text;
+  for (const unsigned char number : numbers) text += fmt::format("{:02x}", number);
+  return text;
+}
+
+/// What a bus and a log have in common.
+class Server {
+ public:
+  Server(Session& session, ServeOptions options, Source source, std::vector<std::string> interfaces,
+         std::uint32_t bus_bit_rate)
+      : options_(std::move(options)),
+        catalogue_(session.catalogue()),
+        source_(std::move(source)),
+        rates_{options_.bit_rate.value_or(bus_bit_rate != 0 ? bus_bit_rate : catalogue_.bit_rate),
+               options_.data_bit_rate.value_or(
+                   session.spec_files.empty() ? 0 : session.spec().model().data_bit_rate)},
+        channels_(catalogue_, interfaces),
+        viewers_(channels_.all().size()),
+        publisher_(catalogue_, channels_, viewers_),
+        models_(catalogue_, rates_.nominal, rates_.data),
+        diagnosis_(catalogue_),
+        sessions_({fmt::format("{}, {}", catalogue_.robot, source_.name), random_text(8), source_.commands,
+                   !source_.live},
+                  catalogue_, channels_, viewers_, orders_) {
+    for (const std::string& interface : channels_.interfaces()) models_.of(interface);
+    if (interfaces.size() > channels_.interfaces().size())
+      remark(fmt::format("serve: {} of {} interfaces have no channels: there would be more than {}",
+                         interfaces.size() - channels_.interfaces().size(), interfaces.size(),
+                         Channels::most));
+  }
+
+  /// Opens the page; leaves where it cannot.
+  void open() {
+    if (options_.commands || options_.web.token_to_view) options_.web.token = random_text(16);
+    auto web = Web::open(options_.web, viewers_, sessions_);
+    if (!web) fail(web.error);
+    web_ = std::move(*web);
+    viewers_.publish_state(channels_.of(State::robot), now_ns(), robot_state(catalogue_, channels_, source_));
+    fmt::print("{}{}{}\n", web_->url(), options_.web.token.empty() ? "" : "#", options_.web.token);
+    std::fflush(stdout);
+  }
+
+  int run_live(std::unique_ptr<transport::Bus> bus, bool operated);
+  int run_log(LogFeed& log);
+
+ private:
+  static std::uint64_t now_ns() { return static_cast<std::uint64_t>(unix_time().time_since_epoch().count()); }
+
+  void take(const log::Entry& entry, const log::Interfaces& interfaces) {
+    const client::Reception reception = publisher_.take(entry, interfaces.name(entry.interface));
+    diagnosis_.take(reception);
+    if (const auto classic = entry.classic()) commanders_.take({entry.time, *classic}, reception);
+    models_.take(entry, interfaces);
+  }
+  void publish_bus(base::Time now) {
+    const std::uint32_t channel = channels_.of(State::bus);
+    if (viewers_.wanted(channel))
+      viewers_.publish_state(
+          channel, now_ns(),
+          bus_state(models_.buses(), now, {viewers_.count(), viewers_.lost(), web_->refused()}));
+  }
+  void publish_boards(const transport::BusCounters& counters) {
+    const std::uint32_t channel = channels_.of(State::boards);
+    if (!viewers_.wanted(channel)) return;
+    std::vector<client::Finding> findings = diagnosis_.findings();
+    const auto disputes = commanders_.findings(catalogue_);
+    findings.insert(findings.end(), disputes.begin(), disputes.end());
+    for (client::Finding& finding : findings) finding.remedy = remedy(finding);
+    const auto counted = findings_of(counters, publisher_.counters());
+    findings.insert(findings.end(), counted.begin(), counted.end());
+    viewers_.publish_state(channel, now_ns(), boards_state(catalogue_, diagnosis_, findings));
+  }
+  void sum_up() const {
+    if (viewers_.lost() != 0)
+      remark(fmt::format("serve: viewers that were too slow have lost {} messages", viewers_.lost()));
+  }
+
+  ServeOptions options_;
+  const protocol::Catalogue& catalogue_;
+  Source source_;
+  measure::BitRates rates_;
+  Channels channels_;
+  Viewers viewers_;
+  Publisher publisher_;
+  Models models_;
+  client::Diagnosis diagnosis_;
+  client::Commanders commanders_;
+  Orders orders_;
+  Sessions sessions_;
+  std::unique_ptr<Web> web_;  // last: its thread uses what is above
+};
+
+int Server::run_live(std::unique_ptr<transport::Bus> bus, bool operated) {
+  log::Interfaces interfaces;
+  interfaces.number(bus->name());
+  const OperatorWatch watch{std::string{bus->name()}};
+  Control control{*bus, catalogue_, viewers_,
+                  [&](const can::AnyFrame& frame) {
+                    log::Entry entry{unix_time(), frame, 0};
+                    entry.direction = log::Direction::sent;
+                    take(entry, interfaces);
+                  },
+                  [&]() -> std::string {
+                    if (operated || !watch.newest().starts_with(R"({"running":true)")) return {};
+                    return "an operator guards the robot since this server was started: start it again";
+                  }};
+  unsigned unsent = 0;
+  const auto wake = [&] {
+    unsent = 0;
+    web_->wake();
+  };
+  Live live{*bus, wake, {orders_.descriptor(), [&] {
+                           for (const Order& order : orders_.take()) control.carry_out(order);
+                           wake();
+                         }}};
+  std::uint64_t lost = 0;
+  auto next_bus = Clock::now();
+  auto next_boards = next_bus;
+  Over over = Over::time;
+  while (over == Over::time) {
+    auto until = std::min(next_bus, next_boards);
+    if (const auto next = control.next()) until = std::min(until, *next);
+    over = live.receive_any(until, [&](const transport::ReceivedAny& received) {
+      take({received.time, received.frame, 0}, interfaces);
+      if (const auto classic = received.frame.classic()) control.heard({received.time, *classic});
+      if (++unsent >= most_unsent) wake();
+      // What is due is done between two frames, too, however many come.
+      if (const auto next = control.next(); next && *next <= Clock::now()) control.advance();
+      return true;
+    });
+    control.advance();
+    const auto now = Clock::now();
+    if (const auto missed = bus->counters().lost; missed != lost)
+      models_.lost(bus->name(), missed - std::exchange(lost, missed));
+    if (now >= next_bus) {
+      models_.until(unix_time());
+      publish_bus(unix_time());
+      if (viewers_.wanted(channels_.of(State::operator_)))
+        viewers_.publish_state(channels_.of(State::operator_), now_ns(), watch.newest());
+      next_bus = now + bus_interval;
+    }
+    if (now >= next_boards) {
+      publish_boards(bus->counters());
+      next_boards = now + boards_interval;
+    }
+    wake();
+  }
+  if (!control.rest()) complain({"the last set point of rest did not leave", still_moving});
+  web_.reset();
+  sum_up();
+  if (over == Over::gone) fail(bus->failure());
+  return exit_code_after_interrupt(exit_success);
+}
+
+int Server::run_log(LogFeed& log) {
+  const LogFeed::Take taken = [this](const log::Entry& entry, const log::Interfaces& interfaces) {
+    take(entry, interfaces);
+  };
+  bool paused = false;
+  std::uint64_t jumps = 0;
+  const auto jump = [&](base::Duration at) {
+    ++jumps;
+    publisher_.hold_back();
+    if (log.is_behind(at)) {
+      publisher_.forget();
+      models_ = Models{catalogue_, rates_.nominal, rates_.data};
+      for (const std::string& interface : channels_.interfaces()) models_.of(interface);
+      diagnosis_ = client::Diagnosis{catalogue_};
+      log.rewind();
+    }
+    log.go_to(at, taken);
+    publisher_.go_on();
+  };
+  const auto obey = [&](const Order& order) {
+    if (order.kind != Order::Kind::playback) return;
+    const auto request = playback_of(order.payload);
+    if (!request) return viewers_.tell(order.viewer, foxglove::status(foxglove::Level::error, request.error));
+    if (request->paused >= 0) paused = request->paused == 1;
+    if (request->speed > 0) log.faster(request->speed / log.playing().speed);
+    if (request->at_s >= 0) jump(base::Duration{static_cast<std::int64_t>(request->at_s * 1e9)});
+  };
+  auto before = Clock::now();
+  auto next_bus = before;
+  auto next_boards = before;
+  auto next_playback = before;
+  while (interrupted() == 0) {
+    pollfd input{orders_.descriptor(), POLLIN, 0};
+    const bool asked = wait_for_input(std::span{&input, 1}, play_step);
+    const auto now = Clock::now();
+    const base::Duration passed = now - std::exchange(before, now);
+    if (!paused) log.play(passed, taken);
+    models_.until(log.now());
+    if (asked) {
+      for (const Order& order : orders_.take()) obey(order);
+      next_playback = next_bus = now;
+    }
+    if (now >= next_playback) {
+      viewers_.publish_state(channels_.of(State::playback), now_ns(),
+                             playback_state(log.playing(), paused, jumps));
+      next_playback = now + playback_interval;
+    }
+    if (now >= next_bus) {
+      publish_bus(log.now());
+      next_bus = now + bus_interval;
+    }
+    if (now >= next_boards) {
+      publish_boards({});
+      next_boards = now + boards_interval;
+    }
+    web_->wake();
+  }
+  web_.reset();
+  sum_up();
+  return exit_code_after_interrupt(exit_success);
+}
+
+}  // namespace
+
+int run(Session& session, ServeOptions options) {
+  if (!has_page())
+    fail({"serve needs its page, which was missing when this amiroctl was built",
+          "install libwebsockets-dev and libjs-dygraphs, then build it again: scripts/build"});
+  catch_interrupts();
+  catch_hangups();
+  Source source{{}, options.log.empty(), options.commands};
+  if (!options.log.empty()) {
+    source.name = std::filesystem::path{options.log}.filename().string();
+    LogFeed log{options.log, options.format, session.catalogue()};
+    if (interrupted() != 0) return exit_code_after_interrupt(exit_success);
+    Server server{session, std::move(options), std::move(source), log.interfaces(), 0};
+    server.open();
+    return server.run_log(log);
+  }
+  auto bus = options.commands ? open_to_command(session, "serve") : session.open_bus();
+  const bool operated = dynamic_cast<const OperatedBus*>(bus.get()) != nullptr;
+  source.name = std::string{bus->name()};
+  Server server{session, std::move(options), source, {source.name}, bus->bit_rate()};
+  server.open();
+  return server.run_live(std::move(bus), operated);
+}
+
+}  // namespace ocm::cli::serve

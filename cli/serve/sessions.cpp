@@ -1,0 +1,144 @@
+#include "cli/serve/sessions.hpp"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "cli/serve/commands.hpp"
+
+namespace ocm::cli::serve {
+namespace {
+
+constexpr std::string_view period_suffix = "/period_ms";
+constexpr std::string_view no_commands =
+    "this viewer may only look: start amiroctl serve with --allow-commands, and open the address that it "
+    "prints";
+
+}  // namespace
+
+const protocol::Topic* sensor_of(const protocol::Catalogue& catalogue, std::string_view parameter) {
+  if (!parameter.starts_with('/') || !parameter.ends_with(period_suffix)) return nullptr;
+  parameter.remove_prefix(1);
+  if (parameter.size() < period_suffix.size()) return nullptr;
+  parameter.remove_suffix(period_suffix.size());
+  const protocol::Topic* const topic = catalogue.find(parameter);
+  return topic != nullptr && topic->kind == protocol::Kind::sensor ? topic : nullptr;
+}
+
+Sessions::Sessions(SessionsOptions options, const protocol::Catalogue& catalogue, const Channels& channels,
+                   Viewers& viewers, Orders& orders)
+    : options_(std::move(options)),
+      catalogue_(&catalogue),
+      channels_(&channels),
+      viewers_(&viewers),
+      orders_(&orders) {}
+
+void Sessions::opened(ViewerId viewer, bool commands) {
+  const bool may = commands && options_.commands;
+  open_[viewer] = {may, {}};
+  viewers_->tell(viewer, foxglove::server_info({options_.name, options_.id, may || options_.playback, may}));
+  viewers_->tell(viewer, foxglove::advertise(channels_->all()));
+}
+
+void Sessions::gone(ViewerId viewer) {
+  open_.erase(viewer);
+  put({Order::Kind::gone, viewer});
+}
+
+void Sessions::refuse(ViewerId viewer, std::string_view why) {
+  viewers_->tell(viewer, foxglove::status(foxglove::Level::error, why));
+}
+
+void Sessions::put(Order order) {
+  const ViewerId viewer = order.viewer;
+  if (!orders_->put(std::move(order)))
+    refuse(viewer, "too many commands at a time: this one was not carried out");
+}
+
+void Sessions::text(ViewerId viewer, std::string_view message) {
+  const auto found = open_.find(viewer);
+  if (found == open_.end()) return;
+  const auto request = foxglove::parse(message);
+  if (!request) return refuse(viewer, request.error);
+  using Op = foxglove::Request::Op;
+  switch (request->op) {
+    case Op::subscribe:
+      return subscribe(viewer, *request);
+    case Op::unsubscribe:
+      for (const std::uint32_t id : request->ids)
+        if (const std::string why = viewers_->unsubscribe(viewer, id); !why.empty()) refuse(viewer, why);
+      return;
+    case Op::advertise:
+      return advertise(viewer, found->second, *request);
+    case Op::unadvertise:
+      for (const std::uint32_t id : request->ids)
+        if (found->second.publishes.erase(id) == 0)
+          refuse(viewer, fmt::format("channel {} was not advertised", id));
+      return;
+    case Op::get_parameters:
+    case Op::subscribe_parameters:  // they change by this server only
+      return get_parameters(viewer, *request);
+    case Op::set_parameters:
+      return set_parameters(viewer, found->second, *request);
+    case Op::unsubscribe_parameters:
+      return;
+  }
+}
+
+void Sessions::subscribe(ViewerId viewer, const foxglove::Request& request) {
+  for (const foxglove::Subscription& subscription : request.subscriptions)
+    if (const std::string why = viewers_->subscribe(viewer, subscription); !why.empty()) refuse(viewer, why);
+}
+
+void Sessions::advertise(ViewerId id, Viewer& viewer, const foxglove::Request& request) {
+  for (const foxglove::ClientChannel& channel : request.channels) {
+    const bool of_bar = options_.playback && channel.topic == playback_topic;
+    if (!viewer.commands && !of_bar) {
+      refuse(id, no_commands);
+    } else if (channel.encoding != "json") {
+      refuse(id, fmt::format("{}: encoding '{}': only json is taken", channel.topic, channel.encoding));
+    } else if (viewer.publishes.size() >= most_channels) {
+      refuse(id, fmt::format("{} channels of a viewer are the most", most_channels));
+    } else if (!viewer.publishes.try_emplace(channel.id, channel.topic).second) {
+      refuse(id, fmt::format("channel {} was advertised already", channel.id));
+    }
+  }
+}
+
+void Sessions::get_parameters(ViewerId viewer, const foxglove::Request& request) {
+  std::vector<foxglove::Parameter> parameters;
+  if (request.names.empty()) {
+    for (const protocol::Topic& topic : catalogue_->topics)
+      if (topic.kind == protocol::Kind::sensor)
+        parameters.push_back({fmt::format("/{}{}", topic.name, period_suffix), {}});
+  }
+  for (const std::string& name : request.names)
+    if (sensor_of(*catalogue_, name) != nullptr) parameters.push_back({name, {}});
+  viewers_->tell(viewer, foxglove::parameter_values(parameters, request.request));
+}
+
+void Sessions::set_parameters(ViewerId id, const Viewer& viewer, const foxglove::Request& request) {
+  if (!viewer.commands) return refuse(id, no_commands);
+  for (const foxglove::Parameter& parameter : request.parameters)
+    if (sensor_of(*catalogue_, parameter.name) == nullptr)
+      refuse(id, fmt::format("there is no parameter {}", parameter.name));
+    else
+      put({Order::Kind::parameter, id, parameter.name, {}, parameter.value.value_or(0)});
+  if (!request.request.empty())
+    viewers_->tell(id, foxglove::parameter_values(request.parameters, request.request));
+}
+
+void Sessions::binary(ViewerId viewer, std::string_view message) {
+  const auto found = open_.find(viewer);
+  if (found == open_.end()) return;
+  const auto published = foxglove::parse_binary(message);
+  if (!published) return refuse(viewer, published.error);
+  const auto topic = found->second.publishes.find(published->channel);
+  if (topic == found->second.publishes.end())
+    return refuse(viewer, fmt::format("channel {} was not advertised", published->channel));
+  const bool of_bar = options_.playback && topic->second == playback_topic;
+  put({of_bar ? Order::Kind::playback : Order::Kind::publish, viewer, topic->second,
+       std::string{published->payload}});
+}
+
+}  // namespace ocm::cli::serve

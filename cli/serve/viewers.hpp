@@ -1,0 +1,123 @@
+/// One producer and many viewers: each message is kept once, in one bounded queue, and each viewer reads the
+/// queue at its own pace. A viewer that is slower than the queue is long jumps to what is there; what it has
+/// lost is counted. It slows neither the producer nor other viewers. Knows no socket.
+///
+/// All may be called from any thread. O(1) for the producer, however many viewers there are.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "ocm/base/time.hpp"
+
+#include "cli/serve/foxglove.hpp"
+
+namespace ocm::cli::serve {
+
+/// How much the queue holds.
+struct QueueLimits {
+  std::size_t bytes = 8U << 20;
+  std::size_t messages = 1U << 15;
+};
+
+/// A viewer, as long as it is there; a number is never given twice.
+using ViewerId = std::uint64_t;
+
+class Viewers {
+ public:
+  /// Of channels 0..channels-1.
+  explicit Viewers(std::size_t channels, QueueLimits limits = {});
+
+  // For the producer.
+
+  /// Whether a viewer has subscribed to the channel: what has none need not be made.
+  [[nodiscard]] bool wanted(std::uint32_t channel) const noexcept {
+    return wanted_[channel].load(std::memory_order_relaxed) != 0;
+  }
+  /// Puts a message into the queue; nothing where it is not wanted.
+  void publish(std::uint32_t channel, std::uint64_t time_ns, std::string payload);
+  /// The same of what is a state: who subscribes later gets the newest at once.
+  void publish_state(std::uint32_t channel, std::uint64_t time_ns, std::string payload);
+  /// A text to one viewer, or with 0 to all; of a viewer that takes none, the oldest go.
+  void tell(ViewerId viewer, std::string text);
+
+  // For who sends.
+
+  [[nodiscard]] ViewerId add();
+  void remove(ViewerId viewer);
+  [[nodiscard]] std::size_t count() const;
+  /// The error says what is wrong: no such channel, or an id or a channel for the second time.
+  [[nodiscard]] std::string subscribe(ViewerId viewer, foxglove::Subscription subscription);
+  [[nodiscard]] std::string unsubscribe(ViewerId viewer, std::uint32_t subscription);
+
+  struct Outgoing {
+    bool binary = false;
+    /// Of a binary message: what precedes the payload, which differs from viewer to viewer.
+    foxglove::MessageHead head{};
+    std::shared_ptr<const std::string> payload;
+  };
+  /// What the viewer is to be sent next; none: it has all. Loss is told by a status first, at most once
+  /// a second of `now`.
+  [[nodiscard]] std::optional<Outgoing> next(ViewerId viewer, base::Time now);
+  /// Whether `next` may have something.
+  [[nodiscard]] bool has_next(ViewerId viewer) const;
+
+  /// Messages that viewers have lost, those that have gone included.
+  [[nodiscard]] std::uint64_t lost() const;
+  /// Of one viewer.
+  [[nodiscard]] std::uint64_t lost(ViewerId viewer) const;
+  /// Bytes in the queue.
+  [[nodiscard]] std::size_t size() const;
+
+ private:
+  using Payload = std::shared_ptr<const std::string>;
+  struct Message {
+    std::uint32_t channel = 0;
+    std::uint64_t number = 0;  ///< of its channel, from 0: a gap is a loss
+    std::uint64_t time_ns = 0;
+    Payload payload;
+  };
+  struct Subscribed {
+    std::uint32_t id = 0;
+    std::uint64_t next = 0;  ///< number of the message that it is to get
+  };
+  struct Viewer {
+    std::uint64_t cursor = 0;  ///< place in the queue, counted from the first message of all
+    std::vector<std::optional<Subscribed>> by_channel;
+    std::map<std::uint32_t, std::uint32_t> channels;  ///< by the subscription's id
+    std::deque<Payload> texts;
+    /// The newest of what it has just subscribed to, with the subscription.
+    std::deque<std::pair<std::uint32_t, Outgoing>> states;
+    std::uint64_t lost = 0;
+    std::uint64_t told = 0;  ///< of these
+    base::Time told_at{};
+  };
+
+  void put(std::uint32_t channel, std::uint64_t time_ns, Payload payload);
+  void tell(Viewer& viewer, Payload text);
+  std::optional<Outgoing> from_queue(Viewer& viewer);
+
+  QueueLimits limits_;
+  std::vector<std::atomic<std::uint32_t>> wanted_;
+  mutable std::mutex mutex_;
+  std::deque<Message> queue_;
+  std::uint64_t first_ = 0;  ///< place of queue_.front()
+  std::size_t bytes_ = 0;
+  std::vector<std::uint64_t> numbers_;          ///< of the next message of each channel
+  std::vector<std::optional<Message>> newest_;  ///< of channels that are states
+  std::map<ViewerId, Viewer> viewers_;
+  ViewerId last_id_ = 0;
+  std::uint64_t lost_ = 0;
+};
+
+}  // namespace ocm::cli::serve

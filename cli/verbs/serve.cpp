@@ -1,0 +1,104 @@
+/// A page that shows bus and robot in a browser, live or from a log.
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "cli/logs/format.hpp"
+#include "cli/serve/server.hpp"
+#include "cli/shared/messages.hpp"
+#include "cli/shared/values.hpp"
+#include "cli/verbs/verbs.hpp"
+#include "cli/watch/watching.hpp"
+
+namespace ocm::cli {
+namespace {
+
+struct GivenToServe {
+  std::vector<std::string> words;
+  std::uint32_t port = 8484;
+  serve::ServeOptions options;
+};
+
+bool is_loopback(const std::string& address) {
+  return address == "::1" || address.starts_with("127.");
+}
+
+void serve_given(Session& session, GivenToServe& given, int& exit_code) {
+  serve::ServeOptions& options = given.options;
+  serve::WebOptions& web = options.web;
+  const Words words = split_words("serve", given.words, [](std::string_view) { return false; });
+  if (!words.others.empty())
+    fail({fmt::format("serve: {} is no log", words.others[0]), "name a log, or nothing for the bus"},
+         exit_usage);
+  if (words.files.size() > 1)
+    fail({fmt::format("serve: {} and {} are two logs", words.files[0], words.files[1]),
+          "name one; amiroctl convert puts several into one"},
+         exit_usage);
+  if (!words.files.empty()) options.log = words.files[0];
+  if (options.log.empty() && !options.format.empty())
+    fail({"--from " + options.format + " is the format of a log, and there is none",
+          "name the log, or drop --from"},
+         exit_usage);
+  if (!options.log.empty() && options.commands)
+    fail({"serve: --allow-commands and a log: there is nothing to command", "drop one of them"}, exit_usage);
+  if (web.certificate.empty() != web.key.empty())
+    fail({fmt::format("serve: {} without {}", web.key.empty() ? "--certificate" : "--key",
+                      web.key.empty() ? "--key" : "--certificate"),
+          "give both, as PEM files"},
+         exit_usage);
+  if (!is_loopback(web.address)) {
+    if (web.certificate.empty())
+      fail(
+          {fmt::format("serve: --address {} is open to other machines, and without TLS all that they see and "
+                       "send is open, too",
+                       web.address),
+           "give --certificate and --key, or leave --address out: ssh -L 8484:localhost:8484 ROBOT brings "
+           "the page "
+           "to your machine"},
+          exit_usage);
+    web.token_to_view = true;
+  }
+  web.port = static_cast<std::uint16_t>(given.port);
+  exit_code = serve::run(session, std::move(options));
+}
+
+}  // namespace
+
+void add_serve(Verb app, Session& session, int& exit_code) {
+  auto verb = app.add_verb("serve", "bus and robot in a browser, live or from a log", watch_group,
+                           "  amiroctl serve                     prints the address to open\n"
+                           "  amiroctl serve --allow-commands    with buttons and keys to drive\n"
+                           "  amiroctl serve drive.log           played, with a bar to wind it\n"
+                           "  amiroctl serve --spec car.dbc");
+  const auto given = std::make_shared<GivenToServe>();
+  serve::ServeOptions& options = given->options;
+  verb.add_option("words", given->words, "a log, any format; none, or live: the bus")
+      .type_name("[FILE|live]");
+  verb.add_option("--from", options.format, "format of the log; default: what it begins with says it")
+      .type_name("FORMAT")
+      .takes(accepted_words(logs::readable_formats()));
+  verb.add_option("--port", given->port, "of TCP; 0: any that is free").range(0U, 65535U).show_default();
+  verb.add_flag("--allow-commands", options.commands,
+                "who opens the address that is printed may drive, and command all else");
+  verb.add_option("--address", options.web.address, "an address of this machine; all but 127.0.0.1 need TLS")
+      .type_name("ADDRESS")
+      .show_default();
+  verb.add_option("--name", options.web.names, "a name by which browsers reach this machine")
+      .type_name("HOST")
+      .one_a_mention();
+  verb.add_option("--allow-origin", options.web.origins, "another page that may connect, such as Foxglove's")
+      .type_name("URL")
+      .one_a_mention();
+  verb.add_option("--certificate", options.web.certificate, "TLS: the certificate, PEM").type_name("FILE");
+  verb.add_option("--key", options.web.key, "TLS: its private key, PEM").type_name("FILE");
+  add_bit_rate(verb, "--bitrate", options.bit_rate,
+               "for the load, such as 500k; default: what the bus says, else the spec");
+  add_data_bit_rate(verb, "--data-bitrate", options.data_bit_rate,
+                    "of CAN FD behind its bit-rate switch, such as 2M; default: the spec's");
+  verb.callback([given, &session, &exit_code] { serve_given(session, *given, exit_code); });
+}
+
+}  // namespace ocm::cli

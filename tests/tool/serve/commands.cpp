@@ -1,0 +1,82 @@
+#include "cli/serve/commands.hpp"
+
+#include <string>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/topics/amiro.hpp"
+
+namespace serve_commands_test {
+
+using ocm::cli::serve::command_of;
+using ocm::cli::serve::period_command;
+using ocm::cli::serve::playback_of;
+
+const auto& catalogue = amiro::catalogue;
+
+TEST_CASE("serve: fields that are published become a set point, in the spec's units") {
+  const auto drive = command_of(catalogue, "/motors", R"({"x":0.1,"z":-5e-1})");
+  REQUIRE(drive);
+  REQUIRE(drive->hold);
+  CHECK(drive->frames.empty());
+  CHECK(drive->hold->frame.id == 0x201);
+  CHECK(drive->hold->frame.data == ocm::can::Payload{0xA0, 0x86, 0x01, 0x00, 0xE0, 0x5E, 0xF8, 0xFF});
+  CHECK(drive->hold->rest.data == ocm::can::Payload{});
+  const auto light = command_of(catalogue, "/led_2", R"({"red":255,"blue":1})");
+  REQUIRE(light);
+  CHECK_FALSE(light->hold);
+  REQUIRE(light->frames.size() == 1);
+  CHECK(light->frames[0].data[0] == 255);
+  CHECK(light->frames[0].data[2] == 1);
+}
+
+TEST_CASE("serve: lines are those of a script, of what is sent once") {
+  const auto line = command_of(catalogue, "/ocm/command", R"({"line":"  publish gyro   50ms "})");
+  REQUIRE(line);
+  CHECK(line->frames.size() == 1);
+  CHECK(command_of(catalogue, "/ocm/command", R"({"line":"stop all"})")->ends_hold);
+  CHECK_FALSE(command_of(catalogue, "/ocm/command", R"({"line":"drive 0.1m/s"})"));
+  CHECK_FALSE(command_of(catalogue, "/ocm/command", R"({"line":"set led_1 red=1 --every 10ms"})"));
+  CHECK(command_of(catalogue, "/ocm/command", R"({"line":"fly"})").error.find("'fly'") != std::string::npos);
+  CHECK_FALSE(command_of(catalogue, "/ocm/command", R"({"line":""})"));
+  CHECK_FALSE(command_of(catalogue, "/ocm/command", R"({"words":1})"));
+}
+
+TEST_CASE("serve: what cannot be commanded is refused in words") {
+  CHECK(command_of(catalogue, "/gyroscope", "{}").error.find("takes nothing") != std::string::npos);
+  CHECK_FALSE(command_of(catalogue, "/unheard", "{}"));
+  CHECK_FALSE(command_of(catalogue, "", "{}"));
+  CHECK_FALSE(command_of(catalogue, "/motors", "0.1"));
+  CHECK_FALSE(command_of(catalogue, "/motors", R"({"x":)"));
+  CHECK(command_of(catalogue, "/motors", R"({"y":1})").error.find("y") != std::string::npos);
+  CHECK_FALSE(command_of(catalogue, "/motors", R"({"x":1e300})"));
+  CHECK_FALSE(command_of(catalogue, "/motors", R"({"x":[1]})"));
+  CHECK_FALSE(command_of(catalogue, "/motors", R"({"x":"fast"})"));
+}
+
+TEST_CASE("serve: a parameter is a period in milliseconds") {
+  CHECK(period_command(catalogue, "gyroscope", 50)->frames[0] ==
+        command_of(catalogue, "/ocm/command", R"({"line":"publish gyro 50ms"})")->frames[0]);
+  CHECK(period_command(catalogue, "gyroscope", 1.25)->frames[0] ==
+        command_of(catalogue, "/ocm/command", R"({"line":"publish gyro 1250us"})")->frames[0]);
+  CHECK(period_command(catalogue, "gyroscope", 0)->frames[0] ==
+        command_of(catalogue, "/ocm/command", R"({"line":"stop gyro"})")->frames[0]);
+  CHECK_FALSE(period_command(catalogue, "gyroscope", -1));
+  CHECK_FALSE(period_command(catalogue, "gyroscope", 1e12));
+}
+
+TEST_CASE("serve: a time bar") {
+  const auto all = playback_of(R"({"at_s":12.5,"speed":2,"paused":true})");
+  REQUIRE(all);
+  CHECK(all->at_s == 12.5);
+  CHECK(all->speed == 2);
+  CHECK(all->paused == 1);
+  CHECK(playback_of("{}")->paused == -1);
+  for (const char* const text :
+       {R"({"at_s":-1})", R"({"speed":0})", R"({"speed":1e9})", R"({"paused":1})", R"({"x":1})", "[]"}) {
+    INFO(text);
+    CHECK_FALSE(playback_of(text));
+  }
+}
+
+}  // namespace serve_commands_test

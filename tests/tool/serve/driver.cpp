@@ -1,0 +1,94 @@
+#include "cli/serve/driver.hpp"
+
+#include <chrono>
+
+#include <catch2/catch.hpp>
+
+namespace serve_driver_test {
+
+using namespace std::chrono_literals;
+using ocm::can::Frame;
+using ocm::cli::Clock;
+using ocm::cli::serve::Driver;
+
+constexpr Clock::time_point begin{1h};
+
+ocm::client::Hold hold(int speed, std::uint32_t id = 0x201) {
+  Frame frame;
+  frame.id = id;
+  frame.dlc = 8;
+  Frame rest = frame;
+  frame.data[0] = static_cast<std::uint8_t>(speed);
+  return {frame, rest, {}};
+}
+
+TEST_CASE("driver: a set point is repeated while its viewer goes on, and rests behind it") {
+  Driver driver;
+  Driver::Frames out;
+  CHECK(driver.drive(1, hold(5), begin, out).empty());
+  REQUIRE(out.size() == 1);
+  CHECK(out[0].data[0] == 5);
+  CHECK(driver.next() == begin + 100ms);
+  out.clear();
+  CHECK_FALSE(driver.advance(begin + 99ms, out));
+  CHECK(out.empty());
+  // The same again keeps it going, and adds nothing to the bus.
+  CHECK(driver.drive(1, hold(5), begin + 100ms, out).empty());
+  CHECK(out.empty());
+  CHECK_FALSE(driver.advance(begin + 100ms, out));
+  REQUIRE(out.size() == 1);
+  CHECK(out[0].data[0] == 5);
+  out.clear();
+  CHECK(driver.drive(1, hold(7), begin + 150ms, out).empty());  // another speed, at once
+  REQUIRE(out.size() == 1);
+  CHECK(out[0].data[0] == 7);
+  out.clear();
+  CHECK_FALSE(driver.advance(begin + 649ms, out));
+  out.clear();
+  CHECK(driver.advance(begin + 650ms, out));  // half a second after its last word
+  REQUIRE(out.size() == 1);
+  CHECK(out[0] == hold(0).rest);
+  CHECK_FALSE(driver.drives());
+  CHECK_FALSE(driver.next());
+}
+
+TEST_CASE("driver: one drives at a time, and all may stop") {
+  Driver driver;
+  Driver::Frames out;
+  REQUIRE(driver.drive(1, hold(5), begin, out).empty());
+  out.clear();
+  CHECK(driver.drive(2, hold(9), begin, out) == "another viewer drives; stop it first, or wait");
+  CHECK(out.empty());
+  CHECK(driver.drive(2, hold(9, 0x202), begin, out).empty());  // other motors
+  out.clear();
+  CHECK(driver.drive(2, hold(0), begin, out).empty());
+  REQUIRE(out.size() == 1);
+  CHECK(out[0] == hold(0).rest);
+  CHECK_FALSE(driver.holds(0x201));
+  CHECK(driver.holds(0x202));
+  out.clear();
+  CHECK(driver.drive(3, hold(0, 0x203), begin, out).empty());  // rest is never held back
+  CHECK(out.size() == 1);
+  out.clear();
+  driver.rest(out);
+  REQUIRE(out.size() == 1);
+  CHECK(out[0] == hold(0, 0x202).rest);
+  CHECK_FALSE(driver.drives());
+}
+
+TEST_CASE("driver: what a viewer drove rests when it has gone") {
+  Driver driver;
+  Driver::Frames out;
+  REQUIRE(driver.drive(1, hold(5), begin, out).empty());
+  REQUIRE(driver.drive(2, hold(6, 0x202), begin, out).empty());
+  out.clear();
+  driver.gone(1, out);
+  REQUIRE(out.size() == 1);
+  CHECK(out[0] == hold(0).rest);
+  CHECK(driver.drives());
+  out.clear();
+  driver.gone(1, out);
+  CHECK(out.empty());
+}
+
+}  // namespace serve_driver_test

@@ -1,0 +1,89 @@
+#include "cli/serve/foxglove.hpp"
+
+#include <string>
+
+#include <catch2/catch.hpp>
+
+namespace serve_foxglove_test {
+
+using namespace ocm::cli::serve::foxglove;
+using Op = Request::Op;
+
+TEST_CASE("foxglove: what the server says") {
+  CHECK(server_info({"AMiRo, sim", "s1", false, false}) ==
+        R"({"op":"serverInfo","name":"AMiRo, sim","capabilities":[],"metadata":{},"sessionId":"s1"})");
+  CHECK(
+      server_info({"A", "s", true, true}) ==
+      R"({"op":"serverInfo","name":"A","capabilities":["clientPublish","parameters","parametersSubscribe"],)"
+      R"("supportedEncodings":["json"],"metadata":{},"sessionId":"s"})");
+  const Channel channel{7, "/gyroscope", "AMiRo.gyroscope", R"({"type":"object"})"};
+  CHECK(
+      advertise({&channel, 1}) ==
+      R"({"op":"advertise","channels":[{"id":7,"topic":"/gyroscope","encoding":"json",)"
+      R"("schemaName":"AMiRo.gyroscope","schemaEncoding":"jsonschema","schema":"{\"type\":\"object\"}"}]})");
+  CHECK(status(Level::warning, "slow", "loss") ==
+        R"({"op":"status","level":1,"message":"slow","id":"loss"})");
+  CHECK(status(Level::error, "no") == R"({"op":"status","level":2,"message":"no"})");
+  const Parameter parameters[] = {{"/gyroscope/period_ms", 50.0}, {"/odometry/period_ms", {}}};
+  CHECK(
+      parameter_values(parameters, "r") ==
+      R"({"op":"parameterValues","parameters":[{"name":"/gyroscope/period_ms","value":50.0,"type":"float64"},)"
+      R"({"name":"/odometry/period_ms"}],"id":"r"})");
+  CHECK(message_head(0x04030201, 0x0807060504030201) == MessageHead{1, 1, 2, 3, 4, 1, 2, 3, 4, 5, 6, 7, 8});
+}
+
+TEST_CASE("foxglove: what a client asks") {
+  const auto subscribe =
+      parse(R"({"op":"subscribe","subscriptions":[{"id":0,"channelId":3},{"id":4294967295,"channelId":1}]})");
+  REQUIRE(subscribe);
+  CHECK(subscribe->op == Op::subscribe);
+  REQUIRE(subscribe->subscriptions.size() == 2);
+  CHECK(subscribe->subscriptions[1].id == 4294967295U);
+  CHECK(subscribe->subscriptions[1].channel == 1);
+  const auto unsubscribe = parse(R"({"op":"unsubscribe","subscriptionIds":[1,2]})");
+  REQUIRE(unsubscribe);
+  CHECK(unsubscribe->ids == std::vector<std::uint32_t>{1, 2});
+  const auto advertised = parse(
+      R"({"op":"advertise","channels":[{"id":2,"topic":"/motors","encoding":"json","schemaName":""}]})");
+  REQUIRE(advertised);
+  CHECK(advertised->channels[0].topic == "/motors");
+  const auto set = parse(
+      R"({"op":"setParameters","parameters":[{"name":"/gyroscope/period_ms","value":2.5e1}],"id":"x"})");
+  REQUIRE(set);
+  CHECK(set->parameters[0].value == 25.0);
+  CHECK(set->request == "x");
+  CHECK(parse(R"({"op":"getParameters","parameterNames":["a"]})")->names[0] == "a");
+}
+
+TEST_CASE("foxglove: what is no request is refused in words") {
+  for (const char* const text :
+       {"", "{", "[]", "null", R"({"op":1})", R"({"op":"subscribe"})",
+        R"({"op":"subscribe","subscriptions":{}})",
+        R"({"op":"subscribe","subscriptions":[{"id":-1,"channelId":0}]})",
+        R"({"op":"subscribe","subscriptions":[{"id":1.5,"channelId":0}]})",
+        R"({"op":"subscribe","subscriptions":[{"id":4294967296,"channelId":0}]})",
+        R"({"op":"subscribe","subscriptions":[3]})", R"({"op":"unsubscribe","subscriptionIds":["1"]})",
+        R"({"op":"setParameters","parameters":[{"name":"a","value":"b"}]})", R"({"op":"fly"})"}) {
+    INFO(text);
+    const auto request = parse(text);
+    CHECK_FALSE(request);
+    CHECK_FALSE(request.error.empty());
+  }
+  CHECK(parse(R"({"op":"fly"})").error == "'fly' is nothing that this server does");
+  std::string deep(100, '[');
+  CHECK_FALSE(parse(deep));
+}
+
+TEST_CASE("foxglove: what a client publishes") {
+  using namespace std::string_view_literals;
+  const auto published = parse_binary("\x01\x02\x01\x00\x00{}"sv);
+  REQUIRE(published);
+  CHECK(published->channel == 258);
+  CHECK(published->payload == "{}");
+  CHECK(parse_binary("\x01\x02\x01\x00\x00"sv)->payload.empty());
+  CHECK_FALSE(parse_binary("\x01\x02\x01\x00"sv));
+  CHECK_FALSE(parse_binary("\x02\x02\x01\x00\x00{}"sv));
+  CHECK_FALSE(parse_binary(""sv));
+}
+
+}  // namespace serve_foxglove_test

@@ -1,0 +1,138 @@
+#include "cli/serve/sessions.hpp"
+
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/topics/amiro.hpp"
+
+namespace serve_sessions_test {
+
+using namespace ocm::cli::serve;
+using namespace std::string_literals;
+
+/// A server of the AMiRo's topics, and what it says to a viewer.
+struct Server {
+  explicit Server(bool commands, bool playback = false)
+      : sessions{{"AMiRo", "s", commands, playback}, amiro::catalogue, channels, viewers, orders} {}
+
+  ViewerId open(bool token) {
+    const ViewerId viewer = viewers.add();
+    sessions.opened(viewer, token);
+    return viewer;
+  }
+  std::vector<std::string> said(ViewerId viewer) {
+    std::vector<std::string> texts;
+    while (const auto message = viewers.next(viewer, ocm::base::Time{})) texts.push_back(*message->payload);
+    return texts;
+  }
+  bool says(ViewerId viewer, std::string_view words) {
+    for (const std::string& text : said(viewer))
+      if (text.find(words) != std::string::npos) return true;
+    return false;
+  }
+
+  Channels channels{amiro::catalogue, std::vector{"sim"s}};
+  Viewers viewers{channels.all().size()};
+  Orders orders;
+  Sessions sessions;
+};
+
+const std::string advertise_motors =
+    R"({"op":"advertise","channels":[{"id":1,"topic":"/motors","encoding":"json","schemaName":""}]})";
+const std::string drive_message = "\x01\x01\0\0\0{\"x\":0.1}"s;
+
+TEST_CASE("sessions: who connects gets server and channels") {
+  Server server{false};
+  const ViewerId viewer = server.open(false);
+  const auto said = server.said(viewer);
+  REQUIRE(said.size() == 2);
+  CHECK(said[0].find(R"("op":"serverInfo")") != std::string::npos);
+  CHECK(said[0].find("clientPublish") == std::string::npos);
+  CHECK(said[1].find(R"("topic":"/gyroscope")") != std::string::npos);
+  CHECK(said[1].find(R"("topic":"/ocm/robot")") != std::string::npos);
+}
+
+TEST_CASE("sessions: no command without the token, nor without a server that takes any") {
+  for (const auto& [server_takes, token] : {std::pair{false, true}, {true, false}, {false, false}}) {
+    Server server{server_takes};
+    const ViewerId viewer = server.open(token);
+    CHECK_FALSE(server.says(viewer, "clientPublish"));
+    server.sessions.text(viewer, advertise_motors);
+    CHECK(server.says(viewer, "may only look"));
+    server.sessions.binary(viewer, drive_message);
+    CHECK(server.says(viewer, "was not advertised"));
+    server.sessions.text(
+        viewer, R"({"op":"setParameters","parameters":[{"name":"/gyroscope/period_ms","value":5}]})");
+    CHECK(server.says(viewer, "may only look"));
+    CHECK(server.orders.take().empty());
+  }
+  Server server{true};
+  const ViewerId viewer = server.open(true);
+  CHECK(server.says(viewer, "clientPublish"));
+  server.sessions.text(viewer, advertise_motors);
+  server.sessions.binary(viewer, drive_message);
+  server.sessions.text(
+      viewer,
+      R"({"op":"setParameters","parameters":[{"name":"/gyroscope/period_ms","value":5},{"name":"/x","value":1}]})");
+  CHECK(server.says(viewer, "there is no parameter /x"));
+  const auto orders = server.orders.take();
+  REQUIRE(orders.size() == 2);
+  CHECK(orders[0].kind == Order::Kind::publish);
+  CHECK(orders[0].viewer == viewer);
+  CHECK(orders[0].topic == "/motors");
+  CHECK(orders[0].payload == R"({"x":0.1})");
+  CHECK(orders[1].kind == Order::Kind::parameter);
+  CHECK(orders[1].value == 5);
+}
+
+TEST_CASE("sessions: a log's time bar is for all, and for nothing else") {
+  Server server{false, true};
+  const ViewerId viewer = server.open(false);
+  CHECK(server.says(viewer, "clientPublish"));
+  server.sessions.text(
+      viewer,
+      R"({"op":"advertise","channels":[{"id":3,"topic":"/ocm/playback","encoding":"json","schemaName":""}]})");
+  server.sessions.text(viewer, advertise_motors);
+  CHECK(server.says(viewer, "may only look"));
+  server.sessions.binary(viewer, "\x01\x03\0\0\0{\"at_s\":1}"s);
+  const auto orders = server.orders.take();
+  REQUIRE(orders.size() == 1);
+  CHECK(orders[0].kind == Order::Kind::playback);
+}
+
+TEST_CASE("sessions: a flood of orders is bounded, and who has gone is known all the same") {
+  Server server{true};
+  const ViewerId viewer = server.open(true);
+  server.said(viewer);
+  server.sessions.text(viewer, advertise_motors);
+  for (std::size_t i = 0; i < Orders::most + 10; ++i) server.sessions.binary(viewer, drive_message);
+  CHECK(server.says(viewer, "too many commands"));
+  server.sessions.gone(viewer);
+  const auto orders = server.orders.take();
+  CHECK(orders.size() == Orders::most + 1);
+  CHECK(orders.back().kind == Order::Kind::gone);
+  for (int id = 2; id < 80; ++id) {
+    const ViewerId other = id == 2 ? server.open(true) : viewer + 1;
+    server.sessions.text(other, R"({"op":"advertise","channels":[{"id":)" + std::to_string(id) +
+                                    R"(,"topic":"/motors","encoding":"json","schemaName":""}]})");
+  }
+  CHECK(server.says(viewer + 1, "64 channels of a viewer are the most"));
+}
+
+TEST_CASE("sessions: whatever is no request is told") {
+  Server server{true};
+  const ViewerId viewer = server.open(true);
+  server.said(viewer);
+  server.sessions.text(viewer, "{");
+  CHECK(server.says(viewer, "no JSON"));
+  server.sessions.binary(viewer, "");
+  CHECK(server.says(viewer, "a binary message"));
+  server.sessions.text(viewer, R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":9999}]})");
+  CHECK(server.says(viewer, "there is no channel 9999"));
+  server.sessions.text(viewer, R"({"op":"getParameters","parameterNames":[],"id":"r"})");
+  CHECK(server.says(viewer, "/gyroscope/period_ms"));
+}
+
+}  // namespace serve_sessions_test

@@ -1,0 +1,456 @@
+"""amiroctl serve as browsers and Foxglove meet it: real sockets, real TLS, and viewers that stop or go."""
+
+import http.client
+import json
+import os
+import re
+import signal
+import ssl
+import subprocess
+import sys
+import time
+
+import harness
+import websocket
+
+
+class Serve(harness.Case):
+    def serve(self, *arguments, tool=()):
+        """Starts it on a free port; returns the process, the port and the token."""
+        server = self.start(*tool, "serve", "--port", "0", *arguments)
+        line = server.stdout.readline()
+        self.assertRegex(line, r"^https?://[^/]+:\d+/(#[0-9a-f]{32})?\n$", server.poll())
+        address, _, token = line.strip().partition("#")
+        return server, int(re.search(r":(\d+)/", address)[1]), token
+
+    def get(self, port, path="/", method="GET", **headers):
+        connection = http.client.HTTPConnection("127.0.0.1", port, timeout=10)
+        connection.request(method, path, headers={"Host": f"127.0.0.1:{port}", **headers})
+        try:
+            answer = connection.getresponse()
+            body = answer.read()
+        except http.client.RemoteDisconnected:  # such a request is not answered at all
+            return 0, {}, b""
+        finally:
+            connection.close()
+        return answer.status, dict((name.lower(), value) for name, value in answer.getheaders()), body
+
+    def viewer(self, port, token="", **options):
+        viewer = websocket.Viewer(port, f"/?token={token}" if token else "/", **options)
+        self.addCleanup(viewer.close)
+        return viewer
+
+    def log(self, count=300):
+        """Gyroscope every 100 ms, whose x counts up."""
+        path = os.path.join(self.folder, "drive.log")
+        with open(path, "w", encoding="ascii") as file:
+            for i in range(count):
+                file.write(f"({1000 + i / 10:.6f}) can0 608#{i % 256:02X}{i // 256:02X}00000000\n")
+        return path
+
+    def state(self, viewer, topic, test, what):
+        """The first state on a topic that passes the test."""
+        end = time.monotonic() + 30
+        while time.monotonic() < end:
+            message = viewer.message(topic)
+            self.assertIsNotNone(message, what)
+            if test(message.fields):
+                return message.fields
+        return self.fail(f"{what}: not within 30 s")
+
+    # --- the page ---
+
+    def test_the_page_and_nothing_else(self):
+        self.start_sim("--frozen")
+        _, port, token = self.serve()
+        self.assertEqual(token, "")  # nothing to protect
+        status, headers, body = self.get(port)
+        self.assertEqual(status, 200)
+        self.assertIn(b"<!doctype html>", body)
+        policy = headers["content-security-policy"]
+        for part in ("default-src 'none'", "script-src 'self'", "style-src 'self'", "connect-src 'self'", "frame-ancestors 'none'"):
+            self.assertIn(part, policy)
+        self.assertNotIn("unsafe", policy)
+        self.assertEqual(headers["x-content-type-options"], "nosniff")
+        files = set(re.findall(rb'(?:src|href)="([^":]+\.\w+)"', body))
+        self.assertIn(b"dygraph.min.js", files)
+        for name in files:
+            status, headers, got = self.get(port, "/" + name.decode())
+            self.assertEqual((status, len(got)), (200, int(headers["content-length"])), name)
+        with open("/usr/share/javascript/dygraphs/dygraph.min.js", "rb") as file:
+            self.assertEqual(self.get(port, "/dygraph.min.js")[2], file.read())
+        for path in ("/etc/passwd", "/../../etc/passwd", "/%2e%2e/%2e%2e/etc/passwd", "/page", "/page.js/", "//page.js/x", "/index.html%00", "/x" * 500):
+            self.assertIn(self.get(port, path)[0], (0, 403, 404), path)
+        status, headers, body = self.get(port, "/page.css", "HEAD")
+        self.assertEqual((status, body), (200, b""))
+        self.assertGreater(int(headers["content-length"]), 1000)
+        for method in ("POST", "PUT", "DELETE", "OPTIONS"):
+            self.assertNotIn(self.get(port, "/", method)[0], range(100, 400), method)
+        self.assertEqual(self.get(port)[0], 200)  # it goes on
+
+    def test_host_origin_and_subprotocol(self):
+        self.start_sim("--frozen")
+        _, port, _ = self.serve("--name", "robot.example", "--allow-origin", "https://app.example.org")
+        own = f"http://127.0.0.1:{port}"
+        for host, status in ((f"localhost:{port}", 200), (f"robot.example:{port}", 200), ("evil.example", 403),
+                             (f"evil.example:{port}", 403), (f"127.0.0.1.evil.example:{port}", 403)):
+            self.assertEqual(self.get(port, Host=host)[0], status, host)
+        for origin, host in ((own, None), (None, None), ("https://app.example.org", None),
+                             (f"http://robot.example:{port}", f"robot.example:{port}")):
+            self.assertIn("/gyroscope", self.viewer(port, origin=origin, host=host).channels)
+        for options in ({"origin": "https://evil.example"}, {"origin": "null"}, {"origin": own + "1"}, {"origin": f"https://127.0.0.1:{port}"},
+                        {"host": "evil.example", "origin": "http://evil.example"}, {"offer": None}, {"offer": "chat"}):
+            with self.assertRaises(websocket.Refused, msg=options) as refused:
+                websocket.Viewer(port, **options)
+            self.assertNotEqual(refused.exception.status, 101)
+        self.assertEqual(self.viewer(port, offer="chat, foxglove.sdk.v1").protocol, "foxglove.sdk.v1")
+
+    def test_messages_have_a_bound(self):
+        self.start_sim("--frozen")
+        _, port, _ = self.serve()
+        viewer = self.viewer(port)
+        viewer.send_frame(1, b"x" * 70_000)
+        self.assertIsNone(viewer.text("none"))
+        self.assertEqual(viewer.closed, 1009)
+        pieces = self.viewer(port)
+        pieces.send_frame(1, b"{" + b" " * 40_000, final=False)
+        try:
+            for _ in range(8):
+                pieces.send_frame(0, b" " * 40_000, final=False)
+        except OSError:
+            pass  # hung up meanwhile
+        self.assertIsNone(pieces.text("none"))
+        fine = self.viewer(port)
+        fine.send_frame(1, b'{"op":"subscr', final=False)
+        fine.send_frame(0, b'ibe","subscriptions":[{"id":1,"channelId":9999}]}')
+        self.assertIn("there is no channel 9999", fine.text("status")["message"])
+        not_text = self.viewer(port)
+        not_text.send_frame(1, b"\xff\xfe")
+        self.assertIsNone(not_text.text("none"))
+
+    # --- values ---
+
+    def test_values_are_those_of_listen(self):
+        self.start_sim("--frozen")
+        server, port, _ = self.serve()
+        viewer = self.viewer(port)
+        viewer.subscribe("/gyroscope", "/odometry")
+        self.settle()
+        listener = self.listen("--count", "12")
+        for i in range(4):
+            self.run_tool("send", f"608#{i:02X}FF0010{i:02X}7F")
+            self.run_tool("send", f"602#{i:02X}00000000FFFFFF")
+            self.run_tool("send", f"603#{i:02X}0000{i:02X}00800102")
+        events = self.objects(listener.communicate(timeout=30)[0])
+        expected = [("/gyroscope", event["fields"]) for event in events if event["topic"] == "gyroscope"]
+        parts = [event for event in events if event["topic"] == "odometry"]
+        expected_poses = [{first["frame"]: first["fields"], second["frame"]: second["fields"]} for first, second in zip(parts[::2], parts[1::2])]
+        self.assertEqual((len(expected), len(expected_poses)), (4, 4))
+        got = [viewer.message() for _ in range(8)]
+        self.assertEqual([(each.topic, each.fields) for each in got if each.topic == "/gyroscope"], expected)
+        self.assertEqual([each.fields for each in got if each.topic == "/odometry"], expected_poses)
+        now = time.time_ns()
+        self.assertTrue(all(0 <= now - each.time_ns < 60e9 for each in got))
+        schema = json.loads(viewer.channels["/gyroscope"]["schema"])
+        self.assertEqual(schema["properties"]["x"]["description"], "deg/s")
+        out, _ = self.interrupt(server)
+        self.assertEqual(out, "")
+
+    def test_states(self):
+        self.start_sim()
+        self.run_tool("publish", "gyro", "50ms")
+        _, port, _ = self.serve()
+        viewer = self.viewer(port)
+        viewer.subscribe("/ocm/robot")
+        robot = viewer.message().fields
+        self.assertEqual((robot["robot"], robot["source"], robot["live"], robot["commands"]), ("AMiRo", "sim", True, False))
+        gyro = next(topic for topic in robot["topics"] if topic["name"] == "gyroscope")
+        self.assertEqual([field["unit"] for field in gyro["frames"][0]["fields"]], ["deg/s"] * 3)
+        self.assertEqual(next(topic["role"] for topic in robot["topics"] if topic["name"] == "motors"), "drive")
+        viewer.subscribe("/ocm/bus", "/ocm/boards", "/ocm/operator")
+        def gyroscope(bus):
+            return next((row for row in bus["buses"][0]["rows"] if row["name"] == "gyroscope"), {"rate_hz": None})
+
+        row = gyroscope(self.state(viewer, "/ocm/bus", lambda bus: gyroscope(bus)["rate_hz"], "its rate"))
+        self.assertAlmostEqual(row["rate_hz"], 20, delta=2)
+        self.assertAlmostEqual(row["period_s"] or 0.05, 0.05)
+        self.run_tool("doctor", "--json")
+        boards = self.state(viewer, "/ocm/boards", lambda s: all(board["answers"] for board in s["boards"]), "all boards")["boards"]
+        self.assertEqual(len(boards), 3)
+        self.assertTrue(all(board["same_spec"] for board in boards))
+        self.assertEqual(viewer.message("/ocm/operator").fields, {"running": False})
+
+    def test_any_dbc(self):
+        spec = os.path.join(self.folder, "car.dbc")
+        with open(spec, "w", encoding="ascii") as file:
+            file.write('VERSION ""\nNS_ :\nBS_:\nBU_: ECU\nBO_ 291 Engine: 8 ECU\n SG_ Speed : 0|16@1+ (0.25,0) [0|16000] "rpm" Vector__XXX\n')
+        log = os.path.join(self.folder, "car.log")
+        with open(log, "w", encoding="ascii") as file:
+            file.write("".join(f"({10 + i / 10:.6f}) can{i % 2} 123#{i:02X}00000000000000\n" for i in range(40)))
+        _, port, _ = self.serve(log, tool=("--spec", spec))
+        viewer = self.viewer(port)
+        self.assertIn("/can1/Engine", viewer.channels)
+        viewer.subscribe("/can1/Engine", "/ocm/robot")
+        self.assertFalse(viewer.message("/ocm/robot").fields["live"])
+        viewer.publish("/ocm/playback", {"at_s": 0, "speed": 4})
+        got = [viewer.message("/can1/Engine") for _ in range(15)]
+        expected = {event["time_ns"]: event["fields"] for event in self.objects(self.run_tool("--spec", spec, "decode", "--json", log)[0])
+                    if event["bus"] == "can1"}
+        for message in got:
+            self.assertEqual(message.fields, expected[str(message.time_ns)])
+
+    def test_a_log_is_wound(self):
+        _, port, _ = self.serve(self.log())
+        viewer = self.viewer(port)
+        viewer.subscribe("/ocm/playback", "/gyroscope")
+        viewer.publish("/ocm/playback", {"paused": True, "at_s": 20})
+
+        def where(test, what):
+            return self.state(viewer, "/ocm/playback", test, what)
+
+        state = where(lambda s: s["paused"] and s["jumps"] == 1, "the jump")
+        self.assertAlmostEqual(state["at_s"], 20, delta=0.2)
+        self.assertAlmostEqual(state["length_s"], 29.9)
+        viewer.publish("/ocm/playback", {"at_s": 5})  # back: only the newest sample is sent
+        self.assertEqual(viewer.message("/gyroscope").fields["x"], round(50 * 0.0175, 4))
+        where(lambda s: s["jumps"] == 2, "the jump back")
+        viewer.publish("/ocm/playback", {"speed": 16, "paused": False})
+        where(lambda s: s["ended"], "the end")
+        viewer.publish("/ocm/playback", {"speed": 0})
+        self.assertIn("a time bar takes", viewer.text("status")["message"])
+
+    # --- commands ---
+
+    def set_points(self, listener):
+        return [event["fields"]["x"] for event in self.objects(listener.communicate(timeout=30)[0]) if event["topic"] == "motors" and "fields" in event]
+
+    def test_no_command_without_the_token(self):
+        self.start_sim("--frozen")
+        _, port, token = self.serve("--allow-commands")
+        for wrong in ("", "0" * 32, token[:-1], token + "0", token.upper() if token.upper() != token else "x"):
+            viewer = self.viewer(port, wrong)
+            self.assertEqual(viewer.info["capabilities"], [])
+            viewer.publish("/motors", {"x": 0.1})
+            self.assertIn("may only look", viewer.text("status")["message"])
+            self.assertIn("was not advertised", viewer.text("status")["message"])
+        _, other, none = self.serve()
+        self.assertEqual(none, "")
+        self.assertEqual(self.viewer(other, token).info["capabilities"], [])
+
+    def test_a_page_drives_and_its_going_stops(self):
+        self.start_sim("--frozen")
+        _, port, token = self.serve("--allow-commands")
+        viewer = self.viewer(port, token)
+        self.assertEqual(viewer.info["supportedEncodings"], ["json"])
+        viewer.subscribe("/motors")
+        # It goes on for as long as it is told, and rests half a second behind that.
+        listener = self.listen("motors")
+        for _ in range(5):
+            viewer.publish("/motors", {"x": 0.1, "z": 0})
+            time.sleep(0.1)
+        self.assertEqual(viewer.message().fields, {"x": 0.1, "z": 0})
+        begin = time.monotonic()
+        while viewer.message().fields["x"] != 0:
+            self.assertLess(time.monotonic() - begin, 5)
+        self.interrupt(listener)
+        # The connection is cut without a word.
+        listener = self.listen("motors")
+        viewer.publish("/motors", {"x": 0.05, "z": 0})
+        viewer.message()
+        other = self.viewer(port)
+        other.subscribe("/motors")
+        self.settle()
+        cut = time.monotonic()
+        viewer.close()
+        while other.message().fields["x"] != 0:
+            pass
+        self.assertLess(time.monotonic() - cut, 1.5)
+        self.settle()
+        speeds = [event["fields"]["x"] for event in self.objects(self.interrupt(listener)[0])]
+        self.assertEqual(speeds[0], 0.05)
+        self.assertEqual(speeds[-1], 0)
+
+    def test_the_end_of_the_server_is_rest(self):
+        self.start_sim("--frozen")
+        server, port, token = self.serve("--allow-commands")
+        listener = self.listen("motors")
+        viewer = self.viewer(port, token)
+        viewer.subscribe("/motors")
+        viewer.publish("/motors", {"x": 0.05, "z": 0})
+        viewer.message()
+        self.interrupt(server, signal.SIGTERM)
+        self.assertEqual(server.returncode, 128 + signal.SIGTERM)
+        self.assertIsNone(viewer.message("/none"))
+        self.settle()
+        self.assertEqual([event["fields"]["x"] for event in self.objects(self.interrupt(listener)[0])][-1], 0)
+
+    def test_two_pages_and_another_program(self):
+        self.start_sim("--frozen")
+        _, port, token = self.serve("--allow-commands")
+        first, second = self.viewer(port, token), self.viewer(port, token)
+        first.subscribe("/motors")
+        first.publish("/motors", {"x": 0.05, "z": 0})
+        first.message()
+        second.publish("/motors", {"x": 0.1, "z": 0})
+        self.assertIn("another viewer drives", second.text("status")["message"])
+        second.publish("/motors", {"x": 0, "z": 0})  # a stop is never refused
+        while first.message().fields["x"] != 0:
+            pass
+        other = self.start("drive", "5cm/s")
+        while first.message().fields["x"] != 0.05:
+            pass
+        second.publish("/motors", {"x": 0.1, "z": 0})
+        self.assertIn("another program commands the motors", second.text("status")["message"])
+        self.interrupt(other)
+
+    def test_lines_lights_and_parameters(self):
+        self.start_sim()
+        _, port, token = self.serve("--allow-commands")
+        viewer = self.viewer(port, token)
+        viewer.subscribe("/led_3", "/gyroscope")
+        viewer.publish("/ocm/command", {"line": "led 3 red"})
+        self.assertEqual(viewer.message().fields, {"red": 255, "green": 0, "blue": 0})
+        viewer.publish("/led_3", {"blue": 7})
+        self.assertEqual(viewer.message().fields, {"red": 0, "green": 0, "blue": 7})
+        viewer.ask(op="setParameters", id="p", parameters=[{"name": "/gyroscope/period_ms", "value": 20}])
+        times = [viewer.message("/gyroscope").time_ns for _ in range(20)]
+        self.assertAlmostEqual((times[-1] - times[0]) / 19e6, 20, delta=5)
+        viewer.publish("/ocm/command", {"line": "publish gyro 1us"})
+        self.assertRegex(viewer.text("status")["message"], "gyroscope|period")
+        for fields, words in (({"line": "drive 0.1m/s"}, "sent once"), ({"line": "fly"}, "unknown command"), ({}, "takes a line")):
+            viewer.publish("/ocm/command", fields)
+            self.assertIn(words, viewer.text("status")["message"])
+        viewer.publish("/motors", {"x": 99})
+        self.assertEqual(viewer.text("status")["level"], 2)
+
+    # --- TLS ---
+
+    def test_other_interfaces_need_tls(self):
+        _, refused = self.run_tool("serve", "--address", "0.0.0.0", code=2)
+        self.assertIn("--certificate", refused)
+        key, certificate, other = (os.path.join(self.folder, name) for name in ("key.pem", "cert.pem", "other.pem"))
+        for to, at in ((key, certificate), (other, os.path.join(self.folder, "other-cert.pem"))):
+            subprocess.run(["openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes", "-keyout", to,
+                            "-out", at, "-days", "2", "-subj", "/CN=localhost", "-addext", "subjectAltName=DNS:localhost"],
+                           check=True, capture_output=True)
+        self.start_sim("--frozen")
+        self.assertIn("--key", self.run_tool("serve", "--certificate", certificate, code=2)[1])
+        self.assertIn("No such file", self.run_tool("serve", "--port", "0", "--certificate", "no.pem", "--key", key, code=1)[1])
+        self.assertIn("cannot serve", self.run_tool("serve", "--port", "0", "--certificate", certificate, "--key", other, code=1)[1])
+        _, port, token = self.serve("--address", "0.0.0.0", "--name", "localhost", "--certificate", certificate, "--key", key)
+        self.assertEqual(len(token), 32)  # to look, too
+        trusted = ssl.create_default_context(cafile=certificate)
+        with self.assertRaises(websocket.Refused) as refused:
+            websocket.Viewer(port, host=f"localhost:{port}", context=trusted)
+        self.assertEqual(refused.exception.status, 403)
+        viewer = self.viewer(port, token, host=f"localhost:{port}", origin=f"https://localhost:{port}", context=trusted)
+        viewer.subscribe("/ocm/bus")
+        self.assertEqual(viewer.message().fields["buses"][0]["name"], "sim")
+        with self.assertRaises(ssl.SSLError):
+            websocket.Viewer(port, context=ssl.create_default_context())
+
+    # --- many viewers, slow ones ---
+
+    def test_a_stopped_viewer_slows_nobody(self):
+        self.start_sim("--frozen")
+        server, port, _ = self.serve()
+        reader = subprocess.Popen([sys.executable, "-B", "-c", f"""
+import sys; sys.path.insert(0, {os.path.dirname(os.path.abspath(__file__))!r})
+import websocket
+viewer = websocket.Viewer({port}, timeout=60, room=4096)
+viewer.subscribe("/gyroscope")
+print("ready", flush=True)
+lost = None
+while lost is None:
+    viewer.message()
+    lost = next((s["message"] for s in viewer.statuses if s.get("id") == "loss"), None)
+print(lost, flush=True)
+"""], stdout=subprocess.PIPE, text=True)
+        self.addCleanup(reader.stdout.close)
+        self.addCleanup(reader.wait)
+        self.addCleanup(reader.kill)
+        self.assertEqual(reader.stdout.readline(), "ready\n")
+        quick = self.viewer(port)
+        quick.subscribe("/gyroscope")
+        self.settle()
+        reader.send_signal(signal.SIGSTOP)
+        before = self.memory(server)
+        path = os.path.join(self.folder, "flood.log")
+        count = 60_000  # more than its socket and the queue hold
+        with open(path, "w", encoding="ascii") as file:
+            file.writelines(f"({10 + i / 10000:.6f}) sim 608#{i % 256:02X}{i // 256 % 128:02X}00000000\n" for i in range(count))
+        replay = self.start("replay", path)
+        got = lost = 0
+        while got + lost < count:
+            message = quick.message()
+            self.assertIsNotNone(message)
+            got += 1
+            lost = max([lost, *(int(re.search(r"(\d+) messages", s["message"])[1]) for s in quick.statuses)])
+            quick.statuses.clear()
+            if replay.poll() is not None and message.fields["x"] == round((count - 1) % 256 * 0.0175, 4) and got + lost > count - 300:
+                break
+        self.assertGreater(got, 0.9 * count)
+        self.assertLess(self.memory(server) - before, 40_000)  # KiB: the queue is 8 MiB of text
+        reader.send_signal(signal.SIGCONT)
+        self.assertRegex(reader.stdout.readline(), r"too slow for what it asks: it has lost [1-9]\d* messages")
+        _, said = self.interrupt(server)
+        self.assertRegex(said, r"viewers that were too slow have lost [1-9]\d* messages")
+
+    @staticmethod
+    def memory(process):
+        with open(f"/proc/{process.pid}/status", encoding="ascii") as file:
+            return int(re.search(r"VmRSS:\s+(\d+) kB", file.read())[1])
+
+    @staticmethod
+    def cpu(process):
+        """Seconds of CPU time."""
+        with open(f"/proc/{process.pid}/stat", encoding="ascii") as file:
+            fields = file.read().rsplit(")", 1)[1].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    def test_a_hundred_viewers(self):
+        self.start_sim("--frozen")
+        server, port, _ = self.serve()
+        viewers = [self.viewer(port) for _ in range(100)]
+        for viewer in viewers:
+            viewer.subscribe("/gyroscope")
+        self.settle()
+        path = os.path.join(self.folder, "second.log")
+        with open(path, "w", encoding="ascii") as file:
+            file.writelines(f"({10 + i / 200:.6f}) sim 608#{i:02X}0000000000\n" for i in range(200))
+        self.run_tool("replay", path)
+        for viewer in viewers:
+            self.assertEqual([viewer.message().fields["x"] for _ in range(200)], [round(i * 0.0175, 4) for i in range(200)])
+            self.assertEqual(viewer.statuses, [])
+        self.assertLess(self.cpu(server), 4)  # 20000 messages
+        for viewer in viewers:
+            viewer.close()
+        fresh = self.viewer(port)
+        fresh.subscribe("/ocm/bus")
+        self.state(fresh, "/ocm/bus", lambda s: s["viewers"] == 1, "the others have gone")
+
+    # --- wrong usage ---
+
+    def test_wrong_usage(self):
+        log = self.log()
+        self.assertIn("two logs", self.run_tool("serve", log, log, code=2)[1])
+        self.assertIn("nothing to command", self.run_tool("serve", log, "--allow-commands", code=2)[1])
+        self.assertIn("--from candump", self.run_tool("serve", "--from", "candump", code=2)[1])
+        self.assertIn("not an address", self.run_tool("serve", log, "--address", "127.0.0.x", "--port", "0", code=1)[1])
+        self.assertIn("cannot be wound", self.run_tool("serve", "-", code=2)[1])
+        _, port, _ = self.serve(log)
+        self.assertIn("another program listens there", self.run_tool("serve", log, "--port", str(port), code=1)[1])
+
+    def test_the_bus_goes_away(self):
+        simulator = self.start_sim("--frozen")
+        server, port, _ = self.serve()
+        viewer = self.viewer(port)
+        self.interrupt(simulator)
+        self.assertIsNone(viewer.text("none"))
+        _, said = server.communicate(timeout=30)
+        self.assertEqual(server.returncode, 1)
+        self.assertIn("sim", said)
+
+
+if __name__ == "__main__":
+    harness.main()
