@@ -27,7 +27,7 @@ constexpr base::Duration first_word = 8s;
 /// And one of which pieces come: a handshake is two packets, and at 60 % loss whole every sixth time.
 constexpr base::Duration first_whole_word = 40s;
 /// How long a request may take at the central, with all its time-outs.
-constexpr base::Duration longest_wish = 60s;
+constexpr base::Duration request_timeout = 60s;
 
 /// "AVR (index 0, address C00000000000), ...": those of this name, or all.
 std::string listed(const std::vector<Peer>& peers, std::string_view name = {}) {
@@ -193,7 +193,7 @@ bool CentralLine::wait(base::Duration limit, const std::function<bool()>& done) 
 void CentralLine::list(base::Duration scan) {
   failed_.clear();
   server_.client().scan(scan);
-  (void)wait(longest_wish, [this] { return server_.client().idle(); });
+  (void)wait(request_timeout, [this] { return server_.client().idle(); });
   if (!failed_.empty())
     fail({fmt::format("{}: {}: {}", verb_, path(), failed_.front().words),
           "is it a central? Unplug the dongle and plug it in again, or restart the simulation"});
@@ -244,7 +244,7 @@ std::vector<unsigned> CentralLine::connect(const std::vector<std::string>& names
           "is one switched on, and near? --scan 10s looks for longer"});
   failed_.clear();
   for (const unsigned index : wanted) server_.client().connect(index);
-  (void)wait(longest_wish, [this] { return server_.client().idle(); });
+  (void)wait(request_timeout, [this] { return server_.client().idle(); });
   for (const CentralEvent& event : failed_) {
     if (wanted.size() == 1)
       fail({fmt::format("{}: {}", verb_, event.words), "is it near enough? `amiroctl robots` lists robots"});

@@ -19,7 +19,7 @@ namespace ocm::cli::operate {
 struct Caller {
   std::string verb;  ///< as it calls itself; empty: it has not said so
   std::int64_t process = 0;
-  std::vector<std::uint16_t> commanded;  ///< topics; each was told once
+  std::vector<std::uint16_t> commanded;  ///< topics; each was commanded once
   std::vector<std::uint16_t> limited;
 };
 

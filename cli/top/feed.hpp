@@ -47,7 +47,8 @@ class LogFeed {
 
   /// The clock has gone on by so much.
   void play(base::Duration time, Models& models);
-  /// To this distance from the first frame; backwards the models are to be empty, and the log is read anew.
+  /// To this distance from the first frame; backwards the models are to be empty, and the log is read from
+  /// its beginning.
   void go_to(base::Duration at, Models& models);
   [[nodiscard]] bool is_behind(base::Duration at) const noexcept { return at < playing_.at; }
   /// The next `go_to` reads from the beginning.

@@ -263,7 +263,7 @@ TEST_CASE("messages: DBC files become our JSON, and go back") {
   CHECK(files >= 2);
 }
 
-/// Messages as nobody would think of them, of what both formats can say.
+/// Messages at random, of what both formats can say.
 class RandomModel {
  public:
   explicit RandomModel(unsigned seed) : random_(seed) {}
@@ -399,7 +399,7 @@ TEST_CASE("messages: any that both formats can say come back from each as they w
   }
 }
 
-TEST_CASE("messages: what a DBC file has no place for is told") {
+TEST_CASE("messages: what a DBC file has no place for is reported") {
   const auto* dbc = generate::find_target("dbc");
   REQUIRE(dbc != nullptr);
   const Model model = parse(R"({"robot": "r", "messages": [
