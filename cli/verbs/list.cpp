@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/shared/fitted.hpp"
 #include "cli/shared/json.hpp"
 #include "cli/verbs/verbs.hpp"
 #include "cli/words/quantity.hpp"
@@ -55,7 +56,7 @@ void list_table(const protocol::Catalogue& catalogue) {
     id_width = std::max(id_width, id_of(topic).size());
   }
   const auto print = [&](const auto&... columns) {
-    fmt::print("{:<{}}  {:<{}}  {:<{}}  {:<8}  {:<{}}  {:>6}  {:>7}\n", columns...);
+    print_fitted(fmt::format("{:<{}}  {:<{}}  {:<{}}  {:<8}  {:<{}}  {:>6}  {:>7}\n", columns...), 4);
   };
   print("TOPIC", name_width, "ALIASES", alias_width, "ID", id_width, "KIND", "BOARD", board_width, "FRAMES",
         "PERIOD");
