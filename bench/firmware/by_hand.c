@@ -24,7 +24,7 @@ enum {
 };
 enum { sensors_from = odometry, sensors = streams - sensors_from };
 enum { urgent, high, medium, low, levels };
-enum { nobody, stopped, periodic, single };
+enum { not_requested, stopped, periodic, single };
 enum { unused, taken, held };
 // As the library numbers them: they travel in the refusal.
 enum { ok, bad_length = 3, bad_mode = 4, bad_unit = 5, bad_period = 6, failed = 7 };

@@ -17,7 +17,7 @@
 namespace ocm::cli::analyse {
 namespace {
 
-/// So many doubts are told one by one: a file may have hundreds, of which few matter for the load.
+/// So many doubts are listed one by one: a file may have hundreds, of which few matter for the load.
 constexpr std::size_t most_doubts = 5;
 
 /// The node that sends requests and set points.

@@ -205,7 +205,7 @@ std::pair<std::size_t, std::vector<std::size_t>> best_order(BusModel model) {
 /// The identifiers that there are, handed out in Audsley's order.
 void assign_identifiers(BusSet& set, const BusOptions& options) {
   const auto [stuck, order] = best_order(model_of(set, options));
-  if (stuck != analysis::nobody) {
+  if (stuck != analysis::no_index) {
     set.remarks.push_back(
         fmt::format("No order of identifiers makes all meet their deadlines: {} of the "
                     "messages cannot share the bus whatever their order is.",
@@ -242,7 +242,7 @@ void assign_layout(BusSet& set, const BusOptions& options) {
   const auto analysis = std::make_unique<Analysis>();
   const std::size_t stuck =
       analysis::assign_in_layout<most_messages>(std::span{topics}, model.bus, *analysis);
-  if (stuck != analysis::nobody) {
+  if (stuck != analysis::no_index) {
     const auto& late = topics[stuck];
     set.remarks.push_back(
         fmt::format("No choice of priorities makes all meet their deadlines: {} is late "
@@ -423,7 +423,7 @@ Advice advise_bus(const BusSet& set, const BusOptions& options, const Study& stu
     const auto [stuck, order] = best_order(trial.model());
     std::string names;
     for (const std::size_t i : order) names += (names.empty() ? "" : ", ") + set.entries[i].name;
-    if (stuck == analysis::nobody) advice.changes.push_back("identifiers in this order: " + names);
+    if (stuck == analysis::no_index) advice.changes.push_back("identifiers in this order: " + names);
   }
   return advice;
 }

@@ -15,8 +15,8 @@ namespace {
 
 using client::Meaning;
 
-/// Of a period that nobody asked for and no spec states, only what is far beyond it is said to be missing: it
-/// may be no period.
+/// Of a period that no request asked for and no spec states, only what is far beyond it is said to be
+/// missing: it may be no period.
 Health health_of(const measure::Timing& timing, base::Time now) {
   if (!timing.due || timing.period_ns <= 0) return Health::fine;
   const auto silence = static_cast<double>((now - timing.since).count());

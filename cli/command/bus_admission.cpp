@@ -203,7 +203,7 @@ void admit(Session& session, transport::Bus& bus, const client::Command& command
   const auto decision = judgement.decide();
   std::string who;
   bool own = false;
-  if (decision.late != analysis::nobody) {
+  if (decision.late != analysis::no_index) {
     const std::uint32_t key = judgement.bus().messages()[decision.late].key;
     who = judgement.name(key);
     own = judgement.bus().is_asked(key);

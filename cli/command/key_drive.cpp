@@ -120,7 +120,7 @@ class KeyDrive {
     return parser_.parse(words, options_->command);
   }
 
-  /// One line, drawn over the one before.
+  /// One line, drawn over the one before; a line of its own where that is not possible: a file, TERM=dumb.
   void show(Direction direction) {
     constexpr std::string_view forward[] = {"back", "", "forward"};
     constexpr std::string_view turning[] = {"right", "", "left"};
@@ -132,7 +132,10 @@ class KeyDrive {
     const std::string_view help = "   arrows drive, space stops, + - speed, q quits";
     if (line.size() + help.size() < columns) line += help;
     line.resize(std::min(line.size(), columns - 1));
-    write_out("\r\x1b[K" + line);
+    if (redraws_)
+      write_out("\r\x1b[K" + line);
+    else if (line != std::exchange(written_, line))
+      write_out(line + '\n');
   }
 
   const KeyDriveOptions* options_;
@@ -142,6 +145,8 @@ class KeyDrive {
   Direction driven_;
   bool changed_ = false;  ///< the speed, while it drives
   bool stale_ = false;    ///< the line
+  bool redraws_ = can_redraw(STDOUT_FILENO);
+  std::string written_;
   std::string note_;
 };
 
@@ -164,7 +169,7 @@ int drive_by_keys(Session& session, const KeyDriveOptions& options) {
     timeline.expect_no_other();
     quit = drive.run(keys, timeline);
     timeline.rest();
-    write_out("\n");
+    if (can_redraw(STDOUT_FILENO)) write_out("\n");
   }
   const bool fine = timeline.finish();
   if (!quit) return exit_code_after_interrupt(exit_failure);

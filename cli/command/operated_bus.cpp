@@ -36,7 +36,7 @@ base::Result<bool> OperatedBus::send(const can::Frame& frame) {
   obstacle_ = answer.failure;
   switch (answer.kind) {
     case OperatorAnswer::Kind::silent:
-      // Rest harms nobody, and must come to the robot.
+      // Rest does no harm, and must reach the robot.
       if (!is_rest(frame) || commanded_motors(index_, frame) == nullptr) return false;
       past_it_ = true;
       return bus_->send(frame);

@@ -29,7 +29,7 @@ constexpr base::Duration first_word = 8s;
 /// And one of which pieces come: a handshake is two packets, and at 60 % loss whole every sixth time.
 constexpr base::Duration first_whole_word = 40s;
 /// How long a request may take at the central, with all its time-outs.
-constexpr base::Duration longest_wish = 60s;
+constexpr base::Duration request_timeout = 60s;
 /// How long the program that has the line may take to answer: it may look for the kind of its dongle, at two
 /// speeds.
 constexpr base::Duration longest_opening = 10s;
@@ -163,7 +163,7 @@ bool CentralLine::wait(base::Duration limit, const std::function<bool()>& done) 
 void CentralLine::list(base::Duration scan) {
   (void)end_->take_failed();
   end_->scan(scan);
-  (void)wait(longest_wish, [this] { return end_->idle(); });
+  (void)wait(request_timeout, [this] { return end_->idle(); });
   if (const auto failed = end_->take_failed(); !failed.empty())
     fail({fmt::format("{}: {}: {}", verb_, end_->path(), failed.front()),
           "is it a central? Unplug the dongle and plug it in again, or restart the simulation"});
@@ -222,7 +222,7 @@ std::vector<unsigned> CentralLine::connect(const std::vector<std::string>& names
     meant.push_back(robot(index).address);
     end_->connect(index);
   }
-  (void)wait(longest_wish, [this] { return end_->idle(); });
+  (void)wait(request_timeout, [this] { return end_->idle(); });
   for (const std::string& words : end_->take_failed()) {
     if (wanted.size() == 1)
       fail({fmt::format("{}: {}", verb_, words), "is it near enough? `amiroctl robots` lists robots"});

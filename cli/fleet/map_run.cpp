@@ -232,10 +232,10 @@ End MapRun::drive(std::optional<base::Duration> limit) {
     }
     if (!lost_.empty() || std::any_of(robots_.begin(), robots_.end(), [&](unsigned i) { return lost(i); }))
       tell_lost();
-    return !options_.watch && (mapping_->done() || nobody_left());
+    return !options_.watch && (mapping_->done() || all_robots_lost());
   });
   if (interrupted() != 0) return End::interrupted;
-  if (nobody_left()) return End::robots_lost;
+  if (all_robots_lost()) return End::robots_lost;
   return done ? end_of_exploring() : End::time_over;
 }
 
@@ -277,7 +277,7 @@ void MapRun::tell_lost() {
   }
 }
 
-bool MapRun::nobody_left() const {
+bool MapRun::all_robots_lost() const {
   return std::all_of(robots_.begin(), robots_.end(), [this](unsigned index) { return lost(index); });
 }
 

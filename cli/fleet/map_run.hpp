@@ -76,7 +76,7 @@ class MapRun {
   /// Nothing is left to do: is the place known, and if not, why?
   [[nodiscard]] End end_of_exploring() const;
   [[nodiscard]] bool lost(unsigned index) const { return line_.robot(index).lost; }
-  [[nodiscard]] bool nobody_left() const;
+  [[nodiscard]] bool all_robots_lost() const;
   [[nodiscard]] std::string names() const;
 
   const MapOptions& options_;

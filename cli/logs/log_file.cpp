@@ -73,14 +73,14 @@ struct LogFile::State {
   /// Empties an ordinary file only once it is locked: another program may be writing to it.
   bool open(Existing existing) {
     constexpr int how = O_WRONLY | O_CREAT | O_CLOEXEC;
-    constexpr ::mode_t everybody = 0666;  // less the umask
+    constexpr ::mode_t all_users = 0666;  // less the umask
     bool made_now = false;
     if (path == "-") {
       descriptor = STDOUT_FILENO;
     } else {
-      descriptor = ::open(path.c_str(), how | O_EXCL, everybody);
+      descriptor = ::open(path.c_str(), how | O_EXCL, all_users);
       made_now = descriptor >= 0;
-      if (!made_now && errno == EEXIST) descriptor = ::open(path.c_str(), how, everybody);
+      if (!made_now && errno == EEXIST) descriptor = ::open(path.c_str(), how, all_users);
     }
     struct stat status {};
     if (descriptor < 0 || ::fstat(descriptor, &status) != 0) {

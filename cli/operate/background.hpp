@@ -22,7 +22,7 @@ class Background {
 
   /// False: there is no room, and it will not be done.
   bool post(std::function<void()> work);
-  /// Does all that is left, and ends. Writes that go to nobody end by themselves after a signal.
+  /// Does all that is left, and ends. Writes that no program reads end by themselves after a signal.
   void finish();
   [[nodiscard]] std::uint64_t left_out() const noexcept { return left_out_; }
 

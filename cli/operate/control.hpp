@@ -21,7 +21,7 @@ using answers::yes;
 
 /// A program that is connected.
 struct Caller : LocalCaller {
-  std::vector<std::uint16_t> commanded;  ///< topics; each was told once
+  std::vector<std::uint16_t> commanded;  ///< topics; each was commanded once
   std::vector<std::uint16_t> limited;
   std::uint64_t handed_over = 0;  ///< frames of all to the bus, up to the last one of this program
 };

@@ -176,7 +176,7 @@ void Runner::take_error(const can::AnyFrame& frame) {
 
 void Runner::look_at_bus() {
   const bool down = bus_->state() == transport::BusState::down;
-  if (down && controller_ != BusState::active) controller_ = BusState::active;  // it begins anew
+  if (down && controller_ != BusState::active) controller_ = BusState::active;  // it starts from active again
   set_bus_state(down ? BusState::down : controller_);
 }
 

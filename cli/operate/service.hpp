@@ -1,4 +1,4 @@
-/// What systemd is told of an operator that it runs: that it has begun, what it does, and that it still runs
+/// What an operator that systemd runs reports to it: that it has begun, what it does, and that it still runs
 /// [sd_notify(3)]. Nothing where no systemd asks.
 #pragma once
 

@@ -78,7 +78,7 @@ Recorder::Recorder(std::vector<Port> ports, Reopen reopen, Files& files, Limits 
       files_(&files),
       limits_(limits),
       live_(live),
-      on_terminal_(isatty(STDERR_FILENO) != 0),
+      on_terminal_(can_redraw(STDERR_FILENO)),
       interfaces_(number(ports_)),
       queue_(limits.blocks),
       writing_(queue_, files, interfaces_, live) {
@@ -276,7 +276,7 @@ void Recorder::show_progress() {
   const base::Duration passed = now - shown_;
   const double frames =
       static_cast<double>(received_ - shown_received_) * 1e9 / static_cast<double>(passed.count());
-  std::string text = fmt::format("{} frames, {:.0f}/s", received_, frames);
+  std::string text = fmt::format("{}, {:.0f}/s", counted(received_, "frame"), frames);
   std::uint64_t lost = 0;
   for (Port& port : ports_) {
     lost += port.lost();

@@ -23,7 +23,7 @@ using Filters = std::vector<can_filter>;
 /// Eight digits are an extended identifier. The failure names the option --filter.
 [[nodiscard]] transport::Outcome<can_filter> parse_filter(std::string_view text);
 
-/// The messages of a parameter group of J1939, whoever sends them, with any priority. [SAE J1939-21]
+/// The messages of a parameter group of J1939, from any sender, with any priority. [SAE J1939-21]
 [[nodiscard]] can_filter group_filter(std::uint32_t pgn) noexcept;
 
 /// Sensor data of the topics at every priority, and messages; with `commands` also requests and set points.

@@ -14,6 +14,7 @@
 
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/remedies.hpp"
+#include "cli/shared/terminal.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -42,7 +43,7 @@ void print(std::string_view before, std::string_view raw) {
   }
   const WithoutBrokenPipe message;  // `stop 2>&1 | true` stops
   static bool echo_erased = false;
-  if (!echo_erased && interrupted() == SIGINT && isatty(STDERR_FILENO) != 0) {
+  if (!echo_erased && interrupted() == SIGINT && can_redraw(STDERR_FILENO)) {
     std::fputs("\r\x1b[K", stderr);  // the terminal has shown ^C
     echo_erased = true;
   }
@@ -116,8 +117,16 @@ std::string_view HeldMessages::newest() {
   return kept().lines.empty() ? std::string_view{} : kept().lines.back();
 }
 
+std::string counted(std::uint64_t count, std::string_view noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
 void add_count(std::string& text, std::uint64_t count, std::string_view what) {
   if (count != 0) text += fmt::format(", {} {}", count, what);
+}
+
+void add_count(std::string& text, std::uint64_t count, std::string_view noun, std::string_view what) {
+  if (count != 0) text += fmt::format(", {}{}{}", counted(count, noun), what.empty() ? "" : " ", what);
 }
 
 }  // namespace ocm::cli

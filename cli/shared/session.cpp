@@ -23,7 +23,7 @@
 namespace ocm::cli {
 namespace {
 
-/// So many doubts are told one by one: a file may have hundreds.
+/// So many doubts are listed one by one: a file may have hundreds.
 constexpr std::size_t most_doubts = 3;
 
 /// On stderr, all of them, and the end; nothing when there are none.

@@ -4,6 +4,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
+#include <string_view>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -19,6 +21,13 @@ struct TerminalSize {
   winsize size{};
   if (::ioctl(descriptor, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || size.ws_row < 2) return {};
   return {size.ws_col, size.ws_row};
+}
+
+/// Whether a line there can be erased and written again: a terminal, and not one without control sequences
+/// (TERM=dumb).
+[[nodiscard]] inline bool can_redraw(int descriptor) noexcept {
+  const char* const term = std::getenv("TERM");
+  return isatty(descriptor) != 0 && (term == nullptr || std::string_view{term} != "dumb");
 }
 
 /// Columns of the terminal that stdout is; as many as there can be if it is none, or does not say.

@@ -33,7 +33,7 @@ class Curses {
   [[nodiscard]] std::optional<Key> key();
   /// What to poll for keys.
   [[nodiscard]] int input() const noexcept;
-  /// The terminal is gone: nobody will press a key any more.
+  /// The terminal is gone: no key will come any more.
   [[nodiscard]] bool gone() const noexcept;
 
  private:

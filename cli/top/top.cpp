@@ -52,7 +52,7 @@ class Top {
     view_.only(options.topics);
   }
 
-  /// Over::enough: somebody quit.
+  /// Over::enough: the user quit.
   Over run() {
     auto before = Clock::now();
     auto next_draw = before;

@@ -26,7 +26,7 @@ struct TopOptions {
   bool mouse = false;
 };
 
-/// Until somebody quits, a signal comes, or the bus is gone. The exit code; leaves through `fail`, with the
+/// Until the user quits, a signal comes, or the bus is gone. The exit code; leaves through `fail`, with the
 /// terminal as it was, where there is no terminal, no bus or no log.
 [[nodiscard]] int run(Session& session, const TopOptions& options);
 

@@ -278,7 +278,7 @@ void View::keep_cursor_in_sight(std::size_t lines) {
     first_ = 0;
     return;
   }
-  // Until somebody moves, the beginning is shown, whatever comes there.
+  // Until the user moves, the beginning is shown, whatever comes there.
   const std::size_t at = cursor_ ? cursor_index() : 0;
   if (cursor_) cursor_ = order_[at].key;
   if (at < first_) first_ = at;
@@ -327,7 +327,7 @@ void View::heads(Picture& picture, const Scene& scene, const Rows& rows, std::si
       counters.put_whole(
           fmt::format("TEC {} REC {}  ", sum.error_counters->transmit, sum.error_counters->receive),
           sum.controller ? style_of(*sum.controller) : Style::dim);
-    counters.put_whole(fmt::format("{} frames", sum.frames), Style::dim);
+    counters.put_whole(fmt::format("{} frame{}", sum.frames, sum.frames == 1 ? "" : "s"), Style::dim);
     const auto count = [&](std::uint64_t number, std::string_view what, Style bad) {
       if (number > 0) counters.put_whole(fmt::format("  {} {}", number, what), bad);
     };

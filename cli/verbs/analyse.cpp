@@ -11,6 +11,7 @@
 #include "cli/analyse/set.hpp"
 #include "cli/analyse/study.hpp"
 #include "cli/analyse/trace.hpp"
+#include "cli/shared/fitted.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/shared/output_file.hpp"
 #include "cli/shared/values.hpp"
@@ -150,7 +151,7 @@ int show(const Study& study, const Options& options, const Session& session, Adv
     fmt::print("{}", to_csv(study));
     if (!study.left_out.empty()) remark(left_out_text(study.left_out));
   } else if (options.svg != "-")
-    fmt::print("{}", to_table(study, advise(), session.colour()));
+    print_fitted(to_table(study, advise(), session.colour()), 4);
   return study.passes() ? exit_success : exit_failure;
 }
 
@@ -200,7 +201,10 @@ int chain(const Options& options, Session& session) {
   const std::int64_t deadline = options.deadline ? options.deadline->count() : analysis::unbounded;
   const ChainStudy study = study_chain(options.file, deadline, bus_options(options, session.catalogue()),
                                        session.catalogue(), model_of(session), read_rates(options.rates));
-  fmt::print("{}", options.json ? to_json(study) : options.csv ? to_csv(study) : to_table(study));
+  if (options.json || options.csv)
+    fmt::print("{}", options.json ? to_json(study) : to_csv(study));
+  else
+    print_fitted(to_table(study), 4);
   return study.bound.ok() ? exit_success : exit_failure;
 }
 
@@ -209,7 +213,10 @@ int trace(const Options& options, Session& session) {
   how.file = options.set;
   const TraceStudy study = study_trace(options.file, options.set, bus_options(how, session.catalogue()),
                                        session.catalogue(), read_rates(options.rates));
-  fmt::print("{}", options.json ? to_json(study) : options.csv ? to_csv(study) : to_table(study));
+  if (options.json || options.csv)
+    fmt::print("{}", options.json ? to_json(study) : to_csv(study));
+  else
+    print_fitted(to_table(study), 4);
   return study.passes() ? exit_success : exit_failure;
 }
 

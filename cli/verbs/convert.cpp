@@ -9,6 +9,7 @@
 #include "cli/logs/log_file.hpp"
 #include "cli/logs/opened_log.hpp"
 #include "cli/shared/interrupt.hpp"
+#include "cli/shared/messages.hpp"
 #include "cli/verbs/verbs.hpp"
 
 namespace ocm::cli {
@@ -89,7 +90,7 @@ void convert(Session& session, const ConvertOptions& options, int& exit_code) {
   const std::uint64_t frames = copy(in, **out);
   const bool written = (*out)->failure().what.empty();
   const bool whole = written && interrupted() == 0 && !in.ended_early();
-  remark(fmt::format("{} frames, {} to {}{}", frames, in.format().name, format.name,
+  remark(fmt::format("{}, {} to {}{}", counted(frames, "frame"), in.format().name, format.name,
                      whole ? "" : fmt::format(": {} holds the beginning only", options.out)));
   const bool unreadable = in.complain();
   logs::tell_losses((*out)->lost(), format);

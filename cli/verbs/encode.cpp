@@ -8,6 +8,7 @@
 #include "cli/logs/json_lines.hpp"
 #include "cli/logs/log_file.hpp"
 #include "cli/shared/interrupt.hpp"
+#include "cli/shared/messages.hpp"
 #include "cli/verbs/verbs.hpp"
 #include "cli/watch/frame_lines.hpp"
 
@@ -62,7 +63,7 @@ void encode(Session& session, const EncodeOptions& options, int& exit_code) {
   }
   write(false);
   (*out)->finish();
-  remark(fmt::format("{} frames encoded", frames));
+  remark(counted(frames, "frame") + " encoded");
   logs::tell_losses((*out)->lost(), format);
   if (!(*out)->failure().what.empty()) fail((*out)->failure(), exit_code_after_interrupt(exit_failure));
   if (lines.failed()) exit_code = exit_failure;

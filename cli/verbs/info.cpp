@@ -1,10 +1,12 @@
 #include <memory>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "ocm/j1939/identifier.hpp"
 
+#include "cli/shared/fitted.hpp"
 #include "cli/verbs/verbs.hpp"
 #include "cli/words/command.hpp"
 #include "cli/words/quantity.hpp"
@@ -15,6 +17,13 @@ namespace {
 
 std::string number(base::Decimal decimal) {
   return std::string{base::to_text(decimal).view()};
+}
+
+/// A line of a table, or one of a frame's fields, which begins with more blanks.
+template <class... Arguments>
+void print_line(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+  const std::string line = fmt::format(format, std::forward<Arguments>(arguments)...);
+  print_fitted(line, line.starts_with("    ") ? 8 : 13);
 }
 
 /// "rpm is 3 or 5..7", for a field that is in some frames only.
@@ -36,7 +45,7 @@ void print_field(const protocol::FrameLayout& layout, const protocol::Field& fie
                 : fmt::format("bytes {}..{}", position.start / 8, (position.start + position.width) / 8 - 1)
           : fmt::format("bit {}, {} wide", position.start, position.width);
   const bool states = field.min != field.max;
-  fmt::print("    {:<14} {:<14} {}{:<3} {:<3}  1 bit = {}{}{}  [{}, {}]{}{}{}\n", field.name, place,
+  print_line("    {:<14} {:<14} {}{:<3} {:<3}  1 bit = {}{}{}  [{}, {}]{}{}{}\n", field.name, place,
              field.is_float()  ? 'f'
              : field.is_signed ? 'i'
                                : 'u',
@@ -53,27 +62,27 @@ void print_field(const protocol::FrameLayout& layout, const protocol::Field& fie
                                 : words::physical_text(field, words::greatest_raw(field)),
              field.unit.empty() ? "" : " ", field.unit, presence(layout, field));
   for (const auto& value : field.values)
-    fmt::print("      {} {:<6} {}\n", field.flags ? "bit" : "  =", value.raw, value.name);
+    print_line("      {} {:<6} {}\n", field.flags ? "bit" : "  =", value.raw, value.name);
 }
 
 void message(const protocol::Catalogue& catalogue, const protocol::Topic& topic) {
   const auto& layout = topic.frames[0];
   const auto sender = catalogue.board_name(topic);
   const auto [by, extended, number] = layout.address;
-  fmt::print("{} (message{}{}, id {:0{}X})\n", topic.name, sender.empty() ? "" : " of ", sender, number,
+  print_line("{} (message{}{}, id {:0{}X})\n", topic.name, sender.empty() ? "" : " of ", sender, number,
              extended ? 8 : 3);
   if (by == protocol::Address::By::pgn) {
     const auto id = j1939::Identifier::decode(number);
-    fmt::print("  J1939      parameter group {} (0x{:05X}), here at priority {} from source {}\n", id.pgn,
+    print_line("  J1939      parameter group {} (0x{:05X}), here at priority {} from source {}\n", id.pgn,
                id.pgn, id.priority, id.source);
   }
-  if (!topic.bus.empty()) fmt::print("  bus        {}\n", topic.bus);
-  fmt::print("  period     {}\n", topic.cycle.count() != 0 ? words::to_text(topic.cycle) : "none is stated");
+  if (!topic.bus.empty()) print_line("  bus        {}\n", topic.bus);
+  print_line("  period     {}\n", topic.cycle.count() != 0 ? words::to_text(topic.cycle) : "none is stated");
   if (topic.shortest_period.count() != 0)
-    fmt::print("  distance   at least {}\n", words::to_text(topic.shortest_period));
-  fmt::print("  frame      {} bytes{}\n", layout.length, layout.fd ? ", CAN FD" : "");
+    print_line("  distance   at least {}\n", words::to_text(topic.shortest_period));
+  print_line("  frame      {} bytes{}\n", layout.length, layout.fd ? ", CAN FD" : "");
   for (const auto& field : layout.fields) print_field(layout, field);
-  if (!topic.source.empty()) fmt::print("  source     {}\n", topic.source);
+  if (!topic.source.empty()) print_line("  source     {}\n", topic.source);
 }
 
 void info(const protocol::Catalogue& catalogue, const std::string& word) {
@@ -89,31 +98,29 @@ void info(const protocol::Catalogue& catalogue, const std::string& word) {
       if (same.is_message() && same.name == topic->name) message(catalogue, same);
     return;
   }
-  fmt::print("{} ({} of {}, id 0x{:02X})\n", topic->name, name(topic->kind), catalogue.board_name(*topic),
+  print_line("{} ({} of {}, id 0x{:02X})\n", topic->name, name(topic->kind), catalogue.board_name(*topic),
              topic->id.value);
   if (!topic->aliases.empty()) {
-    fmt::print("  aliases   ");
-    for (const auto alias : topic->aliases) fmt::print(" {}", alias);
-    fmt::print("\n");
+    print_line("  aliases    {}\n", fmt::join(topic->aliases, " "));
   }
-  fmt::print("  priority   {} unless asked otherwise\n", name(topic->priority));
+  print_line("  priority   {} unless asked otherwise\n", name(topic->priority));
   if (sensor) {
-    fmt::print("  period     {} unless asked otherwise; the part samples every {}\n",
+    print_line("  period     {} unless asked otherwise; the part samples every {}\n",
                words::to_text(topic->period), words::to_text(topic->shortest_period));
-    if (topic->deadline.count() != 0) fmt::print("  deadline   {}\n", words::to_text(topic->deadline));
-    if (topic->jitter.count() != 0) fmt::print("  jitter     {}\n", words::to_text(topic->jitter));
+    if (topic->deadline.count() != 0) print_line("  deadline   {}\n", words::to_text(topic->deadline));
+    if (topic->jitter.count() != 0) print_line("  jitter     {}\n", words::to_text(topic->jitter));
   } else if (topic->timeout.count() != 0) {
-    fmt::print("  timeout    at rest {} after the last set point\n", words::to_text(topic->timeout));
+    print_line("  timeout    at rest {} after the last set point\n", words::to_text(topic->timeout));
   }
   for (std::size_t i = 0; i < topic->frames.size(); ++i) {
     const protocol::FrameRef frame{topic, static_cast<std::uint8_t>(i)};
     const auto& layout = frame.layout();
-    fmt::print("  frame      {}{}id 0x{:02X}, on the bus {:03X} at medium priority, DLC {}\n", layout.name,
+    print_line("  frame      {}{}id 0x{:02X}, on the bus {:03X} at medium priority, DLC {}\n", layout.name,
                layout.name.empty() ? "" : ": ", layout.id.value,
                protocol::identifier_of(frame, protocol::default_priority), layout.length);
     for (const auto& field : layout.fields) print_field(layout, field);
   }
-  fmt::print("  source     {}\n", topic->source);
+  print_line("  source     {}\n", topic->source);
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "cli/output/digits.hpp"
 #include "cli/output/printer.hpp"
 #include "cli/shared/interrupt.hpp"
+#include "cli/shared/messages.hpp"
 #include "cli/verbs/verbs.hpp"
 
 namespace ocm::cli {
@@ -101,8 +102,8 @@ class Streams {
         current_ = filter_.source();
         streams_[current_].call(std::string_view{prefix_}.substr(prefix_.rfind(':') + 1));
         return -1;
-      case Step::nobody:
-        ++nobodys_;
+      case Step::no_robot:
+        ++of_no_robot_;
         return -1;
       case Step::text:
         break;
@@ -115,7 +116,7 @@ class Streams {
 
   [[nodiscard]] const Stream& operator[](std::size_t index) const { return streams_[index]; }
   [[nodiscard]] std::size_t size() const { return streams_.size(); }
-  [[nodiscard]] std::uint64_t nobodys() const { return nobodys_; }
+  [[nodiscard]] std::uint64_t of_no_robot() const { return of_no_robot_; }
   [[nodiscard]] std::uint64_t broken_prefixes() const { return filter_.broken(); }
 
  private:
@@ -123,7 +124,7 @@ class Streams {
   std::string prefix_;
   std::size_t current_ = nameless;
   std::vector<Stream> streams_;
-  std::uint64_t nobodys_ = 0;
+  std::uint64_t of_no_robot_ = 0;
 };
 
 // --- JSON --------------------------------------------------------------------------------------------------
@@ -227,10 +228,6 @@ void add_causes(std::string& text, const Faults& faults, const Cause<Faults> (&c
       text += fmt::format("{}{} {}", text.empty() ? "" : ", ", faults.*cause.count, cause.words);
 }
 
-std::string counted(std::uint64_t count, std::string_view what) {
-  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
-}
-
 std::string describe(const Stream& stream) {
   std::string causes;
   add_causes(causes, stream.text().faults(), text_causes);
@@ -261,7 +258,7 @@ bool summarise(const Streams& streams, bool to_robot) {
   }
   if (streams.broken_prefixes() == 0) return damaged;
   remark(fmt::format("broken prefixes: {}, and after them {} whose robot is unknown",
-                     streams.broken_prefixes(), counted(streams.nobodys(), "character")));
+                     streams.broken_prefixes(), counted(streams.of_no_robot(), "character")));
   return true;
 }
 

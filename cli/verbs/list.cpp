@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/shared/fitted.hpp"
 #include "cli/shared/json.hpp"
 #include "cli/verbs/verbs.hpp"
 #include "cli/words/quantity.hpp"
@@ -57,8 +58,10 @@ void list_table(const protocol::Catalogue& catalogue) {
   }
   const bool has_buses = catalogue.has_buses();
   const auto print = [&](std::string_view bus, const auto&... columns) {
-    fmt::print("{:<{}}  {:<{}}  {:<{}}  {:<8}  {:<{}}  {:>6}  {:>7}", columns...);
-    fmt::print("{}{}\n", has_buses && !bus.empty() ? "  " : "", has_buses ? bus : std::string_view{});
+    print_fitted(fmt::format("{:<{}}  {:<{}}  {:<{}}  {:<8}  {:<{}}  {:>6}  {:>7}", columns...) +
+                     fmt::format("{}{}\n", has_buses && !bus.empty() ? "  " : "",
+                                 has_buses ? bus : std::string_view{}),
+                 4);
   };
   print("BUS", "TOPIC", name_width, "ALIASES", alias_width, "ID", id_width, "KIND", "BOARD", board_width,
         "FRAMES", "PERIOD");

@@ -11,6 +11,7 @@
 #include "cli/operate/runner.hpp"
 #include "cli/operate/study.hpp"
 #include "cli/shared/drawing_program.hpp"
+#include "cli/shared/fitted.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/shared/operator_link.hpp"
@@ -42,7 +43,7 @@ int check(const OperateOptions& options, const operate::OperatorFile& file, std:
   if (options.json)
     fmt::print("{}", operate::to_json(study));
   else if (options.svg != "-")
-    fmt::print("{}", operate::to_table(study));
+    print_fitted(operate::to_table(study), 4);
   tell(study.doubts);
   if (!options.svg.empty()) {
     const auto picture = drawn_by({"dot", "-Tsvg"}, operate::to_dot(study), "sudo apt install graphviz");

@@ -151,7 +151,7 @@ bool is_live(const std::string& path) {
 /// What is in the files, and all that is not.
 std::uint64_t summarise(const record::Recorder& recorder, const record::Files& files) {
   const auto seconds = std::chrono::duration_cast<std::chrono::milliseconds>(recorder.lasted());
-  std::string text = fmt::format("recorded {} frames in {} to {}", recorder.received(),
+  std::string text = fmt::format("recorded {} in {} to {}", counted(recorder.received(), "frame"),
                                  words::to_text(base::Duration{seconds}),
                                  files.first_path() == "-" ? "the standard output" : files.first_path());
   if (files.count() > 1) text += fmt::format(" .. {} ({} files)", files.path(), files.count());
@@ -195,8 +195,8 @@ void run_record(Session& session, const RecordOptions& options, int& exit_code) 
   logs::tell_losses(files.losses(), format);
   if (!files.failure().what.empty()) {
     const std::uint64_t readable = std::min(files.readable(), recorder.received());
-    remark(
-        fmt::format("{} frames can be read, {} were not written", readable, recorder.received() - readable));
+    remark(fmt::format("{} can be read, {} were not written", counted(readable, "frame"),
+                       recorder.received() - readable));
     fail(files.failure(), exit_code_after_interrupt(exit_failure));
   }
   if (!recorder.ended().what.empty()) fail(recorder.ended());

@@ -155,14 +155,15 @@ std::string rounded(base::Duration duration) {
 void summarise(const replay::Player& player, bool dry_run) {
   const auto& played = player.played();
   const auto lasted = std::chrono::duration_cast<std::chrono::milliseconds>(player.lasted());
-  std::string text = dry_run ? fmt::format("{} frames would be sent", played.sent)
-                             : fmt::format("sent {} frames in {}", played.sent, words::to_text(lasted));
+  std::string text =
+      dry_run ? fmt::format("{} would be sent", counted(played.sent, "frame"))
+              : fmt::format("sent {} in {}", counted(played.sent, "frame"), words::to_text(lasted));
   add_count(text, played.not_chosen, "not chosen");
-  add_count(text, played.error_frames, "error frames left out");
-  add_count(text, played.fd_frames, "CAN FD frames left out: the bus has none");
+  add_count(text, played.error_frames, "error frame", "left out");
+  add_count(text, played.fd_frames, "CAN FD frame", "left out: the bus has none");
   add_count(text, played.no_route, "of interfaces without a bus");
   add_count(text, player.playback().backward(), "with a time before the last");
-  add_count(text, player.playback().cut(), "pauses cut");
+  add_count(text, player.playback().cut(), "pause", "cut");
   if (player.playback().late() != 0)
     text += fmt::format(", {} later than 1 ms, the latest by {}", player.playback().late(),
                         rounded(player.playback().worst()));

@@ -10,6 +10,7 @@
 #include "cli/command/commanding.hpp"
 #include "cli/shared/clock.hpp"
 #include "cli/shared/interrupt.hpp"
+#include "cli/shared/messages.hpp"
 #include "cli/shared/outgoing.hpp"
 #include "cli/verbs/verbs.hpp"
 #include "cli/watch/frame_lines.hpp"
@@ -81,11 +82,11 @@ void send_lines(Session& session, const SendOptions& options, bool dry_run, int&
     ++sent;
   }
   if (outgoing) outgoing->expect_all_left();
-  std::string text = fmt::format("{} frames {}", sent, dry_run ? "read" : "sent");
-  if (errors != 0) text += fmt::format(", {} error frames are reports and were not", errors);
+  std::string text = fmt::format("{} {}", counted(sent, "frame"), dry_run ? "read" : "sent");
+  add_count(text, errors, "error frame", "left out, which only reports");
   if (fd != 0)
-    text += fmt::format(", {} CAN FD frames were not: {} ({})", fd, obstacle->what, obstacle->remedy);
-  if (lines.bad_lines() != 0) text += fmt::format(", {} lines could not be read", lines.bad_lines());
+    add_count(text, fd, "CAN FD frame", fmt::format("not sent: {} ({})", obstacle->what, obstacle->remedy));
+  add_count(text, lines.bad_lines(), "line", "could not be read");
   remark(text);
   if (lines.failed() || fd != 0) exit_code = exit_failure;
   exit_code = exit_code_after_interrupt(exit_code);

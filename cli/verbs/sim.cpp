@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdlib>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -17,15 +18,17 @@
 #include "cli/shared/remedies.hpp"
 #include "cli/shared/session.hpp"
 #include "cli/shared/values.hpp"
+#include "cli/simulate/cast.hpp"
 #include "cli/verbs/verbs.hpp"
 #include "cli/words/command.hpp"
-#include "generator/spec/spec.hpp"
 #include "sim/serve/amiro.hpp"
 #include "sim/serve/mappers.hpp"
 #include "sim/serve/messages.hpp"
 
 namespace ocm::cli {
 namespace {
+
+using simulate::Cast;
 
 /// Prints what kept a simulation from running, and leaves; the exit code when it ran until a signal.
 int exit_code_of(const sim::Ending& ending) {
@@ -34,8 +37,6 @@ int exit_code_of(const sim::Ending& ending) {
     fmt::print(stderr, "amiroctl: {}\n          {}\n", failure.what, remedy(failure));
   throw Exit{ending.misuse ? exit_usage : exit_failure};
 }
-
-constexpr std::uint32_t fastest_bit_rate = 1'000'000'000;  // of the virtual bus
 
 // --- the AMiRo ---
 
@@ -46,12 +47,12 @@ void add_boards(Verb verb, sim::AmiroOptions& options, std::string& boards) {
       .range(0.001, 1000.0)
       .type_name("N");
   verb.add_option("--bitrate", options.bit_rate, "of the virtual bus, bit/s")
-      .range(1'000U, fastest_bit_rate)
+      .range(1'000U, simulate::fastest_bit_rate)
       .type_name("N");
   verb.add_option("--data-bitrate", options.data_bit_rate,
                   "of the data of CAN FD frames, bit/s: a multiple of --bitrate; default: the spec's, or "
                   "four times as fast")
-      .range(1'000U, fastest_bit_rate)
+      .range(1'000U, simulate::fastest_bit_rate)
       .type_name("N");
   verb.add_option("--bus-errors", options.bus_errors,
                   "on the virtual bus: bits a second that interference breaks, on average")
@@ -97,35 +98,6 @@ int run_amiro(const sim::AmiroOptions& options, Session& session) {
 
 // --- the messages of a spec ---
 
-/// What a spec asks to be played.
-enum class Cast { amiro, messages, both };
-
-bool is_of_amiro(const protocol::Topic& topic) {
-  const auto* own = amiro::catalogue.find(topic.name);
-  return own != nullptr && own->id == topic.id && own->kind == topic.kind &&
-         own->frames.size() == topic.frames.size();
-}
-
-Cast cast_of(Session& session) {
-  session.refuse_interfaces("sim");
-  if (session.spec_files.empty()) return Cast::amiro;
-  bool messages = false;
-  bool topics = false;
-  bool foreign = false;
-  for (const auto& topic : session.catalogue().topics) {
-    messages = messages || topic.is_message();
-    topics = topics || !topic.is_message();
-    foreign = foreign || (!topic.is_message() && !is_of_amiro(topic));
-  }
-  // A spec with neither, such as a DBC file of nodes only, has nothing to say as a robot's either.
-  if (!messages) return topics ? Cast::amiro : Cast::messages;
-  if (foreign)
-    remark(
-        "only the messages of the spec are played: its topics are not the AMiRo's, and no other robot's "
-        "boards are simulated");
-  return topics && !foreign ? Cast::both : Cast::messages;
-}
-
 /// What is meant for the AMiRo's boards.
 void refuse_boards_of_messages(Verb verb) {
   for (const char* option : {"--boards", "--images", "--without", "--frozen"})
@@ -134,23 +106,14 @@ void refuse_boards_of_messages(Verb verb) {
            exit_usage);
 }
 
-struct BitRates {
-  std::uint32_t nominal, data;
-};
-
-/// As typed, else as the spec says, if one is played: the AMiRo's topics may be at another bit rate there.
-/// Data go four times as fast where nothing is said, as 2 Mbit/s on a bus of 500 kbit/s.
-BitRates bit_rates(Verb verb, const sim::AmiroOptions& options, Session& session, bool played) {
-  BitRates rates{options.bit_rate, options.data_bit_rate};
-  const auto* const model = played ? &session.spec().model() : nullptr;
-  if (verb.count("--bitrate") == 0 && model != nullptr && model->bit_rate != 0)
-    rates.nominal = model->bit_rate;
-  if (verb.count("--data-bitrate") != 0) return rates;
-  const bool stated = model != nullptr && model->data_bit_rate >= rates.nominal;
-  rates.data = stated                                  ? model->data_bit_rate
-               : rates.nominal <= fastest_bit_rate / 4 ? 4 * rates.nominal
-                                                       : rates.nominal;
-  return rates;
+/// As the options say, or the spec.
+simulate::BitRates bit_rates(Verb verb, const sim::AmiroOptions& options, Session& session, bool played) {
+  const auto typed = [verb](const char* option, std::uint32_t value) {
+    return verb.count(option) != 0 ? std::optional{value} : std::nullopt;
+  };
+  return simulate::bit_rates(typed("--bitrate", options.bit_rate),
+                             typed("--data-bitrate", options.data_bit_rate), options.bit_rate, session,
+                             played);
 }
 
 int run_messages(Verb verb, const sim::AmiroOptions& options, Session& session) {
@@ -275,7 +238,7 @@ void add_sim(Verb app, Session& session, int& exit_code) {
       exit_code = run_mappers(*mappers);
       return;
     }
-    const Cast cast = cast_of(session);
+    const Cast cast = simulate::cast_of(session);
     if (cast == Cast::amiro && verb.count("--sporadic") != 0)
       fail({"sim: --sporadic without messages", "add --spec FILE with messages, or leave it out"},
            exit_usage);

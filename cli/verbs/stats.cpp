@@ -37,7 +37,7 @@ struct StatsOptions {
 /// A table on a terminal that is drawn again over the last one.
 class Screen {
  public:
-  Screen() : terminal_(isatty(STDOUT_FILENO) != 0) {}
+  Screen() : terminal_(can_redraw(STDOUT_FILENO)) {}
   [[nodiscard]] bool terminal() const noexcept { return terminal_; }
 
   /// The lines fit `columns`.

@@ -63,18 +63,15 @@ bool Display::any_fault() noexcept {
 void Display::summarise(std::uint64_t lost, base::Time until) {
   last_ = std::max(last_, until);
   const auto& seen = receiver_.counters();
-  std::string text = fmt::format("{} frames, {} samples", seen.frames, seen.samples);
-  const auto add = [&text](std::uint64_t count, std::string_view what) {
-    if (count != 0) text += fmt::format(", {} {}", count, what);
-  };
-  add(seen.commands, "commands");
-  add(seen.unknown, "of unknown identifier");
-  add(seen.remote, "remote");
-  add(seen.fd, "of CAN FD");
-  add(seen.wrong_dlc, "of wrong length");
-  add(seen.incomplete, "incomplete samples");
-  add(seen.errors, "error frames");
-  add(lost, "lost in the receive queue");
+  std::string text = fmt::format("{}, {}", counted(seen.frames, "frame"), counted(seen.samples, "sample"));
+  add_count(text, seen.commands, "command", "");
+  add_count(text, seen.unknown, "of unknown identifier");
+  add_count(text, seen.remote, "remote");
+  add_count(text, seen.fd, "of CAN FD");
+  add_count(text, seen.wrong_dlc, "of wrong length");
+  add_count(text, seen.incomplete, "incomplete sample", "");
+  add_count(text, seen.errors, "error frame", "");
+  add_count(text, lost, "lost in the receive queue");
   remark(text);
   summarise_transport();
 }
@@ -84,21 +81,18 @@ void Display::summarise_transport() {
   const std::uint64_t frames = counters().transport;
   const j1939::TransportCounters seen = receiver_.transport_counters(last_);
   if (frames + seen.complete == 0) return;
-  std::string text = fmt::format("transport protocol of J1939: {} messages put together, {} other frames",
-                                 seen.complete, frames);
-  const auto add = [&text](std::uint64_t count, std::string_view what) {
-    if (count != 0) text += fmt::format(", {} {}", count, what);
-  };
-  add(seen.lost_packet, "messages lost a packet");
-  add(seen.wrong_sequence, "had a packet of a wrong number");
-  add(seen.aborted, "aborted");
-  add(seen.timed_out, "timed out");
-  add(seen.replaced, "followed by the next before the end");
-  add(seen.no_session, "too many at a time");
-  add(seen.bad_size, "of an impossible size");
-  add(receiver_.transports_open(), "not at the end yet");
-  add(seen.stray, "packets of no message");
-  add(seen.malformed, "frames of another form");
+  std::string text = fmt::format("transport protocol of J1939: {} put together, {}",
+                                 counted(seen.complete, "message"), counted(frames, "other frame"));
+  add_count(text, seen.lost_packet, "message", "lost a packet");
+  add_count(text, seen.wrong_sequence, "had a packet of a wrong number");
+  add_count(text, seen.aborted, "aborted");
+  add_count(text, seen.timed_out, "timed out");
+  add_count(text, seen.replaced, "followed by the next before the end");
+  add_count(text, seen.no_session, "too many at a time");
+  add_count(text, seen.bad_size, "of an impossible size");
+  add_count(text, receiver_.transports_open(), "not at the end yet");
+  add_count(text, seen.stray, "packet", "of no message");
+  add_count(text, seen.malformed, "frame", "of another form");
   remark(text);
 }
 

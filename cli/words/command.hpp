@@ -452,7 +452,7 @@ class CommandParser {
   base::Result<const protocol::Topic*, WordError> settable(Line line) const {
     const auto found = topic(line, 1, {});
     if (found && (*found)->kind != protocol::Kind::sensor) return *found;
-    // What is no topic, or a sensor, is told as before there were messages where there are none.
+    // Without messages, what is no topic, or a sensor, is reported as before there were any.
     for (const auto& each : catalogue_->topics)
       if (each.is_message() && !found) return found.error;
     return topic(line, 1, protocol::Kind::actuator);

@@ -186,8 +186,8 @@ class Converter {
     std::sort(names.begin(), names.end());
     return std::adjacent_find(names.begin(), names.end()) == names.end();
   }
-  /// Two signals of one name are told apart by a number: a selector is found by its name. Empty where there
-  /// are no such two: they have their own names.
+  /// Two signals of one name are distinguished by a number: a selector is found by its name. Empty where
+  /// there are no such two: they have their own names.
   static std::vector<std::string> names_of(const std::vector<dbc::Signal>& signals) {
     if (are_unique(signals)) return {};
     std::unordered_set<std::string> taken;

@@ -21,7 +21,7 @@ using spec::FieldModel;
 using spec::MessageModel;
 using spec::Model;
 
-constexpr std::string_view nobody = "Vector__XXX";
+constexpr std::string_view no_node = "Vector__XXX";
 constexpr std::string_view formats[] = {"StandardCAN", "ExtendedCAN", "reserved", "J1939PG"};
 constexpr std::size_t fd_formats = 14;  ///< StandardCAN_FD, ExtendedCAN_FD
 
@@ -92,7 +92,7 @@ class MessagesWriter {
     if (name != message.name) long_names_.push_back({"BO_ " + id, "SystemMessageLongSymbol", message.name});
     ids_.push_back(id);
     const bool known = message.board < model_.boards.size();
-    const std::string sender = known ? node(model_.boards[message.board].name) : std::string{nobody};
+    const std::string sender = known ? node(model_.boards[message.board].name) : std::string{no_node};
     out_.messages += "\nBO_ " + id + " " + name + ": " + std::to_string(message.length) + " " + sender + "\n";
     if (!message.other_senders.empty()) {
       out_.senders += "BO_TX_BU_ " + id + " : " + sender;
@@ -142,7 +142,7 @@ class MessagesWriter {
                      print(field.scale) + "," + print(field.offset) + ") [" +
                      print(field.range ? field.range->min : zero) + "|" +
                      print(field.range ? field.range->max : zero) + "] " + dbc_text(field.unit) + " ";
-    if (field.receivers.empty()) out_.messages += nobody;
+    if (field.receivers.empty()) out_.messages += no_node;
     for (std::size_t i = 0; i < field.receivers.size(); ++i)
       out_.messages += (i == 0 ? "" : ",") + node(field.receivers[i]);
     out_.messages += "\n";

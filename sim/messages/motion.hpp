@@ -1,4 +1,4 @@
-/// How a field of a message moves where nobody measures anything: a number wanders through its range, a
+/// How a field of a message moves where nothing is measured: a number wanders through its range, a
 /// named value or a bit stays for seconds. What is sent depends on the seed, the field and the time alone,
 /// and on no generator's state. Integers and sums only, so that every machine sends the same bits.
 ///

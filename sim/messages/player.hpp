@@ -1,4 +1,4 @@
-/// A bus that nobody has: the messages of a catalogue, each at its period, with fields that move.
+/// A bus without its hardware: the messages of a catalogue, each at its period, with fields that move.
 ///
 ///     sim::MessagePlayer player{catalogue, {.seed = 7}};
 ///     player.advance(now, [&](const sim::PlayedMessage& message, const can::AnyFrame& frame, base::Time due)

@@ -46,7 +46,7 @@ TEST_CASE("the specs that the bad ones are made from are good") {
   }
 }
 
-TEST_CASE("every mistake is told with its place, what is wrong and what would be right") {
+TEST_CASE("every mistake is reported with its place, what is wrong and what would be right") {
   for (const Mistakes& each : all_mistakes) {
     const std::string good = read(each.good);
     const auto table = nlohmann::json::parse(read(each.table));
@@ -74,7 +74,7 @@ TEST_CASE("every mistake is told with its place, what is wrong and what would be
   }
 }
 
-TEST_CASE("all problems are told, in the order of the file") {
+TEST_CASE("all problems are reported, in the order of the file") {
   std::string text = read("tests/generator/good.json");
   const auto replace = [&](const std::string& from, const std::string& to) {
     text.replace(text.find(from), from.size(), to);

@@ -100,7 +100,7 @@ TEST_CASE("a moved spec keeps its catalogue where it is") {
   compare(amiro::catalogue, moved.catalogue());
 }
 
-TEST_CASE("two signals of one name are told apart, and a selector stays the one that it was") {
+TEST_CASE("two signals of one name are distinguished, and a selector stays the one that it was") {
   const auto loaded = ocm::spec::parse(
       "BO_ 1 A: 8 X\n SG_ S M : 0|4@1+ (1,0) [0|0] \"\" X\n SG_ S m3 : 8|8@1+ (1,0) [0|0] \"\" X\n"
       " SG_ S_2 : 16|8@1+ (1,0) [0|0] \"\" X\n SG_ S : 24|8@1+ (1,0) [0|0] \"\" X\n",

@@ -27,7 +27,7 @@ bool parse(std::string_view text) {
   return loaded.spec != nullptr;
 }
 
-TEST_CASE("a spec that is cut off anywhere is told to be") {
+TEST_CASE("a spec that is cut off anywhere is reported") {
   const std::string whole = read("tests/generator/good.json");
   std::size_t end = whole.size();
   while (whole[end - 1] != '}') --end;

@@ -357,7 +357,7 @@ TEST_CASE("messages: what our JSON and a new DBC file do not keep of a DBC file 
               "2 signals of VECTOR__INDEPENDENT_SIG_MSG", "1 EV_", "1 BA_DEF_REL_", "2 SIG_GROUP_"});
 }
 
-/// Messages as nobody would think of them, of what both formats can say.
+/// Messages at random, of what both formats can say.
 class RandomModel {
  public:
   explicit RandomModel(unsigned seed) : random_(seed) {}
@@ -498,7 +498,7 @@ TEST_CASE("messages: any that both formats can say come back from each as they w
   }
 }
 
-TEST_CASE("messages: what a DBC file has no place for is told") {
+TEST_CASE("messages: what a DBC file has no place for is reported") {
   const auto* dbc = generate::find_target("dbc");
   REQUIRE(dbc != nullptr);
   const Model model = parse(R"({"robot": "r", "messages": [

@@ -227,7 +227,7 @@ TEST_CASE("what the schema of the sentences must see: a value that cannot be") {
   }
 }
 
-TEST_CASE("what no schema can see of sentences is told with its place and what would be right") {
+TEST_CASE("what no schema can see of sentences is reported with its place and what would be right") {
   using Lines = std::vector<std::string>;
   const Spec spec{"sentences"};
   const auto with = [&](const char* where, const Json& value) { return told(spec.with(where, value)); };

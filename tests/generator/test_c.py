@@ -120,7 +120,7 @@ class C(Case):
             frames = expected[:max(kinds.values()) + 1]
             source = self.folder / "driver.c"
             source.write_text(driver(robot, header, frames))
-            # -O1: what is not initialised would be told.
+            # -O1: what is not initialised would be reported.
             self.compile(COMPILERS["gcc"], source, "-O1", "-Wno-maybe-uninitialized", "-o", self.folder / "driver")
             lines = [f'{kinds[s["topic"], s["frame"]]} {s["id"]} {len(s["data"]) // 2} {s["data"] or "-"}' for s in expected]
             done = subprocess.run([self.folder / "driver"], input="\n".join(lines), capture_output=True, encoding="utf-8",

@@ -131,7 +131,7 @@ TEST_CASE("compass: a server calibrates over a radio that loses every fifth pack
   }
 }
 
-TEST_CASE("compass: a stop ends the turn, and the server is told") {
+TEST_CASE("compass: a stop ends the turn, and is reported to the server") {
   Served served{open_room(), 0.0};
   REQUIRE(served.server.fleet().calibrate(0, served.now));
   auto& application = served.robots.robot(0).application();

@@ -335,7 +335,7 @@ struct Floor {
 /// straight, the gyro's bias and what it says too little, the compass's offset, and a field without steel.
 /// What remains is linear with normal noise; the best there is for that is the Kalman filter of heading and
 /// north with the noises' true variances. (What wheels tell of a turn is left out: they slip by a degree that
-/// nobody sees, fifteen times the gyro's noise.)
+/// is not seen, fifteen times the gyro's noise.)
 [[nodiscard]] inline double heading_floor_rad(const Drive& drive) {
   const sim::mapper::RobotModel& robot = drive.world().robot(0).model();
   const double digit = 1 / robot.compass.counts_per_gauss;

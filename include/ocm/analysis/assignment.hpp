@@ -24,7 +24,7 @@ namespace ocm::analysis {
 struct Assignment {
   Reason reason = Reason::schedulable;  ///< or why the last one tried does not fit the level
   std::size_t placed = 0;               ///< how many have their level, from the least urgent
-  std::size_t stuck = nobody;           ///< one that does not fit the next level; nor does any other
+  std::size_t stuck = no_index;         ///< one that does not fit the next level; nor does any other
   [[nodiscard]] constexpr bool ok() const noexcept { return reason == Reason::schedulable; }
   friend bool operator==(const Assignment&, const Assignment&) = default;
 };
@@ -38,16 +38,16 @@ constexpr Assignment optimal_levels(std::span<Item> items, Test test) noexcept {
   for (Item& item : items) item.level = static_cast<std::uint32_t>(items.size() - 1);
   for (std::size_t left = items.size(); left > 0; --left) {
     const auto level = static_cast<std::uint32_t>(left - 1);
-    std::size_t fits = nobody;
-    for (std::size_t i = items.size(); i-- > 0 && fits == nobody;) {
+    std::size_t fits = no_index;
+    for (std::size_t i = items.size(); i-- > 0 && fits == no_index;) {
       if (items[i].level != level) continue;  // has its own already
       result.reason = test(i);
       result.stuck = i;
       if (result.reason == Reason::schedulable) fits = i;
     }
-    if (fits == nobody) return result;
+    if (fits == no_index) return result;
     ++result.placed;
-    result.stuck = nobody;
+    result.stuck = no_index;
     for (std::size_t i = 0; i < items.size(); ++i)
       if (items[i].level == level && i != fits) items[i].level = level - 1;
   }

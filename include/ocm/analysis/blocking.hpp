@@ -32,10 +32,10 @@ namespace ocm::analysis {
 
 /// One stretch of a job in which it has a resource, at its longest.
 struct Section {
-  std::size_t task = 0;         ///< whose, in the set
-  std::uint32_t resource = 0;   ///< any number
-  std::int64_t length = 0;      ///< longest time of it, sections inside included
-  std::size_t inside = nobody;  ///< the row of the section of the same job around it: an earlier one
+  std::size_t task = 0;           ///< whose, in the set
+  std::uint32_t resource = 0;     ///< any number
+  std::int64_t length = 0;        ///< longest time of it, sections inside included
+  std::size_t inside = no_index;  ///< the row of the section of the same job around it: an earlier one
 };
 
 /// How a resource that is taken is kept from holding up those who do not use it.
@@ -74,9 +74,9 @@ void the_table_of_sections_is_not_good();  // is never defined: names the mistak
 /// B of one level.
 struct Blocking {
   std::int64_t time = 0;
-  std::size_t sections = 0;      ///< how many can follow each other
-  std::size_t by = nobody;       ///< the task that has the longest of them
-  std::size_t section = nobody;  ///< its row
+  std::size_t sections = 0;        ///< how many can follow each other
+  std::size_t by = no_index;       ///< the task that has the longest of them
+  std::size_t section = no_index;  ///< its row
 };
 
 namespace detail {
@@ -93,10 +93,10 @@ constexpr Table check_rows(std::span<const Task> tasks, std::span<const Section>
     const Section& row = sections[s];
     if (row.task >= tasks.size()) return Table::no_such_task;
     if (row.length < 0 || row.length > tasks[row.task].cost) return Table::bad_length;
-    if (row.inside == nobody) continue;
+    if (row.inside == no_index) continue;
     if (row.inside >= s || sections[row.inside].task != row.task) return Table::bad_nesting;
     if (sections[row.inside].length < row.length) return Table::bad_length;
-    for (std::size_t around = row.inside; around != nobody; around = sections[around].inside)
+    for (std::size_t around = row.inside; around != no_index; around = sections[around].inside)
       if (sections[around].resource == row.resource) return Table::bad_nesting;
   }
   return Table::good;
@@ -108,7 +108,7 @@ constexpr bool can_be_ordered(std::span<const Section> sections, std::span<std::
   for (std::size_t round = 0; round <= sections.size(); ++round) {
     bool changed = false;
     for (const Section& row : sections) {
-      if (row.inside == nobody) continue;
+      if (row.inside == no_index) continue;
       const auto own = static_cast<std::size_t>(&row - sections.data());
       if (depth[own] > depth[row.inside]) continue;
       for_resource(sections, row.resource, depth, depth[row.inside] + 1);
@@ -132,7 +132,7 @@ constexpr void set_ceilings(std::span<const Task> tasks, std::span<const Section
     changed = false;
     for (std::size_t s = 0; s < sections.size(); ++s) {
       const std::size_t around = sections[s].inside;
-      if (around == nobody || above[around] >= above[s]) continue;
+      if (around == no_index || above[around] >= above[s]) continue;
       for_resource(sections, sections[s].resource, above, above[around]);
       changed = true;
     }
@@ -152,9 +152,9 @@ class Holders {
     return sections_[s].length > 0 && above_[s] <= level_ && tasks_[sections_[s].task].level > level_;
   }
   [[nodiscard]] constexpr std::size_t longest() const noexcept {
-    std::size_t best = nobody;
+    std::size_t best = no_index;
     for (std::size_t s = 0; s < sections_.size(); ++s)
-      if (holds(s) && (best == nobody || sections_[s].length > sections_[best].length)) best = s;
+      if (holds(s) && (best == no_index || sections_[s].length > sections_[best].length)) best = s;
     return best;
   }
   /// The sum over all groups of the longest section of each, and how many groups there are.
@@ -191,7 +191,7 @@ constexpr Blocking blocking(std::span<const Task> tasks, std::span<const Section
   const Holders holders{tasks, sections, above, level};
   Blocking result;
   result.section = holders.longest();
-  if (result.section == nobody) return result;
+  if (result.section == no_index) return result;
   result.by = sections[result.section].task;
   result.time = sections[result.section].length;
   result.sections = 1;

@@ -30,8 +30,8 @@ namespace ocm::analysis {
 
 struct Decision {
   bool admitted = false;
-  std::size_t late = nobody;  ///< in BusCheck::messages(): the most urgent that would be; nobody: none
-  Explained why{};            ///< of that one
+  std::size_t late = no_index;  ///< in BusCheck::messages(): the most urgent that would be; no_index: none
+  Explained why{};              ///< of that one
 };
 
 template <std::size_t N>
@@ -54,16 +54,16 @@ class BusCheck {
   constexpr Decision decide(std::int64_t period) noexcept {
     if (period < 1 || !collect(period)) return {};  // or more than N: not known
     const auto results = analysis_.analyse(messages(), bus_, test_, limits_);
-    std::size_t late = nobody;
+    std::size_t late = no_index;
     bool running_late = false;
-    for (std::size_t i = 0; i < results.size() && late == nobody; ++i) {
+    for (std::size_t i = 0; i < results.size() && late == no_index; ++i) {
       if (results[i].ok()) continue;
       if (is_asked(set_[i].key))
         late = i;
       else
         running_late = true;
     }
-    if (late == nobody && !running_late) return {.admitted = true};
+    if (late == no_index && !running_late) return {.admitted = true};
     if (!running_late) return {false, late, results[late]};
     return blame(period);
   }

@@ -27,15 +27,15 @@
 
 namespace ocm::analysis {
 
-/// Puts the set into an order in which each message meets its deadline. Returns nobody; or the lowest level,
-/// from 0 for the most urgent, which none of the messages from there up can take: then there is no such
-/// order, what stands below that level stays there, and the rest is deadline monotonic. bad_input: the last
-/// level.
+/// Puts the set into an order in which each message meets its deadline. Returns no_index; or the lowest
+/// level, from 0 for the most urgent, which none of the messages from there up can take: then there is no
+/// such order, what stands below that level stays there, and the rest is deadline monotonic. bad_input: the
+/// last level.
 template <std::size_t N>
 constexpr std::size_t assign_priorities(std::span<Message> set, const CanBus& bus,
                                         CanResponse<N>& analysis) noexcept {
-  if (set.empty()) return nobody;
-  if (set.size() > N || first_bad(set) != nobody || !valid(bus)) return set.size() - 1;
+  if (set.empty()) return no_index;
+  if (set.size() > N || first_bad(set) != no_index || !valid(bus)) return set.size() - 1;
   // By D - J: mostly the last one fits.
   for (std::size_t i = 1; i < set.size(); ++i)
     for (std::size_t k = i; k > 0 && set[k].due() - set[k].jitter < set[k - 1].due() - set[k - 1].jitter; --k)
@@ -54,7 +54,7 @@ constexpr std::size_t assign_priorities(std::span<Message> set, const CanBus& bu
       if (tried == 0) return level;
     }
   }
-  return nobody;
+  return no_index;
 }
 
 /// A message in the identifier layout. Its `key` follows from the rest.
@@ -70,12 +70,12 @@ struct TopicMessage {
 };
 
 /// Gives each message the least urgent priority with which all meet their deadlines, and sorts the set by
-/// identifier. Returns nobody; or the position of a message that misses though it is urgent, while all that
+/// identifier. Returns no_index; or the position of a message that misses though it is urgent, while all that
 /// could be below it are: then no choice of priorities works. A set that cannot be analysed: position 0.
 template <std::size_t N>
 constexpr std::size_t assign_in_layout(std::span<TopicMessage> set, const CanBus& bus,
                                        CanResponse<N>& analysis) noexcept {
-  if (set.empty()) return nobody;
+  if (set.empty()) return no_index;
   if (set.size() > N) return 0;
   for (TopicMessage& m : set) m.priority = protocol::Priority::low;
   std::array<Message, N> messages{};
@@ -96,7 +96,7 @@ constexpr std::size_t assign_in_layout(std::span<TopicMessage> set, const CanBus
       set[i].priority = static_cast<protocol::Priority>(static_cast<unsigned>(set[i].priority) - 1);
       changed = true;
     }
-    if (!changed) return nobody;
+    if (!changed) return no_index;
   }
 }
 

@@ -44,10 +44,10 @@ class CanOffsets {
     set_ = set.first(std::min(set.size(), N));
     bus_ = bus;
     std::size_t bad = set.size() > N ? N : first_bad(set);
-    for (std::size_t m = 0; m < set_.size() && bad == nobody; ++m)
+    for (std::size_t m = 0; m < set_.size() && bad == no_index; ++m)
       if (set_[m].node >= Nodes) bad = m;
     for (std::size_t m = 0; m < set_.size(); ++m) results_[m] = {.deadline = set_[m].due(), .largest = bad};
-    if (bad != nobody || !valid(bus)) return {results_.data(), set_.size()};
+    if (bad != no_index || !valid(bus)) return {results_.data(), set_.size()};
     Utilisation load;
     std::int64_t longest = 0;
     for (std::size_t m = 0; m < set_.size(); ++m) {

@@ -82,14 +82,14 @@ class CanQueues {
     nodes_ = nodes;
     bus_ = bus;
     std::size_t bad = set.size() > N ? N : first_bad(set);
-    for (std::size_t m = 0; m < set_.size() && bad == nobody; ++m)
+    for (std::size_t m = 0; m < set_.size() && bad == no_index; ++m)
       if (set_[m].node >= nodes.size() || nodes[set_[m].node].mailboxes < 1) bad = m;
     for (std::size_t m = 0; m < set_.size(); ++m) {
       results_[m] = {.deadline = set_[m].due(), .largest = bad};
       offered_[m] = set_[m].jitter;
       responses_[m] = 1;  // until something is known: one frame can wait
     }
-    if (bad != nobody || !valid(bus)) return {results_.data(), set_.size()};
+    if (bad != no_index || !valid(bus)) return {results_.data(), set_.size()};
     left_ = (Checked{limits.terms} * static_cast<std::int64_t>(set_.size())).value_or(unbounded);
     for (int pass = 0; pass < most_passes; ++pass) {
       bool changed = false;
@@ -238,7 +238,7 @@ class CanQueues {
     result.response = response.value();
     result.instance = static_cast<std::size_t>(instance);
     result.interference = window - result.blocking;
-    result.largest = nobody;
+    result.largest = no_index;
     result.largest_share = 0;
     for (std::size_t k = 0; k <= level_[m]; ++k) {
       if (k == m) continue;

@@ -60,7 +60,7 @@ class Demand {
     size_ = 0;
     horizon_ = 0;
     sum_ = 0;
-    largest_ = nobody;
+    largest_ = no_index;
     largest_share_ = 0;
   }
   /// As `other` is. O(its size), whatever N is.
@@ -79,7 +79,7 @@ class Demand {
 
   [[nodiscard]] constexpr std::int64_t horizon() const noexcept { return horizon_; }
   [[nodiscard]] constexpr Checked sum() const noexcept { return sum_; }
-  /// Who asks for the most, the most urgent of equals; nobody: none asks.
+  /// Who asks for the most, the most urgent of equals; no_index: none asks.
   [[nodiscard]] constexpr std::size_t largest() const noexcept { return largest_; }
   [[nodiscard]] constexpr std::int64_t largest_share() const noexcept { return largest_share_; }
 
@@ -144,7 +144,7 @@ class Demand {
   std::size_t size_ = 0;
   std::int64_t horizon_ = 0;
   Checked sum_;
-  std::size_t largest_ = nobody;
+  std::size_t largest_ = no_index;
   std::int64_t largest_share_ = 0;
 };
 
@@ -182,7 +182,7 @@ class CanResponse {
       results_[m].deadline = set[m].due();
       results_[m].largest = bad;
     }
-    if (bad == nobody && valid(bus)) {
+    if (bad == no_index && valid(bus)) {
       set_ = set;
       bus_ = bus;
       test_ = test;
@@ -204,12 +204,12 @@ class CanResponse {
   }
 
   constexpr void find_blocking() noexcept {
-    std::size_t longest = nobody;
+    std::size_t longest = no_index;
     for (std::size_t m = set_.size(); m-- > 0;) {
       Explained& result = results_[m];
       result.blocked_by = longest;
-      result.blocking = longest == nobody ? 0 : set_[longest].cost;
-      if (longest == nobody || set_[m].cost >= set_[longest].cost) longest = m;
+      result.blocking = longest == no_index ? 0 : set_[longest].cost;
+      if (longest == no_index || set_[m].cost >= set_[longest].cost) longest = m;
     }
   }
 
@@ -218,7 +218,7 @@ class CanResponse {
     shared_.restart();
     longest_ = 0;
     load_ = 0;
-    heaviest_ = nobody;
+    heaviest_ = no_index;
     std::int64_t heaviest_parts = -1;
     bool overloaded = false;
     for (std::size_t m = 0; m < set_.size(); ++m) {
@@ -378,12 +378,12 @@ class CanResponse {
   std::span<const Message> set_;
   CanBus bus_;
   CanTest test_ = CanTest::exact;
-  Demand shared_;                  ///< of the levels above, no further than the next level begins
-  Demand apart_;                   ///< of one level that goes further
-  std::int64_t longest_ = 0;       ///< C of this level and above
-  std::int64_t load_ = 0;          ///< U of this level and above, in parts of 2^30, too low if at all
-  std::size_t heaviest_ = nobody;  ///< of the messages above, the one with the greatest C / T
-  std::int64_t left_ = 0;          ///< terms that this message's analysis may still take
+  Demand shared_;                    ///< of the levels above, no further than the next level begins
+  Demand apart_;                     ///< of one level that goes further
+  std::int64_t longest_ = 0;         ///< C of this level and above
+  std::int64_t load_ = 0;            ///< U of this level and above, in parts of 2^30, too low if at all
+  std::size_t heaviest_ = no_index;  ///< of the messages above, the one with the greatest C / T
+  std::int64_t left_ = 0;            ///< terms that this message's analysis may still take
   std::array<Explained, N> results_{};
 };
 

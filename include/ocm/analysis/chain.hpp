@@ -48,7 +48,7 @@ struct Hop {
 
 struct ChainBound {
   Reason reason = Reason::bad_input;  ///< misses_deadline: see `age`
-  std::size_t hop = nobody;           ///< schedulable, misses_deadline: what takes longest; else whose fault
+  std::size_t hop = no_index;         ///< schedulable, misses_deadline: what takes longest; else whose fault
   std::int64_t latency = unbounded;   ///< from the sensor's planned release to the end of the last hop
   std::int64_t shortest = 0;          ///< the same at best
   /// From an event in the world to the end of the first reaction to it; and how old what the last hop acts

@@ -49,13 +49,13 @@ struct CanBus {
 /// waits: the first three would do where C has its intermission and all are error active. [Davis et al. 2007]
 inline constexpr std::int64_t error_frame_bits = 31;
 
-/// The first message whose numbers mean nothing; nobody if all do.
+/// The first message whose numbers mean nothing; no_index if all do.
 [[nodiscard]] constexpr std::size_t first_bad(std::span<const Message> set) noexcept {
   for (std::size_t i = 0; i < set.size(); ++i) {
     const Message& m = set[i];
     if (m.cost < 1 || m.period < 1 || m.jitter < 0 || m.offset < 0 || m.due() < 1) return i;
   }
-  return nobody;
+  return no_index;
 }
 
 [[nodiscard]] constexpr bool valid(const CanBus& bus) noexcept {
@@ -72,12 +72,12 @@ constexpr void sort_by_key(std::span<Message> set) noexcept {
   }
 }
 
-/// The position of the first message that has the key of the one before it; nobody if keys differ, as
+/// The position of the first message that has the key of the one before it; no_index if keys differ, as
 /// identifiers must. The set is in order.
 [[nodiscard]] constexpr std::size_t first_clash(std::span<const Message> set) noexcept {
   for (std::size_t i = 1; i < set.size(); ++i)
     if (set[i].key == set[i - 1].key) return i;
-  return nobody;
+  return no_index;
 }
 
 /// Nanoseconds that `bits` take at a bit rate of at least 1, rounded up: a bound stays one.

@@ -23,9 +23,9 @@
 namespace ocm::analysis {
 
 struct Edge {
-  bool exists = false;           ///< false: no value at all makes the set schedulable
-  std::int64_t value = 0;        ///< the last one that does
-  std::size_t missing = nobody;  ///< who misses at the next one, or at all; nobody: no limit was found
+  bool exists = false;             ///< false: no value at all makes the set schedulable
+  std::int64_t value = 0;          ///< the last one that does
+  std::size_t missing = no_index;  ///< who misses at the next one, or at all; no_index: no limit was found
   friend bool operator==(const Edge&, const Edge&) = default;
 };
 
@@ -35,22 +35,22 @@ inline constexpr std::int64_t greatest_scale = 1'000'000'000'000;
 
 namespace detail {
 
-/// The last value from `good` on towards `bad`, both included, at which misses(value) says nobody. Whatever
+/// The last value from `good` on towards `bad`, both included, at which misses(value) says no_index. Whatever
 /// is farther than one that misses, misses.
 template <class Misses>
 constexpr Edge find_edge(std::int64_t good, std::int64_t bad, Misses misses) noexcept {
   Edge edge;
   edge.missing = misses(good);
-  if (edge.missing != nobody) return edge;
+  if (edge.missing != no_index) return edge;
   edge.exists = true;
   edge.value = bad;
   edge.missing = misses(bad);
-  if (edge.missing == nobody) return edge;
+  if (edge.missing == no_index) return edge;
   while (bad - good > 1 || good - bad > 1) {
     const std::int64_t middle = good + (bad - good) / 2;
     const std::size_t who = misses(middle);
-    (who == nobody ? good : bad) = middle;
-    if (who != nobody) edge.missing = who;
+    (who == no_index ? good : bad) = middle;
+    if (who != no_index) edge.missing = who;
   }
   edge.value = good;
   return edge;
@@ -73,28 +73,28 @@ constexpr Edge edge_of(std::span<Task> tasks, std::size_t index, std::int64_t Ta
 /// The greatest C of tasks[index]; no task misses.
 [[nodiscard]] constexpr Edge greatest_cost(std::span<Task> tasks, std::size_t index,
                                            const Processor& processor = {}, Limits limits = {}) noexcept {
-  if (index >= tasks.size() || first_invalid(tasks) != nobody) return {false, 0, first_invalid(tasks)};
+  if (index >= tasks.size() || first_invalid(tasks) != no_index) return {false, 0, first_invalid(tasks)};
   const std::int64_t due = std::min(tasks[index].due(), longest_looked_for);
   return detail::edge_of(tasks, index, &Task::cost, 1, due, processor, limits);
 }
 /// The greatest B.
 [[nodiscard]] constexpr Edge greatest_blocking(std::span<Task> tasks, std::size_t index,
                                                const Processor& processor = {}, Limits limits = {}) noexcept {
-  if (index >= tasks.size() || first_invalid(tasks) != nobody) return {false, 0, first_invalid(tasks)};
+  if (index >= tasks.size() || first_invalid(tasks) != no_index) return {false, 0, first_invalid(tasks)};
   const std::int64_t due = std::min(tasks[index].due(), longest_looked_for);
   return detail::edge_of(tasks, index, &Task::blocking, 0, due, processor, limits);
 }
 /// The greatest J.
 [[nodiscard]] constexpr Edge greatest_jitter(std::span<Task> tasks, std::size_t index,
                                              const Processor& processor = {}, Limits limits = {}) noexcept {
-  if (index >= tasks.size() || first_invalid(tasks) != nobody) return {false, 0, first_invalid(tasks)};
+  if (index >= tasks.size() || first_invalid(tasks) != no_index) return {false, 0, first_invalid(tasks)};
   const std::int64_t due = std::min(tasks[index].due(), longest_looked_for);
   return detail::edge_of(tasks, index, &Task::jitter, 0, due, processor, limits);
 }
 /// The shortest T. A deadline that is the period shrinks with it.
 [[nodiscard]] constexpr Edge shortest_period(std::span<Task> tasks, std::size_t index,
                                              const Processor& processor = {}, Limits limits = {}) noexcept {
-  if (index >= tasks.size() || first_invalid(tasks) != nobody) return {false, 0, first_invalid(tasks)};
+  if (index >= tasks.size() || first_invalid(tasks) != no_index) return {false, 0, first_invalid(tasks)};
   return detail::edge_of(tasks, index, &Task::period, longest_looked_for, 1, processor, limits);
 }
 

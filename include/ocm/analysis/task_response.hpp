@@ -161,13 +161,13 @@ constexpr Explained response_time(std::span<const Task> tasks, std::size_t index
   const Task& task = tasks[index];
   result.deadline = task.due();
   result.largest = first_invalid(tasks);
-  if (result.largest != nobody) return result;
+  if (result.largest != no_index) return result;
 
   const ProcessorDemand demand{tasks, index, processor};
   const Checked cost = demand.cost(index);
   const Checked jitter = demand.jitter(index);
   const Checked blocking = demand.blocking();
-  result.blocked_by = task.blocking > 0 ? task.blocked_by : nobody;
+  result.blocked_by = task.blocking > 0 ? task.blocked_by : no_index;
   result.blocking = blocking.value_or(unbounded);
 
   // The load is below 1, or the busy period does not end. A quick sum decides nearly always.
@@ -262,17 +262,17 @@ template <std::size_t N>
   return detail::response_time(tasks, index, processor, limits, {}, {}, true).reason;
 }
 
-/// The first task that is not known to meet its deadline; nobody: all do.
+/// The first task that is not known to meet its deadline; no_index: all do.
 [[nodiscard]] constexpr std::size_t first_miss(std::span<const Task> tasks, const Processor& processor = {},
                                                Limits limits = {}) noexcept {
   for (std::size_t i = 0; i < tasks.size(); ++i)
     if (verdict(tasks, i, processor, limits) != Reason::schedulable) return i;
-  return nobody;
+  return no_index;
 }
 /// Every task meets its deadline. False, too, where that could not be found out.
 [[nodiscard]] constexpr bool all_schedulable(std::span<const Task> tasks, const Processor& processor = {},
                                              Limits limits = {}) noexcept {
-  return first_miss(tasks, processor, limits) == nobody;
+  return first_miss(tasks, processor, limits) == no_index;
 }
 
 }  // namespace ocm::analysis

@@ -25,8 +25,8 @@ struct Task {
   std::int64_t jitter = 0;                    ///< J: how much later than planned it may be released
   std::int64_t blocking = 0;                  ///< B: how long less urgent tasks can hold it up (blocking.hpp)
   std::uint32_t level = 0;                    ///< lower: more urgent
-  std::uint32_t switches = 2;       ///< context switches a job causes: to it and back, and each wait
-  std::size_t blocked_by = nobody;  ///< whose section B is, for the explanation
+  std::uint32_t switches = 2;         ///< context switches a job causes: to it and back, and each wait
+  std::size_t blocked_by = no_index;  ///< whose section B is, for the explanation
 
   [[nodiscard]] constexpr std::int64_t due() const noexcept {
     return deadline == implicit_deadline ? period : deadline;
@@ -54,11 +54,11 @@ struct Processor {
   }
 };
 
-/// The index of the first task whose numbers mean nothing; nobody if all do.
+/// The index of the first task whose numbers mean nothing; no_index if all do.
 [[nodiscard]] constexpr std::size_t first_invalid(std::span<const Task> tasks) noexcept {
   for (std::size_t i = 0; i < tasks.size(); ++i)
     if (!tasks[i].valid()) return i;
-  return nobody;
+  return no_index;
 }
 
 /// Each task a level of its own, the first the most urgent.

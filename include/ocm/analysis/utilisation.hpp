@@ -217,7 +217,7 @@ namespace detail {
 
 /// Whether the tests apply; not_proven: they do.
 constexpr Proof applies(std::span<const Task> tasks) noexcept {
-  if (tasks.empty() || first_invalid(tasks) != nobody) return Proof::bad_input;
+  if (tasks.empty() || first_invalid(tasks) != no_index) return Proof::bad_input;
   for (const Task& task : tasks) {
     if (task.due() < task.period || task.jitter > 0 || task.blocking > 0) return Proof::not_simple;
     for (const Task& other : tasks)

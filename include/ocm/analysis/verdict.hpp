@@ -38,7 +38,7 @@ enum class Reason : std::uint8_t {
 /// A response time without bound, or of which none is known.
 inline constexpr std::int64_t unbounded = std::numeric_limits<std::int64_t>::max();
 /// An index that is none.
-inline constexpr std::size_t nobody = std::numeric_limits<std::size_t>::max();
+inline constexpr std::size_t no_index = std::numeric_limits<std::size_t>::max();
 /// A deadline that is the period, whatever that is.
 inline constexpr std::int64_t implicit_deadline = std::numeric_limits<std::int64_t>::min();
 
@@ -58,9 +58,9 @@ struct Explained {
   std::size_t instance = 0;           ///< q: the release of the busy period, from 0, that is the worst
   std::size_t instances = 0;          ///< how many releases of the busy period were looked at
   std::int64_t blocking = 0;          ///< B, with all that holds it up from below
-  std::size_t blocked_by = nobody;    ///< whose; nobody: none, or not told
+  std::size_t blocked_by = no_index;  ///< whose; no_index: none, or not known
   std::int64_t interference = 0;      ///< of all that go before it
-  std::size_t largest = nobody;       ///< who delays it most; bad_input: whose numbers are bad
+  std::size_t largest = no_index;     ///< who delays it most; bad_input: whose numbers are bad
   std::int64_t largest_share = 0;     ///< how long that one does
 
   [[nodiscard]] constexpr bool ok() const noexcept { return reason == Reason::schedulable; }

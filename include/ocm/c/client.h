@@ -1,5 +1,5 @@
 // A CAN bus for programs in C99 (and C++11): an interface of SocketCAN, or the simulator of amiroctl. For models
-// that a tool such as Simulink has made code of, and for whoever has C. Beside the header that
+// that a tool such as Simulink has made code of, and for programs in C. Beside the header that
 // `amiroctl generate c` makes this is all that a program needs.
 //
 //     ocm_client bus;
@@ -10,7 +10,7 @@
 //     ocm_client_close(&bus);
 //
 // Linux. No heap, no thread, no global variable; a client is some 12 KB and of one thread. Nothing waits longer
-// than it is told, but a signal handler may make a wait shorter. docs/c-client.md has a whole model.
+// than its time-out, but a signal handler may make a wait shorter. docs/c-client.md has a whole model.
 #ifndef OCM_C_CLIENT_H
 #define OCM_C_CLIENT_H
 

@@ -69,7 +69,7 @@ class Refusals {
   [[nodiscard]] base::Time listen_until() const noexcept { return listen_until_; }
 
   /// Where a refusal of this frame would come; nullptr: no board says so. A request to a refusal topic has
-  /// none: its answer could not be told from a refusal.
+  /// none: its answer would look like a refusal.
   [[nodiscard]] const protocol::Topic* refusal_topic(const can::Frame& frame) const {
     const protocol::Topic* const topic = commanded(frame);
     if (topic == nullptr || topic->role == protocol::Role::refusal) return nullptr;

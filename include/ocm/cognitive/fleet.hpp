@@ -216,7 +216,7 @@ class Fleet {
   [[nodiscard]] Advice call_back(std::size_t index) const { return robots_[index].advice; }
   [[nodiscard]] const FleetCounters& counters() const noexcept { return counters_; }
   /// Bytes that belonged to no robot.
-  [[nodiscard]] std::uint32_t nobodys() const noexcept { return ears_.nobodys(); }
+  [[nodiscard]] std::uint32_t of_no_robot() const noexcept { return ears_.of_no_robot(); }
   [[nodiscard]] const FleetOptions& options() const noexcept { return options_; }
 
  private:

@@ -57,8 +57,8 @@ enum class Heard : std::uint8_t {
 struct TransportCounters {
   std::uint32_t announced = 0;  ///< messages for which there was a session
   std::uint32_t complete = 0;
-  std::uint32_t lost_packet = 0;     ///< a number was left out, and nobody asked for it again
-  std::uint32_t wrong_sequence = 0;  ///< a number that the message has not, or that nobody asked for again
+  std::uint32_t lost_packet = 0;     ///< a number was left out, and not requested again
+  std::uint32_t wrong_sequence = 0;  ///< a number that the message has not, or that was not requested again
   std::uint32_t aborted = 0;
   std::uint32_t timed_out = 0;
   std::uint32_t replaced = 0;    ///< its source announced the next before the end
@@ -264,7 +264,7 @@ class Transport {
       give_up(*session, counters_.wrong_sequence);
       return Heard::packet;
     }
-    // Of a broadcast nobody can ask for it again.
+    // Of a broadcast it cannot be requested again.
     if (session->broadcast() && number != session->next) {
       give_up(*session, counters_.lost_packet);
       if (number == session->packets) session->state = State::free;

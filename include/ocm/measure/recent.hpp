@@ -29,7 +29,7 @@ class RecentTimes {
     double jitter_ns = 0;  ///< standard deviation of the distances
   };
 
-  /// A sample that is older than the one before begins anew: a clock was set back.
+  /// A sample that is older than the one before drops all before it: a clock was set back.
   void add(base::Time time) noexcept {
     const std::int64_t distance = (time - last_).count();
     if (!any_ || distance < 0) {

@@ -1,5 +1,5 @@
 /// What an actuator may be commanded in a configuration: values and how fast they change. For every set
-/// point that passes the operator, whoever made it.
+/// point that passes the operator, from any source.
 ///
 /// Pure steps on raw numbers; O(limits) a set point; no heap, no clock.
 #pragma once

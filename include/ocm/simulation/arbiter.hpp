@@ -113,7 +113,7 @@ enum class Leftovers : std::uint8_t { send, withdraw };
 ///   Deliveries are not for it, which is for the caller to heed.
 ///
 /// Boundaries are those of the shortest bits, of which each other bit has `data_factor`: without CAN FD, or
-/// where it has the same bit rate, a boundary is one of every bit. The grid of a frame's bits begins anew at
+/// where it has the same bit rate, a boundary is one of every bit. The grid of a frame's bits begins again at
 /// the end of the frame before it, as nodes synchronise to each start of frame. A disturbance lasts a bit of
 /// the arbitration, wherever it falls.
 class Arbiter {

@@ -145,7 +145,7 @@ class Cpu {
   }
   /// A resource that levels up to `ceiling` use.
   ResourceNumber add_resource(Level ceiling = Level::urgent) {
-    resources_.push_back({ceiling, nobody});
+    resources_.push_back({ceiling, no_job});
     return resources_.size() - 1;
   }
   /// Something from outside, such as a frame that comes: `happen` is called at `when`, or now if that has
@@ -162,7 +162,7 @@ class Cpu {
       if (happen()) continue;
       const std::size_t chosen = choose();
       const base::Time next = std::min({end, armed_, events_.empty() ? base::never : events_.begin()->first});
-      if (chosen == nobody) {
+      if (chosen == no_job) {
         if (now_ >= end) return;
         idle_ += next - now_;
         now_ = next;
@@ -196,7 +196,7 @@ class Cpu {
 
  private:
   static constexpr std::size_t levels = scheduling::level_count;
-  static constexpr std::size_t nobody = levels;
+  static constexpr std::size_t no_job = levels;
 
   struct Context {
     bool pended = false;
@@ -257,8 +257,8 @@ class Cpu {
   }
   /// Who is to run; of two at one level the one that was raised to it.
   [[nodiscard]] std::size_t choose() const noexcept {
-    std::size_t best = nobody;
-    std::size_t best_level = nobody;
+    std::size_t best = no_job;
+    std::size_t best_level = no_job;
     for (std::size_t who = 0; who < levels; ++who) {
       if (!contexts_[who].wants() || contexts_[who].waiting) continue;
       const std::size_t level = effective(who);
@@ -294,7 +294,7 @@ class Cpu {
         if (segment.time > base::Duration{0}) return &segment.time;
         break;
       case Segment::Kind::lock:
-        if (resources_[segment.resource].owner != nobody) {
+        if (resources_[segment.resource].owner != no_job) {
           running.waiting = true;
           running.wanted = segment.resource;
           return nullptr;
@@ -302,7 +302,7 @@ class Cpu {
         resources_[segment.resource].owner = self;
         break;
       case Segment::Kind::unlock:
-        resources_[segment.resource].owner = nobody;
+        resources_[segment.resource].owner = no_job;
         for (Context& other : contexts_)  // they try again, the most urgent first
           if (other.waiting && other.wanted == segment.resource) other.waiting = false;
         break;
@@ -321,7 +321,7 @@ class Cpu {
   std::array<Context, levels> contexts_{};
   std::vector<Resource> resources_;
   std::multimap<base::Time, Event> events_;
-  std::size_t last_ = nobody;
+  std::size_t last_ = no_job;
   base::Duration idle_{};
   base::Duration interrupted_{};
 };

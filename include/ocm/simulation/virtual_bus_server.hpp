@@ -122,7 +122,7 @@ class VirtualBusServer {
   ~VirtualBusServer() { end(); }
 
   /// Hands out what waits for the clients, at most for `last_flush`, and disconnects them. What each of them
-  /// lost is told to it, and in `counters().overruns`.
+  /// lost is reported to it, and in `counters().overruns`.
   void end() {
     flush_all(options_.last_flush);
     for (auto& client : clients_) dismiss(*client, {.reason = virtual_bus::Reason::ended});
@@ -497,7 +497,7 @@ class VirtualBusServer {
                       " was disconnected: " + virtual_bus::describe(goodbye));
   }
 
-  /// The last message: the frames that still wait are lost to the client, and it is told how many. It gets
+  /// The last message: the frames that still wait are lost to the client, and it learns how many. It gets
   /// through to a client whose socket is full, because the socket is made larger for it.
   void dismiss(Client& client, const virtual_bus::Goodbye& goodbye) {
     const std::uint64_t unread = frames_in(client.output);

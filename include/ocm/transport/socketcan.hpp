@@ -257,7 +257,7 @@ class SocketCan final : public Bus {
     return hand_over(&raw, sizeof raw);
   }
 
-  /// Asks the kernel: the interface may have been set up anew.
+  /// Asks the kernel: the interface may have been set up again.
   [[nodiscard]] Failure fd_obstacle() const override {
     if (mtu() == CANFD_MTU || state_ == BusState::closed) return {};
     return detail::no_fd_failure(name_, can_interfaces());
@@ -442,7 +442,7 @@ class SocketCan final : public Bus {
     };
     const can_err_mask_t all_errors = CAN_ERR_MASK;
     const int on = 1;
-    // Also where the interface has no CAN FD now: it may be set up anew while this socket is open.
+    // Also where the interface has no CAN FD now: it may be set up again while this socket is open.
     if (!set(SOL_CAN_RAW, CAN_RAW_ERR_FILTER, all_errors) || !set(SOL_CAN_RAW, CAN_RAW_FD_FRAMES, on) ||
         !set(SOL_SOCKET, SO_TIMESTAMPNS, on) || !set(SOL_SOCKET, SO_RXQ_OVFL, on))
       return errno;

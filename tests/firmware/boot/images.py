@@ -114,19 +114,19 @@ def faults(image, chip):
     def vector(interrupt):
         return word(image.memory, base + 64 + 4 * interrupt)
 
-    nobody = image.symbols["_unhandled_exception"][0] | 1
+    unhandled = image.symbols["_unhandled_exception"][0] | 1
     for interrupt in range(chip.interrupts, (size - 64) // 4):
-        if vector(interrupt) != nobody:
+        if vector(interrupt) != unhandled:
             found.append(f"vector {interrupt} is used, and this chip has no such interrupt")
     if chip.slot < 64 + 4 * chip.interrupts:
         found.append("the checksum overwrites a vector of this chip")
     for name, interrupt in OBEYED.items():
-        if vector(interrupt) == nobody:
-            found.append(f"nobody serves {name}")
+        if vector(interrupt) == unhandled:
+            found.append(f"no handler for {name}")
 
     for name, number in FAULTS.items():
-        if word(image.memory, base + 4 * number) in (nobody, 0):
-            found.append(f"nobody serves {name}")
+        if word(image.memory, base + 4 * number) in (unhandled, 0):
+            found.append(f"no handler for {name}")
     if image.symbols.get("ocm_restart_note", (0, 0))[0] != NOTE:
         found.append("the note on the restart is elsewhere")
     found += [f"{section.name}: over the note on the restart" for section in image.sections

@@ -79,15 +79,15 @@ class Check(unittest.TestCase):
         for reset in (self.image.entry - 1, 0x08000101, 0x08070001, 0xFFFFFFFF):
             self.expect("reset vector", memory=self.memory(0x08006004, reset))
 
-    def test_interrupt_to_nobody(self):
-        nobody = self.image.symbols["_unhandled_exception"][0] | 1
+    def test_interrupt_without_a_handler(self):
+        unhandled = self.image.symbols["_unhandled_exception"][0] | 1
         for name, number in images.OBEYED.items():
-            self.expect(f"nobody serves {name}", memory=self.memory(0x08006040 + 4 * number, nobody))
+            self.expect(f"no handler for {name}", memory=self.memory(0x08006040 + 4 * number, unhandled))
 
-    def test_fault_to_nobody(self):
-        nobody = self.image.symbols["_unhandled_exception"][0] | 1
+    def test_fault_without_a_handler(self):
+        unhandled = self.image.symbols["_unhandled_exception"][0] | 1
         for name, number in images.FAULTS.items():
-            self.expect(f"nobody serves {name}", memory=self.memory(0x08006000 + 4 * number, nobody))
+            self.expect(f"no handler for {name}", memory=self.memory(0x08006000 + 4 * number, unhandled))
 
     def test_note_on_the_restart(self):
         self.expect("is elsewhere", symbols={**self.image.symbols, "ocm_restart_note": (0x20000000, 0)})

@@ -74,7 +74,7 @@ class DiWheelDrive(harness.Case):
         compass = [name for _, name, _ in self.board.frames if 0x605 <= name <= 0x607]
         self.assertEqual(compass[:30], [0x605, 0x606, 0x607] * 10, "a sample's frames stay together, in order")
 
-    def test_a_request_that_cannot_be_met_is_refused_and_harms_nobody(self):
+    def test_a_request_that_cannot_be_met_is_refused_and_harms_no_stream(self):
         self.settle()
         self.board.publish(ACCEL, 50)
         self.board.wait(lambda: len(self.board.of(0x609)) >= 3, 5, "the accelerometer")

@@ -21,7 +21,7 @@ TRANSFERS = 120
 WORDS = {"messages lost a packet": "lost packet", "had a packet of a wrong number": "wrong number", "aborted": "aborted", "timed out": "timed out",
          "followed by the next before the end": "replaced", "of an impossible size": "bad size", "not at the end yet": "open",
          "packets of no message": "stray", "frames of another form": "malformed"}
-SUMMARY = re.compile(r"transport protocol of J1939: (\d+) messages put together, (\d+) other frames(.*)")
+SUMMARY = re.compile(r"transport protocol of J1939: (\d+) messages? put together, (\d+) other frames?(.*)")
 
 
 def database(seed):

@@ -180,7 +180,7 @@ class Failing(Base):
                             self.assertEqual(result.stdout, whole.stdout, what)
 
     def test_a_simulator_says_each_failing_allocation(self):
-        """Of a fleet in a world of its own: it ends with words, or serves until it is told to end."""
+        """Of a fleet in a world of its own: it ends with words, or serves until a signal ends it."""
         shutil.copy(os.path.join(os.environ["OCM_SOURCE_DIR"], "sim", "worlds", "square.json"), self.path("here.json"))
         run = ("sim", "--robots", "2", "--world", "here.json")
         calls = self.simulate(f"memory:ENOMEM:{NEVER}", run)[1]

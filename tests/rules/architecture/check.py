@@ -535,15 +535,14 @@ def tables_are_whole(tree):
 
 
 def words_are_plain(tree):
-    """No idiom where a plain word does, in pages and in what programs print: `no board`, `is reported`, `expected ...`."""
-    string = re.compile(r'"(?:\\.|[^"\\\n])*"')
-    for name in pages(tree) + tree.below("cli/", "firmware/", "generator/", "include/", "sim/"):
-        if name.startswith("docs/decisions/") or name == "CHANGELOG.md":  # the past
+    """No idiom where a plain word does, in pages, messages, comments, names and tests: `no board`, `is reported`, `expected ...`."""
+    folders = ("bench/", "cli/", "examples/", "firmware/", "generator/", "include/", "sim/", "spec/", "tests/")
+    sources = tree.below(*folders, ends=SOURCE + (".py", ".json", ".dbc", "CMakeLists.txt")) + tree.below("scripts/", ends="")
+    for name in pages(tree) + sources:
+        if name.startswith(("docs/decisions/", "tests/rules/architecture/")) or name == "CHANGELOG.md":  # the past; this rule
             continue
         for line, match in tree.find(name, IDIOMS):
-            row = tree.text(name).split("\n")[line - 1]
-            if name.endswith(".md") or any(match.group(0) in text for text in string.findall(row)):
-                yield f"{name}:{line}: '{match.group(0)}': say who or what does it, in the field's word"
+            yield f"{name}:{line}: '{match.group(0)}': say who or what does it, in the field's word"
 
 
 def pages_are_linked(tree):

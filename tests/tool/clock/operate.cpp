@@ -156,7 +156,7 @@ class Run {
     trouble_ = bus.stuck;
     trouble_.insert(trouble_.end(), bus.down.begin(), bus.down.end());
     if (world_.chance(0.05)) bus.gone = World::start + world_.between(0s, lasting), calm_ = false;
-    // An interface that was down begins anew.
+    // An interface that was down starts again.
     for (const auto& time : bus.down)
       if (time.until > passive_.from)
         passive_.until = std::min(passive_.until, std::max(time.from, passive_.from));

@@ -36,7 +36,7 @@ class Decode(Case):
         out, err = self.run_tool("decode", "--json", stdin=LOG)
         self.assertEqual(len(out.splitlines()), 12)
         self.assertIn("12 frames, 2 samples, 2 commands, 4 of unknown identifier, 1 of CAN FD, 1 of wrong length, "
-                      "1 error frames", err)
+                      "1 error frame", err)
         again, _ = self.run_tool("encode", stdin=out)
         self.assertEqual(again, LOG)
         converted, _ = self.run_tool("convert", "-", "-", "--to", "json", stdin=LOG)
@@ -77,7 +77,7 @@ class Decode(Case):
             "400#0100030000000000",  # Service.FaultCode 3
             "400#0000000000000000",  # Service without it
             "100#E12E000000000000",  # Engine.Speed 3000.25
-            "00000100#00",  # of nobody
+            "00000100#00",  # of no topic
             "130#4E20000000000000")))  # Driving.Speed 200
 
         def times(*arguments, spec="small_car.dbc", log=car, code=0):
@@ -304,7 +304,7 @@ class Encode(Case):
         line = self.run_tool(*car, "decode", "--json", stdin=trip)[0]
         self.assertIn('"Distance":98304', line)
         self.assertEqual(self.run_tool(*car, "encode", stdin=line.replace("98304", "98304.00000000001"))[0], trip)
-        # Without data every value is one that somebody wrote.
+        # Without data every value is one that was written.
         _, err = self.run_tool(*car, "encode", stdin=cells % "0", code=1)
         self.assertIn("Cell_1 takes 2 to 4.5 V", err)
         out, _ = self.run_tool(*car, "encode", stdin=cells % "3.7")
@@ -339,7 +339,7 @@ class Send(Case):
         self.assertIn("standard input:4:", err)
         out, err = self.run_tool("send", "--stdin", "--dry-run", stdin=LOG)
         self.assertIn("608##10300FFFF00001122", out.split())
-        self.assertIn("1 error frames are reports and were not", err)
+        self.assertIn("1 error frame left out, which only reports", err)
         self.run_tool("send", "--stdin", "605#01", code=2)
         self.run_tool("send", "--timed", "605#01", code=2)
 

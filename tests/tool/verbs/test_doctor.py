@@ -36,7 +36,7 @@ class Doctor(Case):
         self.assertEqual([b["answers"] for b in report["boards"]], [True, False, True])
         self.assertIsNone(report["battery_percent"])
 
-    def test_nobody_there(self):
+    def test_no_board_answers(self):
         self.start_sim("--without", "di_wheel_drive,power_management,light_ring")
         report = self.examine(code=1)
         self.assertEqual(self.what(report), [("problem", "", "no board answers")])

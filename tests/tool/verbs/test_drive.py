@@ -101,7 +101,7 @@ class TwoCommanders(Drive):
             _, err = drive.communicate(timeout=60)
             self.assertEqual(drive.returncode, 1)
             self.assertIn(STOPPED, err)
-            time.sleep(0.3)
+            self.settle()
             out, _ = self.interrupt(listener)
             self.assertEqual([e["data"] for e in self.objects(out)][-2:], [ZERO, ZERO])  # of both
 
@@ -143,11 +143,11 @@ class Unforeseen(Drive):
                 pass
             process.stderr.close()
         process.wait(timeout=60)
-        time.sleep(0.2)
+        self.settle()
         out, _ = self.interrupt(listener)
         return [e["data"] for e in self.objects(out)], process.returncode
 
-    def test_nobody_reads_the_messages(self):
+    def test_messages_that_are_not_read(self):
         self.start_sim()
         reader, writer = os.pipe()
         os.close(reader)

@@ -3,6 +3,7 @@
 import fcntl
 import os
 import pty
+import select
 import signal
 import struct
 import subprocess
@@ -21,19 +22,20 @@ class Keys(harness.Case):
         self.start_sim("--frozen")
         self.listener = self.listen("motors", "--commands")
 
-    def drive(self, *arguments):
-        """Returns when it takes keys."""
+    def drive(self, *arguments, term="xterm", stdout=None):
+        """Returns when it takes keys, if it shows them on the terminal."""
         primary, secondary = pty.openpty()
         fcntl.ioctl(secondary, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 100, 0, 0))
         self.before = termios.tcgetattr(secondary)
-        process = subprocess.Popen([harness.AMIROCTL, "drive", "--keys", *arguments], stdin=secondary, stdout=secondary,
-                                   stderr=subprocess.PIPE, text=True, start_new_session=True,
-                                   env={**self.environment, "TERM": "xterm"})
+        process = subprocess.Popen([harness.AMIROCTL, "drive", "--keys", *arguments], stdin=secondary,
+                                   stdout=secondary if stdout is None else stdout, stderr=subprocess.PIPE, text=True,
+                                   start_new_session=True, env={**self.environment, "TERM": term})
         self._started.append(process)
         self.secondary, self.primary = secondary, primary
         self.addCleanup(self.close)
         self.shown = b""
-        self.shows(b"rests")
+        if stdout is None:
+            self.shows(b"rests")
         return process
 
     def close(self):
@@ -133,6 +135,36 @@ class Keys(harness.Case):
         self.settle()
         out, _ = self.interrupt(self.listener)
         self.assertEqual(self.objects(out)[-1]["data"], REST)
+
+    def test_a_terminal_without_control_sequences_gets_lines(self):
+        process = self.drive(term="dumb")
+        os.write(self.primary, UP)
+        self.shows(b"forward")
+        os.write(self.primary, b"q")
+        said = self.shown
+        while process.poll() is None or select.select([self.primary], [], [], 0)[0]:
+            if select.select([self.primary], [], [], 0.05)[0]:
+                said += os.read(self.primary, 4096)
+        self.assertEqual(process.returncode, 0, process.communicate()[1])
+        self.assertNotIn(b"\x1b", said)
+        self.assertNotIn(b"\r ", said)
+
+    def test_a_file_gets_lines(self):
+        path = os.path.join(self.folder, "keys.txt")
+        with open(path, "wb") as file:
+            process = self.drive(stdout=file)
+
+        def lines():
+            with open(path, encoding="utf-8") as file:
+                return file.read()
+        harness.waiting.until(lambda: "rests" in lines(), "its first line")
+        os.write(self.primary, UP)
+        harness.waiting.until(lambda: "forward" in lines(), "that it drives")
+        os.write(self.primary, b"q")
+        process.communicate(timeout=30)
+        self.assertNotIn("\x1b", lines())
+        self.assertNotIn("\r", lines())
+        self.assertGreaterEqual(lines().count("\n"), 2)
 
     def test_another_commander(self):
         other = self.start("drive", "5cm/s")

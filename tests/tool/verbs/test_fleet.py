@@ -51,7 +51,7 @@ class Robots(Line):
         out, _ = self.tool("robots", "--json", "--listen", "1s")
         self.assertEqual([json.loads(line)["body"] is None for line in out.splitlines()], [True, False])
 
-    def test_a_list_connects_nobody(self):
+    def test_a_list_connects_no_robot(self):
         out, _ = self.tool("robots", "--list")
         self.assertRegex(out, r"Arduino +1 +C00000000001 +no link")
         self.assertFalse(self.avr.linked)
@@ -67,7 +67,7 @@ class Robots(Line):
         self.assertRegex(out, r"AVR .* idle")
         self.assertEqual([line for line in self.avr.heard if line not in ("{S,CON}", "{S,WHO}")], [])
 
-    def test_nobody_is_there(self):
+    def test_no_robot_is_there(self):
         self.central.robots = []
         _, err = self.tool("robots", code=1)
         self.assertIn("finds no robot", err)
@@ -230,10 +230,10 @@ class Goto(Line):
                 self.assertIn(text.lower(), err.lower())
 
     def test_an_unknown_robot(self):
-        _, err = self.tool("goto", "Nobody", "0", "0", code=1)
-        self.assertIn("no robot 'Nobody'", err)
+        _, err = self.tool("goto", "Ghost", "0", "0", code=1)
+        self.assertIn("no robot 'Ghost'", err)
         self.assertIn("it finds AVR (index 0, address C00000000000), Arduino (index 1, address C00000000001)", err)
-        _, err = self.tool("pause", "AVR", "Nobody", code=1)
+        _, err = self.tool("pause", "AVR", "Ghost", code=1)
         self.assertIn("it finds AVR (index 0", err)
         self.assertFalse(self.avr.paused)
 

@@ -184,7 +184,7 @@ class Map(Case):
         self.map(self.path("a.pgm"), "--start", "AVR=0.4,0.5,0", "--start", "Arduino=0.8,0.5,0", duration="1s")
         self.map(self.path("b.pgm"), "--robots", "AVR", duration="500ms")
 
-    def test_names_that_nobody_has(self):
+    def test_names_that_no_robot_has(self):
         for words in (["--robots", "avr"], ["--start", "avr=0,0,0"]):
             with self.subTest(words=words):
                 _, err = self.map(self.path("a.pgm"), *words, code=1)

@@ -469,7 +469,7 @@ class Running(Operating):
         self.assertIn("0 changes", err)
         self.assertEqual(len(os.listdir(box)), 1)
 
-    def test_nobody_reads_its_output_and_it_goes_on(self):
+    def test_its_output_is_not_read_and_it_goes_on(self):
         self.start_sim()
         reader, writer = os.pipe()
         os.set_blocking(writer, False)

@@ -10,7 +10,7 @@ FORWARDS, REST = "201#50C3000000000000", "201#0000000000000000"
 
 
 class OnARobotThatRefuses(WithAdapter, Case):
-    """A robot behind a played adapter, which refuses as it is told to."""
+    """A robot behind a played adapter, which refuses as its file says."""
 
     def robot(self, script):
         self.played = self.adapter(script=script)
@@ -63,7 +63,7 @@ class OnARobotThatRefuses(WithAdapter, Case):
         _, err = self.run_tool(*bus, "stop", code=1)
         self.assertIn("stop: di_wheel_drive refuses motors: bad_length", err)
         self.assertIn("stop: power_management refuses proximity_ring: bad_period", err)
-        # A sensor that nothing serves is silent, which is all that is wanted of it.
+        # A sensor that nothing serves is silent, as it should be.
         self.assertNotIn("floor_proximity", err)
         # Only what was sent: of eight lights of one board one is refused.
         bus = self.robot({"243#FF0000": [refusal(0x43, NOT_SERVED, LIGHT_RING)]})

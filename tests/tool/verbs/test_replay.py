@@ -49,7 +49,7 @@ class Replaying(Case):
             self.assertLess(time.monotonic() - begin, 10)
             self.assertEqual(replay.returncode, 1)
             self.assertRegex(err, r"amiroctl: the simulator .* (is gone|was ended)")
-            self.assertIn("sent 1 frames", err)
+            self.assertIn("sent 1 frame ", err)
             sim.wait()
 
     def replayed(self, log, *arguments, code=0):
@@ -101,8 +101,8 @@ class Replaying(Case):
         log = self.write_log(*[(i / 1000, frame) for i, frame in enumerate(frames)], (0.01, "20000040#0000000000000000"))
         out, err = self.replayed(log)
         self.assertEqual([frame for _, frame in out], frames)
-        self.assertIn("1 error frames left out", err)
-        self.assertNotIn("CAN FD frames left out", err)
+        self.assertIn("1 error frame left out", err)
+        self.assertNotIn("CAN FD frame", err)
 
     def test_times_that_go_back(self):
         self.start_sim()
@@ -130,7 +130,7 @@ class Replaying(Case):
         log = long
         out, err = dry("--max-gap", "2s")
         self.assertEqual([when for when, _ in out], [0, 2, 3])
-        self.assertIn("1 pauses cut", err)
+        self.assertIn("1 pause cut", err)
 
     def test_a_drive_that_is_cut_short_ends_with_zero(self):
         self.start_sim()

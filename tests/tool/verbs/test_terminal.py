@@ -61,7 +61,7 @@ class Terminal(Case):
         """What is drawn again in place has no line that breaks, and what matters is in sight."""
         for columns in (40, 80, 120, 200):
             shown = self.on_terminal("stats", "--duration", "1500ms", "--no-color", columns=columns)
-            live, _, last = shown.replace("\r\n", "\n").partition("\r\033[")  # up to where it is drawn anew
+            live, _, last = shown.replace("\r\n", "\n").partition("\r\033[")  # up to where it is drawn again
             live, last = live.splitlines(), last.partition("\033[J")[2].splitlines()
             self.assertTrue(live, shown)
             self.assertTrue(last, shown)
@@ -72,6 +72,19 @@ class Terminal(Case):
             if columns in (40, 200):
                 self.assertEqual("JITTER" in live[0], columns == 200)
             self.assertRegex("\n".join(live), r"(?m)^gyro")
+
+    def test_tables_fit_the_width_and_break_no_word(self):
+        operator = os.path.join(os.environ["OCM_SOURCE_DIR"], "examples", "guard.operator.json")
+        commands = [["list"], ["info", "gyro"], ["info", "motors"], ["analyse", "bus", "--no-color"], ["operate", "--check", operator]]
+        for arguments in commands:
+            whole = self.run_tool(*arguments)[0]
+            self.assertGreater(max(map(len, whole.splitlines())), 80)
+            for columns in (40, 80, 120):
+                with self.subTest(arguments=arguments, columns=columns):
+                    shown = self.on_terminal(*arguments, columns=columns).replace("\r\n", "\n")
+                    self.assertEqual(shown.split(), whole.split())
+                    for line in shown.splitlines():  # a word that is wider than the terminal has a line of its own
+                        self.assertTrue(len(line) <= columns or len(line.split()) == 1, line)
 
     def test_a_table_that_just_fits_stays_as_it_is(self):
         """Whatever the width: on a terminal as wide as a table is, the table is the same."""
@@ -106,7 +119,7 @@ class Terminal(Case):
         for columns in (40, 200):
             shown = self.on_terminal("record", "-o", os.path.join(self.folder, f"{columns}.log"), "--duration", "1500ms",
                                      columns=columns, errors=True)
-            progress = re.findall(r"\r\033\[K(\d+ frames, [^\r\n\033]*)", shown)
+            progress = re.findall(r"\r\033\[K(\d+ frames?, [^\r\n\033]*)", shown)
             self.assertTrue(progress, shown)
             self.assertLess(max(map(len, progress)), columns)
             self.assertEqual("free" in progress[0], columns == 200)

@@ -97,7 +97,7 @@ class Transport(Case):
             "fields": {"First": ord("W"), "Middle": ord("4") << 8 | ord("0"), "Last": ord("6") / 2 - 1},  # byte 17 did not come
             "units": {"First": "", "Middle": "", "Last": "km"}, "data": VIN.hex().upper()})
         self.assertIn("5 frames, 2 samples\n", err)
-        self.assertIn("transport protocol of J1939: 1 messages put together, 3 other frames\n", err)
+        self.assertIn("transport protocol of J1939: 1 message put together, 3 other frames\n", err)
 
     def test_a_connection(self):
         whole = (7 - 1, "0FEEB", 0, 0xF9, COMPONENT)
@@ -189,8 +189,8 @@ class Transport(Case):
         start, announced = CONNECTION.splitlines(True)[0], BROADCAST.splitlines(True)[0]
         later = "(50.000000) can0 0CF00400#FFFFFFE02E0000FF\n"
         for log, words in (
-                (without(BROADCAST, 3), "1 messages lost a packet"),
-                (without(CONNECTION, 3), "1 messages lost a packet"),
+                (without(BROADCAST, 3), "1 message lost a packet"),
+                (without(CONNECTION, 3), "1 message lost a packet"),
                 (BROADCAST.replace("#02", "#01"), "1 had a packet of a wrong number"),
                 (BROADCAST.replace("#02", "#04"), "1 had a packet of a wrong number"),
                 (start + "(20.1) can0 18EC00F9#FF01FFFFFFEBFE00\n", "1 aborted"),  # by its receiver
@@ -202,8 +202,8 @@ class Transport(Case):
                 (announced.replace("201100", "200800"), "1 of an impossible size"),
                 (announced.replace("20110003", "20110004"), "1 of an impossible size"),
                 (announced.replace("20110003", "20FA06FF"), "1 of an impossible size"),  # 1786
-                (announced.replace("FFECFE00", "FFECFE04"), "1 frames of another form"),
-                (announced.replace("FFECFE00", "FFECFE"), "1 frames of another form")):
+                (announced.replace("FFECFE00", "FFECFE04"), "1 frame of another form"),
+                (announced.replace("FFECFE00", "FFECFE"), "1 frame of another form")):
             with self.subTest(words, log=log):
                 text = self.summary(log + later)
                 self.assertIn(", " + words, text)

@@ -1,4 +1,4 @@
-// set with plain messages: what is not given is at its start value, selectors follow, ranges are told.
+// set with plain messages: what is not given is at its start value, selectors follow, ranges are reported.
 #include "cli/words/message.hpp"
 
 #include <array>

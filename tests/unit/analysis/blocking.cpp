@@ -62,7 +62,7 @@ static_assert([] {
   if (set_blocking(tasks, both, inherit, scratch) != Table::good) return false;
   const Blocking first = blocking_of(tasks, both, scratch, inherit, 0);
   return first.time == 17 && first.sections == 2 && first.by == 3 && first.section == 3 &&
-         tasks[0].blocked_by == 3 && tasks[3].blocked_by == nobody && tasks[0].switches == 6 &&
+         tasks[0].blocked_by == 3 && tasks[3].blocked_by == no_index && tasks[0].switches == 6 &&
          tasks[1].switches == 2 && blocking_of(tasks, both, scratch, inherit, 3).sections == 0;
 }());
 constexpr auto set = with_blocking(four, both, ceil);

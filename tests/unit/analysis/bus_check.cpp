@@ -128,7 +128,7 @@ TEST_CASE("A set that is too large, and numbers that mean nothing, are refused")
   CHECK(check.runs({.cost = 1, .period = 100, .key = 3}).error == ocm::base::Error::full);
   CHECK(check.asks({.cost = 1, .key = 3}).ok());
   CHECK_FALSE(check.decide(100).admitted);
-  CHECK(check.decide(100).late == nobody);
+  CHECK(check.decide(100).late == no_index);
   check.clear();
   CHECK(check.asks({.cost = 1, .key = 3}).ok());
   CHECK(check.decide(100).admitted);

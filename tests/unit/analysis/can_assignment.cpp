@@ -26,7 +26,7 @@ constexpr auto best = [] {
   auto set = opa;
   const std::size_t stuck = assign_priorities<3>(set, {}, analysis);
   const auto results = can_response_times(set);
-  return std::array<std::int64_t, 6>{static_cast<std::int64_t>(stuck == nobody),
+  return std::array<std::int64_t, 6>{static_cast<std::int64_t>(stuck == no_index),
                                      set[1].period,
                                      set[2].period,
                                      results[0].response,
@@ -40,7 +40,7 @@ constexpr bool by_deadline_less_jitter = [] {
   CanResponse<2> analysis;
   std::array<Message, 2> set{{{.cost = 1, .period = 1'000, .deadline = 900},
                               {.cost = 1, .period = 2'000, .deadline = 1'000, .jitter = 500}}};
-  return assign_priorities<2>(set, {}, analysis) == nobody && set[0].period == 2'000;
+  return assign_priorities<2>(set, {}, analysis) == no_index && set[0].period == 2'000;
 }();
 static_assert(by_deadline_less_jitter);
 
@@ -83,8 +83,8 @@ TEST_CASE("Audsley's order works exactly where one of all orders does") {
     auto assigned = set;
     const std::size_t stuck = assign_priorities<8>(assigned, {}, analysis);
     CAPTURE(round);
-    REQUIRE((stuck == nobody) == any);
-    if (stuck == nobody) REQUIRE(all_meet(assigned));
+    REQUIRE((stuck == no_index) == any);
+    if (stuck == no_index) REQUIRE(all_meet(assigned));
     std::sort(assigned.begin(), assigned.end(),
               [](const Message& a, const Message& b) { return a.key < b.key; });
     for (std::size_t i = 0; i < set.size(); ++i) REQUIRE(assigned[i].key == i);
@@ -126,7 +126,7 @@ TEST_CASE(
     }
     const std::size_t stuck = assign_in_layout<8>(set, {}, analysis);
     CAPTURE(round);
-    REQUIRE((stuck == nobody) == any);
+    REQUIRE((stuck == no_index) == any);
     if (any) {
       unsigned urgency = 0;
       for (const TopicMessage& m : set) urgency += 3 - static_cast<unsigned>(m.priority);
@@ -152,7 +152,7 @@ TEST_CASE("no order for what cannot be analysed") {
   CHECK(assign_priorities<2>(bad, {}, analysis) == 1);
   std::array<TopicMessage, 1> bad_topic{{{.message = {.cost = 1, .period = 0}}}};
   CHECK(assign_in_layout<2>(bad_topic, {}, analysis) == 0);
-  CHECK(assign_in_layout<2>({}, {}, analysis) == nobody);
+  CHECK(assign_in_layout<2>({}, {}, analysis) == no_index);
 }
 
 }  // namespace analysis_can_assignment_test

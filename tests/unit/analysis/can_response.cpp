@@ -26,7 +26,7 @@ static_assert(davis_exact[2].response == 3'500);
 static_assert(davis_exact[2].reason == Reason::misses_deadline);
 static_assert(davis_exact[2].instance == 1 && davis_exact[2].instances == 2);
 static_assert(davis_exact[2].slack() == -250);
-static_assert(davis_exact[2].blocked_by == nobody && davis_exact[1].blocked_by == 2);
+static_assert(davis_exact[2].blocked_by == no_index && davis_exact[1].blocked_by == 2);
 static_assert(can_response_times(davis, {.bit = 8}, CanTest::sufficient)[2].response == 7'000);
 
 // tau_bit: the third is released again in the very bit in which the message would start.
@@ -187,7 +187,7 @@ TEST_CASE("who delays a message most is named for its worst instance, the most u
       const std::int64_t window = result.blocking + before + result.interference;
       std::int64_t most = 0;
       std::int64_t sum = 0;
-      std::size_t who = nobody;
+      std::size_t who = no_index;
       for (std::size_t k = 0; k < m; ++k) {
         const std::int64_t share = (window + 1 + set[k].period - 1) / set[k].period * set[k].cost;
         sum += share;

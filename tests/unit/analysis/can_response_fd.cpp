@@ -111,7 +111,8 @@ struct Handover {
   std::size_t message = 0;
 };
 
-/// Each message's longest response. Whoever is there during the first bit of an arbitration takes part in it.
+/// Each message's longest response. A message that waits during the first bit of an arbitration takes part in
+/// it.
 std::vector<std::int64_t> play(const FdSet& set, std::vector<Handover> handovers, bool longest_data,
                                Twister& random) {
   std::vector<std::int64_t> longest(set.kinds.size(), 0);

@@ -45,7 +45,7 @@ static_assert(by_hand.bound.shortest == 4 + 12 + 1 + 12 + 3);
 static_assert(by_hand.bound.age == 108 + 100);
 static_assert(by_hand.bound.ok() && by_hand.bound.hop == 2);
 static_assert(solve(207).bound.reason == Reason::misses_deadline);
-// Jitter: of the sensor 6, then with the frame's own 8; the operator starts anew with its own 4.
+// Jitter: of the sensor 6, then with the frame's own 8; the operator starts again with its own 4.
 static_assert(by_hand.chain[1].inherited == 6 && by_hand.chain[1].hands_on == 6 + 8);
 static_assert(by_hand.chain[2].inherited == 0 && by_hand.chain[2].hands_on == 4);
 static_assert(by_hand.chain[4].inherited == 4 + 8 && by_hand.chain[4].hands_on == 12);

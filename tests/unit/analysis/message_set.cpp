@@ -41,7 +41,7 @@ static_assert(!valid(CanBus{.errors = {.burst = 1, .every = -1}}));
 static_assert(!valid(CanBus{.errors = {.burst = 0, .every = 5}}));  // faults, but no first one
 
 constexpr std::array good{Message{.cost = 1, .period = 1}, Message{.cost = 2, .period = 9, .deadline = 1}};
-static_assert(first_bad(good) == nobody);
+static_assert(first_bad(good) == no_index);
 static_assert(first_bad(std::array{good[0], Message{.cost = 1}}) == 1);
 static_assert(first_bad(std::array{Message{.cost = 1, .period = 1, .offset = -1}, good[0]}) == 0);
 
@@ -63,8 +63,8 @@ TEST_CASE("a set is ordered as the bus arbitrates, and equal identifiers are not
   CHECK(set[3].cost == 3);
   CHECK(first_clash(set) == 3);
   set[3].key = 6;
-  CHECK(first_clash(set) == nobody);
-  CHECK(first_clash({}) == nobody);
+  CHECK(first_clash(set) == no_index);
+  CHECK(first_clash({}) == no_index);
 }
 
 }  // namespace analysis_message_set_test

@@ -34,7 +34,7 @@ class NaiveCpu {
            analysis::Protocol protocol)
       : tasks_(tasks),
         contexts_(tasks.size()),
-        owner_(resources, analysis::nobody),
+        owner_(resources, analysis::no_index),
         ceiling_(resources),
         protocol_(protocol) {
     for (std::size_t r = 0; r < resources; ++r) ceiling_[r] = 0xFFFF'FFFF;
@@ -65,7 +65,7 @@ class NaiveCpu {
         soonest = std::min(soonest, context.next);
       }
       const std::size_t who = choose();
-      if (who == analysis::nobody) {
+      if (who == analysis::no_index) {
         if (soonest == never) return longest;
         now = soonest;
         continue;
@@ -78,7 +78,7 @@ class NaiveCpu {
         context.spent += slice;
         if (context.spent < step.time) continue;
         context.spent = 0;
-      } else if (owner_[step.resource] != analysis::nobody) {
+      } else if (owner_[step.resource] != analysis::no_index) {
         context.waits_for = step.resource;
         continue;
       } else {
@@ -88,7 +88,7 @@ class NaiveCpu {
       while (++context.step < context.program.size() &&
              context.program[context.step].kind == Step::Kind::unlock) {
         const std::uint32_t resource = context.program[context.step].resource;
-        owner_[resource] = analysis::nobody;
+        owner_[resource] = analysis::no_index;
         for (Context& other : contexts_)
           if (other.waits_for == resource) other.waits_for = nothing;
       }
@@ -133,13 +133,13 @@ class NaiveCpu {
     return level;
   }
   [[nodiscard]] std::size_t choose() const {
-    std::size_t best = analysis::nobody;
+    std::size_t best = analysis::no_index;
     std::uint32_t best_level = 0;
     for (std::size_t i = 0; i < contexts_.size(); ++i) {
       if (contexts_[i].done == contexts_[i].released || contexts_[i].waits_for != nothing) continue;
       const std::uint32_t level = owner_.empty() ? tasks_[i].level : effective(i);
       // Of equal ones the one that was raised: it has what the other may want.
-      if (best != analysis::nobody &&
+      if (best != analysis::no_index &&
           (level > best_level || (level == best_level && tasks_[i].level <= tasks_[best].level)))
         continue;
       best = i;

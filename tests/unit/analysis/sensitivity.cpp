@@ -28,7 +28,7 @@ static_assert(edge(greatest_jitter, set_b, 2).value <= 12);
 static_assert(edge(greatest_cost, set_a, 0) == Edge{true, 10, 0});
 static_assert(edge(greatest_blocking, set_a, 0) == Edge{false, 0, 0});
 static_assert(edge(shortest_period, set_a, 0) == Edge{true, 52, 0});
-static_assert(edge(greatest_cost, set_a, 3) == Edge{false, 0, nobody});
+static_assert(edge(greatest_cost, set_a, 3) == Edge{false, 0, no_index});
 static_assert(edge(shortest_period, in_order(std::array{Task{1, 9}, Task{1, 0}, Task{1, 9}}), 0) ==
               Edge{false, 0, 1});
 
@@ -40,7 +40,7 @@ static_assert(critical_scale(in_order(std::array{Task{10, 40, 40, 40}})) == Edge
 // The search ends at a processor a million times as slow, in parts per million, and at 36 years of
 // nanoseconds.
 static_assert(critical_scale(in_order(std::array{Task{1, longest_looked_for * 4}})) ==
-              Edge{true, 1'000'000'000'000, nobody});
+              Edge{true, 1'000'000'000'000, no_index});
 static_assert(longest_looked_for == 1'152'921'504'606'846'976);
 
 TEST_CASE("one tick beyond an edge a task misses") {
@@ -60,7 +60,7 @@ TEST_CASE("one tick beyond an edge a task misses") {
     const Processor processor{.context_switch = random.within(0, 1), .interrupt = random.within(0, 1)};
     const std::size_t index = random.below(4);
     const auto holds = [&](Edge edge, std::int64_t Task::*field, int direction) {
-      if (!edge.exists || edge.missing == nobody) return;
+      if (!edge.exists || edge.missing == no_index) return;
       ++edges;
       std::vector<Task> changed = tasks;
       changed[index].*field = edge.value;

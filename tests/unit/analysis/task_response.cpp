@@ -158,9 +158,9 @@ static_assert(
     response_time(in_order(std::array{Task{1LL << 33, (1LL << 33) + 1}, Task{1LL << 33, (1LL << 33) + 1}}), 1)
         .reason == Reason::overloaded);
 
-// Who has nothing to wait for waits for nobody, whatever the set says.
+// A task that has nothing to wait for is not blocked, whatever the set says.
 static_assert(response_time(in_order(std::array{Task{.cost = 1, .period = 9, .blocked_by = 9}}), 0)
-                  .blocked_by == nobody);
+                  .blocked_by == no_index);
 
 TEST_CASE("an analysis that does not converge ends with a reason") {
   // U is below 1 by 10^-12, and the busy period of some 10^12 instances.

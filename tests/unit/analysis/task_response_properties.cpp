@@ -238,8 +238,8 @@ TEST_CASE("resources with ceilings: never longer than predicted") {
 // --- the boards' processor: four levels, tasks that share one, and what switches and interrupts cost ---
 
 /// The longest response of each task, in nanoseconds, on the processor of the simulator. Each job does a
-/// nanosecond less than it may: whoever ends at the very moment of a release is held to have been late for
-/// it.
+/// nanosecond less than it may: a task that ends at the very moment of a release is held to have been late
+/// for it.
 class Board {
  public:
   Board(const RandomSet& set, Protocol protocol, const Processor& processor)
@@ -321,7 +321,7 @@ Seen hold_on_board(Analysis analysis, Processor processor, Protocol protocol, in
     }
     // Nested claims can wait twice: left to the other sets.
     if (std::any_of(set.sections.begin(), set.sections.end(),
-                    [](const Section& s) { return s.inside != nobody; }))
+                    [](const Section& s) { return s.inside != no_index; }))
       continue;
     for (Section& section : set.sections) section.length *= unit;
     for (Steps& steps : set.programs)

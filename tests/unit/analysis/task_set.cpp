@@ -23,7 +23,7 @@ static_assert(!Processor{.tick_cost = 1}.valid() && !Processor{.released_by_tick
 static_assert(Processor{.tick_cost = 1, .tick_period = 10, .released_by_tick = true}.valid());
 
 constexpr std::array mixed{Task{1, 50, 9}, Task{1, 20}, Task{1, 50, 30}, Task{1, 20, 40}};
-static_assert(first_invalid(mixed) == nobody);
+static_assert(first_invalid(mixed) == no_index);
 static_assert(first_invalid(std::array{Task{1, 1}, Task{1, 0}, Task{}}) == 1);
 
 constexpr auto levels(const std::array<Task, 4>& tasks) {

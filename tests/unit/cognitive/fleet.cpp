@@ -339,7 +339,7 @@ TEST_CASE("fleet: any bytes: nothing but counters") {
     (void)sayings(fleet);
   }
   for (std::size_t i = 0; i < Fleet::most_robots; ++i) REQUIRE(ocm::motion::is_finite(fleet.robot(i).pose()));
-  CHECK(fleet.nobodys() > 0);
+  CHECK(fleet.of_no_robot() > 0);
 }
 
 }  // namespace cognitive_fleet_test

@@ -24,7 +24,7 @@ TEST_CASE("motors stop 500 ms after the last command") {
   CHECK(board.set_points.size() == 3);
 }
 
-TEST_CASE("motors that were told to rest need no watchdog") {
+TEST_CASE("motors that rest by a set point need no watchdog") {
   Board board;
   board.controller.receive(protocol::command(amiro::Motors{50'000, 0}), at(0ms));
   board.controller.receive(protocol::command(amiro::Motors{}), at(100ms));

@@ -194,7 +194,7 @@ TEST_CASE("what is not whole is counted by its cause") {
     transport.take(back, announcement(19, 30, 0xFECA), now);
     CHECK(counters.lost_packet == 1);
   }
-  SECTION("a packet of a connection again that nobody asked for") {
+  SECTION("a packet of a connection again that was not requested") {
     transport.take(id_of(connection_group, 1, 2), announcement(16, 30, 0xFECA), now);
     for (const std::size_t number : {1U, 2U, 1U, 2U, 3U, 4U, 5U})
       CHECK(transport.take(id_of(transfer_group, 1, 2), packet(message, number), now) == Heard::packet);

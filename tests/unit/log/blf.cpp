@@ -210,9 +210,9 @@ TEST_CASE("blf: frames that cannot be, and requests to send") {
   CHECK(cause_of(headless) == Cause::syntax);
   headless[4] = 100;
   CHECK(cause_of(headless) == Cause::syntax);
-  const auto wish = read_blf(head + container(object(1, 5, "0100 02 00 23010000 0000000000000000")));
-  CHECK(wish.entries.empty());
-  CHECK(wish.complained == 0);
+  const auto pending = read_blf(head + container(object(1, 5, "0100 02 00 23010000 0000000000000000")));
+  CHECK(pending.entries.empty());
+  CHECK(pending.complained == 0);
 }
 
 TEST_CASE("blf: sizes that cannot be are said, and reading goes on") {

@@ -138,9 +138,10 @@ TEST_CASE("pcapng: blocks without frames are passed over, others said") {
   const std::string ethernet = block(1, bytes("0100 0000 00000000"));
   const std::string simple = block(3, bytes("10000000 00000123 02000000 1122000000000000"));
   const std::string of_ethernet = block(6, bytes("01000000 00000000 00000000 04000000 04000000 00000000"));
-  const std::string of_nobody = block(6, bytes("09000000 00000000 00000000 04000000 04000000 00000000"));
+  const std::string of_no_interface =
+      block(6, bytes("09000000 00000000 00000000 04000000 04000000 00000000"));
   const auto log = read_all<PcapngReader>(little_section + other + little_can7 + ethernet + simple +
-                                          of_ethernet + of_nobody + little_packet);
+                                          of_ethernet + of_no_interface + little_packet);
   CHECK(log.entries.size() == 1);
   REQUIRE(log.complaints.size() == 3);
   CHECK(log.complaints[0].cause == Cause::time);

@@ -115,7 +115,7 @@ TEST_CASE("recent load: by hand") {
   CHECK(load.bits(at(11'600ms)) == 0);
 }
 
-TEST_CASE("recent load: a clock that is set back a little changes nothing, far back it begins anew") {
+TEST_CASE("recent load: a clock that is set back a little changes nothing, far back it drops all before it") {
   RecentLoad load;
   load.add(at(10s), 100);
   load.add(at(9'950ms), 10);

@@ -319,7 +319,7 @@ TEST_CASE("timing: without a request the period is the spec's or the measured on
   }
 }
 
-TEST_CASE("timing: times that go back are counted and begin anew") {
+TEST_CASE("timing: times that go back are counted, and what follows is compared with them") {
   Stream stream{0ms};
   for (const int ms : {100, 200, 50, 150}) stream.sample(at(std::chrono::milliseconds{ms}));
   const Timing timing = stream.timing(at(200ms));

@@ -73,7 +73,7 @@ TEST_CASE("a plain message is its bytes, in a frame of its identifier") {
   STATIC_REQUIRE(!message_from<Short>(frame("123#R2")));
 }
 
-TEST_CASE("a message of J1939 is its parameter group, whoever sends it") {
+TEST_CASE("a message of J1939 is its parameter group, from any sender") {
   STATIC_REQUIRE(message_from<Group>(frame("0CF00400#ABCD"))->bytes[0] == 0xAB);
   STATIC_REQUIRE(!message_from<Group>(frame("0CF00500#ABCD")));
   STATIC_REQUIRE(message_frame(Group{}) == frame("18F004FE#1234"));

@@ -377,7 +377,7 @@ TEST_CASE("supervisor: rates are counted in windows, gaps last until two samples
   run.step(0ms, {.kind = Kind::bus_load, .value = 600});
   CHECK(run.supervisor.condition(3) == Truth::no);
   run.ask(60ms, guard::idle);
-  CHECK(run.supervisor.condition(2) == Truth::no);  // it counts anew
+  CHECK(run.supervisor.condition(2) == Truth::no);  // it counts from zero
   CHECK(run.supervisor.condition(1) == Truth::unknown);
 }
 

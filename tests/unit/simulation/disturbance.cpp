@@ -15,7 +15,7 @@ static_assert(Disturbance{100, 12}.over() == 100 + 1 + 12 + 8 + 3);
 static_assert(Disturbance{100, 0}.over() == 118);
 static_assert(Disturbance{100, 100}.over() == 124);
 
-TEST_CASE("disturbances come in order, however they were told") {
+TEST_CASE("disturbances come in order, however they were added") {
   Disturbances ahead;
   for (const std::uint64_t boundary : {50U, 10U, 30U, 70U, 20U}) ahead.push({boundary});
   CHECK(ahead.size() == 5);

@@ -68,7 +68,7 @@ class NaiveBus {
 
  private:
   enum class Phase { idle, frame, error, intermission };
-  static constexpr std::size_t nobody = SIZE_MAX;
+  static constexpr std::size_t no_sender = SIZE_MAX;
 
   bool try_start() {
     const can::Frame* best = nullptr;
@@ -98,7 +98,7 @@ class NaiveBus {
         ++since_intermission_;
         if (!disturbed_) return level(true);
         level(false);
-        last_sender_ = nobody;
+        last_sender_ = no_sender;
         error(6);
         return;
       case Phase::frame:
@@ -119,7 +119,7 @@ class NaiveBus {
         --left_;
         level(!disturbed_);
         if (disturbed_ && left_ == 0) {
-          last_sender_ = nobody;
+          last_sender_ = no_sender;
           error(6);
         } else if (disturbed_) {
           ++overloads;
@@ -144,7 +144,7 @@ class NaiveBus {
       for (std::size_t n = 0; n < nodes_.size(); ++n) succeed(nodes_[n], n == sender_);
       intermission();
     }
-    sender_ = nobody;
+    sender_ = no_sender;
   }
 
   void intermission() {
@@ -194,8 +194,8 @@ class NaiveBus {
   unsigned left_ = 0;  ///< bits of the phase
   unsigned in_a_row_ = 0;
   std::uint64_t since_intermission_ = 0;
-  std::size_t sender_ = nobody;
-  std::size_t last_sender_ = nobody;
+  std::size_t sender_ = no_sender;
+  std::size_t last_sender_ = no_sender;
   std::size_t position_ = 0;
   std::uint64_t start_ = 0;
 };

@@ -252,7 +252,7 @@ TEST_CASE("more links than there can be, and two attempts at once, are refused")
   CHECK(air.run(2s) == "1060 closed 2;");
 }
 
-TEST_CASE("a central that begins anew reports nothing about before, and robots run into their time-out") {
+TEST_CASE("a central that restarts reports nothing about before, and robots run into their time-out") {
   Air air{RadioModel{}, 3};
   (void)air.link_all();
   air.run(1s);

@@ -55,17 +55,17 @@ TEST_CASE("programs of another user are turned away, on both sides") {
   if (::geteuid() != 0) return;  // it takes root to become another user
   VirtualBusSetup setup;
   REQUIRE(::chmod(setup.directory.path().c_str(), 0755) == 0);
-  constexpr uid_t nobody = 65534;
+  constexpr uid_t nobody_user = 65534;
   // The mode of the socket keeps them out.
   CHECK(in_child([&] {
-          if (::setuid(nobody) != 0) return 10;
+          if (::setuid(nobody_user) != 0) return 10;
           const auto bus = transport::VirtualBus::open(setup.path());
           return !bus && bus.error.what.find("not allowed") == 0 ? 0 : 1;
         }) == 0);
   REQUIRE(::chmod(setup.path().c_str(), 0666) == 0);
   // Without it a client sees whose server it is,
   CHECK(in_child([&] {
-          if (::setuid(nobody) != 0) return 10;
+          if (::setuid(nobody_user) != 0) return 10;
           const auto bus = transport::VirtualBus::open(setup.path());
           return !bus && bus.error.what.find("another user (uid 0)") != std::string::npos ? 0 : 1;
         }) == 0);

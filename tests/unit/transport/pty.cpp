@@ -79,7 +79,7 @@ TEST_CASE("pty: programs come and go, and none reads what was for another") {
   auto pty = Pty::open();
   REQUIRE(pty);
   CHECK_FALSE(pty->attached());
-  CHECK(pty->write("nobody hears\n") == 0);
+  CHECK(pty->write("not heard\n") == 0);
   {
     const Program first{pty->path()};
     CHECK(pty->attached());
@@ -99,7 +99,7 @@ TEST_CASE("pty: programs come and go, and none reads what was for another") {
   CHECK(pty->attached());  // they are to be read
   CHECK(all(*pty).substr(0, 10) == "last words");
   CHECK_FALSE(pty->attached());
-  CHECK(pty->write("nobody hears\n") == 0);
+  CHECK(pty->write("not heard\n") == 0);
   const Program second{pty->path()};
   CHECK(pty->attached());
   CHECK(second.read().empty());

@@ -199,7 +199,7 @@ std::vector<std::string> receive(Slcan& bus, std::size_t count) {
 
 using Catch::Matchers::Contains;
 
-TEST_CASE("slcan: what cannot be opened is told with what to do") {
+TEST_CASE("slcan: what cannot be opened is reported with what to do") {
   CHECK_THAT(failure("/dev/no-such-adapter").what, Contains("no serial device '/dev/no-such-adapter'"));
   CHECK_THAT(failure("/dev/null").what, Contains("'/dev/null' is no serial device"));
   CHECK_THAT(failure("/etc/passwd").what, Contains("neither a serial device nor a socket"));
@@ -213,7 +213,7 @@ TEST_CASE("slcan: what cannot be opened is told with what to do") {
 
 TEST_CASE("slcan: an adapter is opened in order, and left as it was") {
   Device device;
-  // As somebody left it who did not close: open at another bit rate, in the middle of a line.
+  // As a program left it that did not close: open at another bit rate, in the middle of a line.
   device.with([&] {
     for (const char c : std::string_view{"S4\rO\rt10"}) (void)device.adapter.feed(c, device.wire);
   });
@@ -286,7 +286,7 @@ TEST_CASE("slcan: filters hold for what comes and for what waits; error frames p
   CHECK(receive(*bus, 1) == std::vector<std::string>{"608#AA"});
 }
 
-TEST_CASE("slcan: an adapter that refuses is told apart, by what it refuses") {
+TEST_CASE("slcan: an adapter that refuses is distinguished by what it refuses") {
   SECTION("the bit rate") {
     Device device(by_letter({{'\r', "\r"}, {'C', "\r"}, {'V', "V1013\r"}}));
     const auto told = failure(device.path());
@@ -348,7 +348,7 @@ TEST_CASE("slcan: adapters that never answer work") {
   SECTION("but with its version") {
     Device device([](Device& d, char c) {
       const std::string answer = Device::by_the_manual(d, c);
-      return answer.starts_with('V') ? "VL2K0 1a2b3c4 github.com/somebody\r" : std::string{};
+      return answer.starts_with('V') ? "VL2K0 1a2b3c4 github.com/example\r" : std::string{};
     });
     const auto bus = open(device.path());
     CHECK_FALSE(bus->answers());
@@ -449,7 +449,7 @@ TEST_CASE("slcan: a program that ends at once has still sent, also what was refu
   });
 }
 
-TEST_CASE("slcan: a line that nobody reads is full, and not one frame is torn") {
+TEST_CASE("slcan: a line that no adapter reads is full, and not one frame is torn") {
   Device device([](Device& d, char c) {
     (void)Device::by_the_manual(d, c);
     return std::string{};
@@ -548,7 +548,7 @@ TEST_CASE("slcan: an answer that never comes does not stop the others") {
     (void)bus->receive(1ms);
     return bus->adapter_counters().unanswered == 1;
   });
-  CHECK(bus->adapter_counters().sent_again == 0);  // nobody knows: better once than twice
+  CHECK(bus->adapter_counters().sent_again == 0);  // it is not known: better once than twice
   CHECK(bus->line_faults().noise == 1);
 }
 
@@ -563,7 +563,7 @@ TEST_CASE("slcan: the status flags become error frames") {
   REQUIRE(received);
   CHECK(text(received->frame) == "20000004#000D000000000000");
   CHECK(can::lost_in_controller(received->frame));
-  CHECK(bus->receive(50ms).error == base::Error::timed_out);  // the state is told once
+  CHECK(bus->receive(50ms).error == base::Error::timed_out);  // the state is reported once
   device.with([&] { device.adapter.report(0); });
   CHECK(receive(*bus, 1) == std::vector<std::string>{"20000004#0040000000000000"});
   CHECK(bus->adapter_counters().strays == 0);

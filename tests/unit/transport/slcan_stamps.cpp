@@ -45,7 +45,7 @@ TEST_CASE("slcan: time stamps across minutes, hours of silence, delays, drift an
     CHECK(std::chrono::abs(clock.map(stamp(998), at(1001)) - at(998)) < 1us);
     CHECK(clock.map(stamp(1002), at(1002)) == at(1002));
   }
-  SECTION("an adapter that starts anew") {
+  SECTION("an adapter that restarts") {
     StampClock clock;
     (void)clock.map(stamp(50'000), at(50'000));
     CHECK(clock.map(stamp(20'000), at(60'000)) == at(60'000));

@@ -59,7 +59,7 @@ class RawServer {
   host::Descriptor client_;
 };
 
-TEST_CASE("nobody serves a bus: the message says how to get one") {
+TEST_CASE("no server for a bus: the message says how to get one") {
   const TemporaryDirectory directory;
   const std::string path = directory.path() + "/sim.sock";
   CHECK_FALSE(VirtualBus::running(path));
@@ -104,7 +104,7 @@ TEST_CASE("two clients send within one bit time: the lower identifier wins") {
   setup.poll();
   setup.run();
   CHECK(received(*listener) == Texts{"205#01", "608#00"});
-  CHECK(received(*a) == Texts{"205#01"});  // nobody hears its own
+  CHECK(received(*a) == Texts{"205#01"});  // none gets its own
   CHECK(received(*b) == Texts{"608#00"});
 }
 

@@ -77,14 +77,14 @@ class Demultiplexer {
       case PrefixFilter::Step::prefix:
       case PrefixFilter::Step::source:
         return {};
-      case PrefixFilter::Step::nobody:
-        ++nobodys_;
+      case PrefixFilter::Step::no_robot:
+        ++of_no_robot_;
         return {};
       case PrefixFilter::Step::text:
         break;
     }
     const std::uint8_t robot = filter_.source();
-    if (robot >= Robots) return ++nobodys_, Heard{};
+    if (robot >= Robots) return ++of_no_robot_, Heard{};
     return {ears_[robot].feed(byte), robot};
   }
   /// robot < Robots
@@ -92,13 +92,13 @@ class Demultiplexer {
   /// The robot has connected again.
   constexpr void restart(std::size_t robot) noexcept { ears_[robot].restart(); }
   /// Bytes behind a broken prefix, before the first one, or of a robot beyond the last; it wraps.
-  [[nodiscard]] constexpr std::uint32_t nobodys() const noexcept { return nobodys_; }
+  [[nodiscard]] constexpr std::uint32_t of_no_robot() const noexcept { return of_no_robot_; }
   [[nodiscard]] constexpr std::uint32_t broken_prefixes() const noexcept { return filter_.broken(); }
 
  private:
   PrefixFilter filter_;
   std::array<Ear, Robots> ears_{};
-  std::uint32_t nobodys_ = 0;
+  std::uint32_t of_no_robot_ = 0;
 };
 
 }  // namespace ocm::mapper::link

@@ -40,10 +40,10 @@ using Prefix = base::Text<1 + 3 + 2 + max_name + 1>;
 class PrefixFilter {
  public:
   enum class Step : std::uint8_t {
-    text,    ///< the character is of the stream, from `source()`
-    prefix,  ///< it is of a prefix
-    source,  ///< it completes one: `source()` has changed, or is said again
-    nobody,  ///< it is of the stream, but not known whose
+    text,      ///< the character is of the stream, from `source()`
+    prefix,    ///< it is of a prefix
+    source,    ///< it completes one: `source()` has changed, or is said again
+    no_robot,  ///< it is of the stream, but not known whose
   };
 
   /// `known`: until the first prefix the stream is that of source 0, as on a line without a central.
@@ -60,7 +60,7 @@ class PrefixFilter {
     }
     switch (state_) {
       case State::outside:
-        return known_ ? Step::text : Step::nobody;
+        return known_ ? Step::text : Step::no_robot;
       case State::index:
         return index(c);
       case State::bracket:
@@ -72,7 +72,7 @@ class PrefixFilter {
       case State::name:
         return name(c);
     }
-    return Step::nobody;
+    return Step::no_robot;
   }
 
   /// 0 .. 255; of the last whole prefix.
@@ -106,7 +106,7 @@ class PrefixFilter {
   constexpr Step give_up() noexcept {
     ++broken_;
     state_ = State::outside;
-    return Step::nobody;
+    return Step::no_robot;
   }
 
   std::uint32_t broken_ = 0;

@@ -85,7 +85,7 @@ class Calibrator {
   }
 
   [[nodiscard]] constexpr Phase phase() const noexcept { return phase_; }
-  /// The robot may turn: it was told to, and has not said how that ended.
+  /// The robot may turn: it got the sentence, and has not said how that ended.
   [[nodiscard]] constexpr bool may_turn() const noexcept {
     return phase_ == Phase::ordering || phase_ == Phase::turning;
   }

@@ -268,7 +268,7 @@ class Translator {
     told_ = false;
     to_client_ += c;
   }
-  /// Handed on as a whole, for what it proves is told before it.
+  /// Handed on as a whole, for what it proves is reported before it.
   void of_prefix(char c, base::Time now) {
     if (c == '[') prefix_.clear();
     prefix_ += c;

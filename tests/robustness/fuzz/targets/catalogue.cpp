@@ -1,4 +1,4 @@
-// A catalogue that nobody has seen before, from a DBC file or a JSON spec of any bytes, and any frames on it:
+// A catalogue from a DBC file or a JSON spec of any bytes, and any frames on it:
 // behind the file's first zero byte. A frame is found by the rule that frame_index.hpp states, a field is
 // read bit by bit, what is present is worked out by recursion, and a topic's sample is a list of what came:
 // index, receiver, codec, text and JSON must say the same.

@@ -88,7 +88,7 @@ int drain(CentralClient& client, CentralEvent::Kind kind) {
   return count;
 }
 
-/// Wishes, answers and time, in any order; what time it is then.
+/// Requests, answers and time, in any order; what time it is then.
 base::Time play(CentralClient& client, fuzz::Input input) {
   base::Time now{};
   while (!input.empty()) {

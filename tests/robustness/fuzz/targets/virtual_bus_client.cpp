@@ -156,7 +156,7 @@ class Server {
         const auto filter = vb::from_record<vb::FilterRecord>(record);
         fuzz::expect(
             heard_.size() < filters.size() && filters[heard_.size()] == can::Filter{filter.id, filter.mask},
-            "a filter is one that it was told");
+            "a filter is one that it was sent");
         heard_.push_back({filter.id, filter.mask});
         return;
       }

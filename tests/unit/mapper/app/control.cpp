@@ -262,7 +262,7 @@ TEST_CASE("mapper: how a calibration ends badly is said, with the reason", "[map
   }
 }
 
-TEST_CASE("mapper: a calibration can be stopped, and one that was is told", "[mapper]") {
+TEST_CASE("mapper: a calibration can be stopped, and that is reported", "[mapper]") {
   Bench bench;
   bench.confirm();
   bench.say("{C,1}\n");

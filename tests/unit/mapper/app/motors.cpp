@@ -58,7 +58,7 @@ TEST_CASE("mapper motors: on and off: the wheel that is a tick ahead waits", "[m
   CHECK(at({101, 200}) == Efforts{0.0F, 1.0F});
   CHECK(at({101, 201}) == Efforts{1.0F, 1.0F});
   CHECK(at({101, 202}) == Efforts{1.0F, 0.0F});
-  SECTION("a new movement begins anew") {
+  SECTION("a new movement begins from rest") {
     CHECK(at({101, 202}, left_turn(1.0F)) == Efforts{-1.0F, 1.0F});
     CHECK(at({99, 203}, left_turn(1.0F)) == Efforts{0.0F, 1.0F});
     CHECK(at({99, 203}, left_turn(-1.0F)) == Efforts{1.0F, -1.0F});

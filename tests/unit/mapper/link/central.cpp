@@ -295,7 +295,7 @@ TEST_CASE("central: a name cannot forge a prefix or a sentence") {
     heard += ears.feed(static_cast<std::uint8_t>(character)).kind == Kind::idle ? 1 : 0;
   CHECK(heard == 1);
   CHECK(ears.broken_prefixes() == 0);
-  CHECK(ears.nobodys() == 0);
+  CHECK(ears.of_no_robot() == 0);
 }
 
 TEST_CASE("central: a packet longer than the radio's is passed on whole") {

@@ -60,7 +60,7 @@ TEST_CASE("listing 15.1 as it came from the central holds U, IDL, IDL, U, and th
   CHECK(heard[3].sentence.as<Update>().value == ocm::test::last_of_listing);
   CHECK(ears.ear(0).text().faults().total() == 21);  // counted by hand in reader.cpp
   CHECK(ears.ear(0).quality().below(500));
-  CHECK(ears.nobodys() == 0);
+  CHECK(ears.of_no_robot() == 0);
   CHECK(ears.broken_prefixes() == 0);
 }
 
@@ -110,9 +110,9 @@ TEST_CASE("one robot's torn sentence is not completed by another's, nor by one w
   CHECK(feed(ears, "[0]:A:{S,I[1]:B:DL}\n").empty());
   CHECK(feed(ears, "[0]:A:{S,I[0:A:DL}\n").empty());
   CHECK(ears.broken_prefixes() == 1);
-  CHECK(ears.nobodys() == 7);  // the first wrong character and what follows
+  CHECK(ears.of_no_robot() == 7);  // the first wrong character and what follows
   CHECK(feed(ears, "[7]:C:{S,IDL}\n").empty());
-  CHECK(ears.nobodys() == 7 + 8);
+  CHECK(ears.of_no_robot() == 7 + 8);
   CHECK(feed(ears, "[1]:B:{S,IDL}\n").size() == 1);
 }
 
@@ -134,7 +134,7 @@ TEST_CASE("text and packed bytes tear each other, and neither is taken for the o
 }
 
 TEST_CASE(
-    "a handshake, or a new link, lets the numbers of packed updates begin anew, and a new link is trusted") {
+    "a handshake, or a new link, lets the numbers of packed updates begin again, and a new link is trusted") {
   Ear ear;
   const auto feed_all = [&](std::string_view bytes) {
     for (const char c : bytes) (void)ear.feed(static_cast<std::uint8_t>(c));

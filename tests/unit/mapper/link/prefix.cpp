@@ -21,8 +21,8 @@ static_assert(safe_name("a:b{c}[d]\n\x80") == "a_b_c__d___");
 static_assert(safe_name("") == "?");
 
 struct Stripped {
-  std::string text;    ///< of sources that are known
-  std::string nobody;  ///< of nobody
+  std::string text;      ///< of sources that are known
+  std::string no_robot;  ///< of no robot
   std::uint32_t broken = 0;
   std::string sources;
 };
@@ -32,7 +32,7 @@ Stripped strip(std::string_view stream, bool known = false) {
   for (const char c : stream) {
     const Step step = filter.feed(c);
     if (step == Step::text) out.text += c;
-    if (step == Step::nobody) out.nobody += c;
+    if (step == Step::no_robot) out.no_robot += c;
     if (step == Step::source) out.sources += std::to_string(filter.source()) + " ";
   }
   out.broken = filter.broken();
@@ -45,7 +45,7 @@ TEST_CASE("prefixes are taken out of the middle of sentences, with or without th
       "[12]:Arduino:{S,IDL}\n");
   CHECK(s.text == "{U,-177,-61,-68,49,0,0,0,0}\n{S,IDL}\n");
   CHECK(s.sources == "0 0 12 ");
-  CHECK(s.nobody.empty());
+  CHECK(s.no_robot.empty());
   CHECK(s.broken == 0);
 }
 
@@ -57,7 +57,7 @@ TEST_CASE("a broken prefix is counted, and what follows belongs to no robot unti
     CHECK(s.text == "abef");
     CHECK(s.broken == 1);
     CHECK(s.sources == "1 2 ");
-    CHECK(s.nobody.substr(s.nobody.size() - 2) == "cd");
+    CHECK(s.no_robot.substr(s.no_robot.size() - 2) == "cd");
   }
   CHECK(strip("[1]:A[2]:B:x").broken == 1);
   CHECK(strip("[1]:A[2]:B:x").text == "x");
@@ -66,7 +66,7 @@ TEST_CASE("a broken prefix is counted, and what follows belongs to no robot unti
 TEST_CASE("without a central there is one source; with one, none until the first prefix") {
   CHECK(strip("{S,IDL}\n", true).text == "{S,IDL}\n");
   CHECK(strip("{S,IDL}\n").text.empty());
-  CHECK(strip("{S,IDL}\n").nobody == "{S,IDL}\n");
+  CHECK(strip("{S,IDL}\n").no_robot == "{S,IDL}\n");
   CHECK(strip("ab[3]:C:cd", true).text == "abcd");
 }
 
