@@ -145,7 +145,8 @@ Misuse misuse_of(const CLI::ParseError& error) {
 struct Root : CLI::App {
   using CLI::App::App;
   std::map<const CLI::Option*, Accepted> accepted;
-  std::set<const CLI::Option*> given;  ///< by the environment or a config file
+  std::set<const CLI::Option*> given;     ///< by the environment or a config file
+  std::set<const CLI::Option*> declined;  ///< by `false` there
 };
 
 Root& root_of(CLI::App* app) {
@@ -372,7 +373,7 @@ const Accepted& Option::accepted() const {
 }
 
 bool Option::is_decided() const {
-  if (option_->count() > 0) return true;
+  if (option_->count() > 0 || root_of(owner_).declined.count(option_) != 0) return true;
   for (const CLI::Option* other : option_->get_excludes())
     if (other->count() > 0) return true;
   if (is_verb(owner_)) return false;
@@ -408,6 +409,10 @@ std::optional<Misuse> Option::give(const std::string& key, const std::vector<std
     return misuse;
   }
   return {};
+}
+
+void Option::decline() const {
+  root_of(owner_).declined.insert(option_);
 }
 
 // --- verb --------------------------------------------------------------------------------------------------

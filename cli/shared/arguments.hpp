@@ -82,7 +82,7 @@ class Option {
   [[nodiscard]] int most_values() const;
   [[nodiscard]] const Accepted& accepted() const;
 
-  /// Whether it has a value by now, or another one that excludes it has.
+  /// Whether it has a value by now, is declined, or another one that excludes it has a value.
   [[nodiscard]] bool is_decided() const;
   /// What the command line says of this text as its value: "soon: not a time". Of one that it refuses; it
   /// takes any other one.
@@ -91,6 +91,8 @@ class Option {
   /// values, after the key: "soon: not a time".
   [[nodiscard]] std::optional<Misuse> give(const std::string& key,
                                            const std::vector<std::string>& values) const;
+  /// Decides that it is not given, whatever is read later says.
+  void decline() const;
 
  private:
   CLI::Option* option_;

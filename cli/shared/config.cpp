@@ -60,7 +60,10 @@ void apply_environment(Verb verb) {
       // --wait, or --wait 2s: true is the option without a value, as in the file.
       const bool bare = option.most_values() > 0 && option.least_values() == 0;
       const std::string_view truth{value};
-      if (bare && truth == "false") break;
+      if (bare && truth == "false") {
+        option.decline();
+        break;
+      }
       if (bare && truth == "true") {
         if (const auto misuse = option.give(key, {}))
           fail({fmt::format("{}={}", name, misuse->what), misuse->remedy + ", or unset it"}, exit_usage);
@@ -106,7 +109,10 @@ void apply_setting(Verb verb, const Setting& setting, const std::string& file) {
     std::vector<std::string> values;
     for (const OptionValue& value : setting.values) values.push_back(value.text);
     if (option.most_values() > 0 && setting.values.front().kind == ValueKind::truth) {
-      if (values.front() == "false") continue;
+      if (values.front() == "false") {
+        option.decline();
+        continue;
+      }
       values.clear();
     }
     if (const auto misuse = option.give(setting.key, values))

@@ -75,6 +75,27 @@ class Misspelt(Case):
                     self.assertFalse((self.tree / "called").exists(), "nothing is built for it")
 
 
+class Mutate(Case):
+    def mutate(self, tree, *rooms):
+        return self.run_script("mutate", *(f"--room={room}" for room in rooms), "--count", "1", "--list", path=tree / "scripts" / "mutate")
+
+    def test_each_file_has_tests_that_judge_it(self):
+        done = self.mutate(ROOT, "include/ocm", "cli")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def test_a_file_without_a_judge_is_an_error(self):
+        text = "#pragma once\ninline bool below(int a) { return a < 3; }\n"
+        for path in ("include/ocm/base/unjudged.hpp", "cli/room/unjudged.cpp", "cli/verbs/unjudged.cpp"):
+            (self.tree / path).parent.mkdir(parents=True, exist_ok=True)
+            (self.tree / path).write_text(text, encoding="utf-8")
+        done = self.mutate(self.tree, "include/ocm/base", "cli")
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        expected = "expected an entry in JUDGES"
+        for path, what in (("include/ocm/base/unjudged.hpp", "expected a source in tests/unit that includes it"),
+                           ("cli/room/unjudged.cpp", expected), ("cli/verbs/unjudged.cpp", expected)):
+            self.assertIn(f"mutate: {path}: no test judges it; {what}", done.stderr.splitlines())
+
+
 class Bench(Case):
     def test_the_list_needs_no_build(self):
         done = self.run_script("bench", "--list")

@@ -195,6 +195,20 @@ class Config(harness.Case):
         self.write("[replay]\nloop = false\n")
         self.assertEqual(self.run_tool("replay", log, "--dry-run")[0].count("605#"), 1)
 
+    def test_false_goes_before_what_is_for_all_verbs(self):
+        log = os.path.join(self.folder, "a.log")
+        with open(log, "w", encoding="utf-8") as file:
+            file.write("(1.0) can0 605#00D20000\n")
+        # One whose value may be left out, and a flag.
+        self.write("loop = true\njson = true\n[replay]\nloop = false\n[list]\njson = false\n")
+        self.assertEqual(self.run_tool("replay", log, "--dry-run")[0].count("605#"), 1)
+        self.assertTrue(self.run_tool("list")[0].startswith("TOPIC"))
+        self.write("[replay]\nloop = true\n[list]\njson = true\n")
+        self.environment["AMIROCTL_LOOP"] = self.environment["AMIROCTL_JSON"] = "false"
+        self.assertEqual(self.run_tool("replay", log, "--dry-run")[0].count("605#"), 1)
+        self.assertTrue(self.run_tool("list")[0].startswith("TOPIC"))
+        self.assertIn("plays once", self.run_tool("replay", log, "--dry-run", "--loop", code=2)[1])
+
     def test_a_value_for_all_verbs_that_only_some_take(self):
         self.write('bitrate = "500k"\n')
         self.run_tool("analyse", "bus")

@@ -32,8 +32,8 @@ static_assert(utf8_length("\xC2\xB0x") == 2);
 static_assert(utf8_length("\xC2x") == 0 && utf8_length("\xC2") == 0 && utf8_length("\x9B") == 0);
 static_assert(utf8_length("\xC0\xAF") == 0, "longer than needed [RFC 3629, 3]");
 static_assert(utf8_length("\xED\xA0\x80") == 0, "a half of a pair of UTF-16");
-static_assert(utf8_length("\xF4\x8F\xBF\xBF") == 4 && utf8_length("\xF4\x90\x80\x80") == 0,
-              "U+10FFFF is the last");
+static_assert(utf8_length("\xF4\x8F\xBF\xBF") == 4, "U+10FFFF, the last [RFC 3629, 3]");
+static_assert(utf8_length("\xF4\x90\x80\x80") == 0 && utf8_length("\xF5\x80\x80\x80") == 0, "beyond it");
 
 static_assert(continues_character('\x80') && continues_character('\xBF'));
 static_assert(!continues_character('\x7F') && !continues_character('\xC0') && !continues_character('a'));

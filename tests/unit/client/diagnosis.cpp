@@ -85,6 +85,14 @@ TEST_CASE("diagnosis: no board answers") {
   CHECK(Patient{}.findings() == Lines{"problem : no board answers"});
 }
 
+TEST_CASE("diagnosis: a board that sends without a status answers, too") {
+  Patient robot;
+  robot.say(amiro::ProximityRing{});
+  CHECK(robot.findings() == Lines{"problem di_wheel_drive: does not answer",
+                                  "problem light_ring: does not answer",
+                                  "warning power_management: sends, and does not say how it is"});
+}
+
 TEST_CASE("diagnosis: one board is missing, another has an older firmware") {
   Patient robot;
   robot.say(Patient::healthy<amiro::DiWheelDriveStatus>());

@@ -18,7 +18,8 @@ struct Tape {
     sent.emplace_back(can::to_text(frame).view());
     return room;
   }
-  base::Result<can::Received> receive(base::Duration) {
+  base::Result<can::Received> receive(base::Duration limit) {
+    limits.push_back(limit);
     if (answers.empty()) return base::Error::timed_out;
     const auto frame = can::parse_frame(answers.front());
     answers.pop_front();
@@ -27,7 +28,12 @@ struct Tape {
   bool room = true;
   std::vector<std::string> sent;
   std::deque<std::string> answers;
+  std::vector<base::Duration> limits;  ///< how long it was to wait
 };
+
+static_assert(client::SensorType<amiro::Gyroscope> && !client::SensorType<amiro::Motors>);
+static_assert(client::ActuatorType<amiro::Motors> && !client::ActuatorType<amiro::Gyroscope>);
+static_assert(!client::SensorType<int> && !client::ActuatorType<int>);
 
 TEST_CASE("requests and set points by type") {
   Tape bus;
@@ -61,6 +67,20 @@ TEST_CASE("next gives complete samples only") {
   CHECK(sample->as<amiro::Gyroscope>().ok());
   CHECK(robot.next(1s).error == base::Error::timed_out);
   CHECK(robot.counters().commands == 1);
+}
+
+TEST_CASE("next waits no longer than it is to, whatever comes meanwhile") {
+  Tape bus;
+  bus.answers = {"208#02", "208#02"};
+  client::Robot robot{bus, amiro::catalogue};
+  CHECK(robot.next(1s).error == base::Error::timed_out);
+  REQUIRE(bus.limits.size() == 3);
+  CHECK(bus.limits[0] == 1s);
+  CHECK(bus.limits[1] <= bus.limits[0]);
+  CHECK(bus.limits[2] <= bus.limits[1]);
+  bus.answers = {"208#02"};
+  CHECK(robot.next(0s).error == base::Error::timed_out);
+  CHECK(bus.limits.back() == 0s);
 }
 
 }  // namespace client_robot_test

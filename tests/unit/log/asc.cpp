@@ -258,7 +258,10 @@ TEST_CASE("asc: lines that are wrong, each with its cause") {
   CHECK(cause_of("0.1 CANXL 1 Rx CBFF 0 0 123 0 0 0 0") == Cause::unsupported);
   CHECK(cause_of("0.1 CANFD 1 Up 123 0 0 0 0 0 0 1000") == Cause::syntax);
   CHECK(cause_of("0.1 CANFD 1 Rx 123 2 2 0 0 0 0 1000") == Cause::syntax);
-  CHECK(cause_of("0.1 CANFD 1 Rx 123 0 0 9 8 1 2 3 4 5 6 7 8 0 0 1000") == Cause::length);
+  // A byte has two digits; fewer or more bytes than their code says.
+  CHECK(cause_of("0.1 CANFD 1 Rx 123 0 0 8 8 1 2 3 4 5 6 7 8 0 0 1000") == Cause::length);
+  CHECK(cause_of("0.1 CANFD 1 Rx 123 0 0 9 8 01 02 03 04 05 06 07 08 0 0 1000") == Cause::length);
+  CHECK(cause_of("0.1 CANFD 1 Rx 123 0 0 7 8 01 02 03 04 05 06 07 08 0 0 1000") == Cause::length);
   CHECK(cause_of("0.1 CANFD 1 Rx 123 0 0 9 12 01 02 03 04 05 06 07 08 0 0 1000") == Cause::length);
   CHECK(cause_of("0.1 CANFD 1 Rx 123 0 0 f 65 01") == Cause::length);
   CHECK(cause_of("0.1 CANFD 1 Rx 123 0 0 9 12 01 02 03 04 05 06 07 08 09 0A 0B 0C 0 0 0") == Cause::length);

@@ -1,5 +1,10 @@
 #include "ocm/log/candump.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <new>
+#include <span>
 #include <string>
 
 #include <catch2/catch.hpp>
@@ -152,6 +157,22 @@ TEST_CASE("what is no line of candump's is refused by cause, and the rest is rea
   CHECK(refusal_of(begin + "123#00 X") == Cause::syntax);
   CHECK(refusal_of(begin + "123#00 R R") == Cause::syntax);
   CHECK(refusal_of("(1436509052.249713) " + std::string(65, 'n') + " 123#") == Cause::syntax);
+}
+
+TEST_CASE("candump's longest frame writes its 64 bytes, and none behind them") {
+  constexpr std::size_t end = offsetof(Entry, data) + log::max_fd_length;
+  static_assert(end < sizeof(Entry), "what is behind the data shows");
+  alignas(Entry) std::array<unsigned char, sizeof(Entry)> memory;
+  memory.fill(0xA5);
+  Entry& entry = *new (memory.data()) Entry;
+  const std::string text = amid("(1436509052.249713) can0 123##1" + std::string(128, 'F'));
+  log::MemorySource source{text};
+  log::Input input{source};
+  log::CandumpReader reader{input};
+  for (int i = 0; i < 2; ++i) REQUIRE(reader.read(std::span{&entry, 1}) == 1);
+  CHECK(entry.length == 64);
+  CHECK(entry.data[63] == 0xFF);
+  CHECK(std::all_of(memory.begin() + end, memory.end(), [](unsigned char byte) { return byte == 0xA5; }));
 }
 
 TEST_CASE("random entries survive candump's notation, to the nanosecond with nine digits") {

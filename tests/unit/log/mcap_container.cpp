@@ -159,6 +159,7 @@ TEST_CASE("mcap_container: every index leads to its message, and all are counted
       if (record.place == place) return record;
     return Record{};
   };
+  std::map<std::uint16_t, std::uint32_t> numbers;  // of a channel's messages: a gap shows
   std::uint64_t found = 0, lowest_of_all = UINT64_MAX, highest_of_all = 0;
   for (const Record& record : of_kind(records, mcap::opcode::chunk_index)) {
     mcap::Fields fields{record.content};
@@ -180,6 +181,7 @@ TEST_CASE("mcap_container: every index leads to its message, and all are counted
         const std::string_view message = chunk.content.substr(40 + static_cast<std::size_t>(offset));
         REQUIRE(message[0] == mcap::opcode::message);
         REQUIRE(base::swar::load16(message.data() + 9) == channel);
+        REQUIRE(log::packet::load32(message.data() + 11) == numbers[channel]++);
         REQUIRE(base::swar::load64(message.data() + 15) == time);
         lowest = std::min(lowest, time);
         highest = std::max(highest, time);

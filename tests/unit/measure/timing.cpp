@@ -119,6 +119,17 @@ TEST_CASE("timing: missing samples") {
     CHECK(timing.missing == 1);
     CHECK(timing.lateness_ns == 90'000'000);
   }
+  SECTION("one that comes early makes up for nothing") {
+    // Off the grid: 0, 0, -70, -100, -100 ms.
+    const Timing timing = stream_of({0, 100, 130, 200, 300}, 100ms).timing(at(300ms));
+    CHECK(timing.missing == 0);
+    CHECK(timing.lateness_ns == 100'000'000);
+  }
+  SECTION("all at once have no rate") {
+    const Timing timing = stream_of({0, 0, 0}, 100ms).timing(at(0ms));
+    CHECK(timing.mean_ns == 0.0);
+    CHECK(timing.rate_hz == 0.0);
+  }
   SECTION("behind a pause the grid is another") {
     const Timing timing = stream_of({0, 100, 450, 550}, 100ms).timing(at(550ms));
     CHECK(timing.missing == 3);

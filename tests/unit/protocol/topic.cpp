@@ -1,6 +1,7 @@
 #include "ocm/protocol/topic.hpp"
 
 #include <array>
+#include <cmath>
 #include <limits>
 #include <span>
 #include <vector>
@@ -102,6 +103,8 @@ TEST_CASE("a float is read and written with its scale and offset") {
   STATIC_REQUIRE(moved.value(0x3FC0'0000) == 4.5);
   STATIC_REQUIRE(doubled.value(0x3FC0'0000) == 3.0);
   STATIC_REQUIRE(angle.value(0x3FF0'0000'0000'0000) == 1.0);
+  // Without either it is the float as it was sent: -0 stays one.
+  CHECK(std::signbit(angle.value(std::numeric_limits<std::int64_t>::min())));
   STATIC_REQUIRE(*level.float_from(10.5) == 0x3F80'0000);
   STATIC_REQUIRE(*level.float_from(9.0) == 0xC000'0000);
   STATIC_REQUIRE(*moved.float_from(4.5) == 0x3FC0'0000);

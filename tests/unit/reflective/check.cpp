@@ -19,6 +19,8 @@ static_assert(fits(guard::tables, Room{}));
 static_assert(!fits(guard::tables, Room{.conditions = 5}));
 static_assert(!fits(guard::tables, Room{.monitors = 2}));
 static_assert(!fits(guard::tables, Room{.streams = 2}));
+static_assert(!fits(guard::tables, Room{.entry = 0}));
+static_assert(!fits(guard::tables, Room{.limits = 0}));
 
 /// The guard's tables, to be spoilt.
 struct Tables {

@@ -552,6 +552,33 @@ TEST_CASE("slcan: an answer that never comes does not stop the others") {
   CHECK(bus->line_faults().noise == 1);
 }
 
+TEST_CASE("slcan: an answer that comes too late is none, also while the program only waits") {
+  bool mute = false;
+  Device device([&mute](Device& d, char c) {
+    const std::string answer = Device::by_the_manual(d, c);
+    return mute && answer == "z\r" ? std::string{} : answer;
+  });
+  SlcanOptions options;
+  options.answer_limit = 300ms;
+  options.status_period = 1h;
+  const auto bus = open(device.path(), options);
+  send(*bus, {1, 0, {}});
+  eventually([&] {
+    (void)bus->receive(1ms);
+    return device.with([&] { return device.wire.sent.size() == 1; });
+  });
+  (void)bus->receive(100ms);
+  device.with([&] { mute = true; });
+  send(*bus, {2, 0, {}});
+  std::thread late{[&] {
+    std::this_thread::sleep_for(1200ms);
+    device.say("z\r");
+  }};
+  (void)bus->receive(1500ms);
+  late.join();
+  CHECK(bus->adapter_counters().unanswered == 1);
+}
+
 TEST_CASE("slcan: the status flags become error frames") {
   Device device;
   SlcanOptions options;

@@ -115,6 +115,7 @@ TEST_CASE("names that no interface can have are refused before the kernel is ask
   const auto wide = SocketCan::open("averylonginterface");
   CHECK(wide.error.what == "'averylonginterface' has 18 characters; an interface name has at most 15");
   CHECK_FALSE(wide.value);
+  CHECK_THAT(SocketCan::open("can0123456789012").error.what, Catch::Contains("has 16 characters"));
 
   using transport::detail::can_be_interface;
   static_assert(can_be_interface("can0") && can_be_interface("123456789012345"));

@@ -28,12 +28,14 @@ class RawServer {
 
   /// Opens a client, to whose hello the server answers with `answer`, and hangs up if told so.
   template <class T>
-  transport::Outcome<std::unique_ptr<VirtualBus>> open(const T& answer, bool hang_up) {
+  transport::Outcome<std::unique_ptr<VirtualBus>> open(const T& answer, bool hang_up,
+                                                       base::Duration after = base::Duration::zero()) {
     transport::Outcome<std::unique_ptr<VirtualBus>> opened;
     std::thread opener{[&] { opened = VirtualBus::open(path()); }};
     client_ = host::Descriptor{::accept(listener_.get(), nullptr, nullptr)};
     vb::Record hello{};
     CHECK(::recv(client_.get(), hello.data(), hello.size(), 0) == static_cast<ssize_t>(hello.size()));
+    std::this_thread::sleep_for(after);
     say(answer);
     if (hang_up) client_.reset();
     opener.join();
@@ -445,6 +447,11 @@ TEST_CASE("a server that does not answer is not waited for for ever") {
   REQUIRE_FALSE(bus);
   CHECK_THAT(bus.error.what, Catch::Contains("does not answer"));
   CHECK_THAT(bus.error.remedy, Catch::Contains("fg"));
+}
+
+TEST_CASE("a server that is slow to answer is waited for") {
+  RawServer server;
+  CHECK(server.open(vb::Hello{.bit_rate = 1'000'000, .credit = 64}, false, 50ms));
 }
 
 TEST_CASE("receive waits as long as told") {

@@ -175,6 +175,22 @@ TEST_CASE("central client: no central at the line") {
   CHECK(bench.client.idle());
 }
 
+TEST_CASE("central client: a line that answers nothing is a stray, and moves no request on") {
+  CentralClient client;
+  CHECK(client.scan(0ms));
+  client.expire({});
+  client.feed("command\nfound 0\n", {});  // settled
+  REQUIRE(client.take() == "*\nstop\nstop\nlist\n");
+  CHECK(client.counters().strays == 1);  // an answer to `*`, which `stop` ends
+  // Neither the end of an old list nor an old scan is the answer to `stop`.
+  client.feed("scanning\nend of list\n", {});
+  CHECK(client.counters().strays == 3);
+  client.feed("found 1\nfound 1\n0:C0000000000A:AVR\nend of list\n", {});
+  CHECK(client.counters().strays == 4);
+  CHECK(client.peers().size() == 1);
+  CHECK(client.idle());
+}
+
 TEST_CASE("central client: the central is reset") {
   Bench bench;
   bench.central.add("AVR");

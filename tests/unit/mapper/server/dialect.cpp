@@ -61,6 +61,13 @@ TEST_CASE("dialect: a command that the base firmware does not answer holds up no
   translator.from_dongle("WAIT.ERROR.", begin + 1s);
   CHECK(translator.take_for_client() == "connecting 2\nerror: no link to 2\n");
   CHECK(translator.idle());
+  // No answer is no list: that it has found none would be a lie.
+  Translator silent{Dialect::at};
+  silent.from_client("stop\n", begin);
+  CHECK(silent.take_for_dongle() == "AT+FOUND=0.");
+  silent.expire(begin + 800ms);
+  CHECK(silent.take_for_client().empty());
+  CHECK(silent.idle());
 }
 
 TEST_CASE(
@@ -70,7 +77,9 @@ TEST_CASE(
   translator.from_client("conn 1\n", begin);
   CHECK(translator.take_for_dongle() == "conn 1\n");
   CHECK(translator.take_for_client() == "connecting 1\n");
-  translator.from_dongle("Data mode\r\n[1]:AVR:{H,", begin);
+  translator.from_dongle("Data mode\r\n[3]:OWE:{H,", begin);
+  CHECK(translator.take_for_client().find("connected") == std::string::npos);  // another's link
+  translator.from_dongle("[1]:AVR:{H,", begin);
   const std::string heard = translator.take_for_client();
   CHECK(heard.find("connected 1\n[1]:AVR:{H,") != std::string::npos);
   translator.from_client("*conn 1\n", begin + 1s);

@@ -51,6 +51,10 @@ struct Bench {
   }
 };
 
+static_assert(is_final(Progress::none) && is_final(Progress::reached) && is_final(Progress::ended));
+static_assert(is_final(Progress::stopped) && !is_final(Progress::stopping));
+static_assert(!is_final(Progress::waiting) && !is_final(Progress::said) && !is_final(Progress::heard));
+
 TEST_CASE("sender: a set point that is heard is said once, and reached where the robot then stands") {
   Bench bench;
   bench.stands(0, 0, 0);
