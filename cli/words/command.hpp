@@ -481,7 +481,8 @@ class CommandParser {
       if (given[index])
         return WordError{i, "field " + detail::quoted(name) + " is given twice", "give it once"};
       protocol::Field field = fields[index];
-      if (force) field.min = field.max = {};  // what counts is what the bits hold
+      // Of a message, whose range is advice, what counts is what the bits hold.
+      if (force && target.is_message()) field.min = field.max = {};
       const std::string_view text = word.substr(equals + 1);
       // The number of a message is physical wherever messages are known; it needs no unit.
       // [docs/decisions/0027]
@@ -489,7 +490,8 @@ class CommandParser {
       if (!value)
         return WordError{i, value.error, "for example " + std::string{name} + "=0" + std::string{field.unit}};
       if (!is_in_stated_range(field, *value))
-        return WordError{i, beyond_stated_range(field, text), force_beyond_range};
+        return WordError{i, beyond_stated_range(field, text),
+                         target.is_message() ? force_beyond_range : "a value within it"};
       given[index] = Given{*value, i};
     }
     return given;

@@ -164,7 +164,10 @@ class FieldReader : protected Checker {
     if (typed) {
       field.raw_min = protocol::lowest(field.position.width, field.is_signed);
       field.raw_max = protocol::highest(field.position.width, field.is_signed);
-      if (check_exact(at, field)) read_range(at, field);
+      if (field.number != protocol::Number::integer)
+        read_float_range(at, field);
+      else if (check_exact(at, field))
+        read_range(at, field);
     }
     read_values(at, typed, field);
     return field;
@@ -172,7 +175,7 @@ class FieldReader : protected Checker {
 
   [[nodiscard]] bool read_type(const At& at, FieldModel& field) {
     static constexpr std::string_view form =
-        "i2 to i64 (signed) or u1 to u63 (unsigned), such as \"i16\", \"u12\", \"i24\"";
+        "i2 to i64 (signed), u1 to u63 (unsigned), f32 or f64, such as \"i16\", \"u12\", \"f32\"";
     const auto a = require(at, "type", form);
     if (!a) return false;
     const std::string_view text = a->node->is(Kind::string) ? std::string_view{a->node->text} : "";
@@ -180,6 +183,11 @@ class FieldReader : protected Checker {
                            ? base::Result<std::uint64_t>{base::Error::bad_syntax}
                            : base::parse_unsigned(text.substr(1));
     const bool is_signed = !text.empty() && text.front() == 'i';
+    if (text == "f32" || text == "f64") {
+      field.number = text == "f32" ? protocol::Number::float32 : protocol::Number::float64;
+      field.position.width = static_cast<std::uint8_t>(*width);
+      return true;
+    }
     if (!width || (text.front() != 'i' && text.front() != 'u')) {
       tell(*a, "unknown type " + shown(*a->node), std::string{form});
       return false;
@@ -272,19 +280,37 @@ class FieldReader : protected Checker {
     return true;
   }
 
+  [[nodiscard]] std::optional<RangeModel> stated_range(const At& a) {
+    static constexpr std::string_view form = "two numbers in the field's unit, lowest first: [-500, 500]";
+    if (!is_kind(a, Kind::array, form)) return std::nullopt;
+    if (a.node->items.size() != 2) {
+      tell(a, "a range of " + std::to_string(a.node->items.size()) + " numbers", std::string{form});
+      return std::nullopt;
+    }
+    const auto low = decimal(a.item(0), form);
+    const auto high = decimal(a.item(1), form);
+    if (!low || !high) return std::nullopt;
+    if (base::compare(*low, *high) > 0) {
+      tell(a, "the range begins at " + print(*low) + " and ends below it, at " + print(*high),
+           std::string{form});
+      return std::nullopt;
+    }
+    return RangeModel{*low, *high};
+  }
+
+  /// Of a float there is no raw number for each end: the range is what its values are held within.
+  void read_float_range(const At& at, FieldModel& field) {
+    if (const auto a = at.member("range")) field.range = stated_range(*a);
+    field.has_range = field.range.has_value();
+  }
+
   void read_range(const At& at, FieldModel& field) {
     const auto a = at.member("range");
     if (!a) return;
-    static constexpr std::string_view form = "two numbers in the field's unit, lowest first: [-500, 500]";
-    if (!is_kind(*a, Kind::array, form)) return;
-    if (a->node->items.size() != 2)
-      return tell(*a, "a range of " + std::to_string(a->node->items.size()) + " numbers", std::string{form});
-    const auto low = decimal(a->item(0), form);
-    const auto high = decimal(a->item(1), form);
-    if (!low || !high) return;
-    if (base::compare(*low, *high) > 0)
-      return tell(*a, "the range begins at " + print(*low) + " and ends below it, at " + print(*high),
-                  std::string{form});
+    const auto stated = stated_range(*a);
+    if (!stated) return;
+    const Decimal* const low = &stated->min;
+    const Decimal* const high = &stated->max;
     const std::int64_t lowest_raw = field.raw_min;
     const std::int64_t highest_raw = field.raw_max;
     const bool falling = field.scale.digits < 0;
@@ -358,6 +384,9 @@ class FieldReader : protected Checker {
                                          : R"(names and raw numbers: {"unknown": 65535})";
     if (!is_object(*a, form)) return;
     if (a->node->members.empty()) tell(*a, "no names", form);
+    if (field.number != protocol::Number::integer)
+      return tell(*a, "names of values in a field that is a floating-point number",
+                  "an integer type, such as \"u8\"");
     if (field.flags && field.is_signed)
       tell(*a, "flags in a signed field", "an unsigned type, such as \"u8\"");
     if (field.flags && (!field.unit.empty() || at.member("scale") || at.member("offset")))

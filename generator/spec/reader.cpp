@@ -535,6 +535,9 @@ class Reader : private FieldReader {
       else if (found->unit != field.unit)
         tell(at, "role " + shown(*at.node) + " with field " + quoted(full) + " in " + quoted(found->unit),
              field.unit.empty() ? "no unit" : "the unit \"" + std::string{field.unit} + "\"");
+      else if (found->number != protocol::Number::integer)
+        tell(at, "role " + shown(*at.node) + " with field " + quoted(full) + ", a floating-point number",
+             "an integer type, such as \"i32\", with a scale");
     }
   }
 

@@ -120,6 +120,14 @@ static inline int @_read_request(const @_frame* frame, @_request* request) {
 }
 
 )";
+bool is_float(const FieldModel& field) {
+  return field.number != protocol::Number::integer;
+}
+std::string member_type(const FieldModel& field) {
+  if (!is_float(field)) return type_of(field);
+  return field.number == protocol::Number::float32 ? "float" : "double";
+}
+
 class Header {
  public:
   Header(const Model& model, const Options& options)
@@ -221,7 +229,7 @@ class Header {
       std::string text = remark(field);
       if (field.flags || !field.values.empty()) text = text.empty() ? "see below" : text + "; see below";
       out_.comment(text, "// ");
-      out_.line(type_of(field) + " " + member(field.name) + ";");
+      out_.line(member_type(field) + " " + member(field.name) + ";");
     }
     if (frame.fields.empty()) out_.line("uint8_t nothing;  // C has no empty struct");
     out_.close("} " + name + "_t;");
@@ -243,8 +251,13 @@ class Header {
     std::vector<std::string> bytes[8];
     for (const FieldModel& field : frame.fields) {
       const std::string bits = field.name + "_bits";
-      out_.line("const " + word_type(field) + " " + bits + " = (" + word_type(field) + ")" +
-                held(field, "value->" + member(field.name), robot_) + ";");
+      const std::string its = "value->" + member(field.name);
+      if (is_float(field))
+        out_.line("const " + word_type(field) + " " + bits + " = " + robot_ + "_bits_of_" +
+                  member_type(field) + "(" + its + ");");
+      else
+        out_.line("const " + word_type(field) + " " + bits + " = (" + word_type(field) + ")" +
+                  held(field, its, robot_) + ";");
       for (const Piece& piece : pieces_of(field.position))
         bytes[piece.byte].push_back(
             shifted(masked(shifted(bits, ">>", piece.from), piece.width), "<<", piece.shift));
@@ -284,6 +297,11 @@ class Header {
       }
       const std::string sign = word_literal(std::uint64_t{1} << (width - 1), is_wide(field));
       const bool extended = field.is_signed && width != 32 && width != 64;
+      if (is_float(field)) {
+        out_.line("value->" + member(field.name) + " = " + robot_ + "_" + member_type(field) + "_of(" + bits +
+                  ");");
+        continue;
+      }
       out_.line("value->" + member(field.name) + " = (" + type_of(field) + ")" +
                 (extended ? "((" + bits + " ^ " + sign + ") - " + sign + ")" : bits) + ";");
     }
@@ -305,6 +323,17 @@ class Header {
       out_.close("}");
       out_.open("static inline void " + unique(name + "_set_" + what) + "(" + name + "_t* value, double " +
                 field.unit_name + "_) {");
+      if (is_float(field)) {
+        const std::string value = field.unit_name + "_";
+        const std::string held = !field.range
+                                     ? value
+                                     : robot_ + "_within(" + value + ", " + double_literal(field.range->min) +
+                                           ", " + double_literal(field.range->max) + ")";
+        out_.line("value->" + member(field.name) + " = (" + member_type(field) + ")(" +
+                  without_marks(to_raw(c, held)) + ");");
+        out_.close("}");
+        continue;
+      }
       out_.line("value->" + member(field.name) + " = (" + type_of(field) + ")" + robot_ + "_nearest(" +
                 without_marks(to_raw(c, field.unit_name + "_")) + ", " + literal(field.raw_min) + ", " +
                 literal(field.raw_max) + ");");

@@ -41,6 +41,12 @@ static inline int64_t @_nearest(double value, int64_t least, int64_t most) {
   return whole + (rest >= 0.5 ? 1 : rest <= -0.5 ? -1 : 0);
 }
 )"},
+    {"within", R"(// The nearest in [least, most]; not a number: the one nearest to zero.
+static inline double @_within(double value, double least, double most) {
+  if (value != value) return least > 0 ? least : most < 0 ? most : 0;
+  return value < least ? least : value > most ? most : value;
+}
+)"},
     {"nearest_u64", R"(static inline uint64_t @_nearest_u64(double value) {
   if (!(value > 0)) return 0;
   if (value >= 18446744073709551615.0) return UINT64_MAX;

@@ -61,7 +61,12 @@ std::string integer_type(const FieldModel& field) {
   return std::string{"std::"} + (field.is_signed ? "int" : "uint") + bits + "_t";
 }
 
+bool is_float(const FieldModel& field) {
+  return field.number != protocol::Number::integer;
+}
+
 std::string member_type(const FieldModel& field) {
+  if (is_float(field)) return field.number == protocol::Number::float32 ? "float" : "double";
   return field.is_enumeration() ? pascal_case(field.name) : integer_type(field);
 }
 
@@ -147,6 +152,17 @@ void write_accessors(Writer& out, const FrameModel& frame) {
       write_function(out, "[[nodiscard]] constexpr double " + name + "() const noexcept",
                      {"return " + physical_of(field) + ";"});
       out.open("constexpr void set_" + name + "(double " + value + ") noexcept {");
+      if (is_float(field)) {
+        const std::string held = !field.range ? value
+                                              : "ocm::protocol::within(" + value + ", " +
+                                                    double_literal(field.range->min) + ", " +
+                                                    double_literal(field.range->max) + ")";
+        const std::string raw = to_raw(conversion(field), held);
+        out.line(field.name + " = " +
+                 (field.number == protocol::Number::float32 ? "static_cast<float>(" + raw + ")" : raw) + ";");
+        out.close("}");
+        continue;
+      }
       std::vector<std::string> arguments{to_raw(conversion(field), value), bits_alias(field) + "::min",
                                          bits_alias(field) + "::max"};
       if (field.has_range) arguments = {arguments[0], literal(field.raw_min), literal(field.raw_max)};
@@ -183,9 +199,16 @@ void write_codec(Writer& out, const std::string& type, const FrameModel& frame, 
   std::vector<std::string> decode{type + " " + value + ";"};
   for (const FieldModel& field : frame.fields) {
     const std::string bits = bits_alias(field);
-    const std::string got = bits + "::get(" + data + ")";
-    const std::string raw =
+    std::string got = bits + "::get(" + data + ")";
+    std::string raw =
         field.is_enumeration() ? "static_cast<" + integer_type(field) + ">(" + field.name + ")" : field.name;
+    if (field.number == protocol::Number::float32) {
+      got = "std::bit_cast<float>(" + got + ")";
+      raw = "std::bit_cast<std::uint32_t>(" + raw + ")";
+    } else if (is_float(field)) {
+      got = "ocm::base::from_binary64(" + got + ")";
+      raw = "ocm::base::to_binary64(" + raw + ")";
+    }
     encode.push_back(bits + "::put(" + data + ", " + raw + ");");
     decode.push_back(
         value + "." + field.name + " = " +
@@ -495,6 +518,16 @@ std::string frame_space(const TopicModel& topic, const FrameModel& frame) {
   return frame.name.empty() ? topic.name : topic.name + "_" + frame.name;
 }
 
+/// Of a float what stands behind the flags: which number, no selector, start, range.
+std::string number_of(const FieldModel& field) {
+  if (!is_float(field)) return {};
+  const std::string kind = field.number == protocol::Number::float32 ? "float32" : "float64";
+  std::string text = ", protocol::Number::" + kind;
+  if (field.range)
+    text += ", protocol::no_selector, {}, 0, " + decimal(field.range->min) + ", " + decimal(field.range->max);
+  return text;
+}
+
 void write_field_tables(Writer& out, const FrameModel& frame) {
   for (const FieldModel& field : frame.fields) {
     if (field.values.empty()) continue;
@@ -516,7 +549,7 @@ void write_field_tables(Writer& out, const FrameModel& frame) {
         "}, " + (field.is_signed ? "true" : "false") + ", " + decimal(field.scale) + ", " +
         decimal(field.offset) + ", " + quoted(field.unit) + ", " + literal(field.raw_min) + ", " +
         literal(field.raw_max) + ", " + (field.values.empty() ? "{}" : field.name + "_names") + ", " +
-        (field.flags ? "true" : "false") + "},");
+        (field.flags ? "true" : "false") + number_of(field) + "},");
   }
   out.close("}};");
 }
@@ -615,6 +648,14 @@ void write_catalogue(Writer& out, const Model& model) {
   out.line("inline constexpr std::uint32_t wire_hash = ocm::protocol::wire_hash(catalogue);");
 }
 
+/// Among the topics' fields.
+bool has_floats(const Model& model) {
+  for (const TopicModel& topic : model.topics)
+    for (const FrameModel& frame : topic.frames)
+      if (std::any_of(frame.fields.begin(), frame.fields.end(), is_float)) return true;
+  return false;
+}
+
 std::string sentence(std::string text) {
   return text.ends_with('.') ? text : text + '.';
 }
@@ -666,6 +707,8 @@ std::string header(const Model& model, std::string_view spec_name) {
   std::vector<std::string_view> standard{"array", "chrono", "cstddef", "cstdint", "string_view"};
   if (messages) standard = {"array", "bit", "cstddef", "cstdint", "optional", "span", "string_view"};
   if (messages && topics) standard.insert(standard.begin() + 2, "chrono");
+  const bool floats = has_floats(model);
+  if (floats && !messages) standard.insert(standard.begin() + 1, "bit");
   for (const std::string_view name : standard) out.line("#include <" + std::string{name} + ">");
   out.line();
   std::vector<std::string_view> own{"ocm/base/time.hpp",         "ocm/can/frame.hpp",
@@ -682,6 +725,7 @@ std::string header(const Model& model, std::string_view spec_name) {
             "ocm/protocol/physical.hpp", "ocm/can/frame.hpp"})
         std::erase(own, name);
   }
+  if (floats && !messages) own.insert(own.begin(), "ocm/base/binary64.hpp");
   for (const std::string_view name : own) out.line("#include \"" + std::string{name} + "\"");
   out.line();
   out.line("namespace " + space + " {");

@@ -74,7 +74,7 @@ class Dbc {
     DbcParts parts = dbc_messages(model_, nodes_, message_names_, defined_);
     return dbc_bytes(head() + messages_ + parts.messages + "\n" + parts.senders + comments() +
                      parts.comments + definitions_ + parts.definitions + defaults_ + parts.defaults +
-                     attributes_ + parts.attributes + values_ + parts.values + parts.numbers +
+                     attributes_ + parts.attributes + values_ + parts.values + numbers_ + parts.numbers +
                      parts.selectors);
   }
 
@@ -131,9 +131,13 @@ class Dbc {
     const protocol::Position at = field.position;
     const Range range = range_of(field);
     messages_ += " SG_ " + name + " : " + std::to_string(at.start) + "|" + std::to_string(at.width) + "@" +
-                 (at.order == protocol::ByteOrder::little ? "1" : "0") + (field.is_signed ? "-" : "+") +
-                 " (" + print(field.scale) + "," + print(field.offset) + ") [" + print(range.low) + "|" +
+                 (at.order == protocol::ByteOrder::little ? "1" : "0") +
+                 (field.is_signed || field.number != protocol::Number::integer ? "-" : "+") + " (" +
+                 print(field.scale) + "," + print(field.offset) + ") [" + print(range.low) + "|" +
                  print(range.high) + "] " + text_of(field.unit) + " " + std::string{receiver} + "\n";
+    if (field.number != protocol::Number::integer)
+      numbers_ += "SIG_VALTYPE_ " + id + " " + name + " : " +
+                  (field.number == protocol::Number::float32 ? "1" : "2") + ";\n";
     std::string comment = sentence(field.description);
     if (field.flags)
       for (const auto& flag : field.values)
@@ -265,6 +269,7 @@ class Dbc {
   std::set<std::string> defined_;  ///< kinds of objects and names of attributes
   std::string attributes_;
   std::string values_;
+  std::string numbers_;  ///< which signals are floats
   bool has_long_names_ = false;
 };
 

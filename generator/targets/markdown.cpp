@@ -405,10 +405,16 @@ class Page {
          {values(field), field.source.joined().empty() ? "" : "[" + field.source.joined() + "]"})
       if (!more.empty()) text += (text.empty() ? "" : " ") + more;
     const bool named = field.flags || field.is_enumeration();
-    return "| " + field.name + " | " + place(field) + " | " + (field.is_signed ? "i" : "u") +
+    const bool is_float = field.number != protocol::Number::integer;
+    return "| " + field.name + " | " + place(field) + " | " +
+           (is_float          ? "f"
+            : field.is_signed ? "i"
+                              : "u") +
            std::to_string(field.position.width) + " | " + cell(scale) + " | " +
-           (named ? "" : print(range.low) + " to " + print(range.high) + cell(unit)) + " | " + cell(text) +
-           " |";
+           (named || (is_float && !field.range)
+                ? ""
+                : print(range.low) + " to " + print(range.high) + cell(unit)) +
+           " | " + cell(text) + " |";
   }
 
   const Model& model_;

@@ -3,6 +3,7 @@
 /// car.Engine.Speed of a plain message. Values are doubles, rounded once as in the C++ header; whole numbers
 /// of any width are exact.
 #include <algorithm>
+#include <iterator>
 #include <set>
 #include <string_view>
 
@@ -22,6 +23,16 @@ using protocol::Number;
 using spec::FieldModel;
 using spec::MessageModel;
 using spec::Model;
+
+/// What the protocol is called. Wireshark has protocols of some names already that a file about a CAN bus may
+/// have, and loads no second one.
+std::string protocol_of(const Model& model) {
+  static constexpr std::string_view taken[] = {"can",    "caneth",   "canopen", "data", "devicenet", "frame",
+                                               "isobus", "iso15765", "j1939",   "lin",  "obd",       "uds"};
+  const std::string name = name_space_of(model);
+  const bool is_taken = std::find(std::begin(taken), std::end(taken), name) != std::end(taken);
+  return is_taken ? name + "_bus" : name;
+}
 
 /// What a frame is found by: its identifier without the priority.
 std::string key_of(const Message& message) {
@@ -83,7 +94,7 @@ std::string with_names(std::string_view text, const Model& model) {
       out += lua_text(model.robot);
       text.remove_prefix(5);
     } else if (text.front() == '@') {
-      out += name_space_of(model);
+      out += protocol_of(model);
     } else {
       out += text.front();
     }
@@ -172,7 +183,7 @@ std::string make_wireshark(const Model& model, const Options& options) {
                : has_messages         ? "The messages of "
                                       : "The topics of ") +
                   comment_text(model.robot) + " for Wireshark and tshark: wireshark -X lua_script:" +
-                  name_space_of(model) + ".lua FILE, or put it into the folder of personal Lua plugins.",
+                  protocol_of(model) + ".lua FILE, or put it into the folder of personal Lua plugins.",
               "-- ");
   std::string text = out.take() + with_names(lua::opening, model);
   if (topics) text += with_names(lua::topic_opening, model) + topic_tables(model);

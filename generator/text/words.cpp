@@ -71,7 +71,14 @@ Decimal physical(const FieldModel& field, std::int64_t raw) {
   return *exact_physical(field, raw);
 }
 
+std::string double_literal(Decimal number) {
+  const std::string text = print(number);
+  return text.find('.') == std::string::npos ? text + ".0" : text;
+}
+
 Range range_of(const FieldModel& field) {
+  if (field.number != protocol::Number::integer)
+    return field.range ? Range{field.range->min, field.range->max} : Range{};
   Range range{physical(field, field.raw_min), physical(field, field.raw_max)};
   if (field.scale.digits < 0) std::swap(range.low, range.high);
   return range;
@@ -87,8 +94,12 @@ std::string remark(const FieldModel& field) {
   const std::string unit = field.unit.empty() ? "" : " " + field.unit;
   const bool plain = field.scale == Decimal{1, 0} && field.offset.digits == 0;
   if (!plain) {
-    add(print(field.scale) + unit + " a bit", "; ");
+    add(print(field.scale) + unit + (field.number == protocol::Number::integer ? " a bit" : " a unit"), "; ");
     if (field.offset.digits != 0) add("from " + print(field.offset) + unit + " on");
+  }
+  if (field.number != protocol::Number::integer && !field.range) {
+    if (plain && !unit.empty()) add("in" + unit, "; ");
+    return with_source(std::move(text), field.source.joined());
   }
   const Range range = range_of(field);
   add("[" + print(range.low) + ", " + print(range.high) + "]" + unit, plain ? "; " : ", ");

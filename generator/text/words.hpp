@@ -44,7 +44,11 @@ namespace ocm::generate {
 /// Of a topic's field, which they hold.
 [[nodiscard]] base::Decimal physical(const spec::FieldModel& field, std::int64_t raw);
 
-/// Lowest and highest physical value that the spec allows.
+/// A literal of a double, without marks between thousands.
+[[nodiscard]] std::string double_literal(base::Decimal number);
+
+/// Lowest and highest physical value that the spec allows. Of a float without a range there are none: 0 and
+/// 0.
 struct Range {
   base::Decimal low;
   base::Decimal high;

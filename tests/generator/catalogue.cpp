@@ -7,6 +7,7 @@
 
 #include "generator/spec/spec.hpp"
 #include "golden/ferry.hpp"
+#include "golden/probe.hpp"
 
 namespace generator_catalogue_test {
 
@@ -29,6 +30,9 @@ void compare(const protocol::Field& a, const protocol::Field& b) {
   CHECK(a.raw_max == b.raw_max);
   CHECK(list(a.values) == list(b.values));
   CHECK(a.flags == b.flags);
+  CHECK(a.number == b.number);
+  CHECK(a.min == b.min);
+  CHECK(a.max == b.max);
 }
 
 void compare(const protocol::Topic& a, const protocol::Topic& b) {
@@ -88,6 +92,11 @@ TEST_CASE("AMiRo: compiled and loaded are equal") {
 TEST_CASE("the other robot: compiled and loaded are equal") {
   const auto loaded = load("examples/other-robot/topics.json");
   compare(ferry::catalogue, loaded.spec->catalogue());
+}
+
+TEST_CASE("the compiled catalogue of a robot with floating-point numbers is the loaded one") {
+  const auto loaded = load("tests/generator/probe.json");
+  compare(probe::catalogue, loaded.spec->catalogue());
 }
 
 TEST_CASE("a moved spec keeps its catalogue where it is") {

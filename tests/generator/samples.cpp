@@ -35,9 +35,20 @@ std::string fields_of(const protocol::FrameLayout& layout, const can::Payload& d
   std::string text;
   for (const auto& field : layout.fields) {
     const std::int64_t raw = field.raw(data);
+    if (!text.empty()) text += ", ";
+    if (field.is_float()) {
+      char value[40];
+      std::snprintf(value, sizeof value, "%.17g", field.value(raw));
+      text += "\"" + std::string{field.name} + "\": {\"raw\": " + std::to_string(raw) + ", \"value\": \"" +
+              value + "\", \"float\": " + std::to_string(field.position.width) +
+              ", \"width\": " + std::to_string(field.position.width) +
+              ", \"low\": " + std::to_string(field.min.as_double()) +
+              ", \"high\": " + std::to_string(field.max.as_double()) + ", \"unit\": \"" +
+              std::string{field.unit} + "\"}";
+      continue;
+    }
     const auto value = field.physical(raw);
     if (!value) std::abort();
-    if (!text.empty()) text += ", ";
     text += "\"" + std::string{field.name} + "\": {\"raw\": " + std::to_string(raw) + ", \"value\": \"" +
             std::string{base::to_text(*value).view()} +
             "\", \"width\": " + std::to_string(field.position.width) +

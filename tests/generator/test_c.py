@@ -1,12 +1,13 @@
 """The C header: it compiles wherever C99 or C++ does, says what the thesis says, and agrees with the catalogue."""
 import json
+import math
 import pathlib
 import re
 import shutil
 import subprocess
 import unittest
 
-from peers import Case, SPECS, generate, samples
+from peers import Case, SPECS, generate, is_near, real, samples
 
 HERE = pathlib.Path(__file__).resolve().parent
 WARNINGS = "-Wall -Wextra -Wconversion -Wsign-conversion -Wshadow -pedantic -Werror".split()
@@ -48,14 +49,17 @@ def driver(robot, header, frames):
         member = member or "value"
         stem = f"{robot}_{name}" + (f"_{frame_name}" if frame_name else "")
         body += f"  case {number}: {{\n    {robot}_{name}_t value;\n    const int at = {robot}_{name}_take(&value, &frame);\n    (void)at;\n"
-        for field in sample["fields"]:
-            body += f'    printf("%" PRId64 " ", (int64_t){member}.{field});\n'
+        for field, facts in sample["fields"].items():
+            def shown(value):
+                form, kind = ('"%.17g "', "double") if "float" in facts else ('"%" PRId64 " "', "int64_t")
+                return f"printf({form}, ({kind}){value});"
+            body += f"    {shown(f'{member}.{field}')}\n"
             accessor = re.search(rf"double ({stem}_{field}_\w+)\(const", source)
             if accessor:
                 setter = accessor[1].replace(f"{stem}_{field}_", f"{stem}_set_{field}_")
                 body += f'    {{ const double physical = {accessor[1]}(&{member});\n      {stem}_t again = {member};\n'
                 body += f'      {setter}(&again, physical);\n'
-                body += f'      printf("%.17g %" PRId64 " ", physical, (int64_t)again.{field}); }}\n'
+                body += f"""      printf("%.17g ", physical); {shown(f'again.{field}')} }}\n"""
             else:
                 body += '    printf("- - ");\n'
         extra = f", (uint8_t)at" if len(declared) > 1 or "count" in declared[0] or "count" in topics[name] else ""
@@ -131,6 +135,9 @@ class C(Case):
                 words = line.split()
                 for i, (name, field) in enumerate(sample["fields"].items()):
                     raw, physical, again = words[3 * i:3 * i + 3]
+                    if "float" in field:
+                        self.check_float((sample, name), field, raw, physical, again)
+                        continue
                     self.assertEqual(int(raw), field["raw"], (sample, name))
                     if field["unit"]:
                         if field["width"] <= 32:
@@ -140,6 +147,22 @@ class C(Case):
                 self.assertEqual((int(id), int(dlc)), (sample["id"], len(sample["data"]) // 2))
                 self.assertEqual(self.fields_of(robot, sample, data), sample["data"].ljust(16, "0"), sample)
 
+    def check_float(self, where, field, raw, physical, again):
+        self.assertTrue(is_near(raw, real(field), 0), (where, raw))
+        if not field["unit"]:
+            return
+        self.assertTrue(is_near(physical, field["value"], 1e-14), (where, physical))
+        value, low, high = float(field["value"]), field["low"], field["high"]
+        if low == high:
+            expected = real(field)
+        else:  # the ranges of these specs have zero in them, and scales of 1
+            expected = 0 if math.isnan(value) else min(max(value, low), high)
+        if abs(expected) < 1e-12:  # an offset takes the last digits
+            self.assertLess(abs(float(again)), 2e-12, (where, again, expected))
+        else:
+            self.assertTrue(is_near(again, expected, 1e-6 if field["float"] == 32 else 1e-2 if abs(expected) < 1 else 1e-12),
+                            (where, again, expected))
+
     @staticmethod
     def fields_of(robot, sample, data):
         """What was encoded, with the bits that no field has as they came."""
@@ -147,12 +170,13 @@ class C(Case):
             return data  # every bit is a field's
         covered = 0
         topics = spec_topics(robot)
+        usual = json.loads(SPECS[robot].read_text()).get("byte_order", "little")
         name = sample["topic"] if sample["topic"] in topics else sample["topic"].rsplit("_", 1)[0]
         frame_name = re.sub(r"_\d+$", "", sample["frame"])
         frame = next(f for f in topics[name]["frames"] if f.get("name", "") == frame_name)
         for field in frame["fields"]:
             width = int(field["type"][1:])
-            order = field.get("byte_order", frame.get("byte_order", topics[name].get("byte_order", "big")))
+            order = field.get("byte_order", frame.get("byte_order", topics[name].get("byte_order", usual)))
             bit = field["bit"] if "bit" in field else 8 * field["byte"] + (7 if order == "big" else 0)
             for _ in range(width):
                 covered |= 1 << 8 * (7 - bit // 8) + bit % 8

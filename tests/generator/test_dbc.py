@@ -6,7 +6,7 @@ from decimal import Decimal
 import canmatrix
 import canmatrix.formats
 
-from peers import Case, SPECS, generate, samples
+from peers import Case, SPECS, generate, samples, is_near, real
 
 PRIORITIES = ("urgent", "high", "medium", "low")
 
@@ -40,9 +40,13 @@ class Dbc(Case):
                     continue
                 decoded = frame.decode(bytes.fromhex(sample["data"]))
                 for name, field in sample["fields"].items():
+                    self.assertEqual(decoded[name].signal.unit, field["unit"])
+                    if "float" in field:
+                        self.assertTrue(is_near(decoded[name].raw_value, real(field), 1e-14), (sample, name))
+                        self.assertTrue(is_near(decoded[name].phys_value, field["value"], 1e-14), (sample, name))
+                        continue
                     self.assertEqual(decoded[name].raw_value, field["raw"], (sample, name))
                     self.assertEqual(Decimal(decoded[name].phys_value), field["value"], (sample, name))
-                    self.assertEqual(decoded[name].signal.unit, field["unit"])
             self.assertGreater(len(seen), len(frames) // 3)
 
     def test_a_request_of_the_thesis(self):

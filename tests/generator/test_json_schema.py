@@ -17,6 +17,8 @@ import harness  # noqa: E402
 def line_of(sample):
     """As `listen --json` prints it."""
     fields = {name: float(field["value"]) for name, field in sample["fields"].items()}
+    words = {"nan": "NaN", "inf": "Infinity", "-inf": "-Infinity"}  # JSON has no numbers for these
+    fields = {name: words.get(str(value), value) for name, value in fields.items()}
     return {"time_ns": "1", "bus": "sim", "id": f'{sample["id"]:03X}', "priority": sample["priority"],
             "topic": sample["topic"], "frame": sample["frame"] or sample["topic"], "fields": fields,
             "units": {name: field["unit"] for name, field in sample["fields"].items()}, "data": sample["data"]}

@@ -24,4 +24,11 @@ template <std::integral T>
     return static_cast<T>(whole + (rest >= 0.5 ? 1 : rest <= -0.5 ? -1 : 0));
 }
 
+/// The value in [low, high] that is nearest to `value`. Not a number becomes the one nearest to zero: a motor
+/// stops.
+[[nodiscard]] constexpr double within(double value, double low, double high) noexcept {
+  if (value != value) return low > 0 ? low : high < 0 ? high : 0;
+  return value < low ? low : value > high ? high : value;
+}
+
 }  // namespace ocm::protocol

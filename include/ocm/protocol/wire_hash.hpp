@@ -35,6 +35,7 @@ namespace ocm::protocol {
         const Position p = field.position;
         hash = mix(mix(mix(hash, p.start), p.width), static_cast<std::uint64_t>(p.order));
         hash = mix(hash, field.is_signed ? 1 : 0);
+        if (field.is_float()) hash = mix(hash, static_cast<std::uint64_t>(field.number));
         for (const base::Decimal number : {field.scale, field.offset}) {
           hash = mix(hash, static_cast<std::uint64_t>(number.digits));
           hash = mix(hash, static_cast<std::uint64_t>(std::int64_t{number.exponent}));

@@ -129,6 +129,13 @@ class Wireshark(unittest.TestCase):
                                                                               (0x004, False, bytes(8)), (0xC0000003, False, b"")]):
             self.assertIsNone(fields)
 
+    def test_names_that_wireshark_has(self):
+        for name in ("can", "j1939", "uds"):
+            spec = self.folder / f"{name}.dbc"
+            spec.write_bytes((SOURCE / "examples" / "small_car.dbc").read_bytes())
+            fields, = self.dissect(f"{name}_bus", spec, [(0x200, False, bytes((1, 0)))])
+            self.assertEqual(str(fields["Doors_DriverOpen"]), "1")
+
     def test_odd_names(self):
         spec = self.folder / "bus.json"
         spec.write_text(json.dumps({"robot": "7 odd/\"names\" of", "messages": [

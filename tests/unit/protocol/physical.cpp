@@ -39,4 +39,17 @@ TEST_CASE("not a number is the nearest to zero, so that nothing moves") {
   STATIC_REQUIRE(nearest_raw<std::int16_t>(nan, -9, -5) == -5);
 }
 
+TEST_CASE("a floating-point number stays within a range") {
+  using ocm::protocol::within;
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  STATIC_REQUIRE(within(0.25, -1, 1) == 0.25);
+  STATIC_REQUIRE(within(1, -1, 1) == 1);
+  STATIC_REQUIRE(within(1.5, -1, 1) == 1);
+  STATIC_REQUIRE(within(-infinity, -1, 1) == -1);
+  STATIC_REQUIRE(within(nan, -1, 1) == 0);
+  STATIC_REQUIRE(within(nan, 5, 9) == 5);
+  STATIC_REQUIRE(within(nan, -9, -5) == -5);
+}
+
 }  // namespace protocol_physical_test
