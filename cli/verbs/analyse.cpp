@@ -207,8 +207,9 @@ int chain(const Options& options, Session& session) {
 int trace(const Options& options, Session& session) {
   Options how = options;
   how.file = options.set;
-  const TraceStudy study = study_trace(options.file, options.set, bus_options(how, session.catalogue()),
-                                       session.catalogue(), read_rates(options.rates));
+  const TraceStudy study =
+      study_trace(options.file, options.set, bus_options(how, session.catalogue()), session.catalogue(),
+                  options.set.empty() ? model_of(session) : nullptr, read_rates(options.rates));
   fmt::print("{}", options.json ? to_json(study) : options.csv ? to_csv(study) : to_table(study));
   return study.passes() ? exit_success : exit_failure;
 }
