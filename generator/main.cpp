@@ -179,6 +179,8 @@ int run(const Arguments& arguments) {
   if (!loaded.spec) return complain(loaded.problems);
   const auto& target = arguments.target != nullptr ? *arguments.target : generate::targets().front();
   const spec::Model& model = loaded.spec->model();
+  if (!arguments.check && model.topics.empty() && model.messages.empty())
+    return complain({arguments.file, "it has neither topics nor messages", "a file that has some"});
   if (!arguments.check && !generate::has_any(target, model))
     return complain({arguments.file,
                      "it has only " + std::string{target.of_topics ? "messages" : "topics"} +

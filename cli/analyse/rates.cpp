@@ -165,7 +165,9 @@ BusSet robot_bus(const protocol::Catalogue& catalogue, const spec::Model* model,
     set.data_bit_rate = model->data_bit_rate;
     for (const std::string& name : model->too_long) set.left_out.push_back({name, LeftOut::Reason::too_long});
   }
-  if (mistakes.empty() && set.entries.empty() && set.left_out.empty())
+  if (mistakes.empty() && catalogue.topics.empty() && set.left_out.empty())
+    mistakes.push_back({source, "the file has no message", "a file that has some"});
+  else if (mistakes.empty() && set.entries.empty() && set.left_out.empty())
     mistakes.push_back({"--rates", "every topic is off", "leave one on"});
   else if (mistakes.empty() && set.entries.empty())
     mistakes.push_back(

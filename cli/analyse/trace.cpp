@@ -111,8 +111,10 @@ Log read_log(const std::string& file, const protocol::Catalogue& catalogue) {
   return log;
 }
 
-/// The topics that are in the log, with the periods that requests in it ask for.
-BusSet set_of(const Log& log, const protocol::Catalogue& catalogue, std::vector<Rate> rates) {
+/// The topics that are in the log, with the periods that requests in it ask for, and all messages: they are
+/// sent unasked, and one that is missing is a finding.
+BusSet set_of(const Log& log, const protocol::Catalogue& catalogue, const spec::Model* model,
+              std::vector<Rate> rates) {
   const client::FrameIndex index{catalogue};
   struct Seen {
     bool sent = false;
@@ -149,6 +151,7 @@ BusSet set_of(const Log& log, const protocol::Catalogue& catalogue, std::vector<
   }
   std::vector<Rate> all;
   for (const auto& topic : catalogue.topics) {
+    if (topic.is_message()) continue;
     const auto its = seen.find(&topic);
     Rate rate;
     rate.name = topic.name;
@@ -179,9 +182,11 @@ BusSet set_of(const Log& log, const protocol::Catalogue& catalogue, std::vector<
       }
     all.push_back(rate);
   }
-  const bool any = std::any_of(all.begin(), all.end(), [](const Rate& rate) { return !rate.off; });
+  const bool any = std::any_of(all.begin(), all.end(), [](const Rate& rate) { return !rate.off; }) ||
+                   std::any_of(catalogue.topics.begin(), catalogue.topics.end(),
+                               [](const protocol::Topic& topic) { return topic.is_message(); });
   if (!any) fail({"the log has no frame of any topic", "--set FILE.csv gives the messages of another bus"});
-  BusSet set = robot_bus(catalogue, nullptr, all);
+  BusSet set = robot_bus(catalogue, model, all);
   set.remarks = std::move(remarks);
   return set;
 }
@@ -244,11 +249,12 @@ bool TraceStudy::passes() const {
 }
 
 TraceStudy study_trace(const std::string& log_file, const std::string& set_file, const BusOptions& how,
-                       const protocol::Catalogue& catalogue, std::vector<Rate> rates) {
+                       const protocol::Catalogue& catalogue, const spec::Model* model,
+                       std::vector<Rate> rates) {
   const Log log = read_log(log_file, catalogue);
   BusSet set;
   if (set_file.empty()) {
-    set = set_of(log, catalogue, std::move(rates));
+    set = set_of(log, catalogue, model, std::move(rates));
   } else {
     set = read_bus(set_file, rates);
   }

@@ -41,10 +41,11 @@ struct TraceStudy {
 };
 
 /// `set`: a file with the messages, or empty for the robot's topics that are in the log, with the periods
-/// that requests in it ask for.
+/// that requests in it ask for, and all messages of the spec; `model`: that of the spec, nullptr without
+/// messages.
 [[nodiscard]] TraceStudy study_trace(const std::string& log, const std::string& set,
                                      const BusOptions& options, const protocol::Catalogue& catalogue,
-                                     std::vector<Rate> rates);
+                                     const spec::Model* model, std::vector<Rate> rates);
 
 [[nodiscard]] std::string to_json(const TraceStudy& trace);
 [[nodiscard]] std::string to_csv(const TraceStudy& trace);

@@ -176,6 +176,7 @@ class Completer {
     if (names("TOPIC")) return topics(Of::all);
     if (names("FILE") || names("FOLDER") || names("SCRIPT") || names("LOG")) return files();
     if (names("BOARD")) return boards();
+    if (names("CONDITION")) return conditions();
     if (names("BUS")) return buses();
     if (names("RATE")) return topics(Of::sensors, "=");
     if (names("TARGET")) {
@@ -187,6 +188,14 @@ class Completer {
     if (literal && !word.empty()) add(word);
   }
 
+  /// What a condition begins with: Engine.Speed, odometry.velocity.x.
+  void conditions() {
+    for (const auto& topic : session_.catalogue().topics)
+      for (const auto& layout : topic.frames)
+        for (const auto& field : layout.fields)
+          add(fmt::format("{}.{}{}{}", topic.name, layout.name, layout.name.empty() ? "" : ".", field.name),
+              field.unit);
+  }
   void boards() {
     for (const auto& board : session_.catalogue().boards) add(board.name, board.mcu);
   }

@@ -121,6 +121,7 @@ void JsonText::know(protocol::FrameRef frame, const Selection& selection) {
   known.frame = frame;
   known.message = frame.topic->is_message();
   known.pgn = layout.address.by == protocol::Address::By::pgn;
+  has_groups_ = has_groups_ || known.pgn;
   known.least = layout.any_length() ? 0 : layout.length;
   known.most = layout.accepts(layout.length + std::size_t{1}) ? UINT16_MAX : layout.length;
   std::vector<std::string> names;
@@ -344,11 +345,16 @@ const protocol::Topic* JsonText::remote_topic(const log::Entry& entry) const noe
 
 void JsonText::write_rest(log::Bytes& out, std::string_view bus_text, const Known& known,
                           const log::Entry& entry) const {
-  char* to = put_begin(out.room(line_begin.size() + 32 + bus_text.size() + 16), bus_text, entry);
+  char* to = put_begin(out.room(line_begin.size() + 32 + bus_text.size() + 16 + j1939_room), bus_text, entry);
   const bool wide = can::is_extended(entry.format) || entry.format == can::Format::error;
   to = put_hex(to, entry.format == can::Format::error ? entry.id | can::error_frame_flag : entry.id,
                wide ? 8 : 3);
   *to++ = '"';
+  if (has_groups_ && entry.format == can::Format::extended && !entry.is_fd() &&
+      (known.kind == Kind::unknown || known.pgn)) {
+    *to++ = ',';
+    to = put_j1939(to, j1939::Identifier::decode(entry.id));
+  }
   out.grow_to(to);
   const auto priority = protocol::Identifier::decode(entry.id).priority;
   if (known.kind == Kind::request)

@@ -109,6 +109,7 @@ class JsonText {
   std::string pieces_;
   std::size_t room_ = 0;  ///< for any line without what precedes the identifier
   bool everything_;
+  bool has_groups_ = false;  ///< of J1939: then all identifiers of 29 bits are shown as such
   std::array<BusText, 16> buses_;
 };
 

@@ -211,8 +211,9 @@ int chain(const Options& options, Session& session) {
 int trace(const Options& options, Session& session) {
   Options how = options;
   how.file = options.set;
-  const TraceStudy study = study_trace(options.file, options.set, bus_options(how, session.catalogue()),
-                                       session.catalogue(), read_rates(options.rates));
+  const TraceStudy study =
+      study_trace(options.file, options.set, bus_options(how, session.catalogue()), session.catalogue(),
+                  options.set.empty() ? model_of(session) : nullptr, read_rates(options.rates));
   if (options.json || options.csv)
     fmt::print("{}", options.json ? to_json(study) : to_csv(study));
   else

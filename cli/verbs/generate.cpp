@@ -52,6 +52,9 @@ void generate_file(Session& session, const GenerateOptions& options) {
   else if (options.priority_typed)  // that of a config file is for other verbs
     fail({fmt::format("generate {}: --priority is for dbc", target->name), "drop --priority"}, exit_usage);
   const spec::Model& model = session.spec().model();
+  if (model.topics.empty() && model.messages.empty())
+    fail({fmt::format("generate {}: {} has neither topics nor messages", target->name, how.spec_name),
+          "a file that has some"});
   if (!generate::has_any(*target, model))
     fail({fmt::format("generate {}: {} has only {}, which it has no place for", target->name, how.spec_name,
                       target->of_topics ? "messages" : "topics"),

@@ -22,8 +22,8 @@ Wording wording_of(const protocol::Catalogue& catalogue) {
   const auto is_message = [](const protocol::Topic& topic) { return topic.is_message(); };
   const auto begin = catalogue.topics.begin();
   const auto end = catalogue.topics.end();
-  if (std::none_of(begin, end, is_message)) return {"topic", "topics", "robot"};
-  if (std::all_of(begin, end, is_message)) return {"message", "messages", "bus"};
+  if (begin != end && std::none_of(begin, end, is_message)) return {"topic", "topics", "robot"};
+  if (begin != end && std::all_of(begin, end, is_message)) return {"message", "messages", "bus"};
   return {"topic or message", "topics or messages", "bus"};
 }
 

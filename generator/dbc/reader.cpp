@@ -196,10 +196,10 @@ class Resolver {
     if (statement.type == 0) return;
     const unsigned width = statement.type == 1 ? 32 : 64;
     if (statement.type == 3 || signal->signal.position.width != width) {
-      problems_.push_back({statement.subject.line,
-                           signal->signal.name + " is a floating-point number of " +
-                               std::to_string(signal->signal.position.width) + " bits",
-                           "1 is float32, with 32 bits, and 2 float64, with 64"});
+      doubt(statement.subject.line,
+            signal->signal.name + " is a floating-point number of " +
+                std::to_string(signal->signal.position.width) + " bits",
+            "read as an integer: 1 is float32, with 32 bits, and 2 float64, with 64");
       return;
     }
     signal->signal.number = statement.type == 1 ? Signal::Number::float32 : Signal::Number::float64;

@@ -382,10 +382,13 @@ class Parser {
       return false;
     std::erase(statement.text, '\r');
     static constexpr std::string_view import = "IMPORT ";
-    if (statement.subject.of == Of::network && statement.text.rfind(import, 0) == 0)
-      statements_.document.imports.push_back(statement.text.substr(import.size()));
-    else
+    if (statement.subject.of != Of::network || statement.text.rfind(import, 0) != 0) {
       statements_.comments.push_back(std::move(statement));
+      return true;
+    }
+    std::string& file = statements_.document.imports.emplace_back(statement.text.substr(import.size()));
+    doubts_.push_back(
+        {line_, "IMPORT: " + file + " goes in front of this file", "read without it: give that file, too"});
     return true;
   }
 

@@ -239,15 +239,14 @@ class Converter {
 }  // namespace
 
 bool is_dbc(std::string_view text, std::string_view file_name) noexcept {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
+  if (text.starts_with('{')) return false;  // JSON, whatever it is called
   constexpr std::string_view ending = ".dbc";
   const auto tail = file_name.substr(file_name.size() - std::min(file_name.size(), ending.size()));
   if (std::equal(tail.begin(), tail.end(), ending.begin(), ending.end(),
                  [](char a, char b) { return lower(a) == b; }))
     return true;
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-  const auto begin = text.find_first_not_of(" \t\r\n");
-  if (begin == std::string_view::npos) return false;
-  text.remove_prefix(begin);
   constexpr std::array<std::string_view, 7> words{"VERSION", "NS_", "BS_", "BU_", "BO_", "CM_", "VAL_TABLE_"};
   return std::any_of(words.begin(), words.end(), [&](std::string_view word) {
     constexpr std::string_view ends = " \t\r\n:\"";

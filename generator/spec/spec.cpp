@@ -166,11 +166,9 @@ Loaded parse_dbc(std::string_view text, std::string_view file_name) {
   if (!reading.document) return loaded;
   Model model = model_of(std::move(*reading.document), file_name, loaded.doubts);
   if (model.messages.empty())
-    loaded.problems.push_back({std::string{file_name}, "the file has no message",
-                               "BO_ 257 Engine: 8 Gateway begins one; CM_ \"IMPORT other.dbc\" names a file "
-                               "that goes in front of this one"});
-  else
-    loaded.spec = std::make_unique<Spec>(std::move(model));
+    loaded.doubts.push_back(
+        {std::string{file_name}, "the file has no message", "BO_ 257 Engine: 8 Gateway begins one"});
+  loaded.spec = std::make_unique<Spec>(std::move(model));
   return loaded;
 }
 

@@ -285,6 +285,23 @@ TEST_CASE("messages: nodes that a DBC file does not declare are boards, and its 
   check_both_ways(model);
 }
 
+TEST_CASE("messages: a DBC file is known by what it begins with, and JSON whatever it is called") {
+  const std::string json = of_fields(R"({"name": "f", "byte": 0, "type": "u8"})");
+  CHECK(parse("\xEF\xBB\xBF \n" + json, {}, "car.dbc").messages.size() == 1);
+  CHECK(parse("BO_ 1 A: 8 X\n", {}, "car.json").messages.size() == 1);
+  CHECK(parse("\n VERSION \"\"\nBO_ 1 A: 8 X\n", {}, "car").messages.size() == 1);
+}
+
+TEST_CASE("messages: a DBC file without any is loaded, with a doubt") {
+  const std::string doubt = "the file has no message; BO_ 257 Engine: 8 Gateway begins one";
+  const Model model = parse("BU_: A B\n", {"nodes.dbc: " + doubt}, "nodes.dbc");
+  CHECK(model.boards.size() == 2);
+  parse("CM_ \"IMPORT base.dbc\";\n",
+        {"f.dbc:1: IMPORT: base.dbc goes in front of this file; read without it: give that file, too",
+         "f.dbc: " + doubt},
+        "f.dbc");
+}
+
 TEST_CASE("messages: more nodes than a catalogue has place for") {
   std::string text;
   for (int i = 0; i < 300; ++i)

@@ -477,6 +477,15 @@ class Trace(Analyse):
         # Two frames a 20 ms and one: 3 of 63 bits and some stuff bits of 2 us.
         self.assertAlmostEqual(whole["measured_utilisation"], 3 * 67 * 2e-6 / 20e-3, delta=1e-3)
 
+    def test_messages_of_a_spec_are_the_set(self):
+        car = os.path.join(os.environ["OCM_SOURCE_DIR"], "examples", "small_car.dbc")
+        log = self.log([(i * 10000, "100#0000000000000000") for i in range(100)] + [(5000 + i * 20000, "110#00000000") for i in range(50)])
+        by_spec = json.loads(self.run_tool("--spec", car, "analyse", "trace", log, "--lengths", "exact", "--json")[0])
+        by_set = json.loads(self.run_tool("analyse", "trace", log, "--set", car, "--lengths", "exact", "--json")[0])
+        self.assertEqual(by_spec["messages"], by_set["messages"])
+        counts = {row["name"]: row["count"] for row in by_spec["messages"]}
+        self.assertEqual((counts["Engine"], counts["Transmission"], counts["Driving"]), (100, 50, 0))
+
     def test_a_pause_is_no_lateness(self):
         frames = [(t if t < 1000000 else t + 123456, f) for t, f in self.regular()]
         self.assertEqual(self.trace(frames)[1]["broken"], [])

@@ -71,6 +71,11 @@ class Words(harness.Case):
         self.environment["AMIROCTL_SPEC"] = OTHER
         self.assertEqual(self.candidates("set", "wh"), ["wheels"])
 
+    def test_fields_of_a_condition(self):
+        car = os.path.join(os.environ["OCM_SOURCE_DIR"], "examples", "small_car.dbc")
+        self.assertEqual(self.candidates("--spec", car, "decode", "--where", "Engine.To"), ["Engine.Torque"])
+        self.assertIn("odometry.velocity.x", self.candidates("listen", "--where", "odometry."))
+
     def test_unknown_shells_are_refused(self):
         for arguments in ((), ("tcsh",), ("bash", "zsh")):
             out, err = self.run_tool("completion", *arguments, code=2)

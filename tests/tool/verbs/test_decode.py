@@ -130,6 +130,16 @@ class Decode(Case):
         self.assertRegex(out.splitlines()[1], r"100 Engine +remote frame: 100#R8$")
         self.run_tool("--spec", car, "decode", "--strict", stdin=log, code=1)
 
+    def test_unknown_groups_of_j1939_say_what_their_identifier_says(self):
+        truck = os.path.join(SOURCE, "examples", "truck.dbc")
+        log = "(1.0) can0 18FEED21#00\n(2.0) can0 123#00\n(3.0) can0 18EF2103##1AA\n"
+        out, _ = self.run_tool("--spec", truck, "decode", "--json", stdin=log, code=1)
+        events = self.objects(out)
+        self.assertEqual({key: events[0][key] for key in ("priority", "pgn", "source", "destination", "error")},
+                         {"priority": 6, "pgn": "0FEED", "source": 0x21, "destination": 255, "error": "unknown identifier"})
+        self.assertNotIn("pgn", events[1])
+        self.assertEqual(self.run_tool("--spec", truck, "encode", stdin="\n".join(out.splitlines()[:2]))[0].split()[2], "18FEED21#00")
+
     def test_contradictions_of_messages_speak_of_messages(self):
         car = os.path.join(SOURCE, "examples", "small_car.dbc")
         _, err = self.run_tool("--spec", car, "decode", stdin="(0.0) can0 7FF#11\n" * 9, code=1)
