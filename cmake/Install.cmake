@@ -9,7 +9,7 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/ocm DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-        FILES_MATCHING PATTERN "*.hpp")
+        FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h")
 install(TARGETS ocm EXPORT ocmTargets INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 
 # share, not lib: headers are the same for every processor, so a cross build may use the package too.
@@ -30,6 +30,10 @@ if(OCM_TOOLS)
   include(${CMAKE_CURRENT_LIST_DIR}/Help.cmake)
 endif()
 install(FILES ${PROJECT_SOURCE_DIR}/spec/topics.json ${PROJECT_SOURCE_DIR}/spec/topics.schema.json
+              ${PROJECT_SOURCE_DIR}/spec/operator.schema.json
         DESTINATION ${CMAKE_INSTALL_DATADIR}/ocm/spec)
+# An operator to begin with, beside the schema that it names, and the unit that runs it.
+install(FILES ${PROJECT_SOURCE_DIR}/examples/guard.operator.json ${PROJECT_SOURCE_DIR}/examples/amiroctl-operator.service
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/ocm/examples)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/CHANGELOG.md
         DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "ocm/client/command.hpp"
 #include "ocm/reflective/check.hpp"
 
 #include "cli/operate/threshold.hpp"
@@ -75,6 +76,7 @@ class Reader : private spec::Checker {
     if (const auto at = root.member("retry")) op.retry = duration(*at).value_or(op.retry);
     if (const auto at = root.member("others")) read_others(*at);
     if (const auto at = require(root, "configurations", "a list of at least one")) read_configurations(*at);
+    for (auto& parts : file_.parts) count_others(parts);
     if (const auto at = root.member("monitors")) read_monitors(*at);
     if (const auto at = root.member("transitions")) read_transitions(*at);
     if (const auto at = require(root, "initial", "the configuration in which it begins"))
@@ -379,17 +381,74 @@ class Reader : private spec::Checker {
     for (std::size_t i = 0; i < at.node->items.size(); ++i) {
       const auto stream = read_stream(at.item(i), Takes::anything, false);
       if (stream.topic == none || stream.period.count() <= 0) continue;
-      const protocol::Topic& of = catalogue_.topics[stream.topic];
-      const auto direction =
-          of.kind == protocol::Kind::sensor ? protocol::Direction::sensor : protocol::Direction::command;
-      for (const protocol::FrameLayout& layout : of.frames) {
-        auto message = analysis::message_of(layout, direction, stream.priority, stream.period, of.deadline,
-                                            of.jitter, bit_rate_);
-        if (of.is_message())
-          message.key =
-              can::arbitration_key({.id = layout.address.number, .format = protocol::format_of(layout)});
-        file_.others.push_back(message);
+      file_.stated_others.push_back(stream.topic);
+      add_frames(stream, file_.others);
+    }
+  }
+  void add_frames(const reflective::Stream& stream, std::vector<analysis::Message>& to) const {
+    const protocol::Topic& of = catalogue_.topics[stream.topic];
+    const auto direction =
+        of.kind == protocol::Kind::sensor ? protocol::Direction::sensor : protocol::Direction::command;
+    for (const protocol::FrameLayout& layout : of.frames) {
+      auto message = analysis::message_of(layout, direction, stream.priority, stream.period, of.deadline,
+                                          of.jitter, bit_rate_);
+      if (of.is_message())
+        message.key =
+            can::arbitration_key({.id = layout.address.number, .format = protocol::format_of(layout)});
+      to.push_back(message);
+    }
+  }
+
+  /// What is on the bus in a configuration though the file does not say it: the spec's messages that come by
+  /// themselves, and the set points that programs may hold there, which boards may refuse. What "others"
+  /// states is left to it.
+  void count_others(OperatorFile::Parts& parts) const {
+    const auto is_stated = [&](std::uint16_t topic) {
+      const auto& stated = file_.stated_others;
+      return std::find(stated.begin(), stated.end(), topic) != stated.end();
+    };
+    for (std::uint16_t t = 0; t < catalogue_.topics.size(); ++t) {
+      const protocol::Topic& topic = catalogue_.topics[t];
+      if (is_stated(t)) continue;
+      if (topic.is_message()) {
+        const auto same = [t](const auto& stream) { return stream.topic == t; };
+        if (topic.usual_period().count() <= 0 ||
+            std::any_of(parts.streams.begin(), parts.streams.end(), same))
+          continue;
+        parts.expected.push_back({t, topic.usual_period(), topic.priority});
+        add_frames(parts.expected.back(), parts.others);
+      } else if (topic.kind == protocol::Kind::actuator && may_be_commanded(parts, t)) {
+        if (topic.role == protocol::Role::drive)
+          add_held({t, client::hold_period, topic.priority}, parts);
+        else
+          parts.uncounted.push_back(t);
       }
+    }
+  }
+  [[nodiscard]] bool may_be_commanded(const OperatorFile::Parts& parts, std::uint16_t topic) const {
+    const auto repeats = [topic](const auto& own) { return own.topic == topic && own.repeat.count() > 0; };
+    if (std::any_of(parts.entry.begin(), parts.entry.end(), repeats)) return false;
+    if (!parts.commanders) return true;
+    const auto role = catalogue_.topics[topic].role;
+    return std::any_of(parts.commanders->begin(), parts.commanders->end(), [role](const auto& verb) {
+      return verb == "drive" ? role == protocol::Role::drive
+             : verb == "led" ? role == protocol::Role::light
+                             : true;
+    });
+  }
+  /// A program may hand a set point over a whole period late, and the next one in time.
+  void add_held(const reflective::Stream& held, OperatorFile::Parts& parts) const {
+    parts.expected.push_back(held);
+    const auto first = parts.others.size();
+    add_frames(held, parts.others);
+    for (const protocol::Topic& refusal : catalogue_.topics)
+      if (refusal.role == protocol::Role::refusal && refusal.board == catalogue_.topics[held.topic].board)
+        for (const protocol::FrameLayout& layout : refusal.frames)
+          parts.others.push_back(analysis::message_of(layout, protocol::Direction::sensor, refusal.priority,
+                                                      held.period, {}, {}, bit_rate_));
+    for (auto i = first; i < parts.others.size(); ++i) {
+      parts.others[i].jitter = held.period.count();
+      parts.others[i].deadline = analysis::unbounded;
     }
   }
 
@@ -654,7 +713,7 @@ class Reader : private spec::Checker {
 void close(OperatorFile& file, const protocol::Catalogue& catalogue) {
   for (const OperatorFile::Parts& parts : file.parts)
     file.configurations.push_back(
-        {parts.of.text, parts.streams, parts.limits, parts.entry, parts.adaptations});
+        {parts.of.text, parts.streams, parts.limits, parts.entry, parts.adaptations, parts.others});
   for (std::size_t c = 0; c < file.conditions.size(); ++c)
     file.conditions[c].name = file.condition_items[c].text;
   for (std::size_t m = 0; m < file.monitors.size(); ++m) {

@@ -45,6 +45,9 @@ struct OperatorFile {
     std::vector<reflective::SetPoint> entry;
     std::vector<reflective::Adaptation> adaptations;
     std::optional<std::vector<std::string>> commanders;  ///< verbs; nothing: all
+    std::vector<reflective::Stream> expected;            ///< what else counts there: see count_others
+    std::vector<analysis::Message> others;               ///< its frames
+    std::vector<std::uint16_t> uncounted;  ///< actuators that may be commanded, of which no period is known
     std::vector<std::string> stream_places;
     std::vector<std::string> limit_places;
     std::vector<std::string> entry_places;
@@ -62,6 +65,7 @@ struct OperatorFile {
   std::vector<reflective::Monitor> monitors;
   std::vector<reflective::Transition> transitions;
   std::vector<analysis::Message> others;
+  std::vector<std::uint16_t> stated_others;  ///< topics of them
 };
 
 /// `file` is null exactly when there are problems: all that were found, in the order of the file.

@@ -40,6 +40,32 @@ std::string in_quotes(std::string_view text) {
   return out + "\"";
 }
 
+std::string names_of(const Study& study, const std::vector<std::uint16_t>& topics) {
+  std::string text;
+  for (const std::uint16_t topic : topics)
+    text += fmt::format("{}{}", text.empty() ? "" : ", ", study.file->tables.topic(topic).name);
+  return text;
+}
+
+/// What counts without being typed, and what cannot be counted; empty: neither.
+std::string others_of(const Study& study) {
+  std::string text;
+  for (const auto& parts : study.file->parts) {
+    std::string what;
+    for (const auto& each : parts.expected)
+      what += fmt::format("{}{} every {}", what.empty() ? "" : ", ",
+                          study.file->tables.topic(each.topic).name, words::to_text(each.period));
+    if (!what.empty()) text += fmt::format("  {}: {}\n", parts.of.text, what);
+    if (!parts.uncounted.empty())
+      text += fmt::format("  {}: NOT COUNTED, as no period of theirs is known: set points of {}\n",
+                          parts.of.text, names_of(study, parts.uncounted));
+  }
+  if (text.empty()) return text;
+  return "\nothers: what programs may command there, and messages of the spec, besides \"others\" of the "
+         "file\n" +
+         text;
+}
+
 }  // namespace
 
 std::string to_table(const Study& study) {
@@ -69,6 +95,7 @@ std::string to_table(const Study& study) {
                           milliseconds(stream.deadline));
   }
 
+  text += others_of(study);
   text += fmt::format(
       "\nchanges: over before the next one may begin, {} later (settle). Asynchronous, unchanged streams go "
       "on;\n"
@@ -119,9 +146,18 @@ std::string to_json(const Study& study) {
                          {"priority", name(stream.priority)},
                          {"response_ns", nanoseconds(stream.response)},
                          {"deadline_ns", stream.deadline}});
+    Json others = Json::array(), uncounted = Json::array();
+    for (const auto& each : study.file->parts[c].expected)
+      others.push_back({{"topic", tables.topic(each.topic).name},
+                        {"period_ns", each.period.count()},
+                        {"priority", name(each.priority)}});
+    for (const std::uint16_t topic : study.file->parts[c].uncounted)
+      uncounted.push_back(tables.topic(topic).name);
     configurations.push_back({{"name", tables.configurations[c].name},
                               {"load_per_mille", nanoseconds(study.configurations[c].load)},
-                              {"streams", streams}});
+                              {"streams", streams},
+                              {"others", others},
+                              {"not_counted", uncounted}});
   }
   Json changes = Json::array();
   for (const ChangeBound& change : study.changes)

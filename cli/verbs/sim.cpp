@@ -58,8 +58,10 @@ void add_boards(Verb verb, sim::AmiroOptions& options, std::string& boards) {
                   "on the virtual bus: bits a second that interference breaks, on average")
       .range(0.0, 100'000.0)
       .type_name("N");
-  verb.add_option("--boards", boards,
-                  "host: the boards' code compiled for this machine; qemu: their images, emulated")
+  verb.add_option(
+          "--boards", boards,
+          "host: the boards' code compiled for this machine, where nothing preempts; qemu: their images, "
+          "emulated, which preempt as real ones do")
       .one_of({"host", "qemu"})
       .type_name("host|qemu");
   verb.add_option("--images", options.images,

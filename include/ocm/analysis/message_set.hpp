@@ -31,6 +31,7 @@ struct Message {
   [[nodiscard]] constexpr std::int64_t due() const noexcept {
     return deadline == implicit_deadline ? period : deadline;
   }
+  friend constexpr bool operator==(const Message&, const Message&) = default;
 };
 
 /// At most so many faults: `burst` at once, and one more whenever `every` ticks have passed. Each costs an

@@ -80,6 +80,8 @@ struct Configuration {
   std::span<const Limit> limits{};
   std::span<const SetPoint> entry{};  ///< in this order: what must act first comes first
   std::span<const Adaptation> adaptations{};
+  /// What else is on the bus in it, besides Operator::others: what programs may command here, for instance.
+  std::span<const analysis::Message> others{};
 };
 
 enum class Watched : std::uint8_t {

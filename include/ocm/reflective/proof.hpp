@@ -241,6 +241,11 @@ class Proof {
     const Configuration& target = op_->configurations[to];
     const Configuration* const source = from == none ? nullptr : &op_->configurations[from];
     for (const analysis::Message& other : op_->others) add({.message = other});
+    for (const analysis::Message& other : target.others) add({.message = other});
+    if (source != nullptr)
+      for (const analysis::Message& other : source->others)
+        if (std::find(target.others.begin(), target.others.end(), other) == target.others.end())
+          add({.message = other});
     for (std::size_t s = 0; s < target.streams.size(); ++s) stream(target, s, source);
     commands(target, source == nullptr && !changes);
     if (source != nullptr) {

@@ -6,8 +6,9 @@ execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --config ${CONFIG} -
                 OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 file(RENAME ${staged} ${PREFIX})
 
-foreach(file bin/amiroctl bin/ocm-generate include/ocm/topics/amiro.hpp share/cmake/ocm/ocmConfig.cmake
-             share/ocm/spec/topics.json share/ocm/spec/topics.schema.json share/doc/ocm/LICENSE
+foreach(file bin/amiroctl bin/ocm-generate include/ocm/topics/amiro.hpp include/ocm/c/client.h share/cmake/ocm/ocmConfig.cmake
+             share/ocm/spec/topics.json share/ocm/spec/topics.schema.json share/ocm/spec/operator.schema.json
+             share/ocm/examples/guard.operator.json share/ocm/examples/amiroctl-operator.service share/doc/ocm/LICENSE
              share/man/man1/amiroctl.1 share/man/man1/amiroctl-publish.1 share/man/man1/ocm-generate.1
              share/bash-completion/completions/amiroctl share/zsh/site-functions/_amiroctl
              share/fish/vendor_completions.d/amiroctl.fish)
@@ -33,4 +34,13 @@ execute_process(COMMAND ${PREFIX}/bin/amiroctl --spec ${PREFIX}/share/ocm/spec/t
                 WORKING_DIRECTORY / OUTPUT_VARIABLE said OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
 if(NOT said STREQUAL "205#01840302")
   message(FATAL_ERROR "the installed amiroctl says '${said}', expected 205#01840302")
+endif()
+
+# The installed operator, with the schema beside it.
+execute_process(COMMAND ${PREFIX}/bin/amiroctl operate ${PREFIX}/share/ocm/examples/guard.operator.json --check
+                WORKING_DIRECTORY / OUTPUT_VARIABLE said OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+file(READ ${PREFIX}/share/ocm/examples/guard.operator.json guard)
+string(JSON schema GET "${guard}" $schema)
+if(NOT said MATCHES "in time$" OR NOT EXISTS ${PREFIX}/share/ocm/examples/${schema})
+  message(FATAL_ERROR "the installed guard names ${schema}; of it amiroctl says '${said}'")
 endif()

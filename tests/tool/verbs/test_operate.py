@@ -116,6 +116,37 @@ class Checked(Operate):
             self.assertGreater(after["load_per_mille"], before["load_per_mille"])
 
 
+    def test_what_programs_may_command_counts_where_they_may(self):
+        def studied(document):
+            out, _ = self.run_tool("operate", self.write(document), "--check", "--json")
+            return {each["name"]: each for each in json.loads(out)["configurations"]}
+        study = studied(guard())
+        motors = {"topic": "motors", "period_ns": 100_000_000, "priority": "medium"}
+        self.assertEqual([study[name]["others"] for name in ("idle", "driving", "stopped")], [[motors], [motors], []])
+        self.assertIn("led_1", study["driving"]["not_counted"])
+        self.assertEqual(study["stopped"]["not_counted"], [])
+        out, _ = self.run_tool("operate", GUARD, "--check")
+        self.assertIn("  driving: motors every 100ms\n", out)
+        self.assertRegex(out, "driving: NOT COUNTED, as no period of theirs is known: set points of led_1")
+
+        document = guard()
+        document["configurations"][1]["commanders"] = []
+        without = studied(document)["driving"]
+        self.assertEqual((without["others"], without["not_counted"]), ([], []))
+        self.assertLess(without["load_per_mille"], study["driving"]["load_per_mille"])
+        ring = [each["streams"][0]["response_ns"] for each in (without, study["driving"])]
+        self.assertLess(ring[0], ring[1])  # a set point can be on the bus just before
+
+        document["configurations"][1]["commanders"] = ["led"]
+        self.assertEqual((studied(document)["driving"]["others"], "floor_calibration" in studied(document)["driving"]["not_counted"]),
+                         ([], False))
+        document = guard()
+        document["others"] = [{"topic": "motors", "period": "10ms"}]  # as the file states it, and not twice
+        stated = studied(document)["driving"]
+        self.assertEqual(stated["others"], [])
+        self.assertGreater(stated["load_per_mille"], study["driving"]["load_per_mille"])
+
+
 class Mistakes(Operate):
     def test_unknown_words_are_named_with_the_one_that_was_meant(self):
         def topic(document):
@@ -738,6 +769,55 @@ class Asked(Operating):
         drive.communicate(timeout=30)
         self.assertEqual(self.event(operator, "switched")["to"], "halted")
         client.close()
+
+
+SMALL_CAR = os.path.join(SOURCE, "examples", "small_car.dbc")
+CAR = {
+    "name": "car", "initial": "watching", "fall_back": "alarm", "settle": "60ms", "reaction": "20ms", "handling": "1ms",
+    "configurations": [{"name": "watching", "streams": [{"topic": "Driving"}]},
+                       {"name": "alarm", "streams": [{"topic": "Driving"}]}],
+    "monitors": [{"name": "fast", "when": "Driving.Speed>50km/h"},
+                 {"name": "silent", "when": {"age": "Driving", "above": "2s"}},
+                 {"name": "slow", "when": "Driving.Speed<50km/h", "for": "100ms"}],
+    "transitions": [{"from": "watching", "to": "alarm", "when": "fast"}, {"from": "watching", "to": "alarm", "when": "silent"},
+                    {"from": "alarm", "to": "watching", "when": "slow"}],
+}
+
+
+class OfPlainMessages(Operating):
+    """A bus without requests, of which a DBC file is known: messages come by themselves."""
+
+    def test_the_messages_of_the_spec_count_in_the_proof(self):
+        out, _ = self.run_tool("operate", self.write(CAR), "--check", "--json", "--spec", SMALL_CAR)
+        watching = json.loads(out)["configurations"][0]
+        periods = {each["topic"]: each["period_ns"] for each in watching["others"]}
+        self.assertEqual((periods["Engine"], periods["Trip"]), (10_000_000, 500_000_000))
+        self.assertNotIn("Driving", periods)      # a stream of its own
+        self.assertNotIn("LockCommand", periods)  # sent on events
+        self.assertGreater(watching["streams"][0]["response_ns"], 2 * 130_000)  # Engine, Transmission and Wheels go first
+
+    def test_it_follows_what_they_say_and_sends_nothing(self):
+        self.start_sim()  # a bus on which nothing comes by itself
+        listener = self.listen()
+        car = self.start("set", "Driving", "Speed=30km/h", "--every", "20ms", "--spec", SMALL_CAR)
+        operator = self.start("operate", self.write(CAR), "--json", "--spec", SMALL_CAR)
+        self.assertEqual(self.event(operator)["event"], "started")
+        self.interrupt(car)
+        car = self.start("set", "Driving", "Speed=70km/h", "--every", "20ms", "--spec", SMALL_CAR)
+        event = self.event(operator, "switched")
+        self.assertEqual(event["to"], "alarm")
+        self.assertEqual(event["conditions"], ["Driving.Speed>50km/h"])
+        self.interrupt(car)
+        car = self.start("set", "Driving", "Speed=30km/h", "--every", "20ms", "--spec", SMALL_CAR)
+        event = self.event(operator, "switched")
+        self.assertEqual((event["from"], event["to"], event["cause"]), ("alarm", "watching", "slow"))
+        self.interrupt(car)  # silence
+        self.assertEqual(self.event(operator, "switched")["conditions"], ["age of Driving above 2s"])
+        _, err = self.interrupt(operator)
+        self.assertEqual(operator.returncode, 130)
+        self.assertIn("3 changes, 0 frames sent", err)
+        out, _ = self.interrupt(listener)
+        self.assertEqual({json.loads(line)["id"] for line in out.splitlines()}, {"130"})
 
 
 class AsAService(Operating):

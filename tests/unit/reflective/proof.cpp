@@ -223,6 +223,24 @@ TEST_CASE(
   CHECK(adapted > Proof<32>{tables, 1'000'000}.load(0));
 }
 
+TEST_CASE("proof: what else is on the bus in a configuration counts there, and once in a change") {
+  const std::array<analysis::Message, 1> more{{{.cost = 200'000, .period = 100'000'000, .key = 1}}};  // 0.2 %
+  std::vector<Configuration> changed{guard::configurations.begin(), guard::configurations.end()};
+  changed[guard::idle].others = more;
+  changed[guard::driving].others = more;
+  Operator op = guard::tables;
+  op.configurations = changed;
+  Proof<256> with{op, amiro::bit_rate};
+  Proof<256> without{guard::tables, amiro::bit_rate};
+  CHECK(with.load(guard::driving) == without.load(guard::driving) + 2);
+  CHECK(with.load(guard::stopped) == without.load(guard::stopped));
+  for (const auto& [from, to] : {std::pair{guard::idle, guard::driving}, {guard::driving, guard::stopped}})
+    CHECK(with.load(from, to) == without.load(from, to) + 2);
+  CHECK(with.load(none, guard::idle) == without.load(none, guard::idle) + 2);
+  CHECK(with.response(guard::driving, guard::ring) ==
+        without.response(guard::driving, guard::ring) + 200'000);
+}
+
 TEST_CASE("proof: the guard of the AMiRo, at 500 kbit/s") {
   Proof<256> proof{guard::tables, amiro::bit_rate};
   std::vector<Doubt> all;
