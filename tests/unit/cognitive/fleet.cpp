@@ -304,6 +304,8 @@ TEST_CASE("fleet: the log of listing 15.1 calls the robot back") {
   });
   CHECK(heard == std::vector<Kind>{Kind::update, Kind::idle, Kind::idle, Kind::update});
   CHECK(fleet.call_back(0) == Advice::bad_link);
+  fleet.linked(0, "AVR", second);  // another program asks for the link that is there
+  CHECK(fleet.call_back(0) == Advice::bad_link);
   CHECK(fleet.counters().calls == 1);
   // It is well again only when it is better than what called it.
   while (fleet.quality_per_mille(0) < 700) fleet.feed("[0]:AVR:{S,IDL}\n", second);
