@@ -297,6 +297,7 @@ TEST_CASE("fleet: a link that is new begins a new frame where the robot stands")
 
 TEST_CASE("fleet: the log of listing 15.1 calls the robot back") {
   Fleet fleet;
+  fleet.linked(0, "AVR", second);
   std::vector<Kind> heard;
   fleet.feed(ocm::test::listing_15_1, second, [&](std::size_t robot, Kind kind) {
     CHECK(robot == 0);
