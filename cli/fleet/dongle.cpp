@@ -133,14 +133,18 @@ void add_dongle_options(Verb verb, DongleOptions& options) {
   verb.add_option("--baud", options.baud, "of the central's line; default: 38400, then 115200")
       .type_name("N")
       .range(1U, 4'000'000U);
-  verb.add_option("--flow", options.flow, "of the central's line")
-      .type_name("FLOW")
-      .one_of({"none", "rtscts"})
-      .show_default();
-  verb.add_option("--dongle", options.kind, "whose commands the central takes; auto asks it")
-      .type_name("KIND")
-      .one_of({"auto", "ours", "at", "thesis"})
-      .show_default();
+  (void)add_dongle_kind(verb, options);
+}
+
+std::array<Option, 2> add_dongle_kind(Verb verb, DongleOptions& options) {
+  return {verb.add_option("--flow", options.flow, "of the central's line")
+              .type_name("FLOW")
+              .one_of({"none", "rtscts"})
+              .show_default(),
+          verb.add_option("--dongle", options.kind, "whose commands the central takes; auto asks it")
+              .type_name("KIND")
+              .one_of({"auto", "ours", "at", "thesis"})
+              .show_default()};
 }
 
 Dongle open_dongle(std::string_view verb, const std::string& path, const DongleOptions& options) {

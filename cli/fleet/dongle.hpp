@@ -1,6 +1,7 @@
 /// The dongle at a serial line: opened, and of which kind it is.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -20,6 +21,8 @@ struct DongleOptions {
 
 /// --baud, --flow and --dongle.
 void add_dongle_options(Verb verb, DongleOptions& options);
+/// --flow and --dongle.
+std::array<Option, 2> add_dongle_kind(Verb verb, DongleOptions& options);
 
 struct Dongle {
   transport::SerialPort port;

@@ -34,6 +34,7 @@ Owner::Owner(std::string verb, cognitive::Server& server, std::unique_ptr<LocalS
                      static_cast<LineCaller&>(caller).asked = now_;
                      static_cast<LineCaller&>(caller).views =
                          closing_;  // it asks again, and is not waited for
+                     if (!closing_) ++joined_;
                      return closing_ ? answers::wait() : yes(verb_);
                    },
                    [this](LocalCaller& caller, std::string_view request) {

@@ -83,6 +83,9 @@ class Owner {
   [[nodiscard]] std::string_view holder(unsigned index) const {
     return index < holders_.size() ? std::string_view{holders_[index]} : std::string_view{};
   }
+  /// Programs that have joined since the beginning, and those that were disconnected.
+  [[nodiscard]] std::uint64_t joined() const noexcept { return joined_; }
+  [[nodiscard]] std::uint64_t turned_away() const { return service_ ? service_->turned_away() : 0; }
   /// A file descriptor that is readable when there is something to answer; -1: none.
   [[nodiscard]] int descriptor() const { return service_ ? service_->descriptor() : -1; }
 
@@ -119,6 +122,7 @@ class Owner {
   std::array<Order, cognitive::Fleet::most_robots> orders_{};
   std::array<std::string, cognitive::Fleet::most_robots> holders_{};
   std::uint64_t number_ = 0;
+  std::uint64_t joined_ = 0;
   base::Time now_{};
   Draw draw_;
   bool closing_ = false;

@@ -19,7 +19,9 @@
 
 #include "cli/central/server_end.hpp"
 #include "cli/central/switchboard.hpp"
+#include "cli/fleet/keeper.hpp"
 #include "cli/shared/interrupt.hpp"
+#include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
 
 namespace ocm::cli {
@@ -35,6 +37,9 @@ struct CentralOptions {
   std::uint32_t baud = 38'400;
   bool pty = false;
   std::string link;
+  bool own = false;
+  bool call_back = false;
+  fleet::LineOptions line{};  ///< of the central that is there, with --own
 };
 
 /// How long to wait at most, so that a signal, a program that comes or a robot that appears is seen soon.
@@ -131,19 +136,44 @@ void add_central(Verb app, Session&, int& exit_code) {
       "  amiroctl central --robot AVR=/dev/ttyUSB0   type start, list, conn 0, {S,CON}\n"
       "  amiroctl central --pty                      for a server that opens a serial line\n"
       "  amiroctl sim --robots 2 --lines             simulated robots, each with a line of its own\n"
-      "  amiroctl central                            connects those");
+      "  amiroctl central                            connects those\n"
+      "  amiroctl central --own                      has the central's line for robots, goto, ...");
   const auto options = std::make_shared<CentralOptions>();
-  verb.add_option("--robot", options->robots,
-                  "a robot's serial line; default: those of `sim --robots N --lines`")
-      .type_name("NAME=PATH");
-  verb.add_option("--baud", options->baud, "of the robots' lines").type_name("N").show_default();
+  const auto robots = verb.add_option("--robot", options->robots,
+                                      "a robot's serial line; default: those of `sim --robots N --lines`")
+                          .type_name("NAME=PATH");
+  const auto baud =
+      verb.add_option("--baud", options->baud, "of the robots' lines; with --own of the central's")
+          .type_name("N")
+          .show_default();
   const auto pty =
       verb.add_option("--pty", options->link,
                       "serve the program that opens LINK, a pseudo terminal; default: the line that "
                       "`robots`, `goto` and others open")
           .expected(0, 1)
           .type_name("[LINK]");
-  verb.callback([options, pty, &exit_code] {
+  const auto own =
+      verb.add_flag("--own", options->own,
+                    "be no central: have the line of one, for the programs that join, until Ctrl-C")
+          .excludes(pty)
+          .excludes(robots);
+  verb.add_flag(
+          "--call-back", options->call_back,
+          "if the link to a robot that drives gets bad: stop it, and send it back towards where it began")
+      .needs(own);
+  verb.add_option("--central", options->line.path,
+                  "the line; default: that of `sim --robots` or `central --pty`")
+      .type_name("PATH")
+      .needs(own);
+  for (Option each : fleet::add_dongle_kind(verb, options->line.dongle)) each.needs(own);
+  add_duration(verb, "--scan", options->line.scan, "with --own: how long to look for robots; default: 3s")
+      .needs(own);
+  verb.callback([options, pty, baud, &exit_code] {
+    if (options->own) {
+      if (baud.count() > 0) options->line.dongle.baud = options->baud;
+      exit_code = fleet::keep_line(options->line, options->call_back);
+      return;
+    }
     options->pty = pty.count() > 0;
     central::SwitchboardOptions lines{parse_robots(options->robots), "", options->baud};
     if (const auto nearest = transport::detail::nearest_serial_speed(options->baud); nearest != options->baud)

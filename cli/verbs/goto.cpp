@@ -10,6 +10,7 @@
 #include "ocm/client/diagnosis.hpp"
 
 #include "cli/fleet/central_line.hpp"
+#include "cli/fleet/link_watch.hpp"
 #include "cli/fleet/pausing.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/values.hpp"
@@ -30,6 +31,7 @@ struct GotoOptions {
   std::string distance;
   base::Duration timeout = 60s;
   bool no_wait = false;
+  bool call_back = false;
 };
 
 /// A whole number with or without its unit: 90, 90deg.
@@ -89,6 +91,29 @@ int report(const std::string& name, const RobotNow& robot) {
         "bring the central nearer, or give it more time: --timeout 120s"});
 }
 
+/// Its link has become bad, and it has been stopped for that: until it is back.
+[[noreturn]] void come_back(const GotoOptions& options, fleet::CentralLine& line, fleet::LinkWatch& watch,
+                            unsigned index, bool paused) {
+  const std::string words = fleet::words_of_link(line.robot(index));
+  const std::string name = line.name(index);
+  remark(fmt::format("goto: {}; it is called back", words));
+  (void)line.run(options.timeout, [&] {
+    (void)watch.step(line.end(), line.robot(index), true);
+    return watch.over() || !watch.called();
+  });
+  const bool halted = line.halt({index});
+  if (paused)
+    for (int times = 0; times < 3; ++times) line.end().pause(index);
+  const RobotNow robot = line.robot(index);
+  if (robot.update) fmt::print("{}: {}\n", name, place(*robot.update));
+  if (interrupted() != 0) throw Exit{exit_code_after_interrupt(exit_failure)};
+  fail({fmt::format("goto: {}: it was called back{}", words,
+                    !halted                                            ? ", and may still drive"
+                    : watch.phase() == fleet::LinkWatch::Phase::failed ? ", and has not come"
+                                                                       : ""),
+        "bring the central nearer; or drop --call-back: then only a message says so"});
+}
+
 void run(const GotoOptions& options, int& exit_code) {
   const mapper::link::SetPoint wanted{
       number("ANGLE", options.angle, "deg", mapper::link::SetPoint::fields[0]),
@@ -98,17 +123,31 @@ void run(const GotoOptions& options, int& exit_code) {
     fail({fmt::format("goto: --no-wait with {} cm: nothing would stop the robot", wanted.distance),
           fmt::format("drop --no-wait, or drive at most {} cm", longest)},
          exit_usage);
+  if (options.no_wait && options.call_back)
+    fail({"goto: --no-wait with --call-back: no program would watch the link", "drop one of them"},
+         exit_usage);
   fleet::CentralLine line{"goto", options.line};
   const unsigned index = line.connect_one(options.robot);
   const std::string name = line.name(index);
   const bool paused = fleet::seems_paused(line, index);
+  const bool is_stop = wanted == mapper::link::SetPoint{};
+  fleet::LinkWatch watch;
+  if (watch.step(line.end(), line.robot(index), false)) {
+    if (options.call_back && !is_stop)
+      fail({fmt::format("goto: {}, so it was not sent", fleet::words_of_link(line.robot(index))),
+            "bring the central nearer; or drop --call-back: then only a message says so"});
+    fleet::warn_of_link("goto", line.robot(index));
+  }
   if (const auto refused = line.end().go(index, wanted))
     fail({fmt::format("goto: {}", refused->what), refused->remedy});
   (void)line.run(options.timeout, [&] {
     const RobotNow robot = line.robot(index);
-    if (options.no_wait && robot.progress == Progress::heard) return true;
+    if (watch.step(line.end(), robot, options.call_back && !is_stop) && !watch.called())
+      fleet::warn_of_link("goto", robot);
+    if (watch.called() || (options.no_wait && robot.progress == Progress::heard)) return true;
     return is_final(robot.progress) || robot.lost || !line.end().is_ours(index);
   });
+  if (watch.called()) come_back(options, line, watch, index, paused);
   const RobotNow last = line.robot(index);
   if (!line.end().is_ours(index))
     fail({fmt::format("goto: another program has stopped {} or sent it: {}", name, last.by),
@@ -151,6 +190,8 @@ void add_goto(Verb app, Session&, int& exit_code) {
       .type_name("ANGLE");
   verb.add_option("distance", options->distance, "cm, then").required().type_name("DISTANCE");
   verb.add_flag("--no-wait", options->no_wait, "wait until it has heard, not until it is there");
+  verb.add_flag("--call-back", options->call_back,
+                "if its link gets bad: stop it, and send it back towards where it began");
   add_duration(verb, "--timeout", options->timeout, "then it is stopped");
   fleet::add_line_options(verb, options->line);
   verb.callback([options, &exit_code] { run(*options, exit_code); });

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "cli/fleet/central_line.hpp"
+#include "cli/fleet/link_watch.hpp"
 #include "cli/fleet/pausing.hpp"
 #include "cli/verbs/verbs.hpp"
 
@@ -21,6 +22,7 @@ void run(std::string_view verb, const PauseOptions& options, bool paused, int& e
   fleet::CentralLine line{verb, options.line};
   for (const unsigned index : line.connect(options.robots)) {
     const std::string name = line.name(index);
+    fleet::warn_of_link(verb, line.robot(index));
     if (fleet::pause_until_seen(line, index, paused)) {
       fmt::print("{}: {}\n", name, paused ? "paused" : "goes on");
       continue;

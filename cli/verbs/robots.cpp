@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "cli/fleet/central_line.hpp"
+#include "cli/fleet/link_watch.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/json.hpp"
 #include "cli/shared/values.hpp"
@@ -56,6 +57,7 @@ void run(const RobotsOptions& options, int& exit_code) {
     for (const Peer& peer : peers) fmt::print("{}\n", fleet::to_json(line.robot(peer.index)).line());
   else
     print_table(line, peers);
+  for (const Peer& peer : peers) fleet::warn_of_link("robots", line.robot(peer.index));
   if (peers.empty()) exit_code = exit_failure;
 }
 

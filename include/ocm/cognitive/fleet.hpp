@@ -101,11 +101,11 @@ class Fleet {
     if (!robot.linked) {
       ears_.restart(index);
       forget_words(index);
+      robot.advice = Advice::stay;
     }
-    robot.linked = true;
+    robot.linked = true;  // once more, for another program that asked: the link is as good as it was
     robot.lost = false;
     robot.heard = now;
-    robot.advice = Advice::stay;
   }
   /// The link is gone: the robot stops by itself.
   void unlinked(std::size_t index) {

@@ -5,6 +5,7 @@ drive in a rectangular room on command, and see its walls."""
 import fcntl
 import math
 import os
+import random
 import select
 import threading
 import time
@@ -31,6 +32,8 @@ class Robot:
         self.turn_s = 1.0
         self.turning_until = None
         self.blocked_cm = None   # stops after so many cm
+        self.bad_beyond_cm = None  # farther from where it was switched on half of its packets are lost
+        self.chance = random.Random(7)
         self.busy_until = 0.0
         self.speed = 100.0       # cm/s
         self.servo, self.step = 0, 10
@@ -78,6 +81,11 @@ class Robot:
                 return
             self.calibration, self.turning_until = number, now + self.turn_s
         self.asked_compass = True
+
+    def is_heard(self):
+        """Whether its next packet is."""
+        far = 100 * math.hypot(self.x - self.start[0], self.y - self.start[1])
+        return self.bad_beyond_cm is None or far <= self.bad_beyond_cm or self.chance.random() >= 0.5
 
     def say_compass(self):
         said = (1, 0, 0, 0, 0, 0) if self.turning_until is not None else self.compass
@@ -208,7 +216,8 @@ class Central:
             for index, robot in enumerate(self.listed):
                 text = robot.say(now) if robot.linked else ""
                 while text:
-                    self.write(self.serve_text(index, robot, text[:20]))
+                    if robot.is_heard():
+                        self.write(self.serve_text(index, robot, text[:20]))
                     text = text[20:]
 
     def serve_text(self, index, robot, text):

@@ -3,6 +3,7 @@
 import fcntl
 import json
 import os
+import re
 import signal
 import subprocess
 import termios
@@ -265,6 +266,55 @@ class Pause(Line):
         _, err = self.tool("pause", "AVR", code=1)
         self.assertIn("sends updates still", err)
         self.assertGreater(self.avr.heard.count("{S,PAU}"), 2)
+
+
+class BadLinks(Line):
+    """Beyond 20 cm half of the packets of a robot are lost."""
+
+    def setUp(self):
+        super().setUp()
+        self.avr.room = (-2.0, -2.0, 4.0, 4.0)
+        self.avr.bad_beyond_cm = 20
+
+    def test_are_warned_about(self):
+        self.avr.speed = 10
+        out, err = self.tool("goto", "AVR", "0", "50")
+        self.assertEqual(out, "AVR: x 50 cm, y 0 cm, heading 0 deg\n")
+        self.assertRegex(err, r"^goto: the link to AVR is bad: [1-6]\d % of its sentences come whole; bring the central or the "
+                              r"robot nearer\n$")
+        out, err = self.tool("robots", "--listen", "3s", "--json")
+        self.assertEqual([json.loads(line)["call_back"] for line in out.splitlines()], ["bad_link", None])
+        self.assertRegex(err, r"^robots: the link to AVR is bad")
+        self.avr.bad_beyond_cm = None
+        out, err = self.tool("robots", "--listen", "3s", "--json")
+        self.assertEqual([json.loads(line)["call_back"] for line in out.splitlines()], [None, None])
+        self.assertEqual(err, "")
+
+    def test_call_back(self):
+        self.avr.speed = 5
+        out, err = self.tool("goto", "AVR", "0", "50", "--call-back", code=1)
+        self.assertRegex(err, r"goto: the link to AVR is bad: [1-6]\d % of its sentences come whole; it is called back\n")
+        self.assertRegex(err, r"of its sentences come whole: it was called back\n")
+        x, y = map(int, re.match(r"AVR: x (-?\d+) cm, y (-?\d+) cm", out).groups())
+        self.assertLess(abs(x) + abs(y), 6)
+        drives = [words for words in self.avr.heard if words.startswith("{U,")]
+        self.assertEqual(drives[0], "{U,0,50}")
+        self.assertEqual(drives[1], "{U,0,0}")  # in the middle of the leg
+        self.assertIn(drives[-1], ("{U,0,0}", "{U,180,50}", "{U,-180,50}"))
+
+    def test_a_robot_is_not_sent_on_a_bad_link(self):
+        self.avr.x = self.avr.y = 0.5  # an update from there takes two packets: one that is lost is missed
+        keeper = self.start("central", "--own", "--scan", "200ms")
+        waiting.until(lambda: "Ctrl-C ends it" in keeper.stderr.readline(), "it has the line")
+        waiting.until(lambda: '"call_back":"bad_link"' in self.tool("robots", "--listen", "100ms", "--json")[0], "it is bad")
+        _, err = self.tool("goto", "AVR", "0", "50", "--call-back", code=1)
+        self.assertRegex(err, "the link to AVR is bad: .* so it was not sent")
+        self.assertNotIn("{U,0,50}", self.avr.heard)
+        self.tool("goto", "AVR", "0", "0", "--call-back")  # a stop is said
+
+    def test_nobody_would_watch(self):
+        _, err = self.run_tool("goto", "AVR", "0", "20", "--no-wait", "--call-back", code=2)
+        self.assertIn("no program would watch the link", err)
 
 
 class TheLine(Line):

@@ -234,6 +234,66 @@ class TheOwnerEnds(Joined):
         self.assertRegex(self.ended(tool, 1)[1], r"robots \(process \d+\) (has ended|is gone)")
 
 
+class AnOwnerThatOnlyKeepsTheLine(Joined):
+    def keep(self, *arguments):
+        keeper = self.start("central", "--own", "--scan", "200ms", *arguments)
+        for line in keeper.stderr:
+            if "Ctrl-C ends it" in line:
+                return keeper
+        return self.fail(f"it ended with {keeper.wait()}")
+
+    def test_keeps_links_for_many_commands(self):
+        keeper = self.keep()
+        self.assertTrue(self.avr.linked and self.arduino.linked)
+        before = len(self.central.commands)
+        for _ in range(3):
+            self.tool("goto", "AVR", "0", "5")
+        self.assertRegex(self.run_tool("robots", "--listen", "100ms")[0], "AVR .* idle")
+        self.assertNotIn("start", self.central.commands[before:])  # no scan
+        _, err = self.interrupt(keeper)
+        self.assertEqual(keeper.returncode, 130)
+        self.assertIn("central: 4 programs joined", err)
+        waiting.until(lambda: self.central.target is None, "command mode")
+
+    def test_another_one_is_refused(self):
+        self.keep()
+        _, err = self.run_tool("central", "--own", code=1)
+        self.assertRegex(err, r"central: central \(process \d+\) has the central's line")
+        _, err = self.tool("map", os.path.join(self.folder, "a.svg"), code=1)
+        self.assertRegex(err, r"map: central \(process \d+\) has the central's line")
+
+    def test_calls_a_robot_back(self):
+        keeper = self.keep("--call-back")
+        self.avr.bad_beyond_cm = 20
+        tool = self.start("goto", "AVR", "0", "50")
+        self.avr.speed = 5
+        _, err = self.ended(tool, 1)
+        self.assertRegex(err, r"another program has stopped AVR or sent it: central \(process \d+\)")
+        waiting.until(lambda: abs(self.avr.x) < 0.06, "it is sent back")
+        _, err = self.interrupt(keeper)
+        self.assertRegex(err, r"central: the link to AVR is bad: [1-6]\d % of its sentences come whole; it is called back\n")
+
+    def test_says_who_is_lost(self):
+        keeper = self.keep()
+        self.central.drop(self.avr)
+        waiting.until(lambda: "AVR is lost" in keeper.stderr.readline(), "it says so")
+        self.assertEqual(self.tool("goto", "AVR", "0", "5")[1], "")  # which links it again
+
+    def test_without_robots(self):
+        self.central.robots = []
+        keeper = self.keep()
+        self.central.robots = [self.avr]
+        self.assertRegex(self.tool("robots", "--listen", "1s")[0], "AVR .* idle")
+        self.interrupt(keeper)
+        self.assertEqual(keeper.returncode, 130)
+
+    def test_wrong_usage(self):
+        for words in (["--own", "--pty"], ["--own", "--robot", "A=/dev/null"], ["--call-back"], ["--central", "/dev/null"],
+                      ["--flow", "rtscts"]):
+            with self.subTest(words=words):
+                self.run_tool("central", *words, code=2)
+
+
 class Hostile(Joined):
     def setUp(self):
         super().setUp()

@@ -297,12 +297,15 @@ TEST_CASE("fleet: a link that is new begins a new frame where the robot stands")
 
 TEST_CASE("fleet: the log of listing 15.1 calls the robot back") {
   Fleet fleet;
+  fleet.linked(0, "AVR", second);
   std::vector<Kind> heard;
   fleet.feed(ocm::test::listing_15_1, second, [&](std::size_t robot, Kind kind) {
     CHECK(robot == 0);
     heard.push_back(kind);
   });
   CHECK(heard == std::vector<Kind>{Kind::update, Kind::idle, Kind::idle, Kind::update});
+  CHECK(fleet.call_back(0) == Advice::bad_link);
+  fleet.linked(0, "AVR", second);  // another program asks for the link that is there
   CHECK(fleet.call_back(0) == Advice::bad_link);
   CHECK(fleet.counters().calls == 1);
   // It is well again only when it is better than what called it.
