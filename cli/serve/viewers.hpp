@@ -66,7 +66,7 @@ class Viewers {
     foxglove::MessageHead head{};
     std::shared_ptr<const std::string> payload;
   };
-  /// What the viewer is to be sent next; none: it has all. Loss is told by a status first, at most once
+  /// What the viewer is to be sent next; none: it has all. A status reports loss first, at most once
   /// a second of `now`.
   [[nodiscard]] std::optional<Outgoing> next(ViewerId viewer, base::Time now);
   /// Whether `next` may have something.

@@ -116,7 +116,7 @@ class Merger {
   }
 
  private:
-  /// So many of a kind are told one by one.
+  /// So many of a kind are reported one by one.
   static constexpr std::size_t most_told = 3;
 
   void tell(std::string what, std::string remedy) {

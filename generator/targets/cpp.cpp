@@ -151,18 +151,20 @@ void write_accessors(Writer& out, const FrameModel& frame) {
       const std::string name = field.name + "_" + field.unit_name;
       write_function(out, "[[nodiscard]] constexpr double " + name + "() const noexcept",
                      {"return " + physical_of(field) + ";"});
-      out.open("constexpr void set_" + name + "(double " + value + ") noexcept {");
+      const std::string setter = "constexpr void set_" + name + "(double " + value + ") noexcept";
       if (is_float(field)) {
         const std::string held = !field.range ? value
                                               : "ocm::protocol::within(" + value + ", " +
                                                     double_literal(field.range->min) + ", " +
                                                     double_literal(field.range->max) + ")";
         const std::string raw = to_raw(conversion(field), held);
-        out.line(field.name + " = " +
-                 (field.number == protocol::Number::float32 ? "static_cast<float>(" + raw + ")" : raw) + ";");
-        out.close("}");
+        write_function(
+            out, setter,
+            {field.name + " = " +
+             (field.number == protocol::Number::float32 ? "static_cast<float>(" + raw + ")" : raw) + ";"});
         continue;
       }
+      out.open(setter + " {");
       std::vector<std::string> arguments{to_raw(conversion(field), value), bits_alias(field) + "::min",
                                          bits_alias(field) + "::max"};
       if (field.has_range) arguments = {arguments[0], literal(field.raw_min), literal(field.raw_max)};

@@ -129,7 +129,7 @@ class FrameIndex {
 };
 
 /// An index for each interface of a log, where the catalogue has topics that are on one only; else the same
-/// for all. A log numbers its interfaces, and another log anew.
+/// for all. Each log numbers its interfaces by itself.
 class InterfaceIndexes {
  public:
   InterfaceIndexes() : InterfaceIndexes(protocol::Catalogue{}) {}

@@ -52,9 +52,7 @@ struct Depth {
   using RatioBits = ocm::protocol::Bits<std::uint32_t, 39, 32, ocm::protocol::ByteOrder::big>;
 
   [[nodiscard]] constexpr double depth_m() const noexcept { return depth; }
-  constexpr void set_depth_m(double value) noexcept {
-    depth = static_cast<float>(value);
-  }
+  constexpr void set_depth_m(double value) noexcept { depth = static_cast<float>(value); }
 
   [[nodiscard]] constexpr ocm::can::Payload encode(std::size_t /*frame*/ = 0) const noexcept {
     ocm::can::Payload data{};
@@ -85,9 +83,7 @@ struct PositionNorth {
   using ValueBits = ocm::protocol::Bits<std::uint64_t, 0>;
 
   [[nodiscard]] constexpr double value_deg() const noexcept { return static_cast<double>(value); }
-  constexpr void set_value_deg(double value_) noexcept {
-    value = ocm::protocol::within(value_, -90.0, 90.0);
-  }
+  constexpr void set_value_deg(double value_) noexcept { value = ocm::protocol::within(value_, -90.0, 90.0); }
 
   [[nodiscard]] constexpr ocm::can::Payload encode() const noexcept {
     ocm::can::Payload data{};
@@ -114,9 +110,7 @@ struct PositionEast {
   [[nodiscard]] constexpr double value_deg() const noexcept {
     return (static_cast<double>(value) * 5.0 - 100.0) / 10.0;
   }
-  constexpr void set_value_deg(double value_) noexcept {
-    value = (value_ * 10.0 + 100.0) / 5.0;
-  }
+  constexpr void set_value_deg(double value_) noexcept { value = (value_ * 10.0 + 100.0) / 5.0; }
 
   [[nodiscard]] constexpr ocm::can::Payload encode() const noexcept {
     ocm::can::Payload data{};
@@ -150,9 +144,7 @@ struct PositionCell {
   using NumberBits = ocm::protocol::Bits<std::int32_t, 40, 24>;
 
   [[nodiscard]] constexpr double voltage_mV() const noexcept { return voltage / 1'000.0; }
-  constexpr void set_voltage_mV(double value) noexcept {
-    voltage = static_cast<float>(value * 1'000.0);
-  }
+  constexpr void set_voltage_mV(double value) noexcept { voltage = static_cast<float>(value * 1'000.0); }
 
   [[nodiscard]] constexpr ocm::can::Payload encode() const noexcept {
     ocm::can::Payload data{};

@@ -102,7 +102,7 @@ TEST_CASE("robot now: what is no row") {
                           "index=0\tname=A\tprogress=",
                           "index=0\tname=A\toff_cm=nan",
                           "index=0\tname=A\toff_cm=inf",
-                          "index=0\tname=A\tlast=nobody",
+                          "index=0\tname=A\tlast=unknown_kind",
                           "index=0\tname=A\torder=-1",
                           "index=0\tname=A\tcalibration=0,9,0,0,0,0,0",
                           "index=0 name=A"}) {

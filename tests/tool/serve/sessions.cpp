@@ -121,7 +121,7 @@ TEST_CASE("sessions: a flood of orders is bounded, and who has gone is known all
   CHECK(server.says(viewer + 1, "64 channels of a viewer are the most"));
 }
 
-TEST_CASE("sessions: whatever is no request is told") {
+TEST_CASE("sessions: an error answers what is no request") {
   Server server{true};
   const ViewerId viewer = server.open(true);
   server.said(viewer);

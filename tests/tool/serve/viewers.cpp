@@ -86,7 +86,7 @@ TEST_CASE("viewers: a slow one loses what is counted and told, and others nothin
       std::vector<std::string>{
           R"({"op":"status","level":1,"message":"this viewer is too slow for what it asks: it has lost 8 messages","id":"loss"})",
           "1:9"});
-  // The next loss is told a second later, at the earliest.
+  // The next loss is reported a second later, at the earliest.
   for (int i = 0; i < 10; ++i) viewers.publish(0, 0, "x");
   CHECK(all(viewers, slow, start + 500ms).size() == 4);
   CHECK(viewers.lost(slow) == 14);

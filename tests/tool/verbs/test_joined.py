@@ -65,7 +65,7 @@ class TogetherOnALine(Joined):
         out, _ = self.tool("calibrate", "AVR")
         self.assertIn("AVR: good: within 1 deg", out)
         self.assertIn("AVR: good: within 1 deg", self.tool("calibrate", "AVR", "--show")[0])
-        _, err = self.tool("goto", "Nobody", "0", "0", code=1)
+        _, err = self.tool("goto", "Missing", "0", "0", code=1)
         self.assertIn("it finds AVR (index 0, address C00000000000)", err)
         self.assertEqual(self.avr.heard.count("{S,CON}"), 1)
 

@@ -243,7 +243,7 @@ class Serve(harness.Case):
         viewer = self.viewer(port, token)
         self.assertEqual(viewer.info["supportedEncodings"], ["json"])
         viewer.subscribe("/motors")
-        # It goes on for as long as it is told, and rests half a second behind that.
+        # It goes on while set points come, and rests half a second after the last.
         listener = self.listen("motors")
         for _ in range(5):
             viewer.publish("/motors", {"x": 0.1, "z": 0})

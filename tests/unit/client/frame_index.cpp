@@ -155,7 +155,7 @@ TEST_CASE("an interface has what is on it and what is on any, by its newest name
     CHECK(name_of(interface, 0x200) == "both");
   CHECK(name_of(1, 0x100) == "car");  // without a name: all that there is
   CHECK(name_of(9, 0x200) == "both");
-  indexes.name(0, "can1");  // another log numbers anew
+  indexes.name(0, "can1");  // another log has its own numbers
   CHECK(name_of(0, 0x100) == "radar");
 
   ocm::client::InterfaceIndexes same{catalogue};
