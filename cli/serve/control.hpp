@@ -1,5 +1,6 @@
 /// Orders of viewers, carried out on the bus: set points go out, are repeated while their viewer drives, and
-/// rest behind it; what the bus or a board refuses is answered to the viewer that asked. For the thread that has the bus.
+/// rest behind it; what the bus or a board refuses is answered to the viewer that asked. For the thread that
+/// has the bus.
 #pragma once
 
 #include <deque>
