@@ -40,7 +40,9 @@ class Run {
 
   void go() {
     PlayedBus bus{world_, conditions_};
-    cli::stats::Collector collector{amiro::catalogue, {500'000}};
+    cli::stats::Collector collector{amiro::catalogue, [](std::string_view) {
+                                      return measure::BitRates{500'000, 0};
+                                    }};
     std::uint64_t taken = 0, lost = 0, seconds = 0;
     Moment last_second = World::start;
     bool bunched = false;

@@ -290,7 +290,6 @@ void check_message(const Topic& message) {
 }
 
 void check_catalogue(const protocol::Catalogue& catalogue) {
-  fuzz::expect(!catalogue.topics.empty(), "a catalogue has messages or topics");
   fuzz::expect(catalogue.find(std::string_view{}) == nullptr, "nothing has no name");
   fuzz::expect(catalogue.find(": no name") == nullptr, "no name has a colon");
   const auto by_name = [&](std::string_view name) -> const Topic* {
@@ -623,6 +622,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (!loaded.spec) return 0;
   const protocol::Catalogue& catalogue = loaded.spec->catalogue();
   check_catalogue(catalogue);
+  if (catalogue.topics.empty()) {  // nodes alone: no frame means anything
+    fuzz::expect(!loaded.doubts.empty(), "a file without messages is doubtful");
+    return 0;
+  }
   fuzz::Input input{data, size};
   (void)input.bytes(text.size() + 1);
   Bus bus{catalogue};
