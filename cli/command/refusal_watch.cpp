@@ -68,7 +68,7 @@ void RefusalWatch::listen(transport::Bus& bus) {
 
 void RefusalWatch::forgive_unserved() {
   std::erase_if(refused_, [](const client::Refused& refused) {
-    return refused.reason == "not_served" && refused.topic->kind == protocol::Kind::sensor;
+    return refused.reason == "not_served" && refused.topic->role != protocol::Role::drive;
   });
 }
 

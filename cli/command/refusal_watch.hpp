@@ -45,7 +45,8 @@ class RefusalWatch {
   [[nodiscard]] const std::vector<client::Refused>& refused() const { return refused_; }
   /// What could be asked for instead, if that is known: goes in place of a remedy.
   void offer(std::string instead) { offer_ = std::move(instead); }
-  /// A sensor that the board does not serve is silent already, which is what a stop is for.
+  /// A sensor that the board does not serve is silent already, an actuator other than the motors at rest:
+  /// which is what a stop is for.
   void forgive_unserved();
   /// Says what was refused, on stderr. True: something was, now or before.
   bool tell();

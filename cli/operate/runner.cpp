@@ -409,7 +409,7 @@ std::string Runner::pass_on(Caller& caller, std::string_view text) {
     return no(fmt::format("{} has {} bytes, and {} takes {}", text, frame->dlc, topic.name, layout.dlc()),
               "is --spec that of the robot?");
   }
-  const bool rests = topic.role == protocol::Role::drive && is_rest(*frame);
+  const bool rests = (topic.role == protocol::Role::drive || topic.timeout.count() != 0) && is_rest(*frame);
   if (!rests && !may_command(caller)) {
     ++commands_.refused;
     return no(fmt::format("operator {} is in {}, where {} may not command {}", tables.name,

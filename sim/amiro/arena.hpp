@@ -5,26 +5,14 @@
 #include <cmath>
 #include <vector>
 
+#include "sim/amiro/line.hpp"
 #include "sim/physics/geometry.hpp"
 
 namespace ocm::sim {
 
-/// A closed dark line: two straights, parallel to the x axis, and two half circles around the origin.
-struct Line {
-  double half_straight_m = 0.4;
-  double radius_m = 0.4;
-  double width_m = 0.02;
-
-  /// Distance of a place from the middle of the line.
-  [[nodiscard]] double distance(Vector place) const noexcept {
-    const double beyond = std::max(std::abs(place.x) - half_straight_m, 0.0);
-    return std::abs(std::hypot(beyond, place.y) - radius_m);
-  }
-};
-
 struct Arena {
   std::vector<Segment> walls;
-  Line line{};
+  Line line = stadium(0.4, 0.4);
   double floor_reflectance = 0.8;
   double line_reflectance = 0.05;
   /// The earth's field, roughly that of central Europe. [decided]

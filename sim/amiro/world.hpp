@@ -59,6 +59,8 @@ class World {
         drive_(options_.drive, options_.start),
         battery_(options_.power, options_.state_of_charge, options_.plugged),
         floor_offset_(options_.floor.offset_counts) {
+    for (std::size_t i = 0; i < ring_offset_.size(); ++i)
+      ring_offset_[i] = static_cast<std::uint16_t>(std::lround(options_.ring.offset_counts[i]));
     sampled_.fill({drive_.motion(), 0});
   }
 
@@ -172,6 +174,8 @@ class World {
   }
 
   [[nodiscard]] const firmware::boards::RingCounts& ring_offset() const noexcept { return ring_offset_; }
+  /// Of one sensor, 0..7, as a board asks.
+  [[nodiscard]] std::uint16_t ring_offset(std::size_t sensor) const noexcept { return ring_offset_[sensor]; }
 
   /// The newest sample of a part, as its model gets it.
   [[nodiscard]] Sample sample(Part part) const noexcept {

@@ -7,26 +7,16 @@
 #include <cstdint>
 #include <utility>
 
-#include "firmware/drivers/calibration.hpp"
 #include "sim/amiro/world.hpp"
 #include "sim/parts/at24c01b_model.hpp"
 #include "sim/parts/board_parts.hpp"
 #include "sim/parts/hmc5883l_model.hpp"
 #include "sim/parts/pca9544_model.hpp"
 #include "sim/parts/st_motion_model.hpp"
+#include "sim/parts/stored_calibration.hpp"
 #include "sim/parts/vcnl4020_model.hpp"
 
 namespace ocm::sim {
-
-/// Puts a calibration record where the firmware looks for it.
-template <std::size_t N>
-void store_calibration(At24c01bModel& eeprom, const std::array<std::uint16_t, N>& offsets) {
-  firmware::drivers::CalibrationRecord record;
-  record.count = N;
-  std::copy(offsets.begin(), offsets.end(), record.offsets.begin());
-  const auto bytes = firmware::drivers::encode(record);
-  std::copy(bytes.begin(), bytes.end(), eeprom.bytes().begin() + firmware::drivers::calibration_slots[0]);
-}
 
 /// Numbers of buses and devices: boards/di_wheel_drive/parts.hpp, wiring.
 class DiWheelDriveParts : public BoardParts {

@@ -12,6 +12,7 @@
 #include "sim/parts/board_parts.hpp"
 #include "sim/parts/bq27500_model.hpp"
 #include "sim/parts/pca9544_model.hpp"
+#include "sim/parts/stored_calibration.hpp"
 #include "sim/parts/vcnl4020_model.hpp"
 
 namespace ocm::sim {
@@ -30,7 +31,7 @@ namespace ocm::sim {
 /// Numbers of buses and pins: boards/power_management/parts.hpp, wiring.
 class PowerManagementParts : public BoardParts {
  public:
-  /// The world must outlive the parts.
+  /// The world must outlive the parts. The EEPROM holds the offsets of the world's ring.
   PowerManagementParts(World& world, const PartClock& now)
       : back_multiplexer(violations_),
         front_multiplexer(violations_),
@@ -57,6 +58,7 @@ class PowerManagementParts : public BoardParts {
     front_bus_.attach(front_multiplexer);
     front_bus_.attach(gauge_p7);
     front_bus_.attach(eeprom);
+    store_calibration(eeprom, world.ring_offset());
   }
 
   [[nodiscard]] I2cBus& i2c(std::uint8_t bus) override {

@@ -120,7 +120,7 @@ TEST_CASE("the thesis's requests get their answers, each from its own board") {
   CHECK(setup.middle.frames.size() == 8 + 1);
   CHECK(setup.middle.frames.back().id == 0x61E);
   CHECK(setup.top.frames.empty());
-  CHECK(setup.robot.next_event() == base::Time{150ms});  // the odometry's: nothing is asked any more
+  CHECK(setup.robot.next_event() == base::Time{120ms});  // the behaviours': nothing is asked any more
   CHECK_FALSE(setup.robot.waiting());
 
   CHECK(setup.robot.di_wheel_drive().counters().foreign == 2);

@@ -212,7 +212,7 @@ TEST_CASE("floor: dark on the line, bright beside it") {
 TEST_CASE("floor: the line is closed") {
   const Arena arena;
   for (int i = 0; i < 360; ++i) {
-    const Vector turn = direction(i * degree) * arena.line.radius_m;
+    const Vector turn = direction(i * degree) * 0.4;
     const Vector place = turn + Vector{turn.x >= 0 ? 0.4 : -0.4, 0};
     CHECK(arena.line.distance(place) < 1e-12);
   }

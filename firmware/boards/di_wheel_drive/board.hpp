@@ -1,8 +1,9 @@
 /// DiWheelDrive, the bottom board: wheels, inertial sensors, compass, floor sensors. The same code runs on
 /// the board, with drivers, and on a host, with a simulated world.
 ///
-/// Two tasks of its own: at `high` the odometry, every `odometry_period`; at `urgent`, on hardware that has a
-/// speed controller to be stepped, that, every `control_period`.
+/// Three tasks of its own: at `high` the odometry, every `odometry_period`; at `low` the behaviours, every
+/// `behaviour_period`, which read the floor, and so take long, only while one is active; at `urgent`, on
+/// hardware that has a speed controller to be stepped, that, every `control_period`.
 ///
 /// No heap, no exceptions. Who may call what: ocm/controller/controller.hpp.
 #pragma once
@@ -22,6 +23,7 @@
 #include "ocm/topics/amiro.hpp"
 
 #include "firmware/boards/calibration.hpp"
+#include "firmware/boards/di_wheel_drive/behaviours.hpp"
 #include "firmware/boards/di_wheel_drive/geometry.hpp"
 #include "firmware/boards/di_wheel_drive/odometry.hpp"
 #include "firmware/boards/node.hpp"
@@ -32,8 +34,10 @@ namespace ocm::firmware::boards::di_wheel_drive {
 /// What the board needs of its parts. A part that has nothing to say answers Error::not_sampled.
 ///
 /// With a port other than the cooperative one they are called from several contexts: each sensor from the
-/// level that it was asked for, `encoders` at high. `set_wheels` is called where set points come from; of
-/// Regulated hardware it is called in the context of `control`, just before it.
+/// level that it was asked for, `encoders` at high and low, and `floor` at low, too, while a line is
+/// followed: both may be preempted by themselves. `set_wheels` is called where set points come from and at
+/// low, with the port's lock held; of Regulated hardware it is called in the context of `control`, just
+/// before it.
 template <class H>
 concept Hardware = requires(H& hardware, WheelSpeeds speeds) {
   { hardware.gyroscope() } -> std::same_as<base::Result<AngularRate>>;
@@ -78,8 +82,8 @@ static_assert(odometry_period == amiro::Odometry::shortest_period);
 
 template <Hardware H, can::Sender Bus, scheduling::Port P = scheduling::Cooperative,
           scheduling::Admission A = scheduling::AdmitAll>
-class Board : public Node<amiro::DiWheelDrive, Bus, P, (Regulated<H> ? 2 : 1), A> {
-  using Base = Node<amiro::DiWheelDrive, Bus, P, (Regulated<H> ? 2 : 1), A>;
+class Board : public Node<amiro::DiWheelDrive, Bus, P, (Regulated<H> ? 3 : 2), A> {
+  using Base = Node<amiro::DiWheelDrive, Bus, P, (Regulated<H> ? 3 : 2), A>;
   using Base::controller_;
 
  public:
@@ -110,14 +114,33 @@ class Board : public Node<amiro::DiWheelDrive, Bus, P, (Regulated<H> ? 2 : 1), A
       if (!counts) return counts.error;
       return amiro::FloorProximity{(*counts)[0], (*counts)[1], (*counts)[2], (*counts)[3]};
     });
+    controller_.template serve<amiro::Behaviour>([this]() -> base::Result<amiro::Behaviour> {
+      [[maybe_unused]] const auto guard = controller_.port().lock();
+      return orders_.report();
+    });
     controller_.template accept<amiro::Motors>([this](const amiro::Motors& target) {
       const WheelSpeeds speeds = wheel_speeds(target.x_m_per_s(), target.z_rad_per_s());
-      if constexpr (Regulated<H>) {
-        [[maybe_unused]] const auto guard = controller_.port().lock();
-        wheels_ = speeds;
-      } else {
-        hardware_->set_wheels(speeds);
-      }
+      [[maybe_unused]] const auto guard = controller_.port().lock();
+      orders_.end(target == amiro::Motors{} ? Ended::stopped : Ended::replaced);
+      turn_wheels(speeds);
+    });
+    controller_.template accept<amiro::Travel>([this](const amiro::Travel& travel) {
+      const bool possible = can_travel(travel);
+      if (travel != amiro::Travel{} && !possible)
+        return controller_.refuse(amiro::Travel::id, base::Error::out_of_range);
+      [[maybe_unused]] const auto guard = controller_.port().lock();
+      if (possible)
+        orders_.travel(travel);
+      else if (orders_.end(Active::travel, Ended::stopped))
+        turn_wheels({});
+    });
+    controller_.template accept<amiro::Follow>([this](const amiro::Follow& follow) {
+      if (!can_follow(follow)) return controller_.refuse(amiro::Follow::id, base::Error::out_of_range);
+      [[maybe_unused]] const auto guard = controller_.port().lock();
+      if (follow != amiro::Follow{})
+        orders_.follow(follow);
+      else if (orders_.end(Active::follow, Ended::stopped))
+        turn_wheels({});
     });
     controller_.template accept<amiro::FloorCalibration>([this](const amiro::FloorCalibration& command) {
       calibration_.apply(command, controller_,
@@ -126,8 +149,11 @@ class Board : public Node<amiro::DiWheelDrive, Bus, P, (Regulated<H> ? 2 : 1), A
     controller_.template every<0>(
         odometry_period, scheduling::Level::high,
         [this](const scheduling::Release& release) { update_odometry(release.missed + 1); });
+    controller_.template every<1>(
+        behaviour_period, scheduling::Level::low,
+        [this](const scheduling::Release& release) { step_behaviour(release.missed + 1); });
     if constexpr (Regulated<H>)
-      controller_.template every<1>(control_period, scheduling::Level::urgent, [this] { control(); });
+      controller_.template every<2>(control_period, scheduling::Level::urgent, [this] { control(); });
   }
   /// On hardware that needs it, to be called every 10 ms or so on the low level: looks after the parts, and
   /// tells how a calibration ended.
@@ -139,6 +165,31 @@ class Board : public Node<amiro::DiWheelDrive, Bus, P, (Regulated<H> ? 2 : 1), A
   }
 
  private:
+  using Active = Orders::Active;
+  using Ended = Orders::Ended;
+
+  /// With the port's lock held.
+  void turn_wheels(WheelSpeeds speeds) noexcept {
+    if constexpr (Regulated<H>)
+      wheels_ = speeds;
+    else
+      hardware_->set_wheels(speeds);
+  }
+
+  /// Parts are read and numbers worked out without the lock; an order that ended meanwhile moves no wheel.
+  void step_behaviour(std::uint32_t periods) noexcept {
+    Orders::Order order;
+    {
+      [[maybe_unused]] const auto guard = controller_.port().lock();
+      order = orders_.order();
+    }
+    if (order.active == Active::none) return;
+    const Behaviours::Step step = behaviours_.step(
+        order, periods, [this] { return hardware_->encoders(); }, [this] { return hardware_->floor(); });
+    [[maybe_unused]] const auto guard = controller_.port().lock();
+    if (orders_.take(order.number, step.distance, step.angle, step.ended)) turn_wheels(step.wheels);
+  }
+
   void update_odometry(std::uint32_t periods) noexcept {
     const auto ticks = hardware_->encoders();
     if (ticks)
@@ -155,6 +206,7 @@ class Board : public Node<amiro::DiWheelDrive, Bus, P, (Regulated<H> ? 2 : 1), A
     WheelSpeeds wheels;
     {
       [[maybe_unused]] const auto guard = controller_.port().lock();
+      if (orders_.pass(control_period)) wheels_ = {};
       wheels = wheels_;
     }
     hardware_->set_wheels(wheels);
@@ -166,6 +218,8 @@ class Board : public Node<amiro::DiWheelDrive, Bus, P, (Regulated<H> ? 2 : 1), A
   Odometry odometry_;  // of its task only
   base::Result<amiro::Odometry> position_ = base::Error::not_sampled;
   WheelSpeeds wheels_{};
+  Orders orders_;          // with the lock
+  Behaviours behaviours_;  // of its task only
 };
 
 }  // namespace ocm::firmware::boards::di_wheel_drive

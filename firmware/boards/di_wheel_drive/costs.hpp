@@ -15,6 +15,7 @@ static_assert(analysis::schedulable<task_set::Facts::Tasks>);
 
 static_assert(task_set::Control::task.period == control_period.count());
 static_assert(task_set::DeadReckoning::task.period == odometry_period.count());
+static_assert(task_set::Behaviours::task.period == behaviour_period.count());
 
 using Costs = analysis::CostsOf<task_set::Facts>;
 

@@ -1,11 +1,15 @@
 /// PowerManagement, the middle board: fuel gauge and proximity ring. The same code runs on the board, with
 /// drivers, and on a host, with a simulated world.
 ///
+/// One task of its own, at `high`, every `avoidance_period`: while it is asked to avoid obstacles it reads
+/// the ring and commands the motors of DiWheelDrive.
+///
 /// No heap, no exceptions. Who may call what: ocm/controller/controller.hpp.
 #pragma once
 
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 
 #include "ocm/base/result.hpp"
 #include "ocm/base/time.hpp"
@@ -13,11 +17,13 @@
 #include "ocm/controller/controller.hpp"
 #include "ocm/scheduling/admission.hpp"
 #include "ocm/scheduling/cooperative.hpp"
+#include "ocm/scheduling/dispatcher.hpp"
 #include "ocm/scheduling/port.hpp"
 #include "ocm/topics/amiro.hpp"
 
 #include "firmware/boards/calibration.hpp"
 #include "firmware/boards/node.hpp"
+#include "firmware/boards/power_management/avoiding.hpp"
 #include "firmware/boards/samples.hpp"
 
 namespace ocm::firmware::boards::power_management {
@@ -27,7 +33,8 @@ template <class H>
 concept Hardware = requires(H& hardware) {
   { hardware.gauge() } -> std::same_as<base::Result<GaugeReading>>;
   { hardware.ring() } -> std::same_as<base::Result<RingCounts>>;
-  { hardware.calibrate_ring(true) } -> std::same_as<base::Status>;  // true: forget the offsets
+  { hardware.calibrate_ring(true) } -> std::same_as<base::Status>;         // true: forget the offsets
+  { hardware.ring_offset(std::size_t{}) } -> std::same_as<std::uint16_t>;  // of sensor 0..7; 0: not known
 };
 
 /// Hardware whose parts come and go, and whose calibration takes time.
@@ -40,8 +47,8 @@ concept Maintained = Hardware<H> && requires(H& hardware, base::Time now) {
 
 template <Hardware H, can::Sender Bus, scheduling::Port P = scheduling::Cooperative,
           scheduling::Admission A = scheduling::AdmitAll>
-class Board : public Node<amiro::PowerManagement, Bus, P, 0, A> {
-  using Base = Node<amiro::PowerManagement, Bus, P, 0, A>;
+class Board : public Node<amiro::PowerManagement, Bus, P, 1, A> {
+  using Base = Node<amiro::PowerManagement, Bus, P, 1, A>;
   using Base::controller_;
 
  public:
@@ -70,6 +77,16 @@ class Board : public Node<amiro::PowerManagement, Bus, P, 0, A> {
       calibration_.apply(command, controller_,
                          [this](bool forget) { return hardware_->calibrate_ring(forget); });
     });
+    controller_.template accept<amiro::Avoid>([this](const amiro::Avoid& avoid) {
+      if (!can_avoid(avoid)) return controller_.refuse(amiro::Avoid::id, base::Error::out_of_range);
+      // Counts without an offset are no distance: everything would seem near.
+      if (avoid != amiro::Avoid{} && !offsets())
+        return controller_.refuse(amiro::Avoid::id, base::Error::not_sampled);
+      [[maybe_unused]] const auto guard = controller_.port().lock();
+      avoid_ = avoid;
+    });
+    controller_.template every<0>(avoidance_period, scheduling::Level::high,
+                                  [this](const scheduling::Release& release) { return avoid(release); });
   }
   /// On hardware that needs it, to be called every 10 ms or so on the low level: looks after the parts, and
   /// tells how a calibration ended.
@@ -81,8 +98,49 @@ class Board : public Node<amiro::PowerManagement, Bus, P, 0, A> {
   }
 
  private:
+  /// Of all eight sensors; nothing when one has none.
+  [[nodiscard]] base::Result<RingCounts> offsets() const noexcept {
+    RingCounts offsets{};
+    for (std::size_t i = 0; i < offsets.size(); ++i) {
+      offsets[i] = hardware_->ring_offset(i);
+      if (offsets[i] == 0) return base::Error::not_sampled;
+    }
+    return offsets;
+  }
+
+  /// Commands the motors while it is asked to; once more, with rest, when that has ended. Without a sample of
+  /// the ring the wheels rest.
+  scheduling::Outcome avoid(const scheduling::Release& release) noexcept {
+    amiro::Avoid wanted;
+    {
+      [[maybe_unused]] const auto guard = controller_.port().lock();
+      wanted = avoid_;
+    }
+    const bool active = wanted != amiro::Avoid{};
+    if (!active && !commanding_) return scheduling::Outcome::done;
+    amiro::Motors motors;
+    if (active) {
+      if (!commanding_) avoiding_ = {};
+      const auto counts = hardware_->ring();
+      const auto offsets = this->offsets();
+      const bool blind = !counts || !offsets;
+      if (blind && !blind_)
+        controller_.refuse(amiro::Avoid::id, counts ? base::Error::not_sampled : counts.error);
+      blind_ = blind;
+      if (!blind) motors = avoiding_.step(wanted, *counts, *offsets, release.missed + 1);
+    }
+    const scheduling::Outcome outcome = controller_.command(motors, avoidance_priority);
+    commanding_ = active || outcome == scheduling::Outcome::waits;
+    return outcome;
+  }
+
   H* hardware_;
   Calibration<amiro::RingCalibration> calibration_;
+  amiro::Avoid avoid_{};  // with the lock
+  // Of the task only
+  Avoiding avoiding_{};
+  bool commanding_ = false;  // the motors follow this board, or their rest could not be sent yet
+  bool blind_ = false;       // avoiding without a sample, which was reported
 };
 
 }  // namespace ocm::firmware::boards::power_management

@@ -5,7 +5,8 @@
 #include "ocm/analysis/task_list.hpp"
 #include "ocm/analysis/task_sets.hpp"
 
-#include "firmware/boards/bus.hpp"  // the proof for the bus, beside that for the processor
+#include "firmware/boards/bus.hpp"       // the proof for the bus, beside that for the processor
+#include "firmware/boards/reaction.hpp"  // and for the way from the ring to the wheels
 
 namespace ocm::firmware::boards::power_management {
 

@@ -30,6 +30,13 @@ struct DeadReckoning {
   static constexpr Task task{.cost = 324'000, .period = 50'000'000, .blocking = 10'000, .level = 1};
 };
 
+/// [decided: floor_proximity and dead_reckoning together; a step reads the floor, and calculates less than that]
+struct Behaviours {
+  static constexpr std::string_view name = "behaviours";
+  static constexpr bool own = true;
+  static constexpr Task task{.cost = 1'714'000, .period = 20'000'000, .blocking = 10'000, .level = 3};
+};
+
 struct Odometry {
   static constexpr std::string_view name = "odometry";
   static constexpr bool own = false;
@@ -62,6 +69,13 @@ struct Accelerometer {
 };
 
 /// [decided: it reads nothing]
+struct Behaviour {
+  static constexpr std::string_view name = "behaviour";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 100'000, .period = 100'000'000, .blocking = 10'000, .level = 2};
+};
+
+/// [decided: it reads nothing]
 struct DiWheelDriveStatus {
   static constexpr std::string_view name = "di_wheel_drive_status";
   static constexpr bool own = false;
@@ -76,7 +90,7 @@ struct DiWheelDriveRefusal {
 };
 
 struct Facts {
-  using Tasks = TaskList<Control, DeadReckoning, Odometry, FloorProximity, Magnetometer, Gyroscope, Accelerometer, DiWheelDriveStatus, DiWheelDriveRefusal>;
+  using Tasks = TaskList<Control, DeadReckoning, Behaviours, Odometry, FloorProximity, Magnetometer, Gyroscope, Accelerometer, Behaviour, DiWheelDriveStatus, DiWheelDriveRefusal>;
   static constexpr std::int64_t blocking = 10'000;
   static constexpr std::uint32_t bus_percent = 80;
 };
@@ -85,6 +99,13 @@ struct Facts {
 
 /// PowerManagement, each topic at its default period and priority. [docs/boards/figures.md, under load: latest measured start at 32 ns an instruction, the part's bus included]
 namespace power_management {
+
+/// [decided: proximity_ring, and 100us: a step reads the ring, and calculates little]
+struct Avoidance {
+  static constexpr std::string_view name = "avoidance";
+  static constexpr bool own = true;
+  static constexpr Task task{.cost = 9'208'000, .period = 50'000'000, .blocking = 1'000'000, .level = 1};
+};
 
 struct ProximityRing {
   static constexpr std::string_view name = "proximity_ring";
@@ -113,7 +134,7 @@ struct PowerManagementRefusal {
 };
 
 struct Facts {
-  using Tasks = TaskList<ProximityRing, PowerStatus, PowerManagementStatus, PowerManagementRefusal>;
+  using Tasks = TaskList<Avoidance, ProximityRing, PowerStatus, PowerManagementStatus, PowerManagementRefusal>;
   static constexpr std::int64_t blocking = 1'000'000;
   static constexpr std::uint32_t bus_percent = 80;
 };

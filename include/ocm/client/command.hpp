@@ -70,13 +70,18 @@ struct Command {
   return frame;
 }
 
-/// Everything at rest: motors first, then every publisher. O(topics).
+/// Everything at rest: motors first, then what would command them again or come to rest by itself only later
+/// (each actuator with a timeout), then every publisher. O(topics).
 [[nodiscard]] inline Command stop_all(const protocol::Catalogue& catalogue,
                                       std::optional<protocol::Priority> priority = {}) {
   Command command;
   command.ends_hold = true;
   for (const auto& topic : catalogue.topics)
     if (topic.role == protocol::Role::drive) command.frames.push_back(set_point(topic, {}, priority));
+  for (const auto& topic : catalogue.topics)
+    if (topic.kind == protocol::Kind::actuator && topic.timeout.count() != 0 &&
+        topic.role != protocol::Role::drive)
+      command.frames.push_back(set_point(topic, {}, priority));
   for (const auto& topic : catalogue.topics)
     if (topic.kind == protocol::Kind::sensor)
       command.frames.push_back(protocol::stop(topic.id, priority.value_or(topic.priority)));

@@ -46,6 +46,7 @@
 #include "ocm/controller/sensor_handler.hpp"
 #include "ocm/protocol/counters.hpp"
 #include "ocm/protocol/identifier.hpp"
+#include "ocm/protocol/message.hpp"
 #include "ocm/scheduling/admission.hpp"
 #include "ocm/scheduling/cooperative.hpp"
 #include "ocm/scheduling/dispatcher.hpp"
@@ -124,14 +125,21 @@ class Controller {
   }
 
   /// `job` is called every `period` (above zero) at `level`, from now on: void() or
-  /// void(const scheduling::Release&). The board's task number `Task`.
+  /// void(const scheduling::Release&). The board's task number `Task`. One that commands other boards answers
+  /// with the Outcome of `command`, and is called again when the bus has room, if that waits.
   template <std::size_t Task, class F>
   void every(base::Duration period, scheduling::Level level, F job) noexcept {
     static_assert(Task < Tasks, "the controller has fewer tasks");
-    if constexpr (std::is_invocable_v<F&, const scheduling::Release&>)
+    if constexpr (std::is_invocable_r_v<scheduling::Outcome, F&, const scheduling::Release&>)
       tasks_[Task] = job;
     else
-      tasks_[Task] = [job](const scheduling::Release&) mutable { job(); };
+      tasks_[Task] = [job](const scheduling::Release& release) mutable {
+        if constexpr (std::is_invocable_v<F&, const scheduling::Release&>)
+          job(release);
+        else
+          job();
+        return scheduling::Outcome::done;
+      };
     dispatcher_.start(first_task + Task, period, level, port().now());
   }
 
@@ -169,6 +177,25 @@ class Controller {
       counters_.refuse(reason);
     }
     tell({topic, reason});
+  }
+  /// Commands an actuator of another board; to be called from a task, which answers with the Outcome. A bus
+  /// without room: `waits`; the task is called once more as soon as there is some (`Release::resumed`), and
+  /// commands what is right then, so no set point is sent that is older than its task. A bus that answers
+  /// with an error: counted as `send_failed`, and the set point is given up.
+  template <class Topic>
+  [[nodiscard]] scheduling::Outcome command(const Topic& set_point,
+                                            protocol::Priority priority = Topic::priority) noexcept {
+    static_assert(!Board::actuators::template contains<Topic>, "this board has the actuator itself");
+    const can::Frame frame = protocol::command(set_point, priority);
+    [[maybe_unused]] const auto guard = port().lock();
+    const base::Result<bool> taken = bus_->send(frame);
+    if (!taken) {
+      ++counters_.send_failed;
+      return scheduling::Outcome::done;
+    }
+    if (!*taken) return scheduling::Outcome::waits;
+    ++counters_.sent;
+    return scheduling::Outcome::done;
   }
   /// The port's timer went off.
   void expire() noexcept { dispatcher_.expire(); }
@@ -242,7 +269,7 @@ class Controller {
       actuators_.settle(port().now(), port(), counters_);
       watch();
     } else if constexpr (Tasks > 0) {
-      tasks_[release.stream - first_task](release);
+      return tasks_[release.stream - first_task](release);
     }
     return scheduling::Outcome::done;
   }
@@ -291,7 +318,7 @@ class Controller {
   scheduling::Dispatcher<first_sensor + sensors, P> dispatcher_;
   SensorHandler<typename Board::sensors> sensors_;
   ActuatorHandler<typename Board::actuators> actuators_;
-  std::array<base::InlineFunction<void(const scheduling::Release&)>, Tasks> tasks_{};
+  std::array<base::InlineFunction<scheduling::Outcome(const scheduling::Release&)>, Tasks> tasks_{};
   mutable base::InlineFunction<Health()> health_;
   [[no_unique_address]] A admission_;
   Refusal last_refusal_;

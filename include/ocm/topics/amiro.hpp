@@ -1420,6 +1420,224 @@ struct LightRingRefusal {
 };
 static_assert(ocm::protocol::TopicType<LightRingRefusal>);
 
+/// Travel: drives a distance, then turns an angle on the spot, by the wheel encoders, and stops; zeros end
+/// it. Actuator of DiWheelDrive, set points on 0x0B. [decided: the thesis has no behaviours;
+/// docs/behaviours.md has the reasons. The id is free in the board's block]
+struct Travel {
+  static constexpr std::string_view name = "travel";
+  static constexpr ocm::protocol::TopicId id{0x0B};
+  static constexpr std::uint8_t instances = 1;
+  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{
+      {{ocm::protocol::TopicId{0x0B}, 8, {131, 129, 131, 130}}}};
+  static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::actuator;
+  /// [decided: it ends by itself; longer ones are refused]
+  static constexpr ocm::base::Duration timeout = std::chrono::seconds{600};
+  static constexpr ocm::base::Duration deadline = std::chrono::milliseconds{50};
+  static constexpr ocm::base::Duration jitter = std::chrono::milliseconds{1};
+  static constexpr ocm::protocol::Priority priority = ocm::protocol::Priority::medium;
+
+  /// forwards; 0.00001 m a bit, [-10, 10] m
+  std::int32_t distance = 0;
+  /// counter-clockwise seen from above; 0.00001 rad a bit, [-62.83185, 62.83185] rad
+  std::int32_t angle = 0;
+  /// of the wheels, at most; needed; 0.0001 m/s a bit, [0, 0.3] m/s
+  std::uint16_t speed = 0;
+
+  using DistanceBits = ocm::protocol::Bits<std::int32_t, 0, 24>;
+  using AngleBits = ocm::protocol::Bits<std::int32_t, 24, 24>;
+  using SpeedBits = ocm::protocol::Bits<std::uint16_t, 48>;
+
+  [[nodiscard]] constexpr double distance_m() const noexcept { return distance / 100'000.0; }
+  constexpr void set_distance_m(double value) noexcept {
+    distance = ocm::protocol::nearest_raw<std::int32_t>(value * 100'000.0, -1'000'000, 1'000'000);
+  }
+  [[nodiscard]] constexpr double angle_rad() const noexcept { return angle / 100'000.0; }
+  constexpr void set_angle_rad(double value) noexcept {
+    angle = ocm::protocol::nearest_raw<std::int32_t>(value * 100'000.0, -6'283'185, 6'283'185);
+  }
+  [[nodiscard]] constexpr double speed_m_per_s() const noexcept { return speed / 10'000.0; }
+  constexpr void set_speed_m_per_s(double value) noexcept {
+    speed = ocm::protocol::nearest_raw<std::uint16_t>(value * 10'000.0, 0, 3'000);
+  }
+
+  [[nodiscard]] constexpr ocm::can::Payload encode(std::size_t /*frame*/ = 0) const noexcept {
+    ocm::can::Payload data{};
+    DistanceBits::put(data, distance);
+    AngleBits::put(data, angle);
+    SpeedBits::put(data, speed);
+    return data;
+  }
+  [[nodiscard]] static constexpr Travel decode(const ocm::can::Payload& data) noexcept {
+    Travel value;
+    value.distance = DistanceBits::get(data);
+    value.angle = AngleBits::get(data);
+    value.speed = SpeedBits::get(data);
+    return value;
+  }
+  [[nodiscard]] static constexpr Travel decode(const std::array<ocm::can::Payload, 1>& all) noexcept {
+    return decode(all[0]);
+  }
+  friend constexpr bool operator==(const Travel&, const Travel&) = default;
+};
+static_assert(ocm::protocol::TopicType<Travel>);
+
+/// Follow: follows a dark line with the floor sensors, until zero or silence. Actuator of DiWheelDrive, set
+/// points on 0x0C. [decided, as travel]
+struct Follow {
+  static constexpr std::string_view name = "follow";
+  static constexpr ocm::protocol::TopicId id{0x0C};
+  static constexpr std::uint8_t instances = 1;
+  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{
+      {{ocm::protocol::TopicId{0x0C}, 2, {71, 69, 71, 69}}}};
+  static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::actuator;
+  static constexpr ocm::base::Duration timeout = std::chrono::milliseconds{500};  ///< [decided, as motors]
+  static constexpr ocm::base::Duration deadline = std::chrono::milliseconds{50};
+  static constexpr ocm::base::Duration jitter = std::chrono::milliseconds{1};
+  static constexpr ocm::protocol::Priority priority = ocm::protocol::Priority::medium;
+
+  std::uint16_t speed = 0;  ///< along the line, at most; 0.0001 m/s a bit, [0, 0.2] m/s
+
+  using SpeedBits = ocm::protocol::Bits<std::uint16_t, 0>;
+
+  [[nodiscard]] constexpr double speed_m_per_s() const noexcept { return speed / 10'000.0; }
+  constexpr void set_speed_m_per_s(double value) noexcept {
+    speed = ocm::protocol::nearest_raw<std::uint16_t>(value * 10'000.0, 0, 2'000);
+  }
+
+  [[nodiscard]] constexpr ocm::can::Payload encode(std::size_t /*frame*/ = 0) const noexcept {
+    ocm::can::Payload data{};
+    SpeedBits::put(data, speed);
+    return data;
+  }
+  [[nodiscard]] static constexpr Follow decode(const ocm::can::Payload& data) noexcept {
+    Follow value;
+    value.speed = SpeedBits::get(data);
+    return value;
+  }
+  [[nodiscard]] static constexpr Follow decode(const std::array<ocm::can::Payload, 1>& all) noexcept {
+    return decode(all[0]);
+  }
+  friend constexpr bool operator==(const Follow&, const Follow&) = default;
+};
+static_assert(ocm::protocol::TopicType<Follow>);
+
+/// Behaviour: what the wheels' board does by itself, and how that ended. Sensor of DiWheelDrive, requests on
+/// 0x0D. [decided, as travel]
+struct Behaviour {
+  static constexpr std::string_view name = "behaviour";
+  static constexpr ocm::protocol::TopicId id{0x0D};
+  static constexpr std::uint8_t instances = 1;
+  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{
+      {{ocm::protocol::TopicId{0x0D}, 8, {131, 130, 131, 130}}}};
+  static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::sensor;
+  static constexpr ocm::protocol::Period period{100, ocm::protocol::PeriodUnit::milliseconds};
+  /// [decided: a step of the behaviours]
+  static constexpr ocm::base::Duration shortest_period = std::chrono::milliseconds{20};
+  static constexpr ocm::base::Duration deadline = std::chrono::milliseconds{50};
+  static constexpr ocm::base::Duration jitter = std::chrono::milliseconds{1};
+  static constexpr ocm::protocol::Priority priority = ocm::protocol::Priority::medium;
+
+  enum class Active : std::uint8_t {
+    none = 0,
+    travel = 1,
+    follow = 2,
+  };
+  enum class Ended : std::uint8_t {
+    nothing = 0,
+    arrived = 1,
+    stopped = 2,
+    replaced = 3,
+    no_sample = 4,
+    line_lost = 5,
+    too_long = 6,
+    late = 7,
+  };
+
+  Active active{};
+  /// how the last one ended; nothing before the first end, and while one is active
+  Ended ended{};
+  /// left of the way ahead; 0.00001 m a bit, [-83.88608, 83.88607] m
+  std::int32_t distance = 0;
+  /// left of the turn; 0.00001 rad a bit, [-83.88608, 83.88607] rad
+  std::int32_t angle = 0;
+
+  using ActiveBits = ocm::protocol::Bits<std::uint8_t, 0>;
+  using EndedBits = ocm::protocol::Bits<std::uint8_t, 8>;
+  using DistanceBits = ocm::protocol::Bits<std::int32_t, 16, 24>;
+  using AngleBits = ocm::protocol::Bits<std::int32_t, 40, 24>;
+
+  [[nodiscard]] constexpr double distance_m() const noexcept { return distance / 100'000.0; }
+  constexpr void set_distance_m(double value) noexcept {
+    distance = ocm::protocol::nearest_raw<std::int32_t>(value * 100'000.0, -8'388'608, 8'388'607);
+  }
+  [[nodiscard]] constexpr double angle_rad() const noexcept { return angle / 100'000.0; }
+  constexpr void set_angle_rad(double value) noexcept {
+    angle = ocm::protocol::nearest_raw<std::int32_t>(value * 100'000.0, -8'388'608, 8'388'607);
+  }
+
+  [[nodiscard]] constexpr ocm::can::Payload encode(std::size_t /*frame*/ = 0) const noexcept {
+    ocm::can::Payload data{};
+    ActiveBits::put(data, static_cast<std::uint8_t>(active));
+    EndedBits::put(data, static_cast<std::uint8_t>(ended));
+    DistanceBits::put(data, distance);
+    AngleBits::put(data, angle);
+    return data;
+  }
+  [[nodiscard]] static constexpr Behaviour decode(const ocm::can::Payload& data) noexcept {
+    Behaviour value;
+    value.active = static_cast<Active>(ActiveBits::get(data));
+    value.ended = static_cast<Ended>(EndedBits::get(data));
+    value.distance = DistanceBits::get(data);
+    value.angle = AngleBits::get(data);
+    return value;
+  }
+  [[nodiscard]] static constexpr Behaviour decode(const std::array<ocm::can::Payload, 1>& all) noexcept {
+    return decode(all[0]);
+  }
+  friend constexpr bool operator==(const Behaviour&, const Behaviour&) = default;
+};
+static_assert(ocm::protocol::TopicType<Behaviour>);
+
+/// Avoid: wanders and keeps clear of obstacles: the ring's board commands the motors, until zero or silence.
+/// Actuator of PowerManagement, set points on 0x29. [decided, as travel]
+struct Avoid {
+  static constexpr std::string_view name = "avoid";
+  static constexpr ocm::protocol::TopicId id{0x29};
+  static constexpr std::uint8_t instances = 1;
+  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{
+      {{ocm::protocol::TopicId{0x29}, 2, {71, 70, 69, 69}}}};
+  static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::actuator;
+  static constexpr ocm::base::Duration timeout = std::chrono::milliseconds{500};  ///< [decided, as motors]
+  static constexpr ocm::base::Duration deadline = std::chrono::milliseconds{50};
+  static constexpr ocm::base::Duration jitter = std::chrono::milliseconds{1};
+  static constexpr ocm::protocol::Priority priority = ocm::protocol::Priority::medium;
+
+  std::uint16_t speed = 0;  ///< where nothing is near, at most; 0.0001 m/s a bit, [0, 0.2] m/s
+
+  using SpeedBits = ocm::protocol::Bits<std::uint16_t, 0>;
+
+  [[nodiscard]] constexpr double speed_m_per_s() const noexcept { return speed / 10'000.0; }
+  constexpr void set_speed_m_per_s(double value) noexcept {
+    speed = ocm::protocol::nearest_raw<std::uint16_t>(value * 10'000.0, 0, 2'000);
+  }
+
+  [[nodiscard]] constexpr ocm::can::Payload encode(std::size_t /*frame*/ = 0) const noexcept {
+    ocm::can::Payload data{};
+    SpeedBits::put(data, speed);
+    return data;
+  }
+  [[nodiscard]] static constexpr Avoid decode(const ocm::can::Payload& data) noexcept {
+    Avoid value;
+    value.speed = SpeedBits::get(data);
+    return value;
+  }
+  [[nodiscard]] static constexpr Avoid decode(const std::array<ocm::can::Payload, 1>& all) noexcept {
+    return decode(all[0]);
+  }
+  friend constexpr bool operator==(const Avoid&, const Avoid&) = default;
+};
+static_assert(ocm::protocol::TopicType<Avoid>);
+
 // clang-format off
 namespace detail {
 namespace protocol = ocm::protocol;
@@ -1785,13 +2003,68 @@ inline constexpr std::string_view source =
   "decided, as di_wheel_drive_refusal";
 }  // namespace light_ring_refusal
 
+namespace travel {
+inline constexpr std::array<protocol::Field, 3> fields{{
+  {"distance", {0, 24, protocol::ByteOrder::little}, true, {1, -5}, {}, "m", -1'000'000, 1'000'000, {}, false},
+  {"angle", {24, 24, protocol::ByteOrder::little}, true, {1, -5}, {}, "rad", -6'283'185, 6'283'185, {}, false},
+  {"speed", {48, 16, protocol::ByteOrder::little}, false, {1, -4}, {}, "m/s", 0, 3'000, {}, false},
+}};
+inline constexpr std::array<protocol::FrameLayout, 1> frames{{
+  {"", protocol::TopicId{0x0B}, 8, fields, {131, 129, 131, 130}},
+}};
+inline constexpr std::string_view source =
+  "decided: the thesis has no behaviours; docs/behaviours.md has the reasons. The id is free in the board's block; timeout decided: it ends by itself; longer ones are refused";
+}  // namespace travel
+
+namespace follow {
+inline constexpr std::array<protocol::Field, 1> fields{{
+  {"speed", {0, 16, protocol::ByteOrder::little}, false, {1, -4}, {}, "m/s", 0, 2'000, {}, false},
+}};
+inline constexpr std::array<protocol::FrameLayout, 1> frames{{
+  {"", protocol::TopicId{0x0C}, 2, fields, {71, 69, 71, 69}},
+}};
+inline constexpr std::string_view source =
+  "decided, as travel; timeout decided, as motors";
+}  // namespace follow
+
+namespace behaviour {
+inline constexpr std::array<protocol::NamedValue, 3> active_names{{{0, "none"}, {1, "travel"},
+                                                                   {2, "follow"}}};
+inline constexpr std::array<protocol::NamedValue, 8> ended_names{{{0, "nothing"}, {1, "arrived"},
+                                                                  {2, "stopped"}, {3, "replaced"},
+                                                                  {4, "no_sample"}, {5, "line_lost"},
+                                                                  {6, "too_long"}, {7, "late"}}};
+inline constexpr std::array<protocol::Field, 4> fields{{
+  {"active", {0, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, active_names, false},
+  {"ended", {8, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, ended_names, false},
+  {"distance", {16, 24, protocol::ByteOrder::little}, true, {1, -5}, {}, "m", -8'388'608, 8'388'607, {}, false},
+  {"angle", {40, 24, protocol::ByteOrder::little}, true, {1, -5}, {}, "rad", -8'388'608, 8'388'607, {}, false},
+}};
+inline constexpr std::array<protocol::FrameLayout, 1> frames{{
+  {"", protocol::TopicId{0x0D}, 8, fields, {131, 130, 131, 130}},
+}};
+inline constexpr std::string_view source =
+  "decided, as travel; shortest_period decided: a step of the behaviours";
+}  // namespace behaviour
+
+namespace avoid {
+inline constexpr std::array<protocol::Field, 1> fields{{
+  {"speed", {0, 16, protocol::ByteOrder::little}, false, {1, -4}, {}, "m/s", 0, 2'000, {}, false},
+}};
+inline constexpr std::array<protocol::FrameLayout, 1> frames{{
+  {"", protocol::TopicId{0x29}, 2, fields, {71, 70, 69, 69}},
+}};
+inline constexpr std::string_view source =
+  "decided, as travel; timeout decided, as motors";
+}  // namespace avoid
+
 inline constexpr std::array<protocol::Board, 3> boards{{
   {"di_wheel_drive", "STM32F103"},
   {"power_management", "STM32F405"},
   {"light_ring", "STM32F103"},
 }};
 
-inline constexpr std::array<protocol::Topic, 24> topics{{
+inline constexpr std::array<protocol::Topic, 28> topics{{
   protocol::catalogue_entry<Odometry>(0, odometry::aliases, odometry::frames, odometry::source),
   protocol::catalogue_entry<FloorProximity>(0, floor_proximity::aliases, floor_proximity::frames, floor_proximity::source),
   protocol::catalogue_entry<Magnetometer>(0, magnetometer::aliases, magnetometer::frames, magnetometer::source),
@@ -1816,6 +2089,10 @@ inline constexpr std::array<protocol::Topic, 24> topics{{
   protocol::catalogue_entry<PowerManagementRefusal>(1, {}, power_management_refusal::frames, power_management_refusal::source),
   protocol::catalogue_entry<LightRingStatus>(2, {}, light_ring_status::frames, light_ring_status::source),
   protocol::catalogue_entry<LightRingRefusal>(2, {}, light_ring_refusal::frames, light_ring_refusal::source),
+  protocol::catalogue_entry<Travel>(0, {}, travel::frames, travel::source),
+  protocol::catalogue_entry<Follow>(0, {}, follow::frames, follow::source),
+  protocol::catalogue_entry<Behaviour>(0, {}, behaviour::frames, behaviour::source),
+  protocol::catalogue_entry<Avoid>(1, {}, avoid::frames, avoid::source),
 }};
 }  // namespace detail
 // clang-format on
@@ -1834,8 +2111,8 @@ struct DiWheelDrive {
   static constexpr std::uint32_t clock_hz = 72'000'000;
   static constexpr std::uint32_t can_clock_hz = 36'000'000;
   using sensors = ocm::protocol::TopicList<Odometry, FloorProximity, Magnetometer, Gyroscope, Accelerometer,
-                                           DiWheelDriveStatus, DiWheelDriveRefusal>;
-  using actuators = ocm::protocol::TopicList<Motors, FloorCalibration>;
+                                           DiWheelDriveStatus, DiWheelDriveRefusal, Behaviour>;
+  using actuators = ocm::protocol::TopicList<Motors, FloorCalibration, Travel, Follow>;
   using status = DiWheelDriveStatus;
   using refusal = DiWheelDriveRefusal;
   static constexpr std::uint32_t wire_hash = amiro::wire_hash;
@@ -1850,7 +2127,7 @@ struct PowerManagement {
   static constexpr std::uint32_t can_clock_hz = 42'000'000;
   using sensors =
       ocm::protocol::TopicList<PowerStatus, ProximityRing, PowerManagementStatus, PowerManagementRefusal>;
-  using actuators = ocm::protocol::TopicList<RingCalibration>;
+  using actuators = ocm::protocol::TopicList<RingCalibration, Avoid>;
   using status = PowerManagementStatus;
   using refusal = PowerManagementRefusal;
   static constexpr std::uint32_t wire_hash = amiro::wire_hash;

@@ -24,6 +24,7 @@ struct Bottom {
 struct Middle {
   base::Result<GaugeReading> gauge();
   base::Result<RingCounts> ring();
+  std::uint16_t ring_offset(std::size_t sensor);
   base::Status calibrate_ring(bool forget);
 };
 struct Top {

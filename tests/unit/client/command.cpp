@@ -46,7 +46,8 @@ TEST_CASE("the priority of a set point is the topic's own unless one is given") 
         protocol::Priority::low);
 }
 
-TEST_CASE("stopping all rests the motors first, then ends every stream") {
+TEST_CASE(
+    "stopping all rests the motors first, then what rests by itself only later, and ends every stream") {
   const client::Command command = stop_all(amiro::catalogue);
   CHECK(command.ends_hold);
   CHECK_FALSE(command.hold);
@@ -59,7 +60,12 @@ TEST_CASE("stopping all rests the motors first, then ends every stream") {
     const auto stop = protocol::stop(one.id, one.priority);
     CHECK(std::count(command.frames.begin(), command.frames.end(), stop) == 1);
   }
-  CHECK(command.frames.size() == sensors + 1);
+  std::size_t behaviours = 0;
+  for (const auto* name : {"travel", "follow", "avoid"}) {
+    ++behaviours;
+    CHECK(command.frames[behaviours] == set_point(topic(name), {}));
+  }
+  CHECK(command.frames.size() == 1 + behaviours + sensors);
 }
 
 }  // namespace client_command_test

@@ -49,4 +49,42 @@ TEST_CASE("a board is silent on what is not its own") {
   CHECK(board.controller.counters().refused() == 0);
 }
 
+TEST_CASE("a task commands another board: the newest when the bus has room, and a broken bus is counted") {
+  struct Commander {
+    Mailboxes bus;
+    controller::Controller<amiro::PowerManagement, Mailboxes, scheduling::Cooperative, 1> controller{bus};
+    int steps = 0;
+    int resumed = 0;
+  } board;
+  board.controller.every<0>(10ms, scheduling::Level::high, [&board](const scheduling::Release& release) {
+    board.resumed += release.resumed ? 1 : 0;
+    amiro::Motors motors;
+    motors.x = ++board.steps;
+    return board.controller.command(motors, protocol::Priority::high);
+  });
+  auto& [bus, controller, steps, resumed] = board;
+  controller.poll(at(0ms));
+  CHECK(texts(bus) == std::vector<std::string>{"101#0100000000000000"});
+  CHECK(controller.counters().sent == 1);
+
+  bus.room = 0;
+  controller.poll(at(10ms));
+  CHECK(steps == 2);
+  CHECK(controller.waiting());
+  controller.poll(at(25ms));  // no release while one waits, and still no room
+  CHECK(bus.frames.size() == 1);
+  bus.room = 1;
+  controller.poll(at(26ms));
+  CHECK(resumed >= 1);
+  REQUIRE(bus.frames.size() == 2);
+  CHECK(bus.frames[1].data[0] == steps);  // worked out just now
+  CHECK_FALSE(controller.waiting());
+
+  bus.broken = true;
+  controller.poll(at(30ms));
+  CHECK(controller.counters().send_failed == 1);
+  CHECK_FALSE(controller.waiting());
+  CHECK(controller.counters().sent == 2);
+}
+
 }  // namespace controller_controller_test

@@ -186,6 +186,34 @@ TEST_CASE("refusal: which topic, why, and how often") {
   CHECK(same(Reason::not_schedulable, ocm::base::Error::not_schedulable));
 }
 
+TEST_CASE("travel: 10 um, 10 urad and 0.1 mm/s a bit") {
+  constexpr auto t = Travel::decode(Payload{0x30, 0x75, 0x00, 0xA7, 0x9A, 0xFD, 0xE8, 0x03});
+  STATIC_REQUIRE(t.distance_m() == 0.3);
+  STATIC_REQUIRE(t.angle_rad() == -1.57017);
+  STATIC_REQUIRE(t.speed_m_per_s() == 0.1);
+  STATIC_REQUIRE(ocm::protocol::command(t) ==
+                 Frame{0x20B, 8, {0x30, 0x75, 0x00, 0xA7, 0x9A, 0xFD, 0xE8, 0x03}});
+}
+
+TEST_CASE("follow and avoid: one speed") {
+  Follow follow;
+  follow.set_speed_m_per_s(0.1);
+  CHECK(ocm::protocol::command(follow) == Frame{0x20C, 2, {0xE8, 0x03}});
+  follow.set_speed_m_per_s(9);
+  CHECK(follow.speed_m_per_s() == 0.2);
+  Avoid avoid;
+  avoid.set_speed_m_per_s(0.1);
+  CHECK(ocm::protocol::command(avoid) == Frame{0x229, 2, {0xE8, 0x03}});
+}
+
+TEST_CASE("behaviour: what is active, how the last one ended, and what is left") {
+  constexpr auto b = Behaviour::decode(Payload{0x01, 0x00, 0x30, 0x75, 0x00, 0x59, 0x65, 0x02});
+  STATIC_REQUIRE(b.active == Behaviour::Active::travel);
+  STATIC_REQUIRE(b.ended == Behaviour::Ended::nothing);
+  STATIC_REQUIRE(b.distance_m() == 0.3);
+  STATIC_REQUIRE(b.angle_rad() == 1.57017);
+}
+
 TEST_CASE("the catalogue knows every name, and whose topic it is") {
   struct Expected {
     std::string_view name;
@@ -213,6 +241,10 @@ TEST_CASE("the catalogue knows every name, and whose topic it is") {
       {"power_management_refusal", "power_management_refusal", 0x3B, "power_management", 1},
       {"light_ring_status", "light_ring_status", 0x57, "light_ring", 2},
       {"light_ring_refusal", "light_ring_refusal", 0x59, "light_ring", 1},
+      {"travel", "travel", 0x0B, "di_wheel_drive", 1},
+      {"follow", "follow", 0x0C, "di_wheel_drive", 1},
+      {"behaviour", "behaviour", 0x0D, "di_wheel_drive", 1},
+      {"avoid", "avoid", 0x29, "power_management", 1},
   };
   for (const Expected& e : expected) {
     CAPTURE(e.name);
@@ -223,7 +255,7 @@ TEST_CASE("the catalogue knows every name, and whose topic it is") {
     CHECK(catalogue.boards[topic->board].name == e.board);
     CHECK(topic->frames.size() == e.frames);
   }
-  STATIC_REQUIRE(catalogue.topics.size() == 24);
+  STATIC_REQUIRE(catalogue.topics.size() == 28);
   STATIC_REQUIRE(catalogue.find("led_3")->group == "led");
   STATIC_REQUIRE(catalogue.find("led_3")->instance == 3);
   STATIC_REQUIRE(catalogue.bit_rate == 500'000);

@@ -1,6 +1,6 @@
 // The proximity ring's eight frames every 4 ms, as if the spec said so, beside all that the boards send.
-// expect g++: misses_its_deadline<ocm::analysis::FreshFrame<Ring, 500000, 5,
-// expect clang++: misses_its_deadline<ocm::analysis::FreshFrame<Ring, 500000, 5,
+// expect g++: misses_its_deadline<ocm::analysis::FreshFrame<Ring, 500000, 3,
+// expect clang++: misses_its_deadline<ocm::analysis::FreshFrame<Ring, 500000, 3,
 #include "firmware/boards/bus.hpp"
 
 using namespace ocm;
