@@ -52,6 +52,9 @@ class Decode(Case):
         self.assertEqual((velocity["frame"], pose["frame"]), ("velocity", "pose"))
         self.assertEqual((pose["bus"], pose["direction"]), ("can1", "received"))
         self.assertEqual(request["fields"], {"mode": "publish", "period": 0.5})
+        # Without a period the topic's own holds: of the gyroscope 50 ms, of a status 1 s. [spec/topics.json]
+        short = self.objects(self.run_tool("decode", "--json", stdin="(1.0) can0 208#01\n(2.0) can0 21B#01\n")[0])
+        self.assertEqual([each["fields"]["period"] for each in short], [0.05, 1])
         self.assertEqual(motors["topic"], "motors")
 
     def test_choices(self):

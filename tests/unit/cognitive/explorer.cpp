@@ -108,6 +108,18 @@ TEST_CASE("explorer: what is left of the border") {
   CHECK(explorer.left(map_of({"#.#", "...", "#.#"})).edge == 4);
 }
 
+TEST_CASE("explorer: a corridor is as wide as the robot and its margin, or no way leads through it") {
+  const std::string wall(40, '#');
+  const Map map = map_of({wall, "#" + std::string(39, '.'), wall});
+  const std::array robots{scout(0, map, {1, 1})};
+  Explorer narrow{options()};
+  CHECK(narrow.next(0, robots, map, Time{1s}).kind == Kind::drive);
+  ExplorerOptions wide = options();
+  wide.margin_m = 0.2F;
+  Explorer careful{wide};
+  CHECK(careful.next(0, robots, map, Time{1s}).kind != Kind::drive);
+}
+
 TEST_CASE("explorer: nothing to do") {
   const Map closed = map_of({"####", "#..#", "####"});
   Explorer explorer{options()};

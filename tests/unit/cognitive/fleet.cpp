@@ -196,6 +196,24 @@ TEST_CASE("fleet: a robot that was not confirmed is confirmed, asked or not") {
   CHECK(sayings(fleet) == "0:{S,CON}\n");
 }
 
+TEST_CASE("fleet: what confirms a handshake is said again, by each robot at a time of its own") {
+  Fleet fleet;
+  for (const std::size_t index : {0U, 3U}) {
+    fleet.linked(static_cast<std::uint8_t>(index), "AVR", second);
+    fleet.feed("[" + std::to_string(index) + "]" + handshake.substr(3), second);
+  }
+  CHECK(sayings(fleet) == "0:{S,CON}\n3:{S,CON}\n");
+  // 500 ms, and 20 ms more for each robot before it.
+  fleet.expire(second + 499ms);
+  CHECK(sayings(fleet).empty());
+  fleet.expire(second + 500ms);
+  CHECK(sayings(fleet) == "0:{S,CON}\n");
+  fleet.expire(second + 559ms);
+  CHECK(sayings(fleet).empty());
+  fleet.expire(second + 560ms);
+  CHECK(sayings(fleet) == "3:{S,CON}\n");
+}
+
 TEST_CASE("fleet: what was not heard is said again; a stop before all else, until the robot stands") {
   Fleet fleet;
   const auto hear = [&fleet](std::string_view words, Time now) {
