@@ -80,7 +80,9 @@ std::string to_table(const Study& study) {
   std::size_t width = std::string_view{"the start"}.size();
   for (const auto& configuration : tables.configurations) width = std::max(width, configuration.name.size());
 
-  text += "\nconfigurations: load of the bus, and the latest end of each sample against its deadline\n";
+  text +=
+      "\nconfigurations: load of the bus, and the latest end of each sample, on its board and on the bus, "
+      "against its deadline\n";
   for (std::size_t c = 0; c < study.configurations.size(); ++c) {
     const auto& bound = study.configurations[c];
     const auto role = c == tables.initial && c == tables.fall_back ? " (initial, fall-back)"
@@ -90,9 +92,11 @@ std::string to_table(const Study& study) {
     text +=
         fmt::format("  {:<{}}  {:>7}{}\n", tables.configurations[c].name, width, percent(bound.load), role);
     for (const StreamBound& stream : bound.streams)
-      text += fmt::format("    {} every {} at {} priority: {} of {}\n", tables.topic(stream.topic).name,
-                          words::to_text(stream.period), name(stream.priority), milliseconds(stream.response),
-                          milliseconds(stream.deadline));
+      text += fmt::format(
+          "    {} every {} at {} priority: {}{} of {}\n", tables.topic(stream.topic).name,
+          words::to_text(stream.period), name(stream.priority),
+          stream.on_board == 0 ? std::string{} : milliseconds(stream.on_board) + " on its board and ",
+          milliseconds(stream.response), milliseconds(stream.deadline));
   }
 
   text += others_of(study);
@@ -107,7 +111,9 @@ std::string to_table(const Study& study) {
         change.from == none ? std::string_view{"the start"} : tables.configurations[change.from].name, width,
         tables.configurations[change.to].name, width, percent(change.load), milliseconds(change.over_after));
 
-  text += "\nreactions: from the event to the end of the last set point on the bus, at most\n";
+  text +=
+      "\nreactions: from the event to the end of the last set point on the bus, at most; what a sample takes "
+      "on its board comes on top\n";
   for (const ReactionBound& reaction : study.reactions) {
     const auto& transition = tables.transitions[reaction.transition];
     text += fmt::format("  {}: {} -> {}\n", transition.cause, tables.configurations[reaction.from].name,
@@ -145,6 +151,7 @@ std::string to_json(const Study& study) {
                          {"period_ns", stream.period.count()},
                          {"priority", name(stream.priority)},
                          {"response_ns", nanoseconds(stream.response)},
+                         {"on_board_ns", stream.on_board == 0 ? Json(nullptr) : nanoseconds(stream.on_board)},
                          {"deadline_ns", stream.deadline}});
     Json others = Json::array(), uncounted = Json::array();
     for (const auto& each : study.file->parts[c].expected)

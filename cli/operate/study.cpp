@@ -7,6 +7,7 @@
 
 #include "ocm/base/decimal.hpp"
 
+#include "cli/operate/processors.hpp"
 #include "cli/words/quantity.hpp"
 
 namespace ocm::cli::operate {
@@ -68,6 +69,39 @@ spec::Problem problem_of(const OperatorFile& file, const Doubt& doubt) {
   return {place, "unknown", ""};
 }
 
+/// What a board cannot serve: by its processor alone, or together with the bus.
+void judge_boards(Study& study, std::uint16_t from, std::uint16_t to) {
+  const OperatorFile& file = *study.file;
+  const auto& tables = file.tables;
+  for (const ProcessorBound& bound : on_processors(tables, from, to)) {
+    const auto& topic = tables.topic(bound.topic);
+    std::int64_t needs = bound.time.response;
+    std::int64_t on_bus = 0;
+    if (from == none) {
+      StreamBound& stream = study.configurations[to].streams[bound.stream];
+      stream.on_board = needs;
+      on_bus = stream.response;
+      if (needs != analysis::unbounded && on_bus != analysis::unbounded) needs += on_bus;
+    }
+    if (bound.time.bounded() && needs <= bound.time.deadline) continue;
+    const auto board = tables.catalogue->board_name(topic);
+    const std::string of = from == none ? fmt::format("in \"{}\"", name_of(file, to))
+                                        : fmt::format("in the change from \"{}\" to \"{}\"",
+                                                      name_of(file, from), name_of(file, to));
+    const std::string what =
+        bound.time.bounded()
+            ? fmt::format("{} the processor of {} takes up to {} for a sample of {}{}, its deadline is {}",
+                          of, board, milliseconds(bound.time.response), topic.name,
+                          on_bus == 0 ? std::string{} : fmt::format(" and the bus {}", milliseconds(on_bus)),
+                          milliseconds(bound.time.deadline))
+            : fmt::format("{} the processor of {} cannot serve {}: it is overloaded at its priority", of,
+                          board, topic.name);
+    study.doubts.push_back(
+        {bound.old ? file.parts[to].of.place : file.parts[to].stream_places[bound.stream], what,
+         "longer periods or fewer streams of that board, or a more urgent priority for it"});
+  }
+}
+
 }  // namespace
 
 Study study(const OperatorFile& file, std::uint32_t bit_rate) {
@@ -122,6 +156,9 @@ Study study(const OperatorFile& file, std::uint32_t bit_rate) {
       result.reactions.push_back(std::move(reaction));
     }
   }
+  for (std::uint16_t c = 0; c < count; ++c) judge_boards(result, none, c);
+  for (const ChangeBound& each : result.changes)
+    if (each.from != none) judge_boards(result, each.from, each.to);
   proof->check([&](const Doubt& doubt) {
     auto problem = problem_of(file, doubt);
     if (std::find(result.doubts.begin(), result.doubts.end(), problem) == result.doubts.end())

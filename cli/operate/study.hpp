@@ -20,6 +20,9 @@ struct StreamBound {
   protocol::Priority priority = protocol::default_priority;
   std::int64_t response = 0;  ///< ns, or analysis::unbounded
   std::int64_t deadline = 0;
+  /// On the processor of its board, from the release until the bus has the sample, ns, or
+  /// analysis::unbounded; 0: the board's tasks are not known.
+  std::int64_t on_board = 0;
 };
 struct ConfigurationBound {
   std::int64_t load = 0;  ///< per mille

@@ -116,6 +116,27 @@ class Checked(Operate):
             self.assertGreater(after["load_per_mille"], before["load_per_mille"])
 
 
+    def test_what_a_board_cannot_serve_is_an_error_with_its_place(self):
+        study = json.loads(self.run_tool("operate", GUARD, "--check", "--json")[0])
+        ring, odometry, power = study["configurations"][1]["streams"]
+        self.assertGreater(ring["on_board_ns"], 8_000_000)  # the measured cost of a sample alone
+        self.assertLess(odometry["on_board_ns"], 1_000_000)
+        self.assertGreater(power["on_board_ns"], ring["on_board_ns"])  # it waits for the ring, on the same board
+
+        def too_often(document):  # on the bus eight short frames each 9 ms are no matter
+            document["configurations"][1]["streams"][0]["period"] = "9ms"
+            document["monitors"][0]["when"]["any"][-1]["above"] = "300ms"
+        document = guard()
+        too_often(document)
+        line = self.line_of('"9ms"', document) - 2
+        err = self.refused(too_often, f"test.operator.json:{line}: /configurations/1/streams/0: in \"driving\" the processor of power_management ",
+                           "proximity_ring", "longer periods or fewer streams of that board")
+        self.assertIn("in the change from \"idle\" to \"driving\" the processor of power_management", err)
+        self.assertNotIn("in \"driving\" proximity_ring takes up to", err)  # the bus
+
+        document["configurations"][1]["streams"][0]["period"] = "25ms"
+        self.run_tool("operate", self.write(document), "--check")
+
     def test_what_programs_may_command_counts_where_they_may(self):
         def studied(document):
             out, _ = self.run_tool("operate", self.write(document), "--check", "--json")
@@ -793,6 +814,7 @@ class OfPlainMessages(Operating):
         periods = {each["topic"]: each["period_ns"] for each in watching["others"]}
         self.assertEqual((periods["Engine"], periods["Trip"]), (10_000_000, 500_000_000))
         self.assertNotIn("Driving", periods)      # a stream of its own
+        self.assertIsNone(watching["streams"][0]["on_board_ns"])  # of its board nothing is known
         self.assertNotIn("LockCommand", periods)  # sent on events
         self.assertGreater(watching["streams"][0]["response_ns"], 2 * 130_000)  # Engine, Transmission and Wheels go first
 
