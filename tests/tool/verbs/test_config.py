@@ -236,6 +236,10 @@ class Config(harness.Case):
         self.environment["AMIROCTL_DRY_RUN"] = "maybe"
         self.assertIn("AMIROCTL_DRY_RUN=maybe: ", self.run_tool("publish", "mag", "900us", code=2)[1])
 
+    def test_an_empty_variable_sets_nothing(self):
+        self.environment["AMIROCTL_PRIORITY"] = self.environment["AMIROCTL_DRY_RUN"] = ""
+        self.assertEqual(self.frame(), "205#01840302")
+
     def test_an_option_of_the_environment_without_its_value(self):
         log = os.path.join(self.folder, "a.log")
         with open(log, "w", encoding="utf-8") as file:

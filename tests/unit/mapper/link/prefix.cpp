@@ -18,6 +18,7 @@ static_assert(write_prefix(255, "a name that is too long for it").view() == "[25
 static_assert(!write_prefix(255, "a name that is too long for it").overflowed());
 // No name can forge a prefix or a sentence.
 static_assert(safe_name("a:b{c}[d]\n\x80") == "a_b_c__d___");
+static_assert(safe_name(" ~\x7F\x1F") == " ~__");  // the first and the last of ASCII that are printed
 static_assert(safe_name("") == "?");
 
 struct Stripped {
