@@ -25,6 +25,8 @@ constexpr AddVerb verbs[] = {
     add_once,
     add_stop,
     add_drive,
+    add_travel,
+    add_behave,
     add_led,
     add_set,
     add_send,

@@ -73,6 +73,7 @@ void Timeline::send_fd(const can::AnyFrame& frame) {
 void Timeline::carry_out_once(const client::Command& command) {
   expect_awake();
   if (command.hold && !held_) expect_no_other();
+  if (command.hold) outgoing_.otherwise_after_the_next(still_moving);  // a behaviour, too
   if (command.ends_hold) outgoing_.otherwise(still_moving);
   for (const auto& frame : command.frames) send(frame);
   for (const auto& frame : command.fd_frames) send_fd(frame);
@@ -137,8 +138,9 @@ bool Timeline::finish() {
 
 void Timeline::tell_refusals() {
   const auto& refused = refusals_.refused();
-  const bool held = held_ && std::any_of(refused.begin(), refused.end(), [](const client::Refused& each) {
-                      return each.topic->role == protocol::Role::drive;
+  const bool held = held_ && std::any_of(refused.begin(), refused.end(), [this](const client::Refused& each) {
+                      return each.topic->role == protocol::Role::drive ||
+                             each.topic->id == protocol::Identifier::decode(held_->hold.frame.id).topic;
                     });
   refused_ = refusals_.tell() || refused_;
   if (held) throw Exit{exit_failure};

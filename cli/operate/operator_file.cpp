@@ -40,7 +40,7 @@ constexpr std::size_t max_operator_bytes = 1'000'000;
 constexpr std::string_view condition_form =
     "\"ring.sensor_4>3000\", or an object with one of where, age, gap, rate, refusals, bus_load, bus_state, "
     "all, any and not";
-constexpr std::string_view commanding[] = {"drive", "led", "replay", "run", "set"};
+constexpr std::string_view commanding[] = {"behave", "drive", "led", "replay", "run", "set", "travel"};
 constexpr std::string_view kinds[] = {"where",    "age",       "gap", "rate", "refusals",
                                       "bus_load", "bus_state", "all", "any",  "not"};
 

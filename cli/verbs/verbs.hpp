@@ -16,6 +16,8 @@ void add_publish(Verb app, Session& session, int& exit_code);
 void add_once(Verb app, Session& session, int& exit_code);
 void add_stop(Verb app, Session& session, int& exit_code);
 void add_drive(Verb app, Session& session, int& exit_code);
+void add_travel(Verb app, Session& session, int& exit_code);
+void add_behave(Verb app, Session& session, int& exit_code);
 void add_led(Verb app, Session& session, int& exit_code);
 void add_set(Verb app, Session& session, int& exit_code);
 void add_send(Verb app, Session& session, int& exit_code);

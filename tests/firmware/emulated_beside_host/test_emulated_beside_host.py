@@ -185,6 +185,28 @@ class Frozen(Robots):
 
 
 class Moving(Robots):
+    def pose(self, name):
+        data = bytes.fromhex(self.asked(name, "odometry")[1][1])
+        return [int.from_bytes(data[:3], "little", signed=True) * 256e-6, int.from_bytes(data[3:6], "little", signed=True) * 256e-6,
+                int.from_bytes(data[6:], "little") * 256e-6]
+
+    def test_behaviours(self):
+        """The line is followed, a way is travelled, and obstacles are avoided: by the images as by the boards of this machine."""
+        self.start_robots("--seed", "1")
+        for name in self.sims:
+            self.tool(name, "behave", "follow", "--for", "1s")
+            self.until(lambda: self.asked(name, "odometry")[0][1] == "0000000000000000")
+            followed = self.pose(name)
+            self.assertGreater(followed[0], 0.03, name)
+            self.assertAlmostEqual(followed[1], 0, delta=0.01)
+            self.assertIn("arrived", self.tool(name, "travel", "10cm", "--turn", "90deg"))
+            travelled = self.pose(name)
+            self.assertAlmostEqual(travelled[0] - followed[0], 0.1, delta=0.005)
+            self.assertAlmostEqual((travelled[2] - followed[2]) % 6.2832, 1.571, delta=0.05)
+            self.tool(name, "behave", "avoid", "--for", "1500ms")
+            self.until(lambda: self.asked(name, "odometry")[0][1] == "0000000000000000")
+            self.assertGreater(self.pose(name)[1] - travelled[1], 0.05, name)
+
     def test_the_standalone_script(self):
         """The thesis's run of 40 s, on both robots at once: same frames, in the same order, as often."""
         self.start_robots("--seed", "1")

@@ -254,6 +254,38 @@ drive 1 --for 2s --once
 drive: --for and --once exclude each other
 use one of them
 
+travel
+travel: nowhere to go
+usage: amiroctl travel [DISTANCE] [--turn ANGLE], for example 30cm
+
+travel --sped 5cm/s
+travel: unknown option '--sped'
+did you mean '--speed'?
+
+travel 30
+travel: '30' needs a unit: distance takes -10 to 10 m
+write 30cm, -0.3m or 50mm
+
+travel 30cm 5cm
+travel: unexpected argument '5cm'
+usage: amiroctl travel [DISTANCE] [OPTION ...]
+
+behave
+behave: missing follow|avoid|none
+usage: amiroctl behave follow|avoid|none [OPTION ...]
+
+behave follow --sped 5cm/s
+behave: unknown option '--sped'
+did you mean '--speed'?
+
+behave fly
+behave: unknown behaviour 'fly'
+one of: follow, avoid, none
+
+behave none --for 2s
+behave: none takes no --for
+drop --for
+
 led
 led: missing N|all
 usage: amiroctl led N|all COLOUR|off

@@ -642,6 +642,19 @@ class Asked(Operating):
         _, err = self.interrupt(operator)
         self.assertRegex(err, "[0-9]+ set points passed on, [0-9]+ set points limited")
 
+    def test_behaviours_of_boards_need_its_leave_and_their_end_does_not(self):
+        self.start_sim()
+        self.operate(document=GUARDED)
+        for command, topic in ((("travel", "1cm"), "travel"), (("behave", "follow", "--for", "1s"), "follow")):
+            _, err = self.run_tool(*command, code=1)
+            self.assertIn(f"operator halt is in driving, where {command[0]} may not command {topic}", err)
+        _, err = self.run_tool("behave", "none")
+        self.assertRegex(err, r"behave: operator halt \(process [0-9]+\) guards the robot")
+        self.run_tool("operator", "switch", "slow")
+        self.settle()
+        out, _ = self.run_tool("travel", "5mm", "--speed", "1cm/s")
+        self.assertIn("arrived", out)
+
     def test_a_drive_comes_up_as_fast_as_it_may(self):
         self.start_sim()
         operator = self.operate(document=GUARDED)

@@ -1,0 +1,177 @@
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "ocm/protocol/request.hpp"
+
+#include "cli/command/behaviour_watch.hpp"
+#include "cli/command/commanding.hpp"
+#include "cli/command/operated_bus.hpp"
+#include "cli/command/timeline.hpp"
+#include "cli/shared/interrupt.hpp"
+#include "cli/shared/messages.hpp"
+#include "cli/shared/set_points.hpp"
+#include "cli/shared/values.hpp"
+#include "cli/verbs/verbs.hpp"
+#include "cli/words/value.hpp"
+
+namespace ocm::cli {
+namespace {
+
+using Clock = Timeline::Clock;
+
+constexpr base::Duration progress_period = std::chrono::milliseconds{100};
+/// After so long without a sample the sensor is asked again.
+constexpr base::Duration longest_silence = std::chrono::milliseconds{500};
+
+struct BehaveOptions {
+  std::string which;
+  std::string speed = "0.1m/s";
+  std::optional<base::Duration> lasting;
+  std::optional<protocol::Priority> priority;
+  bool force = false;
+  bool dry_run = false;
+  bool no_confirm = false;
+};
+
+/// The set point; leaves with exit_usage where the speed is none.
+can::Frame set_point_of(const protocol::Topic& topic, const BehaveOptions& options) {
+  const auto fields = topic.frames[0].fields;
+  if (fields.size() != 1 || fields[0].name != "speed")
+    fail({fmt::format("behave: {} has no speed alone", topic.name), "is --spec that of the robot? Use set"});
+  const auto speed = words::parse_typed_value(fields[0], options.speed);
+  if (!speed) fail({"behave: " + speed.error, "write 10cm/s or 0.1m/s"}, exit_usage);
+  if (*speed == 0)
+    fail({"behave: --speed 0 goes nowhere", "`amiroctl behave none` ends what the boards do"}, exit_usage);
+  return client::set_point(topic, std::vector<std::int64_t>{*speed}, options.priority);
+}
+
+std::string remedy_for(const std::string& ended) {
+  if (ended == "line_lost")
+    return "put the robot on the line, or go more slowly: docs/behaviours.md has the least radius for a "
+           "speed";
+  if (ended == "no_sample") return "`amiroctl doctor` shows which part does not answer";
+  if (ended == "late") return "streams take the board's time: `amiroctl stop`, then ask for slower ones";
+  return "another program has commanded the robot";
+}
+
+/// Ends what any board does by itself.
+client::Command none(const protocol::Catalogue& catalogue, const BehaveOptions& options) {
+  client::Command command;
+  for (const std::string_view name : {"avoid", "follow", "travel"})
+    if (const auto* topic = catalogue.find(name); topic != nullptr && topic->kind == protocol::Kind::actuator)
+      command.frames.push_back(client::set_point(*topic, {}, options.priority));
+  if (command.frames.empty()) static_cast<void>(behaviour_topic(catalogue, "behave", "avoid"));
+  return command;
+}
+
+void behave(Session& session, const BehaveOptions& options, int& exit_code) {
+  const std::string verb = "behave";
+  const auto& catalogue = session.catalogue();
+  const Confirm confirm = options.no_confirm ? Confirm::no : Confirm::yes;
+  if (options.which == "none") {
+    if (options.lasting) fail({"behave: none takes no --for", "drop --for"}, exit_usage);
+    const auto command = none(catalogue, options);
+    if (options.dry_run) return print_frames(command);
+    const auto bus = open_to_command(session, verb);
+    Timeline timeline{*bus, catalogue, verb, Timeline::Others::allowed, confirm, {}};
+    timeline.carry_out_once(command);
+    if (!timeline.finish()) exit_code = exit_failure;
+    return;
+  }
+  if (options.which != "follow" && options.which != "avoid")
+    fail({fmt::format("behave: unknown behaviour '{}'", options.which), "one of: follow, avoid, none"},
+         exit_usage);
+  const protocol::Topic& topic = behaviour_topic(catalogue, verb, options.which);
+  client::Command command;
+  command.hold = client::Hold{set_point_of(topic, options), client::set_point(topic, {}, options.priority),
+                              options.lasting.value_or(base::Duration{})};
+  command.frames = {command.hold->frame};
+  if (options.dry_run) return print_frames(command);
+
+  catch_interrupts();
+  catch_hangups();
+  catch_broken_pipe();
+  // What the wheels' board does it reports; another board's commands to the wheels are what can be seen of
+  // it.
+  std::optional<BehaviourWatch> watch;
+  if (options.which == "follow") watch.emplace(catalogue, verb, options.which);
+  const client::FrameIndex index{catalogue};
+  bool ended_by_another = false;
+  const auto bus = open_to_command(session, verb);
+  const auto others = options.force ? Timeline::Others::allowed : Timeline::Others::refused;
+  Timeline timeline{*bus, catalogue, verb, others, confirm, [&](const can::Received& received) {
+                      if (watch) watch->take(received);
+                      const auto subject = index.subject(received.frame.id, received.frame.format);
+                      if (subject.topic == &topic && subject.frame && is_rest(received.frame))
+                        ended_by_another = true;
+                    }};
+  bool goes_on = timeline.wait(Clock::now() + client::listen_before_hold);
+  if (!goes_on) {
+    exit_code = exit_code_after_interrupt(exit_code);
+    return;
+  }
+  timeline.expect_no_other();
+  bool asked = watch && !watch->heard();
+  const auto ask = [&](const can::Frame& request) {
+    client::Command command_of_one;
+    command_of_one.frames = {request};
+    timeline.carry_out_once(command_of_one);
+  };
+  const auto ask_progress = [&] {
+    ask(protocol::encode({watch->sensor().id, protocol::Mode::publish,
+                          *protocol::Period::from(progress_period), watch->sensor().priority}));
+    asked = true;
+  };
+  if (asked) ask_progress();
+  if (watch) watch->begin();
+  ended_by_another = false;
+  timeline.carry_out(command);
+  const auto end = options.lasting ? Clock::now() + *options.lasting : Clock::time_point::max();
+  const auto over = [&] { return ended_by_another || (watch && watch->over()); };
+  auto heard = Clock::now();  // or asked
+  while (goes_on && !over() && Clock::now() < end) {
+    goes_on = timeline.wait(std::min(end, Clock::now() + std::chrono::milliseconds{20}));
+    if (!watch) continue;
+    heard = std::max(heard, watch->last());
+    if (!goes_on || Clock::now() - heard < longest_silence) continue;
+    ask_progress();  // a stop of everything ends this stream, too
+    heard = Clock::now();
+  }
+  const bool early = over();
+  const std::string how = watch && watch->over() ? watch->ended() : "stopped";
+  timeline.rest();
+  if (asked) ask(protocol::stop(watch->sensor().id, watch->sensor().priority));
+  if (!timeline.finish()) exit_code = exit_failure;
+  if (early) fail({fmt::format("behave: {} was ended: {}", options.which, how), remedy_for(how)});
+  if (!goes_on) exit_code = exit_code_after_interrupt(exit_success);
+}
+
+}  // namespace
+
+void add_behave(Verb app, Session& session, int& exit_code) {
+  auto verb =
+      app.add_verb("behave", "let the boards follow a line or avoid obstacles by themselves", act_group,
+                   "  amiroctl behave follow                     until Ctrl-C, at 0.1 m/s\n"
+                   "  amiroctl behave avoid --speed 15cm/s --for 1min\n"
+                   "  amiroctl behave none                       ends it, whichever program began it");
+  const auto options = std::make_shared<BehaveOptions>();
+  verb.add_option("which", options->which, "what to do").type_name("follow|avoid|none").required();
+  verb.add_option("--speed", options->speed, "at most").type_name("V");
+  verb.add_value("--for", take_into(options->lasting, words::read_lasting), "how long")
+      .type_name("T")
+      .takes(accepted_duration());
+  verb.add_flag("--force", options->force, "begin even if another program commands the motors");
+  add_priority(verb, "--priority", options->priority,
+               "urgent, high, medium or low, or 0 to 3; default: the topic's own");
+  verb.add_flag("--dry-run", options->dry_run, "print the frames in candump notation and send nothing");
+  add_no_confirm(verb, options->no_confirm);
+  verb.callback([options, &session, &exit_code] { behave(session, *options, exit_code); });
+}
+
+}  // namespace ocm::cli

@@ -1,0 +1,108 @@
+"""amiroctl behave: the boards follow a line or avoid obstacles, until the verb ends."""
+
+import json
+import signal
+import time
+
+from harness import Case, main
+
+
+class Behave(Case):
+    def standing(self):
+        """The wheels' speeds are zero, by the odometry, within two seconds."""
+        for _ in range(20):
+            if self.sample("odom")[0] == {"x": 0, "z": 0}:
+                return True
+            time.sleep(0.1)
+        return False
+
+    def sample(self, topic):
+        """The fields of its frames."""
+        out, _ = self.run_tool("once", topic, "--wait")
+        return [json.loads(line)["fields"] for line in out.splitlines()]
+
+    def behaving(self, which, *arguments):
+        listener = self.listen(which, "--timeout", "20s")
+        behave = self.start("behave", which, *arguments)
+        listener.stdout.readline()
+        self.interrupt(listener)
+        return behave
+
+    def test_frames(self):
+        for arguments, frames in ((("follow",), "20C#E803\n"), (("avoid", "--speed", "15cm/s", "--priority", "high"), "129#DC05\n"),
+                                  (("none",), "229#0000\n20C#0000\n20B#0000000000000000\n")):
+            out, err = self.run_tool("behave", *arguments, "--dry-run")
+            self.assertEqual((out, err), (frames, ""), arguments)
+
+    def test_wrong_usage(self):
+        for arguments, words in (((), "follow"), (("fly",), "fly"), (("follow", "--speed", "0"), "goes nowhere"),
+                                 (("follow", "--speed", "1"), "needs a unit"), (("avoid", "--speed", "1m/s"), "speed takes 0 to 0.2 m/s"),
+                                 (("none", "--for", "2s"), "none takes no --for"), (("follow", "--for", "2"), "2")):
+            out, err = self.run_tool("behave", *arguments, code=2)
+            self.assertIn(words, err, arguments)
+            self.assertEqual(out, "", arguments)
+
+    def test_follow_for_a_time(self):
+        self.start_sim()  # which starts on the line
+        self.run_tool("behave", "follow", "--for", "1500ms")
+        self.assertTrue(self.standing())
+        behaviour = self.sample("behaviour")[0]
+        self.assertEqual((behaviour["active"], behaviour["ended"]), (0, 2))  # none, stopped
+        self.assertGreater(self.sample("odom")[1]["x"], 0.05)
+
+    def test_follow_without_a_line(self):
+        self.start_sim()
+        self.run_tool("travel", "--turn", "90deg", "--speed", "30cm/s")
+        self.run_tool("travel", "15cm", "--speed", "30cm/s")
+        _, err = self.run_tool("behave", "follow", code=1)
+        self.assertIn("behave: follow was ended: line_lost", err)
+
+    def test_avoid_and_what_ends_it(self):
+        self.start_sim()
+        for command in (("behave", "none"), ("stop",)):
+            behave = self.behaving("avoid")
+            time.sleep(0.5)
+            self.run_tool(*command)
+            _, err = behave.communicate(timeout=20)
+            self.assertEqual(behave.returncode, 1, err)
+            self.assertIn("avoid was ended: stopped", err)
+            self.assertTrue(self.standing())
+
+    def test_a_drive_hears_avoid(self):
+        self.start_sim()
+        behave = self.behaving("avoid")
+        time.sleep(0.3)
+        _, err = self.run_tool("drive", "5cm/s", code=1)
+        self.assertRegex(err, "drive: another program commands motors: 101#")
+        _, err = self.run_tool("travel", "5cm", code=1)
+        self.assertIn("travel: another program commands motors", err)
+        _, err = self.interrupt(behave)
+        self.assertEqual(behave.returncode, 130, err)
+        self.assertTrue(self.standing())
+
+    def test_a_set_point_ends_follow(self):
+        self.start_sim()
+        behave = self.behaving("follow")
+        time.sleep(0.3)
+        self.run_tool("drive", "stop")
+        _, err = behave.communicate(timeout=20)
+        self.assertEqual(behave.returncode, 1, err)
+        self.assertIn("follow was ended: stopped", err)
+
+    def test_killed(self):
+        self.start_sim()
+        for which in ("follow", "avoid"):
+            behave = self.behaving(which)
+            behave.send_signal(signal.SIGKILL)
+            behave.wait()
+            self.assertTrue(self.standing(), which)
+
+    def test_the_ring_needs_its_offsets(self):
+        self.start_sim()
+        self.run_tool("set", "ring_calibration", "action=forget")
+        _, err = self.run_tool("behave", "avoid", code=1)
+        self.assertIn("power_management refuses avoid: no_sample", err)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,108 @@
+"""amiroctl travel: the board drives a way by itself, and the verb says where that ended."""
+
+import json
+import re
+import signal
+import time
+
+from harness import Case, main
+
+NONE, ARRIVED, STOPPED = 0, 1, 2  # as the spec numbers them
+
+
+class Travel(Case):
+    def sample(self, topic):
+        """Its fields, of all of its frames together."""
+        out, _ = self.run_tool("once", topic, "--wait")
+        fields = {}
+        for line in out.splitlines():
+            frame = json.loads(line)
+            fields |= {f"{frame['frame']}.{name}": value for name, value in frame["fields"].items()}
+        return fields
+
+    def test_frames(self):
+        for arguments, frame in ((("30cm",), "20B#307500000000E803"), (("-0.3m", "--speed", "5cm/s"), "20B#D08AFF000000F401"),
+                                 (("30cm", "--turn", "-90deg"), "20B#307500689AFDE803"),
+                                 (("--turn", "1rad", "--priority", "urgent"), "00B#000000A08601E803")):
+            out, err = self.run_tool("travel", *arguments, "--dry-run")
+            self.assertEqual((out, err), (frame + "\n", ""), arguments)
+
+    def test_wrong_usage(self):
+        for arguments, words in (((), "nowhere to go"), (("0",), "nowhere to go"), (("30",), "'30' needs a unit: distance takes -10 to 10 m"),
+                                 (("11m",), "'11m' is out of range"), (("30cm", "--turn", "90"), "'90' needs a unit: angle"),
+                                 (("30cm", "--turn", "90m"), "in another unit"), (("30cm", "--speed", "1m/s"), "speed takes 0 to 0.3 m/s"),
+                                 (("30cm", "5cm"), "5cm"), (("30cm", "--for", "2s"), "--for")):
+            out, err = self.run_tool("travel", *arguments, code=2)
+            self.assertIn(words, err, arguments)
+            self.assertEqual(out, "", arguments)
+
+    def test_it_arrives(self):
+        self.start_sim()
+        out, _ = self.run_tool("travel", "20cm", "--turn", "90deg", "--speed", "30cm/s")
+        left = re.fullmatch(r"arrived; (-?[\d.]+) m, (-?[\d.]+) rad are left\n", out)
+        self.assertTrue(left, out)
+        self.assertLess(abs(float(left[1])), 0.0015)
+        self.assertLess(abs(float(left[2])), 0.0175)
+        odometry = self.sample("odom")
+        self.assertAlmostEqual(odometry["pose.x"], 0.2, delta=0.003)
+        self.assertAlmostEqual(odometry["pose.y"], 0, delta=0.003)
+        self.assertAlmostEqual(odometry["pose.orientation"], 1.571, delta=0.02)
+        # What was asked for the progress is stopped.
+        self.assertEqual(self.sample("di_wheel_drive_status")["health.publishing"], 0)
+
+    def test_a_stream_of_the_progress_goes_on(self):
+        self.start_sim()
+        self.run_tool("publish", "behaviour", "20ms")
+        self.run_tool("travel", "1cm")
+        out, _ = self.run_tool("listen", "behaviour", "--json", "--count", "3", "--timeout", "20s")
+        self.assertEqual([json.loads(line)["fields"]["ended"] for line in out.splitlines()], [ARRIVED] * 3)
+
+    def test_ctrl_c_ends_it(self):
+        self.start_sim()
+        listener = self.listen("travel", "--timeout", "20s")
+        travel = self.start("travel", "1m")
+        self.assertIn('"A08601000000E803"', listener.stdout.readline())
+        time.sleep(0.3)
+        travel.send_signal(signal.SIGINT)
+        out, err = travel.communicate(timeout=20)
+        self.assertEqual((travel.returncode, out), (130, ""), err)
+        self.assertIn('"0000000000000000"', listener.stdout.readline())
+        sample = self.sample("behaviour")
+        self.assertEqual((sample["behaviour.active"], sample["behaviour.ended"]), (NONE, STOPPED))
+
+    def test_a_stop_ends_it_and_so_does_a_set_point(self):
+        self.start_sim()
+        for command, ended in ((("stop",), "stopped"), (("drive", "1cm/s", "--once", "--force"), "replaced")):
+            listener = self.listen("travel", "--timeout", "20s")
+            travel = self.start("travel", "1m", "--force")
+            listener.stdout.readline()
+            self.interrupt(listener)
+            time.sleep(0.3)
+            self.run_tool(*command)
+            _, err = travel.communicate(timeout=20)
+            self.assertEqual(travel.returncode, 1, err)
+            self.assertRegex(err, rf"travel: ended by di_wheel_drive: {ended}; 0\.9\d* m, 0 rad are left")
+
+    def test_another_commander(self):
+        self.start_sim()
+        listener = self.listen("motors", "--timeout", "20s")
+        drive = self.start("drive", "0", "10deg/s")
+        listener.stdout.readline()
+        self.interrupt(listener)
+        _, err = self.run_tool("travel", "30cm", code=1)
+        self.assertIn("another program commands motors", err)
+        self.interrupt(drive)
+
+    def test_refused_and_nobody_there(self):
+        sim = self.start_sim()
+        _, err = self.run_tool("travel", "10m", "--speed", "1cm/s", code=1)
+        self.assertIn("di_wheel_drive refuses travel: out_of_range", err)
+        self.interrupt(sim)
+        self.start_sim("--without", "di_wheel_drive")
+        _, err = self.run_tool("travel", "10cm", code=1)
+        self.assertIn("no behaviour within 1.2s", err)
+        self.assertIn("di_wheel_drive", err)
+
+
+if __name__ == "__main__":
+    main()
