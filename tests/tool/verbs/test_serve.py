@@ -419,6 +419,21 @@ print(lost, flush=True)
             fields = file.read().rsplit(")", 1)[1].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
+    def test_it_takes_little(self):
+        """At 100 frames/s, with a viewer that asks for all that the page asks for: 2 % of a core."""
+        self.start_sim()
+        self.run_tool("publish", "gyro", "10ms")
+        server, port, _ = self.serve()
+        viewer = self.viewer(port)
+        viewer.subscribe(*viewer.channels)
+        viewer.message("/gyroscope")
+        before, begin = self.cpu(server), time.monotonic()
+        for _ in range(800):
+            viewer.message("/gyroscope")
+        share = (self.cpu(server) - before) / (time.monotonic() - begin)
+        print(f"serve at 100 frames/s: {share * 100:.1f} % of a core", file=sys.stderr)
+        self.assertLess(share, 0.02)
+
     def test_a_hundred_viewers(self):
         self.start_sim("--frozen")
         server, port, _ = self.serve()
