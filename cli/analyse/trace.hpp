@@ -13,22 +13,11 @@
 
 #include "ocm/protocol/topic.hpp"
 
+#include "cli/analyse/meter.hpp"
 #include "cli/analyse/set.hpp"
 #include "cli/analyse/study.hpp"
 
 namespace ocm::cli::analyse {
-
-struct Measured {
-  std::size_t count = 0;
-  std::int64_t shortest = 0;  ///< distance of two frames; 0 with less than two
-  std::int64_t longest = 0;
-  std::int64_t mean = 0;
-  std::int64_t lateness = 0;     ///< behind the grid of its period, at most
-  std::int64_t response = 0;     ///< the longest was at least this
-  unsigned greatest_length = 0;  ///< bytes
-  bool other_period = false;     ///< than assumed, so that lateness and response mean nothing
-  bool exceeds = false;          ///< its bound
-};
 
 struct TraceStudy {
   Study study;

@@ -18,6 +18,7 @@
 #include "cli/bus_model/feed.hpp"
 #include "cli/bus_model/models.hpp"
 #include "cli/command/operated_bus.hpp"
+#include "cli/serve/bounds.hpp"
 #include "cli/serve/channels.hpp"
 #include "cli/serve/commands.hpp"
 #include "cli/serve/control.hpp"
@@ -65,14 +66,15 @@ class Server {
          std::uint32_t bus_bit_rate)
       : options_(std::move(options)),
         catalogue_(session.catalogue()),
+        model_(session.spec().model()),
         source_(std::move(source)),
         rates_{options_.bit_rate.value_or(bus_bit_rate != 0 ? bus_bit_rate : catalogue_.bit_rate),
-               options_.data_bit_rate.value_or(
-                   session.spec_files.empty() ? 0 : session.spec().model().data_bit_rate)},
+               options_.data_bit_rate.value_or(model_.data_bit_rate)},
         channels_(catalogue_, interfaces),
         viewers_(channels_.all().size()),
         publisher_(catalogue_, channels_, viewers_),
         models_(catalogue_, rates_.nominal, rates_.data),
+        bounds_(catalogue_, rates_.nominal),
         diagnosis_(catalogue_),
         sessions_({fmt::format("{}, {}", catalogue_.robot, source_.name), random_text(8), source_.commands,
                    !source_.live},
@@ -90,7 +92,8 @@ class Server {
     auto web = Web::open(options_.web, viewers_, sessions_);
     if (!web) fail(web.error);
     web_ = std::move(*web);
-    viewers_.publish_state(channels_.of(State::robot), now_ns(), robot_state(catalogue_, channels_, source_));
+    viewers_.publish_state(channels_.of(State::robot), now_ns(),
+                           robot_state(catalogue_, model_, channels_, source_));
     fmt::print("{}{}{}\n", web_->url(), options_.web.token.empty() ? "" : "#", options_.web.token);
     std::fflush(stdout);
   }
@@ -106,6 +109,14 @@ class Server {
     diagnosis_.take(reception);
     if (const auto classic = entry.classic()) commanders_.take({entry.time, *classic}, reception);
     models_.take(entry, interfaces);
+    if (entry.interface == 0) bounds_.take(entry);
+  }
+  void publish_bounds(base::Time now) {
+    const std::uint32_t channel = channels_.of(State::bounds);
+    if (!viewers_.wanted(channel)) return;
+    const auto buses = models_.buses();
+    if (!buses.empty()) bounds_.assume(buses.front().model->rows(now, false));
+    viewers_.publish_state(channel, now_ns(), bounds_.state());
   }
   void publish_bus(base::Time now) {
     const std::uint32_t channel = channels_.of(State::bus);
@@ -132,12 +143,14 @@ class Server {
 
   ServeOptions options_;
   const protocol::Catalogue& catalogue_;
+  const spec::Model& model_;
   Source source_;
   measure::BitRates rates_;
   Channels channels_;
   Viewers viewers_;
   Publisher publisher_;
   Models models_;
+  Bounds bounds_;  ///< of the first interface
   client::Diagnosis diagnosis_;
   client::Commanders commanders_;
   Orders orders_;
@@ -196,6 +209,7 @@ int Server::run_live(std::unique_ptr<transport::Bus> bus, bool operated) {
     }
     if (now >= next_boards) {
       publish_boards(bus->counters());
+      publish_bounds(unix_time());
       next_boards = now + boards_interval;
     }
     wake();
@@ -221,9 +235,13 @@ int Server::run_log(LogFeed& log) {
       models_ = Models{catalogue_, rates_.nominal, rates_.data};
       for (const std::string& interface : channels_.interfaces()) models_.of(interface);
       diagnosis_ = client::Diagnosis{catalogue_};
+      bounds_ = Bounds{catalogue_, rates_.nominal};
       log.rewind();
     }
     log.go_to(at, taken);
+    // First that it was wound, so that a viewer forgets what was before, then what is there.
+    viewers_.publish_state(channels_.of(State::playback), now_ns(),
+                           playback_state(log.playing(), paused, jumps));
     publisher_.go_on();
   };
   const auto obey = [&](const Order& order) {
@@ -260,6 +278,7 @@ int Server::run_log(LogFeed& log) {
     }
     if (now >= next_boards) {
       publish_boards({});
+      publish_bounds(log.now());
       next_boards = now + boards_interval;
     }
     web_->wake();

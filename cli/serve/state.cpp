@@ -9,6 +9,7 @@
 #include "ocm/protocol/wire_hash.hpp"
 
 #include "cli/shared/json.hpp"
+#include "generator/spec/model.hpp"
 
 namespace ocm::cli::serve {
 namespace {
@@ -18,11 +19,6 @@ double seconds(base::Duration duration) {
 }
 Json seconds(const std::optional<base::Duration>& duration) {
   return duration ? Json(seconds(*duration)) : Json();
-}
-
-std::string_view role_name(protocol::Role role) {
-  constexpr std::string_view names[] = {"", "drive", "light", "status", "refusal"};
-  return names[static_cast<std::size_t>(role)];
 }
 
 std::string_view health_name(bus_model::Health health) {
@@ -38,12 +34,14 @@ Json field_json(const protocol::Field& field) {
   }
   if (field.flags) json["flags"] = true;
   for (const protocol::NamedValue& value : field.values)
-    json["values"].push_back({{"raw", value.raw}, {"name", value.name}});
+    json["values"].push_back(
+        {{"name", value.name},
+         field.flags ? Json::Member{"bit", value.raw} : Json::Member{"value", field.value(value.raw)}});
   return json;
 }
 
 Json topic_json(const protocol::Catalogue& catalogue, const protocol::Topic& topic, std::string_view channel,
-                std::string_view interface) {
+                std::string_view interface, const spec::RingGeometry* geometry) {
   Json frames = Json::array();
   for (const protocol::FrameLayout& frame : topic.frames) {
     Json fields = Json::array();
@@ -54,13 +52,19 @@ Json topic_json(const protocol::Catalogue& catalogue, const protocol::Topic& top
             {"name", topic.name},
             {"interface", interface},
             {"kind", protocol::name(topic.kind)},
-            {"role", role_name(topic.role)},
+            {"role", topic.role == protocol::Role::none ? std::string_view{} : protocol::name(topic.role)},
             {"board", catalogue.board_name(topic)},
             {"frames", std::move(frames)}};
   if (topic.instance != 0) {
     json["group"] = topic.group;
     json["instance"] = topic.instance;
   }
+  if (geometry != nullptr)
+    json["geometry"] = {{"radius_m", geometry->radius.as_double()},
+                        {"first_rad", geometry->first.as_double()},
+                        {"step_rad", geometry->step.as_double()},
+                        {"counts_at_one_metre", geometry->counts_at_one_metre.as_double()},
+                        {"range_m", geometry->range.as_double()}};
   if (topic.kind == protocol::Kind::sensor) {
     json["period_ms"] = seconds(topic.period.duration()) * 1e3;
     json["shortest_period_ms"] = seconds(topic.shortest_period) * 1e3;
@@ -84,14 +88,19 @@ Json row_json(const bus_model::Row& row) {
 
 }  // namespace
 
-std::string robot_state(const protocol::Catalogue& catalogue, const Channels& channels,
-                        const Source& source) {
+std::string robot_state(const protocol::Catalogue& catalogue, const spec::Model& model,
+                        const Channels& channels, const Source& source) {
+  const auto geometry = [&model](const protocol::Topic& topic) -> const spec::RingGeometry* {
+    for (const spec::TopicModel& each : model.topics)
+      if (each.name == topic.name && each.geometry) return &*each.geometry;
+    return nullptr;
+  };
   Json topics = Json::array();
   const auto interfaces = channels.interfaces();
   for (std::size_t i = 0; i < interfaces.size(); ++i)
     for (std::size_t t = 0; t < catalogue.topics.size(); ++t)
-      topics.push_back(
-          topic_json(catalogue, catalogue.topics[t], channels.topic(channels.of(i, t)), interfaces[i]));
+      topics.push_back(topic_json(catalogue, catalogue.topics[t], channels.topic(channels.of(i, t)),
+                                  interfaces[i], geometry(catalogue.topics[t])));
   Json boards = Json::array();
   for (const protocol::Board& board : catalogue.boards) boards.push_back(board.name);
   return Json{{"robot", catalogue.robot},    {"source", source.name},       {"live", source.live},

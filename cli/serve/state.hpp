@@ -17,7 +17,7 @@
 #include "cli/serve/channels.hpp"
 
 namespace ocm::spec {
-class Spec;
+struct Model;
 }
 
 namespace ocm::cli::serve {
@@ -29,9 +29,10 @@ struct Source {
   bool commands = false;  ///< are taken from who shows the token
 };
 
-/// Once: boards, and each channel's topic with its role, fields, units, ranges and names of values.
-[[nodiscard]] std::string robot_state(const protocol::Catalogue& catalogue, const Channels& channels,
-                                      const Source& source);
+/// Once: boards, and each channel's topic with its role, fields, units, ranges and names of values; of a
+/// ring its geometry, which only the spec has.
+[[nodiscard]] std::string robot_state(const protocol::Catalogue& catalogue, const spec::Model& model,
+                                      const Channels& channels, const Source& source);
 
 /// What the server has to say of itself.
 struct ServerFigures {

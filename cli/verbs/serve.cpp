@@ -29,13 +29,13 @@ bool is_loopback(const std::string& address) {
 void serve_given(Session& session, GivenToServe& given, int& exit_code) {
   serve::ServeOptions& options = given.options;
   serve::WebOptions& web = options.web;
+  if (given.words.size() > 1)
+    fail({fmt::format("serve: unexpected argument '{}'", given.words[1]),
+          "one log at a time; amiroctl convert puts several into one"},
+         exit_usage);
   const Words words = split_words("serve", given.words, [](std::string_view) { return false; });
   if (!words.others.empty())
     fail({fmt::format("serve: {} is no log", words.others[0]), "name a log, or nothing for the bus"},
-         exit_usage);
-  if (words.files.size() > 1)
-    fail({fmt::format("serve: {} and {} are two logs", words.files[0], words.files[1]),
-          "name one; amiroctl convert puts several into one"},
          exit_usage);
   if (!words.files.empty()) options.log = words.files[0];
   if (options.log.empty() && !options.format.empty())

@@ -142,6 +142,16 @@ struct FrameModel {
   Source source;  ///< empty: as the topic's
 };
 
+/// Where the sensors of a topic of role ring are on the robot, and what their counts mean. Sensors are in the
+/// order of the topic's fields.
+struct RingGeometry {
+  base::Decimal radius;               ///< m, from the robot's middle
+  base::Decimal first;                ///< rad, of the first sensor, counter-clockwise from ahead
+  base::Decimal step;                 ///< rad, from one to the next
+  base::Decimal counts_at_one_metre;  ///< above the offset; they fall with the square of the distance
+  base::Decimal range;                ///< m: what is farther is not seen
+};
+
 struct TopicModel {
   std::string name;
   std::string description;
@@ -151,6 +161,7 @@ struct TopicModel {
   bool is_group = false;   ///< the spec gives a count: topics are called name_1, name_2, ...
   protocol::Kind kind = protocol::Kind::sensor;
   protocol::Role role = protocol::Role::none;
+  std::optional<RingGeometry> geometry;  ///< of a ring
   std::uint8_t board = 0;
   std::vector<FrameModel> frames;
   protocol::Priority priority = protocol::default_priority;

@@ -233,13 +233,13 @@ class Reader : private FieldReader {
 
   [[nodiscard]] TopicModel read_topic(const At& at, const Model& model) {
     check_keys(
-        at, {"name", "alias", "description", "kind", "role", "id", "count", "board", "byte_order", "period",
-             "shortest_period", "deadline", "jitter", "priority", "timeout", "frames", "source"});
+        at, {"name", "alias", "description", "kind", "role", "geometry", "id", "count", "board", "byte_order",
+             "period", "shortest_period", "deadline", "jitter", "priority", "timeout", "frames", "source"});
     TopicModel topic;
     if (const auto a = require(at, "name", "what people call it")) topic.name = name(*a);
     if (const auto a = at.member("description")) topic.description = line(*a);
     topic.source = read_source(at,
-                               {"kind", "role", "id", "count", "board", "byte_order", "period",
+                               {"kind", "role", "geometry", "id", "count", "board", "byte_order", "period",
                                 "shortest_period", "deadline", "jitter", "priority", "timeout", "frames"},
                                false);
     if (const auto a = at.member("kind")) {
@@ -277,13 +277,14 @@ class Reader : private FieldReader {
       read_frames(*a, topic_id, order, topic);
     if (const auto a = at.member("role")) {
       static constexpr std::pair<std::string_view, protocol::Role> roles[] = {
-          {"drive", protocol::Role::drive},
-          {"light", protocol::Role::light},
-          {"status", protocol::Role::status},
-          {"refusal", protocol::Role::refusal}};
+          {"drive", protocol::Role::drive},   {"light", protocol::Role::light},
+          {"status", protocol::Role::status}, {"refusal", protocol::Role::refusal},
+          {"pose", protocol::Role::pose},     {"ring", protocol::Role::ring},
+          {"floor", protocol::Role::floor}};
       topic.role = one_of(*a, roles).value_or(protocol::Role::none);
       check_role(*a, topic);
     }
+    read_geometry(at, topic);
     return topic;
   }
 
@@ -483,12 +484,13 @@ class Reader : private FieldReader {
   void check_role(const At& at, const TopicModel& topic) {
     using protocol::Role;
     const bool sensor = topic.kind == protocol::Kind::sensor;
+    const bool acts = topic.role == Role::drive || topic.role == Role::light;
     const bool reports = topic.role == Role::status || topic.role == Role::refusal;
     if (topic.role == Role::none) return;
-    if (sensor != reports)
-      return tell(at, "role " + shown(*at.node) + " is for " + (reports ? "sensors" : "actuators"),
-                  reports ? "leave it out, or leave out \"kind\": \"actuator\""
-                          : "leave it out, or say \"kind\": \"actuator\"");
+    if (sensor == acts)
+      return tell(at, "role " + shown(*at.node) + " is for " + (acts ? "actuators" : "sensors"),
+                  acts ? "leave it out, or say \"kind\": \"actuator\""
+                       : "leave it out, or leave out \"kind\": \"actuator\"");
     if (reports) {
       const auto [other, is_new] = reports_.emplace(std::pair{topic.board, topic.role}, at.path);
       if (!is_new)
@@ -509,10 +511,13 @@ class Reader : private FieldReader {
         {"health", "load", "%"},     {"health", "bus", ""},      {"health", "publishing", ""},
         {"health", "faults", ""},    {"health", "overload", ""}, {"health", "bus_errors", ""}};
     static constexpr Wanted refusal[]{{"", "topic", ""}, {"", "reason", ""}, {"", "refused", ""}};
-    const std::span<const Wanted> wanted = topic.role == Role::drive    ? std::span<const Wanted>{drive}
-                                           : topic.role == Role::light  ? std::span<const Wanted>{light}
-                                           : topic.role == Role::status ? std::span<const Wanted>{status}
-                                                                        : std::span<const Wanted>{refusal};
+    static constexpr Wanted pose[]{{"pose", "x", "m"}, {"pose", "y", "m"}, {"pose", "orientation", "rad"}};
+    std::span<const Wanted> wanted;  // of ring and floor: fields of any names, a sensor each
+    if (topic.role == Role::drive) wanted = drive;
+    if (topic.role == Role::light) wanted = light;
+    if (topic.role == Role::status) wanted = status;
+    if (topic.role == Role::refusal) wanted = refusal;
+    if (topic.role == Role::pose) wanted = pose;
     const auto form = [&] {
       std::string text;
       for (const Wanted& field : wanted) {
@@ -539,6 +544,33 @@ class Reader : private FieldReader {
         tell(at, "role " + shown(*at.node) + " with field " + quoted(full) + ", a floating-point number",
              "an integer type, such as \"i32\", with a scale");
     }
+  }
+
+  void read_geometry(const At& at, TopicModel& topic) {
+    const auto its = at.member("geometry");
+    if (topic.role != protocol::Role::ring) {
+      if (its) tell(*its, "\"geometry\" is of a ring", "leave it out, or say \"role\": \"ring\"");
+      return;
+    }
+    static constexpr std::string_view form =
+        R"({"radius": 0.05, "first": 2.7, "step": -0.785, "counts_at_one_metre": 0.94, "range": 0.2})";
+    const auto a = require(at, "geometry", form);
+    if (!a || !is_object(*a, form)) return;
+    check_keys(*a, {"radius", "first", "step", "counts_at_one_metre", "range"});
+    const auto read = [&](std::string_view key, std::string_view what, bool positive) {
+      const auto number_at = require(*a, key, what);
+      const auto number = number_at ? decimal(*number_at, what) : std::nullopt;
+      if (number && positive && number->digits <= 0) tell(*number_at, "not above zero", std::string{what});
+      return number.value_or(base::Decimal{1, 0});
+    };
+    RingGeometry geometry;
+    geometry.radius = read("radius", "metres from the robot's middle to the sensors", true);
+    geometry.first = read("first", "radians of the first sensor, counter-clockwise from ahead", false);
+    geometry.step = read("step", "radians from one sensor to the next", false);
+    geometry.counts_at_one_metre =
+        read("counts_at_one_metre", "counts above the offset from an obstacle at one metre", true);
+    geometry.range = read("range", "metres, beyond which nothing is seen", true);
+    topic.geometry = geometry;
   }
 
   /// A topic that others can be like.

@@ -301,7 +301,6 @@ void write_constants(Writer& out, const TopicModel& topic) {
     out.line("}};");
   }
   static constexpr std::string_view units[] = {"milliseconds", "seconds", "microseconds"};
-  static constexpr std::string_view roles[] = {"none", "drive", "light", "status", "refusal"};
   std::vector<std::pair<std::string, std::string>> lines;
   const auto add = [&](std::string code, std::string_view fact) {
     const std::string& source = topic.source.of(fact);
@@ -321,7 +320,7 @@ void write_constants(Writer& out, const TopicModel& topic) {
   }
   if (topic.role != protocol::Role::none)
     add("static constexpr ocm::protocol::Role role = ocm::protocol::Role::" +
-            std::string{roles[static_cast<std::size_t>(topic.role)]} + ";",
+            std::string{protocol::name(topic.role)} + ";",
         "role");
   add("static constexpr ocm::base::Duration deadline" + chrono(topic.deadline) + ";", "deadline");
   add("static constexpr ocm::base::Duration jitter" + chrono(topic.jitter) + ";", "jitter");

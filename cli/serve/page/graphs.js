@@ -147,7 +147,7 @@ export class Graphs {
       axisLineColor: colour('--line'),
       gridLineColor: colour('--line'),
       axes: {
-        x: {ticker: Dygraph.dateTicker, axisLabelFormatter: Dygraph.dateAxisLabelFormatter, valueFormatter: Dygraph.dateString_},
+        x: {axisLabelWidth: 72, ticker: Dygraph.dateTicker, axisLabelFormatter: Dygraph.dateAxisLabelFormatter, valueFormatter: Dygraph.dateString_},
         y: {axisLabelWidth: 60},
       },
       highlightCallback: (_, x, points) => {

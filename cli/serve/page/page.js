@@ -37,12 +37,13 @@ function say({level = 0, message, id}) {
 
 function valueText(field, value) {
   if (value === undefined) return '';
+  const plain = field.unit ? `${value} ${field.unit}` : `${value}`;
   if (field.values) {
-    const names = field.flags ? field.values.filter(each => Math.floor(value / 2 ** each.raw) % 2 === 1)
-      : field.values.filter(each => each.raw === value);
-    return `${value} ${names.map(each => each.name).join(' ')}`.trim();
+    const names = field.flags ? field.values.filter(each => Math.floor(value / 2 ** each.bit) % 2 === 1)
+      : field.values.filter(each => each.value === value);
+    return [plain, ...names.map(each => each.name)].join(' ');
   }
-  return field.unit ? `${value} ${field.unit}` : `${value}`;
+  return plain;
 }
 
 function frameOf(topic, frame, message) {
@@ -105,10 +106,12 @@ function setRobot(state) {
   by('title').textContent = `${robot.robot}, ${robot.source}`;
   document.title = `${robot.robot}, ${robot.source}`;
   by('robot').hidden = !picture.set(robot.topics);
-  by('boards').hidden = !robot.boards.length;
+  const reports = robot.topics.some(topic => topic.role === 'status');
+  by('boards').hidden = !reports;
   by('playback').hidden = robot.live;
   const may = robot.commands && wire.capabilities?.includes('clientPublish');
-  by('command').hidden = by('ask').hidden = !may || !robot.boards.length;
+  by('command').hidden = !may;
+  by('ask').hidden = !may || !reports;
   by('drive').hidden = by('stop').hidden = !may || !picture.topic('drive');
   if (may && picture.topic('drive')) drive.set(picture.topic('drive'));
   wire.subscribe(robot.topics.map(topic => topic.channel));

@@ -25,11 +25,25 @@ function numbers(topic, message) {
   return all;
 }
 
-/** Metres from counts, by the law of the spec; undefined: nothing in sight. */
+/** Metres from counts above the offset, by the law of the spec; undefined: nothing in sight. */
 export function distance(counts, geometry) {
-  if (!(counts > geometry.least_counts)) return undefined;
   const metres = Math.sqrt(geometry.counts_at_one_metre / counts);
   return metres <= geometry.range_m ? metres : undefined;
+}
+
+/** A sensor's offset: the least that it saw, each time on average of eight samples, of which noise is less. */
+class Offset {
+  constructor() {
+    this.samples = [];
+    this.least = Infinity;
+  }
+
+  above(counts) {
+    this.samples.push(counts);
+    if (this.samples.length > 8) this.samples.shift();
+    this.least = Math.min(this.least, this.samples.reduce((a, b) => a + b) / this.samples.length);
+    return counts - this.least;
+  }
 }
 
 export class Picture {
@@ -39,6 +53,8 @@ export class Picture {
     this.roles = new Map();    // topics by role
     this.newest = new Map();   // messages by channel
     this.trail = [];
+    this.offsets = [];
+    this.beams = [];
   }
 
   // Whether there is anything to draw.
@@ -62,6 +78,7 @@ export class Picture {
 
   take(channel, message) {
     this.newest.set(channel, message);
+    if (this.topic('ring')?.channel === channel) this.look(this.topic('ring'), message);
     if (this.topic('pose')?.channel !== channel) return;
     const [x, y] = [find(message, 'x'), find(message, 'y')];
     const pose = this.pose();
@@ -74,6 +91,8 @@ export class Picture {
   forget() {
     this.newest.clear();
     this.trail = [];
+    this.offsets = [];
+    this.beams = [];
   }
 
   // In a message with velocities, too, the pose is the frame that has an orientation.
@@ -85,13 +104,11 @@ export class Picture {
     return frame && {x: frame.x, y: frame.y, heading: frame.orientation};
   }
 
-  beams() {
-    const topic = this.topic('ring');
-    const message = this.message('ring');
-    if (!topic?.geometry || message === undefined) return [];
-    return numbers(topic, message).map((counts, i) => ({
-      angle: topic.geometry.first_rad + i * topic.geometry.step_rad,
-      metres: distance(counts, topic.geometry),
+  look({geometry, ...topic}, message) {
+    if (!geometry) return;
+    this.beams = numbers(topic, message).map((counts, i) => ({
+      angle: geometry.first_rad + i * geometry.step_rad,
+      metres: distance((this.offsets[i] ??= new Offset()).above(counts), geometry),
     }));
   }
 
@@ -125,7 +142,7 @@ export class Picture {
     context.stroke();
 
     const to = (angle, metres) => at(pose.x + Math.cos(pose.heading + angle) * metres, pose.y + Math.sin(pose.heading + angle) * metres);
-    const beams = this.beams();
+    const {beams} = this;
     context.strokeStyle = context.fillStyle = colour('--series-1');
     for (const {angle, metres} of beams) {
       if (metres === undefined) continue;

@@ -209,8 +209,15 @@ enum class Kind : std::uint8_t { sensor, actuator, message };
 }
 
 /// What a topic is for, so that a tool that does not know the robot can use it: `drive` takes velocities,
-/// `light` a colour; `status` tells how its board is, `refusal` which request the board refused, and why.
-enum class Role : std::uint8_t { none, drive, light, status, refusal };
+/// `light` a colour; `status` tells how its board is, `refusal` which request the board refused, and why;
+/// `pose` says where the robot is, `ring` what is around it, `floor` how bright the ground is.
+enum class Role : std::uint8_t { none, drive, light, status, refusal, pose, ring, floor };
+
+[[nodiscard]] constexpr std::string_view name(Role role) noexcept {
+  constexpr std::string_view names[] = {"none",    "drive", "light", "status",
+                                        "refusal", "pose",  "ring",  "floor"};
+  return names[static_cast<std::uint8_t>(role)];
+}
 
 /// Of a message of which no sender is known.
 inline constexpr std::uint8_t no_board = 0xFF;

@@ -133,6 +133,7 @@ struct Odometry {
   static constexpr ocm::protocol::Period period{50, ocm::protocol::PeriodUnit::milliseconds};
   /// [AMiRo-OS 1.0, Odometry: updated every 50 ms]
   static constexpr ocm::base::Duration shortest_period = std::chrono::milliseconds{50};
+  static constexpr ocm::protocol::Role role = ocm::protocol::Role::pose;
   static constexpr ocm::base::Duration deadline = std::chrono::milliseconds{50};
   static constexpr ocm::base::Duration jitter = std::chrono::milliseconds{1};
   static constexpr ocm::protocol::Priority priority = ocm::protocol::Priority::medium;
@@ -168,6 +169,7 @@ struct FloorProximity {
   static constexpr ocm::protocol::Period period{50, ocm::protocol::PeriodUnit::milliseconds};
   /// [VCNL4020 data sheet: at most 250 proximity measurements/s]
   static constexpr ocm::base::Duration shortest_period = std::chrono::milliseconds{4};
+  static constexpr ocm::protocol::Role role = ocm::protocol::Role::floor;
   static constexpr ocm::base::Duration deadline = std::chrono::milliseconds{50};
   static constexpr ocm::base::Duration jitter = std::chrono::milliseconds{1};
   static constexpr ocm::protocol::Priority priority = ocm::protocol::Priority::medium;
@@ -559,6 +561,7 @@ struct ProximityRing {
   static constexpr ocm::protocol::Period period{50, ocm::protocol::PeriodUnit::milliseconds};
   /// [VCNL4020 data sheet: at most 250 proximity measurements/s]
   static constexpr ocm::base::Duration shortest_period = std::chrono::milliseconds{4};
+  static constexpr ocm::protocol::Role role = ocm::protocol::Role::ring;
   static constexpr ocm::base::Duration deadline = std::chrono::milliseconds{50};
   static constexpr ocm::base::Duration jitter = std::chrono::milliseconds{1};
   static constexpr ocm::protocol::Priority priority = ocm::protocol::Priority::medium;
@@ -1774,7 +1777,7 @@ inline constexpr std::array<protocol::FrameLayout, 8> frames{{
   {"sensor_8", protocol::TopicId{0x26}, 2, proximity_ring_sensor::fields, {70, 69, 70, 69}},
 }};
 inline constexpr std::string_view source =
-  "Thesis table 4.8; counts: VCNL4020 data sheet; shortest_period: VCNL4020 data sheet: at most 250 proximity measurements/s";
+  "Thesis table 4.8; counts: VCNL4020 data sheet; shortest_period: VCNL4020 data sheet: at most 250 proximity measurements/s; geometry: radius: amiro.xacro of amiro_robot; angles: AMiRo-OS 1.0, Constants.h; counts: VCNL4020Models.h of amiro_senseact; range: VCNL4020 data sheet";
 }  // namespace proximity_ring
 
 namespace motors {

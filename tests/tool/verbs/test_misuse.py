@@ -282,6 +282,10 @@ behave fly
 behave: unknown behaviour 'fly'
 one of: follow, avoid, none
 
+behave none 2s
+behave: unexpected argument '2s'
+usage: amiroctl behave follow|avoid|none [OPTION ...]
+
 behave none --for 2s
 behave: none takes no --for
 drop --for
@@ -509,6 +513,10 @@ did you mean '--address'?
 serve gyr
 serve: gyr is no log
 name a log, or nothing for the bus
+
+serve a.log b.log
+serve: unexpected argument 'b.log'
+one log at a time; amiroctl convert puts several into one
 
 serve --port 70000
 serve: --port 70000: out of range

@@ -134,7 +134,7 @@ class Checked(Operate):
         self.assertIn("in the change from \"idle\" to \"driving\" the processor of power_management", err)
         self.assertNotIn("in \"driving\" proximity_ring takes up to", err)  # the bus
 
-        document["configurations"][1]["streams"][0]["period"] = "25ms"
+        document["configurations"][1]["streams"][0]["period"] = "30ms"
         self.run_tool("operate", self.write(document), "--check")
 
     def test_what_programs_may_command_counts_where_they_may(self):

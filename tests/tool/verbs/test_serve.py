@@ -166,7 +166,11 @@ class Serve(harness.Case):
         self.assertEqual((robot["robot"], robot["source"], robot["live"], robot["commands"]), ("AMiRo", "sim", True, False))
         gyro = next(topic for topic in robot["topics"] if topic["name"] == "gyroscope")
         self.assertEqual([field["unit"] for field in gyro["frames"][0]["fields"]], ["deg/s"] * 3)
-        self.assertEqual(next(topic["role"] for topic in robot["topics"] if topic["name"] == "motors"), "drive")
+        roles = {topic["name"]: topic["role"] for topic in robot["topics"]}
+        self.assertEqual([roles[name] for name in ("motors", "led_1", "odometry", "proximity_ring", "floor_proximity", "gyroscope")],
+                         ["drive", "light", "pose", "ring", "floor", ""])
+        ring = next(topic["geometry"] for topic in robot["topics"] if topic["role"] == "ring")
+        self.assertAlmostEqual(ring["step_rad"], -0.785398163)
         viewer.subscribe("/ocm/bus", "/ocm/boards", "/ocm/operator")
         def gyroscope(bus):
             return next((row for row in bus["buses"][0]["rows"] if row["name"] == "gyroscope"), {"rate_hz": None})
@@ -179,6 +183,13 @@ class Serve(harness.Case):
         self.assertEqual(len(boards), 3)
         self.assertTrue(all(board["same_spec"] for board in boards))
         self.assertEqual(viewer.message("/ocm/operator").fields, {"running": False})
+        # Response times, each below its bound.
+        viewer.subscribe("/ocm/bounds")
+        rows = self.state(viewer, "/ocm/bounds", lambda s: any(row["measured_ms"] for row in s["rows"]), "a response time")["rows"]
+        row = next(row for row in rows if row["name"].startswith("gyroscope"))
+        self.assertEqual((row["period_ms"], row["deadline_ms"]), (50, 50))
+        self.assertGreater(row["bound_ms"], 0.2)  # a frame of six bytes at 500 kbit/s
+        self.assertGreater(row["measured_ms"], 0.1)
 
     def test_any_dbc(self):
         spec = os.path.join(self.folder, "car.dbc")
@@ -212,8 +223,8 @@ class Serve(harness.Case):
         self.assertAlmostEqual(state["at_s"], 20, delta=0.2)
         self.assertAlmostEqual(state["length_s"], 29.9)
         viewer.publish("/ocm/playback", {"at_s": 5})  # back: only the newest sample is sent
-        self.assertEqual(viewer.message("/gyroscope").fields["x"], round(50 * 0.0175, 4))
         where(lambda s: s["jumps"] == 2, "the jump back")
+        self.assertEqual(viewer.message("/gyroscope").fields["x"], round(50 * 0.0175, 4))
         viewer.publish("/ocm/playback", {"speed": 16, "paused": False})
         where(lambda s: s["ended"], "the end")
         viewer.publish("/ocm/playback", {"speed": 0})
@@ -407,6 +418,21 @@ print(lost, flush=True)
         with open(f"/proc/{process.pid}/stat", encoding="ascii") as file:
             fields = file.read().rsplit(")", 1)[1].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    def test_it_takes_little(self):
+        """At 100 frames/s, with a viewer that asks for all that the page asks for: 2 % of a core."""
+        self.start_sim()
+        self.run_tool("publish", "gyro", "10ms")
+        server, port, _ = self.serve()
+        viewer = self.viewer(port)
+        viewer.subscribe(*viewer.channels)
+        viewer.message("/gyroscope")
+        before, begin = self.cpu(server), time.monotonic()
+        for _ in range(800):
+            viewer.message("/gyroscope")
+        share = (self.cpu(server) - before) / (time.monotonic() - begin)
+        print(f"serve at 100 frames/s: {share * 100:.1f} % of a core", file=sys.stderr)
+        self.assertLess(share, 0.02)
 
     def test_a_hundred_viewers(self):
         self.start_sim("--frozen")

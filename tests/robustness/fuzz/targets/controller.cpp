@@ -140,12 +140,16 @@ class Fuzzed {
  private:
   static constexpr base::Duration latest{std::int64_t{1} << 62};
 
+  static bool reports(protocol::Role role) {
+    return role == protocol::Role::status || role == protocol::Role::refusal;
+  }
+
   template <class... Topics>
   void serve(protocol::TopicList<Topics...>) {
     std::uint8_t bit = 1;
     [[maybe_unused]] const auto one = [&]<class Topic>(std::type_identity<Topic>) {
       // What a controller says of itself it serves in any case: here, too, so that the account hears of it.
-      if ((left_out_ & bit) == 0 || amiro::catalogue.find(Topic::id)->role != protocol::Role::none)
+      if ((left_out_ & bit) == 0 || reports(amiro::catalogue.find(Topic::id)->role))
         controller_.template serve<Topic>([this](base::Time now) -> base::Result<Topic> {
           account_.read(Topic::id, now);
           if (++reads_ % 5 == 0) return base::Error::not_sampled;

@@ -1,0 +1,233 @@
+"""The page of amiroctl serve as a person meets it: what is sent is shown, graphs draw, a button drives, and all can use it."""
+
+import os
+import re
+import sys
+import time
+
+sys.path.insert(0, os.path.join(os.environ["OCM_SOURCE_DIR"], "tests", "tool", "verbs"))
+import browser
+import harness
+import websocket
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.keys import Keys
+
+# Whether anything is drawn on one of the canvases: pixels that are not as the first one.
+DRAWN = """return [...document.querySelectorAll(arguments[0])].some(canvas => {
+  const data = new Uint32Array(canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.buffer);
+  return data.some(pixel => pixel !== data[0]);
+})"""
+
+
+class Page(harness.Case):
+    @classmethod
+    def setUpClass(cls):
+        cls.browser = browser.Browser()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.close()
+
+    def setUp(self):
+        super().setUp()
+        self.browser.size(1280, 1400)
+        self.browser.prefer("light")
+        self.browser.complaints()
+
+    def serve(self, *arguments, tool=()):
+        server = self.start(*tool, "serve", "--port", "0", *arguments)
+        self.url = server.stdout.readline().strip()
+        self.port = int(re.search(r":(\d+)/", self.url)[1])
+        self.browser.open(self.url)
+        self.until(lambda: self.browser.text("#link") == "connected", "the connection")
+        self.until(lambda: self.browser.text("#title") != "amiroctl", "the robot's name")
+        return server
+
+    @staticmethod
+    def until(holds, what):
+        harness.waiting.until(holds, what)
+
+    def value(self, field):
+        return self.browser.text(f'[data-field="{field}"]')
+
+    def shows(self, field, text):
+        self.until(lambda: self.value(field) == text, f"{field} {text} on the page")
+
+    def choose(self, *fields):
+        for field in fields:
+            self.browser.script("arguments[0].click()", self.browser.element(f'[data-field="{field}"] + td input'))
+
+    def fine(self):
+        """Nothing was refused by the page's policy, and no script has failed."""
+        self.assertEqual(self.browser.complaints(), [])
+
+    def log(self):
+        path = os.path.join(self.folder, "drive.log")
+        with open(path, "w", encoding="ascii") as file:
+            for i in range(300):
+                file.write(f"({1000 + i / 10:.6f}) can0 608#{i % 256:02X}{i // 256:02X}00000000\n")
+        return path
+
+    def labels(self):
+        return self.browser.script("return [...document.querySelectorAll('.dygraph-axis-label-x')].map(each => each.textContent)")
+
+    def test_values_sent_are_values_seen(self):
+        self.start_sim("--frozen")
+        self.serve()
+        for low, shown in ((0x10, "0.28 deg/s"), (0x7F, "2.2225 deg/s"), (0x00, "0 deg/s")):
+            self.run_tool("send", f"608#{low:02X}0000000000")
+            self.shows("/gyroscope.x", shown)
+        self.run_tool("send", "602#0000000000000000")
+        self.run_tool("send", "603#0110000200000000")
+        self.shows("/odometry.pose.x", "1.048832 m")
+        self.shows("/odometry.pose.y", "0.000512 m")
+        self.until(lambda: "at 1.05 m, 0.00 m" in self.browser.text("#picture-text"), "the pose in words")
+        self.assertTrue(self.browser.script(DRAWN, "#picture"))
+        self.until(lambda: re.search(r"\d+ frames", self.browser.text("#buses")), "the bus")
+        self.fine()
+
+    def test_a_graph_draws_and_zooms(self):
+        self.start_sim()
+        self.run_tool("publish", "gyro", "50ms")
+        self.serve()
+        self.until(lambda: self.value("/gyroscope.z"), "a value")
+        self.assertFalse(self.browser.script(DRAWN, "#graphs canvas"))
+        time.sleep(1)  # for a line to be seen
+        self.choose("/gyroscope.x", "/gyroscope.z")
+        self.until(lambda: self.browser.script(DRAWN, "#graphs canvas"), "a graph")
+        self.assertEqual(self.browser.text("#graphs figcaption strong"), "gyroscope x, z in deg/s")
+        self.browser.script("document.getElementById('pause').click()")
+        before = self.labels()
+        plot = self.browser.element(".plot")
+        width = plot.size["width"]
+        ActionChains(self.browser.driver).move_to_element_with_offset(plot, -width // 8, 0).click_and_hold() \
+            .move_by_offset(width // 5, 0).release().perform()
+        self.until(lambda: self.labels() != before, "another span of time")
+        zoomed = self.labels()
+        plot.send_keys("+")
+        self.until(lambda: self.labels() != zoomed, "a span that is shorter still")
+        closer = self.labels()
+        ActionChains(self.browser.driver).double_click(plot).perform()
+        self.until(lambda: self.labels() not in (zoomed, closer), "all of it again")
+        self.choose("/gyroscope.x", "/gyroscope.z")
+        self.assertIsNone(self.browser.text("#graphs figcaption"))
+        self.fine()
+
+    def speeds(self):
+        viewer = websocket.Viewer(self.port)
+        self.addCleanup(viewer.close)
+        viewer.subscribe("/motors")
+        return viewer
+
+    def test_a_button_drives_and_its_release_stops(self):
+        self.start_sim("--frozen")
+        self.serve("--allow-commands")
+        viewer = self.speeds()
+        self.until(lambda: self.browser.element("#pad .up").is_displayed(), "the pad")
+        ActionChains(self.browser.driver).click_and_hold(self.browser.element("#pad .up")).perform()
+        self.assertEqual(viewer.message().fields, {"x": 0.1, "z": 0})
+        self.assertEqual(viewer.message().fields, {"x": 0.1, "z": 0})  # again and again
+        ActionChains(self.browser.driver).release().perform()
+        while viewer.message().fields["x"] != 0:
+            pass
+        pad = self.browser.element("#pad")
+        self.browser.script("arguments[0].focus()", pad)
+        ActionChains(self.browser.driver).key_down(Keys.ARROW_LEFT).perform()
+        while viewer.message().fields != {"x": 0, "z": 0.8}:
+            pass
+        ActionChains(self.browser.driver).key_up(Keys.ARROW_LEFT).perform()
+        while viewer.message().fields != {"x": 0, "z": 0}:
+            pass
+        self.browser.element("#stop").click()
+        self.assertEqual(viewer.message().fields, {"x": 0, "z": 0})
+        self.browser.element("#line").send_keys("led 2 blue", Keys.ENTER)
+        self.shows("/led_2.blue", "255")
+        self.browser.element("#line").send_keys("fly", Keys.ENTER)
+        self.until(lambda: "unknown command" in self.browser.text("#messages"), "what is wrong")
+        self.fine()
+
+    def test_a_page_that_goes_away_stops_the_robot(self):
+        self.start_sim("--frozen")
+        self.serve("--allow-commands")
+        viewer = self.speeds()
+        self.until(lambda: self.browser.element("#pad .up").is_displayed(), "the pad")
+        for leave in (lambda: self.browser.driver.get("about:blank"), lambda: self.browser.script("location.reload()")):
+            ActionChains(self.browser.driver).click_and_hold(self.browser.element("#pad .up")).perform()
+            while viewer.message().fields["x"] != 0.1:
+                pass
+            begin = time.monotonic()
+            leave()
+            while viewer.message().fields["x"] != 0:
+                pass
+            self.assertLess(time.monotonic() - begin, 3)  # 500 ms, and a browser under load
+            ActionChains(self.browser.driver).reset_actions()
+            self.browser.open(self.url)
+            self.until(lambda: self.browser.element("#pad .up").is_displayed(), "the pad")
+
+    def test_without_the_token_there_is_nothing_to_press(self):
+        self.start_sim("--frozen")
+        self.serve("--allow-commands")
+        self.browser.open(self.url.partition("#")[0])
+        self.until(lambda: self.browser.text("#title") != "amiroctl", "the page")
+        for selector in ("#pad", "#stop", "#line", "#ask"):
+            self.assertFalse(self.browser.element(selector).is_displayed(), selector)
+
+    def test_a_log_with_its_time_bar(self):
+        self.serve(self.log())
+        self.until(lambda: self.browser.element("#bar").is_displayed(), "the time bar")
+        self.browser.element("#play").click()
+        self.until(lambda: self.browser.text("#play") == "Play log", "the pause")
+        self.browser.script("const bar = document.getElementById('bar'); bar.value = 20; bar.dispatchEvent(new Event('change'))")
+        self.until(lambda: self.browser.text("#bar-text").startswith("20.0 of 29.9 s"), "second 20")
+        self.shows("/gyroscope.x", "3.5 deg/s")
+        self.fine()
+
+    def test_any_dbc_has_values_and_graphs(self):
+        spec = os.path.join(self.folder, "car.dbc")
+        with open(spec, "w", encoding="ascii") as file:
+            file.write('VERSION ""\nNS_ :\nBS_:\nBU_: ECU\nBO_ 291 Engine: 8 ECU\n SG_ Speed : 0|16@1+ (0.25,0) [0|16000] "rpm" Vector__XXX\n'
+                       'VAL_ 291 Speed 8 "slow" ;\n')
+        log = os.path.join(self.folder, "car.log")
+        with open(log, "w", encoding="ascii") as file:
+            file.write("".join(f"({10 + i / 10:.6f}) can0 123#{min(i, 8):02X}00000000000000\n" for i in range(200)))
+        self.serve(log, tool=("--spec", spec))
+        self.until(lambda: self.value("/Engine.Speed") == "2 rpm slow", "a value with its name")
+        self.choose("/Engine.Speed")
+        self.until(lambda: self.browser.script(DRAWN, "#graphs canvas"), "a graph")
+        for selector in ("#robot", "#boards"):
+            self.assertFalse(self.browser.element(selector).is_displayed(), selector)
+        self.fine()
+
+    def test_all_can_use_it(self):
+        """axe-core finds nothing, in light and dark, wide and on a phone, where nothing sticks out."""
+        self.start_sim()
+        for words in (("gyro", "100ms"), ("odom", "100ms"), ("power", "1s")):
+            self.run_tool("publish", *words)
+        self.serve("--allow-commands")
+        self.run_tool("doctor", "--json")
+        self.until(lambda: self.value("/gyroscope.x"), "a value")
+        self.choose("/gyroscope.x")
+        self.until(lambda: self.browser.script(DRAWN, "#graphs canvas"), "a graph")
+        self.browser.element("#line").send_keys("fly", Keys.ENTER)
+        self.until(lambda: "unknown command" in self.browser.text("#messages"), "a message")
+        self.until(lambda: "same" in self.browser.text("#board-table"), "the boards")
+        for scheme in ("light", "dark"):
+            for width, height in ((1280, 1400), (390, 844)):
+                self.browser.prefer(scheme)
+                self.browser.size(width, height)
+                self.assertEqual(self.browser.violations(), [], (scheme, width))
+                self.assertLessEqual(self.browser.script("return document.documentElement.scrollWidth"), width, (scheme, width))
+        # All of it can be reached by Tab, and it shows where it is.
+        seen = self.browser.script("""return [...document.querySelectorAll('button, input, select')]
+            .filter(each => each.offsetParent !== null && each.tabIndex < 0).map(each => each.outerHTML)""")
+        self.assertEqual(seen, [])
+
+    def test_the_page_knows_no_robot(self):
+        folder = os.path.join(harness.SOURCE, "cli", "serve", "page")
+        for name in os.listdir(folder):
+            with open(os.path.join(folder, name), encoding="utf-8") as file:
+                self.assertIsNone(re.search(r"amiro(?!ctl)|di_wheel|gyroscope|proximity_ring", file.read(), re.IGNORECASE), name)
+
+
+if __name__ == "__main__":
+    harness.main()
