@@ -459,7 +459,7 @@ print(lost, flush=True)
 
     def test_wrong_usage(self):
         log = self.log()
-        self.assertIn("two logs", self.run_tool("serve", log, log, code=2)[1])
+        self.assertIn("one log at a time", self.run_tool("serve", log, log, code=2)[1])
         self.assertIn("nothing to command", self.run_tool("serve", log, "--allow-commands", code=2)[1])
         self.assertIn("--from candump", self.run_tool("serve", "--from", "candump", code=2)[1])
         self.assertIn("not an address", self.run_tool("serve", log, "--address", "127.0.0.x", "--port", "0", code=1)[1])
