@@ -334,6 +334,25 @@ class Serve(harness.Case):
         viewer.publish("/motors", {"x": 99})
         self.assertEqual(viewer.text("status")["level"], 2)
 
+    def test_with_an_operator(self):
+        """Its state is shown; set points go through it, and a server of before it commands nothing."""
+        self.start_sim()
+        _, before, old = self.serve("--allow-commands")
+        self.start("operate", os.path.join(harness.SOURCE, "examples", "guard.operator.json"))
+        watcher = self.viewer(before, old)
+        watcher.subscribe("/ocm/operator")
+        state = self.state(watcher, "/ocm/operator", lambda s: s["running"], "the operator")
+        self.assertEqual(state["status"]["operator"], json.loads(self.run_tool("operator", "status", "--json")[0])["operator"])
+        self.assertTrue(state["why"]["changes"])
+        watcher.publish("/motors", {"x": 0.05, "z": 0})
+        self.assertIn("start it again", watcher.text("status")["message"])
+        _, port, token = self.serve("--allow-commands")
+        viewer = self.viewer(port, token)
+        viewer.subscribe("/motors")
+        viewer.publish("/motors", {"x": 0.05, "z": 0})
+        self.assertEqual(viewer.message().fields, {"x": 0.05, "z": 0})
+        self.state(watcher, "/ocm/operator", lambda s: s["status"]["set_points"]["passed"] > 0, "the set point")
+
     # --- TLS ---
 
     def test_other_interfaces_need_tls(self):
