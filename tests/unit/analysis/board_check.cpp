@@ -43,8 +43,8 @@ TEST_CASE("board_check: other boards' streams change nothing") {
 }
 
 TEST_CASE("board_check: of a board with more sensors nothing is known") {
-  CHECK(BoardCheck<7>{amiro::catalogue, 0}.fits());
-  CHECK(!BoardCheck<6>{amiro::catalogue, 0}.fits());
+  CHECK(BoardCheck<8>{amiro::catalogue, 0}.fits());
+  CHECK(!BoardCheck<7>{amiro::catalogue, 0}.fits());
 }
 
 TEST_CASE("board_check: as a board decides that has no processor to speak of") {

@@ -51,15 +51,15 @@ static_assert(schedulable<Traffic<2'000, Pose, Led>>);
 
 // What boards send, all instances of their topics, in the order of the lists; sets can be joined.
 using Boards = SentBy<amiro::bit_rate, amiro::DiWheelDrive, amiro::LightRing>;
-static_assert(Boards::size == 11 + 3);  // two, three and two frames, and a frame of each other topic
+static_assert(Boards::size == 12 + 3);  // two, three and two frames, and a frame of each other topic
 static_assert(std::is_same_v<Boards::item<1>, FreshFrame<amiro::Odometry, amiro::bit_rate, 1>>);
-static_assert(std::is_same_v<Boards::item<13>, FreshFrame<amiro::LightRingRefusal, amiro::bit_rate>>);
+static_assert(std::is_same_v<Boards::item<14>, FreshFrame<amiro::LightRingRefusal, amiro::bit_rate>>);
 static_assert(SentBy<amiro::bit_rate>::size == 0);
 struct EightLights {
   using sensors = protocol::TopicList<amiro::Led>;
 };
 static_assert(std::is_same_v<SentBy<500'000, EightLights>::item<7>, FreshFrame<amiro::Led, 500'000, 0, 8>>);
-static_assert(std::is_same_v<decltype(Boards{} + Traffic<2'000, Led>{})::item<14>, Led>);
+static_assert(std::is_same_v<decltype(Boards{} + Traffic<2'000, Led>{})::item<15>, Led>);
 // Sent before the next one comes, whatever the deadline.
 static_assert(FreshFrame<amiro::Led, 500'000, 0, 1, 20'000'000>::message.due() == 20'000'000);
 static_assert(FreshFrame<amiro::Led, 500'000, 0, 1, 90'000'000>::message.due() ==
