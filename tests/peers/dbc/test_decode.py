@@ -277,6 +277,16 @@ class Decode(Case):
         it is the project's own."""
         taken = 0
         for spec in sorted(pathlib.Path(FOLDER).rglob("*.dbc")):
+    def test_encode_passes_names_over(self):
+        """Also names that contradict the numbers, which someone edited."""
+        spec = pathlib.Path(os.environ["OCM_SOURCE_DIR"]) / "examples" / "small_car.dbc"
+        tool = Tool(self, self.folder, spec)
+        line = json.loads(tool.run("decode", "--json", "-", stdin=b"(1.000000) can0 110#F1000000\n"))
+        self.assertEqual((line["fields"]["Gear"], line["names"]["Gear"]), (-1, "Reverse"), line)
+        line["fields"]["Gear"] = 0
+        self.assertEqual(tool.run("encode", stdin=json.dumps(line).encode()).split()[2], "110#01000000")
+        self.assertEqual(tool.run("encode", stdin=json.dumps({**line, "names": 7}).encode()).split()[2], "110#01000000")
+
             database = second_reader.read(spec.read_bytes())
             messages = [message for message in database.messages if message.signals and message.length and not message.j1939]
             if not messages:
