@@ -146,6 +146,18 @@ class Decode(Case):
         frames = random_dbc.frames(seed, database, FRAMES)
         log.write_text(log_of(frames))
         return database, frames, spec, log
+    def unselected(self, frames):
+        """How many have a selector that chooses no field."""
+        count = 0
+        for frame in filter(is_decoded, frames):
+            present, message = second_reader.decode(frame[1], frame[5]), frame[1]
+            for selector in {signal.selector for signal in message.signals} & set(present):
+                bits = present[selector][0] % (1 << message.signal(selector).length)
+                if not any(low <= bits <= high for signal in message.signals if signal.selector == selector for low, high in signal.ranges):
+                    count += 1
+                    break
+        return count
+
 
     def test_all_signals_of_random_frames(self):
         for seed in SEEDS:
@@ -162,6 +174,13 @@ class Decode(Case):
                         for name in sorted(second_reader.decode(message, data))]
             rows = list(csv.DictReader(io.StringIO(tool.run("decode", "--csv", log))))
             self.assertEqual([(row["time"], row["topic"], row["field"]) for row in sorted(rows, key=lambda row: (row["time"], row["field"]))],
+            names = {name: message.signal(name).names[raw] for name, (raw, _) in second_reader.decode(message, data).items()
+                     if raw in message.signal(name).names}
+            self.assertEqual(line.get("names"), names or None, (where, line))
+        count = self.unselected(frames)
+        said = f", {count} frame{'' if count == 1 else 's'} whose selector chooses no field\n"
+        self.assertIn(said if count else "\n", tool.errors, where)
+        self.assertEqual("whose selector" in tool.errors, count != 0, (where, tool.errors))
                              [("%d.%09d" % (micros // 1_000_000, micros % 1_000_000 * 1000), message.name, name)
                               for micros, message, name, _ in expected], f"seed {seed}")
             by_place = {(row["time"], row["field"]): row for row in rows}
