@@ -190,7 +190,10 @@ class FieldText {
   [[nodiscard]] const protocol::Field& field() const noexcept { return *field_; }
   /// As field().raw(data).
   [[nodiscard]] std::int64_t raw(const std::uint8_t* data) const noexcept {
-    return in_word_ && way_ != Way::tabled ? shape_->raw(bits(data)) : raw_by_bytes(data);
+    if (!in_word_) return raw_by_bytes(data);
+    if (way_ != Way::tabled) return shape_->raw(bits(data));
+    const std::uint64_t sign = field_->is_signed ? std::uint64_t{1} << (field_->position.width - 1) : 0;
+    return static_cast<std::int64_t>((bits(data) ^ sign) - sign);  // its table is known, and not its shape
   }
 
  private:
@@ -208,7 +211,7 @@ class FieldText {
   char* print_untabled(char* to, const std::uint8_t* data) const noexcept;
   char* print_slowly(char* to, std::int64_t raw) const noexcept;
   char* print_json_float(char* to, std::int64_t raw) const noexcept;
-  /// Of a field of which the bits are in nine bytes, too, and of one whose table is known and not its shape.
+  /// Of a field of which the bits are in nine bytes, too.
   [[nodiscard]] std::int64_t raw_by_bytes(const std::uint8_t* data) const noexcept;
 
   // 24 bytes: the fields of thousands of messages come in random order, and are to stay in the processor's

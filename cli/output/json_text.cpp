@@ -112,6 +112,25 @@ JsonText::Piece JsonText::keep(std::string_view text) {
   return piece;
 }
 
+std::size_t JsonText::know_names(const protocol::Field& field, const std::string& label) {
+  NamedField named{FieldText{field}, keep(label), static_cast<std::uint32_t>(value_names_.size()), 0};
+  std::vector<protocol::NamedValue> values{field.values.begin(), field.values.end()};
+  std::stable_sort(values.begin(), values.end(), [](const auto& a, const auto& b) { return a.raw < b.raw; });
+  std::size_t size = 0;
+  for (std::size_t i = 0; i < values.size(); ++named.names) {
+    const std::int64_t raw = values[i].raw;
+    std::string text;
+    for (; i < values.size() && values[i].raw == raw; ++i) {  // a value may have two names, as in names_of
+      if (!text.empty()) text += '|';
+      append_json(text, values[i].name);
+    }
+    value_names_.push_back({raw, keep(field.flags ? text : '"' + text + '"')});
+    size = field.flags ? size + text.size() + 1 : std::max(size, text.size() + 2);
+  }
+  named_.push_back(named);
+  return label.size() + size + 2 * block + 16;
+}
+
 void JsonText::know(protocol::FrameRef frame, const Selection& selection) {
   const auto& layout = frame.layout();
   Known known;
@@ -134,13 +153,19 @@ void JsonText::know(protocol::FrameRef frame, const Selection& selection) {
     with_units.push_back(names.back() + json_string(field.unit));
     units += (names.size() == 1 ? "" : ",") + with_units.back();
     known.varies = known.varies || layout.may_lack(field);
+    if (!field.values.empty()) {
+      if (known.named++ == 0) known.first_named = static_cast<std::uint32_t>(named_.size());
+      size += know_names(field, names.back());
+    }
     fields_.push_back({FieldText{field}, {}});
     size += FieldText::room + names.back().size() + with_units.back().size() + 2 * block;
   }
   known.fields = static_cast<std::uint16_t>(names.size());
   present_.resize(std::max(present_.size(), names.size()));
   labels_.resize(fields_.size());
-  units += R"(},"data":")";
+  units += '}';
+  known.plain = !known.varies && known.named == 0;
+  if (known.plain) units += R"(,"data":")";
   // In the order in which they are written, and nothing between them that is not: of thousands of fields they
   // are to stay in the processor's second cache.
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -181,7 +206,7 @@ const JsonText::Known& JsonText::known_of(const log::Entry& entry) const noexcep
   return messages_[static_cast<std::size_t>(subject.topic - catalogue_->topics.data())];
 }
 
-char* JsonText::put(char* to, Piece piece) const noexcept {
+inline char* JsonText::put(char* to, Piece piece) const noexcept {
   const char* const from = pieces_.data() + piece.begin;
   std::memcpy(to, from, block);
   if (piece.size > block) std::memcpy(to + block, from + block, piece.size - block);
@@ -255,8 +280,68 @@ char* JsonText::put_fields(char* to, const Known& known, std::span<const std::ui
     if (i != 0) *to++ = ',';
     to = put(to, labels[present_[i]].unit);
   }
-  put_text(R"(},"data":")");
+  *to++ = '}';
   return to;
+}
+
+/// One name; of flags those of all that are set. Nothing where the value has none.
+char* JsonText::put_name(char* to, const NamedField& field, std::int64_t raw) const noexcept {
+  const ValueName* const first = value_names_.data() + field.first_name;
+  const ValueName* const last = first + field.names;
+  if (!field.value.field().flags) {
+    const auto* const found = std::lower_bound(
+        first, last, raw, [](const ValueName& name, std::int64_t value) { return name.raw < value; });
+    return found != last && found->raw == raw ? put(put(to, field.label), found->text) : to;
+  }
+  char* const begin = to;
+  for (const ValueName* name = first; name != last; ++name) {
+    if ((raw >> name->raw & 1) == 0) continue;
+    if (to == begin) {
+      to = put(to, field.label);
+      *to++ = '"';
+    } else {
+      *to++ = '|';
+    }
+    to = put(to, name->text);
+  }
+  if (to != begin) *to++ = '"';
+  return to;
+}
+
+/// `,"names":{...}` of the values in a frame that have one, or nothing.
+char* JsonText::put_names(char* to, const Known& known, std::span<const std::uint8_t> bytes) const noexcept {
+  constexpr std::string_view begin = R"(,"names":{)";
+  const auto& layout = known.frame.layout();
+  char* const from = to;
+  char* const first = to + begin.size();
+  to = first;
+  for (const NamedField& field : std::span{named_}.subspan(known.first_named, known.named)) {
+    if (known.varies && !layout.has(field.value.field(), bytes)) continue;
+    char* const place = to == first ? to : to + 1;
+    char* const end = put_name(place, field, field.value.raw(bytes.data()));
+    if (end == place) continue;
+    if (place != to) *to = ',';
+    to = end;
+  }
+  if (to == first) return from;
+  std::memcpy(from, begin.data(), begin.size());
+  *to++ = '}';
+  return to;
+}
+
+/// What is not plain, from the first value to the data.
+char* JsonText::put_content(char* to, const Known& known, std::span<const std::uint8_t> bytes,
+                            std::size_t present) const noexcept {
+  if (known.varies) {
+    to = put_fields(to, known, bytes, present);
+  } else {
+    const FieldPiece* const field = fields_.data() + known.first_field;
+    for (unsigned i = 0; i < known.fields; ++i)
+      to = put(field[i].value.print_json(to, bytes.data()), field[i].after);
+  }
+  if (known.named != 0) to = put_names(to, known, bytes);
+  constexpr std::string_view data = R"(,"data":")";
+  return std::copy(data.begin(), data.end(), to);
 }
 
 bool JsonText::write(log::Bytes& out, std::string_view bus, const log::Entry& entry) {
@@ -275,12 +360,12 @@ bool JsonText::write(log::Bytes& out, std::string_view bus, const log::Entry& en
   to = put_begin(to, text, entry);
   if (known.message) to = put_identity(to, entry, known);
   to = put(to, known.head);
-  if (known.varies) {
-    to = put_fields(to, known, entry.bytes(), present);
-  } else {
+  if (known.plain) {
     const FieldPiece* field = fields_.data() + known.first_field;
     for (unsigned i = 0; i < known.fields; ++i)
       to = put(field[i].value.print_json(to, entry.data.data()), field[i].after);
+  } else {
+    to = put_content(to, known, entry.bytes(), present);
   }
   if (entry.length <= can::max_dlc) {
     can::Payload payload;
@@ -331,7 +416,7 @@ void JsonText::write_message(log::Bytes& out, const Known* known, const j1939::T
   if (known != nullptr) {
     append_formatted(out, R"(,"topic":{},"fields":{{)", json_string(known->frame.topic->name));
     const std::size_t present = find_present(*known, message.data);
-    out.grow_to(put_fields(out.room(room_), *known, message.data, present));
+    out.grow_to(put_content(out.room(room_), *known, message.data, present));
   } else {
     out.append(R"(,"error":"unknown identifier","data":")");
   }

@@ -1,10 +1,10 @@
 /// Frames as JSON lines, one object a frame with stable keys: time_ns (a string: it has more digits than a
-/// double), bus, id, priority, topic, frame, fields, units, data; and where they say something direction, fd,
-/// raw_dlc. A message has no priority; one of J1939 has priority, pgn, source and destination of its
-/// identifier. A frame of J1939's transport protocol has `transport`, and in `message` what it completes. A
-/// field that is not in the frame has no key. What is the same in every frame of an identifier is made once,
-/// so that a line is a few copies with numbers between them. Nothing of the frame is left out:
-/// cli/logs/json_lines.hpp reads it back.
+/// double), bus, id, priority, topic, frame, fields, units, data; where values have names `names` of them;
+/// and where they say something direction, fd, raw_dlc. A message has no priority; one of J1939 has priority,
+/// pgn, source and destination of its identifier. A frame of J1939's transport protocol has `transport`, and
+/// in `message` what it completes. A field that is not in the frame has no key. What is the same in every
+/// frame of an identifier is made once, so that a line is a few copies with numbers between them. Nothing of
+/// the frame is left out: cli/logs/json_lines.hpp reads it back.
 #pragma once
 
 #include <array>
@@ -59,6 +59,18 @@ class JsonText {
     Piece name;
     Piece unit;  ///< name and unit
   };
+  /// A value's name as JSON; of flags that of a bit, without quotes.
+  struct ValueName {
+    std::int64_t raw = 0;
+    Piece text;
+  };
+  /// A field of which values have names.
+  struct NamedField {
+    FieldText value;
+    Piece label;  ///< its name, with a colon
+    std::uint32_t first_name = 0;
+    std::uint32_t names = 0;
+  };
   enum class Kind : std::uint8_t { unknown, fields, request };
   /// What an identifier means; with a copy of what is asked of every frame, so that neither topic nor layout
   /// need be looked at.
@@ -66,12 +78,15 @@ class JsonText {
     Kind kind = Kind::unknown;
     bool selected = true;
     bool varies = false;      ///< not every frame has every field
+    bool plain = true;        ///< neither varies nor has named values
     bool message = false;     ///< no topic
     bool pgn = false;         ///< J1939's
     std::uint16_t least = 0;  ///< bytes of a frame
     std::uint16_t most = 0;
     std::uint16_t fields = 0;
+    std::uint16_t named = 0;  ///< fields of which values have names
     std::uint32_t first_field = 0;
+    std::uint32_t first_named = 0;
     Piece head;  ///< of a topic from the identifier, of a message from behind it, to the first value
     protocol::FrameRef frame;
   };
@@ -85,11 +100,18 @@ class JsonText {
   void know(protocol::FrameRef frame, const Selection& selection);
   [[nodiscard]] const Known& known_of(const log::Entry& entry) const noexcept;
   [[nodiscard]] char* put_identity(char* to, const log::Entry& entry, const Known& known) const noexcept;
+  /// The names of a field's values; returns the room that they need.
+  std::size_t know_names(const protocol::Field& field, const std::string& label);
   std::size_t find_present(const Known& known, std::span<const std::uint8_t> bytes) noexcept;
   [[nodiscard]] char* put_fields(char* to, const Known& known, std::span<const std::uint8_t> bytes,
                                  std::size_t count) const noexcept;
+  char* put_names(char* to, const Known& known, std::span<const std::uint8_t> bytes) const noexcept;
+  char* put_name(char* to, const NamedField& field, std::int64_t raw) const noexcept;
+  [[nodiscard]] char* put_content(char* to, const Known& known, std::span<const std::uint8_t> bytes,
+                                  std::size_t present) const noexcept;
   void write_message(log::Bytes& out, const Known* known, const j1939::Transported& message);
-  char* put(char* to, Piece piece) const noexcept;
+  /// Inlined everywhere: a line is little else.
+  [[gnu::always_inline]] inline char* put(char* to, Piece piece) const noexcept;
   char* put_begin(char* to, std::string_view bus_text, const log::Entry& entry) const noexcept;
   const std::string& bus_text(std::string_view bus, std::uint16_t number);
   /// What a remote frame is of; nullptr: its identifier is unknown.
@@ -104,6 +126,8 @@ class JsonText {
   std::vector<Known> messages_;  // by number in the catalogue, those of 29 bits and of CAN FD
   std::vector<FieldPiece> fields_;
   std::vector<Labels> labels_;  // of the same number as fields_
+  std::vector<NamedField> named_;
+  std::vector<ValueName> value_names_;  // of each field by raw number
   std::vector<std::uint16_t>
       present_;  // which fields are in the frame at hand; as many as the most that one has
   std::string pieces_;

@@ -10,12 +10,17 @@
 
 namespace ocm::cli {
 
+/// Whether a raw number is this value; of flags whether this one is set in it.
+[[nodiscard]] inline bool has_name(const protocol::Field& field, const protocol::NamedValue& value,
+                                   std::int64_t raw) noexcept {
+  return field.flags ? (raw >> value.raw & 1) != 0 : raw == value.raw;
+}
+
 /// Of a value that has one, or of the flags that are set in it; empty otherwise.
 [[nodiscard]] inline std::string names_of(const protocol::Field& field, std::int64_t raw) {
   std::string text;
   for (const auto& value : field.values) {
-    const bool applies = field.flags ? (raw >> value.raw & 1) != 0 : raw == value.raw;
-    if (!applies) continue;
+    if (!has_name(field, value, raw)) continue;
     if (!text.empty()) text += '|';
     text += value.name;
   }

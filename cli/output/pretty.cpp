@@ -296,9 +296,15 @@ class Pretty final : public Output {
         std::string text = names_of(field, raw);
         if (text.empty())
           text.assign(number, static_cast<std::size_t>(column.value.print(number, data) - number));
-        put_right(out, text, column.width);
         named = std::any_of(field.values.begin(), field.values.end(),
-                            [raw](const auto& value) { return value.raw == raw; });
+                            [&](const auto& value) { return has_name(field, value, raw); });
+        if (named && topic.is_message()) {  // a file from elsewhere may name several values alike
+          const char* const end = column.value.print(number, data);
+          text.append(" (").append(number, static_cast<std::size_t>(end - number));
+          if (!column.unit_of_all) text += column.unit;
+          text += ')';
+        }
+        put_right(out, text, column.width);
       }
       if (column.unit_of_all || !named) out.append(column.unit);  // a name in place of a number has none
     }

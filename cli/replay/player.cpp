@@ -35,9 +35,10 @@ Selection::Selection(const protocol::Catalogue& catalogue, std::vector<const pro
                      Only only)
     : index_(catalogue), topics_(std::move(topics)), only_(only) {}
 
-bool Selection::has(const log::Entry& entry) const {
+bool Selection::has(const log::Entry& entry, const log::Interfaces& interfaces) {
   if (topics_.empty() && only_ == Only::all) return true;
-  const auto* topic = index_.subject(entry.id, entry.format).topic;
+  if (index_.has_buses()) index_.name(entry.interface, interfaces.name(entry.interface));
+  const auto* topic = index_.of(entry.interface).subject(entry.id, entry.format).topic;
   if (entry.is_fd() && (topic == nullptr || !topic->is_message())) return false;
   if (topic == nullptr || !topic->is_message()) {
     if (entry.format != can::Format::base) return false;
@@ -85,7 +86,7 @@ bool Player::play(const log::Entry& entry, const log::Interfaces& interfaces) {
   }
   const base::Duration offset = log::Playback::distance(entry.time, *first_);
   if (options_.span.is_behind(offset)) return false;
-  if (options_.span.is_before(offset) || !selection_.has(entry)) {
+  if (options_.span.is_before(offset) || !selection_.has(entry, interfaces)) {
     ++played_.not_chosen;
     return true;
   }

@@ -27,10 +27,11 @@ class Selection {
  public:
   /// Of all frames, or of the topics' ones: sensor data, requests and set points.
   Selection(const protocol::Catalogue& catalogue, std::vector<const protocol::Topic*> topics, Only only);
-  [[nodiscard]] bool has(const log::Entry& entry) const;
+  /// The interfaces are those of the entry's log: a topic may be on one of them only.
+  [[nodiscard]] bool has(const log::Entry& entry, const log::Interfaces& interfaces);
 
  private:
-  client::FrameIndex index_;
+  client::InterfaceIndexes index_;
   std::vector<const protocol::Topic*> topics_;
   Only only_;
 };

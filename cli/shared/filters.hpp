@@ -19,6 +19,9 @@ namespace ocm::cli {
 /// (CAN_EFF_FLAG, CAN_RTR_FLAG) and CAN_INV_FILTER for the opposite. [linux/can.h]
 using Filters = std::vector<can_filter>;
 
+/// Passed by no frame, where a list without filters is passed by all. The kernel takes it, too.
+inline constexpr can_filter no_frame{CAN_INV_FILTER, 0};
+
 /// "123:7FF", "18FF1234:1FFFFFFF", and with ~ in place of : for all that do not match, as candump has them.
 /// Eight digits are an extended identifier. The failure names the option --filter.
 [[nodiscard]] transport::Outcome<can_filter> parse_filter(std::string_view text);

@@ -6,11 +6,13 @@
 
 #include "ocm/j1939/identifier.hpp"
 
+#include "cli/output/named_value.hpp"
 #include "cli/shared/fitted.hpp"
 #include "cli/verbs/verbs.hpp"
 #include "cli/words/command.hpp"
 #include "cli/words/quantity.hpp"
 #include "cli/words/value.hpp"
+#include "generator/spec/spec.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -65,7 +67,49 @@ void print_field(const protocol::FrameLayout& layout, const protocol::Field& fie
     print_line("      {} {:<6} {}\n", field.flags ? "bit" : "  =", value.raw, value.name);
 }
 
-void message(const protocol::Catalogue& catalogue, const protocol::Topic& topic) {
+/// What the source says in its own words; its further lines begin with `indent` blanks.
+std::string prose(std::string_view text, std::size_t indent) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '\r') continue;
+    out += c;
+    if (c == '\n') out.append(indent, ' ');
+  }
+  return printable(out);
+}
+
+/// A field's start value as it is sent, in its unit, with the name that it has.
+std::string start_text(const protocol::Field& field, std::int64_t raw) {
+  const bool plain = field.scale == base::Decimal{1, 0} && field.offset.digits == 0;
+  std::string text = !field.is_float() ? words::physical_text(field, raw)
+                     : plain && field.number == protocol::Number::float32
+                         ? fmt::format("{}", static_cast<float>(field.unscaled(raw)))
+                         : fmt::format("{}", field.value(raw));
+  if (!field.unit.empty()) text.append(" ").append(field.unit);
+  if (const std::string name = names_of(field, raw); !name.empty()) text += " (" + name + ')';
+  return text;
+}
+
+/// What the catalogue has not, because no frame needs it.
+void print_facts(const protocol::Field& field, const spec::FieldModel& model) {
+  if (model.start) print_line("      start     {}\n", start_text(field, *model.start));
+  if (!model.receivers.empty()) print_line("      receivers {}\n", fmt::join(model.receivers, ", "));
+  if (!model.description.empty()) print_line("      comment   {}\n", prose(model.description, 16));
+  for (const auto& [name, text] : model.attributes)
+    print_line("      attribute {} = {}\n", name, prose(text, 16));
+}
+
+/// The model of a message; a catalogue has messages behind all topics, in the order of the model.
+const spec::MessageModel& model_of(const spec::Spec& spec, const protocol::Topic& topic) {
+  const auto& topics = spec.catalogue().topics;
+  const auto from_end = static_cast<std::size_t>(topics.data() + topics.size() - &topic);
+  const auto& messages = spec.model().messages;
+  return messages[messages.size() - from_end];
+}
+
+void message(const spec::Spec& spec, const protocol::Topic& topic) {
+  const protocol::Catalogue& catalogue = spec.catalogue();
+  const spec::MessageModel& model = model_of(spec, topic);
   const auto& layout = topic.frames[0];
   const auto sender = catalogue.board_name(topic);
   const auto [by, extended, number] = layout.address;
@@ -76,16 +120,27 @@ void message(const protocol::Catalogue& catalogue, const protocol::Topic& topic)
     print_line("  J1939      parameter group {} (0x{:05X}), here at priority {} from source {}\n", id.pgn,
                id.pgn, id.priority, id.source);
   }
+  if (!model.description.empty()) print_line("  comment    {}\n", prose(model.description, 13));
+  if (!model.other_senders.empty())
+    print_line("  senders    {}{}{}\n", sender, sender.empty() ? "" : ", ",
+               fmt::join(model.other_senders, ", "));
   if (!topic.bus.empty()) print_line("  bus        {}\n", topic.bus);
+  if (!model.send_type.empty()) print_line("  send type  {}\n", prose(model.send_type, 13));
   print_line("  period     {}\n", topic.cycle.count() != 0 ? words::to_text(topic.cycle) : "none is stated");
   if (topic.shortest_period.count() != 0)
     print_line("  distance   at least {}\n", words::to_text(topic.shortest_period));
+  for (const auto& [name, text] : model.attributes)
+    print_line("  attribute  {} = {}\n", name, prose(text, 13));
   print_line("  frame      {} bytes{}\n", layout.length, layout.fd ? ", CAN FD" : "");
-  for (const auto& field : layout.fields) print_field(layout, field);
+  for (std::size_t i = 0; i < layout.fields.size(); ++i) {
+    print_field(layout, layout.fields[i]);
+    print_facts(layout.fields[i], model.fields[i]);
+  }
   if (!topic.source.empty()) print_line("  source     {}\n", topic.source);
 }
 
-void info(const protocol::Catalogue& catalogue, const std::string& word) {
+void info(Session& session, const std::string& word) {
+  const auto& catalogue = session.catalogue();
   const protocol::Topic* topic = words::find_topic(catalogue, word);
   for (const auto& candidate : catalogue.topics)
     if (topic == nullptr && words::is_in_group(candidate, word)) topic = &candidate;
@@ -95,7 +150,7 @@ void info(const protocol::Catalogue& catalogue, const std::string& word) {
   const bool sensor = topic->kind == protocol::Kind::sensor;
   if (topic->is_message()) {
     for (const auto& same : catalogue.topics)  // on several interfaces, or twice in a file
-      if (same.is_message() && same.name == topic->name) message(catalogue, same);
+      if (same.is_message() && same.name == topic->name) message(session.spec(), same);
     return;
   }
   print_line("{} ({} of {}, id 0x{:02X})\n", topic->name, name(topic->kind), catalogue.board_name(*topic),
@@ -132,7 +187,7 @@ void add_info(Verb app, Session& session, int&) {
       "  amiroctl info motors");
   const auto topic = std::make_shared<std::string>();
   verb.add_option("topic", *topic, "name, alias or id").required().type_name("TOPIC");
-  verb.callback([topic, &session] { info(session.catalogue(), *topic); });
+  verb.callback([topic, &session] { info(session, *topic); });
 }
 
 }  // namespace ocm::cli

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <ctime>
@@ -89,18 +90,41 @@ Accepted accepted_split() {
   return {ValueKind::text, true, a_split, {}, [](const std::string& text) { return read_split(text).any(); }};
 }
 
-Filters chosen_filters(const RecordOptions& options, const protocol::Catalogue& catalogue) {
-  Filters filters = filters_for(chosen_topics("record", catalogue, options.topics), options.commands);
-  for (const auto& text : options.filters) {
-    const auto filter = parse_filter(text);
-    if (!filter) fail(filter.error, exit_usage);
-    filters.push_back(*filter);
+/// What is recorded of each bus: a topic that is on one interface only is not looked for on another.
+class ChosenFilters {
+ public:
+  ChosenFilters(const RecordOptions& options, const protocol::Catalogue& catalogue)
+      : topics_(chosen_topics("record", catalogue, options.topics)), commands_(options.commands) {
+    for (const auto& text : options.filters) {
+      const auto filter = parse_filter(text);
+      if (!filter) fail(filter.error, exit_usage);
+      filters_.push_back(*filter);
+    }
   }
-  return filters;
-}
+
+  [[nodiscard]] Filters of(std::string_view bus) const {
+    std::vector<const protocol::Topic*> topics = topics_;
+    std::erase_if(topics, [bus](const protocol::Topic* topic) { return !topic->is_on(bus); });
+    Filters filters = filters_for(topics, commands_);
+    filters.insert(filters.end(), filters_.begin(), filters_.end());
+    if (filters.empty() && !topics_.empty()) filters.push_back(no_frame);
+    return filters;
+  }
+  /// Whether anything of what is named can come on the bus.
+  [[nodiscard]] bool has_any_on(std::string_view bus) const {
+    return topics_.empty() || !filters_.empty() ||
+           std::any_of(topics_.begin(), topics_.end(),
+                       [bus](const auto* topic) { return topic->is_on(bus); });
+  }
+
+ private:
+  std::vector<const protocol::Topic*> topics_;
+  bool commands_;
+  Filters filters_;
+};
 
 /// --bus can0,can1: several at once.
-std::vector<record::Port> open_ports(Session& session, const Filters& filters) {
+std::vector<record::Port> open_ports(Session& session, const ChosenFilters& filters) {
   if (session.bus_name.empty())
     static_cast<void>(session.open_bus());  // says which it is, or that there is none or several
   else
@@ -111,7 +135,9 @@ std::vector<record::Port> open_ports(Session& session, const Filters& filters) {
     record::Port port;
     port.name = session.bus_name.substr(begin, end - begin);
     begin = end + 1;
-    auto capture = record::open_capture(port.name, filters);
+    if (!filters.has_any_on(port.name))
+      remark(fmt::format("none of the topics is on {}: of it error frames alone are recorded", port.name));
+    auto capture = record::open_capture(port.name, filters.of(port.name));
     if (!capture) fail(capture.error);
     port.capture = std::move(capture.value);
     ports.push_back(std::move(port));
@@ -175,7 +201,7 @@ void run_record(Session& session, const RecordOptions& options, int& exit_code) 
   auto chosen = file_options(options, catalogue);
   const bool live = is_live(chosen.path);
   const auto& format = *chosen.format;
-  const auto filters = chosen_filters(options, catalogue);
+  const ChosenFilters filters{options, catalogue};
   record::Limits limits{options.count, {}, catalogue.bit_rate};
   limits.duration = options.duration.value_or(base::Duration{});
 
@@ -187,7 +213,9 @@ void run_record(Session& session, const RecordOptions& options, int& exit_code) 
   if (const auto opened = files.open(); !opened) fail(opened.error);
   remark(fmt::format("recording to {}; Ctrl-C ends",
                      files.path() == "-" ? "the standard output" : files.path()));
-  const auto reopen = [&filters](std::string_view name) { return record::open_capture(name, filters); };
+  const auto reopen = [&filters](std::string_view name) {
+    return record::open_capture(name, filters.of(name));
+  };
   record::Recorder recorder{std::move(ports), reopen, files, limits, live};
   recorder.run();
 

@@ -216,7 +216,7 @@ void play(Session& session, const ReplayOptions& options, int& exit_code) {
 
 /// The samples of the log, between --from and --until.
 void learn(replay::StandIn& robot, logs::OpenedLog& log, const replay::Span& span,
-           const replay::Selection& selection) {
+           replay::Selection& selection) {
   std::vector<log::Entry> entries(log::batch);
   std::optional<base::Time> first;
   while (const std::size_t count = log.reader().read(entries)) {
@@ -225,7 +225,9 @@ void learn(replay::StandIn& robot, logs::OpenedLog& log, const replay::Span& spa
       if (!first) first = entry.time;
       const base::Duration offset = log::Playback::distance(entry.time, *first);
       const auto frame = entry.classic();
-      if (!frame || span.is_before(offset) || span.is_behind(offset) || !selection.has(entry)) continue;
+      if (!frame || span.is_before(offset) || span.is_behind(offset) ||
+          !selection.has(entry, log.reader().interfaces()))
+        continue;
       if (!robot.learn(*frame))
         fail({fmt::format("{} has more frames than fit into the memory for --on-command", log.path()),
               "choose a part of it with --from and --until, or some topics"});
@@ -245,8 +247,8 @@ void stand_in(Session& session, const ReplayOptions& options, int& exit_code) {
   using Answer = replay::StandIn::Answer;
   const auto& catalogue = session.catalogue();
   const auto span = player_options(options).span;
-  const replay::Selection selection{catalogue, chosen_topics("replay", catalogue, options.topics),
-                                    replay::Only::sensors};
+  replay::Selection selection{catalogue, chosen_topics("replay", catalogue, options.topics),
+                              replay::Only::sensors};
   catch_interrupts();
   replay::StandIn robot{catalogue};
   {

@@ -51,6 +51,26 @@ can_filter filter_of_group(std::string_view verb, const std::string& text) {
   return group_filter(group);
 }
 
+/// A field, or one of that name on each of several interfaces.
+bool is_one_an_interface(std::span<const ChosenField> fields) {
+  for (std::size_t i = 0; i < fields.size() && fields.size() > 1; ++i) {
+    const std::string_view bus = fields[i].topic->bus;
+    if (bus.empty() || fields[i].name != fields[0].name) return false;
+    for (std::size_t j = 0; j < i; ++j)
+      if (fields[j].topic->bus == bus) return false;
+  }
+  return true;
+}
+
+transport::Failure too_many_fields(const std::string& beginning, std::string_view word,
+                                   std::span<const ChosenField> fields) {
+  std::string what = beginning + fmt::format("'{}' has {} fields", word, fields.size());
+  const bool one_name = std::all_of(fields.begin(), fields.end(),
+                                    [&](const ChosenField& field) { return field.name == fields[0].name; });
+  if (!one_name) return {what, fmt::format("name one, such as {}", fields[0].name)};
+  return {what + " of that name", "several messages of the spec have that name: rename one"};
+}
+
 }  // namespace
 
 void add_choice_options(Verb verb, ChoiceOptions& options) {
@@ -85,7 +105,8 @@ Choice::Choice(std::string_view verb, const protocol::Catalogue& catalogue, cons
   if (everything_) return;
   index_ = client::InterfaceIndexes{catalogue};
   if (topics_.empty() && filters_.empty() && options.senders.empty())
-    for (const Held& held : conditions_) topics_.push_back(held.of.topic);
+    for (const Held& held : conditions_)
+      for (const HeldField& each : held.fields) topics_.push_back(each.of.topic);
 }
 
 void Choice::read_conditions(std::string_view verb, const protocol::Catalogue& catalogue,
@@ -101,15 +122,35 @@ void Choice::read_conditions(std::string_view verb, const protocol::Catalogue& c
     const auto selection = Selection::of(catalogue, word);
     if (!selection) fail({beginning + selection.error.what, selection.error.remedy}, exit_usage);
     const auto fields = selection->fields();
-    if (fields.size() != 1)
-      fail({beginning + fmt::format("'{}' has {} fields", parts->field, fields.size()),
-            fmt::format("name one, such as {}", fields[0].name)},
-           exit_usage);
-    auto condition = words::Condition::of(*fields[0].field, parts->comparison, parts->value);
-    if (!condition)
-      fail({beginning + fmt::format("'{}' is no value of it", parts->value), condition.error}, exit_usage);
-    conditions_.push_back({fields[0], std::move(*condition)});
+    if (!is_one_an_interface(fields)) fail(too_many_fields(beginning, parts->field, fields), exit_usage);
+    Held held;
+    for (const ChosenField& field : fields) {
+      auto condition = words::Condition::of(*field.field, parts->comparison, parts->value);
+      const std::string where = fields.size() == 1 ? "" : fmt::format(" on {}", field.topic->bus);
+      if (!condition)
+        fail({beginning + fmt::format("'{}' is no value of it{}", parts->value, where), condition.error},
+             exit_usage);
+      held.fields.push_back({field, std::move(*condition)});
+    }
+    conditions_.push_back(std::move(held));
   }
+}
+
+void Choice::on_interface(std::uint16_t number, std::string_view name) {
+  index_.name(number, name);
+  if (interfaces_.size() <= number) interfaces_.resize(number + std::size_t{1});
+  if (interfaces_[number] != name) interfaces_[number] = name;
+}
+
+bool Choice::holds(const Held& held, std::uint16_t interface) const {
+  bool any = false;
+  for (const HeldField& each : held.fields) {
+    if (held.fields.size() > 1 && interface < interfaces_.size() &&
+        each.of.topic->bus == interfaces_[interface])
+      return each.holds;
+    any = any || each.holds;
+  }
+  return any;
 }
 
 bool Choice::is_chosen(const log::Entry& entry) {
@@ -117,32 +158,35 @@ bool Choice::is_chosen(const log::Entry& entry) {
   client::Subject subject = index_.of(entry.interface).subject(entry.id, entry.format);
   if (subject.topic != nullptr && !subject.topic->is_message() && entry.is_fd())
     subject = {};  // no topic has frames of CAN FD
-  return conditions_hold(subject, entry.bytes()) && is_meant(subject.topic, entry.id, entry.format);
+  return conditions_hold(subject, entry.bytes(), entry.interface) &&
+         is_meant(subject.topic, entry.id, entry.format);
 }
 
 bool Choice::is_chosen_packet(const log::Entry& entry, const client::Reception& reception) {
   const auto* const message = reception.transported;
   if (message == nullptr) {
     const client::Subject own = index_.of(entry.interface).subject(entry.id, entry.format);
-    return conditions_hold(own, entry.bytes()) && is_meant(own.topic, entry.id, entry.format);
+    return conditions_hold(own, entry.bytes(), entry.interface) &&
+           is_meant(own.topic, entry.id, entry.format);
   }
-  return conditions_hold({reception.topic, reception.frame}, message->data) &&
+  return conditions_hold({reception.topic, reception.frame}, message->data, entry.interface) &&
          (is_meant(reception.topic, message->id.encode(), can::Format::extended) ||
           is_meant(nullptr, entry.id, entry.format));
 }
 
-bool Choice::conditions_hold(const client::Subject& subject, std::span<const std::uint8_t> data) {
+bool Choice::conditions_hold(const client::Subject& subject, std::span<const std::uint8_t> data,
+                             std::uint16_t interface) {
   bool all = true;
   for (Held& held : conditions_) {
-    // A request says nothing of it; another frame of a topic belongs to the same sample.
-    if (subject.topic == held.of.topic && subject.is_request()) all = false;
-    if (subject.frame && &subject.frame.layout() == held.of.layout) {
-      const bool has_field =
-          held.of.layout->accepts(data.size()) && held.of.layout->has(*held.of.field, data);
-      if (has_field) held.holds = held.condition.holds(held.of.field->raw(data));
+    for (auto& [of, condition, field_holds] : held.fields) {
+      // A request says nothing of it; another frame of a topic belongs to the same sample.
+      if (subject.topic == of.topic && subject.is_request()) all = false;
+      if (!subject.frame || &subject.frame.layout() != of.layout) continue;
+      const bool has_field = of.layout->accepts(data.size()) && of.layout->has(*of.field, data);
+      if (has_field) field_holds = condition.holds(of.field->raw(data));
       all = all && has_field;
     }
-    all = all && held.holds;
+    all = all && holds(held, interface);
   }
   return all;
 }
@@ -155,7 +199,8 @@ bool Choice::is_meant(const protocol::Topic* topic, std::uint32_t id, can::Forma
 void Choice::subscribe(transport::Bus& bus, bool commands) const {
   if (everything_) return;
   std::vector<const protocol::Topic*> looked_at = topics_;
-  for (const Held& held : conditions_) looked_at.push_back(held.of.topic);
+  for (const Held& held : conditions_)
+    for (const HeldField& each : held.fields) looked_at.push_back(each.of.topic);
   Filters filters = filters_for(looked_at, commands);
   filters.insert(filters.end(), filters_.begin(), filters_.end());
   const auto simple = bus_filters(filters);

@@ -55,13 +55,17 @@ class Choice {
   void subscribe(transport::Bus& bus, bool commands) const;
 
   /// Frames of interface `number` come over the one of this name: topics of others are none of theirs.
-  void on_interface(std::uint16_t number, std::string_view name) { index_.name(number, name); }
+  void on_interface(std::uint16_t number, std::string_view name);
 
  private:
-  struct Held {
+  struct HeldField {
     ChosenField of;
     words::Condition condition;
     bool holds = false;  ///< as the last frame with the field said
+  };
+  /// A condition on a field, or on the fields of one name that several interfaces have.
+  struct Held {
+    std::vector<HeldField> fields;
   };
 
   /// Where messages of its parameter groups are chosen.
@@ -71,7 +75,10 @@ class Choice {
   [[nodiscard]] bool is_chosen(const log::Entry& entry);
   [[nodiscard]] bool is_chosen_packet(const log::Entry& entry, const client::Reception& reception);
   /// Notes what a frame, or a message in several, says of the conditions; whether all hold.
-  [[nodiscard]] bool conditions_hold(const client::Subject& subject, std::span<const std::uint8_t> data);
+  [[nodiscard]] bool conditions_hold(const client::Subject& subject, std::span<const std::uint8_t> data,
+                                     std::uint16_t interface);
+  /// On the interface, where it has the field; else on any.
+  [[nodiscard]] bool holds(const Held& held, std::uint16_t interface) const;
   [[nodiscard]] bool is_meant(const protocol::Topic* topic, std::uint32_t id, can::Format format) const;
   void read_conditions(std::string_view verb, const protocol::Catalogue& catalogue,
                        const std::vector<std::string>& conditions);
@@ -81,6 +88,7 @@ class Choice {
   Filters filters_;  ///< of identifiers and parameter groups
   std::vector<Held> conditions_;
   client::InterfaceIndexes index_;
+  std::vector<std::string> interfaces_;  // names by number
 };
 
 }  // namespace ocm::cli

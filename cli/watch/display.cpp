@@ -57,7 +57,7 @@ Display::Display(std::string_view verb, Session& session, const DisplayOptions& 
 
 bool Display::any_fault() noexcept {
   const auto transport = receiver_.transport_counters(last_);
-  return counters().faults() != 0 || transport.lost() + transport.malformed != 0;
+  return counters().faults() + counters().unselected != 0 || transport.lost() + transport.malformed != 0;
 }
 
 void Display::summarise(std::uint64_t lost, base::Time until) {
@@ -72,6 +72,7 @@ void Display::summarise(std::uint64_t lost, base::Time until) {
   add_count(text, seen.incomplete, "incomplete sample", "");
   add_count(text, seen.errors, "error frame", "");
   add_count(text, lost, "lost in the receive queue");
+  add_count(text, seen.unselected, "frame", "whose selector chooses no field");
   remark(text);
   summarise_transport();
 }

@@ -54,7 +54,8 @@ class Display {
 
   [[nodiscard]] std::uint64_t shown() const noexcept { return shown_; }  ///< lines, or frames with --csv
   [[nodiscard]] const client::ReceiverCounters& counters() const noexcept { return receiver_.counters(); }
-  /// Whether any frame or message was lost, unknown, wrong or incomplete. To be asked after `summarise`.
+  /// Whether any frame or message was lost, unknown, wrong, incomplete or of a page that the spec has not. To
+  /// be asked after `summarise`.
   [[nodiscard]] bool any_fault() noexcept;
   /// What came, and every fault by its cause, on stderr. `until`: up to when was listened, if that is later
   /// than the last frame.

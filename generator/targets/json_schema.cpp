@@ -6,8 +6,11 @@
 #include <array>
 #include <cstdlib>
 #include <initializer_list>
+#include <map>
+#include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "generator/targets/message_fields.hpp"
 #include "generator/targets/target.hpp"
@@ -55,8 +58,44 @@ Json schema_of(const FieldModel& field) {
   return schema;
 }
 
+/// The name of a field's value. A value may have several; of flags all that are set have one.
+Json names_of(const FieldModel& field) {
+  if (field.flags) return {{"type", "string"}};
+  std::map<std::int64_t, std::string> by_value;
+  for (const auto& [name, raw] : field.values) {
+    std::string& names = by_value[raw];
+    names.append(names.empty() ? "" : "|").append(name);
+  }
+  std::set<std::string> all;
+  for (const auto& [raw, names] : by_value) all.insert(names);
+  return {{"enum", all}};
+}
+
+bool has_names(const std::vector<FieldModel>& fields) {
+  return std::any_of(fields.begin(), fields.end(),
+                     [](const FieldModel& field) { return !field.values.empty(); });
+}
+
+bool has_names(const Model& model) {
+  for (const auto& message : model.messages)
+    if (has_names(message.fields)) return true;
+  for (const auto& topic : model.topics)
+    for (const auto& frame : topic.frames)
+      if (has_names(frame.fields)) return true;
+  return false;
+}
+
 Json exactly(Json properties) {
   return {{"type", "object"}, {"properties", std::move(properties)}, {"additionalProperties", false}};
+}
+
+/// `names` of a frame or message: of those of its values that have one, or no such key.
+void add_names(Json& properties, const std::vector<FieldModel>& fields, const Model& model) {
+  if (!has_names(model)) return;  // then no line has the key
+  Json names = Json::object();
+  for (const FieldModel& field : fields)
+    if (!field.values.empty()) names[field.name] = names_of(field);
+  properties["names"] = has_names(fields) ? exactly(std::move(names)) : Json(false);
 }
 
 Json alternative(Json properties) {
@@ -79,7 +118,7 @@ Json any_of(std::initializer_list<const char*> keys) {
 }
 
 /// A selection of fields may leave some out.
-Json sample(const Message& message) {
+Json sample(const Message& message, const Model& model) {
   Json fields = Json::object();
   Json units = Json::object();
   Json ids = Json::array();
@@ -88,12 +127,14 @@ Json sample(const Message& message) {
     units[field.name]["const"] = field.unit;
   }
   for (const auto priority : priorities) ids.push_back(identifier(message.identifier(priority)));
-  return alternative(
-      {{"id", {{"enum", ids}}},
-       {"topic", {{"const", message.topic_name}}},
-       {"frame", {{"const", message.frame_name.empty() ? message.topic_name : message.frame_name}}},
-       {"fields", exactly(fields)},
-       {"units", exactly(units)}});
+  Json properties{
+      {"id", {{"enum", ids}}},
+      {"topic", {{"const", message.topic_name}}},
+      {"frame", {{"const", message.frame_name.empty() ? message.topic_name : message.frame_name}}},
+      {"fields", exactly(fields)},
+      {"units", exactly(units)}};
+  add_names(properties, message.frame->fields, model);
+  return alternative(std::move(properties));
 }
 
 // --- plain messages ---
@@ -107,7 +148,7 @@ std::string group_text(const MessageModel& message) {
 
 /// What a message's fields can be. A selection may leave some out, a selector and a short message of J1939,
 /// too.
-Json contents(const MessageModel& message) {
+Json contents(const MessageModel& message, const Model& model) {
   Json fields = Json::object();
   Json units = Json::object();
   for (const FieldModel& field : message.fields) {
@@ -116,13 +157,14 @@ Json contents(const MessageModel& message) {
   }
   Json properties{
       {"topic", {{"const", message.name}}}, {"fields", exactly(fields)}, {"units", exactly(units)}};
+  add_names(properties, message.fields, model);
   if (!message.description.empty()) properties["topic"]["description"] = message.description;
   if (message.is_j1939()) properties["pgn"]["const"] = group_text(message);
   return properties;
 }
 
-Json line_of(const MessageModel& message) {
-  Json properties = contents(message);
+Json line_of(const MessageModel& message, const Model& model) {
+  Json properties = contents(message, model);
   properties["frame"]["const"] = message.name;
   Json line;
   if (message.is_j1939()) {
@@ -165,7 +207,7 @@ Json transported(const Model& model) {
     if (!message.is_j1939()) continue;
     alternatives.push_back({{"required", std::array{"topic", "fields", "units"}},
                             {"not", any_of({"error"})},
-                            {"properties", contents(message)}});
+                            {"properties", contents(message, model)}});
   }
   alternatives.push_back({{"required", std::array{"error"}}, {"not", any_of({"fields"})}});
   Json properties;
@@ -173,6 +215,7 @@ Json transported(const Model& model) {
   add_group_properties(properties);
   properties["topic"]["type"] = "string";
   for (const char* const name : {"fields", "units"}) properties[name]["type"] = "object";
+  if (has_names(model)) properties["names"]["type"] = "object";
   properties["error"]["type"] = "string";
   properties["data"] = text_of("^([0-9A-F]{2})*$", "the bytes");
   Json message = exactly(std::move(properties));
@@ -227,6 +270,8 @@ Json common_properties(const Model& model) {
        model.topics.empty() ? "the topic's name" : "within the topic; request; or the topic's name"}};
   properties["fields"] = {{"type", "object"}, {"description", "physical values"}};
   properties["units"] = {{"type", "object"}, {"description", "of the fields; empty for counts"}};
+  if (has_names(model))
+    properties["names"] = {{"type", "object"}, {"description", "of those values that have one"}};
   properties["error"] = {{"type", "string"}, {"description", "why there are no fields"}};
   if (groups) {
     properties["transport"] = {{"enum", std::array{"control", "packet"}},
@@ -245,9 +290,9 @@ Json common_properties(const Model& model) {
 
 std::string make_json_schema(const Model& model, const Options& options) {
   Json alternatives = Json::array();
-  for (const Message& message : messages(model)) alternatives.push_back(sample(message));
+  for (const Message& message : messages(model)) alternatives.push_back(sample(message, model));
   if (!model.topics.empty()) alternatives.push_back(request(model));
-  for (const MessageModel& message : model.messages) alternatives.push_back(line_of(message));
+  for (const MessageModel& message : model.messages) alternatives.push_back(line_of(message, model));
   alternatives.push_back({{"required", std::array{"error"}}, {"not", {{"required", std::array{"fields"}}}}});
   if (has_groups(model))
     alternatives.push_back({{"required", std::array{"priority", "pgn", "source", "destination", "transport"}},

@@ -22,6 +22,7 @@
 #include "ocm/can/bus.hpp"
 #include "ocm/can/frame.hpp"
 #include "ocm/client/frame_index.hpp"
+#include "ocm/client/selectors.hpp"
 #include "ocm/j1939/transport.hpp"
 #include "ocm/protocol/identifier.hpp"
 #include "ocm/protocol/topic.hpp"
@@ -97,6 +98,9 @@ struct ReceiverCounters {
       0;  ///< samples that lack a frame; the one that was under way at the start is not counted
   std::uint64_t errors = 0;
   std::uint64_t transport = 0;  ///< frames of J1939's transport protocol that complete no message
+  /// Messages with a selector that chooses no field; they are among `samples`, and no faults: many specs
+  /// leave pages out.
+  std::uint64_t unselected = 0;
   /// Frames or samples that a listener should know of.
   [[nodiscard]] constexpr std::uint64_t faults() const noexcept {
     return unknown + remote + fd + wrong_dlc + incomplete + errors;
@@ -114,7 +118,13 @@ class Receiver {
     if (transport == Transport::together && has_groups(catalogue)) transport_.resize(1);
     assemblies_.reserve(catalogue.topics.size());
     for (const protocol::Topic& topic : catalogue.topics) {
-      assemblies_.push_back({bytes_.size(), 0, false});
+      Selectors selectors = topic.is_message() ? Selectors{topic.frames[0]} : Selectors{};
+      std::uint32_t number = none;
+      if (!selectors.empty()) {
+        number = static_cast<std::uint32_t>(selectors_.size());
+        selectors_.push_back(std::move(selectors));
+      }
+      assemblies_.push_back({bytes_.size(), 0, false, number});
       bytes_.resize(bytes_.size() + (topic.is_message() ? 0 : sizeof(can::Payload) * topic.frames.size()));
     }
   }
@@ -156,10 +166,12 @@ class Receiver {
 
  private:
   struct Assembly {
-    std::size_t first;      // of the topic's bytes
-    std::uint64_t present;  // bit i: frame i of the sample under way has come
-    bool synchronised;      // the sample under way was seen from its beginning
+    std::size_t first;        // of the topic's bytes
+    std::uint64_t present;    // bit i: frame i of the sample under way has come
+    bool synchronised;        // the sample under way was seen from its beginning
+    std::uint32_t selectors;  // of a message; none: it has no selector
   };
+  static constexpr std::uint32_t none = UINT32_MAX;
   /// As many messages at a time: one a sender is usual.
   using TransportSessions = j1939::Transport<32>;
 
@@ -183,6 +195,7 @@ class Receiver {
       return {Meaning::unknown, {}, nullptr, {}, &whole};
     }
     ++counters_.samples;
+    count_unselected(*subject.topic, whole.data);
     return {Meaning::sample,
             subject.frame,
             subject.topic,
@@ -221,8 +234,14 @@ class Receiver {
     return assemble(frame, time, id.priority, ref);
   }
 
+  void count_unselected(const protocol::Topic& message, std::span<const std::uint8_t> data) {
+    const auto number = assemblies_[static_cast<std::size_t>(&message - catalogue_->topics.data())].selectors;
+    if (number != none && selectors_[number].choose_nothing(data)) ++counters_.unselected;
+  }
+
   Reception message(const can::FrameView& frame, base::Time time, protocol::FrameRef ref) {
     ++counters_.samples;
+    count_unselected(*ref.topic, frame.bytes);
     const std::size_t room = frame.bytes.size() <= sizeof(can::Payload) ? sizeof(can::Payload) : 64;
     std::copy_n(frame.bytes.data(), room, message_.begin());
     return {Meaning::sample,
@@ -269,6 +288,7 @@ class Receiver {
   const protocol::Catalogue* catalogue_;
   InterfaceIndexes index_;
   std::vector<Assembly> assemblies_;
+  std::vector<Selectors> selectors_;          // of the messages that have any
   std::vector<std::uint8_t> bytes_;           // of topics
   std::array<std::uint8_t, 64> message_{};    // that came last
   std::vector<TransportSessions> transport_;  // one or none

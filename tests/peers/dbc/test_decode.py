@@ -19,6 +19,7 @@ from fractions import Fraction
 import dbc_bits
 import random_dbc
 import second_reader
+import second_transport
 import write_dbc
 
 AMIROCTL = os.environ["AMIROCTL"]
@@ -83,6 +84,34 @@ def digits(value):
     return value.numerator
 
 
+def data_of(chance, message):
+    """Random bytes; where a signal is beyond the message's length nothing is put into one."""
+    fits = all(max(signal.bits()) < 8 * message.length for signal in message.signals)
+    return random_dbc.data_of(chance, message) if fits else chance.randbytes(message.length)
+
+
+def sent_by_j1939(chance, database, message):
+    """Frames (identifier, data, the message's bytes where it is whole) with a random priority, source and destination: one, or
+    the broadcast of a message that is longer [SAE J1939-21, 5.10]. None: the file has another message for each of them."""
+    data = data_of(chance, message)
+    number = random_dbc.sent_as(chance, message)
+    if message.length > 8:
+        group = second_reader.group(number)
+        number = 7 << 26 | group << 8 | (0xFF00 if (group >> 8 & 0xFF) < 240 else 0) | number & 0xFF
+    elif database.find(number, True) is not message:
+        number = message.number
+    if database.find(number, True) is not message or second_transport.is_transport(number):
+        return None
+    if message.length <= 8:
+        return [(number, data, data)]
+    packets = [data[at:at + 7].ljust(7, b"\xff") for at in range(0, len(data), 7)]
+    begin = bytes((second_transport.BAM, len(data) & 0xFF, len(data) >> 8, len(packets), 0xFF)) + group.to_bytes(3, "little")
+    source = number & 0xFF
+    return [(7 << 26 | 0xECFF00 | source, begin, None),
+            *((7 << 26 | 0xEBFF00 | source, bytes((index + 1,)) + packet, data if index + 1 == len(packets) else None)
+              for index, packet in enumerate(packets))]
+
+
 class Tool:
     def __init__(self, case, folder, spec):
         self.case, self.folder, self.spec = case, pathlib.Path(folder), spec
@@ -117,6 +146,18 @@ class Case(unittest.TestCase):
     def lines(self, text):
         return [json.loads(line, parse_int=str, parse_float=str) for line in text.splitlines()]
 
+    def unselected(self, frames):
+        """How many have a selector that chooses no field."""
+        count = 0
+        for frame in filter(is_decoded, frames):
+            present, message = second_reader.decode(frame[1], frame[5]), frame[1]
+            for selector in {signal.selector for signal in message.signals} & set(present):
+                bits = present[selector][0] % (1 << message.signal(selector).length)
+                if not any(low <= bits <= high for signal in message.signals if signal.selector == selector for low, high in signal.ranges):
+                    count += 1
+                    break
+        return count
+
     def check_json(self, tool, where, frames, log, *options):
         text = tool.run("decode", "--json", *options, log)
         lines = self.lines(text)
@@ -133,6 +174,13 @@ class Case(unittest.TestCase):
             self.assertEqual(line.get("topic"), message.name, line)
             self.assert_values(where, message, data, line["fields"])
             self.assertEqual(line["units"], {name: message.signal(name).unit for name in line["fields"]}, where)
+            names = {name: message.signal(name).names[raw] for name, (raw, _) in second_reader.decode(message, data).items()
+                     if raw in message.signal(name).names}
+            self.assertEqual(line.get("names"), names or None, (where, line))
+        count = self.unselected(frames)
+        said = f", {count} frame{'' if count == 1 else 's'} whose selector chooses no field\n"
+        self.assertIn(said if count else "\n", tool.errors, where)
+        self.assertEqual("whose selector" in tool.errors, count != 0, (where, tool.errors))
         return text, lines
 
 
@@ -229,6 +277,16 @@ class Decode(Case):
             tool = Tool(self, self.folder, spec)
             self.assertEqual(tool.run("encode", stdin=tool.run("decode", "--json", log).encode()), log.read_text(), f"seed {seed}")
 
+    def test_encode_passes_names_over(self):
+        """Also names that contradict the numbers, which someone edited."""
+        spec = pathlib.Path(os.environ["OCM_SOURCE_DIR"]) / "examples" / "small_car.dbc"
+        tool = Tool(self, self.folder, spec)
+        line = json.loads(tool.run("decode", "--json", "-", stdin=b"(1.000000) can0 110#F1000000\n"))
+        self.assertEqual((line["fields"]["Gear"], line["names"]["Gear"]), (-1, "Reverse"), line)
+        line["fields"]["Gear"] = 0
+        self.assertEqual(tool.run("encode", stdin=json.dumps(line).encode()).split()[2], "110#01000000")
+        self.assertEqual(tool.run("encode", stdin=json.dumps({**line, "names": 7}).encode()).split()[2], "110#01000000")
+
     def test_stats(self):
         for seed in SEEDS:
             _, frames, spec, log = self.written(seed)
@@ -286,8 +344,7 @@ class Decode(Case):
             for index in range(5 * len(messages)):
                 message = messages[index % len(messages)]
                 length = next(size for size in (*range(9), *random_dbc.FD_LENGTHS) if size >= message.length)
-                data = random_dbc.data_of(chance, message) if all(max(signal.bits()) < 8 * message.length for signal in message.signals) \
-                    else chance.randbytes(message.length)
+                data = data_of(chance, message)
                 frames.append((1_000_000 + index, message, message.number, message.extended, length > 8, data.ljust(length, b"\0")))
             log = self.folder / "real.log"
             log.write_text(log_of(frames))
@@ -298,6 +355,44 @@ class Decode(Case):
                     self.assert_values(spec.name, frame[1], frame[5][:frame[1].length], line["fields"])
                 taken += 1
         self.assertGreater(taken, 0)
+
+    def test_j1939_of_a_folder(self):
+        """The parameter groups of real files and of the project's own, as any node may send them; one of 30 bytes, which comes in
+        several frames, is random."""
+        builder = random_dbc.Builder("long")
+        message = second_reader.Message(0x18FEEC00, True, "Long", 30, "Node", frame_format="J1939PG", j1939=True)
+        builder.fill(message, ["Node", "Other"])
+        own = self.folder / "long.dbc"
+        own.write_text(write_dbc.write(second_reader.Database(nodes=["Node", "Other"], messages=[message]), "long"), encoding="utf-8")
+        specs = {own, *pathlib.Path(FOLDER).rglob("*.dbc"), *pathlib.Path(os.environ["OCM_SOURCE_DIR"], "examples").glob("*.dbc")}
+        short = long = 0
+        for spec in sorted(specs):
+            database = second_reader.read(spec.read_bytes())
+            messages = [message for message in database.messages if message.j1939 and message.signals and 0 < message.length <= 1785]
+            chance = random.Random(spec.name)
+            sent = [(message, frame) for message in messages * 5 for frame in sent_by_j1939(chance, database, message) or ()]
+            if not sent:
+                continue
+            log = self.folder / "real.log"
+            log.write_text(log_of((1_000_000 + 100 * index, None, number, True, False, data) for index, (_, (number, data, _)) in enumerate(sent)))
+            with self.subTest(spec.name):
+                lines = self.lines(Tool(self, self.folder, spec).run("decode", "--json", log))
+                self.assertEqual(len(lines), len(sent))
+                for line, (message, (number, data, whole)) in zip(lines, sent):
+                    self.assertEqual(line["id"], number_of(number, True), spec.name)
+                    if second_transport.is_transport(number):
+                        self.assertEqual((line["transport"], "message" in line), ("packet" if number >> 16 & 1 else "control", whole is not None), line)
+                        line = line.get("message")
+                        long += whole is not None
+                    else:
+                        self.assertEqual((line["source"], line["priority"]), (str(number & 0xFF), str(number >> 26)), line)
+                        short += 1
+                    if whole is not None:
+                        self.assertEqual((line["topic"], line["pgn"], line["data"]),
+                                         (message.name, "%05X" % second_reader.group(message.number), whole.hex().upper()), spec.name)
+                        self.assert_values(spec.name, message, whole, line["fields"])
+        self.assertGreater(short, 0)
+        self.assertGreater(long, 0)
 
 
 if __name__ == "__main__":

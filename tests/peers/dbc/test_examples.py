@@ -66,7 +66,7 @@ class Examples(test_decode.Case):
                 if test_decode.is_decoded(frame):
                     for name, (raw, _) in second_reader.decode(frame[1], frame[5]).items():
                         if raw in frame[1].signal(name).names:
-                            self.assertIn(frame[1].signal(name).names[raw], line)
+                            self.assertRegex(line, rf"\b{name} +{re.escape(frame[1].signal(name).names[raw])} \(-?[0-9.]+[^()]*\)")
                             names += 1
             self.assertGreater(names, 50)
 

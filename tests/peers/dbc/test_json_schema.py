@@ -76,6 +76,7 @@ class Schema(Case):
                          ({"Distance": "NaN", "Consumption": "Infinity"}, True, True))
         for line, change in ((engine, {"topic": "Motor"}), (engine, {"id": "101"}), (engine, {"id": "00000100"}), (engine, {"frame": "x"}),
                              (engine, {"fields": {"Speed": 16383.8}}), (engine, {"fields": {"Speed": -1}}), (engine, {"fields": {"x": 1}}),
+                             (engine, {"names": {"Running": "perhaps"}}), (engine, {"names": {"Speed": "stopped"}}), (trip, {"names": {}}),
                              (engine, {"fields": {"Coolant": "NaN"}}), (engine, {"units": {"Speed": "1/s"}}), (engine, {"error": "both"}),
                              (engine, {"priority": 3}), (engine, {"pgn": "00001"}), (page, {"fields": {"Page": 256}}),
                              (trip, {"fields": {"Distance": "far"}}), (trip, {"fields": {"Distance": None}}), (short, {"fields": {}})):

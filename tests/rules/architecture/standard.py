@@ -3,7 +3,7 @@ import re
 
 _NAMES = """
 algorithm: all_of any_of clamp copy copy_n count_if equal erase_if fill fill_n find find_if lower_bound max min min_element
-    none_of nth_element reverse rotate sort unique
+    none_of nth_element reverse rotate sort stable_sort unique upper_bound
 array: array begin end get swap tuple_size
 atomic: atomic memory_order_acquire memory_order_relaxed memory_order_release
 bit: bit_cast bit_ceil countl_zero countr_zero endian

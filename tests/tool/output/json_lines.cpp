@@ -149,6 +149,17 @@ TEST_CASE("JSON lines: the first and the last character of each length of UTF-8,
   CHECK(inside("\\x4g") == R"(\\x4g)");
 }
 
+TEST_CASE("JSON lines: values that have names have them beside the numbers", "[output]") {
+  // The power's flags are plugged and charging, and 65535 of its minutes is "unknown". [spec/topics.json]
+  CHECK(has(line_of(entry_of("61E#03640AFF0A00")), R"("names":{"flags":"plugged|charging"},"data":"03)"));
+  CHECK(has(line_of(entry_of("61E#0264FFFF0A00")),
+            R"("names":{"flags":"charging","minutes":"unknown"},"data":"02)"));
+  const std::string none = line_of(entry_of("61E#00640AFF0A00"));
+  CHECK_FALSE(has(none, "names"));
+  CHECK(has(none, R"(},"data":"00640AFF0A00"})"));
+  CHECK_FALSE(has(line_of(entry_of("61E#FC640AFF0A00")), "names"));  // bits without a name
+}
+
 TEST_CASE("JSON lines: twenty interfaces, each under its own name", "[output]") {
   cli::JsonText text{amiro::catalogue};
   for (int round = 0; round < 2; ++round)

@@ -57,6 +57,18 @@ class Decode(Case):
         self.assertEqual([each["fields"]["period"] for each in short], [0.05, 1])
         self.assertEqual(motors["topic"], "motors")
 
+    def test_a_selector_that_chooses_no_field(self):
+        """The pages of Service are 0 to 3."""
+        car = ("--spec", os.path.join(SOURCE, "examples", "small_car.dbc"), "decode", "--json")
+        good, bad = "(1.0) can0 400#0102030405060708\n", "(2.0) can0 400#0902030405060708\n"
+        _, err = self.run_tool(*car, "--strict", stdin=good)
+        self.assertNotIn("selector", err)
+        out, err = self.run_tool(*car, stdin=good + bad)
+        self.assertEqual(self.objects(out)[1]["fields"], {"Page": 9})
+        self.assertIn("2 frames, 2 samples, 1 frame whose selector chooses no field\n", err)
+        _, err = self.run_tool(*car, "--strict", stdin=bad + bad, code=1)
+        self.assertIn("2 frames whose selector chooses no field", err)
+
     def test_choices(self):
         def lines(*arguments):
             return self.run_tool("decode", *arguments, stdin=LOG)[0].splitlines()

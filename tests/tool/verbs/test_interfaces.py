@@ -51,6 +51,74 @@ class Interfaces(Case):
         self.assertIn("Target", out.splitlines()[1])
         self.assertIn("unknown", out.splitlines()[3])
 
+    def test_conditions_on_a_field_of_several_interfaces(self):
+        """Each has its own: Engine.Speed of can0 is 513, of can1 40, in the frames that come."""
+        engines = [("can0", "Engine"), ("can1", "Engine")]
+        self.assertEqual(self.meanings("--where", "Engine.Speed>0"), engines)
+        self.assertEqual(self.meanings("--where", "Engine.Speed>100"), engines[:1])
+        self.assertEqual(self.meanings("--where", "Engine.Speed<100"), engines[1:])
+        # Gear on can0 is shown while it holds there, Target on can1 before it has held there; can2 has no such field.
+        later = LOG + "(9.0) can1 100#0600000000000000\n(9.1) can0 101#0300000000000000\n(9.2) can2 100#00\n"
+        choice = ("--topic", "Gear", "--topic", "Target", "--filter", "100:7FF")
+        self.assertEqual(self.meanings(*choice, "--where", "Engine.Speed=513", stdin=later),
+                         [("can0", "Engine"), ("can0", "Gear"), ("can2", None), ("can0", "Gear"), ("can2", None)])
+        self.assertEqual(self.meanings(*choice, "--where", "Engine.Speed=40", stdin=later), [("can2", None), ("can1", "Target"), ("can2", None)])
+        # A value that is none on one of them.
+        with open(self.path("radar.dbc"), "a", encoding="ascii") as file:
+            file.write('VAL_ 259 Speed 0 "stopped" ;\n')
+        _, err = self.run_tool(*self.specs, "decode", "--where", "Engine.Speed=stopped", stdin=LOG, code=2)
+        self.assertIn("'stopped' is no value of it on can0", err)
+
+    def test_listen_has_the_condition_of_its_interface(self):
+        self.start_sim()
+        specs = ("--spec", "sim=" + self.path("radar.dbc"), "--spec", "can0=" + self.path("car.dbc"), "--bus", "sim")
+        listener = self.start(*specs, "listen", "--json", "-n", "1", "--timeout", "30s", "--where", "Engine.Speed>40")
+        self.assertIn("bus: sim", listener.stderr.readline())
+        self.settle()
+        self.run_tool(*specs, "set", "Engine", "Speed=40")
+        self.run_tool(*specs, "set", "Engine", "Speed=50")
+        event, = self.objects(listener.communicate(timeout=60)[0])
+        self.assertEqual(event["fields"], {"Speed": 50})
+
+    def test_replay_takes_topics_of_the_frame_s_interface(self):
+        path = self.path("drive.log")
+        with open(path, "w", encoding="ascii") as file:
+            file.write(LOG)
+
+        def played(*topics):
+            out, err = self.run_tool(*self.specs, "replay", path, "--dry-run", *topics)
+            return [tuple(line.split()[1:]) for line in out.splitlines()], err
+
+        frames, err = played("Engine")
+        self.assertEqual(frames, [("can0", "100#0102000000000000"), ("can1", "103#0400000000000000")])
+        self.assertIn("6 not chosen", err)
+        self.assertEqual(played("Target")[0], [("can1", "100#0500000000000000")])
+        self.assertEqual(played("Gear")[0], [("can0", "101#0300000000000000")])
+        self.assertEqual(len(played()[0]), 8)
+
+    def test_record_takes_topics_of_its_interface(self):
+        """100 is Target on the virtual bus, and Engine on can0 alone."""
+        self.start_sim()
+        specs = ("--spec", "sim=" + self.path("radar.dbc"), "--spec", "can0=" + self.path("car.dbc"), "--bus", "sim")
+        for topics, taken in ((("Engine",), ["103#07"]), (("Target",), ["100#05"]), (("Gear",), []), (("Gear", "--filter", "100:7FF"), ["100#05"]), ((), ["100#05", "103#07", "18FF1234#01"])):
+            path = self.path("_".join(word.strip("-").replace(":", "") for word in topics) + "record.log")
+            recorder = self.start(*specs, "record", "-o", path, *topics)
+            told = ""
+            while "Ctrl-C ends" not in told:
+                line = recorder.stderr.readline()
+                self.assertTrue(line, told)
+                told += line
+            self.assertEqual("none of the topics is on sim" in told, topics == ("Gear",), told)
+            self.settle()
+            for frame in ("100#05", "103#07", "18FF1234#01"):
+                self.run_tool(*specs, "send", frame)
+            self.settle()
+            self.interrupt(recorder)
+            with open(path, encoding="ascii") as file:
+                frames = [line.split()[2] for line in file]
+            # Beside what was sent: the robot on the virtual bus refuses 103, for it is a request there.
+            self.assertEqual([frame for frame in frames if not frame.startswith("71D")], taken, topics)
+
     def test_and_back(self):
         out, _ = self.run_tool(*self.specs, "decode", "--json", stdin=LOG)
         fields = "\n".join(json.dumps({key: event[key] for key in ("time_ns", "bus", "id", "fields")})

@@ -1,0 +1,81 @@
+"""amiroctl info of a message: all that its spec says, which the catalogue of frames does not need."""
+
+import json
+import os
+
+from harness import Case, main
+
+DBC = """BU_: Gearbox Dash Logger
+
+BO_ 256 Transmission: 8 Gearbox
+ SG_ Gear : 0|4@1- (1,0) [-1|5] "" Dash,Logger
+ SG_ Oil : 8|8@1+ (1,-40) [-40|150] "°C" Dash
+ SG_ Ratio : 32|32@1- (1,0) [0|0] "" Vector__XXX
+BO_ 257 Bare: 1 Gearbox
+
+BO_TX_BU_ 256 : Gearbox,Logger;
+CM_ BO_ 256 "says \\"so\\",
+in two lines";
+CM_ SG_ 256 Gear "of the lever";
+BA_DEF_ BO_ "GenMsgSendType" ENUM "Cyclic","OnChange";
+BA_DEF_ BO_ "GenMsgCycleTime" INT 0 10000;
+BA_DEF_ BO_ "Safety" STRING;
+BA_DEF_ SG_ "GenSigStartValue" FLOAT 0 100000;
+BA_DEF_ SG_ "Display" INT 0 9;
+BA_DEF_DEF_ "GenMsgSendType" "Cyclic";
+BA_DEF_DEF_ "GenMsgCycleTime" 0;
+BA_DEF_DEF_ "Safety" "";
+BA_DEF_DEF_ "GenSigStartValue" 0;
+BA_DEF_DEF_ "Display" 0;
+BA_ "GenMsgSendType" BO_ 256 1;
+BA_ "Safety" BO_ 256 "QM";
+BA_ "GenSigStartValue" SG_ 256 Gear -1;
+BA_ "GenSigStartValue" SG_ 256 Oil 60;
+BA_ "GenSigStartValue" SG_ 256 Ratio 0.1;
+BA_ "Display" SG_ 256 Oil 7;
+VAL_ 256 Gear -1 "Reverse" 0 "Neutral" ;
+SIG_VALTYPE_ 256 Ratio : 1;
+"""
+
+
+class Info(Case):
+    def spec(self, name, text):
+        path = os.path.join(self.folder, name)
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+        return "--spec", path
+
+    def test_what_a_dbc_file_says(self):
+        out, err = self.run_tool(*self.spec("car.dbc", DBC), "info", "Transmission")
+        self.assertEqual(err, "")
+        lines = out.splitlines()
+        self.assertIn("Transmission (message of Gearbox, id 100)", lines[0])
+        for line in ('  comment    says "so",', "             in two lines", "  senders    Gearbox, Logger", "  send type  OnChange",
+                     "  attribute  Safety = QM"):
+            self.assertIn(line, lines, out)
+        gear, oil, ratio = (next(i for i, line in enumerate(lines) if line.startswith("    " + name + " ")) for name in ("Gear", "Oil", "Ratio"))
+        self.assertLessEqual({"      start     -1 (Reverse)", "      receivers Dash, Logger", "      comment   of the lever"}, set(lines[gear:oil]))
+        self.assertLessEqual({"      start     20 °C", "      receivers Dash", "      attribute Display = 7"}, set(lines[oil:ratio]))
+        self.assertIn("      start     0.1", lines[ratio:])
+        self.assertNotIn("receivers", "".join(lines[ratio:]))
+
+    def test_what_is_not_said_is_not_shown(self):
+        out, _ = self.run_tool(*self.spec("car.dbc", DBC), "info", "Bare")
+        self.assertFalse([word for word in ("comment", "senders", "attribute", "receivers", "start") if word in out], out)
+
+    def test_json_and_the_right_message(self):
+        """Topics before it, and messages of its name and of others around it."""
+        robot = self.spec("robot.json", json.dumps({"robot": "robot", "boards": [{"name": "Dash"}], "messages": [
+            {"name": "First", "id": "0x608", "description": "of the first", "fields": [
+                {"name": "Level", "byte": 0, "type": "u8", "scale": 0.5, "unit": "%", "start": 9, "description": "of the lamp"}]},
+            {"name": "Second", "id": "0x609", "description": "of the second\u001b[2J", "fields": []}]}))
+        out, _ = self.run_tool(*robot, *self.spec("car.dbc", DBC), "info", "First")
+        self.assertIn("  comment    of the first\n", out)
+        self.assertIn("      start     4.5 %\n", out)
+        self.assertIn("      comment   of the lamp\n", out)
+        out, _ = self.run_tool(*robot, "info", "Second")
+        self.assertIn("of the second\\x1b[2J\n", out)  # no text commands the terminal
+
+
+if __name__ == "__main__":
+    main()
