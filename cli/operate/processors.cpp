@@ -39,6 +39,14 @@ base::Duration shortest(const reflective::Configuration& configuration, std::siz
   return configuration.streams[stream].period;
 }
 
+/// How often a stream's period may change at most; none: never.
+std::optional<base::Duration> adapted_every(const reflective::Configuration& configuration,
+                                            std::size_t stream) {
+  for (const auto& adaptation : configuration.adaptations)
+    if (adaptation.stream == stream) return adaptation.every;
+  return {};
+}
+
 class Processor {
  public:
   Processor(const Operator& tables, std::uint8_t board) : tables_(tables), board_(board) {
@@ -66,6 +74,10 @@ class Processor {
       streams_.push_back({stream.topic, s, old, {}});
       places_.push_back(tasks_.size());
       tasks_.push_back(task);
+      if (const auto every = adapted_every(configuration, s)) {
+        task.period = every->count();
+        tasks_.push_back(task);
+      }
     }
   }
 
@@ -86,6 +98,13 @@ class Processor {
 };
 
 }  // namespace
+
+bool is_measured(const Operator& tables, std::uint16_t topic) {
+  if (tables.catalogue->robot != amiro::catalogue.robot || tables.topic(topic).is_message()) return false;
+  const auto tasks = tasks_of(tables.catalogue->boards[tables.topic(topic).board].name);
+  return std::any_of(tasks.begin(), tasks.end(),
+                     [&](const Known& each) { return each.name == tables.topic(topic).name; });
+}
 
 std::vector<ProcessorBound> on_processors(const Operator& tables, std::uint16_t from, std::uint16_t to) {
   std::vector<ProcessorBound> all;

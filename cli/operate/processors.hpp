@@ -20,8 +20,13 @@ struct ProcessorBound {
   analysis::Explained time;
 };
 
+/// Whether what a sample of the topic takes on its board is known.
+[[nodiscard]] bool is_measured(const reflective::Operator& tables, std::uint16_t topic);
+
 /// Each stream of which the board's tasks are known, with all that its board does beside it: its own tasks,
-/// refusals and the other streams at their shortest period. Of a change, `from` not none: old and new streams
+/// refusals, the other streams at their shortest period, and one sample more each time an adaptation begins a
+/// stream's grid again. Asking again adds none: a stream that has been silent for so long has no sample under
+/// way. Of a change, `from` not none: old and new streams
 /// together, as on the bus (ocm/reflective/proof.hpp).
 [[nodiscard]] std::vector<ProcessorBound> on_processors(const reflective::Operator& tables,
                                                         std::uint16_t from, std::uint16_t to);

@@ -47,6 +47,14 @@ std::string names_of(const Study& study, const std::vector<std::uint16_t>& topic
   return text;
 }
 
+/// The sum, one part a line.
+std::string lines_of(const reflective::Latency& latency) {
+  std::string text = sum_of(latency);
+  for (const std::string_view sign : {" = ", " + "})
+    for (std::size_t at = text.find(sign); at != std::string::npos; at = text.find(sign, at)) text[at] = '\n';
+  return text;
+}
+
 /// What counts without being typed, and what cannot be counted; empty: neither.
 std::string others_of(const Study& study) {
   std::string text;
@@ -92,11 +100,12 @@ std::string to_table(const Study& study) {
     text +=
         fmt::format("  {:<{}}  {:>7}{}\n", tables.configurations[c].name, width, percent(bound.load), role);
     for (const StreamBound& stream : bound.streams)
-      text += fmt::format(
-          "    {} every {} at {} priority: {}{} of {}\n", tables.topic(stream.topic).name,
-          words::to_text(stream.period), name(stream.priority),
-          stream.on_board == 0 ? std::string{} : milliseconds(stream.on_board) + " on its board and ",
-          milliseconds(stream.response), milliseconds(stream.deadline));
+      text += fmt::format("    {} every {} at {} priority: {}{} of {}\n", tables.topic(stream.topic).name,
+                          words::to_text(stream.period), name(stream.priority), milliseconds(stream.response),
+                          stream.on_board == 0
+                              ? std::string{}
+                              : fmt::format(" ({} of it on its board)", milliseconds(stream.on_board)),
+                          milliseconds(stream.deadline));
   }
 
   text += others_of(study);
@@ -111,9 +120,10 @@ std::string to_table(const Study& study) {
         change.from == none ? std::string_view{"the start"} : tables.configurations[change.from].name, width,
         tables.configurations[change.to].name, width, percent(change.load), milliseconds(change.over_after));
 
-  text +=
-      "\nreactions: from the event to the end of the last set point on the bus, at most; what a sample takes "
-      "on its board comes on top\n";
+  text += "\nreactions: from the event to the end of the last set point on the bus, at most\n";
+  if (!study.unmeasured.empty())
+    text += fmt::format("  NOT COUNTED, as the tasks of its board are not known: the sampling of {}\n",
+                        names_of(study, study.unmeasured));
   for (const ReactionBound& reaction : study.reactions) {
     const auto& transition = tables.transitions[reaction.transition];
     text += fmt::format("  {}: {} -> {}\n", transition.cause, tables.configurations[reaction.from].name,
@@ -200,6 +210,8 @@ std::string to_json(const Study& study) {
     if (!reaction.conditions.empty()) one["conditions"] = conditions;
     reactions.push_back(one);
   }
+  Json unmeasured = Json::array();
+  for (const std::uint16_t topic : study.unmeasured) unmeasured.push_back(tables.topic(topic).name);
   Json doubts = Json::array();
   for (const auto& doubt : study.doubts)
     doubts.push_back({{"place", doubt.place}, {"what", doubt.what}, {"remedy", doubt.remedy}});
@@ -211,6 +223,7 @@ std::string to_json(const Study& study) {
               {"configurations", configurations},
               {"changes", changes},
               {"reactions", reactions},
+              {"sampling_not_counted", unmeasured},
               {"in_time", study.passes()},
               {"doubts", doubts}};
   return object.lines();
@@ -237,11 +250,14 @@ std::string to_dot(const Study& study) {
     if (!reaction.seen) continue;
     const auto& transition = tables.transitions[reaction.transition];
     const bool asked = transition.monitor == reflective::by_request;
-    text += fmt::format(
-        "  c{} -> c{} [label={}{}];\n", reaction.from, transition.to,
-        in_quotes(fmt::format("{}\n{}", transition.cause, milliseconds(reaction.latency.total()))),
-        asked ? ", style=dashed" : "");
+    text += fmt::format("  c{} -> c{} [label={}{}];\n", reaction.from, transition.to,
+                        in_quotes(fmt::format("{}\n{}", transition.cause, lines_of(reaction.latency))),
+                        asked ? ", style=dashed" : "");
   }
+  if (!study.unmeasured.empty())
+    text +=
+        fmt::format("  label={};\n  fontname=\"DejaVu Sans\";\n  fontsize=9;\n",
+                    in_quotes(fmt::format("sampling not counted: {}", names_of(study, study.unmeasured))));
   return text + "}\n";
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -23,12 +24,15 @@ std::string_view name_of(const OperatorFile& file, std::uint16_t configuration) 
                                : file.tables.configurations[configuration].name;
 }
 
+std::string place_of(const OperatorFile& file, std::uint16_t from, std::uint16_t to) {
+  return from == none
+             ? fmt::format("in \"{}\"", name_of(file, to))
+             : fmt::format("in the change from \"{}\" to \"{}\"", name_of(file, from), name_of(file, to));
+}
+
 spec::Problem problem_of(const OperatorFile& file, const Doubt& doubt) {
   const auto& tables = file.tables;
-  const std::string of = doubt.from == none
-                             ? fmt::format("in \"{}\"", name_of(file, doubt.configuration))
-                             : fmt::format("in the change from \"{}\" to \"{}\"", name_of(file, doubt.from),
-                                           name_of(file, doubt.configuration));
+  const std::string of = place_of(file, doubt.from, doubt.configuration);
   const std::string& place = file.parts[doubt.configuration].of.place;
   switch (doubt.kind) {
     case Doubt::Kind::too_many:
@@ -39,7 +43,10 @@ spec::Problem problem_of(const OperatorFile& file, const Doubt& doubt) {
                                                     : fmt::format("{}", tables.topic(doubt.topic).name);
       const std::string how =
           doubt.why.bounded()
-              ? fmt::format("takes up to {}, its deadline is {}", milliseconds(doubt.why.response),
+              ? fmt::format("takes up to {}{}, its deadline is {}", milliseconds(doubt.why.response),
+                            doubt.sampling == 0
+                                ? std::string{}
+                                : fmt::format(" ({} of it on its board)", milliseconds(doubt.sampling)),
                             milliseconds(doubt.why.deadline))
               : std::string{"has no bound: the bus is overloaded at its priority"};
       return {place, fmt::format("{} {} {}", of, topic, how),
@@ -69,38 +76,64 @@ spec::Problem problem_of(const OperatorFile& file, const Doubt& doubt) {
   return {place, "unknown", ""};
 }
 
-/// What a board cannot serve: by its processor alone, or together with the bus.
-void judge_boards(Study& study, std::uint16_t from, std::uint16_t to) {
-  const OperatorFile& file = *study.file;
-  const auto& tables = file.tables;
-  for (const ProcessorBound& bound : on_processors(tables, from, to)) {
-    const auto& topic = tables.topic(bound.topic);
-    std::int64_t needs = bound.time.response;
-    std::int64_t on_bus = 0;
-    if (from == none) {
-      StreamBound& stream = study.configurations[to].streams[bound.stream];
-      stream.on_board = needs;
-      on_bus = stream.response;
-      if (needs != analysis::unbounded && on_bus != analysis::unbounded) needs += on_bus;
-    }
-    if (bound.time.bounded() && needs <= bound.time.deadline) continue;
-    const auto board = tables.catalogue->board_name(topic);
-    const std::string of = from == none ? fmt::format("in \"{}\"", name_of(file, to))
-                                        : fmt::format("in the change from \"{}\" to \"{}\"",
-                                                      name_of(file, from), name_of(file, to));
-    const std::string what =
-        bound.time.bounded()
-            ? fmt::format("{} the processor of {} takes up to {} for a sample of {}{}, its deadline is {}",
-                          of, board, milliseconds(bound.time.response), topic.name,
-                          on_bus == 0 ? std::string{} : fmt::format(" and the bus {}", milliseconds(on_bus)),
-                          milliseconds(bound.time.deadline))
-            : fmt::format("{} the processor of {} cannot serve {}: it is overloaded at its priority", of,
-                          board, topic.name);
-    study.doubts.push_back(
-        {bound.old ? file.parts[to].of.place : file.parts[to].stream_places[bound.stream], what,
-         "longer periods or fewer streams of that board, or a more urgent priority for it"});
-  }
+/// What the board of a stream cannot serve by its processor alone; the proof judges it together with the bus.
+spec::Problem problem_of(const OperatorFile& file, std::uint16_t from, std::uint16_t to,
+                         const ProcessorBound& bound) {
+  const auto& topic = file.tables.topic(bound.topic);
+  const auto board = file.tables.catalogue->board_name(topic);
+  const std::string of = place_of(file, from, to);
+  return {bound.old ? file.parts[to].of.place : file.parts[to].stream_places[bound.stream],
+          bound.time.bounded()
+              ? fmt::format("{} the processor of {} takes up to {} for a sample of {}, its deadline is {}",
+                            of, board, milliseconds(bound.time.response), topic.name,
+                            milliseconds(bound.time.deadline))
+              : fmt::format("{} the processor of {} cannot serve {}: it is overloaded at its priority", of,
+                            board, topic.name),
+          "longer periods or fewer streams of that board, or a more urgent priority for it"};
 }
+
+/// What samples take on their boards, in each configuration and change, for the proof.
+class Boards {
+ public:
+  explicit Boards(const OperatorFile& file) : file_(file) {
+    const auto& tables = file.tables;
+    const auto count = static_cast<std::uint16_t>(tables.configurations.size());
+    for (std::uint16_t c = 0; c < count; ++c) add(none, c);
+    for (std::uint16_t from = 0; from < count; ++from)
+      for (std::uint16_t to = 0; to < count; ++to)
+        if (leads(tables, from, to)) add(from, to);
+  }
+  static bool leads(const reflective::Operator& tables, std::uint16_t from, std::uint16_t to) {
+    return std::any_of(tables.transitions.begin(), tables.transitions.end(),
+                       [&](const auto& t) { return t.to == to && tables.leaves(t, from); });
+  }
+  [[nodiscard]] std::span<const reflective::Sampling> sampling() const { return sampling_; }
+  [[nodiscard]] const std::vector<spec::Problem>& problems() const { return problems_; }
+  /// Of a stream in a configuration; 0: not known.
+  [[nodiscard]] std::int64_t sampling(std::uint16_t configuration, std::uint16_t topic) const {
+    for (const auto& each : sampling_)
+      if (each.from == none && each.configuration == configuration && each.topic == topic) return each.time;
+    return 0;
+  }
+  /// The doubt is of what a processor alone cannot serve.
+  [[nodiscard]] bool explains(const Doubt& doubt) const {
+    return doubt.kind == Doubt::Kind::late && (doubt.sampling == analysis::unbounded ||
+                                               (doubt.sampling != 0 && doubt.sampling > doubt.why.deadline));
+  }
+
+ private:
+  void add(std::uint16_t from, std::uint16_t to) {
+    for (const ProcessorBound& bound : on_processors(file_.tables, from, to)) {
+      sampling_.push_back({from, to, bound.topic, bound.time.response});
+      if (!bound.time.bounded() || bound.time.response > bound.time.deadline)
+        problems_.push_back(problem_of(file_, from, to, bound));
+    }
+  }
+
+  const OperatorFile& file_;
+  std::vector<reflective::Sampling> sampling_;
+  std::vector<spec::Problem> problems_;
+};
 
 }  // namespace
 
@@ -109,7 +142,8 @@ Study study(const OperatorFile& file, std::uint32_t bit_rate) {
   result.file = &file;
   result.bit_rate = bit_rate;
   const auto& tables = file.tables;
-  const auto proof = std::make_unique<Proof>(tables, bit_rate);
+  const Boards boards{file};
+  const auto proof = std::make_unique<Proof>(tables, bit_rate, boards.sampling());
   const auto count = static_cast<std::uint16_t>(tables.configurations.size());
 
   for (std::uint16_t c = 0; c < count; ++c) {
@@ -120,8 +154,11 @@ Study study(const OperatorFile& file, std::uint32_t bit_rate) {
       const std::int64_t period = stream.period.count();
       const std::int64_t deadline =
           topic.deadline.count() == 0 ? period : std::min(period, topic.deadline.count());
-      bound.streams.push_back(
-          {stream.topic, stream.period, stream.priority, proof->response(c, stream.topic), deadline});
+      bound.streams.push_back({stream.topic, stream.period, stream.priority, proof->response(c, stream.topic),
+                               deadline, boards.sampling(c, stream.topic)});
+      if (!is_measured(tables, stream.topic) && std::find(result.unmeasured.begin(), result.unmeasured.end(),
+                                                          stream.topic) == result.unmeasured.end())
+        result.unmeasured.push_back(stream.topic);
     }
     result.configurations.push_back(std::move(bound));
   }
@@ -132,9 +169,7 @@ Study study(const OperatorFile& file, std::uint32_t bit_rate) {
   change(none, tables.initial);
   for (std::uint16_t from = 0; from < count; ++from)
     for (std::uint16_t to = 0; to < count; ++to)
-      if (std::any_of(tables.transitions.begin(), tables.transitions.end(),
-                      [&](const auto& t) { return t.to == to && tables.leaves(t, from); }))
-        change(from, to);
+      if (Boards::leads(tables, from, to)) change(from, to);
 
   for (std::uint16_t t = 0; t < tables.transitions.size(); ++t) {
     const auto& transition = tables.transitions[t];
@@ -156,10 +191,9 @@ Study study(const OperatorFile& file, std::uint32_t bit_rate) {
       result.reactions.push_back(std::move(reaction));
     }
   }
-  for (std::uint16_t c = 0; c < count; ++c) judge_boards(result, none, c);
-  for (const ChangeBound& each : result.changes)
-    if (each.from != none) judge_boards(result, each.from, each.to);
+  result.doubts = boards.problems();
   proof->check([&](const Doubt& doubt) {
+    if (boards.explains(doubt)) return;
     auto problem = problem_of(file, doubt);
     if (std::find(result.doubts.begin(), result.doubts.end(), problem) == result.doubts.end())
       result.doubts.push_back(std::move(problem));

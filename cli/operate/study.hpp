@@ -18,10 +18,10 @@ struct StreamBound {
   std::uint16_t topic = reflective::none;
   base::Duration period{};
   protocol::Priority priority = protocol::default_priority;
-  std::int64_t response = 0;  ///< ns, or analysis::unbounded
+  std::int64_t response = 0;  ///< on its board and on the bus, ns, or analysis::unbounded
   std::int64_t deadline = 0;
-  /// On the processor of its board, from the release until the bus has the sample, ns, or
-  /// analysis::unbounded; 0: the board's tasks are not known.
+  /// Part of it on the processor of its board, from the release until the bus has the sample, ns, or
+  /// analysis::unbounded; 0: the board's tasks are not known, and it is not counted.
   std::int64_t on_board = 0;
 };
 struct ConfigurationBound {
@@ -49,6 +49,8 @@ struct Study {
   std::vector<ConfigurationBound> configurations;
   std::vector<ChangeBound> changes;
   std::vector<ReactionBound> reactions;
+  std::vector<std::uint16_t>
+      unmeasured;                     ///< topics of streams of which the time on their board is not counted
   std::vector<spec::Problem> doubts;  ///< why it may be late; none: it is in time
 
   [[nodiscard]] bool passes() const noexcept { return doubts.empty(); }
@@ -62,9 +64,9 @@ struct Study {
 [[nodiscard]] std::string to_json(const Study& study);
 [[nodiscard]] std::string to_dot(const Study& study);
 
-/// "58.9 ms = 50 period + 1 jitter + ...": the parts that are not 0, exactly.
+/// "71.3 ms = 50 period + 1 jitter + ...": the parts that are not 0, exactly.
 [[nodiscard]] std::string sum_of(const reflective::Latency& latency);
-/// "58.9 ms", exactly; "no bound".
+/// "71.3 ms", exactly; "no bound".
 [[nodiscard]] std::string milliseconds(std::int64_t ns);
 
 }  // namespace ocm::cli::operate

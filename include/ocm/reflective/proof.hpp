@@ -19,20 +19,25 @@
 ///
 /// Latency, from the event, or if later from `settle` after its configuration was entered:
 ///
-///     field                  T + J + (R - J) + reaction
-///     age, gap               (R - J) + reaction + limit + reaction, from the last sample on
-///     rate                   (R - J) + reaction + 2 windows + reaction
+///     field                  T + J + S + (R - J - S) + reaction
+///     age, gap               S + (R - J - S) + reaction + limit + reaction, from the last sample on
+///     rate                   S + (R - J - S) + reaction + 2 windows + reaction
 ///     bus load               2 windows + reaction;   bus state: reaction;   refusals: R + reaction
 ///     `lasting`, if any      + lasting + reaction
 ///     the set points         + busy period of what the operator's queue can hold before them
 ///
 /// Of a monitor the latest of its conditions counts. R is the exact response time of the topic's last frame
-/// (analysis/can_response.hpp). An event in the first `settle` of a configuration acts by `settle` later.
+/// (analysis/can_response.hpp), of which J + S is jitter: a frame is handed over as late as the sample is
+/// [Tindell, Clark 1994, "Holistic schedulability analysis for distributed hard real-time systems",
+/// Microprocessing and Microprogramming 40]. An event in the first `settle` of a configuration acts by
+/// `settle` later.
 ///
-/// Assumed: a board samples at the release, which is J late at most, and begins a stream when it takes the
-/// request; the operator's frames leave in their order; of what is not in the tables, `others` is all there
-/// is; clocks of one speed; no frame is lost (a lost one costs a period, or for a request `retry`). For set
-/// points that actuate later than their frame ends, the board's time comes on top.
+/// Assumed: a board begins a sample at the release, which is J late at most, reads the value at any time from
+/// then on, and hands its frames over S later at most, in the order of the samples: `Sampling`, what the
+/// caller's analysis of the boards' processors says, 0 where it says nothing. It begins a stream when it
+/// takes the request; the operator's frames leave in their order; of what is not in the tables, `others` is
+/// all there is; clocks of one speed; no frame is lost (a lost one costs a period, or for a request `retry`).
+/// For set points that actuate later than their frame ends, the board's time comes on top.
 ///
 /// Pure, constexpr, no heap; 400 bytes a message, N messages. O(messages^2) an analysis.
 #pragma once
@@ -64,6 +69,7 @@ struct Latency {
   std::uint16_t condition = none;  ///< which one of the monitor is the latest
   std::int64_t period = 0;         ///< until the stream samples again
   std::int64_t jitter = 0;         ///< of its release
+  std::int64_t sampling = 0;       ///< on its board: from the release to the hand-over of its frames
   std::int64_t bus = 0;            ///< of its last frame
   std::int64_t reading = 0;        ///< until the operator's step is over
   std::int64_t limit = 0;          ///< age or gap
@@ -77,9 +83,10 @@ struct Latency {
     std::string_view name{};
     std::int64_t time = 0;
   };
-  [[nodiscard]] constexpr std::array<Part, 9> parts() const noexcept {
+  [[nodiscard]] constexpr std::array<Part, 10> parts() const noexcept {
     return {{{"period", period},
              {"jitter", jitter},
+             {"sampling", sampling},
              {"bus", bus},
              {"reading", reading},
              {"limit", limit},
@@ -101,6 +108,15 @@ struct Latency {
   }
 };
 
+/// What a sample of a topic takes on its board at most, in a configuration, or in a change to it: response
+/// time of the task that takes it, from its release to the hand-over of its last frame.
+struct Sampling {
+  std::uint16_t from = none;  ///< the change from there; none: the configuration itself, and a start in it
+  std::uint16_t configuration = none;
+  std::uint16_t topic = none;
+  std::int64_t time = 0;  ///< ns, at least 0; analysis::unbounded: its board cannot serve it
+};
+
 /// Why an operator may not be in time.
 struct Doubt {
   enum class Kind : std::uint8_t {
@@ -117,15 +133,21 @@ struct Doubt {
   std::uint16_t topic = none;  ///< late; none: one of `others`
   std::uint16_t condition = none;
   analysis::Explained why{};
+  std::int64_t sampling = 0;  ///< late: on its board, part of it; unbounded: its board cannot serve it
   std::int64_t needs = 0;
 };
 
 template <std::size_t N>
 class Proof {
  public:
-  /// The tables must outlive it and be without mistakes; the bit rate is at least 1.
-  constexpr Proof(const Operator& tables, std::uint32_t bit_rate, analysis::ErrorModel errors = {}) noexcept
-      : op_(&tables), bit_rate_(bit_rate), bus_{analysis::bits_ns(1, bit_rate), errors} {}
+  /// The tables must outlive it and be without mistakes; the bit rate is at least 1. Of `sampling` the
+  /// longest of a topic counts; what is not in it takes no time.
+  constexpr Proof(const Operator& tables, std::uint32_t bit_rate, std::span<const Sampling> sampling = {},
+                  analysis::ErrorModel errors = {}) noexcept
+      : op_(&tables),
+        bit_rate_(bit_rate),
+        sampling_(sampling),
+        bus_{analysis::bits_ns(1, bit_rate), errors} {}
 
   /// Calls report(Doubt) for whatever cannot be shown to be in time.
   template <class Report>
@@ -151,7 +173,7 @@ class Proof {
     std::int64_t oldest = 0;
     for (std::size_t i = 0; i < items_.size(); ++i)
       if (items_[i].kind == Item::Kind::stream && items_[i].old)
-        oldest = std::max(oldest, results[i].response);
+        oldest = std::max(oldest, response_of(items_[i], results[i]));
     sum += oldest;
     return oldest == analysis::unbounded ? oldest : sum.value_or(analysis::unbounded);
   }
@@ -204,7 +226,7 @@ class Proof {
   [[nodiscard]] constexpr std::int64_t response(std::uint16_t configuration, std::uint16_t topic) noexcept {
     Latency found;
     if (!set(none, configuration, false) || !on_bus(topic, solve(), found)) return analysis::unbounded;
-    return found.jitter + found.bus;
+    return found.jitter + found.sampling + found.bus;
   }
 
  private:
@@ -215,7 +237,8 @@ class Proof {
     std::uint16_t topic = none;
     bool old =
         false;  ///< stream: is not wanted any more, or changes. command: of the configuration that is left
-    bool entry = false;  ///< command: of the set points of the change
+    bool entry = false;         ///< command: of the set points of the change
+    std::int64_t sampling = 0;  ///< stream: part of the message's jitter, if it is bounded
   };
 
   [[nodiscard]] constexpr bool leads(std::uint16_t from, std::uint16_t to) const noexcept {
@@ -238,6 +261,8 @@ class Proof {
   constexpr bool set(std::uint16_t from, std::uint16_t to, bool changes) noexcept {
     items_.clear();
     room_ = true;
+    from_ = from;
+    to_ = to;
     const Configuration& target = op_->configurations[to];
     const Configuration* const source = from == none ? nullptr : &op_->configurations[from];
     for (const analysis::Message& other : op_->others) add({.message = other});
@@ -342,13 +367,34 @@ class Proof {
         message.key =
             can::arbitration_key({.id = layout.address.number, .format = protocol::format_of(layout)});
       message.deadline = std::min(message.due(), message.period);
-      add({.message = message, .kind = Item::Kind::stream, .topic = stream.topic, .old = old});
+      const std::int64_t sampling = sampling_of(stream.topic);
+      if (sampling != analysis::unbounded)
+        message.jitter = (analysis::Checked{message.jitter} + sampling).value_or(analysis::unbounded);
+      add({.message = message,
+           .kind = Item::Kind::stream,
+           .topic = stream.topic,
+           .old = old,
+           .sampling = sampling});
       if (again.count() == 0 || topic.is_message()) continue;
       message.period = again.count();
       message.jitter = op_->settle.count();
       message.deadline = analysis::unbounded;
       add({.message = message, .kind = Item::Kind::again, .topic = stream.topic});
     }
+  }
+
+  /// On its board, in the configuration or change that is being collected.
+  [[nodiscard]] constexpr std::int64_t sampling_of(std::uint16_t topic) const noexcept {
+    std::int64_t longest = 0;
+    for (const Sampling& each : sampling_)
+      if (each.from == from_ && each.configuration == to_ && each.topic == topic)
+        longest = std::max(longest, each.time);
+    return longest;
+  }
+  /// From the planned release on. What its board cannot serve delays nothing on the bus, and has no bound.
+  [[nodiscard]] static constexpr std::int64_t response_of(const Item& item,
+                                                          const analysis::Explained& result) noexcept {
+    return item.sampling == analysis::unbounded ? analysis::unbounded : result.response;
   }
 
   /// What the operator may send in a configuration at any time.
@@ -508,17 +554,18 @@ class Proof {
     }
     return found;
   }
-  /// Jitter and response of a stream; false: no bound.
+  /// Jitter, sampling and response of a stream; false: no bound.
   constexpr bool on_bus(std::uint16_t topic, std::span<const analysis::Explained> results,
                         Latency& found) const noexcept {
     std::int64_t response = -1;
     for (std::size_t i = 0; i < items_.size(); ++i) {
       if (items_[i].kind != Item::Kind::stream || items_[i].topic != topic) continue;
-      response = std::max(response, results[i].response);
-      found.jitter = items_[i].message.jitter;
+      response = std::max(response, response_of(items_[i], results[i]));
+      found.sampling = items_[i].sampling;
+      found.jitter = items_[i].message.jitter - found.sampling;
     }
     if (response < 0 || response == analysis::unbounded) return false;
-    found.bus = response - found.jitter;
+    found.bus = response - found.jitter - found.sampling;
     return true;
   }
   [[nodiscard]] constexpr std::int64_t period_of(std::uint16_t configuration,
@@ -550,13 +597,17 @@ class Proof {
   template <class Report>
   constexpr void late(std::uint16_t from, std::uint16_t to, Report& report) noexcept {
     const auto results = solve();
-    for (std::size_t i = 0; i < items_.size(); ++i)
-      if (!results[i].ok() && (items_[i].kind == Item::Kind::stream || items_[i].kind == Item::Kind::other))
-        report(Doubt{.kind = Doubt::Kind::late,
-                     .from = from,
-                     .configuration = to,
-                     .topic = items_[i].topic,
-                     .why = results[i]});
+    for (std::size_t i = 0; i < items_.size(); ++i) {
+      const Item& item = items_[i];
+      if (item.kind != Item::Kind::stream && item.kind != Item::Kind::other) continue;
+      if (results[i].ok() && item.sampling != analysis::unbounded) continue;
+      report(Doubt{.kind = Doubt::Kind::late,
+                   .from = from,
+                   .configuration = to,
+                   .topic = item.topic,
+                   .why = results[i],
+                   .sampling = item.sampling});
+    }
   }
   /// Ages and gaps that the longest distance of two samples reaches, or the time until the first.
   template <class Report>
@@ -571,7 +622,7 @@ class Proof {
       // A value need not have come when the configuration has settled; an age runs from its entry.
       const std::int64_t period = period_of(configuration, condition.topic);
       const std::int64_t distance = value ? period : std::max(period, op_->settle.count());
-      const std::int64_t needs = distance + found.jitter + found.bus + op_->reaction.count();
+      const std::int64_t needs = distance + found.jitter + found.sampling + found.bus + op_->reaction.count();
       if ((value ? stale_periods * shortest_of(configuration, condition.topic) : condition.limit) <= needs)
         report(Doubt{.kind = Doubt::Kind::restless,
                      .configuration = configuration,
@@ -583,6 +634,8 @@ class Proof {
 
   const Operator* op_;
   std::uint32_t bit_rate_;
+  std::span<const Sampling> sampling_;
+  std::uint16_t from_ = none, to_ = none;  ///< what is collected
   analysis::CanBus bus_;
   bool room_ = true;
   base::FixedVector<Item, N> items_;

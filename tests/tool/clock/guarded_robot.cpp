@@ -16,6 +16,7 @@
 #include "ocm/topics/amiro.hpp"
 
 #include "cli/operate/operator_file.hpp"
+#include "cli/operate/study.hpp"
 #include "sim/amiro/robot.hpp"
 #include "tests/unit/base/explore.hpp"
 
@@ -26,7 +27,6 @@ using namespace std::chrono_literals;
 namespace operate = cli::operate;
 using reflective::Event;
 
-constexpr base::Duration on_the_bus = 4ms;
 constexpr base::Duration until_it_acts = 6ms;  // `reaction`, and the set point's frame
 
 struct Port {
@@ -50,6 +50,19 @@ std::uint16_t configuration(std::string_view name) {
       all.begin());
 }
 
+/// From the release of the ring's sample on, on its board and on the bus, as late as the proof takes it to
+/// be.
+base::Duration until_it_is_seen() {
+  static const base::Duration longest = [] {
+    const auto study = operate::study(guard(), amiro::bit_rate);
+    for (const auto& stream : study.configurations[configuration("driving")].streams)
+      if (stream.topic == reflective::topic_index(amiro::catalogue, "proximity_ring") && stream.on_board > 0)
+        return base::Duration{stream.response};
+    throw std::runtime_error{"the ring has no bound"};
+  }();
+  return longest;
+}
+
 /// A robot somewhere between walls and boxes, its operator, and a program that drives.
 class Run {
  public:
@@ -68,7 +81,7 @@ class Run {
       }
       if (now_ >= drives_at_) drive();
       robot_.advance(now_);
-      for (const auto& frame : sent_) to_operator_.push_back({now_ + on_the_bus, frame});
+      for (const auto& frame : sent_) to_operator_.push_back({now_ + until_it_is_seen(), frame});
       sent_.clear();
       touched = touched || robot_.world().touching();
       const auto& at = robot_.world().pose();

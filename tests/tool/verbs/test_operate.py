@@ -66,11 +66,15 @@ class Checked(Operate):
         sensor = next(c for c in near["conditions"] if c["condition"] == "ring.sensor_4>3000")
         self.assertEqual(sensor["parts_ns"]["period"], 50_000_000)
         self.assertEqual(sensor["parts_ns"]["jitter"], 1_000_000)
+        ring = study["configurations"][1]["streams"][0]
+        self.assertEqual(sensor["parts_ns"]["sampling"], ring["on_board_ns"])
+        self.assertEqual(ring["response_ns"], sum(sensor["parts_ns"][part] for part in ("jitter", "sampling", "bus")))
+        self.assertEqual(study["sampling_not_counted"], [])
 
     def test_a_table_for_people_shows_the_sums(self):
         out, _ = self.run_tool("operate", GUARD, "--check")
         self.assertIn("operator guard: 3 configurations, 4 monitors, 8 transitions, at 500000 bit/s", out)
-        self.assertRegex(out, r"ring\.sensor_4>3000\n +[0-9.]+ ms = 50 period \+ 1 jitter \+ [0-9.]+ bus \+ 5 reading \+ ")
+        self.assertRegex(out, r"ring\.sensor_4>3000\n +[0-9.]+ ms = 50 period \+ 1 jitter \+ 10.108 sampling \+ [0-9.]+ bus \+ 5 reading \+ ")
         self.assertIn("[Real, Crespo 2004", out)
         self.assertTrue(out.endswith("\nin time\n"))
 
@@ -132,9 +136,14 @@ class Checked(Operate):
         err = self.refused(too_often, f"test.operator.json:{line}: /configurations/1/streams/0: in \"driving\" the processor of power_management ",
                            "proximity_ring", "longer periods or fewer streams of that board")
         self.assertIn("in the change from \"idle\" to \"driving\" the processor of power_management", err)
-        self.assertNotIn("in \"driving\" proximity_ring takes up to", err)  # the bus
+        self.assertNotIn("in \"driving\" proximity_ring takes up to", err)  # said once, where it is
 
-        document["configurations"][1]["streams"][0]["period"] = "30ms"
+        def together(document):  # 10 ms on the board and a few on the bus
+            document["configurations"][1]["streams"][0]["period"] = "13ms"
+            document["monitors"][0]["when"]["any"][-1]["above"] = "300ms"
+        self.refused(together, "in \"driving\" proximity_ring takes up to 1", "10.108 ms of it on its board), its deadline is 13 ms")
+
+        document["configurations"][1]["streams"][0]["period"] = "30ms"  # in a change two samples, and the bus
         self.run_tool("operate", self.write(document), "--check")
 
     def test_what_programs_may_command_counts_where_they_may(self):
@@ -828,6 +837,9 @@ class OfPlainMessages(Operating):
         self.assertEqual((periods["Engine"], periods["Trip"]), (10_000_000, 500_000_000))
         self.assertNotIn("Driving", periods)      # a stream of its own
         self.assertIsNone(watching["streams"][0]["on_board_ns"])  # of its board nothing is known
+        self.assertEqual(json.loads(out)["sampling_not_counted"], ["Driving"])
+        table, _ = self.run_tool("operate", self.write(CAR), "--check", "--spec", SMALL_CAR)
+        self.assertIn("NOT COUNTED, as the tasks of its board are not known: the sampling of Driving\n", table)
         self.assertNotIn("LockCommand", periods)  # sent on events
         self.assertGreater(watching["streams"][0]["response_ns"], 2 * 130_000)  # Engine, Transmission and Wheels go first
 
@@ -926,6 +938,7 @@ class Drawn(Operate):
             self.assertIn(configuration["name"], text)
         for reaction in study["reactions"]:
             self.assertIn(f"{reaction['at_most_ns'] / 1e6:.6f}".rstrip("0").rstrip(".") + " ms", text)
+        self.assertIn("10.108 sampling", text)
         out, _ = self.run_tool("operate", GUARD, "--check", "--svg", "-")
         xml.etree.ElementTree.fromstring(out)
 

@@ -102,6 +102,19 @@ static_assert(Proof<16>{tables, 1'000'000}.latency(1, 0, 0).total() == high.tota
 static_assert(Proof<16>{tables, 1'000'000}.latency(1, 0, 1).total() == either.total());
 static_assert(Proof<16>{tables, 1'000'000}.response(0, 0) == high.jitter + high.bus);
 static_assert(Proof<16>{tables, 1'000'000}.response(1, 1) == analysis::unbounded);  // does not stream it
+// What a sample takes on its board is a term of its own, and jitter on the bus.
+constexpr std::array<Sampling, 2> on_board{{{none, 0, 0, 1'500'000}, {0, 1, 0, 1'700'000}}};
+constexpr Latency sampled(std::size_t transition) {
+  return Proof<16>{tables, 1'000'000, on_board}.latency(transition, 0);
+}
+static_assert(sampled(0).sampling == 1'500'000 && sampled(0).jitter == high.jitter &&
+              sampled(0).bus == high.bus);
+static_assert(sampled(0).total() == high.total() + 1'500'000);
+static_assert(sampled(1).total() == either.total() + 1'500'000);
+static_assert(sampled(2).total() == slow.total() + 1'500'000);
+static_assert(Proof<16>{tables, 1'000'000, on_board}.response(0, 0) == high.jitter + 1'500'000 + high.bus);
+static_assert(Proof<16>{tables, 1'000'000, on_board}.response(1, 0) ==
+              Proof<16>{tables, 1'000'000}.response(1, 0));  // of another configuration
 static_assert(Proof<16>{tables, 1'000'000}.load(0, 1) > Proof<16>{tables, 1'000'000}.load(0));
 static_assert(!Proof<16>{tables, 1'000'000}.latency(0, 1).bounded);  // does not leave from there
 
@@ -170,6 +183,61 @@ TEST_CASE("proof: an age that a healthy stream reaches") {
   REQUIRE(all.size() == 1);
   CHECK(all[0].kind == Doubt::Kind::restless);
   CHECK((all[0].condition == 1 && all[0].configuration == 0 && all[0].needs == least));
+}
+
+TEST_CASE("proof: what a sample takes on its board counts in ages and deadlines") {
+  std::vector<Sampling> slow_board{{none, 0, 0, 5'000'000}};
+  const auto doubts_of = [&](const Operator& op) {
+    std::vector<Doubt> all;
+    Proof<32>{op, 1'000'000, slow_board}.check([&](const Doubt& doubt) { all.push_back(doubt); });
+    return all;
+  };
+  std::vector<Condition> changed{conditions.begin(), conditions.end()};
+  Operator op = tables;
+  op.conditions = changed;
+  const std::int64_t least = 20'000'000 + 2'000'000 + 5'000'000 + 200'000 + 3'000'000;
+  changed[1].limit = least + 1;
+  CHECK(doubts_of(op).empty());
+  changed[1].limit = least;
+  auto all = doubts_of(op);
+  REQUIRE(all.size() == 1);
+  CHECK((all[0].kind == Doubt::Kind::restless && all[0].condition == 1 && all[0].needs == least));
+
+  // 2 ms late, 200 us on the bus, 20 ms until the next one. At the start a request may go before it, too.
+  const auto late = [&](std::int64_t time) {
+    slow_board[0].time = time;
+    std::size_t count = 0;
+    for (const Doubt& doubt : doubts_of(tables)) {
+      CHECK((doubt.kind == Doubt::Kind::late && doubt.topic == 0 && doubt.configuration == 0));
+      CHECK((doubt.sampling == time && doubt.why.response >= 20'000'001));
+      ++count;
+    }
+    return count;
+  };
+  CHECK(late(17'800'000 - 2 * 95'000) == 0);
+  CHECK(late(17'800'000) == 1);
+  CHECK(late(17'800'001) == 2);
+}
+
+TEST_CASE("proof: what its board cannot serve has no bound, and delays no other") {
+  const std::array<Sampling, 1> never{{{none, 0, 0, analysis::unbounded}}};
+  Proof<32> proof{tables, 1'000'000, never};
+  CHECK_FALSE(proof.latency(0, 0).bounded);
+  CHECK(proof.response(0, 0) == analysis::unbounded);
+  CHECK(proof.response(0, 1) == Proof<32>{tables, 1'000'000}.response(0, 1));
+  std::vector<Doubt> all;
+  proof.check([&](const Doubt& doubt) { all.push_back(doubt); });
+  REQUIRE(all.size() == 2);  // and the start
+  for (const Doubt& doubt : all)
+    CHECK((doubt.kind == Doubt::Kind::late && doubt.topic == 0 && doubt.sampling == analysis::unbounded));
+}
+
+TEST_CASE("proof: in a change the samples that its boards take longest count") {
+  // An old stream's sample is handed over so much later.
+  const std::array<Sampling, 1> longer{{{0, 1, 1, 1'000'000}}};
+  Proof<32> proof{tables, 1'000'000, longer};
+  CHECK(proof.settling(0, 1) == settling + 1'000'000);
+  CHECK(proof.latency(0, 0).total() == high.total());
 }
 
 TEST_CASE("proof: values that would be stale before the next ones come") {

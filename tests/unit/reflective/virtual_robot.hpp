@@ -26,8 +26,10 @@ class VirtualRobot {
   // What chance or an adversary decides, each within what the tables say.
   std::function<Ns(std::uint16_t topic)> handling = [](std::uint16_t) { return 0; };
   std::function<Ns(std::uint16_t topic, Ns planned)> jitter = [](std::uint16_t, Ns) { return 0; };
+  /// From the reading of a sample to the hand-over of its frames.
+  std::function<Ns(std::uint16_t topic)> sampling = [](std::uint16_t) { return 0; };
   std::function<Ns(std::uint16_t topic)> reaction = [](std::uint16_t) { return 0; };  ///< none: to a timer
-  /// After each sample that a board has taken.
+  /// After each sample that a board has read.
   std::function<void(std::uint16_t topic, Ns now)> sampled = [](std::uint16_t, Ns) {};
   /// After each step; it may not change anything.
   std::function<void(Ns now)> stepped = [](Ns) {};
@@ -101,6 +103,7 @@ class VirtualRobot {
     Ns period = 0;
     protocol::Priority priority{};
     std::uint64_t generation = 0;
+    Ns handed_over = 0;  ///< the last sample: a board keeps their order
   };
 
   static base::Time time(Ns ns) { return base::Time{base::Duration{ns}}; }
@@ -149,8 +152,14 @@ class VirtualRobot {
   }
   void sample(std::uint16_t topic, protocol::Priority priority) {
     if (silent[topic]) return;
-    const auto& frames = tables_->topic(topic).frames;
     const std::uint8_t value = values[topic];
+    Ns& handed_over = streams_[topic].handed_over;
+    handed_over = std::max(handed_over, now_ + sampling(topic));
+    at(handed_over, [=, this] { to_bus(topic, priority, value); });
+    sampled(topic, now_);
+  }
+  void to_bus(std::uint16_t topic, protocol::Priority priority, std::uint8_t value) {
+    const auto& frames = tables_->topic(topic).frames;
     for (std::size_t f = 0; f < frames.size(); ++f) {
       const auto id = protocol::Identifier{protocol::Direction::sensor, priority, frames[f].id}.encode();
       const bool last = f + 1 == frames.size();
@@ -159,7 +168,6 @@ class VirtualRobot {
              if (last) arrived(topic, value);
            }});
     }
-    sampled(topic, now_);
   }
 
   // --- the operator ---
