@@ -74,10 +74,11 @@ void JoinedLine::refresh() {
                       line.substr(0, 60)),
           "are they of the same version? `amiroctl --version`"});
   };
-  for (std::optional<unsigned> from = 0; from;) {
-    const auto answer = ask(fmt::format("robots {}", *from));
+  unsigned from = 0;
+  for (bool more = true; more;) {
+    const auto answer = ask(fmt::format("robots {}", from));
     if (answer.kind != LocalAnswer::Kind::ok) strange(answer.failure.what);
-    const unsigned begin = *std::exchange(from, std::nullopt);
+    more = false;
     for (std::string_view text = answer.text; !text.empty();) {
       std::string_view line = text.substr(0, text.find('\n'));
       text.remove_prefix(std::min(text.size(), line.size() + 1));
@@ -86,8 +87,10 @@ void JoinedLine::refresh() {
       } else if (starts(line, "failed ")) {
         failed_.emplace_back(line);
       } else if (starts(line, "more ")) {
-        from = number<unsigned>(line);
-        if (!from || *from <= begin) strange("more");
+        const auto next = number<unsigned>(line);
+        if (!next || *next <= from) strange("more");
+        from = *next;
+        more = true;
       } else {
         const auto row = parse_row(line);
         if (!row) strange(line);

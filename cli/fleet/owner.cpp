@@ -247,7 +247,7 @@ std::string Owner::rows(LineCaller& caller, const LineRequest& request) {
 
 /// The size of all of it, and from the next line on what there is from `offset` on.
 std::string Owner::page(const LineCaller& caller, std::uint64_t offset) const {
-  const std::size_t from = std::min<std::size_t>(offset, caller.document.size());
+  const auto from = static_cast<std::size_t>(std::min<std::uint64_t>(offset, caller.document.size()));
   return yes(fmt::format("{}\n", caller.document.size()) + caller.document.substr(from, page_bytes));
 }
 

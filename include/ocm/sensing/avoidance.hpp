@@ -70,9 +70,10 @@ struct AvoidanceStep {
 
   if (state.turning == 0 && ahead_m < model.turn_below_m) {
     // All of a side counts, also what is behind: it turns towards the freer one, and keeps to that.
-    const int left = ring[0] + ring[1] + ring[2] + ring[3];
-    const int right = ring[4] + ring[5] + ring[6] + ring[7];
-    state.turning = static_cast<std::int8_t>(left >= right ? 1 : -1);
+    const auto four = [&ring](std::size_t first) {
+      return std::uint32_t{ring[first]} + ring[first + 1] + ring[first + 2] + ring[first + 3];
+    };
+    state.turning = static_cast<std::int8_t>(four(0) >= four(4) ? 1 : -1);
   }
   if (state.turning != 0 && ahead_m > model.turn_until_m) state.turning = 0;
   if (state.turning != 0 || most_m_s == 0.0F) {
