@@ -20,8 +20,8 @@ namespace {
 using namespace std::chrono_literals;
 using mapper::server::Peer;
 
-constexpr host::LocalService service{"a central's line", "a program with a central's line",
-                                     host::Cause::other, false};
+constexpr host::LocalService central_line_service{"a central's line", "a program with a central's line",
+                                                  host::Cause::other, false};
 /// How long to look for robots that are not listed.
 constexpr base::Duration usual_scan = 3s;
 /// How long a robot may take from its link to its first word: it measures its gyro first.
@@ -105,7 +105,7 @@ std::unique_ptr<LineEnd> open_end(std::string_view verb, const LineOptions& opti
               fmt::format("{} needs it for itself: end that one first", verb)});
       return std::make_unique<JoinedLine>(verb, std::move(*link));
     }
-    auto served = LocalServer::open(socket, service);
+    auto served = LocalServer::open(socket, central_line_service);
     if (!served && served.error.process != 0) {  // since a moment
       why = std::move(served.error);
       continue;

@@ -291,8 +291,8 @@ int Server::run_log(LogFeed& log) {
 }  // namespace
 
 int run(Session& session, ServeOptions options) {
-  if (!has_page())
-    fail({"serve needs its page, which was missing when this amiroctl was built",
+  if (!has_websockets || !has_page())
+    fail({"serve needs libwebsockets and dygraphs, which were missing when this amiroctl was built",
           "install libwebsockets-dev and libjs-dygraphs, then build it again: scripts/build"});
   catch_interrupts();
   catch_hangups();

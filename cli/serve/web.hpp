@@ -39,6 +39,13 @@ struct WebOptions {
   std::string certificate, key;       ///< PEM files; empty: no TLS
 };
 
+/// Whether it was built with libwebsockets; where not, a program needs nothing of what only serves.
+#ifdef OCM_HAS_WEBSOCKETS
+inline constexpr bool has_websockets = true;
+#else
+inline constexpr bool has_websockets = false;
+#endif
+
 /// Connections at a time; more are refused. [decided]
 inline constexpr std::size_t most_viewers = 256;
 

@@ -16,6 +16,13 @@ struct CursesOptions {
   bool mouse = false;
 };
 
+/// Whether it was built with ncurses; where not, a program needs nothing of what only draws.
+#ifdef OCM_HAS_CURSES
+inline constexpr bool has_curses = true;
+#else
+inline constexpr bool has_curses = false;
+#endif
+
 /// From its making to its end the terminal is this program's; then it is as it was.
 class Curses {
  public:

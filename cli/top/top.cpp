@@ -197,6 +197,10 @@ class Top {
 }  // namespace
 
 int run(Session& session, const TopOptions& options) {
+  if (!has_curses)
+    fail({"this amiroctl was built without ncurses, which draws",
+          "install libncurses-dev and build again; amiroctl stats and listen need none"},
+         exit_usage);
   catch_interrupts();
   catch_hangups();
   std::unique_ptr<LiveFeed> live;
