@@ -110,6 +110,10 @@ void behave(Session& session, const BehaveOptions& options, int& exit_code) {
                       const auto subject = index.subject(received.frame.id, received.frame.format);
                       if (subject.topic == &topic && subject.frame && is_rest(received.frame))
                         ended_by_another = true;
+                      // The board follows without a word of the motors; one of another program ends it, and
+                      // the next repetition would begin it again before the report of its end.
+                      if (watch && subject.topic != nullptr && subject.topic->role == protocol::Role::drive)
+                        ended_by_another = true;
                     }};
   bool goes_on = timeline.wait(Clock::now() + client::listen_before_hold);
   if (!goes_on) {
