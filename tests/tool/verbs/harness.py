@@ -15,6 +15,12 @@ sys.path.insert(0, os.path.join(SOURCE, "tests"))
 import waiting
 
 
+def sanitized():
+    """Whether the tool has the address sanitizer in it, which takes memory and time of its own."""
+    with open(AMIROCTL, "rb") as program:
+        return b"__asan_init" in program.read()
+
+
 class Case(unittest.TestCase):
     """A test case with its own runtime folder; nothing is inherited from the user's environment."""
 

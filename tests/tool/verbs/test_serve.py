@@ -420,7 +420,8 @@ print(lost, flush=True)
             if replay.poll() is not None and message.fields["x"] == round((count - 1) % 256 * 0.0175, 4) and got + lost > count - 300:
                 break
         self.assertGreater(got, 0.9 * count)
-        self.assertLess(self.memory(server) - before, 40_000)  # KiB: the queue is 8 MiB of text
+        if not harness.sanitized():
+            self.assertLess(self.memory(server) - before, 40_000)  # KiB: the queue is 8 MiB of text
         reader.send_signal(signal.SIGCONT)
         self.assertRegex(reader.stdout.readline(), r"too slow for what it asks: it has lost [1-9]\d* messages")
         _, said = self.interrupt(server)
@@ -451,7 +452,8 @@ print(lost, flush=True)
             viewer.message("/gyroscope")
         share = (self.cpu(server) - before) / (time.monotonic() - begin)
         print(f"serve at 100 frames/s: {share * 100:.1f} % of a core", file=sys.stderr)
-        self.assertLess(share, 0.02)
+        if not harness.sanitized():
+            self.assertLess(share, 0.02)
 
     def test_a_hundred_viewers(self):
         self.start_sim("--frozen")
