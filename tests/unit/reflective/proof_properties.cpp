@@ -8,8 +8,8 @@
 
 #include "ocm/reflective/check.hpp"
 #include "ocm/reflective/proof.hpp"
-#include "unit/base/explore.hpp"
 
+#include "unit/base/explore.hpp"
 #include "unit/reflective/virtual_robot.hpp"
 
 namespace reflective_proof_properties_test {
