@@ -52,6 +52,10 @@ IDIOMS = re.compile(r"\b(?:(?:no|some|any|every)body|who(?:m)?ever|wish(?:es|ed)
 
 SOURCE = (".hpp", ".cpp", ".h", ".c")
 
+# A sleep, and the number where it is one. What is at most a tenth of a second is between two looks at a condition.
+SLEEP = re.compile(r"\btime\.sleep\((?P<seconds>[\d.]+\))?|\bthis_thread::sleep_(?:for|until)\((?:\w+ \+= )?(?P<ms>\d+ms\))?")
+SLEEPS_HERE = re.compile(r"(?m)^(?:#|//) Sleeps: \w")
+
 # Folders around the library, and what each reaches in no way.
 APART = {
     "firmware/": ("cli/", "generator/", "sim/"),
@@ -574,6 +578,18 @@ def test_folders_have_rows(tree):
             yield f"{name}:1: tests/README.md has no row for `{match[1]}`"
 
 
+def sleeps_say_why(tree):
+    """A sleep of more than 0.1 s in a test has its reason behind it, or the file has: '# Sleeps: ...'."""
+    for name in tree.below("tests/", ends=SOURCE + (".py",)):
+        if SLEEPS_HERE.search(tree.text(name)) or name.startswith("tests/rules/architecture/"):  # this rule
+            continue
+        lines = tree.text(name).splitlines()
+        for line, match in tree.find(name, SLEEP):
+            seconds = float((match["seconds"] or "9)")[:-1]) if match["ms"] is None else int(match["ms"][:-3]) / 1000
+            if seconds > 0.1 and not re.search(r"sleep.*(?:#|//) \w", lines[line - 1]):
+                yield f"{name}:{line}: a sleep: wait for an event (tests/waiting.py), or say behind it why the time itself is under test"
+
+
 def snippets(tree):
     """Name -> (file, code) of what examples offer to be quoted; indentation taken off."""
     found = {}
@@ -606,7 +622,8 @@ RULES = (floors_have_rows, house_is_drawn, includes_go_down, layers_are_apart, l
          tests_have_their_namespace, own_includes_are_full_paths, generator_is_independent, firmware_is_for_boards, rooms_are_apart,
          folders_make_no_circle, verbs_are_seen_by_main_only, no_circles_of_rooms, costly_headers_are_seen_by_few,
          generated_files_are_reproducible, no_machine_paths, links_resolve, named_files_exist, tables_are_whole, words_are_plain, pages_are_linked,
-         indexes_are_complete, test_folders_have_rows, quotes_are_the_examples)
+         indexes_are_complete, test_folders_have_rows, sleeps_say_why,
+         quotes_are_the_examples)
 
 
 def check(root, rules=RULES):
