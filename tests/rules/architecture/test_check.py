@@ -11,6 +11,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import check
 import house
+import sources
 
 ROW = "| 9 | `extra` | what is planted | {} | host |\n"
 
@@ -196,7 +197,7 @@ PLANTED = [
     ("quotes_are_the_examples", added(README, "<!-- snippet: hello -->\nprose\n"), "README.md:12:"),
 ]
 PLANTED += [("no_banned_headers", replaced(BOARD, "#pragma once\n", f"#pragma once\n#include <{header}>\n"), BOARD + ":3:")
-            for header in sorted(check.BANNED_HEADERS)]
+            for header in sorted(sources.BANNED_HEADERS)]
 PLANTED += [("no_banned_headers", added("firmware/boards/deck/board.hpp", "#include <iostream>\n"), "board.hpp:3:")]
 PLANTED += [("no_banned_words", added(BOARD, f"{code}\n"), BOARD + ":5:")
             for code in ("void f() { throw 1; }", "auto p = new int;", "auto p = new int[3];", "void f(int* p) { delete p; }",
