@@ -427,7 +427,7 @@ class Running(Operating):
         operator = self.start("operate", self.write(document))
         self.assertIn("operator halt is in halted\n", operator.stdout.readline())
         operator.send_signal(signal.SIGSTOP)
-        time.sleep(0.3)
+        time.sleep(0.3)  # longer than its "reaction"
         operator.send_signal(signal.SIGCONT)
         late = next(line for line in operator.stdout if line.startswith("a step took"))
         _, err = self.interrupt(operator)

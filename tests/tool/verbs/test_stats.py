@@ -3,7 +3,6 @@
 import json
 import os
 import signal
-import time
 
 from harness import Case, main
 
@@ -356,7 +355,7 @@ class Stats(Case):
         self.assertIn("bus: sim", stats.stderr.readline())
         self.settle()
         self.run_tool("publish", "gyro", "50ms", "--priority", "high")
-        time.sleep(1)
+        self.run_tool("listen", "gyro", "-n", "8", "--timeout", "20s")
         out, _ = self.interrupt(stats)
         self.assertEqual(stats.returncode, 128 + signal.SIGINT)
         gyro = json.loads(out)["buses"][0]["topics"][0]

@@ -571,7 +571,7 @@ TEST_CASE("slcan: an answer that comes too late is none, also while the program 
   device.with([&] { mute = true; });
   send(*bus, {2, 0, {}});
   std::thread late{[&] {
-    std::this_thread::sleep_for(1200ms);
+    std::this_thread::sleep_for(1200ms);  // after the answer was given up
     device.say("z\r");
   }};
   (void)bus->receive(1500ms);
