@@ -54,6 +54,8 @@ struct Row {
   Health health = Health::fine;
   /// The newest; without bytes where nothing came. Until the next frame is taken.
   client::Sample newest;
+  /// Whether `newest` has fields that can be shown.
+  [[nodiscard]] bool has_bytes() const noexcept { return count > 0 && newest.topic != nullptr; }
 };
 
 /// The bus as a whole.
