@@ -763,6 +763,28 @@ class Asked(Operating):
         _, err = self.interrupt(operator)
         self.assertRegex(err, "[0-9]+ set points passed on, [0-9]+ set points limited")
 
+    def test_a_replay_and_lights_go_through_it(self):
+        self.start_sim()
+        document = json.loads(json.dumps(GUARDED))
+        document["configurations"][0]["commanders"] = ["led", "replay"]
+        operator = self.operate(document=document)
+        log = os.path.join(self.folder, "fast.log")
+        with open(log, "w", encoding="utf-8") as file:
+            file.write("(1.000000) can0 201#50C3000000000000\n(1.100000) can0 23C#FFFFFF\n(1.200000) can0 201#0000000000000000\n")
+        listener = self.raw_frames("motors", "led_1")
+        _, err = self.run_tool("replay", log)
+        self.assertRegex(err, r"replay: operator halt \(process [0-9]+\) guards the robot")
+        self.assertRegex(err, r"replay: operator halt \(process [0-9]+\) limits motors\.x")
+        self.assertEqual(self.event(operator, "commanded")["by"], "replay")
+        self.run_tool("led", "1", "red")
+        frames = [frame for _, frame in self.frames(listener)]
+        self.assertEqual([x_of(frame) for frame in frames if frame.startswith("201#")], [20_000, 0])
+        self.assertEqual([frame for frame in frames if frame.startswith("23C#")], ["23C#FFFFFF", "23C#FF0000"])
+        _, err = self.run_tool("drive", "1cm/s", "--for", "200ms", code=1)
+        self.assertIn("where drive may not command motors", err)
+        status = json.loads(self.run_tool("operator", "status", "--json")[0])
+        self.assertEqual(status["set_points"], {"passed": 4, "limited": 1, "refused": 1})
+
     def test_behaviours_of_boards_need_its_leave_and_their_end_does_not(self):
         self.start_sim()
         self.operate(document=GUARDED)
@@ -1004,6 +1026,7 @@ class AsAService(Operating):
         unit.optionxform = str
         unit.read(os.path.join(SOURCE, "examples", "amiroctl-operator.service"))
         self.assertEqual(unit["Service"]["Type"], "notify")
+        self.assertEqual((unit["Service"]["Restart"], unit["Unit"]["StartLimitIntervalSec"]), ("always", "0"))
         verify = shutil.which("systemd-analyze")
         if verify:
             file = os.path.join(self.folder, "amiroctl-operator@.service")
