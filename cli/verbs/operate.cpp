@@ -83,7 +83,8 @@ int run(const OperateOptions& options, Session& session, std::uint32_t bit_rate)
       load_or_leave(options, catalogue, bit_rate));  // a mistake is said before a bus is missing
   catch_interrupts();
   catch_hangups();
-  catch_broken_pipe();
+  std::signal(SIGPIPE,
+              SIG_IGN);  // a reader that leaves does not end what guards the robot: lines are counted
   std::signal(SIGXFSZ, SIG_IGN);  // a black box that may not grow is reported like a full disk
   const auto bus = session.open_bus();
   const auto control = open_control(*bus);
