@@ -288,6 +288,8 @@ TEST_CASE("proof: what others send delays both ways") {
   Proof<32> proof{op, 1'000'000};
   CHECK(proof.latency(0, 0).bus == 200'000 + 135'000);
   CHECK(proof.latency(0, 0).command == 200'000 + 135'000);
+  others[0].key = can::arbitration_key({.id = 1});  // more urgent than any set point of the operator
+  CHECK(proof.latency(0, 0).command == 200'000 + 135'000);
   others[0].key = ~0U;  // less urgent than all: it blocks no longer than the long one
   CHECK(proof.latency(0, 0).total() == high.total());
 }
