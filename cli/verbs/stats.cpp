@@ -76,7 +76,7 @@ std::vector<stats::Assertion> read_assertions(const std::vector<std::string>& te
   return assertions;
 }
 
-/// Those that are typed, else those that the spec has for the interface; 0: neither says it, as of most DBC
+/// Those that are typed, else those that the spec has for the interface; 0: neither says it, as of many DBC
 /// files.
 measure::BitRates chosen_bit_rates(Session& session, const StatsOptions& options,
                                    std::string_view interface) {
