@@ -62,7 +62,7 @@ Runner::Runner(transport::Bus& bus, Control& control, const protocol::Catalogue&
       box_(options.black_box, file.name, std::string{bus.name()}, catalogue),
       live_(bus, [this] { nothing_waited_ = now(); },
             {control.descriptor(), [&control] { control.serve(); }}),
-      receiver_(catalogue),
+      receiver_(catalogue, client::Transport::together),
       index_(catalogue),
       refusals_(catalogue),
       supervisor_(file.tables) {
