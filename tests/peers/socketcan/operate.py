@@ -163,12 +163,12 @@ def _(context):
             Operator(context, folder, 'vcan1', '--black-box', os.path.join(folder, 'box'),
                      '--black-box-time', '60s') as operator:
         cansend('608#0000000000A1', interface='vcan1')
-        time.sleep(1)
+        time.sleep(1)  # this much of the box is before the clock is set
         now = time.time()
         time.clock_settime(time.CLOCK_REALTIME, now - 3600)
         try:
             cansend('608#0000000000A2', interface='vcan1')
-            time.sleep(1)
+            time.sleep(1)  # and this much behind it
             drive_fast('vcan1')
             operator.event('switched', to='halted', cause='too_fast')
             recorded = operator.event('recorded')
