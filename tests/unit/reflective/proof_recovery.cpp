@@ -186,7 +186,14 @@ struct Campaign {
       judge(topic, now, true);
     };
     robot.start();
-    robot.run(4'000'000'000);
+    const auto all_are_back = [&] {
+      const auto& streams = t.streams[robot.supervisor().configuration()];
+      return std::all_of(streams.begin(), streams.end(), [&](const Stream& s) { return is_back[s.topic]; });
+    };
+    for (Ns until = 900'000'000; until <= 4'000'000'000; until += 100'000'000) {
+      robot.run(until);
+      if (up <= until && all_are_back()) break;
+    }
     for (std::uint16_t topic = 0; topic < is_back.size(); ++topic)
       if (!is_back[topic]) judge(topic, robot.now(), false);
   }
