@@ -174,6 +174,8 @@ void View::heads(Picture& picture, const Scene& scene, const Rows& rows, std::si
     count(sum.incomplete, "incomplete", Style::warning);
     count(sum.wrong_length, "of a wrong length", Style::warning);
     count(sum.unknown, "unknown", Style::dim);
+    count(sum.transport, sum.transport == 1 ? "message put together" : "messages put together", Style::dim);
+    count(sum.transport_lost, "not put together", Style::warning);
     count(sum.not_shown, "of more identifiers than are shown", Style::warning);
     count(sum.not_in_load, "CAN FD, not in the load", Style::dim);
     picture.push_back(counters.take());

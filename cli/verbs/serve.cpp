@@ -62,6 +62,7 @@ void serve_given(Session& session, GivenToServe& given, int& exit_code) {
     web.token_to_view = true;
   }
   web.port = static_cast<std::uint16_t>(given.port);
+  static_cast<void>(session.catalogue());  // what is wrong with the spec is said before a bus is missing
   exit_code = serve::run(session, std::move(options));
 }
 

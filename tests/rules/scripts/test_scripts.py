@@ -80,18 +80,19 @@ class Mutate(Case):
         return self.run_script("mutate", *(f"--room={room}" for room in rooms), "--count", "1", "--list", path=tree / "scripts" / "mutate")
 
     def test_each_file_has_tests_that_judge_it(self):
-        done = self.mutate(ROOT, "include/ocm", "cli")
+        done = self.mutate(ROOT, "include/ocm", "cli", "generator", "sim")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def test_a_file_without_a_judge_is_an_error(self):
         text = "#pragma once\ninline bool below(int a) { return a < 3; }\n"
-        for path in ("include/ocm/base/unjudged.hpp", "cli/room/unjudged.cpp", "cli/verbs/unjudged.cpp"):
+        for path in ("include/ocm/base/unjudged.hpp", "cli/room/unjudged.cpp", "cli/verbs/unjudged.cpp", "sim/physics/unjudged.hpp"):
             (self.tree / path).parent.mkdir(parents=True, exist_ok=True)
             (self.tree / path).write_text(text, encoding="utf-8")
-        done = self.mutate(self.tree, "include/ocm/base", "cli")
+        done = self.mutate(self.tree, "include/ocm/base", "cli", "sim")
         self.assertEqual((done.returncode, done.stdout), (1, ""))
         expected = "expected an entry in JUDGES"
         for path, what in (("include/ocm/base/unjudged.hpp", "expected a source in tests/unit that includes it"),
+                           ("sim/physics/unjudged.hpp", "expected a source in tests/sim that includes it"),
                            ("cli/room/unjudged.cpp", expected), ("cli/verbs/unjudged.cpp", expected)):
             self.assertIn(f"mutate: {path}: no test judges it; {what}", done.stderr.splitlines())
 
