@@ -11,6 +11,7 @@
 #include "ocm/simulation/virtual_bus_server.hpp"
 
 #include "sim/serve/boards.hpp"
+#include "sim/serve/bus_report.hpp"
 #include "sim/serve/clock.hpp"
 #include "sim/serve/interference.hpp"
 #include "sim/serve/messages.hpp"
@@ -152,17 +153,7 @@ Ending serve_amiro(const std::string& path, const AmiroOptions& options, const S
   server.end();  // counts what slow clients lost by it
   boards.summarise(shell);
   messages.summarise(shell);
-  const auto& bus = arbiter.totals();
-  const auto& clients = server.counters();
-  shell.report(fmt::format(
-      "bus               {} frames, {} clients, {} turned away, {} misbehaved, {} frames lost by slow ones",
-      bus.frames, clients.welcomed, clients.turned_away, clients.misbehaved, clients.overruns));
-  if (options.bus_errors > 0)
-    shell.report(
-        fmt::format("                  {} error frames, {} frames repeated", bus.errors, bus.repetitions));
-  if (bus.clashes != 0)
-    shell.report(
-        fmt::format("                  {} times two senders at once with the same identifier", bus.clashes));
+  report_bus(server, options.bus_errors > 0, shell);
   turns.each([&shell](const protocol::Topic& topic, std::uint64_t count) {
     shell.report(fmt::format("{:<17} was commanded by two senders, in turns: {} times", topic.name, count));
   });
