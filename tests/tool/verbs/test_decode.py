@@ -105,6 +105,8 @@ class Decode(Case):
         self.assertEqual(times("--filter", "100:7FF"), [0, 2, 6, 7])  # as candump: the format is not asked
         self.assertEqual(times("--filter", "00000100:9FFFFFFF", code=1), [7])
         self.assertEqual(times("--filter", "100~700"), [4, 5])
+        self.assertEqual(times("--filter", "1FFFFFFF~0", code=1), [])  # the largest identifier there is
+        self.assertIn("--filter 20000000~0: not a filter", self.run_tool("decode", "--filter", "20000000~0", stdin=car, code=2)[1])
         self.assertEqual(times("--where", "Engine.Speed>=3000"), [2, 6])
         self.assertEqual(times("--where", "Engine.Speed > 3000rpm"), [6])
         self.assertEqual(times("--where", "Engine.Speed=3000"), [2])
