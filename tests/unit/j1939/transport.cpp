@@ -296,6 +296,11 @@ TEST_CASE("each step has its time, to the nanosecond") {
       transport.expire(begin + limit + late);
       CHECK(transport.counters().timed_out == expected);
       CHECK(transport.open() == 1 - expected);
+      // Any other frame of the protocol tells it, too.
+      Transport<1> other;
+      prepare(other);
+      other.take(id_of(transfer_group, 5, 6), packet(message, 1), begin + limit + late);
+      CHECK(other.counters().timed_out == expected);
     };
     const auto rts = [&](auto& t) { t.take(to, announcement(16, 30, 0xFECA), begin); };
     after([&](auto& t) { t.take(bam_id, announcement(32, 30, 0xFECA), begin); }, 750ms);
