@@ -56,7 +56,7 @@ void run(const fleet::MapOptions& options, int& exit_code) {
       exit_code = fleet::view_map(options, *other);
       return;
     }
-  const fleet::Known known = fleet::known_of(options.world, options.starts);
+  const fleet::Known known = fleet::known_of("map", options.world, options.starts);
   MapRun run{options, known};
   const End end = run.explore(options.duration);
   if (!run.any()) {
