@@ -91,6 +91,9 @@ class Model {
 
   /// In the order of the catalogue; those of which nothing came only where `all`. Unknown ones last.
   [[nodiscard]] std::vector<Row> rows(base::Time now, bool all) const;
+  /// What came last of the catalogue's topic of that number, of all its frames; none: nothing did. Until the
+  /// next frame is taken.
+  [[nodiscard]] std::optional<client::Sample> newest_of(std::size_t topic) const;
   [[nodiscard]] Summary summary(base::Time now) const;
   /// Of the newest frame; none came: nothing.
   [[nodiscard]] std::optional<base::Time> newest() const noexcept { return newest_; }

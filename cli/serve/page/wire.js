@@ -10,6 +10,8 @@ export class Wire {
     this.on = on;
     this.wanted = new Set();
     this.connect();
+    // A page that is left may be kept by the browser, to be shown again: it must not keep what it has sent going.
+    addEventListener('pagehide', () => this.socket.close());
   }
 
   connect() {

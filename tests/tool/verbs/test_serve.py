@@ -334,24 +334,72 @@ class Serve(harness.Case):
         viewer.publish("/motors", {"x": 99})
         self.assertEqual(viewer.text("status")["level"], 2)
 
+    def test_what_came_before_is_there(self):
+        """The newest sample and set point of before a viewer came, and periods as they are."""
+        self.start_sim("--frozen")
+        _, port, token = self.serve("--allow-commands")
+        first = self.viewer(port, token)
+        first.subscribe("/gyroscope", "/led_3")
+        self.settle()
+        self.run_tool("send", "608#100000000000")
+        sent = first.message("/gyroscope")
+        self.run_tool("led", "3", "red")
+        first.message("/led_3")
+        late = self.viewer(port, token)
+        late.subscribe("/gyroscope", "/led_3", "/accelerometer")
+        self.assertEqual(late.message("/gyroscope"), sent)
+        again = self.viewer(port, token)
+        again.subscribe("/led_3")
+        self.assertEqual(again.message().fields, {"red": 255, "green": 0, "blue": 0})
+        name = "/gyroscope/period_ms"
+        again.ask(op="subscribeParameterUpdates", parameterNames=[name])
+
+        def value():
+            parameter, = again.text("parameterValues")["parameters"]
+            self.assertEqual(parameter["name"], name)
+            return parameter.get("value")
+
+        value()
+        self.run_tool("publish", "gyro", "50ms")  # by another program
+        while value() != 50:
+            pass
+        self.run_tool("stop", "gyro")
+        while value() != 0:
+            pass
+        again.ask(op="getParameters", parameterNames=[name], id="q")
+        self.assertEqual(value(), 0)
+
     def test_with_an_operator(self):
-        """Its state is shown; set points go through it, and a server of before it commands nothing."""
+        """Its state is shown; set points go through it, also where it starts after the server, and no longer when it has ended."""
         self.start_sim()
         _, before, old = self.serve("--allow-commands")
-        self.start("operate", os.path.join(harness.SOURCE, "examples", "guard.operator.json"))
+        guard = self.start("operate", os.path.join(harness.SOURCE, "examples", "guard.operator.json"))
         watcher = self.viewer(before, old)
         watcher.subscribe("/ocm/operator")
         state = self.state(watcher, "/ocm/operator", lambda s: s["running"], "the operator")
         self.assertEqual(state["status"]["operator"], json.loads(self.run_tool("operator", "status", "--json")[0])["operator"])
         self.assertTrue(state["why"]["changes"])
+        while "guards the robot: set points go through it" not in watcher.text("status")["message"]:
+            pass
+        passed = state["status"]["set_points"]["passed"]
         watcher.publish("/motors", {"x": 0.05, "z": 0})
-        self.assertIn("start it again", watcher.text("status")["message"])
+        passed = self.state(watcher, "/ocm/operator", lambda s: s["status"]["set_points"]["passed"] > passed, "the set point")["status"]["set_points"]["passed"]
+        watcher.publish("/motors", {"x": 0, "z": 0})
         _, port, token = self.serve("--allow-commands")
         viewer = self.viewer(port, token)
         viewer.subscribe("/motors")
         viewer.publish("/motors", {"x": 0.05, "z": 0})
         self.assertEqual(viewer.message().fields, {"x": 0.05, "z": 0})
-        self.state(watcher, "/ocm/operator", lambda s: s["status"]["set_points"]["passed"] > 0, "the set point")
+        self.state(watcher, "/ocm/operator", lambda s: s["status"]["set_points"]["passed"] > passed, "the set point")
+        viewer.publish("/motors", {"x": 0, "z": 0})
+        self.interrupt(guard)
+        while "no operator runs any more" not in watcher.text("status")["message"]:
+            pass
+        time.sleep(0.5)  # what is still on its way is rest
+        watcher.subscribe("/motors")
+        watcher.publish("/motors", {"x": 0.04, "z": 0})
+        while watcher.message("/motors").fields != {"x": 0.04, "z": 0}:
+            pass
 
     # --- TLS ---
 
