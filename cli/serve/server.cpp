@@ -18,6 +18,7 @@
 #include "cli/bus_model/feed.hpp"
 #include "cli/bus_model/models.hpp"
 #include "cli/command/operated_bus.hpp"
+#include "cli/output/printer.hpp"
 #include "cli/serve/bounds.hpp"
 #include "cli/serve/channels.hpp"
 #include "cli/serve/commands.hpp"
@@ -94,8 +95,9 @@ class Server {
     web_ = std::move(*web);
     viewers_.publish_state(channels_.of(State::robot), now_ns(),
                            robot_state(catalogue_, model_, channels_, source_));
-    fmt::print("{}{}{}\n", web_->url(), options_.web.token.empty() ? "" : "#", options_.web.token);
-    std::fflush(stdout);
+    // Without its address nothing of it is of use: an output that is full or gone ends it, with words.
+    write_out(
+        fmt::format("{}{}{}\n", web_->url(), options_.web.token.empty() ? "" : "#", options_.web.token));
   }
 
   int run_live(std::unique_ptr<transport::Bus> bus, bool operated);

@@ -26,6 +26,13 @@ bool is_loopback(const std::string& address) {
   return address == "::1" || address.starts_with("127.");
 }
 
+/// "https://app.example.org", "http://localhost:8080": what a browser sends has no path.
+bool is_origin(std::string_view text) {
+  const auto colon = text.find("://");
+  return colon != std::string_view::npos && colon != 0 &&
+         text.find_first_of("/?#*, ", colon + 3) == text.npos;
+}
+
 void serve_given(Session& session, GivenToServe& given, int& exit_code) {
   serve::ServeOptions& options = given.options;
   serve::WebOptions& web = options.web;
@@ -49,6 +56,13 @@ void serve_given(Session& session, GivenToServe& given, int& exit_code) {
                       web.key.empty() ? "--key" : "--certificate"),
           "give both, as PEM files"},
          exit_usage);
+  for (const std::string& origin : web.origins)
+    if (!is_origin(origin))
+      fail({fmt::format("serve: --allow-origin {} is no origin of a page{}", origin,
+                        origin == "null" ? ": that of every file and every sandboxed frame" : ""),
+            "write what browsers send: scheme, host and port, nothing behind them, as in "
+            "https://app.example.org"},
+           exit_usage);
   if (!is_loopback(web.address)) {
     if (web.certificate.empty())
       fail(
