@@ -1,5 +1,9 @@
 #include "cli/simulate/run.hpp"
 
+#include <functional>
+#include <optional>
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "cli/shared/buses.hpp"
@@ -8,6 +12,7 @@
 #include "cli/shared/memory.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/shared/remedies.hpp"
+#include "cli/simulate/text_show.hpp"
 
 namespace ocm::cli::simulate {
 namespace {
@@ -28,16 +33,35 @@ bool is_over() {
   return interrupted() != 0;
 }
 
+/// Runs it until `stop`; where it is shown, until the user quits, too. The terminal is as it was before
+/// anything is printed.
+using Run = std::function<sim::Ending(const sim::Shell& shell)>;
+int run_shown(const std::string& show, TextShowOptions shown, Session& session, std::function<bool()> stop,
+              const Run& run) {
+  sim::Shell shell{std::move(stop), remark};
+  std::optional<TextShow> screen;
+  if (!show.empty()) {
+    catch_hangups();
+    screen.emplace(session, std::move(shown));
+    shell.stop = [&screen, before = shell.stop] { return screen->over() || before(); };
+    shell.watch = [&screen](const std::function<sim::SeenWorld()>& look) { screen->watch(look); };
+  }
+  const sim::Ending ending = run(shell);
+  screen.reset();
+  return exit_code_of(ending);
+}
+
 /// Opens the interface that --bus names, and calls `serve` with it and a shell that tells of its states, too.
 template <typename Serve>
-int serve_on_interface(Session& session, Serve&& serve) {
+int serve_on_interface(const std::string& show, Session& session, Serve&& serve) {
   const auto bus = session.open_bus();
   StateWatch watch;
   const auto stop = [&bus, &watch] {
     watch.look(*bus);
     return is_over();
   };
-  return exit_code_of(serve(*bus, sim::Shell{stop, remark}));
+  return run_shown(show, {.bus = std::string{bus->name()}}, session, stop,
+                   [&](const sim::Shell& shell) { return serve(*bus, shell); });
 }
 
 }  // namespace
@@ -46,7 +70,7 @@ bool on_virtual_bus(const Session& session) {
   return bus_name_of(session).kind == BusName::Kind::simulated;
 }
 
-int run_amiro(const sim::AmiroOptions& options, Session& session) {
+int run_amiro(const sim::AmiroOptions& options, const std::string& show, Session& session) {
   if (options.qemu && options.speed != 1)
     fail({"sim: --speed with --boards qemu", "leave one out: emulated boards run in real time"}, exit_usage);
   if (!options.qemu && !options.images.empty())
@@ -56,7 +80,9 @@ int run_amiro(const sim::AmiroOptions& options, Session& session) {
     remark("the simulated robot is the AMiRo, whatever --spec says");
   const BusName bus_name = bus_name_of(session);
   if (bus_name.kind == BusName::Kind::simulated)
-    return exit_code_of(sim::serve_amiro(bus_name.address, options, {is_over, remark}));
+    return run_shown(
+        show, {options.speed, bus_name.address.empty() ? "sim" : "sim:" + bus_name.address}, session, is_over,
+        [&](const sim::Shell& shell) { return sim::serve_amiro(bus_name.address, options, shell); });
   if (options.bus_errors > 0)
     fail({"sim: --bus-errors with --bus " + session.bus_name,
           "leave one out: a real bus has errors of its own"},
@@ -65,7 +91,7 @@ int run_amiro(const sim::AmiroOptions& options, Session& session) {
     fail({"sim: a robot and messages with --bus " + session.bus_name,
           "both play on a virtual bus only: leave --bus out, or one of the specs"},
          exit_usage);
-  return serve_on_interface(session, [&](transport::Bus& bus, const sim::Shell& shell) {
+  return serve_on_interface(show, session, [&](transport::Bus& bus, const sim::Shell& shell) {
     return sim::serve_amiro(bus, options, shell);
   });
 }
@@ -76,16 +102,17 @@ int run_messages(const sim::MessagesOptions& options, Session& session) {
   const BusName bus_name = bus_name_of(session);
   if (bus_name.kind == BusName::Kind::simulated)
     return exit_code_of(sim::serve_messages(bus_name.address, catalogue, options, {is_over, remark}));
-  return serve_on_interface(session, [&](transport::Bus& bus, const sim::Shell& shell) {
+  return serve_on_interface("", session, [&](transport::Bus& bus, const sim::Shell& shell) {
     return sim::serve_messages(bus, catalogue, options, shell);
   });
 }
 
-int run_mappers(const sim::MapperOptions& options) {
+int run_mappers(const sim::MapperOptions& options, const std::string& show, Session& session) {
   const EndsWithoutMemory ends;  // a world is a document of JSON
   catch_interrupts();
   catch_hangups();  // the lines' links must go with it
-  return exit_code_of(sim::serve_mappers(options, {is_over, remark}));
+  return run_shown(show, {options.speed, {}}, session, is_over,
+                   [&](const sim::Shell& shell) { return sim::serve_mappers(options, shell); });
 }
 
 }  // namespace ocm::cli::simulate

@@ -2,6 +2,8 @@
 /// names. What runs is in sim/serve.
 #pragma once
 
+#include <string>
+
 #include "cli/shared/session.hpp"
 #include "sim/serve/amiro.hpp"
 #include "sim/serve/mappers.hpp"
@@ -13,9 +15,10 @@ namespace ocm::cli::simulate {
 [[nodiscard]] bool on_virtual_bus(const Session& session);
 
 /// Each returns the exit code after a signal; what kept it from running is printed, with its remedy, and ends
-/// the program.
-[[nodiscard]] int run_amiro(const sim::AmiroOptions& options, Session& session);
+/// the program. `show` is "text" where the world is drawn on this terminal, until the user quits:
+/// exit_success.
+[[nodiscard]] int run_amiro(const sim::AmiroOptions& options, const std::string& show, Session& session);
 [[nodiscard]] int run_messages(const sim::MessagesOptions& options, Session& session);
-[[nodiscard]] int run_mappers(const sim::MapperOptions& options);
+[[nodiscard]] int run_mappers(const sim::MapperOptions& options, const std::string& show, Session& session);
 
 }  // namespace ocm::cli::simulate

@@ -157,7 +157,8 @@ void add_sim(Verb app, Session& session, int& exit_code) {
       "  amiroctl sim --boards qemu         the boards' firmware, emulated\n"
       "  amiroctl sim --spec car.dbc        a bus with the messages of a DBC file\n"
       "  amiroctl sim --robots 2            mappers in a room, and their central\n"
-      "  amiroctl sim --world labyrinth --radio-loss 0.1");
+      "  amiroctl sim --world labyrinth --radio-loss 0.1\n"
+      "  amiroctl sim --show=text           drawn on this terminal while it runs");
   const auto options = std::make_shared<sim::AmiroOptions>();
   verb.add_option("--seed", options->world.seed, "of all noise; equal seeds give equal robots")
       .type_name("N");
@@ -167,15 +168,19 @@ void add_sim(Verb app, Session& session, int& exit_code) {
                  "also send messages without a period, about T apart; default: they are not sent")
       .type_name("T")
       .takes(accepted_duration());
+  const auto show = std::make_shared<std::string>();
+  verb.add_option("--show", *show, "text: room and robots in characters, on this terminal; q ends it")
+      .one_of({"text"})
+      .type_name("text");
   const auto mappers = std::make_shared<sim::MapperOptions>();
   add_mappers(verb, *mappers);
-  verb.callback([options, boards, mappers, verb, &session, &exit_code] {
+  verb.callback([options, boards, show, mappers, verb, &session, &exit_code] {
     options->qemu = *boards == "qemu";
     mappers->seed = options->world.seed;
     mappers->speed = options->speed;
     if (wants_mappers(verb)) {
       refuse_boards_options(verb, session);
-      exit_code = simulate::run_mappers(*mappers);
+      exit_code = simulate::run_mappers(*mappers, *show, session);
       return;
     }
     const Cast cast = simulate::cast_of(session);
@@ -184,13 +189,17 @@ void add_sim(Verb app, Session& session, int& exit_code) {
            exit_usage);
     if (cast == Cast::both) options->messages = &session.catalogue();
     if (cast == Cast::messages) {
+      if (!show->empty())
+        fail({"sim: --show with the messages of a spec",
+              "they have no room and no robot: leave --show out; amiroctl top shows a bus"},
+             exit_usage);
       exit_code = simulate::run_messages(messages_options(verb, *options, session), session);
       return;
     }
     const auto rates = bit_rates(verb, *options, session, cast == Cast::both);
     options->bit_rate = rates.nominal;
     options->data_bit_rate = rates.data;
-    exit_code = simulate::run_amiro(*options, session);
+    exit_code = simulate::run_amiro(*options, *show, session);
   });
 }
 
