@@ -26,6 +26,7 @@
 #include "cli/serve/foxglove.hpp"
 #include "cli/serve/operator_watch.hpp"
 #include "cli/serve/orders.hpp"
+#include "cli/serve/scenes.hpp"
 #include "cli/serve/sessions.hpp"
 #include "cli/serve/state.hpp"
 #include "cli/serve/viewers.hpp"
@@ -72,7 +73,9 @@ class Server {
         rates_{options_.bit_rate.value_or(bus_bit_rate != 0 ? bus_bit_rate : catalogue_.bit_rate),
                options_.data_bit_rate.value_or(model_.data_bit_rate)},
         channels_(catalogue_, interfaces),
-        viewers_(channels_.all().size()),
+        scenes_(catalogue_, model_, channels_.interfaces(),
+                static_cast<std::uint32_t>(channels_.all().size())),
+        viewers_(channels_.all().size() + scenes_.channels().size()),
         publisher_(catalogue_, channels_, viewers_),
         models_(catalogue_, rates_.nominal, rates_.data),
         bounds_(catalogue_, rates_.nominal),
@@ -80,6 +83,7 @@ class Server {
         sessions_({fmt::format("{}, {}", catalogue_.robot, source_.name), random_text(8), source_.commands,
                    !source_.live},
                   catalogue_, channels_, viewers_, orders_) {
+    channels_.add(scenes_.channels());
     for (const std::string& interface : channels_.interfaces()) models_.of(interface);
     if (interfaces.size() > channels_.interfaces().size())
       remark(fmt::format("serve: {} of {} interfaces have no channels: there would be more than {}",
@@ -107,11 +111,26 @@ class Server {
   static std::uint64_t now_ns() { return static_cast<std::uint64_t>(unix_time().time_since_epoch().count()); }
 
   void take(const log::Entry& entry, const log::Interfaces& interfaces) {
-    const client::Reception reception = publisher_.take(entry, interfaces.name(entry.interface));
+    const std::string_view interface = interfaces.name(entry.interface);
+    const client::Reception reception = publisher_.take(entry, interface);
     diagnosis_.take(reception);
+    if (reception.meaning == client::Meaning::sample) show(reception.sample, interface);
     if (const auto classic = entry.classic()) commanders_.take({entry.time, *classic}, reception);
     models_.take(entry, interfaces);
     if (entry.interface == 0) bounds_.take(entry);
+  }
+  /// Where the robot is, for panels of others; while a log is wound only what is learnt from it.
+  void show(const client::Sample& sample, std::string_view interface) {
+    const auto known = channels_.interfaces();
+    const auto at = std::find(known.begin(), known.end(), interface);
+    scenes_.take(
+        sample, static_cast<std::size_t>(at - known.begin()),
+        [this](std::uint32_t channel) { return !winds_ && viewers_.wanted(channel); },
+        [&](Scenes::Message message) {
+          viewers_.publish(message.channel,
+                           static_cast<std::uint64_t>(sample.time.time_since_epoch().count()),
+                           std::move(message.payload));
+        });
   }
   void publish_bounds(base::Time now) {
     const std::uint32_t channel = channels_.of(State::bounds);
@@ -149,6 +168,7 @@ class Server {
   Source source_;
   measure::BitRates rates_;
   Channels channels_;
+  Scenes scenes_;
   Viewers viewers_;
   Publisher publisher_;
   Models models_;
@@ -157,6 +177,7 @@ class Server {
   client::Commanders commanders_;
   Orders orders_;
   Sessions sessions_;
+  bool winds_ = false;        ///< a log
   std::unique_ptr<Web> web_;  // last: its thread uses what is above
 };
 
@@ -232,8 +253,10 @@ int Server::run_log(LogFeed& log) {
   const auto jump = [&](base::Duration at) {
     ++jumps;
     publisher_.hold_back();
+    winds_ = true;
     if (log.is_behind(at)) {
       publisher_.forget();
+      scenes_.forget();
       models_ = Models{catalogue_, rates_.nominal, rates_.data};
       for (const std::string& interface : channels_.interfaces()) models_.of(interface);
       diagnosis_ = client::Diagnosis{catalogue_};
@@ -245,6 +268,7 @@ int Server::run_log(LogFeed& log) {
     viewers_.publish_state(channels_.of(State::playback), now_ns(),
                            playback_state(log.playing(), paused, jumps));
     publisher_.go_on();
+    winds_ = false;
   };
   const auto obey = [&](const Order& order) {
     if (order.kind != Order::Kind::playback) return;
