@@ -92,6 +92,12 @@ class Model {
 
   void take(const log::Entry& entry);
   void lost(std::uint64_t frames) noexcept { lost_ += frames; }
+  /// What the controller's driver says now, beside what error frames have said. Counters that it does not say
+  /// stay as they were.
+  void controller_is(can::ControllerState state, std::optional<can::ErrorCounters> counters) noexcept {
+    controller_ = state;
+    if (counters) error_counters_ = counters;
+  }
 
   /// In the order of the catalogue; those of which nothing came only where `all`. Unknown ones last.
   [[nodiscard]] std::vector<Row> rows(base::Time now, bool all) const;

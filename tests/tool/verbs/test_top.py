@@ -7,10 +7,11 @@ import signal
 import subprocess
 
 import harness
+import played_adapter
 import screens
 
 
-class Top(screens.Screens):
+class Top(played_adapter.WithAdapter, screens.Screens):
     def start_bus(self, *topics):
         self.start_sim("--frozen")
         for topic in topics:
@@ -132,6 +133,20 @@ class Top(screens.Screens):
         self.shows(80, "▁▂")
         self.press(80, "q")
         self.assertEqual(self.ended(80)[-1], "END 0")
+
+    def test_a_serial_adapter(self):
+        adapter = self.adapter()
+        self.open(100, "--bus", f"slcan:{adapter.path}@250k", "top", rows=24)
+        self.shows(100, "slcan:", "nothing came yet")
+        self.assertEqual(adapter.rate, 250)
+        for value in (1, 2, 3):
+            adapter.say(f"t6086{value:02X}0000000000" + f"{value * 100:04X}\r")
+        adapter.say("t1232DEAD0200\r")
+        self.shows(100, "gyroscope", " 0.0525 deg/s", "123", "DE AD")
+        adapter.unplug()
+        lines = self.ended(100)
+        self.assertEqual(lines[-1], "END 1")
+        self.assertIn("slcan:", "\n".join(lines))
 
     def test_a_terminal_that_it_cannot_use(self):
         self.start_bus("gyro")
