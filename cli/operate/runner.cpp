@@ -1,6 +1,8 @@
 #include "cli/operate/runner.hpp"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <memory>
 #include <unistd.h>
 #include <utility>
@@ -60,7 +62,7 @@ Runner::Runner(transport::Bus& bus, Control& control, const protocol::Catalogue&
       box_(options.black_box, file.name, std::string{bus.name()}, catalogue),
       live_(bus, [this] { nothing_waited_ = now(); },
             {control.descriptor(), [&control] { control.serve(); }}),
-      receiver_(catalogue),
+      receiver_(catalogue, client::Transport::together),
       index_(catalogue),
       refusals_(catalogue),
       supervisor_(file.tables) {
@@ -302,8 +304,14 @@ void Runner::tell(std::string_view event, std::initializer_list<Json::Member> fa
   } else {
     line = printable(text) + "\n";
   }
-  static_cast<void>(background_.post(
-      [line = std::move(line)] { static_cast<void>(write_all(STDOUT_FILENO, line, Signals::blocked)); }));
+  const bool taken = background_.post([this, line = std::move(line)] {
+    const Written written = write_all(STDOUT_FILENO, line, Signals::blocked);
+    if (written.bytes == line.size()) return;
+    if (lines_lost_++ == 0 && written.error != EINTR)
+      complain({fmt::format("operate: standard output: {}", std::strerror(written.error)),
+                "the robot is guarded all the same; lines that are not printed are counted"});
+  });
+  if (!taken) ++lines_lost_;
 }
 
 std::string Runner::answer(Caller& caller, std::string_view request) {
@@ -510,7 +518,7 @@ void Runner::sum_up() {
   add_count(text, counters_.recordings_lost, "recordings lost");
   add_count(text, counters_.not_kept, "frames that a kill would have lost from the black box");
   add_count(text, box_.dropped(), "frames that the black box had no room for");
-  add_count(text, background_.left_out(), "lines not printed: their reader took too long");
+  add_count(text, lines_lost_, "event lines not printed");
   add_count(text, done.not_a_number, "values that are no number");
   add_count(text, bus_->counters().lost, "frames lost");
   if (counters_.late != 0)

@@ -36,6 +36,11 @@ class Channels {
   /// there are robots behind a central.
   Channels(const protocol::Catalogue& catalogue, std::span<const std::string> interfaces, bool fleet = false);
 
+  /// Behind all others; their numbers are those that come next. Before anything is published.
+  void add(const std::vector<foxglove::Channel>& channels) {
+    all_.insert(all_.end(), channels.begin(), channels.end());
+  }
+
   [[nodiscard]] const std::vector<foxglove::Channel>& all() const noexcept { return all_; }
   /// Of a topic on an interface, by their numbers; `interface` < interfaces().
   [[nodiscard]] std::uint32_t of(std::size_t interface, std::size_t topic) const noexcept {

@@ -29,6 +29,7 @@
 #include "cli/serve/operator_watch.hpp"
 #include "cli/serve/orders.hpp"
 #include "cli/serve/parameters.hpp"
+#include "cli/serve/scenes.hpp"
 #include "cli/serve/sessions.hpp"
 #include "cli/serve/state.hpp"
 #include "cli/serve/viewers.hpp"
@@ -77,7 +78,9 @@ class Server {
         rates_{options_.bit_rate.value_or(bus_bit_rate != 0 ? bus_bit_rate : catalogue_.bit_rate),
                options_.data_bit_rate.value_or(model_.data_bit_rate)},
         channels_(catalogue_, interfaces, options_.fleet.has_value()),
-        viewers_(channels_.all().size()),
+        scenes_(catalogue_, model_, channels_.interfaces(),
+                static_cast<std::uint32_t>(channels_.all().size())),
+        viewers_(channels_.all().size() + scenes_.channels().size()),
         publisher_(catalogue_, channels_, viewers_),
         models_(catalogue_, rates_.nominal, rates_.data),
         bounds_(catalogue_, rates_.nominal),
@@ -86,6 +89,7 @@ class Server {
         sessions_({fmt::format("{}, {}", catalogue_.robot, source_.name), random_text(8), source_.commands,
                    !source_.live, options_.fleet ? &fleet_orders_ : nullptr},
                   catalogue_, channels_, viewers_, orders_) {
+    channels_.add(scenes_.channels());
     for (const std::string& interface : channels_.interfaces()) models_.of(interface);
     if (interfaces.size() > channels_.interfaces().size())
       remark(fmt::format("serve: {} of {} interfaces have no channels: there would be more than {}",
@@ -120,8 +124,10 @@ class Server {
   static std::uint64_t now_ns() { return static_cast<std::uint64_t>(unix_time().time_since_epoch().count()); }
 
   void take(const log::Entry& entry, const log::Interfaces& interfaces) {
-    const client::Reception reception = publisher_.take(entry, interfaces.name(entry.interface));
+    const std::string_view interface = interfaces.name(entry.interface);
+    const client::Reception reception = publisher_.take(entry, interface);
     diagnosis_.take(reception);
+    if (reception.meaning == client::Meaning::sample) show(reception.sample, interface);
     if (const auto classic = entry.classic()) commanders_.take({entry.time, *classic}, reception);
     models_.take(entry, interfaces);
     if (entry.interface == 0) bounds_.take(entry);
@@ -143,6 +149,19 @@ class Server {
   [[nodiscard]] std::vector<bus_model::Row> rows(base::Time now) {
     const auto buses = models_.buses();
     return buses.empty() ? std::vector<bus_model::Row>{} : buses.front().model->rows(now, false);
+  }
+  /// Where the robot is, for panels of others; while a log is wound only what is learnt from it.
+  void show(const client::Sample& sample, std::string_view interface) {
+    const auto known = channels_.interfaces();
+    const auto at = std::find(known.begin(), known.end(), interface);
+    scenes_.take(
+        sample, static_cast<std::size_t>(at - known.begin()),
+        [this](std::uint32_t channel) { return !winds_ && viewers_.wanted(channel); },
+        [&](Scenes::Message message) {
+          viewers_.publish(message.channel,
+                           static_cast<std::uint64_t>(sample.time.time_since_epoch().count()),
+                           std::move(message.payload));
+        });
   }
   void publish_bounds(base::Time now) {
     const std::uint32_t channel = channels_.of(State::bounds);
@@ -193,6 +212,7 @@ class Server {
   Source source_;
   measure::BitRates rates_;
   Channels channels_;
+  Scenes scenes_;
   Viewers viewers_;
   Publisher publisher_;
   Models models_;
@@ -204,6 +224,7 @@ class Server {
   std::uint64_t lost_ = 0;  ///< frames, of the bus, as it counts them
   Orders fleet_orders_;
   Sessions sessions_;
+  bool winds_ = false;                 ///< a log
   std::unique_ptr<Web> web_;           // its thread uses what is above
   std::unique_ptr<FleetWatch> fleet_;  // last: its thread wakes that one
 };
@@ -314,8 +335,10 @@ int Server::run_log(LogFeed& log) {
   const auto jump = [&](base::Duration at) {
     ++jumps;
     publisher_.hold_back();
+    winds_ = true;
     if (log.is_behind(at)) {
       publisher_.forget();
+      scenes_.forget();
       models_ = Models{catalogue_, rates_.nominal, rates_.data};
       for (const std::string& interface : channels_.interfaces()) models_.of(interface);
       diagnosis_ = client::Diagnosis{catalogue_};
@@ -327,6 +350,7 @@ int Server::run_log(LogFeed& log) {
     viewers_.publish_state(channels_.of(State::playback), now_ns(),
                            playback_state(log.playing(), paused, jumps));
     publisher_.go_on();
+    winds_ = false;
   };
   const auto obey = [&](const Order& order) {
     if (order.kind != Order::Kind::playback) return;

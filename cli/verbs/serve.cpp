@@ -32,6 +32,13 @@ bool is_loopback(const std::string& address) {
   return address == "::1" || address.starts_with("127.");
 }
 
+/// "https://app.example.org", "http://localhost:8080": what a browser sends has no path.
+bool is_origin(std::string_view text) {
+  const auto colon = text.find("://");
+  return colon != std::string_view::npos && colon != 0 &&
+         text.find_first_of("/?#*, ", colon + 3) == text.npos;
+}
+
 /// The word `robots`, or --central: robots behind a central; without `live` or a log these alone.
 void take_robots(Verb verb, GivenToServe& given) {
   const bool named = std::erase(given.words, "robots") != 0;
@@ -80,6 +87,13 @@ void serve_given(Verb verb, Session& session, GivenToServe& given, int& exit_cod
                       web.key.empty() ? "--key" : "--certificate"),
           "give both, as PEM files"},
          exit_usage);
+  for (const std::string& origin : web.origins)
+    if (!is_origin(origin))
+      fail({fmt::format("serve: --allow-origin {} is no origin of a page{}", origin,
+                        origin == "null" ? ": that of every file and every sandboxed frame" : ""),
+            "write what browsers send: scheme, host and port, nothing behind them, as in "
+            "https://app.example.org"},
+           exit_usage);
   if (!is_loopback(web.address)) {
     if (web.certificate.empty())
       fail(
@@ -93,6 +107,7 @@ void serve_given(Verb verb, Session& session, GivenToServe& given, int& exit_cod
     web.token_to_view = true;
   }
   web.port = static_cast<std::uint16_t>(given.port);
+  static_cast<void>(session.catalogue());  // what is wrong with the spec is said before a bus is missing
   exit_code = serve::run(session, std::move(options));
 }
 

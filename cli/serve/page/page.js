@@ -37,7 +37,7 @@ function say({level = 0, message, id}) {
   line.dataset.key = key;
   box.prepend(line);
   while (box.children.length > 4) box.lastChild.remove();
-  setTimeout(() => line.remove(), 10000);
+  if (id === undefined) setTimeout(() => line.remove(), 10000);  // what has a name is a state, and stays
 }
 
 function valueText(field, value) {
@@ -179,8 +179,9 @@ const wire = new Wire(token, {
   message: (topic, message, timeNs) => (states[topic] ?? (each => take(topic, each, timeNs)))(message),
   status: say,
   state: text => {
-    by('link').textContent = text === 'lost' ? 'connection lost, trying again' : text;
-    by('link').classList.toggle('lost', text === 'lost');
+    const words = {lost: 'connection lost, trying again', refused: 'no connection, trying again: open the address that amiroctl serve has printed'};
+    by('link').textContent = words[text] ?? text;
+    by('link').classList.toggle('lost', text in words);
   },
 });
 const drive = new Drive(by('pad'), [by('forward-speed'), by('turn-speed')], [by('forward-unit'), by('turn-unit')],

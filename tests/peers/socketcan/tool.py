@@ -1,5 +1,6 @@
 """amiroctl and the simulated robot on real CAN interfaces. What must come is typed from the thesis, and reckoned
 here, not by the code under test. Raw frames are the judge: candump and python-can, not the tool's own output."""
+# Sleeps: a sensor publishes, a board does not answer, or an interface is down for so long.
 import json
 import os
 import re

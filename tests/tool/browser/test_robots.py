@@ -190,6 +190,24 @@ class Robots(harness.Case):
         self.until(lambda: self.browser.script("return document.querySelectorAll('#graphs canvas').length") > 0, "a curve")
         self.fine()
 
+    def test_sim_show(self):
+        self.serve("--world", "square", "--robots", "1", "--allow-commands", tool=("sim", "--show"))
+        self.assertTrue(self.url.endswith("&map"), self.url)
+        self.until(lambda: self.browser.script("return document.querySelectorAll('#fleet-table tbody tr').length") == 1, "its mapper")
+        self.until(lambda: self.area() > 0, "its map")
+        _, err = self.interrupt(self.server)
+        self.assertNotIn("gone", err)
+        self.serve("--allow-commands", tool=("sim", "--show=page"))
+        self.until(lambda: self.browser.element("#pad .up").is_displayed(), "the pad of the simulated robot")
+        ActionChains(self.browser.driver).click_and_hold(self.browser.element("#pad .up")).perform()
+        self.until(lambda: self.browser.text('[data-field="/motors.x"]') == "0.1 m/s", "it drives")
+        ActionChains(self.browser.driver).release().perform()
+        self.until(lambda: self.browser.text('[data-field="/motors.x"]') == "0 m/s", "it rests")
+        self.fine()
+        _, err = self.interrupt(self.server)
+        self.assertEqual(self.server.returncode, 130)
+        self.assertNotIn("amiroctl:", err)
+
     def test_map_live(self):
         self.play()
         self.serve("--scan", "200ms", "--start", "AVR=0.4,0.5,0", "--start", "Arduino=0.8,0.5,90",

@@ -6,10 +6,11 @@ import math
 import os
 import re
 import signal
+import sys
 import time
 
 import websocket
-from harness import Case, main, waiting
+from harness import Case, main, sanitized, waiting
 from played_central import Central, Robot
 
 STARTS = ("--start", "AVR=0.4,0.5,0", "--start", "Arduino=0.8,0.5,90")
@@ -221,6 +222,55 @@ class Robots(Case):
         self.interrupt(server)
         self.assertEqual(server.returncode, 130)
         self.assertEqual(self.avr.heard[-1], "{U,0,0}")
+
+    def test_a_robot_with_a_bad_link_is_called_back(self):
+        _, _, _, viewer = self.both("--call-back")
+        self.avr.room = (-2.0, -2.0, 4.0, 4.0)
+        self.avr.bad_beyond_cm, self.avr.speed = 20, 5
+        viewer.publish("/ocm/fleet", {"robot": "AVR", "x_m": 0.9, "y_m": 0.5})
+        self.says(viewer, "; it is called back")
+        waiting.until(lambda: abs(self.avr.x - 0.4) < 0.06, "it is sent back")
+        self.says(viewer, "the link to AVR is well again")
+
+    # --- many viewers ---
+
+    @staticmethod
+    def used(process):
+        """Seconds of CPU time, and memory in KiB."""
+        with open(f"/proc/{process.pid}/stat", encoding="ascii") as file:
+            fields = file.read().rsplit(")", 1)[1].split()
+        with open(f"/proc/{process.pid}/status", encoding="ascii") as file:
+            memory = int(re.search(r"VmRSS:\s+(\d+) kB", file.read())[1])
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK"), memory
+
+    def test_it_takes_little(self):
+        """Two robots with twenty updates a second each, and a viewer of all that the page asks for."""
+        server, port, _ = self.serve()
+        viewer = self.viewer(port)
+        viewer.subscribe(*viewer.channels)
+        self.state(viewer, lambda s: len(s["robots"]) == 2 and all(robot["at"] for robot in s["robots"]), "two robots with places")
+        (before, _), begin = self.used(server), time.monotonic()
+        for _ in range(25):
+            viewer.message("/ocm/fleet")
+        share = (self.used(server)[0] - before) / (time.monotonic() - begin)
+        print(f"serve of two robots: {share * 100:.1f} % of a core", file=sys.stderr)
+        if not sanitized():
+            self.assertLess(share, 0.04)
+
+    def test_a_hundred_viewers(self):
+        server, port, _ = self.serve()
+        viewers = [self.viewer(port, "", "/ocm/fleet", "/ocm/map") for _ in range(100)]
+        self.state(viewers[0], lambda s: len(s["robots"]) == 2 and all(robot["at"] for robot in s["robots"]), "two robots with places")
+        before, memory = self.used(server)
+        begin = time.monotonic()
+        for _ in range(25):
+            for viewer in viewers:
+                self.assertIn(len(viewer.message("/ocm/fleet").fields["robots"]), (0, 2))  # none before they are linked
+        used, now = self.used(server)
+        print(f"serve of two robots to a hundred viewers: {(used - before) / (time.monotonic() - begin) * 100:.1f} % of a core", file=sys.stderr)
+        self.assertEqual([viewer.statuses for viewer in viewers if any(s.get("id") == "loss" for s in viewer.statuses)], [])
+        if not sanitized():
+            self.assertLess(now - memory, 20_000)
 
     # --- beside other programs ---
 

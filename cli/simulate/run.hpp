@@ -1,0 +1,24 @@
+/// Runs what `amiroctl sim` asks for until a signal: on the virtual bus, or on the interface that --bus
+/// names. What runs is in sim/serve.
+#pragma once
+
+#include <string>
+
+#include "cli/shared/session.hpp"
+#include "sim/serve/amiro.hpp"
+#include "sim/serve/mappers.hpp"
+#include "sim/serve/messages.hpp"
+
+namespace ocm::cli::simulate {
+
+/// Whether --bus names a virtual bus, or nothing.
+[[nodiscard]] bool on_virtual_bus(const Session& session);
+
+/// Each returns the exit code after a signal; what kept it from running is printed, with its remedy, and ends
+/// the program. `show` is "text" where the world is drawn on this terminal, until the user quits:
+/// exit_success.
+[[nodiscard]] int run_amiro(const sim::AmiroOptions& options, const std::string& show, Session& session);
+[[nodiscard]] int run_messages(const sim::MessagesOptions& options, Session& session);
+[[nodiscard]] int run_mappers(const sim::MapperOptions& options, const std::string& show, Session& session);
+
+}  // namespace ocm::cli::simulate
