@@ -142,6 +142,23 @@ def test_folders_have_rows(tree):
             yield f"{name}:1: tests/README.md has no row for `{match[1]}`"
 
 
+def folders_are_named(tree):
+    """docs/architecture.md names each folder, and each room of cli/, firmware/, generator/ and sim/, or their own README.md does."""
+    table = tree.text("docs/architecture.md")
+    first = {}
+    for name in tree.files:
+        folders = name.split("/")[:-1]
+        if folders and not folders[0].startswith(".") and folders[0] != "include":
+            first.setdefault((folders[0],), name)
+            if folders[0] in ("cli", "firmware", "generator", "sim") and len(folders) > 1:
+                first.setdefault(tuple(folders[:2]), name)
+    for folders, name in first.items():
+        own = f"{folders[0]}/README.md"
+        words = table + (tree.text(own) if own in tree.known and len(folders) > 1 else "")
+        if not re.search(rf"`(?:{folders[0]}/)?{folders[-1]}/", words):
+            yield f"{name}:1: docs/architecture.md names no folder {'/'.join(folders)}/; give it a row"
+
+
 def snippets(tree):
     """Name -> (file, code) of what examples offer to be quoted; indentation taken off."""
     found = {}
@@ -170,4 +187,4 @@ def quotes_are_the_examples(tree):
 
 
 RULES = (links_resolve, named_files_exist, tables_are_whole, words_are_plain, pages_are_linked, indexes_are_complete,
-         test_folders_have_rows, quotes_are_the_examples)
+         test_folders_have_rows, folders_are_named, quotes_are_the_examples)

@@ -26,7 +26,8 @@ GOOD = {
                             "| 5 | `reflective` | | `topics` | host |\n"
                             "| 5 | `skiff/oars` | | `base` | board, host |\n"
                             "| 6 | `transport` | | `base` | host |\n"
-                            "\n<!-- end of floors -->\n",
+                            "\n<!-- end of floors -->\n\n`docs/`, `examples/`, `tests/`; `cli/`: `bell/`, `cli/horn/`, `shared/`, `verbs/`; `generator/`: `spec/`; "
+                            "`firmware/`: `boards/`, `system/`; `sim/`: `amiro/`, `mapper/`, `physics/`\n",
     "docs/images/house.svg": "<title>house</title>" + "".join(f"<title>{what}</title>\n" for what in (
         "base", "topics", "controller", "reflective", "skiff/oars", "transport", "base&#45;&gt;topics", "topics&#45;&gt;controller",
         "topics&#45;&gt;reflective", "base&#45;&gt;skiff/oars", "base&#45;&gt;transport")),
@@ -187,6 +188,8 @@ PLANTED = [
     ("test_folders_have_rows", {"tests/tool/bells/CMakeLists.txt": ""}, "tests/tool/bells/CMakeLists.txt:1:"),
     ("test_folders_have_rows", {"tests/bells/CMakeLists.txt": "", "tests/README.md": "`bells`, `tool/bells/`\n"},
      "tests/bells/CMakeLists.txt:1:"),
+    ("folders_are_named", {"cli/gong/gong.hpp": "/// The gong of the ferry, beaten.\n#pragma once\n"}, "cli/gong/gong.hpp:1:"),
+    ("folders_are_named", replaced(PAGE, "`examples/`", "examples"), "examples/0_hello.cpp:1:"),
     ("sleeps_say_why", {"tests/tool/test_a.py": "time.sleep(0.1)\ntime.sleep(1.5)  # the time itself\ntime.sleep(0.2)\n"}, "tests/tool/test_a.py:3:"),
     ("sleeps_say_why", {"tests/tool/test_a.py": "# for a while\ntime.sleep(wait)\n"}, "tests/tool/test_a.py:2:"),
     ("sleeps_say_why", {"tests/sim/a.cpp": "std::this_thread::sleep_for(100ms);\nstd::this_thread::sleep_for(101ms);\n"}, "tests/sim/a.cpp:2:"),
