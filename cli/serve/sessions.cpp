@@ -28,8 +28,8 @@ Sessions::Sessions(SessionsOptions options, const protocol::Catalogue& catalogue
 void Sessions::opened(ViewerId viewer, bool commands) {
   const bool may = commands && options_.commands;
   open_[viewer] = {may, {}};
-  viewers_->tell(viewer, foxglove::server_info({options_.name, options_.id, may || options_.playback, may}));
-  viewers_->tell(viewer, foxglove::advertise(channels_->all()));
+  viewers_->greet(viewer, {foxglove::server_info({options_.name, options_.id, may || options_.playback, may}),
+                           foxglove::advertise(channels_->all())});
 }
 
 void Sessions::gone(ViewerId viewer) {

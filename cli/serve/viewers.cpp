@@ -80,6 +80,14 @@ ViewerId Viewers::add() {
   return last_id_;
 }
 
+void Viewers::greet(ViewerId viewer, std::vector<std::string> texts) {
+  const std::lock_guard lock{mutex_};
+  const auto found = viewers_.find(viewer);
+  if (found == viewers_.end()) return;
+  for (auto text = texts.rbegin(); text != texts.rend(); ++text)
+    found->second.texts.push_front(std::make_shared<const std::string>(std::move(*text)));
+}
+
 void Viewers::remove(ViewerId viewer) {
   const std::lock_guard lock{mutex_};
   const auto found = viewers_.find(viewer);

@@ -57,6 +57,8 @@ class Viewers {
   // For who sends.
 
   [[nodiscard]] ViewerId add();
+  /// Texts that come before all others, those to all viewers included that were said meanwhile.
+  void greet(ViewerId viewer, std::vector<std::string> texts);
   void remove(ViewerId viewer);
   [[nodiscard]] std::size_t count() const;
   /// The error says what is wrong: no such channel, or an id or a channel for the second time.

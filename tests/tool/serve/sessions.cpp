@@ -54,6 +54,18 @@ TEST_CASE("sessions: who connects gets server and channels") {
   CHECK(said[1].find(R"("topic":"/ocm/robot")") != std::string::npos);
 }
 
+TEST_CASE("sessions: what is said to all meanwhile comes behind server and channels") {
+  Server server{false};
+  const ViewerId viewer = server.viewers.add();
+  server.viewers.tell(0, "to all");
+  server.sessions.opened(viewer, false);
+  const auto said = server.said(viewer);
+  REQUIRE(said.size() == 3);
+  CHECK(said[0].find(R"("op":"serverInfo")") != std::string::npos);
+  CHECK(said[1].find(R"("op":"advertise")") != std::string::npos);
+  CHECK(said[2] == "to all");
+}
+
 TEST_CASE("sessions: no command without the token, nor without a server that takes any") {
   for (const auto& [server_takes, token] : {std::pair{false, true}, {true, false}, {false, false}}) {
     Server server{server_takes};

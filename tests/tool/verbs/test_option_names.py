@@ -43,7 +43,7 @@ class OneMeaning(Options):
         for name, value in (("--from", "FORMAT"), ("--to", "FORMAT"), ("--since", "T"), ("--until", "T"), ("--listen", "T"),
                             ("--watch", "")):
             self.assertEqual(list(values[name]), [value], name)
-        self.assertEqual(dict(values["--show"]), {"": ["run", "calibrate"], "[page|text]": ["sim"]})
+        self.assertEqual(dict(values["--show"]), {"": ["run", "calibrate"], "page|text": ["sim"]})
 
 
 class Pages(Options):
