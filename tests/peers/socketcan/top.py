@@ -1,5 +1,6 @@
-"""amiroctl top on CAN interfaces of the kernel: frames of can-utils, and the controller's state, which the kernel says over
-netlink without any error frame. The terminal is a pseudo terminal; what is drawn first is whole."""
+"""What fills a terminal, on CAN interfaces of the kernel: amiroctl top with frames of can-utils and the controller's state, which
+the kernel says over netlink without any error frame; and the simulated robot, drawn. The terminal is a pseudo terminal; what is
+drawn first is whole."""
 import fcntl
 import os
 import pty
@@ -15,17 +16,17 @@ from tool import cansend
 
 
 class Screen:
-    """top on a terminal of 100 by 24; `text` is all that it has drawn, without the terminal's sequences."""
-    def __init__(self, context, interface):
+    """A verb on a terminal of 100 by 24; `text` is all that it has drawn, without the terminal's sequences."""
+    def __init__(self, context, interface, *verb):
         self.primary, secondary = pty.openpty()
         fcntl.ioctl(secondary, termios.TIOCSWINSZ, struct.pack('HHHH', 24, 100, 0, 0))
         self.drawn = b''
         before = listeners(interface)
-        self.process = subprocess.Popen([context.amiroctl, '--bus', interface, 'top'], stdin=secondary, stdout=secondary,
+        self.process = subprocess.Popen([context.amiroctl, '--bus', interface, *verb], stdin=secondary, stdout=secondary,
                                         stderr=subprocess.PIPE, env={**os.environ, 'TERM': 'xterm'}, start_new_session=True)
         os.close(secondary)
-        eventually(lambda: listeners(interface) > before or self.process.poll() is not None, 'top listens')
-        expect(self.process.poll() is None, 'top ended')
+        eventually(lambda: listeners(interface) > before or self.process.poll() is not None, f'{verb} listens')
+        expect(self.process.poll() is None, f'{verb} ended')
 
     def text(self):
         while select.select([self.primary], [], [], 0)[0]:
@@ -40,8 +41,8 @@ class Screen:
 
     def quit(self):
         os.write(self.primary, b'q')
-        eventually(lambda: (self.text(), self.process.poll())[1] is not None, 'top ends')
-        equal(self.process.returncode, 0, 'exit code of top')
+        eventually(lambda: (self.text(), self.process.poll())[1] is not None, 'it ends')
+        equal(self.process.returncode, 0, 'exit code')
 
     def __enter__(self):
         return self
@@ -55,7 +56,7 @@ class Screen:
 
 @check('top on a CAN interface shows what can-utils send, and what it does not know')
 def _(context):
-    with Screen(context, 'vcan0') as screen:
+    with Screen(context, 'vcan0', 'top') as screen:
         screen.shows('vcan0', 'nothing came yet')
         cansend('608#0300FFFF0000', '123#DEAD')
         screen.shows('gyroscope', '123')
@@ -66,13 +67,22 @@ def _(context):
 @check('top shows the controller\'s state, which the kernel says without an error frame')
 def _(context):
     with Adapter() as adapter:
-        with Screen(context, adapter.name) as screen:
+        with Screen(context, adapter.name, 'top') as screen:
             screen.shows(adapter.name, 'error active')
             screen.quit()
         # States that were there before top came: no error frame is on its way to it any more.
         for report, state, words in (('sp200100', 'ERROR-PASSIVE', 'error passive'), ('sb256000', 'BUS-OFF', 'bus-off')):
             adapter.report(report)
             eventually(lambda state=state: state in sh('ip', '-details', 'link', 'show', adapter.name), state)
-            with Screen(context, adapter.name) as screen:
+            with Screen(context, adapter.name, 'top') as screen:
                 screen.shows(words)
                 screen.quit()
+
+
+@check('sim --show=text draws the robot that is on a CAN interface')
+def _(context):
+    with Screen(context, 'vcan0', 'sim', '--show=text') as screen:
+        screen.shows('AMiRo', 'on vcan0', 'heading', 'lights', 'q quit')
+        screen.quit()
+        expect('di_wheel_drive' not in screen.text(), 'what it reports is on stderr')
+        expect('di_wheel_drive' in screen.process.stderr.read().decode(), 'what each board received')

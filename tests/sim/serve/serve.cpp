@@ -1,5 +1,6 @@
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <unistd.h>
@@ -95,6 +96,30 @@ TEST_CASE("Mappers behind a central, or each on a line, report what each of them
     REQUIRE_FALSE(watched.reports.empty());
     CHECK(watched.reports[0].starts_with("simulated 2 mappers in 'square', "));
     CHECK(watched.reports.size() == (lines ? 3 : 6));
+  }
+}
+
+TEST_CASE("Whatever is simulated can be watched at each turn") {
+  const Folder folder;
+  for (const std::string_view what : {"AMiRo", "central", "lines"}) {
+    CAPTURE(what);
+    Watched watched;
+    sim::Shell shell = watched.shell();
+    std::size_t looks = 0, robots = 0;
+    shell.watch = [&](const std::function<sim::SeenWorld()>& look) {
+      ++looks;
+      robots = look().robots.size();
+    };
+    if (what == "AMiRo") {
+      CHECK(sim::serve_amiro(folder / "bus", {}, shell).well());
+    } else {
+      sim::MapperOptions options;
+      options.robots = 3;
+      options.lines = what == "lines";
+      CHECK(sim::serve_mappers(options, shell).well());
+    }
+    CHECK(looks == 3);
+    CHECK(robots == (what == "AMiRo" ? 1 : 3));
   }
 }
 

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include <catch2/catch.hpp>
+
 #include "ocm/topics/amiro.hpp"
 
 #include "cli/shared/messages.hpp"
@@ -91,8 +93,9 @@ struct Drive {
     return times;
   }
   [[nodiscard]] static std::int32_t forward_um_s(const can::Frame& frame) {
-    return static_cast<std::int32_t>(frame.data[0] | frame.data[1] << 8 | frame.data[2] << 16 |
-                                     static_cast<std::uint32_t>(frame.data[3]) << 24);
+    std::uint32_t raw = 0;
+    for (unsigned i = 0; i < 4; ++i) raw |= std::uint32_t{frame.data[i]} << 8 * i;
+    return static_cast<std::int32_t>(raw);
   }
 
   World world;
