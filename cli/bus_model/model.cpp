@@ -128,6 +128,12 @@ client::Sample Model::sample_of(const protocol::Topic* topic, const Subject& sub
   return {topic, subject.priority, subject.last, std::span{subject.bytes}.first(subject.size)};
 }
 
+std::optional<client::Sample> Model::newest_of(std::size_t topic) const {
+  const Subject& subject = subjects_[topic];
+  if (subject.count == 0) return std::nullopt;
+  return sample_of(&catalogue_->topics[topic], subject);
+}
+
 std::vector<Row> Model::rows(base::Time now, bool all) const {
   std::vector<Row> rows;
   const auto add = [&](std::size_t number, const protocol::Topic* topic, std::string name,

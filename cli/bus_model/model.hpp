@@ -92,9 +92,18 @@ class Model {
 
   void take(const log::Entry& entry);
   void lost(std::uint64_t frames) noexcept { lost_ += frames; }
+  /// What the controller's driver says now, beside what error frames have said. Counters that it does not say
+  /// stay as they were.
+  void controller_is(can::ControllerState state, std::optional<can::ErrorCounters> counters) noexcept {
+    controller_ = state;
+    if (counters) error_counters_ = counters;
+  }
 
   /// In the order of the catalogue; those of which nothing came only where `all`. Unknown ones last.
   [[nodiscard]] std::vector<Row> rows(base::Time now, bool all) const;
+  /// What came last of the catalogue's topic of that number, of all its frames; none: nothing did. Until the
+  /// next frame is taken.
+  [[nodiscard]] std::optional<client::Sample> newest_of(std::size_t topic) const;
   [[nodiscard]] Summary summary(base::Time now) const;
   /// Of the newest frame; none came: nothing.
   [[nodiscard]] std::optional<base::Time> newest() const noexcept { return newest_; }

@@ -14,6 +14,7 @@
 
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
+#include "cli/shared/operator_link.hpp"
 #include "cli/shared/outgoing.hpp"
 #include "cli/words/quantity.hpp"
 

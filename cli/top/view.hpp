@@ -45,6 +45,7 @@ struct Key {
     home,
     end,
     enter,
+    tabulator,
     escape,
     backspace,
     function,  ///< `number` says which

@@ -144,6 +144,23 @@ void refuse_boards_options(Verb verb, const Session& session) {
              exit_usage);
 }
 
+/// What is meant for the page.
+void refuse_page_options(Verb verb, const simulate::ShowOptions& show, bool lines) {
+  for (const char* option : {"--port", "--allow-commands", "--open"})
+    if (verb.count(option) != 0 && show.kind != "page")
+      fail({fmt::format("sim: {} is of the page", option), "add --show, or leave it out"}, exit_usage);
+  if (show.kind == "page" && lines)
+    fail({"sim: --show with --lines",
+          "the page shows robots behind a central: leave --lines out, or --show=text"},
+         exit_usage);
+  if (show.opens && show.commands)
+    fail({"sim: --open and --allow-commands: other users of this machine would see the token, among the "
+          "words of "
+          "the browser's process",
+          "drop one of them, and open the address by hand"},
+         exit_usage);
+}
+
 }  // namespace
 
 void add_sim(Verb app, Session& session, int& exit_code) {
@@ -157,7 +174,9 @@ void add_sim(Verb app, Session& session, int& exit_code) {
       "  amiroctl sim --boards qemu         the boards' firmware, emulated\n"
       "  amiroctl sim --spec car.dbc        a bus with the messages of a DBC file\n"
       "  amiroctl sim --robots 2            mappers in a room, and their central\n"
-      "  amiroctl sim --world labyrinth --radio-loss 0.1");
+      "  amiroctl sim --world labyrinth --radio-loss 0.1\n"
+      "  amiroctl sim --show                in a browser, too; prints the address\n"
+      "  amiroctl sim --show=text           drawn on this terminal while it runs");
   const auto options = std::make_shared<sim::AmiroOptions>();
   verb.add_option("--seed", options->world.seed, "of all noise; equal seeds give equal robots")
       .type_name("N");
@@ -167,15 +186,28 @@ void add_sim(Verb app, Session& session, int& exit_code) {
                  "also send messages without a period, about T apart; default: they are not sent")
       .type_name("T")
       .takes(accepted_duration());
+  const auto show = std::make_shared<simulate::ShowOptions>();
+  verb.add_option(
+          "--show", show->kind,
+          "page (default): in a browser, prints the address; text: in characters, on this terminal; q "
+          "ends it")
+      .expected(0, 1)
+      .one_of({"page", "text"})
+      .type_name("[page|text]");
+  verb.add_option("--port", show->port, "of that page").range(0U, 65535U).show_default();
+  verb.add_flag("--allow-commands", show->commands, "who opens the address that is printed may drive");
+  verb.add_flag("--open", show->opens, "in your browser, too");
   const auto mappers = std::make_shared<sim::MapperOptions>();
   add_mappers(verb, *mappers);
-  verb.callback([options, boards, mappers, verb, &session, &exit_code] {
+  verb.callback([options, boards, show, mappers, verb, &session, &exit_code] {
     options->qemu = *boards == "qemu";
     mappers->seed = options->world.seed;
     mappers->speed = options->speed;
+    if (verb.count("--show") != 0 && show->kind.empty()) show->kind = "page";
+    refuse_page_options(verb, *show, mappers->lines);
     if (wants_mappers(verb)) {
       refuse_boards_options(verb, session);
-      exit_code = simulate::run_mappers(*mappers);
+      exit_code = simulate::run_mappers(*mappers, *show, session);
       return;
     }
     const Cast cast = simulate::cast_of(session);
@@ -184,13 +216,17 @@ void add_sim(Verb app, Session& session, int& exit_code) {
            exit_usage);
     if (cast == Cast::both) options->messages = &session.catalogue();
     if (cast == Cast::messages) {
+      if (!show->kind.empty())
+        fail({"sim: --show with the messages of a spec",
+              "they have no room and no robot: leave --show out; amiroctl top shows a bus"},
+             exit_usage);
       exit_code = simulate::run_messages(messages_options(verb, *options, session), session);
       return;
     }
     const auto rates = bit_rates(verb, *options, session, cast == Cast::both);
     options->bit_rate = rates.nominal;
     options->data_bit_rate = rates.data;
-    exit_code = simulate::run_amiro(*options, session);
+    exit_code = simulate::run_amiro(*options, *show, session);
   });
 }
 

@@ -63,6 +63,10 @@ Ending wait_until_ready(Boards& boards, const SimulatedClock& clock, const Shell
   return {};
 }
 
+void show(const Boards& boards, const Shell& shell) {
+  if (shell.watch) shell.watch([&boards] { return seen(boards.world(), amiro::catalogue.robot); });
+}
+
 }  // namespace
 
 Ending serve_amiro(transport::Bus& bus, const AmiroOptions& options, const Shell& shell) {
@@ -76,11 +80,12 @@ Ending serve_amiro(transport::Bus& bus, const AmiroOptions& options, const Shell
   if (auto started = wait_until_ready(boards, clock, shell); !started.well()) return started;
   while (!shell.stop()) {
     if (!boards.advance(clock.now())) return Ending{boards.failure()};
+    show(boards, shell);
     auto received = bus.receive(base::Duration{0});
     if (!received && received.error == base::Error::timed_out) {
-      wait_for(
-          bus.descriptor(), boards,
-          boards.waiting() ? base::Duration{std::chrono::milliseconds{1}} : clock.until(boards.next_event()));
+      wait_for(bus.descriptor(), boards,
+               boards.waiting() ? base::Duration{std::chrono::milliseconds{1}}
+                                : shell.limited(clock.until(boards.next_event())));
       received = bus.receive(base::Duration{0});
     }
     if (received && received->frame.format != can::Format::error)
@@ -148,7 +153,9 @@ Ending serve_amiro(const std::string& path, const AmiroOptions& options, const S
     }
     if (options.qemu && !boards.advance(now)) return Ending{boards.failure()};
     server.poll(now, hear);
-    wait_for(server.descriptor(), boards, clock.until(std::min(next_event(), boards.next_event())));
+    show(boards, shell);
+    wait_for(server.descriptor(), boards,
+             shell.limited(clock.until(std::min(next_event(), boards.next_event()))));
   }
   server.end();  // counts what slow clients lost by it
   boards.summarise(shell);

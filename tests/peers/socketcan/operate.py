@@ -122,6 +122,30 @@ def _(context):
             equal(operator.stop(), 130, 'exit code')
 
 
+@check('boards that an operator has lost are asked again within the bound when they are back')
+def _(context):
+    with tempfile.TemporaryDirectory() as folder, Vcan('vcan1'), Candump('vcan1') as log:
+        with Robot(context, 'vcan1') as robot:
+            operator = Operator(context, folder, 'vcan1')
+            eventually(lambda: any(frame.id == '502' for frame in log.frames()), 'odometry')
+            robot.send_signal(signal.SIGKILL)
+            robot.wait()
+        with operator:
+            operator.event('asked_again', topic='odometry')
+            operator.event('asked_again', topic='odometry')  # so that the silence is over, and `retry` is what counts
+            before = len(log.frames())
+            with Robot(context, 'vcan1'):
+                back = time.time()  # its socket listens
+                eventually(lambda: any(frame.id == '503' for frame in log.frames()[before:]), 'odometry again')
+                equal(operator.stop(), 130, 'exit code')
+            came = next(frame.time for frame in log.finish()[before:] if frame.id == '503')
+            expect(operator.count('silent streams asked for again') >= 3, f'the count: {operator.stderr}')
+            study, _ = amiroctl(context, 'operate', os.path.join(folder, 'halt.operator.json'), '--check', '--json')
+            bound = json.loads(study)['configurations'][0]['streams'][0]['recovery']['at_most_ns'] * 1e-9
+            if 'later than "reaction"' not in operator.stderr:  # the bounds do not hold for those steps
+                expect(came - back <= bound, f'odometry is back {came - back:.3f} s after the boards: bound {bound:.3f} s')
+
+
 @check('of a storm of frames an operator counts those that it lost, and guards the robot')
 def _(context):
     count = 5_000

@@ -235,6 +235,20 @@ TEST_CASE("top: what is wrong is counted") {
   CHECK(row_of(model, "scale", 40ms).faults == 2);
 }
 
+TEST_CASE("top: the controller is as its driver says now; counters that it does not say stay") {
+  using ocm::can::ControllerState;
+  using ocm::can::ErrorCounters;
+  Model model{catalogue, 250'000};
+  CHECK_FALSE(model.summary(morning).controller);
+  model.controller_is(ControllerState::passive, ErrorCounters{130, 5});
+  CHECK(model.summary(morning).controller == ControllerState::passive);
+  CHECK(model.summary(morning).error_counters == ErrorCounters{130, 5});
+  model.controller_is(ControllerState::active, {});
+  CHECK(model.summary(morning).controller == ControllerState::active);
+  CHECK(model.summary(morning).error_counters == ErrorCounters{130, 5});
+  CHECK(model.summary(morning).errors == 0);  // it is no error frame
+}
+
 TEST_CASE("top: a field that is followed has a value at each tick") {
   Model model{catalogue, 250'000};
   const FieldKey weight{0, 0, 0};

@@ -45,7 +45,7 @@ class Robots(Line):
         self.assertRegex(out, r"AVR +0 +C00000000000 +idle +0 0 0 +100 %")
         self.assertEqual(self.avr.heard.count("{S,CON}"), 1)
         self.assertNotIn("drop 0", self.central.commands)
-        out, _ = self.tool("robots", "--json", "--listen", "1s")
+        out, _ = self.tool("robots", "--json")
         self.assertEqual([json.loads(line)["body"]["width_cm"] for line in out.splitlines()], [20, 20])
         # A robot with a program that does not know the question.
         self.avr.knows_who = False

@@ -631,7 +631,7 @@ class Running(Operating):
 
     def test_lines_that_cannot_be_printed_are_counted_and_it_goes_on(self):
         """A full disk behind the standard output, and a reader that has left."""
-        for what, error in (("full", "No space left on device"), ("left", "Broken pipe")):
+        for what, error in (("full", "No space left on device"), ("left", "Broken pipe"), ("closed", "Bad file descriptor")):
             with self.subTest(what):
                 sim = self.start_sim()
                 if what == "full":
@@ -639,7 +639,8 @@ class Running(Operating):
                 else:
                     reader, out = os.pipe()
                     os.close(reader)
-                operator = self.start("operate", self.write(HALT), "--json", stdout=out)
+                operator = self.start("operate", self.write(HALT), "--json", stdout=out,
+                                      preexec_fn=(lambda: os.close(1)) if what == "closed" else None)
                 os.close(out)
                 waiting.until(lambda: self.status() and self.status()["lines_not_printed"] == 1, "it has begun")
                 self.assertIn("event lines not printed: 1\n", self.run_tool("operator", "status")[0])
@@ -947,6 +948,88 @@ class Asked(Operating):
         drive.communicate(timeout=30)
         self.assertEqual(self.event(operator, "switched")["to"], "halted")
         client.close()
+
+
+class Monitored(WithAdapter, Operating):
+    """What a file may watch, and a period that follows a value, on real processes."""
+
+    def watching(self, when, back, *streams):
+        """HALT with other monitors; it streams these besides."""
+        document = json.loads(json.dumps(HALT))
+        for configuration in document["configurations"]:
+            configuration["streams"] = [dict(ODOMETRY), *streams]
+        document["monitors"] = [{"name": "event", "when": when}, {"name": "over", "when": back, "for": "100ms"}]
+        document["transitions"] = [{"from": "driving", "to": "halted", "when": "event"}, {"from": "halted", "to": "driving", "when": "over"}]
+        return document
+
+    def samples(self, played, times, every=0.05, x=0):
+        """Of odometry, from the board that the adapter plays."""
+        velocity = x.to_bytes(4, "little", signed=True).hex().upper()
+        for _ in range(times):
+            for frame in (f"t5028{velocity}00000000", "t50380000000000000000"):
+                played.say(frame + f"{int(time.time() * 1000) % 60000:04X}\r")
+            time.sleep(every)  # the period of the stream
+
+    def test_the_status_of_a_board(self):
+        """A bit each topic: odometry 1, gyroscope 8, accelerometer 16, status 32."""
+        self.start_sim()
+        field = "di_wheel_drive_status.health.publishing"
+        operator = self.operate(document=self.watching(f"{field}>50", f"{field}<50", {"topic": "di_wheel_drive_status", "period": "200ms"}))
+        self.run_tool("publish", "gyro", "100ms")
+        self.run_tool("publish", "accelerometer", "100ms")
+        event = self.event(operator, "switched")
+        self.assertEqual((event["to"], event["conditions"]), ("halted", [f"{field}>50"]))
+        self.run_tool("stop", "accelerometer")
+        self.assertEqual(self.event(operator, "switched")["to"], "driving")
+
+    def test_the_load_of_the_bus(self):
+        self.start_sim()
+        document = self.watching({"bus_load": True, "above": "60%", "window": "500ms"},
+                                 {"bus_load": True, "below": "50%", "window": "500ms"})
+        for configuration in document["configurations"]:
+            configuration["streams"][0]["period"] = "100ms"
+            configuration["commanders"] = []
+        document["settle"] = "400ms"
+        # Judged as one of 25 kbit/s, which it is not: so little fills it.
+        operator = self.operate("--bitrate", "25k", document=document)
+        self.run_tool("publish", "gyro", "5ms")
+        event = self.event(operator, "switched")
+        self.assertEqual((event["to"], event["conditions"]), ("halted", ["bus load above 60%"]))
+        self.run_tool("stop", "gyro")
+        self.assertEqual(self.event(operator, "switched")["conditions"], ["bus load below 50%"])
+
+    def test_how_many_samples_come_and_how_far_apart(self):
+        for when, text in (({"rate": "odometry", "below": 3, "window": "400ms"}, "rate of odometry below 3 in 400ms"),
+                           ({"gap": "odometry", "above": "400ms"}, "gap of odometry above 400ms")):
+            with self.subTest(text):
+                played = self.adapter()
+                operator = self.operate(document=self.watching(when, {"not": when}), bus=f"slcan:{played.path}")
+                self.assertEqual(self.event(operator, "switched")["conditions"], [text])  # nothing came yet
+                self.samples(played, 30)
+                self.assertEqual(self.event(operator, "switched")["to"], "driving")
+                self.assertEqual(self.event(operator, "switched")["conditions"], [text])
+                self.interrupt(operator)
+
+    def test_a_period_follows_a_value(self):
+        document = json.loads(json.dumps(HALT))
+        document["configurations"][0]["streams"] = [ODOMETRY | {"period": "100ms", "adapt": {
+            "field": "odometry.velocity.x", "magnitude": True, "from": "0m/s", "at_from": "100ms", "to": "0.02m/s", "at_to": "50ms",
+            "every": "300ms"}}]
+        document["monitors"][0]["when"]["any"][-1]["above"] = "2s"
+        played = self.adapter()
+        operator = self.operate(document=document, bus=f"slcan:{played.path}")
+        requests = lambda: [frame for frame in played.frames if frame.startswith("103#01")]
+        waiting.until(lambda: requests() == ["103#01640000"], "a request of 100 ms")
+        self.samples(played, 10)
+        self.assertEqual(requests(), ["103#01640000"])  # as it is
+        self.samples(played, 10, x=-10_000)
+        self.assertEqual(requests(), ["103#01640000", "103#014B0000"])  # half of the way: 75 ms
+        self.samples(played, 10, x=25_000)
+        self.assertEqual(requests()[2:], ["103#01320000"])
+        self.samples(played, 10)
+        self.assertEqual(requests()[3:], ["103#01640000"])
+        _, err = self.interrupt(operator)
+        self.assertIn("3 periods adapted", err)
 
 
 SMALL_CAR = os.path.join(SOURCE, "examples", "small_car.dbc")
