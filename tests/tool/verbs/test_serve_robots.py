@@ -218,7 +218,7 @@ class Robots(Case):
         self.avr.speed = 1
         viewer.publish("/ocm/fleet", {"robot": "AVR", "x_m": 0.7, "y_m": 0.5})
         waiting.until(lambda: any(line.startswith("{U,") for line in self.avr.heard), "it drives")
-        time.sleep(0.5)
+        time.sleep(0.5)  # it has been heard by then
         self.interrupt(server)
         self.assertEqual(server.returncode, 130)
         self.assertEqual(self.avr.heard[-1], "{U,0,0}")
