@@ -199,6 +199,10 @@ void JsonText::know(protocol::FrameRef frame, const Selection& selection) {
     else
       fields_[known.first_field + i].after = keep(i + 1 < names.size() ? "," + names[i + 1] : "}" + units);
   }
+  // A message of 29 bits may come by J1939's transport protocol, whatever its length.
+  if (!known.varies && layout.address.extended)
+    for (std::size_t i = 0; i < names.size(); ++i)
+      labels_[known.first_field + i] = {keep(names[i]), keep(with_units[i])};
   const std::string first = known.varies ? "{" : names.empty() ? "{}" + units : "{" + names.front();
 
   const auto head = [&](std::string_view before) {
@@ -444,7 +448,10 @@ void JsonText::write_message(log::Bytes& out, const Known* known, const j1939::T
   if (known != nullptr) {
     append_formatted(out, R"(,"topic":{},"fields":{{)", json_string(known->frame.topic->name));
     const std::size_t present = find_present(*known, message.data);
-    out.grow_to(put_content(out.room(room_), *known, message.data, present));
+    char* to = put_fields(out.room(room_), *known, message.data, present);
+    if (known->named != 0) to = put_names(to, *known, message.data);
+    out.grow_to(to);
+    out.append(R"(,"data":")");
   } else {
     out.append(R"(,"error":"unknown identifier","data":")");
   }

@@ -68,7 +68,7 @@ class Resolver {
       for (auto& statement : signals) to.push_back(std::move(statement.signal));
       std::vector<SignalStatement>{}.swap(signals);  // for what is made next
       if (&to == &document.independent || replaced_[i]) continue;
-      check(message);
+      if (problems_.empty()) check(message);  // selectors in a circle have no end
       document.messages.push_back(std::move(message));
     }
     return document;

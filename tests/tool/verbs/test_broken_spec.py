@@ -70,6 +70,16 @@ class BrokenSpec(Case):
             if not sanitized():
                 self.assertLess(seconds, 0.1)
 
+    def test_selectors_in_a_circle(self):
+        """They lie over one another, too: whether they exclude each other has no answer."""
+        path = os.path.join(self.folder, "circle.dbc")
+        with open(path, "w", encoding="ascii") as file:
+            file.write('BU_: A\nBO_ 257 M: 8 A\n SG_ S M : 0|4@1+ (1,0) [0|0] "" A\n SG_ T m1M : 4|4@1+ (1,0) [0|0] "" A\n'
+                       ' SG_ U m1 : 8|32@1- (1,0) [0|0] "" A\n SG_ W m1 : 39|16@0+ (1,0) [0|0] "" A\nSG_MUL_VAL_ 257 S T 1-2;\n')
+        for words in (("list",), ("decode", "LOG")):
+            err, _ = self.processor_time(path, words)
+            self.assertIn("go in a circle", err)
+
 
 if __name__ == "__main__":
     main()

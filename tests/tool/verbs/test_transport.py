@@ -173,6 +173,16 @@ class Transport(Case):
         fields = [event["message"]["fields"] for event in self.objects(self.decode(log, "--json", "--field", "CI.End")[0])]
         self.assertEqual(fields, [{"End": 87}])
 
+    def test_a_message_of_eight_bytes_that_comes_in_several_frames(self):
+        """Longer than its file says: all its fields are there, in one frame and in several."""
+        out, _ = self.decode(BROADCAST.replace("ECFE00", "04F000"), "--json")
+        events = self.objects(out)
+        self.assertEqual(events[-1]["message"]["topic"], "EEC1")
+        self.assertEqual(events[-1]["message"]["fields"], {"EngineSpeed": 0x3639 * 0.125})
+        self.assertEqual(events[-1]["message"]["units"], {"EngineSpeed": "rpm"})
+        self.assertEqual(events[-1]["message"]["data"], VIN.hex().upper())
+        self.assertEqual(events[2]["fields"], {"EngineSpeed": 1500})
+
     def test_a_group_of_no_message(self):
         log = BROADCAST.replace("ECFE00", "EDFE00")
         out, err = self.decode(log, "--json")

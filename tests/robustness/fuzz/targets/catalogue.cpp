@@ -3,6 +3,7 @@
 // read bit by bit, what is present is worked out by recursion, and a topic's sample is a list of what came:
 // index, receiver, codec, text and JSON must say the same.
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cctype>
 #include <cmath>
@@ -15,10 +16,12 @@
 
 #include "ocm/base/utf8.hpp"
 #include "ocm/client/sample.hpp"
+#include "ocm/j1939/transport.hpp"
 
 #include "cli/output/field_text.hpp"
 #include "cli/output/json_text.hpp"
 #include "generator/dbc/encoding.hpp"
+#include "generator/spec/from_dbc.hpp"
 #include "generator/spec/spec.hpp"
 #include "tests/robustness/fuzz/fuzz.hpp"
 
@@ -127,9 +130,21 @@ class Json {
 
 // --- bits, by counting them ---
 
+/// Numbers of bits. No heap: they are asked for a hundred times a frame.
+class Bits {
+ public:
+  void push_back(unsigned bit) { bits_.at(size_++) = bit; }
+  [[nodiscard]] unsigned* begin() { return bits_.data(); }
+  [[nodiscard]] unsigned* end() { return bits_.data() + size_; }
+
+ private:
+  std::array<unsigned, 64> bits_;
+  std::size_t size_ = 0;
+};
+
 /// The bits of a field from its least significant to its most, as DBC numbers them.
-std::vector<unsigned> bits_of(const protocol::Position& position) {
-  std::vector<unsigned> bits;
+Bits bits_of(const protocol::Position& position) {
+  Bits bits;
   unsigned bit = position.start;
   for (unsigned i = 0; i < position.width; ++i) {
     bits.push_back(bit);
@@ -223,9 +238,9 @@ void check_field(const FrameLayout& layout, const Field& field) {
         at->selector < layout.fields.size() && ++above <= layout.fields.size() && !at->selected.empty(),
         "selectors are fields, have values and go in no circle");
   for (const auto& value : field.values) fuzz::expect(ocm::base::is_utf8(value.name), "text is UTF-8");
-  fuzz::expect(
-      layout.may_lack(field) == (field.selector != protocol::no_selector || !fits(position, layout.length)),
-      "a field that may lack is selected, or beyond the length");
+  fuzz::expect(layout.may_lack(field) == (field.selector != protocol::no_selector ||
+                                          !fits(position, layout.length) || layout.any_length()),
+               "a field that may lack is selected, or beyond the length");
   const std::size_t index = static_cast<std::size_t>(&field - layout.fields.data());
   fuzz::expect(
       layout.selects(index) == std::any_of(layout.fields.begin(), layout.fields.end(),
@@ -242,6 +257,7 @@ void check_topic(const protocol::Catalogue& catalogue, const Topic& topic) {
   fuzz::expect(topic.usual_period() == (sensor ? topic.period.duration() : base::Duration{}),
                "a sensor has a period");
   fuzz::expect(protocol::name(topic.kind) == (sensor ? "sensor" : "actuator"), "a topic has a kind");
+  fuzz::expect(!protocol::name(topic.role).empty(), "a topic has a role");
   for (std::size_t i = 0; i < topic.frames.size(); ++i) {
     const protocol::FrameRef frame{&topic, static_cast<std::uint8_t>(i)};
     const FrameLayout& layout = frame.layout();
@@ -278,7 +294,7 @@ void check_message(const Topic& message) {
   fuzz::expect(protocol::identifier_of({&message, 0}, protocol::Priority::urgent) == address.number,
                "a message's identifier has no priority of ours");
   fuzz::expect(layout.accepts(layout.length) && layout.accepts(layout.length + 1U) &&
-                   (layout.length == 0 || !layout.accepts(layout.length - 1U)),
+                   (layout.length == 0 || layout.any_length() || !layout.accepts(layout.length - 1U)),
                "a message may be longer");
   fuzz::expect(layout.dlc() == std::min<unsigned>(layout.length, can::max_dlc), "a length code");
   fuzz::expect(protocol::worst_bits(layout, protocol::Priority::low) ==
@@ -378,9 +394,12 @@ class Data {
 
 class Bus {
  public:
+  /// So many topics and messages are looked up one by one: the rule takes the square of their number.
+  static constexpr std::size_t most_looked_up = 64;
+
   explicit Bus(const protocol::Catalogue& catalogue)
       : catalogue_(catalogue), receiver_(catalogue), json_(catalogue), sequences_(catalogue.topics.size()) {
-    for (const Topic& topic : catalogue.topics)
+    for (const Topic& topic : catalogue.topics.first(std::min(catalogue.topics.size(), most_looked_up)))
       for (std::size_t i = 0; i < topic.frames.size(); ++i) {
         const std::uint32_t id =
             protocol::identifier_of({&topic, static_cast<std::uint8_t>(i)}, topic.priority);
@@ -433,6 +452,44 @@ class Bus {
     take(entry);
   }
 
+  /// A message of J1939 in several frames, broadcast; some of its packets may be left out.
+  void broadcast(fuzz::Input& input) {
+    const Topic& topic = catalogue_.topics[input.byte() % catalogue_.topics.size()];
+    const auto& address = topic.frames[0].address;
+    if (address.by != protocol::Address::By::pgn) return;
+    const std::size_t size = j1939::least_transported + input.number<std::uint16_t>() % 80U;
+    const std::uint32_t packets = j1939::packets_of(size);
+    const std::uint8_t unknown = input.byte();  // mostly its own group
+    const std::uint32_t group = j1939::pgn_of(address.number) ^ (unknown > 0xF0 ? 0x100U : 0U);
+    const std::uint64_t left_out = input.byte() > 0xE0 ? input.number<std::uint32_t>() : 0U;
+    std::vector<std::uint8_t> data(size);
+    const auto given = input.bytes(size);
+    std::copy(given.begin(), given.end(), data.begin());
+    const auto byte = [](std::uint32_t number) { return static_cast<std::uint8_t>(number); };
+    const auto send = [&](std::uint32_t of, std::array<std::uint8_t, 8> bytes) {
+      log::Entry entry;
+      entry.format = can::Format::extended;
+      entry.id = j1939::Identifier{7, of, j1939::global_address, 0x17}.encode();
+      entry.length = 8;
+      std::copy(bytes.begin(), bytes.end(), entry.data.begin());
+      return take_part(entry, data);
+    };
+    send(j1939::connection_group,
+         {32, byte(static_cast<std::uint32_t>(size)), byte(static_cast<std::uint32_t>(size >> 8)),
+          byte(packets), 0xFF, byte(group), byte(group >> 8), byte(group >> 16)});
+    bool whole = false;
+    for (std::uint32_t i = 0; i < packets; ++i) {
+      if ((left_out >> i & 1) != 0) continue;
+      std::array<std::uint8_t, 8> bytes{byte(i + 1), 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF};
+      const std::size_t from = i * j1939::bytes_a_packet;
+      std::copy_n(data.begin() + static_cast<std::ptrdiff_t>(from),
+                  std::min(j1939::bytes_a_packet, size - from), bytes.begin() + 1);
+      whole = send(j1939::transfer_group, bytes);
+    }
+    const std::uint64_t all = (std::uint64_t{1} << packets) - 1;
+    fuzz::expect(whole == ((left_out & all) == 0), "a message comes out when all of it came, and not before");
+  }
+
   void finish() const {
     const auto& c = receiver_.counters();
     fuzz::expect(c.frames == taken_ && c.frames == c.samples + c.unknown + c.remote + c.fd + c.wrong_dlc +
@@ -442,6 +499,28 @@ class Bus {
   }
 
  private:
+  /// Whether this frame completes the message, which is then `data`.
+  bool take_part(const log::Entry& entry, const std::vector<std::uint8_t>& data) {
+    const auto reception =
+        together_.take({entry.id, entry.format, false, entry.bytes()}, base::Time{base::Duration{1}});
+    log::Bytes line;
+    fuzz::expect(json_.write_transport(line, "can0", entry, reception), "every frame is shown");
+    const std::string_view text = line.view();
+    fuzz::expect(
+        text.ends_with('\n') && ocm::base::is_utf8(text) && Json{text.substr(0, text.size() - 1)}.whole(),
+        "a line is JSON");
+    if (reception.transported == nullptr) return false;
+    const auto came = reception.transported->data;
+    fuzz::expect(std::equal(came.begin(), came.end(), data.begin(), data.end()), "a message is its packets");
+    const auto found = find(catalogue_, reception.transported->id.encode(), can::Format::extended);
+    fuzz::expect(reception.topic == found.topic, "a message of several frames is found by the rule");
+    if (found.topic != nullptr && found.topic->is_message())
+      for (const Field& field : found.topic->frames[0].fields)
+        fuzz::expect(found.topic->frames[0].has(field, came) == is_there(found.topic->frames[0], field, came),
+                     "a field is there by its selectors");
+    return true;
+  }
+
   Found check_index(std::uint32_t id, can::Format format) const {
     const Found rule = find(catalogue_, id, format);
     const auto subject = index_.subject(id, format);
@@ -575,7 +654,8 @@ class Bus {
   static void check_text(const Field& field, Bytes data, std::int64_t raw) {
     const cli::FieldText printer{field};
     fuzz::expect(printer.raw(data.data()) == raw, "the printer reads the same bits");
-    const auto text = std::make_unique<char[]>(cli::FieldText::room);
+    // Exactly the room that it asks for, once.
+    static const auto text = std::make_unique<char[]>(cli::FieldText::room);
     const std::string_view plain{
         text.get(), static_cast<std::size_t>(printer.print(text.get(), data.data()) - text.get())};
     fuzz::expect(!plain.empty(), "a value has a text");
@@ -597,12 +677,33 @@ class Bus {
   const protocol::Catalogue& catalogue_;
   client::FrameIndex index_{catalogue_};
   client::Receiver receiver_;
+  client::Receiver together_{catalogue_, client::Transport::together};
   cli::JsonText json_;
   std::vector<Sequence> sequences_;  // a topic
   std::uint64_t taken_ = 0;
   std::uint64_t parts_ = 0;
   std::uint64_t incomplete_ = 0;
 };
+
+/// The same catalogue on one interface only.
+void check_interface(spec::Model model) {
+  model.put_on("can0");
+  const spec::Spec named{std::move(model)};
+  const protocol::Catalogue& catalogue = named.catalogue();
+  client::InterfaceIndexes indexes{catalogue};
+  fuzz::expect(indexes.has_buses() != catalogue.topics.empty(), "names of interfaces matter");
+  indexes.name(0, "can0");
+  indexes.name(1, "can1");
+  for (const Topic& topic : catalogue.topics.first(std::min<std::size_t>(catalogue.topics.size(), 16))) {
+    const std::uint32_t id = protocol::identifier_of({&topic, 0}, topic.priority);
+    const auto format = protocol::format_of(topic.frames[0]);
+    fuzz::expect(indexes.of(0).subject(id, format).topic == find(catalogue, id, format).topic,
+                 "on its interface all is found");
+    fuzz::expect(!indexes.of(1).subject(id, format), "on another one nothing is");
+    fuzz::expect(indexes.of(2).subject(id, format).topic == indexes.of(0).subject(id, format).topic,
+                 "on one without a name all is");
+  }
+}
 
 void check_problems(const std::vector<spec::Problem>& problems) {
   for (const auto& problem : problems)
@@ -616,6 +717,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto all = fuzz::text_of(data, size);
   const auto text = all.substr(0, all.find('\0'));
   const auto loaded = spec::parse(text, text.starts_with('{') ? "x.json" : "x.dbc");
+  fuzz::expect(!spec::is_dbc(text, "x") || !text.starts_with('{'), "JSON is no DBC");
   fuzz::expect((loaded.spec == nullptr) != loaded.problems.empty(), "a file is a catalogue or has problems");
   check_problems(loaded.problems);
   check_problems(loaded.doubts);
@@ -629,7 +731,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::Input input{data, size};
   (void)input.bytes(text.size() + 1);
   Bus bus{catalogue};
-  for (int i = 0; i < 32 && !input.empty(); ++i) bus.take(input);
+  for (int i = 0; i < 16 && !input.empty(); ++i) bus.take(input);
   bus.finish();
+  if (text.size() % 4 == 0) {
+    fuzz::Input other{data, size};
+    (void)other.bytes(text.size() + 1);
+    bus.broadcast(other);
+    check_interface(loaded.spec->take_model());
+  }
   return 0;
 }

@@ -9,7 +9,7 @@
 #include "cli/analyse/split.cpp"
 #include "generator/dbc/encoding.hpp"
 #include "generator/dbc/reader.hpp"
-#include "generator/spec/spec.hpp"
+#include "generator/spec/from_dbc.hpp"
 #include "tests/robustness/fuzz/fuzz.hpp"
 
 using namespace ocm;
@@ -27,7 +27,7 @@ void check_findings(const std::vector<dbc::Finding>& findings) {
 
 void check_signal(const dbc::Message& message, const dbc::Signal& signal) {
   fuzz::expect(!signal.name.empty() && signal.position.width >= 1 && signal.position.width <= 64 &&
-                   signal.position.start < 512,
+                   signal.position.start < 8 * 1785,
                "a signal has a name and bits");
   fuzz::expect(ocm::base::is_utf8(signal.unit) && ocm::base::is_utf8(signal.comment), "text is UTF-8");
   fuzz::expect(signal.number == dbc::Signal::Number::integer ||
@@ -40,12 +40,20 @@ void check_signal(const dbc::Message& message, const dbc::Signal& signal) {
                  "selectors do not go in a circle");
 }
 
+/// A text in UTF-8, which the file's bytes become and which becomes such bytes again.
+void check_encoding(std::string_view bytes) {
+  const std::string text = dbc::to_utf8(bytes);
+  fuzz::expect(ocm::base::is_utf8(text), "what is read is UTF-8");
+  fuzz::expect(dbc::as_utf8(text).has_value(), "and is taken as it is");
+  const auto back = dbc::to_cp1252(text);
+  fuzz::expect(!back || dbc::to_utf8(*back) == text, "what is written in code page 1252 is read again");
+  fuzz::expect(!back || dbc::has_cp1252(text), "and all its characters are in it");
+}
+
 /// What the analysis of a bus makes of it.
-void check_set(std::string_view text) {
-  const auto loaded = spec::parse(text, "x.dbc");
-  if (!loaded.spec) return;
+void check_set(const spec::Model& model) {
   BusSet set;
-  for (const spec::MessageModel& message : loaded.spec->model().messages) {
+  for (const spec::MessageModel& message : model.messages) {
     const std::size_t left_out = set.left_out.size();
     const std::size_t in_set = set.entries.size();
     for (const std::int64_t rate : {std::int64_t{1'000'000}, std::int64_t{0}}) {
@@ -81,7 +89,8 @@ void check_set(std::string_view text) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto text = fuzz::text_of(data, size);
-  const dbc::Reading reading = dbc::read(text);
+  check_encoding(text);
+  dbc::Reading reading = dbc::read(text);
   fuzz::expect(reading.document.has_value() == reading.problems.empty(), "a file is read, or has problems");
   check_findings(reading.problems);
   check_findings(reading.doubts);
@@ -92,7 +101,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                    "an identifier is within its format");
       for (const dbc::Signal& signal : message.signals) check_signal(message, signal);
     }
-  check_set(text);
+  if (reading.document) {
+    std::vector<spec::Problem> doubts;
+    check_set(spec::model_of(std::move(*reading.document), "x.dbc", doubts));
+    for (const spec::Problem& doubt : doubts)
+      fuzz::expect(doubt.place.starts_with("x.dbc") && !doubt.what.empty() && !doubt.remedy.empty(),
+                   "a doubt has its place and its remedy");
+  }
   std::size_t before = 0;
   for (const Line& line : split_csv(text)) {
     fuzz::expect(line.number > before, "lines of a table have numbers that grow");
