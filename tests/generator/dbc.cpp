@@ -53,6 +53,15 @@ std::vector<std::string> problems(const std::string& text) {
 constexpr const char* head =
     "VERSION \"1.2\"\n\nNS_ :\n\tNS_DESC_\n\tCM_\n\tBA_DEF_\n\nBS_:\n\nBU_: Motor Dash\n";
 
+TEST_CASE("dbc: each character of code page 1252 that Unicode has elsewhere") {
+  std::string bytes;
+  for (int byte = 0x80; byte < 0xA0; ++byte) bytes += static_cast<char>(byte);
+  // As Python's codec "cp1252" reads them; U+FFFD for the five that mean nothing.
+  CHECK(dbc::to_utf8(bytes) ==
+        "€�‚ƒ„…†‡ˆ‰Š‹Œ�Ž�"
+        "�‘’“”•–—˜™š›œ�žŸ");
+}
+
 TEST_CASE("dbc: a message with its signals") {
   const auto file = read(std::string{head} +
                          "BO_ 256 Engine: 8 Motor\n"

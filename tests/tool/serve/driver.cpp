@@ -44,6 +44,8 @@ TEST_CASE("driver: a set point is repeated while its viewer goes on, and rests b
   CHECK(out[0].data[0] == 7);
   out.clear();
   CHECK_FALSE(driver.advance(begin + 649ms, out));
+  REQUIRE(out.size() == 1);
+  CHECK(out[0].data[0] == 7);  // what is repeated is the last word
   out.clear();
   CHECK(driver.advance(begin + 650ms, out));  // half a second after its last word
   REQUIRE(out.size() == 1);
