@@ -138,7 +138,10 @@ class Reader : private spec::Checker {
     const ChosenField& chosen = fields[0];
     return FieldRef{static_cast<std::uint16_t>(chosen.topic - catalogue_.topics.data()),
                     static_cast<std::uint16_t>(chosen.layout - chosen.topic->frames.data()),
-                    static_cast<std::uint16_t>(chosen.field - chosen.layout->fields.data()), chosen.field};
+                    chosen.field->is_derived()
+                        ? chosen.field->derived_from
+                        : static_cast<std::uint16_t>(chosen.field - chosen.layout->values().data()),
+                    chosen.field};
   }
   [[nodiscard]] std::optional<FieldRef> field(const At& object, std::string_view key,
                                               std::string_view remedy) {
@@ -146,6 +149,15 @@ class Reader : private spec::Checker {
     if (!at) return std::nullopt;
     const auto text = word(*at, remedy);
     return text ? field(*at, *text) : std::nullopt;
+  }
+  /// The name of what a derived field is derived of.
+  [[nodiscard]] std::string measured(const FieldRef& of) const {
+    const auto& topic = catalogue_.topics[of.topic];
+    const auto& layout = topic.frames[of.frame];
+    std::string name{topic.name};
+    for (const std::string_view part : {layout.name, layout.fields[of.field].name})
+      if (!part.empty()) name.append(".").append(part);
+    return spec::quoted(name);
   }
   [[nodiscard]] std::optional<std::int64_t> value(const At& at, const protocol::Field& of) {
     const auto text = word(at, words::detail::takes(of));
@@ -264,7 +276,10 @@ class Reader : private spec::Checker {
     check_keys(at, {"field", "magnitude", "from", "to", "at_from", "at_to", "grain", "every"});
     reflective::Adaptation adaptation;
     adaptation.stream = static_cast<std::uint16_t>(parts.streams.size());
-    if (const auto of = field(at, "field", "the field that the period follows")) {
+    const auto followed = field(at, "field", "the field that the period follows");
+    if (followed && followed->of->is_derived()) {
+      tell(at, "a period does not follow a derived field", measured(*followed) + ", of which it is derived");
+    } else if (const auto& of = followed) {
       adaptation.topic = of->topic;
       adaptation.frame = of->frame;
       adaptation.field = of->field;
@@ -570,6 +585,9 @@ class Reader : private spec::Checker {
     if (const auto width = object.node->is(Kind::object) ? object.member("hysteresis") : std::nullopt) {
       if (condition.is != Is::above && condition.is != Is::below)
         return tell(*width, "only < and > have a hysteresis", "leave it out");
+      if (of->of->is_derived())
+        return tell(*width, spec::quoted(*text) + " is on a derived field, which has no hysteresis",
+                    "a condition on " + measured(*of) + ", of which it is derived");
       condition.hysteresis = distance(*width, *of->of).value_or(0);
     }
     add(at, condition, *text, terms);

@@ -88,7 +88,7 @@ std::string value_of(const protocol::Field& field, std::span<const std::uint8_t>
 std::string label_of(const protocol::Topic& topic, std::size_t frame, const protocol::Field& field) {
   const protocol::FrameLayout& layout = topic.frames[frame];
   if (topic.frames.size() == 1 || layout.name.empty()) return std::string{field.name};
-  if (layout.fields.size() == 1) return std::string{layout.name};
+  if (layout.values().size() == 1) return std::string{layout.name};
   return fmt::format("{}.{}", layout.name, field.name);
 }
 
@@ -234,7 +234,7 @@ bool View::matches(std::string_view bus, const Row& row) const {
   if (filter_.empty() || contains(row.name, filter_) || contains(bus, filter_)) return true;
   if (row.topic == nullptr) return false;
   for (const auto& layout : row.topic->frames)
-    for (const auto& field : layout.fields)
+    for (const auto& field : layout.values())
       if (contains(field.name, filter_)) return true;
   return false;
 }
@@ -249,11 +249,11 @@ std::vector<View::Item> View::items(const Rows& rows) const {
     for (std::size_t frame = 0; frame < row.topic->frames.size(); ++frame) {
       const auto& layout = row.topic->frames[frame];
       const auto data = row.newest.data(frame);
-      for (std::size_t field = 0; field < layout.fields.size(); ++field) {
+      for (std::size_t field = 0; field < layout.values().size(); ++field) {
         ItemKey of_field = key;
         of_field.frame = static_cast<int>(frame);
         of_field.field = static_cast<int>(field);
-        if ((open && layout.has(layout.fields[field], data)) || graphs_.contains(of_field))
+        if ((open && layout.has(layout.values()[field], data)) || graphs_.contains(of_field))
           items.push_back({of_field, &row});
       }
     }
@@ -406,8 +406,8 @@ Line View::row_line(const Columns& columns, const Scene& scene, const Item& item
   for (std::size_t frame = 0; frame < row.topic->frames.size(); ++frame) {
     const auto& layout = row.topic->frames[frame];
     const auto data = row.newest.data(frame);
-    for (std::size_t i = 0; i < layout.fields.size(); ++i) {
-      const protocol::Field& field = layout.fields[i];
+    for (std::size_t i = 0; i < layout.values().size(); ++i) {
+      const protocol::Field& field = layout.values()[i];
       if (!layout.has(field, data)) continue;
       const std::string value = value_of(field, data);
       ItemKey key = item.key;
@@ -438,7 +438,7 @@ Line View::field_line(const Columns& columns, const Scene& scene, const Item& it
   const Row& row = *item.row;
   const auto frame = static_cast<std::size_t>(item.key.frame);
   const auto& layout = row.topic->frames[frame];
-  const protocol::Field& field = layout.fields[static_cast<std::size_t>(item.key.field)];
+  const protocol::Field& field = layout.values()[static_cast<std::size_t>(item.key.field)];
   const auto data = row.newest.data(frame);
   const bool present = layout.has(field, data);
   const bool selected = cursor_ && item.key == *cursor_;
@@ -453,7 +453,7 @@ Line View::field_line(const Columns& columns, const Scene& scene, const Item& it
   Writer line{width};
   std::size_t longest = 0;
   for (std::size_t i = 0; i < row.topic->frames.size(); ++i)
-    for (const auto& each : row.topic->frames[i].fields)
+    for (const auto& each : row.topic->frames[i].values())
       longest = std::max(longest, base::columns(label_of(*row.topic, i, each)));
   const std::size_t label =
       std::clamp<std::size_t>(longest + 2, columns.name, std::max(columns.name, width * 2 / 5));
@@ -669,7 +669,7 @@ void View::pick(const Place& place) {
   }
   std::vector<ItemKey> fields;
   for (std::size_t frame = 0; frame < place.topic->frames.size(); ++frame)
-    for (std::size_t field = 0; field < place.topic->frames[frame].fields.size(); ++field)
+    for (std::size_t field = 0; field < place.topic->frames[frame].values().size(); ++field)
       fields.push_back({place.key.bus, place.key.row, static_cast<int>(frame), static_cast<int>(field)});
   const bool all =
       std::all_of(fields.begin(), fields.end(), [&](const ItemKey& key) { return graphs_.contains(key); });
