@@ -3,7 +3,9 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <fcntl.h>
 #include <new>
+#include <unistd.h>
 
 #include "cli/shared/arguments.hpp"
 #include "cli/shared/memory.hpp"
@@ -58,6 +60,15 @@ constexpr AddVerb verbs[] = {
 };
 // clang-format on
 
+/// A standard stream that was closed (`amiroctl ... >&-`) is not given to a bus or a log: what is written to
+/// it fails.
+void occupy_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(stream, F_GETFD) == -1 && errno == EBADF)
+      static_cast<void>(
+          ::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY));  // the lowest that is free
+}
+
 /// What was printed must have arrived: a full disk shows when the last of it is written.
 int finish(int code) {
   errno = 0;
@@ -95,6 +106,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  occupy_standard_streams();
   keep_memory();
   try {
     return run(argc, argv);

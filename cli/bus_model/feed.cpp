@@ -1,18 +1,32 @@
 #include "cli/bus_model/feed.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
+#include <net/if.h>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
+
+#include "ocm/transport/controller_state.hpp"
 
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
 
 namespace ocm::cli::bus_model {
+namespace {
+
+/// So often the kernel is asked for the controller's state, which takes about 20 us.
+constexpr base::Duration controller_interval = std::chrono::milliseconds{500};
+
+}  // namespace
 
 // Asked without a wait, `idle` says that nothing is left: see Live.
-LiveFeed::LiveFeed(std::unique_ptr<transport::Bus> bus) : bus_(std::move(bus)), live_(*bus_, [] {}) {
+LiveFeed::LiveFeed(std::unique_ptr<transport::Bus> bus)
+    : bus_(std::move(bus)),
+      live_(*bus_, [] {}),
+      index_(static_cast<int>(::if_nametoindex(std::string{bus_->name()}.c_str()))) {
   interfaces_.number(bus_->name());
 }
 
@@ -24,6 +38,11 @@ Over LiveFeed::pump(Models& models) {
   if (const auto missed = bus_->counters().lost; missed != told_) {
     models.lost(bus_->name(), missed - told_);
     told_ = missed;
+  }
+  if (index_ > 0 && Clock::now() >= next_look_) {
+    next_look_ = Clock::now() + controller_interval;
+    if (const auto now = transport::query_controller(index_))
+      models.of(bus_->name()).controller_is(now->state, now->counters);
   }
   return over;
 }

@@ -23,7 +23,8 @@
 
 namespace ocm::cli::bus_model {
 
-/// All that came from a bus, taken now and then: waking up at every frame would cost more than the frames.
+/// All that came from a bus, taken now and then: waking up at every frame would cost more than the frames. Of
+/// a CAN interface the controller's state, too, twice a second.
 class LiveFeed {
  public:
   explicit LiveFeed(std::unique_ptr<transport::Bus> bus);
@@ -37,6 +38,8 @@ class LiveFeed {
   std::unique_ptr<transport::Bus> bus_;
   Live live_;
   log::Interfaces interfaces_;
+  int index_ = 0;  ///< of a CAN interface of the kernel; 0: it is none
+  Clock::time_point next_look_{};
   std::uint64_t told_ = 0;
 };
 

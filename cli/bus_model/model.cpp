@@ -41,7 +41,7 @@ Model::Model(const protocol::Catalogue& catalogue, std::uint32_t bit_rate, std::
     : catalogue_(&catalogue),
       bit_rate_(bit_rate),
       rates_{std::max(bit_rate, 1U), data_bit_rate},
-      statistics_(catalogue, rates_, client::Transport::as_frames, interface),
+      statistics_(catalogue, rates_, client::Transport::together, interface),
       subjects_(catalogue.topics.size()) {}
 
 void Model::take_sample(Subject& subject, base::Time time, std::span<const std::uint8_t> bytes) {
@@ -58,15 +58,15 @@ void Model::take_sample(Subject& subject, base::Time time, std::span<const std::
   subject.times.add(time);
 }
 
-Model::Subject* Model::find_unknown(const log::Entry& entry) {
-  const auto key = std::uint64_t{entry.id} << 8 | static_cast<std::uint64_t>(entry.format);
+Model::Subject* Model::find_unknown(std::uint32_t id, can::Format format) {
+  const auto key = std::uint64_t{id} << 8 | static_cast<std::uint64_t>(format);
   const auto [at, is_new] = unknown_by_id_.try_emplace(key, unknown_.size());
   if (!is_new) return &unknown_[at->second].subject;
   if (unknown_.size() == most_unknown) {
     unknown_by_id_.erase(at);
     return nullptr;
   }
-  unknown_.push_back({entry.id, entry.format, {}});
+  unknown_.push_back({id, format, {}});
   return &unknown_.back().subject;
 }
 
@@ -87,15 +87,19 @@ void Model::take(const log::Entry& entry) {
       classic ? measure::bits_on_bus(*classic) : measure::bits_on_bus(entry.frame(), rates_).value_or(0);
   load_.add(entry.time, bits);
   frames_.add(entry.time, 1);
+  if (reception.meaning == Meaning::transport) return;  // a row gets the message, when it is whole
+  const j1939::Transported* const whole = reception.transported;
   Subject* const subject =
       reception.topic != nullptr
           ? &subjects_[static_cast<std::size_t>(reception.topic - catalogue_->topics.data())]
-          : find_unknown(entry);
+      : whole != nullptr ? find_unknown(whole->id.encode(), can::Format::extended)
+                         : find_unknown(entry.id, entry.format);
   if (subject == nullptr) {
     ++not_shown_;
     return;
   }
-  subject->load.add(entry.time, bits);
+  // Of a message in several frames, its announcement and packets, all about as long as the last.
+  subject->load.add(entry.time, whole == nullptr ? bits : bits * (1 + j1939::packets_of(whole->data.size())));
   switch (reception.meaning) {
     case Meaning::sample:
       subject->priority = reception.sample.priority;
@@ -110,7 +114,7 @@ void Model::take(const log::Entry& entry) {
       break;
     }
     case Meaning::unknown:
-      take_sample(*subject, entry.time, entry.bytes());
+      take_sample(*subject, entry.time, whole != nullptr ? whole->data : entry.bytes());
       break;
     case Meaning::request:
       subject->times.restart();  // from one period to another is no jitter
@@ -122,6 +126,12 @@ void Model::take(const log::Entry& entry) {
 
 client::Sample Model::sample_of(const protocol::Topic* topic, const Subject& subject) {
   return {topic, subject.priority, subject.last, std::span{subject.bytes}.first(subject.size)};
+}
+
+std::optional<client::Sample> Model::newest_of(std::size_t topic) const {
+  const Subject& subject = subjects_[topic];
+  if (subject.count == 0) return std::nullopt;
+  return sample_of(&catalogue_->topics[topic], subject);
 }
 
 std::vector<Row> Model::rows(base::Time now, bool all) const {
@@ -181,6 +191,8 @@ Summary Model::summary(base::Time now) const {
   out.wrong_length = figures.counters.wrong_dlc;
   out.unknown = figures.counters.unknown + figures.counters.remote + figures.counters.fd;
   out.not_in_load = figures.not_in_load;
+  out.transport = figures.transport.complete;
+  out.transport_lost = figures.transport.lost();
   out.not_shown = not_shown_;
   out.controller = controller_;
   out.error_counters = error_counters_;

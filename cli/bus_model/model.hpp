@@ -54,6 +54,8 @@ struct Row {
   Health health = Health::fine;
   /// The newest; without bytes where nothing came. Until the next frame is taken.
   client::Sample newest;
+  /// Whether `newest` has fields that can be shown.
+  [[nodiscard]] bool has_bytes() const noexcept { return count > 0 && newest.topic != nullptr; }
 };
 
 /// The bus as a whole.
@@ -68,9 +70,11 @@ struct Summary {
   std::uint64_t lost = 0;        ///< frames that were on the bus and did not reach this program
   std::uint64_t incomplete = 0;  ///< samples
   std::uint64_t wrong_length = 0;
-  std::uint64_t unknown = 0;      ///< frames
-  std::uint64_t not_in_load = 0;  ///< CAN FD frames whose data go at a bit rate that is not known
-  std::uint64_t not_shown = 0;    ///< frames of unknown identifiers that have no row
+  std::uint64_t unknown = 0;         ///< frames
+  std::uint64_t not_in_load = 0;     ///< CAN FD frames whose data go at a bit rate that is not known
+  std::uint64_t transport = 0;       ///< messages of J1939's transport protocol that were put together
+  std::uint64_t transport_lost = 0;  ///< messages of it that lost a packet or were not ended
+  std::uint64_t not_shown = 0;       ///< frames of unknown identifiers that have no row
   std::optional<can::ControllerState> controller;    ///< as the newest report says; none came: nothing
   std::optional<can::ErrorCounters> error_counters;  ///< likewise
 };
@@ -88,9 +92,18 @@ class Model {
 
   void take(const log::Entry& entry);
   void lost(std::uint64_t frames) noexcept { lost_ += frames; }
+  /// What the controller's driver says now, beside what error frames have said. Counters that it does not say
+  /// stay as they were.
+  void controller_is(can::ControllerState state, std::optional<can::ErrorCounters> counters) noexcept {
+    controller_ = state;
+    if (counters) error_counters_ = counters;
+  }
 
   /// In the order of the catalogue; those of which nothing came only where `all`. Unknown ones last.
   [[nodiscard]] std::vector<Row> rows(base::Time now, bool all) const;
+  /// What came last of the catalogue's topic of that number, of all its frames; none: nothing did. Until the
+  /// next frame is taken.
+  [[nodiscard]] std::optional<client::Sample> newest_of(std::size_t topic) const;
   [[nodiscard]] Summary summary(base::Time now) const;
   /// Of the newest frame; none came: nothing.
   [[nodiscard]] std::optional<base::Time> newest() const noexcept { return newest_; }
@@ -120,7 +133,7 @@ class Model {
   };
 
   void take_sample(Subject& subject, base::Time time, std::span<const std::uint8_t> bytes);
-  [[nodiscard]] Subject* find_unknown(const log::Entry& entry);
+  [[nodiscard]] Subject* find_unknown(std::uint32_t id, can::Format format);
   [[nodiscard]] static client::Sample sample_of(const protocol::Topic* topic, const Subject& subject);
 
   const protocol::Catalogue* catalogue_;

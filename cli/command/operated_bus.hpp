@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "ocm/client/frame_index.hpp"
@@ -41,6 +42,10 @@ class OperatedBus final : public transport::Bus, public Guarded {
   [[nodiscard]] transport::Delivery delivery() override;
   [[nodiscard]] std::uint32_t bit_rate() const noexcept override { return bus_->bit_rate(); }
   [[nodiscard]] const transport::Failure& failure() const override { return bus_->failure(); }
+  /// The operator has ended, or was silent: it takes nothing any more.
+  [[nodiscard]] bool over() const noexcept { return link_->over(); }
+  /// The bus itself, without the operator; nothing else may be done with this one then.
+  [[nodiscard]] std::unique_ptr<transport::Bus> release() { return std::move(bus_); }
   [[nodiscard]] Own commands_itself(const can::Frame& frame) override;
 
  private:

@@ -16,13 +16,14 @@ namespace {
 
 using sim::mapper::WorldModel;
 
-std::optional<WorldModel> load_world(const std::string& name) {
+std::optional<WorldModel> load_world(std::string_view verb, const std::string& name) {
   if (name.empty()) return std::nullopt;
   const EndsWithoutMemory ends;
   auto loaded = sim::worlds::find(name);
   if (loaded.world) return std::move(*loaded.world);
   for (std::size_t i = 1; i < loaded.problems.size(); ++i) remark(sim::worlds::in_words(loaded.problems[i]));
-  fail({"map: " + sim::worlds::in_words(loaded.problems.front()), loaded.problems.front().remedy},
+  fail({fmt::format("{}: {}", verb, sim::worlds::in_words(loaded.problems.front())),
+        loaded.problems.front().remedy},
        exit_failure);
 }
 
@@ -32,7 +33,7 @@ motion::Point to_point(sim::Vector v) {
 
 }  // namespace
 
-Start parse_start(const std::string& text) {
+Start parse_start(std::string_view verb, const std::string& text) {
   const std::size_t equals = text.find('=');
   Start start;
   float degrees = 0;
@@ -45,14 +46,14 @@ Start parse_start(const std::string& text) {
   start.pose.heading_rad = motion::wrap(motion::radians(degrees));
   if (!parsed || start.name.empty() || !motion::is_finite(start.pose) ||
       !cognitive::Raster::has(cognitive::place(start.pose)))
-    fail({fmt::format("map: --start {}: no start", text),
+    fail({fmt::format("{}: --start {}: no start", verb, text),
           "write NAME=X,Y,DEG: metres and degrees, as in AVR=0.5,0.5,90"},
          exit_usage);
   return start;
 }
 
-Known known_of(const std::string& world, const std::vector<std::string>& starts) {
-  const auto model = load_world(world);
+Known known_of(std::string_view verb, const std::string& world, const std::vector<std::string>& starts) {
+  const auto model = load_world(verb, world);
   Known known;
   if (model) {
     for (const auto& wall : model->walls) known.walls.push_back({to_point(wall.a), to_point(wall.b)});
@@ -65,7 +66,7 @@ Known known_of(const std::string& world, const std::vector<std::string>& starts)
     known.range_m = model->central.range_m;
   }
   for (const auto& text : starts) {
-    Start start = parse_start(text);
+    Start start = parse_start(verb, text);
     std::erase_if(known.starts, [&](const Start& other) { return other.name == start.name; });
     known.inside.push_back(cognitive::place(start.pose));
     known.starts.push_back(std::move(start));

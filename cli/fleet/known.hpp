@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ocm/cognitive/agreement.hpp"
@@ -16,8 +17,9 @@ struct Start {
   motion::Pose pose;
 };
 
-/// NAME=X,Y,DEG: metres and degrees. Leaves through cli::fail when it is nothing of that kind.
-[[nodiscard]] Start parse_start(const std::string& text);
+/// `verb` is for messages. NAME=X,Y,DEG: metres and degrees. Leaves through cli::fail when it is nothing of
+/// that kind.
+[[nodiscard]] Start parse_start(std::string_view verb, const std::string& text);
 
 /// What a world says of its walls, its central and where robots begin.
 struct Known {
@@ -29,6 +31,7 @@ struct Known {
 };
 
 /// Of the world of that file or name (empty: none), and of what was typed, which goes before it.
-[[nodiscard]] Known known_of(const std::string& world, const std::vector<std::string>& starts);
+[[nodiscard]] Known known_of(std::string_view verb, const std::string& world,
+                             const std::vector<std::string>& starts);
 
 }  // namespace ocm::cli::fleet

@@ -34,7 +34,7 @@ constexpr std::array<Form, 17> forms{{{"robots", Ask::robots, ""},
                                       {"compass", Ask::compass, "r"},
                                       {"map", Ask::map, "f"},
                                       {"more", Ask::more, "o"}}};
-constexpr std::array<std::string_view, 5> map_forms{"svg", "png", "pdf", "pgm", "yaml"};
+constexpr std::array<std::string_view, 6> map_forms{"svg", "png", "pdf", "pgm", "yaml", "grid"};
 /// For all other programs wait for it.
 constexpr std::int64_t longest_scan_ms = 60'000;
 

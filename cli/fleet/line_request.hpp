@@ -27,7 +27,7 @@ struct LineRequest {
     who,        ///< `who ROBOT`: asks it for its handshake
     calibrate,  ///< `calibrate ROBOT`
     compass,    ///< `compass ROBOT`: how its last calibration ended
-    map,        ///< `map svg`, or png, pdf, pgm, yaml: the map so far, as a file's text
+    map,        ///< `map svg`, or png, pdf, pgm, yaml, grid: the map so far, as a file's text
     more,       ///< `more OFFSET`: the rest of that
   };
   Kind kind = Kind::robots;

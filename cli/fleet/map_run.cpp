@@ -23,7 +23,7 @@ void place_robots(CentralLine& line, const std::vector<unsigned>& robots, const 
                   const std::vector<std::string>& starts) {
   const auto& peers = line.end().peers();
   for (const std::string& text : starts)
-    if (const std::string name = parse_start(text).name; std::none_of(
+    if (const std::string name = parse_start("map", text).name; std::none_of(
             peers.begin(), peers.end(), [&](const mapper::server::Peer& p) { return p.name == name; }))
       line.unknown(name);
   for (const unsigned index : robots) {
@@ -141,6 +141,7 @@ End MapRun::explore(std::optional<base::Duration> limit) {
     end_ = drive(limit);
     took_ = CentralLine::now() - begin_;
     if (!options_.watch) (void)line_.halt(robots_);  // now, for a picture takes its time
+    while (over_ && !over_()) line_.end().exchange();
     line_.own()->finish();
   } catch (const Exit&) {  // which has said that the line is gone
     took_ = CentralLine::now() - begin_;
@@ -151,10 +152,7 @@ End MapRun::explore(std::optional<base::Duration> limit) {
 
 std::string MapRun::draw(std::string_view form) const {
   if (!any()) return {};
-  if (form == "pgm") return to_pgm(map());
-  if (form == "yaml") return to_yaml(map(), "map.pgm");
-  return to_script(map(), picture(result()),
-                   plot::kind_of_file(fmt::format("map.{}", form)).value_or(plot::Kind::svg));
+  return to_form(map(), picture(result()), form);
 }
 
 MapPicture MapRun::picture(const std::optional<Agreement>& result) const {

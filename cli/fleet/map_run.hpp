@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "ocm/cognitive/agreement.hpp"
@@ -53,6 +55,9 @@ class MapRun {
   /// begin.
   MapRun(const MapOptions& options, const Known& known);
 
+  /// At the end it is asked again and again until it is true, while the line is still served to others.
+  void on_end(std::function<bool()> over) { over_ = std::move(over); }
+
   /// Until all is known, for `limit`, until Ctrl-C, or until the central is gone. Whichever it is, what was
   /// drawn is there.
   End explore(std::optional<base::Duration> limit);
@@ -86,6 +91,7 @@ class MapRun {
   std::optional<cognitive::Mapping> mapping_;
   std::vector<unsigned> lost_;
   std::vector<unsigned> held_;
+  std::function<bool()> over_;
   base::Time begin_{};
   base::Duration took_{};
   End end_ = End::known;

@@ -1,14 +1,32 @@
 /// Repeats a pause, or its end, until the robot shows that it obeys: a paused robot sends no updates.
 #pragma once
 
-#include "cli/fleet/central_line.hpp"
+#include <cstdint>
+
+#include "cli/fleet/line_end.hpp"
 
 namespace ocm::cli::fleet {
 
-/// Says it again each half second, for at most ten. Whether it obeys; a signal ends the command.
-[[nodiscard]] bool pause_until_seen(CentralLine& line, unsigned index, bool paused);
+/// One robot; to be asked often.
+class Pausing {
+ public:
+  enum class Seen : std::uint8_t { not_yet, obeys, lost, never };
+  /// `paused`: it is to pause, else to go on.
+  Pausing(const RobotNow& robot, bool paused, base::Time now);
 
-/// A robot that is heard, but of which not even a piece of an update comes. Listens for at most 2.5 s.
-[[nodiscard]] bool seems_paused(CentralLine& line, unsigned index);
+  /// Says it when it is time to; what the robot shows. `never` after ten seconds.
+  [[nodiscard]] Seen step(LineEnd& line, base::Time now);
+
+ private:
+  unsigned index_;
+  bool paused_;
+  base::Time begin_;
+  base::Time say_at_{};
+  base::Time quiet_since_;
+  base::Time updated_;
+  base::Time heard_;
+  std::uint32_t pieces_;
+  int words_ = 0;
+};
 
 }  // namespace ocm::cli::fleet

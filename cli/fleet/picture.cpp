@@ -1,13 +1,17 @@
 #include "cli/fleet/picture.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <iterator>
 
 #include <fmt/format.h>
 
+#include "ocm/log/csv.hpp"
+
 #include "cli/plot/gnuplot.hpp"
+#include "cli/shared/json.hpp"
 #include "cli/shared/output_file.hpp"
 
 namespace ocm::cli::fleet {
@@ -196,6 +200,37 @@ std::string to_yaml(const Map& map, std::string_view image) {
       "image: {}\nresolution: {:.3f}\norigin: [{:.3f}, {:.3f}, 0.0]\nnegate: 0\noccupied_thresh: 0.65\n"
       "free_thresh: 0.196\n",
       image, side, box.low.x * side, box.low.y * side);
+}
+
+std::string to_grid(const Map& map) {
+  const Box box = known(map);
+  const double side = map.raster().resolution_m();
+  std::vector<std::uint8_t> cells;
+  cells.reserve(static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height()));
+  for (int y = box.low.y; y <= box.high.y; ++y)
+    for (int x = box.low.x; x <= box.high.x; ++x)
+      cells.push_back(static_cast<std::uint8_t>(map.state({x, y})));
+  std::string text((cells.size() + 2) / 3 * 4, '\0');
+  log::csv::to_base64(text.data(), cells);
+  constexpr int uint8 = 1;  // of Foxglove's numeric types
+  return Json{{"frame_id", "map"},
+              {"pose",
+               {{"position", {{"x", box.low.x * side}, {"y", box.low.y * side}, {"z", 0}}},
+                {"orientation", {{"x", 0}, {"y", 0}, {"z", 0}, {"w", 1}}}}},
+              {"column_count", box.width()},
+              {"cell_size", {{"x", side}, {"y", side}}},
+              {"row_stride", box.width()},
+              {"cell_stride", 1},
+              {"fields", std::array{Json{{"name", "state"}, {"offset", 0}, {"type", uint8}}}},
+              {"data", text}}
+      .line();
+}
+
+std::string to_form(const Map& map, const MapPicture& picture, std::string_view form) {
+  if (form == "grid") return to_grid(map);
+  if (form == "pgm") return to_pgm(map);
+  if (form == "yaml") return to_yaml(map, "map.pgm");
+  return to_script(map, picture, plot::kind_of_file(fmt::format("map.{}", form)).value_or(plot::Kind::svg));
 }
 
 std::optional<transport::Failure> write_map(const std::string& file, const Map& map,

@@ -39,6 +39,14 @@ struct MapPicture {
 /// What belongs to it; `image` is the file's name.
 [[nodiscard]] std::string to_yaml(const cognitive::Map& map, std::string_view image);
 
+/// As an object of JSON, the Grid of Foxglove's schemas without its time: rows from the lower left corner on,
+/// in its `data` a byte a cell in Base64, the value of cognitive::CellState. With a map of 4 MiB of cells 6
+/// MB.
+[[nodiscard]] std::string to_grid(const cognitive::Map& map);
+/// A map as the text of a file of this form (line_request.hpp); of svg, png and pdf as gnuplot's script.
+[[nodiscard]] std::string to_form(const cognitive::Map& map, const MapPicture& picture,
+                                  std::string_view form);
+
 /// Writes the file, and beside a PGM its YAML. What went wrong, if anything did.
 [[nodiscard]] std::optional<transport::Failure> write_map(const std::string& file, const cognitive::Map& map,
                                                           const MapPicture& picture);

@@ -71,6 +71,16 @@ bool read(std::string_view text, base::Time& value) {
   value = base::Time{base::Duration{nanoseconds}};
   return true;
 }
+/// "x,y,heading" in metres and radians.
+bool read(std::string_view text, motion::Pose& pose) {
+  for (float* const value : {&pose.x_m, &pose.y_m, &pose.heading_rad}) {
+    const std::size_t comma = text.find(',');
+    const bool last = value == &pose.heading_rad;
+    if ((comma == std::string_view::npos) != last || !read(text.substr(0, comma), *value)) return false;
+    text.remove_prefix(last ? text.size() : comma + 1);
+  }
+  return true;
+}
 template <class Enum>
 bool read(std::string_view text, std::span<const std::string_view> words, Enum& value) {
   const auto at = std::find(words.begin(), words.end(), text);
@@ -133,6 +143,8 @@ bool read(std::string_view key, std::string_view text, RobotNow& robot) {
   if (key == "calibration") return read_integers(text, robot.calibration);
   if (key == "order") return read(text, robot.order);
   if (key == "by") return read(text, robot.by);
+  if (key == "origin") return read(text, robot.origin);
+  if (key == "origin_known") return read(text, robot.origin_known);
   return true;
 }
 
@@ -217,6 +229,8 @@ std::string to_row(const RobotNow& robot) {
   row += fmt::format("\tcompass={}\tasked={}\tcalibration={}\torder={}\tby={}",
                      word(compass_words, robot.compass), robot.compass_asked, integers(robot.calibration),
                      robot.order, plain(robot.by));
+  row += fmt::format("\torigin={},{},{}\torigin_known={}", robot.origin.x_m, robot.origin.y_m,
+                     robot.origin.heading_rad, flag(robot.origin_known));
   return row;
 }
 

@@ -58,6 +58,7 @@ std::string Answers::status(base::Time now) const {
     text += fmt::format("  monitor {:<12} {}\n", tables.monitors[m].name, name_of(supervisor.monitor(m)));
   text += fmt::format("  set points: {} passed on, {} of them limited; {} refused\n", commands.passed,
                       commands.limited, commands.refused);
+  if (lines_lost != 0) text += fmt::format("  event lines not printed: {}\n", lines_lost);
   return text;
 }
 
@@ -82,7 +83,8 @@ Json Answers::status_json(base::Time now) const {
           {"streams", streams},
           {"monitors", monitors},
           {"set_points",
-           {{"passed", commands.passed}, {"limited", commands.limited}, {"refused", commands.refused}}}};
+           {{"passed", commands.passed}, {"limited", commands.limited}, {"refused", commands.refused}}},
+          {"lines_not_printed", lines_lost}};
 }
 
 std::string Answers::why() const {

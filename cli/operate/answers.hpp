@@ -34,6 +34,7 @@ struct Answers {
   const reflective::Supervisor<room>& supervisor;
   const std::deque<Change>& changes;  ///< the last ones, the oldest first
   const CommandCounters& commands;
+  std::uint64_t lines_lost = 0;  ///< of events
 
   [[nodiscard]] std::string status(base::Time now) const;
   [[nodiscard]] Json status_json(base::Time now) const;

@@ -22,10 +22,7 @@ Background::~Background() {
 bool Background::post(std::function<void()> work) {
   {
     const std::lock_guard lock{mutex_};
-    if (work_.size() >= most_) {
-      ++left_out_;
-      return false;
-    }
+    if (work_.size() >= most_) return false;
     work_.push_back(std::move(work));
   }
   more_.notify_one();

@@ -1,10 +1,10 @@
 /// Work that may take its time, such as writing to a disk or to a pipe that is full, on a thread of its own:
-/// the loop that must react never waits for it. In order; what there is no room for is counted.
+/// the loop that must react never waits for it. In order; what there is no room for is
+/// refused, and the caller counts it.
 #pragma once
 
 #include <condition_variable>
 #include <cstddef>
-#include <cstdint>
 #include <deque>
 #include <functional>
 #include <mutex>
@@ -24,7 +24,6 @@ class Background {
   bool post(std::function<void()> work);
   /// Does all that is left, and ends. Writes that no program reads end by themselves after a signal.
   void finish();
-  [[nodiscard]] std::uint64_t left_out() const noexcept { return left_out_; }
 
  private:
   void run();
@@ -34,7 +33,6 @@ class Background {
   std::condition_variable more_;
   std::deque<std::function<void()>> work_;
   bool ends_ = false;
-  std::uint64_t left_out_ = 0;
   std::thread thread_;
 };
 

@@ -74,6 +74,24 @@ std::string others_of(const Study& study) {
          text;
 }
 
+/// When each stream is back after a reset of its board.
+std::string recoveries_of(const Study& study) {
+  const auto& tables = study.file->tables;
+  std::string text =
+      "\nrecoveries: from a board that takes requests again after a reset to the end of the first sample, at "
+      "most\n";
+  if (tables.retry.count() <= 0)
+    return text + "  never: without \"retry\" a silent stream is not asked for again\n";
+  for (std::size_t c = 0; c < study.configurations.size(); ++c)
+    for (const StreamBound& stream : study.configurations[c].streams) {
+      const auto& topic = tables.topic(stream.topic);
+      if (topic.is_message()) continue;
+      text += fmt::format("  {}: {}\n", tables.configurations[c].name, topic.name);
+      text += fmt::format("      {}\n", sum_of(stream.recovery));
+    }
+  return text;
+}
+
 }  // namespace
 
 std::string to_table(const Study& study) {
@@ -143,6 +161,9 @@ std::string to_table(const Study& study) {
       text +=
           fmt::format("      {} while a change is under way\n", milliseconds(reaction.latency.at_worst()));
   }
+  text += recoveries_of(study);
+  for (const auto& caution : study.cautions)
+    text += fmt::format("\nCAUTION: {}: {}\n  {}\n", caution.place, caution.what, caution.remedy);
   text += study.passes() ? "\nin time\n"
                          : fmt::format("\nNOT IN TIME: {}\n", count(study.doubts.size(), "reason"));
   return text;
@@ -156,13 +177,23 @@ std::string to_json(const Study& study) {
   Json configurations = Json::array();
   for (std::size_t c = 0; c < study.configurations.size(); ++c) {
     Json streams = Json::array();
-    for (const StreamBound& stream : study.configurations[c].streams)
+    for (const StreamBound& stream : study.configurations[c].streams) {
+      Json recovery;
+      if (stream.recovery.bounded) {
+        Json parts = Json::object();
+        for (const auto& part : stream.recovery.parts()) parts[part.name] = part.time;
+        recovery = {{"at_most_ns", nanoseconds(stream.recovery.total())},
+                    {"while_changing_ns", nanoseconds(stream.recovery.at_worst())},
+                    {"parts_ns", parts}};
+      }
       streams.push_back({{"topic", tables.topic(stream.topic).name},
                          {"period_ns", stream.period.count()},
                          {"priority", name(stream.priority)},
                          {"response_ns", nanoseconds(stream.response)},
                          {"on_board_ns", stream.on_board == 0 ? Json(nullptr) : nanoseconds(stream.on_board)},
-                         {"deadline_ns", stream.deadline}});
+                         {"deadline_ns", stream.deadline},
+                         {"recovery", recovery}});
+    }
     Json others = Json::array(), uncounted = Json::array();
     for (const auto& each : study.file->parts[c].expected)
       others.push_back({{"topic", tables.topic(each.topic).name},
@@ -212,9 +243,12 @@ std::string to_json(const Study& study) {
   }
   Json unmeasured = Json::array();
   for (const std::uint16_t topic : study.unmeasured) unmeasured.push_back(tables.topic(topic).name);
-  Json doubts = Json::array();
-  for (const auto& doubt : study.doubts)
-    doubts.push_back({{"place", doubt.place}, {"what", doubt.what}, {"remedy", doubt.remedy}});
+  const auto listed = [](const std::vector<spec::Problem>& problems) {
+    Json list = Json::array();
+    for (const auto& each : problems)
+      list.push_back({{"place", each.place}, {"what", each.what}, {"remedy", each.remedy}});
+    return list;
+  };
   Json object{{"operator", tables.name},
               {"bit_rate", study.bit_rate},
               {"initial", name_of(tables.initial)},
@@ -225,7 +259,8 @@ std::string to_json(const Study& study) {
               {"reactions", reactions},
               {"sampling_not_counted", unmeasured},
               {"in_time", study.passes()},
-              {"doubts", doubts}};
+              {"doubts", listed(study.doubts)},
+              {"cautions", listed(study.cautions)}};
   return object.lines();
 }
 

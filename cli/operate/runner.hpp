@@ -5,6 +5,7 @@
 /// is out of date is sent late. Each cause of a lost frame has a counter, and they are printed at the end.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <deque>
 #include <initializer_list>
@@ -96,7 +97,7 @@ class Runner {
   [[nodiscard]] std::string commands(std::string_view text) const;
   /// Tells once a program and topic.
   void tell_command(Caller& caller, std::uint16_t topic, const std::string& limited);
-  [[nodiscard]] Answers answers() const { return {*file_, supervisor_, changes_, commands_}; }
+  [[nodiscard]] Answers answers() const { return {*file_, supervisor_, changes_, commands_, lines_lost_}; }
 
   void tell_switch(const reflective::Action& action);
   void tell(std::string_view event, std::initializer_list<Json::Member> facts, const std::string& text);
@@ -125,8 +126,9 @@ class Runner {
   CommandCounters commands_;
   std::deque<Change> changes_;
   Service service_;
-  std::uint64_t not_kept_ = 0;   ///< of the background's
-  Background background_{1000};  // last, so that it ends first
+  std::atomic<std::uint64_t> lines_lost_ = 0;  ///< no reader, a full disk, or a reader that took too long
+  std::uint64_t not_kept_ = 0;                 ///< of the background's
+  Background background_{1000};                // last, so that it ends first
 };
 
 }  // namespace ocm::cli::operate

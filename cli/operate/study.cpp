@@ -8,6 +8,7 @@
 
 #include "ocm/base/decimal.hpp"
 
+#include "cli/operate/cautions.hpp"
 #include "cli/operate/processors.hpp"
 #include "cli/words/quantity.hpp"
 
@@ -53,15 +54,18 @@ spec::Problem problem_of(const OperatorFile& file, const Doubt& doubt) {
               "longer periods, fewer streams, or a more urgent priority for it"};
     }
     case Doubt::Kind::unsettled:
-      return {file.settle_place,
-              fmt::format("{} may take {}, which is longer than \"settle\"",
-                          doubt.from == none
-                              ? fmt::format("the start in \"{}\"", name_of(file, doubt.configuration))
-                              : "the change" + of.substr(std::string_view{"in the change"}.size()),
-                          milliseconds(doubt.needs)),
+      return {
+          file.settle_place,
+          fmt::format(
+              "{} {}",
+              doubt.from == none ? fmt::format("the start in \"{}\"", name_of(file, doubt.configuration))
+                                 : "the change" + of.substr(std::string_view{"in the change"}.size()),
               doubt.needs == analysis::unbounded
-                  ? std::string{"longer periods or fewer streams"}
-                  : fmt::format("\"settle\": \"{}ms\" or longer", (doubt.needs + 999'999) / 1'000'000)};
+                  ? std::string{"has no bound, and is not over within \"settle\""}
+                  : fmt::format("may take {}, which is longer than \"settle\"", milliseconds(doubt.needs))),
+          doubt.needs == analysis::unbounded
+              ? std::string{"longer periods or fewer streams"}
+              : fmt::format("\"settle\": \"{}ms\" or longer", (doubt.needs + 999'999) / 1'000'000)};
     case Doubt::Kind::restless: {
       const bool field = tables.conditions[doubt.condition].watched == reflective::Watched::field;
       return {file.condition_items[doubt.condition].place,
@@ -74,6 +78,18 @@ spec::Problem problem_of(const OperatorFile& file, const Doubt& doubt) {
     }
   }
   return {place, "unknown", ""};
+}
+
+/// Of the frames of one topic that are late the one that takes longest: each would be a reason of its own.
+void merge(std::vector<Doubt>& doubts, const Doubt& doubt) {
+  const auto same = [&](const Doubt& other) {
+    return doubt.kind == Doubt::Kind::late && other.kind == doubt.kind && other.from == doubt.from &&
+           other.configuration == doubt.configuration && other.topic == doubt.topic;
+  };
+  const auto found = std::find_if(doubts.begin(), doubts.end(), same);
+  if (found == doubts.end()) return doubts.push_back(doubt);
+  if (found->why.bounded() && (!doubt.why.bounded() || doubt.why.response > found->why.response))
+    *found = doubt;
 }
 
 /// What the board of a stream cannot serve by its processor alone; the proof judges it together with the bus.
@@ -155,7 +171,7 @@ Study study(const OperatorFile& file, std::uint32_t bit_rate) {
       const std::int64_t deadline =
           topic.deadline.count() == 0 ? period : std::min(period, topic.deadline.count());
       bound.streams.push_back({stream.topic, stream.period, stream.priority, proof->response(c, stream.topic),
-                               deadline, boards.sampling(c, stream.topic)});
+                               deadline, boards.sampling(c, stream.topic), proof->recovery(c, stream.topic)});
       if (!is_measured(tables, stream.topic) && std::find(result.unmeasured.begin(), result.unmeasured.end(),
                                                           stream.topic) == result.unmeasured.end())
         result.unmeasured.push_back(stream.topic);
@@ -192,12 +208,16 @@ Study study(const OperatorFile& file, std::uint32_t bit_rate) {
     }
   }
   result.doubts = boards.problems();
+  std::vector<Doubt> doubts;
   proof->check([&](const Doubt& doubt) {
-    if (boards.explains(doubt)) return;
+    if (!boards.explains(doubt)) merge(doubts, doubt);
+  });
+  for (const Doubt& doubt : doubts) {
     auto problem = problem_of(file, doubt);
     if (std::find(result.doubts.begin(), result.doubts.end(), problem) == result.doubts.end())
       result.doubts.push_back(std::move(problem));
-  });
+  }
+  result.cautions = cautions(file);
   return result;
 }
 
@@ -206,13 +226,25 @@ std::string milliseconds(std::int64_t ns) {
   return fmt::format("{} ms", base::to_text(base::normalised(ns, -6)).view());
 }
 
-std::string sum_of(const reflective::Latency& latency) {
+namespace {
+
+template <class Bound>
+std::string shown(const Bound& bound) {
   std::string text;
-  for (const auto& part : latency.parts())
+  for (const auto& part : bound.parts())
     if (part.time != 0)
       text += fmt::format("{}{} {}", text.empty() ? " = " : " + ",
                           base::to_text(base::normalised(part.time, -6)).view(), part.name);
-  return milliseconds(latency.total()) + text;
+  return milliseconds(bound.total()) + text;
+}
+
+}  // namespace
+
+std::string sum_of(const reflective::Latency& latency) {
+  return shown(latency);
+}
+std::string sum_of(const reflective::Recovery& recovery) {
+  return shown(recovery);
 }
 
 }  // namespace ocm::cli::operate

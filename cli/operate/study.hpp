@@ -23,6 +23,7 @@ struct StreamBound {
   /// Part of it on the processor of its board, from the release until the bus has the sample, ns, or
   /// analysis::unbounded; 0: the board's tasks are not known, and it is not counted.
   std::int64_t on_board = 0;
+  reflective::Recovery recovery;  ///< once its board takes requests again after a reset
 };
 struct ConfigurationBound {
   std::int64_t load = 0;  ///< per mille
@@ -50,8 +51,9 @@ struct Study {
   std::vector<ChangeBound> changes;
   std::vector<ReactionBound> reactions;
   std::vector<std::uint16_t>
-      unmeasured;                     ///< topics of streams of which the time on their board is not counted
-  std::vector<spec::Problem> doubts;  ///< why it may be late; none: it is in time
+      unmeasured;                       ///< topics of streams of which the time on their board is not counted
+  std::vector<spec::Problem> doubts;    ///< why it may be late; none: it is in time
+  std::vector<spec::Problem> cautions;  ///< no reason to be late: see cautions.hpp
 
   [[nodiscard]] bool passes() const noexcept { return doubts.empty(); }
 };
@@ -66,6 +68,7 @@ struct Study {
 
 /// "71.3 ms = 50 period + 1 jitter + ...": the parts that are not 0, exactly.
 [[nodiscard]] std::string sum_of(const reflective::Latency& latency);
+[[nodiscard]] std::string sum_of(const reflective::Recovery& recovery);
 /// "71.3 ms", exactly; "no bound".
 [[nodiscard]] std::string milliseconds(std::int64_t ns);
 

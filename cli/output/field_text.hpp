@@ -197,16 +197,18 @@ class FieldText {
     return static_cast<std::int64_t>((bits(data) ^ sign) - sign);  // its table is known, and not its shape
   }
 
- private:
-  enum class Way : std::uint8_t { slow, whole, tabled };
-
-  /// The field's bits, where eight bytes hold them.
+  /// Whether eight bytes hold the field: all but such as are wider than 57 bits.
+  [[nodiscard]] bool in_word() const noexcept { return in_word_; }
+  /// in_word(): the field's bits.
   [[nodiscard]] std::uint64_t bits(const std::uint8_t* data) const noexcept {
     std::uint64_t word = 0;
     std::memcpy(&word, data + byte_, sizeof word);
     if (swapped_) word = __builtin_bswap64(word);
     return word << left_ >> right_;
   }
+
+ private:
+  enum class Way : std::uint8_t { slow, whole, tabled };
 
   /// Apart, so that what most fields need is inlined where they are printed.
   char* print_untabled(char* to, const std::uint8_t* data) const noexcept;

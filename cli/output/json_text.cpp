@@ -127,8 +127,33 @@ std::size_t JsonText::know_names(const protocol::Field& field, const std::string
     value_names_.push_back({raw, keep(field.flags ? text : '"' + text + '"')});
     size = field.flags ? size + text.size() + 1 : std::max(size, text.size() + 2);
   }
+  tabulate(named);
   named_.push_back(named);
   return label.size() + size + 2 * block + 16;
+}
+
+/// Where all names are of few bits, as most are.
+void JsonText::tabulate(NamedField& named) {
+  const protocol::Field& field = named.value.field();
+  // Of a signed field greater bits are negative numbers.
+  const std::int64_t most_bits =
+      field.is_signed ? std::min<std::int64_t>(protocol::highest(field.position.width, true), 255) : 255;
+  const std::span names = std::span{value_names_}.subspan(named.first_name, named.names);
+  if (field.flags || !named.value.in_word() || names.empty() || names.size() > 255 || names.front().raw < 0 ||
+      names.back().raw > most_bits)
+    return;
+  named.tabled = true;
+  named.greatest = static_cast<std::uint16_t>(names.back().raw);
+  named.first_place = static_cast<std::uint32_t>(places_.size());
+  named.first_named = static_cast<std::uint32_t>(tabled_names_.size());
+  places_.resize(places_.size() + named.greatest + 2U, 0);
+  tabled_names_.push_back({});
+  const std::string label = pieces_.substr(named.label.begin, named.label.size);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    places_[named.first_place + static_cast<std::size_t>(names[i].raw)] = static_cast<std::uint8_t>(i + 1);
+    const std::string text = pieces_.substr(names[i].text.begin, names[i].text.size);
+    tabled_names_.push_back(keep(label + text + ','));
+  }
 }
 
 void JsonText::know(protocol::FrameRef frame, const Selection& selection) {
@@ -311,21 +336,24 @@ char* JsonText::put_name(char* to, const NamedField& field, std::int64_t raw) co
 /// `,"names":{...}` of the values in a frame that have one, or nothing.
 char* JsonText::put_names(char* to, const Known& known, std::span<const std::uint8_t> bytes) const noexcept {
   constexpr std::string_view begin = R"(,"names":{)";
-  const auto& layout = known.frame.layout();
   char* const from = to;
+  std::memcpy(to, begin.data(), begin.size());
   char* const first = to + begin.size();
   to = first;
   for (const NamedField& field : std::span{named_}.subspan(known.first_named, known.named)) {
-    if (known.varies && !layout.has(field.value.field(), bytes)) continue;
-    char* const place = to == first ? to : to + 1;
-    char* const end = put_name(place, field, field.value.raw(bytes.data()));
-    if (end == place) continue;
-    if (place != to) *to = ',';
-    to = end;
+    if (known.varies && !known.frame.layout().has(field.value.field(), bytes)) continue;
+    if (field.tabled) {
+      // A value without a name adds nothing, and is not guessed.
+      const std::uint64_t place =
+          std::min<std::uint64_t>(field.value.bits(bytes.data()), field.greatest + 1U);
+      to = put(to, tabled_names_[field.first_named + places_[field.first_place + place]]);
+      continue;
+    }
+    char* const end = put_name(to, field, field.value.raw(bytes.data()));
+    if (end != to) *end = ',', to = end + 1;
   }
   if (to == first) return from;
-  std::memcpy(from, begin.data(), begin.size());
-  *to++ = '}';
+  to[-1] = '}';
   return to;
 }
 

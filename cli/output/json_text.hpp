@@ -64,12 +64,17 @@ class JsonText {
     std::int64_t raw = 0;
     Piece text;
   };
-  /// A field of which values have names.
+  /// A field of which values have names. `tabled`: the name is looked up by the field's bits, without a
+  /// search and without the field itself, which is in no cache.
   struct NamedField {
     FieldText value;
     Piece label;  ///< its name, with a colon
     std::uint32_t first_name = 0;
     std::uint32_t names = 0;
+    std::uint32_t first_place = 0;  ///< tabled: of places_, by bits; there is one more than `greatest`
+    std::uint32_t first_named = 0;  ///< tabled: of tabled_names_; the first is of no name
+    std::uint16_t greatest = 0;     ///< tabled: bits beyond it have no name
+    bool tabled = false;
   };
   enum class Kind : std::uint8_t { unknown, fields, request };
   /// What an identifier means; with a copy of what is asked of every frame, so that neither topic nor layout
@@ -102,6 +107,7 @@ class JsonText {
   [[nodiscard]] char* put_identity(char* to, const log::Entry& entry, const Known& known) const noexcept;
   /// The names of a field's values; returns the room that they need.
   std::size_t know_names(const protocol::Field& field, const std::string& label);
+  void tabulate(NamedField& named);
   std::size_t find_present(const Known& known, std::span<const std::uint8_t> bytes) noexcept;
   [[nodiscard]] char* put_fields(char* to, const Known& known, std::span<const std::uint8_t> bytes,
                                  std::size_t count) const noexcept;
@@ -128,6 +134,8 @@ class JsonText {
   std::vector<Labels> labels_;  // of the same number as fields_
   std::vector<NamedField> named_;
   std::vector<ValueName> value_names_;  // of each field by raw number
+  std::vector<std::uint8_t> places_;    // of tabled names: which of the field's
+  std::vector<Piece> tabled_names_;     // label, name and comma
   std::vector<std::uint16_t>
       present_;  // which fields are in the frame at hand; as many as the most that one has
   std::string pieces_;

@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "ocm/protocol/identifier.hpp"
-
 #include "cli/words/topics.hpp"
 
 namespace ocm::cli::plot {
@@ -43,6 +41,12 @@ std::optional<Wanted> pair_of(const Chosen& xs, const Chosen& ys) {
   return pairs.size() == 1 ? std::optional{pairs[0]} : std::nullopt;
 }
 
+/// Of a topic or message, as it should be.
+bool carries_values(client::Meaning meaning) {
+  return meaning == client::Meaning::part || meaning == client::Meaning::sample ||
+         meaning == client::Meaning::set_point;
+}
+
 std::string names(const Chosen& fields) {
   std::string text;
   for (const auto& field : fields) text += (text.empty() ? "" : ", ") + field.name;
@@ -71,7 +75,8 @@ transport::Outcome<std::vector<Wanted>> parse_fields(const protocol::Catalogue& 
   return wanted;
 }
 
-Curves::Curves(const protocol::Catalogue& catalogue, const std::vector<Wanted>& wanted) : index_(catalogue) {
+Curves::Curves(const protocol::Catalogue& catalogue, const std::vector<Wanted>& wanted)
+    : receiver_(catalogue, client::Transport::together) {
   for (const auto& each : wanted) curves_.push_back({each, {}, {}});
   for (std::size_t i = 0; i < curves_.size(); ++i)
     if (const auto& x = curves_[i].wanted.x) uses_[x->layout].push_back({i, x->field, true});
@@ -82,20 +87,23 @@ Curves::Curves(const protocol::Catalogue& catalogue, const std::vector<Wanted>& 
 }
 
 void Curves::take(std::span<const log::Entry> entries, const log::Interfaces& interfaces) {
-  for (std::size_t i = 0; i < interfaces.size() && index_.has_buses(); ++i)
-    index_.name(static_cast<std::uint16_t>(i), interfaces.name(static_cast<std::uint16_t>(i)));
+  for (std::size_t i = 0; i < interfaces.size() && receiver_.has_buses(); ++i)
+    receiver_.on_interface(static_cast<std::uint16_t>(i), interfaces.name(static_cast<std::uint16_t>(i)));
   for (const log::Entry& entry : entries) {
     begin_ = begin_ ? std::min(*begin_, entry.time) : entry.time;
     end_ = std::max(end_, entry.time);
-    const auto frame = index_.of(entry.interface).subject(entry.id, entry.format).frame;
-    if (!frame || !frame.layout().accepts(entry.length)) continue;
-    if (entry.is_fd() && !frame.topic->is_message()) continue;
-    const auto uses = uses_.find(&frame.layout());
+    const auto reception =
+        receiver_.take({entry.id, entry.format, entry.is_fd(), entry.bytes()}, entry.time, entry.interface);
+    if (!carries_values(reception.meaning)) continue;
+    // A frame of a sample has its values, whether or not the others come.
+    const auto data = reception.transported != nullptr ? reception.transported->data : entry.bytes();
+    const auto& layout = reception.frame.layout();
+    const auto uses = uses_.find(&layout);
     if (uses == uses_.end()) continue;
     for (const Use& use : uses->second) {
-      if (!frame.layout().has(*use.field, entry.bytes())) continue;
+      if (!layout.has(*use.field, data)) continue;
       Curve& curve = curves_[use.curve];
-      const double value = use.field->value(use.field->raw(entry.bytes()));
+      const double value = use.field->value(use.field->raw(data));
       if (use.is_x)
         curve.x = value;
       else if (!curve.wanted.x)

@@ -9,7 +9,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "ocm/client/frame_index.hpp"
+#include "ocm/client/sample.hpp"
 #include "ocm/log/entry.hpp"
 #include "ocm/log/interfaces.hpp"
 #include "ocm/measure/envelope.hpp"
@@ -58,7 +58,7 @@ class Curves {
     const protocol::Field* field = nullptr;
     bool is_x = false;
   };
-  client::InterfaceIndexes index_;
+  client::Receiver receiver_;  ///< puts messages of J1939's transport protocol together
   std::unordered_map<const protocol::FrameLayout*, std::vector<Use>> uses_;  // x before y
   std::vector<Curve> curves_;
   std::optional<base::Time> begin_;

@@ -12,8 +12,8 @@ StandIn::StandIn(const protocol::Catalogue& catalogue)
       recordings_(catalogue.topics.size()),
       publisher_(std::make_unique<scheduling::Publisher<most_topics>>()) {}
 
-bool StandIn::learn(const can::Frame& frame) {
-  const auto reception = receiver_.take({{}, frame});
+bool StandIn::learn(const can::Frame& frame, std::uint16_t interface) {
+  const auto reception = receiver_.take(can::FrameView{frame}, {}, interface);
   if (reception.meaning != client::Meaning::sample) return true;
   if (reception.topic->is_message()) return true;  // is asked for by no request
   const std::size_t count = reception.topic->frames.size();

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "ocm/base/time.hpp"
@@ -25,8 +26,13 @@ class StandIn {
   /// The catalogue must outlive it.
   explicit StandIn(const protocol::Catalogue& catalogue);
 
+  /// Frames of `interface` of the log come over the one of this name: topics that are on another are none of
+  /// theirs.
+  void on_interface(std::uint16_t interface, std::string_view name) {
+    receiver_.on_interface(interface, name);
+  }
   /// A frame of the log. false: there is no room for more.
-  [[nodiscard]] bool learn(const can::Frame& frame);
+  [[nodiscard]] bool learn(const can::Frame& frame, std::uint16_t interface = 0);
   [[nodiscard]] std::size_t samples() const;  ///< of all topics
   [[nodiscard]] std::size_t samples(const protocol::Topic& topic) const;
 

@@ -8,8 +8,28 @@
 #include "cli/output/output.hpp"
 
 namespace ocm::cli::serve {
+namespace {
 
-Channels::Channels(const protocol::Catalogue& catalogue, std::span<const std::string> interfaces)
+/// Of foxglove.Grid, by its own name, under which Foxglove draws it. [github.com/foxglove/schemas, Grid]
+constexpr std::string_view grid_schema =
+    R"({"title":"foxglove.Grid","type":"object","properties":{)"
+    R"("timestamp":{"type":"object","title":"time","properties":{"sec":{"type":"integer"},"nsec":{"type":"integer"}}},)"
+    R"("frame_id":{"type":"string"},)"
+    R"("pose":{"type":"object","title":"foxglove.Pose","properties":{)"
+    R"("position":{"type":"object","title":"foxglove.Vector3","properties":)"
+    R"({"x":{"type":"number"},"y":{"type":"number"},"z":{"type":"number"}}},)"
+    R"("orientation":{"type":"object","title":"foxglove.Quaternion","properties":)"
+    R"({"x":{"type":"number"},"y":{"type":"number"},"z":{"type":"number"},"w":{"type":"number"}}}}},)"
+    R"("column_count":{"type":"integer"},)"
+    R"("cell_size":{"type":"object","title":"foxglove.Vector2","properties":{"x":{"type":"number"},"y":{"type":"number"}}},)"
+    R"("row_stride":{"type":"integer"},"cell_stride":{"type":"integer"},)"
+    R"("fields":{"type":"array","items":{"type":"object","title":"foxglove.PackedElementField","properties":)"
+    R"({"name":{"type":"string"},"offset":{"type":"integer"},"type":{"type":"integer"}}}},)"
+    R"("data":{"type":"string","contentEncoding":"base64","description":"0 unknown, 1 free, 2 occupied"}}})";
+
+}  // namespace
+
+Channels::Channels(const protocol::Catalogue& catalogue, std::span<const std::string> interfaces, bool fleet)
     : topics_(catalogue.topics.size()) {
   const std::size_t room = topics_ == 0 ? 1 : std::max<std::size_t>(most / topics_, 1);
   interfaces_.assign(interfaces.begin(),
@@ -23,6 +43,11 @@ Channels::Channels(const protocol::Catalogue& catalogue, std::span<const std::st
   for (const std::string_view name : state_names)
     all_.push_back({static_cast<std::uint32_t>(all_.size()), fmt::format("/ocm/{}", name),
                     fmt::format("ocm.{}", name), R"({"type":"object"})"});
+  if (!fleet) return;
+  all_.push_back(
+      {static_cast<std::uint32_t>(all_.size()), "/ocm/fleet", "ocm.fleet", R"({"type":"object"})"});
+  all_.push_back(
+      {static_cast<std::uint32_t>(all_.size()), "/ocm/map", "foxglove.Grid", std::string{grid_schema}});
 }
 
 Publisher::Publisher(const protocol::Catalogue& catalogue, const Channels& channels, Viewers& viewers)
@@ -63,6 +88,13 @@ client::Reception Publisher::take(const log::Entry& entry, std::string_view inte
   else
     viewers_->publish(channel, time_ns, std::move(payload));
   return reception;
+}
+
+std::string Publisher::text_of(const client::Sample& sample) const {
+  const SampleText& text = texts_[static_cast<std::size_t>(sample.topic - catalogue_->topics.data())];
+  std::string payload(text.room(), '\0');
+  payload.resize(static_cast<std::size_t>(text.print(payload.data(), sample) - payload.data()));
+  return payload;
 }
 
 void Publisher::hold_back() {

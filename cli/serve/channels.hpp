@@ -21,8 +21,9 @@
 
 namespace ocm::cli::serve {
 
-/// What the server itself says, each on a channel /ocm/NAME.
-enum class State : std::uint8_t { robot, bus, boards, bounds, operator_, playback };
+/// What the server itself says, each on a channel /ocm/NAME; the last two where it has a central's line;
+/// the map is a Grid of Foxglove's schemas.
+enum class State : std::uint8_t { robot, bus, boards, bounds, operator_, playback, fleet, map };
 inline constexpr std::array<std::string_view, 6> state_names{"robot",  "bus",      "boards",
                                                              "bounds", "operator", "playback"};
 
@@ -31,13 +32,24 @@ class Channels {
   /// More make the list of them too long for a page. [decided]
   static constexpr std::size_t most = 20'000;
 
-  /// The catalogue must outlive it. Interfaces for which there would be more than `most` have none.
-  Channels(const protocol::Catalogue& catalogue, std::span<const std::string> interfaces);
+  /// The catalogue must outlive it. Interfaces for which there would be more than `most` have none. `fleet`:
+  /// there are robots behind a central.
+  Channels(const protocol::Catalogue& catalogue, std::span<const std::string> interfaces, bool fleet = false);
+
+  /// Behind all others; their numbers are those that come next. Before anything is published.
+  void add(const std::vector<foxglove::Channel>& channels) {
+    all_.insert(all_.end(), channels.begin(), channels.end());
+  }
 
   [[nodiscard]] const std::vector<foxglove::Channel>& all() const noexcept { return all_; }
   /// Of a topic on an interface, by their numbers; `interface` < interfaces().
   [[nodiscard]] std::uint32_t of(std::size_t interface, std::size_t topic) const noexcept {
     return static_cast<std::uint32_t>(interface * topics_ + topic);
+  }
+  /// The topic's number on its interface; channel < of(State::robot).
+  [[nodiscard]] std::size_t topic_of(std::uint32_t channel) const noexcept { return channel % topics_; }
+  [[nodiscard]] const std::string& interface_of(std::uint32_t channel) const {
+    return interfaces_[channel / topics_];
   }
   [[nodiscard]] std::uint32_t of(State state) const noexcept {
     return static_cast<std::uint32_t>(interfaces_.size() * topics_ + static_cast<std::size_t>(state));
@@ -60,6 +72,8 @@ class Publisher {
 
   /// What the frame turned out to be. `interface`: its name; one without channels is counted only.
   client::Reception take(const log::Entry& entry, std::string_view interface);
+  /// A sample as the channel of its topic has it.
+  [[nodiscard]] std::string text_of(const client::Sample& sample) const;
   /// While a log is wound nothing is published but the newest sample of each channel, when that ends.
   void hold_back();
   void go_on();

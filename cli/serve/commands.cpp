@@ -1,5 +1,6 @@
 #include "cli/serve/commands.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <utility>
@@ -20,6 +21,8 @@ using Parsed = base::Result<client::Command, std::string>;
 base::Result<Node, std::string> read_object(std::string_view payload) {
   static constexpr spec::Document document{"a message", "its fields", "the channel's schema", 3,
                                            foxglove::longest_message};
+  if (payload.find_first_not_of(" \t\r\n") == std::string_view::npos)
+    return std::string{"an empty message: expected an object of fields, such as {\"x\":0.1}"};
   std::vector<spec::Problem> problems;
   Node node = spec::parse_json(payload, "message", problems, document);
   if (!problems.empty()) return "no JSON: " + problems.front().what;
@@ -54,6 +57,23 @@ Parsed line_command(const protocol::Catalogue& catalogue, const Node& object) {
   return command;
 }
 
+/// What a field cannot be: JSON has more kinds of values than fields have.
+std::string wrong_kind(const protocol::Topic& topic, const Node::Member& member) {
+  const auto& fields = topic.frames.front().fields;
+  const auto field = std::find_if(fields.begin(), fields.end(),
+                                  [&](const protocol::Field& each) { return each.name == member.name; });
+  const bool has_unit = field != fields.end() && !field->unit.empty();
+  const Node& value = member.node;
+  if (value.is(Node::Kind::number) || value.is(Node::Kind::string) ||
+      (value.is(Node::Kind::boolean) && !has_unit))
+    return {};
+  return fmt::format(R"({}: expected a number{}, such as {{"{}":0}}, and got {})", member.name,
+                     has_unit ? " in " + std::string{field->unit} : "", member.name,
+                     value.is(Node::Kind::null)      ? "null"
+                     : value.is(Node::Kind::boolean) ? (value.truth ? "true" : "false")
+                                                     : spec::describe(value.kind));
+}
+
 /// A number as a command's words have it: with the unit that the spec says.
 std::string value_text(const protocol::Topic& topic, std::string_view name, const Node& value) {
   std::string text = value.is(Node::Kind::boolean) ? (value.truth ? "1" : "0") : value.text;
@@ -79,9 +99,16 @@ Parsed command_of(const protocol::Catalogue& catalogue, std::string_view topic, 
   if (target == nullptr || target->kind == protocol::Kind::sensor)
     return fmt::format("{} takes nothing: publish on the channel of an actuator, or lines on {}", topic,
                        line_topic);
+  if (object->members.empty() && !target->is_message()) {
+    const auto& fields = target->frames.front().fields;
+    return fmt::format(R"(no field in it: expected at least one, such as {{"{}":0}})",
+                       fields.empty() ? std::string_view{} : fields.front().name);
+  }
   std::vector<std::string> words{"set", std::string{target->name}};
-  for (const Node::Member& member : object->members)
+  for (const Node::Member& member : object->members) {
+    if (std::string why = wrong_kind(*target, member); !why.empty()) return why;
     words.push_back(fmt::format("{}={}", member.name, value_text(*target, member.name, member.node)));
+  }
   auto command = parse_words(catalogue, words);
   if (command && target->role == protocol::Role::drive) {
     const can::Frame frame = command->frames.front();

@@ -8,7 +8,7 @@
 
 #include "cli/serve/commands.hpp"
 #include "cli/serve/foxglove.hpp"
-#include "cli/serve/sessions.hpp"
+#include "cli/serve/parameters.hpp"
 #include "cli/shared/outgoing.hpp"
 #include "cli/shared/remedies.hpp"
 #include "cli/shared/set_points.hpp"
@@ -150,8 +150,12 @@ void Control::carry_out(const Order& order) {
       driver_.gone(order.viewer, frames);
       return send_all(order.viewer, frames);
     }
-    case Order::Kind::playback:
-      return;  // a bus is not wound
+    case Order::Kind::playback:  // a bus is not wound
+    case Order::Kind::newest:
+    case Order::Kind::get_parameters:
+    case Order::Kind::subscribe_parameters:
+    case Order::Kind::unsubscribe_parameters:
+      return;
   }
 }
 

@@ -40,6 +40,11 @@ std::string OperatorWatch::newest() const {
   return newest_;
 }
 
+OperatorWatch::Presence OperatorWatch::presence() const {
+  const std::lock_guard lock{mutex_};
+  return presence_;
+}
+
 bool OperatorWatch::pause() {
   std::unique_lock lock{mutex_};
   return !ends_.wait_for(lock, turn, [this] { return stops_; });
@@ -48,19 +53,26 @@ bool OperatorWatch::pause() {
 void OperatorWatch::run() {
   std::unique_ptr<OperatorLink> link;
   do {
-    if (link == nullptr)
-      if (auto found = connect_operator(bus_, "serve")) link = std::move(*found);
+    Presence presence = Presence::runs;
+    if (link == nullptr) {
+      auto found = connect_operator(bus_, "serve");
+      if (found) link = std::move(*found);
+      presence = !found ? Presence::silent : link == nullptr ? Presence::none : Presence::runs;
+    }
     std::string text = R"({"running":false})";
     if (link != nullptr) {
       const OperatorAnswer status = link->ask("status json");
       const OperatorAnswer why = status.kind == OperatorAnswer::Kind::ok ? link->ask("why json") : status;
-      if (status.kind == OperatorAnswer::Kind::ok && why.kind == OperatorAnswer::Kind::ok)
+      if (status.kind == OperatorAnswer::Kind::ok && why.kind == OperatorAnswer::Kind::ok) {
         text = fmt::format(R"({{"running":true,"who":{},"status":{},"why":{}}})", json_string(link->who()),
                            status.text, why.text);
-      else
+      } else {
         link.reset();
+        presence = Presence::silent;  // until the next look
+      }
     }
     const std::lock_guard lock{mutex_};
+    presence_ = presence;
     newest_ = std::move(text);
   } while (pause());
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <condition_variable>
+#include <cstdint>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -11,6 +12,13 @@ namespace ocm::cli::serve {
 
 class OperatorWatch {
  public:
+  enum class Presence : std::uint8_t {
+    unknown,  ///< it has not been looked for yet
+    none,
+    runs,
+    silent,  ///< it runs, and does not answer
+  };
+
   /// Of the bus of that name.
   explicit OperatorWatch(std::string bus);
   ~OperatorWatch();
@@ -19,6 +27,7 @@ class OperatorWatch {
 
   /// One JSON object: {"running":false}, or with who, status and why as `amiroctl operator --json` has them.
   [[nodiscard]] std::string newest() const;
+  [[nodiscard]] Presence presence() const;
 
  private:
   void run();
@@ -29,6 +38,7 @@ class OperatorWatch {
   mutable std::mutex mutex_;
   std::condition_variable ends_;
   bool stops_ = false;
+  Presence presence_ = Presence::unknown;
   std::string newest_ = R"({"running":false})";
   std::thread thread_;
 };

@@ -15,16 +15,22 @@ namespace ocm::cli::serve {
 
 struct Order {
   enum class Kind : std::uint8_t {
-    publish,    ///< `payload` on `topic`
-    parameter,  ///< `topic` is to be `value`
-    playback,   ///< `payload`
-    gone,       ///< the viewer is
+    publish,                 ///< `payload` on `topic`
+    parameter,               ///< `topic` is to be `value`
+    playback,                ///< `payload`
+    newest,                  ///< it has subscribed to `channels`: what came last on them
+    get_parameters,          ///< `names`; `payload` is the request
+    subscribe_parameters,    ///< `names`
+    unsubscribe_parameters,  ///< `names`
+    gone,                    ///< the viewer is
   };
   Kind kind = Kind::publish;
   ViewerId viewer = 0;
   std::string topic{};
   std::string payload{};
   double value = 0;
+  std::vector<std::uint32_t> channels{};
+  std::vector<std::string> names{};
 };
 
 class Orders {

@@ -5,25 +5,17 @@
 #include <fmt/format.h>
 
 #include "cli/serve/commands.hpp"
+#include "cli/serve/fleet_order.hpp"
+#include "cli/serve/parameters.hpp"
 
 namespace ocm::cli::serve {
 namespace {
 
-constexpr std::string_view period_suffix = "/period_ms";
 constexpr std::string_view no_commands =
     "this viewer may only look: start amiroctl serve with --allow-commands, and open the address that it "
     "prints";
 
 }  // namespace
-
-const protocol::Topic* sensor_of(const protocol::Catalogue& catalogue, std::string_view parameter) {
-  if (!parameter.starts_with('/') || !parameter.ends_with(period_suffix)) return nullptr;
-  parameter.remove_prefix(1);
-  if (parameter.size() < period_suffix.size()) return nullptr;
-  parameter.remove_suffix(period_suffix.size());
-  const protocol::Topic* const topic = catalogue.find(parameter);
-  return topic != nullptr && topic->kind == protocol::Kind::sensor ? topic : nullptr;
-}
 
 Sessions::Sessions(SessionsOptions options, const protocol::Catalogue& catalogue, const Channels& channels,
                    Viewers& viewers, Orders& orders)
@@ -43,6 +35,7 @@ void Sessions::opened(ViewerId viewer, bool commands) {
 void Sessions::gone(ViewerId viewer) {
   open_.erase(viewer);
   put({Order::Kind::gone, viewer});
+  if (options_.fleet != nullptr) put(*options_.fleet, {Order::Kind::gone, viewer});
 }
 
 void Sessions::refuse(ViewerId viewer, std::string_view why) {
@@ -50,8 +43,12 @@ void Sessions::refuse(ViewerId viewer, std::string_view why) {
 }
 
 void Sessions::put(Order order) {
+  put(*orders_, std::move(order));
+}
+
+void Sessions::put(Orders& orders, Order order) {
   const ViewerId viewer = order.viewer;
-  if (!orders_->put(std::move(order)))
+  if (!orders.put(std::move(order)))
     refuse(viewer, "too many commands at a time: this one was not carried out");
 }
 
@@ -76,18 +73,25 @@ void Sessions::text(ViewerId viewer, std::string_view message) {
           refuse(viewer, fmt::format("channel {} was not advertised", id));
       return;
     case Op::get_parameters:
-    case Op::subscribe_parameters:  // they change by this server only
-      return get_parameters(viewer, *request);
+      return parameters(viewer, Order::Kind::get_parameters, *request);
+    case Op::subscribe_parameters:
+      return parameters(viewer, Order::Kind::subscribe_parameters, *request);
     case Op::set_parameters:
       return set_parameters(viewer, found->second, *request);
     case Op::unsubscribe_parameters:
-      return;
+      return parameters(viewer, Order::Kind::unsubscribe_parameters, *request);
   }
 }
 
 void Sessions::subscribe(ViewerId viewer, const foxglove::Request& request) {
-  for (const foxglove::Subscription& subscription : request.subscriptions)
-    if (const std::string why = viewers_->subscribe(viewer, subscription); !why.empty()) refuse(viewer, why);
+  Order newest{Order::Kind::newest, viewer};
+  for (const foxglove::Subscription& subscription : request.subscriptions) {
+    if (const std::string why = viewers_->subscribe(viewer, subscription); !why.empty())
+      refuse(viewer, why);
+    else if (subscription.channel < channels_->of(State::robot))  // states are there already
+      newest.channels.push_back(subscription.channel);
+  }
+  if (!newest.channels.empty()) put(std::move(newest));
 }
 
 void Sessions::advertise(ViewerId id, Viewer& viewer, const foxglove::Request& request) {
@@ -105,16 +109,11 @@ void Sessions::advertise(ViewerId id, Viewer& viewer, const foxglove::Request& r
   }
 }
 
-void Sessions::get_parameters(ViewerId viewer, const foxglove::Request& request) {
-  std::vector<foxglove::Parameter> parameters;
-  if (request.names.empty()) {
-    for (const protocol::Topic& topic : catalogue_->topics)
-      if (topic.kind == protocol::Kind::sensor)
-        parameters.push_back({fmt::format("/{}{}", topic.name, period_suffix), {}});
-  }
-  for (const std::string& name : request.names)
-    if (sensor_of(*catalogue_, name) != nullptr) parameters.push_back({name, {}});
-  viewers_->tell(viewer, foxglove::parameter_values(parameters, request.request));
+void Sessions::parameters(ViewerId viewer, Order::Kind kind, const foxglove::Request& request) {
+  Order order{kind, viewer};
+  order.payload = request.request;
+  order.names = request.names;
+  put(std::move(order));
 }
 
 void Sessions::set_parameters(ViewerId id, const Viewer& viewer, const foxglove::Request& request) {
@@ -137,8 +136,9 @@ void Sessions::binary(ViewerId viewer, std::string_view message) {
   if (topic == found->second.publishes.end())
     return refuse(viewer, fmt::format("channel {} was not advertised", published->channel));
   const bool of_bar = options_.playback && topic->second == playback_topic;
-  put({of_bar ? Order::Kind::playback : Order::Kind::publish, viewer, topic->second,
-       std::string{published->payload}});
+  Orders& orders = options_.fleet != nullptr && topic->second == fleet_topic ? *options_.fleet : *orders_;
+  put(orders, {of_bar ? Order::Kind::playback : Order::Kind::publish, viewer, topic->second,
+               std::string{published->payload}});
 }
 
 }  // namespace ocm::cli::serve

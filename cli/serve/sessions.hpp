@@ -19,10 +19,11 @@
 namespace ocm::cli::serve {
 
 struct SessionsOptions {
-  std::string name;       ///< of the server, "AMiRo, sim"
-  std::string id;         ///< another one at each start
-  bool commands = false;  ///< with the token
-  bool playback = false;  ///< a log: all viewers may wind it
+  std::string name;         ///< of the server, "AMiRo, sim"
+  std::string id;           ///< another one at each start
+  bool commands = false;    ///< with the token
+  bool playback = false;    ///< a log: all viewers may wind it
+  Orders* fleet = nullptr;  ///< of robots behind a central; null: there are none
 };
 
 class Sessions final : public Listener {
@@ -48,9 +49,10 @@ class Sessions final : public Listener {
   void refuse(ViewerId viewer, std::string_view why);
   void subscribe(ViewerId viewer, const foxglove::Request& request);
   void advertise(ViewerId id, Viewer& viewer, const foxglove::Request& request);
-  void get_parameters(ViewerId viewer, const foxglove::Request& request);
+  void parameters(ViewerId viewer, Order::Kind kind, const foxglove::Request& request);
   void set_parameters(ViewerId id, const Viewer& viewer, const foxglove::Request& request);
   void put(Order order);
+  void put(Orders& orders, Order order);
 
   SessionsOptions options_;
   const protocol::Catalogue* catalogue_;
@@ -59,9 +61,5 @@ class Sessions final : public Listener {
   Orders* orders_;
   std::map<ViewerId, Viewer> open_;
 };
-
-/// The sensor of a parameter "/gyroscope/period_ms"; nullptr: there is no such parameter.
-[[nodiscard]] const protocol::Topic* sensor_of(const protocol::Catalogue& catalogue,
-                                               std::string_view parameter);
 
 }  // namespace ocm::cli::serve

@@ -132,6 +132,8 @@ std::string bus_state(std::span<const bus_model::Bus> buses, base::Time now, con
                    {"incomplete", sum.incomplete},
                    {"wrong_length", sum.wrong_length},
                    {"unknown", sum.unknown},
+                   {"transport", sum.transport},
+                   {"transport_lost", sum.transport_lost},
                    {"not_in_load", sum.not_in_load},
                    {"not_shown", sum.not_shown},
                    {"rows", std::move(rows)}});

@@ -33,6 +33,17 @@ void Viewers::publish_state(std::uint32_t channel, std::uint64_t time_ns, std::s
   if (wanted(channel)) put(channel, time_ns, std::move(kept));
 }
 
+void Viewers::give(ViewerId viewer, std::uint32_t channel, std::uint64_t time_ns, std::string payload) {
+  auto kept = std::make_shared<const std::string>(std::move(payload));
+  const std::lock_guard lock{mutex_};
+  const auto found = viewers_.find(viewer);
+  if (found == viewers_.end()) return;
+  const auto& subscribed = found->second.by_channel[channel];
+  if (!subscribed || numbers_[channel] != subscribed->first) return;
+  found->second.states.push_back(
+      {subscribed->id, {true, foxglove::message_head(subscribed->id, time_ns), std::move(kept)}});
+}
+
 void Viewers::put(std::uint32_t channel, std::uint64_t time_ns, Payload payload) {
   bytes_ += payload->size();
   queue_.push_back({channel, numbers_[channel]++, time_ns, std::move(payload)});
@@ -92,7 +103,7 @@ std::string Viewers::subscribe(ViewerId viewer, foxglove::Subscription subscript
   if (to.by_channel[channel]) return fmt::format("channel {} is subscribed to already", channel);
   if (!to.channels.try_emplace(subscription.id, channel).second)
     return fmt::format("subscription {} is another one already", subscription.id);
-  to.by_channel[channel] = Subscribed{subscription.id, numbers_[channel]};
+  to.by_channel[channel] = Subscribed{subscription.id, numbers_[channel], numbers_[channel]};
   ++wanted_[channel];
   if (const auto& newest = newest_[channel])
     to.states.push_back(

@@ -48,6 +48,9 @@ class Viewers {
   void publish(std::uint32_t channel, std::uint64_t time_ns, std::string payload);
   /// The same of what is a state: who subscribes later gets the newest at once.
   void publish_state(std::uint32_t channel, std::uint64_t time_ns, std::string payload);
+  /// What came last, to a viewer that has subscribed to the channel since; nothing where more came since
+  /// then.
+  void give(ViewerId viewer, std::uint32_t channel, std::uint64_t time_ns, std::string payload);
   /// A text to one viewer, or with 0 to all; of a viewer that takes none, the oldest go.
   void tell(ViewerId viewer, std::string text);
 
@@ -89,7 +92,8 @@ class Viewers {
   };
   struct Subscribed {
     std::uint32_t id = 0;
-    std::uint64_t next = 0;  ///< number of the message that it is to get
+    std::uint64_t next = 0;   ///< number of the message that it is to get
+    std::uint64_t first = 0;  ///< of the first one since it subscribed
   };
   struct Viewer {
     std::uint64_t cursor = 0;  ///< place in the queue, counted from the first message of all

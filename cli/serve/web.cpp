@@ -74,10 +74,14 @@ bool equal_in_constant_time(std::string_view a, std::string_view b) noexcept {
   return different == 0;
 }
 
-/// "[::1]:80" -> "[::1]"
+/// "[::1]:80" -> "[::1]". Whatever is no port stays: two headers are one text with a comma between, and are
+/// the name of no server.
 std::string_view without_port(std::string_view host) {
-  if (host.starts_with('[')) return host.substr(0, std::min(host.find(']'), host.size() - 1) + 1);
-  return host.substr(0, host.find(':'));
+  const auto colon = host.rfind(':');
+  if (colon == std::string_view::npos || host.ends_with(']')) return host;
+  const std::string_view port = host.substr(colon + 1);
+  const bool is_port = port.size() <= 5 && port.find_first_not_of("0123456789") == std::string_view::npos;
+  return is_port ? host.substr(0, colon) : host;
 }
 
 std::string_view type_of(std::string_view name) {
@@ -133,18 +137,39 @@ struct Web::State {
   /// Why a request is not served; empty: it is.
   [[nodiscard]] std::string obstacle(lws* wsi) const {
     const std::string host = header(wsi, WSI_TOKEN_HOST);
+    if (host.empty()) return "a request without Host; a browser says there which server it means";
     if (!knows_host(host))
       return fmt::format("this server has no name '{}'; --name gives it one", without_port(host));
     const std::string origin = header(wsi, WSI_TOKEN_ORIGIN);
     if (origin.empty() || origin == scheme + "://" + host) return {};
     if (std::find(options.origins.begin(), options.origins.end(), origin) != options.origins.end()) return {};
+    if (origin == "null")
+      return "a page without an origin (a file, a sandboxed frame) may not connect: open it from a web "
+             "server, and "
+             "name that with --allow-origin";
     return fmt::format("a page of {} may not connect; --allow-origin {} lets it", origin, origin);
   }
-  [[nodiscard]] bool shows_token(lws* wsi) const {
+  enum class Token { none, right, wrong };
+  [[nodiscard]] Token token_of(lws* wsi) const {
     std::array<char, 200> text{};
     const char* const token =
         lws_get_urlarg_by_name(wsi, "token=", text.data(), static_cast<int>(text.size()));
-    return !options.token.empty() && token != nullptr && equal_in_constant_time(token, options.token);
+    if (token == nullptr) return Token::none;
+    return !options.token.empty() && equal_in_constant_time(token, options.token) ? Token::right
+                                                                                  : Token::wrong;
+  }
+  /// One that shows a token wants to command, and must not find out by buttons that are missing.
+  void opened(const Connection& connection, Token token) {
+    listener->opened(connection.viewer, token == Token::right);
+    if (token != Token::wrong) return;
+    viewers->tell(
+        connection.viewer,
+        foxglove::status(foxglove::Level::warning,
+                         options.token.empty()
+                             ? "this server takes no commands: it was started without --allow-commands"
+                             : "the token of this address is not that of this server, so you only look: "
+                               "open the address that amiroctl serve has printed",
+                         "token"));
   }
 
   int respond(lws* wsi, Connection& connection, unsigned status, std::string_view type, std::string_view body,
@@ -245,7 +270,7 @@ struct Web::State {
   /// Before a viewer is connected; nonzero: it is not.
   int filter(lws* wsi) {
     std::string why = obstacle(wsi);
-    if (why.empty() && options.token_to_view && !shows_token(wsi))
+    if (why.empty() && options.token_to_view && token_of(wsi) != Token::right)
       why = "the token is missing: open the address that amiroctl serve has printed";
     if (why.empty() && connections.size() >= most_viewers) why = "there are too many viewers";
     if (why.empty()) return 0;
@@ -289,7 +314,7 @@ struct Web::State {
         (*slot)->viewer = viewers->add();
         connections.push_back(*slot);
         limit_kernel_memory(wsi);
-        listener->opened((*slot)->viewer, shows_token(wsi));
+        opened(**slot, token_of(wsi));
         lws_callback_on_writable(wsi);
         return 0;
       case LWS_CALLBACK_SERVER_WRITEABLE:

@@ -393,12 +393,30 @@ std::optional<Misuse> Option::misuse_of(const std::string& text) const {
   }
 }
 
+namespace {
+/// False, as CLI11 reads a flag's value. What is no truth value is not.
+bool is_off(const std::string& flag) {
+  try {
+    return CLI::detail::to_flag_value(flag) < 0;
+  } catch (const std::logic_error&) {
+    return false;
+  }
+}
+}  // namespace
+
 std::optional<Misuse> Option::give(const std::string& key, const std::vector<std::string>& values) const {
   try {
-    if (option_->get_items_expected_max() == 0 || (option_->get_items_expected_min() == 0 && values.empty()))
-      option_->add_result(option_->get_flag_value(key, values.empty() ? "" : values.front()));
-    else
+    if (option_->get_items_expected_max() == 0 ||
+        (option_->get_items_expected_min() == 0 && values.empty())) {
+      const std::string flag = option_->get_flag_value(key, values.empty() ? "" : values.front());
+      if (is_off(flag)) {  // as if it were not there: what it excludes can be given
+        decline();
+        return {};
+      }
+      option_->add_result(flag);
+    } else {
       option_->add_result(values);
+    }
     option_->run_callback();
     root_of(owner_).given.insert(option_);
   } catch (const CLI::ParseError& error) {

@@ -16,6 +16,7 @@
 #include "cli/shared/buses.hpp"
 #include "cli/shared/config.hpp"
 #include "cli/shared/memory.hpp"
+#include "cli/shared/spec_word.hpp"
 #include "generator/robot_spec.hpp"
 #include "generator/spec/merge.hpp"
 #include "generator/spec/spec.hpp"
@@ -33,24 +34,12 @@ void stop_at(const std::vector<spec::Problem>& problems) {
   if (!problems.empty()) throw Exit{exit_failure};
 }
 
-/// What --spec takes: a file, for all interfaces or for one.
-struct SpecWord {
-  std::string interface;  ///< empty: all
-  std::string file;
-};
-SpecWord split(const std::string& word) {
-  const auto equals = word.find('=');
-  std::error_code error;
-  if (equals == std::string::npos || equals == 0 || std::filesystem::exists(word, error)) return {"", word};
-  return {word.substr(0, equals), word.substr(equals + 1)};
-}
-
 /// A file that is there twice for one interface has all its names twice.
 void refuse_twice(const std::vector<std::string>& words) {
   for (std::size_t i = 0; i < words.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
-      const SpecWord a = split(words[j]);
-      const SpecWord b = split(words[i]);
+      const SpecWord a = parse_spec_word(words[j]);
+      const SpecWord b = parse_spec_word(words[i]);
       std::error_code error;
       if (a.interface == b.interface && std::filesystem::equivalent(a.file, b.file, error))
         fail({fmt::format("--spec {}: the same file as --spec {}", words[i], words[j]), "give it once"},
@@ -106,7 +95,7 @@ const spec::Spec& Session::spec() {
     spec::Model all = load(spec_files.front());
     for (std::size_t i = 1; i < spec_files.size(); ++i) {
       std::vector<spec::Problem> problems;
-      spec::merge(all, load(spec_files[i]), split(spec_files[i]).file, problems);
+      spec::merge(all, load(spec_files[i]), parse_spec_word(spec_files[i]).file, problems);
       stop_at(problems);
     }
     all.share_bit_rate();
@@ -116,7 +105,7 @@ const spec::Spec& Session::spec() {
 }
 
 spec::Model Session::load(const std::string& word) const {
-  const auto [interface, file] = split(word);
+  const auto [interface, file] = parse_spec_word(word);
   auto loaded = spec::load(file);
   if (strict_spec_) stop_at(loaded.doubts);
   stop_at(loaded.problems);
@@ -145,9 +134,38 @@ const protocol::Catalogue& Session::catalogue_on_bus(bool opens_bus) {
   return spec_on_bus_->catalogue();
 }
 
+std::string Session::narrow_to_bus(std::string_view verb, const std::string& bus) {
+  std::vector<SpecWord> words;
+  std::vector<std::string> named;
+  for (const std::string& word : spec_files) {
+    words.push_back(parse_spec_word(word));
+    const std::string& interface = words.back().interface;
+    if (!interface.empty() && std::find(named.begin(), named.end(), interface) == named.end())
+      named.push_back(interface);
+  }
+  if (named.empty()) return bus;
+  std::string all = named.front();
+  for (std::size_t i = 1; i < named.size(); ++i) all += ", " + named[i];
+  if (bus.empty() && named.size() > 1)
+    fail({fmt::format("{}: it is about one bus, and --spec names {}", verb, all),
+          "choose one with --bus NAME"},
+         exit_usage);
+  const std::string& chosen = bus.empty() ? named.front() : bus;
+  spec_files.clear();
+  for (const SpecWord& word : words)
+    if (word.interface.empty() || word.interface == chosen) spec_files.push_back(word.file);
+  if (spec_files.empty())
+    fail({fmt::format("{}: no --spec is for {}, only for {}", verb, chosen, all),
+          fmt::format("--spec {}={}, or --bus {}", chosen, words.front().file, named.front())},
+         exit_usage);
+  spec_.reset();
+  spec_on_bus_.reset();
+  return chosen;
+}
+
 void Session::refuse_interfaces(std::string_view verb) {
   for (const std::string& word : spec_files) {
-    const auto [interface, file] = split(word);
+    const auto [interface, file] = parse_spec_word(word);
     if (!interface.empty())
       fail({fmt::format("{}: --spec {}: it is about one bus, whatever its name", verb, word),
             fmt::format("--spec {}", file)},

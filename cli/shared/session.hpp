@@ -34,6 +34,11 @@ class Session {
   /// What is on the bus that is commanded: --spec can1=FILE is nothing that can0 takes. The bus is --bus, or
   /// the only one; where none is known, as with --dry-run, all that there is.
   [[nodiscard]] const protocol::Catalogue& catalogue_on_bus(bool opens_bus);
+  /// Of a verb that is about one bus: from now on the specs are those for it, as if they had been given
+  /// without their interface. It is `bus`, or where that is empty the only one that --spec names; exit_usage
+  /// where there are several, or none for it. To be called before anything of the spec is asked for. Returns
+  /// the bus; empty: no interface is named, and none is chosen.
+  [[nodiscard]] std::string narrow_to_bus(std::string_view verb, const std::string& bus);
   /// Of a verb that is about one bus which has no name: exit_usage where --spec names interfaces.
   void refuse_interfaces(std::string_view verb);
 

@@ -1,5 +1,10 @@
 #include "cli/simulate/cast.hpp"
 
+#include <algorithm>
+#include <string>
+
+#include <fmt/format.h>
+
 #include "ocm/topics/amiro.hpp"
 
 #include "cli/shared/messages.hpp"
@@ -17,7 +22,13 @@ bool is_of_amiro(const protocol::Topic& topic) {
 }  // namespace
 
 Cast cast_of(Session& session) {
-  session.refuse_interfaces("sim");
+  const bool plays_on_sim = session.bus_name.empty();
+  const bool has_sim = std::any_of(session.spec_files.begin(), session.spec_files.end(),
+                                   [](const std::string& word) { return word.starts_with("sim="); });
+  const std::string bus = session.narrow_to_bus("sim", plays_on_sim && has_sim ? "sim" : session.bus_name);
+  if (plays_on_sim && !has_sim && !bus.empty())
+    remark(fmt::format("what --spec has for {} is played on the bus sim: for other verbs, --spec sim={}", bus,
+                       session.spec_files.front()));
   if (session.spec_files.empty()) return Cast::amiro;
   bool messages = false;
   bool topics = false;

@@ -15,8 +15,8 @@ enum class Cast : std::uint8_t {
   both,
 };
 
-/// Remarks where topics of another robot are left out: no boards of theirs are simulated. Refuses specs of
-/// one interface.
+/// Remarks where topics of another robot are left out: no boards of theirs are simulated. Of specs
+/// for single interfaces, those of --bus, or of the bus sim, or of the only interface that is named.
 [[nodiscard]] Cast cast_of(Session& session);
 
 constexpr std::uint32_t fastest_bit_rate = 1'000'000'000;  ///< bit/s, of the virtual bus

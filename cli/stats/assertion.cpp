@@ -72,12 +72,17 @@ constexpr Quantity quantities[] = {
      [](const Bus& b) -> std::optional<double> { return number(b.figures.counters.incomplete); }},
     {"wrong", Unit::none, [](const TopicFigures& t) { return if_any(t, number(t.wrong_dlc)); },
      [](const Bus& b) -> std::optional<double> { return number(b.figures.counters.wrong_dlc); }},
-    {"load", Unit::percent, [](const TopicFigures& t) { return if_any(t, t.load * 100); },
+    {"load", Unit::percent,
+     [](const TopicFigures& t) { return std::isnan(t.load) ? std::nullopt : if_any(t, t.load * 100); },
      [](const Bus& b) -> std::optional<double> {
-       return b.figures.span().count() > 0 ? std::optional{b.figures.load * 100} : std::nullopt;
+       const bool known = b.figures.bit_rates.nominal != 0 && b.figures.span().count() > 0;
+       return known ? std::optional{b.figures.load * 100} : std::nullopt;
      }},
     {"peak", Unit::percent, nullptr,
-     [](const Bus& b) -> std::optional<double> { return b.figures.worst_load * 100; }},
+     [](const Bus& b) -> std::optional<double> {
+       if (b.figures.bit_rates.nominal == 0) return std::nullopt;
+       return b.figures.worst_load * 100;
+     }},
     {"frames", Unit::none, nullptr,
      [](const Bus& b) -> std::optional<double> {
        return number(b.figures.counters.frames - b.figures.counters.errors);

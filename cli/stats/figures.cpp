@@ -1,16 +1,30 @@
 #include "cli/stats/figures.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace ocm::cli::stats {
+namespace {
+
+void forget_loads(measure::BusFigures& figures) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  figures.bit_rates = {};
+  figures.load = figures.request_load = figures.stranger_load = figures.worst_load = unknown;
+  for (auto& topic : figures.topics) topic.load = unknown;
+}
+
+}  // namespace
 
 Collector::Part& Collector::find(std::string_view name) {
   if (last_ != nullptr && last_->name == name) return *last_;
   for (Part& part : parts_)
     if (part.name == name) return *(last_ = &part);
-  measure::BusStatistics statistics{*catalogue_, rates_of_(name), client::Transport::together, name};
-  return *(last_ = &parts_.emplace_back(Part{std::string{name}, std::move(statistics), 0}));
+  measure::BitRates rates = rates_of_(name);
+  const bool has_rate = rates.nominal != 0;
+  rates.nominal = std::max(rates.nominal, 1U);
+  measure::BusStatistics statistics{*catalogue_, rates, client::Transport::together, name};
+  return *(last_ = &parts_.emplace_back(Part{std::string{name}, std::move(statistics), 0, has_rate}));
 }
 
 void Collector::take(std::span<const log::Entry> entries, const log::Interfaces& interfaces) {
@@ -48,7 +62,10 @@ std::vector<const protocol::Topic*> Collector::never_came(const std::vector<Bus>
 
 std::vector<Bus> Collector::buses(std::optional<base::Time> now) const {
   std::vector<Bus> buses;
-  for (const Part& part : parts_) buses.push_back({part.name, part.statistics.figures(now), part.drops});
+  for (const Part& part : parts_) {
+    buses.push_back({part.name, part.statistics.figures(now), part.drops});
+    if (!part.has_rate) forget_loads(buses.back().figures);
+  }
   return buses;
 }
 

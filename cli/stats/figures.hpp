@@ -21,8 +21,8 @@ namespace ocm::cli::stats {
 
 struct Bus {
   std::string name;
-  measure::BusFigures figures;
-  std::uint64_t drops = 0;  ///< frames that were on the bus and did not arrive
+  measure::BusFigures figures;  ///< with NaN for each load, where the bit rate is 0: not known
+  std::uint64_t drops = 0;      ///< frames that were on the bus and did not arrive
 };
 
 struct Report {
@@ -36,7 +36,7 @@ struct Report {
 /// with its figures.
 class Collector {
  public:
-  /// `rates_of`: the bit rates of an interface.
+  /// `rates_of`: the bit rates of an interface; 0 is not known, and then no share of the bus is.
   Collector(const protocol::Catalogue& catalogue,
             std::function<measure::BitRates(std::string_view interface)> rates_of)
       : catalogue_(&catalogue), rates_of_(std::move(rates_of)) {}
@@ -54,6 +54,7 @@ class Collector {
     std::string name;
     measure::BusStatistics statistics;
     std::uint64_t drops = 0;
+    bool has_rate = true;
   };
   Part& find(std::string_view name);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 
 #include <fmt/format.h>
@@ -106,7 +107,7 @@ Row row(const TopicFigures& topic, base::Time first) {
           has_lateness(timing) ? time(timing.lateness_ns) : "-",
           timing.period_from == PeriodFrom::nothing ? "-" : fmt::format("{}", timing.missing),
           gap(timing, first),
-          to_text(topic.load * 100, Unit::percent),
+          std::isnan(topic.load) ? "-" : to_text(topic.load * 100, Unit::percent),
           faults};
 }
 
@@ -150,12 +151,15 @@ std::vector<std::string> summary(const Bus& bus) {
   const BusFigures& figures = bus.figures;
   const auto& counters = figures.counters;
   std::vector<std::string> lines;
-  lines.push_back(fmt::format(
-      "{}: {} in {} ({}); load {} at {} kbit/s, {} in the worst 100 ms, until {}",
-      log::Complaints::printable(bus.name), client::count(counters.frames - counters.errors, "frame*"),
-      time(figures.span().count()), to_text(figures.rate_hz, Unit::hertz),
-      to_text(figures.load * 100, Unit::percent), kbit_per_second(figures),
-      to_text(figures.worst_load * 100, Unit::percent), time((figures.worst_until - figures.first).count())));
+  std::string load = "its load: --bitrate 500k";
+  if (figures.bit_rates.nominal != 0)
+    load = fmt::format("load {} at {} kbit/s, {} in the worst 100 ms, until {}",
+                       to_text(figures.load * 100, Unit::percent), kbit_per_second(figures),
+                       to_text(figures.worst_load * 100, Unit::percent),
+                       time((figures.worst_until - figures.first).count()));
+  lines.push_back(fmt::format("{}: {} in {} ({}); {}", log::Complaints::printable(bus.name),
+                              client::count(counters.frames - counters.errors, "frame*"),
+                              time(figures.span().count()), to_text(figures.rate_hz, Unit::hertz), load));
   std::string faults;
   const auto fault = [&faults](std::uint64_t count, std::string_view what) {
     if (count == 0) return;
@@ -165,13 +169,20 @@ std::vector<std::string> summary(const Bus& bus) {
   fault(figures.overflows, "overflow* of the CAN controller");
   fault(bus.drops, "frame* lost");
   fault(figures.fd_frames - figures.not_in_load, "CAN FD frame*");
-  fault(figures.not_in_load, "CAN FD frame*, not in the load without --data-bitrate");
+  fault(figures.not_in_load, figures.bit_rates.nominal == 0
+                                 ? "CAN FD frame*"
+                                 : "CAN FD frame*, not in the load without --data-bitrate");
   fault(counters.remote, "remote frame*");
   fault(counters.transport, "frame* of the transport protocol of J1939");
   fault(counters.unknown + counters.fd, "frame* that no topic or message has");
   if (counters.unknown + counters.fd != 0) faults += fmt::format(" ({})", strangers(figures));
   if (!faults.empty()) lines.push_back("  " + faults);
   return lines;
+}
+
+/// null: the bit rate is not known.
+Json percent(double share) {
+  return std::isnan(share) ? Json(nullptr) : Json(share * 100);
 }
 
 Json to_object(const TopicFigures& topic) {
@@ -203,7 +214,7 @@ Json to_object(const TopicFigures& topic) {
       {"requests", topic.requests},
       {"bad_requests", topic.bad_requests},
       {"backwards", timing.backwards},
-      {"load_percent", topic.load * 100}};
+      {"load_percent", percent(topic.load)}};
 }
 
 Json to_object(const Bus& bus, const Shown& shown) {
@@ -220,12 +231,12 @@ Json to_object(const Bus& bus, const Shown& shown) {
           {"last_ns", fmt::format("{}", figures.last.time_since_epoch().count())},
           {"frames", counters.frames - counters.errors},
           {"rate_hz", figures.rate_hz},
-          {"bit_rate", figures.bit_rates.nominal},
+          {"bit_rate", figures.bit_rates.nominal != 0 ? Json(figures.bit_rates.nominal) : Json(nullptr)},
           {"data_bit_rate", figures.bit_rates.data != 0 ? Json(figures.bit_rates.data) : Json(nullptr)},
-          {"load_percent", figures.load * 100},
-          {"request_load_percent", figures.request_load * 100},
-          {"unknown_load_percent", figures.stranger_load * 100},
-          {"worst_100ms_load_percent", figures.worst_load * 100},
+          {"load_percent", percent(figures.load)},
+          {"request_load_percent", percent(figures.request_load)},
+          {"unknown_load_percent", percent(figures.stranger_load)},
+          {"worst_100ms_load_percent", percent(figures.worst_load)},
           {"worst_100ms_until_ns", fmt::format("{}", figures.worst_until.time_since_epoch().count())},
           {"commands", counters.commands},
           {"errors", counters.errors},

@@ -61,25 +61,26 @@ struct Curses::State {
 namespace {
 
 /// What ncurses knows of a terminal, before it takes it: newterm is said to leave the program otherwise.
-transport::Failure obstacle() {
-  constexpr std::string_view remedy = "amiroctl stats and listen write to anything";
+transport::Failure obstacle(const CursesOptions& options) {
   if (::isatty(STDOUT_FILENO) == 0 || ::isatty(STDIN_FILENO) == 0)
-    return {fmt::format("top draws on a terminal, and {} is none",
+    return {fmt::format("{} draws on a terminal, and {} is none", options.program,
                         ::isatty(STDOUT_FILENO) == 0 ? "standard output" : "standard input"),
-            std::string{remedy}};
+            std::string{options.instead}};
   const char* const name = std::getenv("TERM");
   if (name == nullptr || *name == '\0')
-    return {"TERM is not set, so that nothing is known of this terminal", "TERM=xterm-256color amiroctl top"};
+    return {"TERM is not set, so that nothing is known of this terminal",
+            fmt::format("TERM=xterm-256color amiroctl {}", options.program)};
   int error = 0;
   if (::setupterm(name, STDOUT_FILENO, &error) != OK)
     return {fmt::format("TERM is '{}', of which nothing is known here", name),
-            "TERM=xterm-256color amiroctl top, or install ncurses-term"};
+            fmt::format("TERM=xterm-256color amiroctl {}, or install ncurses-term", options.program)};
   char cup[] = "cup";
   const char* const moves = ::tigetstr(cup);
   const bool can_move = moves != nullptr && moves != reinterpret_cast<const char*>(-1);
   ::del_curterm(::cur_term);  // newterm makes its own
   if (!can_move)
-    return {fmt::format("TERM is '{}', a terminal that cannot move its cursor", name), std::string{remedy}};
+    return {fmt::format("TERM is '{}', a terminal that cannot move its cursor", name),
+            std::string{options.instead}};
   return {};
 }
 
@@ -156,13 +157,12 @@ std::string utf8(wint_t character) {
 }  // namespace
 
 transport::Outcome<std::unique_ptr<Curses>> Curses::open(const CursesOptions& options) {
-  if (transport::Failure failure = obstacle(); !failure.what.empty()) return failure;
+  if (transport::Failure failure = obstacle(options); !failure.what.empty()) return failure;
   auto state = std::make_unique<State>();
   state->unicode = speaks_unicode();
   state->screen = ::newterm(nullptr, stdout, stdin);
   if (state->screen == nullptr)
-    return transport::Failure{"ncurses cannot use this terminal",
-                              "amiroctl stats and listen write to anything"};
+    return transport::Failure{"ncurses cannot use this terminal", std::string{options.instead}};
   ::cbreak();
   ::noecho();
   ::nonl();
@@ -227,6 +227,7 @@ std::optional<Key> Curses::key() {
       continue;
     }
     if (code == L'\r' || code == L'\n') return Key{Key::Kind::enter};
+    if (code == L'\t') return Key{Key::Kind::tabulator};
     if (code == 0x1B) return Key{Key::Kind::escape};
     if (code == 0x7F || code == 0x08) return Key{Key::Kind::backspace};
     if (code >= 0x20) return Key{Key::Kind::character, utf8(code)};

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <string_view>
 
 #include "ocm/transport/bus.hpp"
 
@@ -12,8 +13,11 @@
 namespace ocm::cli::top {
 
 struct CursesOptions {
+  std::string_view program = "top";  ///< for messages
   bool colour = true;
   bool mouse = false;
+  std::string_view instead =
+      "amiroctl stats and listen write to anything";  ///< what works without a terminal
 };
 
 /// Whether it was built with ncurses; where not, a program needs nothing of what only draws.

@@ -216,7 +216,7 @@ int run(Session& session, const TopOptions& options) {
   transport::Failure gone;
   {
     const HeldMessages held;
-    auto screen = Curses::open({session.colour(), options.mouse});
+    auto screen = Curses::open({.colour = session.colour(), .mouse = options.mouse});
     if (!screen) fail(screen.error, exit_usage);
     Top top{session, options, **screen, std::move(live), std::move(log)};
     over = top.run();

@@ -18,6 +18,8 @@
 #include "cli/bus_model/models.hpp"
 #include "cli/bus_model/playing.hpp"
 #include "cli/shared/terminal.hpp"
+#include "cli/top/line.hpp"
+#include "cli/top/sort.hpp"
 
 namespace ocm::cli::top {
 
@@ -29,16 +31,6 @@ using bus_model::Models;
 using bus_model::Playing;
 using bus_model::Row;
 using bus_model::Summary;
-
-enum class Style : std::uint8_t { plain, dim, bold, heading, sorted, selected, good, warning, bad };
-
-struct Piece {
-  std::string text;
-  Style style = Style::plain;
-};
-using Line = std::vector<Piece>;
-/// As many lines as the terminal has, none wider than it.
-using Picture = std::vector<Line>;
 
 /// What a person pressed.
 struct Key {
@@ -53,6 +45,7 @@ struct Key {
     home,
     end,
     enter,
+    tabulator,
     escape,
     backspace,
     function,  ///< `number` says which
@@ -77,8 +70,6 @@ struct Effect {
   Kind kind = Kind::none;
   base::Duration by{};
 };
-
-enum class Sort : std::uint8_t { spec, name, rate, jitter, age, share, changed, count };
 
 /// What is drawn.
 struct Scene {
@@ -126,7 +117,13 @@ class View {
     const protocol::Topic* topic = nullptr;
   };
   using Rows = std::vector<std::pair<std::size_t, Row>>;  ///< with the number of their bus
-  struct Columns;
+  /// Which columns a width has room for; 0: none of that.
+  struct Columns {
+    std::size_t name = 12;
+    std::size_t rate = 6, age = 0, jitter = 0, share = 0, changed = 0, faults = 0, count = 0;
+
+    Columns(std::size_t width, std::size_t longest_name);
+  };
   struct Seen {
     std::int64_t raw = 0;
     base::Time changed{};
@@ -171,10 +168,5 @@ class View {
   std::map<ItemKey, std::size_t> widths_;  ///< of values: they only grow, so that nothing jumps
   std::map<ItemKey, Seen> seen_;
 };
-
-/// "1.2ms", "340ms", "12.3s", "4m", "2h": six columns at most.
-[[nodiscard]] std::string short_time(base::Duration duration);
-/// "0.95", "20.0", "1234": six columns at most.
-[[nodiscard]] std::string short_number(double number);
 
 }  // namespace ocm::cli::top

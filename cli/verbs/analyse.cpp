@@ -138,7 +138,6 @@ BusOptions bus_options(const Options& options, const protocol::Catalogue& catalo
 
 /// The spec that --spec names; the compiled one has no messages.
 const spec::Model* model_of(Session& session) {
-  session.refuse_interfaces("analyse");
   return session.spec_files.empty() ? nullptr : &session.spec().model();
 }
 
@@ -155,10 +154,17 @@ int show(const Study& study, const Options& options, const Session& session, Adv
   return study.passes() ? exit_success : exit_failure;
 }
 
+void narrow(Session& session) {
+  static_cast<void>(session.narrow_to_bus("analyse", session.bus_name));
+}
+
 int bus(const Options& options, Session& session) {
+  if (options.file.empty()) narrow(session);
   const auto rates = read_rates(options.rates);
   BusOptions how = bus_options(options, session.catalogue());
-  BusSet set = options.file.empty() ? robot_bus(session.catalogue(), model_of(session), rates)
+  const auto& specs = session.spec_files;
+  const std::string source = specs.empty() ? "--rates" : fmt::format("{}", fmt::join(specs, ", "));
+  BusSet set = options.file.empty() ? robot_bus(session.catalogue(), model_of(session), rates, source)
                                     : read_bus(options.file, rates);
   how = at_rates_of(set, how);
   assign(set, how, assignment(options, how, set));
@@ -198,6 +204,7 @@ int tasks(const Options& options, Session& session) {
 }
 
 int chain(const Options& options, Session& session) {
+  narrow(session);
   const std::int64_t deadline = options.deadline ? options.deadline->count() : analysis::unbounded;
   const ChainStudy study = study_chain(options.file, deadline, bus_options(options, session.catalogue()),
                                        session.catalogue(), model_of(session), read_rates(options.rates));
@@ -209,6 +216,7 @@ int chain(const Options& options, Session& session) {
 }
 
 int trace(const Options& options, Session& session) {
+  if (options.set.empty()) narrow(session);
   Options how = options;
   how.file = options.set;
   const TraceStudy study =

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "cli/fleet/central_line.hpp"
-#include "cli/fleet/pausing.hpp"
+#include "cli/fleet/pause_seen.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"

@@ -2,6 +2,7 @@
 #include <string>
 
 #include "cli/command/commanding.hpp"
+#include "cli/command/drive_by_pad.hpp"
 #include "cli/command/key_drive.hpp"
 #include "cli/command/operated_bus.hpp"
 #include "cli/command/timeline.hpp"
@@ -18,6 +19,7 @@ void add_drive(Verb app, Session& session, int& exit_code) {
                    "  amiroctl drive 5cm/s -30deg/s --for 2s\n"
                    "  amiroctl drive 0 30deg/s              turns on the spot; only zero needs no unit\n"
                    "  amiroctl drive --keys                 while an arrow key is held; q quits\n"
+                   "  amiroctl drive --gamepad /dev/input/event5\n"
                    "  amiroctl drive stop");
   struct Options {
     Options(Verb app, Session& s)
@@ -26,6 +28,7 @@ void add_drive(Verb app, Session& session, int& exit_code) {
     bool once = false;
     bool force = false;
     bool keys = false;
+    std::string gamepad;
   };
   const auto options = std::make_shared<Options>(verb, session);
   const auto lasting =
@@ -36,8 +39,18 @@ void add_drive(Verb app, Session& session, int& exit_code) {
   const auto once =
       verb.add_flag("--once", options->once, "send one frame; the board stops the motors when none follows")
           .excludes(lasting);
-  verb.add_flag("--keys", options->keys,
-                "drive while a key is held: arrows, or u i o j l m , . as in teleop; X and Z are the speeds")
+  const auto keys =
+      verb.add_flag(
+              "--keys", options->keys,
+              "drive while a key is held: arrows, or u i o j l m , . as in teleop; X and Z are the speeds")
+          .excludes(lasting)
+          .excludes(once)
+          .excludes(verb.option("--dry-run"));
+  verb.add_option(
+          "--gamepad", options->gamepad,
+          "drive by the left stick of a gamepad while a shoulder button is held; X and Z are its ends")
+      .type_name("DEVICE")
+      .excludes(keys)
       .excludes(lasting)
       .excludes(once)
       .excludes(verb.option("--dry-run"));
@@ -47,6 +60,12 @@ void add_drive(Verb app, Session& session, int& exit_code) {
     if (options->keys) {
       exit_code = drive_by_keys(session, {options->commanding.words(), options->commanding.options(), others,
                                           options->commanding.confirm()});
+      return;
+    }
+    if (!options->gamepad.empty()) {
+      exit_code =
+          drive_by_pad(session, {options->gamepad, options->commanding.words(), options->commanding.options(),
+                                 others, options->commanding.confirm()});
       return;
     }
     const auto command = options->commanding.parse();

@@ -13,7 +13,7 @@
 #include "cli/fleet/central_line.hpp"
 #include "cli/fleet/line_time.hpp"
 #include "cli/fleet/link_watch.hpp"
-#include "cli/fleet/pausing.hpp"
+#include "cli/fleet/pause_seen.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"

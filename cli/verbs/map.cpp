@@ -8,6 +8,7 @@
 
 #include "cli/fleet/map_run.hpp"
 #include "cli/fleet/map_view.hpp"
+#include "cli/serve/beside.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
@@ -18,6 +19,16 @@ namespace {
 using cognitive::Agreement;
 using fleet::End;
 using fleet::MapRun;
+
+constexpr std::uint32_t default_port = 8484;
+
+/// --live, and what belongs to it.
+struct MapPage {
+  bool live = false;
+  bool commands = false;
+  bool opens = false;
+  std::uint32_t port = default_port;
+};
 
 /// A file of every kind that is asked for, before any robot moves.
 void check_files(const std::vector<std::string>& files) {
@@ -43,7 +54,36 @@ bool write_files(const std::vector<std::string>& files, const MapRun& run,
   return all;
 }
 
-void run(const fleet::MapOptions& options, int& exit_code) {
+/// The page with the map, which joins this program's own line.
+std::unique_ptr<serve::PageBeside> show(Session& session, const MapPage& page,
+                                        const fleet::MapOptions& options, MapRun& run) {
+  if (!page.live) return nullptr;
+  serve::ServeOptions shown;
+  shown.bus = false;
+  shown.web.port = static_cast<std::uint16_t>(page.port);
+  shown.opens = page.opens;
+  shown.shows = "map";
+  shown.commands = page.commands;
+  shown.fleet =
+      serve::FleetOptions{.line = options.line, .starts = {}, .world = {}, .call_back = false, .waits = true};
+  auto beside = std::make_unique<serve::PageBeside>(session, std::move(shown));
+  run.on_end([page = beside.get()] { return page->end(); });
+  return beside;
+}
+
+void run(Session& session, const fleet::MapOptions& options, const MapPage& page, int& exit_code) {
+  if (page.live) serve::check_has_page("map --live");
+  if (!page.live && (page.opens || page.commands || page.port != default_port))
+    fail({"map: --port, --open and --allow-commands are of the page", "add --live, or drop them"},
+         exit_usage);
+  if (page.opens && page.commands)
+    fail(
+        {"map: --open and --allow-commands: other users of this machine would see the token, among the words "
+         "of the browser's process",
+         "drop one of them, and open the address by hand"},
+        exit_usage);
+  if (page.live && options.watch)
+    fail({"map: --live with --watch", "amiroctl serve robots shows what another program draws"}, exit_usage);
   check_files(options.files);
   if (!(options.resolution_cm >= 0.5 && options.resolution_cm <= 50))
     fail({fmt::format("map: --resolution {}: no size of a cell", options.resolution_cm),
@@ -56,8 +96,9 @@ void run(const fleet::MapOptions& options, int& exit_code) {
       exit_code = fleet::view_map(options, *other);
       return;
     }
-  const fleet::Known known = fleet::known_of(options.world, options.starts);
+  const fleet::Known known = fleet::known_of("map", options.world, options.starts);
   MapRun run{options, known};
+  const auto beside = show(session, page, options, run);
   const End end = run.explore(options.duration);
   if (!run.any()) {
     if (interrupted() == 0) remark("map: no update came that could be drawn");
@@ -73,12 +114,13 @@ void run(const fleet::MapOptions& options, int& exit_code) {
 
 }  // namespace
 
-void add_map(Verb app, Session&, int& exit_code) {
+void add_map(Verb app, Session& session, int& exit_code) {
   auto verb =
       app.add_verb("map", "let mappers explore, and draw a map of what they see", mapper_group,
                    "  amiroctl map room.svg\n"
                    "  amiroctl map room.png room.pgm --robots AVR --duration 5min\n"
                    "  amiroctl map room.svg --start AVR=0.4,0.4,0 --start Arduino=2,1.4,180\n"
+                   "  amiroctl map room.svg --live               in a browser, too, while it grows\n"
                    "  amiroctl map room.svg --world labyrinth    drawn over the true walls, and compared");
   const auto options = std::make_shared<fleet::MapOptions>();
   verb.add_option("file", options->files, ".svg, .png, .pdf; .pgm with a .yaml beside it for ROS")
@@ -101,8 +143,13 @@ void add_map(Verb app, Session&, int& exit_code) {
   verb.add_flag("--watch", options->watch,
                 "draw only: what another `amiroctl map` draws, or while a server elsewhere drives");
   verb.add_flag("--json", options->json, "figures as an object");
+  const auto page = std::make_shared<MapPage>();
+  verb.add_flag("--live", page->live, "show the map in a browser while it grows; prints the address");
+  verb.add_option("--port", page->port, "of that page").range(0U, 65535U).show_default();
+  verb.add_flag("--allow-commands", page->commands, "who opens the address that is printed may send robots");
+  verb.add_flag("--open", page->opens, "in your browser, too");
   fleet::add_line_options(verb, options->line);
-  verb.callback([options, &exit_code] { run(*options, exit_code); });
+  verb.callback([options, page, &session, &exit_code] { run(session, *options, *page, exit_code); });
 }
 
 }  // namespace ocm::cli

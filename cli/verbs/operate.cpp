@@ -77,13 +77,13 @@ std::unique_ptr<operate::Control> open_control(const transport::Bus& bus) {
 }
 
 int run(const OperateOptions& options, Session& session, std::uint32_t bit_rate) {
-  session.refuse_interfaces("operate");
   const auto& catalogue = session.catalogue();
   static_cast<void>(
       load_or_leave(options, catalogue, bit_rate));  // a mistake is said before a bus is missing
   catch_interrupts();
   catch_hangups();
-  catch_broken_pipe();
+  std::signal(SIGPIPE,
+              SIG_IGN);  // a reader that leaves does not end what guards the robot: lines are counted
   std::signal(SIGXFSZ, SIG_IGN);  // a black box that may not grow is reported like a full disk
   const auto bus = session.open_bus();
   const auto control = open_control(*bus);
@@ -108,7 +108,8 @@ int run(const OperateOptions& options, Session& session, std::uint32_t bit_rate)
 }
 
 int operate_file(const OperateOptions& options, Session& session) {
-  session.refuse_interfaces("operate");
+  // What the specs are for is what is operated.
+  session.bus_name = session.narrow_to_bus("operate", session.bus_name);
   const auto& catalogue = session.catalogue();
   const std::uint32_t bit_rate = options.bit_rate.value_or(catalogue.bit_rate);
   if (bit_rate == 0)

@@ -7,7 +7,7 @@
 
 #include "cli/fleet/central_line.hpp"
 #include "cli/fleet/link_watch.hpp"
-#include "cli/fleet/pausing.hpp"
+#include "cli/fleet/pause_seen.hpp"
 #include "cli/verbs/verbs.hpp"
 
 namespace ocm::cli {

@@ -19,6 +19,8 @@
 #include "cli/output/printer.hpp"
 #include "cli/plot/curves.hpp"
 #include "cli/plot/gnuplot.hpp"
+#include "cli/serve/server.hpp"
+#include "cli/shared/clock.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/output_file.hpp"
 #include "cli/verbs/verbs.hpp"
@@ -36,6 +38,9 @@ struct PlotOptions {
   std::string size;
   std::string title;
   bool script = false;
+  bool live = false;
+  bool opens = false;
+  std::uint32_t port = 8484;
 };
 
 /// By the ending of the file; a pipe gets SVG.
@@ -127,12 +132,56 @@ void tell_missing(const plot::Curves& curves) {
   }
 }
 
-void run(Session& session, const PlotOptions& options, int& exit_code) {
+/// As an address may have it behind its #.
+std::string in_address(std::string_view name) {
+  std::string text;
+  for (const char c : name) {
+    const bool plain =
+        (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '.';
+    text += plain ? std::string{c} : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return text;
+}
+
+/// The page of serve with these fields, on the live bus.
+int show_live(Verb verb, Session& session, const PlotOptions& options, const Words& words,
+              const std::vector<plot::Wanted>& wanted) {
+  for (const char* option : {"--output", "--size", "--title", "--script", "--from", "--count"})
+    if (verb.count(option) != 0)
+      fail({fmt::format("plot: {} with --live", option), "the page has no such thing: drop one of them"},
+           exit_usage);
+  if (!words.files.empty())
+    fail({fmt::format("plot: --live is of the bus, and {} is a log", words.files[0]),
+          fmt::format("amiroctl serve {} shows a log, with a time bar", words.files[0])},
+         exit_usage);
+  if (wanted[0].x) fail({"plot: --live draws over time, and no path", "drop --live"}, exit_usage);
+  std::string shows = "plot=";
+  for (const plot::Wanted& each : wanted) {
+    if (shows.back() != '=') shows += ',';
+    shows += "/" + in_address(each.y.name);
+  }
+  serve::ServeOptions shown;
+  shown.web.port = static_cast<std::uint16_t>(options.port);
+  shown.opens = options.opens;
+  shown.shows = std::move(shows);
+  const auto end = Clock::now() + options.watch.duration.value_or(base::Duration{});
+  if (options.watch.duration) shown.over = [end] { return Clock::now() >= end; };
+  return serve::run(session, std::move(shown));
+}
+
+void run(Verb verb, Session& session, const PlotOptions& options, int& exit_code) {
   const auto& catalogue = session.catalogue();
   Words words = split_words("plot", options.words, [&catalogue](std::string_view word) {
     return static_cast<bool>(plot::parse_fields(catalogue, word));
   });
   const auto wanted = read_fields(words.others, catalogue);
+  if (options.live) {
+    exit_code = show_live(verb, session, options, words, wanted);
+    return;
+  }
+  for (const char* option : {"--port", "--open"})
+    if (verb.count(option) != 0)
+      fail({fmt::format("plot: {} is of the page", option), "add --live, or drop it"}, exit_usage);
   const bool terminal = isatty(STDOUT_FILENO) != 0;
   const std::string output = !options.output.empty() ? options.output : terminal ? "plot.svg" : "-";
   plot::Picture picture;
@@ -177,7 +226,8 @@ void add_plot(Verb app, Session& session, int& exit_code) {
                            "  amiroctl plot drive.log gyroscope.z -o turn.png\n"
                            "  amiroctl plot drive.log 'gyro.*' odometry.velocity   a panel for each unit\n"
                            "  amiroctl plot drive.log odometry.x:odometry.y       where it drove\n"
-                           "  amiroctl plot live gyro.z --duration 10s");
+                           "  amiroctl plot live gyro.z --duration 10s\n"
+                           "  amiroctl plot --live gyro.z                         in a browser");
   const auto options = std::make_shared<PlotOptions>();
   verb.add_option("words", options->words,
                   "logs, any format; none, or live: the bus. Fields: gyroscope.z, 'gyro.*', "
@@ -191,8 +241,11 @@ void add_plot(Verb app, Session& session, int& exit_code) {
       .takes(accepted_size());
   verb.add_option("--title", options->title, "default: the robot and the log").type_name("TEXT");
   verb.add_flag("--script", options->script, "print gnuplot's commands, and draw nothing");
+  verb.add_flag("--live", options->live, "in a browser, while they come; prints the address");
+  verb.add_option("--port", options->port, "of that page").range(0U, 65535U).show_default();
+  verb.add_flag("--open", options->opens, "in your browser, too");
   add_watch_options(verb, options->watch);
-  verb.callback([options, &session, &exit_code] { run(session, *options, exit_code); });
+  verb.callback([options, verb, &session, &exit_code] { run(verb, session, *options, exit_code); });
 }
 
 }  // namespace ocm::cli

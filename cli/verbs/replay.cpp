@@ -216,7 +216,7 @@ void play(Session& session, const ReplayOptions& options, int& exit_code) {
 
 /// The samples of the log, between --from and --until.
 void learn(replay::StandIn& robot, logs::OpenedLog& log, const replay::Span& span,
-           replay::Selection& selection) {
+           replay::Selection& selection, const protocol::Catalogue& catalogue) {
   std::vector<log::Entry> entries(log::batch);
   std::optional<base::Time> first;
   while (const std::size_t count = log.reader().read(entries)) {
@@ -228,7 +228,9 @@ void learn(replay::StandIn& robot, logs::OpenedLog& log, const replay::Span& spa
       if (!frame || span.is_before(offset) || span.is_behind(offset) ||
           !selection.has(entry, log.reader().interfaces()))
         continue;
-      if (!robot.learn(*frame))
+      if (catalogue.has_buses())
+        robot.on_interface(entry.interface, log.reader().interfaces().name(entry.interface));
+      if (!robot.learn(*frame, entry.interface))
         fail({fmt::format("{} has more frames than fit into the memory for --on-command", log.path()),
               "choose a part of it with --from and --until, or some topics"});
     }
@@ -253,7 +255,7 @@ void stand_in(Session& session, const ReplayOptions& options, int& exit_code) {
   replay::StandIn robot{catalogue};
   {
     logs::OpenedLog log{options.file, options.from_format, catalogue};
-    learn(robot, log, span, selection);
+    learn(robot, log, span, selection, catalogue);
     log.complain();
   }
   if (robot.samples() == 0)
@@ -341,12 +343,18 @@ void add_replay(Verb app, Session& session, int& exit_code) {
   verb.add_flag("--on-command", options->on_command,
                 "answer requests on the bus with the samples of the log, at the period that is asked for");
   verb.add_flag("--dry-run", options->dry_run, "print the frames, and when they would be sent; send nothing");
-  verb.callback([options, loop, &session, &exit_code] {
+  verb.callback([options, loop, verb, &session, &exit_code] {
     if (loop.count() != 0) options->passes = parse_passes(options->loop);
-    if (options->on_command)
+    if (options->on_command) {
+      for (const char* option : {"--interface", "--only", "--loop", "--speed", "--max-gap", "--dry-run"})
+        if (verb.count(option) != 0)
+          fail({fmt::format("replay: {} with --on-command", option),
+                "leave one out: samples are sent when they are asked for, on the bus of --bus"},
+               exit_usage);
       stand_in(session, *options, exit_code);
-    else
-      play(session, *options, exit_code);
+      return;
+    }
+    play(session, *options, exit_code);
   });
 }
 

@@ -1,5 +1,6 @@
 /// A page that shows bus and robot in a browser, live or from a log.
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,15 +21,44 @@ struct GivenToServe {
   std::vector<std::string> words;
   std::uint32_t port = 8484;
   serve::ServeOptions options;
+  serve::FleetOptions fleet;
 };
+
+/// What is meant for robots behind a central.
+constexpr std::array<const char*, 8> fleet_options{"--central", "--baud",  "--flow",  "--dongle",
+                                                   "--scan",    "--start", "--world", "--call-back"};
 
 bool is_loopback(const std::string& address) {
   return address == "::1" || address.starts_with("127.");
 }
 
-void serve_given(Session& session, GivenToServe& given, int& exit_code) {
+/// "https://app.example.org", "http://localhost:8080": what a browser sends has no path.
+bool is_origin(std::string_view text) {
+  const auto colon = text.find("://");
+  return colon != std::string_view::npos && colon != 0 &&
+         text.find_first_of("/?#*, ", colon + 3) == text.npos;
+}
+
+/// The word `robots`, or --central: robots behind a central; without `live` or a log these alone.
+void take_robots(Verb verb, GivenToServe& given) {
+  const bool named = std::erase(given.words, "robots") != 0;
+  const bool central = verb.count("--central") != 0;
+  if (!named && !central) {
+    for (const char* option : fleet_options)
+      if (verb.count(option) != 0)
+        fail({fmt::format("serve: {} without robots", option),
+              "add the word robots, or --central PATH: amiroctl serve robots"},
+             exit_usage);
+    return;
+  }
+  given.options.bus = !given.words.empty();
+  given.options.fleet = given.fleet;
+}
+
+void serve_given(Verb verb, Session& session, GivenToServe& given, int& exit_code) {
   serve::ServeOptions& options = given.options;
   serve::WebOptions& web = options.web;
+  take_robots(verb, given);
   if (given.words.size() > 1)
     fail({fmt::format("serve: unexpected argument '{}'", given.words[1]),
           "one log at a time; amiroctl convert puts several into one"},
@@ -42,6 +72,14 @@ void serve_given(Session& session, GivenToServe& given, int& exit_code) {
     fail({"--from " + options.format + " is the format of a log, and there is none",
           "name the log, or drop --from"},
          exit_usage);
+  if (!options.log.empty() && options.fleet)
+    fail({"serve: a log and robots", "a log is of a bus: show them one by one, with two --port"}, exit_usage);
+  if (options.opens && options.commands)
+    fail({"serve: --open and --allow-commands: other users of this machine would see the token, among the "
+          "words "
+          "of the browser's process",
+          "drop one of them, and open the address by hand"},
+         exit_usage);
   if (!options.log.empty() && options.commands)
     fail({"serve: --allow-commands and a log: there is nothing to command", "drop one of them"}, exit_usage);
   if (web.certificate.empty() != web.key.empty())
@@ -49,6 +87,13 @@ void serve_given(Session& session, GivenToServe& given, int& exit_code) {
                       web.key.empty() ? "--key" : "--certificate"),
           "give both, as PEM files"},
          exit_usage);
+  for (const std::string& origin : web.origins)
+    if (!is_origin(origin))
+      fail({fmt::format("serve: --allow-origin {} is no origin of a page{}", origin,
+                        origin == "null" ? ": that of every file and every sandboxed frame" : ""),
+            "write what browsers send: scheme, host and port, nothing behind them, as in "
+            "https://app.example.org"},
+           exit_usage);
   if (!is_loopback(web.address)) {
     if (web.certificate.empty())
       fail(
@@ -62,6 +107,7 @@ void serve_given(Session& session, GivenToServe& given, int& exit_code) {
     web.token_to_view = true;
   }
   web.port = static_cast<std::uint16_t>(given.port);
+  static_cast<void>(session.catalogue());  // what is wrong with the spec is said before a bus is missing
   exit_code = serve::run(session, std::move(options));
 }
 
@@ -72,11 +118,14 @@ void add_serve(Verb app, Session& session, int& exit_code) {
                            "  amiroctl serve                     prints the address to open\n"
                            "  amiroctl serve --allow-commands    with buttons and keys to drive\n"
                            "  amiroctl serve drive.log           played, with a bar to wind it\n"
+                           "  amiroctl serve robots              mappers behind a central, and their map\n"
+                           "  amiroctl serve live robots         both\n"
                            "  amiroctl serve --spec car.dbc");
   const auto given = std::make_shared<GivenToServe>();
   serve::ServeOptions& options = given->options;
-  verb.add_option("words", given->words, "a log, any format; none, or live: the bus")
-      .type_name("[FILE|live]");
+  verb.add_option("words", given->words,
+                  "a log, any format; none, or live: the bus. robots: those behind a central")
+      .type_name("[FILE|live] [robots]");
   verb.add_option("--from", options.format, "format of the log; default: what it begins with says it")
       .type_name("FORMAT")
       .takes(accepted_words(logs::readable_formats()));
@@ -98,7 +147,17 @@ void add_serve(Verb app, Session& session, int& exit_code) {
                "for the load, such as 500k; default: what the bus says, else the spec");
   add_data_bit_rate(verb, "--data-bitrate", options.data_bit_rate,
                     "of CAN FD behind its bit-rate switch, such as 2M; default: the spec's");
-  verb.callback([given, &session, &exit_code] { serve_given(session, *given, exit_code); });
+  verb.add_flag("--open", options.opens, "in your browser, too");
+  serve::FleetOptions& fleet = given->fleet;
+  fleet::add_line_options(verb, fleet.line);
+  verb.add_option("--start", fleet.starts, "where a robot was switched on: metres, degrees")
+      .type_name("NAME=X,Y,DEG")
+      .one_a_mention();
+  verb.add_option("--world", fleet.world,
+                  "a simulated world, or its name: where its robots and its central are")
+      .type_name("FILE");
+  verb.add_flag("--call-back", fleet.call_back, "a robot that drives with a bad link is called back");
+  verb.callback([given, verb, &session, &exit_code] { serve_given(verb, session, *given, exit_code); });
 }
 
 }  // namespace ocm::cli

@@ -1,5 +1,5 @@
 /// A simulated robot: the AMiRo on a virtual bus or on a CAN interface, mappers, or the messages of a spec.
-/// What runs is in sim/serve.
+/// What the options mean together; cli/simulate runs it.
 #include <array>
 #include <cstdlib>
 #include <memory>
@@ -8,35 +8,17 @@
 
 #include <fmt/format.h>
 
-#include "ocm/transport/bus.hpp"
-
-#include "cli/shared/buses.hpp"
-#include "cli/shared/interrupt.hpp"
-#include "cli/shared/live.hpp"
-#include "cli/shared/memory.hpp"
-#include "cli/shared/messages.hpp"
-#include "cli/shared/remedies.hpp"
 #include "cli/shared/session.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/simulate/cast.hpp"
+#include "cli/simulate/run.hpp"
 #include "cli/verbs/verbs.hpp"
 #include "cli/words/command.hpp"
-#include "sim/serve/amiro.hpp"
-#include "sim/serve/mappers.hpp"
-#include "sim/serve/messages.hpp"
 
 namespace ocm::cli {
 namespace {
 
 using simulate::Cast;
-
-/// Prints what kept a simulation from running, and leaves; the exit code when it ran until a signal.
-int exit_code_of(const sim::Ending& ending) {
-  if (ending.well()) return exit_code_after_interrupt(exit_success);
-  for (const auto& failure : ending.failures)
-    fmt::print(stderr, "amiroctl: {}\n          {}\n", failure.what, remedy(failure));
-  throw Exit{ending.misuse ? exit_usage : exit_failure};
-}
 
 // --- the AMiRo ---
 
@@ -69,35 +51,6 @@ void add_boards(Verb verb, sim::AmiroOptions& options, std::string& boards) {
       .type_name("FOLDER");
 }
 
-int run_amiro(const sim::AmiroOptions& options, Session& session) {
-  if (options.qemu && options.speed != 1)
-    fail({"sim: --speed with --boards qemu", "leave one out: emulated boards run in real time"}, exit_usage);
-  if (!options.qemu && !options.images.empty())
-    fail({"sim: --images without --boards qemu", "add --boards qemu, or leave --images out"}, exit_usage);
-  catch_interrupts();
-  if (!session.spec_files.empty() && options.messages == nullptr)
-    remark("the simulated robot is the AMiRo, whatever --spec says");
-  const BusName bus_name = parse_bus_name(session.bus_name.empty() ? "sim" : session.bus_name);
-  if (bus_name.kind == BusName::Kind::simulated)
-    return exit_code_of(
-        sim::serve_amiro(bus_name.address, options, {[] { return interrupted() != 0; }, remark}));
-  if (options.bus_errors > 0)
-    fail({"sim: --bus-errors with --bus " + session.bus_name,
-          "leave one out: a real bus has errors of its own"},
-         exit_usage);
-  if (options.messages != nullptr)
-    fail({"sim: a robot and messages with --bus " + session.bus_name,
-          "both play on a virtual bus only: leave --bus out, or one of the specs"},
-         exit_usage);
-  const auto bus = session.open_bus();
-  StateWatch watch;
-  const auto stop = [&bus, &watch] {
-    watch.look(*bus);
-    return interrupted() != 0;
-  };
-  return exit_code_of(sim::serve_amiro(*bus, options, {stop, remark}));
-}
-
 // --- the messages of a spec ---
 
 /// What is meant for the AMiRo's boards.
@@ -118,32 +71,24 @@ simulate::BitRates bit_rates(Verb verb, const sim::AmiroOptions& options, Sessio
                              played);
 }
 
-int run_messages(Verb verb, const sim::AmiroOptions& options, Session& session) {
-  refuse_boards_of_messages(verb);
-  catch_interrupts();
-  const auto& catalogue = session.catalogue();
-  sim::MessagesOptions play{.play = {options.world.seed, options.sporadic},
-                            .bus_errors = options.bus_errors,
-                            .speed = options.speed};
-  const auto rates = bit_rates(verb, options, session, true);
-  play.bit_rate = rates.nominal;
-  play.data_bit_rate = rates.data;
-  const BusName bus_name = parse_bus_name(session.bus_name.empty() ? "sim" : session.bus_name);
-  if (bus_name.kind == BusName::Kind::simulated)
-    return exit_code_of(
-        sim::serve_messages(bus_name.address, catalogue, play, {[] { return interrupted() != 0; }, remark}));
+/// What is meant for the virtual bus.
+void refuse_bus_options(Verb verb, const Session& session) {
   for (const char* option : {"--bus-errors", "--bitrate", "--data-bitrate", "--speed"})
     if (verb.count(option) != 0)
       fail({fmt::format("sim: {} with --bus {}", option, session.bus_name),
             "leave one out: it is for the virtual bus"},
            exit_usage);
-  const auto bus = session.open_bus();
-  StateWatch watch;
-  const auto stop = [&bus, &watch] {
-    watch.look(*bus);
-    return interrupted() != 0;
-  };
-  return exit_code_of(sim::serve_messages(*bus, catalogue, play, {stop, remark}));
+}
+
+sim::MessagesOptions messages_options(Verb verb, const sim::AmiroOptions& options, Session& session) {
+  refuse_boards_of_messages(verb);
+  const auto rates = bit_rates(verb, options, session, true);
+  if (!simulate::on_virtual_bus(session)) refuse_bus_options(verb, session);
+  return {.play = {options.world.seed, options.sporadic},
+          .bit_rate = rates.nominal,
+          .data_bit_rate = rates.data,
+          .bus_errors = options.bus_errors,
+          .speed = options.speed};
 }
 
 // --- mappers ---
@@ -199,11 +144,21 @@ void refuse_boards_options(Verb verb, const Session& session) {
              exit_usage);
 }
 
-int run_mappers(const sim::MapperOptions& options) {
-  const EndsWithoutMemory ends;  // a world is a document of JSON
-  catch_interrupts();
-  catch_hangups();  // the lines' links must go with it
-  return exit_code_of(sim::serve_mappers(options, {[] { return interrupted() != 0; }, remark}));
+/// What is meant for the page.
+void refuse_page_options(Verb verb, const simulate::ShowOptions& show, bool lines) {
+  for (const char* option : {"--port", "--allow-commands", "--open"})
+    if (verb.count(option) != 0 && show.kind != "page")
+      fail({fmt::format("sim: {} is of the page", option), "add --show, or leave it out"}, exit_usage);
+  if (show.kind == "page" && lines)
+    fail({"sim: --show with --lines",
+          "the page shows robots behind a central: leave --lines out, or --show=text"},
+         exit_usage);
+  if (show.opens && show.commands)
+    fail({"sim: --open and --allow-commands: other users of this machine would see the token, among the "
+          "words of "
+          "the browser's process",
+          "drop one of them, and open the address by hand"},
+         exit_usage);
 }
 
 }  // namespace
@@ -219,7 +174,9 @@ void add_sim(Verb app, Session& session, int& exit_code) {
       "  amiroctl sim --boards qemu         the boards' firmware, emulated\n"
       "  amiroctl sim --spec car.dbc        a bus with the messages of a DBC file\n"
       "  amiroctl sim --robots 2            mappers in a room, and their central\n"
-      "  amiroctl sim --world labyrinth --radio-loss 0.1");
+      "  amiroctl sim --world labyrinth --radio-loss 0.1\n"
+      "  amiroctl sim --show                in a browser, too; prints the address\n"
+      "  amiroctl sim --show=text           drawn on this terminal while it runs");
   const auto options = std::make_shared<sim::AmiroOptions>();
   verb.add_option("--seed", options->world.seed, "of all noise; equal seeds give equal robots")
       .type_name("N");
@@ -229,15 +186,28 @@ void add_sim(Verb app, Session& session, int& exit_code) {
                  "also send messages without a period, about T apart; default: they are not sent")
       .type_name("T")
       .takes(accepted_duration());
+  const auto show = std::make_shared<simulate::ShowOptions>();
+  verb.add_option(
+          "--show", show->kind,
+          "page (default): in a browser, prints the address; text: in characters, on this terminal; q "
+          "ends it")
+      .expected(0, 1)
+      .one_of({"page", "text"})
+      .type_name("[page|text]");
+  verb.add_option("--port", show->port, "of that page").range(0U, 65535U).show_default();
+  verb.add_flag("--allow-commands", show->commands, "who opens the address that is printed may drive");
+  verb.add_flag("--open", show->opens, "in your browser, too");
   const auto mappers = std::make_shared<sim::MapperOptions>();
   add_mappers(verb, *mappers);
-  verb.callback([options, boards, mappers, verb, &session, &exit_code] {
+  verb.callback([options, boards, show, mappers, verb, &session, &exit_code] {
     options->qemu = *boards == "qemu";
     mappers->seed = options->world.seed;
     mappers->speed = options->speed;
+    if (verb.count("--show") != 0 && show->kind.empty()) show->kind = "page";
+    refuse_page_options(verb, *show, mappers->lines);
     if (wants_mappers(verb)) {
       refuse_boards_options(verb, session);
-      exit_code = run_mappers(*mappers);
+      exit_code = simulate::run_mappers(*mappers, *show, session);
       return;
     }
     const Cast cast = simulate::cast_of(session);
@@ -246,13 +216,17 @@ void add_sim(Verb app, Session& session, int& exit_code) {
            exit_usage);
     if (cast == Cast::both) options->messages = &session.catalogue();
     if (cast == Cast::messages) {
-      exit_code = run_messages(verb, *options, session);
+      if (!show->kind.empty())
+        fail({"sim: --show with the messages of a spec",
+              "they have no room and no robot: leave --show out; amiroctl top shows a bus"},
+             exit_usage);
+      exit_code = simulate::run_messages(messages_options(verb, *options, session), session);
       return;
     }
     const auto rates = bit_rates(verb, *options, session, cast == Cast::both);
     options->bit_rate = rates.nominal;
     options->data_bit_rate = rates.data;
-    exit_code = run_amiro(*options, session);
+    exit_code = simulate::run_amiro(*options, *show, session);
   });
 }
 

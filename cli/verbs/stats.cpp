@@ -76,18 +76,14 @@ std::vector<stats::Assertion> read_assertions(const std::vector<std::string>& te
   return assertions;
 }
 
-/// Those that are typed, else those that the spec has for the interface.
+/// Those that are typed, else those that the spec has for the interface; 0: neither says it, as of many DBC
+/// files.
 measure::BitRates chosen_bit_rates(Session& session, const StatsOptions& options,
                                    std::string_view interface) {
   spec::BusModel bus;
   bus.bit_rate = session.catalogue().bit_rate;
   if (!session.spec_files.empty()) bus = session.spec().model().bus(interface);
-  const measure::BitRates rates{options.bit_rate.value_or(bus.bit_rate),
-                                options.data_bit_rate.value_or(bus.data_bit_rate)};
-  if (rates.nominal != 0) return rates;
-  const std::string of = session.catalogue().has_buses() ? fmt::format(" of {}", interface) : "";
-  fail({fmt::format("stats: the spec says no bit rate{}", of), "--bitrate gives it, such as --bitrate 500k"},
-       exit_usage);
+  return {options.bit_rate.value_or(bus.bit_rate), options.data_bit_rate.value_or(bus.data_bit_rate)};
 }
 
 /// Of each bus, for its figures are its own.
@@ -123,7 +119,6 @@ void run(Session& session, const StatsOptions& options, int& exit_code) {
   Words words = split_words("stats", options.words, means_topic);
   const auto shown = chosen_topics("stats", catalogue, words.others);
   const auto assertions = read_assertions(options.assertions, catalogue);
-  if (!catalogue.has_buses()) static_cast<void>(chosen_bit_rates(session, options, {}));  // at once
   stats::Collector collector{
       catalogue, [&](std::string_view interface) { return chosen_bit_rates(session, options, interface); }};
   Watching watching{session, options.watch, std::move(words.files)};

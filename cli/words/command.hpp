@@ -33,6 +33,9 @@
 #include "ocm/protocol/request.hpp"
 #include "ocm/protocol/topic.hpp"
 
+#include "cli/words/colour.hpp"
+#include "cli/words/command_options.hpp"
+#include "cli/words/form.hpp"
 #include "cli/words/message.hpp"
 #include "cli/words/quantity.hpp"
 #include "cli/words/suggestion.hpp"
@@ -46,99 +49,11 @@ using client::Command;
 using client::Hold;
 using client::set_point;
 
-/// What a command's options say, as values.
-struct CommandOptions {
-  std::optional<protocol::Priority> priority;  ///< none: the topic's own
-  std::optional<base::Duration> lasting;       ///< of drive; none: until something else is commanded
-  std::optional<base::Duration> every{};       ///< of set: sent again and again
-  bool force = false;                          ///< of set: also beyond a range that is only stated
-};
-
-/// The value of --priority: a name, "normal" as the thesis also calls medium [Thesis 4.2.1], or its number in
-/// the identifier, which the thesis's menus ask for [Thesis, figure 6.2]. The error's `what` goes on after
-/// the text:
-/// "'top' is ", "not a priority".
-[[nodiscard]] inline base::Result<protocol::Priority, WordError> read_priority(std::string_view text) {
-  if (const auto priority = protocol::parse_priority(text)) return *priority;
-  if (text == "normal") return protocol::Priority::medium;
-  if (text.size() == 1 && text[0] >= '0' && text[0] <= '3')
-    return static_cast<protocol::Priority>(text[0] - '0');
-  return WordError{0, "not a priority", "write urgent, high, medium or low, or 0 to 3"};
-}
-
-/// The value of --for. The error is as that of read_priority.
-[[nodiscard]] inline base::Result<base::Duration, WordError> read_lasting(std::string_view text) {
-  const auto lasting = parse_duration(text);
-  if (lasting && lasting->count() > 0) return *lasting;
-  return WordError{0, "not a time above zero", "write 2s, 500ms or 1min"};
-}
-
-/// The value of --every. The error is as that of read_priority.
-[[nodiscard]] inline base::Result<base::Duration, WordError> read_every(std::string_view text) {
-  const auto every = parse_duration(text);
-  if (every && *every >= client::shortest_repeat) return *every;
-  return WordError{0, "not a time of 100us or more", "write 10ms, 1s or 500us"};
-}
-
-/// The words behind a verb, as its usage shows them: those in brackets may be missing, and ... is any number
-/// more.
-struct Form {
-  std::string_view verb;
-  std::string_view words;
-};
-inline constexpr Form forms[] = {{"publish", "TOPIC [PERIOD]"},
-                                 {"once", "TOPIC"},
-                                 {"stop", "[TOPIC|all]"},
-                                 {"drive", "X|stop [Z]"},
-                                 {"led", "N|all COLOUR|off"},
-                                 {"set", "ACTUATOR|MESSAGE [FIELD=VALUE ...]"},
-                                 {"send", "FRAME"}};
-
-/// The words of a verb's form; empty if no command has the name.
-[[nodiscard]] constexpr std::string_view form_of(std::string_view verb) noexcept {
-  for (const auto& form : forms)
-    if (form.verb == verb) return form.words;
-  return {};
-}
-
 namespace detail {
 
 using Parsed = base::Result<Command, WordError>;
 
 }  // namespace detail
-
-/// "100,50,120", "#643278", "red" or "off".
-[[nodiscard]] inline base::Result<std::array<std::uint8_t, 3>> parse_colour(std::string_view text) {
-  struct Named {
-    std::string_view name;
-    std::array<std::uint8_t, 3> rgb;
-  };
-  constexpr Named names[] = {{"off", {0, 0, 0}},        {"black", {0, 0, 0}},      {"white", {255, 255, 255}},
-                             {"red", {255, 0, 0}},      {"green", {0, 255, 0}},    {"blue", {0, 0, 255}},
-                             {"yellow", {255, 255, 0}}, {"cyan", {0, 255, 255}},   {"magenta", {255, 0, 255}},
-                             {"orange", {255, 128, 0}}, {"purple", {128, 0, 255}}, {"pink", {255, 96, 160}}};
-  for (const auto& named : names)
-    if (text == named.name) return named.rgb;
-  std::array<std::uint8_t, 3> rgb{};
-  if (text.starts_with('#')) {
-    const auto number = base::parse_unsigned(text.substr(1), 16);
-    if (!number || text.size() != 7) return base::Error::bad_syntax;
-    for (std::size_t i = 0; i < 3; ++i) rgb[i] = static_cast<std::uint8_t>(*number >> (16 - 8 * i));
-    return rgb;
-  }
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto comma = text.find(',');
-    const auto number = base::parse_unsigned(text.substr(0, comma));
-    if (!number || (comma == std::string_view::npos) != (i == 2)) return base::Error::bad_syntax;
-    if (*number > 255) return base::Error::out_of_range;
-    rgb[i] = static_cast<std::uint8_t>(*number);
-    text = comma == std::string_view::npos ? std::string_view{} : text.substr(comma + 1);
-  }
-  return rgb;
-}
-
-/// The words of a command; the first is the verb.
-using Line = std::span<const std::string_view>;
 
 /// Reads one command at a time against a catalogue.
 class CommandParser {
@@ -166,66 +81,17 @@ class CommandParser {
 
   /// As a line of a script has it: options stand anywhere among the words, as `--for 2s` or `--for=2s`.
   [[nodiscard]] detail::Parsed parse_line(Line line) const {
-    std::vector<std::string_view> words;
-    std::vector<std::size_t> places;  // of `words` in `line`
-    CommandOptions options;
-    std::size_t priority_at = 0;
-    std::size_t lasting_at = 0;
-    std::size_t set_at = 0;  // of an option that goes with set only, and its name
-    std::string_view set_option;
-    for (std::size_t i = 0; i < line.size(); ++i) {
-      if (!line[i].starts_with("--")) {
-        words.push_back(line[i]);
-        places.push_back(i);
-        continue;
-      }
-      const auto equals = line[i].find('=');
-      const std::string_view name = line[i].substr(0, equals);
-      if (line[i] == "--force") {
-        options.force = true;
-        set_at = i;
-        set_option = name;
-        continue;
-      }
-      constexpr std::string_view known[] = {"--priority", "--for", "--every", "--force"};
-      constexpr std::string_view examples[] = {"--priority high", "--for 2s", "--every 10ms"};
-      const std::size_t option = static_cast<std::size_t>(std::find(known, known + 3, name) - known);
-      if (option == std::size(examples))
-        return WordError{i, "unknown option " + detail::quoted(line[i].substr(0, equals)),
-                         suggest([&] { return suggestion(name, known); })};
-      if (equals == std::string_view::npos && i + 1 == line.size())
-        return WordError{i, "missing value for " + std::string{name},
-                         "write " + std::string{examples[option]}};
-      const std::string_view text = equals == std::string_view::npos ? line[++i] : line[i].substr(equals + 1);
-      const auto wrong = [&](WordError error) {
-        return WordError{i, detail::quoted(text) + " is " + error.what, std::move(error.remedy)};
-      };
-      if (name == "--priority") {
-        const auto priority = read_priority(text);
-        if (!priority) return wrong(priority.error);
-        options.priority = *priority;
-        priority_at = i;
-      } else if (name == "--for") {
-        const auto lasting = read_lasting(text);
-        if (!lasting) return wrong(lasting.error);
-        options.lasting = *lasting;
-        lasting_at = i;
-      } else {
-        const auto every = read_every(text);
-        if (!every) return wrong(every.error);
-        options.every = *every;
-        set_at = i;
-        set_option = name;
-      }
-    }
+    const auto split = split_options(line, [this](auto find) { return suggest(find); });
+    if (!split) return split.error;
+    const auto& [words, places, options, at] = *split;
     if (words.empty()) return no_command();
     if (options.lasting && words[0] != "drive" && words[0] != "set")
-      return WordError{lasting_at, "--for goes with drive, and with set --every, only", "drop --for"};
-    if (!set_option.empty() && words[0] != "set")
-      return WordError{set_at, std::string{set_option} + " goes with set only",
-                       "drop " + std::string{set_option}};
+      return WordError{at.lasting, "--for goes with drive, and with set --every, only", "drop --for"};
+    if (!at.set_option.empty() && words[0] != "set")
+      return WordError{at.set, std::string{at.set_option} + " goes with set only",
+                       "drop " + std::string{at.set_option}};
     if (options.priority && words[0] == "send")
-      return WordError{priority_at, "a frame carries its priority in its identifier", "drop --priority"};
+      return WordError{at.priority, "a frame carries its priority in its identifier", "drop --priority"};
     auto command = parse(words, options);
     std::size_t& word = command.error.word;
     if (!command) word = word < places.size() ? places[word] : places.back() + 1;

@@ -1,5 +1,4 @@
-/// Numbers with units as a person writes them: 500ms, 5cm/s, -30deg/s. Exact where the conversion is a power
-/// of ten.
+/// Numbers with units as a person writes them: 500ms, 5cm/s, -30deg/s, 3krpm.
 #pragma once
 
 #include <cmath>
@@ -41,62 +40,123 @@ struct Quantity {
 }
 
 namespace detail {
-/// A unit as prefix (power of ten), base unit, and whether it is per second.
+/// A unit as so many of a basic one, and the seconds that it is per (0: it is of no time).
 struct Unit {
-  int exponent = 0;
+  base::Decimal factor{1, 0};
   std::string_view base;
-  bool per_second = false;
+  std::int32_t per = 0;
+};
+struct NamedUnit {
+  std::string_view name;
+  Unit unit;
+  bool takes_prefix = true;
+};
+
+/// Not here: temperatures, whose zeros differ. `G` is gauss, `g` the acceleration of free fall.
+constexpr NamedUnit named_units[] = {
+    {"m", {{1, 0}, "m"}},
+    {"rad", {{1, 0}, "rad"}},
+    {"deg", {{1, 0}, "deg"}},
+    {"\u00b0", {{1, 0}, "deg"}, false},  // the degree sign
+    {"g", {{1, 0}, "g"}},
+    {"G", {{1, 0}, "G"}},
+    {"W", {{1, 0}, "W"}},
+    {"s", {{1, 0}, "s"}},
+    {"min", {{60, 0}, "s"}, false},
+    {"h", {{3600, 0}, "s"}, false},
+    {"V", {{1, 0}, "V"}},
+    {"A", {{1, 0}, "A"}},
+    {"Ah", {{1, 0}, "Ah"}},
+    {"Wh", {{1, 0}, "Wh"}},
+    {"Hz", {{1, 0}, "Hz"}},
+    {"N", {{1, 0}, "N"}},
+    {"Nm", {{1, 0}, "Nm"}},
+    {"Pa", {{1, 0}, "Pa"}},
+    {"bar", {{1, 5}, "Pa"}},
+    {"l", {{1, 0}, "l"}},
+    {"L", {{1, 0}, "l"}},
+    {"%", {{1, 0}, "%"}},
+    {"rpm", {{1, 0}, "turn", 60}},
+    {"1/min", {{1, 0}, "turn", 60}, false},
+    {"U/min", {{1, 0}, "turn", 60}, false},
+    {"kph", {{1, 3}, "m", 3600}, false},
+    {"mph", {{1609344, -3}, "m", 3600}, false},
 };
 
 [[nodiscard]] constexpr base::Result<Unit> parse_unit(std::string_view text) noexcept {
-  Unit unit;
-  if (text.size() > 2 && text.substr(text.size() - 2) == "/s") {
-    unit.per_second = true;
-    text.remove_suffix(2);
+  for (const NamedUnit& named : named_units)
+    if (text == named.name) return named.unit;
+  constexpr struct {
+    std::string_view ending;
+    std::int32_t seconds;
+  } times[] = {{"/s", 1}, {"/min", 60}, {"/h", 3600}};
+  for (const auto& time : times) {
+    if (!text.ends_with(time.ending)) continue;
+    auto unit = parse_unit(text.substr(0, text.size() - time.ending.size()));
+    if (unit && unit->per != 0) return base::Error::bad_unit;
+    if (unit) unit->per = time.seconds;
+    return unit;
   }
-  constexpr std::string_view bases[] = {"m", "rad", "deg", "g", "G", "W", "s", "V", "A", "%", "min"};
-  for (const auto base : bases)
-    if (text == base) {
-      unit.base = base;
-      return unit;
-    }
-  struct Prefix {
+  constexpr struct {
     std::string_view text;
     int exponent;
-  };
-  // The micro sign and the Greek letter look the same and are both typed.
-  constexpr Prefix prefixes[] = {{"n", -9}, {"u", -6}, {"\u00b5", -6}, {"\u03bc", -6},
-                                 {"m", -3}, {"c", -2}, {"d", -1},      {"k", 3}};
+  } prefixes[] = {{"n", -9}, {"u", -6}, {"\u00b5", -6}, {"\u03bc", -6},  // both are typed, and look the same
+                  {"m", -3}, {"c", -2}, {"d", -1},      {"h", 2},       {"k", 3}, {"M", 6}};
   for (const auto& prefix : prefixes) {
     if (!text.starts_with(prefix.text)) continue;
-    for (const auto base : bases)
-      if (text.substr(prefix.text.size()) == base) {
-        unit.exponent = prefix.exponent;
-        unit.base = base;
+    for (const NamedUnit& named : named_units)
+      if (named.takes_prefix && text.substr(prefix.text.size()) == named.name) {
+        Unit unit = named.unit;
+        unit.factor.exponent = static_cast<std::int8_t>(unit.factor.exponent + prefix.exponent);
         return unit;
       }
   }
   return base::Error::bad_unit;
 }
+
+/// number * above / below; to a billionth where that has no end in decimals.
+[[nodiscard]] inline base::Result<base::Decimal> scaled_by(const base::Decimal& number, base::Decimal above,
+                                                           base::Decimal below) noexcept {
+  auto product = base::multiply(number, {above.digits, static_cast<std::int8_t>(above.exponent)});
+  if (!product) return product.error;
+  for (int places = 0; places <= 9; ++places) {
+    if (product->digits % below.digits == 0) {
+      const base::Decimal quotient{product->digits / below.digits, product->exponent};
+      return base::multiply(quotient, {1, static_cast<std::int8_t>(-below.exponent)});
+    }
+    if (__builtin_mul_overflow(product->digits, std::int64_t{10}, &product->digits)) break;
+    product->exponent = static_cast<std::int8_t>(product->exponent - 1);
+  }
+  const double scaled = number.as_double() * above.as_double() / below.as_double() * 1e9;
+  if (!(std::abs(scaled) < 9e18)) return base::Error::out_of_range;
+  return base::normalised(std::llround(scaled), -9);
+}
 }  // namespace detail
 
-/// `quantity` in `unit`. A bare number is taken to be in `unit` already. bad_unit: no such unit, or of
-/// another kind.
+/// `quantity` in `unit`. A bare number is taken to be in `unit` already. Exact where the result has an end in
+/// decimals, as from 3krpm to rpm and from m/s to km/h; otherwise to a billionth of the unit, far below what
+/// any field resolves. bad_unit: no such unit, or of another kind.
 [[nodiscard]] inline base::Result<base::Decimal> convert(const Quantity& quantity, std::string_view unit) {
   if (quantity.unit.empty() || quantity.unit == unit) return quantity.number;
   const auto from = detail::parse_unit(quantity.unit);
   const auto to = detail::parse_unit(unit);
-  if (!from || !to || from->per_second != to->per_second) return base::Error::bad_unit;
-  const int shift = from->exponent - to->exponent;
-  if (from->base == to->base) return base::multiply(quantity.number, {1, static_cast<std::int8_t>(shift)});
+  if (!from || !to || (from->per == 0) != (to->per == 0)) return base::Error::bad_unit;
+  base::Decimal above{from->factor.digits, from->factor.exponent};
+  base::Decimal below{to->factor.digits, to->factor.exponent};
+  if (from->per != to->per) {
+    above.digits *= to->per;
+    below.digits *= from->per;
+  }
+  if (from->base == to->base) return detail::scaled_by(quantity.number, above, below);
 
-  constexpr double degrees = 180 / 3.14159265358979323846;
-  double factor = 0;
-  if (from->base == "deg" && to->base == "rad") factor = 1 / degrees;
-  if (from->base == "rad" && to->base == "deg") factor = degrees;
-  if (factor == 0) return base::Error::bad_unit;
-  // No decimal is exact here; a billionth of the unit is far below what any field resolves.
-  const double scaled = quantity.number.as_double() * factor * std::pow(10.0, shift) * 1e9;
+  // No decimal is exact here: pi in 18 digits.
+  constexpr base::Decimal pi{3'141'592'653'589'793'238, -18};
+  constexpr base::Decimal half_a_turn{180, 0};
+  const bool to_radians = from->base == "deg" && to->base == "rad";
+  if (!to_radians && !(from->base == "rad" && to->base == "deg")) return base::Error::bad_unit;
+  const double factor =
+      to_radians ? pi.as_double() / half_a_turn.as_double() : half_a_turn.as_double() / pi.as_double();
+  const double scaled = quantity.number.as_double() * factor * above.as_double() / below.as_double() * 1e9;
   if (!(std::abs(scaled) < 9e18)) return base::Error::out_of_range;
   return base::normalised(std::llround(scaled), -9);
 }

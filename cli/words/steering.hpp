@@ -44,9 +44,9 @@ class KeySpeed {
   }
   void change(int steps) noexcept { steps_ = std::clamp(steps_ + steps, -most_steps, most_steps); }
   [[nodiscard]] int steps() const noexcept { return steps_; }
-  /// Of a direction of 1, 0 or -1, as it is typed.
-  [[nodiscard]] std::string text(int sign = 1) const {
-    return fmt::format("{:.3g}{}", sign * number_ * std::pow(1.25, steps_), unit_);
+  /// A part of it, -1 to 1, as it is typed.
+  [[nodiscard]] std::string text(double part = 1) const {
+    return fmt::format("{:.3g}{}", part * number_ * std::pow(1.25, steps_), unit_);
   }
 
  private:

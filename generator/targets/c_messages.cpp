@@ -219,23 +219,9 @@ class MessageWriter {
     const FieldModel* const selector = selector_of(message_, field);
     out_.open("static inline int " + function("has_" + name) + "(const " + type_ + "* message) {");
     std::string cases;
-    const std::uint64_t most = selector == nullptr ? 0 : protocol::detail::low_mask(selector->position.width);
     if (selector != nullptr)
-      for (const auto& [first, last] : merged(field.selected, most)) {
-        const auto number = [&](std::uint64_t value) { return word_literal(value, is_wide(*selector)); };
-        std::string text;
-        if (first == last)
-          text = "bits == " + number(first);
-        else if (first == 0 && last >= most)
-          text = "1";
-        else if (first == 0)
-          text = "bits <= " + number(last);
-        else if (last >= most)
-          text = "bits >= " + number(first);
-        else
-          text = "(bits >= " + number(first) + " && bits <= " + number(last) + ")";
-        cases += (cases.empty() ? "" : " || ") + text;
-      }
+      cases = in_ranges(field.selected, protocol::detail::low_mask(selector->position.width), "bits", "1",
+                        [&](std::uint64_t value) { return word_literal(value, is_wide(*selector)); });
     if (cases.empty()) {
       out_.line("(void)message;");
       out_.line("return 0;");

@@ -248,24 +248,11 @@ class StructWriter {
     const std::string head = "[[nodiscard]] constexpr bool has_" + member.name + "() const noexcept";
     if (selector == nullptr) return function(head, "return false;");
     const FieldModel& field = *selector->field;
-    const std::uint64_t most = protocol::detail::low_mask(field.position.width);
     // Of a signed selector the bits count, not the number.
     const std::string selector_type = integer_type(field.position.width, false);
-    std::string cases;
-    for (const auto& [first, last] : merged(member.field->selected, most)) {
-      std::string text;
-      if (first == last)
-        text = "selector_ == " + grouped(first);
-      else if (first == 0 && last >= most)
-        text = "true";
-      else if (first == 0)
-        text = "selector_ <= " + grouped(last);
-      else if (last >= most)
-        text = "selector_ >= " + grouped(first);
-      else
-        text = "(selector_ >= " + grouped(first) + " && selector_ <= " + grouped(last) + ")";
-      cases += (cases.empty() ? "" : " || ") + text;
-    }
+    const std::string cases =
+        in_ranges(member.field->selected, protocol::detail::low_mask(field.position.width), "selector_",
+                  "true", [](std::uint64_t value) { return grouped(value); });
     if (cases.empty()) return function(head, "return false;");
     out_.open(head + " {");
     if (!field.selector.empty()) out_.line("if (!has_" + selector->name + "()) return false;");

@@ -97,6 +97,30 @@ class Scope {
   return out;
 }
 
+/// An expression, in C or C++, that is true where `variable` is in one of the ranges: `true_word` where it
+/// always is, empty where it never is. `most`: the greatest that it can be; `number` writes one of its
+/// numbers.
+template <class F>
+[[nodiscard]] std::string in_ranges(const std::vector<protocol::SelectorRange>& ranges, std::uint64_t most,
+                                    const std::string& variable, std::string_view true_word, F&& number) {
+  std::string cases;
+  for (const auto& [first, last] : merged(ranges, most)) {
+    std::string text;
+    if (first == last)
+      text = variable + " == " + number(first);
+    else if (first == 0 && last >= most)
+      text = true_word;
+    else if (first == 0)
+      text = variable + " <= " + number(last);
+    else if (last >= most)
+      text = variable + " >= " + number(first);
+    else
+      text = "(" + variable + " >= " + number(first) + " && " + variable + " <= " + number(last) + ")";
+    cases += (cases.empty() ? "" : " || ") + text;
+  }
+  return cases;
+}
+
 /// How many selectors stand before each field within the message's length, one before the other.
 [[nodiscard]] std::map<const spec::FieldModel*, std::size_t> selection_levels(
     const spec::MessageModel& message);

@@ -44,6 +44,13 @@ struct Surroundings {
   double fastest_step_m = 0;     ///< no robot gets on by more in a step
 };
 
+/// Where a sensor of the tower looks, and how far it is to what is there: infinite where nothing is.
+struct Look {
+  Vector from{};  ///< its face
+  Vector ray{};   ///< of length 1
+  double distance_m = 0;
+};
+
 class Robot {
  public:
   Robot(const Start& start, const RobotModel& model, std::uint64_t seed, std::size_t number)
@@ -115,6 +122,15 @@ class Robot {
   [[nodiscard]] ocm::mapper::app::Lights lights() const noexcept { return lights_; }
   [[nodiscard]] const Wheel& left() const noexcept { return left_; }
   [[nodiscard]] const Wheel& right() const noexcept { return right_; }
+  /// Of the rims, slip apart.
+  [[nodiscard]] double left_m_per_s() const noexcept { return left_.ticks_per_s() * left_m_per_tick_; }
+  [[nodiscard]] double right_m_per_s() const noexcept { return right_.ticks_per_s() * right_m_per_tick_; }
+  /// @param sensor 0 to 3. Where it looks now; the distance is that of its newest sample
+  [[nodiscard]] Look look(std::size_t sensor) const noexcept {
+    Look now = aim(sensor);
+    now.distance_m = infrared_.distance_m[sensor];
+    return now;
+  }
   /// It pushes against a wall or another robot.
   [[nodiscard]] bool touching() const noexcept { return touching_; }
   /// Its own magnetism: what a calibration of its compass would find.
@@ -246,18 +262,22 @@ class Robot {
     compass_.heading_rad = pose_.heading_rad;
   }
 
-  void look_around(const Surroundings& around) noexcept {
+  [[nodiscard]] Look aim(std::size_t sensor) const noexcept {
     const Vector axis = pose_.place_of({model_.tower.ahead_of_axle_m, 0});
+    const Vector ray = direction(pose_.heading_rad +
+                                 (model_.tower.sensor_heading_deg[sensor] + servo_.angle_deg()) * degree);
+    return {axis + ray * model_.tower.sensor_out_m[sensor], ray};
+  }
+
+  void look_around(const Surroundings& around) noexcept {
     for (std::size_t i = 0; i < sensing::tower_sensors; ++i) {
-      const Vector ray =
-          direction(pose_.heading_rad + (model_.tower.sensor_heading_deg[i] + servo_.angle_deg()) * degree);
-      const Vector face = axis + ray * model_.tower.sensor_out_m[i];
+      const Look at = aim(i);
       double nearest = std::numeric_limits<double>::infinity();
       for (const Segment& wall : around.world.walls)
-        nearest = std::min(nearest, distance_along(face, ray, wall));
+        nearest = std::min(nearest, distance_along(at.from, at.ray, wall));
       for (std::size_t other = 0; other < around.robots.size(); ++other)
         if (other != around.self)
-          nearest = std::min(nearest, distance_along(face, ray, around.robots[other]));
+          nearest = std::min(nearest, distance_along(at.from, at.ray, around.robots[other]));
       infrared_.distance_m[i] = nearest;
     }
   }

@@ -6,12 +6,18 @@
 ///       ... frame goes onto the bus at `due`, sent by node message.board ...
 ///     });
 ///
+/// A message of J1939 with more than eight bytes is broadcast by its transport protocol: announced
+/// (TP.CM_BAM), then a packet every 50 ms [SAE J1939-21, 5.10.2.1]. A source has one at a time: others of it
+/// wait, and a message that takes longer than its period is sent every second time, or every third.
+///
 /// Time is handed in. What is sent depends on the catalogue, the seed and the time, however seldom `advance`
 /// is called. O(log messages) a frame, and O(fields squared) for its content. The catalogue must outlive it.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <queue>
@@ -23,6 +29,7 @@
 #include "ocm/base/time.hpp"
 #include "ocm/can/any_frame.hpp"
 #include "ocm/j1939/identifier.hpp"
+#include "ocm/j1939/transport.hpp"
 #include "ocm/protocol/topic.hpp"
 
 #include "sim/messages/motion.hpp"
@@ -49,7 +56,7 @@ struct PlayedMessage {
 struct LeftOut {
   std::vector<const protocol::Topic*> without_period;
   std::vector<const protocol::Topic*> no_fd;     ///< CAN FD, where the bus has none
-  std::vector<const protocol::Topic*> too_long;  ///< more bytes than a frame has: 8, CAN FD 64
+  std::vector<const protocol::Topic*> too_long;  ///< more bytes than a frame has: 8, CAN FD 64; no J1939
 };
 
 /// The identifier of a message. A J1939 message whose source is the null address, with which a node may not
@@ -62,6 +69,10 @@ struct LeftOut {
   return id.encode();
 }
 
+/// From the announcement of a broadcast to its first packet, and from one to the next: 50 to 200 ms.
+/// [SAE J1939-21, 5.10.2.1]
+inline constexpr base::Duration broadcast_distance = std::chrono::milliseconds{50};
+
 class MessagePlayer {
  public:
   explicit MessagePlayer(const protocol::Catalogue& catalogue, PlayOptions options = {}) : options_(options) {
@@ -73,7 +84,7 @@ class MessagePlayer {
         left_out_.without_period.push_back(&topic);
       else if (layout.fd && !options.fd)
         left_out_.no_fd.push_back(&topic);
-      else if (layout.length > (layout.fd ? can::max_fd_length : can::max_dlc))
+      else if (layout.length > (layout.fd ? can::max_fd_length : can::max_dlc) && !is_broadcast(layout))
         left_out_.too_long.push_back(&topic);
       else
         take(topic, number);
@@ -101,6 +112,10 @@ class MessagePlayer {
       const auto [due, index] = due_.top();
       due_.pop();
       Message& message = messages_[index];
+      if (is_broadcast(message.played.topic->frames[0])) {
+        due_.push({broadcast(message, due, send), index});
+        continue;
+      }
       send(std::as_const(message.played), content(message, due), due);
       ++message.sent;
       due_.push({due + distance(message), index});
@@ -114,6 +129,9 @@ class MessagePlayer {
     std::vector<FieldMotion> motions;
     std::uint64_t key = 0;
     std::uint64_t sent = 0;
+    std::uint32_t packets = 0;         ///< of a broadcast under way, sent so far
+    base::Time announced{};            ///< when it should have been
+    std::vector<std::uint8_t> data{};  ///< of it
   };
   using Due = std::pair<base::Time, std::size_t>;
 
@@ -128,7 +146,8 @@ class MessagePlayer {
     const base::Duration period = topic.cycle.count() > 0 ? topic.cycle : options_.sporadic;
     const auto phase =
         split_mix(message.key, ~std::uint64_t{0} >> 1) % static_cast<std::uint64_t>(period.count());
-    due_.push({base::Time{base::Duration{static_cast<std::int64_t>(phase)}}, messages_.size()});
+    message.announced = base::Time{base::Duration{static_cast<std::int64_t>(phase)}};
+    due_.push({message.announced, messages_.size()});
     messages_.push_back(std::move(message));
   }
 
@@ -143,6 +162,58 @@ class MessagePlayer {
     return std::max(base::Duration{wanted}, topic.shortest_period);
   }
 
+  [[nodiscard]] static bool is_broadcast(const protocol::FrameLayout& layout) noexcept {
+    return layout.address.by == protocol::Address::By::pgn && layout.length > can::max_dlc;
+  }
+
+  /// The next frame of a broadcast, its announcement first, or none while its source has another. Returns
+  /// when to go on.
+  template <class Send>
+  base::Time broadcast(Message& message, base::Time due, Send& send) {
+    const auto& layout = message.played.topic->frames[0];
+    const auto own = j1939::Identifier::decode(message.played.id);
+    const std::uint32_t all = j1939::packets_of(layout.length);
+    can::AnyFrame frame;
+    frame.format = can::Format::extended;
+    frame.length = can::max_dlc;
+    const auto identifier = [&own](std::uint32_t group) {
+      constexpr std::uint8_t lowest_priority =
+          7;  // of the transport protocol [SAE J1939-21, 5.10.3 and 5.10.4]
+      return j1939::Identifier{lowest_priority, group, j1939::global_address, own.source}.encode();
+    };
+    if (message.data.empty()) {
+      base::Time& free = free_[own.source];
+      if (free > due) return free;  // `announced` stays
+      message.data.assign(layout.length, 0);
+      fill(message, message.data, due);
+      frame.id = identifier(j1939::connection_group);
+      const auto byte = [](std::uint32_t number) { return static_cast<std::uint8_t>(number); };
+      constexpr std::uint8_t announcement = 32;
+      const std::array<std::uint8_t, 8> head{
+          announcement, byte(layout.length), byte(layout.length >> 8), byte(all),
+          0xFF,         byte(own.pgn),       byte(own.pgn >> 8),       byte(own.pgn >> 16)};
+      std::copy(head.begin(), head.end(), frame.data.begin());
+      send(std::as_const(message.played), frame, due);
+      free = due + (all + 1) * broadcast_distance;
+      return due + broadcast_distance;
+    }
+    frame.id = identifier(j1939::transfer_group);
+    const std::size_t from = std::size_t{message.packets} * j1939::bytes_a_packet;
+    const std::size_t count = std::min(j1939::bytes_a_packet, message.data.size() - from);
+    std::fill_n(frame.data.begin(), can::max_dlc, std::uint8_t{0xFF});
+    frame.data[0] = static_cast<std::uint8_t>(++message.packets);
+    std::copy_n(message.data.begin() + static_cast<std::ptrdiff_t>(from), count, frame.data.begin() + 1);
+    send(std::as_const(message.played), frame, due);
+    if (message.packets != all) return due + broadcast_distance;
+    message.packets = 0;
+    message.data.clear();
+    ++message.sent;
+    // After those that wait for their turn.
+    do message.announced += distance(message);
+    while (message.announced <= due + broadcast_distance);
+    return message.announced;
+  }
+
   [[nodiscard]] static can::AnyFrame content(const Message& message, base::Time now) noexcept {
     const auto& layout = message.played.topic->frames[0];
     can::AnyFrame frame;
@@ -154,6 +225,12 @@ class MessagePlayer {
       frame.flags = can::fd_flags(layout.bit_rate_switch);
       frame.length = can::fd_length(can::fd_dlc(layout.length));
     }
+    fill(message, data, now);
+    return frame;
+  }
+
+  static void fill(const Message& message, std::span<std::uint8_t> data, base::Time now) noexcept {
+    const auto& layout = message.played.topic->frames[0];
     // Selectors first, since they decide what else is there, and last, should a field lie over one.
     message.pages.put(message.sent, data);
     for (std::size_t i = 0; i < layout.fields.size(); ++i) {
@@ -162,13 +239,13 @@ class MessagePlayer {
         protocol::put(data, field.position, message.motions[i].at(now));
     }
     message.pages.put(message.sent, data);
-    return frame;
   }
 
   PlayOptions options_;
   LeftOut left_out_;
   std::vector<Message> messages_;
   std::priority_queue<Due, std::vector<Due>, std::greater<>> due_;
+  std::array<base::Time, 256> free_{};  ///< of each source: when it has no broadcast any more
 };
 
 }  // namespace ocm::sim

@@ -142,6 +142,7 @@ class QemuRobot {
   /// What the board's drivers did that data sheets forbid.
   [[nodiscard]] const Violations& violations(std::size_t board) const { return parts_[board]->violations(); }
   [[nodiscard]] World& world() noexcept { return world_; }
+  [[nodiscard]] const World& world() const noexcept { return world_; }
 
  private:
   struct Kind {

@@ -11,6 +11,7 @@
 #include "ocm/simulation/virtual_bus_server.hpp"
 
 #include "sim/serve/boards.hpp"
+#include "sim/serve/bus_report.hpp"
 #include "sim/serve/clock.hpp"
 #include "sim/serve/interference.hpp"
 #include "sim/serve/messages.hpp"
@@ -62,6 +63,10 @@ Ending wait_until_ready(Boards& boards, const SimulatedClock& clock, const Shell
   return {};
 }
 
+void show(const Boards& boards, const Shell& shell) {
+  if (shell.watch) shell.watch([&boards] { return seen(boards.world(), amiro::catalogue.robot); });
+}
+
 }  // namespace
 
 Ending serve_amiro(transport::Bus& bus, const AmiroOptions& options, const Shell& shell) {
@@ -75,11 +80,12 @@ Ending serve_amiro(transport::Bus& bus, const AmiroOptions& options, const Shell
   if (auto started = wait_until_ready(boards, clock, shell); !started.well()) return started;
   while (!shell.stop()) {
     if (!boards.advance(clock.now())) return Ending{boards.failure()};
+    show(boards, shell);
     auto received = bus.receive(base::Duration{0});
     if (!received && received.error == base::Error::timed_out) {
-      wait_for(
-          bus.descriptor(), boards,
-          boards.waiting() ? base::Duration{std::chrono::milliseconds{1}} : clock.until(boards.next_event()));
+      wait_for(bus.descriptor(), boards,
+               boards.waiting() ? base::Duration{std::chrono::milliseconds{1}}
+                                : shell.limited(clock.until(boards.next_event())));
       received = bus.receive(base::Duration{0});
     }
     if (received && received->frame.format != can::Format::error)
@@ -147,22 +153,14 @@ Ending serve_amiro(const std::string& path, const AmiroOptions& options, const S
     }
     if (options.qemu && !boards.advance(now)) return Ending{boards.failure()};
     server.poll(now, hear);
-    wait_for(server.descriptor(), boards, clock.until(std::min(next_event(), boards.next_event())));
+    show(boards, shell);
+    wait_for(server.descriptor(), boards,
+             shell.limited(clock.until(std::min(next_event(), boards.next_event()))));
   }
   server.end();  // counts what slow clients lost by it
   boards.summarise(shell);
   messages.summarise(shell);
-  const auto& bus = arbiter.totals();
-  const auto& clients = server.counters();
-  shell.report(fmt::format(
-      "bus               {} frames, {} clients, {} turned away, {} misbehaved, {} frames lost by slow ones",
-      bus.frames, clients.welcomed, clients.turned_away, clients.misbehaved, clients.overruns));
-  if (options.bus_errors > 0)
-    shell.report(
-        fmt::format("                  {} error frames, {} frames repeated", bus.errors, bus.repetitions));
-  if (bus.clashes != 0)
-    shell.report(
-        fmt::format("                  {} times two senders at once with the same identifier", bus.clashes));
+  report_bus(server, options.bus_errors > 0, shell);
   turns.each([&shell](const protocol::Topic& topic, std::uint64_t count) {
     shell.report(fmt::format("{:<17} was commanded by two senders, in turns: {} times", topic.name, count));
   });

@@ -54,6 +54,8 @@ class Boards {
   /// Readable when a board has something to say.
   [[nodiscard]] virtual std::vector<int> descriptors() const { return {}; }
   [[nodiscard]] virtual transport::Failure failure() const { return {}; }
+  /// What they are in.
+  [[nodiscard]] virtual const World& world() const = 0;
   /// What each board received, a line each.
   virtual void summarise(const Shell& shell) const = 0;
 };

@@ -21,6 +21,7 @@ class HostBoards final : public Boards {
   }
   [[nodiscard]] base::Time next_event() const override { return robot_.next_event(); }
   [[nodiscard]] bool waiting() const override { return robot_.waiting(); }
+  [[nodiscard]] const World& world() const override { return robot_.world(); }
   void summarise(const Shell& shell) const override {
     shell.report(line(board_names[0], robot_.di_wheel_drive().counters()));
     shell.report(line(board_names[1], robot_.power_management().counters()));

@@ -191,6 +191,7 @@ Ending serve_fleet(plant::World& world, const MapperOptions& options, const Shel
     fleet->advance_to(clock.now());
     fleet->write(line.read());
     line.write(fleet->read());
+    if (shell.watch) shell.watch([&world] { return seen(world); });
     wait(line.inputs(), std::min(clock.until(fleet->next_event()), look_period));
   }
   summarise(*fleet, line, shell);
@@ -264,6 +265,7 @@ Ending serve_lines(plant::World& world, const MapperOptions& options, const Shel
       inputs.push_back(lines[i]->input());
     }
     happen(now);
+    if (shell.watch) shell.watch([&world] { return seen(world); });
     wait(inputs, std::min(clock.until(next_event()), look_period));
   }
   for (const auto& robot : robots) report_robot(*robot, "", shell);

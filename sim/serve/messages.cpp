@@ -9,6 +9,7 @@
 
 #include "ocm/simulation/virtual_bus_server.hpp"
 
+#include "sim/serve/bus_report.hpp"
 #include "sim/serve/clock.hpp"
 #include "sim/serve/interference.hpp"
 
@@ -131,17 +132,7 @@ Ending serve_messages(const std::string& path, const protocol::Catalogue& catalo
   }
   server.end();  // counts what slow clients lost by it
   nodes.summarise(shell);
-  const auto& bus = wire.totals();
-  const auto& clients = server.counters();
-  shell.report(fmt::format(
-      "bus               {} frames, {} clients, {} turned away, {} misbehaved, {} frames lost by slow ones",
-      bus.frames, clients.welcomed, clients.turned_away, clients.misbehaved, clients.overruns));
-  if (options.bus_errors > 0)
-    shell.report(
-        fmt::format("                  {} error frames, {} frames repeated", bus.errors, bus.repetitions));
-  if (bus.clashes != 0)
-    shell.report(
-        fmt::format("                  {} times two senders at once with the same identifier", bus.clashes));
+  report_bus(server, options.bus_errors > 0, shell);
   return {};
 }
 

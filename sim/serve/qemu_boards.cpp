@@ -31,6 +31,7 @@ class QemuBoards final : public Boards {
     return {all.begin(), all.end()};
   }
   [[nodiscard]] transport::Failure failure() const override { return robot_->failure(); }
+  [[nodiscard]] const World& world() const override { return robot_->world(); }
   void summarise(const Shell& shell) const override {
     for (std::size_t i = 0; i < QemuRobot::boards; ++i) {
       const auto& counters = robot_->counters(i);

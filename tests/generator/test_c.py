@@ -89,6 +89,13 @@ int main(void) {
 
 
 class C(Case):
+    def test_each_field_has_its_unit_and_range(self):
+        header = generate(SPECS["amiro"], "--to", "c", "-o", "-")
+        self.assertIn("typedef struct amiro_odometry_velocity_t {\n"
+                      "  // forwards; 0.000001 m/s a bit, [-2147.483648, 2147.483647] m/s\n  int32_t x;\n"
+                      "  // counter-clockwise seen from above; 0.000001 rad/s a bit, [-2147.483648, 2147.483647] rad/s\n  int32_t z;\n"
+                      "} amiro_odometry_velocity_t;\n", header)
+
     def header(self, robot):
         path = self.folder / f"{robot}.h"
         generate(SPECS[robot], "--to", "c", "-o", path)

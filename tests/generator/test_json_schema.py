@@ -30,6 +30,11 @@ class Schema(unittest.TestCase):
         jsonschema.Draft7Validator.check_schema(schema)
         return jsonschema.Draft7Validator(schema)
 
+    def test_is_indented_as_people_write_it(self):
+        for robot in SPECS:
+            text = generate(SPECS[robot], "--to", "json-schema", "-o", "-")
+            self.assertEqual(text.splitlines(), json.dumps(json.loads(text), indent=2, ensure_ascii=False).splitlines())
+
     def test_takes_every_frame_at_every_value(self):
         for robot in SPECS:
             validator = self.validator(robot)

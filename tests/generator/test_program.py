@@ -36,6 +36,16 @@ class Program(unittest.TestCase):
         self.assertIn("struct Gyroscope {", self.header.read_text())
         self.assertEqual(sorted(os.listdir(self.folder)), ["good.json", "pair.hpp"])
 
+    def test_as_many_boards_as_eight_bits_hold(self):
+        spec = json.loads(GOOD)
+        for count, said in ((255, []), (256, ["256 boards"])):
+            spec["boards"] += [{"name": f"board_{i}", "mcu": "none", "source": "a test"} for i in range(len(spec["boards"]), count)]
+            self.spec.write_text(json.dumps(spec))
+            done = run(self.spec, "--check")
+            self.assertEqual(done.returncode, 1 if said else 0, done.stderr)
+            for words in said:
+                self.assertIn(words, done.stderr)
+
     def test_the_same_spec_gives_the_same_bytes_wherever_it_lies(self):
         run(self.spec, "-o", self.header)
         elsewhere = self.folder / "elsewhere"

@@ -3,10 +3,15 @@ import {Wire} from './wire.js';
 import {Graphs} from './graphs.js';
 import {Picture} from './robot.js';
 import {Drive} from './drive.js';
+import {Fleet} from './fleet.js';
 import {showBuses, showBoards, showBounds, showOperator} from './states.js';
 
 const by = id => document.getElementById(id);
-const token = location.hash.slice(1);
+// Behind the #: the token, and what is to be shown first: plot=CHANNEL.FIELD,... or map.
+const asked = location.hash.slice(1).split('&');
+const isWord = each => each.startsWith('plot=') || each === 'map';
+const token = asked.find(each => !isWord(each)) ?? '';
+const plots = new Set(asked.filter(each => each.startsWith('plot=')).flatMap(each => each.slice(5).split(',').map(decodeURIComponent)));
 const graphs = new Graphs(by('graphs'));
 const picture = new Picture(by('picture'), by('picture-text'));
 const rows = new Map();      // of the table, by channel, frame and field
@@ -32,7 +37,7 @@ function say({level = 0, message, id}) {
   line.dataset.key = key;
   box.prepend(line);
   while (box.children.length > 4) box.lastChild.remove();
-  setTimeout(() => line.remove(), 10000);
+  if (id === undefined) setTimeout(() => line.remove(), 10000);  // what has a name is a state, and stays
 }
 
 function valueText(field, value) {
@@ -73,6 +78,10 @@ function rowsOf(topic) {
       });
       const choice = element('td');
       choice.append(box);
+      if (plots.has(value.dataset.field)) {
+        box.checked = true;
+        box.dispatchEvent(new Event('change'));
+      }
       line.append(name, element('td', path), value, choice);
       const timing = first ? [0, 1, 2, 3].map(() => element('td', '', 'number')) : [];
       if (first) line.append(...timing);
@@ -109,13 +118,28 @@ function setRobot(state) {
   const reports = robot.topics.some(topic => topic.role === 'status');
   by('boards').hidden = !reports;
   by('playback').hidden = robot.live;
+  for (const part of ['graphs-part', 'bus-part', 'values-part']) by(part).hidden = robot.topics.length === 0;
   const may = robot.commands && wire.capabilities?.includes('clientPublish');
-  by('command').hidden = !may;
+  by('command').hidden = !may || robot.topics.length === 0;
   by('ask').hidden = !may || !reports;
   by('drive').hidden = by('stop').hidden = !may || !picture.topic('drive');
   if (may && picture.topic('drive')) drive.set(picture.topic('drive'));
+  for (const field of plots) {  // in their order, before anything comes
+    const topic = robot.topics.find(each => field.startsWith(`${each.channel}.`));
+    if (topic && !topic.rows) rowsOf(topic);
+  }
   wire.subscribe(robot.topics.map(topic => topic.channel));
   if (by('silent').checked) robot.topics.forEach(topic => topic.rows || rowsOf(topic));
+  fleet.allow(may);
+  if (plots.size > 0) by('graphs-part').scrollIntoView();
+}
+
+let fleetSeen = false;
+function setFleet(state) {
+  by('fleet').hidden = false;
+  fleet.take(state);
+  if (!fleetSeen && asked.includes('map')) by('fleet').scrollIntoView();
+  fleetSeen = true;
 }
 
 function setPlayback(state) {
@@ -144,6 +168,8 @@ const states = {
   },
   '/ocm/boards': state => { if (!paused) showBoards(by('board-table'), by('findings'), state); },
   '/ocm/bounds': state => { if (!paused) showBounds(by('bounds'), by('bounds-text'), by('bounds-table'), state); },
+  '/ocm/fleet': state => { if (!paused) setFleet(state); },
+  '/ocm/map': grid => fleet.takeMap(grid),
   '/ocm/operator': state => { if (!paused) showOperator(by('operator'), by('operator-text'), state); },
 };
 
@@ -153,12 +179,17 @@ const wire = new Wire(token, {
   message: (topic, message, timeNs) => (states[topic] ?? (each => take(topic, each, timeNs)))(message),
   status: say,
   state: text => {
-    by('link').textContent = text === 'lost' ? 'connection lost, trying again' : text;
-    by('link').classList.toggle('lost', text === 'lost');
+    const words = {lost: 'connection lost, trying again', refused: 'no connection, trying again: open the address that amiroctl serve has printed'};
+    by('link').textContent = words[text] ?? text;
+    by('link').classList.toggle('lost', text in words);
   },
 });
 const drive = new Drive(by('pad'), [by('forward-speed'), by('turn-speed')], [by('forward-unit'), by('turn-unit')],
   (channel, message) => wire.publish(channel, message));
+
+const fleet = new Fleet({map: by('map'), text: by('map-text'), line: by('fleet-line'), table: by('fleet-table'), orders: by('fleet-orders'),
+  robot: by('fleet-robot'), place: by('fleet-place'), x: by('place-x'), y: by('place-y'), look: by('fleet-look')},
+(order) => wire.publish('/ocm/fleet', order));
 
 function drawValues() {
   const filter = by('filter').value.toLowerCase();
@@ -189,6 +220,7 @@ setInterval(() => {
   if (changed) graphs.drawAll();
   changed = false;
   if (!by('robot').hidden) picture.draw();
+  if (!by('fleet').hidden) fleet.draw();
 }, 200);
 
 by('pause').addEventListener('click', () => {
@@ -220,4 +252,7 @@ by('speed').addEventListener('change', () => wire.publish('/ocm/playback', {spee
 by('bar').addEventListener('pointerdown', () => { by('bar').dataset.held = '1'; });
 by('bar').addEventListener('pointerup', () => { delete by('bar').dataset.held; });
 by('bar').addEventListener('change', () => wire.publish('/ocm/playback', {at_s: Number(by('bar').value)}));
-matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => graphs.recolour());
+matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
+  graphs.recolour();
+  fleet.recolour();
+});

@@ -48,7 +48,8 @@ export function showBuses(into, state) {
     const text = element('p', `${percent(bus.load)} now, worst ${percent(bus.worst_load)}; ${bus.rate_hz.toFixed(0)} frames/s; ${bus.frames} frames`);
     parts.push(name, meter, text);
     const counts = [['errors', 'error frames'], ['lost', 'lost'], ['incomplete', 'incomplete samples'], ['wrong_length', 'of a wrong length'],
-      ['unknown', 'unknown'], ['not_in_load', 'not in the load'], ['not_shown', 'not shown']]
+      ['unknown', 'unknown'], ['transport_lost', 'messages of several frames that lost one'],
+      ['not_in_load', 'not in the load'], ['not_shown', 'not shown']]
       .filter(([key]) => bus[key] > 0).map(([key, words]) => `${bus[key]} ${words}`);
     if (counts.length) parts.push(element('p', counts.join(', '), 'warning'));
     const strange = bus.rows.filter(row => !row.known);

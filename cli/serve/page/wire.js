@@ -4,12 +4,15 @@ const decoder = new TextDecoder();
 const encoder = new TextEncoder();
 
 export class Wire {
-  // on: {info, channels, message(topic, object, timeNs), status({level, message, id}), state(text)}
+  // on: {info, channels, message(topic, object, timeNs), status({level, message, id}), state(text)}:
+  // 'connected', 'lost', or 'refused' where none ever came about
   constructor(token, on) {
     this.token = token;
     this.on = on;
     this.wanted = new Set();
     this.connect();
+    // A page that is left may be kept by the browser, to be shown again: it must not keep what it has sent going.
+    addEventListener('pagehide', () => this.socket.close());
   }
 
   connect() {
@@ -25,7 +28,7 @@ export class Wire {
     socket.binaryType = 'arraybuffer';
     socket.onopen = () => this.on.state('connected');
     socket.onclose = () => {
-      this.on.state('lost');
+      this.on.state(this.known ? 'lost' : 'refused');
       setTimeout(() => this.connect(), 1000);
     };
     socket.onmessage = ({data}) => typeof data === 'string' ? this.text(JSON.parse(data)) : this.binary(data);
@@ -33,6 +36,7 @@ export class Wire {
 
   text(message) {
     if (message.op === 'serverInfo') {
+      this.known = true;
       this.capabilities = message.capabilities;
       this.on.info(message);
     } else if (message.op === 'advertise') {

@@ -158,6 +158,10 @@ class Receiver {
     transport_[0].expire(now);
     return transport_[0].counters();
   }
+  /// The same as of the last frame: a message that did not go on since is still under way.
+  [[nodiscard]] j1939::TransportCounters transport_counters() const noexcept {
+    return transport_.empty() ? j1939::TransportCounters{} : transport_[0].counters();
+  }
   /// Messages of it that are under way.
   [[nodiscard]] std::size_t transports_open() const noexcept {
     return transport_.empty() ? 0 : transport_[0].open();

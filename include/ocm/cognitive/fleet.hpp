@@ -56,8 +56,9 @@ struct Robot {
   base::Time updated{};
   base::Time heard{};  ///< its last word of any kind
   mapper::link::Kind last = mapper::link::Kind::none;
-  base::Time told{};      ///< when the last set point, pause or unpause was said
-  motion::Pose origin{};  ///< where its frame began, in the world
+  base::Time told{};          ///< when the last set point, pause or unpause was said
+  motion::Pose origin{};      ///< where its frame began, in the world
+  bool origin_known = false;  ///< `set_origin` has said it
   Advice advice = Advice::stay;
 
   [[nodiscard]] Shape shape() const { return handshake ? shape_of(*handshake) : Shape{}; }
@@ -97,7 +98,8 @@ class Fleet {
   void linked(std::size_t index, std::string_view name, base::Time now) {
     if (index >= most_robots) return;
     Robot& robot = robots_[index];
-    if (robot.name != name) robot = Robot{.name = std::string{name}, .origin = robot.origin};
+    if (robot.name != name)
+      robot = Robot{.name = std::string{name}, .origin = robot.origin, .origin_known = robot.origin_known};
     if (!robot.linked) {
       ears_.restart(index);
       forget_words(index);
@@ -118,7 +120,9 @@ class Fleet {
   }
   /// Where the frame of a robot's poses is in the world: where it stood when it began.
   void set_origin(std::size_t index, const motion::Pose& origin) {
-    if (index < most_robots) robots_[index].origin = origin;
+    if (index >= most_robots) return;
+    robots_[index].origin = origin;
+    robots_[index].origin_known = true;
   }
 
   /// The robots' bytes (CentralClient::take_robots). `heard(index, kind)` after each whole sentence.

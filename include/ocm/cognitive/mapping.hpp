@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "ocm/cognitive/drawing.hpp"
 #include "ocm/cognitive/explorer.hpp"
 #include "ocm/cognitive/fleet.hpp"
 #include "ocm/cognitive/map.hpp"
@@ -41,13 +42,17 @@ struct MappingCounters {
 class Mapping {
  public:
   explicit Mapping(Fleet& fleet, const MappingOptions& options = {})
-      : fleet_(&fleet), options_(options), map_(options.map), explorer_(options.explorer) {}
+      : fleet_(&fleet),
+        options_(options),
+        drawing_(options.map, options.most_turn_deg),
+        explorer_(options.explorer) {}
 
   /// To be called with each sentence, as Server::feed does.
   void heard(std::size_t robot, mapper::link::Kind kind) {
     if (robot >= Fleet::most_robots || !takes_part(robot)) return;
     if (kind == mapper::link::Kind::handshake) {
-      tracks_[robot] = Track{.path = std::move(tracks_[robot].path), .held = tracks_[robot].held};
+      tracks_[robot] = Track{.held = tracks_[robot].held};
+      drawing_.restart(robot);
       explorer_.forget(static_cast<std::uint8_t>(robot));
     }
     if (kind == mapper::link::Kind::update) draw(robot);
@@ -81,9 +86,9 @@ class Mapping {
       const Robot& robot = fleet_->robot(scout.robot);
       // In the middle of a piece, too: stopped first, for it is sent from where it stands.
       if (called && !robot.idle) (void)fleet_->stop(scout.robot, now);
-      if (track.path.empty()) continue;  // the map does not show yet what it sees
+      if (path(scout.robot).empty()) continue;  // the map does not show yet what it sees
       if (!robot.idle || !robot.located || (!called && now < track.ask_at)) continue;
-      track.order = explorer_.next(scout.robot, scouts, map_, now);
+      track.order = explorer_.next(scout.robot, scouts, map(), now);
       obey(scout, track, now);
     }
   }
@@ -104,20 +109,20 @@ class Mapping {
     return any;
   }
 
-  [[nodiscard]] const Map& map() const noexcept { return map_; }
+  [[nodiscard]] const Map& map() const noexcept { return drawing_.map(); }
   [[nodiscard]] const Explorer& explorer() const noexcept { return explorer_; }
-  [[nodiscard]] const MappingCounters& counters() const noexcept { return counters_; }
+  [[nodiscard]] MappingCounters counters() const noexcept {
+    return {drawing_.counters().turning, drawing_.counters().drawn, orders_};
+  }
   /// Where a robot was, a point each 2 cm; by its own estimate.
   [[nodiscard]] const std::vector<motion::Point>& path(std::size_t robot) const {
-    return tracks_[robot].path;
+    return drawing_.path(robot);
   }
 
  private:
   struct Track {
     Order order{};
     base::Time ask_at{};
-    std::optional<int> heading{};  ///< of the last update, degrees
-    std::vector<motion::Point> path{};
     bool asked = false;
     bool held = false;            ///< another program drives it
     bool waits_for_link = false;  ///< its order is of while it was called back
@@ -145,20 +150,10 @@ class Mapping {
   }
   void draw(std::size_t index) {
     const Robot& robot = fleet_->robot(index);
-    Track& track = tracks_[index];
-    const motion::Pose pose = robot.pose();
-    constexpr float step_m = 0.02F;
-    if (track.path.empty() || distance_m(track.path.back(), place(pose)) >= step_m)
-      track.path.push_back(place(pose));
-    const int heading = robot.update->heading;
-    const int turned =
-        track.heading ? std::abs(static_cast<int>(std::remainder(heading - *track.heading, 360.0))) : 0;
-    track.heading = heading;
-    if (turned > options_.most_turn_deg) return void(++counters_.turning);
     std::vector<Body> others;
     for (const Scout& other : all())
       if (other.robot != index) others.push_back(other.body);
-    if (map_.take({pose, robot.shape()}, *robot.update, others)) ++counters_.drawn;
+    drawing_.take(index, {robot.pose(), robot.shape()}, *robot.update, others);
   }
   void obey(const Scout& scout, Track& track, base::Time now) {
     track.asked = true;
@@ -166,18 +161,18 @@ class Mapping {
     track.ask_at = now + options_.again;
     if (track.order.kind == Order::Kind::look) track.ask_at = std::min(track.order.until, track.ask_at);
     if (track.order.kind != Order::Kind::drive) return;
-    ++counters_.orders;
+    ++orders_;
     track.ask_at = now;
     (void)fleet_->go(scout.robot, track.order.set_point, now);
   }
 
   Fleet* fleet_;
   MappingOptions options_;
-  Map map_;
+  Drawing drawing_;
   Explorer explorer_;
   std::array<Track, Fleet::most_robots> tracks_{};
   base::Time now_{};  ///< of the last step
-  MappingCounters counters_{};
+  std::uint32_t orders_ = 0;
 };
 
 }  // namespace ocm::cognitive

@@ -135,10 +135,9 @@ class LocalListener {
     if (::connect(probe.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 ||
         errno == EAGAIN) {
       const auto peer = peer_of(probe.get());
-      const std::int64_t process = peer ? peer->pid : 0;
-      const std::string end = process > 0 ? ", end it (kill " + std::to_string(process) + ")" : "";
       return Failure{std::string(service.server) + " already runs on '" + path + "'" + process_text(peer),
-                     "use it" + end + otherwise(service, ", or "), service.running, process};
+                     "use it" + end_text(peer) + otherwise(service, ", or "), service.running,
+                     peer ? peer->pid : 0};
     }
     if (errno == EPROTOTYPE)
       return Failure{"another program listens on '" + path + "'", "end it" + otherwise(service, ", or ")};

@@ -36,5 +36,9 @@ namespace ocm::host {
 [[nodiscard]] inline std::string process_text(const std::optional<ucred>& peer) {
   return peer && peer->pid > 0 ? " (process " + std::to_string(peer->pid) + ")" : "";
 }
+/// ", end it (kill 1234)", or nothing when it is not known.
+[[nodiscard]] inline std::string end_text(const std::optional<ucred>& peer) {
+  return peer && peer->pid > 0 ? ", end it (kill " + std::to_string(peer->pid) + ")" : "";
+}
 
 }  // namespace ocm::host

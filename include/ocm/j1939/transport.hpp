@@ -30,6 +30,11 @@ inline constexpr std::size_t least_transported = 9;
 inline constexpr std::size_t most_transported = 1785;  ///< 255 packets of seven
 inline constexpr std::size_t bytes_a_packet = 7;
 
+/// Packets that a message of so many bytes takes.
+[[nodiscard]] constexpr std::uint32_t packets_of(std::size_t bytes) noexcept {
+  return static_cast<std::uint32_t>((bytes + bytes_a_packet - 1) / bytes_a_packet);
+}
+
 /// How long the next frame of a session may take. [SAE J1939-21, 5.10.2.4 and C.1]
 namespace timeout {
 using namespace std::chrono_literals;
@@ -201,8 +206,7 @@ class Transport {
     Session* session = find(from.source, from.destination, channel);
     if (session != nullptr) end(*session, counters_.replaced);
     const auto size = static_cast<std::uint16_t>(data[1] | data[2] << 8);
-    if (size < least_transported || size > most_transported ||
-        data[3] != (size + bytes_a_packet - 1) / bytes_a_packet) {
+    if (size < least_transported || size > most_transported || data[3] != packets_of(size)) {
       ++counters_.bad_size;
       return;
     }

@@ -56,6 +56,7 @@ struct BusFigures {
   std::vector<Stranger> strangers;          ///< the first BusStatistics::most_strangers
   client::ReceiverCounters counters;        ///< `frames` with error frames and CAN FD
   std::optional<WrongLength> wrong_length;  ///< the first; counters.wrong_dlc has how many
+  j1939::TransportCounters transport;       ///< of J1939's transport protocol; zeros where it is not read
   std::uint64_t fd_frames = 0;              ///< CAN FD, of messages or not
   std::uint64_t not_in_load = 0;            ///< of these, those whose data go at a bit rate that is not known
   std::uint64_t overflows = 0;  ///< error frames that say that frames were lost in the CAN controller
@@ -169,6 +170,7 @@ class BusStatistics {
   [[nodiscard]] BusFigures figures(std::optional<base::Time> now = {}) const {
     BusFigures out;
     out.counters = receiver_.counters();
+    out.transport = receiver_.transport_counters();
     out.strangers = strangers_;
     out.wrong_length = wrong_length_;
     out.fd_frames = fd_frames_;

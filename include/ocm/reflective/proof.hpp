@@ -32,6 +32,18 @@
 /// Microprocessing and Microprogramming 40]. An event in the first `settle` of a configuration acts by
 /// `settle` later.
 ///
+/// Recovery of a stream, from when a board that has lost its streams takes requests again (or `settle` after
+/// the entry of a configuration, if that is later; it is not left until then):
+///
+///     the longer of          3 T + S + (R - J - S) + reaction, since its last sample was read, and retry,
+///                            since a request that was lost
+///     the request            + reaction + busy period of all the operator's frames + handling
+///     its first sample       + R, without its own request, if the next one is later
+///
+/// A request that is made after the board's return arrives; so the last sample and the last lost request are
+/// not later than that. In the first `settle` of a configuration no stream is late (`check`), so that what its
+/// entry asks for comes within a period of the end of that.
+///
 /// Assumed: a board begins a sample at the release, which is J late at most, reads the value at any time from
 /// then on, and hands its frames over S later at most, in the order of the samples: `Sampling`, what the
 /// caller's analysis of the boards' processors says, 0 where it says nothing. It begins a stream when it
@@ -47,7 +59,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string_view>
 #include <utility>
 
 #include "ocm/analysis/can_response.hpp"
@@ -59,54 +70,10 @@
 #include "ocm/can/length.hpp"
 #include "ocm/protocol/topic.hpp"
 #include "ocm/reflective/check.hpp"
+#include "ocm/reflective/latency.hpp"
 #include "ocm/reflective/operator.hpp"
 
 namespace ocm::reflective {
-
-/// The parts of a latency, in nanoseconds; those that do not apply are 0.
-struct Latency {
-  bool bounded = false;
-  std::uint16_t condition = none;  ///< which one of the monitor is the latest
-  std::int64_t period = 0;         ///< until the stream samples again
-  std::int64_t jitter = 0;         ///< of its release
-  std::int64_t sampling = 0;       ///< on its board: from the release to the hand-over of its frames
-  std::int64_t bus = 0;            ///< of its last frame
-  std::int64_t reading = 0;        ///< until the operator's step is over
-  std::int64_t limit = 0;          ///< age or gap
-  std::int64_t window = 0;         ///< of a rate or load: what is left of one, and a whole one
-  std::int64_t lasting = 0;
-  std::int64_t timer = 0;    ///< reaction to the timers of those
-  std::int64_t command = 0;  ///< until the set points have been sent
-  std::int64_t settle = 0;   ///< not in the total: until a change that is under way is over
-
-  struct Part {
-    std::string_view name{};
-    std::int64_t time = 0;
-  };
-  [[nodiscard]] constexpr std::array<Part, 10> parts() const noexcept {
-    return {{{"period", period},
-             {"jitter", jitter},
-             {"sampling", sampling},
-             {"bus", bus},
-             {"reading", reading},
-             {"limit", limit},
-             {"window", window},
-             {"lasting", lasting},
-             {"timer", timer},
-             {"command", command}}};
-  }
-  /// From the event to the end of the last set point's frame, in a configuration that has settled.
-  [[nodiscard]] constexpr std::int64_t total() const noexcept {
-    analysis::Checked sum;
-    for (const Part& part : parts()) sum += part.time;
-    return bounded ? sum.value_or(analysis::unbounded) : analysis::unbounded;
-  }
-  /// The same if the configuration was just entered.
-  [[nodiscard]] constexpr std::int64_t at_worst() const noexcept {
-    const std::int64_t sum = total();
-    return sum == analysis::unbounded ? sum : (analysis::Checked{sum} + settle).value_or(analysis::unbounded);
-  }
-};
 
 /// What a sample of a topic takes on its board at most, in a configuration, or in a change to it: response
 /// time of the task that takes it, from its release to the hand-over of its last frame.
@@ -209,6 +176,41 @@ class Proof {
     return latest;
   }
 
+  /// By when a stream is back on the bus after its board was reset. Not bounded: `retry` is 0, the topic is
+  /// no stream that can be asked for, or no bound exists.
+  [[nodiscard]] constexpr Recovery recovery(std::uint16_t configuration, std::uint16_t topic) noexcept {
+    Recovery found;
+    Latency sample;
+    if (op_->retry.count() <= 0 || op_->topic(topic).is_message() || !set(none, configuration, false))
+      return found;
+    found.request = busy([](const Item& item) { return item.kind == Item::Kind::command; });
+    if (!on_bus(topic, solve(), sample) || found.request == analysis::unbounded) return found;
+    // Its own next request, and the grid that this begins, are later than the samples in question, if each is
+    // gone by then; unless its period follows a value.
+    const analysis::Checked gone = analysis::Checked{op_->reaction.count()} + found.request +
+                                   op_->handling.count() + sample.jitter + sample.sampling + sample.bus;
+    if (!is_adapted(configuration, topic) && gone <= op_->retry.count()) {
+      erase_own(topic);
+      if (!on_bus(topic, solve(), sample)) return found;
+    }
+    found.bounded = true;
+    found.jitter = sample.jitter;
+    found.sampling = sample.sampling;
+    found.bus = sample.bus;
+    const analysis::Checked silence = analysis::Checked{stale_periods} * period_of(configuration, topic);
+    const analysis::Checked last = analysis::Checked{sample.sampling} + sample.bus + op_->reaction.count();
+    if (silence + last < op_->retry.count()) {
+      found.retry = op_->retry.count();
+    } else {
+      found.silence = silence.value_or(analysis::unbounded);
+      found.last = last.value_or(analysis::unbounded);
+    }
+    found.timer = op_->reaction.count();
+    found.handling = op_->handling.count();
+    found.settle = op_->settle.count();
+    return found;
+  }
+
   /// What the last analysis was of, for those who want to show it: messages in the order of arbitration.
   [[nodiscard]] constexpr std::span<const analysis::Message> messages() const noexcept {
     return {messages_.begin(), messages_.size()};
@@ -283,9 +285,20 @@ class Proof {
     for (std::size_t i = 1; i < items_.size(); ++i)
       for (std::size_t k = i; k > 0 && goes_before(items_[k], items_[k - 1]); --k)
         std::swap(items_[k], items_[k - 1]);
+    collect_messages();
+    return room_;
+  }
+  /// Leaves out what the operator asks for this topic, and the frames of a grid that begins again.
+  constexpr void erase_own(std::uint16_t topic) noexcept {
+    for (std::size_t i = items_.size(); i-- > 0;)
+      if (items_[i].topic == topic &&
+          (items_[i].kind == Item::Kind::again || items_[i].kind == Item::Kind::command))
+        items_.erase(i);
+    collect_messages();
+  }
+  constexpr void collect_messages() noexcept {
     messages_.clear();
     for (const Item& item : items_) room_ = messages_.push_back(item.message).ok() && room_;
-    return room_;
   }
   static constexpr bool goes_before(const Item& a, const Item& b) noexcept {
     if (a.message.key != b.message.key) return a.message.key < b.message.key;
@@ -328,6 +341,13 @@ class Proof {
                                                         std::size_t s) noexcept {
     const Adaptation* const adaptation = adaptation_of(configuration, s);
     return adaptation == nullptr ? configuration.streams[s].period : adaptation->longest();
+  }
+
+  [[nodiscard]] constexpr bool is_adapted(std::uint16_t configuration, std::uint16_t topic) const noexcept {
+    const Configuration& c = op_->configurations[configuration];
+    for (const Adaptation& adaptation : c.adaptations)
+      if (c.streams[adaptation.stream].topic == topic) return true;
+    return false;
   }
 
   constexpr void stream(const Configuration& target, std::size_t s, const Configuration* source) noexcept {

@@ -4,6 +4,7 @@ same requests, and must say the same.
 What the emulated lines cannot carry is left out: above about 1000 frames a second of one board (the magnetometer every
 900 us makes 3333) a serial line in QEMU falls behind, and the board's frames wait or are counted as overruns.
 """
+# Sleeps: emulated boards run in real time, and drive, publish or are silent for so long.
 
 import collections
 import itertools

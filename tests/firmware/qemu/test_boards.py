@@ -1,4 +1,5 @@
 """The boards' images in QEMU: requests over SLCAN, parts that are there, away or come back, actuators, stacks."""
+# Sleeps: emulated boards run in real time, and drive, publish or are silent for so long.
 
 import struct
 import time

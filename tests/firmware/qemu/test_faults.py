@@ -1,6 +1,7 @@
 """A board that breaks, in QEMU: its actuators are at rest before it restarts, its status names the cause, and it serves
 again. The images are those of the boards with one thing more, which breaks them when the host asks for it
 (firmware/qemu/fault_injection.hpp); the way from the fault on is that of the real boards."""
+# Sleeps: emulated boards run in real time, and drive, publish or are silent for so long.
 
 import struct
 import time

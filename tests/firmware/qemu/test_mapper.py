@@ -1,5 +1,6 @@
 """The mapper's image in QEMU: handshakes, set points driven in a played world, pause, ping, packed updates, a lost
 link, parts that are away, damaged lines, stacks and idle time; and one whose stack is too small."""
+# Sleeps: emulated boards run in real time, and drive, publish or are silent for so long.
 
 import math
 import os

@@ -112,6 +112,19 @@ def sent_by_j1939(chance, database, message):
               for index, packet in enumerate(packets))]
 
 
+def frames_of_file(name, database):
+    """Five random frames of each message of a real file, but of J1939; no frame where it has no such message."""
+    messages = [message for message in database.messages if message.signals and message.length and not message.j1939]
+    chance = random.Random(name)
+    frames = []
+    for index in range(5 * len(messages)):
+        message = messages[index % len(messages)]
+        length = next(size for size in (*range(9), *random_dbc.FD_LENGTHS) if size >= message.length)
+        data = data_of(chance, message)
+        frames.append((1_000_000 + index, message, message.number, message.extended, length > 8, data.ljust(length, b"\0")))
+    return frames
+
+
 class Tool:
     def __init__(self, case, folder, spec):
         self.case, self.folder, self.spec = case, pathlib.Path(folder), spec
@@ -336,16 +349,9 @@ class Decode(Case):
         taken = 0
         for spec in sorted(pathlib.Path(FOLDER).rglob("*.dbc")):
             database = second_reader.read(spec.read_bytes())
-            messages = [message for message in database.messages if message.signals and message.length and not message.j1939]
-            if not messages:
+            frames = frames_of_file(spec.name, database)
+            if not frames:
                 continue
-            chance = random.Random(spec.name)
-            frames = []
-            for index in range(5 * len(messages)):
-                message = messages[index % len(messages)]
-                length = next(size for size in (*range(9), *random_dbc.FD_LENGTHS) if size >= message.length)
-                data = data_of(chance, message)
-                frames.append((1_000_000 + index, message, message.number, message.extended, length > 8, data.ljust(length, b"\0")))
             log = self.folder / "real.log"
             log.write_text(log_of(frames))
             tool = Tool(self, self.folder, spec)

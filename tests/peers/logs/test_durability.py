@@ -165,7 +165,7 @@ class Killed(OnTheBus):
                        for recorder, path, since in running)
         result = []
         for moment, recorder, path, since in kills:
-            time.sleep(max(0, moment - time.monotonic()))
+            time.sleep(max(0, moment - time.monotonic()))  # at any instant
             recorder.send_signal(signal.SIGKILL)
             recorder.wait()
             old = time.monotonic() - LEAST_S - SLACK_S

@@ -11,6 +11,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import check
 import house
+import sources
 
 ROW = "| 9 | `extra` | what is planted | {} | host |\n"
 
@@ -25,7 +26,8 @@ GOOD = {
                             "| 5 | `reflective` | | `topics` | host |\n"
                             "| 5 | `skiff/oars` | | `base` | board, host |\n"
                             "| 6 | `transport` | | `base` | host |\n"
-                            "\n<!-- end of floors -->\n",
+                            "\n<!-- end of floors -->\n\n`docs/`, `examples/`, `tests/`; `cli/`: `bell/`, `cli/horn/`, `shared/`, `verbs/`; `generator/`: `spec/`; "
+                            "`firmware/`: `boards/`, `system/`; `sim/`: `amiro/`, `mapper/`, `physics/`\n",
     "docs/images/house.svg": "<title>house</title>" + "".join(f"<title>{what}</title>\n" for what in (
         "base", "topics", "controller", "reflective", "skiff/oars", "transport", "base&#45;&gt;topics", "topics&#45;&gt;controller",
         "topics&#45;&gt;reflective", "base&#45;&gt;skiff/oars", "base&#45;&gt;transport")),
@@ -186,13 +188,19 @@ PLANTED = [
     ("test_folders_have_rows", {"tests/tool/bells/CMakeLists.txt": ""}, "tests/tool/bells/CMakeLists.txt:1:"),
     ("test_folders_have_rows", {"tests/bells/CMakeLists.txt": "", "tests/README.md": "`bells`, `tool/bells/`\n"},
      "tests/bells/CMakeLists.txt:1:"),
+    ("folders_are_named", {"cli/gong/gong.hpp": "/// The gong of the ferry, beaten.\n#pragma once\n"}, "cli/gong/gong.hpp:1:"),
+    ("folders_are_named", replaced(PAGE, "`examples/`", "examples"), "examples/0_hello.cpp:1:"),
+    ("sleeps_say_why", {"tests/tool/test_a.py": "time.sleep(0.1)\ntime.sleep(1.5)  # the time itself\ntime.sleep(0.2)\n"}, "tests/tool/test_a.py:3:"),
+    ("sleeps_say_why", {"tests/tool/test_a.py": "# for a while\ntime.sleep(wait)\n"}, "tests/tool/test_a.py:2:"),
+    ("sleeps_say_why", {"tests/sim/a.cpp": "std::this_thread::sleep_for(100ms);\nstd::this_thread::sleep_for(101ms);\n"}, "tests/sim/a.cpp:2:"),
+    ("sleeps_say_why", {"tests/sim/a.cpp": "std::this_thread::sleep_until(end);\n"}, "tests/sim/a.cpp:1:"),
     ("quotes_are_the_examples", replaced(README, "  greet();", "   greet();"), "README.md:5:"),
     ("quotes_are_the_examples", replaced(README, "snippet: hello", "snippet: goodbye"), "README.md:5:"),
     ("quotes_are_the_examples", added(README, "\n```cpp\nint unquoted;\n```\n"), "README.md:13:"),
     ("quotes_are_the_examples", added(README, "<!-- snippet: hello -->\nprose\n"), "README.md:12:"),
 ]
 PLANTED += [("no_banned_headers", replaced(BOARD, "#pragma once\n", f"#pragma once\n#include <{header}>\n"), BOARD + ":3:")
-            for header in sorted(check.BANNED_HEADERS)]
+            for header in sorted(sources.BANNED_HEADERS)]
 PLANTED += [("no_banned_headers", added("firmware/boards/deck/board.hpp", "#include <iostream>\n"), "board.hpp:3:")]
 PLANTED += [("no_banned_words", added(BOARD, f"{code}\n"), BOARD + ":5:")
             for code in ("void f() { throw 1; }", "auto p = new int;", "auto p = new int[3];", "void f(int* p) { delete p; }",

@@ -80,18 +80,19 @@ class Mutate(Case):
         return self.run_script("mutate", *(f"--room={room}" for room in rooms), "--count", "1", "--list", path=tree / "scripts" / "mutate")
 
     def test_each_file_has_tests_that_judge_it(self):
-        done = self.mutate(ROOT, "include/ocm", "cli")
+        done = self.mutate(ROOT, "include/ocm", "cli", "generator", "sim")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def test_a_file_without_a_judge_is_an_error(self):
         text = "#pragma once\ninline bool below(int a) { return a < 3; }\n"
-        for path in ("include/ocm/base/unjudged.hpp", "cli/room/unjudged.cpp", "cli/verbs/unjudged.cpp"):
+        for path in ("include/ocm/base/unjudged.hpp", "cli/room/unjudged.cpp", "cli/verbs/unjudged.cpp", "sim/physics/unjudged.hpp"):
             (self.tree / path).parent.mkdir(parents=True, exist_ok=True)
             (self.tree / path).write_text(text, encoding="utf-8")
-        done = self.mutate(self.tree, "include/ocm/base", "cli")
+        done = self.mutate(self.tree, "include/ocm/base", "cli", "sim")
         self.assertEqual((done.returncode, done.stdout), (1, ""))
         expected = "expected an entry in JUDGES"
         for path, what in (("include/ocm/base/unjudged.hpp", "expected a source in tests/unit that includes it"),
+                           ("sim/physics/unjudged.hpp", "expected a source in tests/sim that includes it"),
                            ("cli/room/unjudged.cpp", expected), ("cli/verbs/unjudged.cpp", expected)):
             self.assertIn(f"mutate: {path}: no test judges it; {what}", done.stderr.splitlines())
 
@@ -156,6 +157,25 @@ class Build(Case):
         self.assertEqual(self.called(), ["begin", "end"] * 4)
 
 
+class Dates(Case):
+    def test_a_file_of_cmake_that_is_dated_in_the_future_is_named(self):
+        (self.tree / "cmake").mkdir()
+        shutil.copy(ROOT / "cmake" / "OcmDates.cmake", self.tree / "cmake")
+        late = self.tree / "generator" / "CMakeLists.txt"
+        late.parent.mkdir()
+        (self.tree / "build").mkdir()
+        for file in (late, self.tree / "build" / "a.cmake", self.tree / "README.md"):
+            file.touch()
+            os.utime(file, times=(4e9, 4e9))
+        command = ["cmake", "-P", self.tree / "cmake" / "OcmDates.cmake"]
+        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+        self.assertEqual(done.returncode, 1)
+        words = " ".join(done.stderr.split())
+        self.assertIn(f"{late} is dated in the future: set this machine's clock, or touch that file", words)
+        late.touch()
+        self.assertEqual(subprocess.run(command, capture_output=True, check=False, timeout=60).returncode, 0)
+
+
 class Everywhere(Case):
     def test_by_a_link_to_the_script_itself(self):
         for script in ("bench", "fuzz"):
@@ -182,6 +202,15 @@ class Summary(Case):
         self.assertEqual(done.returncode, 1)
         self.assertRegex(done.stdout.split("--- summary ---")[1],
                          r"release, configure +FAILED +\d+ s\n    CMake Error at CMakeLists.txt:7 \(message\): no such thing\n")
+
+    def test_tests_that_cannot_be_configured_leave_a_folder_without_them(self):
+        cache = self.tree / "build" / "CMakeCache.txt"
+        cache.parent.mkdir()
+        self.stand_in("cmake", f"sed -i 's/OCM_TESTS:BOOL=.*/OCM_TESTS:BOOL=ON/' {cache}; exit 1")
+        for had in ("OFF", "ON"):
+            cache.write_text(f"A:BOOL=ON\nOCM_TESTS:BOOL={had}\nZ:BOOL=ON\n", encoding="utf-8")
+            self.assertEqual(self.run_script("test", "--only", "release").returncode, 1)
+            self.assertEqual(cache.read_text(encoding="utf-8"), f"A:BOOL=ON\nOCM_TESTS:BOOL={had}\nZ:BOOL=ON\n")
 
     def test_what_does_not_build_is_named(self):
         for printed, error in (("x.hpp:3:1: warning: w\nx.cpp:5:2: error: expected ;\ny.cpp:1:1: error: second", "x.cpp:5:2: error: expected ;"),

@@ -172,6 +172,16 @@ class Page(harness.Case):
         for selector in ("#pad", "#stop", "#line", "#ask"):
             self.assertFalse(self.browser.element(selector).is_displayed(), selector)
 
+    def test_a_wrong_token_is_told(self):
+        self.start_sim("--frozen")
+        self.serve("--allow-commands")
+        self.browser.open("about:blank")  # a fragment alone loads nothing again
+        self.browser.open(self.url.partition("#")[0] + "#" + "0" * 32)
+        self.until(lambda: "is not that of this server, so you only look" in self.browser.text("#messages"), "the reason")
+        self.assertFalse(self.browser.element("#pad").is_displayed())
+        time.sleep(11)  # a remark goes after ten seconds; this is no remark
+        self.assertIn("so you only look", self.browser.text("#messages"))
+
     def test_a_log_with_its_time_bar(self):
         self.serve(self.log())
         self.until(lambda: self.browser.element("#bar").is_displayed(), "the time bar")

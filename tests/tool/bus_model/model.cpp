@@ -42,6 +42,71 @@ TEST_CASE("top: a row a topic of which something came, all of them on request") 
   CHECK(model.newest() == morning);
 }
 
+// --- J1939: a broadcast of 17 bytes in three packets [SAE J1939-21, figure C3] ---
+
+constexpr ocm::protocol::Field group_fields[] = {[] {
+  ocm::protocol::Field field;
+  field.name = "last";
+  field.position = {128, 8};
+  return field;
+}()};
+constexpr ocm::protocol::FrameLayout group_frames[] = {[] {
+  ocm::protocol::FrameLayout layout;
+  layout.length = 20;
+  layout.fields = group_fields;
+  layout.address = {ocm::protocol::Address::By::pgn, true, 0x18FEECFE};
+  return layout;
+}()};
+constexpr ocm::protocol::Topic groups[] = {[] {
+  ocm::protocol::Topic topic;
+  topic.name = "VI";
+  topic.kind = ocm::protocol::Kind::message;
+  topic.frames = group_frames;
+  return topic;
+}()};
+constexpr ocm::protocol::Catalogue truck{"truck", 250'000, {}, groups};
+
+/// The announcement of a group, given by its middle byte, and its packets of these numbers.
+void broadcast(Model& model, ocm::base::Duration at, int group, std::initializer_list<int> packets) {
+  const auto extended = ocm::can::Format::extended;
+  model.take(entry(at, 0x1CECFF00, {0x20, 17, 0, 3, 0xFF, group, 0xFE, 0}, extended));
+  for (const int number : packets)
+    model.take(entry(at + number * 50ms, 0x1CEBFF00, {number, 10 * number, 0, 7, 0, 0, 0, 0}, extended));
+}
+
+TEST_CASE("top: a message of several frames is one, whatever its frames are") {
+  Model model{truck, 250'000};
+  broadcast(model, 0ms, 0xEC, {1, 2});
+  CHECK(model.rows(morning + 100ms, false).empty());
+  broadcast(model, 1s, 0xEC, {1, 2, 3});
+  broadcast(model, 2s, 0xEC, {1, 2, 3});
+  const auto rows = model.rows(morning + 2200ms, false);
+  REQUIRE(rows.size() == 1);
+  CHECK(rows[0].name == "VI");
+  CHECK(rows[0].count == 2);
+  CHECK(rows[0].age == 50ms);
+  const auto data = rows[0].newest.data(0);
+  REQUIRE(data.size() == 17);
+  CHECK(group_fields[0].raw(data) == 7);  // byte 16: the third of the third packet
+  // Four frames of 8 bytes and 29 bits of identifier, in a second.
+  REQUIRE(rows[0].share);
+  CHECK(*rows[0].share > 4 * 131 / 250'000.0);
+  CHECK(*rows[0].share < 4 * 160 / 250'000.0);
+  const auto sum = model.summary(morning + 2200ms);
+  CHECK(sum.transport == 2);
+  CHECK(sum.transport_lost == 1);  // followed by the next before its end, or timed out
+  CHECK(sum.unknown == 0);
+}
+
+TEST_CASE("top: a message of several frames that no spec has is a row by its identifier") {
+  Model model{truck, 250'000};
+  broadcast(model, 0ms, 0xED, {1, 2, 3});
+  const auto rows = model.rows(morning + 200ms, false);
+  REQUIRE(rows.size() == 1);
+  CHECK(rows[0].name == "1CFEED00");
+  CHECK(rows[0].newest.bytes.size() == 17);
+}
+
 TEST_CASE("top: rates are of now, counts of all") {
   Model model{catalogue, 250'000};
   for (int i = 0; i < 50; ++i) weigh(model, i * 100ms, {i, 0});
@@ -168,6 +233,20 @@ TEST_CASE("top: what is wrong is counted") {
   CHECK(sum.incomplete == 1);
   CHECK(sum.lost == 5);
   CHECK(row_of(model, "scale", 40ms).faults == 2);
+}
+
+TEST_CASE("top: the controller is as its driver says now; counters that it does not say stay") {
+  using ocm::can::ControllerState;
+  using ocm::can::ErrorCounters;
+  Model model{catalogue, 250'000};
+  CHECK_FALSE(model.summary(morning).controller);
+  model.controller_is(ControllerState::passive, ErrorCounters{130, 5});
+  CHECK(model.summary(morning).controller == ControllerState::passive);
+  CHECK(model.summary(morning).error_counters == ErrorCounters{130, 5});
+  model.controller_is(ControllerState::active, {});
+  CHECK(model.summary(morning).controller == ControllerState::active);
+  CHECK(model.summary(morning).error_counters == ErrorCounters{130, 5});
+  CHECK(model.summary(morning).errors == 0);  // it is no error frame
 }
 
 TEST_CASE("top: a field that is followed has a value at each tick") {

@@ -181,7 +181,7 @@ class Run {
 };
 
 TEST_CASE("operate: a robot that the example guards never touches a wall") {
-  const auto runs = static_cast<unsigned>(ocm::test::explored(300));
+  const auto runs = static_cast<unsigned>(ocm::test::at_full_speed ? 1000 : ocm::test::explored(300));
   unsigned stopped = 0, drove = 0;
   for (unsigned seed = 1; seed <= runs; ++seed) {
     INFO("seed " << seed);

@@ -1,9 +1,10 @@
 // The loop of `operate`, on a bus and a clock that are made of a seed: obstacles, silent boards, stops of the
-// program, a wall clock that is set, a bus that is stuck, down, passive or away, signals. It never commands
-// motion by what it could know to be out of date, it stops in time, drives again once all is clear, and every
-// end is at rest.
+// program, a wall clock that is set, a bus that is stuck, down, passive or away, boards that are reset and
+// refuse, storms of frames, signals. It never commands motion by what it could know to be out of date, it
+// stops in time, asks for streams that are silent, drives again once all is clear, and every end is at rest.
 #include <algorithm>
 #include <csignal>
+#include <iterator>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 
 #include "ocm/can/error_frame.hpp"
 #include "ocm/protocol/codec.hpp"
+#include "ocm/protocol/request.hpp"
 #include "ocm/topics/amiro.hpp"
 
 #include "cli/operate/runner.hpp"
@@ -55,13 +57,15 @@ constexpr Duration drives_again = 1s;  // of all clear, and it does
 constexpr Duration settle = 60ms;
 constexpr Duration reaction = 5ms;
 constexpr Duration repeat = 100ms;
+constexpr Duration retry = 1s;
 
 const protocol::Topic& ring() {
   return *amiro::catalogue.find("ring");
 }
 
-/// How often it had to drive again, in all runs.
+/// How often it had to drive again, and to ask for the ring, in all runs.
 int drove_again = 0;
+int asked_again = 0;
 
 class Run {
  public:
@@ -120,17 +124,36 @@ class Run {
       at += 120us;
     }
   }
+  /// A board that says no to what was asked: it counts, and changes nothing here.
+  void add_refusal(Moment at) {
+    const auto& layout = amiro::catalogue.find("power_management_refusal")->frames[0];
+    can::Frame frame{
+        protocol::Identifier{protocol::Direction::sensor, protocol::Priority::low, layout.id}.encode(),
+        layout.dlc(),
+        {}};
+    frame.data[0] = static_cast<std::uint8_t>(ring().id.value);
+    frame.data[2] = 1;
+    incoming_.push_back({at, frame});
+  }
+  /// Frames of another program, as many as a bus has.
+  void add_storm(Moment from) {
+    for (Moment at = from; at < from + 300ms; at += 130us)
+      incoming_.push_back({at, can::Frame{.id = 0x7F0, .dlc = 8}});
+  }
   /// Samples each 50 ms, with obstacles and times of silence.
   void make_robot() {
     Moment time = World::start + world_.between(0ms, 60ms);
     bool near = false;
     while (time < World::start + lasting) {
       if (world_.chance(0.01)) time += world_.between(0ms, 700ms);
+      if (world_.chance(0.002)) time += world_.between(1s, 3s);  // a board that was reset, and starts slowly
       if (world_.chance(near ? 0.1 : 0.02)) near = !near;
       add_sample(time, near ? world_.between(20'001, 60'000) : world_.between(0, 9'999));
       (near ? near_ : far_).push_back(time + 120us * (static_cast<int>(ring().frames.size()) - 1));
       time += world_.between(45ms, 55ms);
     }
+    while (world_.chance(0.2)) add_refusal(World::start + world_.between(0s, lasting));
+    if (world_.chance(0.1)) add_storm(World::start + world_.between(0s, lasting));
     if (world_.chance(0.2)) {
       can::Frame frame{can::error_class::controller, can::max_dlc, {}, can::Format::error};
       frame.data[1] = can::controller_error::tx_passive;
@@ -185,6 +208,7 @@ class Run {
       for (const Moment obstacle : near_) judge_stop(motors, obstacle);
     if (calm_)
       for (const Moment sample : far_) judge_motion_again(motors, sample);
+    if (calm_) judge_asked(bus);
     if (over == cli::Over::gone) CHECK(bus.conditions().gone <= ended_);
     if (over != cli::Over::signal) return;
     CHECK(ended_ >= World::start + lasting);
@@ -264,6 +288,32 @@ class Run {
       FAIL_CHECK("it does not drive at " << at(sample) << ", although all is clear since " << at(since));
     ++drove_again;
   }
+  /// A ring that is silent is asked for, after three periods and not sooner than `retry` after the last time.
+  void judge_asked(PlayedBus& bus) {
+    const auto request = protocol::publish_every(ring().id, 50ms, protocol::Priority::high);
+    std::vector<Moment> asked, heard{World::start};
+    for (const auto& each : bus.sent())
+      if (each.frame == *request) asked.push_back(each.taken);
+    std::merge(near_.begin(), near_.end(), far_.begin(), far_.end(), std::back_inserter(heard));
+    heard.push_back(World::start + lasting);
+    for (std::size_t i = 1; i < heard.size(); ++i) {
+      // A change of configuration may be under way, and another follow it.
+      constexpr Duration slack = 2 * settle + reaction + 5ms;
+      Moment last = World::start;
+      for (const Moment each : asked)
+        if (each <= heard[i - 1] + stale) last = each;
+      const Moment by = std::max(heard[i - 1] + stale, last + retry) + slack;
+      if (heard[i] <= by || by > World::start + lasting) continue;
+      ++asked_again;
+      if (std::none_of(asked.begin(), asked.end(),
+                       [&](Moment each) { return each > heard[i - 1] && each <= by; }))
+        FAIL_CHECK("the ring is silent from " << at(heard[i - 1]) << " to " << at(heard[i])
+                                              << ", and not asked for by " << at(by));
+    }
+    for (std::size_t i = 1; i < asked.size(); ++i)
+      if (asked[i] - asked[i - 1] < retry - 2 * reaction)
+        FAIL_CHECK("the ring is asked for at " << at(asked[i - 1]) << " and at " << at(asked[i]));
+  }
   [[nodiscard]] bool in_trouble(Moment time) const {
     return std::any_of(trouble_.begin(), trouble_.end(),
                        [time](const PlayedBus::Time& each) { return each.has(time); });
@@ -290,6 +340,7 @@ TEST_CASE("operate: whatever happens, it does not drive by what is out of date, 
     Run{seed}.go();
   }
   CHECK(drove_again > 10 * static_cast<int>(runs));
+  CHECK(asked_again > static_cast<int>(runs) / 20);
 }
 
 }  // namespace tool_clock_operate_test

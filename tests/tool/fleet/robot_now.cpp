@@ -40,6 +40,8 @@ RobotNow some_robot() {
   robot.calibration = {7, 2, 41, -57, 152, 1, 2};
   robot.order = 18'446'744'073'709'551'615U;
   robot.by = "goto (process 1234)";
+  robot.origin = {-1.5F, 0.25F, 0.1F};
+  robot.origin_known = true;
   return robot;
 }
 
@@ -65,12 +67,14 @@ TEST_CASE("robot now: a row says all of a robot") {
   CHECK(again->off_cm == robot.off_cm);  // rounded once, where it is printed
   CHECK(again->compass == Calibrator::Phase::turning);
   CHECK(again->calibration == robot.calibration);
+  CHECK(again->origin == robot.origin);
+  CHECK(again->origin_known);
   CHECK(again->order == robot.order);
   CHECK(again->by == robot.by);
   // And of one that has said nothing.
   const auto nothing = parse_row(to_row(RobotNow{}));
   REQUIRE(nothing);
-  CHECK_FALSE((nothing->handshake || nothing->update));
+  CHECK_FALSE((nothing->handshake || nothing->update || nothing->origin_known));
 }
 
 TEST_CASE("robot now: what a name holds does not divide rows") {
@@ -105,6 +109,9 @@ TEST_CASE("robot now: what is no row") {
                           "index=0\tname=A\tlast=unknown_kind",
                           "index=0\tname=A\torder=-1",
                           "index=0\tname=A\tcalibration=0,9,0,0,0,0,0",
+                          "index=0\tname=A\torigin=1,2",
+                          "index=0\tname=A\torigin=1,2,3,4",
+                          "index=0\tname=A\torigin=1,2,inf",
                           "index=0 name=A"}) {
     CAPTURE(row);
     CHECK_FALSE(parse_row(row));

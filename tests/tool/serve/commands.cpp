@@ -54,6 +54,21 @@ TEST_CASE("serve: what cannot be commanded is refused in words") {
   CHECK_FALSE(command_of(catalogue, "/motors", R"({"x":"fast"})"));
 }
 
+TEST_CASE("serve: what is no number, and what is missing, is refused by its name") {
+  const auto why = [](std::string_view topic, std::string_view payload) {
+    const auto command = command_of(catalogue, topic, payload);
+    return command ? std::string{"taken"} : command.error;
+  };
+  CHECK(why("/motors", R"({"x":null})") == R"(x: expected a number in m/s, such as {"x":0}, and got null)");
+  CHECK(why("/motors", R"({"z":true})") == R"(z: expected a number in rad/s, such as {"z":0}, and got true)");
+  CHECK(why("/motors", R"({"x":[1]})") == R"(x: expected a number in m/s, such as {"x":0}, and got a list)");
+  CHECK(why("/led_1", R"({"red":{}})") == R"(red: expected a number, such as {"red":0}, and got an object)");
+  CHECK(why("/led_1", R"({"red":true})") == "taken");
+  CHECK(why("/motors", "{}") == R"(no field in it: expected at least one, such as {"x":0})");
+  for (const char* const empty : {"", "  \n"})
+    CHECK(why("/motors", empty) == R"(an empty message: expected an object of fields, such as {"x":0.1})");
+}
+
 TEST_CASE("serve: a parameter is a period in milliseconds") {
   CHECK(period_command(catalogue, "gyroscope", 50)->frames[0] ==
         command_of(catalogue, "/ocm/command", R"({"line":"publish gyro 50ms"})")->frames[0]);

@@ -131,8 +131,59 @@ TEST_CASE("sessions: an error answers what is no request") {
   CHECK(server.says(viewer, "a binary message"));
   server.sessions.text(viewer, R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":9999}]})");
   CHECK(server.says(viewer, "there is no channel 9999"));
-  server.sessions.text(viewer, R"({"op":"getParameters","parameterNames":[],"id":"r"})");
-  CHECK(server.says(viewer, "/gyroscope/period_ms"));
+}
+
+TEST_CASE("sessions: what the bus has shown is asked of who knows it") {
+  Server server{true};
+  const ViewerId viewer = server.open(true);
+  const std::uint32_t state = server.channels.of(State::robot);
+  server.sessions.text(viewer,
+                       R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":2},{"id":2,"channelId":)" +
+                           std::to_string(state) + R"(},{"id":3,"channelId":9999}]})");
+  server.sessions.text(viewer,
+                       R"({"op":"getParameters","parameterNames":["/gyroscope/period_ms"],"id":"r"})");
+  server.sessions.text(viewer, R"({"op":"subscribeParameterUpdates","parameterNames":["/a","/b"]})");
+  server.sessions.text(viewer, R"({"op":"unsubscribeParameterUpdates","parameterNames":["/a"]})");
+  const auto orders = server.orders.take();
+  REQUIRE(orders.size() == 4);
+  CHECK(orders[0].kind == Order::Kind::newest);
+  CHECK(orders[0].channels == std::vector<std::uint32_t>{2});  // states are there already
+  CHECK(orders[1].kind == Order::Kind::get_parameters);
+  CHECK(orders[1].names == std::vector<std::string>{"/gyroscope/period_ms"});
+  CHECK(orders[1].payload == "r");
+  CHECK(orders[2].kind == Order::Kind::subscribe_parameters);
+  CHECK(orders[2].names.size() == 2);
+  CHECK(orders[3].kind == Order::Kind::unsubscribe_parameters);
+}
+
+TEST_CASE("sessions: orders for robots behind a central have a way of their own") {
+  Channels channels{amiro::catalogue, std::vector{"sim"s}, true};
+  Viewers viewers{channels.all().size()};
+  Orders orders, fleet;
+  Sessions sessions{{"AMiRo", "s", true, false, &fleet}, amiro::catalogue, channels, viewers, orders};
+  const ViewerId viewer = viewers.add();
+  sessions.opened(viewer, true);
+  sessions.text(
+      viewer,
+      R"({"op":"advertise","channels":[{"id":1,"topic":"/ocm/fleet","encoding":"json","schemaName":""}]})");
+  sessions.binary(viewer, "\x01\x01\0\0\0{\"order\":\"look\"}"s);
+  CHECK(orders.take().empty());
+  const auto taken = fleet.take();
+  REQUIRE(taken.size() == 1);
+  CHECK(taken[0].payload == R"({"order":"look"})");
+  sessions.gone(viewer);
+  CHECK(orders.take().back().kind == Order::Kind::gone);
+  CHECK(fleet.take().back().kind == Order::Kind::gone);
+  // Without the token nothing reaches it.
+  const ViewerId other = viewers.add();
+  sessions.opened(other, false);
+  sessions.text(
+      other,
+      R"({"op":"advertise","channels":[{"id":1,"topic":"/ocm/fleet","encoding":"json","schemaName":""}]})");
+  sessions.binary(other, "\x01\x01\0\0\0{\"order\":\"look\"}"s);
+  CHECK(fleet.take().empty());
+  CHECK(channels.all()[channels.of(State::map)].topic == "/ocm/map");
+  CHECK(channels.all()[channels.of(State::fleet)].topic == "/ocm/fleet");
 }
 
 }  // namespace serve_sessions_test

@@ -123,6 +123,24 @@ TEST_CASE("viewers: who subscribes to a state gets the newest at once") {
   CHECK(viewers.lost() == 0);
 }
 
+TEST_CASE("viewers: what came before is given to who has just subscribed, unless more came since") {
+  Viewers viewers{2};
+  const ViewerId a = viewers.add();
+  const ViewerId b = viewers.add();
+  CHECK(viewers.subscribe(a, {5, 1}).empty());
+  viewers.give(a, 1, 7, "before");
+  viewers.give(a, 0, 7, "not subscribed");
+  viewers.give(b, 1, 7, "not subscribed");
+  CHECK(all(viewers, a) == std::vector<std::string>{"5:before"});
+  CHECK(all(viewers, b).empty());
+  CHECK(viewers.subscribe(b, {6, 1}).empty());
+  viewers.publish(1, 8, "newer");
+  viewers.give(b, 1, 7, "before");
+  CHECK(all(viewers, b) == std::vector<std::string>{"6:newer"});
+  CHECK(viewers.lost() == 0);
+  viewers.give(99, 1, 7, "of no viewer");
+}
+
 TEST_CASE("viewers: texts go to one or to all, and a bounded number waits") {
   Viewers viewers{1};
   const ViewerId a = viewers.add();

@@ -3,7 +3,7 @@
 import re
 import time
 
-from harness import Case, main
+from harness import Case, main, waiting
 
 NOT_SCHEDULABLE = 15
 SENSORS = "odometry floor_proximity magnetometer gyroscope accelerometer power_status proximity_ring".split()
@@ -159,9 +159,8 @@ class Admission(Case):
         self.interrupt(drive)
         # One that a status names, and that was not heard, may be of any priority.
         self.run_tool("publish", "ring", "10s", "--priority", "urgent")
-        time.sleep(0.2)
-        verdicts, out = self.verdicts(*gyro)
-        self.assertEqual(verdicts, ["not known"], out)
+        waiting.until(lambda: self.verdicts(*gyro)[0] == ["not known"], "the status names it")
+        _, out = self.verdicts(*gyro)
         self.assertRegex(out, "not known: .*: proximity_ring, motors")
 
     def test_a_longer_look_sees_what_comes_seldom(self):

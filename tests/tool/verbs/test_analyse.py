@@ -7,7 +7,7 @@ import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
 
-from harness import Case, main
+from harness import SOURCE, Case, main
 
 BUS = "name,id,dlc,period_ns,deadline_ns,jitter_ns\n"
 TASKS = "name,priority,C_ns,T_ns,D_ns,J_ns,B_ns\n"
@@ -543,6 +543,8 @@ class Picture(Analyse):
         self.assertIn("3.5ms of 3.25ms, 250us late", texts)
         out, _ = self.run_tool("analyse", "bus", "--svg", "-")
         ElementTree.fromstring(out)
+        with open(os.path.join(SOURCE, "docs", "images", "worst_case.svg"), encoding="utf-8") as picture:
+            self.assertEqual(out, picture.read(), "the picture of the docs is another: scripts/pictures worst_case")
         self.run_tool("analyse", "bus", "--svg", os.path.join(self.folder, "none", "x.svg"), code=1)
 
 

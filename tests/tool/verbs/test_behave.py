@@ -4,7 +4,7 @@ import json
 import signal
 import time
 
-from harness import Case, main
+from harness import Case, main, waiting
 
 
 class Behave(Case):
@@ -26,6 +26,10 @@ class Behave(Case):
         behave = self.start("behave", which, *arguments)
         listener.stdout.readline()
         self.interrupt(listener)
+        if which == "avoid":  # whose board commands the motors
+            self.run_tool("listen", "motors", "-n", "1", "--timeout", "20s")
+        else:
+            waiting.until(lambda: self.sample("behaviour")[0]["active"] != 0, f"the board does {which}")
         return behave
 
     def test_frames(self):
@@ -61,7 +65,6 @@ class Behave(Case):
         self.start_sim()
         for command in (("behave", "none"), ("stop",)):
             behave = self.behaving("avoid")
-            time.sleep(0.5)
             self.run_tool(*command)
             _, err = behave.communicate(timeout=20)
             self.assertEqual(behave.returncode, 1, err)
@@ -71,7 +74,6 @@ class Behave(Case):
     def test_a_drive_hears_avoid(self):
         self.start_sim()
         behave = self.behaving("avoid")
-        time.sleep(0.3)
         _, err = self.run_tool("drive", "5cm/s", code=1)
         self.assertRegex(err, "drive: another program commands motors: 101#")
         _, err = self.run_tool("travel", "5cm", code=1)
@@ -83,7 +85,6 @@ class Behave(Case):
     def test_a_set_point_ends_follow(self):
         self.start_sim()
         behave = self.behaving("follow")
-        time.sleep(0.3)
         self.run_tool("drive", "stop")
         _, err = behave.communicate(timeout=20)
         self.assertEqual(behave.returncode, 1, err)

@@ -361,7 +361,7 @@ class OnSerialLines(Case):
         for _ in range(100):
             talk.type("{U,90,50}\n" * 200)
             time.sleep(0.001)
-        time.sleep(0.3)
+        self.settle()
         self.assertIn("64 packets not sent at the end", talk.end(130, signal.SIGINT))
 
     def test_wrong_usage(self):

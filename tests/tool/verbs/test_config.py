@@ -209,6 +209,19 @@ class Config(harness.Case):
         self.assertTrue(self.run_tool("list")[0].startswith("TOPIC"))
         self.assertIn("plays once", self.run_tool("replay", log, "--dry-run", "--loop", code=2)[1])
 
+    def test_false_does_not_exclude(self):
+        log = os.path.join(self.folder, "a.log")
+        with open(log, "w", encoding="utf-8") as file:
+            file.write("(1.0) can0 605#00D20000\n(1.0) can0 606#00D20000\n(1.0) can0 607#00D20000\n")
+        pretty = self.run_tool("decode", "--pretty", log)[0]
+        self.assertNotIn('"time_ns"', pretty)
+        for text in ("[decode]\njson = false\npretty = true\n", "pretty = true\n[decode]\njson = false\n"):
+            self.write(text)
+            self.assertEqual(self.run_tool("decode", log)[0], pretty, text)
+        self.write("[decode]\npretty = true\n")
+        self.environment["AMIROCTL_JSON"] = "0"
+        self.assertEqual(self.run_tool("decode", log)[0], pretty)
+
     def test_a_value_for_all_verbs_that_only_some_take(self):
         self.write('bitrate = "500k"\n')
         self.run_tool("analyse", "bus")

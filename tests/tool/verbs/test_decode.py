@@ -143,6 +143,8 @@ class Decode(Case):
         self.assertEqual(times("--filter", "100:7FF"), [0, 2, 6, 7])  # as candump: the format is not asked
         self.assertEqual(times("--filter", "00000100:9FFFFFFF", code=1), [7])
         self.assertEqual(times("--filter", "100~700"), [4, 5])
+        self.assertEqual(times("--filter", "1FFFFFFF~0", code=1), [])  # the largest identifier there is
+        self.assertIn("--filter 20000000~0: not a filter", self.run_tool("decode", "--filter", "20000000~0", stdin=car, code=2)[1])
         self.assertEqual(times("--where", "Engine.Speed>=3000"), [2, 6])
         self.assertEqual(times("--where", "Engine.Speed > 3000rpm"), [6])
         self.assertEqual(times("--where", "Engine.Speed=3000"), [2])
@@ -259,6 +261,7 @@ class Decode(Case):
         self.run_tool("decode", stdin=good + "what\n")
         _, err = self.run_tool("decode", stdin="(0.0) can0 7FF#11\n" * 9, code=1)
         self.assertIn("9 of 9 frames are of no topic of AMiRo: a log of another bus? --spec", err)
+        self.assertIn("1 of 1 frames are of no topic", self.run_tool("decode", stdin="(0.0) can0 7FF#11\n", code=1)[1])
         _, err = self.run_tool("decode", stdin="(0.0) can0 608#112233445566\n" * 3 + "(0.0) can0 7FF#11\n" * 2
                                + "(0.0) can0 605#1122\n" * 3)
         self.assertIn("5 of 8 frames contradict the spec of AMiRo (2 of no topic, 3 of wrong length, such as 605 with "

@@ -119,7 +119,7 @@ class TwoCommanders(Drive):
         self.start_sim()
         drive = self.driving("5cm/s", "--force")
         self.run_tool("drive", "stop")
-        time.sleep(0.5)
+        time.sleep(0.5)  # it would have ended by then
         self.assertIsNone(drive.poll())
         self.interrupt(drive)
         self.assertEqual(drive.returncode, 130)
@@ -210,7 +210,7 @@ class LateSteps(Drive):
         run = self.start("run", self.script("0s led 1 red\n" + steps))
         self.assertIn("FF0000", listener.stdout.readline())
         run.send_signal(signal.SIGSTOP)
-        time.sleep(2)
+        time.sleep(2)  # longer than a script may be stopped
         self.run_tool("led", "2", "green")  # behind the steps before
         for line in listener.stdout:
             if "00FF00" in line:
@@ -238,7 +238,7 @@ class LateSteps(Drive):
         run = self.start("run", self.script("0s drive 5cm/s\n500ms drive 6cm/s\n1s drive 7cm/s\n20s stop\n"))
         self.assertIn("50C3000000000000", listener.stdout.readline())
         run.send_signal(signal.SIGSTOP)
-        time.sleep(1.5)
+        time.sleep(1.5)  # longer than a drive may be stopped
         run.send_signal(signal.SIGCONT)
         _, err = run.communicate(timeout=60)
         self.assertEqual(run.returncode, 1, err)

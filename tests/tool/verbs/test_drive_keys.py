@@ -53,7 +53,7 @@ class Keys(harness.Case):
         """As a terminal does: at once, after half a second, and then 25 times a second."""
         end = time.monotonic() + seconds
         os.write(self.primary, key)
-        time.sleep(min(0.5, seconds))
+        time.sleep(min(0.5, seconds))  # what a terminal waits before it repeats a key
         while time.monotonic() < end:
             os.write(self.primary, key)
             time.sleep(0.04)

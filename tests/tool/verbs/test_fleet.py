@@ -45,7 +45,7 @@ class Robots(Line):
         self.assertRegex(out, r"AVR +0 +C00000000000 +idle +0 0 0 +100 %")
         self.assertEqual(self.avr.heard.count("{S,CON}"), 1)
         self.assertNotIn("drop 0", self.central.commands)
-        out, _ = self.tool("robots", "--json", "--listen", "1s")
+        out, _ = self.tool("robots", "--json")
         self.assertEqual([json.loads(line)["body"]["width_cm"] for line in out.splitlines()], [20, 20])
         # A robot with a program that does not know the question.
         self.avr.knows_who = False
@@ -60,9 +60,9 @@ class Robots(Line):
     def test_a_program_that_died_left_the_central_in_data_mode(self):
         port = os.open(self.central.path, os.O_RDWR | os.O_NOCTTY)
         os.write(port, b"start\n")
-        time.sleep(0.1)
+        waiting.until(lambda: "start" in self.central.commands, "it looks for robots")
         os.write(port, b"conn 0\n{U,9")
-        time.sleep(0.1)
+        waiting.until(lambda: self.central.target is not None, "data mode")
         os.close(port)
         out, _ = self.tool("robots", "--listen", "1s")
         self.assertRegex(out, r"AVR .* idle")
@@ -175,10 +175,7 @@ class Goto(Line):
 
     def on_the_way(self):
         tool = self.start("goto", "AVR", "0", "50", "--scan", "200ms")
-        for _ in range(100):
-            time.sleep(0.1)
-            if "{U,0,50}" in self.avr.heard:
-                break
+        waiting.until(lambda: "{U,0,50}" in self.avr.heard, "the set point")
         return tool
 
     def test_interrupted_it_stops_the_robot(self):
@@ -329,7 +326,7 @@ class TheLine(Line):
 
     def test_the_dongle_is_unplugged(self):
         tool = self.start("robots", "--listen", "30s", "--scan", "200ms")
-        time.sleep(1.5)
+        waiting.until(lambda: self.avr.linked, "a link")
         self.central.unplug()
         _, err = tool.communicate(timeout=60)
         self.assertEqual(tool.returncode, 1)
@@ -368,7 +365,7 @@ class TheLine(Line):
 
     def test_terminated(self):
         tool = self.start("robots", "--listen", "30s", "--scan", "200ms")
-        time.sleep(1.5)
+        waiting.until(lambda: self.avr.linked, "a link")
         self.interrupt(tool, signal.SIGTERM)
         self.assertEqual(tool.returncode, 143)
 

@@ -49,13 +49,13 @@ class Radio(Case):
                 out, _ = self.run_tool("goto", "AVR", "0", "60", "--no-wait", timeout=120)
                 self.assertEqual(out, "")
                 goto = self.start("goto", "AVR", "0", "500")
-                time.sleep(6)
+                time.sleep(6)  # it drives, with packets lost
                 goto.send_signal(number)
                 _, err = goto.communicate(timeout=60)
                 self.assertEqual(goto.returncode, 128 + number)
                 self.assertNotIn("may still drive", err)
                 before = self.place()["pose"]
-                time.sleep(1)
+                time.sleep(1)  # it would have moved by then
                 self.assertEqual(self.place()["pose"], before)
                 self.interrupt(sim)
 

@@ -131,8 +131,9 @@ class Interfaces(Case):
         path = self.path("drive.log")
         with open(path, "w", encoding="ascii") as file:
             file.write(LOG)
-        _, err = self.run_tool(*self.specs, "stats", "--json", path, code=2)
-        self.assertIn("stats: the spec says no bit rate of can2", err)
+        out, _ = self.run_tool(*self.specs, "stats", "--json", path)
+        unknown, = (bus for bus in json.loads(out)["buses"] if bus["bus"] == "can2")
+        self.assertEqual((unknown["bit_rate"], unknown["load_percent"], unknown["frames"]), (None, None, 2))
         with open(path, "w", encoding="ascii") as file:
             file.writelines(line + "\n" for line in LOG.splitlines()[:6])
         out, _ = self.run_tool(*self.specs, "stats", "--json", path)
@@ -190,10 +191,78 @@ class Interfaces(Case):
         self.assertIn("16 more conflicts with small_car\n          is it the same file", err)
         self.assertEqual(len(err.splitlines()), 14)
 
-    def test_verbs_of_one_bus(self):
-        for verb in (("generate", "spec"), ("sim",), ("analyse", "bus")):
-            _, err = self.run_tool(*self.specs, *verb, code=2)
-            self.assertIn("can0=" + self.path("car.dbc") + ": it is about one bus", err)
+    def test_generate_is_about_no_interface(self):
+        _, err = self.run_tool(*self.specs, "generate", "spec", code=2)
+        self.assertIn("can0=" + self.path("car.dbc") + ": it is about one bus", err)
+
+    def test_analyse_is_about_the_bus_that_is_chosen(self):
+        _, err = self.run_tool(*self.specs, "analyse", "bus", code=2)
+        self.assertIn("analyse: it is about one bus, and --spec names can0, can1", err)
+        self.assertIn("--bus NAME", err)
+        for bus, names, rate in (("can0", ["Engine", "Gear"], 500000), ("can1", ["Target", "Engine"], 250000)):
+            out, _ = self.run_tool(*self.specs, "--bus", bus, "analyse", "bus", "--json", "--rates",
+                                   *(f"{name}=10ms" for name in names))
+            study = json.loads(out)
+            self.assertEqual([message["name"] for message in study["messages"]], names)
+            self.assertAlmostEqual(study["utilisation"], sum(message["bits"] for message in study["messages"]) / rate / 0.01, places=6)
+        # The only one that is named needs no --bus; what is merged for all is there, too.
+        out, _ = self.run_tool(*self.specs[:2], *self.robot, "analyse", "bus", "--json", "--rates", "Gear=10ms", "Lamp=20ms", "Engine=1s")
+        self.assertEqual([message["name"] for message in json.loads(out)["messages"]], ["Engine", "Gear", "Lamp"])
+        _, err = self.run_tool(*self.specs, "--bus", "can7", "analyse", "bus", code=2)
+        self.assertIn("analyse: no --spec is for can7, only for can0, can1", err)
+        self.assertIn("--spec can7=" + self.path("car.dbc") + ", or --bus can0", err)
+
+    def test_sim_plays_the_bus_that_is_chosen(self):
+        _, err = self.run_tool(*self.specs, "sim", code=2)
+        self.assertIn("sim: it is about one bus, and --spec names can0, can1", err)
+        _, err = self.run_tool(*self.specs, "--bus", "vcan7", "sim", code=2)
+        self.assertIn("no --spec is for vcan7", err)
+        # The virtual bus is the interface `sim`.
+        self.start_sim("--spec", "can0=" + self.path("car.dbc"), "--spec", "sim=" + self.path("radar.dbc"), "--sporadic", "20ms")
+        listener = self.start("listen", "--bus", "sim", "--spec", self.path("radar.dbc"), "--json", "-n", "20", "--timeout", "30s")
+        events = self.objects(listener.communicate(timeout=60)[0])
+        self.assertEqual({event.get("topic") for event in events}, {"Engine", "Target"})
+
+    def test_sim_of_another_interface_says_where_it_plays(self):
+        sim = self.start("sim", "--spec", "can0=" + self.path("car.dbc"), "--sporadic", "20ms")
+        line = sim.stderr.readline()
+        self.assertIn("what --spec has for can0 is played on the bus sim: for other verbs, --spec sim=" + self.path("car.dbc"), line)
+
+    def test_a_log_stands_in_for_the_robot_of_its_interface(self):
+        """An identifier that the robot's topic has on can0 is another's on can1."""
+        self.start_sim("--without", "di_wheel_drive,light_ring,power_management")
+        topics = os.path.join(SOURCE, "spec", "topics.json")
+        with open(self.path("other.dbc"), "w", encoding="ascii") as file:
+            file.write(HEAD + f'BO_ {0x608} Other: 8 Sender\n SG_ Value : 0|8@1+ (1,0) [0|0] "" Sender\n')
+        with open(self.path("two.log"), "w", encoding="ascii") as file:
+            for number in range(4):
+                file.write(f"({1 + number / 10}) can1 608#FF0000000000\n({1 + number / 10}) can0 608#0{number}0000000000\n")
+        robot = self.start("--spec", "can0=" + topics, "--spec", "can1=" + self.path("other.dbc"), "--bus", "sim",
+                           "replay", self.path("two.log"), "--on-command")
+        for line in robot.stderr:
+            if "waiting for requests" in line:
+                break
+        self.assertIn("samples: 4 gyroscope;", line)
+        self.run_tool("--bus", "sim", "once", "gyro", "--wait", "20s")  # ends well when its sample came
+        self.interrupt(robot)
+        for option in (("--interface", "can0=sim"), ("--dry-run",), ("--only", "sensors"), ("--loop",)):
+            _, err = self.run_tool("replay", self.path("two.log"), "--on-command", *option, code=2)
+            self.assertIn(f"replay: {option[0]} with --on-command", err)
+
+    def test_words_that_are_no_spec(self):
+        car = self.path("car.dbc")
+        for word, what, remedy in (("", "--spec '': no file", "--spec FILE"),
+                                   ("can0=", "--spec can0=: no file behind the '='", "--spec can0=FILE"),
+                                   ("=" + car, "no interface before the '='", "--spec can0=" + car),
+                                   ("interface_of_seventeen=" + car, "'interface_of_seventeen' cannot be an interface", "1 to 15 characters"),
+                                   ("a b=" + car, "'a b' cannot be an interface", "without blanks and '/'"),
+                                   ("/tmp/a=" + car, "there is no such file, and '/tmp/a' cannot be an interface", "--spec can0=" + car)):
+            for verb in (("list",), ("analyse", "bus"), ("sim",), ("decode",)):
+                _, err = self.run_tool("--spec", word, *verb, code=2)
+                self.assertIn(what, err)
+                self.assertIn(remedy, err)
+        self.run_tool("--spec", "interface_of_15=" + car, "list")
+        self.run_tool("--spec", "slcan:/dev/ttyACM0@500k=" + car, "list")
 
     def test_a_file_whose_name_has_an_equals_sign(self):
         with open(self.path("a=b.dbc"), "w", encoding="ascii") as file:

@@ -187,7 +187,7 @@ class TheOwnerEnds(Joined):
         tool = self.drive()
         waiting.until(lambda: "done; it serves" in owner.stderr.readline(), "the owner is done")
         late = self.start("robots", "--listen", "100ms", "--scan", "100ms")
-        time.sleep(0.5)
+        time.sleep(0.5)  # it would have ended by then
         self.assertIsNone(late.poll())
         self.interrupt(tool)
         self.assertRegex(self.ended(late, 0)[0], r"AVR .* (idle|moving)")

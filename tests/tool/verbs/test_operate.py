@@ -4,6 +4,7 @@ import configparser
 import json
 import os
 import random
+import re
 import resource
 import shutil
 import signal
@@ -175,6 +176,83 @@ class Checked(Operate):
         stated = studied(document)["driving"]
         self.assertEqual(stated["others"], [])
         self.assertGreater(stated["load_per_mille"], study["driving"]["load_per_mille"])
+
+
+    def test_when_streams_are_back_after_a_reset_is_a_sum(self):
+        study = json.loads(self.run_tool("operate", GUARD, "--check", "--json")[0])
+        for configuration in study["configurations"]:
+            for stream in configuration["streams"]:
+                recovery, parts = stream["recovery"], stream["recovery"]["parts_ns"]
+                self.assertEqual(recovery["at_most_ns"], sum(parts.values()), stream)
+                self.assertEqual(recovery["while_changing_ns"], recovery["at_most_ns"] + study["settle_ns"])
+                self.assertEqual(parts["retry"], 1_000_000_000 if stream["period_ns"] < 300_000_000 else 0)
+                self.assertEqual(parts["silence"], 0 if parts["retry"] else 3 * stream["period_ns"])
+                self.assertLessEqual(parts["jitter"] + parts["sampling"] + parts["bus"], stream["response_ns"])
+        out, _ = self.run_tool("operate", GUARD, "--check")
+        self.assertRegex(out, r"recoveries: .*\n(  .*\n)*  driving: proximity_ring\n      [0-9.]+ ms = 1000 retry \+ 5 timer \+ "
+                              r"[0-9.]+ request \+ 1 handling \+ 1 jitter \+ 19.316 sampling \+ [0-9.]+ bus\n")
+        document = guard()
+        del document["retry"]
+        out, _ = self.run_tool("operate", self.write(document), "--check")
+        self.assertIn("never: without \"retry\" a silent stream is not asked for again", out)
+        study = json.loads(self.run_tool("operate", self.write(document), "--check", "--json")[0])
+        self.assertEqual({stream["recovery"] for each in study["configurations"] for stream in each["streams"]}, {None})
+
+    def test_frames_of_one_topic_are_one_reason(self):
+        _, err = self.run_tool("operate", GUARD, "--check", "--bitrate", "20k", code=1)
+        reasons = [line for line in err.splitlines() if " takes up to " in line and "processor" not in line]
+        self.assertGreater(len(reasons), 3)
+        of_what = [line.split(" takes up to ")[0] for line in reasons]
+        self.assertEqual(len(of_what), len(set(of_what)), of_what)
+
+    def test_limits_that_boards_do_not_keep_by_themselves_are_a_caution(self):
+        def cautions(change):
+            document = guard()
+            change(document)
+            out, err = self.run_tool("operate", self.write(document), "--check", "--json")
+            self.assertEqual(err, "")
+            found = json.loads(out)["cautions"]
+            table, _ = self.run_tool("operate", self.write(document), "--check")
+            self.assertEqual(table.count("CAUTION: "), len(found))
+            return [each["what"] for each in found], found
+
+        def free(document):
+            driving = document["configurations"][1]
+            driving["limits"], driving["entry"] = driving["limits"][:1], []
+        self.assertEqual(cautions(lambda document: None), ([], []))  # the example
+        what, found = cautions(free)
+        self.assertEqual(what, ['in "driving" the limits of motors do not hold for what boards do by themselves: travel, follow, avoid '
+                                '(by replay, run, set)',
+                                'a travel that was begun in "idle" goes on in "driving", where the limits of motors do not hold for it'])
+        document = guard()
+        free(document)
+        line = self.line_of('"motors.x"', document) - 1
+        self.assertIn(f"test.operator.json:{line}: /configurations/1/limits/0", found[0]["place"])
+        self.assertIn('"travel.speed"', found[0]["remedy"])
+
+        def only_drive(document):
+            free(document)
+            document["configurations"][1]["commanders"] = ["drive", "led"]
+        self.assertEqual(len(cautions(only_drive)[0]), 1)  # the travel that goes on
+
+        def verbs(document):
+            free(document)
+            document["configurations"][1]["commanders"] = ["behave"]
+            document["configurations"][1]["entry"] = [{"topic": "travel"}]
+        self.assertEqual(cautions(verbs)[0], ['in "driving" the limits of motors do not hold for what boards do by themselves: follow, '
+                                              'avoid (by behave)'])
+
+        def by_itself(document):
+            free(document)
+            document["configurations"][1]["commanders"] = []
+            document["configurations"][1]["entry"] = [{"topic": "travel"}, {"topic": "avoid", "values": {"speed": "0.1m/s"}}]
+        self.assertEqual(cautions(by_itself)[0], ['in "driving" the limits of motors do not hold for what boards do by themselves: avoid '
+                                                  '(by "entry")'])
+
+        def not_the_motors(document):
+            free(document)
+            document["configurations"][1]["limits"] = [{"field": "travel.speed", "min": "0m/s", "max": "0.1m/s"}]
+        self.assertEqual(cautions(not_the_motors)[0], [])
 
 
 class Mistakes(Operate):
@@ -427,7 +505,7 @@ class Running(Operating):
         operator = self.start("operate", self.write(document))
         self.assertIn("operator halt is in halted\n", operator.stdout.readline())
         operator.send_signal(signal.SIGSTOP)
-        time.sleep(0.3)
+        time.sleep(0.3)  # longer than its "reaction"
         operator.send_signal(signal.SIGCONT)
         late = next(line for line in operator.stdout if line.startswith("a step took"))
         _, err = self.interrupt(operator)
@@ -551,6 +629,41 @@ class Running(Operating):
         self.assertEqual(operator.returncode, 130)
         os.close(reader)
 
+    def test_lines_that_cannot_be_printed_are_counted_and_it_goes_on(self):
+        """A full disk behind the standard output, and a reader that has left."""
+        for what, error in (("full", "No space left on device"), ("left", "Broken pipe"), ("closed", "Bad file descriptor")):
+            with self.subTest(what):
+                sim = self.start_sim()
+                if what == "full":
+                    out = os.open("/dev/full", os.O_WRONLY)
+                else:
+                    reader, out = os.pipe()
+                    os.close(reader)
+                operator = self.start("operate", self.write(HALT), "--json", stdout=out,
+                                      preexec_fn=(lambda: os.close(1)) if what == "closed" else None)
+                os.close(out)
+                waiting.until(lambda: self.status() and self.status()["lines_not_printed"] == 1, "it has begun")
+                self.assertIn("event lines not printed: 1\n", self.run_tool("operator", "status")[0])
+                listener = self.raw_frames("motors")
+                drive = self.start("drive", "5cm/s", "--for", "400ms", "--force")
+                drive.communicate(timeout=30)
+                waiting.until(lambda: self.status()["lines_not_printed"] >= 3, "it has switched")
+                self.assertIn(REST, [frame for _, frame in self.frames(listener)])
+                lines = self.status()["lines_not_printed"]
+                self.assertIsNone(operator.poll())
+                _, err = self.interrupt(operator)
+                self.assertEqual(operator.returncode, 130)
+                self.assertEqual(err.count(error), 1, err)  # said once
+                counted = int(re.search("([0-9]+) event lines not printed", err)[1])
+                self.assertGreater(counted, lines)  # that it has ended, too
+                self.interrupt(sim)
+
+    def status(self):
+        """Of the operator that runs; none: it does not answer yet."""
+        result = subprocess.run([AMIROCTL, "operator", "status", "--json"], env=self.environment, text=True, capture_output=True,
+                                timeout=60)
+        return json.loads(result.stdout) if result.returncode == 0 else None
+
     def test_what_may_be_late_is_not_run(self):
         self.start_sim()
         document = json.loads(json.dumps(HALT))
@@ -650,6 +763,28 @@ class Asked(Operating):
         self.assertEqual(len([frame for frame in frames if x_of(frame) == 20_000]) in range(4, 8), True, frames)
         _, err = self.interrupt(operator)
         self.assertRegex(err, "[0-9]+ set points passed on, [0-9]+ set points limited")
+
+    def test_a_replay_and_lights_go_through_it(self):
+        self.start_sim()
+        document = json.loads(json.dumps(GUARDED))
+        document["configurations"][0]["commanders"] = ["led", "replay"]
+        operator = self.operate(document=document)
+        log = os.path.join(self.folder, "fast.log")
+        with open(log, "w", encoding="utf-8") as file:
+            file.write("(1.000000) can0 201#50C3000000000000\n(1.100000) can0 23C#FFFFFF\n(1.200000) can0 201#0000000000000000\n")
+        listener = self.raw_frames("motors", "led_1")
+        _, err = self.run_tool("replay", log)
+        self.assertRegex(err, r"replay: operator halt \(process [0-9]+\) guards the robot")
+        self.assertRegex(err, r"replay: operator halt \(process [0-9]+\) limits motors\.x")
+        self.assertEqual(self.event(operator, "commanded")["by"], "replay")
+        self.run_tool("led", "1", "red")
+        frames = [frame for _, frame in self.frames(listener)]
+        self.assertEqual([x_of(frame) for frame in frames if frame.startswith("201#")], [20_000, 0])
+        self.assertEqual([frame for frame in frames if frame.startswith("23C#")], ["23C#FFFFFF", "23C#FF0000"])
+        _, err = self.run_tool("drive", "1cm/s", "--for", "200ms", code=1)
+        self.assertIn("where drive may not command motors", err)
+        status = json.loads(self.run_tool("operator", "status", "--json")[0])
+        self.assertEqual(status["set_points"], {"passed": 4, "limited": 1, "refused": 1})
 
     def test_behaviours_of_boards_need_its_leave_and_their_end_does_not(self):
         self.start_sim()
@@ -815,6 +950,88 @@ class Asked(Operating):
         client.close()
 
 
+class Monitored(WithAdapter, Operating):
+    """What a file may watch, and a period that follows a value, on real processes."""
+
+    def watching(self, when, back, *streams):
+        """HALT with other monitors; it streams these besides."""
+        document = json.loads(json.dumps(HALT))
+        for configuration in document["configurations"]:
+            configuration["streams"] = [dict(ODOMETRY), *streams]
+        document["monitors"] = [{"name": "event", "when": when}, {"name": "over", "when": back, "for": "100ms"}]
+        document["transitions"] = [{"from": "driving", "to": "halted", "when": "event"}, {"from": "halted", "to": "driving", "when": "over"}]
+        return document
+
+    def samples(self, played, times, every=0.05, x=0):
+        """Of odometry, from the board that the adapter plays."""
+        velocity = x.to_bytes(4, "little", signed=True).hex().upper()
+        for _ in range(times):
+            for frame in (f"t5028{velocity}00000000", "t50380000000000000000"):
+                played.say(frame + f"{int(time.time() * 1000) % 60000:04X}\r")
+            time.sleep(every)  # the period of the stream
+
+    def test_the_status_of_a_board(self):
+        """A bit each topic: odometry 1, gyroscope 8, accelerometer 16, status 32."""
+        self.start_sim()
+        field = "di_wheel_drive_status.health.publishing"
+        operator = self.operate(document=self.watching(f"{field}>50", f"{field}<50", {"topic": "di_wheel_drive_status", "period": "200ms"}))
+        self.run_tool("publish", "gyro", "100ms")
+        self.run_tool("publish", "accelerometer", "100ms")
+        event = self.event(operator, "switched")
+        self.assertEqual((event["to"], event["conditions"]), ("halted", [f"{field}>50"]))
+        self.run_tool("stop", "accelerometer")
+        self.assertEqual(self.event(operator, "switched")["to"], "driving")
+
+    def test_the_load_of_the_bus(self):
+        self.start_sim()
+        document = self.watching({"bus_load": True, "above": "60%", "window": "500ms"},
+                                 {"bus_load": True, "below": "50%", "window": "500ms"})
+        for configuration in document["configurations"]:
+            configuration["streams"][0]["period"] = "100ms"
+            configuration["commanders"] = []
+        document["settle"] = "400ms"
+        # Judged as one of 25 kbit/s, which it is not: so little fills it.
+        operator = self.operate("--bitrate", "25k", document=document)
+        self.run_tool("publish", "gyro", "5ms")
+        event = self.event(operator, "switched")
+        self.assertEqual((event["to"], event["conditions"]), ("halted", ["bus load above 60%"]))
+        self.run_tool("stop", "gyro")
+        self.assertEqual(self.event(operator, "switched")["conditions"], ["bus load below 50%"])
+
+    def test_how_many_samples_come_and_how_far_apart(self):
+        for when, text in (({"rate": "odometry", "below": 3, "window": "400ms"}, "rate of odometry below 3 in 400ms"),
+                           ({"gap": "odometry", "above": "400ms"}, "gap of odometry above 400ms")):
+            with self.subTest(text):
+                played = self.adapter()
+                operator = self.operate(document=self.watching(when, {"not": when}), bus=f"slcan:{played.path}")
+                self.assertEqual(self.event(operator, "switched")["conditions"], [text])  # nothing came yet
+                self.samples(played, 30)
+                self.assertEqual(self.event(operator, "switched")["to"], "driving")
+                self.assertEqual(self.event(operator, "switched")["conditions"], [text])
+                self.interrupt(operator)
+
+    def test_a_period_follows_a_value(self):
+        document = json.loads(json.dumps(HALT))
+        document["configurations"][0]["streams"] = [ODOMETRY | {"period": "100ms", "adapt": {
+            "field": "odometry.velocity.x", "magnitude": True, "from": "0m/s", "at_from": "100ms", "to": "0.02m/s", "at_to": "50ms",
+            "every": "300ms"}}]
+        document["monitors"][0]["when"]["any"][-1]["above"] = "2s"
+        played = self.adapter()
+        operator = self.operate(document=document, bus=f"slcan:{played.path}")
+        requests = lambda: [frame for frame in played.frames if frame.startswith("103#01")]
+        waiting.until(lambda: requests() == ["103#01640000"], "a request of 100 ms")
+        self.samples(played, 10)
+        self.assertEqual(requests(), ["103#01640000"])  # as it is
+        self.samples(played, 10, x=-10_000)
+        self.assertEqual(requests(), ["103#01640000", "103#014B0000"])  # half of the way: 75 ms
+        self.samples(played, 10, x=25_000)
+        self.assertEqual(requests()[2:], ["103#01320000"])
+        self.samples(played, 10)
+        self.assertEqual(requests()[3:], ["103#01640000"])
+        _, err = self.interrupt(operator)
+        self.assertIn("3 periods adapted", err)
+
+
 SMALL_CAR = os.path.join(SOURCE, "examples", "small_car.dbc")
 CAR = {
     "name": "car", "initial": "watching", "fall_back": "alarm", "settle": "60ms", "reaction": "20ms", "handling": "1ms",
@@ -892,6 +1109,7 @@ class AsAService(Operating):
         unit.optionxform = str
         unit.read(os.path.join(SOURCE, "examples", "amiroctl-operator.service"))
         self.assertEqual(unit["Service"]["Type"], "notify")
+        self.assertEqual((unit["Service"]["Restart"], unit["Unit"]["StartLimitIntervalSec"]), ("always", "0"))
         verify = shutil.which("systemd-analyze")
         if verify:
             file = os.path.join(self.folder, "amiroctl-operator@.service")
@@ -917,6 +1135,67 @@ class OnAnAdapter(WithAdapter, Operating):
         self.interrupt(operator)
         self.assertEqual(operator.returncode, 130)
         self.assertEqual(played.frames[-2:], [REST, "103#00"])
+
+    def test_an_adapter_that_is_pulled_ends_it_and_the_next_run_goes_on(self):
+        box = os.path.join(self.folder, "box")
+        played = self.adapter()
+        operator = self.operate("--black-box", box, bus=f"slcan:{played.path}")
+        waiting.until(lambda: any(frame.startswith("103#01") for frame in played.frames), "a request")
+        self.assertEqual(self.event(operator, "switched")["to"], "halted")
+        waiting.until(lambda: played.frames.count(REST) > 2, "set points of rest")
+        played.unplug()
+        _, err = operator.communicate(timeout=60)
+        self.assertEqual(operator.returncode, 1, err)
+        self.assertIn(played.path, err)
+        self.assertIn("1 changes", err)
+        kept = [name for name in os.listdir(box) if name.endswith(".black-box.log")]
+        self.assertEqual(len(kept), 2, kept)  # before the fall-back, and before the end
+        sent = int(re.search("([0-9]+) frames sent", err)[1])
+        with_rest = 0
+        for name in kept:
+            with open(os.path.join(box, name), encoding="utf-8") as file:
+                with_rest += sum(" T" in line for line in file)
+        self.assertEqual(with_rest, sent)  # each frame that was sent is in one of them
+
+        # Back again, and started again, as systemd does.
+        again = self.adapter()
+        operator = self.operate("--black-box", box, bus=f"slcan:{again.path}")
+        waiting.until(lambda: any(frame.startswith("103#01") for frame in again.frames), "a request")
+        self.interrupt(operator)
+        self.assertEqual(operator.returncode, 130)
+        self.assertEqual(again.frames[-2:], [REST, "103#00"])
+
+    def test_a_board_that_was_reset_is_asked_again_within_the_bound(self):
+        """The adapter plays the board: it has lost its streams, and sends again when it is asked. What is measured is when the
+        request is there; that the program is late where the machine is busy is reported, and then not judged."""
+        document = json.loads(json.dumps(HALT))
+        document["retry"] = "200ms"
+        study = json.loads(self.run_tool("operate", self.write(document), "--check", "--json")[0])
+        parts = study["configurations"][0]["streams"][0]["recovery"]["parts_ns"]
+        asked = ("silence", "last sample", "retry", "timer", "request")
+        bound = sum(parts[part] for part in asked) * 1e-9
+        played = self.adapter()
+        operator = self.operate(document=document, bus=f"slcan:{played.path}")
+        requests = lambda: [frame for frame in played.frames if frame.startswith("103#01")]
+        waiting.until(lambda: requests(), "a request")
+        sample = ["t50280000000000000000", "t50380000000000000000"]
+
+        def publish(times):
+            for _ in range(times):
+                for frame in sample:
+                    played.say(frame + f"{int(time.time() * 1000) % 60000:04X}\r")
+                time.sleep(0.05)
+        publish(10)
+        self.assertEqual(len(requests()), 1)
+        back = time.monotonic()  # the board is reset and back in no time
+        waiting.until(lambda: len(requests()) > 1, "another request")
+        measured = time.monotonic() - back
+        self.assertEqual(self.event(operator, "asked_again")["topic"], "odometry")
+        publish(20)
+        _, err = self.interrupt(operator)
+        self.assertRegex(err, "[1-9][0-9]* silent streams asked for again")
+        if "later than" not in err:
+            self.assertLess(measured, bound + 0.1)  # how often this test looks, and how fast
 
     def test_a_robot_that_says_nothing_is_stopped(self):
         played = self.adapter()

@@ -8,8 +8,9 @@ import re
 from harness import SOURCE, Case, main
 
 OPTION = re.compile(r" +(?:-\w,)?(--[a-z-]+(?:,--[a-z-]+)*)(.*?)(?:  |$)")
-# The same thing in more than one form: a speed that may be max, a bit rate beyond CAN's; robots by number and by name.
-FORMS = {"--bitrate", "--data-bitrate", "--robots", "--speed"}
+# The same thing in more than one form: a speed that may be max, a bit rate beyond CAN's; robots by number and by name; what is
+# shown on the terminal, of a simulation in the form that is said.
+FORMS = {"--bitrate", "--data-bitrate", "--robots", "--show", "--speed"}
 INNER = {"analyse": ("bus", "tasks", "chain", "trace"), "operator": ("status", "why", "switch", "hold", "resume")}
 LOG = "".join(f"({i / 10 + 1}) can0 608#{i:02X}\n" for i in range(20))
 
@@ -40,8 +41,9 @@ class OneMeaning(Options):
         for name, found in values.items():
             self.assertTrue(len(found) == 1 or name in FORMS, f"{name}: {dict(found)}")
         for name, value in (("--from", "FORMAT"), ("--to", "FORMAT"), ("--since", "T"), ("--until", "T"), ("--listen", "T"),
-                            ("--watch", ""), ("--show", "")):
+                            ("--watch", "")):
             self.assertEqual(list(values[name]), [value], name)
+        self.assertEqual(dict(values["--show"]), {"": ["run", "calibrate"], "[page|text]": ["sim"]})
 
 
 class Pages(Options):

@@ -4,7 +4,6 @@ import os
 import re
 import signal
 import struct
-import time
 import xml.etree.ElementTree as ElementTree
 
 from harness import Case, main
@@ -221,7 +220,8 @@ class Plot(Case):
         picture = os.path.join(self.folder, "live.svg")
         plot = self.start("plot", "gyro.z", "-o", picture)
         self.assertIn("bus: sim", plot.stderr.readline())
-        time.sleep(0.5)
+        self.settle()
+        self.run_tool("listen", "gyro", "-n", "5", "--timeout", "20s")  # so many came while it listens
         self.interrupt(plot)
         self.assertEqual(plot.returncode, 128 + signal.SIGINT)
         self.assertTrue(os.path.exists(picture))

@@ -40,10 +40,8 @@ class Recording(Case):
         return [(line[3], line[4]) for line in lines]
 
     def wait_for_frames(self, name, count):
-        end = time.monotonic() + 10
-        while len(self.frames(name)) < count:
-            self.assertLess(time.monotonic(), end, f"{name} does not get {count} frames")
-            time.sleep(0.02)
+        waiting.until(lambda: os.path.exists(self.path(name)) and len(self.frames(name)) >= count,
+                      f"{count} frames in {name}")
 
     def send_numbered(self, count, first=0):
         client = Client(self.folder)
@@ -182,7 +180,7 @@ class Recording(Case):
         self.start_sim()
         self.run_tool("publish", "gyro", "10ms")
         recorder = self.record("-o", "part.log", "--split", "300ms", "--ring", "3")
-        time.sleep(2.2)
+        self.wait_for_frames("part_007.log", 1)
         _, err = self.interrupt(recorder)
         names = sorted(name for name in os.listdir(self.folder) if name.startswith("part_"))
         self.assertEqual(len(names), 3)
@@ -299,7 +297,7 @@ class Recording(Case):
         recorder = self.record("-o", "both.log", "--bus", "sim," + other)
         for bus in ("sim", other):
             self.run_tool("publish", "gyro", "2ms", "--bus", bus)
-        time.sleep(1)
+        self.wait_for_frames("both.log", 800)
         self.interrupt(recorder)
         with open(self.path("both.log")) as file:
             lines = [LINE.match(line.rstrip("\n")) for line in file]

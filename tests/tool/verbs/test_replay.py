@@ -7,7 +7,7 @@ import statistics
 import sys
 import time
 
-from harness import SOURCE, Case, main
+from harness import SOURCE, Case, main, waiting
 
 sys.path.insert(0, os.path.join(SOURCE, "tests", "peers", "logs"))
 from virtual_bus import Client  # noqa: E402
@@ -28,7 +28,12 @@ class Replaying(Case):
 
     def lines(self, name):
         with open(self.path(name)) as file:
-            return [(float(line[1]), f"{line[3]}#{line[4]}") for line in map(LINE.match, file)]
+            whole = file.read().rpartition("\n")[0].splitlines()  # while it is recorded the last line may be a part
+        return [(float(line[1]), f"{line[3]}#{line[4]}") for line in map(LINE.match, whole)]
+
+    def recorded(self, name, count):
+        """Returns when a recording has so many frames."""
+        waiting.until(lambda: len(self.lines(name)) >= count, f"{count} frames in {name}")
 
     def recording(self, name, *arguments):
         recorder = self.start("record", "-o", self.path(name), *arguments)
@@ -66,7 +71,7 @@ class Replaying(Case):
         recorder = self.recording("first.log")
         for words in (("gyro", "20ms"), ("odom", "30ms"), ("ring", "100ms")):
             self.run_tool("publish", *words)
-        time.sleep(1.5)
+        self.recorded("first.log", 200)
         self.run_tool("stop", "all")
         self.settle()
         self.interrupt(recorder)
@@ -141,7 +146,7 @@ class Replaying(Case):
         for number in (signal.SIGINT, signal.SIGHUP, signal.SIGQUIT):
             recorder = self.recording(f"{number}.log")
             replay = self.start("replay", log)
-            time.sleep(0.5)
+            self.recorded(f"{number}.log", 2)
             _, err = self.interrupt(replay, number)
             self.assertEqual(replay.returncode, 128 + number)
             self.assertIn("sent 2 frames", err)
@@ -157,8 +162,9 @@ class Replaying(Case):
         log = self.write_log((1, "608#01"), (1.05, "608#02"))
         out, _ = self.replayed(log, "--loop", "3")
         self.assertEqual([frame for _, frame in out], ["608#01", "608#02"] * 3)
+        self.recording("endless.log")
         endless = self.start("replay", log, "--loop")
-        time.sleep(1)
+        self.recorded("endless.log", 11)
         _, err = self.interrupt(endless)
         self.assertEqual(endless.returncode, 130)
         self.assertGreater(int(re.search(r"sent (\d+) frames", err)[1]), 10)
@@ -198,7 +204,7 @@ class Replaying(Case):
         self.assertIn("4 odometry", line)
         listener = self.recording("out.log")
         self.run_tool("publish", "gyro", "100ms", "--priority", "high")
-        time.sleep(1)
+        self.recorded("out.log", 10)
         self.run_tool("stop", "gyro")
         self.run_tool("once", "odom", "--wait", "3s")
         self.run_tool("once", "accel")
@@ -226,8 +232,9 @@ class Replaying(Case):
     def test_a_simulator_that_goes(self):
         sim = self.start_sim()
         log = self.write_log(*[(i / 10, "608#00") for i in range(100)])
+        self.recording("out.log")
         replay = self.start("replay", log)
-        time.sleep(0.5)
+        self.recorded("out.log", 2)
         self.interrupt(sim)
         _, err = replay.communicate(timeout=60)
         self.assertEqual(replay.returncode, 1)

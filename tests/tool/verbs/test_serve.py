@@ -5,6 +5,7 @@ import json
 import os
 import re
 import signal
+import socket
 import ssl
 import subprocess
 import sys
@@ -104,6 +105,48 @@ class Serve(harness.Case):
                 websocket.Viewer(port, **options)
             self.assertNotEqual(refused.exception.status, 101)
         self.assertEqual(self.viewer(port, offer="chat, foxglove.sdk.v1").protocol, "foxglove.sdk.v1")
+
+    def answer_to(self, port, *lines):
+        """Status and text of what a request gets that http.client would not send."""
+        with socket.create_connection(("127.0.0.1", port), timeout=10) as connection:
+            connection.sendall(("\r\n".join(("GET / HTTP/1.1", *lines)) + "\r\n\r\n").encode())
+            answer = http.client.HTTPResponse(connection)
+            answer.begin()
+            return answer.status, answer.read().decode()
+
+    def test_two_hosts_are_none(self):
+        self.start_sim("--frozen")
+        _, port, _ = self.serve()
+        own = f"127.0.0.1:{port}"
+        self.assertEqual(self.answer_to(port, f"Host: {own}")[0], 200)
+        for other in ("evil.example", own, "", f"evil.example:{port}"):
+            for hosts in ((own, other), (other, own)):
+                status, text = self.answer_to(port, *(f"Host: {host}" for host in hosts))
+                self.assertEqual(status, 403, (hosts, text))
+        for host in (f"{own},evil.example", "127.0.0.1:80x", "127.0.0.1:", "[::1]x"):
+            self.assertEqual(self.answer_to(port, f"Host: {host}")[0], 200 if host.endswith("1:") else 403, host)
+        status, text = self.answer_to(port)
+        self.assertEqual(status, 403)
+        self.assertIn("without Host", text)
+
+    def test_an_origin_that_is_none(self):
+        self.start_sim("--frozen")
+        _, port, _ = self.serve()
+        with self.assertRaises(websocket.Refused) as refused:
+            websocket.Viewer(port, origin="null")
+        self.assertIn("a page without an origin", refused.exception.body)
+        self.assertNotIn("--allow-origin null", refused.exception.body)
+        for origin in ("null", "*", "app.example.org", "https://app.example.org/", "https://app.example.org/page"):
+            _, said = self.run_tool("serve", "--allow-origin", origin, code=2)
+            self.assertIn(f"--allow-origin {origin} is no origin of a page", said)
+
+    def test_without_its_address_it_ends(self):
+        self.start_sim("--frozen")
+        with open("/dev/full", "w", encoding="ascii") as full:
+            server = subprocess.run([harness.AMIROCTL, "--bus", "sim", "serve", "--port", "0"], stdout=full, stderr=subprocess.PIPE,
+                                    text=True, env=self.environment, timeout=30, check=False)
+        self.assertEqual(server.returncode, 1)
+        self.assertIn("cannot write the output: No space left on device", server.stderr)
 
     def test_messages_have_a_bound(self):
         self.start_sim("--frozen")
@@ -241,12 +284,26 @@ class Serve(harness.Case):
         for wrong in ("", "0" * 32, token[:-1], token + "0", token.upper() if token.upper() != token else "x"):
             viewer = self.viewer(port, wrong)
             self.assertEqual(viewer.info["capabilities"], [])
+            if wrong:  # one without a token only wants to look
+                status = viewer.text("status")
+                self.assertIn("is not that of this server, so you only look", status["message"])
+                self.assertEqual((status["level"], status["id"]), (1, "token"))
             viewer.publish("/motors", {"x": 0.1})
             self.assertIn("may only look", viewer.text("status")["message"])
             self.assertIn("was not advertised", viewer.text("status")["message"])
         _, other, none = self.serve()
         self.assertEqual(none, "")
-        self.assertEqual(self.viewer(other, token).info["capabilities"], [])
+        old = self.viewer(other, token)
+        self.assertEqual(old.info["capabilities"], [])
+        self.assertIn("without --allow-commands", old.text("status")["message"])
+
+    def test_what_is_wrong_with_a_publish(self):
+        self.start_sim("--frozen")
+        _, port, token = self.serve("--allow-commands")
+        viewer = self.viewer(port, token)
+        for payload, what in ((b'{"x":null}', "x: expected a number in m/s"), (b"{}", "no field in it"), (b"", "an empty message")):
+            viewer.publish_bytes("/motors", payload)
+            self.assertIn(f"/motors: {what}", viewer.text("status")["message"])
 
     def test_a_page_drives_and_its_going_stops(self):
         self.start_sim("--frozen")
@@ -334,24 +391,72 @@ class Serve(harness.Case):
         viewer.publish("/motors", {"x": 99})
         self.assertEqual(viewer.text("status")["level"], 2)
 
+    def test_what_came_before_is_there(self):
+        """The newest sample and set point of before a viewer came, and periods as they are."""
+        self.start_sim("--frozen")
+        _, port, token = self.serve("--allow-commands")
+        first = self.viewer(port, token)
+        first.subscribe("/gyroscope", "/led_3")
+        self.settle()
+        self.run_tool("send", "608#100000000000")
+        sent = first.message("/gyroscope")
+        self.run_tool("led", "3", "red")
+        first.message("/led_3")
+        late = self.viewer(port, token)
+        late.subscribe("/gyroscope", "/led_3", "/accelerometer")
+        self.assertEqual(late.message("/gyroscope"), sent)
+        again = self.viewer(port, token)
+        again.subscribe("/led_3")
+        self.assertEqual(again.message().fields, {"red": 255, "green": 0, "blue": 0})
+        name = "/gyroscope/period_ms"
+        again.ask(op="subscribeParameterUpdates", parameterNames=[name])
+
+        def value():
+            parameter, = again.text("parameterValues")["parameters"]
+            self.assertEqual(parameter["name"], name)
+            return parameter.get("value")
+
+        value()
+        self.run_tool("publish", "gyro", "50ms")  # by another program
+        while value() != 50:
+            pass
+        self.run_tool("stop", "gyro")
+        while value() != 0:
+            pass
+        again.ask(op="getParameters", parameterNames=[name], id="q")
+        self.assertEqual(value(), 0)
+
     def test_with_an_operator(self):
-        """Its state is shown; set points go through it, and a server of before it commands nothing."""
+        """Its state is shown; set points go through it, also where it starts after the server, and no longer when it has ended."""
         self.start_sim()
         _, before, old = self.serve("--allow-commands")
-        self.start("operate", os.path.join(harness.SOURCE, "examples", "guard.operator.json"))
+        guard = self.start("operate", os.path.join(harness.SOURCE, "examples", "guard.operator.json"))
         watcher = self.viewer(before, old)
         watcher.subscribe("/ocm/operator")
         state = self.state(watcher, "/ocm/operator", lambda s: s["running"], "the operator")
         self.assertEqual(state["status"]["operator"], json.loads(self.run_tool("operator", "status", "--json")[0])["operator"])
         self.assertTrue(state["why"]["changes"])
+        while "guards the robot: set points go through it" not in watcher.text("status")["message"]:
+            pass
+        passed = state["status"]["set_points"]["passed"]
         watcher.publish("/motors", {"x": 0.05, "z": 0})
-        self.assertIn("start it again", watcher.text("status")["message"])
+        passed = self.state(watcher, "/ocm/operator", lambda s: s["status"]["set_points"]["passed"] > passed, "the set point")["status"]["set_points"]["passed"]
+        watcher.publish("/motors", {"x": 0, "z": 0})
         _, port, token = self.serve("--allow-commands")
         viewer = self.viewer(port, token)
         viewer.subscribe("/motors")
         viewer.publish("/motors", {"x": 0.05, "z": 0})
         self.assertEqual(viewer.message().fields, {"x": 0.05, "z": 0})
-        self.state(watcher, "/ocm/operator", lambda s: s["status"]["set_points"]["passed"] > 0, "the set point")
+        self.state(watcher, "/ocm/operator", lambda s: s["status"]["set_points"]["passed"] > passed, "the set point")
+        viewer.publish("/motors", {"x": 0, "z": 0})
+        self.interrupt(guard)
+        while "no operator runs any more" not in watcher.text("status")["message"]:
+            pass
+        time.sleep(0.5)  # what is still on its way is rest
+        watcher.subscribe("/motors")
+        watcher.publish("/motors", {"x": 0.04, "z": 0})
+        while watcher.message("/motors").fields != {"x": 0.04, "z": 0}:
+            pass
 
     # --- TLS ---
 

@@ -132,7 +132,7 @@ class Simulated(Case):
         for _ in range(3):
             line.write("{S,CON}\n")
             time.sleep(0.1)
-        time.sleep(1)
+        time.sleep(1)  # packets go, and are lost
         _, error = self.interrupt(sim)
         self.assertRegex(error, r"from it \d+, \d+ lost in the air")
 
@@ -197,7 +197,7 @@ class Simulated(Case):
         own.write("{S,CON}\n")
         own.wait_for(UPDATE)
         own.close()
-        time.sleep(0.2)
+        time.sleep(0.2)  # the simulator sees that the line was closed
         central = self.start("central", "--pty")
         self.assertIn("Ctrl-C ends it", central.stderr.readline())
         line = self.central()

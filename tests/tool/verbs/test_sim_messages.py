@@ -62,6 +62,7 @@ class SimMessages(Case):
             self.assertEqual(len(row["data"]), 64 if row["topic"] == "Long" else 24)
         listener = self.listen("--spec", SPEC, "--timeout", "10s")
         self.run_tool("set", "--spec", SPEC, "--bus", "sim", "Odd", "End=77", "--every", "20ms", "--for", "200ms")
+        self.settle()
         out, _ = self.interrupt(listener)
         ours = [row for row in self.objects(out) if row.get("fields", {}).get("End") == 77]
         self.assertGreaterEqual(len(ours), 9)

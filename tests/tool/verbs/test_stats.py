@@ -3,7 +3,6 @@
 import json
 import os
 import signal
-import time
 
 from harness import Case, main
 
@@ -356,7 +355,7 @@ class Stats(Case):
         self.assertIn("bus: sim", stats.stderr.readline())
         self.settle()
         self.run_tool("publish", "gyro", "50ms", "--priority", "high")
-        time.sleep(1)
+        self.run_tool("listen", "gyro", "-n", "8", "--timeout", "20s")
         out, _ = self.interrupt(stats)
         self.assertEqual(stats.returncode, 128 + signal.SIGINT)
         gyro = json.loads(out)["buses"][0]["topics"][0]
@@ -379,6 +378,28 @@ class Stats(Case):
         self.assertIn("no frame came from sim", err)
         _, err = self.run_tool("stats", "--duration", "300ms", "--assert", "gyro.rate>0", code=1)
         self.assertIn("does not hold: gyro.rate>0: nothing was measured", err)
+
+    def test_without_a_bit_rate_all_but_the_load(self):
+        spec, log = os.path.join(self.folder, "car.dbc"), os.path.join(self.folder, "in.log")
+        with open(spec, "w", encoding="ascii") as file:
+            file.write('BU_: A\nBO_ 256 Engine: 8 A\n SG_ Speed : 0|16@1+ (1,0) [0|0] "rpm" A\n')
+        with open(log, "w", encoding="ascii") as file:
+            file.writelines(f"({1 + number / 10:.1f}) can0 100#0000000000000000\n" for number in range(11))
+        out, _ = self.run_tool("--spec", spec, "stats", log)
+        self.assertRegex(out, r"can0: 11 frames in 1\S* s \(10 Hz\); its load: --bitrate 500k")
+        out, _ = self.run_tool("--spec", spec, "stats", log, "--json")
+        bus, = json.loads(out)["buses"]
+        self.assertEqual([bus[key] for key in ("bit_rate", "load_percent", "request_load_percent", "unknown_load_percent",
+                                               "worst_100ms_load_percent")], [None] * 5)
+        self.assertEqual((bus["topics"][0]["load_percent"], bus["topics"][0]["mean_ns"]), (None, 100000000))
+        out, _ = self.run_tool("--spec", spec, "stats", log, "--csv")
+        self.assertTrue(out.splitlines()[1].endswith(","), out)
+        for wanted in ("bus.load<90%", "bus.peak<90%", "Engine.load<90%"):
+            _, err = self.run_tool("--spec", spec, "stats", log, "--assert", wanted, code=1)
+            self.assertIn(wanted, err)
+        self.run_tool("--spec", spec, "stats", log, "--assert", "Engine.rate>9")
+        out, _ = self.run_tool("--spec", spec, "stats", log, "--bitrate", "500k", "--assert", "bus.load<1%")
+        self.assertIn("load", out)
 
 
 if __name__ == "__main__":

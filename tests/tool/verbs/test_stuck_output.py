@@ -6,9 +6,8 @@ import json
 import os
 import signal
 import subprocess
-import time
 
-from harness import AMIROCTL, Case, main
+from harness import AMIROCTL, Case, main, waiting
 
 LINES = "".join(f"({1000 + i / 100:.6f}) can0 608#{i % 100:02d}0000000000\n" for i in range(300))
 
@@ -31,14 +30,12 @@ class StuckOutput(Case):
 
     def wait_for_handler(self, process):
         """Until SIGINT is caught: before that it kills, as it should."""
-        for _ in range(1000):
+        def is_caught():
+            self.assertIsNone(process.poll(), "it ended before the signal")
             with open(f"/proc/{process.pid}/status", encoding="utf-8") as status:
                 caught = next(int(line.split()[1], 16) for line in status if line.startswith("SigCgt"))
-            if caught >> (signal.SIGINT - 1) & 1:
-                return
-            self.assertIsNone(process.poll(), "it ended before the signal")
-            time.sleep(0.01)
-        self.fail("SIGINT is not caught")
+            return caught >> (signal.SIGINT - 1) & 1
+        waiting.until(is_caught, "SIGINT is caught")
 
     @staticmethod
     def full_pipe():
@@ -65,7 +62,7 @@ class StuckOutput(Case):
                 process = self.start_to(writer, *arguments)
                 os.close(writer)
                 self.wait_for_handler(process)
-                time.sleep(0.3)
+                waiting.until_asleep(process.pid)
                 process.send_signal(signal.SIGINT)
                 self.assertEqual(process.wait(timeout=60), 128 + signal.SIGINT)
                 os.close(reader)
@@ -79,9 +76,9 @@ class StuckOutput(Case):
                 process = self.start_to(writer, *arguments)
                 os.close(writer)
                 self.wait_for_handler(process)
-                time.sleep(0.3)
+                waiting.until_asleep(process.pid)
                 process.send_signal(signal.SIGINT)
-                time.sleep(0.2)
+                waiting.until_asleep(process.pid)
                 with os.fdopen(reader, encoding="utf-8") as out:
                     lines = out.read().lstrip("\n").splitlines(keepends=True)
                 self.assertEqual(process.wait(timeout=60), 128 + signal.SIGINT)

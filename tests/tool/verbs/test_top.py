@@ -1,16 +1,23 @@
 """amiroctl top on a real terminal, tmux: its keys, its sizes, and how it leaves the terminal."""
 
+import fcntl
 import os
+import pty
 import re
+import select
 import shlex
 import signal
+import struct
 import subprocess
+import termios
+import time
 
 import harness
+import played_adapter
 import screens
 
 
-class Top(screens.Screens):
+class Top(played_adapter.WithAdapter, screens.Screens):
     def start_bus(self, *topics):
         self.start_sim("--frozen")
         for topic in topics:
@@ -74,6 +81,50 @@ class Top(screens.Screens):
         self.press(100, "q")
         self.assertEqual(self.ended(100)[-1], "END 0")
 
+    def click(self, columns, line):
+        """As a terminal of xterm's kind says it: button, column and line, each 32 more, from 1; then the release."""
+        for button in " #":
+            self.tmux("send-keys", "-t", f"of{columns}", "-l", f"\x1b[M{button}!{chr(33 + line)}")
+
+    def test_a_mouse_chooses_a_row(self):
+        self.start_bus("gyro", "odom")
+        for options, chosen in ((("--mouse",), True), ((), False)):
+            name = 100 + chosen
+            self.open(name, "--bus", "sim", "top", *options, rows=24)
+            self.shows(name, "gyroscope", "odometry")
+            lines = self.screen(name, joined=False)
+            self.click(name, next(i for i, line in enumerate(lines) if line.startswith("gyroscope")))
+            self.press(name, "Enter")
+            # The row that was clicked opens; without a mouse the first one does.
+            self.shows(name, *(("  x ", "  y ") if chosen else ("  velocity.x",)))
+            self.press(name, "q")
+            self.assertEqual(self.ended(name)[-1], "END 0")
+
+    def test_no_more_than_twenty_pictures_a_second(self):
+        """However many keys come: each picture is one write, so that a reader that is slow counts fewer."""
+        self.start_bus("gyro", "odom")
+        primary, secondary = pty.openpty()
+        self.addCleanup(os.close, primary)
+        fcntl.ioctl(secondary, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 100, 0, 0))
+        top = subprocess.Popen([harness.AMIROCTL, "--bus", "sim", "top"], stdin=secondary, stdout=secondary, stderr=subprocess.DEVNULL,
+                               env={**self.environment, "TERM": "xterm"}, start_new_session=True)
+        self._started.append(top)
+        os.close(secondary)
+        self.assertTrue(select.select([primary], [], [], 30)[0])
+        begin, pictures, keys = time.monotonic(), 0, 0
+        while time.monotonic() - begin < 3:
+            os.write(primary, b"jk"[keys % 2:keys % 2 + 1])
+            keys += 1
+            if select.select([primary], [], [], 0.005)[0]:
+                os.read(primary, 65536)
+                pictures += 1
+        span = time.monotonic() - begin
+        os.write(primary, b"q")
+        self.assertEqual(top.wait(timeout=30), 0)
+        self.assertGreater(keys, 100)
+        self.assertGreater(pictures, 10)  # more than the ten a second that there are without keys, if the machine has time
+        self.assertLessEqual(pictures, 20 * span + 2)
+
     def test_what_is_missing_comes_first(self):
         self.start_sim("--frozen")
         self.run_tool("publish", "gyro", "100ms")
@@ -132,6 +183,20 @@ class Top(screens.Screens):
         self.shows(80, "▁▂")
         self.press(80, "q")
         self.assertEqual(self.ended(80)[-1], "END 0")
+
+    def test_a_serial_adapter(self):
+        adapter = self.adapter()
+        self.open(100, "--bus", f"slcan:{adapter.path}@250k", "top", rows=24)
+        self.shows(100, "slcan:", "nothing came yet")
+        self.assertEqual(adapter.rate, 250)
+        for value in (1, 2, 3):
+            adapter.say(f"t6086{value:02X}0000000000" + f"{value * 100:04X}\r")
+        adapter.say("t1232DEAD0200\r")
+        self.shows(100, "gyroscope", " 0.0525 deg/s", "123", "DE AD")
+        adapter.unplug()
+        lines = self.ended(100)
+        self.assertEqual(lines[-1], "END 1")
+        self.assertIn("slcan:", "\n".join(lines))
 
     def test_a_terminal_that_it_cannot_use(self):
         self.start_bus("gyro")

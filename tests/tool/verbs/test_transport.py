@@ -4,6 +4,7 @@
 import csv
 import io
 import os
+import re
 
 from harness import Case, main
 
@@ -223,6 +224,20 @@ class Transport(Case):
                                                      second.replace("can0", "can1").splitlines(True)))
         self.assertEqual([message[2:] for message in self.messages(mixed)],
                          [("0FEEC", 0, 255, VIN), ("0FEEC", 1, 255, other), ("0FEEC", 0, 255, other)])
+
+    def curve(self, log, field):
+        """What `plot` draws: pairs of seconds since the log's first frame and values, over all pieces."""
+        path = os.path.join(self.folder, "in.log")
+        with open(path, "w", encoding="ascii") as file:
+            file.write(log)
+        out, _ = self.run_tool("--spec", self.spec, "plot", path, field, "--script")
+        return [(float(time), float(value)) for time, value in re.findall(r"^(\S+) (\S+)$", out.split("<< EOD", 1)[1].split("EOD")[0], re.MULTILINE)]
+
+    def test_plot_draws_fields_of_messages_of_several_frames(self):
+        self.assertEqual(self.curve(BROADCAST, "VI.First"), [(0.15, 87)])
+        self.assertEqual(self.curve(BROADCAST, "VI.Last"), [(0.15, 26)])  # in the third packet
+        self.assertEqual(self.curve(CONNECTION + AGAIN, "CI.End"), [(0.006, 87), (10.008, 87)])
+        self.assertEqual(self.curve(BROADCAST, "EEC1.EngineSpeed"), [(0.06, 1500)])  # between the packets
 
     def test_back_to_the_byte(self):
         log = (BROADCAST + CONNECTION).replace("(", "(14365090")

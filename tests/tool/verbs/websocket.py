@@ -165,7 +165,10 @@ class Viewer(Socket):
                 return json.loads(got)
 
     def publish(self, topic, fields):
+        self.publish_bytes(topic, json.dumps(fields).encode())
+
+    def publish_bytes(self, topic, payload):
         if topic not in self.published:
             self.published[topic] = len(self.published) + 1
             self.ask(op="advertise", channels=[{"id": self.published[topic], "topic": topic, "encoding": "json", "schemaName": ""}])
-        self.send_frame(2, struct.pack("<BI", 1, self.published[topic]) + json.dumps(fields).encode())
+        self.send_frame(2, struct.pack("<BI", 1, self.published[topic]) + payload)

@@ -1,5 +1,7 @@
 #include "cli/words/quantity.hpp"
 
+#include <utility>
+
 #include <catch2/catch.hpp>
 
 namespace tool_words_quantity_test {
@@ -49,6 +51,31 @@ TEST_CASE("units of the same kind convert exactly") {
   CHECK(converted("-930mW", "W") == "-0.93");
 }
 
+TEST_CASE("units per second, minute and hour convert") {
+  CHECK(converted("36km/h", "m/s") == "10");
+  CHECK(converted("10m/s", "km/h") == "36");
+  CHECK(converted("1km/h", "m/s") == "0.277777778");  // no end: to a billionth
+  CHECK(converted("3krpm", "rpm") == "3000");
+  CHECK(converted("3000rpm", "1/min") == "3000");
+  CHECK(converted("3000U/min", "rpm") == "3000");
+  CHECK(converted("50kph", "km/h") == "50");
+  CHECK(converted("60mph", "km/h") == "96.56064");
+  CHECK(converted("1l/min", "l/h") == "60");
+  CHECK(converted("6deg/min", "deg/s") == "0.1");
+  CHECK(converted("90\u00b0", "deg") == "90");
+}
+
+TEST_CASE("units that are so many of others convert") {
+  CHECK(converted("2min", "s") == "120");
+  CHECK(converted("90s", "min") == "1.5");
+  CHECK(converted("1.5h", "min") == "90");
+  CHECK(converted("2.5bar", "kPa") == "250");
+  CHECK(converted("101.3kPa", "bar") == "1.013");
+  CHECK(converted("1013hPa", "mbar") == "1013");
+  CHECK(converted("1.5MW", "kW") == "1500");
+  CHECK(converted("2.5kNm", "Nm") == "2500");
+}
+
 TEST_CASE("degrees and radians convert to a billionth") {
   CHECK(converted("180deg/s", "rad/s") == "3.141592654");
   CHECK(converted("-30deg/s", "rad/s") == "-0.523598776");
@@ -56,7 +83,16 @@ TEST_CASE("degrees and radians convert to a billionth") {
 }
 
 TEST_CASE("units of another kind are refused") {
-  for (const char* text : {"5m", "5m/h", "5G/s", "5furlong", "5mm/s/s", "5s"}) {
+  for (const auto& [text, unit] : {std::pair{"3Hz", "rpm"},
+                                   {"3rpm", "deg/s"},
+                                   {"3mkm", "m"},
+                                   {"3kmin", "s"},
+                                   {"20degC", "K"},
+                                   {"3rpm/s", "rpm"}}) {
+    CAPTURE(text, unit);
+    CHECK(converted(text, unit) == base::describe(base::Error::bad_unit));
+  }
+  for (const char* text : {"5m", "5m/day", "5G/s", "5furlong", "5mm/s/s", "5s"}) {
     CAPTURE(text);
     CHECK(converted(text, "m/s") == base::describe(base::Error::bad_unit));
   }

@@ -193,6 +193,18 @@ TEST_CASE("queues: a bus that is full to the last bit has no room for a frame be
   CHECK(second(3, calm).reason == Reason::overloaded);
 }
 
+TEST_CASE("queues: what errors may cost is an error frame and the longest frame again, each time") {
+  // Half of the bus, and every 80 ticks an error: 31 bits and the frame of 10 once more are 51 % of it.
+  constexpr std::array<Message, 1> half{{{.cost = 10, .period = 20}}};
+  constexpr std::array queues{by_priority};
+  CanQueues<1> analysis;
+  const auto reason = [&](std::int64_t every) {
+    return analysis.analyse(half, queues, {.bit = 1, .errors = {.burst = 1, .every = every}})[0].reason;
+  };
+  CHECK(reason(80) == Reason::overloaded);
+  CHECK(reason(83) != Reason::overloaded);
+}
+
 TEST_CASE("queues: a busy bus is analysed to its end, unless the caller allows less work") {
   // 1/3 + 1/4 of the bus above one frame as long as thousands of theirs.
   constexpr std::array<Message, 3> busy{

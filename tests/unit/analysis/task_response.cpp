@@ -174,6 +174,14 @@ TEST_CASE("an analysis that does not converge ends with a reason") {
   CHECK(response_time(set_b, 0, {}, {.terms = 5}).reason == Reason::too_long);
 }
 
+TEST_CASE("with what interrupts take of all time, the first step is nearly there") {
+  // 900 ticks of its own in 1000, of which a timer takes a tenth.
+  constexpr std::array<Task, 1> tasks{{{900, 2000}}};
+  constexpr Processor processor{.tick_cost = 1, .tick_period = 10};
+  CHECK(response_time(tasks, 0, processor).response == 1000);
+  CHECK(response_time(tasks, 0, processor, {.terms = 2}).ok());
+}
+
 TEST_CASE("a step towards the bound is skipped, never the bound") {
   // Against the iteration as in the paper, from C on, with all instances up to the end of the busy period.
   ocm::test::Random random{4};

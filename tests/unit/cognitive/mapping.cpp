@@ -154,6 +154,19 @@ TEST_CASE("mapping: without robots it is not done, and neither is a robot that w
   CHECK(mapping.path(0).size() == 1);
 }
 
+TEST_CASE("mapping: a robot that has nothing to do is asked again after a second") {
+  Expedition expedition{Room{ocm::test::rectangle(0, 0, 1, 1)}, {PerfectRobot{{0.5F, 0.5F, 0.0F}}}};
+  REQUIRE(expedition.run(300) < 300);
+  expedition.mapping.hold(0, true);
+  expedition.mapping.hold(0, false);
+  for (int i = 0; i < 4; ++i) {
+    expedition.step();
+    CHECK_FALSE(expedition.mapping.done());
+  }
+  expedition.step();
+  CHECK(expedition.mapping.done());
+}
+
 TEST_CASE("mapping: a robot far from the central is called back at once, and does not go there again") {
   FleetOptions options;
   options.range_m = 2.0F;  // from 1.8 m on

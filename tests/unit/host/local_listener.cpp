@@ -1,7 +1,11 @@
 #include "ocm/host/local_listener.hpp"
 
+#include <chrono>
+#include <fcntl.h>
 #include <filesystem>
 #include <fstream>
+#include <sys/file.h>
+#include <thread>
 
 #include <catch2/catch.hpp>
 
@@ -47,6 +51,25 @@ TEST_CASE("the socket of a dead server is replaced, and nothing else is") {
   REQUIRE(::bind(stream.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) == 0);
   REQUIRE(::listen(stream.get(), 1) == 0);
   CHECK_THAT(LocalListener::open(path, 1s, service).error.what, Catch::Contains("another program listens"));
+}
+
+TEST_CASE("a server waits for another one that starts, and no longer than it may") {
+  const TemporaryDirectory directory;
+  const std::string path = directory.path() + "/sim.sock";
+  host::Descriptor other{::open(directory.path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
+  REQUIRE(::flock(other.get(), LOCK_EX) == 0);
+  const auto start = std::chrono::steady_clock::now();
+  const auto refused = LocalListener::open(path, 30ms, service);
+  CHECK_THAT(refused.error.what, Catch::Contains("holds the lock of the directory"));
+  CHECK_THAT(refused.error.remedy, Catch::Contains("fuser " + directory.path()));
+  CHECK(std::chrono::steady_clock::now() - start >= 30ms);
+  std::thread starts{[&] {
+    std::this_thread::sleep_for(30ms);
+    other.reset();
+  }};
+  CHECK(LocalListener::open(path, 1h, service));
+  starts.join();
+  CHECK(std::chrono::steady_clock::now() - start < 9s);  // it looks again soon
 }
 
 TEST_CASE("only what is its own is removed") {

@@ -31,6 +31,11 @@ TEST_CASE("the other end of a socket is named by its process") {
   CHECK(host::process_text(peer) == " (process " + std::to_string(::getpid()) + ")");
   CHECK_FALSE(host::peer_of(-1));
   CHECK(host::process_text({}).empty());
+  CHECK(host::end_text(peer) == ", end it (kill " + std::to_string(::getpid()) + ")");
+  CHECK(host::end_text({}).empty());
+  // Of a process that is in another container the kernel says 0.
+  CHECK(host::process_text(ucred{}).empty());
+  CHECK(host::end_text(ucred{}).empty());
 }
 
 }  // namespace host_local_socket_test

@@ -43,6 +43,7 @@ TEST_CASE("the longest times stay long, also where seconds have 32 bits") {
     CHECK(to_timespec(time).tv_sec == longest);
     CHECK(to_timeval(time).tv_sec == longest);
   }
+  STATIC_REQUIRE(to_timeval(Duration::max() - 2us).tv_usec == 854'774);  // ...6.854'773'807, rounded up
 }
 
 }  // namespace host_system_time_test

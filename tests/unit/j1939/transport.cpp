@@ -150,6 +150,19 @@ TEST_CASE("any packet of a window that came is asked for again, and comes again"
   CHECK(whole(transport) == message);
 }
 
+TEST_CASE("the last packet of a window, asked for again although it came, is waited for") {
+  Transport<1> transport;
+  const Bytes message = bytes(20);  // three packets
+  const std::uint32_t data = id_of(transfer_group, 0x10, 0x20);
+  transport.take(id_of(connection_group, 0x10, 0x20), announcement(16, 20, 0xEF00), begin);
+  for (const std::size_t number : {1U, 3U}) transport.take(data, packet(bytes(20, 9), number), begin);
+  transport.take(id_of(connection_group, 0x20, 0x10), clear_to_send(3, 1, 0xEF00), begin);
+  for (const std::size_t number : {1U, 2U})
+    CHECK(transport.take(data, packet(message, number), begin) == Heard::packet);
+  CHECK(transport.take(data, packet(message, 3), begin) == Heard::message);
+  CHECK(whole(transport) == message);
+}
+
 // Each cause once in the sum; what was announced, complete, stray or malformed is no message that was lost.
 static_assert(TransportCounters{128, 256, 1, 2, 4, 8, 16, 32, 64, 512, 1024}.lost() == 127);
 
@@ -283,6 +296,11 @@ TEST_CASE("each step has its time, to the nanosecond") {
       transport.expire(begin + limit + late);
       CHECK(transport.counters().timed_out == expected);
       CHECK(transport.open() == 1 - expected);
+      // Any other frame of the protocol tells it, too.
+      Transport<1> other;
+      prepare(other);
+      other.take(id_of(transfer_group, 5, 6), packet(message, 1), begin + limit + late);
+      CHECK(other.counters().timed_out == expected);
     };
     const auto rts = [&](auto& t) { t.take(to, announcement(16, 30, 0xFECA), begin); };
     after([&](auto& t) { t.take(bam_id, announcement(32, 30, 0xFECA), begin); }, 750ms);

@@ -183,6 +183,10 @@ TEST_CASE("blf: containers that are packed") {
   const auto huge = read_blf(head + container("1" + message, 2, 0xFFFF'FFFF) + container(message));
   CHECK(huge.complaints.at(0).cause == Cause::too_long);
   CHECK(huge.entries.size() == 1);
+  // As much as may be claimed, and one byte more.
+  const auto most = static_cast<std::uint32_t>(Input::longest);
+  CHECK(read_blf(head + container("1" + message, 2, most)).complaints.at(0).cause == Cause::compressed);
+  CHECK(read_blf(head + container("1" + message, 2, most + 1)).complaints.at(0).cause == Cause::too_long);
 }
 
 TEST_CASE("blf: objects without a container") {

@@ -110,6 +110,9 @@ TEST_CASE("a float is read and written with its scale and offset") {
   STATIC_REQUIRE(*moved.float_from(4.5) == 0x3FC0'0000);
   STATIC_REQUIRE(*doubled.float_from(3.0) == 0x3FC0'0000);
   STATIC_REQUIRE(*angle.float_from(1.0) == 0x3FF0'0000'0000'0000);
+  // And bit for bit the one that was asked for, a NaN that signals, too.
+  constexpr std::int64_t signals = 0x7FF0'0000'0000'0001;
+  CHECK(*angle.float_from(std::bit_cast<double>(signals)) == signals);
 }
 
 TEST_CASE("a float of 32 bits holds up to 3.4e38, and infinity; what is between is refused") {

@@ -20,6 +20,9 @@ static_assert(adapted_period(ring, 60) == 120ms);  // 125, towards the shorter
 constexpr Adaptation slower{.from = -50, .to = 50, .at_from = 10ms, .at_to = 20ms, .grain = 1ms};
 static_assert(adapted_period(slower, -50) == 10ms && adapted_period(slower, 0) == 15ms);
 static_assert(adapted_period(slower, 50) == 20ms);
+// To the nanosecond: 1.5 of them for each step of the value.
+constexpr Adaptation fine{.from = 0, .to = 100, .at_from = 1'000ns, .at_to = 1'150ns, .grain = 1ns};
+static_assert(adapted_period(fine, 50) == 1'075ns && adapted_period(fine, 99) == 1'148ns);
 
 TEST_CASE("adaptation: within its bounds, in grains, and never back, for any numbers") {
   std::mt19937_64 random{5};

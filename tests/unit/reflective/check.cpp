@@ -124,8 +124,14 @@ TEST_CASE("check: what is wrong with a configuration") {
     t.raw[1] = INT64_MAX;
     CHECK(t.only() == Mistake::set_point_outside_spec);
   }
-  SECTION("set point beyond its limit") {
+  SECTION("set point at its limit, and beyond it") {
+    for (const std::int64_t fine : {-100'000, 100'000}) {
+      t.raw[0] = fine;
+      CHECK(t.findings().empty());
+    }
     t.raw[0] = 100'001;
+    CHECK(t.only() == Mistake::set_point_beyond_limit);
+    t.raw[0] = -100'001;
     CHECK(t.only() == Mistake::set_point_beyond_limit);
   }
   SECTION("set point with too many values") {

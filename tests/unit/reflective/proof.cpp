@@ -118,6 +118,29 @@ static_assert(Proof<16>{tables, 1'000'000, on_board}.response(1, 0) ==
 static_assert(Proof<16>{tables, 1'000'000}.load(0, 1) > Proof<16>{tables, 1'000'000}.load(0));
 static_assert(!Proof<16>{tables, 1'000'000}.latency(0, 1).bounded);  // does not leave from there
 
+// After a reset of the board. A request goes behind the long one and the other request. A sample of the
+// watched one, at high priority, goes behind the long one and the other request; its own next one is much
+// later.
+constexpr Recovery recovery(std::uint16_t configuration, std::uint16_t topic, base::Duration retry) {
+  Operator op = tables;
+  op.retry = retry;
+  return Proof<32>{op, 1'000'000}.recovery(configuration, topic);
+}
+constexpr Recovery by_silence = recovery(0, 0, 63'295us);
+static_assert(by_silence.bounded && by_silence.silence == 60'000'000 && by_silence.last == 3'295'000 &&
+              by_silence.retry == 0);
+static_assert(by_silence.request == (135 + 2 * 95) * 1000);
+static_assert(by_silence.total() == 63'295'000 + 3'000'000 + 325'000 + 1'000'000 + 2'000'000 + 295'000);
+static_assert(by_silence.at_worst() == by_silence.total() + 10'000'000);
+constexpr Recovery by_retry = recovery(0, 0, 63'296us);
+static_assert(by_retry.retry == 63'296'000 && by_retry.silence == 0 && by_retry.last == 0);
+static_assert(by_retry.total() == by_silence.total() + 1'000);
+static_assert(!recovery(0, 0, 0ms).bounded && recovery(0, 0, 0ms).total() == analysis::unbounded);
+static_assert(!recovery(1, 1, 1s).bounded);  // does not stream it
+// A retry that is so short that the next request may be there counts it, and two frames of other grids.
+static_assert(recovery(0, 0, 6'845us).bus == (135 + 95 + 65) * 1000);
+static_assert(recovery(0, 0, 6'844us).bus == (135 + 2 * 95 + 3 * 65) * 1000);
+
 // From moving to still: the set point and the stop; then what the long one, which may have been released just
 // before, needs behind them and the watched one, which goes on.
 constexpr std::int64_t settling = Proof<32>{tables, 1'000'000}.settling(0, 1);
@@ -265,6 +288,8 @@ TEST_CASE("proof: what others send delays both ways") {
   Proof<32> proof{op, 1'000'000};
   CHECK(proof.latency(0, 0).bus == 200'000 + 135'000);
   CHECK(proof.latency(0, 0).command == 200'000 + 135'000);
+  others[0].key = can::arbitration_key({.id = 1});  // more urgent than any set point of the operator
+  CHECK(proof.latency(0, 0).command == 200'000 + 135'000);
   others[0].key = ~0U;  // less urgent than all: it blocks no longer than the long one
   CHECK(proof.latency(0, 0).total() == high.total());
 }
@@ -287,6 +312,10 @@ TEST_CASE(
   REQUIRE(first_mistake(op).kind == Mistake::no_mistake);
   Proof<32> proof{op, 1'000'000};
   CHECK(proof.latency(0, 0).period == 30'000'000);
+  op.retry = 50ms;
+  CHECK(proof.recovery(0, 0).silence == 90'000'000);
+  CHECK(proof.recovery(0, 0).bus > recovery(0, 0, 50ms).bus);  // its grid may begin again just before
+  op.retry = 0ms;
   const std::int64_t adapted = proof.load(0);
   CHECK(adapted > Proof<32>{tables, 1'000'000}.load(0));
 }

@@ -31,6 +31,12 @@ class VirtualRobot {
   std::function<Ns(std::uint16_t topic)> reaction = [](std::uint16_t) { return 0; };  ///< none: to a timer
   /// After each sample that a board has read.
   std::function<void(std::uint16_t topic, Ns now)> sampled = [](std::uint16_t, Ns) {};
+  /// The end of a sample's last frame, and when it was read.
+  std::function<void(std::uint16_t topic, Ns read, Ns now)> came = [](std::uint16_t, Ns, Ns) {};
+  /// A request has been taken by no board.
+  std::function<void(std::uint16_t topic, Ns now)> lost = [](std::uint16_t, Ns) {};
+  /// When a step's frames are handed to the bus, those that ask for a silent stream among them.
+  std::function<void(Ns now)> asked_again = [](Ns) {};
   /// After each step; it may not change anything.
   std::function<void(Ns now)> stepped = [](Ns) {};
 
@@ -66,6 +72,23 @@ class VirtualRobot {
       input({.kind = reflective::Event::Kind::request, .value = configuration}, {});
     });
   }
+  /// All boards lose their streams now, and take no request that begins before `up`. What they have read is
+  /// sent all the same: the operator notices later then.
+  void reset(Ns up) {
+    for (Running& stream : streams_) {
+      stream.runs = false;
+      ++stream.generation;
+    }
+    up_ = up;
+    ++resets_;
+  }
+  /// They take requests from then on, other than `reset` said.
+  void back(Ns up) { up_ = up; }
+  /// A frame of another program, handed over now.
+  void other(std::uint32_t key, Ns cost) {
+    pending_.push_back({key, cost, [](Ns) {}});
+  }
+  [[nodiscard]] Ns entered() const { return entered_; }
   void run(Ns until) {
     for (;;) {
       // What happens at one time has all happened before the bus arbitrates.
@@ -96,7 +119,7 @@ class VirtualRobot {
   struct Pending {
     std::uint32_t key = 0;
     Ns cost = 0;
-    std::function<void()> sent;
+    std::function<void(Ns began)> sent;
   };
   struct Running {
     bool runs = false;
@@ -126,9 +149,9 @@ class VirtualRobot {
       pending_.erase(best);
     }
     busy_ = true;
-    at(now_ + frame.cost, [this, sent = frame.sent] {
+    at(now_ + frame.cost, [this, sent = frame.sent, began = now_] {
       busy_ = false;
-      sent();
+      sent(began);
     });
   }
 
@@ -146,7 +169,9 @@ class VirtualRobot {
   void release(std::uint16_t topic, Ns planned, std::uint64_t generation) {
     at(planned, [=, this] {
       if (streams_[topic].generation != generation) return;
-      at(planned + jitter(topic, planned), [=, this] { sample(topic, streams_[topic].priority); });
+      at(planned + jitter(topic, planned), [=, this, resets = resets_] {
+        if (resets == resets_) sample(topic, streams_[topic].priority);
+      });
       release(topic, planned + streams_[topic].period, generation);
     });
   }
@@ -155,17 +180,19 @@ class VirtualRobot {
     const std::uint8_t value = values[topic];
     Ns& handed_over = streams_[topic].handed_over;
     handed_over = std::max(handed_over, now_ + sampling(topic));
-    at(handed_over, [=, this] { to_bus(topic, priority, value); });
+    at(handed_over, [=, this, read = now_] { to_bus(topic, priority, value, read); });
     sampled(topic, now_);
   }
-  void to_bus(std::uint16_t topic, protocol::Priority priority, std::uint8_t value) {
+  void to_bus(std::uint16_t topic, protocol::Priority priority, std::uint8_t value, Ns read) {
     const auto& frames = tables_->topic(topic).frames;
     for (std::size_t f = 0; f < frames.size(); ++f) {
       const auto id = protocol::Identifier{protocol::Direction::sensor, priority, frames[f].id}.encode();
       const bool last = f + 1 == frames.size();
       pending_.push_back(
-          {can::arbitration_key({.id = id}), bits(protocol::worst_bits(frames[f], priority)), [=, this] {
-             if (last) arrived(topic, value);
+          {can::arbitration_key({.id = id}), bits(protocol::worst_bits(frames[f], priority)), [=, this](Ns) {
+             if (!last) return;
+             came(topic, read, now_);
+             arrived(topic, value);
            }});
     }
   }
@@ -221,19 +248,24 @@ class VirtualRobot {
         if (action.kind == Action::Kind::command) ++set_points;
       }
       std::size_t set_point = 0;
+      if (std::any_of(all.begin(), all.end(), [](const Action& a) { return a.kind == Action::Kind::again; }))
+        asked_again(now_);
       for (const Action& action : all) {
         if (!action.sends()) continue;
         const bool last = action.kind == Action::Kind::command && ++set_point == set_points;
         std::optional<Acted> acts;
         if (by_monitor != nullptr && last) acts = Acted{by_monitor->transition, by_monitor->from, entered, 0};
         const unsigned length = can::worst_frame_bits(can::Format::base, action.frame.dlc);
-        queue_.push_back({can::arbitration_key(action.frame), bits(length), [this, action, acts] {
+        queue_.push_back({can::arbitration_key(action.frame), bits(length), [this, action, acts](Ns began) {
                             if (acts) {
                               acted = acts;
                               acted->at = now_;
                             }
                             if (action.kind == Action::Kind::command) return;
-                            at(now_ + handling(action.topic), [this, action] { take(action); });
+                            at(now_ + handling(action.topic), [this, action, began, resets = resets_] {
+                              if (began >= up_ && resets == resets_) return take(action);
+                              lost(action.topic, now_);
+                            });
                           }});
       }
     });
@@ -254,6 +286,8 @@ class VirtualRobot {
   Ns entered_ = 0;
   Ns tick_ = -1;
   bool watching_ = false;
+  Ns up_ = 0;
+  int resets_ = 0;
 };
 
 }  // namespace ocm::test

@@ -66,7 +66,7 @@ struct FreeRtos {
         this, [](void* self) { static_cast<FreeRtos*>(self)->expire(); },
         [](void* self, Level level) { static_cast<FreeRtos*>(self)->run(level); });
   }
-  void let_pass(base::Duration time) { std::this_thread::sleep_for(time); }
+  void let_pass(base::Duration time) { std::this_thread::sleep_for(time); }  // virtual for other ports
   void stop() { fake::kernel->end(); }
   static constexpr base::Duration slack{5s};  // of a machine that has other things to do
 

@@ -569,6 +569,7 @@ TEST_CASE("an error on the bus: each client gets a report, and the frame comes n
   VirtualBusSetup setup;
   const auto sender = setup.join();
   const auto listener = setup.join();
+  RawClient silent{setup.path()};  // connected, and has not said who it is
   CHECK(sender->send(frame("205#01840302")));
   setup.poll();
   auto& arbiter = setup.server->arbiter();
@@ -591,6 +592,8 @@ TEST_CASE("an error on the bus: each client gets a report, and the frame comes n
   REQUIRE(rest.size() == 3);
   CHECK(rest[1] == "205#01840302");
   CHECK(rest[2] == "205#01840302");
+  CHECK(silent.heard().empty());
+  CHECK_FALSE(silent.closed);
   CHECK(setup.server->counters().misbehaved == 0);
 
   // A frame that was delivered twice has come out of the queue once: 64 more are taken, and no 65th.

@@ -47,12 +47,13 @@ Bytes message(unsigned type, const Bytes& payload) {
   return padded(bytes_of(header) + payload);
 }
 
-Bytes link(unsigned hardware, int index, unsigned flags, const Bytes& attributes) {
+Bytes link(unsigned hardware, int index, unsigned flags, const Bytes& attributes,
+           unsigned type = RTM_NEWLINK) {
   ifinfomsg body{};
   body.ifi_type = static_cast<unsigned short>(hardware);
   body.ifi_index = index;
   body.ifi_flags = flags;
-  return message(RTM_NEWLINK, bytes_of(body) + attributes);
+  return message(type, bytes_of(body) + attributes);
 }
 
 Bytes can_info(std::uint32_t bit_rate, std::uint32_t state = CAN_STATE_ERROR_ACTIVE) {
@@ -71,7 +72,10 @@ TEST_CASE("only the CAN interfaces are read from the kernel's list") {
                               attribute(IFLA_IFNAME, text("can0")) + can_info(500'000)) +
                          link(transport::can_hardware_type, 5, 0,
                               attribute(IFLA_IFNAME, text("vcan12")) +
-                                  attribute(IFLA_LINKINFO, attribute(IFLA_INFO_KIND, text("vcan"))));
+                                  attribute(IFLA_LINKINFO, attribute(IFLA_INFO_KIND, text("vcan")))) +
+                         link(transport::can_hardware_type, 6, IFF_UP, attribute(IFLA_IFNAME, text("gone")),
+                              RTM_DELLINK) +
+                         message(RTM_NEWLINK, bytes_of(std::uint32_t{0}));  // too short to say what it is
   CHECK(transport::detail::read_links(datagram, found) == LinkDump::more);
   REQUIRE(found.size() == 2);
   CHECK(found[0] == CanInterface{"can0", 4, true, "can", 500'000});

@@ -35,7 +35,7 @@ class RawServer {
     client_ = host::Descriptor{::accept(listener_.get(), nullptr, nullptr)};
     vb::Record hello{};
     CHECK(::recv(client_.get(), hello.data(), hello.size(), 0) == static_cast<ssize_t>(hello.size()));
-    std::this_thread::sleep_for(after);
+    std::this_thread::sleep_for(after);  // of a server that is slow
     say(answer);
     if (hang_up) client_.reset();
     opener.join();

@@ -18,6 +18,8 @@
 #include "ocm/mapper/app/models.hpp"
 #include "ocm/mapper/app/parts.hpp"
 #include "ocm/mapper/app/robot.hpp"
+#include "ocm/mapper/link/sentence_reader.hpp"
+#include "ocm/mapper/link/sentences.hpp"
 #include "ocm/motion/pose.hpp"
 #include "ocm/scheduling/cooperative.hpp"
 
@@ -277,5 +279,22 @@ struct BasicBench {
   std::function<void()> each_step;
 };
 using Bench = BasicBench<scheduling::Cooperative>;
+
+/// Of the robot of `Bench`.
+inline const std::string handshake = "{H,20,20,1,3,0,90,180,270,5000,20225,3}\n";
+inline constexpr mapper::app::Lights green{.green = true};
+inline constexpr mapper::app::Lights yellow{.yellow = true};
+inline constexpr mapper::app::Lights both{.green = true, .yellow = true};
+
+/// What the robot said that is an update, in text.
+inline std::vector<mapper::link::Update> updates(std::string_view said) {
+  mapper::link::Reader reader{mapper::link::Direction::from_robot};
+  std::vector<mapper::link::Update> result;
+  for (const char c : said)
+    if (reader.feed(c) == mapper::link::Kind::update)
+      result.push_back(*reader.sentence().as<mapper::link::Update>());
+  CHECK(reader.faults().total() == 0);
+  return result;
+}
 
 }  // namespace app_testing

@@ -14,8 +14,6 @@ namespace mapper_app_control_test {
 using namespace app_testing;
 using ocm::test::near;
 
-constexpr mapper::app::Lights yellow{.yellow = true};
-
 // [T2 table 13.1, the commands]
 TEST_CASE("mapper: a square of set points ends where it should", "[mapper]") {
   for (const RobotModel* model : {&mapper::app::avr_robot, &mapper::app::arduino_robot}) {

@@ -15,22 +15,6 @@ namespace mapper_app_robot_test {
 using namespace app_testing;
 using ocm::test::near;
 
-const std::string handshake = "{H,20,20,1,3,0,90,180,270,5000,20225,3}\n";
-constexpr mapper::app::Lights green{.green = true};
-constexpr mapper::app::Lights yellow{.yellow = true};
-constexpr mapper::app::Lights both{.green = true, .yellow = true};
-
-/// What the robot said that is an update, in text.
-std::vector<mapper::link::Update> updates(std::string_view said) {
-  mapper::link::Reader reader{mapper::link::Direction::from_robot};
-  std::vector<mapper::link::Update> result;
-  for (const char c : said)
-    if (reader.feed(c) == mapper::link::Kind::update)
-      result.push_back(*reader.sentence().as<mapper::link::Update>());
-  CHECK(reader.faults().total() == 0);
-  return result;
-}
-
 // [T2 §6.3]
 TEST_CASE("mapper: advertising: motors off, tower at 0, a green flash every two seconds", "[mapper]") {
   Bench bench;

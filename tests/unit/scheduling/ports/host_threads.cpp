@@ -31,7 +31,7 @@ struct Threads {
   void attach(std::function<void()> expire, std::function<void(Level)> run) {
     REQUIRE(threads.start(std::move(expire), std::move(run)).ok());
   }
-  void let_pass(base::Duration time) { std::this_thread::sleep_for(time); }
+  void let_pass(base::Duration time) { std::this_thread::sleep_for(time); }  // virtual for other ports
   void stop() { threads.stop(); }
   static constexpr base::Duration slack{5s};  // of a machine that has other things to do
 

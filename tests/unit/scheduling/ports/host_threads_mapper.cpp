@@ -163,7 +163,7 @@ TEST_CASE("host threads: links that come and go while it drives: motors off when
     REQUIRE(running.wait_until([&] {
       return running.parts.locked([](IdealParts& ideal) { return ideal.efforts != motion::Efforts{}; });
     }));
-    std::this_thread::sleep_for(std::chrono::milliseconds{i * 3});
+    std::this_thread::sleep_for(std::chrono::milliseconds{i * 3});  // at any point of the drive
     running.link(false);
     for (int look = 0; look < 40; ++look) {  // and they stay off, whatever was under way
       CHECK(running.parts.locked([](IdealParts& ideal) { return ideal.efforts == motion::Efforts{}; }));

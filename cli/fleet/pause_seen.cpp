@@ -1,0 +1,32 @@
+#include "cli/fleet/pause_seen.hpp"
+
+#include <chrono>
+#include <cstdint>
+
+#include "cli/fleet/pausing.hpp"
+
+namespace ocm::cli::fleet {
+
+using namespace std::chrono_literals;
+
+bool pause_until_seen(CentralLine& line, unsigned index, bool paused) {
+  Pausing pausing{line.robot(index), paused, CentralLine::now()};
+  auto seen = Pausing::Seen::not_yet;
+  (void)line.wait(1h, [&] {
+    seen = pausing.step(line.end(), CentralLine::now());
+    return seen != Pausing::Seen::not_yet;
+  });
+  return seen == Pausing::Seen::obeys;
+}
+
+bool seems_paused(CentralLine& line, unsigned index) {
+  const std::uint32_t before = line.robot(index).pieces;
+  const bool updates = line.wait(2500ms, [&] {
+    const RobotNow robot = line.robot(index);
+    return robot.update.has_value() || robot.pieces != before;
+  });
+  const RobotNow robot = line.robot(index);
+  return !updates && (robot.last == mapper::link::Kind::idle || robot.last == mapper::link::Kind::pong);
+}
+
+}  // namespace ocm::cli::fleet

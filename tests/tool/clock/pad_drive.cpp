@@ -1,0 +1,228 @@
+// Driving by a gamepad that is played, on a bus and a clock that are made of a seed: the robot moves only
+// while the dead man's button is held, and rests when the pad is gone.
+#include "cli/command/pad_drive.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "ocm/topics/amiro.hpp"
+
+#include "cli/shared/messages.hpp"
+#include "cli/shared/set_points.hpp"
+#include "tests/tool/clock/played_bus.hpp"
+#include "tests/unit/base/explore.hpp"
+
+namespace tool_clock_pad_drive_test {
+
+using namespace ocm;
+using namespace ocm::test;
+using cli::PadDrive;
+using cli::PadState;
+using cli::Timeline;
+
+/// Says what it is at each time; what is pressed for a moment is said once.
+class PlayedPad final : public cli::Gamepad {
+ public:
+  explicit PlayedPad(World& world) : world_(&world) {}
+
+  void at(Moment time, PadState state) { states_.push_back({time, state}); }
+  std::optional<PadState> read() override {
+    PadState pressed;
+    for (; next_ < states_.size() && states_[next_].first <= world_->now(); ++next_) {
+      newest_ = states_[next_].second;
+      pressed.stop = pressed.stop || newest_.stop;
+      pressed.quit = pressed.quit || newest_.quit;
+    }
+    if (world_->now() >= gone) return std::nullopt;
+    newest_.stop = pressed.stop;
+    newest_.quit = pressed.quit;
+    return newest_;
+  }
+  std::string name() const override { return "played"; }
+  /// Whether the button was held at any time between these.
+  [[nodiscard]] bool held_between(Moment from, Moment to) const {
+    bool held = false;
+    for (const auto& [time, state] : states_) {
+      if (time <= from) held = state.dead_man;
+      if (time > from && time <= to) held = held || state.dead_man;
+    }
+    return held;
+  }
+
+  Moment gone = Moment::max();
+
+ private:
+  World* world_;
+  std::vector<std::pair<Moment, PadState>> states_;
+  std::size_t next_ = 0;
+  PadState newest_{};
+};
+
+/// A pad on a bus that takes all; times are from the beginning.
+struct Drive {
+  explicit Drive(std::uint64_t seed = 1) : world(seed), pad(world), bus(world, {}) {
+    world.interrupt(World::start + 60s, SIGINT);
+  }
+  void at(Duration time, PadState state) { pad.at(World::start + time, state); }
+
+  PadDrive::End go(std::string_view forward = "10cm/s", std::string_view turning = "45deg/s") {
+    PadDrive drive{amiro::catalogue,
+                   {},
+                   *cli::words::KeySpeed::parse(forward),
+                   *cli::words::KeySpeed::parse(turning),
+                   [this](std::string_view text) { shown.emplace_back(text); }};
+    Timeline timeline{bus, amiro::catalogue, "drive", Timeline::Others::refused, cli::Confirm::no, {}};
+    REQUIRE(timeline.listen_first());
+    const PadDrive::End end = drive.run(pad, timeline);
+    static_cast<void>(timeline.finish());
+    return end;
+  }
+  /// Set points that move, by the time at which they were sent.
+  [[nodiscard]] std::vector<Duration> moving() {
+    std::vector<Duration> times;
+    for (const auto& each : bus.sent())
+      if (!cli::is_rest(each.frame)) times.push_back(each.taken - World::start);
+    return times;
+  }
+  [[nodiscard]] static std::int32_t forward_um_s(const can::Frame& frame) {
+    return static_cast<std::int32_t>(frame.data[0] | frame.data[1] << 8 | frame.data[2] << 16 |
+                                     static_cast<std::uint32_t>(frame.data[3]) << 24);
+  }
+
+  World world;
+  PlayedPad pad;
+  PlayedBus bus;
+  std::vector<std::string> shown;
+};
+
+constexpr PadState let_go{};
+constexpr PadState stick_only{.forward = 1};
+constexpr PadState drives{.forward = 1, .dead_man = true};
+
+TEST_CASE("drive by gamepad: only while a shoulder button is held") {
+  Drive drive;
+  drive.at(0s, stick_only);
+  drive.at(2s, drives);
+  drive.at(3s, stick_only);
+  drive.at(4s, {.forward = -0.5, .left = 0.5, .dead_man = true});
+  drive.at(5s, let_go);
+  drive.at(6s, {.quit = true});
+  CHECK(drive.go() == PadDrive::End::quit);
+  const auto times = drive.moving();
+  REQUIRE(times.size() >= 18);  // ten a second
+  CHECK(times.front() >= 2s);
+  CHECK(times.front() <= 2s + 25ms);
+  for (const Duration time : times) {
+    INFO(time.count());
+    CHECK(((time >= 2s && time <= 3s + 25ms) || (time >= 4s && time <= 5s + 25ms)));
+  }
+  const auto& sent = drive.bus.sent();
+  CHECK(drive.forward_um_s(sent.front().frame) == 100'000);
+  CHECK(cli::is_rest(sent.back().frame));
+  const auto rest =
+      std::find_if(sent.begin(), sent.end(), [](const auto& each) { return cli::is_rest(each.frame); });
+  CHECK(rest->taken - World::start >= 3s);
+  CHECK(rest->taken - World::start <= 3s + 25ms);
+  const auto half = std::find_if(sent.begin(), sent.end(),
+                                 [](const auto& each) { return Drive::forward_um_s(each.frame) == -50'000; });
+  CHECK(half != sent.end());
+}
+
+TEST_CASE(
+    "drive by gamepad: a button that is held at the beginning, or after a stop, has to be released first") {
+  Drive drive;
+  drive.at(0s, drives);
+  drive.at(2s, let_go);
+  drive.at(3s, drives);
+  drive.at(4s, {.forward = 1, .dead_man = true, .stop = true});
+  drive.at(6s, let_go);
+  drive.at(7s, drives);
+  drive.at(8s, {.quit = true});
+  CHECK(drive.go() == PadDrive::End::quit);
+  for (const Duration time : drive.moving()) {
+    INFO(time.count());
+    CHECK(((time >= 3s && time <= 4s + 25ms) || (time >= 7s && time <= 8s + 25ms)));
+  }
+  CHECK(drive.moving().back() >= 7s);
+  CHECK(std::count(drive.shown.begin(), drive.shown.end(), "rests: release the shoulder button first") == 2);
+}
+
+TEST_CASE("drive by gamepad: a pad that is gone stops the robot") {
+  Drive drive;
+  drive.at(0s, let_go);
+  drive.at(1s, drives);
+  drive.pad.gone = World::start + 3s;
+  CHECK(drive.go() == PadDrive::End::gone);
+  CHECK(drive.moving().back() <= 3s + 25ms);
+  const auto& last = drive.bus.sent().back();
+  CHECK(cli::is_rest(last.frame));
+  CHECK(last.taken - World::start <= 3s + 25ms);
+}
+
+TEST_CASE("drive by gamepad: a signal stops the robot") {
+  Drive drive;
+  drive.at(0s, let_go);
+  drive.at(1s, drives);
+  drive.world.interrupt(World::start + 2s, SIGTERM);
+  CHECK(drive.go() == PadDrive::End::signal);
+  CHECK(cli::is_rest(drive.bus.sent().back().frame));
+  CHECK(drive.moving().back() <= 2s + 25ms);
+}
+
+TEST_CASE("drive by gamepad: beyond the limits of the spec nothing begins") {
+  const Silence silence;
+  Drive drive;
+  CHECK_THROWS_AS(drive.go("2m/s"), cli::Exit);
+  CHECK_THROWS_AS(drive.go("10cm/s", "1m/s"), cli::Exit);
+  CHECK(drive.bus.sent().empty());
+}
+
+TEST_CASE("drive by gamepad: whatever a person presses, a robot moves only while the button is held") {
+  const auto runs = static_cast<std::uint64_t>(explored(200));
+  for (std::uint64_t seed = 1; seed <= runs; ++seed) {
+    INFO("seed " << seed);
+    Drive drive{seed};
+    Duration time = 0s;
+    for (int i = 0; i < 40; ++i) {
+      time += drive.world.between(1ms, 400ms);
+      PadState state;
+      state.forward =
+          drive.world.chance(0.3) ? 0 : cli::deflection(drive.world.between(-100, 100), {-100, 100});
+      state.left = drive.world.chance(0.3) ? 0 : cli::deflection(drive.world.between(-100, 100), {-100, 100});
+      state.dead_man = drive.world.chance(0.6);
+      state.stop = drive.world.chance(0.05);
+      drive.at(time, state);
+    }
+    const bool goes = drive.world.chance(0.5);
+    if (goes)
+      drive.pad.gone = World::start + time + 1s;
+    else
+      drive.at(time + 1s, {.quit = true});
+    CHECK(drive.go() == (goes ? PadDrive::End::gone : PadDrive::End::quit));
+    for (const auto& each : drive.bus.sent())
+      if (!cli::is_rest(each.frame)) CHECK(drive.pad.held_between(each.taken - 25ms, each.taken));
+    if (!drive.bus.sent().empty()) CHECK(cli::is_rest(drive.bus.sent().back().frame));
+  }
+}
+
+TEST_CASE("drive by gamepad: where a stick is") {
+  using cli::deflection;
+  CHECK(deflection(0, {-32768, 32767}) == 0);
+  CHECK(deflection(-32768, {-32768, 32767}) == -1);
+  CHECK(deflection(32767, {-32768, 32767}) == 1);
+  CHECK(deflection(128, {0, 255}) == 0);
+  CHECK(deflection(138, {0, 255}) == 0);  // within a tenth of the middle
+  CHECK(deflection(0, {0, 255}) == -1);
+  CHECK(deflection(192, {0, 255}) == Approx(0.45));  // in steps of a twentieth
+  CHECK(deflection(500, {0, 255}) == 1);             // beyond what the device says
+  CHECK(deflection(7, {0, 0}) == 0);
+  CHECK_FALSE(std::signbit(deflection(-1, {-100, 100})));
+}
+
+}  // namespace tool_clock_pad_drive_test

@@ -1,0 +1,275 @@
+#include "cli/serve/errands.hpp"
+
+#include <chrono>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+namespace serve_errands_test {
+
+using namespace std::chrono_literals;
+using namespace ocm;
+using cli::fleet::RobotNow;
+using cli::serve::Errands;
+using cli::serve::FleetOrder;
+using cli::serve::foxglove::Level;
+using mapper::link::SetPoint;
+using mapper::server::Progress;
+using Kind = FleetOrder::Kind;
+
+/// A line with two robots that do what the test says, and what was said to them.
+class Line final : public cli::fleet::LineEnd {
+ public:
+  Line() {
+    for (unsigned i = 0; i < 2; ++i) {
+      RobotNow& robot = robots[i];
+      robot.index = i;
+      robot.name = i == 0 ? "one" : "two";
+      robot.linked = robot.confirmed = robot.idle = robot.located = robot.origin_known = true;
+      robot.update.emplace();
+      peers_.push_back({i, "C" + std::to_string(i), robot.name, true});
+    }
+  }
+  void exchange() override {}
+  void scan(base::Duration) override {}
+  void connect(unsigned) override {}
+  [[nodiscard]] bool idle() const override { return true; }
+  [[nodiscard]] std::vector<std::string> take_failed() override { return {}; }
+  [[nodiscard]] Refused go(unsigned robot, const SetPoint& to) override {
+    if (!refuses.empty() && to != SetPoint{}) return transport::Failure{refuses, "wait"};
+    said.emplace_back(robot, to);
+    robots[robot].progress = to == SetPoint{} ? Progress::stopping : Progress::said;
+    robots[robot].located = false;
+    robots[robot].order = ++orders;
+    ours[robot] = orders;
+    return std::nullopt;
+  }
+  [[nodiscard]] Refused calibrate(unsigned, bool) override { return std::nullopt; }
+  void pause(unsigned robot) override { pauses.emplace_back(robot, true); }
+  void unpause(unsigned robot) override { pauses.emplace_back(robot, false); }
+  void ping(unsigned) override {}
+  void ask_who(unsigned) override {}
+  void leave(unsigned) override {}
+  [[nodiscard]] const std::vector<mapper::server::Peer>& peers() const override { return peers_; }
+  [[nodiscard]] RobotNow robot(unsigned index) const override { return robots[index]; }
+  [[nodiscard]] bool is_ours(unsigned robot) const override {
+    return ours[robot] != 0 && robots[robot].order == ours[robot];
+  }
+  [[nodiscard]] const std::string& path() const override { return path_; }
+
+  /// Another program's order, which is not over.
+  void by_other(unsigned robot, std::string who) {
+    robots[robot].order = ++orders;
+    robots[robot].by = std::move(who);
+    robots[robot].progress = Progress::heard;
+    robots[robot].located = false;
+  }
+  void stands(unsigned robot, Progress progress, std::int16_t x_cm, std::int16_t y_cm) {
+    robots[robot].progress = progress;
+    robots[robot].located = true;
+    robots[robot].update->x = x_cm;
+    robots[robot].update->y = y_cm;
+  }
+
+  RobotNow robots[2];
+  std::vector<std::pair<unsigned, SetPoint>> said;
+  std::vector<std::pair<unsigned, bool>> pauses;
+  std::string refuses;
+  std::uint64_t orders = 0;
+  std::uint64_t ours[2] = {0, 0};
+
+ private:
+  std::vector<mapper::server::Peer> peers_;
+  std::string path_ = "line";
+};
+
+struct Desk {
+  Line line;
+  std::vector<std::string> told;
+  base::Time now{1h};
+  Errands errands{[this](cli::serve::ViewerId, Level, const std::string& words) { told.push_back(words); },
+                  [this](unsigned index) { return line.robot(index); }};
+
+  void take(Kind kind, std::string robot = "one", motion::Point place = {}, bool explores = false,
+            cli::serve::ViewerId viewer = 7) {
+    errands.take(line, viewer, {kind, std::move(robot), place}, explores, now);
+  }
+  void step(base::Duration time = 50ms) {
+    now += time;
+    errands.step(line, now);
+  }
+  bool says(std::string_view words) const {
+    return !told.empty() && told.back().find(words) != std::string::npos;
+  }
+};
+
+TEST_CASE(
+    "errands: a robot that stands is sent straight to a place in the map, and it is said when it is there") {
+  Desk desk;
+  desk.line.robots[0].origin = {1, 0, 0};
+  desk.take(Kind::go, "one", {1, 0.5F});
+  REQUIRE(desk.line.said.size() == 1);
+  CHECK(desk.line.said[0] == std::pair{0U, SetPoint{90, 50}});
+  CHECK(desk.errands.target(0) == motion::Point{1, 0.5F});
+  CHECK_FALSE(desk.errands.target(1));
+  desk.step();
+  CHECK(desk.told.empty());
+  desk.line.stands(0, Progress::reached, 0, 50);
+  desk.step();
+  desk.step();
+  CHECK(desk.says("one is there"));
+  CHECK_FALSE(desk.errands.busy());
+  CHECK(desk.line.said.size() == 1);
+}
+
+TEST_CASE("errands: a long way goes in pieces") {
+  Desk desk;
+  desk.take(Kind::go, "one", {5, 0});
+  CHECK(desk.line.said.back().second == SetPoint{0, 300});
+  desk.line.stands(0, Progress::reached, 300, 0);
+  desk.step();
+  desk.step();
+  REQUIRE(desk.line.said.size() == 2);
+  CHECK(desk.line.said.back().second == SetPoint{0, 200});
+  desk.line.stands(0, Progress::reached, 500, 0);
+  desk.step();
+  desk.step();
+  CHECK(desk.says("is there"));
+}
+
+TEST_CASE("errands: a robot that drives is stopped first, and sent from where it stands") {
+  Desk desk;
+  desk.take(Kind::go, "one", {1, 0});
+  desk.take(Kind::go, "one", {0, 1});  // another place, on the way
+  REQUIRE(desk.line.said.size() == 2);
+  CHECK(desk.line.said[1].second == SetPoint{});
+  desk.step();
+  CHECK(desk.line.said.size() == 2);
+  desk.line.stands(0, Progress::stopped, 50, 0);
+  desk.step();
+  REQUIRE(desk.line.said.size() == 3);
+  CHECK(desk.line.said[2].second == SetPoint{117, 111});
+  // One that shows nothing of the stop is not sent.
+  desk.take(Kind::go, "one", {0, 0});
+  desk.step(21s);
+  CHECK(desk.says("nothing shows that one stands"));
+  CHECK(desk.line.said.size() == 4);
+}
+
+TEST_CASE("errands: what another program drives is not taken from it, and what explores is") {
+  Desk desk;
+  desk.line.by_other(0, "goto (process 12)");
+  desk.take(Kind::go, "one", {1, 0});
+  CHECK(desk.says("one is driven by goto (process 12); stop it first"));
+  CHECK(desk.line.said.empty());
+  desk.take(Kind::stop);
+  CHECK(desk.line.said.back().second == SetPoint{});
+  desk.line.stands(0, Progress::stopped, 0, 0);
+
+  desk.line.by_other(1, "");
+  desk.take(Kind::go, "two", {1, 0}, true);
+  CHECK(desk.line.said.back() == std::pair{1U, SetPoint{}});
+  desk.line.robots[1].held = true;
+  desk.line.by_other(1, "goto (process 13)");
+  desk.take(Kind::go, "two", {1, 0}, true);
+  CHECK(desk.says("goto (process 13)"));
+}
+
+TEST_CASE("errands: how a drive may end otherwise") {
+  Desk desk;
+  desk.take(Kind::go, "one", {1, 0});
+  desk.line.stands(0, Progress::ended, 20, 0);
+  desk.line.robots[0].blocked = true;
+  desk.step();
+  CHECK(desk.says("one stopped 80 cm away from there: is something in front of it?"));
+  desk.take(Kind::go, "one", {1, 0});
+  desk.line.by_other(0, "goto (process 12)");
+  desk.step();
+  CHECK(desk.says("stopped or sent by goto (process 12)"));
+  desk.line.stands(0, Progress::stopped, 20, 0);
+  desk.take(Kind::go, "one", {1, 0});
+  desk.line.robots[0].lost = true;
+  desk.step();
+  CHECK(desk.says("one is lost"));
+  CHECK_FALSE(desk.errands.busy());
+  desk.take(Kind::go, "one", {1, 0});
+  CHECK(desk.says("has no link, or says nothing"));
+  desk.line.robots[0].lost = false;
+  desk.line.stands(0, Progress::stopped, 20, 0);
+  desk.line.refuses = "the line is full";
+  desk.take(Kind::go, "one", {1, 0});
+  CHECK(desk.says("the line is full; wait"));
+}
+
+TEST_CASE("errands: who is meant, and where it is") {
+  Desk desk;
+  desk.take(Kind::stop, "three");
+  CHECK(desk.says("no robot 'three'; it has one, two"));
+  desk.take(Kind::stop, "1");
+  CHECK(desk.line.said.back().first == 1);
+  desk.take(Kind::stop, "C0");
+  CHECK(desk.line.said.back().first == 0);
+  desk.line.stands(0, Progress::stopped, 0, 0);
+  desk.line.robots[0].origin_known = false;
+  desk.take(Kind::go, "one", {1, 0});
+  CHECK(desk.says("--start one=X,Y,DEG"));
+  desk.line.robots[0].update.reset();
+  desk.take(Kind::call_back);
+  CHECK(desk.says("does not say where it is"));
+}
+
+TEST_CASE("errands: called back it goes to where it was switched on, known or not") {
+  Desk desk;
+  desk.line.robots[0].origin_known = false;
+  desk.line.stands(0, Progress::stopped, 40, 0);
+  desk.take(Kind::call_back);
+  CHECK(desk.line.said.back().second == SetPoint{180, 40});
+}
+
+TEST_CASE("errands: a viewer that goes away stops what it has sent, and nothing else") {
+  Desk desk;
+  desk.take(Kind::go, "one", {1, 0});
+  desk.take(Kind::go, "two", {1, 0}, false, 8);
+  desk.errands.gone(desk.line, 7);
+  CHECK(desk.line.said.size() == 3);
+  CHECK(desk.line.said.back() == std::pair{0U, SetPoint{}});
+  CHECK(desk.errands.target(1));
+  // Another program has it by now.
+  desk.line.by_other(1, "goto (process 12)");
+  desk.errands.gone(desk.line, 8);
+  CHECK(desk.line.said.size() == 3);
+  // One that paused it on its way is still who has sent it.
+  desk.line.stands(0, Progress::stopped, 0, 0);
+  desk.take(Kind::go, "one", {1, 0});
+  desk.take(Kind::pause);
+  desk.errands.gone(desk.line, 7);
+  CHECK(desk.line.said.back() == std::pair{0U, SetPoint{}});
+}
+
+TEST_CASE("errands: a pause is said until it shows") {
+  Desk desk;
+  desk.take(Kind::pause);
+  desk.step();
+  desk.step();
+  CHECK(desk.line.pauses.size() == 1);
+  desk.step(500ms);
+  CHECK(desk.line.pauses.size() == 2);
+  for (int i = 0; i < 40 && desk.told.empty(); ++i) {  // heard, but no updates
+    desk.line.robots[0].heard = desk.now;
+    desk.step(100ms);
+  }
+  CHECK(desk.says("one is paused"));
+  desk.take(Kind::go_on);
+  desk.step();
+  CHECK(desk.line.pauses.back() == std::pair{0U, false});
+  desk.line.robots[0].updated = desk.now;
+  desk.step();
+  CHECK(desk.says("one goes on"));
+  desk.take(Kind::pause);
+  desk.step(11s);
+  CHECK(desk.says("nothing shows that one is paused"));
+}
+
+}  // namespace serve_errands_test

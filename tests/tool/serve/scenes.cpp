@@ -1,0 +1,162 @@
+#include "cli/serve/scenes.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "ocm/topics/amiro.hpp"
+
+namespace serve_scenes_test {
+
+using namespace ocm;
+using namespace ocm::cli::serve;
+using namespace std::chrono_literals;
+using Json = nlohmann::json;
+
+/// A ring as the spec's, with round figures.
+spec::Model model_with_ring() {
+  spec::Model model;
+  spec::TopicModel ring;
+  ring.name = "proximity_ring";
+  ring.geometry = spec::RingGeometry{{5, -2}, {2, 0}, {-5, -1}, {1, 0}, {2, -1}};  // 0.05 2 -0.5 1 0.2
+  model.topics.push_back(ring);
+  return model;
+}
+
+const protocol::Topic& topic_of(protocol::Role role) {
+  for (const protocol::Topic& topic : amiro::catalogue.topics)
+    if (topic.role == role) return topic;
+  FAIL("the catalogue has no such role");
+  return amiro::catalogue.topics[0];
+}
+
+/// Takes samples, and keeps what is made of them, by topic.
+struct Shown {
+  explicit Shown(std::vector<std::string> interfaces = {"can0"})
+      : scenes(amiro::catalogue, model, interfaces, first) {}
+
+  void take(const protocol::Topic& topic, const std::vector<std::uint8_t>& bytes, std::size_t interface = 0) {
+    const client::Sample sample{&topic, protocol::default_priority, base::Time{1'700'000'000s + 5ns}, bytes};
+    scenes.take(
+        sample, interface, [this](std::uint32_t) { return wanted; },
+        [this](const Scenes::Message& message) {
+          const auto& channel = scenes.channels().at(message.channel - first);
+          CHECK(channel.id == message.channel);
+          newest[channel.topic] = Json::parse(message.payload);
+        });
+  }
+
+  static constexpr std::uint32_t first = 40;
+  spec::Model model = model_with_ring();
+  Scenes scenes;
+  bool wanted = true;
+  std::map<std::string, Json> newest;
+};
+
+/// Of a ring: each sensor's counts, in frames of eight bytes.
+std::vector<std::uint8_t> counts(const std::vector<unsigned>& each) {
+  std::vector<std::uint8_t> bytes(8 * each.size());
+  for (std::size_t i = 0; i < each.size(); ++i) {
+    bytes[8 * i] = static_cast<std::uint8_t>(each[i]);
+    bytes[8 * i + 1] = static_cast<std::uint8_t>(each[i] >> 8);
+  }
+  return bytes;
+}
+
+TEST_CASE("serve: a pose is one of Foxglove's, and a transform of the robot's frame") {
+  Shown shown;
+  // x 1000 and y -1000 times 0.256 mm, and a quarter turn: 6136 times 0.256 mrad.
+  std::vector<std::uint8_t> bytes(16);
+  const std::vector<std::uint8_t> pose{0xE8, 0x03, 0x00, 0x18, 0xFC, 0xFF, 0xF8, 0x17};
+  std::copy(pose.begin(), pose.end(), bytes.begin() + 8);
+  shown.take(topic_of(protocol::Role::pose), bytes);
+  REQUIRE(shown.newest.contains("/odometry/pose"));
+  const Json& in_frame = shown.newest["/odometry/pose"];
+  CHECK(in_frame["timestamp"] == Json{{"sec", 1'700'000'000}, {"nsec", 5}});
+  CHECK(in_frame["frame_id"] == "odom");
+  CHECK(in_frame["pose"]["position"]["x"].get<double>() == Approx(0.256));
+  CHECK(in_frame["pose"]["position"]["y"].get<double>() == Approx(-0.256));
+  CHECK(in_frame["pose"]["orientation"]["z"].get<double>() == Approx(std::sin(6136 * 0.000256 / 2)));
+  CHECK(in_frame["pose"]["orientation"]["w"].get<double>() == Approx(std::cos(6136 * 0.000256 / 2)));
+  const Json& transform = shown.newest["/odometry/transform"];
+  CHECK(transform["parent_frame_id"] == "odom");
+  CHECK(transform["child_frame_id"] == "base_link");
+  CHECK(transform["translation"] == in_frame["pose"]["position"]);
+  CHECK(transform["rotation"] == in_frame["pose"]["orientation"]);
+}
+
+TEST_CASE("serve: a ring is a scan around the robot's frame") {
+  Shown shown;
+  const protocol::Topic& ring = topic_of(protocol::Role::ring);
+  shown.take(ring, counts(std::vector<unsigned>(8, 2300)));  // nothing in sight: their offsets
+  std::vector<unsigned> seen(8, 2300);
+  seen[2] = 2300 + 100;  // by 1/d^2: 0.1 m
+  seen[3] = 2300 + 20;   // 0.224 m, beyond the range
+  seen[4] = 2200;        // below the offset
+  shown.take(ring, counts(seen));
+  const Json& scan = shown.newest["/proximity_ring/scan"];
+  CHECK(scan["frame_id"] == "base_link");
+  CHECK(scan["start_angle"].get<double>() == Approx(2));
+  CHECK(scan["end_angle"].get<double>() == Approx(2 - 7 * 0.5));
+  REQUIRE(scan["ranges"].size() == 8);
+  for (std::size_t i = 0; i < 8; ++i)
+    CHECK(scan["ranges"][i].get<double>() ==
+          Approx(i == 2 ? 0.15 : 0).margin(1e-4));  // from the robot's middle
+  CHECK(scan["intensities"][2].get<double>() == Approx(100));
+  CHECK(scan["intensities"][4].get<double>() == Approx(0));
+}
+
+TEST_CASE("serve: offsets are the least of averages, are learnt unseen, and are forgotten with the log") {
+  Shown shown;
+  const protocol::Topic& ring = topic_of(protocol::Role::ring);
+  shown.wanted = false;
+  for (int i = 0; i < 8; ++i) shown.take(ring, counts(std::vector<unsigned>(8, 2300)));
+  CHECK(shown.newest.empty());
+  shown.wanted = true;
+  const auto range = [&](unsigned all) {
+    shown.take(ring, counts(std::vector<unsigned>(8, all)));
+    return shown.newest["/proximity_ring/scan"]["ranges"][0].get<double>();
+  };
+  CHECK(range(2300 + 100) == Approx(0.15).margin(1e-4));
+  CHECK(range(2200) == 0);                                       // noise of one sample moves no offset far:
+  CHECK(range(2300 + 100) == Approx(0.05 + 0.1).margin(0.012));  // of eight it is an eighth
+  shown.scenes.forget();
+  CHECK(range(2300 + 100) == 0);  // of a log from its beginning
+}
+
+TEST_CASE("serve: what has no role, and interfaces") {
+  Shown shown{{"can0", "can1"}};
+  std::vector<std::string> names;
+  for (const auto& channel : shown.scenes.channels()) names.push_back(channel.topic);
+  CHECK(names == std::vector<std::string>{"/can0/odometry/pose", "/can0/odometry/transform",
+                                          "/can0/proximity_ring/scan", "/can1/odometry/pose",
+                                          "/can1/odometry/transform", "/can1/proximity_ring/scan"});
+  shown.take(topic_of(protocol::Role::pose), std::vector<std::uint8_t>(16), 1);
+  CHECK(shown.newest["/can1/odometry/transform"]["child_frame_id"] == "can1/base_link");
+  CHECK_FALSE(shown.newest.contains("/can0/odometry/transform"));
+  shown.take(topic_of(protocol::Role::pose), std::vector<std::uint8_t>(16), 2);  // that has no channels
+  shown.take(*amiro::catalogue.find("gyroscope"), std::vector<std::uint8_t>(8));
+  CHECK(shown.newest.size() == 2);
+  // Without a geometry nothing is known of a ring.
+  const Scenes plain{amiro::catalogue, {}, std::vector<std::string>{"x"}, 0};
+  CHECK(plain.channels().size() == 2);
+}
+
+TEST_CASE("serve: the law of a ring") {
+  const spec::RingGeometry geometry = *model_with_ring().topics[0].geometry;
+  CHECK(*distance_m(100, geometry) == Approx(0.1));
+  CHECK(*distance_m(25, geometry) == Approx(0.2));
+  CHECK_FALSE(distance_m(24, geometry));
+  CHECK_FALSE(distance_m(0, geometry));
+  CHECK_FALSE(distance_m(-5, geometry));
+}
+
+}  // namespace serve_scenes_test

@@ -1,0 +1,175 @@
+#include "cli/simulate/room_view.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <string_view>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/base/utf8.hpp"
+
+#include "sim/amiro/world.hpp"
+
+namespace simulate_room_view_test {
+
+using namespace ocm;
+using namespace ocm::cli;
+using namespace ocm::cli::simulate;
+using namespace std::chrono_literals;
+
+std::string text_of(const top::Picture& picture) {
+  std::string text;
+  for (const top::Line& line : picture) {
+    std::string whole;
+    for (const top::Piece& piece : line) whole += piece.text;
+    whole.erase(whole.find_last_not_of(' ') + 1);
+    text += whole + '\n';
+  }
+  return text;
+}
+
+/// A picture is as it was when it was last looked at: with OCM_WRITE_GOLDEN=1 the files are written again, to
+/// be read in review.
+void is_as_in(const std::string& name, const std::string& text) {
+  const std::string path = std::string{OCM_SOURCE_DIR} + "/tests/tool/simulate/golden/" + name;
+  if (std::getenv("OCM_WRITE_GOLDEN") != nullptr) std::ofstream{path} << text;
+  std::stringstream expected;
+  expected << std::ifstream{path}.rdbuf();
+  INFO(path);
+  CHECK(text == expected.str());
+}
+
+/// Has driven an arc of the line, with its lights on.
+sim::SeenWorld driven(Trails& trails) {
+  sim::World world;
+  world.set_wheels({0.2, 0.2});
+  for (std::size_t i = 0; i < 4; ++i) world.set_light(i, {0, 200, 20});
+  world.set_light(6, {255, 255, 0});
+  for (base::Time now{}; now <= base::Time{4s}; now += 100ms) {
+    if (now == base::Time{2s}) world.set_wheels({0.14, 0.2});
+    world.advance_to(now);
+    trails.take(sim::seen(world, "AMiRo"));
+  }
+  return sim::seen(world, "AMiRo");
+}
+
+sim::SeenWorld two_mappers() {
+  sim::SeenWorld world{"hall", base::Time{90s}};
+  const sim::Vector corners[] = {{0, 0}, {2, 0}, {2, 1}, {0, 1}};
+  for (int i = 0; i < 4; ++i) world.walls.push_back({corners[i], corners[(i + 1) % 4]});
+  sim::SeenRobot first{"AVR", {0.5, 0.5, 0}, {0.49, 0.5}, 0.1, {0.069, 0.069}};
+  first.beams = {{{0.6, 0.5}, {1.4, 0.5}, false}, {{0.5, 0.6}, {0.5, 1.0}, true}};
+  first.lights = {{0, 255, 0}, {}};
+  sim::SeenRobot second{
+      "a_robot_with_a_long_name", {1.5, 0.5, 3 * sim::pi / 4}, {1.5, 0.5}, 0.1, {-0.05, 0.05}};
+  second.touching = true;
+  world.robots = {first, second};
+  return world;
+}
+
+TEST_CASE("room view: the AMiRo in its room, as it was looked at") {
+  Trails trails;
+  const sim::SeenWorld world = driven(trails);
+  const RoomScene scene{.bus = "sim"};
+  is_as_in("amiro_80x24.txt", text_of(draw_room(world, trails, scene, {80, 24}, true)));
+  is_as_in("amiro_80x24_ascii.txt", text_of(draw_room(world, trails, scene, {80, 24}, false)));
+  is_as_in("amiro_120x40.txt", text_of(draw_room(world, trails, scene, {120, 40}, true)));
+  is_as_in("amiro_40x20.txt", text_of(draw_room(world, trails, scene, {40, 20}, true)));
+}
+
+TEST_CASE("room view: mappers in theirs, each with its number") {
+  const sim::SeenWorld world = two_mappers();
+  is_as_in("mappers_80x24.txt", text_of(draw_room(world, {}, {.speed = 10, .chosen = 0}, {80, 24}, true)));
+  is_as_in("mappers_80x24_ascii.txt",
+           text_of(draw_room(world, {}, {.speed = 10, .chosen = 1}, {80, 24}, false)));
+}
+
+TEST_CASE("room view: fits any terminal, and says where the robot is on all that have a line for it") {
+  Trails trails;
+  const sim::SeenWorld amiro = driven(trails);
+  const sim::SeenWorld mappers = two_mappers();
+  for (const sim::SeenWorld* const world : {&amiro, &mappers})
+    for (const bool unicode : {false, true})
+      for (std::size_t columns = 1; columns < 210; columns += 7)
+        for (std::size_t rows = 1; rows < 60; rows += 3) {
+          const auto picture = draw_room(*world, trails, {}, {columns, rows}, unicode);
+          REQUIRE(picture.size() == rows);
+          for (const top::Line& line : picture) {
+            std::size_t used = 0;
+            for (const top::Piece& piece : line) used += base::columns(piece.text);
+            REQUIRE(used <= columns);
+          }
+          if (columns >= 40 && rows >= 8) CHECK(text_of(picture).find("x ") != std::string::npos);
+        }
+}
+
+TEST_CASE("room view: what changes is seen") {
+  Trails trails;
+  sim::SeenWorld world = two_mappers();
+  const auto drawn = [&](const RoomScene& scene = {}) {
+    return text_of(draw_room(world, trails, scene, {80, 24}, true));
+  };
+  const std::string before = drawn();
+  CHECK(before.find("→1") != std::string::npos);
+  CHECK(before.find("↖2") != std::string::npos);
+  CHECK(before.find("1 AVR  of 2") != std::string::npos);
+  CHECK(before.find("-  0.40") != std::string::npos);  // beams in metres: nothing there, and a wall
+  CHECK(before.find("g .") != std::string::npos);      // lights
+  CHECK(drawn({.beams = false}) != before);
+  CHECK(drawn({.chosen = 1}).find("touches something") != std::string::npos);
+  CHECK(drawn({.chosen = 7}).find("2 a_robot_with_a_long_na") != std::string::npos);
+  CHECK(drawn({.speed = 10}).find("x10") != std::string::npos);
+  CHECK(drawn({.message = "the bus is down"}).find("the bus is down") != std::string::npos);
+  world.robots[0].pose.heading_rad = -sim::pi / 2;
+  CHECK(drawn().find("↓1") != std::string::npos);
+  CHECK(drawn().find("-90.0 deg") != std::string::npos);
+  // A trail is drawn where the robot was, and can be begun again.
+  trails.take(world);
+  for (int i = 0; i < 10; ++i) {
+    world.robots[0].centre.x += 0.05;
+    trails.take(world);
+  }
+  const std::string with_trail = drawn();
+  trails.forget();
+  CHECK(with_trail != drawn());
+}
+
+TEST_CASE("room view: trails have an end, and a robot at rest adds nothing to its own") {
+  Trails trails;
+  sim::SeenWorld world = two_mappers();
+  trails.take(world);
+  trails.take(world);
+  CHECK(trails.of("AVR").size() == 1);
+  CHECK(trails.of("no robot").empty());
+  for (std::size_t i = 0; i < Trails::most + 100; ++i) {
+    world.robots[0].centre.x += Trails::apart_m * 1.01;
+    trails.take(world);
+  }
+  CHECK(trails.of("AVR").size() == Trails::most);
+  CHECK(trails.of("AVR").back().x == Approx(world.robots[0].centre.x));
+  CHECK(trails.of("a_robot_with_a_long_name").size() == 1);
+}
+
+TEST_CASE("room view: figures that no world has do no harm") {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double endless = std::numeric_limits<double>::infinity();
+  for (const double odd : {nan, endless, -endless, 1e300}) {
+    sim::SeenWorld world = two_mappers();
+    world.robots[0].pose = {odd, odd, odd};
+    world.robots[0].centre = {odd, odd};
+    world.robots[0].beams[0].to = {odd, odd};
+    CHECK(draw_room(world, {}, {}, {80, 24}, true).size() == 24);
+  }
+  CHECK(draw_room({}, {}, {}, {80, 24}, true).size() == 24);
+  sim::SeenWorld open = two_mappers();  // without walls
+  open.walls.clear();
+  CHECK(text_of(draw_room(open, {}, {}, {80, 24}, true)).find("→1") != std::string::npos);
+}
+
+}  // namespace simulate_room_view_test

@@ -1,0 +1,373 @@
+"""amiroctl serve robots: mappers behind a central as viewers meet them, on a central that is played on a pseudo terminal."""
+
+import base64
+import json
+import math
+import os
+import re
+import signal
+import sys
+import time
+
+import websocket
+from harness import Case, main, sanitized, waiting
+from played_central import Central, Robot
+
+STARTS = ("--start", "AVR=0.4,0.5,0", "--start", "Arduino=0.8,0.5,90")
+
+
+class Robots(Case):
+    """Two robots in a room of 1.2 m x 1 m, at places that the options say."""
+
+    def setUp(self):
+        super().setUp()
+        self.avr = Robot("AVR", pose=(0.4, 0.5, 0.0))
+        self.arduino = Robot("Arduino", pose=(0.8, 0.5, math.pi / 2))
+        self.central = Central(self.folder, [self.avr, self.arduino], link="ocm/central")
+        self.addCleanup(self.central.close)
+
+    def serve(self, *arguments, words=("robots",), starts=STARTS):
+        server = self.start("serve", *words, "--port", "0", "--scan", "200ms", *starts, *arguments)
+        line = server.stdout.readline()
+        self.assertRegex(line, r"^http://127.0.0.1:\d+/(#[0-9a-f]{32})?\n$", server.poll())
+        address, _, token = line.strip().partition("#")
+        return server, int(re.search(r":(\d+)/", address)[1]), token
+
+    def viewer(self, port, token="", *topics):
+        viewer = websocket.Viewer(port, f"/?token={token}" if token else "/", timeout=30)
+        self.addCleanup(viewer.close)
+        if topics:
+            viewer.subscribe(*topics)
+        return viewer
+
+    def state(self, viewer, test, what, topic="/ocm/fleet"):
+        end = time.monotonic() + 60
+        while time.monotonic() < end:
+            message = viewer.message(topic)
+            self.assertIsNotNone(message, what)
+            if test(message.fields):
+                return message.fields
+        return self.fail(f"{what}: not within 60 s")
+
+    def robot(self, viewer, name, test, what):
+        def found(state):
+            return next((robot for robot in state["robots"] if robot["robot"] == name), None)
+
+        return found(self.state(viewer, lambda state: found(state) and test(found(state)), what))
+
+    def both(self, *arguments):
+        """A server that takes orders, and a viewer that gives them; both robots are there."""
+        server, port, token = self.serve("--allow-commands", *arguments)
+        viewer = self.viewer(port, token, "/ocm/fleet")
+        self.state(viewer, lambda s: len(s["robots"]) == 2 and all(robot["at"] for robot in s["robots"]), "two robots with places")
+        return server, port, token, viewer
+
+    def says(self, viewer, words):
+        while True:
+            status = viewer.text("status")
+            self.assertIsNotNone(status, words)
+            if words in status["message"]:
+                return status
+
+    @staticmethod
+    def cells(grid):
+        data = base64.b64decode(grid["data"])
+        return grid["column_count"], data
+
+    # --- what is seen ---
+
+    def test_robots_and_their_map(self):
+        self.avr.room = self.arduino.room = (0.0, 0.0, 2.4, 1.0)
+        _, port, token = self.serve()
+        self.assertEqual(token, "")
+        viewer = self.viewer(port, "", "/ocm/robot", "/ocm/fleet", "/ocm/map")
+        robot = viewer.message("/ocm/robot").fields
+        self.assertEqual((robot["topics"], robot["boards"], robot["live"]), ([], [], True))
+        avr = self.robot(viewer, "AVR", lambda r: r["at"], "a place")
+        self.assertEqual((avr["state"], avr["quality"], avr["linked"], avr["body"]["width_cm"]), ("idle", 1.0, True, 20))
+        self.assertAlmostEqual(avr["at"]["x_m"], 0.4, delta=0.02)
+        self.assertAlmostEqual(avr["at"]["y_m"], 0.5, delta=0.02)
+        arduino = self.robot(viewer, "Arduino", lambda r: r["at"], "a place")
+        self.assertAlmostEqual(arduino["at"]["x_m"], 0.8, delta=0.02)
+        self.assertAlmostEqual(arduino["at"]["heading_rad"], math.pi / 2, delta=0.03)
+        schema = viewer.channels["/ocm/map"]
+        self.assertEqual((schema["schemaName"], json.loads(schema["schema"])["title"]), ("foxglove.Grid", "foxglove.Grid"))
+
+        def walls(grid):
+            """Along the left wall something is occupied, and the robot stands on what is free."""
+            columns, cells = self.cells(grid)
+            side, left, low = grid["cell_size"]["x"], grid["pose"]["position"]["x"], grid["pose"]["position"]["y"]
+
+            def cell(x, y):
+                return cells[int((y - low) / side) * columns + int((x - left) / side)]
+
+            return cell(0.4, 0.5) == 1 and any(cell(x, 0.3 + y * side) == 2 for x in (-0.02, 0.02) for y in range(10))
+
+        first = self.state(viewer, walls, "the wall", "/ocm/map")
+        self.assertEqual(set(first), {"timestamp", "frame_id", "pose", "column_count", "cell_size", "row_stride", "cell_stride", "fields", "data"})
+        free = self.cells(first)[1].count(1)
+        self.run_tool("goto", "AVR", "0", "100")  # which sees more from there
+        grid = self.state(viewer, lambda grid: self.cells(grid)[1].count(1) > free + 100, "more of the map", "/ocm/map")
+        self.assertTrue(walls(grid))
+        # Who comes later has the newest at once.
+        late = self.viewer(port, "", "/ocm/map")
+        self.assertGreater(self.cells(late.message().fields)[1].count(1), 0)
+
+    def test_a_bad_link_is_seen(self):
+        self.avr.bad_beyond_cm = -1
+        _, port, _ = self.serve()
+        viewer = self.viewer(port, "", "/ocm/fleet")
+        robot = self.robot(viewer, "AVR", lambda r: r["call_back"], "the bad link")
+        self.assertEqual(robot["call_back"], "bad_link")
+        self.assertLess(robot["quality"], 0.7)
+
+    def test_where_robots_began_must_be_known(self):
+        _, port, token = self.serve("--allow-commands", starts=())
+        viewer = self.viewer(port, token, "/ocm/fleet")
+        state = self.state(viewer, lambda s: len(s["robots"]) == 2, "two robots")
+        self.assertEqual(state["unplaced"], ["AVR", "Arduino"])
+        self.assertIsNone(state["robots"][0]["at"])
+        self.robot(viewer, "AVR", lambda r: r["pose"], "its own place")
+        viewer.publish("/ocm/fleet", {"robot": "AVR", "x_m": 1, "y_m": 0})
+        self.says(viewer, "--start AVR=X,Y,DEG")
+
+    def test_one_robot_needs_no_start(self):
+        self.central.robots = [self.avr]
+        _, port, _ = self.serve(starts=())
+        viewer = self.viewer(port, "", "/ocm/fleet", "/ocm/map")
+        robot = self.robot(viewer, "AVR", lambda r: r["at"], "a place")
+        self.assertAlmostEqual(robot["at"]["x_m"], 0, delta=0.02)
+        self.state(viewer, lambda grid: 1 in self.cells(grid)[1], "a map", "/ocm/map")
+
+    # --- what is asked ---
+
+    def test_a_click_sends_a_robot(self):
+        _, _, _, viewer = self.both()
+        viewer.publish("/ocm/fleet", {"robot": "AVR", "x_m": 0.6, "y_m": 0.5})
+        robot = self.robot(viewer, "AVR", lambda r: r["target"], "its target")
+        self.assertEqual(robot["target"], {"x_m": 0.6000000238418579, "y_m": 0.5} if robot["target"]["x_m"] != 0.6 else {"x_m": 0.6, "y_m": 0.5})
+        self.says(viewer, "AVR is there")
+        robot = self.robot(viewer, "AVR", lambda r: r["target"] is None, "the end")
+        self.assertAlmostEqual(robot["at"]["x_m"], 0.6, delta=0.03)
+        self.assertIn("{U,0,20}", self.avr.heard)
+        self.assertFalse(any(line.startswith("{U,") for line in self.arduino.heard))
+        # By its index, in its own frame turned by 90 degrees.
+        viewer.publish("/ocm/fleet", {"robot": 1, "x_m": 0.8, "y_m": 0.6})
+        self.says(viewer, "Arduino is there")
+        self.assertIn("{U,0,10}", self.arduino.heard)
+
+    def test_another_place_on_the_way(self):
+        _, _, _, viewer = self.both()
+        self.avr.speed = 5
+        viewer.publish("/ocm/fleet", {"robot": "AVR", "x_m": 0.7, "y_m": 0.5})
+        waiting.until(lambda: "{U,0,29}" in self.avr.heard or "{U,0,30}" in self.avr.heard, "it drives")
+        viewer.publish("/ocm/fleet", {"robot": "AVR", "x_m": 0.7, "y_m": 0.6})
+        waiting.until(lambda: "{U,0,0}" in self.avr.heard, "it is stopped")
+        self.avr.busy_until = 0
+        self.says(viewer, "AVR is there")
+        self.assertAlmostEqual(self.avr.y, 0.6, delta=0.04)
+
+    def test_pause_go_on_call_back_stop(self):
+        _, _, _, viewer = self.both()
+        viewer.publish("/ocm/fleet", {"robot": "AVR", "order": "pause"})
+        self.says(viewer, "AVR is paused")
+        self.assertTrue(self.avr.paused)
+        self.robot(viewer, "AVR", lambda r: r["state"] == "paused", "the pause")
+        viewer.publish("/ocm/fleet", {"robot": "AVR", "order": "go_on"})
+        self.says(viewer, "AVR goes on")
+        self.assertFalse(self.avr.paused)
+        viewer.publish("/ocm/fleet", {"robot": "AVR", "x_m": 0.6, "y_m": 0.6})
+        self.says(viewer, "AVR is there")
+        viewer.publish("/ocm/fleet", {"robot": "AVR", "order": "call_back"})
+        self.says(viewer, "AVR is there")
+        self.assertAlmostEqual(self.avr.x, 0.4, delta=0.04)
+        self.assertAlmostEqual(self.avr.y, 0.5, delta=0.04)
+        self.avr.speed = 1
+        viewer.publish("/ocm/fleet", {"robot": "AVR", "x_m": 0.6, "y_m": 0.5})
+        waiting.until(lambda: self.avr.heard[-1] not in ("{U,0,0}",) and self.avr.busy_until > time.monotonic() + 2, "it drives")
+        viewer.publish("/ocm/fleet", {"robot": "AVR", "order": "stop"})
+        waiting.until(lambda: self.avr.heard[-1] == "{U,0,0}", "the stop")
+
+    def test_what_is_wrong_is_said(self):
+        _, port, token, viewer = self.both()
+        for order, words in (({"robot": "Missing", "order": "stop"}, "no robot 'Missing'; it has AVR, Arduino"), ({"robot": "AVR"}, "expected a robot with a place"),
+                             ({"robot": "AVR", "order": "fly"}, "unknown order 'fly'"), ({"robot": "AVR", "x_m": 5000, "y_m": 0}, "is no place")):
+            viewer.publish("/ocm/fleet", order)
+            self.says(viewer, words)
+        only_looks = self.viewer(port, "")
+        only_looks.publish("/ocm/fleet", {"robot": "AVR", "order": "stop"})
+        self.assertIn("may only look", only_looks.text("status")["message"])
+        viewer.publish("/motors", {"x": 1})
+        self.says(viewer, "there is no bus")
+
+    def test_a_page_that_goes_away_stops_what_it_sent(self):
+        _, port, token, viewer = self.both()
+        self.avr.speed = self.arduino.speed = 1
+        second = self.viewer(port, token)
+        viewer.publish("/ocm/fleet", {"robot": "AVR", "x_m": 0.7, "y_m": 0.5})
+        second.publish("/ocm/fleet", {"robot": "Arduino", "x_m": 0.8, "y_m": 0.7})
+        for robot in (self.avr, self.arduino):
+            waiting.until(lambda: any(line.startswith("{U,") for line in robot.heard), "they drive")
+        time.sleep(0.5)  # both have been heard by then
+        viewer.close()
+        waiting.until(lambda: self.avr.heard[-1] == "{U,0,0}", "its robot is stopped")
+        self.assertNotIn("{U,0,0}", self.arduino.heard)
+
+    def test_the_end_of_the_server_stops_them(self):
+        server, _, _, viewer = self.both()
+        self.avr.speed = 1
+        viewer.publish("/ocm/fleet", {"robot": "AVR", "x_m": 0.7, "y_m": 0.5})
+        waiting.until(lambda: any(line.startswith("{U,") for line in self.avr.heard), "it drives")
+        time.sleep(0.5)
+        self.interrupt(server)
+        self.assertEqual(server.returncode, 130)
+        self.assertEqual(self.avr.heard[-1], "{U,0,0}")
+
+    def test_a_robot_with_a_bad_link_is_called_back(self):
+        _, _, _, viewer = self.both("--call-back")
+        self.avr.room = (-2.0, -2.0, 4.0, 4.0)
+        self.avr.bad_beyond_cm, self.avr.speed = 20, 5
+        viewer.publish("/ocm/fleet", {"robot": "AVR", "x_m": 0.9, "y_m": 0.5})
+        self.says(viewer, "; it is called back")
+        waiting.until(lambda: abs(self.avr.x - 0.4) < 0.06, "it is sent back")
+        self.says(viewer, "the link to AVR is well again")
+
+    # --- many viewers ---
+
+    @staticmethod
+    def used(process):
+        """Seconds of CPU time, and memory in KiB."""
+        with open(f"/proc/{process.pid}/stat", encoding="ascii") as file:
+            fields = file.read().rsplit(")", 1)[1].split()
+        with open(f"/proc/{process.pid}/status", encoding="ascii") as file:
+            memory = int(re.search(r"VmRSS:\s+(\d+) kB", file.read())[1])
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK"), memory
+
+    def test_it_takes_little(self):
+        """Two robots with twenty updates a second each, and a viewer of all that the page asks for."""
+        server, port, _ = self.serve()
+        viewer = self.viewer(port)
+        viewer.subscribe(*viewer.channels)
+        self.state(viewer, lambda s: len(s["robots"]) == 2 and all(robot["at"] for robot in s["robots"]), "two robots with places")
+        (before, _), begin = self.used(server), time.monotonic()
+        for _ in range(25):
+            viewer.message("/ocm/fleet")
+        share = (self.used(server)[0] - before) / (time.monotonic() - begin)
+        print(f"serve of two robots: {share * 100:.1f} % of a core", file=sys.stderr)
+        if not sanitized():
+            self.assertLess(share, 0.04)
+
+    def test_a_hundred_viewers(self):
+        server, port, _ = self.serve()
+        viewers = [self.viewer(port, "", "/ocm/fleet", "/ocm/map") for _ in range(100)]
+        self.state(viewers[0], lambda s: len(s["robots"]) == 2 and all(robot["at"] for robot in s["robots"]), "two robots with places")
+        before, memory = self.used(server)
+        begin = time.monotonic()
+        for _ in range(25):
+            for viewer in viewers:
+                self.assertIn(len(viewer.message("/ocm/fleet").fields["robots"]), (0, 2))  # none before they are linked
+        used, now = self.used(server)
+        print(f"serve of two robots to a hundred viewers: {(used - before) / (time.monotonic() - begin) * 100:.1f} % of a core", file=sys.stderr)
+        self.assertEqual([viewer.statuses for viewer in viewers if any(s.get("id") == "loss" for s in viewer.statuses)], [])
+        if not sanitized():
+            self.assertLess(now - memory, 20_000)
+
+    # --- beside other programs ---
+
+    def test_others_join_it(self):
+        _, _, _, viewer = self.both()
+        out, err = self.run_tool("goto", "AVR", "0", "20")
+        self.assertEqual((out, err), ("AVR: x 20 cm, y 0 cm, heading 0 deg\n", ""))
+        robot = self.robot(viewer, "AVR", lambda r: r["at"]["x_m"] > 0.55, "its new place")
+        self.assertIn("goto (process", robot["by"])
+        # Its drives are not taken from it, and a stop is.
+        self.avr.speed = 1
+        tool = self.start("goto", "AVR", "180", "15")
+        waiting.until(lambda: "{U,180,15}" in self.avr.heard, "it drives")
+        viewer.publish("/ocm/fleet", {"robot": "AVR", "x_m": 0.4, "y_m": 0.5})
+        self.says(viewer, "AVR is driven by goto (process")
+        viewer.publish("/ocm/fleet", {"robot": "AVR", "order": "stop"})
+        tool.communicate(timeout=60)
+        self.assertEqual(tool.returncode, 1)
+
+    def test_beside_a_map(self):
+        """It shows the map of the program that explores, and a robot that is sent by hand is held until it goes on."""
+        picture = os.path.join(self.folder, "room.svg")
+        mapper = self.start("map", picture, "--scan", "200ms", "--start", "AVR=0.4,0.5,0", "--start", "Arduino=0.8,0.5,90")
+        waiting.until(lambda: any(line.startswith("{U,") for line in self.avr.heard), "the map sends a robot")
+        _, port, token = self.serve("--allow-commands", starts=())
+        viewer = self.viewer(port, token, "/ocm/fleet", "/ocm/map")
+        state = self.state(viewer, lambda s: s["map_by"] and all(r["at"] for r in s["robots"]), "the map's robots, which it has placed")
+        self.assertRegex(state["map_by"], r"map \(process \d+\)")
+        self.assertFalse(state["own"])
+        self.state(viewer, lambda grid: 1 in self.cells(grid)[1] and 2 in self.cells(grid)[1], "the map", "/ocm/map")
+        viewer.publish("/ocm/fleet", {"robot": "AVR", "x_m": 0.6, "y_m": 0.5})
+        self.robot(viewer, "AVR", lambda r: r["state"] == "held", "that it is held")
+        viewer.publish("/ocm/fleet", {"robot": "AVR", "order": "go_on"})
+        self.robot(viewer, "AVR", lambda r: r["state"] != "held", "that it goes on")
+        # The end of the map does not wait for who only looks on; then the server has the line.
+        begin = time.monotonic()
+        out, err = self.interrupt(mapper)
+        self.assertNotIn("it serves the central's line", err)
+        self.assertEqual(mapper.returncode, 130, out + err)
+        self.assertLess(time.monotonic() - begin, 40)
+        self.state(viewer, lambda s: s["own"] and len(s["robots"]) == 2, "that it has the line")
+
+    def test_an_owner_that_is_killed(self):
+        owner = self.start("central", "--own", "--scan", "200ms")
+        waiting.until(lambda: self.avr.confirmed and self.arduino.confirmed, "its robots")
+        server, port, token = self.serve("--allow-commands")
+        viewer = self.viewer(port, token, "/ocm/fleet")
+        state = self.state(viewer, lambda s: len(s["robots"]) == 2, "its robots")
+        self.assertEqual((state["own"], state["gone"]), (False, ""))
+        self.assertRegex(state["line"], r"central \(process \d+\)")
+        owner.send_signal(signal.SIGKILL)
+        owner.wait()
+        self.assertIn("waiting for it", self.state(viewer, lambda s: s["gone"], "that it is gone")["gone"])
+        state = self.state(viewer, lambda s: s["own"] and len(s["robots"]) == 2, "that it has the line itself")
+        self.assertEqual(state["gone"], "")
+        viewer.publish("/ocm/fleet", {"robot": "AVR", "x_m": 0.6, "y_m": 0.5})
+        self.says(viewer, "AVR is there")
+
+    def test_the_central_goes_and_comes_back(self):
+        _, port, _, viewer = self.both()
+        self.central.close()
+        os.unlink(self.central.path)
+        self.state(viewer, lambda s: s["gone"] and not s["robots"], "that it is gone")
+        self.avr.linked = self.avr.confirmed = self.arduino.linked = self.arduino.confirmed = False
+        self.central = Central(self.folder, [self.avr, self.arduino], link="ocm/central")
+        self.addCleanup(self.central.close)
+        self.state(viewer, lambda s: s["own"] and not s["gone"] and len(s["robots"]) == 2, "that it is back")
+
+    def test_a_map_with_its_page(self):
+        picture = os.path.join(self.folder, "room.svg")
+        mapper = self.start("map", picture, "--live", "--port", "0", "--allow-commands", "--scan", "200ms", *STARTS)
+        address, _, behind = mapper.stdout.readline().strip().partition("#")
+        token, shows = behind.split("&")
+        self.assertEqual(shows, "map")
+        viewer = self.viewer(int(re.search(r":(\d+)/", address)[1]), token, "/ocm/fleet", "/ocm/map")
+        state = self.state(viewer, lambda s: s["map_by"] and len(s["robots"]) == 2, "its robots")
+        self.assertIn(f"map (process {mapper.pid})", state["map_by"])
+        self.state(viewer, lambda grid: 1 in self.cells(grid)[1], "its map", "/ocm/map")
+        viewer.publish("/ocm/fleet", {"robot": "AVR", "order": "pause"})
+        self.robot(viewer, "AVR", lambda r: r["state"] in ("held", "paused"), "that it is held")
+        out, err = self.interrupt(mapper)
+        self.assertEqual(mapper.returncode, 130, out + err)
+        self.assertTrue(os.path.exists(picture))
+        self.assertNotIn("does not answer", err)
+
+    # --- wrong usage ---
+
+    def test_wrong_usage(self):
+        for arguments, words in ((("--start", "AVR=0,0,0"), "--start without robots"), (("--call-back",), "--call-back without robots"),
+                                 (("robots", "--start", "x"), "no start"), (("robots", "--open", "--allow-commands"), "would see the token")):
+            self.assertIn(words, self.run_tool("serve", *arguments, code=2)[1])
+        self.assertIn("add --live", self.run_tool("map", "a.svg", "--open", code=2)[1])
+        self.central.close()
+        os.unlink(self.central.path)
+        self.central = Central(self.folder, [], link="elsewhere")
+        self.assertIn("there is no central at", self.run_tool("serve", "robots", "--port", "0", code=1)[1])
+
+
+if __name__ == "__main__":
+    main()
