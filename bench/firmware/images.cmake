@@ -16,6 +16,12 @@ foreach(image "di_wheel_drive;qemu_m3_busy" "power_management;qemu_m4_busy")
       SOURCES ${repository}/bench/firmware/load_${board}.cpp qemu/machine.cpp qemu/give_up.cpp DEFINES OCM_LOAD_SPREAD_US=${spread})
   endforeach()
 endforeach()
+foreach(image "di_wheel_drive;qemu_m3_busy" "power_management;qemu_m4_busy")
+  list(GET image 0 board)
+  list(GET image 1 chip)
+  ocm_add_image(BOARD load_behaviour_${board} CHIP ${chip} MAIN_STACK 0x800
+    SOURCES ${repository}/bench/firmware/load_${board}.cpp qemu/machine.cpp qemu/give_up.cpp DEFINES OCM_LOAD_BEHAVIOUR OCM_LOAD_SPREAD_US=3000)
+endforeach()
 ocm_add_image(BOARD load_without_control_di_wheel_drive CHIP qemu_m3_busy MAIN_STACK 0x800
   SOURCES ${repository}/bench/firmware/load_di_wheel_drive.cpp qemu/machine.cpp qemu/give_up.cpp
   DEFINES OCM_LOAD_SPREAD_US=3000 OCM_LOAD_WITHOUT_CONTROL)

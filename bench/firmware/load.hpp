@@ -321,4 +321,80 @@ template <template <class, class, class> class Board, class Parts, std::size_t T
   runtime.run([](base::Time now) { board.maintain(now); });
 }
 
+/// How long one look at parts has taken at most: what a step of a behaviour waits for.
+struct Longest {
+  template <class Read>
+  auto of(Read read) noexcept {
+    const base::Time begin = port->now();
+    auto result = read();
+    time = std::max(time, port->now() - begin);
+    ++count;
+    return result;
+  }
+  chibios::Port* port = nullptr;  ///< set before the board runs
+  base::Duration time{};
+  std::uint32_t count = 0;
+};
+
+/// A board that does something by itself: `command`, repeated every 100 ms, for five seconds without
+/// requests; then under those of `measure`, at times that have nothing to do with its steps. Says how long
+/// its `look` at parts takes at most, alone and under load, how much processor a step takes, that look
+/// included, and how many there were in the five seconds.
+template <template <class, class, class> class Board, class Parts, std::size_t Topics>
+[[noreturn]] void measure_behaviour(const char* name, const std::array<Asked, Topics>& asked,
+                                    const can::Frame& command, Parts& parts, Longest& look) noexcept {
+  using Bus = LoadBus<Topics>;
+  static chibios::Port port;
+  static Bus bus{asked, port};
+  parts.start(port.now());
+  static Board<Parts, Bus, chibios::Port> board{parts, bus, port};
+  static chibios::Runtime runtime{port, board.controller(), bus};
+  static const char* title = name;
+  static const can::Frame* again = &command;
+  static Longest* looked = &look;
+  look.port = &port;
+  static THD_WORKING_AREA(area, 1024);
+  chThdCreateStatic(
+      area, sizeof area, HIGHPRIO,
+      [](void*) {
+        const auto busy = [](bool commanded) {
+          const base::Duration idle = port.idle();
+          const base::Time begin = port.now();
+          for (int tenth = 0; tenth < 50; ++tenth) {
+            if (commanded) {
+              const chibios::Lock lock;
+              bus.arrive(*again);
+            }
+            chThdSleepMilliseconds(100);
+          }
+          return port.now() - begin - (port.idle() - idle);
+        };
+        chThdSleepMilliseconds(1000);  // parts turn on, and are looked for
+        const base::Duration at_rest = busy(false);
+        static_cast<void>(busy(true));  // set points and motors settle
+        *looked = {.port = &port};
+        const base::Duration active = busy(true);
+        const Longest alone = *looked;
+        *looked = {.port = &port};
+        for (int round = 0; round < 200; ++round) {
+          for (std::size_t i = 0; i < Topics; ++i) {
+            bus.ask(i);
+            chThdSleep(3000);
+          }
+          {
+            const chibios::Lock lock;
+            bus.arrive(*again);
+          }
+          chThdSleep(73'013);
+        }
+        say(title), say(" behaviour_look_us "), say(alone.time / 1us), say(" loaded_us ");
+        say(looked->time / 1us), say(" steps "), say(static_cast<std::int64_t>(alone.count));
+        say(" busy_us "), say((active - at_rest) / 1us);
+        say("\n");
+        firmware::qemu::leave("", 0);
+      },
+      nullptr);
+  runtime.run([](base::Time now) { board.maintain(now); });
+}
+
 }  // namespace ocm::bench

@@ -34,8 +34,27 @@ int main() {
   fit(back);
   fit(front);
   static bench::LoadPins pins;
-  static power_management::Parts<bench::LoadI2c, bench::LoadI2c, bench::LoadPins,
-                                 ocm::firmware::chibios::Mutex>
-      parts{back, front, pins};
+  using Real =
+      power_management::Parts<bench::LoadI2c, bench::LoadI2c, bench::LoadPins, ocm::firmware::chibios::Mutex>;
+#ifdef OCM_LOAD_BEHAVIOUR
+  // Something is near on all sides, whatever the registers say: it takes as long to read.
+  static bench::Longest look;
+  struct Parts : Real {
+    using Real::Real;
+    ocm::base::Result<ocm::firmware::boards::RingCounts> ring() noexcept {
+      const auto counts = look.of([this] { return Real::ring(); });
+      if (!counts) return counts.error;
+      return ocm::firmware::boards::RingCounts{2400, 2410, 2420, 2430, 2440, 2450, 2460, 2470};
+    }
+    [[nodiscard]] std::uint16_t ring_offset(std::size_t /*sensor*/) const noexcept { return 2300; }
+  };
+  static Parts parts{back, front, pins};
+  amiro::Avoid avoid;
+  avoid.set_speed_m_per_s(0.1);
+  static const ocm::can::Frame command = ocm::protocol::command(avoid, Priority::medium);
+  bench::measure_behaviour<power_management::Board>("power_management", asked, command, parts, look);
+#else
+  static Real parts{back, front, pins};
   bench::measure<power_management::Board>("power_management", asked, parts);
+#endif
 }

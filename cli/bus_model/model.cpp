@@ -205,7 +205,7 @@ void Model::tick() {
     if (key.row < subjects_.size() && subjects_[key.row].count > 0) {
       const protocol::Topic& topic = catalogue_->topics[key.row];
       const protocol::FrameLayout& layout = topic.frames[key.frame];
-      const protocol::Field& field = layout.fields[key.field];
+      const protocol::Field& field = layout.values()[key.field];
       const auto data = sample_of(&topic, subjects_[key.row]).data(key.frame);
       if (layout.has(field, data)) value = field.value(field.raw(data));
     }

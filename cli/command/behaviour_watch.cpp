@@ -5,17 +5,13 @@
 #include <fmt/format.h>
 
 #include "ocm/base/decimal.hpp"
+#include "ocm/can/text.hpp"
 
 #include "cli/shared/messages.hpp"
+#include "cli/shared/set_points.hpp"
 
 namespace ocm::cli {
 namespace {
-
-const protocol::Field* field_of(const protocol::Topic& topic, std::string_view name) {
-  for (const auto& field : topic.frames[0].fields)
-    if (field.name == name) return &field;
-  return nullptr;
-}
 
 std::string name_of(const protocol::Field& field, std::int64_t raw) {
   for (const auto& value : field.values)
@@ -36,13 +32,9 @@ const protocol::Topic& behaviour_topic(const protocol::Catalogue& catalogue, con
 
 BehaviourWatch::BehaviourWatch(const protocol::Catalogue& catalogue, const std::string& verb,
                                std::string_view which)
-    : index_(catalogue), sensor_(catalogue.find("behaviour")) {
-  if (sensor_ != nullptr && sensor_->kind == protocol::Kind::sensor && sensor_->frames.size() == 1) {
-    active_field_ = field_of(*sensor_, "active");
-    ended_field_ = field_of(*sensor_, "ended");
-  }
-  if (active_field_ != nullptr && ended_field_ != nullptr)
-    for (const auto& value : active_field_->values)
+    : index_(catalogue), sensor_(catalogue), which_name_(which) {
+  if (sensor_.exists())
+    for (const auto& value : sensor_.active().values)
       if (value.name == which) which_ = value.raw;
   if (which_ == 0)
     fail({fmt::format("{}: robot '{}' does not say what becomes of {}", verb, catalogue.robot, which),
@@ -54,23 +46,33 @@ void BehaviourWatch::begin() {
   last_.reset();
   active_ = was_active_ = false;
   inactive_ = 0;
+  replaced_ = false;
+  commanded_.clear();
 }
 
 void BehaviourWatch::take(const can::Received& received) {
-  const auto subject = index_.subject(received.frame.id, received.frame.format);
-  if (subject.topic != sensor_ || !subject.frame || received.frame.dlc != subject.frame.layout().dlc())
-    return;
+  const auto* const behaviour = sensor_.commanded(index_, received.frame);
+  const auto* const command = behaviour != nullptr ? behaviour : commanded_motors(index_, received.frame);
+  if (command != nullptr) {
+    const bool rest = is_rest(received.frame);
+    // A rest of another behaviour ends nothing here.
+    if (commanded_.empty() && (behaviour == nullptr || !rest || behaviour->name == which_name_))
+      commanded_ = fmt::format("{} {}", command->name, can::to_text(received.frame).view());
+    replaced_ = replaced_ || (behaviour != nullptr && !rest);
+  }
+  // What it says after that is of the other one.
+  if (replaced_ || !sensor_.active_in(index_, received.frame)) return;
   last_ = Clock::now();
   const auto& data = received.frame.data;
-  const std::int64_t active = active_field_->raw(data);
-  const std::int64_t ended = ended_field_->raw(data);
+  const std::int64_t active = sensor_.active().raw(data);
+  const std::int64_t ended = sensor_.ended().raw(data);
   active_ = active == which_;
   was_active_ = was_active_ || active_;
   if (!was_active_) ++inactive_;
-  ended_ = active != 0 && !active_ ? name_of(*active_field_, active) : name_of(*ended_field_, ended);
+  ended_ = active != 0 && !active_ ? name_of(sensor_.active(), active) : name_of(sensor_.ended(), ended);
   left_.clear();
-  for (const auto& field : sensor_->frames[0].fields) {
-    if (&field == active_field_ || &field == ended_field_) continue;
+  for (const auto& field : sensor().frames[0].fields) {
+    if (&field == &sensor_.active() || &field == &sensor_.ended()) continue;
     const auto physical = field.physical(field.raw(data));
     if (physical)
       left_ += fmt::format("{}{} {}", left_.empty() ? "" : ", ", base::to_text(*physical).view(), field.unit);

@@ -12,6 +12,7 @@
 namespace ocm::cli {
 
 void OtherCommander::take(const can::Received& received, bool holding) {
+  if (const auto active = behaviour_.active_in(index_, received.frame)) active_ = active;
   const protocol::Topic* const motors = commanded_motors(index_, received.frame);
   if (motors == nullptr) return;
   const auto now = Clock::now();
@@ -30,11 +31,15 @@ void OtherCommander::take(const can::Received& received, bool holding) {
 bool OtherCommander::is_heard() {
   const auto now = Clock::now();
   while (!recent_.empty() && now - recent_.front() > client::listen_before_hold) recent_.pop_front();
-  return !recent_.empty();
+  return !recent_.empty() || is_a_board_active();
 }
 
 void OtherCommander::refuse_if_heard() {
   if (!is_heard()) return;
+  if (recent_.empty())
+    fail({fmt::format("{}: {} drives the wheels by itself, as another program has asked it to: {}", verb_,
+                      catalogue_->board_name(behaviour_.topic()), *active_),
+          "wait for its end, or `amiroctl behave none`; --force begins all the same, and ends it"});
   fail({fmt::format("{}: another program commands {}: {}, {} set point{} within {}", verb_, motors_->name,
                     can::to_text(last_).view(), recent_.size(), recent_.size() == 1 ? "" : "s",
                     words::to_text(client::listen_before_hold)),

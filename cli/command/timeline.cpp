@@ -12,6 +12,9 @@
 namespace ocm::cli {
 namespace {
 
+/// In which a board answers a request: a sample is sent some milliseconds after it.
+constexpr base::Duration time_to_answer = std::chrono::milliseconds{40};
+
 constexpr const char* ask_why = "`amiroctl operator why` says why it is there, and what leads from there";
 
 }  // namespace
@@ -32,7 +35,15 @@ Timeline::~Timeline() {
 }
 
 bool Timeline::listen_first(base::Duration duration) {
-  return others_ == Others::allowed || wait(Clock::now() + duration);
+  if (others_ == Others::allowed) return true;
+  const auto end = Clock::now() + duration;
+  if (!wait(std::max(Clock::now(), end - time_to_answer))) return false;
+  if (const auto* const sensor = other_.unheard_sensor(); sensor != nullptr && duration >= time_to_answer) {
+    // Of a bus that takes nothing the command itself will say so.
+    static_cast<void>(bus_->send(sensor->request()));
+    asked_ = true;
+  }
+  return wait(end);
 }
 
 void Timeline::expect_no_other() {
@@ -51,6 +62,7 @@ Guarded::Own Timeline::commanded_by_operator() {
 
 void Timeline::send(const can::Frame& frame) {
   const bool set_point = other_.is_set_point(frame);
+  other_.send(frame);
   if (set_point) outgoing_.otherwise_after_the_next(still_moving);
   outgoing_.looks_from(awake_);
   outgoing_.send(frame);

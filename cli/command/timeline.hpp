@@ -44,7 +44,16 @@ class Timeline {
 
   /// Waits as long as it takes to hear another program that commands the motors, where one is refused. False:
   /// a signal came first.
+  /// Where the sensor of what the boards do by themselves was not heard meanwhile, it is asked for one sample
+  /// before the end.
   [[nodiscard]] bool listen_first(base::Duration duration = client::listen_before_hold);
+  /// Whether listen_first has had to ask.
+  [[nodiscard]] bool has_asked() const { return asked_; }
+  /// What this program has commanded goes on without it: that it was stopped for a while makes nothing out of
+  /// date.
+  void forgive_a_stop() { stood_still_ = {}; }
+  /// What is sent next sets the robot in motion, although it is no set point of the motors.
+  void expect_motion() { outgoing_.otherwise_after_the_next(still_moving); }
   /// Leaves if another program that commands the motors was heard, where one is refused. Before a hold that
   /// may begin later; `carry_out` looks, too.
   void expect_no_other();
@@ -121,6 +130,7 @@ class Timeline {
   std::vector<Repeated> repeated_;          ///< one an identifier
   Clock::time_point awake_ = Clock::now();  ///< when this program looks at the clock next, at the latest
   Clock::duration stood_still_{};           ///< the longest time that it was later
+  bool asked_ = false;                      ///< for the sensor of behaviours
   bool moving_ = false;                     ///< a set point of motors was sent, and none of rest after it
   Live live_;
   Outgoing outgoing_;

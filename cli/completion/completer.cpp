@@ -192,7 +192,7 @@ class Completer {
   void conditions() {
     for (const auto& topic : session_.catalogue().topics)
       for (const auto& layout : topic.frames)
-        for (const auto& field : layout.fields)
+        for (const auto& field : layout.values())
           add(fmt::format("{}.{}{}{}", topic.name, layout.name, layout.name.empty() ? "" : ".", field.name),
               field.unit);
   }

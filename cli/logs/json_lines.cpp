@@ -1,6 +1,7 @@
 #include "cli/logs/json_lines.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 #include <fmt/format.h>
@@ -338,9 +339,36 @@ bool JsonLineParser::put_fields(log::Entry& entry, const Meaning& meaning) {
     for (std::size_t i = 0; i < record_.field_count; ++i)
       if (!put_field(data, layout, record_.fields[i], texts, i, Part::selectors)) return false;
   const Part rest = multiplexed ? Part::others : Part::all;
+  std::array<std::uint8_t, can::max_dlc> before{};  // only frames of topics have derived fields
+  std::copy_n(data.begin(), std::min(data.size(), before.size()), before.begin());
   for (std::size_t i = 0; i < record_.field_count; ++i)
     if (!put_field(data, layout, record_.fields[i], texts, i, rest)) return false;
+  for (std::size_t i = 0; i < record_.field_count; ++i)
+    if (const auto* const field = derived_field(layout, record_.fields[i].name))
+      if (!agrees(*field, layout, record_.fields[i].value.text, before, data)) return false;
   return true;
+}
+
+const protocol::Field* JsonLineParser::derived_field(const protocol::FrameLayout& layout,
+                                                     std::string_view name) noexcept {
+  for (const auto& field : layout.values().subspan(layout.fields.size()))
+    if (field.name == name) return &field;
+  return nullptr;
+}
+
+/// A derived field is what `before` says, and so was not edited, or what the frame says now.
+bool JsonLineParser::agrees(const protocol::Field& field, const protocol::FrameLayout& layout,
+                            std::string_view text, std::span<const std::uint8_t> before,
+                            std::span<const std::uint8_t> now) {
+  const auto number = base::parse_decimal(text);
+  for (const auto data : {record_.data ? before.first(now.size()) : now, now})
+    if (layout.has(field, data))
+      if (const auto value = field.physical(field.raw(data)); value && number && *value == *number)
+        return true;
+  const std::string of{layout.fields[field.derived_from].name};
+  return refuse(log::Cause::syntax,
+                shown(field.name) + " is not what " + of + " says, of which it is derived",
+                "edit " + of + ", and leave " + std::string{field.name} + " out");
 }
 
 /// `hint`: where the field is if the line has all of them, in their order.
@@ -349,6 +377,7 @@ bool JsonLineParser::put_field(std::span<std::uint8_t> data, const protocol::Fra
                                Part part) {
   std::size_t i = hint < fields.size() && fields[hint].field().name == named.name ? hint : 0;
   while (i < fields.size() && fields[i].field().name != named.name) ++i;
+  if (i == fields.size() && derived_field(layout, named.name) != nullptr) return true;  // looked at later
   if (i == fields.size()) {
     std::vector<std::string_view> names;
     for (const auto& field : fields) names.push_back(field.field().name);

@@ -91,6 +91,10 @@ class JsonLineParser {
   enum class Part : std::uint8_t { all, selectors, others };
   bool put_field(std::span<std::uint8_t> data, const protocol::FrameLayout& layout, const NamedText& named,
                  std::span<const FieldText> fields, std::size_t hint, Part part);
+  [[nodiscard]] static const protocol::Field* derived_field(const protocol::FrameLayout& layout,
+                                                            std::string_view name) noexcept;
+  bool agrees(const protocol::Field& field, const protocol::FrameLayout& layout, std::string_view text,
+              std::span<const std::uint8_t> before, std::span<const std::uint8_t> now);
   bool take_message(log::Entry& entry, Meaning& meaning, const protocol::Topic& message);
   bool put_request(log::Entry& entry, const protocol::Topic& topic);
   [[nodiscard]] Meaning meaning_of(const log::Entry& entry) const;

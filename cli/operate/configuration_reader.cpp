@@ -118,7 +118,10 @@ class ConfigurationReader : private ValueReader {
     check_keys(at, {"field", "magnitude", "from", "to", "at_from", "at_to", "grain", "every"});
     reflective::Adaptation adaptation;
     adaptation.stream = static_cast<std::uint16_t>(parts.streams.size());
-    if (const auto of = field(at, "field", "the field that the period follows")) {
+    const auto followed = field(at, "field", "the field that the period follows");
+    if (followed && followed->of->is_derived()) {
+      tell(at, "a period does not follow a derived field", measured(*followed) + ", of which it is derived");
+    } else if (const auto& of = followed) {
       adaptation.topic = of->topic;
       adaptation.frame = of->frame;
       adaptation.field = of->field;

@@ -147,6 +147,9 @@ class MonitorReader : private ValueReader {
     if (const auto width = object.node->is(Kind::object) ? object.member("hysteresis") : std::nullopt) {
       if (condition.is != Is::above && condition.is != Is::below)
         return tell(*width, "only < and > have a hysteresis", "leave it out");
+      if (of->of->is_derived())
+        return tell(*width, spec::quoted(*text) + " is on a derived field, which has no hysteresis",
+                    "a condition on " + measured(*of) + ", of which it is derived");
       condition.hysteresis = distance(*width, *of->of).value_or(0);
     }
     add(at, condition, *text, terms);

@@ -64,7 +64,10 @@ std::optional<FieldRef> ValueReader::field(const At& at, const std::string& text
   const ChosenField& chosen = fields[0];
   return FieldRef{static_cast<std::uint16_t>(chosen.topic - catalogue_.topics.data()),
                   static_cast<std::uint16_t>(chosen.layout - chosen.topic->frames.data()),
-                  static_cast<std::uint16_t>(chosen.field - chosen.layout->fields.data()), chosen.field};
+                  chosen.field->is_derived()
+                      ? chosen.field->derived_from
+                      : static_cast<std::uint16_t>(chosen.field - chosen.layout->values().data()),
+                  chosen.field};
 }
 
 std::optional<FieldRef> ValueReader::field(const At& object, std::string_view key, std::string_view remedy) {
@@ -72,6 +75,15 @@ std::optional<FieldRef> ValueReader::field(const At& object, std::string_view ke
   if (!at) return std::nullopt;
   const auto text = word(*at, remedy);
   return text ? field(*at, *text) : std::nullopt;
+}
+
+std::string ValueReader::measured(const FieldRef& of) const {
+  const auto& topic = catalogue_.topics[of.topic];
+  const auto& layout = topic.frames[of.frame];
+  std::string name{topic.name};
+  for (const std::string_view part : {layout.name, layout.fields[of.field].name})
+    if (!part.empty()) name.append(".").append(part);
+  return spec::quoted(name);
 }
 
 std::optional<std::int64_t> ValueReader::value(const At& at, const protocol::Field& of) {

@@ -53,6 +53,8 @@ class ValueReader : protected spec::Checker {
   [[nodiscard]] std::optional<FieldRef> field(const At& at, const std::string& text);
   [[nodiscard]] std::optional<FieldRef> field(const At& object, std::string_view key,
                                               std::string_view remedy);
+  /// The name of what a derived field is derived of, quoted.
+  [[nodiscard]] std::string measured(const FieldRef& of) const;
   [[nodiscard]] std::optional<std::int64_t> value(const At& at, const protocol::Field& of);
   /// How far apart two values are, in raw units, rounded up.
   [[nodiscard]] std::optional<std::int64_t> distance(const At& at, const protocol::Field& of);

@@ -106,7 +106,7 @@ class LongCsv final : public Output {
       for (std::size_t i = 0; i < topic.frames.size(); ++i) {
         const auto& layout = topic.frames[i];
         const std::string frame = layout.name.empty() ? std::string{} : std::string{layout.name} + '.';
-        for (const auto& field : layout.fields)
+        for (const auto& field : layout.values())
           lines_[{&topic, static_cast<std::uint8_t>(i)}].push_back(
               {FieldText{field}, ',' + cell(topic.name) + ',' + cell(frame + std::string{field.name}) + ',',
                ',' + cell(field.unit), layout.may_lack(field)});

@@ -117,6 +117,10 @@ char* FieldText::print_untabled(char* to, const std::uint8_t* data) const noexce
 
 char* FieldText::print_slowly(char* to, std::int64_t raw) const noexcept {
   const protocol::Field& field = *field_;
+  if (field.is_derived()) {  // a decimal, or where the law says nothing, what has no such
+    const auto value = field.physical(raw);
+    return value ? put_literal(to, base::to_text(*value).view()) : put_float(to, field.value(raw));
+  }
   if (shape_->whole_numbers() && (raw >= 0 || field.is_signed || field.position.width < 64))
     return shape_->print_raw(to, raw);
   const bool plain = field.scale == base::Decimal{1, 0} && field.offset.digits == 0;

@@ -164,6 +164,7 @@ class FieldText {
     if (!in_word_) return;
     left_ = static_cast<std::uint8_t>(swapped_ ? within : 64 - within - width);
     right_ = static_cast<std::uint8_t>(64 - width);
+    if (field.is_derived()) return;
     if (shape.tabled()) {
       way_ = Way::tabled;
       table_ = shape.table();

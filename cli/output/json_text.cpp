@@ -172,7 +172,7 @@ void JsonText::know(protocol::FrameRef frame, const Selection& selection) {
   std::string units = R"(,"units":{)";
   std::vector<std::string> with_units;
   std::size_t size = 0;
-  for (const auto& field : layout.fields) {
+  for (const auto& field : layout.values()) {
     if (!selection.has(layout, field)) continue;
     names.push_back(json_string(field.name) + ':');
     with_units.push_back(names.back() + json_string(field.unit));

@@ -235,12 +235,18 @@ class Pretty final : public Output {
     std::vector<Column> columns;
     for (std::size_t i = 0; i < topic.frames.size(); ++i) {
       const auto& layout = topic.frames[i];
-      for (const auto& field : layout.fields) {
+      for (const auto& field : layout.values()) {
         if (!selection.has(layout, field)) continue;
+        if (field.uncertainty && !columns.empty() && columns.back().value.field().law == field.law) {
+          // Beside its value: 0.0482 +-0.0003 m.
+          columns.push_back({FieldText{field}, i, " +-", std::move(columns.back().unit), false, 0, true});
+          columns[columns.size() - 2].unit.clear();
+          continue;
+        }
         std::string label{field.name};
-        if (topic.frames.size() > 1) {
+        if (topic.frames.size() > 1 && !(field.is_derived() && selection.everything())) {
           label = layout.name;
-          if (layout.fields.size() > 1) label.append(".").append(field.name);
+          if (layout.fields.size() > 1 || field.is_derived()) label.append(".").append(field.name);
         }
         std::string before = (columns.empty() ? "" : "  ") + painted(dim, label) + ' ';
         std::string unit = field.unit.empty() ? std::string{} : ' ' + std::string{field.unit};

@@ -26,7 +26,7 @@ std::string object_schema(std::string_view properties) {
 
 std::string fields_schema(const protocol::FrameLayout& frame) {
   std::string properties;
-  for (const protocol::Field& field : frame.fields) {
+  for (const protocol::Field& field : frame.values()) {
     const std::string about = description(field);
     properties +=
         fmt::format(R"({}{}:{{"type":"number"{}{}}})", properties.empty() ? "" : ",", json_string(field.name),
@@ -69,7 +69,7 @@ SampleText::SampleText(const protocol::Topic& topic) {
 
 SampleText::FrameText SampleText::text_of(const protocol::FrameLayout& frame, bool alone) {
   FrameText made{alone ? "" : json_string(frame.name) + ":{", {}, alone ? "" : "}", &frame};
-  for (const protocol::Field& field : frame.fields) {
+  for (const protocol::Field& field : frame.values()) {
     made.values.push_back({json_string(field.name) + ':', FieldText{field}});
     made.varies = made.varies || frame.may_lack(field);
   }

@@ -33,10 +33,12 @@ transport::Outcome<Selection> Selection::of(const protocol::Catalogue& catalogue
       if (!is_named && !words::is_in_group(topic, of_topic)) continue;
       topic_found = true;
       for (const auto& layout : topic.frames)
-        for (const auto& field : layout.fields) {
+        for (const auto& field : layout.values()) {
           const std::string name = name_within(layout, field);
           names.push_back(std::string{of_topic} + '.' + name);
-          if (point != std::string_view::npos && rest != name && rest != layout.name) continue;
+          // A topic or a frame is what is on the wire.
+          const bool whole = point == std::string_view::npos || rest == layout.name;
+          if (rest != name && (!whole || field.is_derived())) continue;
           found = true;
           if (!selection.fields_.empty() && selection.has(layout, field)) continue;
           selection.fields_.push_back({&topic, &layout, &field, std::string{topic.name} + '.' + name});

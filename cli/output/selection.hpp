@@ -1,4 +1,5 @@
-/// Which fields to show: `gyroscope.x`, `odometry.velocity.x`, `power` (all of it).
+/// Which fields to show: `gyroscope.x`, `odometry.velocity.x`, `power` (all of it). What is
+/// derived of a field is chosen by its own name only: `ring.sensor_4.distance`.
 #pragma once
 
 #include <span>

@@ -21,7 +21,7 @@ transport::Outcome<Chosen> choose(const protocol::Catalogue& catalogue, std::str
     words.emplace_back(word.substr(0, word.size() - 2));
   } else if (topic != nullptr && point != std::string_view::npos) {
     for (const auto& layout : topic->frames)
-      for (const auto& field : layout.fields)
+      for (const auto& field : layout.values())
         if (!layout.name.empty() && field.name == word.substr(point + 1))
           words.push_back(fmt::format("{}.{}.{}", of_topic, layout.name, field.name));
   }

@@ -20,6 +20,10 @@ using namespace std::chrono_literals;
 
 /// So soon rest is tried again that the bus did not take.
 constexpr base::Duration rest_again = 10ms;
+/// In which a board answers.
+constexpr base::Duration time_to_answer = 100ms;
+/// What a board said so long ago still holds.
+constexpr base::Duration longest_valid = 300ms;
 
 /// Refusals take their time from here.
 base::Time steady_now() {
@@ -36,7 +40,8 @@ Control::Control(transport::Bus& bus, const protocol::Catalogue& catalogue, View
       sent_(std::move(sent)),
       obstacle_(std::move(obstacle)),
       index_(catalogue),
-      refusals_(catalogue) {}
+      refusals_(catalogue),
+      behaviour_(catalogue) {}
 
 void Control::refuse(ViewerId viewer, std::string_view why) {
   viewers_->tell(viewer, foxglove::status(foxglove::Level::error, why));
@@ -76,7 +81,34 @@ void Control::drive(ViewerId viewer, const client::Hold& hold) {
     if (const std::string why = obstacle_(); !why.empty()) return refuse(viewer, why);
     if (other_heard_ && Clock::now() - other_ < client::listen_before_hold)
       return refuse(viewer, "another program commands the motors: end it first, or stop the robot");
+    if (behaviour_.exists()) return begin(viewer, hold);
   }
+  if (is_rest(hold.frame) && waiting_ && waiting_->viewer == viewer) waiting_.reset();
+  Driver::Frames frames;
+  const std::string why = driver_.drive(viewer, hold, Clock::now(), frames);
+  if (!why.empty()) refuse(viewer, why);
+  send_all(viewer, frames);
+}
+
+void Control::begin(ViewerId viewer, const client::Hold& hold) {
+  if (waiting_ && waiting_->viewer != viewer)
+    return refuse(viewer, "another viewer drives; stop it first, or wait");
+  const auto now = Clock::now();
+  if (waiting_) {
+    waiting_->hold = hold;
+    return;
+  }
+  waiting_ = Waiting{viewer, hold, now + time_to_answer};
+  if (said_ && now - *said_ < longest_valid) return begin_waiting();
+  said_.reset();
+  if (!send(can::AnyFrame{behaviour_.request()})) begin_waiting();  // which says why nothing is taken
+}
+
+void Control::begin_waiting() {
+  const auto [viewer, hold, until] = *std::exchange(waiting_, std::nullopt);
+  if (said_ && is_behaving_)
+    return refuse(viewer, fmt::format("{} drives the wheels by itself: wait for its end, or stop the robot",
+                                      catalogue_->board_name(behaviour_.topic())));
   Driver::Frames frames;
   const std::string why = driver_.drive(viewer, hold, Clock::now(), frames);
   if (!why.empty()) refuse(viewer, why);
@@ -86,6 +118,7 @@ void Control::drive(ViewerId viewer, const client::Hold& hold) {
 void Control::command(ViewerId viewer, const client::Command& command) {
   if (command.hold) return drive(viewer, *command.hold);
   if (command.ends_hold) {  // also where another drives
+    waiting_.reset();
     Driver::Frames frames;
     driver_.rest(frames);
     send_all(viewer, frames);
@@ -112,6 +145,7 @@ void Control::carry_out(const Order& order) {
       return command(order.viewer, *parsed);
     }
     case Order::Kind::gone: {
+      if (waiting_ && waiting_->viewer == order.viewer) waiting_.reset();
       Driver::Frames frames;
       driver_.gone(order.viewer, frames);
       return send_all(order.viewer, frames);
@@ -129,6 +163,11 @@ void Control::heard(const can::Received& received) {
   if (const auto refused = refusals_.take(received, steady_now()))
     refuse(0, fmt::format("{} refuses {}: {}; {}", refused->board, refused->topic->name, describe(*refused),
                           remedy(*refused)));
+  if (const auto active = behaviour_.active_in(index_, received.frame)) {
+    is_behaving_ = !active->empty();
+    said_ = Clock::now();
+    if (waiting_) begin_waiting();
+  }
   if (commanded_motors(index_, received.frame) == nullptr) return;
   if (!is_rest(received.frame)) {
     other_ = Clock::now();
@@ -143,6 +182,7 @@ void Control::heard(const can::Received& received) {
 }
 
 void Control::advance() {
+  if (waiting_ && Clock::now() >= waiting_->until) begin_waiting();
   Driver::Frames frames;
   if (driver_.advance(Clock::now(), frames))
     refuse(0, "the page that drove was silent for half a second: the motors rest");
@@ -151,6 +191,7 @@ void Control::advance() {
 
 std::optional<Clock::time_point> Control::next() const {
   auto next = driver_.next();
+  if (waiting_) next = next ? std::min(*next, waiting_->until) : waiting_->until;
   if (!rests_.empty()) {
     const auto again = Clock::now() + rest_again;
     next = next ? std::min(*next, again) : again;

@@ -19,6 +19,7 @@
 #include "cli/serve/driver.hpp"
 #include "cli/serve/orders.hpp"
 #include "cli/serve/viewers.hpp"
+#include "cli/shared/behaviour_sensor.hpp"
 #include "cli/shared/clock.hpp"
 
 namespace ocm::cli::serve {
@@ -47,6 +48,9 @@ class Control {
  private:
   void command(ViewerId viewer, const client::Command& command);
   void drive(ViewerId viewer, const client::Hold& hold);
+  /// Drives for a viewer that did not, once it is known that no board does anything by itself.
+  void begin(ViewerId viewer, const client::Hold& hold);
+  void begin_waiting();
   /// Of the driver; rest waits until the bus takes it, all else is given up.
   void send_all(ViewerId viewer, const Driver::Frames& frames);
   [[nodiscard]] bool send(const can::AnyFrame& frame);
@@ -62,7 +66,17 @@ class Control {
   client::Refusals refusals_;
   Driver driver_;
   std::deque<can::Frame> rests_;  ///< that the bus has not taken yet
-  Clock::time_point other_{};     ///< when another program's set point of motors came last
+  BehaviourSensor behaviour_;
+  bool is_behaving_ = false;               ///< as its last sample said,
+  std::optional<Clock::time_point> said_;  ///< which came then
+  /// What a viewer wants, until the sensor has answered or could have.
+  struct Waiting {
+    ViewerId viewer;
+    client::Hold hold;
+    Clock::time_point until;
+  };
+  std::optional<Waiting> waiting_;
+  Clock::time_point other_{};  ///< when another program's set point of motors came last
   bool other_heard_ = false;
 };
 

@@ -40,6 +40,13 @@ Json field_json(const protocol::Field& field) {
   return json;
 }
 
+/// Of a ring's first sensor: the offset, which the page finds itself, is all in which the others differ.
+const protocol::Law* law_of_first(const protocol::Topic& topic) {
+  for (const protocol::Field& field : topic.frames.front().values())
+    if (field.is_derived()) return field.law;
+  return nullptr;
+}
+
 Json topic_json(const protocol::Catalogue& catalogue, const protocol::Topic& topic, std::string_view channel,
                 std::string_view interface, const spec::RingGeometry* geometry) {
   Json frames = Json::array();
@@ -59,12 +66,13 @@ Json topic_json(const protocol::Catalogue& catalogue, const protocol::Topic& top
     json["group"] = topic.group;
     json["instance"] = topic.instance;
   }
-  if (geometry != nullptr)
+  const protocol::Law* const law = geometry != nullptr ? law_of_first(topic) : nullptr;
+  if (law != nullptr)
     json["geometry"] = {{"radius_m", geometry->radius.as_double()},
                         {"first_rad", geometry->first.as_double()},
                         {"step_rad", geometry->step.as_double()},
-                        {"counts_at_one_metre", geometry->counts_at_one_metre.as_double()},
-                        {"range_m", geometry->range.as_double()}};
+                        {"counts_at_one_metre", law->at_one.as_double()},
+                        {"range_m", law->max.as_double()}};
   if (topic.kind == protocol::Kind::sensor) {
     json["period_ms"] = seconds(topic.period.duration()) * 1e3;
     json["shortest_period_ms"] = seconds(topic.shortest_period) * 1e3;

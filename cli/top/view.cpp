@@ -71,7 +71,7 @@ bool View::matches(std::string_view bus, const Row& row) const {
   if (filter_.empty() || contains(row.name, filter_) || contains(bus, filter_)) return true;
   if (row.topic == nullptr) return false;
   for (const auto& layout : row.topic->frames)
-    for (const auto& field : layout.fields)
+    for (const auto& field : layout.values())
       if (contains(field.name, filter_)) return true;
   return false;
 }
@@ -86,11 +86,11 @@ std::vector<View::Item> View::items(const Rows& rows) const {
     for (std::size_t frame = 0; frame < row.topic->frames.size(); ++frame) {
       const auto& layout = row.topic->frames[frame];
       const auto data = row.newest.data(frame);
-      for (std::size_t field = 0; field < layout.fields.size(); ++field) {
+      for (std::size_t field = 0; field < layout.values().size(); ++field) {
         ItemKey of_field = key;
         of_field.frame = static_cast<int>(frame);
         of_field.field = static_cast<int>(field);
-        if ((open && layout.has(layout.fields[field], data)) || graphs_.contains(of_field))
+        if ((open && layout.has(layout.values()[field], data)) || graphs_.contains(of_field))
           items.push_back({of_field, &row});
       }
     }

@@ -81,7 +81,7 @@ void View::pick(const Place& place) {
   }
   std::vector<ItemKey> fields;
   for (std::size_t frame = 0; frame < place.topic->frames.size(); ++frame)
-    for (std::size_t field = 0; field < place.topic->frames[frame].fields.size(); ++field)
+    for (std::size_t field = 0; field < place.topic->frames[frame].values().size(); ++field)
       fields.push_back({place.key.bus, place.key.row, static_cast<int>(frame), static_cast<int>(field)});
   const bool all =
       std::all_of(fields.begin(), fields.end(), [&](const ItemKey& key) { return graphs_.contains(key); });

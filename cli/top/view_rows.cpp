@@ -29,7 +29,7 @@ std::string value_of(const protocol::Field& field, std::span<const std::uint8_t>
 std::string label_of(const protocol::Topic& topic, std::size_t frame, const protocol::Field& field) {
   const protocol::FrameLayout& layout = topic.frames[frame];
   if (topic.frames.size() == 1 || layout.name.empty()) return std::string{field.name};
-  if (layout.fields.size() == 1) return std::string{layout.name};
+  if (layout.values().size() == 1) return std::string{layout.name};
   return fmt::format("{}.{}", layout.name, field.name);
 }
 
@@ -120,8 +120,8 @@ Line View::row_line(const Columns& columns, const Scene& scene, const Item& item
   for (std::size_t frame = 0; frame < row.topic->frames.size(); ++frame) {
     const auto& layout = row.topic->frames[frame];
     const auto data = row.newest.data(frame);
-    for (std::size_t i = 0; i < layout.fields.size(); ++i) {
-      const protocol::Field& field = layout.fields[i];
+    for (std::size_t i = 0; i < layout.values().size(); ++i) {
+      const protocol::Field& field = layout.values()[i];
       if (!layout.has(field, data)) continue;
       const std::string value = value_of(field, data);
       ItemKey key = item.key;
@@ -152,7 +152,7 @@ Line View::field_line(const Columns& columns, const Scene& scene, const Item& it
   const Row& row = *item.row;
   const auto frame = static_cast<std::size_t>(item.key.frame);
   const auto& layout = row.topic->frames[frame];
-  const protocol::Field& field = layout.fields[static_cast<std::size_t>(item.key.field)];
+  const protocol::Field& field = layout.values()[static_cast<std::size_t>(item.key.field)];
   const auto data = row.newest.data(frame);
   const bool present = layout.has(field, data);
   const bool selected = cursor_ && item.key == *cursor_;
@@ -167,7 +167,7 @@ Line View::field_line(const Columns& columns, const Scene& scene, const Item& it
   LineWriter line{width};
   std::size_t longest = 0;
   for (std::size_t i = 0; i < row.topic->frames.size(); ++i)
-    for (const auto& each : row.topic->frames[i].fields)
+    for (const auto& each : row.topic->frames[i].values())
       longest = std::max(longest, base::columns(label_of(*row.topic, i, each)));
   const std::size_t label =
       std::clamp<std::size_t>(longest + 2, columns.name, std::max(columns.name, width * 2 / 5));

@@ -29,9 +29,11 @@ constexpr base::Duration progress_period = std::chrono::milliseconds{100};
 /// After so long without a sample the sensor is asked again.
 constexpr base::Duration longest_silence = std::chrono::milliseconds{500};
 
+constexpr const char* usual_speed = "0.1m/s";
+
 struct BehaveOptions {
   std::string which;
-  std::string speed = "0.1m/s";
+  std::string speed;  ///< empty: usual_speed
   std::optional<base::Duration> lasting;
   std::optional<protocol::Priority> priority;
   bool force = false;
@@ -44,7 +46,7 @@ can::Frame set_point_of(const protocol::Topic& topic, const BehaveOptions& optio
   const auto fields = topic.frames[0].fields;
   if (fields.size() != 1 || fields[0].name != "speed")
     fail({fmt::format("behave: {} has no speed alone", topic.name), "is --spec that of the robot? Use set"});
-  const auto speed = words::parse_typed_value(fields[0], options.speed);
+  const auto speed = words::parse_typed_value(fields[0], options.speed.empty() ? usual_speed : options.speed);
   if (!speed) fail({"behave: " + speed.error, "write 10cm/s or 0.1m/s"}, exit_usage);
   if (*speed == 0)
     fail({"behave: --speed 0 goes nowhere", "`amiroctl behave none` ends what the boards do"}, exit_usage);
@@ -76,6 +78,7 @@ void behave(Session& session, const BehaveOptions& options, int& exit_code) {
   const Confirm confirm = options.no_confirm ? Confirm::no : Confirm::yes;
   if (options.which == "none") {
     if (options.lasting) fail({"behave: none takes no --for", "drop --for"}, exit_usage);
+    if (!options.speed.empty()) fail({"behave: none takes no --speed", "drop --speed"}, exit_usage);
     const auto command = none(catalogue, options);
     if (options.dry_run) return print_frames(command);
     const auto bus = open_to_command(session, verb);
@@ -115,13 +118,14 @@ void behave(Session& session, const BehaveOptions& options, int& exit_code) {
                       if (watch && subject.topic != nullptr && subject.topic->role == protocol::Role::drive)
                         ended_by_another = true;
                     }};
-  bool goes_on = timeline.wait(Clock::now() + client::listen_before_hold);
+  bool goes_on =
+      options.force ? timeline.wait(Clock::now() + client::listen_before_hold) : timeline.listen_first();
   if (!goes_on) {
     exit_code = exit_code_after_interrupt(exit_code);
     return;
   }
   timeline.expect_no_other();
-  bool asked = watch && !watch->heard();
+  bool asked = watch && (!watch->heard() || timeline.has_asked());
   const auto ask = [&](const can::Frame& request) {
     client::Command command_of_one;
     command_of_one.frames = {request};
@@ -148,7 +152,9 @@ void behave(Session& session, const BehaveOptions& options, int& exit_code) {
     heard = Clock::now();
   }
   const bool early = over();
-  const std::string how = watch && watch->over() ? watch->ended() : "stopped";
+  const std::string how = watch && watch->is_replaced() ? "replaced by " + watch->commanded()
+                          : watch && watch->over()      ? watch->ended()
+                                                        : "stopped";
   timeline.rest();
   if (asked) ask(protocol::stop(watch->sensor().id, watch->sensor().priority));
   if (!timeline.finish()) exit_code = exit_failure;

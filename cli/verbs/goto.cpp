@@ -1,4 +1,5 @@
 /// Turn, then drive straight on; whether the robot heard it, and where it came to.
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <memory>
@@ -10,6 +11,7 @@
 #include "ocm/client/diagnosis.hpp"
 
 #include "cli/fleet/central_line.hpp"
+#include "cli/fleet/line_time.hpp"
 #include "cli/fleet/link_watch.hpp"
 #include "cli/fleet/pause_seen.hpp"
 #include "cli/shared/interrupt.hpp"
@@ -54,12 +56,22 @@ std::string place(const mapper::link::Update& at) {
   return fmt::format("x {} cm, y {} cm, heading {} deg", at.x, at.y, at.heading);
 }
 
-/// Says where it came to, and why that is elsewhere.
-int report(const std::string& name, const RobotNow& robot) {
+/// In which the robot is said nothing, so that it may have been stopped for that: it obeys a program that
+/// runs.
+constexpr base::Duration longest_stop = 1s;
+
+/// Says where it came to, and why that is elsewhere. `stood_still`: for so long this program did not run.
+int report(const std::string& name, const RobotNow& robot, base::Duration stood_still) {
   if (robot.update) fmt::print("{}: {}\n", name, place(*robot.update));
   if (robot.progress != Progress::ended) return exit_success;
+  const std::string why =
+      stood_still >= longest_stop
+          ? fmt::format(": this program did not run for {} meanwhile; give the command again",
+                        words::to_text(std::chrono::duration_cast<std::chrono::milliseconds>(stood_still)))
+      : robot.blocked ? ": is something in front of it?"
+                      : "";
   remark(fmt::format("goto: {} heard it, but stopped {:.0f} cm and {:.0f} deg away from there{}", name,
-                     robot.off_cm, robot.off_deg, robot.blocked ? ": is something in front of it?" : ""));
+                     robot.off_cm, robot.off_deg, why));
   return exit_failure;
 }
 
@@ -140,8 +152,13 @@ void run(const GotoOptions& options, int& exit_code) {
   }
   if (const auto refused = line.end().go(index, wanted))
     fail({fmt::format("goto: {}", refused->what), refused->remedy});
+  base::Time looked = fleet::line_time();
+  base::Duration stood_still{};
   (void)line.run(options.timeout, [&] {
     const RobotNow robot = line.robot(index);
+    const base::Time now = fleet::line_time();
+    stood_still = std::max(stood_still, now - looked);
+    looked = now;
     if (watch.step(line.end(), robot, options.call_back && !is_stop) && !watch.called())
       fleet::warn_of_link("goto", robot);
     if (watch.called() || (options.no_wait && robot.progress == Progress::heard)) return true;
@@ -169,7 +186,7 @@ void run(const GotoOptions& options, int& exit_code) {
       const RobotNow robot = line.robot(index);
       return robot.located || robot.lost;
     });
-    exit_code = report(name, line.robot(index));
+    exit_code = report(name, line.robot(index), stood_still);
   }
   if (paused && !fleet::pause_until_seen(line, index, true))
     remark(fmt::format("goto: {} was paused, and sends updates now", name));

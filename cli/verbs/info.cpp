@@ -38,7 +38,20 @@ std::string presence(const protocol::FrameLayout& layout, const protocol::Field&
   return fmt::format("  when {} is {}", layout.fields[field.selector].name, ranges);
 }
 
+/// What is on no wire: by which law it follows.
+void print_derived(const protocol::FrameLayout& layout, const protocol::Field& field) {
+  const protocol::Law& law = *field.law;
+  const std::string_view of = layout.fields[field.derived_from].name;
+  if (field.uncertainty)
+    return print_line("    {:<14} standard deviation of {} by the noise of {}, {}  [0, {}] {}\n", field.name,
+                      layout.values()[static_cast<std::size_t>(&field - layout.values().data()) - 1].name, of,
+                      number(law.noise), number(field.max), field.unit);
+  print_line("    {:<14} derived: root of {} / ({} - {})  [{}, {}] {}\n", field.name, number(law.at_one), of,
+             number(law.offset), number(field.min), number(field.max), field.unit);
+}
+
 void print_field(const protocol::FrameLayout& layout, const protocol::Field& field) {
+  if (field.is_derived()) return print_derived(layout, field);
   const auto position = field.position;
   const std::string place =
       position.start % 8 == 0 && position.width % 8 == 0 && position.order == protocol::ByteOrder::little
@@ -173,7 +186,7 @@ void info(Session& session, const std::string& word) {
     print_line("  frame      {}{}id 0x{:02X}, on the bus {:03X} at medium priority, DLC {}\n", layout.name,
                layout.name.empty() ? "" : ": ", layout.id.value,
                protocol::identifier_of(frame, protocol::default_priority), layout.length);
-    for (const auto& field : layout.fields) print_field(layout, field);
+    for (const auto& field : layout.values()) print_field(layout, field);
   }
   print_line("  source     {}\n", topic->source);
 }

@@ -113,7 +113,9 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
   client::Receiver receiver{catalogue};
   Printer printer{make_output(isatty(STDOUT_FILENO) != 0 ? Format::pretty : Format::json, catalogue, {},
                               session.colour(), columns_of_output)};
+  bool started = false;  // what comes before that is for this program, which listens for another one
   const auto show = [&](const can::Received& received) {
+    if (!started) return;
     const auto reception = receiver.take(received);
     if (reception.meaning != client::Meaning::request && reception.meaning != client::Meaning::set_point)
       printer.write({bus->name(), log::Entry{received.time, received.frame}, reception});
@@ -127,6 +129,7 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
                     options.show ? std::function<void(const can::Received&)>{show}
                                  : std::function<void(const can::Received&)>{}};
   static_cast<void>(timeline.listen_first(listening_of(script, options.speed)));  // a signal is seen below
+  started = true;
   const auto start = Timeline::Clock::now();
   for (const auto& step : script.steps) {
     if (!timeline.wait_for_step(start + due(step, options.speed))) break;

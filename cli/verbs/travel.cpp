@@ -14,6 +14,7 @@
 #include "cli/command/timeline.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
+#include "cli/shared/outgoing.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
 #include "cli/words/quantity.hpp"
@@ -58,6 +59,11 @@ can::Frame set_point_of(const protocol::Topic& topic, const TravelOptions& optio
   put("distance", options.distance, "write 30cm, -0.3m or 50mm");
   put("angle", options.turn, "write 90deg or -1.57rad");
   put("speed", options.speed, "write 10cm/s or 0.1m/s");
+  for (std::size_t i = 0; i < fields.size(); ++i)
+    if (fields[i].name == "speed" && raw[i] == 0)
+      fail({fmt::format("travel: --speed {} goes nowhere", options.speed),
+            "write 10cm/s or 0.1m/s; `amiroctl behave none` ends what the boards do"},
+           exit_usage);
   if (std::all_of(fields.begin(), fields.end(), [&](const protocol::Field& field) {
         return field.name == "speed" || raw[static_cast<std::size_t>(&field - fields.data())] == 0;
       }))
@@ -94,9 +100,14 @@ void travel(Session& session, const TravelOptions& options, int& exit_code) {
                     others,
                     options.no_confirm ? Confirm::no : Confirm::yes,
                     [&watch](const can::Received& received) { watch.take(received); }};
-  const auto look = [&](base::Duration time) { return timeline.wait(Clock::now() + time); };
+  // The board travels without this program, which may be stopped and go on.
+  const auto look = [&](base::Duration time) {
+    const bool on = timeline.wait(Clock::now() + time);
+    timeline.forgive_a_stop();
+    return on;
+  };
   // As long as it takes to hear other programs, and the sensor, if one has asked for it already.
-  bool goes_on = look(client::listen_before_hold);
+  bool goes_on = options.force ? look(client::listen_before_hold) : timeline.listen_first();
   if (!goes_on) {
     exit_code = exit_code_after_interrupt(exit_code);
     return;
@@ -105,9 +116,10 @@ void travel(Session& session, const TravelOptions& options, int& exit_code) {
   const auto& sensor = watch.sensor();
   const can::Frame ask = protocol::encode(
       {sensor.id, protocol::Mode::publish, *protocol::Period::from(progress_period), sensor.priority});
-  bool asked = !watch.heard();
+  bool asked = !watch.heard() || timeline.has_asked();
   if (asked) begin.frames.insert(begin.frames.begin(), ask);
   watch.begin();
+  timeline.expect_motion();
   timeline.carry_out_once(begin);
   auto heard = Clock::now();  // or asked
   bool silent = false;
@@ -132,20 +144,30 @@ void travel(Session& session, const TravelOptions& options, int& exit_code) {
   if (asked) end.frames.push_back(protocol::stop(sensor.id, sensor.priority));
   timeline.carry_out_once(end);
   const bool taken = timeline.finish();
-  if (!goes_on) {
+  const std::string doctor = fmt::format("is board {} powered and on {}? See `amiroctl doctor`",
+                                         catalogue.board_name(topic), bus->name());
+  if (watch.is_replaced() && goes_on) {
+    fail({fmt::format("travel: replaced by another program, {}; {} were left", watch.commanded(),
+                      watch.left().empty() ? "all" : watch.left()),
+          "it was not ended: the robot does what came last"});
+  } else if (!goes_on) {
     exit_code = exit_code_after_interrupt(exit_code);
   } else if (!taken) {
     exit_code = exit_failure;  // a board has refused it, which was said
+  } else if (silent && watch.was_active()) {
+    fail(
+        {fmt::format("travel: {} has been silent for {}, so zeros were sent; {}", catalogue.board_name(topic),
+                     words::to_text((most_asks + 1) * longest_silence), still_moving),
+         doctor});
   } else if (silent) {
     fail({fmt::format("travel: no {} within {}, so the travel was ended", sensor.name,
                       words::to_text((most_asks + 1) * longest_silence)),
-          fmt::format("is board {} powered and on {}? See `amiroctl doctor`", catalogue.board_name(topic),
-                      bus->name())});
+          doctor});
   } else if (!watch.was_active()) {
     fail({fmt::format("travel: {} has not begun it", catalogue.board_name(topic)), remedy_for({})});
   } else if (watch.ended() != "arrived") {
-    fail({fmt::format("travel: ended by {}: {}; {} are left", catalogue.board_name(topic), watch.ended(),
-                      watch.left()),
+    fail({fmt::format("travel: ended by {}: {}{}; {} are left", catalogue.board_name(topic), watch.ended(),
+                      watch.commanded().empty() ? "" : " by " + watch.commanded(), watch.left()),
           remedy_for(watch.ended())});
   } else {
     fmt::print("arrived; {} are left\n", watch.left());

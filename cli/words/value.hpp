@@ -44,6 +44,9 @@ namespace detail {
 
 /// "x takes -1 to 1 m/s", with the names that the field's values have.
 [[nodiscard]] inline std::string takes(const protocol::Field& field) {
+  if (field.is_derived())
+    return std::string{field.name} + " is " + std::string{base::to_text(field.min).view()} + " to " +
+           std::string{base::to_text(field.max).view()} + ' ' + std::string{field.unit};
   const auto stated = [&field](base::Decimal bound, std::int64_t raw) {
     return field.min == field.max ? physical_text(field, raw) : std::string{base::to_text(bound).view()};
   };

@@ -22,6 +22,10 @@ inline constexpr std::array<std::string_view, 17> struct_members{
     "id",       "ids",    "dlc",      "count",   "name",   "frames", "instances",       "kind",  "role",
     "priority", "period", "deadline", "timeout", "jitter", "encode", "shortest_period", "decode"};
 
+inline constexpr std::string_view derived_form =
+    R"("derived": [{"name": "distance", "of": "proximity", "law": "inverse_square", "at_one": 0.94, )"
+    R"("offset": 2300, "noise": 4.6, "unit": "m", "range": [0.004, 0.2]}])";
+
 class FieldReader : protected Checker {
  public:
   using Checker::Checker;
@@ -69,7 +73,109 @@ class FieldReader : protected Checker {
     return bytes_of(taken);
   }
 
+  /// After the fields.
+  void read_derived(const At& at, FrameModel& frame) {
+    if (!is_kind(at, Kind::array, derived_form)) return;
+    if (at.node->items.empty())
+      tell(at, "the list is empty", "leave it out, or " + std::string{derived_form});
+    for (std::size_t i = 0; i < at.node->items.size(); ++i) {
+      const At item = at.item(i);
+      if (!is_object(item, derived_form)) continue;
+      if (auto derived = read_law(item, frame)) frame.derived.push_back(std::move(*derived));
+    }
+  }
+
  private:
+  [[nodiscard]] std::optional<DerivedModel> read_law(const At& at, const FrameModel& frame) {
+    check_keys(at,
+               {"name", "description", "of", "law", "at_one", "offset", "noise", "unit", "range", "source"});
+    DerivedModel derived;
+    bool good = true;
+    if (const auto a = require(at, "name", "what the quantity is called")) {
+      derived.name = name(*a);
+      const auto taken = [&](const std::string& word) {
+        return std::any_of(frame.fields.begin(), frame.fields.end(),
+                           [&](const FieldModel& field) { return field.name == word; }) ||
+               std::any_of(frame.derived.begin(), frame.derived.end(), [&](const DerivedModel& other) {
+                 return other.name == word || other.uncertainty_name() == word;
+               });
+      };
+      for (const std::string& word : {derived.name, derived.uncertainty_name()})
+        if (!derived.name.empty() && taken(word))
+          tell(*a, "a second " + quoted(word) + " in the frame",
+               "a name of its own; its uncertainty is called " + quoted(derived.uncertainty_name()));
+    }
+    if (const auto a = at.member("description")) derived.description = line(*a);
+    derived.source = read_source(at, {"law", "at_one", "offset", "noise", "unit", "range"}, true);
+    if (const auto a = require(at, "of", "the field of the frame from which it follows")) {
+      const auto found = std::find_if(frame.fields.begin(), frame.fields.end(), [&](const FieldModel& field) {
+        return !field.name.empty() && field.name == a->node->text;
+      });
+      if (found == frame.fields.end()) {
+        tell(*a, "the frame has no field " + shown(*a->node), "the name of one of its fields");
+        good = false;
+      } else {
+        derived.of = static_cast<std::size_t>(found - frame.fields.begin());
+        if (found->flags || !found->values.empty()) {
+          tell(*a, quoted(found->name) + " has names of values", "a field that measures something");
+          good = false;
+        }
+      }
+    } else {
+      good = false;
+    }
+    enum class Kinds : std::uint8_t { inverse_square };
+    static constexpr std::pair<std::string_view, Kinds> kinds[] = {{"inverse_square", Kinds::inverse_square}};
+    if (const auto a = require(at, "law", "\"inverse_square\": measured = at_one / value^2 + offset"))
+      static_cast<void>(one_of(*a, kinds));
+    if (const auto a = require(at, "unit", "of the quantity, such as \"m\"")) derived.unit = line(*a);
+    protocol::Law law;
+    const auto read = [&](std::string_view key, std::string_view what,
+                          bool positive) -> std::optional<Decimal> {
+      const auto number_at = require(at, key, what);
+      const auto number = number_at ? decimal(*number_at, what) : std::nullopt;
+      if (number && (positive ? number->digits <= 0 : number->digits < 0)) {
+        tell(*number_at, positive ? "not above zero" : "below zero", std::string{what});
+        return std::nullopt;
+      }
+      return number;
+    };
+    if (const auto number = read("at_one", "what is measured above the offset where the quantity is 1", true))
+      law.at_one = *number;
+    else
+      good = false;
+    if (const auto number =
+            read("noise", "standard deviation of what is measured; 0 where it is not known", false))
+      law.noise = *number;
+    if (const auto a = require(at, "range", "the values at which the law holds, [0.004, 0.2]")) {
+      const auto range = stated_range(*a);
+      if (range && range->min.digits <= 0)
+        tell(*a, "the range begins at or below zero", "above zero: [0.004, 0.2]");
+      if (!range || range->min.digits <= 0) good = false;
+      if (range) law.min = range->min, law.max = range->max;
+    } else {
+      good = false;
+    }
+    static constexpr std::string_view offsets =
+        "what is measured when nothing is there: a number, or a list with one for each of the frame's count";
+    if (const auto a = require(at, "offset", offsets)) {
+      const bool is_list = a->node->is(Kind::array);
+      const std::size_t count = is_list ? a->node->items.size() : 1;
+      if (is_list && count != frame.count) {
+        tell(*a, std::to_string(count) + " offsets for " + std::to_string(frame.count) + " frames",
+             std::string{offsets});
+        good = false;
+      }
+      for (std::size_t i = 0; i < count; ++i) {
+        const auto number = decimal(is_list ? a->item(i) : *a, offsets);
+        law.offset = number.value_or(Decimal{});
+        derived.laws.push_back(law);
+      }
+    }
+    if (!good || derived.laws.empty() || derived.name.empty()) return std::nullopt;
+    return derived;
+  }
+
   /// Members that a field brings: itself and its accessors.
   void claim_member(const At& at, std::map<std::string, std::string>& members, const std::string& member) {
     const auto [other, is_new] = members.emplace(member, at.path);

@@ -131,6 +131,21 @@ struct FieldModel {
   [[nodiscard]] bool is_enumeration() const noexcept { return !values.empty() && !flags && unit.empty(); }
 };
 
+/// What follows from a field by a law, with its uncertainty; on no wire.
+struct DerivedModel {
+  std::string name;
+  std::string description;
+  std::size_t of = 0;  ///< index of the field
+  std::string unit;
+  std::vector<protocol::Law> laws;  ///< one, or one a frame of a count: their offsets differ
+  Source source;                    ///< empty: as the frame's
+
+  [[nodiscard]] std::string uncertainty_name() const { return name + "_uncertainty"; }
+  [[nodiscard]] const protocol::Law& law(std::size_t frame) const noexcept {
+    return laws[laws.size() == 1 ? 0 : frame];
+  }
+};
+
 struct FrameModel {
   std::string name;  ///< empty for a topic's only frame
   std::string description;
@@ -139,17 +154,16 @@ struct FrameModel {
   bool is_array = false;   ///< the spec gives a count: frames are called name_1, name_2, ...
   std::uint8_t dlc = 0;
   std::vector<FieldModel> fields;
+  std::vector<DerivedModel> derived;
   Source source;  ///< empty: as the topic's
 };
 
-/// Where the sensors of a topic of role ring are on the robot, and what their counts mean. Sensors are in the
-/// order of the topic's fields.
+/// Where the sensors of a topic of role ring are on the robot, in the order of the topic's fields. What their
+/// counts mean say the derived fields.
 struct RingGeometry {
-  base::Decimal radius;               ///< m, from the robot's middle
-  base::Decimal first;                ///< rad, of the first sensor, counter-clockwise from ahead
-  base::Decimal step;                 ///< rad, from one to the next
-  base::Decimal counts_at_one_metre;  ///< above the offset; they fall with the square of the distance
-  base::Decimal range;                ///< m: what is farther is not seen
+  base::Decimal radius;  ///< m, from the robot's middle
+  base::Decimal first;   ///< rad, of the first sensor, counter-clockwise from ahead
+  base::Decimal step;    ///< rad, from one to the next
 };
 
 struct TopicModel {

@@ -419,7 +419,8 @@ class Reader : private FieldReader {
 
   [[nodiscard]] FrameModel read_frame(const At& at, std::optional<std::uint8_t> topic_id, bool several,
                                       protocol::ByteOrder order, const TopicModel& topic) {
-    check_keys(at, {"name", "description", "id", "count", "dlc", "byte_order", "fields", "source"});
+    check_keys(at,
+               {"name", "description", "id", "count", "dlc", "byte_order", "fields", "derived", "source"});
     FrameModel frame;
     const bool sensor = topic.kind == protocol::Kind::sensor;
     const auto count_at = at.member("count");
@@ -446,7 +447,7 @@ class Reader : private FieldReader {
     if (!sensor && several)
       tell(at, "a set point of several frames", "one frame: the wheels must not act on half a set point");
     if (const auto a = at.member("description")) frame.description = line(*a);
-    frame.source = read_source(at, {"id", "count", "dlc", "byte_order", "fields"}, true);
+    frame.source = read_source(at, {"id", "count", "dlc", "byte_order", "fields", "derived"}, true);
 
     std::optional<std::uint8_t> own_id;
     if (const auto a = at.member("id"))
@@ -475,6 +476,12 @@ class Reader : private FieldReader {
     if (const auto a = require(at, "fields", R"([{"name": "x", "byte": 0, "type": "i16"}])"))
       used = read_fields(*a, dlc, order, pascal_case(topic.name + "_" + frame.name), frame);
     frame.dlc = dlc.value_or(used);
+    if (const auto a = at.member("derived")) {
+      if (!sensor)
+        tell(*a, "\"derived\" of an actuator", "leave it out: what is commanded is on the wire");
+      else
+        read_derived(*a, frame);
+    }
     return frame;
   }
 
@@ -552,11 +559,10 @@ class Reader : private FieldReader {
       if (its) tell(*its, "\"geometry\" is of a ring", "leave it out, or say \"role\": \"ring\"");
       return;
     }
-    static constexpr std::string_view form =
-        R"({"radius": 0.05, "first": 2.7, "step": -0.785, "counts_at_one_metre": 0.94, "range": 0.2})";
+    static constexpr std::string_view form = R"({"radius": 0.05, "first": 2.7, "step": -0.785})";
     const auto a = require(at, "geometry", form);
     if (!a || !is_object(*a, form)) return;
-    check_keys(*a, {"radius", "first", "step", "counts_at_one_metre", "range"});
+    check_keys(*a, {"radius", "first", "step"});
     const auto read = [&](std::string_view key, std::string_view what, bool positive) {
       const auto number_at = require(*a, key, what);
       const auto number = number_at ? decimal(*number_at, what) : std::nullopt;
@@ -567,10 +573,13 @@ class Reader : private FieldReader {
     geometry.radius = read("radius", "metres from the robot's middle to the sensors", true);
     geometry.first = read("first", "radians of the first sensor, counter-clockwise from ahead", false);
     geometry.step = read("step", "radians from one sensor to the next", false);
-    geometry.counts_at_one_metre =
-        read("counts_at_one_metre", "counts above the offset from an obstacle at one metre", true);
-    geometry.range = read("range", "metres, beyond which nothing is seen", true);
     topic.geometry = geometry;
+    for (const FrameModel& frame : topic.frames)
+      for (std::size_t i = 0; i < frame.fields.size(); ++i)
+        if (std::none_of(frame.derived.begin(), frame.derived.end(),
+                         [&](const DerivedModel& derived) { return derived.of == i && derived.unit == "m"; }))
+          tell(at, "role \"ring\" without a distance derived of " + quoted(frame.fields[i].name),
+               "in its frame " + std::string{derived_form});
   }
 
   /// A topic that others can be like.

@@ -24,6 +24,7 @@ struct Spec::Storage {
   std::deque<std::vector<protocol::NamedValue>> values;
   std::deque<std::vector<protocol::SelectorRange>> ranges;
   std::deque<std::vector<protocol::Field>> fields;
+  std::deque<protocol::Law> laws;
   std::deque<std::vector<protocol::FrameLayout>> frames;
   std::deque<std::vector<std::string_view>> aliases;
   std::vector<protocol::Board> boards;
@@ -56,6 +57,21 @@ struct Spec::Storage {
     return list;
   }
 
+  /// The fields of a frame, the `number`-th of its count, and what is derived of them.
+  std::span<const protocol::Field> make_derived(const FrameModel& frame, std::size_t number,
+                                                std::span<const protocol::Field> wire) {
+    auto& list = fields.emplace_back(wire.begin(), wire.end());
+    for (const DerivedModel& each : frame.derived) {
+      const protocol::Law& law = laws.emplace_back(each.law(number));
+      const auto index = static_cast<std::uint16_t>(each.of);
+      list.push_back(protocol::derived(wire[each.of], index, each.name, each.unit, law, false));
+      if (law.noise.digits != 0)
+        list.push_back(
+            protocol::derived(wire[each.of], index, keep(each.uncertainty_name()), each.unit, law, true));
+    }
+    return list;
+  }
+
   void add_message(const MessageModel& message) {
     protocol::FrameLayout layout;
     layout.length = message.length;
@@ -83,13 +99,15 @@ struct Spec::Storage {
     auto& list = frames.emplace_back();
     for (const FrameModel& frame : topic.frames) {
       const auto its_fields = make_fields(frame.fields);
+      std::span<const protocol::Field> with_derived;
       for (unsigned i = 0; i < frame.count; ++i) {
         const bool numbered = !frame.name.empty() && frame.is_array;
         const std::string_view name =
             numbered ? keep(frame.name + "_" + std::to_string(i + 1)) : std::string_view{frame.name};
         const unsigned id = frame.id + i + (instance == 0 ? 0U : instance - 1U);
+        if (!frame.derived.empty()) with_derived = make_derived(frame, i, its_fields);
         list.push_back({name, protocol::TopicId{static_cast<std::uint8_t>(id)}, frame.dlc, its_fields,
-                        worst_bits(topic.kind, id, frame.dlc)});
+                        worst_bits(topic.kind, id, frame.dlc), with_derived});
       }
     }
     return list;

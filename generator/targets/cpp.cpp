@@ -116,6 +116,44 @@ void write_field_tables(Writer& out, const FrameModel& frame) {
   out.close("}};");
 }
 
+std::string shown_name(const FrameModel& frame, unsigned number) {
+  return frame.is_array ? "with_derived_" + std::to_string(number + 1) : std::string{"with_derived"};
+}
+
+/// Fields and what is derived of them, for each frame of the count.
+void write_derived(Writer& out, const FrameModel& frame) {
+  if (frame.derived.empty()) return;
+  for (const spec::DerivedModel& derived : frame.derived) {
+    out.open("inline constexpr std::array<protocol::Law, " + std::to_string(frame.count) + "> " +
+             derived.name + "_laws{{");
+    for (unsigned i = 0; i < frame.count; ++i) {
+      const protocol::Law& law = derived.law(i);
+      out.line("{" + decimal(law.at_one) + ", " + decimal(law.offset) + ", " + decimal(law.noise) + ", " +
+               decimal(law.min) + ", " + decimal(law.max) + "},");
+    }
+    out.close("}};");
+  }
+  for (unsigned i = 0; i < frame.count; ++i) {
+    std::vector<std::string> entries;
+    for (std::size_t f = 0; f < frame.fields.size(); ++f)
+      entries.push_back("fields[" + std::to_string(f) + "]");
+    for (const spec::DerivedModel& derived : frame.derived) {
+      const auto add = [&](const std::string& name, bool uncertainty) {
+        entries.push_back("protocol::derived(fields[" + std::to_string(derived.of) + "], " +
+                          std::to_string(derived.of) + ", " + quoted(name) + ", " + quoted(derived.unit) +
+                          ", " + derived.name + "_laws[" + std::to_string(i) + "], " +
+                          (uncertainty ? "true" : "false") + ")");
+      };
+      add(derived.name, false);
+      if (derived.law(i).noise.digits != 0) add(derived.uncertainty_name(), true);
+    }
+    out.open("inline constexpr std::array<protocol::Field, " + std::to_string(entries.size()) + "> " +
+             shown_name(frame, i) + "{{");
+    for (const std::string& entry : entries) out.line(entry + ",");
+    out.close("}};");
+  }
+}
+
 void write_tables(Writer& out, const TopicModel& topic) {
   const bool aggregate = is_aggregate(topic);
   if (aggregate) {
@@ -124,6 +162,7 @@ void write_tables(Writer& out, const TopicModel& topic) {
       if (frame.fields.empty()) continue;
       out.line(space + " {");
       write_field_tables(out, frame);
+      write_derived(out, frame);
       out.line("}  // " + space);
     }
   }
@@ -134,7 +173,10 @@ void write_tables(Writer& out, const TopicModel& topic) {
     out.list("inline constexpr std::array<std::string_view, " + std::to_string(aliases.size()) + "> aliases{",
              aliases, "};");
   }
-  if (!aggregate) write_field_tables(out, topic.frames.front());
+  if (!aggregate) {
+    write_field_tables(out, topic.frames.front());
+    write_derived(out, topic.frames.front());
+  }
   const std::size_t frames = frame_count(topic) * topic.count;
   out.open("inline constexpr std::array<protocol::FrameLayout, " + std::to_string(frames) + "> frames{{");
   for (unsigned instance = 0; instance < topic.count; ++instance) {
@@ -146,7 +188,12 @@ void write_tables(Writer& out, const TopicModel& topic) {
                                                         : "fields";
         out.line("{" + quoted(name) + ", protocol::TopicId{" + hex(frame.id + i + instance) + "}, " +
                  std::to_string(frame.dlc) + ", " + fields + ", " +
-                 worst_bits(topic, frame, frame.id + i + instance, 1) + "},");
+                 worst_bits(topic, frame, frame.id + i + instance, 1) +
+                 (frame.derived.empty()
+                      ? ""
+                      : ", " + (aggregate ? frame_space(topic, frame) + "::" : std::string{}) +
+                            shown_name(frame, i)) +
+                 "},");
       }
     }
   }
@@ -180,7 +227,8 @@ void write_catalogue(Writer& out, const Model& model) {
   out.line(
       "// Fields: name, {start, width, order}, signed, scale, offset, unit, lowest and highest raw number,");
   out.line("// names of values or flags, whether flags. Scale and offset: {digits, power of ten}.");
-  out.line("// Frames: name, id, DLC, fields, most bits by priority.");
+  out.line("// Frames: name, id, DLC, fields, most bits by priority, fields with what is derived of them.");
+  out.line("// Laws of what is derived: at one, offset, noise, least and greatest value at which they hold.");
   out.line(
       "// Topics: index of the board, aliases, frames, source, and of several of a kind: number and name.");
   for (const TopicModel& topic : model.topics) {

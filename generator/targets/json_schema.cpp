@@ -126,6 +126,11 @@ Json sample(const Message& message, const Model& model) {
     fields[field.name] = schema_of(field);
     units[field.name]["const"] = field.unit;
   }
+  for (const spec::DerivedModel& derived : message.frame->derived)
+    for (const std::string& name : {derived.name, derived.uncertainty_name()}) {
+      fields[name] = {{"type", "number"}, {"minimum", 0}};
+      units[name]["const"] = derived.unit;
+    }
   for (const auto priority : priorities) ids.push_back(identifier(message.identifier(priority)));
   Json properties{
       {"id", {{"enum", ids}}},

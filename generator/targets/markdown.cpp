@@ -278,6 +278,26 @@ class Page {
     out_.line("| field | place | type | scale | range | |");
     out_.line("|---|---|---|---|---|---|");
     for (const FieldModel& field : frame.fields) out_.line(row(field));
+    for (const spec::DerivedModel& derived : frame.derived) this->derived(frame, derived);
+  }
+
+  void derived(const FrameModel& frame, const spec::DerivedModel& derived) {
+    const protocol::Law& law = derived.laws.front();
+    const std::string& of = frame.fields[derived.of].name;
+    std::string offsets;
+    for (const protocol::Law& each : derived.laws)
+      offsets += (offsets.empty() ? "" : &each == &derived.laws.back() ? " and " : ", ") + print(each.offset);
+    std::string text = "Derived, on no wire: " + code(derived.name) + " in " + derived.unit + ", " +
+                       print(law.min) + " to " + print(law.max) + ", the root of " + print(law.at_one) +
+                       " / (" + of + " - offset)";
+    if (!derived.description.empty()) text += ": " + derived.description;
+    text += (derived.description.empty() || derived.description.back() != '.' ? ". " : " ");
+    text += std::string{derived.laws.size() > 1 ? "Offsets " : "Offset "} + offsets + ".";
+    if (law.noise.digits != 0)
+      text += " " + code(derived.uncertainty_name()) + ", one standard deviation: " + derived.name + "^3 * " +
+              print(law.noise) + " / " + print(*base::multiply(law.at_one, {2, 0})) + ".";
+    out_.line();
+    out_.comment(with_source(std::move(text), derived.source.joined()), "");
   }
 
   // --- plain messages ---

@@ -8,6 +8,7 @@
 #include "generator/spec/spec.hpp"
 #include "golden/ferry.hpp"
 #include "golden/probe.hpp"
+#include "sim/amiro/proximity.hpp"
 
 namespace generator_catalogue_test {
 
@@ -33,6 +34,10 @@ void compare(const protocol::Field& a, const protocol::Field& b) {
   CHECK(a.number == b.number);
   CHECK(a.min == b.min);
   CHECK(a.max == b.max);
+  CHECK(a.derived_from == b.derived_from);
+  CHECK(a.uncertainty == b.uncertainty);
+  REQUIRE(a.is_derived() == b.is_derived());
+  if (a.is_derived()) CHECK(*a.law == *b.law);
 }
 
 void compare(const protocol::Topic& a, const protocol::Topic& b) {
@@ -59,9 +64,10 @@ void compare(const protocol::Topic& a, const protocol::Topic& b) {
     CHECK(a.frames[i].length == b.frames[i].length);
     CHECK(a.frames[i].worst_bits == b.frames[i].worst_bits);
     CHECK(a.frames[i].worst_bits[0] != 0);
-    REQUIRE(a.frames[i].fields.size() == b.frames[i].fields.size());
-    for (std::size_t j = 0; j < a.frames[i].fields.size(); ++j)
-      compare(a.frames[i].fields[j], b.frames[i].fields[j]);
+    CHECK(a.frames[i].fields.size() == b.frames[i].fields.size());
+    REQUIRE(a.frames[i].values().size() == b.frames[i].values().size());
+    for (std::size_t j = 0; j < a.frames[i].values().size(); ++j)
+      compare(a.frames[i].values()[j], b.frames[i].values()[j]);
   }
 }
 
@@ -122,6 +128,37 @@ TEST_CASE("two signals of one name are distinguished, and a selector stays the o
   CHECK(layout.fields[1].selector == 0);
   CHECK(layout.has(layout.fields[1], std::array<std::uint8_t, 8>{3}));
   CHECK_FALSE(layout.has(layout.fields[1], std::array<std::uint8_t, 8>{2}));
+}
+
+TEST_CASE("the ring's places and law in the AMiRo's spec are those of the simulated robot") {
+  const auto loaded = load("spec/topics.json");
+  const ocm::sim::RingModel ring;
+  const auto* topic = loaded.spec->catalogue().find("ring");
+  REQUIRE(topic != nullptr);
+  for (const auto& each : loaded.spec->model().topics) {
+    if (each.role != protocol::Role::ring) continue;
+    REQUIRE(each.geometry);
+    CHECK(each.geometry->radius.as_double() == ring.radius_m);
+    CHECK(each.geometry->first.as_double() == Approx(ring.first_rad).margin(1e-9));
+    CHECK(each.geometry->step.as_double() == Approx(ring.step_rad).margin(1e-9));
+  }
+  REQUIRE(topic->frames.size() == ring.offset_counts.size());
+  for (std::size_t i = 0; i < topic->frames.size(); ++i) {
+    const auto values = topic->frames[i].values();
+    REQUIRE(values.size() == 3);
+    REQUIRE(values[1].is_derived());
+    CHECK(values[1].unit == "m");
+    CHECK(values[2].uncertainty);
+    const protocol::Law& law = *values[1].law;
+    CHECK(law.offset.as_double() == ring.offset_counts[i]);
+    CHECK(law.noise.as_double() == ocm::sim::count_noise);
+    for (const double metres : {0.004, 0.01, 0.05, 0.1, 0.2}) {
+      const double counts = ring.offset_counts[i] + ocm::sim::reflected_counts(metres, 0);
+      CHECK(law.value(counts) == Approx(metres).epsilon(1e-8));
+    }
+    // The converter at its end is still within the range.
+    CHECK(law.holds(ocm::sim::most_counts));
+  }
 }
 
 TEST_CASE("every fact of the AMiRo has a source") {

@@ -20,6 +20,7 @@
 #include "ocm/can/length.hpp"
 #include "ocm/protocol/codec.hpp"
 #include "ocm/protocol/identifier.hpp"
+#include "ocm/protocol/law.hpp"
 #include "ocm/protocol/request.hpp"
 
 namespace ocm::protocol {
@@ -69,7 +70,13 @@ struct Field {
   /// or no other than raw_min and raw_max.
   base::Decimal min{};
   base::Decimal max{};
+  /// Of a derived field, which is on no wire: by which law its value follows from another field of the frame,
+  /// `derived_from`, whose place, scale and offset are here, too. nullptr: this one is on the wire.
+  const Law* law = nullptr;
+  std::uint16_t derived_from = 0;
+  bool uncertainty = false;  ///< not the law's value, but one standard deviation of it
 
+  [[nodiscard]] constexpr bool is_derived() const noexcept { return law != nullptr; }
   [[nodiscard]] constexpr bool is_float() const noexcept { return number != Number::integer; }
   [[nodiscard]] constexpr std::int64_t raw(const can::Payload& data) const noexcept {
     return get(data, position, is_signed);
@@ -83,8 +90,13 @@ struct Field {
     return number == Number::float32 ? double{std::bit_cast<float>(static_cast<std::uint32_t>(raw_value))}
                                      : base::from_binary64(static_cast<std::uint64_t>(raw_value));
   }
-  /// As a double, of any kind of number.
+  /// As a double, of any kind of number, or derived of it.
   [[nodiscard]] constexpr double value(std::int64_t raw_value) const noexcept {
+    if (law == nullptr) return measured(raw_value);
+    return uncertainty ? law->uncertainty(measured(raw_value)) : law->value(measured(raw_value));
+  }
+  /// What is on the wire, in its unit: the value, or that from which it is derived.
+  [[nodiscard]] constexpr double measured(std::int64_t raw_value) const noexcept {
     const bool unsigned_64 = !is_signed && position.width == 64;
     const double plain = is_float()    ? unscaled(raw_value)
                          : unsigned_64 ? static_cast<double>(static_cast<std::uint64_t>(raw_value))
@@ -93,8 +105,13 @@ struct Field {
     return plain * scale.as_double() + offset.as_double();
   }
   /// Exact; out_of_range for scales that no sensor has, and for nine in ten of the unsigned words of 64 bits
-  /// from 2^63 on, which have more digits than a Decimal.
+  /// from 2^63 on, which have more digits than a Decimal. A derived value has four significant digits, its
+  /// uncertainty two; out_of_range where the law says nothing.
   [[nodiscard]] constexpr base::Result<base::Decimal> physical(std::int64_t raw_value) const noexcept {
+    if (law != nullptr) {
+      if (!law->holds(measured(raw_value))) return base::Error::out_of_range;
+      return rounded(value(raw_value), uncertainty ? 2 : 4);
+    }
     base::Decimal plain{raw_value, 0};
     if (raw_value < 0 && !is_signed && position.width == 64) {  // the highest bit is no sign
       const auto word = static_cast<std::uint64_t>(raw_value);
@@ -115,8 +132,10 @@ struct Field {
     if (finite && (value > greatest || value < -greatest)) return base::Error::out_of_range;
     return std::int64_t{std::bit_cast<std::uint32_t>(static_cast<float>(value))};
   }
-  /// An integer field's raw number nearest to a physical value; out_of_range beyond the field's range.
+  /// An integer field's raw number nearest to a physical value; out_of_range beyond the field's range, and
+  /// for a derived field, which is on no wire.
   [[nodiscard]] constexpr base::Result<std::int64_t> raw_from(base::Decimal physical_value) const noexcept {
+    if (law != nullptr) return base::Error::out_of_range;
     const auto above_offset = base::subtract(physical_value, offset);
     if (!above_offset) return above_offset.error;
     const auto raw_value = base::divide_rounded(*above_offset, scale);
@@ -125,6 +144,28 @@ struct Field {
     return *raw_value;
   }
 };
+
+/// The field that a law derives of `field`, the `index`-th of its frame, or that one's uncertainty.
+[[nodiscard]] constexpr Field derived(const Field& field, std::uint16_t index, std::string_view name,
+                                      std::string_view unit, const Law& law, bool uncertainty) noexcept {
+  Field out = field;
+  out.name = name;
+  out.unit = unit;
+  out.values = {};
+  out.flags = false;
+  out.min = law.min;
+  out.max = law.max;
+  if (uncertainty) {
+    out.min = {};
+    out.max = rounded(law.uncertainty(law.offset.as_double() +
+                                      law.at_one.as_double() / law.max.as_double() / law.max.as_double()),
+                      2);
+  }
+  out.law = &law;
+  out.derived_from = index;
+  out.uncertainty = uncertainty;
+  return out;
+}
 
 /// The most bits that a frame can take with any content, intermission included, by the priority at which it
 /// is sent: the priority is in the identifier, and with it changes where stuff bits fall. 0: not known.
@@ -150,10 +191,16 @@ struct FrameLayout {
   std::uint16_t length = 0;  ///< bytes; 0..8, with CAN FD to 64, by the transport protocol of J1939 to 1785
   std::span<const Field> fields;
   BitsByPriority worst_bits{};
+  std::span<const Field>
+      with_derived{};  ///< `fields`, and behind them what is derived of them; empty: nothing is
   Address address{};
   bool fd = false;              ///< sent as CAN FD
   bool bit_rate_switch = true;  ///< of CAN FD: its data go at a bit rate of their own
 
+  /// What a frame says: its fields, and behind them what is derived of them.
+  [[nodiscard]] constexpr std::span<const Field> values() const noexcept {
+    return with_derived.empty() ? fields : with_derived;
+  }
   /// The length code as a classic frame.
   [[nodiscard]] constexpr std::uint8_t dlc() const noexcept {
     return static_cast<std::uint8_t>(length < can::max_dlc ? length : can::max_dlc);
@@ -176,11 +223,15 @@ struct FrameLayout {
   }
   /// Whether a frame of this layout may be without `field`.
   [[nodiscard]] constexpr bool may_lack(const Field& field) const noexcept {
-    return field.selector != no_selector || field.position.bytes() > length || any_length();
+    return field.is_derived() || field.selector != no_selector || field.position.bytes() > length ||
+           any_length();
   }
-  /// Whether `field`, one of `fields`, is in a frame: the frame is long enough, and selectors, which may be
-  /// selected by others themselves, say so. O(selectors above the field).
+  /// Whether `field`, one of `values`, is in a frame: the frame is long enough, and selectors, which may be
+  /// selected by others themselves, say so; of a derived one, its law holds. O(selectors above the field).
   [[nodiscard]] constexpr bool has(const Field& field, std::span<const std::uint8_t> data) const noexcept {
+    if (field.is_derived() &&
+        (field.position.bytes() > data.size() || !field.law->holds(field.measured(field.raw(data)))))
+      return false;
     const Field* at = &field;
     for (std::size_t depth = 0; depth <= fields.size(); ++depth) {
       if (at->position.bytes() > data.size()) return false;

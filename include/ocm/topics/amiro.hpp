@@ -1647,7 +1647,8 @@ namespace protocol = ocm::protocol;
 
 // Fields: name, {start, width, order}, signed, scale, offset, unit, lowest and highest raw number,
 // names of values or flags, whether flags. Scale and offset: {digits, power of ten}.
-// Frames: name, id, DLC, fields, most bits by priority.
+// Frames: name, id, DLC, fields, most bits by priority, fields with what is derived of them.
+// Laws of what is derived: at one, offset, noise, least and greatest value at which they hold.
 // Topics: index of the board, aliases, frames, source, and of several of a kind: number and name.
 
 namespace odometry_velocity {
@@ -1763,21 +1764,71 @@ namespace proximity_ring_sensor {
 inline constexpr std::array<protocol::Field, 1> fields{{
   {"proximity", {0, 16, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 65'535, {}, false},
 }};
+inline constexpr std::array<protocol::Law, 8> distance_laws{{
+  {{942693757, -9}, {2289, 0}, {457, -2}, {38, -4}, {2, -1}},
+  {{942693757, -9}, {2302, 0}, {457, -2}, {38, -4}, {2, -1}},
+  {{942693757, -9}, {242, 1}, {457, -2}, {38, -4}, {2, -1}},
+  {{942693757, -9}, {235, 1}, {457, -2}, {38, -4}, {2, -1}},
+  {{942693757, -9}, {2318, 0}, {457, -2}, {38, -4}, {2, -1}},
+  {{942693757, -9}, {2272, 0}, {457, -2}, {38, -4}, {2, -1}},
+  {{942693757, -9}, {2382, 0}, {457, -2}, {38, -4}, {2, -1}},
+  {{942693757, -9}, {2269, 0}, {457, -2}, {38, -4}, {2, -1}},
+}};
+inline constexpr std::array<protocol::Field, 3> with_derived_1{{
+  fields[0],
+  protocol::derived(fields[0], 0, "distance", "m", distance_laws[0], false),
+  protocol::derived(fields[0], 0, "distance_uncertainty", "m", distance_laws[0], true),
+}};
+inline constexpr std::array<protocol::Field, 3> with_derived_2{{
+  fields[0],
+  protocol::derived(fields[0], 0, "distance", "m", distance_laws[1], false),
+  protocol::derived(fields[0], 0, "distance_uncertainty", "m", distance_laws[1], true),
+}};
+inline constexpr std::array<protocol::Field, 3> with_derived_3{{
+  fields[0],
+  protocol::derived(fields[0], 0, "distance", "m", distance_laws[2], false),
+  protocol::derived(fields[0], 0, "distance_uncertainty", "m", distance_laws[2], true),
+}};
+inline constexpr std::array<protocol::Field, 3> with_derived_4{{
+  fields[0],
+  protocol::derived(fields[0], 0, "distance", "m", distance_laws[3], false),
+  protocol::derived(fields[0], 0, "distance_uncertainty", "m", distance_laws[3], true),
+}};
+inline constexpr std::array<protocol::Field, 3> with_derived_5{{
+  fields[0],
+  protocol::derived(fields[0], 0, "distance", "m", distance_laws[4], false),
+  protocol::derived(fields[0], 0, "distance_uncertainty", "m", distance_laws[4], true),
+}};
+inline constexpr std::array<protocol::Field, 3> with_derived_6{{
+  fields[0],
+  protocol::derived(fields[0], 0, "distance", "m", distance_laws[5], false),
+  protocol::derived(fields[0], 0, "distance_uncertainty", "m", distance_laws[5], true),
+}};
+inline constexpr std::array<protocol::Field, 3> with_derived_7{{
+  fields[0],
+  protocol::derived(fields[0], 0, "distance", "m", distance_laws[6], false),
+  protocol::derived(fields[0], 0, "distance_uncertainty", "m", distance_laws[6], true),
+}};
+inline constexpr std::array<protocol::Field, 3> with_derived_8{{
+  fields[0],
+  protocol::derived(fields[0], 0, "distance", "m", distance_laws[7], false),
+  protocol::derived(fields[0], 0, "distance_uncertainty", "m", distance_laws[7], true),
+}};
 }  // namespace proximity_ring_sensor
 namespace proximity_ring {
 inline constexpr std::array<std::string_view, 1> aliases{"ring"};
 inline constexpr std::array<protocol::FrameLayout, 8> frames{{
-  {"sensor_1", protocol::TopicId{0x1F}, 2, proximity_ring_sensor::fields, {72, 71, 70, 71}},
-  {"sensor_2", protocol::TopicId{0x20}, 2, proximity_ring_sensor::fields, {70, 71, 70, 71}},
-  {"sensor_3", protocol::TopicId{0x21}, 2, proximity_ring_sensor::fields, {70, 71, 69, 69}},
-  {"sensor_4", protocol::TopicId{0x22}, 2, proximity_ring_sensor::fields, {70, 70, 69, 69}},
-  {"sensor_5", protocol::TopicId{0x23}, 2, proximity_ring_sensor::fields, {70, 70, 70, 70}},
-  {"sensor_6", protocol::TopicId{0x24}, 2, proximity_ring_sensor::fields, {70, 69, 69, 69}},
-  {"sensor_7", protocol::TopicId{0x25}, 2, proximity_ring_sensor::fields, {70, 70, 69, 70}},
-  {"sensor_8", protocol::TopicId{0x26}, 2, proximity_ring_sensor::fields, {70, 69, 70, 69}},
+  {"sensor_1", protocol::TopicId{0x1F}, 2, proximity_ring_sensor::fields, {72, 71, 70, 71}, proximity_ring_sensor::with_derived_1},
+  {"sensor_2", protocol::TopicId{0x20}, 2, proximity_ring_sensor::fields, {70, 71, 70, 71}, proximity_ring_sensor::with_derived_2},
+  {"sensor_3", protocol::TopicId{0x21}, 2, proximity_ring_sensor::fields, {70, 71, 69, 69}, proximity_ring_sensor::with_derived_3},
+  {"sensor_4", protocol::TopicId{0x22}, 2, proximity_ring_sensor::fields, {70, 70, 69, 69}, proximity_ring_sensor::with_derived_4},
+  {"sensor_5", protocol::TopicId{0x23}, 2, proximity_ring_sensor::fields, {70, 70, 70, 70}, proximity_ring_sensor::with_derived_5},
+  {"sensor_6", protocol::TopicId{0x24}, 2, proximity_ring_sensor::fields, {70, 69, 69, 69}, proximity_ring_sensor::with_derived_6},
+  {"sensor_7", protocol::TopicId{0x25}, 2, proximity_ring_sensor::fields, {70, 70, 69, 70}, proximity_ring_sensor::with_derived_7},
+  {"sensor_8", protocol::TopicId{0x26}, 2, proximity_ring_sensor::fields, {70, 69, 70, 69}, proximity_ring_sensor::with_derived_8},
 }};
 inline constexpr std::string_view source =
-  "Thesis table 4.8; counts: VCNL4020 data sheet; shortest_period: VCNL4020 data sheet: at most 250 proximity measurements/s; geometry: radius: amiro.xacro of amiro_robot; angles: AMiRo-OS 1.0, Constants.h; counts: VCNL4020Models.h of amiro_senseact; range: VCNL4020 data sheet";
+  "Thesis table 4.8; counts: VCNL4020 data sheet; shortest_period: VCNL4020 data sheet: at most 250 proximity measurements/s; geometry: radius: amiro.xacro of amiro_robot; angles: AMiRo-OS 1.0, Constants.h";
 }  // namespace proximity_ring
 
 namespace motors {

@@ -375,7 +375,8 @@ namespace protocol = ocm::protocol;
 
 // Fields: name, {start, width, order}, signed, scale, offset, unit, lowest and highest raw number,
 // names of values or flags, whether flags. Scale and offset: {digits, power of ten}.
-// Frames: name, id, DLC, fields, most bits by priority.
+// Frames: name, id, DLC, fields, most bits by priority, fields with what is derived of them.
+// Laws of what is derived: at one, offset, noise, least and greatest value at which they hold.
 // Topics: index of the board, aliases, frames, source, and of several of a kind: number and name.
 
 namespace range {

@@ -70,6 +70,29 @@ TEST_CASE("threshold: holds for the same raw numbers as the condition that was t
   CHECK(compared > 50'000);
 }
 
+TEST_CASE("threshold: on a derived field it is one on what is measured") {
+  static constexpr protocol::Law law{{942'693'757, -9}, {2350, 0}, {457, -2}, {38, -4}, {2, -1}};
+  const protocol::Field counts = field_of(16, false);
+  for (const bool uncertainty : {false, true}) {
+    const auto field = protocol::derived(counts, 0, "distance", "m", law, uncertainty);
+    for (const char* const text : {"0.1", "0.05m", "0.2", "0.004", "0.0001", "0.01"}) {
+      for (const Comparison comparison : {Comparison::less, Comparison::greater, Comparison::at_least}) {
+        const auto typed = cli::words::Condition::of(field, comparison, text);
+        REQUIRE(typed);
+        const auto raw = threshold(field, comparison, text);
+        CAPTURE(uncertainty, text, comparison);
+        REQUIRE(raw);
+        for (std::int64_t each = 0; each <= UINT16_MAX; ++each)
+          if (typed->holds(each) != holds(counts, *raw, each)) FAIL(each);
+      }
+    }
+  }
+  const auto near = threshold(protocol::derived(counts, 0, "distance", "m", law, false), Comparison::less, "0.1");
+  REQUIRE(near);
+  CHECK(near->is == reflective::Is::above);
+  CHECK(near->limit == 2444);  // 94 counts above the offset are 0.1001 m, 95 0.0996 m
+}
+
 TEST_CASE("threshold: of 64 bits without a sign the upper half is above the lower") {
   protocol::Field field;
   field.name = "wide";

@@ -41,7 +41,7 @@ class Behave(Case):
     def test_wrong_usage(self):
         for arguments, words in (((), "follow"), (("fly",), "fly"), (("follow", "--speed", "0"), "goes nowhere"),
                                  (("follow", "--speed", "1"), "needs a unit"), (("avoid", "--speed", "1m/s"), "speed takes 0 to 0.2 m/s"),
-                                 (("none", "--for", "2s"), "none takes no --for"), (("follow", "--for", "2"), "2")):
+                                 (("none", "--for", "2s"), "none takes no --for"), (("none", "--speed", "1m/s"), "none takes no --speed"), (("follow", "--for", "2"), "2")):
             out, err = self.run_tool("behave", *arguments, code=2)
             self.assertIn(words, err, arguments)
             self.assertEqual(out, "", arguments)

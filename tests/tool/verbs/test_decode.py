@@ -44,6 +44,44 @@ class Decode(Case):
         again, _ = self.run_tool("convert", "-", "-", "--to", "candump", stdin=converted)
         self.assertEqual(again, LOG)
 
+    def test_derived_fields(self):
+        # Sensor 4 sees 377 counts above its offset, 2350, and so something 50 mm away; sensor 1 nothing.
+        log = "(1.0) can0 61F#F108\n(1.1) can0 622#A70A\n"
+        far, near = self.objects(self.run_tool("decode", stdin=log)[0])
+        self.assertEqual(far["fields"], {"proximity": 2289})
+        self.assertEqual(near["fields"], {"proximity": 2727, "distance": 0.05001, "distance_uncertainty": 0.0003})
+        self.assertEqual(near["units"], {"proximity": "", "distance": "m", "distance_uncertainty": "m"})
+        out, _ = self.run_tool("decode", "--csv", stdin=log)
+        self.assertEqual([line.split(",")[2:5] for line in out.splitlines()[1:]],
+                         [["sensor_1.proximity", "2289", ""], ["sensor_4.proximity", "2727", ""], ["sensor_4.distance", "0.05001", "m"],
+                          ["sensor_4.distance_uncertainty", "0.0003", "m"]])
+        # A frame's name alone is what is on the wire; derived fields have names of their own.
+        out, _ = self.run_tool("decode", "--field", "ring.sensor_4", stdin=log)
+        self.assertEqual([line["fields"] for line in self.objects(out)], [{"proximity": 2727}])
+        out, _ = self.run_tool("decode", "--field", "ring.sensor_4.distance", stdin=log)
+        self.assertEqual([line["fields"] for line in self.objects(out)], [{"distance": 0.05001}])
+        for condition, lines in (("ring.sensor_4.distance<0.0501", 1), ("ring.sensor_4.distance<0.05m", 0), ("ring.sensor_4.distance>5", 0)):
+            out, _ = self.run_tool("decode", "--where", condition, "--topic", "ring", stdin=log, code=0 if lines else 1)
+            self.assertEqual(sum("sensor_4" in line for line in out.splitlines()), lines, condition)
+
+    def test_derived_fields_in_words(self):
+        # Eight frames are a sample; of all sensors but the fourth nothing is in sight.
+        log = "".join(f"(1.{i}) can0 {0x61F + i:03X}#{'A70A' if i == 3 else 'D007'}\n" for i in range(8))
+        out, _ = self.run_tool("decode", "--pretty", stdin=log)
+        self.assertIn("sensor_4  2727  distance  0.05001 +-0.0003 m", out.replace("    ", " ").replace("   ", "  "))
+        self.assertEqual(out.count("distance"), 1)
+
+    def test_derived_fields_come_back(self):
+        log = "(0000000001.000000) can0 61F#F108\n(0000000001.100000) can0 622#A70A\n"
+        out, _ = self.run_tool("decode", stdin=log)
+        self.assertEqual(self.run_tool("encode", stdin=out)[0], log)
+        edited = out.replace('"proximity":2727', '"proximity":2726')  # what was derived before is no edit
+        self.assertIn("622#A60A", self.run_tool("encode", stdin=edited)[0])
+        _, err = self.run_tool("encode", stdin=out.replace("0.05001", "0.04"), code=1)
+        self.assertIn('"distance" is not what proximity says, of which it is derived', err)
+        _, err = self.run_tool("encode", stdin='{"topic":"ring","frame":"sensor_4","fields":{"distance":0.05}}\n', code=1)
+        self.assertIn("edit proximity, and leave distance out", err)
+
     def test_json(self):
         out, _ = self.run_tool("decode", stdin=LOG)
         first, velocity, pose, request, motors = self.objects(out)[:5]

@@ -45,6 +45,12 @@ class Info(Case):
             file.write(text)
         return "--spec", path
 
+    def test_what_is_derived(self):
+        out, _ = self.run_tool("info", "ring")
+        lines = [" ".join(line.split()) for line in out.splitlines()]
+        self.assertIn("distance derived: root of 0.942693757 / (proximity - 2350) [0.0038, 0.2] m", lines)
+        self.assertIn("distance_uncertainty standard deviation of distance by the noise of proximity, 4.57 [0, 0.019] m", lines)
+
     def test_what_a_dbc_file_says(self):
         out, err = self.run_tool(*self.spec("car.dbc", DBC), "info", "Transmission")
         self.assertEqual(err, "")

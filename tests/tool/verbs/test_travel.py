@@ -30,7 +30,7 @@ class Travel(Case):
         for arguments, words in (((), "nowhere to go"), (("0",), "nowhere to go"), (("30",), "'30' needs a unit: distance takes -10 to 10 m"),
                                  (("11m",), "'11m' is out of range"), (("30cm", "--turn", "90"), "'90' needs a unit: angle"),
                                  (("30cm", "--turn", "90m"), "in another unit"), (("30cm", "--speed", "1m/s"), "speed takes 0 to 0.3 m/s"),
-                                 (("30cm", "5cm"), "5cm"), (("30cm", "--for", "2s"), "--for")):
+                                 (("30cm", "5cm"), "5cm"), (("30cm", "--speed", "0m/s"), "--speed 0m/s goes nowhere"), (("30cm", "--for", "2s"), "--for")):
             out, err = self.run_tool("travel", *arguments, code=2)
             self.assertIn(words, err, arguments)
             self.assertEqual(out, "", arguments)
@@ -75,7 +75,7 @@ class Travel(Case):
 
     def test_a_stop_ends_it_and_so_does_a_set_point(self):
         self.start_sim()
-        for command, ended in ((("stop",), "stopped"), (("drive", "1cm/s", "--once", "--force"), "replaced")):
+        for command, ended in ((("stop",), r"stopped by motors \w{3}#0{16}"), (("drive", "1cm/s", "--once", "--force"), "replaced by motors 201#1027000000000000")):
             listener = self.listen("travel", "--timeout", "20s")
             travel = self.start("travel", "1m", "--force")
             listener.stdout.readline()
@@ -85,6 +85,75 @@ class Travel(Case):
             _, err = travel.communicate(timeout=20)
             self.assertEqual(travel.returncode, 1, err)
             self.assertRegex(err, rf"travel: ended by di_wheel_drive: {ended}; 0\.\d+ m, 0 rad are left")
+
+    def travelling(self, *arguments):
+        listener = self.listen("travel", "--timeout", "20s")
+        travel = self.start("travel", *arguments)
+        listener.stdout.readline()
+        self.interrupt(listener)
+        return travel
+
+    def test_another_travel_replaces_it_and_goes_on(self):
+        self.start_sim()
+        travel = self.travelling("1m")
+        time.sleep(0.3)  # it drives for so long before it is replaced
+        out, err = self.run_tool("travel", "10cm", "--speed", "30cm/s", "--force")
+        self.assertRegex(out, "^arrived; ")  # what was replaced has not sent zeros
+        out, err = travel.communicate(timeout=20)
+        self.assertEqual((travel.returncode, out), (1, ""), err)
+        self.assertRegex(err, r"travel: replaced by another program, travel 20B#10270000000\w+; 0\.9\d* m, 0 rad were left")
+
+    def test_a_follow_replaces_it(self):
+        self.start_sim()  # which starts on the line
+        travel = self.travelling("1m")
+        follow = self.start("behave", "follow", "--force", "--for", "1s")
+        _, err = travel.communicate(timeout=20)
+        self.assertEqual(travel.returncode, 1, err)
+        self.assertRegex(err, "travel: replaced by another program, follow 20C#E803; ")
+        _, err = follow.communicate(timeout=20)
+        self.assertEqual(follow.returncode, 0, err)
+
+    def test_what_a_board_does_is_another_commander(self):
+        self.start_sim()
+        travel = self.travelling("1m")
+        for command in (("drive", "5cm/s"), ("drive", "5cm/s", "--once"), ("travel", "5cm"), ("behave", "follow"), ("behave", "avoid")):
+            _, err = self.run_tool(*command, code=1)
+            self.assertIn(f"{command[0]}: di_wheel_drive drives the wheels by itself, as another program has asked it to: travel", err)
+            self.assertIn("--force begins all the same", err)
+        self.interrupt(travel)
+        self.run_tool("travel", "1cm")
+
+    def test_also_where_the_program_has_gone_and_no_sample_comes(self):
+        self.start_sim()
+        travel = self.travelling("1m")
+        travel.kill()
+        travel.wait()
+        self.run_tool("stop", "behaviour")
+        _, err = self.run_tool("drive", "5cm/s", code=1)
+        self.assertIn("drive: di_wheel_drive drives the wheels by itself", err)
+        self.run_tool("behave", "none")
+        self.run_tool("drive", "5cm/s", "--for", "100ms")
+
+    def test_a_stop_of_the_program_is_none_of_the_board(self):
+        self.start_sim()
+        travel = self.travelling("10cm", "--speed", "10cm/s")
+        travel.send_signal(signal.SIGSTOP)
+        time.sleep(2.5)  # it arrives meanwhile
+        travel.send_signal(signal.SIGCONT)
+        out, err = travel.communicate(timeout=20)
+        self.assertEqual(travel.returncode, 0, err)
+        self.assertNotIn("amiroctl:", err)
+        self.assertRegex(out, "^arrived; ")
+
+    def test_a_simulator_that_stops(self):
+        sim = self.start_sim()
+        travel = self.travelling("1m")
+        time.sleep(0.3)  # it drives for so long before the simulator stops
+        sim.send_signal(signal.SIGSTOP)
+        _, err = travel.communicate(timeout=30)
+        sim.send_signal(signal.SIGCONT)
+        self.assertEqual(travel.returncode, 1, err)
+        self.assertIn("THE ROBOT MAY STILL MOVE", err)
 
     def test_another_commander(self):
         self.start_sim()
