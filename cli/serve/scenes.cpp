@@ -68,10 +68,16 @@ double SightOffset::above(double counts) noexcept {
   return counts - least_;
 }
 
-std::optional<double> distance_m(double counts_above, const spec::RingGeometry& geometry) noexcept {
+std::optional<double> distance_m(double counts_above, const protocol::Law& law) noexcept {
   if (!(counts_above > 0)) return std::nullopt;
-  const double metres = std::sqrt(geometry.counts_at_one_metre.as_double() / counts_above);
-  return metres <= geometry.range.as_double() ? std::optional{metres} : std::nullopt;
+  const double metres = std::sqrt(law.at_one.as_double() / counts_above);
+  return metres <= law.max.as_double() ? std::optional{metres} : std::nullopt;
+}
+
+const protocol::Law* law_of(const protocol::Topic& ring) noexcept {
+  for (const protocol::Field& field : ring.frames.front().values())
+    if (field.is_derived()) return field.law;
+  return nullptr;
 }
 
 Scenes::Scenes(const protocol::Catalogue& catalogue, const spec::Model& model,
@@ -93,7 +99,7 @@ Scenes::Scenes(const protocol::Catalogue& catalogue, const spec::Model& model,
         const auto found =
             std::find_if(model.topics.begin(), model.topics.end(),
                          [&topic](const spec::TopicModel& each) { return each.name == topic.name; });
-        if (found == model.topics.end() || !found->geometry) continue;
+        if (found == model.topics.end() || !found->geometry || law_of(topic) == nullptr) continue;
         std::size_t sensors = 0;
         for (const protocol::FrameLayout& frame : topic.frames) sensors += frame.fields.size();
         sources_.push_back(
@@ -160,7 +166,7 @@ std::string Scenes::scan_text(const Source& source, base::Time time, std::span<c
   std::string ranges, intensities;
   for (const double counts : counts_above) {
     const char* const comma = ranges.empty() ? "" : ",";
-    const auto metres = distance_m(counts, geometry);
+    const auto metres = distance_m(counts, *law_of(*source.topic));
     ranges += fmt::format("{}{:.4f}", comma, metres ? geometry.radius.as_double() + *metres : 0.0);
     intensities += fmt::format("{}{:.1f}", comma, std::max(counts, 0.0));
   }

@@ -34,8 +34,10 @@ class SightOffset {
 };
 
 /// Metres by the law of the spec; nothing: nothing in sight.
-[[nodiscard]] std::optional<double> distance_m(double counts_above,
-                                               const spec::RingGeometry& geometry) noexcept;
+[[nodiscard]] std::optional<double> distance_m(double counts_above, const protocol::Law& law) noexcept;
+/// Of a ring's first sensor: the offset, which is found here, is all in which the others differ. nullptr: the
+/// spec has none.
+[[nodiscard]] const protocol::Law* law_of(const protocol::Topic& ring) noexcept;
 
 class Scenes {
  public:

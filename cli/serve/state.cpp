@@ -8,6 +8,7 @@
 
 #include "ocm/protocol/wire_hash.hpp"
 
+#include "cli/serve/scenes.hpp"
 #include "cli/shared/json.hpp"
 #include "generator/spec/model.hpp"
 
@@ -40,13 +41,6 @@ Json field_json(const protocol::Field& field) {
   return json;
 }
 
-/// Of a ring's first sensor: the offset, which the page finds itself, is all in which the others differ.
-const protocol::Law* law_of_first(const protocol::Topic& topic) {
-  for (const protocol::Field& field : topic.frames.front().values())
-    if (field.is_derived()) return field.law;
-  return nullptr;
-}
-
 Json topic_json(const protocol::Catalogue& catalogue, const protocol::Topic& topic, std::string_view channel,
                 std::string_view interface, const spec::RingGeometry* geometry) {
   Json frames = Json::array();
@@ -66,7 +60,7 @@ Json topic_json(const protocol::Catalogue& catalogue, const protocol::Topic& top
     json["group"] = topic.group;
     json["instance"] = topic.instance;
   }
-  const protocol::Law* const law = geometry != nullptr ? law_of_first(topic) : nullptr;
+  const protocol::Law* const law = geometry != nullptr ? law_of(topic) : nullptr;
   if (law != nullptr)
     json["geometry"] = {{"radius_m", geometry->radius.as_double()},
                         {"first_rad", geometry->first.as_double()},

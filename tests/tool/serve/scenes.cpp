@@ -26,7 +26,7 @@ spec::Model model_with_ring() {
   spec::Model model;
   spec::TopicModel ring;
   ring.name = "proximity_ring";
-  ring.geometry = spec::RingGeometry{{5, -2}, {2, 0}, {-5, -1}, {1, 0}, {2, -1}};  // 0.05 2 -0.5 1 0.2
+  ring.geometry = spec::RingGeometry{{5, -2}, {2, 0}, {-5, -1}};  // 0.05 2 -0.5
   model.topics.push_back(ring);
   return model;
 }
@@ -98,8 +98,8 @@ TEST_CASE("serve: a ring is a scan around the robot's frame") {
   const protocol::Topic& ring = topic_of(protocol::Role::ring);
   shown.take(ring, counts(std::vector<unsigned>(8, 2300)));  // nothing in sight: their offsets
   std::vector<unsigned> seen(8, 2300);
-  seen[2] = 2300 + 100;  // by 1/d^2: 0.1 m
-  seen[3] = 2300 + 20;   // 0.224 m, beyond the range
+  seen[2] = 2300 + 100;  // by 0.9427 / d^2: 0.0971 m
+  seen[3] = 2300 + 20;   // 0.217 m, beyond the range
   seen[4] = 2200;        // below the offset
   shown.take(ring, counts(seen));
   const Json& scan = shown.newest["/proximity_ring/scan"];
@@ -109,7 +109,7 @@ TEST_CASE("serve: a ring is a scan around the robot's frame") {
   REQUIRE(scan["ranges"].size() == 8);
   for (std::size_t i = 0; i < 8; ++i)
     CHECK(scan["ranges"][i].get<double>() ==
-          Approx(i == 2 ? 0.15 : 0).margin(1e-4));  // from the robot's middle
+          Approx(i == 2 ? 0.14709 : 0).margin(1e-4));  // from the robot's middle
   CHECK(scan["intensities"][2].get<double>() == Approx(100));
   CHECK(scan["intensities"][4].get<double>() == Approx(0));
 }
@@ -125,7 +125,7 @@ TEST_CASE("serve: offsets are the least of averages, are learnt unseen, and are 
     shown.take(ring, counts(std::vector<unsigned>(8, all)));
     return shown.newest["/proximity_ring/scan"]["ranges"][0].get<double>();
   };
-  CHECK(range(2300 + 100) == Approx(0.15).margin(1e-4));
+  CHECK(range(2300 + 100) == Approx(0.14709).margin(1e-4));
   CHECK(range(2200) == 0);                                       // noise of one sample moves no offset far:
   CHECK(range(2300 + 100) == Approx(0.05 + 0.1).margin(0.012));  // of eight it is an eighth
   shown.scenes.forget();
@@ -151,12 +151,12 @@ TEST_CASE("serve: what has no role, and interfaces") {
 }
 
 TEST_CASE("serve: the law of a ring") {
-  const spec::RingGeometry geometry = *model_with_ring().topics[0].geometry;
-  CHECK(*distance_m(100, geometry) == Approx(0.1));
-  CHECK(*distance_m(25, geometry) == Approx(0.2));
-  CHECK_FALSE(distance_m(24, geometry));
-  CHECK_FALSE(distance_m(0, geometry));
-  CHECK_FALSE(distance_m(-5, geometry));
+  const protocol::Law law{{1, 0}, {}, {}, {1, -3}, {2, -1}};  // 1 / d^2, to 0.2
+  CHECK(*distance_m(100, law) == Approx(0.1));
+  CHECK(*distance_m(25, law) == Approx(0.2));
+  CHECK_FALSE(distance_m(24, law));
+  CHECK_FALSE(distance_m(0, law));
+  CHECK_FALSE(distance_m(-5, law));
 }
 
 }  // namespace serve_scenes_test
