@@ -68,16 +68,16 @@ double SightOffset::above(double counts) noexcept {
   return counts - least_;
 }
 
-const protocol::Law* law_of_ring(const protocol::Topic& topic) noexcept {
-  for (const protocol::Field& field : topic.frames.front().values())
-    if (field.is_derived()) return field.law;
-  return nullptr;
-}
-
 std::optional<double> distance_m(double counts_above, const protocol::Law& law) noexcept {
   if (!(counts_above > 0)) return std::nullopt;
   const double metres = std::sqrt(law.at_one.as_double() / counts_above);
   return metres <= law.max.as_double() ? std::optional{metres} : std::nullopt;
+}
+
+const protocol::Law* law_of(const protocol::Topic& ring) noexcept {
+  for (const protocol::Field& field : ring.frames.front().values())
+    if (field.is_derived()) return field.law;
+  return nullptr;
 }
 
 Scenes::Scenes(const protocol::Catalogue& catalogue, const spec::Model& model,
@@ -99,18 +99,11 @@ Scenes::Scenes(const protocol::Catalogue& catalogue, const spec::Model& model,
         const auto found =
             std::find_if(model.topics.begin(), model.topics.end(),
                          [&topic](const spec::TopicModel& each) { return each.name == topic.name; });
-        const protocol::Law* const law = law_of_ring(topic);
-        if (found == model.topics.end() || !found->geometry || law == nullptr) continue;
+        if (found == model.topics.end() || !found->geometry || law_of(topic) == nullptr) continue;
         std::size_t sensors = 0;
         for (const protocol::FrameLayout& frame : topic.frames) sensors += frame.fields.size();
-        sources_.push_back({&topic,
-                            i,
-                            next_,
-                            {},
-                            json_string(robot),
-                            found->geometry,
-                            law,
-                            std::vector<SightOffset>(sensors)});
+        sources_.push_back(
+            {&topic, i, next_, {}, json_string(robot), found->geometry, std::vector<SightOffset>(sensors)});
         add(fmt::format("/{}{}/scan", of, topic.name), "foxglove.LaserScan", scan_schema);
       }
     }
@@ -173,7 +166,7 @@ std::string Scenes::scan_text(const Source& source, base::Time time, std::span<c
   std::string ranges, intensities;
   for (const double counts : counts_above) {
     const char* const comma = ranges.empty() ? "" : ",";
-    const auto metres = distance_m(counts, *source.law);
+    const auto metres = distance_m(counts, *law_of(*source.topic));
     ranges += fmt::format("{}{:.4f}", comma, metres ? geometry.radius.as_double() + *metres : 0.0);
     intensities += fmt::format("{}{:.1f}", comma, std::max(counts, 0.0));
   }

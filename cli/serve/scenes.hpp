@@ -33,11 +33,11 @@ class SightOffset {
   double least_ = 0;
 };
 
-/// The law by which a ring's distances are derived; of its first sensor: the offset, which is learnt here, is
-/// all in which the others differ. nullptr: none is derived.
-[[nodiscard]] const protocol::Law* law_of_ring(const protocol::Topic& topic) noexcept;
-/// Metres by it; nothing: nothing in sight.
+/// Metres by the law of the spec; nothing: nothing in sight.
 [[nodiscard]] std::optional<double> distance_m(double counts_above, const protocol::Law& law) noexcept;
+/// Of a ring's first sensor: the offset, which is found here, is all in which the others differ. nullptr: the
+/// spec has none.
+[[nodiscard]] const protocol::Law* law_of(const protocol::Topic& ring) noexcept;
 
 class Scenes {
  public:
@@ -77,8 +77,7 @@ class Scenes {
     std::size_t interface = 0;
     std::uint32_t channel = 0;  ///< a pose has the next one, too
     std::string parent, child;  ///< frames, as JSON has them; of a ring the child is the robot's
-    std::optional<spec::RingGeometry> geometry{};  ///< of a ring, which has a law, too
-    const protocol::Law* law = nullptr;
+    std::optional<spec::RingGeometry> geometry{};
     std::vector<SightOffset> offsets{};
   };
 

@@ -60,7 +60,7 @@ Json topic_json(const protocol::Catalogue& catalogue, const protocol::Topic& top
     json["group"] = topic.group;
     json["instance"] = topic.instance;
   }
-  const protocol::Law* const law = geometry != nullptr ? law_of_ring(topic) : nullptr;
+  const protocol::Law* const law = geometry != nullptr ? law_of(topic) : nullptr;
   if (law != nullptr)
     json["geometry"] = {{"radius_m", geometry->radius.as_double()},
                         {"first_rad", geometry->first.as_double()},
