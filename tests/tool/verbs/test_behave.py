@@ -96,6 +96,7 @@ class Behave(Case):
             behave = self.behaving(which)
             behave.send_signal(signal.SIGKILL)
             behave.wait()
+            waiting.until(lambda: self.sample("behaviour")[0]["active"] == 0, f"the board's watchdog ends {which}")
             self.assertTrue(self.standing(), which)
 
     def test_the_ring_needs_its_offsets(self):

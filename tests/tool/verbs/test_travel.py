@@ -3,6 +3,7 @@
 import json
 import re
 import signal
+import time
 
 from harness import Case, main, waiting
 
