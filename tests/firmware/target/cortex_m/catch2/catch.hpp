@@ -122,13 +122,18 @@ namespace Catch {
 class Approx {
  public:
   explicit Approx(double value) noexcept : value_(value) {}
+  /// The share of the value by which the other may differ.
+  Approx& epsilon(double share) noexcept {
+    epsilon_ = share;
+    return *this;
+  }
   friend bool operator==(double left, const Approx& right) noexcept {
-    return std::abs(left - right.value_) <=
-           static_cast<double>(std::numeric_limits<float>::epsilon()) * 100 * std::abs(right.value_);
+    return std::abs(left - right.value_) <= right.epsilon_ * std::abs(right.value_);
   }
 
  private:
   double value_;
+  double epsilon_ = static_cast<double>(std::numeric_limits<float>::epsilon()) * 100;
 };
 
 }  // namespace Catch
