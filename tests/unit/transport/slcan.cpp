@@ -152,7 +152,14 @@ std::function<std::string(Device&, char)> by_letter(std::vector<std::pair<char, 
   };
 }
 
-std::unique_ptr<Slcan> open(const std::string& path, SlcanOptions options = {}) {
+/// An adapter answers in time, however busy this machine is.
+SlcanOptions patient() {
+  SlcanOptions options;
+  options.answer_limit = 20s;
+  return options;
+}
+
+std::unique_ptr<Slcan> open(const std::string& path, const SlcanOptions& options = patient()) {
   auto bus = Slcan::open(path, options);
   INFO(bus.error.what << "; " << bus.error.remedy);
   REQUIRE(bus);
@@ -393,9 +400,7 @@ TEST_CASE("slcan: no more than the window is unanswered, and of one identifier o
 
 TEST_CASE("slcan: what a full adapter refuses is sent again, in the order of each identifier") {
   Device device;
-  SlcanOptions options;
-  options.answer_limit = 20s;  // however busy this machine is
-  const auto bus = open(device.path(), options);
+  const auto bus = open(device.path());
   device.with([&] { device.wire.room = 3; });
   std::atomic<bool> done = false;
   std::thread drain([&] {  // the CAN bus takes one now and then, once the adapter is full
@@ -426,8 +431,8 @@ TEST_CASE("slcan: a program that ends at once has still sent, also what was refu
   Device device;
   std::thread later;
   {
-    transport::SlcanOptions options;
-    options.answer_limit = options.farewell = 20s;  // however busy this machine is
+    SlcanOptions options = patient();
+    options.farewell = options.answer_limit;
     auto opened = transport::Slcan::open(device.path(), options);
     REQUIRE(opened);
     const auto bus = std::move(*opened);
@@ -581,7 +586,7 @@ TEST_CASE("slcan: an answer that comes too late is none, also while the program 
 
 TEST_CASE("slcan: the status flags become error frames") {
   Device device;
-  SlcanOptions options;
+  SlcanOptions options = patient();
   options.status_period = 10ms;
   const auto bus = open(device.path(), options);
   CHECK(bus->receive(50ms).error == base::Error::timed_out);
