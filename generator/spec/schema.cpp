@@ -97,13 +97,11 @@ struct Schema::Parsed {
   valijson::Schema rules;
 };
 
-Schema::Schema(std::string_view text, const Document& document)
-    : document_(document), parsed_(std::make_unique<Parsed>()) {
+Schema::Schema(std::string_view text, const Document& document) : document_(document), parsed_(new Parsed) {
   parsed_->json = nlohmann::json::parse(text);
   valijson::SchemaParser{}.populateSchema(valijson::adapters::NlohmannJsonAdapter{parsed_->json},
                                           parsed_->rules);
 }
-Schema::~Schema() = default;
 
 void Schema::validate(const Node& root, std::string_view file_name, std::vector<Problem>& problems) const {
   const auto document = to_json(root);

@@ -1,7 +1,6 @@
 /// A JSON schema as a judge of documents. Reading one takes longer than using it: keep it.
 #pragma once
 
-#include <memory>
 #include <string_view>
 #include <vector>
 
@@ -10,11 +9,12 @@
 
 namespace ocm::spec {
 
+/// Each is static and stays to the end of the program: what it has parsed is never destroyed, since
+/// nlohmann::json takes memory for that, and ends a program that has none.
 class Schema {
  public:
   /// `text` is a schema that is compiled in; one that is none throws.
   Schema(std::string_view text, const Document& document);
-  ~Schema();
 
   /// Appends what the schema finds where `problems` has nothing yet: a reader says the same of a document's
   /// form, but says it better.
@@ -23,7 +23,7 @@ class Schema {
  private:
   struct Parsed;
   Document document_;
-  std::unique_ptr<Parsed> parsed_;
+  Parsed* parsed_;
 };
 
 }  // namespace ocm::spec
