@@ -348,8 +348,8 @@ char* JsonText::put_names(char* to, const Known& known, std::span<const std::uin
     if (known.varies && !known.frame.layout().has(field.value.field(), bytes)) continue;
     if (field.tabled) {
       // A value without a name adds nothing, and is not guessed.
-      const std::uint64_t place =
-          std::min<std::uint64_t>(field.value.bits(bytes.data()), field.greatest + 1U);
+      const auto place = static_cast<std::size_t>(
+          std::min<std::uint64_t>(field.value.bits(bytes.data()), field.greatest + 1U));
       to = put(to, tabled_names_[field.first_named + places_[field.first_place + place]]);
       continue;
     }
