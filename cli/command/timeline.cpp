@@ -14,6 +14,8 @@ namespace {
 
 /// In which a board answers a request: a sample is sent some milliseconds after it.
 constexpr base::Duration time_to_answer = std::chrono::milliseconds{40};
+/// Nothing tells when a frame has left.
+constexpr base::Duration look_again = std::chrono::milliseconds{1};
 
 constexpr const char* ask_why = "`amiroctl operator why` says why it is there, and what leads from there";
 
@@ -40,10 +42,24 @@ bool Timeline::listen_first(base::Duration duration) {
   if (!wait(std::max(Clock::now(), end - time_to_answer))) return false;
   if (const auto* const sensor = other_.unheard_sensor(); sensor != nullptr && duration >= time_to_answer) {
     // Of a bus that takes nothing the command itself will say so.
-    static_cast<void>(bus_->send(sensor->request()));
+    const auto taken = bus_->send(sensor->request());
     asked_ = true;
+    if (taken && *taken) return wait_for_answer(end);
   }
   return wait(end);
+}
+
+bool Timeline::wait_for_answer(Clock::time_point end) {
+  const auto late = Clock::now() + client::longest_without_set_point;
+  for (;;) {
+    const auto now = look_at_clock();
+    const auto delivery = bus_->delivery();
+    if (!delivery.known) return wait(end);
+    // A request that was held up is answered later.
+    if (delivery.pending == 0) return wait(std::max(end, now + time_to_answer));
+    if (now >= late) outgoing_.expect_all_left({});
+    if (!wait(now + look_again)) return false;
+  }
 }
 
 void Timeline::expect_no_other() {

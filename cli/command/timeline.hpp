@@ -45,7 +45,8 @@ class Timeline {
   /// Waits as long as it takes to hear another program that commands the motors, where one is refused. False:
   /// a signal came first.
   /// Where the sensor of what the boards do by themselves was not heard meanwhile, it is asked for one sample
-  /// before the end.
+  /// before the end. The request has left when this returns, if the bus can tell: no set point waits behind
+  /// it. Leaves through cli::fail if it has not left within client::longest_without_set_point.
   [[nodiscard]] bool listen_first(base::Duration duration = client::listen_before_hold);
   /// Whether listen_first has had to ask.
   [[nodiscard]] bool has_asked() const { return asked_; }
@@ -96,6 +97,9 @@ class Timeline {
     Clock::time_point end;
     Clock::time_point left;  ///< when one was last sent, and little was under way
   };
+  /// Until the request for the sensor of behaviours has left and can have been answered, at least until
+  /// `end`. False: a signal came first.
+  [[nodiscard]] bool wait_for_answer(Clock::time_point end);
   void send(const can::Frame& frame);
   /// What is no set point: a robot has no CAN FD.
   void send_fd(const can::AnyFrame& frame);

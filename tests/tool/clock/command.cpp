@@ -3,12 +3,15 @@
 // at the end.
 #include <csignal>
 
+#include "ocm/protocol/codec.hpp"
 #include "ocm/topics/amiro.hpp"
 
 #include "cli/command/timeline.hpp"
+#include "cli/shared/behaviour_sensor.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/shared/set_points.hpp"
 #include "tests/tool/clock/played_bus.hpp"
+#include "tests/tool/clock/question.hpp"
 #include "tests/unit/base/explore.hpp"
 
 namespace tool_clock_command_test {
@@ -92,7 +95,7 @@ class Run {
 
  private:
   void judge(bool left) {
-    const auto& sent = bus_->sent();
+    const auto sent = after_question(bus_->sent());
     for (const auto& each : sent) CHECK((each.frame == set_point_ || cli::is_rest(each.frame)));
     const bool gone = ended_ >= bus_->conditions().gone;
     judge_end(sent, gone, left);
@@ -133,16 +136,19 @@ class Run {
       }
     }
     CHECK(old <= 1);
-    // Of those that wait at once only one is a set point that moves.
+    // Of those that wait at once only one is a set point that moves; it does not wait behind the question,
+    // either.
     if (!bus_->conditions().knows_delivery) return;
-    for (std::size_t i = 1; i < sent.size(); ++i)
-      if (!cli::is_rest(sent[i].frame)) CHECK(sent[i - 1].left <= sent[i].taken);
+    const auto& all = bus_->sent();
+    for (std::size_t i = 1; i < all.size(); ++i)
+      if (!cli::is_rest(all[i].frame)) CHECK(all[i - 1].left <= all[i].taken);
   }
 
   /// Nothing went wrong: each set point at its time, for as long as was asked.
   void judge_calm(const std::vector<PlayedBus::Sent>& sent, bool left) {
     CHECK(!left);
     if (sent.empty()) return;
+    CHECK(bus_->sent().front().frame == question());
     const Moment end = std::min(lasting_ > 0s ? begun_ + lasting_ : Moment::max(), world_.signal_at());
     CHECK(whole_ == (world_.signal_at() > begun_ + lasting_ && lasting_ > 0s));
     CHECK(cli::is_rest(sent.back().frame));
@@ -197,7 +203,7 @@ std::vector<Moment> driven(std::optional<Moment> stopped, bool& left) {
     left = true;
   }
   std::vector<Moment> moving;
-  for (const auto& each : bus.sent())
+  for (const auto& each : after_question(bus.sent()))
     if (!cli::is_rest(each.frame)) moving.push_back(each.taken);
   CHECK((moving.empty() || cli::is_rest(bus.sent().back().frame)));
   return moving;
@@ -214,6 +220,90 @@ TEST_CASE("drive: a stop of the program just as the first set point leaves ends 
     const auto moving = driven(stopped, left);
     CHECK(left);
     CHECK(std::count_if(moving.begin(), moving.end(), [&](Moment time) { return time > stopped; }) <= 1);
+  }
+}
+
+/// A drive of a second on such a bus, and whether it left.
+bool drive_a_second(World& world, PlayedBus& bus) {
+  try {
+    Timeline timeline{bus, amiro::catalogue, "drive", Timeline::Others::refused, cli::Confirm::no, {}};
+    const bool begins = timeline.listen_first();
+    REQUIRE(begins);
+    timeline.carry_out(drive(1s));
+    static_cast<void>(timeline.wait_for_end());
+    static_cast<void>(timeline.finish());
+  } catch (const cli::Exit& exit) {
+    CHECK(exit.code == 1);
+    world.wait_until(world.now() + 100s);
+    return true;
+  }
+  return false;
+}
+
+/// A bus from which no frame leaves for so long, from the beginning.
+PlayedBus::Conditions stuck_for(Duration lasting) {
+  PlayedBus::Conditions conditions;
+  conditions.stuck = {{World::start, World::start + lasting}};
+  return conditions;
+}
+
+TEST_CASE("drive: no set point waits behind the question what the boards do by themselves") {
+  const Silence silence;
+  for (const Duration lasting : {0ms, 150ms, 400ms, 600ms, 700ms, 2000ms}) {
+    INFO("stuck for " << lasting.count() << " ns");
+    World world{1};
+    PlayedBus bus{world, stuck_for(lasting)};
+    const bool left = drive_a_second(world, bus);
+    const auto& sent = bus.sent();
+    REQUIRE_FALSE(sent.empty());
+    CHECK(sent.front().frame == question());
+    // It asks 40 ms before it has listened for long enough, and gives up as a drive does.
+    const bool too_long = lasting > client::listen_before_hold - 40ms + watchdog;
+    CHECK(left == too_long);
+    if (too_long) {
+      CHECK(sent.size() == 1);
+      continue;
+    }
+    REQUIRE(sent.size() > 2);
+    CHECK(sent[1].frame == drive(1s).frames.front());
+    CHECK(sent[1].taken >= sent[0].left + 40ms);  // in which a board answers
+    CHECK(cli::is_rest(sent.back().frame));
+  }
+}
+
+TEST_CASE("drive: a signal ends the wait for the question to leave") {
+  const Silence silence;
+  World world{1};
+  PlayedBus bus{world, stuck_for(60s)};
+  const Moment signal = World::start + client::listen_before_hold + 100ms;
+  world.interrupt(signal, SIGINT);
+  Timeline timeline{bus, amiro::catalogue, "drive", Timeline::Others::refused, cli::Confirm::no, {}};
+  CHECK_FALSE(timeline.listen_first());
+  CHECK(world.now() - signal < 5ms);
+  CHECK(bus.sent().size() == 1);
+}
+
+TEST_CASE("drive: the answer to a question that left late is heeded") {
+  const Silence silence;
+  const cli::BehaviourSensor sensor{amiro::catalogue};
+  const auto& topic = sensor.topic();
+  const auto& layout = topic.frames[0];
+  can::Frame answer{protocol::Identifier{protocol::Direction::sensor, topic.priority, layout.id}.encode(),
+                    layout.dlc(),
+                    {}};
+  const auto& values = sensor.active().values;
+  const auto travel =
+      std::find_if(values.begin(), values.end(), [](const auto& value) { return value.name == "travel"; });
+  REQUIRE(travel != values.end());
+  for (const bool active : {false, true}) {
+    INFO("active " << active);
+    protocol::put(answer.data, sensor.active().position, active ? travel->raw : 0);
+    World world{1};
+    auto conditions = stuck_for(400ms);
+    conditions.incoming = {{World::start + 430ms, answer}};
+    PlayedBus bus{world, conditions};
+    CHECK(drive_a_second(world, bus) == active);
+    CHECK((bus.sent().size() == 1) == active);
   }
 }
 

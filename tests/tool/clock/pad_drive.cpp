@@ -18,6 +18,7 @@
 #include "cli/shared/messages.hpp"
 #include "cli/shared/set_points.hpp"
 #include "tests/tool/clock/played_bus.hpp"
+#include "tests/tool/clock/question.hpp"
 #include "tests/unit/base/explore.hpp"
 
 namespace tool_clock_pad_drive_test {
@@ -85,10 +86,12 @@ struct Drive {
     static_cast<void>(timeline.finish());
     return end;
   }
+  /// All that was sent once it drives.
+  [[nodiscard]] std::vector<PlayedBus::Sent> sent() { return after_question(bus.sent()); }
   /// Set points that move, by the time at which they were sent.
   [[nodiscard]] std::vector<Duration> moving() {
     std::vector<Duration> times;
-    for (const auto& each : bus.sent())
+    for (const auto& each : sent())
       if (!cli::is_rest(each.frame)) times.push_back(each.taken - World::start);
     return times;
   }
@@ -125,7 +128,7 @@ TEST_CASE("drive by gamepad: only while a shoulder button is held") {
     INFO(time.count());
     CHECK(((time >= 2s && time <= 3s + 25ms) || (time >= 4s && time <= 5s + 25ms)));
   }
-  const auto& sent = drive.bus.sent();
+  const auto sent = drive.sent();
   CHECK(drive.forward_um_s(sent.front().frame) == 100'000);
   CHECK(cli::is_rest(sent.back().frame));
   const auto rest =
@@ -208,9 +211,10 @@ TEST_CASE("drive by gamepad: whatever a person presses, a robot moves only while
     else
       drive.at(time + 1s, {.quit = true});
     CHECK(drive.go() == (goes ? PadDrive::End::gone : PadDrive::End::quit));
-    for (const auto& each : drive.bus.sent())
+    const auto sent = drive.sent();
+    for (const auto& each : sent)
       if (!cli::is_rest(each.frame)) CHECK(drive.pad.held_between(each.taken - 25ms, each.taken));
-    if (!drive.bus.sent().empty()) CHECK(cli::is_rest(drive.bus.sent().back().frame));
+    if (!sent.empty()) CHECK(cli::is_rest(sent.back().frame));
   }
 }
 

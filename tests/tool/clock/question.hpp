@@ -1,0 +1,25 @@
+/// Before a program commands the motors it may ask, once, what the boards do by themselves.
+#pragma once
+
+#include <vector>
+
+#include "ocm/topics/amiro.hpp"
+
+#include "cli/shared/behaviour_sensor.hpp"
+#include "tests/tool/clock/played_bus.hpp"
+
+namespace ocm::test {
+
+/// The request for one sample of the sensor `behaviour`.
+inline can::Frame question() {
+  return cli::BehaviourSensor{amiro::catalogue}.request();
+}
+
+/// All that was sent but one question, which comes before everything else. A second one, or a later one, is
+/// left in.
+inline std::vector<PlayedBus::Sent> after_question(std::vector<PlayedBus::Sent> sent) {
+  if (!sent.empty() && sent.front().frame == question()) sent.erase(sent.begin());
+  return sent;
+}
+
+}  // namespace ocm::test
