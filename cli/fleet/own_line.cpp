@@ -39,7 +39,9 @@ OwnLine::OwnLine(std::string_view verb, Dongle dongle, const cognitive::FleetOpt
 }
 
 OwnLine::~OwnLine() {
-  heard_ = nullptr;  // the listener may be gone already
+  // Who listens, and what draws, may be gone already, and others still ask while the line is served below.
+  heard_ = nullptr;
+  owner_.end_drawing();
   try {
     if (port_) finish();
     server_.expire(line_time());

@@ -23,7 +23,8 @@ class OwnLine final : public LineEnd {
   OwnLine(std::string_view verb, Dongle dongle, const cognitive::FleetOptions& fleet,
           std::unique_ptr<LocalServer> service);
   /// First it serves the programs that have joined until they have ended, unless a signal has come; then
-  /// their robots are stopped. Leaves the central in command mode.
+  /// their robots are stopped. Leaves the central in command mode. What it was given to call is called no
+  /// more.
   ~OwnLine() override;
 
   /// It is called with everything that the robots say.

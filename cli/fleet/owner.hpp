@@ -53,6 +53,10 @@ class Owner {
   /// No more programs join: they are asked to wait for the line.
   void close() { closing_ = true; }
   void on_draw(Draw draw) { draw_ = std::move(draw); }
+  /// From now on there is no map for those who ask, and what drew it is asked no more.
+  void end_drawing() {
+    if (draw_) draw_ = [](std::string_view) { return std::string{}; };
+  }
   /// This program sends robots by itself, so that it matters which ones are held.
   void explores() { explores_ = true; }
   /// A request of the central has failed; all who wait for one hear of it.

@@ -31,6 +31,21 @@ class Joined(Line):
         self.assertEqual(len(found), 1)
         return found[0]
 
+    def call(self, greet=True, owner="robots"):
+        """A connection to the program that has the line, as other programs have one."""
+        caller = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self.addCleanup(caller.close)
+        caller.settimeout(30)
+        caller.connect(self.line_socket())
+        if greet:
+            self.assertEqual(self.ask(caller, b"hello 1 stranger"), b"ok\n" + owner.encode())
+        return caller
+
+    @staticmethod
+    def ask(caller, request):
+        caller.send(request)
+        return caller.recv(65536)
+
     def drive(self, *arguments):
         """A slow drive that has begun."""
         self.avr.speed = 1
@@ -110,6 +125,49 @@ class TogetherOnALine(Joined):
         self.assertRegex(err, r"map: robots \(process \d+\) has the central's line")
         _, err = self.tool("map", os.path.join(self.folder, "a.svg"), "--watch", code=1)
         self.assertRegex(err, r"robots \(process \d+\) draws no map")
+
+
+class AMapIsAskedForAtTheEnd(Joined):
+    """The line is served until it is closed, and then what draws the map may be gone."""
+
+    def test_of_a_map(self):
+        # Drawing its file holds it after the last robot has stopped and before it leaves the line.
+        hold, held = os.path.join(self.folder, "hold"), os.path.join(self.folder, "held")
+        programs = os.path.join(self.folder, "bin")
+        os.mkdir(programs)
+        with open(os.path.join(programs, "gnuplot"), "w", encoding="ascii") as file:
+            file.write("#!/bin/sh\ncat >/dev/null\n"
+                       f"while [ -e {hold} ]; do touch {held}; sleep 0.02; done\necho '<svg/>'\n")
+        os.chmod(file.name, 0o755)
+        self.environment["PATH"] = programs + ":" + self.environment["PATH"]
+        tool = self.start("map", os.path.join(self.folder, "a.svg"), "--robots", "AVR", "--scan", "200ms")
+        waiting.until(lambda: self.avr.linked and self.avr.confirmed, "the map has linked its robot")
+        caller = self.call(owner="map")
+        waiting.until(lambda: b"P5" in self.ask(caller, b"map pgm"), "there is a map")
+        open(hold, "w", encoding="ascii").close()
+        tool.send_signal(signal.SIGINT)
+        waiting.until(lambda: os.path.exists(held), "it draws its file")
+        caller.send(b"map pgm")
+        os.remove(hold)
+        self.assertEqual(caller.recv(65536), b"ok\n0\n")  # none any more
+        self.ended(tool, 130)
+
+    def test_of_a_page(self):
+        page = self.start("serve", "robots", "--port", "0", "--scan", "200ms", "--start", "AVR=0,0,0",
+                          "--start", "Arduino=0.6,0.5,90")
+        self.assertIn("http://", page.stdout.readline())
+        tool = self.drive()
+        caller = self.call(owner="serve")
+        waiting.until(lambda: b"P5" in self.ask(caller, b"map pgm"), "there is a map")
+        self.avr.loses = 1000  # as long as it has not heard the stop, the line is served
+        page.send_signal(signal.SIGINT)
+        waiting.until(lambda: self.avr.heard[-1] == "{U,0,0}", "its robot is stopped")
+        for form in (b"pgm", b"svg", b"grid"):
+            with self.subTest(form=form):
+                self.assertEqual(self.ask(caller, b"map " + form), b"ok\n0\n")
+        self.avr.loses = 0
+        self.ended(page, 130)
+        self.ended(tool, 1)
 
 
 class WhoStopsWhat(Joined):
@@ -298,20 +356,6 @@ class Hostile(Joined):
     def setUp(self):
         super().setUp()
         self.own()
-
-    def call(self, greet=True):
-        caller = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        self.addCleanup(caller.close)
-        caller.settimeout(10)
-        caller.connect(self.line_socket())
-        if greet:
-            self.assertEqual(self.ask(caller, b"hello 1 stranger"), b"ok\nrobots")
-        return caller
-
-    @staticmethod
-    def ask(caller, request):
-        caller.send(request)
-        return caller.recv(65536)
 
     def goto_works(self):
         self.assertEqual(self.tool("goto", "Arduino", "10", "5")[1], "")
