@@ -8,6 +8,7 @@
 #include "ocm/protocol/message.hpp"
 #include "ocm/topics/amiro.hpp"
 
+#include "firmware/boards/power_management/costs.hpp"
 #include "sim/amiro/robot.hpp"
 #include "unit/base/explore.hpp"
 #include "unit/base/random.hpp"
@@ -20,6 +21,20 @@ using ocm::test::Random;
 using sim::pi;
 using Active = amiro::Behaviour::Active;
 using Ended = amiro::Behaviour::Ended;
+
+// The way from an obstacle to the wheels' control in docs/behaviours.md, and the least periods of the ring
+// there.
+static_assert(firmware::boards::reaction.hops[0].responds == 12'634'000);
+static_assert(firmware::boards::reaction.bound.age == 73'322'000);
+constexpr base::Error ring_every(base::Duration period, scheduling::Level level) {
+  using Board = amiro::PowerManagement;
+  analysis::BoardAdmission<Board, amiro::bit_rate, firmware::boards::power_management::Costs> admission;
+  return admission.admit(Board::sensors::index<amiro::ProximityRing>, period, level);
+}
+static_assert(ring_every(23'100us, scheduling::Level::medium) == base::Error::not_schedulable);
+static_assert(ring_every(23'200us, scheduling::Level::medium) == base::Error::none);
+static_assert(ring_every(11'500us, scheduling::Level::urgent) == base::Error::not_schedulable);
+static_assert(ring_every(11'600us, scheduling::Level::urgent) == base::Error::none);
 
 /// The three boards on a bus without length: what one sends the others hear at once.
 struct Setup {

@@ -30,11 +30,11 @@ struct DeadReckoning {
   static constexpr Task task{.cost = 324'000, .period = 50'000'000, .blocking = 10'000, .level = 1};
 };
 
-/// [decided: floor_proximity and dead_reckoning together; a step reads the floor, and calculates less than that]
+/// [docs/boards/figures.md, what boards do by themselves: bench/firmware/run behaviours, follow under load]
 struct Behaviours {
   static constexpr std::string_view name = "behaviours";
   static constexpr bool own = true;
-  static constexpr Task task{.cost = 1'714'000, .period = 20'000'000, .blocking = 10'000, .level = 3};
+  static constexpr Task task{.cost = 2'102'000, .period = 20'000'000, .blocking = 10'000, .level = 3};
 };
 
 struct Odometry {
@@ -100,11 +100,11 @@ struct Facts {
 /// PowerManagement, each topic at its default period and priority. [docs/boards/figures.md, under load: latest measured start at 32 ns an instruction, the part's bus included]
 namespace power_management {
 
-/// [decided: proximity_ring, and 100us: a step reads the ring, and calculates little]
+/// [docs/boards/figures.md, what boards do by themselves: bench/firmware/run behaviours, avoid under load]
 struct Avoidance {
   static constexpr std::string_view name = "avoidance";
   static constexpr bool own = true;
-  static constexpr Task task{.cost = 9'208'000, .period = 50'000'000, .blocking = 1'000'000, .level = 1};
+  static constexpr Task task{.cost = 11'634'000, .period = 50'000'000, .blocking = 1'000'000, .level = 1};
 };
 
 struct ProximityRing {
