@@ -37,7 +37,7 @@ class Trails {
 /// What is drawn beside the world itself.
 struct RoomScene {
   double speed = 1;        ///< times real time
-  std::string_view bus{};    ///< where to reach it: "sim", "vcan0", a line; empty: nothing is said
+  std::string_view bus{};  ///< where to reach it: "sim", "vcan0", a line; empty: nothing is said
   std::size_t chosen = 0;  ///< robot that is described; beyond the last: the last
   bool beams = true;
   std::string_view message{};  ///< for the last line; empty: the keys

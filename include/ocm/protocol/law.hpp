@@ -21,7 +21,7 @@ namespace ocm::protocol {
 [[nodiscard]] constexpr double square_root(double square) noexcept {
   if (!(square > 0)) return 0;
   if (square > std::numeric_limits<double>::max()) return square;  // infinite
-  double root = square > 1 ? square : 1;    // above the root, from where each step comes nearer
+  double root = square > 1 ? square : 1;  // above the root, from where each step comes nearer
   for (double next = (root + square / root) / 2; next < root; next = (root + square / root) / 2) root = next;
   return root;
 }

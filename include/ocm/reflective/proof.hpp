@@ -41,8 +41,8 @@
 ///     its first sample       + R, without its own request, if the next one is later
 ///
 /// A request that is made after the board's return arrives; so the last sample and the last lost request are
-/// not later than that. In the first `settle` of a configuration no stream is late (`check`), so that what its
-/// entry asks for comes within a period of the end of that.
+/// not later than that. In the first `settle` of a configuration no stream is late (`check`), so that what
+/// its entry asks for comes within a period of the end of that.
 ///
 /// Assumed: a board begins a sample at the release, which is J late at most, reads the value at any time from
 /// then on, and hands its frames over S later at most, in the order of the samples: `Sampling`, what the

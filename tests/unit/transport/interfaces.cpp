@@ -67,15 +67,15 @@ Bytes can_info(std::uint32_t bit_rate, std::uint32_t state = CAN_STATE_ERROR_ACT
 
 TEST_CASE("only the CAN interfaces are read from the kernel's list") {
   std::vector<CanInterface> found;
-  const Bytes datagram = link(ARPHRD_LOOPBACK, 1, IFF_UP, attribute(IFLA_IFNAME, text("lo"))) +
-                         link(transport::can_hardware_type, 4, IFF_UP | IFF_RUNNING,
-                              attribute(IFLA_IFNAME, text("can0")) + can_info(500'000)) +
-                         link(transport::can_hardware_type, 5, 0,
-                              attribute(IFLA_IFNAME, text("vcan12")) +
-                                  attribute(IFLA_LINKINFO, attribute(IFLA_INFO_KIND, text("vcan")))) +
-                         link(transport::can_hardware_type, 6, IFF_UP, attribute(IFLA_IFNAME, text("gone")),
-                              RTM_DELLINK) +
-                         message(RTM_NEWLINK, bytes_of(std::uint32_t{0}));  // too short to say what it is
+  const Bytes datagram =
+      link(ARPHRD_LOOPBACK, 1, IFF_UP, attribute(IFLA_IFNAME, text("lo"))) +
+      link(transport::can_hardware_type, 4, IFF_UP | IFF_RUNNING,
+           attribute(IFLA_IFNAME, text("can0")) + can_info(500'000)) +
+      link(transport::can_hardware_type, 5, 0,
+           attribute(IFLA_IFNAME, text("vcan12")) +
+               attribute(IFLA_LINKINFO, attribute(IFLA_INFO_KIND, text("vcan")))) +
+      link(transport::can_hardware_type, 6, IFF_UP, attribute(IFLA_IFNAME, text("gone")), RTM_DELLINK) +
+      message(RTM_NEWLINK, bytes_of(std::uint32_t{0}));  // too short to say what it is
   CHECK(transport::detail::read_links(datagram, found) == LinkDump::more);
   REQUIRE(found.size() == 2);
   CHECK(found[0] == CanInterface{"can0", 4, true, "can", 500'000});
