@@ -1,6 +1,6 @@
 /// The reference of a robot's topics and of plain messages: what the spec says, for people.
 #include <algorithm>
-#include <charconv>
+#include <cmath>
 #include <map>
 #include <set>
 #include <string_view>
@@ -10,6 +10,7 @@
 
 #include "generator/targets/message_fields.hpp"
 #include "generator/targets/target.hpp"
+#include "generator/text/json.hpp"
 #include "generator/text/messages.hpp"
 #include "generator/text/words.hpp"
 #include "generator/text/writer.hpp"
@@ -23,6 +24,14 @@ using spec::FrameModel;
 using spec::MessageModel;
 using spec::Model;
 using spec::TopicModel;
+
+/// The shortest that reads back as the same number: as JSON has it, whose tables are here anyway; those of
+/// std::to_chars would be 150 kB of amiroctl on the operator's board.
+std::string shortest(double value) {
+  std::string text = Json(value).line();
+  if (text.ends_with(".0")) text.resize(text.size() - 2);
+  return text;
+}
 
 /// In a table's cell.
 std::string cell(std::string_view text) {
@@ -379,9 +388,9 @@ class Page {
           field.number == protocol::Number::float32
               ? static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(*field.start)))
               : std::bit_cast<double>(*field.start);
-      char digits[32];
       const double value = raw * field.scale.as_double() + field.offset.as_double();
-      text.assign(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
+      if (!std::isfinite(value)) return {};
+      text = shortest(value);
     }
     return "Starts at " + text + (field.unit.empty() ? "" : " " + prose(field.unit)) + ".";
   }

@@ -18,7 +18,7 @@ TEST_CASE("every mistake in a world is reported with its place, what is wrong an
   const std::string good = read("tests/sim/worlds/good.json");
   const auto table = nlohmann::json::parse(read("tests/sim/worlds/bad_worlds.json"));
   REQUIRE(table.size() >= 30);
-  const ocm::spec::Schema schema{ocm::sim::worlds::schema_text(), {}};
+  static const ocm::spec::Schema schema{ocm::sim::worlds::schema_text(), {}};
   for (const auto& row : table) {
     const std::string from = row.at("replace");
     const std::string to = row.at("by");
