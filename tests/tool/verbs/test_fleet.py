@@ -39,11 +39,12 @@ class Robots(Line):
             self.assertEqual(robot["quality"], 1.0)
             self.assertEqual(robot["pose"], {"x_cm": 0, "y_cm": 0, "heading_deg": 0})
             self.assertEqual(robot["body"]["width_cm"], 20)
-        self.assertIn("{S,CON}", self.avr.heard)
+        linked = self.avr.heard.count("{S,CON}")  # more than once where the machine was late
+        self.assertGreater(linked, 0)
         # The link stays; the next program takes it over, and asks for the handshake.
         out, _ = self.tool("robots", "--listen", "1s")
         self.assertRegex(out, r"AVR +0 +C00000000000 +idle +0 0 0 +100 %")
-        self.assertEqual(self.avr.heard.count("{S,CON}"), 1)
+        self.assertEqual(self.avr.heard.count("{S,CON}"), linked)
         self.assertNotIn("drop 0", self.central.commands)
         out, _ = self.tool("robots", "--json")
         self.assertEqual([json.loads(line)["body"]["width_cm"] for line in out.splitlines()], [20, 20])
