@@ -13,6 +13,8 @@ class Screens(harness.Case):
         super().setUp()
         self.addCleanup(self.end_terminal)
         self.assertIsNotNone(shutil.which("tmux"), "tmux is missing: scripts/setup")
+        # Its server would end with its last session, while the next one is opened.
+        self.tmux("start-server", ";", "set-option", "-g", "exit-empty", "off")
 
     def end_terminal(self):
         subprocess.run(self.command("kill-server"), env=self.environment, stderr=subprocess.DEVNULL, check=False)
