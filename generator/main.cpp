@@ -1,4 +1,5 @@
 // ocm-generate SPEC -o HEADER: a robot's C++ header from its spec; --to TARGET: another file from it.
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -46,7 +47,7 @@ constexpr const char* options_help =
     "      --to TARGET    what to write, see below; without it cpp\n"
     "      --priority P   dbc: frames at this priority only (urgent, high, medium or low), and their\n"
     "                     names without it\n"
-    "      --check        only say what is wrong with the spec\n"
+    "      --check        only say what is wrong with the spec, and all that is doubtful in it\n"
     "      --tasks        the file has task sets of processors (spec/tasks.json), not a robot's topics\n"
     "      --sentences    the file has the sentences of a robot's text link (spec/sentences.json)\n"
     "      --schema       print the JSON schema of specs, for an editor, and end\n"
@@ -118,6 +119,17 @@ int complain(const std::vector<spec::Problem>& problems) {
   return failure;
 }
 
+/// What is doubtful, and read as other programs read it. All of it, or the first places: a DBC file may have
+/// hundreds.
+void tell(const std::vector<spec::Problem>& doubts, const std::string& file, bool all) {
+  constexpr std::size_t most = 3;
+  const std::size_t told = all ? doubts.size() : std::min(doubts.size(), most);
+  for (std::size_t i = 0; i < told; ++i) complain(doubts[i]);
+  if (told < doubts.size())
+    std::fprintf(stderr, "%s: %zu more doubtful %s; --check shows all\n", file.c_str(), doubts.size() - told,
+                 doubts.size() - told == 1 ? "place" : "places");
+}
+
 int print(const std::string& text) {
   const auto problem = generate::write_file("-", text);
   return problem ? complain(*problem) : success;
@@ -177,6 +189,7 @@ int run(const Arguments& arguments) {
   }
   const auto loaded = spec::load(arguments.file);
   if (!loaded.spec) return complain(loaded.problems);
+  tell(loaded.doubts, arguments.file, arguments.check);
   const auto& target = arguments.target != nullptr ? *arguments.target : generate::targets().front();
   const spec::Model& model = loaded.spec->model();
   if (!arguments.check && model.topics.empty() && model.messages.empty())

@@ -65,11 +65,12 @@ class Condition {
                                                                Comparison comparison,
                                                                std::string_view value) {
     Condition condition{field, comparison};
+    condition.named_ = detail::named_raw(field, value);
+    if (condition.named_) return condition;
     for (const auto& named : field.values)
-      if (named.name == value) {
+      if (field.flags && named.name == value) {
         condition.named_ = named.raw;
-        const bool ordered = comparison != Comparison::equal && comparison != Comparison::different;
-        if (field.flags && ordered)
+        if (comparison != Comparison::equal && comparison != Comparison::different)
           return "a flag is set or not: write " + std::string{field.name} + '=' + std::string{value};
         return condition;
       }

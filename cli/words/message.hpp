@@ -2,6 +2,8 @@
 /// selectors follow the fields that they select.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -64,6 +66,35 @@ namespace detail {
     if (last != first) values += " to " + value(last);
   }
   return std::string{field.name} + " is there only with " + std::string{selector.name} + "=" + values;
+}
+
+/// A given field that the frame has not, or not as it was given.
+[[nodiscard]] inline std::optional<WordError> not_as_given(const protocol::Topic& message, std::size_t index,
+                                                           const GivenFields& given,
+                                                           std::span<const std::uint8_t> data) {
+  const protocol::FrameLayout& layout = message.frames[0];
+  const protocol::Field& field = layout.fields[index];
+  if (field.position.bytes() > layout.length)
+    return WordError{given[index]->word,
+                     std::string{field.name} + " ends in byte " + std::to_string(field.position.bytes() - 1) +
+                         " of " + std::string{message.name} + ", which is sent with " +
+                         std::to_string(layout.length) + " bytes",
+                     "leave it out, or state a longer message in the spec"};
+  if (bits_of(field, field.raw(data)) == bits_of(field, given[index]->raw)) return std::nullopt;
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    const protocol::Field& other = layout.fields[i];
+    if (i == index || !given[i] || !field.position.overlaps(other.position)) continue;
+    std::array<std::uint8_t, can::max_fd_length> both{};
+    protocol::put(std::span<std::uint8_t>{both}, other.position, given[i]->raw);
+    protocol::put(std::span<std::uint8_t>{both}, field.position, given[index]->raw);
+    if (bits_of(other, other.raw(std::span<const std::uint8_t>{both})) == bits_of(other, given[i]->raw))
+      continue;
+    return WordError{std::max(given[index]->word, given[i]->word),
+                     std::string{field.name} + " and " + std::string{other.name} +
+                         " have bits in common, and cannot be what both are given",
+                     "give one of them, or values that are the same in these bits"};
+  }
+  return std::nullopt;
 }
 
 }  // namespace detail
@@ -141,10 +172,15 @@ inline constexpr const char* force_beyond_range =
     frame.length = can::fd_length(can::fd_dlc(layout.length));
     frame.flags = can::fd_flags(layout.bit_rate_switch);
   }
+  // What is given comes last: many files have a field over others that are parts of it.
   const std::span<std::uint8_t> data{frame.data};
+  for (const bool of_given : {false, true})
+    for (std::size_t i = 0; i < fields.size(); ++i)
+      if (given[i].has_value() == of_given && fields[i].position.bytes() <= layout.length && is_there(i))
+        protocol::put(data, fields[i].position, raw[i]);
   for (std::size_t i = 0; i < fields.size(); ++i)
-    if (fields[i].position.bytes() <= layout.length && is_there(i))
-      protocol::put(data, fields[i].position, raw[i]);
+    if (given[i])
+      if (auto wrong = detail::not_as_given(message, i, given, data)) return *std::move(wrong);
   return frame;
 }
 

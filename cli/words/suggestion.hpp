@@ -21,13 +21,21 @@ namespace detail {
           .first -
       a.begin());
 }
+[[nodiscard]] inline bool is_same_but_case(std::string_view a, std::string_view b) {
+  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [&](char x, char y) { return lower(x) == lower(y); });
+}
 }  // namespace detail
 
-/// The candidate that is fewest edits away: one in a short word, two in a longer one; of equally near ones
-/// that which begins alike for longer. Else the only one of which the word is the beginning, --dry-run of
+/// The candidate that differs in case only; else that which is fewest edits away: one in a short word, two in
+/// a longer one; of equally near ones that which begins alike for longer. Else the only one of which the word
+/// is the beginning, --dry-run of
 /// --dry. Empty: none.
 [[nodiscard]] inline std::string_view nearest(std::string_view word,
                                               std::span<const std::string_view> candidates) {
+  for (const auto candidate : candidates)
+    if (detail::is_same_but_case(word, candidate)) return candidate;
   std::string_view found;
   std::size_t least = word.size() < 6 ? 1 : 2;
   for (const auto candidate : candidates) {

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstdint>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -109,14 +110,28 @@ namespace detail {
   return parse_quantity(text);
 }
 
+/// The value of this name. None for a number in the field's unit that the field can be: 2 means 2, although
+/// many files call 1 "2".
+[[nodiscard]] inline std::optional<std::int64_t> named_raw(const protocol::Field& field,
+                                                           std::string_view text) {
+  if (field.flags) return std::nullopt;
+  for (const auto& value : field.values) {
+    if (value.name != text) continue;
+    const auto quantity = quantity_for(field, text);
+    const bool is_own = quantity && (quantity->unit.empty() || quantity->unit == field.unit);
+    if (is_own && (field.is_float() || field.raw_from(quantity->number).ok())) return std::nullopt;
+    return value.raw;
+  }
+  return std::nullopt;
+}
+
 }  // namespace detail
 
-/// A number for a field, from "0.05m/s", "12" (in the field's unit) or the name of a value. The error is said
-/// in words, with the field's unit and range.
+/// A number for a field, from "0.05m/s", "12" (in the field's unit) or the name of a value that is no such
+/// number. The error is said in words, with the field's unit and range.
 [[nodiscard]] inline base::Result<std::int64_t, std::string> parse_value(const protocol::Field& field,
                                                                          std::string_view text) {
-  for (const auto& value : field.values)
-    if (!field.flags && value.name == text) return value.raw;
+  if (const auto named = detail::named_raw(field, text)) return *named;
   if (field.is_float()) {
     const auto value = detail::parse_float(field, text);
     const auto bits = value ? field.float_from(*value) : base::Result<std::int64_t>{value.error};

@@ -60,6 +60,8 @@ std::string sentence(std::string_view text) {
 class Dbc {
  public:
   Dbc(const Model& model, const Options& options) : model_(model), options_(options) {
+    for (const auto& board : model.boards) node_names_.expect(board.name);
+    for (const auto& message : model.messages) message_names_.expect(message.name);
     for (const auto& board : model.boards) nodes_.push_back(node(board.name));
   }
 

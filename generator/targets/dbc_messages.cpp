@@ -103,6 +103,7 @@ class MessagesWriter {
       out_.comments += "CM_ BO_ " + id + " " + dbc_text(message.description) + ";\n";
     DbcNames signal_names;
     auto& names = names_.emplace_back();
+    for (const FieldModel& field : message.fields) signal_names.expect(field.name);
     for (const FieldModel& field : message.fields) {
       names.push_back(signal_names.unique(field.name));
       if (names.back() != field.name)

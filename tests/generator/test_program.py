@@ -36,6 +36,21 @@ class Program(unittest.TestCase):
         self.assertIn("struct Gyroscope {", self.header.read_text())
         self.assertEqual(sorted(os.listdir(self.folder)), ["good.json", "pair.hpp"])
 
+    def test_what_is_doubtful_is_named_with_its_line(self):
+        """A header is written all the same. Three places, and how many more: --check names all."""
+        spec = self.folder / "bus.dbc"
+        spec.write_text("BU_: N\nBO_ 1 M: 1 N\n" + "".join(f' SG_ S{i} : {8 + i}|1@1+ (1,0) [0|0] "" N\n' for i in range(5)))
+        doubts = [f"{spec}:{3 + i}: S{i} ends in byte 1 of M, which has 1 bytes; it is there in longer frames only" for i in range(5)]
+        done = run(spec, "-o", self.header)
+        self.assertEqual((done.returncode, done.stderr.splitlines()), (0, [*doubts[:3], f"{spec}: 2 more doubtful places; --check shows all"]))
+        self.assertTrue(self.header.exists())
+        for target in ("c", "spec"):
+            self.assertIn(doubts[0], run(spec, "--to", target, "-o", self.header).stderr)
+        done = run(spec, "--check")
+        self.assertEqual((done.returncode, done.stdout, done.stderr.splitlines()), (0, "", doubts))
+        spec.write_text(spec.read_text().replace(" SG_ S4", "").replace(' : 12|1@1+ (1,0) [0|0] "" N\n', ""))
+        self.assertIn(f"{spec}: 1 more doubtful place; --check shows all\n", run(spec, "-o", self.header).stderr)
+
     def test_as_many_boards_as_eight_bits_hold(self):
         spec = json.loads(GOOD)
         for count, said in ((255, []), (256, ["256 boards"])):

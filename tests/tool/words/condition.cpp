@@ -78,6 +78,24 @@ TEST_CASE("a named value is its raw number, a flag its bit") {
   CHECK(Condition::of(flags, Comparison::less, "on").error == "a flag is set or not: write x=on");
 }
 
+TEST_CASE("a number that is the name of another value means the number") {
+  constexpr protocol::NamedValue numbers[] = {{0, "1"}, {1, "2"}, {2, "300"}, {3, "1.5 V"}};
+  auto x = field(false);
+  x.values = numbers;
+  x.scale = {1, 0};
+  x.unit = "V";
+  x.raw_max = 255;
+  CHECK(holds(x, Comparison::equal, "1", 1));
+  CHECK_FALSE(holds(x, Comparison::equal, "1", 0));
+  CHECK(holds(x, Comparison::equal, "2 V", 2));
+  CHECK(holds(x, Comparison::greater, "1", 2));
+  CHECK(holds(x, Comparison::equal, "300", 2));  // which the field cannot be
+  CHECK(parse_value(x, "1") == 1);
+  CHECK(parse_value(x, "1V") == 1);
+  CHECK(parse_value(x, "300") == 2);
+  CHECK(parse_value(x, "1.5 V") == 3);  // with a blank it is no number
+}
+
 TEST_CASE("floats and 64 bits without sign") {
   auto real = field(false);
   real.number = protocol::Number::float32;

@@ -70,6 +70,11 @@ constexpr std::array<Field, 5> paged_fields = [] {
   return fields;
 }();
 
+// A byte, two parts of it, and what lies behind the message's bytes; the parts are before it and behind it.
+constexpr std::array<Field, 4> shared_fields{
+    field("low", {0, 4, ByteOrder::little}), field("whole", {0, 8, ByteOrder::little}, true),
+    field("top", {7, 1, ByteOrder::little}), field("beyond", {4, 8, ByteOrder::little})};
+
 constexpr protocol::FrameLayout layout(std::span<const Field> fields, std::uint32_t identifier, bool extended,
                                        std::uint16_t length) {
   protocol::FrameLayout layout;
@@ -81,6 +86,7 @@ constexpr protocol::FrameLayout layout(std::span<const Field> fields, std::uint3
 
 constexpr std::array engine_frames{layout(engine_fields, 0x100, false, 8)};
 constexpr std::array paged_frames{layout(paged_fields, 0x18FEF100, true, 5)};
+constexpr std::array shared_frames{layout(shared_fields, 0x400, false, 1)};
 constexpr std::array long_frames{layout({}, 0x200, false, 64)};
 
 constexpr std::array<Field, 2> radar_fields{field("first", {0, 8, ByteOrder::little}),
@@ -107,9 +113,12 @@ constexpr protocol::Topic message(std::string_view name, std::span<const protoco
   return topic;
 }
 
-constexpr std::array topics{message("Engine", engine_frames), message("Paged", paged_frames),
-                            message("Long", long_frames), message("Radar", radar_frames),
-                            message("SlowRadar", slow_radar_frames)};
+constexpr std::array topics{message("Engine", engine_frames),
+                            message("Paged", paged_frames),
+                            message("Long", long_frames),
+                            message("Radar", radar_frames),
+                            message("SlowRadar", slow_radar_frames),
+                            message("Shared", shared_frames)};
 constexpr protocol::Catalogue catalogue{"car", 500'000, {}, topics};
 
 auto parse(const std::string& line) {
@@ -206,6 +215,35 @@ TEST_CASE("fields that are never in one frame are refused at the word") {
   CHECK(several.error.what ==
         "Long is a message of 17 bytes, which J1939 sends in several frames by its transport protocol");
   CHECK(several.error.remedy.find("FD") == std::string::npos);
+}
+
+TEST_CASE("a field that lies over others is sent as it is given, wherever it is in the file") {
+  CHECK(frame("set Shared") == "400#00");
+  CHECK(frame("set Shared low=3") == "400#03");
+  CHECK(frame("set Shared top=1") == "400#80");
+  CHECK(frame("set Shared whole=-2") == "400#FE");
+  CHECK(frame("set Shared low=3 top=1") == "400#83");
+  CHECK(frame("set Shared whole=-125 low=3 top=1") == "400#83");  // 0x83: all three are true
+  struct Row {
+    std::string line;
+    std::size_t word;
+    std::string what;
+  };
+  const Row rows[] = {
+      {"set Shared whole=3 low=4", 3, "low and whole have bits in common, and cannot be what both are given"},
+      {"set Shared low=4 whole=3", 3, "low and whole have bits in common, and cannot be what both are given"},
+      {"set Shared top=1 whole=1 low=1", 3,
+       "whole and top have bits in common, and cannot be what both are given"},
+      {"set Shared low=1 beyond=0", 3, "beyond ends in byte 1 of Shared, which is sent with 1 bytes"},
+  };
+  for (const Row& row : rows) {
+    const auto command = parse(row.line);
+    INFO(row.line << ": " << command.error.what);
+    CHECK_FALSE(command.ok());
+    CHECK(command.error.word == row.word);
+    CHECK(command.error.what == row.what);
+    CHECK_FALSE(command.error.remedy.empty());
+  }
 }
 
 TEST_CASE("a message without fields, or with all at their start values, is sent as it is named") {

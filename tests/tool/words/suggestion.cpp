@@ -25,6 +25,9 @@ TEST_CASE("the nearest known word is named") {
   CHECK(nearest("rep", alike) == "replay");
   CHECK(nearest("re", alike) == "");
   CHECK(nearest("", {}) == "");
+  const std::vector<std::string_view> cases{"ESP_E", "ESP_STATUS", "ESP_Status"};
+  CHECK(nearest("esp_status", cases) == "ESP_STATUS");
+  CHECK(nearest("esp_e", cases) == "ESP_E");
 }
 
 TEST_CASE(
