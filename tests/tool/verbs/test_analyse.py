@@ -128,6 +128,18 @@ class Bus(Analyse):
         self.bus(DAVIS.replace("a,0x101,7,2500000", f"a,0x101,7,{edge}"), "--bitrate", "125k")
         self.bus(DAVIS.replace("a,0x101,7,2500000", f"a,0x101,7,{edge - 1}"), "--bitrate", "125k", code=1)
 
+    def test_the_usual_bit_rates(self):
+        """A frame of 135 bits every 140 bits is in time at one of them, and not at the one before."""
+        usual = ("10 kbit/s", "20 kbit/s", "50 kbit/s", "125 kbit/s", "250 kbit/s", "500 kbit/s", "800 kbit/s", "1 Mbit/s")
+        for slower, faster in zip(usual, usual[1:]):
+            rate = faster.replace(" kbit/s", "k").replace(" Mbit/s", "M")
+            period = 140 * 10 ** 9 // (int(rate[:-1]) * (1000 if rate[-1] == "k" else 10 ** 6))
+            path = self.file(BUS + f"a,0x101,8,{period}\n")
+            out, _ = self.run_tool("analyse", "bus", path, "--bitrate", slower.replace(" kbit/s", "k"), code=1)
+            self.assertIn(f"a bit rate of {faster}", out)
+            out, _ = self.run_tool("analyse", "bus", path, "--bitrate", "1M")
+            self.assertEqual(f"{faster} would do, too" in out, faster != "1 Mbit/s", out)
+
     def test_another_order(self):
         # Deadline monotonic order is not optimal. Here from the top: 125, 95 and 125 bits do not fit as a, c, b.
         text = BUS + "a,1,7,2240000,2200000,\nb,2,7,2880000,2760000,\nc,3,4,4400000,3400000,\n"
@@ -210,6 +222,14 @@ class Bus(Analyse):
                 self.assertEqual(out, "")
                 for word in words:
                     self.assertIn(word, err)
+        self.assertIn("1 error, nothing", self.run_tool("analyse", "bus", self.file(BUS + "a,1,8,0\n"), code=2)[1])
+        many = self.run_tool("analyse", "bus", self.file(BUS + "a,1,8,0\n" * 22), code=2)[1]
+        self.assertEqual(many.count("period_ns '0'"), 20)
+        self.assertIn("\nand 2 more\n", many)
+        self.assertIn("22 errors, nothing", many)
+        self.assertNotIn("more\n", self.run_tool("analyse", "bus", self.file(BUS + "a,1,8,0\n" * 20), code=2)[1])
+        least = self.run_tool("analyse", "bus", self.file(BUS + "a,1,0,1000000,1,0\n"), "--json", code=1)[0]  # late, and no mistake
+        self.assertIn('"deadline_ns":1,', least.replace(" ", ""))
         _, err = self.run_tool("analyse", "bus", os.path.join(self.folder, "none.csv"), code=1)
         self.assertIn("none.csv", err)
         path = self.file(DAVIS)
@@ -399,11 +419,17 @@ class Tasks(Analyse):
 
     def test_mistakes(self):
         for text, *words in ((TASKS + "a,1,0,10\n", "set.csv:2", "C_ns '0'"), (TASKS + "a,,1,10\n", "no priority"),
+                             (TASKS + "a,1,1,0\n", "T_ns '0'"), (TASKS + "a,1,1,10,0\n", "D_ns '0'"), (TASKS + "a,1,1,10,,-1\n", "J_ns '-1'"),
                              (TASKS + "a,1,1,10,,,-1\n", "B_ns '-1'"), ("name,C_ns\n", "T_ns")):
             out, err = self.run_tool("analyse", "tasks", self.file(text), code=2)
             self.assertEqual(out, "")
             for word in words:
                 self.assertIn(word, err)
+
+
+    def test_the_least_of_each(self):
+        rows = self.tasks(TASKS + "a,-5,1,1,1,0,0\n")["tasks"]
+        self.assertEqual(self.column(rows, "response_ns"), {"a": 1})
 
 
 class Chain(Analyse):
