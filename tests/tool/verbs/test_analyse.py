@@ -532,6 +532,27 @@ class Chain(Analyse):
         self.chain(hops, "--bitrate", "125k", "--deadline", "22ms", code=1)
         out, _ = self.run_tool("analyse", "chain", self.file(hops, "chain.csv"), "--bitrate", "125k")
         self.assertIn("22.005ms at most", out)
+        out, _ = self.run_tool("analyse", "chain", self.file(hops, "chain.csv"), "--bitrate", "125k", "--deadline", "22ms", code=1)
+        self.assertEqual(out, """\
+HOP   SET      ACTIVATION        JITTER         WAITS      RESPONDS         UNTIL
+read  cpu.csv  sampled               0s            0s           3us           3us
+pose  bus.csv  triggered            3us            0s           2ms       2.003ms
+plan  -        sampled               0s          10ms           5ms      17.003ms
+set   bus.csv  triggered            5ms            0s           2ms      19.003ms
+act   cpu.csv  sampled               0s           2ms           2us      21.005ms
+
+From the sensor's release to the end of the last hop: 0s to 21.005ms. From an event to the end of the reaction: 22.005ms at most.
+  5us after its deadline; plan takes the longest: 15ms, 10ms of it until it looks
+""")
+        out, _ = self.run_tool("analyse", "chain", self.file(hops, "chain.csv"), "--bitrate", "125k", "--csv")
+        self.assertEqual(out, """\
+hop,activation,waits_ns,responds_ns,until_ns
+read,sampled,0,3000,3000
+pose,triggered,0,2000000,2003000
+plan,sampled,10000000,5000000,17003000
+set,triggered,0,2000000,19003000
+act,sampled,2000000,2000,21005000
+""")
 
     def test_over_the_robots_own_bus(self):
         found = self.chain(self.HOPS + "estimate,,sampled,2000000,,30000000\nodometry.pose,robot,triggered\n")
@@ -578,6 +599,29 @@ class Trace(Analyse):
         self.assertTrue(a["within"])
         # Two frames a 20 ms and one: 3 of 63 bits and some stuff bits of 2 us.
         self.assertAlmostEqual(whole["measured_utilisation"], 3 * 67 * 2e-6 / 20e-3, delta=1e-3)
+
+    def test_tables(self):
+        frames = self.regular(30) + [(150050, "300#01"), (150400, "101#0102")]
+        path, set_file = self.log(frames), self.file(self.SET)
+        out, _ = self.run_tool("analyse", "trace", path, "--set", set_file, code=1)
+        self.assertEqual(out, """\
+MESSAGE   FRAMES           T      SHORTEST          MEAN       LONGEST      MEASURED             R  VERDICT
+a             31        10ms         100us    9.673333ms        10.1ms             -         800us  OTHER PERIOD
+b             15        20ms          20ms          20ms          20ms         136us         300us  ok
+
+47 frames in 290.2ms; load 2.13 % measured, 2.25 % at most (500 kbit/s, generic lengths, exact test)
+Assumptions that the log contradicts:
+  - period: a came every 9.673333ms on average, every 10ms was assumed; --rates NAME=PERIOD says what was meant
+  - set: 1 frame of 0x300, which is not in the set
+  - bit rate: 1 frame came sooner after the one before than 500000 bit/s allow: the bit rate is higher, or the times are those of \
+a host and not of a CAN controller
+""")
+        out, _ = self.run_tool("analyse", "trace", path, "--set", set_file, "--csv", code=1)
+        self.assertEqual(out, """\
+name,count,period_ns,shortest_ns,mean_ns,longest_ns,lateness_ns,measured_ns,response_ns,within
+a,31,10000000,100000,9673333,10100000,,,800000,false
+b,15,20000000,20000000,20000000,20000000,0,136000,300000,true
+""")
 
     def test_messages_of_a_spec_are_the_set(self):
         car = os.path.join(os.environ["OCM_SOURCE_DIR"], "examples", "small_car.dbc")
