@@ -321,6 +321,17 @@ TEST_CASE("messages: a bit rate of a DBC file is one that a bus can have, or non
   CHECK(rate("BaudrateCANFD 2000000").bit_rate == 0);
 }
 
+TEST_CASE("messages: what a signal of a DBC file can hold is what its bits can") {
+  const Model model =
+      parse("BO_ 1 A: 8 X\n SG_ S : 0|12@1- (1,0) [0|0] \"\" X\n SG_ U : 12|12@1+ (1,0) [0|0] \"\" X\n", {},
+            "f.dbc");
+  const auto& fields = model.messages.at(0).fields;
+  CHECK(fields.at(0).raw_min == -2048);
+  CHECK(fields.at(0).raw_max == 2047);
+  CHECK(fields.at(1).raw_min == 0);
+  CHECK(fields.at(1).raw_max == 4095);
+}
+
 TEST_CASE("messages: more nodes than a catalogue has place for") {
   std::string text;
   for (int i = 0; i < 300; ++i)

@@ -156,6 +156,13 @@ class Bus(Analyse):
         self.assertEqual(self.column(found["messages"], "response_ns"),
                          {"a": 2000000 + 156 * 8000, "b": 2000000 + 156 * 8000})
 
+    def test_most_errors_at_once(self):
+        path = self.file(BUS + "a,0x101,8,1000000000000,,\n")
+        report = json.loads(self.run_tool("analyse", "bus", path, "--json", "--errors", "burst=1000000,every=1000s")[0])
+        self.assertGreater(report["messages"][0]["response_ns"], 1000000 * 135 * 2000)
+        for wrong in ("burst=1000001", "every=0ns", "burst=1,every=0s"):
+            self.assertIn("--errors " + wrong, self.run_tool("analyse", "bus", path, "--errors", wrong, code=2)[1])
+
     def test_jitter_adds_to_its_own(self):
         found = self.bus(BUS + "a,1,7,100000000,,250000\nb,2,7,100000000,,\n", "--bitrate", "125k")
         self.assertEqual(self.column(found["messages"], "response_ns")["a"], 2250000)
