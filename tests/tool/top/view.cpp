@@ -153,6 +153,13 @@ TEST_CASE("top: the help cuts no word, at any width from 40 columns on") {
     CAPTURE(width);
     REQUIRE(words_of(robot.draw({width, 70})) == words);
   }
+  // Keys have a column from the usual width on; on a narrower screen words follow them.
+  const auto has = [&](std::size_t width, const std::string& line) {
+    const auto lines = robot.draw({width, 70});
+    return std::find(lines.begin(), lines.end(), line) != lines.end();
+  };
+  CHECK(has(80, "q                            quit"));
+  CHECK(has(79, "q  quit"));
   // On the usual screen all of it, and nothing is below its end.
   CHECK(words_of(robot.draw(usual)) == words);
 }
