@@ -286,17 +286,18 @@ TraceStudy study_trace(const std::string& log_file, const std::string& set_file,
           entry.name, time_text(m.lateness), time_text(entry.jitter), time_text(result.response)));
   }
   for (const auto& [key, stranger] : strangers)
-    broken.push_back(fmt::format("set: {} frame{} of 0x{:X}, which is not in the set", stranger.second,
-                                 stranger.second == 1 ? "" : "s", stranger.first.id));
+    broken.push_back(fmt::format("set: {} of 0x{:X}, which is not in the set",
+                                 counted(stranger.second, "frame"), stranger.first.id));
   const auto allowed = static_cast<std::size_t>(
       options.error_burst + (options.error_every > 0 ? trace.span / options.error_every : 0));
   if (log.errors > allowed)
-    broken.push_back(fmt::format("errors: {} error frames, {} were assumed", log.errors, allowed));
+    broken.push_back(fmt::format("errors: {}, {} {} assumed", counted(log.errors, "error frame"), allowed,
+                                 allowed == 1 ? "was" : "were"));
   if (too_close > 0)
     broken.push_back(
-        fmt::format("bit rate: {} frames came sooner after the one before than {} bit/s allow: the bit rate "
+        fmt::format("bit rate: {} came sooner after the one before than {} bit/s allow: the bit rate "
                     "is higher, or the times are those of a host and not of a CAN controller",
-                    too_close, options.bit_rate));
+                    counted(too_close, "frame"), options.bit_rate));
   if (trace.load > trace.study.utilisation() + 1e-3)
     broken.push_back(fmt::format("load: {:.2f} % measured, {:.2f} % at most were assumed", trace.load * 100,
                                  trace.study.utilisation() * 100));

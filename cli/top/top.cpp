@@ -13,6 +13,7 @@
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/top/curses.hpp"
+#include "cli/top/message_line.hpp"
 #include "cli/top/view.hpp"
 #include "generator/spec/spec.hpp"
 
@@ -25,8 +26,6 @@ using bus_model::LogFeed;
 
 /// So often frames are taken, whether or not something is drawn: what a bus may keep for a reader is finite.
 constexpr base::Duration pump_interval = 20ms;
-/// How long a message is in the last line.
-constexpr base::Duration message_time = 5s;
 
 /// Of the bus, where it can tell, else of the spec; 0: not known.
 measure::BitRates known_bit_rates(const TopOptions& options, Session& session, const LiveFeed* live) {
@@ -170,11 +169,7 @@ class Top {
     scene.paused = paused_;
     scene.waiting = live_ && live_->bus().state() == transport::BusState::down;
     if (log_) scene.playing = log_->playing();
-    if (HeldMessages::count() != messages_) {
-      messages_ = HeldMessages::count();
-      message_until_ = Clock::now() + message_time;
-    }
-    if (Clock::now() < message_until_) scene.message = HeldMessages::newest();
+    if (message_.shows(HeldMessages::count(), Clock::now())) scene.message = HeldMessages::newest();
     screen_->draw(view_.draw(scene, screen_->size()));
   }
 
@@ -190,8 +185,7 @@ class Top {
   bool paused_ = false;
   std::optional<std::pair<Models, base::Time>> frozen_;
   Clock::time_point drawn_{};
-  std::size_t messages_ = 0;
-  Clock::time_point message_until_{};
+  MessageLine message_;
 };
 
 }  // namespace

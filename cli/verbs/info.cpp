@@ -173,8 +173,9 @@ void info(Session& session, const std::string& word) {
   }
   print_line("  priority   {} unless asked otherwise\n", name(topic->priority));
   if (sensor) {
-    print_line("  period     {} unless asked otherwise; the part samples every {}\n",
-               words::to_text(topic->period), words::to_text(topic->shortest_period));
+    const bool known = topic->shortest_period.count() != 0;
+    print_line("  period     {} unless asked otherwise{}\n", words::to_text(topic->period),
+               known ? "; the part samples every " + words::to_text(topic->shortest_period) : "");
     if (topic->deadline.count() != 0) print_line("  deadline   {}\n", words::to_text(topic->deadline));
     if (topic->jitter.count() != 0) print_line("  jitter     {}\n", words::to_text(topic->jitter));
   } else if (topic->timeout.count() != 0) {

@@ -302,6 +302,36 @@ TEST_CASE("messages: a DBC file without any is loaded, with a doubt") {
         "f.dbc");
 }
 
+TEST_CASE("messages: a bit rate of a DBC file is one that a bus can have, or none") {
+  const auto rate = [](const std::string& text) {
+    const std::string name = text.substr(0, text.find(' '));
+    return parse("BO_ 1 A: 8 X\nBA_DEF_ \"" + name + "\" INT 0 100000000;\nBA_ \"" + name + "\" " +
+                     text.substr(text.find(' ') + 1) + ";\n",
+                 {}, "f.dbc");
+  };
+  CHECK(rate("Baudrate 999").bit_rate == 0);
+  CHECK(rate("Baudrate 1000").bit_rate == 1'000);
+  CHECK(rate("Baudrate 1000000").bit_rate == 1'000'000);
+  CHECK(rate("Baudrate 1000001").bit_rate == 0);
+  CHECK(rate("Baudrate 500000").data_bit_rate == 0);
+  CHECK(rate("BaudrateCANFD 999").data_bit_rate == 0);
+  CHECK(rate("BaudrateCANFD 1000").data_bit_rate == 1'000);
+  CHECK(rate("BaudrateCANFD 16000000").data_bit_rate == 16'000'000);
+  CHECK(rate("BaudrateCANFD 16000001").data_bit_rate == 0);
+  CHECK(rate("BaudrateCANFD 2000000").bit_rate == 0);
+}
+
+TEST_CASE("messages: what a signal of a DBC file can hold is what its bits can") {
+  const Model model =
+      parse("BO_ 1 A: 8 X\n SG_ S : 0|12@1- (1,0) [0|0] \"\" X\n SG_ U : 12|12@1+ (1,0) [0|0] \"\" X\n", {},
+            "f.dbc");
+  const auto& fields = model.messages.at(0).fields;
+  CHECK(fields.at(0).raw_min == -2048);
+  CHECK(fields.at(0).raw_max == 2047);
+  CHECK(fields.at(1).raw_min == 0);
+  CHECK(fields.at(1).raw_max == 4095);
+}
+
 TEST_CASE("messages: more nodes than a catalogue has place for") {
   std::string text;
   for (int i = 0; i < 300; ++i)

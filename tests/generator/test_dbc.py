@@ -80,6 +80,8 @@ class Dbc(Case):
         self.assertEqual(frames[0x61E].signal_by_name("minutes").values, {65535: "unknown"})
         self.assertEqual(frames[0x20A].signal_by_name("action").values, {0: "none", 1: "measure", 2: "forget"})
         self.assertIn("Bit 1: charging", frames[0x61E].signal_by_name("flags").comment)
+        force = self.by_id(self.load("probe"))[0x230].signal_by_name("force")  # a float
+        self.assertEqual((force.min, force.max), (Decimal("-2.5"), Decimal(40)))
         celsius = self.by_id(self.load("ferry"))[0x7B1].signal_by_name("temperature")
         self.assertEqual((celsius.unit, celsius.offset), ("\u00b0C", -40))
 

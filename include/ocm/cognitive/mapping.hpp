@@ -103,8 +103,10 @@ class Mapping {
       if (track.order.kind == Order::Kind::drive || track.order.kind == Order::Kind::look) return false;
       // Who waited because it was called back has not been asked since.
       if (!track.asked) return false;
-      const bool waits = track.order.kind == Order::Kind::wait && (scout.call_back || track.waits_for_link);
-      if (waits && now_ - track.called_at < options_.patience) return false;
+      if (track.order.kind != Order::Kind::wait) continue;
+      // Others were in its way: it is asked again, and then goes on or has nothing left.
+      if (!scout.call_back && !track.waits_for_link) return false;
+      if (now_ - track.called_at < options_.patience) return false;
     }
     return any;
   }

@@ -53,6 +53,15 @@ TEST_CASE("a world is what its file says") {
   CHECK(world.starts[1].pose == Pose{2, 1.5, 0});
 }
 
+TEST_CASE("a number may be the least and the most of its range") {
+  for (const char* const friction : {"0.05", "2"}) {
+    CAPTURE(friction);
+    CHECK(good(R"({"name":"w","walls":[],"friction":)" + std::string{friction} +
+               R"(,"robots":[{"name":"A","model":"avr","at":[-1000,1000]}]})")
+              .friction == std::stod(friction));
+  }
+}
+
 TEST_CASE("what a world does not say is as documented") {
   const WorldModel world =
       good(R"({"name":"w","walls":[],"robots":[{"name":"A","model":"avr","at":[1,2]}]})");

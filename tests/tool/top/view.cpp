@@ -85,6 +85,28 @@ TEST_CASE("top: a picture by hand") {
   CHECK(lines[23].starts_with("? help  q quit"));
 }
 
+TEST_CASE("top: each column has a width from which on there is room for it") {
+  Robot robot;
+  const auto heading = [&](std::size_t width) {
+    const std::string line = robot.line("NAME", {width, 24});
+    return line.substr(0, line.find_last_not_of(' ') + 1);
+  };
+  CHECK(heading(120) == "NAME         HZ JITTER    AGE    BUS CHANGED FAULTS     COUNT VALUES");
+  CHECK(heading(119) == "NAME         HZ JITTER    AGE    BUS CHANGED FAULTS VALUES");
+  CHECK(heading(110) == heading(119));
+  CHECK(heading(109) == "NAME         HZ JITTER    AGE    BUS CHANGED VALUES");
+  CHECK(heading(96) == heading(109));
+  CHECK(heading(95) == "NAME         HZ JITTER    AGE    BUS VALUES");
+  CHECK(heading(78) == heading(95));
+  CHECK(heading(77) == "NAME         HZ JITTER    AGE VALUES");
+  CHECK(heading(70) == heading(77));
+  CHECK(heading(69) == "NAME         HZ    AGE VALUES");
+  CHECK(heading(56) == heading(69));
+  CHECK(heading(55) == "NAME         HZ VALUES");
+  CHECK(robot.line("scale", {120, 24}) ==
+        "scale      10.0    0us  100ms   0.6%   100ms      0        20 weight 119 g  state stable");
+}
+
 TEST_CASE("top: fits every terminal, and breaks no number") {
   Robot robot;
   robot.view.press(letter("*"));
@@ -131,6 +153,13 @@ TEST_CASE("top: the help cuts no word, at any width from 40 columns on") {
     CAPTURE(width);
     REQUIRE(words_of(robot.draw({width, 70})) == words);
   }
+  // Keys have a column from the usual width on; on a narrower screen words follow them.
+  const auto has = [&](std::size_t width, const std::string& line) {
+    const auto lines = robot.draw({width, 70});
+    return std::find(lines.begin(), lines.end(), line) != lines.end();
+  };
+  CHECK(has(80, "q                            quit"));
+  CHECK(has(79, "q  quit"));
   // On the usual screen all of it, and nothing is below its end.
   CHECK(words_of(robot.draw(usual)) == words);
 }

@@ -355,6 +355,19 @@ class Scripts(Case):
         out, _ = self.interrupt(listener)
         self.assertEqual(self.objects(out)[-1]["data"], "0000000000000000")
 
+    def test_it_shows_what_sensors_answer_and_no_commands(self):
+        self.start_sim()
+        run = self.start("run", self.script("0s publish gyro 100ms\n60s stop\n"), "--show")
+        shown = [run.stdout.readline()]
+        # Of another program: a request, and a set point of an LED.
+        self.run_tool("publish", "odom", "100ms")
+        self.run_tool("led", "1", "red")
+        while len(shown) < 100 and '"odometry"' not in shown[-1]:
+            shown.append(run.stdout.readline())
+        shown += self.interrupt(run)[0].splitlines()
+        topics = {line["topic"] for line in self.objects("\n".join(line.strip() for line in shown))}
+        self.assertEqual(topics, {"gyroscope", "odometry"})
+
     def test_a_missing_script(self):
         _, err = self.run_tool("run", os.path.join(self.folder, "none.script"), code=1)
         self.assertIn("none.script", err)

@@ -630,6 +630,54 @@ sim --speed 0
 sim: --speed 0: out of range
 write a number from 0.001 to 1000
 
+sim --robots 0
+sim: --robots 0: out of range
+write a number from 1 to 128
+
+sim --links 129
+sim: --links 129: out of range
+write a number from 1 to 128
+
+sim --bitrate 999
+sim: --bitrate 999: out of range
+write a number from 1000 to 1000000000
+
+sim --data-bitrate 999
+sim: --data-bitrate 999: out of range
+write a number from 1000 to 1000000000
+
+sim --bus-errors -1
+sim: --bus-errors -1: out of range
+write a number from 0 to 100000
+
+sim --radio-loss 1.1
+sim: --radio-loss 1.1: out of range
+write a number from 0 to 1
+
+sim --radio-range 0
+sim: --radio-range 0: out of range
+write a number from 0.01 to 10000
+
+sim --port 65536
+sim: --port 65536: out of range
+write a number from 0 to 65535
+
+plot x.log --port 65536
+plot: --port 65536: out of range
+write a number from 0 to 65535
+
+map --port 65536
+map: --port 65536: out of range
+write a number from 0 to 65535
+
+goto a 1 2 --baud 0
+goto: --baud 0: out of range
+write a number from 1 to 4000000
+
+operate x.json --black-box-files 0
+operate: --black-box-files 0: out of range
+write a number from 1 to 10000
+
 sim --bitrate 99999999999
 sim: --bitrate 99999999999: too large
 the greatest is 4294967295

@@ -720,6 +720,9 @@ class Asked(Operating):
         self.assertEqual({way["to"] for way in why["leaves"]}, {"driving", "halted"})
         out, _ = self.run_tool("operator", "why")
         self.assertRegex(out, "driving -> slow: ")
+        for change, line in zip(why["changes"], out.splitlines()):  # by the clock on the wall, cut to milliseconds
+            at_ms = int(change["time_ns"]) // 1_000_000
+            self.assertEqual(line.split()[0], time.strftime("%H:%M:%S", time.localtime(at_ms // 1000)) + f".{at_ms % 1000:03}")
         self.assertIn("to halted by too_fast, now no (odometry.velocity.x>0.03m/s: no, age of odometry above 400ms: no)", out)
         _, err = self.run_tool("operator", "switch", "slwo", code=1)
         self.assertIn('operator halt has no configuration "slwo"', err)

@@ -301,6 +301,7 @@ TEST_CASE("queues: what cannot be bounded has a reason") {
   set[3].node = 2;
   CHECK(analysis.analyse(set, nodes, {})[0].reason == Reason::bad_input);
   CHECK(analysis.analyse(set, nodes, {})[0].largest == 3);
+  CHECK(analysis.analyse(set, nodes, {})[3].deadline == set[3].due());
   const std::array no_mailbox{NodeQueue{Kind::mailboxes, 0}, fifo};
   CHECK(analysis.analyse(example, no_mailbox, {})[0].reason == Reason::bad_input);
   CanQueues<2> small;

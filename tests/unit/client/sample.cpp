@@ -1,6 +1,7 @@
 #include "ocm/client/sample.hpp"
 
 #include <algorithm>
+#include <array>
 #include <random>
 #include <vector>
 
@@ -46,6 +47,30 @@ TEST_CASE("a sample of several frames is complete with its last") {
   REQUIRE(magnetometer.ok());
   CHECK(magnetometer->encode(1) == can::parse_frame("606#00AAF1FF")->data);
   CHECK(receiver.counters().samples == 1);
+}
+
+TEST_CASE("a sample of 64 frames needs each of them") {
+  std::array<protocol::FrameLayout, 64> layouts{};
+  for (std::size_t i = 0; i < layouts.size(); ++i)
+    layouts[i] = {"", protocol::TopicId{static_cast<std::uint8_t>(0x40 + i)}, 1, {}};
+  protocol::Topic topic = *amiro::catalogue.find("magnetometer");
+  topic.id = layouts[0].id;
+  topic.frames = layouts;
+  const protocol::Catalogue catalogue{"wide", 500'000, amiro::catalogue.boards, {&topic, 1}};
+  Receiver receiver{catalogue};
+  const auto samples = [&](std::size_t lost) {
+    const std::uint64_t before = receiver.counters().samples;
+    for (std::size_t i = 0; i < layouts.size(); ++i) {
+      const auto id =
+          protocol::Identifier{protocol::Direction::sensor, protocol::Priority::medium, layouts[i].id};
+      if (i != lost) static_cast<void>(receiver.take({base::Time{}, can::Frame{id.encode(), 1, {}}}));
+    }
+    return receiver.counters().samples - before;
+  };
+  CHECK(samples(64) == 1);
+  for (const std::size_t lost : {0U, 1U, 31U, 32U, 62U, 63U}) CHECK(samples(lost) == 0);
+  CHECK(samples(64) == 1);
+  CHECK(receiver.counters().incomplete == 6);
 }
 
 TEST_CASE("a sample that lacks frames is no struct") {

@@ -98,6 +98,55 @@ TEST_CASE("explorer: drives to where the border is seen, looks, and gives it up 
   CHECK(robots[0].body.pose.x_m < 1.0F);
 }
 
+TEST_CASE("explorer: drives to the next corner of a way, not past it") {
+  const Map map = map_of({"#####.##", "#####.##", "#####.##", "#####.##", "#####.##", "#####.##", "#####.##",
+                          "#......#", "########"});
+  ExplorerOptions near = options();
+  near.view_m = 0.2F;
+  Explorer explorer{near};
+  const std::array robots{scout(0, map, {1, 1})};
+  const Order order = explorer.next(0, robots, map, Time{});
+  REQUIRE(order.kind == Kind::drive);
+  CHECK(order.set_point.angle == 0);
+  CHECK(order.set_point.distance >= 37);
+  CHECK(order.set_point.distance <= 40);
+}
+
+TEST_CASE("explorer: a corner nearer than 3 cm is passed by") {
+  // Cells of 2 cm. The robot is closer to the wall than it may come: only the next cell is straight ahead.
+  std::vector<std::string> rows(20, "#" + std::string(60, '.'));
+  rows.insert(rows.begin(), std::string(61, '#'));
+  rows.push_back(std::string(61, '#'));
+  const Map map = map_of(rows, 0.02F);
+  ExplorerOptions near = options();
+  near.view_m = 0.1F;
+  Explorer explorer{near};
+  std::array robots{scout(0, map, {2, 10})};
+  robots[0].body.shape.width_m = robots[0].body.shape.length_m = 0.10F;
+  const Order order = explorer.next(0, robots, map, Time{});
+  REQUIRE(order.kind == Kind::drive);
+  CHECK(order.set_point.distance > 3);
+}
+
+TEST_CASE("explorer: it looks as long as the border is one, on whichever side, and no longer") {
+  const Map closed = map_of({"#####", "#...#", "#...#", "#...#", "#####"});
+  for (const auto& rows :
+       std::vector<std::vector<std::string>>{{"#####", "#...#", "#... ", "#...#", "#####"},
+                                             {"#####", "#...#", " ...#", "#...#", "#####"},
+                                             {"## ##", "#...#", "#...#", "#...#", "#####"},
+                                             {"#####", "#...#", "#...#", "#...#", "## ##"}}) {
+    const Map map = map_of(rows);
+    Explorer explorer{options()};
+    const std::array robots{scout(0, map, {2, 2})};
+    const Order order = explorer.next(0, robots, map, Time{1s});
+    CHECK(order.kind == Kind::look);
+    CHECK(order.until == Time{1s} + options().look);
+    CHECK(explorer.next(0, robots, map, order.until - 1ns).kind == Kind::look);
+    CHECK(explorer.next(0, robots, closed, order.until - 1ns).kind == Kind::done);
+    CHECK(explorer.counters().reached == 1);
+  }
+}
+
 TEST_CASE("explorer: what is left of the border") {
   CHECK(Left{}.known() == 0.0);
   CHECK_FALSE(Left{}.is_known());

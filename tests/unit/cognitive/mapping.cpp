@@ -247,4 +247,40 @@ TEST_CASE("mapping: a robot that is lost keeps no other waiting, and goes on whe
   CHECK(expedition.result().explored > 0.97);
 }
 
+TEST_CASE("mapping: a robot that waits for another is asked again before all is done") {
+  Expedition expedition{Room{ocm::test::rectangle(0, 0, 3.0F, 0.34F)},
+                        {PerfectRobot{{0.3F, 0.17F, 0.0F}}, PerfectRobot{{0.8F, 0.17F, 0.0F}}}};
+  const auto& explorer = expedition.mapping.explorer();
+  for (int i = 0; i < 300 && explorer.counters().blocked == 0; ++i) expedition.step();
+  REQUIRE(explorer.counters().blocked > 0);  // the first one waits
+  expedition.fleet.unlinked(1);
+  expedition.mapping.step(expedition.now);
+  CHECK_FALSE(expedition.mapping.done());
+  expedition.now += 1s;
+  expedition.mapping.step(expedition.now);
+  // It goes on, or has nothing left to do: it does not wait for one that is lost.
+  CHECK((expedition.mapping.done() || expedition.mapping.explorer().goal(0)));
+}
+
+TEST_CASE("mapping: a robot that was called back and gets no better link is done after a while") {
+  FleetOptions options;
+  options.range_m = 1.0F;
+  options.central = {5.0F, 0.0F};  // far from home, where it is: it cannot come nearer
+  MappingOptions mapping;
+  mapping.patience = 10s;
+  Expedition expedition{
+      Room{ocm::test::rectangle(-1, -1, 4, 1)}, {PerfectRobot{{0, 0, 0}}}, options, mapping};
+  expedition.say(0, "{U,0,0,0,0,0,0,0,0}\n");
+  expedition.say(0, "{S,IDL}\n");
+  expedition.say(0, "{U,0,0,0,0,0,0,0,0}\n");
+  expedition.mapping.step(expedition.now);
+  CHECK_FALSE(expedition.mapping.done());
+  expedition.now += 9900ms;
+  expedition.mapping.step(expedition.now);
+  CHECK_FALSE(expedition.mapping.done());
+  expedition.now += 200ms;
+  expedition.mapping.step(expedition.now);
+  CHECK(expedition.mapping.done());
+}
+
 }  // namespace cognitive_mapping_test

@@ -55,6 +55,16 @@ TEST_CASE("status: bits by the order of the board's sensors") {
   CHECK(ask_status(board, 30ms).health.publishing == 0b1000);
 }
 
+TEST_CASE("status: the first sensor has the lowest bit") {
+  Board board;
+  board.controller.serve<amiro::Odometry>(
+      []() -> base::Result<amiro::Odometry> { return base::Error::no_answer; });
+  board.receive("203#01", 0s);
+  const Status status = ask_status(board, 2s);
+  CHECK(status.health.publishing == 0b1);
+  CHECK(status.health.faults == 0b1);
+}
+
 TEST_CASE("status: a part that answers again is no fault any more") {
   Board board;
   bool there = false;

@@ -140,6 +140,16 @@ TEST_CASE("timing: missing samples") {
   }
 }
 
+TEST_CASE("timing: samples that all have the same time have no period, and nothing of theirs is missing") {
+  Stream stream{50ms};
+  for (int i = 0; i < 3; ++i) stream.sample(at(1s));
+  const Timing timing = stream.timing(at(2s));
+  CHECK(timing.period_from == PeriodFrom::nothing);
+  CHECK(timing.period_ns == 0);
+  CHECK(timing.missing == 0);
+  CHECK(timing.gap_ns == 1'000'000'000);
+}
+
 TEST_CASE("timing: silence at the end, where samples are due") {
   Stream stream = stream_of({0, 100, 200}, 100ms);
   CHECK(stream.timing(at(349ms)).missing == 0);

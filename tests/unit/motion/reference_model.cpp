@@ -40,6 +40,11 @@ TEST_CASE("the reference approaches, and never passes the set point", "[motion]"
   CHECK(near(r, 1.0F));
 }
 
+TEST_CASE("a gain that cannot be is the nearest that can, for a part of the period, too", "[motion]") {
+  CHECK(gain_over({.gain = 1.5F, .period_s = 0.03F}, 0.01F) == 1.0F);
+  CHECK(gain_over({.gain = -0.5F, .period_s = 0.03F}, 0.01F) == 0.0F);
+}
+
 TEST_CASE("a time that cannot be moves nothing", "[motion]") {
   for (const float dt : {0.0F, -1.0F, nan, std::numeric_limits<float>::infinity()}) {
     CHECK(approach(2.0F, 8.0F, model, dt) == 2.0F);

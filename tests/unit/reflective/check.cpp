@@ -150,6 +150,9 @@ TEST_CASE("check: adaptations") {
       {.stream = 0, .topic = guard::odometry, .from = 0, .to = 10, .at_from = 100ms, .at_to = 50ms}};
   CHECK(t.findings().empty());
   Adaptation& a = t.adaptations[0];
+  a.at_from = 95ms, a.grain = 15ms;  // three grains, of which neither end is a whole number
+  CHECK(t.findings().empty());
+  a.at_from = 100ms, a.grain = Adaptation{}.grain;
   SECTION("no stream") {
     a.stream = 3;
   }

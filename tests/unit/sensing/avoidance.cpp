@@ -44,7 +44,8 @@ static_assert(blocked.command == Twist{0.0F, -2.0F} && blocked.state.turning == 
 static_assert(avoid(at_speed, near_to(60, 3, 4, 5), 0.2F, dt_s, model).command == Twist{0.0F, 2.0F});
 // It keeps to that side, whatever it sees meanwhile, until there is room.
 static_assert(avoid(blocked.state, near_to(100, 3, 4, 5), 0.2F, dt_s, model).command == Twist{0.0F, -2.0F});
-static_assert(avoid(blocked.state, near_to(120, 3, 4), 0.2F, dt_s, model).state.turning == 0);
+static_assert(avoid(blocked.state, near_to(110, 3, 4), 0.2F, dt_s, model).state.turning == -1);
+static_assert(avoid(blocked.state, near_to(111, 3, 4), 0.2F, dt_s, model).state.turning == 0);
 // All but touched beside: it stands where it would turn too late.
 static_assert(avoid(at_speed, near_to(15, 2), 0.2F, dt_s, model).command.speed_m_s == 0.0F);
 

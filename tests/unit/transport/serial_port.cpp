@@ -1,7 +1,10 @@
 #include "ocm/transport/serial_port.hpp"
 
 #include <array>
+#include <atomic>
 #include <string>
+#include <string_view>
+#include <thread>
 
 #include <catch2/catch.hpp>
 
@@ -67,6 +70,31 @@ TEST_CASE("serial port: nothing to read, no room, no bytes asked for: no error")
   }
   CHECK(*last == 0);
   CHECK(all(*pty).size() == taken);
+}
+
+TEST_CASE("serial port: a text that the line takes in parts arrives whole") {
+  auto pty = Pty::open();
+  REQUIRE(pty);
+  auto port = SerialPort::open(pty->path());
+  REQUIRE(port);
+  std::string text;
+  for (int i = 0; text.size() < 1'000'000; ++i) text += std::to_string(i) + ' ';
+  // Read while it is written: a line that has had no room takes more within one call.
+  std::string come;
+  std::atomic<bool> ends = false;
+  std::thread reader{[&] {
+    while (come.size() < text.size() && !ends) come += all(*pty);
+  }};
+  std::size_t taken = 0;
+  while (taken < text.size()) {
+    const auto size = port->write(std::string_view{text}.substr(taken));
+    if (!size || *size > text.size() - taken) break;
+    taken += *size;
+  }
+  ends = taken != text.size();
+  reader.join();
+  CHECK(taken == text.size());
+  CHECK(come == text);
 }
 
 TEST_CASE("serial port: in words, what is wrong and what to do") {

@@ -427,6 +427,22 @@ TEST_CASE("slcan: what a full adapter refuses is sent again, in the order of eac
   });
 }
 
+TEST_CASE("slcan: what was refused is sent again while the program only waits") {
+  int tried = 0;
+  Device device([&tried](Device& d, char c) {
+    const std::string answer = Device::by_the_manual(d, c);
+    if (answer != "z\r") return answer;
+    return ++tried == 1 ? std::string{"\a"} : "z\rt60511F\r";
+  });
+  SlcanOptions options = patient();
+  options.status_period = 1h;  // nothing else to do
+  const auto bus = open(device.path(), options);
+  CHECK(*bus->send(frame("100#01")));
+  CHECK(receive(*bus, 1) == std::vector<std::string>{"605#1F"});
+  CHECK(bus->adapter_counters().sent_again == 1);
+  CHECK(bus->adapter_counters().unanswered == 0);
+}
+
 TEST_CASE("slcan: a program that ends at once has still sent, also what was refused first") {
   Device device;
   std::thread later;

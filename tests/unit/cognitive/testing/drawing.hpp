@@ -1,5 +1,5 @@
-/// Maps drawn in characters, for tests: `#` occupied, `.` free, blank unknown. Cells of 10 cm; the lower left
-/// character is cell 0, 0.
+/// Maps drawn in characters, for tests: `#` occupied, `.` free, blank unknown. Cells of 10 cm, unless given;
+/// the lower left character is cell 0, 0.
 #pragma once
 
 #include <array>
@@ -15,9 +15,9 @@ namespace ocm::test {
 }
 
 /// Draws a map through its own door: a beam of no length of its own a cell, from a robot that is a point.
-[[nodiscard]] inline cognitive::Map map_of(const std::vector<std::string>& rows) {
+[[nodiscard]] inline cognitive::Map map_of(const std::vector<std::string>& rows, float cell_m = 0.10F) {
   cognitive::MapOptions options;
-  options.resolution_m = 0.10F;
+  options.resolution_m = cell_m;
   options.beam.half_width_rad = 0.0F;
   options.beam.hit = 4.0F;
   options.beam.pass = 0.0F;

@@ -71,6 +71,21 @@ TEST_CASE("central client: scans, lists, connects, speaks") {
   CHECK(bench.central.central.counters().refused_commands == 0);
 }
 
+TEST_CASE("central client: a list that is lost is asked for again, without another scan") {
+  Bench bench;
+  bench.central.add("AVR");
+  bench.client.scan(20s);
+  bench.advance(19900ms);
+  bench.loses = true;
+  bench.advance(500ms);
+  bench.loses = false;
+  CHECK(bench.count(Event::listed) == 0);
+  bench.advance(10s);
+  CHECK(bench.count(Event::listed) == 1);
+  CHECK(bench.client.peers().size() == 1);
+  CHECK(bench.client.counters().timeouts == 1);
+}
+
 TEST_CASE("central client: takes over from a program that died in data mode, or within a command") {
   for (const char* rest :
        {"conn 0\n{U,9", "swi", "start\n", "conn 0\n", "*", "start\nlis", "0123456789012345678"}) {
