@@ -7,12 +7,16 @@ import os
 import pathlib
 import re
 import shutil
+import signal
 import subprocess
+import sys
 import tempfile
 import unittest
 import unittest.mock
 
 ROOT = pathlib.Path(os.environ["OCM_SOURCE_DIR"])
+sys.path.insert(0, str(ROOT / "tests"))
+import waiting
 BUILDERS = ("cmake", "ctest", "apt-get", "sudo", "npm", "ninja")
 
 
@@ -155,6 +159,36 @@ class Build(Case):
                                  stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) for _ in range(2)]
         self.assertEqual([process.wait(timeout=60) for process in both], [0, 0])
         self.assertEqual(self.called(), ["begin", "end"] * 4)
+
+
+class Ended(Case):
+    """A script that is ended early by a signal that only it gets."""
+
+    def test_it_ends_what_it_has_started(self):
+        self.stand_in("setup", "", self.tree / "scripts")
+        started = self.tree / "started"
+        self.stand_in("cmake", f"sleep 600 & echo $$ $! >>{started}; wait")
+        for program in ("clang++-14", "llvm-cov-14", "llvm-profdata-14"):
+            self.stand_in(program, "")
+        environment = dict(os.environ, PATH=f"{self.programs}:{os.environ['PATH']}", TMPDIR=str(self.programs))
+        for script, *words in (("build",), ("build", "firmware"), ("bench", "codec"), ("fuzz", "1s"), ("test", "--only", "release"), ("demo",)):
+            for number in (signal.SIGTERM, signal.SIGHUP):
+                with self.subTest(script=script, words=words, signal=number):
+                    started.unlink(missing_ok=True)
+                    process = subprocess.Popen([self.tree / "scripts" / script, *words], env=environment, stdin=subprocess.DEVNULL,
+                                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+                    waiting.until(lambda: started.exists() and started.read_text(encoding="utf-8").endswith("\n"), f"{script} has begun to build")
+                    process.send_signal(number)
+                    self.assertEqual(process.wait(timeout=60), -number)
+                    running = [int(word) for word in started.read_text(encoding="utf-8").split()]
+                    waiting.until(lambda: not any(self.runs(each) for each in running), "what it has started has ended")
+
+    @staticmethod
+    def runs(process):
+        try:
+            return "(zombie)" not in pathlib.Path(f"/proc/{process}/status").read_text(encoding="utf-8")
+        except FileNotFoundError:
+            return False
 
 
 class Dates(Case):
