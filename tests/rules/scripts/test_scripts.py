@@ -191,6 +191,20 @@ class Ended(Case):
             return False
 
 
+class Demo(Case):
+    def test_what_is_set_for_a_real_robot_does_not_reach_it(self):
+        self.stand_in("build", "", self.tree / "scripts")
+        (self.tree / "build").mkdir()
+        seen = self.tree / "seen"
+        self.stand_in("amiroctl", f"env >>{seen}; exit 1", self.tree / "build")
+        done = self.run_script("demo", AMIROCTL_DRY_RUN="true", AMIROCTL_SPEC="car.dbc", AMIROCTL_BUS="can0", XDG_CONFIG_HOME="/the/users")
+        self.assertEqual((done.returncode, done.stderr), (1, "demo: the simulator ended; its message is above\n"))
+        words = seen.read_text(encoding="utf-8").split("\n")
+        self.assertEqual({word for word in words if word.startswith("AMIROCTL_")}, {"AMIROCTL_BUS=sim"})
+        self.assertNotIn("XDG_CONFIG_HOME=/the/users", words)
+        self.assertEqual([path.name for path in (self.tree / "build").iterdir()], ["amiroctl"], "and it leaves nothing")
+
+
 class Dates(Case):
     def test_a_file_of_cmake_that_is_dated_in_the_future_is_named(self):
         (self.tree / "cmake").mkdir()
