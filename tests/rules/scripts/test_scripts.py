@@ -27,7 +27,9 @@ class Case(unittest.TestCase):
         self.tree = pathlib.Path(folder.name) / "tree"
         for part in ("scripts", "bench", "tests/robustness/fuzz/targets"):
             shutil.copytree(ROOT / part, self.tree / part)
-        shutil.copy(ROOT / "tests" / "runs.py", self.tree / "tests" / "runs.py")
+        for file in ("tests/runs.py", "tests/rules/architecture/house.py"):
+            (self.tree / file).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(ROOT / file, self.tree / file)
         self.programs = pathlib.Path(folder.name) / "bin"
         self.programs.mkdir()
         for name in BUILDERS:
@@ -237,6 +239,28 @@ class Everywhere(Case):
                 done = self.run_script(script, *words, OCM_JOBS=jobs)
                 self.assertEqual(done.returncode, 2, done.stderr)
                 self.assertIn(f"{script}: OCM_JOBS is '{jobs}', which is no number above zero", done.stderr)
+
+
+class WithoutGit(Case):
+    """An archive of the tree, below another project's checkout."""
+
+    def setUp(self):
+        super().setUp()
+        self.stand_in("setup", "", self.tree / "scripts")
+        shutil.copy(ROOT / ".clang-format", self.tree)
+        (self.tree / "cli").mkdir()
+        (self.tree / "cli" / "wrong.cpp").write_text("int  a;\n", encoding="utf-8")
+        subprocess.run(["git", "init", "-q", self.tree.parent], check=True)
+
+    def test_style_checks_all_files(self):
+        done = self.run_script("test", "--only", "style")
+        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertIn("wrong.cpp:1:4: error: code should be clang-formatted", done.stderr)
+
+    def test_figures_count_all_files(self):
+        done = self.run_script("figures")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertRegex(done.stdout, r"\n +1  cli \(1 files\)\n")
 
 
 class Summary(Case):
