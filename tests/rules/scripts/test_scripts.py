@@ -46,6 +46,17 @@ class Case(unittest.TestCase):
                               capture_output=True, text=True, check=False, timeout=60)
 
 
+    def start(self, name, *arguments):
+        """A script that gets signals also where this test was started with some of them ignored (nohup, &)."""
+        def obey():
+            for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+                signal.signal(number, signal.SIG_DFL)
+
+        environment = dict(os.environ, PATH=f"{self.programs}:{os.environ['PATH']}", TMPDIR=str(self.programs))
+        return subprocess.Popen([self.tree / "scripts" / name, *arguments], env=environment, stdin=subprocess.DEVNULL, text=True,
+                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True, preexec_fn=obey)
+
+
 class Misspelt(Case):
     # Arguments, and the message.
     WORDS = {
@@ -60,7 +71,10 @@ class Misspelt(Case):
                   ("-q", "no option '-q'; there are -s DIR, -t SECONDS, -m SIZE, -v, --fetch, --help"),
                   ("-t", "-t needs a value; see scripts/guest --help")],
         "mutate": [("--room include/ocm/log --lst", "error: no option '--lst'; did you mean '--list'?"),
-                   ("--rom x", "error: no option '--rom'; did you mean '--room'?")],
+                   ("--rom x", "error: no option '--rom'; did you mean '--room'?"),
+                   ("--room cli/../docs", "error: unsupported room 'docs': expected a folder or file of include/ocm, cli, generator or sim"),
+                   ("--room scripts --jobs 0", "error: argument --jobs: '0': expected a whole number, 1 or more"),
+                   ("--room scripts --number 3,x", "error: argument --number: 'x': expected a whole number, 1 or more")],
         "pictures": [("terminl", "no picture 'terminl'; did you mean 'terminal'?"), ("--hlep", "no option '--hlep'; did you mean '--help'?")],
         "setup": [("--lst", "no option '--lst'; did you mean '--list'?"), ("--tool now", "'now' behind --tool, which takes nothing; see scripts/setup --help"),
                   ("--all", "no option '--all'; there are --tool, --firmware, --avr, --operator, --pictures, --list, --help")],
@@ -101,6 +115,55 @@ class Mutate(Case):
                            ("sim/physics/unjudged.hpp", "expected a source in tests/sim that includes it"),
                            ("cli/room/unjudged.cpp", expected), ("cli/verbs/unjudged.cpp", expected)):
             self.assertIn(f"mutate: {path}: no test judges it; {what}", done.stderr.splitlines())
+
+
+    def small_tree(self):
+        """A header with some bugs to plant, and its test; what JUDGES names is that of the tree."""
+        for folder in ("cli", "generator", "sim", "tests/tool"):
+            (self.tree / folder).symlink_to(ROOT / folder)
+        texts = {"include/ocm/base/below.hpp": "#pragma once\ninline bool below(int a) { return a < 3; }\n",
+                 "tests/unit/base/below.cpp": '#include "ocm/base/below.hpp"\n', "tests/precompiled.hpp": "", "tests/main.cpp": ""}
+        for path, text in texts.items():
+            (self.tree / path).parent.mkdir(parents=True, exist_ok=True)
+            (self.tree / path).write_text(text, encoding="utf-8")
+
+    def test_a_number_that_the_set_has_not(self):
+        self.small_tree()
+        done = self.run_script("mutate", "--room", "include/ocm/base", "--number", "1,99", "--list")
+        self.assertEqual(done.returncode, 2)
+        self.assertRegex(done.stderr.splitlines()[-1], r"^mutate: error: argument --number: 99: the set has \d$")
+
+    def test_what_is_missing_or_fails_without_a_bug_is_named(self):
+        self.small_tree()
+        for compiler, message in (("echo out of memory >&2; exit 1", r"^mutate: 'g\+\+ .*precompiled.hpp.gch' failed:\nout of memory\n$"),
+                                  (None, r"^mutate: g\+\+: No such file or directory\n$")):
+            if compiler:
+                self.stand_in("g++", compiler)
+                path = os.environ["PATH"]
+            else:
+                (self.programs / "g++").unlink()
+                (self.programs / "python3").symlink_to(sys.executable)
+                (self.programs / "env").symlink_to(shutil.which("env"))
+                path = ""
+            with unittest.mock.patch.dict(os.environ, PATH=path):
+                done = self.run_script("mutate", "--room", "include/ocm/base")
+            self.assertEqual(done.returncode, 1)
+            self.assertRegex(done.stderr, message)
+            self.assertEqual(list((self.tree / "build-mutate").iterdir()), [], "and nothing is left")
+
+    def test_ctrl_c_ends_what_runs_and_judges_no_more(self):
+        self.small_tree()
+        started = self.tree / "started"
+        self.stand_in("g++", f"echo $$ >>{started}; exec sleep 600")
+        for number, code in ((signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)):
+            with self.subTest(signal=number):
+                started.unlink(missing_ok=True)
+                process = self.start("mutate", "--room", "include/ocm/base")
+                waiting.until(lambda: started.exists() and started.read_text(encoding="utf-8").endswith("\n"), "it has begun to compile")
+                process.send_signal(number)
+                self.assertEqual((process.communicate(timeout=60)[0], process.returncode), ("", code))
+                self.assertFalse(Ended.runs(int(started.read_text(encoding="utf-8"))))
+                self.assertEqual(list((self.tree / "build-mutate").iterdir()), [], "and nothing is left")
 
 
 class Bench(Case):
@@ -172,16 +235,15 @@ class Ended(Case):
         self.stand_in("cmake", f"sleep 600 & echo $$ $! >>{started}; wait")
         for program in ("clang++-14", "llvm-cov-14", "llvm-profdata-14"):
             self.stand_in(program, "")
-        environment = dict(os.environ, PATH=f"{self.programs}:{os.environ['PATH']}", TMPDIR=str(self.programs))
         for script, *words in (("build",), ("build", "firmware"), ("bench", "codec"), ("fuzz", "1s"), ("test", "--only", "release"), ("demo",)):
             for number in (signal.SIGTERM, signal.SIGHUP):
                 with self.subTest(script=script, words=words, signal=number):
                     started.unlink(missing_ok=True)
-                    process = subprocess.Popen([self.tree / "scripts" / script, *words], env=environment, stdin=subprocess.DEVNULL,
-                                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+                    process = self.start(script, *words)
                     waiting.until(lambda: started.exists() and started.read_text(encoding="utf-8").endswith("\n"), f"{script} has begun to build")
                     process.send_signal(number)
-                    self.assertEqual(process.wait(timeout=60), -number)
+                    process.communicate(timeout=60)
+                    self.assertEqual(process.returncode, -number)
                     running = [int(word) for word in started.read_text(encoding="utf-8").split()]
                     waiting.until(lambda: not any(self.runs(each) for each in running), "what it has started has ended")
 
