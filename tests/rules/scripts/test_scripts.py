@@ -3,6 +3,7 @@
 Each runs in a copy of the little that it reads, where cmake, ctest and apt-get are stand-ins: nothing is built or installed.
 """
 
+import contextlib
 import os
 import pathlib
 import re
@@ -267,6 +268,38 @@ class Demo(Case):
         self.assertEqual({word for word in words if word.startswith("AMIROCTL_")}, {"AMIROCTL_BUS=sim"})
         self.assertNotIn("XDG_CONFIG_HOME=/the/users", words)
         self.assertEqual([path.name for path in (self.tree / "build").iterdir()], ["amiroctl"], "and it leaves nothing")
+
+
+class Pictures(Case):
+    def setUp(self):
+        super().setUp()
+        (self.tree / "build").mkdir()
+
+    def test_in_a_path_with_blanks(self):
+        self.tree = self.tree.rename(self.tree.parent / "tr\u00e4e of mine")
+        self.stand_in("amiroctl", """printf '%s\\n' "$@"; env | grep AMIROCTL_""", self.tree / "build")
+        self.stand_in("bash", f"exec {shutil.which('bash')} -c \"${{2/>\\/dev\\/null/}}\"")  # prints what the tool prints
+        done = self.run_script("pictures", "worst_case", AMIROCTL_SPEC="car.dbc")
+        words = done.stdout.splitlines()
+        self.assertEqual(words, ["analyse", "bus", "--svg", str(self.tree / "docs" / "images" / "worst_case.svg")], done.stderr)
+
+    def test_the_simulator_ends_with_it(self):
+        started = self.tree / "started"
+        self.stand_in("amiroctl", f"""
+            [ $1 = sim ] || exec sleep 600
+            mkdir $XDG_RUNTIME_DIR/ocm; touch $XDG_RUNTIME_DIR/ocm/sim.sock; echo $$ >{started}; exec sleep 600""", self.tree / "build")
+        for number, code in ((signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)):
+            with self.subTest(signal=number):
+                started.unlink(missing_ok=True)
+                process = self.start("pictures", "top")
+                waiting.until(lambda: started.exists() and started.read_text(encoding="utf-8").endswith("\n"), "the simulator runs")
+                process.send_signal(number)
+                self.assertEqual(process.wait(timeout=60), code)
+                self.assertFalse(Ended.runs(int(started.read_text(encoding="utf-8"))))
+                with contextlib.suppress(ProcessLookupError):  # the stand-in of a command, which would have ended by itself
+                    os.killpg(process.pid, signal.SIGKILL)
+                process.communicate(timeout=60)
+                self.assertEqual([path.name for path in self.programs.glob("ocm-*")], [], "and nothing is left")
 
 
 class Dates(Case):
