@@ -256,6 +256,22 @@ class Ended(Case):
             return False
 
 
+class Setup(Case):
+    def test_what_is_missing_is_named(self):
+        for name in ("bash", "dirname", "readlink", "sed", "tr", "id"):
+            if not (self.programs / name).exists():
+                (self.programs / name).symlink_to(shutil.which(name))
+        self.stand_in("dpkg-query", "for package; do echo installed $package; done")
+        for gone, message in (("ninja", "setup: ninja is installed, but in no folder of PATH, which is "),
+                              ("cmake", "setup: cmake is installed, but in no folder of PATH, which is "),
+                              ("apt-get", "setup: there is no apt-get here; this script is made for Debian. Install what these packages hold: g++ cmake ")):
+            (self.programs / gone).unlink()
+            with unittest.mock.patch.dict(os.environ, PATH=""):
+                done = self.run_script("setup", "--tool")
+            self.assertEqual(done.returncode, 1)
+            self.assertTrue(done.stderr.splitlines()[-1].startswith(message), done.stderr)
+
+
 class Demo(Case):
     def test_what_is_set_for_a_real_robot_does_not_reach_it(self):
         self.stand_in("build", "", self.tree / "scripts")
