@@ -220,6 +220,22 @@ class Build(Case):
         self.assertEqual([line.split()[0] for line in self.called()], ["--preset", "--build"])
 
     def test_two_at_once_take_turns(self):
+        """A stand-in of cmake that finds another one at work fails."""
+        for program in ("clang++-14", "llvm-cov-14", "llvm-profdata-14"):
+            self.stand_in(program, "")
+        (self.tree / "build").mkdir()
+        (self.tree / "build" / "build.ninja").touch()
+        busy = self.tree / "busy"
+        self.stand_in("cmake", f"mkdir {busy} || {{ touch {self.tree}/together; exit 1; }}; sleep 0.2; rmdir {busy}")
+        for pair in ((("build",), ("bench", "codec")), (("build",), ("test", "--only", "release")), (("fuzz", "--build"), ("fuzz", "--build")),
+                     (("build", "firmware"), ("build", "firmware"))):
+            with self.subTest(pair=pair):
+                both = [self.start(*words) for words in pair]
+                printed = "".join(process.communicate(timeout=60)[0] for process in both)
+                self.assertFalse((self.tree / "together").exists(), printed)
+                self.assertRegex(printed, r"(?m)^(build|bench|test|fuzz): waits for another build in build")
+
+    def test_two_builds_at_once_take_turns(self):
         self.stand_in("cmake", f"echo begin >>{self.tree}/called; sleep 0.2; echo end >>{self.tree}/called")
         both = [subprocess.Popen([self.tree / "scripts" / "build"], env=dict(os.environ, PATH=f"{self.programs}:{os.environ['PATH']}"),
                                  stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) for _ in range(2)]
