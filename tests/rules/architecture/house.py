@@ -1,6 +1,7 @@
 """The tree as the rules see it: its files, its floors (the table in docs/architecture.md), its includes."""
 import pathlib
 import re
+import shutil
 import subprocess
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
@@ -67,14 +68,18 @@ def floor_of(floors, path):
 
 
 def files(root):
-    """Every file of the project, as relative posix paths: what git has or would add, else all but build folders."""
+    """Every file of the project, as relative posix paths: what git has or would add; without git, or in a tree that is none of
+    its checkouts (an archive, also one that is unpacked below another project's), all but build folders."""
     root = pathlib.Path(root)
-    listed = subprocess.run(["git", "-C", str(root), "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
-                            capture_output=True, text=True)
-    top = subprocess.run(["git", "-C", str(root), "rev-parse", "--show-prefix"], capture_output=True, text=True)
-    if listed.returncode == 0 and top.returncode == 0 and top.stdout.strip() == "":
-        names = listed.stdout.split("\0")
-    else:
+
+    def git(*words):
+        done = subprocess.run(["git", "-C", str(root), *words], capture_output=True, text=True) if shutil.which("git") else None
+        return done.stdout if done and done.returncode == 0 else None
+
+    names = None
+    if git("rev-parse", "--show-prefix") == "\n":
+        names = (git("ls-files", "-z", "--cached", "--others", "--exclude-standard") or "").split("\0")
+    if names is None or names == [""]:
         names = [path.relative_to(root).as_posix() for path in root.rglob("*")]
         names = [name for name in names if not re.match(r"(\.git|build[^/]*)/", name)]
     return sorted(name for name in set(names) if name and (root / name).is_file())

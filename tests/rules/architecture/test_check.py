@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 """The checker, checked: a small tree that keeps every rule, and one planted violation after the other."""
+import os
 import pathlib
 import re
 import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
@@ -256,6 +258,10 @@ class Checker(unittest.TestCase):
             self.assertEqual(house.files(folder), [".gitignore", "a.txt"])  # not a repository: build folders by name
             subprocess.run(["git", "init", "-q", folder], check=True)
             self.assertEqual(house.files(folder), [".gitignore", "a.txt"])
+            (pathlib.Path(folder) / ".gitignore").write_text("a.txt\n/build/\n", encoding="utf-8")
+            self.assertEqual(house.files(folder), [".gitignore"])
+            with unittest.mock.patch.dict(os.environ, PATH="/nonexistent"):  # git is not installed
+                self.assertEqual(house.files(folder), [".gitignore", "a.txt"])
 
     def test_comments_and_strings_are_not_code(self):
         code = "a; // throw\n/* new\nnew */ b; \"throw \\\" new\"; c = 1'000'000; d = 'x';"

@@ -3,16 +3,21 @@
 Each runs in a copy of the little that it reads, where cmake, ctest and apt-get are stand-ins: nothing is built or installed.
 """
 
+import contextlib
 import os
 import pathlib
 import re
 import shutil
+import signal
 import subprocess
+import sys
 import tempfile
 import unittest
 import unittest.mock
 
 ROOT = pathlib.Path(os.environ["OCM_SOURCE_DIR"])
+sys.path.insert(0, str(ROOT / "tests"))
+import waiting
 BUILDERS = ("cmake", "ctest", "apt-get", "sudo", "npm", "ninja")
 
 
@@ -23,7 +28,9 @@ class Case(unittest.TestCase):
         self.tree = pathlib.Path(folder.name) / "tree"
         for part in ("scripts", "bench", "tests/robustness/fuzz/targets"):
             shutil.copytree(ROOT / part, self.tree / part)
-        shutil.copy(ROOT / "tests" / "runs.py", self.tree / "tests" / "runs.py")
+        for file in ("tests/runs.py", "tests/rules/architecture/house.py"):
+            (self.tree / file).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(ROOT / file, self.tree / file)
         self.programs = pathlib.Path(folder.name) / "bin"
         self.programs.mkdir()
         for name in BUILDERS:
@@ -40,6 +47,17 @@ class Case(unittest.TestCase):
                               capture_output=True, text=True, check=False, timeout=60)
 
 
+    def start(self, name, *arguments):
+        """A script that gets signals also where this test was started with some of them ignored (nohup, &)."""
+        def obey():
+            for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+                signal.signal(number, signal.SIG_DFL)
+
+        environment = dict(os.environ, PATH=f"{self.programs}:{os.environ['PATH']}", TMPDIR=str(self.programs))
+        return subprocess.Popen([self.tree / "scripts" / name, *arguments], env=environment, stdin=subprocess.DEVNULL, text=True,
+                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True, preexec_fn=obey)
+
+
 class Misspelt(Case):
     # Arguments, and the message.
     WORDS = {
@@ -52,9 +70,14 @@ class Misspelt(Case):
                  ("soon", "'soon' is no time above zero: 10, 10m or 90s; see scripts/fuzz --help")],
         "guest": [("--fecth", "no option '--fecth'; did you mean '--fetch'?"),
                   ("-q", "no option '-q'; there are -s DIR, -t SECONDS, -m SIZE, -v, --fetch, --help"),
-                  ("-t", "-t needs a value; see scripts/guest --help")],
+                  ("-t", "-t needs a value; see scripts/guest --help"),
+                  ("-t 5m true", "-t 5m: expected whole seconds above zero"), ("-t 0 true", "-t 0: expected whole seconds above zero"),
+                  ("-m lots true", "-m lots: expected a size such as 384M or 2G"), ("-s /etc/passwd true", "-s /etc/passwd: no such folder")],
         "mutate": [("--room include/ocm/log --lst", "error: no option '--lst'; did you mean '--list'?"),
-                   ("--rom x", "error: no option '--rom'; did you mean '--room'?")],
+                   ("--rom x", "error: no option '--rom'; did you mean '--room'?"),
+                   ("--room cli/../docs", "error: unsupported room 'docs': expected a folder or file of include/ocm, cli, generator or sim"),
+                   ("--room scripts --jobs 0", "error: argument --jobs: '0': expected a whole number, 1 or more"),
+                   ("--room scripts --number 3,x", "error: argument --number: 'x': expected a whole number, 1 or more")],
         "pictures": [("terminl", "no picture 'terminl'; did you mean 'terminal'?"), ("--hlep", "no option '--hlep'; did you mean '--help'?")],
         "setup": [("--lst", "no option '--lst'; did you mean '--list'?"), ("--tool now", "'now' behind --tool, which takes nothing; see scripts/setup --help"),
                   ("--all", "no option '--all'; there are --tool, --firmware, --avr, --operator, --pictures, --list, --help")],
@@ -95,6 +118,55 @@ class Mutate(Case):
                            ("sim/physics/unjudged.hpp", "expected a source in tests/sim that includes it"),
                            ("cli/room/unjudged.cpp", expected), ("cli/verbs/unjudged.cpp", expected)):
             self.assertIn(f"mutate: {path}: no test judges it; {what}", done.stderr.splitlines())
+
+
+    def small_tree(self):
+        """A header with some bugs to plant, and its test; what JUDGES names is that of the tree."""
+        for folder in ("cli", "generator", "sim", "tests/tool"):
+            (self.tree / folder).symlink_to(ROOT / folder)
+        texts = {"include/ocm/base/below.hpp": "#pragma once\ninline bool below(int a) { return a < 3; }\n",
+                 "tests/unit/base/below.cpp": '#include "ocm/base/below.hpp"\n', "tests/precompiled.hpp": "", "tests/main.cpp": ""}
+        for path, text in texts.items():
+            (self.tree / path).parent.mkdir(parents=True, exist_ok=True)
+            (self.tree / path).write_text(text, encoding="utf-8")
+
+    def test_a_number_that_the_set_has_not(self):
+        self.small_tree()
+        done = self.run_script("mutate", "--room", "include/ocm/base", "--number", "1,99", "--list")
+        self.assertEqual(done.returncode, 2)
+        self.assertRegex(done.stderr.splitlines()[-1], r"^mutate: error: argument --number: 99: the set has \d$")
+
+    def test_what_is_missing_or_fails_without_a_bug_is_named(self):
+        self.small_tree()
+        for compiler, message in (("echo out of memory >&2; exit 1", r"^mutate: 'g\+\+ .*precompiled.hpp.gch' failed:\nout of memory\n$"),
+                                  (None, r"^mutate: g\+\+: No such file or directory\n$")):
+            if compiler:
+                self.stand_in("g++", compiler)
+                path = os.environ["PATH"]
+            else:
+                (self.programs / "g++").unlink()
+                (self.programs / "python3").symlink_to(sys.executable)
+                (self.programs / "env").symlink_to(shutil.which("env"))
+                path = ""
+            with unittest.mock.patch.dict(os.environ, PATH=path):
+                done = self.run_script("mutate", "--room", "include/ocm/base")
+            self.assertEqual(done.returncode, 1)
+            self.assertRegex(done.stderr, message)
+            self.assertEqual(list((self.tree / "build-mutate").iterdir()), [], "and nothing is left")
+
+    def test_ctrl_c_ends_what_runs_and_judges_no_more(self):
+        self.small_tree()
+        started = self.tree / "started"
+        self.stand_in("g++", f"echo $$ >>{started}; exec sleep 600")
+        for number, code in ((signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)):
+            with self.subTest(signal=number):
+                started.unlink(missing_ok=True)
+                process = self.start("mutate", "--room", "include/ocm/base")
+                waiting.until(lambda: started.exists() and started.read_text(encoding="utf-8").endswith("\n"), "it has begun to compile")
+                process.send_signal(number)
+                self.assertEqual((process.communicate(timeout=60)[0], process.returncode), ("", code))
+                self.assertFalse(Ended.runs(int(started.read_text(encoding="utf-8"))))
+                self.assertEqual(list((self.tree / "build-mutate").iterdir()), [], "and nothing is left")
 
 
 class Bench(Case):
@@ -150,11 +222,118 @@ class Build(Case):
         self.assertEqual([line.split()[0] for line in self.called()], ["--preset", "--build"])
 
     def test_two_at_once_take_turns(self):
+        """A stand-in of cmake that finds another one at work fails."""
+        for program in ("clang++-14", "llvm-cov-14", "llvm-profdata-14"):
+            self.stand_in(program, "")
+        (self.tree / "build").mkdir()
+        (self.tree / "build" / "build.ninja").touch()
+        busy = self.tree / "busy"
+        self.stand_in("cmake", f"mkdir {busy} || {{ touch {self.tree}/together; exit 1; }}; sleep 0.2; rmdir {busy}")
+        for pair in ((("build",), ("bench", "codec")), (("build",), ("test", "--only", "release")), (("fuzz", "--build"), ("fuzz", "--build")),
+                     (("build", "firmware"), ("build", "firmware"))):
+            with self.subTest(pair=pair):
+                both = [self.start(*words) for words in pair]
+                printed = "".join(process.communicate(timeout=60)[0] for process in both)
+                self.assertFalse((self.tree / "together").exists(), printed)
+                self.assertRegex(printed, r"(?m)^(build|bench|test|fuzz): waits for another build in build")
+
+    def test_two_builds_at_once_take_turns(self):
         self.stand_in("cmake", f"echo begin >>{self.tree}/called; sleep 0.2; echo end >>{self.tree}/called")
         both = [subprocess.Popen([self.tree / "scripts" / "build"], env=dict(os.environ, PATH=f"{self.programs}:{os.environ['PATH']}"),
                                  stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) for _ in range(2)]
         self.assertEqual([process.wait(timeout=60) for process in both], [0, 0])
         self.assertEqual(self.called(), ["begin", "end"] * 4)
+
+
+class Ended(Case):
+    """A script that is ended early by a signal that only it gets."""
+
+    def test_it_ends_what_it_has_started(self):
+        self.stand_in("setup", "", self.tree / "scripts")
+        started = self.tree / "started"
+        self.stand_in("cmake", f"sleep 600 & echo $$ $! >>{started}; wait")
+        for program in ("clang++-14", "llvm-cov-14", "llvm-profdata-14"):
+            self.stand_in(program, "")
+        for script, *words in (("build",), ("build", "firmware"), ("bench", "codec"), ("fuzz", "1s"), ("test", "--only", "release"), ("demo",)):
+            for number in (signal.SIGTERM, signal.SIGHUP):
+                with self.subTest(script=script, words=words, signal=number):
+                    started.unlink(missing_ok=True)
+                    process = self.start(script, *words)
+                    waiting.until(lambda: started.exists() and started.read_text(encoding="utf-8").endswith("\n"), f"{script} has begun to build")
+                    process.send_signal(number)
+                    process.communicate(timeout=60)
+                    self.assertEqual(process.returncode, -number)
+                    running = [int(word) for word in started.read_text(encoding="utf-8").split()]
+                    waiting.until(lambda: not any(self.runs(each) for each in running), "what it has started has ended")
+
+    @staticmethod
+    def runs(process):
+        try:
+            return "(zombie)" not in pathlib.Path(f"/proc/{process}/status").read_text(encoding="utf-8")
+        except FileNotFoundError:
+            return False
+
+
+class Setup(Case):
+    def test_what_is_missing_is_named(self):
+        for name in ("bash", "dirname", "readlink", "sed", "tr", "id"):
+            if not (self.programs / name).exists():
+                (self.programs / name).symlink_to(shutil.which(name))
+        self.stand_in("dpkg-query", "for package; do echo installed $package; done")
+        for gone, message in (("ninja", "setup: ninja is installed, but in no folder of PATH, which is "),
+                              ("cmake", "setup: cmake is installed, but in no folder of PATH, which is "),
+                              ("apt-get", "setup: there is no apt-get here; this script is made for Debian. Install what these packages hold: g++ cmake ")):
+            (self.programs / gone).unlink()
+            with unittest.mock.patch.dict(os.environ, PATH=""):
+                done = self.run_script("setup", "--tool")
+            self.assertEqual(done.returncode, 1)
+            self.assertTrue(done.stderr.splitlines()[-1].startswith(message), done.stderr)
+
+
+class Demo(Case):
+    def test_what_is_set_for_a_real_robot_does_not_reach_it(self):
+        self.stand_in("build", "", self.tree / "scripts")
+        (self.tree / "build").mkdir()
+        seen = self.tree / "seen"
+        self.stand_in("amiroctl", f"env >>{seen}; exit 1", self.tree / "build")
+        done = self.run_script("demo", AMIROCTL_DRY_RUN="true", AMIROCTL_SPEC="car.dbc", AMIROCTL_BUS="can0", XDG_CONFIG_HOME="/the/users")
+        self.assertEqual((done.returncode, done.stderr), (1, "demo: the simulator ended; its message is above\n"))
+        words = seen.read_text(encoding="utf-8").split("\n")
+        self.assertEqual({word for word in words if word.startswith("AMIROCTL_")}, {"AMIROCTL_BUS=sim"})
+        self.assertNotIn("XDG_CONFIG_HOME=/the/users", words)
+        self.assertEqual([path.name for path in (self.tree / "build").iterdir()], ["amiroctl"], "and it leaves nothing")
+
+
+class Pictures(Case):
+    def setUp(self):
+        super().setUp()
+        (self.tree / "build").mkdir()
+
+    def test_in_a_path_with_blanks(self):
+        self.tree = self.tree.rename(self.tree.parent / "tr\u00e4e of mine")
+        self.stand_in("amiroctl", """printf '%s\\n' "$@"; env | grep AMIROCTL_""", self.tree / "build")
+        self.stand_in("bash", f"exec {shutil.which('bash')} -c \"${{2/>\\/dev\\/null/}}\"")  # prints what the tool prints
+        done = self.run_script("pictures", "worst_case", AMIROCTL_SPEC="car.dbc")
+        words = done.stdout.splitlines()
+        self.assertEqual(words, ["analyse", "bus", "--svg", str(self.tree / "docs" / "images" / "worst_case.svg")], done.stderr)
+
+    def test_the_simulator_ends_with_it(self):
+        started = self.tree / "started"
+        self.stand_in("amiroctl", f"""
+            [ $1 = sim ] || exec sleep 600
+            mkdir $XDG_RUNTIME_DIR/ocm; touch $XDG_RUNTIME_DIR/ocm/sim.sock; echo $$ >{started}; exec sleep 600""", self.tree / "build")
+        for number, code in ((signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)):
+            with self.subTest(signal=number):
+                started.unlink(missing_ok=True)
+                process = self.start("pictures", "top")
+                waiting.until(lambda: started.exists() and started.read_text(encoding="utf-8").endswith("\n"), "the simulator runs")
+                process.send_signal(number)
+                self.assertEqual(process.wait(timeout=60), code)
+                self.assertFalse(Ended.runs(int(started.read_text(encoding="utf-8"))))
+                with contextlib.suppress(ProcessLookupError):  # the stand-in of a command, which would have ended by itself
+                    os.killpg(process.pid, signal.SIGKILL)
+                process.communicate(timeout=60)
+                self.assertEqual([path.name for path in self.programs.glob("ocm-*")], [], "and nothing is left")
 
 
 class Dates(Case):
@@ -189,6 +368,28 @@ class Everywhere(Case):
                 done = self.run_script(script, *words, OCM_JOBS=jobs)
                 self.assertEqual(done.returncode, 2, done.stderr)
                 self.assertIn(f"{script}: OCM_JOBS is '{jobs}', which is no number above zero", done.stderr)
+
+
+class WithoutGit(Case):
+    """An archive of the tree, below another project's checkout."""
+
+    def setUp(self):
+        super().setUp()
+        self.stand_in("setup", "", self.tree / "scripts")
+        shutil.copy(ROOT / ".clang-format", self.tree)
+        (self.tree / "cli").mkdir()
+        (self.tree / "cli" / "wrong.cpp").write_text("int  a;\n", encoding="utf-8")
+        subprocess.run(["git", "init", "-q", self.tree.parent], check=True)
+
+    def test_style_checks_all_files(self):
+        done = self.run_script("test", "--only", "style")
+        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertIn("wrong.cpp:1:4: error: code should be clang-formatted", done.stderr)
+
+    def test_figures_count_all_files(self):
+        done = self.run_script("figures")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertRegex(done.stdout, r"\n +1  cli \(1 files\)\n")
 
 
 class Summary(Case):
