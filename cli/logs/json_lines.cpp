@@ -22,6 +22,21 @@ std::string shown(std::string_view text) {
 }
 
 /// The shortest frame that holds the layout.
+/// Of pages that exclude each other, too.
+bool has_common_bits(std::span<const protocol::Field> fields) {
+  std::vector<std::uint8_t> taken;
+  for (const auto& field : fields) {
+    const unsigned end = field.position.bytes();
+    if (taken.size() < end) taken.resize(end);
+    for (unsigned byte = field.position.start / 8U; byte < end; ++byte) {
+      const std::uint8_t bits = field.position.bits_in_byte(byte);
+      if ((taken[byte] & bits) != 0) return true;
+      taken[byte] = static_cast<std::uint8_t>(taken[byte] | bits);
+    }
+  }
+  return false;
+}
+
 std::uint8_t length_of(const log::Entry& entry, const protocol::FrameLayout& layout) {
   return entry.is_fd() ? log::fd_length(log::fd_dlc(layout.length)) : layout.dlc();
 }
@@ -31,12 +46,15 @@ std::uint8_t length_of(const log::Entry& entry, const protocol::FrameLayout& lay
 JsonLineParser::JsonLineParser(const protocol::Catalogue& catalogue, Values values)
     : catalogue_(&catalogue), values_(values), index_(catalogue) {
   for (const auto& topic : catalogue.topics)
-    for (const auto& layout : topic.frames)
+    for (const auto& layout : topic.frames) {
+      if (layout.fields.empty()) continue;
+      auto& texts = texts_[&layout];
       for (const auto& field : layout.fields) {
-        auto& texts = texts_[&layout];
         texts.fields.emplace_back(field);
         texts.multiplexed = texts.multiplexed || field.selector != protocol::no_selector;
       }
+      texts.overlapping = has_common_bits(layout.fields);
+    }
 }
 
 bool JsonLineParser::refuse(log::Cause cause, std::string what, std::string remedy) {
@@ -333,19 +351,46 @@ bool JsonLineParser::put_fields(log::Entry& entry, const Meaning& meaning) {
                   fmt::format("data of {} bytes with fields of {}", entry.length, meaning.frame.topic->name),
                   fmt::format("it has {} bytes; leave data or fields out", layout.length));
   const std::span data{entry.data.data(), entry.length};
-  const auto& [texts, multiplexed] = texts_[&layout];  // none for a frame without fields
+  const auto& [texts, multiplexed, overlapping] = texts_[&layout];  // none for a frame without fields
+  if (overlapping) return put_overlapping(data, layout);
   // Selectors first: they say which fields there are.
   if (multiplexed)
     for (std::size_t i = 0; i < record_.field_count; ++i)
-      if (!put_field(data, layout, record_.fields[i], texts, i, Part::selectors)) return false;
+      if (!put_field(data, data, layout, record_.fields[i], texts, i, Part::selectors)) return false;
   const Part rest = multiplexed ? Part::others : Part::all;
   std::array<std::uint8_t, can::max_dlc> before{};  // only frames of topics have derived fields
   std::copy_n(data.begin(), std::min(data.size(), before.size()), before.begin());
   for (std::size_t i = 0; i < record_.field_count; ++i)
-    if (!put_field(data, layout, record_.fields[i], texts, i, rest)) return false;
+    if (!put_field(data, data, layout, record_.fields[i], texts, i, rest)) return false;
   for (std::size_t i = 0; i < record_.field_count; ++i)
     if (const auto* const field = derived_field(layout, record_.fields[i].name))
       if (!agrees(*field, layout, record_.fields[i].value.text, before, data)) return false;
+  return true;
+}
+
+/// What the data says already was not edited, even where an edited field lies over it. Of what was edited
+/// each must be there at the end as the line has it.
+bool JsonLineParser::put_overlapping(std::span<std::uint8_t> data, const protocol::FrameLayout& layout) {
+  const auto& texts = texts_[&layout].fields;
+  std::array<std::uint8_t, log::max_fd_length> as_read{};
+  std::copy(data.begin(), data.end(), as_read.begin());
+  const std::span before = std::span{as_read}.first(data.size());
+  given_.clear();
+  for (const Part part : {Part::selectors, Part::others})
+    for (std::size_t i = 0; i < record_.field_count; ++i)
+      if (!put_field(data, before, layout, record_.fields[i], texts, i, part)) return false;
+  for (const auto& [field, raw] : given_) {
+    if (field->raw(data) == raw) continue;
+    const auto other = std::find_if(given_.begin(), given_.end(), [field = field](const Given& each) {
+      return each.field != field && each.field->position.overlaps(field->position);
+    });
+    if (other == given_.end())
+      return refuse(log::Cause::syntax, "field " + shown(field->name) + " is given twice", "give it once");
+    return refuse(log::Cause::syntax,
+                  fmt::format("fields {} and {} have bits in common, and cannot be what both are given",
+                              shown(field->name), shown(other->field->name)),
+                  "leave one of them out");
+  }
   return true;
 }
 
@@ -371,10 +416,11 @@ bool JsonLineParser::agrees(const protocol::Field& field, const protocol::FrameL
                 "edit " + of + ", and leave " + std::string{field.name} + " out");
 }
 
-/// `hint`: where the field is if the line has all of them, in their order.
-bool JsonLineParser::put_field(std::span<std::uint8_t> data, const protocol::FrameLayout& layout,
-                               const NamedText& named, std::span<const FieldText> fields, std::size_t hint,
-                               Part part) {
+/// `before`: what counts as not edited. `hint`: where the field is if the line has all of them, in their
+/// order.
+bool JsonLineParser::put_field(std::span<std::uint8_t> data, std::span<const std::uint8_t> before,
+                               const protocol::FrameLayout& layout, const NamedText& named,
+                               std::span<const FieldText> fields, std::size_t hint, Part part) {
   std::size_t i = hint < fields.size() && fields[hint].field().name == named.name ? hint : 0;
   while (i < fields.size() && fields[i].field().name != named.name) ++i;
   if (i == fields.size() && derived_field(layout, named.name) != nullptr) return true;  // looked at later
@@ -392,28 +438,29 @@ bool JsonLineParser::put_field(std::span<std::uint8_t> data, const protocol::Fra
                   "its selector says so, or the frame is too short; leave one of them out");
   if (record_.data) {
     char present[FieldText::room];
-    const auto size = static_cast<std::size_t>(fields[i].print(present, data.data()) - present);
+    const auto size = static_cast<std::size_t>(fields[i].print(present, before.data()) - present);
     if (text == std::string_view{present, size}) return true;
   }
   if (!named.value.is_string && !field.is_float()) {
     const auto number = base::parse_decimal(text);
-    const auto present_number = field.physical(field.raw(data));
+    const auto present_number = field.physical(field.raw(before));
     if (record_.data && number && present_number && *number == *present_number) return true;  // 2.50, 1e-06
     if (const auto raw = number ? field.raw_from(*number) : base::Result<std::int64_t>{number.error})
-      return give(data, field, text, *raw);
+      return give(data, before, field, text, *raw);
   }
   const auto raw = words::parse_value(field, text);
   if (!raw) return refuse(log::Cause::syntax, raw.error, "leave the field out, and data counts");
-  return give(data, field, text, *raw);
+  return give(data, before, field, text, *raw);
 }
 
 /// A number that is not the text of what is there; it may be the same, as of a float with other digits.
-bool JsonLineParser::give(std::span<std::uint8_t> data, const protocol::Field& field, std::string_view text,
-                          std::int64_t raw) {
-  const bool edited = !record_.data || raw != field.raw(data);
+bool JsonLineParser::give(std::span<std::uint8_t> data, std::span<const std::uint8_t> before,
+                          const protocol::Field& field, std::string_view text, std::int64_t raw) {
+  const bool edited = !record_.data || raw != field.raw(before);
   if (values_ == Values::as_stated && edited && !words::is_in_stated_range(field, raw))
     return refuse(log::Cause::syntax, words::beyond_stated_range(field, text), words::force_beyond_range);
-  protocol::put(data, field.position, raw);
+  if (edited || before.data() == data.data()) protocol::put(data, field.position, raw);
+  if (edited && before.data() != data.data()) given_.push_back({&field, raw});
   return true;
 }
 

@@ -88,8 +88,10 @@ class JsonLineParser {
   bool take_data(log::Entry& entry, const Meaning& meaning);
   bool take_remote(log::Entry& entry);
   bool put_fields(log::Entry& entry, const Meaning& meaning);
+  bool put_overlapping(std::span<std::uint8_t> data, const protocol::FrameLayout& layout);
   enum class Part : std::uint8_t { all, selectors, others };
-  bool put_field(std::span<std::uint8_t> data, const protocol::FrameLayout& layout, const NamedText& named,
+  bool put_field(std::span<std::uint8_t> data, std::span<const std::uint8_t> before,
+                 const protocol::FrameLayout& layout, const NamedText& named,
                  std::span<const FieldText> fields, std::size_t hint, Part part);
   [[nodiscard]] static const protocol::Field* derived_field(const protocol::FrameLayout& layout,
                                                             std::string_view name) noexcept;
@@ -99,8 +101,8 @@ class JsonLineParser {
   bool put_request(log::Entry& entry, const protocol::Topic& topic);
   [[nodiscard]] Meaning meaning_of(const log::Entry& entry) const;
 
-  bool give(std::span<std::uint8_t> data, const protocol::Field& field, std::string_view text,
-            std::int64_t raw);
+  bool give(std::span<std::uint8_t> data, std::span<const std::uint8_t> before, const protocol::Field& field,
+            std::string_view text, std::int64_t raw);
 
   const protocol::Catalogue* catalogue_;
   Values values_;
@@ -111,9 +113,15 @@ class JsonLineParser {
   struct Texts {
     std::vector<FieldText> fields;
     bool multiplexed = false;
+    bool overlapping = false;  ///< two fields have bits in common
   };
   std::unordered_map<const protocol::FrameLayout*, Texts> texts_;
   Record record_;
+  struct Given {
+    const protocol::Field* field;
+    std::int64_t raw;
+  };
+  std::vector<Given> given_;  // by the line, other than its data has them; of a layout that overlaps
   base::Time last_{};
   std::string bus_;
   JsonProblem problem_;

@@ -69,8 +69,8 @@ struct Signal {
   std::vector<std::string> receivers;
   std::vector<NamedValue> values;
   std::string comment;
-  std::optional<base::Decimal> start_value;  ///< raw, not scaled
-  std::vector<Attribute> attributes;         ///< those that have no member here
+  std::string start_value;            ///< as written: raw, not scaled; empty: none
+  std::vector<Attribute> attributes;  ///< those that have no member here
 
   bool is_selector = false;
   /// Index in Message::signals of what says whether this one is there; none: it always is.

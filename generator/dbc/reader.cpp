@@ -448,8 +448,7 @@ class Resolver {
         if (!nodes.empty())
           for (auto& receiver : signal.receivers) rename(receiver);
         if (signal.attributes.empty() && !defaults) continue;
-        if (const auto start = take(signal.attributes, Of::signal, "GenSigStartValue"); !start.empty())
-          if (const auto number = base::parse_decimal(start)) signal.start_value = *number;
+        signal.start_value = take(signal.attributes, Of::signal, "GenSigStartValue");
         if (std::string name = take(signal.attributes, Of::signal, "SystemSignalLongSymbol"); !name.empty())
           signal.name = std::move(name);
       }

@@ -205,8 +205,8 @@ class Converter {
   }
 
   /// All but its name, which selectors are still looked up by.
-  static FieldModel field(dbc::Signal& signal, const std::vector<dbc::Signal>& all,
-                          const std::vector<std::string>& names) {
+  FieldModel field(dbc::Signal& signal, const std::vector<dbc::Signal>& all,
+                   const std::vector<std::string>& names) {
     FieldModel out;
     out.description = std::move(signal.comment);
     out.position = signal.position;
@@ -224,10 +224,24 @@ class Converter {
       out.selector = names.empty() ? all[*signal.selector].name : names[*signal.selector];
       for (const auto& [first, last] : signal.selected) out.selected.push_back({first, last});
     }
-    if (signal.start_value) out.start = out.start_from(*signal.start_value);
+    if (!signal.start_value.empty()) start(signal, out);
     out.receivers = std::move(signal.receivers);
     out.attributes = attributes_of(signal.attributes);
     return out;
+  }
+
+  void start(const dbc::Signal& signal, FieldModel& out) {
+    out.start = out.start_from(signal.start_value);
+    const std::string what = "the start value " + signal.start_value.substr(0, 40) + " of " + signal.name;
+    const bool real = out.number != protocol::Number::integer;
+    if (!out.start)
+      return doubt(signal.line,
+                   what + (real ? " is no number that a float holds"
+                                : " is no raw number of " + std::to_string(signal.position.width) + " bits"),
+                   "left out; the signal starts at 0");
+    const auto exact = base::parse_decimal(signal.start_value);
+    if (!real && exact && exact->exponent < 0)
+      doubt(signal.line, what + " is no whole number", "read as " + out.raw_text(*out.start));
   }
 
   std::string file_name_;

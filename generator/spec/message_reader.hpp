@@ -427,9 +427,14 @@ class MessageReader : private Checker {
       if (const auto bit = integer(at, 0, width - 1)) field.values.push_back({std::move(name), *bit});
       return;
     }
+    const bool all = width == 64 && !field.is_signed;
+    if (all && at.node->is(Kind::number))
+      if (const auto bits = base::parse_unsigned(at.node->text)) {
+        field.values.push_back({std::move(name), static_cast<std::int64_t>(*bits)});
+        return;
+      }
     const auto raw = integer(at, INT64_MIN, INT64_MAX);
     if (!raw) return;
-    const bool all = width == 64 && !field.is_signed;
     if (!all && (*raw < field.raw_min || *raw > field.raw_max))
       doubt(at, std::to_string(*raw) + " is no value of " + std::to_string(width) + " bits",
             "it is kept, and never comes");
@@ -439,11 +444,13 @@ class MessageReader : private Checker {
   void read_start(const At& at, FieldModel& field) {
     const auto a = at.member("start");
     if (!a) return;
-    const auto number =
-        decimal(*a, "the raw number that is sent where nothing else is said; of a float its value");
-    if (!number) return;
-    field.start = field.start_from(*number);
-    if (!field.start) tell(*a, a->node->text.substr(0, 40) + " is out of range", "a whole number of 64 bits");
+    if (!is_kind(*a, Kind::number,
+                 "the raw number that is sent where nothing else is said; of a float its value"))
+      return;
+    field.start = field.start_from(a->node->text);
+    if (!field.start)
+      tell(*a, a->node->text.substr(0, 40) + " is out of range",
+           "a raw number of " + std::to_string(field.position.width) + " bits");
   }
 
   void read_selected(const At& at, FieldModel& field) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "ocm/base/decimal.hpp"
+#include "ocm/base/text.hpp"
 #include "ocm/base/time.hpp"
 #include "ocm/protocol/codec.hpp"
 #include "ocm/protocol/identifier.hpp"
@@ -111,9 +112,22 @@ struct FieldModel {
   std::vector<std::string> receivers;             ///< names of boards
   std::vector<AttributeModel> attributes;
 
-  /// The raw number of a start value as specs give it: raw, not scaled; of a float its number. Nothing where
-  /// it is more than 64 bits hold.
-  [[nodiscard]] std::optional<std::int64_t> start_from(base::Decimal value) const noexcept {
+  /// A raw number as a text: of all 64 bits the upper half is no negative number.
+  [[nodiscard]] std::string raw_text(std::int64_t raw) const {
+    return position.width == 64 && !is_signed ? std::to_string(static_cast<std::uint64_t>(raw))
+                                              : std::to_string(raw);
+  }
+
+  /// The raw number of a start value as specs give it: raw, not scaled, of a signed field also as its bits
+  /// (255 is -1 of 8); of a float its number. Rounded to a whole number. Nothing where the text is no number,
+  /// or one that the field cannot hold.
+  [[nodiscard]] std::optional<std::int64_t> start_from(std::string_view text) const noexcept {
+    const unsigned width = position.width;
+    if (number == protocol::Number::integer)
+      if (const auto bits = base::parse_unsigned(text)) return start_of_bits(*bits);
+    const auto parsed = base::parse_decimal(text);
+    if (!parsed) return std::nullopt;
+    const base::Decimal value = *parsed;
     if (number == protocol::Number::float32) {
       const auto real = static_cast<float>(value.as_double());
       return std::isfinite(real) ? std::optional<std::int64_t>{std::bit_cast<std::uint32_t>(real)}
@@ -124,11 +138,19 @@ struct FieldModel {
       return std::isfinite(real) ? std::optional{std::bit_cast<std::int64_t>(real)} : std::nullopt;
     }
     const auto raw = base::divide_rounded(value, {1, 0});
-    return raw ? std::optional{*raw} : std::nullopt;
+    if (!raw || *raw < protocol::lowest(width, is_signed)) return std::nullopt;
+    return *raw < 0 ? std::optional{*raw} : start_of_bits(static_cast<std::uint64_t>(*raw));
   }
 
   /// The values are all that the field can be, so that it is an enumeration: they have names and no unit.
   [[nodiscard]] bool is_enumeration() const noexcept { return !values.empty() && !flags && unit.empty(); }
+
+ private:
+  [[nodiscard]] std::optional<std::int64_t> start_of_bits(std::uint64_t bits) const noexcept {
+    const unsigned above = 64U - position.width;
+    if (bits << above >> above != bits) return std::nullopt;
+    return is_signed ? static_cast<std::int64_t>(bits << above) >> above : static_cast<std::int64_t>(bits);
+  }
 };
 
 /// What follows from a field by a law, with its uncertainty; on no wire.

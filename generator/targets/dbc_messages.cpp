@@ -156,7 +156,7 @@ class MessagesWriter {
     if (field.values.empty() || field.flags) return;
     out_.values += "VAL_ " + id + " " + name;
     for (const auto& value : field.values)
-      out_.values += " " + std::to_string(value.raw) + " " + dbc_text(value.name);
+      out_.values += " " + field.raw_text(value.raw) + " " + dbc_text(value.name);
     out_.values += " ;\n";
   }
 

@@ -402,9 +402,7 @@ class Page {
     std::string named;
     for (const auto& value : field.values)
       named += (named.empty() ? "" : ", ") + std::string{field.flags ? "bit " : ""} +
-               (value.raw < 0 && !field.is_signed ? std::to_string(static_cast<std::uint64_t>(value.raw))
-                                                  : std::to_string(value.raw)) +
-               " " + code_cell(value.name);
+               field.raw_text(value.raw) + " " + code_cell(value.name);
     if (!named.empty()) named += ".";
     std::string text;
     for (const std::string& more :

@@ -29,7 +29,7 @@ template <class Float>
   if (field.number == protocol::Number::float32)
     return shortest(std::bit_cast<float>(static_cast<std::uint32_t>(raw)));
   if (field.number == protocol::Number::float64) return shortest(std::bit_cast<double>(raw));
-  return std::to_string(raw);
+  return field.raw_text(raw);
 }
 
 }  // namespace ocm::generate

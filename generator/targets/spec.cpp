@@ -89,13 +89,13 @@ void add_values(Members& out, const FieldModel& field) {
   for (const auto& value : field.values) names.insert(value.name);
   if (names.size() == field.values.size()) {
     Members list;
-    for (const auto& value : field.values) list.add(value.name, std::to_string(value.raw));
+    for (const auto& value : field.values) list.add(value.name, field.raw_text(value.raw));
     return out.add(field.flags ? "flags" : "values", list.object());
   }
   std::string list;
   for (const auto& value : field.values) {
     Members each;
-    each.add("raw", std::to_string(value.raw));
+    each.add("raw", field.raw_text(value.raw));
     each.add("name", json(value.name));
     list += (list.empty() ? "" : ", ") + each.object();
   }

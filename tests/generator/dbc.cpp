@@ -347,7 +347,7 @@ TEST_CASE("dbc: attributes and their defaults") {
   CHECK_FALSE(b.delay_ms);
   CHECK(a.send_type == "cyclic");
   CHECK(b.send_type == "spontaneous");
-  CHECK(a.signals[0].start_value == base::Decimal{6375, -1});
+  CHECK(a.signals[0].start_value == "637.5");
   CHECK(a.attributes == std::vector<dbc::Attribute>{{"Owner", "me"}});
   CHECK(file.attributes == std::vector<dbc::Attribute>{{"DBName", "car"}});
 }

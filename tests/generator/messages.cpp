@@ -253,6 +253,63 @@ void check_both_ways(const Model& model) {
   check_same(model, from_dbc.spec->model());
 }
 
+TEST_CASE("messages: start values and names of values to the last of 64 bits") {
+  const std::string text =
+      "BO_ 1 A: 8 N\n SG_ a : 0|64@1+ (1,0) [0|0] \"\" N\n"
+      "BO_ 2 B: 8 N\n SG_ b : 0|64@1- (1,0) [0|0] \"\" N\n"
+      "BA_DEF_ SG_ \"GenSigStartValue\" HEX 0 0;\nBA_ \"GenSigStartValue\" SG_ 1 a 18446744073709551615;\n"
+      "BA_ \"GenSigStartValue\" SG_ 2 b -9223372036854775808;\n"
+      "VAL_ 1 a 18446744073709551615 \"none\" 9223372036854775808 \"half\" 1 \"one\" ;\n"
+      "VAL_ 2 b -9223372036854775808 \"least\" -1 \"minus\" ;\n";
+  const Model model = parse(text, {}, "f.dbc");
+  CHECK(model.messages[0].fields[0].start == -1);
+  CHECK(model.messages[1].fields[0].start == INT64_MIN);
+  check_both_ways(model);
+  const std::string json = generate::make_spec(model, {"f.dbc", std::nullopt});
+  CHECK(json.find(R"({ "none": 18446744073709551615, "half": 9223372036854775808, "one": 1 })") !=
+        std::string::npos);
+  CHECK(json.find(R"("start": 18446744073709551615)") != std::string::npos);
+  CHECK(json.find(R"("minus": -1)") != std::string::npos);
+  const std::string dbc = generate::make_dbc(model, {"f.json", std::nullopt});
+  CHECK(dbc.find("VAL_ 1 a 18446744073709551615 \"none\" 9223372036854775808 \"half\" 1 \"one\" ;") !=
+        std::string::npos);
+  CHECK(dbc.find("\"GenSigStartValue\" SG_ 1 a 18446744073709551615;") != std::string::npos);
+}
+
+TEST_CASE("messages: a start value that the bits do not hold is left out, with a doubt") {
+  const auto starts = [](const std::string& type, const std::string& value,
+                         const std::vector<std::string>& doubts = {}) {
+    return parse("BO_ 1 A: 8 N\n SG_ a : 0|8@1" + type +
+                     " (1,0) [0|0] \"\" N\nBA_DEF_ SG_ \"GenSigStartValue\" FLOAT 0 0;\n"
+                     "BA_ \"GenSigStartValue\" SG_ 1 a " +
+                     value + ";\n",
+                 doubts, "f.dbc")
+        .messages[0]
+        .fields[0]
+        .start;
+  };
+  CHECK(starts("+", "255") == 255);
+  CHECK(starts("-", "255") == -1);  // the same bits
+  CHECK(starts("-", "-128") == -128);
+  CHECK(starts("+", "1.2E1") == 12);
+  CHECK(starts("+", "12.5", {"f.dbc:2: the start value 12.5 of a is no whole number; read as 13"}) == 13);
+  for (const char* value : {"256", "-1", "-0.6", "255.5", "1E30", "18446744073709551616"})
+    CHECK(starts("+", value,
+                 {"f.dbc:2: the start value " + std::string{value} +
+                  " of a is no raw number of 8 bits; left out; the signal starts at 0"}) == std::nullopt);
+  CHECK(starts("-", "-129",
+               {"f.dbc:2: the start value -129 of a is no raw number of 8 bits; left out; the signal "
+                "starts at 0"}) == std::nullopt);
+  CHECK(parse("BO_ 1 A: 8 N\n SG_ a : 0|32@1- (1,0) [0|0] \"\" N\nSIG_VALTYPE_ 1 a : 1;\n"
+              "BA_DEF_ SG_ \"GenSigStartValue\" FLOAT 0 0;\nBA_ \"GenSigStartValue\" SG_ 1 a 1E60;\n",
+              {"f.dbc:2: the start value 1E60 of a is no number that a float holds; left out; the signal "
+               "starts at 0"},
+              "f.dbc")
+            .messages[0]
+            .fields[0]
+            .start == std::nullopt);
+}
+
 TEST_CASE("messages: DBC files become our JSON, and go back") {
   std::size_t files = 0;
   for (const auto& entry :
@@ -512,7 +569,7 @@ class RandomModel {
         out.values.push_back({text(), static_cast<std::int64_t>(up_to(5)) - (out.is_signed ? 2 : 0)});
     if (starts || one_in(4)) {
       const auto start =
-          out.start_from(kind < 2 ? decimal() : base::Decimal{static_cast<std::int64_t>(up_to(1)), 0});
+          out.start_from(kind < 2 ? std::string{base::to_text(decimal()).view()} : std::to_string(up_to(1)));
       out.start = start;
     }
     if (one_in(3)) out.receivers.push_back(board(model));

@@ -3,6 +3,7 @@
 `read(text or bytes)` gives a Database, `decode(message, data)` the signals that a frame carries. Scales are fractions, so that
 values are exact. It is for files that are right: what is doubtful in them it reads as it can, without a word."""
 
+import collections
 import dataclasses
 import re
 from fractions import Fraction
@@ -56,6 +57,7 @@ class Message:
     attributes: dict = dataclasses.field(default_factory=dict)
     frame_format: str = ""
     j1939: bool = False
+    other_senders: list = dataclasses.field(default_factory=list)
 
     def signal(self, name):
         return next((signal for signal in self.signals if signal.name == name), None)
@@ -69,9 +71,17 @@ class Database:
     node_comments: dict = dataclasses.field(default_factory=dict)
     attributes: dict = dataclasses.field(default_factory=dict)
     tables: dict = dataclasses.field(default_factory=dict)
+    node_attributes: dict = dataclasses.field(default_factory=dict)
+    definitions: dict = dataclasses.field(default_factory=dict)  # (what it is of, name) -> (type, bounds, names)
+    defaults: dict = dataclasses.field(default_factory=dict)
+    unused: collections.Counter = dataclasses.field(default_factory=collections.Counter)  # what means nothing for frames, by keyword
 
     def message(self, name):
         return next((message for message in self.messages if message.name == name), None)
+
+    def attribute(self, of, attributes, name):
+        """Given, or by default where it is defined for such an object."""
+        return attributes.get(name, self.defaults.get(name) if (of, name) in self.definitions else None)
 
     def find(self, number, extended):
         """Whose frame this is: the exact identifier counts first, and then the parameter group of J1939."""
@@ -115,7 +125,7 @@ class Parser:
         self.database = Database()
         self.by_id = {}
         self.defined = {}  # attribute -> (type, its names)
-        self.defaults = {}
+        self.defaults = self.database.defaults
         self.multiplexed = set()  # ids that have SG_MUL_VAL_
 
     def more(self):
@@ -175,7 +185,15 @@ class Parser:
                     getattr(self, word.strip("_").lower())(words)
                 except (IndexError, KeyError, AttributeError):
                     pass  # of a signal or message that the file does not have
-            elif word in KEYWORDS and word not in ("VERSION", "BS_"):
+            elif word == "BO_TX_BU_":
+                number, _, *senders = self.rest()
+                if int(number) in self.by_id:
+                    found = self.by_id[int(number)]
+                    found.other_senders = [sender for sender in senders if sender not in (",", found.sender)]
+            elif word == "VERSION":
+                self.database.unused[word] += bool(self.next())
+            elif word in KEYWORDS and word != "BS_":
+                self.database.unused[word] += 1
                 self.rest()
         self.finish()
         return self.database
@@ -195,6 +213,8 @@ class Parser:
         if name != INDEPENDENT[0] and written & ~EXTENDED != INDEPENDENT[1]:
             self.database.messages.append(message)
             self.by_id[written] = message
+        else:
+            self.database.unused[INDEPENDENT[0]] += len(message.signals)
 
     def signal(self):
         signal = Signal(self.next(), 0, 0)
@@ -256,7 +276,13 @@ class Parser:
     def ba_def(self, words):
         name = next(word for word in words if isinstance(word, Text))
         after = words[words.index(name) + 1:]
-        self.defined[name] = after[0], [str(word) for word in after[1:] if isinstance(word, Text)]
+        names = [str(word) for word in after[1:] if isinstance(word, Text)]
+        bounds = [Fraction(word) for word in after[1:] if not isinstance(word, Text) and word != ","]
+        self.defined[name] = after[0], names
+        if words[0] == "EV_":
+            self.database.unused["BA_DEF_ EV_"] += 1
+        else:
+            self.database.definitions[words[0] if words[0] != name else "", str(name)] = after[0], bounds, names
 
     def ba_def_def(self, words):
         self.defaults[words[0]] = self.value(words[0], words[1])
@@ -267,7 +293,9 @@ class Parser:
             self.by_id[int(words[2])].attributes[str(words[0])] = value
         elif words[1] == "SG_":
             self.find(*words[2:4]).attributes[str(words[0])] = value
-        elif words[1] not in ("BU_", "EV_"):
+        elif words[1] == "BU_":
+            self.database.node_attributes.setdefault(words[2], {})[str(words[0])] = value
+        elif words[1] != "EV_":
             self.database.attributes[str(words[0])] = value
 
     def value(self, name, word):
@@ -280,6 +308,10 @@ class Parser:
         return Fraction(word)
 
     def finish(self):
+        long = {node: kept["SystemNodeLongSymbol"] for node, kept in self.database.node_attributes.items() if "SystemNodeLongSymbol" in kept}
+        self.database.nodes = [long.get(node, node) for node in self.database.nodes]
+        self.database.node_comments = {long.get(node, node): text for node, text in self.database.node_comments.items()}
+        self.database.node_attributes = {long.get(node, node): kept for node, kept in self.database.node_attributes.items()}
         protocol = self.database.attributes.get("ProtocolType", self.defaults.get("ProtocolType"))
         for written, message in self.by_id.items():
             frame_format = message.attributes.get("VFrameFormat", self.defaults.get("VFrameFormat"))
@@ -289,6 +321,8 @@ class Parser:
             message.j1939 = message.extended and (message.frame_format == "J1939PG" or
                                                   (frame_format is None and protocol == "J1939"))
             message.name = message.attributes.get("SystemMessageLongSymbol", message.name)
+            message.sender = long.get(message.sender, message.sender)
+            message.other_senders = [long.get(sender, sender) for sender in message.other_senders]
             selectors = [signal.name for signal in message.signals if signal.is_selector]
             if written not in self.multiplexed and len(selectors) == 1:
                 for signal in message.signals:
@@ -297,6 +331,7 @@ class Parser:
             renamed = {signal.name: signal.attributes.get("SystemSignalLongSymbol", signal.name) for signal in message.signals}
             for signal in message.signals:
                 signal.name = renamed[signal.name]
+                signal.receivers = [long.get(receiver, receiver) for receiver in signal.receivers]
                 signal.selector = renamed.get(signal.selector)
 
 

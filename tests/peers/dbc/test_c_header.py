@@ -12,7 +12,7 @@ import unittest
 import random_dbc
 import second_reader
 import write_dbc
-from headers import check, is_plain, raw_spelled, selectors_first, spelled
+from headers import check, data_of, is_plain, of_folder, raw_spelled, selectors_first, spelled
 
 SOURCE = pathlib.Path(os.environ["OCM_SOURCE_DIR"])
 GENERATE = os.environ["OCM_GENERATE"]
@@ -82,8 +82,8 @@ def limits(message, signal, of, put, get):
             *([f"{of}_{put}(&limits, INT{width}_MIN); if ({get} != {low}) abort();"] if signal.signed else [])]
 
 
-def case(index, message):
-    type_of = f"bus_{spelled(message.name)}"
+def case(index, message, bus="bus"):
+    type_of = f"{bus}_{spelled(message.name)}"
     of = type_of.removesuffix("_")
     lines = [f"case {index}: {{", f"{type_of} message, raw, physical;", "unsigned i;",
              f'if (!{of}_decode(&message, data, length)) {{ printf("short\\n"); break; }}',
@@ -149,16 +149,32 @@ class CHeader(unittest.TestCase):
                               text=True, timeout=60)
         return done.stdout.split("\n.\n")
 
-    def check_compiler(self, compiler, seed):
-        database = self.generate(seed)
-        self.compile(compiler, "-O1", "-o", self.folder / "main")
+    def check_frames(self, where, messages, seed, count):
         chance = random.Random(seed)
-        frames = [(index, message, random_dbc.data_of(chance, message))
-                  for index, message in enumerate(database.messages) for _ in range(FRAMES)]
+        frames = [(index, message, data_of(chance, message)) for index, message in enumerate(messages) for _ in range(count)]
         answers = self.answers([f"{index} {data.hex()}" for index, _, data in frames])
         self.assertEqual(len(answers), len(frames) + 1)
         for (index, message, data), answer in zip(frames, answers):
-            check(self, f"seed {seed}, message {index}", message, data, answer.split("\n"))
+            check(self, f"{where}, message {index}", message, data, answer.split("\n"))
+
+    def test_files_of_a_folder(self):
+        """Every real file that has messages: its header compiles without a warning, and has the values of random frames."""
+        files = 0
+        for spec, messages in of_folder():
+            with self.subTest(spec.name):
+                subprocess.run([GENERATE, spec, "--to", "c", "-o", self.folder / "bus.h"], check=True, capture_output=True)
+                bus = spelled(spec.stem)
+                cases = "\n".join(case(index, message, bus) for index, message in enumerate(messages))
+                (self.folder / "main.c").write_text(PROGRAM.replace("CASES", cases))
+                self.compile("gcc", "-o", self.folder / "main")
+                self.check_frames(spec.name, messages, spec.name, 10)
+            files += 1
+        self.assertGreater(files, 0)
+
+    def check_compiler(self, compiler, seed):
+        database = self.generate(seed)
+        self.compile(compiler, "-O1", "-o", self.folder / "main")
+        self.check_frames(f"seed {seed}", database.messages, seed, FRAMES)
         index = next(i for i, message in enumerate(database.messages) if message.length > 1)
         self.assertEqual(self.answers([f"{index} {'00' * (database.messages[index].length - 1)}"]), ["short", ""])
 

@@ -4,6 +4,7 @@ import json
 import os
 import pathlib
 import random
+import re
 import shutil
 import subprocess
 import tempfile
@@ -11,7 +12,7 @@ import unittest
 
 import random_dbc
 import write_dbc
-from headers import check, raw_spelled, selectors_first, spelled
+from headers import check, data_of, member_of, of_folder, raw_of, selectors_first, spelled
 
 SOURCE = pathlib.Path(os.environ["OCM_SOURCE_DIR"])
 GENERATE = os.environ["OCM_GENERATE"]
@@ -74,13 +75,13 @@ CASES
 """
 
 
-def case(index, message):
-    lines = [f"case {index}: {{", f"const auto read = bus::{spelled(message.name)}::decode(std::span<const std::uint8_t>{{data}});",
+def case(index, message, space="bus"):
+    lines = [f"case {index}: {{", f"const auto read = {space}::{spelled(message.name)}::decode(std::span<const std::uint8_t>{{data}});",
              "if (!read) { std::cout << \"short\\n\"; break; }", "const auto message = *read;",
-             f"bus::{spelled(message.name)} raw, physical;", "raw.bytes = physical.bytes = {};"]
+             f"{space}::{spelled(message.name)} raw, physical;", "raw.bytes = physical.bytes = {};"]
     for signal in selectors_first(message):
-        name = spelled(signal.name)
-        both = f"{name}, {raw_spelled(signal.name)}"
+        name = member_of(message, signal.name)
+        both = f"{name}, {raw_of(name)}"
         lines.append(f"{'ALWAYS' if signal.selector is None else 'SOMETIMES'}({both})")
         lines.append(f"PUT_RAW({both})" if signal.selector is None else f"if (message.has_{name}()) {{ PUT_RAW({both}) }}")
         lines.append(f"{'PUT' if signal.selector is None else 'PUT_SOMETIMES'}({name})")
@@ -98,20 +99,37 @@ class Header(unittest.TestCase):
         subprocess.run([compiler, *FLAGS, f"-I{folder}", folder / "main.cpp", "-o", folder / "main"], check=True)
         return database, folder / "main"
 
+    def check_frames(self, where, messages, program, seed, count):
+        chance = random.Random(seed)
+        frames = [(index, message, data_of(chance, message)) for index, message in enumerate(messages) for _ in range(count)]
+        done = subprocess.run([program], input="".join(f"{index} {data.hex()}\n" for index, _, data in frames), check=True,
+                              capture_output=True, text=True)
+        answers = done.stdout.split("\n.\n")
+        self.assertEqual(len(answers), len(frames) + 1)
+        for (index, message, data), answer in zip(frames, answers):
+            check(self, f"{where}, message {index}", message, data, answer.split("\n"), member_of)
+
+    def test_files_of_a_folder(self):
+        """Every real file that has messages: its header compiles without a warning, and has the values of random frames."""
+        files = 0
+        for spec, messages in of_folder():
+            with self.subTest(spec.name), tempfile.TemporaryDirectory(prefix="ocm-test-") as name:
+                folder = pathlib.Path(name)
+                subprocess.run([GENERATE, spec, "-o", folder / "bus.hpp"], check=True, capture_output=True)
+                space = re.search(r"^namespace (\w+) \{", (folder / "bus.hpp").read_text(encoding="utf-8"), re.M)[1]
+                cases = "\n".join(case(index, message, space) for index, message in enumerate(messages))
+                (folder / "main.cpp").write_text(PROGRAM.replace("CASES", cases))
+                subprocess.run(["g++", *FLAGS, "-O0", f"-I{folder}", folder / "main.cpp", "-o", folder / "main"], check=True)
+                self.check_frames(spec.name, messages, folder / "main", spec.name, 10)
+            files += 1
+        self.assertGreater(files, 0)
+
     def check_compiler(self, compiler, seed):
         if shutil.which(compiler) is None:
             self.fail(f"{compiler} is missing")
         with tempfile.TemporaryDirectory(prefix="ocm-test-") as name:
             database, program = self.compiled(compiler, seed, pathlib.Path(name))
-            chance = random.Random(seed)
-            frames = [(index, message, random_dbc.data_of(chance, message))
-                      for index, message in enumerate(database.messages) for _ in range(FRAMES)]
-            done = subprocess.run([program], input="".join(f"{index} {data.hex()}\n" for index, _, data in frames), check=True,
-                                  capture_output=True, text=True)
-            answers = done.stdout.split("\n.\n")
-            self.assertEqual(len(answers), len(frames) + 1)
-            for (index, message, data), answer in zip(frames, answers):
-                check(self, f"seed {seed}, message {index}", message, data, answer.split("\n"))
+            self.check_frames(f"seed {seed}", database.messages, program, seed, FRAMES)
             short = subprocess.run([program], input=f"0 {'00' * (database.messages[0].length - 1)}\n", check=True,
                                    capture_output=True, text=True)
             self.assertEqual(short.stdout, "short\n.\n")

@@ -14,7 +14,7 @@ from fractions import Fraction
 import random_dbc
 import second_reader
 import write_dbc
-from headers import spelled
+from headers import data_of, of_folder, spelled
 
 SOURCE = pathlib.Path(os.environ["OCM_SOURCE_DIR"])
 GENERATE = os.environ["OCM_GENERATE"]
@@ -30,6 +30,11 @@ def pcap(frames):
         packet = struct.pack(">IBBBB", identifier, len(data), 4 if fd else 0, 0, 0) + data.ljust(64 if fd else 8, b"\0")
         out += struct.pack("<IIII", number, 0, len(packet), len(packet)) + packet
     return out
+
+
+def can_length(message):
+    """Of the frame that the message is sent in."""
+    return next(length for length in (*range(9), *random_dbc.FD_LENGTHS) if length >= message.length)
 
 
 class Wireshark(unittest.TestCase):
@@ -59,7 +64,7 @@ class Wireshark(unittest.TestCase):
 
     def check(self, where, message, identifier, data, fields):
         self.assertIsNotNone(fields, where)
-        self.assertEqual((fields["message"], fields["sender"]), (message.name, message.sender), where)
+        self.assertEqual((fields["message"], fields.get("sender", "Vector__XXX")), (message.name, message.sender), where)
         if message.j1939:
             group, low = second_reader.group(identifier), (identifier >> 16 & 0xFF) < 240
             self.assertEqual([int(str(fields[name]), 0) for name in ("pgn", "source", "destination")],
@@ -113,6 +118,22 @@ class Wireshark(unittest.TestCase):
                     for message, number, data in frames]
             for (message, number, data), found in zip(frames, self.dissect(name, spec, sent)):
                 self.check(message.name, message, number, data, found)
+
+    def test_files_of_a_folder(self):
+        """Frames of each message that is there in one frame."""
+        fields = 0
+        for spec, messages in of_folder():
+            chance = random.Random(spec.name)
+            frames = [(message, data_of(chance, message).ljust(can_length(message), b"\0")) for message in messages for _ in range(5)
+                      if message.length <= 8 or not message.j1939]
+            sent = [(message.number | (0x80000000 if message.extended else 0), message.length > 8 or "FD" in message.frame_format, data)
+                    for message, data in frames]
+            with self.subTest(spec.name):
+                name = spelled(spec.stem)
+                shown = self.dissect(name + "_bus" if name in ("can", "j1939", "uds") else name, spec, sent)
+                for (message, data), found in zip(frames, shown):
+                    fields += self.check(f"{spec.name}: {message.name}", message, message.number, data[:message.length], found)
+        self.assertGreater(fields, 100)
 
     def test_words(self):
         """Names of values, units, what is too short; and of strangers nothing."""

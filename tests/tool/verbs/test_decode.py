@@ -347,6 +347,26 @@ class Encode(Case):
         out, _ = self.run_tool("encode", stdin=json.dumps(line))
         self.assertEqual(out, "(1436509052.249713) can0 408#0400FFFF0000\n")
 
+    def test_fields_over_one_another(self):
+        """The edited one counts, wherever it is in the file, and two that cannot both be so are refused."""
+        spec = os.path.join(self.folder, "shared.json")
+        with open(spec, "w", encoding="ascii") as file:
+            json.dump({"robot": "x", "messages": [{"name": "M", "id": 1, "fields": [
+                {"name": "low", "byte": 0, "type": "u4"}, {"name": "whole", "byte": 0, "type": "u8"}, {"name": "top", "bit": 7, "type": "u1"}]}]}, file)
+        shared = ("--spec", spec)
+        line = json.loads(self.run_tool(*shared, "decode", "--json", stdin="(1.0) can0 001#13\n")[0])
+        self.assertEqual(line["fields"], {"low": 3, "whole": 19, "top": 0})
+        for edits, data in (({"low": 4}, "14"), ({"whole": 200}, "C8"), ({"top": 1}, "93"), ({"low": 8, "whole": 200, "top": 1}, "C8"), ({}, "13")):
+            out, _ = self.run_tool(*shared, "encode", stdin=json.dumps(line | {"fields": line["fields"] | edits}))
+            self.assertEqual(out.split()[-1], "001#" + data, edits)
+        for edits, both in (({"low": 4, "whole": 200}, ("low", "whole")), ({"whole": 1, "top": 1}, ("whole", "top"))):
+            _, err = self.run_tool(*shared, "encode", stdin=json.dumps(line | {"fields": line["fields"] | edits}), code=1)
+            self.assertIn('fields "%s" and "%s" have bits in common, and cannot be what both are given' % both, err)
+        for fields, data in (({"top": 1}, "80"), ({"low": 3, "whole": 131, "top": 1}, "83")):  # without data
+            out, _ = self.run_tool(*shared, "encode", stdin=json.dumps({"topic": "M", "fields": fields}))
+            self.assertEqual(out.split()[-1], "001#" + data, fields)
+        self.run_tool(*shared, "encode", stdin='{"topic":"M","fields":{"low":3,"whole":0}}', code=1)
+
     def test_stated_ranges(self):
         """An edited value beyond the range that the spec states needs --force; what was on the bus does not."""
         car = ("--spec", os.path.join(SOURCE, "examples", "small_car.dbc"))

@@ -69,6 +69,17 @@ class Info(Case):
         out, _ = self.run_tool(*self.spec("car.dbc", DBC), "info", "Bare")
         self.assertFalse([word for word in ("comment", "senders", "attribute", "receivers", "start") if word in out], out)
 
+    def test_all_of_64_bits(self):
+        """From 2^63 on a word without sign is no negative number: neither a value with a name nor the start."""
+        spec = self.spec("word.dbc", 'BO_ 1 M: 8 N\n SG_ S : 0|64@1+ (1,0) [0|0] "" N\nVAL_ 1 S 18446744073709551615 "none" 7 "some" ;\n'
+                                     'BA_DEF_ SG_ "GenSigStartValue" INT 0 0;\nBA_ "GenSigStartValue" SG_ 1 S 18446744073709551615;\n')
+        out, err = self.run_tool(*spec, "info", "M")
+        self.assertEqual(err, "")
+        self.assertIn("= 18446744073709551615 none\n", out)
+        self.assertRegex(out, "= 7 +some\n")
+        self.assertIn("      start     18446744073709551615 (none)\n", out)
+        self.assertEqual(self.run_tool(*spec, "set", "M", "--dry-run"), ("001#FFFFFFFFFFFFFFFF\n", ""))
+
     def test_json_and_the_right_message(self):
         """Topics before it, and messages of its name and of others around it."""
         robot = self.spec("robot.json", json.dumps({"robot": "robot", "boards": [{"name": "Dash"}], "messages": [
