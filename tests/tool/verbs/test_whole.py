@@ -47,6 +47,7 @@ CAR_LOG = car_log()
 
 # The golden file's name, what is typed, what is read.
 ROWS = [
+    ("help_operator.txt", ("operator", "--help"), ""),
     ("list_car.txt", (*CAR, "list"), ""),
     ("list_truck.txt", (*TRUCK, "list"), ""),
     ("list_probe.txt", (*PROBE, "list"), ""),

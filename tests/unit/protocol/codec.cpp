@@ -28,6 +28,9 @@ constexpr Payload with(T value, Payload data = {}) {
 
 // --- vectors, worked out by hand ---
 
+// A field that is derived of others has no place: no bits, no bytes.
+static_assert(Position{}.mask() == 0 && Position{}.bytes() == 0);
+
 // Two fields of 12 bits in three bytes, as DBC numbers them.
 static_assert(with<Bits<std::uint16_t, 0, 12>>(std::uint16_t{0xABC}) == Payload{0xBC, 0x0A});
 static_assert(with<Bits<std::uint16_t, 12, 12>>(std::uint16_t{0xABC}) == Payload{0x00, 0xC0, 0xAB});

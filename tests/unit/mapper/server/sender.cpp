@@ -105,6 +105,15 @@ TEST_CASE("sender: an idle that was under way when the word went out proves noth
   CHECK_FALSE(bench.sender.standing());
 }
 
+TEST_CASE("sender: the first idle that counts comes when the settling time is over") {
+  Bench bench;
+  bench.stands(0, 0, 0);
+  bench.go(90, 50);
+  const Time quiet = bench.now;
+  CHECK_FALSE(bench.sender.hear_idle(quiet + SenderOptions{}.settle - 1ns));
+  CHECK(bench.sender.hear_idle(quiet + SenderOptions{}.settle));
+}
+
 TEST_CASE("sender: heard, and stopped by something on the way") {
   Bench bench;
   bench.stands(0, 0, 0);
