@@ -1,4 +1,5 @@
-"""scripts/ as its user meets it: a misspelt word costs no build, and the summary of scripts/test names what does not build.
+"""scripts/ as its user meets it: a misspelt word costs no build, a signal leaves nothing running, two at once take turns, and
+the summary of scripts/test names what does not build.
 
 Each runs in a copy of the little that it reads, where cmake, ctest and apt-get are stand-ins: nothing is built or installed.
 """
