@@ -1,4 +1,5 @@
-"""scripts/ as its user meets it: a misspelt word costs no build, and the summary of scripts/test names what does not build.
+"""scripts/ as its user meets it: a misspelt word costs no build, a signal leaves nothing running, two at once take turns, and
+the summary of scripts/test names what does not build.
 
 Each runs in a copy of the little that it reads, where cmake, ctest and apt-get are stand-ins: nothing is built or installed.
 """
@@ -62,7 +63,8 @@ class Misspelt(Case):
     # Arguments, and the message.
     WORDS = {
         "bench": [("--lst", "no option '--lst'; did you mean '--list'?"), ("codc", "no benchmark 'codc'; did you mean 'codec'?")],
-        "build": [("frimware", "no build 'frimware'; did you mean 'firmware'?"), ("x", "no build 'x'; there are firmware, avr, operator")],
+        "build": [("frimware", "no build 'frimware'; did you mean 'firmware'?"), ("x", "no build 'x'; there are firmware, avr, operator"),
+                  ("-DA=1 firmware", "'firmware' comes first: scripts/build firmware [CMAKE ARGUMENT...]")],
         "demo": [("--hlep", "no option '--hlep'; did you mean '--help'?"),
                  ("now", "unexpected argument 'now'; it takes none, see scripts/demo --help")],
         "figures": [("--hlep", "no option '--hlep'; did you mean '--help'?"), ("nothing", "no folder 'nothing'; expected a build folder")],
@@ -83,8 +85,17 @@ class Misspelt(Case):
                   ("--all", "no option '--all'; there are --tool, --firmware, --avr, --operator, --pictures, --list, --help")],
         "suggest": [("word", "expected a word and the known ones; see scripts/suggest --help")],
         "test": [("--qiuck", "no option '--qiuck'; did you mean '--quick'?"),
-                 ("style", "'style' is no option; only a part, or a test: scripts/test --only style")],
+                 ("style", "'style' is no option; only a part, or a test: scripts/test --only style"),
+                 ("--only ,style", "an empty name in ',style'; see scripts/test --help")],
     }
+
+    def test_an_empty_word_is_named_and_builds_nothing(self):
+        for script, *words in (("bench",), ("build",), ("demo",), ("figures",), ("fuzz", "1s"), ("mutate",), ("pictures",), ("setup",), ("test",)):
+            with self.subTest(script=script):
+                done = self.run_script(script, *words, "")
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertRegex(done.stderr.splitlines()[-1], rf"^{script}: .*(''|an empty argument)")
+                self.assertFalse((self.tree / "called").exists(), "nothing is built for it")
 
     def test_every_script_names_the_word_and_the_nearest(self):
         scripts = [path.name for path in (ROOT / "scripts").iterdir() if path.is_file() and os.access(path, os.X_OK)]

@@ -1,5 +1,6 @@
 """Exit codes and messages: every error names the input, the place and the remedy."""
 
+import json
 import os
 import subprocess
 
@@ -89,7 +90,10 @@ class Look(Case):
         for alias in "gyro accel mag floor odom power ring motors".split():
             self.assertIn(alias, out)
         topics = self.objects(self.run_tool("list", "--json")[0])
-        self.assertEqual(len(topics), 8 + 1 + 3 + 8 + 2 + 2 * 3)  # sensors, motors, behaviours, lights, calibrations, reports
+        with open(os.path.join(SOURCE, "spec", "topics.json"), encoding="utf-8") as file:
+            spec = json.load(file)["topics"]
+        expected = {topic["name"] for topic in spec if "count" not in topic} | {f"led_{number}" for number in range(1, 9)}
+        self.assertEqual(sorted(topic["topic"] for topic in topics), sorted(expected))
         gyroscope = next(topic for topic in topics if topic["topic"] == "gyroscope")
         self.assertEqual(gyroscope["id"], "0x08")
         self.assertIn("gyro", gyroscope["aliases"])
