@@ -267,6 +267,23 @@ TEST_CASE("asc: lines that are wrong, each with its cause") {
   CHECK(cause_of("0.1 CANFD 1 Rx 123 0 0 9 12 01 02 03 04 05 06 07 08 09 0A 0B 0C 0 0 0") == Cause::length);
 }
 
+TEST_CASE("asc: the hours of a day are twelve twice, and noon is pm") {
+  const Zone zone{"UTC0"};
+  for (const auto& [seconds, written] :
+       std::vector<std::pair<std::int64_t, std::string>>{{1'699'920'000, "12:00:00.000 am"},
+                                                         {1'699'923'600, "01:00:00.000 am"},
+                                                         {1'699'963'199, "11:59:59.000 am"},
+                                                         {1'699'963'200, "12:00:00.000 pm"},
+                                                         {1'699'966'800, "01:00:00.000 pm"}}) {
+    Interfaces interfaces;
+    interfaces.add("can0");
+    const std::vector<Entry> entries{{at(seconds * second), {0x1, 0, {}}}};
+    AscWriter writer;
+    const std::string text = log::testing::write_all(writer, entries, interfaces);
+    CHECK(text.starts_with("date Tue Nov 14 " + written + " 2023\n"));
+  }
+}
+
 TEST_CASE("asc: what is written") {
   const Zone zone{"UTC0"};
   Interfaces interfaces;

@@ -86,12 +86,14 @@ TEST_CASE("the bias is the mean at rest, and what moves is no bias", "[motion]")
   CHECK(bias.rejected() == 3);
 }
 
-TEST_CASE("one reading has no variance", "[motion]") {
+TEST_CASE("one reading has no variance, and the second gives it one", "[motion]") {
   GyroBias bias{0.1F};
   CHECK(bias.variance_rad2_s2() == 0.0F);
   bias.add(0.05F);
   CHECK(bias.variance_rad2_s2() == 0.0F);
   CHECK(bias.bias_rad_s() == 0.05F);
+  bias.add(0.07F);
+  CHECK(near(bias.variance_rad2_s2(), 0.0002F, 1e-8F));  // of two: half of their difference squared
 }
 
 }  // namespace motion_heading_test
