@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "ocm/log/playback.hpp"
 #include "ocm/transport/controller_state.hpp"
 
 #include "cli/shared/interrupt.hpp"
@@ -59,6 +60,7 @@ LogFeed::LogFeed(std::string path, std::string format, const protocol::Catalogue
   while (interrupted() == 0) {
     const std::size_t count = log.reader().read(batch_);
     if (count == 0) break;
+    frames_ += count;
     for (std::size_t i = 0; i < count; ++i) {
       if (!any) first_ = last = batch_[i].time;
       any = true;
@@ -68,7 +70,7 @@ LogFeed::LogFeed(std::string path, std::string format, const protocol::Catalogue
   log.complain();
   if (!any && interrupted() == 0)
     fail({fmt::format("{}: no frame in it", path_), "amiroctl info FILE says what is in a log"});
-  playing_.length = last - first_;
+  playing_.length = log::Playback::distance(last, first_);
   const log::Interfaces& named = log.reader().interfaces();
   for (std::uint16_t i = 0; i < named.size(); ++i) interfaces_.emplace_back(named.name(i));
   rewind();
@@ -77,6 +79,7 @@ LogFeed::LogFeed(std::string path, std::string format, const protocol::Catalogue
 void LogFeed::rewind() {
   log_ = std::make_unique<logs::OpenedLog>(path_, format_, *catalogue_);
   next_ = size_ = 0;
+  played_ = 0;
   playing_.at = {};
   playing_.ended = false;
 }
@@ -90,10 +93,14 @@ void LogFeed::go_to(base::Duration at, const Take& take) {
       if (size_ == 0) break;
     }
     const log::Entry& entry = batch_[next_];
-    if (entry.time - first_ > at) break;
+    if (log::Playback::distance(entry.time, first_) > at) break;
     take(entry, log_->reader().interfaces());
     ++next_;
+    ++played_;
   }
+  if (size_ == 0 && played_ < frames_ && !std::exchange(shrank_, true))
+    remark(fmt::format("{}: {} of {} frames are not there any more: was it cut, or replaced?", path_,
+                       frames_ - played_, frames_));
   playing_.at = at;
   playing_.ended = at >= playing_.length;
 }

@@ -43,7 +43,8 @@ class LiveFeed {
   std::uint64_t told_ = 0;
 };
 
-/// A log that is played: its time goes on with the clock, so many times as fast.
+/// A log that is played: its time goes on with the clock, so many times as fast. What is written to it
+/// meanwhile is not played; that frames are missing which were there before is reported.
 class LogFeed {
  public:
   /// Looks through the whole file for its length. Leaves through `fail` where it cannot be read; a signal
@@ -75,6 +76,9 @@ class LogFeed {
   std::vector<log::Entry> batch_;
   std::size_t next_ = 0;  ///< of the batch
   std::size_t size_ = 0;
+  std::uint64_t frames_ = 0;  ///< of the whole log, when it was looked through
+  std::uint64_t played_ = 0;  ///< since its beginning
+  bool shrank_ = false;       ///< which is reported once
   base::Time first_{};
   std::vector<std::string> interfaces_;
   Playing playing_;

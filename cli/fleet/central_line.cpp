@@ -54,6 +54,12 @@ void add_line_options(Verb verb, LineOptions& options) {
   add_duration(verb, "--scan", options.scan, "how long to look for robots that are not listed; default: 3s");
 }
 
+Option add_record_option(Verb verb, LineOptions& options) {
+  return verb
+      .add_option("--record", options.record, "what the central says, with times, for `serve robots FILE`")
+      .type_name("FILE");
+}
+
 namespace {
 
 /// The path of the line, and how to speak on it.
@@ -134,6 +140,12 @@ CentralLine::CentralLine(std::string_view verb, const LineOptions& options, Need
   catch_interrupts();
   catch_hangups();
   end_ = open_end(verb, options, need, fleet);
+  if (options.record.empty()) return;
+  if (own() == nullptr)
+    fail({fmt::format("{}: --record: {} has the central's line", verb, end_->path()),
+          "record there: central --own --record FILE, or map --record FILE"},
+         exit_usage);
+  own()->record(std::make_unique<LineLog>(verb, options.record));
 }
 
 base::Time CentralLine::now() {

@@ -24,10 +24,14 @@ struct LineOptions {
   std::string path;  ///< empty: that of a simulation or of `amiroctl central --pty`
   DongleOptions dongle{};
   std::optional<base::Duration> scan;
+  std::string record{};  ///< a file for what the central says; empty: none. Where this program has the line
 };
 
 /// --central, --baud, --flow, --dongle and --scan.
 void add_line_options(Verb verb, LineOptions& options);
+
+/// --record, of verbs that have the line for long.
+Option add_record_option(Verb verb, LineOptions& options);
 
 /// What a verb needs of the line.
 enum class Need : std::uint8_t {

@@ -104,7 +104,9 @@ void OwnLine::exchange() {
     dongle_.from_dongle({room.data(), *size}, line_time());
   }
   dongle_.expire(line_time());
-  server_.feed(dongle_.take_for_client(), line_time(), [this](std::size_t robot, mapper::link::Kind kind) {
+  const std::string said = dongle_.take_for_client();
+  if (log_) log_->write(said);
+  server_.feed(said, line_time(), [this](std::size_t robot, mapper::link::Kind kind) {
     if (heard_) heard_(robot, kind);
   });
   while (auto event = server_.next_event()) {

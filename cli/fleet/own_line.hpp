@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "ocm/cognitive/server.hpp"
@@ -13,6 +14,7 @@
 
 #include "cli/fleet/dongle.hpp"
 #include "cli/fleet/line_end.hpp"
+#include "cli/fleet/line_log.hpp"
 #include "cli/fleet/owner.hpp"
 
 namespace ocm::cli::fleet {
@@ -31,6 +33,8 @@ class OwnLine final : public LineEnd {
   void on_heard(std::function<void(std::size_t robot, mapper::link::Kind kind)> heard) {
     heard_ = std::move(heard);
   }
+  /// What comes from now on is written there, too.
+  void record(std::unique_ptr<LineLog> log) { log_ = std::move(log); }
   /// Until the programs that have joined have ended, or a signal has come: then their robots are stopped.
   void finish();
 
@@ -71,6 +75,7 @@ class OwnLine final : public LineEnd {
   Owner owner_;
   transport::SerialPort port_;  // closed before the others, who wait, may open it
   std::function<void(std::size_t, mapper::link::Kind)> heard_;
+  std::unique_ptr<LineLog> log_;
   std::string unsent_;
   std::vector<std::string> failed_;
   std::vector<std::uint64_t> orders_;  ///< of this program, a robot

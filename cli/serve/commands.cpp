@@ -94,7 +94,8 @@ Parsed command_of(const protocol::Catalogue& catalogue, std::string_view topic, 
   const auto object = read_object(payload);
   if (!object) return object.error;
   if (topic == line_topic) return line_command(catalogue, *object);
-  const std::string_view name = topic.substr(std::min(topic.rfind('/') + 1, topic.size()));
+  // One bus has no interfaces in its topics: "/can0/motors" is of another server.
+  const std::string_view name = topic.starts_with('/') ? topic.substr(1) : std::string_view{};
   const protocol::Topic* const target = catalogue.find(name);
   if (target == nullptr || target->kind == protocol::Kind::sensor)
     return fmt::format("{} takes nothing: publish on the channel of an actuator, or lines on {}", topic,

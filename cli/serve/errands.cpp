@@ -194,6 +194,18 @@ void Errands::gone(LineEnd& line, ViewerId viewer) {
   });
 }
 
+std::vector<ViewerId> Errands::driving(const LineEnd& line) const {
+  std::vector<ViewerId> viewers;
+  const auto add = [&viewers](ViewerId viewer) {
+    if (std::find(viewers.begin(), viewers.end(), viewer) == viewers.end()) viewers.push_back(viewer);
+  };
+  for (const auto& [index, errand] : errands_)
+    if (errand.target) add(errand.viewer);
+  for (const auto& [index, sender] : senders_)
+    if (line.is_ours(index) && look_(index).busy()) add(sender);
+  return viewers;
+}
+
 std::optional<motion::Point> Errands::target(unsigned robot) const {
   const auto at = errands_.find(robot);
   return at == errands_.end() ? std::nullopt : at->second.target;

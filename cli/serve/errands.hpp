@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "ocm/base/time.hpp"
 #include "ocm/motion/pose.hpp"
@@ -41,6 +42,8 @@ class Errands {
   void step(fleet::LineEnd& line, base::Time now);
   /// Robots that the viewer has sent are stopped.
   void gone(fleet::LineEnd& line, ViewerId viewer);
+  /// Viewers for whom robots drive, or are about to.
+  [[nodiscard]] std::vector<ViewerId> driving(const fleet::LineEnd& line) const;
   /// The line is gone, and what was asked of it, too.
   void forget() {
     errands_.clear();

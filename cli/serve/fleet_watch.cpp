@@ -27,14 +27,7 @@ using fleet::RobotNow;
 using foxglove::Level;
 
 constexpr base::Duration state_interval = 200ms;
-constexpr base::Duration map_interval = 1s;
-/// A large map comes less often: so many bytes a second.
-constexpr std::size_t map_bytes_per_s = 512 * 1024;
 constexpr base::Duration first_retry = 500ms, longest_retry = 16s;
-
-std::uint64_t now_ns() {
-  return static_cast<std::uint64_t>(unix_time().time_since_epoch().count());
-}
 
 cognitive::FleetOptions fleet_options(const fleet::Known& known) {
   cognitive::FleetOptions fleet;
@@ -165,6 +158,10 @@ void FleetWatch::step() {
   robots_ = line_->end().peers().size();
   for (const Order& order : orders_->take()) obey(order);
   errands_.step(line_->end(), now);
+  for (const ViewerId viewer : attendance_.silent(errands_.driving(line_->end()), *viewers_, now)) {
+    errands_.gone(line_->end(), viewer);
+    say(Level::warning, "the page that sent a robot does not answer: what it sent is stopped");
+  }
   if (!owner_draws_) draw();
   if (scans_ && line_->end().idle()) {
     scans_ = false;
@@ -179,8 +176,7 @@ void FleetWatch::step() {
   }
   if (now >= next_map_) {
     publish_map(now);
-    next_map_ = now + std::max<base::Duration>(
-                          map_interval, std::chrono::milliseconds{1000 * map_.size() / map_bytes_per_s});
+    next_map_ = now + map_interval(map_.size());
   }
 }
 
@@ -218,19 +214,8 @@ void FleetWatch::publish(base::Time now) {
   if (line_ != nullptr)
     for (const auto& peer : line_->end().peers()) {
       const RobotNow each = robot(peer.index);
-      Json json = fleet::to_json(each);
-      json["progress"] = each.busy();
-      json["by"] = each.by;
-      json["age_s"] = each.update ? Json(static_cast<double>((now - each.updated).count()) / 1e9) : Json();
-      json["at"] = Json();
-      if (each.origin_known && each.update) {
-        const motion::Pose pose = each.pose();
-        json["at"] = {{"x_m", pose.x_m}, {"y_m", pose.y_m}, {"heading_rad", pose.heading_rad}};
-      }
-      const auto target = errands_.target(peer.index);
-      json["target"] = target ? Json{{"x_m", target->x_m}, {"y_m", target->y_m}} : Json();
       if (!each.origin_known) unplaced.push_back(each.name);
-      robots.push_back(std::move(json));
+      robots.push_back(fleet_robot(each, now, errands_.target(peer.index)));
     }
   Json state{{"line", source_},
              {"own", line_ != nullptr && line_->own() != nullptr},
@@ -259,9 +244,7 @@ void FleetWatch::publish_map(base::Time) {
   if (!grid.starts_with('{') || grid == map_) return;
   map_ = std::move(grid);
   const std::uint64_t time = now_ns();
-  viewers_->publish_state(channels_.map, time,
-                          fmt::format(R"({{"timestamp":{{"sec":{},"nsec":{}}},{})", time / 1'000'000'000,
-                                      time % 1'000'000'000, std::string_view{map_}.substr(1)));
+  viewers_->publish_state(channels_.map, time, map_message(map_, time));
   if (woken_) woken_();
 }
 

@@ -17,7 +17,9 @@
 #include "cli/fleet/central_line.hpp"
 #include "cli/fleet/keeper.hpp"
 #include "cli/fleet/known.hpp"
+#include "cli/serve/attendance.hpp"
 #include "cli/serve/errands.hpp"
+#include "cli/serve/fleet_state.hpp"
 #include "cli/serve/orders.hpp"
 #include "cli/serve/viewers.hpp"
 
@@ -29,12 +31,6 @@ struct FleetOptions {
   std::string world;
   bool call_back = false;
   bool waits = false;  ///< for a line that this program serves itself, and for no other
-};
-
-/// What the watch publishes on, and where it gets orders from.
-struct FleetChannels {
-  std::uint32_t fleet = 0;
-  std::uint32_t map = 0;
 };
 
 class FleetWatch {
@@ -75,6 +71,7 @@ class FleetWatch {
   FleetChannels channels_;
   Orders* orders_;
   Errands errands_;
+  Attendance attendance_;
   fleet::Keeper keeper_;
   cognitive::Drawing drawing_;
   std::vector<base::Time> drawn_;  ///< a robot's update of then is in the map

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "ocm/base/utf8.hpp"
+
 #include "cli/shared/json.hpp"
 #include "generator/spec/json.hpp"
 
@@ -51,7 +53,7 @@ struct Known {
 constexpr Known known_ops[] = {
     {"subscribe", Request::Op::subscribe, "subscriptions", "an id and a channelId, both whole numbers"},
     {"unsubscribe", Request::Op::unsubscribe, "subscriptionIds", "a whole number"},
-    {"advertise", Request::Op::advertise, "channels", "an id, a topic and an encoding"},
+    {"advertise", Request::Op::advertise, "channels", "an id, a topic of 256 bytes at most, and an encoding"},
     {"unadvertise", Request::Op::unadvertise, "channelIds", "a whole number"},
     {"getParameters", Request::Op::get_parameters, "parameterNames", "a text"},
     {"setParameters", Request::Op::set_parameters, "parameters", "a name and a number as its value"},
@@ -75,7 +77,7 @@ bool take_item(Request& request, const Node& item) {
     case Request::Op::advertise: {
       ClientChannel& channel = request.channels.emplace_back();
       return read_id(item.find("id"), channel.id) && read_text(item.find("topic"), channel.topic) &&
-             read_text(item.find("encoding"), channel.encoding);
+             read_text(item.find("encoding"), channel.encoding) && channel.topic.size() <= longest_name;
     }
     case Request::Op::set_parameters: {
       Parameter& parameter = request.parameters.emplace_back();
@@ -121,7 +123,12 @@ std::string advertise(std::span<const Channel> channels) {
 }
 
 std::string status(Level level, std::string_view message, std::string_view id) {
-  Json json{{"op", "status"}, {"level", static_cast<int>(level)}, {"message", message}};
+  std::string text{message.substr(0, longest_status)};
+  if (text.size() < message.size()) {
+    while (!text.empty() && base::continues_character(message[text.size()])) text.pop_back();
+    text += " ...";
+  }
+  Json json{{"op", "status"}, {"level", static_cast<int>(level)}, {"message", std::move(text)}};
   if (!id.empty()) json["id"] = id;
   return json.line();
 }
@@ -160,6 +167,8 @@ base::Result<Request, std::string> parse(std::string_view text) {
     Request request;
     request.op = known.op;
     read_text(root.find("id"), request.request);
+    if (request.request.size() > longest_name)
+      return fmt::format("the id of a request has {} bytes at most", longest_name);
     const Node* const list = root.find(known.list);
     if (list == nullptr || !list->is(Node::Kind::array))
       return fmt::format("{} without its list '{}'", op, known.list);

@@ -21,6 +21,11 @@ inline constexpr std::array<const char*, 2> subprotocols{"foxglove.websocket.v1"
 
 /// The longest message of a client that is read; a schema that it advertises is in one. [decided]
 inline constexpr std::size_t longest_message = 64 * 1024;
+/// Of a client's topic, and of a request's id, which the server keeps or sends back. [decided]
+inline constexpr std::size_t longest_name = 256;
+/// Bytes of a status; the rest is cut off: what a client has sent does not come back whole, and what waits
+/// for it is bounded. [decided]
+inline constexpr std::size_t longest_status = 1000;
 
 /// What a server has beyond channels that one subscribes to.
 struct ServerInfo {

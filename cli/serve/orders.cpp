@@ -1,5 +1,6 @@
 #include "cli/serve/orders.hpp"
 
+#include <algorithm>
 #include <sys/eventfd.h>
 #include <unistd.h>
 #include <utility>
@@ -10,7 +11,11 @@ Orders::Orders() : event_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
 
 bool Orders::put(Order order) {
   const std::lock_guard lock{mutex_};
-  if (orders_.size() >= most && order.kind != Order::Kind::gone) return false;
+  const auto is_first = [&] {
+    return std::none_of(orders_.begin(), orders_.end(),
+                        [&](const Order& each) { return each.viewer == order.viewer; });
+  };
+  if (orders_.size() >= most && order.kind != Order::Kind::gone && !is_first()) return false;
   orders_.push_back(std::move(order));
   const std::uint64_t one = 1;
   // It fails only where it is readable already.

@@ -35,7 +35,8 @@ struct Order {
 
 class Orders {
  public:
-  /// More at a time are refused. A page that drives gives ten a second. [decided]
+  /// More at a time are refused, but for the first of a viewer: what others ask keeps no stop out. A page
+  /// that drives gives ten a second. [decided]
   static constexpr std::size_t most = 256;
 
   Orders();

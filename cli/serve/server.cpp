@@ -19,12 +19,16 @@
 #include "cli/bus_model/feed.hpp"
 #include "cli/bus_model/models.hpp"
 #include "cli/command/operated_bus.hpp"
+#include "cli/fleet/known.hpp"
+#include "cli/fleet/line_log.hpp"
+#include "cli/fleet/line_replay.hpp"
 #include "cli/output/printer.hpp"
 #include "cli/serve/address.hpp"
 #include "cli/serve/bounds.hpp"
 #include "cli/serve/channels.hpp"
 #include "cli/serve/commands.hpp"
 #include "cli/serve/control.hpp"
+#include "cli/serve/fleet_player.hpp"
 #include "cli/serve/foxglove.hpp"
 #include "cli/serve/operator_watch.hpp"
 #include "cli/serve/orders.hpp"
@@ -87,7 +91,7 @@ class Server {
         diagnosis_(catalogue_),
         parameters_(catalogue_, viewers_),
         sessions_({fmt::format("{}, {}", catalogue_.robot, source_.name), random_text(8), source_.commands,
-                   !source_.live, options_.fleet ? &fleet_orders_ : nullptr},
+                   !source_.live, options_.fleet && source_.live ? &fleet_orders_ : nullptr},
                   catalogue_, channels_, viewers_, orders_) {
     channels_.add(scenes_.channels());
     for (const std::string& interface : channels_.interfaces()) models_.of(interface);
@@ -99,10 +103,8 @@ class Server {
 
   /// Opens the page; leaves where it cannot.
   void open() {
-    if (options_.fleet)
-      fleet_ = std::make_unique<FleetWatch>(
-          *options_.fleet, viewers_, FleetChannels{channels_.of(State::fleet), channels_.of(State::map)},
-          fleet_orders_);
+    if (options_.fleet && source_.live)
+      fleet_ = std::make_unique<FleetWatch>(*options_.fleet, viewers_, fleet_channels(), fleet_orders_);
     if (options_.commands || options_.web.token_to_view) options_.web.token = random_text(16);
     auto web = Web::open(options_.web, viewers_, sessions_);
     if (!web) fail(web.error);
@@ -119,8 +121,12 @@ class Server {
   int run_live(Session& session, std::unique_ptr<transport::Bus> bus);
   int run_alone();
   int run_log(LogFeed& log);
+  int run_fleet_log(fleet::LineReplay replay);
 
  private:
+  [[nodiscard]] FleetChannels fleet_channels() const {
+    return {channels_.of(State::fleet), channels_.of(State::map)};
+  }
   static std::uint64_t now_ns() { return static_cast<std::uint64_t>(unix_time().time_since_epoch().count()); }
 
   void take(const log::Entry& entry, const log::Interfaces& interfaces) {
@@ -416,6 +422,49 @@ int Server::run_alone() {
   return exit_code_after_interrupt(exit_success);
 }
 
+/// Robots behind a central, of a log of its line.
+int Server::run_fleet_log(fleet::LineReplay replay) {
+  FleetPlayer player{std::move(replay), source_.name, viewers_, fleet_channels(),
+                     channels_.of(State::playback)};
+  auto before = Clock::now();
+  auto next_bus = before;
+  while (interrupted() == 0 && !is_over()) {
+    pollfd input{orders_.descriptor(), POLLIN, 0};
+    const bool asked = wait_for_input(std::span{&input, 1}, play_step);
+    const auto now = Clock::now();
+    player.pass(now - std::exchange(before, now));
+    if (asked)
+      for (const Order& order : orders_.take()) player.obey(order);
+    player.publish(now);
+    if (now >= next_bus) {
+      publish_bus(unix_time());
+      next_bus = now + bus_interval;
+    }
+    web_->wake();
+  }
+  close();
+  sum_up();
+  return exit_code_after_interrupt(exit_success);
+}
+
+/// Of robots alone, without a bus.
+const protocol::Catalogue no_topics{.robot = "mappers", .bit_rate = 0, .boards = {}, .topics = {}};
+
+int run_fleet_log(ServeOptions options, Source source) {
+  const fleet::Known known = fleet::known_of("serve", options.fleet->world, options.fleet->starts);
+  fleet::ReadLineLog log = fleet::read_line_log("serve", options.log);
+  if (log.damaged != 0)
+    remark(fmt::format("serve: {}: {} could not be read, the first is line {}", options.log,
+                       counted(log.damaged, "line"), log.first_damaged));
+  if (log.said.empty())
+    fail({fmt::format("serve: {}: nothing that a central has said is in it", options.log),
+          "was it recorded while robots had links?"});
+  static const spec::Model no_model;
+  Server server{no_topics, no_model, std::move(options), std::move(source), {}, 0};
+  server.open();
+  return server.run_fleet_log(fleet::LineReplay{std::move(log), known});
+}
+
 }  // namespace
 
 void check_has_page(std::string_view verb) {
@@ -432,6 +481,7 @@ int run(Session& session, ServeOptions options) {
   Source source{{}, options.log.empty(), options.commands};
   if (!options.log.empty()) {
     source.name = std::filesystem::path{options.log}.filename().string();
+    if (options.fleet) return run_fleet_log(std::move(options), std::move(source));
     LogFeed log{options.log, options.format, session.catalogue()};
     if (interrupted() != 0) return exit_code_after_interrupt(exit_success);
     Server server{session.catalogue(), session.spec().model(), std::move(options),
@@ -440,11 +490,10 @@ int run(Session& session, ServeOptions options) {
     return server.run_log(log);
   }
   if (!options.bus) {
-    static constexpr protocol::Catalogue none{.robot = "mappers", .bit_rate = 0, .boards = {}, .topics = {}};
     static const spec::Model no_model;
     const std::string& path = options.fleet->line.path;
     source.name = path.empty() ? "central" : path;
-    Server server{none, no_model, std::move(options), std::move(source), {}, 0};
+    Server server{no_topics, no_model, std::move(options), std::move(source), {}, 0};
     server.open();
     return server.run_alone();
   }

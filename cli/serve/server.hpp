@@ -21,8 +21,9 @@ struct ServeOptions {
   std::optional<std::uint32_t> bit_rate, data_bit_rate;
   WebOptions web;
   bool commands = false;
-  bool bus = true;                    ///< or the log; false: only robots behind a central
-  std::optional<FleetOptions> fleet;  ///< none: there are no such robots
+  bool bus = true;  ///< or the log; false: only robots behind a central
+  /// Of the line, or of its log; none: there are no such robots.
+  std::optional<FleetOptions> fleet;
   std::string shows;           ///< what the page shows first, as its address has it: "plot=/gyroscope.z"
   bool opens = false;          ///< in this user's browser, too
   std::function<bool()> over;  ///< is asked several times a second; true ends it

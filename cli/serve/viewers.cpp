@@ -181,7 +181,31 @@ bool Viewers::has_next(ViewerId viewer) const {
   const auto found = viewers_.find(viewer);
   if (found == viewers_.end()) return false;
   const Viewer& of = found->second;
-  return !of.texts.empty() || !of.states.empty() || of.cursor < first_ + queue_.size();
+  return of.asked || !of.texts.empty() || !of.states.empty() || of.cursor < first_ + queue_.size();
+}
+
+void Viewers::ask(ViewerId viewer) {
+  const std::lock_guard lock{mutex_};
+  const auto found = viewers_.find(viewer);
+  if (found != viewers_.end()) found->second.asked = true;
+}
+
+bool Viewers::take_asked(ViewerId viewer) {
+  const std::lock_guard lock{mutex_};
+  const auto found = viewers_.find(viewer);
+  return found != viewers_.end() && std::exchange(found->second.asked, false);
+}
+
+void Viewers::hear(ViewerId viewer) {
+  const std::lock_guard lock{mutex_};
+  const auto found = viewers_.find(viewer);
+  if (found != viewers_.end()) ++found->second.heard;
+}
+
+std::uint64_t Viewers::heard(ViewerId viewer) const {
+  const std::lock_guard lock{mutex_};
+  const auto found = viewers_.find(viewer);
+  return found == viewers_.end() ? 0 : found->second.heard;
 }
 
 std::uint64_t Viewers::lost() const {

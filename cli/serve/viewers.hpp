@@ -54,6 +54,10 @@ class Viewers {
   /// A text to one viewer, or with 0 to all; of a viewer that takes none, the oldest go.
   void tell(ViewerId viewer, std::string text);
 
+  /// Of one for whom robots drive: it is asked whether it is there. `heard` counts what it says.
+  void ask(ViewerId viewer);
+  [[nodiscard]] std::uint64_t heard(ViewerId viewer) const;
+
   // For who sends.
 
   [[nodiscard]] ViewerId add();
@@ -72,9 +76,13 @@ class Viewers {
     std::shared_ptr<const std::string> payload;
   };
   /// What the viewer is to be sent next; none: it has all. A status reports loss first, at most once
-  /// a second of `now`.
+  /// a second of `now`, which is no clock that may be set.
   [[nodiscard]] std::optional<Outgoing> next(ViewerId viewer, base::Time now);
-  /// Whether `next` may have something.
+  /// Once for each `ask`: the viewer is to be pinged.
+  [[nodiscard]] bool take_asked(ViewerId viewer);
+  /// It has said something, or has answered.
+  void hear(ViewerId viewer);
+  /// Whether `next` may have something, or it is to be pinged.
   [[nodiscard]] bool has_next(ViewerId viewer) const;
 
   /// Messages that viewers have lost, those that have gone included.
@@ -107,6 +115,8 @@ class Viewers {
     std::uint64_t lost = 0;
     std::uint64_t told = 0;  ///< of these
     base::Time told_at{};
+    bool asked = false;  ///< and not pinged yet
+    std::uint64_t heard = 0;
   };
 
   void put(std::uint32_t channel, std::uint64_t time_ns, Payload payload);

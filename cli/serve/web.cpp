@@ -20,6 +20,7 @@ bool has_page() noexcept {
 #include <cstring>
 #include <libwebsockets.h>
 #include <netdb.h>
+#include <strings.h>
 #include <sys/socket.h>
 #include <thread>
 #include <unistd.h>
@@ -233,7 +234,12 @@ struct Web::State {
 
   /// To a viewer: as much as its socket takes.
   int send_messages(lws* wsi, Connection& connection) {
-    const base::Time now = unix_time();
+    const base::Time now{Clock::now().time_since_epoch()};  // the system's may be set back
+    if (lws_send_pipe_choked(wsi) == 0 && viewers->take_asked(connection.viewer)) {
+      constexpr std::size_t size = 1;  // of an answer without any byte libwebsockets says nothing
+      if (buffer.size() < LWS_PRE + size) buffer.resize(LWS_PRE + size);
+      if (lws_write(wsi, buffer.data() + LWS_PRE, size, LWS_WRITE_PING) < 0) return -1;
+    }
     for (std::size_t i = 0; i < most_at_once; ++i) {
       if (lws_send_pipe_choked(wsi) != 0) break;
       const auto message = viewers->next(connection.viewer, now);
@@ -250,6 +256,7 @@ struct Web::State {
     return 0;
   }
   int take_message(lws* wsi, Connection& connection, std::string_view piece) {
+    viewers->hear(connection.viewer);
     if (connection.partial.size() + piece.size() > foxglove::longest_message) {
       std::string why = fmt::format("longer than {} bytes", foxglove::longest_message);
       lws_close_reason(wsi, LWS_CLOSE_STATUS_MESSAGE_TOO_LARGE, reinterpret_cast<unsigned char*>(why.data()),
@@ -267,6 +274,13 @@ struct Web::State {
     return 0;
   }
 
+  /// Before a connection becomes one of another protocol; nonzero: it does not.
+  int upgrade(lws* wsi, const char* protocol) {
+    if (::strcasecmp(protocol, "websocket") == 0 && header(wsi, WSI_TOKEN_VERSION) == "13") return 0;
+    ++refused;
+    lws_return_http_status(wsi, HTTP_STATUS_BAD_REQUEST, "expected WebSocket, version 13");
+    return 1;
+  }
   /// Before a viewer is connected; nonzero: it is not.
   int filter(lws* wsi) {
     std::string why = obstacle(wsi);
@@ -281,6 +295,8 @@ struct Web::State {
 
   int of_page(lws* wsi, lws_callback_reasons reason, Connection** slot, void* in, std::size_t size) {
     switch (reason) {
+      case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:  // libwebsockets would speak HTTP/2, too, and version 8
+        return upgrade(wsi, static_cast<const char*>(in));
       case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:  // without a subprotocol
         ++refused;
         lws_return_http_status(wsi, HTTP_STATUS_BAD_REQUEST, "offer the subprotocol foxglove.websocket.v1");
@@ -321,6 +337,9 @@ struct Web::State {
         return *slot == nullptr ? 0 : send_messages(wsi, **slot);
       case LWS_CALLBACK_RECEIVE:
         return *slot == nullptr ? -1 : take_message(wsi, **slot, {static_cast<const char*>(in), size});
+      case LWS_CALLBACK_RECEIVE_PONG:
+        if (*slot != nullptr) viewers->hear((*slot)->viewer);
+        return 0;
       case LWS_CALLBACK_CLOSED:
         if (*slot == nullptr) return 0;
         listener->gone((*slot)->viewer);

@@ -1,5 +1,6 @@
 #include "cli/shared/interrupt.hpp"
 
+#include <atomic>
 #include <cerrno>
 #include <climits>
 #include <csignal>
@@ -9,11 +10,13 @@
 
 namespace ocm::cli {
 namespace {
-volatile std::sig_atomic_t noted_signal = 0;
-volatile std::sig_atomic_t noted_signals = 0;
+// Read by all threads: what a signal handler may share with another thread than its own is lock-free.
+std::atomic<int> noted_signal{0};
+std::atomic<int> noted_signals{0};
+static_assert(std::atomic<int>::is_always_lock_free);
 void note(int signal) {
   noted_signal = signal;
-  noted_signals = noted_signals + 1;
+  ++noted_signals;
 }
 
 void catch_signal(int signal) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <mutex>
 #include <string>
 #include <unistd.h>
 #include <utility>
@@ -35,8 +36,11 @@ Kept& kept() {
   return messages;
 }
 
+/// Of any thread: a verb may have a page, and robots behind a central, in threads of their own.
 void print(std::string_view before, std::string_view raw) {
+  static std::mutex one_at_a_time;
   const std::string text = printable(raw);
+  const std::lock_guard lock{one_at_a_time};
   if (kept().keeps) {
     kept().lines.push_back(std::string{before} + text);
     return;

@@ -66,6 +66,7 @@ std::unique_ptr<serve::PageBeside> show(Session& session, const MapPage& page,
   shown.commands = page.commands;
   shown.fleet =
       serve::FleetOptions{.line = options.line, .starts = {}, .world = {}, .call_back = false, .waits = true};
+  shown.fleet->line.record.clear();  // it joins the line that the map records
   auto beside = std::make_unique<serve::PageBeside>(session, std::move(shown));
   run.on_end([page = beside.get()] { return page->end(); });
   return beside;
@@ -149,6 +150,7 @@ void add_map(Verb app, Session& session, int& exit_code) {
   verb.add_flag("--allow-commands", page->commands, "who opens the address that is printed may send robots");
   verb.add_flag("--open", page->opens, "in your browser, too");
   fleet::add_line_options(verb, options->line);
+  fleet::add_record_option(verb, options->line);
   verb.callback([options, page, &session, &exit_code] { run(session, *options, *page, exit_code); });
 }
 

@@ -2,11 +2,13 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "cli/fleet/line_log.hpp"
 #include "cli/logs/format.hpp"
 #include "cli/serve/server.hpp"
 #include "cli/shared/messages.hpp"
@@ -25,8 +27,10 @@ struct GivenToServe {
 };
 
 /// What is meant for robots behind a central.
-constexpr std::array<const char*, 8> fleet_options{"--central", "--baud",  "--flow",  "--dongle",
-                                                   "--scan",    "--start", "--world", "--call-back"};
+constexpr std::array<const char*, 8> fleet_options{"--start", "--world",  "--central", "--baud",
+                                                   "--flow",  "--dongle", "--scan",    "--call-back"};
+/// Those of them that a log of a central's line has no use for.
+constexpr std::span<const char* const> line_options{fleet_options.begin() + 2, fleet_options.end()};
 
 bool is_loopback(const std::string& address) {
   return address == "::1" || address.starts_with("127.");
@@ -39,11 +43,12 @@ bool is_origin(std::string_view text) {
          text.find_first_of("/?#*, ", colon + 3) == text.npos;
 }
 
-/// The word `robots`, or --central: robots behind a central; without `live` or a log these alone.
+/// The word `robots`, --central, or a log of its line: robots behind a central; without `live` these alone.
 void take_robots(Verb verb, GivenToServe& given) {
   const bool named = std::erase(given.words, "robots") != 0;
   const bool central = verb.count("--central") != 0;
-  if (!named && !central) {
+  const bool logged = std::any_of(given.words.begin(), given.words.end(), fleet::is_line_log);
+  if (!named && !central && !logged) {
     for (const char* option : fleet_options)
       if (verb.count(option) != 0)
         fail({fmt::format("serve: {} without robots", option),
@@ -73,7 +78,9 @@ void serve_given(Verb verb, Session& session, GivenToServe& given, int& exit_cod
           "name the log, or drop --from"},
          exit_usage);
   if (!options.log.empty() && options.fleet)
-    fail({"serve: a log and robots", "a log is of a bus: show them one by one, with two --port"}, exit_usage);
+    for (const char* option : line_options)
+      if (verb.count(option) != 0)
+        fail({fmt::format("serve: {} and a log", option), "a log has no line: drop one of them"}, exit_usage);
   if (options.opens && options.commands)
     fail({"serve: --open and --allow-commands: other users of this machine would see the token, among the "
           "words "
@@ -114,13 +121,15 @@ void serve_given(Verb verb, Session& session, GivenToServe& given, int& exit_cod
 }  // namespace
 
 void add_serve(Verb app, Session& session, int& exit_code) {
-  auto verb = app.add_verb("serve", "bus and robot in a browser, live or from a log", watch_group,
-                           "  amiroctl serve                     prints the address to open\n"
-                           "  amiroctl serve --allow-commands    with buttons and keys to drive\n"
-                           "  amiroctl serve drive.log           played, with a bar to wind it\n"
-                           "  amiroctl serve robots              mappers behind a central, and their map\n"
-                           "  amiroctl serve live robots         both\n"
-                           "  amiroctl serve --spec car.dbc");
+  auto verb =
+      app.add_verb("serve", "bus and robot in a browser, live or from a log", watch_group,
+                   "  amiroctl serve                     prints the address to open\n"
+                   "  amiroctl serve --allow-commands    with buttons and keys to drive\n"
+                   "  amiroctl serve drive.log           played, with a bar to wind it\n"
+                   "  amiroctl serve robots              mappers behind a central, and their map\n"
+                   "  amiroctl serve room.line           a drive of mappers that --record has written\n"
+                   "  amiroctl serve live robots         both\n"
+                   "  amiroctl serve --spec car.dbc");
   const auto given = std::make_shared<GivenToServe>();
   serve::ServeOptions& options = given->options;
   verb.add_option("words", given->words,

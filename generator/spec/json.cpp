@@ -133,14 +133,14 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
       remedy = "at most 18 digits, and an exponent of at most 100";
     }
     const std::size_t offset = position == 0 ? 0 : std::min(position, text_.size() + 1) - 1;
-    std::size_t line = 1;
-    std::size_t column = 1;
-    for (const char c : text_.substr(0, offset)) {
-      column = c == '\n' ? 1 : column + 1;
-      if (c == '\n') ++line;
-    }
-    problems_.push_back({std::string{file_name_} + ":" + std::to_string(line) + ":" + std::to_string(column),
-                         std::move(what), std::move(remedy)});
+    problems_.push_back({place_of(offset), std::move(what), std::move(remedy)});
+    return false;
+  }
+  /// The parser takes a NUL for the end of the text; false: there is one.
+  bool has_no_nul() {
+    const std::size_t at = text_.find('\0');
+    if (at == std::string_view::npos) return true;
+    problems_.push_back({place_of(at), "a NUL character", "end the text in front of it"});
     return false;
   }
 
@@ -197,6 +197,16 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     return line_;
   }
   std::string place() { return std::string{file_name_} + ":" + std::to_string(line()); }
+  /// Line and column.
+  [[nodiscard]] std::string place_of(std::size_t offset) const {
+    std::size_t line = 1;
+    std::size_t column = 1;
+    for (const char c : text_.substr(0, offset)) {
+      column = c == '\n' ? 1 : column + 1;
+      if (c == '\n') ++line;
+    }
+    return std::string{file_name_} + ":" + std::to_string(line) + ":" + std::to_string(column);
+  }
 
   std::string_view text_;
   const char* counted_;
@@ -231,7 +241,7 @@ Node parse_json(std::string_view text, std::string_view file_name, std::vector<P
   Builder builder{text, file_name, problems, document};
   const CountingIterator first{text.data(), &builder.taken};
   const CountingIterator last{text.data() + text.size(), &builder.taken};
-  if (!nlohmann::json::sax_parse(first, last, &builder)) return {};
+  if (!nlohmann::json::sax_parse(first, last, &builder) || !builder.has_no_nul()) return {};
   Node root = builder.take_root();
   find_twins(root, "", file_name, problems);
   return root;

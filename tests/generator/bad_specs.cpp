@@ -108,6 +108,9 @@ TEST_CASE("what is no spec at all") {
   CHECK(only("\"topics\"") == Problem{"f:1: /", "\"topics\" is not an object", object});
   CHECK(only("{\"robot\": \"\xFF\"}").remedy == "save the file as UTF-8");
   CHECK(only("{\n\n  \"robot\": \"a\xC3\"}").place == "f:3:15");
+  // Behind a NUL, at which the parser ends, there may be anything.
+  using namespace std::string_view_literals;
+  CHECK(only("{\n}\0{\"robot\": 1}"sv) == Problem{"f:2:2", "a NUL character", "end the text in front of it"});
   CHECK(only(std::string(100'000, '[')) ==
         Problem{"f:1", "nested deeper than 32 levels", "a spec needs 7 levels at most"});
   CHECK(only("[\"" + std::string(20'001, 'a') + "\"]") ==

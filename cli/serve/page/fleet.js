@@ -44,6 +44,13 @@ export class Fleet {
     this.parts.map.classList.toggle('sends', may);
   }
 
+  // Of a log that was wound: ways and map of before do not go on.
+  forget() {
+    this.trails.clear();
+    this.grid = this.picture = undefined;
+    this.changed = true;
+  }
+
   take(state) {
     this.state = state;
     this.robots = state.robots;

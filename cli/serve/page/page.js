@@ -146,6 +146,7 @@ function setPlayback(state) {
   if (jumps !== undefined && jumps !== state.jumps) {  // what came before does not go on
     graphs.forget();
     picture.forget();
+    fleet.forget();
     newest.clear();
   }
   jumps = state.jumps;

@@ -11,6 +11,7 @@ import itertools
 import json
 import os
 import pathlib
+import re
 import signal
 import statistics
 import subprocess
@@ -20,6 +21,8 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tests" / "tool" / "verbs"))
 sys.path.insert(0, str(ROOT / "tests"))
+import screens  # noqa: E402
+import waiting  # noqa: E402
 from harness import Case, main  # noqa: E402
 from realtime import RealTime  # noqa: E402
 
@@ -361,6 +364,23 @@ class Usage(Case):
         self.run_tool("sim", "--boards", "qemu", "--speed", "2", code=2)
         self.run_tool("sim", "--images", ".", code=2)
         self.run_tool("sim", "--boards", "paper", code=2)
+
+
+class Shown(screens.Screens):
+    def test_emulated_boards_on_a_terminal(self):
+        """The world is the simulator's, the wheels are those that the emulated board commands."""
+        bus = f"sim:{self.folder}/show.sock"
+        self.open(80, "--bus", bus, "sim", "--boards", "qemu", "--images", IMAGES, "--show=text", rows=24)
+        place = re.search(r"x +(-?\d+\.\d+) m", "\n".join(self.shows(80, "AMiRo", "heading", "  0.000 m/s")))[1]
+        drive = self.start("--bus", bus, "drive", "10cm/s")
+        waiting.until(lambda: re.search(r"right +0\.(09|1[01])\d m/s", "\n".join(self.screen(80))), "its wheels")
+        waiting.until(lambda: not re.search(rf"x +{re.escape(place)} m", "\n".join(self.screen(80))), "another place")
+        self.interrupt(drive)
+        self.shows(80, "  0.000 m/s")
+        self.press(80, "q")
+        ended = self.ended(80)
+        self.assertEqual(ended[-1], "END 0")
+        self.assertNotIn("heading", "\n".join(ended))  # the picture has gone
 
 
 if __name__ == "__main__":

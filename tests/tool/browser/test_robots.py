@@ -100,6 +100,28 @@ class Robots(harness.Case):
             self.assertFalse(self.browser.element(part).is_displayed(), part)
         self.fine()
 
+    def test_a_log_has_a_time_bar(self):
+        """The map grows from what was recorded, and is small again where the log is wound back."""
+        self.play()
+        log = os.path.join(self.folder, "room.line")
+        owner = self.start("central", "--own", "--scan", "200ms", "--record", log)
+        harness.waiting.until(lambda: self.avr.confirmed and self.arduino.confirmed, "its robots")
+        self.run_tool("goto", "AVR", "0", "100")
+        self.interrupt(owner)
+        self.central.close()
+        self.serve("--start", "AVR=0.4,0.5,0", "--start", "Arduino=0.8,0.5,90", tool=("serve", log))
+        self.until(lambda: self.browser.element("#bar").is_displayed(), "the time bar")
+        wind = "const bar = document.getElementById('bar'); bar.value = arguments[0]; bar.dispatchEvent(new Event('change'))"
+        self.browser.script(wind, 1000)
+        self.until(lambda: "end" in self.browser.text("#bar-text") and self.row("AVR")[2:3] == ["1.40 m, 0.50 m"], "its end")
+        self.until(lambda: self.area() > 0.2, "the map")
+        self.until(lambda: min(self.browser.script(SHADES)) > 200, "walls and free cells on the canvas")
+        self.browser.element("#play").click()
+        self.browser.script(wind, 0)
+        self.until(lambda: self.browser.text("#bar-text").startswith("0.0 of") and self.area() == 0 and not self.place("AVR"), "its beginning")
+        self.assertFalse(self.browser.element("#fleet-orders").is_displayed())
+        self.fine()
+
     def test_a_click_sends_a_robot(self):
         self.serve_robots("--allow-commands")
         self.choose("AVR")

@@ -46,6 +46,9 @@ TEST_CASE("serve: what cannot be commanded is refused in words") {
   CHECK(command_of(catalogue, "/gyroscope", "{}").error.find("takes nothing") != std::string::npos);
   CHECK_FALSE(command_of(catalogue, "/unheard", "{}"));
   CHECK_FALSE(command_of(catalogue, "", "{}"));
+  for (const char* const other : {"/can0/motors", "motors", "//motors", "/motors/", "/", "x/motors"})
+    CHECK(command_of(catalogue, other, R"({"x":0.1})").error.find("takes nothing") != std::string::npos);
+  CHECK_FALSE(command_of(catalogue, "/motors", std::string{R"({"x":0.1})"} + '\0'));
   CHECK_FALSE(command_of(catalogue, "/motors", "0.1"));
   CHECK_FALSE(command_of(catalogue, "/motors", R"({"x":)"));
   CHECK(command_of(catalogue, "/motors", R"({"y":1})").error.find("y") != std::string::npos);

@@ -248,6 +248,27 @@ TEST_CASE("errands: a viewer that goes away stops what it has sent, and nothing 
   CHECK(desk.line.said.back() == std::pair{0U, SetPoint{}});
 }
 
+TEST_CASE("errands: for whom robots drive") {
+  Desk desk;
+  const auto driving = [&] { return desk.errands.driving(desk.line); };
+  CHECK(driving().empty());
+  desk.take(Kind::pause, "two");
+  CHECK(driving().empty());
+  desk.take(Kind::go, "one", {1, 0});
+  CHECK(driving() == std::vector<cli::serve::ViewerId>{7});
+  desk.take(Kind::go, "two", {1, 0}, false, 8);
+  CHECK(driving() == std::vector<cli::serve::ViewerId>{7, 8});
+  desk.line.stands(0, Progress::reached, 100, 0);
+  for (int i = 0; i < 2; ++i) desk.step();
+  CHECK(desk.says("one is there"));
+  CHECK(driving() == std::vector<cli::serve::ViewerId>{8});
+  // Paused on its way it may go on.
+  desk.take(Kind::pause, "two", {}, false, 9);
+  CHECK(driving() == std::vector<cli::serve::ViewerId>{8});
+  desk.line.by_other(1, "goto (process 12)");
+  CHECK(driving().empty());
+}
+
 TEST_CASE("errands: a pause is said until it shows") {
   Desk desk;
   desk.take(Kind::pause);

@@ -72,6 +72,30 @@ TEST_CASE("foxglove: what is no request is refused in words") {
   CHECK(parse(R"({"op":"fly"})").error == "'fly' is nothing that this server does");
   std::string deep(100, '[');
   CHECK_FALSE(parse(deep));
+  // What the parser takes for the end of the text is none.
+  CHECK(parse(std::string{R"({"op":"getParameters","parameterNames":[]})"} + '\0').error ==
+        "no JSON: a NUL character");
+}
+
+TEST_CASE("foxglove: what is kept of a client, or goes back to it, is bounded") {
+  const auto topic = [](std::size_t size) {
+    return R"({"op":"advertise","channels":[{"id":1,"topic":")" + std::string(size, 'a') +
+           R"(","encoding":"json"}]})";
+  };
+  CHECK(parse(topic(longest_name)));
+  CHECK(parse(topic(longest_name + 1)).error.find("a topic of 256 bytes at most") != std::string::npos);
+  const auto request = [](std::size_t size) {
+    return R"({"op":"getParameters","parameterNames":[],"id":")" + std::string(size, 'a') + R"("})";
+  };
+  CHECK(parse(request(longest_name)));
+  CHECK_FALSE(parse(request(longest_name + 1)));
+  const std::string words(longest_status, 'a');
+  CHECK(status(Level::error, words) == R"({"op":"status","level":2,"message":")" + words + R"("})");
+  CHECK(status(Level::error, words + "b") == R"({"op":"status","level":2,"message":")" + words + R"( ..."})");
+  // No character is cut in two.
+  const std::string almost(longest_status - 1, 'a');
+  CHECK(status(Level::error, almost + "\u00B5") ==
+        R"({"op":"status","level":2,"message":")" + almost + R"( ..."})");
 }
 
 TEST_CASE("foxglove: what a client publishes") {

@@ -133,6 +133,23 @@ TEST_CASE("sessions: a flood of orders is bounded, and who has gone is known all
   CHECK(server.says(viewer + 1, "64 channels of a viewer are the most"));
 }
 
+TEST_CASE("sessions: the flood of a viewer keeps no other one's stop out") {
+  Server server{true};
+  const ViewerId flooder = server.open(true);
+  const ViewerId other = server.open(true);
+  for (const ViewerId viewer : {flooder, other}) server.sessions.text(viewer, advertise_motors);
+  for (std::size_t i = 0; i < 2 * Orders::most; ++i) server.sessions.binary(flooder, drive_message);
+  server.said(other);
+  server.sessions.binary(other, drive_message);
+  CHECK(server.said(other).empty());
+  server.sessions.binary(other, drive_message);  // it has one there already
+  CHECK(server.says(other, "too many commands"));
+  const auto orders = server.orders.take();
+  REQUIRE(orders.size() == Orders::most + 1);
+  CHECK(orders.back().viewer == other);
+  CHECK(server.orders.take().empty());
+}
+
 TEST_CASE("sessions: an error answers what is no request") {
   Server server{true};
   const ViewerId viewer = server.open(true);

@@ -129,6 +129,19 @@ class Serve(harness.Case):
         self.assertEqual(status, 403)
         self.assertIn("without Host", text)
 
+    def test_no_other_protocol(self):
+        """libwebsockets would go over to HTTP/2, in clear, and to a draft of WebSocket."""
+        self.start_sim("--frozen")
+        _, port, _ = self.serve()
+        upgrade = (f"Host: 127.0.0.1:{port}", "Connection: Upgrade", "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==",
+                   "Sec-WebSocket-Protocol: foxglove.websocket.v1")
+        for other in (("Upgrade: h2c", "HTTP2-Settings: AAMAAABkAARAAAAAAAIAAAAA"), ("Upgrade: websocket", "Sec-WebSocket-Version: 8"),
+                      ("Upgrade: websocket",)):
+            status, text = self.answer_to(port, *upgrade, *other)
+            self.assertEqual(status, 400, other)
+            self.assertIn("expected WebSocket, version 13", text)
+        self.assertEqual(self.get(port)[0], 200)
+
     def test_an_origin_that_is_none(self):
         self.start_sim("--frozen")
         _, port, _ = self.serve()
@@ -170,6 +183,35 @@ class Serve(harness.Case):
         not_text = self.viewer(port)
         not_text.send_frame(1, b"\xff\xfe")
         self.assertIsNone(not_text.text("none"))
+
+    def test_it_opens_a_browser(self):
+        """xdg-open is played: what it gets is the address, and that it stays or is missing keeps nothing waiting."""
+        log = self.log()
+        opened = os.path.join(self.folder, "opened")
+        browser = os.path.join(self.folder, "xdg-open")
+        with open(browser, "w", encoding="ascii") as file:
+            file.write(f'#!/bin/sh\necho "$@" > {opened}.part; mv {opened}.part {opened}; exec sleep 60\n')
+        os.chmod(browser, 0o755)
+        path = self.environment["PATH"]
+        for display in ("DISPLAY", "WAYLAND_DISPLAY"):
+            self.environment |= {"PATH": f"{self.folder}:{path}", display: ":7"}
+            server, port, _ = self.serve(log, "--open")
+            harness.waiting.until(lambda: os.path.exists(opened), "that the browser is opened")
+            with open(opened, encoding="ascii") as file:
+                self.assertEqual(file.read(), f"http://127.0.0.1:{port}/\n")
+            os.unlink(opened)
+            children = subprocess.run(["pgrep", "-P", str(server.pid)], capture_output=True, text=True, check=True).stdout.split()
+            self.assertEqual(self.interrupt(server), ("", ""))
+            for child in children:
+                os.kill(int(child), signal.SIGKILL)
+            del self.environment[display]
+        server, port, _ = self.serve(log, "--open")
+        self.assertIn("there is no display", self.interrupt(server)[1])
+        self.assertFalse(os.path.exists(opened))
+        self.environment |= {"PATH": "/nonexistent", "DISPLAY": ":7"}
+        server, port, _ = self.serve(log, "--open")
+        self.assertEqual(self.get(port)[0], 200)
+        self.assertIn("xdg-open cannot be started: No such file or directory", self.interrupt(server)[1])
 
     # --- values ---
 
@@ -301,9 +343,26 @@ class Serve(harness.Case):
         self.start_sim("--frozen")
         _, port, token = self.serve("--allow-commands")
         viewer = self.viewer(port, token)
-        for payload, what in ((b'{"x":null}', "x: expected a number in m/s"), (b"{}", "no field in it"), (b"", "an empty message")):
+        for payload, what in ((b'{"x":null}', "x: expected a number in m/s"), (b"{}", "no field in it"), (b"", "an empty message"),
+                              (b'{"x":0.1}\0{}', "no JSON: a NUL character")):
             viewer.publish_bytes("/motors", payload)
             self.assertIn(f"/motors: {what}", viewer.text("status")["message"])
+        viewer.publish("/can0/motors", {"x": 0.1})  # of another server
+        self.assertIn("/can0/motors takes nothing", viewer.text("status")["message"])
+
+    def test_what_comes_back_is_bounded(self):
+        """A viewer that does not read its answers: what waits for it is not what it has sent."""
+        self.start_sim("--frozen")
+        server, port, _ = self.serve()
+        viewer = self.viewer(port, room=4096)
+        before = self.memory(server)
+        for _ in range(200):
+            viewer.send_frame(1, b'{"op":"' + b"x" * 65_000 + b'"}')
+        status = viewer.text("status")
+        self.assertIn("x ...", status["message"])
+        self.assertLess(len(status["message"]), 1100)
+        if not harness.sanitized():
+            self.assertLess(self.memory(server) - before, 2_000)  # KiB, of 13,000 that it was sent
 
     def test_a_page_drives_and_its_going_stops(self):
         self.start_sim("--frozen")

@@ -5,6 +5,7 @@ import json
 import math
 import os
 import re
+import resource
 import signal
 import sys
 import time
@@ -26,8 +27,8 @@ class Robots(Case):
         self.central = Central(self.folder, [self.avr, self.arduino], link="ocm/central")
         self.addCleanup(self.central.close)
 
-    def serve(self, *arguments, words=("robots",), starts=STARTS):
-        server = self.start("serve", *words, "--port", "0", "--scan", "200ms", *starts, *arguments)
+    def serve(self, *arguments, words=("robots",), starts=STARTS, scan=("--scan", "200ms")):
+        server = self.start("serve", *words, "--port", "0", *scan, *starts, *arguments)
         line = server.stdout.readline()
         self.assertRegex(line, r"^http://127.0.0.1:\d+/(#[0-9a-f]{32})?\n$", server.poll())
         address, _, token = line.strip().partition("#")
@@ -213,6 +214,21 @@ class Robots(Case):
         waiting.until(lambda: self.avr.heard[-1] == "{U,0,0}", "its robot is stopped")
         self.assertNotIn("{U,0,0}", self.arduino.heard)
 
+    def test_a_page_whose_computer_is_off_stops_what_it_sent(self):
+        """Nothing closes its connection, and nothing answers. The other page only looks, and answers."""
+        _, port, token, viewer = self.both()
+        self.avr.speed = self.arduino.speed = 1
+        off = self.viewer(port, token)
+        off.publish("/ocm/fleet", {"robot": "AVR", "x_m": 0.7, "y_m": 0.5})
+        viewer.publish("/ocm/fleet", {"robot": "Arduino", "x_m": 0.8, "y_m": 0.7})
+        sent = time.monotonic()
+        self.says(viewer, "does not answer: what it sent is stopped")  # it answers meanwhile
+        self.assertGreater(time.monotonic() - sent, 1.9)
+        waiting.until(lambda: self.avr.heard[-1] == "{U,0,0}", "its robot is stopped")
+        self.assertLess(time.monotonic() - sent, 8)
+        self.assertTrue(any(line.startswith("{U,") for line in self.arduino.heard))
+        self.assertNotIn("{U,0,0}", self.arduino.heard)
+
     def test_the_end_of_the_server_stops_them(self):
         server, _, _, viewer = self.both()
         self.avr.speed = 1
@@ -324,7 +340,8 @@ class Robots(Case):
         owner.send_signal(signal.SIGKILL)
         owner.wait()
         self.assertIn("waiting for it", self.state(viewer, lambda s: s["gone"], "that it is gone")["gone"])
-        state = self.state(viewer, lambda s: s["own"] and len(s["robots"]) == 2, "that it has the line itself")
+        state = self.state(viewer, lambda s: s["own"] and len(s["robots"]) == 2 and all(robot["at"] for robot in s["robots"]),
+                           "that it has the line itself, and hears both")
         self.assertEqual(state["gone"], "")
         viewer.publish("/ocm/fleet", {"robot": "AVR", "x_m": 0.6, "y_m": 0.5})
         self.says(viewer, "AVR is there")
@@ -355,6 +372,69 @@ class Robots(Case):
         self.assertEqual(mapper.returncode, 130, out + err)
         self.assertTrue(os.path.exists(picture))
         self.assertNotIn("does not answer", err)
+
+    # --- from a log ---
+
+    def test_a_drive_that_was_recorded(self):
+        """central --own --record while robots drive; then the same page from the file, with a time bar."""
+        log = os.path.join(self.folder, "room.line")
+        owner = self.start("central", "--own", "--scan", "200ms", "--record", log)
+        waiting.until(lambda: self.avr.confirmed and self.arduino.confirmed, "its robots")
+        self.run_tool("goto", "AVR", "0", "20")
+        self.run_tool("goto", "Arduino", "0", "10")
+        self.interrupt(owner)
+        self.assertIn("--record", self.run_tool("central", "--own", "--record", log, code=1)[1])  # is there already
+        self.central.close()  # a log needs none
+        server, port, token = self.serve(words=(log,), scan=())
+        self.assertEqual(token, "")
+        viewer = self.viewer(port, "", "/ocm/robot", "/ocm/playback", "/ocm/fleet", "/ocm/map")
+        self.assertFalse(viewer.message("/ocm/robot").fields["live"])
+        viewer.publish("/ocm/playback", {"speed": 64})
+        self.state(viewer, lambda s: s["ended"], "its end", "/ocm/playback")
+        avr = self.robot(viewer, "AVR", lambda r: r["at"] and r["at"]["x_m"] > 0.55, "its place at the end")
+        self.assertAlmostEqual(avr["at"]["y_m"], 0.5, delta=0.03)
+        arduino = self.robot(viewer, "Arduino", lambda r: r["at"], "its place")
+        self.assertAlmostEqual(arduino["at"]["y_m"], 0.6, delta=0.04)
+        self.state(viewer, lambda grid: self.cells(grid)[1].count(1) > 100, "the map", "/ocm/map")
+        viewer.publish("/ocm/playback", {"at_s": 0, "paused": True})
+        self.state(viewer, lambda s: s["jumps"] == 1 and s["at_s"] == 0 and s["paused"], "its beginning", "/ocm/playback")
+        self.state(viewer, lambda s: not any(robot["at"] for robot in s["robots"]), "that nothing is known yet")
+        self.assertEqual(self.cells(self.state(viewer, lambda grid: True, "the map", "/ocm/map"))[1].count(2), 0)
+        viewer.publish("/ocm/playback", {"speed": 0})
+        self.says(viewer, "a time bar takes")
+        viewer.publish("/ocm/fleet", {"robot": "AVR", "order": "stop"})
+        self.says(viewer, "may only look")
+        self.assertEqual(self.interrupt(server), ("", ""))
+
+    def test_logs_that_are_none(self):
+        log = os.path.join(self.folder, "room.line")
+        for text, words in (("", "is no log of a central's line"), ("# line of a central, version 1\n", "nothing that a central has said"),
+                            ("# line of a central, version 1\n(1.000000) a\nrubbish\n", None)):
+            with open(log, "w", encoding="ascii") as file:
+                file.write(text)
+            if words:
+                self.assertIn(words, self.run_tool("serve", "robots", log, "--port", "0", code=1)[1])
+        server, _, _ = self.serve(words=("robots", log), scan=())
+        self.assertIn("1 line could not be read, the first is line 3", self.interrupt(server)[1])
+        for option in (("--central", "x"), ("--call-back",), ("--scan", "1s")):
+            self.assertIn(f"{option[0]} and a log", self.run_tool("serve", log, *option, code=2)[1])
+        self.assertIn("No such file", self.run_tool("central", "--own", "--record", os.path.join(self.folder, "no", "room.line"), code=1)[1])
+
+    def test_what_a_full_disk_does_not_take_ends_the_record_alone(self):
+        log = os.path.join(self.folder, "room.line")
+
+        def small():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        owner = self.start("central", "--own", "--scan", "200ms", "--record", log, preexec_fn=small)
+        waiting.until(lambda: os.path.exists(log) and os.path.getsize(log) == 1000, "that it is full")
+        self.run_tool("goto", "AVR", "0", "20")
+        said = self.interrupt(owner)[1]
+        self.assertEqual(owner.returncode, 130)
+        self.assertEqual(said.count("is not recorded"), 1)
+        self.assertIn("File too large", said)
+        server, _, _ = self.serve(words=(log,), scan=())
+        self.assertIn("1 line could not be read", self.interrupt(server)[1])  # its last one is cut off
 
     # --- wrong usage ---
 

@@ -188,6 +188,99 @@ class Top(played_adapter.WithAdapter, screens.Screens):
         self.press(80, "q")
         self.assertEqual(self.ended(80)[-1], "END 0")
 
+    def test_a_log_of_any_dbc(self):
+        spec, log = (os.path.join(self.folder, name) for name in ("car.dbc", "car.log"))
+        with open(spec, "w", encoding="ascii") as file:
+            file.write('VERSION ""\nNS_ :\nBS_:\nBU_: ECU\nBO_ 291 Engine: 8 ECU\n SG_ Speed : 0|16@1+ (0.25,0) [0|16000] "rpm" Vector__XXX\n'
+                       ' SG_ Gear : 16|4@1+ (1,0) [0|6] "" Vector__XXX\n\nVAL_ 291 Gear 0 "neutral" 1 "first" ;\n')
+        with open(log, "w", encoding="ascii") as file:
+            file.writelines(f"({10 + i / 10:.6f}) can0 123#{i:02X}0F010000000000\n({10.01 + i / 10:.6f}) can0 124#FF\n" for i in range(40))
+        self.open(100, "--spec", spec, "top", log, "--bitrate", "500k", rows=24)
+        self.shows(100, "Engine", "of 3.9 s")
+        self.press(100, "p", "0", "Right", "Down", "Enter")
+        value = next(event["fields"]["Speed"] for event in reversed(self.objects(self.run_tool("--spec", spec, "decode", "--json", log)[0]))
+                     if "fields" in event)
+        self.shows(100, f"{value:g} rpm", "first", "124", "FF")
+        self.press(100, "q")
+        self.assertEqual(self.ended(100)[-1], "END 0")
+
+    def test_a_log_that_is_cut_while_it_is_played(self):
+        log = self.log(seconds=300)
+        self.open(120, "top", log, rows=24)
+        self.shows(120, "of 299.9 s")
+        with open(log, encoding="ascii") as file:
+            kept = "".join(file.readlines()[:2000])
+        os.truncate(log, len(kept))
+        self.press(120, "0", *"]" * 10)
+        self.shows(120, "1000 of 3000 frames are not there any more")
+        self.press(120, "q")
+        lines = self.ended(120)
+        self.assertEqual(lines[-1], "END 0")
+        self.assertRegex(" ".join(lines), r"drive\.log: 1000 of 3000 frames are not there any more: was it cut, or replaced\?")
+
+    def test_stopped_and_continued(self):
+        """Ctrl-Z gives the shell its terminal back, and fg brings the table again."""
+        self.start_bus("gyro")
+        shell = "bash --norc --noprofile -i"
+        self.tmux("new-session", "-d", "-s", "of90", "-x", "90", "-y", "24", f"PS1='ready> ' {shell}; printf 'END %d' $?; sleep 100")
+        self.shows(90, "ready>")
+        self.press(90, f"{shlex.quote(harness.AMIROCTL)} --bus sim top; echo LEFT $?", "Enter")
+        self.shows(90, "gyroscope", "frames/s")
+        self.press(90, "C-z")
+        self.shows(90, "Stopped")
+        self.assertNotIn("frames/s", "\n".join(self.screen(90)))
+        self.press(90, "stty -a | grep -o '.icanon'", "Enter")
+        harness.waiting.until(lambda: any(line.strip() == "icanon" for line in self.screen(90)), "lines, as before")
+        self.press(90, "fg", "Enter")
+        self.shows(90, "gyroscope", "frames/s")
+        harness.waiting.until(lambda: re.search(r"gyros\w* +(9\.\d\d|10\.\d)", self.row(90, "gyros")), "its rate")
+        self.press(90, "q")
+        harness.waiting.until(lambda: "frames/s" not in "\n".join(self.screen(90)), "the shell's screen")
+
+    def drawn(self, *arguments, **environment):
+        """What it writes to the terminal, which has one character for a while."""
+        primary, secondary = pty.openpty()
+        self.addCleanup(os.close, primary)
+        fcntl.ioctl(secondary, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 100, 0, 0))
+        top = subprocess.Popen([harness.AMIROCTL, *arguments], stdin=secondary, stdout=secondary, stderr=subprocess.DEVNULL,
+                               env={**self.environment, "TERM": "xterm-256color", **environment}, start_new_session=True)
+        self._started.append(top)
+        shown = b""
+
+        def until(test):
+            nonlocal shown
+            end = time.monotonic() + 30
+            while not test():
+                self.assertLess(time.monotonic(), end, shown[-1000:])
+                if select.select([primary], [], [], 0.1)[0]:
+                    shown += os.read(primary, 65536)
+        until(lambda: b"gyroscope" in shown)
+        for rows, columns in ((1, 1), (1, 100), (24, 1), (2, 2), (24, 100)):
+            fcntl.ioctl(secondary, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
+            top.send_signal(signal.SIGWINCH)
+            before = len(shown)
+            os.write(primary, b"G?xg")
+            until(lambda: len(shown) > before)
+        os.close(secondary)
+        os.write(primary, b"q")
+        while top.poll() is None:
+            if select.select([primary], [], [], 0.1)[0]:
+                try:
+                    shown += os.read(primary, 65536)
+                except OSError:  # the terminal is closed
+                    break
+        self.assertEqual(top.wait(timeout=30), 0)
+        return shown.decode(errors="replace")
+
+    def test_colours_and_none(self):
+        log = self.log(seconds=1)
+        colour = re.compile(r"\x1b\[(?:\d+;)*(?:3[0-8]|4[0-8]|9[0-7]|10[0-7])(?:;\d+)*m")
+        self.assertRegex(self.drawn("top", log), colour)
+        for arguments, environment in ((("top", "--no-color", log), {}), (("top", log), {"NO_COLOR": "1"})):
+            shown = self.drawn(*arguments, **environment)
+            self.assertNotRegex(shown, colour)
+            self.assertRegex(shown, r"\x1b\[(?:\d+;)*[17](?:;\d+)*m")  # bold and reverse are left
+
     def test_a_serial_adapter(self):
         adapter = self.adapter()
         self.open(100, "--bus", f"slcan:{adapter.path}@250k", "top", rows=24)

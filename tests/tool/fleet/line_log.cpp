@@ -1,0 +1,62 @@
+#include "cli/fleet/line_log.hpp"
+
+#include <chrono>
+#include <string>
+
+#include <catch2/catch.hpp>
+
+namespace fleet_line_log_test {
+
+using namespace std::chrono_literals;
+using namespace std::string_literals;
+using namespace ocm;
+using cli::fleet::parse_log_line;
+using cli::fleet::to_log_line;
+
+TEST_CASE("line log: any piece comes back, as a line that can be read") {
+  std::string all;
+  for (int c = 0; c < 256; ++c) all += static_cast<char>(c);
+  const base::Time time{1795599207s + 123456us};
+  for (const std::string& text :
+       {"[0]:AVR:{U,1,-2,3,4,5,6,7,8}\n"s, all, ""s, "\\x41"s, "ends \\"s, "(1.000000) x"s}) {
+    const std::string line = to_log_line(time, text);
+    CHECK(line.find('\n') == line.size() - 1);
+    const auto said = parse_log_line(std::string_view{line}.substr(0, line.size() - 1));
+    REQUIRE(said);
+    CHECK(said->time == time);
+    CHECK(said->text == text);
+  }
+  CHECK(to_log_line(base::Time{5s + 7us}, "a\n") == "(5.000007) a\\x0a\n");
+}
+
+TEST_CASE("line log: what is no line of it") {
+  for (const char* const line : {"",
+                                 "(",
+                                 "()",
+                                 "( ) ",
+                                 "(1) x",
+                                 "(1.5) x",
+                                 "(1.0000000) x",
+                                 "(.000000) x",
+                                 "(-1.000000) x",
+                                 "(1.00000a) x",
+                                 "(1.-00001) x",
+                                 "(1.000000)x",
+                                 "1.000000 x",
+                                 "(7258118401.000000) x",
+                                 "(99999999999999999999.000000) x",
+                                 "(1.000000) \\",
+                                 "(1.000000) \\x",
+                                 "(1.000000) \\x1",
+                                 "(1.000000) \\xg0",
+                                 "(1.000000) \\n",
+                                 "(1.000000) a\tb",
+                                 "(1.000000) \xC3\xA4"}) {
+    INFO(line);
+    CHECK_FALSE(parse_log_line(line));
+  }
+  CHECK(parse_log_line("(0.000000) ")->text.empty());
+  CHECK(parse_log_line("(7258118400.999999) x"));
+}
+
+}  // namespace fleet_line_log_test

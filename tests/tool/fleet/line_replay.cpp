@@ -1,0 +1,137 @@
+#include "cli/fleet/line_replay.hpp"
+
+#include <chrono>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+namespace fleet_line_replay_test {
+
+using namespace std::chrono_literals;
+using namespace ocm;
+using cli::fleet::Known;
+using cli::fleet::LineReplay;
+using cli::fleet::ReadLineLog;
+using cli::fleet::RobotNow;
+
+constexpr base::Time begin{1000h};
+const std::string handshake = "{H,20,20,1,3,0,90,180,270,5000,0,3}\n";
+
+std::string update(int x, int y, int heading) {
+  return "{U," + std::to_string(x) + "," + std::to_string(y) + "," + std::to_string(heading) +
+         ",0,40,40,40,40}\n";
+}
+
+/// A log of robots 0, A, and 1, B, who say what is put.
+struct Log {
+  base::Duration at{};
+  ReadLineLog read{};
+  void says(std::string text) { read.said.push_back({begin + at, std::move(text)}); }
+  void robot(int index, const std::string& text, base::Duration pause = 200ms) {
+    says("[" + std::to_string(index) + "]:" + (index == 0 ? "A" : "B") + ":" + text);
+    at += pause;
+  }
+};
+
+Known known() {
+  Known known;
+  known.starts = {{"A", {1, 2, 0}}, {"B", {3, 2, 0}}};
+  return known;
+}
+
+TEST_CASE("line replay: robots are where they were, and it can be wound") {
+  Log log;
+  log.says("found 2\n0:C0000000000A:A\n1:C0000000000B:B\nend of list\nconnecting 0\nconnected 0\n");
+  log.at = 1s;
+  log.robot(0, handshake);
+  for (int i = 0; i <= 10; ++i) log.robot(0, update(i * 5, 0, 0));
+  log.robot(1, handshake);
+  log.robot(1, update(0, 7, 90));
+  LineReplay replay{log.read, known()};
+  CHECK(replay.playing().at == 0s);
+  CHECK(replay.playing().length == log.at - 200ms);
+  auto robots = replay.robots();
+  REQUIRE(robots.size() == 2);
+  CHECK(robots[0].name == "A");
+  CHECK(robots[0].address == "C0000000000A");
+  CHECK(robots[0].linked);
+  CHECK_FALSE(robots[1].linked);
+  CHECK_FALSE(robots[0].update);
+  replay.go_to(2s);
+  robots = replay.robots();
+  REQUIRE(robots[0].update);
+  CHECK(robots[0].update->x == 20);
+  CHECK(robots[0].pose().x_m == Approx(1.2F));
+  CHECK(robots[0].pose().y_m == Approx(2));
+  const auto drawn = replay.drawing().counters().drawn;
+  CHECK(drawn == 5);
+  replay.go_to(1h);
+  CHECK(replay.playing().ended);
+  robots = replay.robots();
+  CHECK(robots[0].pose().x_m == Approx(1.5F));
+  CHECK(robots[1].pose().y_m == Approx(2.07F));
+  CHECK(replay.drawing().counters().drawn == 12);
+  replay.go_to(2s);  // back: as it was
+  CHECK(replay.robots()[0].update->x == 20);
+  CHECK(replay.drawing().counters().drawn == drawn);
+  // It goes on by its clock, so many times as fast.
+  replay.faster(4);
+  replay.play(100ms);
+  CHECK(replay.playing().at == 2400ms);
+  CHECK(replay.robots()[0].update->x == 30);
+}
+
+TEST_CASE("line replay: who says its handshake again goes on, or has begun again") {
+  Log log;
+  log.robot(0, handshake);
+  log.robot(0, update(0, 0, 0));
+  log.robot(0, update(30, 0, 0));
+  log.robot(0, handshake);  // it was asked
+  log.robot(0, handshake);
+  log.robot(0, update(34, 0, 0));
+  LineReplay replay{log.read, known()};
+  replay.go_to(1h);
+  CHECK(replay.robots()[0].pose().x_m == Approx(1.34F));
+  log.robot(0, handshake);  // it was switched off and on, where it stood
+  log.robot(0, update(0, 0, 0));
+  log.robot(0, update(10, 0, 0));
+  LineReplay again{log.read, known()};
+  again.go_to(1h);
+  CHECK(again.robots()[0].pose().x_m == Approx(1.44F));
+}
+
+TEST_CASE("line replay: where robots began must be known, but for a robot alone; links end") {
+  Log log;
+  log.robot(0, handshake);
+  log.robot(0, update(0, 0, 0));
+  LineReplay alone{log.read, {}};
+  alone.go_to(1h);
+  CHECK(alone.robots()[0].origin_known);
+  CHECK(alone.drawing().counters().drawn == 1);
+  log.robot(1, update(0, 0, 0));
+  log.says("lost 0\n");
+  LineReplay two{log.read, {}};
+  two.go_to(1h);
+  CHECK_FALSE(two.robots()[0].origin_known);
+  CHECK_FALSE(two.robots()[0].linked);
+  CHECK(two.robots()[1].linked);
+  CHECK(two.drawing().counters().drawn == 0);
+}
+
+TEST_CASE("line replay: pieces that end anywhere, noise, and nothing at all") {
+  Log log;
+  const std::string all = "[0]:A:" + update(5, 6, 7) + "[0]:A:" + update(8, 9, 10);
+  for (const char c : all) log.says(std::string{c});
+  log.says("\x80\xff[[999]:x:{U,[1]:");
+  LineReplay replay{log.read, {}};
+  replay.go_to(1h);
+  REQUIRE(replay.robots()[0].update);
+  CHECK(replay.robots()[0].update->x == 8);
+  LineReplay nothing{ReadLineLog{}, {}};
+  nothing.play(1s);
+  CHECK(nothing.robots().empty());
+}
+
+}  // namespace fleet_line_replay_test
