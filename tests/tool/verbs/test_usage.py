@@ -89,7 +89,7 @@ class Look(Case):
         for alias in "gyro accel mag floor odom power ring motors".split():
             self.assertIn(alias, out)
         topics = self.objects(self.run_tool("list", "--json")[0])
-        self.assertEqual(len(topics), 8 + 1 + 3 + 8 + 2 + 2 * 3)  # sensors, motors, behaviours, lights, calibrations, reports
+        self.assertEqual(len(topics), 10 + 1 + 4 + 8 + 2 + 2 * 3)  # sensors, motors, behaviours, lights, calibrations, reports
         gyroscope = next(topic for topic in topics if topic["topic"] == "gyroscope")
         self.assertEqual(gyroscope["id"], "0x08")
         self.assertIn("gyro", gyroscope["aliases"])
