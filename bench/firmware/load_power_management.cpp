@@ -1,4 +1,5 @@
-// PowerManagement with its sensors every 50 ms: 9 of the robot's 17 sensor frames.
+// PowerManagement with its fast sensors every 50 ms: 9 frames. The slow ones are read by the same transfers,
+// at the same level.
 #include "bench/firmware/load.hpp"
 #include "firmware/boards/power_management/board.hpp"
 #include "firmware/boards/power_management/parts.hpp"

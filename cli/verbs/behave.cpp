@@ -30,10 +30,12 @@ constexpr base::Duration progress_period = std::chrono::milliseconds{100};
 constexpr base::Duration longest_silence = std::chrono::milliseconds{500};
 
 constexpr const char* usual_speed = "0.1m/s";
+constexpr const char* usual_distance = "5cm";
 
 struct BehaveOptions {
   std::string which;
-  std::string speed;  ///< empty: usual_speed
+  std::string speed;     ///< empty: usual_speed
+  std::string distance;  ///< empty: usual_distance; of home
   std::optional<base::Duration> lasting;
   std::optional<protocol::Priority> priority;
   bool force = false;
@@ -44,13 +46,26 @@ struct BehaveOptions {
 /// The set point; leaves with exit_usage where the speed is none.
 can::Frame set_point_of(const protocol::Topic& topic, const BehaveOptions& options) {
   const auto fields = topic.frames[0].fields;
-  if (fields.size() != 1 || fields[0].name != "speed")
-    fail({fmt::format("behave: {} has no speed alone", topic.name), "is --spec that of the robot? Use set"});
-  const auto speed = words::parse_typed_value(fields[0], options.speed.empty() ? usual_speed : options.speed);
+  const bool has_distance = options.which == "home";
+  const auto* const last = fields.empty() ? nullptr : &fields.back();
+  if (fields.size() != (has_distance ? 2U : 1U) || last->name != "speed" ||
+      (has_distance && fields[0].name != "distance"))
+    fail({fmt::format("behave: {} has other fields than {}speed", topic.name,
+                      has_distance ? "distance and " : ""),
+          "is --spec that of the robot? Use set"});
+  std::vector<std::int64_t> raw;
+  if (has_distance) {
+    const auto distance =
+        words::parse_typed_value(fields[0], options.distance.empty() ? usual_distance : options.distance);
+    if (!distance) fail({"behave: " + distance.error, "write 5cm or 0.05m"}, exit_usage);
+    raw.push_back(*distance);
+  }
+  const auto speed = words::parse_typed_value(*last, options.speed.empty() ? usual_speed : options.speed);
   if (!speed) fail({"behave: " + speed.error, "write 10cm/s or 0.1m/s"}, exit_usage);
   if (*speed == 0)
     fail({"behave: --speed 0 goes nowhere", "`amiroctl behave none` ends what the boards do"}, exit_usage);
-  return client::set_point(topic, std::vector<std::int64_t>{*speed}, options.priority);
+  raw.push_back(*speed);
+  return client::set_point(topic, raw, options.priority);
 }
 
 std::string remedy_for(const std::string& ended) {
@@ -65,7 +80,7 @@ std::string remedy_for(const std::string& ended) {
 /// Ends what any board does by itself.
 client::Command none(const protocol::Catalogue& catalogue, const BehaveOptions& options) {
   client::Command command;
-  for (const std::string_view name : {"avoid", "follow", "travel"})
+  for (const std::string_view name : {"avoid", "home", "follow", "travel"})
     if (const auto* topic = catalogue.find(name); topic != nullptr && topic->kind == protocol::Kind::actuator)
       command.frames.push_back(client::set_point(*topic, {}, options.priority));
   if (command.frames.empty()) static_cast<void>(behaviour_topic(catalogue, "behave", "avoid"));
@@ -79,6 +94,7 @@ void behave(Session& session, const BehaveOptions& options, int& exit_code) {
   if (options.which == "none") {
     if (options.lasting) fail({"behave: none takes no --for", "drop --for"}, exit_usage);
     if (!options.speed.empty()) fail({"behave: none takes no --speed", "drop --speed"}, exit_usage);
+    if (!options.distance.empty()) fail({"behave: none takes no --distance", "drop --distance"}, exit_usage);
     const auto command = none(catalogue, options);
     if (options.dry_run) return print_frames(command);
     const auto bus = open_to_command(session, verb);
@@ -87,9 +103,11 @@ void behave(Session& session, const BehaveOptions& options, int& exit_code) {
     if (!timeline.finish()) exit_code = exit_failure;
     return;
   }
-  if (options.which != "follow" && options.which != "avoid")
-    fail({fmt::format("behave: unknown behaviour '{}'", options.which), "one of: follow, avoid, none"},
+  if (options.which != "follow" && options.which != "avoid" && options.which != "home")
+    fail({fmt::format("behave: unknown behaviour '{}'", options.which), "one of: follow, avoid, home, none"},
          exit_usage);
+  if (!options.distance.empty() && options.which != "home")
+    fail({fmt::format("behave: {} takes no --distance", options.which), "drop --distance"}, exit_usage);
   const protocol::Topic& topic = behaviour_topic(catalogue, verb, options.which);
   client::Command command;
   command.hold = client::Hold{set_point_of(topic, options), client::set_point(topic, {}, options.priority),
@@ -165,14 +183,16 @@ void behave(Session& session, const BehaveOptions& options, int& exit_code) {
 }  // namespace
 
 void add_behave(Verb app, Session& session, int& exit_code) {
-  auto verb =
-      app.add_verb("behave", "let the boards follow a line or avoid obstacles by themselves", act_group,
-                   "  amiroctl behave follow                     until Ctrl-C, at 0.1 m/s\n"
-                   "  amiroctl behave avoid --speed 15cm/s --for 1min\n"
-                   "  amiroctl behave none                       ends it, whichever program began it");
+  auto verb = app.add_verb(
+      "behave", "let the boards follow a line, avoid obstacles or go to a wall by themselves", act_group,
+      "  amiroctl behave follow                     until Ctrl-C, at 0.1 m/s\n"
+      "  amiroctl behave avoid --speed 15cm/s --for 1min\n"
+      "  amiroctl behave home --distance 5cm        to the nearest wall, and stays there\n"
+      "  amiroctl behave none                       ends it, whichever program began it");
   const auto options = std::make_shared<BehaveOptions>();
-  verb.add_option("which", options->which, "what to do").type_name("follow|avoid|none").required();
+  verb.add_option("which", options->which, "what to do").type_name("follow|avoid|home|none").required();
   verb.add_option("--speed", options->speed, "at most").type_name("V");
+  verb.add_option("--distance", options->distance, "home: from the wall").type_name("X");
   verb.add_value("--for", take_into(options->lasting, words::read_lasting), "how long")
       .type_name("T")
       .takes(accepted_duration());

@@ -2,6 +2,7 @@
 /// to do about it.
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -70,10 +71,13 @@ class Examination {
       if (board.refusal != nullptr && board.answered && board.reason.empty() &&
           !diagnosis_.publishes(*board.refusal))
         request(*board.refusal);
-    const auto& battery = diagnosis_.battery();
-    if (battery.topic != nullptr && !battery.answered && diagnosis_.boards()[battery.topic->board].answered &&
-        !diagnosis_.publishes(*battery.topic))
-      request(*battery.topic);
+    const auto ask_of = [this](const protocol::Topic* topic, bool answered) {
+      if (topic != nullptr && !answered && diagnosis_.boards()[topic->board].answered &&
+          !diagnosis_.publishes(*topic))
+        request(*topic);
+    };
+    ask_of(diagnosis_.battery().topic, diagnosis_.battery().answered);
+    ask_of(diagnosis_.batteries().topic, !diagnosis_.batteries().all.empty());
     listen(patience, [this] { return complete(); });
   }
 
@@ -104,6 +108,7 @@ class Examination {
   [[nodiscard]] bool complete() const {
     const auto& boards = diagnosis_.boards();
     return have_statuses() && (diagnosis_.battery().topic == nullptr || diagnosis_.battery().answered) &&
+           (diagnosis_.batteries().topic == nullptr || !diagnosis_.batteries().all.empty()) &&
            std::all_of(boards.begin(), boards.end(),
                        [](const BoardReport& b) { return b.refusal == nullptr || !b.reason.empty(); });
   }
@@ -149,6 +154,12 @@ void print_pretty(const Examination& examination, const std::vector<Finding>& fi
   }
   if (const auto& battery = diagnosis.battery(); battery.answered)
     fmt::print("battery {} %{}\n", battery.state_of_charge, battery.plugged ? ", charger plugged in" : "");
+  for (const auto& each : diagnosis.batteries().all)
+    if (each.present)
+      fmt::print("{} {:.3f} V, {:+.3f} A, {:.0f} mAh left, {:.1f} degC\n", each.name, each.voltage_v,
+                 each.current_a, each.remaining_mah, each.temperature_celsius);
+    else
+      fmt::print("{} not inserted\n", each.name);
   fmt::print("\n");
   for (const Finding& finding : findings) {
     const char* mark = !colour                                 ? ""
@@ -159,6 +170,11 @@ void print_pretty(const Examination& examination, const std::vector<Finding>& fi
                finding.board, finding.board.empty() ? "" : ": ", finding.what, finding.remedy);
   }
   if (findings.empty()) fmt::print("all is well\n");
+}
+
+/// To a thousandth: what a double has behind that is no measurement.
+double rounded(double value) {
+  return std::round(value * 1000) / 1000;
 }
 
 void print_json(const Examination& examination, const std::vector<Finding>& findings) {
@@ -189,6 +205,17 @@ void print_json(const Examination& examination, const std::vector<Finding>& find
   out["wire_hash"] = fmt::format("0x{:08X}", protocol::wire_hash(catalogue));
   const auto& battery = diagnosis.battery();
   out["battery_percent"] = battery.answered ? Json(battery.state_of_charge) : Json();
+  out["batteries"] = Json::array();
+  for (const auto& each : diagnosis.batteries().all) {
+    Json entry{{"battery", each.name}, {"present", each.present}};
+    if (each.present) {
+      entry["voltage_v"] = rounded(each.voltage_v);
+      entry["current_a"] = rounded(each.current_a);
+      entry["remaining_mah"] = rounded(each.remaining_mah);
+      entry["temperature_celsius"] = rounded(each.temperature_celsius);
+    }
+    out["batteries"].push_back(std::move(entry));
+  }
   out["findings"] = Json::array();
   for (const Finding& finding : findings)
     out["findings"].push_back({{"severity", name(finding.severity)},

@@ -50,6 +50,18 @@ struct GaugeReading {
   friend constexpr bool operator==(const GaugeReading&, const GaugeReading&) = default;
 };
 
+/// What one battery's gauge measures; all zeros without a battery. [BQ27500 data sheet, table 4-1]
+struct BatteryReading {
+  std::uint16_t voltage_mv = 0;
+  std::int16_t current_ma = 0;  ///< mean of a second, negative: out of the battery
+  std::uint16_t remaining_mah = 0;
+  std::uint16_t temperature_dk = 0;  ///< 0.1 K
+  friend constexpr bool operator==(const BatteryReading&, const BatteryReading&) = default;
+};
+using BatteryReadings = std::array<BatteryReading, 2>;  ///< of P7, the front one, and P8
+
+using RingLight = std::array<std::uint16_t, 8>;  ///< ambient light of sensors 1..8, 0.25 lx
+
 struct Colour {
   std::uint8_t red = 0;
   std::uint8_t green = 0;

@@ -1,9 +1,9 @@
 /// Fuel gauge BQ27500 on I2C, one a battery, and how two batteries are one.
 ///
-/// Four reads a sample, 22 bytes on the bus: 2.5 ms at 100 kbit/s (400 would need a pause of 66 us between
-/// two transfers [data sheet, I2C timing: t(BUF)]). Errors: no_answer, not acknowledged or not this part;
-/// bus_fault.
-/// [data sheet: TI bq27500, SLUS785D; its table 4-1 has milliwatts where SLUS785 of 2007 had 10 mW]
+/// Four reads a sample of either kind, 22 bytes on the bus: 2.5 ms at 100 kbit/s (400 would need a pause of
+/// 66 us between two transfers [data sheet, I2C timing: t(BUF)]). Errors: no_answer, not acknowledged or not
+/// this part; bus_fault. [data sheet: TI bq27500, SLUS785D; its table 4-1 has milliwatts where SLUS785 of
+/// 2007 had 10 mW]
 #pragma once
 
 #include <algorithm>
@@ -26,9 +26,12 @@ inline constexpr std::uint8_t address = 0x55;  ///< [data sheet 7.1: 0xAA to wri
 
 // Commands, two bytes each, low byte first. [data sheet, table 4-1]
 inline constexpr std::uint8_t control = 0x00;
+inline constexpr std::uint8_t temperature = 0x06;  ///< 0.1 K; then the voltage, mV
 inline constexpr std::uint8_t flags = 0x0A;
-inline constexpr std::uint8_t time_to_empty = 0x16;  ///< minutes; then time to full
-inline constexpr std::uint8_t average_power = 0x24;  ///< mW, negative: discharging
+inline constexpr std::uint8_t remaining_capacity = 0x10;  ///< mAh, at the present load
+inline constexpr std::uint8_t average_current = 0x14;     ///< mA, negative: discharging
+inline constexpr std::uint8_t time_to_empty = 0x16;       ///< minutes; then time to full
+inline constexpr std::uint8_t average_power = 0x24;       ///< mW, negative: discharging
 inline constexpr std::uint8_t state_of_charge = 0x2C;
 
 inline constexpr std::uint16_t device_type = 0x0001;  ///< subcommand of control [table 4-2]
@@ -134,6 +137,20 @@ class Bq27500 {
     battery.power_mw = join_signed(power[1], power[0]);
     battery.state_of_charge_percent = static_cast<std::uint8_t>(std::min<std::uint16_t>(percent, 100));
     return battery;
+  }
+
+  /// Its battery alone; zeros without one.
+  base::Result<boards::BatteryReading> measure() {
+    using namespace bq27500;
+    std::array<std::uint8_t, 4> warmth{};
+    std::array<std::uint8_t, 2> flag{}, charge{}, current{};
+    if (const auto done = fetch(temperature, warmth); !done) return done.error;
+    if (const auto done = fetch(flags, flag); !done) return done.error;
+    if (const auto done = fetch(remaining_capacity, charge); !done) return done.error;
+    if (const auto done = fetch(average_current, current); !done) return done.error;
+    if ((join(flag[1], flag[0]) & battery_detected) == 0) return boards::BatteryReading{};
+    return boards::BatteryReading{join(warmth[3], warmth[2]), join_signed(current[1], current[0]),
+                                  join(charge[1], charge[0]), join(warmth[1], warmth[0])};
   }
 
  private:

@@ -150,7 +150,7 @@ void write_accessors(Writer& out, const FrameModel& frame) {
       std::vector<std::string> arguments{to_raw(conversion(field), value), bits_alias(field) + "::min",
                                          bits_alias(field) + "::max"};
       if (field.has_range) arguments = {arguments[0], cpp_literal(field.raw_min), cpp_literal(field.raw_max)};
-      out.list(field.name + " = ocm::protocol::nearest_raw<" + integer_type(field) + ">(", arguments, ");");
+      out.assignment(field.name, "ocm::protocol::nearest_raw<" + integer_type(field) + ">(", arguments, ");");
       out.close("}");
     }
     if (!field.flags) continue;

@@ -80,4 +80,17 @@ void Writer::list(std::string_view head, const std::vector<std::string>& items, 
   text_.append(current) += '\n';
 }
 
+void Writer::assignment(const std::string& target, const std::string& head,
+                        const std::vector<std::string>& items, std::string_view tail) {
+  std::size_t length = base::columns(head) + tail.size();
+  for (const std::string& item : items) length += base::columns(item) + 2;
+  if (!items.empty()) length -= 2;
+  const bool whole = 2 * depth_ + base::columns(target) + 3 + length <= columns;
+  if (whole || 2 * depth_ + 4 + length > columns) return list(target + " = " + head, items, tail);
+  line(target + " =");
+  depth_ += 2;
+  list(head, items, tail);
+  depth_ -= 2;
+}
+
 }  // namespace ocm::generate

@@ -28,6 +28,9 @@ class Writer {
   void remarked(const std::vector<std::pair<std::string, std::string>>& lines);
   /// `head` + items, parted by commas and broken to fit, aligned behind the head + `tail`.
   void list(std::string_view head, const std::vector<std::string>& items, std::string_view tail);
+  /// `target` = `head` + items + `tail`: in one line, else behind the sign in the next one, else as a list.
+  void assignment(const std::string& target, const std::string& head, const std::vector<std::string>& items,
+                  std::string_view tail);
   std::string take() { return std::move(text_); }
 
  private:

@@ -1,15 +1,17 @@
-/// The batteries, their charger and the fuel gauge. Energy is counted in whole microjoules (1 mW for 1 ms),
-/// so that a thousand steps of 1 ms and one of 1 s come to the same.
+/// The two batteries, their charger and the fuel gauges. Energy is counted in whole microjoules (1 mW for 1
+/// ms), so that a thousand steps of 1 ms and one of 1 s come to the same.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 #include "firmware/boards/samples.hpp"
 
 namespace ocm::sim {
 
+using firmware::boards::BatteryReadings;
 using firmware::boards::Colour;
 using firmware::boards::GaugeReading;
 
@@ -24,6 +26,11 @@ struct PowerModel {
   std::int64_t charger_mw = 5000;  ///< [decided]
   /// 4.08 Wh: 52 % last 137 minutes at 930 mW. [thesis, figure 7.2]
   std::int64_t capacity_uj = 14'688'000'000;
+  /// Of a battery that is empty and one that is full: a straight line between. [decided]
+  double empty_v = 3.3;
+  double full_v = 4.1;
+  /// There is no heat in this world: 25 degrees, always. [decided]
+  std::uint16_t temperature_dk = 2982;
 };
 
 class Battery {
@@ -71,6 +78,25 @@ class Battery {
     // No power, or power the wrong way, says nothing about the time.
     if (minutes >= 0 && minutes < 65534.5) reading.minutes = static_cast<std::uint16_t>(std::lround(minutes));
     return reading;
+  }
+
+  /// Each of two equal batteries; what cannot be halved is the front one's.
+  [[nodiscard]] BatteryReadings readings() const noexcept {
+    const double part = static_cast<double>(energy_uj_) / static_cast<double>(model_.capacity_uj);
+    const double voltage_v = model_.empty_v + (model_.full_v - model_.empty_v) * part;
+    const double mean_v = (model_.empty_v + voltage_v) / 2;  // of what comes out until it is empty
+    const std::int32_t power_mw = reading().power_mw;
+    const std::int32_t behind_mw = power_mw / 2;
+    BatteryReadings both;
+    for (std::size_t i = 0; i < both.size(); ++i) {
+      const double own_mw = i == 0 ? power_mw - behind_mw : behind_mw;
+      both[i].voltage_mv = static_cast<std::uint16_t>(std::lround(voltage_v * 1000));
+      both[i].current_ma = static_cast<std::int16_t>(std::lround(own_mw / voltage_v));
+      both[i].remaining_mah =
+          static_cast<std::uint16_t>(std::lround(static_cast<double>(energy_uj_) / 2 / 3'600'000 / mean_v));
+      both[i].temperature_dk = model_.temperature_dk;
+    }
+    return both;
   }
 
  private:

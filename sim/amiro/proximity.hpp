@@ -29,6 +29,9 @@ inline constexpr double most_counts = 65535;
 /// 250 samples/s. [VCNL4020 data sheet]
 inline constexpr base::Duration proximity_period = std::chrono::milliseconds{4};
 
+/// Of ambient light, everywhere: 300 lx, a lit room. [decided; 0.25 lx a count: VCNL4020 data sheet]
+inline constexpr std::uint16_t ambient_counts = 1200;
+
 /// Counts above the offset from a white obstacle. `distance_m` may be 0 or infinite.
 [[nodiscard]] inline double reflected_counts(double distance_m, double angle_rad) noexcept {
   const double nearest = 0.001;  // far beyond the converter's end already

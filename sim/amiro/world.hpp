@@ -172,6 +172,17 @@ class World {
     if (absent(Part::gauge)) return base::Error::not_sampled;
     return battery_.reading();
   }
+  [[nodiscard]] base::Result<firmware::boards::BatteryReadings> batteries() const noexcept {
+    if (absent(Part::gauge)) return base::Error::not_sampled;
+    return battery_.readings();
+  }
+  /// A room that is lit evenly from above.
+  [[nodiscard]] base::Result<firmware::boards::RingLight> ring_light() const noexcept {
+    if (absent(Part::ring)) return base::Error::not_sampled;
+    firmware::boards::RingLight light{};
+    light.fill(ambient_counts);
+    return light;
+  }
 
   [[nodiscard]] const firmware::boards::RingCounts& ring_offset() const noexcept { return ring_offset_; }
   /// Of one sensor, 0..7, as a board asks.

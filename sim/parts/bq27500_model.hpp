@@ -20,6 +20,10 @@ struct GaugeState {
   std::uint16_t minutes_to_full = 65535;
   std::int16_t power_mw = 0;
   std::uint16_t state_of_charge_percent = 0;
+  std::uint16_t voltage_mv = 0;
+  std::int16_t current_ma = 0;
+  std::uint16_t remaining_mah = 0;
+  std::uint16_t temperature_dk = 2982;  ///< 0.1 K
 };
 
 class Bq27500Model : public I2cPart {
@@ -66,8 +70,12 @@ class Bq27500Model : public I2cPart {
     };
     const auto power = static_cast<std::uint16_t>(state.power_mw);
     put(0x00, answer_);
+    put(0x06, state.temperature_dk);
+    put(0x08, state.voltage_mv);
     put(0x0A,
         (state.full ? 0x0200U : 0x0100U) | (state.battery ? 0x0008U : 0U) | (state.power_mw < 0 ? 1U : 0U));
+    put(0x10, state.remaining_mah);
+    put(0x14, static_cast<std::uint16_t>(state.current_ma));
     put(0x16, state.minutes_to_empty);
     put(0x18, state.minutes_to_full);
     put(0x24, power);

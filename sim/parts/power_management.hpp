@@ -18,8 +18,14 @@
 namespace ocm::sim {
 
 /// One of two equal batteries, as its gauge sees it while the world's reading is of both.
-[[nodiscard]] inline GaugeState half_of(const firmware::boards::GaugeReading& both, bool larger_half) {
+[[nodiscard]] inline GaugeState half_of(const World& world, bool larger_half) {
+  const firmware::boards::GaugeReading both = *world.gauge();
+  const firmware::boards::BatteryReading own = (*world.batteries())[larger_half ? 0 : 1];
   GaugeState state;
+  state.voltage_mv = own.voltage_mv;
+  state.current_ma = own.current_ma;
+  state.remaining_mah = own.remaining_mah;
+  state.temperature_dk = own.temperature_dk;
   const int half = both.power_mw / 2;
   state.power_mw = static_cast<std::int16_t>(larger_half ? both.power_mw - half : half);
   state.state_of_charge_percent = both.state_of_charge_percent;
@@ -35,8 +41,8 @@ class PowerManagementParts : public BoardParts {
   PowerManagementParts(World& world, const PartClock& now)
       : back_multiplexer(violations_),
         front_multiplexer(violations_),
-        gauge_p7(violations_, [&world] { return half_of(*world.gauge(), true); }),
-        gauge_p8(violations_, [&world] { return half_of(*world.gauge(), false); }),
+        gauge_p7(violations_, [&world] { return half_of(world, true); }),
+        gauge_p8(violations_, [&world] { return half_of(world, false); }),
         ring{sensor(world, now, 0), sensor(world, now, 1), sensor(world, now, 2), sensor(world, now, 3),
              sensor(world, now, 4), sensor(world, now, 5), sensor(world, now, 6), sensor(world, now, 7)},
         eeprom(violations_, now),
@@ -75,7 +81,8 @@ class PowerManagementParts : public BoardParts {
 
  private:
   [[nodiscard]] Vcnl4020Model sensor(World& world, const PartClock& now, std::size_t i) {
-    return Vcnl4020Model{violations_, now, [&world, i] { return (*world.ring())[i]; }};
+    return Vcnl4020Model{violations_, now, [&world, i] { return (*world.ring())[i]; },
+                         [&world, i] { return (*world.ring_light())[i]; }};
   }
 
   I2cBus back_bus_{violations_};

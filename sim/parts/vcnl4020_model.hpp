@@ -1,4 +1,5 @@
-/// Register model of the proximity sensor VCNL4020. [data sheet: Vishay VCNL4020, document 83476]
+/// Register model of the sensor of proximity and ambient light VCNL4020. [data sheet: Vishay VCNL4020,
+/// document 83476]
 #pragma once
 
 #include <algorithm>
@@ -20,9 +21,15 @@ namespace ocm::sim {
 
 class Vcnl4020Model : public I2cPart {
  public:
-  /// `counts()` is what the part measures at 200 mA.
-  Vcnl4020Model(Violations& violations, PartClock now, std::function<std::uint16_t()> counts)
-      : I2cPart(0x13), violations_(&violations), now_(std::move(now)), counts_(std::move(counts)) {
+  /// `counts()` is what the part measures at 200 mA, `light()` of ambient light.
+  Vcnl4020Model(
+      Violations& violations, PartClock now, std::function<std::uint16_t()> counts,
+      std::function<std::uint16_t()> light = [] { return std::uint16_t{0}; })
+      : I2cPart(0x13),
+        violations_(&violations),
+        now_(std::move(now)),
+        counts_(std::move(counts)),
+        light_(std::move(light)) {
     Vcnl4020Model::power_up();
   }
 
@@ -44,21 +51,22 @@ class Vcnl4020Model : public I2cPart {
     measure();
     for (std::uint8_t& byte : bytes) {
       byte = pointer_ >= first && pointer_ <= last ? registers_[pointer_ - first] : 0xFF;
-      if (pointer_ == result || pointer_ == result + 1) at(command) &= 0xDF;  // prox_data_rdy goes
+      if (pointer_ == result || pointer_ == result + 1) at(command) &= 0xDF;    // prox_data_rdy goes
+      if (pointer_ == ambient || pointer_ == ambient + 1) at(command) &= 0xBF;  // als_data_rdy
       ++pointer_;
     }
   }
 
  private:
   static constexpr std::uint8_t first = 0x80, last = 0x90, command = 0x80, identity = 0x81, rate = 0x82,
-                                led = 0x83, result = 0x87;
+                                led = 0x83, parameter = 0x84, ambient = 0x85, result = 0x87;
 
   void power_up() override {
     registers_.fill(0);
     at(command) = 0x80;
     at(identity) = 0x21;
     at(led) = 0x02;
-    at(0x84) = 0x1D;
+    at(parameter) = 0x1D;
     at(0x8F) = 0x01;
     pointer_ = command;
   }
@@ -84,7 +92,11 @@ class Vcnl4020Model : public I2cPart {
         if ((value & 0xC0) != 0) violate("bits 7 and 6 of the LED current can only be read");
         at(led) = static_cast<std::uint8_t>(std::min(value & 0x3F, 20));
         return;
-      case 0x84:
+      case parameter:
+        if (self_timed()) return violate("rate changed while self-timed");
+        if ((value & 0x80) != 0) violate("continuous conversion is for measurements on demand");
+        at(parameter) = value;
+        return;
       case 0x89:
       case 0x8A:
       case 0x8B:
@@ -101,6 +113,7 @@ class Vcnl4020Model : public I2cPart {
   }
 
   void measure() {
+    measure_light();
     if (!self_timed() || (at(command) & 0x02) == 0) return;
     const base::Duration period =
         std::chrono::nanoseconds{512'000'000} / (1 << at(rate));  // 1.953125/s << rate
@@ -111,9 +124,22 @@ class Vcnl4020Model : public I2cPart {
     at(command) |= 0x20;
   }
 
+  void measure_light() {
+    static constexpr std::array<int, 8> a_second{1, 2, 3, 4, 5, 6, 8, 10};
+    if (!self_timed() || (at(command) & 0x04) == 0) return;
+    const base::Duration period =
+        base::Duration{std::chrono::seconds{1}} / a_second[at(parameter) >> 4 & 0x07];
+    if (now_() - since_ < period) return;
+    const std::uint16_t word = light_();
+    at(ambient) = static_cast<std::uint8_t>(word >> 8);
+    at(ambient + 1) = static_cast<std::uint8_t>(word & 0xFF);
+    at(command) |= 0x40;
+  }
+
   Violations* violations_;
   PartClock now_;
   std::function<std::uint16_t()> counts_;
+  std::function<std::uint16_t()> light_;
   std::array<std::uint8_t, last - first + 1> registers_{};
   std::uint8_t pointer_ = command;
   base::Time since_{};

@@ -22,6 +22,16 @@ TEST_CASE("the thesis's reading: 52 %, 137 minutes, -930 mW") {
   CHECK(battery.reading() == expected);
 }
 
+TEST_CASE("each battery by itself: half of the power, half of the charge") {
+  const Battery battery{{}, 0.52, false};
+  const auto both = battery.readings();
+  // 3.3 V + 0.52 * 0.8 V; 465 mW; 1.0608 Wh at a mean of 3.508 V; 25 degrees
+  CHECK(both[0] == ocm::firmware::boards::BatteryReading{3716, -125, 302, 2982});
+  CHECK(both[1] == both[0]);
+  CHECK(Battery{{}, 0, false}.readings()[1] == ocm::firmware::boards::BatteryReading{3300, 0, 0, 2982});
+  CHECK(Battery{{}, 0.5, true}.readings()[0].current_ma > 0);
+}
+
 TEST_CASE("a load drains what it says") {
   Battery battery{{}, 1, false};
   CHECK(battery.reading().state_of_charge_percent == 100);

@@ -370,6 +370,81 @@ TEST_CASE("avoid never touches a wall, and gets about") {
   CHECK(far > worlds * 3 / 4);
 }
 
+amiro::Home home(double speed_m_per_s, double distance_m) {
+  amiro::Home home;
+  home.set_speed_m_per_s(speed_m_per_s);
+  home.set_distance_m(distance_m);
+  return home;
+}
+
+TEST_CASE("home never touches a wall, and rests at its distance from the nearest one") {
+  const int worlds = test::at_full_speed ? 1000 : test::explored(20);
+  int resting = 0;
+  int near = 0;
+  double worst_m = 0;
+  for (int i = 0; i < worlds; ++i) {
+    Random random{static_cast<std::uint64_t>(i)};
+    const sim::WorldOptions options = random_room(random);
+    Setup setup{options};
+    const double speed = within(random, 0.03, 0.2);
+    const double distance_m = within(random, 0.03, 0.12);
+    CAPTURE(i, speed, distance_m);
+    bool touched = false;
+    int still = 0;  // tenths of a second
+    for (int repeats = 0; repeats < 600 && !touched && still < 20; ++repeats) {
+      setup.command(home(speed, distance_m));
+      setup.pass(100ms, [&] {
+        touched = touched || setup.world().touching();
+        return true;
+      });
+      still = setup.stands() ? still + 1 : 0;
+    }
+    CHECK_FALSE(touched);
+    if (still < 20) continue;
+    ++resting;
+    double nearest_m = 1e9;
+    const sim::Vector place = setup.world().pose().position();
+    for (const sim::Segment& wall : options.arena.walls)
+      nearest_m = std::min(nearest_m, sim::length(place - sim::nearest_point(wall, place)));
+    const double off_m = std::abs(nearest_m - options.drive.robot_radius_m - distance_m);
+    worst_m = std::max(worst_m, off_m);
+    near += off_m < 0.01 ? 1 : 0;
+    CHECK(off_m < 0.025);
+  }
+  WARN(resting << " of " << worlds << " rest, " << near << " within 10 mm, at most " << worst_m << " m off");
+  CHECK(resting >= worlds * 95 / 100);
+  CHECK(near >= worlds * 7 / 10);
+}
+
+TEST_CASE("home and avoid end each other; home is refused too near, without speed and without offsets") {
+  Setup setup{open_floor(1)};
+  setup.command(home(0.1, 0.05));
+  setup.pass(400ms);
+  CHECK(setup.world().wheels().left > 0.09);  // nothing in sight: straight on
+  setup.command(avoid(0.05));
+  setup.pass(400ms);
+  CHECK(setup.world().wheels().left < 0.06);
+  setup.command(amiro::Home{});  // of what is no more
+  setup.pass(100ms);
+  CHECK_FALSE(setup.stands());
+  setup.command(amiro::Avoid{});
+  setup.pass(450ms);
+  CHECK(setup.stands());
+
+  auto& board = setup.robot.power_management();
+  setup.command(home(0.1, 0.029));
+  setup.command(home(0, 0.05));
+  amiro::Home far = home(0.1, 0.12);
+  ++far.distance;
+  setup.command(far);
+  CHECK(board.counters().failed == 3);
+  REQUIRE(setup.robot.world().calibrate_ring(true).ok());
+  setup.command(home(0.1, 0.05));
+  CHECK(board.counters().failed == 4);
+  setup.pass(500ms);
+  CHECK(setup.stands());
+}
+
 TEST_CASE("avoid ends with zero, with silence, and with a stop of both boards: the wheels stand at once") {
   Setup setup{open_floor(1)};
   const auto begin = [&] {

@@ -264,6 +264,17 @@ TEST_CASE("power status: charging and plugged are two things") {
   CHECK(last<amiro::PowerStatus>(setup.middle).state_of_charge == 100);
 }
 
+TEST_CASE("batteries and ambient light: asked once") {
+  sim::WorldOptions options;
+  options.state_of_charge = 0.52;
+  Setup setup{options};
+  setup.say("22B#02");
+  const auto batteries = last<amiro::Batteries>(setup.middle);
+  CHECK(batteries.battery[1] == amiro::BatteriesBattery{3716, -125, 302, 2982});
+  setup.say("22D#02");
+  CHECK(last<amiro::RingLight>(setup.middle).sensor[7].illuminance_lx() == 300.0);
+}
+
 TEST_CASE("a full bus is waited for") {
   Setup setup;
   setup.middle.room = 3;

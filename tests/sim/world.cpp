@@ -91,6 +91,8 @@ TEST_CASE("an absent part delivers no sample") {
   CHECK(world.ring().error == Error::not_sampled);
   CHECK(world.encoders().error == Error::not_sampled);
   CHECK(world.gauge().error == Error::not_sampled);
+  CHECK(world.batteries().error == Error::not_sampled);
+  CHECK(world.ring_light().error == Error::not_sampled);
 }
 
 TEST_CASE("a part repeats its newest sample until it has a new one") {

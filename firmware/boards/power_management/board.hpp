@@ -1,8 +1,8 @@
-/// PowerManagement, the middle board: fuel gauge and proximity ring. The same code runs on the board, with
-/// drivers, and on a host, with a simulated world.
+/// PowerManagement, the middle board: fuel gauges, proximity ring and its ambient light. The same code runs
+/// on the board, with drivers, and on a host, with a simulated world.
 ///
-/// One task of its own, at `high`, every `avoidance_period`: while it is asked to avoid obstacles it reads
-/// the ring and commands the motors of DiWheelDrive.
+/// One task of its own, at `high`, every `avoidance_period`: while it is asked to avoid obstacles, or to
+/// go home to a wall, it reads the ring and commands the motors of DiWheelDrive.
 ///
 /// No heap, no exceptions. Who may call what: ocm/controller/controller.hpp.
 #pragma once
@@ -33,6 +33,8 @@ template <class H>
 concept Hardware = requires(H& hardware) {
   { hardware.gauge() } -> std::same_as<base::Result<GaugeReading>>;
   { hardware.ring() } -> std::same_as<base::Result<RingCounts>>;
+  { hardware.batteries() } -> std::same_as<base::Result<BatteryReadings>>;
+  { hardware.ring_light() } -> std::same_as<base::Result<RingLight>>;
   { hardware.calibrate_ring(true) } -> std::same_as<base::Status>;         // true: forget the offsets
   { hardware.ring_offset(std::size_t{}) } -> std::same_as<std::uint16_t>;  // of sensor 0..7; 0: not known
 };
@@ -73,6 +75,24 @@ class Board : public Node<amiro::PowerManagement, Bus, P, 1, A> {
       for (std::size_t i = 0; i < ring.sensor.size(); ++i) ring.sensor[i].proximity = (*counts)[i];
       return ring;
     });
+    controller_.template serve<amiro::Batteries>([this]() -> base::Result<amiro::Batteries> {
+      const auto readings = hardware_->batteries();
+      if (!readings) return readings.error;
+      amiro::Batteries batteries;
+      for (std::size_t i = 0; i < batteries.battery.size(); ++i) {
+        const BatteryReading& reading = (*readings)[i];
+        batteries.battery[i] = {reading.voltage_mv, reading.current_ma, reading.remaining_mah,
+                                reading.temperature_dk};
+      }
+      return batteries;
+    });
+    controller_.template serve<amiro::RingLight>([this]() -> base::Result<amiro::RingLight> {
+      const auto counts = hardware_->ring_light();
+      if (!counts) return counts.error;
+      amiro::RingLight light;
+      for (std::size_t i = 0; i < light.sensor.size(); ++i) light.sensor[i].illuminance = (*counts)[i];
+      return light;
+    });
     controller_.template accept<amiro::RingCalibration>([this](const amiro::RingCalibration& command) {
       calibration_.apply(command, controller_,
                          [this](bool forget) { return hardware_->calibrate_ring(forget); });
@@ -83,7 +103,14 @@ class Board : public Node<amiro::PowerManagement, Bus, P, 1, A> {
       if (avoid != amiro::Avoid{} && !offsets())
         return controller_.refuse(amiro::Avoid::id, base::Error::not_sampled);
       [[maybe_unused]] const auto guard = controller_.port().lock();
-      avoid_ = avoid;
+      want(wanted_.avoid, avoid, wanted_.home);
+    });
+    controller_.template accept<amiro::Home>([this](const amiro::Home& home) {
+      if (!can_go_home(home)) return controller_.refuse(amiro::Home::id, base::Error::out_of_range);
+      if (home != amiro::Home{} && !offsets())
+        return controller_.refuse(amiro::Home::id, base::Error::not_sampled);
+      [[maybe_unused]] const auto guard = controller_.port().lock();
+      want(wanted_.home, home, wanted_.avoid);
     });
     controller_.template every<0>(avoidance_period, scheduling::Level::high,
                                   [this](const scheduling::Release& release) { return avoid(release); });
@@ -108,15 +135,22 @@ class Board : public Node<amiro::PowerManagement, Bus, P, 1, A> {
     return offsets;
   }
 
+  /// One at a time: a request for one ends the other. With the port's lock held.
+  template <class Topic, class Other>
+  static void want(Topic& wanted, const Topic& command, Other& other) noexcept {
+    wanted = command;
+    if (command != Topic{}) other = {};
+  }
+
   /// Commands the motors while it is asked to; once more, with rest, when that has ended. Without a sample of
   /// the ring the wheels rest.
   scheduling::Outcome avoid(const scheduling::Release& release) noexcept {
-    amiro::Avoid wanted;
+    Wanted wanted;
     {
       [[maybe_unused]] const auto guard = controller_.port().lock();
-      wanted = avoid_;
+      wanted = wanted_;
     }
-    const bool active = wanted != amiro::Avoid{};
+    const bool active = wanted.any();
     if (!active && !commanding_) return scheduling::Outcome::done;
     amiro::Motors motors;
     if (active) {
@@ -125,7 +159,8 @@ class Board : public Node<amiro::PowerManagement, Bus, P, 1, A> {
       const auto offsets = this->offsets();
       const bool blind = !counts || !offsets;
       if (blind && !blind_)
-        controller_.refuse(amiro::Avoid::id, counts ? base::Error::not_sampled : counts.error);
+        controller_.refuse(wanted.home != amiro::Home{} ? amiro::Home::id : amiro::Avoid::id,
+                           counts ? base::Error::not_sampled : counts.error);
       blind_ = blind;
       if (!blind) motors = avoiding_.step(wanted, *counts, *offsets, release.missed + 1);
     }
@@ -136,7 +171,7 @@ class Board : public Node<amiro::PowerManagement, Bus, P, 1, A> {
 
   H* hardware_;
   Calibration<amiro::RingCalibration> calibration_;
-  amiro::Avoid avoid_{};  // with the lock
+  Wanted wanted_{};  // with the lock
   // Of the task only
   Avoiding avoiding_{};
   bool commanding_ = false;  // the motors follow this board, or their rest could not be sent yet

@@ -6,7 +6,7 @@
 /// inheritance where levels preempt) guards the multiplexers.
 ///
 /// No heap, no waiting: a part that is away answers Error::no_answer at once, and `maintain` looks for it. A
-/// ring sample is 16 transfers, 6 ms at 100 kbit/s; a gauge sample 8, 5 ms.
+/// ring sample, of proximity or of light, is 16 transfers, 6 ms at 100 kbit/s; one of the gauges 8, 5 ms.
 #pragma once
 
 #include <array>
@@ -100,6 +100,26 @@ class Parts : public PartSet<Parts<BackBus, FrontBus, Pins, Lock>, 11> {
     return drivers::bq27500::combine(*p7, *p8, (pins_->read() & wiring::plugged_pin) != 0);
   }
 
+  /// Each by itself, one that is not inserted as zeros; both gauges must answer.
+  base::Result<BatteryReadings> batteries() {
+    const auto p7 = gauge_p7_.use([](auto& part) { return part.measure(); });
+    if (!p7) return p7.error;
+    const auto p8 = gauge_p8_.use([](auto& part) { return part.measure(); });
+    if (!p8) return p8.error;
+    return BatteryReadings{*p7, *p8};
+  }
+
+  /// An error when one of the eight has none.
+  base::Result<RingLight> ring_light() {
+    RingLight counts{};
+    for (std::size_t i = 0; i < ring_sensors; ++i) {
+      const auto light = ring_[i].use([](auto& part) { return part.light(); });
+      if (!light) return light.error;
+      counts[i] = *light;
+    }
+    return counts;
+  }
+
   /// Offset included, as the thesis's log has it. An error when one of the eight has none.
   base::Result<RingCounts> ring() {
     RingCounts counts{};
@@ -151,7 +171,7 @@ class Parts : public PartSet<Parts<BackBus, FrontBus, Pins, Lock>, 11> {
     Parts* parts_;
     wiring::RingPlace place_;
   };
-  using RingSensor = drivers::Part<drivers::Vcnl4020<RingBus>>;
+  using RingSensor = drivers::Part<drivers::Vcnl4020<RingBus, true>>;
 
   base::Result<std::uint16_t> raw_ring(std::size_t sensor) {
     return ring_[sensor].use([](auto& part) { return part.read(); });

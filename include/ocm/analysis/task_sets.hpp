@@ -119,6 +119,20 @@ struct PowerStatus {
   static constexpr Task task{.cost = 7'247'000, .period = 50'000'000, .blocking = 1'000'000, .level = 2};
 };
 
+/// [decided: eight transfers of the length of power_status's]
+struct Batteries {
+  static constexpr std::string_view name = "batteries";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 7'247'000, .period = 1'000'000'000, .blocking = 1'000'000, .level = 2};
+};
+
+/// [decided: the transfers of proximity_ring, of the same length]
+struct RingLight {
+  static constexpr std::string_view name = "ring_light";
+  static constexpr bool own = false;
+  static constexpr Task task{.cost = 9'108'000, .period = 500'000'000, .blocking = 1'000'000, .level = 2};
+};
+
 /// [decided: it reads nothing]
 struct PowerManagementStatus {
   static constexpr std::string_view name = "power_management_status";
@@ -134,7 +148,7 @@ struct PowerManagementRefusal {
 };
 
 struct Facts {
-  using Tasks = TaskList<Avoidance, ProximityRing, PowerStatus, PowerManagementStatus, PowerManagementRefusal>;
+  using Tasks = TaskList<Avoidance, ProximityRing, PowerStatus, Batteries, RingLight, PowerManagementStatus, PowerManagementRefusal>;
   static constexpr std::int64_t blocking = 1'000'000;
   static constexpr std::uint32_t bus_percent = 80;
 };

@@ -5,6 +5,7 @@
 /// Pure: sends nothing, reads no clock. O(1) a frame; allocates a little for each board and each finding.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -47,6 +48,8 @@ enum class Ailment : std::uint8_t {
   refusals,         ///< requests that the board refused; `topic` is the last one's
   not_schedulable,  ///< the same, the last one because a deadline would be missed
   battery_low,      ///<
+  no_battery,       ///< one of several is not inserted
+  battery_heat,     ///< or cold
   two_commanders,   ///< an actuator that two programs command in turns
 };
 
@@ -113,12 +116,33 @@ struct BatteryReport {
   bool plugged = false;
 };
 
+/// What the gauge of one of several batteries measures.
+struct BatteryMeasurement {
+  std::string_view name;  ///< of its frame
+  bool present = false;   ///< the rest means something
+  double voltage_v = 0;
+  double current_a = 0;  ///< negative: out of the battery
+  double remaining_mah = 0;
+  double temperature_celsius = 0;
+};
+
+/// The topic of which each frame has the fields voltage in V, current in A, remaining in mAh and temperature
+/// in degC: a battery.
+struct BatteriesReport {
+  const protocol::Topic* topic = nullptr;
+  std::vector<BatteryMeasurement> all;  ///< of the last sample; empty: none came
+};
+
 class Diagnosis {
  public:
   // Below these a robot is about to stop, or will within the experiment. [decided]
   static constexpr std::int64_t battery_low_percent = 20;
   static constexpr std::int64_t battery_empty_percent = 10;
   static constexpr std::int64_t load_high_percent = 90;
+  // What cells of lithium-ion usually bear while they are discharged; the robot's own limits have no public
+  // source. [decided]
+  static constexpr double battery_hot_celsius = 60;
+  static constexpr double battery_cold_celsius = -20;
 
   /// The catalogue must outlive it.
   explicit Diagnosis(const protocol::Catalogue& catalogue) : catalogue_(&catalogue) {
@@ -129,6 +153,10 @@ class Diagnosis {
       sensors_[topic.board].push_back(&topic);
       if (topic.role == protocol::Role::status) boards_[topic.board].status = &topic;
       if (topic.role == protocol::Role::refusal) boards_[topic.board].refusal = &topic;
+      if (!topic.frames.empty() &&
+          std::all_of(topic.frames.begin(), topic.frames.end(),
+                      [](const auto& frame) { return of_battery(frame).size() == 4; }))
+        batteries_.topic = &topic;
       for (const protocol::FrameLayout& frame : topic.frames)
         for (const protocol::Field& field : frame.fields)
           if (field.name == "state_of_charge" && field.unit == "%") battery_.topic = &topic;
@@ -150,11 +178,13 @@ class Diagnosis {
       board.reason = reader.word("", "reason");
     }
     if (reception.topic == battery_.topic) take_battery(reader);
+    if (reception.topic == batteries_.topic) take_batteries(reception.sample);
   }
 
   /// In the order of the spec's boards.
   [[nodiscard]] const std::vector<BoardReport>& boards() const noexcept { return boards_; }
   [[nodiscard]] const BatteryReport& battery() const noexcept { return battery_; }
+  [[nodiscard]] const BatteriesReport& batteries() const noexcept { return batteries_; }
   /// Whether the board publishes this sensor now, as its last status has it.
   [[nodiscard]] bool publishes(const protocol::Topic& topic) const noexcept {
     return status_bit(topic) == true;
@@ -189,6 +219,7 @@ class Diagnosis {
       for (std::size_t i = 0; i < boards_.size(); ++i) examine(i, all);
     }
     if (battery_.answered) examine_battery(all);
+    for (const BatteryMeasurement& each : batteries_.all) examine(each, all);
     std::vector<Finding> sorted;
     for (const Severity severity : {Severity::problem, Severity::warning, Severity::note})
       for (Finding& finding : all)
@@ -270,6 +301,37 @@ class Diagnosis {
     battery_.plugged = reader.flag("plugged");
   }
 
+  /// The four fields that make a frame that of a battery, in the order of BatteryMeasurement; fewer: it is
+  /// none.
+  [[nodiscard]] static std::vector<const protocol::Field*> of_battery(const protocol::FrameLayout& frame) {
+    struct Wanted {
+      std::string_view name;
+      std::string_view unit;
+    };
+    constexpr Wanted all[]{{"voltage", "V"}, {"current", "A"}, {"remaining", "mAh"}, {"temperature", "degC"}};
+    std::vector<const protocol::Field*> found;
+    for (const Wanted& wanted : all)
+      for (const protocol::Field& field : frame.fields)
+        if (field.name == wanted.name && field.unit == wanted.unit) found.push_back(&field);
+    return found;
+  }
+  void take_batteries(const Sample& sample) {
+    batteries_.all.clear();
+    for (std::size_t i = 0; i < batteries_.topic->frames.size(); ++i) {
+      const protocol::FrameLayout& frame = batteries_.topic->frames[i];
+      const auto fields = of_battery(frame);
+      const auto value = [&](std::size_t field) {
+        return fields[field]->value(fields[field]->raw(sample.data(i)));
+      };
+      const std::int64_t voltage = fields[0]->raw(sample.data(i));
+      const bool none = std::any_of(fields[0]->values.begin(), fields[0]->values.end(),
+                                    [voltage](const protocol::NamedValue& named) {
+                                      return named.raw == voltage && named.name == "no_battery";
+                                    });
+      batteries_.all.push_back({frame.name, !none, value(0), value(1), value(2), value(3)});
+    }
+  }
+
   void examine(std::size_t index, std::vector<Finding>& all) const {
     const BoardReport& board = boards_[index];
     const std::string_view who = catalogue_->boards[index].name;
@@ -339,10 +401,27 @@ class Diagnosis {
                    "plug the charger in", Ailment::battery_low});
   }
 
+  void examine(const BatteryMeasurement& battery, std::vector<Finding>& all) const {
+    const auto tell = [&](Ailment ailment, Severity severity, std::string_view what,
+                          std::string_view remedy) {
+      all.push_back({severity, catalogue_->boards[batteries_.topic->board].name,
+                     std::string{battery.name} + std::string{what}, std::string{remedy}, ailment,
+                     batteries_.topic->name});
+    };
+    if (!battery.present)
+      return tell(Ailment::no_battery, Severity::note, " is not inserted",
+                  "the robot runs on the rest; does it sit as it should?");
+    if (battery.temperature_celsius >= battery_hot_celsius)
+      tell(Ailment::battery_heat, Severity::warning, " is too hot", "switch the robot off and let it cool");
+    if (battery.temperature_celsius <= battery_cold_celsius)
+      tell(Ailment::battery_heat, Severity::warning, " is too cold", "let it get warm before it is used");
+  }
+
   const protocol::Catalogue* catalogue_;
   std::vector<BoardReport> boards_;
   std::vector<std::vector<const protocol::Topic*>> sensors_;  // of each board, in the order of the spec
   BatteryReport battery_;
+  BatteriesReport batteries_;
 };
 
 }  // namespace ocm::client

@@ -1641,6 +1641,225 @@ struct Avoid {
 };
 static_assert(ocm::protocol::TopicType<Avoid>);
 
+/// Home: drives to the nearest wall and stands before it, head on: the ring's board commands the motors,
+/// until zero or silence. Actuator of PowerManagement, set points on 0x2A. [decided, as travel]
+struct Home {
+  static constexpr std::string_view name = "home";
+  static constexpr ocm::protocol::TopicId id{0x2A};
+  static constexpr std::uint8_t instances = 1;
+  static constexpr std::array<ocm::protocol::FrameHead, 1> frames{
+      {{ocm::protocol::TopicId{0x2A}, 4, {91, 90, 90, 90}}}};
+  static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::actuator;
+  static constexpr ocm::base::Duration timeout = std::chrono::milliseconds{500};  ///< [decided, as motors]
+  static constexpr ocm::base::Duration deadline = std::chrono::milliseconds{50};
+  static constexpr ocm::base::Duration jitter = std::chrono::milliseconds{1};
+  static constexpr ocm::protocol::Priority priority = ocm::protocol::Priority::medium;
+
+  /// from the wall to the robot's edge, from 0.03 m; 0.0001 m a bit, [0, 0.12] m
+  std::uint16_t distance = 0;
+  /// at most; needed; 0.0001 m/s a bit, [0, 0.2] m/s
+  std::uint16_t speed = 0;
+
+  using DistanceBits = ocm::protocol::Bits<std::uint16_t, 0>;
+  using SpeedBits = ocm::protocol::Bits<std::uint16_t, 16>;
+
+  [[nodiscard]] constexpr double distance_m() const noexcept { return distance / 10'000.0; }
+  constexpr void set_distance_m(double value) noexcept {
+    distance = ocm::protocol::nearest_raw<std::uint16_t>(value * 10'000.0, 0, 1'200);
+  }
+  [[nodiscard]] constexpr double speed_m_per_s() const noexcept { return speed / 10'000.0; }
+  constexpr void set_speed_m_per_s(double value) noexcept {
+    speed = ocm::protocol::nearest_raw<std::uint16_t>(value * 10'000.0, 0, 2'000);
+  }
+
+  [[nodiscard]] constexpr ocm::can::Payload encode(std::size_t /*frame*/ = 0) const noexcept {
+    ocm::can::Payload data{};
+    DistanceBits::put(data, distance);
+    SpeedBits::put(data, speed);
+    return data;
+  }
+  [[nodiscard]] static constexpr Home decode(const ocm::can::Payload& data) noexcept {
+    Home value;
+    value.distance = DistanceBits::get(data);
+    value.speed = SpeedBits::get(data);
+    return value;
+  }
+  [[nodiscard]] static constexpr Home decode(const std::array<ocm::can::Payload, 1>& all) noexcept {
+    return decode(all[0]);
+  }
+  friend constexpr bool operator==(const Home&, const Home&) = default;
+};
+static_assert(ocm::protocol::TopicType<Home>);
+
+/// Batteries, one battery.
+struct BatteriesBattery {
+  static constexpr ocm::protocol::TopicId id{0x2B};  ///< of the first of 2
+  static constexpr std::uint8_t dlc = 8;
+
+  static constexpr std::uint16_t voltage_no_battery = 0;
+
+  /// without a battery everything is 0; 0.001 V a bit, [0, 6] V
+  std::uint16_t voltage = 0;
+  /// mean of a second; negative: out of the battery; 0.001 A a bit, [-32.768, 32.767] A
+  std::int16_t current = 0;
+  /// charge that is left at the present load; [0, 65535] mAh
+  std::uint16_t remaining = 0;
+  /// by the gauge's sensor; 0.1 degC a bit, from -273.15 degC on, [-273.15, 6280.35] degC
+  std::uint16_t temperature = 0;
+
+  using VoltageBits = ocm::protocol::Bits<std::uint16_t, 0>;
+  using CurrentBits = ocm::protocol::Bits<std::int16_t, 16>;
+  using RemainingBits = ocm::protocol::Bits<std::uint16_t, 32>;
+  using TemperatureBits = ocm::protocol::Bits<std::uint16_t, 48>;
+
+  [[nodiscard]] constexpr double voltage_V() const noexcept { return voltage / 1'000.0; }
+  constexpr void set_voltage_V(double value) noexcept {
+    voltage = ocm::protocol::nearest_raw<std::uint16_t>(value * 1'000.0, 0, 6'000);
+  }
+  [[nodiscard]] constexpr double current_A() const noexcept { return current / 1'000.0; }
+  constexpr void set_current_A(double value) noexcept {
+    current = ocm::protocol::nearest_raw<std::int16_t>(value * 1'000.0, CurrentBits::min, CurrentBits::max);
+  }
+  [[nodiscard]] constexpr double remaining_mAh() const noexcept { return remaining; }
+  constexpr void set_remaining_mAh(double value) noexcept {
+    remaining = ocm::protocol::nearest_raw<std::uint16_t>(value, RemainingBits::min, RemainingBits::max);
+  }
+  [[nodiscard]] constexpr double temperature_celsius() const noexcept {
+    return (temperature * 10.0 - 27'315.0) / 100.0;
+  }
+  constexpr void set_temperature_celsius(double value) noexcept {
+    temperature = ocm::protocol::nearest_raw<std::uint16_t>((value * 100.0 + 27'315.0) / 10.0,
+                                                            TemperatureBits::min, TemperatureBits::max);
+  }
+
+  [[nodiscard]] constexpr ocm::can::Payload encode() const noexcept {
+    ocm::can::Payload data{};
+    VoltageBits::put(data, voltage);
+    CurrentBits::put(data, current);
+    RemainingBits::put(data, remaining);
+    TemperatureBits::put(data, temperature);
+    return data;
+  }
+  [[nodiscard]] static constexpr BatteriesBattery decode(const ocm::can::Payload& data) noexcept {
+    BatteriesBattery value;
+    value.voltage = VoltageBits::get(data);
+    value.current = CurrentBits::get(data);
+    value.remaining = RemainingBits::get(data);
+    value.temperature = TemperatureBits::get(data);
+    return value;
+  }
+  friend constexpr bool operator==(const BatteriesBattery&, const BatteriesBattery&) = default;
+};
+
+/// Batteries: each battery by itself, one frame a battery: the front one, then the one behind. Sensor of
+/// PowerManagement, requests on 0x2B. [BQ27500 data sheet, table 4-1: mV, mA, mAh, 0.1 K; id decided: free in
+/// the board's block]
+struct Batteries {
+  static constexpr std::string_view name = "batteries";
+  static constexpr ocm::protocol::TopicId id{0x2B};
+  static constexpr std::uint8_t instances = 1;
+  static constexpr std::array<ocm::protocol::FrameHead, 2> frames{{
+      {ocm::protocol::TopicId{0x2B}, 8, {130, 130, 130, 130}},
+      {ocm::protocol::TopicId{0x2C}, 8, {131, 131, 131, 131}},
+  }};
+  static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::sensor;
+  /// [decided: the gauge's own]
+  static constexpr ocm::protocol::Period period{1000, ocm::protocol::PeriodUnit::milliseconds};
+  /// [BQ27500 data sheet: gauge updated every second]
+  static constexpr ocm::base::Duration shortest_period = std::chrono::seconds{1};
+  /// [decided: the period]
+  static constexpr ocm::base::Duration deadline = std::chrono::seconds{1};
+  static constexpr ocm::base::Duration jitter = std::chrono::milliseconds{1};
+  static constexpr ocm::protocol::Priority priority = ocm::protocol::Priority::medium;
+
+  std::array<BatteriesBattery, 2> battery{};
+
+  /// In the order in which they are sent; no data where there is no such frame.
+  [[nodiscard]] constexpr ocm::can::Payload encode(std::size_t frame) const noexcept {
+    if (frame < battery.size()) return battery[frame].encode();
+    return {};
+  }
+  [[nodiscard]] static constexpr Batteries decode(const std::array<ocm::can::Payload, 2>& all) noexcept {
+    Batteries value;
+    for (std::size_t i = 0; i < value.battery.size(); ++i)
+      value.battery[i] = BatteriesBattery::decode(all[i]);
+    return value;
+  }
+  friend constexpr bool operator==(const Batteries&, const Batteries&) = default;
+};
+static_assert(ocm::protocol::TopicType<Batteries>);
+
+/// Ring light, one sensor.
+struct RingLightSensor {
+  static constexpr ocm::protocol::TopicId id{0x2D};  ///< of the first of 8
+  static constexpr std::uint8_t dlc = 2;
+
+  /// one conversion, not averaged: lamps flicker; 0.25 lx a bit, [0, 16383.75] lx
+  std::uint16_t illuminance = 0;
+
+  using IlluminanceBits = ocm::protocol::Bits<std::uint16_t, 0>;
+
+  [[nodiscard]] constexpr double illuminance_lx() const noexcept { return illuminance / 4.0; }
+  constexpr void set_illuminance_lx(double value) noexcept {
+    illuminance =
+        ocm::protocol::nearest_raw<std::uint16_t>(value * 4.0, IlluminanceBits::min, IlluminanceBits::max);
+  }
+
+  [[nodiscard]] constexpr ocm::can::Payload encode() const noexcept {
+    ocm::can::Payload data{};
+    IlluminanceBits::put(data, illuminance);
+    return data;
+  }
+  [[nodiscard]] static constexpr RingLightSensor decode(const ocm::can::Payload& data) noexcept {
+    RingLightSensor value;
+    value.illuminance = IlluminanceBits::get(data);
+    return value;
+  }
+  friend constexpr bool operator==(const RingLightSensor&, const RingLightSensor&) = default;
+};
+
+/// Ring light: ambient light around the robot, one frame a sensor of the ring. Sensor of PowerManagement,
+/// requests on 0x2D. [VCNL4020 data sheet: 0.25 lx a count; id decided: free in the board's block]
+struct RingLight {
+  static constexpr std::string_view name = "ring_light";
+  static constexpr ocm::protocol::TopicId id{0x2D};
+  static constexpr std::uint8_t instances = 1;
+  static constexpr std::array<ocm::protocol::FrameHead, 8> frames{{
+      {ocm::protocol::TopicId{0x2D}, 2, {69, 70, 69, 70}},
+      {ocm::protocol::TopicId{0x2E}, 2, {69, 70, 70, 70}},
+      {ocm::protocol::TopicId{0x2F}, 2, {70, 70, 70, 70}},
+      {ocm::protocol::TopicId{0x30}, 2, {70, 70, 69, 69}},
+      {ocm::protocol::TopicId{0x31}, 2, {69, 69, 70, 69}},
+      {ocm::protocol::TopicId{0x32}, 2, {69, 69, 70, 70}},
+      {ocm::protocol::TopicId{0x33}, 2, {70, 69, 70, 70}},
+      {ocm::protocol::TopicId{0x34}, 2, {69, 69, 70, 70}},
+  }};
+  static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::sensor;
+  /// [decided: light changes slowly]
+  static constexpr ocm::protocol::Period period{500, ocm::protocol::PeriodUnit::milliseconds};
+  /// [VCNL4020 data sheet: at most 10 measurements of ambient light a second]
+  static constexpr ocm::base::Duration shortest_period = std::chrono::milliseconds{100};
+  /// [decided: the period]
+  static constexpr ocm::base::Duration deadline = std::chrono::milliseconds{500};
+  static constexpr ocm::base::Duration jitter = std::chrono::milliseconds{1};
+  static constexpr ocm::protocol::Priority priority = ocm::protocol::Priority::medium;
+
+  std::array<RingLightSensor, 8> sensor{};
+
+  /// In the order in which they are sent; no data where there is no such frame.
+  [[nodiscard]] constexpr ocm::can::Payload encode(std::size_t frame) const noexcept {
+    if (frame < sensor.size()) return sensor[frame].encode();
+    return {};
+  }
+  [[nodiscard]] static constexpr RingLight decode(const std::array<ocm::can::Payload, 8>& all) noexcept {
+    RingLight value;
+    for (std::size_t i = 0; i < value.sensor.size(); ++i) value.sensor[i] = RingLightSensor::decode(all[i]);
+    return value;
+  }
+  friend constexpr bool operator==(const RingLight&, const RingLight&) = default;
+};
+static_assert(ocm::protocol::TopicType<RingLight>);
+
 // clang-format off
 namespace detail {
 namespace protocol = ocm::protocol;
@@ -2112,13 +2331,65 @@ inline constexpr std::string_view source =
   "decided, as travel; timeout decided, as motors";
 }  // namespace avoid
 
+namespace home {
+inline constexpr std::array<protocol::Field, 2> fields{{
+  {"distance", {0, 16, protocol::ByteOrder::little}, false, {1, -4}, {}, "m", 0, 1'200, {}, false},
+  {"speed", {16, 16, protocol::ByteOrder::little}, false, {1, -4}, {}, "m/s", 0, 2'000, {}, false},
+}};
+inline constexpr std::array<protocol::FrameLayout, 1> frames{{
+  {"", protocol::TopicId{0x2A}, 4, fields, {91, 90, 90, 90}},
+}};
+inline constexpr std::string_view source =
+  "decided, as travel; timeout decided, as motors";
+}  // namespace home
+
+namespace batteries_battery {
+inline constexpr std::array<protocol::NamedValue, 1> voltage_names{{{0, "no_battery"}}};
+inline constexpr std::array<protocol::Field, 4> fields{{
+  {"voltage", {0, 16, protocol::ByteOrder::little}, false, {1, -3}, {}, "V", 0, 6'000, voltage_names, false},
+  {"current", {16, 16, protocol::ByteOrder::little}, true, {1, -3}, {}, "A", -32'768, 32'767, {}, false},
+  {"remaining", {32, 16, protocol::ByteOrder::little}, false, {1, 0}, {}, "mAh", 0, 65'535, {}, false},
+  {"temperature", {48, 16, protocol::ByteOrder::little}, false, {1, -1}, {-27315, -2}, "degC", 0, 65'535, {}, false},
+}};
+}  // namespace batteries_battery
+namespace batteries {
+inline constexpr std::array<std::string_view, 1> aliases{"battery"};
+inline constexpr std::array<protocol::FrameLayout, 2> frames{{
+  {"battery_1", protocol::TopicId{0x2B}, 8, batteries_battery::fields, {130, 130, 130, 130}},
+  {"battery_2", protocol::TopicId{0x2C}, 8, batteries_battery::fields, {131, 131, 131, 131}},
+}};
+inline constexpr std::string_view source =
+  "BQ27500 data sheet, table 4-1: mV, mA, mAh, 0.1 K; id decided: free in the board's block; period decided: the gauge's own; deadline decided: the period; shortest_period: BQ27500 data sheet: gauge updated every second";
+}  // namespace batteries
+
+namespace ring_light_sensor {
+inline constexpr std::array<protocol::Field, 1> fields{{
+  {"illuminance", {0, 16, protocol::ByteOrder::little}, false, {25, -2}, {}, "lx", 0, 65'535, {}, false},
+}};
+}  // namespace ring_light_sensor
+namespace ring_light {
+inline constexpr std::array<std::string_view, 1> aliases{"ambient"};
+inline constexpr std::array<protocol::FrameLayout, 8> frames{{
+  {"sensor_1", protocol::TopicId{0x2D}, 2, ring_light_sensor::fields, {69, 70, 69, 70}},
+  {"sensor_2", protocol::TopicId{0x2E}, 2, ring_light_sensor::fields, {69, 70, 70, 70}},
+  {"sensor_3", protocol::TopicId{0x2F}, 2, ring_light_sensor::fields, {70, 70, 70, 70}},
+  {"sensor_4", protocol::TopicId{0x30}, 2, ring_light_sensor::fields, {70, 70, 69, 69}},
+  {"sensor_5", protocol::TopicId{0x31}, 2, ring_light_sensor::fields, {69, 69, 70, 69}},
+  {"sensor_6", protocol::TopicId{0x32}, 2, ring_light_sensor::fields, {69, 69, 70, 70}},
+  {"sensor_7", protocol::TopicId{0x33}, 2, ring_light_sensor::fields, {70, 69, 70, 70}},
+  {"sensor_8", protocol::TopicId{0x34}, 2, ring_light_sensor::fields, {69, 69, 70, 70}},
+}};
+inline constexpr std::string_view source =
+  "VCNL4020 data sheet: 0.25 lx a count; id decided: free in the board's block; period decided: light changes slowly; deadline decided: the period; shortest_period: VCNL4020 data sheet: at most 10 measurements of ambient light a second";
+}  // namespace ring_light
+
 inline constexpr std::array<protocol::Board, 3> boards{{
   {"di_wheel_drive", "STM32F103"},
   {"power_management", "STM32F405"},
   {"light_ring", "STM32F103"},
 }};
 
-inline constexpr std::array<protocol::Topic, 28> topics{{
+inline constexpr std::array<protocol::Topic, 31> topics{{
   protocol::catalogue_entry<Odometry>(0, odometry::aliases, odometry::frames, odometry::source),
   protocol::catalogue_entry<FloorProximity>(0, floor_proximity::aliases, floor_proximity::frames, floor_proximity::source),
   protocol::catalogue_entry<Magnetometer>(0, magnetometer::aliases, magnetometer::frames, magnetometer::source),
@@ -2147,6 +2418,9 @@ inline constexpr std::array<protocol::Topic, 28> topics{{
   protocol::catalogue_entry<Follow>(0, {}, follow::frames, follow::source),
   protocol::catalogue_entry<Behaviour>(0, {}, behaviour::frames, behaviour::source),
   protocol::catalogue_entry<Avoid>(1, {}, avoid::frames, avoid::source),
+  protocol::catalogue_entry<Home>(1, {}, home::frames, home::source),
+  protocol::catalogue_entry<Batteries>(1, batteries::aliases, batteries::frames, batteries::source),
+  protocol::catalogue_entry<RingLight>(1, ring_light::aliases, ring_light::frames, ring_light::source),
 }};
 }  // namespace detail
 // clang-format on
@@ -2179,9 +2453,9 @@ struct PowerManagement {
   static constexpr std::string_view mcu = "STM32F405";
   static constexpr std::uint32_t clock_hz = 168'000'000;
   static constexpr std::uint32_t can_clock_hz = 42'000'000;
-  using sensors =
-      ocm::protocol::TopicList<PowerStatus, ProximityRing, PowerManagementStatus, PowerManagementRefusal>;
-  using actuators = ocm::protocol::TopicList<RingCalibration, Avoid>;
+  using sensors = ocm::protocol::TopicList<PowerStatus, ProximityRing, PowerManagementStatus,
+                                           PowerManagementRefusal, Batteries, RingLight>;
+  using actuators = ocm::protocol::TopicList<RingCalibration, Avoid, Home>;
   using status = PowerManagementStatus;
   using refusal = PowerManagementRefusal;
   static constexpr std::uint32_t wire_hash = amiro::wire_hash;

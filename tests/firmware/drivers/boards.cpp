@@ -311,6 +311,9 @@ TEST_CASE("PowerManagement in a frozen world: the same digits as the world's") {
     CHECK(m.parts.gauge()->charging == m.world.gauge()->charging);
     CHECK(m.parts.gauge()->minutes == m.world.gauge()->minutes);
     CHECK(m.parts.gauge() == m.world.gauge());
+    CHECK(m.parts.batteries() == m.world.batteries());
+    m.maintain(100ms);
+    CHECK(m.parts.ring_light() == m.world.ring_light());
     CHECK(m.models.violations().texts() == std::vector<std::string>{});
   }
 }
@@ -334,6 +337,7 @@ TEST_CASE("PowerManagement: a gauge or a sensor that is away, and back") {
   m.start();
   m.models.gauge_p8.set_present(false);
   CHECK(m.parts.gauge().error == Error::no_answer);
+  CHECK(m.parts.batteries().error == Error::no_answer);
   CHECK(m.parts.absent() == middle::part::gauge_p8);
   CHECK(m.parts.ring().ok());
   m.models.gauge_p8.set_present(true);
@@ -344,6 +348,7 @@ TEST_CASE("PowerManagement: a gauge or a sensor that is away, and back") {
     m.models.ring[i].set_present(false);
     m.maintain(1200ms);
     CHECK(m.parts.ring().error == Error::no_answer);
+    CHECK(m.parts.ring_light().error == Error::no_answer);
     CHECK(m.parts.gauge().ok());
     CHECK(m.parts.absent() == middle::part::ring);
     CHECK(m.parts.absent_ring() == 1U << i);

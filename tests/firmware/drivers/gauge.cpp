@@ -62,6 +62,22 @@ TEST_CASE("gauge: what it says") {
   CHECK(g.violations.none());
 }
 
+TEST_CASE("gauge: its battery alone, and none") {
+  Gauge g;
+  REQUIRE(g.driver.start().ok());
+  g.state.voltage_mv = 3812;
+  g.state.current_ma = -122;
+  g.state.remaining_mah = 551;
+  g.state.temperature_dk = 2931;
+  CHECK(g.driver.measure() ==
+        base::Result<boards::BatteryReading>{boards::BatteryReading{3812, -122, 551, 2931}});
+  g.state.battery = false;
+  CHECK(g.driver.measure() == base::Result<boards::BatteryReading>{boards::BatteryReading{}});
+  CHECK(g.violations.none());
+  g.wires.set_stuck(true);
+  CHECK(g.driver.measure().error == Error::bus_fault);
+}
+
 TEST_CASE("gauge: what is wrong is noticed") {
   Gauge g;
   SECTION("address") {

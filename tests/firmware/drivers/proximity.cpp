@@ -28,6 +28,7 @@ struct Proximity {
   HandClock time;
   sim::Violations violations;
   std::array<std::uint16_t, 4> counts{2289, 2302, 65535, 0};
+  std::array<std::uint16_t, 4> light{1200, 65535, 1, 0};
   sim::Pca9544Model mux{violations};
   std::array<sim::Vcnl4020Model, 4> parts{make(0), make(1), make(2), make(3)};
   sim::I2cBus wires{violations};
@@ -40,7 +41,8 @@ struct Proximity {
     for (std::size_t i = 0; i < 4; ++i) mux.channel(i).attach(parts[i]);
   }
   sim::Vcnl4020Model make(std::size_t i) {
-    return sim::Vcnl4020Model{violations, time.clock(), [this, i] { return counts[i]; }};
+    return sim::Vcnl4020Model{violations, time.clock(), [this, i] { return counts[i]; },
+                              [this, i] { return light[i]; }};
   }
   drivers::Vcnl4020<Channel> driver(std::uint8_t i) {
     return drivers::Vcnl4020<Channel>{multiplexer.channel(i)};
@@ -63,6 +65,50 @@ TEST_CASE("proximity: four sensors of one address, each behind its channel") {
   CHECK(Recorder::held == 0);
   CHECK(Recorder::most == 1);
   CHECK(Recorder::times > 0);
+}
+
+TEST_CASE("ambient light: ten times a second, beside the proximity, and none before the first measurement") {
+  Proximity p;
+  for (std::uint8_t i = 0; i < 4; ++i) {
+    drivers::Vcnl4020<Proximity::Channel, true> driver{p.multiplexer.channel(i)};
+    REQUIRE(driver.start().ok());
+    p.time.pass(99ms);
+    CHECK(driver.light().error == Error::not_sampled);
+    CHECK(driver.read() == base::Result<std::uint16_t>{p.counts[i]});
+    p.time.pass(1ms);
+    CHECK(driver.light() == base::Result<std::uint16_t>{p.light[i]});
+    CHECK(driver.light() == base::Result<std::uint16_t>{p.light[i]});  // again, though it is no longer new
+    CHECK(driver.check().ok());
+    REQUIRE(driver.start().ok());
+    CHECK(driver.light().error == Error::not_sampled);
+  }
+  CHECK(p.driver(0).check().error == Error::no_answer);  // this one is not to measure light
+  CHECK(p.violations.none());
+}
+
+TEST_CASE("ambient light: what is wrong is noticed") {
+  Proximity p;
+  drivers::Vcnl4020<Proximity::Channel, true> driver{p.multiplexer.channel(0)};
+  SECTION("the mean of 32, as the part begins") {
+    p.bus.spoil = [](std::uint8_t& address, auto& bytes) {
+      if (address == 0x13 && bytes.size() == 2 && bytes[0] == 0x84) bytes[1] = 0x1D;
+    };
+    REQUIRE(driver.start().ok());
+    CHECK(driver.check().error == Error::no_answer);
+    CHECK(p.violations.none());
+  }
+  SECTION("continuous conversion") {
+    p.bus.spoil = [](std::uint8_t& address, auto& bytes) {
+      if (address == 0x13 && bytes.size() == 2 && bytes[0] == 0x84) bytes[1] |= 0x80;
+    };
+    REQUIRE(driver.start().ok());
+    CHECK(complained(p.violations, "on demand"));
+  }
+  SECTION("a part that is away") {
+    REQUIRE(driver.start().ok());
+    p.parts[0].set_present(false);
+    CHECK(driver.light().error == Error::no_answer);
+  }
 }
 
 TEST_CASE("proximity: without the multiplexer no sensor answers") {

@@ -30,6 +30,7 @@ IMAGES = os.environ["OCM_IMAGES"]
 BOARDS = {"di_wheel_drive": ["odometry", "floor_proximity", "magnetometer", "gyroscope", "accelerometer"],
           "power_management": ["power_status", "proximity_ring"], "light_ring": []}
 SENSORS = [topic for topics in BOARDS.values() for topic in topics]
+SLOW_SENSORS = ["batteries", "ring_light"]
 PRIORITIES = ["urgent", "high", "medium", "low"]
 
 
@@ -105,7 +106,7 @@ class Robots(RealTime, Case):
 
     @staticmethod
     def frames_of(topic):
-        return {"odometry": 2, "magnetometer": 3, "proximity_ring": 8}.get(topic, 1)
+        return {"odometry": 2, "magnetometer": 3, "proximity_ring": 8, "batteries": 2, "ring_light": 8}.get(topic, 1)
 
     def summaries(self):
         """Ends both robots; what each said."""
@@ -124,7 +125,9 @@ class Frozen(Robots):
         self.start_robots("--frozen", "--seed", "3")
 
     def test_every_sensor_at_every_priority(self):
-        for topic in SENSORS:
+        # The emulated ring has measured light, too.
+        self.until(lambda: self.asked("qemu", "ring_light") is not None)
+        for topic in SENSORS + SLOW_SENSORS:
             for priority in PRIORITIES:
                 with self.subTest(topic=topic, priority=priority):
                     expected = self.asked("host", topic, priority)
@@ -210,6 +213,31 @@ class Moving(Robots):
             self.tool(name, "behave", "avoid", "--for", "1500ms")
             self.until(lambda: self.asked(name, "odometry")[0][1] == "0000000000000000")
             self.assertGreater(self.pose(name)[1] - travelled[1], 0.05, name)
+
+    def test_home(self):
+        """From three places the images come to stand before a wall, as the boards of this machine do."""
+        self.start_robots("--seed", "1")
+        for way in ((), ("-60cm", "--turn", "100deg"), ("-30cm", "--turn", "-110deg")):
+            for name in self.sims:
+                if way:
+                    self.tool(name, "travel", *way, "--speed", "20cm/s")
+            homing = {name: self.start("--bus", self.bus(name), "behave", "home", "--distance", "6cm", "--speed", "20cm/s",
+                                       "--for", "20s") for name in self.sims}
+            for name, each in homing.items():
+                _, err = each.communicate(timeout=60)
+                self.assertEqual(each.returncode, 0, err)
+                self.until(lambda: self.asked(name, "odometry")[0][1] == "0000000000000000")
+                self.assertAlmostEqual(self.nearest(name), 0.06, delta=0.02)
+
+    def nearest(self, name):
+        """What the ring's sensors say of the nearest thing, m."""
+        listener = self.start("--bus", self.bus(name), "listen", "ring", "--json", "--count", "8", "--timeout", "10s")
+        self.assertIn("bus: sim", listener.stderr.readline())
+        time.sleep(0.05)
+        self.tool(name, "once", "ring")
+        out, err = listener.communicate(timeout=20)
+        self.assertEqual(listener.returncode, 0, err)
+        return min(event["fields"]["distance"] for event in self.objects(out) if event["fields"].get("distance") is not None)
 
     def test_the_standalone_script(self):
         """The thesis's run of 40 s, on both robots at once: same frames, in the same order, as often."""

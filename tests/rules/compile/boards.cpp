@@ -24,6 +24,8 @@ struct Bottom {
 struct Middle {
   base::Result<GaugeReading> gauge();
   base::Result<RingCounts> ring();
+  base::Result<BatteryReadings> batteries();
+  base::Result<RingLight> ring_light();
   std::uint16_t ring_offset(std::size_t sensor);
   base::Status calibrate_ring(bool forget);
 };

@@ -34,14 +34,15 @@ class Behave(Case):
 
     def test_frames(self):
         for arguments, frames in ((("follow",), "20C#E803\n"), (("avoid", "--speed", "15cm/s", "--priority", "high"), "129#DC05\n"),
-                                  (("none",), "229#0000\n20C#0000\n20B#0000000000000000\n")):
+                                  (("home", "--distance", "8cm"), "22A#2003E803\n"), (("none",), "229#0000\n22A#00000000\n20C#0000\n20B#0000000000000000\n")):
             out, err = self.run_tool("behave", *arguments, "--dry-run")
             self.assertEqual((out, err), (frames, ""), arguments)
 
     def test_wrong_usage(self):
         for arguments, words in (((), "follow"), (("fly",), "fly"), (("follow", "--speed", "0"), "goes nowhere"),
                                  (("follow", "--speed", "1"), "needs a unit"), (("avoid", "--speed", "1m/s"), "speed takes 0 to 0.2 m/s"),
-                                 (("none", "--for", "2s"), "none takes no --for"), (("none", "--speed", "1m/s"), "none takes no --speed"), (("follow", "--for", "2"), "2")):
+                                 (("none", "--for", "2s"), "none takes no --for"), (("none", "--speed", "1m/s"), "none takes no --speed"), (("home", "--distance", "20cm"), "distance takes 0 to 0.12 m"),
+                                 (("follow", "--distance", "5cm"), "follow takes no --distance"), (("follow", "--for", "2"), "2")):
             out, err = self.run_tool("behave", *arguments, code=2)
             self.assertIn(words, err, arguments)
             self.assertEqual(out, "", arguments)
@@ -70,6 +71,16 @@ class Behave(Case):
             self.assertEqual(behave.returncode, 1, err)
             self.assertIn("avoid was ended: stopped", err)
             self.assertTrue(self.standing())
+
+    def test_home(self):
+        self.start_sim()
+        _, err = self.run_tool("behave", "home", "--distance", "2cm", code=1)
+        self.assertIn("power_management refuses home: out_of_range", err)
+        self.run_tool("behave", "home", "--distance", "6cm", "--speed", "20cm/s", "--for", "10s")
+        self.assertTrue(self.standing())
+        out, _ = self.run_tool("once", "ring", "--wait")
+        near = min(json.loads(line)["fields"].get("distance", 1) for line in out.splitlines())
+        self.assertAlmostEqual(near, 0.06, delta=0.02)  # the sensors' places are 4 mm behind the foremost one
 
     def test_a_drive_hears_avoid(self):
         self.start_sim()

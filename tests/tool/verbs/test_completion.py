@@ -36,7 +36,7 @@ class Words(harness.Case):
         self.assertNotIn("motors", self.candidates("publish", ""))
         self.assertIn("motors", self.candidates("info", ""))
         self.assertIn("led_8", self.candidates("listen", "gyro", "led"))
-        self.assertEqual(self.candidates("stop", "a"), ["all", "accelerometer", "accel", "avoid"])
+        self.assertEqual(self.candidates("stop", "a"), ["all", "accelerometer", "accel", "avoid", "ambient"])
         self.assertEqual(self.candidates("publish", "gyro", ""), [])
         self.assertEqual(self.candidates("send", ""), [])
 

@@ -26,7 +26,8 @@ class Doctor(Case):
             self.assertIn("power", row)
             self.assertIn("same", row)
             self.assertIn("active", row)
-        self.assertEqual(rows[4], "battery 90 %")
+        self.assertEqual(rows[4:7], ["battery 90 %", "battery_1 4.020 V, -0.116 A, 502 mAh left, 25.1 degC",
+                                     "battery_2 4.020 V, -0.116 A, 502 mAh left, 25.1 degC"])
         self.assertEqual(rows[-1], "all is well")
 
     def test_a_board_that_is_off(self):
@@ -35,6 +36,7 @@ class Doctor(Case):
         self.assertEqual(self.what(report), [("problem", "power_management", "does not answer")])
         self.assertEqual([b["answers"] for b in report["boards"]], [True, False, True])
         self.assertIsNone(report["battery_percent"])
+        self.assertEqual(report["batteries"], [])
 
     def test_no_board_answers(self):
         self.start_sim("--without", "di_wheel_drive,power_management,light_ring")
@@ -80,6 +82,8 @@ class Doctor(Case):
         publishing = {b["board"]: b["publishing"] for b in report["boards"]}
         self.assertEqual(publishing["di_wheel_drive"], "gyroscope, di_wheel_drive_status")
         self.assertEqual(report["battery_percent"], 90)
+        self.assertEqual(report["batteries"][1], {"battery": "battery_2", "present": True, "voltage_v": 4.02, "current_a": -0.116,
+                                                  "remaining_mah": 502, "temperature_celsius": 25.05})
         publishing = {b["board"]: b["publishing"] for b in self.examine(code=0)["boards"]}
         self.assertEqual(publishing["di_wheel_drive"], "gyroscope, di_wheel_drive_status")
         self.assertEqual(publishing["power_management"], "power_status")

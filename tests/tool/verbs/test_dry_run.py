@@ -41,7 +41,7 @@ class DryRun(Case):
         out, _ = self.run_tool("stop", "--dry-run")
         self.assertEqual(out.split()[0], "201#0000000000000000")
         self.assertEqual(out, self.run_tool("stop", "all", "--dry-run")[0])
-        self.assertEqual(len(out.split()), 1 + 3 + 8 + 2 * 3)  # motors, behaviours, sensors, and each board's two reports
+        self.assertEqual(len(out.split()), 1 + 4 + 10 + 2 * 3)  # motors, behaviours, sensors, and each board's two reports
         self.assertEqual(out.split()[1:4], ["20B#0000000000000000", "20C#0000", "229#0000"])
 
     def test_options_may_stand_before_the_verb_or_behind_it(self):

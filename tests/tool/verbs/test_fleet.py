@@ -105,6 +105,19 @@ class Goto(Line):
         self.assertEqual(out, "AVR: x 10 cm, y 0 cm, heading 0 deg\n")
         self.assertIn("stopped 20 cm", err)
 
+    def test_a_program_that_did_not_run_blames_no_obstacle(self):
+        self.avr.blocked_cm, self.avr.speed = 20, 10
+        tool = self.start("goto", "AVR", "0", "50", "--scan", "200ms")
+        waiting.until(lambda: "{U,0,50}" in self.avr.heard, "it drives")
+        tool.send_signal(signal.SIGSTOP)
+        time.sleep(1.2)  # longer than a robot may have stood for want of a word
+        tool.send_signal(signal.SIGCONT)
+        _, err = tool.communicate(timeout=60)
+        self.assertEqual(tool.returncode, 1, err)
+        self.assertRegex(err, r"goto: AVR heard it, but stopped 30 cm and 0 deg away from there: this program did not run for "
+                              r"[1-9][.0-9]*s meanwhile; give the command again")
+        self.assertNotIn("in front of it", err)
+
     def test_what_was_not_heard_is_said_again(self):
         self.avr.x = self.avr.y = 0.5
         self.avr.start = (0.5, 0.5, 0.0)

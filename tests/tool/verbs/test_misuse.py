@@ -271,8 +271,8 @@ travel: unexpected argument '5cm'
 usage: amiroctl travel [DISTANCE] [OPTION ...]
 
 behave
-behave: missing follow|avoid|none
-usage: amiroctl behave follow|avoid|none [OPTION ...]
+behave: missing follow|avoid|home|none
+usage: amiroctl behave follow|avoid|home|none [OPTION ...]
 
 behave follow --sped 5cm/s
 behave: unknown option '--sped'
@@ -280,11 +280,11 @@ did you mean '--speed'?
 
 behave fly
 behave: unknown behaviour 'fly'
-one of: follow, avoid, none
+one of: follow, avoid, home, none
 
 behave none 2s
 behave: unexpected argument '2s'
-usage: amiroctl behave follow|avoid|none [OPTION ...]
+usage: amiroctl behave follow|avoid|home|none [OPTION ...]
 
 behave none --for 2s
 behave: none takes no --for

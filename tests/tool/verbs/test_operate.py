@@ -221,8 +221,8 @@ class Checked(Operate):
             driving["limits"], driving["entry"] = driving["limits"][:1], []
         self.assertEqual(cautions(lambda document: None), ([], []))  # the example
         what, found = cautions(free)
-        self.assertEqual(what, ['in "driving" the limits of motors do not hold for what boards do by themselves: travel, follow, avoid '
-                                '(by replay, run, set)',
+        self.assertEqual(what, ['in "driving" the limits of motors do not hold for what boards do by themselves: travel, follow, avoid, '
+                                'home (by replay, run, set)',
                                 'a travel that was begun in "idle" goes on in "driving", where the limits of motors do not hold for it'])
         document = guard()
         free(document)
@@ -240,7 +240,7 @@ class Checked(Operate):
             document["configurations"][1]["commanders"] = ["behave"]
             document["configurations"][1]["entry"] = [{"topic": "travel"}]
         self.assertEqual(cautions(verbs)[0], ['in "driving" the limits of motors do not hold for what boards do by themselves: follow, '
-                                              'avoid (by behave)'])
+                                              'avoid, home (by behave)'])
 
         def by_itself(document):
             free(document)

@@ -411,6 +411,32 @@ class Serve(harness.Case):
         self.settle()
         self.assertEqual([event["fields"]["x"] for event in self.objects(self.interrupt(listener)[0])][-1], 0)
 
+    def test_what_a_board_does_is_another_commander(self):
+        self.start_sim()
+        _, port, token = self.serve("--allow-commands")
+        viewer = self.viewer(port, token)
+        viewer.subscribe("/motors")
+
+        def is_behaving():
+            out, _ = self.run_tool("once", "behaviour", "--wait")
+            return json.loads(out)["fields"]["active"] != 0
+        travel = self.start("travel", "1m", "--speed", "1cm/s")
+        harness.waiting.until(is_behaving, "the board travels")
+        viewer.publish("/motors", {"x": 0.05, "z": 0})
+        self.assertIn("di_wheel_drive drives the wheels by itself", viewer.text("status")["message"])
+        self.interrupt(travel)
+        harness.waiting.until(lambda: not is_behaving(), "the travel has ended")
+        viewer.publish("/motors", {"x": 0.05, "z": 0})
+        self.assertEqual(viewer.message().fields["x"], 0.05)  # the first one: what was refused was not sent
+
+    def test_a_board_that_does_not_say_what_it_does_is_waited_for_no_longer_than_it_may_take(self):
+        self.start_sim("--without", "di_wheel_drive")
+        _, port, token = self.serve("--allow-commands")
+        viewer = self.viewer(port, token)
+        viewer.subscribe("/motors")
+        viewer.publish("/motors", {"x": 0.05, "z": 0})
+        self.assertEqual(viewer.message().fields["x"], 0.05)
+
     def test_two_pages_and_another_program(self):
         self.start_sim("--frozen")
         _, port, token = self.serve("--allow-commands")

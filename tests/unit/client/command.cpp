@@ -61,7 +61,7 @@ TEST_CASE(
     CHECK(std::count(command.frames.begin(), command.frames.end(), stop) == 1);
   }
   std::size_t behaviours = 0;
-  for (const auto* name : {"travel", "follow", "avoid"}) {
+  for (const auto* name : {"travel", "follow", "avoid", "home"}) {
     ++behaviours;
     CHECK(command.frames[behaviours] == set_point(topic(name), {}));
   }

@@ -179,6 +179,42 @@ TEST_CASE("diagnosis: the battery") {
   CHECK(robot.findings() == expected);
 }
 
+TEST_CASE("diagnosis: each battery by itself") {
+  Patient robot;
+  robot.all_healthy();
+  CHECK(robot.diagnosis.batteries().topic == amiro::catalogue.find("batteries"));
+  CHECK(robot.diagnosis.batteries().all.empty());
+  amiro::Batteries batteries;
+  const auto say = [&](double front_celsius, double behind_celsius) {
+    for (auto& battery : batteries.battery) battery.set_voltage_V(3.8);
+    batteries.battery[0].set_current_A(-0.25);
+    batteries.battery[0].set_remaining_mAh(551);
+    batteries.battery[0].set_temperature_celsius(front_celsius);
+    batteries.battery[1].set_temperature_celsius(behind_celsius);
+    robot.say(batteries);
+  };
+  say(59.9, -19.9);
+  CHECK(robot.findings().empty());
+  REQUIRE(robot.diagnosis.batteries().all.size() == 2);
+  const auto& front = robot.diagnosis.batteries().all[0];
+  CHECK(front.name == "battery_1");
+  CHECK(front.present);
+  CHECK(front.voltage_v == Approx(3.8));
+  CHECK(front.current_a == Approx(-0.25));
+  CHECK(front.remaining_mah == 551);
+  CHECK(front.temperature_celsius == Approx(59.9).margin(0.06));
+  say(60.1, -20.1);
+  CHECK(robot.findings() == Lines{"warning power_management: battery_1 is too hot",
+                                  "warning power_management: battery_2 is too cold"});
+  CHECK(robot.diagnosis.findings()[0].ailment == Ailment::battery_heat);
+  batteries.battery[1] = {};
+  robot.say(batteries);
+  CHECK(robot.findings() == Lines{"warning power_management: battery_1 is too hot",
+                                  "note power_management: battery_2 is not inserted"});
+  CHECK(robot.diagnosis.findings()[1].ailment == Ailment::no_battery);
+  CHECK_FALSE(robot.diagnosis.batteries().all[1].present);
+}
+
 TEST_CASE("diagnosis: a battery that says its charge in the first of two frames, and nothing of a charger") {
   using ocm::protocol::Field;
   const auto& power = *amiro::catalogue.find("power_status");

@@ -67,6 +67,28 @@ TEST_CASE("magnetometer: three frames, 1 uG a bit") {  // [Thesis figure 7.2: 53
   STATIC_REQUIRE(m.encode(3) == Payload{});
 }
 
+TEST_CASE("batteries: millivolts, milliamperes, milliampere-hours and tenths of a kelvin") {
+  // [BQ27500 data sheet, table 4-1]
+  Batteries batteries;
+  batteries.battery[0] = {3'812, -122, 551, 2982};
+  CHECK(batteries.battery[0].voltage_V() == 3.812);
+  CHECK(batteries.battery[0].current_A() == -0.122);
+  CHECK(batteries.battery[0].remaining_mAh() == 551.0);
+  CHECK(batteries.battery[0].temperature_celsius() == 25.05);
+  CHECK(batteries.battery[1].voltage == BatteriesBattery::voltage_no_battery);
+  const Payload front{0xE4, 0x0E, 0x86, 0xFF, 0x27, 0x02, 0xA6, 0x0B};
+  CHECK(ocm::protocol::sample_frame(batteries, Priority::medium, 0) == Frame{0x62B, 8, front});
+  CHECK(ocm::protocol::sample_frame(batteries, Priority::medium, 1) == Frame{0x62C, 8, {}});
+  CHECK(Batteries::decode({front, Payload{}}) == batteries);
+}
+
+TEST_CASE("ring light: a quarter of a lux a count") {  // [VCNL4020 data sheet]
+  RingLight light;
+  light.sensor[7].illuminance = 0x04B1;
+  CHECK(light.sensor[7].illuminance_lx() == 300.25);
+  CHECK(ocm::protocol::sample_frame(light, Priority::medium, 7) == Frame{0x634, 2, {0xB1, 0x04}});
+}
+
 TEST_CASE("floor proximity: four counts") {  // [Thesis figure 7.2: 5184, 0, 188, 0]
   constexpr auto f = FloorProximity::decode(Payload{0x40, 0x14, 0x00, 0x00, 0xBC, 0x00, 0x00, 0x00});
   STATIC_REQUIRE(f == FloorProximity{5184, 0, 188, 0});
@@ -204,6 +226,10 @@ TEST_CASE("follow and avoid: one speed") {
   Avoid avoid;
   avoid.set_speed_m_per_s(0.1);
   CHECK(ocm::protocol::command(avoid) == Frame{0x229, 2, {0xE8, 0x03}});
+  Home home;
+  home.set_speed_m_per_s(0.1);
+  home.set_distance_m(0.05);
+  CHECK(ocm::protocol::command(home) == Frame{0x22A, 4, {0xF4, 0x01, 0xE8, 0x03}});
 }
 
 TEST_CASE("behaviour: what is active, how the last one ended, and what is left") {
@@ -245,6 +271,9 @@ TEST_CASE("the catalogue knows every name, and whose topic it is") {
       {"follow", "follow", 0x0C, "di_wheel_drive", 1},
       {"behaviour", "behaviour", 0x0D, "di_wheel_drive", 1},
       {"avoid", "avoid", 0x29, "power_management", 1},
+      {"home", "home", 0x2A, "power_management", 1},
+      {"batteries", "battery", 0x2B, "power_management", 2},
+      {"ring_light", "ambient", 0x2D, "power_management", 8},
   };
   for (const Expected& e : expected) {
     CAPTURE(e.name);
@@ -255,7 +284,7 @@ TEST_CASE("the catalogue knows every name, and whose topic it is") {
     CHECK(catalogue.boards[topic->board].name == e.board);
     CHECK(topic->frames.size() == e.frames);
   }
-  STATIC_REQUIRE(catalogue.topics.size() == 28);
+  STATIC_REQUIRE(catalogue.topics.size() == 31);
   STATIC_REQUIRE(catalogue.find("led_3")->group == "led");
   STATIC_REQUIRE(catalogue.find("led_3")->instance == 3);
   STATIC_REQUIRE(catalogue.bit_rate == 500'000);

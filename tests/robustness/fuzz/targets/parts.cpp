@@ -96,6 +96,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (const auto gauge = middle.gauge())
       fuzz::expect(gauge->state_of_charge_percent <= 100, "a state of charge is at most 100 %");
     (void)middle.ring();
+    (void)middle.batteries();
+    (void)middle.ring_light();
     if (step == 20) {
       (void)bottom.calibrate_floor(noise.next() < 128);
       (void)middle.calibrate_ring(noise.next() < 128);
