@@ -86,10 +86,12 @@ void LogFeed::rewind() {
 
 void LogFeed::go_to(base::Duration at, const Take& take) {
   at = std::clamp(at, base::Duration{0}, playing_.length);
+  bool ran_out = false;
   while (interrupted() == 0) {
     if (next_ == size_) {
       next_ = 0;
       size_ = log_->reader().read(batch_);
+      ran_out = size_ == 0 && interrupted() == 0;
       if (size_ == 0) break;
     }
     const log::Entry& entry = batch_[next_];
@@ -98,7 +100,7 @@ void LogFeed::go_to(base::Duration at, const Take& take) {
     ++next_;
     ++played_;
   }
-  if (size_ == 0 && played_ < frames_ && !std::exchange(shrank_, true))
+  if (ran_out && played_ < frames_ && !std::exchange(shrank_, true))
     remark(fmt::format("{}: {} of {} frames are not there any more: was it cut, or replaced?", path_,
                        frames_ - played_, frames_));
   playing_.at = at;

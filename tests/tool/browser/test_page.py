@@ -32,6 +32,7 @@ class Page(harness.Case):
         super().setUp()
         self.browser.size(1280, 1400)
         self.browser.prefer("light")
+        self.browser.open("about:blank")  # the page of the test before says that its server is gone
         self.browser.complaints()
 
     def serve(self, *arguments, tool=()):
