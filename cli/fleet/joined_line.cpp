@@ -39,12 +39,13 @@ JoinedLine::JoinedLine(std::string_view verb, std::unique_ptr<LocalLink> owner)
   refresh();
 }
 
-LocalAnswer JoinedLine::ask(std::string_view request) {
+LocalAnswer JoinedLine::ask(std::string_view request, std::optional<unsigned> ordered) {
   auto answer = owner_->ask(request, patience);
   if (answer.kind != LocalAnswer::Kind::silent) return answer;
   std::string driving;
   for (const auto& [index, robot] : robots_)
-    if (robot.busy() && is_ours(index)) driving += (driving.empty() ? "" : ", ") + robot.name;
+    if ((robot.busy() && is_ours(index)) || index == ordered)
+      driving += (driving.empty() ? "" : ", ") + robot.name;
   fail({fmt::format("{}: {}", verb_, answer.failure.what),
         driving.empty() ? answer.failure.remedy
                         : fmt::format("{} may still drive: at the latest it stops after {} cm; to stop it: "
@@ -59,14 +60,14 @@ void JoinedLine::tell(std::string_view request) {
 }
 
 LineEnd::Refused JoinedLine::order(unsigned robot, std::string_view request) {
-  auto answer = ask(request);
+  auto answer = ask(request, robot);
   if (answer.kind == LocalAnswer::Kind::no) return std::move(answer.failure);
   if (const auto order = number<std::uint64_t>(answer.text)) orders_[robot] = *order;
-  refresh();  // or what is known is of before
+  refresh(robot);  // or what is known is of before
   return std::nullopt;
 }
 
-void JoinedLine::refresh() {
+void JoinedLine::refresh(std::optional<unsigned> ordered) {
   std::vector<mapper::server::Peer> peers;
   std::map<unsigned, RobotNow> robots;
   const auto strange = [this](std::string_view line) {
@@ -76,7 +77,7 @@ void JoinedLine::refresh() {
   };
   unsigned from = 0;
   for (bool more = true; more;) {
-    const auto answer = ask(fmt::format("robots {}", from));
+    const auto answer = ask(fmt::format("robots {}", from), ordered);
     if (answer.kind != LocalAnswer::Kind::ok) strange(answer.failure.what);
     more = false;
     for (std::string_view text = answer.text; !text.empty();) {

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -41,11 +42,12 @@ class JoinedLine final : public LineEnd {
   [[nodiscard]] bool over() const { return owner_->over(); }
 
  private:
-  /// Ends the command when the owner does not answer.
-  [[nodiscard]] LocalAnswer ask(std::string_view request);
+  /// Ends the command when the owner does not answer, and names who may still drive: `ordered` is one that
+  /// may have its order.
+  [[nodiscard]] LocalAnswer ask(std::string_view request, std::optional<unsigned> ordered = {});
   void tell(std::string_view request);
   [[nodiscard]] Refused order(unsigned robot, std::string_view request);
-  void refresh();
+  void refresh(std::optional<unsigned> ordered = {});
 
   std::string verb_;
   std::unique_ptr<LocalLink> owner_;

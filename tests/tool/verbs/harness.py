@@ -35,6 +35,8 @@ class Case(unittest.TestCase):
         """Also where setUp fails, after which no tearDown is called: nothing stays behind."""
         for process in self._started:
             if process.poll() is None:
+                # LeakSanitizer looks at a program that ends from a child, which a signal may hang; it keeps the streams open.
+                subprocess.run(["pkill", "-KILL", "-P", str(process.pid)], check=False)
                 process.kill()
             if process.stderr is not None and process.stderr.closed:  # by a test
                 process.stderr = None
