@@ -69,7 +69,7 @@ LogFeed::LogFeed(std::string path, std::string format, const protocol::Catalogue
   }
   log.complain();
   if (!any && interrupted() == 0)
-    fail({fmt::format("{}: no frame in it", path_), "amiroctl info FILE says what is in a log"});
+    fail({fmt::format("{}: no frame in it", path_), "amiroctl stats FILE says what is in a log"});
   playing_.length = log::Playback::distance(last, first_);
   const log::Interfaces& named = log.reader().interfaces();
   for (std::uint16_t i = 0; i < named.size(); ++i) interfaces_.emplace_back(named.name(i));
@@ -108,12 +108,7 @@ void LogFeed::go_to(base::Duration at, const Take& take) {
 }
 
 void LogFeed::play(base::Duration time, const Take& take) {
-  const double ns = static_cast<double>(time.count()) * playing_.speed;
-  go_to(playing_.at + base::Duration{static_cast<std::int64_t>(ns)}, take);
-}
-
-void LogFeed::faster(double factor) noexcept {
-  playing_.speed = std::clamp(playing_.speed * factor, 1.0 / 64, 1024.0);
+  go_to(playing_.after(time), take);
 }
 
 }  // namespace ocm::cli::bus_model

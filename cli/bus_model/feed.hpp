@@ -61,7 +61,7 @@ class LogFeed {
   [[nodiscard]] bool is_behind(base::Duration at) const noexcept { return at < playing_.at; }
   /// The next `go_to` reads from the beginning.
   void rewind();
-  void faster(double factor) noexcept;
+  void faster(double factor) noexcept { playing_.faster(factor); }
 
   [[nodiscard]] const Playing& playing() const noexcept { return playing_; }
   /// Of the whole log.

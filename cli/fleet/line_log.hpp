@@ -24,9 +24,10 @@ struct Said {
   std::string text;
 };
 
-/// With its line feed.
+/// The line for it, with its line feed.
 [[nodiscard]] std::string to_log_line(base::Time time, std::string_view text);
-/// A line without its line feed; nothing: it is none of such a log. Times up to the year 2200.
+/// Reads a line, given without its line feed. Empty where it does not have the form above, or its time is
+/// after the year 2200.
 [[nodiscard]] std::optional<Said> parse_log_line(std::string_view line);
 
 /// Writes one.

@@ -34,8 +34,7 @@ LineReplay::LineReplay(ReadLineLog log, Known known) : log_(std::move(log)), kno
 }
 
 void LineReplay::play(base::Duration time) {
-  const double ns = static_cast<double>(time.count()) * playing_.speed;
-  go_to(playing_.at + base::Duration{static_cast<std::int64_t>(ns)});
+  go_to(playing_.after(time));
 }
 
 void LineReplay::go_to(base::Duration at) {
@@ -50,10 +49,6 @@ void LineReplay::go_to(base::Duration at) {
   state_.fleet.expire(now());
   while (state_.fleet.take()) {  // it says nothing: the robots of a log do not hear
   }
-}
-
-void LineReplay::faster(double factor) noexcept {
-  playing_.speed = std::clamp(playing_.speed * factor, 1.0 / 64, 1024.0);
 }
 
 void LineReplay::take(const Said& said) {

@@ -33,7 +33,7 @@ class LineReplay {
   void play(base::Duration time);
   /// To this distance from the beginning. Backwards all is read again from there.
   void go_to(base::Duration at);
-  void faster(double factor) noexcept;
+  void faster(double factor) noexcept { playing_.faster(factor); }
 
   [[nodiscard]] const bus_model::Playing& playing() const noexcept { return playing_; }
   /// By the clock of the log.

@@ -56,14 +56,8 @@ void FleetPlayer::publish_robots() {
     if (!robot.origin_known) unplaced.push_back(robot.name);
     robots.push_back(fleet_robot(robot, replay_.now(), std::nullopt));
   }
-  const Json state{{"line", name_},
-                   {"own", false},
-                   {"gone", ""},
-                   {"scans", false},
-                   {"map_by", ""},
-                   {"unplaced", std::move(unplaced)},
-                   {"robots", std::move(robots)}};
-  viewers_->publish_state(channels_.fleet, now_ns(), state.line());
+  viewers_->publish_state(channels_.fleet, now_ns(),
+                          fleet_state(name_, std::move(robots), std::move(unplaced)).line());
 }
 
 void FleetPlayer::publish_map() {

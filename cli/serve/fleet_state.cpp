@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -19,6 +20,16 @@ Json fleet_robot(const fleet::RobotNow& robot, base::Time now, std::optional<mot
   }
   json["target"] = target ? Json{{"x_m", target->x_m}, {"y_m", target->y_m}} : Json();
   return json;
+}
+
+Json fleet_state(std::string_view line, Json robots, Json unplaced) {
+  return {{"line", line},
+          {"own", false},
+          {"gone", ""},
+          {"scans", false},
+          {"map_by", ""},
+          {"unplaced", std::move(unplaced)},
+          {"robots", std::move(robots)}};
 }
 
 std::string map_message(std::string_view grid, std::uint64_t time_ns) {

@@ -28,6 +28,9 @@ struct FleetChannels {
 /// As `robots --json` has it, with its age, and its place in the map as far as that is known.
 [[nodiscard]] Json fleet_robot(const fleet::RobotNow& robot, base::Time now,
                                std::optional<motion::Point> target);
+/// All robots of a line, each as `fleet_robot` has it; of a log nothing else is said. `line`: its name.
+/// `unplaced`: names of those whose place in the map is not known.
+[[nodiscard]] Json fleet_state(std::string_view line, Json robots, Json unplaced);
 /// A map as fleet::to_grid gives it, with a time.
 [[nodiscard]] std::string map_message(std::string_view grid, std::uint64_t time_ns);
 /// From one message of a map of so many bytes to the next: a large one comes less often.

@@ -217,13 +217,11 @@ void FleetWatch::publish(base::Time now) {
       if (!each.origin_known) unplaced.push_back(each.name);
       robots.push_back(fleet_robot(each, now, errands_.target(peer.index)));
     }
-  Json state{{"line", source_},
-             {"own", line_ != nullptr && line_->own() != nullptr},
-             {"gone", gone_},
-             {"scans", scans_},
-             {"map_by", owner_draws_ ? source_ : std::string{}},
-             {"unplaced", std::move(unplaced)},
-             {"robots", std::move(robots)}};
+  Json state = fleet_state(source_, std::move(robots), std::move(unplaced));
+  state["own"] = line_ != nullptr && line_->own() != nullptr;
+  state["gone"] = gone_;
+  state["scans"] = scans_;
+  if (owner_draws_) state["map_by"] = source_;
   viewers_->publish_state(channels_.fleet, now_ns(), state.line());
   if (woken_) woken_();
 }

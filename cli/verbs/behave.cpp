@@ -35,7 +35,7 @@ constexpr const char* usual_distance = "5cm";
 struct BehaveOptions {
   std::string which;
   std::string speed;     ///< empty: usual_speed
-  std::string distance;  ///< empty: usual_distance; of home
+  std::string distance;  ///< empty: usual_distance
   std::optional<base::Duration> lasting;
   std::optional<protocol::Priority> priority;
   bool force = false;
@@ -43,28 +43,31 @@ struct BehaveOptions {
   bool no_confirm = false;
 };
 
-/// The set point; leaves with exit_usage where the speed is none.
+/// The set point of a behaviour with a speed and, where it has one, a distance; leaves with exit_usage where
+/// an option has no such value, or no such field.
 can::Frame set_point_of(const protocol::Topic& topic, const BehaveOptions& options) {
-  const auto fields = topic.frames[0].fields;
-  const bool has_distance = options.which == "home";
-  const auto* const last = fields.empty() ? nullptr : &fields.back();
-  if (fields.size() != (has_distance ? 2U : 1U) || last->name != "speed" ||
-      (has_distance && fields[0].name != "distance"))
-    fail({fmt::format("behave: {} has other fields than {}speed", topic.name,
-                      has_distance ? "distance and " : ""),
-          "is --spec that of the robot? Use set"});
   std::vector<std::int64_t> raw;
-  if (has_distance) {
-    const auto distance =
-        words::parse_typed_value(fields[0], options.distance.empty() ? usual_distance : options.distance);
-    if (!distance) fail({"behave: " + distance.error, "write 5cm or 0.05m"}, exit_usage);
-    raw.push_back(*distance);
+  bool has_speed = false, has_distance = false;
+  for (const protocol::Field& field : topic.frames[0].fields) {
+    const bool is_speed = field.name == "speed";
+    if (!is_speed && field.name != "distance")
+      fail({fmt::format("behave: {} has a field {}, for which there is no option", topic.name, field.name),
+            "is --spec that of the robot? Use set"});
+    (is_speed ? has_speed : has_distance) = true;
+    const std::string& given = is_speed ? options.speed : options.distance;
+    const std::string usual = is_speed ? usual_speed : usual_distance;
+    const auto value = words::parse_typed_value(field, given.empty() ? usual : given);
+    if (!value)
+      fail({"behave: " + value.error, is_speed ? "write 10cm/s or 0.1m/s" : "write 5cm or 0.05m"},
+           exit_usage);
+    if (is_speed && *value == 0)
+      fail({"behave: --speed 0 goes nowhere", "`amiroctl behave none` ends what the boards do"}, exit_usage);
+    raw.push_back(*value);
   }
-  const auto speed = words::parse_typed_value(*last, options.speed.empty() ? usual_speed : options.speed);
-  if (!speed) fail({"behave: " + speed.error, "write 10cm/s or 0.1m/s"}, exit_usage);
-  if (*speed == 0)
-    fail({"behave: --speed 0 goes nowhere", "`amiroctl behave none` ends what the boards do"}, exit_usage);
-  raw.push_back(*speed);
+  if (!has_speed)
+    fail({fmt::format("behave: {} has no speed", topic.name), "is --spec that of the robot? Use set"});
+  if (!has_distance && !options.distance.empty())
+    fail({fmt::format("behave: {} takes no --distance", options.which), "drop --distance"}, exit_usage);
   return client::set_point(topic, raw, options.priority);
 }
 
@@ -106,8 +109,6 @@ void behave(Session& session, const BehaveOptions& options, int& exit_code) {
   if (options.which != "follow" && options.which != "avoid" && options.which != "home")
     fail({fmt::format("behave: unknown behaviour '{}'", options.which), "one of: follow, avoid, home, none"},
          exit_usage);
-  if (!options.distance.empty() && options.which != "home")
-    fail({fmt::format("behave: {} takes no --distance", options.which), "drop --distance"}, exit_usage);
   const protocol::Topic& topic = behaviour_topic(catalogue, verb, options.which);
   client::Command command;
   command.hold = client::Hold{set_point_of(topic, options), client::set_point(topic, {}, options.priority),

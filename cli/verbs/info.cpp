@@ -77,10 +77,10 @@ void print_field(const protocol::FrameLayout& layout, const protocol::Field& fie
                                 : words::physical_text(field, words::greatest_raw(field)),
              field.unit.empty() ? "" : " ", field.unit, presence(layout, field));
   for (const auto& value : field.values)
-    if (position.width == 64 && !field.is_signed && !field.flags)  // the upper half is no negative number
-      print_line("        = {:<6} {}\n", static_cast<std::uint64_t>(value.raw), value.name);
-    else
-      print_line("      {} {:<6} {}\n", field.flags ? "bit" : "  =", value.raw, value.name);
+    print_line(
+        "      {} {:<6} {}\n", field.flags ? "bit" : "  =",
+        field.is_signed ? std::to_string(value.raw) : std::to_string(static_cast<std::uint64_t>(value.raw)),
+        value.name);
 }
 
 /// What the source says in its own words; its further lines begin with `indent` blanks.

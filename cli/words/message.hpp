@@ -78,7 +78,7 @@ namespace detail {
     return WordError{given[index]->word,
                      std::string{field.name} + " ends in byte " + std::to_string(field.position.bytes() - 1) +
                          " of " + std::string{message.name} + ", which is sent with " +
-                         std::to_string(layout.length) + " bytes",
+                         std::to_string(layout.length) + (layout.length == 1 ? " byte" : " bytes"),
                      "leave it out, or state a longer message in the spec"};
   if (bits_of(field, field.raw(data)) == bits_of(field, given[index]->raw)) return std::nullopt;
   for (std::size_t i = 0; i < given.size(); ++i) {

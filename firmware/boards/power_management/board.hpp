@@ -23,7 +23,7 @@
 
 #include "firmware/boards/calibration.hpp"
 #include "firmware/boards/node.hpp"
-#include "firmware/boards/power_management/avoiding.hpp"
+#include "firmware/boards/power_management/ring_behaviours.hpp"
 #include "firmware/boards/samples.hpp"
 
 namespace ocm::firmware::boards::power_management {
@@ -154,7 +154,7 @@ class Board : public Node<amiro::PowerManagement, Bus, P, 1, A> {
     if (!active && !commanding_) return scheduling::Outcome::done;
     amiro::Motors motors;
     if (active) {
-      if (!commanding_) avoiding_ = {};
+      if (!commanding_) behaviours_ = {};
       const auto counts = hardware_->ring();
       const auto offsets = this->offsets();
       const bool blind = !counts || !offsets;
@@ -162,7 +162,7 @@ class Board : public Node<amiro::PowerManagement, Bus, P, 1, A> {
         controller_.refuse(wanted.home != amiro::Home{} ? amiro::Home::id : amiro::Avoid::id,
                            counts ? base::Error::not_sampled : counts.error);
       blind_ = blind;
-      if (!blind) motors = avoiding_.step(wanted, *counts, *offsets, release.missed + 1);
+      if (!blind) motors = behaviours_.step(wanted, *counts, *offsets, release.missed + 1);
     }
     const scheduling::Outcome outcome = controller_.command(motors, avoidance_priority);
     commanding_ = active || outcome == scheduling::Outcome::waits;
@@ -173,9 +173,9 @@ class Board : public Node<amiro::PowerManagement, Bus, P, 1, A> {
   Calibration<amiro::RingCalibration> calibration_;
   Wanted wanted_{};  // with the lock
   // Of the task only
-  Avoiding avoiding_{};
+  RingBehaviours behaviours_{};
   bool commanding_ = false;  // the motors follow this board, or their rest could not be sent yet
-  bool blind_ = false;       // avoiding without a sample, which was reported
+  bool blind_ = false;       // active without a sample, which was reported
 };
 
 }  // namespace ocm::firmware::boards::power_management

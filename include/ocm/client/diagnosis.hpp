@@ -35,22 +35,22 @@ enum class Severity : std::uint8_t {
 /// What a finding is about, for programs that have something of their own to say about it.
 enum class Ailment : std::uint8_t {
   other,
-  no_answer,        ///< of any board
-  statusless,       ///< the board sends, but no status
-  silent,           ///< the board does not answer
-  foreign_spec,     ///< the board was built from another spec
-  bus_state,        ///< of its CAN controller
-  part_faults,      ///< parts of the board that do not answer
-  overload,         ///< releases came late or not at all
-  busy,             ///< its CPU
-  restarted,        ///< because of a watchdog, a fault or another breakdown
-  bus_errors,       ///< on the bus, or frames given up
-  refusals,         ///< requests that the board refused; `topic` is the last one's
-  not_schedulable,  ///< the same, the last one because a deadline would be missed
-  battery_low,      ///<
-  no_battery,       ///< one of several is not inserted
-  battery_heat,     ///< or cold
-  two_commanders,   ///< an actuator that two programs command in turns
+  no_answer,            ///< of any board
+  statusless,           ///< the board sends, but no status
+  silent,               ///< the board does not answer
+  foreign_spec,         ///< the board was built from another spec
+  bus_state,            ///< of its CAN controller
+  part_faults,          ///< parts of the board that do not answer
+  overload,             ///< releases came late or not at all
+  busy,                 ///< its CPU
+  restarted,            ///< because of a watchdog, a fault or another breakdown
+  bus_errors,           ///< on the bus, or frames given up
+  refusals,             ///< requests that the board refused; `topic` is the last one's
+  not_schedulable,      ///< the same, the last one because a deadline would be missed
+  battery_low,          ///<
+  no_battery,           ///< one of several is not inserted
+  battery_temperature,  ///< too hot or too cold
+  two_commanders,       ///< an actuator that two programs command in turns
 };
 
 struct Finding {
@@ -412,9 +412,11 @@ class Diagnosis {
       return tell(Ailment::no_battery, Severity::note, " is not inserted",
                   "the robot runs on the rest; does it sit as it should?");
     if (battery.temperature_celsius >= battery_hot_celsius)
-      tell(Ailment::battery_heat, Severity::warning, " is too hot", "switch the robot off and let it cool");
+      tell(Ailment::battery_temperature, Severity::warning, " is too hot",
+           "switch the robot off and let it cool");
     if (battery.temperature_celsius <= battery_cold_celsius)
-      tell(Ailment::battery_heat, Severity::warning, " is too cold", "let it get warm before it is used");
+      tell(Ailment::battery_temperature, Severity::warning, " is too cold",
+           "let it get warm before it is used");
   }
 
   const protocol::Catalogue* catalogue_;

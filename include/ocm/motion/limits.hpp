@@ -29,6 +29,14 @@ struct Limits {
       limited(last.turn_rad_s, wanted.turn_rad_s, limits.turn_rad_s, limits.turn_acceleration_rad_s2, dt_s)};
 }
 
+/// The longest that anything may take from what is measured to the speed, s, for a loop whose speed is
+/// gain * (distance that is left): up to gain * T = 1/e it comes to rest without running over. [a first-order
+/// loop with a dead time is not oscillatory up to 1/e]
+[[nodiscard]] constexpr float most_dead_time_s(float gain_per_s) noexcept {
+  constexpr float one_by_e = 0.36787944F;
+  return one_by_e / gain_per_s;
+}
+
 /// What the two motors get, each in [-1, 1].
 struct Efforts {
   float left = 0.0F;

@@ -4,13 +4,12 @@
 ///
 /// A disc that turns on the spot touches nothing, so only the way ahead matters. There the speed is at most
 /// gain * (what is free - what must stay free). Such an approach ends before the wall without running over,
-/// as long as gain * T <= 1/e, where T is all the time that passes from a change of the distance to one of
-/// the speed: `most_delay_s`. [a first-order loop with a dead time is not oscillatory up to 1/e]
+/// as long as all the time that passes from a change of the distance to one of the speed is at most
+/// `most_delay_s`.
 ///
 /// Pure steps, constant time: some twenty float operations, no library call. constexpr.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -20,10 +19,6 @@
 #include "ocm/sensing/ring_distance.hpp"
 
 namespace ocm::sensing {
-
-/// Distances of the eight sensors, mm, at most `ring_range_mm`. The first looks back left, 157.5 degrees, the
-/// others follow clockwise, 45 degrees apart. [AMiRo-OS 1.0, Constants.h: SENSOR_ANGULAR_POS_FIRST]
-using RingDistances = std::array<std::uint16_t, 8>;
 
 struct AvoidanceModel {
   float gain_per_s = 2.0F;         ///< speed for what is free ahead
@@ -49,8 +44,7 @@ struct AvoidanceStep {
 
 /// The longest that anything may take from the sensors to the wheels' speed.
 [[nodiscard]] constexpr float most_delay_s(const AvoidanceModel& model) noexcept {
-  constexpr float one_by_e = 0.36787944F;
-  return one_by_e / model.gain_per_s;
+  return motion::most_dead_time_s(model.gain_per_s);
 }
 
 /// One step at a speed of at most `most_m_s` (zero or more), `dt_s` after the last one.

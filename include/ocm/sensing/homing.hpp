@@ -19,7 +19,6 @@
 #include "ocm/motion/limits.hpp"
 #include "ocm/motion/pose.hpp"
 #include "ocm/motion/real.hpp"
-#include "ocm/sensing/avoidance.hpp"
 #include "ocm/sensing/ring_distance.hpp"
 
 namespace ocm::sensing {
@@ -51,11 +50,10 @@ struct HomingStep {
   motion::Twist command{};
 };
 
-/// The longest that anything may take from the sensors to the wheels' speed: see AvoidanceModel.
+/// The longest that anything may take from the sensors to the wheels' speed.
 [[nodiscard]] constexpr float most_delay_s(const HomingModel& model) noexcept {
-  constexpr float one_by_e = 0.36787944F;
-  const float gain = model.gain_per_s > model.turn_gain_per_s ? model.gain_per_s : model.turn_gain_per_s;
-  return one_by_e / gain;
+  return motion::most_dead_time_s(model.gain_per_s > model.turn_gain_per_s ? model.gain_per_s
+                                                                           : model.turn_gain_per_s);
 }
 
 namespace detail {
@@ -80,7 +78,6 @@ inline constexpr std::array<Direction, 8> ring_directions{{{-near_axis, far_axis
 /// after the last one.
 [[nodiscard]] constexpr HomingStep home(Homing state, const RingDistances& ring, float keep_m, float most_m_s,
                                         float dt_s, const HomingModel& model) noexcept {
-  const auto magnitude = [](float x) { return x < 0.0F ? -x : x; };
   if (!motion::is_finite(most_m_s) || most_m_s < 0.0F || !motion::is_finite(keep_m) ||
       !motion::is_step(dt_s)) {
     ++state.rejected;
@@ -101,9 +98,11 @@ inline constexpr std::array<Direction, 8> ring_directions{{{-near_axis, far_axis
     left += pull * detail::ring_directions[i].left;
   }
   const auto drive = [&](float wanted_m_s, float turn_rad_s) {
-    const float limited =
-        motion::limited(state.speed_m_s, wanted_m_s, most_m_s, model.acceleration_m_s2, dt_s);
-    state.speed_m_s = magnitude(wanted_m_s) < magnitude(state.speed_m_s) ? wanted_m_s : limited;
+    // Slower at once, at most to rest: the other way it gets faster from there.
+    const bool turns_round = wanted_m_s * state.speed_m_s < 0.0F;
+    const float from_m_s = turns_round ? 0.0F : state.speed_m_s;
+    const float faster_m_s = motion::limited(from_m_s, wanted_m_s, most_m_s, model.acceleration_m_s2, dt_s);
+    state.speed_m_s = motion::magnitude(wanted_m_s) < motion::magnitude(from_m_s) ? wanted_m_s : faster_m_s;
     return HomingStep{state, {state.speed_m_s, turn_rad_s}};
   };
   if (!seen) {
@@ -111,15 +110,15 @@ inline constexpr std::array<Direction, 8> ring_directions{{{-near_axis, far_axis
     return drive(most_m_s, 0.0F);
   }
   // The sine, all but for a square root: of the larger and half of the smaller the length is within 12 %.
-  const float a = magnitude(ahead);
-  const float l = magnitude(left);
+  const float a = motion::magnitude(ahead);
+  const float l = motion::magnitude(left);
   const float length = a > l ? a + l / 2.0F : l + a / 2.0F;
   const float sine = length > 0.0F ? left / length : 0.0F;
   const bool behind = ahead < 0.0F;
   const float off_m = nearest_m / model.seen_part - model.behind_m - keep_m;
   const float bound_m = state.arrived ? model.gone_m : model.arrived_m;
   const float bound_sine = state.arrived ? model.gone_sine : model.arrived_sine;
-  const bool within = !behind && magnitude(off_m) <= bound_m && magnitude(sine) <= bound_sine;
+  const bool within = !behind && motion::magnitude(off_m) <= bound_m && motion::magnitude(sine) <= bound_sine;
   state.beyond_s = within ? 0.0F : state.beyond_s + dt_s;
   state.arrived = within || (state.arrived && state.beyond_s < model.gone_s);
   if (state.arrived || most_m_s == 0.0F) {
@@ -130,7 +129,7 @@ inline constexpr std::array<Direction, 8> ring_directions{{{-near_axis, far_axis
   const float turn =
       behind ? side * model.most_turn_rad_s
              : motion::clamp(model.turn_gain_per_s * sine, -model.most_turn_rad_s, model.most_turn_rad_s);
-  if (behind || magnitude(sine) > model.ahead_sine) {
+  if (behind || motion::magnitude(sine) > model.ahead_sine) {
     state.speed_m_s = 0.0F;
     return {state, {0.0F, turn}};
   }

@@ -8,6 +8,7 @@
 /// Integers only, constant time: a division and 16 steps of a square root.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 namespace ocm::sensing {
@@ -18,6 +19,10 @@ inline constexpr std::uint32_t counts_mm2 = 942'694;
 inline constexpr std::uint16_t ring_range_mm = 200;
 /// Counts above the offset at that range: five standard deviations.
 inline constexpr std::uint16_t least_ring_counts = 24;
+
+/// Distances of the eight sensors, mm, at most `ring_range_mm`. The first looks back left, 157.5 degrees, the
+/// others follow clockwise, 45 degrees apart. [AMiRo-OS 1.0, Constants.h: SENSOR_ANGULAR_POS_FIRST]
+using RingDistances = std::array<std::uint16_t, 8>;
 
 /// Rounded down.
 [[nodiscard]] constexpr std::uint16_t square_root(std::uint32_t square) noexcept {

@@ -1655,7 +1655,7 @@ struct Home {
   static constexpr ocm::base::Duration jitter = std::chrono::milliseconds{1};
   static constexpr ocm::protocol::Priority priority = ocm::protocol::Priority::medium;
 
-  /// from the wall to the robot's edge, from 0.03 m; 0.0001 m a bit, [0, 0.12] m
+  /// from the wall to the robot's edge, from 0.03 m; 0 with speed 0, its end; 0.0001 m a bit, [0, 0.12] m
   std::uint16_t distance = 0;
   /// at most; needed; 0.0001 m/s a bit, [0, 0.2] m/s
   std::uint16_t speed = 0;

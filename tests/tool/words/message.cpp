@@ -2,6 +2,7 @@
 #include "cli/words/message.hpp"
 
 #include <array>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -172,13 +173,24 @@ TEST_CASE("a selector that is not given follows the fields that are") {
   CHECK(frame("set Paged inner=4 always=0") == "18FEF100#0204000000");
 }
 
+struct Row {
+  std::string line;
+  std::size_t word;
+  std::string what;
+};
+void check_refusals(std::initializer_list<Row> rows) {
+  for (const Row& row : rows) {
+    const auto command = parse(row.line);
+    INFO(row.line << ": " << command.error.what);
+    CHECK_FALSE(command.ok());
+    CHECK(command.error.word == row.word);
+    CHECK(command.error.what == row.what);
+    CHECK_FALSE(command.error.remedy.empty());
+  }
+}
+
 TEST_CASE("fields that are never in one frame are refused at the word") {
-  struct Row {
-    std::string line;
-    std::size_t word;
-    std::string what;
-  };
-  const Row rows[] = {
+  check_refusals({
       {"set Paged page=2 a=1", 3, "a is there only with page=1"},
       {"set Paged a=1 inner=1", 3, "inner is there only with page=2 to 3"},
       {"set Paged inner=4 b=1", 3, "b is there only with inner=5"},
@@ -195,15 +207,7 @@ TEST_CASE("fields that are never in one frame are refused at the word") {
       {"set Long a=1", 2, "Long has no field 'a'"},
       {"set Engine rpm=1 --priority high", 0, "a message carries its priority in its identifier"},
       {"publish Engine 1s", 1, "'Engine' is a message"},
-  };
-  for (const Row& row : rows) {
-    const auto command = parse(row.line);
-    INFO(row.line << ": " << command.error.what);
-    CHECK_FALSE(command.ok());
-    CHECK(command.error.word == row.word);
-    CHECK(command.error.what == row.what);
-    CHECK_FALSE(command.error.remedy.empty());
-  }
+  });
   CHECK(frame("set Engine rpm=3000.25 --force") == "100#E12E002800000000");  // 12001 quarters
   CHECK(compose(topics[2], {}).error.what == "Long is a message of 64 bytes");
   // Of J1939 CAN FD is no remedy.
@@ -224,26 +228,13 @@ TEST_CASE("a field that lies over others is sent as it is given, wherever it is 
   CHECK(frame("set Shared whole=-2") == "400#FE");
   CHECK(frame("set Shared low=3 top=1") == "400#83");
   CHECK(frame("set Shared whole=-125 low=3 top=1") == "400#83");  // 0x83: all three are true
-  struct Row {
-    std::string line;
-    std::size_t word;
-    std::string what;
-  };
-  const Row rows[] = {
+  check_refusals({
       {"set Shared whole=3 low=4", 3, "low and whole have bits in common, and cannot be what both are given"},
       {"set Shared low=4 whole=3", 3, "low and whole have bits in common, and cannot be what both are given"},
       {"set Shared top=1 whole=1 low=1", 3,
        "whole and top have bits in common, and cannot be what both are given"},
-      {"set Shared low=1 beyond=0", 3, "beyond ends in byte 1 of Shared, which is sent with 1 bytes"},
-  };
-  for (const Row& row : rows) {
-    const auto command = parse(row.line);
-    INFO(row.line << ": " << command.error.what);
-    CHECK_FALSE(command.ok());
-    CHECK(command.error.word == row.word);
-    CHECK(command.error.what == row.what);
-    CHECK_FALSE(command.error.remedy.empty());
-  }
+      {"set Shared low=1 beyond=0", 3, "beyond ends in byte 1 of Shared, which is sent with 1 byte"},
+  });
 }
 
 TEST_CASE("a message without fields, or with all at their start values, is sent as it is named") {

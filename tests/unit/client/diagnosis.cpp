@@ -206,7 +206,7 @@ TEST_CASE("diagnosis: each battery by itself") {
   say(60.1, -20.1);
   CHECK(robot.findings() == Lines{"warning power_management: battery_1 is too hot",
                                   "warning power_management: battery_2 is too cold"});
-  CHECK(robot.diagnosis.findings()[0].ailment == Ailment::battery_heat);
+  CHECK(robot.diagnosis.findings()[0].ailment == Ailment::battery_temperature);
   batteries.battery[1] = {};
   robot.say(batteries);
   CHECK(robot.findings() == Lines{"warning power_management: battery_1 is too hot",

@@ -33,6 +33,9 @@ static_assert(step(nothing, step(nothing).state).command.speed_m_s == 0.05F);
 static_assert(step(wall_ahead(0.08F), {.speed_m_s = 0.1F}).command.speed_m_s < 0.0315F);
 static_assert(step(wall_ahead(0.08F), {.speed_m_s = 0.1F}).command.speed_m_s > 0.0285F);
 static_assert(step(wall_ahead(0.03F)).command.speed_m_s < -0.018F);
+// From full speed to rest at once, and from there backwards as fast as from rest.
+static_assert(step(wall_ahead(0.005F), {.speed_m_s = 0.1F}).command.speed_m_s == -0.025F);
+static_assert(step(wall_ahead(0.005F), {.speed_m_s = -0.025F}).command.speed_m_s < -0.04F);
 static_assert(step(wall_ahead(0.051F)).state.arrived && !step(wall_ahead(0.056F)).state.arrived);
 static_assert(step(wall_ahead(0.051F)).command.speed_m_s == 0.0F);
 // Beside and behind: on the spot, to its side.

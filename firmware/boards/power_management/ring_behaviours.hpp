@@ -24,7 +24,8 @@ namespace ocm::firmware::boards::power_management {
   return bounded == avoid;
 }
 
-/// Within the spec's ranges, and not nearer to the wall than the ring can tell from touching it.
+/// Within the spec's ranges, and not nearer to the wall than the ring can tell from touching it; or all zeros,
+/// its end.
 [[nodiscard]] constexpr bool can_go_home(const amiro::Home& home) noexcept {
   amiro::Home bounded = home;
   bounded.set_speed_m_per_s(home.speed_m_per_s());
@@ -43,7 +44,7 @@ struct Wanted {
   }
 };
 
-class Avoiding {
+class RingBehaviours {
  public:
   /// One step, so many `avoidance_period`s after the last one.
   [[nodiscard]] amiro::Motors step(const Wanted& wanted, const RingCounts& counts, const RingCounts& offsets,
@@ -57,12 +58,12 @@ class Avoiding {
           sensing::home(homing_, ring, static_cast<float>(wanted.home.distance_m()),
                         static_cast<float>(wanted.home.speed_m_per_s()), dt_s, homing_model);
       homing_ = step.state;
-      state_ = {};
+      avoidance_ = {};
       command = step.command;
     } else {
       const sensing::AvoidanceStep step = sensing::avoid(
-          state_, ring, static_cast<float>(wanted.avoid.speed_m_per_s()), dt_s, avoidance_model);
-      state_ = step.state;
+          avoidance_, ring, static_cast<float>(wanted.avoid.speed_m_per_s()), dt_s, avoidance_model);
+      avoidance_ = step.state;
       homing_ = {};
       command = step.command;
     }
@@ -73,7 +74,7 @@ class Avoiding {
   }
 
  private:
-  sensing::Avoidance state_{};
+  sensing::Avoidance avoidance_{};
   sensing::Homing homing_{};
 };
 
