@@ -10,8 +10,9 @@
     closure   each generated header in a tree that holds nothing but the floors below it
     vectors   vectors.cpp (the wire as static_asserts) with all five; boards.cpp and parts.cpp as object code for the three
               Cortex-M, in which no symbol of a heap, of exceptions, RTTI or streams may be missing
-    refused   each file of refused/ twice with GCC and with Clang: it must compile, and with -DOCM_MUST_FAIL it must not, with
-              the phrase of its `// expect:` line (`// expect g++:`, `// expect clang++:` where they differ)
+    refused   the files of refused/ with GCC and with Clang: together they must compile, each in a namespace of its own, and each with
+              -DOCM_MUST_FAIL must not, with the phrase of its `// expect:` line (`// expect g++:`, `// expect clang++:` where
+              they differ)
 
 Headers and floors come from the tree and from the table in docs/architecture.md. The commands are handed to ninja, which
 repeats only those whose files have changed. Exit 77 (skipped, for ctest) when a compiler is not installed."""
@@ -160,13 +161,15 @@ def refused(ninja):
     # All that they include is parsed once a compiler; what is refused is in the files themselves.
     includes = {line for path in files for line in re.findall(r"^#include .+$", path.read_text(), re.MULTILINE)}
     common = ninja.source("common.hpp", "\n".join(sorted(includes)) + "\n")
+    without = ninja.source("without.cpp", "".join(f'namespace {path.stem} {{\n#include "{path}"\n}}\n' for path in files))
     for compiler, precompiled, use in ((GCC, "common.hpp.gch", f"-include {common}"),
                                        (CLANG, "common.pch", f"-include-pch {ninja.folder / 'common.pch'}")):
         ninja.add(precompiled, common, f"{compiler} {STANDARD} -I{ROOT / 'include'} -I{ROOT} {ninja.warnings} -Werror -x c++-header "
                                        f"-MD -MF {precompiled}.d -MT {precompiled} {common} -o {precompiled}")
+        ninja.syntax(f"{compiler}/without", without, compiler, flags=use, implicit=[precompiled])
         for path in files:
             output = f"{compiler}/{path.stem}"
-            ninja.add(output, path, f"{sys.executable} -B {HERE / 'sweep.py'} twice --file {path} --compiler {compiler} "
+            ninja.add(output, path, f"{sys.executable} -B {HERE / 'sweep.py'} refuse --file {path} --compiler {compiler} "
                                     f"'--warnings={ninja.warnings}' '--common={use}' --output {output}", [precompiled])
 
 
@@ -190,32 +193,24 @@ def phrase(path, compiler):
     return found.get(kind) or found.get("")
 
 
-def judge(path, expected, good, bad):
-    """What is wrong with the outcome of the two builds, or None. `good`, `bad`: (exit code, what was said)."""
+def judge(path, expected, code, said):
+    """What is wrong with how a compiler ended when it must refuse, or None."""
     if not expected:
         return f"{path}:1: no '// expect: ' line that says what the compiler must complain about"
     if "OCM_MUST_FAIL" not in path.read_text():
         return f"{path}:1: no #ifdef OCM_MUST_FAIL: nothing of it is refused"
-    if good[0] != 0:
-        return f"{path}:1: without OCM_MUST_FAIL it must compile:\n{good[1]}"
-    if bad[0] == 0:
+    if code == 0:
         return f"{path}:1: with OCM_MUST_FAIL it must not compile, and it does"
-    if expected not in bad[1]:
-        return f"{path}:1: it is refused, but without the words '{expected}':\n{bad[1]}"
+    if expected not in said:
+        return f"{path}:1: it is refused, but without the words '{expected}':\n{said}"
     return None
 
 
-def twice(arguments):
+def refuse(arguments):
     path = pathlib.Path(arguments.file)
-    base = [arguments.compiler, STANDARD, f"-I{ROOT / 'include'}", f"-I{ROOT}", *arguments.warnings.split(), "-Werror",
-            *arguments.common.split(), "-fsyntax-only", str(path)]
-
-    def build(extra):
-        done = subprocess.run(base + extra, capture_output=True, text=True, env={**os.environ, "LC_ALL": "C"})
-        return done.returncode, done.stderr
-
-    good = build(["-MD", "-MF", arguments.output + ".d", "-MT", arguments.output])
-    wrong = judge(path, phrase(path, arguments.compiler), good, build(["-DOCM_MUST_FAIL"]))
+    done = subprocess.run([arguments.compiler, STANDARD, f"-I{ROOT / 'include'}", f"-I{ROOT}", *arguments.warnings.split(), "-Werror",
+                           *arguments.common.split(), "-DOCM_MUST_FAIL", "-fsyntax-only", str(path)], capture_output=True, text=True, env={**os.environ, "LC_ALL": "C"})
+    wrong = judge(path, phrase(path, arguments.compiler), done.returncode, done.stderr)
     if wrong:
         print(f"{arguments.compiler}: {wrong}")
         return 1
@@ -230,7 +225,7 @@ NEEDS = {"host": (GCC, CLANG), "board": (GCC, CLANG, ARM), "closure": (GCC, CLAN
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("part", choices=[*PARTS, "symbols", "twice"])
+    parser.add_argument("part", choices=[*PARTS, "symbols", "refuse"])
     parser.add_argument("--build", type=pathlib.Path, help="folder for what is made; kept between runs")
     parser.add_argument("--warnings", default="-Wall -Wextra")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
@@ -239,8 +234,8 @@ def main():
     arguments = parser.parse_args()
     if arguments.part == "symbols":
         return symbols(arguments)
-    if arguments.part == "twice":
-        return twice(arguments)
+    if arguments.part == "refuse":
+        return refuse(arguments)
     if arguments.build is None:
         parser.error("--build DIR is missing")
     missing = [tool for tool in (*NEEDS[arguments.part], "ninja") if shutil.which(tool) is None]
