@@ -5,12 +5,14 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "ocm/can/fd_bits.hpp"
 #include "ocm/client/frame_index.hpp"
+#include "ocm/j1939/transport.hpp"
 #include "ocm/measure/bus_load.hpp"
 #include "ocm/protocol/request.hpp"
 
@@ -226,7 +228,21 @@ TraceStudy study_trace(const std::string& log_file, const std::string& set_file,
   std::map<std::uint32_t, std::pair<can::Frame, std::size_t>> strangers;
   std::int64_t busy = 0;
   const client::FrameIndex index{catalogue};
+  std::map<std::string_view, std::size_t> named;  // a message of J1939 comes from any source, at any priority
+  for (std::size_t i = 0; i < set.entries.size(); ++i) named[set.entries[i].name] = i;
+  const auto row_of = [&](const can::Frame& frame) {
+    if (const auto row = rows.find(can::arbitration_key(frame)); row != rows.end()) return row->second;
+    const client::Subject subject =
+        set_file.empty() ? index.subject(frame.id, frame.format) : client::Subject{};
+    if (!subject.frame || !subject.topic->is_message()) return set.entries.size();
+    const auto row = named.find(subject.topic->name);
+    return row == named.end() ? set.entries.size() : row->second;
+  };
   std::size_t requests = 0;
+  std::size_t packets = 0;
+  const bool has_packets = std::any_of(
+      catalogue.topics.begin(), catalogue.topics.end(),
+      [](const protocol::Topic& topic) { return topic.is_message() && topic.frames[0].any_length(); });
   std::size_t too_close = 0;
   std::int64_t before = 0;
   for (std::size_t n = 0; n < log.arrivals.size(); ++n) {
@@ -237,10 +253,12 @@ TraceStudy study_trace(const std::string& log_file, const std::string& set_file,
       if (arrival.time - before + resolution < needs) ++too_close;
     }
     before = arrival.time;
-    const auto row = rows.find(can::arbitration_key(arrival.frame));
-    if (row != rows.end()) {
-      meters[row->second].add(arrival.time, arrival.length, takes(arrival.bits),
-                              set.entries[row->second].period);
+    const std::size_t row = row_of(arrival.frame);
+    if (row < set.entries.size()) {
+      meters[row].add(arrival.time, arrival.length, takes(arrival.bits), set.entries[row].period);
+    } else if (set_file.empty() && has_packets && arrival.frame.format == can::Format::extended &&
+               j1939::is_transport(arrival.frame.id)) {
+      ++packets;
     } else if (set_file.empty() && !can::is_extended(arrival.frame.format) &&
                index.requested(protocol::Identifier::decode(arrival.frame.id)) != nullptr) {
       ++requests;
@@ -255,6 +273,11 @@ TraceStudy study_trace(const std::string& log_file, const std::string& set_file,
         fmt::format("{} request{} from the operator, not in the set: each can delay a frame by its "
                     "own length.",
                     requests, requests == 1 ? "" : "s"));
+  if (packets > 0)
+    trace.study.remarks.push_back(
+        fmt::format("{} of J1939's transport protocol, not in the set: each can delay a frame by its own "
+                    "length.",
+                    counted(packets, "packet")));
   if (trace.span > 0) trace.load = static_cast<double>(busy) / static_cast<double>(trace.span);
 
   // What the log contradicts.

@@ -47,7 +47,7 @@ transport::Outcome<Selection> Selection::of(const protocol::Catalogue& catalogue
     if (found) continue;
     if (!topic_found)
       return transport::Failure{"no topic '" + std::string{of_topic} + "'",
-                                words::suggestion(of_topic, words::topic_words(catalogue))};
+                                words::topic_suggestion(catalogue, of_topic)};
     const std::vector<std::string_view> candidates{names.begin(), names.end()};
     return transport::Failure{"no field '" + std::string{word} + "'", words::suggestion(word, candidates)};
   }

@@ -34,6 +34,7 @@ class Selection {
   client::InterfaceIndexes index_;
   std::vector<const protocol::Topic*> topics_;
   Only only_;
+  bool has_packets_;  ///< a topic is a message of J1939 that goes in packets: all packets are meant
 };
 
 /// A part of a log, by distances from its first frame. Without a beginning all that comes before belongs to

@@ -6,6 +6,7 @@
 
 #include "ocm/base/text.hpp"
 #include "ocm/j1939/identifier.hpp"
+#include "ocm/j1939/transport.hpp"
 #include "ocm/protocol/identifier.hpp"
 
 namespace ocm::cli {
@@ -55,6 +56,7 @@ can_filter group_filter(std::uint32_t pgn) noexcept {
 Filters filters_for(std::span<const protocol::Topic* const> topics, bool commands) {
   using protocol::Direction;
   Filters filters;
+  bool has_packets = false;
   const auto of_topic = [&](Direction direction, protocol::TopicId id) {
     constexpr std::uint32_t mask = protocol::topic_mask;
     filters.push_back({protocol::Identifier{direction, {}, id}.encode() & mask, mask | format_bits});
@@ -62,17 +64,22 @@ Filters filters_for(std::span<const protocol::Topic* const> topics, bool command
   for (const auto* topic : topics) {
     if (topic->is_message()) {
       const protocol::Address& address = topic->frames[0].address;
-      if (address.by == protocol::Address::By::pgn)
+      if (address.by == protocol::Address::By::pgn) {
         filters.push_back(group_filter(j1939::pgn_of(address.number)));
-      else
+        has_packets = has_packets || topic->frames[0].any_length();
+      } else {
         filters.push_back({address.number | (address.extended ? CAN_EFF_FLAG : 0U),
                            (address.extended ? CAN_EFF_MASK : CAN_SFF_MASK) | format_bits});
+      }
       continue;
     }
     if (topic->kind == protocol::Kind::sensor)
       for (const auto& layout : topic->frames) of_topic(Direction::sensor, layout.id);
     if (commands || topic->kind == protocol::Kind::actuator) of_topic(Direction::command, topic->id);
   }
+  if (has_packets)  // which message a packet is of, its identifier does not say
+    for (const std::uint32_t group : {j1939::connection_group, j1939::transfer_group})
+      filters.push_back(group_filter(group));
   return filters;
 }
 

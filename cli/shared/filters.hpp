@@ -30,6 +30,7 @@ inline constexpr can_filter no_frame{CAN_INV_FILTER, 0};
 [[nodiscard]] can_filter group_filter(std::uint32_t pgn) noexcept;
 
 /// Sensor data of the topics at every priority, and messages; with `commands` also requests and set points.
+/// With a message of J1939 that goes in packets, all packets: see FrameLayout::any_length.
 [[nodiscard]] Filters filters_for(std::span<const protocol::Topic* const> topics, bool commands);
 
 /// Whether a frame passes one of the filters, or there is none. Error frames always do.

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -22,6 +25,7 @@
 #include "cli/shared/remedies.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/verbs/verbs.hpp"
+#include "cli/words/quantity.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -37,6 +41,49 @@ struct DoctorOptions {
   bool json = false;
 };
 
+/// Which messages of the spec came, of those that have a period.
+class Messages {
+ public:
+  explicit Messages(const protocol::Catalogue& catalogue)
+      : catalogue_(&catalogue), came_(catalogue.topics.size()) {}
+
+  void take(const client::Reception& reception) {
+    if (reception.topic != nullptr && reception.topic->is_message())
+      came_[static_cast<std::size_t>(reception.topic - catalogue_->topics.data())] = true;
+  }
+  /// What should have come three times in `listened`, and did not come: a finding a sender.
+  [[nodiscard]] std::vector<Finding> findings(std::string_view interface, base::Duration listened) const {
+    std::map<std::uint8_t, std::pair<std::size_t, std::vector<std::string_view>>> of_sender;
+    for (std::size_t i = 0; i < came_.size(); ++i) {
+      const protocol::Topic& topic = catalogue_->topics[i];
+      if (!topic.is_message() || !topic.is_on(interface) || topic.cycle.count() == 0) continue;
+      if (3 * topic.cycle > listened) continue;
+      auto& [due, missing] = of_sender[topic.board];
+      ++due;
+      if (!came_[i]) missing.push_back(topic.name);
+    }
+    std::vector<Finding> all;
+    for (auto& [board, each] : of_sender) {
+      auto& [due, missing] = each;
+      if (missing.empty()) continue;
+      const std::size_t more = missing.size() - std::min(missing.size(), most_named);
+      missing.resize(missing.size() - more);
+      all.push_back({Severity::warning,
+                     board < catalogue_->boards.size() ? catalogue_->boards[board].name : std::string_view{},
+                     fmt::format("of {} due in {} nothing came of {}{}", client::count(due, "message*"),
+                                 words::to_text(listened), fmt::join(missing, ", "),
+                                 more == 0 ? "" : fmt::format(" and {} more", more)),
+                     "is the sender switched on and on this bus? `amiroctl stats` measures every period"});
+    }
+    return all;
+  }
+
+ private:
+  static constexpr std::size_t most_named = 4;
+  const protocol::Catalogue* catalogue_;
+  std::vector<bool> came_;  ///< of each topic of the catalogue
+};
+
 /// The bus and what was seen on it.
 class Examination {
  public:
@@ -44,8 +91,9 @@ class Examination {
       : catalogue_(session.catalogue()),
         bus_(session.open_bus()),
         live_(*bus_),
-        receiver_(catalogue_),
-        diagnosis_(catalogue_) {}
+        receiver_(catalogue_, client::Transport::together),
+        diagnosis_(catalogue_),
+        messages_(catalogue_) {}
 
   /// Listens for `duration`, or until `done`.
   template <class Done>
@@ -55,6 +103,7 @@ class Examination {
       const auto reception = receiver_.take(received);
       diagnosis_.take(reception);
       commanders_.take(received, reception);
+      messages_.take(reception);
       return !done();
     });
   }
@@ -81,11 +130,14 @@ class Examination {
     listen(patience, [this] { return complete(); });
   }
 
-  [[nodiscard]] std::vector<Finding> findings() const {
+  /// After listening for so long.
+  [[nodiscard]] std::vector<Finding> findings(base::Duration listened) const {
     std::vector<Finding> all = diagnosis_.findings();
     const auto disputes = commanders_.findings(catalogue_);
     all.insert(all.end(), disputes.begin(), disputes.end());
     for (Finding& finding : all) finding.remedy = remedy(finding);
+    const auto missing = messages_.findings(bus_->name(), listened);
+    all.insert(all.end(), missing.begin(), missing.end());
     const auto counted = findings_of(bus_->counters(), receiver_.counters());
     all.insert(all.end(), counted.begin(), counted.end());
     return all;
@@ -95,6 +147,12 @@ class Examination {
   [[nodiscard]] const protocol::Catalogue& catalogue() const { return catalogue_; }
   [[nodiscard]] std::string_view bus_name() const { return bus_->name(); }
   [[nodiscard]] std::uint64_t frames() const { return receiver_.counters().frames; }
+  /// Whether a board of the spec can say how it is.
+  [[nodiscard]] bool has_statuses() const {
+    const auto& boards = diagnosis_.boards();
+    return std::any_of(boards.begin(), boards.end(),
+                       [](const BoardReport& board) { return board.status != nullptr; });
+  }
 
  private:
   void request(const protocol::Topic& topic) {
@@ -119,6 +177,7 @@ class Examination {
   client::Receiver receiver_;
   Diagnosis diagnosis_;
   client::Commanders commanders_;
+  Messages messages_;
 };
 
 /// 90061 s as "1 d 1 h".
@@ -169,7 +228,11 @@ void print_pretty(const Examination& examination, const std::vector<Finding>& fi
     fmt::print("{}{:<8}{} {}{}{}\n         {}\n", mark, name(finding.severity), colour ? "\x1b[0m" : "",
                finding.board, finding.board.empty() ? "" : ": ", finding.what, finding.remedy);
   }
-  if (findings.empty()) fmt::print("all is well\n");
+  if (!findings.empty()) return;
+  fmt::print("{}\n", examination.has_statuses() ? "all is well"
+                     : examination.frames() == 0
+                         ? "nothing came, and nothing was due: --listen T listens longer"
+                         : "all messages came that were due; of the boards this spec says nothing");
 }
 
 /// To a thousandth: what a double has behind that is no measurement.
@@ -241,7 +304,7 @@ void add_doctor(Verb app, Session& session, int& exit_code) {
     Examination examination{session};
     examination.listen(options->listen, [] { return false; });
     examination.ask(options->patience);
-    const auto findings = examination.findings();
+    const auto findings = examination.findings(options->listen);
     if (options->json)
       print_json(examination, findings);
     else

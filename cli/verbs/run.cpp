@@ -6,12 +6,15 @@
 #include <iostream>
 #include <memory>
 #include <span>
+#include <string_view>
 #include <system_error>
 #include <unistd.h>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "ocm/can/text.hpp"
+#include "ocm/client/frame_index.hpp"
 
 #include "cli/command/commanding.hpp"
 #include "cli/command/operated_bus.hpp"
@@ -95,6 +98,38 @@ base::Duration listening_of(const words::Script& script, double speed) {
   return {};
 }
 
+/// What is sent again and again behind these steps, by name.
+std::vector<std::string_view> repeated_after(std::span<const words::Step> steps,
+                                             const protocol::Catalogue& catalogue) {
+  const client::FrameIndex index{catalogue};
+  std::vector<std::string_view> names;
+  for (const auto& step : steps)
+    step.command.each_frame([&](const can::AnyFrame& frame) {
+      const auto subject = index.subject(frame.id, frame.format);
+      if (!subject) return;
+      std::erase(names, subject.topic->name);
+      if (step.command.repeat && step.command.repeat->lasting.count() == 0)
+        names.push_back(subject.topic->name);
+    });
+  return names;
+}
+
+/// What an interrupted script leaves, of the steps that it has carried out.
+std::string left_by(std::span<const words::Step> steps, const protocol::Catalogue& catalogue) {
+  const auto any = [steps](auto is) {
+    return std::any_of(steps.begin(), steps.end(), [&](const words::Step& each) { return is(each.command); });
+  };
+  std::vector<std::string> left;
+  if (any([](const client::Command& each) { return each.hold.has_value(); }))
+    left.emplace_back("the motors were set to zero");
+  if (const auto names = repeated_after(steps, catalogue); !names.empty())
+    left.push_back(fmt::format("{} {} no longer sent, and what was sent last holds", fmt::join(names, ", "),
+                               names.size() == 1 ? "is" : "are"));
+  if (any([](const client::Command& each) { return each.answers != nullptr; }))
+    left.emplace_back("`amiroctl stop` stops the sensors too");
+  return left.empty() ? "interrupted" : fmt::format("interrupted: {}", fmt::join(left, "; "));
+}
+
 void run(Session& session, const RunOptions& options, int& exit_code) {
   const auto& catalogue = session.catalogue_on_bus(false);
   const auto script = checked(options.file, read_script(options.file), catalogue);
@@ -131,15 +166,20 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
   static_cast<void>(timeline.listen_first(listening_of(script, options.speed)));  // a signal is seen below
   started = true;
   const auto start = Timeline::Clock::now();
+  std::size_t carried_out = 0;
   for (const auto& step : script.steps) {
     if (!timeline.wait_for_step(start + due(step, options.speed))) break;
     remark(fmt::format("{:>8}  {}", words::to_text(step.at), step.text));
     timeline.carry_out(step.command);
+    ++carried_out;
   }
+  if (const auto names = repeated_after(script.steps, catalogue); !names.empty() && interrupted() == 0)
+    remark(fmt::format("run: {} {} sent until Ctrl-C; --for ends that", fmt::join(names, ", "),
+                       names.size() == 1 ? "is" : "are"));
   const bool whole = interrupted() == 0 && timeline.wait_for_end();
   if (!timeline.finish()) exit_code = exit_failure;
   if (!whole) {
-    remark("interrupted: the motors were set to zero; `amiroctl stop` stops the sensors too");
+    remark(left_by(std::span{script.steps}.first(carried_out), catalogue));
     exit_code = exit_code_after_interrupt(exit_success);
   }
 }

@@ -74,11 +74,17 @@ class Condition {
           return "a flag is set or not: write " + std::string{field.name} + '=' + std::string{value};
         return condition;
       }
+    if (const auto decimal = detail::decimal_of_hexadecimal(value)) return of(field, comparison, *decimal);
+    const std::string_view whole = value.starts_with('+') ? value.substr(1) : value;
     if (!field.unit.empty() && value.size() > field.unit.size() && value.ends_with(field.unit)) {
       value.remove_suffix(field.unit.size());
       while (value.ends_with(' ')) value.remove_suffix(1);
     }
-    const auto number = base::parse_decimal(value.starts_with('+') ? value.substr(1) : value);
+    auto number = base::parse_decimal(value.starts_with('+') ? value.substr(1) : value);
+    if (!number)  // in a unit of the same kind
+      if (const auto quantity = parse_quantity(whole);
+          quantity && !quantity->unit.empty() && !field.unit.empty())
+        number = convert(*quantity, field.unit);
     if (!number) return detail::takes(field);
     condition.number_ = *number;
     return condition;

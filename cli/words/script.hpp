@@ -3,11 +3,14 @@
 ///     # a comment: a '#' at the start of a line, or one with blanks around it
 ///     1s   publish accelerometer 500ms
 ///     25s  led 1 white
+///     30s  set Inverter State="Limp home"
 ///
 /// The whole text is read, and every error told, before anything is sent.
 #pragma once
 
 #include <cstddef>
+#include <deque>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -44,6 +47,56 @@ struct Script {
 /// fits on a screen is not read.
 inline constexpr std::size_t most_explained = 20;
 
+namespace detail {
+
+/// A line's words, between blanks; what is between quotation marks belongs together, without them.
+struct SplitLine {
+  std::vector<std::string_view> words;    ///< of the line, or of `unquoted`
+  std::vector<std::size_t> columns;       ///< from 1, in bytes
+  std::size_t end = 0;                    ///< of the last word, from 0
+  std::optional<std::size_t> open_quote;  ///< column of a quotation mark without a second one
+  std::deque<std::string> unquoted;
+
+  explicit SplitLine(std::string_view line) {
+    for (std::size_t i = 0; i < line.size();) {
+      if (line[i] == ' ' || line[i] == '\t') {
+        ++i;
+        continue;
+      }
+      const std::size_t begin = i;
+      if (words.empty() && line[begin] == '#') return;
+      bool quotes = false;
+      for (; i < line.size() && line[i] != ' ' && line[i] != '\t'; ++i) {
+        if (line[i] != '"') continue;
+        const std::size_t second = line.find('"', i + 1);
+        if (second == std::string_view::npos) {
+          open_quote = i + 1;
+          return;
+        }
+        quotes = true;
+        i = second;
+      }
+      const std::string_view word = line.substr(begin, i - begin);
+      // '#' opens a comment as a word of its own or, above, as a line's first character; within a word it is
+      // a frame or a colour.
+      if (word == "#") return;
+      columns.push_back(begin + 1);
+      end = i;
+      if (!quotes) {
+        words.push_back(word);
+        continue;
+      }
+      auto& text = unquoted.emplace_back(word);
+      std::erase(text, '"');
+      words.push_back(text);
+    }
+  }
+  SplitLine(const SplitLine&) = delete;
+  SplitLine& operator=(const SplitLine&) = delete;
+};
+
+}  // namespace detail
+
 /// Steps are in the order of their times; equal times are carried out in the order of the lines.
 [[nodiscard]] inline Script parse_script(std::string_view text, const protocol::Catalogue& catalogue) {
   CommandParser parser{catalogue};
@@ -56,22 +109,14 @@ inline constexpr std::size_t most_explained = 20;
     ++line_number;
     if (line.ends_with('\r')) line.remove_suffix(1);
 
-    std::vector<std::string_view> words;
-    std::vector<std::size_t> columns;
-    for (std::size_t i = 0; i < line.size();) {
-      if (line[i] == ' ' || line[i] == '\t') {
-        ++i;
-        continue;
-      }
-      std::size_t end = line.find_first_of(" \t", i);
-      if (end == std::string_view::npos) end = line.size();
-      const std::string_view word = line.substr(i, end - i);
-      // '#' opens a comment as a word of its own or as a line's first character; within a word it is a frame
-      // or a colour.
-      if (word == "#" || (words.empty() && word.starts_with('#'))) break;
-      words.push_back(word);
-      columns.push_back(i + 1);
-      i = end;
+    const detail::SplitLine split{line};
+    const auto& words = split.words;
+    auto columns = split.columns;
+    if (split.open_quote) {
+      script.errors.push_back({line_number, *split.open_quote,
+                               "the quotation mark that begins here has no end",
+                               "put a second one behind what belongs together: State=\"Limp home\""});
+      continue;
     }
     if (words.empty()) continue;
 
@@ -98,7 +143,7 @@ inline constexpr std::size_t most_explained = 20;
       continue;
     }
     const std::size_t begin = columns[1] - 1;  // without a second word there is no command
-    const std::size_t end = columns[words.size() - 1] - 1 + words.back().size();
+    const std::size_t end = split.end;
     script.steps.push_back(
         {*at, std::move(*command), line_number, std::string{line.substr(begin, end - begin)}});
   }

@@ -2,6 +2,8 @@
 /// figure 6.2]
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -15,15 +17,26 @@
 
 namespace ocm::cli::words {
 
-/// "gyroscope", "gyro" or "0x08"; nullptr if there is none. A number has its 0x: a spec may name a topic "be"
-/// or "add".
+/// "gyroscope", "gyro" or "0x08", a message also by its identifier, such as "0x201", of 11 bits before one of
+/// 29; nullptr if there is none. A number has its 0x: a spec may name a topic "be" or "add".
 [[nodiscard]] constexpr const protocol::Topic* find_topic(const protocol::Catalogue& catalogue,
                                                           std::string_view word) noexcept {
   if (const auto* const named = catalogue.find(word)) return named;
   if (!word.starts_with("0x") && !word.starts_with("0X")) return nullptr;
   const auto id = base::parse_unsigned(word.substr(2), 16);
-  if (!id || *id > 0xFF) return nullptr;
-  return catalogue.find(protocol::TopicId{static_cast<std::uint8_t>(*id)});
+  if (!id) return nullptr;
+  if (*id <= 0xFF)
+    if (const auto* const topic = catalogue.find(protocol::TopicId{static_cast<std::uint8_t>(*id)}))
+      return topic;
+  const protocol::Topic* of_29_bits = nullptr;
+  for (const auto& topic : catalogue.topics) {
+    if (!topic.is_message()) continue;
+    const protocol::Address& address = topic.frames[0].address;
+    if (address.by != protocol::Address::By::identifier || address.number != *id) continue;
+    if (!address.extended) return &topic;
+    if (of_29_bits == nullptr) of_29_bits = &topic;
+  }
+  return of_29_bits;
 }
 
 /// "lights" is a group of topics; an empty word is none, though topics without a group have an empty one.
@@ -43,8 +56,27 @@ namespace ocm::cli::words {
   return words;
 }
 
-/// What to say of a word that is no topic: it may be a number that lacks its 0x, hexadecimal or decimal; else
-/// as of any mistyped word.
+/// "it is a field of Status: Status.Torque", of at most three topics; empty: of none.
+[[nodiscard]] inline std::string whose_field(const protocol::Catalogue& catalogue, std::string_view word) {
+  std::string topics;
+  std::string example;
+  std::size_t found = 0;
+  for (const auto& topic : catalogue.topics) {
+    const bool has = std::any_of(topic.frames.begin(), topic.frames.end(), [word](const auto& frame) {
+      return std::any_of(frame.fields.begin(), frame.fields.end(),
+                         [word](const protocol::Field& field) { return field.name == word; });
+    });
+    if (!has || ++found > 3) continue;
+    if (example.empty()) example = std::string{topic.name} + '.' + std::string{word};
+    topics.append(topics.empty() ? "" : ", ").append(topic.name);
+  }
+  if (found == 0) return {};
+  if (found > 3) topics += " and " + std::to_string(found - 3) + " more";
+  return "it is a field of " + topics + ": " + example;
+}
+
+/// What to say of a word that is no topic: it may be a number that lacks its 0x, hexadecimal or decimal, or
+/// one of a topic's fields; else as of any mistyped word.
 [[nodiscard]] inline std::string topic_suggestion(const protocol::Catalogue& catalogue, std::string_view word,
                                                   std::optional<protocol::Kind> kind = {}) {
   for (const unsigned radix : {16U, 10U}) {
@@ -57,6 +89,7 @@ namespace ocm::cli::words {
     id.hex(*number, 2);
     return "did you mean '" + std::string{id.view()} + "' (" + std::string{topic->name} + ")?";
   }
+  if (std::string field = whose_field(catalogue, word); !field.empty()) return field;
   return suggestion(word, topic_words(catalogue, kind));
 }
 

@@ -110,6 +110,13 @@ namespace detail {
   return parse_quantity(text);
 }
 
+/// "34" of "0x22", with the digits of any number of 64 bits; nothing of what is no hexadecimal number.
+[[nodiscard]] inline std::optional<std::string> decimal_of_hexadecimal(std::string_view text) {
+  if (!text.starts_with("0x") && !text.starts_with("0X")) return std::nullopt;
+  const auto number = base::parse_unsigned(text.substr(2), 16);
+  return number ? std::optional{std::to_string(*number)} : std::nullopt;
+}
+
 /// The value of this name. None for a number in the field's unit that the field can be: 2 means 2, although
 /// many files call 1 "2".
 [[nodiscard]] inline std::optional<std::int64_t> named_raw(const protocol::Field& field,
@@ -127,11 +134,12 @@ namespace detail {
 
 }  // namespace detail
 
-/// A number for a field, from "0.05m/s", "12" (in the field's unit) or the name of a value that is no such
-/// number. The error is said in words, with the field's unit and range.
+/// A number for a field, from "0.05m/s", "12" (in the field's unit), "0x0C" (the same) or the name of a value
+/// that is no such number. The error is said in words, with the field's unit and range.
 [[nodiscard]] inline base::Result<std::int64_t, std::string> parse_value(const protocol::Field& field,
                                                                          std::string_view text) {
   if (const auto named = detail::named_raw(field, text)) return *named;
+  if (const auto decimal = detail::decimal_of_hexadecimal(text)) return parse_value(field, *decimal);
   if (field.is_float()) {
     const auto value = detail::parse_float(field, text);
     const auto bits = value ? field.float_from(*value) : base::Result<std::int64_t>{value.error};
@@ -166,6 +174,8 @@ namespace detail {
 /// same in all units that have no offset. [docs/decisions/0027]
 [[nodiscard]] inline base::Result<std::int64_t, std::string> parse_typed_value(const protocol::Field& field,
                                                                                std::string_view text) {
+  if (const auto decimal = detail::decimal_of_hexadecimal(text); decimal && !detail::named_raw(field, text))
+    return parse_typed_value(field, *decimal);
   const auto quantity = detail::quantity_for(field, text);
   if (quantity && quantity->unit.empty() && !field.unit.empty() &&
       (quantity->number.digits != 0 || field.offset.digits != 0))

@@ -45,8 +45,8 @@ class Converter {
     model.attributes = attributes_of(document.attributes);
     definitions(document, model);
     note_what_is_not_kept(document, model);
-    model.bit_rate = bit_rate(model.attributes, "Baudrate", 1'000'000);
-    model.data_bit_rate = bit_rate(model.attributes, "BaudrateCANFD", max_data_bit_rate);
+    model.bit_rate = bit_rate(model, "Baudrate", 1'000'000);
+    model.data_bit_rate = bit_rate(model, "BaudrateCANFD", max_data_bit_rate);
     if (model.data_bit_rate < model.bit_rate) model.data_bit_rate = 0;
     boards(document, model);
     model.messages.reserve(document.messages.size());
@@ -98,14 +98,18 @@ class Converter {
     for (const dbc::Unused& statement : document.unused) note(statement.keyword, 1);
   }
 
-  /// The attribute that many files give it in, in bit/s; 0: none that a bus can have.
-  static std::uint32_t bit_rate(const std::vector<AttributeModel>& attributes, std::string_view name,
-                                std::uint32_t most) {
-    for (const AttributeModel& attribute : attributes) {
-      if (attribute.name != name) continue;
-      const auto rate = base::parse_unsigned(attribute.text);
-      if (rate && *rate >= 1'000 && *rate <= most) return static_cast<std::uint32_t>(*rate);
-    }
+  /// The attribute that many files give it in, or its default, in bit/s; 0: none that a bus can have.
+  static std::uint32_t bit_rate(const Model& model, std::string_view name, std::uint32_t most) {
+    const auto of_text = [most](std::string_view text) {
+      const auto rate = base::parse_unsigned(text);
+      return rate && *rate >= 1'000 && *rate <= most ? static_cast<std::uint32_t>(*rate) : 0U;
+    };
+    for (const AttributeModel& attribute : model.attributes)
+      if (attribute.name == name) return of_text(attribute.text);
+    for (const AttributeDefinitionModel& definition : model.definitions)
+      if (definition.of == AttributeDefinitionModel::Of::bus && definition.name == name &&
+          definition.default_text)
+        return of_text(*definition.default_text);
     return 0;
   }
 

@@ -235,6 +235,12 @@ class Dbc {
       if (std::any_of(attributes.begin(), attributes.end(),
                       [&](const auto& each) { return each.name == name; }))
         return;
+      const auto& known = model_.definitions;  // whose default says it
+      if (std::any_of(known.begin(), known.end(), [&](const auto& each) {
+            return each.of == spec::AttributeDefinitionModel::Of::bus && each.name == name &&
+                   each.default_text == value;
+          }))
+        return;
       define("", name, type, usual);
       bus += "BA_ \"" + std::string{name} + "\" " + value + ";\n";
     };

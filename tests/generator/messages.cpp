@@ -376,6 +376,14 @@ TEST_CASE("messages: a bit rate of a DBC file is one that a bus can have, or non
   CHECK(rate("BaudrateCANFD 16000000").data_bit_rate == 16'000'000);
   CHECK(rate("BaudrateCANFD 16000001").data_bit_rate == 0);
   CHECK(rate("BaudrateCANFD 2000000").bit_rate == 0);
+
+  const std::string usual =
+      "BO_ 1 A: 8 X\nBA_DEF_ \"Baudrate\" INT 0 100000000;\nBA_DEF_DEF_ \"Baudrate\" 250000;\n";
+  CHECK(parse(usual, {}, "f.dbc").bit_rate == 250'000);
+  CHECK(parse(usual + "BA_ \"Baudrate\" 500000;\n", {}, "f.dbc").bit_rate == 500'000);
+  CHECK(parse("BO_ 1 A: 8 X\nBA_DEF_ BO_ \"Baudrate\" INT 0 100000000;\nBA_DEF_DEF_ \"Baudrate\" 250000;\n",
+              {}, "f.dbc")
+            .bit_rate == 0);
 }
 
 TEST_CASE("messages: what a signal of a DBC file can hold is what its bits can") {

@@ -51,6 +51,19 @@ class Info(Case):
         self.assertIn("distance derived: root of 0.942693757 / (proximity - 2350) [0.0038, 0.2] m", lines)
         self.assertIn("distance_uncertainty standard deviation of distance by the noise of proximity, 4.57 [0, 0.019] m", lines)
 
+    def test_a_message_by_its_number_and_a_field_by_its_name(self):
+        car = ("--spec", os.path.join(os.environ["OCM_SOURCE_DIR"], "examples", "small_car.dbc"))
+        self.assertIn("Engine (message of EngineControl, id 100)", self.run_tool(*car, "info", "0x100")[0])
+        _, err = self.run_tool(*car, "info", "Torque", code=2)
+        self.assertIn("it is a field of Engine: Engine.Torque", err)
+        _, err = self.run_tool(*car, "decode", "--field", "Torque", code=2)
+        self.assertIn("it is a field of Engine: Engine.Torque", err)
+        _, err = self.run_tool("info", "red", code=2)
+        self.assertIn("it is a field of led_1, led_2, led_3 and 5 more: led_1.red", err)
+        both = self.spec("both.dbc", "BU_: A\nBO_ 2147484160 Wide: 8 A\nBO_ 512 Narrow: 8 A\nBO_ 2566844926 Long: 8 A\n")
+        self.assertIn("Narrow (message", self.run_tool(*both, "info", "0x200")[0])
+        self.assertIn("Long (message", self.run_tool(*both, "info", "0x18FEF1FE")[0])
+
     def test_what_a_dbc_file_says(self):
         out, err = self.run_tool(*self.spec("car.dbc", DBC), "info", "Transmission")
         self.assertEqual(err, "")

@@ -16,6 +16,12 @@ class Set(Case):
         self.assertIn("bus: sim", listener.stderr.readline())
         return listener
 
+    def script(self, text):
+        path = os.path.join(self.folder, "steps.script")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+        return path
+
     def heard(self, listener):
         out, _ = self.interrupt(listener)
         return [json.loads(line) for line in out.splitlines()]
@@ -76,6 +82,26 @@ class Set(Case):
         beams = [line["data"] for line in lines if line["topic"] == "Lights"]
         self.assertEqual(set(beams), {"0100", "0000"})
         self.assertEqual(beams.index("0000"), len(beams) - 1)  # once, and last
+
+    def test_an_interrupted_script_says_what_it_leaves(self):
+        """Of a bus without motors nothing is said of motors; what was sent last holds there."""
+        self.start_sim()
+        for text, said, left in (("0s set Engine Speed=1000 --every 20ms\n", "run: Engine is sent until Ctrl-C; --for ends that",
+                                  "interrupted: Engine is no longer sent, and what was sent last holds\n"),
+                                 ("0s set Engine Speed=1000 --every 20ms\n0s set Lights Beam=1 --every 20ms\n"
+                                  "0s set Engine Speed=0\n0s set Engine Speed=1 --every 50ms\n",
+                                  "run: Lights, Engine are sent until Ctrl-C; --for ends that",
+                                  "interrupted: Lights, Engine are no longer sent, and what was sent last holds\n"),
+                                 ("0s set Lights Beam=1 --every 20ms --for 60s\n", "0s  set Lights", "interrupted\n")):
+            sender = self.start("--spec", CAR, "run", self.script(text))
+            lines = []
+            while said not in (lines[-1] if lines else ""):
+                lines.append(sender.stderr.readline())
+                self.assertTrue(lines[-1], lines)
+            _, err = self.interrupt(sender)
+            self.assertEqual(sender.returncode, 130)
+            self.assertTrue(err.endswith(left), err)
+            self.assertNotIn("motors", err)
 
     def test_a_bus_that_goes_ends_it_in_words(self):
         sim = self.start_sim()

@@ -3,6 +3,7 @@
 
 import csv
 import io
+import json
 import os
 import re
 
@@ -271,6 +272,62 @@ class Transport(Case):
         self.run_tool("send", "--stdin", stdin="".join(BROADCAST.splitlines(True)[:-1]))
         _, err = listener.communicate(timeout=60)
         self.assertIn("0 messages put together, 3 other frames, 1 timed out", err)  # nothing came behind it
+
+    def test_its_packets_go_with_a_message_that_is_recorded_or_replayed(self):
+        self.start_sim()
+        path = os.path.join(self.folder, "vi.log")
+        recorder = self.start("--spec", self.spec, "record", "VI", "-o", path, "-n", "4")
+        self.assertIn("bus: sim", recorder.stderr.readline())
+        self.settle()
+        self.run_tool("send", "--stdin", stdin=BROADCAST)
+        _, err = recorder.communicate(timeout=60)
+        self.assertEqual(recorder.returncode, 0, err)
+        with open(path, encoding="utf-8") as file:
+            self.assertEqual([line.split()[2][:8] for line in file], ["1CECFF00", "1CEBFF00", "1CEBFF00", "1CEBFF00"])
+        both = os.path.join(self.folder, "both.log")
+        with open(both, "w", encoding="utf-8") as file:
+            file.write(BROADCAST)
+        for words, count in ((("VI",), 4), (("EEC1",), 1), (("VI", "--only", "commands"), 0)):
+            out, _ = self.run_tool("--spec", self.spec, "replay", both, *words, "--dry-run")
+            self.assertEqual(len(out.splitlines()), count, out)
+
+    def test_doctor_hears_the_messages_and_names_those_that_are_missing(self):
+        spec = os.path.join(self.folder, "due.dbc")
+        with open(spec, "w", encoding="utf-8") as file:
+            file.write(SPEC + 'BA_DEF_ BO_ "GenMsgCycleTime" INT 0 60000;\nBA_DEF_DEF_ "GenMsgCycleTime" 0;\n'
+                       + "".join(f'BA_ "GenMsgCycleTime" BO_ {number} {period};\n'
+                                 for number, period in ((0x98FEECFE, 300), (0x98FEEBFE, 300), (0x8CF004FE, 10), (0x98EFFFFE, 700))))
+        self.start_sim()
+        doctor = self.start("--spec", spec, "doctor", "--json", "--listen", "2s")
+        self.assertIn("bus: sim", doctor.stderr.readline())
+        self.settle()
+        self.run_tool("send", "--stdin", stdin=BROADCAST)
+        out, _ = doctor.communicate(timeout=60)
+        self.assertEqual(doctor.returncode, 1)
+        self.assertEqual([(each["severity"], each["board"], each["what"]) for each in json.loads(out)["findings"]],
+                         [("warning", "Engine", "of 3 messages due in 2s nothing came of CI")])
+        plain = os.path.join(self.folder, "plain.dbc")
+        with open(plain, "w", encoding="utf-8") as file:
+            file.write(SPEC)
+        out, _ = self.run_tool("--spec", plain, "doctor")
+        self.assertTrue(out.endswith("nothing came, and nothing was due: --listen T listens longer\n"), out)
+
+    def test_a_trace_knows_messages_by_their_group(self):
+        log = os.path.join(self.folder, "trace.log")
+        spec = os.path.join(self.folder, "due.dbc")
+        with open(spec, "w", encoding="utf-8") as file:
+            file.write(SPEC + 'BA_DEF_ BO_ "GenMsgCycleTime" INT 0 60000;\nBA_DEF_DEF_ "GenMsgCycleTime" 0;\n'
+                       f'BA_ "GenMsgCycleTime" BO_ {0x8CF004FE} 50;\nBA_DEF_ "Baudrate" INT 0 1000000;\nBA_DEF_DEF_ "Baudrate" 250000;\n')
+        with open(log, "w", encoding="utf-8") as file:
+            for i in range(40):  # source 0x17, priority 6: neither is the spec's
+                file.write(f"({10 + i * 0.05:.6f}) can0 18F00417#FFFFFFE02E0000FF\n")
+            file.write(BROADCAST.replace("(10.0000", "(12.0100").replace("(10.", "(12.").replace("12.060000) can0 0CF00400", "12.000000) can0 18F00417"))
+        out, _ = self.run_tool("--spec", spec, "analyse", "trace", log, "--json")
+        study = json.loads(out)
+        self.assertEqual([(row["name"], row["count"]) for row in study["messages"]], [("EEC1", 41)])
+        self.assertEqual(study["broken"], [])
+        out, _ = self.run_tool("--spec", spec, "analyse", "trace", log)
+        self.assertIn("4 packets of J1939's transport protocol, not in the set", out)
 
 
 if __name__ == "__main__":

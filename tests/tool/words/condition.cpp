@@ -66,6 +66,19 @@ TEST_CASE("a condition is compared exactly, in the field's unit") {
   CHECK(holds(x, Comparison::greater, "-99999", -3));  // beyond what the field can be
 }
 
+TEST_CASE("a condition takes the units and digits that set takes") {
+  const auto x = field();
+  CHECK(holds(x, Comparison::equal, "30cm/s", 3));
+  CHECK(holds(x, Comparison::greater, "-400mm/s", -3));
+  CHECK(holds(x, Comparison::less, "0x1", 3));
+  CHECK(holds(x, Comparison::greater, "0x1", 11));
+  CHECK_FALSE(Condition::of(x, Comparison::equal, "30cm").ok());
+  CHECK_FALSE(Condition::of(x, Comparison::equal, "0xG").ok());
+  auto plain = field(false);
+  plain.unit = "";
+  CHECK_FALSE(Condition::of(plain, Comparison::equal, "3V").ok());
+}
+
 TEST_CASE("a named value is its raw number, a flag its bit") {
   const auto x = field();
   CHECK(holds(x, Comparison::equal, "on", 3));
@@ -124,7 +137,7 @@ TEST_CASE("floats and 64 bits without sign") {
 TEST_CASE("what is no value says what the field takes") {
   CHECK(Condition::of(field(), Comparison::equal, "fast").error ==
         "x takes off, on, or -3276.8 to 3276.7 m/s");
-  CHECK(Condition::of(field(), Comparison::equal, "3km/h").error.starts_with("x takes"));
+  CHECK(Condition::of(field(), Comparison::equal, "3kg").error.starts_with("x takes"));
   CHECK(Condition::of(field(), Comparison::equal, "m/s").error.starts_with("x takes"));
 }
 

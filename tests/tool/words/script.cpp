@@ -31,6 +31,26 @@ TEST_CASE("steps, comments, colours and frames") {
   CHECK(script.steps[2].text == "send 205#00");
 }
 
+TEST_CASE("what is between quotation marks is one word") {
+  const auto whole = parse_script(
+      "1s \"publish\" gy\"ro\" 500ms   # \"asks\r\n"
+      "#\" a comment\n"
+      "2s send 205#\"00\"",
+      amiro::catalogue);
+  REQUIRE(whole.errors.empty());
+  REQUIRE(whole.steps.size() == 2);
+  CHECK(whole.steps[0].text == "\"publish\" gy\"ro\" 500ms");
+  CHECK(whole.steps[1].text == "send 205#\"00\"");
+  CHECK(can::to_text(whole.steps[1].command.frames[0]) == "205#00");
+
+  const auto blank = parse_script("1s publish \"gyro 500ms\"\n2s send 205#\"00\n", amiro::catalogue);
+  REQUIRE(blank.errors.size() == 2);
+  CHECK(blank.errors[0].column == 12);
+  CHECK_THAT(blank.errors[0].what, Catch::Contains("'gyro 500ms'"));
+  CHECK(blank.errors[1].column == 13);
+  CHECK_THAT(blank.errors[1].what, Catch::Contains("quotation mark"));
+}
+
 TEST_CASE("every error is reported, with line and column") {
   const auto script = parse_script(
       "1s publish gyr 500ms\n"

@@ -137,6 +137,26 @@ TEST_CASE("zero needs a unit where the unit has an offset") {
   CHECK(parse_typed_value(field, "0degC").ok());
 }
 
+TEST_CASE("hexadecimal digits mean what the number in decimal ones does") {
+  protocol::Field field{"service", {0, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, {}};
+  CHECK(parse_typed_value(field, "0x22") == 0x22);
+  CHECK(parse_typed_value(field, "0XfF") == 0xFF);
+  CHECK(parse_typed_value(field, "0x0") == 0);
+  CHECK(parse_typed_value(field, "0x100").error == "'256' is out of range: service takes 0 to 255");
+  for (const char* bad : {"0x", "0xG", "-0x1", "0x 1", "0x11111111111111111"})
+    CHECK_FALSE(parse_typed_value(field, bad).ok());
+  field.scale = {5, -1};
+  CHECK(parse_value(field, "0x22") == 68);
+  field.unit = "V";
+  CHECK_THAT(parse_typed_value(field, "0x22").error, Catch::Contains("needs a unit"));
+  CHECK(parse_typed_value(field, "0x0") == 0);
+  constexpr protocol::NamedValue names[] = {{7, "0x22"}};
+  field.values = names;  // a name, where it is no number that the field can be
+  CHECK(parse_typed_value(field, "0x22") == 7);
+  protocol::Field wide{"word", {0, 64, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, INT64_MAX, {}};
+  CHECK(parse_value(wide, "0xFFFFFFFFFFFFFFFF") == -1);
+}
+
 TEST_CASE("a unit that begins like a number is read, too") {
   protocol::Field field{"speed", {0, 16, protocol::ByteOrder::little}, true, {1, 0}, {}, "1/min", -900, 900,
                         {}};
