@@ -2,6 +2,8 @@
 
 #include <deque>
 #include <string>
+#include <string_view>
+#include <unordered_map>
 #include <utility>
 
 #include "generator/dbc/reader.hpp"
@@ -37,6 +39,13 @@ struct Spec::Storage {
     if (models.empty()) return {};
     auto& list = fields.emplace_back();
     list.reserve(models.size());
+    // A walk through all for each selected one would take minutes for the 65,535 that there may be.
+    std::unordered_map<std::string_view, std::uint16_t> selectors;
+    for (const FieldModel& field : models)
+      if (!field.selector.empty()) selectors.emplace(field.selector, protocol::no_selector);
+    for (std::size_t i = 0; i < models.size() && !selectors.empty(); ++i)
+      if (const auto at = selectors.find(models[i].name); at != selectors.end())
+        at->second = static_cast<std::uint16_t>(i);
     for (const FieldModel& field : models) {
       std::span<const protocol::NamedValue> names;
       if (!field.values.empty()) {
@@ -48,8 +57,7 @@ struct Spec::Storage {
       protocol::Field& out = list.emplace_back(
           protocol::Field{field.name, field.position, field.is_signed, field.scale, field.offset, field.unit,
                           field.raw_min, field.raw_max, names, field.flags, field.number});
-      for (std::size_t i = 0; i < models.size() && !field.selector.empty(); ++i)
-        if (models[i].name == field.selector) out.selector = static_cast<std::uint16_t>(i);
+      if (!field.selector.empty()) out.selector = selectors.find(field.selector)->second;
       if (!field.selected.empty()) out.selected = ranges.emplace_back(field.selected);
       out.start = field.start.value_or(0);
       if (field.range) out.min = field.range->min, out.max = field.range->max;
