@@ -183,6 +183,20 @@ TEST_CASE("messages: a message with tens of thousands of selected fields is read
   CHECK_FALSE(layout.has(layout.fields[1], data));
 }
 
+TEST_CASE("messages: what a terminal would obey is printed as text, and goes back as it was") {
+  const std::string text =
+      "BO_ 1 A: 8 N\n SG_ a : 0|8@1+ (1,0) [0|0] \"\x1B[2J\xC2\x9B\xC2\xB0\n\" N\n"
+      "VAL_ 1 a 1 \"\x07 on\" ;\n";
+  const auto loaded = spec::parse(text, "f.dbc");
+  REQUIRE(loaded.spec);
+  const auto& field = loaded.spec->catalogue().topics[0].frames[0].fields[0];
+  CHECK(field.unit == "\\x1b[2J\\x9b\xC2\xB0\\x0a");
+  CHECK(field.values[0].name == "\\x07 on");
+  const auto& model = loaded.spec->model().messages[0].fields[0];
+  CHECK(model.unit == "\x1B[2J\xC2\x9B\xC2\xB0\n");
+  CHECK(model.values[0].name == "\x07 on");
+}
+
 TEST_CASE("messages: topics and messages in one spec") {
   std::string text = read(std::filesystem::path{OCM_SOURCE_DIR} / "tests/generator/good.json");
   text.insert(text.rfind('}'),
