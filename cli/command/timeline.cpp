@@ -152,16 +152,24 @@ bool Timeline::finish() {
     }));
   tell_refusals();
   other_.sum_up();
+  tell_unsent();
+  return !refused_;
+}
+
+void Timeline::tell_unsent() {
+  const auto frames = [](std::uint64_t count) {
+    return fmt::format("{} {} not sent", client::count(count, "frame*"), count == 1 ? "was" : "were");
+  };
   if (withheld_ != 0)
     remark(fmt::format("{}: {} set points were not sent, because the one before had not left", verb_,
                        withheld_));
   if (left_out_ != 0)
-    remark(fmt::format("{}: {} frames were not sent, because this program ran too late for their time", verb_,
-                       left_out_));
+    remark(fmt::format("{}: {}, because this program ran too late for {} time", verb_, frames(left_out_),
+                       left_out_ == 1 ? "its" : "their"));
   if (not_taken_ != 0)
-    remark(fmt::format("{}: {} frames were not sent, because {} had not taken those before", verb_,
-                       not_taken_, bus_->name()));
-  return !refused_;
+    remark(fmt::format("{}: {}, because {} had not taken those before", verb_, frames(not_taken_),
+                       bus_->name()));
+  withheld_ = left_out_ = not_taken_ = 0;  // said
 }
 
 void Timeline::tell_refusals() {
@@ -185,6 +193,7 @@ bool Timeline::rest_after_all() {
 void Timeline::abandon(std::string what, std::string remedy) {
   const bool rests = rest_after_all();
   other_.sum_up();
+  tell_unsent();
   const char* const now = rests                 ? "the motors were set to zero"
                           : outgoing_.matters() ? still_moving
                                                 : "no set point has reached the robot";
@@ -231,6 +240,7 @@ void Timeline::repeat(Clock::time_point now) {
   const auto taken = bus_->send(held_->hold.frame);
   if (taken.error == base::Error::closed) {
     held_.reset();
+    tell_unsent();
     fail(bus_->failure());
   }
   if (taken && *taken) {
@@ -267,7 +277,10 @@ void Timeline::send_again(Repeated& repeated, Clock::time_point now) {
   bool taken = obstruction.what.empty() && !(delivery.known && delivery.pending > repeated_.size());
   if (taken) {
     const auto sent = bus_->send_any(repeated.frame);
-    if (sent.error == base::Error::closed) fail(bus_->failure());
+    if (sent.error == base::Error::closed) {
+      tell_unsent();
+      fail(bus_->failure());
+    }
     taken = sent && *sent;
   }
   if (taken) {
@@ -279,6 +292,7 @@ void Timeline::send_again(Repeated& repeated, Clock::time_point now) {
   ++not_taken_;
   if (now - repeated.left < std::max<Clock::duration>(client::longest_without_set_point, 2 * repeated.period))
     return;  // an interface may come back
+  tell_unsent();
   const std::string what =
       fmt::format("{}: {} has taken no frame for {}", verb_, bus_->name(),
                   words::to_text(std::chrono::duration_cast<std::chrono::milliseconds>(now - repeated.left)));
@@ -307,6 +321,7 @@ bool Timeline::wait(Clock::time_point until) {
     tell_refusals();
     if (over == Over::gone) {
       held_.reset();
+      tell_unsent();
       fail(bus_->failure());
     }
     if (others_ == Others::refused && other_.has_stopped()) end_for_another();

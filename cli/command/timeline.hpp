@@ -105,6 +105,8 @@ class Timeline {
   void send_fd(const can::AnyFrame& frame);
   /// Says what a board refused; leaves if the motors are held and their board refuses that.
   void tell_refusals();
+  /// Says which frames were not sent, and why; once, also where the command ends with an error.
+  void tell_unsent();
   /// Leaves, with the motors at rest, if this program did not run for as long as a watchdog waits.
   void expect_awake();
   /// The time; notes for how long this program did not look where it should have.

@@ -62,6 +62,15 @@ std::optional<FieldRef> ValueReader::field(const At& at, const std::string& text
     return std::nullopt;
   }
   const ChosenField& chosen = fields[0];
+  // Else each frame without it would make its condition unknown, and the proof would take the period of all
+  // frames for that of the field.
+  if (chosen.field->selector != protocol::no_selector) {
+    tell(at,
+         spec::quoted(text) + " is in some frames of " + std::string{chosen.topic->name} +
+             " only: when it comes is not known",
+         "a field that is in all of them");
+    return std::nullopt;
+  }
   return FieldRef{static_cast<std::uint16_t>(chosen.topic - catalogue_.topics.data()),
                   static_cast<std::uint16_t>(chosen.layout - chosen.topic->frames.data()),
                   chosen.field->is_derived()

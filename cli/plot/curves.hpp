@@ -51,6 +51,11 @@ class Curves {
   [[nodiscard]] std::optional<base::Time> begin() const noexcept { return begin_; }
   [[nodiscard]] base::Time end() const noexcept { return end_; }
   [[nodiscard]] std::uint64_t points() const noexcept;
+  /// Messages of J1939's transport protocol that were not put together, until `end`, or are not yet: they may
+  /// have had values for a curve.
+  [[nodiscard]] std::uint64_t lost_messages() noexcept {
+    return receiver_.transport_counters(end_).lost() + receiver_.transports_open();
+  }
 
  private:
   struct Use {

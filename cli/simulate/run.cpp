@@ -118,6 +118,7 @@ int run_amiro(const sim::AmiroOptions& options, const ShowOptions& show, Session
   if (!options.qemu && !options.images.empty())
     fail({"sim: --images without --boards qemu", "add --boards qemu, or leave --images out"}, exit_usage);
   catch_interrupts();
+  catch_hangups();  // a closed terminal is no crash
   if (!session.spec_files.empty() && options.messages == nullptr)
     remark("the simulated robot is the AMiRo, whatever --spec says");
   const BusName bus_name = bus_name_of(session);
@@ -146,6 +147,7 @@ int run_amiro(const sim::AmiroOptions& options, const ShowOptions& show, Session
 
 int run_messages(const sim::MessagesOptions& options, Session& session) {
   catch_interrupts();
+  catch_hangups();
   const auto& catalogue = session.catalogue();
   const BusName bus_name = bus_name_of(session);
   if (bus_name.kind == BusName::Kind::simulated)

@@ -174,6 +174,11 @@ std::vector<std::string> summary(const Bus& bus) {
                                  : "CAN FD frame*, not in the load without --data-bitrate");
   fault(counters.remote, "remote frame*");
   fault(counters.transport, "frame* of the transport protocol of J1939");
+  const auto lost = figures.transport.lost();
+  fault(lost,
+        lost == 1 ? "message* of it that was not put together" : "message* of it that were not put together");
+  fault(figures.transport.stray + figures.transport.malformed, "frame* of it of no message");
+  fault(counters.unselected, "frame* whose selector chooses no field");
   fault(counters.unknown + counters.fd, "frame* that no topic or message has");
   if (counters.unknown + counters.fd != 0) faults += fmt::format(" ({})", strangers(figures));
   if (!faults.empty()) lines.push_back("  " + faults);
@@ -248,6 +253,9 @@ Json to_object(const Bus& bus, const Shown& shown) {
           {"fd_frames_not_in_load", figures.not_in_load},
           {"remote", counters.remote},
           {"transport", counters.transport},
+          {"transport_lost", figures.transport.lost()},
+          {"transport_stray", figures.transport.stray + figures.transport.malformed},
+          {"unselected", counters.unselected},
           {"unknown", counters.unknown + counters.fd},
           {"unknown_ids", unknown},
           {"topics", topics}};

@@ -192,6 +192,10 @@ void run(Verb verb, Session& session, const PlotOptions& options, int& exit_code
   Watching watching{session, options.watch, std::move(words.files)};
   watching.run([&](auto entries, const auto& interfaces) { curves.take(entries, interfaces); }, {});
   tell_missing(curves);
+  if (const auto lost = curves.lost_messages(); lost != 0)
+    remark(fmt::format(
+        "{} of J1939 {} not put together, so the curves may lack values; `amiroctl decode` says why",
+        client::count(lost, "message*"), lost == 1 ? "was" : "were"));
   if (curves.points() == 0) {
     if (interrupted() == 0)
       remark(fmt::format("amiroctl: plot: nothing to draw came from {}", watching.source()));

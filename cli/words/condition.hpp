@@ -85,7 +85,14 @@ class Condition {
       if (const auto quantity = parse_quantity(whole);
           quantity && !quantity->unit.empty() && !field.unit.empty())
         number = convert(*quantity, field.unit);
-    if (!number) return detail::takes(field);
+    if (!number) {
+      // A whole word has numbers of more digits than a decimal: compared as raw ones, if they are the same.
+      const bool is_raw = field.scale == base::Decimal{1, 0} && field.offset.digits == 0;
+      const auto wide = detail::parse_wide(field, value.starts_with('+') ? value.substr(1) : value);
+      if (!is_raw || !wide) return detail::takes(field);
+      condition.named_ = *wide;
+      return condition;
+    }
     condition.number_ = *number;
     return condition;
   }
@@ -134,7 +141,7 @@ class Condition {
   const protocol::Field* field_ = nullptr;
   Comparison comparison_ = Comparison::equal;
   base::Decimal number_{};
-  std::optional<std::int64_t> named_;  ///< raw; of flags the bit
+  std::optional<std::int64_t> named_;  ///< raw: of a name, or of too many digits; of flags the bit
 };
 
 }  // namespace ocm::cli::words

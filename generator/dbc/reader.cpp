@@ -15,6 +15,9 @@ namespace {
 /// Two signals of a message are compared with each other to find overlaps, up to so many signals.
 constexpr std::size_t most_compared = 2000;
 
+/// As many as have an index of 16 bits beside the one that stands for none (protocol::no_selector).
+constexpr std::size_t most_signals = 0xFFFF;
+
 /// `VAL_` and the like name a signal by the message's identifier, as written, and its short name.
 struct SignalKey {
   std::uint32_t id = 0;
@@ -31,7 +34,29 @@ struct SignalAt {
   std::size_t signal = 0;
 };
 
-bool have_common(const std::vector<SelectorRange>& a, const std::vector<SelectorRange>& b) noexcept {
+/// Selectors above a signal, one above another. Files have three of them; each costs time in every frame.
+constexpr std::size_t most_nested = 64;
+
+/// As have_common, of many ranges.
+bool have_common_of_many(std::vector<SelectorRange> a, std::vector<SelectorRange> b) {
+  const auto by_first = [](const SelectorRange& one, const SelectorRange& other) {
+    return one.first < other.first;
+  };
+  std::sort(a.begin(), a.end(), by_first);
+  std::sort(b.begin(), b.end(), by_first);
+  for (auto one = a.begin(), other = b.begin(); one != a.end() && other != b.end();) {
+    if (one->first <= other->last && other->first <= one->last) return true;
+    if (one->last < other->last)
+      ++one;
+    else
+      ++other;
+  }
+  return false;
+}
+
+bool have_common(const std::vector<SelectorRange>& a, const std::vector<SelectorRange>& b) {
+  constexpr std::size_t few = 4096;  // comparisons
+  if (a.size() * b.size() > few) return have_common_of_many(a, b);
   return std::any_of(a.begin(), a.end(), [&](const SelectorRange& one) {
     return std::any_of(b.begin(), b.end(), [&](const SelectorRange& other) {
       return one.first <= other.last && other.first <= one.last;
@@ -54,6 +79,7 @@ class Resolver {
     for (auto& statement : statements_.senders) senders(statement);
     for (auto& statement : statements_.selectors) selector(statement);
     for (auto& statement : statements_.attributes) attribute(statement);
+    for (const auto& statement : statements_.messages) expect_countable(statement);
     for (auto& statement : statements_.messages) multiplexing(statement);
     for (auto& statement : statements_.messages) meaning(statement.message);
     send_types_of_signals();
@@ -279,6 +305,14 @@ class Resolver {
 
   // --- what it means ---
 
+  /// Fields are numbered with 16 bits, one of which stands for none.
+  void expect_countable(const MessageStatement& statement) {
+    if (statement.signals.size() > most_signals)
+      problems_.push_back(
+          {statement.message.line,
+           statement.message.name + " has " + std::to_string(statement.signals.size()) + " signals",
+           "at most " + std::to_string(most_signals) + " in a message"});
+  }
   void multiplexing(MessageStatement& statement) {
     auto& signals = statement.signals;
     const auto is_multiplexed = [](const SignalStatement& each) {
@@ -337,17 +371,32 @@ class Resolver {
                          "another signal of the same message"});
     return std::nullopt;
   }
-  /// Selectors that select each other would never be there.
+  /// Selectors that select each other would never be there, and a long row of them has no use.
   void expect_no_circle(const MessageStatement& statement) {
     for (const SignalStatement& each : statement.signals) {
       std::size_t above = 0;
       for (auto at = each.signal.selector; at; at = statement.signals[*at].signal.selector) {
-        if (++above <= statement.signals.size()) continue;
-        problems_.push_back({each.signal.line, "the selectors above " + each.signal.name + " go in a circle",
-                             "a selector that is always there above all others"});
+        if (++above <= most_nested) continue;
+        if (!is_circle(statement, *at))
+          problems_.push_back({each.signal.line,
+                               each.signal.name + " has more than " + std::to_string(most_nested) +
+                                   " selectors one above another",
+                               "fewer: files have two or three"});
+        else
+          problems_.push_back({each.signal.line,
+                               "the selectors above " + each.signal.name + " go in a circle",
+                               "a selector that is always there above all others"});
         return;
       }
     }
+  }
+
+  /// Whether the selectors above this one have no end.
+  [[nodiscard]] static bool is_circle(const MessageStatement& statement, std::size_t index) {
+    std::size_t above = 0;
+    for (std::optional<std::size_t> at = index; at; at = statement.signals[*at].signal.selector)
+      if (++above > statement.signals.size()) return true;
+    return false;
   }
 
   /// The value of an attribute, given or by default; empty: none. What is given is taken out.

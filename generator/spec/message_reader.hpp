@@ -264,6 +264,11 @@ class MessageReader : private Checker {
     std::vector<At> places;
     unsigned used = 0;
     if (list && is_kind(*list, Kind::array, "a list of fields")) {
+      constexpr std::size_t most_fields =
+          protocol::no_selector;  // as many as have an index beside that of none
+      if (list->node->items.size() > most_fields)
+        return tell(*list, std::to_string(list->node->items.size()) + " fields",
+                    "at most " + std::to_string(most_fields) + " in a message");
       std::map<std::string, std::string> names;
       for (std::size_t i = 0; i < list->node->items.size(); ++i) {
         const At field_at = list->item(i);

@@ -2,6 +2,8 @@
 
 #include <deque>
 #include <string>
+#include <string_view>
+#include <unordered_map>
 #include <utility>
 
 #include "generator/dbc/reader.hpp"
@@ -33,23 +35,52 @@ struct Spec::Storage {
 
   std::string_view keep(std::string text) { return texts.emplace_back(std::move(text)); }
 
+  /// A text of the model, which is UTF-8, as verbs print it: a file from elsewhere does not send commands to
+  /// the terminal, and each line of an output is one. Control characters become \x1b. The model keeps them.
+  std::string_view shown(const std::string& text) {
+    const auto is_control = [&text](std::size_t i) {
+      const auto byte = static_cast<unsigned char>(text[i]);
+      if (byte == 0xC2 && i + 1 < text.size()) return static_cast<unsigned char>(text[i + 1]) < 0xA0;
+      return byte < 0x20 || byte == 0x7F;
+    };
+    std::string out;
+    std::size_t copied = 0;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+      if (!is_control(i)) continue;
+      out.append(text, copied, i - copied);
+      if (static_cast<unsigned char>(text[i]) == 0xC2) ++i;  // U+0080 to U+009F: \x80 to \x9f
+      constexpr std::string_view digits = "0123456789abcdef";
+      const auto byte = static_cast<unsigned char>(text[i]);
+      out.append("\\x").append(1, digits[byte >> 4]).append(1, digits[byte & 15]);
+      copied = i + 1;
+    }
+    if (copied == 0) return text;
+    return keep(out.append(text, copied));
+  }
+
   std::span<const protocol::Field> make_fields(const std::vector<FieldModel>& models) {
     if (models.empty()) return {};
     auto& list = fields.emplace_back();
     list.reserve(models.size());
+    // A walk through all for each selected one would take minutes for the 65,535 that there may be.
+    std::unordered_map<std::string_view, std::uint16_t> selectors;
+    for (const FieldModel& field : models)
+      if (!field.selector.empty()) selectors.emplace(field.selector, protocol::no_selector);
+    for (std::size_t i = 0; i < models.size() && !selectors.empty(); ++i)
+      if (const auto at = selectors.find(models[i].name); at != selectors.end())
+        at->second = static_cast<std::uint16_t>(i);
     for (const FieldModel& field : models) {
       std::span<const protocol::NamedValue> names;
       if (!field.values.empty()) {
         auto& named = values.emplace_back();
         named.reserve(field.values.size());
-        for (const ValueModel& value : field.values) named.push_back({value.raw, value.name});
+        for (const ValueModel& value : field.values) named.push_back({value.raw, shown(value.name)});
         names = named;
       }
       protocol::Field& out = list.emplace_back(
-          protocol::Field{field.name, field.position, field.is_signed, field.scale, field.offset, field.unit,
-                          field.raw_min, field.raw_max, names, field.flags, field.number});
-      for (std::size_t i = 0; i < models.size() && !field.selector.empty(); ++i)
-        if (models[i].name == field.selector) out.selector = static_cast<std::uint16_t>(i);
+          protocol::Field{shown(field.name), field.position, field.is_signed, field.scale, field.offset,
+                          shown(field.unit), field.raw_min, field.raw_max, names, field.flags, field.number});
+      if (!field.selector.empty()) out.selector = selectors.find(field.selector)->second;
       if (!field.selected.empty()) out.selected = ranges.emplace_back(field.selected);
       out.start = field.start.value_or(0);
       if (field.range) out.min = field.range->min, out.max = field.range->max;
@@ -81,7 +112,7 @@ struct Spec::Storage {
     for (const AttributeModel& attribute : message.attributes)
       if (attribute.name == "CANFD_BRS" && attribute.text == "0") layout.bit_rate_switch = false;
     protocol::Topic out;
-    out.name = message.name;
+    out.name = shown(message.name);
     out.aliases = aliases.emplace_back(message.aliases.begin(), message.aliases.end());
     out.kind = protocol::Kind::message;
     out.board = message.board;
@@ -138,7 +169,7 @@ struct Spec::Storage {
 
   void make_catalogue() {
     topics.reserve(model.topics.size() + model.messages.size());
-    for (const BoardModel& board : model.boards) boards.push_back({board.name, board.mcu});
+    for (const BoardModel& board : model.boards) boards.push_back({shown(board.name), board.mcu});
     for (const TopicModel& topic : model.topics) {
       if (!topic.is_group)
         add_topic(topic, 0);

@@ -15,6 +15,7 @@
 #include "sim/serve/clock.hpp"
 #include "sim/serve/interference.hpp"
 #include "sim/serve/messages.hpp"
+#include "sim/serve/round.hpp"
 #include "sim/serve/turns.hpp"
 
 namespace ocm::sim {
@@ -137,29 +138,30 @@ Ending serve_amiro(const std::string& path, const AmiroOptions& options, const S
     boards.receive(delivery.frame, delivery.time);
   };
   Interference interference{options.bus_errors, options.world.seed};
-  const auto next_event = [&server, &messages] {
-    return std::min(server.next_event(), messages.next_event());
+  const auto next_event = [&server, &messages, &boards] {
+    return std::min({server.next_event(), messages.next_event(), boards.next_event()});
   };
+  Lateness lateness{shell.report};
   while (!shell.stop()) {
     const base::Time now = clock.now();
+    Round round{now};
     interference.disturb(arbiter, now);
     // Whatever falls due until now, in the order in which it does.
-    for (;;) {
-      const base::Time next = std::min(next_event(), boards.next_event());
-      if (next > now) break;
+    for (base::Time next = next_event(); round.takes(next); next = next_event()) {
       server.advance(next, hear);
       messages.advance(next);
       if (!boards.advance(next)) return Ending{boards.failure()};
     }
-    if (options.qemu && !boards.advance(now)) return Ending{boards.failure()};
-    server.poll(now, hear);
+    if (options.qemu && !boards.advance(round.reached())) return Ending{boards.failure()};
+    server.poll(round.reached(), hear);
+    lateness.note(round, clock);
     show(boards, shell);
-    wait_for(server.descriptor(), boards,
-             shell.limited(clock.until(std::min(next_event(), boards.next_event()))));
+    wait_for(server.descriptor(), boards, shell.limited(clock.until(next_event())));
   }
   server.end();  // counts what slow clients lost by it
   boards.summarise(shell);
   messages.summarise(shell);
+  lateness.sum_up();
   report_bus(server, options.bus_errors > 0, shell);
   turns.each([&shell](const protocol::Topic& topic, std::uint64_t count) {
     shell.report(fmt::format("{:<17} was commanded by two senders, in turns: {} times", topic.name, count));

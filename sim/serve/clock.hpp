@@ -25,6 +25,11 @@ class SimulatedClock {
     const double left = static_cast<double>((when - present).count()) / speed_;
     return std::min(longest, base::Duration{static_cast<std::int64_t>(left) + 1});
   }
+  /// For how long of real time a simulation that has come to `reached` is late.
+  [[nodiscard]] base::Duration behind(base::Time reached) const {
+    const auto late = static_cast<double>((now() - reached).count()) / speed_;
+    return base::Duration{static_cast<std::int64_t>(late)};
+  }
 
  private:
   double speed_;

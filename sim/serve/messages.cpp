@@ -12,6 +12,7 @@
 #include "sim/serve/bus_report.hpp"
 #include "sim/serve/clock.hpp"
 #include "sim/serve/interference.hpp"
+#include "sim/serve/round.hpp"
 
 namespace ocm::sim {
 namespace {
@@ -31,6 +32,10 @@ std::string names(const std::vector<const protocol::Topic*>& messages) {
   std::string text;
   for (const auto* message : messages) text += fmt::format("{}{}", text.empty() ? "" : ", ", message->name);
   return text;
+}
+
+std::string messages_of(const MessagePlayer& player) {
+  return fmt::format("{} message{}", player.size(), player.size() == 1 ? "" : "s");
 }
 
 std::string_view name_of(const protocol::Catalogue& catalogue) {
@@ -112,26 +117,29 @@ Ending serve_messages(const std::string& path, const protocol::Catalogue& catalo
   auto& wire = server.arbiter();
   MessageNodes nodes{catalogue, options.play, wire};
   report_left_out(nodes.player(), shell);
-  shell.report(fmt::format("simulated {} messages of {} on --bus {} ({}), {} bit/s; Ctrl-C ends it",
-                           nodes.player().size(), name_of(catalogue), path.empty() ? "sim" : "sim:" + path,
-                           server.path(), options.bit_rate));
+  shell.report(fmt::format("simulated {} of {} on --bus {} ({}), {} bit/s; Ctrl-C ends it",
+                           messages_of(nodes.player()), name_of(catalogue),
+                           path.empty() ? "sim" : "sim:" + path, server.path(), options.bit_rate));
   const SimulatedClock clock{options.speed};
   const auto hear = [](const simulation::Delivery&) {};
   Interference interference{options.bus_errors, options.play.seed};
+  Lateness lateness{shell.report};
+  const auto next_event = [&server, &nodes] { return std::min(server.next_event(), nodes.next_event()); };
   while (!shell.stop()) {
     const base::Time now = clock.now();
+    Round round{now};
     interference.disturb(wire, now);
-    for (;;) {
-      const base::Time next = std::min(server.next_event(), nodes.next_event());
-      if (next > now) break;
+    for (base::Time next = next_event(); round.takes(next); next = next_event()) {
       server.advance(next, hear);
       nodes.advance(next);
     }
-    server.poll(now, hear);
-    wait_for(server.descriptor(), clock.until(std::min(server.next_event(), nodes.next_event())));
+    server.poll(round.reached(), hear);
+    lateness.note(round, clock);
+    wait_for(server.descriptor(), clock.until(next_event()));
   }
   server.end();  // counts what slow clients lost by it
   nodes.summarise(shell);
+  lateness.sum_up();
   report_bus(server, options.bus_errors > 0, shell);
   return {};
 }
@@ -144,19 +152,23 @@ Ending serve_messages(transport::Bus& bus, const protocol::Catalogue& catalogue,
   MessagePlayer player{catalogue, play};
   if (auto nothing = nothing_to_play(player, catalogue, no_fd); !nothing.well()) return nothing;
   report_left_out(player, shell, no_fd);
-  shell.report(fmt::format("simulated {} messages of {} on {}; Ctrl-C ends it", player.size(),
+  shell.report(fmt::format("simulated {} of {} on {}; Ctrl-C ends it", messages_of(player),
                            name_of(catalogue), bus.name()));
   const SimulatedClock clock{1};
   std::deque<can::AnyFrame> waiting;
   std::uint64_t sent = 0;
   std::uint64_t dropped = 0;
+  Lateness lateness{shell.report};
   while (!shell.stop()) {
-    player.advance(clock.now(), [&](const PlayedMessage&, const can::AnyFrame& frame, base::Time) {
-      if (waiting.size() < longest_wait)
-        waiting.push_back(frame);
-      else
-        ++dropped;
-    });
+    Round round{clock.now()};
+    while (round.takes(player.next_event()))
+      player.advance(round.reached(), [&](const PlayedMessage&, const can::AnyFrame& frame, base::Time) {
+        if (waiting.size() < longest_wait)
+          waiting.push_back(frame);
+        else
+          ++dropped;
+      });
+    lateness.note(round, clock);
     while (!waiting.empty()) {
       const auto taken = bus.send_any(waiting.front());
       if (!taken && taken.error == base::Error::closed) return Ending{bus.failure()};
@@ -172,6 +184,7 @@ Ending serve_messages(transport::Bus& bus, const protocol::Catalogue& catalogue,
   }
   shell.report(fmt::format("bus               {} frames sent, {} dropped: the bus was full", sent,
                            dropped + waiting.size()));
+  lateness.sum_up();
   return {};
 }
 

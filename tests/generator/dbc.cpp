@@ -281,6 +281,51 @@ TEST_CASE("dbc: one selector: pages, ranges, both") {
             "3: the selector Nothing of P1 is not in A; another signal of the same message"});
 }
 
+TEST_CASE("dbc: as many signals in a message as there are indexes, and no more") {
+  const auto text = [](int signals) {
+    std::string of = "BO_ 1 A: 8 X\n";
+    for (int i = 0; i < signals; ++i) of += " SG_ S" + std::to_string(i) + " : 0|8@1+ (1,0) [0|0] \"\" X\n";
+    return of;
+  };
+  CHECK(dbc::read(text(65'535)).document.has_value());
+  CHECK(problems(text(65'536)) ==
+        std::vector<std::string>{"1: A has 65536 signals; at most 65535 in a message"});
+}
+
+TEST_CASE("dbc: a row of selectors has an end, and ranges may be many") {
+  const auto row = [](int signals) {
+    std::string of = "BO_ 1 A: 8 X\n SG_ S0 M : 0|8@1+ (1,0) [0|0] \"\" X\n";
+    std::string ranges;
+    for (int i = 1; i < signals; ++i) {
+      const std::string number = std::to_string(i);
+      of += " SG_ S" + number + " m0M : 0|8@1+ (1,0) [0|0] \"\" X\n";
+      ranges += "SG_MUL_VAL_ 1 S" + number + " S" + std::to_string(i - 1) + " 0-0;\n";
+    }
+    return of + ranges;
+  };
+  CHECK(problems(row(65)).empty());
+  const std::vector<std::string> too_deep{
+      "67: S65 has more than 64 selectors one above another; fewer: files have two or three"};
+  CHECK(problems(row(66)) == too_deep);
+  CHECK(problems(row(20'000)) == too_deep);  // compared with all above it minutes went by
+
+  const auto pages = [](const char* signal, int first) {
+    std::string of = std::string{"SG_MUL_VAL_ 1 "} + signal + " Page ";
+    for (int i = 99'999; i >= 0; --i) {
+      const std::string value = std::to_string(4 * i + first);
+      of.append(value).append("-").append(value).append(i == 0 ? ";\n" : ", ");
+    }
+    return of;
+  };
+  const std::string text =
+      "BO_ 1 A: 8 X\n SG_ Page M : 0|32@1+ (1,0) [0|0] \"\" X\n SG_ T m0 : 40|8@1+ (1,0) [0|0] \"\" X\n"
+      " SG_ U m2 : 40|8@1+ (1,0) [0|0] \"\" X\n" +
+      pages("T", 0);
+  message(text + pages("U", 2));
+  message(text + pages("U", 2) + "SG_MUL_VAL_ 1 U Page 200000-200000;\n",
+          {"4: T and U of A have bits in common; each is read by itself"});
+}
+
 TEST_CASE("dbc: several selectors, one below another") {
   const std::string text =
       "BO_ 1 A: 8 X\n SG_ S0 M : 0|4@1- (1,0) [0|0] \"\" X\n SG_ S1 m0M : 4|4@1- (1,0) [0|0] \"\" X\n SG_ S2 "

@@ -1,6 +1,9 @@
 // Plain messages in our JSON: what the reader makes of each member, what it doubts, and that a spec becomes a
 // DBC file and comes back as it was.
 #include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -160,6 +163,38 @@ TEST_CASE("messages: parts that are never there together have no bits in common"
   parse(of_fields(mode + part("a", "[1]") + part("b", "[[2, 9]]")));
   parse(of_fields(mode + part("a", "[3]") + part("b", "[[2, 9]]")),
         {R"(f.json:1: /messages/0/fields/2: "a" and "b" have bits in common; each is read by itself)"});
+}
+
+TEST_CASE("messages: a message with tens of thousands of selected fields is read in seconds") {
+  std::string text = "BO_ 1 A: 8 N\n SG_ Page M : 0|20@1+ (1,0) [0|0] \"\" N\n";
+  constexpr int last = 60'000;
+  for (int i = 0; i <= last; ++i) {
+    const std::string number = std::to_string(i);
+    text += " SG_ S" + number + " m" + number + " : 20|8@1+ (1,0) [0|0] \"\" N\n";
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  const auto loaded = spec::parse(text, "f.dbc");
+  CHECK(std::chrono::steady_clock::now() - begin < std::chrono::seconds{15});  // a walk a field took minutes
+  REQUIRE(loaded.spec);
+  const auto& layout = loaded.spec->catalogue().topics[0].frames[0];
+  CHECK(layout.fields.back().selector == 0);
+  const std::array<std::uint8_t, 8> data{0x60, 0xEA, 0, 0, 0, 0, 0, 0};  // 60000
+  CHECK(layout.has(layout.fields.back(), data));
+  CHECK_FALSE(layout.has(layout.fields[1], data));
+}
+
+TEST_CASE("messages: what a terminal would obey is printed as text, and goes back as it was") {
+  const std::string text =
+      "BO_ 1 A: 8 N\n SG_ a : 0|8@1+ (1,0) [0|0] \"\x1B[2J\xC2\x9B\xC2\xB0\n\" N\n"
+      "VAL_ 1 a 1 \"\x07 on\" ;\n";
+  const auto loaded = spec::parse(text, "f.dbc");
+  REQUIRE(loaded.spec);
+  const auto& field = loaded.spec->catalogue().topics[0].frames[0].fields[0];
+  CHECK(field.unit == "\\x1b[2J\\x9b\xC2\xB0\\x0a");
+  CHECK(field.values[0].name == "\\x07 on");
+  const auto& model = loaded.spec->model().messages[0].fields[0];
+  CHECK(model.unit == "\x1B[2J\xC2\x9B\xC2\xB0\n");
+  CHECK(model.values[0].name == "\x07 on");
 }
 
 TEST_CASE("messages: topics and messages in one spec") {

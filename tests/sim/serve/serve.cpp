@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
@@ -10,6 +12,8 @@
 
 #include "sim/serve/amiro.hpp"
 #include "sim/serve/mappers.hpp"
+#include "sim/serve/messages.hpp"
+#include "sim/serve/round.hpp"
 
 namespace sim_serve_serve_test {
 
@@ -52,6 +56,68 @@ TEST_CASE("An AMiRo on a virtual bus says where it is, and at its end what each 
   CHECK(watched.reports[0].starts_with("simulated AMiRo on --bus sim:"));
   CHECK(watched.reports[1] == "di_wheel_drive    nothing came");
   CHECK(watched.reports[4].starts_with("bus               0 frames, 0 clients"));
+}
+
+/// What a simulation says that has far more to do than a machine does, and is ended after a while.
+std::vector<std::string> overloaded(const std::function<Ending(const sim::Shell& shell)>& serve) {
+  using Clock = std::chrono::steady_clock;
+  const auto end =
+      Clock::now() + sim::Lateness::worth_a_line + 2 * sim::Lateness::enough_rounds * sim::Round::longest;
+  Watched watched;
+  sim::Shell shell = watched.shell();
+  shell.stop = [end] { return Clock::now() >= end; };
+  CHECK(serve(shell).well());
+  CHECK(Clock::now() - end < std::chrono::seconds{20});  // a round and the summary, on a busy machine
+  return watched.reports;
+}
+bool any_begins(const std::vector<std::string>& lines, std::string_view text) {
+  return std::any_of(lines.begin(), lines.end(),
+                     [text](const std::string& line) { return line.starts_with(text); });
+}
+
+TEST_CASE("A simulation with more to do than the machine does ends when it is asked to, and says so") {
+  const Folder folder;
+  const std::string_view late = "the simulation is late: more is due than this machine can do";
+  {
+    protocol::FrameLayout layout;
+    layout.length = 8;
+    layout.address = {protocol::Address::By::identifier, false, 0x100};
+    protocol::Topic message;
+    message.name = "M";
+    message.kind = protocol::Kind::message;
+    message.frames = {&layout, 1};
+    message.cycle = base::Duration{2};  // a period in another unit than milliseconds: 0.000002
+    const protocol::Catalogue catalogue{"car", 500'000, {}, {&message, 1}};
+    const auto reports = overloaded(
+        [&](const sim::Shell& shell) { return sim::serve_messages(folder / "bus", catalogue, {}, shell); });
+    CHECK(reports.at(0).starts_with("simulated 1 message of car"));
+    CHECK(any_begins(reports, late));
+    CHECK(any_begins(reports, "unknown sender    sent "));
+    CHECK(any_begins(reports, "late              by "));
+  }
+  sim::AmiroOptions options;
+  options.speed = 1e6;
+  const auto reports =
+      overloaded([&](const sim::Shell& shell) { return sim::serve_amiro(folder / "bus", options, shell); });
+  CHECK(any_begins(reports, late));
+  CHECK(any_begins(reports, "di_wheel_drive"));
+}
+
+TEST_CASE("A round takes what is due, and leaves nothing out") {
+  const auto at = [](int ns) { return base::Time{base::Duration{ns}}; };
+  sim::Round round{at(10)};
+  CHECK(round.takes(at(3)));
+  CHECK(round.takes(at(10)));
+  CHECK_FALSE(round.takes(at(11)));
+  CHECK(round.reached() == at(10));
+  sim::Round idle{at(10)};
+  CHECK_FALSE(idle.takes(at(11)));
+  CHECK(idle.reached() == at(10));
+  sim::Round endless{at(2'000'000'000)};
+  int taken = 0;
+  while (endless.takes(at(taken))) ++taken;
+  CHECK(taken > 0);
+  CHECK(endless.reached() == at(taken - 1));  // the next round goes on behind it
 }
 
 TEST_CASE("A board that does not exist is the options' fault") {

@@ -1067,6 +1067,15 @@ class OfPlainMessages(Operating):
         self.assertNotIn("LockCommand", periods)  # sent on events
         self.assertGreater(watching["streams"][0]["response_ns"], 2 * 130_000)  # Engine, Transmission and Wheels go first
 
+    def test_a_field_that_only_some_frames_have_is_no_condition(self):
+        """Its condition would be unknown at each other frame, and the bound that is proved would be too short."""
+        path = self.write(of_field("Service.FaultCode", "10", "10"))
+        _, err = self.run_tool("operate", path, "--check", "--spec", SMALL_CAR, code=1)
+        self.assertIn('"Service.FaultCode" is in some frames of Service only: when it comes is not known\n'
+                      "          a field that is in all of them\n", err)
+        self.write(of_field("Service.Page", "1", "1"))
+        self.run_tool("operate", path, "--check", "--spec", SMALL_CAR)
+
     def test_it_follows_what_they_say_and_sends_nothing(self):
         self.start_sim()  # a bus on which nothing comes by itself
         listener = self.listen()

@@ -2,6 +2,7 @@
 
 import json
 import os
+import signal
 
 from harness import Case, SOURCE, main
 
@@ -92,6 +93,16 @@ class SimMessages(Case):
             self.assertIn("simulated AMiRo on --bus sim", said)
             self.assertIn(f", {rate} bit/s", said)
             self.interrupt(sim)
+
+    def test_a_closed_terminal_ends_it_as_ctrl_c_does(self):
+        sim, _ = self.play()
+        listener = self.listen("--spec", SPEC)
+        _, err = self.interrupt(sim, signal.SIGHUP)
+        self.assertEqual(sim.returncode, 128 + signal.SIGHUP)
+        self.assertRegex(err, r"Engine +sent \d+\n")
+        _, err = listener.communicate(timeout=30)
+        self.assertIn("was ended", err)
+        self.assertNotIn("crashed", err)
 
     def test_sporadic_messages_on_request(self):
         _, said = self.play("--sporadic", "100ms")

@@ -250,6 +250,23 @@ class Transport(Case):
         self.assertEqual(self.curve(CONNECTION + AGAIN, "CI.End"), [(0.006, 87), (10.008, 87)])
         self.assertEqual(self.curve(BROADCAST, "EEC1.EngineSpeed"), [(0.06, 1500)])  # between the packets
 
+    def test_stats_and_plot_count_what_was_not_put_together(self):
+        log = "".join(line for line in BROADCAST.splitlines(True) if "#02" not in line) + BROADCAST.replace("(", "(1")
+        path = os.path.join(self.folder, "in.log")
+        with open(path, "w", encoding="ascii") as file:
+            file.write(log)
+        out, _ = self.run_tool("--spec", self.spec, "stats", path)
+        self.assertIn("1 message of it that was not put together", out)
+        out, _ = self.run_tool("--spec", self.spec, "stats", path, "--json")
+        bus = json.loads(out)["buses"][0]
+        self.assertEqual((bus["transport_lost"], bus["transport_stray"], bus["unselected"]), (1, 0, 0))
+        _, err = self.run_tool("--spec", self.spec, "plot", path, "VI.First", "--script")
+        self.assertIn("1 message of J1939 was not put together", err)
+        with open(path, "w", encoding="ascii") as file:
+            file.write(BROADCAST)
+        _, err = self.run_tool("--spec", self.spec, "plot", path, "VI.First", "--script")
+        self.assertNotIn("put together", err)
+
     def test_back_to_the_byte(self):
         log = (BROADCAST + CONNECTION).replace("(", "(14365090")
         again, _ = self.run_tool("--spec", self.spec, "encode", stdin=self.decode(log, "--json")[0])

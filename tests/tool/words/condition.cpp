@@ -132,6 +132,21 @@ TEST_CASE("floats and 64 bits without sign") {
   CHECK_FALSE(holds(wide, Comparison::greater, "9223372036854775810", from_2_63));
   CHECK(holds(wide, Comparison::greater, "on", -1));
   CHECK_FALSE(holds(wide, Comparison::less, "on", from_2_63));
+  // More digits than a decimal has.
+  wide.raw_min = 0;
+  wide.raw_max = INT64_MAX;  // as specs have it, where there is no room for the bits
+  CHECK(holds(wide, Comparison::equal, "18446744073709551615", -1));
+  CHECK(holds(wide, Comparison::greater, "18446744073709551614", -1));
+  CHECK_FALSE(holds(wide, Comparison::greater, "18446744073709551615", -1));
+  CHECK_FALSE(holds(wide, Comparison::at_least, "18446744073709551614", 5));
+  CHECK_FALSE(Condition::of(wide, Comparison::equal, "18446744073709551616").ok());
+  auto whole = field();
+  whole.position.width = 64;
+  whole.scale = {1, 0};
+  whole.raw_min = INT64_MIN;
+  whole.raw_max = INT64_MAX;
+  CHECK(holds(whole, Comparison::equal, "-9223372036854775808", INT64_MIN));
+  CHECK(holds(whole, Comparison::less, "-9223372036854775807", INT64_MIN));
 }
 
 TEST_CASE("what is no value says what the field takes") {
