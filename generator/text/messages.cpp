@@ -16,11 +16,10 @@ std::vector<Message> messages(const spec::Model& model) {
     for (unsigned instance = 0; instance < topic.count; ++instance)
       for (const auto& frame : topic.frames)
         for (unsigned i = 0; i < frame.count; ++i) {
-          Message message{&topic, &frame, topic.name, frame.name, 0, 0};
+          Message message{&topic, &frame, topic.name, frame.name, 0};
           if (topic.is_group) message.topic_name += "_" + std::to_string(instance + 1);
           if (frame.is_array) message.frame_name += "_" + std::to_string(i + 1);
           message.id = static_cast<std::uint8_t>(frame.id + instance + i);
-          message.topic_id = static_cast<std::uint8_t>(topic.id + instance);
           all.push_back(std::move(message));
         }
   return all;

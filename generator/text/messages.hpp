@@ -15,10 +15,9 @@ namespace ocm::generate {
 struct Message {
   const spec::TopicModel* topic = nullptr;
   const spec::FrameModel* frame = nullptr;
-  std::string topic_name;     ///< "led_3" of a group
-  std::string frame_name;     ///< "sensor_1"; empty for a topic's only frame
-  std::uint8_t id = 0;        ///< its number on the bus
-  std::uint8_t topic_id = 0;  ///< the number that requests to the topic carry
+  std::string topic_name;  ///< "led_3" of a group
+  std::string frame_name;  ///< "sensor_1"; empty for a topic's only frame
+  std::uint8_t id = 0;     ///< its number on the bus
 
   [[nodiscard]] bool is_sensor() const noexcept { return topic->kind == protocol::Kind::sensor; }
   [[nodiscard]] std::uint16_t identifier(protocol::Priority priority) const noexcept;

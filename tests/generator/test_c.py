@@ -96,6 +96,27 @@ class C(Case):
                       "  // counter-clockwise seen from above; 0.000001 rad/s a bit, [-2147.483648, 2147.483647] rad/s\n  int32_t z;\n"
                       "} amiro_odometry_velocity_t;\n", header)
 
+    def test_members_with_named_values_say_so_and_the_names_follow(self):
+        named = others = 0
+        for robot in SPECS:
+            header = generate(SPECS[robot], "--to", "c", "-o", "-")
+            for name, topic in spec_topics(robot).items():
+                for frame in topic["frames"]:
+                    stem = "_".join(filter(None, (robot, name, frame.get("name"))))
+                    members = re.search(rf"typedef struct {stem}_t {{\n(.*?)\n}}", header, re.S)[1]
+                    for field in frame["fields"]:
+                        with self.subTest(struct=stem, member=field["name"]):
+                            comment = re.search(rf"((?:  //[^\n]*\n)*)  \w+ {field['name']};", members)[1]
+                            numbers = field.get("values") or {flag: 1 << bit for flag, bit in field.get("flags", {}).items()}
+                            self.assertEqual(comment.endswith("see below\n"), bool(numbers), comment)
+                            for value, number in numbers.items():
+                                macro = f"{stem}_{field['name']}_{value}".upper()
+                                said = re.search(rf"^#define {macro} (.*)$", header, re.M)
+                                self.assertEqual(int(said[1].strip("()").rstrip("uUlL"), 0), number)
+                        named, others = named + bool(numbers), others + (not numbers)
+        self.assertGreater(named, 10)
+        self.assertGreater(others, 50)
+
     def header(self, robot):
         path = self.folder / f"{robot}.h"
         generate(SPECS[robot], "--to", "c", "-o", path)

@@ -53,6 +53,32 @@ TEST_CASE("magnetometer: configured, settled, read, count by count") {
   CHECK(m.violations.none());
 }
 
+// 50 ms from power on, 6 ms from a change of the mode. [data sheet, Operational Examples: 56 ms]
+TEST_CASE("magnetometer model: nothing is measured before it is on and in its mode for long enough") {
+  Magnetometer m;
+  const auto first_at = [&](std::chrono::microseconds after) {
+    m.time.pass(after - 1us);
+    CHECK(m.driver.read() == base::Result<MagneticField>{MagneticField{}});
+    m.time.pass(1us);
+    CHECK(m.driver.read() == base::Result<MagneticField>{m.field});
+  };
+  SECTION("from power on") {
+    m.time.pass(10ms);
+    REQUIRE(m.driver.start().ok());
+    first_at(40ms);
+  }
+  SECTION("from the mode") {
+    m.time.pass(49ms);
+    REQUIRE(m.driver.start().ok());
+    first_at(6ms);
+  }
+  SECTION("from the mode, long after") {
+    m.time.pass(10s);
+    REQUIRE(m.driver.start().ok());
+    first_at(6ms);
+  }
+}
+
 TEST_CASE("magnetometer: reading the mode, or a part of the outputs, locks them") {
   Magnetometer m;
   REQUIRE(m.driver.start().ok());

@@ -142,6 +142,48 @@ TEST_CASE("gyroscope model: another full scale has another sensitivity") {
   CHECK(drivers::join_signed(in[4], in[3]) == -11428);
 }
 
+/// What the status register says: 0x0F is new data on all axes, 0 is none.
+std::uint8_t status(sim::StMotionModel& model) {
+  const std::array<std::uint8_t, 2> out{0xA7, 0};
+  std::array<std::uint8_t, 2> in{};
+  REQUIRE(model.transfer({3, 1'000'000}, out, in).ok());
+  return in[1];
+}
+void set_control_1(sim::StMotionModel& model, std::uint8_t value) {
+  const std::array<std::uint8_t, 2> out{0x20, value};
+  std::array<std::uint8_t, 2> in{};
+  REQUIRE(model.transfer({3, 1'000'000}, out, in).ok());
+}
+
+TEST_CASE("motion models: powered down there is no data, and each time it settles from when it was powered") {
+  struct Part {
+    std::uint8_t off, on;  ///< CTRL_REG1: the axes alone, and with PD or PM
+    std::chrono::milliseconds turn_on;
+  };
+  // L3G4200D: PD, 300 ms; LIS331DLH: PM = 1, 50 Hz, 1/ODR + 1 ms. [the models name the data sheets]
+  const auto follow = [](auto& scene, const Part& part) {
+    scene.time.pass(10s);
+    CHECK(status(scene.model) == 0);
+    for (int time = 0; time < 3; ++time) {
+      set_control_1(scene.model, part.on);
+      CHECK(status(scene.model) == 0);
+      scene.time.pass(part.turn_on - 1us);
+      CHECK(status(scene.model) == 0);
+      scene.time.pass(1us);
+      CHECK(status(scene.model) == 0x0F);
+      set_control_1(scene.model, part.off);
+      CHECK(status(scene.model) == 0);
+      scene.time.pass(10s);
+      CHECK(status(scene.model) == 0);
+    }
+    CHECK(scene.violations.none());
+  };
+  Gyroscope g;
+  follow(g, {0x07, 0x0F, 300ms});
+  Accelerometer a;
+  follow(a, {0x07, 0x27, 21ms});
+}
+
 TEST_CASE("accelerometer: configured, settled, read, digit by digit") {
   Accelerometer a;
   const auto settling = a.driver.start();

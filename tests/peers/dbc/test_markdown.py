@@ -83,6 +83,7 @@ class Markdown(unittest.TestCase):
         unit = " " + signal.unit if signal.unit else ""
         self.assertEqual(Fraction(scale.removesuffix(unit) or 1), signal.scale, where)
         self.assertEqual(Fraction(offset.removesuffix(unit) or 0), signal.offset, where)
+        self.check_range(where, plain(row[4]).removesuffix(unit), signal)
         text = row[5]
         self.assertEqual("Where " in text and f"`{signal.selector}` is" in text, signal.selector is not None, where)
         if signal.selector is not None:
@@ -95,6 +96,19 @@ class Markdown(unittest.TestCase):
         self.assertIn(" ".join(signal.comment.split()), text, where)
         receivers = [receiver for receiver in signal.receivers if receiver != "Vector__XXX"]
         self.assertEqual("To " + ", ".join(receivers) in text, bool(receivers), where)
+
+    def check_range(self, where, said, signal):
+        """What the file says; else what the bits hold, as far as 64 bits of digits print it; of names alone and of floats nothing."""
+        low, high = signal.minimum, signal.maximum
+        if low > high or low == high == 0:
+            lowest, highest = (-1 << signal.length - 1, (1 << signal.length - 1) - 1) if signal.signed else (0, (1 << signal.length) - 1)
+            low, high = sorted(raw * signal.scale + signal.offset for raw in (lowest, highest))
+            unsaid = signal.floating or (signal.length == 64 and not signal.signed)
+            if unsaid or (not said and signal.length > 32):
+                low = high = None
+        if signal.names and not signal.unit:
+            low = high = None
+        self.assertEqual([Fraction(number) for number in said.split(" to ")] if said else [None, None], [low, high], where)
 
     def test_random_files(self):
         with tempfile.TemporaryDirectory(prefix="ocm-test-") as folder:

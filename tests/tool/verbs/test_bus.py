@@ -99,6 +99,21 @@ class OnTheBus(Case):
             self.assertEqual(listener.returncode, 128 + number)
             self.assertIn("0 frames, 0 samples", err)
 
+    def test_ctrl_c_ends_send_of_lines_cleanly(self):
+        self.start_sim()
+        lines = "(1.000000) can0 6F0#00\n(4000.000000) can0 6F0#01\n"
+        for arguments, text, sent in ((["--timed"], lines, "1 frame sent"), ([], "", "0 frames sent")):
+            for number in (signal.SIGINT, signal.SIGTERM):
+                with self.subTest(arguments=arguments, number=number):
+                    sender = self.start("send", "--stdin", *arguments, stdin=subprocess.PIPE)
+                    self.assertIn("bus: sim", sender.stderr.readline())
+                    sender.stdin.write(text)
+                    sender.stdin.flush()  # and stays open: there could be more
+                    self.settle()
+                    _, err = self.interrupt(sender, number)
+                    self.assertEqual(sender.returncode, 128 + number, err)
+                    self.assertIn(sent, err)
+
     def test_listen_survives_the_simulator_by_telling(self):
         sim = self.start_sim()
         listener = self.listen()

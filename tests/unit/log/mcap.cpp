@@ -262,6 +262,21 @@ TEST_CASE("mcap: lengths that cannot be are said, and reading goes on at the nex
   CHECK(cause_of(head + said + frame + record(2, std::string(21, 'x')), 1) == Cause::syntax);
 }
 
+TEST_CASE("mcap: the longest record that is read, and one that is longer") {
+  const auto with_record_of = [](int kind, std::size_t size) {
+    return read_mcap(head + said + record(static_cast<std::uint8_t>(kind), std::string(size, '\6')) +
+                     chunk(frame) + tail);
+  };
+  const int metadata = 12;
+  const auto longest = with_record_of(metadata, Input::longest - mcap::record_head);
+  CHECK(longest.complained == 0);
+  CHECK(longest.entries.size() == 1);
+  const auto longer = with_record_of(metadata, Input::longest - mcap::record_head + 1);
+  REQUIRE(longer.complained == 1);
+  CHECK(longer.complaints[0].cause == Cause::too_long);
+  CHECK(longer.entries.size() == 1);
+}
+
 TEST_CASE("mcap: cut off anywhere, all whole messages before are read, and it is said once") {
   const std::string first = head + said;
   const std::string file = first + chunk(frame + frame) + chunk(frame) + tail;

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/unit/log/log_testing.hpp"
+#include "unit/base/random.hpp"
 
 namespace log_pcap_test {
 
@@ -114,6 +115,32 @@ TEST_CASE("pcap: what cannot be a frame is reported, and the rest read") {
   CHECK(log.complaints[1].cause == Cause::length);
 }
 
+TEST_CASE("pcap: any fraction of a second, and none that is a second") {
+  test::Random random{7};
+  for (const bool in_ns : {false, true}) {
+    const std::uint32_t second = in_ns ? 1'000'000'000 : 1'000'000;
+    const auto read = [&](std::uint32_t fraction) {
+      std::string record = little_record;
+      for (std::size_t i = 0; i < 4; ++i) record[4 + i] = static_cast<char>(fraction >> 8 * i & 0xFF);
+      return read_all<PcapReader>((in_ns ? little_ns : little_us) + record);
+    };
+    std::vector<std::uint32_t> fractions{0, 1, second / 2, second - 1};
+    for (int i = 0; i < 100; ++i) fractions.push_back(random.below(second));
+    for (const std::uint32_t fraction : fractions) {
+      CAPTURE(in_ns, fraction);
+      const auto log = read(fraction);
+      REQUIRE(log.entries.size() == 1);
+      REQUIRE(log.entries[0].time == at(1'000'000'000 + std::int64_t{fraction} * (in_ns ? 1 : 1000)));
+    }
+    for (const std::uint32_t fraction : {second, second + 1, UINT32_MAX}) {
+      CAPTURE(in_ns, fraction);
+      const auto log = read(fraction);
+      REQUIRE(log.complained == 1);
+      REQUIRE(log.complaints[0].cause == Cause::time);
+    }
+  }
+}
+
 TEST_CASE("pcap: other link types are no CAN frames") {
   std::string file = little_us + little_record + little_record;
   file[20] = 1;  // Ethernet
@@ -154,6 +181,22 @@ TEST_CASE("pcap: a record of gigabytes ends the reading") {
   REQUIRE(log.complained == 1);
   CHECK(log.complaints[0].cause == Cause::too_long);
   CHECK(log.complaints[0].place.number == 24 + 32);
+}
+
+TEST_CASE("pcap: the longest record that is read, and one that is longer") {
+  const auto with_packet_of = [](std::size_t size) {
+    std::string head = bytes("01000000 02000000");
+    for (int i = 0; i < 8; ++i) head += static_cast<char>(size >> 8 * (i % 4) & 0xFF);
+    return read_all<PcapReader>(little_us + head + std::string(size, '\xFF') + little_record);
+  };
+  const auto longest = with_packet_of(Input::longest - pcap::record_header);
+  CHECK(longest.entries.size() == 1);  // what is behind it
+  REQUIRE(longest.complained == 1);
+  CHECK(longest.complaints[0].cause != Cause::too_long);  // it is no frame
+  const auto longer = with_packet_of(Input::longest - pcap::record_header + 1);
+  CHECK(longer.entries.empty());
+  REQUIRE(longer.complained == 1);
+  CHECK(longer.complaints[0].cause == Cause::too_long);
 }
 
 TEST_CASE("pcap: what it is not") {

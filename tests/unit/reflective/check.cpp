@@ -1,9 +1,12 @@
 #include "ocm/reflective/check.hpp"
 
+#include <span>
 #include <vector>
 
 #include <catch2/catch.hpp>
 
+#include "unit/base/explore.hpp"
+#include "unit/base/random.hpp"
 #include "unit/reflective/guard.hpp"
 
 namespace reflective_check_test {
@@ -269,6 +272,67 @@ TEST_CASE("check: transitions that can fire at once") {
     t.conditions[guard::clear].limit = 5;
     CHECK(t.only() == Mistake::both_fire);
   }
+}
+
+/// Of a raw number, without hysteresis.
+bool holds(const Condition& condition, std::int64_t raw) {
+  switch (condition.is) {
+    case Is::above:
+      return raw > condition.limit;
+    case Is::below:
+      return raw < condition.limit;
+    case Is::equal:
+      return raw == condition.limit;
+    case Is::other:
+      return raw != condition.limit;
+    case Is::any_bit:
+      return (raw & condition.limit) != 0;
+  }
+  return false;
+}
+
+TEST_CASE("check: what of one value can be true at once, against every value") {
+  Random random{4};
+  int exact = 0, possible = 0;
+  const int runs = explored(4000);
+  for (int run = 0; run < runs; ++run) {
+    const bool bits_alone = run % 2 == 0;
+    std::vector<Condition> conditions;
+    std::vector<bool> wanted;
+    std::vector<Term> terms;
+    for (std::uint16_t i = 0; i < 3; ++i) {
+      const Is is = bits_alone ? Is::any_bit : static_cast<Is>(random.below(5));
+      conditions.push_back({.name = "c",
+                            .is = is,
+                            .topic = guard::ring,
+                            .limit = random.within(is == Is::any_bit ? 1 : 0, 7)});
+      wanted.push_back(random.below(2) == 0);
+      terms.push_back({.condition = i});
+      if (!wanted[i]) terms.push_back({.op = Op::negation});
+      if (i == 1) terms.push_back({.op = Op::all});
+    }
+    const std::size_t first = terms.size() - (wanted[2] ? 1 : 2);
+    Monitor one = guard::monitors[0], other = guard::monitors[0];
+    one.terms = std::span{terms}.first(first);
+    other.terms = std::span{terms}.subspan(first);
+    Operator op = guard::tables;
+    op.conditions = conditions;
+
+    bool found = false;
+    for (std::int64_t raw = 0; raw < 32 && !found; ++raw) {
+      found = true;
+      for (std::size_t i = 0; i < 3; ++i) found = found && holds(conditions[i], raw) == wanted[i];
+    }
+    CAPTURE(run, conditions[0].limit, conditions[1].limit, conditions[2].limit);
+    const bool said = reflective::detail::both_can_be_true(op, one, other);
+    if (found) REQUIRE(said);  // else two transitions fire at once, and nothing says so
+    if (bits_alone) REQUIRE(said == found);
+    exact += said == found ? 1 : 0;
+    possible += found ? 1 : 0;
+  }
+  CHECK(possible > runs / 5);
+  CHECK(possible < runs - runs / 5);
+  CHECK(exact > runs - runs / 10);  // what it cannot tell apart it calls possible
 }
 
 }  // namespace reflective_check_test
