@@ -20,7 +20,7 @@
 #include "cli/bus_model/models.hpp"
 #include "cli/command/operated_bus.hpp"
 #include "cli/fleet/known.hpp"
-#include "cli/fleet/line_log.hpp"
+#include "cli/fleet/line_log_file.hpp"
 #include "cli/fleet/line_replay.hpp"
 #include "cli/output/printer.hpp"
 #include "cli/serve/address.hpp"
