@@ -14,7 +14,7 @@
 
 #include "cli/fleet/dongle.hpp"
 #include "cli/fleet/line_end.hpp"
-#include "cli/fleet/line_log.hpp"
+#include "cli/fleet/line_log_file.hpp"
 #include "cli/fleet/owner.hpp"
 
 namespace ocm::cli::fleet {

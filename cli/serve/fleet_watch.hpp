@@ -56,7 +56,6 @@ class FleetWatch {
   void begin();
   void step();
   void obey(const Order& order);
-  void look_for_robots();
   [[nodiscard]] fleet::RobotNow robot(unsigned index) const;
   void draw();
   void publish(base::Time now);

@@ -1,5 +1,5 @@
-/// The loop of `serve`: frames in, samples and states out to all viewers, their orders to the bus. Other
-/// verbs show with it, too.
+/// What `serve` does with its options: which of bus, log and robots the page is of. Other verbs show with it,
+/// too.
 #pragma once
 
 #include <cstdint>

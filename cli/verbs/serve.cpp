@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "cli/fleet/line_log.hpp"
+#include "cli/fleet/line_log_file.hpp"
 #include "cli/logs/format.hpp"
 #include "cli/serve/server.hpp"
 #include "cli/shared/messages.hpp"

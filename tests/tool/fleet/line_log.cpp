@@ -10,6 +10,7 @@ namespace fleet_line_log_test {
 using namespace std::chrono_literals;
 using namespace std::string_literals;
 using namespace ocm;
+using cli::fleet::parse_line_log;
 using cli::fleet::parse_log_line;
 using cli::fleet::to_log_line;
 
@@ -57,6 +58,27 @@ TEST_CASE("line log: what is no line of it") {
   }
   CHECK(parse_log_line("(0.000000) ")->text.empty());
   CHECK(parse_log_line("(7258118400.999999) x"));
+}
+
+TEST_CASE("line log: what could not be read of one is counted, and the first is named") {
+  const std::string first = std::string{cli::fleet::line_log_begins} + "\n";
+  const auto good = parse_line_log(first + "(1.000000) a\n(1.000000) b\n");
+  REQUIRE(good);
+  CHECK(good->said.size() == 2);
+  CHECK(good->said[1].text == "b");
+  CHECK(good->damaged == 0);
+  CHECK(good->first_damaged == 0);
+  // Line 3 goes back in time, 4 has no form, 6 no end: its writer was ended.
+  const auto damaged = parse_line_log(first + "(2.000000) a\n(1.999999) b\n\n(2.000000) c\n(3.000000) d");
+  REQUIRE(damaged);
+  REQUIRE(damaged->said.size() == 2);
+  CHECK(damaged->said[1].text == "c");
+  CHECK(damaged->damaged == 3);
+  CHECK(damaged->first_damaged == 3);
+  CHECK(parse_line_log(first)->said.empty());
+  CHECK_FALSE(parse_line_log(""));
+  CHECK_FALSE(parse_line_log("# line of a central, version 2\n(1.000000) a\n"));
+  CHECK_FALSE(parse_line_log("(1.000000) a\n" + first));
 }
 
 }  // namespace fleet_line_log_test

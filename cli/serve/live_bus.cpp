@@ -1,0 +1,124 @@
+#include "cli/serve/live_bus.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "cli/command/operated_bus.hpp"
+#include "cli/serve/control.hpp"
+#include "cli/serve/operator_watch.hpp"
+#include "cli/shared/clock.hpp"
+#include "cli/shared/interrupt.hpp"
+#include "cli/shared/live.hpp"
+#include "cli/shared/messages.hpp"
+#include "cli/shared/remedies.hpp"
+
+namespace ocm::cli::serve {
+namespace {
+
+using Presence = OperatorWatch::Presence;
+
+constexpr unsigned most_unsent = 64;  // frames, until viewers hear of them
+
+/// Until the bus is gone, a signal comes, it is over, or (enough) an operator has come or gone. The motors
+/// rest behind it.
+Over serve_frames(PageServer& server, transport::Bus& bus, const log::Interfaces& interfaces,
+                  const OperatorWatch& watch, const std::function<bool()>& operator_changed) {
+  Control control{bus, server.catalogue(), server.viewers(),
+                  [&](const can::AnyFrame& frame) {
+                    log::Entry entry{unix_time(), frame, 0};
+                    entry.direction = log::Direction::sent;
+                    server.take(entry, interfaces);
+                  },
+                  [&]() -> std::string {
+                    if (operator_changed()) return "an operator has just started, or ended: say it again";
+                    if (watch.presence() == Presence::silent && dynamic_cast<OperatedBus*>(&bus) == nullptr)
+                      return "an operator guards the robot, and does not answer: end it, or start it again";
+                    return {};
+                  }};
+  unsigned unsent = 0;
+  const auto wake = [&] {
+    unsent = 0;
+    server.wake();
+  };
+  Live live{bus, wake, {server.orders().descriptor(), [&] {
+                          for (const Order& order : server.orders().take()) {
+                            server.answer(order);
+                            control.carry_out(order);
+                          }
+                          wake();
+                        }}};
+  auto next_bus = Clock::now();
+  auto next_boards = next_bus;
+  Over over = Over::time;
+  while (over == Over::time && !server.is_over()) {
+    auto until = std::min(next_bus, next_boards);
+    if (const auto next = control.next()) until = std::min(until, *next);
+    over = live.receive_any(until, [&](const transport::ReceivedAny& received) {
+      server.take({received.time, received.frame, 0}, interfaces);
+      if (const auto classic = received.frame.classic()) control.heard({received.time, *classic});
+      if (++unsent >= most_unsent) wake();
+      // What is due is done between two frames, too, however many come.
+      if (const auto next = control.next(); next && *next <= Clock::now()) control.advance();
+      return true;
+    });
+    control.advance();
+    const auto now = Clock::now();
+    server.lost_so_far(bus.name(), bus.counters().lost);
+    if (now >= next_bus) {
+      server.until(unix_time());
+      server.publish_bus(unix_time());
+      server.publish_parameters(unix_time());
+      server.publish_operator(watch);
+      next_bus = now + bus_interval;
+      if (over == Over::time && operator_changed()) over = Over::enough;
+    }
+    if (now >= next_boards) {
+      server.publish_boards(bus.counters());
+      server.publish_bounds(unix_time());
+      next_boards = now + boards_interval;
+    }
+    wake();
+  }
+  if (!control.rest()) complain({"the last set point of rest did not leave", still_moving});
+  return over;
+}
+
+}  // namespace
+
+int serve_bus(PageServer& server, Session& session, std::unique_ptr<transport::Bus> bus) {
+  log::Interfaces interfaces;
+  interfaces.number(bus->name());
+  const OperatorWatch watch{std::string{bus->name()}};
+  auto* operated = dynamic_cast<OperatedBus*>(bus.get());
+  for (;;) {
+    // Set points go through an operator from the moment that there is one, and until there is none.
+    const auto changed = [&] {
+      if (!server.takes_commands()) return false;
+      return operated != nullptr ? operated->over() || watch.presence() == Presence::none
+                                 : watch.presence() == Presence::runs;
+    };
+    const Over over = serve_frames(server, *bus, interfaces, watch, changed);
+    if (over != Over::enough) {
+      server.close();
+      if (over == Over::gone && interrupted() == 0) fail(bus->failure());
+      return exit_code_after_interrupt(exit_success);
+    }
+    if (operated != nullptr) bus = std::exchange(operated, nullptr)->release();
+    auto link = connect_operator(bus->name(), "serve");
+    if (link && *link != nullptr) {
+      server.say(fmt::format("{} guards the robot: set points go through it", (*link)->who()));
+      auto guarded =
+          std::make_unique<OperatedBus>(std::move(bus), std::move(*link), session.catalogue(), "serve");
+      operated = guarded.get();
+      bus = std::move(guarded);
+    } else if (link) {
+      server.say("no operator runs any more: what viewers command goes to the bus itself");
+    }
+  }
+}
+
+}  // namespace ocm::cli::serve
