@@ -133,7 +133,7 @@ struct Campaign {
   int sampled_long = 0;  ///< without what its board takes the bound would have been too small
 
   void run(std::uint32_t seed) {
-    Random random{seed};
+    Chance random{seed};
     Tables t;
     if (!make(t, random)) {
       ++refused;

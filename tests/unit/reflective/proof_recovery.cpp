@@ -126,7 +126,7 @@ struct Campaign {
   double closest = 0;
 
   void run(std::uint32_t seed) {
-    Random random{seed};
+    Chance random{seed};
     Tables t;
     if (!make(t, random, true)) return;
     ++operators;

@@ -84,9 +84,9 @@ struct Tables {
   }
 };
 
-class Random {
+class Chance {
  public:
-  explicit Random(std::uint32_t seed) : random_(seed) {}
+  explicit Chance(std::uint32_t seed) : random_(seed) {}
   Ns up_to(Ns most) { return std::uniform_int_distribution<Ns>{0, most}(random_); }
   /// Often one of the ends.
   Ns extreme(Ns most) {
@@ -101,7 +101,7 @@ class Random {
 
 /// A fall-back that stops something, and one to three others, each with a monitor of some of its streams.
 /// False: one that the proof refuses.
-inline bool make(Tables& t, Random& random, bool asks_again = false) {
+inline bool make(Tables& t, Chance& random, bool asks_again = false) {
   const auto sensors = static_cast<std::uint16_t>(1 + random.up_to(3));
   for (std::uint16_t s = 0; s < sensors; ++s) {
     std::vector<std::uint16_t> lengths{static_cast<std::uint16_t>(1 + random.up_to(7))};
