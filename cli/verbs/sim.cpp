@@ -24,7 +24,9 @@ using simulate::Cast;
 
 void add_boards(Verb verb, sim::AmiroOptions& options, std::string& boards) {
   verb.add_flag("--frozen", options.world.frozen, "freeze the world's time: nothing moves, no noise");
-  verb.add_option("--without", options.without, "switch a board off").type_name("BOARD").delimiter(',');
+  verb.add_option("--without", options.without, "switch a board, or a node of a DBC file, off")
+      .type_name("BOARD")
+      .delimiter(',');
   verb.add_option("--speed", options.speed, "how many times faster than real time")
       .range(0.001, 1000.0)
       .type_name("N");
@@ -55,10 +57,27 @@ void add_boards(Verb verb, sim::AmiroOptions& options, std::string& boards) {
 
 /// What is meant for the AMiRo's boards.
 void refuse_boards_of_messages(Verb verb) {
-  for (const char* option : {"--boards", "--images", "--without", "--frozen"})
+  for (const char* option : {"--boards", "--images", "--frozen"})
     if (verb.count(option) != 0)
       fail({fmt::format("sim: {} with the messages of a spec", option), "they have no boards: leave one out"},
            exit_usage);
+}
+
+/// Their places in the catalogue; leaves where there is no such node.
+std::vector<std::uint8_t> nodes_of(const std::vector<std::string>& names,
+                                   const protocol::Catalogue& catalogue) {
+  std::vector<std::uint8_t> nodes;
+  for (const auto& name : names) {
+    const auto found = std::find_if(catalogue.boards.begin(), catalogue.boards.end(),
+                                    [&name](const protocol::Board& board) { return board.name == name; });
+    if (found == catalogue.boards.end()) {
+      std::vector<std::string_view> known;
+      for (const auto& board : catalogue.boards) known.push_back(board.name);
+      fail({fmt::format("sim: no node '{}'", name), words::suggestion(name, known)}, exit_usage);
+    }
+    nodes.push_back(static_cast<std::uint8_t>(found - catalogue.boards.begin()));
+  }
+  return nodes;
 }
 
 /// As the options say, or the spec.
@@ -84,7 +103,9 @@ sim::MessagesOptions messages_options(Verb verb, const sim::AmiroOptions& option
   refuse_boards_of_messages(verb);
   const auto rates = bit_rates(verb, options, session, true);
   if (!simulate::on_virtual_bus(session)) refuse_bus_options(verb, session);
-  return {.play = {options.world.seed, options.sporadic},
+  return {.play = {.seed = options.world.seed,
+                   .sporadic = options.sporadic,
+                   .without = nodes_of(options.without, session.catalogue())},
           .bit_rate = rates.nominal,
           .data_bit_rate = rates.data,
           .bus_errors = options.bus_errors,

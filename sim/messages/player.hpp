@@ -43,6 +43,9 @@ struct PlayOptions {
   /// How far apart messages without a period are, on average; 0: they are not sent.
   base::Duration sporadic{};
   bool fd = true;  ///< whether there is a bus that carries CAN FD
+  /// Nodes that send nothing, since real ones are to be connected in their place: what the others send is the
+  /// same as with them.
+  std::vector<std::uint8_t> without{};
 };
 
 /// A message that is played, or why it is not.
@@ -54,6 +57,7 @@ struct PlayedMessage {
 
 /// Messages that stay out, by cause, in the order of the catalogue.
 struct LeftOut {
+  std::vector<const protocol::Topic*> switched_off;  ///< PlayOptions::without
   std::vector<const protocol::Topic*> without_period;
   std::vector<const protocol::Topic*> no_fd;     ///< CAN FD, where the bus has none
   std::vector<const protocol::Topic*> too_long;  ///< more bytes than a frame has: 8, CAN FD 64; no J1939
@@ -75,14 +79,17 @@ inline constexpr base::Duration broadcast_distance = std::chrono::milliseconds{5
 
 class MessagePlayer {
  public:
-  explicit MessagePlayer(const protocol::Catalogue& catalogue, PlayOptions options = {}) : options_(options) {
+  explicit MessagePlayer(const protocol::Catalogue& catalogue, PlayOptions options = {})
+      : options_(std::move(options)) {
     std::uint64_t number = 0;
     for (const auto& topic : catalogue.topics) {
       if (!topic.is_message() || topic.frames.empty()) continue;
       const auto& layout = topic.frames[0];
-      if (topic.cycle.count() <= 0 && options.sporadic.count() <= 0)
+      if (std::find(options_.without.begin(), options_.without.end(), topic.board) != options_.without.end())
+        left_out_.switched_off.push_back(&topic);
+      else if (topic.cycle.count() <= 0 && options_.sporadic.count() <= 0)
         left_out_.without_period.push_back(&topic);
-      else if (layout.fd && !options.fd)
+      else if (layout.fd && !options_.fd)
         left_out_.no_fd.push_back(&topic);
       else if (layout.length > (layout.fd ? can::max_fd_length : can::max_dlc) && !is_broadcast(layout))
         left_out_.too_long.push_back(&topic);

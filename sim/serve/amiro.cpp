@@ -124,7 +124,7 @@ Ending serve_amiro(const std::string& path, const AmiroOptions& options, const S
   if (auto started = wait_until_ready(boards, clock, shell); !started.well()) return started;
   const protocol::Catalogue none;
   MessageNodes messages{options.messages != nullptr ? *options.messages : none,
-                        {options.world.seed, options.sporadic},
+                        {.seed = options.world.seed, .sporadic = options.sporadic},
                         arbiter};
   report_left_out(messages.player(), shell);
   shell.report(fmt::format("simulated {}{} on --bus {} ({}), {} bit/s; Ctrl-C ends it",

@@ -74,6 +74,8 @@ void MessageNodes::summarise(const Shell& shell) const {
 
 void report_left_out(const MessagePlayer& player, const Shell& shell, const host::Failure& no_fd) {
   const auto& left = player.left_out();
+  if (!left.switched_off.empty())
+    shell.report(fmt::format("not sent, since switched off: {}", names(left.switched_off)));
   if (!left.without_period.empty())
     shell.report(fmt::format("not sent, since the spec states no period: {} (--sporadic 1s sends them too)",
                              names(left.without_period)));
@@ -90,6 +92,10 @@ Ending nothing_to_play(const MessagePlayer& player, const protocol::Catalogue& c
   if (!left.no_fd.empty())
     return Ending{{fmt::format("sim: no message of '{}' can be sent: {}", name_of(catalogue), no_fd.what),
                    no_fd.remedy}};
+  if (left.without_period.empty() && !left.switched_off.empty())
+    return Ending{{fmt::format("sim: no message of '{}' is left to send", name_of(catalogue)),
+                   "switch fewer nodes off"},
+                  true};
   if (left.without_period.empty())
     return Ending{{fmt::format("sim: no message of '{}' fits into a frame", name_of(catalogue)),
                    "give a spec with messages of at most 8 bytes, or 64 in CAN FD"},

@@ -106,6 +106,26 @@ TEST_CASE("What is not played is listed by cause; without a period only on reque
   CHECK(buttons < 70);
 }
 
+TEST_CASE("What other nodes send is the same without a node") {
+  const auto& boards = bus().catalogue().boards;
+  for (std::uint8_t node = 0; node < boards.size(); ++node) {
+    CAPTURE(boards[node].name);
+    std::vector<Sent> others;
+    for (auto& each : played({.seed = 4, .sporadic = 1s}, 5s))
+      if (each.topic->board != node) others.push_back(std::move(each));
+    const auto left = played({.seed = 4, .sporadic = 1s, .without = {node}}, 5s);
+    REQUIRE(left.size() == others.size());
+    std::size_t same = 0;
+    for (std::size_t i = 0; i < left.size(); ++i)
+      same += left[i].frame == others[i].frame && left[i].due == others[i].due ? 1U : 0U;
+    CHECK(same == left.size());
+    const sim::MessagePlayer player{bus().catalogue(), {.sporadic = 1s, .without = {node}}};
+    for (const auto* topic : player.left_out().switched_off) CHECK(topic->board == node);
+    CHECK(player.size() + player.left_out().switched_off.size() ==
+          sim::MessagePlayer{bus().catalogue(), {.sporadic = 1s}}.size());
+  }
+}
+
 TEST_CASE("Messages of CAN FD are frames of CAN FD, of a length that there is") {
   std::map<std::string, int> count;
   for (const auto& each : played({.seed = 1}, 2s)) {

@@ -104,6 +104,25 @@ class SimMessages(Case):
         self.assertIn("was ended", err)
         self.assertNotIn("crashed", err)
 
+    def test_the_rest_of_the_bus_around_a_real_node(self):
+        car = os.path.join(SOURCE, "examples", "small_car.dbc")
+        sim = self.start("sim", "--spec", car, "--without", "EngineControl,Brakes")
+        said = ""
+        while "Ctrl-C ends it" not in said:
+            said = sim.stderr.readline()
+            if "switched off" in said:
+                self.assertTrue(said.endswith("not sent, since switched off: Engine, Transmission, Wheels, Driving\n"), said)
+        out, _ = self.run_tool("listen", "--spec", car, "--bus", "sim", "--json", "--timeout", "1500ms")
+        heard = {event["topic"] for event in self.objects(out)}
+        self.assertIn("Doors", heard)
+        self.assertFalse(heard & {"Engine", "Transmission", "Wheels", "Driving"}, heard)
+        self.interrupt(sim)
+        _, err = self.run_tool("sim", "--spec", car, "--without", "EngineControll", code=2)
+        self.assertIn("sim: no node 'EngineControll'", err)
+        self.assertIn("did you mean 'EngineControl'?", err)
+        _, err = self.run_tool("sim", "--spec", car, "--without", "EngineControl,Brakes,BodyControl,BatteryManager,Dashboard", code=2)
+        self.assertIn("switch fewer nodes off", err)
+
     def test_sporadic_messages_on_request(self):
         _, said = self.play("--sporadic", "100ms")
         self.assertNotIn("Button", said)
