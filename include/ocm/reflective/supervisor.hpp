@@ -115,7 +115,7 @@ class Supervisor {
   /// The tables must outlive it, be without mistakes and fit (check.hpp: fits).
   constexpr explicit Supervisor(const Operator& tables) noexcept : tables_(&tables) {}
 
-  /// Enters the initial configuration.
+  /// Enters the initial configuration, and stops the streams of all others: a run before may have left them.
   constexpr Actions start(base::Time now) noexcept {
     actions_.clear();
     enter(tables_->initial, none, now, true);
@@ -387,6 +387,8 @@ class Supervisor {
 
     for (std::size_t s = 0; s < old_streams.size(); ++s)
       if (find(here().streams, old_streams[s].topic) == none) unsubscribe(old_streams[s]);
+    // A run before that was killed has left its streams.
+    if (first) for_each_stream_elsewhere(*tables_, to, [this](const Stream& stream) { unsubscribe(stream); });
     std::uint64_t go_on = 0;
     for (std::size_t s = 0; s < here().streams.size(); ++s) {
       const Stream& stream = here().streams[s];

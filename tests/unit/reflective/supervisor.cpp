@@ -71,14 +71,17 @@ struct Run {
 };
 using enum Action::Kind;
 
-TEST_CASE("supervisor: it starts in the initial configuration, and asks for its streams") {
+TEST_CASE("supervisor: it starts in the initial configuration, asks for its streams and stops all others") {
   const Run run;
   CHECK(run.supervisor.configuration() == guard::idle);
   CHECK(run.supervisor.transition() == none);
-  REQUIRE(run.kinds() == std::vector{switched, command, subscribe});
+  REQUIRE(run.kinds() == std::vector{switched, command, unsubscribe, unsubscribe, subscribe});
   CHECK(run.actions[0].from == none);
   CHECK(run.actions[1].topic == guard::motors);
-  CHECK(run.actions[2].frame == *protocol::publish_every(amiro::PowerStatus::id, 1000ms));
+  // Of `driving` and `stopped`, each once: a run that was killed may have left them.
+  CHECK(run.actions[2].topic == guard::ring);
+  CHECK(run.actions[3].frame == protocol::stop(amiro::Odometry::id));
+  CHECK(run.actions[4].frame == *protocol::publish_every(amiro::PowerStatus::id, 1000ms));
 }
 
 TEST_CASE("supervisor: a switch commands first, then stops, then asks; what goes on is left alone") {
