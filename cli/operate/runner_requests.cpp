@@ -148,7 +148,10 @@ std::string Runner::pass_on(Caller& caller, std::string_view text) {
     }
   }
   const auto taken = bus_->send(*frame);
-  if (!taken || !*taken) return wait();
+  if (!taken || !*taken) {
+    supervisor_.not_sent();
+    return wait();
+  }
   ++commands_.passed;
   caller.handed_over = ++handed_over_;
   if (!limited.empty()) ++commands_.limited;

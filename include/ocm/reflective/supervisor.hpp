@@ -137,6 +137,7 @@ class Supervisor {
 
   /// A set point of another program, as the configuration permits it. Returns how many values were changed.
   constexpr std::size_t permit(std::uint16_t topic, std::span<std::int64_t> raw, base::Time now) noexcept {
+    before_ = limiter_;
     const std::size_t changed = limiter_.permit(topic, raw, now);
     counters_.limited += static_cast<std::uint32_t>(changed);
     return changed;
@@ -144,8 +145,13 @@ class Supervisor {
 
   /// A set point that is sent as it is, such as rest, which no limit slows down: the next one starts from it.
   constexpr void commanded(std::uint16_t topic, std::span<const std::int64_t> raw, base::Time now) noexcept {
+    before_ = limiter_;
     limiter_.commanded(topic, raw, now);
   }
+
+  /// The set point of the last `permit` or `commanded` could not be sent: the next one does not start from
+  /// it, or else a change in steps would go on unseen while the bus takes nothing. Before any other call.
+  constexpr void not_sent() noexcept { limiter_ = before_; }
 
   /// From the next step on: make one, since `next()` is as before until then.
   constexpr void hold(bool held) noexcept { on_hold_ = held; }
@@ -555,6 +561,7 @@ class Supervisor {
   std::array<base::Time, room.entry> repeats_{};
   std::array<Adapted, room.adaptations> adapted_{};
   Limiter<room.limits> limiter_;
+  Limiter<room.limits> before_;  ///< the last set point of another program
   SupervisorCounters counters_;
   base::FixedVector<Action, room.actions()> actions_;
 };

@@ -303,6 +303,27 @@ TEST_CASE("supervisor: set points of others are held within the limits") {
   CHECK(run.supervisor.counters().limited == 2);
 }
 
+TEST_CASE("supervisor: a set point that the bus did not take is as if it had not been asked for") {
+  Run run;
+  run.ask(60ms, guard::driving);
+  std::int64_t raw[] = {1'000'000, 0};
+  run.supervisor.permit(guard::motors, raw, run.now);
+  for (int i = 1; i <= 5; ++i) {
+    raw[0] = 1'000'000;
+    run.supervisor.permit(guard::motors, raw, run.now + i * 100ms);
+    CHECK(raw[0] == 20'000);
+    run.supervisor.not_sent();
+  }
+  raw[0] = 1'000'000;
+  run.supervisor.permit(guard::motors, raw, run.now + 600ms);
+  CHECK(raw[0] == 20'000);  // not 120'000
+  run.supervisor.commanded(guard::motors, guard::rest, run.now + 610ms);
+  run.supervisor.not_sent();
+  raw[0] = 1'000'000;
+  run.supervisor.permit(guard::motors, raw, run.now + 700ms);
+  CHECK(raw[0] == 40'000);
+}
+
 TEST_CASE("supervisor: an adaptation follows a value, within its bounds and not too often") {
   const auto& field = amiro::catalogue.topics[guard::ring].frames[0].fields[0];
   std::vector<Adaptation> adaptations{{.stream = 1,
