@@ -112,6 +112,12 @@ class Checked(Operate):
         mended(document)
         self.run_tool("operate", self.write(document), "--check")
 
+    def test_values_that_go_stale_at_the_longest_period_of_an_adaptation(self):
+        def change(document):
+            document["configurations"][1]["streams"][0]["adapt"] = {
+                "field": "odometry.velocity.x", "from": "0m/s", "to": "0.1m/s", "at_from": "250ms", "at_to": "50ms"}
+        self.refused(change, "go stale after three periods", "\"at_from\" and \"at_to\" nearer to each other")
+
     def test_what_others_send_counts(self):
         alone = json.loads(self.run_tool("operate", GUARD, "--check", "--json")[0])
         document = guard()
@@ -301,6 +307,25 @@ class Mistakes(Operate):
         def beyond(document):
             document["configurations"][1]["entry"] = [{"topic": "motors", "values": {"x": "0.2m/s"}}]
         self.refused(beyond, "/configurations/1/entry/0: a set point is beyond the limit", "\"limits\" of \"driving\"")
+
+        def still(document):  # 0 would be no limit at all
+            document["configurations"][1]["limits"][0]["per_second"] = "0m/s"
+        self.refused(still, "/configurations/1/limits/0/per_second: \"0m/s\" is no distance of two values", "above 0")
+
+    def test_times_that_no_clock_has_room_for_or_that_take_hours_to_analyse(self):
+        for member in ("settle", "reaction", "handling"):
+            for time in ("61s", "3000000s", "9223372036854775807ns"):
+                def long(document):
+                    document[member] = time
+                self.refused(long, f"/{member}: \"{time}\" is too long", "at most \"60s\"")
+
+        def lasting(document):
+            document["monitors"][2]["for"] = "9223372036s"
+        self.refused(lasting, "/monitors/2/for: \"9223372036s\" is too long", "at most \"86400s\"")
+
+        def age(document):
+            document["monitors"][0]["when"]["any"][4]["above"] = "86401s"
+        self.refused(age, "/monitors/0/when/any/4/above: \"86401s\" is too long")
 
     def test_what_it_repeats_no_verb_of_its_own_may_command(self):
         def both(document):
