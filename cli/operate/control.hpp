@@ -39,7 +39,10 @@ class Control {
   [[nodiscard]] int descriptor() const noexcept { return server_->descriptor(); }
   /// Takes what there is, and waits for nothing.
   void serve() { server_->serve(); }
-  /// Programs that were disconnected: they did not greet, or did not read their answers.
+  /// Whether programs find it, and what makes that so again.
+  [[nodiscard]] bool is_found() const noexcept { return server_->is_found(); }
+  [[nodiscard]] transport::Outcome<void> return_to_path() { return server_->return_to_path(); }
+  /// Programs that were disconnected: cli/shared/local_server.hpp says why.
   [[nodiscard]] std::uint64_t turned_away() const noexcept { return server_->turned_away(); }
 
  private:

@@ -102,6 +102,7 @@ Over Runner::run() {
     const base::Time at = now();
     if (window_end_ <= at) end_window(at);
     if (keep_up_at_ <= at) keep_up(at);
+    if (look_at_socket_at_ <= at) look_at_socket(at);
     if (supervisor_.next() <= at) {
       const base::Duration late = at - supervisor_.next();
       step({}, at);

@@ -76,6 +76,8 @@ class Runner {
   void take(const transport::ReceivedAny& received);
   void take_error(const can::AnyFrame& frame);
   void look_at_bus();
+  /// Other programs command past an operator that they do not find.
+  void look_at_socket(base::Time at);
   void set_bus_state(reflective::BusState state);
   void end_window(base::Time at);
   void queue(const can::Frame& frame);
@@ -120,6 +122,8 @@ class Runner {
   base::Duration window_{};  ///< of the load; 0: no condition looks at it
   base::Time window_end_ = base::never;
   base::Time keep_up_at_ = base::never;
+  base::Time look_at_socket_at_{};
+  bool is_found_ = true;
   std::uint64_t bits_ = 0;
   std::uint64_t handed_over_ = 0;  ///< frames that the bus took, its own and those of others
   RunCounters counters_;

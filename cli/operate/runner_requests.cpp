@@ -37,6 +37,23 @@ std::string Runner::answer(Caller& caller, std::string_view request) {
   return no("that is no request to an operator", "status, why, switch, hold, resume");
 }
 
+void Runner::look_at_socket(base::Time at) {
+  constexpr base::Duration every{200'000'000};
+  look_at_socket_at_ = at + every;
+  if (control_->is_found()) return;
+  const auto back = control_->return_to_path();
+  if (back) {
+    is_found_ = true;
+    return tell("socket", {{"found", true}},
+                "its socket was removed, and is there again: what programs commanded meanwhile went past it");
+  }
+  if (!is_found_) return;
+  is_found_ = false;
+  tell(
+      "socket", {{"found", false}, {"problem", back.error.what}},
+      fmt::format("its socket was removed, so that what programs command goes past it: {}", back.error.what));
+}
+
 std::string Runner::switch_to(const Caller& caller, std::string_view name) {
   const auto& tables = file_->tables;
   const auto& configurations = tables.configurations;

@@ -926,6 +926,92 @@ class Asked(Operating):
                     operator.kill()
                 operator.wait()
 
+    def test_a_request_of_a_program_that_has_left_is_not_met(self):
+        # It was in a hurry, found the operator stopped, and has set the motors to zero past it.
+        self.start_sim()
+        operator = self.operate(document=GUARDED)
+        listener = self.raw_frames("motors")
+        client = self.client("drive")
+        gone = self.client("operator")
+        operator.send_signal(signal.SIGSTOP)
+        client.send(b"send 201#1027000000000000")
+        gone.send(b"switch slow")
+        client.close()
+        gone.close()
+        operator.send_signal(signal.SIGCONT)
+        out, _ = self.run_tool("operator", "status", "--json")
+        self.assertEqual(json.loads(out)["set_points"]["passed"], 0)
+        self.assertNotEqual(json.loads(out)["configuration"], "slow")
+        self.assertEqual({x_of(frame) for _, frame in self.frames(listener)} - {0}, set())
+        _, err = self.interrupt(operator)
+        self.assertIn("2 programs turned away", err)
+
+    def test_who_says_nothing_keeps_no_other_program_away(self):
+        self.start_sim()
+        operator = self.operate(document=GUARDED)
+        path = os.path.join(self.environment["XDG_RUNTIME_DIR"], "ocm", "operator-sim.sock")
+        for _ in range(70):
+            silent = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+            self.addCleanup(silent.close)
+            silent.connect(path)
+        self.run_tool("operator", "switch", "slow")
+        greeted = [self.client("drive") for _ in range(64)]
+        _, err = self.run_tool("operator", "switch", "halted", code=1)
+        self.assertIn("64 programs are connected already", err)
+        greeted[0].close()
+        self.run_tool("operator", "switch", "halted")
+        self.interrupt(operator)
+        self.assertEqual(operator.returncode, 130)
+
+    def client(self, verb):
+        client = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self.addCleanup(client.close)
+        client.settimeout(20)
+        client.connect(os.path.join(self.environment["XDG_RUNTIME_DIR"], "ocm", "operator-sim.sock"))
+        client.send(f"hello 1 {verb}".encode())
+        self.assertEqual(client.recv(100), b"ok\nhalt")
+        return client
+
+    def test_it_is_found_from_another_environment(self):
+        # As those of cron, sudo and the system's services: without it they would command past the operator.
+        bus = "sim:" + os.path.join(self.folder, "other.sock")
+        self.start_sim("--bus", bus)
+        mine = self.environment
+        self.environment = {name: mine[name] for name in mine if name != "XDG_RUNTIME_DIR"}
+        operator = self.operate(bus=bus)
+        self.environment = mine
+        out, _ = self.run_tool("--bus", bus, "operator", "status", "--json")
+        self.assertEqual(json.loads(out)["operator"], "halt")
+        _, err = self.run_tool("--bus", bus, "operate", self.write(HALT, "second.json"), code=1)
+        self.assertIn(f"operator halt (process {operator.pid}) has {bus} already, which was started in another environment", err)
+        self.interrupt(operator)
+        self.assertEqual(operator.returncode, 130)
+
+    def test_its_socket_is_removed_and_comes_back(self):
+        self.start_sim()
+        operator = self.operate(document=GUARDED)
+        folder = os.path.join(self.environment["XDG_RUNTIME_DIR"], "ocm")
+        os.remove(os.path.join(folder, "operator-sim.sock"))
+        self.assertEqual(self.event(operator, "socket")["found"], True)
+        self.run_tool("operator", "status")
+        _, err = self.run_tool("operate", self.write(HALT, "second.json"), code=1)
+        self.assertIn("has sim already", err)
+        # With its directory, as that of a user who logs out; here it cannot be made again at first.
+        away = self.environment["XDG_RUNTIME_DIR"] + ".away"
+        os.rename(folder, away)
+        self.addCleanup(shutil.rmtree, away, True)
+        with open(folder, "w", encoding="utf-8"):
+            pass
+        event = self.event(operator, "socket")
+        self.assertEqual(event["found"], False)
+        self.assertIn("is not a directory", event["problem"])
+        os.remove(folder)
+        self.assertEqual(self.event(operator, "socket")["found"], True)
+        self.run_tool("operator", "status", "--bus", "sim")
+        self.interrupt(operator)
+        self.assertEqual(operator.returncode, 130)
+        self.assertEqual(os.listdir(folder), [])
+
     def test_a_second_operator_is_refused_by_name(self):
         self.start_sim()
         operator = self.operate(document=GUARDED)
