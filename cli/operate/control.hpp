@@ -23,6 +23,7 @@ using answers::yes;
 struct Caller : LocalCaller {
   std::vector<std::uint16_t> commanded;  ///< topics; each was commanded once
   std::vector<std::uint16_t> limited;
+  std::vector<std::uint16_t> beyond;
   std::uint64_t handed_over = 0;  ///< frames of all to the bus, up to the last one of this program
 };
 

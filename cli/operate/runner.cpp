@@ -64,7 +64,8 @@ Runner::Runner(transport::Bus& bus, Control& control, const protocol::Catalogue&
       receiver_(catalogue, client::Transport::together),
       index_(catalogue),
       refusals_(catalogue),
-      supervisor_(file.tables) {
+      supervisor_(file.tables),
+      counted_(file) {
   for (const auto& condition : file.conditions)
     if (condition.watched == reflective::Watched::bus_load) window_ = condition.window;
   control.begin(file.name,
@@ -352,6 +353,7 @@ void Runner::sum_up() {
   add_count(text, commands_.passed, "set points passed on");
   add_count(text, commands_.limited, "set points limited");
   add_count(text, commands_.refused, "set points refused");
+  add_count(text, commands_.beyond, "set points more often, or more urgent, than the proof counts");
   add_count(text, control_->turned_away(), "programs turned away");
   add_count(text, counters_.recordings, "recordings");
   add_count(text, counters_.recordings_lost, "recordings lost");

@@ -25,6 +25,7 @@
 #include "cli/operate/background.hpp"
 #include "cli/operate/black_box.hpp"
 #include "cli/operate/control.hpp"
+#include "cli/operate/counted.hpp"
 #include "cli/operate/operator_file.hpp"
 #include "cli/operate/service.hpp"
 #include "cli/shared/json.hpp"
@@ -98,7 +99,7 @@ class Runner {
   [[nodiscard]] const reflective::SetPoint* own_set_point(std::uint16_t topic) const;
   [[nodiscard]] std::string commands(std::string_view text) const;
   /// Tells once a program and topic.
-  void tell_command(Caller& caller, std::uint16_t topic, const std::string& limited);
+  void tell_command(Caller& caller, std::uint16_t topic, const std::string& limited, bool beyond);
   [[nodiscard]] Answers answers() const { return {*file_, supervisor_, changes_, commands_, lines_lost_}; }
 
   void tell_switch(const reflective::Action& action);
@@ -128,6 +129,7 @@ class Runner {
   std::uint64_t handed_over_ = 0;  ///< frames that the bus took, its own and those of others
   RunCounters counters_;
   CommandCounters commands_;
+  Counted counted_;
   std::deque<Change> changes_;
   Service service_;
   std::atomic<std::uint64_t> lines_lost_ = 0;  ///< no reader, a full disk, or a reader that took too long

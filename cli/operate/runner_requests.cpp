@@ -6,6 +6,7 @@
 
 #include "ocm/can/text.hpp"
 #include "ocm/measure/bus_load.hpp"
+#include "ocm/protocol/identifier.hpp"
 
 #include "cli/operate/runner.hpp"
 #include "cli/shared/messages.hpp"
@@ -172,15 +173,18 @@ std::string Runner::pass_on(Caller& caller, std::string_view text) {
   ++commands_.passed;
   caller.handed_over = ++handed_over_;
   if (!limited.empty()) ++commands_.limited;
+  const bool beyond = !counted_.take(supervisor_.configuration(), number,
+                                     protocol::Identifier::decode(frame->id).priority, now());
+  if (beyond) ++commands_.beyond;
   bits_ += measure::bits_on_bus(*frame);
   log::Entry entry{unix_time(), *frame};
   entry.direction = log::Direction::sent;
   box_.add(entry, Clock::now());
-  tell_command(caller, number, limited);
+  tell_command(caller, number, limited, beyond);
   return yes(fmt::format("{}\n{}", can::to_text(*frame).view(), limited));
 }
 
-void Runner::tell_command(Caller& caller, std::uint16_t topic, const std::string& limited) {
+void Runner::tell_command(Caller& caller, std::uint16_t topic, const std::string& limited, bool beyond) {
   const auto first = [topic](std::vector<std::uint16_t>& told) {
     if (std::find(told.begin(), told.end(), topic) != told.end()) return false;
     told.push_back(topic);
@@ -193,6 +197,11 @@ void Runner::tell_command(Caller& caller, std::uint16_t topic, const std::string
   if (!limited.empty() && first(caller.limited))
     tell("limited", {{"fields", limited}, {"by", caller.verb}, {"process", caller.process}},
          fmt::format("{} (process {}) is limited: {}", caller.verb, caller.process, limited));
+  if (beyond && first(caller.beyond))
+    tell("beyond_proof", {{"topic", name}, {"by", caller.verb}, {"process", caller.process}},
+         fmt::format("{} (process {}) commands {} more often, or more urgently, than the proof counts: the "
+                     "bounds do not hold meanwhile",
+                     caller.verb, caller.process, name));
 }
 
 }  // namespace ocm::cli::operate

@@ -732,7 +732,7 @@ class Asked(Operating):
         status = json.loads(self.run_tool("operator", "status", "--json")[0])
         self.assertEqual((status["operator"], status["configuration"], status["on_hold"]), ("halt", "driving", False))
         self.assertEqual(status["streams"][0]["topic"], "odometry")
-        self.assertEqual(status["set_points"], {"passed": 0, "limited": 0, "refused": 0})
+        self.assertEqual(status["set_points"], {"passed": 0, "limited": 0, "refused": 0, "beyond_proof": 0})
         out, _ = self.run_tool("operator", "status")
         self.assertRegex(out, "^operator halt is in driving since [0-9]+")
         self.assertRegex(out, "(?m)^  odometry +every 50ms +last [0-9]+(us|ms) ago$")
@@ -812,7 +812,7 @@ class Asked(Operating):
         _, err = self.run_tool("drive", "1cm/s", "--for", "200ms", code=1)
         self.assertIn("where drive may not command motors", err)
         status = json.loads(self.run_tool("operator", "status", "--json")[0])
-        self.assertEqual(status["set_points"], {"passed": 4, "limited": 1, "refused": 1})
+        self.assertEqual(status["set_points"], {"passed": 4, "limited": 1, "refused": 1, "beyond_proof": 0})
 
     def test_behaviours_of_boards_need_its_leave_and_their_end_does_not(self):
         self.start_sim()
@@ -971,6 +971,36 @@ class Asked(Operating):
         client.send(f"hello 1 {verb}".encode())
         self.assertEqual(client.recv(100), b"ok\nhalt")
         return client
+
+    def test_set_points_beyond_what_the_proof_counts_are_said_and_counted(self):
+        self.start_sim()
+        document = json.loads(json.dumps(GUARDED))
+        document["monitors"][0]["when"] = "odometry.velocity.x>0.5m/s"
+        operator = self.operate(document=document)
+        client = self.client("set")
+
+        def command(frame):
+            client.send(b"send " + frame)
+            self.assertEqual(client.recv(1000).split(b"\n")[0], b"ok")
+
+        def beyond():
+            out, _ = self.run_tool("operator", "status", "--json")
+            return json.loads(out)["set_points"]["beyond_proof"]
+        command(b"201#0100000000000000")  # as often as a drive, with its jitter
+        command(b"201#0100000000000000")
+        self.assertEqual(beyond(), 0)
+        time.sleep(0.3)  # of the operator's own clock
+        command(b"101#0100000000000000")  # more urgent
+        event = self.event(operator, "beyond_proof")
+        self.assertEqual((event["topic"], event["by"]), ("motors", "set"))
+        self.assertEqual(beyond(), 1)
+        for _ in range(10):
+            command(b"201#0100000000000000")
+        self.assertGreater(beyond(), 1)
+        out, _ = self.run_tool("operator", "status")
+        self.assertRegex(out, "[0-9]+ of them more often, or more urgent, than the proof counts")
+        _, err = self.interrupt(operator)
+        self.assertRegex(err, "[0-9]+ set points more often, or more urgent, than the proof counts")
 
     def test_it_is_found_from_another_environment(self):
         # As those of cron, sudo and the system's services: without it they would command past the operator.
