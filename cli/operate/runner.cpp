@@ -76,10 +76,7 @@ Over Runner::run() {
   const base::Time begin = nothing_waited_ = now();
   if (window_.count() > 0) window_end_ = begin + window_;
   if (box_.keeps()) keep_up_at_ = begin + keep_up_every;
-  if (const auto left = box_.recover(unix_time()))
-    tell("recovered", {{"file", *left}},
-         fmt::format("the last run of operator {} was killed; its last seconds are in {}", file_->tables.name,
-                     *left));
+  recover();
   carry_out(supervisor_.start(begin), begin);
   look_at_bus();  // a monitor that looks at its state would know nothing of it until it changes
   service_.ready(fmt::format("operator {} on {}", file_->tables.name, bus_->name()));
@@ -111,6 +108,17 @@ Over Runner::run() {
     }
     flush();  // behind the step: it may have replaced what waits
   }
+}
+
+void Runner::recover() {
+  const auto left = box_.recover(unix_time());
+  for (const auto& file : left.files)
+    tell("recovered", {{"file", file}},
+         fmt::format("the last run of operator {} was killed; its last seconds are in {}", file_->tables.name,
+                     file));
+  if (!left.lost) return;
+  ++counters_.recordings_lost;
+  complain({fmt::format("operate: --black-box: {}", left.lost->what), left.lost->remedy});
 }
 
 void Runner::step(const Event& event, base::Time at) {

@@ -86,6 +86,8 @@ class Runner {
   /// How long a step took that was due at `due`; negative where that is not known.
   void judge(base::Duration late);
   void record();
+  /// What a run that was killed has left; the robot is guarded whatever becomes of that.
+  void recover();
   /// What has come since the last time goes to the disk.
   void keep_up(base::Time at);
 

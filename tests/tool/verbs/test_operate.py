@@ -599,6 +599,48 @@ class Running(Operating):
         self.interrupt(operator)
         self.assertEqual(os.listdir(box), [os.path.basename(event["file"])])  # it ended by itself
 
+    def test_what_a_killed_operator_saw_is_kept_on_a_full_disk_too(self):
+        self.start_sim()
+        box = os.path.join(self.folder, "box")
+        os.mkdir(box)
+        lines = {0: "(1700000001.000000) sim 201#0000000000000000\n" * 9, 1: "(1700000000.000000) sim 103#00\n" * 9}
+        for number, text in lines.items():
+            path = os.path.join(box, f"halt.running-{number}.log")
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(text)
+            os.utime(path, (1700000001 - number, 1700000001 - number))
+        operator = self.start("operate", self.write(HALT), "--json", "--black-box", box,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (500, 500)))
+        for number in (1, 0):  # in the order of time, neither joined nor cut
+            with open(self.event(operator, "recovered")["file"], encoding="utf-8") as file:
+                self.assertEqual(file.read(), lines[number])
+        self.event(operator, "started")
+        self.interrupt(operator)
+        self.assertEqual(operator.returncode, 130)
+        self.assertEqual(len([name for name in os.listdir(box) if name.endswith("black-box.log")]), 2)
+
+    def test_streams_that_a_killed_operator_has_left_are_stopped(self):
+        self.start_sim()
+        document = json.loads(json.dumps(HALT))
+        document["configurations"].append({"name": "idle", "streams": [{"topic": "power", "period": "1s"}]})
+        document["transitions"] += [{"from": "idle", "to": "driving", "on_request": True},
+                                    {"from": "halted", "to": "idle", "on_request": True}]
+        document["initial"] = "idle"
+        operator = self.operate(document=document)
+        self.run_tool("operator", "switch", "driving")
+        self.event(operator, "switched")
+        operator.kill()
+        operator.wait()
+        listener = self.raw_frames("odometry")
+        for line in listener.stdout:  # it goes on
+            if " 502#" in line or " 503#" in line:
+                break
+        self.operate(document=document)
+        time.sleep(0.5)  # ten periods, in which nothing must come
+        frames = self.frames(listener)
+        stopped = next(at for at, frame in frames if frame == "103#00")
+        self.assertEqual([frame for at, frame in frames if at > stopped + 0.1], [])
+
     def test_of_two_operators_with_one_name_the_second_gets_another_black_box(self):
         self.start_sim()
         other = os.path.join(self.folder, "other.sock")
