@@ -58,6 +58,8 @@ std::string Answers::status(base::Time now) const {
     text += fmt::format("  monitor {:<12} {}\n", tables.monitors[m].name, name_of(supervisor.monitor(m)));
   text += fmt::format("  set points: {} passed on, {} of them limited; {} refused\n", commands.passed,
                       commands.limited, commands.refused);
+  if (commands.beyond != 0)
+    text += fmt::format("  {} of them more often, or more urgent, than the proof counts\n", commands.beyond);
   if (lines_lost != 0) text += fmt::format("  event lines not printed: {}\n", lines_lost);
   return text;
 }
@@ -83,7 +85,10 @@ Json Answers::status_json(base::Time now) const {
           {"streams", streams},
           {"monitors", monitors},
           {"set_points",
-           {{"passed", commands.passed}, {"limited", commands.limited}, {"refused", commands.refused}}},
+           {{"passed", commands.passed},
+            {"limited", commands.limited},
+            {"refused", commands.refused},
+            {"beyond_proof", commands.beyond}}},
           {"lines_not_printed", lines_lost}};
 }
 

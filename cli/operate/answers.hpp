@@ -27,6 +27,7 @@ struct CommandCounters {
   std::uint64_t passed = 0;
   std::uint64_t limited = 0;  ///< of those
   std::uint64_t refused = 0;
+  std::uint64_t beyond = 0;  ///< of those that were passed on: more often, or more urgent, than is proved
 };
 
 struct Answers {

@@ -67,11 +67,11 @@ void BlackBox::add(const log::Entry& entry, Clock::time_point now) {
   fresh_.insert(fresh, entry);
 }
 
-std::optional<std::string> BlackBox::recover(base::Time wall) {
+Spool::Recovered BlackBox::recover(base::Time wall) {
   if (!keeps()) return {};
-  auto left = spool_.recover(path(wall, "killed"));
+  auto left = spool_.recover(path(wall, "killed"), path(wall, "killed-2"));
   if (!left) fail({fmt::format("operate: --black-box: {}", left.error.what), left.error.remedy});
-  if (*left) delete_oldest();
+  if (!left->files.empty()) delete_oldest();
   return std::move(*left);
 }
 

@@ -44,8 +44,8 @@ class BlackBox {
   [[nodiscard]] bool keeps() const noexcept { return !options_.folder.empty(); }
   void add(const log::Entry& entry, Clock::time_point now);
 
-  /// What a run before has left that was killed, if one was: the file. Leaves if it cannot be kept.
-  [[nodiscard]] std::optional<std::string> recover(base::Time wall);
+  /// What a run before has left that was killed, if one was. Leaves if that run goes on.
+  [[nodiscard]] Spool::Recovered recover(base::Time wall);
 
   /// What is older than `settling` and was not taken before, for `spool`.
   [[nodiscard]] std::vector<log::Entry> take_fresh(base::Time wall);

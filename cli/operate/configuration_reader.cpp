@@ -47,14 +47,15 @@ class ConfigurationReader : private ValueReader {
     for (std::size_t i = 0; i < at.node->items.size(); ++i) {
       const auto stream = read_stream(at.item(i), Takes::anything, false);
       if (stream.topic == none || stream.period.count() <= 0) continue;
-      file_.stated_others.push_back(stream.topic);
+      file_.stated_others.push_back(stream);
       add_frames(stream, file_.others);
     }
   }
   void count_others(OperatorFile::Parts& parts) const {
     const auto is_stated = [&](std::uint16_t topic) {
       const auto& stated = file_.stated_others;
-      return std::find(stated.begin(), stated.end(), topic) != stated.end();
+      return std::any_of(stated.begin(), stated.end(),
+                         [topic](const auto& stream) { return stream.topic == topic; });
     };
     for (std::uint16_t t = 0; t < catalogue_.topics.size(); ++t) {
       const protocol::Topic& topic = catalogue_.topics[t];

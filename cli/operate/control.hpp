@@ -23,6 +23,7 @@ using answers::yes;
 struct Caller : LocalCaller {
   std::vector<std::uint16_t> commanded;  ///< topics; each was commanded once
   std::vector<std::uint16_t> limited;
+  std::vector<std::uint16_t> beyond;
   std::uint64_t handed_over = 0;  ///< frames of all to the bus, up to the last one of this program
 };
 
@@ -39,7 +40,10 @@ class Control {
   [[nodiscard]] int descriptor() const noexcept { return server_->descriptor(); }
   /// Takes what there is, and waits for nothing.
   void serve() { server_->serve(); }
-  /// Programs that were disconnected: they did not greet, or did not read their answers.
+  /// Whether programs find it, and what makes that so again.
+  [[nodiscard]] bool is_found() const noexcept { return server_->is_found(); }
+  [[nodiscard]] transport::Outcome<void> return_to_path() { return server_->return_to_path(); }
+  /// Programs that were disconnected: cli/shared/local_server.hpp says why.
   [[nodiscard]] std::uint64_t turned_away() const noexcept { return server_->turned_away(); }
 
  private:

@@ -65,7 +65,7 @@ struct OperatorFile {
   std::vector<reflective::Monitor> monitors;
   std::vector<reflective::Transition> transitions;
   std::vector<analysis::Message> others;
-  std::vector<std::uint16_t> stated_others;  ///< topics of them
+  std::vector<reflective::Stream> stated_others;  ///< of "others"
 };
 
 /// `file` is null exactly when there are problems: all that were found, in the order of the file.

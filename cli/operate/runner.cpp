@@ -64,7 +64,8 @@ Runner::Runner(transport::Bus& bus, Control& control, const protocol::Catalogue&
       receiver_(catalogue, client::Transport::together),
       index_(catalogue),
       refusals_(catalogue),
-      supervisor_(file.tables) {
+      supervisor_(file.tables),
+      counted_(file) {
   for (const auto& condition : file.conditions)
     if (condition.watched == reflective::Watched::bus_load) window_ = condition.window;
   control.begin(file.name,
@@ -75,10 +76,7 @@ Over Runner::run() {
   const base::Time begin = nothing_waited_ = now();
   if (window_.count() > 0) window_end_ = begin + window_;
   if (box_.keeps()) keep_up_at_ = begin + keep_up_every;
-  if (const auto left = box_.recover(unix_time()))
-    tell("recovered", {{"file", *left}},
-         fmt::format("the last run of operator {} was killed; its last seconds are in {}", file_->tables.name,
-                     *left));
+  recover();
   carry_out(supervisor_.start(begin), begin);
   look_at_bus();  // a monitor that looks at its state would know nothing of it until it changes
   service_.ready(fmt::format("operator {} on {}", file_->tables.name, bus_->name()));
@@ -102,6 +100,7 @@ Over Runner::run() {
     const base::Time at = now();
     if (window_end_ <= at) end_window(at);
     if (keep_up_at_ <= at) keep_up(at);
+    if (look_at_socket_at_ <= at) look_at_socket(at);
     if (supervisor_.next() <= at) {
       const base::Duration late = at - supervisor_.next();
       step({}, at);
@@ -109,6 +108,17 @@ Over Runner::run() {
     }
     flush();  // behind the step: it may have replaced what waits
   }
+}
+
+void Runner::recover() {
+  const auto left = box_.recover(unix_time());
+  for (const auto& file : left.files)
+    tell("recovered", {{"file", file}},
+         fmt::format("the last run of operator {} was killed; its last seconds are in {}", file_->tables.name,
+                     file));
+  if (!left.lost) return;
+  ++counters_.recordings_lost;
+  complain({fmt::format("operate: --black-box: {}", left.lost->what), left.lost->remedy});
 }
 
 void Runner::step(const Event& event, base::Time at) {
@@ -351,6 +361,7 @@ void Runner::sum_up() {
   add_count(text, commands_.passed, "set points passed on");
   add_count(text, commands_.limited, "set points limited");
   add_count(text, commands_.refused, "set points refused");
+  add_count(text, commands_.beyond, "set points more often, or more urgent, than the proof counts");
   add_count(text, control_->turned_away(), "programs turned away");
   add_count(text, counters_.recordings, "recordings");
   add_count(text, counters_.recordings_lost, "recordings lost");

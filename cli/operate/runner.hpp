@@ -25,6 +25,7 @@
 #include "cli/operate/background.hpp"
 #include "cli/operate/black_box.hpp"
 #include "cli/operate/control.hpp"
+#include "cli/operate/counted.hpp"
 #include "cli/operate/operator_file.hpp"
 #include "cli/operate/service.hpp"
 #include "cli/shared/json.hpp"
@@ -76,6 +77,8 @@ class Runner {
   void take(const transport::ReceivedAny& received);
   void take_error(const can::AnyFrame& frame);
   void look_at_bus();
+  /// Other programs command past an operator that they do not find.
+  void look_at_socket(base::Time at);
   void set_bus_state(reflective::BusState state);
   void end_window(base::Time at);
   void queue(const can::Frame& frame);
@@ -83,6 +86,8 @@ class Runner {
   /// How long a step took that was due at `due`; negative where that is not known.
   void judge(base::Duration late);
   void record();
+  /// What a run that was killed has left; the robot is guarded whatever becomes of that.
+  void recover();
   /// What has come since the last time goes to the disk.
   void keep_up(base::Time at);
 
@@ -96,7 +101,7 @@ class Runner {
   [[nodiscard]] const reflective::SetPoint* own_set_point(std::uint16_t topic) const;
   [[nodiscard]] std::string commands(std::string_view text) const;
   /// Tells once a program and topic.
-  void tell_command(Caller& caller, std::uint16_t topic, const std::string& limited);
+  void tell_command(Caller& caller, std::uint16_t topic, const std::string& limited, bool beyond);
   [[nodiscard]] Answers answers() const { return {*file_, supervisor_, changes_, commands_, lines_lost_}; }
 
   void tell_switch(const reflective::Action& action);
@@ -120,10 +125,13 @@ class Runner {
   base::Duration window_{};  ///< of the load; 0: no condition looks at it
   base::Time window_end_ = base::never;
   base::Time keep_up_at_ = base::never;
+  base::Time look_at_socket_at_{};
+  bool is_found_ = true;
   std::uint64_t bits_ = 0;
   std::uint64_t handed_over_ = 0;  ///< frames that the bus took, its own and those of others
   RunCounters counters_;
   CommandCounters commands_;
+  Counted counted_;
   std::deque<Change> changes_;
   Service service_;
   std::atomic<std::uint64_t> lines_lost_ = 0;  ///< no reader, a full disk, or a reader that took too long

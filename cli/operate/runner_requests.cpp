@@ -6,6 +6,7 @@
 
 #include "ocm/can/text.hpp"
 #include "ocm/measure/bus_load.hpp"
+#include "ocm/protocol/identifier.hpp"
 
 #include "cli/operate/runner.hpp"
 #include "cli/shared/messages.hpp"
@@ -35,6 +36,23 @@ std::string Runner::answer(Caller& caller, std::string_view request) {
   if (request.starts_with(switches)) return switch_to(caller, request.substr(switches.size()));
   if (request.starts_with(sends)) return pass_on(caller, request.substr(sends.size()));
   return no("that is no request to an operator", "status, why, switch, hold, resume");
+}
+
+void Runner::look_at_socket(base::Time at) {
+  constexpr base::Duration every{200'000'000};
+  look_at_socket_at_ = at + every;
+  if (control_->is_found()) return;
+  const auto back = control_->return_to_path();
+  if (back) {
+    is_found_ = true;
+    return tell("socket", {{"found", true}},
+                "its socket was removed, and is there again: what programs commanded meanwhile went past it");
+  }
+  if (!is_found_) return;
+  is_found_ = false;
+  tell(
+      "socket", {{"found", false}, {"problem", back.error.what}},
+      fmt::format("its socket was removed, so that what programs command goes past it: {}", back.error.what));
 }
 
 std::string Runner::switch_to(const Caller& caller, std::string_view name) {
@@ -148,19 +166,25 @@ std::string Runner::pass_on(Caller& caller, std::string_view text) {
     }
   }
   const auto taken = bus_->send(*frame);
-  if (!taken || !*taken) return wait();
+  if (!taken || !*taken) {
+    supervisor_.not_sent();
+    return wait();
+  }
   ++commands_.passed;
   caller.handed_over = ++handed_over_;
   if (!limited.empty()) ++commands_.limited;
+  const bool beyond = !counted_.take(supervisor_.configuration(), number,
+                                     protocol::Identifier::decode(frame->id).priority, now());
+  if (beyond) ++commands_.beyond;
   bits_ += measure::bits_on_bus(*frame);
   log::Entry entry{unix_time(), *frame};
   entry.direction = log::Direction::sent;
   box_.add(entry, Clock::now());
-  tell_command(caller, number, limited);
+  tell_command(caller, number, limited, beyond);
   return yes(fmt::format("{}\n{}", can::to_text(*frame).view(), limited));
 }
 
-void Runner::tell_command(Caller& caller, std::uint16_t topic, const std::string& limited) {
+void Runner::tell_command(Caller& caller, std::uint16_t topic, const std::string& limited, bool beyond) {
   const auto first = [topic](std::vector<std::uint16_t>& told) {
     if (std::find(told.begin(), told.end(), topic) != told.end()) return false;
     told.push_back(topic);
@@ -173,6 +197,11 @@ void Runner::tell_command(Caller& caller, std::uint16_t topic, const std::string
   if (!limited.empty() && first(caller.limited))
     tell("limited", {{"fields", limited}, {"by", caller.verb}, {"process", caller.process}},
          fmt::format("{} (process {}) is limited: {}", caller.verb, caller.process, limited));
+  if (beyond && first(caller.beyond))
+    tell("beyond_proof", {{"topic", name}, {"by", caller.verb}, {"process", caller.process}},
+         fmt::format("{} (process {}) commands {} more often, or more urgently, than the proof counts: the "
+                     "bounds do not hold meanwhile",
+                     caller.verb, caller.process, name));
 }
 
 }  // namespace ocm::cli::operate

@@ -15,6 +15,29 @@ namespace ocm::cli::operate {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// Appends one file to another, and removes it; false: both are as they were.
+bool join(const fs::path& newer, const fs::path& older) {
+  std::error_code error;
+  const auto size = fs::file_size(older, error);
+  if (error) return false;
+  {
+    std::ofstream to{older, std::ios::binary | std::ios::app};
+    const std::ifstream from{newer, std::ios::binary};
+    if (fs::file_size(newer, error) != 0) to << from.rdbuf();
+    to.close();
+    if (to && !error) {
+      fs::remove(newer, error);
+      return true;
+    }
+  }
+  fs::resize_file(older, size, error);
+  return false;
+}
+
+}  // namespace
+
 Spool::Spool(std::string folder, std::string name, base::Duration lasting,
              const protocol::Catalogue& catalogue)
     : folder_(std::move(folder)), name_(std::move(name)), lasting_(lasting), catalogue_(&catalogue) {}
@@ -23,7 +46,7 @@ std::string Spool::path(int number) const {
   return (fs::path{folder_} / fmt::format("{}.running-{}.log", name_, number)).string();
 }
 
-transport::Outcome<std::optional<std::string>> Spool::recover(const std::string& path) {
+transport::Outcome<Spool::Recovered> Spool::recover(const std::string& path, const std::string& beside) {
   std::error_code error;
   std::vector<fs::path> left;
   for (const int number : {0, 1}) {
@@ -35,24 +58,21 @@ transport::Outcome<std::optional<std::string>> Spool::recover(const std::string&
           "another --black-box, or another name in the operator file"};
     left.push_back(file);
   }
-  if (left.empty()) return std::optional<std::string>{};
   const auto written = [&](const fs::path& file) { return fs::last_write_time(file, error); };
   if (left.size() == 2 && written(left[1]) < written(left[0])) std::swap(left[0], left[1]);
-  if (left.size() == 2) {
-    std::ofstream older{left[0], std::ios::binary | std::ios::app};
-    const std::ifstream newer{left[1], std::ios::binary};
-    if (fs::file_size(left[1], error) != 0) older << newer.rdbuf();
-    older.close();
-    if (!older)
-      return transport::Failure{fmt::format("{} cannot be joined to {}", left[1].string(), left[0].string()),
-                                "is the disk full?"};
-    fs::remove(left[1], error);
+  if (left.size() == 2 && join(left[1], left[0])) left.pop_back();
+  Recovered recovered;
+  for (const fs::path& file : left) {
+    // A name takes no room on a full disk.
+    const std::string& kept = recovered.files.empty() ? path : beside;
+    fs::rename(file, kept, error);
+    if (error)
+      recovered.lost = {fmt::format("{} cannot become {}: {}", file.string(), kept, error.message()),
+                        "a folder in which files can be renamed"};
+    else
+      recovered.files.push_back(kept);
   }
-  fs::rename(left[0], path, error);
-  if (error)
-    return transport::Failure{fmt::format("{}: {}", path, error.message()),
-                              fmt::format("what the last run has left is in {}", left[0].string())};
-  return std::optional{path};
+  return recovered;
 }
 
 transport::Outcome<void> Spool::append(std::span<const log::Entry> entries,

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "ocm/base/time.hpp"
 #include "ocm/log/entry.hpp"
@@ -22,9 +23,13 @@ class Spool {
   /// `name` is the operator's. The catalogue must outlive it.
   Spool(std::string folder, std::string name, base::Duration lasting, const protocol::Catalogue& catalogue);
 
-  /// What a run before has left, joined into `path`; nothing: it ended by itself, or it still runs. Before
-  /// `append`.
-  [[nodiscard]] transport::Outcome<std::optional<std::string>> recover(const std::string& path);
+  struct Recovered {
+    std::vector<std::string> files;          ///< in the order of time; empty: the run ended by itself
+    std::optional<transport::Failure> lost;  ///< why something that was left is not kept
+  };
+  /// What a run before has left, joined into `path`; where the disk has no room for that, in `path` and
+  /// `beside`. A failure: that run goes on. Before `append`.
+  [[nodiscard]] transport::Outcome<Recovered> recover(const std::string& path, const std::string& beside);
   /// Puts them on the disk, as far as the kernel does that: a program that is killed loses none of them.
   /// After a failure it begins a new file at the next call.
   [[nodiscard]] transport::Outcome<void> append(std::span<const log::Entry> entries,

@@ -31,6 +31,13 @@ std::string place_of(const OperatorFile& file, std::uint16_t from, std::uint16_t
              : fmt::format("in the change from \"{}\" to \"{}\"", name_of(file, from), name_of(file, to));
 }
 
+/// Whether the period of the doubt's stream follows a value.
+bool adapts(const OperatorFile& file, const Doubt& doubt) {
+  const auto& here = file.tables.configurations[doubt.configuration];
+  return std::any_of(here.adaptations.begin(), here.adaptations.end(),
+                     [&](const auto& each) { return here.streams[each.stream].topic == doubt.topic; });
+}
+
 spec::Problem problem_of(const OperatorFile& file, const Doubt& doubt) {
   const auto& tables = file.tables;
   const std::string of = place_of(file, doubt.from, doubt.configuration);
@@ -73,8 +80,12 @@ spec::Problem problem_of(const OperatorFile& file, const Doubt& doubt) {
                   "{} the samples of {} may be {} apart, so that {}", of, tables.topic(doubt.topic).name,
                   milliseconds(doubt.needs),
                   field ? "its values go stale after three periods" : "it holds although nothing is wrong"),
-              field ? std::string{"a longer period, or shorter \"settle\" and \"reaction\""}
-                    : fmt::format("\"above\": \"{}ms\" or longer", doubt.needs / 1'000'000 + 1)};
+              field
+                  ? adapts(file, doubt)
+                        ? std::string{"\"at_from\" and \"at_to\" nearer to each other, or shorter \"settle\" "
+                                      "and \"reaction\""}
+                        : std::string{"a longer period, or shorter \"settle\" and \"reaction\""}
+                  : fmt::format("\"above\": \"{}ms\" or longer", doubt.needs / 1'000'000 + 1)};
     }
   }
   return {place, "unknown", ""};

@@ -14,9 +14,17 @@ namespace ocm::cli::operate {
 using reflective::none;
 using spec::Kind;
 
+std::optional<base::Duration> ValueReader::duration(const At& at, base::Duration longest) {
+  const auto read = Checker::duration(at);
+  if (!read || *read <= longest) return read;
+  const std::string most = spec::quoted(words::to_text(longest));
+  tell(at, spec::quoted(at.node->text) + " is too long", "at most " + most);
+  return std::nullopt;
+}
+
 base::Duration ValueReader::time(const At& object, std::string_view key, std::string_view remedy) {
   const auto at = require(object, key, remedy);
-  return at ? duration(*at).value_or(base::Duration{}) : base::Duration{};
+  return at ? duration(*at, longest_analysed).value_or(base::Duration{}) : base::Duration{};
 }
 
 std::optional<std::string> ValueReader::word(const At& at, std::string_view remedy) {
@@ -120,7 +128,7 @@ std::optional<std::int64_t> ValueReader::distance(const At& at, const protocol::
   base::Decimal step = of.scale;
   if (step.digits < 0) step.digits = -step.digits;
   const auto raw = number ? base::divide_rounded(*number, step) : base::Result<std::int64_t>{number.error};
-  if (!raw || number->digits < 0) {
+  if (!raw || number->digits <= 0) {
     tell(at, spec::quoted(*text) + " is no distance of two values",
          unit + " above 0, such as \"1" + std::string{of.unit} + "\"");
     return std::nullopt;

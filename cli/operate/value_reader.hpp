@@ -1,6 +1,7 @@
 /// Reads what is in many places of an operator file: times, topics, fields of the catalogue and their values.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -43,6 +44,13 @@ class ValueReader : protected spec::Checker {
   explicit ValueReader(const Reading& reading)
       : Checker(reading.file_name, reading.problems), catalogue_(reading.catalogue) {}
 
+  /// Longer ones would make sums with a clock overflow, and wait for nothing.
+  static constexpr base::Duration longest_time{std::chrono::hours{24}};
+  /// Of what is analysed, instant by instant: minutes guard nothing, and would be analysed for hours.
+  static constexpr base::Duration longest_analysed{std::chrono::seconds{60}};
+
+  [[nodiscard]] std::optional<base::Duration> duration(const At& at, base::Duration longest = longest_time);
+  /// At most `longest_analysed`.
   [[nodiscard]] base::Duration time(const At& object, std::string_view key, std::string_view remedy);
   [[nodiscard]] std::optional<std::string> word(const At& at, std::string_view remedy);
   [[nodiscard]] bool is_list(const At& at, std::string_view remedy);

@@ -41,7 +41,11 @@ LocalAnswer read_answer(std::string_view message) {
 }  // namespace
 
 std::string local_socket(std::string_view kind, std::string_view name) {
-  return fmt::format("{}/{}-{}.sock", host::user_directory(), kind, name);
+  return local_socket_in(host::user_directory(), kind, name);
+}
+
+std::string local_socket_in(std::string_view directory, std::string_view kind, std::string_view name) {
+  return fmt::format("{}/{}-{}.sock", directory, kind, name);
 }
 
 std::string digits_of_path(std::string_view path) {
@@ -83,15 +87,18 @@ LocalAnswer LocalLink::silence(std::string what) {
 
 LocalAnswer LocalLink::ask(std::string_view request, base::Duration patience) {
   if (!socket_) return silence(fmt::format("{} is gone", who_));
-  if (::send(socket_.get(), request.data(), request.size(), MSG_NOSIGNAL) < 0)
-    return silence(fmt::format("{} is gone", who_));
+  // One that turns this program away may have closed by now, and has said why.
+  const bool sent = ::send(socket_.get(), request.data(), request.size(), MSG_NOSIGNAL) >= 0;
   const auto until = Clock::now() + patience;
+  bool reset = false;
   for (;;) {
     std::string message(longest_local_message, '\0');
     const auto size = ::recv(socket_.get(), message.data(), message.size(), 0);
-    if (size == 0) return silence(fmt::format("{} has ended", who_));
+    if (size == 0 && sent) return silence(fmt::format("{} has ended", who_));
     if (size > 0) return read_answer(std::string_view{message}.substr(0, static_cast<std::size_t>(size)));
-    if (errno != EAGAIN && errno != EINTR) return silence(fmt::format("{} is gone", who_));
+    // It has closed without reading the request; the answer comes behind this error.
+    if (errno == ECONNRESET && !std::exchange(reset, true)) continue;
+    if (!sent || (errno != EAGAIN && errno != EINTR)) return silence(fmt::format("{} is gone", who_));
     const auto left = until - Clock::now();
     if (left.count() <= 0) return silence(fmt::format("{} does not answer", who_));
     // A signal ends a wait early, and is seen by the caller after the answer.

@@ -20,8 +20,10 @@ namespace ocm::cli {
 inline constexpr std::string_view local_hello = "hello 1 ";
 inline constexpr std::size_t longest_local_message = 60'000;
 
-/// The path of a socket in the user's own directory: "KIND-NAME.sock".
+/// The path of a socket in the user's own directory, or in another one: "KIND-NAME.sock".
 [[nodiscard]] std::string local_socket(std::string_view kind, std::string_view name);
+[[nodiscard]] std::string local_socket_in(std::string_view directory, std::string_view kind,
+                                          std::string_view name);
 /// Eight hexadecimal digits in place of a path, for such a name; of links to one file they are the same.
 [[nodiscard]] std::string digits_of_path(std::string_view path);
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <poll.h>
 #include <span>
 #include <sys/epoll.h>
 #include <sys/socket.h>
@@ -24,6 +25,12 @@ bool watch(const host::Descriptor& events, int descriptor, void* who) {
   event.events = EPOLLIN;
   event.data.ptr = who;
   return ::epoll_ctl(events.get(), EPOLL_CTL_ADD, descriptor, &event) == 0;
+}
+
+/// Its program has closed the connection, or has ended.
+bool has_left(int socket) {
+  pollfd each{socket, POLLIN, 0};
+  return ::poll(&each, 1, 0) > 0 && (each.revents & (POLLHUP | POLLERR)) != 0;
 }
 
 }  // namespace
@@ -51,7 +58,16 @@ transport::Outcome<std::unique_ptr<LocalServer>> LocalServer::open(const std::st
   host::Descriptor events{::epoll_create1(EPOLL_CLOEXEC)};
   if (!events || !watch(events, listener->descriptor(), nullptr))
     return host::LocalListener::failure(listener->path(), errno, what);
-  return std::unique_ptr<LocalServer>{new LocalServer{std::move(*listener), std::move(events)}};
+  return std::unique_ptr<LocalServer>{new LocalServer{std::move(*listener), std::move(events), what}};
+}
+
+transport::Outcome<void> LocalServer::return_to_path() {
+  auto listener = host::LocalListener::open(listener_.path(), base::Duration{}, what_);
+  if (!listener) return std::move(listener.error);
+  if (!watch(events_, listener->descriptor(), nullptr))
+    return host::LocalListener::failure(listener->path(), errno, what_);
+  listener_ = std::move(*listener);
+  return {};
 }
 
 void LocalServer::serve() {
@@ -66,10 +82,9 @@ void LocalServer::serve() {
         accept();
         continue;
       }
-      auto* const connection = static_cast<Connection*>(event.data.ptr);
-      if (take(*connection)) continue;
       const auto at = std::find_if(connections_.begin(), connections_.end(),
-                                   [&](const auto& each) { return each.get() == connection; });
+                                   [&](const auto& each) { return each.get() == event.data.ptr; });
+      if (at == connections_.end() || take(**at)) continue;  // `accept` may have ended it
       const auto ended = std::move(*at);
       connections_.erase(at);
       if (!ended->caller->verb.empty() && desk_.gone) desk_.gone(*ended->caller);
@@ -81,7 +96,14 @@ void LocalServer::accept() {
   host::Descriptor socket{::accept4(listener_.descriptor(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)};
   if (!socket) return;
   const auto peer = host::peer_of(socket.get());
-  if (connections_.size() == most_callers || !peer || peer->uid != ::geteuid()) {
+  if (!peer || peer->uid != ::geteuid()) {
+    ++turned_away_;
+    return;
+  }
+  if (connections_.size() == most_callers && !make_room()) {
+    const auto text = answers::no(fmt::format("{} programs are connected already", most_callers),
+                                  "end those that are not needed");
+    static_cast<void>(::send(socket.get(), text.data(), text.size(), MSG_NOSIGNAL));
     ++turned_away_;
     return;
   }
@@ -93,11 +115,25 @@ void LocalServer::accept() {
   connections_.push_back(std::move(connection));
 }
 
+bool LocalServer::make_room() {
+  const auto silent = std::find_if(connections_.begin(), connections_.end(),
+                                   [](const auto& each) { return each->caller->verb.empty(); });
+  if (silent == connections_.end()) return false;
+  connections_.erase(silent);
+  ++turned_away_;
+  return true;
+}
+
 bool LocalServer::take(Connection& connection) {
   std::array<char, longest_request> request{};
   const auto size = ::recv(connection.socket.get(), request.data(), request.size(), MSG_TRUNC);
   if (size < 0) return errno == EAGAIN || errno == EINTR;
   if (size == 0) return false;  // it has ended
+  // A request of a program that has given up, as this one was stopped for a while, is out of date.
+  if (has_left(connection.socket.get())) {
+    ++turned_away_;
+    return false;
+  }
   // Of a longer message the rest is gone: it has no beginning that could be meant.
   const auto answered =
       static_cast<std::size_t>(size) > request.size()

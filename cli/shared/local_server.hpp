@@ -58,7 +58,12 @@ class LocalServer {
   [[nodiscard]] int descriptor() const noexcept { return events_.get(); }
   /// Takes what there is, and waits for nothing.
   void serve();
-  /// Programs that were disconnected: they did not greet, or did not read their answers.
+  /// Whether programs find it: its file may have been removed.
+  [[nodiscard]] bool is_found() const noexcept { return listener_.is_found(); }
+  /// Listens on its path again; those that are connected remain so.
+  [[nodiscard]] transport::Outcome<void> return_to_path();
+  /// Programs that were disconnected: they did not greet, did not read their answers, or left before their
+  /// request was read, which then is not met.
   [[nodiscard]] std::uint64_t turned_away() const noexcept { return turned_away_; }
   /// Each that has greeted.
   template <class See>
@@ -72,16 +77,19 @@ class LocalServer {
     host::Descriptor socket;
     std::unique_ptr<LocalCaller> caller;
   };
-  LocalServer(host::LocalListener listener, host::Descriptor events)
-      : listener_(std::move(listener)), events_(std::move(events)) {}
+  LocalServer(host::LocalListener listener, host::Descriptor events, const host::LocalService& what)
+      : listener_(std::move(listener)), events_(std::move(events)), what_(what) {}
 
   void accept();
+  /// Disconnects the one that has been connected longest without a greeting; false: all have greeted.
+  [[nodiscard]] bool make_room();
   /// false: it is to be disconnected.
   [[nodiscard]] bool take(Connection& connection);
   [[nodiscard]] std::string answer(LocalCaller& caller, std::string_view request);
 
   host::LocalListener listener_;
   host::Descriptor events_;
+  host::LocalService what_;
   std::vector<std::unique_ptr<Connection>> connections_;
   Desk desk_;
   std::uint64_t turned_away_ = 0;

@@ -22,9 +22,13 @@ inline constexpr std::string_view operator_repeats = "repeats";
 using OperatorLink = LocalLink;
 using OperatorAnswer = LocalAnswer;
 
-/// Null: no operator runs on that bus, or none of this user. A failure: one does, and does not answer. `verb`
-/// is who asks.
+/// Null: no operator runs on that bus, or none of this user; looked for wherever a program of this user may
+/// listen, with whatever environment it runs. A failure: one does, and does not answer. `verb` is who asks.
 [[nodiscard]] transport::Outcome<std::unique_ptr<OperatorLink>> connect_operator(std::string_view bus,
                                                                                  std::string_view verb);
+
+/// One whose environment is another (XDG_RUNTIME_DIR), so that it listens elsewhere.
+[[nodiscard]] transport::Outcome<std::unique_ptr<OperatorLink>> connect_operator_elsewhere(
+    std::string_view bus, std::string_view verb);
 
 }  // namespace ocm::cli

@@ -67,7 +67,13 @@ std::unique_ptr<operate::OperatorFile> load_or_leave(const OperateOptions& optio
 /// The operator of this bus: there is one.
 std::unique_ptr<operate::Control> open_control(const transport::Bus& bus) {
   auto control = operate::Control::open(bus.name());
-  if (control) return std::move(*control);
+  if (control) {
+    const auto elsewhere = connect_operator_elsewhere(bus.name(), "operate");
+    if (elsewhere && *elsewhere == nullptr) return std::move(*control);
+    fail({fmt::format("operate: {} has {} already, which was started in another environment",
+                      elsewhere ? (*elsewhere)->who() : "an operator", bus.name()),
+          elsewhere ? "`amiroctl operator status` says what it does" : elsewhere.error.what});
+  }
   if (control.error.process == 0)
     fail({fmt::format("operate: {}", control.error.what), control.error.remedy});
   const auto other = connect_operator(bus.name(), "operate");

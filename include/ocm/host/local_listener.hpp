@@ -92,6 +92,12 @@ class LocalListener {
 
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
   [[nodiscard]] int descriptor() const noexcept { return listener_.get(); }
+  /// Whether its name leads to it: a file can be removed, with the directory of a user who logs out. One
+  /// stat.
+  [[nodiscard]] bool is_found() const noexcept {
+    struct stat status {};
+    return ::lstat(path_.c_str(), &status) == 0 && is_ours(status);
+  }
 
   /// Why nothing can be served there, from an errno.
   [[nodiscard]] static Failure failure(const std::string& path, int error, const LocalService& service) {
@@ -145,12 +151,13 @@ class LocalListener {
     return std::nullopt;
   }
 
+  [[nodiscard]] bool is_ours(const struct stat& status) const noexcept {
+    return status.st_ino == inode_ && status.st_dev == device_;
+  }
   /// Only what is still ours: another server may have the name by now.
   void remove() noexcept {
     struct stat status {};
-    if (listener_ && ::lstat(path_.c_str(), &status) == 0 && status.st_ino == inode_ &&
-        status.st_dev == device_)
-      ::unlink(path_.c_str());
+    if (listener_ && ::lstat(path_.c_str(), &status) == 0 && is_ours(status)) ::unlink(path_.c_str());
     listener_.reset();
   }
 

@@ -500,7 +500,12 @@ constexpr void check(const Operator& tables, Report&& report) noexcept {
     if (c.streams.size() > room.streams || c.entry.size() > room.entry || c.limits.size() > room.limits ||
         c.adaptations.size() > room.adaptations)
       return false;
-  return true;
+  std::size_t elsewhere = 0;  // are stopped at the start
+  if (tables.initial < tables.configurations.size())
+    for_each_stream_elsewhere(tables, tables.initial, [&](const Stream& stream) {
+      elsewhere += tables.topic(stream.topic).is_message() ? 0U : 1U;
+    });
+  return elsewhere <= room.streams;
 }
 
 }  // namespace ocm::reflective

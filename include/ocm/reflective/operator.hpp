@@ -189,6 +189,22 @@ struct Operator {
   return topic == nullptr ? none : static_cast<std::uint16_t>(topic - catalogue.topics.data());
 }
 
+/// Each topic once that other configurations ask for and this one does not. O(streams of all, squared).
+template <class See>
+constexpr void for_each_stream_elsewhere(const Operator& tables, std::size_t configuration, See&& see) {
+  const auto asks = [&](std::size_t c, std::uint16_t topic) {
+    for (const Stream& stream : tables.configurations[c].streams)
+      if (stream.topic == topic) return true;
+    return false;
+  };
+  for (std::size_t c = 0; c < tables.configurations.size(); ++c)
+    for (const Stream& stream : tables.configurations[c].streams) {
+      bool known = asks(configuration, stream.topic);
+      for (std::size_t before = 0; before < c && !known; ++before) known = asks(before, stream.topic);
+      if (!known) see(stream);
+    }
+}
+
 /// Whether a raw number is one: all but the NaNs of floats.
 [[nodiscard]] constexpr bool is_number(const protocol::Field& field, std::int64_t raw) noexcept {
   if (field.number == protocol::Number::float32)

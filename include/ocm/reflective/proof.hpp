@@ -434,6 +434,9 @@ class Proof {
     if (source != nullptr)
       for (const Stream& stream : source->streams)
         if (same_topic(target, stream) == nullptr) request(stream, stop_dlc, op_->settle, false);
+    if (source == nullptr)
+      for_each_stream_elsewhere(
+          *op_, to_, [this](const Stream& stream) { request(stream, stop_dlc, op_->settle, false); });
     for (std::size_t s = 0; s < target.streams.size(); ++s)
       if (source == nullptr || same_stream(*source, target.streams[s]) == nullptr ||
           changes_period(*source, target, s))

@@ -115,7 +115,7 @@ class Supervisor {
   /// The tables must outlive it, be without mistakes and fit (check.hpp: fits).
   constexpr explicit Supervisor(const Operator& tables) noexcept : tables_(&tables) {}
 
-  /// Enters the initial configuration.
+  /// Enters the initial configuration, and stops the streams of all others: a run before may have left them.
   constexpr Actions start(base::Time now) noexcept {
     actions_.clear();
     enter(tables_->initial, none, now, true);
@@ -137,6 +137,7 @@ class Supervisor {
 
   /// A set point of another program, as the configuration permits it. Returns how many values were changed.
   constexpr std::size_t permit(std::uint16_t topic, std::span<std::int64_t> raw, base::Time now) noexcept {
+    before_ = limiter_;
     const std::size_t changed = limiter_.permit(topic, raw, now);
     counters_.limited += static_cast<std::uint32_t>(changed);
     return changed;
@@ -144,8 +145,13 @@ class Supervisor {
 
   /// A set point that is sent as it is, such as rest, which no limit slows down: the next one starts from it.
   constexpr void commanded(std::uint16_t topic, std::span<const std::int64_t> raw, base::Time now) noexcept {
+    before_ = limiter_;
     limiter_.commanded(topic, raw, now);
   }
+
+  /// The set point of the last `permit` or `commanded` could not be sent: the next one does not start from
+  /// it, or else a change in steps would go on unseen while the bus takes nothing. Before any other call.
+  constexpr void not_sent() noexcept { limiter_ = before_; }
 
   /// From the next step on: make one, since `next()` is as before until then.
   constexpr void hold(bool held) noexcept { on_hold_ = held; }
@@ -387,6 +393,8 @@ class Supervisor {
 
     for (std::size_t s = 0; s < old_streams.size(); ++s)
       if (find(here().streams, old_streams[s].topic) == none) unsubscribe(old_streams[s]);
+    // A run before that was killed has left its streams.
+    if (first) for_each_stream_elsewhere(*tables_, to, [this](const Stream& stream) { unsubscribe(stream); });
     std::uint64_t go_on = 0;
     for (std::size_t s = 0; s < here().streams.size(); ++s) {
       const Stream& stream = here().streams[s];
@@ -553,6 +561,7 @@ class Supervisor {
   std::array<base::Time, room.entry> repeats_{};
   std::array<Adapted, room.adaptations> adapted_{};
   Limiter<room.limits> limiter_;
+  Limiter<room.limits> before_;  ///< the last set point of another program
   SupervisorCounters counters_;
   base::FixedVector<Action, room.actions()> actions_;
 };

@@ -112,6 +112,12 @@ class Checked(Operate):
         mended(document)
         self.run_tool("operate", self.write(document), "--check")
 
+    def test_values_that_go_stale_at_the_longest_period_of_an_adaptation(self):
+        def change(document):
+            document["configurations"][1]["streams"][0]["adapt"] = {
+                "field": "odometry.velocity.x", "from": "0m/s", "to": "0.1m/s", "at_from": "250ms", "at_to": "50ms"}
+        self.refused(change, "go stale after three periods", "\"at_from\" and \"at_to\" nearer to each other")
+
     def test_what_others_send_counts(self):
         alone = json.loads(self.run_tool("operate", GUARD, "--check", "--json")[0])
         document = guard()
@@ -301,6 +307,25 @@ class Mistakes(Operate):
         def beyond(document):
             document["configurations"][1]["entry"] = [{"topic": "motors", "values": {"x": "0.2m/s"}}]
         self.refused(beyond, "/configurations/1/entry/0: a set point is beyond the limit", "\"limits\" of \"driving\"")
+
+        def still(document):  # 0 would be no limit at all
+            document["configurations"][1]["limits"][0]["per_second"] = "0m/s"
+        self.refused(still, "/configurations/1/limits/0/per_second: \"0m/s\" is no distance of two values", "above 0")
+
+    def test_times_that_no_clock_has_room_for_or_that_take_hours_to_analyse(self):
+        for member in ("settle", "reaction", "handling"):
+            for time in ("61s", "3000000s", "9223372036854775807ns"):
+                def long(document):
+                    document[member] = time
+                self.refused(long, f"/{member}: \"{time}\" is too long", "at most \"60s\"")
+
+        def lasting(document):
+            document["monitors"][2]["for"] = "9223372036s"
+        self.refused(lasting, "/monitors/2/for: \"9223372036s\" is too long", "at most \"86400s\"")
+
+        def age(document):
+            document["monitors"][0]["when"]["any"][4]["above"] = "86401s"
+        self.refused(age, "/monitors/0/when/any/4/above: \"86401s\" is too long")
 
     def test_what_it_repeats_no_verb_of_its_own_may_command(self):
         def both(document):
@@ -574,6 +599,48 @@ class Running(Operating):
         self.interrupt(operator)
         self.assertEqual(os.listdir(box), [os.path.basename(event["file"])])  # it ended by itself
 
+    def test_what_a_killed_operator_saw_is_kept_on_a_full_disk_too(self):
+        self.start_sim()
+        box = os.path.join(self.folder, "box")
+        os.mkdir(box)
+        lines = {0: "(1700000001.000000) sim 201#0000000000000000\n" * 9, 1: "(1700000000.000000) sim 103#00\n" * 9}
+        for number, text in lines.items():
+            path = os.path.join(box, f"halt.running-{number}.log")
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(text)
+            os.utime(path, (1700000001 - number, 1700000001 - number))
+        operator = self.start("operate", self.write(HALT), "--json", "--black-box", box,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (500, 500)))
+        for number in (1, 0):  # in the order of time, neither joined nor cut
+            with open(self.event(operator, "recovered")["file"], encoding="utf-8") as file:
+                self.assertEqual(file.read(), lines[number])
+        self.event(operator, "started")
+        self.interrupt(operator)
+        self.assertEqual(operator.returncode, 130)
+        self.assertEqual(len([name for name in os.listdir(box) if name.endswith("black-box.log")]), 2)
+
+    def test_streams_that_a_killed_operator_has_left_are_stopped(self):
+        self.start_sim()
+        document = json.loads(json.dumps(HALT))
+        document["configurations"].append({"name": "idle", "streams": [{"topic": "power", "period": "1s"}]})
+        document["transitions"] += [{"from": "idle", "to": "driving", "on_request": True},
+                                    {"from": "halted", "to": "idle", "on_request": True}]
+        document["initial"] = "idle"
+        operator = self.operate(document=document)
+        self.run_tool("operator", "switch", "driving")
+        self.event(operator, "switched")
+        operator.kill()
+        operator.wait()
+        listener = self.raw_frames("odometry")
+        for line in listener.stdout:  # it goes on
+            if " 502#" in line or " 503#" in line:
+                break
+        self.operate(document=document)
+        time.sleep(0.5)  # ten periods, in which nothing must come
+        frames = self.frames(listener)
+        stopped = next(at for at, frame in frames if frame == "103#00")
+        self.assertEqual([frame for at, frame in frames if at > stopped + 0.1], [])
+
     def test_of_two_operators_with_one_name_the_second_gets_another_black_box(self):
         self.start_sim()
         other = os.path.join(self.folder, "other.sock")
@@ -707,7 +774,7 @@ class Asked(Operating):
         status = json.loads(self.run_tool("operator", "status", "--json")[0])
         self.assertEqual((status["operator"], status["configuration"], status["on_hold"]), ("halt", "driving", False))
         self.assertEqual(status["streams"][0]["topic"], "odometry")
-        self.assertEqual(status["set_points"], {"passed": 0, "limited": 0, "refused": 0})
+        self.assertEqual(status["set_points"], {"passed": 0, "limited": 0, "refused": 0, "beyond_proof": 0})
         out, _ = self.run_tool("operator", "status")
         self.assertRegex(out, "^operator halt is in driving since [0-9]+")
         self.assertRegex(out, "(?m)^  odometry +every 50ms +last [0-9]+(us|ms) ago$")
@@ -787,7 +854,7 @@ class Asked(Operating):
         _, err = self.run_tool("drive", "1cm/s", "--for", "200ms", code=1)
         self.assertIn("where drive may not command motors", err)
         status = json.loads(self.run_tool("operator", "status", "--json")[0])
-        self.assertEqual(status["set_points"], {"passed": 4, "limited": 1, "refused": 1})
+        self.assertEqual(status["set_points"], {"passed": 4, "limited": 1, "refused": 1, "beyond_proof": 0})
 
     def test_behaviours_of_boards_need_its_leave_and_their_end_does_not(self):
         self.start_sim()
@@ -900,6 +967,122 @@ class Asked(Operating):
                     self.assertIn("does not answer", err)
                     operator.kill()
                 operator.wait()
+
+    def test_a_request_of_a_program_that_has_left_is_not_met(self):
+        # It was in a hurry, found the operator stopped, and has set the motors to zero past it.
+        self.start_sim()
+        operator = self.operate(document=GUARDED)
+        listener = self.raw_frames("motors")
+        client = self.client("drive")
+        gone = self.client("operator")
+        operator.send_signal(signal.SIGSTOP)
+        client.send(b"send 201#1027000000000000")
+        gone.send(b"switch slow")
+        client.close()
+        gone.close()
+        operator.send_signal(signal.SIGCONT)
+        out, _ = self.run_tool("operator", "status", "--json")
+        self.assertEqual(json.loads(out)["set_points"]["passed"], 0)
+        self.assertNotEqual(json.loads(out)["configuration"], "slow")
+        self.assertEqual({x_of(frame) for _, frame in self.frames(listener)} - {0}, set())
+        _, err = self.interrupt(operator)
+        self.assertIn("2 programs turned away", err)
+
+    def test_who_says_nothing_keeps_no_other_program_away(self):
+        self.start_sim()
+        operator = self.operate(document=GUARDED)
+        path = os.path.join(self.environment["XDG_RUNTIME_DIR"], "ocm", "operator-sim.sock")
+        for _ in range(70):
+            silent = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+            self.addCleanup(silent.close)
+            silent.connect(path)
+        self.run_tool("operator", "switch", "slow")
+        greeted = [self.client("drive") for _ in range(64)]
+        _, err = self.run_tool("operator", "switch", "halted", code=1)
+        self.assertIn("64 programs are connected already", err)
+        greeted[0].close()
+        self.run_tool("operator", "switch", "halted")
+        self.interrupt(operator)
+        self.assertEqual(operator.returncode, 130)
+
+    def client(self, verb):
+        client = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self.addCleanup(client.close)
+        client.settimeout(20)
+        client.connect(os.path.join(self.environment["XDG_RUNTIME_DIR"], "ocm", "operator-sim.sock"))
+        client.send(f"hello 1 {verb}".encode())
+        self.assertEqual(client.recv(100), b"ok\nhalt")
+        return client
+
+    def test_set_points_beyond_what_the_proof_counts_are_said_and_counted(self):
+        self.start_sim()
+        document = json.loads(json.dumps(GUARDED))
+        document["monitors"][0]["when"] = "odometry.velocity.x>0.5m/s"
+        operator = self.operate(document=document)
+        client = self.client("set")
+
+        def command(frame):
+            client.send(b"send " + frame)
+            self.assertEqual(client.recv(1000).split(b"\n")[0], b"ok")
+
+        def beyond():
+            out, _ = self.run_tool("operator", "status", "--json")
+            return json.loads(out)["set_points"]["beyond_proof"]
+        command(b"201#0100000000000000")  # as often as a drive, with its jitter
+        command(b"201#0100000000000000")
+        self.assertEqual(beyond(), 0)
+        time.sleep(0.3)  # of the operator's own clock
+        command(b"101#0100000000000000")  # more urgent
+        event = self.event(operator, "beyond_proof")
+        self.assertEqual((event["topic"], event["by"]), ("motors", "set"))
+        self.assertEqual(beyond(), 1)
+        for _ in range(10):
+            command(b"201#0100000000000000")
+        self.assertGreater(beyond(), 1)
+        out, _ = self.run_tool("operator", "status")
+        self.assertRegex(out, "[0-9]+ of them more often, or more urgent, than the proof counts")
+        _, err = self.interrupt(operator)
+        self.assertRegex(err, "[0-9]+ set points more often, or more urgent, than the proof counts")
+
+    def test_it_is_found_from_another_environment(self):
+        # As those of cron, sudo and the system's services: without it they would command past the operator.
+        bus = "sim:" + os.path.join(self.folder, "other.sock")
+        self.start_sim("--bus", bus)
+        mine = self.environment
+        self.environment = {name: mine[name] for name in mine if name != "XDG_RUNTIME_DIR"}
+        operator = self.operate(bus=bus)
+        self.environment = mine
+        out, _ = self.run_tool("--bus", bus, "operator", "status", "--json")
+        self.assertEqual(json.loads(out)["operator"], "halt")
+        _, err = self.run_tool("--bus", bus, "operate", self.write(HALT, "second.json"), code=1)
+        self.assertIn(f"operator halt (process {operator.pid}) has {bus} already, which was started in another environment", err)
+        self.interrupt(operator)
+        self.assertEqual(operator.returncode, 130)
+
+    def test_its_socket_is_removed_and_comes_back(self):
+        self.start_sim()
+        operator = self.operate(document=GUARDED)
+        folder = os.path.join(self.environment["XDG_RUNTIME_DIR"], "ocm")
+        os.remove(os.path.join(folder, "operator-sim.sock"))
+        self.assertEqual(self.event(operator, "socket")["found"], True)
+        self.run_tool("operator", "status")
+        _, err = self.run_tool("operate", self.write(HALT, "second.json"), code=1)
+        self.assertIn("has sim already", err)
+        # With its directory, as that of a user who logs out; here it cannot be made again at first.
+        away = self.environment["XDG_RUNTIME_DIR"] + ".away"
+        os.rename(folder, away)
+        self.addCleanup(shutil.rmtree, away, True)
+        with open(folder, "w", encoding="utf-8"):
+            pass
+        event = self.event(operator, "socket")
+        self.assertEqual(event["found"], False)
+        self.assertIn("is not a directory", event["problem"])
+        os.remove(folder)
+        self.assertEqual(self.event(operator, "socket")["found"], True)
+        self.run_tool("operator", "status", "--bus", "sim")
+        self.interrupt(operator)
+        self.assertEqual(operator.returncode, 130)
+        self.assertEqual(os.listdir(folder), [])
 
     def test_a_second_operator_is_refused_by_name(self):
         self.start_sim()

@@ -71,14 +71,17 @@ struct Run {
 };
 using enum Action::Kind;
 
-TEST_CASE("supervisor: it starts in the initial configuration, and asks for its streams") {
+TEST_CASE("supervisor: it starts in the initial configuration, asks for its streams and stops all others") {
   const Run run;
   CHECK(run.supervisor.configuration() == guard::idle);
   CHECK(run.supervisor.transition() == none);
-  REQUIRE(run.kinds() == std::vector{switched, command, subscribe});
+  REQUIRE(run.kinds() == std::vector{switched, command, unsubscribe, unsubscribe, subscribe});
   CHECK(run.actions[0].from == none);
   CHECK(run.actions[1].topic == guard::motors);
-  CHECK(run.actions[2].frame == *protocol::publish_every(amiro::PowerStatus::id, 1000ms));
+  // Of `driving` and `stopped`, each once: a run that was killed may have left them.
+  CHECK(run.actions[2].topic == guard::ring);
+  CHECK(run.actions[3].frame == protocol::stop(amiro::Odometry::id));
+  CHECK(run.actions[4].frame == *protocol::publish_every(amiro::PowerStatus::id, 1000ms));
 }
 
 TEST_CASE("supervisor: a switch commands first, then stops, then asks; what goes on is left alone") {
@@ -298,6 +301,27 @@ TEST_CASE("supervisor: set points of others are held within the limits") {
   run.supervisor.permit(guard::motors, raw, run.now + 100ms);
   CHECK(raw[0] == 20'000);
   CHECK(run.supervisor.counters().limited == 2);
+}
+
+TEST_CASE("supervisor: a set point that the bus did not take is as if it had not been asked for") {
+  Run run;
+  run.ask(60ms, guard::driving);
+  std::int64_t raw[] = {1'000'000, 0};
+  run.supervisor.permit(guard::motors, raw, run.now);
+  for (int i = 1; i <= 5; ++i) {
+    raw[0] = 1'000'000;
+    run.supervisor.permit(guard::motors, raw, run.now + i * 100ms);
+    CHECK(raw[0] == 20'000);
+    run.supervisor.not_sent();
+  }
+  raw[0] = 1'000'000;
+  run.supervisor.permit(guard::motors, raw, run.now + 600ms);
+  CHECK(raw[0] == 20'000);  // not 120'000
+  run.supervisor.commanded(guard::motors, guard::rest, run.now + 610ms);
+  run.supervisor.not_sent();
+  raw[0] = 1'000'000;
+  run.supervisor.permit(guard::motors, raw, run.now + 700ms);
+  CHECK(raw[0] == 40'000);
 }
 
 TEST_CASE("supervisor: an adaptation follows a value, within its bounds and not too often") {
