@@ -76,6 +76,18 @@ class Wireshark(Case):
             self.assertIn(part, text)
         self.assertEqual(text.count("Error/Malformed"), len(frames))
 
+    def test_a_request_of_each_mode_and_length(self):
+        requests = [(mode, length) for mode in range(5) for length in range(1, 9)]
+        frames = [(0x205, (bytes([mode]) + b"\x01" + b"\0" * 6)[:length]) for mode, length in requests]
+        texts = self.tshark("amiro", frames, "-V").split("\nFrame ")
+        self.assertEqual(len(texts), len(frames))
+        for (mode, length), text in zip(requests, texts):
+            with self.subTest(mode=mode, length=length):
+                is_wrong = mode <= 2 and length != 1 and (mode, length) != (1, 4)
+                self.assertEqual(f"{length} bytes: 1, or 4 with a period" in text, is_wrong)
+                self.assertEqual(f"mode {mode}: 0 stop, 1 publish, 2 once" in text, mode > 2)
+                self.assertEqual(text.count("Error/Malformed"), int(is_wrong or mode > 2))
+
     def test_strangers_are_left_alone(self):
         # An unknown number, an extended identifier, a remote frame, an error frame. [linux/can.h]
         for fields in self.dissect("amiro", [(0x6FF, b"\0"), (0x80000608, b"\0" * 6), (0x40000608, b""),

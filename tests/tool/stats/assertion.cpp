@@ -128,6 +128,20 @@ TEST_CASE("assertions: what was not measured does not hold, whatever is asked") 
   CHECK_FALSE(holds("scale.gap>=0", {moment}));
 }
 
+TEST_CASE("assertions: a topic is measured where a sample came, came in part, or is missing") {
+  for (const unsigned count : {0, 1, 2})
+    for (const unsigned missing : {0, 1, 2})
+      for (const unsigned incomplete : {0, 1, 2}) {
+        CAPTURE(count, missing, incomplete);
+        Bus one = bus();
+        auto& topic = one.figures.topics[0];
+        topic.timing.count = count;
+        topic.timing.missing = missing;
+        topic.incomplete = incomplete;
+        CHECK(holds("scale.wrong==6", {one}) == (count > 0 || missing > 0 || incomplete > 0));
+      }
+}
+
 TEST_CASE("assertions: of several buses the first on which it does not hold is named") {
   Bus first = bus(), second = bus(), third = bus();
   second.name = "can1";
