@@ -50,6 +50,10 @@ class Owner {
 
   /// Answers what callers have asked, and stops what they have left. Each 50 ms.
   void serve(base::Time now);
+  /// Each second: whether the socket was removed, and is there again (LocalServer::renew).
+  [[nodiscard]] transport::Outcome<bool> renew() {
+    return service_ ? service_->renew() : transport::Outcome<bool>{false};
+  }
   /// No more programs join: they are asked to wait for the line.
   void close() { closing_ = true; }
   void on_draw(Draw draw) { draw_ = std::move(draw); }

@@ -58,6 +58,10 @@ class LocalServer {
   [[nodiscard]] int descriptor() const noexcept { return events_.get(); }
   /// Takes what there is, and waits for nothing.
   void serve();
+  /// Whether its path was removed, as a cleaner of old files or the end of a login does, and leads here
+  /// again; programs that are connected stay so. A failure: it cannot, or is another server's by now; the
+  /// next call tries again. One system call where the path is as it was.
+  [[nodiscard]] transport::Outcome<bool> renew();
   /// Programs that were disconnected: they did not greet, or did not read their answers.
   [[nodiscard]] std::uint64_t turned_away() const noexcept { return turned_away_; }
   /// Each that has greeted.
@@ -72,8 +76,8 @@ class LocalServer {
     host::Descriptor socket;
     std::unique_ptr<LocalCaller> caller;
   };
-  LocalServer(host::LocalListener listener, host::Descriptor events)
-      : listener_(std::move(listener)), events_(std::move(events)) {}
+  LocalServer(host::LocalListener listener, host::Descriptor events, const host::LocalService& what)
+      : listener_(std::move(listener)), events_(std::move(events)), what_(what) {}
 
   void accept();
   /// false: it is to be disconnected.
@@ -82,6 +86,7 @@ class LocalServer {
 
   host::LocalListener listener_;
   host::Descriptor events_;
+  host::LocalService what_;
   std::vector<std::unique_ptr<Connection>> connections_;
   Desk desk_;
   std::uint64_t turned_away_ = 0;

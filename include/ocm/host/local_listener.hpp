@@ -92,6 +92,12 @@ class LocalListener {
 
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
   [[nodiscard]] int descriptor() const noexcept { return listener_.get(); }
+  /// Whether its path leads to it: the name may have been removed, or be another server's. One system call.
+  [[nodiscard]] bool is_named() const noexcept {
+    struct stat status {};
+    return listener_ && ::lstat(path_.c_str(), &status) == 0 && status.st_ino == inode_ &&
+           status.st_dev == device_;
+  }
 
   /// Why nothing can be served there, from an errno.
   [[nodiscard]] static Failure failure(const std::string& path, int error, const LocalService& service) {
@@ -147,10 +153,7 @@ class LocalListener {
 
   /// Only what is still ours: another server may have the name by now.
   void remove() noexcept {
-    struct stat status {};
-    if (listener_ && ::lstat(path_.c_str(), &status) == 0 && status.st_ino == inode_ &&
-        status.st_dev == device_)
-      ::unlink(path_.c_str());
+    if (is_named()) ::unlink(path_.c_str());
     listener_.reset();
   }
 
