@@ -36,6 +36,8 @@ class OwnLine final : public LineEnd {
   }
   /// What comes from now on is written there, too.
   void record(std::unique_ptr<LineLog> log) { log_ = std::move(log); }
+  /// Nothing was to be recorded, or all of it is.
+  [[nodiscard]] bool is_recorded() const noexcept { return log_ == nullptr || log_->is_whole(); }
   /// Until the programs that have joined have ended, or a signal has come: then their robots are stopped.
   void finish();
 
