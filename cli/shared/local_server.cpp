@@ -54,14 +54,13 @@ transport::Outcome<std::unique_ptr<LocalServer>> LocalServer::open(const std::st
   return std::unique_ptr<LocalServer>{new LocalServer{std::move(*listener), std::move(events), what}};
 }
 
-transport::Outcome<bool> LocalServer::renew() {
-  if (listener_.is_named()) return false;
-  auto again = host::LocalListener::open(listener_.path(), base::Duration::zero(), what_);
-  if (!again) return std::move(again.error);
-  if (!watch(events_, again->descriptor(), nullptr))
-    return host::LocalListener::failure(again->path(), errno, what_);
-  listener_ = std::move(*again);  // its descriptor leaves the events by itself
-  return true;
+transport::Outcome<void> LocalServer::return_to_path() {
+  auto listener = host::LocalListener::open(listener_.path(), base::Duration{}, what_);
+  if (!listener) return std::move(listener.error);
+  if (!watch(events_, listener->descriptor(), nullptr))
+    return host::LocalListener::failure(listener->path(), errno, what_);
+  listener_ = std::move(*listener);
+  return {};
 }
 
 void LocalServer::serve() {

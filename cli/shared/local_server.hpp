@@ -58,10 +58,10 @@ class LocalServer {
   [[nodiscard]] int descriptor() const noexcept { return events_.get(); }
   /// Takes what there is, and waits for nothing.
   void serve();
-  /// Whether its path was removed, as a cleaner of old files or the end of a login does, and leads here
-  /// again; programs that are connected stay so. A failure: it cannot, or is another server's by now; the
-  /// next call tries again. One system call where the path is as it was.
-  [[nodiscard]] transport::Outcome<bool> renew();
+  /// Whether programs find it: its file may have been removed.
+  [[nodiscard]] bool is_found() const noexcept { return listener_.is_found(); }
+  /// Listens on its path again; those that are connected remain so.
+  [[nodiscard]] transport::Outcome<void> return_to_path();
   /// Programs that were disconnected: they did not greet, or did not read their answers.
   [[nodiscard]] std::uint64_t turned_away() const noexcept { return turned_away_; }
   /// Each that has greeted.

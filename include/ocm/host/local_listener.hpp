@@ -92,11 +92,11 @@ class LocalListener {
 
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
   [[nodiscard]] int descriptor() const noexcept { return listener_.get(); }
-  /// Whether its path leads to it: the name may have been removed, or be another server's. One system call.
-  [[nodiscard]] bool is_named() const noexcept {
+  /// Whether its name leads to it: a file can be removed, with the directory of a user who logs out. One
+  /// stat.
+  [[nodiscard]] bool is_found() const noexcept {
     struct stat status {};
-    return listener_ && ::lstat(path_.c_str(), &status) == 0 && status.st_ino == inode_ &&
-           status.st_dev == device_;
+    return ::lstat(path_.c_str(), &status) == 0 && is_ours(status);
   }
 
   /// Why nothing can be served there, from an errno.
@@ -151,9 +151,13 @@ class LocalListener {
     return std::nullopt;
   }
 
+  [[nodiscard]] bool is_ours(const struct stat& status) const noexcept {
+    return status.st_ino == inode_ && status.st_dev == device_;
+  }
   /// Only what is still ours: another server may have the name by now.
   void remove() noexcept {
-    if (is_named()) ::unlink(path_.c_str());
+    struct stat status {};
+    if (listener_ && ::lstat(path_.c_str(), &status) == 0 && is_ours(status)) ::unlink(path_.c_str());
     listener_.reset();
   }
 
