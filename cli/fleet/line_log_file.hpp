@@ -19,6 +19,8 @@ class LineLog {
   LineLog(std::string_view verb, std::string path);
   /// Of now. What a full disk does not take ends the log with a message; the line goes on.
   void write(std::string_view text);
+  /// No write has failed.
+  [[nodiscard]] bool is_whole() const noexcept { return static_cast<bool>(file_); }
 
  private:
   void put(std::string_view line);

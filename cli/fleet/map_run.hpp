@@ -70,6 +70,8 @@ class MapRun {
 
   [[nodiscard]] const cognitive::Map& map() const { return mapping_->map(); }
   [[nodiscard]] bool any() const { return mapping_->counters().drawn != 0; }
+  /// --record, if it was given, has all that came.
+  [[nodiscard]] bool is_recorded() const { return line_.own()->is_recorded(); }
 
  private:
   [[nodiscard]] End drive(std::optional<base::Duration> limit);

@@ -19,6 +19,11 @@ namespace {
 using namespace std::chrono_literals;
 using mapper::server::CentralEvent;
 
+/// Read from the dongle between two looks at the other programs: many times what a serial line brings
+/// meanwhile, and little where a device never stops.
+constexpr std::size_t most_heard = 16'384;
+constexpr base::Duration renewal_interval = 1s;
+
 std::string joined(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
@@ -92,17 +97,7 @@ void OwnLine::exchange() {
   if (!unsent_.empty()) ends[0].events |= POLLOUT;
   const auto until = std::clamp<base::Duration>(server_.deadline() - line_time(), 1ms, 50ms);
   (void)::poll(ends.data(), ends.size(), static_cast<int>(until / 1ms));
-  std::array<char, 4096> room;
-  for (;;) {
-    const auto size = port_.read(room);
-    if (!size) {
-      auto failure = port_.failure();
-      port_.close();
-      fail({fmt::format("{}: {}", verb_, failure.what), failure.remedy});
-    }
-    if (*size == 0) break;
-    dongle_.from_dongle({room.data(), *size}, line_time());
-  }
+  hear();
   dongle_.expire(line_time());
   const std::string said = dongle_.take_for_client();
   if (log_) log_->write(said);
@@ -115,7 +110,35 @@ void OwnLine::exchange() {
     failed_.push_back(std::move(event->words));
   }
   owner_.serve(line_time());
+  renew_service();
   write();
+  UnhurriedMessages::write();
+}
+
+void OwnLine::hear() {
+  std::array<char, 4096> room;
+  for (std::size_t heard = 0; heard < most_heard;) {
+    const auto size = port_.read(room);
+    if (!size) {
+      auto failure = port_.failure();
+      port_.close();
+      fail({fmt::format("{}: {}", verb_, failure.what), failure.remedy});
+    }
+    if (*size == 0) return;
+    heard += *size;
+    dongle_.from_dongle({room.data(), *size}, line_time());
+  }
+}
+
+void OwnLine::renew_service() {
+  if (line_time() < next_renewal_) return;
+  next_renewal_ = line_time() + renewal_interval;
+  const auto renewed = owner_.renew();
+  if (!renewed && !is_unreachable_)
+    remark(fmt::format("{}: the socket for other programs was removed: {}", verb_, renewed.error.what));
+  if (renewed && *renewed)
+    remark(fmt::format("{}: the socket for other programs was removed, and is there again", verb_));
+  is_unreachable_ = !renewed;
 }
 
 LineEnd::Refused OwnLine::go(unsigned robot, const mapper::link::SetPoint& to) {

@@ -16,6 +16,7 @@
 #include "cli/fleet/line_end.hpp"
 #include "cli/fleet/line_log_file.hpp"
 #include "cli/fleet/owner.hpp"
+#include "cli/shared/unhurried_messages.hpp"
 
 namespace ocm::cli::fleet {
 
@@ -35,6 +36,8 @@ class OwnLine final : public LineEnd {
   }
   /// What comes from now on is written there, too.
   void record(std::unique_ptr<LineLog> log) { log_ = std::move(log); }
+  /// Nothing was to be recorded, or all of it is.
+  [[nodiscard]] bool is_recorded() const noexcept { return log_ == nullptr || log_->is_whole(); }
   /// Until the programs that have joined have ended, or a signal has come: then their robots are stopped.
   void finish();
 
@@ -66,9 +69,14 @@ class OwnLine final : public LineEnd {
 
  private:
   void write();
+  /// What the dongle has said, as much as is read between two looks at the other programs.
+  void hear();
+  /// The socket, if it was removed.
+  void renew_service();
   /// Until everything that was requested is sent, signal or not.
   void flush(base::Duration limit);
 
+  UnhurriedMessages messages_;  // first: while a line is served no message holds it up
   std::string verb_;
   mapper::server::Translator dongle_;
   cognitive::Server server_;
@@ -79,6 +87,8 @@ class OwnLine final : public LineEnd {
   std::string unsent_;
   std::vector<std::string> failed_;
   std::vector<std::uint64_t> orders_;  ///< of this program, a robot
+  base::Time next_renewal_{};
+  bool is_unreachable_ = false;  ///< for other programs, which was reported
 };
 
 }  // namespace ocm::cli::fleet

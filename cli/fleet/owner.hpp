@@ -50,6 +50,13 @@ class Owner {
 
   /// Answers what callers have asked, and stops what they have left. Each 50 ms.
   void serve(base::Time now);
+  /// Each second: whether the socket was removed, and is there again. A failure: it cannot be, or its path is
+  /// another program's by now; the next call tries again. One system call where all is as it was.
+  [[nodiscard]] transport::Outcome<bool> renew() {
+    if (!service_ || service_->is_found()) return false;
+    if (auto back = service_->return_to_path(); !back) return std::move(back.error);
+    return true;
+  }
   /// No more programs join: they are asked to wait for the line.
   void close() { closing_ = true; }
   void on_draw(Draw draw) { draw_ = std::move(draw); }

@@ -1,13 +1,16 @@
 #include "cli/shared/messages.hpp"
 
 #include <algorithm>
+#include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <deque>
 #include <mutex>
+#include <poll.h>
 #include <string>
 #include <unistd.h>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 
@@ -16,6 +19,7 @@
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/remedies.hpp"
 #include "cli/shared/terminal.hpp"
+#include "cli/shared/unhurried_messages.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -28,31 +32,76 @@ std::string& speaker() {
 
 /// Messages that are kept for later, where they are.
 struct Kept {
-  bool keeps = false;
-  std::vector<std::string> lines;
+  bool holds = false;      ///< a screen is where they would be written
+  unsigned unhurried = 0;  ///< parts of the program that must not wait for stderr
+  std::deque<std::string> lines;
+  std::size_t written = 0;  ///< of the first line and its line feed
+  std::uint64_t lost = 0;   ///< there was no room for
+  /// Of any thread: a verb may have a page, and robots behind a central, in threads of their own.
+  std::mutex mutex;
 };
 Kept& kept() {
   static Kept messages;
   return messages;
 }
 
-/// Of any thread: a verb may have a page, and robots behind a central, in threads of their own.
+constexpr std::size_t most_kept = 1000;  // of those that stderr does not take
+
+/// Whether stderr takes something within so long. What it takes without a wait is at least this much: a
+/// terminal reports room below 256 characters of its 4096, and a pipe a page.
+bool takes(std::chrono::milliseconds patience) {
+  pollfd entry{STDERR_FILENO, POLLOUT, 0};
+  return ::poll(&entry, 1, static_cast<int>(patience.count())) > 0;
+}
+constexpr std::size_t most_at_once = 256;
+
+/// Writes what is kept, in pieces that do not wait, as long as stderr takes one within `patience`.
+void write_kept(Kept& messages, std::chrono::milliseconds patience) {
+  using std::chrono::steady_clock;
+  if (messages.lines.empty() && messages.lost == 0) return;
+  const WithoutBrokenPipe message;
+  const auto end = steady_clock::now() + patience;
+  for (;;) {
+    if (messages.lines.empty() && messages.lost != 0)
+      messages.lines.push_back(counted(std::exchange(messages.lost, 0), "message") +
+                               " lost: stderr took none");
+    if (messages.lines.empty()) return;
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - steady_clock::now());
+    if (!takes(std::max(left, std::chrono::milliseconds{0}))) return;
+    const std::string rest = messages.lines.front().substr(messages.written) + "\n";
+    const ssize_t size = ::write(STDERR_FILENO, rest.data(), std::min(rest.size(), most_at_once));
+    if (size < 0 && (errno == EINTR || errno == EAGAIN)) return;
+    messages.written += size < 0 ? rest.size() : static_cast<std::size_t>(size);  // no reader, or a full disk
+    if (messages.written <= messages.lines.front().size()) continue;
+    messages.lines.pop_front();
+    messages.written = 0;
+  }
+}
+
+/// Once: what takes the ^C off the line, which the terminal has shown.
+std::string_view erased_echo() {
+  static bool erased = false;
+  if (erased || interrupted() != SIGINT || !can_redraw(STDERR_FILENO)) return {};
+  erased = true;
+  return "\r\x1b[K";
+}
+
 void print(std::string_view before, std::string_view raw) {
-  static std::mutex one_at_a_time;
-  const std::string text = printable(raw);
-  const std::lock_guard lock{one_at_a_time};
-  if (kept().keeps) {
-    kept().lines.push_back(std::string{before} + text);
-    return;
+  const std::string text = std::string{before} + printable(raw);
+  Kept& messages = kept();
+  const std::lock_guard lock{messages.mutex};
+  if (messages.holds) {
+    messages.lines.push_back(text);
+  } else if (messages.unhurried == 0) {
+    const WithoutBrokenPipe message;  // `stop 2>&1 | true` stops
+    std::fprintf(stderr, "%s%s\n", std::string{erased_echo()}.c_str(), text.c_str());
+  } else {
+    if (messages.lines.size() < most_kept)
+      messages.lines.push_back(std::string{erased_echo()} + text);
+    else
+      ++messages.lost;
+    write_kept(messages, std::chrono::milliseconds{0});
   }
-  const WithoutBrokenPipe message;  // `stop 2>&1 | true` stops
-  static bool echo_erased = false;
-  if (!echo_erased && interrupted() == SIGINT && can_redraw(STDERR_FILENO)) {
-    std::fputs("\r\x1b[K", stderr);  // the terminal has shown ^C
-    echo_erased = true;
-  }
-  std::fprintf(stderr, "%.*s%.*s\n", static_cast<int>(before.size()), before.data(),
-               static_cast<int>(text.size()), text.data());
 }
 
 }  // namespace
@@ -104,21 +153,42 @@ void remark(std::string_view text) {
 }
 
 HeldMessages::HeldMessages() {
-  kept().keeps = true;
+  const std::lock_guard lock{kept().mutex};
+  kept().holds = true;
 }
 
 HeldMessages::~HeldMessages() {
-  kept().keeps = false;
+  const std::lock_guard lock{kept().mutex};
+  kept().holds = false;
   const WithoutBrokenPipe message;
   for (const std::string& line : std::exchange(kept().lines, {})) std::fprintf(stderr, "%s\n", line.c_str());
 }
 
 std::size_t HeldMessages::count() {
+  const std::lock_guard lock{kept().mutex};
   return kept().lines.size();
 }
 
 std::string_view HeldMessages::newest() {
+  const std::lock_guard lock{kept().mutex};
   return kept().lines.empty() ? std::string_view{} : kept().lines.back();
+}
+
+UnhurriedMessages::UnhurriedMessages() {
+  const std::lock_guard lock{kept().mutex};
+  ++kept().unhurried;
+}
+
+UnhurriedMessages::~UnhurriedMessages() {
+  const std::lock_guard lock{kept().mutex};
+  if (--kept().unhurried != 0 || kept().holds) return;
+  write_kept(kept(), std::chrono::seconds{1});
+  kept().lines.clear();
+}
+
+void UnhurriedMessages::write() {
+  const std::lock_guard lock{kept().mutex};
+  if (!kept().holds) write_kept(kept(), std::chrono::milliseconds{0});
 }
 
 std::string counted(std::uint64_t count, std::string_view noun) {

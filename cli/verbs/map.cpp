@@ -109,8 +109,9 @@ void run(Session& session, const fleet::MapOptions& options, const MapPage& page
   const auto result = run.result();
   const bool written = write_files(options.files, run, result);
   run.report(result);
-  exit_code =
-      written ? exit_code_after_interrupt(is_success(end) ? exit_success : exit_failure) : exit_failure;
+  exit_code = written && run.is_recorded()
+                  ? exit_code_after_interrupt(is_success(end) ? exit_success : exit_failure)
+                  : exit_failure;
 }
 
 }  // namespace

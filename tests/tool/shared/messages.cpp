@@ -1,9 +1,15 @@
 // What people read on stderr, and the counts in it.
 #include "cli/shared/messages.hpp"
 
+#include <algorithm>
+#include <array>
+#include <fcntl.h>
 #include <string>
+#include <unistd.h>
 
 #include <catch2/catch.hpp>
+
+#include "cli/shared/unhurried_messages.hpp"
 
 namespace messages_test {
 
@@ -31,6 +37,86 @@ TEST_CASE("messages: counts, and only those of something") {
   add_count(text, 2, "error", "left out");
   add_count(text, 1, "gap", "");
   CHECK(text == "sent, 1 lost, 2 errors left out, 1 gap");
+}
+
+/// Standard error as a pipe, as long as it lives.
+class Pipe {
+ public:
+  Pipe() : before_(::dup(STDERR_FILENO)) {
+    REQUIRE(::pipe2(ends_.data(), O_CLOEXEC) == 0);
+    REQUIRE(::dup2(ends_[1], STDERR_FILENO) == STDERR_FILENO);
+    REQUIRE(::fcntl(ends_[0], F_SETFL, O_NONBLOCK) == 0);
+  }
+  ~Pipe() {
+    ::dup2(before_, STDERR_FILENO);
+    for (const int end : {before_, ends_[0], ends_[1]}) ::close(end);
+  }
+  /// It is empty, and is full then.
+  void fill() const {
+    const std::string blanks(static_cast<std::size_t>(::fcntl(ends_[1], F_GETPIPE_SZ)), ' ');
+    REQUIRE(::write(ends_[1], blanks.data(), blanks.size()) == static_cast<ssize_t>(blanks.size()));
+  }
+  /// What is in it, without blanks before it.
+  [[nodiscard]] std::string read() const {
+    std::string text(1 << 20, '\0');
+    const auto size = ::read(ends_[0], text.data(), text.size());
+    text.resize(size < 0 ? 0 : static_cast<std::size_t>(size));
+    return text.substr(std::min(text.find_first_not_of(' '), text.size()));
+  }
+
+ private:
+  std::array<int, 2> ends_{};
+  int before_;
+};
+
+TEST_CASE("messages: unhurried ones wait for no reader, and come in their order") {
+  const Pipe pipe;
+  {
+    const UnhurriedMessages unhurried;
+    remark("at once");
+    CHECK(pipe.read() == "at once\n");
+    pipe.fill();
+    remark("first");
+    complain({"second", "a remedy"});
+    CHECK(pipe.read().empty());
+    UnhurriedMessages::write();
+    CHECK(pipe.read() == "first\namiroctl: second\n          a remedy\n");
+    pipe.fill();
+    remark("before the next");
+    CHECK(pipe.read().empty());
+    remark(std::string(1000, 'x'));
+    CHECK(pipe.read() == "before the next\n" + std::string(1000, 'x') + "\n");
+    // More than there is room for: the first ones, and how many more there were.
+    pipe.fill();
+    for (int i = 0; i < 1003; ++i) remark(i == 999 ? "the last" : "one of many");
+    std::string all = pipe.read();
+    for (int reads = 0; reads < 100; ++reads) {
+      UnhurriedMessages::write();
+      all += pipe.read();
+    }
+    CHECK(all.size() == 999 * 12 + std::string{"the last\n3 messages lost: stderr took none\n"}.size());
+    CHECK_THAT(all, Catch::EndsWith("one of many\nthe last\n3 messages lost: stderr took none\n"));
+    pipe.fill();
+    remark("too late");
+  }  // waits a second for a reader
+  CHECK(pipe.read().empty());
+  remark("as usual");
+  CHECK(pipe.read() == "as usual\n");
+}
+
+TEST_CASE("messages: held ones are counted, and written when they are held no more") {
+  const Pipe pipe;
+  {
+    const HeldMessages held;
+    CHECK(HeldMessages::newest().empty());
+    remark("one");
+    remark("two");
+    CHECK(HeldMessages::count() == 2);
+    CHECK(HeldMessages::newest() == "two");
+    CHECK(pipe.read().empty());
+  }
+  CHECK(pipe.read() == "one\ntwo\n");
+  CHECK(HeldMessages::count() == 0);
 }
 
 }  // namespace messages_test

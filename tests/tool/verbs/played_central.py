@@ -173,11 +173,15 @@ class Central:
         fcntl.flock(self.lock, fcntl.LOCK_EX)  # who serves a line holds it; a killed one does not
         os.symlink(os.ttyname(self.slave), self.path)
         self.over = False
+        self.babbler = None
         self.thread = threading.Thread(target=self.serve, daemon=True)
         self.thread.start()
 
     def close(self):
         self.over = True
+        while self.babbler is not None and self.babbler.is_alive():
+            if select.select([self.slave], [], [], 0.01)[0]:
+                os.read(self.slave, 65536)  # its last words, which wait
         self.thread.join(5)
         for file in (self.master, self.slave, self.lock):
             if file is not None:
@@ -194,6 +198,14 @@ class Central:
     def write(self, text):
         if not self.mute:
             os.write(self.master, text.encode())
+
+    def babble(self):
+        """Noise between its words, without end and faster than it is read."""
+        def noise():
+            while not self.over:
+                os.write(self.master, b"xyz{U,1,2[0]:AVR:" * 100)
+        self.babbler = threading.Thread(target=noise, daemon=True)
+        self.babbler.start()
 
     def abandon(self):
         """As if its program had been killed, and the terminal been given to another: link and lock file stay."""

@@ -6,7 +6,7 @@ import re
 import signal
 import time
 
-from harness import Case, main
+from harness import Case, main, waiting
 
 
 class Radio(Case):
@@ -57,6 +57,40 @@ class Radio(Case):
                 before = self.place()["pose"]
                 time.sleep(1)  # it would have moved by then
                 self.assertEqual(self.place()["pose"], before)
+                self.interrupt(sim)
+
+    def test_the_program_that_sends_it_hangs_or_the_one_with_the_line_is_killed(self):
+        """A joined `goto` that says nothing for 2 s is stopped for; without an owner the robot ends its leg of 60 cm."""
+        for victim, number, most_cm in (("goto", signal.SIGSTOP, 35), ("central", signal.SIGKILL, 65)):
+            with self.subTest(victim=victim):
+                sim = self.sim(0, 5)
+                owner = self.start("central", "--own")
+                for line in owner.stderr:
+                    if "Ctrl-C ends it" in line:
+                        break
+                goto = self.start("goto", "AVR", "0", "500")
+
+                def x():
+                    pose = json.loads(self.run_tool("robots", "--json", "--listen", "100ms")[0])["pose"]
+                    return pose["x_cm"] if pose else 0  # no update has come yet
+                waiting.until(lambda: x() > 5, "it drives")
+                before = x()
+                (goto if victim == "goto" else owner).send_signal(number)
+                if victim == "central":
+                    _, err = goto.communicate(timeout=60)
+                    self.assertEqual(goto.returncode, 1)
+                    self.assertIn("AVR may still drive: at the latest it stops after 60 cm", err)
+                time.sleep(8)  # the rest of a leg takes 6 s
+                after = self.place()["pose"]
+                self.assertLessEqual(after["x_cm"] - before, most_cm)
+                time.sleep(1)  # it would have moved by then
+                self.assertEqual(self.place()["pose"], after)
+                if victim == "goto":
+                    goto.send_signal(signal.SIGCONT)
+                    _, err = goto.communicate(timeout=60)
+                    self.assertEqual(goto.returncode, 1)
+                    self.assertRegex(err, r"goto \(process \d+\) said nothing for 2 s")
+                    self.interrupt(owner)
                 self.interrupt(sim)
 
 

@@ -1,6 +1,7 @@
 """Many programs on one central's line: the first has it, the others join; who stops what, and what each says when one
 of them dies, hangs, or says nonsense."""
 
+import fcntl
 import glob
 import json
 import os
@@ -346,6 +347,60 @@ class AnOwnerThatOnlyKeepsTheLine(Joined):
         self.interrupt(keeper)
         self.assertEqual(keeper.returncode, 130)
 
+    def test_its_socket_is_removed(self):
+        keeper = self.keep()
+        caller = self.call(owner="central")
+        os.remove(self.line_socket())
+        waiting.until(lambda: glob.glob(os.path.join(self.folder, "ocm", "line-*.sock")), "it is there again")
+        self.assertEqual(stat.S_IMODE(os.stat(self.line_socket()).st_mode), 0o600)
+        self.assertEqual(self.tool("goto", "AVR", "0", "5")[1], "")
+        self.assertTrue(self.ask(caller, b"robots").startswith(b"ok\n"))  # who had joined stays so
+        _, err = self.interrupt(keeper)
+        self.assertIn("central: the socket for other programs was removed, and is there again\n", err)
+        self.assertEqual(glob.glob(os.path.join(self.folder, "ocm", "line-*.sock")), [])
+
+    def test_its_socket_cannot_be_there_again(self):
+        keeper = self.keep()
+        os.remove(self.line_socket())
+        os.chmod(os.path.join(self.folder, "ocm"), 0o750)
+        for line in keeper.stderr:
+            if "the socket for other programs was removed: " in line:
+                break
+        os.chmod(os.path.join(self.folder, "ocm"), 0o700)
+        waiting.until(lambda: glob.glob(os.path.join(self.folder, "ocm", "line-*.sock")), "it is there again")
+        _, err = self.interrupt(keeper)
+        self.assertEqual(err.count("was removed"), 1)
+
+    def test_whose_messages_are_not_read(self):
+        """A pager, or a terminal after Ctrl-S: the line is served all the same, and nothing of them is lost."""
+        reader, writer = os.pipe()
+        self.addCleanup(os.close, reader)
+        fcntl.fcntl(writer, fcntl.F_SETPIPE_SZ, 4096)
+        keeper = self.start("central", "--own", "--scan", "200ms", stderr=writer)
+        waiting.until(lambda: self.avr.confirmed and self.arduino.confirmed, "its robots are linked")
+        waiting.until_asleep(keeper.pid)
+        filler = os.open(f"/proc/self/fd/{writer}", os.O_WRONLY | os.O_NONBLOCK)  # the program's end waits
+        os.close(writer)
+        self.addCleanup(os.close, filler)
+
+        def fill():
+            try:
+                while True:
+                    os.write(filler, b"\n")
+            except BlockingIOError:
+                pass
+        fill()
+        self.central.drop(self.arduino)
+        robots = [json.loads(line) for line in self.tool("robots", "--json", "--listen", "500ms")[0].splitlines()]
+        self.assertEqual([robot["robot"] for robot in robots], ["AVR", "Arduino"])
+        self.assertEqual(self.tool("goto", "AVR", "0", "5")[1], "")
+        said = b""
+        while b"Arduino is lost\n" not in said:
+            said += os.read(reader, 4096)
+        fill()
+        keeper.send_signal(signal.SIGINT)
+        self.assertEqual(keeper.wait(timeout=60), 130)
+
     def test_wrong_usage(self):
         for words in (["--own", "--pty"], ["--own", "--robot", "A=/dev/null"], ["--call-back"], ["--central", "/dev/null"],
                       ["--flow", "rtscts"]):
@@ -404,6 +459,15 @@ class Hostile(Joined):
         _, err = self.ended(tool, 0)
         self.assertEqual(err, "")
         self.goto_works()
+
+    def test_a_dongle_that_never_stops(self):
+        caller = self.call()
+        self.central.babble()
+        for _ in range(20):
+            self.assertTrue(self.ask(caller, b"robots").startswith(b"ok\n"))
+        owner = self._started[0]
+        self.interrupt(owner)
+        self.assertEqual(owner.returncode, 130)
 
     def test_more_callers_than_there_is_room_for(self):
         callers = []

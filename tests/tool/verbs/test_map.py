@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import resource
 import signal
 import time
 import xml.etree.ElementTree as ElementTree
@@ -142,6 +143,20 @@ class Map(Case):
         self.assertEqual(tool.returncode, 1)
         self.assertIn("AVR is lost", err)
         self.assertIn("what was seen until every robot was lost", out)
+        self.check_drawn(file)
+
+    def test_a_record_that_has_not_all(self):
+        """The map is drawn, and the exit code says that something is missing."""
+        def small():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (3000, 3000))  # of the record; the map is smaller
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        file = self.path("a.pgm")
+        tool = self.start("map", file, "--duration", "4s", "--scan", "200ms", "--resolution", "4", "--record", self.path("room.line"),
+                          preexec_fn=small)
+        out, err = tool.communicate(timeout=60)
+        self.assertEqual(tool.returncode, 1, out + err)
+        self.assertEqual(err.count("is not recorded"), 1)
+        self.assertIn("until --duration was over", out)
         self.check_drawn(file)
 
     def test_the_central_is_gone(self):

@@ -77,9 +77,13 @@ TEST_CASE("only what is its own is removed") {
   const std::string path = directory.path() + "/sim.sock";
   auto first = LocalListener::open(path, 1s, service);
   REQUIRE(first);
+  CHECK(first->is_found());
   std::filesystem::remove(path);
+  CHECK_FALSE(first->is_found());
   const auto second = LocalListener::open(path, 1s, service);
   REQUIRE(second);
+  CHECK_FALSE(first->is_found());
+  CHECK(second->is_found());
   first.value = {};
   CHECK(transport::VirtualBus::running(path));
 }
