@@ -142,8 +142,13 @@ class Server {
   void answer(const Order& order) {
     if (order.kind == Order::Kind::newest) {
       for (const std::uint32_t channel : order.channels)
-        if (const auto sample =
-                models_.of(channels_.interface_of(channel)).newest_of(channels_.topic_of(channel)))
+        if (channel >= channels_.of(State::robot)) {
+          if (auto scene = scenes_.newest(channel))
+            viewers_.give(order.viewer, channel,
+                          static_cast<std::uint64_t>(scene->time.time_since_epoch().count()),
+                          std::move(scene->payload));
+        } else if (const auto sample =
+                       models_.of(channels_.interface_of(channel)).newest_of(channels_.topic_of(channel)))
           viewers_.give(order.viewer, channel,
                         static_cast<std::uint64_t>(sample->time.time_since_epoch().count()),
                         publisher_.text_of(*sample));
@@ -357,6 +362,10 @@ int Server::run_log(LogFeed& log) {
                            playback_state(log.playing(), paused, jumps));
     publisher_.go_on();
     winds_ = false;
+    for (const foxglove::Channel& channel : scenes_.channels())
+      if (auto scene = viewers_.wanted(channel.id) ? scenes_.newest(channel.id) : std::nullopt)
+        viewers_.publish(channel.id, static_cast<std::uint64_t>(scene->time.time_since_epoch().count()),
+                         std::move(scene->payload));
   };
   const auto obey = [&](const Order& order) {
     if (order.kind != Order::Kind::playback) return;

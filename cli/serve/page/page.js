@@ -96,6 +96,7 @@ function rowsOf(topic) {
 const newest = new Map();    // messages by channel
 function take(channel, message, timeNs) {
   changed = true;
+  if (channel === picture.scanChannel()) return picture.takeScan(message);
   const topic = topics.get(channel);
   if (topic === undefined) return;
   if (!topic.rows) rowsOf(topic);
@@ -129,6 +130,7 @@ function setRobot(state) {
     if (topic && !topic.rows) rowsOf(topic);
   }
   wire.subscribe(robot.topics.map(topic => topic.channel));
+  if (picture.scanChannel()) wire.subscribe([picture.scanChannel()]);
   if (by('silent').checked) robot.topics.forEach(topic => topic.rows || rowsOf(topic));
   fleet.allow(may);
   if (plots.size > 0) by('graphs-part').scrollIntoView();

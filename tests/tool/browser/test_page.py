@@ -87,6 +87,35 @@ class Page(harness.Case):
         self.until(lambda: re.search(r"\d+ frames", self.browser.text("#buses")), "the bus")
         self.fine()
 
+    def ring(self, **above):
+        """A sample of the ring: counts of the spec's offsets, and above them those of some sensors."""
+        for i, offset in enumerate((2289, 2302, 2420, 2350, 2318, 2272, 2382, 2269)):
+            counts = offset + above.get(f"s{i + 1}", 0)
+            self.run_tool("send", f"6{0x1F + i:02X}#{counts & 255:02X}{counts >> 8:02X}")
+
+    def test_an_obstacle_that_is_there_from_the_beginning(self):
+        """It is never said that there is none: of a sensor whose offset has not been seen nothing is known."""
+        self.start_sim("--frozen")
+        self.serve()
+        self.ring(s3=100)
+        self.says("not known yet what 1 of 8 sensors of the ring see")
+        self.assertNotIn("no obstacle", self.browser.text("#picture-text"))
+        self.ring(s3=100, s4=48217)
+        self.says("nearest obstacle 0.4 cm; not known yet what 1 of 8 sensors of the ring see")
+        self.browser.open(self.url)  # who comes later hears the same, of what came before
+        self.says("nearest obstacle 0.4 cm; not known yet what 1 of 8 sensors of the ring see")
+        for _ in range(8):  # of which an average is
+            self.ring()
+        self.says("no obstacle in sight")
+        self.browser.open(self.url)
+        self.says("no obstacle in sight")
+        self.ring(s3=100)
+        self.says("nearest obstacle 9.7 cm")
+        self.fine()
+
+    def says(self, words):
+        self.until(lambda: self.browser.text("#picture-text") == words, f"{words}, and not {self.browser.text('#picture-text')}")
+
     def test_a_graph_draws_and_zooms(self):
         self.start_sim()
         self.run_tool("publish", "gyro", "50ms")
