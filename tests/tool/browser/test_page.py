@@ -2,6 +2,7 @@
 
 import os
 import re
+import signal
 import sys
 import time
 
@@ -193,6 +194,31 @@ class Page(harness.Case):
             ActionChains(self.browser.driver).reset_actions()
             self.browser.open(self.url)
             self.until(lambda: self.browser.element("#pad .up").is_displayed(), "the pad")
+
+    def test_a_page_that_was_frozen_does_not_drive_on(self):
+        self.start_sim("--frozen")
+        self.serve("--allow-commands")
+        viewer = self.speeds()
+        self.until(lambda: self.browser.element("#pad .up").is_displayed(), "the pad")
+        ActionChains(self.browser.driver).click_and_hold(self.browser.element("#pad .up")).perform()
+        while viewer.message().fields["x"] != 0.1:
+            pass
+        processes = self.browser.processes()
+        for pid in processes:
+            os.kill(pid, signal.SIGSTOP)
+        while viewer.message().fields["x"] != 0:
+            pass
+        time.sleep(1)  # frozen for longer than a drive lasts
+        for pid in processes:
+            os.kill(pid, signal.SIGCONT)
+        self.assertEqual(viewer.message().fields, {"x": 0, "z": 0})  # the page releases by itself, and says nothing else
+        time.sleep(1)  # in which it would say ten set points
+        self.browser.script("document.getElementById('stop').click()")
+        self.assertEqual(viewer.message().fields, {"x": 0, "z": 0})  # behind which nothing of before is under way
+        ActionChains(self.browser.driver).release().click_and_hold(self.browser.element("#pad .up")).perform()
+        while viewer.message().fields["x"] != 0.1:  # what is pressed again drives
+            pass
+        ActionChains(self.browser.driver).release().perform()
 
     def test_without_the_token_there_is_nothing_to_press(self):
         self.start_sim("--frozen")

@@ -380,6 +380,16 @@ class Serve(harness.Case):
         while viewer.message().fields["x"] != 0:
             self.assertLess(time.monotonic() - begin, 5)
         self.interrupt(listener)
+        # It goes on as if nothing had been, as a page that was frozen: it must say rest before it drives again.
+        listener = self.listen("motors")
+        for _ in range(3):
+            viewer.publish("/motors", {"x": 0.1, "z": 0})
+        while "release first, then drive again" not in viewer.text("status")["message"]:
+            pass
+        viewer.publish("/motors", {"x": 0, "z": 0})
+        self.assertEqual(viewer.message().fields, {"x": 0, "z": 0})
+        self.settle()
+        self.assertEqual([event["fields"]["x"] for event in self.objects(self.interrupt(listener)[0])], [0])
         # The connection is cut without a word.
         listener = self.listen("motors")
         viewer.publish("/motors", {"x": 0.05, "z": 0})
@@ -448,6 +458,9 @@ class Serve(harness.Case):
         self.assertIn("another viewer drives", second.text("status")["message"])
         second.publish("/motors", {"x": 0, "z": 0})  # a stop is never refused
         while first.message().fields["x"] != 0:
+            pass
+        first.publish("/motors", {"x": 0.05, "z": 0})  # as a page that is still held: the stop holds
+        while "release first" not in first.text("status")["message"]:
             pass
         other = self.start("drive", "5cm/s")
         while first.message().fields["x"] != 0.05:
