@@ -89,6 +89,7 @@ class Server {
         models_(catalogue_, rates_.nominal, rates_.data),
         bounds_(catalogue_, rates_.nominal),
         diagnosis_(catalogue_),
+        status_requests_(catalogue_),
         parameters_(catalogue_, viewers_),
         sessions_({fmt::format("{}, {}", catalogue_.robot, source_.name), random_text(8), source_.commands,
                    !source_.live, options_.fleet && source_.live ? &fleet_orders_ : nullptr},
@@ -132,9 +133,12 @@ class Server {
   void take(const log::Entry& entry, const log::Interfaces& interfaces) {
     const std::string_view interface = interfaces.name(entry.interface);
     const client::Reception reception = publisher_.take(entry, interface);
-    diagnosis_.take(reception);
     if (reception.meaning == client::Meaning::sample) show(reception.sample, interface);
-    if (const auto classic = entry.classic()) commanders_.take({entry.time, *classic}, reception);
+    diagnosis_.take(reception);
+    if (const auto classic = entry.classic()) {
+      status_requests_.take({entry.time, *classic}, reception);
+      commanders_.take({entry.time, *classic}, reception);
+    }
     models_.take(entry, interfaces);
     if (entry.interface == 0) bounds_.take(entry);
   }
@@ -187,16 +191,18 @@ class Server {
           channel, now_ns(),
           bus_state(models_.buses(), now, {viewers_.count(), viewers_.lost(), web_->refused()}));
   }
-  void publish_boards(const transport::BusCounters& counters) {
+  void publish_boards(const transport::BusCounters& counters, base::Time now) {
     const std::uint32_t channel = channels_.of(State::boards);
     if (!viewers_.wanted(channel)) return;
-    std::vector<client::Finding> findings = diagnosis_.findings();
+    std::vector<client::Finding> findings =
+        diagnosis_.findings([&](std::size_t board) { return status_requests_.is_due(board, now); });
     const auto disputes = commanders_.findings(catalogue_);
     findings.insert(findings.end(), disputes.begin(), disputes.end());
     for (client::Finding& finding : findings) finding.remedy = remedy(finding);
     const auto counted = findings_of(counters, publisher_.counters());
     findings.insert(findings.end(), counted.begin(), counted.end());
-    viewers_.publish_state(channel, now_ns(), boards_state(catalogue_, diagnosis_, findings));
+    viewers_.publish_state(channel, now_ns(),
+                           boards_state(catalogue_, diagnosis_, status_requests_, findings));
   }
   [[nodiscard]] bool is_over() const { return options_.over && options_.over(); }
   void say(const std::string& words) {
@@ -229,6 +235,7 @@ class Server {
   Models models_;
   Bounds bounds_;  ///< of the first interface
   client::Diagnosis diagnosis_;
+  client::StatusRequests status_requests_;
   client::Commanders commanders_;
   Parameters parameters_;
   Orders orders_;
@@ -327,7 +334,7 @@ Over Server::serve_bus(transport::Bus& bus, const log::Interfaces& interfaces, c
       if (over == Over::time && operator_changed()) over = Over::enough;
     }
     if (now >= next_boards) {
-      publish_boards(bus.counters());
+      publish_boards(bus.counters(), unix_time());
       publish_bounds(unix_time());
       next_boards = now + boards_interval;
     }
@@ -353,6 +360,7 @@ int Server::run_log(LogFeed& log) {
       models_ = Models{catalogue_, rates_.nominal, rates_.data};
       for (const std::string& interface : channels_.interfaces()) models_.of(interface);
       diagnosis_ = client::Diagnosis{catalogue_};
+      status_requests_ = client::StatusRequests{catalogue_};
       bounds_ = Bounds{catalogue_, rates_.nominal};
       log.rewind();
     }
@@ -403,7 +411,7 @@ int Server::run_log(LogFeed& log) {
       next_bus = now + bus_interval;
     }
     if (now >= next_boards) {
-      publish_boards({});
+      publish_boards({}, log.now());
       publish_bounds(log.now());
       next_boards = now + boards_interval;
     }

@@ -59,11 +59,17 @@ export function showBuses(into, state) {
   into.replaceChildren(...parts);
 }
 
+// Of a board that has not said how it is.
+function boardText(board) {
+  if (!board.has_status) return 'has no status';
+  return `${board.heard ? 'sends; ' : ''}${board.asked ? 'no answer' : 'not asked yet'}`;
+}
+
 export function showBoards(into, findings, state) {
   table(into, ['Board', 'Up', 'Reset', 'Spec', 'CPU', 'Bus', 'Publishes'], state.boards.map(board => board.answers
     ? [board.board, span(board.uptime_s), board.reset || '?', [board.same_spec ? 'same' : 'another', board.same_spec ? '' : 'warning'],
       board.load_percent === null ? '-' : `${board.load_percent} %`, board.bus || '?', board.publishing || '-']
-    : [board.board, board.has_status ? (board.heard ? 'sends, no status yet' : 'not heard') : 'has no status', '', '', '', '', '']));
+    : [board.board, boardText(board), '', '', '', '', '']));
   findings.replaceChildren(...state.findings.map(finding => {
     const line = element('li');
     line.append(element('span', finding.severity, finding.severity), ` ${finding.board ? `${finding.board}: ` : ''}${finding.what}. `,

@@ -246,6 +246,8 @@ class Page(harness.Case):
         self.browser.script("const bar = document.getElementById('bar'); bar.value = 20; bar.dispatchEvent(new Event('change'))")
         self.until(lambda: self.browser.text("#bar-text").startswith("20.0 of 29.9 s"), "second 20")
         self.shows("/gyroscope.x", "3.5 deg/s")
+        self.until(lambda: "sends; not asked yet" in self.browser.text("#board-table"), "the boards")
+        self.assertEqual(self.browser.text("#findings"), "")  # none was asked, so none is found silent
         self.fine()
 
     def test_any_dbc_has_values_and_graphs(self):

@@ -276,6 +276,22 @@ class Serve(harness.Case):
         self.assertGreater(row["bound_ms"], 0.2)  # a frame of six bytes at 500 kbit/s
         self.assertGreater(row["measured_ms"], 0.1)
 
+    def test_only_boards_that_were_asked_are_found_silent(self):
+        self.start_sim("--without", "light_ring")
+        _, port, _ = self.serve()
+        viewer = self.viewer(port)
+        viewer.subscribe("/ocm/boards")
+        self.assertEqual(viewer.message().fields["findings"], [])
+        self.run_tool("publish", "gyro", "50ms")
+        self.run_tool("stop", "light_ring_status")
+        state = self.state(viewer, "/ocm/boards", lambda s: s["boards"][0]["heard"], "a board that sends")
+        state = viewer.message().fields  # and a second later
+        self.assertEqual((state["findings"], [board["asked"] for board in state["boards"]]), ([], [False] * 3))
+        self.run_tool("doctor", "--json", code=1)
+        state = self.state(viewer, "/ocm/boards", lambda s: s["findings"], "what was found")
+        self.assertEqual([(found["board"], found["what"]) for found in state["findings"]], [("light_ring", "does not answer")])
+        self.assertEqual([board["answers"] for board in state["boards"]], [True, True, False])
+
     def test_any_dbc(self):
         spec = os.path.join(self.folder, "car.dbc")
         with open(spec, "w", encoding="ascii") as file:
