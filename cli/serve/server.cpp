@@ -30,6 +30,7 @@
 #include "cli/serve/control.hpp"
 #include "cli/serve/fleet_player.hpp"
 #include "cli/serve/foxglove.hpp"
+#include "cli/serve/log_start.hpp"
 #include "cli/serve/operator_watch.hpp"
 #include "cli/serve/orders.hpp"
 #include "cli/serve/parameters.hpp"
@@ -204,6 +205,13 @@ class Server {
     viewers_.publish_state(channel, now_ns(),
                            boards_state(catalogue_, diagnosis_, status_requests_, findings));
   }
+  /// Whether a viewer has subscribed to something of the bus or the log.
+  [[nodiscard]] bool is_looked_at() const {
+    const auto& all = channels_.all();
+    return std::any_of(all.begin(), all.end(), [this](const foxglove::Channel& channel) {
+      return !channels_.is_state(channel.id) && viewers_.wanted(channel.id);
+    });
+  }
   [[nodiscard]] bool is_over() const { return options_.over && options_.over(); }
   void say(const std::string& words) {
     remark("serve: " + words);
@@ -348,6 +356,8 @@ int Server::run_log(LogFeed& log) {
   const LogFeed::Take taken = [this](const log::Entry& entry, const log::Interfaces& interfaces) {
     take(entry, interfaces);
   };
+  LogStart start;
+  remark(LogStart::waits);
   bool paused = false;
   std::uint64_t jumps = 0;
   const auto jump = [&](base::Duration at) {
@@ -379,6 +389,7 @@ int Server::run_log(LogFeed& log) {
     if (order.kind != Order::Kind::playback) return;
     const auto request = playback_of(order.payload);
     if (!request) return viewers_.tell(order.viewer, foxglove::status(foxglove::Level::error, request.error));
+    start.begin();
     if (request->paused >= 0) paused = request->paused == 1;
     if (request->speed > 0) log.faster(request->speed / log.playing().speed);
     if (request->at_s >= 0) jump(base::Duration{static_cast<std::int64_t>(request->at_s * 1e9)});
@@ -392,7 +403,7 @@ int Server::run_log(LogFeed& log) {
     const bool asked = wait_for_input(std::span{&input, 1}, play_step);
     const auto now = Clock::now();
     const base::Duration passed = now - std::exchange(before, now);
-    if (!paused) log.play(passed, taken);
+    if (start.plays(is_looked_at(), viewers_.count() != 0, now) && !paused) log.play(passed, taken);
     models_.until(log.now());
     if (asked) {
       for (const Order& order : orders_.take()) {
@@ -443,15 +454,22 @@ int Server::run_alone() {
 int Server::run_fleet_log(fleet::LineReplay replay) {
   FleetPlayer player{std::move(replay), source_.name, viewers_, fleet_channels(),
                      channels_.of(State::playback)};
+  LogStart start;
+  remark(LogStart::waits);
   auto before = Clock::now();
   auto next_bus = before;
   while (interrupted() == 0 && !is_over()) {
     pollfd input{orders_.descriptor(), POLLIN, 0};
     const bool asked = wait_for_input(std::span{&input, 1}, play_step);
     const auto now = Clock::now();
-    player.pass(now - std::exchange(before, now));
+    const base::Duration passed = now - std::exchange(before, now);
+    const bool is_seen = viewers_.wanted(fleet_channels().fleet) || viewers_.wanted(fleet_channels().map);
+    if (start.plays(is_seen, viewers_.count() != 0, now)) player.pass(passed);
     if (asked)
-      for (const Order& order : orders_.take()) player.obey(order);
+      for (const Order& order : orders_.take()) {
+        if (order.kind == Order::Kind::playback) start.begin();
+        player.obey(order);
+      }
     player.publish(now);
     if (now >= next_bus) {
       publish_bus(unix_time());

@@ -157,8 +157,8 @@ function setPlayback(state) {
   bar.step = state.length_s / 1000;
   if (document.activeElement !== bar || !bar.dataset.held) bar.value = state.at_s;
   by('bar-text').textContent = `${state.at_s.toFixed(1)} of ${state.length_s.toFixed(1)} s${state.ended ? ', end' : ''}`;
-  by('play').textContent = state.paused ? 'Play log' : 'Pause log';
-  by('play').dataset.paused = state.paused;
+  by('play').textContent = state.ended ? 'Play again' : state.paused ? 'Play log' : 'Pause log';
+  by('play').dataset.asks = JSON.stringify(state.ended ? {at_s: 0, paused: false} : {paused: !state.paused});
 }
 
 const states = {
@@ -250,7 +250,7 @@ by('command').addEventListener('submit', event => {
   wire.publish('/ocm/command', {line: by('line').value});
   by('line').select();
 });
-by('play').addEventListener('click', () => wire.publish('/ocm/playback', {paused: by('play').dataset.paused !== 'true'}));
+by('play').addEventListener('click', () => wire.publish('/ocm/playback', JSON.parse(by('play').dataset.asks ?? '{"paused":true}')));
 by('speed').addEventListener('change', () => wire.publish('/ocm/playback', {speed: Number(by('speed').value)}));
 by('bar').addEventListener('pointerdown', () => { by('bar').dataset.held = '1'; });
 by('bar').addEventListener('pointerup', () => { delete by('bar').dataset.held; });

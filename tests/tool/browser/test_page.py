@@ -248,6 +248,12 @@ class Page(harness.Case):
         self.shows("/gyroscope.x", "3.5 deg/s")
         self.until(lambda: "sends; not asked yet" in self.browser.text("#board-table"), "the boards")
         self.assertEqual(self.browser.text("#findings"), "")  # none was asked, so none is found silent
+        self.browser.script("const bar = document.getElementById('bar'); bar.value = 29.8; bar.dispatchEvent(new Event('change'))")
+        self.until(lambda: self.browser.text("#bar-text").startswith("29.8"), "second 29.8")
+        self.browser.element("#play").click()
+        self.until(lambda: self.browser.text("#play") == "Play again" and "end" in self.browser.text("#bar-text"), "the end")
+        self.browser.element("#play").click()
+        self.until(lambda: self.browser.text("#play") == "Pause log" and float(self.browser.text("#bar-text").split()[0]) < 20, "its beginning again")
         self.fine()
 
     def test_any_dbc_has_values_and_graphs(self):

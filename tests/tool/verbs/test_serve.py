@@ -201,7 +201,8 @@ class Serve(harness.Case):
                 self.assertEqual(file.read(), f"http://127.0.0.1:{port}/\n")
             os.unlink(opened)
             children = subprocess.run(["pgrep", "-P", str(server.pid)], capture_output=True, text=True, check=True).stdout.split()
-            self.assertEqual(self.interrupt(server), ("", ""))
+            out, err = self.interrupt(server)
+            self.assertEqual((out, len(err.splitlines())), ("", 1), err)  # that the log waits for the page
             for child in children:
                 os.kill(int(child), signal.SIGKILL)
             del self.environment[display]
@@ -310,6 +311,25 @@ class Serve(harness.Case):
                     if event["bus"] == "can1"}
         for message in got:
             self.assertEqual(message.fields, expected[str(message.time_ns)])
+
+    def test_a_log_waits_for_its_first_viewer(self):
+        server, port, _ = self.serve(self.log())
+        self.assertIn("the log plays from the moment that the page is opened", server.stderr.readline())
+        time.sleep(1)  # in which it would play ten samples
+        viewer = self.viewer(port)
+        viewer.subscribe("/ocm/playback", "/gyroscope")
+        self.assertEqual(viewer.message("/ocm/playback").fields["at_s"], 0)
+        self.assertEqual([round(viewer.message("/gyroscope").fields["x"] / 0.0175) for _ in range(5)], [0, 1, 2, 3, 4])
+        # Who subscribes to states alone has it played, too, and so has who winds it.
+        _, port, _ = self.serve(self.log())
+        viewer = self.viewer(port)
+        viewer.subscribe("/ocm/playback")
+        self.state(viewer, "/ocm/playback", lambda s: s["at_s"] > 0, "that it plays")
+        _, port, _ = self.serve(self.log())
+        viewer = self.viewer(port)
+        viewer.publish("/ocm/playback", {"at_s": 20})
+        viewer.subscribe("/ocm/playback")
+        self.state(viewer, "/ocm/playback", lambda s: s["at_s"] > 20.2, "that it plays")
 
     def test_a_log_is_wound(self):
         _, port, _ = self.serve(self.log())
