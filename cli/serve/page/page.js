@@ -122,6 +122,9 @@ function setRobot(state) {
   for (const part of ['graphs-part', 'bus-part', 'values-part']) by(part).hidden = robot.topics.length === 0;
   const may = robot.commands && wire.capabilities?.includes('clientPublish');
   by('command').hidden = !may || robot.topics.length === 0;
+  const sensor = robot.topics.find(topic => topic.kind === 'sensor');
+  const message = robot.topics.find(topic => topic.kind === 'message' && topic.frames[0].fields.length > 0);
+  by('line').placeholder = sensor ? `publish ${sensor.name} 50ms` : message ? `set ${message.name} ${message.frames[0].fields[0].name}=0` : '';
   by('ask').hidden = !may || !reports;
   by('drive').hidden = by('stop').hidden = !may || !picture.topic('drive');
   if (may && picture.topic('drive')) drive.set(picture.topic('drive'));

@@ -63,6 +63,16 @@ class Page(harness.Case):
         """Nothing was refused by the page's policy, and no script has failed."""
         self.assertEqual(self.browser.complaints(), [])
 
+    def dbc(self):
+        """A message, and one of a multiplexer with three pages."""
+        spec = os.path.join(self.folder, "car.dbc")
+        with open(spec, "w", encoding="ascii") as file:
+            file.write('VERSION ""\nNS_ :\nBS_:\nBU_: ECU\nBO_ 291 Engine: 8 ECU\n SG_ Speed : 0|16@1+ (0.25,0) [0|16000] "rpm" Vector__XXX\n'
+                       ' SG_ TemperatureOfTheCoolantBehindThePump : 16|8@1+ (1,-40) [-40|215] "degC" Vector__XXX\n'
+                       'BO_ 292 Cells: 8 ECU\n SG_ Page M : 0|8@1+ (1,0) [0|2] "" Vector__XXX\n'
+                       + "".join(f' SG_ Cell{i} m{i} : 8|16@1+ (0.001,0) [0|65] "V" Vector__XXX\n' for i in range(3)))
+        return spec
+
     def log(self):
         path = os.path.join(self.folder, "drive.log")
         with open(path, "w", encoding="ascii") as file:
@@ -270,6 +280,15 @@ class Page(harness.Case):
         self.until(lambda: self.browser.script(DRAWN, "#graphs canvas"), "a graph")
         for selector in ("#robot", "#boards"):
             self.assertFalse(self.browser.element(selector).is_displayed(), selector)
+        self.fine()
+
+    def test_a_command_line_with_any_spec(self):
+        self.start_sim("--frozen")
+        self.serve("--allow-commands", tool=("--spec", self.dbc()))
+        self.until(lambda: self.browser.element("#line").is_displayed(), "the command line")
+        self.assertEqual(self.browser.element("#line").get_attribute("placeholder"), "set Engine Speed=0")
+        self.browser.element("#line").send_keys("set Engine Speed=100rpm", Keys.ENTER)
+        self.shows("/Engine.Speed", "100 rpm")
         self.fine()
 
     def test_all_can_use_it(self):
