@@ -116,6 +116,7 @@ function setRobot(state) {
   by('title').textContent = `${robot.robot}, ${robot.source}`;
   document.title = `${robot.robot}, ${robot.source}`;
   by('robot').hidden = !picture.set(robot.topics);
+  by('main').classList.toggle('robotless', by('robot').hidden);
   const reports = robot.topics.some(topic => topic.role === 'status');
   by('boards').hidden = !reports;
   by('playback').hidden = robot.live;

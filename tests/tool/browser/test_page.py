@@ -5,6 +5,8 @@ import re
 import signal
 import sys
 import time
+import urllib.error
+import urllib.request
 
 sys.path.insert(0, os.path.join(os.environ["OCM_SOURCE_DIR"], "tests", "tool", "verbs"))
 import browser
@@ -290,6 +292,28 @@ class Page(harness.Case):
         self.browser.element("#line").send_keys("set Engine Speed=100rpm", Keys.ENTER)
         self.shows("/Engine.Speed", "100 rpm")
         self.fine()
+
+    def test_where_things_are(self):
+        self.start_sim("--frozen")
+        box = "const box = document.querySelector(arguments[0]).getBoundingClientRect(); return [box.left, box.top, box.right, box.bottom]"
+        self.serve("--allow-commands")
+        self.until(lambda: self.browser.element("#pad .up").is_displayed(), "the pad")
+        gap = """const [pad, speed] = ['pad', 'forward-speed'].map(id => document.getElementById(id).getBoundingClientRect());
+            return speed.top - pad.bottom"""
+        self.assertGreaterEqual(self.browser.script(gap), 8)
+        self.serve(tool=("--spec", self.dbc()))
+        self.run_tool("send", "123#90013C0000000000")
+        self.shows("/Engine.Speed", "100 rpm")
+        (left, _, right, _), (bus_left, _, bus_right, _) = (self.browser.script(box, each) for each in ("#graphs-part", "#bus-part"))
+        self.assertGreater(right - left, bus_right - bus_left)
+        align = "return [...document.querySelectorAll('#values thead th')].map(each => getComputedStyle(each).textAlign)"
+        cells = "return [...document.querySelector('[data-field=\"/Engine.Speed\"]').parentElement.children].map(each => getComputedStyle(each).textAlign)"
+        self.assertEqual(self.browser.script(align), self.browser.script(cells))
+        request = urllib.request.Request(f"http://127.0.0.1:{self.port}/", headers={"Host": "evil.example"})
+        for count in ("1 request refused", "2 requests refused"):
+            with self.assertRaises(urllib.error.HTTPError):
+                urllib.request.urlopen(request)
+            self.until(lambda count=count: self.browser.text("#buses").endswith(f"1 viewer; {count}"), count)
 
     def test_all_can_use_it(self):
         """axe-core finds nothing, in light and dark, wide and on a phone, where nothing sticks out."""
