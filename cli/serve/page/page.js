@@ -57,7 +57,15 @@ function frameOf(topic, frame, message) {
 
 // A line a field, when the first of it comes.
 function rowsOf(topic) {
-  const body = by('values').tBodies[0];
+  // The topic's own line is for narrow pages; wide ones have it in the first column.
+  const body = element('tbody');
+  const heading = element('th', topic.channel.slice(1));
+  heading.colSpan = 7;
+  heading.scope = 'rowgroup';
+  topic.heading = element('tr', undefined, 'topic');
+  topic.heading.append(heading);
+  body.append(topic.heading);
+  by('values').append(body);
   for (const frame of topic.frames) {
     const key = `${topic.channel}|${frame.name}`;
     for (const field of frame.fields) {
@@ -200,10 +208,12 @@ const fleet = new Fleet({map: by('map'), text: by('map-text'), line: by('fleet-l
 
 function drawValues() {
   const filter = by('filter').value.toLowerCase();
+  const shown = new Set();
   for (const row of rows.values()) {
     const hidden = !row.text.includes(filter);
     if (row.line.hidden !== hidden) row.line.hidden = hidden;
     if (hidden) continue;
+    shown.add(row.topic);
     const message = newest.get(row.topic.channel);
     const text = message ? valueText(row.field, frameOf(row.topic, row.frame, message)?.[row.field.name]) : '';
     if (row.value.textContent !== text) row.value.textContent = text;
@@ -219,6 +229,7 @@ function drawValues() {
     cells.forEach((cell, i) => { if (row.timing[i].textContent !== cell) row.timing[i].textContent = cell; });
     row.timing[2].className = rate && rate.health !== 'fine' ? `number ${rate.health}` : 'number';
   }
+  for (const {topic} of rows.values()) if (topic.heading.hidden === shown.has(topic)) topic.heading.hidden = !shown.has(topic);
 }
 
 setInterval(() => {

@@ -293,6 +293,37 @@ class Page(harness.Case):
         self.shows("/Engine.Speed", "100 rpm")
         self.fine()
 
+    def in_view(self, field):
+        """Whether the value and the check box of a field are within the page's width."""
+        return self.browser.script("""const cell = document.querySelector(`[data-field="${arguments[0]}"]`);
+            return [cell, cell.nextSibling.firstChild].every(each => { const box = each.getBoundingClientRect();
+              return box.width > 0 && box.left >= 0 && box.right <= innerWidth; })""", field)
+
+    def test_values_on_a_phone(self):
+        self.browser.size(390, 844)
+        self.start_sim("--frozen")
+        self.serve()
+        self.run_tool("send", "602#0000000000000000")
+        self.run_tool("send", "603#0110000200000000")
+        self.ring()
+        self.shows("/odometry.pose.x", "1.048832 m")
+        for field in ("/odometry.pose.orientation", "/proximity_ring.sensor_1.proximity"):
+            self.assertTrue(self.in_view(field), field)
+        headings = "return [...document.querySelectorAll('#values tr.topic')].filter(each => each.offsetParent !== null).map(each => each.textContent)"
+        self.assertEqual(self.browser.script(headings), ["odometry", "proximity_ring"])
+        self.browser.element("#filter").send_keys("prox")
+        self.until(lambda: self.browser.script(headings) == ["proximity_ring"], "the filter")
+        self.assertEqual(self.browser.violations(), [])
+        self.browser.size(1280, 1400)
+        self.assertEqual(self.browser.script(headings), [])
+        self.browser.size(390, 844)
+        self.serve(tool=("--spec", self.dbc()))
+        self.run_tool("send", "123#90013C0000000000")
+        self.shows("/Engine.Speed", "100 rpm")
+        self.assertTrue(self.in_view("/Engine.Speed"))
+        self.assertTrue(self.in_view("/Engine.TemperatureOfTheCoolantBehindThePump"))
+        self.assertLessEqual(self.browser.script("return document.documentElement.scrollWidth"), 390)
+
     def test_where_things_are(self):
         self.start_sim("--frozen")
         box = "const box = document.querySelector(arguments[0]).getBoundingClientRect(); return [box.left, box.top, box.right, box.bottom]"
