@@ -91,28 +91,44 @@ function rowsOf(topic) {
         box.dispatchEvent(new Event('change'));
       }
       line.append(name, element('td', path), value, choice);
-      const timing = first ? [0, 1, 2, 3].map(() => element('td', '', 'number')) : [];
-      if (first) line.append(...timing);
-      else line.append(...[0, 1, 2, 3].map(() => element('td')));
+      const timing = [0, 1, 2, 3].map(() => element('td', '', 'number'));
+      line.append(...timing);
       body.append(line);
-      rows.set(id, {topic, frame, field, line, value, timing, text: `${topic.channel} ${path}`.toLowerCase()});
+      rows.set(id, {topic, frame, field, first, line, value, timing, text: `${topic.channel} ${path}`.toLowerCase()});
     }
   }
   topic.rows = true;
 }
 
-const newest = new Map();    // messages by channel
+const newest = new Map();    // messages by channel, of each field the last value that came
+
+// A message has the fields of one page of a multiplexer only: the others stay as they were.
+function together(topic, before, message) {
+  if (topic.frames.length === 1) return {...before, ...message};
+  const all = {...before};
+  for (const [name, fields] of Object.entries(message)) all[name] = {...all[name], ...fields};
+  return all;
+}
+
 function take(channel, message, timeNs) {
   changed = true;
   if (channel === picture.scanChannel()) return picture.takeScan(message);
   const topic = topics.get(channel);
   if (topic === undefined) return;
   if (!topic.rows) rowsOf(topic);
-  newest.set(channel, topic.frames.length > 1 ? {...newest.get(channel), ...message} : message);
-  const time = Number(timeNs / 1000n) / 1000;
+  newest.set(channel, together(topic, newest.get(channel), message));
+  const time = topic.time = Number(timeNs / 1000n) / 1000;
   for (const frame of topic.frames) {
     const fields = frameOf(topic, frame, message);
-    if (fields) graphs.add(`${channel}|${frame.name}`, time, fields);
+    if (!fields) continue;
+    graphs.add(`${channel}|${frame.name}`, time, fields);
+    const names = Object.keys(fields);
+    frame.isPaged ||= names.length < frame.fields.length;
+    if (!frame.isPaged) continue;
+    for (const name of names) {
+      const row = rows.get(`${channel}|${frame.name}|${name}`);
+      if (row) row.time = time;
+    }
   }
   picture.take(channel, newest.get(channel));
 }
@@ -162,6 +178,7 @@ function setPlayback(state) {
     picture.forget();
     fleet.forget();
     newest.clear();
+    for (const row of rows.values()) row.time = undefined;
   }
   jumps = state.jumps;
   const bar = by('bar');
@@ -206,6 +223,27 @@ const fleet = new Fleet({map: by('map'), text: by('map-text'), line: by('fleet-l
   robot: by('fleet-robot'), place: by('fleet-place'), x: by('place-x'), y: by('place-y'), look: by('fleet-look')},
 (order) => wire.publish('/ocm/fleet', order));
 
+function ageText(seconds) {
+  return seconds < 1 ? `${(seconds * 1000).toFixed(0)} ms` : `${seconds.toFixed(1)} s`;
+}
+
+// Rate, jitter, age and share of the topic, beside its first field; the age of a field that the newest message lacks, beside that one.
+function timingOf(row) {
+  const rate = rates.get(`${row.topic.interface}|${row.topic.name}`);
+  const cells = ['', '', '', ''];
+  if (rate && row.first) {
+    if (rate.rate_hz !== null) cells[0] = rate.rate_hz.toFixed(1);
+    if (rate.jitter_ms !== null) cells[1] = `${rate.jitter_ms.toFixed(2)} ms`;
+    if (rate.age_s !== null) cells[2] = ageText(rate.age_s);
+    if (rate.share !== null) cells[3] = `${(rate.share * 100).toFixed(1)} %`;
+  }
+  if (row.time !== undefined && (!row.first || row.time < row.topic.time))
+    cells[2] = ageText((rate?.age_s ?? 0) + (row.topic.time - row.time) / 1000);
+  const health = rate && row.first && rate.health !== 'fine' ? rate.health : '';
+  if (health) cells[2] += ` ${health}`;
+  return {cells, health};
+}
+
 function drawValues() {
   const filter = by('filter').value.toLowerCase();
   const shown = new Set();
@@ -217,17 +255,10 @@ function drawValues() {
     const message = newest.get(row.topic.channel);
     const text = message ? valueText(row.field, frameOf(row.topic, row.frame, message)?.[row.field.name]) : '';
     if (row.value.textContent !== text) row.value.textContent = text;
-    if (row.timing.length === 0) continue;
-    const rate = rates.get(`${row.topic.interface}|${row.topic.name}`);
-    const cells = rate ? [
-      rate.rate_hz === null ? '' : rate.rate_hz.toFixed(1),
-      rate.jitter_ms === null ? '' : `${rate.jitter_ms.toFixed(2)} ms`,
-      rate.age_s === null ? '' : rate.age_s < 1 ? `${(rate.age_s * 1000).toFixed(0)} ms` : `${rate.age_s.toFixed(1)} s`,
-      rate.share === null ? '' : `${(rate.share * 100).toFixed(1)} %`,
-    ] : ['', '', '', ''];
-    if (rate && rate.health !== 'fine') cells[2] += ` ${rate.health}`;
+    const {cells, health} = timingOf(row);
     cells.forEach((cell, i) => { if (row.timing[i].textContent !== cell) row.timing[i].textContent = cell; });
-    row.timing[2].className = rate && rate.health !== 'fine' ? `number ${rate.health}` : 'number';
+    const className = health ? `number ${health}` : 'number';
+    if (row.timing[2].className !== className) row.timing[2].className = className;
   }
   for (const {topic} of rows.values()) if (topic.heading.hidden === shown.has(topic)) topic.heading.hidden = !shown.has(topic);
 }

@@ -284,6 +284,26 @@ class Page(harness.Case):
             self.assertFalse(self.browser.element(selector).is_displayed(), selector)
         self.fine()
 
+    def test_each_field_of_a_multiplexer_has_its_newest_value(self):
+        self.start_sim("--frozen")
+        self.serve(tool=("--spec", self.dbc()))
+        for page, millivolts in ((0, 3600), (1, 3700), (2, 3800), (0, 3601)):
+            self.run_tool("send", f"124#{page:02X}{millivolts & 255:02X}{millivolts >> 8:02X}0000000000")
+        for i, text in enumerate(("3.601 V", "3.7 V", "3.8 V")):
+            self.shows(f"/Cells.Cell{i}", text)
+
+        def age(field):
+            text = self.browser.script("return arguments[0].parentElement.children[6].textContent", self.browser.element(f'[data-field="/Cells.{field}"]'))
+            shown = re.match(r"([0-9.]+) (m?s)", text)
+            return float(shown[1]) * (0.001 if shown[2] == "ms" else 1) if shown else float("nan")  # not yet
+
+        self.until(lambda: age("Cell1") > age("Cell2") > age("Page"), "ages: pages that came before are older")
+        self.run_tool("send", "124#01750E0000000000")
+        self.shows("/Cells.Cell1", "3.701 V")
+        self.until(lambda: age("Cell1") < age("Cell0"), "the age of what has just come")
+        self.assertEqual(self.value("/Cells.Cell0"), "3.601 V")
+        self.fine()
+
     def test_a_command_line_with_any_spec(self):
         self.start_sim("--frozen")
         self.serve("--allow-commands", tool=("--spec", self.dbc()))
