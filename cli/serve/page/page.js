@@ -13,10 +13,11 @@ const isWord = each => each.startsWith('plot=') || each === 'map';
 const token = asked.find(each => !isWord(each)) ?? '';
 const plots = new Set(asked.filter(each => each.startsWith('plot=')).flatMap(each => each.slice(5).split(',').map(decodeURIComponent)));
 const graphs = new Graphs(by('graphs'));
-const picture = new Picture(by('picture'), by('picture-text'));
 const rows = new Map();      // of the table, by channel, frame and field
 const topics = new Map();    // of the robot, by channel
 const rates = new Map();     // rows of the bus, by interface and name
+const rateOf = topic => rates.get(`${topic.interface}|${topic.name}`);
+const picture = new Picture(by('picture'), by('picture-text'), topic => rateOf(topic)?.age_s);
 let robot;
 let paused = false;
 let jumps;
@@ -229,7 +230,7 @@ function ageText(seconds) {
 
 // Rate, jitter, age and share of the topic, beside its first field; the age of a field that the newest message lacks, beside that one.
 function timingOf(row) {
-  const rate = rates.get(`${row.topic.interface}|${row.topic.name}`);
+  const rate = rateOf(row.topic);
   const cells = ['', '', '', ''];
   if (rate && row.first) {
     if (rate.rate_hz !== null) cells[0] = rate.rate_hz.toFixed(1);

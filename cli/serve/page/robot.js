@@ -1,6 +1,7 @@
 // The robot from above, from what has a role: pose and trail, beams of the ring, floor sensors, lights, battery. It knows no
 // robot: fields are found by the names that the roles prescribe.
 const longestTrail = 4000;
+const oldSeconds = 2;
 
 export function colour(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
@@ -26,9 +27,11 @@ function numbers(topic, message) {
 }
 
 export class Picture {
-  constructor(canvas, text) {
+  // age: seconds since a topic's newest sample, as the server has it; undefined: not known
+  constructor(canvas, text, age) {
     this.canvas = canvas;
     this.text = text;
+    this.age = age;
     this.roles = new Map();    // topics by role
     this.newest = new Map();   // messages by channel
     this.trail = [];
@@ -221,9 +224,12 @@ export class Picture {
     if (this.pose()) parts.push(`at ${pose.x.toFixed(2)} m, ${pose.y.toFixed(2)} m, heading ${(pose.heading * 180 / Math.PI).toFixed(0)} degrees`);
     const seen = beams.filter(beam => beam.metres !== undefined && beam.metres !== null);
     const unknown = beams.filter(beam => beam.metres === null).length;
-    if (seen.length) parts.push(`nearest obstacle ${(Math.min(...seen.map(b => b.metres)) * 100).toFixed(1)} cm`);
+    // What was seen long ago says nothing of now.
+    const age = beams.length ? this.age(this.topic('ring')) ?? 0 : 0;
+    const when = age >= oldSeconds ? `, ${age.toFixed(0)} s ago` : '';
+    if (seen.length) parts.push(`nearest obstacle ${(Math.min(...seen.map(b => b.metres)) * 100).toFixed(1)} cm${when}`);
     if (unknown) parts.push(`not known yet what ${unknown} of ${beams.length} sensors of the ring see`);
-    else if (beams.length && !seen.length) parts.push('no obstacle in sight');
+    else if (beams.length && !seen.length) parts.push(`no obstacle in sight${when}`);
     const charge = find(this.message('battery'), 'state_of_charge');
     if (charge !== undefined) parts.push(`battery ${charge} %`);
     const words = parts.length ? parts.join('; ') : 'nothing of its pose, ring or battery is published yet';
