@@ -43,11 +43,13 @@ Channels::Channels(const protocol::Catalogue& catalogue, std::span<const std::st
   for (const std::string_view name : state_names)
     all_.push_back({static_cast<std::uint32_t>(all_.size()), fmt::format("/ocm/{}", name),
                     fmt::format("ocm.{}", name), R"({"type":"object"})"});
-  if (!fleet) return;
-  all_.push_back(
-      {static_cast<std::uint32_t>(all_.size()), "/ocm/fleet", "ocm.fleet", R"({"type":"object"})"});
-  all_.push_back(
-      {static_cast<std::uint32_t>(all_.size()), "/ocm/map", "foxglove.Grid", std::string{grid_schema}});
+  if (fleet) {
+    all_.push_back(
+        {static_cast<std::uint32_t>(all_.size()), "/ocm/fleet", "ocm.fleet", R"({"type":"object"})"});
+    all_.push_back(
+        {static_cast<std::uint32_t>(all_.size()), "/ocm/map", "foxglove.Grid", std::string{grid_schema}});
+  }
+  states_end_ = all_.size();
 }
 
 Publisher::Publisher(const protocol::Catalogue& catalogue, const Channels& channels, Viewers& viewers)

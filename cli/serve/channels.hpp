@@ -54,6 +54,10 @@ class Channels {
   [[nodiscard]] std::uint32_t of(State state) const noexcept {
     return static_cast<std::uint32_t>(interfaces_.size() * topics_ + static_cast<std::size_t>(state));
   }
+  /// Whether it is one of the server's own, of which who subscribes gets the newest at once.
+  [[nodiscard]] bool is_state(std::uint32_t channel) const noexcept {
+    return channel >= of(State::robot) && channel < states_end_;
+  }
   /// Those that have channels.
   [[nodiscard]] std::span<const std::string> interfaces() const noexcept { return interfaces_; }
   [[nodiscard]] const std::string& topic(std::uint32_t channel) const { return all_[channel].topic; }
@@ -62,6 +66,7 @@ class Channels {
   std::vector<std::string> interfaces_;
   std::size_t topics_;
   std::vector<foxglove::Channel> all_;
+  std::size_t states_end_ = 0;
 };
 
 /// Frames in, samples out: encoded once, and only where a viewer has subscribed.

@@ -77,7 +77,8 @@ void Control::send_all(ViewerId viewer, const Driver::Frames& frames) {
 }
 
 void Control::drive(ViewerId viewer, const client::Hold& hold) {
-  if (!is_rest(hold.frame) && !driver_.holds(hold.frame.id)) {
+  const std::uint32_t id = hold.frame.id;
+  if (!is_rest(hold.frame) && !driver_.holds(id) && !driver_.must_rest(viewer, id)) {
     if (const std::string why = obstacle_(); !why.empty()) return refuse(viewer, why);
     if (other_heard_ && Clock::now() - other_ < client::listen_before_hold)
       return refuse(viewer, "another program commands the motors: end it first, or stop the robot");

@@ -1,6 +1,7 @@
 #include "cli/serve/driver.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace ocm::cli::serve {
 
@@ -8,11 +9,19 @@ std::string Driver::drive(ViewerId viewer, const client::Hold& hold, Clock::time
   const bool is_rest = hold.frame.data == hold.rest.data;
   const auto held = std::find_if(held_.begin(), held_.end(),
                                  [&](const Held& each) { return each.hold.frame.id == hold.frame.id; });
+  const std::uint32_t id = hold.frame.id;
+  const auto is_its_own = [&](const Ended& each) { return each.viewer == viewer && each.id == id; };
   if (is_rest) {  // from any viewer: a stop is not refused
     out.push_back(hold.rest);
-    if (held != held_.end()) held_.erase(held);
+    if (held != held_.end()) {
+      if (held->viewer != viewer) ended_.push_back({held->viewer, id});
+      held_.erase(held);
+    }
+    std::erase_if(ended_, is_its_own);
     return {};
   }
+  if (const auto ended = std::find_if(ended_.begin(), ended_.end(), is_its_own); ended != ended_.end())
+    return std::exchange(ended->told, true) ? "" : "the drive was ended: release first, then drive again";
   if (held != held_.end() && held->viewer != viewer) return "another viewer drives; stop it first, or wait";
   if (held == held_.end()) {
     out.push_back(hold.frame);
@@ -34,10 +43,21 @@ void Driver::gone(ViewerId viewer, Frames& out) {
     if (each.viewer == viewer) out.push_back(each.hold.rest);
     return each.viewer == viewer;
   });
+  std::erase_if(ended_, [viewer](const Ended& each) { return each.viewer == viewer; });
+}
+
+bool Driver::must_rest(ViewerId viewer, std::uint32_t id) const noexcept {
+  return std::any_of(ended_.begin(), ended_.end(),
+                     [&](const Ended& each) { return each.viewer == viewer && each.id == id; });
+}
+
+void Driver::end(const Held& held, Frames& out) {
+  out.push_back(held.hold.rest);
+  ended_.push_back({held.viewer, held.hold.frame.id});
 }
 
 void Driver::rest(Frames& out) {
-  for (const Held& each : held_) out.push_back(each.hold.rest);
+  for (const Held& each : held_) end(each, out);
   held_.clear();
 }
 
@@ -45,7 +65,7 @@ bool Driver::advance(Clock::time_point now, Frames& out) {
   const std::size_t before = held_.size();
   std::erase_if(held_, [&](Held& each) {
     if (now - each.heard >= patience) {
-      out.push_back(each.hold.rest);
+      end(each, out);
       return true;
     }
     if (now >= each.next) {

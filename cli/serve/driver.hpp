@@ -1,6 +1,7 @@
 /// Who drives by the page, and for how long: a set point of motors is repeated as long as the viewer goes on
-/// giving one, and is at rest when it has given none for half a second, says rest, or has gone. Pure: the
-/// time is handed in, and frames come out.
+/// giving one, and is at rest when it has given none for half a second, says rest, or has gone. A viewer
+/// whose drive was ended by anything else than itself must say rest before it may drive again: a page that
+/// was frozen goes on saying what was held before. Pure: the time is handed in, and frames come out.
 #pragma once
 
 #include <chrono>
@@ -26,12 +27,15 @@ class Driver {
   static constexpr base::Duration patience = client::longest_without_set_point;
 
   /// The viewer drives with this from now on; the first set point is appended to `out`. One drives at a
-  /// time: the error says that another one does, unless this one commands rest.
+  /// time: the error says that another one does, or that this one must say rest first; the second once,
+  /// behind which its set points are dropped until it does. Rest is always taken.
   [[nodiscard]] std::string drive(ViewerId viewer, const client::Hold& hold, Clock::time_point now,
                                   Frames& out);
   /// The viewer has gone.
   void gone(ViewerId viewer, Frames& out);
-  /// All motors rest, also where another drives.
+  /// Whether its drive of these motors was ended for it, and it has not said rest since.
+  [[nodiscard]] bool must_rest(ViewerId viewer, std::uint32_t id) const noexcept;
+  /// All motors rest, also where another drives. Who drove must say rest first.
   void rest(Frames& out);
   /// What is due by now: set points again, or rest where a viewer was silent. True: it was.
   bool advance(Clock::time_point now, Frames& out);
@@ -48,7 +52,15 @@ class Driver {
     Clock::time_point heard;  ///< the viewer's newest word
     Clock::time_point next;   ///< when it is repeated
   };
-  std::vector<Held> held_;  ///< one a drive
+  struct Ended {
+    ViewerId viewer = 0;
+    std::uint32_t id = 0;
+    bool told = false;
+  };
+  void end(const Held& held, Frames& out);
+
+  std::vector<Held> held_;    ///< one a drive
+  std::vector<Ended> ended_;  ///< by others than their viewers
 };
 
 }  // namespace ocm::cli::serve

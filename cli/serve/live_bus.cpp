@@ -77,7 +77,7 @@ Over serve_frames(PageServer& server, transport::Bus& bus, const log::Interfaces
       if (over == Over::time && operator_changed()) over = Over::enough;
     }
     if (now >= next_boards) {
-      server.publish_boards(bus.counters());
+      server.publish_boards(bus.counters(), unix_time());
       server.publish_bounds(unix_time());
       next_boards = now + boards_interval;
     }

@@ -46,6 +46,7 @@ PageServer::PageServer(const protocol::Catalogue& catalogue, const spec::Model& 
       models_(catalogue_, rates_.nominal, rates_.data),
       bounds_(catalogue_, rates_.nominal),
       diagnosis_(catalogue_),
+      status_requests_(catalogue_),
       parameters_(catalogue_, viewers_),
       sessions_({fmt::format("{}, {}", catalogue_.robot, source_.name), random_text(8), source_.commands,
                  !source_.live, options_.fleet && source_.live ? &fleet_orders_ : nullptr},
@@ -83,9 +84,12 @@ void PageServer::close() {
 void PageServer::take(const log::Entry& entry, const log::Interfaces& interfaces) {
   const std::string_view interface = interfaces.name(entry.interface);
   const client::Reception reception = publisher_.take(entry, interface);
-  diagnosis_.take(reception);
   if (reception.meaning == client::Meaning::sample) show(reception.sample, interface);
-  if (const auto classic = entry.classic()) commanders_.take({entry.time, *classic}, reception);
+  diagnosis_.take(reception);
+  if (const auto classic = entry.classic()) {
+    status_requests_.take({entry.time, *classic}, reception);
+    commanders_.take({entry.time, *classic}, reception);
+  }
   models_.take(entry, interfaces);
   if (entry.interface == 0) bounds_.take(entry);
 }
@@ -97,8 +101,13 @@ void PageServer::lost_so_far(std::string_view interface, std::uint64_t frames) {
 void PageServer::answer(const Order& order) {
   if (order.kind == Order::Kind::newest) {
     for (const std::uint32_t channel : order.channels)
-      if (const auto sample =
-              models_.of(channels_.interface_of(channel)).newest_of(channels_.topic_of(channel)))
+      if (channel >= channels_.of(State::robot)) {
+        if (auto scene = scenes_.newest(channel))
+          viewers_.give(order.viewer, channel,
+                        static_cast<std::uint64_t>(scene->time.time_since_epoch().count()),
+                        std::move(scene->payload));
+      } else if (const auto sample =
+                     models_.of(channels_.interface_of(channel)).newest_of(channels_.topic_of(channel)))
         viewers_.give(order.viewer, channel,
                       static_cast<std::uint64_t>(sample->time.time_since_epoch().count()),
                       publisher_.text_of(*sample));
@@ -136,6 +145,10 @@ void PageServer::winds() {
 void PageServer::wound() {
   publisher_.go_on();
   winds_ = false;
+  for (const foxglove::Channel& channel : scenes_.channels())
+    if (auto scene = viewers_.wanted(channel.id) ? scenes_.newest(channel.id) : std::nullopt)
+      viewers_.publish(channel.id, static_cast<std::uint64_t>(scene->time.time_since_epoch().count()),
+                       std::move(scene->payload));
 }
 
 void PageServer::forget() {
@@ -144,6 +157,7 @@ void PageServer::forget() {
   models_ = bus_model::Models{catalogue_, rates_.nominal, rates_.data};
   model_interfaces();
   diagnosis_ = client::Diagnosis{catalogue_};
+  status_requests_ = client::StatusRequests{catalogue_};
   bounds_ = Bounds{catalogue_, rates_.nominal};
 }
 
@@ -167,16 +181,24 @@ void PageServer::publish_bus(base::Time now) {
         bus_state(models_.buses(), now, {viewers_.count(), viewers_.lost(), web_->refused()}));
 }
 
-void PageServer::publish_boards(const transport::BusCounters& counters) {
+void PageServer::publish_boards(const transport::BusCounters& counters, base::Time now) {
   const std::uint32_t channel = channels_.of(State::boards);
   if (!viewers_.wanted(channel)) return;
-  std::vector<client::Finding> findings = diagnosis_.findings();
+  std::vector<client::Finding> findings =
+      diagnosis_.findings([&](std::size_t board) { return status_requests_.is_due(board, now); });
   const auto disputes = commanders_.findings(catalogue_);
   findings.insert(findings.end(), disputes.begin(), disputes.end());
   for (client::Finding& finding : findings) finding.remedy = remedy(finding);
   const auto counted = findings_of(counters, publisher_.counters());
   findings.insert(findings.end(), counted.begin(), counted.end());
-  viewers_.publish_state(channel, now_ns(), boards_state(catalogue_, diagnosis_, findings));
+  viewers_.publish_state(channel, now_ns(), boards_state(catalogue_, diagnosis_, status_requests_, findings));
+}
+
+bool PageServer::is_looked_at() const {
+  const auto& all = channels_.all();
+  return std::any_of(all.begin(), all.end(), [this](const foxglove::Channel& channel) {
+    return !channels_.is_state(channel.id) && viewers_.wanted(channel.id);
+  });
 }
 
 void PageServer::publish_parameters(base::Time now) {

@@ -60,6 +60,8 @@ class PageServer {
   void wake() noexcept { web_->wake(); }
 
   [[nodiscard]] const std::string& name() const noexcept { return source_.name; }
+  /// Whether a viewer has subscribed to something of the bus or the log.
+  [[nodiscard]] bool is_looked_at() const;
   [[nodiscard]] bool takes_commands() const noexcept { return options_.commands; }
   [[nodiscard]] const protocol::Catalogue& catalogue() const noexcept { return catalogue_; }
   [[nodiscard]] const Channels& channels() const noexcept { return channels_; }
@@ -93,7 +95,7 @@ class PageServer {
   /// On stderr, and to all viewers.
   void say(const std::string& words);
   void publish_bus(base::Time now);
-  void publish_boards(const transport::BusCounters& counters);
+  void publish_boards(const transport::BusCounters& counters, base::Time now);
   void publish_bounds(base::Time now);
   void publish_parameters(base::Time now);
   void publish_operator(const OperatorWatch& watch);
@@ -118,6 +120,7 @@ class PageServer {
   bus_model::Models models_;
   Bounds bounds_;  ///< of the first interface
   client::Diagnosis diagnosis_;
+  client::StatusRequests status_requests_;
   client::Commanders commanders_;
   Parameters parameters_;
   Orders orders_;

@@ -8,6 +8,7 @@
 
 #include "cli/serve/commands.hpp"
 #include "cli/serve/foxglove.hpp"
+#include "cli/serve/log_start.hpp"
 #include "cli/shared/clock.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
@@ -24,6 +25,8 @@ int serve_log(PageServer& server, bus_model::LogFeed& log) {
                                                    const log::Interfaces& interfaces) {
     server.take(entry, interfaces);
   };
+  LogStart start;
+  remark(LogStart::waits);
   bool paused = false;
   std::uint64_t jumps = 0;
   const auto jump = [&](base::Duration at) {
@@ -43,6 +46,7 @@ int serve_log(PageServer& server, bus_model::LogFeed& log) {
     const auto request = playback_of(order.payload);
     if (!request)
       return server.viewers().tell(order.viewer, foxglove::status(foxglove::Level::error, request.error));
+    start.begin();
     if (request->paused >= 0) paused = request->paused == 1;
     if (request->speed > 0) log.faster(request->speed / log.playing().speed);
     if (request->at_s >= 0) jump(base::Duration{static_cast<std::int64_t>(request->at_s * 1e9)});
@@ -56,7 +60,8 @@ int serve_log(PageServer& server, bus_model::LogFeed& log) {
     const bool asked = wait_for_input(std::span{&input, 1}, play_step);
     const auto now = Clock::now();
     const base::Duration passed = now - std::exchange(before, now);
-    if (!paused) log.play(passed, taken);
+    if (start.plays(server.is_looked_at(), server.viewers().count() != 0, now) && !paused)
+      log.play(passed, taken);
     server.until(log.now());
     if (asked) {
       for (const Order& order : server.orders().take()) {
@@ -74,7 +79,7 @@ int serve_log(PageServer& server, bus_model::LogFeed& log) {
       next_bus = now + bus_interval;
     }
     if (now >= next_boards) {
-      server.publish_boards({});
+      server.publish_boards({}, log.now());
       server.publish_bounds(log.now());
       next_boards = now + boards_interval;
     }

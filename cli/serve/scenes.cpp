@@ -36,7 +36,7 @@ constexpr std::string_view scan_schema =
     R"({"type":"object","title":"foxglove.LaserScan","properties":{)" OCM_TIME
     R"(,"frame_id":{"type":"string"},)" OCM_POSE
     R"(,"start_angle":{"type":"number","description":"rad"},"end_angle":{"type":"number","description":"rad"},)"
-    R"("ranges":{"type":"array","items":{"type":"number"},"description":"m from the robot's middle; 0: nothing in sight"},)"
+    R"("ranges":{"type":"array","items":{"type":"number"},"description":"m from the robot's middle; 0: nothing in sight; null: not known yet"},)"
     R"("intensities":{"type":"array","items":{"type":"number"},"description":"counts above the sensor's offset"}}})";
 
 #undef OCM_TIME
@@ -58,14 +58,24 @@ std::string quaternion(double heading_rad) {
 
 }  // namespace
 
-double SightOffset::above(double counts) noexcept {
+SightSensor::SightSensor(const protocol::Law& law, double spread) noexcept
+    : law_(&law),
+      at_range_(law.at_one.as_double() / law.max.as_double() / law.max.as_double()),
+      spread_(std::max(spread, at_range_)) {}
+
+Sight SightSensor::take(double counts) noexcept {
   samples_[count_++ % averaged] = counts;
   const std::size_t kept = std::min(count_, averaged);
   double sum = 0;
   for (std::size_t i = 0; i < kept; ++i) sum += samples_[i];
   const double mean = sum / static_cast<double>(kept);
   least_ = count_ == 1 ? mean : std::min(least_, mean);
-  return counts - least_;
+  const double of_spec = law_->offset.as_double();
+  const bool known = least_ <= of_spec + at_range_;
+  const double above = counts - (known ? least_ : of_spec);
+  if (!known && above <= spread_) return {Sight::Kind::unknown, 0, above};
+  const auto metres = distance_m(above, *law_);
+  return {metres ? Sight::Kind::obstacle : Sight::Kind::nothing, metres.value_or(0), above};
 }
 
 std::optional<double> distance_m(double counts_above, const protocol::Law& law) noexcept {
@@ -78,6 +88,25 @@ const protocol::Law* law_of(const protocol::Topic& ring) noexcept {
   for (const protocol::Field& field : ring.frames.front().values())
     if (field.is_derived()) return field.law;
   return nullptr;
+}
+
+std::vector<SightSensor> sensors_of(const protocol::Topic& ring) {
+  std::vector<const protocol::Law*> laws;
+  for (const protocol::FrameLayout& frame : ring.frames)
+    for (std::size_t i = 0; i < frame.fields.size(); ++i) {
+      const auto values = frame.values();
+      const auto found = std::find_if(values.begin(), values.end(), [i](const protocol::Field& value) {
+        return value.is_derived() && value.derived_from == i && !value.uncertainty;
+      });
+      laws.push_back(found == values.end() ? law_of(ring) : found->law);
+    }
+  const auto [least, greatest] = std::minmax_element(
+      laws.begin(), laws.end(),
+      [](const auto* a, const auto* b) { return a->offset.as_double() < b->offset.as_double(); });
+  std::vector<SightSensor> sensors;
+  for (const protocol::Law* law : laws)
+    sensors.emplace_back(*law, (*greatest)->offset.as_double() - (*least)->offset.as_double());
+  return sensors;
 }
 
 Scenes::Scenes(const protocol::Catalogue& catalogue, const spec::Model& model,
@@ -100,10 +129,7 @@ Scenes::Scenes(const protocol::Catalogue& catalogue, const spec::Model& model,
             std::find_if(model.topics.begin(), model.topics.end(),
                          [&topic](const spec::TopicModel& each) { return each.name == topic.name; });
         if (found == model.topics.end() || !found->geometry || law_of(topic) == nullptr) continue;
-        std::size_t sensors = 0;
-        for (const protocol::FrameLayout& frame : topic.frames) sensors += frame.fields.size();
-        sources_.push_back(
-            {&topic, i, next_, {}, json_string(robot), found->geometry, std::vector<SightOffset>(sensors)});
+        sources_.push_back({&topic, i, next_, {}, json_string(robot), found->geometry, sensors_of(topic)});
         add(fmt::format("/{}{}/scan", of, topic.name), "foxglove.LaserScan", scan_schema);
       }
     }
@@ -115,7 +141,11 @@ void Scenes::add(std::string topic, std::string_view schema_name, std::string_vi
 }
 
 void Scenes::forget() {
-  for (Source& source : sources_) source.offsets.assign(source.offsets.size(), {});
+  for (Source& source : sources_) {
+    if (source.geometry) source.sensors = sensors_of(*source.topic);
+    source.pose.reset();
+    source.sights.clear();
+  }
 }
 
 Scenes::Source* Scenes::source_of(const protocol::Topic* topic, std::size_t interface) noexcept {
@@ -140,42 +170,60 @@ std::optional<Scenes::Pose> Scenes::pose_of(const client::Sample& sample) {
   return std::nullopt;
 }
 
-std::string Scenes::pose_text(const Source& source, base::Time time, const Pose& pose) {
+std::optional<Scenes::Message> Scenes::newest(std::uint32_t channel) const {
+  for (const Source& source : sources_) {
+    if (channel < source.channel || channel >= source.channel + channels_of(source)) continue;
+    if (!source.pose && source.sights.empty()) return std::nullopt;
+    return Message{channel, source.time,
+                   source.geometry             ? scan_text(source)
+                   : channel == source.channel ? pose_text(source)
+                                               : transform_text(source)};
+  }
+  return std::nullopt;
+}
+
+std::string Scenes::pose_text(const Source& source) {
   return fmt::format(
       R"({{{},"frame_id":{},"pose":{{"position":{{"x":{:.9g},"y":{:.9g},"z":0}},"orientation":{}}}}})",
-      stamp_of(time), source.parent, pose.x_m, pose.y_m, quaternion(pose.heading_rad));
+      stamp_of(source.time), source.parent, source.pose->x_m, source.pose->y_m,
+      quaternion(source.pose->heading_rad));
 }
 
-std::string Scenes::transform_text(const Source& source, base::Time time, const Pose& pose) {
+std::string Scenes::transform_text(const Source& source) {
   return fmt::format(
       R"({{{},"parent_frame_id":{},"child_frame_id":{},"translation":{{"x":{:.9g},"y":{:.9g},"z":0}},"rotation":{}}})",
-      stamp_of(time), source.parent, source.child, pose.x_m, pose.y_m, quaternion(pose.heading_rad));
+      stamp_of(source.time), source.parent, source.child, source.pose->x_m, source.pose->y_m,
+      quaternion(source.pose->heading_rad));
 }
 
-std::vector<double> Scenes::counts_above(Source& source, const client::Sample& sample) {
-  std::vector<double> above;
+void Scenes::look(Source& source, const client::Sample& sample) {
+  source.sights.clear();
   for (std::size_t i = 0; i < sample.topic->frames.size(); ++i)
     for (const protocol::Field& field : sample.topic->frames[i].fields)
-      above.push_back(source.offsets[above.size()].above(field.value(field.raw(sample.data(i)))));
-  return above;
+      source.sights.push_back(
+          source.sensors[source.sights.size()].take(field.value(field.raw(sample.data(i)))));
 }
 
-std::string Scenes::scan_text(const Source& source, base::Time time, std::span<const double> counts_above) {
+std::string Scenes::scan_text(const Source& source) {
   const spec::RingGeometry& geometry = *source.geometry;
   const double first = geometry.first.as_double();
   std::string ranges, intensities;
-  for (const double counts : counts_above) {
+  for (const Sight& sight : source.sights) {
     const char* const comma = ranges.empty() ? "" : ",";
-    const auto metres = distance_m(counts, *law_of(*source.topic));
-    ranges += fmt::format("{}{:.4f}", comma, metres ? geometry.radius.as_double() + *metres : 0.0);
-    intensities += fmt::format("{}{:.1f}", comma, std::max(counts, 0.0));
+    ranges += comma;
+    ranges += sight.kind == Sight::Kind::unknown
+                  ? "null"
+                  : fmt::format("{:.4f}", sight.kind == Sight::Kind::obstacle
+                                              ? geometry.radius.as_double() + sight.metres
+                                              : 0.0);
+    intensities += fmt::format("{}{:.1f}", comma, std::max(sight.counts_above, 0.0));
   }
   const double last = first + geometry.step.as_double() *
-                                  (static_cast<double>(std::max<std::size_t>(counts_above.size(), 1)) - 1);
+                                  (static_cast<double>(std::max<std::size_t>(source.sights.size(), 1)) - 1);
   return fmt::format(
       R"({{{},"frame_id":{},"pose":{{"position":{{"x":0,"y":0,"z":0}},"orientation":{{"x":0,"y":0,"z":0,"w":1}}}},)"
       R"("start_angle":{:.9f},"end_angle":{:.9f},"ranges":[{}],"intensities":[{}]}})",
-      stamp_of(time), source.child, first, last, ranges, intensities);
+      stamp_of(source.time), source.child, first, last, ranges, intensities);
 }
 
 }  // namespace ocm::cli::serve

@@ -19,15 +19,34 @@
 
 namespace ocm::cli::serve {
 
-/// A sensor's counts with nothing in sight: the least that it saw, each time on average of eight samples, of
-/// which noise is less. An obstacle that was there from the beginning shows once it has gone.
-class SightOffset {
+/// What one sensor of a ring sees.
+struct Sight {
+  enum class Kind : std::uint8_t {
+    nothing,   ///< within the range of the law
+    obstacle,  ///< `metres` from the sensor
+    unknown    ///< the sensor's offset has not been seen yet
+  };
+  Kind kind = Kind::unknown;
+  double metres = 0;
+  double counts_above = 0;  ///< the offset; where that is unknown, the spec's
+};
+
+/// One sensor of a ring. Its offset is the least that it saw, each time on average of eight samples, of which
+/// noise is less. That is an offset only where it is no more than the spec's, and what an obstacle at the end
+/// of the range adds: an obstacle that was there from the beginning hides the offset until it has gone once.
+/// Until then an obstacle is what no offset explains, at the distance that the spec's offset gives; of all
+/// else nothing is known.
+class SightSensor {
  public:
-  /// How many counts are above it.
-  [[nodiscard]] double above(double counts) noexcept;
+  /// `spread`: by how much, in counts, offsets of such sensors differ. The law must outlive it.
+  SightSensor(const protocol::Law& law, double spread) noexcept;
+  [[nodiscard]] Sight take(double counts) noexcept;
 
  private:
   static constexpr std::size_t averaged = 8;
+  const protocol::Law* law_;
+  double at_range_;  ///< counts of an obstacle at the end of the range
+  double spread_;
   std::array<double, averaged> samples_{};
   std::size_t count_ = 0;
   double least_ = 0;
@@ -35,14 +54,16 @@ class SightOffset {
 
 /// Metres by the law of the spec; nothing: nothing in sight.
 [[nodiscard]] std::optional<double> distance_m(double counts_above, const protocol::Law& law) noexcept;
-/// Of a ring's first sensor: the offset, which is found here, is all in which the others differ. nullptr: the
-/// spec has none.
+/// Of a ring's first sensor: the offset is all in which the others differ. nullptr: the spec has none.
 [[nodiscard]] const protocol::Law* law_of(const protocol::Topic& ring) noexcept;
+/// A sensor for each field of a ring that has a law, in their order.
+[[nodiscard]] std::vector<SightSensor> sensors_of(const protocol::Topic& ring);
 
 class Scenes {
  public:
   struct Message {
     std::uint32_t channel = 0;
+    base::Time time;
     std::string payload;  ///< JSON
   };
 
@@ -58,13 +79,19 @@ class Scenes {
             const Publish& publish) {
     Source* const source = source_of(sample.topic, interface);
     if (source == nullptr) return;
-    if (source->geometry) return take_ring(*source, sample, wanted, publish);
-    const auto pose = pose_of(sample);
-    if (!pose) return;
-    if (wanted(source->channel)) publish(Message{source->channel, pose_text(*source, sample.time, *pose)});
-    if (wanted(source->channel + 1))
-      publish(Message{source->channel + 1, transform_text(*source, sample.time, *pose)});
+    if (source->geometry) {
+      look(*source, sample);  // offsets are learnt whether or not anyone looks
+    } else if (const auto pose = pose_of(sample)) {
+      source->pose = *pose;
+    } else {
+      return;
+    }
+    source->time = sample.time;
+    for (std::uint32_t channel = source->channel; channel < source->channel + channels_of(*source); ++channel)
+      if (wanted(channel)) publish(*newest(channel));
   }
+  /// What came last on a channel, as it was published then; nothing: nothing came, or it is not of these.
+  [[nodiscard]] std::optional<Message> newest(std::uint32_t channel) const;
   /// A log is read from its beginning again.
   void forget();
 
@@ -78,24 +105,22 @@ class Scenes {
     std::uint32_t channel = 0;  ///< a pose has the next one, too
     std::string parent, child;  ///< frames, as JSON has them; of a ring the child is the robot's
     std::optional<spec::RingGeometry> geometry{};
-    std::vector<SightOffset> offsets{};
+    std::vector<SightSensor> sensors{};
+    base::Time time{};  ///< of what came last:
+    std::optional<Pose> pose{};
+    std::vector<Sight> sights{};
   };
 
   void add(std::string topic, std::string_view schema_name, std::string_view schema);
   [[nodiscard]] Source* source_of(const protocol::Topic* topic, std::size_t interface) noexcept;
   [[nodiscard]] static std::optional<Pose> pose_of(const client::Sample& sample);
-  [[nodiscard]] static std::string pose_text(const Source& source, base::Time time, const Pose& pose);
-  [[nodiscard]] static std::string transform_text(const Source& source, base::Time time, const Pose& pose);
-  [[nodiscard]] static std::vector<double> counts_above(Source& source, const client::Sample& sample);
-  [[nodiscard]] static std::string scan_text(const Source& source, base::Time time,
-                                             std::span<const double> counts_above);
-
-  template <class Wanted, class Publish>
-  void take_ring(Source& source, const client::Sample& sample, const Wanted& wanted, const Publish& publish) {
-    // Offsets are learnt whether or not anyone looks.
-    const std::vector<double> above = counts_above(source, sample);
-    if (wanted(source.channel)) publish(Message{source.channel, scan_text(source, sample.time, above)});
+  [[nodiscard]] static std::uint32_t channels_of(const Source& source) noexcept {
+    return source.geometry ? 1 : 2;
   }
+  static void look(Source& source, const client::Sample& sample);
+  [[nodiscard]] static std::string pose_text(const Source& source);
+  [[nodiscard]] static std::string transform_text(const Source& source);
+  [[nodiscard]] static std::string scan_text(const Source& source);
 
   std::uint32_t next_;
   std::vector<foxglove::Channel> channels_;

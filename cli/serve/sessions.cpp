@@ -88,7 +88,7 @@ void Sessions::subscribe(ViewerId viewer, const foxglove::Request& request) {
   for (const foxglove::Subscription& subscription : request.subscriptions) {
     if (const std::string why = viewers_->subscribe(viewer, subscription); !why.empty())
       refuse(viewer, why);
-    else if (subscription.channel < channels_->of(State::robot))  // states are there already
+    else if (!channels_->is_state(subscription.channel))  // states are there already
       newest.channels.push_back(subscription.channel);
   }
   if (!newest.channels.empty()) put(std::move(newest));

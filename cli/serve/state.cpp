@@ -140,13 +140,14 @@ std::string bus_state(std::span<const bus_model::Bus> buses, base::Time now, con
 }
 
 std::string boards_state(const protocol::Catalogue& catalogue, const client::Diagnosis& diagnosis,
-                         std::span<const client::Finding> findings) {
+                         const client::StatusRequests& asked, std::span<const client::Finding> findings) {
   Json boards = Json::array();
   for (std::size_t i = 0; i < catalogue.boards.size(); ++i) {
     const client::BoardReport& board = diagnosis.boards()[i];
     Json json{{"board", catalogue.boards[i].name},
               {"answers", board.answered},
               {"heard", board.heard},
+              {"asked", asked.any(i)},
               {"has_status", board.status != nullptr}};
     if (board.answered) {
       json["uptime_s"] = board.uptime_s;

@@ -46,6 +46,7 @@ struct ServerFigures {
 /// As `doctor` sees them, of what the boards say unasked.
 [[nodiscard]] std::string boards_state(const protocol::Catalogue& catalogue,
                                        const client::Diagnosis& diagnosis,
+                                       const client::StatusRequests& asked,
                                        std::span<const client::Finding> findings);
 /// Where a log is. `jumps`: how often it was wound: what a viewer has of before does not go on.
 [[nodiscard]] std::string playback_state(const bus_model::Playing& playing, bool paused, std::uint64_t jumps);

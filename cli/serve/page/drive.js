@@ -1,6 +1,7 @@
 // Drives while something is held: a button, or an arrow key. What is held is said again and again; the server stops the robot when
-// it hears nothing for half a second.
-const again = 100;  // ms
+// it hears nothing for half a second. A page that could not say it for so long (frozen, or its computer asleep) releases by itself.
+const again = 100;       // ms
+const longest = 500;     // ms, from one saying to the next: the server's patience
 
 export class Drive {
   constructor(pad, speeds, units, publish) {
@@ -20,15 +21,15 @@ export class Drive {
       button.addEventListener('keydown', event => {
         if (event.key !== 'Enter') return;
         event.preventDefault();
-        this.hold(button, direction);
+        if (!event.repeat) this.hold(button, direction);
       });
       button.addEventListener('keyup', event => { if (event.key === 'Enter') this.release(button); });
     }
     const keys = {ArrowUp: [1, 0], ArrowDown: [-1, 0], ArrowLeft: [0, 1], ArrowRight: [0, -1]};
     pad.addEventListener('keydown', event => {
       if (event.key === ' ') this.stop();
-      else if (keys[event.key]) this.hold(event.key, keys[event.key]);
-      else return;
+      else if (!keys[event.key]) return;
+      else if (!event.repeat) this.hold(event.key, keys[event.key]);  // a key that is still down does not undo a stop
       event.preventDefault();
     });
     pad.addEventListener('keyup', event => this.release(event.key));
@@ -49,7 +50,7 @@ export class Drive {
     if (this.held.has(what)) return;
     this.held.set(what, direction);
     this.say();
-    this.timer ??= setInterval(() => this.say(), again);
+    if (this.held.size > 0) this.timer ??= setInterval(() => this.say(), again);
   }
 
   release(what) {
@@ -70,11 +71,14 @@ export class Drive {
 
   end() {
     clearInterval(this.timer);
-    this.timer = undefined;
+    this.timer = this.said = undefined;
   }
 
   say() {
     let [x, z] = [0, 0];
+    const now = performance.now();
+    if (this.said !== undefined && now - this.said >= longest) return this.stop();
+    this.said = now;
     for (const [forward, left] of this.held.values()) {
       x += forward * Number(this.speeds[0].value);
       z += left * Number(this.speeds[1].value);

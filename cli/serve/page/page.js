@@ -13,10 +13,11 @@ const isWord = each => each.startsWith('plot=') || each === 'map';
 const token = asked.find(each => !isWord(each)) ?? '';
 const plots = new Set(asked.filter(each => each.startsWith('plot=')).flatMap(each => each.slice(5).split(',').map(decodeURIComponent)));
 const graphs = new Graphs(by('graphs'));
-const picture = new Picture(by('picture'), by('picture-text'));
 const rows = new Map();      // of the table, by channel, frame and field
 const topics = new Map();    // of the robot, by channel
 const rates = new Map();     // rows of the bus, by interface and name
+const rateOf = topic => rates.get(`${topic.interface}|${topic.name}`);
+const picture = new Picture(by('picture'), by('picture-text'), topic => rateOf(topic)?.age_s);
 let robot;
 let paused = false;
 let jumps;
@@ -57,7 +58,15 @@ function frameOf(topic, frame, message) {
 
 // A line a field, when the first of it comes.
 function rowsOf(topic) {
-  const body = by('values').tBodies[0];
+  // The topic's own line is for narrow pages; wide ones have it in the first column.
+  const body = element('tbody');
+  const heading = element('th', topic.channel.slice(1));
+  heading.colSpan = 7;
+  heading.scope = 'rowgroup';
+  topic.heading = element('tr', undefined, 'topic');
+  topic.heading.append(heading);
+  body.append(topic.heading);
+  by('values').append(body);
   for (const frame of topic.frames) {
     const key = `${topic.channel}|${frame.name}`;
     for (const field of frame.fields) {
@@ -83,27 +92,44 @@ function rowsOf(topic) {
         box.dispatchEvent(new Event('change'));
       }
       line.append(name, element('td', path), value, choice);
-      const timing = first ? [0, 1, 2, 3].map(() => element('td', '', 'number')) : [];
-      if (first) line.append(...timing);
-      else line.append(...[0, 1, 2, 3].map(() => element('td')));
+      const timing = [0, 1, 2, 3].map(() => element('td', '', 'number'));
+      line.append(...timing);
       body.append(line);
-      rows.set(id, {topic, frame, field, line, value, timing, text: `${topic.channel} ${path}`.toLowerCase()});
+      rows.set(id, {topic, frame, field, first, line, value, timing, text: `${topic.channel} ${path}`.toLowerCase()});
     }
   }
   topic.rows = true;
 }
 
-const newest = new Map();    // messages by channel
+const newest = new Map();    // messages by channel, of each field the last value that came
+
+// A message has the fields of one page of a multiplexer only: the others stay as they were.
+function together(topic, before, message) {
+  if (topic.frames.length === 1) return {...before, ...message};
+  const all = {...before};
+  for (const [name, fields] of Object.entries(message)) all[name] = {...all[name], ...fields};
+  return all;
+}
+
 function take(channel, message, timeNs) {
   changed = true;
+  if (channel === picture.scanChannel()) return picture.takeScan(message);
   const topic = topics.get(channel);
   if (topic === undefined) return;
   if (!topic.rows) rowsOf(topic);
-  newest.set(channel, topic.frames.length > 1 ? {...newest.get(channel), ...message} : message);
-  const time = Number(timeNs / 1000n) / 1000;
+  newest.set(channel, together(topic, newest.get(channel), message));
+  const time = topic.time = Number(timeNs / 1000n) / 1000;
   for (const frame of topic.frames) {
     const fields = frameOf(topic, frame, message);
-    if (fields) graphs.add(`${channel}|${frame.name}`, time, fields);
+    if (!fields) continue;
+    graphs.add(`${channel}|${frame.name}`, time, fields);
+    const names = Object.keys(fields);
+    frame.isPaged ||= names.length < frame.fields.length;
+    if (!frame.isPaged) continue;
+    for (const name of names) {
+      const row = rows.get(`${channel}|${frame.name}|${name}`);
+      if (row) row.time = time;
+    }
   }
   picture.take(channel, newest.get(channel));
 }
@@ -115,12 +141,16 @@ function setRobot(state) {
   by('title').textContent = `${robot.robot}, ${robot.source}`;
   document.title = `${robot.robot}, ${robot.source}`;
   by('robot').hidden = !picture.set(robot.topics);
+  by('main').classList.toggle('robotless', by('robot').hidden);
   const reports = robot.topics.some(topic => topic.role === 'status');
   by('boards').hidden = !reports;
   by('playback').hidden = robot.live;
   for (const part of ['graphs-part', 'bus-part', 'values-part']) by(part).hidden = robot.topics.length === 0;
   const may = robot.commands && wire.capabilities?.includes('clientPublish');
   by('command').hidden = !may || robot.topics.length === 0;
+  const sensor = robot.topics.find(topic => topic.kind === 'sensor');
+  const message = robot.topics.find(topic => topic.kind === 'message' && topic.frames[0].fields.length > 0);
+  by('line').placeholder = sensor ? `publish ${sensor.name} 50ms` : message ? `set ${message.name} ${message.frames[0].fields[0].name}=0` : '';
   by('ask').hidden = !may || !reports;
   by('drive').hidden = by('stop').hidden = !may || !picture.topic('drive');
   if (may && picture.topic('drive')) drive.set(picture.topic('drive'));
@@ -129,6 +159,7 @@ function setRobot(state) {
     if (topic && !topic.rows) rowsOf(topic);
   }
   wire.subscribe(robot.topics.map(topic => topic.channel));
+  if (picture.scanChannel()) wire.subscribe([picture.scanChannel()]);
   if (by('silent').checked) robot.topics.forEach(topic => topic.rows || rowsOf(topic));
   fleet.allow(may);
   if (plots.size > 0) by('graphs-part').scrollIntoView();
@@ -148,6 +179,7 @@ function setPlayback(state) {
     picture.forget();
     fleet.forget();
     newest.clear();
+    for (const row of rows.values()) row.time = undefined;
   }
   jumps = state.jumps;
   const bar = by('bar');
@@ -155,8 +187,8 @@ function setPlayback(state) {
   bar.step = state.length_s / 1000;
   if (document.activeElement !== bar || !bar.dataset.held) bar.value = state.at_s;
   by('bar-text').textContent = `${state.at_s.toFixed(1)} of ${state.length_s.toFixed(1)} s${state.ended ? ', end' : ''}`;
-  by('play').textContent = state.paused ? 'Play log' : 'Pause log';
-  by('play').dataset.paused = state.paused;
+  by('play').textContent = state.ended ? 'Play again' : state.paused ? 'Play log' : 'Pause log';
+  by('play').dataset.asks = JSON.stringify(state.ended ? {at_s: 0, paused: false} : {paused: !state.paused});
 }
 
 const states = {
@@ -192,27 +224,44 @@ const fleet = new Fleet({map: by('map'), text: by('map-text'), line: by('fleet-l
   robot: by('fleet-robot'), place: by('fleet-place'), x: by('place-x'), y: by('place-y'), look: by('fleet-look')},
 (order) => wire.publish('/ocm/fleet', order));
 
+function ageText(seconds) {
+  return seconds < 1 ? `${(seconds * 1000).toFixed(0)} ms` : `${seconds.toFixed(1)} s`;
+}
+
+// Rate, jitter, age and share of the topic, beside its first field; the age of a field that the newest message lacks, beside that one.
+function timingOf(row) {
+  const rate = rateOf(row.topic);
+  const cells = ['', '', '', ''];
+  if (rate && row.first) {
+    if (rate.rate_hz !== null) cells[0] = rate.rate_hz.toFixed(1);
+    if (rate.jitter_ms !== null) cells[1] = `${rate.jitter_ms.toFixed(2)} ms`;
+    if (rate.age_s !== null) cells[2] = ageText(rate.age_s);
+    if (rate.share !== null) cells[3] = `${(rate.share * 100).toFixed(1)} %`;
+  }
+  if (row.time !== undefined && (!row.first || row.time < row.topic.time))
+    cells[2] = ageText((rate?.age_s ?? 0) + (row.topic.time - row.time) / 1000);
+  const health = rate && row.first && rate.health !== 'fine' ? rate.health : '';
+  if (health) cells[2] += ` ${health}`;
+  return {cells, health};
+}
+
 function drawValues() {
   const filter = by('filter').value.toLowerCase();
+  const shown = new Set();
   for (const row of rows.values()) {
     const hidden = !row.text.includes(filter);
     if (row.line.hidden !== hidden) row.line.hidden = hidden;
     if (hidden) continue;
+    shown.add(row.topic);
     const message = newest.get(row.topic.channel);
     const text = message ? valueText(row.field, frameOf(row.topic, row.frame, message)?.[row.field.name]) : '';
     if (row.value.textContent !== text) row.value.textContent = text;
-    if (row.timing.length === 0) continue;
-    const rate = rates.get(`${row.topic.interface}|${row.topic.name}`);
-    const cells = rate ? [
-      rate.rate_hz === null ? '' : rate.rate_hz.toFixed(1),
-      rate.jitter_ms === null ? '' : `${rate.jitter_ms.toFixed(2)} ms`,
-      rate.age_s === null ? '' : rate.age_s < 1 ? `${(rate.age_s * 1000).toFixed(0)} ms` : `${rate.age_s.toFixed(1)} s`,
-      rate.share === null ? '' : `${(rate.share * 100).toFixed(1)} %`,
-    ] : ['', '', '', ''];
-    if (rate && rate.health !== 'fine') cells[2] += ` ${rate.health}`;
+    const {cells, health} = timingOf(row);
     cells.forEach((cell, i) => { if (row.timing[i].textContent !== cell) row.timing[i].textContent = cell; });
-    row.timing[2].className = rate && rate.health !== 'fine' ? `number ${rate.health}` : 'number';
+    const className = health ? `number ${health}` : 'number';
+    if (row.timing[2].className !== className) row.timing[2].className = className;
   }
+  for (const {topic} of rows.values()) if (topic.heading.hidden === shown.has(topic)) topic.heading.hidden = !shown.has(topic);
 }
 
 setInterval(() => {
@@ -248,7 +297,7 @@ by('command').addEventListener('submit', event => {
   wire.publish('/ocm/command', {line: by('line').value});
   by('line').select();
 });
-by('play').addEventListener('click', () => wire.publish('/ocm/playback', {paused: by('play').dataset.paused !== 'true'}));
+by('play').addEventListener('click', () => wire.publish('/ocm/playback', JSON.parse(by('play').dataset.asks ?? '{"paused":true}')));
 by('speed').addEventListener('change', () => wire.publish('/ocm/playback', {speed: Number(by('speed').value)}));
 by('bar').addEventListener('pointerdown', () => { by('bar').dataset.held = '1'; });
 by('bar').addEventListener('pointerup', () => { delete by('bar').dataset.held; });

@@ -1,6 +1,7 @@
 // The robot from above, from what has a role: pose and trail, beams of the ring, floor sensors, lights, battery. It knows no
 // robot: fields are found by the names that the roles prescribe.
 const longestTrail = 4000;
+const oldSeconds = 2;
 
 export function colour(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
@@ -25,35 +26,15 @@ function numbers(topic, message) {
   return all;
 }
 
-/** Metres from counts above the offset, by the law of the spec; undefined: nothing in sight. */
-export function distance(counts, geometry) {
-  const metres = Math.sqrt(geometry.counts_at_one_metre / counts);
-  return metres <= geometry.range_m ? metres : undefined;
-}
-
-/** A sensor's offset: the least that it saw, each time on average of eight samples, of which noise is less. */
-class Offset {
-  constructor() {
-    this.samples = [];
-    this.least = Infinity;
-  }
-
-  above(counts) {
-    this.samples.push(counts);
-    if (this.samples.length > 8) this.samples.shift();
-    this.least = Math.min(this.least, this.samples.reduce((a, b) => a + b) / this.samples.length);
-    return counts - this.least;
-  }
-}
-
 export class Picture {
-  constructor(canvas, text) {
+  // age: seconds since a topic's newest sample, as the server has it; undefined: not known
+  constructor(canvas, text, age) {
     this.canvas = canvas;
     this.text = text;
+    this.age = age;
     this.roles = new Map();    // topics by role
     this.newest = new Map();   // messages by channel
     this.trail = [];
-    this.offsets = [];
     this.beams = [];
   }
 
@@ -78,7 +59,6 @@ export class Picture {
 
   take(channel, message) {
     this.newest.set(channel, message);
-    if (this.topic('ring')?.channel === channel) this.look(this.topic('ring'), message);
     if (this.topic('pose')?.channel !== channel) return;
     const [x, y] = [find(message, 'x'), find(message, 'y')];
     const pose = this.pose();
@@ -91,7 +71,6 @@ export class Picture {
   forget() {
     this.newest.clear();
     this.trail = [];
-    this.offsets = [];
     this.beams = [];
   }
 
@@ -104,11 +83,19 @@ export class Picture {
     return frame && {x: frame.x, y: frame.y, heading: frame.orientation};
   }
 
-  look({geometry, ...topic}, message) {
-    if (!geometry) return;
-    this.beams = numbers(topic, message).map((counts, i) => ({
-      angle: geometry.first_rad + i * geometry.step_rad,
-      metres: distance((this.offsets[i] ??= new Offset()).above(counts), geometry),
+  /** The channel on which the server says what the ring sees; undefined: there is no ring. */
+  scanChannel() {
+    const ring = this.topic('ring');
+    return ring?.geometry && `${ring.channel}/scan`;
+  }
+
+  // The server knows the sensors' offsets from all that it has seen. metres: null where it does not know, undefined: nothing in sight.
+  takeScan(scan) {
+    const radius = this.topic('ring').geometry.radius_m;
+    const step = (scan.end_angle - scan.start_angle) / Math.max(scan.ranges.length - 1, 1);
+    this.beams = scan.ranges.map((range, i) => ({
+      angle: scan.start_angle + i * step,
+      metres: range === null ? null : range === 0 ? undefined : Math.max(range - radius, 0),
     }));
   }
 
@@ -146,6 +133,11 @@ export class Picture {
     context.strokeStyle = context.fillStyle = colour('--series-1');
     for (const {angle, metres} of beams) {
       if (metres === undefined) continue;
+      if (metres === null) {
+        context.font = '11px system-ui, sans-serif';
+        context.fillText('?', ...to(angle, radius * 1.25));
+        continue;
+      }
       context.setLineDash([5, 3]);
       context.beginPath();
       context.moveTo(...to(angle, radius));
@@ -230,8 +222,14 @@ export class Picture {
   describe(pose, beams) {
     const parts = [];
     if (this.pose()) parts.push(`at ${pose.x.toFixed(2)} m, ${pose.y.toFixed(2)} m, heading ${(pose.heading * 180 / Math.PI).toFixed(0)} degrees`);
-    const seen = beams.filter(beam => beam.metres !== undefined);
-    if (beams.length) parts.push(seen.length ? `nearest obstacle ${(Math.min(...seen.map(b => b.metres)) * 100).toFixed(1)} cm` : 'no obstacle in sight');
+    const seen = beams.filter(beam => beam.metres !== undefined && beam.metres !== null);
+    const unknown = beams.filter(beam => beam.metres === null).length;
+    // What was seen long ago says nothing of now.
+    const age = beams.length ? this.age(this.topic('ring')) ?? 0 : 0;
+    const when = age >= oldSeconds ? `, ${age.toFixed(0)} s ago` : '';
+    if (seen.length) parts.push(`nearest obstacle ${(Math.min(...seen.map(b => b.metres)) * 100).toFixed(1)} cm${when}`);
+    if (unknown) parts.push(`not known yet what ${unknown} of ${beams.length} sensors of the ring see`);
+    else if (beams.length && !seen.length) parts.push(`no obstacle in sight${when}`);
     const charge = find(this.message('battery'), 'state_of_charge');
     if (charge !== undefined) parts.push(`battery ${charge} %`);
     const words = parts.length ? parts.join('; ') : 'nothing of its pose, ring or battery is published yet';

@@ -29,6 +29,9 @@ function table(into, heads, lines) {
   into.replaceChildren(head, body);
 }
 
+/** "1 request", "2 requests" of "request*". */
+const counted = (number, what) => `${number} ${what.replace('*', number === 1 ? '' : 's')}`;
+
 const percent = share => share === null ? 'not known' : `${(share * 100).toFixed(1)} %`;
 
 function span(seconds) {
@@ -45,25 +48,31 @@ export function showBuses(into, state) {
     meter.max = 1;
     meter.value = bus.load ?? 0;
     meter.setAttribute('aria-label', `Load of ${bus.name}`);
-    const text = element('p', `${percent(bus.load)} now, worst ${percent(bus.worst_load)}; ${bus.rate_hz.toFixed(0)} frames/s; ${bus.frames} frames`);
+    const text = element('p', `${percent(bus.load)} now, worst ${percent(bus.worst_load)}; ${bus.rate_hz.toFixed(0)} frames/s; ${counted(bus.frames, 'frame*')}`);
     parts.push(name, meter, text);
-    const counts = [['errors', 'error frames'], ['lost', 'lost'], ['incomplete', 'incomplete samples'], ['wrong_length', 'of a wrong length'],
-      ['unknown', 'unknown'], ['transport_lost', 'messages of several frames that lost one'],
+    const counts = [['errors', 'error frame*'], ['lost', 'lost'], ['incomplete', 'incomplete sample*'], ['wrong_length', 'of a wrong length'],
+      ['unknown', 'unknown'], ['transport_lost', 'message* of several frames that lost one'],
       ['not_in_load', 'not in the load'], ['not_shown', 'not shown']]
-      .filter(([key]) => bus[key] > 0).map(([key, words]) => `${bus[key]} ${words}`);
+      .filter(([key]) => bus[key] > 0).map(([key, words]) => counted(bus[key], words));
     if (counts.length) parts.push(element('p', counts.join(', '), 'warning'));
     const strange = bus.rows.filter(row => !row.known);
     if (strange.length) parts.push(element('p', `identifiers that the spec does not know: ${strange.slice(0, 12).map(row => `${row.name} (${row.count})`).join(', ')}${strange.length > 12 ? ' ...' : ''}`, 'small'));
   }
-  parts.push(element('p', `${state.viewers} ${state.viewers === 1 ? 'viewer' : 'viewers'}${state.lost ? `, which have lost ${state.lost} messages` : ''}${state.refused ? `; ${state.refused} requests refused` : ''}`, 'small'));
+  parts.push(element('p', `${counted(state.viewers, 'viewer*')}${state.lost ? `; ${counted(state.lost, 'message*')} lost on the way to viewers` : ''}${state.refused ? `; ${counted(state.refused, 'request*')} refused` : ''}`, 'small'));
   into.replaceChildren(...parts);
+}
+
+// Of a board that has not said how it is.
+function boardText(board) {
+  if (!board.has_status) return 'has no status';
+  return `${board.heard ? 'sends; ' : ''}${board.asked ? 'no answer' : 'not asked yet'}`;
 }
 
 export function showBoards(into, findings, state) {
   table(into, ['Board', 'Up', 'Reset', 'Spec', 'CPU', 'Bus', 'Publishes'], state.boards.map(board => board.answers
     ? [board.board, span(board.uptime_s), board.reset || '?', [board.same_spec ? 'same' : 'another', board.same_spec ? '' : 'warning'],
       board.load_percent === null ? '-' : `${board.load_percent} %`, board.bus || '?', board.publishing || '-']
-    : [board.board, board.has_status ? (board.heard ? 'sends, no status yet' : 'not heard') : 'has no status', '', '', '', '', '']));
+    : [board.board, boardText(board), '', '', '', '', '']));
   findings.replaceChildren(...state.findings.map(finding => {
     const line = element('li');
     line.append(element('span', finding.severity, finding.severity), ` ${finding.board ? `${finding.board}: ` : ''}${finding.what}. `,

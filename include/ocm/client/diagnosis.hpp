@@ -6,6 +6,7 @@
 #pragma once
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -14,8 +15,11 @@
 #include <utility>
 #include <vector>
 
+#include "ocm/base/time.hpp"
+#include "ocm/can/bus.hpp"
 #include "ocm/client/sample.hpp"
 #include "ocm/protocol/identifier.hpp"
+#include "ocm/protocol/request.hpp"
 #include "ocm/protocol/topic.hpp"
 #include "ocm/protocol/wire_hash.hpp"
 
@@ -201,22 +205,33 @@ class Diagnosis {
     return text;
   }
 
-  /// The most serious first; within a severity in the order of the boards.
+  /// The most serious first; within a severity in the order of the boards. For who has asked all boards for
+  /// their status, and given them the time to answer.
   [[nodiscard]] std::vector<Finding> findings() const {
+    return findings([](std::size_t) { return true; });
+  }
+  /// The same where that is not so: that a board says nothing is found only if `was_asked(board)`, its
+  /// number, so that nothing is found on absence of evidence.
+  template <class WasAsked>
+  [[nodiscard]] std::vector<Finding> findings(const WasAsked& was_asked) const {
     std::vector<Finding> all;
     bool any_status = false;
     bool any_answer = false;
-    for (const BoardReport& board : boards_) {
+    bool all_asked = true;
+    for (std::size_t i = 0; i < boards_.size(); ++i) {
+      const BoardReport& board = boards_[i];
       any_status = any_status || board.status != nullptr;
       any_answer = any_answer || board.answered || board.heard;
+      all_asked = all_asked && (board.status == nullptr || was_asked(i));
     }
-    if (any_status && !any_answer) {
+    if (any_status && !any_answer && all_asked) {
       all.push_back({Severity::problem, "", "no board answers",
                      "is the robot on, is the bus terminated at both ends, is its bit rate " +
                          std::to_string(catalogue_->bit_rate) + " bit/s?",
                      Ailment::no_answer});
     } else {
-      for (std::size_t i = 0; i < boards_.size(); ++i) examine(i, all);
+      for (std::size_t i = 0; i < boards_.size(); ++i)
+        if (boards_[i].answered || was_asked(i)) examine(i, all);
     }
     if (battery_.answered) examine_battery(all);
     for (const BatteryMeasurement& each : batteries_.all) examine(each, all);
@@ -424,6 +439,35 @@ class Diagnosis {
   std::vector<std::vector<const protocol::Topic*>> sensors_;  // of each board, in the order of the spec
   BatteryReport battery_;
   BatteriesReport batteries_;
+};
+
+/// Which boards were asked for their status, by any program: for who watches a bus, and does not ask itself.
+/// Without it a board that nothing was asked of looks like one that does not answer. O(boards) a request.
+class StatusRequests {
+ public:
+  /// So long a board may take to answer: far more than bus and board need. [decided]
+  static constexpr base::Duration patience = std::chrono::milliseconds{500};
+
+  explicit StatusRequests(const protocol::Catalogue& catalogue) : asked_(catalogue.boards.size()) {}
+
+  /// Every frame, those that this program sends, too, and what it turned out to be. Only a request for one
+  /// status counts: a board that is to stop or to publish need not answer soon.
+  void take(const can::Received& received, const Reception& reception) {
+    if (reception.meaning != Meaning::request || reception.topic->role != protocol::Role::status) return;
+    if (reception.topic->board >= asked_.size()) return;
+    const auto request = protocol::decode_request(received.frame);
+    if (!request || request->mode != protocol::Mode::once) return;
+    if (auto& first = asked_[reception.topic->board]; !first) first = received.time;
+  }
+  /// Whether the board was asked.
+  [[nodiscard]] bool any(std::size_t board) const noexcept { return asked_[board].has_value(); }
+  /// Whether it was asked, and has had the time to answer by now.
+  [[nodiscard]] bool is_due(std::size_t board, base::Time now) const noexcept {
+    return asked_[board] && now - *asked_[board] >= patience;
+  }
+
+ private:
+  std::vector<std::optional<base::Time>> asked_;  ///< each board, first
 };
 
 }  // namespace ocm::client

@@ -54,6 +54,20 @@ class Browser:
     def element(self, selector):
         return self.driver.find_element("css selector", selector)
 
+    def processes(self):
+        """Of Chromium: what chromedriver has started, and what that has."""
+        parents = {}
+        for stat in glob.glob("/proc/[0-9]*/stat"):
+            try:
+                with open(stat, encoding="utf-8", errors="replace") as file:
+                    parents[int(stat.split("/")[2])] = int(file.read().rpartition(")")[2].split()[1])
+            except OSError:
+                pass  # it has just ended
+        found = [self.driver.service.process.pid]
+        for pid in found:
+            found += [child for child, parent in parents.items() if parent == pid]
+        return found[1:]
+
     def complaints(self):
         """What the console has of errors and of the page's policy."""
         return [entry["message"] for entry in self.driver.get_log("browser") if entry["level"] in ("SEVERE", "WARNING")]

@@ -2,8 +2,11 @@
 
 import os
 import re
+import signal
 import sys
 import time
+import urllib.error
+import urllib.request
 
 sys.path.insert(0, os.path.join(os.environ["OCM_SOURCE_DIR"], "tests", "tool", "verbs"))
 import browser
@@ -62,6 +65,16 @@ class Page(harness.Case):
         """Nothing was refused by the page's policy, and no script has failed."""
         self.assertEqual(self.browser.complaints(), [])
 
+    def dbc(self):
+        """A message, and one of a multiplexer with three pages."""
+        spec = os.path.join(self.folder, "car.dbc")
+        with open(spec, "w", encoding="ascii") as file:
+            file.write('VERSION ""\nNS_ :\nBS_:\nBU_: ECU\nBO_ 291 Engine: 8 ECU\n SG_ Speed : 0|16@1+ (0.25,0) [0|16000] "rpm" Vector__XXX\n'
+                       ' SG_ TemperatureOfTheCoolantBehindThePump : 16|8@1+ (1,-40) [-40|215] "degC" Vector__XXX\n'
+                       'BO_ 292 Cells: 8 ECU\n SG_ Page M : 0|8@1+ (1,0) [0|2] "" Vector__XXX\n'
+                       + "".join(f' SG_ Cell{i} m{i} : 8|16@1+ (0.001,0) [0|65] "V" Vector__XXX\n' for i in range(3)))
+        return spec
+
     def log(self):
         path = os.path.join(self.folder, "drive.log")
         with open(path, "w", encoding="ascii") as file:
@@ -86,6 +99,38 @@ class Page(harness.Case):
         self.assertTrue(self.browser.script(DRAWN, "#picture"))
         self.until(lambda: re.search(r"\d+ frames", self.browser.text("#buses")), "the bus")
         self.fine()
+
+    def ring(self, **above):
+        """A sample of the ring: counts of the spec's offsets, and above them those of some sensors."""
+        for i, offset in enumerate((2289, 2302, 2420, 2350, 2318, 2272, 2382, 2269)):
+            counts = offset + above.get(f"s{i + 1}", 0)
+            self.run_tool("send", f"6{0x1F + i:02X}#{counts & 255:02X}{counts >> 8:02X}")
+
+    def test_an_obstacle_that_is_there_from_the_beginning(self):
+        """It is never said that there is none: of a sensor whose offset has not been seen nothing is known."""
+        self.start_sim("--frozen")
+        self.serve()
+        self.ring(s3=100)
+        self.says("not known yet what 1 of 8 sensors of the ring see")
+        self.assertNotIn("no obstacle", self.browser.text("#picture-text"))
+        self.ring(s3=100, s4=48217)
+        self.says("nearest obstacle 0.4 cm; not known yet what 1 of 8 sensors of the ring see")
+        self.browser.open(self.url)  # who comes later hears the same, of what came before
+        self.says("nearest obstacle 0.4 cm; not known yet what 1 of 8 sensors of the ring see")
+        for _ in range(8):  # of which an average is
+            self.ring()
+        self.says("no obstacle in sight")
+        self.until(lambda: re.fullmatch("no obstacle in sight, [2-9] s ago", self.browser.text("#picture-text")), "that this was long ago")
+        self.browser.open(self.url)
+        self.says("no obstacle in sight")
+        self.ring(s3=100)
+        self.says("nearest obstacle 9.7 cm")
+        self.fine()
+
+    def says(self, words):
+        """What the picture shows, however long ago it was."""
+        self.until(lambda: re.sub(", [0-9]+ s ago", "", self.browser.text("#picture-text")) == words,
+                   f"{words}, and not {self.browser.text('#picture-text')}")
 
     def test_a_graph_draws_and_zooms(self):
         self.start_sim()
@@ -165,6 +210,31 @@ class Page(harness.Case):
             self.browser.open(self.url)
             self.until(lambda: self.browser.element("#pad .up").is_displayed(), "the pad")
 
+    def test_a_page_that_was_frozen_does_not_drive_on(self):
+        self.start_sim("--frozen")
+        self.serve("--allow-commands")
+        viewer = self.speeds()
+        self.until(lambda: self.browser.element("#pad .up").is_displayed(), "the pad")
+        ActionChains(self.browser.driver).click_and_hold(self.browser.element("#pad .up")).perform()
+        while viewer.message().fields["x"] != 0.1:
+            pass
+        processes = self.browser.processes()
+        for pid in processes:
+            os.kill(pid, signal.SIGSTOP)
+        while viewer.message().fields["x"] != 0:
+            pass
+        time.sleep(1)  # frozen for longer than a drive lasts
+        for pid in processes:
+            os.kill(pid, signal.SIGCONT)
+        self.assertEqual(viewer.message().fields, {"x": 0, "z": 0})  # the page releases by itself, and says nothing else
+        time.sleep(1)  # in which it would say ten set points
+        self.browser.script("document.getElementById('stop').click()")
+        self.assertEqual(viewer.message().fields, {"x": 0, "z": 0})  # behind which nothing of before is under way
+        ActionChains(self.browser.driver).release().click_and_hold(self.browser.element("#pad .up")).perform()
+        while viewer.message().fields["x"] != 0.1:  # what is pressed again drives
+            pass
+        ActionChains(self.browser.driver).release().perform()
+
     def test_without_the_token_there_is_nothing_to_press(self):
         self.start_sim("--frozen")
         self.serve("--allow-commands")
@@ -191,6 +261,14 @@ class Page(harness.Case):
         self.browser.script("const bar = document.getElementById('bar'); bar.value = 20; bar.dispatchEvent(new Event('change'))")
         self.until(lambda: self.browser.text("#bar-text").startswith("20.0 of 29.9 s"), "second 20")
         self.shows("/gyroscope.x", "3.5 deg/s")
+        self.until(lambda: "sends; not asked yet" in self.browser.text("#board-table"), "the boards")
+        self.assertEqual(self.browser.text("#findings"), "")  # none was asked, so none is found silent
+        self.browser.script("const bar = document.getElementById('bar'); bar.value = 29.8; bar.dispatchEvent(new Event('change'))")
+        self.until(lambda: self.browser.text("#bar-text").startswith("29.8"), "second 29.8")
+        self.browser.element("#play").click()
+        self.until(lambda: self.browser.text("#play") == "Play again" and "end" in self.browser.text("#bar-text"), "the end")
+        self.browser.element("#play").click()
+        self.until(lambda: self.browser.text("#play") == "Pause log" and float(self.browser.text("#bar-text").split()[0]) < 20, "its beginning again")
         self.fine()
 
     def test_any_dbc_has_values_and_graphs(self):
@@ -208,6 +286,88 @@ class Page(harness.Case):
         for selector in ("#robot", "#boards"):
             self.assertFalse(self.browser.element(selector).is_displayed(), selector)
         self.fine()
+
+    def test_each_field_of_a_multiplexer_has_its_newest_value(self):
+        self.start_sim("--frozen")
+        self.serve(tool=("--spec", self.dbc()))
+        for page, millivolts in ((0, 3600), (1, 3700), (2, 3800), (0, 3601)):
+            self.run_tool("send", f"124#{page:02X}{millivolts & 255:02X}{millivolts >> 8:02X}0000000000")
+        for i, text in enumerate(("3.601 V", "3.7 V", "3.8 V")):
+            self.shows(f"/Cells.Cell{i}", text)
+
+        def age(field):
+            text = self.browser.script("return arguments[0].parentElement.children[6].textContent", self.browser.element(f'[data-field="/Cells.{field}"]'))
+            shown = re.match(r"([0-9.]+) (m?s)", text)
+            return float(shown[1]) * (0.001 if shown[2] == "ms" else 1) if shown else float("nan")  # not yet
+
+        self.until(lambda: age("Cell1") > age("Cell2") > age("Page"), "ages: pages that came before are older")
+        self.run_tool("send", "124#01750E0000000000")
+        self.shows("/Cells.Cell1", "3.701 V")
+        self.until(lambda: age("Cell1") < age("Cell0"), "the age of what has just come")
+        self.assertEqual(self.value("/Cells.Cell0"), "3.601 V")
+        self.fine()
+
+    def test_a_command_line_with_any_spec(self):
+        self.start_sim("--frozen")
+        self.serve("--allow-commands", tool=("--spec", self.dbc()))
+        self.until(lambda: self.browser.element("#line").is_displayed(), "the command line")
+        self.assertEqual(self.browser.element("#line").get_attribute("placeholder"), "set Engine Speed=0")
+        self.browser.element("#line").send_keys("set Engine Speed=100rpm", Keys.ENTER)
+        self.shows("/Engine.Speed", "100 rpm")
+        self.fine()
+
+    def in_view(self, field):
+        """Whether the value and the check box of a field are within the page's width."""
+        return self.browser.script("""const cell = document.querySelector(`[data-field="${arguments[0]}"]`);
+            return [cell, cell.nextSibling.firstChild].every(each => { const box = each.getBoundingClientRect();
+              return box.width > 0 && box.left >= 0 && box.right <= innerWidth; })""", field)
+
+    def test_values_on_a_phone(self):
+        self.browser.size(390, 844)
+        self.start_sim("--frozen")
+        self.serve()
+        self.run_tool("send", "602#0000000000000000")
+        self.run_tool("send", "603#0110000200000000")
+        self.ring()
+        self.shows("/odometry.pose.x", "1.048832 m")
+        for field in ("/odometry.pose.orientation", "/proximity_ring.sensor_1.proximity"):
+            self.assertTrue(self.in_view(field), field)
+        headings = "return [...document.querySelectorAll('#values tr.topic')].filter(each => each.offsetParent !== null).map(each => each.textContent)"
+        self.assertEqual(self.browser.script(headings), ["odometry", "proximity_ring"])
+        self.browser.element("#filter").send_keys("prox")
+        self.until(lambda: self.browser.script(headings) == ["proximity_ring"], "the filter")
+        self.assertEqual(self.browser.violations(), [])
+        self.browser.size(1280, 1400)
+        self.assertEqual(self.browser.script(headings), [])
+        self.browser.size(390, 844)
+        self.serve(tool=("--spec", self.dbc()))
+        self.run_tool("send", "123#90013C0000000000")
+        self.shows("/Engine.Speed", "100 rpm")
+        self.assertTrue(self.in_view("/Engine.Speed"))
+        self.assertTrue(self.in_view("/Engine.TemperatureOfTheCoolantBehindThePump"))
+        self.assertLessEqual(self.browser.script("return document.documentElement.scrollWidth"), 390)
+
+    def test_where_things_are(self):
+        self.start_sim("--frozen")
+        box = "const box = document.querySelector(arguments[0]).getBoundingClientRect(); return [box.left, box.top, box.right, box.bottom]"
+        self.serve("--allow-commands")
+        self.until(lambda: self.browser.element("#pad .up").is_displayed(), "the pad")
+        gap = """const [pad, speed] = ['pad', 'forward-speed'].map(id => document.getElementById(id).getBoundingClientRect());
+            return speed.top - pad.bottom"""
+        self.assertGreaterEqual(self.browser.script(gap), 8)
+        self.serve(tool=("--spec", self.dbc()))
+        self.run_tool("send", "123#90013C0000000000")
+        self.shows("/Engine.Speed", "100 rpm")
+        (left, _, right, _), (bus_left, _, bus_right, _) = (self.browser.script(box, each) for each in ("#graphs-part", "#bus-part"))
+        self.assertGreater(right - left, bus_right - bus_left)
+        align = "return [...document.querySelectorAll('#values thead th')].map(each => getComputedStyle(each).textAlign)"
+        cells = "return [...document.querySelector('[data-field=\"/Engine.Speed\"]').parentElement.children].map(each => getComputedStyle(each).textAlign)"
+        self.assertEqual(self.browser.script(align), self.browser.script(cells))
+        request = urllib.request.Request(f"http://127.0.0.1:{self.port}/", headers={"Host": "evil.example"})
+        for count in ("1 request refused", "2 requests refused"):
+            with self.assertRaises(urllib.error.HTTPError):
+                urllib.request.urlopen(request)
+            self.until(lambda count=count: self.browser.text("#buses").endswith(f"1 viewer; {count}"), count)
 
     def test_all_can_use_it(self):
         """axe-core finds nothing, in light and dark, wide and on a phone, where nothing sticks out."""

@@ -78,6 +78,58 @@ TEST_CASE("driver: one drives at a time, and all may stop") {
   CHECK_FALSE(driver.drives());
 }
 
+TEST_CASE("driver: who was silent must say rest before it drives again") {
+  Driver driver;
+  Driver::Frames out;
+  REQUIRE(driver.drive(1, hold(5), begin, out).empty());
+  CHECK_FALSE(driver.must_rest(1, 0x201));
+  REQUIRE(driver.advance(begin + 500ms, out));
+  CHECK(driver.must_rest(1, 0x201));
+  out.clear();
+  // A page that was frozen goes on: what it says moves nothing; the first answer says why.
+  CHECK(driver.drive(1, hold(5), begin + 3s, out) == "the drive was ended: release first, then drive again");
+  CHECK(driver.drive(1, hold(5), begin + 3100ms, out).empty());
+  CHECK_FALSE(driver.drives());
+  CHECK(out.empty());
+  CHECK(driver.drive(1, hold(6, 0x202), begin + 3200ms, out).empty());  // other motors
+  CHECK(driver.drive(2, hold(7), begin + 3200ms, out).empty());         // another viewer
+  CHECK(out.size() == 2);
+  CHECK(driver.drive(2, hold(0), begin + 3200ms, out).empty());  // whose rest is not that of the first
+  out.clear();
+  CHECK(driver.drive(1, hold(5), begin + 3300ms, out).empty());
+  CHECK(out.empty());
+  CHECK(driver.drive(1, hold(0), begin + 3400ms, out).empty());  // released
+  CHECK(out.size() == 1);
+  CHECK_FALSE(driver.must_rest(1, 0x201));
+  out.clear();
+  CHECK(driver.drive(1, hold(5), begin + 3500ms, out).empty());
+  REQUIRE(out.size() == 1);
+  CHECK(out[0].data[0] == 5);
+}
+
+TEST_CASE("driver: a stop by another holds against who goes on driving") {
+  Driver driver;
+  Driver::Frames out;
+  REQUIRE(driver.drive(1, hold(5), begin, out).empty());
+  CHECK(driver.drive(2, hold(0), begin + 10ms, out).empty());
+  CHECK(driver.must_rest(1, 0x201));
+  CHECK_FALSE(driver.must_rest(2, 0x201));
+  out.clear();
+  CHECK_FALSE(driver.drive(1, hold(5), begin + 100ms, out).empty());
+  CHECK(out.empty());
+  CHECK(driver.drive(1, hold(0), begin + 200ms, out).empty());
+  CHECK(driver.drive(1, hold(5), begin + 300ms, out).empty());
+  CHECK(driver.drives());
+  driver.rest(out);  // by another program
+  CHECK(driver.must_rest(1, 0x201));
+  driver.gone(1, out);
+  CHECK_FALSE(driver.must_rest(1, 0x201));
+  out.clear();
+  CHECK(driver.drive(3, hold(5), begin + 400ms, out).empty());
+  CHECK(driver.drive(3, hold(0), begin + 500ms, out).empty());
+  CHECK_FALSE(driver.must_rest(3, 0x201));  // its own stop
+}
+
 TEST_CASE("driver: what a viewer drove rests when it has gone") {
   Driver driver;
   Driver::Frames out;

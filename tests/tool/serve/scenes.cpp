@@ -93,14 +93,29 @@ TEST_CASE("serve: a pose is one of Foxglove's, and a transform of the robot's fr
   CHECK(transform["rotation"] == in_frame["pose"]["orientation"]);
 }
 
+/// The offsets of the spec, which are what the sensors see where nothing is.
+std::vector<unsigned> offsets() {
+  std::vector<unsigned> all;
+  for (const protocol::FrameLayout& frame : topic_of(protocol::Role::ring).frames)
+    for (const protocol::Field& field : frame.values())
+      if (field.is_derived() && !field.uncertainty)
+        all.push_back(static_cast<unsigned>(field.law->offset.as_double()));
+  REQUIRE(all.size() == 8);
+  return all;
+}
+std::vector<unsigned> above(std::vector<unsigned> counts, unsigned each) {
+  for (unsigned& count : counts) count += each;
+  return counts;
+}
+
 TEST_CASE("serve: a ring is a scan around the robot's frame") {
   Shown shown;
   const protocol::Topic& ring = topic_of(protocol::Role::ring);
-  shown.take(ring, counts(std::vector<unsigned>(8, 2300)));  // nothing in sight: their offsets
-  std::vector<unsigned> seen(8, 2300);
-  seen[2] = 2300 + 100;  // by 0.9427 / d^2: 0.0971 m
-  seen[3] = 2300 + 20;   // 0.217 m, beyond the range
-  seen[4] = 2200;        // below the offset
+  shown.take(ring, counts(offsets()));  // nothing in sight
+  std::vector<unsigned> seen = offsets();
+  seen[2] += 100;  // by 0.9427 / d^2: 0.0971 m
+  seen[3] += 20;   // 0.217 m, beyond the range
+  seen[4] -= 100;  // below the offset
   shown.take(ring, counts(seen));
   const Json& scan = shown.newest["/proximity_ring/scan"];
   CHECK(scan["frame_id"] == "base_link");
@@ -118,18 +133,74 @@ TEST_CASE("serve: offsets are the least of averages, are learnt unseen, and are 
   Shown shown;
   const protocol::Topic& ring = topic_of(protocol::Role::ring);
   shown.wanted = false;
-  for (int i = 0; i < 8; ++i) shown.take(ring, counts(std::vector<unsigned>(8, 2300)));
+  for (int i = 0; i < 8; ++i) shown.take(ring, counts(offsets()));
   CHECK(shown.newest.empty());
   shown.wanted = true;
   const auto range = [&](unsigned all) {
-    shown.take(ring, counts(std::vector<unsigned>(8, all)));
-    return shown.newest["/proximity_ring/scan"]["ranges"][0].get<double>();
+    shown.take(ring, counts(above(offsets(), all)));
+    return shown.newest["/proximity_ring/scan"]["ranges"][0];
   };
-  CHECK(range(2300 + 100) == Approx(0.14709).margin(1e-4));
-  CHECK(range(2200) == 0);                                       // noise of one sample moves no offset far:
-  CHECK(range(2300 + 100) == Approx(0.05 + 0.1).margin(0.012));  // of eight it is an eighth
+  CHECK(range(100).get<double>() == Approx(0.14709).margin(1e-4));
+  CHECK(range(0U - 100) == 0);  // noise of one sample moves no offset far:
+  CHECK(range(100).get<double>() == Approx(0.05 + 0.1).margin(0.012));  // of eight it is an eighth
   shown.scenes.forget();
-  CHECK(range(2300 + 100) == 0);  // of a log from its beginning
+  CHECK(range(100).is_null());  // of a log from its beginning
+}
+
+TEST_CASE("serve: what was before a ring from the beginning is no offset") {
+  Shown shown;
+  const protocol::Topic& ring = topic_of(protocol::Role::ring);
+  std::vector<unsigned> seen = offsets();
+  seen[1] += 23;   // what an obstacle at the end of the range adds, 0.9427 / 0.2^2 = 23.6, is an offset still
+  seen[2] += 24;   // not known
+  seen[3] += 150;  // as much as offsets differ, 2420 - 2269 = 151: not known
+  seen[4] += 152;  // more than that is an obstacle, 0.0788 m by the spec's offset
+  seen[5] += 48'000;  // the robot touches it: 0.0044 m
+  const auto take = [&] {
+    shown.take(ring, counts(seen));
+    return shown.newest["/proximity_ring/scan"]["ranges"];
+  };
+  for (int i = 0; i < 20; ++i) {  // however long it stays there
+    const Json ranges = take();
+    CHECK(ranges[0] == 0);
+    CHECK(ranges[1] == 0);
+    CHECK(ranges[2].is_null());
+    CHECK(ranges[3].is_null());
+    CHECK(ranges[4].get<double>() == Approx(0.05 + 0.0788).margin(1e-4));
+    CHECK(ranges[5].get<double>() == Approx(0.05 + 0.0044).margin(1e-4));
+  }
+  CHECK(shown.newest["/proximity_ring/scan"]["intensities"][5].get<double>() == Approx(48'000));
+  const std::vector<unsigned> before = seen;
+  seen = offsets();
+  for (int i = 0; i < 8; ++i) take();  // it has gone: the eight samples of an average are all without it
+  seen = before;
+  const Json ranges = take();
+  CHECK(ranges[2].get<double>() == Approx(0.05 + 0.1982).margin(1e-4));
+  CHECK(ranges[3].get<double>() == Approx(0.05 + 0.0793).margin(1e-4));
+  CHECK(ranges[5].get<double>() == Approx(0.05 + 0.0044).margin(1e-4));
+}
+
+TEST_CASE("serve: what came last on a scene's channel") {
+  Shown shown;
+  shown.wanted = false;
+  for (std::uint32_t channel = Shown::first - 1; channel < Shown::first + 4; ++channel)
+    CHECK_FALSE(shown.scenes.newest(channel));
+  shown.take(topic_of(protocol::Role::ring), counts(offsets()));
+  shown.take(topic_of(protocol::Role::pose), std::vector<std::uint8_t>(16));
+  std::size_t count = 0;
+  for (const auto& channel : shown.scenes.channels()) {
+    const auto newest = shown.scenes.newest(channel.id);
+    REQUIRE(newest);
+    CHECK(newest->channel == channel.id);
+    CHECK(newest->time == base::Time{1'700'000'000s + 5ns});
+    const Json json = Json::parse(newest->payload);
+    CHECK(json.contains("ranges") == (channel.schema_name == "foxglove.LaserScan"));
+    CHECK(json.contains("parent_frame_id") == (channel.schema_name == "foxglove.FrameTransform"));
+    ++count;
+  }
+  CHECK(count == 3);
+  shown.scenes.forget();
+  CHECK_FALSE(shown.scenes.newest(Shown::first));
 }
 
 TEST_CASE("serve: what has no role, and interfaces") {

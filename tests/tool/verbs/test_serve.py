@@ -201,7 +201,8 @@ class Serve(harness.Case):
                 self.assertEqual(file.read(), f"http://127.0.0.1:{port}/\n")
             os.unlink(opened)
             children = subprocess.run(["pgrep", "-P", str(server.pid)], capture_output=True, text=True, check=True).stdout.split()
-            self.assertEqual(self.interrupt(server), ("", ""))
+            out, err = self.interrupt(server)
+            self.assertEqual((out, len(err.splitlines())), ("", 1), err)  # that the log waits for the page
             for child in children:
                 os.kill(int(child), signal.SIGKILL)
             del self.environment[display]
@@ -276,6 +277,22 @@ class Serve(harness.Case):
         self.assertGreater(row["bound_ms"], 0.2)  # a frame of six bytes at 500 kbit/s
         self.assertGreater(row["measured_ms"], 0.1)
 
+    def test_only_boards_that_were_asked_are_found_silent(self):
+        self.start_sim("--without", "light_ring")
+        _, port, _ = self.serve()
+        viewer = self.viewer(port)
+        viewer.subscribe("/ocm/boards")
+        self.assertEqual(viewer.message().fields["findings"], [])
+        self.run_tool("publish", "gyro", "50ms")
+        self.run_tool("stop", "light_ring_status")
+        state = self.state(viewer, "/ocm/boards", lambda s: s["boards"][0]["heard"], "a board that sends")
+        state = viewer.message().fields  # and a second later
+        self.assertEqual((state["findings"], [board["asked"] for board in state["boards"]]), ([], [False] * 3))
+        self.run_tool("doctor", "--json", code=1)
+        state = self.state(viewer, "/ocm/boards", lambda s: s["findings"], "what was found")
+        self.assertEqual([(found["board"], found["what"]) for found in state["findings"]], [("light_ring", "does not answer")])
+        self.assertEqual([board["answers"] for board in state["boards"]], [True, True, False])
+
     def test_any_dbc(self):
         spec = os.path.join(self.folder, "car.dbc")
         with open(spec, "w", encoding="ascii") as file:
@@ -294,6 +311,25 @@ class Serve(harness.Case):
                     if event["bus"] == "can1"}
         for message in got:
             self.assertEqual(message.fields, expected[str(message.time_ns)])
+
+    def test_a_log_waits_for_its_first_viewer(self):
+        server, port, _ = self.serve(self.log())
+        self.assertIn("the log plays from the moment that the page is opened", server.stderr.readline())
+        time.sleep(1)  # in which it would play ten samples
+        viewer = self.viewer(port)
+        viewer.subscribe("/ocm/playback", "/gyroscope")
+        self.assertEqual(viewer.message("/ocm/playback").fields["at_s"], 0)
+        self.assertEqual([round(viewer.message("/gyroscope").fields["x"] / 0.0175) for _ in range(5)], [0, 1, 2, 3, 4])
+        # Who subscribes to states alone has it played, too, and so has who winds it.
+        _, port, _ = self.serve(self.log())
+        viewer = self.viewer(port)
+        viewer.subscribe("/ocm/playback")
+        self.state(viewer, "/ocm/playback", lambda s: s["at_s"] > 0, "that it plays")
+        _, port, _ = self.serve(self.log())
+        viewer = self.viewer(port)
+        viewer.publish("/ocm/playback", {"at_s": 20})
+        viewer.subscribe("/ocm/playback")
+        self.state(viewer, "/ocm/playback", lambda s: s["at_s"] > 20.2, "that it plays")
 
     def test_a_log_is_wound(self):
         _, port, _ = self.serve(self.log())
@@ -380,6 +416,16 @@ class Serve(harness.Case):
         while viewer.message().fields["x"] != 0:
             self.assertLess(time.monotonic() - begin, 5)
         self.interrupt(listener)
+        # It goes on as if nothing had been, as a page that was frozen: it must say rest before it drives again.
+        listener = self.listen("motors")
+        for _ in range(3):
+            viewer.publish("/motors", {"x": 0.1, "z": 0})
+        while "release first, then drive again" not in viewer.text("status")["message"]:
+            pass
+        viewer.publish("/motors", {"x": 0, "z": 0})
+        self.assertEqual(viewer.message().fields, {"x": 0, "z": 0})
+        self.settle()
+        self.assertEqual([event["fields"]["x"] for event in self.objects(self.interrupt(listener)[0])], [0])
         # The connection is cut without a word.
         listener = self.listen("motors")
         viewer.publish("/motors", {"x": 0.05, "z": 0})
@@ -448,6 +494,9 @@ class Serve(harness.Case):
         self.assertIn("another viewer drives", second.text("status")["message"])
         second.publish("/motors", {"x": 0, "z": 0})  # a stop is never refused
         while first.message().fields["x"] != 0:
+            pass
+        first.publish("/motors", {"x": 0.05, "z": 0})  # as a page that is still held: the stop holds
+        while "release first" not in first.text("status")["message"]:
             pass
         other = self.start("drive", "5cm/s")
         while first.message().fields["x"] != 0.05:

@@ -404,7 +404,9 @@ class Robots(Case):
         self.says(viewer, "a time bar takes")
         viewer.publish("/ocm/fleet", {"robot": "AVR", "order": "stop"})
         self.says(viewer, "may only look")
-        self.assertEqual(self.interrupt(server), ("", ""))
+        out, err = self.interrupt(server)
+        self.assertEqual((out, len(err.splitlines())), ("", 1), err)
+        self.assertIn("plays from the moment that the page is opened", err)
 
     def test_logs_that_are_none(self):
         log = os.path.join(self.folder, "room.line")

@@ -1,6 +1,7 @@
 #include "ocm/client/diagnosis.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -99,6 +100,53 @@ TEST_CASE("diagnosis: one board is missing, another has an older firmware") {
   robot.say(amiro::ProximityRing{});  // power_management sends, but no status
   CHECK(robot.findings() == Lines{"problem light_ring: does not answer",
                                   "warning power_management: sends, and does not say how it is"});
+}
+
+TEST_CASE("diagnosis: of boards that were not asked nothing is found") {
+  const auto found = [](const Patient& robot, std::vector<std::size_t> asked) {
+    Lines lines;
+    for (const Finding& f : robot.diagnosis.findings(
+             [&](std::size_t board) { return std::find(asked.begin(), asked.end(), board) != asked.end(); }))
+      lines.push_back(std::string{f.board} + ": " + f.what);
+    return lines;
+  };
+  Patient robot;
+  CHECK(found(robot, {}).empty());
+  CHECK(found(robot, {2}) == Lines{"light_ring: does not answer"});
+  CHECK(found(robot, {0, 1, 2}) == Lines{": no board answers"});
+  robot.say(amiro::ProximityRing{});  // power_management sends
+  CHECK(found(robot, {}).empty());
+  CHECK(found(robot, {0}) == Lines{"di_wheel_drive: does not answer"});
+  CHECK(found(robot, {1}) == Lines{"power_management: sends, and does not say how it is"});
+  auto status = Patient::healthy<amiro::LightRingStatus>();
+  status.health.load = 95;
+  robot.say(status);  // what a board says of itself counts, asked or not
+  CHECK(found(robot, {}) == Lines{"light_ring: its CPU is busy for 95 % of the time"});
+}
+
+TEST_CASE("diagnosis: which boards were asked, by any program") {
+  using namespace std::chrono_literals;
+  constexpr ocm::base::Time begin{1000s};
+  const auto& status = *amiro::catalogue.find("light_ring_status");
+  Receiver receiver{amiro::catalogue};
+  StatusRequests requests{amiro::catalogue};
+  const auto hear = [&](const ocm::can::Frame& frame, ocm::base::Time at) {
+    const ocm::can::Received received{at, frame};
+    requests.take(received, receiver.take(received));
+  };
+  hear(ocm::protocol::stop(status.id), begin);                 // is answered by nothing
+  hear(*ocm::protocol::publish_every(status.id, 10s), begin);  // later, perhaps
+  hear(ocm::protocol::once(amiro::catalogue.find("light_ring_refusal")->id), begin);
+  hear(ocm::protocol::once(amiro::Gyroscope::id), begin);
+  hear(ocm::protocol::command(amiro::Motors{}), begin);
+  for (std::size_t board = 0; board < 3; ++board) CHECK_FALSE(requests.any(board));
+  hear(ocm::protocol::once(status.id), begin);
+  hear(ocm::protocol::once(status.id), begin + 400ms);  // the first one counts
+  CHECK(requests.any(2));
+  CHECK_FALSE(requests.any(0));
+  CHECK_FALSE(requests.is_due(2, begin + 499ms));  // it may answer still
+  CHECK(requests.is_due(2, begin + 500ms));
+  CHECK_FALSE(requests.is_due(0, begin + 1h));
 }
 
 TEST_CASE("diagnosis: a board of another spec") {
