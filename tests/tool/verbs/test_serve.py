@@ -276,6 +276,24 @@ class Serve(harness.Case):
         self.assertGreater(row["bound_ms"], 0.2)  # a frame of six bytes at 500 kbit/s
         self.assertGreater(row["measured_ms"], 0.1)
 
+    def test_driving_by_hand_is_no_response_time(self):
+        """Pressed, held for a while, released, and again before a period of set points is over."""
+        moves, rest = "201#A086010000000000", "201#0000000000000000"
+        path = os.path.join(self.folder, "pad.log")
+        with open(path, "w", encoding="ascii") as file:
+            for i in range(40):
+                for ms, frame in ((0, moves), (100, moves), (140, moves[:4] + "50C3000000000000"), (240, rest), (360, moves), (400, rest)):
+                    file.write(f"({1000 + i + ms / 1000:.6f}) can0 {frame}\n")
+        _, port, _ = self.serve(path)
+        viewer = self.viewer(port)
+        viewer.subscribe("/ocm/bounds", "/ocm/playback")
+        self.state(viewer, "/ocm/bounds", lambda s: s["rows"], "its row")
+        viewer.publish("/ocm/playback", {"speed": 8})
+        self.state(viewer, "/ocm/playback", lambda s: s["ended"], "the end")
+        row = self.state(viewer, "/ocm/bounds", lambda s: s["rows"][0]["measured_ms"], "a response time")["rows"][0]
+        self.assertEqual((row["name"], row["period_ms"], row["exceeds"]), ("motors", 100, False))
+        self.assertLess(row["measured_ms"], row["bound_ms"])
+
     def test_any_dbc(self):
         spec = os.path.join(self.folder, "car.dbc")
         with open(spec, "w", encoding="ascii") as file:
