@@ -294,6 +294,20 @@ class Serve(harness.Case):
         self.assertEqual((row["name"], row["period_ms"], row["exceeds"]), ("motors", 100, False))
         self.assertLess(row["measured_ms"], row["bound_ms"])
 
+    def test_a_topic_without_a_whole_sample(self):
+        path = os.path.join(self.folder, "magnetometer.log")
+        with open(path, "w", encoding="ascii") as file:
+            for i in range(300):  # x and z, and no y
+                file.write(f"({1000 + i / 10:.6f}) can0 605#00000000\n({1000 + i / 10 + 0.001:.6f}) can0 607#00000000\n")
+        _, port, _ = self.serve(path)
+        viewer = self.viewer(port)
+        viewer.subscribe("/ocm/bus")
+        bus = self.state(viewer, "/ocm/bus", lambda s: s["buses"] and s["buses"][0]["rows"] and s["buses"][0]["rows"][0]["incomplete"] > 1, "it")
+        row = bus["buses"][0]["rows"][0]
+        self.assertEqual((row["name"], row["count"]), ("magnetometer", 0))
+        self.assertGreaterEqual(row["frames"], 2 * row["incomplete"])
+        self.assertGreater(row["share"], 0)
+
     def test_any_dbc(self):
         spec = os.path.join(self.folder, "car.dbc")
         with open(spec, "w", encoding="ascii") as file:
