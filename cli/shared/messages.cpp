@@ -13,12 +13,15 @@
 
 #include "ocm/base/utf8.hpp"
 
+#include "cli/shared/folding.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/remedies.hpp"
 #include "cli/shared/terminal.hpp"
 
 namespace ocm::cli {
 namespace {
+
+constexpr std::string_view before_errors = "amiroctl: ";
 
 /// The verb that runs.
 std::string& speaker() {
@@ -39,10 +42,10 @@ Kept& kept() {
 /// Of any thread: a verb may have a page, and robots behind a central, in threads of their own.
 void print(std::string_view before, std::string_view raw) {
   static std::mutex one_at_a_time;
-  const std::string text = printable(raw);
+  const std::string line = std::string{before} + printable(raw);
   const std::lock_guard lock{one_at_a_time};
   if (kept().keeps) {
-    kept().lines.push_back(std::string{before} + text);
+    kept().lines.push_back(line);
     return;
   }
   const WithoutBrokenPipe message;  // `stop 2>&1 | true` stops
@@ -51,8 +54,7 @@ void print(std::string_view before, std::string_view raw) {
     std::fputs("\r\x1b[K", stderr);  // the terminal has shown ^C
     echo_erased = true;
   }
-  std::fprintf(stderr, "%.*s%.*s\n", static_cast<int>(before.size()), before.data(),
-               static_cast<int>(text.size()), text.data());
+  std::fprintf(stderr, "%s\n", folded_message(line, columns_of(STDERR_FILENO)).c_str());
 }
 
 }  // namespace
@@ -81,6 +83,21 @@ std::string printable(std::string_view text) {
   return out;
 }
 
+std::string folded_message(std::string_view text, std::size_t columns) {
+  std::string out;
+  for (;;) {
+    const std::size_t end = text.find('\n');
+    const std::string_view line = text.substr(0, end);
+    const std::size_t lead = std::min(line.find_first_not_of(' '), line.size());
+    // What goes on is below the text of an error and of its remedy, and moved in below all else.
+    const bool of_error = line.starts_with(before_errors) || lead == before_errors.size();
+    out += folded(line, columns, of_error ? before_errors.size() : lead + 4);
+    if (end == std::string_view::npos) return out;
+    out += '\n';
+    text.remove_prefix(end + 1);
+  }
+}
+
 void fail(const transport::Failure& failure, int code) {
   const std::string& verb = speaker();
   const bool has_verb = failure.what.starts_with(verb + ":") || failure.what.starts_with(verb + " ");
@@ -90,11 +107,11 @@ void fail(const transport::Failure& failure, int code) {
 }
 
 void complain(const transport::Failure& failure) {
-  print("amiroctl: ", failure.what);
+  print(before_errors, failure.what);
   const std::string what_to_do = remedy(failure);
   for (std::string_view rest = what_to_do; !rest.empty();) {
     const std::string_view line = rest.substr(0, rest.find('\n'));
-    print(line.empty() ? "" : "          ", line);
+    print(line.empty() ? "" : std::string(before_errors.size(), ' '), line);
     rest.remove_prefix(std::min(line.size() + 1, rest.size()));
   }
 }
@@ -110,7 +127,8 @@ HeldMessages::HeldMessages() {
 HeldMessages::~HeldMessages() {
   kept().keeps = false;
   const WithoutBrokenPipe message;
-  for (const std::string& line : std::exchange(kept().lines, {})) std::fprintf(stderr, "%s\n", line.c_str());
+  for (const std::string& line : std::exchange(kept().lines, {}))
+    std::fprintf(stderr, "%s\n", folded_message(line, columns_of(STDERR_FILENO)).c_str());
 }
 
 std::size_t HeldMessages::count() {
