@@ -213,8 +213,8 @@ void stop_at(const std::vector<Mistake>& mistakes, std::string_view file) {
   if (mistakes.empty()) return;
   constexpr std::size_t most_shown = 20;
   for (std::size_t i = 0; i < std::min(mistakes.size(), most_shown); ++i)
-    fmt::print(stderr, "{}: {}\n    {}\n", mistakes[i].place, mistakes[i].what, mistakes[i].remedy);
-  if (mistakes.size() > most_shown) fmt::print(stderr, "and {} more\n", mistakes.size() - most_shown);
+    remark(fmt::format("{}: {}\n    {}", mistakes[i].place, mistakes[i].what, mistakes[i].remedy));
+  if (mistakes.size() > most_shown) remark(fmt::format("and {} more", mistakes.size() - most_shown));
   fail({fmt::format("{}: {} error{}, nothing was analysed", file, mistakes.size(),
                     mistakes.size() == 1 ? "" : "s"),
         ""},

@@ -11,7 +11,10 @@
 #include <fmt/format.h>
 
 #include "ocm/can/fd_bits.hpp"
+#include "ocm/client/command.hpp"
 #include "ocm/client/frame_index.hpp"
+#include "ocm/client/refusal_reader.hpp"
+#include "ocm/client/sample.hpp"
 #include "ocm/j1939/transport.hpp"
 #include "ocm/measure/bus_load.hpp"
 #include "ocm/protocol/request.hpp"
@@ -111,34 +114,70 @@ Log read_log(const std::string& file, const protocol::Catalogue& catalogue) {
   return log;
 }
 
+/// The releases of what is not sent by its sender's clock, by the identifier. A period of 0 is the set's.
+struct Pace {
+  Grid grid = Grid::of_sender;
+  std::int64_t period = 0;
+};
+using Paces = std::map<std::uint32_t, Pace>;
+
+/// How far apart the set points of an actuator come, in a run.
+struct Distances {
+  std::size_t held = 0;   ///< about as drives are repeated
+  std::size_t other = 0;  ///< shorter ones
+  bool rested = true;
+
+  void add(std::int64_t distance, bool rests) {
+    constexpr std::int64_t period = client::hold_period.count();
+    const bool pause = rested || distance > period + period / 4;
+    if (!pause) ++(distance >= period - period / 4 ? held : other);
+    rested = rests;
+  }
+  /// Another period than that of a drive is not known well enough to lay a grid by.
+  [[nodiscard]] Pace pace() const {
+    return held > other ? Pace{Grid::of_run, client::hold_period.count()} : Pace{Grid::none, 0};
+  }
+};
+
 /// The topics that are in the log, with the periods that requests in it ask for, and all messages: they are
 /// sent unasked, and one that is missing is a finding.
 BusSet set_of(const Log& log, const protocol::Catalogue& catalogue, const spec::Model* model,
-              std::vector<Rate> rates) {
+              std::vector<Rate> rates, Paces& paces) {
   const client::FrameIndex index{catalogue};
+  struct Asked {
+    std::int64_t time = 0;
+    std::int64_t period = 0;  ///< 0: none, or none that can be read
+  };
   struct Seen {
     bool sent = false;
     protocol::Priority priority = protocol::default_priority;
-    std::int64_t asked = 0;
+    std::vector<Asked> asked;
     std::int64_t last = 0;
     std::int64_t shortest = 0;
+    std::uint32_t key = 0;
+    Distances distances;
   };
   std::map<const protocol::Topic*, Seen> seen;
+  client::Receiver receiver{catalogue};
+  client::RefusalReader refusals{catalogue};
   std::vector<std::string> remarks;
   for (const Arrival& arrival : log.arrivals) {
     if (arrival.frame.format != can::Format::base && arrival.frame.format != can::Format::base_remote)
       continue;
     const auto id = protocol::Identifier::decode(arrival.frame.id);
+    const auto reception = receiver.take({base::Time{base::Duration{arrival.time}}, arrival.frame});
+    if (const auto refused = refusals.take(reception)) {
+      // It was never asked: the newest requests that this refusal can be of.
+      const std::int64_t wait = client::RefusalReader::longest_wait(*reception.topic).count();
+      auto& asked = seen[refused->topic].asked;
+      for (std::uint32_t i = 0; i < refused->count && !asked.empty(); ++i)
+        if (arrival.time - asked.back().time <= wait) asked.pop_back();
+    }
     if (const auto* topic = index.requested(id)) {
       const auto request = protocol::decode_request(arrival.frame);
-      if (!request || request->mode != protocol::Mode::publish) continue;
-      const std::int64_t asked =
-          (arrival.frame.dlc == 1 ? topic->period : request->period).duration().count();
-      Seen& its = seen[topic];
-      if (its.asked != 0 && its.asked != asked)
-        remarks.push_back(fmt::format("{} was asked for every {} and every {}: the shorter one counts.",
-                                      topic->name, time_text(its.asked), time_text(asked)));
-      if (its.asked == 0 || asked < its.asked) its.asked = asked;
+      const bool publishes = request && request->mode == protocol::Mode::publish;
+      const auto period = arrival.frame.dlc == 1 ? topic->period : request.value.period;
+      seen[topic].asked.push_back({arrival.time, publishes ? period.duration().count() : 0});
     } else if (const auto frame = index.find(id)) {
       Seen& its = seen[frame.topic];
       its.priority = id.priority;
@@ -146,13 +185,24 @@ BusSet set_of(const Log& log, const protocol::Catalogue& catalogue, const spec::
       if (frame.frame != 0) continue;
       if (its.last != 0 && (its.shortest == 0 || arrival.time - its.last < its.shortest))
         its.shortest = arrival.time - its.last;
+      its.distances.add(arrival.time - its.last, is_rest(arrival.frame));
       its.last = arrival.time;
+      its.key = can::arbitration_key(arrival.frame);
     }
   }
   std::vector<Rate> all;
   for (const auto& topic : catalogue.topics) {
     if (topic.is_message()) continue;
     const auto its = seen.find(&topic);
+    std::int64_t asked = 0;
+    if (its != seen.end())
+      for (const Asked& each : its->second.asked) {
+        if (each.period == 0) continue;
+        if (asked != 0 && asked != each.period)
+          remarks.push_back(fmt::format("{} was asked for every {} and every {}: the shorter one counts.",
+                                        topic.name, time_text(asked), time_text(each.period)));
+        if (asked == 0 || each.period < asked) asked = each.period;
+      }
     Rate rate;
     rate.name = topic.name;
     rate.place = "the log";
@@ -162,12 +212,14 @@ BusSet set_of(const Log& log, const protocol::Catalogue& catalogue, const spec::
       rate.has_priority = true;
       rate.priority = its->second.priority;
       rate.period = topic.period.duration();
-      if (its->second.asked != 0) rate.period = base::Duration{its->second.asked};
+      if (asked != 0) rate.period = base::Duration{asked};
       if (topic.kind == protocol::Kind::actuator) {
         rate.period = base::Duration{its->second.shortest > 0 ? its->second.shortest : 1'000'000'000};
         remarks.push_back(
             fmt::format("{} has no period of its own: the shortest distance in the log, {}, counts.",
                         topic.name, time_text(rate.period.count())));
+        const bool drives = topic.role == protocol::Role::drive;
+        paces[its->second.key] = drives ? its->second.distances.pace() : Pace{Grid::none, 0};
       }
     }
     all.push_back(std::move(rate));
@@ -180,6 +232,11 @@ BusSet set_of(const Log& log, const protocol::Catalogue& catalogue, const spec::
         rate.has_priority = from_log.has_priority;
         rate.priority = from_log.priority;
       }
+    // What --rates says of a drive is meant.
+    if (const auto* topic = words::find_topic(catalogue, rate.name);
+        topic != nullptr && topic->role == protocol::Role::drive && !rate.off)
+      if (const auto its = seen.find(topic); its != seen.end())
+        paces[its->second.key] = {Grid::of_run, rate.period.count()};
     all.push_back(rate);
   }
   const bool any = std::any_of(all.begin(), all.end(), [](const Rate& rate) { return !rate.off; }) ||
@@ -203,8 +260,9 @@ TraceStudy study_trace(const std::string& log_file, const std::string& set_file,
                        std::vector<Rate> rates) {
   const Log log = read_log(log_file, catalogue);
   BusSet set;
+  Paces paces;
   if (set_file.empty()) {
-    set = set_of(log, catalogue, model, std::move(rates));
+    set = set_of(log, catalogue, model, std::move(rates), paces);
   } else {
     set = read_bus(set_file, rates);
   }
@@ -223,7 +281,16 @@ TraceStudy study_trace(const std::string& log_file, const std::string& set_file,
   trace.span = log.arrivals.back().time - log.arrivals.front().time;
 
   std::map<std::uint32_t, std::size_t> rows;
-  for (std::size_t i = 0; i < set.entries.size(); ++i) rows[can::arbitration_key(set.entries[i].head)] = i;
+  std::vector<Pace> pace_of_row(set.entries.size());
+  for (std::size_t i = 0; i < set.entries.size(); ++i) {
+    const BusEntry& entry = set.entries[i];
+    const auto key = can::arbitration_key(entry.head);
+    rows[key] = i;
+    const auto paced = paces.find(key);
+    Pace& pace = pace_of_row[i];
+    pace = paced != paces.end() ? paced->second : Pace{entry.sporadic ? Grid::none : Grid::of_sender, 0};
+    if (pace.period == 0) pace.period = entry.period;
+  }
   std::vector<Meter> meters(set.entries.size());
   std::map<std::uint32_t, std::pair<can::Frame, std::size_t>> strangers;
   std::int64_t busy = 0;
@@ -255,7 +322,9 @@ TraceStudy study_trace(const std::string& log_file, const std::string& set_file,
     before = arrival.time;
     const std::size_t row = row_of(arrival.frame);
     if (row < set.entries.size()) {
-      meters[row].add(arrival.time, arrival.length, takes(arrival.bits), set.entries[row].period);
+      const Pace& pace = pace_of_row[row];
+      meters[row].add(arrival.time, arrival.length, takes(arrival.bits), pace.period, pace.grid,
+                      pace.grid == Grid::of_run && is_rest(arrival.frame));
     } else if (set_file.empty() && has_packets && arrival.frame.format == can::Format::extended &&
                j1939::is_transport(arrival.frame.id)) {
       ++packets;

@@ -100,6 +100,7 @@ void Model::take(const log::Entry& entry) {
   }
   // Of a message in several frames, its announcement and packets, all about as long as the last.
   subject->load.add(entry.time, whole == nullptr ? bits : bits * (1 + j1939::packets_of(whole->data.size())));
+  if (reception.meaning != Meaning::request) ++subject->frames;
   switch (reception.meaning) {
     case Meaning::sample:
       subject->priority = reception.sample.priority;
@@ -143,6 +144,7 @@ std::vector<Row> Model::rows(base::Time now, bool all) const {
     row.topic = topic;
     row.name = std::move(name);
     row.count = subject.count;
+    row.frames = subject.frames;
     row.recent = subject.times.figures(now);
     if (bit_rate_ != 0) row.share = subject.load.share(now, begin_, bit_rate_);
     row.newest = sample_of(topic, subject);
@@ -157,9 +159,11 @@ std::vector<Row> Model::rows(base::Time now, bool all) const {
   for (std::size_t i = 0; i < subjects_.size(); ++i) {
     const protocol::Topic& topic = catalogue_->topics[i];
     const bool came = known != figures.end() && known->topic == &topic;
-    if (came || all) {
+    if (came || all || subjects_[i].frames > 0) {
       Row& row = add(i, &topic, std::string{topic.name}, subjects_[i]);
       if (came) {
+        row.incomplete = known->incomplete;
+        row.wrong_length = known->wrong_dlc;
         row.faults = known->timing.missing + known->incomplete + known->wrong_dlc + known->bad_requests;
         row.health = health_of(known->timing, now);
         if (known->timing.due && known->timing.period_ns > 0)

@@ -43,9 +43,12 @@ struct FieldKey {
 struct Row {
   std::size_t number = 0;  ///< as long as the model lives
   const protocol::Topic* topic = nullptr;
-  std::string name;          ///< of an unknown identifier as candump writes it
-  std::uint64_t count = 0;   ///< samples, set points, or frames
-  std::uint64_t faults = 0;  ///< missing and incomplete samples, frames of a wrong length, bad requests
+  std::string name;              ///< of an unknown identifier as candump writes it
+  std::uint64_t count = 0;       ///< samples, set points, or frames
+  std::uint64_t frames = 0;      ///< all but requests; those of incomplete samples and of a wrong length, too
+  std::uint64_t incomplete = 0;  ///< samples
+  std::uint64_t wrong_length = 0;  ///< frames
+  std::uint64_t faults = 0;        ///< missing and incomplete samples, frames of a wrong length, bad requests
   measure::RecentTimes::Figures recent;
   std::optional<double> share;              ///< of the bus, in the last second, 0..1
   std::optional<base::Duration> age;        ///< since the newest came; nothing came: none
@@ -120,6 +123,7 @@ class Model {
     measure::RecentTimes times;
     measure::RecentLoad load;
     std::uint64_t count = 0;
+    std::uint64_t frames = 0;  ///< but requests
     base::Time last{};
     base::Time changed{};
     protocol::Priority priority = protocol::default_priority;

@@ -48,6 +48,13 @@ class KeyDrive {
         fail({"drive: --keys: " + command.error.what, command.error.remedy}, exit_usage);
   }
 
+  /// The motors were set to rest, and no key is read any more: so it stays in the terminal.
+  void show_end() {
+    note_.clear();
+    show({}, Keys::over);
+    if (redraws_) write_out("\n");
+  }
+
   /// false: a signal ended it, or the terminal has gone.
   bool run(KeyInput& keys, Timeline& timeline) {
     show({});
@@ -65,6 +72,8 @@ class KeyDrive {
   }
 
  private:
+  enum class Keys : bool { read, over };
+
   /// false: quit.
   bool take(std::string_view bytes, Timeline& timeline, base::Duration now) {
     while (!bytes.empty()) {
@@ -121,7 +130,7 @@ class KeyDrive {
   }
 
   /// One line, drawn over the one before; a line of its own where that is not possible: a file, TERM=dumb.
-  void show(Direction direction) {
+  void show(Direction direction, Keys keys = Keys::read) {
     constexpr std::string_view forward[] = {"back", "", "forward"};
     constexpr std::string_view turning[] = {"right", "", "left"};
     std::string going{forward[direction.forward + 1]};
@@ -130,7 +139,7 @@ class KeyDrive {
     std::string line = fmt::format("{} {}  {}", forward_.text(), turning_.text(), going);
     const std::size_t columns = terminal_size(STDOUT_FILENO).columns;
     const std::string_view help = "   arrows drive, space stops, + - speed, q quits";
-    if (line.size() + help.size() < columns) line += help;
+    if (keys == Keys::read && line.size() + help.size() < columns) line += help;
     line.resize(std::min(line.size(), columns - 1));
     if (redraws_)
       write_out("\r\x1b[K" + line);
@@ -169,7 +178,7 @@ int drive_by_keys(Session& session, const KeyDriveOptions& options) {
     timeline.expect_no_other();
     quit = drive.run(keys, timeline);
     timeline.rest();
-    if (can_redraw(STDOUT_FILENO)) write_out("\n");
+    drive.show_end();
   }
   const bool fine = timeline.finish();
   if (!quit) return exit_code_after_interrupt(exit_failure);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "ocm/mapper/server/sender.hpp"
+
 namespace ocm::cli::fleet {
 namespace {
 
@@ -113,6 +115,8 @@ void LineReplay::take_byte(char c, base::Time now) {
                                                              : std::optional<mapper::link::Update>{};
   state_.fleet.feed({&c, 1}, now, [&](std::size_t robot, Kind kind) {
     const auto index = static_cast<unsigned>(robot);
+    if (kind == Kind::idle) state_.stood[index] = {now, state_.fleet.robot(robot).update};
+    if (kind == Kind::handshake) state_.stood[index] = {now, {}};
     if (kind == Kind::handshake && update) state_.before.try_emplace(index, Before{origin, *update});
     if (kind != Kind::update) return;
     if (const auto before = state_.before.find(index); before != state_.before.end()) {
@@ -128,7 +132,19 @@ RobotNow LineReplay::robot(const Peer& peer) const {
   RobotNow now = robot_now(state_.fleet, peer);
   const auto placed = state_.placed.find(peer.index);
   now.origin_known = placed != state_.placed.end() && placed->second;
+  // The fleet knows that a robot drives because it sends it; in a log only the robot says so.
+  if (moves(now)) now.idle = now.located = false;
   return now;
+}
+
+/// Its updates show it elsewhere than where it stood, or go on while it does not say that it stands.
+bool LineReplay::moves(const RobotNow& robot) const {
+  const auto stood = state_.stood.find(robot.index);
+  if (stood == state_.stood.end() || !robot.update || robot.updated <= stood->second.at) return false;
+  constexpr double more_than_rounding = 2;
+  if (stood->second.where && way(*stood->second.where, *robot.update) > more_than_rounding) return true;
+  const base::Duration one_idle_lost = 2 * mapper::server::SenderOptions{}.listen;
+  return robot.updated - stood->second.at > one_idle_lost;
 }
 
 std::vector<RobotNow> LineReplay::robots() const {

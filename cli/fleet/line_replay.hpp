@@ -49,6 +49,11 @@ class LineReplay {
     motion::Pose origin;
     mapper::link::Update update;
   };
+  /// A robot that stands says so each second. When it did last, and where it was.
+  struct Stood {
+    base::Time at{};
+    std::optional<mapper::link::Update> where{};
+  };
   /// What is known at a moment.
   struct State {
     mapper::server::CentralStream stream{};
@@ -58,6 +63,7 @@ class LineReplay {
     cognitive::Drawing drawing{};
     std::map<unsigned, mapper::server::Peer> peers;
     std::map<unsigned, Before> before;
+    std::map<unsigned, Stood> stood;
     std::map<unsigned, bool> placed;  ///< its place in the world is known
   };
 
@@ -67,6 +73,7 @@ class LineReplay {
   void draw(unsigned index);
   mapper::server::Peer& peer(unsigned index, std::string_view name);
   [[nodiscard]] RobotNow robot(const mapper::server::Peer& peer) const;
+  [[nodiscard]] bool moves(const RobotNow& robot) const;
 
   ReadLineLog log_;
   Known known_;

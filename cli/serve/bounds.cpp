@@ -6,6 +6,7 @@
 
 #include "ocm/client/command.hpp"
 #include "ocm/measure/bus_load.hpp"
+#include "ocm/protocol/identifier.hpp"
 
 #include "cli/analyse/set.hpp"
 #include "cli/shared/json.hpp"
@@ -65,8 +66,11 @@ void Bounds::take(const log::Entry& entry) {
   if (row == rows_.end()) return;
   // Rounded down: what was measured is at least that.
   const std::int64_t takes = std::int64_t{measure::bits_on_bus(*frame)} * 1'000'000'000 / bit_rate_;
-  meters_[row->second].add(entry.time.time_since_epoch().count(), frame->dlc, takes,
-                           set_.entries[row->second].period);
+  // Of the robot's set points only those of drives are in the set.
+  const bool held = protocol::Identifier::decode(frame->id).direction == protocol::Direction::command;
+  meters_[row->second].add(
+      entry.time.time_since_epoch().count(), frame->dlc, takes, set_.entries[row->second].period,
+      held ? analyse::Grid::of_run : analyse::Grid::of_sender, held && analyse::is_rest(*frame));
 }
 
 std::string Bounds::state() const {

@@ -1,6 +1,7 @@
 #include "cli/serve/page_server.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <sys/random.h>
 #include <utility>
 

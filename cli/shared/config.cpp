@@ -36,8 +36,7 @@ std::vector<Verb> called(Verb program) {
 
 [[noreturn]] void leave(const std::string& file, const std::vector<ConfigProblem>& problems) {
   for (const auto& problem : problems)
-    fmt::print(stderr, "amiroctl: {}:{}: {}\n          {}\n", file, problem.line, problem.what,
-               problem.remedy);
+    complain({fmt::format("{}:{}: {}", file, problem.line, problem.what), problem.remedy});
   throw Exit{exit_usage};
 }
 

@@ -16,6 +16,7 @@
 
 #include "ocm/base/utf8.hpp"
 
+#include "cli/shared/folding.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/remedies.hpp"
 #include "cli/shared/terminal.hpp"
@@ -23,6 +24,8 @@
 
 namespace ocm::cli {
 namespace {
+
+constexpr std::string_view before_errors = "amiroctl: ";
 
 /// The verb that runs.
 std::string& speaker() {
@@ -94,10 +97,11 @@ void print(std::string_view before, std::string_view raw) {
     messages.lines.push_back(text);
   } else if (messages.unhurried == 0) {
     const WithoutBrokenPipe message;  // `stop 2>&1 | true` stops
-    std::fprintf(stderr, "%s%s\n", std::string{erased_echo()}.c_str(), text.c_str());
+    std::fprintf(stderr, "%s%s\n", std::string{erased_echo()}.c_str(),
+                 folded_message(text, columns_of(STDERR_FILENO)).c_str());
   } else {
     if (messages.lines.size() < most_kept)
-      messages.lines.push_back(std::string{erased_echo()} + text);
+      messages.lines.push_back(std::string{erased_echo()} + folded_message(text, columns_of(STDERR_FILENO)));
     else
       ++messages.lost;
     write_kept(messages, std::chrono::milliseconds{0});
@@ -130,6 +134,21 @@ std::string printable(std::string_view text) {
   return out;
 }
 
+std::string folded_message(std::string_view text, std::size_t columns) {
+  std::string out;
+  for (;;) {
+    const std::size_t end = text.find('\n');
+    const std::string_view line = text.substr(0, end);
+    const std::size_t lead = std::min(line.find_first_not_of(' '), line.size());
+    // What goes on is below the text of an error and of its remedy, and moved in below all else.
+    const bool of_error = line.starts_with(before_errors) || lead == before_errors.size();
+    out += folded(line, columns, of_error ? before_errors.size() : lead + 4);
+    if (end == std::string_view::npos) return out;
+    out += '\n';
+    text.remove_prefix(end + 1);
+  }
+}
+
 void fail(const transport::Failure& failure, int code) {
   const std::string& verb = speaker();
   const bool has_verb = failure.what.starts_with(verb + ":") || failure.what.starts_with(verb + " ");
@@ -139,11 +158,11 @@ void fail(const transport::Failure& failure, int code) {
 }
 
 void complain(const transport::Failure& failure) {
-  print("amiroctl: ", failure.what);
+  print(before_errors, failure.what);
   const std::string what_to_do = remedy(failure);
   for (std::string_view rest = what_to_do; !rest.empty();) {
     const std::string_view line = rest.substr(0, rest.find('\n'));
-    print(line.empty() ? "" : "          ", line);
+    print(line.empty() ? "" : std::string(before_errors.size(), ' '), line);
     rest.remove_prefix(std::min(line.size() + 1, rest.size()));
   }
 }
@@ -161,7 +180,8 @@ HeldMessages::~HeldMessages() {
   const std::lock_guard lock{kept().mutex};
   kept().holds = false;
   const WithoutBrokenPipe message;
-  for (const std::string& line : std::exchange(kept().lines, {})) std::fprintf(stderr, "%s\n", line.c_str());
+  for (const std::string& line : std::exchange(kept().lines, {}))
+    std::fprintf(stderr, "%s\n", folded_message(line, columns_of(STDERR_FILENO)).c_str());
 }
 
 std::size_t HeldMessages::count() {

@@ -1,6 +1,7 @@
 /// How a verb says that something went wrong, or just something, to the person at the terminal.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -23,6 +24,8 @@ void speak_for(std::string_view verb);
 /// The text with its control characters written as \x1b, line ends and tabs apart: file names, words of
 /// scripts and names in logs must not command the terminal. All messages go through it.
 [[nodiscard]] std::string printable(std::string_view text);
+/// A message as it is printed where so many columns are: each of its lines broken between words.
+[[nodiscard]] std::string folded_message(std::string_view text, std::size_t columns);
 /// Prints "amiroctl: what" and the remedy on stderr and leaves with `code`.
 [[noreturn]] void fail(const transport::Failure& failure, int code = exit_failure);
 /// As fail, and goes on.

@@ -1,5 +1,7 @@
 #include "cli/shared/misuse.hpp"
 
+#include <algorithm>
+#include <array>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -35,6 +37,15 @@ std::vector<std::string> options_of(Verb verb) {
   return names;
 }
 
+/// How long something lasts, by the names that verbs have for it: the one that this verb has.
+std::string_view same_time(std::string_view typed, const std::vector<std::string>& known) {
+  constexpr std::array<std::string_view, 3> names{"--duration", "--timeout", "--for"};
+  if (std::find(names.begin(), names.end(), typed) == names.end()) return {};
+  for (const std::string_view name : names)
+    if (std::find(known.begin(), known.end(), name) != known.end()) return name;
+  return {};
+}
+
 std::string help_of(Verb program, Verb verb) {
   const std::string path = verb.path();
   return fmt::format("{}{}{} --help", program.name(), path.empty() ? "" : " ", path);
@@ -43,9 +54,12 @@ std::string help_of(Verb program, Verb verb) {
 Misuse unknown_word(Verb program, Verb verb, const std::string& word) {
   if (word.size() > 1 && word.front() == '-') {
     const std::string name = word.substr(0, word.find('='));
-    return {
-        fmt::format("unknown option '{}'", name),
-        remedy_for(name, options_of(verb), fmt::format("`{}` lists the options", help_of(program, verb)))};
+    const auto known = options_of(verb);
+    const std::string_view same = same_time(name, known);
+    return {fmt::format("unknown option '{}'", name),
+            !same.empty()
+                ? fmt::format("did you mean '{}'?", same)
+                : remedy_for(name, known, fmt::format("`{}` lists the options", help_of(program, verb)))};
   }
   if (verb.verbs().empty()) return {fmt::format("unexpected argument '{}'", word), "usage: " + usage(verb)};
   std::vector<std::string> known;

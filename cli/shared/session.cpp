@@ -30,7 +30,7 @@ constexpr std::size_t most_doubts = 3;
 /// On stderr, all of them, and the end; nothing when there are none.
 void stop_at(const std::vector<spec::Problem>& problems) {
   for (const auto& problem : problems)
-    fmt::print(stderr, "amiroctl: {}: {}\n          {}\n", problem.place, problem.what, problem.remedy);
+    complain({fmt::format("{}: {}", problem.place, problem.what), problem.remedy});
   if (!problems.empty()) throw Exit{exit_failure};
 }
 

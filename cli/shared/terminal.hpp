@@ -30,11 +30,14 @@ struct TerminalSize {
   return isatty(descriptor) != 0 && (term == nullptr || std::string_view{term} != "dumb");
 }
 
-/// Columns of the terminal that stdout is; as many as there can be if it is none, or does not say.
-[[nodiscard]] inline std::size_t columns_of_output() noexcept {
+/// Columns of the terminal that `descriptor` is; as many as there can be if it is none, or does not say.
+[[nodiscard]] inline std::size_t columns_of(int descriptor) noexcept {
   winsize size{};
-  const bool said = isatty(STDOUT_FILENO) != 0 && ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0;
+  const bool said = isatty(descriptor) != 0 && ::ioctl(descriptor, TIOCGWINSZ, &size) == 0;
   return said && size.ws_col != 0 ? size.ws_col : SIZE_MAX;
+}
+[[nodiscard]] inline std::size_t columns_of_output() noexcept {
+  return columns_of(STDOUT_FILENO);
 }
 
 }  // namespace ocm::cli

@@ -24,8 +24,7 @@ namespace {
 /// Prints what kept a simulation from running, and leaves; the exit code when it ran until a signal.
 int exit_code_of(const sim::Ending& ending) {
   if (ending.well()) return exit_code_after_interrupt(exit_success);
-  for (const auto& failure : ending.failures)
-    fmt::print(stderr, "amiroctl: {}\n          {}\n", failure.what, remedy(failure));
+  for (const auto& failure : ending.failures) complain(failure);
   throw Exit{ending.misuse ? exit_usage : exit_failure};
 }
 

@@ -96,6 +96,7 @@ Row row(const TopicFigures& topic, base::Time first) {
   fault(topic.incomplete, "incomplete");
   fault(topic.wrong_dlc, "of wrong length");
   fault(topic.bad_requests, topic.bad_requests == 1 ? "bad request" : "bad requests");
+  fault(topic.refused, topic.refused == 1 ? "request refused" : "requests refused");
   fault(timing.backwards, "back in time");
   return {std::string{topic.topic->name},
           priorities(topic),
@@ -218,6 +219,7 @@ Json to_object(const TopicFigures& topic) {
       {"wrong_length", topic.wrong_dlc},
       {"requests", topic.requests},
       {"bad_requests", topic.bad_requests},
+      {"refused_requests", topic.refused},
       {"backwards", timing.backwards},
       {"load_percent", percent(topic.load)}};
 }

@@ -27,6 +27,10 @@ namespace ocm::cli::top {
 #ifndef OCM_HAS_CURSES
 
 struct Curses::State {};
+transport::Failure Curses::obstacle(const CursesOptions&) {
+  return {};
+}
+
 transport::Outcome<std::unique_ptr<Curses>> Curses::open(const CursesOptions&) {
   return transport::Failure{};  // top looks at has_curses first
 }
@@ -59,30 +63,6 @@ struct Curses::State {
 };
 
 namespace {
-
-/// What ncurses knows of a terminal, before it takes it: newterm is said to leave the program otherwise.
-transport::Failure obstacle(const CursesOptions& options) {
-  if (::isatty(STDOUT_FILENO) == 0 || ::isatty(STDIN_FILENO) == 0)
-    return {fmt::format("{} draws on a terminal, and {} is none", options.program,
-                        ::isatty(STDOUT_FILENO) == 0 ? "standard output" : "standard input"),
-            std::string{options.instead}};
-  const char* const name = std::getenv("TERM");
-  if (name == nullptr || *name == '\0')
-    return {"TERM is not set, so that nothing is known of this terminal",
-            fmt::format("TERM=xterm-256color amiroctl {}", options.program)};
-  int error = 0;
-  if (::setupterm(name, STDOUT_FILENO, &error) != OK)
-    return {fmt::format("TERM is '{}', of which nothing is known here", name),
-            fmt::format("TERM=xterm-256color amiroctl {}, or install ncurses-term", options.program)};
-  char cup[] = "cup";
-  const char* const moves = ::tigetstr(cup);
-  const bool can_move = moves != nullptr && moves != reinterpret_cast<const char*>(-1);
-  ::del_curterm(::cur_term);  // newterm makes its own
-  if (!can_move)
-    return {fmt::format("TERM is '{}', a terminal that cannot move its cursor", name),
-            std::string{options.instead}};
-  return {};
-}
 
 /// By Style.
 std::array<attr_t, 9> attributes_of(bool colour) {
@@ -155,6 +135,30 @@ std::string utf8(wint_t character) {
 }
 
 }  // namespace
+
+/// What ncurses knows of a terminal, before it takes it: newterm is said to leave the program otherwise.
+transport::Failure Curses::obstacle(const CursesOptions& options) {
+  if (::isatty(STDOUT_FILENO) == 0 || ::isatty(STDIN_FILENO) == 0)
+    return {fmt::format("{} draws on a terminal, and {} is none", options.program,
+                        ::isatty(STDOUT_FILENO) == 0 ? "standard output" : "standard input"),
+            std::string{options.instead}};
+  const char* const name = std::getenv("TERM");
+  if (name == nullptr || *name == '\0')
+    return {"TERM is not set, so that nothing is known of this terminal",
+            fmt::format("TERM=xterm-256color amiroctl {}", options.program)};
+  int error = 0;
+  if (::setupterm(name, STDOUT_FILENO, &error) != OK)
+    return {fmt::format("TERM is '{}', of which nothing is known here", name),
+            fmt::format("TERM=xterm-256color amiroctl {}, or install ncurses-term", options.program)};
+  char cup[] = "cup";
+  const char* const moves = ::tigetstr(cup);
+  const bool can_move = moves != nullptr && moves != reinterpret_cast<const char*>(-1);
+  ::del_curterm(::cur_term);  // newterm makes its own
+  if (!can_move)
+    return {fmt::format("TERM is '{}', a terminal that cannot move its cursor", name),
+            std::string{options.instead}};
+  return {};
+}
 
 transport::Outcome<std::unique_ptr<Curses>> Curses::open(const CursesOptions& options) {
   if (transport::Failure failure = obstacle(options); !failure.what.empty()) return failure;

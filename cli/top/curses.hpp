@@ -30,7 +30,10 @@ inline constexpr bool has_curses = false;
 /// From its making to its end the terminal is this program's; then it is as it was.
 class Curses {
  public:
-  /// The failure says what is missing: no terminal, one that cannot move its cursor, or ncurses.
+  /// Why this terminal cannot be used, without touching it: it is none, is not known, or cannot move its
+  /// cursor. Without words: it can, or there is no ncurses.
+  [[nodiscard]] static transport::Failure obstacle(const CursesOptions& options);
+  /// The failure says what is missing: as `obstacle`, or ncurses.
   [[nodiscard]] static transport::Outcome<std::unique_ptr<Curses>> open(const CursesOptions& options);
   ~Curses();
   Curses(const Curses&) = delete;

@@ -195,6 +195,10 @@ int run(Session& session, const TopOptions& options) {
     fail({"this amiroctl was built without ncurses, which draws",
           "install libncurses-dev and build again; amiroctl stats and listen need none"},
          exit_usage);
+  const CursesOptions look{.colour = session.colour(), .mouse = options.mouse};
+  // Before a bus is looked for, and said which.
+  if (const auto obstacle = Curses::obstacle(look); options.log.empty() && !obstacle.what.empty())
+    fail(obstacle, exit_usage);
   catch_interrupts();
   catch_hangups();
   std::unique_ptr<LiveFeed> live;
@@ -210,7 +214,7 @@ int run(Session& session, const TopOptions& options) {
   transport::Failure gone;
   {
     const HeldMessages held;
-    auto screen = Curses::open({.colour = session.colour(), .mouse = options.mouse});
+    auto screen = Curses::open(look);
     if (!screen) fail(screen.error, exit_usage);
     Top top{session, options, **screen, std::move(live), std::move(log)};
     over = top.run();

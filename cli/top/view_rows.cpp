@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "ocm/client/diagnosis.hpp"
+
 #include "cli/output/field_text.hpp"
 #include "cli/output/named_value.hpp"
 #include "cli/top/short_number.hpp"
@@ -31,6 +33,15 @@ std::string label_of(const protocol::Topic& topic, std::size_t frame, const prot
   if (topic.frames.size() == 1 || layout.name.empty()) return std::string{field.name};
   if (layout.values().size() == 1) return std::string{layout.name};
   return fmt::format("{}.{}", layout.name, field.name);
+}
+
+/// Of a topic without a whole sample.
+std::string what_came(const Row& row) {
+  if (row.frames == 0) return "nothing came";
+  if (row.frames == row.wrong_length)
+    return fmt::format("no sample, {} of a wrong length", client::count(row.frames, "frame*"));
+  if (row.incomplete == 0) return "no whole sample yet";
+  return fmt::format("no whole sample, {} incomplete", row.incomplete);
 }
 
 Style style_of(const Row& row) {
@@ -94,7 +105,7 @@ Line View::row_line(const Columns& columns, const Scene& scene, const Item& item
   cell(columns.rate, any ? short_number(row.recent.rate_hz) : "-", style);
   cell(columns.jitter, any ? short_time(base::Duration{std::llround(row.recent.jitter_ns)}) : "-", faint);
   cell(columns.age, row.age ? short_time(*row.age) : "-", style);
-  cell(columns.share, row.count > 0 && row.share ? percent(*row.share) : "-", faint);
+  cell(columns.share, row.frames > 0 && row.share ? percent(*row.share) : "-", faint);
   cell(columns.changed, row.unchanged ? short_time(*row.unchanged) : "-", faint);
   const Style wrong = selected ? Style::selected : row.faults > 0 ? Style::warning : Style::dim;
   cell(columns.faults, fmt::format("{}", row.faults), wrong);
@@ -113,7 +124,7 @@ Line View::row_line(const Columns& columns, const Scene& scene, const Item& item
     return finished();
   }
   if (row.count == 0) {
-    line.put_whole("nothing came", faint);
+    line.put_whole(what_came(row), row.frames > 0 && !selected ? Style::warning : faint);
     return finished();
   }
   bool first = true;

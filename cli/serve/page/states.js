@@ -55,6 +55,8 @@ export function showBuses(into, state) {
       ['not_in_load', 'not in the load'], ['not_shown', 'not shown']]
       .filter(([key]) => bus[key] > 0).map(([key, words]) => counted(bus[key], words));
     if (counts.length) parts.push(element('p', counts.join(', '), 'warning'));
+    const broken = bus.rows.filter(row => row.known && row.count === 0 && row.frames > 0);
+    if (broken.length) parts.push(element('p', `no whole sample: ${broken.map(row => `${row.name} (${row.frames} frames, ${row.incomplete} incomplete samples, ${percent(row.share)})`).join(', ')}`, 'warning'));
     const strange = bus.rows.filter(row => !row.known);
     if (strange.length) parts.push(element('p', `identifiers that the spec does not know: ${strange.slice(0, 12).map(row => `${row.name} (${row.count})`).join(', ')}${strange.length > 12 ? ' ...' : ''}`, 'small'));
   }

@@ -2,7 +2,7 @@
 /// samples come and whether as asked, what is missing, wrong or unknown, and how much of the bus it takes.
 ///
 /// Pure: reads no clock. One pass, the same memory however long the log: about 500 bytes a topic, allocated
-/// once. O(1) a frame.
+/// once. O(1) a frame, and O(requests) of the last second.
 #pragma once
 
 #include <algorithm>
@@ -16,8 +16,10 @@
 #include "ocm/base/time.hpp"
 #include "ocm/can/bus.hpp"
 #include "ocm/can/error_frame.hpp"
+#include "ocm/client/refusal_reader.hpp"
 #include "ocm/client/sample.hpp"
 #include "ocm/measure/bus_load.hpp"
+#include "ocm/measure/recent_requests.hpp"
 #include "ocm/measure/timing.hpp"
 #include "ocm/protocol/identifier.hpp"
 #include "ocm/protocol/request.hpp"
@@ -34,6 +36,7 @@ struct TopicFigures {
   std::uint64_t wrong_dlc = 0;     ///< frames
   std::uint64_t requests = 0;      ///< to a sensor
   std::uint64_t bad_requests = 0;  ///< of these, such as a board must refuse
+  std::uint64_t refused = 0;       ///< of these, such as its board did refuse: they ask for nothing
   double load = 0;                 ///< share of the bus that its samples take, 0..1
 };
 
@@ -81,7 +84,7 @@ class BusStatistics {
   /// the bus, of which topics that are on another are unknown.
   BusStatistics(const protocol::Catalogue& catalogue, BitRates rates,
                 client::Transport transport = client::Transport::as_frames, std::string_view interface = {})
-      : rates_(rates), receiver_(catalogue, transport) {
+      : rates_(rates), receiver_(catalogue, transport), refusals_(catalogue) {
     if (!interface.empty()) receiver_.on_interface(0, interface);
     topics_.reserve(catalogue.topics.size());
     for (const auto& topic : catalogue.topics) {
@@ -113,12 +116,13 @@ class BusStatistics {
         note_stranger(received.frame.id, received.frame.format);
       return reception;
     }
-    Entry& entry = topics_[static_cast<std::size_t>(reception.topic - receiver_.catalogue().topics.data())];
+    const std::size_t index = index_of(*reception.topic);
+    Entry& entry = topics_[index];
     entry.figures.incomplete += receiver_.counters().incomplete - incomplete;
     switch (reception.meaning) {
       case client::Meaning::request:
         request_bits_ += bits;
-        take_request(entry, received);
+        take_request(index, received);
         return reception;
       case client::Meaning::wrong_dlc:
         stranger_bits_ += bits;
@@ -131,6 +135,8 @@ class BusStatistics {
           ++entry.figures.by_priority[static_cast<std::size_t>(id.priority)];
         }
         entry.stream.sample(received.time);
+        requests_.sample(index, received.time);
+        take_refusal(reception, received.time);
         break;
       }
       default:
@@ -152,7 +158,7 @@ class BusStatistics {
       note_stranger(frame.id, frame.format);
       return reception;
     }
-    Entry& entry = topics_[static_cast<std::size_t>(reception.topic - receiver_.catalogue().topics.data())];
+    Entry& entry = topics_[index_of(*reception.topic)];
     if (reception.meaning == client::Meaning::sample) {
       entry.stream.sample(time);
       entry.bits += bits;
@@ -217,8 +223,16 @@ class BusStatistics {
     bits_ += bits;
     return bits;
   }
-  static void take_request(Entry& entry, const can::Received& received) {
+  [[nodiscard]] std::size_t index_of(const protocol::Topic& topic) const noexcept {
+    return static_cast<std::size_t>(&topic - receiver_.catalogue().topics.data());
+  }
+  void take_request(std::size_t index, const can::Received& received) {
+    Entry& entry = topics_[index];
     ++entry.figures.requests;
+    // The answer of a refusal topic looks like a refusal.
+    const auto* const refusals = refusals_.refusal_topic(entry.figures.topic->board);
+    if (refusals != nullptr && refusals != entry.figures.topic)
+      requests_.asked(index, received.time, client::RefusalReader::longest_wait(*refusals), entry.stream);
     const auto request = protocol::decode_request(received.frame);
     if (!request) {
       ++entry.figures.bad_requests;
@@ -229,6 +243,14 @@ class BusStatistics {
     // Without a period it is the topic's own.
     const auto period = received.frame.dlc == 1 ? topic.period : request->period;
     entry.stream.asked(received.time, period.duration());
+  }
+  /// What was refused was never asked: the stream is as it was before.
+  void take_refusal(const client::Reception& reception, base::Time time) {
+    const auto refused = refusals_.take(reception);
+    // The first that is heard may be an old one that was asked for.
+    if (!refused || (refused->first && topics_[index_of(*reception.topic)].figures.requests != 0)) return;
+    const std::size_t index = index_of(*refused->topic);
+    topics_[index].figures.refused += requests_.refused(index, time, refused->count, topics_[index].stream);
   }
   void note_length(Entry& entry, const can::FrameView& frame, const client::Reception& reception) {
     ++entry.figures.wrong_dlc;
@@ -245,6 +267,8 @@ class BusStatistics {
 
   BitRates rates_;
   client::Receiver receiver_;
+  client::RefusalReader refusals_;
+  RecentRequests requests_;
   std::vector<Entry> topics_;
   std::vector<Stranger> strangers_;
   std::optional<WrongLength> wrong_length_;

@@ -4,6 +4,9 @@
 
 #include <catch2/catch.hpp>
 
+#include "ocm/protocol/message.hpp"
+#include "ocm/topics/amiro.hpp"
+
 #include "tool/bus_model/bus.hpp"
 
 namespace top_model_test {
@@ -171,6 +174,19 @@ TEST_CASE("top: what was asked for and does not come is late, then missing; what
   ask(model, 1070ms, Mode::stop, every_100ms);
   CHECK(row_of(model, "scale", 9s).health == Health::fine);
   CHECK_FALSE(row_of(model, "scale", 9s).period);
+}
+
+TEST_CASE("top: what a board refuses is not due") {
+  Model model{amiro::catalogue, 500'000};
+  model.take({morning, *ocm::protocol::publish_every(amiro::Magnetometer::id, 1ms)});
+  CHECK(row_of(model, "magnetometer", 90ms).health == Health::missing);
+  const amiro::DiWheelDriveRefusal refusal{amiro::Magnetometer::id.value,
+                                           amiro::DiWheelDriveRefusal::Reason::not_schedulable, 1, 0};
+  model.take({morning + 100ms, ocm::protocol::sample_frame(refusal, ocm::protocol::Priority::low, 0)});
+  const Row row = row_of(model, "magnetometer", 9s);
+  CHECK(row.health == Health::fine);
+  CHECK(row.faults == 0);
+  CHECK_FALSE(row.period);
 }
 
 TEST_CASE("top: a new period is no jitter") {

@@ -120,6 +120,42 @@ TEST_CASE("line replay: where robots began must be known, but for a robot alone;
   CHECK(two.drawing().counters().drawn == 0);
 }
 
+TEST_CASE("line replay: a robot moves while its updates show it, or it does not say that it stands") {
+  const auto state = [](const Log& log) {
+    LineReplay replay{log.read, known()};
+    replay.go_to(1h);
+    return std::string{cli::fleet::state_of(replay.robots()[0])};
+  };
+  const std::string idle = "{S,IDL}\n";
+  Log log;
+  log.robot(0, handshake);
+  log.robot(0, update(0, 0, 0));
+  CHECK(state(log) == "idle");
+  log.robot(0, idle);
+  for (int i = 0; i < 5; ++i) log.robot(0, update(1, 0, 359));  // as its numbers are rounded
+  CHECK(state(log) == "idle");
+  log.robot(0, update(4, 0, 0));
+  CHECK(state(log) == "moving");
+  log.robot(0, idle);
+  CHECK(state(log) == "idle");
+  log.robot(0, update(4, 0, 0), 1s);
+  log.robot(0, update(4, 0, 3));  // it turns
+  CHECK(state(log) == "moving");
+  log.robot(0, idle);
+  // Against an obstacle it stays where it is, and does not stand.
+  for (int i = 0; i < 11; ++i) log.robot(0, update(4, 0, 3));
+  CHECK(state(log) == "idle");  // one idle may be lost
+  for (int i = 0; i < 2; ++i) log.robot(0, update(4, 0, 3));
+  CHECK(state(log) == "moving");
+  // Before it stood it drove; backwards all of it is as it was.
+  LineReplay replay{log.read, known()};
+  replay.go_to(1h);
+  replay.go_to(1700ms);
+  CHECK(cli::fleet::state_of(replay.robots()[0]) == "moving");
+  replay.go_to(1200ms);
+  CHECK(cli::fleet::state_of(replay.robots()[0]) == "idle");
+}
+
 TEST_CASE("line replay: pieces that end anywhere, noise, and nothing at all") {
   Log log;
   const std::string all = "[0]:A:" + update(5, 6, 7) + "[0]:A:" + update(8, 9, 10);

@@ -25,6 +25,22 @@ TEST_CASE("messages: characters that command a terminal are written out, each of
   CHECK(printable("x\x9b") == "x\\x9b");
 }
 
+TEST_CASE("messages: each line is broken between words, below what it goes on with") {
+  const std::string error =
+      "amiroctl: di_wheel_drive refuses magnetometer: not_schedulable\n          `amiroctl publish mag` with "
+      "2ms";
+  CHECK(folded_message(error, 200) == error);
+  CHECK(folded_message(error, 40) ==
+        "amiroctl: di_wheel_drive refuses\n          magnetometer: not_schedulable\n"
+        "          `amiroctl publish mag` with\n          2ms");
+  CHECK(folded_message("bus: sim (the only one)", 12) ==
+        "bus: sim\n(the only\none)");  // no room beside blanks
+  CHECK(folded_message("  left: 3 frames were lost", 22) == "  left: 3 frames were\n      lost");
+  CHECK(folded_message("a_word_that_is_longer", 10) == "a_word_that_is_longer");
+  CHECK(folded_message("", 10).empty());
+  CHECK(folded_message("a\n\nb\n", 10) == "a\n\nb\n");
+}
+
 TEST_CASE("messages: counts, and only those of something") {
   CHECK(counted(0, "frame") == "0 frames");
   CHECK(counted(1, "frame") == "1 frame");

@@ -369,6 +369,25 @@ TEST_CASE("top: topics that were asked for, and all of the spec") {
   CHECK(robot.names() == Names{"scale", "lamp_3"});
 }
 
+TEST_CASE("top: a topic of which frames came and no whole sample says so, with its load") {
+  const auto high = [](std::uint8_t number) {
+    return ocm::protocol::Identifier{ocm::protocol::Direction::sensor, ocm::protocol::Priority::high,
+                                     ocm::protocol::TopicId{number}}
+        .encode();
+  };
+  Robot robot;
+  robot.models = Models{catalogue, 250'000};
+  robot.model().take(entry(1s, high(0x10), {0, 0, 0, 1}));
+  CHECK(robot.line("scale") == "scale         -      -      -  <0.1% no whole sample yet");
+  for (int i = 1; i < 5; ++i) robot.model().take(entry(1s + i * 100ms, high(0x10), {0, 0, 0, 1}));
+  CHECK(robot.line("scale") == "scale         -      -      -   0.2% no whole sample, 3 incomplete");
+  robot.models = Models{catalogue, 250'000};
+  robot.model().take(entry(1s, high(0x10), {0, 0}));
+  CHECK(robot.line("scale") == "scale         -      -      -  <0.1% no sample, 1 frame of a wrong length");
+  weigh(robot.model(), 1900ms, {4, 0});
+  CHECK(robot.line("scale").find("weight 101 g") != std::string::npos);
+}
+
 TEST_CASE("top: keys for the program") {
   Robot robot;
   robot.draw();

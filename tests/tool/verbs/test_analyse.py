@@ -677,6 +677,55 @@ b,15,20000000,20000000,20000000,20000000,0,136000,300000,true
         out, _ = self.run_tool("analyse", "trace", os.path.join(self.folder, "x.log"))
         self.assertIn("1 request", out)
 
+    @staticmethod
+    def driven():
+        """Set points in us of three runs of a drive, as a host sends them, each with rest behind it, and of a person's keys."""
+        moves, rest = "201#A086010000000000", "201#0000000000000000"
+        frames = []
+        for begin in (0, 1_950_000, 3_890_000):
+            frames += [(begin + i * 100_000 + (i % 3) * 150, moves) for i in range(10)] + [(begin + 1_000_000, rest)]
+        for begin in (6_000_000, 6_160_000, 6_500_000):  # pressed, held or not, released; and again before a period is over
+            frames += [(begin, moves), (begin + 40_000, rest)]
+        frames += [(7_000_000, moves), (7_100_000, moves), (7_140_000, "201#50C3000000000000"), (7_240_000, "201#50C3000000000000")]
+        return frames + [(7_300_000, rest)]
+
+    def test_set_points_of_a_drive(self):
+        """Each run has a grid of its own, as has each change: what a person does is no lateness of the bus."""
+        def motors(frames, *options, code=0):
+            found = json.loads(self.run_tool("analyse", "trace", self.log(frames), "--json", *options, code=code)[0])
+            return found["messages"][0], found["broken"]
+
+        row, broken = motors(self.driven())
+        self.assertEqual((row["name"], broken), ("motors", []))
+        self.assertEqual(row["lateness_ns"], 300_000)
+        self.assertLess(row["measured_ns"], row["response_ns"])
+        self.assertEqual(row["period_ns"], row["shortest_ns"])
+        # One that is late within a run is found.
+        late = [(t + (30_000 if t == 300_000 else 0), frame) for t, frame in self.driven()]
+        row, broken = motors(late, code=1)
+        self.assertEqual(row["lateness_ns"], 30_000_000)
+        self.assertIn("jitter: motors", broken[0])
+        # Of a program that repeats them at another period, the period is not known; --rates says it.
+        fast = [(i * 20_000 + (5_000 if i == 30 else 0), "201#A086010000000000") for i in range(60)]
+        row, broken = motors(fast)
+        self.assertEqual((row["lateness_ns"], broken), (0, []))
+        row, _ = motors(fast, "--rates", "motors=20ms", code=1)
+        self.assertEqual(row["lateness_ns"], 5_000_000)
+
+    def test_a_refused_request_asks_for_nothing(self):
+        frames = [(0, "208#01320000")] + [(1000 + i * 50000, "608#000000000000") for i in range(50)]
+        refusal = "71D#080F01000000"  # of the gyroscope, not_schedulable, the first
+        path = self.log(frames + [(500_000, "208#01010000"), (502_000, refusal)])
+        out, _ = self.run_tool("analyse", "trace", path, "--json")
+        found = json.loads(out)
+        self.assertEqual({row["name"]: row["period_ns"] for row in found["messages"]}["gyroscope"], 50_000_000)
+        self.assertEqual(found["broken"], [])
+
+    def test_other_set_points_are_sent_on_events(self):
+        frames = [(t, "23C#FF0000") for t in (0, 100_000, 230_000, 340_000)]
+        found = json.loads(self.run_tool("analyse", "trace", self.log(frames), "--json")[0])
+        self.assertEqual((found["messages"][0]["lateness_ns"], found["broken"]), (0, []))
+
     def test_mistakes(self):
         for text, word in (("nonsense\n", "x.log:1"), ("\n", "no frame"), ("(1.0) can0 101#01\n\n(2.0) can0 1#01\n", "x.log:3")):
             _, err = self.run_tool("analyse", "trace", self.file(text, "x.log"), code=2)

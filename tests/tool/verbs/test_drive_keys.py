@@ -112,6 +112,14 @@ class Keys(harness.Case):
         points, _ = self.set_points(process)
         self.assertEqual({data[:8] for _, data in points if data != REST}, {"80FC0A00"})  # 720,000 um/s
 
+    def test_its_last_line_says_that_it_rests(self):
+        process = self.drive()
+        os.write(self.primary, UP)
+        self.shows(b"forward")
+        os.write(self.primary, b"q")
+        self.shows(b"  rests")
+        process.communicate(timeout=30)
+
     def test_every_end_rests_the_motors(self):
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
             with self.subTest(signal=number):
@@ -164,7 +172,8 @@ class Keys(harness.Case):
         process.communicate(timeout=30)
         self.assertNotIn("\x1b", lines())
         self.assertNotIn("\r", lines())
-        self.assertGreaterEqual(lines().count("\n"), 2)
+        self.assertGreaterEqual(lines().count("\n"), 3)
+        self.assertTrue(lines().endswith("rests\n"), lines())
 
     def test_another_commander(self):
         other = self.start("drive", "5cm/s")

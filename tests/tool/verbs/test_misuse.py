@@ -853,7 +853,7 @@ ALONE = {
     "doctor": (1, "amiroctl: no bus: no CAN interface is up and no simulator runs"),
     "record": (1, "amiroctl: no bus: no CAN interface is up and no simulator runs"),
     "stats": (1, "amiroctl: no bus: no CAN interface is up and no simulator runs"),
-    "top": (1, "amiroctl: no bus: no CAN interface is up and no simulator runs"),
+    "top": (2, "amiroctl: top draws on a terminal, and standard output is none"),
     "serve": (1, "amiroctl: no bus: no CAN interface is up and no simulator runs"),
     "decode": (1, "amiroctl: the standard input is empty"),
     "encode": (0, "0 frames encoded"),

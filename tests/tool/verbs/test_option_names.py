@@ -46,6 +46,23 @@ class OneMeaning(Options):
         self.assertEqual(dict(values["--show"]), {"": ["run", "calibrate"], "page|text": ["sim"]})
 
 
+class Suggestions(Options):
+    def test_a_time_by_the_name_of_another_verb(self):
+        times = ("--duration", "--timeout", "--for")
+        found = 0
+        for verb in self.verbs():
+            own = {name for name, _ in self.options(verb)}
+            has = [name for name in times if name in own]
+            for typed in times:
+                if typed in own or not has:
+                    continue
+                found += 1
+                _, err = self.run_tool(*verb, typed, "2s", code=2)
+                self.assertIn(f"unknown option '{typed}'", err, verb)
+                self.assertIn(f"did you mean '{has[0]}'?", err, verb)
+        self.assertGreater(found, 12)
+
+
 class Pages(Options):
     """What docs/ says of options: each one exists, and the page of a verb leaves none out."""
 

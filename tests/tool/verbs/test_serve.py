@@ -293,6 +293,38 @@ class Serve(harness.Case):
         self.assertEqual([(found["board"], found["what"]) for found in state["findings"]], [("light_ring", "does not answer")])
         self.assertEqual([board["answers"] for board in state["boards"]], [True, True, False])
 
+    def test_driving_by_hand_is_no_response_time(self):
+        """Pressed, held for a while, released, and again before a period of set points is over."""
+        moves, rest = "201#A086010000000000", "201#0000000000000000"
+        path = os.path.join(self.folder, "pad.log")
+        with open(path, "w", encoding="ascii") as file:
+            for i in range(40):
+                for ms, frame in ((0, moves), (100, moves), (140, moves[:4] + "50C3000000000000"), (240, rest), (360, moves), (400, rest)):
+                    file.write(f"({1000 + i + ms / 1000:.6f}) can0 {frame}\n")
+        _, port, _ = self.serve(path)
+        viewer = self.viewer(port)
+        viewer.subscribe("/ocm/bounds", "/ocm/playback")
+        self.state(viewer, "/ocm/bounds", lambda s: s["rows"], "its row")
+        viewer.publish("/ocm/playback", {"speed": 8})
+        self.state(viewer, "/ocm/playback", lambda s: s["ended"], "the end")
+        row = self.state(viewer, "/ocm/bounds", lambda s: s["rows"][0]["measured_ms"], "a response time")["rows"][0]
+        self.assertEqual((row["name"], row["period_ms"], row["exceeds"]), ("motors", 100, False))
+        self.assertLess(row["measured_ms"], row["bound_ms"])
+
+    def test_a_topic_without_a_whole_sample(self):
+        path = os.path.join(self.folder, "magnetometer.log")
+        with open(path, "w", encoding="ascii") as file:
+            for i in range(300):  # x and z, and no y
+                file.write(f"({1000 + i / 10:.6f}) can0 605#00000000\n({1000 + i / 10 + 0.001:.6f}) can0 607#00000000\n")
+        _, port, _ = self.serve(path)
+        viewer = self.viewer(port)
+        viewer.subscribe("/ocm/bus")
+        bus = self.state(viewer, "/ocm/bus", lambda s: s["buses"] and s["buses"][0]["rows"] and s["buses"][0]["rows"][0]["incomplete"] > 1, "it")
+        row = bus["buses"][0]["rows"][0]
+        self.assertEqual((row["name"], row["count"]), ("magnetometer", 0))
+        self.assertGreaterEqual(row["frames"], 2 * row["incomplete"])
+        self.assertGreater(row["share"], 0)
+
     def test_any_dbc(self):
         spec = os.path.join(self.folder, "car.dbc")
         with open(spec, "w", encoding="ascii") as file:

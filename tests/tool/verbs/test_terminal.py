@@ -12,7 +12,7 @@ from harness import AMIROCTL, Case, main
 
 
 class Terminal(Case):
-    def on_terminal(self, *arguments, columns=0, errors=False, **environment):
+    def on_terminal(self, *arguments, columns=0, errors=False, code=0, **environment):
         """Runs the tool on a pseudo terminal of its own; returns what it showed. 0 columns: it does not say."""
         primary, secondary = pty.openpty()
         fcntl.ioctl(secondary, termios.TIOCSWINSZ, struct.pack("HHHH", 50 if columns else 0, columns, 0, 0))
@@ -29,7 +29,7 @@ class Terminal(Case):
                 break
             shown += piece
         os.close(primary)
-        self.assertEqual(process.wait(timeout=60), 0)
+        self.assertEqual(process.wait(timeout=60), code)
         return shown.decode()
 
     def setUp(self):
@@ -85,6 +85,20 @@ class Terminal(Case):
                     self.assertEqual(shown.split(), whole.split())
                     for line in shown.splitlines():  # a word that is wider than the terminal has a line of its own
                         self.assertTrue(len(line) <= columns or len(line.split()) == 1, line)
+
+    def test_errors_break_no_word(self):
+        whole = self.run_tool("publish", "mag", "900us", "--force", code=1)[1]
+        self.assertGreater(max(map(len, whole.splitlines())), 80)
+        for columns in (40, 60, 80):
+            shown = self.on_terminal("publish", "mag", "900us", "--force", columns=columns, errors=True, code=1).replace("\r\n", "\n")
+            self.assertEqual(shown.split(), whole.split())
+            self.assertLessEqual(max(map(len, shown.splitlines())), columns)
+            error = shown[shown.index("amiroctl: "):].splitlines()
+            self.assertTrue(all(line.startswith(" " * 10) for line in error[1:]), shown)
+        # Of several lines, and where only stdout is a terminal.
+        missing = self.run_tool("analyse", "bus", os.path.join(self.folder, "none.csv"), code=1)[1]
+        shown = self.on_terminal("analyse", "bus", os.path.join(self.folder, "none.csv"), columns=40, errors=True, code=1)
+        self.assertEqual(shown.split(), missing.split())
 
     def test_a_table_that_just_fits_stays_as_it_is(self):
         """Whatever the width: on a terminal as wide as a table is, the table is the same."""

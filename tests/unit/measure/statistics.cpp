@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "ocm/can/text.hpp"
+#include "ocm/protocol/message.hpp"
 #include "ocm/topics/amiro.hpp"
 
 namespace measure_statistics_test {
@@ -90,6 +91,80 @@ TEST_CASE("statistics: faults by topic") {
   CHECK(figures.strangers[0].id == 0x655);
   CHECK(figures.strangers[0].count == 2);
   CHECK(figures.strangers[1].format == ocm::can::Format::extended);
+}
+
+/// What a board says of its last refusal: of `topic`, its `count`-th.
+void refuse(Recorded& log, ocm::base::Duration time, std::uint8_t topic, std::uint16_t count) {
+  const amiro::DiWheelDriveRefusal refusal{topic, amiro::DiWheelDriveRefusal::Reason::not_schedulable, count,
+                                           0};
+  log.statistics.take({Time{time}, ocm::protocol::sample_frame(refusal, ocm::protocol::Priority::low, 0)});
+}
+
+TEST_CASE("statistics: what a board refuses was never asked") {
+  Recorded log;
+  log.put(0ms, "205#01010000");  // the magnetometer every ms, which its board refuses
+  refuse(log, 3ms, 0x05, 1);
+  const auto never = log.statistics.figures(Time{9s});
+  const auto* magnetometer = Recorded::find(never, "magnetometer");
+  REQUIRE(magnetometer != nullptr);
+  CHECK(magnetometer->timing.missing == 0);
+  CHECK(magnetometer->timing.period_ns == 0);
+  CHECK_FALSE(magnetometer->timing.due);
+  CHECK(magnetometer->requests == 1);
+  CHECK(magnetometer->refused == 1);
+}
+
+TEST_CASE("statistics: a stream goes on as it was before a refused request") {
+  Recorded log, undisturbed;
+  for (Recorded* each : {&log, &undisturbed}) {
+    refuse(*each, 0ms, 0x05, 5);     // long ago
+    each->put(0ms, "208#01640000");  // publish the gyroscope every 100 ms
+    for (int i = 1; i <= 20; ++i) {
+      each->put(i * 100ms, "608#3E001E00FCFF");
+      if (each == &log && i == 10) {
+        log.put(1050ms, "208#01010000");  // every ms, which is refused
+        log.put(1060ms, "208#07");        // no such mode, which asks for nothing
+      }
+      // The refusal of both comes with the next sample of its topic: the stream has gone on meanwhile.
+      if (each == &log && i == 12) refuse(log, 1250ms, 0x08, 7);
+      if (each == &undisturbed && i == 12) refuse(undisturbed, 1250ms, 0x05, 6);
+    }
+  }
+  const auto figures = log.statistics.figures(Time{2100ms});
+  const auto as_before = undisturbed.statistics.figures(Time{2100ms});
+  const Timing& timing = Recorded::find(figures, "gyroscope")->timing;
+  CHECK(timing.period_ns == 100'000'000);
+  CHECK(timing.count == 20);
+  CHECK(timing.distances == Recorded::find(as_before, "gyroscope")->timing.distances);
+  CHECK(timing.missing == Recorded::find(as_before, "gyroscope")->timing.missing);
+  CHECK(timing.missing == 0);
+  CHECK(timing.due);
+  CHECK(Recorded::find(figures, "gyroscope")->refused == 2);
+  CHECK(Recorded::find(figures, "gyroscope")->bad_requests == 1);
+}
+
+TEST_CASE("statistics: other refusals undo no request") {
+  Recorded log;
+  refuse(log, 0ms, 0x05, 7);
+  log.put(10ms, "208#01640000");
+  log.put(11ms, "205#01640000");
+  refuse(log, 20ms, 0x05, 7);  // published again: it is old
+  log.put(30ms, "602#00000000");
+  refuse(log, 40ms, 0x01, 8);  // of the motors
+  log.put(6s, "608#3E001E00FCFF");
+  refuse(log, 6010ms, 0x08, 9);  // far behind the request
+  const auto figures = log.statistics.figures(Time{6010ms});
+  CHECK(Recorded::find(figures, "magnetometer")->timing.due);
+  CHECK(Recorded::find(figures, "gyroscope")->timing.period_ns == 100'000'000);
+  for (const auto& topic : figures.topics) CHECK(topic.refused == 0);
+  // A refusal that was asked for may be of the time before the log.
+  Recorded asked;
+  asked.put(0ms, "208#01640000");
+  asked.put(1ms, "219#02");  // no refusal topic
+  ocm::can::Frame once = ocm::protocol::once(amiro::DiWheelDriveRefusal::id);
+  asked.statistics.take({Time{2ms}, once});
+  refuse(asked, 3ms, 0x08, 3);
+  CHECK(Recorded::find(asked.statistics.figures(Time{1s}), "gyroscope")->timing.due);
 }
 
 TEST_CASE("statistics: of frames with a wrong length the first is named") {

@@ -1,0 +1,66 @@
+#include "cli/analyse/meter.hpp"
+
+#include <initializer_list>
+
+#include <catch2/catch.hpp>
+
+namespace analyse_meter_test {
+
+using namespace ocm::cli::analyse;
+
+constexpr std::int64_t ms = 1'000'000;
+
+/// Frames of 1 ms, by the times of their ends in ms, with a period of 100.
+Measured measured(Grid grid, std::initializer_list<std::int64_t> times) {
+  Meter meter;
+  for (const std::int64_t time : times) meter.add(time * ms, 8, ms, 100 * ms, grid);
+  return meter.finish();
+}
+
+TEST_CASE("meter: how far behind the grid of its sender a frame came") {
+  const Measured late = measured(Grid::of_sender, {0, 100, 230, 300, 400});
+  CHECK(late.lateness == 30 * ms);
+  CHECK(late.response == 31 * ms);
+  CHECK(late.count == 5);
+  // The first one was late, which the second shows; one is lost, and then comes a pause.
+  CHECK(measured(Grid::of_sender, {20, 100, 300, 820, 920}).lateness == 20 * ms);
+}
+
+TEST_CASE("meter: a set point that is changed begins another grid") {
+  CHECK(measured(Grid::of_run, {0, 100, 140, 240, 341}).lateness == 1 * ms);
+  CHECK(measured(Grid::of_run, {0, 100, 230, 300}).lateness == 30 * ms);  // a late one shows all the same
+  // One and a half periods without a set point are a pause.
+  CHECK(measured(Grid::of_run, {0, 100, 250, 350}).lateness == 0);
+  CHECK(measured(Grid::of_run, {0, 100, 249, 300}).lateness == 49 * ms);
+}
+
+TEST_CASE("meter: behind rest a run begins, whenever it is") {
+  Meter meter;
+  const auto add = [&meter](std::int64_t time, bool rests) {
+    meter.add(time * ms, 8, ms, 100 * ms, Grid::of_run, rests);
+  };
+  add(0, false);
+  add(100, false);
+  add(160, true);
+  add(280, false);  // neither early nor a pause
+  add(380, false);
+  CHECK(meter.finish().lateness == 0);
+  add(500, false);
+  CHECK(meter.finish().lateness == 20 * ms);
+}
+
+TEST_CASE("meter: what is sent on events is behind nothing") {
+  const Measured event = measured(Grid::none, {0, 100, 230, 240, 900});
+  CHECK(event.lateness == 0);
+  CHECK(event.response == 1 * ms);
+  CHECK(event.shortest == 10 * ms);
+  CHECK(event.longest == 660 * ms);
+}
+
+TEST_CASE("meter: a set point at rest has no byte but zeros") {
+  CHECK(is_rest({0x201, 8, {}}));
+  CHECK_FALSE(is_rest({0x201, 8, {0, 0, 0, 0, 0, 0, 0, 1}}));
+  CHECK(is_rest({0x201, 2, {0, 0, 1}}));
+}
+
+}  // namespace analyse_meter_test
