@@ -14,14 +14,19 @@ std::string Driver::drive(ViewerId viewer, const client::Hold& hold, Clock::time
   if (is_rest) {  // from any viewer: a stop is not refused
     out.push_back(hold.rest);
     if (held != held_.end()) {
-      if (held->viewer != viewer) ended_.push_back({held->viewer, id});
+      if (held->viewer != viewer) end(*held);
       held_.erase(held);
     }
     std::erase_if(ended_, is_its_own);
+    if (!says_rest(viewer)) say_rest_.push_back(viewer);
     return {};
   }
-  if (const auto ended = std::find_if(ended_.begin(), ended_.end(), is_its_own); ended != ended_.end())
-    return std::exchange(ended->told, true) ? "" : "the drive was ended: release first, then drive again";
+  if (const auto ended = std::find_if(ended_.begin(), ended_.end(), is_its_own); ended != ended_.end()) {
+    const bool was_silent = now - std::exchange(ended->heard, now) >= patience;
+    if (says_rest(viewer) || !was_silent)
+      return std::exchange(ended->told, true) ? "" : "the drive was ended: release first, then drive again";
+    ended_.erase(ended);
+  }
   if (held != held_.end() && held->viewer != viewer) return "another viewer drives; stop it first, or wait";
   if (held == held_.end()) {
     out.push_back(hold.frame);
@@ -43,6 +48,7 @@ void Driver::gone(ViewerId viewer, Frames& out) {
     if (each.viewer == viewer) out.push_back(each.hold.rest);
     return each.viewer == viewer;
   });
+  std::erase(say_rest_, viewer);
   std::erase_if(ended_, [viewer](const Ended& each) { return each.viewer == viewer; });
 }
 
@@ -51,13 +57,19 @@ bool Driver::must_rest(ViewerId viewer, std::uint32_t id) const noexcept {
                      [&](const Ended& each) { return each.viewer == viewer && each.id == id; });
 }
 
-void Driver::end(const Held& held, Frames& out) {
-  out.push_back(held.hold.rest);
-  ended_.push_back({held.viewer, held.hold.frame.id});
+bool Driver::says_rest(ViewerId viewer) const noexcept {
+  return std::find(say_rest_.begin(), say_rest_.end(), viewer) != say_rest_.end();
+}
+
+void Driver::end(const Held& held) {
+  ended_.push_back({held.viewer, held.hold.frame.id, held.heard});
 }
 
 void Driver::rest(Frames& out) {
-  for (const Held& each : held_) end(each, out);
+  for (const Held& each : held_) {
+    out.push_back(each.hold.rest);
+    end(each);
+  }
   held_.clear();
 }
 
@@ -65,7 +77,8 @@ bool Driver::advance(Clock::time_point now, Frames& out) {
   const std::size_t before = held_.size();
   std::erase_if(held_, [&](Held& each) {
     if (now - each.heard >= patience) {
-      end(each, out);
+      out.push_back(each.hold.rest);
+      end(each);
       return true;
     }
     if (now >= each.next) {

@@ -1,7 +1,9 @@
 /// Who drives by the page, and for how long: a set point of motors is repeated as long as the viewer goes on
 /// giving one, and is at rest when it has given none for half a second, says rest, or has gone. A viewer
 /// whose drive was ended by anything else than itself must say rest before it may drive again: a page that
-/// was frozen goes on saying what was held before. Pure: the time is handed in, and frames come out.
+/// was frozen goes on saying what was held before. Of a viewer that has never said rest, as panels of other
+/// programs that are just silent when a button is released, silence for so long is taken for it. Pure: the
+/// time is handed in, and frames come out.
 #pragma once
 
 #include <chrono>
@@ -55,12 +57,15 @@ class Driver {
   struct Ended {
     ViewerId viewer = 0;
     std::uint32_t id = 0;
+    Clock::time_point heard;  ///< the viewer's newest set point
     bool told = false;
   };
-  void end(const Held& held, Frames& out);
+  void end(const Held& held);
+  [[nodiscard]] bool says_rest(ViewerId viewer) const noexcept;
 
   std::vector<Held> held_;    ///< one a drive
   std::vector<Ended> ended_;  ///< by others than their viewers
+  std::vector<ViewerId> say_rest_;
 };
 
 }  // namespace ocm::cli::serve

@@ -81,6 +81,7 @@ TEST_CASE("driver: one drives at a time, and all may stop") {
 TEST_CASE("driver: who was silent must say rest before it drives again") {
   Driver driver;
   Driver::Frames out;
+  CHECK(driver.drive(1, hold(0), begin - 1s, out).empty());  // which it can say
   REQUIRE(driver.drive(1, hold(5), begin, out).empty());
   CHECK_FALSE(driver.must_rest(1, 0x201));
   REQUIRE(driver.advance(begin + 500ms, out));
@@ -107,6 +108,28 @@ TEST_CASE("driver: who was silent must say rest before it drives again") {
   CHECK(out[0].data[0] == 5);
 }
 
+TEST_CASE("driver: a panel that is silent when released drives again when pressed again") {
+  Driver driver;
+  Driver::Frames out;
+  for (const auto press : {0s, 2s, 4s}) {
+    out.clear();
+    CHECK(driver.drive(1, hold(5), begin + press, out).empty());
+    CHECK(driver.drive(1, hold(5), begin + press + 100ms, out).empty());
+    REQUIRE(out.size() == 1);
+    CHECK(out[0].data[0] == 5);
+    REQUIRE(driver.advance(begin + press + 600ms, out));
+    CHECK(out.back() == hold(0).rest);
+  }
+  // Stopped by another: what is still pressed moves nothing, and the next press does.
+  REQUIRE(driver.drive(1, hold(5), begin + 6s, out).empty());
+  CHECK(driver.drive(2, hold(0), begin + 6010ms, out).empty());
+  out.clear();
+  for (int i = 1; i < 20; ++i) static_cast<void>(driver.drive(1, hold(5), begin + 6s + i * 100ms, out));
+  CHECK(out.empty());
+  CHECK(driver.drive(1, hold(5), begin + 8400ms, out).empty());
+  CHECK(out.size() == 1);
+}
+
 TEST_CASE("driver: a stop by another holds against who goes on driving") {
   Driver driver;
   Driver::Frames out;
@@ -116,9 +139,10 @@ TEST_CASE("driver: a stop by another holds against who goes on driving") {
   CHECK_FALSE(driver.must_rest(2, 0x201));
   out.clear();
   CHECK_FALSE(driver.drive(1, hold(5), begin + 100ms, out).empty());
+  CHECK(driver.drive(1, hold(5), begin + 599ms, out).empty());  // said once
   CHECK(out.empty());
-  CHECK(driver.drive(1, hold(0), begin + 200ms, out).empty());
-  CHECK(driver.drive(1, hold(5), begin + 300ms, out).empty());
+  CHECK(driver.drive(1, hold(0), begin + 700ms, out).empty());
+  CHECK(driver.drive(1, hold(5), begin + 800ms, out).empty());
   CHECK(driver.drives());
   driver.rest(out);  // by another program
   CHECK(driver.must_rest(1, 0x201));

@@ -533,7 +533,7 @@ class Running(Operating):
             operator.send_signal(signal.SIGSTOP)
             time.sleep(0.3)  # longer than its "reaction"
             operator.send_signal(signal.SIGCONT)
-            time.sleep(0.3)
+            time.sleep(0.3)  # a step or more
         late = next(line for line in operator.stdout if line.startswith("a step took"))
         _, err = self.interrupt(operator)
         self.assertRegex(late, r"a step took [0-9.]{1,5}m?s, which is longer than \"reaction\"")

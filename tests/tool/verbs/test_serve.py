@@ -438,6 +438,8 @@ class Serve(harness.Case):
         viewer = self.viewer(port, token)
         self.assertEqual(viewer.info["supportedEncodings"], ["json"])
         viewer.subscribe("/motors")
+        viewer.publish("/motors", {"x": 0, "z": 0})  # it is one that can say rest
+        self.assertEqual(viewer.message().fields, {"x": 0, "z": 0})
         # It goes on while set points come, and rests half a second after the last.
         listener = self.listen("motors")
         for _ in range(5):
@@ -520,6 +522,8 @@ class Serve(harness.Case):
         _, port, token = self.serve("--allow-commands")
         first, second = self.viewer(port, token), self.viewer(port, token)
         first.subscribe("/motors")
+        first.publish("/motors", {"x": 0, "z": 0})  # it is one that can say rest
+        self.assertEqual(first.message().fields["x"], 0)
         first.publish("/motors", {"x": 0.05, "z": 0})
         first.message()
         second.publish("/motors", {"x": 0.1, "z": 0})
