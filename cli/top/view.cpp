@@ -90,8 +90,8 @@ std::vector<View::Item> View::items(const Rows& rows) const {
         ItemKey of_field = key;
         of_field.frame = static_cast<int>(frame);
         of_field.field = static_cast<int>(field);
-        if ((open && layout.has(layout.values()[field], data)) || graphs_.contains(of_field))
-          items.push_back({of_field, &row});
+        const bool known = layout.has(layout.values()[field], data) || seen_.contains(of_field);
+        if ((open && known) || graphs_.contains(of_field)) items.push_back({of_field, &row});
       }
     }
   }

@@ -124,8 +124,10 @@ class View {
 
     Columns(std::size_t width, std::size_t longest_name);
   };
+  /// A field's value when it was last there: a multiplexer's other pages keep theirs.
   struct Seen {
     std::int64_t raw = 0;
+    std::string text;  ///< empty: it was not there yet
     base::Time changed{};
   };
 

@@ -169,8 +169,11 @@ Line View::field_line(const Columns& columns, const Scene& scene, const Item& it
   const bool selected = cursor_ && item.key == *cursor_;
 
   Seen& seen = seen_[item.key];
-  if (const std::int64_t raw = present ? field.raw(data) : 0; seen.changed == base::Time{} || raw != seen.raw)
-    seen = {raw, scene.now};
+  if (present) {
+    const std::int64_t raw = field.raw(data);
+    if (seen.changed == base::Time{} || raw != seen.raw) seen = {raw, {}, scene.now};
+    seen.text = value_of(field, data);
+  }
   const bool fresh = scene.now - seen.changed < 1s;
   const Style faint = selected ? Style::selected : Style::dim;
   const Style value_style = selected ? Style::selected : fresh ? Style::bold : Style::plain;
@@ -184,7 +187,7 @@ Line View::field_line(const Columns& columns, const Scene& scene, const Item& it
       std::clamp<std::size_t>(longest + 2, columns.name, std::max(columns.name, width * 2 / 5));
   line.put(left("  " + label_of(*row.topic, frame, field), label) + ' ',
            selected ? Style::selected : Style::plain);
-  const std::string value = present ? value_of(field, data) : "-";
+  const std::string value = seen.text.empty() ? "-" : seen.text;
   const std::string unit = field.unit.empty() ? std::string{} : ' ' + std::string{field.unit};
   line.put_whole(right(value, std::min<std::size_t>(12, line.room())) +
                      left(unit, std::max<std::size_t>(base::columns(unit), 6)),
@@ -208,7 +211,7 @@ Line View::field_line(const Columns& columns, const Scene& scene, const Item& it
                selected ? Style::selected : Style::good);
       line.put(range, faint);
     }
-  } else if (!fresh) {
+  } else if (!fresh && !seen.text.empty()) {
     line.put_whole(fmt::format("  unchanged {}", short_time(scene.now - seen.changed)), faint);
   }
   if (selected) line.fill(width, Style::selected);

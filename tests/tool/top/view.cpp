@@ -304,6 +304,62 @@ TEST_CASE("top: a row opens into a line a field, and the cursor stays where it i
   CHECK(robot.names().size() == 6);
 }
 
+TEST_CASE("top: a multiplexer's other pages keep their values and their places") {
+  using ocm::protocol::ByteOrder;
+  constexpr ocm::protocol::SelectorRange pages[] = {{0, 0}, {1, 1}};
+  ocm::protocol::Field fields[3] = {{"page", {0, 8, ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, {}},
+                                    {"volts", {8, 8, ByteOrder::little}, false, {1, 0}, {}, "V", 0, 255, {}},
+                                    {"amps", {8, 8, ByteOrder::little}, false, {1, 0}, {}, "A", 0, 255, {}}};
+  for (std::size_t i : {1U, 2U}) {
+    fields[i].selector = 0;
+    fields[i].selected = std::span{pages}.subspan(i - 1, 1);
+  }
+  ocm::protocol::FrameLayout layout;
+  layout.length = 2;
+  layout.fields = fields;
+  layout.address = {ocm::protocol::Address::By::identifier, false, 0x120};
+  ocm::protocol::Topic topic;
+  topic.name = "cells";
+  topic.board = ocm::protocol::no_board;
+  topic.kind = ocm::protocol::Kind::message;
+  topic.frames = {&layout, 1};
+  ocm::protocol::Catalogue paged;
+  paged.robot = "paged";
+  paged.topics = {&topic, 1};
+  Models models{paged, 250'000};
+  View view{true};
+  std::vector<Bus> buses;
+  const auto lines = [&](ocm::base::Duration at) {
+    buses = models.buses();
+    Scene scene;
+    scene.robot = "paged";
+    scene.source = "can0";
+    scene.buses = buses;
+    scene.now = morning + at;
+    std::vector<std::string> of_fields;
+    for (const auto& line : text(view.draw(scene, usual)))
+      if (line.starts_with("  ")) of_fields.push_back(line.substr(0, 40));
+    return of_fields;
+  };
+  const auto has = [](const std::string& line, const char* what) {
+    return line.find(what) != std::string::npos;
+  };
+  models.of("can0").take(entry(0ms, 0x120, {0, 12}));
+  static_cast<void>(lines(10ms));
+  view.press(Key{Kind::down});
+  view.press(Key{Kind::enter});
+  CHECK(lines(20ms).size() == 2);  // amps was not there yet
+  models.of("can0").take(entry(100ms, 0x120, {1, 7}));
+  static_cast<void>(lines(110ms));
+  for (const int page : {0, 1, 0}) {
+    models.of("can0").take(entry(200ms + page * 1ms, 0x120, {page, page == 0 ? 13 : 8}));
+    const auto now = lines(300ms);
+    REQUIRE(now.size() == 3);
+    CHECK(has(now[1], "13 V"));
+  }
+  CHECK(has(lines(310ms)[2], "8 A"));
+}
+
 TEST_CASE("top: a field's graph") {
   Robot robot;
   robot.draw();
