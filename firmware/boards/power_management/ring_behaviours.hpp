@@ -24,8 +24,8 @@ namespace ocm::firmware::boards::power_management {
   return bounded == avoid;
 }
 
-/// Within the spec's ranges, and not nearer to the wall than the ring can tell from touching it; or all zeros,
-/// its end.
+/// Within the spec's ranges, and not nearer to the wall than the ring can tell from touching it; or all
+/// zeros, its end.
 [[nodiscard]] constexpr bool can_go_home(const amiro::Home& home) noexcept {
   amiro::Home bounded = home;
   bounded.set_speed_m_per_s(home.speed_m_per_s());
