@@ -10,12 +10,13 @@ import time
 from harness import SOURCE, Case, main, waiting
 
 sys.path.insert(0, os.path.join(SOURCE, "tests", "peers", "logs"))
+from realtime import RealTime  # noqa: E402
 from virtual_bus import Client  # noqa: E402
 
 LINE = re.compile(r"^\((\d+\.\d+)\) (\S+) (\S+)#(\S*)(?: ([RT]))?$")
 
 
-class Replaying(Case):
+class Replaying(RealTime, Case):
     def setUp(self):
         super().setUp()
         self.path = lambda name: os.path.join(self.folder, name)
