@@ -129,9 +129,9 @@ TEST_CASE("assertions: what was not measured does not hold, whatever is asked") 
 }
 
 TEST_CASE("assertions: a topic is measured where a sample came, came in part, or is missing") {
-  for (const unsigned count : {0, 1, 2})
-    for (const unsigned missing : {0, 1, 2})
-      for (const unsigned incomplete : {0, 1, 2}) {
+  for (const unsigned count : {0U, 1U, 2U})
+    for (const unsigned missing : {0U, 1U, 2U})
+      for (const unsigned incomplete : {0U, 1U, 2U}) {
         CAPTURE(count, missing, incomplete);
         Bus one = bus();
         auto& topic = one.figures.topics[0];
