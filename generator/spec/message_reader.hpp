@@ -292,8 +292,9 @@ class MessageReader : private Checker {
              "\"fd\": true, or at most 8 bytes");
       out.fd = a->node->truth;
     }
-    check_selectors(out, places);
-    check_places(out, places);
+    const Selectors selectors{out};
+    check_selectors(out, selectors, places);
+    check_places(out, selectors, places);
   }
   /// The shortest frame of so many bytes. [ISO 11898-1, coding of the DLC]
   [[nodiscard]] static unsigned frame_length(unsigned bytes, bool j1939) {
@@ -496,13 +497,51 @@ class MessageReader : private Checker {
 
   // --- what holds between fields ---
 
-  void check_selectors(const MessageModel& message, const std::vector<At>& places) {
+  /// Which field selects which, by their indexes. O(fields log fields).
+  class Selectors {
+   public:
+    static constexpr std::size_t none = SIZE_MAX;
+
+    explicit Selectors(const MessageModel& message) : in_circle_(message.fields.size()) {
+      std::map<std::string_view, std::size_t> by_name;  // of two with one name the first
+      for (std::size_t i = 0; i < message.fields.size(); ++i) by_name.try_emplace(message.fields[i].name, i);
+      for (const FieldModel& field : message.fields) {
+        const auto found = field.selector.empty() ? by_name.end() : by_name.find(field.selector);
+        above_.push_back(found == by_name.end() ? none : found->second);
+      }
+      std::vector<bool> known(above_.size());
+      for (std::size_t i = 0; i < above_.size(); ++i) {
+        std::vector<std::size_t> way;
+        std::size_t at = i;
+        while (at != none && !known[at]) {
+          known[at] = true;
+          way.push_back(at);
+          at = above_[at];
+        }
+        // Back on this very way, or on one that leads into a circle.
+        const bool circle =
+            at != none && (in_circle_[at] || std::find(way.begin(), way.end(), at) != way.end());
+        for (const std::size_t each : way) in_circle_[each] = circle;
+      }
+    }
+    /// The field's selector; none: it has none, or one that is no field.
+    [[nodiscard]] std::size_t above(std::size_t field) const noexcept { return above_[field]; }
+    [[nodiscard]] bool is_circle(std::size_t field) const { return in_circle_[field]; }
+
+   private:
+    std::vector<std::size_t> above_;
+    std::vector<bool> in_circle_;  ///< the way up from the field does not end
+  };
+
+  void check_selectors(const MessageModel& message, const Selectors& selectors,
+                       const std::vector<At>& places) {
     std::vector<std::string> names;
     for (const FieldModel& field : message.fields) names.push_back(field.name);
     for (std::size_t i = 0; i < message.fields.size(); ++i) {
       const std::string& name = message.fields[i].selector;
       if (name.empty()) continue;
-      const FieldModel* selector = find(message, name);
+      const std::size_t above = selectors.above(i);
+      const FieldModel* selector = above == Selectors::none ? nullptr : &message.fields[above];
       const At at = places[i].member("selector").value_or(places[i]);
       if (selector == nullptr) {
         const std::string near = nearest_name(name, names);
@@ -510,28 +549,16 @@ class MessageReader : private Checker {
              near.empty() ? "another field of the same message" : "did you mean " + quoted(near) + "?");
       } else if (selector->number != protocol::Number::integer) {
         tell(at, quoted(name) + " is a floating-point number", "a whole number selects");
-      } else if (is_circle(message, message.fields[i])) {
+      } else if (selectors.is_circle(i)) {
         tell(at, "the selectors above " + quoted(message.fields[i].name) + " go in a circle",
              "a selector that is always there above all others");
         return;
       }
     }
   }
-  [[nodiscard]] static const FieldModel* find(const MessageModel& message, std::string_view name) {
-    for (const FieldModel& field : message.fields)
-      if (field.name == name) return &field;
-    return nullptr;
-  }
-  [[nodiscard]] static bool is_circle(const MessageModel& message, const FieldModel& field) {
-    std::size_t above = 0;
-    for (const FieldModel* at = &field; at != nullptr && !at->selector.empty();
-         at = find(message, at->selector))
-      if (++above > message.fields.size()) return true;
-    return false;
-  }
 
   /// Loaded as a DBC file with such fields is.
-  void check_places(const MessageModel& message, const std::vector<At>& places) {
+  void check_places(const MessageModel& message, const Selectors& selectors, const std::vector<At>& places) {
     for (std::size_t i = 0; i < message.fields.size(); ++i) {
       const FieldModel& field = message.fields[i];
       if (field.position.start != UINT16_MAX && field.position.bytes() > message.length)
@@ -541,26 +568,32 @@ class MessageReader : private Checker {
               "it is there in longer frames only");
     }
     if (message.fields.size() > most_compared) return;
+    std::size_t steps = 0;
     for (std::size_t i = 0; i < message.fields.size(); ++i)
       for (std::size_t j = i + 1; j < message.fields.size(); ++j) {
         const FieldModel& a = message.fields[i];
         const FieldModel& b = message.fields[j];
         if (a.position.start == UINT16_MAX || b.position.start == UINT16_MAX ||
-            !a.position.overlaps(b.position) || exclude(message, a, b))
+            !a.position.overlaps(b.position) || exclude(message, selectors, i, j, steps))
           continue;
+        if (steps > most_steps) return;
         doubt(places[j], quoted(a.name) + " and " + quoted(b.name) + " have bits in common",
               "each is read by itself");
         return;
       }
   }
   /// Whether there is a selector, of both or above them, by which one is there only without the other.
-  [[nodiscard]] static bool exclude(const MessageModel& message, const FieldModel& a, const FieldModel& b) {
-    const auto above = [&](const FieldModel* of) { return find(message, of->selector); };
-    std::size_t steps = 0;  // of a circle, which is a problem of its own
-    for (const FieldModel* one = &a; one != nullptr && !one->selector.empty(); one = above(one))
-      for (const FieldModel* other = &b; other != nullptr && !other->selector.empty(); other = above(other)) {
-        if (one->selector == other->selector && !have_common(one->selected, other->selected)) return true;
-        if (++steps > most_compared) return true;
+  /// Adds to `steps` what it costs, and gives up beyond `most_steps`.
+  [[nodiscard]] static bool exclude(const MessageModel& message, const Selectors& selectors, std::size_t a,
+                                    std::size_t b, std::size_t& steps) {
+    if (selectors.is_circle(a) || selectors.is_circle(b)) return true;  // a problem of its own
+    for (std::size_t i = a; selectors.above(i) != Selectors::none; i = selectors.above(i))
+      for (std::size_t j = b; selectors.above(j) != Selectors::none; j = selectors.above(j)) {
+        const FieldModel& one = message.fields[i];
+        const FieldModel& other = message.fields[j];
+        steps += 1 + one.selected.size() * other.selected.size();
+        if (steps > most_steps) return false;
+        if (one.selector == other.selector && !have_common(one.selected, other.selected)) return true;
       }
     return false;
   }
@@ -575,6 +608,8 @@ class MessageReader : private Checker {
 
   /// Two fields are compared with each other to find overlaps, up to so many fields.
   static constexpr std::size_t most_compared = 2000;
+  /// And so many of their selectors: a tenth of a second.
+  static constexpr std::size_t most_steps = 20'000'000;
 
   std::vector<Problem>& doubts_;
   std::vector<std::string> boards_;

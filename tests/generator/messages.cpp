@@ -394,6 +394,25 @@ TEST_CASE("messages: a DBC file without any is loaded, with a doubt") {
         "f.dbc");
 }
 
+TEST_CASE("messages: selectors in a circle are reported, also over a field that is always there") {
+  const auto field = [](const std::string& name, const std::string& selector) {
+    return R"({"name": ")" + name + R"(", "byte": 0, "type": "u8")" +
+           (selector.empty() ? "" : R"(, "selector": ")" + selector + R"(", "selected": [0])") + "}";
+  };
+  for (const std::string& fields : {field("A", "B") + "," + field("B", "A") + "," + field("C", ""),
+                                    field("C", "") + "," + field("A", "A"),
+                                    field("D", "A") + "," + field("A", "A") + "," + field("C", "")}) {
+    CAPTURE(fields);
+    const auto loaded = spec::parse(
+        R"({"robot": "r", "messages": [{"name": "M", "id": "0x1", "fields": [)" + fields + "]}]}", "f.json");
+    CHECK(loaded.spec == nullptr);
+    const auto lines = printed(loaded.problems);
+    CHECK(std::any_of(lines.begin(), lines.end(), [](const std::string& line) {
+      return line.find("go in a circle") != std::string::npos;
+    }));
+  }
+}
+
 TEST_CASE("messages: a bit rate of a DBC file is one that a bus can have, or none") {
   const auto rate = [](const std::string& text) {
     const std::string name = text.substr(0, text.find(' '));
