@@ -600,9 +600,9 @@ class Serve(harness.Case):
         """Its state is shown; set points go through it, also where it starts after the server, and no longer when it has ended."""
         self.start_sim()
         _, before, old = self.serve("--allow-commands")
-        guard = self.start("operate", os.path.join(harness.SOURCE, "examples", "guard.operator.json"))
-        watcher = self.viewer(before, old)
+        watcher = self.viewer(before, old)  # before there is an operator: serve says once that it guards the robot
         watcher.subscribe("/ocm/operator")
+        guard = self.start("operate", os.path.join(harness.SOURCE, "examples", "guard.operator.json"))
         state = self.state(watcher, "/ocm/operator", lambda s: s["running"], "the operator")
         self.assertEqual(state["status"]["operator"], json.loads(self.run_tool("operator", "status", "--json")[0])["operator"])
         self.assertTrue(state["why"]["changes"])
