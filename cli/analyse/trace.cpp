@@ -15,13 +15,13 @@
 #include "ocm/client/frame_index.hpp"
 #include "ocm/client/refusal_reader.hpp"
 #include "ocm/client/sample.hpp"
-#include "ocm/j1939/transport.hpp"
 #include "ocm/measure/bus_load.hpp"
 #include "ocm/protocol/request.hpp"
 
 #include "cli/analyse/report.hpp"
 #include "cli/logs/opened_log.hpp"
 #include "cli/output/csv_cell.hpp"
+#include "cli/shared/filters.hpp"
 #include "cli/shared/json.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/words/topics.hpp"
@@ -307,9 +307,7 @@ TraceStudy study_trace(const std::string& log_file, const std::string& set_file,
   };
   std::size_t requests = 0;
   std::size_t packets = 0;
-  const bool has_packets = std::any_of(
-      catalogue.topics.begin(), catalogue.topics.end(),
-      [](const protocol::Topic& topic) { return topic.is_message() && topic.frames[0].any_length(); });
+  const bool has_packets = std::any_of(catalogue.topics.begin(), catalogue.topics.end(), goes_in_packets);
   std::size_t too_close = 0;
   std::int64_t before = 0;
   for (std::size_t n = 0; n < log.arrivals.size(); ++n) {
@@ -325,8 +323,7 @@ TraceStudy study_trace(const std::string& log_file, const std::string& set_file,
       const Pace& pace = pace_of_row[row];
       meters[row].add(arrival.time, arrival.length, takes(arrival.bits), pace.period, pace.grid,
                       pace.grid == Grid::of_run && is_rest(arrival.frame));
-    } else if (set_file.empty() && has_packets && arrival.frame.format == can::Format::extended &&
-               j1939::is_transport(arrival.frame.id)) {
+    } else if (set_file.empty() && has_packets && is_packet(arrival.frame.id, arrival.frame.format)) {
       ++packets;
     } else if (set_file.empty() && !can::is_extended(arrival.frame.format) &&
                index.requested(protocol::Identifier::decode(arrival.frame.id)) != nullptr) {

@@ -5,10 +5,9 @@
 #include <chrono>
 #include <poll.h>
 
-#include "ocm/j1939/transport.hpp"
-
 #include "cli/output/printer.hpp"
 #include "cli/shared/clock.hpp"
+#include "cli/shared/filters.hpp"
 #include "cli/shared/interrupt.hpp"
 
 namespace ocm::cli::replay {
@@ -38,15 +37,12 @@ Selection::Selection(const protocol::Catalogue& catalogue, std::vector<const pro
     : index_(catalogue),
       topics_(std::move(topics)),
       only_(only),
-      has_packets_(std::any_of(topics_.begin(), topics_.end(), [](const protocol::Topic* topic) {
-        return topic->is_message() && topic->frames[0].any_length();
-      })) {}
+      has_packets_(std::any_of(topics_.begin(), topics_.end(),
+                               [](const protocol::Topic* topic) { return goes_in_packets(*topic); })) {}
 
 bool Selection::has(const log::Entry& entry, const log::Interfaces& interfaces) {
   if (topics_.empty() && only_ == Only::all) return true;
-  if (has_packets_ && only_ != Only::commands && entry.format == can::Format::extended && !entry.is_fd() &&
-      j1939::is_transport(entry.id))
-    return true;
+  if (has_packets_ && only_ != Only::commands && is_packet(entry)) return true;
   if (index_.has_buses()) index_.name(entry.interface, interfaces.name(entry.interface));
   const auto* topic = index_.of(entry.interface).subject(entry.id, entry.format).topic;
   if (entry.is_fd() && (topic == nullptr || !topic->is_message())) return false;

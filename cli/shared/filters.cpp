@@ -66,7 +66,7 @@ Filters filters_for(std::span<const protocol::Topic* const> topics, bool command
       const protocol::Address& address = topic->frames[0].address;
       if (address.by == protocol::Address::By::pgn) {
         filters.push_back(group_filter(j1939::pgn_of(address.number)));
-        has_packets = has_packets || topic->frames[0].any_length();
+        has_packets = has_packets || goes_in_packets(*topic);
       } else {
         filters.push_back({address.number | (address.extended ? CAN_EFF_FLAG : 0U),
                            (address.extended ? CAN_EFF_MASK : CAN_SFF_MASK) | format_bits});
@@ -77,7 +77,7 @@ Filters filters_for(std::span<const protocol::Topic* const> topics, bool command
       for (const auto& layout : topic->frames) of_topic(Direction::sensor, layout.id);
     if (commands || topic->kind == protocol::Kind::actuator) of_topic(Direction::command, topic->id);
   }
-  if (has_packets)  // which message a packet is of, its identifier does not say
+  if (has_packets)
     for (const std::uint32_t group : {j1939::connection_group, j1939::transfer_group})
       filters.push_back(group_filter(group));
   return filters;

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "ocm/can/filter.hpp"
+#include "ocm/can/frame.hpp"
+#include "ocm/j1939/transport.hpp"
 #include "ocm/log/entry.hpp"
 #include "ocm/protocol/topic.hpp"
 #include "ocm/transport/bus.hpp"
@@ -30,8 +32,20 @@ inline constexpr can_filter no_frame{CAN_INV_FILTER, 0};
 [[nodiscard]] can_filter group_filter(std::uint32_t pgn) noexcept;
 
 /// Sensor data of the topics at every priority, and messages; with `commands` also requests and set points.
-/// With a message of J1939 that goes in packets, all packets: see FrameLayout::any_length.
+/// With one that goes in packets, all packets.
 [[nodiscard]] Filters filters_for(std::span<const protocol::Topic* const> topics, bool commands);
+
+/// Whether the topic is a message of J1939 that may go in packets, by the transport protocol.
+[[nodiscard]] inline bool goes_in_packets(const protocol::Topic& topic) noexcept {
+  return topic.is_message() && topic.frames[0].any_length();
+}
+/// Whether the frame belongs to that protocol. Which message it is of, its identifier does not say.
+[[nodiscard]] inline bool is_packet(std::uint32_t id, can::Format format) noexcept {
+  return format == can::Format::extended && j1939::is_transport(id);
+}
+[[nodiscard]] inline bool is_packet(const log::Entry& entry) noexcept {
+  return !entry.is_fd() && is_packet(entry.id, entry.format);
+}
 
 /// Whether a frame passes one of the filters, or there is none. Error frames always do.
 [[nodiscard]] bool passes(std::uint32_t id, can::Format format, std::span<const can_filter> filters) noexcept;

@@ -30,7 +30,8 @@ struct TerminalSize {
   return isatty(descriptor) != 0 && (term == nullptr || std::string_view{term} != "dumb");
 }
 
-/// Columns of the terminal that `descriptor` is; as many as there can be if it is none, or does not say.
+/// How many columns the terminal behind `descriptor` has; SIZE_MAX: the descriptor leads to no terminal, or
+/// the terminal does not report its size.
 [[nodiscard]] inline std::size_t columns_of(int descriptor) noexcept {
   winsize size{};
   const bool said = isatty(descriptor) != 0 && ::ioctl(descriptor, TIOCGWINSZ, &size) == 0;

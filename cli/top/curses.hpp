@@ -30,8 +30,9 @@ inline constexpr bool has_curses = false;
 /// From its making to its end the terminal is this program's; then it is as it was.
 class Curses {
  public:
-  /// Why this terminal cannot be used, without touching it: it is none, is not known, or cannot move its
-  /// cursor. Without words: it can, or there is no ncurses.
+  /// Why `open` cannot draw, without touching the terminal: the output is no terminal, ncurses does not know
+  /// its type, or that type cannot move its cursor. An empty failure: nothing is in the way, or there is no
+  /// ncurses.
   [[nodiscard]] static transport::Failure obstacle(const CursesOptions& options);
   /// The failure says what is missing: as `obstacle`, or ncurses.
   [[nodiscard]] static transport::Outcome<std::unique_ptr<Curses>> open(const CursesOptions& options);

@@ -56,8 +56,7 @@ class Messages {
     std::map<std::uint8_t, std::pair<std::size_t, std::vector<std::string_view>>> of_sender;
     for (std::size_t i = 0; i < came_.size(); ++i) {
       const protocol::Topic& topic = catalogue_->topics[i];
-      if (!topic.is_message() || !topic.is_on(interface) || topic.cycle.count() == 0) continue;
-      if (3 * topic.cycle > listened) continue;
+      if (!is_due(topic, interface, listened)) continue;
       auto& [due, missing] = of_sender[topic.board];
       ++due;
       if (!came_[i]) missing.push_back(topic.name);
@@ -78,8 +77,19 @@ class Messages {
     return all;
   }
 
+  /// Whether there is one that should have come.
+  [[nodiscard]] bool any_due(std::string_view interface, base::Duration listened) const {
+    return std::any_of(catalogue_->topics.begin(), catalogue_->topics.end(),
+                       [&](const protocol::Topic& topic) { return is_due(topic, interface, listened); });
+  }
+
  private:
   static constexpr std::size_t most_named = 4;
+  /// Three times: one may be late, and one lost.
+  static bool is_due(const protocol::Topic& topic, std::string_view interface, base::Duration listened) {
+    return topic.is_message() && topic.is_on(interface) && topic.cycle.count() != 0 &&
+           3 * topic.cycle <= listened;
+  }
   const protocol::Catalogue* catalogue_;
   std::vector<bool> came_;  ///< of each topic of the catalogue
 };
@@ -143,20 +153,29 @@ class Examination {
     return all;
   }
 
+  /// What there is to say where nothing was found.
+  [[nodiscard]] std::string_view well(base::Duration listened) const {
+    if (has_statuses()) return "all is well";
+    if (messages_.any_due(bus_->name(), listened))
+      return "all messages came that were due; of the boards this spec says nothing";
+    return frames() == 0 ? "nothing came, and nothing was due: --listen T listens longer"
+                         : "no message was due meanwhile: --listen T listens longer; of the boards this spec "
+                           "says nothing";
+  }
   [[nodiscard]] const Diagnosis& diagnosis() const { return diagnosis_; }
   [[nodiscard]] const protocol::Catalogue& catalogue() const { return catalogue_; }
   [[nodiscard]] std::string_view bus_name() const { return bus_->name(); }
   [[nodiscard]] std::uint64_t frames() const { return receiver_.counters().frames; }
+
+ private:
+  void request(const protocol::Topic& topic) {
+    Outgoing{*bus_, "doctor"}.send(protocol::once(topic.id, topic.priority));
+  }
   /// Whether a board of the spec can say how it is.
   [[nodiscard]] bool has_statuses() const {
     const auto& boards = diagnosis_.boards();
     return std::any_of(boards.begin(), boards.end(),
                        [](const BoardReport& board) { return board.status != nullptr; });
-  }
-
- private:
-  void request(const protocol::Topic& topic) {
-    Outgoing{*bus_, "doctor"}.send(protocol::once(topic.id, topic.priority));
   }
   [[nodiscard]] bool have_statuses() const {
     const auto& boards = diagnosis_.boards();
@@ -188,7 +207,8 @@ std::string span(std::int64_t seconds) {
   return fmt::format("{} d {} h", seconds / 86'400, seconds / 3600 % 24);
 }
 
-void print_pretty(const Examination& examination, const std::vector<Finding>& findings, bool colour) {
+void print_pretty(const Examination& examination, const std::vector<Finding>& findings,
+                  base::Duration listened, bool colour) {
   const auto& catalogue = examination.catalogue();
   const auto& diagnosis = examination.diagnosis();
   std::size_t width = 5;
@@ -228,11 +248,7 @@ void print_pretty(const Examination& examination, const std::vector<Finding>& fi
     fmt::print("{}{:<8}{} {}{}{}\n         {}\n", mark, name(finding.severity), colour ? "\x1b[0m" : "",
                finding.board, finding.board.empty() ? "" : ": ", finding.what, finding.remedy);
   }
-  if (!findings.empty()) return;
-  fmt::print("{}\n", examination.has_statuses() ? "all is well"
-                     : examination.frames() == 0
-                         ? "nothing came, and nothing was due: --listen T listens longer"
-                         : "all messages came that were due; of the boards this spec says nothing");
+  if (findings.empty()) fmt::print("{}\n", examination.well(listened));
 }
 
 /// To a thousandth: what a double has behind that is no measurement.
@@ -308,7 +324,7 @@ void add_doctor(Verb app, Session& session, int& exit_code) {
     if (options->json)
       print_json(examination, findings);
     else
-      print_pretty(examination, findings, session.colour());
+      print_pretty(examination, findings, options->listen, session.colour());
     const bool well = std::all_of(findings.begin(), findings.end(),
                                   [](const Finding& f) { return f.severity == Severity::note; });
     exit_code = well ? exit_success : exit_failure;

@@ -154,7 +154,7 @@ bool Choice::holds(const Held& held, std::uint16_t interface) const {
 }
 
 bool Choice::is_chosen(const log::Entry& entry) {
-  if (is_transport(entry)) return true;  // what it completes, `shows` is asked
+  if (is_packet(entry)) return true;  // what it completes, `shows` is asked
   client::Subject subject = index_.of(entry.interface).subject(entry.id, entry.format);
   if (subject.topic != nullptr && !subject.topic->is_message() && entry.is_fd())
     subject = {};  // no topic has frames of CAN FD

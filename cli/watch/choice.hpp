@@ -47,7 +47,7 @@ class Choice {
   /// The same once it is known what the frame means: a packet of J1939's transport protocol is shown for the
   /// message that it completes. Ask of all that it `has`.
   [[nodiscard]] bool shows(const log::Entry& entry, const client::Reception& reception) {
-    return everything_ || !is_transport(entry) || is_chosen_packet(entry, reception);
+    return everything_ || !is_packet(entry) || is_chosen_packet(entry, reception);
   }
 
   /// Lets a bus leave out what is not looked at, where it can; with `commands` requests and set points are
@@ -69,9 +69,6 @@ class Choice {
   };
 
   /// Where messages of its parameter groups are chosen.
-  [[nodiscard]] static bool is_transport(const log::Entry& entry) noexcept {
-    return entry.format == can::Format::extended && !entry.is_fd() && j1939::is_transport(entry.id);
-  }
   [[nodiscard]] bool is_chosen(const log::Entry& entry);
   [[nodiscard]] bool is_chosen_packet(const log::Entry& entry, const client::Reception& reception);
   /// Notes what a frame, or a message in several, says of the conditions; whether all hold.

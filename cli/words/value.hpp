@@ -110,9 +110,13 @@ namespace detail {
   return parse_quantity(text);
 }
 
+/// Whether it begins as a hexadecimal number does.
+[[nodiscard]] inline bool is_hexadecimal(std::string_view text) {
+  return text.starts_with("0x") || text.starts_with("0X");
+}
 /// "34" of "0x22", with the digits of any number of 64 bits; nothing of what is no hexadecimal number.
 [[nodiscard]] inline std::optional<std::string> decimal_of_hexadecimal(std::string_view text) {
-  if (!text.starts_with("0x") && !text.starts_with("0X")) return std::nullopt;
+  if (!is_hexadecimal(text)) return std::nullopt;
   const auto number = base::parse_unsigned(text.substr(2), 16);
   return number ? std::optional{std::to_string(*number)} : std::nullopt;
 }
@@ -140,6 +144,8 @@ namespace detail {
                                                                          std::string_view text) {
   if (const auto named = detail::named_raw(field, text)) return *named;
   if (const auto decimal = detail::decimal_of_hexadecimal(text)) return parse_value(field, *decimal);
+  if (detail::is_hexadecimal(text))
+    return detail::quoted(text) + " is no hexadecimal number of 64 bits: " + detail::takes(field);
   if (field.is_float()) {
     const auto value = detail::parse_float(field, text);
     const auto bits = value ? field.float_from(*value) : base::Result<std::int64_t>{value.error};

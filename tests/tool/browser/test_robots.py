@@ -136,8 +136,11 @@ class Robots(harness.Case):
         ActionChains(self.browser.driver).move_to_element_with_offset(canvas, 0, -round(where[1] * 0.15)).click().perform()
         self.until(lambda: any(line.startswith("{U,") for line in self.avr.heard), "it is sent")
         self.says("AVR is there")
-        # Where that is depends on how much of the map is known when it is clicked.
-        self.until(lambda: self.place("AVR") is not None and math.dist(self.place("AVR"), (0.4, 0.5)) > 0.05, "it has come there")
+        # Where that is depends on how much of the map is known when it is clicked: the order says it, from its start.
+        angle, centimetres = map(int, re.match(r"\{U,(-?\d+),(\d+)", next(line for line in self.avr.heard if line.startswith("{U,"))).groups())
+        goal = (0.4 + centimetres / 100 * math.cos(math.radians(angle)), 0.5 + centimetres / 100 * math.sin(math.radians(angle)))
+        self.assertGreater(goal[1], 0.5)
+        self.until(lambda: self.place("AVR") is not None and math.dist(self.place("AVR"), goal) < 0.1, "it has come there")
         self.assertFalse(any(line.startswith("{U,") for line in self.arduino.heard))
         # By the keyboard, for the other one.
         heard = len(self.avr.heard)

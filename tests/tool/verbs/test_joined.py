@@ -531,7 +531,9 @@ class BesideAMap(Case):
         self.assertEqual(states["AVR"]["state"], "held")
         self.assertTrue(states["AVR"]["held"] and not states["Arduino"]["held"])
         other = states["Arduino"]["pose"]
-        place = self.rested("AVR")  # it has rolled out
+        place = self.rested("AVR")
+        for what in ("x_cm", "y_cm"):
+            self.assertLessEqual(abs(states["AVR"]["pose"][what] - place[what]), 15)  # it has rolled out
         waiting.until(lambda: self.place("Arduino") != other, "the other goes on", 60)
         time.sleep(3)  # the explorer asks once a second
         for what, value in self.place("AVR").items():

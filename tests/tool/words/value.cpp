@@ -145,6 +145,8 @@ TEST_CASE("hexadecimal digits mean what the number in decimal ones does") {
   CHECK(parse_typed_value(field, "0x100").error == "'256' is out of range: service takes 0 to 255");
   for (const char* bad : {"0x", "0xG", "-0x1", "0x 1", "0x11111111111111111"})
     CHECK_FALSE(parse_typed_value(field, bad).ok());
+  CHECK(parse_typed_value(field, "0xG").error ==
+        "'0xG' is no hexadecimal number of 64 bits: service takes 0 to 255");
   field.scale = {5, -1};
   CHECK(parse_value(field, "0x22") == 68);
   field.unit = "V";
