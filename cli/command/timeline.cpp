@@ -108,6 +108,13 @@ void Timeline::carry_out_once(const client::Command& command) {
 }
 
 void Timeline::carry_out(const client::Command& command) {
+  if (command.broadcast) {
+    expect_awake();
+    const auto now = look_at_clock();
+    broadcasts_.begin(*command.broadcast, command.repeat, now);
+    broadcast_due(now);
+    return;
+  }
   command.each_frame([this](const can::AnyFrame& frame) {
     repeated_.erase(std::remove_if(repeated_.begin(), repeated_.end(),
                                    [&](const Repeated& each) {
@@ -169,7 +176,17 @@ void Timeline::tell_unsent() {
   if (not_taken_ != 0)
     remark(fmt::format("{}: {}, because {} had not taken those before", verb_, frames(not_taken_),
                        bus_->name()));
+  const auto broadcasts = broadcasts_.counts();
+  const auto messages = [](std::uint64_t count) { return client::count(count, "broadcast*"); };
+  if (const auto late = broadcasts.late - told_.late; late != 0)
+    remark(fmt::format("{}: {} left out or begun again, because this program or {} was too late", verb_,
+                       messages(late), bus_->name()));
+  if (const auto waited = broadcasts.waited - told_.waited; waited != 0)
+    remark(fmt::format("{}: {} left out, because a source sends one at a time", verb_, messages(waited)));
+  if (const auto* const part = broadcasts_.unfinished(); part != nullptr && !cut_)
+    cut_ = true, remark(fmt::format("{}: {} was not sent to its end", verb_, part->message->name));
   withheld_ = left_out_ = not_taken_ = 0;  // said
+  told_ = broadcasts;
 }
 
 void Timeline::tell_refusals() {
@@ -271,33 +288,49 @@ void Timeline::send_again(Repeated& repeated, Clock::time_point now) {
     left_out_ += static_cast<std::uint64_t>(late);
     repeated.next += late * repeated.period;
   }
-  const auto delivery = bus_->delivery();
-  const auto& obstruction = delivery.obstruction;
-  // One of each may be under way: they may all be due at once.
-  bool taken = obstruction.what.empty() && !(delivery.known && delivery.pending > repeated_.size());
-  if (taken) {
-    const auto sent = bus_->send_any(repeated.frame);
-    if (sent.error == base::Error::closed) {
-      tell_unsent();
-      fail(bus_->failure());
-    }
-    taken = sent && *sent;
-  }
-  if (taken) {
+  if (try_to_send(repeated.frame)) {
     repeated.left = now;
-    ++behind_;
-    if (const auto classic = repeated.frame.classic()) refusals_.sent(*classic);
     return;
   }
   ++not_taken_;
   if (now - repeated.left < std::max<Clock::duration>(client::longest_without_set_point, 2 * repeated.period))
     return;  // an interface may come back
+  give_up(now - repeated.left);
+}
+
+bool Timeline::try_to_send(const can::AnyFrame& frame) {
+  const auto delivery = bus_->delivery();
+  // One of each may be under way: they may all be due at once.
+  if (!delivery.obstruction.what.empty() ||
+      (delivery.known && delivery.pending > repeated_.size() + broadcasts_.size()))
+    return false;
+  const auto sent = bus_->send_any(frame);
+  if (sent.error == base::Error::closed) {
+    tell_unsent();
+    fail(bus_->failure());
+  }
+  if (!sent || !*sent) return false;
+  ++behind_;
+  if (const auto classic = frame.classic()) refusals_.sent(*classic);
+  return true;
+}
+
+void Timeline::give_up(Clock::duration lasting) {
   tell_unsent();
+  const auto obstruction = bus_->delivery().obstruction;
   const std::string what =
       fmt::format("{}: {} has taken no frame for {}", verb_, bus_->name(),
-                  words::to_text(std::chrono::duration_cast<std::chrono::milliseconds>(now - repeated.left)));
+                  words::to_text(std::chrono::duration_cast<std::chrono::milliseconds>(lasting)));
   if (!obstruction.what.empty()) fail({fmt::format("{}: {}", what, obstruction.what), obstruction.remedy});
   fail({what, why_none_leaves(*bus_)});
+}
+
+void Timeline::broadcast_due(Clock::time_point now) {
+  broadcasts_.advance(now, [this](const can::AnyFrame& frame) {
+    return try_to_send(frame) ? std::optional{Clock::now()} : std::nullopt;
+  });
+  const auto since = broadcasts_.held_up_since();
+  if (since && now - *since >= client::longest_without_set_point) give_up(now - *since);
 }
 
 bool Timeline::wait(Clock::time_point until) {
@@ -307,8 +340,10 @@ bool Timeline::wait(Clock::time_point until) {
     if (held_ && now >= held_->end) rest();
     if (held_ && now >= held_->next) repeat(now);
     repeat_due(now);
+    broadcast_due(now);
     if (now >= until) return true;
-    auto wake = until;
+    // One that waited for its source may have been due before: that is no stop of this program.
+    auto wake = std::min(until, std::max(now, broadcasts_.next_event()));
     if (held_) wake = std::min({wake, held_->next, held_->end});
     for (const Repeated& each : repeated_) wake = std::min(wake, std::min(each.next, each.end));
     awake_ = wake;
@@ -351,8 +386,8 @@ Timeline::Clock::time_point Timeline::look_at_clock() {
 }
 
 bool Timeline::wait_for_end() {
-  while (held_ || !repeated_.empty()) {
-    auto until = Clock::now() + std::chrono::hours{1};
+  while (held_ || !repeated_.empty() || !broadcasts_.empty()) {
+    auto until = std::min(Clock::now() + std::chrono::hours{1}, broadcasts_.next_event());
     if (held_) until = std::min(until, held_->end);
     for (const Repeated& each : repeated_) until = std::min(until, each.end);
     if (!wait(until)) return false;

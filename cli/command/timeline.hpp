@@ -9,6 +9,8 @@
 /// Frames that are sent again and again go at times that do not drift. A turn that comes too late, because
 /// this program did not run or the bus did not take what came before, is left out and counted.
 ///
+/// A message of J1939 that takes several frames is sent beside all that, one frame after another.
+///
 /// A board that refuses a set point that is held ends the command; what else a board refuses is said, and the
 /// command goes on.
 #pragma once
@@ -23,6 +25,7 @@
 #include "ocm/can/bus.hpp"
 #include "ocm/transport/bus.hpp"
 
+#include "cli/command/broadcasts.hpp"
 #include "cli/command/guarded.hpp"
 #include "cli/command/other_commander.hpp"
 #include "cli/command/refusal_watch.hpp"
@@ -63,7 +66,8 @@ class Timeline {
   Timeline(const Timeline&) = delete;
   Timeline& operator=(const Timeline&) = delete;
 
-  /// Sends a command's frames, again and again if it says so, and takes over, or ends, its hold. Leaves if
+  /// Sends a command's frames, again and again if it says so, and takes over, or ends, its hold. A broadcast
+  /// begins, and is whole when wait_for_end has returned true. Leaves if
   /// another program commands the motors that it would hold, and was heard.
   void carry_out(const client::Command& command);
   /// The same without a hold: the board's watchdog ends it.
@@ -73,7 +77,7 @@ class Timeline {
   /// The same until a step is due; leaves if this program did not run meanwhile: the command is then
   /// out of date. A bus that is slow to take the steps before makes a step late, and no more.
   [[nodiscard]] bool wait_for_step(Clock::time_point due);
-  /// Until the hold, and all that is sent again and again, is over by itself (--for) or a signal comes.
+  /// Until the hold, broadcasts, and all that is sent again and again, are over (--for) or a signal comes.
   /// False: a signal.
   [[nodiscard]] bool wait_for_end();
   /// Ends a hold: sends the set point of rest. Nothing without a hold.
@@ -116,6 +120,12 @@ class Timeline {
   /// Sends what is sent again and again and is due; removes what is over.
   void repeat_due(Clock::time_point now);
   void send_again(Repeated& repeated, Clock::time_point now);
+  /// Whether the bus took it; leaves if it is gone.
+  [[nodiscard]] bool try_to_send(const can::AnyFrame& frame);
+  /// Sends what is due of broadcasts; leaves if the bus has taken none for too long.
+  void broadcast_due(Clock::time_point now);
+  /// Leaves because the bus has taken nothing for so long.
+  [[noreturn]] void give_up(Clock::duration lasting);
   /// Sends the set point of rest behind whatever waits; whether it has left.
   [[nodiscard]] bool rest_after_all();
   /// Ends the hold because of something that is wrong.
@@ -133,7 +143,8 @@ class Timeline {
   Others others_;
   OtherCommander other_;
   std::optional<Held> held_;
-  std::vector<Repeated> repeated_;          ///< one an identifier
+  std::vector<Repeated> repeated_;  ///< one an identifier
+  Broadcasts broadcasts_;
   Clock::time_point awake_ = Clock::now();  ///< when this program looks at the clock next, at the latest
   Clock::duration stood_still_{};           ///< the longest time that it was later
   bool asked_ = false;                      ///< for the sensor of behaviours
@@ -148,6 +159,8 @@ class Timeline {
   std::uint64_t withheld_ = 0;   ///< set points that were due while none could leave
   std::uint64_t left_out_ = 0;   ///< turns of what is repeated: this program was late,
   std::uint64_t not_taken_ = 0;  ///< or the bus did not take what came before
+  Broadcasts::Counts told_;      ///< of broadcasts
+  bool cut_ = false;             ///< that one was cut is said
 };
 
 }  // namespace ocm::cli

@@ -38,6 +38,9 @@ Parsed parse_words(const protocol::Catalogue& catalogue, const std::vector<std::
   if (!command)
     return command.error.remedy.empty() ? command.error.what
                                         : fmt::format("{}; {}", command.error.what, command.error.remedy);
+  if (command->broadcast)
+    return fmt::format("{} takes several frames, at times of their own: `amiroctl set` sends it",
+                       command->broadcast->message->name);
   return std::move(command.value);
 }
 

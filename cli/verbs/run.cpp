@@ -103,14 +103,19 @@ std::vector<std::string_view> repeated_after(std::span<const words::Step> steps,
                                              const protocol::Catalogue& catalogue) {
   const client::FrameIndex index{catalogue};
   std::vector<std::string_view> names;
-  for (const auto& step : steps)
+  for (const auto& step : steps) {
+    const auto note = [&](const protocol::Topic& topic) {
+      std::erase(names, topic.name);
+      if (step.command.repeat && step.command.repeat->lasting.count() == 0) names.push_back(topic.name);
+    };
+    if (step.command.broadcast) {
+      note(*step.command.broadcast->message);
+      continue;
+    }
     step.command.each_frame([&](const can::AnyFrame& frame) {
-      const auto subject = index.subject(frame.id, frame.format);
-      if (!subject) return;
-      std::erase(names, subject.topic->name);
-      if (step.command.repeat && step.command.repeat->lasting.count() == 0)
-        names.push_back(subject.topic->name);
+      if (const auto subject = index.subject(frame.id, frame.format)) note(*subject.topic);
     });
+  }
   return names;
 }
 

@@ -29,7 +29,8 @@ void add_set(Verb app, Session& session, int& exit_code) {
   verb.add_flag("--force", options.force, "also values beyond the range that the spec states");
   verb.callback([commanding, &session, &exit_code] {
     const auto command = commanding->parse();
-    if (commanding->dry_run() || !command.repeat) return carry_out(session, *commanding, command);
+    if (commanding->dry_run() || !(command.repeat || command.broadcast))
+      return carry_out(session, *commanding, command);
     catch_interrupts();
     catch_hangups();
     catch_broken_pipe();

@@ -297,9 +297,21 @@ class CommandParser {
     if (target.is_message()) {
       if (options.priority)
         return WordError{0, "a message carries its priority in its identifier", "drop --priority"};
-      const auto frame = compose(target, *given);
-      if (!frame) return frame.error;
-      put(command, *frame);
+      const auto& layout = target.frames[0];
+      auto bytes = compose(target, *given);
+      if (!bytes) return bytes.error;
+      if (!layout.any_length()) {
+        put(command, frame_of(layout, *bytes));
+      } else {
+        command.broadcast = client::Broadcast{&target, std::move(*bytes)};
+        if (const auto lasts = j1939::broadcast_time(layout.length); options.every && *options.every < lasts)
+          return WordError{0,
+                           "--every " + to_text(*options.every) + " is shorter than a broadcast of " +
+                               std::string{target.name} + " takes",
+                           "it has " + std::to_string(command.broadcast->frames()) + " frames, " +
+                               to_text(j1939::broadcast_distance) + " apart: --every " + to_text(lasts) +
+                               " or longer"};
+      }
     } else {
       if (options.every && target.role == protocol::Role::drive)
         return WordError{0, std::string{target.name} + " is not set again and again",

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -16,6 +15,7 @@
 #include "ocm/base/result.hpp"
 #include "ocm/base/text.hpp"
 #include "ocm/can/any_frame.hpp"
+#include "ocm/j1939/transport.hpp"
 #include "ocm/protocol/codec.hpp"
 #include "ocm/protocol/topic.hpp"
 
@@ -84,7 +84,9 @@ namespace detail {
   for (std::size_t i = 0; i < given.size(); ++i) {
     const protocol::Field& other = layout.fields[i];
     if (i == index || !given[i] || !field.position.overlaps(other.position)) continue;
-    std::array<std::uint8_t, can::max_fd_length> both{};
+    std::vector<std::uint8_t> both(layout.length);
+    // One that ends beyond the message is named in its turn.
+    if (other.position.bytes() > both.size()) continue;
     protocol::put(std::span<std::uint8_t>{both}, other.position, given[i]->raw);
     protocol::put(std::span<std::uint8_t>{both}, field.position, given[index]->raw);
     if (bits_of(other, other.raw(std::span<const std::uint8_t>{both})) == bits_of(other, given[i]->raw))
@@ -118,22 +120,25 @@ namespace detail {
 inline constexpr const char* force_beyond_range =
     "many stated ranges are wrong: --force takes what the bits can hold";
 
-/// The message's frame, with the identifier with which it is sent. A selector that is not given takes a value
-/// with which the given fields are there, its start value if that is one. O(fields^2).
-[[nodiscard]] inline base::Result<can::AnyFrame, WordError> compose(const protocol::Topic& message,
-                                                                    GivenFields given) {
+/// The message's bytes, as many as it has. A selector that is not given takes a value with which the given
+/// fields are there, its start value if that is one. O(fields^2).
+[[nodiscard]] inline base::Result<std::vector<std::uint8_t>, WordError> compose(
+    const protocol::Topic& message, GivenFields given) {
   const protocol::FrameLayout& layout = message.frames[0];
-  if (layout.address.by == protocol::Address::By::pgn && layout.length > can::max_dlc)
+  const auto too_long = [&](std::string_view kind, std::string_view remedy) {
     return WordError{1,
                      std::string{message.name} + " is a message of " + std::to_string(layout.length) +
-                         " bytes, which J1939 sends in several frames by its transport protocol",
-                     "this tool receives such messages and sends none; `send` sends single frames"};
-  if (layout.length > (layout.fd ? can::max_fd_length : can::max_dlc))
-    return WordError{1,
-                     std::string{message.name} + " is a message of " + std::to_string(layout.length) +
-                         " bytes" + (layout.fd ? " in CAN FD" : ""),
-                     layout.fd ? "a frame of CAN FD has 64 bytes at most"
-                               : "a classic frame has 8 bytes at most; state CAN FD in the spec"};
+                         " bytes" + std::string{kind},
+                     std::string{remedy}};
+  };
+  if (layout.any_length()) {
+    if (layout.length > j1939::most_transported)
+      return too_long(" of J1939", "its transport protocol takes 1785 bytes at most");
+  } else if (layout.fd && layout.length > can::max_fd_length) {
+    return too_long(" in CAN FD", "a frame of CAN FD has 64 bytes at most");
+  } else if (!layout.fd && layout.length > can::max_dlc) {
+    return too_long("", "a classic frame has 8 bytes at most; state CAN FD in the spec");
+  }
   const auto fields = layout.fields;
   std::vector<std::int64_t> raw(fields.size());
   for (std::size_t i = 0; i < fields.size(); ++i) raw[i] = given[i] ? given[i]->raw : fields[i].start;
@@ -164,6 +169,22 @@ inline constexpr const char* force_beyond_range =
     }
     return false;
   };
+  std::vector<std::uint8_t> bytes(layout.length);
+  // What is given comes last: many files have a field over others that are parts of it.
+  const std::span<std::uint8_t> data{bytes};
+  for (const bool of_given : {false, true})
+    for (std::size_t i = 0; i < fields.size(); ++i)
+      if (given[i].has_value() == of_given && fields[i].position.bytes() <= layout.length && is_there(i))
+        protocol::put(data, fields[i].position, raw[i]);
+  for (std::size_t i = 0; i < fields.size(); ++i)
+    if (given[i])
+      if (auto wrong = detail::not_as_given(message, i, given, data)) return *std::move(wrong);
+  return bytes;
+}
+
+/// The frame of a message that fits into one, with the identifier with which it is sent.
+[[nodiscard]] inline can::AnyFrame frame_of(const protocol::FrameLayout& layout,
+                                            std::span<const std::uint8_t> bytes) {
   can::AnyFrame frame;
   frame.id = layout.address.number;
   frame.format = protocol::format_of(layout);
@@ -172,15 +193,7 @@ inline constexpr const char* force_beyond_range =
     frame.length = can::fd_length(can::fd_dlc(layout.length));
     frame.flags = can::fd_flags(layout.bit_rate_switch);
   }
-  // What is given comes last: many files have a field over others that are parts of it.
-  const std::span<std::uint8_t> data{frame.data};
-  for (const bool of_given : {false, true})
-    for (std::size_t i = 0; i < fields.size(); ++i)
-      if (given[i].has_value() == of_given && fields[i].position.bytes() <= layout.length && is_there(i))
-        protocol::put(data, fields[i].position, raw[i]);
-  for (std::size_t i = 0; i < fields.size(); ++i)
-    if (given[i])
-      if (auto wrong = detail::not_as_given(message, i, given, data)) return *std::move(wrong);
+  std::copy(bytes.begin(), bytes.end(), frame.data.begin());
   return frame;
 }
 

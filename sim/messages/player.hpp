@@ -16,7 +16,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -28,8 +27,8 @@
 
 #include "ocm/base/time.hpp"
 #include "ocm/can/any_frame.hpp"
+#include "ocm/j1939/broadcast.hpp"
 #include "ocm/j1939/identifier.hpp"
-#include "ocm/j1939/transport.hpp"
 #include "ocm/protocol/topic.hpp"
 
 #include "sim/messages/motion.hpp"
@@ -60,7 +59,7 @@ struct LeftOut {
   std::vector<const protocol::Topic*> switched_off;  ///< PlayOptions::without
   std::vector<const protocol::Topic*> without_period;
   std::vector<const protocol::Topic*> no_fd;     ///< CAN FD, where the bus has none
-  std::vector<const protocol::Topic*> too_long;  ///< more bytes than a frame has: 8, CAN FD 64; no J1939
+  std::vector<const protocol::Topic*> too_long;  ///< more bytes than a frame has: 8, CAN FD 64; of J1939 1785
 };
 
 /// The identifier of a message. A J1939 message whose source is the null address, with which a node may not
@@ -72,10 +71,6 @@ struct LeftOut {
   id.source = static_cast<std::uint8_t>(128U + message.board % 120U);
   return id.encode();
 }
-
-/// From the announcement of a broadcast to its first packet, and from one to the next: 50 to 200 ms.
-/// [SAE J1939-21, 5.10.2.1]
-inline constexpr base::Duration broadcast_distance = std::chrono::milliseconds{50};
 
 class MessagePlayer {
  public:
@@ -136,7 +131,7 @@ class MessagePlayer {
     std::vector<FieldMotion> motions;
     std::uint64_t key = 0;
     std::uint64_t sent = 0;
-    std::uint32_t packets = 0;         ///< of a broadcast under way, sent so far
+    std::uint32_t parts = 0;           ///< of a broadcast under way: frames that were sent
     base::Time announced{};            ///< when it should have been
     std::vector<std::uint8_t> data{};  ///< of it
   };
@@ -170,7 +165,7 @@ class MessagePlayer {
   }
 
   [[nodiscard]] static bool is_broadcast(const protocol::FrameLayout& layout) noexcept {
-    return layout.address.by == protocol::Address::By::pgn && layout.length > can::max_dlc;
+    return layout.any_length() && layout.length <= j1939::most_transported;
   }
 
   /// The next frame of a broadcast, its announcement first, or none while its source has another. Returns
@@ -179,45 +174,27 @@ class MessagePlayer {
   base::Time broadcast(Message& message, base::Time due, Send& send) {
     const auto& layout = message.played.topic->frames[0];
     const auto own = j1939::Identifier::decode(message.played.id);
-    const std::uint32_t all = j1939::packets_of(layout.length);
-    can::AnyFrame frame;
-    frame.format = can::Format::extended;
-    frame.length = can::max_dlc;
-    const auto identifier = [&own](std::uint32_t group) {
-      constexpr std::uint8_t lowest_priority =
-          7;  // of the transport protocol [SAE J1939-21, 5.10.3 and 5.10.4]
-      return j1939::Identifier{lowest_priority, group, j1939::global_address, own.source}.encode();
-    };
     if (message.data.empty()) {
       base::Time& free = free_[own.source];
       if (free > due) return free;  // `announced` stays
       message.data.assign(layout.length, 0);
       fill(message, message.data, due);
-      frame.id = identifier(j1939::connection_group);
-      const auto byte = [](std::uint32_t number) { return static_cast<std::uint8_t>(number); };
-      constexpr std::uint8_t announcement = 32;
-      const std::array<std::uint8_t, 8> head{
-          announcement, byte(layout.length), byte(layout.length >> 8), byte(all),
-          0xFF,         byte(own.pgn),       byte(own.pgn >> 8),       byte(own.pgn >> 16)};
-      std::copy(head.begin(), head.end(), frame.data.begin());
-      send(std::as_const(message.played), frame, due);
-      free = due + (all + 1) * broadcast_distance;
-      return due + broadcast_distance;
+      free = due + j1939::broadcast_time(layout.length);
     }
-    frame.id = identifier(j1939::transfer_group);
-    const std::size_t from = std::size_t{message.packets} * j1939::bytes_a_packet;
-    const std::size_t count = std::min(j1939::bytes_a_packet, message.data.size() - from);
-    std::fill_n(frame.data.begin(), can::max_dlc, std::uint8_t{0xFF});
-    frame.data[0] = static_cast<std::uint8_t>(++message.packets);
-    std::copy_n(message.data.begin() + static_cast<std::ptrdiff_t>(from), count, frame.data.begin() + 1);
+    const auto part = j1939::broadcast_frame(own, message.data, message.parts);
+    can::AnyFrame frame;
+    frame.id = part.id;
+    frame.format = can::Format::extended;
+    frame.length = can::max_dlc;
+    std::copy(part.data.begin(), part.data.end(), frame.data.begin());
     send(std::as_const(message.played), frame, due);
-    if (message.packets != all) return due + broadcast_distance;
-    message.packets = 0;
+    if (++message.parts != j1939::broadcast_frames(layout.length)) return due + j1939::broadcast_distance;
+    message.parts = 0;
     message.data.clear();
     ++message.sent;
     // After those that wait for their turn.
     do message.announced += distance(message);
-    while (message.announced <= due + broadcast_distance);
+    while (message.announced <= due + j1939::broadcast_distance);
     return message.announced;
   }
 

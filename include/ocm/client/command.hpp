@@ -2,6 +2,7 @@
 /// it with the functions below. Host only.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -11,6 +12,8 @@
 #include "ocm/base/time.hpp"
 #include "ocm/can/any_frame.hpp"
 #include "ocm/can/frame.hpp"
+#include "ocm/j1939/broadcast.hpp"
+#include "ocm/j1939/identifier.hpp"
 #include "ocm/protocol/codec.hpp"
 #include "ocm/protocol/identifier.hpp"
 #include "ocm/protocol/request.hpp"
@@ -40,19 +43,42 @@ struct Repeat {
 /// What has a shorter period would leave no time to anything else. [decided]
 inline constexpr base::Duration shortest_repeat{100'000};
 
+/// A message of J1939 that takes several frames, j1939::broadcast_distance apart.
+struct Broadcast {
+  const protocol::Topic* message = nullptr;  ///< outlives this
+  std::vector<std::uint8_t> data;            ///< j1939::least_transported to most_transported bytes
+
+  /// Of the message; its frames have others.
+  [[nodiscard]] std::uint32_t id() const noexcept { return message->frames[0].address.number; }
+  [[nodiscard]] std::uint32_t frames() const noexcept { return j1939::broadcast_frames(data.size()); }
+  /// Of that number, below frames().
+  [[nodiscard]] can::AnyFrame frame(std::uint32_t number) const noexcept {
+    const auto part = j1939::broadcast_frame(j1939::Identifier::decode(id()), data, number);
+    can::AnyFrame frame;
+    frame.id = part.id;
+    frame.format = can::Format::extended;
+    frame.length = can::max_dlc;
+    std::copy(part.data.begin(), part.data.end(), frame.data.begin());
+    return frame;
+  }
+};
+
 struct Command {
   std::vector<can::Frame> frames;            ///< to send now, in this order
   std::vector<can::AnyFrame> fd_frames;      ///< to send behind them: a robot takes none, other buses do
-  std::optional<Repeat> repeat;              ///< of `frames` and `fd_frames`
+  std::optional<Broadcast> broadcast;        ///< to begin now; then there are no others
+  std::optional<Repeat> repeat;              ///< of all of these
   std::optional<Hold> hold;                  ///< drive
   bool ends_hold = false;                    ///< drive stop, stop, stop all
   const protocol::Topic* answers = nullptr;  ///< whose sample answers a publish or once
 
-  /// Calls `take(const can::AnyFrame&)` for each frame to send now.
+  /// Calls `take(const can::AnyFrame&)` for each frame to send now, and each of a broadcast.
   template <class Take>
   void each_frame(Take take) const {
     for (const auto& frame : frames) take(can::AnyFrame{frame});
     for (const auto& frame : fd_frames) take(frame);
+    if (broadcast)
+      for (std::uint32_t i = 0; i < broadcast->frames(); ++i) take(broadcast->frame(i));
   }
 };
 

@@ -133,3 +133,17 @@ def _(context):
         listener.settle()
         listener.stop()
         expect(re.search(r'0 messages? put together, \d+ other frames?, 1 (timed out|aborted)', listener.stderr), f'summary: {listener.stderr}')
+
+
+@check('the kernel puts together what set broadcasts by J1939')
+def _(context):
+    with tempfile.TemporaryDirectory(prefix='ocm-j1939-') as folder, Node(0x10) as node:
+        spec = os.path.join(folder, 'sender.dbc')
+        with open(spec, 'w') as file:
+            file.write(DBC.replace(str(0x98FEECFE), str(0x98FEEC2A)).replace('Broadcast: 9', 'Broadcast: 100'))
+        sh(context.amiroctl, '--spec', spec, '--bus', 'vcan0', 'set', 'Broadcast', 'First=1', 'Late=0x63', '--every', '800ms',
+           '--for', '1s')
+        wanted = bytes([1]) + bytes(8) + bytes([0x63]) + bytes(90)
+        for _ in range(2):
+            data, (_, _, group, source) = node.socket.recvfrom(2000)
+            equal((data, group, source), (wanted, BROADCAST, 0x2A), 'the message')

@@ -1,6 +1,7 @@
 """Runs amiroctl and a simulator in a folder of their own, so that tests never meet each other or the user's bus."""
 
 import concurrent.futures
+import faulthandler
 import json
 import os
 import signal
@@ -116,4 +117,6 @@ class TogetherRunner(unittest.TextTestRunner):
 
 def main(together=False):
     """`together`: for cases that wait for the clock more than they work."""
+    # A case that hangs is ended by ctest after 300 s, without a word; this says where it hangs.
+    faulthandler.dump_traceback_later(280)
     unittest.main(verbosity=1, testRunner=TogetherRunner if together else None)

@@ -128,6 +128,40 @@ class Set(Case):
         self.assertRegex(err, r"set: \d+ frames? w(?:as|ere) not sent, because sim had not taken those before\n"
                               r"amiroctl: set: sim has taken no frame for .+\n")
 
+    def test_a_message_of_several_frames_is_broadcast(self):
+        """And another value while one is under way waits until that one is whole."""
+        spec = os.path.join(os.environ["OCM_SOURCE_DIR"], "tests/sim/messages/bus.dbc")
+        self.start_sim()
+        listener = self.start("--spec", spec, "listen", "--json", "--timeout", "20s")
+        self.assertIn("bus: sim", listener.stderr.readline())
+        self.run_tool("--spec", spec, "set", "Parts", "Part=7")
+        out, _ = self.run_tool("--spec", spec, "set", "Parts", "Part=7", "--dry-run")
+        frames = ["1CECFFFE#20140003FFECFE00", "1CEBFFFE#0107000000000000", "1CEBFFFE#0200000000000000",
+                  "1CEBFFFE#03000000000000FF"]
+        self.assertEqual(out.split(), frames)
+        script = self.script("0s set Parts Part=1\n100ms set Parts Part=2 --every 200ms --for 400ms\n")
+        self.run_tool("--spec", spec, "run", script)
+        out, err = self.interrupt(listener)
+        rows = [json.loads(line) for line in out.splitlines()]
+        self.assertEqual([row["id"] + "#" + row["data"] for row in rows[:4]], frames)
+        values = [row["message"]["fields"]["Part"] for row in rows if "message" in row]
+        self.assertEqual(values[:3], [7, 1, 2])
+        self.assertRegex(err, r"\d messages put together, \d+ other frames\n")
+
+    def test_a_broadcast_that_is_cut_off_says_so(self):
+        spec = os.path.join(os.environ["OCM_SOURCE_DIR"], "tests/sim/messages/bus.dbc")
+        self.start_sim()
+        listener = self.start("--spec", spec, "listen", "--json", "-n", "2", "--timeout", "20s")
+        self.assertIn("bus: sim", listener.stderr.readline())
+        sender = self.start("--spec", spec, "set", "Parts", "--every", "200ms")
+        listener.communicate(timeout=30)
+        sender.send_signal(signal.SIGINT)
+        _, err = sender.communicate(timeout=30)
+        self.assertEqual(sender.returncode, 130)
+        self.assertIn(err.partition("\n")[2], ("set: Parts was not sent to its end\n", ""))  # or behind its last frame
+        _, err = self.run_tool("--spec", spec, "set", "Parts", "--every", "100ms", code=2)
+        self.assertIn("--every 100ms is shorter than a broadcast of Parts takes", err)
+
     def test_beyond_its_range(self):
         _, err = self.run_tool("--spec", CAR, "set", "Engine", "Speed=9000", "--dry-run", code=2)
         self.assertEqual(err, "amiroctl: set: '9000' is beyond the stated range: Speed takes 0 to 8000 rpm\n"

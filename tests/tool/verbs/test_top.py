@@ -224,7 +224,7 @@ class Top(played_adapter.WithAdapter, screens.Screens):
         shell = "bash --norc --noprofile -i"
         self.tmux("new-session", "-d", "-s", "of90", "-x", "90", "-y", "24", f"PS1='ready> ' {shell}; printf 'END %d' $?; sleep 100")
         self.shows(90, "ready>")
-        self.press(90, f"{shlex.quote(harness.AMIROCTL)} --bus sim top; echo LEFT $?", "Enter")
+        self.press(90, f"{shlex.quote(harness.AMIROCTL)} --bus sim top", "Enter")
         self.shows(90, "gyroscope", "frames/s")
         self.press(90, "C-z")
         self.shows(90, "Stopped")
@@ -235,7 +235,9 @@ class Top(played_adapter.WithAdapter, screens.Screens):
         self.shows(90, "gyroscope", "frames/s")
         harness.waiting.until(lambda: re.search(r"gyros\w* +(9\.\d\d|10\.\d)", self.row(90, "gyros")), "its rate")
         self.press(90, "q")
-        harness.waiting.until(lambda: "frames/s" not in "\n".join(self.screen(90)), "the shell's screen")
+        # Not its screen alone: LeakSanitizer looks at it when that is gone, and a terminal that hangs up then hangs it.
+        self.press(90, "echo LEFT=$?", "Enter")
+        self.assertNotIn("frames/s", "\n".join(self.shows(90, "LEFT=0")))
 
     def drawn(self, *arguments, **environment):
         """What it writes to the terminal, which has one character for a while."""

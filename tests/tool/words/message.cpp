@@ -210,15 +210,45 @@ TEST_CASE("fields that are never in one frame are refused at the word") {
   });
   CHECK(frame("set Engine rpm=3000.25 --force") == "100#E12E002800000000");  // 12001 quarters
   CHECK(compose(topics[2], {}).error.what == "Long is a message of 64 bytes");
-  // Of J1939 CAN FD is no remedy.
-  protocol::FrameLayout group = layout({}, 0x18FEEC00, true, 17);
+  // The transport protocol of J1939 has an end, too, and CAN FD is no remedy.
+  protocol::FrameLayout group = layout({}, 0x18FEEC00, true, 1786);
   group.address.by = protocol::Address::By::pgn;
   protocol::Topic identification = topics[2];
   identification.frames = {&group, 1};
-  const auto several = compose(identification, {});
-  CHECK(several.error.what ==
-        "Long is a message of 17 bytes, which J1939 sends in several frames by its transport protocol");
-  CHECK(several.error.remedy.find("FD") == std::string::npos);
+  CHECK(compose(identification, {}).error.what == "Long is a message of 1786 bytes of J1939");
+  CHECK(compose(identification, {}).error.remedy.find("FD") == std::string::npos);
+}
+
+TEST_CASE("a message of J1939 with more than eight bytes is a broadcast") {
+  // As long as a vehicle identification: 7, 7 and 3 bytes. [SAE J1939-21, 5.10.3.5]
+  std::array<Field, 2> fields{field("first", {0, 8, ByteOrder::little}),
+                              field("last", {128, 8, ByteOrder::little})};
+  protocol::FrameLayout group = layout(fields, 0x18FEEC2A, true, 17);
+  group.address.by = protocol::Address::By::pgn;
+  protocol::Topic vehicle = topics[2];
+  vehicle.name = "Vehicle";
+  vehicle.frames = {&group, 1};
+  const protocol::Catalogue truck{"truck", 250'000, {}, {&vehicle, 1}};
+  const auto parsed = [&](std::vector<std::string_view> words) {
+    return CommandParser{truck}.parse_line(words);
+  };
+  const auto command = parsed({"set", "Vehicle", "first=0x31", "last=0x39"});
+  REQUIRE(command.ok());
+  REQUIRE(command->broadcast);
+  CHECK((command->frames.empty() && command->fd_frames.empty()));
+  CHECK(command->broadcast->message == &vehicle);
+  std::vector<std::string> frames;
+  command->each_frame([&](const can::AnyFrame& frame) {
+    CHECK(can::validate(frame).ok());
+    frames.emplace_back(can::to_text(frame).view());
+  });
+  CHECK(frames == std::vector<std::string>{"1CECFF2A#20110003FFECFE00", "1CEBFF2A#0131000000000000",
+                                           "1CEBFF2A#0200000000000000", "1CEBFF2A#03000039FFFFFFFF"});
+  // Four frames, 50 ms apart, and as much before the next.
+  CHECK(parsed({"set", "Vehicle", "--every", "200ms"}).ok());
+  const auto hasty = parsed({"set", "Vehicle", "--every", "199ms"});
+  CHECK(hasty.error.what == "--every 199ms is shorter than a broadcast of Vehicle takes");
+  CHECK(hasty.error.remedy == "it has 4 frames, 50ms apart: --every 200ms or longer");
 }
 
 TEST_CASE("a field that lies over others is sent as it is given, wherever it is in the file") {

@@ -20,7 +20,8 @@ void check(std::span<const std::string_view> words, const protocol::Catalogue& c
     fuzz::expect(!command.error.what.empty() && !command.error.remedy.empty(), "an error has words");
     return;
   }
-  fuzz::expect(!command->frames.empty() || !command->fd_frames.empty(), "a command sends something");
+  fuzz::expect(!command->frames.empty() || !command->fd_frames.empty() || command->broadcast,
+               "a command sends something");
   for (const auto& frame : command->frames)
     fuzz::expect(can::validate(frame).ok() && frame.format != can::Format::error,
                  "a command's frames can be sent");

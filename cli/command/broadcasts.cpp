@@ -1,0 +1,110 @@
+#include "cli/command/broadcasts.hpp"
+
+#include <algorithm>
+
+#include "ocm/j1939/broadcast.hpp"
+#include "ocm/j1939/identifier.hpp"
+
+namespace ocm::cli {
+namespace {
+
+std::uint8_t source_of(const client::Broadcast& broadcast) {
+  return j1939::Identifier::decode(broadcast.id()).source;
+}
+
+}  // namespace
+
+void Broadcasts::begin(client::Broadcast broadcast, const std::optional<client::Repeat>& repeat, Moment now) {
+  std::erase_if(all_, [&](const Each& each) {
+    if (each.broadcast.id() != broadcast.id() || each.at != 0) return false;
+    if (each.period.count() == 0 && each.begin < each.end) ++counts_.waited;
+    return true;
+  });
+  for (Each& each : all_)
+    if (each.broadcast.id() == broadcast.id()) each.period = {}, each.begin = each.end = now;
+  Each each{std::move(broadcast), {}, now + Clock::duration{1}, now, now, now, 0, {}};
+  if (repeat) {
+    each.period = repeat->period;
+    each.end = repeat->lasting.count() > 0 ? now + repeat->lasting : Moment::max();
+  }
+  all_.push_back(std::move(each));
+}
+
+Broadcasts::Moment Broadcasts::due(const Each& each) const noexcept {
+  if (each.at != 0) return each.next;
+  const std::uint8_t source = source_of(each.broadcast);
+  const bool busy = std::any_of(all_.begin(), all_.end(), [source](const Each& other) {
+    return other.at != 0 && source_of(other.broadcast) == source;
+  });
+  return busy ? Moment::max() : std::max(each.next, free_[source]);  // the other's end comes first
+}
+
+Broadcasts::Moment Broadcasts::next_event() const noexcept {
+  Moment next = Moment::max();
+  for (const Each& each : all_)
+    next = std::min(next, each.at == 0 && each.begin >= each.end ? each.end : due(each));
+  return next;
+}
+
+bool Broadcasts::is_over(const Each& each, Moment now) const noexcept {
+  return each.at == 0 && each.begin >= each.end && now >= each.end;
+}
+
+bool Broadcasts::is_due(Each& each, Moment now) {
+  if (each.at == 0 && each.begin >= each.end) return false;
+  const Moment since = due(each);
+  if (now < since) return false;
+  if (each.at != 0) {
+    if (now - each.left <= j1939::timeout::t1) return true;
+    ++counts_.late;  // listeners wait no longer for the rest
+    each.at = 0;
+    return each.begin < each.end && now >= due(each);  // unless another has taken its place
+  }
+  if (each.period.count() == 0 || each.held_up) return true;
+  // Of the turns that are over, the last is taken now.
+  const auto turns = [&](Moment from) {
+    return now < from ? 0 : static_cast<std::uint64_t>((now - from) / each.period);
+  };
+  const std::uint64_t over = turns(each.begin);
+  const std::uint64_t late = std::min(over, turns(since));
+  counts_.late += late;
+  counts_.waited += over - late;
+  each.begin += static_cast<Clock::rep>(over) * each.period;
+  return each.begin < each.end;
+}
+
+void Broadcasts::sent(Each& each, Moment taken) {
+  const std::uint32_t frames = each.broadcast.frames();
+  each.left = taken;
+  each.held_up.reset();
+  each.next = taken + j1939::broadcast_distance;
+  free_[source_of(each.broadcast)] = each.next;
+  if (++each.at != frames) return;
+  each.at = 0;
+  if (each.period.count() == 0) {
+    each.begin = each.end = std::min(each.end, taken);
+    return;
+  }
+  each.begin += each.period;  // absolute: no drift
+  each.next = each.begin;
+}
+
+void Broadcasts::hold_up(Each& each, Moment now) {
+  each.next = now + try_again;
+  if (!each.held_up) each.held_up = now;
+}
+
+std::optional<Broadcasts::Moment> Broadcasts::held_up_since() const noexcept {
+  std::optional<Moment> since;
+  for (const Each& each : all_)
+    if (each.held_up && (!since || *each.held_up < *since)) since = each.held_up;
+  return since;
+}
+
+const client::Broadcast* Broadcasts::unfinished() const noexcept {
+  for (const Each& each : all_)
+    if (each.at != 0) return &each.broadcast;
+  return nullptr;
+}
+
+}  // namespace ocm::cli

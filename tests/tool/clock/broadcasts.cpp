@@ -1,0 +1,224 @@
+// Messages of J1939 that take several frames, on a bus and a clock that are made of a seed: a listener, which
+// is the library's, never hears a part of one message in another, whatever stops the program or the bus.
+#include "cli/command/broadcasts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <map>
+#include <set>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/j1939/transport.hpp"
+#include "ocm/protocol/topic.hpp"
+
+#include "cli/command/timeline.hpp"
+#include "cli/shared/messages.hpp"
+#include "tests/tool/clock/played_bus.hpp"
+#include "tests/unit/base/explore.hpp"
+
+namespace tool_clock_broadcasts_test {
+
+using namespace ocm;
+using namespace ocm::test;
+using cli::Timeline;
+
+constexpr protocol::FrameLayout layout(std::uint32_t id, std::uint16_t length) {
+  protocol::FrameLayout layout;
+  layout.length = length;
+  layout.address = {protocol::Address::By::pgn, true, id};
+  return layout;
+}
+// Two of one source, one of another; 4, 7 and 3 frames.
+constexpr std::array layouts{layout(0x18FEEC2A, 17), layout(0x18FECA2A, 40), layout(0x18FEEB2B, 9)};
+constexpr std::array names{"Vehicle", "Trouble", "Component"};
+constexpr std::array<protocol::Topic, 3> topics = [] {
+  std::array<protocol::Topic, 3> out{};
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i].name = names[i];
+    out[i].kind = protocol::Kind::message;
+    out[i].board = protocol::no_board;
+    out[i].frames = {&layouts[i], 1};
+  }
+  return out;
+}();
+constexpr protocol::Catalogue truck{"truck", 250'000, {}, topics};
+
+/// The message with all its bytes the same.
+client::Command command(std::size_t which, std::uint8_t value, std::optional<client::Repeat> repeat = {}) {
+  client::Command command;
+  command.broadcast =
+      client::Broadcast{&topics[which], std::vector<std::uint8_t>(layouts[which].length, value)};
+  command.repeat = repeat;
+  return command;
+}
+
+/// What a listener makes of the frames, each when it has left.
+struct Listener {
+  explicit Listener(const std::vector<PlayedBus::Sent>& frames) {
+    std::map<std::uint8_t, Moment> last;
+    for (const auto& sent : frames) {
+      if (sent.left == Moment::max()) continue;
+      const std::uint8_t source = j1939::Identifier::decode(sent.frame.id).source;
+      if (const auto before = last.find(source); before != last.end())
+        CHECK(sent.taken - before->second >= j1939::broadcast_distance);
+      last[source] = sent.taken;
+      const auto heard =
+          transport.take(sent.frame.id, sent.frame.bytes(), base::Time{sent.left.time_since_epoch()});
+      if (heard != j1939::Heard::message) continue;
+      const auto& message = transport.message();
+      const auto id = message.id;
+      const auto at = std::find_if(topics.begin(), topics.end(), [&](const protocol::Topic& topic) {
+        const auto own = j1939::Identifier::decode(topic.frames[0].address.number);
+        return own.pgn == id.pgn && own.source == id.source;
+      });
+      REQUIRE(at != topics.end());
+      const auto which = static_cast<std::size_t>(at - topics.begin());
+      CHECK(message.data.size() == layouts[which].length);
+      CHECK(std::all_of(message.data.begin(), message.data.end(),
+                        [&](std::uint8_t byte) { return byte == message.data[0]; }));
+      values[which].push_back(message.data[0]);
+      times[which].push_back(sent.left);
+    }
+  }
+  j1939::Transport<4> transport;
+  std::array<std::vector<std::uint8_t>, 3> values;
+  std::array<std::vector<Moment>, 3> times;
+};
+
+TEST_CASE("broadcasts: once, and again and again, at times that do not drift") {
+  const Silence silence;
+  World world{1};
+  PlayedBus bus{world, {}};
+  Timeline timeline{bus, truck, "set", Timeline::Others::allowed, cli::Confirm::no, {}};
+  timeline.carry_out(command(0, 1));
+  timeline.carry_out(command(2, 3, client::Repeat{250ms, 2s}));
+  CHECK(timeline.wait_for_end());
+  CHECK(timeline.finish());
+  CHECK(world.now() - World::start >= 2s);
+  const Listener heard{bus.sent()};
+  CHECK(heard.values[0] == std::vector<std::uint8_t>{1});
+  REQUIRE(heard.values[2].size() == 8);
+  for (std::size_t i = 1; i < 8; ++i) {
+    const Duration apart = heard.times[2][i] - heard.times[2][0] - static_cast<std::int64_t>(i) * 250ms;
+    CHECK(std::chrono::abs(apart) < 2ms);
+  }
+}
+
+TEST_CASE("broadcasts: a source has one at a time, and the next value waits for its turn") {
+  const Silence silence;
+  World world{1};
+  PlayedBus bus{world, {}};
+  Timeline timeline{bus, truck, "run", Timeline::Others::allowed, cli::Confirm::no, {}};
+  timeline.carry_out(command(0, 1, client::Repeat{200ms, {}}));
+  timeline.carry_out(command(1, 2));
+  CHECK(timeline.wait_for_step(world.now() + 70ms));
+  timeline.carry_out(command(0, 9));  // in the midst of the first
+  CHECK(timeline.wait_for_end());
+  CHECK(timeline.finish());
+  const Listener heard{bus.sent()};
+  CHECK(heard.values[0] == std::vector<std::uint8_t>{1, 9});
+  CHECK(heard.values[1] == std::vector<std::uint8_t>{2});
+  CHECK(heard.transport.counters().complete == 3);
+  CHECK(heard.transport.counters().announced == 3);
+}
+
+TEST_CASE("broadcasts: what a signal cuts off is not announced again, and a stop begins it again") {
+  const Silence silence;
+  for (const bool signal : {true, false}) {
+    World world{1};
+    PlayedBus bus{world, {}};
+    Timeline timeline{bus, truck, "set", Timeline::Others::allowed, cli::Confirm::no, {}};
+    if (signal)
+      world.interrupt(World::start + 120ms, SIGINT);
+    else
+      world.stop(World::start + 120ms, 2s);
+    timeline.carry_out(command(0, 1));
+    CHECK(timeline.wait_for_end() != signal);
+    CHECK(timeline.finish());
+    Listener heard{bus.sent()};
+    CHECK(bus.sent().size() == (signal ? 3 : 3 + 4));
+    CHECK(heard.values[0].size() == (signal ? 0 : 1));
+    CHECK(heard.transport.counters().timed_out == (signal ? 0 : 1));
+  }
+}
+
+TEST_CASE("broadcasts: a bus that takes nothing ends the command") {
+  const Silence silence;
+  World world{1};
+  PlayedBus::Conditions conditions;
+  conditions.down = {{World::start + 80ms, Moment::max()}};
+  PlayedBus bus{world, conditions};
+  Timeline timeline{bus, truck, "set", Timeline::Others::allowed, cli::Confirm::no, {}};
+  timeline.carry_out(command(0, 1));
+  CHECK_THROWS_AS(timeline.wait_for_end(), cli::Exit);
+  CHECK(world.now() - World::start < 1s);
+}
+
+/// Some at random times, with whatever stops program and bus for a while.
+void play(std::uint64_t seed) {
+  World world{seed};
+  PlayedBus::Conditions conditions;
+  conditions.room = world.between<std::size_t>(3, 20);
+  conditions.frame_time = world.between(100us, 1ms);
+  conditions.knows_delivery = world.chance(0.7);
+  bool calm = true;
+  const auto sometime = [&] { return World::start + world.between(0s, 6s); };
+  if (world.chance(0.3)) {
+    const Moment from = sometime();
+    conditions.down.push_back({from, from + world.between(1ms, 400ms)});
+    calm = false;
+  }
+  while (world.chance(0.3)) world.stop(sometime(), world.between(1ms, 3s)), calm = false;
+  PlayedBus bus{world, conditions};
+  std::array<std::set<std::uint8_t>, 3> meant;
+  bool left = false;
+  try {
+    Timeline timeline{bus, truck, "run", Timeline::Others::allowed, cli::Confirm::no, {}};
+    Moment at = world.now();
+    for (std::uint8_t value = 1; value <= 8; ++value) {
+      const auto which = world.between<std::size_t>(0, 2);
+      std::optional<client::Repeat> repeat;
+      if (world.chance(0.5))
+        repeat = client::Repeat{j1939::broadcast_time(layouts[which].length) + world.between(0ms, 500ms),
+                                world.between(1ms, 2s)};
+      timeline.carry_out(command(which, value, repeat));
+      meant[which].insert(value);
+      at += world.between(0ms, 1s);
+      if (!timeline.wait(at)) break;
+    }
+    static_cast<void>(timeline.wait_for_end());
+    static_cast<void>(timeline.finish());
+  } catch (const cli::Exit&) {
+    left = true;
+  }
+  world.pass(10s);
+  const Listener heard{bus.sent()};
+  const auto& counters = heard.transport.counters();
+  CHECK((counters.wrong_sequence == 0 && counters.lost_packet == 0 && counters.malformed == 0));
+  CHECK(counters.stray == 0);
+  for (std::size_t i = 0; i < 3; ++i)
+    for (const std::uint8_t value : heard.values[i]) CHECK(meant[i].contains(value));
+  if (!calm) return;
+  CHECK_FALSE(left);
+  CHECK(counters.complete == counters.announced);
+  // The value that was given last is the one that holds.
+  for (std::size_t i = 0; i < 3; ++i)
+    if (!meant[i].empty()) {
+      REQUIRE_FALSE(heard.values[i].empty());
+      CHECK(heard.values[i].back() == *meant[i].rbegin());
+    }
+}
+
+TEST_CASE("broadcasts: whatever happens to program and bus, no listener hears a wrong message") {
+  const auto runs = static_cast<std::uint64_t>(explored(1000));
+  const Silence silence;
+  for (std::uint64_t seed = 1; seed <= runs; ++seed) {
+    INFO("seed " << seed);
+    play(seed);
+  }
+}
+
+}  // namespace tool_clock_broadcasts_test
