@@ -18,7 +18,6 @@ bool has_page() noexcept {
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <libwebsockets.h>
 #include <netdb.h>
 #include <strings.h>
 #include <sys/socket.h>
@@ -30,6 +29,7 @@ bool has_page() noexcept {
 #include "ocm/host/descriptor.hpp"
 
 #include "cli/serve/foxglove.hpp"
+#include "cli/serve/websockets.hpp"
 #include "cli/shared/clock.hpp"
 
 namespace ocm::cli::serve {
@@ -408,6 +408,7 @@ transport::Outcome<std::unique_ptr<Web>> Web::open(const WebOptions& options, Vi
   for (const char* const name : foxglove::subprotocols)
     *protocol++ = {name, State::viewer_callback, sizeof(Connection*), 4096, 0, nullptr, 0};
 
+  if (const auto loaded = load_websockets(); !loaded) return loaded.error;
   lws_set_log_level(LLL_ERR, note_error);
   lws_context_creation_info info{};
   info.iface = options.address.c_str();
