@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "ocm/can/error_frame.hpp"
 #include "ocm/client/commanders.hpp"
 #include "ocm/client/diagnosis.hpp"
 #include "ocm/client/sample.hpp"
@@ -110,6 +111,7 @@ class Examination {
   void listen(base::Duration duration, Done done) {
     if (done()) return;
     live_.receive_or_leave(Live::Clock::now() + duration, [&](const can::Received& received) {
+      if (can::lost_in_controller(received.frame)) ++overflows_;
       const auto reception = receiver_.take(received);
       diagnosis_.take(reception);
       commanders_.take(received, reception);
@@ -148,6 +150,7 @@ class Examination {
     for (Finding& finding : all) finding.remedy = remedy(finding);
     const auto missing = messages_.findings(bus_->name(), listened);
     all.insert(all.end(), missing.begin(), missing.end());
+    if (overflows_ != 0) all.push_back(overflow());
     const auto counted = findings_of(bus_->counters(), receiver_.counters());
     all.insert(all.end(), counted.begin(), counted.end());
     return all;
@@ -168,6 +171,18 @@ class Examination {
   [[nodiscard]] std::uint64_t frames() const { return receiver_.counters().frames; }
 
  private:
+  [[nodiscard]] Finding overflow() const {
+    const bool on_a_line = bus_->name().starts_with("slcan:");
+    return {
+        Severity::warning, "",
+        fmt::format("{} lost frames for want of room, reported {}",
+                    on_a_line ? "the serial adapter" : "the CAN controller",
+                    client::count(overflows_, "time*")),
+        on_a_line
+            ? "a serial line of 115200 baud carries some 440 frames/s: publish less, or use an adapter on "
+              "the CAN bus"
+            : "this machine is too busy"};
+  }
   void request(const protocol::Topic& topic) {
     Outgoing{*bus_, "doctor"}.send(protocol::once(topic.id, topic.priority));
   }
@@ -197,6 +212,7 @@ class Examination {
   Diagnosis diagnosis_;
   client::Commanders commanders_;
   Messages messages_;
+  std::uint64_t overflows_ = 0;  ///< times that the controller or adapter reported lost frames
 };
 
 /// 90061 s as "1 d 1 h".

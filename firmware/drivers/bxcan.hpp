@@ -19,6 +19,9 @@
 /// Frames wait in a pool of `capacity` slots. The less urgent ones may not fill it: each priority leaves
 /// `reserve` slots more to those above, so a frame is refused only by frames at least as urgent.
 ///
+/// What the board's filters let through comes in FIFO 0. All else on the bus can be overheard in FIFO 1, with
+/// an interrupt of its own: `overhear`. The board's own frames never wait behind those of others.
+///
 /// Not reentrant: mask the controller's interrupts, or lock, around each call. Each is bounded: O(capacity)
 /// for a frame moved. 24 bytes a slot. Errors: bad_identifier, bad_length as of can::validate; and for other
 /// formats than base data frames, the only ones of the robot.
@@ -50,6 +53,8 @@ struct Counters {
   std::uint32_t overruns = 0;  ///< times that the receive FIFO lost a frame, or several
   std::uint32_t bus_off = 0;   ///< times
   std::uint32_t passive = 0;   ///< times
+  std::uint32_t overheard = 0;
+  std::uint32_t overheard_lost = 0;  ///< times that FIFO 1 lost a frame, or several
   friend constexpr bool operator==(const Counters&, const Counters&) = default;
 };
 
@@ -96,7 +101,7 @@ class Bxcan {
     registers_.write(Register::btr, std::uint32_t{timing.sjw} << 24 | std::uint32_t{timing.ts2} << 20 |
                                         std::uint32_t{timing.ts1} << 16 | timing.brp);
     set_filters(filters);
-    registers_.write(Register::ier, ier::tmeie | ier::fmpie0 | ier::errie | ier::epvie | ier::bofie);
+    registers_.write(Register::ier, interrupts);
     registers_.write(Register::mcr, mcr::abom);
     return {};
   }
@@ -127,26 +132,24 @@ class Bxcan {
 
   /// The next received frame, oldest first; none: the FIFO is empty. To be called by the receive interrupt
   /// until it says so.
-  std::optional<can::Frame> receive() noexcept {
-    const std::uint32_t status = registers_.read(Register::rf0r);
-    if ((status & rfr::fovr) != 0) {
-      registers_.write(Register::rf0r, rfr::fovr);
-      ++counters_.overruns;
-    }
-    if ((status & rfr::fmp) == 0) return std::nullopt;
-    can::Frame frame;
-    const std::uint32_t id = registers_.read(Register::rir);
-    const std::uint32_t length = registers_.read(Register::rdtr) & 0xF;
-    const std::uint32_t low = registers_.read(Register::rdlr);
-    const std::uint32_t high = registers_.read(Register::rdhr);
-    registers_.write(Register::rf0r, rfr::rfom);
-    await(Register::rf0r, rfr::rfom, 0);  // until then the registers still show the frame that was read
-    frame.id = id >> tir::base_id_shift;
-    frame.dlc = static_cast<std::uint8_t>(length > can::max_dlc ? can::max_dlc : length);
-    for (std::size_t i = 0; i < frame.dlc; ++i)
-      frame.data[i] = static_cast<std::uint8_t>((i < 4 ? low : high) >> 8 * (i % 4));
-    ++counters_.received;
-    return frame;
+  std::optional<can::Frame> receive() noexcept { return take(0, counters_.received, counters_.overruns); }
+
+  /// From now on FIFO 1 gets every frame that is not for the board, of every format, or none. Its filter was
+  /// set up at the start, so that this is one bit: no frame is missed, as it would be while filters are set
+  /// up [RM0008 24.7.4]. False: the board's own filters are not wide, or no bank is left.
+  bool overhear(bool all) noexcept {
+    if (overhearing_bank_ >= filter_banks) return false;
+    const std::uint32_t active = (1U << overhearing_bank_) - 1U;  // the board's own
+    registers_.write(Register::fa1r, active | (all ? 1U << overhearing_bank_ : 0U));
+    registers_.write(Register::ier, interrupts | (all ? ier::fmpie1 : 0U));
+    if (!all)
+      for (std::size_t n = 0; n < receive_depth; ++n)
+        static_cast<void>(overheard());  // not for the next time
+    return true;
+  }
+  /// The next frame of FIFO 1; none: it is empty. To be called by its interrupt.
+  std::optional<can::Frame> overheard() noexcept {
+    return take(1, counters_.overheard, counters_.overheard_lost);
   }
 
   /// To be called by the status change interrupt and, from `start` on, every 10 ms or so. True: since now the
@@ -203,6 +206,35 @@ class Bxcan {
     return static_cast<std::int32_t>(a.number - b.number) < 0;  // numbers wrap around
   }
 
+  static constexpr std::uint32_t interrupts = ier::tmeie | ier::fmpie0 | ier::errie | ier::epvie | ier::bofie;
+
+  std::optional<can::Frame> take(std::size_t fifo, std::uint32_t& frames, std::uint32_t& overruns) noexcept {
+    const Register fill = of_fifo(Register::rf0r, fifo);
+    const std::uint32_t status = registers_.read(fill);
+    if ((status & rfr::fovr) != 0) {
+      registers_.write(fill, rfr::fovr);
+      ++overruns;
+    }
+    if ((status & rfr::fmp) == 0) return std::nullopt;
+    can::Frame frame;
+    const std::uint32_t id = registers_.read(of_fifo(Register::rir, fifo));
+    const std::uint32_t length = registers_.read(of_fifo(Register::rdtr, fifo)) & 0xF;
+    const std::uint32_t low = registers_.read(of_fifo(Register::rdlr, fifo));
+    const std::uint32_t high = registers_.read(of_fifo(Register::rdhr, fifo));
+    registers_.write(fill, rfr::rfom);
+    await(fill, rfr::rfom, 0);  // until then the registers still show the frame that was read
+    const bool extended = (id & tir::ide) != 0;
+    const bool remote = (id & tir::rtr) != 0;
+    frame.format = extended ? (remote ? can::Format::extended_remote : can::Format::extended)
+                            : (remote ? can::Format::base_remote : can::Format::base);
+    frame.id = id >> (extended ? tir::extended_id_shift : tir::base_id_shift);
+    frame.dlc = static_cast<std::uint8_t>(length > can::max_dlc ? can::max_dlc : length);
+    for (std::size_t i = 0; i < frame.bytes().size(); ++i)
+      frame.data[i] = static_cast<std::uint8_t>((i < 4 ? low : high) >> 8 * (i % 4));
+    ++frames;
+    return frame;
+  }
+
   bool await(Register which, std::uint32_t mask, std::uint32_t value) noexcept {
     for (unsigned i = 0; i < patience; ++i)
       if ((registers_.read(which) & mask) == value) return true;
@@ -213,12 +245,19 @@ class Bxcan {
     const std::uint32_t master = registers_.read(Register::fmr);  // CAN2's first bank stays what it is
     registers_.write(Register::fmr, master | fmr::finit);
     registers_.write(Register::fa1r, 0);
-    registers_.write(Register::fm1r, 0);   // masks
-    registers_.write(Register::fs1r, 0);   // of 16 bits
-    registers_.write(Register::ffa1r, 0);  // into FIFO 0
+    registers_.write(Register::fm1r, 0);  // masks
+    registers_.write(Register::fs1r, filters.wide ? (1U << filters.size) - 1U : 0);
+    // The board's own into FIFO 0. The bank of all else is of 16 bits, and comes after those of 32.
+    overhearing_bank_ = filters.wide ? filters.size : filter_banks;
+    const bool spare = overhearing_bank_ < filter_banks;
+    registers_.write(Register::ffa1r, spare ? 1U << overhearing_bank_ : 0U);
     for (std::size_t i = 0; i < filters.size; ++i) {
       registers_.write(of_bank(Register::fr1, i), filters.banks[i].fr1);
       registers_.write(of_bank(Register::fr2, i), filters.banks[i].fr2);
+    }
+    if (spare) {
+      registers_.write(of_bank(Register::fr1, overhearing_bank_), 0);  // no bit must match
+      registers_.write(of_bank(Register::fr2, overhearing_bank_), 0);
     }
     registers_.write(Register::fa1r, (1U << filters.size) - 1U);
     registers_.write(Register::fmr, master & ~fmr::finit);
@@ -355,6 +394,7 @@ class Bxcan {
   std::array<Slot, capacity> slots_{};
   std::array<Mailbox, mailboxes> mailboxes_{};
   std::size_t used_ = 0;
+  std::size_t overhearing_bank_ = filter_banks;
   std::uint32_t next_number_ = 0;
   Counters counters_;
   BusErrors errors_;

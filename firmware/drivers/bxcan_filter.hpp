@@ -1,6 +1,6 @@
 /// Which frames interrupt a board: the commands to its own topics, at every priority, and nothing else. Taken
 /// from the board's type in the generated header when the image is compiled, and packed into bxCAN's filter
-/// banks, two masks of 16 bits in each.
+/// banks, two masks of 16 bits in each; or, for a board that also overhears the others, one mask of 32 bits.
 ///
 /// Topics that differ in one bit share a mask, so a filter never lets a foreign identifier through: `exact`
 /// in tests/firmware/bxcan asks all 2048. Remote and extended frames pass none: RTR and IDE are in every
@@ -19,8 +19,8 @@
 
 namespace ocm::firmware::drivers::bxcan {
 
-/// A bank in mask mode and 16-bit scale: FxR1 is the first filter, FxR2 the second; identifier in the lower
-/// half, mask in the upper. [RM0008 24.7.4, figure 231]
+/// A bank in mask mode. Of 16 bits: FxR1 is the first filter, FxR2 the second; identifier in the lower half,
+/// mask in the upper. Of 32 bits: FxR1 is the identifier, FxR2 the mask. [RM0008 24.7.4, figure 231]
 struct FilterBank {
   std::uint32_t fr1 = 0;
   std::uint32_t fr2 = 0;
@@ -31,7 +31,26 @@ struct FilterBank {
 struct FilterBanks {
   std::array<FilterBank, filter_banks> banks{};
   std::size_t size = 0;
+  /// Of 32 bits: these come before those of 16, whatever FIFO they lead to. Among filters of one scale the
+  /// lower number comes first, and each FIFO has its own numbers. [RM0008 24.7.4, filter priority rules]
+  bool wide = false;
   friend constexpr bool operator==(const FilterBanks&, const FilterBanks&) = default;
+
+  /// What the controller decides, for a frame that does not come from the bus. O(banks). [RM0008 figure 231]
+  [[nodiscard]] constexpr bool accepts(const can::Frame& frame) const noexcept {
+    const bool extended = can::is_extended(frame.format);
+    const bool remote = can::is_remote(frame.format);
+    const std::uint32_t have32 =
+        (extended ? frame.id << 3 | 1U << 2 : frame.id << 21) | (remote ? 1U << 1 : 0U);
+    const std::uint32_t have16 = (extended ? frame.id >> 18 : frame.id) << 5 | (remote ? 1U << 4 : 0U) |
+                                 (extended ? 1U << 3 | (frame.id >> 15 & 7) : 0U);
+    const auto passes = [have16](std::uint32_t filter) { return ((have16 ^ filter) & filter >> 16) == 0; };
+    for (std::size_t i = 0; i < size; ++i) {
+      const FilterBank& bank = banks[i];
+      if (wide ? ((have32 ^ bank.fr1) & bank.fr2) == 0 : passes(bank.fr1) || passes(bank.fr2)) return true;
+    }
+    return false;
+  }
 };
 
 /// Identifiers whose bits under `mask` are those of `id`.
@@ -92,6 +111,11 @@ constexpr void add_commands(FilterSet& set, protocol::TopicList<Topics...>) noex
   return mask << 16 | id;
 }
 
+/// STID in bits 31..21, then EXID, IDE in 2, RTR in 1. [RM0008 figure 231]
+[[nodiscard]] constexpr FilterBank wide_bank(BaseFilter filter) noexcept {
+  return {std::uint32_t{filter.id} << 21, std::uint32_t{filter.mask} << 21 | 1U << 2 | 1U << 1};
+}
+
 }  // namespace detail
 
 /// What a board must hear, before it is packed.
@@ -114,6 +138,16 @@ template <class Board>
     const BaseFilter second = set.filters[i + 1 < set.size ? i + 1 : i];  // a half that is free says it again
     result.banks[result.size++] = {detail::packed(set.filters[i]), detail::packed(second)};
   }
+  return result;
+}
+
+/// The same for a board that also overhears the others (Bxcan::overhear): its own frames come first.
+template <class Board>
+[[nodiscard]] consteval FilterBanks wide_filter_banks_of() noexcept {
+  constexpr detail::FilterSet set = command_filters<Board>();
+  static_assert(set.size < filter_banks, "more filters than the controller has, with one for all else");
+  FilterBanks result{.banks = {}, .size = set.size, .wide = true};
+  for (std::size_t i = 0; i < set.size; ++i) result.banks[i] = detail::wide_bank(set.filters[i]);
   return result;
 }
 

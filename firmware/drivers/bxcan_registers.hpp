@@ -27,7 +27,7 @@ enum class Register : std::uint16_t {
   tdtr = 0x184,
   tdlr = 0x188,
   tdhr = 0x18C,
-  rir = 0x1B0,  ///< receive FIFO 0
+  rir = 0x1B0,  ///< receive FIFO 0; FIFO 1 is 0x10 further
   rdtr = 0x1B4,
   rdlr = 0x1B8,
   rdhr = 0x1BC,
@@ -43,6 +43,10 @@ enum class Register : std::uint16_t {
 /// The register of mailbox `n`, from that of mailbox 0.
 [[nodiscard]] constexpr Register of_mailbox(Register first, std::size_t n) noexcept {
   return static_cast<Register>(static_cast<std::size_t>(first) + 0x10 * n);
+}
+/// The register of receive FIFO `n`, from that of FIFO 0: RFR or those of its first frame.
+[[nodiscard]] constexpr Register of_fifo(Register first, std::size_t n) noexcept {
+  return static_cast<Register>(static_cast<std::size_t>(first) + (first == Register::rf0r ? 0x4 : 0x10) * n);
 }
 /// The register of filter bank `n`, from that of bank 0.
 [[nodiscard]] constexpr Register of_bank(Register first, std::size_t n) noexcept {
@@ -89,6 +93,7 @@ inline constexpr std::uint32_t rfom = 1U << 5;  ///< write 1 to release; reads 1
 namespace ier {  // [RM0008 24.9.2]
 inline constexpr std::uint32_t tmeie = 1U << 0;
 inline constexpr std::uint32_t fmpie0 = 1U << 1;
+inline constexpr std::uint32_t fmpie1 = 1U << 4;
 inline constexpr std::uint32_t epvie = 1U << 9;
 inline constexpr std::uint32_t bofie = 1U << 10;
 inline constexpr std::uint32_t errie = 1U << 15;

@@ -80,6 +80,7 @@ class BxcanModel {
     }
     if (offset >= 0x180 && offset < 0x1B0) return mailbox_[(offset - 0x180) / 0x10].words[offset % 0x10 / 4];
     if (offset >= 0x1B0 && offset < 0x1C0) return fifo_.words(offset % 0x10 / 4);
+    if (offset >= 0x1C0 && offset < 0x1D0) return fifo1_.words(offset % 0x10 / 4);
     if (offset >= 0x240 && offset < 0x240 + 14 * 8) return banks_[(offset - 0x240) / 8][offset % 8 / 4];
     violation("read of a register that is not there");
     return 0;
@@ -138,6 +139,9 @@ class BxcanModel {
     return done && (ier_ & 1) != 0;
   }
   [[nodiscard]] bool receive_interrupt() const { return !fifo_.frames.empty() && (ier_ & 2) != 0; }
+  [[nodiscard]] bool receive_interrupt_of_fifo_1() const {
+    return !fifo1_.frames.empty() && (ier_ & 0x10) != 0;
+  }
   [[nodiscard]] bool error_interrupt() const { return erri_; }
 
   // --- the bus's side ---
@@ -406,6 +410,10 @@ class BxcanModel {
     const std::uint32_t base = extended ? received.id >> 18 : received.id;
     const std::uint32_t id16 =
         base << 5 | (remote ? 0x10U : 0U) | (extended ? 8U | (received.id >> 15 & 7) : 0U);
+    // Those of 32 bits come first, lists before masks, lower numbers before higher. Each FIFO numbers its
+    // filters by itself, so which of two FIFOs gets a frame is not said where only the numbers could tell.
+    std::optional<std::size_t> best;
+    const auto rank = [&](std::size_t n) { return 2 * (fs1r_ >> n & 1) + (fm1r_ >> n & 1); };
     for (std::size_t n = 0; n < banks_.size(); ++n) {
       if ((fa1r_ >> n & 1) == 0) continue;
       const bool list = (fm1r_ >> n & 1) != 0;
@@ -422,10 +430,13 @@ class BxcanModel {
         }
       }
       if (!accepted) continue;
-      filters_used[n] = true;
-      return ffa1r_ >> n & 1;
+      if (best && rank(*best) == rank(n) && (ffa1r_ >> *best & 1) != (ffa1r_ >> n & 1))
+        violation("it is not said which FIFO gets this frame");
+      if (!best || rank(n) > rank(*best)) best = n;
     }
-    return std::nullopt;
+    if (!best) return std::nullopt;
+    filters_used[*best] = true;
+    return ffa1r_ >> *best & 1;
   }
 
   void update_errors() {

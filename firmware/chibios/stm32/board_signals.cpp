@@ -15,18 +15,12 @@ namespace {
 
 constinit SignalPins signals{};
 constinit ConnectDetector connect{};
+constinit void (*prog_interrupt)() = nullptr;  // of who shares the programming UART
 
 // The same on both chips. [RM0008 table 63, RM0090 table 62]
 constexpr std::uint32_t lines_9_to_5_number = 23;
 constexpr std::uint32_t lines_15_to_10_number = 40;
 constexpr std::uint32_t interrupt_priority = 13;  // of the lowest: 14 is the kernel's own
-
-constexpr std::uint32_t prog_bit_rate = 115'200;  // [AMiRo-OS bootloader.mk, FLASH_BAUDRATE]
-#if defined(STM32F103xE)
-constexpr std::uint32_t prog_clock_hz = 72'000'000;  // APB2, undivided
-#else
-constexpr std::uint32_t prog_clock_hz = 84'000'000;
-#endif
 
 void choose_port_of_line(std::uint32_t line, char port) noexcept {
   const auto number = static_cast<std::uint32_t>(port - 'A');
@@ -67,6 +61,14 @@ void obey_shutdown(const SignalPins& pins) noexcept {
   nvicEnableVector(STM32_USART1_NUMBER, interrupt_priority);
 }
 
+void share_programming_uart(void (*interrupt)()) noexcept {
+  prog_interrupt = interrupt;
+}
+
+void heed(std::uint8_t byte) noexcept {
+  if (connect.feed(byte)) shut_down(Shutdown::restart);
+}
+
 void say_ready() noexcept {
   palSetPad(signals.sync_port, signals.sync_pad);
 }
@@ -105,9 +107,13 @@ OSAL_IRQ_HANDLER(VectorE0) {  // lines 15 to 10
 
 OSAL_IRQ_HANDLER(STM32_USART1_HANDLER) {
   OSAL_IRQ_PROLOGUE();
-  const std::uint32_t status = USART1->SR;
-  const auto byte = static_cast<std::uint8_t>(USART1->DR);  // after SR: clears overrun and framing errors
-  if ((status & USART_SR_RXNE) != 0 && stm32::connect.feed(byte)) stm32::shut_down(stm32::Shutdown::restart);
+  if (stm32::prog_interrupt != nullptr) {
+    stm32::prog_interrupt();
+  } else {
+    const std::uint32_t status = USART1->SR;
+    const auto byte = static_cast<std::uint8_t>(USART1->DR);  // after SR: clears overrun and framing errors
+    if ((status & USART_SR_RXNE) != 0) stm32::heed(byte);
+  }
   OSAL_IRQ_EPILOGUE();
 }
 

@@ -20,8 +20,21 @@ struct SignalPins {
   char power_down_port = 'C';
 };
 
+/// The programming UART, USART1 on all three boards.
+inline constexpr std::uint32_t prog_bit_rate = 115'200;  ///< [AMiRo-OS bootloader.mk, FLASH_BAUDRATE]
+#if defined(STM32F103xE)
+inline constexpr std::uint32_t prog_clock_hz = 72'000'000;  ///< APB2, undivided
+#else
+inline constexpr std::uint32_t prog_clock_hz = 84'000'000;
+#endif
+
 /// From now on SYS_PD_N and the UART are obeyed.
 void obey_shutdown(const SignalPins& pins) noexcept;
+
+/// From now on the UART's interrupt calls `interrupt` instead of only listening. It must call `heed` with
+/// each byte, as it comes: the flashing tool is obeyed whatever else is said on the line.
+void share_programming_uart(void (*interrupt)()) noexcept;
+void heed(std::uint8_t byte) noexcept;
 
 /// Lets SYS_SYNC_N go: this board is ready. Other boards' programs wait for it.
 void say_ready() noexcept;

@@ -22,7 +22,7 @@ base::Status CanBus::start(Port& port, const can::BitTiming& timing,
   bus = this;
   {
     const Lock lock;
-    if (const auto started = controller_.start(timing, filters); !started.ok()) return started;
+    if (const auto started = node_.start(timing, filters); !started.ok()) return started;
   }
   nvicEnableVector(STM32_CAN1_TX_NUMBER, interrupt_priority);
   nvicEnableVector(STM32_CAN1_RX0_NUMBER, interrupt_priority);
@@ -32,7 +32,7 @@ base::Status CanBus::start(Port& port, const can::BitTiming& timing,
 
 base::Result<bool> CanBus::send(const can::Frame& frame) noexcept {
   const Lock lock;
-  const auto taken = controller_.send(frame);
+  const auto taken = node_.send(frame, now_if_heard());
   if (taken.ok() && !*taken) refused_ = true;
   return taken;
 }
@@ -45,10 +45,8 @@ BusEvent CanBus::wait(can::Frame& frame) noexcept {
         lost_ = false;
         return BusEvent::lost;
       }
-      if (size_ != 0) {
-        frame = received_[begin_];
-        begin_ = (begin_ + 1) % received_.size();
-        --size_;
+      if (const auto received = node_.next()) {
+        frame = *received;
         return BusEvent::frame;
       }
       if (writable_) {
@@ -63,29 +61,29 @@ BusEvent CanBus::wait(can::Frame& frame) noexcept {
 
 drivers::bxcan::Counters CanBus::counters() noexcept {
   const Lock lock;
-  return controller_.counters();
+  return node_.controller().counters();
 }
 
 drivers::bxcan::BusErrors CanBus::errors() noexcept {
   const Lock lock;
-  return controller_.errors();
+  return node_.controller().errors();
 }
 
 std::uint32_t CanBus::missed() noexcept {
   const Lock lock;
-  return missed_;
+  return node_.missed();
 }
 
 void CanBus::on_transmit() noexcept {
   const Lock lock;
-  const std::size_t waiting = controller_.waiting();
-  controller_.on_transmit();
+  const std::size_t waiting = node_.controller().waiting();
+  node_.controller().on_transmit();
   room_again(waiting);
 }
 
 // Frames that were given up make room too, and then no transmit interrupt says so.
 void CanBus::room_again(std::size_t waited) noexcept {
-  if (!refused_ || controller_.waiting() >= waited) return;
+  if (!refused_ || node_.controller().waiting() >= waited) return;
   refused_ = false;
   writable_ = true;
   signal_.raise_locked();
@@ -93,14 +91,26 @@ void CanBus::room_again(std::size_t waited) noexcept {
 
 void CanBus::on_receive() noexcept {
   const Lock lock;
-  while (const auto frame = controller_.receive()) {
-    if (size_ == received_.size()) {
-      ++missed_;
-      continue;
-    }
-    received_[(begin_ + size_++) % received_.size()] = *frame;
-  }
+  node_.on_receive(now_if_heard());
   signal_.raise_locked();
+}
+
+// Between frames the lock is let go: what is more urgent waits for one frame only.
+void CanBus::on_overhear() noexcept {
+  const base::Time now = port_->now();
+  for (std::size_t n = 0; n < drivers::bxcan::receive_depth; ++n) {
+    const Lock lock;
+    if (!node_.overhear(now)) return;
+  }
+}
+
+void CanBus::listen(bool all) noexcept {
+  const Lock lock;
+  node_.listen(all);
+}
+
+void CanBus::deliver(const can::Frame& frame) noexcept {
+  if (node_.deliver(frame)) signal_.raise_locked();
 }
 
 void CanBus::on_status_change() noexcept {
@@ -110,8 +120,8 @@ void CanBus::on_status_change() noexcept {
 void CanBus::watch() noexcept {
   const base::Time now = port_->now();
   const Lock lock;
-  const std::size_t waiting = controller_.waiting();
-  if (controller_.watch(now)) {
+  const std::size_t waiting = node_.controller().waiting();
+  if (node_.controller().watch(now)) {
     lost_ = true;
     signal_.raise_locked();
   }

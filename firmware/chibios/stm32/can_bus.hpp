@@ -1,5 +1,5 @@
-/// The robot's CAN bus on the chip's own controller: the driver of firmware/drivers/bxcan.hpp, its interrupts
-/// and a queue of received frames. Clock, interrupt numbers and vectors are ChibiOS's (CANv1's names); its
+/// The robot's CAN bus on the chip's own controller: firmware/drivers/bxcan_node.hpp with its interrupts and
+/// the kernel's lock. Clock, interrupt numbers and vectors are ChibiOS's (CANv1's names); its
 /// CAN driver is not used, for its transmit interrupt takes an aborted mailbox for a sent one.
 ///
 /// RAM: 1 KiB. Interrupt priorities lie below the kernel's timer, so that a burst of frames delays none of
@@ -18,6 +18,7 @@
 
 #include "firmware/chibios/port.hpp"
 #include "firmware/drivers/bxcan.hpp"
+#include "firmware/drivers/bxcan_node.hpp"
 
 namespace ocm::firmware::chibios::stm32 {
 
@@ -42,6 +43,7 @@ class CanBus {
   CanBus& operator=(const CanBus&) = delete;
 
   /// Joins the bus. With the kernel running.
+  /// `filters` must outlive the bus.
   base::Status start(Port& port, const can::BitTiming& timing,
                      const drivers::bxcan::FilterBanks& filters) noexcept;
 
@@ -57,22 +59,27 @@ class CanBus {
   /// Frames that came while the queue below was full.
   [[nodiscard]] std::uint32_t missed() noexcept;
 
+  /// What a host on the board's line sees (host_line.hpp).
+  void attach(const drivers::bxcan::Ear& ear) noexcept { node_.attach(ear); }
+  [[nodiscard]] drivers::bxcan::Node<drivers::bxcan::MappedRegisters>& node() noexcept { return node_; }
+  void listen(bool all) noexcept;
+  /// With the lock held: the board has it at once.
+  void deliver(const can::Frame& frame) noexcept;
+
   void on_transmit() noexcept;
   void on_receive() noexcept;
+  void on_overhear() noexcept;
   void on_status_change() noexcept;
 
  private:
   void watch() noexcept;
   /// `waited`: how many frames waited before. With the lock held.
   void room_again(std::size_t waited) noexcept;
+  /// The clock is read only for a host that hears.
+  [[nodiscard]] base::Time now_if_heard() noexcept { return node_.listening() ? port_->now() : base::Time{}; }
 
-  drivers::bxcan::Bxcan<drivers::bxcan::MappedRegisters> controller_{
-      drivers::bxcan::MappedRegisters{can1_address}};
+  drivers::bxcan::Node<drivers::bxcan::MappedRegisters> node_{drivers::bxcan::MappedRegisters{can1_address}};
   Port* port_ = nullptr;
-  std::array<can::Frame, 16> received_{};  ///< 1.5 ms of the shortest frames, back to back
-  std::size_t begin_ = 0;
-  std::size_t size_ = 0;
-  std::uint32_t missed_ = 0;
   bool refused_ = false;   ///< `send` said no since room was last announced
   bool writable_ = false;  ///< there is room again
   bool lost_ = false;      ///< the bus went since that was last announced

@@ -45,15 +45,24 @@ class Vitals {
   ResetCause cause_;
 };
 
+/// Of a board whose serial line is for the flashing tool alone.
+struct NoHostLine {
+  template <class Type>
+  static constexpr drivers::bxcan::FilterBanks filters = drivers::bxcan::filter_banks_of<Type>();
+  NoHostLine(Port& /*port*/, CanBus& /*can*/) noexcept {}
+  void start() noexcept {}
+};
+
 /// `Type` is the board in the generated header, `Board` its template, `Costs` what its admission reckons
-/// with; `parts` have their buses started.
-template <class Type, template <class, class, class, class> class Board, class Costs, class Parts>
+/// with; `parts` have their buses started. `Line`: HostLine (host_line.hpp), or none.
+template <class Type, template <class, class, class, class> class Board, class Costs, class Line = NoHostLine,
+          class Parts>
 [[noreturn]] void run(Parts& parts) noexcept {
   static Port port;
   static CanBus can;
   static Vitals vitals{port, can};
   parts.start(port.now());
-  static constexpr auto filters = drivers::bxcan::filter_banks_of<Type>();
+  static constexpr auto filters = Line::template filters<Type>;
   // A controller that does not answer has no clock or is broken: nothing of this board would be heard of.
   if (!can.start(port, bit_timing<Type, amiro::catalogue.bit_rate>, filters).ok())
     rest_and_restart(ResetCause::software);
@@ -61,6 +70,8 @@ template <class Type, template <class, class, class, class> class Board, class C
   static Board<Parts, CanBus, Port, Admission> board{parts, can, port};
   board.controller().report([] { return vitals.health(); });
   static Runtime runtime{port, board.controller(), can};
+  static Line line{port, can};
+  line.start();
   say_ready();
   start_watchdog();
   runtime.run(

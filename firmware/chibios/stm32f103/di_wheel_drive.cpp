@@ -10,6 +10,7 @@
 #include "firmware/chibios/fault.hpp"
 #include "firmware/chibios/stm32/board_signals.hpp"
 #include "firmware/chibios/stm32/chip.hpp"
+#include "firmware/chibios/stm32/host_line.hpp"
 #include "firmware/chibios/stm32/i2c_bus.hpp"
 #include "firmware/chibios/stm32/main.hpp"
 #include "firmware/chibios/stm32/motor_timers.hpp"
@@ -92,5 +93,5 @@ int main() {
   static di_wheel_drive::Parts<stm32::I2cBus, stm32::I2cBus, stm32::SpiDevice, stm32::SpiDevice,
                                stm32::MotorTimers, stm32::OnePin, chibios::Mutex>
       parts{compass, floor, gyroscope, accelerometer, motors, power};
-  stm32::run<amiro::DiWheelDrive, di_wheel_drive::Board, di_wheel_drive::Costs>(parts);
+  stm32::run<amiro::DiWheelDrive, di_wheel_drive::Board, di_wheel_drive::Costs, stm32::HostLine>(parts);
 }

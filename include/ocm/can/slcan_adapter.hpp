@@ -109,10 +109,7 @@ class CommandReader {
     base::Result<Command> command{};
   };
   constexpr Outcome feed(char c) noexcept {
-    if (c != carriage_return) {
-      line_.feed(c, faults_);
-      return {};
-    }
+    if (collect(c)) return {};
     Outcome out{.complete = true, .command = base::Error::bad_syntax};
     if (!line_.spoilt()) {
       out.command = parse_command(line_.line());
@@ -120,6 +117,12 @@ class CommandReader {
     }
     line_.restart();
     return out;
+  }
+  /// The same for a character that ends no line, without an outcome to copy; false: it ends one, `feed` it.
+  constexpr bool collect(char c) noexcept {
+    if (c == carriage_return) return false;
+    line_.feed(c, faults_);
+    return true;
   }
   [[nodiscard]] constexpr const LineFaults& faults() const noexcept { return faults_; }
 
@@ -153,8 +156,8 @@ class Adapter {
   /// again.
   template <Sender B>
   constexpr Reply feed(char c, B& bus) noexcept(noexcept(bus.send(Frame{}))) {
+    if (reader_.collect(c)) return {};
     const auto line = reader_.feed(c);
-    if (!line.complete) return {};
     if (!line.command) return refused();
     return execute(*line.command, bus);
   }

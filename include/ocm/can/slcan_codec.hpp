@@ -95,8 +95,10 @@ inline constexpr std::uint8_t states = warning | passive;
 [[nodiscard]] constexpr base::Result<Line> encode(const Frame& frame, std::uint32_t milliseconds) noexcept {
   const auto plain = encode(frame);
   if (!plain) return plain.error;
+  std::string_view text = plain->view();
+  text.remove_suffix(1);  // CR
   Line line;
-  line << plain->view().substr(0, plain->view().size() - 1);
+  line << text;
   return line.hex(milliseconds % stamp_period, 4) << carriage_return;
 }
 
@@ -117,13 +119,18 @@ struct LineFaults {
 
 namespace detail {
 
-/// The digits from `at` on as one number: Error::bad_syntax unless there are `count` of them.
+/// The `count` digits from `at` on, at most 8, as one number: Error::bad_syntax unless there are so many.
+/// Without substr, which can throw: a board's image would contain what that needs.
 [[nodiscard]] constexpr base::Result<std::uint32_t> digits(std::string_view line, std::size_t at,
                                                            std::size_t count) noexcept {
   if (line.size() < at + count) return base::Error::bad_syntax;
-  const auto number = base::parse_unsigned(line.substr(at, count), 16);
-  if (!number) return number.error;
-  return static_cast<std::uint32_t>(*number);
+  std::uint32_t number = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const int digit = base::hex_digit(line[at + i]);
+    if (digit < 0) return base::Error::bad_syntax;
+    number = number << 4 | static_cast<std::uint32_t>(digit);
+  }
+  return number;
 }
 
 /// A frame, and where in the line it ends.

@@ -26,6 +26,10 @@ Section = namedtuple("Section", "name address size writable loaded")
 Image = namedtuple("Image", "memory sections symbols entry")  # memory: address -> byte, as flashed
 
 
+# On DiWheelDrive also CAN1's second FIFO: what a host on the serial line overhears.
+OF_HOST_LINE = {"CAN1_RX1": 21}
+
+
 def read_elf(data):
     if data[:7] != b"\x7fELF\x01\x01\x01":
         raise ValueError("not a 32-bit little-endian ELF")
@@ -86,8 +90,8 @@ def starts(memory, chip):
     return sum(words) & 0xFFFFFFFF == 0
 
 
-def faults(image, chip):
-    """In words, what would go wrong; an empty list when nothing."""
+def faults(image, chip, obeyed=None):
+    """In words, what would go wrong; an empty list when nothing. `obeyed`: interrupts that must have a handler."""
     found = []
     low = [a for a in image.memory if a < chip.application]
     if low:
@@ -120,7 +124,7 @@ def faults(image, chip):
             found.append(f"vector {interrupt} is used, and this chip has no such interrupt")
     if chip.slot < 64 + 4 * chip.interrupts:
         found.append("the checksum overwrites a vector of this chip")
-    for name, interrupt in OBEYED.items():
+    for name, interrupt in (obeyed or OBEYED).items():
         if vector(interrupt) == unhandled:
             found.append(f"no handler for {name}")
 

@@ -30,6 +30,7 @@ class Adapter:
         self.frames, self.commands = [], []
         self.open, self.rate, self.stamped = False, None, False
         self.full = 0  # so many frames are refused
+        self.events = 0  # bits of the next answer to F
         self.master, self.slave = pty.openpty()
         tty.setraw(self.slave)
         self.path = os.ttyname(self.slave)
@@ -90,7 +91,8 @@ class Adapter:
             self.open = True
             return ok, []
         if command == "F":
-            return "F00\r" if self.open else refused, []
+            events, self.events = self.events, 0
+            return f"F{events:02X}\r" if self.open else refused, []
         if re.fullmatch("S[0-8]", command) and not self.open:
             self.rate = [10, 20, 50, 100, 125, 250, 500, 800, 1000][int(command[1])]
             return ok, []

@@ -111,6 +111,16 @@ class OnASerialLine(WithAdapter, Case):
         self.assertEqual(listener.returncode, 0, err)
         self.assertEqual([sample["data"] for sample in self.objects(out)], ["FCFF00000000"] * 3)
 
+    def test_doctor_says_that_the_line_is_too_slow(self):
+        adapter = self.adapter()
+        adapter.events = 0x01
+        out, _ = self.run_tool("--bus", f"slcan:{adapter.path}", "doctor", "--json", "--listen", "1500ms",
+                               "--patience", "50ms", code=1)
+        examination, = self.objects(out)
+        what = "the serial adapter lost frames for want of room, reported 1 time"
+        finding, = [each for each in examination["findings"] if each["what"] == what]
+        self.assertIn("440 frames/s", finding["remedy"])
+
     def test_unplugged_in_the_middle_of_a_line(self):
         adapter = self.adapter()
         listener = self.start("--bus", f"slcan:{adapter.path}", "listen", "--json", "--timeout", "20s")
