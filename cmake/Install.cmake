@@ -1,6 +1,5 @@
 # cmake --install: the headers, the CMake package, the programs, the AMiRo's spec. Wherever it is installed, the
 # result may be moved: nothing in it names the prefix.
-option(OCM_INSTALL "Make the rules of cmake --install" ${PROJECT_IS_TOP_LEVEL})
 if(NOT OCM_INSTALL)
   return()
 endif()

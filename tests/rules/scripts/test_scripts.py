@@ -256,6 +256,21 @@ class Build(Case):
         self.assertEqual(self.called(), ["begin", "end"] * 4)
 
 
+class Configured(unittest.TestCase):
+    def test_the_first_configuration_knows_every_test(self):
+        """An option that is defined behind those who look at it counts from the second configuration on, and a fresh machine,
+        which configures once, leaves their tests out without a word."""
+        with tempfile.TemporaryDirectory(prefix="ocm-configured-") as folder:
+            known = []
+            for _ in range(2):
+                subprocess.run(["cmake", "-S", ROOT, "-B", folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release"], check=True,
+                               capture_output=True, timeout=120)
+                listed = subprocess.run(["ctest", "--test-dir", folder, "-N"], check=True, capture_output=True, text=True, timeout=60)
+                known.append(re.findall(r"Test +#\d+: (\S+)", listed.stdout))
+            self.assertGreater(len(known[0]), 200)
+            self.assertEqual(known[0], known[1])
+
+
 class Ended(Case):
     """A script that is ended early by a signal that only it gets."""
 
