@@ -606,8 +606,7 @@ class Serve(harness.Case):
         state = self.state(watcher, "/ocm/operator", lambda s: s["running"], "the operator")
         self.assertEqual(state["status"]["operator"], json.loads(self.run_tool("operator", "status", "--json")[0])["operator"])
         self.assertTrue(state["why"]["changes"])
-        while "guards the robot: set points go through it" not in watcher.text("status")["message"]:
-            pass
+        watcher.is_told("guards the robot: set points go through it")
         passed = state["status"]["set_points"]["passed"]
         watcher.publish("/motors", {"x": 0.05, "z": 0})
         passed = self.state(watcher, "/ocm/operator", lambda s: s["status"]["set_points"]["passed"] > passed, "the set point")["status"]["set_points"]["passed"]
@@ -621,8 +620,7 @@ class Serve(harness.Case):
         self.state(watcher, "/ocm/operator", lambda s: s["status"]["set_points"]["passed"] > passed, "the set point")
         viewer.publish("/motors", {"x": 0, "z": 0})
         self.interrupt(guard)
-        while "no operator runs any more" not in watcher.text("status")["message"]:
-            pass
+        watcher.is_told("no operator runs any more")
         time.sleep(0.5)  # what is still on its way is rest
         watcher.subscribe("/motors")
         watcher.publish("/motors", {"x": 0.04, "z": 0})

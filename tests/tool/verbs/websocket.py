@@ -8,6 +8,7 @@ import os
 import socket
 import ssl
 import struct
+import time
 
 GUID = "258EAFA5-E914-47DA-95CA-C5AB0DC85B11"
 Message = collections.namedtuple("Message", "topic time_ns fields")
@@ -155,14 +156,28 @@ class Viewer(Socket):
             if topic in (None, self.topics.get(subscription)):
                 return Message(self.topics[subscription], time_ns, json.loads(got[13:]))
 
-    def text(self, operation):
-        """The next text message of that operation."""
-        while True:
+    def text(self, operation, limit=30):
+        """The next text message of that operation. Samples may come for ever meanwhile."""
+        end = time.monotonic() + limit
+        while time.monotonic() < end:
             got = self.receive()
             if got is None:
                 return None
             if isinstance(got, str) and json.loads(got)["op"] == operation:
                 return json.loads(got)
+        raise AssertionError(f"no message {operation} within {limit} s")
+
+    def is_told(self, part, limit=30):
+        """Returns when a status has said it, which may have been before, among messages of a topic."""
+        end = time.monotonic() + limit
+        while not any(part in status.get("message", "") for status in self.statuses):
+            if time.monotonic() > end:
+                raise AssertionError(f"no status says {part!r} within {limit} s: {self.statuses}")
+            got = self.receive()
+            if got is None:
+                raise AssertionError(f"the server has closed, and no status says {part!r}")
+            if isinstance(got, str):
+                self.statuses.append(json.loads(got))
 
     def publish(self, topic, fields):
         self.publish_bytes(topic, json.dumps(fields).encode())
