@@ -52,25 +52,33 @@ bool Broadcasts::is_over(const Each& each, Moment now) const noexcept {
 
 bool Broadcasts::is_due(Each& each, Moment now) {
   if (each.at == 0 && each.begin >= each.end) return false;
-  const Moment since = due(each);
-  if (now < since) return false;
+  if (now < due(each)) return false;
   if (each.at != 0) {
     if (now - each.left <= j1939::timeout::t1) return true;
-    ++counts_.late;  // listeners wait no longer for the rest
-    each.at = 0;
+    each.at = 0;  // listeners wait no longer for the rest
+    // It begins again, or is the first of the turns that are left out.
+    const std::uint64_t over = each.period.count() == 0 ? 0 : leave_out(each, now);
+    counts_.late += std::max<std::uint64_t>(over, 1);
     return each.begin < each.end && now >= due(each);  // unless another has taken its place
   }
   if (each.period.count() == 0 || each.held_up) return true;
-  // Of the turns that are over, the last is taken now.
-  const auto turns = [&](Moment from) {
-    return now < from ? 0 : static_cast<std::uint64_t>((now - from) / each.period);
-  };
-  const std::uint64_t over = turns(each.begin);
-  const std::uint64_t late = std::min(over, turns(since));
-  counts_.late += late;
-  counts_.waited += over - late;
-  each.begin += static_cast<Clock::rep>(over) * each.period;
+  const std::uint8_t source = source_of(each.broadcast);
+  // Where its own round was the last of the source, no other message has made it wait.
+  const bool alone = free_[source] == each.left + j1939::broadcast_distance;
+  const Moment since = alone ? each.next : due(each);
+  const auto late = static_cast<std::uint64_t>((now - since) / each.period);
+  const std::uint64_t over = leave_out(each, now);
+  counts_.late += std::min(over, late);
+  counts_.waited += over - std::min(over, late);
   return each.begin < each.end;
+}
+
+std::uint64_t Broadcasts::leave_out(Each& each, Moment now) {
+  if (each.begin >= each.end || now < each.begin) return 0;
+  const auto over = (now - each.begin) / each.period;
+  const auto planned = (each.end - each.begin - Clock::duration{1}) / each.period + 1;
+  each.begin += over * each.period;
+  return static_cast<std::uint64_t>(std::min(over, planned));
 }
 
 void Broadcasts::sent(Each& each, Moment taken) {

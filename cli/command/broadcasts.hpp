@@ -86,6 +86,9 @@ class Broadcasts {
   [[nodiscard]] bool is_over(const Each& each, Moment now) const noexcept;
   /// Leaves turns out that are over.
   [[nodiscard]] bool is_due(Each& each, Moment now);
+  /// Of the turns that are over the last becomes the next round, unless it is at the end or later. How many
+  /// are left out. It has a period.
+  static std::uint64_t leave_out(Each& each, Moment now);
   void sent(Each& each, Moment taken);
   static void hold_up(Each& each, Moment now);
 
