@@ -22,7 +22,7 @@ void Broadcasts::begin(client::Broadcast broadcast, const std::optional<client::
   });
   for (Each& each : all_)
     if (each.broadcast.id() == broadcast.id()) each.period = {}, each.begin = each.end = now;
-  Each each{std::move(broadcast), {}, now + Clock::duration{1}, now, now, now, 0, {}};
+  Each each{std::move(broadcast), {}, now + Clock::duration{1}, now, now, now, 0, false, {}};
   if (repeat) {
     each.period = repeat->period;
     each.end = repeat->lasting.count() > 0 ? now + repeat->lasting : Moment::max();
@@ -83,6 +83,7 @@ std::uint64_t Broadcasts::leave_out(Each& each, Moment now) {
 
 void Broadcasts::sent(Each& each, Moment taken) {
   const std::uint32_t frames = each.broadcast.frames();
+  if (each.at == 0) each.met = false;
   each.left = taken;
   each.held_up.reset();
   each.next = taken + j1939::broadcast_distance;
@@ -102,6 +103,20 @@ void Broadcasts::hold_up(Each& each, Moment now) {
   if (!each.held_up) each.held_up = now;
 }
 
+const client::Broadcast* Broadcasts::meet(const can::Frame& frame) {
+  if (frame.format != can::Format::extended) return nullptr;
+  const auto id = j1939::Identifier::decode(frame.id);
+  const bool is_broadcast = id.pgn == j1939::connection_group || id.pgn == j1939::transfer_group;
+  if (!is_broadcast || id.destination != j1939::global_address) return nullptr;
+  for (Each& each : all_) {
+    if (each.at == 0 || each.met || source_of(each.broadcast) != id.source) continue;
+    each.met = true;
+    ++counts_.met;
+    return &each.broadcast;
+  }
+  return nullptr;
+}
+
 std::optional<Broadcasts::Moment> Broadcasts::held_up_since() const noexcept {
   std::optional<Moment> since;
   for (const Each& each : all_)
@@ -113,6 +128,13 @@ const client::Broadcast* Broadcasts::unfinished() const noexcept {
   for (const Each& each : all_)
     if (each.at != 0) return &each.broadcast;
   return nullptr;
+}
+
+std::vector<const client::Broadcast*> Broadcasts::waiting() const {
+  std::vector<const client::Broadcast*> out;
+  for (const Each& each : all_)
+    if (each.at == 0 && each.period.count() == 0 && each.begin < each.end) out.push_back(&each.broadcast);
+  return out;
 }
 
 }  // namespace ocm::cli

@@ -215,6 +215,52 @@ TEST_CASE("broadcasts: only another message of the source makes one wait") {
   CHECK(both.broadcasts.counts().waited > 0);
 }
 
+TEST_CASE("broadcasts: what another node broadcasts from the same source is met once a round") {
+  constexpr auto packet = [](std::uint32_t id) {
+    return can::Frame{id, 8, {1, 2, 3, 4, 5, 6, 7, 8}, can::Format::extended};
+  };
+  Counted counted;
+  CHECK(counted.broadcasts.meet(packet(0x1CEBFF2A)) == nullptr);
+  counted.begin(0);
+  counted.advance();
+  CHECK(counted.broadcasts.meet(packet(0x1CEBFF2B)) == nullptr);  // another source
+  CHECK(counted.broadcasts.meet(packet(0x1CEB002A)) == nullptr);  // a connection
+  CHECK(counted.broadcasts.meet(packet(0x18FEEC2A)) == nullptr);  // another group
+  auto base = packet(0x2A);
+  base.format = can::Format::base;
+  CHECK(counted.broadcasts.meet(base) == nullptr);
+  const auto* const met = counted.broadcasts.meet(packet(0x18ECFF2A));
+  REQUIRE(met != nullptr);
+  CHECK(met->message == &topics[0]);
+  CHECK(counted.broadcasts.meet(packet(0x1CEBFF2A)) == nullptr);  // known
+  CHECK(counted.broadcasts.counts().met == 1);
+  counted.play(Moment::max() - 1s, 0s);
+  CHECK(counted.broadcasts.meet(packet(0x1CEBFF2A)) == nullptr);
+  counted.begin(0);
+  counted.play(Moment::max() - 1s, 0s);
+  CHECK(counted.broadcasts.counts().met == 1);
+  // Each round is another one, however many frames it meets.
+  counted.begin(0, client::Repeat{1s, 3s});
+  while (!counted.broadcasts.empty()) {
+    counted.now = counted.broadcasts.next_event();
+    counted.advance();
+    static_cast<void>(counted.broadcasts.meet(packet(0x1CEBFF2A)));
+  }
+  CHECK(counted.rounds[0] == 5);
+  CHECK(counted.broadcasts.counts().met == 4);
+}
+
+TEST_CASE("broadcasts: what was to be sent once and waits is known") {
+  Counted counted;
+  counted.begin(0);
+  counted.begin(1);
+  counted.begin(2, client::Repeat{1s, {}});
+  counted.advance();
+  CHECK(counted.broadcasts.unfinished()->message == &topics[0]);
+  REQUIRE(counted.broadcasts.waiting().size() == 1);
+  CHECK(counted.broadcasts.waiting()[0]->message == &topics[1]);
+}
+
 TEST_CASE("broadcasts: a bus that takes nothing ends the command") {
   const Silence silence;
   World world{1};
