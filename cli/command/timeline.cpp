@@ -287,13 +287,12 @@ void Timeline::repeat_due(Clock::time_point now) {
 }
 
 void Timeline::send_again(Repeated& repeated, Clock::time_point now) {
-  repeated.next += repeated.period;  // absolute: no drift
-  if (repeated.next <= now) {
-    const auto late =
-        (std::min(now, repeated.end - Clock::duration{1}) - repeated.next) / repeated.period + 1;
-    left_out_ += static_cast<std::uint64_t>(late);
-    repeated.next += late * repeated.period;
-  }
+  // Of the turns that are over, the last is taken now, unless its time has ended meanwhile.
+  const auto over = (now - repeated.next) / repeated.period;
+  const auto planned = (repeated.end - repeated.next - Clock::duration{1}) / repeated.period + 1;
+  left_out_ += static_cast<std::uint64_t>(std::min(over, planned));
+  repeated.next += (over + 1) * repeated.period;  // absolute: no drift
+  if (over >= planned) return;
   if (try_to_send(repeated.frame)) {
     repeated.left = now;
     return;

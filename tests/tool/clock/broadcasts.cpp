@@ -145,8 +145,8 @@ TEST_CASE("broadcasts: what a signal cuts off is not announced again, and a stop
   }
 }
 
-/// What is counted of messages whose frames a bus takes `delay` after they are due, while the program stands
-/// still from `stop` for as long.
+/// What is counted of messages whose frames a bus takes `delay` after they are due, and of a program that
+/// does not run from `stop` on for `lasting`.
 struct Counted {
   cli::Broadcasts broadcasts;
   Moment now = World::start;
