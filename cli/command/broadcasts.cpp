@@ -22,7 +22,7 @@ void Broadcasts::begin(client::Broadcast broadcast, const std::optional<client::
   });
   for (Each& each : all_)
     if (each.broadcast.id() == broadcast.id()) each.period = {}, each.begin = each.end = now;
-  Each each{std::move(broadcast), {}, now + Clock::duration{1}, now, now, now, 0, {}};
+  Each each{std::move(broadcast), {}, now + Clock::duration{1}, now, now, now, 0, false, {}};
   if (repeat) {
     each.period = repeat->period;
     each.end = repeat->lasting.count() > 0 ? now + repeat->lasting : Moment::max();
@@ -52,29 +52,38 @@ bool Broadcasts::is_over(const Each& each, Moment now) const noexcept {
 
 bool Broadcasts::is_due(Each& each, Moment now) {
   if (each.at == 0 && each.begin >= each.end) return false;
-  const Moment since = due(each);
-  if (now < since) return false;
+  if (now < due(each)) return false;
   if (each.at != 0) {
     if (now - each.left <= j1939::timeout::t1) return true;
-    ++counts_.late;  // listeners wait no longer for the rest
-    each.at = 0;
+    each.at = 0;  // listeners wait no longer for the rest
+    // It begins again, or is the first of the turns that are left out.
+    const std::uint64_t over = each.period.count() == 0 ? 0 : leave_out(each, now);
+    counts_.late += std::max<std::uint64_t>(over, 1);
     return each.begin < each.end && now >= due(each);  // unless another has taken its place
   }
   if (each.period.count() == 0 || each.held_up) return true;
-  // Of the turns that are over, the last is taken now.
-  const auto turns = [&](Moment from) {
-    return now < from ? 0 : static_cast<std::uint64_t>((now - from) / each.period);
-  };
-  const std::uint64_t over = turns(each.begin);
-  const std::uint64_t late = std::min(over, turns(since));
-  counts_.late += late;
-  counts_.waited += over - late;
-  each.begin += static_cast<Clock::rep>(over) * each.period;
+  const std::uint8_t source = source_of(each.broadcast);
+  // Where its own round was the last of the source, no other message has made it wait.
+  const bool alone = free_[source] == each.left + j1939::broadcast_distance;
+  const Moment since = alone ? each.next : due(each);
+  const auto late = static_cast<std::uint64_t>((now - since) / each.period);
+  const std::uint64_t over = leave_out(each, now);
+  counts_.late += std::min(over, late);
+  counts_.waited += over - std::min(over, late);
   return each.begin < each.end;
+}
+
+std::uint64_t Broadcasts::leave_out(Each& each, Moment now) {
+  if (each.begin >= each.end || now < each.begin) return 0;
+  const auto over = (now - each.begin) / each.period;
+  const auto planned = (each.end - each.begin - Clock::duration{1}) / each.period + 1;
+  each.begin += over * each.period;
+  return static_cast<std::uint64_t>(std::min(over, planned));
 }
 
 void Broadcasts::sent(Each& each, Moment taken) {
   const std::uint32_t frames = each.broadcast.frames();
+  if (each.at == 0) each.met = false;
   each.left = taken;
   each.held_up.reset();
   each.next = taken + j1939::broadcast_distance;
@@ -94,6 +103,20 @@ void Broadcasts::hold_up(Each& each, Moment now) {
   if (!each.held_up) each.held_up = now;
 }
 
+const client::Broadcast* Broadcasts::meet(const can::Frame& frame) {
+  if (frame.format != can::Format::extended) return nullptr;
+  const auto id = j1939::Identifier::decode(frame.id);
+  const bool is_broadcast = id.pgn == j1939::connection_group || id.pgn == j1939::transfer_group;
+  if (!is_broadcast || id.destination != j1939::global_address) return nullptr;
+  for (Each& each : all_) {
+    if (each.at == 0 || each.met || source_of(each.broadcast) != id.source) continue;
+    each.met = true;
+    ++counts_.met;
+    return &each.broadcast;
+  }
+  return nullptr;
+}
+
 std::optional<Broadcasts::Moment> Broadcasts::held_up_since() const noexcept {
   std::optional<Moment> since;
   for (const Each& each : all_)
@@ -105,6 +128,13 @@ const client::Broadcast* Broadcasts::unfinished() const noexcept {
   for (const Each& each : all_)
     if (each.at != 0) return &each.broadcast;
   return nullptr;
+}
+
+std::vector<const client::Broadcast*> Broadcasts::waiting() const {
+  std::vector<const client::Broadcast*> out;
+  for (const Each& each : all_)
+    if (each.at == 0 && each.period.count() == 0 && each.begin < each.end) out.push_back(&each.broadcast);
+  return out;
 }
 
 }  // namespace ocm::cli

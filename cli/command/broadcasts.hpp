@@ -4,6 +4,7 @@
 /// A source has one broadcast at a time: others of it wait. Frames are never nearer to one another than
 /// j1939::broadcast_distance, and when one is so late that listeners have given up, the message begins again.
 /// A round that has begun is sent to its end, also when the same message is to be sent with other values.
+/// What another node broadcasts from the same source meanwhile cannot be prevented, and is counted.
 #pragma once
 
 #include <array>
@@ -15,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "ocm/can/frame.hpp"
 #include "ocm/client/command.hpp"
 #include "ocm/j1939/transport.hpp"
 
@@ -33,6 +35,7 @@ class Broadcasts {
   struct Counts {
     std::uint64_t late = 0;    ///< turns left out and messages begun again: program or bus was too late
     std::uint64_t waited = 0;  ///< turns left out, and messages replaced, while the source had another
+    std::uint64_t met = 0;     ///< rounds during which another node broadcast from the same source
   };
 
   /// Sends it from `now` on: once, or again and again. It takes the place of what was sent of this message.
@@ -63,11 +66,18 @@ class Broadcasts {
     }
   }
 
+  /// A frame from the bus, which never hands a program its own. The message under way from whose source it is
+  /// broadcast, too: listeners take the packets of both for one message, and drop it. Nothing where it is of
+  /// none, or not the first of the round.
+  [[nodiscard]] const client::Broadcast* meet(const can::Frame& frame);
+
   /// Since when the bus has not taken what was due; nothing where it has.
   [[nodiscard]] std::optional<Moment> held_up_since() const noexcept;
   [[nodiscard]] const Counts& counts() const noexcept { return counts_; }
   /// The first message of which a part was sent, and not all.
   [[nodiscard]] const client::Broadcast* unfinished() const noexcept;
+  /// Messages that were to be sent once, and of which nothing was.
+  [[nodiscard]] std::vector<const client::Broadcast*> waiting() const;
 
  private:
   struct Each {
@@ -78,6 +88,7 @@ class Broadcasts {
     Moment next;                      ///< when its next frame is due
     Moment left;                      ///< when its last frame was taken
     std::uint32_t at = 0;             ///< number of its next frame; 0: no round is under way
+    bool met = false;                 ///< another node broadcasts from its source in this round
     std::optional<Moment> held_up{};  ///< since when the bus does not take it
   };
 
@@ -86,6 +97,9 @@ class Broadcasts {
   [[nodiscard]] bool is_over(const Each& each, Moment now) const noexcept;
   /// Leaves turns out that are over.
   [[nodiscard]] bool is_due(Each& each, Moment now);
+  /// Of the turns that are over the last becomes the next round, unless it is at the end or later. How many
+  /// are left out. It has a period.
+  static std::uint64_t leave_out(Each& each, Moment now);
   void sent(Each& each, Moment taken);
   static void hold_up(Each& each, Moment now);
 

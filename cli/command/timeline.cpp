@@ -160,7 +160,7 @@ bool Timeline::finish() {
   tell_refusals();
   other_.sum_up();
   tell_unsent();
-  return !refused_;
+  return !refused_ && broadcasts_.counts().met == 0;
 }
 
 void Timeline::tell_unsent() {
@@ -183,8 +183,14 @@ void Timeline::tell_unsent() {
                        messages(late), bus_->name()));
   if (const auto waited = broadcasts.waited - told_.waited; waited != 0)
     remark(fmt::format("{}: {} left out, because a source sends one at a time", verb_, messages(waited)));
-  if (const auto* const part = broadcasts_.unfinished(); part != nullptr && !cut_)
-    cut_ = true, remark(fmt::format("{}: {} was not sent to its end", verb_, part->message->name));
+  if (const auto met = broadcasts.met - told_.met; met > 1)  // the first was said as it came
+    remark(fmt::format("{}: {} met others of the same source", verb_, messages(met)));
+  if (!cut_) {
+    if (const auto* const part = broadcasts_.unfinished(); part != nullptr)
+      cut_ = true, remark(fmt::format("{}: {} was not sent to its end", verb_, part->message->name));
+    for (const auto* const waiting : broadcasts_.waiting())
+      cut_ = true, remark(fmt::format("{}: {} was not sent", verb_, waiting->message->name));
+  }
   withheld_ = left_out_ = not_taken_ = 0;  // said
   told_ = broadcasts;
 }
@@ -281,13 +287,12 @@ void Timeline::repeat_due(Clock::time_point now) {
 }
 
 void Timeline::send_again(Repeated& repeated, Clock::time_point now) {
-  repeated.next += repeated.period;  // absolute: no drift
-  if (repeated.next <= now) {
-    const auto late =
-        (std::min(now, repeated.end - Clock::duration{1}) - repeated.next) / repeated.period + 1;
-    left_out_ += static_cast<std::uint64_t>(late);
-    repeated.next += late * repeated.period;
-  }
+  // Of the turns that are over, the last is taken now, unless its time has ended meanwhile.
+  const auto over = (now - repeated.next) / repeated.period;
+  const auto planned = (repeated.end - repeated.next - Clock::duration{1}) / repeated.period + 1;
+  left_out_ += static_cast<std::uint64_t>(std::min(over, planned));
+  repeated.next += (over + 1) * repeated.period;  // absolute: no drift
+  if (over >= planned) return;
   if (try_to_send(repeated.frame)) {
     repeated.left = now;
     return;
@@ -333,6 +338,13 @@ void Timeline::broadcast_due(Clock::time_point now) {
   if (since && now - *since >= client::longest_without_set_point) give_up(now - *since);
 }
 
+void Timeline::meet(const can::Frame& frame) {
+  const auto* const broadcast = broadcasts_.meet(frame);
+  if (broadcast == nullptr || broadcasts_.counts().met != 1) return;
+  remark(fmt::format("{}: another node broadcasts from source {:02X} during {}, so listeners may drop both",
+                     verb_, frame.id & 0xFF, broadcast->message->name));
+}
+
 bool Timeline::wait(Clock::time_point until) {
   for (;;) {
     if (interrupted() != 0) return false;
@@ -349,6 +361,7 @@ bool Timeline::wait(Clock::time_point until) {
     awake_ = wake;
     const Over over = live_.receive(wake, [&](const can::Received& received) {
       other_.take(received, moving_);
+      meet(received.frame);
       const bool refused = refusals_.take(received);
       if (on_receive_) on_receive_(received);
       return !refused && !other_.has_stopped();  // at once, not when the next step is due

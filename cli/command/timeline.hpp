@@ -83,8 +83,8 @@ class Timeline {
   /// Ends a hold: sends the set point of rest. Nothing without a hold.
   void rest();
   /// rest(), and what was sent has left; leaves through cli::fail, loudly, if not. Then listens for the
-  /// refusal of what was sent last, unless a signal came. False: a board has refused something, which was
-  /// said.
+  /// refusal of what was sent last, unless a signal came. False: a board has refused something, or another node
+  /// has broadcast beside a message of several frames, which was said.
   [[nodiscard]] bool finish();
 
  private:
@@ -124,6 +124,8 @@ class Timeline {
   [[nodiscard]] bool try_to_send(const can::AnyFrame& frame);
   /// Sends what is due of broadcasts; leaves if the bus has taken none for too long.
   void broadcast_due(Clock::time_point now);
+  /// Says, once, that another node broadcasts from the source of a message under way.
+  void meet(const can::Frame& frame);
   /// Leaves because the bus has taken nothing for so long.
   [[noreturn]] void give_up(Clock::duration lasting);
   /// Sends the set point of rest behind whatever waits; whether it has left.
@@ -160,7 +162,7 @@ class Timeline {
   std::uint64_t left_out_ = 0;   ///< turns of what is repeated: this program was late,
   std::uint64_t not_taken_ = 0;  ///< or the bus did not take what came before
   Broadcasts::Counts told_;      ///< of broadcasts
-  bool cut_ = false;             ///< that one was cut is said
+  bool cut_ = false;             ///< what was cut off, or waited, is said
 };
 
 }  // namespace ocm::cli

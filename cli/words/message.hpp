@@ -141,6 +141,7 @@ inline constexpr const char* force_beyond_range =
   }
   const auto fields = layout.fields;
   std::vector<std::int64_t> raw(fields.size());
+  const GivenFields typed = given;  // `given` gets the selectors that follow from them
   for (std::size_t i = 0; i < fields.size(); ++i) raw[i] = given[i] ? given[i]->raw : fields[i].start;
 
   for (std::size_t i = 0; i < fields.size(); ++i) {
@@ -153,7 +154,8 @@ inline constexpr const char* force_beyond_range =
       if (!fits && (given[selector] || fields[at].selected.empty()))
         return WordError{
             given[i]->word, detail::presence(fields[at], fields[selector]),
-            "give fields that are in one frame, or leave " + std::string{fields[selector].name} + " out"};
+            "give fields that are in one frame" +
+                (typed[selector] ? ", or leave " + std::string{fields[selector].name} + " out" : "")};
       if (!fits) raw[selector] = detail::raw_of(fields[selector], fields[at].selected[0].first);
       given[selector] = Given{raw[selector], given[i]->word};  // decided now, for the fields that follow
       at = selector;

@@ -145,6 +145,122 @@ TEST_CASE("broadcasts: what a signal cuts off is not announced again, and a stop
   }
 }
 
+/// What is counted of messages whose frames a bus takes `delay` after they are due, and of a program that
+/// does not run from `stop` on for `lasting`.
+struct Counted {
+  cli::Broadcasts broadcasts;
+  Moment now = World::start;
+  std::array<int, 3> rounds{};
+
+  void begin(std::size_t which, std::optional<client::Repeat> repeat = {}) {
+    broadcasts.begin(*command(which, 1).broadcast, repeat, now);
+  }
+  void advance(Duration delay = 0ms) {
+    broadcasts.advance(now, [&](const can::AnyFrame& frame) {
+      const auto bytes = frame.bytes();
+      if (frame.id == 0x1CECFF2A || frame.id == 0x1CECFF2B)
+        for (std::size_t i = 0; i < topics.size(); ++i)
+          if (layouts[i].length == bytes[1]) ++rounds[i];
+      return std::optional{now + delay};
+    });
+  }
+  /// Until all is sent.
+  void play(Moment stop, Duration lasting, Duration delay = 0ms) {
+    advance(delay);
+    while (!broadcasts.empty()) {
+      now = std::max(now, broadcasts.next_event());
+      if (stop <= now && now < stop + lasting) now = stop + lasting;
+      advance(delay);
+    }
+  }
+};
+
+TEST_CASE("broadcasts: turns that a stop takes are late, and none is counted behind the end") {
+  struct Row {
+    Duration stop, lasting;
+    int rounds;
+    std::uint64_t late;
+  };
+  // Every 500 ms for 2 s: at 0, 0.5, 1 and 1.5 s, each for 150 ms.
+  for (const Row& row : {Row{700ms, 6s, 2, 2},      // 1 and 1.5 s
+                         Row{580ms, 6s, 2, 3},      // 0.5 s, of which a part is sent, and the two behind it
+                         Row{580ms, 800ms, 4, 1},   // 0.5 s begins again at 1.38 s, in the turn of 1 s
+                         Row{580ms, 300ms, 4, 0},   // listeners wait for 0.5 s
+                         Row{510ms, 1200ms, 3, 2},  // 0.5 and 1 s
+                         Row{5s, 1s, 4, 0}}) {
+    INFO(row.stop.count() << ", " << row.lasting.count());
+    Counted counted;
+    counted.begin(0, client::Repeat{500ms, 2s});
+    counted.play(World::start + row.stop, row.lasting);
+    CHECK(counted.broadcasts.counts().late == row.late);
+    CHECK(counted.broadcasts.counts().waited == 0);
+    CHECK(counted.rounds[0] == row.rounds);
+  }
+}
+
+TEST_CASE("broadcasts: only another message of the source makes one wait") {
+  // Alone, and as often as it can be: every frame 1 ms late is a turn in 50.
+  Counted alone;
+  alone.begin(0, client::Repeat{200ms, 60s});
+  alone.play(Moment::max() - 1s, 0s, 1ms);
+  CHECK(alone.broadcasts.counts().late > 0);
+  CHECK(alone.broadcasts.counts().waited == 0);
+  CHECK(static_cast<std::uint64_t>(alone.rounds[0]) + alone.broadcasts.counts().late == 300);
+  // Beside another, 350 ms of each 500 ms, it gets a turn between two of those.
+  Counted both;
+  both.begin(1, client::Repeat{500ms, 10s});
+  both.begin(0, client::Repeat{200ms, 10s});
+  both.play(Moment::max() - 1s, 0s);
+  CHECK(both.broadcasts.counts().late == 0);
+  CHECK(both.broadcasts.counts().waited > 0);
+}
+
+TEST_CASE("broadcasts: what another node broadcasts from the same source is met once a round") {
+  constexpr auto packet = [](std::uint32_t id) {
+    return can::Frame{id, 8, {1, 2, 3, 4, 5, 6, 7, 8}, can::Format::extended};
+  };
+  Counted counted;
+  CHECK(counted.broadcasts.meet(packet(0x1CEBFF2A)) == nullptr);
+  counted.begin(0);
+  counted.advance();
+  CHECK(counted.broadcasts.meet(packet(0x1CEBFF2B)) == nullptr);  // another source
+  CHECK(counted.broadcasts.meet(packet(0x1CEB002A)) == nullptr);  // a connection
+  CHECK(counted.broadcasts.meet(packet(0x18FEEC2A)) == nullptr);  // another group
+  auto base = packet(0x2A);
+  base.format = can::Format::base;
+  CHECK(counted.broadcasts.meet(base) == nullptr);
+  const auto* const met = counted.broadcasts.meet(packet(0x18ECFF2A));
+  REQUIRE(met != nullptr);
+  CHECK(met->message == &topics[0]);
+  CHECK(counted.broadcasts.meet(packet(0x1CEBFF2A)) == nullptr);  // known
+  CHECK(counted.broadcasts.counts().met == 1);
+  counted.play(Moment::max() - 1s, 0s);
+  CHECK(counted.broadcasts.meet(packet(0x1CEBFF2A)) == nullptr);
+  counted.begin(0);
+  counted.play(Moment::max() - 1s, 0s);
+  CHECK(counted.broadcasts.counts().met == 1);
+  // Each round is another one, however many frames it meets.
+  counted.begin(0, client::Repeat{1s, 3s});
+  while (!counted.broadcasts.empty()) {
+    counted.now = counted.broadcasts.next_event();
+    counted.advance();
+    static_cast<void>(counted.broadcasts.meet(packet(0x1CEBFF2A)));
+  }
+  CHECK(counted.rounds[0] == 5);
+  CHECK(counted.broadcasts.counts().met == 4);
+}
+
+TEST_CASE("broadcasts: what was to be sent once and waits is known") {
+  Counted counted;
+  counted.begin(0);
+  counted.begin(1);
+  counted.begin(2, client::Repeat{1s, {}});
+  counted.advance();
+  CHECK(counted.broadcasts.unfinished()->message == &topics[0]);
+  REQUIRE(counted.broadcasts.waiting().size() == 1);
+  CHECK(counted.broadcasts.waiting()[0]->message == &topics[1]);
+}
+
 TEST_CASE("broadcasts: a bus that takes nothing ends the command") {
   const Silence silence;
   World world{1};

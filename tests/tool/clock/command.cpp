@@ -369,6 +369,31 @@ TEST_CASE("drive: another frame just before a set point is due holds no set poin
   }
 }
 
+TEST_CASE("set: after a stop nothing is sent behind the end of what is sent again and again") {
+  struct Row {
+    Duration stop, lasting;
+    std::size_t sent;
+  };
+  // Every 500 ms for 2 s: at 0, 0.5, 1 and 1.5 s.
+  for (const Row& row : {Row{700ms, 6s, 2}, Row{700ms, 1s, 3}, Row{700ms, 1200ms, 3}, Row{700ms, 1400ms, 2},
+                         Row{1600ms, 6s, 4}, Row{700ms, 200ms, 4}}) {
+    INFO(row.stop.count() << ", " << row.lasting.count());
+    const Silence silence;
+    World world{1};
+    PlayedBus bus{world, {}};
+    Timeline timeline{bus, amiro::catalogue, "set", Timeline::Others::allowed, cli::Confirm::no, {}};
+    const std::vector<std::string_view> words{"led", "1", "red"};
+    auto led = cli::words::CommandParser{amiro::catalogue}.parse_line(words);
+    REQUIRE(led.ok());
+    led->repeat = client::Repeat{500ms, 2s};
+    world.stop(world.now() + row.stop, row.lasting);
+    timeline.carry_out(*led);
+    CHECK(timeline.wait_for_end());
+    CHECK(timeline.finish());
+    CHECK(bus.sent().size() == row.sent);
+  }
+}
+
 TEST_CASE("drive: of a script whose program was stopped, whenever that was, one step at most is late") {
   const auto runs = static_cast<std::uint64_t>(explored(2000));
   const Silence silence;

@@ -162,6 +162,37 @@ class Set(Case):
         _, err = self.run_tool("--spec", spec, "set", "Parts", "--every", "100ms", code=2)
         self.assertIn("--every 100ms is shorter than a broadcast of Parts takes", err)
 
+    def messages_of_a_node(self):
+        """A spec with messages of source 00: two of four frames, the first of which every 200 ms, and one of 256."""
+        path = f"{self.folder}/node.dbc"
+        with open(path, "w", encoding="utf-8") as file:
+            file.write('BU_: N\nBO_ 2566838528 Parts: 20 N\n SG_ Part : 0|8@1+ (1,0) [0|0] "" N\n'
+                       'BO_ 2566838784 Others: 20 N\n SG_ Other : 0|8@1+ (1,0) [0|0] "" N\n'
+                       'BO_ 2566839040 Long: 1785 N\n SG_ Byte : 0|8@1+ (1,0) [0|0] "" N\n'
+                       'BA_DEF_ BO_ "VFrameFormat" ENUM "StandardCAN","ExtendedCAN","reserved","J1939PG";\n'
+                       'BA_DEF_ BO_ "GenMsgCycleTime" INT 0 65535;\nBA_DEF_DEF_ "VFrameFormat" "J1939PG";\n'
+                       'BA_DEF_DEF_ "GenMsgCycleTime" 0;\nBA_ "GenMsgCycleTime" BO_ 2566838528 200;\n')
+        return path
+
+    def test_another_node_that_broadcasts_from_the_same_source_is_reported(self):
+        """The simulator plays it, in at least a third of the time."""
+        spec = self.messages_of_a_node()
+        self.start_sim("--spec", spec)
+        _, err = self.run_tool("--spec", spec, "set", "Others", "--every", "300ms", "--for", "3s", code=1)
+        self.assertIn("set: another node broadcasts from source 00 during Others, so listeners may drop both\n", err)
+        self.assertRegex(err, r"\nset: \d+ broadcasts met others of the same source\n")
+
+    def test_a_broadcast_that_waited_for_its_source_is_named(self):
+        spec = self.messages_of_a_node()
+        self.start_sim()
+        process = self.start("--spec", spec, "run", self.script("0s set Long\n0s set Parts\n0s set Others --every 1s\n"))
+        while "set Others" not in process.stderr.readline():
+            pass
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 130)
+        self.assertIn("run: Long was not sent to its end\nrun: Parts was not sent\n", err)
+
     def test_beyond_its_range(self):
         _, err = self.run_tool("--spec", CAR, "set", "Engine", "Speed=9000", "--dry-run", code=2)
         self.assertEqual(err, "amiroctl: set: '9000' is beyond the stated range: Speed takes 0 to 8000 rpm\n"

@@ -208,6 +208,9 @@ TEST_CASE("fields that are never in one frame are refused at the word") {
       {"set Engine rpm=1 --priority high", 0, "a message carries its priority in its identifier"},
       {"publish Engine 1s", 1, "'Engine' is a message"},
   });
+  CHECK(parse("set Paged page=2 a=1").error.remedy == "give fields that are in one frame, or leave page out");
+  CHECK(parse("set Paged a=1 inner=1").error.remedy ==
+        "give fields that are in one frame");                                // page is not given
   CHECK(frame("set Engine rpm=3000.25 --force") == "100#E12E002800000000");  // 12001 quarters
   CHECK(compose(topics[2], {}).error.what == "Long is a message of 64 bytes");
   // The transport protocol of J1939 has an end, too, and CAN FD is no remedy.
