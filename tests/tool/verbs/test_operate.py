@@ -181,6 +181,39 @@ class Running(Operating):
         stopped = next(at for at, frame in frames if frame == "103#00")
         self.assertEqual([frame for at, frame in frames if at > stopped + 0.1], [])
 
+    def test_a_recording_of_which_the_disk_took_nothing_leaves_no_file(self):
+        self.start_sim()
+        box = os.path.join(self.folder, "box")
+        document = json.loads(json.dumps(HALT))
+        document["transitions"].append({"from": "driving", "to": "halted", "on_request": True})
+        operator = self.start("operate", self.write(document), "--json", "--black-box", box,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0)))
+        self.event(operator, "started")
+        self.run_tool("operator", "switch", "halted")
+        self.event(operator, "switched")
+        _, err = self.interrupt(operator)
+        self.assertIn(" 1 recordings lost", err)
+        self.assertEqual(os.listdir(box), [])
+
+    def test_a_black_box_that_cannot_be_a_folder_is_refused_with_the_reason(self):
+        self.start_sim()
+        path = os.path.join(self.folder, "loop")
+        os.symlink(path, path)  # as a folder above that may not be read, also for root
+        _, err = self.run_tool("operate", self.write(HALT), "--black-box", path, code=1)
+        self.assertIn(f"amiroctl: operate: --black-box {path}: Too many levels of symbolic links", err)
+        self.assertIn("a folder that you may write to", err)
+
+    def test_a_second_operator_is_refused_while_the_first_does_not_answer(self):
+        self.start_sim()
+        operator = self.operate()
+        operator.send_signal(signal.SIGSTOP)
+        try:
+            _, err = self.run_tool("operate", self.write(HALT), code=1)
+        finally:
+            operator.send_signal(signal.SIGCONT)
+        self.assertRegex(err, rf"operate: an operator already runs on '\S+' \(process {operator.pid}\), and does not answer\n")
+        self.assertIn(f"kill {operator.pid} ends it", err)
+
     def test_of_two_operators_with_one_name_the_second_gets_another_black_box(self):
         self.start_sim()
         other = os.path.join(self.folder, "other.sock")
@@ -200,10 +233,26 @@ class Running(Operating):
         self.event(operator, "switched")
         self.event(operator, "switched")
         drive.communicate(timeout=30)
-        _, err = self.interrupt(operator)
+        out, err = self.interrupt(operator)
         self.assertRegex(err, r"[0-9]+ frames that a kill would have lost from the black box")
-        self.assertRegex(err, r"1 recordings")
+        self.assertIn("1 recordings lost", err)
         self.assertIn("File too large", err)
+        self.assertNotIn("recorded", out)
+
+    def test_a_recording_that_could_not_be_written_is_lost_and_told_by_no_event(self):
+        self.start_sim()
+        box = os.path.join(self.folder, "box")
+        document = json.loads(json.dumps(HALT))
+        document["transitions"].append({"from": "driving", "to": "halted", "on_request": True})
+        operator = self.operate("--black-box", box, document=document)
+        waiting.until(lambda: os.listdir(box), "the black box is begun")
+        shutil.rmtree(box)
+        self.run_tool("operator", "switch", "halted")
+        self.event(operator, "switched")
+        out, err = self.interrupt(operator)
+        self.assertNotIn("recorded", out)
+        self.assertRegex(err, r"operate: \S+black-box\.log: .*No such file or directory")
+        self.assertIn(" 1 recordings lost", err)
 
     def test_a_bus_that_is_gone_ends_it_and_says_so(self):
         sim = self.start_sim()
