@@ -251,15 +251,20 @@ void Runner::judge(base::Duration late) {
 void Runner::record() {
   if (!box_.keeps()) return;
   const auto recording = std::make_shared<BlackBox::Recording>(box_.take(Clock::now(), unix_time()));
-  ++counters_.recordings;
-  const bool taken = background_.post([this, recording] {
+  const std::size_t frames = recording->entries.size();
+  std::string line = event_line("recorded", {{"file", recording->path}, {"frames", frames}},
+                                fmt::format("{} frames before it are in {}", frames, recording->path));
+  const bool taken = background_.post([this, recording, line = std::move(line)] {
     const auto written = box_.write(*recording);
-    if (!written)
-      complain({fmt::format("operate: {}: {}", recording->path, written.error.what), written.error.remedy});
+    if (written) {
+      ++written_.recordings;
+      print(line);
+      return;
+    }
+    ++written_.recordings_lost;
+    complain({fmt::format("operate: {}: {}", recording->path, written.error.what), written.error.remedy});
   });
   if (!taken) ++counters_.recordings_lost;
-  tell("recorded", {{"file", recording->path}, {"frames", recording->entries.size()}},
-       fmt::format("{} frames before it are in {}", recording->entries.size(), recording->path));
 }
 
 void Runner::keep_up(base::Time at) {
@@ -270,9 +275,9 @@ void Runner::keep_up(base::Time at) {
   const bool taken = background_.post([this, fresh = std::move(fresh)] {
     const auto written = box_.spool(fresh);
     if (written) return;
-    if (not_kept_ == 0)
+    if (written_.not_kept == 0)
       complain({fmt::format("operate: --black-box: {}", written.error.what), written.error.remedy});
-    not_kept_ += fresh.size();
+    written_.not_kept += fresh.size();
   });
   if (!taken) counters_.not_kept += frames;
 }
@@ -305,22 +310,24 @@ void Runner::tell_switch(const Action& action) {
 
 void Runner::tell(std::string_view event, std::initializer_list<Json::Member> facts,
                   const std::string& text) {
-  std::string line;
-  if (options_->json) {
-    Json object{{"event", event}, {"time_ns", std::to_string(unix_time().time_since_epoch().count())}};
-    for (const auto& [name, value] : facts) object[name] = value;
-    line = object.line() + "\n";
-  } else {
-    line = printable(text) + "\n";
-  }
-  const bool taken = background_.post([this, line = std::move(line)] {
-    const Written written = write_all(STDOUT_FILENO, line, Signals::blocked);
-    if (written.bytes == line.size()) return;
-    if (lines_lost_++ == 0 && written.error != EINTR)
-      complain({fmt::format("operate: standard output: {}", std::strerror(written.error)),
-                "the robot is guarded all the same; lines that are not printed are counted"});
-  });
+  const bool taken = background_.post([this, line = event_line(event, facts, text)] { print(line); });
   if (!taken) ++lines_lost_;
+}
+
+std::string Runner::event_line(std::string_view event, std::initializer_list<Json::Member> facts,
+                               const std::string& text) const {
+  if (!options_->json) return printable(text) + "\n";
+  Json object{{"event", event}, {"time_ns", std::to_string(unix_time().time_since_epoch().count())}};
+  for (const auto& [name, value] : facts) object[name] = value;
+  return object.line() + "\n";
+}
+
+void Runner::print(const std::string& line) {
+  const Written written = write_all(STDOUT_FILENO, line, Signals::blocked);
+  if (written.bytes == line.size()) return;
+  if (lines_lost_++ == 0 && written.error != EINTR)
+    complain({fmt::format("operate: standard output: {}", std::strerror(written.error)),
+              "the robot is guarded all the same; lines that are not printed are counted"});
 }
 
 void Runner::rest() {
@@ -350,7 +357,9 @@ void Runner::rest() {
 
 void Runner::sum_up() {
   background_.finish();
-  counters_.not_kept += not_kept_;
+  counters_.recordings += written_.recordings;
+  counters_.recordings_lost += written_.recordings_lost;
+  counters_.not_kept += written_.not_kept;
   box_.end();
   const auto& done = supervisor_.counters();
   std::string text = fmt::format("operate: {} changes, {} frames sent", done.switches, counters_.sent);

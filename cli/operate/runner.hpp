@@ -106,6 +106,10 @@ class Runner {
 
   void tell_switch(const reflective::Action& action);
   void tell(std::string_view event, std::initializer_list<Json::Member> facts, const std::string& text);
+  [[nodiscard]] std::string event_line(std::string_view event, std::initializer_list<Json::Member> facts,
+                                       const std::string& text) const;
+  /// In the background.
+  void print(const std::string& line);
 
   transport::Bus* bus_;
   Control* control_;
@@ -135,7 +139,7 @@ class Runner {
   std::deque<Change> changes_;
   Service service_;
   std::atomic<std::uint64_t> lines_lost_ = 0;  ///< no reader, a full disk, or a reader that took too long
-  std::uint64_t not_kept_ = 0;                 ///< of the background's
+  RunCounters written_;                        ///< what the background counts
   Background background_{1000};                // last, so that it ends first
 };
 
