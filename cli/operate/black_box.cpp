@@ -71,6 +71,7 @@ Spool::Recovered BlackBox::recover(base::Time wall) {
   if (!keeps()) return {};
   auto left = spool_.recover(path(wall, "killed"), path(wall, "killed-2"));
   if (!left) fail({fmt::format("operate: --black-box: {}", left.error.what), left.error.remedy});
+  of_this_run_ = left->files;
   if (!left->files.empty()) delete_oldest();
   return std::move(*left);
 }
@@ -110,7 +111,7 @@ BlackBox::Recording BlackBox::take(Clock::time_point now, base::Time wall) {
   return recording;
 }
 
-transport::Outcome<void> BlackBox::write(const Recording& recording) const {
+transport::Outcome<void> BlackBox::write(const Recording& recording) {
   auto file = logs::LogFile::create(recording.path, *logs::find_format("candump"), *catalogue_,
                                     logs::Existing::refuse);
   if (!file) return std::move(file.error);
@@ -118,19 +119,29 @@ transport::Outcome<void> BlackBox::write(const Recording& recording) const {
   const std::vector<log::Entry> entries{recording.entries.begin(), recording.entries.end()};
   if (!(*file)->write(entries, interfaces_) || !(*file)->flush(true) || !(*file)->finish())
     return (*file)->failure();
+  of_this_run_.push_back(recording.path);
   delete_oldest();
   return {};
 }
 
-void BlackBox::delete_oldest() const {
-  std::vector<std::filesystem::path> ours;
+void BlackBox::delete_oldest() {
+  std::vector<std::string> kept;
   std::error_code error;
-  for (const auto& each : std::filesystem::directory_iterator{options_.folder, error}) {
-    const std::string name = each.path().filename().string();
-    if (name.starts_with(name_ + "-") && name.ends_with(ending)) ours.push_back(each.path());
+  // A disk that can no longer be read ends the list, and no more.
+  for (std::filesystem::directory_iterator each{options_.folder, error}, end; each != end;
+       each.increment(error)) {
+    const std::string name = each->path().filename().string();
+    if (!name.starts_with(name_ + "-") || !name.ends_with(ending)) continue;
+    const bool is_ours =
+        std::find(of_this_run_.begin(), of_this_run_.end(), each->path()) != of_this_run_.end();
+    if (!is_ours) kept.push_back(each->path().string());
   }
-  std::sort(ours.begin(), ours.end());
-  for (std::size_t i = 0; i + options_.files < ours.size(); ++i) std::filesystem::remove(ours[i], error);
+  std::sort(kept.begin(), kept.end());
+  kept.insert(kept.end(), of_this_run_.begin(), of_this_run_.end());
+  for (std::size_t i = 0; i + options_.files < kept.size(); ++i) {
+    std::filesystem::remove(kept[i], error);
+    std::erase(of_this_run_, kept[i]);
+  }
 }
 
 }  // namespace ocm::cli::operate

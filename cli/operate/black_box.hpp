@@ -27,7 +27,7 @@ namespace ocm::cli::operate {
 struct BlackBoxOptions {
   std::string folder;  ///< empty: nothing is kept
   base::Duration lasting{10'000'000'000};
-  std::uint32_t files = 20;  ///< the oldest are deleted
+  std::uint32_t files = 20;  ///< the oldest are deleted, those of runs before first
 };
 
 class BlackBox {
@@ -63,8 +63,9 @@ class BlackBox {
   };
   /// Takes all that there is: the next recording begins behind it.
   [[nodiscard]] Recording take(Clock::time_point now, base::Time wall);
-  /// Writes a recording as a candump log, then deletes the oldest of this operator's beyond `files`.
-  [[nodiscard]] transport::Outcome<void> write(const Recording& recording) const;
+  /// Writes a recording as a candump log, then deletes the oldest of this operator's beyond `files`. On the
+  /// thread of `spool`.
+  [[nodiscard]] transport::Outcome<void> write(const Recording& recording);
   /// Frames that there was no room for in memory.
   [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_; }
 
@@ -75,7 +76,7 @@ class BlackBox {
   };
   void forget(Clock::time_point now);
   [[nodiscard]] std::string path(base::Time wall, std::string_view what = {}) const;
-  void delete_oldest() const;
+  void delete_oldest();
 
   BlackBoxOptions options_;
   std::string name_;
@@ -84,6 +85,9 @@ class BlackBox {
   std::deque<Kept> kept_;
   std::vector<log::Entry> fresh_;
   Spool spool_;
+  /// Of this run, in the order in which they were kept. Names and times of files are by a wall clock that may
+  /// be set, and begins in the past on a machine whose clock has no battery.
+  std::vector<std::string> of_this_run_;
   std::uint64_t dropped_ = 0;
 };
 

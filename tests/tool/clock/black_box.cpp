@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
 
 #include "ocm/topics/amiro.hpp"
 
@@ -63,6 +66,46 @@ TEST_CASE("black box: a clock that is set back holds nothing back") {
   }
   world.pass(200ms);
   CHECK(box.take_fresh(cli::unix_time()).size() == 20);
+  std::filesystem::remove_all(folder);
+}
+
+TEST_CASE("black box: by a clock that is behind, the files of runs before are the oldest all the same") {
+  World world{1};
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("ocm-black-box-" + std::to_string(world.random()));
+  std::filesystem::create_directories(folder);
+  const auto put = [&](const std::string& name) {
+    std::ofstream{folder / name} << "(1.000000) can0 123#00\n";
+  };
+  put("test-20260131T101504.212.black-box.log");
+  put("test-20260131T101504.500.black-box.log");
+  put("test.running-0.log");
+  const auto kept = [&] {
+    std::vector<std::string> names;
+    for (const auto& each : std::filesystem::directory_iterator{folder})
+      names.push_back(each.path().filename().string());
+    std::sort(names.begin(), names.end());
+    return names;
+  };
+  // A machine whose clock has no battery begins in 1970.
+  const auto in_1970 = [](Duration after) { return base::Time{24h} + after; };
+  operate::BlackBox box{{folder.string(), 10s, 2}, "test", "can0", amiro::catalogue};
+  CHECK(box.recover(in_1970(0s)).files.size() == 1);
+  CHECK(kept() == std::vector<std::string>{"test-19700102T000000.000-killed.black-box.log",
+                                           "test-20260131T101504.500.black-box.log"});
+  const auto record = [&](Duration after) {
+    box.add(log::Entry{in_1970(after), can::Frame{0x608, 6, {}}}, cli::Clock::now());
+    CHECK(box.write(box.take(cli::Clock::now(), in_1970(after))));
+  };
+  record(2s);
+  CHECK(kept() == std::vector<std::string>{"test-19700102T000000.000-killed.black-box.log",
+                                           "test-19700102T000002.000.black-box.log"});
+  record(1s);  // set back
+  CHECK(kept() == std::vector<std::string>{"test-19700102T000001.000.black-box.log",
+                                           "test-19700102T000002.000.black-box.log"});
+  record(3s);
+  CHECK(kept() == std::vector<std::string>{"test-19700102T000001.000.black-box.log",
+                                           "test-19700102T000003.000.black-box.log"});
   std::filesystem::remove_all(folder);
 }
 
