@@ -42,8 +42,9 @@ BlackBox::BlackBox(BlackBoxOptions options, std::string name, std::string bus,
   static_cast<void>(interfaces_.number(bus));
   if (!keeps()) return;
   std::error_code error;
+  std::error_code no_folder;
   std::filesystem::create_directories(options_.folder, error);
-  if (!std::filesystem::is_directory(options_.folder))
+  if (!std::filesystem::is_directory(options_.folder, no_folder))
     fail({fmt::format("operate: --black-box {}: {}", options_.folder,
                       error ? error.message() : std::string{"it is no folder"}),
           "a folder that you may write to"});

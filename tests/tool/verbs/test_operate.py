@@ -181,6 +181,14 @@ class Running(Operating):
         stopped = next(at for at, frame in frames if frame == "103#00")
         self.assertEqual([frame for at, frame in frames if at > stopped + 0.1], [])
 
+    def test_a_black_box_that_cannot_be_a_folder_is_refused_with_the_reason(self):
+        self.start_sim()
+        path = os.path.join(self.folder, "loop")
+        os.symlink(path, path)  # as a folder above that may not be read, also for root
+        _, err = self.run_tool("operate", self.write(HALT), "--black-box", path, code=1)
+        self.assertIn(f"amiroctl: operate: --black-box {path}: Too many levels of symbolic links", err)
+        self.assertIn("a folder that you may write to", err)
+
     def test_of_two_operators_with_one_name_the_second_gets_another_black_box(self):
         self.start_sim()
         other = os.path.join(self.folder, "other.sock")
