@@ -77,8 +77,8 @@ std::unique_ptr<operate::Control> open_control(const transport::Bus& bus) {
   if (control.error.process == 0)
     fail({fmt::format("operate: {}", control.error.what), control.error.remedy});
   const auto other = connect_operator(bus.name(), "operate");
-  fail({fmt::format("operate: {} has {} already", other && *other ? (*other)->who() : control.error.what,
-                    bus.name()),
+  fail({other && *other ? fmt::format("operate: {} has {} already", (*other)->who(), bus.name())
+                        : fmt::format("operate: {}, and does not answer", control.error.what),
         fmt::format("`amiroctl operator status` says what it does; kill {} ends it", control.error.process)});
 }
 

@@ -189,6 +189,17 @@ class Running(Operating):
         self.assertIn(f"amiroctl: operate: --black-box {path}: Too many levels of symbolic links", err)
         self.assertIn("a folder that you may write to", err)
 
+    def test_a_second_operator_is_refused_while_the_first_does_not_answer(self):
+        self.start_sim()
+        operator = self.operate()
+        operator.send_signal(signal.SIGSTOP)
+        try:
+            _, err = self.run_tool("operate", self.write(HALT), code=1)
+        finally:
+            operator.send_signal(signal.SIGCONT)
+        self.assertRegex(err, rf"operate: an operator already runs on '\S+' \(process {operator.pid}\), and does not answer\n")
+        self.assertIn(f"kill {operator.pid} ends it", err)
+
     def test_of_two_operators_with_one_name_the_second_gets_another_black_box(self):
         self.start_sim()
         other = os.path.join(self.folder, "other.sock")
