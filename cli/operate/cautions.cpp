@@ -144,10 +144,60 @@ class Permissions {
   std::vector<std::uint16_t> behaviours_;
 };
 
+/// What is not known fires nothing: values of a stream that has fallen silent lead nowhere.
+class Silences {
+ public:
+  explicit Silences(const OperatorFile& file) : file_(file), tables_(file.tables) {}
+
+  void judge(std::vector<spec::Problem>& found) const {
+    for (std::size_t c = 0; c < file_.parts.size(); ++c) {
+      if (c == tables_.fall_back) continue;
+      const auto values = watched_by(c, [](Watched watched) { return watched == Watched::field; });
+      const auto silences = watched_by(c, [](Watched watched) {
+        return watched == Watched::age || watched == Watched::gap || watched == Watched::rate;
+      });
+      if (values.empty() || !silences.empty()) continue;
+      const auto name_of = [this](std::size_t configuration) {
+        return spec::quoted(file_.parts[configuration].of.text);
+      };
+      const auto silent = tables_.topic(values.front()).name;
+      found.push_back(
+          {file_.parts[c].of.place,
+           fmt::format("nothing leads from {} to {} when {} falls silent: what is not known fires no monitor",
+                       name_of(c), name_of(tables_.fall_back), silent),
+           fmt::format(
+               R"({{"age": "{}", "above": ...}}, some periods, beside the other conditions with "any")",
+               silent)});
+    }
+  }
+
+ private:
+  using Watched = reflective::Watched;
+
+  /// Topics of such conditions in what leads from a configuration to the fall-back.
+  template <class Is>
+  [[nodiscard]] std::vector<std::uint16_t> watched_by(std::size_t configuration, const Is& is) const {
+    std::vector<std::uint16_t> topics;
+    for (const auto& transition : tables_.transitions) {
+      if (transition.to != tables_.fall_back || !tables_.leaves(transition, configuration)) continue;
+      if (transition.monitor == reflective::by_request) continue;
+      for (const auto& term : tables_.monitors[transition.monitor].terms)
+        if (term.op == reflective::Op::condition && is(tables_.conditions[term.condition].watched))
+          topics.push_back(tables_.conditions[term.condition].topic);
+    }
+    return topics;
+  }
+
+  const OperatorFile& file_;
+  const reflective::Operator& tables_;
+};
+
 }  // namespace
 
 std::vector<spec::Problem> cautions(const OperatorFile& file) {
-  return Permissions{file}.judge();
+  auto found = Permissions{file}.judge();
+  Silences{file}.judge(found);
+  return found;
 }
 
 }  // namespace ocm::cli::operate

@@ -176,6 +176,29 @@ class Checked(Operate):
         of_what = [line.split(" takes up to ")[0] for line in reasons]
         self.assertEqual(len(of_what), len(set(of_what)), of_what)
 
+    def test_a_configuration_that_no_silence_ends_is_a_caution(self):
+        def cautions(change):
+            document = guard()
+            change(document)
+            out, err = self.run_tool("operate", self.write(document), "--check", "--json")
+            self.assertEqual(err, "")
+            return json.loads(out)["cautions"], document
+
+        def obstacle(*silences):
+            def change(document):
+                values = document["monitors"][0]["when"]["any"]
+                values[:] = [each for each in values if "age" not in each] + list(silences)
+            return change
+        found, document = cautions(obstacle())
+        self.assertEqual([each["what"] for each in found], ['nothing leads from "driving" to "stopped" when proximity_ring falls silent: '
+                                                            'what is not known fires no monitor'])
+        line = self.line_of('"driving"', document) - 1
+        self.assertIn(f"test.operator.json:{line}: /configurations/1", found[0]["place"])
+        self.assertIn('{"age": "proximity_ring", "above": ...}', found[0]["remedy"])
+        for silence in ({"age": "ring", "above": "250ms"}, {"gap": "ring", "above": "250ms"},
+                        {"rate": "ring", "below": 15, "window": "1s"}):
+            self.assertEqual(cautions(obstacle(silence))[0], [])
+
     def test_limits_that_boards_do_not_keep_by_themselves_are_a_caution(self):
         def cautions(change):
             document = guard()
