@@ -181,6 +181,20 @@ class Running(Operating):
         stopped = next(at for at, frame in frames if frame == "103#00")
         self.assertEqual([frame for at, frame in frames if at > stopped + 0.1], [])
 
+    def test_a_recording_of_which_the_disk_took_nothing_leaves_no_file(self):
+        self.start_sim()
+        box = os.path.join(self.folder, "box")
+        document = json.loads(json.dumps(HALT))
+        document["transitions"].append({"from": "driving", "to": "halted", "on_request": True})
+        operator = self.start("operate", self.write(document), "--json", "--black-box", box,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0)))
+        self.event(operator, "started")
+        self.run_tool("operator", "switch", "halted")
+        self.event(operator, "switched")
+        _, err = self.interrupt(operator)
+        self.assertIn(" 1 recordings lost", err)
+        self.assertEqual(os.listdir(box), [])
+
     def test_a_black_box_that_cannot_be_a_folder_is_refused_with_the_reason(self):
         self.start_sim()
         path = os.path.join(self.folder, "loop")
