@@ -46,6 +46,9 @@ constexpr base::Duration longest_wait{50'000'000};
 /// So many frames that wait are taken before what time asks for: they came first, and a storm of them does
 /// not hold that up.
 constexpr int most_before_time = 64;
+/// So far the two clocks part when one of them is set: NTP lets them part by 25 us in the longest wait, and
+/// between two looks at them a busy machine may do something else.
+constexpr base::Duration wall_clock_is_set{5'000'000};
 /// What a run that is killed loses of its black box.
 constexpr base::Duration keep_up_every{500'000'000};
 
@@ -59,8 +62,7 @@ Runner::Runner(transport::Bus& bus, Control& control, const protocol::Catalogue&
       file_(&file),
       options_(&options),
       box_(options.black_box, file.name, std::string{bus.name()}, catalogue),
-      live_(bus, [this] { nothing_waited_ = now(); },
-            {control.descriptor(), [&control] { control.serve(); }}),
+      live_(bus, [this] { none_waits(); }, {control.descriptor(), [&control] { control.serve(); }}),
       receiver_(catalogue, client::Transport::together),
       index_(catalogue),
       refusals_(catalogue),
@@ -73,7 +75,8 @@ Runner::Runner(transport::Bus& bus, Control& control, const protocol::Catalogue&
 }
 
 Over Runner::run() {
-  const base::Time begin = nothing_waited_ = now();
+  none_waits();
+  const base::Time begin = nothing_waited_;
   if (window_.count() > 0) window_end_ = begin + window_;
   if (box_.keeps()) keep_up_at_ = begin + keep_up_every;
   recover();
@@ -161,11 +164,24 @@ void Runner::take(const transport::ReceivedAny& received) {
   if (reception.meaning != client::Meaning::sample) return;
   const auto topic = static_cast<std::uint16_t>(reception.topic - catalogue_->topics.data());
   const std::uint64_t sent = counters_.sent;
-  // By the wall clock, which may be set: but it came after the last time that none waited.
-  const auto age = std::clamp(unix_time() - received.time, base::Duration{}, at - nothing_waited_);
+  const auto age = waited(received.time);
   step({.kind = Event::Kind::sample, .topic = topic, .bytes = reception.sample.bytes, .age = age}, at);
   // What it sent must have been handed over in time, counted from the frame.
-  if (counters_.sent != sent) judge(unix_time() - received.time);
+  if (counters_.sent != sent) judge(waited(received.time));
+}
+
+void Runner::none_waits() {
+  nothing_waited_ = now();
+  wall_clock_ = unix_time() - nothing_waited_;
+}
+
+base::Duration Runner::waited(base::Time stamp) const {
+  const base::Time at = now();
+  const base::Time wall = unix_time();
+  const base::Duration longest = at - nothing_waited_;
+  const base::Duration set = wall - at - wall_clock_;
+  if (set > wall_clock_is_set || set < -wall_clock_is_set) return longest;
+  return std::clamp(wall - stamp, base::Duration{}, longest);
 }
 
 void Runner::take_error(const can::AnyFrame& frame) {
@@ -238,8 +254,6 @@ void Runner::flush() {
 
 void Runner::judge(base::Duration late) {
   if (late <= file_->tables.reaction) return;
-  // The wall clock, by which frames are stamped, may have been set.
-  if (late > std::chrono::hours{1}) return;
   ++counters_.late;
   counters_.latest = std::max(counters_.latest, late.count());
   if (counters_.late == 1)

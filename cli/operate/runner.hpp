@@ -83,7 +83,11 @@ class Runner {
   void end_window(base::Time at);
   void queue(const can::Frame& frame);
   void flush();
-  /// How long a step took that was due at `due`; negative where that is not known.
+  void none_waits();
+  /// How long a frame with this stamp has waited: by the wall clock, which stamps it. Where that was set
+  /// since none waited, as long as it may have: an old sample is not taken for a new one.
+  [[nodiscard]] base::Duration waited(base::Time stamp) const;
+  /// How late a step was.
   void judge(base::Duration late);
   void record();
   /// What a run that was killed has left; the robot is guarded whatever becomes of that.
@@ -124,6 +128,7 @@ class Runner {
   reflective::Supervisor<room> supervisor_;
   std::deque<can::Frame> queue_;
   base::Time nothing_waited_{};  ///< when the last frame that waited had been taken
+  base::Duration wall_clock_{};  ///< how far it was ahead of `now` then
   reflective::BusState controller_ = reflective::BusState::active;  ///< as error frames say
   std::optional<reflective::BusState> bus_state_;                   ///< as the supervisor knows it
   base::Duration window_{};  ///< of the load; 0: no condition looks at it

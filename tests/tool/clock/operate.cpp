@@ -8,6 +8,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <unistd.h>
 #include <vector>
 
@@ -19,6 +20,7 @@
 #include "cli/operate/runner.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/shared/set_points.hpp"
+#include "cli/words/quantity.hpp"
 #include "tests/tool/clock/played_bus.hpp"
 #include "tests/unit/base/explore.hpp"
 
@@ -73,7 +75,11 @@ class Run {
     const auto sometime = [this] { return World::start + world_.between(0s, lasting); };
     while (world_.chance(0.3)) {
       calm_ = false;
-      world_.stop(sometime(), world_.between(1ms, world_.chance(0.2) ? 3s : 300ms));
+      const auto stop = sometime();
+      const Duration stopped = world_.between(1ms, world_.chance(0.2) ? 3s : 300ms);
+      world_.stop(stop, stopped);
+      stopped_ += stopped;
+      if (world_.chance(0.3)) world_.set_wall_clock(stop + stopped / 2, world_.between(-3h, 3h));
     }
     while (world_.chance(0.2)) world_.set_wall_clock(sometime(), world_.between(-3s, 3s));
     world_.interrupt(World::start + lasting, SIGINT);
@@ -209,6 +215,7 @@ class Run {
     if (calm_)
       for (const Moment sample : far_) judge_motion_again(motors, sample);
     if (calm_) judge_asked(bus);
+    judge_late();
     if (over == cli::Over::gone) CHECK(bus.conditions().gone <= ended_);
     if (over != cli::Over::signal) return;
     CHECK(ended_ >= World::start + lasting);
@@ -224,6 +231,17 @@ class Run {
     CHECK(printed_.find("has ended, everything that it commands is at rest") != std::string::npos);
   }
 
+  /// A step is as late as the program was stopped, whatever the wall clock says.
+  void judge_late() {
+    constexpr std::string_view begins = "a step took ";
+    const std::lock_guard lock{mutex_};
+    const auto at = printed_.find(begins);
+    if (at == std::string::npos) return;
+    const std::string text = printed_.substr(at + begins.size());
+    const auto late = cli::words::parse_duration(text.substr(0, text.find(',')));
+    REQUIRE(late);
+    CHECK(*late <= stopped_ + 100ms);
+  }
   /// The program had the time to see at `time` what was there at `seen`.
   [[nodiscard]] bool knew(Moment seen, Moment time) const {
     constexpr Duration look = 2ms;
@@ -322,6 +340,7 @@ class Run {
 
   std::mutex mutex_;
   std::string printed_;
+  Duration stopped_{};  ///< the sum
   World world_;
   operate::RunOptions options_{.json = false, .bit_rate = 1'000'000, .black_box = {}};
   std::vector<PlayedBus::Incoming> incoming_;
