@@ -83,8 +83,8 @@ class Timeline {
   /// Ends a hold: sends the set point of rest. Nothing without a hold.
   void rest();
   /// rest(), and what was sent has left; leaves through cli::fail, loudly, if not. Then listens for the
-  /// refusal of what was sent last, unless a signal came. False: a board has refused something, or another node
-  /// has broadcast beside a message of several frames, which was said.
+  /// refusal of what was sent last, unless a signal came. False: a board has refused something, or another
+  /// node has broadcast beside a message of several frames, which was said.
   [[nodiscard]] bool finish();
 
  private:
