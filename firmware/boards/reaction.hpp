@@ -28,7 +28,7 @@ struct Reaction {
   analysis::ChainBound bound{};
 };
 
-/// What receiving a set point takes DiWheelDrive, eleven times over. [docs/boards/figures.md: 264
+/// What receiving a set point takes DiWheelDrive, twelve times over. [docs/boards/figures.md: 245
 /// instructions of 32 ns]
 inline constexpr std::int64_t reception_ns = 100'000;
 

@@ -1,7 +1,5 @@
 /// What PowerManagement's samples and tasks take of its processor, for its admission: its set of
-/// spec/tasks.json, which is schedulable as long as no request asks for more than the defaults. That is the
-/// processor alone: the admission adds the bus, and then all four sensors at their defaults are too much
-/// (docs/boards/figures.md).
+/// spec/tasks.json, which is schedulable as long as no request asks for more than the defaults.
 #pragma once
 
 #include "ocm/analysis/task_list.hpp"

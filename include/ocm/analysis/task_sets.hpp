@@ -13,7 +13,7 @@
 // clang-format off
 namespace ocm::analysis::task_sets {
 
-/// DiWheelDrive, each topic at its default period and priority. [docs/boards/figures.md, under load: latest measured start, or reply, with requests 3 ms apart, the part's bus included]
+/// DiWheelDrive, each topic at its default period and priority. [docs/boards/figures.md, under load: latest measured start at 32 ns an instruction, the part's bus included]
 namespace di_wheel_drive {
 
 /// [docs/boards/figures.md, own tasks]
@@ -27,7 +27,7 @@ struct Control {
 struct DeadReckoning {
   static constexpr std::string_view name = "dead_reckoning";
   static constexpr bool own = true;
-  static constexpr Task task{.cost = 522'000, .period = 50'000'000, .blocking = 10'000, .level = 1};
+  static constexpr Task task{.cost = 324'000, .period = 50'000'000, .blocking = 10'000, .level = 1};
 };
 
 /// [docs/boards/figures.md, what boards do by themselves: bench/firmware/run behaviours, follow under load]
@@ -40,10 +40,10 @@ struct Behaviours {
 struct Odometry {
   static constexpr std::string_view name = "odometry";
   static constexpr bool own = false;
-  static constexpr Task task{.cost = 98'000, .period = 50'000'000, .blocking = 10'000, .level = 2};
+  static constexpr Task task{.cost = 89'000, .period = 50'000'000, .blocking = 10'000, .level = 2};
 };
 
-/// [docs/boards/figures.md, under load: measured once, later than in its table]
+/// [docs/boards/figures.md, at 16 ns an instruction, which was later]
 struct FloorProximity {
   static constexpr std::string_view name = "floor_proximity";
   static constexpr bool own = false;
@@ -53,27 +53,26 @@ struct FloorProximity {
 struct Magnetometer {
   static constexpr std::string_view name = "magnetometer";
   static constexpr bool own = false;
-  static constexpr Task task{.cost = 529'000, .period = 50'000'000, .blocking = 10'000, .level = 2};
+  static constexpr Task task{.cost = 331'000, .period = 50'000'000, .blocking = 10'000, .level = 2};
 };
 
 struct Gyroscope {
   static constexpr std::string_view name = "gyroscope";
   static constexpr bool own = false;
-  static constexpr Task task{.cost = 145'000, .period = 50'000'000, .blocking = 10'000, .level = 2};
+  static constexpr Task task{.cost = 137'000, .period = 50'000'000, .blocking = 10'000, .level = 2};
 };
 
-/// [docs/boards/figures.md, under load: measured once, later than in its table]
 struct Accelerometer {
   static constexpr std::string_view name = "accelerometer";
   static constexpr bool own = false;
-  static constexpr Task task{.cost = 440'000, .period = 50'000'000, .blocking = 10'000, .level = 2};
+  static constexpr Task task{.cost = 252'000, .period = 50'000'000, .blocking = 10'000, .level = 2};
 };
 
-/// [docs/boards/figures.md, slow topics under load: bench/firmware/run load]
+/// [decided: it reads nothing]
 struct Behaviour {
   static constexpr std::string_view name = "behaviour";
   static constexpr bool own = false;
-  static constexpr Task task{.cost = 261'000, .period = 100'000'000, .blocking = 10'000, .level = 2};
+  static constexpr Task task{.cost = 100'000, .period = 100'000'000, .blocking = 10'000, .level = 2};
 };
 
 /// [decided: it reads nothing]
@@ -98,41 +97,40 @@ struct Facts {
 
 }  // namespace di_wheel_drive
 
-/// PowerManagement, each topic at its default period and priority. [docs/boards/figures.md, under load: latest measured start, or reply, with requests 3 ms apart, the part's bus included]
+/// PowerManagement, each topic at its default period and priority. [docs/boards/figures.md, under load: latest measured start at 32 ns an instruction, the part's bus included]
 namespace power_management {
 
 /// [docs/boards/figures.md, what boards do by themselves: bench/firmware/run behaviours, avoid under load]
 struct Avoidance {
   static constexpr std::string_view name = "avoidance";
   static constexpr bool own = true;
-  static constexpr Task task{.cost = 13'126'000, .period = 50'000'000, .blocking = 1'000'000, .level = 1};
+  static constexpr Task task{.cost = 11'634'000, .period = 50'000'000, .blocking = 1'000'000, .level = 1};
 };
 
 struct ProximityRing {
   static constexpr std::string_view name = "proximity_ring";
   static constexpr bool own = false;
-  static constexpr Task task{.cost = 9'121'000, .period = 50'000'000, .blocking = 1'000'000, .level = 2};
+  static constexpr Task task{.cost = 9'108'000, .period = 50'000'000, .blocking = 1'000'000, .level = 2};
 };
 
-/// [docs/boards/figures.md, under load: measured once, later than in its table]
 struct PowerStatus {
   static constexpr std::string_view name = "power_status";
   static constexpr bool own = false;
   static constexpr Task task{.cost = 7'247'000, .period = 50'000'000, .blocking = 1'000'000, .level = 2};
 };
 
-/// [docs/boards/figures.md, slow topics under load: bench/firmware/run load]
+/// [decided: eight transfers of the length of power_status's]
 struct Batteries {
   static constexpr std::string_view name = "batteries";
   static constexpr bool own = false;
-  static constexpr Task task{.cost = 8'594'000, .period = 1'000'000'000, .blocking = 1'000'000, .level = 2};
+  static constexpr Task task{.cost = 7'247'000, .period = 1'000'000'000, .blocking = 1'000'000, .level = 2};
 };
 
-/// [docs/boards/figures.md, slow topics under load: bench/firmware/run load]
+/// [decided: the transfers of proximity_ring, of the same length]
 struct RingLight {
   static constexpr std::string_view name = "ring_light";
   static constexpr bool own = false;
-  static constexpr Task task{.cost = 10'835'000, .period = 500'000'000, .blocking = 1'000'000, .level = 2};
+  static constexpr Task task{.cost = 9'108'000, .period = 500'000'000, .blocking = 1'000'000, .level = 2};
 };
 
 /// [decided: it reads nothing]

@@ -11,9 +11,7 @@
 #include <catch2/catch.hpp>
 
 #include "ocm/analysis/can_response.hpp"
-#include "ocm/analysis/task_list.hpp"
 #include "ocm/analysis/task_response.hpp"
-#include "ocm/analysis/task_sets.hpp"
 #include "ocm/can/text.hpp"
 #include "ocm/controller/controller.hpp"
 #include "ocm/topics/amiro.hpp"
@@ -226,40 +224,6 @@ TEST_CASE("A controller answers with the reason, and what runs goes on") {
   receive("339#01", 70ms);
   CHECK(wire.frames.size() == 2);
   CHECK(controller.next_event() == base::Time{1070ms});
-}
-
-// With the costs that its images have. docs/boards/figures.md says what follows from them.
-using PowerManagementCosts = CostsOf<task_sets::power_management::Facts>;
-
-/// Which of PowerManagement's sensors are admitted, one after the other at their periods.
-std::vector<base::Error> asked_at_defaults(Level level_of_light) {
-  Admission<amiro::PowerManagement, PowerManagementCosts> admission;
-  std::vector<base::Error> answers;
-  std::size_t stream = 0;
-  [&]<class... Topics>(protocol::TopicList<Topics...>) {
-    (answers.push_back(admission.admit(stream++, Topics::period.duration(),
-                                       Topics::id == amiro::RingLight::id ? level_of_light : Level::medium)),
-     ...);
-  }(amiro::PowerManagement::sensors{});
-  return answers;
-}
-
-TEST_CASE("PowerManagement's sensors at their defaults: all, if the ambient light is less urgent") {
-  CHECK(std::ranges::count(asked_at_defaults(Level::low), base::Error::not_schedulable) == 0);
-  const auto equal = asked_at_defaults(Level::medium);
-  CHECK(std::ranges::count(equal, base::Error::not_schedulable) == 1);
-  CHECK(equal.back() == base::Error::not_schedulable);
-}
-
-TEST_CASE("PowerManagement's ring alone: the shortest period is that of its figures") {
-  constexpr std::size_t ring_stream = 1;
-  const auto answer = [](base::Duration period, Level level) {
-    return Admission<amiro::PowerManagement, PowerManagementCosts>{}.admit(ring_stream, period, level);
-  };
-  CHECK(answer(24'630us, Level::medium) == base::Error::none);
-  CHECK(answer(24'600us, Level::medium) == base::Error::not_schedulable);
-  CHECK(answer(11'520us, Level::urgent) == base::Error::none);
-  CHECK(answer(11'500us, Level::urgent) == base::Error::not_schedulable);
 }
 
 }  // namespace analysis_board_admission_test
