@@ -5,7 +5,7 @@
 ///
 /// On semihosting's output, one line a topic: how late its first frame was handed to the bus after the
 /// request had arrived a whole number of periods before (least, greatest), and the longest after a request
-/// under load; then the share of time in which no thread ran, under load and at rest.
+/// under load; one line a slow topic; then the share of time in which no thread ran, under load and at rest.
 #pragma once
 
 #include <algorithm>
@@ -35,8 +35,8 @@ struct Asked {
   protocol::TopicId first;  ///< of its first frame
   std::uint8_t frames;
   protocol::Priority priority;
+  base::Duration period = 50ms;
 };
-inline constexpr base::Duration period = 50ms;
 
 /// Text to the host. [Semihosting for AArch32 and AArch64, 2.1: SYS_WRITE0]
 inline void say(const char* text) noexcept {
@@ -60,6 +60,7 @@ struct Seen {
   base::Time requested{};
   bool awaited = false;    ///< no frame since the request
   base::Duration reply{};  ///< the longest from a request to the first frame
+  std::uint32_t replies = 0;
   base::Duration least = base::Duration::max();
   base::Duration greatest{};
   std::uint32_t samples = 0;
@@ -107,12 +108,17 @@ class LoadBus {
     signal_.raise_locked();
   }
   /// Asks for a topic: again, when it is published already.
-  void ask(std::size_t topic) noexcept {
+  void ask(std::size_t topic) noexcept { ask(topic, (*asked_)[topic].priority); }
+  void ask(std::size_t topic, protocol::Priority priority) noexcept {
     const chibios::Lock lock;
     const Asked& a = (*asked_)[topic];
     seen_[topic].requested = port_->now();
     seen_[topic].awaited = true;
-    arrive(*protocol::publish_every(a.topic, period, a.priority));
+    arrive(*protocol::publish_every(a.topic, a.period, priority));
+  }
+  void stop(std::size_t topic) noexcept {
+    const chibios::Lock lock;
+    arrive(protocol::stop((*asked_)[topic].topic));
   }
   [[nodiscard]] const std::array<Seen, Topics>& seen() const noexcept { return seen_; }
   void forget() noexcept {
@@ -132,9 +138,9 @@ class LoadBus {
       ++s.frames;
       if (index != 0) return;
       const base::Time now = port_->now();
-      if (s.awaited) s.reply = std::max(s.reply, now - s.requested);
+      if (s.awaited) s.reply = std::max(s.reply, now - s.requested), ++s.replies;
       s.awaited = false;
-      const base::Duration late = (now - s.requested) % period;
+      const base::Duration late = (now - s.requested) % (*asked_)[i].period;
       s.least = std::min(s.least, late);
       s.greatest = std::max(s.greatest, late);
       ++s.samples;
@@ -186,6 +192,11 @@ class LoadI2c {
     parts_[slot].answers_first = first;
     return parts_[slot].registers;
   }
+  /// Of this register the part sets these bits, whatever is written to it.
+  void set_always(std::size_t slot, std::uint8_t where, std::uint8_t bits) noexcept {
+    parts_[slot].set_where = where;
+    parts_[slot].set_bits = bits;
+  }
   base::Status transfer(std::uint8_t address, std::span<const std::uint8_t> write,
                         std::span<std::uint8_t> read) noexcept {
     mutex_.lock();
@@ -198,6 +209,7 @@ class LoadI2c {
       for (std::size_t i = 1; i < write.size(); ++i) part.registers[part.pointer + i - 1] = write[i];
       if (part.answers_first)
         part.registers[0] = part.answers_first[0], part.registers[1] = part.answers_first[1];
+      part.registers[part.set_where] |= part.set_bits;
       for (std::size_t i = 0; i < read.size(); ++i) read[i] = part.registers[part.pointer + i];
       answer = {};
     }
@@ -210,6 +222,8 @@ class LoadI2c {
     std::uint8_t address = 0xFF;
     std::uint8_t pointer = 0;
     const std::uint8_t* answers_first = nullptr;
+    std::uint8_t set_where = 0;
+    std::uint8_t set_bits = 0;
     std::array<std::uint8_t, 256> registers{};
   };
   std::uint32_t us_a_byte_x16_;
@@ -255,18 +269,41 @@ struct LoadPins {
   void write(std::uint8_t /*levels*/) noexcept {}
 };
 
-/// From start_machine() to the end of the measurement: a second for the parts to turn on, one of rest, the
-/// requests OCM_LOAD_SPREAD_US apart, ten seconds under load, and a hundred requests more for each topic.
-template <template <class, class, class> class Board, class Parts, std::size_t Topics>
-[[noreturn]] void measure(const char* name, const std::array<Asked, Topics>& asked, Parts& parts) noexcept {
-  using Bus = LoadBus<Topics>;
+template <std::size_t Fast, std::size_t Slow>
+[[nodiscard]] constexpr std::array<Asked, Fast + Slow> join(const std::array<Asked, Fast>& fast,
+                                                            const std::array<Asked, Slow>& slow) noexcept {
+  std::array<Asked, Fast + Slow> all{};
+  std::ranges::copy(slow, std::ranges::copy(fast, all.begin()).out);
+  return all;
+}
+
+/// What a sample of a slow topic takes, from its request to its first frame.
+struct SlowCost {
+  base::Duration first{};   ///< the first of all, at rest: a part may be asked for more
+  base::Duration alone{};   ///< the next one
+  base::Duration loaded{};  ///< the longest of `slow_rounds` under load
+  std::uint32_t replies = 0;
+};
+/// With a quarter of a millisecond more than the fast topics' period between two: they pass each other once.
+inline constexpr int slow_rounds = 200;
+inline constexpr std::uint32_t slow_round_us = 50'250;
+
+/// From start_machine() to the end of the measurement: a second for the parts to turn on, one of rest; the
+/// slow topics one by one; the requests for the fast ones OCM_LOAD_SPREAD_US apart, ten seconds under load,
+/// and a hundred requests more for each; ten seconds with the slow ones, too; and one slow one after the
+/// other beside the fast ones. Then it is at `high`: it waits for transfers of what is less urgent, and for
+/// the board's own tasks.
+template <template <class, class, class> class Board, class Parts, std::size_t Topics, std::size_t Slow>
+[[noreturn]] void measure(const char* name, const std::array<Asked, Topics>& asked,
+                          const std::array<Asked, Slow>& slow, Parts& parts) noexcept {
+  using Bus = LoadBus<Topics + Slow>;
   static chibios::Port port;
-  static Bus bus{asked, port};
+  static const std::array<Asked, Topics + Slow> all = join(asked, slow);
+  static Bus bus{all, port};
   parts.start(port.now());
   static Board<Parts, Bus, chibios::Port> board{parts, bus, port};
   static chibios::Runtime runtime{port, board.controller(), bus};
   static const char* title = name;
-  static const std::array<Asked, Topics>* topics = &asked;
   static THD_WORKING_AREA(area, 1024);
   // Above all levels, and awake for a moment a millisecond at most: what an interrupt would be.
   chThdCreateStatic(
@@ -278,6 +315,25 @@ template <template <class, class, class> class Board, class Parts, std::size_t T
         chThdSleepMilliseconds(1000);
         const base::Duration quiet = port.idle() - idle_before;
         const base::Duration quiet_time = port.now() - quiet_begin;
+        const auto ask_slow = [](std::size_t topic) {
+          bus.forget();
+          bus.ask(topic, protocol::Priority::high);
+          chThdSleepMilliseconds(90);  // less than any of their periods
+          return bus.seen()[topic].reply;
+        };
+        const auto stop_slow = [] {
+          for (std::size_t i = Topics; i < Topics + Slow; ++i) {
+            bus.stop(i);
+            chThdSleepMilliseconds(20);
+          }
+        };
+        std::array<SlowCost, Slow> costs{};
+        for (std::size_t i = 0; i < Slow; ++i) {
+          costs[i].first = ask_slow(Topics + i);
+          costs[i].alone = ask_slow(Topics + i);
+          bus.stop(Topics + i);
+          chThdSleepMilliseconds(20);
+        }
         const auto ask_all = [] {
           for (std::size_t i = 0; i < Topics; ++i) {
             bus.ask(i);
@@ -293,7 +349,7 @@ template <template <class, class, class> class Board, class Parts, std::size_t T
           chThdSleepMilliseconds(1000);  // more the kernel's macro does not hold
         const base::Duration idle = port.idle() - idle_begin;
         const base::Duration time = port.now() - begin;
-        const std::array<Seen, Topics> regular = bus.seen();
+        const std::array<Seen, Topics + Slow> regular = bus.seen();
         const std::uint32_t bits = bus.bits();
         // And now requests under that load, at times that have nothing to do with it.
         bus.forget();
@@ -302,15 +358,43 @@ template <template <class, class, class> class Board, class Parts, std::size_t T
           chThdSleep(73'013);
         }
         const auto counters = board.controller().counters();
+        const std::array<Seen, Topics + Slow> asked_again = bus.seen();
+        for (std::size_t i = Topics; i < Topics + Slow; ++i) {
+          bus.ask(i);
+          chThdSleep(OCM_LOAD_SPREAD_US);
+        }
+        chThdSleepMilliseconds(500);
+        const base::Duration all_idle_begin = port.idle();
+        const base::Time all_begin = port.now();
+        for (int second = 0; second < 10; ++second) chThdSleepMilliseconds(1000);
+        const base::Duration all_idle = port.idle() - all_idle_begin;
+        const base::Duration all_time = port.now() - all_begin;
+        stop_slow();
+        for (std::size_t i = 0; i < Slow; ++i) {
+          bus.forget();
+          for (int round = 0; round < slow_rounds; ++round) {
+            bus.ask(Topics + i, protocol::Priority::high);
+            chThdSleep(slow_round_us);
+          }
+          costs[i].loaded = bus.seen()[Topics + i].reply;
+          costs[i].replies = bus.seen()[Topics + i].replies;
+          stop_slow();
+        }
         for (std::size_t i = 0; i < Topics; ++i) {
           const Seen& s = regular[i];
-          const Asked& a = (*topics)[i];
+          const Asked& a = all[i];
           say(title), say(" topic "), say(a.topic.value), say(" level "), say(static_cast<int>(a.priority));
           say(" samples "), say(s.samples), say(" frames "), say(s.frames);
-          say(" reply_us "), say(bus.seen()[i].reply / 1us), say(" least_us "), say(s.least / 1us);
+          say(" reply_us "), say(asked_again[i].reply / 1us), say(" least_us "), say(s.least / 1us);
           say(" greatest_us "), say(s.greatest / 1us), say("\n");
         }
-        say(title), say(" idle_permille "), say(idle * 1000 / time), say(" quiet_permille ");
+        for (std::size_t i = 0; i < Slow; ++i) {
+          say(title), say(" slow "), say(all[Topics + i].topic.value), say(" first_us ");
+          say(costs[i].first / 1us), say(" alone_us "), say(costs[i].alone / 1us), say(" loaded_us ");
+          say(costs[i].loaded / 1us), say(" replies "), say(costs[i].replies), say("\n");
+        }
+        say(title), say(" idle_permille "), say(idle * 1000 / time), say(" all_permille ");
+        say(all_idle * 1000 / all_time), say(" quiet_permille ");
         say(quiet * 1000 / quiet_time), say(" bus_permille "), say(std::int64_t{bits} * 2'000 / (time / 1us));
         say(" late "), say(counters.late), say(" missed "), say(counters.missed), say(" overrun ");
         say(counters.overrun), say(" not_sampled "), say(counters.not_sampled);

@@ -1,4 +1,5 @@
-// DiWheelDrive with all its sensors every 50 ms: 8 of the robot's 17 sensor frames, at four levels.
+// DiWheelDrive with its fast sensors every 50 ms: 8 of the robot's 17 fast sensor frames, at four levels; and
+// what the behaviours report.
 #include "bench/firmware/load.hpp"
 #include "firmware/boards/di_wheel_drive/board.hpp"
 #include "firmware/boards/di_wheel_drive/parts.hpp"
@@ -16,6 +17,9 @@ constexpr std::array<bench::Asked, 5> asked{{
     {TopicId{0x04}, TopicId{0x04}, 1, Priority::medium},  // floor
     {TopicId{0x03}, TopicId{0x02}, 2, Priority::high},    // odometry
     {TopicId{0x08}, TopicId{0x08}, 1, Priority::urgent},  // gyroscope
+}};
+[[maybe_unused]] constexpr std::array<bench::Asked, 1> slow{{
+    {amiro::Behaviour::id, amiro::Behaviour::id, 1, Priority::medium, amiro::Behaviour::period.duration()},
 }};
 
 }  // namespace
@@ -60,6 +64,6 @@ int main() {
   static const ocm::can::Frame command = ocm::protocol::command(follow, Priority::medium);
   bench::measure_behaviour<di_wheel_drive::Board>("di_wheel_drive", asked, command, parts, look);
 #else
-  bench::measure<di_wheel_drive::Board>("di_wheel_drive", asked, parts);
+  bench::measure<di_wheel_drive::Board>("di_wheel_drive", asked, slow, parts);
 #endif
 }

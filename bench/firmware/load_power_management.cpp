@@ -1,5 +1,5 @@
-// PowerManagement with its fast sensors every 50 ms: 9 frames. The slow ones are read by the same transfers,
-// at the same level.
+// PowerManagement with its fast sensors every 50 ms: 9 frames; and the slow ones, which are on the same
+// buses.
 #include "bench/firmware/load.hpp"
 #include "firmware/boards/power_management/board.hpp"
 #include "firmware/boards/power_management/parts.hpp"
@@ -15,6 +15,10 @@ constexpr std::array<bench::Asked, 2> asked{{
     {TopicId{0x1E}, TopicId{0x1E}, 1, Priority::low},     // power
     {TopicId{0x1F}, TopicId{0x1F}, 8, Priority::medium},  // ring
 }};
+[[maybe_unused]] constexpr std::array<bench::Asked, 2> slow{{
+    {TopicId{0x2B}, TopicId{0x2B}, 2, Priority::medium, amiro::Batteries::period.duration()},
+    {TopicId{0x2D}, TopicId{0x2D}, 8, Priority::medium, amiro::RingLight::period.duration()},
+}};
 
 /// A gauge, and four of the ring's sensors, which are one behind a multiplexer that is always open.
 void fit(bench::LoadI2c& bus) {
@@ -23,6 +27,7 @@ void fit(bench::LoadI2c& bus) {
   gauge[0x0A] = 0x08;  // a battery is there [bq27500 data sheet, table 4-4]
   gauge[0x2C] = 80;
   bus.part(1, 0x13)[0x81] = 0x21;
+  bus.set_always(1, 0x80, 0x40);  // ambient light was measured [VCNL4020 data sheet, table 1]
   bus.part(2, 0x77);
 }
 
@@ -56,6 +61,6 @@ int main() {
   bench::measure_behaviour<power_management::Board>("power_management", asked, command, parts, look);
 #else
   static Real parts{back, front, pins};
-  bench::measure<power_management::Board>("power_management", asked, parts);
+  bench::measure<power_management::Board>("power_management", asked, slow, parts);
 #endif
 }
