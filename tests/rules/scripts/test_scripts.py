@@ -4,6 +4,7 @@ the summary of scripts/test names what does not build.
 Each runs in a copy of the little that it reads, where cmake, ctest and apt-get are stand-ins: nothing is built or installed.
 """
 
+import concurrent.futures
 import contextlib
 import os
 import pathlib
@@ -238,15 +239,31 @@ class Build(Case):
             self.stand_in(program, "")
         (self.tree / "build").mkdir()
         (self.tree / "build" / "build.ninja").touch()
-        busy = self.tree / "busy"
-        self.stand_in("cmake", f"mkdir {busy} || {{ touch {self.tree}/together; exit 1; }}; sleep 0.2; rmdir {busy}")
+        busy, waits = self.tree / "busy", self.tree / "waits"
+        # It works until the other one has said that it waits.
+        self.stand_in("cmake", f"mkdir {busy} || {{ touch {self.tree}/together; exit 1; }}\n"
+                               f"for ((i = 0; i < 300; ++i)); do [ ! -e {waits} ] || break; sleep 0.1; done; rmdir {busy}")
+        said = re.compile(r"(?m)^(build|bench|test|fuzz): waits for another build in build")
         for pair in ((("build",), ("bench", "codec")), (("build",), ("test", "--only", "release")), (("fuzz", "--build"), ("fuzz", "--build")),
                      (("build", "firmware"), ("build", "firmware"))):
             with self.subTest(pair=pair):
+                waits.unlink(missing_ok=True)
+
+                def printed_by(process):
+                    lines = []
+                    for line in process.stdout:
+                        lines.append(line)
+                        if said.match(line):
+                            waits.touch()
+                    process.wait(timeout=60)
+                    process.stdout.close()
+                    return "".join(lines)
+
                 both = [self.start(*words) for words in pair]
-                printed = "".join(process.communicate(timeout=60)[0] for process in both)
+                with concurrent.futures.ThreadPoolExecutor(2) as pool:
+                    printed = "".join(pool.map(printed_by, both))
                 self.assertFalse((self.tree / "together").exists(), printed)
-                self.assertRegex(printed, r"(?m)^(build|bench|test|fuzz): waits for another build in build")
+                self.assertRegex(printed, said)
 
     def test_two_builds_at_once_take_turns(self):
         self.stand_in("cmake", f"echo begin >>{self.tree}/called; sleep 0.2; echo end >>{self.tree}/called")
