@@ -271,6 +271,20 @@ TEST_CASE("drive: no set point waits behind the question what the boards do by t
   }
 }
 
+TEST_CASE("drive: a bus that has room a moment after the drive was given up gets the rest") {
+  const Silence silence;
+  // Set points at 150 and 250 ms; 500 ms behind the last it is given up.
+  for (const Duration until : {700ms, 760ms, 800ms, 840ms, 900ms}) {
+    INFO("down until " << until.count() << " ns");
+    World world{1};
+    PlayedBus::Conditions conditions;
+    conditions.down = {{World::start + 300ms, World::start + until}};
+    PlayedBus bus{world, conditions};
+    CHECK(drive_a_second(world, bus) == (until > 700ms));
+    CHECK(cli::is_rest(bus.sent().back().frame) == (until < 900ms));
+  }
+}
+
 TEST_CASE("drive: a signal ends the wait for the question to leave") {
   const Silence silence;
   World world{1};
