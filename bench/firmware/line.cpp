@@ -10,6 +10,7 @@
 #include "ocm/can/slcan_bridge.hpp"
 #include "ocm/topics/amiro.hpp"
 
+#include "bench/firmware/counter.hpp"
 #include "firmware/drivers/bxcan_filter.hpp"
 #include "firmware/drivers/bxcan_node.hpp"
 #include "firmware/drivers/usart.hpp"
@@ -19,21 +20,6 @@ namespace bxcan = firmware::drivers::bxcan;
 namespace usart = firmware::drivers::usart;
 
 namespace {
-
-// [RM0033, 15.4: TIM2 of the STM32F205]
-volatile std::uint32_t& tim2_cr1 = *reinterpret_cast<volatile std::uint32_t*>(0x40000000);
-volatile std::uint32_t& tim2_cnt = *reinterpret_cast<volatile std::uint32_t*>(0x40000024);
-
-std::uint32_t empty = 0;  // what reading the counter twice costs
-
-template <class F>
-[[gnu::noinline]] std::uint32_t cost(F call) {
-  const std::uint32_t begin = tim2_cnt;
-  asm volatile("" ::: "memory");
-  call();
-  asm volatile("" ::: "memory");
-  return tim2_cnt - begin - empty;
-}
 
 void print(const char* what, std::uint32_t instructions) {
   std::printf("%s: %lu\n", what, static_cast<unsigned long>(instructions));

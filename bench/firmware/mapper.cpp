@@ -15,24 +15,11 @@
 #include "ocm/motion/pose_controller.hpp"
 #include "ocm/motion/pose_estimator.hpp"
 
+#include "bench/firmware/counter.hpp"
+
 using namespace ocm;
 
 namespace {
-
-// [RM0033, 15.4: TIM2 of the STM32F205]
-volatile std::uint32_t& tim2_cr1 = *reinterpret_cast<volatile std::uint32_t*>(0x40000000);
-volatile std::uint32_t& tim2_cnt = *reinterpret_cast<volatile std::uint32_t*>(0x40000024);
-
-std::uint32_t empty = 0;  // what reading the counter twice costs
-
-template <class F>
-[[gnu::noinline]] std::uint32_t cost(F call) {
-  const std::uint32_t begin = tim2_cnt;
-  asm volatile("" ::: "memory");
-  call();
-  asm volatile("" ::: "memory");
-  return tim2_cnt - begin - empty;
-}
 
 /// Of many calls.
 struct Cost {

@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "firmware/drivers/mapped_registers.hpp"
+
 namespace ocm::firmware::drivers::bxcan {
 
 inline constexpr std::size_t mailboxes = 3;
@@ -122,24 +124,8 @@ inline constexpr std::uint32_t finit = 1U << 0;
 
 /// Reads and writes of 32 bits. The controller works on between any two of them.
 template <class R>
-concept Registers = requires(R& registers, Register which, std::uint32_t value) {
-  { registers.read(which) } -> std::same_as<std::uint32_t>;
-  registers.write(which, value);
-};
-
-/// The registers of a chip, mapped at `base`.
-class MappedRegisters {
- public:
-  constexpr explicit MappedRegisters(std::uintptr_t base) noexcept : base_(base) {}
-  [[nodiscard]] std::uint32_t read(Register which) const noexcept { return *at(which); }
-  void write(Register which, std::uint32_t value) const noexcept { *at(which) = value; }
-
- private:
-  [[nodiscard]] volatile std::uint32_t* at(Register which) const noexcept {
-    return reinterpret_cast<volatile std::uint32_t*>(base_ + static_cast<std::uintptr_t>(which));
-  }
-  std::uintptr_t base_;
-};
+concept Registers = RegistersOf<R, Register>;
+using MappedRegisters = drivers::MappedRegisters<Register>;
 static_assert(Registers<MappedRegisters>);
 
 }  // namespace ocm::firmware::drivers::bxcan

@@ -16,6 +16,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "firmware/drivers/mapped_registers.hpp"
+
 namespace ocm::firmware::drivers::usart {
 
 /// Offset of a register from the base. [RM0008 27.6, RM0033 24.6, RM0090 30.6]
@@ -39,24 +41,8 @@ inline constexpr std::uint32_t ue = 1U << 13;
 }  // namespace cr1
 
 template <class R>
-concept Registers = requires(R& registers, Register which, std::uint32_t value) {
-  { registers.read(which) } -> std::same_as<std::uint32_t>;
-  registers.write(which, value);
-};
-
-/// The registers of a chip, mapped at `base`.
-class MappedRegisters {
- public:
-  constexpr explicit MappedRegisters(std::uintptr_t base) noexcept : base_(base) {}
-  [[nodiscard]] std::uint32_t read(Register which) const noexcept { return *at(which); }
-  void write(Register which, std::uint32_t value) const noexcept { *at(which) = value; }
-
- private:
-  [[nodiscard]] volatile std::uint32_t* at(Register which) const noexcept {
-    return reinterpret_cast<volatile std::uint32_t*>(base_ + static_cast<std::uintptr_t>(which));
-  }
-  std::uintptr_t base_;
-};
+concept Registers = RegistersOf<R, Register>;
+using MappedRegisters = drivers::MappedRegisters<Register>;
 static_assert(Registers<MappedRegisters>);
 
 /// In place of what was lost: no protocol of text has it.

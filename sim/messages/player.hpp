@@ -182,12 +182,8 @@ class MessagePlayer {
       free = due + j1939::broadcast_time(layout.length);
     }
     const auto part = j1939::broadcast_frame(own, message.data, message.parts);
-    can::AnyFrame frame;
-    frame.id = part.id;
-    frame.format = can::Format::extended;
-    frame.length = can::max_dlc;
-    std::copy(part.data.begin(), part.data.end(), frame.data.begin());
-    send(std::as_const(message.played), frame, due);
+    const can::Frame frame{part.id, can::max_dlc, part.data, can::Format::extended};
+    send(std::as_const(message.played), can::AnyFrame{frame}, due);
     if (++message.parts != j1939::broadcast_frames(layout.length)) return due + j1939::broadcast_distance;
     message.parts = 0;
     message.data.clear();

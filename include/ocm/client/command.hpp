@@ -2,7 +2,6 @@
 /// it with the functions below. Host only.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -54,12 +53,7 @@ struct Broadcast {
   /// Of that number, below frames().
   [[nodiscard]] can::AnyFrame frame(std::uint32_t number) const noexcept {
     const auto part = j1939::broadcast_frame(j1939::Identifier::decode(id()), data, number);
-    can::AnyFrame frame;
-    frame.id = part.id;
-    frame.format = can::Format::extended;
-    frame.length = can::max_dlc;
-    std::copy(part.data.begin(), part.data.end(), frame.data.begin());
-    return frame;
+    return can::Frame{part.id, can::max_dlc, part.data, can::Format::extended};
   }
 };
 
