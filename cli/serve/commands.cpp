@@ -142,7 +142,8 @@ base::Result<PlaybackRequest, std::string> playback_of(std::string_view payload)
     const bool is_number = member.node.is(Node::Kind::number) &&
                            std::from_chars(text.data(), text.data() + text.size(), number).ec == std::errc{};
     if (member.name == "at_s" && is_number && number >= 0 && number < 1e9)
-      request.at_s = number;
+      // Rounded: the end of a log, written in seconds, is its end and not 1 ns before it.
+      request.at = base::Duration{std::llround(number * 1e9)};
     else if (member.name == "speed" && is_number && number >= 1.0 / 64 && number <= 1024)
       request.speed = number;
     else if (member.name == "paused" && member.node.is(Node::Kind::boolean))

@@ -26,8 +26,8 @@ void FleetPlayer::obey(const Order& order) {
   if (request->paused >= 0) paused_ = request->paused == 1;
   if (request->speed > 0) replay_.faster(request->speed / replay_.playing().speed);
   next_bar_ = {};
-  if (request->at_s < 0) return;
-  replay_.go_to(base::Duration{static_cast<std::int64_t>(request->at_s * 1e9)});
+  if (!request->at) return;
+  replay_.go_to(*request->at);
   ++jumps_;
   map_.clear();
   next_robots_ = next_map_ = {};

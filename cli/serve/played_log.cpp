@@ -49,7 +49,7 @@ int serve_log(PageServer& server, bus_model::LogFeed& log) {
     start.begin();
     if (request->paused >= 0) paused = request->paused == 1;
     if (request->speed > 0) log.faster(request->speed / log.playing().speed);
-    if (request->at_s >= 0) jump(base::Duration{static_cast<std::int64_t>(request->at_s * 1e9)});
+    if (request->at) jump(*request->at);
   };
   auto before = Clock::now();
   auto next_bus = before;

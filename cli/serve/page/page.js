@@ -184,7 +184,6 @@ function setPlayback(state) {
   jumps = state.jumps;
   const bar = by('bar');
   bar.max = state.length_s;
-  bar.step = state.length_s / 1000;
   if (document.activeElement !== bar || !bar.dataset.held) bar.value = state.at_s;
   by('bar-text').textContent = `${state.at_s.toFixed(1)} of ${state.length_s.toFixed(1)} s${state.ended ? ', end' : ''}`;
   by('play').textContent = state.ended ? 'Play again' : state.paused ? 'Play log' : 'Pause log';

@@ -1,5 +1,7 @@
 #include "cli/serve/commands.hpp"
 
+#include <chrono>
+#include <optional>
 #include <string>
 
 #include <catch2/catch.hpp>
@@ -11,6 +13,8 @@ namespace serve_commands_test {
 using ocm::cli::serve::command_of;
 using ocm::cli::serve::period_command;
 using ocm::cli::serve::playback_of;
+
+using namespace std::chrono_literals;
 
 const auto& catalogue = amiro::catalogue;
 
@@ -86,10 +90,12 @@ TEST_CASE("serve: a parameter is a period in milliseconds") {
 TEST_CASE("serve: a time bar") {
   const auto all = playback_of(R"({"at_s":12.5,"speed":2,"paused":true})");
   REQUIRE(all);
-  CHECK(all->at_s == 12.5);
+  CHECK(all->at == 12500ms);
   CHECK(all->speed == 2);
   CHECK(all->paused == 1);
   CHECK(playback_of("{}")->paused == -1);
+  CHECK(playback_of("{}")->at == std::nullopt);
+  CHECK(playback_of(R"({"at_s":4.261999625})")->at == 4261999625ns);  // times 1e9 it is 4261999624.9999995
   for (const char* const text :
        {R"({"at_s":-1})", R"({"speed":0})", R"({"speed":1e9})", R"({"paused":1})", R"({"x":1})", "[]"}) {
     INFO(text);
