@@ -122,7 +122,7 @@ TEST_CASE("proof recovery: the bound is reached, so one that is a microsecond to
 // --- random ones -------------------------------------------------------------------------------------------
 
 struct Campaign {
-  int operators = 0, recovered = 0, by_retry = 0, entering = 0, lost = 0;
+  int operators = 0, recovered = 0, by_retry = 0, entering = 0, lost = 0, of_one_board = 0;
   double closest = 0;
 
   void run(std::uint32_t seed) {
@@ -136,30 +136,40 @@ struct Campaign {
     robot.sampling = [&](std::uint16_t topic) { return random.extreme(t.on_board[topic]); };
     robot.reaction = [&](std::uint16_t) { return random.extreme(t.op.reaction.count()); };
     const auto count = static_cast<Ns>(t.configurations.size());
-    for (Ns when = 20'000'000; when < 800'000'000; when += random.up_to(150'000'000))
+    Ns change = 0;
+    for (Ns when = 20'000'000; when < 800'000'000; when += random.up_to(150'000'000)) {
       robot.request(when, static_cast<std::uint16_t>(random.up_to(count - 1)));
+      if (change < 400'000'000) change = when;
+    }
 
-    // Once, back at once or later; or just when a request has begun, which is lost then.
-    const Ns reset = 400'000'000 + random.up_to(400'000'000);
+    // Once, back at once or later; or just when a request has begun, which is lost then. Half of the time in
+    // a change, so that some requests of one configuration are heard, and others not. All boards or one.
+    const Ns reset = random.one_in(2) ? std::max<Ns>(change, 400'000'000) + random.up_to(10'000'000)
+                                      : 400'000'000 + random.up_to(400'000'000);
+    std::vector<bool> its_topics(t.topics.size(), true);
+    const bool one_board = random.one_in(2);
+    if (one_board)
+      for (std::size_t topic = 0; topic < its_topics.size(); ++topic) its_topics[topic] = random.one_in(2);
     const bool at_request = random.one_in(3);
     const Ns away = random.one_in(3) ? 0 : random.up_to(700'000'000);
     Ns up = base::never.time_since_epoch().count();
     robot.at(reset, [&] {
       if (!at_request) up = reset + away;
-      robot.reset(up);
+      robot.reset(up, its_topics);
     });
     if (at_request)
       robot.at(reset + 1'500'000'000, [&] {
-        if (up > robot.now()) robot.back(up = robot.now());
+        if (up > robot.now()) robot.back(up = robot.now(), its_topics);
       });
     robot.asked_again = [&](Ns now) {
       if (!at_request || now < reset || up <= now) return;
       up = now + 1 + (random.one_in(2) ? 0 : random.up_to(1'000'000));
-      robot.back(up);
+      robot.back(up, its_topics);
     };
     robot.lost = [&](std::uint16_t, Ns) { ++lost; };
 
     std::vector<bool> is_back(t.topics.size());
+    for (std::size_t topic = 0; topic < is_back.size(); ++topic) is_back[topic] = !its_topics[topic];
     Proof<128> proof{t.op, bit_rate, t.sampling};
     const auto judge = [&](std::uint16_t topic, Ns now, bool came) {
       const auto here = robot.supervisor().configuration();
@@ -177,6 +187,7 @@ struct Campaign {
       if (!came) return;
       ++recovered;
       if (up < settled) ++entering;
+      if (one_board && up < settled) ++of_one_board;
       if (bound.retry != 0) ++by_retry;
       closest = std::max(closest, static_cast<double>(measured) / static_cast<double>(bound.total()));
     };
@@ -204,11 +215,13 @@ TEST_CASE("proof recovery: 10000 random operators have their streams back not la
   Campaign campaign;
   for (std::uint32_t seed = 1; campaign.operators < operators; ++seed) campaign.run(seed);
   INFO("recovered " << campaign.recovered << ", by retry " << campaign.by_retry << ", entering "
-                    << campaign.entering << ", lost " << campaign.lost << ", closest " << campaign.closest);
+                    << campaign.entering << ", of one board " << campaign.of_one_board << ", lost "
+                    << campaign.lost << ", closest " << campaign.closest);
   CHECK(campaign.recovered > operators);
   CHECK(campaign.by_retry > operators / 10);
   CHECK(campaign.by_retry < campaign.recovered - operators / 10);
   CHECK(campaign.entering > operators / 100);
+  CHECK(campaign.of_one_board > operators / 100);
   CHECK(campaign.lost > operators / 10);
   CHECK(campaign.closest > 0.99);
 }

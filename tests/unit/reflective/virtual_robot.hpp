@@ -59,6 +59,7 @@ class VirtualRobot {
     values.resize(tables.catalogue->topics.size());
     silent.resize(values.size());
     streams_.resize(values.size());
+    boards_.resize(values.size());
   }
 
   void start() {
@@ -72,18 +73,25 @@ class VirtualRobot {
       input({.kind = reflective::Event::Kind::request, .value = configuration}, {});
     });
   }
-  /// All boards lose their streams now, and take no request that begins before `up`. What they have read is
-  /// sent all the same: the operator notices later then.
-  void reset(Ns up) {
-    for (Running& stream : streams_) {
-      stream.runs = false;
-      ++stream.generation;
+  /// Boards that have these topics lose their streams now, and take no request that begins before `up`. What
+  /// they have read is sent all the same: the operator notices later then.
+  void reset(Ns up, const std::vector<bool>& topics) {
+    for (std::size_t topic = 0; topic < streams_.size(); ++topic) {
+      if (!topics[topic]) continue;
+      streams_[topic].runs = false;
+      ++streams_[topic].generation;
+      boards_[topic].up = up;
+      ++boards_[topic].resets;
     }
-    up_ = up;
-    ++resets_;
   }
+  /// All boards.
+  void reset(Ns up) { reset(up, std::vector<bool>(streams_.size(), true)); }
   /// They take requests from then on, other than `reset` said.
-  void back(Ns up) { up_ = up; }
+  void back(Ns up, const std::vector<bool>& topics) {
+    for (std::size_t topic = 0; topic < boards_.size(); ++topic)
+      if (topics[topic]) boards_[topic].up = up;
+  }
+  void back(Ns up) { back(up, std::vector<bool>(streams_.size(), true)); }
   /// A frame of another program, handed over now.
   void other(std::uint32_t key, Ns cost) {
     pending_.push_back({key, cost, [](Ns) {}});
@@ -128,6 +136,11 @@ class VirtualRobot {
     std::uint64_t generation = 0;
     Ns handed_over = 0;  ///< the last sample: a board keeps their order
   };
+  /// Of each topic that of its board.
+  struct Board {
+    Ns up = 0;
+    int resets = 0;
+  };
 
   static base::Time time(Ns ns) { return base::Time{base::Duration{ns}}; }
   static Ns ns(base::Time time) { return time.time_since_epoch().count(); }
@@ -169,8 +182,8 @@ class VirtualRobot {
   void release(std::uint16_t topic, Ns planned, std::uint64_t generation) {
     at(planned, [=, this] {
       if (streams_[topic].generation != generation) return;
-      at(planned + jitter(topic, planned), [=, this, resets = resets_] {
-        if (resets == resets_) sample(topic, streams_[topic].priority);
+      at(planned + jitter(topic, planned), [=, this, resets = boards_[topic].resets] {
+        if (resets == boards_[topic].resets) sample(topic, streams_[topic].priority);
       });
       release(topic, planned + streams_[topic].period, generation);
     });
@@ -262,10 +275,12 @@ class VirtualRobot {
                               acted->at = now_;
                             }
                             if (action.kind == Action::Kind::command) return;
-                            at(now_ + handling(action.topic), [this, action, began, resets = resets_] {
-                              if (began >= up_ && resets == resets_) return take(action);
-                              lost(action.topic, now_);
-                            });
+                            const Board& board = boards_[action.topic];
+                            at(now_ + handling(action.topic),
+                               [this, &board, action, began, resets = board.resets] {
+                                 if (began >= board.up && resets == board.resets) return take(action);
+                                 lost(action.topic, now_);
+                               });
                           }});
       }
     });
@@ -286,8 +301,7 @@ class VirtualRobot {
   Ns entered_ = 0;
   Ns tick_ = -1;
   bool watching_ = false;
-  Ns up_ = 0;
-  int resets_ = 0;
+  std::vector<Board> boards_;
 };
 
 }  // namespace ocm::test
