@@ -221,6 +221,13 @@ Loaded parse_dbc(std::string_view text, std::string_view file_name) {
   return loaded;
 }
 
+/// As some editors save text: with a byte order mark, or a NUL beside the first character.
+bool is_utf16(std::string_view text) noexcept {
+  const std::string_view start = text.substr(0, 2);
+  return start == "\xFF\xFE" || start == "\xFE\xFF" ||
+         (start.size() == 2 && (start[0] == '\0') != (start[1] == '\0'));
+}
+
 }  // namespace
 
 Loaded parse(std::string_view text, std::string_view file_name) {
@@ -229,6 +236,11 @@ Loaded parse(std::string_view text, std::string_view file_name) {
     loaded.problems.push_back({std::string{file_name},
                                "the file has " + std::to_string(text.size()) + " bytes",
                                "a spec has at most " + std::to_string(max_spec_bytes)});
+    return loaded;
+  }
+  if (is_utf16(text)) {
+    loaded.problems.push_back({std::string{file_name}, "the file is UTF-16",
+                               "UTF-8, or code page 1252 for a DBC file: iconv -f UTF-16 -t UTF-8"});
     return loaded;
   }
   if (is_dbc(text, file_name)) return parse_dbc(text, file_name);

@@ -384,6 +384,17 @@ TEST_CASE("messages: a DBC file is known by what it begins with, and JSON whatev
   CHECK(parse("\n VERSION \"\"\nBO_ 1 A: 8 X\n", {}, "car").messages.size() == 1);
 }
 
+TEST_CASE("messages: a file that is UTF-16 is named as that") {
+  using namespace std::string_literals;
+  for (const std::string& text : {"\xFF\xFE"s + "V\0E\0"s, "\xFE\xFF"s + "\0V\0E"s, "V\0E\0"s, "\0{\0}"s}) {
+    const spec::Loaded loaded = spec::parse(text, "car.dbc");
+    CHECK(!loaded.spec);
+    REQUIRE(loaded.problems.size() == 1);
+    CHECK(loaded.problems[0].place == "car.dbc");
+    CHECK(loaded.problems[0].what == "the file is UTF-16");
+  }
+}
+
 TEST_CASE("messages: a DBC file without any is loaded, with a doubt") {
   const std::string doubt = "the file has no message; BO_ 257 Engine: 8 Gateway begins one";
   const Model model = parse("BU_: A B\n", {"nodes.dbc: " + doubt}, "nodes.dbc");
