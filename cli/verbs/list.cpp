@@ -1,8 +1,11 @@
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
+
+#include "ocm/j1939/identifier.hpp"
 
 #include "cli/shared/fitted.hpp"
 #include "cli/shared/json.hpp"
@@ -18,11 +21,35 @@ std::string aliases_of(const protocol::Topic& topic) {
   return text;
 }
 
+std::optional<std::uint32_t> pgn_of(const protocol::Topic& topic) {
+  const auto& address = topic.frames[0].address;
+  if (address.by != protocol::Address::By::pgn) return std::nullopt;
+  return j1939::pgn_of(address.number);
+}
+
 /// A topic's number, or a message's identifier with as many digits as its format has.
 std::string id_of(const protocol::Topic& topic) {
   if (!topic.is_message()) return fmt::format("0x{:02X}", topic.id.value);
   const auto& address = topic.frames[0].address;
   return fmt::format("0x{:0{}X}", address.number, address.extended ? 8 : 3);
+}
+
+/// By what its frames are known: of a parameter group that is not the whole identifier.
+std::string known_by(const protocol::Topic& topic) {
+  const auto pgn = pgn_of(topic);
+  return pgn ? fmt::format("PGN {}", *pgn) : id_of(topic);
+}
+
+/// Of its frames: "8", "8x2" are eight with two bytes each, "8+6" two; "64 FD" one of CAN FD.
+std::string bytes_of(const protocol::Topic& topic) {
+  std::string text;
+  for (std::size_t begin = 0, end = 0; begin < topic.frames.size(); begin = end) {
+    while (end < topic.frames.size() && topic.frames[end].length == topic.frames[begin].length) ++end;
+    if (begin > 0) text += '+';
+    if (end - begin > 1) text += fmt::format("{}x", end - begin);
+    text += fmt::format("{}", topic.frames[begin].length);
+  }
+  return text + (topic.frames[0].fd ? " FD" : "");
 }
 
 std::string period_of(const protocol::Topic& topic) {
@@ -40,6 +67,10 @@ void list_json(const protocol::Catalogue& catalogue) {
     line["board"] = catalogue.board_name(topic);
     if (!topic.bus.empty()) line["bus"] = topic.bus;
     line["frames"] = topic.frames.size();
+    line["bytes"] = Json::array();
+    for (const auto& frame : topic.frames) line["bytes"].push_back(frame.length);
+    if (topic.frames[0].fd) line["fd"] = true;
+    if (const auto pgn = pgn_of(topic)) line["pgn"] = *pgn;
     if (const auto period = topic.usual_period(); period.count() != 0) line["period_ns"] = period.count();
     fmt::print("{}\n", line.line());
   }
@@ -54,7 +85,7 @@ void list_table(const protocol::Catalogue& catalogue) {
     name_width = std::max(name_width, topic.name.size());
     alias_width = std::max(alias_width, aliases_of(topic).size());
     board_width = std::max(board_width, catalogue.board_name(topic).size());
-    id_width = std::max(id_width, id_of(topic).size());
+    id_width = std::max(id_width, known_by(topic).size());
   }
   const bool has_buses = catalogue.has_buses();
   const auto print = [&](std::string_view bus, const auto&... columns) {
@@ -64,10 +95,10 @@ void list_table(const protocol::Catalogue& catalogue) {
                  4);
   };
   print("BUS", "TOPIC", name_width, "ALIASES", alias_width, "ID", id_width, "KIND", "BOARD", board_width,
-        "FRAMES", "PERIOD");
+        "BYTES", "PERIOD");
   for (const auto& topic : catalogue.topics)
-    print(topic.bus, topic.name, name_width, aliases_of(topic), alias_width, id_of(topic), id_width,
-          name(topic.kind), catalogue.board_name(topic), board_width, topic.frames.size(), period_of(topic));
+    print(topic.bus, topic.name, name_width, aliases_of(topic), alias_width, known_by(topic), id_width,
+          name(topic.kind), catalogue.board_name(topic), board_width, bytes_of(topic), period_of(topic));
 }
 
 }  // namespace
