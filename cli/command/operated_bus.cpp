@@ -138,7 +138,14 @@ std::unique_ptr<transport::Bus> with_operator(std::unique_ptr<transport::Bus> bu
   auto link = connect_operator(bus->name(), verb);
   if (!link) fail({fmt::format("{}: {}", verb, link.error.what), link.error.remedy});
   if (*link == nullptr) return bus;
-  remark(fmt::format("{}: {} guards the robot: set points go through it", verb, (*link)->who()));
+  const auto is_actuator = [](const protocol::Topic& topic) {
+    return !topic.is_message() && topic.kind == protocol::Kind::actuator;
+  };
+  const auto& topics = session.catalogue().topics;
+  remark(fmt::format("{}: {} {}", verb, (*link)->who(),
+                     std::any_of(topics.begin(), topics.end(), is_actuator)
+                         ? "guards the robot: set points go through it"
+                         : "watches the bus; messages do not go through it"));
   return std::make_unique<OperatedBus>(std::move(bus), std::move(*link), session.catalogue(),
                                        std::string{verb});
 }

@@ -77,6 +77,11 @@ std::string others_of(const Study& study) {
 /// When each stream is back after a reset of its board.
 std::string recoveries_of(const Study& study) {
   const auto& tables = study.file->tables;
+  const auto is_topic = [&](const StreamBound& stream) { return !tables.topic(stream.topic).is_message(); };
+  if (std::none_of(study.configurations.begin(), study.configurations.end(), [&](const auto& each) {
+        return std::any_of(each.streams.begin(), each.streams.end(), is_topic);
+      }))
+    return {};
   std::string text =
       "\nrecoveries: from a board that takes requests again after a reset to the end of the first sample, at "
       "most\n";
@@ -84,9 +89,8 @@ std::string recoveries_of(const Study& study) {
     return text + "  never: without \"retry\" a silent stream is not asked for again\n";
   for (std::size_t c = 0; c < study.configurations.size(); ++c)
     for (const StreamBound& stream : study.configurations[c].streams) {
-      const auto& topic = tables.topic(stream.topic);
-      if (topic.is_message()) continue;
-      text += fmt::format("  {}: {}\n", tables.configurations[c].name, topic.name);
+      if (!is_topic(stream)) continue;
+      text += fmt::format("  {}: {}\n", tables.configurations[c].name, tables.topic(stream.topic).name);
       text += fmt::format("      {}\n", sum_of(stream.recovery));
     }
   return text;

@@ -308,14 +308,19 @@ void Runner::tell_switch(const Action& action) {
   const auto& transition = tables.transitions[action.transition];
   std::string because;
   Json conditions = Json::array();
-  if (transition.monitor != reflective::by_request)
-    for (const auto& term : tables.monitors[transition.monitor].terms)
-      if (term.op == reflective::Op::condition && supervisor_.held(term.condition)) {
-        const auto name = tables.conditions[term.condition].name;
-        because += fmt::format("{}{}", because.empty() ? "" : ", ", name);
-        conditions.push_back(name);
-        change.conditions.emplace_back(name);
-      }
+  if (transition.monitor != reflective::by_request) {
+    const auto terms = tables.monitors[transition.monitor].terms;
+    for (std::size_t t = 0; t < terms.size(); ++t) {
+      if (terms[t].op != reflective::Op::condition) continue;
+      const bool negated = reflective::negated(terms, t);
+      if (supervisor_.held(terms[t].condition) != reflective::truth(!negated)) continue;
+      const std::string name =
+          fmt::format("{}{}", negated ? "not " : "", tables.conditions[terms[t].condition].name);
+      because += fmt::format("{}{}", because.empty() ? "" : ", ", name);
+      conditions.push_back(name);
+      change.conditions.push_back(name);
+    }
+  }
   change.cause = transition.cause;
   tell("switched", {{"from", from}, {"to", to}, {"cause", transition.cause}, {"conditions", conditions}},
        fmt::format("{} -> {}: {}{}", from, to, transition.cause,

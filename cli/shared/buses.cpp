@@ -88,7 +88,8 @@ std::string only_bus() {
     fail({"no bus: mappers run, but have no CAN bus, and no CAN interface is up", instead_of_mappers});
   if (found.empty())
     fail({"no bus: no CAN interface is up and no simulator runs",
-          "start a simulated robot with `amiroctl sim`, or bring an interface up: "
+          "start a simulated robot with `amiroctl sim`, the messages of a DBC file with `amiroctl sim --spec "
+          "FILE`, or bring an interface up: "
           "sudo ip link set can0 up type can bitrate 500000"});
   if (found.size() > 1) {
     std::string names = found[0];

@@ -80,13 +80,14 @@ transport::Outcome<std::unique_ptr<LocalLink>> LocalLink::connect(const std::str
 
 LocalAnswer LocalLink::silence(std::string what) {
   socket_.reset();
-  return {LocalAnswer::Kind::silent,
-          {},
-          {std::move(what), "was it stopped (Ctrl-Z; `fg` lets it go on), or has it ended?"}};
+  silence_ = {LocalAnswer::Kind::silent,
+              {},
+              {std::move(what), "was it stopped (Ctrl-Z; `fg` lets it go on), or has it ended?"}};
+  return silence_;
 }
 
 LocalAnswer LocalLink::ask(std::string_view request, base::Duration patience) {
-  if (!socket_) return silence(fmt::format("{} is gone", who_));
+  if (!socket_) return silence_;
   // One that turns this program away may have closed by now, and has said why.
   const bool sent = ::send(socket_.get(), request.data(), request.size(), MSG_NOSIGNAL) >= 0;
   const auto until = Clock::now() + patience;
@@ -98,7 +99,7 @@ LocalAnswer LocalLink::ask(std::string_view request, base::Duration patience) {
     if (size > 0) return read_answer(std::string_view{message}.substr(0, static_cast<std::size_t>(size)));
     // It has closed without reading the request; the answer comes behind this error.
     if (errno == ECONNRESET && !std::exchange(reset, true)) continue;
-    if (!sent || (errno != EAGAIN && errno != EINTR)) return silence(fmt::format("{} is gone", who_));
+    if (!sent || (errno != EAGAIN && errno != EINTR)) return silence(fmt::format("{} has ended", who_));
     const auto left = until - Clock::now();
     if (left.count() <= 0) return silence(fmt::format("{} does not answer", who_));
     // A signal ends a wait early, and is seen by the caller after the answer.

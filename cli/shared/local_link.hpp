@@ -69,6 +69,7 @@ class LocalLink {
   std::string who_;
   std::string process_;
   std::string greeting_;
+  LocalAnswer silence_;  ///< once it was silent: why
 };
 
 }  // namespace ocm::cli

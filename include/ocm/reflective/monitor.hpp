@@ -91,6 +91,22 @@ template <class Of>
   return (yes & 1U) != 0 ? Truth::yes : (no & 1U) != 0 ? Truth::no : Truth::unknown;
 }
 
+/// Whether the condition that term `index` of a well-formed expression stands for counts inverted: it is an
+/// operand of an odd number of negations.
+[[nodiscard]] constexpr bool negated(std::span<const Term> terms, std::size_t index) noexcept {
+  bool odd = false;
+  std::size_t above = 0;  // operands that wait above the one that contains it
+  for (const Term& term : terms.subspan(index + 1)) {
+    if (term.op == Op::condition)
+      ++above;
+    else if (term.op == Op::negation)
+      odd ^= above == 0;
+    else if (above > 0)
+      --above;
+  }
+  return odd;
+}
+
 /// Since when an expression has been true without a break.
 class Since {
  public:

@@ -162,8 +162,8 @@ class Supervisor {
   /// Why it is in this configuration: a transition; none: since the start.
   [[nodiscard]] constexpr std::uint16_t transition() const noexcept { return transition_; }
   [[nodiscard]] constexpr Truth condition(std::size_t index) const noexcept { return states_[index].truth; }
-  /// Whether a condition was true when this configuration was entered by a transition: why.
-  [[nodiscard]] constexpr bool held(std::size_t index) const noexcept { return held_[index]; }
+  /// What a condition was when this configuration was entered by a transition: why.
+  [[nodiscard]] constexpr Truth held(std::size_t index) const noexcept { return held_[index]; }
   [[nodiscard]] constexpr Truth monitor(std::size_t index) const noexcept {
     return evaluate(tables_->monitors[index].terms, [this](std::size_t c) { return states_[c].truth; });
   }
@@ -356,7 +356,7 @@ class Supervisor {
       if (best == tables_->transitions.size() || before(transition, tables_->transitions[best])) best = t;
     }
     if (best == tables_->transitions.size()) return;
-    for (std::size_t c = 0; c < tables_->conditions.size(); ++c) held_[c] = states_[c].truth == Truth::yes;
+    for (std::size_t c = 0; c < tables_->conditions.size(); ++c) held_[c] = states_[c].truth;
     enter(tables_->transitions[best].to, static_cast<std::uint16_t>(best), now, false);
   }
   /// By precedence; of one precedence what a monitor says goes before a request.
@@ -555,7 +555,7 @@ class Supervisor {
   base::Time next_ = base::never;
   std::int64_t refusals_ = 0;
   std::array<ConditionState, room.conditions> states_{};
-  std::array<bool, room.conditions> held_{};
+  std::array<Truth, room.conditions> held_{};
   std::array<Since, room.monitors> since_{};
   std::array<StreamState, room.streams> streams_{};
   std::array<base::Time, room.entry> repeats_{};

@@ -226,7 +226,8 @@ class Asked(Operating):
                 operator.send_signal(number)
                 _, err = drive.communicate(timeout=30)
                 self.assertEqual(drive.returncode, 1)
-                self.assertRegex(err, r"operator halt \(process [0-9]+\) (does not answer|has ended|is gone)")
+                why = "does not answer" if number == signal.SIGSTOP else "has ended"
+                self.assertRegex(err, rf"operator halt \(process [0-9]+\) {why}")
                 self.assertEqual(x_of(self.frames(listener)[-1][1]), 0)
                 if number == signal.SIGSTOP:
                     _, err = self.run_tool("operator", "status", code=1)

@@ -34,6 +34,7 @@ class OfPlainMessages(Operating):
         self.assertEqual(json.loads(out)["sampling_not_counted"], ["Driving"])
         table, _ = self.run_tool("operate", self.write(CAR), "--check", "--spec", SMALL_CAR)
         self.assertIn("NOT COUNTED, as the tasks of its board are not known: the sampling of Driving\n", table)
+        self.assertNotIn("recoveries", table)  # nothing is asked for
         self.assertNotIn("LockCommand", periods)  # sent on events
         self.assertGreater(watching["streams"][0]["response_ns"], 2 * 130_000)  # Engine, Transmission and Wheels go first
 
@@ -50,7 +51,8 @@ class OfPlainMessages(Operating):
         self.start_sim()  # a bus on which nothing comes by itself
         listener = self.listen()
         car = self.start("set", "Driving", "Speed=30km/h", "--every", "20ms", "--spec", SMALL_CAR)
-        operator = self.start("operate", self.write(CAR), "--json", "--spec", SMALL_CAR)
+        document = CAR | {"monitors": [*CAR["monitors"][:2], CAR["monitors"][2] | {"when": {"not": "Driving.Speed>50km/h"}}]}
+        operator = self.start("operate", self.write(document), "--json", "--spec", SMALL_CAR)
         self.assertEqual(self.event(operator)["event"], "started")
         self.interrupt(car)
         car = self.start("set", "Driving", "Speed=70km/h", "--every", "20ms", "--spec", SMALL_CAR)
@@ -61,7 +63,9 @@ class OfPlainMessages(Operating):
         car = self.start("set", "Driving", "Speed=30km/h", "--every", "20ms", "--spec", SMALL_CAR)
         event = self.event(operator, "switched")
         self.assertEqual((event["from"], event["to"], event["cause"]), ("alarm", "watching", "slow"))
-        self.interrupt(car)  # silence
+        self.assertEqual(event["conditions"], ["not Driving.Speed>50km/h"])
+        _, err = self.interrupt(car)  # silence
+        self.assertRegex(err, r"set: operator car \(process [0-9]+\) watches the bus; messages do not go through it\n")
         self.assertEqual(self.event(operator, "switched")["conditions"], ["age of Driving above 2s"])
         _, err = self.interrupt(operator)
         self.assertEqual(operator.returncode, 130)

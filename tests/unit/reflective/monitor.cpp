@@ -53,6 +53,24 @@ TEST_CASE("monitor: an expression must be whole") {
   CHECK_FALSE(well_formed(deep, 1));
 }
 
+TEST_CASE("monitor: what counts inverted") {
+  const auto inverted = [](std::vector<Term> terms) {
+    std::vector<bool> found;
+    for (std::size_t i = 0; i < terms.size(); ++i)
+      if (terms[i].op == Op::condition) found.push_back(negated(terms, i));
+    return found;
+  };
+  using Each = std::vector<bool>;
+  CHECK(inverted({a}) == Each{false});
+  CHECK(inverted({a, negation}) == Each{true});
+  CHECK(inverted({a, negation, negation}) == Each{false});
+  CHECK(inverted({a, negation, b, any}) == Each{true, false});
+  CHECK(inverted({a, b, negation, any}) == Each{false, true});
+  CHECK(inverted({a, b, any, negation}) == Each{true, true});
+  CHECK(inverted({a, b, negation, all, negation}) == Each{true, false});
+  CHECK(inverted({a, b, a, any, negation, all, b, negation, any}) == Each{false, true, true, true});
+}
+
 TEST_CASE("monitor: and, or, not of what may be unknown, by Kleene's tables") {
   using enum Truth;
   const auto value = [](std::vector<Term> terms, Truth x, Truth y) {

@@ -115,7 +115,7 @@ TEST_CASE("supervisor: what was true when it switched can be asked for as long a
   const auto held = [&run] {
     std::vector<std::size_t> all;
     for (std::size_t c = 0; c < guard::tables.conditions.size(); ++c)
-      if (run.supervisor.held(c)) all.push_back(c);
+      if (run.supervisor.held(c) == Truth::yes) all.push_back(c);
     return all;
   };
   run.ask(60ms, guard::driving);
