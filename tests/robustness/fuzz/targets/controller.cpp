@@ -84,7 +84,7 @@ class Account {
   std::array<Stream, 256> streams_{};
 };
 
-struct Bus {
+struct BoardBus {
   Account& account;
   std::size_t room = 3;
   bool broken = false;
@@ -203,8 +203,8 @@ class Fuzzed {
   std::uint8_t left_out_;
   base::Time now_{};
   Account account_;
-  Bus bus_{account_};
-  controller::Controller<Board, Bus> controller_{bus_};
+  BoardBus bus_{account_};
+  controller::Controller<Board, BoardBus> controller_{bus_};
   std::uint32_t reads_ = 0;
   std::uint32_t applied_ = 0;
 };

@@ -16,7 +16,7 @@ using namespace ocm;
 
 namespace {
 
-constexpr base::Time latest{std::chrono::seconds{7'258'118'401} - std::chrono::microseconds{1}};
+constexpr base::Time latest_time{std::chrono::seconds{7'258'118'401} - std::chrono::microseconds{1}};
 
 std::string_view without_end(std::string_view line) {
   fuzz::expect(!line.empty() && line.find('\n') == line.size() - 1, "a piece is one line");
@@ -38,7 +38,8 @@ void check_line(std::string_view line) {
   const auto said = cli::fleet::parse_log_line(line);
   if (!said) return;
   fuzz::expect(is_printed(line) && line.starts_with('('), "a line begins with its time, and can be printed");
-  fuzz::expect(said->time >= base::Time{} && said->time <= latest, "a time is one of the years 1970 to 2200");
+  fuzz::expect(said->time >= base::Time{} && said->time <= latest_time,
+               "a time is one of the years 1970 to 2200");
   fuzz::expect(said->time.time_since_epoch() % std::chrono::microseconds{1} == base::Duration{},
                "a time is of whole microseconds");
   fuzz::expect(said->text.size() <= line.size(), "a piece is no longer than its line");

@@ -46,16 +46,16 @@ bool is_as_written(const mapper::link::Sentence& sentence, std::string_view text
 void check(Direction direction, std::string_view stream) {
   mapper::link::Reader reader{direction};
   std::uint32_t opened = 0;
-  std::uint32_t answers = 0;
+  std::uint32_t pongs = 0;
   std::size_t begin = 0;
   for (std::size_t i = 0; i < stream.size(); ++i) {
     if (stream[i] == '{') begin = i, ++opened;
     const Kind kind = reader.feed(stream[i]);
-    if (kind == Kind::pong) ++answers;
+    if (kind == Kind::pong) ++pongs;
     if (kind != Kind::none && kind != Kind::pong)
       fuzz::expect(is_as_written(reader.sentence(), stream.substr(begin, i + 1 - begin)),
                    "a sentence that is heard is as it would be written");
-    fuzz::expect(opened == reader.heard() - answers + reader.faults().total() - reader.faults().headless +
+    fuzz::expect(opened == reader.heard() - pongs + reader.faults().total() - reader.faults().headless +
                                (reader.mid_sentence() ? 1U : 0U),
                  "each opening brace is a sentence, a fault or still open");
   }

@@ -175,9 +175,9 @@ class Server {
   std::uint64_t left_ = 0;
 };
 
-class Scene {
+class ClientScene {
  public:
-  Scene() {
+  ClientScene() {
     std::array<int, 2> ends{};
     fuzz::expect(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) == 0,
                  "there are sockets");
@@ -414,6 +414,6 @@ class Scene {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  Scene{}.run({data, size});
+  ClientScene{}.run({data, size});
   return 0;
 }

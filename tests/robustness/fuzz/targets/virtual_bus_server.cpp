@@ -120,9 +120,9 @@ class Peer {
   vb::FdAssembly assembly_;
 };
 
-class Scene {
+class ServerScene {
  public:
-  Scene() {
+  ServerScene() {
     simulation::VirtualBusOptions options;
     options.path = directory().socket();
     options.transmit_queue = 4;
@@ -248,6 +248,6 @@ class Scene {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  Scene{}.run({data, size});
+  ServerScene{}.run({data, size});
   return 0;
 }
