@@ -144,6 +144,8 @@ class Resolver {
     }
     for (std::size_t i = 0; i < statements_.document.nodes.size(); ++i)
       nodes_.try_emplace(statements_.document.nodes[i].name, i);
+    for (std::size_t i = 0; i < statements_.document.definitions.size(); ++i)
+      definitions_[statements_.document.definitions[i].name].push_back(i);
   }
   [[nodiscard]] Message* message_of(const Subject& subject) {
     const auto at = by_id_.find(subject.id);
@@ -255,19 +257,22 @@ class Resolver {
     return names[static_cast<std::size_t>(*number)];
   }
   [[nodiscard]] AttributeDefinition* definition(Of of, std::string_view name) noexcept {
-    for (AttributeDefinition& candidate : statements_.document.definitions)
-      if (candidate.of == of && candidate.name == name) return &candidate;
+    const auto at = definitions_.find(name);
+    if (at == definitions_.end()) return nullptr;
+    for (const std::size_t i : at->second)
+      if (AttributeDefinition& candidate = statements_.document.definitions[i]; candidate.of == of)
+        return &candidate;
     return nullptr;
   }
   void defaults() {
     for (auto& statement : statements_.defaults) {
-      bool found = false;
-      for (AttributeDefinition& candidate : statements_.document.definitions) {
-        if (candidate.name != statement.name) continue;
-        candidate.default_text = attribute_text(&candidate, statement.text);
-        found = true;
-      }
-      if (!found && !is_relation(statement.name))
+      const auto at = definitions_.find(statement.name);
+      if (at != definitions_.end())
+        for (const std::size_t i : at->second) {
+          AttributeDefinition& candidate = statements_.document.definitions[i];
+          candidate.default_text = attribute_text(&candidate, statement.text);
+        }
+      else if (!is_relation(statement.name))
         doubt(statement.line, "a default of the attribute " + statement.name + ", which is not defined",
               "left out");
     }
@@ -557,6 +562,8 @@ class Resolver {
   std::unordered_map<std::uint32_t, std::size_t> by_id_;
   std::unordered_map<SignalKey, SignalAt, SignalHash> signals_;
   std::unordered_map<std::string_view, std::size_t> nodes_;
+  std::unordered_map<std::string_view, std::vector<std::size_t>>
+      definitions_;  ///< of one name: of several kinds
 };
 
 }  // namespace
