@@ -37,6 +37,7 @@ enum class Mistake : std::uint8_t {
   stream_twice,      ///< one topic twice in a configuration
   bad_period,        ///< not above 0, or not on the wire
   no_such_field,
+  field_of_some_frames,    ///< a multiplexed one: when it comes is not known
   limit_outside_spec,      ///< a limit is empty, or allows what the field's range does not
   set_point_outside_spec,  ///< a value that the field cannot have
   set_point_beyond_limit,  ///< of its own configuration
@@ -63,6 +64,7 @@ enum class Mistake : std::uint8_t {
       "a topic is asked for twice in one configuration",
       "a period that a request cannot carry",
       "unknown field",
+      "a field that only some frames of its message have",
       "a limit is outside the range of its field, or is empty",
       "a set point is outside the range of its field",
       "a set point is beyond the limit of its own configuration",
@@ -350,7 +352,8 @@ class Checker {
     if (!known(stream.topic) || op_.topic(stream.topic).is_message()) return false;
     for (std::size_t k = 0; k < a; ++k)
       if (configuration.adaptations[k].stream == adaptation.stream) return false;
-    if (field(adaptation.topic, adaptation.frame, adaptation.field) == nullptr) return false;
+    const protocol::Field* const f = field(adaptation.topic, adaptation.frame, adaptation.field);
+    if (f == nullptr || f->selector != protocol::no_selector) return false;
     const base::Duration grain = adaptation.grain;
     const base::Duration width = adaptation.longest() - adaptation.shortest();
     if (grain.count() < 1 || adaptation.every < grain || adaptation.from >= adaptation.to) return false;
@@ -384,8 +387,10 @@ class Checker {
           kind = Mistake::no_such_topic;
         else if (op_.topic(condition.topic).kind == protocol::Kind::actuator)
           kind = Mistake::not_a_stream;
-        else if (field(condition.topic, condition.frame, condition.field) == nullptr)
+        else if (const auto* f = field(condition.topic, condition.frame, condition.field); f == nullptr)
           kind = Mistake::no_such_field;
+        else if (f->selector != protocol::no_selector)
+          kind = Mistake::field_of_some_frames;
         break;
       case Watched::age:
       case Watched::gap:

@@ -1,5 +1,6 @@
 #include "ocm/reflective/check.hpp"
 
+#include <algorithm>
 #include <random>
 #include <span>
 #include <vector>
@@ -201,6 +202,38 @@ TEST_CASE("check: conditions, expressions, transitions") {
   SECTION("a field that is not there") {
     t.conditions[guard::near].frame = 8;
     CHECK(t.only() == Mistake::no_such_field);
+  }
+  SECTION("a field that only some frames have") {
+    const Condition& near = t.conditions[guard::near];
+    const auto copy = [](const auto& span) { return std::vector(span.begin(), span.end()); };
+    protocol::Catalogue catalogue = *t.op.catalogue;
+    auto topics = copy(catalogue.topics);
+    auto frames = copy(topics[near.topic].frames);
+    auto fields = copy(frames[near.frame].fields);
+    fields[near.field].selector = 1;
+    frames[near.frame].fields = fields;
+    topics[near.topic].frames = frames;
+    catalogue.topics = topics;
+    t.op.catalogue = &catalogue;
+    const auto of_conditions = t.findings();  // two conditions look at it
+    REQUIRE(of_conditions.size() == 2);
+    CHECK(of_conditions[0].kind == Mistake::field_of_some_frames);
+    CHECK(of_conditions[1].kind == Mistake::field_of_some_frames);
+    t.adaptations = {{.stream = 0,
+                      .topic = near.topic,
+                      .frame = near.frame,
+                      .field = near.field,
+                      .to = 100,
+                      .at_from = 100ms,
+                      .at_to = 50ms}};
+    const auto adaptation_is_bad = [&t] {
+      const auto all = t.findings();
+      return std::any_of(all.begin(), all.end(),
+                         [](const Finding& f) { return f.kind == Mistake::bad_adaptation; });
+    };
+    CHECK(adaptation_is_bad());
+    t.op.catalogue = guard::tables.catalogue;
+    CHECK_FALSE(adaptation_is_bad());
   }
   SECTION("operands") {
     t.terms.pop_back();
