@@ -138,6 +138,12 @@ TEST_CASE("check: what is wrong with a configuration") {
     t.raw[0] = -100'001;
     CHECK(t.only() == Mistake::set_point_beyond_limit);
   }
+  SECTION("the limit of another actuator") {
+    static constexpr std::array<std::int64_t, 1> red{255};
+    t.entry.push_back({topic_index(amiro::catalogue, "led_1"), red});
+    t.limits[0] = {guard::motors, 0, -100, 100, 0};
+    CHECK(t.findings().empty());
+  }
   SECTION("set point with too many values") {
     t.raw.push_back(0);
     CHECK(t.only() == Mistake::no_such_field);
@@ -241,6 +247,13 @@ TEST_CASE("check: conditions, expressions, transitions") {
   }
   SECTION("where it comes from") {
     t.transitions[0].to = guard::driving;
+    CHECK(t.only() == Mistake::bad_transition);
+  }
+  SECTION("from and to what is not there") {
+    t.transitions[3].from = 3;
+    CHECK(t.only() == Mistake::bad_transition);
+    t.transitions[3].from = guard::idle;
+    t.transitions[5].to = 3;
     CHECK(t.only() == Mistake::bad_transition);
   }
   SECTION("no monitor") {
