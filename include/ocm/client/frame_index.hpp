@@ -6,8 +6,8 @@
 ///     if (subject.is_request()) ...
 ///
 /// An identifier of 11 bits is a topic's before it is a message's; one of 29 bits is a message's whose exact
-/// identifier it is before it is the one of its parameter group [SAE J1939-21]. Memory: 48 KiB, and 24 bytes
-/// a message, allocated once.
+/// identifier it is before it is the one of its parameter group [SAE J1939-21]. Memory: 32 KiB, and up to 96
+/// bytes a message, allocated once.
 #pragma once
 
 #include <bit>
@@ -34,6 +34,41 @@ struct Subject {
   constexpr explicit operator bool() const noexcept { return topic != nullptr; }
 };
 
+/// The same with what is asked of every frame, in two words: of hundreds of messages in any order neither
+/// topic nor layout is in a near cache, and a receiver looks at neither.
+struct Known {
+  enum class Kind : std::uint8_t { nothing, request, frame, message };
+
+  const protocol::Topic* topic = nullptr;
+  std::uint16_t least = 0;  ///< bytes of a frame
+  std::uint16_t most = 0;
+  std::uint8_t number = 0;  ///< of the topic's frames
+  Kind kind = Kind::nothing;
+  bool selects = false;  ///< a field of it says which others are there
+
+  constexpr Known() = default;
+  constexpr Known(Kind what, protocol::FrameRef of) noexcept : topic(of.topic), number(of.frame), kind(what) {
+    if (kind == Kind::request) return;
+    const protocol::FrameLayout& layout = of.layout();
+    least = layout.any_length() ? std::uint16_t{0} : layout.length;
+    most = layout.address.by == protocol::Address::By::topic ? layout.length : std::uint16_t{UINT16_MAX};
+    for (const protocol::Field& field : layout.fields)
+      selects = selects || field.selector != protocol::no_selector;
+  }
+
+  constexpr explicit operator bool() const noexcept { return topic != nullptr; }
+  /// As FrameLayout::accepts.
+  [[nodiscard]] constexpr bool accepts(std::size_t bytes) const noexcept {
+    return bytes >= least && bytes <= most;
+  }
+  /// Empty for a request.
+  [[nodiscard]] constexpr protocol::FrameRef frame() const noexcept {
+    return kind == Kind::request ? protocol::FrameRef{} : protocol::FrameRef{topic, number};
+  }
+  [[nodiscard]] constexpr Subject subject() const noexcept { return {topic, frame()}; }
+};
+static_assert(sizeof(Known) <= 16);
+
 class FrameIndex {
  public:
   FrameIndex() : FrameIndex(protocol::Catalogue{}) {}
@@ -45,17 +80,19 @@ class FrameIndex {
       : FrameIndex(catalogue, [interface](const protocol::Topic& topic) { return topic.is_on(interface); }) {}
 
   /// Nothing for remote and error frames.
-  [[nodiscard]] Subject subject(std::uint32_t id, can::Format format) const noexcept {
+  [[nodiscard]] Known known(std::uint32_t id, can::Format format) const noexcept {
     if (format == can::Format::base) return base_[id & can::max_base_id];
     if (format != can::Format::extended) return {};
-    const protocol::FrameRef exact = look_up(id);
-    const protocol::FrameRef frame = exact ? exact : look_up(group_key(j1939::pgn_of(id)));
-    return {frame.topic, frame};
+    const Known exact = look_up(id);
+    return exact ? exact : look_up(group_key(j1939::pgn_of(id)));
+  }
+  [[nodiscard]] Subject subject(std::uint32_t id, can::Format format) const noexcept {
+    return known(id, format).subject();
   }
   /// The same of a topic's identifier alone: no message.
   [[nodiscard]] Subject subject(protocol::Identifier id) const noexcept {
-    const Subject found = base_[id.encode()];
-    return found.topic != nullptr && !found.topic->is_message() ? found : Subject{};
+    const Known& found = base_[id.encode()];
+    return found.kind == Known::Kind::message ? Subject{} : found.subject();
   }
   /// Sensor data, or an actuator's set point; empty for requests and unknown identifiers.
   [[nodiscard]] protocol::FrameRef find(protocol::Identifier id) const noexcept { return subject(id).frame; }
@@ -81,7 +118,7 @@ class FrameIndex {
 
   struct Wide {
     std::uint32_t key = 0;
-    protocol::FrameRef frame{};
+    Known known;
   };
   /// Above every identifier of 29 bits.
   [[nodiscard]] static constexpr std::uint32_t group_key(std::uint32_t pgn) noexcept {
@@ -93,39 +130,41 @@ class FrameIndex {
     const bool sensor = topic.kind == protocol::Kind::sensor;
     for (std::size_t level = 0; level < protocol::priority_levels; ++level) {
       const auto priority = static_cast<protocol::Priority>(level);
-      if (sensor) base_[protocol::Identifier{Direction::command, priority, topic.id}.encode()] = {&topic, {}};
+      if (sensor)
+        base_[protocol::Identifier{Direction::command, priority, topic.id}.encode()] = {Known::Kind::request,
+                                                                                        {&topic, 0}};
       const auto direction = sensor ? Direction::sensor : Direction::command;
       for (std::size_t i = 0; i < topic.frames.size(); ++i)
         base_[protocol::Identifier{direction, priority, topic.frames[i].id}.encode()] = {
-            &topic, {&topic, static_cast<std::uint8_t>(i)}};
+            Known::Kind::frame, {&topic, static_cast<std::uint8_t>(i)}};
     }
   }
   void add_message(const protocol::Topic& message) {
-    const protocol::FrameRef frame{&message, 0};
-    const protocol::Address& address = frame.layout().address;
+    const Known known{Known::Kind::message, {&message, 0}};
+    const protocol::Address& address = message.frames[0].address;
     if (address.by == protocol::Address::By::pgn)
-      return insert(group_key(j1939::pgn_of(address.number)), frame);
-    if (address.extended) return insert(address.number, frame);
-    Subject& place = base_[address.number & can::max_base_id];
-    if (!place) place = {&message, frame};
+      return insert(group_key(j1939::pgn_of(address.number)), known);
+    if (address.extended) return insert(address.number, known);
+    Known& place = base_[address.number & can::max_base_id];
+    if (!place) place = known;
   }
-  void insert(std::uint32_t key, protocol::FrameRef frame) {
+  void insert(std::uint32_t key, const Known& known) {
     std::size_t at = place_of(key);
-    while (wide_[at].frame && wide_[at].key != key) at = (at + 1) & (wide_.size() - 1);
-    if (!wide_[at].frame) wide_[at] = {key, frame};
+    while (wide_[at].known && wide_[at].key != key) at = (at + 1) & (wide_.size() - 1);
+    if (!wide_[at].known) wide_[at] = {key, known};
   }
-  [[nodiscard]] protocol::FrameRef look_up(std::uint32_t key) const noexcept {
+  [[nodiscard]] Known look_up(std::uint32_t key) const noexcept {
     std::size_t at = place_of(key);
-    while (wide_[at].frame && wide_[at].key != key) at = (at + 1) & (wide_.size() - 1);
-    return wide_[at].frame;
+    while (wide_[at].known && wide_[at].key != key) at = (at + 1) & (wide_.size() - 1);
+    return wide_[at].known;
   }
   /// Fibonacci hashing: identifiers that follow one another come to places far apart. [Knuth, TAOCP 3, 6.4]
   [[nodiscard]] std::size_t place_of(std::uint32_t key) const noexcept {
     return key * 0x9E37'79B9U >> (32U - static_cast<unsigned>(std::countr_zero(wide_.size())));
   }
 
-  std::vector<Subject> base_;  // by identifier of 11 bits
-  std::vector<Wide> wide_;     // a power of two, and at least one place is empty
+  std::vector<Known> base_;  // by identifier of 11 bits
+  std::vector<Wide> wide_;   // a power of two, and at least one place is empty
 };
 
 /// An index for each interface of a log, where the catalogue has topics that are on one only; else the same

@@ -215,21 +215,25 @@ class Receiver {
 
   Reception take_frame(const can::FrameView& frame, base::Time time, std::uint16_t bus) {
     if (can::is_remote(frame.format)) return take_remote(frame, bus);
-    const Subject subject = index_.of(bus).subject(frame.id, frame.format);
-    if (!subject || (frame.fd && !subject.topic->is_message())) {
+    const Known known = index_.of(bus).known(frame.id, frame.format);
+    const bool is_message = known.kind == Known::Kind::message;
+    if (!known || (frame.fd && !is_message)) {
       ++(frame.fd ? counters_.fd : counters_.unknown);
       return {};
     }
-    if (subject.is_request()) {
+    if (known.kind == Known::Kind::request) {
       ++counters_.commands;
-      return {Meaning::request, {}, subject.topic, {}};
+      return {Meaning::request, {}, known.topic, {}};
     }
-    const protocol::FrameRef ref = subject.frame;
-    if (!ref.layout().accepts(frame.bytes.size())) {
+    const protocol::FrameRef ref = known.frame();
+    if (!known.accepts(frame.bytes.size())) {
       ++counters_.wrong_dlc;
       return {Meaning::wrong_dlc, ref, ref.topic, {}};
     }
-    if (ref.topic->is_message()) return message(frame, time, ref);
+    if (is_message) {
+      if (known.selects) count_unselected(*ref.topic, frame.bytes);
+      return message(frame, time, ref);
+    }
     const auto id = protocol::Identifier::decode(frame.id);
     if (id.direction == protocol::Direction::command) {
       ++counters_.commands;
@@ -245,7 +249,6 @@ class Receiver {
 
   Reception message(const can::FrameView& frame, base::Time time, protocol::FrameRef ref) {
     ++counters_.samples;
-    count_unselected(*ref.topic, frame.bytes);
     const std::size_t room = frame.bytes.size() <= sizeof(can::Payload) ? sizeof(can::Payload) : 64;
     std::copy_n(frame.bytes.data(), room, message_.begin());
     return {Meaning::sample,

@@ -127,6 +127,37 @@ TEST_CASE("a message is known by its identifier and format, or by its group") {
   CHECK_FALSE(index.find(Identifier::decode(0x123)));         // no frame of a topic
 }
 
+TEST_CASE("an index knows which lengths a frame may have, and whether it selects, as its layout does") {
+  using ocm::can::Format;
+  using ocm::protocol::Address;
+  std::array<ocm::protocol::Field, 2> fields{};
+  fields[1].selector = 0;
+  std::array<ocm::protocol::FrameLayout, 4> frames{};
+  std::array<ocm::protocol::Topic, 4> all{};
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    frames[i].length = i == 2 ? 12 : 5;
+    frames[i].address = {i == 2 ? Address::By::pgn : Address::By::identifier, i != 0,
+                         static_cast<std::uint32_t>(i == 2 ? 0x18FE'F100 : 0x100 + i)};
+    if (i == 3) frames[i].fields = fields;
+    all[i].kind = ocm::protocol::Kind::message;
+    all[i].frames = {&frames[i], 1};
+  }
+  const FrameIndex index{ocm::protocol::Catalogue{"any", 500'000, {}, all}};
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto known = index.known(frames[i].address.number, i == 0 ? Format::base : Format::extended);
+    REQUIRE(known.topic == &all[i]);
+    CHECK(known.selects == (i == 3));
+    for (std::size_t bytes = 0; bytes <= 64; ++bytes)
+      REQUIRE(known.accepts(bytes) == frames[i].accepts(bytes));
+  }
+  for (unsigned number = 0; number <= ocm::can::max_base_id; ++number) {
+    const auto known = frame_index.known(number, Format::base);
+    if (!known.frame()) continue;
+    for (std::size_t bytes = 0; bytes <= 8; ++bytes)
+      REQUIRE(known.accepts(bytes) == known.frame().layout().accepts(bytes));
+  }
+}
+
 TEST_CASE("an interface has what is on it and what is on any, by its newest name") {
   using ocm::can::Format;
   std::array<ocm::protocol::FrameLayout, 3> on_buses{layout_at(By::identifier, false, 0x100),
