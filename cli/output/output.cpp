@@ -4,10 +4,6 @@
 
 namespace ocm::cli {
 
-client::Reception understand(client::Receiver& receiver, const log::Entry& entry) {
-  return receiver.take(entry.view(), entry.time, entry.interface);
-}
-
 std::unique_ptr<Output> make_output(Format format, const protocol::Catalogue& catalogue,
                                     const Selection& selection, bool colour, Columns columns) {
   switch (format) {

@@ -43,7 +43,9 @@ void append_formatted(Buffer& out, fmt::format_string<Arguments...> text, Argume
 }
 
 /// What an entry means; the receiver counts all but CAN FD frames, of which it knows nothing.
-[[nodiscard]] client::Reception understand(client::Receiver& receiver, const log::Entry& entry);
+[[nodiscard]] inline client::Reception understand(client::Receiver& receiver, const log::Entry& entry) {
+  return receiver.take(entry.view(), entry.time, entry.interface);
+}
 
 /// The bytes with the fields of a topic's frame or a message: of the frame, or of the message that it
 /// completes.

@@ -69,12 +69,16 @@ struct Decoding {
       window.on_interface(number, interfaces.name(number));
       display.on_interface(number, interfaces.name(number));
     }
+    std::uint16_t number = 0;
+    std::string_view name = interfaces.name(number);
     for (const auto& entry : entries) {
       if (over()) return;
       ++frames;
       if (!window.has(entry)) continue;
-      if (window.shows(entry, display.understand(entry)))
-        display.show(interfaces.name(entry.interface), entry);
+      const client::Reception reception = display.understand(entry);
+      if (!window.shows(entry, reception)) continue;
+      if (entry.interface != number) name = interfaces.name(number = entry.interface);
+      display.show(name, entry, reception);
     }
   }
 

@@ -52,14 +52,14 @@ void listen(Session& session, const ListenOptions& options, int& exit_code) {
   const auto take = [&](const transport::ReceivedAny& received) {
     const log::Entry entry{received.time, received.frame};
     if (!choice.has(entry)) return true;
-    const client::Reception& reception = display.understand(entry);
+    const client::Reception reception = display.understand(entry);
     if (!choice.shows(entry, reception)) return true;
     const auto meaning = reception.meaning;
     using client::Meaning;
     const bool command = meaning == Meaning::request || meaning == Meaning::set_point;
     if (command && !commands_wanted) return true;
     if (options.idle_timeout) last = Clock::now();
-    display.show(bus->name(), entry);
+    display.show(bus->name(), entry, reception);
     return options.count == 0 || display.shown() < options.count;
   };
   Live live{*bus, [&] { display.flush(); }};

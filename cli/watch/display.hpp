@@ -33,20 +33,20 @@ class Display {
   /// `verb` is for messages. Prints the head line, where the format has one.
   Display(std::string_view verb, Session& session, const DisplayOptions& options);
 
-  /// What the entry means, which is counted and kept for `show`. Valid until the next.
-  const client::Reception& understand(const log::Entry& entry) {
-    reception_ = cli::understand(receiver_, entry);
+  /// What the entry means, which is counted. Valid until the next.
+  [[nodiscard]] client::Reception understand(const log::Entry& entry) {
+    const client::Reception reception = cli::understand(receiver_, entry);
     last_ = entry.time;
-    if (reception_.meaning == client::Meaning::wrong_dlc && !wrong_length_)
-      wrong_length_ = {entry.id, entry.length, reception_.frame.layout().length};
-    return reception_;
+    if (reception.meaning == client::Meaning::wrong_dlc && !wrong_length_)
+      wrong_length_ = {entry.id, entry.length, reception.frame.layout().length};
+    return reception;
   }
   /// Frames of interface `number` come over the one of this name: topics of others are none of theirs.
   void on_interface(std::uint16_t number, std::string_view name) { receiver_.on_interface(number, name); }
   [[nodiscard]] bool has_buses() const noexcept { return receiver_.has_buses(); }
   /// Whether there was anything to show.
-  bool show(std::string_view bus, const log::Entry& entry) {
-    const bool shown = printer_.write({bus, entry, reception_});
+  bool show(std::string_view bus, const log::Entry& entry, const client::Reception& reception) {
+    const bool shown = printer_.write({bus, entry, reception});
     shown_ += shown ? 1 : 0;
     return shown;
   }
@@ -67,7 +67,6 @@ class Display {
   void summarise_transport();
 
   client::Receiver receiver_;
-  client::Reception reception_;
   Printer printer_;
   std::uint64_t shown_ = 0;
   base::Time last_{};
