@@ -17,6 +17,8 @@ namespace {
 /// are is not guessed.
 constexpr std::size_t block = 48;
 constexpr std::string_view line_begin = R"({"time_ns":")";
+/// More than it with the time behind it.
+constexpr std::size_t begin_room = line_begin.size() + 32;
 
 /// Whether it begins as a byte in words does: a backslash, x and two digits.
 bool is_byte_text(std::string_view text) {
@@ -53,6 +55,25 @@ char* put_end(char* to, const log::Entry& entry) {
   }
   put_text("}\n");
   return to;
+}
+
+/// `text` has a block behind its end, which is copied, too.
+[[gnu::always_inline]] inline char* put_blocks(char* to, std::string_view text) noexcept {
+  std::memcpy(to, text.data(), block);
+  if (text.size() > block) std::memcpy(to + block, text.data() + block, text.size() - block);
+  return to + text.size();
+}
+
+/// Eight upper-case digits, or three.
+char* put_identifier(char* to, std::uint32_t id, bool wide) noexcept {
+  if (wide) {
+    to = base::swar::hex_byte(to, static_cast<std::uint8_t>(id >> 24));
+    to = base::swar::hex_byte(to, static_cast<std::uint8_t>(id >> 16));
+    to = base::swar::hex_byte(to, static_cast<std::uint8_t>(id >> 8));
+  } else {
+    *to++ = base::swar::upper_digits[id >> 8 & 0xF];
+  }
+  return base::swar::hex_byte(to, static_cast<std::uint8_t>(id));
 }
 
 /// More than put_data and put_end can write.
@@ -132,28 +153,42 @@ std::size_t JsonText::know_names(const protocol::Field& field, const std::string
   return label.size() + size + 2 * block + 16;
 }
 
-/// Where all names are of few bits, as most are.
+/// Where the names are of small numbers, one beside the other, as most are.
 void JsonText::tabulate(NamedField& named) {
   const protocol::Field& field = named.value.field();
-  // Of a signed field greater bits are negative numbers.
-  const std::int64_t most_bits =
-      field.is_signed ? std::min<std::int64_t>(protocol::highest(field.position.width, true), 255) : 255;
   const std::span names = std::span{value_names_}.subspan(named.first_name, named.names);
-  if (field.flags || !named.value.in_word() || names.empty() || names.size() > 255 || names.front().raw < 0 ||
-      names.back().raw > most_bits)
-    return;
+  if (field.flags || !named.value.in_word() || names.empty() || names.front().raw < 0) return;
+  const auto most = static_cast<std::int64_t>(std::min<std::size_t>(4 * names.size() + 16, 1023));
+  // Of a signed field greater bits are negative numbers.
+  const bool beyond = field.is_signed && names.back().raw > protocol::highest(field.position.width, true);
+  if (names.back().raw > most || beyond) return;
   named.tabled = true;
   named.greatest = static_cast<std::uint16_t>(names.back().raw);
-  named.first_place = static_cast<std::uint32_t>(places_.size());
-  named.first_named = static_cast<std::uint32_t>(tabled_names_.size());
-  places_.resize(places_.size() + named.greatest + 2U, 0);
-  tabled_names_.push_back({});
+  named.first_tabled = static_cast<std::uint32_t>(tabled_names_.size());
+  tabled_names_.resize(tabled_names_.size() + named.greatest + 2U);
   const std::string label = pieces_.substr(named.label.begin, named.label.size);
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    places_[named.first_place + static_cast<std::size_t>(names[i].raw)] = static_cast<std::uint8_t>(i + 1);
-    const std::string text = pieces_.substr(names[i].text.begin, names[i].text.size);
-    tabled_names_.push_back(keep(label + text + ','));
+  for (const ValueName& name : names)
+    tabled_names_[named.first_tabled + static_cast<std::size_t>(name.raw)] =
+        keep(label + pieces_.substr(name.text.begin, name.text.size) + ',');
+}
+
+/// Numbers the choices that a frame makes among the fields: most messages have as many as pages.
+void JsonText::know_choices(Known& known) {
+  constexpr std::uint16_t looked_back = 16;  // messages may have thousands
+  const auto field = [&](std::size_t i) -> const protocol::Field& {
+    return fields_[known.first_field + i].value.field();
+  };
+  std::vector<std::size_t> first;  // field of each choice
+  for (std::size_t i = 0; i < known.fields; ++i) {
+    std::size_t choice = first.size();
+    for (std::size_t back = 1; back <= std::min<std::size_t>(looked_back, first.size()); ++back)
+      if (protocol::FrameLayout::choose_together(field(first[first.size() - back]), field(i)))
+        choice = first.size() - back;
+    if (choice == first.size()) first.push_back(i);
+    labels_[known.first_field + i].choice = static_cast<std::uint16_t>(choice);
   }
+  known.choices = static_cast<std::uint16_t>(first.size());
+  chosen_.resize(std::max(chosen_.size(), first.size()));
 }
 
 void JsonText::know(protocol::FrameRef frame, const Selection& selection) {
@@ -191,18 +226,23 @@ void JsonText::know(protocol::FrameRef frame, const Selection& selection) {
   units += '}';
   known.plain = !known.varies && known.named == 0;
   if (known.plain) units += R"(,"data":")";
+  know_choices(known);
+  const auto label = [&](std::size_t i) {
+    Labels& labels = labels_[known.first_field + i];
+    labels.name = keep(names[i]);
+    labels.unit = keep(with_units[i]);
+  };
   // In the order in which they are written, and nothing between them that is not: of thousands of fields they
   // are to stay in the processor's second cache.
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (known.varies)
-      labels_[known.first_field + i] = {keep(names[i]), keep(with_units[i])};
+      label(i);
     else
       fields_[known.first_field + i].after = keep(i + 1 < names.size() ? "," + names[i + 1] : "}" + units);
   }
   // A message of 29 bits may come by J1939's transport protocol, whatever its length.
   if (!known.varies && layout.address.extended)
-    for (std::size_t i = 0; i < names.size(); ++i)
-      labels_[known.first_field + i] = {keep(names[i]), keep(with_units[i])};
+    for (std::size_t i = 0; i < names.size(); ++i) label(i);
   const std::string first = known.varies ? "{" : names.empty() ? "{}" + units : "{" + names.front();
 
   const auto head = [&](std::string_view before) {
@@ -236,26 +276,40 @@ const JsonText::Known& JsonText::known_of(const log::Entry& entry) const noexcep
 }
 
 inline char* JsonText::put(char* to, Piece piece) const noexcept {
-  const char* const from = pieces_.data() + piece.begin;
-  std::memcpy(to, from, block);
-  if (piece.size > block) std::memcpy(to + block, from + block, piece.size - block);
-  return to + piece.size;
+  return put_blocks(to, {pieces_.data() + piece.begin, piece.size});
 }
 
-char* JsonText::put_begin(char* to, std::string_view bus_text, const log::Entry& entry) const noexcept {
-  std::memcpy(to, line_begin.data(), line_begin.size());
-  to = put_signed(to + line_begin.size(), entry.time.time_since_epoch().count());
-  std::memcpy(to, bus_text.data(), bus_text.size());
-  return to + bus_text.size();
+char* JsonText::put_begin(char* to, const BusText& bus, base::Time time) noexcept {
+  constexpr std::uint64_t ns_a_second = 1'000'000'000;
+  const std::int64_t signed_ns = time.time_since_epoch().count();
+  const auto ns = static_cast<std::uint64_t>(signed_ns);
+  if (signed_ns < 0 || ns < ns_a_second) {
+    to = put_signed(std::copy(line_begin.begin(), line_begin.end(), to), signed_ns);
+  } else {
+    if (const std::uint64_t number = ns / ns_a_second; second_.number != number) {
+      char* const begin = second_.text.data();
+      second_.number = number;
+      second_.size = static_cast<std::size_t>(
+          put_unsigned(std::copy(line_begin.begin(), line_begin.end(), begin), number) - begin);
+    }
+    std::memcpy(to, second_.text.data(), second_.text.size());
+    to += second_.size;
+    const std::uint64_t rest = ns % ns_a_second;
+    *to++ = static_cast<char>('0' + rest / ten_to_8);
+    to = put_eight(to, rest % ten_to_8);
+  }
+  return put_blocks(to, {bus.text.data(), bus.size});
 }
 
-const std::string& JsonText::bus_text(std::string_view bus, std::uint16_t number) {
+const JsonText::BusText& JsonText::bus_text(std::string_view bus, std::uint16_t number) {
   BusText& kept = buses_[number % buses_.size()];
   if (kept.name != bus || kept.text.empty()) {
     kept.name = bus;
     kept.text = R"(","bus":)" + json_string(bus) + R"(,"id":")";
+    kept.size = kept.text.size();
+    kept.text.append(block, '\0');
   }
-  return kept.text;
+  return kept;
 }
 
 namespace {
@@ -277,7 +331,7 @@ constexpr std::size_t j1939_room = 80;
 
 /// The identifier of a message, and what it says by J1939.
 char* JsonText::put_identity(char* to, const log::Entry& entry, const Known& known) const noexcept {
-  to = put_hex(to, entry.id, can::is_extended(entry.format) ? 8 : 3);
+  to = put_identifier(to, entry.id, can::is_extended(entry.format));
   *to++ = '"';
   if (!known.pgn) return to;
   *to++ = ',';
@@ -288,9 +342,16 @@ char* JsonText::put_identity(char* to, const log::Entry& entry, const Known& kno
 std::size_t JsonText::find_present(const Known& known, std::span<const std::uint8_t> bytes) noexcept {
   const auto& layout = known.frame.layout();
   const FieldPiece* const fields = fields_.data() + known.first_field;
+  const Labels* const labels = labels_.data() + known.first_field;
+  std::fill_n(chosen_.begin(), known.choices, Chosen::unasked);
   std::size_t count = 0;
-  for (std::uint16_t i = 0; i < known.fields; ++i)
-    if (layout.has(fields[i].value.field(), bytes)) present_[count++] = i;
+  for (std::uint16_t i = 0; i < known.fields; ++i) {
+    const protocol::Field& field = fields[i].value.field();
+    if (field.position.bytes() > bytes.size()) continue;
+    Chosen& chosen = chosen_[labels[i].choice];
+    if (chosen == Chosen::unasked) chosen = layout.chooses(field, bytes) ? Chosen::yes : Chosen::no;
+    if (chosen == Chosen::yes) present_[count++] = i;
+  }
   return count;
 }
 
@@ -350,7 +411,7 @@ char* JsonText::put_names(char* to, const Known& known, std::span<const std::uin
       // A value without a name adds nothing, and is not guessed.
       const auto place = static_cast<std::size_t>(
           std::min<std::uint64_t>(field.value.bits(bytes.data()), field.greatest + 1U));
-      to = put(to, tabled_names_[field.first_named + places_[field.first_place + place]]);
+      to = put(to, tabled_names_[field.first_tabled + place]);
       continue;
     }
     char* const end = put_name(to, field, field.value.raw(bytes.data()));
@@ -383,13 +444,12 @@ bool JsonText::write(log::Bytes& out, std::string_view bus, const log::Entry& en
   if (!everything_ && !(data && known.selected)) return false;
   const std::size_t present = data && known.varies ? find_present(known, entry.bytes()) : 0;
   if (!everything_ && known.varies && present == 0) return false;
-  const std::string& text = bus_text(bus, entry.interface);
+  const BusText& named = bus_text(bus, entry.interface);
   if (!data) {
-    write_rest(out, text, known, entry);
+    write_rest(out, named, known, entry);
     return true;
   }
-  char* to = out.room(room_ + line_begin.size() + 32 + text.size());
-  to = put_begin(to, text, entry);
+  char* to = put_begin(out.room(room_ + begin_room + named.text.size()), named, entry.time);
   if (known.message) to = put_identity(to, entry, known);
   to = put(to, known.head);
   if (known.plain) {
@@ -426,8 +486,8 @@ bool JsonText::write_transport(log::Bytes& out, std::string_view bus, const log:
           : &messages_[static_cast<std::size_t>(reception.topic - catalogue_->topics.data())];
   if (!everything_ && (known == nullptr || !known->selected || find_present(*known, message->data) == 0))
     return false;
-  const std::string& text = bus_text(bus, entry.interface);
-  char* to = put_begin(out.room(line_begin.size() + 64 + text.size() + j1939_room), text, entry);
+  const BusText& named = bus_text(bus, entry.interface);
+  char* to = put_begin(out.room(begin_room + 64 + named.text.size() + j1939_room), named, entry.time);
   to = put_hex(to, entry.id, 8);
   const auto put_text = [&to](std::string_view piece) { to = std::copy(piece.begin(), piece.end(), to); };
   put_text(R"(",)");
@@ -463,9 +523,8 @@ const protocol::Topic* JsonText::remote_topic(const log::Entry& entry) const noe
   return index_.subject(entry.id, can::data_format(entry.format)).topic;
 }
 
-void JsonText::write_rest(log::Bytes& out, std::string_view bus_text, const Known& known,
-                          const log::Entry& entry) const {
-  char* to = put_begin(out.room(line_begin.size() + 32 + bus_text.size() + 16 + j1939_room), bus_text, entry);
+void JsonText::write_rest(log::Bytes& out, const BusText& bus, const Known& known, const log::Entry& entry) {
+  char* to = put_begin(out.room(begin_room + 32 + bus.text.size() + j1939_room), bus, entry.time);
   const bool wide = can::is_extended(entry.format) || entry.format == can::Format::error;
   to = put_hex(to, entry.format == can::Format::error ? entry.id | can::error_frame_flag : entry.id,
                wide ? 8 : 3);

@@ -57,7 +57,8 @@ class JsonText {
   /// Of a field that is not in every frame, with colons.
   struct Labels {
     Piece name;
-    Piece unit;  ///< name and unit
+    Piece unit;                ///< name and unit
+    std::uint16_t choice = 0;  ///< fields of one number are in a frame together, if it is long enough
   };
   /// A value's name as JSON; of flags that of a bit, without quotes.
   struct ValueName {
@@ -71,9 +72,8 @@ class JsonText {
     Piece label;  ///< its name, with a colon
     std::uint32_t first_name = 0;
     std::uint32_t names = 0;
-    std::uint32_t first_place = 0;  ///< tabled: of places_, by bits; there is one more than `greatest`
-    std::uint32_t first_named = 0;  ///< tabled: of tabled_names_; the first is of no name
-    std::uint16_t greatest = 0;     ///< tabled: bits beyond it have no name
+    std::uint32_t first_tabled = 0;  ///< of tabled_names_, by bits; there is one more than `greatest`
+    std::uint16_t greatest = 0;      ///< bits beyond it have no name
     bool tabled = false;
   };
   enum class Kind : std::uint8_t { unknown, fields, request };
@@ -90,19 +90,30 @@ class JsonText {
     std::uint16_t most = 0;
     std::uint16_t fields = 0;
     std::uint16_t named = 0;  ///< fields of which values have names
+    std::uint16_t choices = 0;
     std::uint32_t first_field = 0;
     std::uint32_t first_named = 0;
     Piece head;  ///< of a topic from the identifier, of a message from behind it, to the first value
     protocol::FrameRef frame;
   };
-  /// An interface's name, ready to be printed.
+  /// An interface's name, ready to be printed: `text` has `block` more bytes behind its end.
   struct BusText {
     std::string name;
     std::string text;
+    std::size_t size = 0;
+  };
+  /// The beginning of a line: all but the last nine digits of its time, which most frames share with the one
+  /// before.
+  struct Second {
+    static constexpr std::size_t most = 32;  ///< those that put_unsigned writes behind its end, too
+    std::uint64_t number = 0;                ///< 0: none
+    std::array<char, most> text{};
+    std::size_t size = 0;
   };
 
   Piece keep(std::string_view text);
   void know(protocol::FrameRef frame, const Selection& selection);
+  void know_choices(Known& known);
   [[nodiscard]] const Known& known_of(const log::Entry& entry) const noexcept;
   [[nodiscard]] char* put_identity(char* to, const log::Entry& entry, const Known& known) const noexcept;
   /// The names of a field's values; returns the room that they need.
@@ -118,12 +129,11 @@ class JsonText {
   void write_message(log::Bytes& out, const Known* known, const j1939::Transported& message);
   /// Inlined everywhere: a line is little else.
   [[gnu::always_inline]] inline char* put(char* to, Piece piece) const noexcept;
-  char* put_begin(char* to, std::string_view bus_text, const log::Entry& entry) const noexcept;
-  const std::string& bus_text(std::string_view bus, std::uint16_t number);
+  char* put_begin(char* to, const BusText& bus, base::Time time) noexcept;
+  const BusText& bus_text(std::string_view bus, std::uint16_t number);
   /// What a remote frame is of; nullptr: its identifier is unknown.
   [[nodiscard]] const protocol::Topic* remote_topic(const log::Entry& entry) const noexcept;
-  void write_rest(log::Bytes& out, std::string_view bus_text, const Known& known,
-                  const log::Entry& entry) const;
+  void write_rest(log::Bytes& out, const BusText& bus, const Known& known, const log::Entry& entry);
   void write_request(log::Bytes& out, const Known& known, const log::Entry& entry) const;
 
   const protocol::Catalogue* catalogue_;
@@ -134,15 +144,17 @@ class JsonText {
   std::vector<Labels> labels_;  // of the same number as fields_
   std::vector<NamedField> named_;
   std::vector<ValueName> value_names_;  // of each field by raw number
-  std::vector<std::uint8_t> places_;    // of tabled names: which of the field's
-  std::vector<Piece> tabled_names_;     // label, name and comma
+  std::vector<Piece> tabled_names_;     // label, name and comma; of bits without a name nothing
   std::vector<std::uint16_t>
       present_;  // which fields are in the frame at hand; as many as the most that one has
+  enum class Chosen : std::uint8_t { unasked, no, yes };
+  std::vector<Chosen> chosen_;  // by choice, in the frame at hand
   std::string pieces_;
   std::size_t room_ = 0;  ///< for any line without what precedes the identifier
   bool everything_;
   bool has_groups_ = false;  ///< of J1939: then all identifiers of 29 bits are shown as such
   std::array<BusText, 16> buses_;
+  Second second_;
 };
 
 }  // namespace ocm::cli

@@ -226,15 +226,17 @@ struct FrameLayout {
     return field.is_derived() || field.selector != no_selector || field.position.bytes() > length ||
            any_length();
   }
-  /// Whether `field`, one of `values`, is in a frame: the frame is long enough, and selectors, which may be
-  /// selected by others themselves, say so; of a derived one, its law holds. O(selectors above the field).
+  /// Whether `field`, one of `values`, is in a frame: the frame is long enough, and it is chosen.
   [[nodiscard]] constexpr bool has(const Field& field, std::span<const std::uint8_t> data) const noexcept {
-    if (field.is_derived() &&
-        (field.position.bytes() > data.size() || !field.law->holds(field.measured(field.raw(data)))))
-      return false;
+    return field.position.bytes() <= data.size() && chooses(field, data);
+  }
+  /// Whether selectors, which may be selected by others themselves, say that `field` is in a frame; of a
+  /// derived one, whether its law holds. The frame must be long enough for it. O(selectors above the field).
+  [[nodiscard]] constexpr bool chooses(const Field& field,
+                                       std::span<const std::uint8_t> data) const noexcept {
+    if (field.is_derived() && !field.law->holds(field.measured(field.raw(data)))) return false;
     const Field* at = &field;
     for (std::size_t depth = 0; depth <= fields.size(); ++depth) {
-      if (at->position.bytes() > data.size()) return false;
       if (at->selector == no_selector) return true;
       if (at->selector >= fields.size()) return false;
       const Field& selector = fields[at->selector];
@@ -247,6 +249,16 @@ struct FrameLayout {
       at = &selector;
     }
     return false;  // fields that select one another in a circle
+  }
+  /// Whether of two fields of `values` for which a frame is long enough, it chooses both or neither.
+  [[nodiscard]] static constexpr bool choose_together(const Field& one, const Field& other) noexcept {
+    const bool same_law =
+        one.law == other.law && (one.law == nullptr || one.derived_from == other.derived_from);
+    if (!same_law || one.selector != other.selector || one.selected.size() != other.selected.size())
+      return false;
+    for (std::size_t i = 0; i < one.selected.size(); ++i)
+      if (!(one.selected[i] == other.selected[i])) return false;
+    return true;
   }
 };
 

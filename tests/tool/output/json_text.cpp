@@ -1,0 +1,163 @@
+#include "cli/output/json_text.hpp"
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/log/bytes.hpp"
+#include "ocm/protocol/topic.hpp"
+
+namespace tool_output_json_text_test {
+
+using namespace ocm;
+using protocol::Field;
+
+Field field(std::string_view name, unsigned first_bit, unsigned width) {
+  Field made;
+  made.name = name;
+  made.position = {static_cast<std::uint16_t>(first_bit), static_cast<std::uint8_t>(width),
+                   protocol::ByteOrder::little};
+  made.raw_max = protocol::highest(width, false);
+  return made;
+}
+
+/// A message of eight bytes with these fields, and its lines.
+class Message {
+ public:
+  explicit Message(std::vector<Field> fields) : fields_(std::move(fields)) {
+    layout_.length = 8;
+    layout_.fields = fields_;
+    layout_.address = {protocol::Address::By::identifier, false, 0x123};
+    topic_.name = "Message";
+    topic_.kind = protocol::Kind::message;
+    topic_.frames = {&layout_, 1};
+    catalogue_.topics = {&topic_, 1};
+  }
+
+  [[nodiscard]] const protocol::FrameLayout& layout() const noexcept { return layout_; }
+  [[nodiscard]] const protocol::Catalogue& catalogue() const noexcept { return catalogue_; }
+
+ private:
+  std::vector<Field> fields_;
+  protocol::FrameLayout layout_;
+  protocol::Topic topic_;
+  protocol::Catalogue catalogue_;
+};
+
+log::Entry entry_of(std::uint64_t data) {
+  log::Entry entry;
+  entry.id = 0x123;
+  entry.length = 8;
+  for (std::size_t i = 0; i < 8; ++i) entry.data[i] = static_cast<std::uint8_t>(data >> 8 * i);
+  return entry;
+}
+
+std::string line_of(cli::JsonText& text, const log::Entry& entry) {
+  log::Bytes out;
+  text.write(out, "can0", entry);
+  return std::string{out.view()};
+}
+
+TEST_CASE("JSON text: any time, whatever came before it", "[output]") {
+  constexpr std::int64_t second = 1'000'000'000;
+  const Message message{{field("a", 0, 8)}};
+  cli::JsonText text{message.catalogue()};
+  const std::array<std::int64_t, 16> times{0,
+                                           7,
+                                           second - 1,
+                                           second,
+                                           second + 1,
+                                           -second - 1,
+                                           second + 10'000'000,
+                                           2 * second - 1,
+                                           2 * second,
+                                           -1,
+                                           2 * second,
+                                           10 * second,
+                                           1'436'509'052'000'000'001,
+                                           1'436'509'052'999'999'999,
+                                           std::numeric_limits<std::int64_t>::max(),
+                                           std::numeric_limits<std::int64_t>::min()};
+  for (const std::int64_t first : times)
+    for (const std::int64_t then : times)
+      for (const std::int64_t ns : {first, then}) {
+        log::Entry entry = entry_of(0);
+        entry.time = base::Time{base::Duration{ns}};
+        const std::string begin = R"({"time_ns":")" + std::to_string(ns) + R"(","bus":"can0","id":"123",)";
+        REQUIRE(line_of(text, entry).substr(0, begin.size()) == begin);
+      }
+}
+
+TEST_CASE("JSON text: a line has the fields that its frame has, of pages in any order", "[output]") {
+  // Pages of a selector and of one within a page, some of several ranges, one beside the other as often as
+  // not.
+  using protocol::SelectorRange;
+  static constexpr std::array<SelectorRange, 1> zero{{{0, 0}}}, one{{{1, 1}}};
+  static constexpr std::array<SelectorRange, 2> some{{{1, 1}, {3, 3}}};
+  const std::array<std::span<const SelectorRange>, 3> pages{zero, one, some};
+  const std::array<std::string_view, 24> names{"f00", "f01", "f02", "f03", "f04", "f05", "f06", "f07",
+                                               "f08", "f09", "f10", "f11", "f12", "f13", "f14", "f15",
+                                               "f16", "f17", "f18", "f19", "f20", "f21", "f22", "f23"};
+  std::mt19937 random{11};
+  for (int round = 0; round < 50; ++round) {
+    std::vector<Field> fields{field("outer", 0, 2), field("inner", 2, 2)};
+    fields[1].selector = 0;
+    fields[1].selected = some;
+    for (const std::string_view name : names) {
+      Field& made = fields.emplace_back(field(name, 4 + static_cast<unsigned>(random() % 56), 4));
+      if (random() % 4 != 0) {
+        made.selector = static_cast<std::uint16_t>(random() % 2);
+        made.selected = pages[random() % pages.size()];
+      }
+    }
+    const Message message{fields};
+    cli::JsonText text{message.catalogue()};
+    for (int frame = 0; frame < 50; ++frame) {
+      const log::Entry entry = entry_of(random() | std::uint64_t{random()} << 32);
+      const std::string line = line_of(text, entry);
+      const auto units = line.find("\"units\"");
+      REQUIRE(units != std::string::npos);
+      for (const Field& each : message.layout().fields) {
+        const std::string key = '"' + std::string{each.name} + "\":";
+        CAPTURE(line, each.name);
+        const auto at = line.find(key);
+        REQUIRE((at != std::string::npos) == message.layout().has(each, entry.bytes()));
+        REQUIRE((line.find(key, units) != std::string::npos) == (at < units));
+      }
+    }
+  }
+}
+
+TEST_CASE("JSON text: names of values that lie together, apart, below zero and beyond the field",
+          "[output]") {
+  using protocol::NamedValue;
+  static constexpr std::array<NamedValue, 2> together{{{0, "off"}, {1, "on"}}};
+  static constexpr std::array<NamedValue, 2> apart{{{3, "few"}, {250, "many"}}};
+  static constexpr std::array<NamedValue, 2> below{{{-1, "wrong"}, {2, "two"}}};
+  static constexpr std::array<NamedValue, 2> beyond{{{1, "one"}, {9, "nine"}}};
+  std::vector<Field> fields{field("a", 0, 8), field("b", 8, 8), field("c", 16, 8), field("d", 24, 4)};
+  fields[0].values = together;
+  fields[1].values = apart;
+  fields[2].values = below;
+  fields[2].is_signed = true;
+  fields[3].values = beyond;
+  fields[3].is_signed = true;  // -8 to 7: nine is no value of it, and the bits of -7
+  const Message message{fields};
+  cli::JsonText text{message.catalogue()};
+  const auto names = [&](std::uint64_t data) {
+    const std::string line = line_of(text, entry_of(data));
+    const auto begin = line.find("\"names\":");
+    return begin == std::string::npos ? std::string{} : line.substr(begin, line.find('}', begin) + 1 - begin);
+  };
+  CHECK(names(0x01'FF'FA'01) == R"("names":{"a":"on","b":"many","c":"wrong","d":"one"})");
+  CHECK(names(0x09'02'03'00) == R"("names":{"a":"off","b":"few","c":"two"})");
+  CHECK(names(0x02'00'04'02).empty());
+  CHECK(names(0x00'FE'FF'FF).empty());
+}
+
+}  // namespace tool_output_json_text_test
