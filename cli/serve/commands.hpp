@@ -30,9 +30,10 @@ inline constexpr std::string_view playback_topic = "/ocm/playback";
 
 /// What a time bar asks: {"at_s":12.5}, {"speed":2}, {"paused":true}, or several of them.
 struct PlaybackRequest {
-  std::optional<base::Duration> at;  ///< from the log's beginning, to the nearest ns; absent: it stays where it is
-  double speed = 0;                  ///< 0: as it is
-  int paused = -1;                   ///< 1: pause, 0: go on, -1: as it is
+  std::optional<base::Duration>
+      at;            ///< from the log's beginning, to the nearest ns; absent: it stays where it is
+  double speed = 0;  ///< 0: as it is
+  int paused = -1;   ///< 1: pause, 0: go on, -1: as it is
 };
 [[nodiscard]] base::Result<PlaybackRequest, std::string> playback_of(std::string_view payload);
 
