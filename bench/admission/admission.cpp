@@ -55,7 +55,7 @@ int main() {
   row("the first stream", ask(admission, 0, 50'000, Level::medium));
   for (std::size_t sensor = 1; sensor + 1 < sensors; ++sensor)
     static_cast<void>(ask(admission, sensor, 50'000, Level::medium));
-  row("all seven, every 50 ms, one level", ask(admission, sensors - 1, 50'000, Level::medium));
+  row("seven, every 50 ms, one level", ask(admission, sensors - 1, 50'000, Level::medium));
   row("then the gyroscope every millisecond, urgent", ask(admission, 3, 1'000, Level::urgent));
   row("then the compass every millisecond, low", ask(admission, 2, 1'000, Level::low));
 

@@ -22,6 +22,13 @@ foreach(image "di_wheel_drive;qemu_m3_busy" "power_management;qemu_m4_busy")
   ocm_add_image(BOARD load_behaviour_${board} CHIP ${chip} MAIN_STACK 0x800
     SOURCES ${repository}/bench/firmware/load_${board}.cpp qemu/machine.cpp qemu/give_up.cpp DEFINES OCM_LOAD_BEHAVIOUR OCM_LOAD_SPREAD_US=3000)
 endforeach()
-ocm_add_image(BOARD load_without_control_di_wheel_drive CHIP qemu_m3_busy MAIN_STACK 0x800
-  SOURCES ${repository}/bench/firmware/load_di_wheel_drive.cpp qemu/machine.cpp qemu/give_up.cpp
-  DEFINES OCM_LOAD_SPREAD_US=3000 OCM_LOAD_WITHOUT_CONTROL)
+# What jobs take: the speed controllers, which are more urgent than all, by themselves.
+foreach(image "costs_di_wheel_drive;di_wheel_drive;qemu_m3_busy;OCM_LOAD_WITHOUT_CONTROL" "costs_power_management;power_management;qemu_m4_busy;"
+              "costs_control_di_wheel_drive;di_wheel_drive;qemu_m3_busy;OCM_LOAD_OWN_TASKS")
+  list(GET image 0 name)
+  list(GET image 1 board)
+  list(GET image 2 chip)
+  list(GET image 3 what)
+  ocm_add_image(BOARD load_${name} CHIP ${chip} MAIN_STACK 0x800
+    SOURCES ${repository}/bench/firmware/load_${board}.cpp qemu/machine.cpp qemu/give_up.cpp DEFINES OCM_LOAD_COSTS OCM_LOAD_SPREAD_US=3000 ${what})
+endforeach()

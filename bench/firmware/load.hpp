@@ -5,7 +5,8 @@
 ///
 /// On semihosting's output, one line a topic: how late its first frame was handed to the bus after the
 /// request had arrived a whole number of periods before (least, greatest), and the longest after a request
-/// under load; one line a slow topic; then the share of time in which no thread ran, under load and at rest.
+/// under load; then the share of time in which no thread ran, under load and at rest. `measure_costs` has one
+/// line a topic and one for the board's own tasks: what spec/tasks.json counts.
 #pragma once
 
 #include <algorithm>
@@ -67,6 +68,49 @@ struct Seen {
   std::uint32_t frames = 0;
 };
 
+/// The port, which notes how long after its planned release the last job of a level was done: the alarm, the
+/// switches and all in it. It holds for levels at which only a board's own tasks run, which the timer starts.
+class TimedPort : public chibios::Port {
+ public:
+  void arm(base::Time when) noexcept {
+    planned_ = when;
+    Port::arm(when);
+  }
+  void pend(chibios::Level level) noexcept {
+    Job& job = jobs_[static_cast<std::size_t>(level)];
+    if (job.looks == 0) job.released = planned_, job.looks = 2;
+    Port::pend(level);
+  }
+  /// Before a job it looks for one, and once more when it is done.
+  void ran(chibios::Level level) noexcept {
+    Port::ran(level);
+    Job& job = jobs_[static_cast<std::size_t>(level)];
+    if (job.looks == 0 || --job.looks != 0) return;
+    job.longest = std::max(job.longest, now() - job.released);
+    ++job.count;
+  }
+  void forget() noexcept {
+    const chibios::Lock lock;
+    for (Job& job : jobs_) job.longest = {}, job.count = 0;
+  }
+  [[nodiscard]] base::Duration longest(chibios::Level level) const noexcept {
+    return jobs_[static_cast<std::size_t>(level)].longest;
+  }
+  [[nodiscard]] std::uint32_t count(chibios::Level level) const noexcept {
+    return jobs_[static_cast<std::size_t>(level)].count;
+  }
+
+ private:
+  struct Job {
+    base::Time released{};
+    unsigned looks = 0;  ///< that are still to come
+    base::Duration longest{};
+    std::uint32_t count = 0;
+  };
+  std::array<Job, scheduling::level_count> jobs_{};
+  base::Time planned_{};
+};
+
 /// CAN as qemu::SlcanBus has it, without a line to the host: a frame takes its bits at 500 kbit/s, the most
 /// urgent one is next, three places a level.
 template <std::size_t Topics>
@@ -108,13 +152,12 @@ class LoadBus {
     signal_.raise_locked();
   }
   /// Asks for a topic: again, when it is published already.
-  void ask(std::size_t topic) noexcept { ask(topic, (*asked_)[topic].priority); }
-  void ask(std::size_t topic, protocol::Priority priority) noexcept {
+  void ask(std::size_t topic) noexcept { ask(topic, (*asked_)[topic].priority, (*asked_)[topic].period); }
+  void ask(std::size_t topic, protocol::Priority priority, base::Duration period) noexcept {
     const chibios::Lock lock;
-    const Asked& a = (*asked_)[topic];
     seen_[topic].requested = port_->now();
     seen_[topic].awaited = true;
-    arrive(*protocol::publish_every(a.topic, a.period, priority));
+    arrive(*protocol::publish_every((*asked_)[topic].topic, period, priority));
   }
   void stop(std::size_t topic) noexcept {
     const chibios::Lock lock;
@@ -181,6 +224,9 @@ inline void wires(std::uint32_t us) noexcept {
   if (us != 0) chThdSleep(static_cast<systime_t>(us));
 }
 
+/// No part answers, as one without power.
+inline bool away = false;
+
 /// Parts on an I2C bus: registers that keep what is written, each part the same set.
 class LoadI2c {
  public:
@@ -204,7 +250,7 @@ class LoadI2c {
     wires(static_cast<std::uint32_t>(bytes) * us_a_byte_x16_ / 16);
     base::Status answer = base::Error::no_answer;
     for (Part& part : parts_) {
-      if (part.address != address) continue;
+      if (away || part.address != address) continue;
       if (!write.empty()) part.pointer = write[0];
       for (std::size_t i = 1; i < write.size(); ++i) part.registers[part.pointer + i - 1] = write[i];
       if (part.answers_first)
@@ -243,7 +289,7 @@ class LoadSpi {
     std::uint8_t at = out[0] & 0x3F;
     for (std::size_t i = 1; i < out.size(); ++i) {
       if ((out[0] & 0x80) == 0) registers_[at] = out[i];
-      in[i] = registers_[at];
+      in[i] = away ? std::uint8_t{0xFF} : registers_[at];
       at = static_cast<std::uint8_t>((at + (out[0] >> 6 & 1)) & 0x3F);
     }
     mutex_.unlock();
@@ -256,11 +302,13 @@ class LoadSpi {
 };
 static_assert(firmware::drivers::Spi<LoadSpi>);
 
+/// Wheels on a curve, so that the odometry's heading takes all values.
 struct LoadMotors {
-  std::uint16_t count = 0;
+  std::array<std::uint16_t, 2> counts{};
   std::array<std::uint16_t, 2> encoders() noexcept {
-    count = static_cast<std::uint16_t>(count + 20);
-    return {count, count};
+    counts[0] = static_cast<std::uint16_t>(counts[0] + 20);
+    counts[1] = static_cast<std::uint16_t>(counts[1] + 80);
+    return counts;
   }
   void set_duty(std::int16_t /*left*/, std::int16_t /*right*/) noexcept {}
 };
@@ -277,22 +325,9 @@ template <std::size_t Fast, std::size_t Slow>
   return all;
 }
 
-/// What a sample of a slow topic takes, from its request to its first frame.
-struct SlowCost {
-  base::Duration first{};   ///< the first of all, at rest: a part may be asked for more
-  base::Duration alone{};   ///< the next one
-  base::Duration loaded{};  ///< the longest of `slow_rounds` under load
-  std::uint32_t replies = 0;
-};
-/// With a quarter of a millisecond more than the fast topics' period between two: they pass each other once.
-inline constexpr int slow_rounds = 200;
-inline constexpr std::uint32_t slow_round_us = 50'250;
-
 /// From start_machine() to the end of the measurement: a second for the parts to turn on, one of rest; the
-/// slow topics one by one; the requests for the fast ones OCM_LOAD_SPREAD_US apart, ten seconds under load,
-/// and a hundred requests more for each; ten seconds with the slow ones, too; and one slow one after the
-/// other beside the fast ones. Then it is at `high`: it waits for transfers of what is less urgent, and for
-/// the board's own tasks.
+/// requests for the fast topics OCM_LOAD_SPREAD_US apart, ten seconds under load, and a hundred requests more
+/// for each; ten seconds with the slow ones, too.
 template <template <class, class, class> class Board, class Parts, std::size_t Topics, std::size_t Slow>
 [[noreturn]] void measure(const char* name, const std::array<Asked, Topics>& asked,
                           const std::array<Asked, Slow>& slow, Parts& parts) noexcept {
@@ -315,25 +350,6 @@ template <template <class, class, class> class Board, class Parts, std::size_t T
         chThdSleepMilliseconds(1000);
         const base::Duration quiet = port.idle() - idle_before;
         const base::Duration quiet_time = port.now() - quiet_begin;
-        const auto ask_slow = [](std::size_t topic) {
-          bus.forget();
-          bus.ask(topic, protocol::Priority::high);
-          chThdSleepMilliseconds(90);  // less than any of their periods
-          return bus.seen()[topic].reply;
-        };
-        const auto stop_slow = [] {
-          for (std::size_t i = Topics; i < Topics + Slow; ++i) {
-            bus.stop(i);
-            chThdSleepMilliseconds(20);
-          }
-        };
-        std::array<SlowCost, Slow> costs{};
-        for (std::size_t i = 0; i < Slow; ++i) {
-          costs[i].first = ask_slow(Topics + i);
-          costs[i].alone = ask_slow(Topics + i);
-          bus.stop(Topics + i);
-          chThdSleepMilliseconds(20);
-        }
         const auto ask_all = [] {
           for (std::size_t i = 0; i < Topics; ++i) {
             bus.ask(i);
@@ -369,17 +385,6 @@ template <template <class, class, class> class Board, class Parts, std::size_t T
         for (int second = 0; second < 10; ++second) chThdSleepMilliseconds(1000);
         const base::Duration all_idle = port.idle() - all_idle_begin;
         const base::Duration all_time = port.now() - all_begin;
-        stop_slow();
-        for (std::size_t i = 0; i < Slow; ++i) {
-          bus.forget();
-          for (int round = 0; round < slow_rounds; ++round) {
-            bus.ask(Topics + i, protocol::Priority::high);
-            chThdSleep(slow_round_us);
-          }
-          costs[i].loaded = bus.seen()[Topics + i].reply;
-          costs[i].replies = bus.seen()[Topics + i].replies;
-          stop_slow();
-        }
         for (std::size_t i = 0; i < Topics; ++i) {
           const Seen& s = regular[i];
           const Asked& a = all[i];
@@ -388,21 +393,110 @@ template <template <class, class, class> class Board, class Parts, std::size_t T
           say(" reply_us "), say(asked_again[i].reply / 1us), say(" least_us "), say(s.least / 1us);
           say(" greatest_us "), say(s.greatest / 1us), say("\n");
         }
-        for (std::size_t i = 0; i < Slow; ++i) {
-          say(title), say(" slow "), say(all[Topics + i].topic.value), say(" first_us ");
-          say(costs[i].first / 1us), say(" alone_us "), say(costs[i].alone / 1us), say(" loaded_us ");
-          say(costs[i].loaded / 1us), say(" replies "), say(costs[i].replies), say("\n");
-        }
         say(title), say(" idle_permille "), say(idle * 1000 / time), say(" all_permille ");
         say(all_idle * 1000 / all_time), say(" quiet_permille ");
         say(quiet * 1000 / quiet_time), say(" bus_permille "), say(std::int64_t{bits} * 2'000 / (time / 1us));
         say(" late "), say(counters.late), say(" missed "), say(counters.missed), say(" overrun ");
         say(counters.overrun), say(" not_sampled "), say(counters.not_sampled);
-        say(" busy_at_rest_us "), say((quiet_time - quiet) / 1us), say("\n");
+        say("\n");
         firmware::qemu::leave("", 0);
       },
       nullptr);
   runtime.run([](base::Time now) { board.maintain(now); });
+}
+
+/// What a job takes where nothing more urgent is in its way, topic by topic and for the board's own tasks.
+///
+/// The own tasks in ten seconds of rest: from the planned release to the end of the latest one, at `urgent`
+/// and at `high`. The longest step of looking after the parts in that time, and while all come back that were
+/// away. A topic from its request, which its first sample follows at once, to that sample's first frame,
+/// at `urgent`: first with nothing else asked for, then beside all others at the three levels below, whose
+/// periods differ, so that they meet it at all times. What it waits for there are transfers that less urgent
+/// ones have begun; each level may have one under way.
+/// `command` is repeated: so a board does by itself what it can at `low`. All must outlive the board.
+template <template <class, class, class> class Board, class Parts, std::size_t Topics>
+[[noreturn]] void measure_costs(const char* name, const std::array<Asked, Topics>& topics, Parts& parts,
+                                const can::Frame* command = nullptr) noexcept {
+  using Bus = LoadBus<Topics>;
+  static TimedPort port;
+  static Bus bus{topics, port};
+  if constexpr (requires { parts.look; }) parts.look.port = &port;
+  parts.start(port.now());
+  static Board<Parts, Bus, TimedPort> board{parts, bus, port};
+  static chibios::Runtime runtime{port, board.controller(), bus};
+  static const char* title = name;
+  static const can::Frame* repeated = command;
+  static const std::array<Asked, Topics>* asked = &topics;
+  static base::Duration upkeep{};  // the longest step
+  static THD_WORKING_AREA(area, 1024);
+  chThdCreateStatic(
+      area, sizeof area, HIGHPRIO,
+      [](void*) {
+        chThdSleepMilliseconds(1000);  // parts turn on, and are looked for
+        port.forget();
+        upkeep = {};
+        const base::Duration idle = port.idle();
+        const base::Time begin = port.now();
+        chThdSleep(10'000'000);  // in one piece: to wake up takes time, too
+        const base::Duration busy = port.now() - begin - (port.idle() - idle);
+        say(title), say(" busy_in_50_ms_us "), say(busy / 200us);
+        for (const auto level : {chibios::Level::urgent, chibios::Level::high}) {
+          say(level == chibios::Level::urgent ? " urgent_us " : " high_us "), say(port.longest(level) / 1us);
+          say(level == chibios::Level::urgent ? " urgent_jobs " : " high_jobs "), say(port.count(level));
+        }
+        say(" checks_us "), say(upkeep / 1us);
+        away = true;
+        chThdSleepMilliseconds(1500);  // longer than a part is not looked at
+        away = false;
+        chThdSleepMilliseconds(2500);
+        say(" starts_us "), say(upkeep / 1us), say("\n");
+#ifdef OCM_LOAD_OWN_TASKS
+        firmware::qemu::leave("", 0);
+#endif
+        constexpr base::Duration once_only = 1s;
+        // A round is 50.25 ms. The longest of them.
+        const auto rounds = [](std::size_t topic, int count) {
+          bus.forget();
+          for (int round = 0; round < count; ++round) {
+            bus.ask(topic, protocol::Priority::urgent, once_only);
+            chThdSleep(30'125);
+            if (repeated) {
+              const chibios::Lock lock;
+              bus.arrive(*repeated);
+            }
+            chThdSleep(20'125);
+          }
+          return bus.seen()[topic];
+        };
+        const auto stop = [](std::size_t topic) {
+          bus.stop(topic);
+          chThdSleepMilliseconds(20);
+        };
+        for (std::size_t i = 0; i < Topics; ++i) {
+          const base::Duration first = rounds(i, 1).reply;
+          const Seen alone = rounds(i, 20);
+          stop(i);
+          unsigned level = 0;
+          for (std::size_t k = 0; k < Topics; ++k) {
+            if (k == i) continue;
+            const auto below = static_cast<protocol::Priority>(1 + level++ % 3);
+            bus.ask(k, below, 43ms + 3ms * static_cast<int>(k));
+            chThdSleepMilliseconds(3);
+          }
+          chThdSleepMilliseconds(200);
+          const Seen beside = rounds(i, 600);
+          for (std::size_t k = 0; k < Topics; ++k) stop(k);
+          say(title), say(" topic "), say((*asked)[i].topic.value), say(" first_us "), say(first / 1us);
+          say(" alone_us "), say(alone.reply / 1us), say(" beside_us "), say(beside.reply / 1us);
+          say(" replies "), say(alone.replies + beside.replies), say("\n");
+        }
+        firmware::qemu::leave("", 0);
+      },
+      nullptr);
+  runtime.run([](base::Time now) {
+    board.maintain(now);
+    upkeep = std::max(upkeep, port.now() - now);
+  });
 }
 
 /// How long one look at parts has taken at most: what a step of a behaviour waits for.
@@ -426,7 +520,7 @@ struct Longest {
 /// included, and how many there were in the five seconds.
 template <template <class, class, class> class Board, class Parts, std::size_t Topics>
 [[noreturn]] void measure_behaviour(const char* name, const std::array<Asked, Topics>& asked,
-                                    const can::Frame& command, Parts& parts, Longest& look) noexcept {
+                                    const can::Frame& command, Parts& parts) noexcept {
   using Bus = LoadBus<Topics>;
   static chibios::Port port;
   static Bus bus{asked, port};
@@ -435,8 +529,8 @@ template <template <class, class, class> class Board, class Parts, std::size_t T
   static chibios::Runtime runtime{port, board.controller(), bus};
   static const char* title = name;
   static const can::Frame* again = &command;
-  static Longest* looked = &look;
-  look.port = &port;
+  static Longest* looked = &parts.look;
+  looked->port = &port;
   static THD_WORKING_AREA(area, 1024);
   chThdCreateStatic(
       area, sizeof area, HIGHPRIO,

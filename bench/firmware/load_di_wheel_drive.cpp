@@ -37,32 +37,34 @@ int main() {
   static bench::LoadPins pins;
   using Real = di_wheel_drive::Parts<bench::LoadI2c, bench::LoadI2c, bench::LoadSpi, bench::LoadSpi,
                                      bench::LoadMotors, bench::LoadPins, ocm::firmware::chibios::Mutex>;
-#ifdef OCM_LOAD_BEHAVIOUR
+#if defined OCM_LOAD_BEHAVIOUR || defined OCM_LOAD_COSTS
   // A line under the front pair, whatever the registers say: it takes as long to read.
-  static bench::Longest look;
   struct Parts : Real {
     using Real::Real;
+    bench::Longest look;
     ocm::base::Result<ocm::firmware::boards::FloorCounts> floor() noexcept {
       const auto counts = look.of([this] { return Real::floor(); });
       if (!counts) return counts.error;
       return ocm::firmware::boards::FloorCounts{5500, 9000, 9000, 5000};
     }
-  };
-#elif defined OCM_LOAD_WITHOUT_CONTROL
-  // What the speed controllers take is what is missing without them.
-  struct Parts : Real {
-    using Real::Real;
-    void control() = delete;
+#ifdef OCM_LOAD_WITHOUT_CONTROL
+    void control() = delete;  // the speed controllers are more urgent than all else
+#endif
   };
 #else
   using Parts = Real;
 #endif
   static Parts parts{compass, floor, gyroscope, accelerometer, motors, pins};
-#ifdef OCM_LOAD_BEHAVIOUR
+#if defined OCM_LOAD_BEHAVIOUR || defined OCM_LOAD_COSTS
   amiro::Follow follow;
   follow.set_speed_m_per_s(0.1);
   static const ocm::can::Frame command = ocm::protocol::command(follow, Priority::medium);
-  bench::measure_behaviour<di_wheel_drive::Board>("di_wheel_drive", asked, command, parts, look);
+#endif
+#ifdef OCM_LOAD_BEHAVIOUR
+  bench::measure_behaviour<di_wheel_drive::Board>("di_wheel_drive", asked, command, parts);
+#elif defined OCM_LOAD_COSTS
+  static constexpr auto all = bench::join(asked, slow);
+  bench::measure_costs<di_wheel_drive::Board>("di_wheel_drive", all, parts, &command);
 #else
   bench::measure<di_wheel_drive::Board>("di_wheel_drive", asked, slow, parts);
 #endif

@@ -44,9 +44,9 @@ int main() {
       power_management::Parts<bench::LoadI2c, bench::LoadI2c, bench::LoadPins, ocm::firmware::chibios::Mutex>;
 #ifdef OCM_LOAD_BEHAVIOUR
   // Something is near on all sides, whatever the registers say: it takes as long to read.
-  static bench::Longest look;
   struct Parts : Real {
     using Real::Real;
+    bench::Longest look;
     ocm::base::Result<ocm::firmware::boards::RingCounts> ring() noexcept {
       const auto counts = look.of([this] { return Real::ring(); });
       if (!counts) return counts.error;
@@ -58,9 +58,14 @@ int main() {
   amiro::Avoid avoid;
   avoid.set_speed_m_per_s(0.1);
   static const ocm::can::Frame command = ocm::protocol::command(avoid, Priority::medium);
-  bench::measure_behaviour<power_management::Board>("power_management", asked, command, parts, look);
+  bench::measure_behaviour<power_management::Board>("power_management", asked, command, parts);
 #else
   static Real parts{back, front, pins};
+#ifdef OCM_LOAD_COSTS
+  static constexpr auto all = bench::join(asked, slow);
+  bench::measure_costs<power_management::Board>("power_management", all, parts);
+#else
   bench::measure<power_management::Board>("power_management", asked, slow, parts);
+#endif
 #endif
 }

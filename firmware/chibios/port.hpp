@@ -214,7 +214,7 @@ class Levels {
       if (port_->all_run(now)) feed();
       if (now >= next) {
         background(now);
-        next = now + background_period;
+        next = port_->now() + background_period;  // so that a job waits for one of them at most
       } else if (port_->wait(Level::low, next - now)) {
         work_->run(Level::low);
       }

@@ -121,7 +121,7 @@ std::string digits(std::int64_t number) {
 }
 
 std::string task_struct(Reader& reader, const Node& node, const std::string& name) {
-  reader.only(node, {"name", "cost", "period", "deadline", "jitter", "level", "own", "source"});
+  reader.only(node, {"name", "cost", "waits", "period", "deadline", "jitter", "level", "own", "source"});
   const Node* own = node.find("own");
   if (own != nullptr && !own->is(Kind::boolean))
     reader.complain(*own, "own is not true or false", "one of them");
@@ -137,7 +137,14 @@ std::string task_struct(Reader& reader, const Node& node, const std::string& nam
   if (node.find("deadline") != nullptr)
     text += ", .deadline = " + digits(reader.time(node, "deadline", 1, 1));
   if (node.find("jitter") != nullptr) text += ", .jitter = " + digits(reader.time(node, "jitter", 0, 0));
-  return text + "@, .level = " + std::to_string(reader.number(node, "level", 1'000'000, -1)) + "};\n};\n";
+  text += "@, .level = " + std::to_string(reader.number(node, "level", 1'000'000, -1));
+  if (const Node* waits = node.find("waits"); waits != nullptr) {
+    const std::int64_t ns = reader.time(node, "waits", 0, 0);
+    if (ns >= reader.time(node, "cost", 1, 1))
+      reader.complain(*waits, "waits is not less than the cost", "the part of the cost in which it waits");
+    text += ", .waits = " + digits(ns);
+  }
+  return text + "};\n};\n";
 }
 
 std::string set_namespace(Reader& reader, const Node& node, const std::string& name) {

@@ -139,11 +139,12 @@ class Program(unittest.TestCase):
         self.assertIn("Task task{.cost = 120'000, .period = 10'000'000, .deadline = 2'000'000, .jitter = 3, .level = 0}",
                       done.stdout)
         self.assertIn("own = true", done.stdout)
+        self.assertIn(".level = 0, .waits = 119'999}", made(waits="119999ns").stdout)
         for changes, said in (({"cost": "0us"}, "'0us' is not a valid time"), ({"cost": 120}, "'120' is not a valid time"),
                               ({"period": "10 ms"}, "'10 ms' is not a valid time"), ({"period": "-1s"}, "'-1s'"),
                               ({"period": "99999999999999s"}, "is not a valid time"), ({"level": -1}, "level is out of range"),
                               ({"level": 1.5}, "level is out of range"), ({"name": "Control"}, "'Control' is not a valid name"),
-                              ({"own": 1}, "own is not true or false"), ({"prio": 1}, "unknown member prio")):
+                              ({"own": 1}, "own is not true or false"), ({"waits": "120us"}, "waits is not less than the cost"), ({"prio": 1}, "unknown member prio")):
             done = made(**changes)
             self.assertEqual((done.returncode, done.stdout), (1, ""), changes)
             self.assertIn(said, done.stderr)

@@ -24,17 +24,17 @@ using Ended = amiro::Behaviour::Ended;
 
 // The way from an obstacle to the wheels' control in docs/behaviours.md, and the least periods of the ring
 // there.
-static_assert(firmware::boards::reaction.hops[0].responds == 12'634'000);
-static_assert(firmware::boards::reaction.bound.age == 73'322'000);
+static_assert(firmware::boards::reaction.hops[0].responds == 14'126'000);
+static_assert(firmware::boards::reaction.bound.age == 74'874'000);
 constexpr base::Error ring_every(base::Duration period, scheduling::Level level) {
   using Board = amiro::PowerManagement;
   analysis::BoardAdmission<Board, amiro::bit_rate, firmware::boards::power_management::Costs> admission;
   return admission.admit(Board::sensors::index<amiro::ProximityRing>, period, level);
 }
-static_assert(ring_every(23'100us, scheduling::Level::medium) == base::Error::not_schedulable);
-static_assert(ring_every(23'200us, scheduling::Level::medium) == base::Error::none);
-static_assert(ring_every(11'500us, scheduling::Level::urgent) == base::Error::not_schedulable);
-static_assert(ring_every(11'600us, scheduling::Level::urgent) == base::Error::none);
+static_assert(ring_every(23'400us, scheduling::Level::medium) == base::Error::not_schedulable);
+static_assert(ring_every(23'500us, scheduling::Level::medium) == base::Error::none);
+static_assert(ring_every(14'800us, scheduling::Level::urgent) == base::Error::not_schedulable);
+static_assert(ring_every(14'900us, scheduling::Level::urgent) == base::Error::none);
 
 /// The three boards on a bus without length: what one sends the others hear at once.
 struct Setup {

@@ -30,8 +30,8 @@ constexpr base::Error idle_board(base::Duration period) {
 using FirmwareCosts = boards::di_wheel_drive::Costs;
 static_assert(idle_board<amiro::Accelerometer>(1ms) == base::Error::none);
 static_assert(idle_board<amiro::Accelerometer, FirmwareCosts>(1ms) == base::Error::not_schedulable);
-static_assert(idle_board<amiro::Accelerometer, FirmwareCosts>(1129us) == base::Error::not_schedulable);
-static_assert(idle_board<amiro::Accelerometer, FirmwareCosts>(1130us) == base::Error::none);
+static_assert(idle_board<amiro::Accelerometer, FirmwareCosts>(1114us) == base::Error::not_schedulable);
+static_assert(idle_board<amiro::Accelerometer, FirmwareCosts>(1115us) == base::Error::none);
 static_assert(idle_board<amiro::Magnetometer>(900us) == base::Error::none);
 static_assert(idle_board<amiro::Magnetometer, FirmwareCosts>(900us) == base::Error::none);
 

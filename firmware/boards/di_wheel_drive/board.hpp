@@ -91,8 +91,12 @@ class Board : public Node<amiro::DiWheelDrive, Bus, P, (Regulated<H> ? 3 : 2), A
   Board(H& hardware, Bus& bus, controller::PortArgument<P> port = {}) noexcept
       : Base(bus, port), hardware_(&hardware) {
     controller_.template serve<amiro::Odometry>([this]() -> base::Result<amiro::Odometry> {
-      [[maybe_unused]] const auto guard = controller_.port().lock();
-      return position_;
+      const Odometry odometry = [this] {
+        [[maybe_unused]] const auto guard = controller_.port().lock();
+        return odometry_;
+      }();
+      if (!odometry.valid()) return base::Error::not_sampled;
+      return to_wire(odometry.state());  // not in the odometry's task, for which less urgent topics wait
     });
     controller_.template serve<amiro::Gyroscope>([this]() -> base::Result<amiro::Gyroscope> {
       const auto rate = hardware_->gyroscope();
@@ -192,14 +196,13 @@ class Board : public Node<amiro::DiWheelDrive, Bus, P, (Regulated<H> ? 3 : 2), A
 
   void update_odometry(std::uint32_t periods) noexcept {
     const auto ticks = hardware_->encoders();
+    Odometry next = odometry_;  // only this task changes it
     if (ticks)
-      odometry_.update(*ticks, periods);
+      next.update(*ticks, periods);
     else
-      odometry_.interrupt();
-    base::Result<amiro::Odometry> position = base::Error::not_sampled;
-    if (odometry_.valid()) position = to_wire(odometry_.state());
+      next.interrupt();
     [[maybe_unused]] const auto guard = controller_.port().lock();
-    position_ = position;
+    odometry_ = next;
   }
 
   void control() noexcept requires Regulated<H> {
@@ -215,8 +218,7 @@ class Board : public Node<amiro::DiWheelDrive, Bus, P, (Regulated<H> ? 3 : 2), A
 
   H* hardware_;
   Calibration<amiro::FloorCalibration> calibration_;
-  Odometry odometry_;  // of its task only
-  base::Result<amiro::Odometry> position_ = base::Error::not_sampled;
+  Odometry odometry_;  // changed by its task, with the lock
   WheelSpeeds wheels_{};
   Orders orders_;          // with the lock
   Behaviours behaviours_;  // of its task only

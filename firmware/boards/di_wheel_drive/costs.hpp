@@ -18,5 +18,7 @@ static_assert(task_set::DeadReckoning::task.period == odometry_period.count());
 static_assert(task_set::Behaviours::task.period == behaviour_period.count());
 
 using Costs = analysis::CostsOf<task_set::Facts>;
+static_assert(analysis::admits_defaults<amiro::DiWheelDrive, amiro::bit_rate, Costs>(),
+              "the board refuses one of its sensors where all are asked for at their defaults");
 
 }  // namespace ocm::firmware::boards::di_wheel_drive

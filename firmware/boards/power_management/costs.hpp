@@ -14,5 +14,7 @@ namespace task_set = analysis::task_sets::power_management;
 static_assert(analysis::schedulable<task_set::Facts::Tasks>);
 
 using Costs = analysis::CostsOf<task_set::Facts>;
+static_assert(analysis::admits_defaults<amiro::PowerManagement, amiro::bit_rate, Costs>(),
+              "the board refuses one of its sensors where all are asked for at their defaults");
 
 }  // namespace ocm::firmware::boards::power_management

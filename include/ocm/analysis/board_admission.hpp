@@ -10,11 +10,12 @@
 ///     sends = B + F_s + sum over streams k, no less urgent, of ceil((sends + reads_k + tau) / T_k) F_k
 ///     reads + sends <= min(D_s, T_s)
 ///
-/// C: processor and waiting for the part; F: all frames of a sample, at their exact lengths and priority; B:
-/// one frame of any node, already on its way. The first is the response time on a preemptive processor, the
-/// second the sufficient one on CAN [Davis et al. 2007, equation 16], with a sample's frames as one. Streams
-/// of one level delay each other whatever their order. A board does not hear what others send, so `Costs`
-/// says which share of the bus is its own; who hears all is the operator's tool (docs/admission.md).
+/// C: processor and waiting for the part; of more urgent ones without what they wait for less urgent ones. F:
+/// all frames of a sample, at their exact lengths and priority. B: one frame of any node, already on its way.
+/// The first is the response time on a preemptive processor, the second the sufficient one on CAN [Davis et
+/// al. 2007, equation 16], with a sample's frames as one. Streams of one level delay each other whatever
+/// their order. A board does not hear what others send, so `Costs` says which share of the bus is its own;
+/// who hears all is the operator's tool (docs/admission.md).
 ///
 /// Memory: 8 bytes a sensor. Time: sensors^2 steps an iteration and at most `most_iterations` of each sum, no
 /// division wider than 32 bits; what that is on a Cortex-M3 is in docs/admission.md. Who would take longer is
@@ -44,6 +45,7 @@ struct OwnTask {
   std::uint32_t cost_us = 0;
   std::uint32_t period_us = 0;
   scheduling::Level level = scheduling::Level::urgent;
+  std::uint32_t waits_us = 0;  ///< of its cost, for less urgent ones
 };
 
 /// What a board without a processor to speak of needs: a simulated one. Also what `Costs` must have.
@@ -51,6 +53,9 @@ struct NoCosts {
   /// C of a sample of this topic.
   template <class Topic>
   static constexpr std::uint32_t sample_us = 0;
+  /// How much of C it waits for less urgent ones, which go on meanwhile. May be left out.
+  template <class Topic>
+  static constexpr std::uint32_t waits_us = 0;
   static constexpr std::array<OwnTask, 0> own{};
   /// How long a job can wait for a part's bus that a less urgent one holds, and for the kernel.
   static constexpr std::uint32_t blocking_us = 0;
@@ -63,6 +68,7 @@ namespace detail {
 /// What is known of a sensor before it is requested.
 struct SensorCost {
   std::uint32_t sample_us = 0;
+  std::uint32_t waits_us = 0;                                      ///< of it, for less urgent ones
   std::uint32_t deadline_us = 0;                                   ///< 0: none but the period
   std::uint32_t shortest_us = 0;                                   ///< how often the part has something new
   std::array<std::uint32_t, scheduling::level_count> frames_us{};  ///< by level
@@ -95,6 +101,8 @@ template <class Topic, class Costs>
 [[nodiscard]] constexpr SensorCost sensor_cost(std::uint32_t bit_rate) noexcept {
   SensorCost cost;
   cost.sample_us = Costs::template sample_us<Topic>;
+  if constexpr (requires { Costs::template waits_us<Topic>; })
+    cost.waits_us = Costs::template waits_us<Topic>;
   cost.deadline_us = bounded_us(Topic::deadline);
   cost.shortest_us = bounded_us(Topic::shortest_period);
   // A request's priority is the level that its samples run at.
@@ -196,17 +204,21 @@ class BoardLoad {
     const std::uint64_t base = std::uint64_t{facts.blocking_us} + facts.sensors[s].sample_us;
     if (base == 0) return 0;
     // One instance at a time: within the period, also where the deadline is later.
-    return solve(base, std::min(deadline(facts, streams, s), streams[s].period_us),
-                 [&](std::uint32_t window) {
-                   std::uint64_t sum = 0;
-                   for (std::size_t k = 0; k < facts.own_count; ++k)
-                     if (facts.own[k].level <= streams[s].level)
-                       sum += demand_of(window, facts.own[k].period_us, facts.own[k].cost_us);
-                   for (std::size_t k = 0; k < N; ++k)
-                     if (k != s && streams[k].period_us != 0 && streams[k].level <= streams[s].level)
-                       sum += demand_of(window, streams[k].period_us, facts.sensors[k].sample_us);
-                   return sum;
-                 });
+    return solve(
+        base, std::min(deadline(facts, streams, s), streams[s].period_us), [&](std::uint32_t window) {
+          std::uint64_t sum = 0;
+          for (std::size_t k = 0; k < facts.own_count; ++k)
+            if (facts.own[k].level <= streams[s].level)
+              sum += demand_of(
+                  window, facts.own[k].period_us,
+                  facts.own[k].cost_us - (facts.own[k].level < streams[s].level ? facts.own[k].waits_us : 0));
+          for (std::size_t k = 0; k < N; ++k)
+            if (k != s && streams[k].period_us != 0 && streams[k].level <= streams[s].level)
+              sum += demand_of(window, streams[k].period_us,
+                               facts.sensors[k].sample_us -
+                                   (streams[k].level < streams[s].level ? facts.sensors[k].waits_us : 0));
+          return sum;
+        });
   }
   static constexpr std::uint32_t send_bound(const Facts& facts, const Streams& streams,
                                             const std::array<std::uint32_t, N>& reads, std::size_t s,
@@ -256,5 +268,17 @@ class BoardAdmission {
 
   typename Load::Streams streams_{};
 };
+
+/// Whether a board takes all of its sensors together, each at its default period and priority.
+template <class Board, std::uint32_t bit_rate, class Costs = NoCosts>
+[[nodiscard]] constexpr bool admits_defaults() noexcept {
+  return []<class... Topics>(protocol::TopicList<Topics...> /*sensors*/) {
+    BoardAdmission<Board, bit_rate, Costs> admission;
+    std::size_t stream = 0;
+    return ((admission.admit(stream++, Topics::period.duration(),
+                             static_cast<scheduling::Level>(Topics::priority)) == base::Error::none) &&
+            ...);
+  }(typename Board::sensors{});
+}
 
 }  // namespace ocm::analysis

@@ -37,6 +37,12 @@ struct TaskList {
     static_cast<void>(((Tasks::name == name ? (found = us(Tasks::task.cost), true) : false) || ...));
     return found;
   }
+  /// How much of that it waits for less urgent ones, rounded down.
+  [[nodiscard]] static constexpr std::uint32_t waits_us(std::string_view name) noexcept {
+    std::int64_t found = 0;
+    static_cast<void>(((Tasks::name == name ? (found = Tasks::task.waits, true) : false) || ...));
+    return static_cast<std::uint32_t>(found / 1000);
+  }
   /// Tasks that are not the sample of a topic, in microseconds.
   [[nodiscard]] static constexpr auto own() noexcept {
     constexpr std::size_t count = (std::size_t{Tasks::own ? 1 : 0} + ... + 0);
@@ -46,7 +52,8 @@ struct TaskList {
       static_cast<void>(
           ((Tasks::own ? void(result[i++] = {us(Tasks::task.cost),  // rounded up
                                              static_cast<std::uint32_t>(Tasks::task.period / 1000),
-                                             static_cast<scheduling::Level>(Tasks::task.level)})
+                                             static_cast<scheduling::Level>(Tasks::task.level),
+                                             static_cast<std::uint32_t>(Tasks::task.waits / 1000)})
                        : void()),
            ...));
     }
@@ -69,6 +76,8 @@ struct CostsOf {
     static_assert(cost > 0, "spec/tasks.json has no task of this topic's name in the board's set");
     return cost;
   }();
+  template <class Topic>
+  static constexpr std::uint32_t waits_us = Facts::Tasks::waits_us(Topic::name);
   static constexpr auto own = Facts::Tasks::own();
   static constexpr std::uint32_t blocking_us = static_cast<std::uint32_t>((Facts::blocking + 999) / 1000);
   static constexpr std::uint32_t bus_percent = Facts::bus_percent;

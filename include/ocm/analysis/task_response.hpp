@@ -52,9 +52,15 @@ class ProcessorDemand {
   [[nodiscard]] constexpr Checked jitter(std::size_t k) const noexcept {
     return Checked{tasks_[k].jitter} + (processor_.released_by_tick ? processor_.tick_period : 0);
   }
+  /// What one release of task k, which goes before the task, takes from it: while it waits for what less
+  /// urgent ones hold, those go on.
+  [[nodiscard]] constexpr Checked taken(std::size_t k) const noexcept {
+    if (tasks_[k].waits == 0 || tasks_[k].level == tasks_[index_].level) return cost(k);
+    return scaled(tasks_[k].cost - tasks_[k].waits) + Checked{processor_.context_switch} * tasks_[k].switches;
+  }
   /// What one release of task k takes from the task: the interrupt; all of it if it goes before.
   [[nodiscard]] constexpr Checked each(std::size_t k) const noexcept {
-    if (k != index_ && tasks_[k].level <= tasks_[index_].level) return cost(k) + processor_.interrupt;
+    if (k != index_ && tasks_[k].level <= tasks_[index_].level) return taken(k) + processor_.interrupt;
     return processor_.interrupt;
   }
   /// What task k takes of `window` ticks.
@@ -72,7 +78,7 @@ class ProcessorDemand {
       const std::uint32_t level = tasks_[index_].level;
       for (std::size_t k = 0; k < tasks_.size(); ++k)
         if (tasks_[k].level <= level && k != index_)
-          sum += ceil_div(window + jitter(k), tasks_[k].period) * cost(k);
+          sum += ceil_div(window + jitter(k), tasks_[k].period) * taken(k);
       return sum;
     }
     for (std::size_t k = 0; k < tasks_.size(); ++k) sum += share(k, window);

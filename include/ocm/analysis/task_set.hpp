@@ -27,12 +27,15 @@ struct Task {
   std::uint32_t level = 0;                    ///< lower: more urgent
   std::uint32_t switches = 2;         ///< context switches a job causes: to it and back, and each wait
   std::size_t blocked_by = no_index;  ///< whose section B is, for the explanation
+  /// W: how much of C it sleeps at most because less urgent tasks hold what it needs. They go on meanwhile,
+  /// so that it takes only C - W from them.
+  std::int64_t waits = 0;
 
   [[nodiscard]] constexpr std::int64_t due() const noexcept {
     return deadline == implicit_deadline ? period : deadline;
   }
   [[nodiscard]] constexpr bool valid() const noexcept {
-    return cost > 0 && period > 0 && due() > 0 && jitter >= 0 && blocking >= 0;
+    return cost > 0 && period > 0 && due() > 0 && jitter >= 0 && blocking >= 0 && waits >= 0 && waits < cost;
   }
   friend bool operator==(const Task&, const Task&) = default;
 };

@@ -13,66 +13,69 @@
 // clang-format off
 namespace ocm::analysis::task_sets {
 
-/// DiWheelDrive, each topic at its default period and priority. [docs/boards/figures.md, under load: latest measured start at 32 ns an instruction, the part's bus included]
+/// DiWheelDrive, each topic at its default period and priority. [docs/boards/figures.md, what a job takes]
 namespace di_wheel_drive {
 
-/// [docs/boards/figures.md, own tasks]
 struct Control {
   static constexpr std::string_view name = "control";
   static constexpr bool own = true;
-  static constexpr Task task{.cost = 52'000, .period = 10'000'000, .blocking = 10'000, .level = 0};
+  static constexpr Task task{.cost = 112'000, .period = 10'000'000, .blocking = 10'000, .level = 0};
 };
 
-/// [docs/boards/figures.md, own tasks: with the looking after the parts]
 struct DeadReckoning {
   static constexpr std::string_view name = "dead_reckoning";
   static constexpr bool own = true;
-  static constexpr Task task{.cost = 324'000, .period = 50'000'000, .blocking = 10'000, .level = 1};
+  static constexpr Task task{.cost = 279'000, .period = 50'000'000, .blocking = 10'000, .level = 1};
 };
 
-/// [docs/boards/figures.md, what boards do by themselves: bench/firmware/run behaviours, follow under load]
+/// [docs/boards/figures.md, what boards do by themselves: follow]
 struct Behaviours {
   static constexpr std::string_view name = "behaviours";
   static constexpr bool own = true;
-  static constexpr Task task{.cost = 2'102'000, .period = 20'000'000, .blocking = 10'000, .level = 3};
+  static constexpr Task task{.cost = 1'152'000, .period = 20'000'000, .blocking = 10'000, .level = 3};
+};
+
+/// [docs/boards/figures.md, what a job takes: one step of it can be in the way]
+struct Upkeep {
+  static constexpr std::string_view name = "upkeep";
+  static constexpr bool own = true;
+  static constexpr Task task{.cost = 882'000, .period = 1'000'000'000, .blocking = 10'000, .level = 3};
 };
 
 struct Odometry {
   static constexpr std::string_view name = "odometry";
   static constexpr bool own = false;
-  static constexpr Task task{.cost = 89'000, .period = 50'000'000, .blocking = 10'000, .level = 2};
+  static constexpr Task task{.cost = 338'000, .period = 50'000'000, .blocking = 10'000, .level = 2};
 };
 
-/// [docs/boards/figures.md, at 16 ns an instruction, which was later]
 struct FloorProximity {
   static constexpr std::string_view name = "floor_proximity";
   static constexpr bool own = false;
-  static constexpr Task task{.cost = 1'390'000, .period = 50'000'000, .blocking = 10'000, .level = 2};
+  static constexpr Task task{.cost = 1'767'000, .period = 50'000'000, .blocking = 10'000, .level = 2};
 };
 
 struct Magnetometer {
   static constexpr std::string_view name = "magnetometer";
   static constexpr bool own = false;
-  static constexpr Task task{.cost = 331'000, .period = 50'000'000, .blocking = 10'000, .level = 2};
+  static constexpr Task task{.cost = 399'000, .period = 50'000'000, .blocking = 10'000, .level = 2};
 };
 
 struct Gyroscope {
   static constexpr std::string_view name = "gyroscope";
   static constexpr bool own = false;
-  static constexpr Task task{.cost = 137'000, .period = 50'000'000, .blocking = 10'000, .level = 2};
+  static constexpr Task task{.cost = 227'000, .period = 50'000'000, .blocking = 10'000, .level = 2};
 };
 
 struct Accelerometer {
   static constexpr std::string_view name = "accelerometer";
   static constexpr bool own = false;
-  static constexpr Task task{.cost = 252'000, .period = 50'000'000, .blocking = 10'000, .level = 2};
+  static constexpr Task task{.cost = 222'000, .period = 50'000'000, .blocking = 10'000, .level = 2};
 };
 
-/// [decided: it reads nothing]
 struct Behaviour {
   static constexpr std::string_view name = "behaviour";
   static constexpr bool own = false;
-  static constexpr Task task{.cost = 100'000, .period = 100'000'000, .blocking = 10'000, .level = 2};
+  static constexpr Task task{.cost = 182'000, .period = 100'000'000, .blocking = 10'000, .level = 2};
 };
 
 /// [decided: it reads nothing]
@@ -90,47 +93,52 @@ struct DiWheelDriveRefusal {
 };
 
 struct Facts {
-  using Tasks = TaskList<Control, DeadReckoning, Behaviours, Odometry, FloorProximity, Magnetometer, Gyroscope, Accelerometer, Behaviour, DiWheelDriveStatus, DiWheelDriveRefusal>;
+  using Tasks = TaskList<Control, DeadReckoning, Behaviours, Upkeep, Odometry, FloorProximity, Magnetometer, Gyroscope, Accelerometer, Behaviour, DiWheelDriveStatus, DiWheelDriveRefusal>;
   static constexpr std::int64_t blocking = 10'000;
   static constexpr std::uint32_t bus_percent = 80;
 };
 
 }  // namespace di_wheel_drive
 
-/// PowerManagement, each topic at its default period and priority. [docs/boards/figures.md, under load: latest measured start at 32 ns an instruction, the part's bus included]
+/// PowerManagement, each topic at its default period and priority. [docs/boards/figures.md, what a job takes]
 namespace power_management {
 
-/// [docs/boards/figures.md, what boards do by themselves: bench/firmware/run behaviours, avoid under load]
+/// [docs/boards/figures.md, what boards do by themselves: avoid under load]
 struct Avoidance {
   static constexpr std::string_view name = "avoidance";
   static constexpr bool own = true;
-  static constexpr Task task{.cost = 11'634'000, .period = 50'000'000, .blocking = 1'000'000, .level = 1};
+  static constexpr Task task{.cost = 13'126'000, .period = 50'000'000, .blocking = 1'000'000, .level = 1, .waits = 4'525'000};
+};
+
+/// [docs/boards/figures.md, what a job takes: one step of it can be in the way]
+struct Upkeep {
+  static constexpr std::string_view name = "upkeep";
+  static constexpr bool own = true;
+  static constexpr Task task{.cost = 3'822'000, .period = 1'000'000'000, .blocking = 1'000'000, .level = 3};
 };
 
 struct ProximityRing {
   static constexpr std::string_view name = "proximity_ring";
   static constexpr bool own = false;
-  static constexpr Task task{.cost = 9'108'000, .period = 50'000'000, .blocking = 1'000'000, .level = 2};
+  static constexpr Task task{.cost = 12'446'000, .period = 50'000'000, .blocking = 1'000'000, .level = 2, .waits = 6'922'000};
 };
 
 struct PowerStatus {
   static constexpr std::string_view name = "power_status";
   static constexpr bool own = false;
-  static constexpr Task task{.cost = 7'247'000, .period = 50'000'000, .blocking = 1'000'000, .level = 2};
+  static constexpr Task task{.cost = 7'772'000, .period = 50'000'000, .blocking = 1'000'000, .level = 2, .waits = 3'549'000};
 };
 
-/// [decided: eight transfers of the length of power_status's]
 struct Batteries {
   static constexpr std::string_view name = "batteries";
   static constexpr bool own = false;
-  static constexpr Task task{.cost = 7'247'000, .period = 1'000'000'000, .blocking = 1'000'000, .level = 2};
+  static constexpr Task task{.cost = 8'594'000, .period = 1'000'000'000, .blocking = 1'000'000, .level = 3, .waits = 3'578'000};
 };
 
-/// [decided: the transfers of proximity_ring, of the same length]
 struct RingLight {
   static constexpr std::string_view name = "ring_light";
   static constexpr bool own = false;
-  static constexpr Task task{.cost = 9'108'000, .period = 500'000'000, .blocking = 1'000'000, .level = 2};
+  static constexpr Task task{.cost = 14'481'000, .period = 500'000'000, .blocking = 1'000'000, .level = 3, .waits = 6'756'000};
 };
 
 /// [decided: it reads nothing]
@@ -148,7 +156,7 @@ struct PowerManagementRefusal {
 };
 
 struct Facts {
-  using Tasks = TaskList<Avoidance, ProximityRing, PowerStatus, Batteries, RingLight, PowerManagementStatus, PowerManagementRefusal>;
+  using Tasks = TaskList<Avoidance, Upkeep, ProximityRing, PowerStatus, Batteries, RingLight, PowerManagementStatus, PowerManagementRefusal>;
   static constexpr std::int64_t blocking = 1'000'000;
   static constexpr std::uint32_t bus_percent = 80;
 };

@@ -1770,7 +1770,8 @@ struct Batteries {
   /// [decided: the period]
   static constexpr ocm::base::Duration deadline = std::chrono::seconds{1};
   static constexpr ocm::base::Duration jitter = std::chrono::milliseconds{1};
-  static constexpr ocm::protocol::Priority priority = ocm::protocol::Priority::medium;
+  /// [decided: a sample takes long and is not urgent; at medium it would delay the ring]
+  static constexpr ocm::protocol::Priority priority = ocm::protocol::Priority::low;
 
   std::array<BatteriesBattery, 2> battery{};
 
@@ -1842,7 +1843,8 @@ struct RingLight {
   /// [decided: the period]
   static constexpr ocm::base::Duration deadline = std::chrono::milliseconds{500};
   static constexpr ocm::base::Duration jitter = std::chrono::milliseconds{1};
-  static constexpr ocm::protocol::Priority priority = ocm::protocol::Priority::medium;
+  /// [decided: as of batteries]
+  static constexpr ocm::protocol::Priority priority = ocm::protocol::Priority::low;
 
   std::array<RingLightSensor, 8> sensor{};
 
@@ -2359,7 +2361,7 @@ inline constexpr std::array<protocol::FrameLayout, 2> frames{{
   {"battery_2", protocol::TopicId{0x2C}, 8, batteries_battery::fields, {131, 131, 131, 131}},
 }};
 inline constexpr std::string_view source =
-  "BQ27500 data sheet, table 4-1: mV, mA, mAh, 0.1 K; id decided: free in the board's block; period decided: the gauge's own; deadline decided: the period; shortest_period: BQ27500 data sheet: gauge updated every second";
+  "BQ27500 data sheet, table 4-1: mV, mA, mAh, 0.1 K; id decided: free in the board's block; period decided: the gauge's own; deadline decided: the period; priority decided: a sample takes long and is not urgent; at medium it would delay the ring; shortest_period: BQ27500 data sheet: gauge updated every second";
 }  // namespace batteries
 
 namespace ring_light_sensor {
@@ -2380,7 +2382,7 @@ inline constexpr std::array<protocol::FrameLayout, 8> frames{{
   {"sensor_8", protocol::TopicId{0x34}, 2, ring_light_sensor::fields, {69, 69, 70, 70}},
 }};
 inline constexpr std::string_view source =
-  "VCNL4020 data sheet: 0.25 lx a count; id decided: free in the board's block; period decided: light changes slowly; deadline decided: the period; shortest_period: VCNL4020 data sheet: at most 10 measurements of ambient light a second";
+  "VCNL4020 data sheet: 0.25 lx a count; id decided: free in the board's block; period decided: light changes slowly; deadline decided: the period; priority decided: as of batteries; shortest_period: VCNL4020 data sheet: at most 10 measurements of ambient light a second";
 }  // namespace ring_light
 
 inline constexpr std::array<protocol::Board, 3> boards{{

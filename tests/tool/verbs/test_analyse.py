@@ -438,7 +438,7 @@ class Tasks(Analyse):
         report = json.loads(self.run_tool("analyse", "tasks", "thesis_avr", "--json")[0])
         self.assertEqual([task["priority"] for task in report["tasks"]], ["8", "7", "6", "5", "4", "3", "2", "1"])
         report = json.loads(self.run_tool("analyse", "tasks", "di_wheel_drive", "--json")[0])
-        self.assertEqual([task["priority"] for task in report["tasks"]], list("43222222111"))
+        self.assertEqual([task["priority"] for task in report["tasks"]], list("432222221111"))
 
     def test_tests_of_the_utilisation(self):
         """[Liu, Layland 1973] n(2^(1/n) - 1), 0.8284 of two tasks; [Bini, Buttazzo, Buttazzo 2003] product of U + 1."""

@@ -54,6 +54,47 @@ static_assert(ask_ring(1us) == base::Error::not_schedulable);
 static_assert(ask_ring(base::Duration{1}) == base::Error::not_schedulable);
 static_assert(ask_ring(65'535s) == base::Error::none);
 
+/// Own tasks of 12 ms, and 8 ms a sample; the ring has what is given.
+template <std::uint32_t ring_us>
+struct Busy : NoCosts {
+  template <class Topic>
+  static constexpr std::uint32_t sample_us = Topic::id == amiro::ProximityRing::id ? ring_us : 8'000;
+  static constexpr std::array<OwnTask, 1> own{
+      {{.cost_us = 12'000, .period_us = 50'000, .level = Level::high}}};
+};
+// power_status and the ring are due within 50 ms, on the bus, too. At low is what is due later.
+static_assert(admits_defaults<amiro::PowerManagement, amiro::bit_rate>());
+static_assert(admits_defaults<amiro::DiWheelDrive, amiro::bit_rate, Slow>());
+static_assert(admits_defaults<amiro::PowerManagement, amiro::bit_rate, Busy<25'000>>());
+static_assert(!admits_defaults<amiro::PowerManagement, amiro::bit_rate, Busy<29'000>>());
+
+/// Of 12 ms its own task waits 5 for less urgent ones, and a sample 3 of 8.
+struct Waiting : NoCosts {
+  template <class Topic>
+  static constexpr std::uint32_t sample_us = 8'000;
+  template <class Topic>
+  static constexpr std::uint32_t waits_us = 3'000;
+  static constexpr std::array<OwnTask, 1> own{
+      {{.cost_us = 12'000, .period_us = 50'000, .level = Level::high, .waits_us = 5'000}}};
+};
+/// The ring, while power_status runs.
+constexpr base::Error ask_beside(base::Duration period, Level level, Level level_of_power) {
+  Admission<amiro::PowerManagement, Waiting> admission;
+  constexpr std::size_t power = amiro::PowerManagement::sensors::index<amiro::PowerStatus>;
+  if (admission.admit(power, 50ms, level_of_power) != base::Error::none) return base::Error::full;
+  return admission.admit(ring, period, level);
+}
+// 7 of the task, 8 of power_status, 8 of its own, in ms, and 1602 us on the bus, of power_status's frame,
+// too.
+static_assert(ask_beside(24'601us, Level::medium, Level::medium) == base::Error::not_schedulable);
+static_assert(ask_beside(24'602us, Level::medium, Level::medium) == base::Error::none);
+// 5 of power_status where that is more urgent.
+static_assert(ask_beside(21'601us, Level::medium, Level::high) == base::Error::not_schedulable);
+static_assert(ask_beside(21'602us, Level::medium, Level::high) == base::Error::none);
+// All 12 of the task, at its level.
+static_assert(ask_beside(26'615us, Level::high, Level::urgent) == base::Error::not_schedulable);
+static_assert(ask_beside(26'616us, Level::high, Level::urgent) == base::Error::none);
+
 /// Takes frames, and remembers them.
 struct Wire {
   base::Result<bool> send(const can::Frame& frame) {

@@ -42,7 +42,23 @@ using Costs = CostsOf<Facts>;
 static_assert(Costs::own.size() == 1 && Costs::own[0].cost_us == 2 && Costs::own[0].period_us == 10);
 static_assert(Costs::own[0].level == ocm::scheduling::Level::urgent);
 static_assert(Costs::sample_us<amiro::Gyroscope> == 9);
+static_assert(Costs::waits_us<amiro::Gyroscope> == 0 && Costs::own[0].waits_us == 0);
 static_assert(Costs::blocking_us == 2 && Costs::bus_percent == 40);
+
+// What they wait for less urgent ones is rounded down.
+struct Patient {
+  static constexpr std::string_view name = "gyroscope";
+  static constexpr bool own = true;
+  static constexpr Task task{.cost = 9'100, .period = 100'000, .level = 2, .waits = 4'900};
+};
+struct PatientFacts {
+  using Tasks = TaskList<Patient>;
+  static constexpr std::int64_t blocking = 0;
+  static constexpr std::uint32_t bus_percent = 100;
+};
+static_assert(CostsOf<PatientFacts>::sample_us<amiro::Gyroscope> == 10);
+static_assert(CostsOf<PatientFacts>::waits_us<amiro::Gyroscope> == 4);
+static_assert(CostsOf<PatientFacts>::own[0].cost_us == 10 && CostsOf<PatientFacts>::own[0].waits_us == 4);
 
 TEST_CASE("A list finds its tasks by name") {
   CHECK(Facts::Tasks::cost_us("quick") == 2);

@@ -40,6 +40,20 @@ static_assert(responses(in_order(std::array{Task{3, 7}, Task{3, 12}, Task{5, 20}
 static_assert(responses(deadline_monotonic(std::array{Task{3, 20, 5}, Task{3, 15, 7}, Task{4, 10, 10},
                                                       Task{3, 20, 20}})) == Times<4>{3, 6, 10, 20});
 
+// Of its ten the first waits six for what less urgent ones hold: it takes four from those below, and all ten
+// from its own level.
+constexpr Task waiting{.cost = 10, .period = 20, .waits = 6};
+static_assert(responses(std::array{waiting, Task{.cost = 5, .period = 100, .level = 1}}) == Times<2>{10, 9});
+static_assert(responses(std::array{waiting, Task{.cost = 5, .period = 100}}) == Times<2>{15, 15});
+static_assert(responses(std::array{waiting, Task{.cost = 17, .period = 100, .level = 1}}) ==
+              Times<2>{10, 25});
+static_assert(responses(std::array{waiting, Task{.cost = 5, .period = 100, .level = 1}},
+                        {.scale = 1'500'000}) == Times<2>{15, 14});
+static_assert(responses(std::array{waiting, Task{.cost = 5, .period = 100, .level = 1}}, {.interrupt = 1}) ==
+              Times<2>{12, 11});
+static_assert(!Task{.cost = 10, .period = 20, .waits = 10}.valid());
+static_assert(!Task{.cost = 10, .period = 20, .waits = -1}.valid());
+
 // Deadlines beyond the period: the fifth instance is the worst, the first is not. [Lehoczky 1990]
 constexpr auto long_busy = in_order(std::array{Task{26, 70}, Task{62, 100, 118}});
 static_assert([] {
