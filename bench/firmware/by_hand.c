@@ -179,8 +179,7 @@ static struct stream* take(unsigned level) {
         scheduled = s->next - s->period;
         s->missed += missed;
       }
-      if (missed != 0 || (s->jitter_ns != UINT32_MAX && now - scheduled > (int64_t)s->jitter_ns))
-        ++s->late;
+      if (missed != 0 || (s->jitter_ns != UINT32_MAX && now - scheduled > (int64_t)s->jitter_ns)) ++s->late;
     }
   }
   port_unlock(mask);
@@ -323,7 +322,7 @@ static bool sample_refusal(uint8_t d[][8]) {
   d[0][0] = last_refusal.topic;
   d[0][1] = last_refusal.reason;
   put16(d[0] + 2, (uint16_t)saturated_16(refused()));
-  put32(d[0] + 4, saturated_16(counters.not_sampled));
+  put32(d[0] + 4, saturated_16(counters.not_sampled));  // and no host on a serial line
   port_unlock(mask);
   return true;
 }
@@ -346,7 +345,7 @@ static const struct sensor {
     {sample_gyroscope, payloads + 6, 50 * MS, 1 * MS, 1, {{0x08, 6}}},
     {sample_accelerometer, payloads + 7, 50 * MS, 1 * MS, 1, {{0x09, 6}}},
     {sample_status, payloads + 8, 1000 * MS, 1 * MS, 2, {{0x1B, 8}, {0x1C, 8}}},
-    {sample_refusal, payloads + 10, 1000 * MS, 1 * MS, 1, {{0x1D, 6}}},
+    {sample_refusal, payloads + 10, 1000 * MS, 1 * MS, 1, {{0x1D, 8}}},
 };
 
 /// False: the bus has no room, and the rest waits.

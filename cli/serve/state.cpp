@@ -162,6 +162,7 @@ std::string boards_state(const protocol::Catalogue& catalogue, const client::Dia
       json["faults"] = diagnosis.sensors_of(i, board.faults);
       json["bus_errors"] = board.bus_errors;
       json["refused"] = board.refused;
+      json["line_lost"] = board.line_lost;
     }
     boards.push_back(std::move(json));
   }

@@ -294,6 +294,7 @@ void print_json(const Examination& examination, const std::vector<Finding>& find
       entry["overload"] = board.overload;
       entry["bus_errors"] = board.bus_errors;
       entry["refused"] = board.refused;
+      entry["line_lost"] = board.line_lost;
     }
     out["boards"].push_back(std::move(entry));
   }

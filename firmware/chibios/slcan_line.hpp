@@ -70,6 +70,12 @@ class SlcanLine {
     const Lock lock;
     return line_.counters();
   }
+  /// Frames that found no place on their way up or down, and characters of the host's; wraps around.
+  [[nodiscard]] std::uint32_t lost() noexcept {
+    const Lock lock;
+    const can::slcan::BridgeCounters counters = bridge_.counters();
+    return counters.lost + counters.no_room + bus_.condition().lost + line_.lost();
+  }
   /// Bytes of stack that were never touched.
   [[nodiscard]] std::size_t untouched() const noexcept { return thread_.untouched(); }
 

@@ -322,6 +322,7 @@ int main() {
   board.controller().report([] {
     ocm::controller::Health health;
     health.load = load.percent();
+    health.line_lost = line.lost();
     return health;
   });
   static chibios::Runtime runtime{port, board.controller(), bus};

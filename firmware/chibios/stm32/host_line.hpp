@@ -51,6 +51,9 @@ class HostLine {
 
   void on_interrupt() noexcept;
 
+  /// Of the host's frames and characters.
+  [[nodiscard]] std::uint32_t lost() noexcept { return line_.lost(); }
+
  private:
   CanBus* can_;
   SlcanLine<drivers::usart::MappedRegisters, BusOfHost> line_;

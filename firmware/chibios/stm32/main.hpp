@@ -51,6 +51,7 @@ struct NoHostLine {
   static constexpr drivers::bxcan::FilterBanks filters = drivers::bxcan::filter_banks_of<Type>();
   NoHostLine(Port& /*port*/, CanBus& /*can*/) noexcept {}
   void start() noexcept {}
+  [[nodiscard]] std::uint32_t lost() const noexcept { return 0; }
 };
 
 /// `Type` is the board in the generated header, `Board` its template, `Costs` what its admission reckons
@@ -68,9 +69,13 @@ template <class Type, template <class, class, class, class> class Board, class C
     rest_and_restart(ResetCause::software);
   using Admission = analysis::BoardAdmission<Type, amiro::bit_rate, Costs>;
   static Board<Parts, CanBus, Port, Admission> board{parts, can, port};
-  board.controller().report([] { return vitals.health(); });
-  static Runtime runtime{port, board.controller(), can};
   static Line line{port, can};
+  board.controller().report([] {
+    controller::Health health = vitals.health();
+    health.line_lost = line.lost();
+    return health;
+  });
+  static Runtime runtime{port, board.controller(), can};
   line.start();
   say_ready();
   start_watchdog();

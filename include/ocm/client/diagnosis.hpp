@@ -49,6 +49,7 @@ enum class Ailment : std::uint8_t {
   busy,                 ///< its CPU
   restarted,            ///< because of a watchdog, a fault or another breakdown
   bus_errors,           ///< on the bus, or frames given up
+  line_lost,            ///< frames and characters of a host on the board's serial line
   refusals,             ///< requests that the board refused; `topic` is the last one's
   not_schedulable,      ///< the same, the last one because a deadline would be missed
   battery_low,          ///<
@@ -110,6 +111,7 @@ struct BoardReport {
   std::int64_t bus_errors = 0;
   std::int64_t refused = 0;  ///< of the last refusal that came
   std::int64_t refused_topic = 0;
+  std::int64_t line_lost = 0;
   std::string_view reason;
 };
 
@@ -180,6 +182,7 @@ class Diagnosis {
       board.refused = reader.raw("", "refused");
       board.refused_topic = reader.raw("", "topic");
       board.reason = reader.word("", "reason");
+      board.line_lost = reader.raw("", "line_lost");
     }
     if (reception.topic == battery_.topic) take_battery(reader);
     if (reception.topic == batteries_.topic) take_batteries(reception.sample);
@@ -393,6 +396,12 @@ class Diagnosis {
       tell(Ailment::bus_errors, Severity::note,
            count(static_cast<std::uint64_t>(board.bus_errors), "error* on the bus or frames given up so far"),
            "few are normal when nodes come and go; many point to cable or termination");
+    if (board.line_lost != 0)
+      tell(Ailment::line_lost, Severity::warning,
+           count(static_cast<std::uint64_t>(board.line_lost),
+                 "time* so far a frame or a character of a host on its serial line was lost"),
+           "a serial line of 115200 baud carries some 440 frames/s: publish less, or use an adapter on the "
+           "CAN bus");
     if (board.refused != 0) {
       const protocol::Topic* topic =
           catalogue_->find(protocol::TopicId{static_cast<std::uint8_t>(board.refused_topic)});

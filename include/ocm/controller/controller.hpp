@@ -300,12 +300,15 @@ class Controller {
       activity.send_failed = counters_.send_failed;
       activity.faults = sensors_.faults();
     }
-    return make_status<typename Board::status>(health_ ? health_() : Health{}, activity);
+    return make_status<typename Board::status>(health(), activity);
   }
   [[nodiscard]] auto refusal() const noexcept {
+    const Health now = health();  // a board that asks its line locks, too
     [[maybe_unused]] const auto guard = port().lock();
-    return make_refusal<typename Board::refusal>(last_refusal_, counters_.refused(), counters_.not_sampled);
+    return make_refusal<typename Board::refusal>(last_refusal_, counters_.refused(), counters_.not_sampled,
+                                                 now);
   }
+  [[nodiscard]] Health health() const noexcept { return health_ ? health_() : Health{}; }
 
   /// Has the actuators looked at when the first watchdog expires.
   void watch() noexcept {

@@ -29,6 +29,7 @@ struct Health {
   std::uint8_t load = unknown_load;  ///< of the CPU, percent
   std::uint8_t bus = 0;              ///< state of the CAN controller; 0: error active
   std::uint32_t bus_errors = 0;      ///< that the CAN controller has counted
+  std::uint32_t line_lost = 0;       ///< frames and characters of a host on the board's serial line
   friend constexpr bool operator==(const Health&, const Health&) = default;
 };
 
@@ -83,13 +84,14 @@ template <class Status>
 /// `Topic`: a generated topic with the role refusal.
 template <class Topic>
 [[nodiscard]] constexpr Topic make_refusal(const Refusal& last, std::uint32_t refused,
-                                           std::uint32_t not_sampled) noexcept {
+                                           std::uint32_t not_sampled, const Health& health) noexcept {
   using detail::put;
   Topic topic;
   put(topic.topic, last.topic.value);
   put(topic.reason, static_cast<std::uint64_t>(last.reason));
   put(topic.refused, refused);
   if constexpr (requires { topic.not_sampled; }) put(topic.not_sampled, not_sampled);
+  if constexpr (requires { topic.line_lost; }) put(topic.line_lost, health.line_lost);
   return topic;
 }
 

@@ -925,7 +925,7 @@ struct DiWheelDriveRefusal {
   static constexpr ocm::protocol::TopicId id{0x1D};
   static constexpr std::uint8_t instances = 1;
   static constexpr std::array<ocm::protocol::FrameHead, 1> frames{
-      {{ocm::protocol::TopicId{0x1D}, 6, {110, 109, 109, 109}}}};
+      {{ocm::protocol::TopicId{0x1D}, 8, {131, 130, 130, 130}}}};
   static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::sensor;
   static constexpr ocm::protocol::Period period{1000, ocm::protocol::PeriodUnit::milliseconds};
   static constexpr ocm::base::Duration shortest_period = std::chrono::milliseconds{100};
@@ -956,11 +956,15 @@ struct DiWheelDriveRefusal {
   std::uint16_t refused = 0;
   /// releases at which a part had nothing to say; stays at its end; [0, 65535]
   std::uint16_t not_sampled = 0;
+  /// frames and characters of a host on the board's serial line that found no place; stays at its end; [0,
+  /// 65535]
+  std::uint16_t line_lost = 0;
 
   using TopicBits = ocm::protocol::Bits<std::uint8_t, 0>;
   using ReasonBits = ocm::protocol::Bits<std::uint8_t, 8>;
   using RefusedBits = ocm::protocol::Bits<std::uint16_t, 16>;
   using NotSampledBits = ocm::protocol::Bits<std::uint16_t, 32>;
+  using LineLostBits = ocm::protocol::Bits<std::uint16_t, 48>;
 
   [[nodiscard]] constexpr ocm::can::Payload encode(std::size_t /*frame*/ = 0) const noexcept {
     ocm::can::Payload data{};
@@ -968,6 +972,7 @@ struct DiWheelDriveRefusal {
     ReasonBits::put(data, static_cast<std::uint8_t>(reason));
     RefusedBits::put(data, refused);
     NotSampledBits::put(data, not_sampled);
+    LineLostBits::put(data, line_lost);
     return data;
   }
   [[nodiscard]] static constexpr DiWheelDriveRefusal decode(const ocm::can::Payload& data) noexcept {
@@ -976,6 +981,7 @@ struct DiWheelDriveRefusal {
     value.reason = static_cast<Reason>(ReasonBits::get(data));
     value.refused = RefusedBits::get(data);
     value.not_sampled = NotSampledBits::get(data);
+    value.line_lost = LineLostBits::get(data);
     return value;
   }
   [[nodiscard]] static constexpr DiWheelDriveRefusal decode(
@@ -1145,7 +1151,7 @@ struct PowerManagementRefusal {
   static constexpr ocm::protocol::TopicId id{0x3B};
   static constexpr std::uint8_t instances = 1;
   static constexpr std::array<ocm::protocol::FrameHead, 1> frames{
-      {{ocm::protocol::TopicId{0x3B}, 6, {109, 109, 109, 109}}}};
+      {{ocm::protocol::TopicId{0x3B}, 8, {130, 130, 130, 130}}}};
   static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::sensor;
   static constexpr ocm::protocol::Period period{1000, ocm::protocol::PeriodUnit::milliseconds};
   static constexpr ocm::base::Duration shortest_period = std::chrono::milliseconds{100};
@@ -1176,11 +1182,15 @@ struct PowerManagementRefusal {
   std::uint16_t refused = 0;
   /// releases at which a part had nothing to say; stays at its end; [0, 65535]
   std::uint16_t not_sampled = 0;
+  /// frames and characters of a host on the board's serial line that found no place; stays at its end; [0,
+  /// 65535]
+  std::uint16_t line_lost = 0;
 
   using TopicBits = ocm::protocol::Bits<std::uint8_t, 0>;
   using ReasonBits = ocm::protocol::Bits<std::uint8_t, 8>;
   using RefusedBits = ocm::protocol::Bits<std::uint16_t, 16>;
   using NotSampledBits = ocm::protocol::Bits<std::uint16_t, 32>;
+  using LineLostBits = ocm::protocol::Bits<std::uint16_t, 48>;
 
   [[nodiscard]] constexpr ocm::can::Payload encode(std::size_t /*frame*/ = 0) const noexcept {
     ocm::can::Payload data{};
@@ -1188,6 +1198,7 @@ struct PowerManagementRefusal {
     ReasonBits::put(data, static_cast<std::uint8_t>(reason));
     RefusedBits::put(data, refused);
     NotSampledBits::put(data, not_sampled);
+    LineLostBits::put(data, line_lost);
     return data;
   }
   [[nodiscard]] static constexpr PowerManagementRefusal decode(const ocm::can::Payload& data) noexcept {
@@ -1196,6 +1207,7 @@ struct PowerManagementRefusal {
     value.reason = static_cast<Reason>(ReasonBits::get(data));
     value.refused = RefusedBits::get(data);
     value.not_sampled = NotSampledBits::get(data);
+    value.line_lost = LineLostBits::get(data);
     return value;
   }
   [[nodiscard]] static constexpr PowerManagementRefusal decode(
@@ -1362,7 +1374,7 @@ struct LightRingRefusal {
   static constexpr ocm::protocol::TopicId id{0x59};
   static constexpr std::uint8_t instances = 1;
   static constexpr std::array<ocm::protocol::FrameHead, 1> frames{
-      {{ocm::protocol::TopicId{0x59}, 6, {109, 109, 109, 109}}}};
+      {{ocm::protocol::TopicId{0x59}, 8, {130, 130, 129, 130}}}};
   static constexpr ocm::protocol::Kind kind = ocm::protocol::Kind::sensor;
   static constexpr ocm::protocol::Period period{1000, ocm::protocol::PeriodUnit::milliseconds};
   static constexpr ocm::base::Duration shortest_period = std::chrono::milliseconds{100};
@@ -1393,11 +1405,15 @@ struct LightRingRefusal {
   std::uint16_t refused = 0;
   /// releases at which a part had nothing to say; stays at its end; [0, 65535]
   std::uint16_t not_sampled = 0;
+  /// frames and characters of a host on the board's serial line that found no place; stays at its end; [0,
+  /// 65535]
+  std::uint16_t line_lost = 0;
 
   using TopicBits = ocm::protocol::Bits<std::uint8_t, 0>;
   using ReasonBits = ocm::protocol::Bits<std::uint8_t, 8>;
   using RefusedBits = ocm::protocol::Bits<std::uint16_t, 16>;
   using NotSampledBits = ocm::protocol::Bits<std::uint16_t, 32>;
+  using LineLostBits = ocm::protocol::Bits<std::uint16_t, 48>;
 
   [[nodiscard]] constexpr ocm::can::Payload encode(std::size_t /*frame*/ = 0) const noexcept {
     ocm::can::Payload data{};
@@ -1405,6 +1421,7 @@ struct LightRingRefusal {
     ReasonBits::put(data, static_cast<std::uint8_t>(reason));
     RefusedBits::put(data, refused);
     NotSampledBits::put(data, not_sampled);
+    LineLostBits::put(data, line_lost);
     return data;
   }
   [[nodiscard]] static constexpr LightRingRefusal decode(const ocm::can::Payload& data) noexcept {
@@ -1413,6 +1430,7 @@ struct LightRingRefusal {
     value.reason = static_cast<Reason>(ReasonBits::get(data));
     value.refused = RefusedBits::get(data);
     value.not_sampled = NotSampledBits::get(data);
+    value.line_lost = LineLostBits::get(data);
     return value;
   }
   [[nodiscard]] static constexpr LightRingRefusal decode(
@@ -2153,14 +2171,15 @@ inline constexpr std::array<protocol::NamedValue, 12> reason_names{{{0, "nothing
                                                                     {10, "no_room"}, {13, "no_answer"},
                                                                     {14, "bus_fault"},
                                                                     {15, "not_schedulable"}}};
-inline constexpr std::array<protocol::Field, 4> fields{{
+inline constexpr std::array<protocol::Field, 5> fields{{
   {"topic", {0, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, {}, false},
   {"reason", {8, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, reason_names, false},
   {"refused", {16, 16, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 65'535, {}, false},
   {"not_sampled", {32, 16, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 65'535, {}, false},
+  {"line_lost", {48, 16, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 65'535, {}, false},
 }};
 inline constexpr std::array<protocol::FrameLayout, 1> frames{{
-  {"", protocol::TopicId{0x1D}, 6, fields, {110, 109, 109, 109}},
+  {"", protocol::TopicId{0x1D}, 8, fields, {131, 130, 130, 130}},
 }};
 inline constexpr std::string_view source =
   "decided: status ids at the end of each board's block of 30; reasons as ocm::base::Error numbers them";
@@ -2209,14 +2228,15 @@ inline constexpr std::array<protocol::NamedValue, 12> reason_names{{{0, "nothing
                                                                     {10, "no_room"}, {13, "no_answer"},
                                                                     {14, "bus_fault"},
                                                                     {15, "not_schedulable"}}};
-inline constexpr std::array<protocol::Field, 4> fields{{
+inline constexpr std::array<protocol::Field, 5> fields{{
   {"topic", {0, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, {}, false},
   {"reason", {8, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, reason_names, false},
   {"refused", {16, 16, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 65'535, {}, false},
   {"not_sampled", {32, 16, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 65'535, {}, false},
+  {"line_lost", {48, 16, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 65'535, {}, false},
 }};
 inline constexpr std::array<protocol::FrameLayout, 1> frames{{
-  {"", protocol::TopicId{0x3B}, 6, fields, {109, 109, 109, 109}},
+  {"", protocol::TopicId{0x3B}, 8, fields, {130, 130, 130, 130}},
 }};
 inline constexpr std::string_view source =
   "decided, as di_wheel_drive_refusal";
@@ -2265,14 +2285,15 @@ inline constexpr std::array<protocol::NamedValue, 12> reason_names{{{0, "nothing
                                                                     {10, "no_room"}, {13, "no_answer"},
                                                                     {14, "bus_fault"},
                                                                     {15, "not_schedulable"}}};
-inline constexpr std::array<protocol::Field, 4> fields{{
+inline constexpr std::array<protocol::Field, 5> fields{{
   {"topic", {0, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, {}, false},
   {"reason", {8, 8, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 255, reason_names, false},
   {"refused", {16, 16, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 65'535, {}, false},
   {"not_sampled", {32, 16, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 65'535, {}, false},
+  {"line_lost", {48, 16, protocol::ByteOrder::little}, false, {1, 0}, {}, "", 0, 65'535, {}, false},
 }};
 inline constexpr std::array<protocol::FrameLayout, 1> frames{{
-  {"", protocol::TopicId{0x59}, 6, fields, {109, 109, 109, 109}},
+  {"", protocol::TopicId{0x59}, 8, fields, {130, 130, 129, 130}},
 }};
 inline constexpr std::string_view source =
   "decided, as di_wheel_drive_refusal";

@@ -145,6 +145,11 @@ class Line(harness.Case):
         self.assertEqual([host.ask("F"), host.ask("F")][1], "F00")
         seen = len(host.said)
         host.wait(lambda: len(host.frames(0x408, seen)) >= 5, 10, "the board's samples, as before")
+        self.assertEqual(host.send(0x31D, b"\x02"), "z")
+        host.wait(lambda: host.frames(0x71D), 10, "what it says of refusals")
+        lost = struct.unpack("<BBHHH", host.frames(0x71D)[0][1])[4]
+        self.assertGreaterEqual(lost, 1000 - len(numbers))
+        self.assertLess(lost, 1000 - len(numbers) + 50)  # and some of the gyroscope's
 
     def numbers(self):
         """Of the other boards' frames."""

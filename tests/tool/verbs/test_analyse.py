@@ -714,7 +714,7 @@ b,15,20000000,20000000,20000000,20000000,0,136000,300000,true
 
     def test_a_refused_request_asks_for_nothing(self):
         frames = [(0, "208#01320000")] + [(1000 + i * 50000, "608#000000000000") for i in range(50)]
-        refusal = "71D#080F01000000"  # of the gyroscope, not_schedulable, the first
+        refusal = "71D#080F010000000000"  # of the gyroscope, not_schedulable, the first
         path = self.log(frames + [(500_000, "208#01010000"), (502_000, refusal)])
         out, _ = self.run_tool("analyse", "trace", path, "--json")
         found = json.loads(out)

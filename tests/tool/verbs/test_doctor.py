@@ -71,7 +71,7 @@ class Doctor(Case):
         self.run_tool("send", "201#01")
         out, _ = listener.communicate(timeout=60)
         self.assertEqual(json.loads(out)["fields"],
-                         {"topic": 1, "reason": 3, "refused": 1, "not_sampled": 0})
+                         {"topic": 1, "reason": 3, "refused": 1, "not_sampled": 0, "line_lost": 0})
 
     def test_what_is_published_goes_on(self):
         self.start_sim()

@@ -73,8 +73,9 @@ TEST_CASE("diagnosis: before anything came all numbers are zero") {
     CHECK_FALSE(board.heard);
     CHECK_FALSE(board.answered);
     CHECK_FALSE(board.load);
-    for (const std::int64_t number : {board.uptime_s, board.wire_hash, board.publishing, board.faults,
-                                      board.overload, board.bus_errors, board.refused, board.refused_topic})
+    for (const std::int64_t number :
+         {board.uptime_s, board.wire_hash, board.publishing, board.faults, board.overload, board.bus_errors,
+          board.refused, board.refused_topic, board.line_lost})
       CHECK(number == 0);
   }
   CHECK_FALSE(robot.diagnosis.battery().answered);
@@ -171,7 +172,7 @@ TEST_CASE("diagnosis: what ails a board, the worst first") {
   status.health.overload = 7;
   status.health.bus_errors = 40;
   robot.say(status);
-  robot.say(amiro::DiWheelDriveRefusal{0x08, Reason::bad_period, 2, 0});
+  robot.say(amiro::DiWheelDriveRefusal{0x08, Reason::bad_period, 2, 0, 3});
   CHECK(robot.findings() ==
         Lines{
             "warning di_wheel_drive: its CAN controller is in state passive",
@@ -179,6 +180,8 @@ TEST_CASE("diagnosis: what ails a board, the worst first") {
             "warning di_wheel_drive: 7 releases came late or not at all",
             "warning di_wheel_drive: its CPU is busy for 95 % of the time",
             "warning di_wheel_drive: it started again because of a watchdog",
+            "warning di_wheel_drive: 3 times so far a frame or a character of a host on its serial line was "
+            "lost",
             "note di_wheel_drive: 40 errors on the bus or frames given up so far",
             "note di_wheel_drive: 2 requests refused so far, the last for gyroscope: bad_period",
         });

@@ -14,16 +14,17 @@ TEST_CASE("a bad request is refused, counted by cause, and changes nothing") {
     std::uint32_t protocol::Counters::*counter;
     const char* answer;  // topic, reason, one so far
   };
-  const Row rows[] = {{"208#03", &protocol::Counters::bad_mode, "71D#080401000000"},
-                      {"208#FF", &protocol::Counters::bad_mode, "71D#080401000000"},
-                      {"208#", &protocol::Counters::bad_length, "71D#080301000000"},
-                      {"208#0000", &protocol::Counters::bad_length, "71D#080301000000"},
-                      {"208#01F401", &protocol::Counters::bad_length, "71D#080301000000"},
-                      {"208#01F4010000", &protocol::Counters::bad_length, "71D#080301000000"},
-                      {"208#01F40103", &protocol::Counters::bad_unit, "71D#080501000000"},
-                      {"208#01000000", &protocol::Counters::bad_period, "71D#080601000000"},
-                      {"201#00", &protocol::Counters::bad_length, "71D#010301000000"},
-                      {"209#02", &protocol::Counters::not_served, "71D#090801000000"}};  // not served here
+  const Row rows[] = {
+      {"208#03", &protocol::Counters::bad_mode, "71D#0804010000000000"},
+      {"208#FF", &protocol::Counters::bad_mode, "71D#0804010000000000"},
+      {"208#", &protocol::Counters::bad_length, "71D#0803010000000000"},
+      {"208#0000", &protocol::Counters::bad_length, "71D#0803010000000000"},
+      {"208#01F401", &protocol::Counters::bad_length, "71D#0803010000000000"},
+      {"208#01F4010000", &protocol::Counters::bad_length, "71D#0803010000000000"},
+      {"208#01F40103", &protocol::Counters::bad_unit, "71D#0805010000000000"},
+      {"208#01000000", &protocol::Counters::bad_period, "71D#0806010000000000"},
+      {"201#00", &protocol::Counters::bad_length, "71D#0103010000000000"},
+      {"209#02", &protocol::Counters::not_served, "71D#0908010000000000"}};  // not served here
   for (const auto& row : rows) {
     CAPTURE(row.text);
     Board board;

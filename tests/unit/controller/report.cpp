@@ -43,6 +43,18 @@ TEST_CASE("status: what only the board knows") {
   CHECK(status.health.bus_errors == 65'535);  // stays at its end
 }
 
+TEST_CASE("refusal: what a host on the board's serial line has lost is told with it") {
+  Board board;
+  std::uint32_t lost = 0x1234;
+  board.controller.report([&lost] { return controller::Health{.line_lost = lost}; });
+  board.receive("31D#02", 1s);
+  CHECK(texts(board.bus) == std::vector<std::string>{"71D#0000000000003412"});
+  board.bus.frames.clear();
+  lost = 70'000;
+  board.receive("31D#02", 2s);
+  CHECK(texts(board.bus) == std::vector<std::string>{"71D#000000000000FFFF"});  // stays at its end
+}
+
 TEST_CASE("status: bits by the order of the board's sensors") {
   // odometry, floor_proximity, magnetometer, gyroscope, accelerometer, status, refusal
   Board board;
@@ -120,14 +132,14 @@ TEST_CASE("refusal: several in a row make one frame, with the last and the numbe
   board.bus.room = 10;
   board.controller.poll(at(3ms));
   // The first was on its way already.
-  CHECK(texts(board.bus) == std::vector<std::string>{"71D#080401000000", "71D#050303000000"});
+  CHECK(texts(board.bus) == std::vector<std::string>{"71D#0804010000000000", "71D#050303000000"});
 }
 
 TEST_CASE("refusal: what turns out to be impossible later") {
   Board board;
   board.controller.refuse(amiro::FloorCalibration::id, base::Error::no_answer);
   board.controller.poll(at(0s));
-  CHECK(texts(board.bus) == std::vector<std::string>{"71D#0A0D01000000"});
+  CHECK(texts(board.bus) == std::vector<std::string>{"71D#0A0D010000000000"});
   CHECK(board.controller.counters().failed == 1);
 }
 
@@ -137,7 +149,7 @@ TEST_CASE("refusal: who publishes it is not cut off by one") {
   board.receive("208#03", 100ms);
   CHECK(board.controller.next_event() == at(1s));
   board.controller.poll(at(1s));
-  CHECK(texts(board.bus) == std::vector<std::string>{"71D#000000000000", "71D#080401000000"});
+  CHECK(texts(board.bus) == std::vector<std::string>{"71D#0000000000000000", "71D#080401000000"});
 }
 
 TEST_CASE("a number beyond its field stays at its end") {
