@@ -43,7 +43,7 @@ TEST_CASE("status: what only the board knows") {
   CHECK(status.health.bus_errors == 65'535);  // stays at its end
 }
 
-TEST_CASE("refusal: what a host on the board's serial line has lost is told with it") {
+TEST_CASE("refusal: the board counts what a host on its serial line has lost") {
   Board board;
   std::uint32_t lost = 0x1234;
   board.controller.report([&lost] { return controller::Health{.line_lost = lost}; });
