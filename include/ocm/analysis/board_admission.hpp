@@ -10,12 +10,13 @@
 ///     sends = B + F_s + sum over streams k, no less urgent, of ceil((sends + reads_k + tau) / T_k) F_k
 ///     reads + sends <= min(D_s, T_s)
 ///
-/// C: processor and waiting for the part; of more urgent ones without what they wait for less urgent ones. F:
-/// all frames of a sample, at their exact lengths and priority. B: one frame of any node, already on its way.
-/// The first is the response time on a preemptive processor, the second the sufficient one on CAN [Davis et
-/// al. 2007, equation 16], with a sample's frames as one. Streams of one level delay each other whatever
-/// their order. A board does not hear what others send, so `Costs` says which share of the bus is its own;
-/// who hears all is the operator's tool (docs/admission.md).
+/// C: processor and waiting for the part; of more urgent ones without W, what they wait for less urgent ones,
+/// and as if they came up to S later, as in task_response.hpp. F: all frames of a sample, at their exact
+/// lengths and priority. B: one frame of any node, already on its way. The first is the response time on a
+/// preemptive processor, the second the sufficient one on CAN [Davis et al. 2007, equation 16], with a
+/// sample's frames as one. Streams of one level delay each other whatever their order. A board does not hear
+/// what others send, so `Costs` says which share of the bus is its own; who hears all is the operator's tool
+/// (docs/admission.md).
 ///
 /// Memory: 8 bytes a sensor. Time: sensors^2 steps an iteration and at most `most_iterations` of each sum, no
 /// division wider than 32 bits; what that is on a Cortex-M3 is in docs/admission.md. Who would take longer is
@@ -127,6 +128,7 @@ class BoardLoad {
  public:
   static constexpr std::uint32_t late = std::numeric_limits<std::uint32_t>::max();
   static constexpr int most_iterations = 16;
+  static constexpr std::size_t most_own = 8;
 
   struct Facts {
     std::array<SensorCost, N> sensors{};
@@ -146,12 +148,9 @@ class BoardLoad {
   /// Every stream meets its deadline.
   [[nodiscard]] static constexpr bool fits(const Facts& facts, const Streams& streams) noexcept {
     if (!within_share(facts, streams)) return false;
-    std::array<std::uint32_t, N> reads{};
-    for (std::size_t s = 0; s < N; ++s) {
-      if (streams[s].period_us == 0) continue;
-      reads[s] = read_bound(facts, streams, s);
-      if (reads[s] == late) return false;
-    }
+    Bounds bounds;
+    if (!read_bounds(facts, streams, bounds)) return false;
+    const auto& reads = bounds.reads;
     for (std::size_t s = 0; s < N; ++s) {
       if (streams[s].period_us == 0) continue;
       // Once more for the jitter that reading leaves: the deadline is for both.
@@ -199,26 +198,58 @@ class BoardLoad {
     return std::uint64_t{(window - 1) / period + 1} * cost;  // window: at least 1
   }
 
-  static constexpr std::uint32_t read_bound(const Facts& facts, const Streams& streams,
-                                            std::size_t s) noexcept {
-    const std::uint64_t base = std::uint64_t{facts.blocking_us} + facts.sensors[s].sample_us;
+  /// What can come before a job, and from when on.
+  struct Bounds {
+    std::array<std::uint32_t, N> reads{};       ///< of the streams, from their release to the end of reading
+    std::array<std::uint32_t, most_own> own{};  ///< of the board's own tasks that wait for less urgent ones
+  };
+
+  /// Of a job that costs so much at this level; `stream` and `own` are not counted, being the job itself.
+  static constexpr std::uint32_t read_bound(const Facts& facts, const Streams& streams, const Bounds& bounds,
+                                            std::uint32_t cost_us, scheduling::Level level, std::uint32_t due,
+                                            std::size_t stream, std::size_t own) noexcept {
+    const std::uint64_t base = std::uint64_t{facts.blocking_us} + cost_us;
     if (base == 0) return 0;
-    // One instance at a time: within the period, also where the deadline is later.
-    return solve(
-        base, std::min(deadline(facts, streams, s), streams[s].period_us), [&](std::uint32_t window) {
-          std::uint64_t sum = 0;
-          for (std::size_t k = 0; k < facts.own_count; ++k)
-            if (facts.own[k].level <= streams[s].level)
-              sum += demand_of(
-                  window, facts.own[k].period_us,
-                  facts.own[k].cost_us - (facts.own[k].level < streams[s].level ? facts.own[k].waits_us : 0));
-          for (std::size_t k = 0; k < N; ++k)
-            if (k != s && streams[k].period_us != 0 && streams[k].level <= streams[s].level)
-              sum += demand_of(window, streams[k].period_us,
-                               facts.sensors[k].sample_us -
-                                   (streams[k].level < streams[s].level ? facts.sensors[k].waits_us : 0));
-          return sum;
-        });
+    return solve(base, due, [&](std::uint32_t window) {
+      // One that is more urgent and waits for less urgent ones suspends itself: what it takes, C - W, comes
+      // up to R - (C - W) later than its release.
+      const auto taken = [&](scheduling::Level of, std::uint32_t period, std::uint32_t cost,
+                             std::uint32_t waits, std::uint32_t bound) {
+        if (of == level || waits == 0) return demand_of(window, period, cost);
+        return demand_of(window + (bound - (cost - waits)), period, cost - waits);
+      };
+      std::uint64_t sum = 0;
+      for (std::size_t k = 0; k < facts.own_count; ++k)
+        if (k != own && facts.own[k].level <= level)
+          sum += taken(facts.own[k].level, facts.own[k].period_us, facts.own[k].cost_us,
+                       facts.own[k].waits_us, bounds.own[k]);
+      for (std::size_t k = 0; k < N; ++k)
+        if (k != stream && streams[k].period_us != 0 && streams[k].level <= level)
+          sum += taken(streams[k].level, streams[k].period_us, facts.sensors[k].sample_us,
+                       facts.sensors[k].waits_us, bounds.reads[k]);
+      return sum;
+    });
+  }
+  /// From the most urgent level on, as each needs those above. False: one is late.
+  static constexpr bool read_bounds(const Facts& facts, const Streams& streams, Bounds& bounds) noexcept {
+    for (std::size_t each = 0; each < scheduling::level_count; ++each) {
+      const auto level = static_cast<scheduling::Level>(each);
+      for (std::size_t k = 0; k < facts.own_count; ++k) {
+        if (facts.own[k].level != level || facts.own[k].waits_us == 0) continue;
+        bounds.own[k] =
+            read_bound(facts, streams, bounds, facts.own[k].cost_us, level, facts.own[k].period_us, N, k);
+        if (bounds.own[k] == late) return false;
+      }
+      for (std::size_t s = 0; s < N; ++s) {
+        if (streams[s].level != level || streams[s].period_us == 0) continue;
+        // One instance at a time: within the period, also where the deadline is later.
+        bounds.reads[s] =
+            read_bound(facts, streams, bounds, facts.sensors[s].sample_us, level,
+                       std::min(deadline(facts, streams, s), streams[s].period_us), s, most_own);
+        if (bounds.reads[s] == late) return false;
+      }
+    }
+    return true;
   }
   static constexpr std::uint32_t send_bound(const Facts& facts, const Streams& streams,
                                             const std::array<std::uint32_t, N>& reads, std::size_t s,
@@ -257,6 +288,7 @@ class BoardAdmission {
   static constexpr typename Load::Facts facts = [] {
     typename Load::Facts f;
     f.sensors = detail::SensorCosts<typename Board::sensors, Costs>::of(bit_rate);
+    static_assert(Costs::own.size() <= Load::most_own, "raise most_own: a board has more tasks of its own");
     f.own = Costs::own.data();
     f.own_count = Costs::own.size();
     f.blocking_us = Costs::blocking_us;

@@ -5,6 +5,10 @@
 ///     w(q) = (q + 1) C + B + sum over k at the same level or above of ceil((w(q) + J_k) / T_k) C_k
 ///     R    = max over q of w(q) + J - q T, until w(q) + J <= (q + 1) T
 ///
+/// Of a more urgent task that waits, which suspends itself, C_k - W_k counts, and J_k is J_k + S_k
+/// [Bletsas, Audsley, Huang, Chen, Nelissen 2018, "Errata for three papers (2004-05) on fixed-priority
+/// scheduling with self-suspensions": jitter R - C is safe].
+///
 ///     static_assert(all_schedulable(in_order(std::array{Task{3, 7}, Task{3, 12}, Task{5, 20}})));
 ///
 /// Bounds are exact where all tasks have a level of their own and can be released together, and safe
@@ -16,6 +20,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "ocm/analysis/checked.hpp"
@@ -52,11 +57,26 @@ class ProcessorDemand {
   [[nodiscard]] constexpr Checked jitter(std::size_t k) const noexcept {
     return Checked{tasks_[k].jitter} + (processor_.released_by_tick ? processor_.tick_period : 0);
   }
-  /// What one release of task k, which goes before the task, takes from it: while it waits for what less
-  /// urgent ones hold, those go on.
-  [[nodiscard]] constexpr Checked taken(std::size_t k) const noexcept {
-    if (tasks_[k].waits == 0 || tasks_[k].level == tasks_[index_].level) return cost(k);
+  /// Whether task k is more urgent, and lets the task go on while it waits for less urgent ones.
+  [[nodiscard]] constexpr bool suspends(std::size_t k) const noexcept {
+    return tasks_[k].waits != 0 && tasks_[k].level < tasks_[index_].level;
+  }
+  /// C - W, with its context switches.
+  [[nodiscard]] constexpr Checked work(std::size_t k) const noexcept {
     return scaled(tasks_[k].cost - tasks_[k].waits) + Checked{processor_.context_switch} * tasks_[k].switches;
+  }
+  /// What one release of task k, which goes before the task, takes from it.
+  [[nodiscard]] constexpr Checked taken(std::size_t k) const noexcept {
+    return suspends(k) ? work(k) : cost(k);
+  }
+  /// How much later than planned what a release of task k takes may come: J, and S where it suspends. A
+  /// processor that is slower than the one for which S was found has another one.
+  [[nodiscard]] constexpr Checked lateness(std::size_t k) const noexcept {
+    if (!suspends(k)) return jitter(k);
+    if (tasks_[k].deferral != Task::unknown_deferral && processor_.scale <= 1'000'000)
+      return jitter(k) + tasks_[k].deferral;
+    const Checked most = Checked{tasks_[k].due()} - work(k);
+    return !most.ok() || most.value() > 0 ? jitter(k) + most : jitter(k);
   }
   /// What one release of task k takes from the task: the interrupt; all of it if it goes before.
   [[nodiscard]] constexpr Checked each(std::size_t k) const noexcept {
@@ -66,7 +86,7 @@ class ProcessorDemand {
   /// What task k takes of `window` ticks.
   [[nodiscard]] constexpr Checked share(std::size_t k, Checked window) const noexcept {
     if (processor_.interrupt == 0 && (k == index_ || tasks_[k].level > tasks_[index_].level)) return 0;
-    return ceil_div(window + jitter(k), tasks_[k].period) * each(k);
+    return ceil_div(window + lateness(k), tasks_[k].period) * each(k);
   }
   [[nodiscard]] constexpr Checked ticks(Checked window) const noexcept {
     return processor_.tick_period == 0 ? Checked{0}
@@ -78,7 +98,7 @@ class ProcessorDemand {
       const std::uint32_t level = tasks_[index_].level;
       for (std::size_t k = 0; k < tasks_.size(); ++k)
         if (tasks_[k].level <= level && k != index_)
-          sum += ceil_div(window + jitter(k), tasks_[k].period) * taken(k);
+          sum += ceil_div(window + lateness(k), tasks_[k].period) * taken(k);
       return sum;
     }
     for (std::size_t k = 0; k < tasks_.size(); ++k) sum += share(k, window);
@@ -130,7 +150,7 @@ class ProcessorDemand {
   [[nodiscard]] constexpr bool punctual() const noexcept {
     if (!(blocking() == 0)) return false;
     for (std::size_t k = 0; k < tasks_.size(); ++k)
-      if (!(jitter(k) == 0) && !(own_or_each(k) == 0)) return false;
+      if (!(lateness(k) == 0) && !(own_or_each(k) == 0)) return false;
     return true;
   }
 
@@ -245,6 +265,35 @@ constexpr Explained response_time(std::span<const Task> tasks, std::size_t index
                                                 std::span<std::int64_t> instances = {},
                                                 std::span<std::int64_t> shares = {}) noexcept {
   return detail::response_time(tasks, index, processor, limits, instances, shares, false);
+}
+
+/// S of all tasks that wait: of those that meet their deadlines R - (C - W). To be called again when anything
+/// has changed. O(tasks^2) and a response time for each.
+constexpr void find_deferrals(std::span<Task> tasks, const Processor& processor = {},
+                              Limits limits = {}) noexcept {
+  for (Task& task : tasks) task.deferral = Task::unknown_deferral;
+  // From the most urgent level on: S of one depends on those above.
+  std::uint64_t from = 0;
+  for (;;) {
+    std::uint64_t level = std::numeric_limits<std::uint64_t>::max();
+    for (const Task& task : tasks)
+      if (task.waits > 0 && task.level >= from) level = std::min<std::uint64_t>(level, task.level);
+    if (level == std::numeric_limits<std::uint64_t>::max()) return;
+    for (std::size_t k = 0; k < tasks.size(); ++k) {
+      if (tasks[k].waits == 0 || tasks[k].level != level) continue;
+      const Explained found = response_time(tasks, k, processor, limits);
+      const Checked work = detail::ProcessorDemand{tasks, k, processor}.work(k);
+      if (found.reason == Reason::schedulable && work.ok())
+        tasks[k].deferral = std::max<std::int64_t>(0, found.response - work.value());
+    }
+    from = level + 1;
+  }
+}
+template <std::size_t N>
+[[nodiscard]] constexpr std::array<Task, N> with_deferrals(std::array<Task, N> tasks,
+                                                           const Processor& processor = {}) noexcept {
+  find_deferrals(tasks, processor);
+  return tasks;
 }
 
 /// All of them; `results` has room for as many as it has. O(tasks^2) a step.

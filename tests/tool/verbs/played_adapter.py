@@ -18,7 +18,7 @@ DI_WHEEL_DRIVE, POWER_MANAGEMENT, LIGHT_RING = 0x1D, 0x3B, 0x59
 
 def refusal(number, reason, board=DI_WHEEL_DRIVE, count=1):
     """What the board says, as the adapter passes it on."""
-    return f"t7{board:02X}6{number:02X}{reason:02X}{count:02X}00000000" + "10\r"
+    return f"t7{board:02X}8{number:02X}{reason:02X}{count:02X}000000000000" + "10\r"
 
 
 class Adapter:

@@ -132,7 +132,7 @@ TEST_CASE("refusal: several in a row make one frame, with the last and the numbe
   board.bus.room = 10;
   board.controller.poll(at(3ms));
   // The first was on its way already.
-  CHECK(texts(board.bus) == std::vector<std::string>{"71D#0804010000000000", "71D#050303000000"});
+  CHECK(texts(board.bus) == std::vector<std::string>{"71D#0804010000000000", "71D#0503030000000000"});
 }
 
 TEST_CASE("refusal: what turns out to be impossible later") {
@@ -149,7 +149,7 @@ TEST_CASE("refusal: who publishes it is not cut off by one") {
   board.receive("208#03", 100ms);
   CHECK(board.controller.next_event() == at(1s));
   board.controller.poll(at(1s));
-  CHECK(texts(board.bus) == std::vector<std::string>{"71D#0000000000000000", "71D#080401000000"});
+  CHECK(texts(board.bus) == std::vector<std::string>{"71D#0000000000000000", "71D#0804010000000000"});
 }
 
 TEST_CASE("a number beyond its field stays at its end") {

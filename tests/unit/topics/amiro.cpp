@@ -188,8 +188,8 @@ TEST_CASE("status: two frames, the same of every board") {
 
 TEST_CASE("refusal: which topic, why, and how often") {
   using Reason = DiWheelDriveRefusal::Reason;
-  CHECK(ocm::protocol::sample_frame(DiWheelDriveRefusal{0x08, Reason::bad_mode, 3, 0}, Priority::low) ==
-        Frame{0x71D, 6, {0x08, 4, 3, 0, 0, 0}});
+  CHECK(ocm::protocol::sample_frame(DiWheelDriveRefusal{0x08, Reason::bad_mode, 3, 0, 5}, Priority::low) ==
+        Frame{0x71D, 8, {0x08, 4, 3, 0, 0, 0, 5, 0}});
   // The reasons are the numbers of the library's errors.
   const auto same = [](Reason reason, ocm::base::Error error) {
     return static_cast<std::uint8_t>(reason) == static_cast<std::uint8_t>(error);
