@@ -14,12 +14,12 @@ def until(holds, what, limit=30):
 
 
 def asleep(pid):
-    """Whether all threads of a process wait. One that has something to do, and gets no processor, does not."""
+    """Whether all threads of a process wait, or are stopped. One that has something to do, and gets no processor, does not."""
     tasks = f"/proc/{pid}/task"
     try:
         for task in os.listdir(tasks):
             with open(f"{tasks}/{task}/stat", encoding="utf-8") as file:
-                if file.read().rpartition(")")[2].split()[0] not in "SZ":
+                if file.read().rpartition(")")[2].split()[0] not in "SZT":
                     return False
     except FileNotFoundError:  # it has just ended, and its threads with it
         pass

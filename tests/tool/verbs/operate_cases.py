@@ -82,6 +82,7 @@ class Operating(Operate):
         return listener
 
     def frames(self, listener):
+        self.settle()  # what was sent last is on its way to the listener
         out, _ = self.interrupt(listener)
         found = []
         for line in out.splitlines():
