@@ -116,10 +116,14 @@ std::string Answers::why() const {
     }
     const auto& monitor = tables.monitors[transition.monitor];
     std::vector<std::string> conditions;
-    for (const auto& term : monitor.terms)
-      if (term.op == reflective::Op::condition)
-        conditions.push_back(fmt::format("{}: {}", tables.conditions[term.condition].name,
-                                         name_of(supervisor.condition(term.condition))));
+    for (std::size_t t = 0; t < monitor.terms.size(); ++t)
+      if (const auto& term = monitor.terms[t]; term.op == reflective::Op::condition) {
+        const Truth is = supervisor.condition(term.condition);
+        const bool negated = reflective::negated(monitor.terms, t);
+        conditions.push_back(fmt::format("{}{}: {}", negated ? "not " : "",
+                                         tables.conditions[term.condition].name,
+                                         name_of(negated ? !is : is)));
+      }
     text += fmt::format("  to {} by {}{}, now {} ({})\n", to, monitor.name,
                         monitor.lasting.count() > 0 ? " for " + words::to_text(monitor.lasting) : "",
                         name_of(supervisor.monitor(transition.monitor)), joined(conditions));

@@ -16,11 +16,16 @@ std::string percent(std::int64_t per_mille) {
                                           : fmt::format("{}.{} %", per_mille / 10, per_mille % 10);
 }
 
-/// The condition that a bound is of; empty: a request.
-std::string watched(const Study& study, const reflective::Latency& latency) {
+/// The condition that a bound of a transition is of, as it stands in the monitor; empty: a request.
+std::string watched(const Study& study, std::uint16_t transition, const reflective::Latency& latency) {
   const auto& tables = study.file->tables;
-  const std::uint16_t c = latency.condition;
-  return c == none ? std::string{} : std::string{tables.conditions[c].name};
+  if (latency.condition == none) return {};
+  const std::string name{tables.conditions[latency.condition].name};
+  const auto terms = tables.monitors[tables.transitions[transition].monitor].terms;
+  for (std::size_t t = 0; t < terms.size(); ++t)
+    if (terms[t].op == reflective::Op::condition && terms[t].condition == latency.condition)
+      return reflective::negated(terms, t) ? "not " + name : name;
+  return name;
 }
 
 Json nanoseconds(std::int64_t ns) {
@@ -156,7 +161,8 @@ std::string to_table(const Study& study) {
     }
     const std::string_view end = reaction.commands ? "" : " (to the decision: nothing is commanded on entry)";
     const auto bound = [&](const reflective::Latency& latency) {
-      if (const auto what = watched(study, latency); !what.empty()) text += fmt::format("    {}\n", what);
+      if (const auto what = watched(study, reaction.transition, latency); !what.empty())
+        text += fmt::format("    {}\n", what);
       text += fmt::format("      {}{}\n", sum_of(latency), end);
     };
     for (const reflective::Latency& latency : reaction.conditions) bound(latency);
@@ -233,7 +239,7 @@ std::string to_json(const Study& study) {
       Json parts = Json::object();
       for (const auto& part : latency.parts()) parts[part.name] = part.time;
       of["parts_ns"] = parts;
-      if (latency.condition != none) of["condition"] = watched(study, latency);
+      if (latency.condition != none) of["condition"] = watched(study, reaction.transition, latency);
     };
     with_parts(one, reaction.latency);
     Json conditions = Json::array();

@@ -99,7 +99,7 @@ struct Decoding {
 /// Frames that are of topics of this robot.
 std::uint64_t understood(const Display& display) {
   const auto& seen = display.counters();
-  return seen.frames - seen.unknown - seen.remote - seen.wrong_dlc - seen.errors - seen.transport;
+  return seen.frames - seen.unknown - seen.remote - seen.fd - seen.wrong_dlc - seen.errors - seen.transport;
 }
 
 void decode(Session& session, const DecodeOptions& options, int& exit_code) {
@@ -116,7 +116,8 @@ void decode(Session& session, const DecodeOptions& options, int& exit_code) {
   display.summarise(0);
   if (decoding.frames == 0)
     remark("no frame to decode");
-  else if (display.shown() == 0 && !decoding.over())
+  else if (display.shown() == 0 && (display.counters().frames == 0 || understood(display) != 0) &&
+           !decoding.over())
     remark(fmt::format("none of {} frames matches", decoding.frames));
   display.tell_contradictions(Seen::in_log);
   const bool not_all = decoding.unreadable || display.any_fault();

@@ -187,9 +187,9 @@ void info(Session& session, const std::string& word) {
   for (std::size_t i = 0; i < topic->frames.size(); ++i) {
     const protocol::FrameRef frame{topic, static_cast<std::uint8_t>(i)};
     const auto& layout = frame.layout();
-    print_line("  frame      {}{}id 0x{:02X}, on the bus {:03X} at medium priority, DLC {}\n", layout.name,
+    print_line("  frame      {}{}id 0x{:02X}, on the bus {:03X} at {} priority, DLC {}\n", layout.name,
                layout.name.empty() ? "" : ": ", layout.id.value,
-               protocol::identifier_of(frame, protocol::default_priority), layout.length);
+               protocol::identifier_of(frame, topic->priority), name(topic->priority), layout.length);
     for (const auto& field : layout.values()) print_field(layout, field);
   }
   print_line("  source     {}\n", topic->source);

@@ -221,11 +221,18 @@ Loaded parse_dbc(std::string_view text, std::string_view file_name) {
   return loaded;
 }
 
-/// As some editors save text: with a byte order mark, or a NUL beside the first character.
-bool is_utf16(std::string_view text) noexcept {
-  const std::string_view start = text.substr(0, 2);
-  return start == "\xFF\xFE" || start == "\xFE\xFF" ||
-         (start.size() == 2 && (start[0] == '\0') != (start[1] == '\0'));
+/// Two or four bytes a character, as some editors save text: by the byte order mark, or by NULs beside the
+/// first character. Empty: it is neither.
+std::string_view wide_encoding(std::string_view text) noexcept {
+  using namespace std::string_view_literals;
+  const auto begins = [text](std::string_view mark) { return text.substr(0, mark.size()) == mark; };
+  const auto is_nul = [text](std::size_t at) { return at < text.size() && text[at] == '\0'; };
+  const bool is_wider = is_nul(2) && is_nul(3);
+  if (begins("\xFF\xFE"sv) || (text.size() > 1 && !is_nul(0) && is_nul(1)))
+    return is_wider ? "UTF-32LE" : "UTF-16LE";
+  if (begins("\xFE\xFF"sv) || (is_nul(0) && text.size() > 1 && !is_nul(1))) return "UTF-16BE";
+  if (is_nul(0) && is_nul(1) && text.size() > 3) return "UTF-32BE";
+  return {};
 }
 
 }  // namespace
@@ -238,9 +245,10 @@ Loaded parse(std::string_view text, std::string_view file_name) {
                                "a spec has at most " + std::to_string(max_spec_bytes)});
     return loaded;
   }
-  if (is_utf16(text)) {
-    loaded.problems.push_back({std::string{file_name}, "the file is UTF-16",
-                               "UTF-8, or code page 1252 for a DBC file: iconv -f UTF-16 -t UTF-8"});
+  if (const std::string encoding{wide_encoding(text)}; !encoding.empty()) {
+    loaded.problems.push_back({std::string{file_name}, "the file is " + encoding,
+                               "UTF-8, or code page 1252 for a DBC file: iconv -f " + encoding +
+                                   " -t UTF-8 -o NEW " + std::string{file_name}});
     return loaded;
   }
   if (is_dbc(text, file_name)) return parse_dbc(text, file_name);

@@ -384,14 +384,22 @@ TEST_CASE("messages: a DBC file is known by what it begins with, and JSON whatev
   CHECK(parse("\n VERSION \"\"\nBO_ 1 A: 8 X\n", {}, "car").messages.size() == 1);
 }
 
-TEST_CASE("messages: a file that is UTF-16 is named as that") {
+TEST_CASE("messages: a file of two or four bytes a character is named as that") {
   using namespace std::string_literals;
-  for (const std::string& text : {"\xFF\xFE"s + "V\0E\0"s, "\xFE\xFF"s + "\0V\0E"s, "V\0E\0"s, "\0{\0}"s}) {
+  struct Row {
+    std::string text;
+    std::string encoding;
+  };
+  const Row rows[] = {{"\xFF\xFE"s + "V\0E\0"s, "UTF-16LE"}, {"V\0E\0"s, "UTF-16LE"},
+                      {"\xFE\xFF"s + "\0V\0E"s, "UTF-16BE"}, {"\0{\0}"s, "UTF-16BE"},
+                      {"\xFF\xFE\0\0"s, "UTF-32LE"},         {"{\0\0\0"s, "UTF-32LE"},
+                      {"\0\0\xFE\xFF"s, "UTF-32BE"},         {"\0\0\0{"s, "UTF-32BE"}};
+  for (const auto& [text, encoding] : rows) {
     const spec::Loaded loaded = spec::parse(text, "car.dbc");
     CHECK(!loaded.spec);
     REQUIRE(loaded.problems.size() == 1);
     CHECK(loaded.problems[0].place == "car.dbc");
-    CHECK(loaded.problems[0].what == "the file is UTF-16");
+    CHECK(loaded.problems[0].what == "the file is " + encoding);
   }
 }
 

@@ -270,6 +270,12 @@ class Decode(Case):
         self.assertNotIn("contradict", err)
         _, err = self.run_tool("decode", "--topic", "ring", stdin=LOG, code=1)
         self.assertIn("none of 12 frames matches", err)
+        # A frame that means nothing is none that was not chosen, and none that was decoded.
+        car = ("--spec", os.path.join(SOURCE, "examples", "small_car.dbc"), "decode")
+        for form in ("--json", "--csv", "--pretty", "--raw"):
+            for frame in ("100#01", "101##1AABB", "7FF#01", "100#R"):
+                _, err = self.run_tool(*car, form, stdin=f"(1.0) can0 {frame}\n", code=1)
+                self.assertNotIn("matches", err)
 
     def test_what_candump_shows_on_a_terminal(self):
         """As pasted, with the prompt and all. [can-utils candump.c]"""

@@ -45,6 +45,12 @@ class Info(Case):
             file.write(text)
         return "--spec", path
 
+    def test_identifiers_are_those_of_its_own_priority(self):
+        out, _ = self.run_tool("info", "batteries")
+        self.assertIn("priority   low unless asked otherwise\n", out)
+        self.assertIn("id 0x2B, on the bus 72B at low priority, DLC 8\n", out)
+        self.assertIn("on the bus 608 at medium priority", self.run_tool("info", "gyro")[0])
+
     def test_what_is_derived(self):
         out, _ = self.run_tool("info", "ring")
         lines = [" ".join(line.split()) for line in out.splitlines()]
