@@ -41,6 +41,7 @@ class Checked(Operate):
         out, _ = self.run_tool("operate", GUARD, "--check")
         self.assertIn("operator guard: 3 configurations, 4 monitors, 8 transitions, at 500000 bit/s", out)
         self.assertRegex(out, r"ring\.sensor_4>3000\n +[0-9.]+ ms = 50 period \+ 1 jitter \+ 26.572 sampling \+ [0-9.]+ bus \+ 5 reading \+ ")
+        self.assertRegex(out, r"clear: stopped -> driving\n(.*\n)*    not bus state passive\n")
         self.assertIn("[Real, Crespo 2004", out)
         self.assertTrue(out.endswith("\nin time\n"))
 
