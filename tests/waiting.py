@@ -26,6 +26,17 @@ def asleep(pid):
     return True
 
 
+def starved(pid):
+    """For how many seconds the threads of a process could have worked so far, and had no processor. [Linux,
+    Documentation/scheduler/sched-stats: schedstat]"""
+    tasks = f"/proc/{pid}/task"
+    total = 0
+    for task in os.listdir(tasks):
+        with open(f"{tasks}/{task}/schedstat", encoding="utf-8") as file:
+            total += int(file.read().split()[1])
+    return total / 1e9
+
+
 def until_asleep(*pids, looks=5, limit=30):
     """Returns when all of them wait at the same time, look after look: each has read and handed on what there was.
     For processes on one bus: those that write to it are named, too. [man 5 proc: stat]"""
