@@ -59,8 +59,7 @@ std::vector<Study::QuickTest> quick_tests(const std::vector<Task>& tasks,
 }  // namespace
 
 Study study_tasks(const TaskSet& set, const analysis::Processor& processor) {
-  std::vector<Task> tasks = tasks_of(set);
-  analysis::find_deferrals(tasks, processor);
+  const std::vector<Task> tasks = tasks_of(set);
   Study study;
   study.kind = Study::Kind::tasks;
   for (std::size_t i = 0; i < tasks.size(); ++i) {

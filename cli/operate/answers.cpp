@@ -119,10 +119,8 @@ std::string Answers::why() const {
     for (std::size_t t = 0; t < monitor.terms.size(); ++t)
       if (const auto& term = monitor.terms[t]; term.op == reflective::Op::condition) {
         const Truth is = supervisor.condition(term.condition);
-        const bool negated = reflective::negated(monitor.terms, t);
-        conditions.push_back(fmt::format("{}{}: {}", negated ? "not " : "",
-                                         tables.conditions[term.condition].name,
-                                         name_of(negated ? !is : is)));
+        conditions.push_back(fmt::format("{}: {}", term_text(tables, monitor.terms, t),
+                                         name_of(reflective::negated(monitor.terms, t) ? !is : is)));
       }
     text += fmt::format("  to {} by {}{}, now {} ({})\n", to, monitor.name,
                         monitor.lasting.count() > 0 ? " for " + words::to_text(monitor.lasting) : "",

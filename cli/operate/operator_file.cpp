@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "ocm/reflective/check.hpp"
+#include "ocm/reflective/monitor.hpp"
 
 #include "cli/operate/configuration_reader.hpp"
 #include "cli/operate/mistakes.hpp"
@@ -186,6 +187,12 @@ Loaded load(const std::string& file, const protocol::Catalogue& catalogue, std::
   const auto text = spec::read_document(file, "an operator", "examples/guard.operator.json", loaded.problems,
                                         max_operator_bytes);
   return text ? parse(*text, file, catalogue, bit_rate) : std::move(loaded);
+}
+
+std::string term_text(const reflective::Operator& tables, std::span<const reflective::Term> terms,
+                      std::size_t index) {
+  const std::string_view negation = reflective::negated(terms, index) ? "not " : "";
+  return std::string{negation}.append(tables.conditions[terms[index].condition].name);
 }
 
 }  // namespace ocm::cli::operate

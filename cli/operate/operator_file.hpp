@@ -6,6 +6,7 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -80,6 +81,10 @@ struct Loaded {
                            const protocol::Catalogue& catalogue, std::uint32_t bit_rate);
 [[nodiscard]] Loaded load(const std::string& file, const protocol::Catalogue& catalogue,
                           std::uint32_t bit_rate);
+
+/// The condition of term `index` as it stands in its monitor: "ring>3000", "not ring>3000".
+[[nodiscard]] std::string term_text(const reflective::Operator& tables,
+                                    std::span<const reflective::Term> terms, std::size_t index);
 
 /// The JSON schema that is compiled in: what `operator.schema.json` of this release says.
 [[nodiscard]] std::string_view schema_text() noexcept;

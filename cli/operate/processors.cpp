@@ -82,7 +82,6 @@ class Processor {
   }
 
   void solve(std::vector<ProcessorBound>& into) {
-    analysis::find_deferrals(tasks_);
     for (std::size_t i = 0; i < streams_.size(); ++i) {
       streams_[i].time = analysis::response_time(tasks_, places_[i]);
       into.push_back(streams_[i]);

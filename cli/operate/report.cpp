@@ -20,12 +20,11 @@ std::string percent(std::int64_t per_mille) {
 std::string watched(const Study& study, std::uint16_t transition, const reflective::Latency& latency) {
   const auto& tables = study.file->tables;
   if (latency.condition == none) return {};
-  const std::string name{tables.conditions[latency.condition].name};
   const auto terms = tables.monitors[tables.transitions[transition].monitor].terms;
-  for (std::size_t t = 0; t < terms.size(); ++t)
-    if (terms[t].op == reflective::Op::condition && terms[t].condition == latency.condition)
-      return reflective::negated(terms, t) ? "not " + name : name;
-  return name;
+  const auto term = std::find_if(terms.begin(), terms.end(), [&](const reflective::Term& each) {
+    return each.op == reflective::Op::condition && each.condition == latency.condition;
+  });
+  return term_text(tables, terms, static_cast<std::size_t>(term - terms.begin()));
 }
 
 Json nanoseconds(std::int64_t ns) {

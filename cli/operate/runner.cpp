@@ -312,10 +312,8 @@ void Runner::tell_switch(const Action& action) {
     const auto terms = tables.monitors[transition.monitor].terms;
     for (std::size_t t = 0; t < terms.size(); ++t) {
       if (terms[t].op != reflective::Op::condition) continue;
-      const bool negated = reflective::negated(terms, t);
-      if (supervisor_.held(terms[t].condition) != reflective::truth(!negated)) continue;
-      const std::string name =
-          fmt::format("{}{}", negated ? "not " : "", tables.conditions[terms[t].condition].name);
+      if (supervisor_.held(terms[t].condition) != reflective::truth(!reflective::negated(terms, t))) continue;
+      const std::string name = term_text(tables, terms, t);
       because += fmt::format("{}{}", because.empty() ? "" : ", ", name);
       conditions.push_back(name);
       change.conditions.push_back(name);

@@ -57,7 +57,6 @@ constexpr Assignment optimal_levels(std::span<Item> items, Test test) noexcept {
 /// With each task's B as it is.
 constexpr Assignment optimal_levels(std::span<Task> tasks, const Processor& processor = {},
                                     Limits limits = {}) noexcept {
-  for (Task& task : tasks) task.deferral = Task::unknown_deferral;  // another level, another S
   return optimal_levels(tasks, [&](std::size_t i) { return verdict(tasks, i, processor, limits); });
 }
 
@@ -66,7 +65,6 @@ constexpr Assignment optimal_levels(std::span<Task> tasks, const Processor& proc
 constexpr Assignment optimal_levels(std::span<Task> tasks, std::span<const Section> sections,
                                     Protocol protocol, std::span<std::uint32_t> scratch,
                                     const Processor& processor = {}, Limits limits = {}) noexcept {
-  for (Task& task : tasks) task.deferral = Task::unknown_deferral;
   const auto with_sections = [&](std::size_t i) {
     if (set_blocking(tasks, sections, protocol, scratch) != Table::good) return Reason::bad_input;
     return verdict(tasks, i, processor, limits);

@@ -62,11 +62,9 @@ constexpr Edge edge_of(std::span<Task> tasks, std::size_t index, std::int64_t Ta
   const std::int64_t before = tasks[index].*field;
   const Edge edge = find_edge(good, bad, [&](std::int64_t value) {
     tasks[index].*field = value;
-    find_deferrals(tasks, processor, limits);
     return first_miss(tasks, processor, limits);
   });
   tasks[index].*field = before;
-  find_deferrals(tasks, processor, limits);
   return edge;
 }
 

@@ -28,7 +28,7 @@ struct TaskList {
   static constexpr std::size_t size = sizeof...(Tasks);
   template <std::size_t index>
   using item = typename detail::TypeAt<index, Tasks...>::type;
-  static constexpr std::array<Task, size> tasks = with_deferrals(std::array<Task, size>{Tasks::task...});
+  static constexpr std::array<Task, size> tasks{Tasks::task...};
   static constexpr std::array<Explained, size> results = response_times(tasks);
 
   /// Microseconds of the task of this name, rounded up; 0: there is none.

@@ -5,22 +5,22 @@
 ///     w(q) = (q + 1) C + B + sum over k at the same level or above of ceil((w(q) + J_k) / T_k) C_k
 ///     R    = max over q of w(q) + J - q T, until w(q) + J <= (q + 1) T
 ///
-/// Of a more urgent task that waits, which suspends itself, C_k - W_k counts, and J_k is J_k + S_k
-/// [Bletsas, Audsley, Huang, Chen, Nelissen 2018, "Errata for three papers (2004-05) on fixed-priority
-/// scheduling with self-suspensions": jitter R - C is safe].
+/// Of a more urgent task that waits, which suspends itself, C_k - W_k counts, and S_k = R_k - (C_k - W_k) in
+/// place of J_k: its work can come late, and that of its next job at once [Bletsas, Audsley, Huang, Chen,
+/// Nelissen 2018, "Errata for three papers (2004-05) on fixed-priority scheduling with self-suspensions":
+/// jitter R - C is safe].
 ///
 ///     static_assert(all_schedulable(in_order(std::array{Task{3, 7}, Task{3, 12}, Task{5, 20}})));
 ///
 /// Bounds are exact where all tasks have a level of their own and can be released together, and safe
-/// elsewhere. No heap, no recursion. Cost: O(tasks) a step of the iteration; Limits says how many, so that it
-/// always ends.
+/// elsewhere. No heap; recursion only where tasks wait, as deep as they have levels. Cost: O(tasks) a step of
+/// the iteration; Limits says how many, so that it always ends.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 
 #include "ocm/analysis/checked.hpp"
@@ -31,6 +31,10 @@
 namespace ocm::analysis {
 
 namespace detail {
+
+constexpr Explained response_time(std::span<const Task> tasks, std::size_t index, const Processor& processor,
+                                  Limits limits, std::span<std::int64_t> instances,
+                                  std::span<std::int64_t> shares, bool only_verdict) noexcept;
 
 /// One task in its set, on its processor: what delays it.
 class ProcessorDemand {
@@ -69,14 +73,14 @@ class ProcessorDemand {
   [[nodiscard]] constexpr Checked taken(std::size_t k) const noexcept {
     return suspends(k) ? work(k) : cost(k);
   }
-  /// How much later than planned what a release of task k takes may come: J, and S where it suspends. A
-  /// processor that is slower than the one for which S was found has another one.
+  /// How much later than planned what a release of task k takes may come: J, and of one that suspends S, in
+  /// which J is. One that may be late for its deadline is late by that at most, or nothing is promised.
   [[nodiscard]] constexpr Checked lateness(std::size_t k) const noexcept {
     if (!suspends(k)) return jitter(k);
-    if (tasks_[k].deferral != Task::unknown_deferral && processor_.scale <= 1'000'000)
-      return jitter(k) + tasks_[k].deferral;
-    const Checked most = Checked{tasks_[k].due()} - work(k);
-    return !most.ok() || most.value() > 0 ? jitter(k) + most : jitter(k);
+    const Explained found = response_time(tasks_, k, processor_, {}, {}, {}, false);
+    const Checked latest =
+        Checked{found.reason == Reason::schedulable ? found.response : tasks_[k].due()} - work(k);
+    return std::max(jitter(k).value_or(unbounded), latest.value_or(unbounded));
   }
   /// What one release of task k takes from the task: the interrupt; all of it if it goes before.
   [[nodiscard]] constexpr Checked each(std::size_t k) const noexcept {
@@ -265,35 +269,6 @@ constexpr Explained response_time(std::span<const Task> tasks, std::size_t index
                                                 std::span<std::int64_t> instances = {},
                                                 std::span<std::int64_t> shares = {}) noexcept {
   return detail::response_time(tasks, index, processor, limits, instances, shares, false);
-}
-
-/// S of all tasks that wait: of those that meet their deadlines R - (C - W). To be called again when anything
-/// has changed. O(tasks^2) and a response time for each.
-constexpr void find_deferrals(std::span<Task> tasks, const Processor& processor = {},
-                              Limits limits = {}) noexcept {
-  for (Task& task : tasks) task.deferral = Task::unknown_deferral;
-  // From the most urgent level on: S of one depends on those above.
-  std::uint64_t from = 0;
-  for (;;) {
-    std::uint64_t level = std::numeric_limits<std::uint64_t>::max();
-    for (const Task& task : tasks)
-      if (task.waits > 0 && task.level >= from) level = std::min<std::uint64_t>(level, task.level);
-    if (level == std::numeric_limits<std::uint64_t>::max()) return;
-    for (std::size_t k = 0; k < tasks.size(); ++k) {
-      if (tasks[k].waits == 0 || tasks[k].level != level) continue;
-      const Explained found = response_time(tasks, k, processor, limits);
-      const Checked work = detail::ProcessorDemand{tasks, k, processor}.work(k);
-      if (found.reason == Reason::schedulable && work.ok())
-        tasks[k].deferral = std::max<std::int64_t>(0, found.response - work.value());
-    }
-    from = level + 1;
-  }
-}
-template <std::size_t N>
-[[nodiscard]] constexpr std::array<Task, N> with_deferrals(std::array<Task, N> tasks,
-                                                           const Processor& processor = {}) noexcept {
-  find_deferrals(tasks, processor);
-  return tasks;
 }
 
 /// All of them; `results` has room for as many as it has. O(tasks^2) a step.

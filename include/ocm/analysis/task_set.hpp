@@ -30,11 +30,6 @@ struct Task {
   /// W: how much of C it sleeps at most because less urgent tasks hold what it needs. They go on meanwhile,
   /// so that it takes only C - W from them.
   std::int64_t waits = 0;
-  /// S, of one that waits: how much later than its release its work can still be before it, so that it and
-  /// the next job's come closer together than T. find_deferrals (task_response.hpp) fills in R - (C - W);
-  /// until then D - (C - W) counts.
-  std::int64_t deferral = unknown_deferral;
-  static constexpr std::int64_t unknown_deferral = -1;
 
   [[nodiscard]] constexpr std::int64_t due() const noexcept {
     return deadline == implicit_deadline ? period : deadline;
