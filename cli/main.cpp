@@ -5,6 +5,7 @@
 #include <exception>
 #include <fcntl.h>
 #include <new>
+#include <system_error>
 #include <unistd.h>
 
 #include "cli/shared/arguments.hpp"
@@ -69,13 +70,16 @@ void occupy_standard_streams() {
           ::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY));  // the lowest that is free
 }
 
+int say_not_written(const char* why) {
+  std::fprintf(stderr, "amiroctl: cannot write to the standard output: %s\n", why);
+  return exit_failure;
+}
+
 /// What was printed must have arrived: a full disk shows when the last of it is written.
 int finish(int code) {
   errno = 0;
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
-  std::fprintf(stderr, "amiroctl: cannot write to the standard output: %s\n",
-               errno != 0 ? std::strerror(errno) : "an earlier write failed");
-  return exit_failure;
+  return say_not_written(errno != 0 ? std::strerror(errno) : "an earlier write failed");
 }
 
 int run(int argc, char** argv) {
@@ -114,6 +118,10 @@ int main(int argc, char** argv) {
     return exit.code;
   } catch (const std::bad_alloc&) {
     say_out_of_memory();
+    return exit_failure;
+  } catch (const std::system_error& error) {  // as {fmt} reports what it could not print
+    if (std::ferror(stdout) != 0) return say_not_written(error.code().message().c_str());
+    std::fprintf(stderr, "amiroctl: %s\n", error.what());
     return exit_failure;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "amiroctl: %s\n", error.what());

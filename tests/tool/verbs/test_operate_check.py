@@ -44,6 +44,10 @@ class Checked(Operate):
         self.assertRegex(out, r"clear: stopped -> driving\n(.*\n)*    not bus state passive\n")
         self.assertIn("[Real, Crespo 2004", out)
         self.assertTrue(out.endswith("\nin time\n"))
+        with open("/dev/full", "w", encoding="utf-8") as full:  # more than a buffer: it fails before the end
+            tool = self.start("operate", GUARD, "--check", stdout=full)
+            _, err = tool.communicate(timeout=30)
+        self.assertEqual((tool.returncode, err), (1, "amiroctl: cannot write to the standard output: No space left on device\n"))
 
     def test_a_slower_bus_is_not_in_time_and_says_why_with_a_place(self):
         out, err = self.run_tool("operate", GUARD, "--check", "--bitrate", "50k", code=1)
