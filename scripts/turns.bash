@@ -2,7 +2,10 @@
 # Sourced by the scripts that build: two builds in one folder at once would write the same files.
 
 alone_in() {  # FOLDER COMMAND...
-  mkdir -p "$1" || return 1
-  flock -n "$1/.lock" true || echo "$(basename "$0"): waits for another build in $1/" >&2
-  flock "$1/.lock" "${@:2}"
+  local lock result=0
+  mkdir -p "$1" && exec {lock}>>"$1/.lock" || return 1
+  flock -n "$lock" || { echo "$(basename "$0"): waits for another build in $1/" >&2; flock "$lock"; }
+  "${@:2}" || result=$?
+  exec {lock}>&-
+  return $result
 }
