@@ -215,7 +215,8 @@ int run(int argc, char** argv) {
     const bool option = !only_names && argument.size() > 1 && argument.front() == '-';
     const auto value = [&] { return i + 1 < argc ? argv[++i] : nullptr; };
     if (!option) {
-      if (!arguments.file.empty() || argument.empty())
+      if (argument.empty()) return complain_usage("the spec has no name");
+      if (!arguments.file.empty())
         return complain_usage("two specs: " + arguments.file + " and " + std::string{argument});
       arguments.file = argument;
     } else if (argument == "--") {

@@ -458,13 +458,8 @@ class Resolver {
     const bool by_protocol = definition(Of::message, "VFrameFormat") == nullptr && protocol_type() == "J1939";
     if (wide && (format == "J1939PG" || by_protocol)) message.format = Message::Format::j1939;
     const bool is_j1939 = message.format == Message::Format::j1939;
-    message.fd = format.size() > 3 && format.substr(format.size() - 3) == "_FD";
-    if (message.length <= 8 || is_j1939 || message.fd) return;
-    message.fd = message.length <= 64;
-    if (!message.fd)
-      doubt(message.line,
-            message.name + " has " + std::to_string(message.length) + " bytes, and a frame has at most 64",
-            "only what lies within 64 bytes is read");
+    const bool said = format.size() > 3 && format.substr(format.size() - 3) == "_FD";
+    message.fd = said || (message.length > 8 && !is_j1939);
   }
   [[nodiscard]] std::string_view protocol_type() const noexcept {
     for (const Attribute& attribute : statements_.document.attributes)

@@ -121,9 +121,11 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     // The parser's message reads "[json.exception...] parse error at line 1, column 2: what". Only `what` is
     // ours to tell; line and column stand in the place.
     std::string what = error.what();
-    if (const auto begin = what.find(": "); begin != std::string::npos) what.erase(0, begin + 2);
+    if (const auto colon = what.find(": "); colon != std::string::npos) what.erase(0, colon + 2);
     std::string remedy = "strict JSON: double quotes, commas between members, no comments";
-    if (text_.find_first_not_of(" \t\r\n") == std::string_view::npos) {
+    const std::string_view mark = "\xEF\xBB\xBF";
+    const std::size_t begin = text_.substr(0, mark.size()) == mark ? mark.size() : 0;
+    if (text_.find_first_not_of(" \t\r\n", begin) == std::string_view::npos) {
       what = "the file is empty";
       remedy = std::string{document_.what} + " is a JSON object with " + std::string{document_.members};
     } else if (what.find("UTF-8") != std::string::npos) {
@@ -235,9 +237,26 @@ void find_twins(const Node& node, const std::string& path, std::string_view file
 
 }  // namespace
 
+std::string_view wide_encoding(std::string_view text) noexcept {
+  using namespace std::string_view_literals;
+  const auto begins = [text](std::string_view mark) { return text.substr(0, mark.size()) == mark; };
+  const auto is_nul = [text](std::size_t at) { return at < text.size() && text[at] == '\0'; };
+  const bool is_wider = is_nul(2) && is_nul(3);
+  if (begins("\xFF\xFE"sv) || (text.size() > 1 && !is_nul(0) && is_nul(1)))
+    return is_wider ? "UTF-32LE" : "UTF-16LE";
+  if (begins("\xFE\xFF"sv) || (is_nul(0) && text.size() > 1 && !is_nul(1))) return "UTF-16BE";
+  if (is_nul(0) && is_nul(1) && text.size() > 3) return "UTF-32BE";
+  return {};
+}
+
 Node parse_json(std::string_view text, std::string_view file_name, std::vector<Problem>& problems,
                 const Document& document) {
   if (text.data() == nullptr) text = "";
+  if (const std::string encoding{wide_encoding(text)}; !encoding.empty()) {
+    problems.push_back({std::string{file_name}, "the text is " + encoding,
+                        "save it as UTF-8, such as iconv -f " + encoding + " -t UTF-8 writes it"});
+    return {};
+  }
   Builder builder{text, file_name, problems, document};
   const CountingIterator first{text.data(), &builder.taken};
   const CountingIterator last{text.data() + text.size(), &builder.taken};

@@ -52,6 +52,10 @@ struct Document {
 
 inline constexpr std::size_t max_depth = 32;
 
+/// Two or four bytes a character, as some editors save text: by the byte order mark, or by NULs beside the
+/// first character. Empty: it is neither.
+[[nodiscard]] std::string_view wide_encoding(std::string_view text) noexcept;
+
 /// What stands for `~` and `/` in a JSON pointer. [RFC 6901]
 [[nodiscard]] std::string pointer_step(std::string_view key);
 

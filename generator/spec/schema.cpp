@@ -95,6 +95,7 @@ bool is_at_or_below(const std::string& place, const std::string& path) {
 struct Schema::Parsed {
   nlohmann::json json;
   valijson::Schema rules;
+  valijson::Validator validator;  ///< keeps the regular expressions that it has compiled
 };
 
 Schema::Schema(std::string_view text, const Document& document) : document_(document), parsed_(new Parsed) {
@@ -106,8 +107,9 @@ Schema::Schema(std::string_view text, const Document& document) : document_(docu
 void Schema::validate(const Node& root, std::string_view file_name, std::vector<Problem>& problems) const {
   const auto document = to_json(root);
   valijson::ValidationResults results;
-  valijson::Validator validator;
-  if (validator.validate(parsed_->rules, valijson::adapters::NlohmannJsonAdapter{document}, &results)) return;
+  if (parsed_->validator.validate(parsed_->rules, valijson::adapters::NlohmannJsonAdapter{document},
+                                  &results))
+    return;
 
   // Innermost first: what surrounds a bad value is reported by valijson as well, and says nothing new.
   std::vector<Problem> found;

@@ -93,7 +93,7 @@ class SentencesReader : private Checker {
                std::find(fields.begin(), fields.end(), key) == fields.end())
         tell({&node, at->path + "/" + pointer_step(key)},
              "source for " + spec::quoted(key) + ", which is not a fact of this object",
-             "default, range, or one of " + list_of(fields));
+             fields.empty() ? "default, or range" : "default, range, or one of " + list_of(fields));
       else
         source.particular.emplace_back(key, std::move(text));
     }
@@ -113,17 +113,22 @@ class SentencesReader : private Checker {
     }
     // All words are behind one letter, and no integers: a reader knows at the letter what comes.
     const auto first = std::find_if(model.sentences.begin(), model.sentences.end(),
-                                    [](const SentenceModel& sentence) { return !sentence.word.empty(); });
+                                    [](const SentenceModel& sentence) { return is_word(sentence); });
     if (first == model.sentences.end()) return;
     for (std::size_t i = 0; i < places.size(); ++i) {
       const SentenceModel& sentence = model.sentences[i];
-      if (!sentence.word.empty() && sentence.letter != first->letter)
+      if (is_word(sentence) && sentence.letter != first->letter)
         tell(places[i], "a word behind another letter than that of " + spec::quoted(first->name),
              std::string{"all words are behind one letter: \""} + first->letter + "\"");
       if (!sentence.fields.empty() && sentence.letter == first->letter)
         tell(places[i], "integers behind the letter of the word " + spec::quoted(first->name),
              "another letter");
     }
+  }
+
+  /// Whose letter is none has been told of it already.
+  [[nodiscard]] static bool is_word(const SentenceModel& sentence) noexcept {
+    return !sentence.word.empty() && sentence.letter != 0;
   }
 
   [[nodiscard]] SentenceModel read_sentence(const At& at) {

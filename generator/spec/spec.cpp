@@ -221,20 +221,6 @@ Loaded parse_dbc(std::string_view text, std::string_view file_name) {
   return loaded;
 }
 
-/// Two or four bytes a character, as some editors save text: by the byte order mark, or by NULs beside the
-/// first character. Empty: it is neither.
-std::string_view wide_encoding(std::string_view text) noexcept {
-  using namespace std::string_view_literals;
-  const auto begins = [text](std::string_view mark) { return text.substr(0, mark.size()) == mark; };
-  const auto is_nul = [text](std::size_t at) { return at < text.size() && text[at] == '\0'; };
-  const bool is_wider = is_nul(2) && is_nul(3);
-  if (begins("\xFF\xFE"sv) || (text.size() > 1 && !is_nul(0) && is_nul(1)))
-    return is_wider ? "UTF-32LE" : "UTF-16LE";
-  if (begins("\xFE\xFF"sv) || (is_nul(0) && text.size() > 1 && !is_nul(1))) return "UTF-16BE";
-  if (is_nul(0) && is_nul(1) && text.size() > 3) return "UTF-32BE";
-  return {};
-}
-
 }  // namespace
 
 Loaded parse(std::string_view text, std::string_view file_name) {

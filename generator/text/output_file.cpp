@@ -56,20 +56,20 @@ std::optional<Problem> write_file(const std::string& path, std::string_view text
     if (write_all(STDOUT_FILENO, text)) return std::nullopt;
     return Problem{"the standard output", std::strerror(errno), "somewhere that takes the file"};
   }
-  std::error_code error;
-  // Through a link, so that the link stays one.
-  std::filesystem::path target = path;
-  if (std::filesystem::is_symlink(target, error)) target = std::filesystem::weakly_canonical(target, error);
-  if (std::filesystem::is_directory(target, error))
-    return Problem{path, "it is a folder", "the path of the file within it"};
+  // Through links: what /dev/stdout leads to may have no path of its own.
   struct ::stat old {};
-  const bool exists = ::stat(target.c_str(), &old) == 0;
-  if (exists && !S_ISREG(old.st_mode)) {  // /dev/stdout, a pipe: nothing to replace
-    const int file = ::open(target.c_str(), O_WRONLY | O_CLOEXEC);
+  const bool exists = ::stat(path.c_str(), &old) == 0;
+  if (exists && S_ISDIR(old.st_mode))
+    return Problem{path, "it is a folder", "the path of the file within it"};
+  if (exists && !S_ISREG(old.st_mode)) {  // a pipe, a terminal: nothing to replace
+    const int file = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
     auto problem = write_through(path, file, text);
     if (file >= 0) ::close(file);
     return problem;
   }
+  std::error_code error;
+  std::filesystem::path target = path;
+  if (std::filesystem::is_symlink(target, error)) target = std::filesystem::weakly_canonical(target, error);
   return replace(path, target, text, exists ? std::optional<::mode_t>{old.st_mode & 07777U} : std::nullopt);
 }
 

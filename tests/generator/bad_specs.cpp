@@ -103,6 +103,7 @@ TEST_CASE("what is no spec at all") {
   CHECK(only("") == Problem{"f:1:1", "the file is empty",
                             "a spec is a JSON object with robot, namespace, bus, boards and topics"});
   CHECK(only(" \n ").what == "the file is empty");
+  CHECK(only("\xEF\xBB\xBF\n").what == "the file is empty");  // but for a byte order mark
   CHECK(only("[]") == Problem{"f:1: /", "a list, not an object", object});
   CHECK(only("null") == Problem{"f:1: /", "null, not an object", object});
   CHECK(only("\"topics\"") == Problem{"f:1: /", "\"topics\" is not an object", object});

@@ -1,4 +1,5 @@
 // The compiled catalogue and the one that is loaded from the same spec say the same.
+#include <algorithm>
 #include <array>
 
 #include <catch2/catch.hpp>
@@ -8,6 +9,7 @@
 #include "generator/spec/spec.hpp"
 #include "golden/ferry.hpp"
 #include "golden/probe.hpp"
+#include "golden/whole.hpp"
 #include "sim/amiro/proximity.hpp"
 
 namespace generator_catalogue_test {
@@ -103,6 +105,15 @@ TEST_CASE("the other robot: compiled and loaded are equal") {
 TEST_CASE("the compiled catalogue of a robot with floating-point numbers is the loaded one") {
   const auto loaded = load("tests/generator/probe.json");
   compare(probe::catalogue, loaded.spec->catalogue());
+}
+
+TEST_CASE("the compiled catalogue of all that a spec can say is the loaded one, but for its messages") {
+  const auto loaded = load("tests/generator/golden/whole.json");
+  protocol::Catalogue topics = loaded.spec->catalogue();
+  const auto is_topic = [](const protocol::Topic& topic) { return topic.kind != protocol::Kind::message; };
+  const auto count = std::count_if(topics.topics.begin(), topics.topics.end(), is_topic);
+  topics.topics = topics.topics.first(static_cast<std::size_t>(count));
+  compare(whole::catalogue, topics);
 }
 
 TEST_CASE("a moved spec keeps its catalogue where it is") {

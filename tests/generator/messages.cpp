@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -172,9 +173,9 @@ TEST_CASE("messages: a message with tens of thousands of selected fields is read
     const std::string number = std::to_string(i);
     text += " SG_ S" + number + " m" + number + " : 20|8@1+ (1,0) [0|0] \"\" N\n";
   }
-  const auto begin = std::chrono::steady_clock::now();
+  const std::clock_t begin = std::clock();
   const auto loaded = spec::parse(text, "f.dbc");
-  CHECK(std::chrono::steady_clock::now() - begin < std::chrono::seconds{15});  // a walk a field took minutes
+  CHECK((std::clock() - begin) / CLOCKS_PER_SEC < 15);  // of the processor; a walk a field took minutes
   REQUIRE(loaded.spec);
   const auto& layout = loaded.spec->catalogue().topics[0].frames[0];
   CHECK(layout.fields.back().selector == 0);

@@ -119,6 +119,18 @@ class Program(unittest.TestCase):
         subprocess.run(["sh", "-c", f'umask 027; exec "$0" "$1" -o "$2"', TOOL, self.spec, self.header], check=True)
         self.assertEqual(stat.S_IMODE(self.header.stat().st_mode), 0o640)
 
+    def test_what_is_no_file_is_written_through(self):
+        expected = run(self.spec, "-o", "-").stdout
+        self.assertEqual(run(self.spec, "-o", "/dev/stdout").stdout, expected)
+        pipe = self.folder / "pipe"
+        os.mkfifo(pipe)
+        with subprocess.Popen(["cat", pipe], stdout=subprocess.PIPE, text=True) as reader:
+            self.assertEqual(run(self.spec, "-o", pipe).returncode, 0)
+            self.assertEqual(reader.communicate(timeout=60)[0], expected)
+        self.assertTrue(stat.S_ISFIFO(pipe.stat().st_mode))
+        done = run(self.spec, "-o", "/dev/null")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
     def test_where_no_header_can_be_written(self):
         for output, words in ((self.folder / "no" / "x.hpp", "a folder that exists"), (self.folder, "it is a folder")):
             done = run(self.spec, "-o", output)
@@ -196,10 +208,63 @@ class Program(unittest.TestCase):
                 self.assertEqual(done.returncode, 2)
                 self.assertTrue(done.stderr.startswith("ocm-generate: "))
 
+    def test_each_wrong_usage_is_named(self):
+        spec, out = self.spec, self.header
+        targets = "one of cpp, spec, dbc, c, markdown, wireshark, json-schema"
+        for arguments, said in (
+                ((), "no spec"), ((spec,), "no header: -o HEADER, or --check"), ((spec, "-o", out, "--check"), "--check writes no header"),
+                ((spec, "-o", ""), "the header has no name"), (("--tasks", "--sentences", spec, "-o", out), "--tasks or --sentences, not both"),
+                (("--tasks", spec, "--to", "c", "-o", out), "--tasks makes a C++ header, and no other target"),
+                (("--sentences", spec, "--to", "c", "-o", out), "--sentences makes a C++ header, and no other target"),
+                ((spec, "--priority", "high", "-o", out), "--priority is for --to dbc"),
+                ((spec, "--to", "c", "--priority", "high", "-o", out), "--priority is for --to dbc"),
+                ((spec, "--to", "dbc", "--priority", "first", "-o", out), "--priority is urgent, high, medium or low"),
+                ((spec, "--to", "dbc", "--priority"), "--priority is urgent, high, medium or low"),
+                ((spec, "-o"), "-o without a header"), ((spec, "--output"), "--output without a header"),
+                ((spec, "-o", "a", "--output", "b"), "two headers: a and b"), ((spec, "--to"), f"--to without a target: {targets}"),
+                ((spec, "--to", "p\x1bdf", "-o", out), f"unknown target p\\x1Bdf: {targets}"), (("-q", spec), "unknown option -q"),
+                (("--q\x7f", spec), "unknown option --q\\x7F"), ((spec, "second", "-o", out), f"two specs: {spec} and second"),
+                (("", "-o", out), "the spec has no name"), ((spec, "", "-o", out), "the spec has no name"), ((spec, "--", "-o", out), f"two specs: {spec} and -o")):
+            with self.subTest(arguments=arguments):
+                done = run(*arguments)
+                self.assertEqual((done.returncode, done.stdout), (2, ""))
+                self.assertEqual(done.stderr, f"ocm-generate: {said}\nocm-generate SPEC -o HEADER; --help says more\n")
+        self.assertFalse(out.exists())
+
+    def test_options_in_any_order_and_names_that_begin_with_a_hyphen(self):
+        for arguments in (("-o", "x.hpp", "good.json"), ("--output", "x.hpp", "--", "good.json"), ("good.json", "--output", "x.hpp"),
+                          ("--to", "cpp", "-o", "x.hpp", "good.json")):
+            self.assertEqual(run(*arguments, cwd=self.folder).returncode, 0, arguments)
+        hyphen = self.folder / "-s.json"
+        hyphen.write_text(GOOD)
+        self.assertEqual(run("-s.json", "--check", cwd=self.folder).returncode, 2)
+        self.assertEqual(run("--check", "--", "-s.json", cwd=self.folder).returncode, 0)
+        self.assertIn("there is no such file", run("--check", "-", cwd=self.folder).stderr)
+        self.assertEqual(run("-h").stdout, run("--help").stdout)
+        high, low = (run(self.spec, "--to", "dbc", "--priority", each, "-o", "-").stdout for each in ("high", "low"))
+        self.assertIn("BO_ 1288 Gyroscope: 6", high)
+        self.assertIn("BO_ 1800 Gyroscope: 6", low)
+
+    def test_a_file_without_what_the_target_is_of(self):
+        nodes = self.folder / "nodes.dbc"
+        nodes.write_text("BU_: A B\n")
+        doubt = "nodes.dbc: the file has no message; BO_ 257 Engine: 8 Gateway begins one\n"
+        done = run("nodes.dbc", "--to", "c", "-o", "-", cwd=self.folder)
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        self.assertEqual(done.stderr, f"{doubt}nodes.dbc: it has neither topics nor messages; a file that has some\n")
+        self.assertEqual(run("nodes.dbc", "--check", cwd=self.folder).returncode, 0)
+        done = run("good.json", "--to", "spec", "-o", "-", cwd=self.folder)
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        self.assertEqual(done.stderr, "good.json: it has only topics, which --to spec has no place for; topics are in the spec already\n")
+        self.assertEqual(run("good.json", "--to", "spec", "--check", cwd=self.folder).returncode, 0)
+
     def test_help_version_and_schema(self):
         for option in ("--help", "--version", "--schema"):
             done = run(option)
             self.assertEqual((done.returncode, done.stderr), (0, ""))
+        project = (ROOT / "CMakeLists.txt").read_text()
+        self.assertRegex(run("--version").stdout, r"^ocm-generate [0-9]+\.[0-9]+\.[0-9]+\n$")
+        self.assertIn(run("--version").stdout.split()[1], project)
         self.assertEqual(run("--schema").stdout, (ROOT / "spec" / "topics.schema.json").read_text())
 
     def test_the_page_on_specs_names_every_member(self):

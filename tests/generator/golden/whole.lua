@@ -1,0 +1,490 @@
+-- Made by ocm-generate from whole.json. Do not edit: change the spec, and generate again.
+--
+-- The topics and messages of Whole for Wireshark and tshark: wireshark -X lua_script:whole.lua FILE, or put
+-- it into the folder of personal Lua plugins.
+local robot = Proto("whole", "Whole")
+
+-- Fields of every frame, and what is wrong with one.
+local common, experts = {}, {}
+experts.wrong_length = ProtoExpert.new("whole.wrong_length", "Wrong length", expert.group.MALFORMED, expert.severity.ERROR)
+
+-- What the frames of this file are read with; nil where it has none of the kind.
+local dissect_topic, dissect_message, message_of
+
+local priorities = { [0] = "urgent", [1] = "high", [2] = "medium", [3] = "low" }
+local modes = { [0] = "stop", [1] = "publish", [2] = "once" }
+local units = { [0] = "ms", [1] = "s", [2] = "us" }
+
+common.direction = ProtoField.string("whole.direction", "Direction")
+common.priority = ProtoField.uint8("whole.priority", "Priority", base.DEC, priorities)
+common.topic = ProtoField.string("whole.topic", "Topic")
+common.frame = ProtoField.string("whole.frame", "Frame")
+common.kind = ProtoField.string("whole.kind", "Kind")
+common.mode = ProtoField.uint8("whole.mode", "Mode", base.DEC, modes)
+common.count = ProtoField.uint16("whole.count", "Count")
+common.unit = ProtoField.uint8("whole.unit", "Unit", base.DEC, units)
+common.period = ProtoField.double("whole.period", "Period in s")
+experts.bad_request = ProtoExpert.new("whole.bad_request", "Bad request", expert.group.MALFORMED, expert.severity.ERROR)
+
+-- Frames by identifier without its priority, sensors by the number that requests to them carry.
+local frames, sensors = {}, {}
+sensors[0x70] = { topic = "status", period = 1 }
+sensors[0x72] = { topic = "refusal", period = 0.02 }
+sensors[0x08] = { topic = "gyroscope", period = 0.0009 }
+sensors[0x10] = { topic = "position", period = 30 }
+sensors[0x18] = { topic = "second_position", period = 30 }
+sensors[0x30] = { topic = "ring", period = 0.125 }
+sensors[0x40] = { topic = "floor", period = 0.02 }
+sensors[0x41] = { topic = "a_topic_with_a_name_longer_than_dbc_has", period = 0.02 }
+frames[0x470] = { topic = "status", frame = "identity", dlc = 8, fields = {
+  { name = "uptime", start = 0, width = 24, unit = "s" },
+  { name = "reset", start = 24, width = 8 },
+  { name = "wire_hash", start = 32, width = 32 },
+} }
+frames[0x471] = { topic = "status", frame = "health", dlc = 8, fields = {
+  { name = "load", start = 0, width = 8, unit = "%" },
+  { name = "bus", start = 8, width = 8 },
+  { name = "publishing", start = 16, width = 8 },
+  { name = "faults", start = 24, width = 8 },
+  { name = "overload", start = 32, width = 16 },
+  { name = "bus_errors", start = 48, width = 16 },
+} }
+frames[0x472] = { topic = "refusal", frame = "", dlc = 4, fields = {
+  { name = "topic", start = 0, width = 8 },
+  { name = "reason", start = 8, width = 8 },
+  { name = "refused", start = 16, width = 16 },
+} }
+frames[0x408] = { topic = "gyroscope", frame = "", dlc = 8, fields = {
+  { name = "x", start = 0, width = 16, signed = true, unit = "deg/s", physical = function(raw) return raw * 175.0 / 10000.0 end },
+  { name = "y", start = 16, width = 12, signed = true, unit = "deg/s", physical = function(raw) return (raw * -25.0 + 300.0) / 100.0 end },
+  { name = "value", start = 28, width = 4, names = { [0] = "off", [1] = "on", } },
+  { name = "temperature", start = 32, width = 8, unit = "°C", physical = function(raw) return (raw * 5.0 - 400.0) / 10.0 end, names = { [255] = "unknown", } },
+  { name = "state", start = 40, width = 16, flags = { [0] = "ready", [7] = "data", [8] = "late", [15] = "broken", } },
+  { name = "spare", start = 56, width = 8, signed = true, names = { [-128] = "least", [0] = "none", } },
+} }
+frames[0x410] = { topic = "position", frame = "pose", dlc = 8, fields = {
+  { name = "x", start = 7, width = 24, big = true, signed = true, unit = "m", physical = function(raw) return raw / 1000.0 end },
+  { name = "y", start = 31, width = 24, big = true, signed = true, unit = "m", physical = function(raw) return raw / 1000.0 end },
+  { name = "orientation", start = 55, width = 16, big = true, unit = "rad", physical = function(raw) return raw / 10000.0 end },
+} }
+frames[0x411] = { topic = "position", frame = "cell_1", dlc = 8, fields = {
+  { name = "data", start = 0, width = 32, float = true, unit = "V", physical = function(raw) return raw / 2.0 end },
+  { name = "on", start = 33, width = 12, unit = "mA" },
+  { name = "restrict", start = 45, width = 19, flags = { [0] = "low", [18] = "high", } },
+} }
+frames[0x412] = { topic = "position", frame = "cell_2", dlc = 8, fields = {
+  { name = "data", start = 0, width = 32, float = true, unit = "V", physical = function(raw) return raw / 2.0 end },
+  { name = "on", start = 33, width = 12, unit = "mA" },
+  { name = "restrict", start = 45, width = 19, flags = { [0] = "low", [18] = "high", } },
+} }
+frames[0x413] = { topic = "position", frame = "cell_3", dlc = 8, fields = {
+  { name = "data", start = 0, width = 32, float = true, unit = "V", physical = function(raw) return raw / 2.0 end },
+  { name = "on", start = 33, width = 12, unit = "mA" },
+  { name = "restrict", start = 45, width = 19, flags = { [0] = "low", [18] = "high", } },
+} }
+frames[0x414] = { topic = "position", frame = "value", dlc = 8, fields = {
+  { name = "all", start = 0, width = 64, float = true, unit = "km", physical = function(raw) return (raw - 2000.0) / 1000.0 end },
+} }
+frames[0x415] = { topic = "position", frame = "i", dlc = 8, fields = {
+  { name = "wide", start = 7, width = 64, big = true, signed = true },
+} }
+frames[0x416] = { topic = "position", frame = "tail", dlc = 8, fields = {
+  { name = "far", start = 1, width = 63 },
+} }
+frames[0x417] = { topic = "position", frame = "last", dlc = 0, fields = {} }
+frames[0x418] = { topic = "second_position", frame = "pose", dlc = 8, fields = {
+  { name = "x", start = 7, width = 24, big = true, signed = true, unit = "m", physical = function(raw) return raw / 1000.0 end },
+  { name = "y", start = 31, width = 24, big = true, signed = true, unit = "m", physical = function(raw) return raw / 1000.0 end },
+  { name = "orientation", start = 55, width = 16, big = true, unit = "rad", physical = function(raw) return raw / 10000.0 end },
+} }
+frames[0x419] = { topic = "second_position", frame = "cell_1", dlc = 8, fields = {
+  { name = "data", start = 0, width = 32, float = true, unit = "V", physical = function(raw) return raw / 2.0 end },
+  { name = "on", start = 33, width = 12, unit = "mA" },
+  { name = "restrict", start = 45, width = 19, flags = { [0] = "low", [18] = "high", } },
+} }
+frames[0x41A] = { topic = "second_position", frame = "cell_2", dlc = 8, fields = {
+  { name = "data", start = 0, width = 32, float = true, unit = "V", physical = function(raw) return raw / 2.0 end },
+  { name = "on", start = 33, width = 12, unit = "mA" },
+  { name = "restrict", start = 45, width = 19, flags = { [0] = "low", [18] = "high", } },
+} }
+frames[0x41B] = { topic = "second_position", frame = "cell_3", dlc = 8, fields = {
+  { name = "data", start = 0, width = 32, float = true, unit = "V", physical = function(raw) return raw / 2.0 end },
+  { name = "on", start = 33, width = 12, unit = "mA" },
+  { name = "restrict", start = 45, width = 19, flags = { [0] = "low", [18] = "high", } },
+} }
+frames[0x41C] = { topic = "second_position", frame = "value", dlc = 8, fields = {
+  { name = "all", start = 0, width = 64, float = true, unit = "km", physical = function(raw) return (raw - 2000.0) / 1000.0 end },
+} }
+frames[0x41D] = { topic = "second_position", frame = "i", dlc = 8, fields = {
+  { name = "wide", start = 7, width = 64, big = true, signed = true },
+} }
+frames[0x41E] = { topic = "second_position", frame = "tail", dlc = 8, fields = {
+  { name = "far", start = 1, width = 63 },
+} }
+frames[0x41F] = { topic = "second_position", frame = "last", dlc = 0, fields = {} }
+frames[0x430] = { topic = "ring", frame = "sensor_1", dlc = 4, fields = {
+  { name = "proximity", start = 0, width = 16 },
+  { name = "ambient", start = 16, width = 16 },
+} }
+frames[0x431] = { topic = "ring", frame = "sensor_2", dlc = 4, fields = {
+  { name = "proximity", start = 0, width = 16 },
+  { name = "ambient", start = 16, width = 16 },
+} }
+frames[0x432] = { topic = "ring", frame = "sensor_3", dlc = 4, fields = {
+  { name = "proximity", start = 0, width = 16 },
+  { name = "ambient", start = 16, width = 16 },
+} }
+frames[0x433] = { topic = "ring", frame = "sensor_4", dlc = 4, fields = {
+  { name = "proximity", start = 0, width = 16 },
+  { name = "ambient", start = 16, width = 16 },
+} }
+frames[0x434] = { topic = "ring", frame = "mean", dlc = 2, fields = {
+  { name = "proximity", start = 0, width = 16 },
+} }
+frames[0x440] = { topic = "floor", frame = "", dlc = 8, fields = {
+  { name = "left", start = 7, width = 12, big = true },
+  { name = "right", start = 11, width = 12, big = true },
+  { name = "a_field_with_a_name_of_some_37_letters", start = 24, width = 32, float = true },
+  { name = "sum", start = 56, width = 8, signed = true, names = { [0] = "none", } },
+} }
+frames[0x441] = { topic = "a_topic_with_a_name_longer_than_dbc_has", frame = "", dlc = 4, fields = {
+  { name = "count_of_wheels", start = 0, width = 32, flags = { [0] = "first", [31] = "all", } },
+} }
+frames[0x001] = { topic = "motors", frame = "", dlc = 8, fields = {
+  { name = "x", start = 0, width = 32, signed = true, unit = "m/s", physical = function(raw) return raw / 1000000.0 end },
+  { name = "z", start = 32, width = 32, signed = true, unit = "rad/s", physical = function(raw) return raw / 1000000.0 end },
+} }
+frames[0x020] = { topic = "lamp_1", frame = "", dlc = 3, fields = {
+  { name = "red", start = 0, width = 8 },
+  { name = "green", start = 8, width = 8 },
+  { name = "blue", start = 16, width = 8 },
+} }
+frames[0x021] = { topic = "lamp_2", frame = "", dlc = 3, fields = {
+  { name = "red", start = 0, width = 8 },
+  { name = "green", start = 8, width = 8 },
+  { name = "blue", start = 16, width = 8 },
+} }
+frames[0x022] = { topic = "lamp_3", frame = "", dlc = 3, fields = {
+  { name = "red", start = 0, width = 8 },
+  { name = "green", start = 8, width = 8 },
+  { name = "blue", start = 16, width = 8 },
+} }
+frames[0x028] = { topic = "brake", frame = "", dlc = 0, fields = {} }
+frames[0x029] = { topic = "arm", frame = "", dlc = 6, fields = {
+  { name = "angle", start = 0, width = 16, signed = true, unit = "deg", names = { [0] = "rest", } },
+  { name = "bend", start = 16, width = 32, float = true, unit = "deg" },
+} }
+
+common.message = ProtoField.string("whole.message", "Message")
+common.sender = ProtoField.string("whole.sender", "Sender")
+common.pgn = ProtoField.uint32("whole.pgn", "Parameter group", base.HEX)
+common.source = ProtoField.uint8("whole.source", "Source address", base.HEX)
+common.destination = ProtoField.uint8("whole.destination", "Destination address", base.HEX)
+
+-- Messages by identifier of 11 bits, of 29 bits, and by parameter group of J1939.
+local base_messages, extended_messages, group_messages = {}, {}, {}
+group_messages[0x0F004] = { name = "EEC1", abbreviation = "EEC1", length = 8, sender = "engine", fields = {
+  { name = "Speed", start = 24, width = 16, unit = "rpm", physical = function(raw) return raw / 8.0 end },
+  { name = "State", start = 0, width = 4, names = { [0] = "off", [1] = "on", [14] = "off!", } },
+  { name = "Torque", start = 8, width = 8, unit = "%", physical = function(raw) return raw - 125.0 end, names = { [255] = "lost", } },
+} }
+group_messages[0x0EA00] = { name = "Call", abbreviation = "Call", length = 3, sender = "dash", fields = {
+  { name = "Group", start = 0, width = 24 },
+} }
+group_messages[0x0FEE3] = { name = "Long", abbreviation = "Long", length = 0, sender = "engine", fields = {
+  { name = "Curve", start = 247, width = 40, big = true, signed = true, unit = "Nm", physical = function(raw) return raw * -1.0 / 100.0 end },
+  { name = "Step", start = 304, width = 1, signed = true },
+} }
+base_messages[0x7DF] = { name = "Service", abbreviation = "Service", length = 64, sender = "dash", fields = {
+  { name = "Mode", start = 0, width = 8, signed = true },
+  { name = "Load", start = 8, width = 32, selector = 1, selected = { { 1, 1 }, { 4, 7 }, { 6, 9 } }, float = true, unit = "kW", physical = function(raw) return raw * 2.0 + 1.0 end },
+  { name = "Sub", start = 40, width = 2, selector = 1, selected = { { 250, 255 }, { 0, 0 } }, names = { [0] = "Mode", [1] = "x", } },
+  { name = "Deep", start = 50, width = 13, selector = 3, selected = { { 2, 3 } } },
+  { name = "Always", start = 64, width = 8, selector = 3, selected = { { 0, 3 } } },
+  { name = "Rare", start = 72, width = 8, selector = 1, selected = { { 3, 3 } }, unit = "h", physical = function(raw) return raw / 2.0 end },
+  { name = "Lamps", start = 80, width = 16, selector = 1, selected = { { 2, 2 } }, flags = { [0] = "left", [15] = "right", } },
+  { name = "Angle", start = 135, width = 64, big = true, signed = true, names = { [-1] = "lost", [3] = "lost", [-9223372036854775808] = "least", } },
+  { name = "Serial", start = 192, width = 64, names = { [-1] = "all", [1] = "one", } },
+  { name = "Exact", start = 256, width = 64, float = true },
+  { name = "Scaled", start = 320, width = 64, float = true, unit = "m", physical = function(raw) return raw / 2.0 end },
+  { name = "Plain", start = 384, width = 32, float = true, unit = "A" },
+  { name = "Scaled64", start = 416, width = 64, unit = "bit", physical = function(raw) return raw / 2.0 end },
+} }
+extended_messages[0x18FEF100] = { name = "int", abbreviation = "int_", length = 5, fields = {
+  { name = "NULL", abbreviation = "NULL_", start = 7, width = 12, big = true },
+  { name = "a.b", abbreviation = "a_b", start = 11, width = 12, big = true },
+  { name = "a-b", abbreviation = "a_b_2", start = 31, width = 16, big = true, unit = "1\\" },
+} }
+base_messages[0x002] = { name = "2nd_message_of_a_long_name_for_DBC", abbreviation = "n2nd_message_of_a_long_name_for_DBC", length = 1, fields = {
+  { name = "a_signal_that_has_a_name_longer_than_32_characters", start = 0, width = 3, unit = "|<_*" },
+  { name = "Bit", start = 7, width = 1, flags = { [0] = "set?", } },
+  { name = "Later", start = 8, width = 16 },
+} }
+base_messages[0x101] = { name = "Simple", abbreviation = "Simple", length = 3, sender = "dash", fields = {
+  { name = "Page", start = 0, width = 8 },
+  { name = "First", start = 8, width = 16, selector = 1, selected = { { 0, 0 } }, signed = true },
+  { name = "Second", start = 15, width = 16, selector = 1, selected = { { 1, 1 } }, big = true, physical = function(raw) return raw * 10.0 + 5.0 end },
+} }
+base_messages[0x102] = { name = "Two_pages", abbreviation = "Two_pages", length = 3, fields = {
+  { name = "Page", start = 0, width = 4 },
+  { name = "Other", start = 4, width = 4 },
+  { name = "First", start = 8, width = 8, selector = 1, selected = { { 0, 0 } } },
+  { name = "Second", start = 16, width = 8, selector = 2, selected = { { 15, 15 } } },
+} }
+base_messages[0x000] = { name = "Nothing", abbreviation = "Nothing", length = 0, fields = {} }
+
+-- The bits of a field byte by byte: the byte, 2^lowest bit within it, 2^number of bits, lowest bit of the field.
+local function pieces_of(field)
+  -- Of big-endian fields: the bits of the frame counted from the highest of its first byte on.
+  local last = field.start - field.start % 8 + 7 - field.start % 8 + field.width - 1
+  local pieces, bit = {}, 0
+  while bit < field.width do
+    local place = field.big and last - bit or field.start + bit
+    local shift = field.big and 7 - place % 8 or place % 8
+    local width = math.min(8 - shift, field.width - bit)
+    pieces[#pieces + 1] = { byte = math.floor(place / 8), unit = 2 ^ shift, size = 2 ^ width, from = bit }
+    bit = bit + width
+  end
+  return pieces
+end
+
+local function part(tvb, piece)
+  return math.floor(tvb(piece.byte, 1):uint() / piece.unit) % piece.size
+end
+
+-- The raw number; exact up to 53 bits.
+local function number_of(tvb, field)
+  local raw = 0
+  for _, piece in ipairs(field.pieces) do raw = raw + part(tvb, piece) * 2 ^ piece.from end
+  if field.signed and raw >= 2 ^ (field.width - 1) then raw = raw - 2 ^ field.width end
+  return raw
+end
+
+-- The raw number as an object of 64 bits.
+local function object_of(tvb, field)
+  local raw = UInt64(0)
+  for _, piece in ipairs(field.pieces) do raw = raw + UInt64(part(tvb, piece)):lshift(piece.from) end
+  if not field.signed then return raw end
+  return Int64(raw:lower(), raw:higher()):lshift(64 - field.width):arshift(64 - field.width)
+end
+
+-- The number of IEEE 754 in the bits.
+local function real_of(tvb, field)
+  if field.width == 32 then return Struct.unpack("<f", Struct.pack("<I4", number_of(tvb, field))) end
+  local bits = object_of(tvb, field)
+  return Struct.unpack("<d", Struct.pack("<I4I4", bits:lower(), bits:higher()))
+end
+
+local all_fields = {}
+for _, field in pairs(common) do all_fields[#all_fields + 1] = field end
+
+local function register(prefix, field)
+  local abbreviation = prefix .. "." .. (field.abbreviation or field.name)
+  field.pieces = pieces_of(field)
+  field.first, field.last = math.huge, 0
+  for _, piece in ipairs(field.pieces) do
+    field.first, field.last = math.min(field.first, piece.byte), math.max(field.last, piece.byte)
+  end
+  if field.physical or field.float then
+    field.proto = ProtoField.double(abbreviation, field.name)
+  else
+    local kind = (field.signed and "int" or "uint") .. (field.width > 32 and "64" or "32")
+    field.proto = ProtoField[kind](abbreviation, field.name, base.DEC,
+                                  field.width <= 32 and not field.unit and field.names or nil)
+  end
+  all_fields[#all_fields + 1] = field.proto
+  field.bits = {}
+  for bit, name in pairs(field.flags or {}) do
+    local own = string.gsub(name, "[^%w_]+", "_")
+    field.bits[#field.bits + 1] = { bit = bit, name = name, proto = ProtoField.bool(abbreviation .. "." .. own, name) }
+    all_fields[#all_fields + 1] = field.bits[#field.bits].proto
+  end
+  table.sort(field.bits, function(a, b) return a.bit < b.bit end)
+end
+
+local function add_field(tvb, tree, field)
+  local range = tvb(field.first, field.last - field.first + 1)
+  local wide = field.width > (field.physical and 53 or 32) and not field.float
+  local raw
+  if field.float then
+    raw = real_of(tvb, field)
+  else
+    raw = wide and object_of(tvb, field) or number_of(tvb, field)
+  end
+  local value = raw
+  if field.physical then value = field.physical(wide and raw:tonumber() or raw) end
+  local item = tree:add(field.proto, range, value)
+  local text = field.name .. " " .. tostring(value)
+  if field.unit then
+    item:append_text(" " .. field.unit)
+    text = text .. " " .. field.unit
+  end
+  local name = not wide and field.names and field.names[raw]
+  if name then
+    if field.unit then item:append_text(" (" .. name .. ")") end
+    text = field.name .. " " .. name
+  end
+  for _, flag in ipairs(field.bits) do
+    local set = not wide and math.floor(raw / 2 ^ flag.bit) % 2 == 1
+    if set then item:append_text(" " .. flag.name) end
+    item:add(flag.proto, range, set)
+  end
+  return text
+end
+
+
+for _, layout in pairs(frames) do
+  local prefix = "whole." .. layout.topic .. (layout.frame ~= "" and "." .. layout.frame or "")
+  for _, field in ipairs(layout.fields) do register(prefix, field) end
+end
+
+local function add_frame(tvb, tree, layout)
+  if tvb:len() ~= layout.dlc then
+    tree:add_proto_expert_info(experts.wrong_length, tvb:len() .. " bytes instead of " .. layout.dlc)
+    return "wrong length"
+  end
+  local texts = {}
+  for _, field in ipairs(layout.fields) do texts[#texts + 1] = add_field(tvb, tree, field) end
+  return table.concat(texts, ", ")
+end
+
+local function add_request(tvb, tree, sensor)
+  local length = tvb:len()
+  local mode = length > 0 and tvb(0, 1):uint() or nil
+  if mode then tree:add(common.mode, tvb(0, 1)) end
+  if length == 0 or (mode <= 2 and length ~= 1 and not (mode == 1 and length == 4)) then
+    tree:add_proto_expert_info(experts.wrong_length, length .. " bytes: 1, or 4 with a period")
+    return "wrong length"
+  end
+  if mode > 2 then
+    tree:add_proto_expert_info(experts.bad_request, "mode " .. mode .. ": 0 stop, 1 publish, 2 once")
+    return "bad mode"
+  end
+  if mode ~= 1 then return modes[mode] end
+  if length == 1 then
+    tree:add(common.period, sensor.period):set_generated()
+    return "publish"
+  end
+  local count, unit = tvb(1, 2):le_uint(), tvb(3, 1):uint()
+  tree:add_le(common.count, tvb(1, 2))
+  tree:add(common.unit, tvb(3, 1))
+  if unit > 2 or count == 0 then
+    tree:add_proto_expert_info(experts.bad_request, unit > 2 and "unit " .. unit .. ": 0 ms, 1 s, 2 us" or "a period of zero")
+    return "bad period"
+  end
+  tree:add(common.period, tvb(1, 3), unit == 1 and count or count / (unit == 0 and 1000 or 1000000))
+  return "publish every " .. count .. " " .. units[unit]
+end
+
+function dissect_topic(tvb, pinfo, tree, id)
+  local topic = id % 256
+  local priority = math.floor(id / 256) % 4
+  local from_board = id >= 0x400
+  local layout = frames[(from_board and 0x400 or 0) + topic]
+  local sensor = not from_board and sensors[topic]
+  if not layout and not sensor then return 0 end
+  local kind = from_board and "sample" or sensor and "request" or "set point"
+  local subtree = tree:add(robot, tvb())
+  subtree:add(common.direction, from_board and "from board" or "to board"):set_generated()
+  subtree:add(common.priority, priority):set_generated()
+  subtree:add(common.kind, kind):set_generated()
+  subtree:add(common.topic, sensor and sensor.topic or layout.topic):set_generated()
+  if layout and layout.frame ~= "" then subtree:add(common.frame, layout.frame):set_generated() end
+  local name = sensor and sensor.topic or layout.topic .. (layout.frame ~= "" and "." .. layout.frame or "")
+  local text
+  if sensor then text = add_request(tvb, subtree, sensor) else text = add_frame(tvb, subtree, layout) end
+  subtree:append_text(", " .. name .. ", " .. kind)
+  pinfo.cols.protocol = robot.description
+  pinfo.cols.info = name .. " (" .. priorities[priority] .. " " .. kind .. ") " .. text
+  return tvb:len()
+end
+
+
+for _, messages in ipairs({ base_messages, extended_messages, group_messages }) do
+  for _, layout in pairs(messages) do
+    for _, field in ipairs(layout.fields) do register("whole." .. layout.abbreviation, field) end
+  end
+end
+
+-- Below format 240 the byte behind the format is a destination. [SAE J1939-21, 5.2]
+local function group_of(id)
+  local format = math.floor(id / 0x10000) % 0x100
+  local group = math.floor(id / 0x100) % 0x40000
+  return format < 240 and group - group % 0x100 or group, format < 240 and group % 0x100 or 255
+end
+
+function message_of(id, is_extended)
+  if not is_extended then return base_messages[id] end
+  return extended_messages[id] or group_messages[group_of(id)]
+end
+
+-- Whether the frame has the field: its bytes, and those of what selects it, with a number that does.
+local function has(tvb, layout, field)
+  if field.last >= tvb:len() then return false end
+  if not field.selector then return true end
+  local selector = layout.fields[field.selector]
+  if not selector or not has(tvb, layout, selector) then return false end
+  local raw = number_of(tvb, selector)
+  if raw < 0 then raw = raw + 2 ^ selector.width end
+  for _, range in ipairs(field.selected) do
+    if range[1] <= raw and raw <= range[2] then return true end
+  end
+  return false
+end
+
+function dissect_message(tvb, pinfo, tree, layout, id)
+  local subtree = tree:add(robot, tvb())
+  subtree:add(common.message, layout.name):set_generated()
+  if layout.sender then subtree:add(common.sender, layout.sender):set_generated() end
+  local group, destination = group_of(id)
+  if group_messages[group] == layout then
+    subtree:add(common.pgn, group):set_generated()
+    subtree:add(common.source, id % 0x100):set_generated()
+    subtree:add(common.destination, destination):set_generated()
+  end
+  local texts = {}
+  if tvb:len() < layout.length then
+    subtree:add_proto_expert_info(experts.wrong_length, tvb:len() .. " bytes, fewer than " .. layout.length)
+    texts[1] = "wrong length"
+  else
+    for _, field in ipairs(layout.fields) do
+      if has(tvb, layout, field) then texts[#texts + 1] = add_field(tvb, subtree, field) end
+    end
+  end
+  subtree:append_text(", " .. layout.name)
+  pinfo.cols.protocol = robot.description
+  pinfo.cols.info = layout.name .. " " .. table.concat(texts, ", ")
+  return tvb:len()
+end
+
+robot.fields = all_fields
+robot.experts = {}
+for _, each in pairs(experts) do robot.experts[#robot.experts + 1] = each end
+
+local can_id, can_remote, can_extended = Field.new("can.id"), Field.new("can.flags.rtr"), Field.new("can.flags.xtd")
+
+local function last(values)
+  return values[#values]
+end
+
+function robot.dissector(tvb, pinfo, tree)
+  local id, remote, extended = last({ can_id() }), last({ can_remote() }), last({ can_extended() })
+  if not id or (remote and remote.value) then return 0 end
+  local is_extended = id.value > 0x7FF or (extended and extended.value)
+  local layout = message_of and message_of(id.value, is_extended)
+  if layout then return dissect_message(tvb, pinfo, tree, layout, id.value) end
+  if is_extended or not dissect_topic then return 0 end
+  return dissect_topic(tvb, pinfo, tree, id.value)
+end
+
+local identifiers = DissectorTable.get("can.id")
+for priority = 0, 3 do
+  for key in pairs(frames) do identifiers:add(key + priority * 256, robot) end
+  for key in pairs(sensors) do identifiers:add(key + priority * 256, robot) end
+end
+for id in pairs(base_messages) do identifiers:add(id, robot) end
+for id in pairs(extended_messages) do DissectorTable.get("can.extended_id"):add(id, robot) end
+-- A parameter group has more identifiers than a table should.
+if next(group_messages) then
+  robot:register_heuristic("can", function(tvb, pinfo, tree) return robot.dissector(tvb, pinfo, tree) > 0 end)
+end
