@@ -144,7 +144,8 @@ class Words {
     if (!is_fd_length(length) || entry.format == can::Format::error) return Cause::length;
     entry.flags |= flag::fd;
   } else {
-    if (length > (code ? 15U : can::max_dlc)) return Cause::length;
+    const bool any_code = code && entry.format != can::Format::error;  // a controller reports 8 bytes
+    if (length > (any_code ? 15U : can::max_dlc)) return Cause::length;
     if (length > can::max_dlc) entry.raw_dlc = static_cast<std::uint8_t>(length);
     entry.flags = 0;  // -x shows some bits of every frame, which mean nothing in a classic one
   }

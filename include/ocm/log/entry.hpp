@@ -32,7 +32,8 @@ struct Entry {
   can::Format format = can::Format::base;
   std::uint8_t length = 0;  ///< data bytes, 0..8, FD 0..64; of a remote frame the length asked for
   std::uint8_t flags = 0;   ///< of namespace flag
-  /// 9..15 where a classic frame of 8 bytes had this in its length code, 0 otherwise ("len8_dlc" of Linux).
+  /// 9..15 where a classic frame of 8 bytes had this in its length code, 0 otherwise ("len8_dlc" of Linux),
+  /// and of an error frame.
   std::uint8_t raw_dlc = 0;
   Direction direction = Direction::unknown;
   /// Those beyond `length` are not looked at, but the first eight of them are zero.

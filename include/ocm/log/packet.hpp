@@ -116,7 +116,8 @@ inline void store(char* to, const Entry& entry) noexcept {
   }
   entry.flags = 0;
   const std::uint8_t raw = load8(bytes.data() + 7);
-  entry.raw_dlc = length == can::max_dlc && raw > can::max_dlc && raw <= 15 ? raw : std::uint8_t{0};
+  const bool any_code = length == can::max_dlc && entry.format != can::Format::error;
+  entry.raw_dlc = any_code && raw > can::max_dlc && raw <= 15 ? raw : std::uint8_t{0};
   if (can::is_remote(entry.format)) {
     std::memset(entry.data.data(), 0, can::max_dlc);
     return std::nullopt;

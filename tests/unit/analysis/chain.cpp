@@ -179,6 +179,11 @@ TEST_CASE("chains: what cannot be bounded has a reason and a hop") {
   const auto huge = [](std::size_t, std::int64_t) { return in(unbounded - 1); };
   CHECK(bound_chain(chain, 100, huge).reason == Reason::too_long);
 
+  // A hop that takes no time is the longest if it is all there is; of equal ones the first.
+  std::array<Hop, 2> quick{{{.activation = sampled, .period = 10}, {}}};
+  const ChainBound none = bound_chain(quick, 10, [](std::size_t, std::int64_t jitter) { return in(jitter); });
+  CHECK((none.ok() && none.hop == 0 && none.latency == 0 && none.age == 10));
+
   std::array<Hop, 1> event{{{.activation = triggered}}};
   CHECK(bound_chain(event, 100, circle).reason == Reason::bad_input);
   std::array<Hop, 1> timeless{{{.activation = sampled}}};

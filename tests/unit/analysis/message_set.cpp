@@ -45,6 +45,18 @@ static_assert(first_bad(good) == no_index);
 static_assert(first_bad(std::array{good[0], Message{.cost = 1}}) == 1);
 static_assert(first_bad(std::array{Message{.cost = 1, .period = 1, .offset = -1}, good[0]}) == 0);
 
+// Each number by itself, the last one that means nothing.
+constexpr bool means(std::int64_t cost, std::int64_t period, std::int64_t deadline, std::int64_t jitter,
+                     std::int64_t offset) {
+  const std::array set{
+      Message{.cost = cost, .period = period, .deadline = deadline, .jitter = jitter, .offset = offset}};
+  return first_bad(set) == no_index;
+}
+static_assert(means(1, 1, 1, 0, 0));
+static_assert(!means(0, 1, 1, 0, 0) && !means(1, 0, 1, 0, 0) && !means(1, 1, 0, 0, 0));
+static_assert(!means(1, 1, 1, -1, 0) && !means(1, 1, 1, 0, -1));
+static_assert(valid(CanBus{.bit = 0}) && valid(CanBus{.errors = {.burst = 1, .every = 1}}));
+
 // What a topic says of its frame, at another priority: 131 bits of 2 us.
 constexpr Message pose =
     message_of(amiro::Odometry::frames[1], protocol::Direction::sensor, protocol::Priority::urgent,

@@ -29,6 +29,13 @@ static_assert(edge(greatest_cost, set_a, 0) == Edge{true, 10, 0});
 static_assert(edge(greatest_blocking, set_a, 0) == Edge{false, 0, 0});
 static_assert(edge(shortest_period, set_a, 0) == Edge{true, 52, 0});
 static_assert(edge(greatest_cost, set_a, 3) == Edge{false, 0, no_index});
+static_assert(edge(greatest_blocking, set_a, 3) == Edge{false, 0, no_index});
+static_assert(edge(greatest_jitter, set_a, 3) == Edge{false, 0, no_index});
+static_assert(edge(shortest_period, set_a, 3) == Edge{false, 0, no_index});
+constexpr auto invalid = in_order(std::array{Task{1, 9}, Task{1, 9}, Task{1, 0}});
+static_assert(edge(greatest_cost, invalid, 0) == Edge{false, 0, 2} &&
+              edge(greatest_blocking, invalid, 0) == Edge{false, 0, 2} &&
+              edge(greatest_jitter, invalid, 0) == Edge{false, 0, 2});
 static_assert(edge(shortest_period, in_order(std::array{Task{1, 9}, Task{1, 0}, Task{1, 9}}), 0) ==
               Edge{false, 0, 1});
 

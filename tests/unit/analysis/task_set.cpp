@@ -16,7 +16,13 @@ static_assert(!Task{}.valid() && !Task{0, 1}.valid() && !Task{1, 0}.valid() && !
 static_assert(!Task{1, -5}.valid() && !Task{1, 5, 0}.valid() && !Task{1, 5, -1}.valid());
 static_assert(!Task{1, 5, 5, -1}.valid() && !Task{1, 5, 5, 0, -1}.valid());
 
+static_assert(!Task{.cost = 1, .period = 5, .waits = -1}.valid() &&
+              !Task{.cost = 2, .period = 5, .waits = 2}.valid());
+static_assert(Task{.cost = 2, .period = 5, .waits = 1}.valid());
+
 static_assert(Processor{}.valid());
+static_assert(!Processor{.tick_cost = -1, .tick_period = 1}.valid() && !Processor{.tick_period = -1}.valid());
+static_assert(Processor{.tick_cost = 0, .tick_period = 1}.valid() && Processor{.scale = 1}.valid());
 static_assert(!Processor{.context_switch = -1}.valid() && !Processor{.interrupt = -1}.valid());
 static_assert(!Processor{.lock = -1}.valid() && !Processor{.scale = 0}.valid());
 static_assert(!Processor{.tick_cost = 1}.valid() && !Processor{.released_by_tick = true}.valid());

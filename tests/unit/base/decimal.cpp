@@ -74,6 +74,10 @@ TEST_CASE("text becomes the number it says") {
   STATIC_REQUIRE(number("-9223372036854775808") == Decimal{INT64_MIN, 0});
   STATIC_REQUIRE(number("1e100") == Decimal{1, 100});
   STATIC_REQUIRE(number("1e-100") == Decimal{1, -100});
+  const std::string small = "0." + std::string(99, '0') + "1", large = "1" + std::string(100, '0');
+  CHECK(parse_decimal(small + "e200").value == Decimal{1, 100});
+  CHECK(parse_decimal(large + "e-200").value == Decimal{1, -100});
+  CHECK(parse_decimal(small + "e201").error == Error::out_of_range);
   STATIC_REQUIRE(number("100e98") == Decimal{1, 100});
   STATIC_REQUIRE(number("-12345678901234567890") ==
                  Decimal{-1234567890123456789, 1});  // 63 bits hold its digits

@@ -67,6 +67,48 @@ TEST_CASE("commanders: three programs, and one at another priority") {
   CHECK(urgent.commanders.disputes().size() == 1);
 }
 
+TEST_CASE("commanders: two returns are an accident, three are none, within a hold period and a half each") {
+  // To and fro: from the third set point on each is a return, so long after the same one before.
+  const auto returns = [](int set_points, base::Duration apart) {
+    Heard heard;
+    for (int i = 0; i < set_points; ++i) heard.send(i * apart, "motors", i % 2 * 1000);
+    const auto disputes = heard.commanders.disputes();
+    return disputes.empty() ? 0U : disputes[0].returns;
+  };
+  CHECK(returns(4, 75ms) == 0);
+  CHECK(returns(5, 75ms) == 3);
+  CHECK(returns(20, 75ms) == 18);
+  CHECK(returns(20, 75ms + 1ns) == 0);  // 150 ms after the same one, and a little
+}
+
+TEST_CASE("commanders: of up to four programs it is noticed, of five it is not") {
+  for (const int programs : {2, 3, 4, 5}) {
+    Heard heard;
+    for (int i = 0; i < 5; ++i)
+      for (int program = 0; program < programs; ++program)
+        heard.send(i * 100ms + program * 20ms, "motors", 1000 + program);
+    CHECK(heard.commanders.disputes().size() == (programs < 5 ? 1 : 0));
+  }
+}
+
+TEST_CASE("commanders: each actuator has its own, in the order in which they were commanded first") {
+  Heard heard;
+  for (int i = 0; i < 6; ++i) {
+    heard.send(i * 50ms, "travel", i % 2);
+    heard.send(i * 50ms + 1ms, "motors", i % 2 * 1000);
+    heard.send(i * 50ms + 2ms, "follow", 1);
+  }
+  const auto disputes = heard.commanders.disputes();
+  REQUIRE(disputes.size() == 2);
+  CHECK(disputes[0].topic->name == "travel");
+  CHECK(disputes[1].topic->name == "motors");
+  CHECK(disputes[1].returns == 4);
+  // Of a board that a catalogue lacks the name is not known.
+  protocol::Catalogue without = amiro::catalogue;
+  without.boards = {};
+  for (const Finding& finding : heard.commanders.findings(without)) CHECK(finding.board.empty());
+}
+
 TEST_CASE("commanders: a light may blink") {
   Heard heard;
   for (int i = 0; i < 40; ++i) heard.send(i * 20ms, "led_1", i % 2 * 255);

@@ -266,6 +266,27 @@ TEST_CASE("diagnosis: each battery by itself") {
   CHECK_FALSE(robot.diagnosis.batteries().all[1].present);
 }
 
+TEST_CASE("diagnosis: a frame is of a battery by the names and the units of its fields") {
+  const auto& batteries = *amiro::catalogue.find("batteries");
+  const auto topic_of = [&](std::string_view name, std::string_view unit) {
+    std::vector<ocm::protocol::Field> fields{batteries.frames[0].fields.begin(),
+                                             batteries.frames[0].fields.end()};
+    for (auto& field : fields)
+      if (field.name == "voltage") field.name = name, field.unit = unit;
+    auto frame = batteries.frames[0];
+    frame.fields = fields;
+    const std::vector frames{frame};
+    auto topic = batteries;
+    topic.frames = frames;
+    const std::vector topics{topic};
+    const ocm::protocol::Catalogue catalogue{"other", 500'000, amiro::catalogue.boards, topics};
+    return Diagnosis{catalogue}.batteries().topic != nullptr;
+  };
+  CHECK(topic_of("voltage", "V"));
+  CHECK_FALSE(topic_of("voltage", "mV"));
+  CHECK_FALSE(topic_of("reserve", "V"));
+}
+
 TEST_CASE("diagnosis: a battery that says its charge in the first of two frames, and nothing of a charger") {
   using ocm::protocol::Field;
   const auto& power = *amiro::catalogue.find("power_status");

@@ -5,6 +5,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "unit/cognitive/testing/drawing.hpp"
 #include "unit/cognitive/testing/room.hpp"
 
 namespace cognitive_agreement_test {
@@ -62,6 +63,30 @@ TEST_CASE("agreement: right and wrong cells, by hand") {
   CHECK(half.f1() == Approx(2 * (5.0 / 6) * 0.5 / (5.0 / 6 + 0.5)));
   // With a tolerance of a cell the neighbour counts, too.
   CHECK(agreement(map, walls, {}, 0.10F).recall == Approx(0.6));
+}
+
+TEST_CASE("agreement: the whole of a map without room around it counts") {
+  // What is seen from 0, 0 fills the map: two cells to the left, as there is room for 12.
+  MapOptions small = options();
+  small.most_cells = 12;
+  Map map{small};
+  for (const int x : {0, -2}) hit(map, {x, 3});
+  REQUIRE(map.box() == Box{{-2, 0}, {0, 3}});
+  CHECK(agreement(map, {}, {}).occupied == 2);
+  CHECK(agreement(map, {}, {}).precision == 0.0);
+  // A tolerance reaches as far to each side, and no farther.
+  const auto recall = [&](Point wall, float tolerance_m) {
+    const std::vector<Wall> walls{{wall, wall}};
+    return agreement(ocm::test::map_of({"     ", "     ", "  #  ", "     ", "     "}), walls, {}, tolerance_m)
+        .recall;
+  };
+  for (const Point beside :
+       {Point{0.05F, 0.25F}, Point{0.45F, 0.25F}, Point{0.25F, 0.05F}, Point{0.25F, 0.45F}}) {
+    CHECK(recall(beside, 0.21F) == 1.0);
+    CHECK(recall(beside, 0.19F) == 0.0);
+  }
+  CHECK(recall({0.05F, 0.05F}, 0.27F) == 0.0);
+  CHECK(recall({0.05F, 0.05F}, 0.29F) == 1.0);
 }
 
 TEST_CASE("agreement: the place is what can be reached without crossing a wall") {

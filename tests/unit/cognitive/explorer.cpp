@@ -169,6 +169,292 @@ TEST_CASE("explorer: a corridor is as wide as the robot and its margin, or no wa
   CHECK(careful.next(0, robots, map, Time{1s}).kind != Kind::drive);
 }
 
+TEST_CASE("explorer: where a robot is that has carried out a set point") {
+  const Point end = end_of({1.0F, 2.0F, ocm::motion::pi / 2}, {90, 50});
+  CHECK(end.x_m == Approx(0.5F));
+  CHECK(end.y_m == Approx(2.0F));
+  const Point other = end_of({1.0F, 2.0F, 0.0F}, {-30, 100});
+  CHECK(other.x_m == Approx(1.0F + 0.8660254F));
+  CHECK(other.y_m == Approx(1.5F));
+}
+
+TEST_CASE("explorer: a place is known when at most 10 % are not visited, and at most 25 % not seen") {
+  struct Case {
+    Left left;
+    bool not_visited, is_known;
+  };
+  for (const Case& each : {Case{{0, 0, 0, 0}, false, false}, Case{{100, 0, 0, 0}, false, true},
+                           Case{{100, 10, 0, 25}, false, true}, Case{{100, 0, 10, 25}, false, true},
+                           Case{{100, 5, 6, 0}, true, false}, Case{{100, 11, 0, 0}, true, false},
+                           Case{{100, 0, 11, 0}, true, false}, Case{{100, 0, 0, 26}, false, false},
+                           Case{{40, 4, 0, 10}, false, true}, Case{{40, 5, 0, 10}, true, false},
+                           Case{{40, 4, 0, 11}, false, false}}) {
+    CAPTURE(each.left.edge, each.left.out_of_range, each.left.bad_link, each.left.unseen);
+    CHECK(each.left.not_visited() == each.not_visited);
+    CHECK(each.left.is_known() == each.is_known);
+  }
+}
+
+TEST_CASE("explorer: a hole counts from its least size on, however it lies, at the border of the map, too") {
+  // Unknown cells in an angle, in all four ways of turning it, with free ones around.
+  for (const auto& rows : std::vector<std::vector<std::string>>{{".....", ". ...", ".  ..", "....."},
+                                                                {".....", ".  ..", ". ...", "....."},
+                                                                {".....", ".  ..", "..  .", "....."},
+                                                                {".....", "..  .", ".  ..", "....."}}) {
+    std::vector<std::string> walled{"#######"};
+    std::size_t cells = 0;
+    for (const std::string& row : rows) {
+      walled.push_back("#" + row + "#");
+      for (const char c : row) cells += c == ' ' ? 1 : 0;
+    }
+    walled.push_back("#######");
+    const Map map = map_of(walled);
+    CHECK(frontiers(map, cells).size() >= 5);
+    CHECK(frontiers(map, cells + 1).empty());
+  }
+  // Without room around what is drawn: all of it is at the edge, and a border.
+  const Map tight = map_of({"...", "...", "..."}, 0.10F, 9);
+  REQUIRE(tight.box() == Box{{0, 0}, {2, 2}});
+  CHECK(frontiers(tight, 1).size() == 8);
+  const Explorer explorer{options()};
+  CHECK(explorer.left(tight).edge == 8);
+  CHECK(explorer.left(tight).unseen == 8);
+}
+
+TEST_CASE("explorer: what is left is counted by where it is") {
+  const Map map = map_of({"############", "#..........", "############"});
+  ExplorerOptions at = options();
+  at.home = {0.15F, 0.15F};
+  CHECK(Explorer{at}.left(map).unseen == 1);
+  at.range_m = 0.5F;  // the border is 90 cm from home
+  const Left left = Explorer{at}.left(map);
+  CHECK((left.out_of_range == 1 && left.unseen == 0 && left.bad_link == 0));
+  CHECK(left.edge == 10);
+  CHECK(left.known() == Approx(0.9));
+  at.range_m = 0.95F;
+  CHECK(Explorer{at}.left(map).unseen == 1);
+}
+
+TEST_CASE("explorer: as it is delivered, a border is looked at from 45 cm, in pieces of 60 cm at most") {
+  const std::string wall(40, '#');
+  std::vector<std::string> rows(7, "#" + std::string(39, '.'));  // cells of 10 cm: 70 cm wide, 3.9 m long
+  rows.insert(rows.begin(), wall);
+  rows.push_back(wall);
+  const Map map = map_of(rows);
+  Explorer explorer;
+  std::array robots{scout(0, map, {3, 4})};
+  robots[0].body.shape = Shape{};
+  Order order;
+  int pieces = 0;
+  const Time start{1s};
+  for (; pieces < 20; ++pieces) {
+    order = explorer.next(0, robots, map, start);
+    if (order.kind != Kind::drive) break;
+    CHECK(order.set_point.distance <= 60);
+    Pose& pose = robots[0].body.pose;
+    const Point to = end_of(pose, order.set_point);
+    pose = {to.x_m, to.y_m,
+            ocm::motion::wrap(pose.heading_rad + ocm::motion::radians(order.set_point.angle))};
+    REQUIRE(explorer.goal(0));
+    // The last cells are at 3.95 m; seen are at least three of them.
+    CHECK(3.95F - explorer.goal(0)->x_m <= 0.45F);
+    CHECK(3.95F - explorer.goal(0)->x_m > 0.2F);
+  }
+  CHECK(pieces >= 6);
+  CHECK(order.kind == Kind::look);
+  CHECK(explorer.counters().goals == 1);
+  CHECK(explorer.counters().pieces == static_cast<unsigned>(pieces));
+  CHECK(distance_m(place(robots[0].body.pose), *explorer.goal(0)) <= 0.06F);
+  // Before a whole turn of the tower it does not go on.
+  CHECK(order.until >= start + 3s);
+  CHECK(order.until <= start + 6s);
+}
+
+TEST_CASE("explorer: two or fewer border cells, or a hole of 15, are no goal as it is delivered") {
+  const auto first = [](const std::vector<std::string>& rows) {
+    const Map map = map_of(rows);
+    Explorer explorer;
+    std::array robots{scout(0, map, {1, 1})};
+    robots[0].body.shape.width_m = robots[0].body.shape.length_m = 0.02F;
+    return explorer.next(0, robots, map, Time{}).kind;
+  };
+  const std::string wall(8, '#');
+  const auto open = [&](int lines) {
+    std::vector<std::string> rows{wall};
+    for (int i = 0; i < 5; ++i) rows.push_back(i < lines ? "#......." : "#......#");
+    rows.push_back(wall);
+    return rows;
+  };
+  CHECK(first(open(2)) == Kind::done);
+  CHECK(first(open(3)) != Kind::done);
+  const auto hole = [&](const std::string& last) {
+    std::vector<std::string> rows{"########"};
+    rows.insert(rows.end(), {"#....  #", "#....  #", "#....  #", "#....  #", "#....  #", "#....  #",
+                             "#....  #", "#...." + last + "#"});
+    rows.push_back("########");
+    rows.push_back("########");
+    return rows;
+  };
+  CHECK(first(hole("# ")) == Kind::done);  // 15
+  CHECK(first(hole("  ")) != Kind::done);  // 16
+}
+
+TEST_CASE("explorer: of two borders the one that shows more for its way") {
+  // Standing in a corridor of one cell: two border cells ahead to the left, or more to the right.
+  const auto goes_right = [](int left_cells, int left_way, int right_cells, int right_way) {
+    const int width = left_way + right_way + 5;
+    std::vector<std::string> rows(9, std::string(static_cast<std::size_t>(width), '#'));
+    for (int x = 1; x + 1 < width; ++x) rows[4][static_cast<std::size_t>(x)] = '.';
+    for (int i = 0; i < left_cells; ++i)
+      rows[static_cast<std::size_t>(4 - left_cells / 2 + i)]
+          [1] = '.',
+       rows[static_cast<std::size_t>(4 - left_cells / 2 + i)][0] = ' ';
+    for (int i = 0; i < right_cells; ++i) {
+      std::string& row = rows[static_cast<std::size_t>(4 - right_cells / 2 + i)];
+      row[row.size() - 2] = '.', row[row.size() - 1] = ' ';
+    }
+    const Map map = map_of(rows);
+    ExplorerOptions near = options();
+    near.view_m = 0.25F;
+    Explorer explorer{near};
+    const std::array robots{scout(0, map, {2 + left_way, 4})};
+    const Order order = explorer.next(0, robots, map, Time{});
+    REQUIRE(order.kind == Kind::drive);
+    return order.set_point.angle == 0;
+  };
+  CHECK_FALSE(goes_right(3, 6, 3, 12));
+  CHECK(goes_right(3, 12, 3, 6));
+  CHECK(goes_right(1, 8, 5, 12));
+  CHECK_FALSE(goes_right(5, 12, 1, 8));
+}
+
+TEST_CASE("explorer: a robot that only creeps gives its goal up after so many pieces") {
+  const Map map = map_of({std::string(60, '#'), "#" + std::string(59, '.'), std::string(60, '#')});
+  ExplorerOptions few = options();
+  few.most_pieces = 5;
+  Explorer explorer{few};
+  std::array robots{scout(0, map, {1, 1})};
+  for (unsigned i = 1; i <= 5; ++i) {
+    CHECK(explorer.next(0, robots, map, Time{}).kind == Kind::drive);
+    CHECK(explorer.counters() == ExplorerCounters{.goals = 1, .pieces = i});
+    robots[0].body.pose.x_m += 0.03F;
+  }
+  // The next one is to the same border: a second try.
+  CHECK(explorer.next(0, robots, map, Time{}).kind == Kind::drive);
+  CHECK(explorer.counters() == ExplorerCounters{.goals = 2, .stalled = 1, .pieces = 6});
+  // A step of less than 2 cm is none; two of them in a row, and it is given up. One of more, and it counts
+  // from the beginning.
+  explorer.forget(0);
+  Explorer again{options()};
+  for (const float step : {0.0F, 0.01F, 0.025F, 0.015F}) {
+    robots[0].body.pose.x_m += step;
+    CHECK(again.next(0, robots, map, Time{}).kind == Kind::drive);
+    CHECK(again.counters().stalled == 0);
+  }
+  robots[0].body.pose.x_m += 0.019F;
+  (void)again.next(0, robots, map, Time{});
+  CHECK(again.counters().stalled == 1);
+}
+
+TEST_CASE("explorer: what stopped it is remembered, and the next way leads around it") {
+  const Map map = map_of(std::vector<std::string>(21, std::string(21, '.')));
+  ExplorerOptions near = options();
+  near.view_m = 0.15F;
+  Explorer explorer{near};
+  std::array robots{scout(0, map, {10, 10})};
+  Order order;
+  for (int i = 0; i < 3; ++i) order = explorer.next(0, robots, map, Time{});
+  CHECK(explorer.counters().stalled == 1);
+  REQUIRE(order.kind == Kind::drive);
+  // Whatever is ahead of it is 2 cm before its body: no way leads through there now.
+  const Point stop = ocm::motion::to_world(robots[0].body.pose, {0.03F, 0.0F});
+  const Point to = end_of(robots[0].body.pose, order.set_point);
+  CHECK(distance_m(Wall{place(robots[0].body.pose), to}, stop) > 0.02F);
+}
+
+TEST_CASE(
+    "explorer: as it is delivered, goals of two robots are 60 cm apart, and not much more where there is no "
+    "room") {
+  std::vector<std::string> rows(9, std::string(9, '.'));  // 90 by 90 cm
+  const Map map = map_of(rows);
+  Explorer explorer;
+  std::array robots{scout(0, map, {2, 4}), scout(1, map, {6, 4})};
+  (void)explorer.next(0, robots, map, Time{});
+  REQUIRE(explorer.goal(0));
+  (void)explorer.next(1, robots, map, Time{});
+  if (explorer.goal(1)) CHECK(distance_m(*explorer.goal(0), *explorer.goal(1)) >= 0.6F);
+  // Where there is room, it gets one.
+  const Map hall = map_of(std::vector<std::string>(9, std::string(24, '.')));
+  Explorer both;
+  std::array apart{scout(0, hall, {9, 4}), scout(1, hall, {14, 4})};
+  (void)both.next(0, apart, hall, Time{});
+  (void)both.next(1, apart, hall, Time{});
+  REQUIRE(both.goal(0));
+  REQUIRE(both.goal(1));
+  CHECK(distance_m(*both.goal(0), *both.goal(1)) >= 0.6F);
+  CHECK(distance_m(*both.goal(0), *both.goal(1)) < 1.6F);
+}
+
+TEST_CASE(
+    "explorer: called back, it goes home in pieces, waits when it does not come nearer, and shrinks the "
+    "range once a call") {
+  const Map map = map_of({"####################", "#..................", "####################"});
+  ExplorerOptions at = options();
+  at.home = {0.15F, 0.15F};
+  Explorer explorer{at};
+  std::array robots{scout(0, map, {12, 1})};
+  robots[0].call_back = true;
+  std::vector<Kind> kinds;
+  for (int i = 0; i < 4; ++i) kinds.push_back(explorer.next(0, robots, map, Time{}).kind);
+  CHECK(kinds == std::vector{Kind::drive, Kind::drive, Kind::wait, Kind::wait});
+  CHECK(explorer.range_m() == Approx(0.9F));  // 20 cm less than where it was called
+  CHECK(explorer.counters() == ExplorerCounters{.pieces = 2, .calls = 1});
+  // Well again it is sent again, and a second call is one more; not nearer than half a metre.
+  robots[0].call_back = false;
+  CHECK(explorer.next(0, robots, map, Time{}).kind == Kind::drive);
+  CHECK(explorer.counters().grown > 0);
+  robots[0] = scout(0, map, {5, 1});
+  robots[0].call_back = true;
+  (void)explorer.next(0, robots, map, Time{});
+  CHECK(explorer.counters().calls == 2);
+  CHECK(explorer.range_m() == Approx(0.5F));
+  // It grows by half a metre each time.
+  const auto grown = explorer.counters().grown;
+  robots[0].call_back = false;
+  (void)explorer.next(0, robots, map, Time{});
+  const auto times = explorer.counters().grown - grown;
+  CHECK(times > 0);
+  CHECK(explorer.range_m() == Approx(0.5F + 0.5F * static_cast<float>(times)));
+}
+
+TEST_CASE("explorer: who is in a tall map goes home as well as in a wide one") {
+  std::vector<std::string> rows{"#.#"};
+  for (int i = 0; i < 18; ++i) rows.emplace_back("#.#");
+  rows.emplace_back("###");
+  const Map map = map_of(rows);
+  ExplorerOptions at = options();
+  at.home = {0.15F, 0.15F};
+  Explorer explorer{at};
+  std::array robots{scout(0, map, {1, 12})};
+  robots[0].call_back = true;
+  const Order order = explorer.next(0, robots, map, Time{});
+  REQUIRE(order.kind == Kind::drive);
+  CHECK(order.set_point.angle == -90);
+  CHECK(order.set_point.distance >= 100);
+}
+
+TEST_CASE("explorer: a robot without a goal waits while another has one, and is done when none has") {
+  const Map map = map_of({"#####", "#...", "#...#", "#####"});
+  Explorer explorer{options()};
+  std::vector<Scout> robots{scout(0, map, {1, 1}), scout(1, map, {1, 2})};
+  CHECK(explorer.next(0, robots, map, Time{}).kind != Kind::done);
+  CHECK(explorer.next(1, robots, map, Time{}).kind == Kind::wait);
+  CHECK(explorer.counters().blocked == 1);
+  robots[0].lost = true;
+  CHECK(explorer.next(1, robots, map, Time{}).kind != Kind::wait);
+  CHECK(explorer.counters().blocked == 1);
+}
+
 TEST_CASE("explorer: nothing to do") {
   const Map closed = map_of({"####", "#..#", "####"});
   Explorer explorer{options()};

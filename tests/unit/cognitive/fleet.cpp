@@ -348,6 +348,70 @@ TEST_CASE("fleet: a pose near the range calls back, until it is well inside") {
   CHECK(at(740) == Advice::stay);
 }
 
+TEST_CASE("fleet: a robot behind the last is none, and changes nothing of the others") {
+  const auto day = [](bool with_others) {
+    Fleet fleet;
+    std::string said;
+    const auto pass = [&](Time now) {
+      if (with_others) {
+        constexpr std::size_t none = Fleet::most_robots;
+        fleet.linked(none, "X", now);
+        fleet.set_origin(none, {1.0F, 2.0F, 3.0F});
+        CHECK_FALSE(fleet.go(none, {0, 10}, now));
+        CHECK_FALSE(fleet.stop(none, now));
+        CHECK_FALSE(fleet.calibrate(none, now));
+        CHECK_FALSE(fleet.pause(none, now));
+        CHECK_FALSE(fleet.unpause(none, now));
+        CHECK_FALSE(fleet.ping(none));
+        CHECK_FALSE(fleet.ask_who(none, now));
+        fleet.feed("[" + std::to_string(none) + "]:X:{S,IDL}\n", now);
+        fleet.out(none, now);
+        fleet.unlinked(none);
+      }
+      fleet.expire(now);
+      said += sayings(fleet);
+      fleet.out(0, now);
+    };
+    fleet.linked(0, "AVR", second);
+    pass(second);
+    fleet.feed("[0]:AVR:{S,IDL}\n{U,0,0,0,0,0,0,0,0}\n", second);
+    (void)fleet.go(0, {0, 20}, second);
+    pass(second);
+    fleet.feed("[0]:AVR:{S,IDL}\n{U,0,0,0,0,0,0,0,0}\n", second + 1s);
+    pass(second + 1s);
+    (void)fleet.stop(0, second + 2s);
+    pass(second + 2s);
+    pass(second + 3s);
+    return said;
+  };
+  CHECK(day(false).starts_with("0:{U,0,20}\n0:{U,0,20}\n0:{U,0,0}\n"));
+  CHECK(day(true) == day(false));
+}
+
+TEST_CASE("fleet: the deadline that a robot says is its own, if it can be one") {
+  for (const auto& [said, deadline] :
+       {std::pair<const char*, ocm::base::Duration>{"1", 1ms}, {"2000", 2s}, {"0", 5s}, {"-1", 5s}}) {
+    Fleet fleet;
+    fleet.feed("[0]:AVR:{H,15,20,-4,6,0,90,180,270," + std::string{said} + ",0}\n", second);
+    CAPTURE(said);
+    REQUIRE(fleet.robot(0).handshake);
+    CHECK(fleet.deadline_of(fleet.robot(0)) == deadline);
+    fleet.expire(second + deadline);
+    CHECK_FALSE(fleet.robot(0).lost);
+    fleet.expire(second + deadline + 1ns);
+    CHECK(fleet.robot(0).lost);
+  }
+}
+
+TEST_CASE("fleet: for a second an update may have been under way when a robot was paused") {
+  for (const auto& [after, paused] : {std::pair<ocm::base::Duration, bool>{1s, true}, {1s + 1ns, false}}) {
+    Fleet fleet;
+    REQUIRE(fleet.pause(0, second));
+    fleet.feed("[0]:AVR:{U,0,0,0,0,0,0,0,0}\n", second + after);
+    CHECK(fleet.robot(0).paused == paused);
+  }
+}
+
 TEST_CASE("fleet: any bytes: nothing but counters") {
   Random random{7};
   Fleet fleet;

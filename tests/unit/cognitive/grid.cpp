@@ -29,6 +29,8 @@ TEST_CASE("grid: boxes by hand") {
   static_assert(box == Box{{-1, 3}, {2, 4}} && box.width() == 4 && box.height() == 2);
   static_assert(box.index({-1, 3}) == 0 && box.index({2, 3}) == 3 && box.index({-1, 4}) == 4);
   static_assert(box.has({0, 3}) && !box.has({0, 5}) && box.widened(1).has({0, 5}));
+  static_assert(box.widened(1) == Box{{-2, 2}, {3, 5}});
+  static_assert(!box.has({-2, 3}) && !box.has({3, 3}) && !box.has({0, 2}));
   CHECK(box.cells() == 8);
 }
 
@@ -38,9 +40,14 @@ TEST_CASE("grid: points and cells") {
   CHECK(raster.cell({-0.25F, 0.31F}) == Cell{-3, 3});
   CHECK(raster.middle({-3, 3}).x_m == Approx(-0.25F));
   CHECK(Raster{0.0F}.resolution_m() == 0.04F);
+  CHECK(Raster{0.001F}.resolution_m() == 0.001F);
+  CHECK(Raster{0.0009F}.resolution_m() == 0.04F);
+  CHECK(Raster{1.0F}.resolution_m() == 1.0F);
+  CHECK(Raster{1.01F}.resolution_m() == 0.04F);
   CHECK(Raster{std::numeric_limits<float>::quiet_NaN()}.resolution_m() == 0.04F);
   CHECK(Raster::has({1000.0F, -1000.0F}));
   CHECK_FALSE(Raster::has({1000.1F, 0.0F}));
+  CHECK_FALSE(Raster::has({0.0F, -1000.1F}));
   CHECK_FALSE(Raster::has({0.0F, std::numeric_limits<float>::quiet_NaN()}));
   CHECK_FALSE(Raster::has({-std::numeric_limits<float>::infinity(), 0.0F}));
 }
@@ -113,6 +120,11 @@ TEST_CASE("grid: distance from a wall") {
   const Wall wall{{0.0F, 0.0F}, {2.0F, 0.0F}};
   CHECK(distance_m(wall, {1.0F, 0.5F}) == Approx(0.5F));
   CHECK(distance_m(wall, {-3.0F, 4.0F}) == Approx(5.0F));
+  // Beside each end and the middle of a slanting one, and beyond both ends.
+  const Wall slanting{{10.0F, 20.0F}, {13.0F, 24.0F}};
+  for (const Point p : {Point{14.0F, 17.0F}, Point{15.5F, 19.0F}, Point{9.0F, 27.0F}, Point{17.0F, 21.0F},
+                        Point{16.0F, 28.0F}, Point{7.0F, 16.0F}})
+    CHECK(distance_m(slanting, p) == Approx(5.0F));
   CHECK(distance_m(Wall{{1.0F, 1.0F}, {1.0F, 1.0F}}, {1.0F, 2.0F}) == Approx(1.0F));
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -103,6 +104,136 @@ TEST_CASE("map: a handshake that cannot be is not believed, a short one is compl
   CHECK(shape_of(old).tower.ahead_of_axle_m == Shape{}.tower.ahead_of_axle_m);
   old.given = 4;
   CHECK(shape_of(old).tower.ahead_of_axle_m == Approx(0.5F));
+}
+
+TEST_CASE("map: what of a handshake is believed, at its ends, and by how many of its fields were given") {
+  const auto shape = [](auto change) {
+    Handshake handshake{.width = 10,
+                        .length = 20,
+                        .axle_offset = -4,
+                        .tower_offset = 6,
+                        .sensor1 = 361,
+                        .sensor2 = 91,
+                        .sensor3 = 181,
+                        .sensor4 = 271,
+                        .sensor_out = 3};
+    change(handshake);
+    return shape_of(handshake);
+  };
+  const auto width = [&](int cm) {
+    return shape([cm](Handshake& h) { h.width = static_cast<std::int16_t>(cm); }).width_m;
+  };
+  const auto length = [&](int cm) {
+    return shape([cm](Handshake& h) { h.length = static_cast<std::int16_t>(cm); }).length_m;
+  };
+  for (const auto& of : {std::function<float(int)>{width}, std::function<float(int)>{length}}) {
+    CHECK(of(1) == Approx(0.01F));
+    CHECK(of(100) == Approx(1.0F));
+    for (const int wrong : {0, -1, 101}) CHECK(of(wrong) == of(-5));
+  }
+  CHECK(width(0) == Shape{}.width_m);
+  CHECK(length(0) == Shape{}.length_m);
+  const auto centre = [&](int cm) {
+    return shape([cm](Handshake& h) { h.axle_offset = static_cast<std::int16_t>(cm), h.tower_offset = 0; });
+  };
+  for (const int cm : {-100, -1, 1, 100}) {
+    CHECK(centre(cm).centre_m == Approx(-static_cast<float>(cm) / 100));
+    CHECK(centre(cm).tower.ahead_of_axle_m == Approx(-static_cast<float>(cm) / 100));
+  }
+  for (const int cm : {-101, 101}) {
+    CHECK(centre(cm).centre_m == 0.0F);
+    CHECK(centre(cm).tower.ahead_of_axle_m == Shape{}.tower.ahead_of_axle_m);
+  }
+  const auto ahead = [&](int cm) {
+    return shape([cm](Handshake& h) { h.tower_offset = static_cast<std::int16_t>(cm); })
+        .tower.ahead_of_axle_m;
+  };
+  CHECK(ahead(100) == Approx(1.04F));
+  CHECK(ahead(-100) == Approx(-0.96F));
+  for (const int cm : {-101, 101}) CHECK(ahead(cm) == Shape{}.tower.ahead_of_axle_m);
+  const auto out = [&](int cm) {
+    return shape([cm](Handshake& h) { h.sensor_out = static_cast<std::int16_t>(cm); }).tower.sensor_out_m;
+  };
+  CHECK(out(0)[3] == 0.0F);
+  CHECK(out(100)[0] == Approx(1.0F));
+  // So many were given: width, length, axle, tower, then, all at once, where the sensors look, and at last
+  // how far out.
+  const Shape usual;
+  for (int given = 0; given <= 11; ++given) {
+    CAPTURE(given);
+    const Shape it = shape([given](Handshake& h) { h.given = static_cast<std::uint8_t>(given); });
+    CHECK(it.width_m == Approx(given >= 1 ? 0.10F : usual.width_m));
+    CHECK(it.length_m == Approx(given >= 2 ? 0.20F : usual.length_m));
+    CHECK(it.centre_m == Approx(given >= 3 ? 0.04F : usual.centre_m));
+    CHECK(it.tower.ahead_of_axle_m == Approx(given >= 4 ? 0.10F : usual.tower.ahead_of_axle_m));
+    for (std::size_t i = 0; i < 4; ++i) {
+      CHECK(it.tower.sensor_heading_deg[i] ==
+            Approx(given >= 8 ? 90.0F * static_cast<float>(i) + 1 : usual.tower.sensor_heading_deg[i]));
+      CHECK(it.tower.sensor_out_m[i] == Approx(given >= 11 ? 0.03F : usual.tower.sensor_out_m[i]));
+    }
+  }
+}
+
+TEST_CASE("map: where a robot stands is free, within its inner circle around the middle of its body") {
+  MapOptions options;
+  options.resolution_m = 0.05F;
+  for (const bool is_long : {true, false}) {
+    Map map{options};
+    Shape shape;
+    shape.width_m = is_long ? 0.30F : 0.50F;
+    shape.length_m = is_long ? 0.50F : 0.30F;
+    shape.centre_m = 0.10F;
+    // It looks to the left of the map: its middle is 10 cm above its axle.
+    map.take({{1.025F, 2.025F, ocm::motion::pi / 2}, shape}, {0, 0, 0, 0, 9, 9, 9, 9});
+    int stands = 0;
+    for (int y = 0; y < 100; ++y)
+      for (int x = 0; x < 100; ++x) {
+        const auto p = map.raster().middle({x, y});
+        const double far = std::hypot(p.x_m - 1.025, p.y_m - 2.125);
+        if (std::abs(far - 0.15) < 1e-4 || map.log_odds({x, y}) > 0) continue;  // what is seen so near
+        CHECK((map.log_odds({x, y}) < 0) == (far < 0.15));
+        stands += far < 0.15 ? 1 : 0;
+      }
+    CHECK(stands > 15);
+  }
+}
+
+TEST_CASE("map: one sharp look is enough for a wall; a beam frees what its width touches") {
+  Map map{cells_of_10_cm()};
+  map.take({middle, {}}, {0, 0, 0, 0, 36, 0, 0, 0});
+  CHECK(map.state({4, 0}) == CellState::occupied);
+  MapOptions options;  // half as wide as long, in hundredths: 1.75
+  options.resolution_m = 0.01F;
+  Map fine{options};
+  Shape point;
+  point.width_m = point.length_m = 0.0F;
+  fine.take({{0.005F, 0.005F, 0.0F}, point}, {0, 0, 0, 0, 0, 0, 0, 0});
+  for (const int y : {-1, 0, 1}) CHECK(fine.log_odds({55, y}) == Approx(-0.1F));
+  for (const int y : {-2, 2}) CHECK(fine.log_odds({55, y}) == 0.0F);
+  CHECK(fine.log_odds({20, 1}) == 0.0F);
+  CHECK(fine.log_odds({59, 0}) == Approx(-0.1F));
+  CHECK(fine.log_odds({61, 0}) == 0.0F);
+}
+
+TEST_CASE("map: what is seen is a robot within its circle and 5 cm, and at 80 cm it is seen still") {
+  const auto on_robot = [](Pose pose) {
+    Map map;
+    const std::array others{Body{pose, {}}};
+    map.take({{1.0F, 2.0F, 0.0F}, {}}, {0, 0, 0, 0, 50, 0, 0, 0}, others);
+    CHECK(map.counters().on_robots + map.counters().hits == 1);
+    return map.counters().on_robots == 1;
+  };
+  // The beam ends at 1.5, 2.0; the circle is that of 15 by 20 cm.
+  const float radius = std::hypot(0.075F, 0.10F) + 0.05F;
+  for (const Pose sign : {Pose{1, 0, 0}, Pose{-1, 0, 0}, Pose{0, 1, 0}, Pose{0, -1, 0}}) {
+    CHECK(on_robot({1.5F + sign.x_m * (radius - 0.002F), 2.0F + sign.y_m * (radius - 0.002F), 0}));
+    CHECK_FALSE(on_robot({1.5F + sign.x_m * (radius + 0.002F), 2.0F + sign.y_m * (radius + 0.002F), 0}));
+  }
+  Map map{cells_of_10_cm()};
+  map.take({middle, {}}, {0, 0, 0, 0, 80, 0, 10, -1});
+  CHECK(map.counters().hits == 2);
+  CHECK(map.counters().near == 0);
+  CHECK(map.log_odds({8, 0}) == Approx(0.45F).margin(1e-4));
 }
 
 TEST_CASE(

@@ -1,5 +1,6 @@
 #include "ocm/cognitive/routes.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -84,6 +85,125 @@ TEST_CASE("routes: around a wall, by hand") {
   CHECK_FALSE(wide.reaches({3, 1}));
   CHECK(wide.way_to({3, 1}).empty());
   CHECK(wide.reaches({7, 2}));
+}
+
+TEST_CASE("routes: what a way costs, by hand") {
+  // In a corridor half a cell is free to each side: 5 cm. At 10 cm beyond its circle a metre costs one, with
+  // none three.
+  const Map corridor = map_of({"########", "#......#", "########"});
+  const auto along = [&](float radius_m) {
+    return Routes(Terrain{corridor}, middle_of(corridor, {1, 1}), radius_m).cost({6, 1});
+  };
+  CHECK(along(0.0F) == Approx(0.5F * 2.0F));
+  CHECK(along(0.025F) == Approx(0.5F * 2.5F));
+  CHECK(along(0.05F) == Approx(0.5F * 3.0F));
+  const Map field = map_of(std::vector<std::string>(11, std::string(11, '.')));
+  const Terrain open{field};
+  const Routes routes{open, middle_of(field, {5, 5}), 0.05F};
+  CHECK(routes.cost({5, 5}) == 0.0F);
+  for (const Cell c : {Cell{9, 5}, Cell{1, 5}, Cell{5, 9}, Cell{5, 1}}) CHECK(routes.cost(c) == Approx(0.4F));
+  for (const Cell c : {Cell{9, 9}, Cell{1, 9}, Cell{9, 1}, Cell{1, 1}})
+    CHECK(routes.cost(c) == Approx(0.4F * 1.4142135F));
+  CHECK(routes.cost({8, 6}) == Approx(0.2F + 0.1F * 1.4142135F));
+  // A corner is not cut, whichever of both sides is not free, and whatever is there.
+  for (const char blocks : {'#', ' '})
+    for (const bool above : {false, true}) {
+      std::vector<std::string> rows{"...", "...", "..."};
+      rows[above ? 0 : 1][above ? 1 : 2] = blocks;  // of the way from 1, 1 to 2, 2
+      const Map map = map_of(rows);
+      CHECK(Routes(Terrain{map}, middle_of(map, {1, 1}), 0.0F).cost({2, 2}) > 0.19F);
+    }
+}
+
+TEST_CASE("routes: costs of all cells, against steps that are tried until none is better") {
+  Random random{9};
+  int reached = 0;
+  for (int run = 0; run < 60; ++run) {
+    std::vector<std::string> rows(9, std::string(11, '.'));
+    for (auto& row : rows)
+      for (char& c : row) {
+        const unsigned which = random.below(12);
+        if (which == 0) c = '#';
+        if (which == 1) c = ' ';
+      }
+    const Map map = map_of(rows, 0.10F, run % 2 == 0 ? 99 : 1 << 20);
+    const Terrain terrain{map};
+    const Cell start{random.within(0, 10), random.within(0, 8)};
+    if (!map.box().has(start)) continue;
+    const float radius = static_cast<float>(random.below(4)) * 0.05F;
+    const Routes routes{terrain, middle_of(map, start), radius};
+    constexpr double none = 1e9;
+    double costs[9][11];
+    for (auto& line : costs)
+      for (double& cost : line) cost = none;
+    costs[start.y][start.x] = 0;
+    const auto free = [&](int x, int y) { return map.state({x, y}) == CellState::free; };
+    for (bool better = true; better;) {
+      better = false;
+      for (int y = 0; y < 9; ++y)
+        for (int x = 0; x < 11; ++x)
+          for (int b = std::max(0, y - 1); b <= std::min(8, y + 1); ++b)
+            for (int a = std::max(0, x - 1); a <= std::min(10, x + 1); ++a) {
+              if ((a == x && b == y) || costs[y][x] == none || !free(a, b) || !free(a, y) || !free(x, b)) {
+                // The side cells of a straight step are the two cells themselves: its first one may be
+                // anything.
+                const bool straight = (a == x) != (b == y);
+                if (!straight || costs[y][x] == none || !free(a, b)) continue;
+              }
+              const double here = terrain.clearance_m({x, y}), there = terrain.clearance_m({a, b});
+              if (there < radius && !(here < radius && there > here)) continue;
+              const double narrow = std::clamp(1 - (there - radius) / 0.10, 0.0, 1.0);
+              const double cost =
+                  costs[y][x] + 0.1 * (a != x && b != y ? std::sqrt(2.0) : 1) * (1 + 2 * narrow);
+              if (cost >= costs[b][a] - 1e-9) continue;
+              costs[b][a] = cost;
+              better = true;
+            }
+    }
+    for (int y = 0; y < 9; ++y)
+      for (int x = 0; x < 11; ++x) {
+        CAPTURE(run, x, y);
+        if (costs[y][x] == none)
+          REQUIRE_FALSE(routes.reaches({x, y}));
+        else
+          REQUIRE(routes.cost({x, y}) == Approx(costs[y][x]).margin(1e-4));
+        reached += costs[y][x] == none ? 0 : 1;
+      }
+  }
+  CHECK(reached > 500);
+}
+
+TEST_CASE("routes: what is seen, what is open, and what is straight, by hand") {
+  const Map map = map_of({".......", "...#...", ".......", ".... ..", "......."});
+  const Terrain terrain{map};
+  const auto at = [&](int x, int y) { return middle_of(map, {x, y}); };
+  CHECK(terrain.sees(at(1, 2), at(5, 2)));
+  CHECK_FALSE(terrain.sees(at(1, 3), at(5, 3)));
+  CHECK(terrain.sees(at(1, 3), at(3, 3)));        // the wall itself
+  CHECK_FALSE(terrain.sees(at(3, 3), at(5, 3)));  // but not out of it
+  CHECK(terrain.sees(at(1, 1), at(6, 1)));        // nothing that is known hides it
+  CHECK_FALSE(terrain.open(at(1, 3), at(5, 3)));
+  CHECK_FALSE(terrain.open(at(1, 3), at(3, 3)));
+  CHECK(terrain.open(at(3, 3), at(5, 3)));
+  CHECK(terrain.open(at(1, 1), at(6, 1)));
+  // In line 2 a robot is half a cell below the wall; a wider one that begins closer comes no closer.
+  CHECK(terrain.straight(at(0, 2), at(6, 2), 0.05F));
+  CHECK_FALSE(terrain.straight(at(0, 2), at(6, 2), 0.06F));
+  CHECK(terrain.straight(at(3, 2), at(6, 2), 0.06F));
+  CHECK_FALSE(terrain.straight(at(0, 1), at(6, 1), 0.0F));
+}
+
+TEST_CASE("routes: others are kept off around each leg, and where they stand") {
+  const Map map = map_of(std::vector<std::string>(9, std::string(9, '.')));
+  const auto at = [&](int x, int y) { return middle_of(map, {x, y}); };
+  const std::vector<Moving> others{{{at(1, 1), at(5, 1), at(5, 5)}, 0.04F}, {{at(1, 7)}, 0.02F}};
+  const Terrain terrain{map, others};
+  for (const Cell c : {Cell{1, 1}, Cell{3, 1}, Cell{5, 1}, Cell{5, 3}, Cell{5, 5}})
+    CHECK(terrain.clearance_m(c) == Approx(-0.04F));
+  CHECK(terrain.clearance_m({3, 3}) == Approx(0.16F));
+  CHECK(terrain.clearance_m({1, 7}) == Approx(-0.02F));
+  CHECK(terrain.clearance_m({8, 8}) == Approx(std::hypot(0.3F, 0.3F) - 0.04F));
+  CHECK(Terrain{map, {{Moving{}}}}.clearance_m({1, 1}) > 1000.0F);  // one that is nowhere
 }
 
 TEST_CASE("routes: what was not seen is no way") {

@@ -111,6 +111,33 @@ TEST_CASE("server: a link that dies is reported, and what is said into it fails 
   CHECK(bench.central.robots[0].confirmed);
 }
 
+TEST_CASE("server: words for which there is no room are as if the air had lost them") {
+  Server server{{}, {.most_requests = 1}};
+  const Time now{1s};
+  server.feed("[0]:A:{S,IDL}\n[0]:A:{U,0,0,0,0,0,0,0,0}\n", now);
+  REQUIRE(server.client().scan(0s));  // the only place
+  REQUIRE(server.fleet().go(0, {0, 20}, now));
+  server.expire(now);
+  CHECK(server.unsaid() == 1);
+  CHECK(server.fleet().counters().words == 1);
+  // So what follows can be said.
+  server.fleet().stop(0, now + 1s);
+  CHECK(server.fleet().counters().words == 2);
+}
+
+TEST_CASE("server: of a central that is silent it is known at once what has failed") {
+  Server server;
+  REQUIRE(server.client().connect(0));
+  std::optional<ocm::mapper::server::CentralEvent> event;
+  for (Time now{1s}; !event && now < Time{60s}; now += 50ms) {
+    server.expire(now);
+    event = server.next_event();
+    CHECK(server.client().idle() == event.has_value());
+  }
+  REQUIRE(event);
+  CHECK(event->kind == ocm::mapper::server::CentralEvent::Kind::failed);
+}
+
 TEST_CASE("server: links that die at any time: who is lost is lost, who is not is heard") {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     CAPTURE(seed);

@@ -50,6 +50,8 @@ TEST_CASE("a set point of the wrong length moves nothing") {
   for (const char* text : {"201#", "201#00", "201#50C30000000000"}) board.receive(text, 0s);
   CHECK(board.set_points.empty());
   CHECK(board.controller.counters().bad_length == 3);
+  CHECK(board.controller.counters().set_points == 0);
+  CHECK(board.controller.counters().foreign == 0);  // it is its own all the same
 }
 
 TEST_CASE("a set point that is too long lights nothing") {

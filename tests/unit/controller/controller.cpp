@@ -39,6 +39,36 @@ TEST_CASE("a bad request is refused, counted by cause, and changes nothing") {
   }
 }
 
+TEST_CASE("every frame is counted once, by what became of it") {
+  Board board;
+  for (const char* text :
+       {"208#01F40100", "201#50C3000000000000", "201#00", "208#03", "21E#02", "204#02", "208#02"})
+    board.receive(text, 0s);
+  protocol::Counters expected;
+  expected.received = 7;
+  expected.foreign = 1;
+  expected.requests = 3;
+  expected.set_points = 1;
+  expected.bad_length = 1;
+  expected.bad_mode = 1;
+  expected.samples = 4;  // two of the gyroscope, and the two refusals
+  expected.sent = 4;
+  expected.not_sampled = 1;
+  CHECK(board.controller.counters() == expected);
+  CHECK(board.bus.frames.size() == 4);
+  board.bus.broken = true;
+  board.receive("208#02", 1ms);
+  expected.received = 8;
+  expected.requests = 4;
+  expected.samples = 5;
+  expected.send_failed = 1;
+  CHECK(board.controller.counters() == expected);
+  board.controller.bus_lost();
+  expected.bus_lost = 1;
+  CHECK(board.controller.counters() == expected);
+  CHECK(protocol::Counters{} == Board{}.controller.counters());
+}
+
 TEST_CASE("a board is silent on what is not its own") {
   Board board;
   for (const char* text :

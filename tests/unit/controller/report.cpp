@@ -55,6 +55,23 @@ TEST_CASE("refusal: the board counts what a host on its serial line has lost") {
   CHECK(texts(board.bus) == std::vector<std::string>{"71D#000000000000FFFF"});  // stays at its end
 }
 
+TEST_CASE("refusal: the board counts the samples that it could not take") {
+  Board board;
+  for (int i = 0; i < 3; ++i) board.receive("204#02", 0s);  // the floor sensors never answer in this fixture
+  board.receive("31D#02", 1s);
+  CHECK(texts(board.bus) == std::vector<std::string>{"71D#0000000003000000"});
+}
+
+TEST_CASE("status: what nothing is known of is zero, but for the load") {
+  const auto status = controller::make_status<Status>({}, {});
+  CHECK(status.encode(0) == can::Payload{});
+  CHECK(status.health.load == controller::Health::unknown_load);
+  CHECK(status.health == amiro::DiWheelDriveStatusHealth{.load = controller::Health::unknown_load});
+  STATIC_REQUIRE(controller::Verdict{} == controller::Verdict{false, base::Error::none});
+  STATIC_REQUIRE(controller::Refusal{} == controller::Refusal{protocol::TopicId{0}, base::Error::none});
+  STATIC_REQUIRE(controller::Health{} == controller::Health{0, 255, 0, 0, 0});
+}
+
 TEST_CASE("status: bits by the order of the board's sensors") {
   // odometry, floor_proximity, magnetometer, gyroscope, accelerometer, status, refusal
   Board board;

@@ -85,6 +85,27 @@ TEST_CASE("the admission is asked for each stream, and told when one has ended")
   CHECK(said("209#01").empty());  // nothing serves it
 }
 
+TEST_CASE("a stream that the admission refuses is counted, told, and leaves the one that runs") {
+  Mailboxes bus;
+  controller::Controller<amiro::DiWheelDrive, Mailboxes, scheduling::Cooperative, 0, Bookkeeper> controller{
+      bus};
+  controller.serve<amiro::Gyroscope>([] { return base::Result<amiro::Gyroscope>{amiro::Gyroscope{}}; });
+  controller.receive(frame("208#01F40100"), at(0s));
+  controller.poll(at(0s));
+  controller.receive(frame("308#01F40102"), at(100ms));  // every 500 us
+  controller.poll(at(100ms));
+  CHECK(controller.counters().not_schedulable == 1);
+  CHECK(controller.counters().refused() == 1);
+  CHECK(controller.counters().requests == 1);
+  REQUIRE(bus.frames.size() == 2);
+  CHECK(texts(bus)[1].substr(0, 6) == "71D#08");
+  CHECK(bus.frames[1].data[1] == static_cast<std::uint8_t>(base::Error::not_schedulable));
+  CHECK(controller.next_event() == at(500ms));
+  controller.poll(at(500ms));
+  CHECK(texts(bus)[2] == "608#000000000000");
+  CHECK(controller.next_event() == at(1s));
+}
+
 TEST_CASE("the three magnetometer frames go out back to back") {  // thesis figure 7.2: 59 to 120 ms apart
   Board board;
   board.receive("205#01840302", 0s);

@@ -17,6 +17,14 @@ constexpr bool expires_once() {
 }
 static_assert(expires_once());
 
+constexpr bool the_shortest_expires() {
+  controller::Watchdog watchdog{1ns};
+  watchdog.feed(base::Time{1s});
+  return watchdog.expires_at() == base::Time{1s + 1ns} && watchdog.timeout() == 1ns &&
+         watchdog.expire(base::Time{1s + 1ns});
+}
+static_assert(the_shortest_expires());
+
 constexpr bool zero_never_expires() {
   controller::Watchdog watchdog{0ms};
   watchdog.feed(base::Time{});

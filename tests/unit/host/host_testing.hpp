@@ -1,11 +1,14 @@
 /// What tests of a host share: folders and variables of the environment that are as before at the end.
 #pragma once
 
+#include <atomic>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <string>
 #include <sys/wait.h>
+#include <thread>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
@@ -50,6 +53,16 @@ class Environment {
   const char* name_;
   std::optional<std::string> old_;
 };
+
+/// Returns when a thread of this process, which writes its number first, waits in the kernel.
+inline void until_asleep(const std::atomic<pid_t>& number) {
+  for (;;) {
+    std::string line;
+    if (number != 0) std::getline(std::ifstream{"/proc/self/task/" + std::to_string(number) + "/stat"}, line);
+    if (const auto end = line.rfind(')'); end != std::string::npos && line.substr(end, 3) == ") S") return;
+    std::this_thread::yield();
+  }
+}
 
 /// What a child process answers: an exit code. It must not return into the test.
 template <class Work>

@@ -44,6 +44,8 @@ TEST_CASE("the longest times stay long, also where seconds have 32 bits") {
     CHECK(to_timeval(time).tv_sec == longest);
   }
   STATIC_REQUIRE(to_timeval(Duration::max() - 2us).tv_usec == 854'774);  // ...6.854'773'807, rounded up
+  STATIC_REQUIRE(to_timeval(Duration::max() - 1us).tv_usec == 854'775);  // the last that is
+  STATIC_REQUIRE(to_timeval(Duration::max() - 999ns).tv_usec == 854'774);
 }
 
 }  // namespace host_system_time_test

@@ -1,5 +1,7 @@
 #include "ocm/log/asc.hpp"
 
+#include <algorithm>
+
 #include <catch2/catch.hpp>
 
 #include "tests/unit/log/log_testing.hpp"
@@ -313,6 +315,19 @@ TEST_CASE("asc: what is written") {
         "AA AB        0    0     5000 0 0 0 0 0\n"
         "End TriggerBlock\n");
   CHECK_FALSE(writer.lost().any());
+}
+
+TEST_CASE("asc: the length of a CAN FD frame is right-aligned in two columns") {
+  const Zone zone{"UTC0"};
+  Interfaces interfaces;
+  interfaces.add("can0");
+  AscWriter writer;
+  Entry some{at(start), {0x123, 3, {1, 2, 3}}}, many = some;
+  some.flags = many.flags = flag::fd;
+  many.length = 12;
+  std::fill_n(many.data.begin() + 8, 4, std::uint8_t{0});
+  const std::string text = log::testing::write_all(writer, std::vector{some, many}, interfaces);
+  CHECK_THAT(text, Catch::Contains(" 0 0 3  3 01 02 03 ") && Catch::Contains(" 0 0 9 12 01 02 03 00 "));
 }
 
 TEST_CASE("asc: what the format cannot hold is counted") {

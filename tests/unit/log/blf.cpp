@@ -134,6 +134,92 @@ TEST_CASE("blf: kinds of frames") {
   CHECK(is_bus_error(entry_of(object(104, 5, "01 00 00 00 0000 0000 0000 00 00"))));
 }
 
+/// Bytes of numbers, low byte first.
+std::string hex8(unsigned number) {
+  constexpr std::string_view digits = "0123456789ABCDEF";
+  return {digits[number / 16 % 16], digits[number % 16]};
+}
+std::string hex16(unsigned number) {
+  return hex8(number) + hex8(number >> 8);
+}
+std::string hex32(std::uint32_t number) {
+  return hex16(number) + hex16(number >> 16);
+}
+std::string counted(std::size_t bytes) {
+  std::string text;
+  for (std::size_t i = 0; i < bytes; ++i) text += hex8(static_cast<unsigned>(i + 1));
+  return text;
+}
+
+TEST_CASE("blf: CAN FD of every length and with each flag, in both kinds of message") {
+  const std::string middle = "00000000 00000000 00000000 00000000 0000";
+  for (unsigned dlc = 0; dlc < 16; ++dlc) {
+    const unsigned length = fd_length(dlc);
+    for (unsigned bits = 0; bits < 4; ++bits) {
+      const bool switches = (bits & 1) != 0, passive = (bits & 2) != 0;
+      CAPTURE(dlc, switches, passive);
+      Entry wanted{at(start + 5), {0x7FF, 0, {}}};
+      wanted.length = static_cast<std::uint8_t>(length);
+      wanted.flags = static_cast<std::uint8_t>(flag::fd | (switches ? flag::bit_rate_switch : 0) |
+                                               (passive ? flag::error_state : 0));
+      for (unsigned i = 0; i < length; ++i) wanted.data[i] = static_cast<std::uint8_t>(i + 1);
+      wanted.direction = Direction::sent;
+      const unsigned fd = 1U | (switches ? 2U : 0U) | (passive ? 4U : 0U);
+      CHECK(entry_of(object(100, 5,
+                            "0100 01" + hex8(dlc) + hex32(0x7FF) + "00000000 00" + hex8(fd) + hex8(length) +
+                                "00 00000000" + counted(length))) == wanted);
+      const std::uint32_t flags = 0x1000U | (switches ? 0x2000U : 0U) | (passive ? 0x4000U : 0U);
+      CHECK(entry_of(object(101, 5,
+                            "01" + hex8(dlc) + hex8(length) + "00" + hex32(0x7FF) + "00000000" +
+                                hex32(flags) + middle + "01 00 00000000" + counted(length))) == wanted);
+    }
+  }
+}
+
+TEST_CASE("blf: the last channel, identifier and length code that a message may have") {
+  const auto plain = [](std::uint32_t id, unsigned dlc, std::string_view channel = "0100") {
+    return object(1, 5, std::string{channel} + "00" + hex8(dlc) + hex32(id) + counted(8));
+  };
+  CHECK(entry_of(plain(0x7FF, 8)).id == 0x7FF);
+  CHECK(cause_of(plain(0x800, 8)) == Cause::identifier);
+  CHECK(entry_of(plain(0x9FFF'FFFF, 8)).id == 0x1FFF'FFFF);
+  CHECK(entry_of(plain(0x9FFF'FFFF, 8)).format == can::Format::extended);
+  CHECK(cause_of(plain(0xA000'0000, 8)) == Cause::identifier);
+  for (unsigned dlc = 0; dlc < 16; ++dlc) {
+    const Entry entry = entry_of(plain(1, dlc));
+    CHECK(entry.length == std::min(dlc, 8U));
+    CHECK(entry.raw_dlc == (dlc > 8 ? dlc : 0));
+    for (unsigned i = 0; i < 8; ++i) CHECK(entry.data[i] == (i < dlc ? i + 1 : 0));
+  }
+  CHECK(cause_of(plain(1, 16)) == Cause::length);
+  const auto names = [](std::string_view one) { return read_blf(head + container(one)).names.at(0); };
+  CHECK(names(plain(1, 8, "FF00")) == "can254");
+  CHECK(cause_of(plain(1, 8, "0001")) == Cause::unsupported);
+  CHECK(names(object(2, 5, "FF00 0600")) == "can254");
+  CHECK(cause_of(object(2, 5, "0001 0600")) == Cause::unsupported);
+  CHECK(names(object(104, 5, "FF 00 00 00 0000 0000 0000 00 00")) == "can254");
+  CHECK(names(object(73, 5, "0300 0000 00000000")) == "can2");
+  const Entry remote = entry_of(object(1, 5, "0100 81 03" + hex32(0x9FFF'FFFF) + counted(8)));
+  CHECK(remote.format == can::Format::extended_remote);
+  CHECK(remote.direction == Direction::sent);
+}
+
+TEST_CASE("blf: a message that ends with its last number has no data, a byte less is none") {
+  const auto of_size = [](std::uint32_t type, std::size_t size) {
+    return object(type, 5, std::string(2 * size, '0'));
+  };
+  for (const auto& [type, size] : {std::pair{1U, 8U}, {86U, 8U}, {100U, 20U}, {101U, 40U}}) {
+    CAPTURE(type);
+    CHECK(entry_of(of_size(type, size)).length == 0);
+    CHECK(cause_of(of_size(type, size - 1)) == Cause::length);
+  }
+  for (const std::uint32_t type : {2U, 73U, 104U}) {
+    CAPTURE(type);
+    CHECK(is_bus_error(entry_of(of_size(type, 4))));
+    CHECK(cause_of(of_size(type, 3)) == Cause::length);
+  }
+}
+
 TEST_CASE("blf: times of either unit, and heads of either version") {
   CHECK(entry_of(object(1, 7, "0100 00 00 23010000 0000000000000000", 1)).time == at(start + 70'000));
   std::string second =

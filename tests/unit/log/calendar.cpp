@@ -26,15 +26,44 @@ TEST_CASE("calendar: the time zone of this machine counts") {
   CHECK(local_time_of(1'688'212'800).hour == 14);
 }
 
+TEST_CASE(
+    "calendar: any second comes back, in zones ahead of UTC and behind it, but an hour that comes twice") {
+  ocm::test::Random random{11};
+  for (const char* name :
+       {"UTC0", "EST5", "CET-1", "IST-5:30", "CET-1CEST,M3.5.0,M10.5.0/3", "EST5EDT,M3.2.0,M11.1.0"}) {
+    const Zone zone{name};
+    const bool summer = std::string_view{name}.find(',') != std::string_view::npos;
+    for (int i = 0; i < 300; ++i) {
+      // 1970 to 2037, which a time_t of 32 bits holds, too.
+      const auto seconds = static_cast<std::int64_t>(random.below(2'114'380'800));
+      const CalendarTime local = local_time_of(seconds);
+      CAPTURE(name, seconds);
+      REQUIRE((local.month >= 1 && local.month <= 12 && local.day >= 1 && local.day <= 31));
+      const auto again = seconds_of(local);
+      REQUIRE(again);
+      const std::int64_t off = *again - seconds;
+      REQUIRE((off == 0 || (summer && (off == 3600 || off == -3600) && local_time_of(*again) == local)));
+    }
+  }
+  const Zone west{"EST5"};
+  CHECK(seconds_of({2023, 11, 14, 17, 13, 20}) == 1'700'000'000);
+  CHECK(local_time_of(0) == CalendarTime{1969, 12, 31, 19, 0, 0});
+  CHECK(CalendarTime{} == CalendarTime{1970, 1, 1, 0, 0, 0});
+}
+
 TEST_CASE("calendar: what no calendar has") {
   const Zone zone{"UTC0"};
   CHECK(seconds_of({2024, 2, 29, 0, 0, 0}));
   CHECK(seconds_of({2000, 2, 29, 0, 0, 0}));
+  CHECK(seconds_of({2023, 12, 31, 23, 59, 59}) == 1'704'067'199);
+  CHECK(seconds_of({2261, 12, 31, 23, 59, 59}) == 9'214'646'399);
   for (const CalendarTime& wrong : {CalendarTime{2023, 2, 29, 0, 0, 0}, CalendarTime{1900, 2, 29, 0, 0, 0},
                                     CalendarTime{2023, 4, 31, 0, 0, 0}, CalendarTime{2023, 0, 1, 0, 0, 0},
                                     CalendarTime{2023, 13, 1, 0, 0, 0}, CalendarTime{2023, 1, 0, 0, 0, 0},
                                     CalendarTime{2023, 1, 1, 24, 0, 0}, CalendarTime{2023, 1, 1, 0, 60, 0},
                                     CalendarTime{2023, 1, 1, 0, 0, 60}, CalendarTime{2023, 1, 1, -1, 0, 0},
+                                    CalendarTime{2023, 1, 1, 0, -1, 0}, CalendarTime{2023, 1, 1, 0, 0, -1},
+                                    CalendarTime{2023, -1, 1, 0, 0, 0}, CalendarTime{2023, 1, -1, 0, 0, 0},
                                     CalendarTime{1677, 12, 31, 0, 0, 0}, CalendarTime{2262, 1, 1, 0, 0, 0}})
     CHECK_FALSE(seconds_of(wrong));
 }

@@ -141,7 +141,8 @@ TEST_CASE("what candump never shows is refused by cause, and the rest is read") 
        {"  can0  605   [9]  00 01 02 03 04 05 06 07 08", "  can0  605   [9]  00 01 02 03 04 05 06 07",
         "  can0  605   [4]  00 D2 00", "  can0  605   [4]  00 D2 00 00 00",
         "  can0  123  [09]  00 01 02 03 04 05 06 07 08", "  can0  605   [1]  0",
-        "  can0  605   [1]  ERRORFRAME", "  can0  605   [2]  01`02`03"})
+        "  can0  605   [1]  ERRORFRAME", "  can0  605   [2]  01`02`03",
+        "  can0  20000004   {C}  00 08 00 00 00 00 60 00   ERRORFRAME"})
     CHECK(refusal_of(line) == Cause::length);
   CHECK(refusal_of(" (9999999999.000000)  can0  605   [0]") == Cause::time);
 }

@@ -37,6 +37,37 @@ TEST_CASE("channels: names that a reader finds again keep their number, others t
   CHECK(numbered(9) == 10);
 }
 
+TEST_CASE("channels: the last number that a name may have, and the first that it may not") {
+  Interfaces interfaces;
+  for (const auto* name : {"can254", "can0", "can255", "can00"}) interfaces.add(name);
+  ChannelsWritten channels;
+  CHECK(channels.of(0, interfaces).number == 255);
+  CHECK(channels.of(0, interfaces).names_it);
+  CHECK(channels.of(1, interfaces).number == 1);
+  CHECK(channels.of(1, interfaces).names_it);
+  CHECK(channels.of(2, interfaces).number == 2);
+  CHECK_FALSE(channels.of(2, interfaces).names_it);
+  CHECK(channels.of(3, interfaces).number == 3);
+  CHECK_FALSE(channels.of(3, interfaces).names_it);
+  ChannelsRead read;
+  for (std::uint16_t i = 0; i < 2; ++i) {  // a reader finds those again
+    const auto channel = channels.of(i, interfaces).number;
+    CHECK(interfaces.name(read.interface(channel, interfaces)) == interfaces.name(i));
+  }
+}
+
+TEST_CASE("channels: an error of which something is known") {
+  const Entry plain{{}, {0x80, 8, {}, can::Format::error}};
+  CHECK(is_bus_error(plain));
+  CHECK_FALSE(is_bus_error(Entry{{}, {0x81, 8, {}, can::Format::error}}));
+  CHECK_FALSE(is_bus_error(Entry{{}, {0x80, 7, {}, can::Format::error}}));
+  for (std::size_t i = 0; i < 8; ++i) {
+    Entry entry = plain;
+    entry.data[i] = 1;
+    CHECK_FALSE(is_bus_error(entry));
+  }
+}
+
 TEST_CASE("channels: an error of which nothing is known") {
   Entry entry{{}, {0x123, 4, {1, 2, 3, 4}}, 3};
   entry.flags = flag::fd;

@@ -79,6 +79,51 @@ TEST_CASE("times are read as Python prints them") {
   CHECK_FALSE(time_of("1.0000000000000000000000000x"));
 }
 
+TEST_CASE("times and identifiers of every width are written as Python prints them, and read again") {
+  const auto interfaces = test::interfaces_named({""});
+  const auto row_of = [&](std::int64_t ns, std::uint32_t id) {
+    const Entry entry{at_ns(ns), {id, 0, {}, can::Format::extended}};
+    log::CsvWriter writer;
+    const std::string file = test::written(writer, {&entry, 1}, interfaces);
+    CHECK_FALSE(writer.lost().any());
+    const Log log{file};
+    REQUIRE(log.entries.size() == 1);
+    CHECK(log.entries[0] == entry);
+    return file.substr(head.size());
+  };
+  CHECK(row_of(INT64_MAX, 0x1) == "9223372036.854775807,0x1,1,0,0,0,\n");
+  CHECK(row_of(-INT64_MAX, 0x12) == "-9223372036.854775807,0x12,1,0,0,0,\n");
+  CHECK(row_of(99'999'999'999'999'000, 0x123) == "99999999.999999,0x123,1,0,0,0,\n");
+  CHECK(row_of(100'000'000'000'000'000, 0xFFFF) == "100000000.000000,0xffff,1,0,0,0,\n");
+  CHECK(row_of(1, 0x1'0000) == "0.000000001,0x10000,1,0,0,0,\n");
+  CHECK(row_of(999, 0x10'0000) == "0.000000999,0x100000,1,0,0,0,\n");
+  CHECK(row_of(1000, 0x100'0000) == "0.000001,0x1000000,1,0,0,0,\n");
+  CHECK(row_of(-1, 0x1FFF'FFFF) == "-0.000000001,0x1fffffff,1,0,0,0,\n");
+  test::Random random{13};
+  for (int i = 0; i < 2000; ++i)
+    row_of(static_cast<std::int64_t>(random.word() >> (1 + random.below(62))), random.below(0x2000'0000));
+}
+
+TEST_CASE("a row of every length is one, of CAN FD beyond eight bytes") {
+  for (std::size_t length = 0; length <= 65; ++length) {
+    const std::string bytes(length, '\xFF');
+    char text[2 * log::csv::max_base64];
+    char* const end =
+        log::csv::to_base64(text, std::span{reinterpret_cast<const std::uint8_t*>(bytes.data()), length});
+    const Log log{head + "1.0,0x123,0,0,0," + std::to_string(length) + "," + std::string{text, end} + "\n"};
+    CAPTURE(length);
+    if (length > 8 && !log::is_fd_length(length)) {
+      CHECK(log.entries.empty());
+      CHECK(log.reader.complaints().total() == 1);
+      continue;
+    }
+    REQUIRE(log.entries.size() == 1);
+    CHECK(log.entries[0].length == length);
+    CHECK(log.entries[0].is_fd() == (length > 8));
+    CHECK(log.reader.interfaces().name(log.entries[0].interface) == "can0");
+  }
+}
+
 TEST_CASE("rows that no writer makes are refused by cause, and the rest is read") {
   CHECK(refusal_of("1.0,0x1,0,0,0") == Cause::syntax);
   CHECK(refusal_of("1.0,0x1,0,0,0,0,,") == Cause::syntax);

@@ -1,5 +1,6 @@
 #include "ocm/log/mcap.hpp"
 
+#include <array>
 #include <string>
 
 #include <catch2/catch.hpp>
@@ -114,6 +115,25 @@ TEST_CASE("mcap: random entries come back the same, whatever the batches and pie
   }
 }
 
+TEST_CASE("mcap: there is a channel of each interface that is known, and no other") {
+  Interfaces interfaces;
+  for (const char* name : {"can0", "can1", "can2"}) {
+    interfaces.add(name);
+    McapWriter writer;
+    Bytes out;
+    writer.begin(out);
+    writer.write(out, std::vector<Entry>(1), interfaces);
+    writer.finish(out);
+    MemorySource source{out.view()};
+    Input input{source};
+    McapReader reader{input};
+    std::array<Entry, 2> some;
+    REQUIRE(reader.read(some) == 1);
+    CHECK(reader.read(some) == 0);
+    CHECK(reader.interfaces().size() == interfaces.size());
+  }
+}
+
 TEST_CASE("mcap: what flush has handed out is in the file, however it ends") {
   McapWriter writer;
   Bytes out;
@@ -194,6 +214,11 @@ TEST_CASE("mcap: messages that are no frames") {
     CHECK(cause_of(with(message(frame, 8)), 1) == Cause::syntax);  // of a channel without a description
     CHECK(cause_of(with(message(frame, 0xFFFF)), 1) == Cause::syntax);
     CHECK(cause_of(with(record(5, "x")), 1) == Cause::length);
+    // The last time that there is, with nothing in it, and the first that there is not.
+    CHECK(cause_of(with(record(5, bytes("0900 00000000 FFFFFFFFFFFFFF7F 0000000000000000") + "{}")), 1) ==
+          Cause::identifier);
+    CHECK(cause_of(with(record(5, bytes("0900 00000000 0000000000000080 0000000000000000") + "{}")), 1) ==
+          Cause::time);
     CHECK(cause_of(with(record(5, bytes("0900 00000000 FFFFFFFFFFFFFFFF 0000000000000000") + "{}")), 1) ==
           Cause::time);
     CHECK(cause_of(with(record(3, "x")), 1) == Cause::syntax);

@@ -30,6 +30,40 @@ TEST_CASE("packet: a classic frame is identifier, length and eight bytes") {
   CHECK(std::string_view(stored, sizeof stored) == bytes("00000123 03000000 1122330000000000"));
 }
 
+TEST_CASE("packet: what is stored of each kind of frame, byte by byte, and read again") {
+  const auto stored = [](const Entry& entry) {
+    char bytes[packet::fd_size];
+    std::fill_n(bytes, sizeof bytes, '\xEE');
+    packet::store(bytes, entry);
+    const std::size_t size = packet::size_of(entry);
+    for (std::size_t i = size; i < sizeof bytes; ++i) CHECK(bytes[i] == '\xEE');
+    Entry again;
+    CHECK_FALSE(packet::load({bytes, size}, LinkType::can_socketcan, false, again));
+    CHECK(again == entry);
+    return std::string(bytes, size);
+  };
+  Entry eight{{}, {0x123, 8, {1, 2, 3, 4, 5, 6, 7, 8}}};
+  eight.raw_dlc = 9;
+  CHECK(stored(eight) == bytes("00000123 08000009 0102030405060708"));
+  CHECK(stored(Entry{{}, {0x1F334455, 1, {0xAA}, can::Format::extended}}) ==
+        bytes("9F334455 01000000 AA00000000000000"));
+  CHECK(stored(Entry{{}, {0x123, 3, {}, can::Format::base_remote}}) ==
+        bytes("40000123 03000000 0000000000000000"));
+  CHECK(stored(Entry{{}, {0x1F334455, 8, {}, can::Format::extended_remote}}) ==
+        bytes("DF334455 08000000 0000000000000000"));
+  CHECK(stored(Entry{{}, {4, 8, {0, 1}, can::Format::error}}) == bytes("20000004 08000000 0001000000000000"));
+  can::AnyFrame fd;
+  fd.id = 0x7FF;
+  fd.length = 12;
+  fd.flags = flag::fd | flag::bit_rate_switch;
+  for (std::size_t i = 0; i < 12; ++i) fd.data[i] = static_cast<std::uint8_t>(0x10 + i);
+  CHECK(stored(Entry{{}, fd}) == bytes("000007FF 0C050000 101112131415161718191A1B") + std::string(52, '\0'));
+  CHECK(holds_can(LinkType::linux_cooked));
+  CHECK(holds_can(LinkType::can_socketcan));
+  CHECK(holds_can(LinkType::linux_cooked2));
+  CHECK_FALSE(holds_can(LinkType::none));
+}
+
 TEST_CASE("packet: the flags of the identifier are formats") {
   CHECK(load("9F334455 00000000 0000000000000000").entry.format == can::Format::extended);
   CHECK(load("9F334455 00000000 0000000000000000").entry.id == 0x1F334455);
@@ -45,6 +79,7 @@ TEST_CASE("packet: the length code of eight bytes") {
   CHECK(load("00000123 08000008 1122334455667788").entry.raw_dlc == 0);
   CHECK(load("00000123 0700000F 1122334455667700").entry.raw_dlc == 0);
   CHECK(load("00000123 08000010 1122334455667788").entry.raw_dlc == 0);
+  CHECK(load("20000004 0800000F 0001000000000000").entry.raw_dlc == 0);  // of a controller, not of a bus
 }
 
 TEST_CASE("packet: CAN FD by its flag, its length or its size") {

@@ -95,6 +95,9 @@ TEST_CASE("a second pass begins where the first one ended") {
 
 TEST_CASE("frames that go out late are counted") {
   Playback playback;
+  CHECK(playback.worst() == base::Duration{});
+  playback.sent(at(1s), at(500ms));  // early: a clock that is not exact
+  CHECK(playback.worst() == base::Duration{});
   playback.sent(at(1s), at(1s));
   playback.sent(at(1s), at(1s + 999'999ns));
   CHECK(playback.late() == 0);
@@ -116,6 +119,10 @@ TEST_CASE("times from one end of the clock to the other are played without overf
   Playback slow{{.speed = 1e-6}};
   slow.begin(at(0s), at(0s));
   CHECK(slow.due(at(100h * 24 * 365)) == base::never);
+  // 2^62 ns at half the speed take 2^63, one more than fits.
+  Playback half{{.speed = 0.5}};
+  half.begin(base::Time::min(), at(0s));
+  CHECK(half.due(base::Time{base::Duration{std::int64_t{1} << 62}}) == at(-1ns));
 }
 
 }  // namespace log_playback_test

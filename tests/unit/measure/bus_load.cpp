@@ -73,6 +73,17 @@ TEST_CASE("bus_load: the worst window is found wherever it begins") {
   CHECK(load.worst_until() == Time{1104ms});
 }
 
+TEST_CASE("bus_load: of windows that are as bad the first is named") {
+  BusLoad load;
+  CHECK(load.worst_bits() == 0);
+  CHECK(load.worst_until() == Time{});
+  for (const auto time : {1s, 2s, 3s}) load.add(Time{time}, 100);
+  CHECK(load.worst_until() == Time{1s});
+  load.add(Time{4s}, 101);
+  CHECK(load.worst_until() == Time{4s});
+  CHECK(BitRates{}.nominal + BitRates{}.data == 0);
+}
+
 TEST_CASE("bus_load: what is a window old is out of it") {
   BusLoad load;
   load.add(Time{0ms}, 7);

@@ -94,6 +94,54 @@ TEST_CASE("envelope: a pause parts the curve, jitter and one lost sample do not"
   CHECK(begins == std::vector<std::uint64_t>{0, 6});
 }
 
+/// The numbers of the points that are left.
+std::vector<std::uint64_t> left_of(const Envelope& envelope) {
+  std::vector<std::uint64_t> numbers;
+  for (const Point& point : envelope.points()) numbers.push_back(point.number);
+  return numbers;
+}
+
+TEST_CASE("envelope: a curve that begins long after 1970 is as fine as any") {
+  Envelope early, late;
+  for (std::size_t i = 0; i < Envelope::columns; ++i) {
+    const auto at = std::chrono::nanoseconds{static_cast<std::int64_t>(i)};
+    early.add(Time{at}, 0, 0);
+    late.add(Time{1'000'000s + at}, 0, 0);
+  }
+  CHECK(early.points().size() == Envelope::columns);
+  CHECK(late.points().size() == Envelope::columns);
+}
+
+TEST_CASE("envelope: of a column the first and the last, and of equal extremes the first") {
+  Envelope flat;
+  for (const int ns : {0, 0, 0, 1}) flat.add(Time{ns * 1ns}, 0, 0);
+  CHECK(left_of(flat) == std::vector<std::uint64_t>{0, 2, 3});
+  Envelope peaks;
+  for (const double y : {0, 5, 1, 5, -5, 0, -5, 0}) peaks.add(Time{0ns}, 0, y);
+  CHECK(left_of(peaks) == std::vector<std::uint64_t>{0, 1, 4, 7});
+  Envelope sideways;
+  for (const double x : {0, 5, 1, 5, -5, 0, -5, 0}) sideways.add(Time{0ns}, x, 0);
+  CHECK(left_of(sideways) == std::vector<std::uint64_t>{0, 1, 4, 7});
+}
+
+TEST_CASE("envelope: a pause is more than five of the distances that are usual") {
+  const auto parts_at = [](std::initializer_list<int> distances) {
+    Envelope envelope;
+    Time time{};
+    envelope.add(time, 0, 0);
+    for (const int ns : distances) envelope.add(time += std::chrono::nanoseconds{ns}, 0, 0);
+    return envelope.points().back().begins;
+  };
+  CHECK_FALSE(parts_at({100, 504}));
+  CHECK(parts_at({100, 505}));
+  // The average moves by an eighth of what a distance is off it: 110, then 120.
+  CHECK_FALSE(parts_at({100, 180, 554}));
+  CHECK(parts_at({100, 180, 555}));
+  CHECK(parts_at({100, 20, 455}));
+  CHECK_FALSE(parts_at({100, 20, 454}));
+  CHECK_FALSE(parts_at({1'000'000}));  // nothing is usual yet
+}
+
 TEST_CASE("envelope: a slower period behind a pause is a curve again") {
   Envelope envelope;
   for (int i = 0; i < 10; ++i) envelope.add(Time{i * 10ms}, 0, 0);
@@ -116,6 +164,12 @@ TEST_CASE("envelope: times that go back or leap stay in order of arrival") {
 
 TEST_CASE("envelope: nothing is nothing") {
   CHECK(Envelope{}.points().empty());
+  CHECK(Envelope{}.count() == 0);
+  const Point none;
+  CHECK(none.x == 0);
+  CHECK(none.y == 0);
+  CHECK_FALSE(none.begins);
+  CHECK(none.number == 0);
 }
 
 }  // namespace measure_envelope_test

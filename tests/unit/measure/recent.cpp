@@ -42,6 +42,10 @@ TEST_CASE("recent times: by hand") {
   CHECK(figures.distances == 4);
   CHECK(figures.rate_hz == Approx(10.0));
   CHECK(figures.jitter_ns == Approx(7.0710678e6));
+  RecentTimes shortest;
+  shortest.add(at(0ns));
+  shortest.add(at(1ns));
+  CHECK(shortest.figures(at(1ns)).rate_hz == Approx(1e9));
 }
 
 TEST_CASE("recent times: of two seconds, but always the newest distance, and of sixteen at most") {

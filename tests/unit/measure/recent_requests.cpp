@@ -41,7 +41,7 @@ TEST_CASE("recent requests: samples that came meanwhile are in the stream withou
   for (const Time time : {Time{200ms}, Time{300ms}}) {
     stream.sample(time);
     requests.sample(0, time);
-    requests.sample(1, time);  // another topic's
+    requests.sample(1, time - 40ms);  // another topic's
   }
   CHECK(stream.timing(Time{300ms}).missing > 100);
   REQUIRE(requests.refused(0, Time{310ms}, 1, stream) == 1);
@@ -49,6 +49,8 @@ TEST_CASE("recent requests: samples that came meanwhile are in the stream withou
   CHECK(timing.count == 3);
   CHECK(timing.distances == 2);
   CHECK(timing.missing == 0);
+  CHECK(timing.mean_ns == 100e6);
+  CHECK(timing.since == Time{300ms});
 }
 
 TEST_CASE("recent requests: none is undone after its time, before it, or without one") {
@@ -60,6 +62,8 @@ TEST_CASE("recent requests: none is undone after its time, before it, or without
   CHECK(requests.refused(0, Time{3s + 1ns}, 1, stream) == 0);
   ask(requests, stream, Time{2s}, 100ms);
   CHECK(requests.refused(0, Time{1s - 1ns}, 1, stream) == 0);  // a clock was set back
+  ask(requests, stream, Time{2s}, 100ms);
+  CHECK(requests.refused(0, Time{1s}, 1, stream) == 1);  // by no more than that
   requests.asked(0, Time{2s}, 0s, stream);
   CHECK(requests.refused(0, Time{2s}, 1, stream) == 0);
 }

@@ -223,6 +223,61 @@ TEST_CASE("statistics: the load is of exact bits, and its parts make the whole")
   CHECK(figures.worst_until == Time{5ms});
 }
 
+TEST_CASE("statistics: the bits of each frame are in one part of the load, that of what it is") {
+  struct Row {
+    std::string_view frame;
+    enum Part { request, stranger, topic, none } part;
+  };
+  const Row rows[] = {{"208#01F40100", Row::request},
+                      {"208#07", Row::request},
+                      {"655#FF", Row::stranger},
+                      {"1F334455#0102", Row::stranger},
+                      {"608#R", Row::stranger},
+                      {"608#00", Row::stranger},
+                      {"201#00", Row::stranger},
+                      {"508#000000000000", Row::topic},
+                      {"201#0000000000000000", Row::topic},
+                      {"605#00000000", Row::topic},
+                      {"20000004#0001000000000000", Row::none}};
+  for (const Row& row : rows) {
+    CAPTURE(row.frame);
+    Recorded log;
+    log.put(0ms, "655#");  // the first is in no load
+    log.put(1ms, row.frame);
+    const auto figures = log.statistics.figures(Time{10ms});
+    const auto frame = *ocm::can::parse_frame(row.frame);
+    const double load =
+        row.part == Row::none ? 0 : static_cast<double>(ocm::can::frame_bits(frame) + 3) / 500'000 / 0.010;
+    CHECK(figures.load == Approx(load));
+    CHECK(figures.request_load == Approx(row.part == Row::request ? load : 0));
+    CHECK(figures.stranger_load == Approx(row.part == Row::stranger ? load : 0));
+    double topics = 0;
+    for (const auto& topic : figures.topics) topics += topic.load;
+    CHECK(topics == Approx(row.part == Row::topic ? load : 0));
+  }
+}
+
+TEST_CASE("statistics: first and last are the earliest and the latest, in whatever order frames come") {
+  Recorded log;
+  for (const auto time : {5s, 9s, 2s, 7s}) log.put(time, "655#");
+  CHECK(log.statistics.any());
+  CHECK(log.statistics.figures().first == Time{2s});
+  CHECK(log.statistics.figures().last == Time{9s});
+  CHECK(log.statistics.figures().rate_hz == Approx(3.0 / 7));
+  CHECK(log.statistics.figures().bit_rates.nominal == 500'000);
+  CHECK(log.statistics.figures().bit_rates.data == 0);
+  CHECK(log.statistics.counters().frames == 4);
+  // The worst 100 ms as a share of them, and the frame with which they ended.
+  Recorded burst;
+  std::uint64_t bits = 0;
+  for (int i = 0; i < 10; ++i) {
+    burst.put(1s + i * 1ms, "655#FF");
+    bits += ocm::can::frame_bits(*ocm::can::parse_frame("655#FF")) + 3;
+  }
+  CHECK(burst.statistics.figures().worst_load == Approx(static_cast<double>(bits) / 500'000 / 0.1));
+  CHECK(burst.statistics.figures().worst_until == Time{1s + 9ms});
+}
+
 TEST_CASE("statistics: nothing came") {
   const BusStatistics statistics{amiro::catalogue, {500'000}};
   CHECK_FALSE(statistics.any());
@@ -286,6 +341,117 @@ TEST_CASE("statistics: CAN FD is counted apart, strangers only so many") {
   CHECK(figures.span() == 1s);
   CHECK(figures.strangers.size() == BusStatistics::most_strangers);
   CHECK(figures.counters.unknown == 100);
+}
+
+/// A message of CAN FD, one of eight bytes, and one of J1939 that goes in packets.
+ocm::protocol::FrameLayout layout_of(std::uint16_t length, ocm::protocol::Address address, bool fd) {
+  ocm::protocol::FrameLayout layout;
+  layout.length = length;
+  layout.address = address;
+  layout.fd = fd;
+  return layout;
+}
+struct Messages {
+  using By = ocm::protocol::Address::By;
+  const ocm::protocol::FrameLayout frames[3] = {layout_of(16, {By::identifier, false, 0x123}, true),
+                                                layout_of(8, {By::identifier, false, 0x124}, false),
+                                                layout_of(20, {By::pgn, true, 0x18FEECFE}, false)};
+  ocm::protocol::Topic topics[3];
+  ocm::protocol::Catalogue catalogue{"truck", 500'000, {}, topics};
+  Messages() {
+    constexpr std::string_view names[] = {"fast", "plain", "VI"};
+    for (std::size_t i = 0; i < 3; ++i) {
+      topics[i].name = names[i];
+      topics[i].kind = ocm::protocol::Kind::message;
+      topics[i].board = ocm::protocol::no_board;
+      topics[i].frames = {&frames[i], 1};
+    }
+    topics[1].cycle = 100ms;
+    topics[1].bus = "can1";
+  }
+};
+
+TEST_CASE("statistics: messages of CAN FD are samples, and those of another length are not") {
+  const Messages messages;
+  BusStatistics statistics{messages.catalogue, {500'000, 2'000'000}};
+  CHECK(statistics.take_fd(fd_frame(0x124, 8, true), Time{0ms}).topic != nullptr);
+  for (int i = 1; i <= 4; ++i) statistics.take_fd(fd_frame(0x123, 16, true), Time{i * 10ms});
+  statistics.take_fd(fd_frame(0x123, 12, true), Time{50ms});
+  statistics.take_fd(fd_frame(0x125, 12, true), Time{60ms});
+  const auto figures = statistics.figures(Time{100ms});
+  REQUIRE(figures.topics.size() == 2);
+  const TopicFigures& fast = figures.topics[0];
+  CHECK(fast.topic->name == "fast");
+  CHECK(fast.timing.count == 4);
+  CHECK(fast.timing.mean_ns == 10e6);
+  CHECK(fast.wrong_dlc == 1);
+  CHECK(fast.by_priority == std::array<std::uint64_t, 4>{});  // a message has none of a topic's
+  const auto load = [](std::size_t length) {
+    const auto bits = ocm::measure::bits_on_bus(fd_frame(0x123, length, true), {500'000, 2'000'000});
+    return static_cast<double>(*bits) / 500'000 / 0.1;
+  };
+  CHECK(fast.load == Approx(4 * load(16)));
+  CHECK(figures.stranger_load == Approx(2 * load(12)).epsilon(0.02));
+  REQUIRE(figures.wrong_length);
+  CHECK(figures.wrong_length->id == 0x123);
+  CHECK(figures.wrong_length->length == 12);
+  CHECK(figures.wrong_length->right == 16);
+  REQUIRE(figures.strangers.size() == 1);
+  CHECK(figures.strangers[0].id == 0x125);
+  CHECK(figures.fd_frames == 7);
+}
+
+TEST_CASE("statistics: a message has the period that is stated, on the bus that it is on") {
+  const Messages messages;
+  for (const std::string_view interface : {"", "can1", "can0"}) {
+    BusStatistics statistics{messages.catalogue, {500'000}, ocm::client::Transport::as_frames, interface};
+    for (int i = 0; i < 3; ++i)
+      statistics.take({Time{i * 500ms}, *ocm::can::parse_frame("124#0000000000000000")});
+    const auto figures = statistics.figures();
+    if (interface == "can0") {
+      CHECK(figures.topics.empty());
+      REQUIRE(figures.strangers.size() == 1);
+      CHECK(figures.strangers[0].count == 3);
+      continue;
+    }
+    REQUIRE(figures.topics.size() == 1);
+    CHECK(figures.topics[0].timing.period_ns == 100'000'000);
+    CHECK(figures.topics[0].timing.period_from == PeriodFrom::spec);
+    CHECK(figures.topics[0].timing.missing == 8);
+    CHECK(figures.strangers.empty());
+  }
+}
+
+TEST_CASE("statistics: a message in packets is one sample, and only its last packet is in its load") {
+  const Messages messages;
+  const std::string_view packets[] = {"1CECFF00#20110003FFECFE00", "1CEBFF00#0101020304050607",
+                                      "1CEBFF00#0208090A0B0C0D0E", "1CEBFF00#030F1011FFFFFFFF"};
+  BusStatistics together{messages.catalogue, {500'000}, ocm::client::Transport::together};
+  BusStatistics apart{messages.catalogue, {500'000}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const ocm::can::Received received{Time{static_cast<int>(i) * 1ms}, *ocm::can::parse_frame(packets[i])};
+    together.take(received);
+    apart.take(received);
+  }
+  const auto figures = together.figures();
+  REQUIRE(figures.topics.size() == 1);
+  CHECK(figures.topics[0].timing.count == 1);
+  CHECK(figures.transport.complete == 1);
+  CHECK(figures.strangers.empty());
+  CHECK(figures.stranger_load == 0.0);
+  const auto bits = ocm::can::frame_bits(*ocm::can::parse_frame(packets[3])) + 3;
+  CHECK(figures.topics[0].load == Approx(bits / 500'000.0 / 0.003));
+  CHECK(apart.figures().topics.empty());
+  CHECK(apart.figures().transport.complete == 0);
+  CHECK(apart.figures().strangers.size() == 2);
+  // Of an unknown group: named by the group's identifier.
+  BusStatistics unknown{messages.catalogue, {500'000}, ocm::client::Transport::together};
+  unknown.take({Time{0ms}, *ocm::can::parse_frame("1CECFF00#20110003FFEDFE00")});
+  for (std::size_t i = 1; i < 4; ++i)
+    unknown.take({Time{static_cast<int>(i) * 1ms}, *ocm::can::parse_frame(packets[i])});
+  REQUIRE(unknown.figures().strangers.size() == 1);
+  CHECK(unknown.figures().strangers[0].id == 0x1CFEED00);
+  CHECK(unknown.figures().strangers[0].format == ocm::can::Format::extended);
 }
 
 }  // namespace measure_statistics_test

@@ -15,6 +15,7 @@ using ocm::test::near_angle;
 using ocm::test::Random;
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr float infinity = std::numeric_limits<float>::infinity();
 
 // K = 0.01 / (0.01 + 0.03) = 1/4: from 1.0 towards 1.4 it is 1.1, and P = 3/4 * 0.01. [T2 listing 7.1]
 constexpr CorrectedHeading quarter = correct({1.0F, 0.01F}, 1.4F, 0.03F);
@@ -30,13 +31,22 @@ static_assert(correct({1.0F, 0.01F}, 1.4F, 0.0F).rejected && correct({1.0F, 0.01
 static_assert(correct({1.0F, 0.01F}, 1.4F, nan).rejected);
 static_assert(correct({1.0F, 0.0F}, 1.4F, 0.03F).heading == Heading{1.0F, 0.0F}, "nothing to learn");
 
+static_assert(CorrectedHeading{}.heading == Heading{} && !CorrectedHeading{}.rejected);
+
 // sqrt(0.0016 + 0.0009) = 0.05: two sigmas are 0.1.
 static_assert(agrees({1.0F, 0.0016F}, 1.09F, 0.03F, 2.0F) && agrees({1.0F, 0.0016F}, 0.91F, 0.03F, 2.0F));
 static_assert(!agrees({1.0F, 0.0016F}, 1.11F, 0.03F, 2.0F) && !agrees({1.0F, 0.0016F}, 0.89F, 0.03F, 2.0F));
 static_assert(agrees({1.0F, 0.0016F}, 1.11F, 0.03F, 3.0F));
+static_assert(agrees({1.0F, 0.0016F}, 1.02F, 0.03F, 0.5F) && !agrees({1.0F, 0.0016F}, 1.03F, 0.03F, 0.5F));
+static_assert(agrees({0.0F, 0.25F}, 1.0F, 0.0F, 2.0F), "two sigmas are within two sigmas");
 static_assert(agrees({pi, 0.0016F}, -pi + 0.05F, 0.03F, 2.0F), "around the back");
 static_assert(agrees({1.0F, 0.0016F}, 2.5F, 0.03F, 0.0F), "no gate");
 static_assert(agrees({1.0F, 0.0016F}, nan, 0.03F, 2.0F), "no number: correct() rejects and counts it");
+
+TEST_CASE("a number that gets lost inside the correction is rejected, too", "[motion]") {
+  CHECK(correct({1.0F, infinity}, 1.4F, 0.03F).rejected);
+  CHECK(correct({1.0F, infinity}, 1.4F, 0.03F).heading == Heading{1.0F, infinity});
+}
 
 TEST_CASE("the variance stays positive and falls, the angle stays in its range", "[motion]") {
   Random random{4};
@@ -75,6 +85,12 @@ constexpr CompassTrust drive(float from_deg, float to_deg) {
 static_assert(!judge({}, Movement::standing, 0.0F).trusted, "not before a straight drive");
 static_assert(drive(10.0F, 11.9F).trusted && drive(10.0F, 8.1F).trusted);
 static_assert(!drive(10.0F, 12.1F).trusted && !drive(10.0F, 7.9F).trusted);
+constexpr bool trusted_at(float end_rad) {
+  return judge(judge({}, Movement::straight, 1.0F, 0.25F), Movement::standing, end_rad, 0.25F).trusted;
+}
+static_assert(trusted_at(1.25F) && trusted_at(0.75F) && !trusted_at(1.28125F) && !trusted_at(0.71875F),
+              "the spread is within it");
+static_assert(CompassTrust{} == CompassTrust{0.0F, false, false});
 static_assert(drive(179.5F, -179.5F).trusted, "one degree, across the edge");
 static_assert(!drive(0.0F, 180.0F).trusted);
 static_assert(!judge(drive(10.0F, 10.0F), Movement::straight, 0.0F).trusted, "a new drive, a new judgement");

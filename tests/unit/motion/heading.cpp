@@ -28,11 +28,18 @@ static_assert(turn(1.0F, 0.04F, Movement::straight) == 0.04F, "only the wheels w
 static_assert(turn(1.0F, 0.04F, Movement::standing) == 0.04F);
 static_assert(turn(0.0099F, 0.04F, Movement::rotating) == 0.04F, "a small reading is left out");
 static_assert(turn(-0.0099F, 0.04F, Movement::rotating) == 0.04F);
+constexpr HeadingModel exact{.gyro_threshold_rad_s = 0.25F};
+static_assert(blend({0.25F, 0.0F}, Movement::rotating, 0.5F, exact).angle_rad == 0.75F * 0.125F,
+              "the threshold itself is no small reading");
 static_assert(turn(nan, 0.04F, Movement::rotating) == 0.04F && near(turn(1.0F, nan, Movement::rotating), dt));
 static_assert(turn(nan, nan, Movement::rotating) == 0.0F);
 static_assert(blend({nan, 0.0F}, Movement::standing, dt, model).gyro_rejected);
 static_assert(blend({0.0F, nan}, Movement::standing, dt, model).wheels_rejected);
 static_assert(!blend({0.0F, 0.0F}, Movement::standing, dt, model).gyro_rejected);
+// Without a threshold every reading counts; without readings nothing turns, and nothing is rejected.
+static_assert(near(turn(1e-4F, 0.0F, Movement::rotating, {}), 0.75F * 1e-4F * dt, 1e-9F));
+static_assert(Turn{}.angle_rad == 0.0F && !Turn{}.gyro_rejected && !Turn{}.wheels_rejected);
+static_assert(predict({}, 0.0F, dt, {}) == Heading{0.0F, 0.0F});
 
 // The second robot: gyro alone, whatever it does. [T2 §14.3]
 constexpr HeadingModel gyro_alone{.source = HeadingSource::gyro, .gyro_threshold_rad_s = 0.01F};
@@ -76,6 +83,8 @@ TEST_CASE("the variance grows without end and stays finite", "[motion]") {
 TEST_CASE("the bias is the mean at rest, and what moves is no bias", "[motion]") {
   GyroBias bias{0.1F};
   for (const float reading : {0.01F, 0.02F, 0.03F, 0.04F}) CHECK(bias.add(reading));
+  CHECK(GyroBias{0.1F}.add(0.1F));  // the bound is not beyond it
+  CHECK(GyroBias{0.1F}.add(-0.1F));
   CHECK_FALSE(bias.add(0.2F));
   CHECK_FALSE(bias.add(-0.2F));
   CHECK_FALSE(bias.add(nan));

@@ -33,6 +33,17 @@ constexpr Limits limits{
 static_assert(near(limited(Twist{}, {1.0F, 1.5F}, limits, 0.1F).speed_m_s, 0.1F));
 static_assert(near(limited(Twist{}, {1.0F, 1.5F}, limits, 0.1F).turn_rad_s, 1.0F));
 
+static_assert(limited(Twist{1.0F, 1.0F}, {1.0F, 1.0F}, {}, 0.1F) == Twist{0.0F, 0.0F},
+              "no bounds given: it may not move");
+constexpr Limits slow{.speed_m_s = 0.5F, .turn_rad_s = 2.0F};
+static_assert(limited(Twist{0.25F, 1.0F}, {0.5F, 2.0F}, slow, 0.1F) == Twist{0.25F, 1.0F},
+              "nor change its pace");
+static_assert(limited(Twist{0.25F, 1.0F}, {9.0F, -9.0F}, limits, 10.0F) == Twist{0.5F, -2.0F});
+
+// A loop of gain 2/s has come to rest, e-fold by e-fold, with up to 1/(2e) s of dead time.
+static_assert(near(most_dead_time_s(2.0F), 0.18394F) && near(most_dead_time_s(0.5F), 0.73576F));
+
+static_assert(Efforts{} == Efforts{0.0F, 0.0F});
 static_assert(mixed(0.5F, 0.25F) == Efforts{0.25F, 0.75F});
 static_assert(mixed(-0.5F, 0.25F) == Efforts{-0.75F, -0.25F});
 static_assert(mixed(1.0F, 1.0F) == Efforts{0.0F, 1.0F}, "the curve stays, the speed goes");

@@ -39,7 +39,20 @@ static_assert(!line_offset(over(0.019F), model).seen);
 static_assert(near(line_offset(over(0.008F, 5000), model).offset_m,
                    line_offset(over(0.008F, 500), model).offset_m, 2e-4F));
 static_assert(!line_offset(over(0.008F, 100), model).seen, "held up");
+static_assert(line_offset(over(0.0F, 200), model).seen && !line_offset(over(0.0F, 199), model).seen);
 static_assert(!line_offset({1000, 950, 1000, 1000}, model).seen, "a smudge");
+// 0.15 of what is on the line in full, nine tenths of the floor: 865 of 1000 counts.
+static_assert(line_offset({864, 1000, 1000, 1000}, model).seen &&
+              !line_offset({866, 866, 1000, 1000}, model).seen);
+static_assert(line_offset({1000, 864, 1000, 1000}, model).seen, "either of the two is enough");
+// The floor is what the brighter of the side sensors sees: the other may be on a mark.
+static_assert(line_offset({500, 1000, 1000, 100}, model).offset_m ==
+              line_offset({500, 1000, 100, 1000}, model).offset_m);
+// A line that is no wider than what the two see has no flat middle: half a spot brighter is half a spot off.
+constexpr LineFollowerModel thin{
+    .ahead_m = 0.04F, .apart_m = 0.008F, .spot_radius_m = 0.004F, .half_line_m = 0.005F};
+static_assert(near(line_offset({100, 550, 1000, 1000}, thin).offset_m, 0.004F));
+static_assert(near(line_offset({550, 100, 1000, 1000}, thin).offset_m, -0.004F));
 static_assert(!line_offset({}, model).seen && !line_offset({1000, 1000, 1000, 1000}, model).seen);
 
 constexpr LineFollowerStep step(LineFollower state, float offset_m, float speed_m_s = 0.2F) {
@@ -56,6 +69,17 @@ static_assert(near(curve.command.speed_m_s / curve.command.turn_rad_s, 0.085F, 0
 static_assert(step({.speed_m_s = 0.2F, .begun = true}, 0.015F).command.speed_m_s < 0.1F);
 static_assert(step({.speed_m_s = 0.2F, .begun = true}, 0.0165F).command.speed_m_s > 0.05F);
 
+// All of the speed in the middle, three tenths where the line is being lost; between, in proportion.
+constexpr float speed_at(float offset_m, const LineFollowerModel& with = model) {
+  return control({.speed_m_s = 0.5F, .begun = true}, over(offset_m), 0.2F, dt_s, with).command.speed_m_s;
+}
+static_assert(speed_at(0.0F) == 0.2F);
+constexpr float half_way_m = line_offset(over(0.009F), model).offset_m;
+static_assert(near(half_way_m, 0.009F, 1e-3F));
+static_assert(near(speed_at(0.009F), 0.2F * (1.0F - 0.7F * half_way_m / 0.018F)));
+static_assert(step({}, 0.0F, 0.0F).command == Twist{} && step({}, 0.0F, 0.0F).state.rejected == 0,
+              "no speed is one, too");
+
 // Never seen: it does not set off.
 static_assert(step({}, 0.05F).lost && step({}, 0.05F).command == Twist{});
 // Lost: it looks where it was.
@@ -64,11 +88,37 @@ static_assert(!step(was_left, 0.05F).lost && step(was_left, 0.05F).command.turn_
 static_assert(step(was_left, 0.05F).command.speed_m_s == 0.0F);
 constexpr LineFollower was_right = step({}, -0.015F).state;
 static_assert(step(was_right, 0.05F).command.turn_rad_s < 0.0F);
+static_assert(step(was_left, 0.05F).command.turn_rad_s == 2.0F &&
+              step(was_right, 0.05F).command.turn_rad_s == -2.0F);
+static_assert(step(step({}, 0.0F).state, 0.05F).command.turn_rad_s == 2.0F,
+              "gone from the middle: to the left");
+// The time of the search is in it: after half a second of half a second it still looks.
+constexpr bool given_up_after(int steps) {
+  LineFollowerModel quick = model;
+  quick.search_s = 0.5F;
+  LineFollowerStep next{was_left, {}, false};
+  for (int i = 0; i < steps; ++i) next = control(next.state, over(0.05F), 0.2F, 0.25F, quick);
+  return next.lost && next.command == Twist{};
+}
+static_assert(!given_up_after(2) && given_up_after(3));
 
 // No numbers, no motion; and it is counted.
 static_assert(step({}, 0.0F, nan).command == Twist{} && step({}, 0.0F, nan).state.rejected == 1);
 static_assert(step({}, 0.0F, -0.1F).state.rejected == 1);
 static_assert(control({}, over(0.0F), 0.1F, 0.0F, model).state.rejected == 1);
+static_assert(!step({}, 0.0F, nan).lost, "it is not given up");
+// Then it sets off again on the ramp.
+static_assert(near(step(step({.speed_m_s = 0.2F, .begun = true}, 0.0F, nan).state, 0.0F).command.speed_m_s,
+                   0.01F));
+
+// What begins has seen nothing, and a view without counts is dark.
+constexpr LineFollower fresh{};
+static_assert(fresh.last_offset_m == 0.0F && fresh.lost_s == 0.0F && fresh.speed_m_s == 0.0F &&
+              !fresh.begun && fresh.rejected == 0 && !LineFollowerStep{}.lost);
+constexpr FloorView dark{};
+static_assert(dark.front_left == 0 && dark.front_right == 0 && dark.side_left == 0 && dark.side_right == 0);
+static_assert(greatest_offset_m({}) == 0.01F, "of a line of 2 cm, where nothing is known of the sensors");
+static_assert(LineFollowerModel{}.ahead_m == 0.0F && LineFollowerModel{}.wheelbase_m == 0.0F);
 
 TEST_CASE("the offset grows with the offset, without a jump, and has its sign") {
   float before = line_offset(over(-0.0165F), model).offset_m;

@@ -32,7 +32,12 @@ constexpr WheelCounts from(std::uint32_t left, std::uint32_t right) {
 static_assert(count({}, 5000, 7000, 10, drive).advance == Advance{}, "the first counts are the start");
 static_assert(count({}, 5000, 7000, 10, drive).counts == from(5000, 7000));
 static_assert(near(count(from(0xFFFF'FFFB, 0), 5, 10, 10, drive).advance.distance_m, 0.010F));
+static_assert(near(count(from(0, 20), 10, 10, 10, drive).advance.turn_rad, -0.2F), "the bound is possible");
+static_assert(count(from(0, 20), 10, 10, 10, drive).counts.rejected == 0);
+static_assert(count(from(0, 20), 11, 10, 10, drive).counts.rejected == 1 &&
+              count(from(0, 20), 10, 9, 10, drive).counts.rejected == 1);
 static_assert(count(from(0, 0), 11, 0, 10, drive).counts.rejected == 1);
+static_assert(WheelCounts{} == WheelCounts{0, 0, 0, false} && Advance{} == Advance{0.0F, 0.0F});
 static_assert(count(from(0, 0), 0, 0xFFFF'FFF0, 10, drive).counts.rejected == 1);
 static_assert(count(from(5000, 5000), 0, 0, 10, drive).advance == Advance{}, "a counter that was reset");
 static_assert(count(from(0, 0), 11, 0, 10, drive).counts.left == 11, "and the next step starts there");

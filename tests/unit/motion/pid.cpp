@@ -40,6 +40,23 @@ static_assert(near(derivative(1.0F, 0.0F, 0.5F), 4.0F), "of the error: (3 - 1) /
 static_assert(near(derivative(1.0F, 0.0F, 0.25F), 8.0F), "over the time that passed");
 static_assert(near(derivative(1.0F, 1.5F, 0.5F), 1.0F), "filtered: 0.5 / (1.5 + 0.5) of it");
 static_assert(control({}, 5.0F, 3.0F, 0.1F, wide(0.0F, 0.0F, 1.0F)).output == 0.0F, "no kick at the start");
+// From 2 to 3 in half a second, whatever it was before: the next step derives from this one.
+constexpr Pid second =
+    control(control({}, 0.0F, 2.0F, 0.5F, wide(0.0F, 0.0F, 1.0F)), 0.0F, 3.0F, 0.5F, wide(0.0F, 0.0F, 1.0F));
+static_assert(near(second.output, -2.0F) && second.measured == 3.0F && second.reference == 0.0F);
+
+// What is not given is none: no gains, no filter, an effort within -1 and 1, clamping.
+static_assert(control(control({}, 5.0F, 3.0F, 0.1F, {}), 6.0F, 2.0F, 0.1F, {}).output == 0.0F);
+static_assert(control({}, 5.0F, 3.0F, 0.1F, {.kp = 1.0F}).output == 1.0F &&
+              control({}, -5.0F, 3.0F, 0.1F, {.kp = 1.0F}).output == -1.0F);
+static_assert(control({.integral = 0.5F}, 0.5F, 0.0F, 0.1F, {.kp = 1.0F, .ki = 2.0F}).integral == 0.5F);
+static_assert(Pid{} == Pid{.integral = 0.0F,
+                           .derivative = 0.0F,
+                           .reference = 0.0F,
+                           .measured = 0.0F,
+                           .output = 0.0F,
+                           .started = false,
+                           .rejected = 0});
 
 static_assert(near(control_angle({}, radians(-175.0F), radians(175.0F), 0.1F, wide(1.0F, 0.0F, 0.0F)).output,
                    radians(10.0F)));
@@ -52,11 +69,21 @@ constexpr float turning() {
 }
 static_assert(near(turning(), -radians(100.0F), 1e-4F));
 
+constexpr float following() {
+  // The same of a reference that moves, where the error is derived.
+  PidModel model = wide(0.0F, 0.0F, 1.0F);
+  model.derivative_of_reference = 1.0F;
+  const Pid before = control_angle({}, radians(175.0F), 0.0F, 0.1F, model);
+  return control_angle(before, radians(-175.0F), 0.0F, 0.1F, model).output;
+}
+static_assert(near(following(), radians(100.0F), 1e-4F));
+
 constexpr bool refused(float reference, float measured, float dt_s) {
-  const Pid after = control(first, reference, measured, dt_s, wide(3.0F, 0.5F, 1.0F));
+  const PidModel model = wide(3.0F, 0.5F, 1.0F);
   Pid expected = first;
   expected.rejected = 1;
-  return after == expected;
+  return control(first, reference, measured, dt_s, model) == expected &&
+         control_angle(first, reference, measured, dt_s, model) == expected;
 }
 static_assert(refused(nan, 3.0F, 0.1F) && refused(5.0F, nan, 0.1F) && refused(5.0F, 3.0F, nan));
 static_assert(refused(infinity, 3.0F, 0.1F) && refused(5.0F, 3.0F, 0.0F) && refused(5.0F, 3.0F, -0.1F));
@@ -105,6 +132,22 @@ TEST_CASE("clamping lets the integral go back from the bound", "[motion]") {
   CHECK(pid.integral == 1.0F);  // would go to 1.1
   pid = control(pid, -0.5F, 0.0F, 0.1F, bounded(0.0F));
   CHECK(near(pid.integral, 0.9F));
+}
+
+TEST_CASE("the integral takes what room the rest leaves to the bound, and never gives back", "[motion]") {
+  struct Row {
+    float integral, error, integral_after;
+  };
+  // kp = 1, ki = 100 over 0.1 s: ten times the error is asked for. Of 1 the error itself and I are taken.
+  const Row rows[] = {{0.5F, 0.25F, 0.75F},   {-0.5F, -0.25F, -0.75F}, {-0.5F, 0.25F, 0.75F},
+                      {0.5F, -0.25F, -0.75F}, {0.25F, 2.0F, 0.25F},    {-0.25F, -2.0F, -0.25F},
+                      {0.5F, -2.0F, 0.5F},    {-0.5F, 2.0F, -0.5F}};
+  const PidModel eager{.kp = 1.0F, .ki = 100.0F};
+  for (const Row& row : rows) {
+    CAPTURE(row.integral, row.error);
+    CHECK(
+        near(control({.integral = row.integral}, row.error, 0.0F, 0.1F, eager).integral, row.integral_after));
+  }
 }
 
 TEST_CASE("whatever comes, output and integral stay within the bounds", "[motion]") {

@@ -230,7 +230,100 @@ TEST_CASE("turning is no straight drive, and turning alone never becomes one", "
   CHECK(arrived);
 }
 
+/// How many steps a robot that does not move takes to arrive; 0: more than ten.
+int steps_to_arrive(SetPoint target, const PoseControllerModel& with, const Pose& disturbed = {}) {
+  PoseController state = started({}, target, {});
+  for (int i = 1; i <= 10; ++i) {
+    const PoseControllerStep step = control(state, i == 2 ? disturbed : Pose{}, dt, with);
+    if (step.command.arrived) return i;
+    state = step.state;
+  }
+  return 0;
+}
+
+TEST_CASE("it has arrived after three steps within tolerance, one after the other", "[motion]") {
+  PoseControllerModel jumping{};  // whose reference is at the set point at once
+  jumping.heading_reference.gain = 1.0F;
+  jumping.distance_reference.gain = 1.0F;
+  const float turn_rad = radians(0.9F);
+  CHECK(steps_to_arrive({turn_rad, 0.0F}, jumping) == 3);
+  CHECK(steps_to_arrive({0.0F, 0.009F}, jumping) == 3);
+  CHECK(steps_to_arrive({turn_rad, 0.009F}, jumping) == 5);  // the third is the first of the way
+  CHECK(steps_to_arrive({turn_rad, 0.0F}, jumping, {0.0F, 0.0F, -0.1F}) == 5);  // it starts again
+  CHECK(steps_to_arrive({0.0F, 0.009F}, jumping, {-0.1F, 0.0F, 0.0F}) == 5);
+  CHECK(steps_to_arrive({radians(1.1F), 0.0F}, jumping) == 0);
+  CHECK(steps_to_arrive({0.0F, 0.011F}, jumping) == 0);
+  CHECK(steps_to_arrive({0.0F, -0.011F}, jumping) == 0);
+
+  // What is at its tolerance is within it: the robot, and the reference that has not moved.
+  PoseControllerModel exact{};
+  exact.heading_tolerance_rad = 0.25F;
+  exact.distance_tolerance_m = 0.25F;
+  exact.settled_steps = 1;
+  exact.heading_reference.gain = 0.0F;
+  exact.distance_reference.gain = 0.0F;
+  for (const float at : {0.25F, -0.25F}) {
+    CHECK(steps_to_arrive({at, 0.0F}, exact) == 1);
+    CHECK(steps_to_arrive({0.0F, at}, exact) == 1);
+    CHECK(steps_to_arrive({1.125F * at, 0.0F}, exact) == 0);
+    CHECK(steps_to_arrive({0.0F, 1.125F * at}, exact) == 0);
+  }
+}
+
+TEST_CASE("with no numbers of its own, it asks for one effort a radian and one a metre", "[motion]") {
+  PoseControllerModel plain{};
+  plain.heading_reference.gain = 1.0F;
+  plain.distance_reference.gain = 1.0F;
+  const PoseCommand turns = control(started({}, {0.5F, 1.0F}, {}), {}, dt, plain).command;
+  CHECK(near(turns.turn, 0.5F));
+  CHECK(turns.ahead == 0.0F);
+  const PoseCommand drives = control(started({}, {0.0F, -0.5F}, {}), {}, dt, plain).command;
+  CHECK(near(drives.ahead, -0.5F));
+  CHECK(drives.turn == 0.0F);
+  CHECK(drives.movement == Movement::straight);
+}
+
+TEST_CASE("what the turn needed to get there is not carried into the way", "[motion]") {
+  PoseController state = started({}, set_point(90, 60), {});
+  for (int i = 0; i < 200; ++i) {
+    const float heading_rad = i < 30 ? 0.0F : radians(89.5F);  // stuck at first
+    const PoseControllerStep step = control(state, {0.0F, 0.0F, heading_rad}, dt, model);
+    state = step.state;
+    if (state.phase != PoseController::Phase::driving) continue;
+    const Pid fresh = control_angle({}, pi / 2.0F, heading_rad, dt, model.heading);
+    CHECK(near(state.heading.integral, fresh.integral));
+    CHECK(near(state.heading.output, fresh.output));
+    CHECK(state.heading.derivative == 0.0F);
+    CHECK(step.command.turn == state.heading.output);
+    CHECK(step.command.ahead == state.distance.output);
+    CHECK(step.command.movement == Movement::straight);
+    return;
+  }
+  REQUIRE(state.phase == PoseController::Phase::driving);  // it never drove
+}
+
+TEST_CASE("a set point counts what was rejected before it, and begins with nothing else", "[motion]") {
+  PoseController state = started({}, set_point(90, 60), {});
+  state = control(state, {}, nan, model).state;
+  for (int i = 0; i < 10; ++i) state = control(state, {}, dt, model).state;
+  const auto is_fresh = [](const PoseController& one) {
+    return one.turn_reference_rad == 0.0F && one.distance_reference_m == 0.0F && one.heading == Pid{} &&
+           one.distance == Pid{} && one.settled == 0;
+  };
+  const PoseController next = started(state, {4.0F, -1.0F}, {1.0F, 2.0F, 0.5F});
+  CHECK(next.rejected == 1);
+  CHECK(near(next.target.turn_rad, 4.0F - two_pi));
+  CHECK(next.target.distance_m == -1.0F);
+  CHECK(next.phase == PoseController::Phase::turning);
+  CHECK(is_fresh(next));
+  CHECK(started(next, {0.0F, nan}, {}).rejected == 2);
+  CHECK(stopped(next).target == SetPoint{0.0F, 0.0F});
+  CHECK(stopped(next).start == Pose{0.0F, 0.0F, 0.0F});
+  CHECK(is_fresh(stopped(next)));
+}
+
 TEST_CASE("the distance is by Pythagoras, behind the start negative", "[motion]") {
+  CHECK(distance_done({}, 0.0F, {0.0F, 0.5F, 0.0F}) == 0.5F);  // right beside it is not behind
   const Pose start{1.0F, 1.0F, 0.0F};
   CHECK(near(distance_done(start, 0.0F, {1.3F, 1.4F, 0.0F}), 0.5F));
   CHECK(near(distance_done(start, 0.0F, {0.7F, 1.4F, 0.0F}), -0.5F));

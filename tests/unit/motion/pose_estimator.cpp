@@ -108,6 +108,56 @@ TEST_CASE("every cause of a rejection has its counter, and the pose stays as it 
   CHECK(e.pose == Pose{});
 }
 
+TEST_CASE("a turn of the wheels that is no number is left out and counted as theirs", "[motion]") {
+  EstimatorModel flat = model;
+  flat.drive.wheelbase_m = 0.0F;
+  Estimate e = estimate({}, {}, dt, flat);
+  const std::uint32_t before = e.wheels.rejected;
+  e = estimate(e, {60, 40, -6.0F, 0.0F, Movement::rotating}, dt, flat);
+  CHECK(e.wheels.rejected == before + 1);
+  CHECK(e.rejected == EstimatorCounters{0, 0, 0});
+  CHECK(near(e.pose.heading_rad, -0.18F));  // by the gyro in full
+}
+
+TEST_CASE("whether the compass corrected is said of the last step alone", "[motion]") {
+  const EstimatorModel always = gyro_and_compass(model);
+  CHECK_FALSE(Estimate{}.compass_used);
+  for (const float dt_s : {nan, dt}) {
+    Estimate e = estimate({}, {}, dt, always);
+    e = estimate(e, {0, 0, 0.0F, 0.1F, Movement::standing}, dt, always);
+    REQUIRE(e.compass_used);
+    e = estimate(e, {0, 0, 0.0F, nan, Movement::standing}, dt_s, always);
+    CHECK_FALSE(e.compass_used);
+  }
+}
+
+TEST_CASE("the second robot has no gate, whatever the first one's is", "[motion]") {
+  EstimatorModel gated = model;
+  gated.compass_gate = 2.0F;
+  Estimate e = estimate({}, {}, dt, gyro_and_compass(gated));
+  e = estimate(e, {0, 0, 0.0F, 3.0F, Movement::standing}, dt, gyro_and_compass(gated));
+  CHECK(e.compass_used);
+}
+
+TEST_CASE("a model that says nothing of a number has the careful one", "[motion]") {
+  // No wheel makes a tick, and a compass is within three degrees where nothing disturbs it: two sigmas are
+  // 0.1.
+  const EstimatorModel bare{.drive = model.drive};
+  const Estimate still = estimate({}, {}, dt, bare);
+  CHECK(estimate(still, {1, 1, 0.0F, 0.0F, Movement::straight}, dt, bare).wheels.rejected == 1);
+  const EstimatorModel plain{
+      .compass_variance_rad2 = 1.0F, .compass_rule = CompassRule::always, .compass_gate = 2.0F};
+  const Estimate begun = estimate({}, {}, dt, plain);
+  CHECK(estimate(begun, {0, 0, 0.0F, 0.09F, Movement::standing}, dt, plain).compass_used);
+  CHECK_FALSE(estimate(begun, {0, 0, 0.0F, 0.11F, Movement::standing}, dt, plain).compass_used);
+  // It speaks where the robot stands after a straight drive, and there only.
+  EstimatorModel quiet{.compass_variance_rad2 = 1.0F};
+  CHECK_FALSE(estimate(begun, {0, 0, 0.0F, 0.0F, Movement::standing}, dt, quiet).compass_used);
+  const Estimate driven = estimate(begun, {0, 0, 0.0F, 0.0F, Movement::straight}, dt, quiet);
+  CHECK(estimate(driven, {0, 0, 0.0F, radians(1.9F), Movement::standing}, dt, quiet).compass_used);
+  CHECK_FALSE(estimate(driven, {0, 0, 0.0F, radians(2.1F), Movement::standing}, dt, quiet).compass_used);
+}
+
 TEST_CASE("without a time the wheels move the pose all the same", "[motion]") {
   Estimate e = estimate(begun(), {60, 40, 0.0F, 0.0F, Movement::straight}, nan, model);
   CHECK(near(e.pose.heading_rad, -0.2F));

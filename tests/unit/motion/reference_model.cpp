@@ -20,6 +20,10 @@ static_assert(approach(2.0F, 8.0F, 7.0F) == 8.0F, "a gain above 1 does not overs
 
 constexpr ReferenceModel model{.gain = 0.36F, .period_s = 0.030F};
 
+TEST_CASE("with no numbers of its own, the model is the thesis' period and a tenth", "[motion]") {
+  CHECK(near(approach(2.0F, 12.0F, ReferenceModel{}, 0.030F), 3.0F));  // [T2 table 9.2]
+}
+
 TEST_CASE("half the time twice is the whole time once", "[motion]") {
   CHECK(gain_over(model, 0.030F) == 0.36F);
   CHECK(near(gain_over(model, 0.015F), 0.2F));     // 1 - sqrt(0.64)

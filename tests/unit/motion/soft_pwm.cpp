@@ -14,6 +14,8 @@ static_assert(duty(1.0F, 0.02F) == MotorDuty{true, 100} && duty(-0.5F, 0.02F) ==
 static_assert(duty(0.1F, 0.02F) == MotorDuty{true, 40}, "raised to what moves the motor");
 static_assert(duty(-0.1F, 0.02F) == MotorDuty{false, 40});
 static_assert(duty(0.01F, 0.02F).percent == 0 && duty(0.0F, 0.0F).percent == 0);
+static_assert(duty(0.25F, 0.25F) == MotorDuty{true, 40}, "the dead band ends before it");
+static_assert(MotorDuty{} == MotorDuty{true, 0}, "off");
 static_assert(duty(7.0F, 0.0F) == MotorDuty{true, 100} && duty(nan, 0.0F) == MotorDuty{});
 static_assert(duty(std::numeric_limits<float>::infinity(), 0.0F) == MotorDuty{});
 

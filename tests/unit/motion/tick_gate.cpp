@@ -10,6 +10,7 @@ namespace motion_tick_gate_test {
 using namespace ocm::motion;
 
 // u2 = 1 where |e2| < 1, else the faster wheel waits. [T2 eq. 7.1]
+static_assert(WheelGate{} == WheelGate{true, true}, "each runs unless it has to wait");
 static_assert(gate(5, 5) == WheelGate{true, true});
 static_assert(gate(5, 6) == WheelGate{true, false});
 static_assert(gate(6, 5) == WheelGate{false, true});

@@ -23,6 +23,7 @@ static_assert(near(duration_s({0.3F, 0.0F, 0.1F}, model), 3.0F));
 static_assert(near(duration_s({-0.3F, 0.0F, 0.1F}, model), 3.0F));
 static_assert(near(duration_s({0.3F, -pi / 2.0F, 0.1F}, model), 3.0F + 0.35F * pi / 2.0F));
 static_assert(near(longest_s({0.3F, 0.0F, 0.1F}, model), 2.0F * 3.0F + 5.0F));
+static_assert(duration_s({0.3F, 1.0F, 0.1F}, {}) == duration_s({0.3F, 0.0F, 0.1F}, {}), "no wheelbase");
 static_assert(duration_s({0.3F, 0.0F, 0.0F}, model) == 0.0F && duration_s({nan, 0.0F, 0.1F}, model) == 0.0F);
 
 // What cannot be done is not begun.
@@ -48,6 +49,68 @@ static_assert(near(off.state.distance_left_m, 0.3F - 0.1F * (1.0F - 0.005F)));
 static_assert(control(first.state, {nan, 0.0F}, dt_s, model).command == Twist{});
 static_assert(control(first.state, {0.0F, infinity}, dt_s, model).state.rejected == 1);
 static_assert(control(first.state, {}, 0.0F, model).state.rejected == 1);
+
+// A step without numbers is a stop: it sets off again on the ramp, not at the speed that it had.
+constexpr TravelStep faster = control(first.state, {}, dt_s, model);
+static_assert(near(faster.command.speed_m_s, 0.04F));
+constexpr TravelStep after_nonsense =
+    control(control(faster.state, {nan, 0.0F}, dt_s, model).state, {}, dt_s, model);
+static_assert(near(after_nonsense.command.speed_m_s, 0.02F));
+
+// The way counts by the angle at which the robot was in the middle of the step: 0.3 + 0.2 / 2 = 0.4.
+constexpr Travel askew = control(started({0.3F, 0.0F, 0.1F}, model), {0.0F, 0.3F}, dt_s, model).state;
+static_assert(near(control(askew, {0.1F, 0.2F}, dt_s, model).state.distance_left_m, 0.3F - 0.1F * 0.92F));
+
+/// With numbers that a float holds exactly, to see what holds at a bound.
+constexpr TravelModel exact{.wheelbase_m = 0.5F,
+                            .distance_tolerance_m = 0.25F,
+                            .angle_tolerance_rad = 0.25F,
+                            .settled_steps = 1,
+                            .patience = 0.0F,
+                            .patience_s = 0.5F};
+constexpr TravelEnd end_of(const TravelTarget& target, const TravelModel& with) {
+  return control(started(target, with), {}, 0.25F, with).end;
+}
+static_assert(end_of({0.25F, 0.0F, 1.0F}, exact) == TravelEnd::arrived, "the tolerance is within it");
+static_assert(end_of({-0.25F, 0.0F, 1.0F}, exact) == TravelEnd::arrived);
+static_assert(end_of({0.28125F, 0.0F, 1.0F}, exact) == TravelEnd::none);
+static_assert(end_of({0.0F, 0.25F, 1.0F}, exact) == TravelEnd::arrived);
+static_assert(end_of({0.0F, -0.28125F, 1.0F}, exact) == TravelEnd::none);
+
+/// How many steps of a robot that does not move it takes until the end; 0: more than ten.
+constexpr int steps_until(TravelEnd end, const TravelTarget& target, const TravelModel& with) {
+  Travel state = started(target, with);
+  for (int i = 1; i <= 10; ++i) {
+    const TravelStep step = control(state, {}, 0.25F, with);
+    if (step.end != TravelEnd::none) return step.end == end ? i : -1;
+    state = step.state;
+  }
+  return 0;
+}
+static_assert(steps_until(TravelEnd::too_long, {1.0F, 0.0F, 1.0F}, exact) == 3,
+              "half a second is not too long");
+// Within tolerance of both from the start: three steps for the way; the third is the first of the turn.
+static_assert(steps_until(TravelEnd::arrived, {0.0005F, 0.0F, 0.1F}, model) == 3);
+static_assert(steps_until(TravelEnd::arrived, {0.0F, 0.005F, 0.1F}, model) == 3);
+static_assert(steps_until(TravelEnd::arrived, {0.0005F, 0.005F, 0.1F}, model) == 5);
+
+// What it has turned on the way is a part of the turn: 1 rad to the left, 0.3 of it are done, 0.7 are left.
+constexpr TravelStep round_the_corner =
+    control(started({1.0F, 1.0F, 1.0F}, exact), {0.9F, 0.3F}, 0.25F, exact);
+static_assert(round_the_corner.state.phase == Travel::Phase::turning);
+static_assert(near(round_the_corner.state.angle_left_rad, 0.7F));
+static_assert(round_the_corner.command.speed_m_s == 0.0F && round_the_corner.command.turn_rad_s > 0.0F);
+
+// Nothing is left of it at its end, and what was never begun is at rest.
+constexpr TravelStep ended = control(started({0.25F, 0.0F, 1.0F}, exact), {}, 0.25F, exact);
+static_assert(ended.command == Twist{} && ended.state.last == Twist{});
+static_assert(control(ended.state, {}, 0.25F, exact).end == TravelEnd::none, "said once");
+constexpr bool at_rest(const Travel& state) {
+  return state.phase == Travel::Phase::idle && state.settled == 0 && state.distance_left_m == 0.0F &&
+         state.angle_left_rad == 0.0F && state.heading_rad == 0.0F && state.speed_m_s == 0.0F &&
+         state.left_s == 0.0F && state.last == Twist{} && state.rejected == 0;
+}
+static_assert(at_rest({}) && at_rest(started({}, model)) && TravelTarget{} == TravelTarget{0.0F, 0.0F, 0.0F});
 
 /// Wheels that follow with a lag, without slip.
 struct Robot {
@@ -113,6 +176,24 @@ TEST_CASE("a travel ends where it should, as fast as it may, and does not run ov
     CHECK(done.furthest_m <= magnitude(target.distance_m) + 0.0012F);
     CHECK(done.fastest_m_s <= target.speed_m_s + 1e-4F);
     CHECK(done.time_s <= duration_s(target, model) + 5.0F);
+  }
+}
+
+TEST_CASE("turning back to the way goes first: no wheel is asked for more than the speed") {
+  for (const float way_m : {1.0F, -1.0F}) {
+    Travel state = started({way_m, 0.0F, 0.1F}, model);
+    Moved pushed{0.0F, 0.8F};  // it is kicked round
+    float turn_rad_s = 0.0F;
+    for (int i = 0; i < 100; ++i) {
+      const TravelStep step = control(state, pushed, dt_s, model);
+      pushed = {};
+      state = step.state;
+      turn_rad_s = step.command.turn_rad_s;
+      REQUIRE(magnitude(step.command.speed_m_s) + magnitude(turn_rad_s) * 0.035F <= 0.1F + 1e-6F);
+    }
+    // 2.5/s of 0.8 rad are 2 rad/s, 0.07 m/s of a wheel: 0.03 m/s are left for the way.
+    CHECK(near(turn_rad_s, -2.0F));
+    CHECK(near(state.last.speed_m_s, way_m < 0.0F ? -0.03F : 0.03F));
   }
 }
 

@@ -36,6 +36,24 @@ static_assert(control(step.state, nan, {500.0F, 600.0F}, 0.02F, model).state == 
               "no integral is left");
 static_assert(control(step.state, -1.0F, {500.0F, 600.0F}, 0.02F, model).efforts == Efforts{});
 
+// What is not given: nothing that starts it, an effort from 0 to 1, the right wheel is the master.
+constexpr WheelPiModel plain{.pi = {.kp = 0.001F}};
+static_assert(near(control({}, 100.0F, {0.0F, 0.0F}, 0.02F, plain).efforts.right, 0.1F));
+static_assert(near(control({}, 100.0F, {50.0F, 80.0F}, 0.02F, plain).efforts.left, 0.03F));
+static_assert(control(WheelPi{}, 100.0F, WheelRates{}, 0.02F, WheelPiModel{}).efforts == Efforts{0.0F, 0.0F});
+
+static_assert(WheelRates{}.left_ticks_s == 0.0F && WheelRates{}.right_ticks_s == 0.0F);
+static_assert(WheelPiModel{}.pi.least == 0.0F && WheelPiModel{}.pi.most == 1.0F,
+              "the direction is the motor's");
+// A slave that is geared to turn half as fast as its master, which makes 80.
+constexpr WheelPiModel geared{.pi = {.kp = 0.001F}, .slave_per_master = 0.5F};
+static_assert(near(control({}, 100.0F, {30.0F, 80.0F}, 0.02F, geared).efforts.left, 0.01F));
+
+// However slow, a wheel that turns is not started, and a rate that is asked for is one.
+static_assert(near(control({}, 100.0F, {0.0F, 0.5F}, 0.02F, model).efforts.right,
+                   99.5F * (0.0005F + 0.00008F)));
+static_assert(near(control({}, 0.5F, {0.0F, 0.0F}, 0.02F, plain).efforts.right, 0.0005F, 1e-7F));
+
 /// A motor whose rate follows its effort, above what friction takes: weaker on one side.
 float motor(float rate, float effort, float strength) {
   const float wanted = effort > 0.25F || rate > 0.0F ? strength * effort : 0.0F;

@@ -186,6 +186,9 @@ TEST_CASE("a period that the wire cannot carry is refused, and the nearest is kn
 }
 
 TEST_CASE("every count of every unit is a period, and is its own nearest") {
+  // Of two units that carry it, milliseconds.
+  CHECK(Period::nearest(5ms) == Period{5, PeriodUnit::milliseconds});
+  CHECK(Period::nearest(60s) == Period{60'000, PeriodUnit::milliseconds});
   for (const auto unit : {PeriodUnit::milliseconds, PeriodUnit::seconds, PeriodUnit::microseconds})
     for (unsigned count = 1; count <= UINT16_MAX; ++count) {
       const Period period{static_cast<std::uint16_t>(count), unit};

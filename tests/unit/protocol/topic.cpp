@@ -288,4 +288,183 @@ TEST_CASE("what a board needs of a topic") {
   STATIC_REQUIRE_FALSE(ocm::protocol::TopicList<Scale>::contains<Lamp>);
 }
 
+// --- which fields a frame has ---
+
+/// Bytes of a frame, each a field; `selector` of field i says which field it needs.
+struct Selected {
+  static constexpr std::array<ocm::protocol::SelectorRange, 2> one_or_five{{{1, 1}, {5, 9}}};
+  std::array<Field, 4> fields{number(Number::integer, 8), number(Number::integer, 8),
+                              number(Number::integer, 8), number(Number::integer, 8)};
+  explicit Selected(std::array<std::uint16_t, 4> selectors) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      fields[i].position.start = static_cast<std::uint16_t>(8 * i);
+      fields[i].selector = selectors[i];
+      if (selectors[i] != ocm::protocol::no_selector) fields[i].selected = one_or_five;
+    }
+  }
+  [[nodiscard]] ocm::protocol::FrameLayout layout() const { return {"", {}, 4, fields}; }
+  [[nodiscard]] bool has(std::size_t field, std::array<std::uint8_t, 4> data) const {
+    return layout().has(fields[field], data);
+  }
+};
+constexpr std::uint16_t none = ocm::protocol::no_selector;
+
+TEST_CASE("a field is there for the numbers of its selector, both ends included, and for no others") {
+  const Selected one{{none, 0, none, none}};
+  for (unsigned value = 0; value < 256; ++value)
+    CHECK(one.has(1, {static_cast<std::uint8_t>(value), 0, 0, 0}) ==
+          (value == 1 || (value >= 5 && value <= 9)));
+  CHECK(one.layout().selects(0));
+  CHECK_FALSE(one.layout().selects(1));
+  CHECK_FALSE(one.layout().selects(2));
+  Selected nothing{{none, 0, none, none}};
+  nothing.fields[1].selected = {};
+  CHECK_FALSE(nothing.has(1, {1, 0, 0, 0}));
+}
+
+TEST_CASE("a selector may be selected itself, to any depth, but not in a circle") {
+  const Selected chain{{none, 0, 1, 2}};
+  CHECK(chain.has(3, {1, 5, 9, 0}));
+  CHECK_FALSE(chain.has(3, {2, 5, 9, 0}));
+  CHECK_FALSE(chain.has(3, {1, 2, 9, 0}));
+  CHECK_FALSE(chain.has(3, {1, 5, 2, 0}));
+  CHECK(chain.has(2, {1, 5, 2, 0}));
+  const Selected circle{{1, 0, none, none}};
+  CHECK_FALSE(circle.has(0, {1, 1, 1, 1}));
+  CHECK_FALSE(circle.has(1, {1, 1, 1, 1}));
+  CHECK_FALSE(Selected{{0, none, none, none}}.has(0, {1, 1, 1, 1}));
+  CHECK_FALSE(Selected{{none, 4, none, none}}.has(1, {1, 1, 1, 1}));  // there is no such field
+}
+
+TEST_CASE("which fields a frame has together") {
+  using Layout = ocm::protocol::FrameLayout;
+  static constexpr ocm::protocol::Law law{{1, 0}, {100, 0}, {4, 0}, {1, -2}, {5, -1}};
+  static constexpr ocm::protocol::Law other_law{{2, 0}, {100, 0}, {4, 0}, {1, -2}, {5, -1}};
+  static constexpr std::array<ocm::protocol::SelectorRange, 2> same{{{1, 1}, {5, 9}}};
+  static constexpr std::array<ocm::protocol::SelectorRange, 2> wider{{{1, 1}, {5, 10}}};
+  const auto together = [](const Field& a, const Field& b) {
+    CHECK(Layout::choose_together(a, b) == Layout::choose_together(b, a));
+    return Layout::choose_together(a, b);
+  };
+  Field plain = number(Number::integer, 8);
+  Field selected = plain;
+  selected.selector = 0;
+  selected.selected = Selected::one_or_five;
+  CHECK(together(plain, plain));
+  CHECK_FALSE(together(plain, selected));
+  Field changed = selected;
+  changed.selected = same;  // the same numbers in another place
+  CHECK(together(selected, changed));
+  changed.selected = wider;
+  CHECK_FALSE(together(selected, changed));
+  changed.selected = std::span{same}.first(1);
+  CHECK_FALSE(together(selected, changed));
+  changed = selected;
+  changed.selector = 2;
+  CHECK_FALSE(together(selected, changed));
+  const Field distance = ocm::protocol::derived(plain, 0, "distance", "m", law, false);
+  const Field uncertainty = ocm::protocol::derived(plain, 0, "uncertainty", "m", law, true);
+  CHECK(together(distance, uncertainty));
+  CHECK_FALSE(together(distance, plain));
+  CHECK_FALSE(together(distance, ocm::protocol::derived(plain, 1, "distance", "m", law, false)));
+  CHECK_FALSE(together(distance, ocm::protocol::derived(plain, 0, "distance", "m", other_law, false)));
+}
+
+TEST_CASE(
+    "a derived field is its source's place with the law's name, unit and range, and no names of values") {
+  static constexpr ocm::protocol::Law law{{1, 0}, {100, 0}, {4, 0}, {1, -2}, {5, -1}};
+  const Field& source = ocm::test::state_fields[0];
+  const Field distance = ocm::protocol::derived(source, 3, "distance", "m", law, false);
+  CHECK(distance.name == "distance");
+  CHECK(distance.unit == "m");
+  CHECK(distance.position == source.position);
+  CHECK(distance.values.empty());
+  CHECK_FALSE(distance.flags);
+  CHECK(distance.min == Decimal{1, -2});
+  CHECK(distance.max == Decimal{5, -1});
+  CHECK(distance.derived_from == 3);
+  CHECK_FALSE(distance.uncertainty);
+  const Field uncertainty = ocm::protocol::derived(source, 3, "u", "m", law, true);
+  CHECK(uncertainty.min == Decimal{});
+  CHECK(uncertainty.max == Decimal{25, -2});  // 0.5^3 * 4 / 2
+}
+
+// --- what else a catalogue says ---
+
+TEST_CASE("a message is in a catalogue what a topic is not") {
+  using ocm::protocol::Address;
+  const auto layout_of = [](std::uint16_t length, Address address) {
+    ocm::protocol::FrameLayout layout;
+    layout.length = length;
+    layout.address = address;
+    return layout;
+  };
+  const ocm::protocol::FrameLayout frames[] = {layout_of(8, {Address::By::identifier, false, 0x123}),
+                                               layout_of(9, {Address::By::pgn, true, 0x18FE'ECFE})};
+  Topic all[3];
+  for (std::size_t i = 0; i < 2; ++i) {
+    all[i].name = i == 0 ? "speed" : "VI";
+    all[i].id = TopicId{0x10};
+    all[i].kind = Kind::message;
+    all[i].board = i == 0 ? 1 : ocm::protocol::no_board;
+    all[i].frames = {&frames[i], 1};
+  }
+  all[0].cycle = 20ms;
+  all[2] = catalogue.topics[0];
+  const ocm::protocol::Catalogue mixed{"mixed", 250'000, ocm::test::boards, all};
+  CHECK(mixed.find(TopicId{0x10}) == &all[2]);  // a message has no number for requests
+  CHECK(mixed.find("VI") == &all[1]);
+  CHECK(mixed.board_name(all[0]) == "right");
+  CHECK(mixed.board_name(all[1]).empty());
+  CHECK(all[0].is_message());
+  CHECK_FALSE(all[2].is_message());
+  CHECK(all[0].usual_period() == 20ms);
+  CHECK(all[1].usual_period() == 0ms);
+  CHECK(all[2].usual_period() == 1s);
+  CHECK(catalogue.find("lamp_1")->usual_period() == 0ms);
+
+  CHECK_FALSE(mixed.has_buses());
+  CHECK(all[1].is_on("can0"));
+  all[1].bus = "can1";
+  CHECK(mixed.has_buses());
+  CHECK_FALSE(all[1].is_on("can0"));
+  CHECK(all[1].is_on("can1"));
+
+  using ocm::protocol::identifier_of;
+  CHECK(identifier_of({&all[0], 0}, Priority::low) == 0x123);
+  CHECK(identifier_of({&all[1], 0}, Priority::urgent) == 0x18FE'ECFE);
+  CHECK(identifier_of({&all[2], 1}, Priority::low) == 0x721);
+  CHECK(identifier_of({catalogue.find("lamp_2"), 0}, Priority::high) == 0x131);
+  CHECK(ocm::protocol::format_of(frames[0]) == ocm::can::Format::base);
+  CHECK(ocm::protocol::format_of(frames[1]) == ocm::can::Format::extended);
+  CHECK(frames[0].dlc() == 8);
+  CHECK(frames[1].dlc() == 8);
+  CHECK(layout_of(7, {}).dlc() == 7);
+  // 8 bytes in an extended frame: 67 + 64 bits and 29 stuff bits.
+  CHECK(ocm::protocol::worst_bits(layout_of(8, {Address::By::identifier, true, 1}), Priority::low) == 160);
+  CHECK_FALSE(ocm::protocol::FrameRef{});
+  CHECK(ocm::protocol::FrameHead{}.dlc == 0);
+  CHECK(ocm::protocol::FrameLayout{}.length == 0);
+  CHECK(ocm::protocol::FrameRef{&all[0], 0});
+}
+
+TEST_CASE("kinds and roles have the words of a spec") {
+  using ocm::protocol::name;
+  using ocm::protocol::Role;
+  CHECK(name(Kind::sensor) == "sensor");
+  CHECK(name(Kind::actuator) == "actuator");
+  CHECK(name(Kind::message) == "message");
+  const std::pair<Role, const char*> roles[] = {
+      {Role::none, "none"},       {Role::drive, "drive"}, {Role::light, "light"}, {Role::status, "status"},
+      {Role::refusal, "refusal"}, {Role::pose, "pose"},   {Role::ring, "ring"},   {Role::floor, "floor"}};
+  for (const auto& [role, word] : roles) CHECK(name(role) == word);
+}
+
+TEST_CASE("the number of a type in a list; as many as there are when it is not there") {
+  STATIC_REQUIRE(ocm::protocol::TopicList<Scale, Lamp>::index<Scale> == 0);
+  STATIC_REQUIRE(ocm::protocol::TopicList<Scale, Lamp>::index<Lamp> == 1);
+  STATIC_REQUIRE(ocm::protocol::TopicList<Scale>::index<Lamp> == 1);
+  STATIC_REQUIRE(ocm::protocol::TopicList<>::index<Lamp> == 0);
+}
+
 }  // namespace protocol_topic_test

@@ -23,6 +23,14 @@ static_assert(adapted_period(slower, 50) == 20ms);
 // To the nanosecond: 1.5 of them for each step of the value.
 constexpr Adaptation fine{.from = 0, .to = 100, .at_from = 1'000ns, .at_to = 1'150ns, .grain = 1ns};
 static_assert(adapted_period(fine, 50) == 1'075ns && adapted_period(fine, 99) == 1'148ns);
+// In whole milliseconds if it says nothing else.
+static_assert(adapted_period({.from = 0, .to = 100, .at_from = 10ms, .at_to = 20ms}, 59) == 15ms);
+// Over as many values as it tells apart, from the first to the last but one.
+constexpr Adaptation wide{.from = 0, .to = 2'097'151, .at_from = 1s, .at_to = 1s + 2'097'151us, .grain = 1ns};
+static_assert(adapted_period(wide, 5) == 1s + 5us && adapted_period(wide, 2'097'150) == 1s + 2'097'150us);
+static_assert(adapted_period(wide, 1'048'577) == 1s + 1'048'577us);
+constexpr Adaptation wider{.from = 0, .to = 1 << 30, .at_from = 1s, .at_to = 2s, .grain = 1ns};
+static_assert(adapted_period(wider, 1 << 29) == 1500ms);  // in parts of 1024
 
 TEST_CASE("adaptation: within its bounds, in grains, and never back, for any numbers") {
   std::mt19937_64 random{5};

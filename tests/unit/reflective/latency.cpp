@@ -23,6 +23,13 @@ TEST_CASE("latency: the total is the sum of the parts, and settle is no part of 
   CHECK(latency.at_worst() == analysis::unbounded);
 }
 
+TEST_CASE("latency: before anything is known there is no bound, and all parts are zero") {
+  CHECK_FALSE(Latency{}.bounded);
+  CHECK_FALSE(Recovery{}.bounded);
+  CHECK(Latency{.bounded = true}.at_worst() == 0);
+  CHECK(Recovery{.bounded = true}.at_worst() == 0);
+}
+
 TEST_CASE("latency: so is that of a recovery") {
   Recovery recovery{.bounded = true, .settle = 1'000};
   std::int64_t unit = 1;

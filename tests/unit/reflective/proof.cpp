@@ -171,6 +171,117 @@ TEST_CASE("proof: a change that takes longer than it may, to the nanosecond") {
   CHECK((all[0].from == 0 && all[0].configuration == 1));
 }
 
+TEST_CASE("proof: a change of a period, by hand, and one of a stream that goes on") {
+  std::vector<Stream> slower{{0, 40ms, protocol::Priority::high}};
+  std::vector<Configuration> changed{configurations.begin(), configurations.end()};
+  changed[1].streams = slower;
+  Operator op = tables;
+  op.configurations = changed;
+  Proof<32> proof{op, 1'000'000};
+  // The set point, the stop and the request, behind the long one. Then the watched one, 2 ms late, behind the
+  // long one, these three, and two of a grid that begins again just then.
+  const std::int64_t queue = (135 + 65 + 65 + 95) * 1000;
+  CHECK(proof.settling(0, 1) == 3'000'000 + queue + 1'000'000 + 2'000'000 + queue + 3 * 65'000);
+  // Back again: no set point, and two requests.
+  CHECK(proof.settling(1, 0) ==
+        3'000'000 + (135 + 2 * 95) * 1000 + 1'000'000 + 2'000'000 + (135 + 2 * 95 + 3 * 65) * 1000);
+  // One with neither stop nor set point, whose stream goes on: nothing old, and one request.
+  changed[1].entry = {};
+  slower[0].period = 20ms;
+  CHECK(proof.settling(1, 0) == 3'000'000 + (135 + 95) * 1000 + 1'000'000);
+}
+
+TEST_CASE("proof: how soon it notices what the bus itself says") {
+  const std::array<protocol::FrameLayout, 1> refused{layout(4, 1, true)};
+  std::vector<protocol::Topic> all{topics.begin(), topics.end()};
+  all.push_back(topic("refused", 4, protocol::Kind::sensor, refused, 0ms));
+  all.back().role = protocol::Role::refusal;
+  all.back().priority = protocol::Priority::high;
+  const protocol::Catalogue with_refusals{"three frames", 1'000'000, boards, all};
+  std::vector<Condition> of_bus{{.name = "refusals", .watched = Watched::refusals},
+                                {.name = "load", .watched = Watched::bus_load, .limit = 700, .window = 100ms},
+                                {.name = "state", .watched = Watched::bus_state},
+                                {.name = "gap", .watched = Watched::gap, .topic = 0, .limit = 60'000'000}};
+  std::vector<std::vector<Term>> terms;
+  std::vector<Monitor> each;
+  std::vector<Transition> away;
+  for (std::uint16_t c = 0; c < of_bus.size(); ++c) terms.push_back({{.condition = c}});
+  for (std::uint16_t c = 0; c < of_bus.size(); ++c) {
+    each.push_back({of_bus[c].name, terms[c], {}});
+    away.push_back({"away", 0, 1, c, static_cast<std::uint8_t>(c)});
+  }
+  away.push_back({"asked", 1, 0});
+  Operator op = tables;
+  op.catalogue = &with_refusals;
+  op.conditions = of_bus;
+  op.monitors = each;
+  op.transitions = away;
+  op.retry = 500ms;
+  REQUIRE(first_mistake(op).kind == Mistake::no_mistake);
+  Proof<32> proof{op, 1'000'000};
+  // Two requests may be refused just then, after whatever goes before their refusals.
+  const Latency refusal = proof.latency(0, 0);
+  CHECK((refusal.bounded && refusal.bus > 2 * 65'000 && refusal.bus < 1'000'000 + 10'000'000));
+  CHECK(refusal.total() == refusal.bus + 3'000'000 + refusal.command);
+  CHECK(refusal.command == proof.latency(2, 0).command);
+  const Latency load = proof.latency(1, 0);
+  CHECK(load.total() == 200'000'000 + 3'000'000 + load.command);
+  const Latency state = proof.latency(2, 0);
+  CHECK(state.total() == 3'000'000 + state.command);
+  const Latency gap = proof.latency(3, 0);
+  CHECK(gap.jitter == 0);
+  CHECK(gap.total() == gap.bus + 3'000'000 + 60'000'000 + 3'000'000 + gap.command);
+}
+
+TEST_CASE("proof: a fault on the bus costs an error frame and what it hit") {
+  // The set point and what may go before it take 200 us; one fault: 31 bits, and the longer of both again.
+  Proof<16> proof{tables, 1'000'000, {}, {.burst = 1}};
+  CHECK(proof.latency(0, 0).command == (135 + 65 + 31 + 65) * 1000);
+  CHECK(proof.latency(0, 0).bus == (135 + 65 + 31 + 65) * 1000);
+}
+
+TEST_CASE("proof: what cannot be asked for is not asked for again") {
+  std::vector<protocol::Topic> all{topics.begin(), topics.end()};
+  all[0].kind = protocol::Kind::message;
+  const protocol::Catalogue sent_only{"two frames", 1'000'000, boards, all};
+  Operator op = tables;
+  op.catalogue = &sent_only;
+  op.retry = 500ms;
+  CHECK_FALSE(Proof<32>{op, 1'000'000}.recovery(0, 0).bounded);
+  CHECK(Proof<32>{op, 1'000'000}.recovery(0, 1).bounded);
+  op.retry = -1ns;
+  CHECK_FALSE(Proof<32>{op, 1'000'000}.recovery(0, 1).bounded);
+}
+
+TEST_CASE("proof: what others send must be in time, too, in each configuration and each change") {
+  const std::vector<analysis::Message> others{
+      {.cost = 65'000, .period = 5'000'000, .deadline = 199'999, .key = 0}};
+  Operator op = tables;
+  op.others = others;
+  const auto all = doubts(op);  // behind the long one it takes 200 us
+  std::vector<std::pair<std::uint16_t, std::uint16_t>> where;
+  for (const Doubt& doubt : all) {
+    CHECK((doubt.kind == Doubt::Kind::late && doubt.topic == none && doubt.why.response == 200'000));
+    where.emplace_back(doubt.from, doubt.configuration);
+  }
+  CHECK(where == std::vector<std::pair<std::uint16_t, std::uint16_t>>{{none, 0}, {none, 0}, {0, 1}, {1, 0}});
+}
+
+TEST_CASE("proof: a change of more messages than it has room for is named") {
+  // Two streams alone; at the start two requests more, in the change a set point and a stop.
+  std::vector<Doubt> all;
+  Proof<3>{tables, 1'000'000}.check([&](const Doubt& doubt) { all.push_back(doubt); });
+  REQUIRE(all.size() == 2);
+  CHECK((all[0].kind == Doubt::Kind::too_many && all[0].from == none && all[0].configuration == 0));
+  CHECK((all[1].kind == Doubt::Kind::too_many && all[1].from == 0 && all[1].configuration == 1));
+  CHECK(Proof<3>{tables, 1'000'000}.settling(0, 1) == analysis::unbounded);
+  CHECK(Proof<3>{tables, 1'000'000}.load(0, 1) == analysis::unbounded);
+  CHECK(Proof<1>{tables, 1'000'000}.load(0) == analysis::unbounded);
+  CHECK(Proof<1>{tables, 1'000'000}.response(0, 0) == analysis::unbounded);
+  CHECK(Proof<4>{tables, 1'000'000}.settling(0, 1) == settling);
+  CHECK_FALSE((Proof<3>{tables, 1'000'000}.latency(0, 0).bounded));
+}
+
 TEST_CASE("proof: configurations fit, but not the change between them") {
   std::vector<Stream> slow_one{{0, 10ms, protocol::Priority::high}};
   std::vector<Stream> fast{{1, 360us, protocol::Priority::low}};
@@ -206,6 +317,26 @@ TEST_CASE("proof: an age that a healthy stream reaches") {
   REQUIRE(all.size() == 1);
   CHECK(all[0].kind == Doubt::Kind::restless);
   CHECK((all[0].condition == 1 && all[0].configuration == 0 && all[0].needs == least));
+  // It counts from the entry of a configuration, too, of which the first sample may come when that is over.
+  op.settle = 25ms;
+  changed[1].limit = least + 5'000'000;
+  const auto at_entry = doubts(op);
+  REQUIRE(at_entry.size() == 1);  // and not in the other configuration, where nothing is long
+  CHECK(at_entry[0].needs == least + 5'000'000);
+  changed[1].limit += 1;
+  CHECK(doubts(op).empty());
+}
+
+TEST_CASE("proof: a gap that a healthy stream reaches") {
+  std::vector<Condition> changed{conditions.begin(), conditions.end()};
+  changed[1].watched = Watched::gap;
+  Operator op = tables;
+  op.conditions = changed;
+  const std::int64_t least = 20'000'000 + 2'000'000 + 200'000 + 3'000'000;
+  changed[1].limit = least + 1;
+  CHECK(doubts(op).empty());
+  changed[1].limit = least;
+  CHECK(doubts(op).size() == 1);
 }
 
 TEST_CASE("proof: what a sample takes on its board counts in ages and deadlines") {
@@ -271,6 +402,23 @@ TEST_CASE("proof: values that would be stale before the next ones come") {
   for (const Doubt& doubt : doubts(op))
     stale += doubt.kind == Doubt::Kind::restless && doubt.condition == 0 ? 1U : 0U;
   CHECK(stale == 2);
+  // Of one that follows a value three of the shortest, while samples come at the longest.
+  std::vector<Adaptation> adaptations{
+      {.stream = 0, .topic = 0, .from = 0, .to = 100, .at_from = 30ms, .at_to = 15ms}};
+  std::vector<Configuration> changed{configurations.begin(), configurations.end()};
+  changed[0].adaptations = adaptations;
+  op.configurations = changed;
+  op.reaction = 3ms;
+  const auto values = [&] {
+    std::vector<std::int64_t> needs;
+    for (const Doubt& doubt : doubts(op))
+      if (doubt.kind == Doubt::Kind::restless && doubt.condition == 0) needs.push_back(doubt.needs);
+    return needs;
+  };
+  CHECK(values().empty());
+  adaptations[0].at_to = 11ms;
+  REQUIRE(values().size() == 1);
+  CHECK(values()[0] > 30'000'000 + 2'000'000 + 3'000'000);
 }
 
 TEST_CASE("proof: more messages than it has room for are no proof") {

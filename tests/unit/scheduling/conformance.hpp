@@ -205,6 +205,12 @@ void a_dispatcher_releases_on_its_grid() {
   dispatcher.start(0, 10ms, Level::urgent, start);
   dispatcher.start(1, 25ms, Level::low, start);
   setup.let_pass(205ms);
+  if (Setup::slack !=
+      base::Duration{0}) {  // a job counts what it missed when it runs, which a busy host puts off
+    const std::array<int, 2> before{samples[0], samples[1]};
+    for (int i = 0; i < 300 && (samples[0] == before[0] || samples[1] == before[1]); ++i)
+      setup.let_pass(20ms);
+  }
   dispatcher.stop(0);
   dispatcher.stop(1);
   setup.let_pass(50ms);

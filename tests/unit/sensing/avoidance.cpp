@@ -49,6 +49,32 @@ static_assert(avoid(blocked.state, near_to(111, 3, 4), 0.2F, dt_s, model).state.
 // All but touched beside: it stands where it would turn too late.
 static_assert(avoid(at_speed, near_to(15, 2), 0.2F, dt_s, model).command.speed_m_s == 0.0F);
 
+// By how much: 100 mm at one side, of 200 that are seen, is half of the turn; 50 mm beside leave 35 mm.
+static_assert(near(avoid(at_speed, near_to(100, 2), 0.2F, dt_s, model).command.turn_rad_s, -1.0F));
+static_assert(near(avoid(at_speed, near_to(100, 5), 0.2F, dt_s, model).command.turn_rad_s, 1.0F));
+static_assert(near(avoid(at_speed, near_to(50, 2), 0.2F, dt_s, model).command.speed_m_s, 0.07F));
+static_assert(near(avoid(at_speed, near_to(50, 5), 0.2F, dt_s, model).command.speed_m_s, 0.07F));
+static_assert(avoid(at_speed, near_to(75, 3, 4), 0.2F, dt_s, model).state.turning == 0 &&
+              avoid(at_speed, near_to(74, 3), 0.2F, dt_s, model).state.turning == -1 &&
+              avoid(at_speed, near_to(74, 4), 0.2F, dt_s, model).state.turning == 1);
+// Which side is freer is a matter of all four sensors of it; of two that are as free it is the left one.
+constexpr std::int8_t side_with(std::size_t sensor) {
+  RingDistances ring = near_to(60, 3, 4);
+  ring[sensor] = 50;
+  return avoid(at_speed, ring, 0.2F, dt_s, model).state.turning;
+}
+static_assert(side_with(0) == -1 && side_with(1) == -1 && side_with(2) == -1 && side_with(3) == -1);
+static_assert(side_with(4) == 1 && side_with(5) == 1 && side_with(6) == 1 && side_with(7) == 1);
+static_assert(avoid(at_speed, near_to(60, 3, 4), 0.2F, dt_s, model).state.turning == 1);
+// Behind a turn, and behind a step without numbers, it sets off on the ramp.
+constexpr Avoidance free_again = avoid(blocked.state, nothing, 0.2F, dt_s, model).state;
+static_assert(near(free_again.speed_m_s, 0.025F) && free_again.turning == 0);
+static_assert(near(
+    avoid(avoid(at_speed, nothing, nan, dt_s, model).state, nothing, 0.2F, dt_s, model).command.speed_m_s,
+    0.025F));
+static_assert(avoid(at_speed, nothing, 0.0F, dt_s, model).state.rejected == 0, "no speed is one, too");
+static_assert(Avoidance{}.speed_m_s == 0.0F && Avoidance{}.turning == 0 && Avoidance{}.rejected == 0);
+
 // At rest, and without numbers.
 static_assert(avoid(at_speed, nothing, 0.0F, dt_s, model).command == Twist{});
 static_assert(avoid(blocked.state, near_to(60, 3), 0.0F, dt_s, model).command == Twist{});

@@ -5,6 +5,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "ocm/sensing/avoidance.hpp"
+
 namespace sensing_homing_test {
 
 using namespace ocm::sensing;
@@ -51,6 +53,35 @@ static_assert(step(at(7)).command.turn_rad_s == -model.most_turn_rad_s);
 // The nearer counts for more.
 constexpr RingDistances between{none, none, 60, none, none, 120, none, none};
 static_assert(step(between).command.turn_rad_s > 0.0F);
+
+// By how much, with the length that is within 12 %: of sensor 3 alone 0.3827 / (0.9239 + 0.3827 / 2), of both
+// sides of `between` (1/60^2 - 1/120^2) * 0.9239 / (that + (1/60^2 + 1/120^2) * 0.3827 / 2); twice that a
+// second.
+constexpr bool turns_by(const RingDistances& ring, float rad_s) {
+  const float off = step(ring).command.turn_rad_s - rad_s;
+  return off < 2e-3F && off > -2e-3F;
+}
+static_assert(turns_by(at(3), 0.6863F) && turns_by(at(4), -0.6863F) && turns_by(between, 1.4868F));
+static_assert(turns_by(at(2), 1.5F) && turns_by(at(5), -1.5F) && turns_by(at(1), 1.5F) &&
+              turns_by(at(6), -1.5F));
+static_assert(step(at(3), {.speed_m_s = 0.1F}).command.speed_m_s < 0.01F, "it drives, too: 3.3 mm are left");
+// A sensor that says 0 says nothing.
+constexpr RingDistances silent{0, 0, none, none, none, none, 0, none};
+static_assert(step(silent).command.speed_m_s == 0.025F && step(silent).command.turn_rad_s == 0.0F);
+// A wall that is gone is looked for; one that was arrived at and is behind now is another.
+static_assert(!step(nothing, {.arrived = true}).state.arrived);
+static_assert(step(nothing, {.arrived = true}).command.speed_m_s == 0.025F);
+// What was beyond for a while and is within again begins from zero.
+static_assert(step(wall_ahead(0.05F), {.beyond_s = 0.45F, .arrived = true}).state.beyond_s == 0.0F);
+static_assert(step(wall_ahead(0.08F), {.beyond_s = 0.25F, .arrived = true}).state.arrived);
+static_assert(!step(wall_ahead(0.08F), {.beyond_s = 0.5F, .arrived = true}).state.arrived);
+static_assert(!step(wall_ahead(0.08F), {.beyond_s = 0.25F}).state.arrived, "only who had arrived stays so");
+// The longest delay is that of the quicker of both loops.
+static_assert(most_delay_s(model) > 0.1839F && most_delay_s(model) < 0.184F);
+static_assert(most_delay_s(HomingModel{.gain_per_s = 4.0F}) > 0.0919F &&
+              most_delay_s(HomingModel{.gain_per_s = 4.0F}) < 0.092F);
+static_assert(!Homing{}.arrived && Homing{}.speed_m_s == 0.0F && Homing{}.beyond_s == 0.0F &&
+              Homing{}.rejected == 0);
 
 TEST_CASE("home: having arrived it moves no wheel before it is well off for half a second") {
   Homing state = step(wall_ahead(0.05F)).state;

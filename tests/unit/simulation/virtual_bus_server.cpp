@@ -222,6 +222,7 @@ TEST_CASE("the data of CAN FD run at a whole multiple of the bus's bit rate") {
   CHECK(failure(500'000, 0).empty());
   CHECK(failure(500'000, 500'000).empty());
   CHECK(failure(500'000, 8'000'000).empty());
+  CHECK(failure(1'000, 255'000).empty());
   CHECK_THAT(failure(500'000, 750'000),
              Catch::Contains("750000 bit/s") && Catch::Contains("such as 2000000"));
   CHECK_THAT(failure(500'000, 250'000), Catch::Contains("250000 bit/s"));

@@ -57,6 +57,14 @@ TEST_CASE("a bus that knows classic frames alone takes those of either kind, and
   CHECK(bus.send_any(fd).error == base::Error::bad_length);
   CHECK(bus.fd_obstacle().what == "'plain' carries no CAN FD frames");
   CHECK_FALSE(bus.fd_obstacle().remedy.empty());
+  CHECK(bus.bit_rate() == 0);
+  const transport::Delivery unknown = bus.delivery();
+  CHECK_FALSE(unknown.known);
+  CHECK(unknown.pending == 0);
+  CHECK(unknown.obstruction == Failure{});
+  CHECK_FALSE(unknown.refused);
+  const transport::BusCounters none;
+  CHECK(none.sent + none.received + none.lost + none.refused + none.error_frames + none.passed_over == 0);
 }
 
 }  // namespace transport_bus_test

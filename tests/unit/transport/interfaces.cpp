@@ -124,6 +124,37 @@ TEST_CASE("a controller that is bus-off, and what an interface has sent") {
   }
 }
 
+TEST_CASE("a bit rate and a state are those of a controller, and only where the kernel says them") {
+  const auto read = [](const Bytes& attributes) {
+    std::vector<CanInterface> found;
+    CHECK(transport::detail::read_links(
+              link(transport::can_hardware_type, 9, IFF_UP,
+                   attribute(IFLA_IFNAME, text("x")) + attribute(IFLA_LINKINFO, attributes)),
+              found) == LinkDump::more);
+    REQUIRE(found.size() == 1);
+    return found[0];
+  };
+  can_bittiming timing{};
+  timing.bitrate = 250'000;
+  const Bytes data =
+      attribute(IFLA_INFO_DATA, attribute(IFLA_CAN_BITTIMING, bytes_of(timing)) +
+                                    attribute(IFLA_CAN_STATE, bytes_of(std::uint32_t{CAN_STATE_BUS_OFF})));
+  CHECK(read(attribute(IFLA_INFO_KIND, text("can")) + data) ==
+        CanInterface{"x", 9, true, "can", 250'000, true, 0});
+  CHECK(read(attribute(IFLA_INFO_KIND, text("vxcan")) + data) ==
+        CanInterface{"x", 9, true, "vxcan", 0, false, 0});
+  CHECK(read(attribute(IFLA_INFO_KIND, text("can"))) == CanInterface{"x", 9, true, "can", 0, false, 0});
+  CHECK(read({}) == CanInterface{"x", 9, true, "", 0, false, 0});
+  // A name without its zero, and the first of two attributes.
+  CHECK(transport::detail::read_text(Bytes{std::byte{'a'}, std::byte{'b'}}) == "ab");
+  CHECK(transport::detail::read_text({}).empty());
+  const Bytes two = attribute(7, text("one")) + attribute(7, text("two")) + attribute(8, text("three"));
+  CHECK(transport::detail::read_text(transport::detail::find_attribute(two, 7)) == "one");
+  CHECK(transport::detail::read_text(transport::detail::find_attribute(two, 8)) == "three");
+  CHECK(transport::detail::find_attribute(two, 9).empty());
+  CHECK(transport::detail::find_attribute(attribute(8, {}), 8).empty());
+}
+
 TEST_CASE("the kernel answers, with or without CAN") {
   const auto found = transport::query_can_interfaces();
   REQUIRE(found);

@@ -70,6 +70,7 @@ TEST_CASE("pty: bytes go both ways as they are, and nothing is echoed") {
   program.write(every);
   CHECK(all(*pty) == every);
   CHECK(pty->write(every) == 256);
+  CHECK(all(*pty).empty());  // and takes nothing from the program
   CHECK(program.read() == every);
   CHECK(all(*pty).empty());
   CHECK(program.read().empty());

@@ -158,6 +158,130 @@ TEST_CASE("serial port: the line gets its settings back, and its owner may move"
   CHECK(echoes());
 }
 
+TEST_CASE("serial port: speed, flow and bytes as they are, whatever the line was set to") {
+  auto pty = Pty::open();
+  REQUIRE(pty);
+  const host::Descriptor other{::open(pty->path().c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC)};
+  const auto settings = [&] {
+    termios now{};
+    REQUIRE(::tcgetattr(other.get(), &now) == 0);
+    return now;
+  };
+  termios odd = settings();
+  odd.c_cflag |= CRTSCTS | CSTOPB;
+  odd.c_iflag |= IXOFF | IXON | ICRNL;
+  odd.c_lflag |= ECHO | ICANON | ISIG;
+  odd.c_oflag |= OPOST | ONLCR;
+  odd.c_cc[VMIN] = 7;
+  odd.c_cc[VTIME] = 3;
+  REQUIRE(::tcsetattr(other.get(), TCSANOW, &odd) == 0);
+  odd = settings();
+  for (const auto& [number, speed] : transport::detail::serial_speeds) {
+    // QEMU's user mode knows no speed above 460,800.
+    termios fast = odd;
+    ::cfsetispeed(&fast, speed);
+    ::cfsetospeed(&fast, speed);
+    REQUIRE(::tcsetattr(other.get(), TCSANOW, &fast) == 0);
+    fast = settings();
+    if (number > 460'800 && ::cfgetospeed(&fast) != speed) continue;
+    REQUIRE(::tcsetattr(other.get(), TCSANOW, &odd) == 0);
+    for (const auto flow : {transport::SerialFlow::none, transport::SerialFlow::rts_cts}) {
+      CAPTURE(number);
+      const auto port = SerialPort::open(pty->path(), number, flow);
+      REQUIRE(port);
+      const termios now = settings();
+      CHECK(::cfgetispeed(&now) == speed);
+      CHECK(::cfgetospeed(&now) == speed);
+      CHECK(((now.c_cflag & CRTSCTS) != 0) == (flow == transport::SerialFlow::rts_cts));
+      CHECK((now.c_cflag & CSTOPB) == 0);
+      CHECK((now.c_cflag & (CLOCAL | CREAD)) == (CLOCAL | CREAD));
+      CHECK((now.c_iflag & (IXOFF | IXON | ICRNL)) == 0);
+      CHECK((now.c_lflag & (ECHO | ICANON | ISIG)) == 0);
+      CHECK((now.c_oflag & OPOST) == 0);
+      CHECK(now.c_cc[VMIN] == 1);
+      CHECK(now.c_cc[VTIME] == 0);
+    }
+    const termios back = settings();
+    CHECK(back.c_cflag == odd.c_cflag);
+    CHECK(back.c_iflag == odd.c_iflag);
+    CHECK(back.c_lflag == odd.c_lflag);
+    CHECK(back.c_oflag == odd.c_oflag);
+    CHECK(back.c_cc[VMIN] == 7);
+  }
+  // What waits of another program is thrown away.
+  CHECK(pty->write("of before") == 9);
+  auto port = SerialPort::open(pty->path());
+  REQUIRE(port);
+  CHECK(all(*port).empty());
+}
+
+TEST_CASE("serial port: the speeds that Linux has") {  // asm-generic/termbits.h, from B9600 on
+  std::vector<std::uint32_t> speeds;
+  for (const auto& entry : transport::detail::serial_speeds) speeds.push_back(entry.first);
+  CHECK(speeds == std::vector<std::uint32_t>{9600, 19'200, 38'400, 57'600, 115'200, 230'400, 460'800, 500'000,
+                                             576'000, 921'600, 1'000'000, 1'152'000, 1'500'000, 2'000'000,
+                                             2'500'000, 3'000'000, 3'500'000, 4'000'000});
+}
+
+TEST_CASE("serial port: the nearest speed that there is") {
+  using transport::detail::nearest_serial_speed;
+  for (const auto& entry : transport::detail::serial_speeds) {
+    CHECK(nearest_serial_speed(entry.first) == entry.first);
+    CHECK(nearest_serial_speed(entry.first - 1) == entry.first);
+    CHECK(nearest_serial_speed(entry.first + 1) == entry.first);
+  }
+  CHECK(nearest_serial_speed(0) == 9600);
+  CHECK(nearest_serial_speed(14'399) == 9600);
+  CHECK(nearest_serial_speed(14'401) == 19'200);
+  CHECK(nearest_serial_speed(UINT32_MAX) == 4'000'000);
+}
+
+TEST_CASE("serial port: every cause has its words") {
+  using namespace transport::detail;
+  const auto why = [](int error) { return std::string(" (") + std::strerror(error) + ")"; };
+  for (const int error : {ENOENT, ENXIO, ENODEV}) {
+    CHECK(open_failure("/dev/x", error).what == "there is no serial device '/dev/x'" + why(error));
+    CHECK_FALSE(open_failure("/dev/x", error).remedy.empty());
+  }
+  for (const int error : {EACCES, EPERM}) {
+    CHECK(open_failure("/dev/x", error).what == "not allowed to open '/dev/x'" + why(error));
+    CHECK_THAT(open_failure("/dev/x", error).remedy, Contains("(see ls -l /dev/x)"));
+  }
+  for (const int error : {EBUSY, EWOULDBLOCK}) {
+    CHECK(open_failure("/dev/x", error).what == "'/dev/x' is in use by another program");
+    CHECK(open_failure("/dev/x", error).remedy == "end that one: `fuser -v /dev/x` names it");
+  }
+  CHECK(open_failure("/run/x", ECONNREFUSED).what ==
+        "no program listens on the socket '/run/x'" + why(ECONNREFUSED));
+  CHECK(open_failure("/dev/x", EIO).what == "cannot open '/dev/x'" + why(EIO));
+  CHECK(no_serial_device("/dev/x").what == "'/dev/x' is no serial device");
+  CHECK(no_serial_device("/dev/x", "a socket").what == "'/dev/x' is neither a serial device nor a socket");
+  CHECK(line_gone("it", 0).what == "it is gone: unplugged, or its other end closed");
+  CHECK(line_gone("it", EIO).what == line_gone("it", 0).what);
+  CHECK(line_gone("it", ENXIO).what == line_gone("it", 0).what + why(ENXIO));
+}
+
+TEST_CASE("serial port: what has moved away is no port, and what it knew goes with it") {
+  auto pty = Pty::open();
+  REQUIRE(pty);
+  auto port = SerialPort::open(pty->path());
+  REQUIRE(port);
+  SerialPort moved{std::move(*port)};
+  CHECK(moved.path() == pty->path());
+  CHECK(moved);
+  CHECK_FALSE(*port);  // NOLINT: that is what is asked
+  std::array<char, 8> room{};
+  *pty = Pty{};
+  CHECK_FALSE(moved.read(room));
+  const std::string what = moved.failure().what;
+  CHECK_FALSE(what.empty());
+  SerialPort assigned;
+  CHECK_FALSE(assigned);
+  assigned = std::move(moved);
+  CHECK(assigned.failure().what == what);
+  CHECK(SerialPort{std::move(assigned)}.failure().what == what);
+}
+
 TEST_CASE(
     "serial port: a pseudo terminal is locked, but not exclusive: that would outlive a killed program") {
   auto pty = Pty::open();

@@ -271,6 +271,13 @@ TEST_CASE("slcan: frames of every kind go both ways") {
   CHECK(bus->line_faults().total() == 0);
   CHECK(bus->adapter_counters().unanswered == 0);
   CHECK(bus->adapter_counters().strays == 0);
+  CHECK(bus->delivery().known);
+  CHECK(bus->delivery().pending == 0);
+  device.say("z\r");  // an answer to nothing
+  eventually([&] {
+    (void)bus->receive(1ms);
+    return bus->adapter_counters().strays == 1;
+  });
 
   CHECK(bus->send({0x800, 0, {}}).error == base::Error::bad_identifier);
   CHECK(bus->send({0x100, 9, {}}).error == base::Error::bad_length);
@@ -344,6 +351,7 @@ TEST_CASE("slcan: adapters that never answer work") {
     });
     const auto bus = open(device.path());
     CHECK_FALSE(bus->answers());
+    CHECK_FALSE(bus->delivery().known);
     for (int i = 0; i < 100; ++i) send(*bus, {0x205, 1, {static_cast<std::uint8_t>(i)}});
     eventually([&] { return device.with([&] { return device.wire.sent.size() == 100; }); });
     device.with([&] {
@@ -393,8 +401,13 @@ TEST_CASE("slcan: no more than the window is unanswered, and of one identifier o
   for (std::uint32_t id = 0x101; id <= 0x106; ++id) CHECK(*bus->send({id, 0, {}}));
   CHECK_FALSE(*bus->send(frame("107#")));
   CHECK(bus->counters().refused == 2);
+  CHECK(bus->delivery().known);
+  CHECK(bus->delivery().pending == 8);
   device.say("z\r");
+  eventually([&] { return bus->delivery().pending == 7; });
   eventually([&] { return *bus->send(frame("100#02")); });
+  CHECK(bus->delivery().pending == 8);
+  CHECK(bus->delivery().obstruction == transport::Failure{});
   CHECK_FALSE(*bus->send(frame("107#")));
 }
 
@@ -598,6 +611,7 @@ TEST_CASE("slcan: an answer that comes too late is none, also while the program 
   (void)bus->receive(1500ms);
   late.join();
   CHECK(bus->adapter_counters().unanswered == 1);
+  CHECK(bus->delivery().pending == 1);
 }
 
 TEST_CASE("slcan: the status flags become error frames") {

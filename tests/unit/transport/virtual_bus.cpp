@@ -466,7 +466,12 @@ TEST_CASE("a frame ends the wait") {
   VirtualBusSetup setup;
   const auto bus = setup.join();
   base::Result<can::Received> heard = base::Error::none;
-  std::thread waiter{[&] { heard = bus->receive(1h); }};
+  std::atomic<pid_t> number{};
+  std::thread waiter{[&] {
+    number = ::gettid();
+    heard = bus->receive(1h);
+  }};
+  test::until_asleep(number);
   setup.send("605#");
   setup.run();
   waiter.join();

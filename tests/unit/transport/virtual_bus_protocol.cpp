@@ -38,6 +38,101 @@ static_assert(*vb::decode({.format = 2, .dlc = 3, .data = {1, 2, 3}}) ==
 static_assert(sizeof(vb::FdFrameRecord) == vb::record_size);
 static_assert(sizeof(vb::FdDataRecord) == vb::record_size);
 
+std::string hex(const vb::Record& record) {
+  std::string text;
+  for (const std::byte byte : record) {
+    constexpr std::string_view digits = "0123456789ABCDEF";
+    text += digits[static_cast<std::size_t>(byte) / 16];
+    text += digits[static_cast<std::size_t>(byte) % 16];
+  }
+  return text;
+}
+
+TEST_CASE("records are those of docs/virtual-bus.md, byte by byte") {
+  // Numbers of a machine that writes the low byte first; what is not used is zero.
+  const auto padded = [](std::string bytes) { return bytes + std::string(64 - bytes.size(), '0'); };
+  CHECK(hex(vb::to_record(vb::Hello{})) == padded("01000000626F636D01000000"));  // "bocm"
+  CHECK(hex(vb::to_record(vb::Hello{.fd = 4, .bit_rate = 500'000, .credit = 16, .name = {'s', 'i', 'm'}})) ==
+        padded("01040000626F636D0100000020A107001000000073696D"));
+  CHECK(hex(vb::to_record(can::Frame{0x205, 4, {1, 0x84, 3, 2}}, base::Time{base::Duration{0x1122}})) ==
+        padded("02000400050200002211000000000000"
+               "01840302"));
+  CHECK(hex(vb::to_record(can::Frame{.id = 0x1F334455, .dlc = 2, .format = can::Format::extended_remote})) ==
+        padded("020302005544331F"));
+  CHECK(hex(vb::to_record(vb::Count{.type = vb::Type::credit, .count = 0x0102})) ==
+        padded("03000000000000000201"));
+  CHECK(hex(vb::to_record(vb::Count{.type = vb::Type::overrun, .count = 7})) == padded("040000000000000007"));
+  CHECK(hex(vb::to_record(vb::Count{.type = vb::Type::filters, .count = 2})) == padded("050000000000000002"));
+  CHECK(hex(vb::to_record(vb::FilterRecord{.id = 0x600, .mask = 0x7F0})) ==
+        padded("0600000000060000F0070000"));
+  CHECK(hex(vb::to_record(vb::Goodbye{})) == padded("0700000001000000"));
+  CHECK(hex(vb::to_record(vb::Goodbye{.reason = vb::Reason::torn_fd_frame, .detail = 0x99})) ==
+        padded("070F00000100000099"));
+  // 20 bytes of CAN FD with bit-rate switch: 16 of them in the first record.
+  const auto records = vb::to_fd_records(any("123##1" + std::string(32, 'A') + std::string(8, 'B')),
+                                         base::Time{base::Duration{5}});
+  REQUIRE(records.all().size() == 2);
+  CHECK(hex(records.records[0]) ==
+        "08001405"
+        "23010000"
+        "0500000000000000" +
+            std::string(32, 'A'));
+  CHECK(hex(records.records[1]) == padded("0900000000000000" + std::string(8, 'B')));
+  CHECK(hex(vb::to_record(vb::FrameRecord{})) == padded("02"));
+  CHECK(hex(vb::to_record(vb::FdFrameRecord{})) == padded("08"));
+  CHECK(hex(vb::to_record(vb::FdDataRecord{})) == padded("09"));
+  CHECK(hex(vb::to_record(vb::FilterRecord{})) == padded("06"));
+  CHECK(hex(vb::to_record(vb::Count{})) == padded(""));
+  CHECK(vb::max_message == 4096);
+  CHECK(vb::max_filters == 512);
+}
+
+TEST_CASE("one assembly takes one frame after the other, and none keeps what was another's") {
+  vb::FdAssembly assembly;
+  const auto take = [&](const can::AnyFrame& frame) {
+    bool whole = false;
+    const auto records = vb::to_fd_records(frame);
+    for (const auto& record : records.all()) {
+      const auto taken = assembly.take(record);
+      REQUIRE(taken);
+      whole = *taken;
+    }
+    CHECK(whole);
+    return assembly.frame();
+  };
+  for (const char* text : {"1F334455##3", "123##0", "001##1AA"}) CHECK(take(any(text)) == any(text));
+  const can::AnyFrame longest = any("7FF##1" + std::string(128, 'C'));
+  CHECK(take(longest) == longest);
+  CHECK(take(any("001##1AA")) == any("001##1AA"));
+  // Records with bytes behind the data, as another program may leave them.
+  vb::FdFrameRecord first{.length = 20, .flags = 4, .id = 2};
+  first.data.fill(0x11);
+  vb::FdDataRecord rest;
+  rest.data.fill(0x22);
+  CHECK_FALSE(*assembly.take(vb::to_record(first)));
+  CHECK(*assembly.take(vb::to_record(rest)));
+  CHECK(assembly.frame() == any("002##0" + std::string(32, '1') + std::string(8, '2')));
+  CHECK(assembly.take(vb::to_record(rest)).error ==
+        vb::Goodbye{.reason = vb::Reason::torn_fd_frame, .detail = 9});
+  CHECK(assembly.take(vb::to_record(vb::Count{.type = vb::Type::credit})).error ==
+        vb::Goodbye{.reason = vb::Reason::torn_fd_frame, .detail = 3});
+}
+
+TEST_CASE("a classic frame at every bound of its record") {
+  const auto error_of = [](const vb::FrameRecord& record) {
+    const auto frame = vb::decode(record);
+    REQUIRE_FALSE(frame);
+    return frame.error;
+  };
+  CHECK(error_of({.dlc = 9}) == vb::Goodbye{.reason = vb::Reason::bad_dlc, .detail = 9});
+  CHECK(error_of({.format = 5}) == vb::Goodbye{.reason = vb::Reason::bad_format, .detail = 5});
+  CHECK(error_of({.id = 0x800}) == vb::Goodbye{.reason = vb::Reason::bad_identifier, .detail = 0x800});
+  CHECK(*vb::decode({.dlc = 8, .id = 0x7FF, .data = {1, 2, 3, 4, 5, 6, 7, 8}}) ==
+        can::Frame{0x7FF, 8, {1, 2, 3, 4, 5, 6, 7, 8}});
+  CHECK(vb::decode({.format = 4, .dlc = 8, .id = 4})->format == can::Format::error);
+  CHECK(vb::decode({.format = 1, .id = 0x1FFF'FFFF})->id == 0x1FFF'FFFF);
+}
+
 TEST_CASE("a CAN FD frame of any length goes through its records, and takes no more of them than it needs") {
   for (unsigned dlc = 0; dlc < 16; ++dlc) {
     can::AnyFrame frame = any("1F334455##3");

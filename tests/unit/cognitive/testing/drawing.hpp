@@ -15,8 +15,11 @@ namespace ocm::test {
 }
 
 /// Draws a map through its own door: a beam of no length of its own a cell, from a robot that is a point.
-[[nodiscard]] inline cognitive::Map map_of(const std::vector<std::string>& rows, float cell_m = 0.10F) {
+/// `most_cells`: as many as are drawn leave no room around them.
+[[nodiscard]] inline cognitive::Map map_of(const std::vector<std::string>& rows, float cell_m = 0.10F,
+                                           std::size_t most_cells = std::size_t{1} << 22) {
   cognitive::MapOptions options;
+  options.most_cells = most_cells;
   options.resolution_m = cell_m;
   options.beam.half_width_rad = 0.0F;
   options.beam.hit = 4.0F;

@@ -44,6 +44,13 @@ TEST_CASE("mapper compass: a report as a sentence, to the nearest milligauss and
 
 TEST_CASE("mapper compass: whatever was found, the sentence can be written", "[mapper_compass]") {
   constexpr float huge = std::numeric_limits<float>::max();
+  const auto said = [](float x, float y, float field, float error_rad) {
+    return mapper::app::calibration(1, {.verdict = Calibration::weak, .fit = {{x, y}, field, error_rad}},
+                                    Calibration::unused);
+  };
+  CHECK(said(2.1F, -2.1F, 2.1F, 10) ==
+        Calibration{1, Calibration::weak, 2000, -2000, 2000, 180, 0});  // limits of the spec
+  CHECK(said(-2.1F, 2.1F, -0.1F, -10) == Calibration{1, Calibration::weak, -2000, 2000, 0, 0, 0});
   for (const float figure : {0.0F, nan, huge, -huge, std::numeric_limits<float>::infinity()}) {
     const CompassReport report{.verdict = Calibration::disturbed, .fit = {{figure, figure}, figure, figure}};
     CHECK(mapper::link::write(mapper::app::calibration(9999, report, Calibration::unused)).ok());

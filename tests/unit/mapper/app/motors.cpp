@@ -128,6 +128,26 @@ TEST_CASE("mapper motors: a pair keeps the curve that is asked for", "[mapper_mo
   CHECK(near(motors.left_ticks_s, 500.0F, 30.0F));
 }
 
+// What a wheel's integral still gives is never against the way that it came.
+TEST_CASE("mapper motors: a wheel that is to stand while the other turns runs out forwards",
+          "[mapper_motors]") {
+  Wheels motors;
+  Motors state;
+  drive(motors, state, ahead(0.5F), 200);
+  const PoseCommand about_left{Movement::straight, 0.25F, 0.25F, false};
+  bool runs_out = false;
+  for (int i = 0; i < 50; ++i) {
+    const auto step = move(state, about_left, motors.ticks(), dt, paced);
+    CHECK(step.efforts.left >= 0.0F);
+    runs_out |= step.efforts.left > 0.0F;
+    state = step.state;
+    motors.obey(step.efforts);
+  }
+  CHECK(runs_out);
+  CHECK(near(motors.left_ticks_s, 0.0F, 30.0F));
+  CHECK(near(motors.right_ticks_s, 625.0F, 30.0F));
+}
+
 TEST_CASE("mapper motors: told to stand, a pair is off at once", "[mapper_motors]") {
   Wheels motors;
   Motors state;

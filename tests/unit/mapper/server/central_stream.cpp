@@ -57,6 +57,28 @@ TEST_CASE("central stream: what only looks like a line of the central") {
     CHECK(parse_central_line(text).kind == Kind::unknown);
 }
 
+TEST_CASE("central stream: numbers of lines, to their ends") {
+  for (const char* text :
+       {"found 0", "found 256", "data 0", "closed 255", "0:C0000000000A:a", "255:C0000000000A:a"})
+    CHECK(parse_central_line(text).kind != Kind::unknown);
+  for (const char* text : {"found 257", "closed 257", "256:C0000000000A:a", ":C0000000000A:a"})
+    CHECK(parse_central_line(text).kind == Kind::unknown);
+  CHECK(parse_central_line("error: no link to 255; conn first").index == 255);
+  CHECK(parse_central_line("error: no link to 256").index == 0);
+  CHECK(parse_central_line("error: no link to any").index == 0);
+  CHECK(parse_central_line("error: 7 is no robot").index == 0);
+}
+
+TEST_CASE("central stream: 80 characters may be a line of the central, 81 are none") {
+  const std::string longest(80, 'x');
+  CHECK(parted("[0]:A:" + longest) == "[0]:A:|");
+  CHECK(parted("[0]:A:" + longest + "x") == "[0]:A:" + longest + "x|");
+  for (const char* of : {"a", "z"})  // the first and the last small letter begin one
+    CHECK(parted(std::string{"[0]:A:"} + of) == "[0]:A:|");
+  for (const char* of : {"`", "{"})
+    CHECK(parted(std::string{"[0]:A:"} + of) == std::string{"[0]:A:"} + of + "|");
+}
+
 TEST_CASE("central stream: an answer behind half a packet, and the packet's other half behind it") {
   CHECK(parted("[0]:AVR:{U,1,2,3,4,5,6connected 1\n[0]:AVR:,7,8}\n") ==
         "[0]:AVR:{U,1,2,3,4,5,6[0]:AVR:,7,8}\n|" + said(Kind::connected, 1));

@@ -26,6 +26,143 @@ TEST_CASE("dialect: a line of a list, behind a robot's words too, with or withou
     CHECK_FALSE(detail::parse_listed(none, robot));
 }
 
+/// What one side says at some time, and what goes to the dongle and to the client then.
+struct Line {
+  int ms;
+  char from;  ///< c: the client, d: the dongle; t: time passes
+  const char* words;
+  const char* to_dongle;
+  const char* to_client;
+};
+void talk(Dialect dialect, std::initializer_list<Line> lines) {
+  Translator translator{dialect};
+  int number = 0;
+  for (const Line& line : lines) {
+    ++number;
+    CAPTURE(number, line.ms, line.words);
+    const Time now = begin + line.ms * 1ms;
+    if (line.from == 'c') translator.from_client(line.words, now);
+    if (line.from == 'd') translator.from_dongle(line.words, now);
+    if (line.from == 't') translator.expire(now);
+    CHECK(translator.take_for_dongle() == line.to_dongle);
+    CHECK(translator.take_for_client() == line.to_client);
+  }
+}
+
+TEST_CASE("dialect: the base firmware is asked for each robot of a scan, and its list is remembered") {
+  talk(Dialect::at, {
+                        {0, 'c', "start\n", "AT+SCAN+.", ""},
+                        {1, 'd', "ERROR.", "", "error: the dongle does not scan\n"},
+                        {2, 'c', "start\n", "AT+SCAN+.", ""},
+                        {3, 'd', "OK.", "", "scanning\n"},
+                        {4, 'c', "stop\n", "AT+SCAN-.", ""},
+                        {5, 'd', "OK-2.", "AT+FOUND=0.", ""},
+                        {6, 'd', "OK-C0000000000A-AVR.", "AT+FOUND=1.", ""},
+                        {7, 'd', "OK-C0000000000B-.", "", "found 2\n"},
+                        {8, 'c', "list\n", "", "0:C0000000000A:AVR\n1:C0000000000B:?\nend of list\n"},
+                        {9, 'c', "stop\n", "", "found 2\n"},
+                        // Behind a reset it is not known any more; then the dongle says where the list ends.
+                        {10, 'c', "reset\n", "AT+RESET.", ""},
+                        {11, 'd', "OK.", "", "reset\n"},
+                        {12, 'c', "stop\n", "AT+FOUND=0.", ""},
+                        {13, 'd', "OK-C0000000000A-AVR.", "AT+FOUND=1.", ""},
+                        {14, 'd', "ERROR.", "", "found 1\n"},
+                        // Or says nothing more; a scan that has found none is none.
+                        {15, 'c', "reset\nstop\n", "AT+RESET.", ""},
+                        {16, 'd', "OK.", "AT+FOUND=0.", "reset\n"},
+                        {17, 'd', "OK-C0000000000A-AVR.", "AT+FOUND=1.", ""},
+                        {816, 't', "", "", ""},
+                        {817, 't', "", "", "found 1\n"},
+                        {820, 'c', "start\nstop\n", "AT+SCAN+.", ""},
+                        {821, 'd', "OK.", "AT+SCAN-.", "scanning\n"},
+                        {822, 'd', "OK-0.", "AT+FOUND=0.", "found 0\n"},
+                        {823, 'd', "ERROR.", "", ""},
+                        {824, 'c', "list\n", "", "end of list\n"},
+                    });
+}
+
+TEST_CASE("dialect: links of the base firmware: one that is there, one that comes, and one that does not") {
+  talk(Dialect::at, {
+                        {0, 'c', "conn 2\n", "AT+SWITCH=2.", ""},
+                        {1, 'd', "OK.", "", "data 2\n"},
+                        {2, 'c', "{S,CON}\n{", "{S,CON}\n.", ""},
+                        {3, 'c', "*", "*", ""},  // what was begun is not said
+                        {4, 'd', "OK.", "", "command\n"},
+                        {5, 'c', "conn 3\n", "AT+SWITCH=3.", ""},
+                        {6, 'd', "ERROR.", "AT+CONN=3.", ""},
+                        {7, 'd', "WAIT.", "", "connecting 3\n"},
+                        {9'006, 't', "", "", ""},
+                        {9'006, 'd', "OK.", "", "connected 3\n"},
+                        {9'007, 'c', "{}\n", "{}\n.", ""},
+                        {9'008, 'c', "*conn 4\n", "*", ""},
+                        {9'009, 'd', "OK.", "AT+SWITCH=4.", "command\n"},
+                        {9'010, 'd', "ERROR.", "AT+CONN=4.", ""},
+                        {9'011, 'd', "WAIT.", "", "connecting 4\n"},
+                        {18'010, 't', "", "", ""},
+                        {18'011, 't', "", "", "error: no link to 4\n"},
+                        // It is in command mode still, the client in data mode: what it says goes nowhere.
+                        {18'012, 'c', "{}\n*", "", "command\n"},
+                        {18'013, 'c', "switch 1\n", "AT+SWITCH=1.", ""},
+                        {18'014, 'd', "ERROR.", "", "error: no link to 1; conn first\n"},
+                        {18'015, 'c', "drop 1\n", "AT+DROP=1.", ""},
+                        {18'016, 'd', "WAIT.", "", ""},
+                        {18'017, 'd', "OK.", "", "closing 1\nclosed 1\n"},
+                        {18'018, 'c', "drop 1\n", "AT+DROP=1.", ""},
+                        {18'019, 'd', "ERROR.", "", "error: no link to 1\n"},
+                        {18'020, 'c', "switch 5\n", "AT+SWITCH=5.", ""},
+                        {18'021, 'd', "OK.", "", "data 5\n"},
+                    });
+}
+
+TEST_CASE("dialect: what is no request, and what is no answer") {
+  talk(Dialect::at, {
+                        {0, 'c', "*list\n\nlists\nli*st\nswitch\n", "", "end of list\nend of list\n"},
+                        {1, 'd', "OK.", "", ""},  // nothing was asked
+                        {2, 'd', "{S,IDL}\n", "", "[0]:?:{S,IDL}\n"},
+                        {3, 'd', "OWE.", "", ""},
+                        {4, 'd', "OWE\n", "", "OWE\n"},  // of the same robot
+                        {5, 'c', "start\n", "AT+SCAN+.", ""},
+                        {6, 'd', "WHAT.", "", ""},
+                        {7, 'd', "OK.", "", "scanning\n"},
+                    });
+}
+
+TEST_CASE("dialect: at the thesis's dongle each word goes through, and its answer is put in") {
+  talk(Dialect::thesis, {
+                            {0, 'c', "stop\n", "list\n", ""},
+                            {499, 't', "", "", ""},
+                            {500, 't', "", "", "found 0\n"},
+                            {501, 'c', "stop\n", "", "found 0\n"},
+                            {510, 'c', "start\n", "start\n", "scanning\n"},
+                            {520, 'c', "stop\n", "stop\nlist\n", ""},
+                            {530, 'd', "0:C0000000000A:AVR\n", "", "0:C0000000000A:AVR"},
+                            {540, 'd', "0:C0000000000B:B\n", "", "0:C0000000000B:B"},
+                            {1'039, 't', "", "", ""},
+                            {1'040, 't', "", "", "found 1\n"},
+                            {1'041, 'c', "list\n", "", "0:C0000000000B:B\nend of list\n"},
+                            {1'050, 'c', "switch 1\n", "switch 1\n", "data 1\n"},
+                            {1'051, 'c', "{}\n*", "{}\n*", "command\n"},
+                            {1'052, 'c', "drop 1\n", "drop 1\n", "closing 1\nclosed 1\n"},
+                            {1'053, 'c', "reset\n", "reset\n", "reset\n"},
+                            // A link that comes is one of whom a packet comes; none, after nine seconds.
+                            {2'000, 'c', "conn 2\n", "conn 2\n", "connecting 2\n"},
+                            {10'999, 't', "", "", ""},
+                            {11'000, 't', "", "", "error: no link to 2\n"},
+                            {11'001, 'c', "*", "*", "command\n"},
+                            // Who has spoken within two and a half seconds has a link.
+                            {12'000, 'd', "[2]:B:{}\n", "", "[2]:B:{}\n"},
+                            {14'500, 'c', "conn 2\n", "switch 2\n", "data 2\n"},
+                            {14'501, 'c', "*conn 2\n", "*conn 2\n", "command\nconnecting 2\n"},
+                            {14'502, 'd', "[2]:B:", "", "connected 2\n[2]:B:"},
+                        });
+}
+
+TEST_CASE("dialect: small letters of the thesis's dongle are its own, and a robot's words are not") {
+  Translator translator{Dialect::thesis};
+  translator.from_dongle("[1]:R:{U,AZ}azmode\n", begin);
+  CHECK(translator.take_for_client() == "[1]:R:{U,AZ}\n");
+}
+
 TEST_CASE("dialect: our own central's words go through as they are") {
   Translator translator{Dialect::words};
   translator.from_client("*\nstop\n", begin);

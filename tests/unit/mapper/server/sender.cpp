@@ -244,6 +244,131 @@ TEST_CASE("sender: a short leg is not reached where it began") {
   CHECK(bench.sender.progress() == Progress::reached);
 }
 
+TEST_CASE("sender: what the place where a robot stands proves of its leg, at the ends of what counts") {
+  struct Case {
+    SetPoint wanted;
+    Update stands;  ///< x, y and heading; it began at 0, 0, 0
+    Progress progress;
+    bool blocked = false;
+    SetPoint again{};  ///< what is said to it then
+  };
+  using enum Progress;
+  const auto place = [](int x, int y, int heading) {
+    Update update{};
+    update.x = static_cast<std::int16_t>(x), update.y = static_cast<std::int16_t>(y);
+    update.heading = static_cast<std::int16_t>(heading);
+    return update;
+  };
+  const Case cases[] = {
+      // There: within 8 cm and 8 degrees.
+      {{0, 50}, place(42, 0, 0), reached},
+      {{0, 50}, place(50, 8, 0), reached},
+      {{0, 50}, place(50, 0, 8), reached},
+      {{0, 50}, place(50, 0, -8), reached},
+      // On its way, headed there: something is in front of it.
+      {{0, 50}, place(41, 0, 0), ended, true},
+      {{0, 50}, place(2, 0, 0), ended, true},
+      {{0, 50}, place(50, 0, 9), ended, true},
+      {{0, 50}, place(50, 0, 15), ended, true},
+      // Not heard: less than 2 cm away.
+      {{0, 50}, place(1, 0, 0), said, false, {0, 49}},
+      {{0, 50}, place(-1, 0, 0), said, false, {0, 51}},
+      {{0, 50}, place(0, 0, 14), said, false, {-14, 50}},
+      // Elsewhere: from there to the aim, straight if that is ahead of it.
+      {{0, 50}, place(-2, 0, 0), said, false, {0, 52}},
+      {{0, 50}, place(50, 0, 16), said, false, {-16, 0}},
+      {{0, 60}, place(30, 0, 16), said, false, {-16, 30}},
+      {{0, 60}, place(30, 10, 16), said, false, {-34, 32}},
+      {{0, 60}, place(30, 12, 16), said, false, {-16, 30}},
+      {{0, 30}, place(20, 14, 0), said, false, {0, 10}},
+      // Backwards the same, the other way round.
+      {{0, -50}, place(-42, 0, 0), reached},
+      {{0, -50}, place(-41, 0, 0), ended, true},
+      {{0, -50}, place(2, 0, 0), said, false, {0, -52}},
+      // Turns: within 8 degrees; heard from 15 degrees or half of it on.
+      {{90, 0}, place(0, 0, 82), reached},
+      {{90, 0}, place(0, 0, 81), said, false, {9, 0}},
+      {{90, 0}, place(0, 0, 14), said, false, {76, 0}},
+      {{5, 0}, place(0, 0, 3), reached},
+      {{5, 0}, place(0, 0, 2), said, false, {3, 0}},
+      {{4, 0}, place(0, 0, 2), reached},
+      {{4, 0}, place(0, 0, 1), said, false, {3, 0}},
+      // Short ways: half of one is not near enough, and what a robot itself takes for there is.
+      {{0, 2}, place(0, 0, 0), said, false, {0, 2}},
+      {{0, 2}, place(1, 0, 0), reached},
+      {{0, 2}, place(4, 0, 0), reached},
+      {{0, 3}, place(1, 0, 0), said, false, {0, 2}},
+      {{0, 3}, place(2, 0, 0), reached},
+  };
+  for (std::size_t i = 0; i < std::size(cases); ++i) {
+    const Case& each = cases[i];
+    CAPTURE(i, each.wanted.angle, each.wanted.distance, each.stands.x, each.stands.y, each.stands.heading);
+    Bench bench;
+    bench.stands(0, 0, 0);
+    bench.go(each.wanted.angle, each.wanted.distance);
+    REQUIRE(bench.said == std::vector<SetPoint>{each.wanted});
+    bench.pass(9s);
+    bench.stands(each.stands.x, each.stands.y, each.stands.heading);
+    CHECK(static_cast<int>(bench.sender.progress()) == static_cast<int>(each.progress));
+    CHECK(bench.sender.blocked() == each.blocked);
+    REQUIRE(bench.said.size() == (each.progress == said ? 2 : 1));
+    if (each.progress == said) CHECK(bench.said.back() == each.again);
+  }
+}
+
+TEST_CASE("sender: the legs of a way are as few as their bound permits") {
+  struct Case {
+    int way, leg;
+  };
+  for (const Case& each : {Case{1, 1}, Case{60, 60}, Case{61, 30}, Case{120, 60}, Case{121, 40},
+                           Case{-60, -60}, Case{-61, -30}, Case{-121, -40}}) {
+    Bench bench;
+    bench.stands(0, 0, 0);
+    bench.go(0, each.way);
+    CHECK(bench.said.back() == SetPoint{0, static_cast<std::int16_t>(each.leg)});
+  }
+}
+
+TEST_CASE("sender: after three corrections that lead elsewhere it is given up, and nothing is blamed") {
+  Bench bench;
+  bench.stands(0, 0, 0);
+  bench.go(90, 0);
+  for (int i = 1; i <= 3; ++i) {
+    bench.pass(9s);
+    bench.stands(0, 0, 90 + 40 * (i % 2 == 0 ? 1 : -1));
+    CHECK(bench.sender.progress() == Progress::said);
+    CHECK(bench.said.size() == 1U + static_cast<unsigned>(i));
+  }
+  bench.pass(9s);
+  bench.stands(0, 0, 130);
+  CHECK(bench.sender.progress() == Progress::ended);
+  CHECK_FALSE(bench.sender.blocked());
+  CHECK(bench.sender.off_deg() == Approx(40));
+}
+
+TEST_CASE("sender: when a stop is said again, and when a robot that was not heard of is stopped") {
+  Sender sender{{.period = 300ms, .slow_period = 700ms, .quick = 2, .jitter = 0ms}};
+  sender.stop(second);
+  std::vector<int> times;
+  for (int ms = 0; ms < 3000; ++ms) {
+    const Time now = second + ms * 1ms;
+    if (sender.next(now).kind == Kind::none) continue;
+    times.push_back(ms);
+    sender.out(now);
+  }
+  CHECK(times == std::vector{0, 300, 1000, 1700, 2400});
+  Sender waits;
+  waits.go({0, 20}, second);
+  CHECK(waits.next(second + 1199ms).kind == Kind::none);
+  CHECK(waits.next(second + 1200ms).set_point == SetPoint{});
+  // One that stands and says no update is unpaused after three seconds.
+  Sender unseen;
+  unseen.go({0, 20}, second);
+  REQUIRE(unseen.hear_idle(second + 1s));
+  CHECK(unseen.next(second + 4s - 1ns).kind == Kind::none);
+  CHECK(unseen.next(second + 4s).kind == Kind::unpause);
+}
+
 TEST_CASE("sender: a robot that says idle but not where it is, is unpaused") {
   Bench bench;
   bench.go(0, 20);
