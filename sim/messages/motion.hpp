@@ -82,7 +82,7 @@ class FieldMotion {
     }
     const auto stated = stated_range(field);
     range_ = has_stated_range(field) && stated ? *stated : near_start(field);
-    if (field.position.width == 1 && !has_stated_range(field)) range_ = bits();
+    if ((field.position.width == 1 || field.flags) && !has_stated_range(field)) range_ = bits();
     take_names();
     if (named_.empty() && range_.span() == 1) named_ = {range_.low, range_.high};
     step_ = named_.empty() ? seconds(2, 8) : seconds(5, 20);

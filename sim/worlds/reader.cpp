@@ -215,7 +215,7 @@ class Reader : private spec::Checker {
            "a place with more room");
     for (const plant::Start& other : world.starts)
       if (plant::room_m(start, {}, {other}) < 0)
-        tell(place, "robot " + spec::quoted(start.name) + " overlaps robot  " + spec::quoted(other.name),
+        tell(place, "robot " + spec::quoted(start.name) + " overlaps robot " + spec::quoted(other.name),
              "at least " + print(start.radius_m() + other.radius_m()) + " m from middle to middle");
   }
 };

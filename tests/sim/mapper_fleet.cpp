@@ -121,6 +121,54 @@ TEST_CASE("fleet: start, list, conn, confirm, a set point, updates and idle") {
   CHECK(server.fleet.radio().counters(0).to_central.lost == 0);
 }
 
+TEST_CASE("fleet: its radio is the world's, with a link for each robot") {
+  WorldModel model = room({{"one", RobotKind::avr, {}},
+                           {"two", RobotKind::avr, {0.5, 0, 0}},
+                           {"three", RobotKind::avr, {1, 0, 0}}});
+  model.central = {.place = {1, 2}, .range_m = 5, .loss_at_range = 0.25};
+  const World world{model};
+  const FleetOptions options = Fleet::options_for(world, 77);
+  CHECK(options.radio.range_m == 5);
+  CHECK(options.radio.loss_at_range == 0.25);
+  CHECK(options.radio.links == 3);
+  CHECK(options.radio.seed == 77);
+  CHECK(options.calibrated);
+}
+
+TEST_CASE(
+    "fleet: what is out of the dongle's range is not found, what drives there is lost, and robots out of it "
+    "drive on") {
+  WorldModel model = room({{"near", RobotKind::avr, {0, 0, 0}}, {"far", RobotKind::avr, {0, 4, 0}}}, 20);
+  model.central = {.place = {-1, 0}, .range_m = 2, .loss_at_range = 0};
+  Server server{model};
+  server.type("start\n");
+  server.run(3s);
+  server.type("list\n");
+  server.run(100ms);
+  CHECK(server.log.find(":near\n") != std::string::npos);
+  CHECK(server.log.find(":far\n") == std::string::npos);
+  server.type("stop\nconn 0\n");
+  REQUIRE(server.wait_for(0, mapper::link::Kind::handshake, 1, 10s));
+  server.type("{S,CON}\n{U,0,200}\n");
+  server.run(40s);
+  CHECK(server.fleet.robot(0).pose().x_m > 1.2);  // beyond the range, 2 m from (-1, 0)
+  CHECK(server.world.distance_to_central(0) > 2.2);
+  const int updates = server.count(0, mapper::link::Kind::update);
+  server.run(10s);
+  CHECK(server.count(0, mapper::link::Kind::update) == updates);
+}
+
+TEST_CASE("fleet: time goes on to where it is asked for, and never back") {
+  Server server{room({{"AVR", RobotKind::avr, {}}})};
+  const base::Time begin = server.fleet.now();
+  server.fleet.advance_to(begin + 1234567us);
+  CHECK(server.fleet.now() == begin + 1234567us);
+  CHECK(server.world.time() == begin + 1234ms);
+  server.fleet.advance_to(begin + 1s);
+  CHECK(server.fleet.now() == begin + 1234567us);
+  CHECK(server.fleet.next_event() > server.fleet.now());
+}
+
 TEST_CASE("fleet: it says packed updates to a server that asks") {
   Server server{room({{"AVR", RobotKind::avr, {}}})};
   server.type("start\n");

@@ -103,6 +103,43 @@ TEST_CASE("biases differ from robot to robot, and wander by degrees a minute") {
   CHECK(drift_deg.spread < 3.0);
 }
 
+TEST_CASE("a bias goes from minute to minute in a straight line") {
+  const GyroModel model;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Noise noise{seed, 0};
+    const auto at = [&](double time_s) { return gyro_bias_deg_per_s(model, noise, time_s); };
+    for (const double minute : {0.0, 60.0, 600.0}) {
+      CHECK(at(minute + 30) == Approx((at(minute) + at(minute + 60)) / 2).epsilon(1e-9));
+      CHECK(at(minute + 15) == Approx((3 * at(minute) + at(minute + 60)) / 4).epsilon(1e-9));
+      CHECK(at(minute) != at(minute + 60));
+    }
+  }
+  // And a reading has that of its time: sample 24958 of 2404 us is at 59.999 s.
+  GyroModel quiet = model;
+  quiet.noise_deg_per_s = 0;
+  const Noise noise{3, 0};
+  CHECK(gyro_reading(quiet, noise, {24'958, 0, false}) / degree ==
+        Approx(gyro_bias_deg_per_s(model, noise, 60)).margin(0.00875));
+}
+
+TEST_CASE("a compass's axes, and those of its own field, are noisy each by itself") {
+  const CompassModel model;
+  double own = 0, noise_of_both = 0, squares = 0;
+  constexpr int n = 5000;
+  for (std::uint64_t i = 0; i < n; ++i) {
+    const Vector field = own_field(model, {i, 1});
+    own += field.x * field.y / (0.05 * 0.05) / n;
+    const Noise noise{7, 1};
+    const Vector bias = own_field(model, noise);
+    const sensing::Field read = compass_reading(model, noise, {i, {0, 0}, 0});
+    noise_of_both += (read.x - bias.x) * (read.y - bias.y) / (0.002 * 0.002) / n;
+    squares += std::pow(read.y - bias.y, 2) / n;
+  }
+  CHECK(std::abs(own) < 5 / std::sqrt(n));
+  CHECK(std::abs(noise_of_both) < 5 / std::sqrt(n));
+  CHECK(std::sqrt(squares) == Approx(0.002).epsilon(0.1));
+}
+
 TEST_CASE("a compass has the field in its robot's frame") {
   const auto read = [](Vector field, double heading) {
     return compass_reading(quiet_compass, {1, 1}, {0, field, heading});
@@ -204,6 +241,37 @@ TEST_CASE("distance sensors are a couple of centimetres uncertain, and each has 
   });
   // Noise 20 mV, offset 10 mV, 2 % of 0.543 V: 25 mV together.
   CHECK(biases.spread == Approx(0.0249).epsilon(0.1));
+}
+
+TEST_CASE("each distance sensor of a tower has its own noise and errors, and a range of its converter") {
+  const InfraredModel model;
+  for (std::size_t a = 0; a < 4; ++a)
+    for (std::size_t b = 0; b < a; ++b) {
+      double together = 0, errors = 0;
+      constexpr int n = 2000;
+      for (std::uint64_t i = 0; i < n; ++i) {
+        const auto off = [&](std::uint64_t seed, std::uint64_t number, std::size_t sensor) {
+          const InfraredSample sample{number, {0.4, 0.4, 0.4, 0.4}};
+          return double{infrared_reading(model, {seed, 2}, sample, sensor)} -
+                 double{infrared_reading(quiet_infrared, {seed, 2}, sample, sensor)};
+        };
+        const double first = off(5, i, a) - off(5, i + 1, a), second = off(5, i, b) - off(5, i + 1, b);
+        together += first * second / (2 * 0.02 * 0.02) / n;
+        errors += off(i, 0, a) * off(i, 0, b) / (0.025 * 0.025) / n;
+      }
+      CHECK(std::abs(together) < 0.15);
+      CHECK(std::abs(errors) < 0.15);
+    }
+  InfraredModel loud = quiet_infrared;
+  loud.offset_spread_v = 100;
+  bool low = false, high = false;
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    const float volts = infrared_reading(loud, {seed, 2}, {0, {0.4}}, 0);
+    CHECK((volts >= 0 && volts <= 5.0F));
+    low = low || volts == 0;
+    high = high || volts == 5.0F;
+  }
+  CHECK((low && high));
 }
 
 TEST_CASE("slow noise goes through its places in straight lines") {

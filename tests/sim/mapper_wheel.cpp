@@ -159,6 +159,33 @@ TEST_CASE("the servo goes at its greatest speed, then settles, and stays") {
   CHECK(servo.angle_deg() == 90);
 }
 
+TEST_CASE("a motor's speed follows its equation, between off and full, and its least effort turns it") {
+  // dv/dt = e (full - v)/start - (1 - e) v/stop: in the end e full/start / (e/start + (1 - e)/stop).
+  for (const float effort : {0.4F, 0.5F, 0.75F, 0.9F, -0.6F}) {
+    const double e = std::abs(effort), end = e * 66 / 0.02 / (e / 0.02 + (1 - e) / 0.12);
+    CHECK(speed_at(avr, effort) == Approx(effort < 0 ? -end : end).epsilon(1e-3));
+  }
+  CHECK(speed_at(arduino, 0.15F) == Approx(1250 * 0.15).epsilon(1e-3));
+  Wheel wheel{avr, 0};
+  wheel.drive(0.5F);
+  CHECK(wheel.powered());
+  CHECK_FALSE(wheel.at_rest());
+  run(wheel, 0.02);
+  wheel.drive(0.0F);
+  CHECK_FALSE(wheel.powered());
+  CHECK_FALSE(wheel.at_rest());
+  // Friction stops it at 2 % of its full speed, not above, and not with voltage on.
+  double slowest = 66;
+  while (!wheel.at_rest()) {
+    slowest = std::abs(wheel.ticks_per_s());
+    wheel.step();
+  }
+  CHECK(slowest == Approx(0.02 * 66).epsilon(0.02));
+  wheel.drive(1.0F);
+  wheel.step();
+  CHECK(wheel.ticks_per_s() > 0);
+}
+
 TEST_CASE("a step of the tower has settled within its 200 ms") {
   Servo servo{ServoModel{}};
   servo.turn(10);

@@ -122,6 +122,159 @@ TEST_CASE("mapper: less friction is more slip") {
   CHECK(grip / turned(0.25) == Approx(1.20).epsilon(1e-3));
 }
 
+TEST_CASE("mapper: with one wheel it turns about the other, each way") {
+  const double way_m = 66 * 2 * pi * 0.033 / 198 * (2 - 0.02);
+  struct Case {
+    motion::Efforts efforts;
+    double left_m, right_m;
+  };
+  for (const Case& each :
+       {Case{{0, 1}, 0, way_m}, Case{{1, 0}, way_m, 0}, Case{{0, -1}, 0, -way_m}, Case{{-1, 0}, -way_m, 0}}) {
+    Bench bench{ideal()};
+    bench.robot.drive(each.efforts);
+    bench.run(2);
+    const Pose expected = arc({}, (each.left_m + each.right_m) / 2, (each.right_m - each.left_m) / 0.15);
+    CHECK(bench.robot.pose().x_m == Approx(expected.x_m).margin(2e-4));
+    CHECK(bench.robot.pose().y_m == Approx(expected.y_m).margin(2e-4));
+    CHECK(bench.robot.pose().heading_rad == Approx(expected.heading_rad).margin(2e-3));
+    CHECK(bench.robot.left_m_per_s() == Approx(each.left_m == 0 ? 0 : each.left_m / 1.98).epsilon(1e-3));
+    CHECK(bench.robot.right_m_per_s() == Approx(each.right_m == 0 ? 0 : each.right_m / 1.98).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("mapper: what its middle gets on by in a step is bounded, and the bound is near") {
+  for (const RobotModel& of : {avr_model, arduino_model}) {
+    RobotModel model = of;
+    model.motor.spread = 0;
+    model.slip = {.turning = 0, .straight = 0, .friction = 0.5, .variation = 0, .variation_s = 1};
+    double longest_m = 0;
+    for (const motion::Efforts efforts : {motion::Efforts{1, 1}, {1, -1}, {0, 1}, {1, 0.5F}}) {
+      Bench bench{model};
+      bench.robot.drive(efforts);
+      for (int ms = 0; ms < 2000; ++ms) {
+        const Vector before = bench.robot.disc().centre;
+        bench.run(0.001);
+        longest_m = std::max(longest_m, length(bench.robot.disc().centre - before));
+      }
+      CHECK(longest_m <= bench.robot.most_step_m());
+      CHECK(bench.robot.most_step_m() < 2 * (longest_m + 1e-5));
+    }
+  }
+}
+
+TEST_CASE("mapper: each part has a new sample once in its period, and only then") {
+  World world{open_world()};
+  const Robot& robot = world.robot(0);
+  struct Watched {
+    base::Duration period;
+    std::vector<int> changed{}, expected{};
+    double before = 0;
+  };
+  Watched gyro{2404us}, compass{13'334us}, infrared{38'300us};
+  const auto look = [&](int ms) {
+    // Two values of each that are noisy by themselves: that both stay by accident does not happen here.
+    const std::pair<Watched*, double> all[] = {
+        {&gyro, 1.0 * robot.gyro().value},
+        {&compass, 1e3 * robot.field().value.x + robot.field().value.y},
+        {&infrared, 1e3 * robot.infrared(0).value + 10 * robot.infrared(1).value + robot.infrared(2).value}};
+    for (const auto& [part, value] : all) {
+      if (ms > 0 && value != part->before) part->changed.push_back(ms);
+      if (ms > 0 && (ms * 1ms) / part->period != ((ms - 1) * 1ms) / part->period)
+        part->expected.push_back(ms);
+      part->before = value;
+    }
+  };
+  for (int ms = 0; ms <= 1000; ++ms) {
+    world.advance_to(at(ms * 1ms));
+    look(ms);
+  }
+  for (const Watched* part : {&gyro, &compass, &infrared}) {
+    // A few samples are the same digits as the last ones.
+    std::size_t late = 0;
+    for (const int ms : part->changed)
+      late += std::count(part->expected.begin(), part->expected.end(), ms) == 0 ? 1 : 0;
+    CHECK(late == 0);
+    CHECK(part->changed.size() <= part->expected.size());
+    CHECK(part->changed.size() * 10 >= part->expected.size() * 8);
+  }
+  CHECK(infrared.changed.front() == 39);
+  CHECK(compass.changed.front() == 14);
+}
+
+TEST_CASE("mapper: before it moves its gyro has the noise of rest") {
+  RobotModel model = ideal();
+  model.gyro.bias_deg_per_s = model.gyro.wander_deg_per_s = 0;
+  const WorldModel world = open_world();
+  double squares = 0;
+  constexpr int robots = 2000;
+  for (int i = 0; i < robots; ++i) {
+    const Robot robot{world.starts[0], model, static_cast<std::uint64_t>(i), 0};
+    squares += std::pow(robot.gyro().value / degree, 2);
+  }
+  CHECK(std::sqrt(squares / robots) == Approx(0.10).epsilon(0.08));
+}
+
+TEST_CASE("mapper: wheels differ from what is believed of them as the model says, radius and base") {
+  const WorldModel world = open_world();
+  double radius = 0, radii = 0, base_of = 0, bases = 0, both = 0;
+  constexpr int robots = 400;
+  for (int i = 0; i < robots; ++i) {
+    RobotModel model = ideal();
+    model.wheel_errors = {0.002, 0.005};
+    Bench bench{model};
+    bench.robot = Robot{world.starts[0], model, static_cast<std::uint64_t>(i + 1), 0};
+    bench.robot.drive(turn_left);
+    bench.run(0.5);
+    const double left =
+        bench.robot.left_m_per_s() / bench.robot.left().ticks_per_s() / avr_model.drive.m_per_tick() - 1;
+    const double right =
+        bench.robot.right_m_per_s() / bench.robot.right().ticks_per_s() / avr_model.drive.m_per_tick() - 1;
+    const double wheelbase =
+        (bench.robot.right_m_per_s() - bench.robot.left_m_per_s()) / bench.robot.turn_rad_per_s();
+    radius += left / robots;
+    radii += left * left / robots;
+    both += left * right / robots;
+    base_of += (wheelbase / 0.15F - 1) / robots;
+    bases += std::pow(wheelbase / 0.15F - 1, 2) / robots;
+  }
+  CHECK(std::abs(radius) < 0.0005);  // 5 * 0.002/20
+  CHECK(std::sqrt(radii) == Approx(0.002).epsilon(0.15));
+  CHECK(std::abs(both) < 5 * 0.002 * 0.002 / 20);  // each has its own
+  CHECK(std::abs(base_of) < 0.00125);
+  CHECK(std::sqrt(bases) == Approx(0.005).epsilon(0.15));
+}
+
+TEST_CASE("mapper: slip changes from place to place, by a quarter and in half a second") {
+  RobotModel model = ideal();
+  model.slip = {.turning = 0.10, .straight = 0, .friction = 0.5, .variation = 0.25, .variation_s = 0.5};
+  double sum = 0, squares = 0, bends = 0;
+  int places = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    Bench bench{model};
+    bench.robot = Robot{bench.world.starts[0], model, seed, 0};
+    bench.robot.drive(turn_left);
+    bench.run(1);
+    const auto slip = [&] {
+      return (bench.robot.right_m_per_s() - bench.robot.left_m_per_s()) / 0.15F /
+                 bench.robot.turn_rad_per_s() -
+             1;
+    };
+    for (int place = 0; place < 20; ++place) {  // a straight line within half a second
+      bench.run(0.001);
+      const double first = slip();
+      bench.run(0.249);
+      const double middle = slip();
+      bench.run(0.249);
+      bends = std::max(bends, std::abs(middle - (first + slip()) / 2));
+      bench.run(0.001);
+      sum += first / 0.10, squares += std::pow(first / 0.10 - 1, 2), ++places;
+    }
+  }
+  CHECK(sum / places == Approx(1).margin(0.05));
+  CHECK(std::sqrt(squares / places) == Approx(0.25).epsilon(0.1));
+  CHECK(bends < 0.001);
+}
+
 TEST_CASE("mapper: stopped, it rolls out, and then rests") {
   Bench bench{ideal()};
   bench.robot.drive(ahead);
@@ -422,6 +575,62 @@ TEST_CASE("mapper world: starts for more robots than the file has are apart, in 
   CHECK_FALSE(starts_for(model, 1000));
   CHECK_FALSE(starts_for(WorldModel{}, 1));
   CHECK(starts_for(open_world(), 1000));
+}
+
+TEST_CASE("mapper world: more starts are put on a grid around the last one, row by row, ring by ring") {
+  const WorldModel model =
+      open_world({{"first", RobotKind::avr, {5, 5, 1}}, {"last", RobotKind::avr, {1, 2, 0.5}}});
+  const auto starts = starts_for(model, 11);
+  REQUIRE(starts);
+  REQUIRE(starts->size() == 11);
+  CHECK(starts->at(0).name == "first");
+  std::size_t next = 2;
+  for (int row = -1; row <= 1; ++row)
+    for (int column = -1; column <= 1; ++column) {
+      if (row == 0 && column == 0) continue;
+      const Start& start = starts->at(next++);
+      CHECK(start.name == "robot_" + std::to_string(next));
+      CHECK(start.kind == RobotKind::avr);
+      CHECK(start.pose.x_m == Approx(1 + 0.25 * column));
+      CHECK(start.pose.y_m == Approx(2 + 0.25 * row));
+      CHECK(start.pose.heading_rad == 0.5);
+    }
+  CHECK(starts->at(10).pose.x_m == Approx(1 - 0.5));  // the next ring
+  CHECK(starts->at(10).pose.y_m == Approx(2 - 0.5));
+  CHECK(starts_for(model, 2)->size() == 2);
+  CHECK(starts_for(model, 1)->at(0).name == "first");
+  // A name that is taken gets another one.
+  const auto named = starts_for(open_world({{"robot_2", RobotKind::avr, {}}}), 2);
+  REQUIRE(named);
+  CHECK(named->at(1).name == "robot_2_");
+}
+
+TEST_CASE(
+    "mapper world: a start has a quarter of a radius around it, to walls and to others; beyond a wall there "
+    "is none") {
+  // A corridor along x, as wide as one robot with its room: two to each side of the wall at the end.
+  const auto corridor = [](double end_m) {
+    WorldModel model = open_world({{"one", RobotKind::avr, {0, 0, 0}}});
+    const double centre_m = avr_model.body.centre_ahead_m;
+    model.walls = {{{-9, -0.15}, {9, -0.15}},
+                   {{-9, 0.15}, {9, 0.15}},
+                   {{centre_m - 0.2, -1}, {centre_m - 0.2, 1}},
+                   {{centre_m + end_m, -1}, {centre_m + end_m, 1}}};
+    return model;
+  };
+  CHECK(starts_for(corridor(0.25 + 0.1 + 0.026), 2));
+  CHECK_FALSE(starts_for(corridor(0.25 + 0.1 + 0.024), 2));
+  CHECK(starts_for(corridor(0.50 + 0.1 + 0.026), 3));
+  CHECK_FALSE(starts_for(corridor(0.50 + 0.1 + 0.024), 3));
+  // Room: to a wall, to another, and inside of one.
+  const std::vector<Start> two{{"a", RobotKind::avr, {0, 0, 0}}, {"b", RobotKind::avr, {0.5, 0, 0}}};
+  CHECK(room_m(two[0], {}, two) == Approx(0.3));
+  CHECK(room_m(two[0], {{{-0.01, 0.17}, {9, 0.17}}}, two) == Approx(0.07));
+  CHECK(room_m(two[0], {{{-0.01, 0.05}, {9, 0.05}}}, two) == Approx(-0.05));
+  const std::vector<Start> alone{two[0]};
+  CHECK(std::isinf(room_m(alone[0], {}, alone)));
+  const std::vector<Start> other{{"c", RobotKind::arduino, {0, 1, pi / 2}}};  // its disc is behind its axle
+  CHECK(room_m(two[0], {}, other) == Approx(std::hypot(0.01, 0.96) - 0.2));
 }
 
 TEST_CASE(

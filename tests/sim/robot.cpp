@@ -275,6 +275,47 @@ TEST_CASE("batteries and ambient light: asked once") {
   CHECK(last<amiro::RingLight>(setup.middle).sensor[7].illuminance_lx() == 300.0);
 }
 
+TEST_CASE("each board says that it was switched on") {
+  Setup setup;
+  for (const auto* request : {"DiWheelDriveStatus", "PowerManagementStatus", "LightRingStatus"}) {
+    const std::string name = request;
+    const auto id = name[0] == 'D'   ? amiro::DiWheelDriveStatus::id
+                    : name[0] == 'P' ? amiro::PowerManagementStatus::id
+                                     : amiro::LightRingStatus::id;
+    setup.robot.receive({0x200U + id.value, 1, {2}}, setup.now);
+    setup.robot.advance(setup.now);
+  }
+  CHECK(static_cast<unsigned>(last<amiro::DiWheelDriveStatus>(setup.bottom).identity.reset) == 1);
+  CHECK(static_cast<unsigned>(last<amiro::PowerManagementStatus>(setup.middle).identity.reset) == 1);
+  CHECK(static_cast<unsigned>(last<amiro::LightRingStatus>(setup.top).identity.reset) == 1);
+}
+
+TEST_CASE("a robot waits where any of its boards does") {
+  for (int board = 0; board < 3; ++board) {
+    CAPTURE(board);
+    Setup setup;
+    Port* const ports[] = {&setup.bottom, &setup.middle, &setup.top};
+    for (Port* port : ports) port->room = 0;
+    const unsigned ids[] = {amiro::DiWheelDriveStatus::id.value, amiro::PowerManagementStatus::id.value,
+                            amiro::LightRingStatus::id.value};
+    setup.robot.receive({0x200U + ids[board], 1, {2}}, setup.now);
+    setup.robot.advance(setup.now);
+    CHECK(setup.robot.waiting());
+    ports[board]->room = 100;
+    setup.robot.advance(setup.now);
+    CHECK_FALSE(setup.robot.waiting());
+  }
+}
+
+TEST_CASE("a command that comes when the last one's time is over is in time") {
+  Setup setup;
+  setup.say("201#A086010000000000");
+  setup.now += 500ms;
+  setup.say("201#A086010000000000");
+  CHECK(setup.robot.di_wheel_drive().counters().timeouts == 0);
+  CHECK(setup.robot.world().wheels().left == Approx(0.1).epsilon(0.001));
+}
+
 TEST_CASE("a full bus is waited for") {
   Setup setup;
   setup.middle.room = 3;

@@ -124,6 +124,113 @@ TEST_CASE("magnetometer: the thesis's reading at the start, and the converter's 
   CHECK(field.y == -2048 * 2560);
 }
 
+/// Each channel's noise, and each pair's, of a part that is read `many` times: read(sample) gives the
+/// channels' values.
+template <std::size_t N, class Read>
+void check_noise(double spread, const Read& read) {
+  std::array<double, N> mean{};
+  std::vector<std::array<double, N>> all;
+  for (std::uint64_t i = 0; i < many; ++i) {
+    all.push_back(read(i));
+    for (std::size_t a = 0; a < N; ++a) mean[a] += all.back()[a] / many;
+  }
+  for (std::size_t a = 0; a < N; ++a)
+    for (std::size_t b = 0; b <= a; ++b) {
+      double both = 0;
+      for (const auto& values : all) both += (values[a] - mean[a]) * (values[b] - mean[b]) / many;
+      CAPTURE(a, b);
+      if (a == b)
+        CHECK(std::sqrt(both) == Approx(spread).epsilon(0.05));
+      else
+        CHECK(std::abs(both) < 6 * spread * spread / std::sqrt(many));
+    }
+}
+
+TEST_CASE("each axis and each sensor of a part is as noisy as the model says, and by itself") {
+  const GyroscopeModel gyroscope;
+  check_noise<3>(std::hypot(gyroscope.noise_deg_per_s / 0.0175, std::sqrt(1.0 / 12)), [&](std::uint64_t i) {
+    const auto r = gyroscope.read(sample({}, i));
+    return std::array<double, 3>{1.0 * r.x, 1.0 * r.y, 1.0 * r.z};
+  });
+  const AccelerometerModel accelerometer;
+  check_noise<3>(2 * std::hypot(accelerometer.noise_g * 512, std::sqrt(1.0 / 12)), [&](std::uint64_t i) {
+    const auto r = accelerometer.read(sample({}, i));
+    return std::array<double, 3>{1.0 * r.x, 1.0 * r.y, 1.0 * r.z};
+  });
+  MagnetometerModel magnetometer;
+  magnetometer.hard_iron_gauss = {};
+  check_noise<3>(2560 * std::hypot(0.002 / 2560e-6, std::sqrt(1.0 / 12)), [&](std::uint64_t i) {
+    const auto r = magnetometer.read(Arena{}, sample({}, i));
+    return std::array<double, 3>{1.0 * r.x, 1.0 * r.y, 1.0 * r.z};
+  });
+  const double counts = std::hypot(count_noise, std::sqrt(1.0 / 12));
+  check_noise<8>(counts, [&](std::uint64_t i) {
+    const auto r = RingModel{}.read({}, sample({}, i));
+    std::array<double, 8> values{};
+    std::copy(r.begin(), r.end(), values.begin());
+    return values;
+  });
+  check_noise<4>(counts, [&](std::uint64_t i) {
+    const auto r = FloorModel{}.read(Arena{}, sample({}, i));
+    std::array<double, 4> values{};
+    std::copy(r.begin(), r.end(), values.begin());
+    return values;
+  });
+}
+
+TEST_CASE("each axis has a bias and an offset of its own, of the model's size") {
+  for (const auto part : {0, 1}) {
+    std::array<double, 3> squares{};
+    double pairs = 0;
+    constexpr int n = 4000;
+    for (std::uint64_t seed = 1; seed <= n; ++seed) {
+      GyroscopeModel gyroscope;
+      gyroscope.noise_deg_per_s = 0;
+      AccelerometerModel accelerometer;
+      accelerometer.noise_g = 0;
+      const auto g = gyroscope.read(sample({}, 0, true, seed));
+      const auto a = accelerometer.read(sample({}, 0, true, seed));
+      const std::array<double, 3> off =
+          part == 0
+              ? std::array<double, 3>{g.x * 0.0175 / 0.5, g.y * 0.0175 / 0.5, g.z * 0.0175 / 0.5}
+              : std::array<double, 3>{a.x / 1024.0 / 0.02, a.y / 1024.0 / 0.02, (a.z - 1024) / 1024.0 / 0.02};
+      for (std::size_t i = 0; i < 3; ++i) squares[i] += off[i] * off[i] / n;
+      pairs += (off[0] * off[1] + off[1] * off[2] + off[0] * off[2]) / n;
+    }
+    for (const double square : squares) CHECK(std::sqrt(square) == Approx(1).epsilon(0.06));
+    CHECK(std::abs(pairs) < 9 / std::sqrt(n));
+  }
+}
+
+TEST_CASE(
+    "the default arena is 2.4 m by 1.6 m, with two boxes, none of them nearer than 0.25 m to the line") {
+  const Arena arena = default_arena();
+  CHECK(arena.walls.size() == 12);
+  const auto until_wall = [&](Vector from, double heading_deg) {
+    double least = 99;
+    for (const Segment& wall : arena.walls)
+      least = std::min(least, distance_along(from, direction(heading_deg * degree), wall));
+    return least;
+  };
+  CHECK(until_wall({0.5, 0}, 0) == Approx(0.7));
+  CHECK(until_wall({-0.5, 0}, 180) == Approx(0.7));
+  CHECK(until_wall({0.5, 0}, 90) == Approx(0.8));
+  CHECK(until_wall({0.5, 0}, -90) == Approx(0.8));
+  CHECK(until_wall({0.5, 0.01}, 180) == Approx(0.4));  // the box in the middle, from each side
+  CHECK(until_wall({-0.5, 0.01}, 0) == Approx(0.4));
+  CHECK(until_wall({0.01, 0.5}, -90) == Approx(0.4));
+  CHECK(until_wall({0.01, -0.5}, 90) == Approx(0.4));
+  CHECK(until_wall({0.5, 0.6}, 0) == Approx(0.45));  // that in the corner
+  CHECK(until_wall({1.15, 0.6}, 180) == Approx(0.05));
+  CHECK(until_wall({1.0, 0}, 90) == Approx(0.5));
+  CHECK(until_wall({1.0, 0.79}, -90) == Approx(0.14));
+  for (const Segment& wall : arena.walls)
+    for (int i = 0; i <= 20; ++i)
+      CHECK(arena.line.distance(wall.a + (wall.b - wall.a) * (i / 20.0)) > 0.25 - 1e-9);
+  CHECK(arena.line.distance(default_start.position()) < 1e-12);
+  CHECK(default_start.heading_rad == 0);
+}
+
 TEST_CASE("infrared: the counts grow as the wall comes near, up to the converter's end") {
   RingModel ring;
   const std::vector<Segment> walls{{{1, -2}, {1, 2}}};

@@ -110,6 +110,82 @@ TEST_CASE("a part repeats its newest sample until it has a new one") {
   CHECK(world.magnetometer() != first);
 }
 
+TEST_CASE("each part has as many samples as its period has gone by") {
+  World world;
+  const auto numbers = [&world] {
+    std::vector<std::uint64_t> all;
+    for (const Part part :
+         {Part::gyroscope, Part::accelerometer, Part::magnetometer, Part::floor, Part::ring})
+      all.push_back(world.sample(part).number);
+    return all;
+  };
+  CHECK(numbers() == std::vector<std::uint64_t>{0, 0, 0, 0, 0});
+  for (const int ms : {1, 2, 3, 4, 13, 14, 100, 5000}) {
+    world.advance_to(start + ms * 1ms);
+    const auto of = [ms](std::int64_t period_us) {
+      return static_cast<std::uint64_t>(ms * 1000 / period_us);
+    };
+    CHECK(numbers() == std::vector<std::uint64_t>{of(1250), of(1000), of(13'334), of(4000), of(4000)});
+  }
+}
+
+TEST_CASE("a calibration takes what is seen for the offset, is forgotten, and needs its part") {
+  WorldOptions options;
+  options.frozen = true;
+  World world{options};
+  const auto seen = *world.floor();
+  CHECK(seen[1] > 7000);
+  REQUIRE(world.calibrate_floor(false).ok());
+  CHECK(*world.floor() == boards::FloorCounts{});
+  REQUIRE(world.calibrate_floor(true).ok());
+  CHECK(world.floor() == world.raw_floor());
+  const auto offset = world.ring_offset();
+  CHECK((offset[0] == 2289 && offset[7] == 2269 && world.ring_offset(7) == 2269));
+  REQUIRE(world.calibrate_ring(true).ok());
+  CHECK(world.ring_offset() == boards::RingCounts{});
+  REQUIRE(world.calibrate_ring(false).ok());
+  CHECK(world.ring_offset() == *world.ring());
+  world.set_absent(Part::floor, true);
+  world.set_absent(Part::ring, true);
+  CHECK(world.calibrate_floor(false).error == Error::not_sampled);
+  CHECK(world.calibrate_ring(false).error == Error::not_sampled);
+  CHECK(world.ring_offset()[2] != 0);
+  CHECK(world.calibrate_floor(true).ok());  // which needs none
+  CHECK(world.calibrate_ring(true).ok());
+}
+
+TEST_CASE("the gauge looks once a second, and a robot at rest loses nothing by passing at once") {
+  World world;
+  world.set_wheels({0.2, 0.2});
+  world.advance_to(start + 999ms);
+  CHECK(world.gauge()->power_mw == -930);  // as at the start
+  world.advance_to(start + 1000ms);
+  const auto driving = world.gauge()->power_mw;
+  CHECK(driving < -930 - 300);  // 2 * 0.2 of 1 W, less the lag
+  CHECK(driving > -930 - 400);
+  world.advance_to(start + 1999ms);
+  CHECK(world.gauge()->power_mw == driving);
+  world.set_wheels({});
+  world.advance_to(start + 3s);
+  world.advance_to(start + 10s + 300ms);
+  CHECK(world.gauge()->power_mw == -930);
+  CHECK(world.time() == start + 10s + 300ms);
+  world.set_light(0, {255, 0, 0});
+  world.advance_to(start + 11s);
+  CHECK(world.gauge()->power_mw == -930 - 46);  // 0.7 s of 66 mW
+}
+
+TEST_CASE("duties are parts of the greatest speed, and a wheel that is asked for more keeps to it") {
+  World world;
+  world.set_duty(0.25, -0.5);
+  world.advance_to(start + 1s);
+  CHECK(world.wheels().left == Approx(0.25));
+  CHECK(world.wheels().right == Approx(-0.5));
+  world.set_duty(7, -7);
+  world.advance_to(start + 2s);
+  CHECK(world.wheels() == boards::WheelSpeeds{1, -1});
+}
+
 TEST_CASE("each part has noise of its own") {
   const World world;
   for (std::size_t a = 0; a < part_count; ++a)

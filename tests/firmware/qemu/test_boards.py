@@ -53,9 +53,9 @@ class DiWheelDrive(harness.Case):
 
     def test_four_levels_at_once(self):
         self.settle()
-        begin = time.monotonic()
         for level, topic in enumerate((GYRO, ACCEL, MAG, ODOMETRY)):
             self.board.publish(topic, 50, level)
+        begin = time.monotonic()
         identifiers = (0x408, 0x509, 0x605, 0x606, 0x607, 0x702, 0x703)
         # By the frames that come and not by the clock, which an emulator on a busy machine falls behind.
         self.board.wait(lambda: all(len(self.board.of(each, begin)) >= 40 for each in identifiers), 30, "40 frames of each")

@@ -233,7 +233,7 @@ def _(context):
                 operator.event('switched', to='driving', cause='still')
                 equal(operator.stop(), 130, 'exit code')
                 expect(operator.count('frames that a kill would have lost') >= 1000, f'the count: {operator.stderr}')
-                equal(operator.count('recordings lost'), 1, f'recordings: {operator.stderr}')
+                equal(operator.count('recording lost'), 1, f'recordings: {operator.stderr}')
         finally:
             sh('umount', box)
 

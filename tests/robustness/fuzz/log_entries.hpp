@@ -23,8 +23,8 @@ inline constexpr std::size_t small_room = 256;
   if (entry.is_fd())
     return log::is_fd_length(entry.length) && entry.raw_dlc == 0 && !can::is_remote(entry.format) &&
            entry.format != can::Format::error;
-  if (entry.raw_dlc != 0 &&
-      (entry.raw_dlc <= can::max_dlc || entry.raw_dlc > 15 || entry.length != can::max_dlc))
+  if (entry.raw_dlc != 0 && (entry.raw_dlc <= can::max_dlc || entry.raw_dlc > 15 ||
+                             entry.length != can::max_dlc || entry.format == can::Format::error))
     return false;
   return entry.length <= can::max_dlc;
 }

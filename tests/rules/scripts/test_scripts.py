@@ -65,7 +65,8 @@ class Misspelt(Case):
     WORDS = {
         "bench": [("--lst", "no option '--lst'; did you mean '--list'?"), ("codc", "no benchmark 'codc'; did you mean 'codec'?")],
         "build": [("frimware", "no build 'frimware'; did you mean 'firmware'?"), ("x", "no build 'x'; there are firmware, avr, operator"),
-                  ("-DA=1 firmware", "'firmware' comes first: scripts/build firmware [CMAKE ARGUMENT...]")],
+                  ("-DA=1 firmware", "'firmware' comes first: scripts/build firmware [CMAKE ARGUMENT...]"),
+                  ("-j2", "'-j2' is for cmake --build; how many files to compile at once: OCM_JOBS=2 scripts/build")],
         "demo": [("--hlep", "no option '--hlep'; did you mean '--help'?"),
                  ("now", "unexpected argument 'now'; it takes none, see scripts/demo --help")],
         "figures": [("--hlep", "no option '--hlep'; did you mean '--help'?"), ("nothing", "no folder 'nothing'; expected a build folder")],
@@ -406,7 +407,7 @@ class Everywhere(Case):
             self.assertEqual(self.run_script(script, "--list", path=link).stdout, self.run_script(script, "--list").stdout)
 
     def test_how_many_at_once_is_a_number(self):
-        for script, words in (("test", ("--only", "style")), ("fuzz", ("1s",))):
+        for script, words in (("test", ("--only", "style")), ("fuzz", ("1s",)), ("build", ())):
             for jobs in ("0", "abc", "-1", "2x"):
                 done = self.run_script(script, *words, OCM_JOBS=jobs)
                 self.assertEqual(done.returncode, 2, done.stderr)

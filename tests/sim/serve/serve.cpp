@@ -1,14 +1,20 @@
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <unistd.h>
 #include <vector>
 
 #include <catch2/catch.hpp>
+
+#include "ocm/protocol/message.hpp"
+#include "ocm/topics/amiro.hpp"
+#include "ocm/transport/virtual_bus.hpp"
 
 #include "sim/serve/amiro.hpp"
 #include "sim/serve/mappers.hpp"
@@ -101,6 +107,31 @@ TEST_CASE("A simulation with more to do than the machine does ends when it is as
       overloaded([&](const sim::Shell& shell) { return sim::serve_amiro(folder / "bus", options, shell); });
   CHECK(any_begins(reports, late));
   CHECK(any_begins(reports, "di_wheel_drive"));
+}
+
+TEST_CASE("Two programs that drive an AMiRo in turns are named at its end") {
+  const Folder folder;
+  Watched watched;
+  sim::Shell shell = watched.shell();
+  std::atomic<bool> over{false};
+  shell.stop = [&over] { return over.load(); };
+  bool heard = true;
+  std::thread drivers{[&] {
+    auto one = transport::VirtualBus::open(folder / "bus");
+    for (; !one && !over; one = transport::VirtualBus::open(folder / "bus")) std::this_thread::yield();
+    auto other = transport::VirtualBus::open(folder / "bus");
+    heard = one && other;
+    const can::Frame frame = protocol::command(amiro::Motors{});
+    for (int i = 0; heard && i < 20; ++i) {
+      heard = (*one)->send(frame).value && (*other)->receive(std::chrono::seconds{20}).ok() &&
+              (*other)->send(frame).value && (*one)->receive(std::chrono::seconds{20}).ok();
+    }
+    over = true;
+  }};
+  CHECK(sim::serve_amiro(folder / "bus", {}, shell).well());
+  drivers.join();
+  CHECK(heard);
+  CHECK(any_begins(watched.reports, "motors            was commanded by two senders, in turns: "));
 }
 
 TEST_CASE("A round takes what is due, and leaves nothing out") {

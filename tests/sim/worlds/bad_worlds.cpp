@@ -57,6 +57,13 @@ TEST_CASE("no file, no world: the path is named") {
         "/dev/null:1:1: the file is empty; a world is a JSON object with name, walls and robots");
 }
 
+TEST_CASE("a world of two bytes a character is named as that, as every file of JSON") {
+  using namespace std::string_literals;
+  CHECK(printed(ocm::sim::worlds::parse("\xFF\xFE"s + "{\0}\0"s, "w.json").problems) ==
+        std::vector<std::string>{
+            "w.json: the text is UTF-16LE; save it as UTF-8, such as iconv -f UTF-16LE -t UTF-8 writes it"});
+}
+
 TEST_CASE("a world that is neither a file nor built in, nor a folder") {
   for (const std::string name : {"atlantis", "/tmp"}) {
     const auto loaded = ocm::sim::worlds::find(name);

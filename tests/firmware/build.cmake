@@ -1,7 +1,16 @@
 # Builds for another machine, in a folder of its own:
 #   cmake -D SOURCE=folder -D BINARY=folder -D TOOLCHAIN=file [-D TARGETS=a;b] [-D OPTIONS=-Dx=y;...] -P build.cmake
+
+# scripts/build, in the same folder at the same time, waits; so does this (scripts/turns.bash).
+if(NOT ALONE)
+  file(MAKE_DIRECTORY ${BINARY})
+  execute_process(COMMAND flock ${BINARY}/.lock ${CMAKE_COMMAND} -D ALONE=ON -D SOURCE=${SOURCE} -D BINARY=${BINARY}
+                  -D TOOLCHAIN=${TOOLCHAIN} "-DTARGETS=${TARGETS}" "-DOPTIONS=${OPTIONS}" -P ${CMAKE_CURRENT_LIST_FILE}
+                  COMMAND_ERROR_IS_FATAL ANY)
+  return()
+endif()
 if(NOT EXISTS ${BINARY}/build.ninja OR NOT EXISTS ${BINARY}/CMakeCache.txt)
-  file(REMOVE_RECURSE ${BINARY})
+  file(REMOVE_RECURSE ${BINARY}/CMakeCache.txt ${BINARY}/CMakeFiles)
 endif()
 execute_process(COMMAND ${CMAKE_COMMAND} -S ${SOURCE} -B ${BINARY} -G Ninja --toolchain ${TOOLCHAIN} ${OPTIONS}
                 COMMAND_ERROR_IS_FATAL ANY)
