@@ -339,9 +339,12 @@ Study study_bus(const BusSet& set, const BusOptions& options) {
                            options.lengths == Lengths::exact ? "exact" : "generic",
                            options.test == CanTest::exact ? "exact" : "sufficient");
   if (options.error_burst > 0)
-    study.head += options.error_every > 0 ? fmt::format(", {} errors at once and one more every {}",
-                                                        options.error_burst, time_text(options.error_every))
-                                          : fmt::format(", {} errors at most", options.error_burst);
+    study.head +=
+        options.error_every > 0
+            ? fmt::format(", {} at once and one more every {}",
+                          counted(static_cast<std::uint64_t>(options.error_burst), "error"),
+                          time_text(options.error_every))
+            : fmt::format(", {} at most", counted(static_cast<std::uint64_t>(options.error_burst), "error"));
   if (model.offsets) study.head += ", with offsets";
   if (!model.queues.empty()) study.head += ", with queues";
   for (const BusOptions::Queue& queue : options.queues) {

@@ -106,8 +106,8 @@ Log read_log(const std::string& file, const protocol::Catalogue& catalogue) {
     log.remarks.push_back(fmt::format("Only the frames of {}: {} of other interfaces were passed over.",
                                       reader.interfaces().name(*interface), others));
   if (backwards > 0) {
-    log.remarks.push_back(
-        fmt::format("{} frames are older than the one before them: sorted by time.", backwards));
+    log.remarks.push_back(fmt::format("{} {} older than the one before: sorted by time.",
+                                      counted(backwards, "frame"), backwards == 1 ? "is" : "are"));
     std::stable_sort(log.arrivals.begin(), log.arrivals.end(),
                      [](const Arrival& a, const Arrival& b) { return a.time < b.time; });
   }
@@ -354,8 +354,9 @@ TraceStudy study_trace(const std::string& log_file, const std::string& set_file,
     trace.measured.push_back(meters[i].finish());
     Measured& m = trace.measured.back();
     if (m.greatest_length > entry.head.length)
-      broken.push_back(fmt::format("length: {} came with {} bytes, {} were assumed", entry.name,
-                                   m.greatest_length, entry.head.length));
+      broken.push_back(fmt::format("length: {} came with {}, {} {} assumed", entry.name,
+                                   counted(m.greatest_length, "byte"), entry.head.length,
+                                   entry.head.length == 1 ? "was" : "were"));
     // A tenth of a percent is more than two quartz clocks differ by.
     m.other_period = m.count > 2 && m.mean < entry.period - entry.period / 1000 - resolution;
     m.exceeds =

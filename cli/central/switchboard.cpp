@@ -222,7 +222,7 @@ void Switchboard::print_summary() const {
     std::string text = fmt::format("{:<{}}  links {}, packets from it {}, to it {}", wire->robot.name, width,
                                    wire->links, wire->from_it, wire->to_it);
     if (wire->unheard != 0) text += fmt::format(", {} lost: the server did not read", wire->unheard);
-    if (wire->unsent != 0) text += fmt::format(", {} bytes not sent", wire->unsent);
+    if (wire->unsent != 0) text += fmt::format(", {} not sent", counted(wire->unsent, "byte"));
     remark(text);
   }
   const mapper::link::CentralCounters& counters = central_->counters();

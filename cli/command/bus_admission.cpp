@@ -190,11 +190,10 @@ void add_admission_options(Verb verb, AdmissionOptions& options) {
   add_duration(verb, "--listen", options.listen, "how long to listen to what runs, before asking");
 }
 
-void admit(Session& session, transport::Bus& bus, const client::Command& command,
+void admit(const protocol::Catalogue& catalogue, transport::Bus& bus, const client::Command& command,
            const AdmissionOptions& options, RefusalWatch& refusals) {
   const auto asked = stream_of(command);
   if (!asked || (options.force && !options.explain)) return;
-  const auto& catalogue = session.catalogue();
   if (catalogue.bit_rate == 0) return;
   catch_interrupts();
   Traffic traffic{catalogue};

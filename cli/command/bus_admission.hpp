@@ -5,11 +5,11 @@
 #include <chrono>
 
 #include "ocm/base/time.hpp"
+#include "ocm/protocol/topic.hpp"
 #include "ocm/transport/bus.hpp"
 
 #include "cli/command/refusal_watch.hpp"
 #include "cli/shared/arguments.hpp"
-#include "cli/shared/session.hpp"
 #include "cli/words/command.hpp"
 
 namespace ocm::cli {
@@ -25,7 +25,7 @@ void add_admission_options(Verb verb, AdmissionOptions& options);
 
 /// Listens, and fails with the reason if a stream would be late; --explain prints the table to stdout. A
 /// command that starts no stream passes at once, and so does all with --force alone.
-void admit(Session& session, transport::Bus& bus, const client::Command& command,
+void admit(const protocol::Catalogue& catalogue, transport::Bus& bus, const client::Command& command,
            const AdmissionOptions& options, RefusalWatch& refusals);
 
 }  // namespace ocm::cli

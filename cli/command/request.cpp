@@ -17,6 +17,7 @@
 #include "cli/output/printer.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/live.hpp"
+#include "cli/shared/messages.hpp"
 #include "cli/shared/outgoing.hpp"
 #include "cli/shared/terminal.hpp"
 #include "cli/shared/values.hpp"
@@ -66,8 +67,8 @@ void send_and_await(Session& session, transport::Bus& open_bus, RefusalWatch& re
   const auto& counters = receiver.counters();
   fail({fmt::format("no {} within {}", topic.name, words::to_text(timeout)),
         counters.frames != 0
-            ? fmt::format("{} frames came, {} of wrong length: does the robot run another protocol version?",
-                          counters.frames, counters.wrong_dlc)
+            ? fmt::format("{} came, {} of wrong length: does the robot run another protocol version?",
+                          counted(counters.frames, "frame"), counters.wrong_dlc)
             : fmt::format("is board {} powered and on {}? Is the bit rate {} bit/s? See `amiroctl listen`",
                           catalogue.board_name(topic), bus->name(), catalogue.bit_rate)});
 }
@@ -92,7 +93,7 @@ void add_request_options(Verb verb, Session& session, std::string_view words_hel
     if (dry_run && !options->admission.explain) return print_frames(command);
     const auto bus = session.open_bus();
     RefusalWatch refusals{session.catalogue(), options->commanding.verb(), options->commanding.confirm()};
-    admit(session, *bus, command, options->admission, refusals);
+    admit(session.catalogue(), *bus, command, options->admission, refusals);
     if (dry_run) return print_frames(command);
     if (wait.count() != 0)
       return send_and_await(session, *bus, refusals, options->commanding.verb(), command, options->wait);

@@ -48,12 +48,17 @@ void LineReplay::go_to(base::Duration at) {
   playing_.at = at;
   playing_.ended = at >= playing_.length;
   while (next_ < log_.said.size() && log_.said[next_].time <= now()) take(log_.said[next_++]);
-  state_.fleet.expire(now());
+  expire(now());
+}
+
+void LineReplay::expire(base::Time time) {
+  state_.fleet.expire(time);
   while (state_.fleet.take()) {  // it says nothing: the robots of a log do not hear
   }
 }
 
 void LineReplay::take(const Said& said) {
+  expire(said.time);  // who is lost by then, however far one step of the replay goes
   for (const char c : said.text)
     state_.stream.feed(
         c, [&](char byte) { take_byte(byte, said.time); },

@@ -67,6 +67,7 @@ class LineReplay {
     std::map<unsigned, bool> placed;  ///< its place in the world is known
   };
 
+  void expire(base::Time time);
   void take(const Said& said);
   void take_line(const mapper::server::CentralLine& line, base::Time now);
   void take_byte(char c, base::Time now);

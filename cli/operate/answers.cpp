@@ -25,6 +25,11 @@ std::string rounded(base::Duration duration) {
   return words::to_text(std::chrono::duration_cast<std::chrono::milliseconds>(duration));
 }
 
+/// A sample that has just come is not "0s" old.
+std::string age(base::Duration duration) {
+  return duration < std::chrono::milliseconds{1} ? "under 1ms" : rounded(duration);
+}
+
 /// 10:15:04.212, by the clock on the wall here.
 std::string time_of_day(base::Time wall) {
   const std::int64_t ms = wall.time_since_epoch().count() / 1'000'000;
@@ -53,7 +58,7 @@ std::string Answers::status(base::Time now) const {
                         tables.configurations[supervisor.requested()].name);
   for (std::size_t s = 0; s < here.streams.size(); ++s)
     text += fmt::format("  {:<20} every {:<8} last {} ago\n", tables.topic(here.streams[s].topic).name,
-                        words::to_text(supervisor.period(s)), rounded(now - supervisor.heard(s)));
+                        words::to_text(supervisor.period(s)), age(now - supervisor.heard(s)));
   for (std::size_t m = 0; m < tables.monitors.size(); ++m)
     text += fmt::format("  monitor {:<12} {}\n", tables.monitors[m].name, name_of(supervisor.monitor(m)));
   text += fmt::format("  set points: {} passed on, {} of them limited; {} refused\n", commands.passed,

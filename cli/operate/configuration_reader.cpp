@@ -91,8 +91,9 @@ class ConfigurationReader : private ValueReader {
     if (const auto of = at.member("period")) {
       if (known != nullptr && known->kind == protocol::Kind::sensor) {
         if (const auto wire = period(*of)) stream.period = wire->duration();
-      } else {
-        stream.period = duration(*of).value_or(base::Duration{});
+      } else if (const auto read = duration(*of)) {
+        stream.period = *read;
+        if (read->count() == 0) tell(*of, "a period of 0", "a period above 0, such as \"50ms\"");
       }
     } else if (known != nullptr) {
       stream.period = known->usual_period();

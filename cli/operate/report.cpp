@@ -125,13 +125,15 @@ std::string to_table(const Study& study) {
                                                                    : "";
     text +=
         fmt::format("  {:<{}}  {:>7}{}\n", tables.configurations[c].name, width, percent(bound.load), role);
-    for (const StreamBound& stream : bound.streams)
-      text += fmt::format("    {} every {} at {} priority: {}{} of {}\n", tables.topic(stream.topic).name,
+    for (const StreamBound& stream : bound.streams) {
+      const bool bounded = stream.response != analysis::unbounded;
+      text += fmt::format("    {} every {} at {} priority: {}{}{}{}\n", tables.topic(stream.topic).name,
                           words::to_text(stream.period), name(stream.priority), milliseconds(stream.response),
-                          stream.on_board == 0
+                          stream.on_board == 0 || !bounded
                               ? std::string{}
                               : fmt::format(" ({} of it on its board)", milliseconds(stream.on_board)),
-                          milliseconds(stream.deadline));
+                          bounded ? " of " : ", its deadline is ", milliseconds(stream.deadline));
+    }
   }
 
   text += others_of(study);

@@ -267,7 +267,8 @@ void Runner::record() {
   const auto recording = std::make_shared<BlackBox::Recording>(box_.take(Clock::now(), unix_time()));
   const std::size_t frames = recording->entries.size();
   std::string line = event_line("recorded", {{"file", recording->path}, {"frames", frames}},
-                                fmt::format("{} frames before it are in {}", frames, recording->path));
+                                fmt::format("{} before it {} in {}", counted(frames, "frame"),
+                                            frames == 1 ? "is" : "are", recording->path));
   const bool taken = background_.post([this, recording, line = std::move(line)] {
     const auto written = box_.write(*recording);
     if (written) {
@@ -379,25 +380,26 @@ void Runner::sum_up() {
   counters_.not_kept += written_.not_kept;
   box_.end();
   const auto& done = supervisor_.counters();
-  std::string text = fmt::format("operate: {} changes, {} frames sent", done.switches, counters_.sent);
-  add_count(text, done.asked_again, "silent streams asked for again");
-  add_count(text, done.adapted, "periods adapted");
-  add_count(text, counters_.refusals, "refusals");
-  add_count(text, counters_.replaced, "frames replaced by newer ones before the bus took them");
-  add_count(text, commands_.passed, "set points passed on");
-  add_count(text, commands_.limited, "set points limited");
-  add_count(text, commands_.refused, "set points refused");
-  add_count(text, commands_.beyond, "set points more often, or more urgent, than the proof counts");
-  add_count(text, control_->turned_away(), "programs turned away");
-  add_count(text, counters_.recordings, "recordings");
-  add_count(text, counters_.recordings_lost, "recordings lost");
-  add_count(text, counters_.not_kept, "frames that a kill would have lost from the black box");
-  add_count(text, box_.dropped(), "frames that the black box had no room for");
-  add_count(text, lines_lost_, "event lines not printed");
+  std::string text =
+      fmt::format("operate: {}, {} sent", counted(done.switches, "change"), counted(counters_.sent, "frame"));
+  add_count(text, done.asked_again, "silent stream", "asked for again");
+  add_count(text, done.adapted, "period", "adapted");
+  add_count(text, counters_.refusals, "refusal", "");
+  add_count(text, counters_.replaced, "frame", "replaced by newer ones before the bus took them");
+  add_count(text, commands_.passed, "set point", "passed on");
+  add_count(text, commands_.limited, "set point", "limited");
+  add_count(text, commands_.refused, "set point", "refused");
+  add_count(text, commands_.beyond, "set point", "more often, or more urgent, than the proof counts");
+  add_count(text, control_->turned_away(), "program", "turned away");
+  add_count(text, counters_.recordings, "recording", "");
+  add_count(text, counters_.recordings_lost, "recording", "lost");
+  add_count(text, counters_.not_kept, "frame", "that a kill would have lost from the black box");
+  add_count(text, box_.dropped(), "frame", "that the black box had no room for");
+  add_count(text, lines_lost_, "event line", "not printed");
   add_count(text, done.not_a_number, "values that are no number");
-  add_count(text, bus_->counters().lost, "frames lost");
+  add_count(text, bus_->counters().lost, "frame", "lost");
   if (counters_.late != 0)
-    text += fmt::format(", {} steps later than \"reaction\", up to {}", counters_.late,
+    text += fmt::format(", {} later than \"reaction\", up to {}", counted(counters_.late, "step"),
                         measured(base::Duration{counters_.latest}));
   remark(text);
 }

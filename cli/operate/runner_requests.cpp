@@ -132,7 +132,8 @@ std::string Runner::pass_on(Caller& caller, std::string_view text) {
   const auto& layout = found.frame.layout();
   if (frame->dlc != layout.dlc()) {
     ++commands_.refused;
-    return no(fmt::format("{} has {} bytes, and {} takes {}", text, frame->dlc, topic.name, layout.dlc()),
+    return no(fmt::format("{} has {}, and {} takes {}", text, counted(frame->dlc, "byte"), topic.name,
+                          layout.dlc()),
               "is --spec that of the robot?");
   }
   const bool rests = (topic.role == protocol::Role::drive || topic.timeout.count() != 0) && is_rest(*frame);

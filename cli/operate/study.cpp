@@ -241,6 +241,7 @@ namespace {
 
 template <class Bound>
 std::string shown(const Bound& bound) {
+  if (!bound.bounded) return milliseconds(analysis::unbounded);  // its parts are not all there
   std::string text;
   for (const auto& part : bound.parts())
     if (part.time != 0)

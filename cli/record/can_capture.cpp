@@ -31,7 +31,8 @@ log::Entry to_entry(const canfd_frame& raw, bool fd) noexcept {
   entry.length = std::min(raw.len, most);
   if (fd) {
     entry.flags = static_cast<std::uint8_t>((raw.flags & (CANFD_BRS | CANFD_ESI)) | log::flag::fd);
-  } else if (raw.len == can::max_dlc && raw.__res1 > can::max_dlc && raw.__res1 <= 15) {
+  } else if (raw.len == can::max_dlc && raw.__res1 > can::max_dlc && raw.__res1 <= 15 &&
+             entry.format != can::Format::error) {
     entry.raw_dlc = raw.__res1;  // where a classic frame has its len8_dlc
   }
   const auto bytes = entry.bytes();

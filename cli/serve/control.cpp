@@ -22,6 +22,8 @@ using namespace std::chrono_literals;
 constexpr base::Duration rest_again = 10ms;
 /// In which a board answers.
 constexpr base::Duration time_to_answer = 100ms;
+/// Who looks later than that did not run, and has not heard what waits.
+constexpr base::Duration most_late = 20ms;
 /// What a board said so long ago still holds.
 constexpr base::Duration longest_valid = 300ms;
 
@@ -70,10 +72,22 @@ void Control::send_all(ViewerId viewer, const Driver::Frames& frames) {
     }
     // No set point waits behind another: the robot does what is commanded now.
     const auto delivery = bus_->delivery();
-    if (delivery.known && delivery.pending != 0) continue;
+    if (delivery.known && delivery.pending != 0) {
+      withhold(viewer);
+      continue;
+    }
+    withheld_.reset();
     if (!send(can::AnyFrame{frame})) refuse(viewer, why_not_taken());
   }
   while (!rests_.empty() && send(can::AnyFrame{rests_.front()})) rests_.pop_front();
+}
+
+void Control::withhold(ViewerId viewer) {
+  const auto now = Clock::now();
+  if (!withheld_) withheld_ = Withheld{now, false};
+  if (withheld_->is_said || now - withheld_->since < client::longest_without_set_point) return;
+  withheld_->is_said = true;
+  refuse(viewer, fmt::format("no set point leaves {}: {}", bus_->name(), why_none_leaves(*bus_)));
 }
 
 void Control::drive(ViewerId viewer, const client::Hold& hold) {
@@ -101,13 +115,13 @@ void Control::begin(ViewerId viewer, const client::Hold& hold) {
   }
   waiting_ = Waiting{viewer, hold, now + time_to_answer};
   if (said_ && now - *said_ < longest_valid) return begin_waiting();
-  said_.reset();
   if (!send(can::AnyFrame{behaviour_.request()})) begin_waiting();  // which says why nothing is taken
 }
 
 void Control::begin_waiting() {
   const auto [viewer, hold, until] = *std::exchange(waiting_, std::nullopt);
-  if (said_ && is_behaving_)
+  // A board that said so and does not answer now, as on a busy machine, may still do it.
+  if (is_behaving_)
     return refuse(viewer, fmt::format("{} drives the wheels by itself: wait for its end, or stop the robot",
                                       catalogue_->board_name(behaviour_.topic())));
   Driver::Frames frames;
@@ -183,7 +197,12 @@ void Control::heard(const can::Received& received) {
 }
 
 void Control::advance() {
-  if (waiting_ && Clock::now() >= waiting_->until) begin_waiting();
+  if (const auto now = Clock::now(); waiting_ && now >= waiting_->until) {
+    if (now - waiting_->until > most_late)
+      waiting_->until = now + time_to_answer;
+    else
+      begin_waiting();
+  }
   Driver::Frames frames;
   if (driver_.advance(Clock::now(), frames))
     refuse(0, "the page that drove was silent for half a second: the motors rest");

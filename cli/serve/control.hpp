@@ -53,6 +53,8 @@ class Control {
   void begin_waiting();
   /// Of the driver; rest waits until the bus takes it, all else is given up.
   void send_all(ViewerId viewer, const Driver::Frames& frames);
+  /// A set point that is given up since an earlier frame has not left; the viewer hears it once.
+  void withhold(ViewerId viewer);
   [[nodiscard]] bool send(const can::AnyFrame& frame);
   void refuse(ViewerId viewer, std::string_view why);
   [[nodiscard]] std::string why_not_taken();
@@ -66,8 +68,13 @@ class Control {
   client::Refusals refusals_;
   Driver driver_;
   std::deque<can::Frame> rests_;  ///< that the bus has not taken yet
+  struct Withheld {
+    Clock::time_point since;
+    bool is_said = false;
+  };
+  std::optional<Withheld> withheld_;  ///< set points, since an earlier frame has not left
   BehaviourSensor behaviour_;
-  bool is_behaving_ = false;               ///< as its last sample said,
+  bool is_behaving_ = false;               ///< as its last sample said, however long ago,
   std::optional<Clock::time_point> said_;  ///< which came then
   /// What a viewer wants, until the sensor has answered or could have.
   struct Waiting {

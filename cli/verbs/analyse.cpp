@@ -154,12 +154,12 @@ int show(const Study& study, const Options& options, const Session& session, Adv
   return study.passes() ? exit_success : exit_failure;
 }
 
-void narrow(Session& session) {
-  static_cast<void>(session.narrow_to_bus("analyse", session.bus_name));
+void narrow(std::string_view verb, Session& session) {
+  static_cast<void>(session.narrow_to_bus(verb, session.bus_name));
 }
 
 int bus(const Options& options, Session& session) {
-  if (options.file.empty()) narrow(session);
+  if (options.file.empty()) narrow("analyse bus", session);
   const auto rates = read_rates(options.rates);
   BusOptions how = bus_options(options, session.catalogue());
   const auto& specs = session.spec_files;
@@ -204,7 +204,7 @@ int tasks(const Options& options, Session& session) {
 }
 
 int chain(const Options& options, Session& session) {
-  narrow(session);
+  narrow("analyse chain", session);
   const std::int64_t deadline = options.deadline ? options.deadline->count() : analysis::unbounded;
   const ChainStudy study = study_chain(options.file, deadline, bus_options(options, session.catalogue()),
                                        session.catalogue(), model_of(session), read_rates(options.rates));
@@ -216,7 +216,7 @@ int chain(const Options& options, Session& session) {
 }
 
 int trace(const Options& options, Session& session) {
-  if (options.set.empty()) narrow(session);
+  if (options.set.empty()) narrow("analyse trace", session);
   Options how = options;
   how.file = options.set;
   const TraceStudy study =

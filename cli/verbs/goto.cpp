@@ -46,8 +46,8 @@ std::int16_t number(std::string_view what, std::string text, std::string_view un
   const long value = std::strtol(text.c_str(), &end, 10);
   const bool whole = !text.empty() && text.find_first_of(" \t") == std::string::npos && *end == '\0';
   if (!whole || errno != 0 || value < field.min || value > field.max)
-    fail({fmt::format("goto: {} {}: no {}", what, original, what),
-          fmt::format("write a whole number of {}, {} to {}, such as 90", unit, field.min, field.max)},
+    fail({fmt::format("goto: invalid {} '{}'", what, original),
+          fmt::format("expected a whole number of {}, {} to {}, such as 90", unit, field.min, field.max)},
          exit_usage);
   return static_cast<std::int16_t>(value);
 }

@@ -8,6 +8,7 @@
 
 #include "cli/output/named_value.hpp"
 #include "cli/shared/fitted.hpp"
+#include "cli/shared/messages.hpp"
 #include "cli/verbs/verbs.hpp"
 #include "cli/words/command.hpp"
 #include "cli/words/quantity.hpp"
@@ -147,7 +148,7 @@ void message(const spec::Spec& spec, const protocol::Topic& topic) {
     print_line("  distance   at least {}\n", words::to_text(topic.shortest_period));
   for (const auto& [name, text] : model.attributes)
     print_line("  attribute  {} = {}\n", name, prose(text, 13));
-  print_line("  frame      {} bytes{}\n", layout.length, layout.fd ? ", CAN FD" : "");
+  print_line("  frame      {}{}\n", counted(layout.length, "byte"), layout.fd ? ", CAN FD" : "");
   for (std::size_t i = 0; i < layout.fields.size(); ++i) {
     print_field(layout, layout.fields[i]);
     print_facts(layout.fields[i], model.fields[i]);

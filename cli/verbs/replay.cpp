@@ -296,7 +296,7 @@ void stand_in(Session& session, const ReplayOptions& options, int& exit_code) {
     over = live.receive(until, take);
     if (over == Over::gone) fail(bus->failure());
   }
-  std::string text = fmt::format("{} requests, {} frames sent", requests, sent);
+  std::string text = fmt::format("{}, {} sent", counted(requests, "request"), counted(sent, "frame"));
   add_count(text, refused, "requests refused");
   add_count(text, silent, "requests for what was not recorded");
   remark(text);

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "ocm/client/diagnosis.hpp"
+
 #include "cli/shared/messages.hpp"
 
 namespace ocm::cli {
@@ -45,8 +47,8 @@ void tell_contradictions(const Contradictions& found, const protocol::Catalogue&
   std::string why;
   if (foreign != 0) why = fmt::format("{} of no {}", foreign, words.of);
   if (first)
-    why += fmt::format("{}{} of wrong length, such as {:03X} with {} bytes in place of {}",
-                       why.empty() ? "" : ", ", wrong_length, first->id, first->length, first->right);
+    why += fmt::format("{}{} of wrong length, such as {:03X} with {} in place of {}", why.empty() ? "" : ", ",
+                       wrong_length, first->id, client::count(first->length, "byte*"), first->right);
   remark(fmt::format(
       "{}{} of {} frames contradict the spec of {} ({}): the others may be of another {}, too, "
       "and mean something else. --spec FILE names its {}",

@@ -238,7 +238,7 @@ class CommandParser {
     const auto fields = motors->frames[0].fields;
     std::vector<std::int64_t> raw(fields.size());
     constexpr std::string_view remedies[] = {"write 0.05m/s, 5cm/s or 50000um/s",
-                                             "write 0.2rad/s or -30deg/s"};
+                                             "write 0.2rad/s or 30deg/s"};
     for (std::size_t i = 1; i < line.size(); ++i) {
       const auto value = parse_typed_value(*velocities[i - 1], line[i]);
       if (!value) return WordError{i, value.error, std::string{remedies[i - 1]}};

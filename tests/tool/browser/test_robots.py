@@ -128,6 +128,7 @@ class Robots(harness.Case):
 
     def test_a_click_sends_a_robot(self):
         self.serve_robots("--allow-commands")
+        self.until(lambda: self.area() > 1.1, "all that both see from where they stand")  # what is clicked on must be known
         self.choose("AVR")
         canvas = self.browser.element("#map")
         where = self.browser.script("""const box = arguments[0].getBoundingClientRect();

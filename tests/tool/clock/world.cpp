@@ -117,6 +117,8 @@ bool wait_for_input(std::span<pollfd> inputs, base::Duration longest) noexcept {
   return any;
 }
 
+void catch_interrupts() {}
+
 int interrupted() noexcept {
   return World::now_running().signal();
 }

@@ -156,6 +156,20 @@ TEST_CASE("line replay: a robot moves while its updates show it, or it does not 
   CHECK(cli::fleet::state_of(replay.robots()[0]) == "idle");
 }
 
+TEST_CASE("line replay: what is shown of robots does not hang on how far each step goes") {
+  Log log;
+  log.robot(0,
+            "{H,20,20,1,3,0,90,180,270,100,0,3}\n");  // lost after 100 ms of silence, so between its pieces
+  for (const int x : {0, 30, 0}) log.robot(0, update(x, 0, 0));
+  LineReplay whole{log.read, known()}, steps{log.read, known()};
+  for (base::Duration at{}; !steps.playing().ended; at += 50ms) {
+    steps.go_to(at);
+    whole.go_to({});
+    whole.go_to(at);
+    CHECK(cli::fleet::to_row(whole.robots()[0]) == cli::fleet::to_row(steps.robots()[0]));
+  }
+}
+
 TEST_CASE("line replay: pieces that end anywhere, noise, and nothing at all") {
   Log log;
   const std::string all = "[0]:A:" + update(5, 6, 7) + "[0]:A:" + update(8, 9, 10);

@@ -1,5 +1,8 @@
 #include "cli/shared/folding.hpp"
 
+#include <algorithm>
+#include <string>
+
 #include <catch2/catch.hpp>
 
 namespace tool_output_folding_test {
@@ -49,6 +52,66 @@ TEST_CASE("a help's descriptions stay below each other where there is room", "[f
   CHECK(folded_help("Usage: amiroctl publish TOPIC [PERIOD] [OPTION ...]", 40) ==
         "Usage: amiroctl publish TOPIC [PERIOD]\n"
         "  [OPTION ...]");
+}
+
+TEST_CASE("a help's description goes below where beside it there are fewer than 24 columns", "[folding]") {
+  const std::string line = "  --json                      an object, for programs that read it";
+  CHECK(folded_help(line, 54) ==
+        "  --json                      an object, for programs\n"
+        "                              that read it");
+  CHECK(folded_help(line, 53) ==
+        "  --json\n"
+        "      an object, for programs that read it");
+  const std::string second = "                              the second line of an option of some verb";
+  CHECK(folded_help(second, 54) ==
+        "                              the second line of an\n"
+        "                              option of some verb");
+  CHECK(folded_help(second, 53) == "      the second line of an option of some verb");
+  // What is described is long itself, and without a lead.
+  CHECK(folded_help("amiroctl publish TOPIC PERIOD  asks a board for a sensor's samples", 36) ==
+        "amiroctl publish TOPIC PERIOD\n"
+        "    asks a board for a sensor's\n"
+        "    samples");
+  CHECK(folded_help("  amiroctl publish TOPIC [PERIOD] [OPTION ...]  asks a board", 30) ==
+        "  amiroctl publish TOPIC\n"
+        "    [PERIOD] [OPTION ...]\n"
+        "      asks a board");
+}
+
+TEST_CASE("only an option that fills its column has one blank before its description", "[folding]") {
+  // Of other lines the words behind the column belong to what is described.
+  CHECK(folded_help("  a word that is as long as it is said to be in a help", 40) ==
+        "  a word that is as long as it is said\n"
+        "    to be in a help");
+  CHECK(folded_help("  --spec FILE (AMIROCTL_SPE topics of another robot, as JSON", 54) ==
+        "  --spec FILE (AMIROCTL_SPE topics of another robot,\n"
+        "    as JSON");
+}
+
+TEST_CASE("whatever the width, words stay whole and in order, and lines are no longer than they must be",
+          "[folding]") {
+  const std::string text = "  a load of 12.5 % at 500 kbit/s, an_identifier_that_is_long and some more words";
+  for (std::size_t columns = 1; columns < 100; ++columns)
+    for (const std::size_t indent : {std::size_t{0}, std::size_t{4}, std::size_t{12}}) {
+      CAPTURE(columns, indent);
+      std::string words, line;
+      std::size_t lines = 0;
+      for (const char c : folded(text, columns, indent) + "\n") {
+        if (c != '\n') {
+          line += c;
+          continue;
+        }
+        const bool is_one_word =
+            line.find(' ', std::min(line.find_first_not_of(' '), line.size())) == std::string::npos;
+        CHECK((extent(line).all <= columns || is_one_word));
+        CHECK(extent(line).all == extent(line).words);  // no blanks at its end
+        if (lines++ > 0 && indent + 16 <= columns && extent(line).all < columns)
+          CHECK(line.find_first_not_of(' ') <= indent);
+        words += (words.empty() ? "" : " ") + line.substr(line.find_first_not_of(' '));
+        line.clear();
+      }
+      CHECK(words == text.substr(2));
+    }
 }
 
 }  // namespace tool_output_folding_test

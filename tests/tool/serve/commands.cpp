@@ -103,4 +103,35 @@ TEST_CASE("serve: a time bar") {
   }
 }
 
+TEST_CASE("serve: the ends of a time bar, and of a period") {
+  for (const char* const text :
+       {R"({"speed":0.015625})", R"({"speed":1024})", R"({"at_s":0})", R"({"at_s":999999999})"}) {
+    INFO(text);
+    CHECK(playback_of(text));
+  }
+  for (const char* const text : {R"({"speed":0.0156})", R"({"speed":1024.5})", R"({"at_s":1e9})",
+                                 R"({"at_s":"1"})", R"({"speed":true})", R"({"paused":"true"})"}) {
+    INFO(text);
+    CHECK(playback_of(text).error == "a time bar takes at_s in seconds, speed from 1/64 to 1024, and paused");
+  }
+  CHECK(playback_of(R"({"paused":false})")->paused == 0);
+  CHECK(playback_of("{}")->speed == 0);
+  CHECK(period_command(catalogue, "gyroscope", 65'535)->frames[0] ==
+        command_of(catalogue, "/ocm/command", R"({"line":"publish gyro 65535ms"})")->frames[0]);
+  CHECK(period_command(catalogue, "gyroscope", 1e9).error.find("1000000000 ms") == std::string::npos);
+  CHECK(period_command(catalogue, "gyroscope", 1.1e9).error.find("1100000000 ms is no period") == 0);
+}
+
+TEST_CASE("serve: numbers as JSON writes them") {
+  const auto x = [](const char* number) {
+    return command_of(catalogue, "/motors", std::string{R"({"x":)"} + number + "}")->hold->frame;
+  };
+  for (const char* const number : {"1E-1", "1e-1", "0.10", "100e-3"}) {
+    INFO(number);
+    CHECK(x(number) == x("0.1"));
+  }
+  CHECK(command_of(catalogue, "/led_1", R"({"red":false,"green":true})")->frames[0].data[1] == 1);
+  CHECK(command_of(catalogue, "/motors", R"({"x":"0.1m/s"})")->hold->frame == x("0.1"));
+}
+
 }  // namespace serve_commands_test

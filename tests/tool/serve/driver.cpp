@@ -169,4 +169,55 @@ TEST_CASE("driver: what a viewer drove rests when it has gone") {
   CHECK(out.empty());
 }
 
+TEST_CASE("driver: when something is due next") {
+  Driver driver;
+  Driver::Frames out;
+  REQUIRE(driver.drive(1, hold(5), begin, out).empty());
+  REQUIRE(driver.drive(2, hold(6, 0x202), begin + 30ms, out).empty());
+  CHECK(driver.next() == begin + 100ms);
+  CHECK_FALSE(driver.advance(begin + 100ms, out));
+  CHECK(driver.next() == begin + 130ms);
+  CHECK_FALSE(driver.advance(begin + 450ms, out));
+  CHECK(driver.next() == begin + 500ms);  // the first one's silence, before either is repeated
+  CHECK(driver.advance(begin + 500ms, out));
+  CHECK(driver.next() == begin + 530ms);
+  CHECK(driver.holds(0x202));
+}
+
+TEST_CASE(
+    "driver: a new speed is not repeated before its time, and one that is said again is the newest word") {
+  Driver driver;
+  Driver::Frames out;
+  REQUIRE(driver.drive(1, hold(5), begin, out).empty());
+  REQUIRE(driver.drive(1, hold(7), begin + 90ms, out).empty());
+  out.clear();
+  CHECK_FALSE(driver.advance(begin + 189ms, out));
+  CHECK(out.empty());
+  CHECK_FALSE(driver.advance(begin + 190ms, out));
+  CHECK(out.size() == 1);
+  REQUIRE(driver.drive(1, hold(7), begin + 400ms, out).empty());
+  CHECK_FALSE(driver.advance(begin + 899ms, out));
+  CHECK(driver.advance(begin + 900ms, out));
+  // Who has gone begins like any other.
+  driver.gone(1, out);
+  CHECK_FALSE(driver.must_rest(1, 0x201));
+  CHECK(driver.drive(1, hold(5), begin + 901ms, out).empty());
+  CHECK(driver.drives());
+}
+
+TEST_CASE("driver: its own rest ends only the motors that it is for") {
+  Driver driver;
+  Driver::Frames out;
+  REQUIRE(driver.drive(1, hold(5), begin, out).empty());
+  REQUIRE(driver.drive(1, hold(6, 0x202), begin, out).empty());
+  REQUIRE(driver.drive(1, hold(0), begin + 10ms, out).empty());
+  CHECK_FALSE(driver.holds(0x201));
+  CHECK(driver.holds(0x202));
+  driver.rest(out);
+  CHECK(driver.must_rest(1, 0x202));
+  CHECK_FALSE(driver.must_rest(1, 0x201));
+  REQUIRE(driver.drive(1, hold(0), begin + 20ms, out).empty());
+  CHECK(driver.must_rest(1, 0x202));
+}
+
 }  // namespace serve_driver_test

@@ -22,11 +22,11 @@ using Kind = FleetOrder::Kind;
 /// A line with two robots that do what the test says, and what was said to them.
 class Line final : public cli::fleet::LineEnd {
  public:
-  Line() {
+  explicit Line(const std::string& second = "two") {
     for (unsigned i = 0; i < 2; ++i) {
       RobotNow& robot = robots[i];
       robot.index = i;
-      robot.name = i == 0 ? "one" : "two";
+      robot.name = i == 0 ? "one" : second;
       robot.linked = robot.confirmed = robot.idle = robot.located = robot.origin_known = true;
       robot.update.emplace();
       peers_.push_back({i, "C" + std::to_string(i), robot.name, true});
@@ -86,10 +86,16 @@ class Line final : public cli::fleet::LineEnd {
 };
 
 struct Desk {
+  explicit Desk(const std::string& second = "two") : line(second) {}
+
   Line line;
   std::vector<std::string> told;
+  std::vector<Level> levels;
   base::Time now{1h};
-  Errands errands{[this](cli::serve::ViewerId, Level, const std::string& words) { told.push_back(words); },
+  Errands errands{[this](cli::serve::ViewerId, Level level, const std::string& words) {
+                    told.push_back(words);
+                    levels.push_back(level);
+                  },
                   [this](unsigned index) { return line.robot(index); }};
 
   void take(Kind kind, std::string robot = "one", motion::Point place = {}, bool explores = false,
@@ -291,6 +297,106 @@ TEST_CASE("errands: a pause is said until it shows") {
   desk.take(Kind::pause);
   desk.step(11s);
   CHECK(desk.says("nothing shows that one is paused"));
+}
+
+TEST_CASE("errands: how serious it is that an errand ends") {
+  Desk desk;
+  const auto ends = [&](Progress progress) {
+    desk.levels.clear();
+    desk.line.stands(0, Progress::reached, 0, 0);
+    desk.take(Kind::go, "one", {1, 0});
+    desk.line.stands(0, progress, progress == Progress::reached ? 100 : 20, 0);
+    for (int i = 0; i < 2; ++i) desk.step();
+    return desk.levels;
+  };
+  using Levels = std::vector<Level>;
+  CHECK(ends(Progress::reached) == Levels{Level::info});
+  CHECK(ends(Progress::ended) == Levels{Level::warning});
+  CHECK(desk.says("one stopped 80 cm away from there"));
+  CHECK_FALSE(desk.says("in front of it"));
+  CHECK(ends(Progress::stopped) == Levels{Level::warning});
+  CHECK(desk.says("one was stopped"));
+  CHECK(ends(Progress::stopping) == Levels{Level::warning});
+  CHECK(ends(Progress::none) == Levels{Level::error});
+  CHECK(desk.says("the link to one was gone for a while"));
+  for (const Progress on : {Progress::waiting, Progress::said, Progress::heard}) {
+    CHECK(ends(on).empty());
+    CHECK(desk.errands.busy());
+  }
+}
+
+TEST_CASE(
+    "errands: a robot that gets no nearer is given up, and one that stands two centimetres off is there") {
+  Desk desk;
+  desk.take(Kind::go, "one", {100, 0});
+  for (int i = 0; i < 200 && desk.told.empty(); ++i) {
+    desk.line.stands(0, Progress::reached, 0, 0);
+    desk.step();
+  }
+  CHECK(desk.says("one does not get there"));
+  CHECK(desk.line.said.size() == 50);
+  for (const std::int16_t cm : {std::int16_t{98}, std::int16_t{96}}) {
+    desk.line.said.clear();
+    desk.line.stands(0, Progress::reached, cm, 0);
+    desk.take(Kind::go, "one", {1, 0});
+    CHECK(desk.line.said.size() == (cm == 98 ? 0U : 1U));
+  }
+}
+
+TEST_CASE("errands: how long a robot may take to stand, and to say where") {
+  Desk desk;
+  desk.take(Kind::go, "one", {1, 0});
+  desk.take(Kind::go, "one", {0, 1});  // it is to stop first
+  desk.step(19'999ms);
+  CHECK(desk.errands.busy());
+  desk.step(1ms);
+  CHECK(desk.says("nothing shows that one stands"));
+  CHECK_FALSE(desk.errands.busy());
+
+  Desk other;
+  other.take(Kind::go, "one", {5, 0});
+  other.line.robots[0].progress = Progress::reached;
+  other.step();
+  other.step(4'999ms);
+  CHECK(other.errands.busy());
+  CHECK(other.told.empty());
+  other.step(1ms);
+  CHECK(other.says("nothing shows that one stands"));
+}
+
+TEST_CASE("errands: robots of one name, and those that cannot be sent") {
+  Desk desk;
+  desk.line.robots[0].linked = false;
+  desk.take(Kind::pause);
+  CHECK(desk.says("one has no link"));
+  CHECK_FALSE(desk.errands.busy());
+  desk.take(Kind::go, "one", {1, 0});
+  CHECK(desk.says("one has no link, or says nothing"));
+  desk.take(Kind::look);
+  CHECK(desk.line.said.empty());
+  desk.take(Kind::stop, "C9");
+  CHECK(desk.says("the central has no robot 'C9'"));
+  Desk same{"one"};
+  same.take(Kind::stop);
+  CHECK(same.says("2 robots are called 'one': name one by its index"));
+  same.take(Kind::stop, "0");
+  CHECK(same.line.said.size() == 1);
+}
+
+TEST_CASE("errands: one order a robot at a time, the newest") {
+  Desk desk;
+  desk.take(Kind::go, "one", {1, 0});
+  desk.take(Kind::stop);
+  CHECK_FALSE(desk.errands.busy());
+  CHECK_FALSE(desk.errands.target(0));
+  desk.line.stands(0, Progress::stopped, 0, 0);
+  desk.take(Kind::go, "one", {2, 0});
+  CHECK(desk.errands.target(0) == motion::Point{2, 0});
+  desk.errands.forget();
+  CHECK_FALSE(desk.errands.busy());
+  const auto said = desk.line.said.size();
+  desk.errands.gone(desk.line, 7);
+  CHECK(desk.line.said.size() == said);
 }
 
 }  // namespace serve_errands_test

@@ -41,4 +41,16 @@ TEST_CASE("fleet order: what is none says what would be one") {
   CHECK(fleet_order_of(R"({"robot":"A","x_m":1001,"y_m":1})").error.find("x_m '1001'") == 0);
 }
 
+TEST_CASE("fleet order: how far a place may be") {
+  for (const char* const far : {"1000", "-1000"}) {
+    INFO(far);
+    CHECK(fleet_order_of(std::string{R"({"robot":"A","x_m":0,"y_m":)"} + far + "}"));
+  }
+  for (const char* const far : {"1000.5", "-1000.5"}) {
+    INFO(far);
+    CHECK(fleet_order_of(std::string{R"({"robot":"A","x_m":0,"y_m":)"} + far + "}").error ==
+          std::string{"y_m '"} + far + "' is no place: expected metres, -1000 to 1000");
+  }
+}
+
 }  // namespace serve_fleet_order_test

@@ -230,4 +230,44 @@ TEST_CASE("serve: the law of a ring") {
   CHECK_FALSE(distance_m(-5, law));
 }
 
+TEST_CASE("serve: of several poses the first is the robot's, and the others have frames of their own") {
+  std::vector<protocol::Topic> topics(2, topic_of(protocol::Role::pose));
+  topics[1].name = "second";
+  const protocol::Catalogue catalogue{"two", 500'000, amiro::catalogue.boards, topics};
+  Scenes scenes{catalogue, {}, std::vector<std::string>{"can0"}, 0};
+  std::map<std::string, std::string> frames;
+  for (const protocol::Topic& topic : topics) {
+    const std::vector<std::uint8_t> bytes(16);
+    scenes.take(
+        client::Sample{&topic, protocol::default_priority, base::Time{-3s}, bytes}, 0,
+        [](std::uint32_t) { return true; },
+        [&](const Scenes::Message& message) {
+          const Json json = Json::parse(message.payload);
+          CHECK(json["timestamp"] == Json{{"sec", 0}, {"nsec", 0}});  // none is before 1970
+          if (json.contains("child_frame_id"))
+            frames[scenes.channels()[message.channel].topic] = json["child_frame_id"];
+        });
+  }
+  CHECK(frames == std::map<std::string, std::string>{{"/odometry/transform", "base_link"},
+                                                     {"/second/transform", "second/base_link"}});
+}
+
+TEST_CASE("serve: each sensor of a ring has the law that the spec has for it") {
+  const auto sensors = sensors_of(topic_of(protocol::Role::ring));
+  CHECK(sensors.size() == 8);
+  CHECK(law_of(topic_of(protocol::Role::ring)) != nullptr);
+  CHECK(law_of(topic_of(protocol::Role::pose)) == nullptr);
+  const protocol::Law law{{1, 0}, {100, 0}, {}, {1, -3}, {2, -1}};  // to 0.2 m: 25 counts
+  SightSensor sensor{law, 60};
+  Sight sight = sensor.take(126);  // beyond what an obstacle at the end of the range adds
+  CHECK(sight.kind == Sight::Kind::unknown);
+  CHECK(sight.counts_above == 26);
+  sight = sensor.take(1000);
+  CHECK(sight.kind == Sight::Kind::obstacle);
+  CHECK(sight.metres == Approx(std::sqrt(1.0 / 900)));
+  SightSensor other{law, 60};
+  CHECK(other.take(125).kind == Sight::Kind::nothing);  // it is its offset
+  CHECK(other.take(125 + 25).metres == Approx(0.2));
+}
+
 }  // namespace serve_scenes_test

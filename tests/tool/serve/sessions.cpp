@@ -215,4 +215,79 @@ TEST_CASE("sessions: orders for robots behind a central have a way of their own"
   CHECK(channels.all()[channels.of(State::fleet)].topic == "/ocm/fleet");
 }
 
+TEST_CASE("sessions: channels of a viewer, up to 64, each once and in JSON") {
+  Server server{true};
+  const ViewerId viewer = server.open(true);
+  server.said(viewer);
+  const auto advertise = [&](int id, const std::string& encoding = "json") {
+    server.sessions.text(viewer, R"({"op":"advertise","channels":[{"id":)" + std::to_string(id) +
+                                     R"(,"topic":"/motors","encoding":")" + encoding + R"("}]})");
+    return server.said(viewer);
+  };
+  CHECK(server.says(viewer, "x") == false);
+  CHECK(advertise(1, "protobuf").at(0).find("/motors: encoding 'protobuf': only json is taken") !=
+        std::string::npos);
+  for (int id = 1; id <= 64; ++id) CHECK(advertise(id).empty());
+  CHECK(advertise(65).at(0).find("64 channels of a viewer are the most") != std::string::npos);
+  server.sessions.text(viewer, R"({"op":"unadvertise","channelIds":[64,99]})");
+  CHECK(server.says(viewer, "channel 99 was not advertised"));
+  CHECK(advertise(63).at(0).find("channel 63 was advertised already") != std::string::npos);
+  CHECK(advertise(65).empty());
+  server.sessions.binary(viewer, "\x01\x40\0\0\0{}"s);
+  CHECK(server.says(viewer, "channel 64 was not advertised"));
+  CHECK(server.orders.take().empty());
+}
+
+TEST_CASE("sessions: the server offers a viewer what it may do") {
+  const auto can = [](bool commands, bool playback, bool token) {
+    Server server{commands, playback};
+    const std::string info = server.said(server.open(token)).at(0);
+    return std::pair{info.find("clientPublish") != std::string::npos,
+                     info.find("parameters") != std::string::npos};
+  };
+  CHECK(can(true, false, true) == std::pair{true, true});
+  CHECK(can(true, false, false) == std::pair{false, false});
+  CHECK(can(false, false, true) == std::pair{false, false});
+  CHECK(can(false, true, false) == std::pair{true, false});  // a log is wound, and has no periods
+}
+
+TEST_CASE("sessions: who sets parameters gets them back where it asks for that") {
+  Server server{true};
+  const ViewerId viewer = server.open(true);
+  server.said(viewer);
+  const std::string set = R"({"op":"setParameters","parameters":[{"name":"/gyroscope/period_ms","value":5}])";
+  server.sessions.text(viewer, set + "}");
+  CHECK(server.said(viewer).empty());
+  server.sessions.text(viewer, set + R"(,"id":"q"})");
+  const auto said = server.said(viewer);
+  REQUIRE(said.size() == 1);
+  CHECK(said[0].find(R"("op":"parameterValues")") != std::string::npos);
+  CHECK(said[0].find(R"("id":"q")") != std::string::npos);
+  const auto orders = server.orders.take();
+  REQUIRE(orders.size() == 2);
+  CHECK(orders[0].topic == "/gyroscope/period_ms");
+  CHECK(orders[0].viewer == viewer);
+}
+
+TEST_CASE("sessions: subscriptions end, and who has gone is heard no more") {
+  Server server{true};
+  const ViewerId viewer = server.open(true);
+  server.said(viewer);
+  server.sessions.text(viewer, R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":2}]})");
+  CHECK(server.viewers.wanted(2));
+  server.sessions.text(viewer, R"({"op":"unsubscribe","subscriptionIds":[1,7]})");
+  CHECK_FALSE(server.viewers.wanted(2));
+  CHECK(server.says(viewer, "there is no subscription 7"));
+  // Of states alone the bus is not asked.
+  static_cast<void>(server.orders.take());
+  server.sessions.text(viewer, R"({"op":"subscribe","subscriptions":[{"id":2,"channelId":)" +
+                                   std::to_string(server.channels.of(State::bus)) + "}]}");
+  CHECK(server.orders.take().empty());
+  server.sessions.gone(viewer);
+  CHECK(server.orders.take().size() == 1);
+  server.sessions.text(viewer, "{");
+  server.sessions.binary(viewer, "");
+  CHECK(server.said(viewer).empty());
+}
+
 }  // namespace serve_sessions_test

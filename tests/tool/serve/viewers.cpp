@@ -177,4 +177,78 @@ TEST_CASE("viewers: a producer and readers at once") {
   for (std::size_t v = 0; v < ids.size(); ++v) CHECK(got[v] + viewers.lost(ids[v]) == count);
 }
 
+TEST_CASE("viewers: the bounds of the queue are reached, and one message is kept however long it is") {
+  Viewers bytes{1, {90, 1000}};
+  const ViewerId a = bytes.add();
+  REQUIRE(bytes.subscribe(a, {1, 0}).empty());
+  for (int i = 0; i < 3; ++i) bytes.publish(0, 0, std::string(30, 'x'));
+  CHECK(bytes.size() == 90);
+  CHECK(all(bytes, a).size() == 3);
+  bytes.publish(0, 0, std::string(500, 'y'));
+  CHECK(bytes.size() == 500);
+  CHECK(all(bytes, a) == std::vector<std::string>{"1:" + std::string(500, 'y')});
+  CHECK(bytes.lost() == 0);
+  bytes.publish(0, 0, "z");
+  CHECK(bytes.size() == 1);
+}
+
+TEST_CASE("viewers: who has something to be sent") {
+  Viewers viewers{1};
+  CHECK(viewers.count() == 0);
+  const ViewerId first = viewers.add();
+  REQUIRE(viewers.subscribe(first, {1, 0}).empty());
+  viewers.publish(0, 0, "x");
+  CHECK(viewers.has_next(first));
+  const ViewerId late = viewers.add();
+  CHECK(viewers.count() == 2);
+  CHECK_FALSE(viewers.has_next(late));  // what came before it is not for it
+  viewers.tell(late, "a text");
+  CHECK(viewers.has_next(late));
+  CHECK(all(viewers, late) == std::vector<std::string>{"a text"});
+  CHECK_FALSE(viewers.has_next(late));
+  viewers.ask(late);
+  CHECK(viewers.has_next(late));
+  CHECK(viewers.take_asked(late));
+  CHECK_FALSE(viewers.has_next(late));
+  CHECK_FALSE(viewers.take_asked(late));
+  CHECK(viewers.heard(late) == 0);
+  viewers.hear(late);
+  viewers.hear(late);
+  CHECK(viewers.heard(late) == 2);
+  CHECK(viewers.heard(first) == 0);
+  // Of one that is not there nothing is known, and nothing happens.
+  viewers.remove(first);
+  viewers.remove(first);
+  CHECK(viewers.count() == 1);
+  CHECK_FALSE(viewers.has_next(first));
+  CHECK_FALSE(viewers.next(first, start));
+  CHECK(viewers.subscribe(first, {1, 0}).empty());
+  CHECK(viewers.unsubscribe(first, 1).empty());
+  CHECK_FALSE(viewers.wanted(0));
+  viewers.hear(first);
+  viewers.ask(first);
+  viewers.greet(first, {"hello"});
+  CHECK(viewers.heard(first) == 0);
+  CHECK(viewers.lost(first) == 0);
+  CHECK(viewers.add() != first);  // a number is never given twice
+}
+
+TEST_CASE(
+    "viewers: answers come before what is lost is said, that before states, and these before messages") {
+  Viewers viewers{2, {1000, 2}};
+  const ViewerId viewer = viewers.add();
+  REQUIRE(viewers.subscribe(viewer, {1, 0}).empty());
+  for (int i = 0; i < 3; ++i) viewers.publish(0, 0, std::to_string(i));
+  CHECK(viewers.next(viewer, start)->payload->substr(0, 1) == "1");  // and has lost one
+  viewers.publish_state(1, 0, "state");
+  REQUIRE(viewers.subscribe(viewer, {2, 1}).empty());
+  viewers.tell(viewer, "answer");
+  const auto said = all(viewers, viewer);
+  REQUIRE(said.size() == 4);
+  CHECK(said[0] == "answer");
+  CHECK(said[1].find("it has lost 1 messages") != std::string::npos);
+  CHECK(said[2] == "2:state");
+  CHECK(said[3] == "1:2");
+}
+
 }  // namespace serve_viewers_test

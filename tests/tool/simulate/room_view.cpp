@@ -3,10 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
-#include <fstream>
 #include <limits>
-#include <sstream>
 #include <string>
 #include <string_view>
 
@@ -15,6 +12,7 @@
 #include "ocm/base/utf8.hpp"
 
 #include "sim/amiro/world.hpp"
+#include "tests/tool/golden.hpp"
 
 namespace simulate_room_view_test {
 
@@ -22,6 +20,7 @@ using namespace ocm;
 using namespace ocm::cli;
 using namespace ocm::cli::simulate;
 using namespace std::chrono_literals;
+using test::is_as_in;
 
 std::string text_of(const top::Picture& picture) {
   std::string text;
@@ -32,17 +31,6 @@ std::string text_of(const top::Picture& picture) {
     text += whole + '\n';
   }
   return text;
-}
-
-/// A picture is as it was when it was last looked at: with OCM_WRITE_GOLDEN=1 the files are written again, to
-/// be read in review.
-void is_as_in(const std::string& name, const std::string& text) {
-  const std::string path = std::string{OCM_SOURCE_DIR} + "/tests/tool/simulate/golden/" + name;
-  if (std::getenv("OCM_WRITE_GOLDEN") != nullptr) std::ofstream{path} << text;
-  std::stringstream expected;
-  expected << std::ifstream{path}.rdbuf();
-  INFO(path);
-  CHECK(text == expected.str());
 }
 
 /// Has driven an arc of the line, with its lights on.
@@ -77,16 +65,21 @@ TEST_CASE("room view: the AMiRo in its room, as it was looked at") {
   Trails trails;
   const sim::SeenWorld world = driven(trails);
   const RoomScene scene{.bus = "sim"};
-  is_as_in("amiro_80x24.txt", text_of(draw_room(world, trails, scene, {80, 24}, true)));
-  is_as_in("amiro_80x24_ascii.txt", text_of(draw_room(world, trails, scene, {80, 24}, false)));
-  is_as_in("amiro_120x40.txt", text_of(draw_room(world, trails, scene, {120, 40}, true)));
-  is_as_in("amiro_40x20.txt", text_of(draw_room(world, trails, scene, {40, 20}, true)));
+  is_as_in("tests/tool/simulate/golden/amiro_80x24.txt",
+           text_of(draw_room(world, trails, scene, {80, 24}, true)));
+  is_as_in("tests/tool/simulate/golden/amiro_80x24_ascii.txt",
+           text_of(draw_room(world, trails, scene, {80, 24}, false)));
+  is_as_in("tests/tool/simulate/golden/amiro_120x40.txt",
+           text_of(draw_room(world, trails, scene, {120, 40}, true)));
+  is_as_in("tests/tool/simulate/golden/amiro_40x20.txt",
+           text_of(draw_room(world, trails, scene, {40, 20}, true)));
 }
 
 TEST_CASE("room view: mappers in theirs, each with its number") {
   const sim::SeenWorld world = two_mappers();
-  is_as_in("mappers_80x24.txt", text_of(draw_room(world, {}, {.speed = 10, .chosen = 0}, {80, 24}, true)));
-  is_as_in("mappers_80x24_ascii.txt",
+  is_as_in("tests/tool/simulate/golden/mappers_80x24.txt",
+           text_of(draw_room(world, {}, {.speed = 10, .chosen = 0}, {80, 24}, true)));
+  is_as_in("tests/tool/simulate/golden/mappers_80x24_ascii.txt",
            text_of(draw_room(world, {}, {.speed = 10, .chosen = 1}, {80, 24}, false)));
 }
 

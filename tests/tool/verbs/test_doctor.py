@@ -3,6 +3,7 @@
 import json
 import os
 import signal
+import struct
 
 from harness import Case, main
 
@@ -99,6 +100,53 @@ class Doctor(Case):
         self.assertEqual(doctor.returncode, 1)
         self.assertEqual([w[2] for w in self.what(json.loads(out))],
                          ["1 frame that the spec does not know", "1 frame of a wrong length"])
+
+    def hash_of_spec(self):
+        return json.loads(self.run_tool("doctor", "--json", "--listen", "1ms", "--patience", "1ms", code=1)[0])["wire_hash"]
+
+    def statuses(self, wire_hash, boards):
+        """What boards say of themselves, and a battery: lines for `send --stdin`."""
+        number = bytes.fromhex(wire_hash[2:])[::-1].hex()
+        lines = []
+        for identity, (uptime, reset, load, bus, publishing) in zip((0x71B, 0x739, 0x757), boards):
+            lines += [f"{identity:03X}#{uptime.to_bytes(3, 'little').hex()}{reset:02x}{number}", f"{identity + 1:03X}#{load:02x}{bus:02x}{publishing:02x}0000000000",
+                      f"{identity + 2:03X}#0000000000000000"]
+        battery = struct.pack("<HhHH", 4020, 116, 502, 2982).hex()
+        return "\n".join((*lines, "61E#01570000FF00", f"72B#{battery}", "72C#0000000000000000")) + "\n"
+
+    def test_a_whole_page(self):
+        """Boards that are played: how long each is up, why it started, and what it does; a battery, and the place of one."""
+        self.start_sim("--without", "di_wheel_drive,power_management,light_ring")
+        wire_hash = self.hash_of_spec()
+        for boards, rows in (
+                (((119, 1, 0, 0, 0), (7199, 4, 89, 1, 1), (172_799, 9, 255, 2, 0)),
+                 ("di_wheel_drive    119 s       power      same       0 %  active   -",
+                  "power_management  119 min     watchdog   same      89 %  warning  power_status",
+                  "light_ring        47 h 59 min  usage_fault  same         -  passive  -")),
+                (((120, 77, 5, 3, 0), (7200, 0, 5, 77, 0), (172_800, 2, 5, 0, 0)),
+                 ("di_wheel_drive    2 min       ?          same       5 %  off      -",
+                  "power_management  2 h 0 min   unknown    same       5 %  ?        -",
+                  "light_ring        2 d 0 h     pin        same       5 %  active   -"))):
+            doctor = self.start("doctor", "--listen", "1ms", "--patience", "30s")
+            self.assertIn("bus: sim", doctor.stderr.readline())
+            self.settle()
+            self.run_tool("send", "--stdin", stdin=self.statuses(wire_hash, boards))
+            lines = doctor.communicate(timeout=60)[0].splitlines()
+            self.assertEqual(lines[:7], ["BOARD             UP          RESET      SPEC      LOAD  BUS      PUBLISHES", *rows, "battery 87 %, charger plugged in",
+                                         "battery_1 4.020 V, +0.116 A, 502 mAh left, 25.1 degC", "battery_2 not inserted"])
+            self.assertEqual(lines[7], "")
+
+    def test_messages_that_are_due(self):
+        """Of a spec without statuses: what came, of what should have come three times."""
+        spec = os.path.join(os.environ["OCM_SOURCE_DIR"], "examples", "small_car.dbc")
+        self.start_sim("--without", "di_wheel_drive,power_management,light_ring")
+        for listen, code, last in (("29ms", 0, "nothing came, and nothing was due: --listen T listens longer"),
+                                   ("30ms", 1, "is the sender switched on and on this bus? `amiroctl stats` measures every period")):
+            out, _ = self.run_tool("--spec", spec, "doctor", "--listen", listen, code=code)
+            self.assertEqual(out.splitlines()[-1].strip(), last)
+        self.assertIn("warning  EngineControl: of 1 message due in 30ms nothing came of Engine\n", out)
+        out, _ = self.run_tool("--spec", spec, "doctor", "--listen", "60ms", code=1)
+        self.assertIn("warning  Brakes: of 2 messages due in 60ms nothing came of Wheels, Driving\n", out)
 
     def test_ctrl_c_ends_it(self):
         self.start_sim()

@@ -21,10 +21,16 @@ class Dongles(Case):
         return self.run_tool(verb, *arguments, "--central", self.dongle.path, "--scan", "200ms", code=code)
 
     def check_verbs(self, *options):
-        out, _ = self.tool("robots", "--json", "--listen", "500ms", *options)
-        robot = json.loads(out.splitlines()[0])
+        robot = {}
+
+        def stands():  # it has said so
+            out, _ = self.tool("robots", "--json", "--listen", "500ms", *options)
+            robot.update(json.loads(out.splitlines()[0]))
+            return robot["state"] == "idle"
+
+        waiting.until(stands, "the robot is idle")
         self.assertEqual((robot["robot"], robot["index"], robot["address"]), ("AVR", 0, "C00000000000"))
-        self.assertEqual((robot["linked"], robot["confirmed"], robot["state"]), (True, True, "idle"))
+        self.assertEqual((robot["linked"], robot["confirmed"]), (True, True))
         self.assertEqual(robot["body"]["width_cm"], 20)
         out, _ = self.tool("goto", "AVR", "90", "20", *options)
         self.assertRegex(out, r"^AVR: x -?\d+ cm, y -?\d+ cm, heading -?\d+ deg\n$")

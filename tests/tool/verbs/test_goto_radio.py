@@ -56,7 +56,9 @@ class Radio(Case):
                 self.assertNotIn("may still drive", err)
                 before = self.place()["pose"]
                 time.sleep(1)  # it would have moved by then
-                self.assertEqual(self.place()["pose"], before)
+                after = self.place()["pose"]
+                for name, now in after.items():  # 1: as its noise is rounded
+                    self.assertLessEqual(abs(now - before[name]), 1, f"{before}, {after}")
                 self.interrupt(sim)
 
     def test_the_program_that_sends_it_hangs_or_the_one_with_the_line_is_killed(self):

@@ -197,7 +197,7 @@ class Interfaces(Case):
 
     def test_analyse_is_about_the_bus_that_is_chosen(self):
         _, err = self.run_tool(*self.specs, "analyse", "bus", code=2)
-        self.assertIn("analyse: it is about one bus, and --spec names can0, can1", err)
+        self.assertIn("amiroctl: analyse bus: it is about one bus, and --spec names can0, can1", err)
         self.assertIn("--bus NAME", err)
         for bus, names, rate in (("can0", ["Engine", "Gear"], 500000), ("can1", ["Target", "Engine"], 250000)):
             out, _ = self.run_tool(*self.specs, "--bus", bus, "analyse", "bus", "--json", "--rates",
@@ -209,7 +209,7 @@ class Interfaces(Case):
         out, _ = self.run_tool(*self.specs[:2], *self.robot, "analyse", "bus", "--json", "--rates", "Gear=10ms", "Lamp=20ms", "Engine=1s")
         self.assertEqual([message["name"] for message in json.loads(out)["messages"]], ["Engine", "Gear", "Lamp"])
         _, err = self.run_tool(*self.specs, "--bus", "can7", "analyse", "bus", code=2)
-        self.assertIn("analyse: no --spec is for can7, only for can0, can1", err)
+        self.assertIn("analyse bus: no --spec is for can7, only for can0, can1", err)
         self.assertIn("--spec can7=" + self.path("car.dbc") + ", or --bus can0", err)
 
     def test_sim_plays_the_bus_that_is_chosen(self):

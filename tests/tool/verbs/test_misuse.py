@@ -731,8 +731,8 @@ goto: unexpected argument '3'
 usage: amiroctl goto ROBOT ANGLE DISTANCE [OPTION ...]
 
 goto a x 2
-goto: ANGLE x: no ANGLE
-write a whole number of deg, -360 to 360, such as 90
+goto: invalid ANGLE 'x'
+expected a whole number of deg, -360 to 360, such as 90
 
 goto a 1 2 --timeout soon
 goto: --timeout soon: not a time

@@ -187,11 +187,12 @@ class OfAnInterface(Operating):
         self.start_sim()
         operator = self.start("operate", self.write(CAR), "--json", "--bus", "sim", "--spec", f"can0={TRUCK}", "--spec", f"sim={SMALL_CAR}")
         self.assertEqual(self.event(operator)["event"], "started")
-        self.run_tool("send", "130#1B58000000000000")  # Driving.Speed of 70 km/h
+        car = self.start("set", "Driving", "Speed=70km/h", "--every", "20ms", "--spec", SMALL_CAR)
         event = self.event(operator, "switched")
         self.assertEqual((event["to"], event["conditions"]), ("alarm", ["Driving.Speed>50km/h"]))
+        self.interrupt(car)
         _, err = self.interrupt(operator)
-        self.assertIn("1 changes, 0 frames sent", err)
+        self.assertIn("1 change, 0 frames sent", err)
 
 
 if __name__ == "__main__":

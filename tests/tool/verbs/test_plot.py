@@ -226,6 +226,10 @@ class Plot(Case):
         self.assertEqual(plot.returncode, 128 + signal.SIGINT)
         self.assertTrue(os.path.exists(picture))
 
+    def test_many_points_are_a_line_alone(self):
+        for count, marked in ((200, True), (201, False)):
+            self.assertEqual("with linespoints" in self.script(self.gyro(count), "gyro.x"), marked)
+
 
 if __name__ == "__main__":
     main()

@@ -168,6 +168,13 @@ class Serve(harness.Case):
         viewer.send_frame(1, b"x" * 70_000)
         self.assertIsNone(viewer.text("none"))
         self.assertEqual(viewer.closed, 1009)
+        longest = self.viewer(port)
+        text = b'{"op":"nothing"}'
+        longest.send_frame(1, text + b" " * (65_536 - len(text)))
+        self.assertIn("'nothing' is nothing that this server does", longest.text("status")["message"])
+        longest.send_frame(1, text + b" " * (65_537 - len(text)))
+        self.assertIsNone(longest.text("none"))
+        self.assertEqual(longest.closed, 1009)
         pieces = self.viewer(port)
         pieces.send_frame(1, b"{" + b" " * 40_000, final=False)
         try:

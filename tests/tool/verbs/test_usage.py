@@ -33,6 +33,7 @@ class Usage(Case):
         self.refused(["listen", "-n", "-3"])
         self.refused([])
         self.refused(["frobnicate"])
+        self.refused(["help", "frobnicate"], "unknown verb 'frobnicate'")
         self.refused(["publish", "gyro", "--wat"])
 
     def test_help_and_version(self):
@@ -46,6 +47,8 @@ class Usage(Case):
             self.assertRegex(examples, rf"\bamiroctl (--?\S+ )*{verb}\b")
             self.assertEqual(out.count("--help"), 1)
             self.assertNotRegex(out, r"(?i)option group|are allowed")  # words of the parser, not ours
+        self.assertEqual(self.run_tool("help"), self.run_tool("--help"))
+        self.assertEqual(self.run_tool("help", "drive"), self.run_tool("drive", "--help"))
         self.assertIn("amiroctl ", self.run_tool("--version")[0])
         for verb in ("listen", "decode"):
             self.assertIn("\n\nFormat, at most one (default: pretty on a terminal, JSON lines otherwise):\n  --pretty ",

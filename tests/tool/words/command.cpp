@@ -10,6 +10,8 @@
 #include "ocm/can/text.hpp"
 #include "ocm/topics/amiro.hpp"
 
+#include "tests/tool/golden.hpp"
+
 namespace tool_words_command_test {
 
 using namespace ocm;
@@ -73,6 +75,7 @@ TEST_CASE("set points become the thesis's frames") {  // thesis 4.2.2, figure 6.
   CHECK(frames("led 5 100,50,120") == "240#643278");
   CHECK(frames("led 5 #643278") == "240#643278");
   CHECK(frames("led 1 red") == "23C#FF0000");
+  CHECK(frames("led 8 blue") == "243#0000FF");
   constexpr std::array<std::pair<std::string_view, std::string_view>, 12> colours{{{"off", "000000"},
                                                                                    {"black", "000000"},
                                                                                    {"white", "FFFFFF"},
@@ -202,7 +205,7 @@ TEST_CASE("what is wrong is said of the word where it stands") {
       {"drive 1.5", 1, "'1.5' needs a unit: x takes -1 to 1 m/s", "write 0.05m/s, 5cm/s or 50000um/s"},
       {"drive 500", 1, "'500' needs a unit", "50000um/s"},
       {"drive 0 1", 2, "'1' needs a unit: z takes -28.985507 to 28.985507 rad/s",
-       "write 0.2rad/s or -30deg/s"},
+       "write 0.2rad/s or 30deg/s"},
       {"drive 99999999999", 1, "needs a unit", ""},
       {"drive 99999km/s", 1, "out of range: x takes -1 to 1 m/s", ""},
       {"drive 2000m/s", 1, "out of range: x takes -1 to 1 m/s", ""},
@@ -234,6 +237,7 @@ TEST_CASE("what is wrong is said of the word where it stands") {
       {"send 123##0112233445566778899", 1, "length", "12, 16, 20, 24, 32, 48 and 64"},
       {"send 205#00 --priority low", 3, "in its identifier", ""},
   };
+  std::string whole;
   for (const auto& row : rows) {
     CAPTURE(row.line);
     const auto command = parse(row.line);
@@ -241,7 +245,9 @@ TEST_CASE("what is wrong is said of the word where it stands") {
     CHECK(command.error.word == row.word);
     CHECK_THAT(command.error.what, Catch::Contains(row.what));
     CHECK_THAT(command.error.remedy, Catch::Contains(row.remedy));
+    whole += std::string{row.line} + "\n    " + command.error.what + "\n    " + command.error.remedy + "\n";
   }
+  test::is_as_in("tests/tool/words/golden/command_errors.txt", whole);
 }
 
 TEST_CASE("a robot without motors and lights has neither drive nor led, but set and send") {

@@ -16,6 +16,11 @@ constexpr base::Duration duration(std::string_view text) {
 static_assert(duration("500ms") == 500ms);
 static_assert(duration("900us") == 900us);
 static_assert(duration("900\u00b5s") == 900us);
+static_assert(duration("900\u03bcs") == 900us);  // the Greek letter, which keyboards have, too
+static_assert(duration("7ns") == 7ns);
+static_assert(duration("3h") == 3h);
+static_assert(duration("-2min") == -120s);
+static_assert(duration("0.000000001s") == 1ns);
 static_assert(duration("1.5s") == 1500ms);
 static_assert(duration(".5s") == 500ms);
 static_assert(duration("1e3ms") == 1s);
@@ -54,7 +59,8 @@ TEST_CASE("units of the same kind convert exactly") {
 TEST_CASE("units per second, minute and hour convert") {
   CHECK(converted("36km/h", "m/s") == "10");
   CHECK(converted("10m/s", "km/h") == "36");
-  CHECK(converted("1km/h", "m/s") == "0.277777778");  // no end: to a billionth
+  CHECK(converted("355555555.64444412km/h", "m/s") == "98765432.1234567");  // more digits than a double has
+  CHECK(converted("1km/h", "m/s") == "0.277777778");                        // no end: to a billionth
   CHECK(converted("3krpm", "rpm") == "3000");
   CHECK(converted("3000rpm", "1/min") == "3000");
   CHECK(converted("3000U/min", "rpm") == "3000");

@@ -51,6 +51,23 @@ TEST_CASE(
   CHECK(steering.direction(20'699ms) == Direction{1, 0});
 }
 
+TEST_CASE("steering: a key that comes again sooner than a person presses twice is not held yet") {
+  Steering steering;
+  press(steering, "i", 1s);
+  press(steering, "i", 1150ms);
+  CHECK(steering.direction(1849ms) == Direction{1, 0});
+  CHECK(steering.direction(1850ms) == Direction{});
+  press(steering, "i", 3s);
+  press(steering, "i", 3151ms);
+  CHECK(steering.direction(3400ms) == Direction{1, 0});
+  CHECK(steering.direction(3401ms) == Direction{});
+  // What was held in one direction is not held in another.
+  press(steering, "i", 5s);
+  press(steering, "i", 5400ms);
+  press(steering, "j", 5500ms);
+  CHECK(steering.direction(6199ms) == Direction{0, 1});
+}
+
 TEST_CASE("steering: another direction takes over at once, and space stops") {
   Steering steering;
   press(steering, "i", 1s);
@@ -109,6 +126,9 @@ TEST_CASE("steering: speeds") {
   CHECK(speed.text() == "8cm/s");
   speed.change(100);
   CHECK(speed.steps() == KeySpeed::most_steps);
+  CHECK(speed.text() == "146cm/s");  // 14 times as fast
+  speed.change(-100);
+  CHECK(speed.text() == "0.687cm/s");
   for (const auto bad : {"", "fast", "5", "0cm/s", "-5cm/s", "1e999m/s"})
     CHECK_FALSE(KeySpeed::parse(bad).ok());
 }

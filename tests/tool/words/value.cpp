@@ -113,7 +113,7 @@ TEST_CASE("the refusal of a bare number names the units") {
   const auto turn = motors.parse({"drive", "5cm/s", "1"});
   CHECK(turn.error.word == 2);
   CHECK(turn.error.what == "'1' needs a unit: z takes -1 to 1 rad/s");
-  CHECK(turn.error.remedy == "write 0.2rad/s or -30deg/s");
+  CHECK(turn.error.remedy == "write 0.2rad/s or 30deg/s");
   const auto set = motors.parse({"set", "motors", "x=1"});
   CHECK(set.error.what == "'1' needs a unit: x takes -1 to 1 m/s");
   CHECK(set.error.remedy == "for example x=0m/s");

@@ -1,0 +1,42 @@
+// The bus that a verb sends its commands to, through the operator that runs on it.
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "cli/command/operated_bus.hpp"
+#include "cli/shared/messages.hpp"
+
+namespace ocm::cli {
+
+namespace {
+
+std::unique_ptr<transport::Bus> with_operator(std::unique_ptr<transport::Bus> bus, Session& session,
+                                              std::string_view verb) {
+  auto link = connect_operator(bus->name(), verb);
+  if (!link) fail({fmt::format("{}: {}", verb, link.error.what), link.error.remedy});
+  if (*link == nullptr) return bus;
+  const auto is_actuator = [](const protocol::Topic& topic) {
+    return !topic.is_message() && topic.kind == protocol::Kind::actuator;
+  };
+  const auto& topics = session.catalogue().topics;
+  remark(fmt::format("{}: {} {}", verb, (*link)->who(),
+                     std::any_of(topics.begin(), topics.end(), is_actuator)
+                         ? "guards the robot: set points go through it"
+                         : "watches the bus; messages do not go through it"));
+  return std::make_unique<OperatedBus>(std::move(bus), std::move(*link), session.catalogue(),
+                                       std::string{verb});
+}
+
+}  // namespace
+
+std::unique_ptr<transport::Bus> open_to_command(Session& session, std::string_view verb) {
+  return with_operator(session.open_bus(), session, verb);
+}
+
+std::unique_ptr<transport::Bus> open_to_command(Session& session, std::string_view verb,
+                                                std::string_view bus) {
+  return with_operator(Session::open_bus(bus), session, verb);
+}
+
+}  // namespace ocm::cli

@@ -1,0 +1,234 @@
+// What `publish` says of a bus before it asks a board, word for word, and what becomes of a behaviour that a
+// board was asked for.
+#include <algorithm>
+#include <string>
+#include <unistd.h>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "ocm/topics/amiro.hpp"
+
+#include "cli/command/behaviour_watch.hpp"
+#include "cli/command/bus_admission.hpp"
+#include "cli/shared/messages.hpp"
+#include "cli/words/command.hpp"
+#include "tests/tool/captured.hpp"
+#include "tests/tool/clock/played_bus.hpp"
+#include "tests/tool/golden.hpp"
+
+namespace tool_clock_admission_test {
+
+using namespace ocm;
+using namespace ocm::test;
+
+struct Comes {
+  can::Frame frame;
+  Duration first;
+  Duration every;
+};
+
+can::Frame frame(std::uint32_t id, std::initializer_list<int> bytes, can::Format format = can::Format::base) {
+  can::Frame made;
+  made.id = id;
+  made.format = format;
+  made.dlc = static_cast<std::uint8_t>(bytes.size());
+  std::copy(bytes.begin(), bytes.end(), made.data.begin());
+  return made;
+}
+
+struct Row {
+  std::vector<std::string_view> words;
+  cli::AdmissionOptions options;
+  std::vector<Comes> comes;
+  bool silent = false;  ///< no board says that it publishes nothing
+};
+
+/// What is said, sent and refused.
+std::string said(const Row& row) {
+  World world{1};
+  PlayedBus::Conditions conditions;
+  auto comes = row.comes;
+  if (!row.silent)  // boards that report that none of their topics runs
+    for (const std::uint32_t id : {0x71BU, 0x739U, 0x757U})
+      comes.push_back({frame(id, {0, 0, 0, 0, 0, 0, 0, 0}), 3ms, 50ms});
+  for (const Comes& each : comes)
+    for (Moment at = World::start + each.first; at < World::start + row.options.listen + 5ms;
+         at += each.every)
+      conditions.incoming.push_back({at, each.frame});
+  std::stable_sort(conditions.incoming.begin(), conditions.incoming.end(),
+                   [](const auto& a, const auto& b) { return a.at < b.at; });
+  PlayedBus bus{world, conditions};
+  const cli::words::CommandParser parser{amiro::catalogue};
+  const auto command = parser.parse_line(row.words);
+  REQUIRE(command.ok());
+  cli::RefusalWatch refusals{amiro::catalogue, "publish", cli::Confirm::yes};
+  std::string text = "---";
+  for (const auto word : row.words) text += fmt::format(" {}", word);
+  text += fmt::format("{}{}, {}\n", row.options.force ? ", forced" : "",
+                      row.options.explain ? ", explained" : "", row.options.listen / 1ms);
+  Captured out{STDOUT_FILENO}, err{STDERR_FILENO};
+  std::string end;
+  try {
+    cli::admit(amiro::catalogue, bus, *command, row.options, refusals);
+    // Its board refuses it: what is offered then?
+    refusals.sent(command->frames);
+    const std::uint32_t board =
+        command->answers != nullptr && command->answers->id.value >= 0x1E ? 0x73B : 0x71D;
+    const auto topic = static_cast<int>(command->frames[0].id & 0xFF);
+    for (const int count : {1, 2})
+      refusals.take({world.wall_at(world.now()), frame(board, {topic, 15, count, 0, 0, 0, 0, 0})});
+    refusals.tell();
+  } catch (const cli::Exit& exit) {
+    end = fmt::format("exit {}\n", exit.code);
+  }
+  text += out.text() + "- said\n" + err.text() + end;
+  CHECK(bus.sent().empty());
+  const bool looks = row.words[0] == "publish" && (!row.options.force || row.options.explain);
+  CHECK((world.now() - World::start >= row.options.listen) == looks);
+  return text;
+}
+
+TEST_CASE("admission: what is said of a bus before a board is asked is as it was") {
+  const cli::AdmissionOptions plain{}, explained{.force = false, .explain = true, .listen = 100ms},
+      forced{.force = true, .explain = false, .listen = 100ms},
+      both{.force = true, .explain = true, .listen = 250ms},
+      longer{.force = false, .explain = true, .listen = 500ms};
+  const can::Frame gyro = frame(0x608, {0, 0, 0, 0, 0, 0}), low = frame(0x708, {0, 0, 0, 0, 0, 0}),
+                   velocity = frame(0x602, {0, 0, 0, 0, 0, 0, 0, 0}),
+                   pose = frame(0x603, {0, 0, 0, 0, 0, 0, 0, 0}), stranger = frame(0x111, {1, 2, 3}),
+                   wide = frame(0x18FF0102, {1, 2, 3, 4, 5, 6, 7, 8}, can::Format::extended),
+                   motors = frame(0x201, {0, 0, 0, 0, 0, 0, 0, 0});
+  const Row rows[] = {
+      {{"publish", "gyro", "50ms"}, explained, {}},
+      {{"publish", "gyro", "50ms"}, explained, {}, true},
+      {{"publish", "gyro"},
+       explained,
+       {{velocity, 1ms, 50ms},
+        {pose, 2ms, 50ms},
+        {stranger, 7ms, 33ms},
+        {wide, 9ms, 500ms},
+        {motors, 11ms, 100ms}}},
+      {{"publish", "ring", "1ms", "--priority", "urgent"},
+       explained,
+       {{velocity, 1ms, 50ms}, {pose, 2ms, 50ms}, {gyro, 4ms, 50ms}}},
+      {{"publish", "ring", "1ms", "--priority", "urgent"}, plain, {{velocity, 1ms, 50ms}, {pose, 2ms, 50ms}}},
+      {{"publish", "ring", "2ms", "--priority", "urgent"}, plain, {{low, 1ms, 500us}}},
+      {{"publish", "mag", "300us"}, plain, {}},
+      {{"publish", "mag", "300us", "--priority", "low"},
+       plain,
+       {{stranger, 0ms, 200us}, {velocity, 50us, 400us}}},
+      {{"publish", "mag", "1ms"}, explained, {{stranger, 0ms, 160us}, {velocity, 50us, 400us}}},
+      {{"publish", "mag", "900us"},
+       longer,
+       {{gyro, 1ms, 120ms},
+        {frame(0x608, {1}), 7ms, 400ms},
+        {stranger, 8ms, 400ms},
+        {frame(0x111, {1, 2, 3, 4, 5}), 9ms, 400ms}}},
+      {{"publish", "mag", "1ms"}, explained, {}, true},
+      {{"publish", "mag", "900us"}, explained, {{gyro, 1ms, 50ms}}, true},
+      {{"publish", "mag", "900us"}, both, {{gyro, 1ms, 50ms}}, true},
+      {{"publish", "ring", "1ms"}, forced, {{gyro, 1ms, 50ms}}},
+      {{"publish", "ring", "12ms"}, plain, {}},
+      {{"once", "gyro"}, explained, {{velocity, 1ms, 50ms}}},
+      {{"stop", "gyro"}, explained, {}},
+      {{"publish", "power", "60s"},
+       explained,
+       {{gyro, 1ms, 10ms}, {frame(0x204, {0x01, 0x32, 0, 0}), 2ms, 20ms}}},
+  };
+  std::string text;
+  for (const Row& row : rows) text += said(row);
+  is_as_in("tests/tool/clock/golden/admission.txt", text);
+}
+
+// --- what becomes of a behaviour ---
+
+can::Frame behaviour(int active, int ended, int more = 0) {
+  const auto& topic = *amiro::catalogue.find("behaviour");
+  can::Frame made{protocol::identifier_of({&topic, 0}, topic.priority), topic.frames[0].dlc(), {}};
+  for (const auto& field : topic.frames[0].fields)
+    protocol::put(made.data, field.position,
+                  field.name == "active"  ? active
+                  : field.name == "ended" ? ended
+                                          : more);
+  return made;
+}
+
+TEST_CASE("behaviour watch: how a behaviour ended, what is left of it, and who else commanded one") {
+  World world{1};
+  const auto& topic = *amiro::catalogue.find("behaviour");
+  const auto named = [&](std::string_view field, std::string_view name) {
+    for (const auto& each : topic.frames[0].fields)
+      if (each.name == field)
+        for (const auto& value : each.values)
+          if (value.name == name) return static_cast<int>(value.raw);
+    FAIL(field << " " << name);
+    return 0;
+  };
+  const int travel = named("active", "travel"), follow = named("active", "follow");
+  std::string text;
+  const auto show = [&](const char* what, const cli::BehaviourWatch& watch) {
+    text += fmt::format(
+        "{}: heard {}, over {}, replaced {}, commanded '{}', was active {}, ended '{}', left '{}', {} ms "
+        "ago\n",
+        what, watch.heard(), watch.over(), watch.is_replaced(), watch.commanded(), watch.was_active(),
+        watch.ended(), watch.left(), watch.heard() ? (world.now() - watch.last()) / 1ms : -1);
+  };
+  const auto take = [&](cli::BehaviourWatch& watch, const can::Frame& each) {
+    world.pass(10ms);
+    watch.take({world.wall_at(world.now()), each});
+  };
+  cli::BehaviourWatch watch{amiro::catalogue, "travel", "travel"};
+  CHECK(watch.sensor().name == "behaviour");
+  show("nothing yet", watch);
+  take(watch, frame(0x608, {0, 0, 0, 0, 0, 0}));
+  show("another topic", watch);
+  take(watch, behaviour(travel, 0, 40));
+  take(watch, behaviour(0, 1, 7));
+  show("one before", watch);
+  watch.begin();
+  show("begun", watch);
+  for (int i = 0; i < 3; ++i) {
+    take(watch, behaviour(0, 2, 7));
+    show("not active", watch);
+  }
+  watch.begin();
+  take(watch, behaviour(0, 2, 7));
+  take(watch, behaviour(travel, 2, 300));
+  show("active", watch);
+  for (int i = 0; i < 4; ++i) take(watch, behaviour(travel, 2, 100));
+  show("still active", watch);
+  world.pass(50ms);
+  for (const auto& value : topic.frames[0].fields[1].values) {
+    auto ends = watch;
+    take(ends, behaviour(0, static_cast<int>(value.raw), 3));
+    show("ended", ends);
+  }
+  auto other = watch;
+  take(other, behaviour(follow, 0, 5));
+  show("another is active", other);
+  other = watch;
+  take(other, frame(0x20B, {0xA0, 0x86, 1, 0, 0, 0, 0xE8, 3}));
+  show("it is commanded again", other);
+  take(other, behaviour(0, 1, 9));
+  show("and what is said is of that", other);
+  other = watch;
+  take(other, frame(0x20B, {0, 0, 0, 0, 0, 0, 0, 0}));
+  take(other, frame(0x201, {1, 0, 0, 0, 0, 0, 0, 0}));
+  show("it is ended by another program", other);
+  other = watch;
+  take(other, frame(0x20C, {0, 0}));
+  show("the rest of another behaviour", other);
+  take(other, frame(0x201, {1, 0, 0, 0, 0, 0, 0, 0}));
+  show("the motors are commanded", other);
+  take(other, frame(0x20C, {1, 0}));
+  show("another behaviour is commanded", other);
+  is_as_in("tests/tool/clock/golden/behaviour.txt", text);
+  CHECK(&cli::behaviour_topic(amiro::catalogue, "travel", "travel") == amiro::catalogue.find("travel"));
+  const Silence silence;
+  CHECK_THROWS_AS(cli::behaviour_topic(amiro::catalogue, "behave", "odometry"), cli::Exit);
+  CHECK_THROWS_AS(cli::behaviour_topic(amiro::catalogue, "behave", "dance"), cli::Exit);
+  CHECK_THROWS_AS((cli::BehaviourWatch{amiro::catalogue, "behave", "dance"}), cli::Exit);
+}
+
+}  // namespace tool_clock_admission_test

@@ -1,0 +1,174 @@
+// Where what is shown of a bus comes from: a log that is wound, and a bus.
+#include "cli/bus_model/feed.hpp"
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "ocm/topics/amiro.hpp"
+
+#include "cli/shared/messages.hpp"
+#include "tests/tool/captured.hpp"
+#include "tests/tool/clock/played_bus.hpp"
+
+namespace tool_clock_feed_test {
+
+using namespace ocm;
+using namespace ocm::test;
+using cli::bus_model::LogFeed;
+
+class Folder {
+ public:
+  Folder() : path_(std::filesystem::temp_directory_path() / fmt::format("ocm-feed-{}", ::getpid())) {
+    std::filesystem::create_directories(path_);
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  [[nodiscard]] std::string put(const std::string& name, const std::string& text) const {
+    std::ofstream{path_ / name} << text;
+    return (path_ / name).string();
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::string lines(int count) {
+  std::string text;
+  for (int i = 0; i < count; ++i)
+    text += fmt::format("(100.{:06}) {} {:03X}#00\n", i * 1000, i % 3 == 2 ? "b" : "a", i);
+  return text;
+}
+
+TEST_CASE("log feed: frames come at their times, once each, forwards and again from the beginning") {
+  const World world{1};
+  const Folder folder;
+  LogFeed feed{folder.put("a.log", lines(600)), {}, amiro::catalogue};
+  CHECK(feed.playing().length == 599ms);
+  CHECK(feed.playing().at == 0ms);
+  CHECK_FALSE(feed.playing().ended);
+  CHECK(feed.interfaces() == std::vector<std::string>{"a", "b"});
+  std::vector<std::uint32_t> got;
+  std::string on;
+  const auto take = [&](const log::Entry& entry, const log::Interfaces& interfaces) {
+    got.push_back(entry.id);
+    on = interfaces.name(entry.interface);
+  };
+  const auto went = [&](std::size_t count) {
+    REQUIRE(got.size() == count);
+    for (std::size_t i = 0; i < count; ++i) CHECK(got[i] == i);
+  };
+  feed.go_to(0ms, take);
+  went(1);
+  feed.go_to(2ms, take);
+  went(3);
+  CHECK(on == "b");
+  CHECK(feed.now() == base::Time{100s + 2ms});
+  feed.faster(4);
+  feed.play(10ms, take);
+  went(43);
+  CHECK(feed.playing().at == 42ms);
+  CHECK(feed.is_behind(41ms));
+  CHECK_FALSE(feed.is_behind(42ms));
+  feed.go_to(598ms, take);
+  CHECK_FALSE(feed.playing().ended);
+  went(599);
+  feed.go_to(1h, take);
+  went(600);
+  CHECK(feed.playing().ended);
+  CHECK(feed.playing().at == 599ms);
+  feed.go_to(-1s, take);
+  CHECK(feed.playing().at == 0ms);
+  got.clear();
+  feed.rewind();
+  CHECK_FALSE(feed.playing().ended);
+  feed.go_to(5ms, take);
+  went(6);
+}
+
+TEST_CASE("log feed: a log out of order is as long as its last time, and one that was cut says so once") {
+  const World world{1};
+  const Folder folder;
+  const std::string path =
+      folder.put("a.log", "(100.5) a 001#\n" + lines(3) + "(103.000000) a 002#\n(101.000000) a 003#\n");
+  {
+    const Captured err{STDERR_FILENO};
+    LogFeed feed{path, "candump", amiro::catalogue};
+    CHECK(feed.playing().length == 2500ms);
+  }
+  const std::string cut = folder.put("b.log", lines(100));
+  LogFeed feed{cut, {}, amiro::catalogue};
+  static_cast<void>(folder.put("b.log", lines(40)));
+  feed.rewind();
+  const auto none = [](const log::Entry&, const log::Interfaces&) {};
+  Captured err{STDERR_FILENO};
+  feed.go_to(10ms, none);
+  feed.go_to(99ms, none);
+  feed.rewind();
+  feed.go_to(99ms, none);
+  CHECK(err.text() ==
+        fmt::format("{}: 60 of 100 frames are not there any more: was it cut, or replaced?\n", cut));
+  CHECK(feed.playing().ended);
+}
+
+TEST_CASE("log feed: what cannot be wound is refused") {
+  const World world{1};
+  const Folder folder;
+  const std::string pipe = folder.put("x", "") + ".fifo";
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  for (const auto& [path, words, code] :
+       {std::tuple{std::string{"-"}, "a log that comes through a pipe cannot be wound", 2},
+        std::tuple{pipe, "a log that comes through a pipe cannot be wound", 2},
+        std::tuple{folder.put("comment.csv", "timestamp,arbitration_id,extended,remote,error,dlc,data\n"),
+                   "comment.csv: no frame in it", 1}}) {
+    Captured err{STDERR_FILENO};
+    int left = 0;
+    try {
+      const LogFeed feed{path, {}, amiro::catalogue};
+    } catch (const cli::Exit& exit) {
+      left = exit.code;
+    }
+    const std::string said = err.text();
+    CAPTURE(path, said);
+    CHECK(left == code);
+    CHECK(said.find(words) != std::string::npos);
+  }
+}
+
+TEST_CASE("live feed: all that waits, what was lost, and that a bus is gone") {
+  World world{1};
+  PlayedBus::Conditions conditions;
+  for (int i = 0; i < 10; ++i)
+    conditions.incoming.push_back({World::start + i * 10ms, can::Frame{.id = 0x7F0, .dlc = 1}});
+  conditions.listens_to = 3;
+  conditions.gone = World::start + 1s;
+  cli::bus_model::LiveFeed feed{std::make_unique<PlayedBus>(world, conditions, "no-such-bus")};
+  CHECK(feed.name() == "no-such-bus");
+  CHECK(feed.bus().name() == "no-such-bus");
+  cli::bus_model::Models models{amiro::catalogue, 500'000};
+  world.pass(15ms);
+  CHECK(feed.pump(models) == cli::Over::time);
+  REQUIRE(models.buses().size() == 1);
+  const auto sum = [&] { return models.of("no-such-bus").summary(world.wall_at(world.now())); };
+  CHECK(sum().frames == 2);
+  CHECK(sum().lost == 0);
+  world.pass(100ms);
+  CHECK(feed.pump(models) == cli::Over::time);
+  CHECK(sum().frames == 5);
+  CHECK(sum().lost == 5);
+  CHECK(feed.pump(models) == cli::Over::time);
+  CHECK(sum().lost == 5);
+  CHECK_FALSE(sum().controller);  // no interface of the kernel's
+  world.pass(1s);
+  CHECK(feed.pump(models) == cli::Over::gone);
+}
+
+}  // namespace tool_clock_feed_test

@@ -1,0 +1,433 @@
+// Driving by a page, on a bus and a clock that are played: when set points go out, what keeps them from it,
+// and what viewers hear of it.
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/topics/amiro.hpp"
+
+#include "cli/serve/control.hpp"
+#include "cli/shared/set_points.hpp"
+#include "tests/tool/clock/played_bus.hpp"
+#include "tests/tool/clock/question.hpp"
+
+namespace tool_clock_page_drive_test {
+
+using namespace ocm;
+using namespace ocm::test;
+using namespace ocm::cli::serve;
+using Strings = std::vector<std::string>;
+
+constexpr std::uint32_t motors = 0x201, behaviour = 0x60D, refusal = 0x71D;
+constexpr const char* drives_already = "another viewer drives; stop it first, or wait";
+
+can::Frame frame(std::uint32_t id, std::initializer_list<int> bytes) {
+  can::Frame frame;
+  frame.id = id;
+  frame.dlc = static_cast<std::uint8_t>(bytes.size());
+  std::transform(bytes.begin(), bytes.end(), frame.data.begin(),
+                 [](int byte) { return static_cast<std::uint8_t>(byte); });
+  return frame;
+}
+/// What the wheels' board says: it does nothing by itself, or travels.
+can::Frame at_rest() {
+  return frame(behaviour, {0, 0, 0, 0, 0, 0, 0, 0});
+}
+can::Frame travels() {
+  return frame(behaviour, {1, 0, 0, 0, 0, 0, 0, 0});
+}
+/// Of another program.
+can::Frame moves() {
+  return frame(motors, {0x50, 0xC3, 0, 0, 0, 0, 0, 0});
+}
+can::Frame rests() {
+  return frame(motors, {0, 0, 0, 0, 0, 0, 0, 0});
+}
+
+/// A page and the bus that it drives on; times are from the beginning.
+struct Page {
+  explicit Page(PlayedBus::Conditions conditions = {})
+      : bus(world, std::move(conditions)),
+        control(
+            bus, amiro::catalogue, viewers, [this](const can::AnyFrame&) { ++shown; },
+            [this] { return obstacle; }) {}
+
+  void order(Order order) { control.carry_out(order); }
+  void drives(double x_m_s, ViewerId viewer) {
+    order({Order::Kind::publish, viewer, "/motors", "{\"x\":" + std::to_string(x_m_s) + "}"});
+  }
+  void line(std::string words, ViewerId viewer) {
+    order({Order::Kind::publish, viewer, "/ocm/command", R"({"line":")" + words + "\"}"});
+  }
+  /// As the thread that has the bus does.
+  void until(Duration time) {
+    const Moment end = World::start + time;
+    while (world.now() < end) {
+      const auto next = control.next();
+      const auto received = bus.receive(std::min(next.value_or(end), end) - world.now());
+      if (received) control.heard(*received);
+      control.advance();
+    }
+  }
+  /// Presses and holds, ten times a second.
+  void holds(double x_m_s, ViewerId viewer, Duration from, Duration to) {
+    for (Duration time = from; time < to; time += 100ms) {
+      until(time);
+      drives(x_m_s, viewer);
+    }
+  }
+  Strings told(ViewerId viewer) {
+    Strings all;
+    while (const auto message = viewers.next(viewer, base::Time{})) {
+      std::string_view text{*message->payload};
+      text.remove_prefix(text.find(R"("message":")") + 11);
+      all.emplace_back(text.substr(0, text.find('"')));
+    }
+    return all;
+  }
+  /// Times of set points of motors that move, and of those that rest.
+  std::vector<Duration> moving() {
+    return times([](const can::Frame& each) { return each.id == motors && !cli::is_rest(each); });
+  }
+  std::vector<Duration> resting() {
+    return times([](const can::Frame& each) { return each.id == motors && cli::is_rest(each); });
+  }
+  std::size_t questions() {
+    return times([](const can::Frame& each) { return each == question(); }).size();
+  }
+  template <class Is>
+  std::vector<Duration> times(Is is) {
+    std::vector<Duration> all;
+    for (const auto& each : bus.sent())
+      if (is(each.frame)) all.push_back(each.taken - World::start);
+    return all;
+  }
+  /// Of the newest frame that moves: micrometres a second.
+  std::uint32_t newest_speed() {
+    std::uint32_t speed = 0;
+    for (const auto& each : bus.sent())
+      if (each.frame.id == motors && !cli::is_rest(each.frame))
+        speed = each.frame.data[0] + 256U * each.frame.data[1] + 65536U * each.frame.data[2];
+    return speed;
+  }
+
+  World world{1};
+  PlayedBus bus;
+  Viewers viewers{1};
+  ViewerId a = viewers.add(), b = viewers.add();
+  std::size_t shown = 0;
+  std::string obstacle;
+  Control control;
+};
+
+bool is_about(Duration time, Duration expected) {
+  return time >= expected && time < expected + 1ms;
+}
+
+TEST_CASE("page drive: nothing moves before the board could have said what it does by itself") {
+  Page page;
+  page.holds(0.1, page.a, 0ms, 1s);
+  page.until(2s);
+  CHECK(page.questions() == 1);
+  const auto moving = page.moving();
+  REQUIRE(moving.size() >= 13);  // from 0.1 s on, and half a second behind the last word at 0.9 s
+  REQUIRE(moving.size() <= 14);
+  CHECK(is_about(moving[0], 100ms));
+  for (std::size_t i = 1; i < moving.size(); ++i)
+    CHECK(is_about(moving[i] - moving[i - 1] + 1ms, 100ms + 1ms - 500us));
+  const auto resting = page.resting();
+  REQUIRE(resting.size() == 1);
+  CHECK(is_about(resting[0], 1400ms));
+  const Strings silent{"the page that drove was silent for half a second: the motors rest"};
+  CHECK(page.told(page.a) == silent);
+  CHECK(page.told(page.b) == silent);
+  CHECK(page.shown == page.bus.sent().size());
+  CHECK_FALSE(page.control.next());
+}
+
+TEST_CASE("page drive: a board that says that it is at rest is not waited for longer") {
+  Page page{{.incoming = {{World::start + 30ms, at_rest()}}}};
+  page.drives(0.1, page.a);
+  page.until(50ms);
+  REQUIRE(page.moving().size() == 1);
+  CHECK(is_about(page.moving()[0], 30ms));
+  // What it said holds for 0.3 s: another drive is not asked for.
+  page.drives(0, page.a);
+  page.until(320ms);
+  page.drives(0.1, page.a);
+  page.until(325ms);
+  CHECK(page.moving().size() == 2);
+  CHECK(page.questions() == 1);
+  page.drives(0, page.a);
+  page.until(340ms);
+  page.drives(0.1, page.a);
+  page.until(345ms);
+  CHECK(page.moving().size() == 2);
+  CHECK(page.questions() == 2);
+  page.until(450ms);
+  CHECK(page.moving().size() == 3);
+  CHECK(page.told(page.a).empty());
+}
+
+TEST_CASE("page drive: while the board drives by itself, a page does not") {
+  Page page{{.incoming = {{World::start + 30ms, travels()}, {World::start + 600ms, at_rest()}}}};
+  page.drives(0.1, page.a);
+  page.until(200ms);
+  CHECK(page.moving().empty());
+  CHECK(page.told(page.a) ==
+        Strings{"di_wheel_drive drives the wheels by itself: wait for its end, or stop the robot"});
+  page.drives(0.1, page.a);  // it has just said so
+  CHECK(page.questions() == 1);
+  CHECK(page.told(page.a).size() == 1);
+  CHECK(page.told(page.b).empty());
+  page.until(601ms);
+  page.drives(0.1, page.a);
+  page.until(610ms);
+  CHECK(page.moving().size() == 1);
+}
+
+TEST_CASE("page drive: what is said while the board is asked is what counts, and one viewer is asked for") {
+  Page page;
+  page.drives(0.1, page.a);
+  page.until(20ms);
+  page.drives(0.2, page.b);
+  CHECK(page.told(page.b) == Strings{drives_already});
+  page.drives(0.3, page.a);
+  page.until(150ms);
+  CHECK(page.questions() == 1);
+  REQUIRE(page.moving().size() == 1);
+  CHECK(page.newest_speed() == 300'000);
+  page.drives(0.2, page.b);
+  CHECK(page.told(page.b) == Strings{drives_already});
+  CHECK(page.told(page.a).empty());
+}
+
+TEST_CASE("page drive: who lets go, goes away or stops all before the board was heard moves nothing") {
+  for (const int how : {0, 1, 2}) {
+    INFO(how);
+    Page page;
+    page.drives(0.1, page.a);
+    page.until(20ms);
+    page.drives(0, page.b);  // another viewer's rest is not its own
+    if (how == 0) page.drives(0, page.a);
+    if (how == 1) page.order({Order::Kind::gone, page.a});
+    if (how == 2) page.line("stop all", page.b);
+    page.until(1s);
+    CHECK(page.moving().empty());
+    CHECK(page.told(page.a).empty());
+  }
+  Page page;
+  page.drives(0.1, page.a);
+  page.until(20ms);
+  page.drives(0, page.b);
+  page.order({Order::Kind::gone, page.b});
+  page.until(150ms);
+  CHECK(page.moving().size() == 1);
+  page.order({Order::Kind::gone, page.a});
+  page.until(151ms);
+  CHECK(page.resting().size() == 2);
+  page.until(1s);
+  CHECK(page.moving().size() == 1);
+}
+
+TEST_CASE("page drive: not while another program commands the motors") {
+  Page page{{.incoming = {{World::start + 10ms, moves()}}}};
+  page.until(20ms);
+  page.drives(0.1, page.a);
+  page.until(10ms + client::listen_before_hold - 1ms);
+  page.drives(0.1, page.a);
+  CHECK(page.told(page.a) ==
+        Strings(2, "another program commands the motors: end it first, or stop the robot"));
+  CHECK(page.bus.sent().empty());
+  page.until(10ms + client::listen_before_hold + 1ms);
+  page.drives(0.1, page.a);
+  CHECK(page.questions() == 1);
+  CHECK(page.told(page.a).empty());
+}
+
+TEST_CASE("page drive: another program's stop holds") {
+  Page page{{.incoming = {{World::start + 10ms, rests()},
+                          {World::start + 250ms, rests()},
+                          {World::start + 260ms, rests()}}}};
+  page.until(20ms);
+  CHECK(page.told(page.a).empty());  // no viewer drove
+  page.holds(0.1, page.a, 20ms, 300ms);
+  page.until(320ms);
+  CHECK(page.moving().back() < 250ms);
+  REQUIRE(page.resting().size() == 1);
+  CHECK(is_about(page.resting()[0], 250ms));
+  CHECK(page.told(page.b) == Strings{"another program has stopped the robot"});
+  page.holds(0.1, page.a, 320ms, 620ms);  // it is held still
+  CHECK(page.moving().back() < 250ms);
+  CHECK(page.told(page.a).size() >= 1);
+}
+
+TEST_CASE("page drive: no set point waits behind another, and rest is tried until it leaves") {
+  Page page{{.stuck = {{World::start + 350ms, World::start + 900ms}}}};
+  page.holds(0.1, page.a, 0ms, 500ms);
+  CHECK(page.moving().size() <= 5);  // 100, 200, 300 ms, and at most two while none leaves
+  CHECK(page.moving().back() < 500ms);
+  page.drives(0, page.a);
+  page.until(2s);
+  REQUIRE(page.resting().size() == 1);
+  CHECK(page.told(page.a).empty());
+
+  // Who goes on hears why the robot does not move, once.
+  Page stuck{{.stuck = {{World::start + 350ms, World::start + 1h}}}};
+  stuck.holds(0.1, stuck.a, 0ms, 2500ms);
+  CHECK(stuck.moving().size() == 4);
+  const Strings told = stuck.told(stuck.a);
+  REQUIRE(told.size() == 1);
+  CHECK(told[0].starts_with("no set point leaves can0: no node acknowledges the frames"));
+
+  Page down{{.down = {{World::start + 350ms, World::start + 903ms}}}};
+  down.holds(0.1, down.a, 0ms, 500ms);
+  down.until(450ms);
+  CHECK(down.moving().size() == 3);
+  CHECK_FALSE(down.told(down.a).empty());
+  down.drives(0, down.a);
+  down.until(600ms);
+  CHECK(down.resting().empty());
+  CHECK(down.control.next());
+  down.until(2s);
+  REQUIRE(down.resting().size() == 1);
+  CHECK(down.resting()[0] >= 903ms);
+  CHECK(down.resting()[0] < 915ms);
+  CHECK_FALSE(down.control.next());
+}
+
+TEST_CASE("page drive: why a bus takes nothing") {
+  Page down{{.down = {{World::start, World::start + 1h}}}};
+  down.line("publish gyro 50ms", down.a);
+  CHECK(down.told(down.a) == Strings{"can0 is down; bring it up"});
+  down.drives(0.1, down.a);  // the board cannot be asked: it is said at once
+  CHECK(down.told(down.a) == Strings{"can0 is down; bring it up"});
+  CHECK(down.shown == 0);
+
+  Page full{{.room = 1, .stuck = {{World::start, World::start + 1h}}}};
+  full.line("publish gyro 50ms", full.a);
+  CHECK(full.told(full.a).empty());
+  full.line("publish odom 50ms", full.a);
+  const Strings told = full.told(full.a);
+  REQUIRE(told.size() == 1);
+  CHECK(told[0].starts_with("the bus takes no frame: no node acknowledges the frames"));
+  CHECK(full.told(full.b).empty());
+  CHECK(full.shown == 1);
+}
+
+TEST_CASE("page drive: what keeps commands back keeps no stop back") {
+  Page page{{.room = 100}};
+  page.obstacle = "an operator guards the robot";
+  page.drives(0.1, page.a);
+  page.line("publish gyro 50ms", page.a);
+  page.order({Order::Kind::parameter, page.a, "/gyroscope/period_ms", {}, 50});
+  CHECK(page.told(page.a) == Strings(3, page.obstacle));
+  CHECK(page.bus.sent().empty());
+  page.drives(0, page.a);
+  page.line("stop all", page.a);
+  CHECK(page.told(page.a).empty());
+  CHECK(page.resting().size() == 2);  // the second line stops the motors, too
+  CHECK(page.bus.sent().size() > 5);  // and each sensor's stop
+  // One that drives already goes on.
+  page.obstacle.clear();
+  page.until(1s);
+  page.drives(0.1, page.a);
+  page.until(1200ms);
+  page.obstacle = "an operator guards the robot";
+  page.drives(0.2, page.a);
+  CHECK(page.told(page.a).empty());
+  CHECK(page.newest_speed() == 200'000);
+}
+
+TEST_CASE("page drive: a stop of all ends any viewer's drive, which must say rest before the next") {
+  Page page{{.room = 100}};
+  page.holds(0.1, page.a, 0ms, 300ms);
+  page.drives(0, page.a);
+  page.until(310ms);
+  page.holds(0.1, page.a, 310ms, 600ms);
+  const auto before = page.resting().size();
+  page.line("stop all", page.b);
+  CHECK(page.resting().size() == before + 2);  // of the drive, and of the line itself
+  page.until(700ms);
+  const auto moved = page.moving().size();
+  page.drives(0.1, page.a);
+  page.until(900ms);
+  CHECK(page.moving().size() == moved);
+  CHECK(page.told(page.a) == Strings{"the drive was ended: release first, then drive again"});
+}
+
+TEST_CASE("page drive: periods of sensors, and what is none") {
+  Page page;
+  page.order({Order::Kind::parameter, page.a, "/gyroscope/period_ms", {}, 50});
+  REQUIRE(page.bus.sent().size() == 1);
+  CHECK(page.bus.sent()[0].frame == frame(0x208, {1, 50, 0, 0}));
+  page.order({Order::Kind::parameter, page.a, "/gyroscope/period_ms", {}, -1});
+  CHECK(page.told(page.a) == Strings{"/gyroscope/period_ms: -1 ms is no period: 0 stops the sensor, 50 "
+                                     "publishes it twenty times a second"});
+  page.order({Order::Kind::parameter, page.a, "/nothing/period_ms", {}, 50});
+  page.order({Order::Kind::playback, page.a, {}, "{}"});
+  page.order({Order::Kind::publish, page.a, "/gyroscope", R"({"x":1})"});
+  CHECK(page.told(page.a) == Strings{"/gyroscope: /gyroscope takes nothing: publish on the channel of an "
+                                     "actuator, or lines on /ocm/command"});
+  CHECK(page.bus.sent().size() == 1);
+}
+
+TEST_CASE("page drive: what a board refuses is said to all, by what was asked") {
+  // The board names the number 8, and a period that it cannot keep.
+  Page page{{.incoming = {{World::start + 5ms, frame(refusal, {8, 6, 1, 0, 0, 0, 0, 0})},
+                          {World::start + 20ms, frame(refusal, {8, 6, 2, 0, 0, 0, 0, 0})}}}};
+  page.until(10ms);
+  CHECK(page.told(page.a).empty());  // another program asked
+  page.line("publish gyro 50ms", page.a);
+  page.until(30ms);
+  const Strings told = page.told(page.b);
+  REQUIRE(told.size() == 1);
+  CHECK(
+      told[0].starts_with("di_wheel_drive refuses gyroscope: bad_period (a period that the board cannot "
+                          "keep); it accepts 1us to 65535s"));
+}
+
+TEST_CASE("page drive: at the end the motors rest, or it is known that they may not") {
+  Page page;
+  page.holds(0.1, page.a, 0ms, 300ms);
+  CHECK(page.control.rest());
+  CHECK(page.resting().size() == 1);
+  CHECK(page.control.rest());  // nothing is driven
+
+  Page late{{.down = {{World::start + 250ms, World::start + 600ms}}}};
+  late.holds(0.1, late.a, 0ms, 300ms);
+  late.until(300ms);
+  CHECK(late.control.rest());
+  REQUIRE(late.resting().size() == 1);
+  CHECK(late.resting()[0] >= 600ms);
+
+  Page down{{.down = {{World::start + 250ms, World::start + 1h}}}};
+  down.holds(0.1, down.a, 0ms, 300ms);
+  down.until(300ms);
+  const Moment begin = down.world.now();
+  CHECK_FALSE(down.control.rest());
+  CHECK(down.world.now() - begin >= 500ms);
+  CHECK(down.world.now() - begin < 520ms);
+}
+
+TEST_CASE("page drive: what a board said that it does holds until it says otherwise") {
+  PlayedBus::Conditions bus;
+  bus.incoming = {{World::start + 10ms, travels()}, {World::start + 2s, at_rest()}};
+  Page page{bus};
+  page.until(1s);
+  page.drives(0.1, page.a);  // it is asked, and does not answer
+  page.until(1900ms);
+  CHECK(page.questions() == 1);
+  CHECK(page.moving().empty());
+  CHECK(page.told(page.a) ==
+        Strings{"di_wheel_drive drives the wheels by itself: wait for its end, or stop the robot"});
+  page.until(2010ms);
+  page.drives(0.1, page.a);
+  CHECK(page.moving().size() == 1);
+}
+
+}  // namespace tool_clock_page_drive_test

@@ -1,0 +1,292 @@
+// The program that has a central's line, and others that join it, word for word: what they ask, what is
+// answered, and what robots hear. The central and its robots are played in virtual time.
+#include "cli/fleet/owner.hpp"
+
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <regex>
+#include <string>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+
+#include "tests/tool/golden.hpp"
+#include "tests/tool/local_client.hpp"
+#include "tests/unit/cognitive/testing/virtual_central.hpp"
+
+namespace fleet_owner_test {
+
+using namespace std::chrono_literals;
+using namespace ocm;
+using namespace ocm::test;
+using cli::LocalServer;
+using cli::fleet::Owner;
+
+constexpr host::LocalService service{"a central's line", "a program with a central's line",
+                                     host::Cause::other, false};
+
+class Bench {
+ public:
+  VirtualCentral central;
+  cognitive::Server server;
+  base::Time now{10s};
+  std::unique_ptr<Owner> owner;
+
+  Bench() {
+    folder_ = std::filesystem::temp_directory_path() / fmt::format("ocm-owner-{}", ::getpid());
+    std::filesystem::create_directories(folder_);
+    std::filesystem::permissions(folder_, std::filesystem::perms::owner_all);
+    path_ = (folder_ / "line.sock").string();
+    auto opened = LocalServer::open(path_, service);
+    REQUIRE(opened);
+    owner = std::make_unique<Owner>("map", server, std::move(*opened));
+  }
+  ~Bench() { std::filesystem::remove_all(folder_); }
+  Bench(const Bench&) = delete;
+  Bench& operator=(const Bench&) = delete;
+
+  void pass(base::Duration time) {
+    for (const base::Time end = now + time; now < end;) {
+      now += 10ms;
+      central.advance(now);
+      server.expire(now);
+      central.write(server.take());
+      server.feed(std::exchange(central.to_server, {}), now);
+      while (auto event = server.next_event())
+        if (event->kind == mapper::server::CentralEvent::Kind::failed) owner->failed(event->words);
+      owner->serve(now);
+      central.write(server.take());
+    }
+  }
+  /// What a program asks, and the answer.
+  std::string ask(const std::string& who, const std::string& text) {
+    auto& client = clients_[who];
+    if (!client) {
+      client = std::make_unique<LocalClient>(SOCK_SEQPACKET, path_);
+      client->say("hello 1 " + who);
+      note(who, "joins", answer(*client));
+    }
+    client->say(text);
+    return note(who, text, answer(*client));
+  }
+  void leaves(const std::string& who) {
+    clients_.erase(who);
+    note(who, "has left", "");
+  }
+  void own(const std::string& what, const std::optional<transport::Failure>& failure) {
+    note("map", what, failure ? failure->what + "\n" + failure->remedy : "done");
+  }
+  void known() {
+    std::string text;
+    for (const unsigned index : owner->driven_by_others()) text += fmt::format("driven {}\n", index);
+    for (unsigned index = 0; index < 3; ++index)
+      if (owner->held(index)) text += fmt::format("held {} by {}\n", index, owner->holder(index));
+    for (const auto& name : owner->at_work(now)) text += "at work " + name + "\n";
+    note("map", "knows",
+         text + fmt::format("joined {}, turned away {}", owner->joined(), owner->turned_away()));
+  }
+  /// All of it, without what differs from one run of the test to the next, and rounded where it is a float.
+  std::string text() {
+    for (const auto& robot : central.robots) {
+      text_ += "--- " + robot.name + " heard\n";
+      for (const auto& line : robot.heard) text_ += line;
+    }
+    text_ = std::regex_replace(text_, std::regex{fmt::format("process {}", ::getpid())}, "process 1");
+    return std::regex_replace(text_, std::regex{"(off_cm|off_deg)=(-?[0-9]+)[-.0-9e]*"}, "$1=$2");
+  }
+
+ private:
+  std::string answer(const LocalClient& client) {
+    for (int looks = 0; looks < 3; ++looks) {
+      owner->serve(now);
+      if (auto text = client.heard(); !text.empty()) return text;
+    }
+    return {};
+  }
+  std::string note(const std::string& who, const std::string& what, const std::string& answer) {
+    text_ +=
+        fmt::format("{:.2f} {}: {}\n", static_cast<double>(now.time_since_epoch() / 10ms) / 100, who, what);
+    if (!answer.empty()) text_ += answer + (answer.ends_with('\n') ? "" : "\n");
+    return answer;
+  }
+
+  std::filesystem::path folder_;
+  std::string path_;
+  std::map<std::string, std::unique_ptr<LocalClient>> clients_;
+  std::string text_;
+};
+
+TEST_CASE("owner: what programs on one line are answered, and robots hear, is as it was") {
+  Bench bench;
+  for (const char* const name : {"AVR", "Arduino", "Third"}) bench.central.add(name);
+  bench.central.robots[2].reachable = false;
+  const auto ask = [&](const char* who, const char* text) { static_cast<void>(bench.ask(who, text)); };
+  const auto pass = [&](base::Duration time) { bench.pass(time); };
+  ask("goto", "robots");
+  ask("goto", "scan 300");
+  ask("goto", "robots");
+  ask("robots", "robots");
+  pass(1s);
+  ask("goto", "robots");
+  for (const char* const request : {"connect 0", "connect 1", "connect 2"}) ask("goto", request);
+  pass(8s);
+  ask("robots", "robots");  // what failed is not its request
+  ask("goto", "robots");
+  ask("goto", "robots 1");
+  ask("goto", "json");
+  ask("goto", "json 1");
+  ask("goto", "jump");
+  bench.known();
+  // One drives it, another may stop it, and not send it.
+  ask("goto", "go 0 90 100");
+  ask("other", "go 0 0 10");
+  ask("other", "calibrate 0");
+  bench.own("go 0", bench.owner->go(0, {0, 10}, bench.now));
+  ask("goto", "go 0 90 120");
+  pass(50ms);
+  bench.known();
+  ask("goto", "robots");
+  ask("other", "stop 0");
+  ask("goto", "go 0 0 10");
+  pass(4s);
+  ask("other", "robots");
+  ask("goto", "go 0 -90 50");
+  pass(3s);
+  ask("goto", "robots");
+  ask("other", "go 0 0 10");  // that is over
+  pass(3s);
+  // This program's own.
+  bench.own("go 1", bench.owner->go(1, {10, 20}, bench.now));
+  ask("goto", "go 1 0 30");
+  ask("goto", "calibrate 1");
+  bench.owner->leave(1);
+  ask("goto", "go 1 0 30");
+  bench.own("calibrate 1", bench.owner->calibrate(1, false, bench.now));
+  ask("goto", "leave 1");
+  bench.own("compass 1", bench.owner->calibrate(1, true, bench.now));
+  bench.known();
+  for (int i = 0; i < 4; ++i) {
+    pass(1s);
+    ask("goto", "robots 1");
+  }
+  bench.own("stop 1", bench.owner->go(1, {}, bench.now));
+  pass(3s);
+  ask("goto", "calibrate 1");
+  ask("goto", "compass 0");
+  ask("other", "go 1 0 10");
+  pass(200ms);
+  ask("goto", "robots");
+  // Held by hand; it matters where this program explores.
+  ask("pause", "pause 0");
+  ask("pause", "ping 0");
+  ask("pause", "who 0");
+  pass(500ms);
+  ask("pause", "json");
+  bench.owner->explores();
+  ask("pause", "json");
+  bench.known();
+  ask("pause", "unpause 0");
+  ask("pause", "json");
+  // Who says nothing for 2 s, or has ended, drives no longer.
+  pass(3s);
+  ask("goto", "stop 1");
+  pass(3s);
+  ask("goto", "go 0 0 200");
+  ask("silent", "go 1 45 200");
+  bench.central.robots[0].update.x = bench.central.robots[1].update.x = -500;  // not where they should be
+  pass(1s);
+  bench.leaves("goto");
+  pass(20ms);
+  ask("robots", "robots");
+  pass(980ms);
+  ask("robots", "robots");
+  pass(20ms);
+  ask("robots", "robots");
+  bench.known();
+  pass(5s);
+  ask("robots", "robots");
+  ask("other", "go 1 0 30");
+  ask("other", "leave 1");
+  bench.leaves("other");
+  pass(1s);
+  ask("robots", "robots");
+  // A map, in pages.
+  ask("page", "map svg");
+  bench.owner->on_draw(
+      [](std::string_view form) { return form == "pgm" ? std::string{} : std::string(form) + " drawn\n"; });
+  ask("page", "map svg");
+  ask("page", "map pgm");
+  ask("page", "more 0");
+  bench.known();
+  bench.owner->end_drawing();
+  ask("page", "map svg");
+  // It is about to end.
+  bench.owner->close();
+  ask("late", "robots");
+  bench.known();
+  is_as_in("tests/tool/fleet/golden/owner.txt", bench.text());
+}
+
+TEST_CASE("owner: a large map comes in pages, each of which says how large it is") {
+  Bench bench;
+  std::string whole;
+  for (int i = 0; whole.size() < 100'000; ++i) whole += fmt::format("{} ", i);
+  bench.owner->on_draw([&](std::string_view) { return whole; });
+  std::string read, answer = bench.ask("page", "map svg");
+  int pages = 0;
+  for (;; ++pages) {
+    const std::string head = fmt::format("ok\n{}\n", whole.size());
+    REQUIRE(answer.starts_with(head));
+    CHECK(answer.size() - head.size() <= 48'000);
+    read += answer.substr(head.size());
+    if (read.size() == whole.size() || pages == 5) break;
+    whole[0] = 'x';  // it is as it was when it was asked for
+    answer = bench.ask("page", fmt::format("more {}", read.size()));
+  }
+  CHECK(pages == 2);
+  whole[0] = '0';
+  CHECK(read == whole);
+  CHECK(bench.ask("page", "more 999999") == fmt::format("ok\n{}\n", whole.size()));
+}
+
+TEST_CASE("owner: of what failed for a program that does not ask the first 16 are kept, once each") {
+  Bench bench;
+  static_cast<void>(bench.ask("a", "scan 1000"));
+  static_cast<void>(bench.ask("b", "robots"));
+  for (int i = 0; i < 20; ++i) bench.owner->failed(fmt::format("{}", i));
+  std::string expected = "ok\nwaits\n";
+  for (int i = 0; i < 16; ++i) expected += fmt::format("failed {}\n", i);
+  CHECK(bench.ask("a", "robots") == expected);
+  CHECK(bench.ask("a", "robots") == "ok\nwaits\n");
+  CHECK(bench.ask("b", "robots") == "ok\nidle\n");
+  // A central that is full says so.
+  std::string full;
+  for (int i = 0; i < 1000 && full.empty(); ++i)
+    if (const auto answer = bench.ask("a", "connect 0"); answer != "ok\n") full = answer;
+  CHECK(full == "no\nthe central has too many requests to do\nask again");
+}
+
+TEST_CASE("owner: alone it serves no other program, and knows its robots") {
+  cognitive::Server server;
+  Owner owner{"map", server, nullptr};
+  owner.serve(base::Time{1s});
+  owner.failed("x");
+  CHECK_FALSE(owner.go(5, {10, 20}, base::Time{1s}));
+  const auto robot = owner.robot(5);
+  CHECK(robot.name == "robot 5");
+  CHECK(robot.index == 5);
+  CHECK(robot.order == 1);
+  CHECK(robot.by == fmt::format("map (process {})", ::getpid()));
+  CHECK_FALSE(owner.driven_by_other(5));
+  CHECK_FALSE(owner.driven_by_other(1000));
+  CHECK(owner.holder(1000).empty());
+  CHECK(owner.at_work(base::Time{1s}).empty());
+  CHECK(owner.descriptor() == -1);
+  CHECK(owner.turned_away() == 0);
+  CHECK_FALSE(*owner.renew());
+}
+
+}  // namespace fleet_owner_test

@@ -1,0 +1,230 @@
+// What is said of mistakes in an operator file, word for word: each row is wide.operator.json with one
+// change.
+#include <string>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/topics/amiro.hpp"
+
+#include "cli/operate/operator_file.hpp"
+#include "generator/spec/spec.hpp"
+#include "tests/tool/golden.hpp"
+
+namespace operate_mistakes_test {
+
+using namespace ocm;
+using namespace ocm::test;
+namespace operate = cli::operate;
+
+struct Row {
+  const char* from;
+  const char* to;
+};
+
+constexpr Row rows[] = {
+    // members of the whole
+    {R"("name": "wide")", R"("name": "Wide")"},
+    {R"("name": "wide",)", ""},
+    {R"("each thing that a file can say, once")", R"("two\nlines")"},
+    {R"("initial": "slow",)", ""},
+    {R"("initial": "slow")", R"("initial": "slwo")"},
+    {R"("initial": "slow")", R"("initial": "somewhere_else")"},
+    {R"("fall_back": "halted",)", ""},
+    {R"("fall_back": "halted")", R"("fall_back": 3)"},
+    {R"("settle": "80ms",)", ""},
+    {R"("settle": "80ms")", R"("settle": "0ms")"},
+    {R"("settle": "80ms")", R"("settle": "60s")"},
+    {R"("settle": "80ms")", R"("settle": "60001ms")"},
+    {R"("retry": "700ms")", R"("retry": "86401s")"},
+    {R"("retry": "700ms")", R"("retry": "soon")"},
+    {R"("reaction": "5ms",)", ""},
+    {R"("handling": "1500us",)", ""},
+    {R"("handling": "1500us",)", R"("handling": "1500us", "handlings": 1,)"},
+    // others
+    {R"({"topic": "led_3", "period": "250ms"})", R"({"topic": "led_3"})"},
+    {R"({"topic": "led_3", "period": "250ms"})", R"({"topic": "led_3", "period": "0ms"})"},
+    {R"({"topic": "led_3", "period": "250ms"})", R"({"period": "250ms"})"},
+    {R"({"topic": "led_3", "period": "250ms"})", R"("led_3")"},
+    {R"({"topic": "led_3", "period": "250ms"})", R"({"topic": "led_9", "period": "250ms"})"},
+    {R"({"topic": "led_3", "period": "250ms"})", R"({"topic": "led_3", "period": "250ms", "adapt": {}})"},
+    {R"({"topic": "gyro", "period": "20ms", "priority": "high"})",
+     R"({"topic": "gyro", "priority": "highest"})"},
+    {R"({"topic": "gyro", "period": "20ms", "priority": "high"})", R"({"topic": "gyro", "period": "70s"})"},
+    // streams, and periods that follow a value
+    {R"({"topic": "accelerometer"})", R"({"topic": "motors", "period": "50ms"})"},
+    {R"({"topic": "accelerometer"})", R"({"topic": "odometry"})"},
+    {R"({"topic": "accelerometer"})", R"({"topic": "accelerometer", "period": "17us"})"},
+    {R"({"topic": "accelerometer"})", R"([])"},
+    {R"("from": "0m/s", "to": "0.2m/s")", R"("from": "0.2m/s", "to": "0m/s")"},
+    {R"("from": "0m/s", "to": "0.2m/s")", R"("from": "0m/s", "to": "0.2V")"},
+    {R"("from": "0m/s", "to": "0.2m/s")", R"("from": "0m/s")"},
+    {R"("magnitude": true)", R"("magnitude": 1)"},
+    {R"("grain": "20ms")", R"("grain": "7ms")"},
+    {R"("every": "400ms")", R"("every": "10ms")"},
+    {R"("at_from": "100ms")", R"("at_from": "80ms")"},
+    {R"("at_to": "40ms")", R"("at_to": "120ms")"},
+    {R"("field": "odometry.velocity.x", "magnitude")", R"("field": "ring.sensor_1.distance", "magnitude")"},
+    {R"("field": "odometry.velocity.x", "magnitude")", R"("field": "floor", "magnitude")"},
+    // limits
+    {R"({"field": "motors.z"})", R"({"field": "odometry.velocity.x"})"},
+    {R"({"field": "motors.z"})", R"({"field": "motors"})"},
+    {R"({"field": "motors.z"})", R"({"min": "0m/s"})"},
+    {R"({"field": "motors.z"})", R"({"field": "motors.z", "min": "1rad/s", "max": "0rad/s"})"},
+    {R"({"field": "motors.z"})", R"({"field": "motors.z", "max": "1000rad/s"})"},
+    {R"({"field": "motors.z"})", R"({"field": "motors.z", "max": "soon"})"},
+    {R"("per_second": "0.5m/s")", R"("per_second": "0m/s")"},
+    {R"("per_second": "0.5m/s")", R"("per_second": "-1m/s")"},
+    {R"("per_second": "0.5m/s")", R"("per_second": "half")"},
+    {R"("per_second": "0.5m/s")", R"("per_second": 5)"},
+    // who may command
+    {R"(["led", "behave", "travel"])", R"("led")"},
+    {R"(["led", "behave", "travel"])", R"([7])"},
+    {R"(["led", "behave", "travel"])", R"(["stop"])"},
+    {R"("commanders": [],)", R"("commanders": ["drive", "led"],)"},
+    {R"("led_2", "values": {"blue": "255"})", R"("led_2", "repeat": "1s")"},
+    {R"("commanders": [],
+      "streams")",
+     R"("commanders": 5,
+      "streams")"},
+    // set points
+    {R"({"topic": "led_2", "values": {"blue": "255"}})", R"({"topic": "ring"})"},
+    {R"({"topic": "led_2", "values": {"blue": "255"}})", R"({"topic": "led2"})"},
+    {R"({"topic": "led_2", "values": {"blue": "255"}})", R"({"topic": "led_2", "values": {"blue": "256"}})"},
+    {R"({"topic": "led_2", "values": {"blue": "255"}})", R"({"topic": "led_2", "values": {"blu": "255"}})"},
+    {R"({"topic": "led_2", "values": {"blue": "255"}})", R"({"topic": "led_2", "values": ["255"]})"},
+    {R"({"topic": "led_2", "values": {"blue": "255"}})", R"({"values": {}})"},
+    {R"({"topic": "led_2", "values": {"blue": "255"}})", R"("led_2")"},
+    {R"("values": {"speed": "0.05m/s"}, "priority": "urgent")",
+     R"("values": {"speed": "0.05"}, "priority": "fast")"},
+    {R"({"field": "home.speed", "min": "0m/s", "max": "0m/s"})",
+     R"({"field": "follow.speed", "min": "0m/s", "max": "0.04m/s"})"},
+    // configurations
+    {R"("name": "watching_only")", R"("name": "line")"},
+    {R"("name": "watching_only",)", ""},
+    {R"("streams": [{"topic": "power", "period": "2s"}])", R"("streams": {"topic": "power"})"},
+    {R"("streams": [{"topic": "power", "period": "2s"}])", R"("stream": [])"},
+    // conditions
+    {R"("ring.sensor_3>2000", "ring.sensor_5)", R"("ring.sensor_3", "ring.sensor_5)"},
+    {R"("ring.sensor_3>2000", "ring.sensor_5)", R"("ring.sensor_3>70000", "ring.sensor_5)"},
+    {R"("ring.sensor_3>2000", "ring.sensor_5)", R"("ring.sensor_9>2", "ring.sensor_5)"},
+    {R"("ring.sensor_3>2000", "ring.sensor_5)", R"("motors.x>0m/s", "ring.sensor_5)"},
+    {R"("ring.sensor_3>2000", "ring.sensor_5)", R"("floor.sensor_1>2000", "ring.sensor_5)"},
+    {R"({"where": "ring.sensor_4>3000", "hysteresis": "200"})",
+     R"({"where": "ring.sensor_4=3000", "hysteresis": "200"})"},
+    {R"({"where": "ring.sensor_4>3000", "hysteresis": "200"})",
+     R"({"where": "ring.sensor_4.distance<0.1m", "hysteresis": "0.01m"})"},
+    {R"({"where": "ring.sensor_4>3000", "hysteresis": "200"})",
+     R"({"where": "ring.sensor_4>3000", "hysteresis": "0"})"},
+    {R"({"where": "ring.sensor_4>3000", "hysteresis": "200"})",
+     R"({"where": "ring.sensor_4>3000", "above": 3})"},
+    {R"({"where": "ring.sensor_4>3000", "hysteresis": "200"})", R"({"where": 3})"},
+    {R"({"where": "ring.sensor_4>3000", "hysteresis": "200"})", R"({"hysteresis": "200"})"},
+    {R"({"where": "ring.sensor_4>3000", "hysteresis": "200"})", R"(7)"},
+    {R"({"age": "ring", "above": "300ms"})", R"({"age": "ring"})"},
+    {R"({"age": "ring", "above": "300ms"})", R"({"age": "ring", "gap": "ring", "above": "300ms"})"},
+    {R"({"age": "ring", "above": "300ms"})", R"({"age": "ring", "above": "0ms"})"},
+    {R"({"age": "ring", "above": "300ms"})", R"({"age": "rin", "above": "86401s"})"},
+    {R"({"age": "ring", "above": "300ms"})", R"({"age": "motors", "above": "1s"})"},
+    {R"({"age": "ring", "above": "300ms"})", R"({"all": []})"},
+    {R"({"age": "ring", "above": "300ms"})", R"({"any": "ring.sensor_4>3000"})"},
+    {R"({"age": "ring", "above": "300ms"})", R"({"not": "ring.sensor_4>3000", "above": "1s"})"},
+    {R"({"rate": "odometry", "below": 5, "window": "1s"})", R"({"rate": "odometry", "window": "1s"})"},
+    {R"({"rate": "odometry", "below": 5, "window": "1s"})", R"({"rate": "odometry", "below": 5})"},
+    {R"({"rate": "odometry", "below": 5, "window": "1s"})",
+     R"({"rate": "odometry", "below": 5, "above": 4, "window": "1s"})"},
+    {R"({"rate": "odometry", "below": 5, "window": "1s"})",
+     R"({"rate": "odometry", "below": -1, "window": "1s"})"},
+    {R"({"rate": "odometry", "below": 5, "window": "1s"})",
+     R"({"rate": "odometry", "below": 1000000001, "window": "61s"})"},
+    {R"("above": "72.5%")", R"("above": "100.1%")"},
+    {R"("above": "72.5%")", R"("above": "-0.1%")"},
+    {R"("above": "72.5%")", R"("above": "full")"},
+    {R"("above": "72.5%")", R"("above": 72)"},
+    {R"("above": "72.5%", "window": "500ms"})", R"("above": "72.5%", "window": "600ms"})"},
+    {R"({"bus_load": true, "above")", R"({"bus_load": false, "above")"},
+    {R"({"refusals": true, "above": 3})", R"({"refusals": 1})"},
+    {R"({"refusals": true, "above": 3})", R"({"refusals": true, "above": 1000001})"},
+    {R"({"bus_state": "off"})", R"({"bus_state": "on"})"},
+    {R"({"bus_state": "off"})", R"({"bus_state": "off", "above": 3})"},
+    // monitors
+    {R"("name": "refused", "when")", R"("name": "near", "when")"},
+    {R"("name": "refused", "when")", R"("when")"},
+    {R"({"name": "refused", "when": {"refusals": true, "above": 3}})", R"({"name": "refused"})"},
+    {R"({"name": "refused", "when": {"refusals": true, "above": 3}})", R"("refused")"},
+    {R"("for": "1500ms")", R"("for": "-1ms")"},
+    // transitions
+    {R"({"from": "slow", "to": "line", "on_request": true})", R"({"from": "slow", "to": "line"})"},
+    {R"({"from": "slow", "to": "line", "on_request": true})",
+     R"({"from": "slow", "to": "line", "on_request": false})"},
+    {R"({"from": "slow", "to": "line", "on_request": true})",
+     R"({"from": "slow", "to": "line", "on_request": true, "when": "near"})"},
+    {R"({"from": "slow", "to": "line", "on_request": true})",
+     R"({"from": "slow", "to": "slow", "on_request": true})"},
+    {R"({"from": "slow", "to": "line", "on_request": true})",
+     R"({"from": [], "to": "line", "on_request": true})"},
+    {R"({"from": "slow", "to": "line", "on_request": true})",
+     R"({"from": ["slow", "lien"], "to": "line", "on_request": true})"},
+    {R"({"from": "slow", "to": "line", "on_request": true})", R"({"from": "slow", "on_request": true})"},
+    {R"({"from": "slow", "to": "line", "on_request": true},)", ""},
+    {R"({"from": "slow", "to": "line", "on_request": true})", R"("line")"},
+    {R"("to": "halted", "when": "refused", "precedence": 3)",
+     R"("to": "halted", "when": "refuse", "precedence": 3)"},
+    {R"("to": "halted", "when": "refused", "precedence": 3)",
+     R"("to": "halted", "when": "refused", "precedence": 256)"},
+    {R"("to": "halted", "when": "refused", "precedence": 3)",
+     R"("to": "slow", "when": "refused", "precedence": 1)"},
+    {R"("to": "halted", "when": "refused", "precedence": 3)",
+     R"("to": "halted", "when": "ended", "precedence": 3)"},
+    {R"("to": "halted", "when": "refused", "precedence": 3)",
+     R"("from": "halted", "to": "watching_only", "when": "flooded", "precedence": 200)"},
+};
+
+TEST_CASE("operate: what is said of each mistake in a file is as it was") {
+  const std::string whole = text_of("tests/tool/operate/wide.operator.json");
+  std::string text;
+  for (const Row& row : rows) {
+    const auto at = whole.find(row.from);
+    INFO(row.from);
+    REQUIRE(at != std::string::npos);
+    std::string changed = whole;
+    changed.replace(at, std::string{row.from}.size(), row.to);
+    const auto loaded = operate::parse(changed, "a", amiro::catalogue, 500'000);
+    CHECK((loaded.file == nullptr) == !loaded.problems.empty());
+    text += std::string{"--- "} + row.from + "\n +- " + row.to + "\n";
+    for (const auto& problem : loaded.problems)
+      text += problem.place + ": " + problem.what + "\n    " + problem.remedy + "\n";
+  }
+  is_as_in("tests/tool/operate/golden/mistakes.txt", text);
+}
+
+TEST_CASE("operate: a file is as large as there is room for, and no larger") {
+  // Two conditions each, and `more` in the last one.
+  const auto read = [](std::size_t monitors, std::size_t more) {
+    std::string text =
+        R"({"name": "large", "initial": "all", "fall_back": "all", "settle": "40ms", "reaction": "4ms", "handling": "2ms",
+          "configurations": [{"name": "all", "streams": [{"topic": "ring"}]}], "monitors": [)";
+    for (std::size_t m = 0; m < monitors; ++m) {
+      const std::string n = std::to_string(m);
+      text += (m == 0 ? "" : ", ") + (R"({"name": "m)" + n) + R"(", "when": {"any": ["ring.sensor_1>)" + n +
+              "\", \"ring.sensor_2>" + n + "\"";
+      if (m + 1 == monitors)
+        for (std::size_t i = 0; i < more; ++i) text += ", \"ring.sensor_3>" + std::to_string(i) + "\"";
+      text += "]}}";
+    }
+    return operate::parse(text + "]}", "large", amiro::catalogue, 500'000);
+  };
+  CHECK(read(operate::room.monitors, operate::room.conditions - 2 * operate::room.monitors).file);
+  CHECK(read(3, operate::room.conditions - 6).file);
+  for (const auto& beyond :
+       {read(operate::room.monitors + 1, 0), read(3, operate::room.conditions - 6 + 1)}) {
+    REQUIRE(beyond.problems.size() == 1);
+    CHECK(beyond.problems[0].place == "large:1: /");
+    CHECK(beyond.problems[0].what == "it is too large");
+    CHECK(beyond.problems[0].remedy ==
+          "at most 64 conditions, 32 monitors, and in a configuration 32 streams, 16 set points, 16 limits "
+          "and 8 "
+          "adaptations");
+  }
+}
+
+}  // namespace operate_mistakes_test

@@ -1,0 +1,95 @@
+// What is proved of operator files, word for word: as a table, as JSON and as a picture, on a bus that is
+// fast enough and on one that is not.
+#include "cli/operate/study.hpp"
+
+#include <string>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/topics/amiro.hpp"
+
+#include "generator/spec/spec.hpp"
+#include "tests/tool/golden.hpp"
+
+namespace operate_study_test {
+
+using namespace ocm;
+using namespace ocm::test;
+namespace operate = cli::operate;
+
+std::string of(const std::vector<spec::Problem>& problems) {
+  std::string text;
+  for (const auto& problem : problems)
+    text += problem.place + ": " + problem.what + "\n  " + problem.remedy + "\n";
+  return text;
+}
+
+/// Each thing that a file can say, once: tests/tool/operate/wide.operator.json.
+const operate::OperatorFile& wide() {
+  static const auto loaded =
+      operate::parse(text_of("tests/tool/operate/wide.operator.json"), "wide", amiro::catalogue, 500'000);
+  INFO(of(loaded.problems));
+  REQUIRE(loaded.file);
+  return *loaded.file;
+}
+
+TEST_CASE("operate: what is proved of a file is shown as it was") {
+  const auto study = operate::study(wide(), 500'000);
+  CHECK(study.passes());
+  is_as_in("tests/tool/operate/golden/wide.txt", operate::to_table(study));
+  is_as_in("tests/tool/operate/golden/wide.jsonl", operate::to_json(study));
+  is_as_in("tests/tool/operate/golden/wide.dot", operate::to_dot(study));
+}
+
+TEST_CASE("operate: why a file is not in time on a slow bus is said as it was") {
+  for (const auto& [rate, name] : {std::pair{125'000, "125k"}, std::pair{30'000, "30k"}}) {
+    const auto loaded = operate::parse(text_of("tests/tool/operate/wide.operator.json"), "wide",
+                                       amiro::catalogue, static_cast<std::uint32_t>(rate));
+    REQUIRE(loaded.file);
+    const auto study = operate::study(*loaded.file, static_cast<std::uint32_t>(rate));
+    CHECK_FALSE(study.passes());
+    is_as_in(std::string{"tests/tool/operate/golden/wide_"} + name + ".txt",
+             operate::to_table(study) + "---\n" + of(study.doubts));
+  }
+}
+
+TEST_CASE("operate: the example is shown as it was") {
+  const auto loaded =
+      operate::load(std::string{OCM_SOURCE_DIR} + "/examples/guard.operator.json", amiro::catalogue, 500'000);
+  REQUIRE(loaded.file);
+  is_as_in("tests/tool/operate/golden/guard.txt", operate::to_table(operate::study(*loaded.file, 500'000)));
+}
+
+TEST_CASE("operate: a file of one configuration, and of messages that come by themselves") {
+  const auto alone = operate::parse(
+      R"({"name": "alone", "initial": "all", "fall_back": "all", "settle": "40ms", "retry": "1s", "reaction": "4ms", "handling": "2ms",
+          "configurations": [{"name": "all", "streams": [{"topic": "ring", "period": "9ms"},
+            {"topic": "magnetometer", "period": "30ms"}]}], "monitors": [{"name": "one", "when": {"bus_state": "off"}}]})",
+      "alone", amiro::catalogue, 1'000'000);
+  INFO(of(alone.problems));
+  REQUIRE(alone.file);
+  const auto study = operate::study(*alone.file, 1'000'000);
+  const auto slow = operate::study(*alone.file, 10'000);  // nothing has a bound
+  const auto car = spec::load(std::string{OCM_SOURCE_DIR} + "/examples/small_car.dbc");
+  REQUIRE(car.spec);
+  const auto messages = operate::parse(
+      R"({"name": "car", "initial": "watching", "fall_back": "alarm", "settle": "60ms", "reaction": "20ms", "handling": "1ms",
+          "configurations": [{"name": "watching", "streams": [{"topic": "Driving"}, {"topic": "Engine"}]},
+                             {"name": "alarm", "streams": [{"topic": "Engine", "period": "20ms", "priority": "low"}]}],
+          "monitors": [{"name": "fast", "when": {"all": ["Driving.Speed>50km/h", {"not": {"not": {"gap": "Engine", "above": "2s"}}}]}},
+                       {"name": "slow", "when": {"not": {"any": ["Engine.Speed>=800rpm", "Engine.Torque!=0Nm"]}}}],
+          "transitions": [{"from": "watching", "to": "alarm", "when": "fast"}, {"from": "alarm", "to": "watching", "when": "slow"}]})",
+      "car", car.spec->catalogue(), 500'000);
+  INFO(of(messages.problems));
+  REQUIRE(messages.file);
+  const auto of_car = operate::study(*messages.file, 500'000);
+  is_as_in("tests/tool/operate/golden/alone.txt",
+           operate::to_table(study) + "---\n" + of(study.doubts) + "---\n" + operate::to_dot(study));
+  is_as_in("tests/tool/operate/golden/alone_slow.txt",
+           operate::to_table(slow) + "---\n" + of(slow.doubts) + "---\n" + operate::to_json(slow));
+  is_as_in("tests/tool/operate/golden/car.txt", operate::to_table(of_car) + "---\n" + of(of_car.doubts) +
+                                                    "---\n" + operate::to_json(of_car) +
+                                                    operate::to_dot(of_car));
+}
+
+}  // namespace operate_study_test

@@ -1,0 +1,116 @@
+// Figures of a bus in all their forms.
+#include "cli/stats/report.hpp"
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "ocm/log/candump.hpp"
+#include "ocm/topics/amiro.hpp"
+
+#include "cli/shared/folding.hpp"
+#include "tests/tool/golden.hpp"
+
+namespace stats_report_test {
+
+using namespace ocm;
+using namespace ocm::cli;
+using test::is_as_in;
+
+/// A request every 100 ms, of which samples come late, once not at all, once with a time before the last;
+/// half of a sample, a frame of a wrong length, two bad requests and one that is refused; strangers of six
+/// kinds.
+std::string log_text() {
+  std::string text;
+  const auto add = [&text](int ms, const std::string& frame, const std::string& bus = "can0") {
+    text += "(" + std::to_string(1'700'000'000 + ms / 1000) + "." +
+            std::to_string(1'000'000 + ms % 1000 * 1000).substr(1) + ") " + bus + " " + frame + "\n";
+  };
+  add(0, "208#01640000");
+  for (int i = 1; i < 12; ++i)
+    if (i != 5) add(100 * i + (i % 4 == 0 ? 7 : 1), i == 9 ? "508#010203040506" : "608#010203040506");
+  add(1150, "605#00D20000");
+  add(1151, "606#F0FFFFFF");
+  add(1152, "607#01000000");
+  add(1250, "605#00D20000");
+  add(1350, "605#00D20000");
+  add(1360, "605#0000");
+  add(1370, "208#03");
+  add(1371, "208#01000000");
+  add(1372, "71D#0806010000000000");
+  add(1380, "201#50C3000000000000");
+  for (int i = 0; i < 6; ++i)
+    for (int n = 0; n <= i; ++n) add(1400 + i, "7F" + std::to_string(i) + "#00");
+  add(1410, "605#R");
+  add(1411, "123##1AABB");
+  add(1412, "18FF0001#01");
+  add(1420, "20000004#0001000000000000");
+  add(1000, "608#010203040506", "can1");
+  add(1900, "608#010203040506", "can1");
+  add(1500, "608#010203040506", "can1");
+  return text;
+}
+
+stats::Report report_of(const protocol::Catalogue& catalogue, const std::string& text,
+                        measure::BitRates rates) {
+  stats::Collector collector{catalogue, [rates](std::string_view) { return rates; }};
+  log::MemorySource source{text};
+  log::Input input{source};
+  log::CandumpReader reader{input};
+  std::array<log::Entry, 16> entries;
+  while (const std::size_t count = reader.read(entries))
+    collector.take(std::span{entries}.first(count), reader.interfaces());
+  collector.lost("can1", 3);
+  stats::Report report{catalogue.robot, "drive.log", collector.buses()};
+  report.never_came = collector.never_came(report.buses);
+  return report;
+}
+
+TEST_CASE("stats report: a table for terminals of all widths") {
+  const stats::Report report = report_of(amiro::catalogue, log_text(), {500'000, 0});
+  std::string all;
+  for (const std::size_t columns : {SIZE_MAX, std::size_t{130}, std::size_t{110}, std::size_t{90},
+                                    std::size_t{70}, std::size_t{50}, std::size_t{30}}) {
+    all += std::to_string(columns) + "\n";
+    for (const std::string& line : stats::to_table(report, {}, false, columns)) all += "|" + line + "|\n";
+  }
+  is_as_in("tests/tool/stats/golden/tables.txt", all);
+}
+
+TEST_CASE("stats report: a table's widest line is what decides what it has room for") {
+  const stats::Report report = report_of(amiro::catalogue, log_text(), {500'000, 0});
+  std::size_t lines = 0;
+  for (std::size_t columns = 200; columns > 40; --columns)
+    for (const std::string& line : stats::to_table(report, {}, false, columns)) {
+      CAPTURE(columns, line);
+      CHECK((extent(line).words <= columns ||
+             line.find(' ', line.find_first_not_of(' ')) == std::string::npos));
+      ++lines;
+    }
+  CHECK(lines > 1000);
+}
+
+TEST_CASE("stats report: colours, and the topics that are asked for") {
+  const stats::Report report = report_of(amiro::catalogue, log_text(), {500'000, 0});
+  const stats::Shown shown{amiro::catalogue.find("magnetometer"), amiro::catalogue.find("power_status")};
+  std::string all;
+  for (const std::string& line : stats::to_table(report, {}, true)) all += "|" + line + "|\n";
+  for (const std::string& line : stats::to_table(report, shown, true, 60)) all += "|" + line + "|\n";
+  all += stats::to_json(report, shown, {}) + stats::to_csv(report, shown) +
+         stats::never_came_text(report, shown) + "\n";
+  is_as_in("tests/tool/stats/golden/shown.txt", all);
+}
+
+TEST_CASE("stats report: one object, and lines, without a bit rate and with two") {
+  std::string all;
+  for (const measure::BitRates rates : {measure::BitRates{0, 0}, measure::BitRates{250'000, 2'000'000}}) {
+    const stats::Report report = report_of(amiro::catalogue, log_text(), rates);
+    for (const std::string& line : stats::to_table(report, {}, false)) all += "|" + line + "|\n";
+    all += stats::to_json(report, {}, {}) + stats::to_csv(report, {});
+  }
+  is_as_in("tests/tool/stats/golden/rates.txt", all);
+}
+
+}  // namespace stats_report_test
