@@ -47,6 +47,13 @@ void OtherCommander::refuse_if_heard() {
         "last"});
 }
 
+void OtherCommander::tell_unanswered() const {
+  if (unheard_sensor() == nullptr) return;
+  remark(
+      fmt::format("{}: {} has not answered, so it may be off; `amiroctl doctor` says which boards are there",
+                  verb_, catalogue_->board_name(behaviour_.topic())));
+}
+
 void OtherCommander::sum_up() const {
   if (meanwhile_ != 0)
     remark(fmt::format("{}: {} set point{} of another program came meanwhile", verb_, meanwhile_,

@@ -45,6 +45,9 @@ class OtherCommander {
   [[nodiscard]] const BehaviourSensor* unheard_sensor() const {
     return behaviour_.exists() && !active_ ? &behaviour_ : nullptr;
   }
+  /// Says that no board has said what it does by itself: that one may be off, or no robot there. For a
+  /// program that has asked.
+  void tell_unanswered() const;
   /// This program sends a frame: if it commands the wheels, what a board does from now on may be that.
   void send(const can::Frame& frame) {
     own_ = own_ || is_set_point(frame) || behaviour_.commanded(index_, frame) != nullptr;

@@ -44,7 +44,7 @@ bool Timeline::listen_first(base::Duration duration) {
     // Of a bus that takes nothing the command itself will say so.
     const auto taken = bus_->send(sensor->request());
     asked_ = true;
-    if (taken && *taken) return wait_for_answer(end);
+    if (taken && *taken) return answer_is_due_ = wait_for_answer(end);
   }
   return wait(end);
 }
@@ -158,6 +158,7 @@ bool Timeline::finish() {
       return true;
     }));
   tell_refusals();
+  if (answer_is_due_) other_.tell_unanswered();
   other_.sum_up();
   tell_unsent();
   return !refused_ && broadcasts_.counts().met == 0;

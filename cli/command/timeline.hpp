@@ -150,6 +150,7 @@ class Timeline {
   Clock::time_point awake_ = Clock::now();  ///< when this program looks at the clock next, at the latest
   Clock::duration stood_still_{};           ///< the longest time that it was later
   bool asked_ = false;                      ///< for the sensor of behaviours
+  bool answer_is_due_ = false;              ///< the request has left, and so long ago
   bool moving_ = false;                     ///< a set point of motors was sent, and none of rest after it
   Live live_;
   Outgoing outgoing_;
