@@ -56,7 +56,7 @@ can::Frame set_point_of(const protocol::Topic& topic, const TravelOptions& optio
     }
     fail({fmt::format("travel: {} has no field {}", topic.name, name), "is --spec that of the robot?"});
   };
-  put("distance", options.distance, "write 30cm, -0.3m or 50mm");
+  put("distance", options.distance, "write 30cm, -0.3m or 50mm; an angle is --turn 90deg");
   put("angle", options.turn, "write 90deg or -1.57rad");
   put("speed", options.speed, "write 10cm/s or 0.1m/s");
   for (std::size_t i = 0; i < fields.size(); ++i)

@@ -351,8 +351,10 @@ class CommandParser {
         std::vector<std::string_view> names;
         for (const auto& field : fields) names.push_back(field.name);
         if (index < fields.size())
-          return WordError{i, detail::quoted(word) + " is not of the form FIELD=VALUE",
-                           "write a value behind it: " + std::string{name} + "=0"};
+          return WordError{
+              i, detail::quoted(word) + " is not of the form FIELD=VALUE",
+              "write a value behind it: " + std::string{name} + "=0" +
+                  (target.role == protocol::Role::light ? "; `amiroctl led` takes colours" : "")};
         return WordError{i, std::string{target.name} + " has no field " + detail::quoted(name),
                          suggest([&] { return suggestion(name, names); })};
       }

@@ -264,7 +264,7 @@ did you mean '--speed'?
 
 travel 30
 travel: '30' needs a unit: distance takes -10 to 10 m
-write 30cm, -0.3m or 50mm
+write 30cm, -0.3m or 50mm; an angle is --turn 90deg
 
 travel 30cm 5cm
 travel: unexpected argument '5cm'

@@ -220,6 +220,7 @@ TEST_CASE("what is wrong is said of the word where it stands") {
       {"set motors", 2, "missing FIELD=VALUE", "usage: set ACTUATOR|MESSAGE [FIELD=VALUE ...]"},
       {"set motors y=1", 2, "no field 'y'", "x"},
       {"set motors x", 2, "not of the form FIELD=VALUE", "x=0"},
+      {"set led_1 red", 2, "not of the form FIELD=VALUE", "red=0; `amiroctl led` takes colours"},
       {"set led_1 gren", 2, "no field 'gren'", "did you mean 'green'?"},
       {"set motors x=1cm/s x=2cm/s", 3, "given twice", ""},
       {"set motors x=", 2, "is not a number", "x"},

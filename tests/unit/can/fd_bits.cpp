@@ -26,6 +26,8 @@ constexpr AnyFrame fd(std::uint32_t id, std::uint8_t length, std::uint8_t fill, 
   return frame;
 }
 
+static_assert(FdBits{} == FdBits{0, 0});
+
 // By hand, bit by bit. [ISO 11898-1:2015, figures of the FD frame formats]
 
 // SOF 0, identifier 10101010101, RRS 0, IDE 0, FDF 1, res 0, BRS 1: 17 bits, none stuffed. ACK, its delimiter
