@@ -277,6 +277,7 @@ TEST_CASE("what is not whole is counted by its cause") {
     CHECK(transport.take(id_of(connection_group, 1, 2), announcement(32, 30, 0xFECA), now) == Heard::nothing);
     CHECK(transport.take(bam_id, announcement(32, 30, 0x4'0000), now) == Heard::nothing);
     CHECK(counters.malformed == 6);
+    CHECK(transport.take(bam_id, announcement(32, 30, 0x3'FFFF), now) == Heard::control);  // the last group
     CHECK(transport.take(0x18FE'CA00, frame, now) == Heard::nothing);  // another group: not its business
     CHECK(counters.malformed == 6);
   }

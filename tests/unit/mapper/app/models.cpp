@@ -18,6 +18,10 @@ static_assert(arduino_robot.estimator.drive.ticks_per_turn == 2475.0F &&
               arduino_robot.motors.most_ticks_s == 1250.0F);
 static_assert(avr_robot.periods.estimator == 30ms && avr_robot.periods.movement == 20ms &&
               avr_robot.periods.tower == 200ms);
+// Tuned in the simulation: of an error of 100 ticks/s 6 % effort at once, and as much again in 75 ms.
+// [decided]
+static_assert(arduino_robot.motors.wheel_pi.pi.kp == 6e-4F && arduino_robot.motors.wheel_pi.pi.ki == 8e-3F &&
+              arduino_robot.motors.wheel_pi.starting_effort == 0.3F);
 static_assert(avr_robot.times.handshake == 1s);
 static_assert(avr_robot.times.return_after == 0s, "a robot that comes home by itself has to be asked for");
 static_assert(avr_robot.motors.kind == mapper::app::MotorKind::gated);      // [T2 §7.1, §10.2.3]
