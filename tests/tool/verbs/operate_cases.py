@@ -2,7 +2,7 @@
 
 import json
 import os
-import time
+import threading
 
 from harness import SOURCE, Case
 
@@ -68,12 +68,19 @@ class Operating(Operate):
         return operator
 
     def event(self, operator, name=None):
-        """The next event, of that name."""
-        for line in operator.stdout:
-            event = json.loads(line)
-            if name is None or event["event"] == name:
-                return event
-        self.fail(f"the operator ended with {operator.wait()}: {operator.stderr.read()}")
+        """The next event, of that name. An operator that says none within a minute is killed: what it said meanwhile is told."""
+        seen = []
+        limit = threading.Timer(60, operator.kill)
+        limit.start()
+        try:
+            for line in operator.stdout:
+                event = json.loads(line)
+                if name is None or event["event"] == name:
+                    return event
+                seen.append(line)
+        finally:
+            limit.cancel()
+        self.fail(f"no {name or 'event'} came; the operator ended with {operator.wait()}: {''.join(seen)}{operator.stderr.read()}")
 
     def raw_frames(self, *topics):
         listener = self.start("listen", "--raw", "--commands", *topics)
