@@ -15,7 +15,7 @@
 #include "cli/shared/messages.hpp"
 #include "cli/shared/output_file.hpp"
 #include "cli/shared/values.hpp"
-#include "cli/verbs/verbs.hpp"
+#include "cli/verbs/verb.hpp"
 #include "cli/words/quantity.hpp"
 #include "generator/spec/spec.hpp"
 

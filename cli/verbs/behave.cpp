@@ -17,7 +17,7 @@
 #include "cli/shared/messages.hpp"
 #include "cli/shared/set_points.hpp"
 #include "cli/shared/values.hpp"
-#include "cli/verbs/verbs.hpp"
+#include "cli/verbs/verb.hpp"
 #include "cli/words/value.hpp"
 
 namespace ocm::cli {

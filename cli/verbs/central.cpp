@@ -22,7 +22,7 @@
 #include "cli/fleet/keeper.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/values.hpp"
-#include "cli/verbs/verbs.hpp"
+#include "cli/verbs/verb.hpp"
 
 namespace ocm::cli {
 namespace {

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "cli/completion/completer.hpp"
-#include "cli/verbs/verbs.hpp"
+#include "cli/verbs/verb.hpp"
 #include "cli/words/suggestion.hpp"
 
 // Each shell asks the tool itself, by `amiroctl completion --words -- WORD ...`, so that a script never grows

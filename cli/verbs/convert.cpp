@@ -10,7 +10,7 @@
 #include "cli/logs/opened_log.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
-#include "cli/verbs/verbs.hpp"
+#include "cli/verbs/verb.hpp"
 
 namespace ocm::cli {
 namespace {

@@ -9,7 +9,7 @@
 #include "cli/logs/opened_log.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/values.hpp"
-#include "cli/verbs/verbs.hpp"
+#include "cli/verbs/verb.hpp"
 #include "cli/watch/choice.hpp"
 #include "cli/watch/display.hpp"
 

@@ -25,7 +25,7 @@
 #include "cli/shared/outgoing.hpp"
 #include "cli/shared/remedies.hpp"
 #include "cli/shared/values.hpp"
-#include "cli/verbs/verbs.hpp"
+#include "cli/verbs/verb.hpp"
 #include "cli/words/quantity.hpp"
 
 namespace ocm::cli {

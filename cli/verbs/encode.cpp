@@ -9,7 +9,7 @@
 #include "cli/logs/log_file.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
-#include "cli/verbs/verbs.hpp"
+#include "cli/verbs/verb.hpp"
 #include "cli/watch/frame_lines.hpp"
 
 namespace ocm::cli {

@@ -6,7 +6,7 @@
 
 #include "cli/shared/output_file.hpp"
 #include "cli/shared/values.hpp"
-#include "cli/verbs/verbs.hpp"
+#include "cli/verbs/verb.hpp"
 #include "cli/words/suggestion.hpp"
 #include "generator/robot_spec.hpp"
 #include "generator/spec/spec.hpp"

@@ -16,7 +16,7 @@
 #include "cli/fleet/pause_seen.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/values.hpp"
-#include "cli/verbs/verbs.hpp"
+#include "cli/verbs/verb.hpp"
 #include "cli/words/quantity.hpp"
 
 namespace ocm::cli {

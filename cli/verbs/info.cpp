@@ -9,7 +9,7 @@
 #include "cli/output/named_value.hpp"
 #include "cli/shared/fitted.hpp"
 #include "cli/shared/messages.hpp"
-#include "cli/verbs/verbs.hpp"
+#include "cli/verbs/verb.hpp"
 #include "cli/words/command.hpp"
 #include "cli/words/quantity.hpp"
 #include "cli/words/value.hpp"

@@ -9,7 +9,7 @@
 
 #include "cli/shared/fitted.hpp"
 #include "cli/shared/json.hpp"
-#include "cli/verbs/verbs.hpp"
+#include "cli/verbs/verb.hpp"
 #include "cli/words/quantity.hpp"
 
 namespace ocm::cli {

@@ -10,7 +10,7 @@
 
 #include "cli/shared/output_file.hpp"
 #include "cli/shared/usage.hpp"
-#include "cli/verbs/verbs.hpp"
+#include "cli/verbs/verb.hpp"
 #include "cli/words/suggestion.hpp"
 
 namespace ocm::cli {

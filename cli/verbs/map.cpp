@@ -11,7 +11,7 @@
 #include "cli/serve/beside.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/values.hpp"
-#include "cli/verbs/verbs.hpp"
+#include "cli/verbs/verb.hpp"
 
 namespace ocm::cli {
 namespace {

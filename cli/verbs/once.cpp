@@ -1,5 +1,5 @@
 #include "cli/command/request.hpp"
-#include "cli/verbs/verbs.hpp"
+#include "cli/verbs/verb.hpp"
 
 namespace ocm::cli {
 

@@ -17,7 +17,7 @@
 #include "cli/shared/operator_link.hpp"
 #include "cli/shared/output_file.hpp"
 #include "cli/shared/values.hpp"
-#include "cli/verbs/verbs.hpp"
+#include "cli/verbs/verb.hpp"
 
 namespace ocm::cli {
 namespace {

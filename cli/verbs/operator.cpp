@@ -7,7 +7,7 @@
 
 #include "cli/shared/buses.hpp"
 #include "cli/shared/operator_link.hpp"
-#include "cli/verbs/verbs.hpp"
+#include "cli/verbs/verb.hpp"
 
 namespace ocm::cli {
 namespace {

@@ -8,7 +8,7 @@
 #include "cli/fleet/central_line.hpp"
 #include "cli/fleet/link_watch.hpp"
 #include "cli/fleet/pause_seen.hpp"
-#include "cli/verbs/verbs.hpp"
+#include "cli/verbs/verb.hpp"
 
 namespace ocm::cli {
 namespace {

@@ -23,7 +23,7 @@
 #include "cli/shared/clock.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/output_file.hpp"
-#include "cli/verbs/verbs.hpp"
+#include "cli/verbs/verb.hpp"
 #include "cli/watch/watching.hpp"
 
 namespace ocm::cli {

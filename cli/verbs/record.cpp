@@ -22,7 +22,7 @@
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/shared/values.hpp"
-#include "cli/verbs/verbs.hpp"
+#include "cli/verbs/verb.hpp"
 #include "cli/watch/chosen_topics.hpp"
 #include "cli/words/quantity.hpp"
 

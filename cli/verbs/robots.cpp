@@ -12,7 +12,7 @@
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/json.hpp"
 #include "cli/shared/values.hpp"
-#include "cli/verbs/verbs.hpp"
+#include "cli/verbs/verb.hpp"
 
 namespace ocm::cli {
 namespace {

@@ -12,7 +12,7 @@
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/shared/outgoing.hpp"
-#include "cli/verbs/verbs.hpp"
+#include "cli/verbs/verb.hpp"
 #include "cli/watch/frame_lines.hpp"
 
 namespace ocm::cli {

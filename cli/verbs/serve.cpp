@@ -13,7 +13,7 @@
 #include "cli/serve/server.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/shared/values.hpp"
-#include "cli/verbs/verbs.hpp"
+#include "cli/verbs/verb.hpp"
 #include "cli/watch/watching.hpp"
 
 namespace ocm::cli {

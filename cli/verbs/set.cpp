@@ -5,7 +5,7 @@
 #include "cli/command/timeline.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/values.hpp"
-#include "cli/verbs/verbs.hpp"
+#include "cli/verbs/verb.hpp"
 
 namespace ocm::cli {
 

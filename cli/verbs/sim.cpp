@@ -12,7 +12,7 @@
 #include "cli/shared/values.hpp"
 #include "cli/simulate/cast.hpp"
 #include "cli/simulate/run.hpp"
-#include "cli/verbs/verbs.hpp"
+#include "cli/verbs/verb.hpp"
 #include "cli/words/command.hpp"
 
 namespace ocm::cli {

@@ -16,7 +16,7 @@
 #include "cli/shared/values.hpp"
 #include "cli/stats/assertion.hpp"
 #include "cli/stats/report.hpp"
-#include "cli/verbs/verbs.hpp"
+#include "cli/verbs/verb.hpp"
 #include "cli/watch/chosen_topics.hpp"
 #include "cli/watch/contradictions.hpp"
 #include "cli/watch/watching.hpp"

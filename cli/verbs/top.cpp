@@ -11,7 +11,7 @@
 #include "cli/logs/format.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/shared/values.hpp"
-#include "cli/verbs/verbs.hpp"
+#include "cli/verbs/verb.hpp"
 #include "cli/watch/chosen_topics.hpp"
 #include "cli/watch/watching.hpp"
 #include "cli/words/quantity.hpp"

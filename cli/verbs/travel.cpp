@@ -16,7 +16,7 @@
 #include "cli/shared/messages.hpp"
 #include "cli/shared/outgoing.hpp"
 #include "cli/shared/values.hpp"
-#include "cli/verbs/verbs.hpp"
+#include "cli/verbs/verb.hpp"
 #include "cli/words/quantity.hpp"
 #include "cli/words/value.hpp"
 

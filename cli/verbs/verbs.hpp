@@ -1,14 +1,10 @@
-/// The verbs, one file each. main.cpp lists them; this is all it knows of them.
+/// The verbs, one file each. main.cpp lists them; this is all it knows of them. It alone includes this, so
+/// that a new verb compiles no other one again.
 #pragma once
 
-#include "cli/shared/arguments.hpp"
-#include "cli/shared/headings.hpp"
-#include "cli/shared/session.hpp"
+#include "cli/verbs/verb.hpp"
 
 namespace ocm::cli {
-
-/// `exit_code` is what the verb leaves behind when it ran to its end.
-using AddVerb = void (*)(Verb app, Session& session, int& exit_code);
 
 void add_list(Verb app, Session& session, int& exit_code);
 void add_info(Verb app, Session& session, int& exit_code);

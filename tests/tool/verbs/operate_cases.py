@@ -68,7 +68,7 @@ class Operating(Operate):
         return operator
 
     def event(self, operator, name=None):
-        """The next event, of that name. An operator that says none within a minute is killed: what it said meanwhile is told."""
+        """The next event, of that name. An operator that says none within a minute is killed: what it said meanwhile is in the message."""
         seen = []
         limit = threading.Timer(60, operator.kill)
         limit.start()
