@@ -7,6 +7,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "unit/transport/netlink_answer.hpp"
+
 namespace transport_controller_state_test {
 
 using namespace ocm;
@@ -14,38 +16,15 @@ using can::ControllerState;
 using transport::ControllerNow;
 using transport::detail::read_controller;
 
-using Bytes = std::vector<std::byte>;
-
-template <class T>
-Bytes bytes_of(const T& object) {
-  const auto* begin = reinterpret_cast<const std::byte*>(&object);
-  return {begin, begin + sizeof object};
-}
-
-Bytes joined(Bytes a, const Bytes& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  a.resize((a.size() + 3) & ~std::size_t{3});
-  return a;
-}
-
-Bytes attribute(unsigned type, const Bytes& payload) {
-  rtattr header{};
-  header.rta_len = static_cast<unsigned short>(sizeof header + payload.size());
-  header.rta_type = static_cast<unsigned short>(type);
-  return joined(bytes_of(header), payload);
-}
+using namespace test::netlink;
 
 /// What the kernel answers of an interface of that hardware, with these of IFLA_INFO_DATA.
 Bytes answer(const Bytes& data, unsigned hardware = transport::can_hardware_type,
              unsigned type = RTM_NEWLINK) {
   ifinfomsg body{};
   body.ifi_type = static_cast<unsigned short>(hardware);
-  const Bytes payload =
-      joined(bytes_of(body), attribute(IFLA_LINKINFO | NLA_F_NESTED, attribute(IFLA_INFO_DATA, data)));
-  nlmsghdr header{};
-  header.nlmsg_len = static_cast<unsigned>(sizeof header + payload.size());
-  header.nlmsg_type = static_cast<unsigned short>(type);
-  return joined(bytes_of(header), payload);
+  return message(type,
+                 bytes_of(body) + attribute(IFLA_LINKINFO | NLA_F_NESTED, attribute(IFLA_INFO_DATA, data)));
 }
 
 Bytes state(std::uint32_t number) {
@@ -59,12 +38,11 @@ TEST_CASE("a controller's state and its counters, as the kernel has them") {
                                          {CAN_STATE_BUS_OFF, ControllerState::bus_off}})
     CHECK(read_controller(answer(state(number))) == ControllerNow{expected, {}});
   const can_berr_counter counters{.txerr = 128, .rxerr = 7};
-  CHECK(read_controller(answer(
-            joined(state(CAN_STATE_ERROR_PASSIVE), attribute(IFLA_CAN_BERR_COUNTER, bytes_of(counters))))) ==
+  CHECK(read_controller(
+            answer(state(CAN_STATE_ERROR_PASSIVE) + attribute(IFLA_CAN_BERR_COUNTER, bytes_of(counters)))) ==
         ControllerNow{ControllerState::passive, can::ErrorCounters{128, 7}});
   const can_berr_counter beyond{.txerr = 256, .rxerr = 300};  // bus-off: an error frame has no room for more
-  CHECK(read_controller(
-            answer(joined(state(CAN_STATE_BUS_OFF), attribute(IFLA_CAN_BERR_COUNTER, bytes_of(beyond)))))
+  CHECK(read_controller(answer(state(CAN_STATE_BUS_OFF) + attribute(IFLA_CAN_BERR_COUNTER, bytes_of(beyond))))
             ->counters == can::ErrorCounters{255, 255});
 }
 

@@ -2,50 +2,15 @@
 
 #include <catch2/catch.hpp>
 
+#include "unit/transport/netlink_answer.hpp"
+
 namespace transport_interfaces_test {
 
 using namespace ocm;
 using transport::CanInterface;
 using transport::detail::LinkDump;
 
-using Bytes = std::vector<std::byte>;
-
-template <class T>
-Bytes bytes_of(const T& object) {
-  const auto* begin = reinterpret_cast<const std::byte*>(&object);
-  return {begin, begin + sizeof object};
-}
-
-Bytes operator+(Bytes a, const Bytes& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
-
-Bytes padded(Bytes bytes) {
-  bytes.resize((bytes.size() + 3) & ~std::size_t{3});
-  return bytes;
-}
-
-Bytes attribute(unsigned type, const Bytes& payload) {
-  rtattr header{};
-  header.rta_len = static_cast<unsigned short>(sizeof header + payload.size());
-  header.rta_type = static_cast<unsigned short>(type);
-  return padded(bytes_of(header) + payload);
-}
-
-Bytes text(std::string_view words) {
-  Bytes bytes;
-  for (const char c : words) bytes.push_back(static_cast<std::byte>(c));
-  bytes.push_back(std::byte{0});
-  return bytes;
-}
-
-Bytes message(unsigned type, const Bytes& payload) {
-  nlmsghdr header{};
-  header.nlmsg_len = static_cast<unsigned>(sizeof header + payload.size());
-  header.nlmsg_type = static_cast<unsigned short>(type);
-  return padded(bytes_of(header) + payload);
-}
+using namespace test::netlink;
 
 Bytes link(unsigned hardware, int index, unsigned flags, const Bytes& attributes,
            unsigned type = RTM_NEWLINK) {

@@ -1,16 +1,8 @@
 // What SocketCan says of frames that the kernel took, refused or could not have, on a kernel that is played:
 // a full queue, an interface that goes down and one that is pulled out come at any time.
 #include <cerrno>
-#include <cstdarg>
 #include <cstring>
-#include <deque>
 #include <memory>
-#include <net/if.h>
-#include <sys/eventfd.h>
-#include <sys/ioctl.h>
-#include <sys/socket.h>
-#include <sys/syscall.h>
-#include <unistd.h>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -20,116 +12,19 @@
 
 #include "unit/base/explore.hpp"
 #include "unit/base/random.hpp"
-
-namespace transport_socketcan_send_test {
-
-/// One interface, can7, and the socket on it.
-struct Kernel {
-  int socket = -1;
-  int mtu = CANFD_MTU;
-  std::deque<int> answers{};  ///< of the next sends: 0 or errno
-  std::vector<std::vector<std::byte>> taken{};
-  int asked = 0;
-};
-
-Kernel* kernel = nullptr;
-
-bool is_played(int file) {
-  return kernel != nullptr && kernel->socket >= 0 && file == kernel->socket;
-}
-int fail(int error) {
-  errno = error;
-  return -1;
-}
-
-}  // namespace transport_socketcan_send_test
-
-using transport_socketcan_send_test::fail;
-using transport_socketcan_send_test::is_played;
-using transport_socketcan_send_test::kernel;
-
-extern "C" {
-
-int socket(int family, int type, int protocol) noexcept {
-  if (kernel == nullptr || family != PF_CAN)
-    return static_cast<int>(::syscall(SYS_socket, family, type, protocol));
-  return kernel->socket = ::eventfd(0, EFD_CLOEXEC);
-}
-
-int bind(int file, const sockaddr* address, socklen_t size) noexcept {
-  return is_played(file) ? 0 : static_cast<int>(::syscall(SYS_bind, file, address, size));
-}
-
-int setsockopt(int file, int level, int name, const void* value, socklen_t size) noexcept {
-  return is_played(file) ? 0 : static_cast<int>(::syscall(SYS_setsockopt, file, level, name, value, size));
-}
-
-int ioctl(int file, unsigned long request, ...) noexcept {
-  va_list rest;
-  va_start(rest, request);
-  void* const argument = va_arg(rest, void*);
-  va_end(rest);
-  if (!is_played(file)) return static_cast<int>(::syscall(SYS_ioctl, file, request, argument));
-  auto* const asked = static_cast<ifreq*>(argument);
-  switch (request) {
-    case SIOCGIFINDEX:
-      asked->ifr_ifindex = 7;
-      return 0;
-    case SIOCGIFHWADDR:
-      asked->ifr_hwaddr.sa_family = ocm::transport::can_hardware_type;
-      return 0;
-    case SIOCGIFFLAGS:
-      asked->ifr_flags = IFF_UP;
-      return 0;
-    case SIOCGIFMTU:
-      asked->ifr_mtu = kernel->mtu;
-      return 0;
-    default:
-      return 0;
-  }
-}
-
-ssize_t send(int file, const void* bytes, std::size_t size, int flags) {
-  if (!is_played(file)) return ::syscall(SYS_sendto, file, bytes, size, flags, nullptr, 0);
-  ++kernel->asked;
-  const int error = kernel->answers.empty() ? 0 : kernel->answers.front();
-  if (!kernel->answers.empty()) kernel->answers.pop_front();
-  if (error != 0) return fail(error);
-  const auto* const begin = static_cast<const std::byte*>(bytes);
-  kernel->taken.emplace_back(begin, begin + size);
-  return static_cast<ssize_t>(size);
-}
-
-}  // extern "C"
+#include "unit/transport/played_can.hpp"
 
 namespace transport_socketcan_send_test {
 
 using namespace ocm;
+using test::netlink::bytes_of;
 using transport::BusState;
 using transport::SocketCan;
 
-class Scene {
- public:
-  Scene() {
-    kernel = &played;
-    auto opened = SocketCan::open("can7");
-    CAPTURE(opened.error.what);
-    REQUIRE(opened);
-    bus = std::move(opened.value);
-  }
-  ~Scene() { kernel = nullptr; }
-  Scene(const Scene&) = delete;
-  Scene& operator=(const Scene&) = delete;
-
-  Kernel played;
-  std::unique_ptr<SocketCan> bus;
+struct Scene {
+  test::PlayedCan played;
+  std::unique_ptr<SocketCan> bus = played.open();
 };
-
-template <class Raw>
-std::vector<std::byte> bytes_of(const Raw& raw) {
-  const auto* const begin = reinterpret_cast<const std::byte*>(&raw);
-  return {begin, begin + sizeof raw};
-}
 
 const can::Frame classic = *can::parse_frame("605#00D2");
 const can::AnyFrame fd = *can::parse_any_frame("123##1112233445566778899AABBCC");
@@ -176,7 +71,7 @@ TEST_CASE("true is said of what the kernel took and of nothing else, whatever it
     CAPTURE(run);
     test::Random random{static_cast<unsigned>(run)};
     Scene scene;
-    std::vector<std::vector<std::byte>> taken;
+    std::vector<test::Bytes> taken;
     std::uint64_t refused = 0;
     BusState state = BusState::up;
     for (int i = 0; i < 50; ++i) {
