@@ -53,4 +53,58 @@ TEST_CASE("slcan: time stamps across minutes, hours of silence, delays, drift an
   }
 }
 
+/// Of this machine's clock.
+constexpr base::Time at(base::Duration after) {
+  return base::Time{1000s} + after;
+}
+
+TEST_CASE("slcan: the first frame was sent when it came") {
+  StampClock clock;
+  CHECK(clock.map(59'999, at(0s)) == at(0s));
+}
+
+TEST_CASE("slcan: a frame that was delayed is as far from the one before as the adapter says") {
+  StampClock clock;
+  CHECK(clock.map(1000, at(0ms)) == at(0ms));
+  CHECK(clock.map(1010, at(15ms)) == at(10ms + 3us));  // 200 ppm of 15 ms
+  CHECK(clock.map(1020, at(20ms)) == at(20ms));
+}
+
+TEST_CASE("slcan: the adapter's clock may be slower by 200 ppm, a part of the time that has passed") {
+  StampClock clock;
+  CHECK(clock.map(0, at(0s)) == at(0s));
+  CHECK(clock.map(10'000, at(10s + 1s)) == at(10s + 2'200us));
+  CHECK(clock.map(20'000, at(20s + 1s)) == at(20s + 4'200us));
+}
+
+TEST_CASE("slcan: a frame that comes sooner than any before shows that those were delayed") {
+  StampClock clock;
+  CHECK(clock.map(0, at(5ms)) == at(5ms));
+  CHECK(clock.map(100, at(102ms)) == at(102ms));
+  CHECK(clock.map(200, at(205ms)) == at(202ms + 20us + 600ns));
+}
+
+TEST_CASE("slcan: minutes of silence are those of this machine's clock, to half a minute") {
+  StampClock clock;
+  CHECK(clock.map(0, at(0s)) == at(0s));
+  CHECK(clock.map(1000, at(121s)) == at(121s));
+  CHECK(clock.map(1500, at(121s + 500ms)) == at(121s + 500ms));
+}
+
+TEST_CASE("slcan: a delay of five seconds is one, and a longer one is an adapter that has restarted") {
+  StampClock late;
+  CHECK(late.map(0, at(0s)) == at(0s));
+  CHECK(late.map(1000, at(6s)) == at(1s + 1200us));
+  StampClock restarted;
+  CHECK(restarted.map(0, at(0s)) == at(0s));
+  CHECK(restarted.map(1000, at(6s + 2ms)) == at(6s + 2ms));
+  CHECK(restarted.map(1500, at(6s + 502ms)) == at(6s + 502ms));
+}
+
+TEST_CASE("slcan: an arrival before the one before is one at the same time") {
+  StampClock clock;
+  CHECK(clock.map(0, at(1s)) == at(1s));
+  CHECK(clock.map(10, at(0s)) == at(0s));
+}
+
 }  // namespace transport_slcan_stamps_test
