@@ -142,9 +142,11 @@ class Slcan final : public Bus {
     if (!tracks() && out_.empty()) return {};
     const auto asked = [](const UnderWay& each) { return !each.status; };
     const auto waiting = std::count_if(under_way_.begin(), under_way_.end(), asked);
+    // A frame that the line has taken in part is under way, where answers are awaited.
+    const bool in_part = !tracks() && !out_.empty();
     return {.known = true,
-            .pending = static_cast<std::uint64_t>(waiting) + again_.size() + never_answered_ +
-                       (out_.empty() ? 0U : 1U)};
+            .pending =
+                static_cast<std::uint64_t>(waiting) + again_.size() + never_answered_ + (in_part ? 1U : 0U)};
   }
 
   [[nodiscard]] int descriptor() const override { return port_ ? port_.descriptor() : socket_.get(); }

@@ -524,6 +524,19 @@ TEST_CASE("slcan line: a bare CR answers a frame, too") {
   CHECK(scene.bus->adapter_counters().strays == 0);
 }
 
+TEST_CASE("slcan line: a frame that the line has taken in part is pending once") {
+  Scene scene{without("t")};
+  scene.begin(quiet());
+  scene.line.room = 3;
+  CHECK(*scene.bus->send(frame("100#01")));
+  CHECK(scene.bus->delivery().pending == 1);
+  scene.line.room = SIZE_MAX;
+  CHECK(scene.bus->delivery().pending == 1);
+  CHECK(scene.line.heard == "t100101\r");
+  scene.line.say("z\r");
+  CHECK(scene.bus->delivery().pending == 0);
+}
+
 TEST_CASE("slcan line: of an adapter that never answers what the line has not taken is pending") {
   Scene scene{{}};
   scene.begin();
