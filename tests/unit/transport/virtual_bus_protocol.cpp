@@ -205,4 +205,56 @@ TEST_CASE("every reason has words of its own") {
   CHECK(vb::describe({.reason = static_cast<vb::Reason>(99)}) == "reason 99");
 }
 
+TEST_CASE("what a client did is said in words, with its number") {
+  const auto words = [](vb::Reason reason) { return vb::describe({.reason = reason, .detail = 200}); };
+  using vb::Reason;
+  CHECK(words(Reason::leaving) == "it left");
+  CHECK(words(Reason::ended) == "the simulator was ended");
+  CHECK(words(Reason::full) == "the simulator has no file descriptor left for it");
+  CHECK(words(Reason::other_user) == "it belongs to another user (uid 200)");
+  CHECK(words(Reason::bad_version) == "it speaks another version (200) of the virtual bus's protocol");
+  CHECK(words(Reason::no_hello) == "it began with a record of type 200 and not with a greeting");
+  CHECK(words(Reason::bad_size) ==
+        "it sent a message of 200 bytes; records have 32, and at most 128 go together");
+  CHECK(words(Reason::unknown_record) == "it sent a record of unknown type 200");
+  CHECK(words(Reason::bad_format) == "it sent a frame of format 200, which is none for the wire");
+  CHECK(words(Reason::bad_identifier) ==
+        "it sent a frame with identifier 0x000000C8, too wide for its format");
+  CHECK(words(Reason::no_credit) == "it sent more frames than its transmit queue has room for");
+  CHECK(words(Reason::bad_filters) == "it sent filters that it had not announced, or more than 512 (200)");
+  CHECK(words(Reason::bad_fd_length) ==
+        "it sent a CAN FD frame of 200 bytes, a length that such frames do not have");
+  CHECK(words(Reason::bad_fd_flags) == "it sent a CAN FD frame with flags 200");
+  CHECK(words(Reason::torn_fd_frame) == "it sent a part of a CAN FD frame alone (a record of type 200)");
+}
+
+TEST_CASE("a CAN FD frame that is refused says its reason, and the number that is wrong") {
+  const auto refused = [](const vb::FdFrameRecord& record) {
+    vb::FdAssembly assembly;
+    return assembly.take(vb::to_record(record)).error;
+  };
+  CHECK(refused({.format = 2, .flags = 4}) == vb::Goodbye{.reason = vb::Reason::bad_format, .detail = 2});
+  CHECK(refused({.length = 9, .flags = 4}) == vb::Goodbye{.reason = vb::Reason::bad_fd_length, .detail = 9});
+  CHECK(refused({.flags = 12}) == vb::Goodbye{.reason = vb::Reason::bad_fd_flags, .detail = 12});
+  CHECK(refused({.flags = 3}) == vb::Goodbye{.reason = vb::Reason::bad_fd_flags, .detail = 3});
+  CHECK(refused({.flags = 4, .id = 0x801}) ==
+        vb::Goodbye{.reason = vb::Reason::bad_identifier, .detail = 0x801});
+  CHECK(refused({.format = 1, .length = 12, .flags = 7, .id = 0x1FFF'FFFF}) == vb::Goodbye{});
+}
+
+TEST_CASE("the rest of a CAN FD frame lies behind what was there, record by record") {
+  vb::FdFrameRecord first{.length = 48, .flags = 4, .id = 2};
+  for (std::size_t i = 0; i < 16; ++i) first.data[i] = static_cast<std::uint8_t>(1 + i);
+  vb::FdDataRecord second;
+  for (std::size_t i = 0; i < 24; ++i) second.data[i] = static_cast<std::uint8_t>(17 + i);
+  vb::FdDataRecord third;
+  for (std::size_t i = 0; i < 24; ++i) third.data[i] = static_cast<std::uint8_t>(41 + i);
+  vb::FdAssembly assembly;
+  CHECK_FALSE(*assembly.take(vb::to_record(first)));
+  CHECK_FALSE(*assembly.take(vb::to_record(second)));
+  CHECK(*assembly.take(vb::to_record(third)));
+  for (std::size_t i = 0; i < 48; ++i) CHECK(assembly.frame().data[i] == i + 1);
+  CHECK(assembly.frame().data[48] == 0);  // the third record has more
+}
+
 }  // namespace transport_virtual_bus_protocol_test
