@@ -130,6 +130,7 @@ struct PlayedCan {
     for (; filled < count && !queue.empty(); ++filled) {
       const Arrival& arrival = queue.front();
       msghdr& header = messages[filled].msg_hdr;
+      if (header.msg_iovlen != 1) return failed(EMSGSIZE);
       std::memcpy(header.msg_iov[0].iov_base, arrival.frame.data(),
                   std::min(header.msg_iov[0].iov_len, arrival.frame.size()));
       messages[filled].msg_len = static_cast<unsigned>(arrival.frame.size());

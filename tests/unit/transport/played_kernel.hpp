@@ -28,6 +28,7 @@
 #include <sys/file.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <termios.h>
 #include <time.h>
@@ -72,8 +73,10 @@ class PlayedKernel {
     return kernel != nullptr && kernel->*call ? &(kernel->*call) : nullptr;
   }
   /// The kernel, where the wait for this file is played.
-  static PlayedKernel* waiting(pollfd* entries) {
-    return current() != nullptr && played(entries->fd, &PlayedKernel::ready) != nullptr ? current() : nullptr;
+  static PlayedKernel* waiting(pollfd* entries, nfds_t count) {
+    if (current() == nullptr || played(entries->fd, &PlayedKernel::ready) == nullptr) return nullptr;
+    if (count != 1) std::abort();  // a transport has one file
+    return current();
   }
 
   std::vector<int> files;
@@ -83,9 +86,10 @@ class PlayedKernel {
   std::function<int(const char* path)> openat;  ///< what the C++ library opens folders with
   std::function<int()> posix_openpt;
   std::function<int(int file, int what)> flock;
-  std::function<void()> usleep;
+  std::function<void(useconds_t time)> usleep;
   std::function<int()> symlink;
 
+  std::function<int(int file, struct stat* status)> fstat;
   std::function<int(int file, const sockaddr* address)> bind;
   std::function<int(int file, int level, int name, const void* value, socklen_t size)> setsockopt;
   std::function<int(int file, int level, int name, void* value, socklen_t* size)> getsockopt;
@@ -215,11 +219,21 @@ int symlink(const char* target, const char* link) noexcept {
 
 int usleep(useconds_t time) {
   if (const auto* const call = ocm::test::PlayedKernel::played(&ocm::test::PlayedKernel::usleep)) {
-    (*call)();
+    (*call)(time);
     return 0;
   }
   const timespec spec{static_cast<time_t>(time / 1'000'000), static_cast<long>(time % 1'000'000 * 1000)};
   return ::nanosleep(&spec, nullptr);
+}
+
+int fstat(int file, struct stat* status) noexcept {
+  if (const auto* const call = ocm::test::PlayedKernel::played(file, &ocm::test::PlayedKernel::fstat))
+    return (*call)(file, status);
+#ifdef SYS_fstat64
+  return static_cast<int>(::syscall(SYS_fstat64, file, status));
+#else
+  return static_cast<int>(::syscall(SYS_fstat, file, status));
+#endif
 }
 
 int setsockopt(int file, int level, int name, const void* value, socklen_t size) noexcept {
@@ -275,7 +289,7 @@ ssize_t write(int file, const void* bytes, std::size_t size) {
 }
 
 int poll(pollfd* entries, nfds_t count, int timeout_ms) {
-  if (ocm::test::PlayedKernel* const kernel = ocm::test::PlayedKernel::waiting(entries))
+  if (ocm::test::PlayedKernel* const kernel = ocm::test::PlayedKernel::waiting(entries, count))
     return kernel->wait(entries, std::chrono::milliseconds{timeout_ms});
   const timespec limit{timeout_ms / 1000, timeout_ms % 1000 * 1'000'000L};
   timespec left = limit;  // the kernel writes what is left
@@ -284,7 +298,7 @@ int poll(pollfd* entries, nfds_t count, int timeout_ms) {
 }
 
 int ppoll(pollfd* entries, nfds_t count, const timespec* limit, const sigset_t* mask) {
-  if (ocm::test::PlayedKernel* const kernel = ocm::test::PlayedKernel::waiting(entries))
+  if (ocm::test::PlayedKernel* const kernel = ocm::test::PlayedKernel::waiting(entries, count))
     return kernel->wait(entries,
                         std::chrono::seconds{limit->tv_sec} + std::chrono::nanoseconds{limit->tv_nsec});
   timespec left{};

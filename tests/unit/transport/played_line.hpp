@@ -45,7 +45,11 @@ class PlayedLine {
         read_errors.pop_front();
         return failed(error);
       }
-      if (input.empty()) return hung_up ? 0 : failed(EAGAIN);
+      asked_for = size;
+      if (input.empty()) {
+        errno = stale_error;  // the end of a file leaves it as it was
+        return hung_up ? 0 : failed(EAGAIN);
+      }
       const std::size_t count = std::min(size, input.size());
       std::copy_n(input.begin(), count, static_cast<char*>(bytes));
       input.erase(0, count);
@@ -56,6 +60,11 @@ class PlayedLine {
       if (!input.empty() || hung_up) found = static_cast<short>(found | (events & POLLIN));
       if (room != 0) found = static_cast<short>(found | (events & POLLOUT));
       return found;
+    };
+    kernel.fstat = [this](int, struct stat* status) {
+      *status = {};
+      status->st_rdev = number;
+      return 0;
     };
     kernel.flock = [this](int, int) { return lock_error == 0 ? 0 : failed(lock_error); };
     kernel.tcgetattr = [this](int, termios* now) {
@@ -118,6 +127,10 @@ class PlayedLine {
   std::deque<int> read_errors;  ///< of the next reads
   std::deque<int> send_errors;
   bool hung_up = false;
+  int stale_error = EAGAIN;   ///< in errno when the line has hung up
+  std::size_t asked_for = 0;  ///< bytes, by the last read
+  int writes = 0;
+  dev_t number = 0;             ///< of the device
   std::size_t room = SIZE_MAX;  ///< bytes that the line takes
 
   /// Of each line, by its first letter ('-': an empty one): what the far end answers. The others it does not.
@@ -143,6 +156,7 @@ class PlayedLine {
     kernel.files.push_back(opened);
   }
   ssize_t take(const void* bytes, std::size_t size) {
+    ++writes;
     if (!send_errors.empty()) {
       const int error = send_errors.front();
       send_errors.pop_front();

@@ -6,6 +6,8 @@
 #include <fstream>
 #include <linux/tty.h>
 #include <string>
+#include <sys/sysmacros.h>
+#include <utility>
 
 #include <catch2/catch.hpp>
 
@@ -206,6 +208,35 @@ TEST_CASE("serial line: a device that goes says so with its error, while it read
   }
 }
 
+TEST_CASE("serial line: the end of a line is none of the errors of before") {
+  PlayedLine line;
+  line.stale_error = GENERATE(EAGAIN, EINTR, EIO, ENXIO);
+  SerialPort port = open();
+  line.hung_up = true;
+  std::array<char, 8> room{};
+  CHECK(port.read(room).error == base::Error::closed);
+  CHECK(port.failure().what == "'/dev/null' is gone: unplugged, or its other end closed");
+}
+
+TEST_CASE("serial line: a text that the line has room for is written with one call") {
+  PlayedLine line;
+  SerialPort port = open();
+  CHECK(port.write("abc").value == 3);
+  CHECK(line.writes == 1);
+  CHECK(port.write("").value == 0);
+  CHECK(line.writes == 1);
+}
+
+TEST_CASE("serial line: the devices of numbers 136 to 143 are pseudo terminals, which are not exclusive") {
+  PlayedLine line;
+  const auto [number, exclusive] =
+      GENERATE(std::pair{4U, true}, std::pair{135U, true}, std::pair{136U, false}, std::pair{143U, false},
+               std::pair{144U, true}, std::pair{188U, true});
+  line.number = ::gnu_dev_makedev(number, 2);
+  const SerialPort port = open();
+  CHECK((line.requests == Requests{TIOCGETD, TIOCEXCL}) == exclusive);
+}
+
 // --- which devices there are ---
 
 /// A folder in the place of /dev and one in that of /dev/serial/by-id.
@@ -340,6 +371,47 @@ TEST_CASE("pty line: a signal while it reads or writes changes nothing") {
   CHECK(taken == "cd");
 }
 
+TEST_CASE("pty line: a read and a write of nothing have none of the errors of before") {
+  Terminal terminal;
+  errno = 0;
+  const int stale = GENERATE(EINTR, EIO);
+  int opened = 0;
+  terminal.kernel.open = [&](const char*) {
+    ++opened;
+    return test::failed(ENOENT);
+  };
+  terminal.kernel.ready = [](short) { return static_cast<short>(POLLIN); };
+  CHECK(terminal.pty->attached());
+  terminal.kernel.read = [&](int, void*, std::size_t) -> ssize_t {
+    errno = stale;
+    return 0;
+  };
+  std::array<char, 8> room{};
+  CHECK(terminal.pty->read(room) == 0);
+  CHECK(opened == 0);  // the line is renewed when a program has left
+  terminal.kernel.write = [&](int, const void*, std::size_t) -> ssize_t {
+    errno = stale;
+    return 0;
+  };
+  CHECK(terminal.pty->write("abc") == 0);
+}
+
+TEST_CASE("pty line: a program that has left is seen by the read, once") {
+  Terminal terminal;
+  int opened = 0;
+  terminal.kernel.open = [&](const char*) {
+    ++opened;
+    return test::failed(ENOENT);
+  };
+  terminal.kernel.ready = [](short) { return static_cast<short>(POLLIN); };
+  CHECK(terminal.pty->attached());
+  terminal.kernel.read = [](int, void*, std::size_t) -> ssize_t { return test::failed(EIO); };
+  std::array<char, 8> room{};
+  CHECK(terminal.pty->read(room) == 0);
+  CHECK(terminal.pty->read(room) == 0);
+  CHECK(opened == 1);
+}
+
 TEST_CASE("pty line: a text goes in the parts that the line takes") {
   Terminal terminal;
   std::string taken;
@@ -369,7 +441,10 @@ TEST_CASE("pty line: a line of which no program reads is written nothing") {
 struct Locking {
   Locking() {
     kernel.flock = [this](int, int) { return ++tries <= refused ? test::failed(EWOULDBLOCK) : 0; };
-    kernel.usleep = [this] { ++pauses; };
+    kernel.usleep = [this](useconds_t time) {
+      ++pauses;
+      paused_us += time;
+    };
   }
   test::PlayedKernel kernel;
   test::TemporaryDirectory folder;
@@ -377,6 +452,7 @@ struct Locking {
   int refused = 0;
   int tries = 0;
   int pauses = 0;
+  useconds_t paused_us = 0;
 };
 
 TEST_CASE("pty line: a lock that another program has for a moment is tried for six times") {
@@ -385,6 +461,7 @@ TEST_CASE("pty line: a lock that another program has for a moment is tried for s
   CHECK(Pty::open(locking.link));
   CHECK(locking.tries == 6);
   CHECK(locking.pauses == 5);
+  CHECK(locking.paused_us == 5000);
 }
 
 TEST_CASE("pty line: a lock that another program keeps is that of one that serves the link") {
@@ -421,6 +498,23 @@ TEST_CASE("pty line: a lock that another program has made again meanwhile is not
   };
   REQUIRE(Pty::open(locking.link));
   CHECK(locking.tries == 2);
+}
+
+TEST_CASE("pty line: a lock that is made again, and then taken away, is neither") {
+  Locking locking;
+  const std::string lock = locking.link + ".lock";
+  locking.kernel.flock = [&](int, int) {
+    if (++locking.tries == 1) {
+      std::ofstream{lock + ".new"} << "";
+      std::filesystem::rename(lock + ".new", lock);
+    }
+    if (locking.tries == 2) std::filesystem::remove(lock);
+    return 0;
+  };
+  const auto pty = Pty::open(locking.link);
+  REQUIRE(pty);
+  CHECK(locking.tries == 3);
+  CHECK(std::filesystem::exists(lock));
 }
 
 TEST_CASE("pty line: whether a link is served is asked without waiting, and of the lock's owner alone") {

@@ -114,6 +114,7 @@ TEST_CASE("slcan line: an adapter that is silent is waited for once, and opened 
   scene.open();
   CHECK(scene.line.heard == "\rC\rV\rS6\rO\r");
   CHECK(scene.line.passed() == 300ms);
+  CHECK(scene.line.kernel.waits == Waits(30, {POLLIN, 10ms}));
   CHECK_FALSE(scene.bus->answers());
   CHECK(scene.bus->version().empty());
   CHECK(scene.bus->state() == BusState::up);
@@ -133,6 +134,30 @@ TEST_CASE("slcan line: of an adapter that answers the version is waited for 100 
   CHECK(scene.line.times_of("S6") == Times{100ms});
   CHECK(scene.bus->answers());
   CHECK(scene.bus->version().empty());
+}
+
+TEST_CASE("slcan line: of an adapter that answers the version is waited for no less than 100 ms") {
+  Scene scene{without("V")};
+  scene.line.kernel.later(99ms, [&] { scene.line.kernel.interrupt(); });
+  scene.open();
+  CHECK(scene.line.times_of("S6") == Times{109ms});  // it looks again after 10 ms
+}
+
+TEST_CASE("slcan line: an adapter that begins to answer once it is open never answers") {
+  Scene scene{{}};
+  scene.open();
+  scene.line.say("\r");
+  CHECK(scene.bus->receive(0ns).error == Error::timed_out);
+  CHECK_FALSE(scene.bus->answers());
+  CHECK(scene.bus->adapter_counters().strays == 0);
+}
+
+TEST_CASE("slcan line: a status that was said unasked does not make an adapter one that has it") {
+  Scene scene{with('F', "\a")};
+  scene.line.answers['C'] = "F00\r\r";
+  scene.begin();
+  CHECK(scene.bus->receive(5s).error == Error::timed_out);
+  CHECK(scene.line.heard.empty());
 }
 
 TEST_CASE("slcan line: each answer starts the wait for the next one again") {
@@ -205,6 +230,7 @@ TEST_CASE("slcan line: an adapter that refuses says what") {
     CHECK(scene.failure() ==
           Failure{"the adapter on '" + scene.line.path + "' refuses the bit rate 500k (command S6)",
                   "it may serve others only, or be in use: unplug it and plug it in again"});
+    CHECK(scene.line.heard == "\rC\rV\rS6\r");  // and no channel is closed
   }
   SECTION("the channel") {
     Scene scene{with('O', "\a")};
@@ -221,6 +247,7 @@ TEST_CASE("slcan line: an adapter that stops to answer is given its patience") {
                     "' has stopped to answer when asked for the bit rate 500k (command S6)",
                 "unplug it and plug it in again"});
   CHECK(scene.line.passed() == 300ms);
+  CHECK(scene.line.kernel.waits[1] == test::PlayedKernel::Wait{POLLIN, 10ms});
 }
 
 TEST_CASE("slcan line: times and status that are not answered are done without") {
@@ -283,6 +310,7 @@ TEST_CASE("slcan line: a line that never has room is given up, each command afte
   scene.open();
   CHECK(scene.line.heard == "\r");
   CHECK_FALSE(scene.bus->answers());
+  CHECK(scene.line.passed() == 1200ms);  // three commands, and the answer
 }
 
 TEST_CASE("slcan line: a socket that is connected already is in use") {
@@ -406,6 +434,7 @@ TEST_CASE("slcan line: more than one read holds is read at once") {
   scene.line.say(text);
   CHECK(scene.bus->receive(0ns));
   CHECK(scene.line.input.empty());
+  CHECK(scene.line.asked_for == 4096);
 }
 
 TEST_CASE("slcan line: 65536 frames are kept of a program that only sends, and those beyond are counted") {
@@ -461,6 +490,15 @@ TEST_CASE("slcan line: what was complete comes before the end, and half a line i
   CHECK(last->frame == frame("605#"));
   CHECK(scene.bus->receive(1h).error == Error::closed);
   CHECK(scene.bus->failure().what == scene.gone() + ", in the middle of a line");
+}
+
+TEST_CASE("slcan line: the end of a line is none of the errors of before") {
+  Scene scene;
+  scene.begin();
+  scene.line.stale_error = GENERATE(EAGAIN, EINTR, ENXIO);
+  scene.line.hung_up = true;
+  CHECK(scene.bus->receive(1h).error == Error::closed);
+  CHECK(scene.bus->failure().what == scene.gone());
 }
 
 TEST_CASE("slcan line: an error of the line is named unless it is the usual one") {
@@ -606,6 +644,11 @@ TEST_CASE("slcan line: an answer is waited for as long as chosen, then the adapt
   CHECK(scene.bus->adapter_counters().unanswered == 1);
   for (int i = 0; i < 20; ++i) CHECK(*scene.bus->send(frame("100#01")));
   CHECK_FALSE(scene.bus->delivery().known);
+  CHECK(scene.bus->receive(2s).error == Error::timed_out);
+  CHECK(scene.bus->adapter_counters().unanswered == 1);
+  scene.line.room = 3;
+  CHECK(*scene.bus->send(frame("100#01")));
+  CHECK(scene.bus->delivery().pending == 1);
 }
 
 TEST_CASE("slcan line: of an adapter that has answered frames an answer that is lost costs one frame") {
@@ -708,6 +751,16 @@ TEST_CASE("slcan line: the status is asked for once a second, while the program 
   CHECK(scene.bus->adapter_counters().unanswered == 0);
 }
 
+TEST_CASE("slcan line: a signal while the status is asked for does not end the wait") {
+  Scene scene;
+  scene.begin();
+  scene.line.answers.erase('F');
+  scene.line.kernel.later(1s, [&] { scene.line.send_errors = {EINTR}; });
+  CHECK(scene.bus->receive(1900ms).error == Error::timed_out);
+  CHECK(scene.line.passed() == 1900ms);
+  CHECK(scene.line.times_of("F") == Times{1s});
+}
+
 TEST_CASE("slcan line: a status that is asked for is no pending frame") {
   Scene scene;
   scene.begin();
@@ -803,6 +856,8 @@ TEST_CASE("slcan line: the status waits for room in the line") {
   scene.line.kernel.later(1700ms, [&] { scene.line.room = SIZE_MAX; });
   CHECK(scene.bus->receive(1500ms).error == Error::timed_out);
   CHECK(scene.bus->adapter_counters().unanswered == 0);
+  CHECK(scene.line.kernel.waits[0] == test::PlayedKernel::Wait{POLLIN, 1s});
+  CHECK(scene.line.kernel.waits[1] == test::PlayedKernel::Wait{POLLIN, 1ms});
   CHECK(scene.bus->receive(500ms).error == Error::timed_out);
   REQUIRE(scene.line.times_of("F").size() == 1);
 }
@@ -826,6 +881,15 @@ TEST_CASE("slcan line: at its end an adapter that does not answer is waited for 
   CHECK(scene.line.passed() == 50ms);
 }
 
+TEST_CASE("slcan line: at its end an adapter that does not answer is waited for no less than 50 ms") {
+  Scene scene;
+  scene.begin();
+  scene.line.answers.clear();
+  scene.line.kernel.later(49ms, [&] { scene.line.kernel.interrupt(); });
+  scene.bus.reset();
+  CHECK(scene.line.passed() == 51ms);  // it looks again after 2 ms
+}
+
 TEST_CASE("slcan line: at its end an adapter that never answers is not waited for") {
   Scene scene{{}};
   scene.begin();
@@ -842,6 +906,7 @@ TEST_CASE("slcan line: at its end frames that are not answered are waited for as
   CHECK(*scene.bus->send(frame("100#01")));
   scene.bus.reset();
   CHECK(scene.line.times_of("C") == Times{130ms});
+  CHECK(scene.line.kernel.waits[0] == test::PlayedKernel::Wait{POLLIN, 2ms});
 }
 
 TEST_CASE("slcan line: at its end it goes as soon as the frame is answered") {

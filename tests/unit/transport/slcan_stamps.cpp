@@ -101,6 +101,12 @@ TEST_CASE("slcan: a delay of five seconds is one, and a longer one is an adapter
   CHECK(restarted.map(1500, at(6s + 502ms)) == at(6s + 502ms));
 }
 
+TEST_CASE("slcan: a minute of silence is one also where the frame behind it was delayed") {
+  StampClock clock;
+  CHECK(clock.map(0, at(0s)) == at(0s));
+  CHECK(clock.map(0, at(61s)) == at(60s + 12'200us));
+}
+
 TEST_CASE("slcan: an arrival before the one before is one at the same time") {
   StampClock clock;
   CHECK(clock.map(0, at(1s)) == at(1s));

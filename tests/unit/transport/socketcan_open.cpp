@@ -155,6 +155,16 @@ TEST_CASE("socketcan: whether an interface carries CAN FD is asked again each ti
   CHECK_FALSE(bus->fd_obstacle() == Failure{});
 }
 
+TEST_CASE(
+    "socketcan: what the kernel refuses of CAN FD though the interface has room is an error of sending") {
+  const int error = GENERATE(EINVAL, EMSGSIZE);
+  PlayedCan played;
+  const auto bus = played.open();
+  played.answers = {error};
+  CHECK(bus->send_any(*can::parse_any_frame("123##1AA")).error == base::Error::closed);
+  CHECK(bus->failure().what == why("send on", error));
+}
+
 TEST_CASE("socketcan: of an interface that is gone CAN FD is no question") {
   PlayedCan played;
   const auto bus = played.open();
