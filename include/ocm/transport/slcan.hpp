@@ -316,10 +316,9 @@ class Slcan final : public Bus {
     }
     return out_.empty();
   }
-  /// All that has come. false: nothing had.
-  bool read() {
+  /// All that has come.
+  void read() {
     std::array<char, 4096> text;  // NOLINT: filled by the kernel
-    bool any = false;
     while (state() == BusState::up) {
       const ssize_t size = ::read(descriptor(), text.data(), text.size());
       if (size < 0 && errno == EINTR) continue;
@@ -328,13 +327,11 @@ class Slcan final : public Bus {
         lose(size < 0 ? errno : 0);
         break;
       }
-      any = true;
       const base::Time arrival = now();
       for (const char c : std::string_view{text.data(), static_cast<std::size_t>(size)})
         handle(reader_.feed(c), arrival);
       if (inbox_.size() >= max_inbox || static_cast<std::size_t>(size) < text.size()) break;
     }
-    return any;
   }
   /// true: there is something to read, or to hear that the line is gone.
   bool wait(base::Duration limit) {
