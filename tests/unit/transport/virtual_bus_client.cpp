@@ -579,7 +579,8 @@ TEST_CASE("virtual bus client: a CAN FD frame is one message, and takes one cred
   scene.open();
   const auto longest = *can::parse_any_frame("123##1" + std::string(128, 'A'));
   CHECK(*scene.bus->send_any(longest));
-  const auto records = vb::to_fd_records(longest).all();
+  const auto whole = vb::to_fd_records(longest);
+  const auto records = whole.all();
   CHECK(scene.heard() == std::vector<std::vector<vb::Record>>{{records.begin(), records.end()}});
   CHECK(scene.bus->credit() == 1);
 }
