@@ -120,6 +120,15 @@ TEST_CASE("a bit rate and a state are those of a controller, and only where the 
   CHECK(transport::detail::find_attribute(attribute(8, {}), 8).empty());
 }
 
+TEST_CASE("a message without a content, and an attribute without one, are whole") {
+  std::vector<CanInterface> found;
+  CHECK(transport::detail::read_links(message(NLMSG_DONE, {}), found) == LinkDump::done);
+  CHECK(transport::detail::read_links(message(NLMSG_NOOP, {}) + message(NLMSG_DONE, {}), found) ==
+        LinkDump::done);
+  const Bytes behind = attribute(7, {}) + attribute(8, text("eight"));
+  CHECK(transport::detail::read_text(transport::detail::find_attribute(behind, 8)) == "eight");
+}
+
 TEST_CASE("the kernel answers, with or without CAN") {
   const auto found = transport::query_can_interfaces();
   REQUIRE(found);

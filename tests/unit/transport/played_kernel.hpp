@@ -108,7 +108,7 @@ class PlayedKernel {
   /// Plays time and waiting; what poll says of a played file when it is asked for these events.
   std::function<short(short events)> ready;
   base::Time steady{std::chrono::hours{1}};
-  base::Time unix_time{std::chrono::hours{1'000'000}};
+  base::Time unix_time{std::chrono::hours{400'000}};  // before 2038
 
   struct Wait {
     short events = 0;
