@@ -130,6 +130,114 @@ TEST_CASE("the share of lost packets over the distance") {
   CHECK(loss(noisy, 9) == 1);
 }
 
+TEST_CASE("what is not said of a radio is as the SDK, the thesis and the page of decisions have it") {
+  const RadioModel model;
+  CHECK(model.range_m == 8);
+  CHECK(model.loss_at_range == 0.5);
+  CHECK(model.loss_everywhere == 0);
+  CHECK(model.delay == 5ms);
+  CHECK(model.interval == 30ms);
+  CHECK(model.packets == 4);
+  CHECK(model.supervision_timeout == 4s);
+  CHECK(model.advertising_interval == 100ms);
+  CHECK(model.attempt_timeout == 5s);
+  CHECK(model.links == 3);
+  CHECK_FALSE(model.repeats);
+  CHECK(model.seed == 1);
+}
+
+TEST_CASE("a distance is that between two places, wherever they are") {
+  CHECK(simulation::distance_m({1, 2}, {4, 6}) == 5);
+  CHECK(simulation::distance_m({-1, -2}, {-4, -6}) == 5);
+  Air air;
+  air.radio.place_central({3, 4});
+  CHECK(air.radio.distance(0) == 5);  // a robot that is placed nowhere is at the origin
+  air.radio.move(0, {6, 8});
+  CHECK(air.radio.distance(0) == 5);
+}
+
+TEST_CASE("a radio sends at least one packet an event, and its events are at least a nanosecond apart") {
+  const Radio radio{RadioModel{.interval = 0ms, .packets = 0, .advertising_interval = 0ms}};
+  CHECK(radio.model().packets == 1);
+  CHECK(radio.model().interval == 1ns);
+  CHECK(radio.model().advertising_interval == 1ns);
+}
+
+TEST_CASE("each of the 64 bits of a seed makes another luck") {
+  const auto found = [](std::uint64_t seed) {
+    Air air{RadioModel{.loss_everywhere = 0.5, .seed = seed}};
+    air.radio.advertise(0, true, at(0ms));
+    air.radio.start_scan(at(0ms));
+    return air.run(20s);  // of 200 advertisements, about a half
+  };
+  const std::string usual = found(1);
+  CHECK(found(1) == usual);
+  CHECK(found(2) != usual);
+  CHECK(found(0x1'0000'0001) != usual);
+  CHECK(found(0x8000'0000'0000'0001) != usual);
+}
+
+TEST_CASE("to advertise what advertises already changes nothing") {
+  Air air;
+  air.radio.advertise(0, true, at(0ms));
+  air.radio.advertise(0, true, at(50ms));
+  air.radio.start_scan(at(50ms));
+  CHECK(air.run(150ms) == "100 found 0;");
+}
+
+TEST_CASE("a robot that begins to advertise during a scan is found, until it stops") {
+  Air air;
+  air.radio.start_scan(at(0ms));
+  CHECK(air.radio.next_event() == base::never);
+  air.radio.advertise(0, true, at(30ms));
+  CHECK(air.radio.next_event() == at(130ms));
+  CHECK(air.run(150ms) == "130 found 0;");
+  air.radio.advertise(0, false, at(150ms));
+  CHECK(air.radio.next_event() == base::never);
+  CHECK(air.run(1s) == "");
+}
+
+TEST_CASE("a call takes the radio to its time, and a time of the past is the present") {
+  Air air;
+  air.radio.advertise(0, true, at(0ms));
+  SECTION("advertise") {
+    air.radio.advertise(0, false, at(50ms));
+    CHECK(air.radio.time() == at(50ms));
+  }
+  SECTION("start_scan: the advertisements at 100 and 200 ms are over") {
+    air.radio.start_scan(at(250ms));
+    CHECK(air.run(350ms) == "300 found 0;");
+  }
+  SECTION("connect: so are they") {
+    air.radio.connect(0, at(250ms));
+    CHECK(air.run(350ms) == "300 linked 0;300 connected 0;");
+  }
+  SECTION("connect, refused") {
+    air.radio.connect(0, at(0ms));
+    air.radio.connect(0, at(10ms));  // under way already: no report
+    air.radio.add();
+    air.radio.connect(1, at(70ms));
+    CHECK(air.radio.next_event() == at(70ms));
+    air.central_linked.resize(2);
+    CHECK(air.run(80ms) == "70 closed 1;");
+  }
+  SECTION("disconnect") {
+    air.radio.connect(0, at(0ms));
+    air.radio.disconnect(0, at(70ms));
+    CHECK(air.radio.next_event() == at(70ms));
+    CHECK(air.run(80ms) == "70 closed 0;");
+  }
+  SECTION("advance, though nothing happens") {
+    CHECK(air.run(150ms) == "");
+    CHECK(air.radio.time() == at(150ms));
+  }
+  SECTION("the past") {
+    CHECK(air.run(150ms) == "");
+    air.radio.disconnect(0, at(20ms));
+    CHECK(air.radio.time() == at(150ms));
+  }
+}
+
 TEST_CASE("found, connected, packets, dropped: each at its millisecond") {
   Air air;
   air.radio.advertise(0, true, at(0ms));  // at 100, 200, ...
@@ -270,6 +378,32 @@ TEST_CASE("a central that restarts reports nothing about before, and robots run 
   CHECK(air.radio.links() == 0);
   air.radio.start_scan(at(10s));
   CHECK(air.run(11s).find("found 2") != std::string::npos);
+}
+
+TEST_CASE("a central that restarts neither scans nor connects") {
+  Air air;
+  air.radio.advertise(0, true, at(0ms));
+  air.radio.start_scan(at(0ms));
+  air.radio.connect(0, at(0ms));
+  air.radio.restart();
+  CHECK(air.radio.links() == 0);
+  CHECK(air.radio.next_event() == base::never);
+  CHECK(air.run(10s) == "");
+}
+
+TEST_CASE("a central that restarts just as a link comes about: the dongle hears of the link, and loses it") {
+  struct Restarting : Air {
+    void found(std::size_t robot) {
+      Air::found(robot);
+      radio.restart();
+    }
+  } air;
+  air.radio.advertise(0, true, at(0ms));
+  air.radio.start_scan(at(0ms));
+  air.radio.connect(0, at(0ms));
+  air.radio.advance(at(5s), air);
+  // Heard last at 100 ms; the first event 4 s later is that at 100 + 134 * 30.
+  CHECK(air.log == "100 found 0;100 linked 0;4120 unlinked 0;");
 }
 
 TEST_CASE("lost packets are as many as the model says, each way, and both ways by themselves") {
