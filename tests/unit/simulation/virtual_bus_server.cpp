@@ -15,6 +15,57 @@ using namespace ocm;
 using namespace ocm::test;
 using simulation::VirtualBusServer;
 
+/// While it lives, the process can open so many more files.
+class DescriptorsLeft {
+ public:
+  explicit DescriptorsLeft(std::size_t count) {
+    REQUIRE(::getrlimit(RLIMIT_NOFILE, &before_) == 0);
+    std::vector<host::Descriptor> free;  // the lowest numbers
+    for (std::size_t i = 0; i <= count; ++i) free.emplace_back(::open("/dev/null", O_RDONLY | O_CLOEXEC));
+    REQUIRE(free.back());
+    rlimit tight = before_;
+    tight.rlim_cur = static_cast<rlim_t>(free.back().get());
+    REQUIRE(::setrlimit(RLIMIT_NOFILE, &tight) == 0);
+  }
+  DescriptorsLeft(const DescriptorsLeft&) = delete;
+  DescriptorsLeft& operator=(const DescriptorsLeft&) = delete;
+  ~DescriptorsLeft() { ::setrlimit(RLIMIT_NOFILE, &before_); }
+
+ private:
+  rlimit before_{};
+};
+
+/// How many of them are of this type.
+std::size_t count_of(const std::vector<vb::Record>& records, vb::Type type) {
+  return static_cast<std::size_t>(std::count_if(records.begin(), records.end(),
+                                                [&](const auto& one) { return vb::type_of(one) == type; }));
+}
+
+TEST_CASE("a virtual bus of which nothing is said is the robot's, and patient for as long as its page says") {
+  const simulation::VirtualBusOptions options;
+  CHECK(options.name == "sim");
+  CHECK(options.bit_rate == 500'000);
+  CHECK(options.data_bit_rate == 0);
+  CHECK(options.transmit_queue == 64);
+  CHECK(options.output_queue == 4096);
+  CHECK(options.raise_descriptor_limit);
+  CHECK(options.patience == 1s);
+  CHECK(options.last_flush == 500ms);
+}
+
+TEST_CASE("a server needs three file descriptors, and says so where there are fewer") {
+  const TemporaryDirectory directory;
+  const auto failure = [&](std::size_t left) {
+    const DescriptorsLeft few{left};
+    const auto opened =
+        VirtualBusServer::open({.path = directory.path() + "/s", .raise_descriptor_limit = false});
+    return opened ? std::string{} : opened.error.what;
+  };
+  for (const std::size_t left : {0U, 1U, 2U})
+    CHECK_THAT(failure(left), Catch::Contains("Too many open files"));
+  CHECK(failure(3).empty());
+}
+
 TEST_CASE("a second server is refused, with the path and the process of the first") {
   VirtualBusSetup setup;
   const auto second = VirtualBusServer::open({.path = setup.path()});
@@ -110,6 +161,7 @@ TEST_CASE("garbage disconnects its sender, and no other client") {
   CHECK(garbage(vb::Hello{}).reason == Reason::unknown_record);
   CHECK(garbage(vb::Count{.type = vb::Type::credit, .count = 1}).reason == Reason::unknown_record);
   CHECK(garbage(vb::Count{.type = static_cast<vb::Type>(77)}).detail == 77);
+  CHECK(garbage(vb::FilterRecord{}).detail == 1);
   CHECK(garbage(vb::FilterRecord{}).reason == Reason::bad_filters);
   CHECK(garbage(vb::Count{.type = vb::Type::filters, .count = 513}).detail == 513);
   for (const std::size_t size : {std::size_t{1}, std::size_t{31}, std::size_t{33}, vb::max_message + 32}) {
@@ -119,8 +171,8 @@ TEST_CASE("garbage disconnects its sender, and no other client") {
     });
     CHECK(goodbye.reason == Reason::bad_size);
   }
-  CHECK(setup.server->counters().misbehaved == 13);
-  CHECK(setup.server->counters().welcomed == 14);
+  CHECK(setup.server->counters().misbehaved == 14);
+  CHECK(setup.server->counters().welcomed == 15);
 
   // Before the greeting too.
   RawClient stranger{setup.path()};
@@ -128,7 +180,7 @@ TEST_CASE("garbage disconnects its sender, and no other client") {
   setup.poll();
   CHECK(stranger.dismissal().reason == Reason::no_hello);
   CHECK(setup.server->counters().turned_away == 1);
-  CHECK(setup.reports.size() == 14);
+  CHECK(setup.reports.size() == 15);
   CHECK_THAT(setup.reports[0], Catch::Equals("a client (process " + std::to_string(::getpid()) +
                                              ") was disconnected: it sent a frame with DLC 200; at most 8"));
 
@@ -139,6 +191,121 @@ TEST_CASE("garbage disconnects its sender, and no other client") {
   CHECK(*good->send(frame("205#01")));
   setup.run();
   CHECK(setup.on_bus == Texts{"605#00", "205#01"});
+}
+
+TEST_CASE("a greeting is of the right type and has the magic number") {
+  VirtualBusSetup setup;
+  RawClient other{setup.path()};
+  other.say(vb::Hello{.magic = vb::magic + 1});
+  RawClient typed{setup.path()};
+  typed.say(vb::Hello{.type = vb::Type::frame});
+  setup.poll();
+  for (RawClient* const client : {&other, &typed}) CHECK(client->dismissal().reason == vb::Reason::no_hello);
+  CHECK(setup.server->counters().turned_away == 2);
+}
+
+TEST_CASE("the server's greeting says what the bus is") {
+  VirtualBusSetup setup{
+      {.name = "a name of many bytes", .bit_rate = 250'000, .data_bit_rate = 1'000'000, .transmit_queue = 7}};
+  RawClient client{setup.path()};
+  client.greet();
+  setup.poll();
+  const auto records = client.heard();
+  REQUIRE(records.size() == 1);
+  const auto hello = vb::from_record<vb::Hello>(records[0]);
+  CHECK(hello.type == vb::Type::hello);
+  CHECK(hello.fd == 4);
+  CHECK(hello.bit_rate == 250'000);
+  CHECK(hello.credit == 7);
+  CHECK(std::string(hello.name.data(), hello.name.size()) == std::string("a name of m\0", 12));
+}
+
+TEST_CASE("a client has room for at least one frame, each way") {
+  VirtualBusSetup setup{{.transmit_queue = 0, .output_queue = 0}};
+  RawClient client{setup.path()};
+  client.greet();
+  setup.poll();
+  const auto greeting = client.heard();
+  REQUIRE(greeting.size() == 1);
+  CHECK(vb::from_record<vb::Hello>(greeting[0]).credit == 1);
+  client.say(frame("100#"));
+  setup.poll();
+  setup.send("605#");
+  setup.run();
+  CHECK(setup.on_bus == Texts{"100#", "605#"});
+  CHECK(count_of(client.heard(), vb::Type::frame) == 1);
+  CHECK(setup.server->counters().overruns == 0);
+}
+
+TEST_CASE("who has not greeted hears nothing") {
+  VirtualBusSetup setup;
+  RawClient silent{setup.path()};
+  const auto sender = setup.join();
+  CHECK(*sender->send_any(any("123##1AABB")));
+  CHECK(*sender->send_any(any("124#CC")));
+  CHECK(setup.server->report_error({.id = 0x40, .dlc = 8, .format = can::Format::error}, setup.now));
+  setup.run();
+  CHECK(setup.on_bus == Texts{"123##1AABB", "124#CC"});
+  CHECK(silent.heard().empty());
+  CHECK_FALSE(silent.closed);
+  CHECK(setup.server->counters().fd_withheld == 0);
+}
+
+TEST_CASE("filters: the latest ones count, each of them, and none lets everything through") {
+  VirtualBusSetup setup;
+  RawClient client{setup.path()};
+  client.greet();
+  setup.poll();
+  client.heard();
+  const auto announce = [&](std::size_t count) {
+    client.say(vb::Count{.type = vb::Type::filters, .count = count});
+  };
+  const auto hears = [&] {
+    setup.poll();
+    for (const char* text : {"100#", "200#", "300#", "400#"}) setup.send(text);
+    setup.run();
+    std::vector<std::uint32_t> ids;
+    for (const vb::Record& record : client.heard())
+      ids.push_back(vb::from_record<vb::FrameRecord>(record).id);
+    return ids;
+  };
+  using Ids = std::vector<std::uint32_t>;
+  const auto filter = [&](std::uint32_t id) { client.say(vb::FilterRecord{.id = id, .mask = 0x7FF}); };
+  announce(1), filter(0x100);
+  CHECK(hears() == Ids{0x100});
+  announce(1), filter(0x200);
+  CHECK(hears() == Ids{0x200});
+  announce(2), filter(0x300);
+  CHECK(hears() == Ids{0x200});  // until all are there
+  filter(0x400);
+  CHECK(hears() == Ids{0x300, 0x400});
+  announce(0);
+  CHECK(hears() == Ids{0x100, 0x200, 0x300, 0x400});
+}
+
+TEST_CASE("512 filters are taken, and no new ones before all that were announced are there") {
+  VirtualBusSetup setup;
+  RawClient client{setup.path()};
+  client.greet();
+  client.say(vb::Count{.type = vb::Type::filters, .count = 512});
+  for (int i = 0; i < 511; ++i) client.say(vb::FilterRecord{.id = 0x100, .mask = 0x7FF});
+  setup.poll();
+  CHECK(setup.server->counters().misbehaved == 0);
+  client.say(vb::Count{.type = vb::Type::filters, .count = 1});
+  setup.poll();
+  CHECK(client.dismissal().reason == vb::Reason::bad_filters);
+}
+
+TEST_CASE("of each client 64 messages are taken at a poll: then it is the others' turn") {
+  for (const int messages : {64, 65}) {
+    VirtualBusSetup setup{{.transmit_queue = 1000}};
+    RawClient client{setup.path()};
+    client.greet();
+    setup.poll();
+    for (int i = 0; i < messages; ++i) client.say(frame("100#"));
+    setup.server->poll(setup.now);
+    CHECK(readable(setup.server->descriptor()) == (messages > 64));
+  }
 }
 
 TEST_CASE("a client of before CAN FD goes on among those that know it, and hears classic frames alone") {
@@ -210,6 +377,42 @@ TEST_CASE("a slow client misses CAN FD frames whole, and learns how many") {
   }
   CHECK(whole + lost == sent);
   CHECK(lost == setup.server->counters().overruns);
+}
+
+TEST_CASE("a CAN FD frame that leaves the queue is credited once, and one beyond the credit disconnects") {
+  VirtualBusSetup setup{{.transmit_queue = 2}};
+  RawClient client{setup.path()};
+  client.say(vb::Hello{.fd = 1});
+  const vb::Record fd = vb::to_fd_records(any("123##1AA")).records[0];
+  client.send(fd.data(), fd.size());
+  setup.poll();
+  // Its last bit is disturbed: receivers have it, and get it again.
+  auto& arbiter = setup.server->arbiter();
+  arbiter.disturb({.boundary = arbiter.clock().boundary_from(setup.server->next_event()) - 1});
+  setup.run();
+  CHECK(setup.on_bus == Texts{"123##1AA", "123##1AA"});
+  std::uint64_t credit = 0;
+  for (const vb::Record& record : client.heard())
+    if (vb::type_of(record) == vb::Type::credit) credit += vb::from_record<vb::Count>(record).count;
+  CHECK(credit == 1);
+  for (int i = 0; i < 3; ++i) client.send(fd.data(), fd.size());
+  setup.poll();
+  CHECK(client.dismissal().reason == vb::Reason::no_credit);
+  CHECK(setup.server->counters().withdrawn == 2);
+}
+
+TEST_CASE("a bus runs at 1 bit/s to 1 Gbit/s, and the data of CAN FD at no more") {
+  const auto failure = [](std::uint32_t bit_rate, std::uint32_t data_bit_rate = 0) {
+    const TemporaryDirectory directory;
+    const auto opened = VirtualBusServer::open(
+        {.path = directory.path() + "/s", .bit_rate = bit_rate, .data_bit_rate = data_bit_rate});
+    return opened ? std::string{} : opened.error.what + "; " + opened.error.remedy;
+  };
+  CHECK(failure(1).empty());
+  CHECK(failure(1'000'000'000).empty());
+  CHECK(failure(250'000'000, 1'000'000'000).empty());
+  CHECK_THAT(failure(600'000'000, 1'200'000'000),
+             Catch::Contains("1200000000 bit/s") && Catch::Contains("such as 600000000;"));
 }
 
 TEST_CASE("the data of CAN FD run at a whole multiple of the bus's bit rate") {
@@ -286,6 +489,49 @@ TEST_CASE("a client that dies with more to be read than is read at once") {
   CHECK(setup.on_bus == Texts{"100#"});
   CHECK(setup.server->counters().withdrawn == 200);
   CHECK(setup.server->counters().died == 1);
+}
+
+TEST_CASE("what waits for a client that is gone is no overrun") {
+  VirtualBusSetup setup{{.transmit_queue = 1000}};
+  RawClient client{setup.path()};
+  client.greet();
+  setup.poll();
+  setup.send("605#");
+  for (int i = 0; i < 100; ++i) client.say(frame("200#"));  // more than are read at once
+  client.close();
+  setup.now += 1ms;
+  setup.server->poll(setup.now);  // 605# cannot be given to it, and its end is not read yet
+  CHECK(setup.server->clients() == 1);
+  setup.server->end();
+  CHECK(setup.server->counters().overruns == 0);
+}
+
+TEST_CASE("a client that leaves makes room for another node") {
+  VirtualBusSetup setup;
+  auto client = setup.join();
+  client.reset();
+  setup.poll();
+  CHECK(setup.server->counters().left == 1);
+  CHECK(setup.server->arbiter().attach().index == 1);  // 0 is that of the setup
+}
+
+TEST_CASE("a client that sends alone gets its credit back") {
+  VirtualBusSetup setup{{.transmit_queue = 1}};
+  const auto client = setup.join();
+  for (const char* text : {"100#", "101#", "102#"}) {
+    CHECK(*client->send(frame(text)));
+    setup.run();
+  }
+  CHECK(setup.on_bus == Texts{"100#", "101#", "102#"});
+}
+
+TEST_CASE("an owner that listens to no frame polls all the same") {
+  VirtualBusSetup setup;
+  const auto client = setup.join();
+  setup.send("605#");
+  setup.now += 1ms;
+  setup.server->poll(setup.now);
+  CHECK(received(*client) == Texts{"605#"});
 }
 
 TEST_CASE("a client may ask for nothing but whether a server runs") {
@@ -443,6 +689,55 @@ TEST_CASE("a client that misbehaves while it is behind learns why it is disconne
   CHECK(setup.server->counters().overruns == vb::from_record<vb::Count>(overrun).count);
 }
 
+TEST_CASE("a client that misbehaves gets what is on its way to it before it is disconnected") {
+  VirtualBusSetup setup;
+  RawClient client{setup.path()};
+  client.greet();
+  setup.poll();
+  setup.send("605#");
+  client.say(vb::FrameRecord{.dlc = 200});
+  setup.now += 1ms;
+  setup.server->poll(setup.now);
+  const auto records = client.heard();
+  REQUIRE(records.size() == 3);
+  CHECK(vb::type_of(records[1]) == vb::Type::frame);
+  CHECK(vb::type_of(records[2]) == vb::Type::goodbye);
+  CHECK(setup.server->counters().overruns == 0);
+}
+
+TEST_CASE("a client that is behind and disconnected learns its credit, what it missed, and why") {
+  constexpr std::size_t frames = 10'000;
+  VirtualBusSetup setup{{.output_queue = 4}};
+  RawClient client{setup.path()};
+  client.greet();
+  for (std::size_t i = 0; i < frames; ++i) setup.send("605#");
+  setup.run();
+  REQUIRE(setup.server->counters().overruns > 0);
+  client.say(frame("100#"));
+  setup.run();
+  client.say(vb::FrameRecord{.dlc = 200});
+  setup.poll();
+  const auto records = client.heard();
+  REQUIRE(records.size() > 4);
+  const auto last = std::span{records}.last(3);
+  CHECK(vb::type_of(last[0]) == vb::Type::credit);
+  CHECK(vb::from_record<vb::Count>(last[0]).count == 1);
+  CHECK(vb::type_of(last[1]) == vb::Type::overrun);
+  CHECK(vb::from_record<vb::Count>(last[1]).count == frames - count_of(records, vb::Type::frame));
+  CHECK(vb::type_of(last[2]) == vb::Type::goodbye);
+  CHECK(client.closed);
+}
+
+TEST_CASE("an ended server has no clients") {
+  VirtualBusSetup setup;
+  RawClient client{setup.path()};
+  client.greet();
+  setup.poll();
+  setup.server->end();
+  CHECK(setup.server->clients() == 0);
+  CHECK(client.dismissal().reason == vb::Reason::ended);
+}
+
 TEST_CASE("a client that never reads can go on sending while it has credit, and gets it back later") {
   VirtualBusSetup setup{{.transmit_queue = 2, .output_queue = 4}};
   const auto deaf = setup.join();
@@ -479,11 +774,24 @@ TEST_CASE("no file descriptor left: the client gets the reason, is counted, and 
   CHECK(unlucky.dismissal().reason == vb::Reason::full);
   CHECK(setup.server->counters().accept_failures == 1);
   CHECK(setup.server->clients() == 1);
+  CHECK(setup.reports == Texts{"a client (process " + std::to_string(::getpid()) +
+                               ") was disconnected: the simulator has no file descriptor left for it"});
 
   const auto next = setup.join();
   CHECK(*next->send(frame("205#01")));
   setup.run();
   CHECK(received(*good) == Texts{"205#01"});
+}
+
+TEST_CASE("no file descriptor left, twice: the second client gets the reason, too") {
+  VirtualBusSetup setup{{.raise_descriptor_limit = false}};
+  for (std::uint64_t i = 1; i <= 2; ++i) {
+    RawClient unlucky{setup.path()};
+    const DescriptorsLeft none{0};
+    setup.poll();
+    CHECK(unlucky.dismissal().reason == vb::Reason::full);
+    CHECK(setup.server->counters().accept_failures == i);
+  }
 }
 
 TEST_CASE(
@@ -515,6 +823,13 @@ TEST_CASE(
   CHECK(setup.server->clients() == 2);
   CHECK(waiting.heard().size() == 1);
   CHECK(setup.server->next_event() == base::never);
+
+  // From now on all is as before: it wakes up for a client, and has a descriptor to turn one away with.
+  RawClient unlucky{setup.path()};
+  CHECK(readable(setup.server->descriptor()));
+  const DescriptorsLeft none{0};
+  setup.poll();
+  CHECK(unlucky.dismissal().reason == vb::Reason::full);
 }
 
 TEST_CASE("the descriptor limit is raised as far as the process may") {
@@ -564,6 +879,31 @@ TEST_CASE("time stamps are those of the bus, in the owner's Unix time") {
   REQUIRE(one);
   // Handed over in the first bit, sent from the next boundary on, 2 us a bit.
   CHECK(one->time.time_since_epoch() == 1'700'000'000s + (1 + can::frame_bits(frame("605#00D20000"))) * 2us);
+}
+
+TEST_CASE("so are those of CAN FD frames, of errors, and of the owner's own error frames") {
+  VirtualBusSetup setup{{.epoch = base::Time{1s}, .to_unix_time = 1000s}};
+  const auto client = setup.join();
+  const auto stamp = [&] {
+    const auto one = client->receive_any(0ns);
+    REQUIRE(one);
+    return one->time.time_since_epoch();
+  };
+  CHECK(*setup.server->arbiter().send_any(setup.port, any("123##1AA"), setup.now));
+  setup.poll();
+  const base::Duration end = setup.server->next_event().time_since_epoch();
+  setup.run();
+  CHECK(stamp() == end + 1000s);
+
+  setup.now = base::Time{2s};
+  setup.poll();
+  setup.server->arbiter().disturb({.boundary = 600'000});  // on an idle bus, at 1 s + 600'000 * 2 us
+  setup.run();
+  CHECK(stamp() == 1000s + 2'200'002us);
+
+  CHECK(setup.server->report_error({.id = 0x40, .dlc = 8, .format = can::Format::error}, base::Time{7s}));
+  setup.poll();
+  CHECK(stamp() == 1007s);
 }
 
 TEST_CASE("an error on the bus: each client gets a report, and the frame comes nevertheless") {
