@@ -204,6 +204,11 @@ TEST_CASE("a full queue refuses, counts, and has room again when a frame has sta
   CHECK(bus.totals().refused == 1);
 }
 
+TEST_CASE("a node's queue takes 64 frames, unless more is said") {
+  Arbiter bus;
+  CHECK(bus.room(bus.attach()) == 64);
+}
+
 TEST_CASE("frames that cannot exist are errors") {
   Arbiter bus;
   const NodeId a = bus.attach();
@@ -211,6 +216,7 @@ TEST_CASE("frames that cannot exist are errors") {
   CHECK(bus.send(a, {.id = 1, .dlc = 9}, at(0ns)).error == base::Error::bad_length);
   CHECK(bus.send(a, {.id = 4, .format = can::Format::error}, at(0ns)).error == base::Error::bad_identifier);
   CHECK(bus.send(NodeId{}, frame("001#"), at(0ns)).error == base::Error::closed);
+  CHECK(bus.send(NodeId{1, 1}, frame("001#"), at(0ns)).error == base::Error::closed);
   CHECK(bus.send(NodeId{7, 1}, frame("001#"), at(0ns)).error == base::Error::closed);
   CHECK(bus.next_event() == base::never);
 }
@@ -261,6 +267,39 @@ TEST_CASE("a node that leaves takes its waiting frames along, or has them sent")
   CHECK(bus.attach().index == b.index);
   CHECK(bus.totals().withdrawn == 2);
   CHECK(bus.totals().clashes == 1);
+}
+
+TEST_CASE("a node that leaves has room for nothing, and once it has left nothing is known of it") {
+  Arbiter bus;
+  const NodeId a = bus.attach();
+  for (const char* text : {"100#", "101#"}) CHECK(*bus.send(a, frame(text), at(0ns)));
+  CHECK(run(bus, at(1us)).empty());  // 100# is on the bus
+  bus.detach(a, Leftovers::send);
+  CHECK(bus.waiting(a) == 1);
+  CHECK(bus.room(a) == 0);
+  CHECK(run(bus).size() == 2);
+  CHECK(bus.waiting(a) == 0);
+  CHECK(bus.room(a) == 0);
+  CHECK(bus.counters(a).sent == 0);
+  CHECK(bus.faults(a).clean());
+  CHECK(bus.detach(a, Leftovers::withdraw) == 0);
+}
+
+TEST_CASE("a node without frames leaves at once") {
+  Arbiter bus;
+  const NodeId a = bus.attach();
+  bus.detach(a, Leftovers::send);
+  CHECK(bus.attach().index == a.index);
+}
+
+TEST_CASE("a frame that would be the next one is withdrawn with its node") {
+  Arbiter bus;
+  const NodeId a = bus.attach();
+  CHECK(*bus.send(a, frame("100#"), at(1us)));
+  CHECK(bus.next_event() != base::never);
+  CHECK(bus.detach(a, Leftovers::withdraw) == 1);
+  CHECK(bus.next_event() == base::never);
+  CHECK(run(bus).empty());
 }
 
 TEST_CASE("a place on the bus is used again, its old number is not") {

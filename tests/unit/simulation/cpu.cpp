@@ -107,6 +107,65 @@ TEST_CASE("a context switch and an interrupt cost what they are said to cost") {
   CHECK(setup.cpu.idle() == 988ms - 32us);
 }
 
+TEST_CASE("a nanosecond is time: of a context switch and of a job") {
+  Setup setup{{1ns, 0ns, ResourceProtocol::inheritance}};
+  setup.programs = {{0, {compute(1ns)}}};
+  setup.once(0, Level::low, 0ms);
+  setup.cpu.run_until(at(1s));
+  CHECK(setup.jobs[0][0].ended == at(2ns));
+}
+
+TEST_CASE("of two that are released at one moment the more urgent one starts first") {
+  Setup setup;
+  setup.programs = {{0, {compute(5ms)}}, {1, {compute(2ms)}}};
+  setup.once(0, Level::low, 1ms);
+  setup.once(1, Level::urgent, 1ms);
+  setup.cpu.run_until(at(1s));
+  CHECK(setup.jobs[1][0].started == at(1ms));
+  CHECK(setup.jobs[0][0].started == at(3ms));
+}
+
+TEST_CASE("of two of one level that are released at one moment both run") {
+  Setup setup;
+  setup.programs = {{0, {compute(5ms)}}, {1, {compute(1ms)}}};
+  setup.once(0, Level::medium, 1ms);
+  setup.once(1, Level::medium, 1ms);
+  setup.cpu.run_until(at(1s));
+  CHECK(setup.cpu.busy(Level::medium) == 6ms);
+}
+
+TEST_CASE("who waits for one resource does not run when another one is free again") {
+  Setup setup{{10us, 0us, ResourceProtocol::inheritance}};
+  const auto other = setup.cpu.add_resource();
+  setup.programs = {{0,
+                     {lock(setup.resource), lock(other), compute(2ms), unlock(other), compute(2ms),
+                      unlock(setup.resource)}},
+                    {1, {lock(setup.resource), compute(1ms), unlock(setup.resource)}}};
+  setup.once(0, Level::low, 0ms);
+  setup.once(1, Level::urgent, 1ms);
+  setup.cpu.run_until(at(1s));
+  // To low, to urgent, which waits, back to low for the rest of 4 ms, to urgent: four context switches.
+  CHECK(setup.jobs[1][0].ended == at(4ms + 1ms + 4 * 10us));
+}
+
+TEST_CASE("what a port may not be asked for is counted: arm and pend without the lock, and a second lock") {
+  Cpu cpu;
+  cpu.arm(at(1ms));
+  CHECK(cpu.misuses() == 1);
+  cpu.pend(Level::low);
+  CHECK(cpu.misuses() == 2);
+  {
+    const auto guard = cpu.lock();
+    cpu.arm(at(2ms));
+    cpu.pend(Level::low);
+    CHECK(cpu.misuses() == 2);
+    const auto again = cpu.lock();
+    CHECK(cpu.misuses() == 3);
+  }
+  const auto guard = cpu.lock();
+  CHECK(cpu.misuses() == 3);
+}
+
 TEST_CASE("within a level jobs follow each other and do not preempt") {
   Setup setup;
   setup.programs = {{0, {compute(5ms)}}, {1, {compute(1ms)}}};

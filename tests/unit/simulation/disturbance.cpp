@@ -12,6 +12,7 @@ using simulation::Disturbances;
 static_assert(Disturbance{100}.over() == 100 + 1 + 6 + 8 + 3);
 static_assert(Disturbance{100, 9}.over() == 100 + 1 + 9 + 8 + 3);
 static_assert(Disturbance{100, 12}.over() == 100 + 1 + 12 + 8 + 3);
+static_assert(Disturbance{}.boundary == 0 && Disturbance{}.flag_bits == 6);
 static_assert(Disturbance{100, 0}.over() == 118);
 static_assert(Disturbance{100, 100}.over() == 124);
 

@@ -56,6 +56,22 @@ TEST_CASE("a dongle's UART takes its time: 10 bits a byte") {
   CHECK(taken(dongle, at(17ms)) == "b\n|");
 }
 
+TEST_CASE("a dongle's UART has 38400 baud and room for 256 bytes, unless more is said") {
+  const DongleModel model;
+  CHECK(model.baud == 38'400);
+  CHECK(model.uart_room == 256);
+}
+
+TEST_CASE("a dongle's UART has at least 1 baud: 10 s a byte") {
+  for (const std::uint32_t baud : {0U, 1U}) {
+    Dongle<> dongle{DongleModel{.baud = baud, .uart_room = 256}};
+    dongle.link(true, at(0s));
+    CHECK(dongle.write(bytes("a\n"), at(0s)) == 2);
+    CHECK(taken(dongle, at(20s - 1ns)) == "");
+    CHECK(taken(dongle, at(20s)) == "a\n|");
+  }
+}
+
 TEST_CASE("a dongle's UART has so much room, and says what it did not take") {
   Dongle<> dongle{DongleModel{.baud = 10'000, .uart_room = 8}};
   dongle.link(true, at(0s));

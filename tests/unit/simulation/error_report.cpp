@@ -23,6 +23,7 @@ TEST_CASE("error passive and bus-off are in the report") {
   FaultConfinement sender;
   while (sender.state() == simulation::FaultState::error_active) sender.failed_to_send();
   const can::Frame passive = error_report(sender, true);
+  CHECK(passive.dlc == 8);
   CHECK((passive.id & can::error_class::controller) != 0);
   CHECK(passive.data[1] == can::controller_error::tx_passive);
   while (sender.state() != simulation::FaultState::bus_off) sender.failed_to_send();

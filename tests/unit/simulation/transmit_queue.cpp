@@ -9,6 +9,9 @@ using simulation::QueueOrder;
 using simulation::TransmitQueue;
 using simulation::WaitingFrame;
 
+// A classic frame that may start at once, unless more is said.
+static_assert(WaitingFrame{}.key == 0 && WaitingFrame{}.fd == 0 && WaitingFrame{}.ready == 0);
+
 /// A frame that is known by its key.
 WaitingFrame waiting(std::uint32_t key, std::uint64_t ready = 0) {
   return {.frame = {.id = key}, .key = key, .ready = ready};
