@@ -567,7 +567,7 @@ class VirtualBusServer {
       if (!client->peer || client->peer->uid != ::geteuid()) {
         refuse(*client, {.reason = virtual_bus::Reason::other_user,
                          .detail = client->peer ? client->peer->uid : UINT32_MAX});
-        continue;
+        continue;  // it is gone: nothing of it is kept
       }
       epoll_event event{};
       event.events = EPOLLIN;
