@@ -44,6 +44,15 @@ std::int64_t date_of(std::string_view date) {
   return asc::parse_date(asc::Words{date}).value_or(-1);
 }
 
+// Bits of the column of flags. [Vector, CAN Log & Trigger ASC Logging Format]
+static_assert(asc::remote_flag == 0x10 && asc::fd_flag == 0x1000);
+static_assert(asc::switch_flag == 0x2000 && asc::state_flag == 0x4000);
+static_assert(asc::same("AZ", "az") && asc::same("az", "az") && !asc::same("AZ", "ay"));
+// Length codes: a hexadecimal digit, or 10 to 15.
+static_assert(asc::parse_dlc("0") == 0 && asc::parse_dlc("9") == 9 && asc::parse_dlc("f") == 15);
+static_assert(asc::parse_dlc("10") == 10 && asc::parse_dlc("15") == 15 && !asc::parse_dlc("16"));
+static_assert(!asc::parse_dlc("") && !asc::parse_dlc("007") && !asc::parse_dlc("x"));
+
 Entry directed(Entry entry, Direction direction) {
   entry.direction = direction;
   return entry;
@@ -156,11 +165,29 @@ TEST_CASE("asc: dates in English and German, 12 and 24 hours") {
   CHECK(date_of("Tue Nov 14 12:00:00 am 2023") == 1'699'920'000 * second);  // midnight
   CHECK(date_of("Tue Nov 14 12:00:00 pm 2023") == 1'699'963'200 * second);
   CHECK(date_of("Tue Nov 14 00:00:00.123456789 2023") == 1'699'920'000 * second + 123'456'789);
-  for (const auto* wrong :
-       {"", "Tue", "Tue Nov 14", "Tue Nov 14 10:13 2023", "Tue Nov 14 10:13:20", "Tue Nov 31 10:13:20 2023",
-        "Tue Nux 14 10:13:20 2023", "Tue Nov 14 13:13:20 pm 2023", "Tue Nov 14 00:13:20 am 2023",
-        "Tue Nov 14 24:13:20 2023", "Tue Nov 14 10:60:20 2023", "Tue Nov 14 10:13:60 2023",
-        "Tue Nov 14 10:13:20 12023", "Tue Nov -4 10:13:20 2023", "Tue Nov 14 10:13:20.1234567890 2023"}) {
+  CHECK(date_of("Tue Nov 14 12:00:00 AM 2023") == 1'699'920'000 * second);
+  CHECK(date_of("Tue Nov 14 23:59:59.999999999 2023") == 1'700'006'399 * second + 999'999'999);
+  for (const auto* wrong : {"Tue Nov 14 x:13:20 2023",
+                            "Tue Nov 14 10:x:20 2023",
+                            "Tue Nov 14 10:13:x 2023",
+                            "Tue Nov x 10:13:20 2023",
+                            "Tue Nov 14 10:13:20 x",
+                            "Tue Nov 32 10:13:20 2023",
+                            "",
+                            "Tue",
+                            "Tue Nov 14",
+                            "Tue Nov 14 10:13 2023",
+                            "Tue Nov 14 10:13:20",
+                            "Tue Nov 31 10:13:20 2023",
+                            "Tue Nux 14 10:13:20 2023",
+                            "Tue Nov 14 13:13:20 pm 2023",
+                            "Tue Nov 14 00:13:20 am 2023",
+                            "Tue Nov 14 24:13:20 2023",
+                            "Tue Nov 14 10:60:20 2023",
+                            "Tue Nov 14 10:13:60 2023",
+                            "Tue Nov 14 10:13:20 12023",
+                            "Tue Nov -4 10:13:20 2023",
+                            "Tue Nov 14 10:13:20.1234567890 2023"}) {
     INFO(wrong);
     CHECK(date_of(wrong) == -1);
   }
@@ -175,10 +202,48 @@ TEST_CASE("asc: 0 to 9 digits of a second") {
   CHECK_FALSE(asc::parse_stamp("9223372036.854775808"));
   CHECK_FALSE(asc::parse_stamp("9999999999.999999999"));
   CHECK_FALSE(asc::parse_stamp("12345678901"));
+  CHECK_FALSE(asc::parse_stamp("00000000001"));
   CHECK_FALSE(asc::parse_stamp("9999999999"));
   CHECK_FALSE(asc::parse_stamp("0.1234567890"));
   CHECK_FALSE(asc::parse_stamp("1.2.3"));
   CHECK_FALSE(asc::parse_stamp("1e3"));
+}
+
+TEST_CASE("asc: without a head, times count from 1970 and numbers are hexadecimal") {
+  const Entry entry = entry_of("0.5 1 123 Rx d 1 7F", "");
+  CHECK(entry.time == at(second / 2));
+  CHECK(entry.id == 0x123);
+  CHECK(entry.data[0] == 0x7F);
+  const auto relative = read_all<AscReader>("base hex  timestamps relative\n0.5 1 123 Rx d 0\n");
+  CHECK(relative.entries.at(0).time == at(second / 2));
+}
+
+TEST_CASE("asc: any blanks lie between bytes, and some columns may be missing") {
+  for (const char* const line :
+       {"0.1 1 123 Rx d 3 11 22 33", "0.1 1 123 Rx d 3  11\t22   33 ", "0.1 1 123 Rx d 3 11\t22 33\t"}) {
+    const Entry entry = entry_of(line);
+    CHECK((entry.length == 3 && entry.data[0] == 0x11 && entry.data[1] == 0x22 && entry.data[2] == 0x33));
+  }
+  CHECK(entry_of("0.1 CANFD 1 Rx 123 0 0 1 1 7F").is_fd());  // neither flags nor what lies before them
+}
+
+TEST_CASE("asc: lines come out of a pipe when they come in") {
+  const std::string lines = head + "0.1 1 123 Rx d 0\n0.2 1 123 Rx d 0\n0.3 1 12";
+  test::Drops source{lines, lines.size()};
+  Input input{source};
+  AscReader reader{input};
+  std::vector<Entry> some(8);
+  CHECK(reader.read(some) == 2);
+  CHECK(source.reads == 1);
+}
+
+TEST_CASE("asc: where the source knows that it was cut, half a line is none") {
+  const std::string lines = head + "0.1 1 123 Rx d 0\n0.2 1 123 Rx d 0";
+  test::Drops source{lines, 1000, "cut"};
+  const auto log = log::testing::read_from<AscReader>(source, 8);
+  CHECK(log.entries.size() == 1);
+  REQUIRE(log.complained == 1);
+  CHECK(log.complaints[0].cause == Cause::truncated);
 }
 
 TEST_CASE("asc: relative times count from the line before, whatever it holds") {
@@ -239,6 +304,7 @@ TEST_CASE("asc: channels are interfaces") {
   const auto log =
       read_all<AscReader>(head + "0.1 3 1 Rx d 0\n0.1 1 1 Rx d 0\n0.1 CANFD 12 Rx 1 0 0 0 0 0 0 1000\n");
   CHECK(log.names == std::vector<std::string>{"can2", "can0", "can11"});
+  CHECK(read_all<AscReader>(head + "0.1 255 1 Rx d 0\n").names.at(0) == "can254");
 }
 
 TEST_CASE("asc: lines that are wrong, each with its cause") {
@@ -247,6 +313,7 @@ TEST_CASE("asc: lines that are wrong, each with its cause") {
   CHECK(cause_of("0.1e3 1 123 Rx d 0") == Cause::time);
   CHECK(cause_of("9223372036 1 123 Rx d 0") == Cause::time);  // with the date, beyond 2262
   CHECK(cause_of("0.1 256 123 Rx d 0") == Cause::syntax);
+  CHECK(cause_of("0.1 1x 123 Rx d 0") == Cause::syntax);
   CHECK(cause_of("0.1 1 123 Rx q 0") == Cause::syntax);
   CHECK(cause_of("0.1 1 800 Rx d 0") == Cause::identifier);
   CHECK(cause_of("0.1 1 20000000x Rx d 0") == Cause::identifier);
@@ -260,6 +327,10 @@ TEST_CASE("asc: lines that are wrong, each with its cause") {
   CHECK(cause_of("0.1 CANXL 1 Rx CBFF 0 0 123 0 0 0 0") == Cause::unsupported);
   CHECK(cause_of("0.1 CANFD 1 Up 123 0 0 0 0 0 0 1000") == Cause::syntax);
   CHECK(cause_of("0.1 CANFD 1 Rx 123 2 2 0 0 0 0 1000") == Cause::syntax);
+  CHECK(cause_of("0.1 CANFD 1 Rx 123 0 2 0 0 0 0 1000") == Cause::syntax);
+  CHECK(cause_of("0.1 CANFD 1 Rx 123 name 2 0 0 0 0 0 1000") == Cause::syntax);
+  CHECK(cause_of("0.1 CANFD 1 Rx 123 0 0 x 0 0 0 1000") == Cause::length);
+  CHECK(cause_of("0.1 CANFD 1 Rx 123 0 0 0 x 0 0 1000") == Cause::length);
   // A byte has two digits; fewer or more bytes than their code says.
   CHECK(cause_of("0.1 CANFD 1 Rx 123 0 0 8 8 1 2 3 4 5 6 7 8 0 0 1000") == Cause::length);
   CHECK(cause_of("0.1 CANFD 1 Rx 123 0 0 9 8 01 02 03 04 05 06 07 08 0 0 1000") == Cause::length);
@@ -314,6 +385,58 @@ TEST_CASE("asc: what is written") {
         "A6 A7 A8 A9 "
         "AA AB        0    0     5000 0 0 0 0 0\n"
         "End TriggerBlock\n");
+  CHECK_FALSE(writer.lost().any());
+}
+
+TEST_CASE("asc: the flags of a CAN FD frame are written twice: as digits, and in the column of flags") {
+  const Zone zone{"UTC0"};
+  const auto written = [](std::uint8_t flags) {
+    Interfaces interfaces;
+    interfaces.add("can0");
+    Entry entry{at(start), {0x7, 0, {}}};
+    entry.flags = static_cast<std::uint8_t>(flag::fd | flags);
+    AscWriter writer;
+    return log::testing::write_all(writer, std::vector{entry}, interfaces);
+  };
+  CHECK_THAT(written(0), Catch::Contains(" 0 0 0  0        0    0     1000 0 0"));
+  CHECK_THAT(written(flag::bit_rate_switch), Catch::Contains(" 1 0 0  0        0    0     3000 0 0"));
+  CHECK_THAT(written(flag::error_state), Catch::Contains(" 0 1 0  0        0    0     5000 0 0"));
+  CHECK_THAT(written(flag::bit_rate_switch | flag::error_state),
+             Catch::Contains(" 1 1 0  0        0    0     7000 0 0"));
+}
+
+TEST_CASE("asc: what is behind an identifier stands in the same column, however long that is") {
+  const Zone zone{"UTC0"};
+  const auto column_of = [](std::uint32_t id, can::Format format, bool fd) {
+    Interfaces interfaces;
+    interfaces.add("can0");
+    Entry entry{at(start), {id, 0, {}, format}};
+    if (fd) entry.flags = flag::fd;
+    AscWriter writer;
+    const std::string text = log::testing::write_all(writer, std::vector{entry}, interfaces);
+    const std::size_t line = text.find("   0.000000 ", text.find("measurement"));
+    REQUIRE(line != std::string::npos);
+    return text.find(fd ? " 0 0 0  0 " : "Rx   d 0", line) - line;
+  };
+  using enum can::Format;
+  for (const bool fd : {false, true}) {
+    const std::size_t column = fd ? 69 : 31;
+    CHECK(column_of(0x0, base, fd) == column);
+    CHECK(column_of(0x7FF, base, fd) == column);
+    CHECK(column_of(0x0, extended, fd) == column);
+    CHECK(column_of(0x1234567, extended, fd) == column);
+  }
+}
+
+TEST_CASE("asc: a log that begins before 1970 begins with a whole second") {
+  const Zone zone{"UTC0"};
+  Interfaces interfaces;
+  interfaces.add("can0");
+  AscWriter writer;
+  const std::vector<Entry> entries{{at(-second / 2), {0x1, 0, {}}}};
+  const std::string text = log::testing::write_all(writer, entries, interfaces);
+  CHECK(text.starts_with("date Wed Dec 31 11:59:59.000 pm 1969\n"));
+  CHECK_THAT(text, Catch::Contains("\n   0.500000 1  1 "));
   CHECK_FALSE(writer.lost().any());
 }
 
@@ -443,6 +566,7 @@ TEST_CASE("asc: what it is") {
   CHECK_FALSE(AscReader::recognises(""));
   CHECK_FALSE(AscReader::recognises("date,time,id\n"));
   CHECK_FALSE(AscReader::recognises("date of birth\n"));
+  CHECK_FALSE(AscReader::recognises("base of all\n"));
   CHECK_FALSE(AscReader::recognises("(1436509052.249713) can0 605#00D20000\n"));
 }
 

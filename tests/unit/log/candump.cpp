@@ -149,6 +149,9 @@ TEST_CASE("what is no line of candump's is refused by cause, and the rest is rea
   CHECK(refusal_of(begin + "123#0011_9") == Cause::length);
   CHECK(refusal_of(begin + "123#0011223344556677_8") == Cause::length);
   CHECK(refusal_of(begin + "123#0011223344556677_") == Cause::syntax);
+  CHECK(refusal_of(begin + "123#0011223344556677_0") == Cause::length);
+  CHECK(refusal_of(begin + "123#0011223344556677_99") == Cause::syntax);
+  CHECK(refusal_of(begin + "20000004#0004000000000000_9") == Cause::syntax);
   CHECK(refusal_of(begin + "123##") == Cause::syntax);
   CHECK(refusal_of(begin + "123##1000102030405060708") == Cause::length);  // 9 bytes
   CHECK(refusal_of(begin + "123##1" + std::string(130, '0')) == Cause::length);
@@ -157,6 +160,7 @@ TEST_CASE("what is no line of candump's is refused by cause, and the rest is rea
   CHECK(refusal_of(begin + "123#00 X") == Cause::syntax);
   CHECK(refusal_of(begin + "123#00 R R") == Cause::syntax);
   CHECK(refusal_of("(1436509052.249713) " + std::string(65, 'n') + " 123#") == Cause::syntax);
+  CHECK(Log{"(1436509052.249713) " + std::string(64, 'n') + " 123#"}.entries.size() == 1);
 }
 
 TEST_CASE("candump's longest frame writes its 64 bytes, and none behind them") {
@@ -275,6 +279,17 @@ TEST_CASE("candump's last line that is no beginning of one is not taken for one 
   CHECK(log.reader.complaints().count(Cause::syntax) == 1);
 }
 
+TEST_CASE("candump's line without an end is reported as too long, and the next one is read") {
+  std::string text = "(1.0) can0 123#\n";
+  text.append(log::Input::longest + 10, '0');
+  text += "\n(2.0) can0 124#\n";
+  const Log log{text};
+  CHECK(log.entries.size() == 2);
+  REQUIRE(log.reader.complaints().total() == 1);
+  CHECK(log.reader.complaints().first()[0].cause == Cause::too_long);
+  CHECK(log.reader.complaints().first()[0].place == log::Place{2, true});
+}
+
 TEST_CASE("candump's lines come out of a pipe when they come in") {
   test::Drops drops{"(1.0) can0 123#\n(2.0) can0 123#\n(3.0) ca", 32};
   log::Input input{drops};
@@ -323,6 +338,7 @@ TEST_CASE("candump's logs are recognised by a line, wherever it stands") {
   using log::CandumpReader;
   CHECK(CandumpReader::recognises("(1436509052.249713) can0 605#00D20000\n"));
   CHECK(CandumpReader::recognises("rubbish\n\n(0.0) vcan0 123##1\nmore"));
+  CHECK(CandumpReader::recognises("rubbish\n(0.0) vcan0 123##1\nmore"));
   CHECK_FALSE(CandumpReader::recognises(""));
   CHECK_FALSE(CandumpReader::recognises("(14365"));
   CHECK_FALSE(CandumpReader::recognises("timestamp,arbitration_id\n0.0,0x1\n"));

@@ -374,6 +374,7 @@ TEST_CASE("pcapng: a complaint says what is wrong with the block, and where it b
   CHECK(complaint(block(6, bytes("00000000 00000000 00000000 01000000 01000000"))) ==
         "a packet longer than its block");
   CHECK(complaint(block(6, bytes("00000000 00000000 00000000 00000000 00000000"))) == "a packet of 0 bytes");
+  CHECK(complaint(block(2, bytes("00000000 00000000 00000000 00000000 00000000"))) == "a packet of 0 bytes");
 }
 
 TEST_CASE("pcapng: any bit flipped, and every entry can exist") {
