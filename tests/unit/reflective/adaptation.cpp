@@ -31,6 +31,12 @@ static_assert(adapted_period(wide, 5) == 1s + 5us && adapted_period(wide, 2'097'
 static_assert(adapted_period(wide, 1'048'577) == 1s + 1'048'577us);
 constexpr Adaptation wider{.from = 0, .to = 1 << 30, .at_from = 1s, .at_to = 2s, .grain = 1ns};
 static_assert(adapted_period(wider, 1 << 29) == 1500ms);  // in parts of 1024
+// In parts of 3, of which there are 1'398'101: the one millionth of them is a second further.
+constexpr Adaptation thirds{
+    .from = 0, .to = 4'194'303, .at_from = 1s, .at_to = 1s + 1'398'101us, .grain = 1ns};
+static_assert(adapted_period(thirds, 3'000'000) == 2s);
+// A grain that is none is the smallest one.
+static_assert(adapted_period({.to = 100, .at_from = 10ns, .at_to = 20ns, .grain = 0ns}, 50) == 15ns);
 
 TEST_CASE("adaptation: within its bounds, in grains, and never back, for any numbers") {
   std::mt19937_64 random{5};

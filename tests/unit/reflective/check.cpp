@@ -87,6 +87,9 @@ struct Tables {
   }
 };
 
+// A finding without an index is of the first one.
+static_assert(Finding{}.where == 0 && Finding{}.other == 0);
+
 TEST_CASE("check: the guard is without mistakes") {
   CHECK(Tables{}.findings().empty());
 }
@@ -774,6 +777,15 @@ TEST_CASE("check: what is known of one value says nothing of another") {
     other = younger(4);
     other.watched = timed == age ? gap : age;
     CHECK(together(op, old, other, true));
+  }
+}
+
+TEST_CASE("check: an age or a gap is true from its limit on, up to the last one that there is") {
+  for (const Watched timed : {Watched::age, Watched::gap}) {
+    const Condition longest{
+        .watched = timed, .topic = guard::ring, .limit = std::numeric_limits<std::int64_t>::max()};
+    CHECK(together(guard::tables, longest, longest));
+    CHECK_FALSE(together(guard::tables, longest, longest, true));
   }
 }
 

@@ -7,6 +7,8 @@ namespace reflective_latency_test {
 using namespace ocm;
 using namespace ocm::reflective;
 
+static_assert(LatencyPart{}.time == 0);
+
 TEST_CASE("latency: the total is the sum of the parts, and settle is no part of it") {
   Latency latency{.bounded = true, .settle = 1'000};
   std::int64_t unit = 1;

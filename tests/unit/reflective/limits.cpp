@@ -1,5 +1,6 @@
 #include "ocm/reflective/limits.hpp"
 
+#include <array>
 #include <chrono>
 #include <random>
 
@@ -27,6 +28,9 @@ static_assert(limited(limit, -50, 0, 10ms) == -10);
 static_assert(limited(limit, 5, 0, 10ms) == 5);
 static_assert(limited(limit, 500, 0, 10s) == 200);
 static_assert(limited(limit, 500, 0, -1s) == 0);  // a clock that goes back moves nothing
+constexpr Limit fast{.topic = 3, .field = 1, .min = -100, .max = 200, .per_second = 2'000'000'000};
+static_assert(limited(fast, 50, 0, 1ns) == 2 && limited(fast, 50, 0, -1s) == 0);
+static_assert(longest_pause == 100ms);  // decided
 
 // At once, from anywhere to anywhere.
 constexpr Limit any{.min = INT64_MIN, .max = INT64_MAX};
@@ -65,6 +69,30 @@ TEST_CASE("limits: a set point comes up as fast as it may, from rest or from wha
   CHECK(other[1] == 9999);
   limiter.enter({});
   CHECK(limiter.permit(3, other, start) == 0);
+}
+
+TEST_CASE("limits: the first set point is at rest, however fast it may change") {
+  const std::array<Limit, 1> limits_of_fast{fast};
+  Limiter<1> limiter;
+  limiter.enter(limits_of_fast);
+  std::int64_t raw[] = {0, 150};
+  limiter.permit(3, raw, base::Time{1s});
+  CHECK(raw[1] == 0);
+}
+
+TEST_CASE("limits: not even the time that one step takes is saved up") {
+  const base::Time start{1s};
+  Limiter<1> limiter;
+  limiter.enter(limits);
+  const auto at = [&](base::Duration after, std::int64_t wanted) {
+    std::int64_t raw[] = {0, wanted};
+    limiter.permit(3, raw, start + after);
+    return raw[1];
+  };
+  CHECK(at(0ms, 0) == 0);
+  CHECK(at(1ms, 0) == 0);
+  CHECK(at(1500us, 200) == 0);
+  CHECK(at(2ms, 200) == 1);
 }
 
 TEST_CASE("limits: time in which it asks for no more is not saved up") {

@@ -1,8 +1,11 @@
 #include "ocm/reflective/operator.hpp"
 
+#include <array>
 #include <bit>
+#include <chrono>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -12,10 +15,22 @@ namespace reflective_operator_test {
 
 using namespace ocm;
 using namespace ocm::reflective;
+using namespace std::chrono_literals;
 
 static_assert(topic_index(amiro::catalogue, "ring") == topic_index(amiro::catalogue, "proximity_ring"));
 static_assert(amiro::catalogue.topics[topic_index(amiro::catalogue, "gyro")].id == amiro::Gyroscope::id);
 static_assert(topic_index(amiro::catalogue, "nothing") == none);
+
+// What a table does not say.
+static_assert(none == 0xFFFF);
+static_assert(Limit{}.field == 0 && Limit{}.min == 0 && Limit{}.max == 0 && Limit{}.per_second == 0);
+static_assert(Adaptation{}.frame == 0 && Adaptation{}.field == 0);
+static_assert(Adaptation{}.from == 0 && Adaptation{}.to == 0);
+static_assert(Adaptation{}.grain == 1ms && Adaptation{}.every == 1s);
+static_assert(Condition{}.frame == 0 && Condition{}.field == 0);
+static_assert(Condition{}.limit == 0 && Condition{}.hysteresis == 0);
+static_assert(Term{}.condition == 0 && Transition{}.precedence == 0);
+static_assert(Operator{}.initial == 0 && Operator{}.fall_back == 0);
 
 constexpr Transition from_any{.to = 1};
 constexpr Transition from_two{.from = 2, .to = 1};
@@ -61,6 +76,30 @@ TEST_CASE("operator: what is not a number") {
   CHECK(is_number(float_32, std::bit_cast<std::uint32_t>(-std::numeric_limits<float>::infinity())));
   CHECK(is_number(float_64, std::bit_cast<std::int64_t>(1.5)));
   CHECK(is_number(signed_16, -1));
+  // Infinity is one, and the next bits are none. [IEEE 754]
+  CHECK(is_number(float_32, 0x7F80'0000));
+  CHECK_FALSE(is_number(float_32, 0x7F80'0001));
+  CHECK(is_number(float_64, 0x7FF0'0000'0000'0000));
+  CHECK_FALSE(is_number(float_64, 0x7FF0'0000'0000'0001));
+}
+
+TEST_CASE("operator: streams that other configurations ask for and one does not, each once") {
+  const std::array<Stream, 2> first{{{0, 50ms}, {1, 50ms}}};
+  const std::array<Stream, 2> second{{{1, 50ms}, {2, 50ms}}};
+  const std::array<Stream, 3> third{{{0, 50ms}, {2, 50ms}, {3, 50ms}}};
+  const std::array<Configuration, 3> configurations{
+      {{"a", first, {}, {}, {}}, {"b", second, {}, {}, {}}, {"c", third, {}, {}, {}}}};
+  Operator op;
+  op.configurations = configurations;
+  const auto elsewhere = [&](std::size_t configuration) {
+    std::vector<int> topics;
+    for_each_stream_elsewhere(op, configuration,
+                              [&](const Stream& stream) { topics.push_back(stream.topic); });
+    return topics;
+  };
+  CHECK(elsewhere(0) == std::vector{2, 3});
+  CHECK(elsewhere(1) == std::vector{0, 3});
+  CHECK(elsewhere(2) == std::vector{1});
 }
 
 }  // namespace reflective_operator_test

@@ -159,6 +159,20 @@ std::vector<Doubt> doubts(const Operator& op, std::uint32_t bit_rate = 1'000'000
   return all;
 }
 
+static_assert(Sampling{}.time == 0 && Doubt{}.sampling == 0 && Doubt{}.needs == 0);
+
+TEST_CASE("proof: a change on a bus that is nearly full has a bound all the same") {
+  // 90 of 100 us are another's: what waits, about 0.5 ms, comes to its end after some 5 ms, in 50 steps.
+  const std::array<analysis::Message, 1> busy{
+      {{.cost = 90'000, .period = 100'000, .deadline = analysis::unbounded}}};
+  Operator op = tables;
+  op.others = busy;
+  const std::int64_t nearly_full = Proof<32>{op, 1'000'000}.settling(0, 1);
+  CHECK(nearly_full != analysis::unbounded);
+  CHECK(nearly_full > settling + 2'000'000);
+  CHECK(nearly_full < 20'000'000);
+}
+
 TEST_CASE("proof: a change that takes longer than it may, to the nanosecond") {
   Operator op = tables;
   op.settle = base::Duration{settling};

@@ -22,6 +22,14 @@ using Kind = Event::Kind;
 constexpr Room room{.conditions = 6, .monitors = 3, .streams = 3, .entry = 1, .limits = 1, .adaptations = 1};
 static_assert(fits(guard::tables, room));
 
+// What is not said.
+static_assert(Room{}.conditions == 64 && Room{}.monitors == 32 && Room{}.streams == 32);
+static_assert(Room{}.entry == 16 && Room{}.limits == 16 && Room{}.adaptations == 8);
+static_assert(Event{}.value == 0);
+static_assert(SupervisorCounters{} == SupervisorCounters{0, 0, 0, 0, 0, 0, 0});
+// A switch and a refusal, set points, and of each stream a stop and a request.
+static_assert(Room{}.actions() == 82 && Room{.streams = 3, .entry = 1}.actions() == 9);
+
 // All of it is a constant expression: a guard that stops the motors before an obstacle.
 constexpr bool stops_before_an_obstacle() {
   Supervisor<room> supervisor{guard::tables};
@@ -82,6 +90,13 @@ TEST_CASE("supervisor: it starts in the initial configuration, asks for its stre
   CHECK(run.actions[2].topic == guard::ring);
   CHECK(run.actions[3].frame == protocol::stop(amiro::Odometry::id));
   CHECK(run.actions[4].frame == *protocol::publish_every(amiro::PowerStatus::id, 1000ms));
+}
+
+TEST_CASE("supervisor: started again it does no more than at its start") {
+  Run run;
+  const auto kinds = run.kinds();
+  run.take(run.supervisor.start(run.now + 1s));
+  CHECK(run.kinds() == kinds);
 }
 
 TEST_CASE("supervisor: a switch commands first, then stops, then asks; what goes on is left alone") {
@@ -269,6 +284,7 @@ TEST_CASE("supervisor: requests that lead nowhere are refused, and counted") {
   for (const std::int64_t asked : {-1, 3, 99}) {
     run.ask(60ms, asked);
     CHECK(run.kinds() == std::vector{refused});
+    CHECK(run.actions[0].to == none);
   }
   run.ask(60ms, guard::stopped);
   run.ask(60ms, guard::driving);  // only the monitor leads there
@@ -403,6 +419,78 @@ TEST_CASE("supervisor: rates are counted in windows, gaps last until two samples
   run.ask(60ms, guard::idle);
   CHECK(run.supervisor.condition(2) == Truth::no);  // it counts from zero
   CHECK(run.supervisor.condition(1) == Truth::unknown);
+}
+
+TEST_CASE("supervisor: a rate is 0 in a window without samples, and starts at 0 in each") {
+  std::vector<Condition> conditions{{.name = "two at most",
+                                     .watched = Watched::rate,
+                                     .is = Is::below,
+                                     .topic = guard::ring,
+                                     .limit = 3,
+                                     .window = 100ms},
+                                    {.name = "none",
+                                     .watched = Watched::rate,
+                                     .is = Is::below,
+                                     .topic = guard::ring,
+                                     .limit = 1,
+                                     .window = 100ms}};
+  Operator op = guard::tables;
+  op.conditions = conditions;
+  op.monitors = {};
+  op.transitions = op.transitions.subspan(3);
+  op.initial = guard::driving;
+  Run run;
+  run.supervisor = Supervisor<room>{op};
+  run.take(run.supervisor.start(run.now));
+  for (int window = 0; window < 2; ++window) {
+    for (int i = 0; i < 2; ++i) run.ring(30ms, nothing);
+    run.step(40ms);
+    CHECK(run.supervisor.condition(0) == Truth::yes);
+    CHECK(run.supervisor.condition(1) == Truth::no);
+  }
+  run.step(250ms);  // two whole windows
+  CHECK(run.supervisor.condition(1) == Truth::yes);
+  run.ask(10ms, guard::idle);  // without the ring
+  run.step(500ms);
+  CHECK(run.supervisor.condition(0) == Truth::unknown);
+}
+
+TEST_CASE("supervisor: a rate may have a window of a nanosecond") {
+  std::vector<Condition> conditions{
+      {.name = "any", .watched = Watched::rate, .topic = guard::ring, .window = 1ns}};
+  Operator op = guard::tables;
+  op.conditions = conditions;
+  op.monitors = {};
+  op.transitions = op.transitions.subspan(3);
+  op.initial = guard::driving;
+  Run run;
+  run.supervisor = Supervisor<room>{op};
+  run.take(run.supervisor.start(run.now));
+  run.ring(10ns, nothing);
+  CHECK(run.supervisor.condition(0) == Truth::no);
+  run.step(1ns);
+  CHECK(run.supervisor.condition(0) == Truth::yes);
+}
+
+TEST_CASE("supervisor: refusals count from zero in each configuration") {
+  std::vector<Condition> conditions{{.name = "any", .watched = Watched::refusals, .limit = 0},
+                                    {.name = "two", .watched = Watched::refusals, .limit = 1}};
+  Operator op = guard::tables;
+  op.conditions = conditions;
+  op.monitors = {};
+  op.transitions = op.transitions.subspan(3);
+  Run run;
+  run.supervisor = Supervisor<room>{op};
+  run.take(run.supervisor.start(run.now));
+  for (const auto next : {guard::driving, guard::idle}) {
+    CHECK(run.supervisor.condition(0) == Truth::no);
+    run.step(1ms, {.kind = Kind::refusal});
+    CHECK(run.supervisor.condition(0) == Truth::yes);
+    CHECK(run.supervisor.condition(1) == Truth::no);
+    run.step(1ms, {.kind = Kind::refusal});
+    CHECK(run.supervisor.condition(1) == Truth::yes);
+    run.ask(60ms, next);
+  }
 }
 
 /// What the tables mean, written down once more without them: the configuration after an event, given what is
