@@ -81,6 +81,7 @@ TEST_CASE("calendar: months in English and German") {
   CHECK(month_of("M\xE4r") == 3);       // Latin-1
   CHECK(month_of("M\xC3\xA4rz") == 3);  // UTF-8
   CHECK(month_of("Mrz") == 3);
+  CHECK(month_of("M\x7Fr") == 0);
   CHECK(month_of("Mai") == 5);
   CHECK(month_of("Okt") == 10);
   CHECK(month_of("Dez") == 12);

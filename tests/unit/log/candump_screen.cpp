@@ -104,6 +104,14 @@ TEST_CASE("times since the first frame, and since the frame before") {
             " (000.200000)  can0  605   [0]\n") == std::vector<std::int64_t>{0, 100, 400, 600});
 }
 
+TEST_CASE("times since the frame before add up to what comes within a second of the last one that there is") {
+  std::string lines;
+  for (int i = 0; i < 9; ++i) lines += " (999999999.000000)  can0  605   [0]\n";
+  lines += " (000.000000)  can0  605   [0]\n";  // 8'999'999'991 s; the last one is 9'223'372'036.854'775'807
+  CHECK(times_ms(lines + " (223372044.000000)  can0  605   [0]\n").back() == 9'223'372'035'000);
+  CHECK(times_ms(lines + " (223372045.000000)  can0  605   [0]\n").back() == 8'999'999'991'000);
+}
+
 TEST_CASE("candump -e explains an error frame below it, and -d counts what it lost") {
   const Log log{
       "  can0  20000004   [8]  00 08 00 00 00 00 60 00   ERRORFRAME\n"
@@ -158,6 +166,41 @@ TEST_CASE("a last line of candump's that is cut off is said to be, a prompt is n
   }
   for (const char* after : {"^C", "me@robot:~$ "})
     CHECK(Log{line + "\n" + after}.reader.complaints().count(Cause::syntax) == 1);
+}
+
+TEST_CASE("a line of candump's without an end is reported as too long, and the next one is read") {
+  std::string text(log::Input::longest + 10, '0');
+  text += "\n  can0  123   [1]  7F\n";
+  const Log log{text};
+  CHECK(log.entries.size() == 1);
+  REQUIRE(log.reader.complaints().total() == 1);
+  CHECK(log.reader.complaints().first()[0].cause == Cause::too_long);
+  CHECK(log.reader.complaints().first()[0].place == log::Place{1, true});
+}
+
+TEST_CASE(
+    "what candump shows comes out of a pipe when it comes in, and half a line of one that is cut is none") {
+  const std::string text = "  can0  123   [1]  7F\n  can0  124   [1]  7F\n  can0  125   [1]  7F";
+  for (const char* const failure : {"", "cut"}) {
+    test::Drops drops{text, text.size(), failure};
+    log::Input input{drops};
+    log::CandumpScreenReader reader{input};
+    log::Entry entries[8];
+    CHECK(reader.read(entries) == 2);
+    CHECK(drops.reads == 1);
+    const bool cut = failure[0] != '\0';
+    CHECK(reader.read(entries) == (cut ? 0 : 1));
+    CHECK(reader.complaints().count(Cause::truncated) == (cut ? 1 : 0));
+  }
+}
+
+TEST_CASE("more interfaces than any log has are reported in what candump shows, too") {
+  std::string text;
+  for (std::size_t i = 0; i <= log::Interfaces::most; ++i)
+    text += "  c" + std::to_string(i) + "  123   [0]\n";
+  const Log log{text};
+  CHECK(log.entries.size() == log::Interfaces::most);
+  CHECK(log.reader.complaints().count(Cause::unsupported) == 1);
 }
 
 TEST_CASE("other logs are not taken for it") {

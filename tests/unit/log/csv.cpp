@@ -211,6 +211,31 @@ TEST_CASE("rows that are cut anywhere lose the last at most") {
   }
 }
 
+TEST_CASE("a row without an end is reported as too long, and the next one is read") {
+  std::string text = head;
+  text.append(log::Input::longest + 10, '0');
+  text += "\n0.0,0x1,0,0,0,0,\n";
+  const Log log{text};
+  CHECK(log.entries.size() == 1);
+  REQUIRE(log.reader.complaints().total() == 1);
+  CHECK(log.reader.complaints().first()[0].cause == Cause::too_long);
+  CHECK(log.reader.complaints().first()[0].place == log::Place{2, true});
+}
+
+TEST_CASE("rows come out of a pipe when they come in") {
+  const std::string text = head + "0.0,0x1,0,0,0,0,\n0.0,0x2,0,0,0,0,\n0.0,0x";
+  test::Drops drops{text, text.size()};
+  log::Input input{drops};
+  log::CsvReader reader{input};
+  Entry entries[8];
+  CHECK(reader.read(entries) == 2);
+  CHECK(drops.reads == 1);
+}
+
+TEST_CASE("the head line is one as the first line alone") {
+  CHECK(refusal_of(log::csv::head) == Cause::syntax);
+}
+
 TEST_CASE("python-can's rows are recognised by their head line") {
   CHECK(log::CsvReader::recognises(head + "0.0,0x1,0,0,0,0,\n"));
   CHECK_FALSE(log::CsvReader::recognises("timestamp,arbitration_id"));
