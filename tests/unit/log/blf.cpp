@@ -350,6 +350,59 @@ TEST_CASE("blf: any bit flipped, and every entry can exist") {
   }
 }
 
+TEST_CASE("blf: a complaint says what is wrong, and where") {
+  struct Case {
+    std::string behind_head;
+    Cause cause;
+    std::string_view detail;
+    std::size_t place, entries;
+  };
+  const auto sized = [](std::string object, std::uint32_t size) {
+    std::memcpy(object.data() + 8, &size, sizeof size);
+    return object;
+  };
+  const std::string one = container(message);
+  const std::size_t begin = head.size();
+  for (const Case& each : std::initializer_list<Case>{
+           {container(sized(message, 15) + message), Cause::syntax, "an object of 15 bytes", begin, 1},
+           {one + container(sized(message, 0x7FFF'FFFF) + message), Cause::too_long,
+            "an object of 2147483647 bytes", begin + 80, 2},
+           {one + "xxxx" + one, Cause::syntax, "no object begins here", begin + 80, 2},
+           {container(message + "xxxx" + message), Cause::syntax, "no object begins in the container", begin,
+            2},
+           {one + container(message.substr(0, 20)), Cause::truncated, "an object", begin + 80, 1},
+           {one + "LOB", Cause::truncated, "the beginning of an object", begin + 80, 1},
+           {one + std::string(4, '\0'), Cause::truncated, "the beginning of an object", begin + 80, 1},
+       }) {
+    CAPTURE(each.detail);
+    const auto log = read_blf(head + each.behind_head);
+    CHECK(log.entries.size() == each.entries);
+    REQUIRE(log.complained == 1);
+    CHECK(log.complaints[0].cause == each.cause);
+    CHECK(log.complaints[0].detail == each.detail);
+    CHECK(log.complaints[0].place == Place{each.place});
+  }
+  const auto cut = read_blf(head + one + one.substr(0, 70));
+  REQUIRE(cut.complained == 2);
+  CHECK(cut.complaints[0].detail == "an object, 70 of 80 bytes");
+  CHECK(cut.complaints[1].detail == "an object");
+  for (const std::size_t size : {std::size_t{4}, begin - 1}) {
+    const auto headless = read_blf(head.substr(0, size));
+    REQUIRE(headless.complained == 1);
+    CHECK(headless.complaints[0].cause == Cause::truncated);
+    CHECK(headless.complaints[0].detail == "the file's head");
+  }
+  CHECK(read_blf("").complained == 0);
+}
+
+TEST_CASE("blf: up to three bytes between objects are filling") {
+  for (const std::size_t bytes_between : {1U, 2U, 3U}) {
+    const std::string filling(bytes_between, '\0');
+    CHECK(read_blf(head + container(message) + filling + container(message) + filling).complained == 0);
+    CHECK(read_blf(head + container(message + filling + message + filling)).complained == 0);
+  }
+}
+
 TEST_CASE("blf: what it is not") {
   CHECK_FALSE(BlfReader::recognises("LOG"));
   const auto log = read_blf(std::string(200, 'x'));
