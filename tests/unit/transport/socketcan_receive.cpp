@@ -23,7 +23,7 @@ using transport::SocketCan;
 using Waits = std::vector<test::PlayedKernel::Wait>;
 
 constexpr base::Time at(base::Duration after) {
-  return base::Time{500'000h} + after;
+  return base::Time{300'000h} + after;  // before the played clock begins
 }
 
 struct Scene {
