@@ -489,6 +489,17 @@ TEST_CASE("check: what each kind of condition compares with, at its ends") {
   }
 }
 
+TEST_CASE("check: and, or and not look at no topic") {
+  // The first of all conditions is of the ring, which idle does not stream; that of the bus is of no topic.
+  constexpr std::array<Term, 2> inverted{{{.condition = guard::bad_bus}, {.op = Op::negation}}};
+  constexpr std::array<Term, 3> either{
+      {{.condition = guard::bad_bus}, {.condition = guard::bad_bus}, {.op = Op::any}}};
+  constexpr std::array<Term, 1> near{{{.condition = guard::near}}};
+  CHECK(sees(guard::tables, guard::idle, {{}, inverted, {}}));
+  CHECK(sees(guard::tables, guard::idle, {{}, either, {}}));
+  CHECK_FALSE(sees(guard::tables, guard::idle, {{}, near, {}}));
+}
+
 TEST_CASE("check: monitors and transitions, and where they stand") {
   judge({
       {"as long as nothing", [](Tables& t) { t.monitors[1].lasting = 0ns; }},
