@@ -182,6 +182,16 @@ class Mutate(Case):
                 self.assertEqual(list((self.tree / "build-mutate").iterdir()), [], "and nothing is left")
 
 
+class Guest(unittest.TestCase):
+    def test_the_name_of_a_shared_folder_is_no_command(self):
+        with tempfile.TemporaryDirectory(prefix="it's$(id>&2);&") as folder:
+            file = pathlib.Path(folder) / "word"
+            file.write_text("hello\n", encoding="utf-8")
+            done = subprocess.run([ROOT / "scripts" / "guest", "-s", folder, "cat", file], stdin=subprocess.DEVNULL, capture_output=True,
+                                  text=True, check=False, timeout=250)
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "hello\n", ""))
+
+
 class Bench(Case):
     def test_the_list_needs_no_build(self):
         done = self.run_script("bench", "--list")
