@@ -197,10 +197,11 @@ void print_help(const std::string& text) {
 /// "-.1m/s" is a number and not an option: "-0.1m/s" is what the parser of options takes for one.
 std::vector<std::string> words_of(int argc, char** argv) {
   std::vector<std::string> result;
-  // `help drive` is `drive --help`, as in other programs with verbs.
-  const bool asks_help = argc > 1 && argv[1] == std::string_view{"help"};
-  if (asks_help) result.emplace_back("--help");
-  for (int i = argc - 1; i > (asks_help ? 1 : 0); --i) {  // CLI11 takes them from the back
+  // `help drive` is `drive --help`, as in other programs with verbs; `help help` is help.
+  int first = 1;
+  while (first < argc && argv[first] == std::string_view{"help"}) ++first;
+  if (first > 1) result.emplace_back("--help");
+  for (int i = argc - 1; i >= first; --i) {  // CLI11 takes them from the back
     std::string word = argv[i];
     if (word.size() > 2 && word.starts_with("-.") && word[2] >= '0' && word[2] <= '9') word.insert(1, "0");
     result.push_back(std::move(word));

@@ -48,6 +48,7 @@ class Usage(Case):
             self.assertEqual(out.count("--help"), 1)
             self.assertNotRegex(out, r"(?i)option group|are allowed")  # words of the parser, not ours
         self.assertEqual(self.run_tool("help"), self.run_tool("--help"))
+        self.assertEqual(self.run_tool("help", "help"), self.run_tool("--help"))
         self.assertEqual(self.run_tool("help", "drive"), self.run_tool("drive", "--help"))
         self.assertIn("amiroctl ", self.run_tool("--version")[0])
         for verb in ("listen", "decode"):
