@@ -58,6 +58,8 @@ class Timeline {
   void forgive_a_stop() { stood_still_ = {}; }
   /// What is sent next sets the robot in motion, although it is no set point of the motors.
   void expect_motion() { outgoing_.otherwise_after_the_next(still_moving); }
+  /// The caller says itself that the board is silent: finish() does not.
+  void leave_silence_to_caller() { answer_is_due_ = false; }
   /// Leaves if another program that commands the motors was heard, where one is refused. Before a hold that
   /// may begin later; `carry_out` looks, too.
   void expect_no_other();

@@ -155,6 +155,8 @@ void behave(Session& session, const BehaveOptions& options, int& exit_code) {
                           *protocol::Period::from(progress_period), watch->sensor().priority}));
     asked = true;
   };
+  const auto begun = Clock::now();
+  const bool answered = watch && watch->heard();
   if (asked) ask_progress();
   if (watch) watch->begin();
   ended_by_another = false;
@@ -176,7 +178,14 @@ void behave(Session& session, const BehaveOptions& options, int& exit_code) {
                                                         : "stopped";
   timeline.rest();
   if (asked) ask(protocol::stop(watch->sensor().id, watch->sensor().priority));
+  if (watch) timeline.leave_silence_to_caller();
   if (!timeline.finish()) exit_code = exit_failure;
+  const bool could_answer = timeline.has_asked() || Clock::now() - begun >= longest_silence;
+  if (watch && !answered && !watch->heard() && could_answer && goes_on && exit_code == exit_success)
+    fail({fmt::format("behave: no {} came, so nothing shows that {} has done it", watch->sensor().name,
+                      catalogue.board_name(topic)),
+          fmt::format("is board {} powered and on {}? See `amiroctl doctor`", catalogue.board_name(topic),
+                      bus->name())});
   if (early) fail({fmt::format("behave: {} was ended: {}", options.which, how), remedy_for(how)});
   if (!goes_on) exit_code = exit_code_after_interrupt(exit_success);
 }

@@ -143,6 +143,7 @@ void travel(Session& session, const TravelOptions& options, int& exit_code) {
   if (!watch.over()) end.frames.push_back(client::set_point(topic, {}, options.priority));
   if (asked) end.frames.push_back(protocol::stop(sensor.id, sensor.priority));
   timeline.carry_out_once(end);
+  if (silent) timeline.leave_silence_to_caller();
   const bool taken = timeline.finish();
   const std::string doctor = fmt::format("is board {} powered and on {}? See `amiroctl doctor`",
                                          catalogue.board_name(topic), bus->name());

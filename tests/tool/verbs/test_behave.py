@@ -101,6 +101,13 @@ class Behave(Case):
         self.assertEqual(behave.returncode, 1, err)
         self.assertIn("follow was ended: stopped", err)
 
+    def test_a_board_that_is_off(self):
+        self.start_sim("--without", "di_wheel_drive")
+        for arguments in (("--for", "100ms"), ("--force", "--for", "700ms")):
+            _, err = self.run_tool("behave", "follow", *arguments, code=1)
+            self.assertTrue(err.endswith("amiroctl: behave: no behaviour came, so nothing shows that di_wheel_drive has done it\n"
+                                         "          is board di_wheel_drive powered and on sim? See `amiroctl doctor`\n"), err)
+
     def test_killed(self):
         self.start_sim()
         for which in ("follow", "avoid"):
