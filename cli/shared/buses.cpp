@@ -2,9 +2,12 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "ocm/transport/interfaces.hpp"
 #include "ocm/transport/pty.hpp"
@@ -13,6 +16,7 @@
 #include "ocm/transport/virtual_bus.hpp"
 
 #include "cli/shared/messages.hpp"
+#include "cli/words/suggestion.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -46,6 +50,21 @@ AnyBus open_simulated(const std::string& path) {
   return any(std::move(opened));
 }
 
+AnyBus open_interface(const std::string& name) {
+  auto opened = transport::SocketCan::open(name);
+  if (opened) return any(std::move(opened));
+  // "simm" and "scan:/dev/ttyACM0" are no interfaces, and one bus is always there under its name.
+  const std::string kind = name.substr(0, name.find(':'));
+  const bool has_address = kind.size() != name.size();
+  const std::string_view near =
+      words::nearest(kind, has_address ? std::vector<std::string_view>{"sim", "slcan"}
+                                       : std::vector<std::string_view>{"sim"});
+  if (!near.empty())
+    return transport::Failure{opened.error.what,
+                              fmt::format("did you mean '{}{}'?", near, name.substr(kind.size()))};
+  return std::move(opened.error);
+}
+
 }  // namespace
 
 BusName parse_bus_name(std::string_view name) {
@@ -69,7 +88,7 @@ AnyBus open_bus(const BusName& name) {
     case BusName::Kind::interface:
       break;
   }
-  return any(transport::SocketCan::open(name.address));
+  return open_interface(name.address);
 }
 
 void expect_answer(std::string_view name) {

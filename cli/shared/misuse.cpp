@@ -11,6 +11,7 @@
 #include "cli/shared/messages.hpp"
 #include "cli/shared/usage.hpp"
 #include "cli/words/suggestion.hpp"
+#include "generator/spec/edit_distance.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -27,13 +28,15 @@ std::string remedy_for(const std::string& typed, const std::vector<std::string>&
   return near.empty() ? listed : fmt::format("did you mean '{}'?", near);
 }
 
-/// Those of the verb, and of those that it is a verb of.
-std::vector<std::string> options_of(Verb verb) {
+/// Those of the verb, and of those that it is a verb of, which may be meant.
+std::vector<std::string> options_of(Verb verb, std::string_view typed) {
   std::vector<std::string> names;
   for (; verb; verb = verb.parent())
     for (const Option& option : verb.options())
       for (const std::string& name : option.long_names())
         if (!option.is_hidden() && !option.is_former("--" + name)) names.push_back("--" + name);
+  // Which every verb has: of other short words it is the nearest by accident.
+  if (spec::edit_distance(typed, "--help", 1) > 1) std::erase(names, "--help");
   return names;
 }
 
@@ -54,7 +57,7 @@ std::string help_of(Verb program, Verb verb) {
 Misuse unknown_word(Verb program, Verb verb, const std::string& word) {
   if (word.size() > 1 && word.front() == '-') {
     const std::string name = word.substr(0, word.find('='));
-    const auto known = options_of(verb);
+    const auto known = options_of(verb, name);
     const std::string_view same = same_time(name, known);
     return {fmt::format("unknown option '{}'", name),
             !same.empty()
@@ -64,6 +67,7 @@ Misuse unknown_word(Verb program, Verb verb, const std::string& word) {
   if (verb.verbs().empty()) return {fmt::format("unexpected argument '{}'", word), "usage: " + usage(verb)};
   std::vector<std::string> known;
   for (const Verb each : verb.verbs_for_all()) known.push_back(each.name());
+  if (verb == program) known.emplace_back("help");
   return {fmt::format("unknown verb '{}'", word),
           remedy_for(word, known, fmt::format("`{}` lists the verbs", help_of(program, verb)))};
 }

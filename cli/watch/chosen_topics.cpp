@@ -23,7 +23,8 @@ std::vector<const protocol::Topic*> chosen_topics(std::string_view verb, const p
     if (found) continue;
     if (logs::names_file(word))
       fail({fmt::format("{}: no topic '{}', which names a file", verb, word),
-            "decode, stats and plot read logs; `amiroctl list` shows the topics"},
+            verb == "record" ? fmt::format("write it with -o {}; `amiroctl list` shows the topics", word)
+                             : "decode, stats and plot read logs; `amiroctl list` shows the topics"},
            exit_usage);
     fail({fmt::format("{}: no topic '{}'", verb, word), words::topic_suggestion(catalogue, word)},
          exit_usage);

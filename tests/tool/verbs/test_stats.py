@@ -320,6 +320,7 @@ class Stats(Case):
             _, err = self.run_tool(verb, "drive.log", code=2)
             self.assertIn(f"{verb}: no topic 'drive.log', which names a file", err)
             self.assertNotIn("one of:", err)
+            self.assertIn("-o drive.log" if verb == "record" else "decode, stats and plot read logs", err)
         path = self.log([(0, self.GYRO)])
         _, err = self.run_tool("stats", path, "live", code=2)
         self.assertIn("live is the bus", err)

@@ -34,6 +34,9 @@ class Usage(Case):
         self.refused([])
         self.refused(["frobnicate"])
         self.refused(["help", "frobnicate"], "unknown verb 'frobnicate'")
+        self.refused(["hlep"], "did you mean 'help'?")
+        self.refused(["map", "--cell"], "`amiroctl map --help` lists the options")  # and not: did you mean '--help'
+        self.refused(["map", "--hlep"], "did you mean '--help'?")
         self.refused(["publish", "gyro", "--wat"])
 
     def test_help_and_version(self):
@@ -59,6 +62,8 @@ class Usage(Case):
         self.refused(["once", "gyro"], "amiroctl sim", "ip link set can0 up", code=1)
         self.refused(["--bus", "sim", "once", "gyro"], "amiroctl sim", code=1)
         self.refused(["--bus", "can7", "once", "gyro"], code=1)
+        for typed, meant in (("simm", "sim"), ("sin:/tmp/x", "sim:/tmp/x"), ("scan:/dev/ttyACM0", "slcan:/dev/ttyACM0")):
+            self.refused(["--bus", typed, "once", "gyro"], f"did you mean '{meant}'?", code=1)
         self.environment["AMIROCTL_BUS"] = "sim"
         self.refused(["once", "gyro"], "amiroctl sim", code=1)
 
