@@ -3,6 +3,7 @@
 #pragma once
 
 #include <bit>
+#include <cassert>
 #include <concepts>
 #include <cstddef>
 #include <cstring>
@@ -26,9 +27,15 @@ class Bytes {
     if (capacity_ - size_ < count) enlarge(count);
     return bytes_.get() + size_;
   }
-  void grow(std::size_t count) noexcept { size_ += count; }
+  void grow(std::size_t count) noexcept {
+    size_ += count;
+    assert(size_ <= capacity_);
+  }
   /// `end` is within the last `room`: the first byte that was not written.
-  void grow_to(const char* end) noexcept { size_ = static_cast<std::size_t>(end - bytes_.get()); }
+  void grow_to(const char* end) noexcept {
+    size_ = static_cast<std::size_t>(end - bytes_.get());
+    assert(size_ <= capacity_);
+  }
 
   void append(std::string_view text) {
     if (text.empty()) return;

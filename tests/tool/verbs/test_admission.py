@@ -1,9 +1,10 @@
 """publish asks the bus before it asks the board."""
 
+import os
 import re
 import time
 
-from harness import Case, main, waiting
+from harness import SOURCE, Case, main, waiting
 
 NOT_SCHEDULABLE = 15
 SENSORS = "odometry floor_proximity magnetometer gyroscope accelerometer power_status proximity_ring".split()
@@ -86,6 +87,21 @@ class Admission(Case):
         self.start_sim()
         _, err = self.run_tool("publish", "ring", "1ms", code=1)
         self.assertIn("proximity_ring/sensor_", err)
+
+    def test_on_a_slow_bus_the_offer_is_in_whole_milliseconds(self):
+        self.start_sim()
+        with open(os.path.join(SOURCE, "spec", "topics.json"), encoding="utf-8") as file:
+            text = file.read()
+        path = os.path.join(self.folder, "slow.json")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text.replace('"bit_rate": 500000', '"bit_rate": 3000').replace('"deadline": "50ms"', '"deadline": "500ms"'))
+        # A frame of 8 bytes that is on its way, 135 bits at most, and its own of 6 bytes, 111: 246 bits in 82 ms. The wire has
+        # microseconds up to 65.535 ms, and milliseconds above.
+        for period in ("20ms", "66ms", "81ms"):
+            _, err = self.run_tool("--spec", path, "publish", "gyro", period, code=1)
+            self.assertIn("the shortest period that passes is 82ms;", err)
+        out, _ = self.run_tool("--spec", path, "publish", "gyro", "82ms", "--dry-run", "--explain")
+        self.assertIn("208#01520000\n", out)
 
     def test_it_listens_for_a_tenth_of_a_second_and_force_does_not(self):
         self.start_sim()

@@ -179,6 +179,27 @@ TEST_CASE("candump's longest frame writes its 64 bytes, and none behind them") {
   CHECK(std::all_of(memory.begin() + end, memory.end(), [](unsigned char byte) { return byte == 0xA5; }));
 }
 
+TEST_CASE("candump's longest line has room, however much there is already") {
+  Entry entry;
+  entry.time = at_ns(1'436'509'052'249'713'123);
+  entry.id = can::max_extended_id;
+  entry.format = can::Format::extended;
+  entry.flags = log::flag::fd;
+  entry.data.fill(0);
+  entry.length = 64;
+  entry.direction = Direction::received;
+  const auto interfaces = test::interfaces_named({"can0"});
+  const std::string line = "(1436509052.249713123) can0 1FFFFFFF##0" + std::string(128, '0') + " R\n";
+  for (std::size_t left = 0; left != 2 * line.size(); ++left) {
+    log::Bytes out;
+    out.zeros((std::size_t{1} << 16) -
+              left);  // what is taken at first; Bytes asserts that no more is written
+    log::CandumpNanoWriter writer;
+    writer.write(out, std::span{&entry, 1}, interfaces);
+    CHECK(out.view().substr(out.size() - line.size()) == line);
+  }
+}
+
 TEST_CASE("random entries survive candump's notation, to the nanosecond with nine digits") {
   const auto interfaces = test::interfaces_named({"can0", "vcan17", "a_name_of_15_ch"});
   for (const std::int64_t tick : {1, 1000}) {

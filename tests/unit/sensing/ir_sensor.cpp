@@ -33,6 +33,7 @@ static_assert(ir_distance(0.39F) == IrReading{}, "beyond 80 cm nothing is seen, 
 static_assert(ir_distance(0.0F) == IrReading{} && ir_distance(-1.0F) == IrReading{});
 static_assert(ir_distance(0.128571F) == IrReading{} && ir_distance(nan) == IrReading{});
 static_assert(ir_distance(std::numeric_limits<float>::infinity()) == IrReading{});
+static_assert(ir_distance(1.0F, {0.0F, 0.0F}) == IrReading{}, "a curve without a slope tells no distance");
 
 // 10 bits at 5 V.
 static_assert(adc_volts(0, 10, 5.0F) == 0.0F && adc_volts(1023, 10, 5.0F) == 5.0F);
