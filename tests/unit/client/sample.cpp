@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <random>
+#include <span>
+#include <sys/mman.h>
+#include <unistd.h>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -181,9 +184,54 @@ constexpr protocol::Topic groups[] = {[] {
 }()};
 constexpr protocol::Catalogue truck{"truck", 250'000, {}, groups};
 
+/// Two pages, of which the second cannot be read.
+class LastPage {
+ public:
+  LastPage()
+      : size_(static_cast<std::size_t>(::sysconf(_SC_PAGESIZE))),
+        begin_(::mmap(nullptr, 2 * size_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0)) {
+    REQUIRE(begin_ != MAP_FAILED);
+    REQUIRE(::mprotect(static_cast<std::uint8_t*>(begin_) + size_, size_, PROT_NONE) == 0);
+  }
+  ~LastPage() { ::munmap(begin_, 2 * size_); }
+  LastPage(const LastPage&) = delete;
+  LastPage& operator=(const LastPage&) = delete;
+
+  /// Its last bytes.
+  [[nodiscard]] std::span<std::uint8_t> last(std::size_t count) const {
+    return {static_cast<std::uint8_t*>(begin_) + size_ - count, count};
+  }
+
+ private:
+  std::size_t size_;
+  void* begin_;
+};
+
 constexpr std::string_view announcement = "1CECFF00#20110003FFECFE00";
 constexpr std::string_view packets[] = {"1CEBFF00#0101020304050607", "1CEBFF00#0208090A0B0C0D0E",
                                         "1CEBFF00#030F1011FFFFFFFF"};
+
+TEST_CASE("no more of a message is read than a frame of its size has") {
+  const LastPage page;
+  for (const std::size_t room : {std::size_t{8}, std::size_t{64}}) {
+    const auto bytes = page.last(room);
+    bytes[room - 1] = 0x2A;
+    protocol::Field last = byte_at("last", static_cast<std::uint16_t>(8 * (room - 1)));
+    protocol::FrameLayout layout;
+    layout.length = static_cast<std::uint8_t>(room);
+    layout.fields = {&last, 1};
+    layout.address = {protocol::Address::By::identifier, true, 0x123};
+    protocol::Topic topic;
+    topic.name = "wide";
+    topic.kind = protocol::Kind::message;
+    topic.frames = {&layout, 1};
+    const protocol::Catalogue catalogue{"car", 500'000, {}, {&topic, 1}};
+    Receiver receiver{catalogue};
+    const auto reception = receiver.take({0x123, can::Format::extended, room > 8, bytes}, base::Time{1ms});
+    REQUIRE(reception.meaning == Meaning::sample);
+    CHECK(last.raw(reception.sample.data(0)) == 0x2A);
+  }
+}
 
 TEST_CASE("the packet that completes a message is the sample") {
   Receiver receiver{truck, client::Transport::together};
