@@ -1,11 +1,14 @@
 # A folder that holds the header-only libraries of the machine that builds, and nothing else of its /usr/include, whose
 # other headers are of another processor.
 set(ocm_header_only ${CMAKE_BINARY_DIR}/header_only)
+include(${CMAKE_CURRENT_LIST_DIR}/../../OcmCache.cmake)
 foreach(library CLI catch2 fmt nlohmann toml++ valijson)
-  if(NOT EXISTS ${ocm_header_only}/${library} AND EXISTS /usr/include/${library})
-    file(MAKE_DIRECTORY ${ocm_header_only})
-    file(CREATE_LINK /usr/include/${library} ${ocm_header_only}/${library} SYMBOLIC)
-  endif()
+  foreach(include /usr/include ${OCM_CACHE}/${library}/usr/include)
+    if(NOT EXISTS ${ocm_header_only}/${library} AND EXISTS ${include}/${library})
+      file(MAKE_DIRECTORY ${ocm_header_only})
+      file(CREATE_LINK ${include}/${library} ${ocm_header_only}/${library} SYMBOLIC)
+    endif()
+  endforeach()
 endforeach()
 
 # ocm_header_only_package(NAME name TARGET target HEADER header [DEFINES ...]): what a find module of these says.
