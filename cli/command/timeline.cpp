@@ -80,22 +80,23 @@ void Timeline::send(const can::Frame& frame) {
   const bool set_point = other_.is_set_point(frame);
   other_.send(frame);
   if (set_point) outgoing_.otherwise_after_the_next(still_moving);
-  outgoing_.looks_from(awake_);
-  outgoing_.send(frame);
-  // A slow bus is waited for; a stop of this program meanwhile is none.
-  awake_ = outgoing_.looked();
-  stood_still_ = std::max(stood_still_, outgoing_.stood_still());
+  hand_over(frame);
   behind_ = set_point ? 0 : behind_ + 1;
   refusals_.sent(frame, set_point && moving_);
   if (set_point) moving_ = !is_rest(frame);
 }
 
 void Timeline::send_fd(const can::AnyFrame& frame) {
+  hand_over(frame);
+  ++behind_;
+}
+
+void Timeline::hand_over(const can::AnyFrame& frame) {
   outgoing_.looks_from(awake_);
   outgoing_.send(frame);
+  // A slow bus is waited for; a stop of this program meanwhile is none.
   awake_ = outgoing_.looked();
   stood_still_ = std::max(stood_still_, outgoing_.stood_still());
-  ++behind_;
 }
 
 void Timeline::carry_out_once(const client::Command& command) {

@@ -109,6 +109,8 @@ class Timeline {
   void send(const can::Frame& frame);
   /// What is no set point: a robot has no CAN FD.
   void send_fd(const can::AnyFrame& frame);
+  /// To the bus, and counts the time that this took.
+  void hand_over(const can::AnyFrame& frame);
   /// Says what a board refused; leaves if the motors are held and their board refuses that.
   void tell_refusals();
   /// Says which frames were not sent, and why; once, also where the command ends with an error.

@@ -216,6 +216,11 @@ class Central:
         robot.linked = robot.confirmed = False
         self.write(f"lost {self.listed.index(robot)}\n")
 
+    def find(self):
+        """What is near, during a scan: also one whose end comes before this thread has run."""
+        if self.scanning:
+            self.listed += [robot for robot in self.robots if robot not in self.listed]
+
     def serve(self):
         while not self.over:
             ready, _, _ = select.select([self.master], [], [], 0.01)
@@ -223,8 +228,7 @@ class Central:
                 for char in os.read(self.master, 4096).decode("latin-1"):
                     self.feed(char)
             now = time.monotonic()
-            if self.scanning:
-                self.listed += [robot for robot in self.robots if robot not in self.listed]
+            self.find()
             for index, robot in enumerate(self.listed):
                 text = robot.say(now) if robot.linked else ""
                 while text:
@@ -263,6 +267,7 @@ class Central:
             self.scanning = True
             return self.write("scanning\n")
         if line == "stop":
+            self.find()
             self.scanning = False
             return self.write(f"found {len(self.listed)}\n")
         if line == "list":

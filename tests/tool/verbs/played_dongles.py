@@ -51,6 +51,7 @@ class BaseFirmware(Central):
             self.scanning = True
             return self.answer("OK")
         if line == "AT+SCAN-":
+            self.find()
             self.scanning = False
             return self.answer(f"OK-{len(self.listed)}")
         command, _, number = line.partition("=")
@@ -89,6 +90,7 @@ class Thesis(Central):
             self.scanning = True
             return self.write("Scan started.\r\n")
         if line == "stop":
+            self.find()
             self.scanning = False
             return self.write(f"{len(self.listed)} device(s)\r\n")
         if line == "list":

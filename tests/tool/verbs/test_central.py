@@ -364,6 +364,19 @@ class OnSerialLines(Case):
         self.settle()
         self.assertIn("64 packets not sent at the end", talk.end(130, signal.SIGINT))
 
+    def test_packets_that_waited_for_a_link_that_is_dropped_are_told_at_the_end(self):
+        robot = self.robot()
+        talk = self.central(("AVR", robot))
+        talk.type("start\nconn 0\n")
+        talk.wait_for("connected 0\n")
+        for _ in range(100):
+            talk.type("{U,90,50}\n" * 200)
+            time.sleep(0.001)
+        self.settle()
+        talk.type("*drop 0\n")
+        talk.wait_for("closed 0\n")
+        self.assertRegex(talk.end(), r"server .*\b64 packets dropped with their link")
+
     def test_wrong_usage(self):
         for arguments, words in ((["--robot", "AVR"], "is not NAME=PATH"),
                                  (["--robot", "=x"], "is not NAME=PATH"),
