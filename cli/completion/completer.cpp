@@ -24,7 +24,7 @@ std::optional<Option> find_option(Verb verb, const std::string& name) {
 }
 
 bool wants_value(const Option& option) {
-  return option.most_values() > 0 && option.least_values() > 0;
+  return option.least_values() > 0;
 }
 
 Verb find_verb(Verb of, const std::string& name) {

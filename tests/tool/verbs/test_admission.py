@@ -93,8 +93,10 @@ class Admission(Case):
         with open(os.path.join(SOURCE, "spec", "topics.json"), encoding="utf-8") as file:
             text = file.read()
         path = os.path.join(self.folder, "slow.json")
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(text.replace('"bit_rate": 500000', '"bit_rate": 3000').replace('"deadline": "50ms"', '"deadline": "500ms"'))
+        def at(bit_rate):
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(text.replace('"bit_rate": 500000', f'"bit_rate": {bit_rate}').replace('"deadline": "50ms"', '"deadline": "500ms"'))
+        at(3000)
         # A frame of 8 bytes that is on its way, 135 bits at most, and its own of 6 bytes, 111: 246 bits in 82 ms. The wire has
         # microseconds up to 65.535 ms, and milliseconds above.
         for period in ("20ms", "66ms", "81ms"):
@@ -102,6 +104,9 @@ class Admission(Case):
             self.assertIn("the shortest period that passes is 82ms;", err)
         out, _ = self.run_tool("--spec", path, "publish", "gyro", "82ms", "--dry-run", "--explain")
         self.assertIn("208#01520000\n", out)
+        at(70000)  # 246 bits in 3.5143 ms
+        _, err = self.run_tool("--spec", path, "publish", "gyro", "3ms", code=1)
+        self.assertIn("the shortest period that passes is 3.515ms;", err)
 
     def test_it_listens_for_a_tenth_of_a_second_and_force_does_not(self):
         self.start_sim()

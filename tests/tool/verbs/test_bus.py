@@ -77,7 +77,7 @@ class OnTheBus(Case):
     def test_strict_tells_unknown_frames(self):
         self.start_sim()
         for strict, code in ((["--strict"], 1), ([], 0)):
-            listener = self.listen("--timeout", "1s", *strict)
+            listener = self.listen("-n", "2", "--timeout", "60s", *strict)
             self.run_tool("send", "6F0#00")
             self.run_tool("send", "608#0000")
             _, err = listener.communicate(timeout=60)
@@ -217,8 +217,8 @@ class OnTheBus(Case):
     def test_a_simulator_that_is_stopped_is_no_quiet_bus(self):
         sim = self.start_sim()
         log = os.path.join(self.folder, "a.log")
-        verbs = [self.start(*verb) for verb in (["listen", "--timeout", "1s"], ["stats", "--duration", "1s"],
-                                                ["record", "-o", log, "--duration", "1s"])]
+        verbs = [self.start(*verb) for verb in (["listen", "--timeout", "3s"], ["stats", "--duration", "3s"],
+                                                ["record", "-o", log, "--duration", "3s"])]
         for verb in verbs:
             self.assertIn("bus: sim", verb.stderr.readline())
         self.settle()

@@ -108,7 +108,7 @@ class TwoCommanders(Drive):
         self.start_sim()
         for stop in (("drive", "stop"), ("stop",)):
             drive = self.driving()
-            listener = self.listen("motors", "--timeout", "2s")
+            listener = self.listen("motors", "--timeout", "60s")
             self.run_tool(*stop)
             _, err = drive.communicate(timeout=60)
             self.assertEqual(drive.returncode, 1)

@@ -439,6 +439,23 @@ class AsAService(Operating):
                 said.append(notify.recv(1000).decode())
             operator.communicate(timeout=30)
 
+    def test_a_watchdog_of_centuries_is_told_once(self):
+        self.start_sim()
+        path = os.path.join(self.folder, "notify")
+        with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as notify:
+            notify.bind(path)
+            notify.settimeout(30)
+            self.environment |= {"NOTIFY_SOCKET": path, "WATCHDOG_USEC": str(2**63 - 1)}  # more than a clock has nanoseconds
+            operator = self.operate()
+            said = []
+            while "STATUS=operator halt is in driving" not in said:
+                said.append(notify.recv(1000).decode())
+            operator.send_signal(signal.SIGTERM)
+            while said[-1] != "STOPPING=1":
+                said.append(notify.recv(1000).decode())
+            self.assertEqual(said.count("WATCHDOG=1"), 1)
+            operator.communicate(timeout=30)
+
     def test_the_unit_file_is_one(self):
         unit = configparser.ConfigParser(strict=False, interpolation=None)
         unit.optionxform = str

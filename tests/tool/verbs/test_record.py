@@ -391,6 +391,7 @@ class Recording(Case):
         said = text.decode()
         self.assertRegex(said, r"\d+ frames, [12]\d\d/s, sim [3-6] % full, 0 lost, [0-9.]+ (bytes|kB), "
                                r"[0-9.]+ \S+ free")
+        self.assertLessEqual(said.count(" free"), 2)  # once a second
 
 
 if __name__ == "__main__":
