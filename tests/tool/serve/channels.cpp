@@ -138,7 +138,7 @@ TEST_CASE("publisher: each interface has channels and samples of its own") {
   CHECK(desk.take(test::entry(1s, 0x521, {7}), "can0") == Meaning::sample);
   CHECK(desk.lamp(2s, 1, "can0") == Meaning::set_point);
   CHECK(desk.lamp(3s, 2, "can1") == Meaning::set_point);
-  CHECK(desk.lamp(4s, 3, "can2") == Meaning::unknown);  // it has no channels
+  for (int i = 0; i < 2; ++i) CHECK(desk.lamp(4s, 3, "can2") == Meaning::unknown);  // it has no channels
   CHECK(desk.lamp(5s, 4, "can1") == Meaning::set_point);
   const auto said = desk.said();
   REQUIRE(said.size() == 3);

@@ -164,6 +164,8 @@ class Config(harness.Case):
                 ('[publish]\nwait = "soon"', "wait soon: not a time", "write 500ms, 2s or 1.5s"),
                 ('[replay]\nspeed = "fast"', "speed fast: invalid value", "write how many times faster, 0.000001 to 1000000, or max"),
                 ('[replay]\nloop = 0', "loop 0: invalid value", "write how many times, at least 1"),
+                ('[replay]\nfrom = "rubbish"', "from rubbish: invalid value",
+                 "write pcapng, pcap, mcap, blf, asc, candump, candump-ns, candump-screen, csv or json"),
                 ('[convert]\nto = "candum"', "to candum: unknown value", "did you mean 'candump'?"),
                 ('[convert]\nto = "blf"', "to blf: unknown value", "one of: pcapng, pcap, mcap, mcap-raw, asc, candump, candump-ns, csv, json"),
                 ('[record]\nsplit = "nonsense"', "split nonsense: invalid value", "write a size or a time, such as 100MB, 64MiB, 10min or 1h"),
