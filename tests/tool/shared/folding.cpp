@@ -5,12 +5,14 @@
 
 #include <catch2/catch.hpp>
 
-namespace tool_output_folding_test {
+namespace tool_shared_folding_test {
 
 using namespace ocm::cli;
 
 TEST_CASE("what a text takes on a terminal", "[folding]") {
   CHECK(extent("").all == 0);
+  CHECK(extent("").words == 0);
+  CHECK(extent("  ").words == 0);
   CHECK(extent("a b  ").all == 5);
   CHECK(extent("a b  ").words == 3);
   CHECK(extent("\x1b[31ma b \x1b[0m").all == 4);
@@ -114,4 +116,4 @@ TEST_CASE("whatever the width, words stay whole and in order, and lines are no l
     }
 }
 
-}  // namespace tool_output_folding_test
+}  // namespace tool_shared_folding_test
