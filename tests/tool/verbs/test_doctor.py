@@ -136,6 +136,19 @@ class Doctor(Case):
                                          "battery_1 4.020 V, +0.116 A, 502 mAh left, 25.1 degC", "battery_2 not inserted"])
             self.assertEqual(lines[7], "")
 
+    def test_what_does_not_answer_is_named_in_json(self):
+        self.start_sim("--without", "di_wheel_drive,power_management,light_ring")
+        doctor = self.start("doctor", "--json", "--listen", "1ms", "--patience", "30s")
+        self.assertIn("bus: sim", doctor.stderr.readline())
+        self.settle()
+        text = self.statuses(self.hash_of_spec(), ((1, 1, 0, 0, 0), (1, 1, 0, 0, 2), (1, 1, 0, 0, 0)))
+        # Bit 0 and 1 of power_management: the first of its sensors is published, the second does not answer.
+        self.run_tool("send", "--stdin", stdin=text.replace("73A#0000020000000000", "73A#0000010200000000"))
+        out, _ = doctor.communicate(timeout=60)
+        boards = {board["board"]: (board["publishing"], board["faults"]) for board in json.loads(out)["boards"]}
+        self.assertEqual(boards["di_wheel_drive"], ("", ""))
+        self.assertEqual(boards["power_management"], ("power_status", "proximity_ring"))
+
     def test_messages_that_are_due(self):
         """Of a spec without statuses: what came, of what should have come three times."""
         spec = os.path.join(os.environ["OCM_SOURCE_DIR"], "examples", "small_car.dbc")
