@@ -117,6 +117,16 @@ class TwoCommanders(Drive):
             out, _ = self.interrupt(listener)
             self.assertEqual([e["data"] for e in self.objects(out)][-2:], [ZERO, ZERO])  # of both
 
+    def test_a_script_goes_on_until_its_last_hold_is_over(self):
+        self.start_sim()
+        listener = self.listen("motors", "--timeout", "60s")
+        self.run_tool("run", self.script("0s drive 5cm/s --for 500ms\n"))
+        self.settle()
+        out, _ = self.interrupt(listener)
+        seen = self.objects(out)
+        self.assertEqual((seen[0]["data"], seen[-1]["data"]), ("50C3000000000000", ZERO))
+        self.assertGreater(int(seen[-1]["time_ns"]) - int(seen[0]["time_ns"]), 450_000_000)
+
     def test_a_stop_ends_a_script_that_has_set_motors_without_a_hold(self):
         self.start_sim()
         listener = self.listen("motors", "--timeout", "20s")

@@ -288,6 +288,9 @@ class Stats(Case):
         self.assertEqual(report["buses"][0]["frames"], 4)
         report, _ = self.report(path, "-n", "7")
         self.assertEqual(report["buses"][0]["frames"], 7)
+        long = self.log([(i, self.GYRO) for i in range(1000)], "long.log")
+        report, _ = self.report(long, "-n", "600")  # a log is read in pieces
+        self.assertEqual(report["buses"][0]["frames"], 600)
         report, _ = self.report(path, "mag")
         self.assertEqual([t["topic"] for t in report["buses"][0]["topics"]], ["magnetometer"])
 
