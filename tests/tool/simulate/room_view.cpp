@@ -102,6 +102,19 @@ TEST_CASE("room view: fits any terminal, and says where the robot is on all that
         }
 }
 
+TEST_CASE("room view: a room takes six lines and columns at least") {
+  Trails trails;
+  const sim::SeenWorld world = driven(trails);
+  const auto has_walls = [&](TerminalSize size) {
+    return text_of(draw_room(world, trails, {}, size, false)).find("####") != std::string::npos;
+  };
+  CHECK(has_walls({80, 8}));  // and one of its head, one of its foot
+  CHECK_FALSE(has_walls({80, 7}));
+  CHECK(has_walls({6, 12}));  // and four of the state below
+  CHECK_FALSE(has_walls({6, 11}));
+  CHECK_FALSE(has_walls({5, 12}));
+}
+
 TEST_CASE("room view: what changes is seen") {
   Trails trails;
   sim::SeenWorld world = two_mappers();
