@@ -23,8 +23,9 @@ std::vector<const protocol::Topic*> chosen_topics(std::string_view verb, const p
     if (found) continue;
     if (logs::names_file(word))
       fail({fmt::format("{}: no topic '{}', which names a file", verb, word),
-            verb == "record" ? fmt::format("write it with -o {}; `amiroctl list` shows the topics", word)
-                             : "decode, stats and plot read logs; `amiroctl list` shows the topics"},
+            fmt::format(
+                "decode, stats and plot read logs, record -o {} writes one; `amiroctl list` shows the topics",
+                word)},
            exit_usage);
     fail({fmt::format("{}: no topic '{}'", verb, word), words::topic_suggestion(catalogue, word)},
          exit_usage);

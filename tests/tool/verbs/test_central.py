@@ -353,26 +353,23 @@ class OnSerialLines(Case):
         _, error = self.run_tool("central")
         self.assertIn("no robots in " + os.path.join(self.folder, "ocm", "line") + " yet", error)
 
-    def test_packets_that_a_robot_did_not_take_are_told_at_the_end(self):
-        robot = self.robot()
-        talk = self.central(("AVR", robot))
+    def flooded(self):
+        """A central whose robot has a link, does not read, and was sent more than can wait."""
+        talk = self.central(("AVR", self.robot()))
         talk.type("start\nconn 0\n")
         talk.wait_for("connected 0\n")
         for _ in range(100):
             talk.type("{U,90,50}\n" * 200)
             time.sleep(0.001)
         self.settle()
+        return talk
+
+    def test_packets_that_a_robot_did_not_take_are_told_at_the_end(self):
+        talk = self.flooded()
         self.assertIn("64 packets not sent at the end", talk.end(130, signal.SIGINT))
 
     def test_packets_that_waited_for_a_link_that_is_dropped_are_told_at_the_end(self):
-        robot = self.robot()
-        talk = self.central(("AVR", robot))
-        talk.type("start\nconn 0\n")
-        talk.wait_for("connected 0\n")
-        for _ in range(100):
-            talk.type("{U,90,50}\n" * 200)
-            time.sleep(0.001)
-        self.settle()
+        talk = self.flooded()
         talk.type("*drop 0\n")
         talk.wait_for("closed 0\n")
         self.assertRegex(talk.end(), r"server .*\b64 packets dropped with their link")

@@ -421,40 +421,39 @@ class Monitored(WithAdapter, Operating):
 
 
 class AsAService(Operating):
-    def test_systemd_is_told_what_it_does_and_that_it_runs(self):
+    def operate_for_systemd(self, watchdog_us):
+        """An operator, and how to read its next message to systemd."""
         self.start_sim()
         path = os.path.join(self.folder, "notify")
-        with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as notify:
-            notify.bind(path)
-            notify.settimeout(30)
-            self.environment |= {"NOTIFY_SOCKET": path, "WATCHDOG_USEC": "400000"}
-            operator = self.operate()
-            said = []
-            while said.count("WATCHDOG=1") < 3:
-                said.append(notify.recv(1000).decode())
-            self.assertIn("READY=1\nSTATUS=operator halt on sim", said)
-            self.assertIn("STATUS=operator halt is in driving", said)
-            operator.send_signal(signal.SIGTERM)
-            while said[-1] != "STOPPING=1":
-                said.append(notify.recv(1000).decode())
-            operator.communicate(timeout=30)
+        notify = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        self.addCleanup(notify.close)
+        notify.bind(path)
+        notify.settimeout(30)
+        self.environment |= {"NOTIFY_SOCKET": path, "WATCHDOG_USEC": str(watchdog_us)}
+        return self.operate(), lambda: notify.recv(1000).decode()
+
+    def end(self, operator, message, said):
+        operator.send_signal(signal.SIGTERM)
+        while said[-1] != "STOPPING=1":
+            said.append(message())
+        operator.communicate(timeout=30)
+
+    def test_systemd_is_told_what_it_does_and_that_it_runs(self):
+        operator, message = self.operate_for_systemd(400_000)
+        said = []
+        while said.count("WATCHDOG=1") < 3:
+            said.append(message())
+        self.assertIn("READY=1\nSTATUS=operator halt on sim", said)
+        self.assertIn("STATUS=operator halt is in driving", said)
+        self.end(operator, message, said)
 
     def test_a_watchdog_of_centuries_is_told_once(self):
-        self.start_sim()
-        path = os.path.join(self.folder, "notify")
-        with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as notify:
-            notify.bind(path)
-            notify.settimeout(30)
-            self.environment |= {"NOTIFY_SOCKET": path, "WATCHDOG_USEC": str(2**63 - 1)}  # more than a clock has nanoseconds
-            operator = self.operate()
-            said = []
-            while "STATUS=operator halt is in driving" not in said:
-                said.append(notify.recv(1000).decode())
-            operator.send_signal(signal.SIGTERM)
-            while said[-1] != "STOPPING=1":
-                said.append(notify.recv(1000).decode())
-            self.assertEqual(said.count("WATCHDOG=1"), 1)
-            operator.communicate(timeout=30)
+        operator, message = self.operate_for_systemd(2**63 - 1)  # more than a clock has nanoseconds
+        said = []
+        while "STATUS=operator halt is in driving" not in said:
+            said.append(message())
+        self.end(operator, message, said)
+        self.assertEqual(said.count("WATCHDOG=1"), 1)
 
     def test_the_unit_file_is_one(self):
         unit = configparser.ConfigParser(strict=False, interpolation=None)

@@ -323,7 +323,7 @@ class Stats(Case):
             _, err = self.run_tool(verb, "drive.log", code=2)
             self.assertIn(f"{verb}: no topic 'drive.log', which names a file", err)
             self.assertNotIn("one of:", err)
-            self.assertIn("-o drive.log" if verb == "record" else "decode, stats and plot read logs", err)
+            self.assertIn("decode, stats and plot read logs, record -o drive.log writes one", err)
         path = self.log([(0, self.GYRO)])
         _, err = self.run_tool("stats", path, "live", code=2)
         self.assertIn("live is the bus", err)

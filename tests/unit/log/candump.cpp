@@ -192,8 +192,8 @@ TEST_CASE("candump's longest line has room, however much there is already") {
   const std::string line = "(1436509052.249713123) can0 1FFFFFFF##0" + std::string(128, '0') + " R\n";
   for (std::size_t left = 0; left != 2 * line.size(); ++left) {
     log::Bytes out;
-    out.zeros((std::size_t{1} << 16) -
-              left);  // what is taken at first; Bytes asserts that no more is written
+    // What is taken at first is so large; Bytes asserts that no more is written.
+    out.zeros((std::size_t{1} << 16) - left);
     log::CandumpNanoWriter writer;
     writer.write(out, std::span{&entry, 1}, interfaces);
     CHECK(out.view().substr(out.size() - line.size()) == line);
