@@ -430,9 +430,12 @@ class Serve(harness.Case):
         self.start_sim("--frozen")
         server, port, _ = self.serve()
         viewer = self.viewer(port, room=4096)
+        unknown = b'{"op":"' + b"x" * 65_000 + b'"}'
+        viewer.send_frame(1, unknown)
+        viewer.text("status")  # what the server needs for one, and to begin, it has now
         before = self.memory(server)
         for _ in range(200):
-            viewer.send_frame(1, b'{"op":"' + b"x" * 65_000 + b'"}')
+            viewer.send_frame(1, unknown)
         status = viewer.text("status")
         self.assertIn("x ...", status["message"])
         self.assertLess(len(status["message"]), 1100)
