@@ -44,7 +44,7 @@ class Case(unittest.TestCase):
         path.chmod(0o755)
 
     def run_script(self, name, *arguments, path=None, **variables):
-        environment = dict(os.environ, PATH=f"{self.programs}:{os.environ['PATH']}", TMPDIR=str(self.programs), **variables)
+        environment = dict(os.environ, PATH=f"{self.programs}:{os.environ['PATH']}", TMPDIR=str(self.programs)) | variables
         return subprocess.run([path or self.tree / "scripts" / name, *arguments], env=environment, stdin=subprocess.DEVNULL,
                               capture_output=True, text=True, check=False, timeout=60)
 
@@ -358,6 +358,9 @@ class Demo(Case):
         self.assertEqual({word for word in words if word.startswith("AMIROCTL_")}, {"AMIROCTL_BUS=sim"})
         self.assertNotIn("XDG_CONFIG_HOME=/the/users", words)
         self.assertEqual([path.name for path in (self.tree / "build").iterdir()], ["amiroctl"], "and it leaves nothing")
+        done = self.run_script("demo", TMPDIR="/no/such/folder")
+        self.assertEqual((done.returncode, done.stderr),
+                         (1, "demo: cannot make a folder in /no/such/folder: set TMPDIR to one that can be written\n"))
 
 
 class Pictures(Case):
@@ -420,10 +423,16 @@ class Everywhere(Case):
 
     def test_how_many_at_once_is_a_number(self):
         for script, words in (("test", ("--only", "style")), ("fuzz", ("1s",)), ("build", ())):
-            for jobs in ("0", "abc", "-1", "2x"):
+            for jobs in ("0", "abc", "-1", "2x", "1000"):
                 done = self.run_script(script, *words, OCM_JOBS=jobs)
                 self.assertEqual(done.returncode, 2, done.stderr)
-                self.assertIn(f"{script}: OCM_JOBS is '{jobs}', which is no number above zero", done.stderr)
+                self.assertIn(f"{script}: OCM_JOBS is '{jobs}'; expected a number from 1 to 999", done.stderr)
+
+    def test_how_much_is_explored_is_a_number(self):
+        for explore in ("0", "ten", "1000"):
+            done = self.run_script("test", "--only", "style", OCM_EXPLORE=explore)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(f"test: OCM_EXPLORE is '{explore}'; expected a number from 1 to 999", done.stderr)
 
 
 class WithoutGit(Case):
@@ -446,6 +455,11 @@ class WithoutGit(Case):
         done = self.run_script("figures")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertRegex(done.stdout, r"\n +1  cli \(1 files\)\n")
+
+    def test_figures_that_cannot_be_written(self):
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            done = subprocess.run([self.tree / "scripts" / "figures"], stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+        self.assertEqual((done.returncode, done.stderr), (1, "figures: the output: No space left on device\n"))
 
 
 class Summary(Case):
