@@ -383,6 +383,37 @@ TEST_CASE("drive: another frame just before a set point is due holds no set poin
   }
 }
 
+TEST_CASE("drive: what is sent again and again beside it holds no set point up") {
+  const Silence silence;
+  World world{1};
+  PlayedBus::Conditions conditions;
+  conditions.frame_time = 8ms;  // one of them is always under way
+  PlayedBus bus{world, conditions};
+  Timeline timeline{bus, amiro::catalogue, "run", Timeline::Others::refused, cli::Confirm::no, {}};
+  const cli::words::CommandParser parser{amiro::catalogue};
+  const std::vector<std::string_view> words{"led", "1", "red"};
+  auto led = parser.parse_line(words);
+  REQUIRE(led.ok());
+  led->repeat = client::Repeat{9ms, 2s};
+  timeline.carry_out(*led);
+  timeline.carry_out(drive(2s));
+  CHECK(timeline.wait_for_end());
+  CHECK(timeline.finish());
+  Moment last = World::start;
+  int set_points = 0, others = 0;
+  for (const auto& each : bus.sent()) {
+    if (each.frame.id == led->frames.front().id) {
+      ++others;
+      continue;
+    }
+    CHECK(each.taken - last < client::hold_period + conditions.frame_time);
+    last = each.taken;
+    ++set_points;
+  }
+  CHECK(set_points == 21);  // with the one of rest
+  CHECK(others > 190);
+}
+
 TEST_CASE("set: after a stop nothing is sent behind the end of what is sent again and again") {
   struct Row {
     Duration stop, lasting;

@@ -317,6 +317,7 @@ TEST_CASE("JSON lines: what contradicts itself or is none is refused in words", 
   wrong(R"({"id":"20000040","data":"0000000000000000","raw_dlc":9})", "raw_dlc");
   wrong(R"({"id":"608","data":"00","direction":"left"})", "received or sent");
   wrong(R"({"id":"608","data":"00","time_ns":"9223372036854775808"})", "is not a time");
+  wrong(R"({"id":"608","data":"00","time_ns":"-9223372036854775809"})", "is not a time");
   wrong(R"({"topic":"gyr","fields":{}})", "did you mean 'gyro'");
   wrong(R"({"topic":"magnetometer","fields":{}})", "several frames; frame is one of: x, y, z");
   wrong(R"({"topic":"gyro","frame":"request","fields":{"mode":"publish","period":1e-7}})", "period");
@@ -350,6 +351,17 @@ TEST_CASE("JSON lines: a line without a time has the time of the one before", "[
   const auto log = log::testing::read_all<JsonLinesReader>(text, amiro::catalogue);
   REQUIRE(log.entries.size() == 2);
   CHECK(log.entries[1].time == log.entries[0].time);
+}
+
+TEST_CASE("JSON lines: the earliest and the latest time of 64 bits", "[output]") {
+  const std::string text = R"({"time_ns":"-9223372036854775808","id":"123","data":""})"
+                           "\n"
+                           R"({"time_ns":"9223372036854775807","id":"123","data":""})"
+                           "\n";
+  const auto log = log::testing::read_all<JsonLinesReader>(text, amiro::catalogue);
+  REQUIRE(log.entries.size() == 2);
+  CHECK(log.entries[0].time.time_since_epoch().count() == INT64_MIN);
+  CHECK(log.entries[1].time.time_since_epoch().count() == INT64_MAX);
 }
 
 }  // namespace tool_output_json_lines_test
