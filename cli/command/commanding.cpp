@@ -23,7 +23,11 @@ Commanding::Commanding(Verb verb, Session& session, std::string_view words_help,
     add_priority(verb, "--priority", options_.priority,
                  "urgent, high, medium or low, or 0 to 3; default: the topic's own");
   verb.add_flag("--dry-run", dry_run_, "print the frames in candump notation and send nothing");
-  if (!raw_) add_no_confirm(verb, no_confirm_);
+  if (sends == Sends::commands) add_no_confirm(verb, no_confirm_);
+  if (sends == Sends::requests)
+    verb.add_flag(
+        "--no-confirm", no_confirm_,
+        "end when the request has left; default: when the first sample shows that the board heard it");
 }
 
 client::Command Commanding::parse() const {

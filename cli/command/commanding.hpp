@@ -2,6 +2,7 @@
 /// that reads scripts, and the frames to the bus or, with --dry-run, to stdout.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,8 +18,9 @@ class Commanding {
  public:
   Commanding(const Commanding&) = delete;  // the options write into its members
   Commanding& operator=(const Commanding&) = delete;
-  /// Whether a verb knows what it sends: a frame as it is has no other priority, and is not confirmed.
-  enum class Sends : bool { raw_frames, commands };
+  /// What a verb sends. A frame as it is has no other priority, and is not confirmed; a request is by the
+  /// first sample, too.
+  enum class Sends : std::uint8_t { raw_frames, commands, requests };
   /// Adds the positional words and --dry-run to `verb`; of commands --priority and --no-confirm.
   Commanding(Verb verb, Session& session, std::string_view words_help, Sends sends = Sends::commands);
 

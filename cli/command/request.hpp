@@ -1,4 +1,4 @@
-/// publish and once: a request, and with --wait the first sample that answers it.
+/// publish and once: a request, and the first sample that answers it, which --wait shows.
 #pragma once
 
 #include <string_view>

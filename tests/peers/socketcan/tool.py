@@ -309,7 +309,7 @@ def _(context):
 @check('amiroctl needs no privileges, and says when a sandbox forbids CAN')
 def _(context):
     with Candump('vcan0') as log:
-        amiroctl(context, '--bus', 'vcan0', 'publish', 'gyro', '500ms', prefix=as_nobody())
+        amiroctl(context, '--bus', 'vcan0', 'publish', 'gyro', '500ms', '--no-confirm', prefix=as_nobody())
         equal([f'{frame.id}#{frame.data}' for frame in log.finish()], ['208#01F40100'], 'frames')
     _, stderr = amiroctl(context, '--bus', 'vcan0', 'send', '205#00', code=1, preexec_fn=forbid_can_sockets)
     matches(stderr, 'not allowed to open a CAN socket', 'sandbox')

@@ -7,6 +7,7 @@ from harness import Case, main
 from played_adapter import BAD_LENGTH, BAD_PERIOD, LIGHT_RING, NOT_SCHEDULABLE, NOT_SERVED, POWER_MANAGEMENT, WithAdapter, refusal
 
 FORWARDS, REST = "201#50C3000000000000", "201#0000000000000000"
+SAMPLE = "t60860300FFFF00000010\r"  # of the gyroscope
 
 
 class OnARobotThatRefuses(WithAdapter, Case):
@@ -57,6 +58,18 @@ class OnARobotThatRefuses(WithAdapter, Case):
         self.run_tool(*bus, "once", "gyro", "--wait", "20s", code=1)
         self.assertLess(time.monotonic() - begin, 10)
 
+    def test_a_board_that_says_nothing_has_not_heard_it(self):
+        bus = self.robot({})
+        for verb in (("once", "gyro"), ("publish", "gyro", "500ms"), ("publish", "gyro", "500ms", "--wait", "10ms")):
+            out, err = self.run_tool(*bus, *verb, code=1)
+            self.assertEqual(out, "")
+            self.assertIn(f"amiroctl: {verb[0]}: no gyroscope within {'10ms' if '--wait' in verb else '2s'}\n"
+                          "          is board di_wheel_drive powered and on ", err)
+        self.run_tool(*bus, "once", "gyro", "--no-confirm")
+        bus = self.robot({"208#02": [SAMPLE]})
+        self.assertEqual(self.run_tool(*bus, "once", "gyro")[0], "")  # --wait shows it
+        self.assertIn("gyroscope", self.run_tool(*bus, "once", "gyro", "--wait")[0])
+
     def test_each_board_that_is_spoken_to_is_listened_to(self):
         bus = self.robot({REST: [refusal(0x01, BAD_LENGTH)], "21F#00": [refusal(0x1F, BAD_PERIOD, POWER_MANAGEMENT)],
                           "204#00": [refusal(0x04, NOT_SERVED, count=2)]})
@@ -76,7 +89,7 @@ class OnARobotThatRefuses(WithAdapter, Case):
         self.run_tool(*bus, "stop")
 
     def test_what_others_are_refused_is_not_told(self):
-        bus = self.robot({"208#02": [refusal(0x05, NOT_SCHEDULABLE), refusal(0x08, NOT_SERVED, POWER_MANAGEMENT)]})
+        bus = self.robot({"208#02": [refusal(0x05, NOT_SCHEDULABLE), refusal(0x08, NOT_SERVED, POWER_MANAGEMENT), SAMPLE]})
         _, err = self.run_tool(*bus, "once", "gyro")
         self.assertNotIn("refuses", err)
 
@@ -140,19 +153,19 @@ class OnTheSimulatedRobot(Case):
         self.run_tool("publish", "di_wheel_drive_refusal", "20ms")
         self.run_tool("publish", "gyro", "500ms")
 
-    def test_it_listens_for_a_tenth_of_a_second(self):
+    def test_it_listens_for_a_tenth_of_a_second_or_until_the_sample(self):
         self.start_sim()
 
         def seconds(*arguments):
             begin = time.monotonic()
-            self.run_tool("once", "gyro", *arguments)
+            self.run_tool(*arguments)
             return time.monotonic() - begin
-        self.assertGreater(seconds(), 0.1)
-        # A sample says as much as silence. The shortest of several, of more on a busy machine, so that this counts on neither side.
+        self.assertGreater(seconds("led", "1", "red"), 0.1)
+        # The shortest of several, of more on a busy machine, so that this counts on neither side.
         waited, silent = [], []
         while len(waited) < 6 or (min(waited) + 0.04 > min(silent) and len(waited) < 40):
-            waited.append(seconds("--wait"))
-            silent.append(seconds())
+            waited.append(seconds("once", "gyro"))
+            silent.append(seconds("led", "1", "red"))
         self.assertLess(min(waited) + 0.04, min(silent))
 
 

@@ -208,7 +208,7 @@ class Replaying(RealTime, Case):
         self.recorded("out.log", 10)
         self.run_tool("stop", "gyro")
         self.run_tool("once", "odom", "--wait", "3s")
-        self.run_tool("once", "accel")
+        self.assertIn("once: no accelerometer within 2s\n", self.run_tool("once", "accel", code=1)[1])
         self.run_tool("send", "208#07")
         self.settle()
         self.interrupt(listener)
