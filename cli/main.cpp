@@ -1,5 +1,6 @@
 /// amiroctl: ask a robot's sensors, command its actuators and watch its bus.
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <exception>
@@ -9,6 +10,7 @@
 #include <unistd.h>
 
 #include "cli/shared/arguments.hpp"
+#include "cli/shared/interrupt.hpp"
 #include "cli/shared/memory.hpp"
 #include "cli/shared/session.hpp"
 #include "cli/verbs/verbs.hpp"
@@ -70,8 +72,11 @@ void occupy_standard_streams() {
           ::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY));  // the lowest that is free
 }
 
-int say_not_written(const char* why) {
-  std::fprintf(stderr, "amiroctl: cannot write to the standard output: %s\n", why);
+int say_not_written(int error) {
+  // Of a verb that catches the signal, the end is that of others: they are killed by it.
+  if (error == EPIPE && interrupted() == SIGPIPE) return exit_code_after_interrupt(exit_failure);
+  std::fprintf(stderr, "amiroctl: cannot write to the standard output: %s\n",
+               error != 0 ? std::strerror(error) : "an earlier write failed");
   return exit_failure;
 }
 
@@ -79,7 +84,7 @@ int say_not_written(const char* why) {
 int finish(int code) {
   errno = 0;
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
-  return say_not_written(errno != 0 ? std::strerror(errno) : "an earlier write failed");
+  return say_not_written(errno);
 }
 
 int run(int argc, char** argv) {
@@ -120,7 +125,7 @@ int main(int argc, char** argv) {
     say_out_of_memory();
     return exit_failure;
   } catch (const std::system_error& error) {  // as {fmt} reports what it could not print
-    if (std::ferror(stdout) != 0) return say_not_written(error.code().message().c_str());
+    if (std::ferror(stdout) != 0) return say_not_written(error.code().value());
     std::fprintf(stderr, "amiroctl: %s\n", error.what());
     return exit_failure;
   } catch (const std::exception& error) {

@@ -1,6 +1,7 @@
 """amiroctl travel: the board drives a way by itself, and the verb says where that ended."""
 
 import json
+import os
 import re
 import signal
 import time
@@ -49,6 +50,15 @@ class Travel(Case):
         self.assertAlmostEqual(odometry["pose.orientation"], 1.571, delta=0.02)
         # What was asked for the progress is stopped.
         self.assertEqual(self.sample("di_wheel_drive_status")["health.publishing"], 0)
+
+    def test_the_reader_of_the_output_has_gone(self):
+        self.start_sim()
+        reader, writer = os.pipe()
+        os.close(reader)
+        travel = self.start("travel", "1cm", stdout=writer)
+        os.close(writer)
+        _, err = travel.communicate(timeout=30)
+        self.assertEqual((travel.returncode, err), (141, "bus: sim (the only one there is; --bus chooses)\n"))
 
     def test_a_stream_of_the_progress_goes_on(self):
         self.start_sim()
