@@ -18,7 +18,7 @@ constexpr const char* a_bit_rate = "1 to 1000000 bits a second, such as 500k or 
 base::Result<base::Duration, words::WordError> read_duration(std::string_view text) {
   const auto duration = words::parse_duration(text);
   if (duration && duration->count() >= 0) return *duration;
-  return words::WordError{0, "not a time", "write 500ms, 2s or 1.5s"};
+  return words::WordError{0, words::instead_of_time(text, "not a time"), "write 500ms, 2s or 1.5s"};
 }
 
 /// Bits a second, whole; 0: none, or more than `most`.

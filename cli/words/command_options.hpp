@@ -47,14 +47,14 @@ struct CommandOptions {
 [[nodiscard]] inline base::Result<base::Duration, WordError> read_lasting(std::string_view text) {
   const auto lasting = parse_duration(text);
   if (lasting && lasting->count() > 0) return *lasting;
-  return WordError{0, "not a time above zero", "write 2s, 500ms or 1min"};
+  return WordError{0, instead_of_time(text, "not a time above zero"), "write 2s, 500ms or 1min"};
 }
 
 /// The value of --every. The error is as that of read_priority.
 [[nodiscard]] inline base::Result<base::Duration, WordError> read_every(std::string_view text) {
   const auto every = parse_duration(text);
   if (every && *every >= client::shortest_repeat) return *every;
-  return WordError{0, "not a time of 100us or more", "write 10ms, 1s or 500us"};
+  return WordError{0, instead_of_time(text, "not a time of 100us or more"), "write 10ms, 1s or 500us"};
 }
 
 /// The words of a command; the first is the verb.

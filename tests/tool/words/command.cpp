@@ -217,6 +217,7 @@ TEST_CASE("what is wrong is said of the word where it stands") {
       {"--for 2s drive stop", 2, "no --for", "usage: drive stop"},
       {"drive 1cm/s --for 0s", 3, "not a time above zero", "write 2s"},
       {"drive 1cm/s --for ever", 3, "not a time above zero", "write 2s"},
+      {"drive 1cm/s --for 5", 3, "a time without a unit", "write 2s"},
       {"set motors", 2, "missing FIELD=VALUE", "usage: set ACTUATOR|MESSAGE [FIELD=VALUE ...]"},
       {"set motors y=1", 2, "no field 'y'", "x"},
       {"set motors x", 2, "not of the form FIELD=VALUE", "x=0"},
