@@ -83,7 +83,7 @@ void add_request_options(Verb verb, Session& session, std::string_view words_hel
   };
   const auto options = std::make_shared<Options>(verb, session, words_help);
   const auto wait =
-      add_duration(verb, "--wait", options->wait, "show the first sample; T: how long to wait for it, 2s");
+      add_duration(verb, "--wait", options->wait, "show the first sample; T: how long to wait for it");
   wait.expected(0, 1).type_name("[T]");
   if (starts == Starts::stream) add_admission_options(verb, options->admission);
   verb.callback([options, wait, &session] {

@@ -511,9 +511,11 @@ Verb Verb::add_verb(std::string_view name, std::string_view description, std::st
   return Verb{verb};
 }
 
-Verb Verb::add_inner_verb(const std::string& name, const std::string& description) const {
+Verb Verb::add_inner_verb(const std::string& name, const std::string& description,
+                          std::string_view examples) const {
   auto* verb = app_->add_subcommand(name, description);
   verb->group("Verbs");
+  verb->footer("Examples:\n" + std::string{examples});
   verb->fallthrough();
   return Verb{verb};
 }
@@ -649,8 +651,9 @@ std::vector<std::string> Verb::left_over() const {
 Program::Program(const std::string& name, const std::string& description, const std::string& version,
                  const std::string& footer, std::string beginning)
     : beginning_(std::move(beginning)), app_(std::make_unique<Root>(description, name)) {
-  app_->formatter(std::make_shared<HelpText>());  // verbs take over that of their program
-  app_->set_version_flag("--version", version);
+  app_->formatter(std::make_shared<HelpText>());       // verbs take over that of their program
+  app_->set_help_flag("-h,--help", "show this help");  // so do they its options
+  app_->set_version_flag("--version", version, "show the version");
   app_->require_subcommand(1);
   app_->footer(footer);
 }

@@ -123,7 +123,8 @@ class Verb {
   Verb add_verb(std::string_view name, std::string_view description, std::string_view heading,
                 std::string_view examples) const;
   /// A verb of this verb.
-  Verb add_inner_verb(const std::string& name, const std::string& description) const;
+  Verb add_inner_verb(const std::string& name, const std::string& description,
+                      std::string_view examples) const;
   Verb alias(const std::string& name) const;
   Verb require_verb() const;
   Verb footer(const std::string& text) const;

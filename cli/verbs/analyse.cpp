@@ -257,20 +257,22 @@ void add_bus_options(Verb verb, Options& options) {
 }  // namespace
 
 void add_analyse(Verb app, Session& session, int& exit_code) {
-  auto verb =
-      app.add_verb("analyse", "schedulability analysis of bus and tasks", look_group,
-                   "  amiroctl analyse bus\n"
-                   "  amiroctl analyse bus --rates gyro=50ms ring=2ms@high\n"
-                   "  amiroctl analyse bus messages.csv --bitrate 125k --svg worst-case.svg\n"
-                   "  amiroctl analyse bus --queue di_wheel_drive=fifo\n"
-                   "  amiroctl analyse bus --rates ring=4ms@low --assign priorities\n"
-                   "  amiroctl analyse tasks tasks.csv --json\n"
-                   "  amiroctl analyse tasks di_wheel_drive --context-switch 2us --tick 1ms --tick-cost 3us");
+  auto verb = app.add_verb("analyse", "schedulability analysis of bus and tasks", look_group,
+                           "  amiroctl analyse bus --rates gyro=50ms ring=2ms@high\n"
+                           "  amiroctl analyse tasks di_wheel_drive\n"
+                           "  amiroctl analyse chain chain.csv --deadline 50ms\n"
+                           "  amiroctl analyse trace drive.log");
   verb.alias("analyze");
   verb.require_verb();
 
   const auto of_bus = std::make_shared<Options>();
-  auto bus_verb = verb.add_inner_verb("bus", "the messages of a CAN bus: the robot's own, or a FILE's");
+  auto bus_verb =
+      verb.add_inner_verb("bus", "the messages of a CAN bus: the robot's own, or a FILE's",
+                          "  amiroctl analyse bus\n"
+                          "  amiroctl analyse bus --rates gyro=50ms ring=2ms@high\n"
+                          "  amiroctl analyse bus messages.csv --bitrate 125k --svg worst-case.svg\n"
+                          "  amiroctl analyse bus --queue di_wheel_drive=fifo\n"
+                          "  amiroctl analyse bus --rates ring=4ms@low --assign priorities");
   bus_verb.add_option(
       "FILE", of_bus->file,
       "CSV (name,id,dlc,period_ns,deadline_ns,jitter_ns,node,offset_ns,fd) or a spec, DBC or JSON; "
@@ -290,7 +292,10 @@ void add_analyse(Verb app, Session& session, int& exit_code) {
   bus_verb.callback([of_bus, &session, &exit_code] { exit_code = bus(*of_bus, session); });
 
   const auto of_tasks = std::make_shared<Options>();
-  auto tasks_verb = verb.add_inner_verb("tasks", "the tasks of a processor");
+  auto tasks_verb = verb.add_inner_verb(
+      "tasks", "the tasks of a processor",
+      "  amiroctl analyse tasks tasks.csv --json\n"
+      "  amiroctl analyse tasks di_wheel_drive --context-switch 2us --tick 1ms --tick-cost 3us");
   tasks_verb
       .add_option("FILE|BOARD", of_tasks->file,
                   fmt::format("CSV: name,priority,C_ns,T_ns,D_ns,J_ns,B_ns; or one of {}",
@@ -314,7 +319,9 @@ void add_analyse(Verb app, Session& session, int& exit_code) {
   tasks_verb.callback([of_tasks, &session, &exit_code] { exit_code = tasks(*of_tasks, session); });
 
   const auto of_chain = std::make_shared<Options>();
-  auto chain_verb = verb.add_inner_verb("chain", "from a sensor to a motor, over tasks and frames");
+  auto chain_verb = verb.add_inner_verb("chain", "from a sensor to a motor, over tasks and frames",
+                                        "  amiroctl analyse chain chain.csv --deadline 50ms\n"
+                                        "  amiroctl analyse chain chain.csv --rates gyro=10ms --json");
   chain_verb.add_option("FILE", of_chain->file, "CSV: hop,set,activation,response_ns,best_ns,period_ns")
       .required();
   add_duration(chain_verb, "--deadline", of_chain->deadline,
@@ -325,7 +332,9 @@ void add_analyse(Verb app, Session& session, int& exit_code) {
   chain_verb.callback([of_chain, &session, &exit_code] { exit_code = chain(*of_chain, session); });
 
   const auto of_trace = std::make_shared<Options>();
-  auto trace_verb = verb.add_inner_verb("trace", "a recorded log, held against the bounds");
+  auto trace_verb = verb.add_inner_verb("trace", "a recorded log, held against the bounds",
+                                        "  amiroctl analyse trace drive.log\n"
+                                        "  amiroctl analyse trace drive.log --set car.dbc --csv");
   trace_verb
       .add_option("LOG", of_trace->file,
                   "as candump -l and `amiroctl listen --raw` write it; - for standard input")

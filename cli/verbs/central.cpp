@@ -167,8 +167,7 @@ void add_central(Verb app, Session&, int& exit_code) {
       .needs(own);
   for (Option each : fleet::add_dongle_kind(verb, options->line.dongle)) each.needs(own);
   fleet::add_record_option(verb, options->line).needs(own);
-  add_duration(verb, "--scan", options->line.scan, "with --own: how long to look for robots; default: 3s")
-      .needs(own);
+  add_duration(verb, "--scan", options->line.scan, "how long to look for robots; default: 3s").needs(own);
   verb.callback([options, pty, baud, &exit_code] {
     if (options->own) {
       if (baud.count() > 0) options->line.dongle.baud = options->baud;

@@ -130,9 +130,7 @@ void add_completion(Verb app, Session& session, int&) {
     bool ask = false;
   };
   const auto options = std::make_shared<Options>();
-  verb.add_option("shell", options->words, "bash, zsh or fish")
-      .type_name("bash|zsh|fish")
-      .in_usage("bash|zsh|fish");
+  verb.add_option("shell", options->words, "the shell").type_name("bash|zsh|fish").in_usage("bash|zsh|fish");
   verb.add_flag("--words", options->ask,
                 "what the scripts ask: candidates for the last of the words behind --");
   verb.callback([options, app, &session] {

@@ -106,7 +106,7 @@ std::string list_of_formats() {
       "  amiroctl convert drive.log drive.pcapng\n"
       "  candump -L can0 | amiroctl convert - - --to csv\n"
       "  amiroctl convert drive.log.gz drive.csv --strict   exit 1 when anything is lost\n"
-      "Formats:\n";
+      "\nFormats:\n";
   for (const logs::LogFormat& format : logs::log_formats())
     text += fmt::format("  {:<14} {:<8} {}{}\n", format.name, format.ending, format.description,
                         format.writer == nullptr   ? " (read only)"

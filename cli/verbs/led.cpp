@@ -5,7 +5,7 @@ namespace ocm::cli {
 
 void add_led(Verb app, Session& session, int&) {
   add_command_verb(app, session, "led", "light an LED, or all of them", act_group,
-                   "N|all COLOUR|off; a colour is 100,50,120 or #643278 or a name",
+                   "a colour is 100,50,120 or #643278 or a name",
                    "  amiroctl led 1 red\n"
                    "  amiroctl led 5 100,50,120\n"
                    "  amiroctl led all off");

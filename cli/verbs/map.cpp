@@ -147,7 +147,7 @@ void add_map(Verb app, Session& session, int& exit_code) {
   verb.add_flag("--json", options->json, "figures as an object");
   const auto page = std::make_shared<MapPage>();
   verb.add_flag("--live", page->live, "show the map in a browser while it grows; prints the address");
-  verb.add_option("--port", page->port, "of that page").range(0U, 65535U).show_default();
+  verb.add_option("--port", page->port, "of that page").type_name("N").range(0U, 65535U).show_default();
   verb.add_flag("--allow-commands", page->commands, "who opens the address that is printed may send robots");
   verb.add_flag("--open", page->opens, "in your browser, too");
   fleet::add_line_options(verb, options->line);

@@ -26,8 +26,9 @@ void ask(Session& session, std::string_view verb, const std::string& request) {
   fmt::print("{}", answer.text);
 }
 
-void add_question(Verb verb, Session& session, const std::string& name, const std::string& description) {
-  auto inner = verb.add_inner_verb(name, description);
+void add_question(Verb verb, Session& session, const std::string& name, const std::string& description,
+                  std::string_view examples) {
+  auto inner = verb.add_inner_verb(name, description, examples);
   const auto json = std::make_shared<bool>(false);
   inner.add_flag("--json", *json, "one object, for programs");
   inner.callback([=, &session] { ask(session, name, *json ? name + " json" : name); });
@@ -43,20 +44,25 @@ void add_operator(Verb app, Session& session, int&) {
                    "  amiroctl operator switch driving   where a transition on request leads there\n"
                    "  amiroctl operator hold             until resume it leaves for the fall-back only");
   verb.require_verb();
-  add_question(verb, session, "status", "the configuration, its streams and monitors");
-  add_question(verb, session, "why", "the last changes with their causes, and what leads on");
+  add_question(verb, session, "status", "the configuration, its streams and monitors",
+               "  amiroctl operator status\n"
+               "  amiroctl operator status --json | jq -r .configuration");
+  add_question(verb, session, "why", "the last changes with their causes, and what leads on",
+               "  amiroctl operator why");
   {
-    auto inner = verb.add_inner_verb("switch", "ask for a configuration");
+    auto inner =
+        verb.add_inner_verb("switch", "ask for a configuration",
+                            "  amiroctl operator switch driving   where a transition on request leads there");
     const auto name = std::make_shared<std::string>();
     inner.add_option("configuration", *name, "its name in the operator file")
         .required()
         .type_name("CONFIGURATION");
     inner.callback([=, &session] { ask(session, "switch", "switch " + *name); });
   }
-  verb.add_inner_verb("hold", "stay: monitors lead to the fall-back only, until resume").callback([&session] {
-    ask(session, "hold", "hold");
-  });
-  verb.add_inner_verb("resume", "go on after hold").callback([&session] {
+  verb.add_inner_verb("hold", "stay: monitors lead to the fall-back only, until resume",
+                      "  amiroctl operator hold")
+      .callback([&session] { ask(session, "hold", "hold"); });
+  verb.add_inner_verb("resume", "go on after hold", "  amiroctl operator resume").callback([&session] {
     ask(session, "resume", "resume");
   });
 }

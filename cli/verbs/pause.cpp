@@ -38,7 +38,7 @@ void add(Verb app, std::string_view name, std::string_view description, std::str
          bool paused, int& exit_code) {
   auto verb = app.add_verb(name, description, mapper_group, examples);
   const auto options = std::make_shared<PauseOptions>();
-  verb.add_option("robot", options->robots, "names, addresses or indexes; all")
+  verb.add_option("robot", options->robots, "names, addresses or indexes; all: each of them")
       .required()
       .type_name("ROBOT ...");
   fleet::add_line_options(verb, options->line);

@@ -246,7 +246,7 @@ void add_plot(Verb app, Session& session, int& exit_code) {
   verb.add_option("--title", options->title, "default: the robot and the log").type_name("TEXT");
   verb.add_flag("--script", options->script, "print gnuplot's commands, and draw nothing");
   verb.add_flag("--live", options->live, "in a browser, while they come; prints the address");
-  verb.add_option("--port", options->port, "of that page").range(0U, 65535U).show_default();
+  verb.add_option("--port", options->port, "of that page").type_name("N").range(0U, 65535U).show_default();
   verb.add_flag("--open", options->opens, "in your browser, too");
   add_watch_options(verb, options->watch);
   verb.callback([options, verb, &session, &exit_code] { run(verb, session, *options, exit_code); });

@@ -138,7 +138,10 @@ void add_serve(Verb app, Session& session, int& exit_code) {
   verb.add_option("--from", options.format, "format of the log; default: what it begins with says it")
       .type_name("FORMAT")
       .takes(accepted_words(logs::readable_formats()));
-  verb.add_option("--port", given->port, "of TCP; 0: any that is free").range(0U, 65535U).show_default();
+  verb.add_option("--port", given->port, "of TCP; 0: any that is free")
+      .type_name("N")
+      .range(0U, 65535U)
+      .show_default();
   verb.add_flag("--allow-commands", options.commands,
                 "who opens the address that is printed may drive, and command all else");
   verb.add_option("--address", options.web.address, "an address of this machine; all but 127.0.0.1 need TLS")

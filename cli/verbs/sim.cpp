@@ -127,7 +127,7 @@ void add_mappers(Verb verb, sim::MapperOptions& options) {
   verb.add_flag("--lines", options.lines, "no central: each mapper on a serial line of its own");
   verb.add_option("--radio-loss", options.radio_loss, "share of packets lost wherever a robot is")
       .range(0.0, 1.0)
-      .type_name("0..1");
+      .type_name("SHARE");
   verb.add_option("--radio-range", options.radio_range,
                   "how far the central's radio reaches; default: the world's")
       .range(0.01, 10'000.0)
@@ -215,7 +215,7 @@ void add_sim(Verb app, Session& session, int& exit_code) {
       .expected(0, 1)
       .one_of({"page", "text"})
       .type_name("[page|text]");
-  verb.add_option("--port", show->port, "of that page").range(0U, 65535U).show_default();
+  verb.add_option("--port", show->port, "of that page").type_name("N").range(0U, 65535U).show_default();
   verb.add_flag("--allow-commands", show->commands, "who opens the address that is printed may drive");
   verb.add_flag("--open", show->opens, "in your browser, too");
   const auto mappers = std::make_shared<sim::MapperOptions>();
