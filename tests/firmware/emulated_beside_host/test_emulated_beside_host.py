@@ -68,7 +68,7 @@ class Robots(RealTime, Case):
         listener = self.start("--bus", self.bus(name), "listen", "--json", "--timeout", "3s", topic)
         self.assertIn("bus: sim", listener.stderr.readline())
         time.sleep(0.05)
-        self.tool(name, "once", topic, "--priority", priority)
+        self.tool(name, "once", topic, "--priority", priority, "--no-confirm")
         frames, count = [], self.frames_of(topic)
         for line in listener.stdout:
             event = json.loads(line)

@@ -1,9 +1,7 @@
 """amiroctl at dongles that are not our central: each kind is found out, spoken to, and left as the next program needs it."""
 
 import json
-import os
 import time
-
 
 from harness import Case, main, waiting
 from played_central import Central, Robot
@@ -40,17 +38,18 @@ class Dongles(Case):
         self.assertEqual(self.tool("unpause", "AVR", *options)[0], "AVR: goes on\n")
         waiting.until(lambda: self.dongle.target is None, "command mode")
 
+    def check_the_base_firmware(self, prefixes):
+        self.play(BaseFirmware)
+        self.dongle.prefixes = prefixes
+        self.check_verbs()
+        self.assertEqual(self.dongle.commands.count("AT+CONN=0"), 1)  # the next verb takes the link over
+        self.check_verbs("--dongle", "at")
+
     def test_the_base_firmware(self):
-        for prefixes in (False, True):
-            with self.subTest(prefixes=prefixes):
-                self.play(BaseFirmware)
-                self.dongle.prefixes = prefixes
-                self.check_verbs()
-                self.assertEqual(self.dongle.commands.count("AT+CONN=0"), 1)  # the next verb takes the link over
-                self.check_verbs("--dongle", "at")
-                self.dongle.close()
-                os.unlink(self.dongle.path)
-                self.dongle.close = lambda: None
+        self.check_the_base_firmware(prefixes=False)
+
+    def test_the_base_firmware_with_prefixes(self):
+        self.check_the_base_firmware(prefixes=True)
 
     def test_the_base_firmware_with_two_robots(self):
         self.play(BaseFirmware, "AVR", "Arduino")
