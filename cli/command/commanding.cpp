@@ -33,8 +33,7 @@ Commanding::Commanding(Verb verb, Session& session, std::string_view words_help,
 client::Command Commanding::parse() const {
   std::vector<std::string_view> words{verb_};
   words.insert(words.end(), words_.begin(), words_.end());
-  auto command =
-      words::CommandParser{session_->catalogue_on_bus(!dry_run_), "amiroctl "}.parse(words, options_);
+  auto command = words::CommandParser{catalogue(), "amiroctl "}.parse(words, options_);
   if (!command) fail({verb_ + ": " + command.error.what, command.error.remedy}, exit_usage);
   return std::move(command.value);
 }

@@ -24,6 +24,8 @@ class Commanding {
   /// Adds the positional words and --dry-run to `verb`; of commands --priority and --no-confirm.
   Commanding(Verb verb, Session& session, std::string_view words_help, Sends sends = Sends::commands);
 
+  /// That of its words: of the bus that it speaks to.
+  [[nodiscard]] const protocol::Catalogue& catalogue() const { return session_->catalogue_on_bus(!dry_run_); }
   /// The command, or exit_usage with a message that names the word.
   [[nodiscard]] client::Command parse() const;
   /// What the options of the command line say; a verb adds its own to them.

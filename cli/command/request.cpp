@@ -36,20 +36,22 @@ void send_all(transport::Bus& bus, RefusalWatch& refusals, const std::string& ve
 
 /// Sends the command and waits for the first sample of the topic that it asks, which `shown` takes, if there
 /// is one: a board sends it at once. Fails if the board refuses, and after `timeout`, and says what to check.
-void send_and_await(Session& session, transport::Bus& bus, RefusalWatch& refusals, const std::string& verb,
-                    const client::Command& command, base::Duration timeout, Printer* shown) {
+void send_and_await(const protocol::Catalogue& catalogue, transport::Bus& bus, RefusalWatch& refusals,
+                    const std::string& verb, const client::Command& command, base::Duration timeout,
+                    Printer* shown) {
   catch_interrupts();
-  const auto& catalogue = session.catalogue();
   const auto& topic = *command.answers;
   refusals.prepare(bus, command.frames, {&topic});
   send_all(bus, refusals, verb, command);
 
   client::Receiver receiver{catalogue};
+  std::uint64_t parts = 0, wrong = 0;  // of the topic
   const Over over =
       Live{bus}.receive_or_leave(Live::Clock::now() + timeout, [&](const can::Received& received) {
         if (refusals.take(received)) return false;
         const auto reception = receiver.take(received);
         if (reception.topic != &topic) return true;
+        ++(reception.meaning == client::Meaning::wrong_dlc ? wrong : parts);
         if (shown != nullptr)
           shown->write({bus.name(), log::Entry{received.time, received.frame}, reception});
         return reception.meaning != client::Meaning::sample;
@@ -62,12 +64,15 @@ void send_and_await(Session& session, transport::Bus& bus, RefusalWatch& refusal
       refusals.listen(bus);
     return refusals.leave_if_refused();
   }
-  const auto& counters = receiver.counters();
-  fail({fmt::format("{}: no {} within {}", verb, topic.name, words::to_text(timeout)),
-        counters.frames != 0
-            ? fmt::format("{} came, {} of wrong length: does the robot run another protocol version?",
-                          counted(counters.frames, "frame"), counters.wrong_dlc)
-            : fmt::format("is board {} powered and on {}? Is the bit rate {} bit/s? See `amiroctl doctor`",
+  const std::string what = fmt::format("{}: no {} within {}", verb, topic.name, words::to_text(timeout));
+  if (wrong != 0)
+    fail({what, fmt::format("{} of it came in another length: does the robot run another protocol version?",
+                            counted(wrong, "frame"))});
+  if (parts != 0)
+    fail({what, fmt::format("{} of it came, and never all of a sample: does the bus lose frames? See "
+                            "`amiroctl doctor`",
+                            counted(parts, "frame"))});
+  fail({what, fmt::format("is board {} powered and on {}? Is the bit rate {} bit/s? See `amiroctl doctor`",
                           catalogue.board_name(topic), bus.name(), catalogue.bit_rate)});
 }
 
@@ -82,26 +87,28 @@ void add_request_options(Verb verb, Session& session, std::string_view words_hel
     base::Duration wait = std::chrono::seconds{2};
   };
   const auto options = std::make_shared<Options>(verb, session, words_help);
-  const auto wait =
-      add_duration(verb, "--wait", options->wait, "show the first sample; T: how long to wait for it");
-  wait.expected(0, 1).type_name("[T]");
+  const auto wait = verb.add_value("--wait", take_into(options->wait, words::read_lasting),
+                                   "show the first sample; T: how long to wait for it");
+  wait.expected(0, 1).type_name("[T]").takes(accepted_duration()).default_text(words::to_text(options->wait));
   if (starts == Starts::stream) add_admission_options(verb, options->admission);
   verb.callback([options, wait, &session] {
+    protocol::Catalogue catalogue = options->commanding.catalogue();
     const auto command = options->commanding.parse();
     const bool dry_run = options->commanding.dry_run();
     if (dry_run && !options->admission.explain) return print_frames(command);
     const auto bus = session.open_bus();
-    RefusalWatch refusals{session.catalogue(), options->commanding.verb(), options->commanding.confirm()};
-    admit(session.catalogue(), *bus, command, options->admission, refusals);
+    if (const std::uint32_t rate = bus->bit_rate(); rate != 0) catalogue.bit_rate = rate;
+    RefusalWatch refusals{catalogue, options->commanding.verb(), options->commanding.confirm()};
+    admit(catalogue, *bus, command, options->admission, refusals);
     if (dry_run) return print_frames(command);
     const auto& verb_name = options->commanding.verb();
     if (wait.count() != 0) {
-      Printer printer{make_output(isatty(STDOUT_FILENO) != 0 ? Format::pretty : Format::json,
-                                  session.catalogue(), {}, session.colour(), columns_of_output)};
-      return send_and_await(session, *bus, refusals, verb_name, command, options->wait, &printer);
+      Printer printer{make_output(isatty(STDOUT_FILENO) != 0 ? Format::pretty : Format::json, catalogue, {},
+                                  session.colour(), columns_of_output)};
+      return send_and_await(catalogue, *bus, refusals, verb_name, command, options->wait, &printer);
     }
     if (options->commanding.confirm() == Confirm::yes)
-      return send_and_await(session, *bus, refusals, verb_name, command, options->wait, nullptr);
+      return send_and_await(catalogue, *bus, refusals, verb_name, command, options->wait, nullptr);
     send_all(*bus, refusals, verb_name, command);
   });
 }

@@ -16,6 +16,14 @@ class Admission(Case):
         for sensor in SENSORS:
             self.run_tool("publish", sensor, period)
 
+    def test_a_spec_that_is_of_one_interface(self):
+        self.start_sim()
+        spec = ("--spec", "sim=" + os.path.join(SOURCE, "spec/topics.json"))
+        out, _ = self.run_tool(*spec, "once", "power", "--wait")
+        self.assertIn('"topic":"power_status"', out)
+        for period, priority in (("900us", "medium"), ("900us", "high"), ("50ms", "low")):  # the stream before does not count
+            self.run_tool(*spec, "publish", "mag", period, "--priority", priority)
+
     def test_a_request_that_makes_somebody_late_is_refused_with_a_counter_offer(self):
         self.everything_at("50ms")
         ring = ("publish", "ring", "--priority", "urgent")
