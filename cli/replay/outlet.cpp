@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "ocm/can/filter.hpp"
+#include "ocm/client/command.hpp"
 
 #include "cli/shared/messages.hpp"
 #include "cli/shared/set_points.hpp"
@@ -22,10 +23,37 @@ Outlet::Outlet(std::unique_ptr<transport::Bus> bus, const protocol::Catalogue& c
 Outlet::Sent Outlet::send(const log::Entry& entry) {
   if (entry.format == can::Format::error) return Sent::error_frame;
   if (entry.is_fd() && !takes_fd_) return Sent::fd_frame;
-  outgoing_.send(entry.frame());
-  if (const auto frame = entry.classic(); frame && commanded_motors(index_, *frame) != nullptr)
-    set_point_ = *frame;
+  const auto frame = entry.classic();
+  if (!frame || commanded_motors(index_, *frame) == nullptr) {
+    outgoing_.send(entry.frame());
+    ++behind_;
+    return Sent::yes;
+  }
+  if (!is_rest(*frame)) {
+    if (!outgoing_.all_left(client::longest_without_set_point)) {
+      rest_if_it_is_taken();
+      outgoing_.expect_all_left({});
+    }
+    outgoing_.otherwise_after_the_next(still_moving);
+  }
+  outgoing_.send(*frame);
+  set_point_ = *frame;
+  behind_ = 0;
   return Sent::yes;
+}
+
+void Outlet::rest_if_it_is_taken() {
+  if (is_rest(set_point_)) return;
+  set_point_.data = {};
+  behind_ = 0;
+  static_cast<void>(bus_->send(set_point_));
+}
+
+void Outlet::expect_all_left() {
+  if (outgoing_.all_left(std::chrono::milliseconds{500})) return;
+  // What waits came behind the last set point, which is zero.
+  if (is_rest(set_point_) && bus_->delivery().pending <= behind_) outgoing_.otherwise({});
+  outgoing_.expect_all_left({});
 }
 
 void Outlet::expect_open() const {
@@ -38,6 +66,7 @@ bool Outlet::rest() {
   if (is_rest(set_point_)) return false;
   set_point_.data = {};
   outgoing_.send(set_point_);
+  behind_ = 0;
   return true;
 }
 

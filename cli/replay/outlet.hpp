@@ -24,7 +24,8 @@ class Outlet {
     error_frame,  ///< a report of a controller: nothing for the wire
     fd_frame,     ///< this bus has none
   };
-  /// Waits for room up to a second, then leaves through cli::fail.
+  /// Waits for room up to a second, then leaves through cli::fail. A set point of motion waits until all that
+  /// was sent before it has left, as long as motors wait for one; then zero is put behind what waits.
   Sent send(const log::Entry& entry);
 
   /// Leaves through cli::fail when the bus is gone. Waits for nothing.
@@ -36,16 +37,20 @@ class Outlet {
   bool rest();
 
   /// Waits until all has left, or leaves through cli::fail and says how much has not.
-  void expect_all_left() { outgoing_.expect_all_left(); }
+  void expect_all_left();
 
   [[nodiscard]] std::string_view name() const { return bus_->name(); }
 
  private:
+  /// Zero, behind whatever waits: at most one set point of motion does.
+  void rest_if_it_is_taken();
+
   std::unique_ptr<transport::Bus> bus_;
   Outgoing outgoing_;
   bool takes_fd_;
   client::FrameIndex index_;
-  can::Frame set_point_;  ///< of motors, the last that was sent
+  can::Frame set_point_;      ///< of motors, the last that was sent
+  std::uint64_t behind_ = 0;  ///< frames that were sent after it
 };
 
 }  // namespace ocm::cli::replay

@@ -203,9 +203,9 @@ void play(Session& session, const ReplayOptions& options, int& exit_code) {
       log = std::make_unique<logs::OpenedLog>(options.file, options.from_format, catalogue);
     }
     // Where the log was not played to its end, the set point that would have ended a drive is not sent.
-    if (player.cut_short() && player.rest())
-      remark("the motors were set to zero: the log goes on behind this");
+    const bool rested = (player.cut_short() || damaged) && player.rest();
     player.expect_all_left();
+    if (rested) remark("the motors were set to zero: the log goes on behind this");
   } catch (const Exit&) {  // the bus took no more: what was sent is reported all the same
     if (!options.dry_run) summarise(player, false);
     throw;
@@ -259,8 +259,10 @@ void stand_in(Session& session, const ReplayOptions& options, int& exit_code) {
     log.complain();
   }
   if (robot.samples() == 0)
-    fail({fmt::format("{} has no sample of a sensor: nothing could be answered", options.file),
-          "is --spec that of the robot that was recorded?"});
+    fail({fmt::format("{} has no sample of {}: nothing could be answered", options.file,
+                      options.topics.empty() ? "a sensor" : "these topics"),
+          options.topics.empty() ? "is --spec that of the robot that was recorded?"
+                                 : "name others, or none: then all that it has is answered"});
   const auto bus = session.open_bus();
   tell_learnt(robot, catalogue);
 
@@ -293,7 +295,8 @@ void stand_in(Session& session, const ReplayOptions& options, int& exit_code) {
     const auto until = robot.next() == base::never
                            ? Live::Clock::time_point::max()
                            : Live::Clock::now() + (robot.next() - replay::monotonic_now());
-    over = live.receive(until, take);
+    // What is due all the time leaves room for requests, such as a stop.
+    over = live.receive(std::max(until, Live::Clock::now() + std::chrono::microseconds{100}), take);
     if (over == Over::gone) fail(bus->failure());
   }
   std::string text = fmt::format("{}, {} sent", counted(requests, "request"), counted(sent, "frame"));

@@ -164,6 +164,7 @@ class Run {
     CHECK(counted <= entries_.size());
     if (!left && !player.cut_short() && world_.signal() == 0) CHECK(counted == entries_.size());
     judge_frames(buses, played.sent, left, player.cut_short());
+    for (auto* const bus : buses) judge_age(*bus);
     if (!left && player.cut_short())
       for (auto* const bus : buses) judge_rest(*bus);
     // A signal is seen soon, unless a bus takes nothing for a second.
@@ -206,6 +207,15 @@ class Run {
     CHECK(on_buses <= counted + (rested ? buses.size() : left ? 1 : 0));
   }
 
+  /// A set point that moves is given to a bus when all before it has left: of those that wait one is such.
+  static void judge_age(PlayedBus& bus) {
+    const client::FrameIndex index{amiro::catalogue};
+    const auto& sent = bus.sent();
+    for (std::size_t i = 1; i < sent.size(); ++i)
+      if (cli::commanded_motors(index, sent[i].frame) != nullptr && !cli::is_rest(sent[i].frame))
+        CHECK(sent[i - 1].left <= sent[i].taken);
+  }
+
   static void judge_rest(PlayedBus& bus) {
     const client::FrameIndex index{amiro::catalogue};
     const can::Frame* last = nullptr;
@@ -231,6 +241,51 @@ TEST_CASE(
   for (std::uint64_t seed = 1; seed <= runs; ++seed) {
     INFO("seed " << seed);
     Run{seed}.go();
+  }
+}
+
+TEST_CASE("replay: on a bus from which nothing leaves, zero comes behind the one set point that waits") {
+  const Silence silence;
+  std::vector<log::Entry> drive;  // of 10 s
+  for (int i = 0; i < 100; ++i) {
+    can::Frame frame{motors, 8, {}};
+    frame.data[0] = 100;
+    drive.emplace_back(base::Time{i * 100ms}, frame, std::uint16_t{0});
+  }
+  for (const Duration stuck : {400ms, 5000ms}) {
+    INFO("stuck for " << stuck.count() << " ns");
+    World world{1};
+    PlayedBus::Conditions conditions;
+    const Moment begin = World::start + 2s;
+    conditions.stuck = {{begin, begin + stuck}};
+    auto made = std::make_unique<PlayedBus>(world, conditions);
+    auto& bus = *made;
+    std::vector<replay::Outlet> outlets;
+    outlets.emplace_back(std::move(made), amiro::catalogue);
+    log::MemorySource nothing{""};
+    log::Input input{nothing};
+    PlayedLog log{world, input, drive, 1};
+    replay::Player player{
+        {}, replay::Selection{amiro::catalogue, {}, replay::Only::all}, std::move(outlets), nullptr};
+    bool left = false;
+    try {
+      player.play(log);
+      player.expect_all_left();
+    } catch (const cli::Exit& exit) {
+      left = true;
+      CHECK(exit.code == 1);
+    }
+    CHECK(left == (stuck > client::longest_without_set_point));
+    if (!left) {
+      CHECK(bus.sent().size() == drive.size());
+      continue;
+    }
+    CHECK(world.now() < begin + client::longest_without_set_point + 200ms);
+    const auto& sent = bus.sent();
+    CHECK(std::count_if(sent.begin(), sent.end(), [&](const auto& each) {
+            return each.taken > begin && !cli::is_rest(each.frame);
+          }) == 1);
+    CHECK(cli::is_rest(sent.back().frame));
   }
 }
 

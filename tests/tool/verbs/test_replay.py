@@ -1,5 +1,6 @@
 """amiroctl replay on a virtual bus: frames at their times, and a log that answers like the robot that it is of."""
 
+import gzip
 import os
 import re
 import signal
@@ -248,6 +249,18 @@ class Replaying(RealTime, Case):
         out, err = self.replayed(log, code=1)
         self.assertEqual([frame for _, frame in out], ["608#01", "608#02"])
         self.assertIn("line 2", err)
+
+    def test_a_drive_in_a_log_that_is_damaged_ends_with_zero(self):
+        self.start_sim()
+        log = self.write_log(*((1 + i / 1000, "201#50C3000000000000") for i in range(4000)))
+        with open(log, "rb") as file:
+            packed = gzip.compress(file.read())
+        with open(self.path("cut.log.gz"), "wb") as file:
+            file.write(packed[:len(packed) // 2])
+        out, err = self.replayed(self.path("cut.log.gz"), "--speed", "max", code=1)
+        self.assertEqual([frame for _, frame in out][-2:], ["201#50C3000000000000", "201#0000000000000000"])
+        self.assertIn("cannot be read beyond", err)
+        self.assertIn("the motors were set to zero", err)
 
     def test_usage(self):
         log = self.write_log((1, "608#01"))
