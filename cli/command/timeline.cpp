@@ -49,6 +49,14 @@ bool Timeline::listen_first(base::Duration duration) {
   return wait(end);
 }
 
+void Timeline::ask() {
+  const auto* const sensor = others_ == Others::allowed ? nullptr : other_.unheard_sensor();
+  if (sensor == nullptr) return;
+  const auto taken = bus_->send(sensor->request());
+  asked_ = true;
+  answer_is_due_ = taken && *taken;
+}
+
 bool Timeline::wait_for_answer(Clock::time_point end) {
   const auto late = Clock::now() + client::longest_without_set_point;
   for (;;) {
@@ -170,8 +178,8 @@ void Timeline::tell_unsent() {
     return fmt::format("{} {} not sent", client::count(count, "frame*"), count == 1 ? "was" : "were");
   };
   if (withheld_ != 0)
-    remark(fmt::format("{}: {} set points were not sent, because the one before had not left", verb_,
-                       withheld_));
+    remark(fmt::format("{}: {} {} not sent, because the one before had not left", verb_,
+                       client::count(withheld_, "set point*"), withheld_ == 1 ? "was" : "were"));
   if (left_out_ != 0)
     remark(fmt::format("{}: {}, because this program ran too late for {} time", verb_, frames(left_out_),
                        left_out_ == 1 ? "its" : "their"));
@@ -273,7 +281,7 @@ void Timeline::repeat(Clock::time_point now) {
   if (taken.error == base::Error::closed) {
     held_.reset();
     tell_unsent();
-    fail(bus_->failure());
+    outgoing_.leave_gone();
   }
   if (taken && *taken) {
     held_->left = now;
@@ -321,7 +329,7 @@ bool Timeline::try_to_send(const can::AnyFrame& frame) {
   const auto sent = bus_->send_any(frame);
   if (sent.error == base::Error::closed) {
     tell_unsent();
-    fail(bus_->failure());
+    outgoing_.leave_gone();
   }
   if (!sent || !*sent) return false;
   ++behind_;
@@ -379,7 +387,7 @@ bool Timeline::wait(Clock::time_point until) {
     if (over == Over::gone) {
       held_.reset();
       tell_unsent();
-      fail(bus_->failure());
+      outgoing_.leave_gone();
     }
     if (others_ == Others::refused && other_.has_stopped()) end_for_another();
   }

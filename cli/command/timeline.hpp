@@ -51,13 +51,19 @@ class Timeline {
   /// before the end. The request has left when this returns, if the bus can tell: no set point waits behind
   /// it. Leaves through cli::fail if it has not left within client::longest_without_set_point.
   [[nodiscard]] bool listen_first(base::Duration duration = client::listen_before_hold);
-  /// Whether listen_first has had to ask.
+  /// Asks as listen_first does, and waits for nothing: what is answered in the next waits counts for a hold
+  /// that begins in a while.
+  void ask();
+  /// Whether listen_first or `ask` has had to ask.
   [[nodiscard]] bool has_asked() const { return asked_; }
   /// What this program has commanded goes on without it: that it was stopped for a while makes nothing out of
   /// date.
-  void forgive_a_stop() { stood_still_ = {}; }
-  /// What is sent next sets the robot in motion, although it is no set point of the motors.
-  void expect_motion() { outgoing_.otherwise_after_the_next(still_moving); }
+  void forgive_a_stop() {
+    stood_still_ = {};
+    awake_ = Clock::now();
+  }
+  /// What is sent next has a board drive by itself, which no watchdog ends.
+  void expect_motion() { outgoing_.otherwise_after_the_next(still_travelling); }
   /// The caller says itself that the board is silent: finish() does not.
   void leave_silence_to_caller() { answer_is_due_ = false; }
   /// Leaves if another program that commands the motors was heard, where one is refused. Before a hold that

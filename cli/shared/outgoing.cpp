@@ -39,7 +39,7 @@ void Outgoing::send(const can::AnyFrame& frame, base::Duration patience) {
   for (;;) {
     const auto taken = bus_.send_any(frame);
     const auto now = look();
-    if (taken.error == base::Error::closed) fail(bus_.failure());
+    if (taken.error == base::Error::closed) leave_gone();
     if (!taken) {
       if (auto obstacle = frame.is_fd() ? bus_.fd_obstacle() : transport::Failure{}; !obstacle.what.empty())
         give_up(fmt::format("{} is a CAN FD frame, and {}", can::to_text(frame).view(), obstacle.what),
@@ -77,6 +77,7 @@ bool Outgoing::all_left(base::Duration patience) {
       pending = delivery.pending;
       late = Clock::now() + patience;
     }
+    if (bus_.state() == transport::BusState::closed) return false;
     if (!delivery.known || delivery.pending == 0) return delivery.obstruction.what.empty();
     if (!delivery.obstruction.what.empty() || Clock::now() >= late) return false;
     sleep_for(look_again);
@@ -85,10 +86,12 @@ bool Outgoing::all_left(base::Duration patience) {
 
 void Outgoing::expect_all_left(base::Duration patience) {
   if (all_left(patience)) return;
+  if (bus_.state() == transport::BusState::closed) leave_gone();
   const auto delivery = bus_.delivery();
   const auto sent = bus_.counters().sent;
   const auto missing = std::min(std::max<std::uint64_t>(delivery.pending, 1), sent);
-  const std::string what = fmt::format("{} of {} frames did not leave {}", missing, sent, bus_.name());
+  const std::string which = sent == 1 ? "the frame" : fmt::format("{} of {} frames", missing, sent);
+  const std::string what = fmt::format("{} did not leave {}, and may leave later", which, bus_.name());
   if (!delivery.obstruction.what.empty())
     give_up(fmt::format("{}: {}", what, delivery.obstruction.what), delivery.obstruction.remedy);
   give_up(what, why_none_leaves(bus_));
@@ -110,6 +113,14 @@ bool Outgoing::matters() const {
   if (otherwise_.empty() || always_) return !otherwise_.empty();
   const auto delivery = bus_.delivery();
   return bus_.counters().sent - before_ > (delivery.known ? delivery.pending : 0);
+}
+
+void Outgoing::leave_gone() const {
+  transport::Failure failure = bus_.failure();
+  // A simulated robot has gone with its bus.
+  if (matters() && dynamic_cast<const transport::VirtualBus*>(&bus_) == nullptr)
+    failure.what += fmt::format("; {}", otherwise_);
+  fail(failure);
 }
 
 void Outgoing::give_up(std::string what, std::string remedy) const {

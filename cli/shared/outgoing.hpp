@@ -17,6 +17,9 @@ namespace ocm::cli {
 /// What it means when a stop, or the end of a drive, did not leave.
 inline constexpr const char* still_moving =
     "THE ROBOT MAY STILL MOVE until its watchdog stops it: be ready to cut its power";
+/// The same of what a board does by itself, which no watchdog ends.
+inline constexpr const char* still_travelling =
+    "THE ROBOT MAY STILL MOVE, to the end of its way: be ready to cut its power";
 /// What to check when the bus takes frames and none leaves.
 [[nodiscard]] std::string why_none_leaves(const transport::Bus& bus);
 
@@ -46,8 +49,10 @@ class Outgoing {
   /// Waits until all that was sent has left; leaves and says how much has not, when none has left for
   /// `patience`.
   void expect_all_left(base::Duration patience = std::chrono::milliseconds{500});
-  /// The same as an answer. A bus that cannot tell says yes.
+  /// The same as an answer. A bus that cannot tell says yes; one that is gone, no.
   [[nodiscard]] bool all_left(base::Duration patience);
+  /// Leaves with the words of the bus, which is gone, and with what that means for the robot.
+  [[noreturn]] void leave_gone() const;
 
  private:
   /// The time.

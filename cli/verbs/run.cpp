@@ -90,13 +90,15 @@ Timeline::Clock::duration due(const words::Step& step, double speed) {
       std::chrono::duration<double, std::nano>(static_cast<double>(step.at.count()) / speed));
 }
 
-/// How long to listen before the start, so that another program that commands the motors is heard before the
-/// first drive: nothing where there is none, or something else to wait for.
-base::Duration listening_of(const words::Script& script, double speed) {
+/// When the first drive is due, from the start; nothing: there is none.
+std::optional<base::Duration> first_drive(const words::Script& script, double speed) {
   for (const auto& step : script.steps)
-    if (step.command.hold) return std::max(base::Duration{0}, client::listen_before_hold - due(step, speed));
-  return {};
+    if (step.command.hold) return due(step, speed);
+  return std::nullopt;
 }
+
+/// How long before the first drive a board is asked what it does by itself, where it has not said so.
+constexpr base::Duration asks_before = std::chrono::milliseconds{100};
 
 /// What is sent again and again behind these steps, by name.
 std::vector<std::string_view> repeated_after(std::span<const words::Step> steps,
@@ -168,11 +170,20 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
                     options.no_confirm ? Confirm::no : Confirm::yes,
                     options.show ? std::function<void(const can::Received&)>{show}
                                  : std::function<void(const can::Received&)>{}};
-  static_cast<void>(timeline.listen_first(listening_of(script, options.speed)));  // a signal is seen below
+  // So long that another program that commands the motors is heard before the first drive.
+  const auto drives = first_drive(script, options.speed);
+  if (drives && *drives < client::listen_before_hold)
+    static_cast<void>(timeline.listen_first(client::listen_before_hold - *drives));  // a signal is seen below
   started = true;
   const auto start = Timeline::Clock::now();
+  bool asks = drives && *drives > asks_before && !timeline.has_asked();
   std::size_t carried_out = 0;
   for (const auto& step : script.steps) {
+    if (asks && due(step, options.speed) > *drives - asks_before) {
+      if (!timeline.wait_for_step(start + *drives - asks_before)) break;
+      timeline.ask();
+      asks = false;
+    }
     if (!timeline.wait_for_step(start + due(step, options.speed))) break;
     remark(fmt::format("{:>8}  {}", words::to_text(step.at), step.text));
     timeline.carry_out(step.command);

@@ -142,6 +142,7 @@ void travel(Session& session, const TravelOptions& options, int& exit_code) {
   client::Command end;
   if (!watch.over()) end.frames.push_back(client::set_point(topic, {}, options.priority));
   if (asked) end.frames.push_back(protocol::stop(sensor.id, sensor.priority));
+  timeline.forgive_a_stop();  // an end is never too late
   timeline.carry_out_once(end);
   if (silent) timeline.leave_silence_to_caller();
   const bool taken = timeline.finish();
@@ -158,7 +159,7 @@ void travel(Session& session, const TravelOptions& options, int& exit_code) {
   } else if (silent && watch.was_active()) {
     fail(
         {fmt::format("travel: {} has been silent for {}, so zeros were sent; {}", catalogue.board_name(topic),
-                     words::to_text((most_asks + 1) * longest_silence), still_moving),
+                     words::to_text((most_asks + 1) * longest_silence), still_travelling),
          doctor});
   } else if (silent) {
     fail({fmt::format("travel: no {} within {}, so the travel was ended", sensor.name,

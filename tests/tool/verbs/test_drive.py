@@ -6,7 +6,7 @@ import re
 import signal
 import time
 
-from harness import Case, main
+from harness import Case, main, waiting
 from played_adapter import WithAdapter
 
 FORWARDS = "201#50C3000000000000"
@@ -215,6 +215,17 @@ class Alarm(WithAdapter, Drive):
         for command in (("stop",), ("drive", "stop"), ("run", self.script("0s stop\n"))):
             _, err = self.run_tool("--bus", f"slcan:{adapter.path}", *command, code=1)
             self.assertIn("THE ROBOT MAY STILL MOVE", err, command)
+
+    def test_where_the_adapter_goes_while_the_robot_moves(self):
+        for command, begun, end in ((("drive", "5cm/s", "--for", "60s"), "201#50C3", "until its watchdog stops it"),
+                                    (("travel", "30cm"), "20B#", "to the end of its way")):
+            adapter = self.adapter()
+            tool = self.start("--bus", f"slcan:{adapter.path}", *command)
+            waiting.until(lambda: any(frame.startswith(begun) for frame in adapter.frames), "it moves")
+            adapter.unplug()
+            _, err = tool.communicate(timeout=60)
+            self.assertEqual(tool.returncode, 1, err)
+            self.assertRegex(err, f"amiroctl: .* is gone.*; THE ROBOT MAY STILL MOVE,? {end}: be ready to cut its power\n")
 
     def test_not_where_there_is_no_bus(self):
         for bus in ("sim", "can7", "slcan:/dev/null@500k"):

@@ -142,6 +142,9 @@ class Travel(Case):
         self.run_tool("stop", "behaviour")
         _, err = self.run_tool("drive", "5cm/s", code=1)
         self.assertIn("drive: di_wheel_drive drives the wheels by itself", err)
+        for late in ("0s", "120ms", "600ms"):  # a script's first drive
+            _, err = self.run_tool("run", "-", stdin=f"0s led 1 red\n{late} drive 5cm/s --for 100ms\n", code=1)
+            self.assertIn("run: di_wheel_drive drives the wheels by itself", err)
         self.run_tool("behave", "none")
         self.run_tool("drive", "5cm/s", "--for", "100ms")
 
