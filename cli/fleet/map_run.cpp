@@ -63,13 +63,13 @@ std::string_view words(End end) {
     case End::unseen:
       return "not all: the rest could not be seen,";
     case End::time_over:
-      return "what was seen until --duration was over";
+      return "what was seen before --duration was over,";
     case End::interrupted:
-      return "what was seen until it was interrupted";
+      return "what was seen before it was interrupted,";
     case End::robots_lost:
-      return "what was seen until every robot was lost";
+      return "what was seen before every robot was lost,";
     case End::central_gone:
-      return "what was seen until the central was gone";
+      return "what was seen before the central was gone,";
   }
   return "what was seen";
 }

@@ -54,12 +54,17 @@ struct LogFile::State {
     }
   }
 
+  /// What is in the file: whole records, of which many are written at once.
+  [[nodiscard]] std::string kept() const {
+    return size == 0 ? "nothing of it was kept" : "what was written before can be read";
+  }
+
   bool failed(std::string_view doing) {
     failure = {fmt::format("cannot {} {}: {}", doing, path == "-" ? "the standard output" : path,
                            std::strerror(errno)),
-               errno == ENOSPC  ? "free some space; what was written before can be read"
+               errno == ENOSPC  ? "free some space; " + kept()
                : errno == EINTR ? "its reader takes no more, and a signal ended the wait"
-                                : "what was written before can be read"};
+                                : kept()};
     return false;
   }
 
@@ -84,6 +89,8 @@ struct LogFile::State {
     }
     struct stat status {};
     if (descriptor < 0 || ::fstat(descriptor, &status) != 0) {
+      // A FIFO is open once it has a reader.
+      if (errno == EINTR && interrupted() != 0) throw Exit{exit_code_after_interrupt(exit_failure)};
       failed("write");
       return refuse({failure.what, "name a folder that exists and can be written to"});
     }

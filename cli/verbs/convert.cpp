@@ -91,7 +91,9 @@ void convert(Session& session, const ConvertOptions& options, int& exit_code) {
   const bool written = (*out)->failure().what.empty();
   const bool whole = written && interrupted() == 0 && !in.ended_early();
   remark(fmt::format("{}, {} to {}{}", counted(frames, "frame"), in.format().name, format.name,
-                     whole ? "" : fmt::format(": {} holds the beginning only", options.out)));
+                     whole ? ""
+                           : fmt::format(": {} {}", options.out,
+                                         (*out)->size() == 0 ? "is empty" : "holds the beginning only")));
   const bool unreadable = in.complain();
   logs::tell_losses((*out)->lost(), format);
   if (!written) fail((*out)->failure(), exit_code_after_interrupt(exit_failure));

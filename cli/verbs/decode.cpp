@@ -118,7 +118,8 @@ void decode(Session& session, const DecodeOptions& options, int& exit_code) {
     remark("no frame to decode");
   else if (display.shown() == 0 && (display.counters().frames == 0 || understood(display) != 0) &&
            !decoding.over())
-    remark(fmt::format("none of {} frames matches", decoding.frames));
+    remark(decoding.frames == 1 ? "the one frame does not match"
+                                : fmt::format("none of {} frames matches", decoding.frames));
   display.tell_contradictions(Seen::in_log);
   const bool not_all = decoding.unreadable || display.any_fault();
   if (understood(display) == 0 || display.shown() == 0 || decoding.ended_early || (options.strict && not_all))

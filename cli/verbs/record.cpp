@@ -24,6 +24,7 @@
 #include "cli/shared/values.hpp"
 #include "cli/verbs/verb.hpp"
 #include "cli/watch/chosen_topics.hpp"
+#include "cli/words/command_options.hpp"
 #include "cli/words/quantity.hpp"
 
 namespace ocm::cli {
@@ -267,7 +268,9 @@ void add_record(Verb app, Session& session, int& exit_code) {
       .type_name("N")
       .positive();
   verb.add_option("-n,--count", options->count, "end after so many frames").type_name("N").positive();
-  add_duration(verb, "--duration", options->duration, "end after this time");
+  verb.add_value("--duration", take_into(options->duration, words::read_lasting), "end after this time")
+      .type_name("T")
+      .takes(accepted_duration());
   verb.add_flag("--no-sync", options->no_sync,
                 "leave it to the kernel when data reach the disk; default: every second");
   verb.add_flag("--strict", options->strict, "exit 1 when frames were lost");

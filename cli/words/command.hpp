@@ -168,7 +168,11 @@ class CommandParser {
     const std::string_view word = line[2];
     const auto period = parse_duration(word);
     if (period.error == base::Error::bad_unit)
-      return WordError{2, detail::quoted(word) + " needs a unit: us, ms or s", "write 500ms, 2s or 900us"};
+      return WordError{
+          2,
+          detail::quoted(word) +
+              (instead_of_time(word, {}).empty() ? " is in another unit" : " needs a unit: us, ms or s"),
+          "write 500ms, 2s or 900us"};
     if (period.error == base::Error::bad_syntax)
       return WordError{2, detail::quoted(word) + " is not a period", "write 500ms, 2s or 900us"};
     const auto wire =

@@ -95,7 +95,7 @@ class Map(Case):
         begin = time.monotonic()
         file = self.path("a.pgm")
         out, _ = self.map(file, "--watch", duration="1s")
-        self.assertIn("what was seen until --duration was over in 1 s", out)
+        self.assertIn("what was seen before --duration was over, in 1 s", out)
         self.assertLess(time.monotonic() - begin, 11)
         self.assertNotIn("{U,", "".join(self.avr.heard))
         self.check_drawn(file)
@@ -118,7 +118,7 @@ class Map(Case):
                 out, err = self.interrupt(tool, number)
                 self.assertEqual(self.avr.heard[-4:], ["{U,0,0}"] * 4)
                 self.assertEqual(tool.returncode, code, err)
-                self.assertIn("what was seen until it was interrupted", out)
+                self.assertIn("what was seen before it was interrupted", out)
                 self.assertIn(f"map: {svg}", err)
                 self.assertEqual(ElementTree.parse(svg).getroot().tag, "{http://www.w3.org/2000/svg}svg")
                 self.check_drawn(pgm)
@@ -142,7 +142,7 @@ class Map(Case):
         out, err = tool.communicate(timeout=60)
         self.assertEqual(tool.returncode, 1)
         self.assertIn("AVR is lost", err)
-        self.assertIn("what was seen until every robot was lost", out)
+        self.assertIn("what was seen before every robot was lost", out)
         self.check_drawn(file)
 
     def test_a_record_that_has_not_all(self):
@@ -156,7 +156,7 @@ class Map(Case):
         out, err = tool.communicate(timeout=60)
         self.assertEqual(tool.returncode, 1, out + err)
         self.assertEqual(err.count("is not recorded"), 1)
-        self.assertIn("until --duration was over", out)
+        self.assertIn("before --duration was over,", out)
         self.check_drawn(file)
 
     def test_the_central_is_gone(self):

@@ -187,8 +187,8 @@ publish: --priority top: not a priority
 write urgent, high, medium or low, or 0 to 3
 
 publish gyro --wait soon
-publish: --wait soon: not a time
-write 500ms, 2s or 1.5s
+publish: --wait soon: not a time above zero
+write 2s, 500ms or 1min
 
 publish gyro --listen soon
 publish: --listen soon: not a time
@@ -211,8 +211,8 @@ once: unexpected argument '1s'
 usage: amiroctl once TOPIC
 
 once gyro --wait soon
-once: --wait soon: not a time
-write 500ms, 2s or 1.5s
+once: --wait soon: not a time above zero
+write 2s, 500ms or 1min
 
 stop gyro --dryrun
 stop: unknown option '--dryrun'
@@ -397,6 +397,10 @@ did you mean '--output'?
 record gyr
 record: no topic 'gyr'
 did you mean 'gyro'?
+
+record --duration 0s
+record: --duration 0s: not a time above zero
+write 2s, 500ms or 1min
 
 record --split soon
 record: --split soon: neither a size nor a time

@@ -49,6 +49,16 @@ class StuckOutput(Case):
             os.set_blocking(writer, True)
         return reader, writer
 
+    def test_a_pipe_that_has_no_reader_yet(self):
+        pipe = os.path.join(self.folder, "pipe.csv")
+        os.mkfifo(pipe)
+        for number in (signal.SIGINT, signal.SIGTERM):
+            process = self.start_to(subprocess.DEVNULL, "convert", self.log, pipe, "--force")
+            self.wait_for_handler(process)
+            waiting.until_asleep(process.pid)
+            process.send_signal(number)
+            self.assertEqual((process.communicate(timeout=60)[1], process.returncode), ("", 128 + number))
+
     def test_a_reader_that_stands_still(self):
         self.start_sim()
         self.run_tool("publish", "gyro", "2ms")
