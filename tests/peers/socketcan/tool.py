@@ -15,10 +15,11 @@ from harness import (Adapter, Candump, Process, Vcan, as_nobody, check, equal, e
                      forbid_can_sockets, sh)
 
 # The thesis's standalone demo [Thesis 6.3, in the order of its timing diagram], as it must come on the bus:
-# second, frame. A drive is one frame here; its repeats are looked at by themselves.
+# second, frame. A drive is one frame here; its repeats are looked at by themselves. Before it the board is asked what it does by itself.
 STANDALONE = [
     (1, '209#01F40100'), (5, '21F#01E80300'), (10, '21E#02'), (15, '208#01881300'), (16, '21F#00'),
-    (17, '205#01200300'), (18, '209#00'), (21, '203#01840300'), (23, '201#50C3000000000000'), (25, '23C#FFFFFF'),
+    (17, '205#01200300'), (18, '209#00'), (21, '203#01840300'),
+    (22.9, '20D#02'), (23, '201#50C3000000000000'), (25, '23C#FFFFFF'),
     (27, '201#0000000000000000'), (30, '203#00'), (31, '208#00'), (32, '21E#02'), (33, '204#01D00700'),
     (35, '205#00'), (38, '204#00'), (40, '23D#FFFFFF'), (40, '23F#FFFFFF'), (40, '241#FFFFFF'), (40, '243#FFFFFF')]
 # What the sensors must answer: frames of a sample (identifier, length), first second, last, period. One sample at
@@ -104,7 +105,7 @@ def compare_commands(frames):
 
 def compare_answers(frames, zero):
     """Each sensor's samples: how many, when, whole and back to back."""
-    known = {'61E'}
+    known = {'61E', '60D'}
     for name, (parts, first, last, period) in ANSWERS.items():
         ids = [number for number, _ in parts]
         known.update(ids)
@@ -128,6 +129,7 @@ def compare_answers(frames, zero):
             expect(abs(mean - period) < 2 * TOLERANCE / (len(samples) - 1), f'{name}: a period of {mean:.4f} s')
     power = [frame.time - zero for frame in frames if frame.id == '61E']
     equal([round(when) for when in power], [10, 32], 'power: once, twice')
+    equal(len([frame for frame in frames if frame.id == '60D']), 1, 'what the board does by itself, before the drive')
     unknown = {frame.id for frame in frames if int(frame.id, 16) & 0x400} - known
     expect(not unknown, f'frames without a request: {unknown}')
 

@@ -21,7 +21,9 @@ class Dongles(Case):
             out, err = tool.communicate(timeout=30)
             if "the central finds no robot" not in err:
                 break
-        self.assertEqual(tool.returncode, code, f"{verb} {arguments}: {out}{err}")
+        dongle = self.dongle
+        self.assertEqual(tool.returncode, code, f"{verb} {arguments}: {out}{err}\nthe dongle has obeyed {dongle.commands[-12:]}, and holds "
+                                                f"{dongle.line!r} and {dongle.typed!r} for {dongle.target}; it runs: {dongle.thread.is_alive()}")
         return out, err
 
     def check_verbs(self, *options):
