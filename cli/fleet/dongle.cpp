@@ -84,6 +84,11 @@ class Probe {
     if (is_readable(heard_)) return Dialect::thesis;
     return std::nullopt;
   }
+  /// Of a dongle that is known: a program that was killed may have left it in data mode, where all that is
+  /// said goes to a robot.
+  void leave_data_mode(Dialect dialect) {
+    ask(dialect == Dialect::at ? "*." : "*\n", 100ms, [](std::string_view) { return false; });
+  }
   [[nodiscard]] std::string& heard() { return heard_; }
 
  private:
@@ -153,7 +158,10 @@ Dongle open_dongle(std::string_view verb, const std::string& path, const DongleO
     const Dialect dialect = options.kind == "at"       ? Dialect::at
                             : options.kind == "thesis" ? Dialect::thesis
                                                        : Dialect::words;
-    return {open_port(verb, path, speeds(options).front(), rts_cts), dialect, {}};
+    auto port = open_port(verb, path, speeds(options).front(), rts_cts);
+    Probe probe{verb, port};
+    probe.leave_data_mode(dialect);
+    return {std::move(port), dialect, std::move(probe.heard())};
   }
   for (const std::uint32_t baud : speeds(options)) {
     auto port = open_port(verb, path, baud, rts_cts);

@@ -74,6 +74,23 @@ class Dongles(Case):
         self.dongle.target = self.robots[0]
         self.check_verbs()
 
+    def check_left_in_data_mode(self, kind, word):
+        """By a program that was killed; which kind it is, is said, and not asked."""
+        self.play(kind)
+        self.tool("robots", "--listen", "100ms", "--dongle", word)
+        waiting.until(lambda: self.dongle.target is None, "command mode")
+        self.dongle.target = self.robots[0]
+        self.tool("pause", "AVR", "--dongle", word)
+
+    def test_the_base_firmware_that_is_known_was_left_in_data_mode(self):
+        self.check_left_in_data_mode(BaseFirmware, "at")
+
+    def test_the_thesiss_own_that_is_known_was_left_in_data_mode(self):
+        self.check_left_in_data_mode(Thesis, "thesis")
+
+    def test_ours_that_is_known_was_left_in_data_mode(self):
+        self.check_left_in_data_mode(Central, "ours")
+
     def test_the_base_firmware_cannot_reach_a_robot(self):
         robot = self.play(BaseFirmware)
         robot.reachable = False
