@@ -40,18 +40,16 @@ bool Timeline::listen_first(base::Duration duration) {
   if (others_ == Others::allowed) return true;
   const auto end = Clock::now() + duration;
   if (!wait(std::max(Clock::now(), end - time_to_answer))) return false;
-  if (const auto* const sensor = other_.unheard_sensor(); sensor != nullptr && duration >= time_to_answer) {
-    // Of a bus that takes nothing the command itself will say so.
-    const auto taken = bus_->send(sensor->request());
-    asked_ = true;
-    if (taken && *taken) return answer_is_due_ = wait_for_answer(end);
-  }
-  return wait(end);
+  if (duration < time_to_answer) return wait(end);
+  ask();
+  if (!answer_is_due_) return wait(end);
+  return answer_is_due_ = wait_for_answer(end);
 }
 
 void Timeline::ask() {
   const auto* const sensor = others_ == Others::allowed ? nullptr : other_.unheard_sensor();
   if (sensor == nullptr) return;
+  // Of a bus that takes nothing the command itself will say so.
   const auto taken = bus_->send(sensor->request());
   asked_ = true;
   answer_is_due_ = taken && *taken;

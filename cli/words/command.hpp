@@ -169,9 +169,7 @@ class CommandParser {
     const auto period = parse_duration(word);
     if (period.error == base::Error::bad_unit)
       return WordError{
-          2,
-          detail::quoted(word) +
-              (instead_of_time(word, {}).empty() ? " is in another unit" : " needs a unit: us, ms or s"),
+          2, detail::quoted(word) + (lacks_unit(word) ? " needs a unit: us, ms or s" : " is in another unit"),
           "write 500ms, 2s or 900us"};
     if (period.error == base::Error::bad_syntax)
       return WordError{2, detail::quoted(word) + " is not a period", "write 500ms, 2s or 900us"};

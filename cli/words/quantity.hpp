@@ -185,10 +185,15 @@ constexpr NamedUnit named_units[] = {
   return base::Error::bad_unit;
 }
 
+/// Whether it is a quantity but for its unit.
+[[nodiscard]] constexpr bool lacks_unit(std::string_view text) noexcept {
+  const auto quantity = parse_quantity(text);
+  return quantity && quantity->unit.empty();
+}
+
 /// What `text` is in place of the time that was expected: `otherwise`, unless it is one but for its unit.
 [[nodiscard]] inline std::string instead_of_time(std::string_view text, std::string_view otherwise) {
-  const auto quantity = parse_quantity(text);
-  return std::string{quantity && quantity->unit.empty() ? "a time without a unit" : otherwise};
+  return std::string{lacks_unit(text) ? "a time without a unit" : otherwise};
 }
 
 /// In the largest unit that is exact up to three places: 1.5s, 500ms, 900us, 10ns.

@@ -90,7 +90,9 @@ namespace ocm::cli::words {
     return "did you mean '" + std::string{id.view()} + "' (" + std::string{topic->name} + ")?";
   }
   if (std::string field = whose_field(catalogue, word); !field.empty()) return field;
-  return suggestion(word, topic_words(catalogue, kind));
+  const auto words = topic_words(catalogue, kind);
+  if (words.empty()) return "the spec has none: --spec or AMIROCTL_SPEC names another";
+  return suggestion(word, words);
 }
 
 }  // namespace ocm::cli::words
