@@ -170,6 +170,7 @@ void Control::carry_out(const Order& order) {
     case Order::Kind::get_parameters:
     case Order::Kind::subscribe_parameters:
     case Order::Kind::unsubscribe_parameters:
+    case Order::Kind::confirm_parameters:
       return;
   }
 }

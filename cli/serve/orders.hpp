@@ -22,7 +22,8 @@ struct Order {
     get_parameters,          ///< `names`; `payload` is the request
     subscribe_parameters,    ///< `names`
     unsubscribe_parameters,  ///< `names`
-    gone,                    ///< the viewer is
+    confirm_parameters,  ///< `names`, as they are once a board could have refused; `payload` is the request
+    gone,                ///< the viewer is
   };
   Kind kind = Kind::publish;
   ViewerId viewer = 0;

@@ -71,8 +71,14 @@ void Parameters::take(const Order& order, Rows rows) {
       if (at->second.empty()) subscribers_.erase(at);
       return;
     }
+    case Order::Kind::confirm_parameters:
+      if (confirmations_.size() >= Orders::most) return answer(order, rows);
+      confirmations_.push_back({order});
+      return;
     case Order::Kind::gone:
       subscribers_.erase(order.viewer);
+      std::erase_if(confirmations_,
+                    [&](const Confirmation& each) { return each.order.viewer == order.viewer; });
       return;
     default:
       return;
@@ -80,6 +86,10 @@ void Parameters::take(const Order& order, Rows rows) {
 }
 
 void Parameters::update(Rows rows) {
+  std::erase_if(confirmations_, [&](Confirmation& each) {
+    if (each.seen) answer(each.order, rows);
+    return std::exchange(each.seen, true);
+  });
   std::vector<foxglove::Parameter> changed;
   for (auto& [name, known] : known_) {
     const protocol::Topic* const sensor = sensor_of(*catalogue_, name);

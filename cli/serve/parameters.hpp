@@ -11,6 +11,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "ocm/protocol/topic.hpp"
 
@@ -28,14 +29,21 @@ class Parameters {
   Parameters(const protocol::Catalogue& catalogue, Viewers& viewers)
       : catalogue_(&catalogue), viewers_(&viewers) {}
 
-  /// Carries out an order to read or to subscribe, or that a viewer has gone; others are not for it.
+  /// Carries out an order to read, to confirm or to subscribe, or that a viewer has gone; others are not for
+  /// it.
   void take(const Order& order, Rows rows);
-  /// What has changed goes to those that have subscribed.
+  /// What has changed goes to those that have subscribed; confirmations at the second update after their
+  /// order, at least one `bus_interval` later: what was refused has its old value then.
   void update(Rows rows);
   /// Whether `update` has anyone to tell.
-  [[nodiscard]] bool wanted() const noexcept { return !subscribers_.empty(); }
+  [[nodiscard]] bool wanted() const noexcept { return !subscribers_.empty() || !confirmations_.empty(); }
 
  private:
+  struct Confirmation {
+    Order order;
+    bool seen = false;  ///< an update has passed
+  };
+
   [[nodiscard]] std::optional<double> value(const protocol::Topic& sensor, Rows rows) const;
   void answer(const Order& order, Rows rows);
 
@@ -43,6 +51,7 @@ class Parameters {
   Viewers* viewers_;
   std::map<ViewerId, std::set<std::string, std::less<>>> subscribers_;  ///< names
   std::map<std::string, std::optional<double>, std::less<>> known_;     ///< values that were said last
+  std::vector<Confirmation> confirmations_;                             ///< at most Orders::most
 };
 
 /// "/gyroscope/period_ms"

@@ -118,13 +118,19 @@ void Sessions::parameters(ViewerId viewer, Order::Kind kind, const foxglove::Req
 
 void Sessions::set_parameters(ViewerId id, const Viewer& viewer, const foxglove::Request& request) {
   if (!viewer.commands) return refuse(id, no_commands);
+  Order confirm{Order::Kind::confirm_parameters, id};
   for (const foxglove::Parameter& parameter : request.parameters)
-    if (sensor_of(*catalogue_, parameter.name) == nullptr)
+    if (sensor_of(*catalogue_, parameter.name) == nullptr) {
       refuse(id, fmt::format("there is no parameter {}", parameter.name));
-    else
+    } else {
       put({Order::Kind::parameter, id, parameter.name, {}, parameter.value.value_or(0)});
-  if (!request.request.empty())
-    viewers_->tell(id, foxglove::parameter_values(request.parameters, request.request));
+      confirm.names.push_back(parameter.name);
+    }
+  if (request.request.empty()) return;
+  confirm.payload = request.request;
+  // Without a name all would be meant.
+  confirm.names.empty() ? viewers_->tell(id, foxglove::parameter_values({}, request.request))
+                        : put(std::move(confirm));
 }
 
 void Sessions::binary(ViewerId viewer, std::string_view message) {

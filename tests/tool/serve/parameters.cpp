@@ -57,6 +57,32 @@ TEST_CASE("parameters: a period is what the bus shows") {
   CHECK(desk.said().find("/proximity_ring/period_ms") != std::string::npos);
 }
 
+TEST_CASE("parameters: what was set is confirmed as the bus shows it a while later") {
+  Desk desk;
+  desk.publishes("gyroscope", 5ms);
+  desk.take(Kind::confirm_parameters, {"/gyroscope/period_ms"}, "r");
+  CHECK(desk.parameters.wanted());
+  desk.parameters.update(desk.rows);
+  CHECK(desk.said().empty());
+  desk.rows[0].period = 50ms;  // refused since
+  desk.parameters.update(desk.rows);
+  const std::string said = desk.said();
+  CHECK(said.find(R"("name":"/gyroscope/period_ms","value":50)") != std::string::npos);
+  CHECK(said.find(R"("id":"r")") != std::string::npos);
+  CHECK_FALSE(desk.parameters.wanted());
+  desk.parameters.update(desk.rows);
+  CHECK(desk.said().empty());
+
+  desk.take(Kind::confirm_parameters, {"/gyroscope/period_ms"}, "s");
+  desk.take(Kind::gone, {});
+  CHECK_FALSE(desk.parameters.wanted());
+  for (std::size_t i = 0; i < Orders::most; ++i)
+    desk.take(Kind::confirm_parameters, {"/gyroscope/period_ms"}, "t");
+  CHECK(desk.said().empty());
+  desk.take(Kind::confirm_parameters, {"/gyroscope/period_ms"}, "u");  // too many wait: this one does not
+  CHECK(desk.said().find(R"("id":"u")") != std::string::npos);
+}
+
 TEST_CASE("parameters: who subscribes gets the value, and each change of it") {
   Desk desk;
   desk.publishes("gyroscope", 50ms);

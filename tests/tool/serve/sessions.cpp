@@ -259,14 +259,23 @@ TEST_CASE("sessions: who sets parameters gets them back where it asks for that")
   server.sessions.text(viewer, set + "}");
   CHECK(server.said(viewer).empty());
   server.sessions.text(viewer, set + R"(,"id":"q"})");
-  const auto said = server.said(viewer);
-  REQUIRE(said.size() == 1);
-  CHECK(said[0].find(R"("op":"parameterValues")") != std::string::npos);
-  CHECK(said[0].find(R"("id":"q")") != std::string::npos);
+  CHECK(server.said(viewer).empty());  // what has become of them is seen on the bus
   const auto orders = server.orders.take();
-  REQUIRE(orders.size() == 2);
+  REQUIRE(orders.size() == 3);
   CHECK(orders[0].topic == "/gyroscope/period_ms");
   CHECK(orders[0].viewer == viewer);
+  CHECK(orders[2].kind == Order::Kind::confirm_parameters);
+  CHECK(orders[2].viewer == viewer);
+  CHECK(orders[2].payload == "q");
+  CHECK(orders[2].names == std::vector<std::string>{"/gyroscope/period_ms"});
+
+  server.sessions.text(viewer, R"({"op":"setParameters","parameters":[{"name":"/x","value":5}],"id":"r"})");
+  const auto said = server.said(viewer);
+  REQUIRE(said.size() == 2);
+  CHECK(said[0].find("there is no parameter /x") != std::string::npos);
+  CHECK(said[1].find(R"("parameters":[])") != std::string::npos);
+  CHECK(said[1].find(R"("id":"r")") != std::string::npos);
+  CHECK(server.orders.take().empty());
 }
 
 TEST_CASE("sessions: subscriptions end, and who has gone is heard no more") {

@@ -560,9 +560,15 @@ class Serve(harness.Case):
         self.assertEqual(viewer.message().fields, {"red": 255, "green": 0, "blue": 0})
         viewer.publish("/led_3", {"blue": 7})
         self.assertEqual(viewer.message().fields, {"red": 0, "green": 0, "blue": 7})
-        viewer.ask(op="setParameters", id="p", parameters=[{"name": "/gyroscope/period_ms", "value": 20}])
+        name = "/gyroscope/period_ms"
+        confirmed = {"op": "parameterValues", "parameters": [{"name": name, "type": "float64", "value": 20}]}
+        viewer.ask(op="setParameters", id="p", parameters=[{"name": name, "value": 20}])
+        self.assertEqual(viewer.text("parameterValues"), {**confirmed, "id": "p"})
         times = [viewer.message("/gyroscope").time_ns for _ in range(20)]
         self.assertAlmostEqual((times[-1] - times[0]) / 19e6, 20, delta=5)
+        viewer.ask(op="setParameters", id="q", parameters=[{"name": name, "value": 0.1}])
+        self.assertIn("refuses gyroscope", viewer.text("status")["message"])
+        self.assertEqual(viewer.text("parameterValues"), {**confirmed, "id": "q"})
         viewer.publish("/ocm/command", {"line": "publish gyro 1us"})
         self.assertRegex(viewer.text("status")["message"], "gyroscope|period")
         for fields, words in (({"line": "drive 0.1m/s"}, "sent once"), ({"line": "fly"}, "unknown command"), ({}, "takes a line")):
