@@ -78,27 +78,36 @@ void list_json(const protocol::Catalogue& catalogue) {
 
 void list_table(const protocol::Catalogue& catalogue) {
   std::size_t name_width = 5;
-  std::size_t alias_width = 7;
+  std::size_t bus_width = 3;
+  bool has_aliases = false;
   std::size_t board_width = 5;
   std::size_t id_width = 4;
+  std::size_t bytes_width = 5;
+  std::size_t period_width = 6;
   for (const auto& topic : catalogue.topics) {
     name_width = std::max(name_width, topic.name.size());
-    alias_width = std::max(alias_width, aliases_of(topic).size());
+    bus_width = std::max(bus_width, topic.bus.size());
+    has_aliases = has_aliases || !topic.aliases.empty();
     board_width = std::max(board_width, catalogue.board_name(topic).size());
     id_width = std::max(id_width, known_by(topic).size());
+    bytes_width = std::max(bytes_width, bytes_of(topic).size());
+    period_width = std::max(period_width, period_of(topic).size());
   }
   const bool has_buses = catalogue.has_buses();
-  const auto print = [&](std::string_view bus, const auto&... columns) {
-    print_fitted(fmt::format("{:<{}}  {:<{}}  {:<{}}  {:<8}  {:<{}}  {:>6}  {:>7}", columns...) +
-                     fmt::format("{}{}\n", has_buses && !bus.empty() ? "  " : "",
-                                 has_buses ? bus : std::string_view{}),
-                 4);
+  // What has no fixed width comes last, so that a narrow terminal breaks no row that fits without it.
+  const auto print = [&](std::string_view bus, std::string_view aliases, const auto&... columns) {
+    std::string line = fmt::format("{:<{}}  {:<{}}  {:<8}  {:<{}}  {:>{}}  {:>{}}", columns...);
+    if (has_buses) line += fmt::format("  {:<{}}", bus, bus_width);
+    line += fmt::format("  {}", aliases);
+    line.erase(line.find_last_not_of(' ') + 1);
+    print_fitted(line + '\n', 4);
   };
-  print("BUS", "TOPIC", name_width, "ALIASES", alias_width, "ID", id_width, "KIND", "BOARD", board_width,
-        "BYTES", "PERIOD");
+  print("BUS", has_aliases ? "ALIAS" : "", "TOPIC", name_width, "ID", id_width, "KIND", "BOARD", board_width,
+        "BYTES", bytes_width, "PERIOD", period_width);
   for (const auto& topic : catalogue.topics)
-    print(topic.bus, topic.name, name_width, aliases_of(topic), alias_width, known_by(topic), id_width,
-          name(topic.kind), catalogue.board_name(topic), board_width, bytes_of(topic), period_of(topic));
+    print(topic.bus, aliases_of(topic), topic.name, name_width, known_by(topic), id_width, name(topic.kind),
+          catalogue.board_name(topic), board_width, bytes_of(topic), bytes_width, period_of(topic),
+          period_width);
 }
 
 }  // namespace

@@ -86,6 +86,10 @@ class Terminal(Case):
                     for line in shown.splitlines():  # a word that is wider than the terminal has a line of its own
                         self.assertTrue(len(line) <= columns or len(line.split()) == 1, line)
 
+    def test_of_a_list_only_aliases_leave_their_row(self):
+        rows = [line for line in self.on_terminal("list", columns=80).splitlines() if line.startswith("    ")]
+        self.assertEqual({row.strip() for row in rows}, {"battery", "ambient"})
+
     def test_errors_break_no_word(self):
         whole = self.run_tool("publish", "mag", "900us", "--force", code=1)[1]
         self.assertGreater(max(map(len, whole.splitlines())), 80)
