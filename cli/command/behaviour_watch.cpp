@@ -26,7 +26,8 @@ const protocol::Topic& behaviour_topic(const protocol::Catalogue& catalogue, con
   const protocol::Topic* const topic = catalogue.find(name);
   if (topic == nullptr || topic->kind != protocol::Kind::actuator)
     fail({fmt::format("{}: robot '{}' has no behaviour {}", verb, catalogue.robot, name),
-          fmt::format("its spec has no actuator {}; see `amiroctl list`", name)});
+          fmt::format("its spec has no actuator {}; see `amiroctl list`", name)},
+         exit_usage);
   return *topic;
 }
 
@@ -37,9 +38,10 @@ BehaviourWatch::BehaviourWatch(const protocol::Catalogue& catalogue, const std::
     for (const auto& value : sensor_.active().values)
       if (value.name == which) which_ = value.raw;
   if (which_ == 0)
-    fail({fmt::format("{}: robot '{}' does not say what becomes of {}", verb, catalogue.robot, which),
-          fmt::format("its spec has no sensor behaviour whose field active has the value {}; use set",
-                      which)});
+    fail(
+        {fmt::format("{}: robot '{}' does not say what becomes of {}", verb, catalogue.robot, which),
+         fmt::format("its spec has no sensor behaviour whose field active has the value {}; use set", which)},
+        exit_usage);
 }
 
 void BehaviourWatch::begin() {

@@ -115,8 +115,8 @@ struct LogFile::State {
     if (written.error != 0) {
       errno = written.error;
       failed("write");
-      if (regular && written.bytes > 0 && ::ftruncate(descriptor, static_cast<off_t>(size)) != 0)
-        return false;
+      // Where that fails, too, the reader of the file finds its last record cut.
+      if (regular && written.bytes > 0) static_cast<void>(!::ftruncate(descriptor, static_cast<off_t>(size)));
       return false;
     }
     size += text.size();

@@ -45,6 +45,9 @@ constexpr const char* instead_of_mappers =
 
 AnyBus open_simulated(const std::string& path) {
   auto opened = transport::VirtualBus::open(path);
+  if (!opened && opened.error.cause == host::Cause::simulator_missing && !path.empty())
+    return transport::Failure{opened.error.what,
+                              fmt::format("start one with `amiroctl sim --bus sim:{}`", path)};
   if (!opened && opened.error.cause == host::Cause::simulator_missing && path.empty() && mappers_run())
     return transport::Failure{opened.error.what + "; mappers run, but have no CAN bus", instead_of_mappers};
   return any(std::move(opened));
@@ -53,6 +56,8 @@ AnyBus open_simulated(const std::string& path) {
 AnyBus open_interface(const std::string& name) {
   auto opened = transport::SocketCan::open(name);
   if (opened) return any(std::move(opened));
+  if (name == "slcan")
+    return transport::Failure{opened.error.what, "name the adapter's line: slcan:/dev/ttyACM0"};
   // "simm" and "scan:/dev/ttyACM0" are no interfaces, and one bus is always there under its name.
   const std::string kind = name.substr(0, name.find(':'));
   const bool has_address = kind.size() != name.size();

@@ -28,6 +28,9 @@ using Clock = Timeline::Clock;
 constexpr base::Duration progress_period = std::chrono::milliseconds{100};
 /// After so long without a sample the sensor is asked again.
 constexpr base::Duration longest_silence = std::chrono::milliseconds{500};
+/// After so long without a first sample this is said; it goes on, because the board may have heard all the
+/// same.
+constexpr base::Duration told_after = std::chrono::seconds{2};
 
 constexpr const char* usual_speed = "0.1m/s";
 constexpr const char* usual_distance = "5cm";
@@ -163,10 +166,21 @@ void behave(Session& session, const BehaveOptions& options, int& exit_code) {
   timeline.carry_out(command);
   const auto end = options.lasting ? Clock::now() + *options.lasting : Clock::time_point::max();
   const auto over = [&] { return ended_by_another || (watch && watch->over()); };
+  const auto unanswered = [&] {
+    return transport::Failure{fmt::format("behave: no {} came, so nothing shows that {} has done it",
+                                          watch->sensor().name, catalogue.board_name(topic)),
+                              fmt::format("is board {} powered and on {}? See `amiroctl doctor`",
+                                          catalogue.board_name(topic), bus->name())};
+  };
+  bool told = false;
   auto heard = Clock::now();  // or asked
   while (goes_on && !over() && Clock::now() < end) {
     goes_on = timeline.wait(std::min(end, Clock::now() + std::chrono::milliseconds{20}));
     if (!watch) continue;
+    if (!told && !answered && !watch->heard() && Clock::now() - begun >= told_after) {
+      told = true;
+      remark(fmt::format("{}; {}", unanswered().what, unanswered().remedy));
+    }
     heard = std::max(heard, watch->last());
     if (!goes_on || Clock::now() - heard < longest_silence) continue;
     ask_progress();  // a stop of everything ends this stream, too
@@ -182,10 +196,7 @@ void behave(Session& session, const BehaveOptions& options, int& exit_code) {
   if (!timeline.finish()) exit_code = exit_failure;
   const bool could_answer = timeline.has_asked() || Clock::now() - begun >= longest_silence;
   if (watch && !answered && !watch->heard() && could_answer && goes_on && exit_code == exit_success)
-    fail({fmt::format("behave: no {} came, so nothing shows that {} has done it", watch->sensor().name,
-                      catalogue.board_name(topic)),
-          fmt::format("is board {} powered and on {}? See `amiroctl doctor`", catalogue.board_name(topic),
-                      bus->name())});
+    fail(unanswered());
   if (early) fail({fmt::format("behave: {} was ended: {}", options.which, how), remedy_for(how)});
   if (!goes_on) exit_code = exit_code_after_interrupt(exit_success);
 }

@@ -170,6 +170,21 @@ void summarise(const replay::Player& player, bool dry_run) {
   remark(text);
 }
 
+/// Of a log with frames none was sent: what was chosen is not in it.
+void expect_any(const replay::Player& player, const ReplayOptions& options) {
+  const auto& played = player.played();
+  if (played.sent != 0 || interrupted() != 0) return;
+  if (played.not_chosen != 0)
+    fail({fmt::format("replay: no frame of {} was chosen", options.file),
+          options.file == "-" ? "name other topics, or none: then all frames are sent"
+                              : fmt::format("`amiroctl stats {}` shows what it has", options.file)});
+  if (played.no_route != 0)
+    fail({fmt::format("replay: all frames of {} are of interfaces without a bus", options.file),
+          "name them: --interface LOG=BUS"});
+  if (played.error_frames != 0 || played.fd_frames != 0)
+    fail({fmt::format("replay: {} has no frame that can be sent there", options.file), ""});
+}
+
 void play(Session& session, const ReplayOptions& options, int& exit_code) {
   const auto& catalogue = session.catalogue();
   auto chosen = player_options(options);
@@ -211,6 +226,7 @@ void play(Session& session, const ReplayOptions& options, int& exit_code) {
     throw;
   }
   summarise(player, options.dry_run);
+  if (!damaged) expect_any(player, options);
   exit_code = exit_code_after_interrupt(damaged ? exit_failure : exit_success);
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -15,6 +16,7 @@
 #include "cli/shared/values.hpp"
 #include "cli/verbs/verb.hpp"
 #include "cli/watch/watching.hpp"
+#include "cli/words/suggestion.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -69,9 +71,12 @@ void serve_given(Verb verb, Session& session, GivenToServe& given, int& exit_cod
           "one log at a time; amiroctl convert puts several into one"},
          exit_usage);
   const Words words = split_words("serve", given.words, [](std::string_view) { return false; });
-  if (!words.others.empty())
-    fail({fmt::format("serve: {} is no log", words.others[0]), "name a log, or nothing for the bus"},
+  if (!words.others.empty()) {
+    const auto near = words::nearest(words.others[0], std::vector<std::string_view>{"robots", "live"});
+    fail({fmt::format("serve: {} is no log", words.others[0]),
+          near.empty() ? "name a log, or nothing for the bus" : fmt::format("did you mean '{}'?", near)},
          exit_usage);
+  }
   if (!words.files.empty()) options.log = words.files[0];
   if (options.log.empty() && !options.format.empty())
     fail({"--from " + options.format + " is the format of a log, and there is none",

@@ -39,9 +39,9 @@ void tell_contradictions(const Contradictions& found, const protocol::Catalogue&
   if (foreign >= frames - frames / 10) {
     const std::string guess =
         where == Seen::in_log ? "a log of another bus?" : fmt::format("another {}?", words.others);
-    remark(fmt::format("{}{} of {} frames are of no {} of {}: {} --spec FILE names the {} of another {}",
-                       beginning, foreign, frames, words.of, catalogue.robot, guess, words.named,
-                       words.others));
+    remark(fmt::format("{}{} of {} {} of no {} of {}: {} --spec FILE names the {} of another {}", beginning,
+                       foreign, counted(frames, "frame"), foreign == 1 ? "is" : "are", words.of,
+                       catalogue.robot, guess, words.named, words.others));
     return;
   }
   std::string why;
@@ -49,10 +49,12 @@ void tell_contradictions(const Contradictions& found, const protocol::Catalogue&
   if (first)
     why += fmt::format("{}{} of wrong length, such as {:03X} with {} in place of {}", why.empty() ? "" : ", ",
                        wrong_length, first->id, client::count(first->length, "byte*"), first->right);
-  remark(fmt::format(
-      "{}{} of {} frames contradict the spec of {} ({}): the others may be of another {}, too, "
-      "and mean something else. --spec FILE names its {}",
-      beginning, foreign + wrong_length, frames, catalogue.robot, why, words.others, words.named));
+  const auto wrong = foreign + wrong_length;
+  const std::string others = wrong == frames ? "another " : "the others may be of another ";
+  remark(fmt::format("{}{} of {} {} the spec of {} ({}): {}{}{} --spec FILE names its {}", beginning, wrong,
+                     counted(frames, "frame"), wrong == 1 ? "contradicts" : "contradict", catalogue.robot,
+                     why, others, words.others, wrong == frames ? "?" : ", too, and mean something else.",
+                     words.named));
 }
 
 }  // namespace ocm::cli

@@ -196,7 +196,14 @@ class CommandParser {
   }
 
   detail::Parsed stop(Line line, std::optional<protocol::Priority> priority) const {
-    if (line.size() == 1 || line[1] == "all") return stop_all(priority);
+    if (line.size() == 1 || line[1] == "all") {
+      auto all = stop_all(priority);
+      if (all.frames.empty())
+        return WordError{0, "robot " + detail::quoted(catalogue_->robot) + " has nothing to stop",
+                         "its spec has neither sensors nor motors; what sends a message again and again is "
+                         "ended where it runs"};
+      return all;
+    }
     const auto any = topic(line, 1, {});
     if (!any) return any.error;
     Command command;

@@ -102,6 +102,7 @@ struct SplitLine {
   CommandParser parser{catalogue};
   Script script;
   std::size_t line_number = 0;
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // the byte order mark of some editors
   while (!text.empty()) {
     const auto newline = text.find('\n');
     std::string_view line = text.substr(0, newline);

@@ -108,6 +108,16 @@ class Behave(Case):
             self.assertTrue(err.endswith("amiroctl: behave: no behaviour came, so nothing shows that di_wheel_drive has done it\n"
                                          "          is board di_wheel_drive powered and on sim? See `amiroctl doctor`\n"), err)
 
+    def test_a_board_that_is_off_is_told_of_while_it_waits(self):
+        self.start_sim("--without", "di_wheel_drive")
+        behave = self.start("behave", "follow")
+        said = next(line for line in behave.stderr if not line.startswith("bus: "))
+        self.assertEqual(said, "behave: no behaviour came, so nothing shows that di_wheel_drive has done it; "
+                               "is board di_wheel_drive powered and on sim? See `amiroctl doctor`\n")
+        behave.send_signal(signal.SIGINT)
+        _, err = behave.communicate(timeout=20)
+        self.assertEqual((behave.returncode, err), (130, ""))
+
     def test_killed(self):
         self.start_sim()
         for which in ("follow", "avoid"):

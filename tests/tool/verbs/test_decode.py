@@ -261,7 +261,7 @@ class Decode(Case):
         self.run_tool("decode", stdin=good + "what\n")
         _, err = self.run_tool("decode", stdin="(0.0) can0 7FF#11\n" * 9, code=1)
         self.assertIn("9 of 9 frames are of no topic of AMiRo: a log of another bus? --spec", err)
-        self.assertIn("1 of 1 frames are of no topic", self.run_tool("decode", stdin="(0.0) can0 7FF#11\n", code=1)[1])
+        self.assertIn("1 of 1 frame is of no topic", self.run_tool("decode", stdin="(0.0) can0 7FF#11\n", code=1)[1])
         _, err = self.run_tool("decode", stdin="(0.0) can0 608#112233445566\n" * 3 + "(0.0) can0 7FF#11\n" * 2
                                + "(0.0) can0 605#1122\n" * 3)
         self.assertIn("5 of 8 frames contradict the spec of AMiRo (2 of no topic, 3 of wrong length, such as 605 with "

@@ -518,6 +518,10 @@ serve gyr
 serve: gyr is no log
 name a log, or nothing for the bus
 
+serve robts
+serve: robts is no log
+did you mean 'robots'?
+
 serve a.log b.log
 serve: unexpected argument 'b.log'
 one log at a time; amiroctl convert puts several into one

@@ -139,6 +139,18 @@ class Replaying(RealTime, Case):
         self.assertEqual([when for when, _ in out], [0, 2, 3])
         self.assertIn("1 pause cut", err)
 
+    def test_a_log_without_what_was_chosen(self):
+        log = self.write_log((1, "608#01"), (2, "608#02"))
+        for words in (("accel",), ("--since", "1h"), ("--only", "commands")):
+            out, err = self.run_tool("replay", log, "--dry-run", *words, code=1)
+            self.assertEqual(out, "")
+            self.assertEqual(err, "0 frames would be sent, 2 not chosen\n"
+                                  f"amiroctl: replay: no frame of {log} was chosen\n"
+                                  f"          `amiroctl stats {log}` shows what it has\n")
+        self.start_sim()
+        _, err = self.run_tool("replay", log, "--interface", "can7=sim", code=1)
+        self.assertIn(f"replay: all frames of {log} are of interfaces without a bus\n          name them: --interface LOG=BUS\n", err)
+
     def test_a_drive_that_is_cut_short_ends_with_zero(self):
         self.start_sim()
         log = self.write_log((1, "201#50C3000000000000"), (1.1, "201#50C3000000000000"), (4, "201#0000000000000000"))

@@ -62,6 +62,8 @@ class Usage(Case):
         self.refused(["once", "gyro"], "amiroctl sim", "ip link set can0 up", code=1)
         self.refused(["--bus", "sim", "once", "gyro"], "amiroctl sim", code=1)
         self.refused(["--bus", "can7", "once", "gyro"], code=1)
+        self.refused(["--bus", "slcan", "once", "gyro"], "name the adapter's line: slcan:/dev/ttyACM0", code=1)
+        self.refused(["--bus", "sim:/tmp/none", "once", "gyro"], "start one with `amiroctl sim --bus sim:/tmp/none`", code=1)
         for typed, meant in (("simm", "sim"), ("sin:/tmp/x", "sim:/tmp/x"), ("scan:/dev/ttyACM0", "slcan:/dev/ttyACM0")):
             self.refused(["--bus", typed, "once", "gyro"], f"did you mean '{meant}'?", code=1)
         self.environment["AMIROCTL_BUS"] = "sim"

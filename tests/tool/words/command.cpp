@@ -258,7 +258,10 @@ TEST_CASE("a robot without motors and lights has neither drive nor led, but set 
   const std::string_view drive[] = {"drive", "5cm/s"};
   const std::string_view led[] = {"led", "1", "red"};
   const std::string_view send[] = {"send", "123#"};
+  const std::string_view stop[] = {"stop", "all"};
   CHECK_THAT(parser.parse_line(drive).error.what, Catch::Contains("nothing to drive"));
+  CHECK_THAT(parser.parse_line(stop).error.what, Catch::Contains("nothing to stop"));
+  CHECK_FALSE(parser.parse_line(std::span{stop}.first(1)).ok());
   CHECK_THAT(parser.parse_line(led).error.what, Catch::Contains("no lights"));
   CHECK(parser.parse_line(send).ok());
 }

@@ -29,6 +29,15 @@ TEST_CASE("steps, comments, colours and frames") {
   CHECK(script.steps[0].text == "publish gyro 500ms");
   CHECK(can::to_text(script.steps[1].command.frames[0]) == "23C#643278");
   CHECK(script.steps[2].text == "send 205#00");
+  // The byte order mark of some editors.
+  CHECK(parse_script("\xEF\xBB\xBF"
+                     "1s stop",
+                     amiro::catalogue)
+            .errors.empty());
+  CHECK(parse_script("1s stop\n\xEF\xBB\xBF"
+                     "1s stop",
+                     amiro::catalogue)
+            .errors.size() == 1);
 }
 
 TEST_CASE("what is between quotation marks is one word") {
