@@ -4,6 +4,7 @@ import gzip
 import os
 import select
 import signal
+import stat
 import subprocess
 import time
 import unittest
@@ -56,6 +57,18 @@ class Convert(Case):
             self.assertEqual(self.text(out), "precious")
         self.run_tool("convert", log, out, "--force")
         self.assertEqual(self.text(out), LOG)
+
+    def test_who_may_read_and_write_it_the_umask_says(self):
+        log = self.file("in.log")
+        before = os.umask(0)
+        try:
+            for umask in (0o000, 0o027, 0o077):
+                os.umask(umask)
+                out = self.path(f"{umask}.log")
+                self.run_tool("convert", log, out)
+                self.assertEqual(stat.S_IMODE(os.stat(out).st_mode), 0o666 & ~umask)
+        finally:
+            os.umask(before)
 
     def test_what_cannot_be_read(self):
         for name, content, word in (("empty.log", "", "is empty"), ("x.bin", "\x01\x02 rubbish", "no known log format")):

@@ -562,6 +562,16 @@ class BesideAMap(Case):
         waiting.until(lambda: self.place("Arduino") != other, "the other goes on", 60)
         self.assertEqual(self.states()["AVR"]["state"], "held")
 
+    def test_watched_for_a_time(self):
+        seen = self.path("seen.pgm")
+        begin = time.monotonic()
+        out, _ = self.run_tool("map", seen, "--watch", "--duration", "3s", "--json")
+        (watched,) = self.objects(out)
+        self.assertEqual(watched.keys(), {"watched", "seconds", "drawn"})
+        self.assertGreaterEqual(watched["seconds"], 3)
+        self.assertLessEqual(watched["seconds"], time.monotonic() - begin)
+        self.assertGreaterEqual(watched["drawn"], 1)
+
     def test_watched_it_grows(self):
         seen = self.path("seen.pgm")
         watch = self.start("map", seen, self.path("seen.svg"), "--watch")

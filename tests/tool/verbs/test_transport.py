@@ -307,9 +307,11 @@ class Transport(Case):
         both = os.path.join(self.folder, "both.log")
         with open(both, "w", encoding="utf-8") as file:
             file.write(BROADCAST)
-        for words, count in ((("VI",), 4), (("EEC1",), 1), (("VI", "--only", "commands"), 0)):
+        for words, count in ((("VI",), 4), (("EEC1",), 1)):
             out, _ = self.run_tool("--spec", self.spec, "replay", both, *words, "--dry-run")
             self.assertEqual(len(out.splitlines()), count, out)
+        _, err = self.run_tool("--spec", self.spec, "replay", both, "VI", "--only", "commands", "--dry-run", code=1)
+        self.assertIn(f"no frame of {both} was chosen", err)
 
     def test_doctor_hears_the_messages_and_names_those_that_are_missing(self):
         spec = os.path.join(self.folder, "due.dbc")
