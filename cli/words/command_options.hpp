@@ -96,6 +96,9 @@ template <class Suggest>
     constexpr std::string_view known[] = {"--priority", "--for", "--every", "--force"};
     constexpr std::string_view examples[] = {"--priority high", "--for 2s", "--every 10ms"};
     const std::size_t option = static_cast<std::size_t>(std::find(known, known + 3, name) - known);
+    if (name == "--wait" || name == "--no-confirm" || name == "--dry-run")
+      return WordError{i, "a line takes no " + std::string{name},
+                       "leave it out: it is an option of the verb alone"};
     if (option == std::size(examples))
       return WordError{i, "unknown option " + detail::quoted(line[i].substr(0, equals)),
                        suggest([&] { return suggestion(name, known); })};
