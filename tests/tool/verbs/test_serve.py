@@ -724,35 +724,28 @@ print(lost, flush=True)
 
     @staticmethod
     def cpu(process):
-        """Seconds of processor time, of all its threads."""
-        seconds = 0.0
-        for task in os.listdir(f"/proc/{process.pid}/task"):
-            with open(f"/proc/{process.pid}/task/{task}/schedstat", encoding="ascii") as file:
-                seconds += int(file.read().split()[0]) / 1e9
-        return seconds
+        """Seconds of CPU time."""
+        with open(f"/proc/{process.pid}/stat", encoding="ascii") as file:
+            fields = file.read().rsplit(")", 1)[1].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
     def test_it_takes_little(self):
-        """At 100 frames/s, with a viewer that asks for all that the page asks for: 2 % of a core, or on a machine on which a
-        frame costs every program more, four times what `listen` takes."""
+        """At 100 frames/s, with a viewer that asks for all that the page asks for: 2 % of a core."""
         self.start_sim()
         self.run_tool("publish", "gyro", "10ms")
         server, port, _ = self.serve()
         viewer = self.viewer(port)
         viewer.subscribe(*viewer.channels)
         viewer.message("/gyroscope")
-        listener = self.start("listen", "--json", stdout=subprocess.DEVNULL)
-        shares, ratios = [], []
+        shares = []
         for _ in range(4):  # the least: on a busy machine the same work takes longer
-            before, other, begin = self.cpu(server), self.cpu(listener), time.monotonic()
+            before, begin = self.cpu(server), time.monotonic()
             for _ in range(300):
                 viewer.message("/gyroscope")
-            used = self.cpu(server) - before
-            shares.append(used / (time.monotonic() - begin))
-            ratios.append(used / (self.cpu(listener) - other))
-        said = f"serve at 100 frames/s: {min(shares) * 100:.1f} % of a core, {min(ratios):.1f} times what listen takes"
-        print(said, file=sys.stderr)
+            shares.append((self.cpu(server) - before) / (time.monotonic() - begin))
+        print(f"serve at 100 frames/s: {min(shares) * 100:.1f} % of a core", file=sys.stderr)
         if not harness.sanitized():
-            self.assertTrue(min(shares) < 0.02 or min(ratios) < 4, said)
+            self.assertLess(min(shares), 0.02)
 
     def test_a_hundred_viewers(self):
         self.start_sim("--frozen")

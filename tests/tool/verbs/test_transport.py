@@ -310,7 +310,8 @@ class Transport(Case):
         for words, count in ((("VI",), 4), (("EEC1",), 1)):
             out, _ = self.run_tool("--spec", self.spec, "replay", both, *words, "--dry-run")
             self.assertEqual(len(out.splitlines()), count, out)
-        _, err = self.run_tool("--spec", self.spec, "replay", both, "VI", "--only", "commands", "--dry-run", code=1)
+        out, err = self.run_tool("--spec", self.spec, "replay", both, "VI", "--only", "commands", "--dry-run", code=1)
+        self.assertEqual(out, "")
         self.assertIn(f"no frame of {both} was chosen", err)
 
     def test_doctor_hears_the_messages_and_names_those_that_are_missing(self):
