@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -21,7 +22,36 @@ namespace {
 
 using Presence = OperatorWatch::Presence;
 
-constexpr unsigned most_unsent = 64;  // frames, until viewers hear of them
+/// Frames that viewers hear of together. To wake the thread of the web is most of what a frame costs, and a
+/// page is drawn 60 times a second at most.
+class Batch {
+ public:
+  explicit Batch(PageServer& server) : server_(&server) {}
+
+  void add() {
+    if (++frames_ >= most) send();
+  }
+  void send() {
+    frames_ = 0;
+    due_ = Clock::now() + interval;
+    server_->wake();
+  }
+  void send_if_due() {
+    if (frames_ != 0 && Clock::now() >= due_) send();
+  }
+  /// When it goes; nothing: it is empty. At once where the last one is long ago.
+  [[nodiscard]] std::optional<Clock::time_point> due() const {
+    return frames_ != 0 ? std::optional{due_} : std::nullopt;
+  }
+
+ private:
+  static constexpr unsigned most = 64;
+  static constexpr base::Duration interval = std::chrono::milliseconds{20};
+
+  PageServer* server_;
+  unsigned frames_ = 0;
+  Clock::time_point due_{};
+};
 
 /// Until the bus is gone, a signal comes, it is over, or (enough) an operator has come or gone. The motors
 /// rest behind it.
@@ -39,32 +69,34 @@ Over serve_frames(PageServer& server, transport::Bus& bus, const log::Interfaces
                       return "an operator guards the robot, and does not answer: end it, or start it again";
                     return {};
                   }};
-  unsigned unsent = 0;
-  const auto wake = [&] {
-    unsent = 0;
-    server.wake();
-  };
-  Live live{bus, wake, {server.orders().descriptor(), [&] {
-                          for (const Order& order : server.orders().take()) {
-                            server.answer(order);
-                            control.carry_out(order);
-                          }
-                          wake();
-                        }}};
+  Batch batch{server};
+  Live live{bus, [&] { batch.send_if_due(); }, {server.orders().descriptor(), [&] {
+                                                  for (const Order& order : server.orders().take()) {
+                                                    server.answer(order);
+                                                    control.carry_out(order);
+                                                  }
+                                                  batch.send();
+                                                }}};
   auto next_bus = Clock::now();
   auto next_boards = next_bus;
   Over over = Over::time;
   while (over == Over::time && !server.is_over()) {
     auto until = std::min(next_bus, next_boards);
     if (const auto next = control.next()) until = std::min(until, *next);
+    if (const auto due = batch.due()) until = std::min(until, *due);
     over = live.receive_any(until, [&](const transport::ReceivedAny& received) {
       server.take({received.time, received.frame, 0}, interfaces);
       if (const auto classic = received.frame.classic()) control.heard({received.time, *classic});
-      if (++unsent >= most_unsent) wake();
+      batch.add();
       // What is due is done between two frames, too, however many come.
       if (const auto next = control.next(); next && *next <= Clock::now()) control.advance();
-      return true;
+      const auto due = batch.due();
+      return !due || *due >= until;
     });
+    if (over == Over::enough) {  // the batch is due earlier than what was waited for
+      over = Over::time;
+      continue;
+    }
     control.advance();
     const auto now = Clock::now();
     server.lost_so_far(bus.name(), bus.counters().lost);
@@ -81,7 +113,7 @@ Over serve_frames(PageServer& server, transport::Bus& bus, const log::Interfaces
       server.publish_bounds(unix_time());
       next_boards = now + boards_interval;
     }
-    wake();
+    batch.send();
   }
   if (!control.rest()) complain({"the last set point of rest did not leave", still_moving});
   return over;
