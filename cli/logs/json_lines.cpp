@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -13,9 +14,18 @@
 #include "cli/logs/json_scanner.hpp"
 #include "cli/output/output.hpp"
 #include "cli/words/command.hpp"
+#include "cli/words/suggestion.hpp"
 
 namespace ocm::cli::logs {
 namespace {
+
+/// What a frame is made of; the first ones have a value (JsonLineParser::value_of), the last two objects.
+constexpr std::string_view read_keys[] = {"time_ns", "bus",       "id",      "priority", "topic", "frame",
+                                          "data",    "direction", "raw_dlc", "fields",   "fd"};
+/// What is printed for readers, and says nothing that the keys above do not say.
+constexpr std::string_view printed_keys[] = {"units",  "names",       "error",     "pgn",
+                                             "source", "destination", "transport", "message"};
+constexpr std::size_t most_unknown = 8;
 
 std::string shown(std::string_view text) {
   return '"' + log::Complaints::printable(text) + '"';
@@ -98,21 +108,33 @@ bool JsonLineParser::scan(std::string_view line) {
         if (!scan_fd(scanner)) return broken();
         continue;
       }
-      JsonValue* const value = key == "time_ns"     ? &record_.time
-                               : key == "bus"       ? &record_.bus
-                               : key == "id"        ? &record_.id
-                               : key == "priority"  ? &record_.priority
-                               : key == "topic"     ? &record_.topic
-                               : key == "frame"     ? &record_.frame
-                               : key == "data"      ? &record_.data
-                               : key == "direction" ? &record_.direction
-                               : key == "raw_dlc"   ? &record_.raw_dlc
-                                                    : nullptr;
+      JsonValue* const value = value_of(key);
       if (!(value != nullptr ? scanner.take_value(*value) : scanner.skip_value())) return broken();
     } while (scanner.take(','));
     if (!scanner.take('}')) return broken();
   }
   return scanner.at_end() || broken();
+}
+
+JsonValue* JsonLineParser::value_of(std::string_view key) {
+  JsonValue* const values[] = {&record_.time,     &record_.bus,       &record_.id,
+                               &record_.priority, &record_.topic,     &record_.frame,
+                               &record_.data,     &record_.direction, &record_.raw_dlc};
+  for (std::size_t i = 0; i < std::size(values); ++i)
+    if (key == read_keys[i]) return values[i];
+  if (std::find(std::begin(printed_keys), std::end(printed_keys), key) != std::end(printed_keys))
+    return nullptr;
+  for (UnknownKey& known : unknown_)
+    if (known.name == key) {
+      ++known.lines;
+      return nullptr;
+    }
+  if (unknown_.size() < most_unknown) unknown_.push_back({std::string{key}, 1});
+  return nullptr;
+}
+
+std::string_view JsonLineParser::meant_by(std::string_view unknown) {
+  return words::nearest(unknown, read_keys);
 }
 
 bool JsonLineParser::scan_fields(JsonScanner& scanner) {

@@ -8,8 +8,9 @@
 /// - An edited value beyond the range that the spec states is refused if the reader asks for that.
 /// - What contradicts itself (an id of another topic, another priority) is refused, not guessed at.
 ///
-/// Keys in any order; unknown ones are passed over. No allocation a line. A line that cannot be read costs
-/// that line: the parser says what is wrong and what would be right.
+/// Keys in any order; those that decode prints for people are passed over, unknown ones also counted. No
+/// allocation a line. A line that cannot be read costs that line: the parser says what is wrong and what
+/// would be right.
 #pragma once
 
 #include <array>
@@ -40,6 +41,12 @@ struct JsonProblem {
   std::string remedy;
 };
 
+/// A key that is neither read nor printed.
+struct UnknownKey {
+  std::string name;  ///< as the line has it
+  std::uint64_t lines = 0;
+};
+
 /// Which values a line may give a field that its data does not say.
 enum class Values : std::uint8_t {
   of_bits,    ///< all that the bits hold
@@ -55,6 +62,10 @@ class JsonLineParser {
   /// line and until the next). A line without `time_ns` has the time of the one before. false: `problem`.
   [[nodiscard]] bool parse(std::string_view line, log::Entry& entry, std::string_view& bus);
   [[nodiscard]] const JsonProblem& problem() const noexcept { return problem_; }
+  /// What was passed over, in the order in which it came; of more than eight the first eight.
+  [[nodiscard]] std::span<const UnknownKey> unknown_keys() const noexcept { return unknown_; }
+  /// The key that is read and was probably meant; empty: none.
+  [[nodiscard]] static std::string_view meant_by(std::string_view unknown);
 
  private:
   struct NamedText {
@@ -77,6 +88,8 @@ class JsonLineParser {
 
   bool refuse(log::Cause cause, std::string what, std::string remedy);
   bool scan(std::string_view line);
+  /// Where the value of a key belongs; nullptr: it is passed over.
+  [[nodiscard]] JsonValue* value_of(std::string_view key);
   bool scan_fields(JsonScanner& scanner);
   bool scan_fd(JsonScanner& scanner);
   bool take_time(log::Entry& entry);
@@ -125,6 +138,7 @@ class JsonLineParser {
   base::Time last_{};
   std::string bus_;
   JsonProblem problem_;
+  std::vector<UnknownKey> unknown_;
 };
 
 class JsonLinesReader final : public log::Reader {

@@ -128,9 +128,10 @@ void Sessions::set_parameters(ViewerId id, const Viewer& viewer, const foxglove:
     }
   if (request.request.empty()) return;
   confirm.payload = request.request;
-  // Without a name all would be meant.
-  confirm.names.empty() ? viewers_->tell(id, foxglove::parameter_values({}, request.request))
-                        : put(std::move(confirm));
+  if (confirm.names.empty())  // all would be meant
+    viewers_->tell(id, foxglove::parameter_values({}, request.request));
+  else
+    put(std::move(confirm));
 }
 
 void Sessions::binary(ViewerId viewer, std::string_view message) {

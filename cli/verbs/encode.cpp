@@ -64,6 +64,7 @@ void encode(Session& session, const EncodeOptions& options, int& exit_code) {
   write(false);
   (*out)->finish();
   remark(counted(frames, "frame") + " encoded");
+  lines.tell_unknown_keys();
   logs::tell_losses((*out)->lost(), format);
   if (!(*out)->failure().what.empty()) fail((*out)->failure(), exit_code_after_interrupt(exit_failure));
   if (lines.failed()) exit_code = exit_failure;

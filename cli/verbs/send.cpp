@@ -88,6 +88,7 @@ void send_lines(Session& session, const SendOptions& options, bool dry_run, int&
     add_count(text, fd, "CAN FD frame", fmt::format("not sent: {} ({})", obstacle->what, obstacle->remedy));
   add_count(text, lines.bad_lines(), "line", "could not be read");
   remark(text);
+  lines.tell_unknown_keys();
   if (lines.failed() || fd != 0) exit_code = exit_failure;
   exit_code = exit_code_after_interrupt(exit_code);
 }

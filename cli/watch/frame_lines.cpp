@@ -47,6 +47,16 @@ void FrameLines::tell() const {
                      problem_.remedy));
 }
 
+void FrameLines::tell_unknown_keys() const {
+  for (const logs::UnknownKey& key : json_.unknown_keys()) {
+    std::string text = fmt::format("{}: key '{}' of {} passed over: it is none that is read", path_,
+                                   log::Complaints::printable(key.name), counted(key.lines, "line"));
+    if (const auto meant = logs::JsonLineParser::meant_by(key.name); !meant.empty())
+      text += fmt::format("; did you mean '{}'?", meant);
+    remark(text);
+  }
+}
+
 bool FrameLines::parse(std::string_view line, log::Entry& entry, std::string_view& bus) {
   if (line.front() == '{') {
     if (json_.parse(line, entry, bus)) return true;

@@ -30,6 +30,8 @@ class FrameLines {
   /// Whether some line could not be read, or the input ended early.
   [[nodiscard]] bool failed() const noexcept { return bad_ != 0 || broken_; }
   [[nodiscard]] std::uint64_t bad_lines() const noexcept { return bad_; }
+  /// Reports, at the end, what of JSON lines was passed over.
+  void tell_unknown_keys() const;
 
  private:
   [[nodiscard]] bool parse(std::string_view line, log::Entry& entry, std::string_view& bus);

@@ -400,6 +400,17 @@ class Encode(Case):
         out, _ = self.run_tool(*car, "encode", stdin=cells % "3.7")
         self.assertTrue(out.split()[-1].startswith("500##1889000"), out)
 
+    def test_keys_that_are_not_read(self):
+        lines = '{"id":"123","data":"11","time":5}\n{"id":"123","data":"11","time":6,"who":"me","units":{},"error":"no"}\n'
+        for verb in (["encode"], ["send", "--stdin", "--dry-run"]):
+            _, err = self.run_tool(*verb, stdin=lines)
+            self.assertIn("standard input: key 'time' of 2 lines passed over: it is none that is read; did you mean 'time_ns'?\n", err)
+            self.assertIn("standard input: key 'who' of 1 line passed over: it is none that is read\n", err)
+            self.assertEqual(err.count("passed over"), 2)
+        _, err = self.run_tool("encode", stdin="".join(f'{{"id":"123","data":"11","key\\u001b{i}":0}}\n' for i in range(20)))
+        self.assertEqual(err.count("passed over"), 8)
+        self.assertNotIn("\x1b", err)
+
     def test_bad_lines(self):
         lines = '{"id":"123","data":"11"}\n{"id":"123"}\n{"id":"124","data":"22"}\n'
         out, err = self.run_tool("encode", stdin=lines, code=1)
