@@ -33,6 +33,7 @@ LiveFeed::LiveFeed(std::unique_ptr<transport::Bus> bus)
 
 Over LiveFeed::pump(Models& models) {
   const Over over = live_.receive_any(Clock::now(), [&](const transport::ReceivedAny& received) {
+    clock_.take(received.time);
     models.take({received.time, received.frame, 0}, interfaces_);
     return true;
   });

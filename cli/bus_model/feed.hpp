@@ -33,9 +33,12 @@ class LiveFeed {
   [[nodiscard]] const transport::Bus& bus() const noexcept { return *bus_; }
   /// Gives all that is waiting to the models. Over::time: there is more to come.
   [[nodiscard]] Over pump(Models& models);
+  /// By the clock of the frames.
+  [[nodiscard]] base::Time now() const noexcept { return clock_.now(); }
 
  private:
   std::unique_ptr<transport::Bus> bus_;
+  FrameClock clock_;
   Live live_;
   log::Interfaces interfaces_;
   int index_ = 0;  ///< of a CAN interface of the kernel; 0: it is none

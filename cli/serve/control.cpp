@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 #include "cli/serve/commands.hpp"
 #include "cli/serve/foxglove.hpp"
 #include "cli/serve/parameters.hpp"
+#include "cli/shared/messages.hpp"
 #include "cli/shared/outgoing.hpp"
 #include "cli/shared/remedies.hpp"
 #include "cli/shared/set_points.hpp"
@@ -18,8 +20,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// So soon rest is tried again that the bus did not take.
-constexpr base::Duration rest_again = 10ms;
+/// So soon rest is tried again that the bus did not take, and it is looked what has left.
+constexpr base::Duration look_again = 10ms;
 /// In which a board answers.
 constexpr base::Duration time_to_answer = 100ms;
 /// Who looks later than that did not run, and has not heard what waits.
@@ -56,12 +58,45 @@ std::string Control::why_not_taken() {
   return fmt::format("the bus takes no frame: {}", why_none_leaves(*bus_));
 }
 
-bool Control::send(const can::AnyFrame& frame) {
+bool Control::send(ViewerId viewer, const can::AnyFrame& frame) {
+  if (handed_.empty()) left_ = Clock::now();
   const auto taken = bus_->send_any(frame);
   if (!taken || !*taken) return false;
-  if (const auto classic = frame.classic()) refusals_.sent(*classic, steady_now());
-  sent_(frame);
+  handed_.push_back({viewer, frame});
+  look_what_left();
   return true;
+}
+
+void Control::look_what_left() {
+  if (handed_.empty()) return;
+  const auto delivery = bus_->delivery();
+  const auto now = Clock::now();
+  for (; handed_.size() > (delivery.known ? delivery.pending : 0); handed_.pop_front()) {
+    const can::AnyFrame& frame = handed_.front().frame;
+    if (const auto classic = frame.classic()) refusals_.sent(*classic, steady_now());
+    sent_(frame);
+    left_ = now;
+    stuck_is_said_ = false;
+  }
+  if (!is_stuck() || std::exchange(stuck_is_said_, true)) return;
+  std::set<ViewerId> viewers;
+  for (const Handed& each : handed_) {
+    const auto classic = each.frame.classic();
+    // Who goes on driving hears of it when the next set point is kept back.
+    if (!classic || is_rest(*classic) || commanded_motors(index_, *classic) == nullptr)
+      viewers.insert(each.viewer);
+  }
+  for (const ViewerId viewer : viewers) refuse(viewer, what_is_stuck());
+}
+
+bool Control::is_stuck() const {
+  return !handed_.empty() && Clock::now() - left_ >= client::longest_without_set_point;
+}
+
+std::string Control::what_is_stuck() const {
+  return fmt::format("{} not left {}, and may leave later: {}",
+                     handed_.size() == 1 ? "a frame has" : fmt::format("{} frames have", handed_.size()),
+                     bus_->name(), why_none_leaves(*bus_));
 }
 
 void Control::send_all(ViewerId viewer, const Driver::Frames& frames) {
@@ -77,9 +112,9 @@ void Control::send_all(ViewerId viewer, const Driver::Frames& frames) {
       continue;
     }
     withheld_.reset();
-    if (!send(can::AnyFrame{frame})) refuse(viewer, why_not_taken());
+    if (!send(viewer, can::AnyFrame{frame})) refuse(viewer, why_not_taken());
   }
-  while (!rests_.empty() && send(can::AnyFrame{rests_.front()})) rests_.pop_front();
+  while (!rests_.empty() && send(viewer, can::AnyFrame{rests_.front()})) rests_.pop_front();
 }
 
 void Control::withhold(ViewerId viewer) {
@@ -115,7 +150,7 @@ void Control::begin(ViewerId viewer, const client::Hold& hold) {
   }
   waiting_ = Waiting{viewer, hold, now + time_to_answer};
   if (said_ && now - *said_ < longest_valid) return begin_waiting();
-  if (!send(can::AnyFrame{behaviour_.request()})) begin_waiting();  // which says why nothing is taken
+  if (!send(viewer, can::AnyFrame{behaviour_.request()})) begin_waiting();  // which says why nothing is taken
 }
 
 void Control::begin_waiting() {
@@ -137,15 +172,58 @@ void Control::command(ViewerId viewer, const client::Command& command) {
     Driver::Frames frames;
     driver_.rest(frames);
     send_all(viewer, frames);
-  } else if (const std::string why = obstacle_(); !why.empty()) {
+  } else if (std::string why = obstacle_(); !why.empty()) {
+    return refuse(viewer, why);
+  } else if (is_stuck()) {  // what waits would leave when it is not wanted any more
+    return refuse(viewer, what_is_stuck());
+  } else if (why = why_not_begun(viewer, command); !why.empty()) {
     return refuse(viewer, why);
   }
   bool all = true;
-  command.each_frame([&](const can::AnyFrame& frame) { all = send(frame) && all; });
-  if (!all) refuse(viewer, why_not_taken());
+  command.each_frame([&](const can::AnyFrame& frame) { all = send(viewer, frame) && all; });
+  if (!all)
+    refuse(viewer, why_not_taken());
+  else if (is_stuck())  // a stop waits with the others
+    refuse(viewer, what_is_stuck());
+}
+
+std::string Control::why_not_begun(ViewerId viewer, const client::Command& command) const {
+  const bool begins = std::any_of(command.frames.begin(), command.frames.end(), [&](const can::Frame& frame) {
+    return !is_rest(frame) && behaviour_.commanded(index_, frame) != nullptr;
+  });
+  if (!begins) return {};
+  if (driver_.drives() && !driver_.drives(viewer)) return "another viewer drives; stop it first, or wait";
+  if (other_heard_ && Clock::now() - other_ < client::listen_before_hold)
+    return "another program commands the motors: end it first, or stop the robot";
+  return {};
+}
+
+void Control::rest_what_waits(ViewerId viewer, Driver::Frames& out) const {
+  for (const Handed& each : handed_) {
+    const auto classic = each.frame.classic();
+    if ((viewer != 0 && each.viewer != viewer) || !classic || is_rest(*classic) ||
+        behaviour_.commanded(index_, *classic) == nullptr)
+      continue;
+    can::Frame rest = *classic;
+    rest.data = {};
+    out.push_back(rest);
+  }
+}
+
+void Control::look_whether_it_ran() {
+  const auto now = Clock::now();
+  if (driver_.drives() && now - looked_ >= client::longest_without_set_point) {
+    Driver::Frames frames;
+    driver_.end_all(now, frames);
+    send_all(0, frames);
+    refuse(0, fmt::format("serve did not run for {:.1f} s: the motors rest; release, then drive again",
+                          std::chrono::duration<double>(now - looked_).count()));
+  }
+  looked_ = now;
 }
 
 void Control::carry_out(const Order& order) {
+  look_whether_it_ran();
   switch (order.kind) {
     case Order::Kind::publish: {
       const auto parsed = command_of(*catalogue_, order.topic, order.payload);
@@ -163,6 +241,7 @@ void Control::carry_out(const Order& order) {
       if (waiting_ && waiting_->viewer == order.viewer) waiting_.reset();
       Driver::Frames frames;
       driver_.gone(order.viewer, frames);
+      rest_what_waits(order.viewer, frames);
       return send_all(order.viewer, frames);
     }
     case Order::Kind::playback:  // a bus is not wound
@@ -176,6 +255,8 @@ void Control::carry_out(const Order& order) {
 }
 
 void Control::heard(const can::Received& received) {
+  look_whether_it_ran();
+  look_what_left();
   if (const auto refused = refusals_.take(received, steady_now()))
     refuse(0, fmt::format("{} refuses {}: {}; {}", refused->board, refused->topic->name, describe(*refused),
                           remedy(*refused)));
@@ -198,6 +279,8 @@ void Control::heard(const can::Received& received) {
 }
 
 void Control::advance() {
+  look_whether_it_ran();
+  look_what_left();
   if (const auto now = Clock::now(); waiting_ && now >= waiting_->until) {
     if (now - waiting_->until > most_late)
       waiting_->until = now + time_to_answer;
@@ -213,23 +296,35 @@ void Control::advance() {
 std::optional<Clock::time_point> Control::next() const {
   auto next = driver_.next();
   if (waiting_) next = next ? std::min(*next, waiting_->until) : waiting_->until;
-  if (!rests_.empty()) {
-    const auto again = Clock::now() + rest_again;
+  if (!rests_.empty() || !handed_.empty()) {
+    const auto again = Clock::now() + look_again;
     next = next ? std::min(*next, again) : again;
   }
   return next;
 }
 
-bool Control::rest() {
+std::string Control::rest() {
   Driver::Frames frames;
   driver_.rest(frames);
+  rest_what_waits(0, frames);
   send_all(0, frames);
   const auto late = Clock::now() + client::longest_without_set_point;
-  while (!rests_.empty() && Clock::now() < late) {
-    sleep_for(rest_again);
+  const auto all_left = [this] { return rests_.empty() && handed_.empty(); };
+  while (!all_left() && bus_->state() != transport::BusState::closed && Clock::now() < late) {
+    sleep_for(look_again);
     send_all(0, {});
+    look_what_left();
   }
-  return rests_.empty();
+  if (all_left()) return {};
+  const bool moves =
+      !rests_.empty() || std::any_of(handed_.begin(), handed_.end(), [this](const Handed& each) {
+        const auto classic = each.frame.classic();
+        return classic && (commanded_motors(index_, *classic) != nullptr ||
+                           behaviour_.commanded(index_, *classic) != nullptr);
+      });
+  return fmt::format("serve: {} did not leave {}, and may leave later{}{}",
+                     counted(rests_.size() + handed_.size(), "frame"), bus_->name(), moves ? "; " : "",
+                     moves ? still_moving : "");
 }
 
 }  // namespace ocm::cli::serve

@@ -26,7 +26,7 @@ namespace ocm::cli::serve {
 
 class Control {
  public:
-  /// Gets each frame that was sent: a bus never hands a program its own.
+  /// Gets each frame that has left, as far as the bus tells: a bus never hands a program its own.
   using Sent = std::function<void(const can::AnyFrame& frame)>;
   /// Why nothing may be commanded now; empty: it may.
   using Obstacle = std::function<std::string()>;
@@ -42,8 +42,8 @@ class Control {
   void advance();
   /// When something is due next.
   [[nodiscard]] std::optional<Clock::time_point> next() const;
-  /// At the end: the motors rest. false: that has not left, and the robot may still move.
-  [[nodiscard]] bool rest();
+  /// At the end: the motors rest. Says what has not left by then; empty: all has.
+  [[nodiscard]] std::string rest();
 
  private:
   void command(ViewerId viewer, const client::Command& command);
@@ -55,7 +55,19 @@ class Control {
   void send_all(ViewerId viewer, const Driver::Frames& frames);
   /// A set point that is given up since an earlier frame has not left; the viewer hears it once.
   void withhold(ViewerId viewer);
-  [[nodiscard]] bool send(const can::AnyFrame& frame);
+  /// Hands a frame to the bus; false: it takes none.
+  [[nodiscard]] bool send(ViewerId viewer, const can::AnyFrame& frame);
+  /// Reports what has left by now, and, once, to whose orders it belongs what has not for too long.
+  void look_what_left();
+  [[nodiscard]] bool is_stuck() const;
+  [[nodiscard]] std::string what_is_stuck() const;
+  /// A drive is over of which nothing was looked after for too long: this program did not run, and what
+  /// viewers have said waits and is old.
+  void look_whether_it_ran();
+  /// Why a behaviour of a board may not begin now; empty: it may, or the command begins none.
+  [[nodiscard]] std::string why_not_begun(ViewerId viewer, const client::Command& command) const;
+  /// What ends each behaviour that a viewer (0: any) has commanded and that has not left.
+  void rest_what_waits(ViewerId viewer, Driver::Frames& out) const;
   void refuse(ViewerId viewer, std::string_view why);
   [[nodiscard]] std::string why_not_taken();
 
@@ -68,6 +80,14 @@ class Control {
   client::Refusals refusals_;
   Driver driver_;
   std::deque<can::Frame> rests_;  ///< that the bus has not taken yet
+  struct Handed {
+    ViewerId viewer;
+    can::AnyFrame frame;
+  };
+  std::deque<Handed> handed_;  ///< that it has taken, and that have not left
+  Clock::time_point left_{};   ///< when one of them left last, or the first was handed over
+  bool stuck_is_said_ = false;
+  Clock::time_point looked_ = Clock::now();
   struct Withheld {
     Clock::time_point since;
     bool is_said = false;

@@ -73,6 +73,16 @@ void Driver::rest(Frames& out) {
   held_.clear();
 }
 
+void Driver::end_all(Clock::time_point now, Frames& out) {
+  for (Held& each : held_) each.heard = now;
+  rest(out);
+}
+
+bool Driver::drives(ViewerId viewer) const noexcept {
+  return std::any_of(held_.begin(), held_.end(),
+                     [viewer](const Held& each) { return each.viewer == viewer; });
+}
+
 bool Driver::advance(Clock::time_point now, Frames& out) {
   const std::size_t before = held_.size();
   std::erase_if(held_, [&](Held& each) {

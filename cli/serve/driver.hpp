@@ -39,11 +39,16 @@ class Driver {
   [[nodiscard]] bool must_rest(ViewerId viewer, std::uint32_t id) const noexcept;
   /// All motors rest, also where another drives. Who drove must say rest first.
   void rest(Frames& out);
+  /// The same where viewers were not listened to for long: what they have said meanwhile, which comes now, is
+  /// no silence of a viewer that says no rest.
+  void end_all(Clock::time_point now, Frames& out);
   /// What is due by now: set points again, or rest where a viewer was silent. True: it was.
   bool advance(Clock::time_point now, Frames& out);
   /// When `advance` has something to do next.
   [[nodiscard]] std::optional<Clock::time_point> next() const;
   [[nodiscard]] bool drives() const noexcept { return !held_.empty(); }
+  /// Whether this viewer does.
+  [[nodiscard]] bool drives(ViewerId viewer) const noexcept;
   /// Whether the frame is a set point of motors that are held.
   [[nodiscard]] bool holds(std::uint32_t id) const noexcept;
 

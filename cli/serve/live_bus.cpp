@@ -15,6 +15,7 @@
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/live.hpp"
 #include "cli/shared/messages.hpp"
+#include "cli/shared/outgoing.hpp"
 #include "cli/shared/remedies.hpp"
 
 namespace ocm::cli::serve {
@@ -32,8 +33,7 @@ class Batch {
     if (++frames_ >= most) send();
   }
   void send() {
-    frames_ = 0;
-    due_ = Clock::now() + interval;
+    if (std::exchange(frames_, 0) != 0) due_ = Clock::now() + interval;
     server_->wake();
   }
   void send_if_due() {
@@ -54,12 +54,13 @@ class Batch {
 };
 
 /// Until the bus is gone, a signal comes, it is over, or (enough) an operator has come or gone. The motors
-/// rest behind it.
+/// rest behind it; `exit_code` says failure where that has not left.
 Over serve_frames(PageServer& server, transport::Bus& bus, const log::Interfaces& interfaces,
-                  const OperatorWatch& watch, const std::function<bool()>& operator_changed) {
+                  const OperatorWatch& watch, const std::function<bool()>& operator_changed, int& exit_code) {
+  FrameClock clock;
   Control control{bus, server.catalogue(), server.viewers(),
                   [&](const can::AnyFrame& frame) {
-                    log::Entry entry{unix_time(), frame, 0};
+                    log::Entry entry{clock.now(), frame, 0};
                     entry.direction = log::Direction::sent;
                     server.take(entry, interfaces);
                   },
@@ -72,7 +73,7 @@ Over serve_frames(PageServer& server, transport::Bus& bus, const log::Interfaces
   Batch batch{server};
   Live live{bus, [&] { batch.send_if_due(); }, {server.orders().descriptor(), [&] {
                                                   for (const Order& order : server.orders().take()) {
-                                                    server.answer(order);
+                                                    server.answer(order, clock.now());
                                                     control.carry_out(order);
                                                   }
                                                   batch.send();
@@ -85,8 +86,10 @@ Over serve_frames(PageServer& server, transport::Bus& bus, const log::Interfaces
     if (const auto next = control.next()) until = std::min(until, *next);
     if (const auto due = batch.due()) until = std::min(until, *due);
     over = live.receive_any(until, [&](const transport::ReceivedAny& received) {
-      server.take({received.time, received.frame, 0}, interfaces);
+      clock.take(received.time);
+      // First: what has left before it is known then.
       if (const auto classic = received.frame.classic()) control.heard({received.time, *classic});
+      server.take({received.time, received.frame, 0}, interfaces);
       batch.add();
       // What is due is done between two frames, too, however many come.
       if (const auto next = control.next(); next && *next <= Clock::now()) control.advance();
@@ -101,21 +104,24 @@ Over serve_frames(PageServer& server, transport::Bus& bus, const log::Interfaces
     const auto now = Clock::now();
     server.lost_so_far(bus.name(), bus.counters().lost);
     if (now >= next_bus) {
-      server.until(unix_time());
-      server.publish_bus(unix_time());
-      server.publish_parameters(unix_time());
+      server.until(clock.now());
+      server.publish_bus(clock.now());
+      server.publish_parameters(clock.now());
       server.publish_operator(watch);
       next_bus = now + bus_interval;
       if (over == Over::time && operator_changed()) over = Over::enough;
     }
     if (now >= next_boards) {
-      server.publish_boards(bus.counters(), unix_time());
-      server.publish_bounds(unix_time());
+      server.publish_boards(bus.counters(), clock.now());
+      server.publish_bounds(clock.now());
       next_boards = now + boards_interval;
     }
     batch.send();
   }
-  if (!control.rest()) complain({"the last set point of rest did not leave", still_moving});
+  if (const std::string unsent = control.rest(); !unsent.empty()) {
+    complain({unsent, why_none_leaves(bus)});
+    exit_code = exit_failure;
+  }
   return over;
 }
 
@@ -126,6 +132,7 @@ int serve_bus(PageServer& server, Session& session, std::unique_ptr<transport::B
   interfaces.number(bus->name());
   const OperatorWatch watch{std::string{bus->name()}};
   auto* operated = dynamic_cast<OperatedBus*>(bus.get());
+  int exit_code = exit_success;
   for (;;) {
     // Set points go through an operator from the moment that there is one, and until there is none.
     const auto changed = [&] {
@@ -133,11 +140,11 @@ int serve_bus(PageServer& server, Session& session, std::unique_ptr<transport::B
       return operated != nullptr ? operated->over() || watch.presence() == Presence::none
                                  : watch.presence() == Presence::runs;
     };
-    const Over over = serve_frames(server, *bus, interfaces, watch, changed);
+    const Over over = serve_frames(server, *bus, interfaces, watch, changed, exit_code);
     if (over != Over::enough) {
       server.close();
       if (over == Over::gone && interrupted() == 0) fail(bus->failure());
-      return exit_code_after_interrupt(exit_success);
+      return exit_code != exit_success ? exit_code : exit_code_after_interrupt(exit_success);
     }
     if (operated != nullptr) bus = std::exchange(operated, nullptr)->release();
     auto link = connect_operator(bus->name(), "serve");

@@ -99,7 +99,7 @@ void PageServer::lost_so_far(std::string_view interface, std::uint64_t frames) {
   if (frames != lost_) models_.lost(interface, frames - std::exchange(lost_, frames));
 }
 
-void PageServer::answer(const Order& order) {
+void PageServer::answer(const Order& order, base::Time now) {
   if (order.kind == Order::Kind::newest) {
     for (const std::uint32_t channel : order.channels)
       if (channel >= channels_.of(State::robot)) {
@@ -114,7 +114,7 @@ void PageServer::answer(const Order& order) {
                       publisher_.text_of(*sample));
     return;
   }
-  parameters_.take(order, rows(unix_time()));
+  parameters_.take(order, rows(now));
 }
 
 std::vector<bus_model::Row> PageServer::rows(base::Time now) {

@@ -80,7 +80,7 @@ class PageServer {
   /// It is so late by the clock of bus or log.
   void until(base::Time now) { models_.until(now); }
   /// What is neither for the bus nor for the log.
-  void answer(const Order& order);
+  void answer(const Order& order, base::Time now);
 
   // --- a log is wound ---
 

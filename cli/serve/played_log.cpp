@@ -65,7 +65,7 @@ int serve_log(PageServer& server, bus_model::LogFeed& log) {
     server.until(log.now());
     if (asked) {
       for (const Order& order : server.orders().take()) {
-        server.answer(order);
+        server.answer(order, unix_time());
         obey(order);
       }
       next_playback = next_bus = now;

@@ -17,7 +17,7 @@ constexpr base::Duration loss_interval = std::chrono::seconds{1};
 }  // namespace
 
 Viewers::Viewers(std::size_t channels, QueueLimits limits)
-    : limits_(limits), wanted_(channels), numbers_(channels), newest_(channels) {}
+    : limits_(limits), wanted_(channels), numbers_(channels), oldest_(channels), newest_(channels) {}
 
 void Viewers::publish(std::uint32_t channel, std::uint64_t time_ns, std::string payload) {
   if (!wanted(channel)) return;
@@ -48,7 +48,9 @@ void Viewers::put(std::uint32_t channel, std::uint64_t time_ns, Payload payload)
   bytes_ += payload->size();
   queue_.push_back({channel, numbers_[channel]++, time_ns, std::move(payload)});
   while (queue_.size() > 1 && (queue_.size() > limits_.messages || bytes_ > limits_.bytes)) {
-    bytes_ -= queue_.front().payload->size();
+    const Message& oldest = queue_.front();
+    bytes_ -= oldest.payload->size();
+    oldest_[oldest.channel] = oldest.number + 1;
     queue_.pop_front();
     ++first_;
   }
@@ -92,6 +94,7 @@ void Viewers::remove(ViewerId viewer) {
   const std::lock_guard lock{mutex_};
   const auto found = viewers_.find(viewer);
   if (found == viewers_.end()) return;
+  settle(found->second);
   for (const auto& [id, channel] : found->second.channels) --wanted_[channel];
   viewers_.erase(found);
 }
@@ -125,6 +128,7 @@ std::string Viewers::unsubscribe(ViewerId viewer, std::uint32_t subscription) {
   if (found == viewers_.end()) return {};
   const auto at = found->second.channels.find(subscription);
   if (at == found->second.channels.end()) return fmt::format("there is no subscription {}", subscription);
+  settle(found->second, at->second);
   found->second.by_channel[at->second].reset();
   --wanted_[at->second];
   found->second.channels.erase(at);
@@ -132,16 +136,39 @@ std::string Viewers::unsubscribe(ViewerId viewer, std::uint32_t subscription) {
   return {};
 }
 
+void Viewers::settle(Viewer& viewer, std::uint32_t channel) {
+  auto& subscribed = viewer.by_channel[channel];
+  if (!subscribed || subscribed->next >= oldest_[channel]) return;
+  viewer.lost += oldest_[channel] - subscribed->next;
+  lost_ += oldest_[channel] - subscribed->next;
+  subscribed->next = oldest_[channel];
+}
+
+void Viewers::settle(Viewer& viewer) {
+  if (viewer.cursor >= first_) return;
+  for (const auto& [id, channel] : viewer.channels) settle(viewer, channel);
+  viewer.cursor = first_;
+}
+
+std::optional<Viewers::Outgoing> Viewers::word_of_loss(Viewer& viewer, base::Time now) {
+  if (viewer.lost == viewer.told || (viewer.told != 0 && now - viewer.told_at < loss_interval)) return {};
+  viewer.told = viewer.lost;
+  viewer.told_at = now;
+  const std::string text =
+      fmt::format("this viewer is too slow for what it asks: it has lost {} messages", viewer.lost);
+  return Outgoing{
+      false,
+      {},
+      std::make_shared<const std::string>(foxglove::status(foxglove::Level::warning, text, "loss"))};
+}
+
 std::optional<Viewers::Outgoing> Viewers::from_queue(Viewer& viewer) {
-  viewer.cursor = std::max(viewer.cursor, first_);
+  settle(viewer);
   while (viewer.cursor < first_ + queue_.size()) {
     const Message& message = queue_[static_cast<std::size_t>(viewer.cursor++ - first_)];
     auto& subscribed = viewer.by_channel[message.channel];
     // What came before it subscribed, it has not lost.
     if (!subscribed || message.number < subscribed->next) continue;
-    const std::uint64_t missed = message.number - subscribed->next;
-    viewer.lost += missed;
-    lost_ += missed;
     subscribed->next = message.number + 1;
     return Outgoing{true, foxglove::message_head(subscribed->id, message.time_ns), message.payload};
   }
@@ -158,30 +185,30 @@ std::optional<Viewers::Outgoing> Viewers::next(ViewerId viewer, base::Time now) 
     to.texts.pop_front();
     return Outgoing{false, {}, std::move(text)};
   }
-  if (to.lost != to.told && (to.told == 0 || now - to.told_at >= loss_interval)) {
-    to.told = to.lost;
-    to.told_at = now;
-    const std::string text =
-        fmt::format("this viewer is too slow for what it asks: it has lost {} messages", to.lost);
-    return Outgoing{
-        false,
-        {},
-        std::make_shared<const std::string>(foxglove::status(foxglove::Level::warning, text, "loss"))};
-  }
+  if (auto loss = word_of_loss(to, now)) return loss;
   if (!to.states.empty()) {
     Outgoing state = std::move(to.states.front().second);
     to.states.pop_front();
     return state;
   }
-  return from_queue(to);
+  auto message = from_queue(to);
+  return message ? message : word_of_loss(to, now);
 }
 
 bool Viewers::has_next(ViewerId viewer) const {
   const std::lock_guard lock{mutex_};
   const auto found = viewers_.find(viewer);
-  if (found == viewers_.end()) return false;
-  const Viewer& of = found->second;
+  return found != viewers_.end() && has_next(found->second);
+}
+
+bool Viewers::has_next(const Viewer& of) const {
   return of.asked || !of.texts.empty() || !of.states.empty() || of.cursor < first_ + queue_.size();
+}
+
+bool Viewers::anything_waits() const {
+  const std::lock_guard lock{mutex_};
+  return std::any_of(viewers_.begin(), viewers_.end(),
+                     [this](const auto& each) { return has_next(each.second); });
 }
 
 void Viewers::ask(ViewerId viewer) {
@@ -208,15 +235,18 @@ std::uint64_t Viewers::heard(ViewerId viewer) const {
   return found == viewers_.end() ? 0 : found->second.heard;
 }
 
-std::uint64_t Viewers::lost() const {
+std::uint64_t Viewers::lost() {
   const std::lock_guard lock{mutex_};
+  for (auto& [id, viewer] : viewers_) settle(viewer);
   return lost_;
 }
 
-std::uint64_t Viewers::lost(ViewerId viewer) const {
+std::uint64_t Viewers::lost(ViewerId viewer) {
   const std::lock_guard lock{mutex_};
   const auto found = viewers_.find(viewer);
-  return found == viewers_.end() ? 0 : found->second.lost;
+  if (found == viewers_.end()) return 0;
+  settle(found->second);
+  return found->second.lost;
 }
 
 std::size_t Viewers::size() const {

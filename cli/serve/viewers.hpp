@@ -85,10 +85,13 @@ class Viewers {
   /// Whether `next` may have something, or it is to be pinged.
   [[nodiscard]] bool has_next(ViewerId viewer) const;
 
+  /// Whether `next` may have something for any viewer.
+  [[nodiscard]] bool anything_waits() const;
+
   /// Messages that viewers have lost, those that have gone included.
-  [[nodiscard]] std::uint64_t lost() const;
+  [[nodiscard]] std::uint64_t lost();
   /// Of one viewer.
-  [[nodiscard]] std::uint64_t lost(ViewerId viewer) const;
+  [[nodiscard]] std::uint64_t lost(ViewerId viewer);
   /// Bytes in the queue.
   [[nodiscard]] std::size_t size() const;
 
@@ -119,9 +122,15 @@ class Viewers {
     std::uint64_t heard = 0;
   };
 
+  [[nodiscard]] bool has_next(const Viewer& viewer) const;
   void put(std::uint32_t channel, std::uint64_t time_ns, Payload payload);
   void tell(Viewer& viewer, Payload text);
   std::optional<Outgoing> from_queue(Viewer& viewer);
+  /// Where it has lost what it was not told.
+  static std::optional<Outgoing> word_of_loss(Viewer& viewer, base::Time now);
+  /// Of a viewer that the queue has left behind, counts what it has lost.
+  void settle(Viewer& viewer);
+  void settle(Viewer& viewer, std::uint32_t channel);
 
   QueueLimits limits_;
   std::vector<std::atomic<std::uint32_t>> wanted_;
@@ -130,6 +139,7 @@ class Viewers {
   std::uint64_t first_ = 0;  ///< place of queue_.front()
   std::size_t bytes_ = 0;
   std::vector<std::uint64_t> numbers_;          ///< of the next message of each channel
+  std::vector<std::uint64_t> oldest_;           ///< of the first one that has not left the queue
   std::vector<std::optional<Message>> newest_;  ///< of channels that are states
   std::map<ViewerId, Viewer> viewers_;
   ViewerId last_id_ = 0;

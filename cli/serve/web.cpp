@@ -451,6 +451,10 @@ transport::Outcome<std::unique_ptr<Web>> Web::open(const WebOptions& options, Vi
 }
 
 Web::~Web() {
+  // What has come goes out first; a viewer that reads nothing is waited for a tenth of a second.
+  wake();
+  for (int i = 0; i < 50 && state_->viewers->anything_waits(); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds{2});
   state_->stops = true;
   lws_cancel_service(state_->context);
   state_->thread.join();

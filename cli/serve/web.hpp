@@ -55,7 +55,7 @@ class Web {
   /// is taken, a certificate that cannot be read.
   [[nodiscard]] static transport::Outcome<std::unique_ptr<Web>> open(const WebOptions& options,
                                                                      Viewers& viewers, Listener& listener);
-  /// Closes all connections; the thread has ended then.
+  /// Sends what waits, to viewers that take it, and closes all connections; the thread has ended then.
   ~Web();
   Web(const Web&) = delete;
   Web& operator=(const Web&) = delete;

@@ -38,6 +38,30 @@ class ListenedUntil {
   Clock::time_point steady_begin_ = Clock::now();
 };
 
+/// How late it is by the clock of a bus's frames. That is the wall clock, unless it was set meanwhile: a bus
+/// that does not follow (the simulator's) goes on as before, and one that does (the kernel's) is followed.
+class FrameClock {
+ public:
+  /// A frame has come.
+  void take(base::Time frame) noexcept {
+    newest_ = frame;
+    at_ = Clock::now();
+  }
+  [[nodiscard]] base::Time now() const noexcept {
+    const base::Time by_frames = newest_ + (Clock::now() - at_);
+    const base::Time wall = unix_time();
+    const base::Duration apart = wall - by_frames;
+    return apart > -most_waiting && apart < most_waiting ? wall : by_frames;
+  }
+
+ private:
+  /// A frame may wait before it is taken. [decided]
+  static constexpr base::Duration most_waiting = std::chrono::seconds{1};
+
+  base::Time newest_ = unix_time();
+  Clock::time_point at_ = Clock::now();
+};
+
 /// Each ends early when a signal was caught.
 void sleep_for(base::Duration duration) noexcept;
 void sleep_until(Clock::time_point time) noexcept;

@@ -81,7 +81,7 @@ class Top {
   Over pump(base::Duration passed) {
     if (live_) {
       const Over over = live_->pump(models_);
-      models_.until(unix_time());
+      models_.until(live_->now());
       return over;
     }
     if (!paused_) log_->play(passed, taken());
@@ -141,7 +141,7 @@ class Top {
       case Effect::Kind::pause:
         paused_ = !paused_;
         // What comes meanwhile counts, and is shown when it goes on.
-        frozen_ = paused_ && live_ ? std::optional{std::pair{models_, unix_time()}} : std::nullopt;
+        frozen_ = paused_ && live_ ? std::optional{std::pair{models_, live_->now()}} : std::nullopt;
         break;
       case Effect::Kind::move:
         if (log_) go_to(log_->playing().at + effect.by);
@@ -165,7 +165,7 @@ class Top {
     scene.robot = catalogue_.robot;
     scene.source = source_;
     scene.buses = buses;
-    scene.now = frozen_ ? frozen_->second : live_ ? unix_time() : log_->now();
+    scene.now = frozen_ ? frozen_->second : live_ ? live_->now() : log_->now();
     scene.paused = paused_;
     scene.waiting = live_ && live_->bus().state() == transport::BusState::down;
     if (log_) scene.playing = log_->playing();

@@ -171,4 +171,34 @@ TEST_CASE("live feed: all that waits, what was lost, and that a bus is gone") {
   CHECK(feed.pump(models) == cli::Over::gone);
 }
 
+/// To read a clock takes a little time.
+bool is_about(base::Time time, base::Time expected) {
+  return time >= expected && time < expected + 1ms;
+}
+
+TEST_CASE("frame clock: the wall clock, unless it was set and the frames do not follow") {
+  World world{1};
+  world.set_wall_clock(World::start + 1s, 1h);
+  world.set_wall_clock(World::start + 3s, -2h);
+  const base::Time begin = world.wall_at(World::start);
+  cli::FrameClock clock;
+  CHECK(is_about(clock.now(), begin));
+  world.pass(500ms);
+  clock.take(begin + 100ms);  // it has waited
+  CHECK(is_about(clock.now(), begin + 500ms));
+  world.pass(700ms);
+  CHECK(is_about(cli::unix_time(), begin + 1h + 1200ms));
+  clock.take(begin + 1200ms);
+  world.pass(300ms);
+  CHECK(is_about(clock.now(), begin + 1500ms));
+  clock.take(begin + 1h + 1500ms);  // another bus follows
+  CHECK(is_about(clock.now(), begin + 1h + 1500ms));
+  clock.take(begin + 1500ms);
+  world.pass(2s);
+  CHECK(is_about(cli::unix_time(), begin - 1h + 3500ms));
+  CHECK(is_about(clock.now(), begin + 3500ms));  // also without any frame since
+  clock.take(begin - 1h + 3400ms);
+  CHECK(is_about(clock.now(), begin - 1h + 3500ms));
+}
+
 }  // namespace tool_clock_feed_test

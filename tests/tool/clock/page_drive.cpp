@@ -316,7 +316,123 @@ TEST_CASE("page drive: why a bus takes nothing") {
   REQUIRE(told.size() == 1);
   CHECK(told[0].starts_with("the bus takes no frame: no node acknowledges the frames"));
   CHECK(full.told(full.b).empty());
-  CHECK(full.shown == 1);
+  CHECK(full.shown == 0);
+}
+
+TEST_CASE("page drive: what does not leave is said to who asked, and only stops go behind it") {
+  Page page{
+      {.room = 100, .stuck = {{World::start, World::start + 2s}, {World::start + 3s, World::start + 1h}}}};
+  page.line("publish gyro 50ms", page.a);
+  page.until(499ms);
+  CHECK(page.told(page.a).empty());
+  page.until(520ms);
+  constexpr const char* stuck =
+      "a frame has not left can0, and may leave later: no node acknowledges the frames";
+  Strings told = page.told(page.a);
+  REQUIRE(told.size() == 1);
+  CHECK(told[0].starts_with(stuck));
+  CHECK(page.told(page.b).empty());
+  page.line("publish odom 50ms", page.a);
+  page.line("led all red", page.b);
+  page.order({Order::Kind::parameter, page.b, "/gyroscope/period_ms", {}, 20});
+  CHECK(page.told(page.a).size() == 1);
+  CHECK(page.told(page.b).size() == 2);
+  CHECK(page.bus.sent().size() == 1);
+  page.line("stop all", page.b);
+  CHECK(page.bus.sent().size() > 5);
+  told = page.told(page.b);
+  REQUIRE(told.size() == 1);
+  CHECK(told[0].ends_with(": is a board powered and connected, and is the bit rate the same?"));
+  CHECK(told[0].find(" frames have not left can0, and may leave later") != std::string::npos);
+  CHECK(page.shown == 0);
+  page.until(2500ms);
+  CHECK(page.shown == page.bus.sent().size());
+  CHECK_FALSE(page.control.next());
+  page.until(3100ms);
+  page.line("publish gyro 50ms", page.a);
+  CHECK(page.told(page.a).empty());
+  page.until(3700ms);
+  CHECK(page.told(page.a).size() == 1);
+  CHECK(page.told(page.b).empty());
+
+  // A travel that leaves when its viewer has gone ends at once.
+  for (const bool ends : {false, true}) {
+    Page late{{.room = 100, .stuck = {{World::start, World::start + 2s}}}};
+    late.order({Order::Kind::publish, late.a, "/travel", R"({"distance":0.3,"speed":0.1})"});
+    late.until(1s);
+    if (ends) {
+      CHECK_FALSE(late.control.rest().empty());
+    } else {
+      late.order({Order::Kind::gone, late.b});
+      CHECK(late.bus.sent().size() == 1);
+      late.order({Order::Kind::gone, late.a});
+    }
+    REQUIRE(late.bus.sent().size() == 2);
+    CHECK(late.bus.sent()[1].frame == frame(0x20B, {0, 0, 0, 0, 0, 0, 0, 0}));
+  }
+
+  Page unknown{{.knows_delivery = false, .stuck = {{World::start, World::start + 1h}}}};
+  unknown.line("publish gyro 50ms", unknown.a);
+  unknown.until(1s);
+  CHECK(unknown.told(unknown.a).empty());
+  CHECK(unknown.shown == 1);
+}
+
+TEST_CASE("page drive: a board begins nothing by itself while another viewer or a program drives") {
+  const auto travels_of = [](Page& page) {
+    return page.times([](const can::Frame& each) { return each.id == 0x20B; }).size();
+  };
+  const Order travel{Order::Kind::publish, 2, "/travel", R"({"distance":0.3,"speed":0.1})"};
+  Page page{{.incoming = {{World::start + 5s, moves()}}}};
+  REQUIRE(page.b == 2);
+  page.holds(0.1, page.a, 0ms, 300ms);
+  page.order(travel);
+  CHECK(page.told(page.b) == Strings{drives_already});
+  page.line("travel 30cm", page.b);
+  page.told(page.b);
+  CHECK(travels_of(page) == 0);
+  page.drives(0, page.a);
+  page.order(travel);
+  CHECK(page.told(page.b).empty());
+  CHECK(travels_of(page) == 1);
+  page.until(5100ms);
+  page.order(travel);
+  CHECK(page.told(page.b) == Strings{"another program commands the motors: end it first, or stop the robot"});
+  CHECK(travels_of(page) == 1);
+  page.until(6s);
+  page.holds(0.1, page.b, 6s, 6500ms);  // its own drive is no obstacle
+  page.order(travel);
+  CHECK(page.told(page.b).empty());
+  CHECK(travels_of(page) == 2);
+}
+
+TEST_CASE("page drive: a server that did not run does not follow what was said meanwhile") {
+  for (const bool says_rest : {false, true}) {
+    INFO(says_rest);
+    Page page;
+    if (says_rest) page.drives(0, page.a);
+    page.until(50ms);
+    page.holds(0.1, page.a, 50ms, 1s);
+    const auto moved = page.moving().size();
+    const auto rested = page.resting().size();
+    page.world.wait_until(World::start + 4s);
+    for (int i = 0; i < 5; ++i) page.drives(0.1, page.a);  // of one second, which waited
+    CHECK(page.resting().size() == rested + 1);
+    page.until(4400ms);
+    CHECK(page.moving().size() == moved);
+    CHECK(page.told(page.b) ==
+          Strings{"serve did not run for 3.0 s: the motors rest; release, then drive again"});
+    CHECK(page.told(page.a).size() == 2);  // that, and that it must release
+    page.drives(0, page.a);
+    page.until(5s);
+    page.holds(0.1, page.a, 5s, 5300ms);
+    CHECK(page.moving().size() > moved);
+  }
+  Page page;  // who does not drive is not told
+  page.world.wait_until(World::start + 4s);
+  page.line("publish gyro 50ms", page.a);
+  CHECK(page.told(page.a).empty());
+  CHECK(page.bus.sent().size() == 1);
 }
 
 TEST_CASE("page drive: what keeps commands back keeps no stop back") {
@@ -394,14 +510,14 @@ TEST_CASE("page drive: what a board refuses is said to all, by what was asked") 
 TEST_CASE("page drive: at the end the motors rest, or it is known that they may not") {
   Page page;
   page.holds(0.1, page.a, 0ms, 300ms);
-  CHECK(page.control.rest());
+  CHECK(page.control.rest().empty());
   CHECK(page.resting().size() == 1);
-  CHECK(page.control.rest());  // nothing is driven
+  CHECK(page.control.rest().empty());  // nothing is driven
 
   Page late{{.down = {{World::start + 250ms, World::start + 600ms}}}};
   late.holds(0.1, late.a, 0ms, 300ms);
   late.until(300ms);
-  CHECK(late.control.rest());
+  CHECK(late.control.rest().empty());
   REQUIRE(late.resting().size() == 1);
   CHECK(late.resting()[0] >= 600ms);
 
@@ -409,9 +525,26 @@ TEST_CASE("page drive: at the end the motors rest, or it is known that they may 
   down.holds(0.1, down.a, 0ms, 300ms);
   down.until(300ms);
   const Moment begin = down.world.now();
-  CHECK_FALSE(down.control.rest());
+  CHECK(down.control.rest().starts_with(
+      "serve: 1 frame did not leave can0, and may leave later; THE ROBOT MAY STILL MOVE"));
   CHECK(down.world.now() - begin >= 500ms);
   CHECK(down.world.now() - begin < 520ms);
+
+  // A queue that takes the rest does not carry it.
+  Page stuck{{.stuck = {{World::start + 250ms, World::start + 1h}}}};
+  stuck.holds(0.1, stuck.a, 0ms, 300ms);
+  stuck.until(320ms);
+  CHECK(stuck.control.rest().find("; THE ROBOT MAY STILL MOVE") != std::string::npos);
+  CHECK(stuck.resting().size() == 1);
+  Page still{{.stuck = {{World::start, World::start + 1h}}}};
+  still.line("publish gyro 50ms", still.a);
+  CHECK(still.control.rest() == "serve: 1 frame did not leave can0, and may leave later");
+  Page gone{{.gone = World::start + 250ms}};
+  gone.holds(0.1, gone.a, 0ms, 300ms);
+  gone.world.wait_until(World::start + 260ms);
+  const Moment ended = gone.world.now();
+  CHECK_FALSE(gone.control.rest().empty());
+  CHECK(gone.world.now() - ended < 20ms);
 }
 
 TEST_CASE("page drive: what a board said that it does holds until it says otherwise") {

@@ -94,6 +94,44 @@ TEST_CASE("viewers: a slow one loses what is counted and told, and others nothin
   CHECK(all(viewers, slow, start + 1s).size() == 1);
 }
 
+TEST_CASE(
+    "viewers: what is lost is known also where nothing of its channel follows, or its viewer has gone") {
+  Viewers viewers{2, {1000, 4}};
+  const ViewerId slow = viewers.add();
+  const ViewerId other = viewers.add();
+  REQUIRE(viewers.subscribe(slow, {1, 0}).empty());
+  REQUIRE(viewers.subscribe(other, {2, 1}).empty());
+  for (int i = 0; i < 10; ++i) viewers.publish(0, 0, "x");
+  for (int i = 0; i < 10; ++i) viewers.publish(1, 0, "y");
+  CHECK(viewers.lost(slow) == 10);
+  CHECK(all(viewers, slow).size() == 1);  // a word about it
+  CHECK(viewers.lost() == 16);            // six of the other
+  for (int i = 0; i < 10; ++i) viewers.publish(0, 0, "x");
+  CHECK(viewers.unsubscribe(slow, 1).empty());
+  CHECK(viewers.lost(slow) == 16);
+  viewers.remove(other);  // with four more
+  CHECK(viewers.lost() == 26);
+  REQUIRE(viewers.subscribe(slow, {3, 0}).empty());
+  viewers.publish(0, 0, "new");
+  CHECK(all(viewers, slow, start + 2s).back() == "3:new");
+  CHECK(viewers.lost(slow) == 16);
+}
+
+TEST_CASE("viewers: whether anything waits for any of them") {
+  Viewers viewers{1};
+  CHECK_FALSE(viewers.anything_waits());
+  const ViewerId a = viewers.add();
+  const ViewerId b = viewers.add();
+  CHECK_FALSE(viewers.anything_waits());
+  REQUIRE(viewers.subscribe(b, {1, 0}).empty());
+  viewers.publish(0, 0, "x");
+  CHECK(viewers.anything_waits());
+  CHECK(all(viewers, b).size() == 1);
+  CHECK(viewers.anything_waits());  // the other has not passed over it yet
+  CHECK(all(viewers, a).empty());
+  CHECK_FALSE(viewers.anything_waits());
+}
+
 TEST_CASE("viewers: the queue has a bound in bytes, too") {
   Viewers viewers{1, {100, 1000}};
   const ViewerId viewer = viewers.add();

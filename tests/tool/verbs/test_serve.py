@@ -729,6 +729,17 @@ print(lost, flush=True)
             fields = file.read().rsplit(")", 1)[1].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
+    def test_what_has_come_goes_out_before_the_end(self):
+        self.start_sim("--frozen")
+        server, port, _ = self.serve()
+        viewer = self.viewer(port)
+        viewer.subscribe("/gyroscope")
+        self.settle()
+        self.run_tool("send", "--stdin", stdin="608#000100000000\n608#000200000000\n608#000300000000\n")
+        server.send_signal(signal.SIGINT)
+        self.assertEqual([round(viewer.message("/gyroscope").fields["x"] / 0.0175) for _ in range(3)], [256, 512, 768])
+        server.communicate(timeout=60)
+
     def test_it_takes_little(self):
         """At 100 frames/s, with a viewer that asks for all that the page asks for: 2 % of a core."""
         self.start_sim()
