@@ -44,4 +44,10 @@ class FileSource final : public log::Source {
   std::string failure_;
 };
 
+/// Passes over the byte order mark that some editors put before a text.
+inline void skip_byte_order_mark(log::Input& input) {
+  constexpr std::string_view mark = "\xEF\xBB\xBF";
+  if (input.peek(1) == mark.substr(0, 1) && input.peek(mark.size()) == mark) input.skip(mark.size());
+}
+
 }  // namespace ocm::cli::logs

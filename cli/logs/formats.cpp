@@ -2,6 +2,8 @@
 #include <concepts>
 #include <iterator>
 
+#include <fmt/format.h>
+
 #include "ocm/log/asc.hpp"
 #include "ocm/log/blf.hpp"
 #include "ocm/log/candump.hpp"
@@ -14,6 +16,7 @@
 #include "cli/logs/inflate.hpp"
 #include "cli/logs/json_lines.hpp"
 #include "cli/logs/mcap.hpp"
+#include "cli/shared/messages.hpp"
 
 namespace ocm::cli::logs {
 namespace {
@@ -98,6 +101,24 @@ const LogFormat* format_of_name(std::string_view file) {
   for (const LogFormat& format : formats)
     if (!format.ending.empty() && file.ends_with(format.ending)) return &format;
   return nullptr;
+}
+
+const LogFormat& format_to_write(std::string_view verb, const std::string& out, const std::string& named,
+                                 const char* for_stdout) {
+  const LogFormat* const format = !named.empty()                        ? find_format(named)
+                                  : out == "-" && for_stdout != nullptr ? find_format(for_stdout)
+                                                                        : format_of_name(out);
+  const std::string remedy = fmt::format("--to names a format: {}", fmt::join(writable_formats(), ", "));
+  if (format == nullptr && !named.empty())
+    fail({fmt::format("{}: no log format '{}'", verb, named), remedy}, exit_usage);
+  if (format == nullptr && out == "-")
+    fail({fmt::format("{}: what goes to the standard output has no ending to tell the format", verb), remedy},
+         exit_usage);
+  if (format == nullptr)
+    fail({fmt::format("{}: the ending of {} is of no log format", verb, out), remedy}, exit_usage);
+  if (format->writer == nullptr)
+    fail({fmt::format("{}: {} is read only", verb, format->name), remedy}, exit_usage);
+  return *format;
 }
 
 bool names_file(std::string_view word) {

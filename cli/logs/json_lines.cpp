@@ -4,6 +4,7 @@
 #include <array>
 #include <cstring>
 #include <iterator>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -19,13 +20,10 @@
 namespace ocm::cli::logs {
 namespace {
 
-/// What a frame is made of; the first ones have a value (JsonLineParser::value_of), the last two objects.
-constexpr std::string_view read_keys[] = {"time_ns", "bus",       "id",      "priority", "topic", "frame",
-                                          "data",    "direction", "raw_dlc", "fields",   "fd"};
-/// What is printed for readers, and says nothing that the keys above do not say.
+/// What is printed for readers, and says nothing that other keys do not say.
 constexpr std::string_view printed_keys[] = {"units",  "names",       "error",     "pgn",
                                              "source", "destination", "transport", "message"};
-constexpr std::size_t most_unknown = 8;
+constexpr std::size_t most_unknown = 64;
 
 std::string shown(std::string_view text) {
   return '"' + log::Complaints::printable(text) + '"';
@@ -86,6 +84,8 @@ bool JsonLineParser::parse(std::string_view line, log::Entry& entry, std::string
 }
 
 bool JsonLineParser::scan(std::string_view line) {
+  ++lines_;
+  problem_.what.clear();
   record_.time = record_.bus = record_.id = record_.priority = record_.topic = {};
   record_.frame = record_.data = record_.direction = record_.raw_dlc = {};
   record_.has_fd = record_.has_fields = false;
@@ -105,10 +105,20 @@ bool JsonLineParser::scan(std::string_view line) {
         continue;
       }
       if (key == "fd") {
-        if (!scan_fd(scanner)) return broken();
+        if (!scan_fd(scanner)) return problem_.what.empty() ? broken() : false;
         continue;
       }
-      JsonValue* const value = value_of(key);
+      JsonValue* const value = key == "time_ns"     ? &record_.time
+                               : key == "bus"       ? &record_.bus
+                               : key == "id"        ? &record_.id
+                               : key == "priority"  ? &record_.priority
+                               : key == "topic"     ? &record_.topic
+                               : key == "frame"     ? &record_.frame
+                               : key == "data"      ? &record_.data
+                               : key == "direction" ? &record_.direction
+                               : key == "raw_dlc"   ? &record_.raw_dlc
+                                                    : nullptr;
+      if (value == nullptr) pass_over(key);
       if (!(value != nullptr ? scanner.take_value(*value) : scanner.skip_value())) return broken();
     } while (scanner.take(','));
     if (!scanner.take('}')) return broken();
@@ -116,39 +126,42 @@ bool JsonLineParser::scan(std::string_view line) {
   return scanner.at_end() || broken();
 }
 
-JsonValue* JsonLineParser::value_of(std::string_view key) {
-  JsonValue* const values[] = {&record_.time,     &record_.bus,       &record_.id,
-                               &record_.priority, &record_.topic,     &record_.frame,
-                               &record_.data,     &record_.direction, &record_.raw_dlc};
-  for (std::size_t i = 0; i < std::size(values); ++i)
-    if (key == read_keys[i]) return values[i];
-  if (std::find(std::begin(printed_keys), std::end(printed_keys), key) != std::end(printed_keys))
-    return nullptr;
+void JsonLineParser::pass_over(std::string_view key) {
+  if (std::find(std::begin(printed_keys), std::end(printed_keys), key) != std::end(printed_keys)) return;
   for (UnknownKey& known : unknown_)
     if (known.name == key) {
-      ++known.lines;
-      return nullptr;
+      if (std::exchange(known.last, lines_) != lines_) ++known.lines;
+      return;
     }
-  if (unknown_.size() < most_unknown) unknown_.push_back({std::string{key}, 1});
-  return nullptr;
+  if (unknown_.size() < most_unknown)
+    unknown_.push_back({std::string{key}, 1, lines_});
+  else
+    ++more_unknown_;
 }
 
 std::string_view JsonLineParser::meant_by(std::string_view unknown) {
-  return words::nearest(unknown, read_keys);
+  constexpr std::string_view read[] = {"time_ns", "bus",       "id",      "priority", "topic", "frame",
+                                       "data",    "direction", "raw_dlc", "fields",   "fd"};
+  return words::nearest(unknown, read);
 }
 
 bool JsonLineParser::scan_fields(JsonScanner& scanner) {
-  problem_.what.clear();
   record_.has_fields = true;
   record_.field_count = 0;
-  if (!scanner.take('{')) return false;
+  if (!scanner.take('{'))
+    return refuse(log::Cause::syntax, "\"fields\" is no object",
+                  R"(write "fields":{"x":0.1}, or leave it out)");
   if (scanner.take('}')) return true;
   do {
     if (record_.field_count == record_.fields.size())
       return refuse(log::Cause::syntax, fmt::format("more than {} fields", record_.fields.size()),
                     "a frame has at most 512 bits");
     auto& named = record_.fields[record_.field_count++];
+    named.value = {};
     if (!scanner.take_key(named.name) || !scanner.take_value(named.value)) return false;
+    if (!named.value)
+      return refuse(log::Cause::syntax, "field " + shown(named.name) + " has no value",
+                    "a value is a number or a string");
   } while (scanner.take(','));
   return scanner.take('}');
 }
@@ -156,12 +169,17 @@ bool JsonLineParser::scan_fields(JsonScanner& scanner) {
 bool JsonLineParser::scan_fd(JsonScanner& scanner) {
   record_.has_fd = true;
   record_.fd_flags = log::flag::fd;
-  if (!scanner.take('{')) return false;
+  const auto wrong = [this] {
+    return refuse(log::Cause::syntax, R"("fd" has no flags)",
+                  R"(write "fd":{"brs":true,"esi":false}, or leave it out for a classic frame)");
+  };
+  if (!scanner.take('{')) return wrong();
   if (scanner.take('}')) return true;
   do {
     std::string_view key;
     bool set = false;
-    if (!scanner.take_key(key) || !scanner.take_boolean(set)) return false;
+    if (!scanner.take_key(key)) return false;
+    if (!scanner.take_boolean(set)) return wrong();
     if (key == "brs" && set) record_.fd_flags |= log::flag::bit_rate_switch;
     if (key == "esi" && set) record_.fd_flags |= log::flag::error_state;
   } while (scanner.take(','));
@@ -471,7 +489,9 @@ bool JsonLineParser::put_field(std::span<std::uint8_t> data, std::span<const std
       return give(data, before, field, text, *raw);
   }
   const auto raw = words::parse_value(field, text);
-  if (!raw) return refuse(log::Cause::syntax, raw.error, "leave the field out, and data counts");
+  if (!raw)
+    return refuse(log::Cause::syntax, raw.error,
+                  record_.data ? "leave the field out, and data counts" : "write a value in its range");
   return give(data, before, field, text, *raw);
 }
 
@@ -519,6 +539,9 @@ bool JsonLineParser::put_request(log::Entry& entry, const protocol::Topic& topic
          *period == (entry.length == 1 ? topic.period : present->period).duration()))
       return true;
   }
+  if (period && mode != Mode::publish)
+    return refuse(log::Cause::syntax, fmt::format("a period with mode {}", mode_text.text),
+                  "only publish has one; leave it out");
   const auto priority = protocol::Identifier::decode(entry.id).priority;
   const auto frame =
       mode != Mode::publish ? protocol::encode(protocol::Request{topic.id, mode, {}, priority})

@@ -45,6 +45,7 @@ struct JsonProblem {
 struct UnknownKey {
   std::string name;  ///< as the line has it
   std::uint64_t lines = 0;
+  std::uint64_t last = 0;  ///< the newest of them
 };
 
 /// Which values a line may give a field that its data does not say.
@@ -62,8 +63,10 @@ class JsonLineParser {
   /// line and until the next). A line without `time_ns` has the time of the one before. false: `problem`.
   [[nodiscard]] bool parse(std::string_view line, log::Entry& entry, std::string_view& bus);
   [[nodiscard]] const JsonProblem& problem() const noexcept { return problem_; }
-  /// What was passed over, in the order in which it came; of more than eight the first eight.
+  /// What was passed over, in the order in which it came; of more than 64 the first 64,
   [[nodiscard]] std::span<const UnknownKey> unknown_keys() const noexcept { return unknown_; }
+  /// and how often others came.
+  [[nodiscard]] std::uint64_t more_unknown_keys() const noexcept { return more_unknown_; }
   /// The key that is read and was probably meant; empty: none.
   [[nodiscard]] static std::string_view meant_by(std::string_view unknown);
 
@@ -88,8 +91,8 @@ class JsonLineParser {
 
   bool refuse(log::Cause cause, std::string what, std::string remedy);
   bool scan(std::string_view line);
-  /// Where the value of a key belongs; nullptr: it is passed over.
-  [[nodiscard]] JsonValue* value_of(std::string_view key);
+  /// A key of which nothing is read.
+  void pass_over(std::string_view key);
   bool scan_fields(JsonScanner& scanner);
   bool scan_fd(JsonScanner& scanner);
   bool take_time(log::Entry& entry);
@@ -139,6 +142,8 @@ class JsonLineParser {
   std::string bus_;
   JsonProblem problem_;
   std::vector<UnknownKey> unknown_;
+  std::uint64_t more_unknown_ = 0;
+  std::uint64_t lines_ = 0;
 };
 
 class JsonLinesReader final : public log::Reader {

@@ -71,6 +71,7 @@ OpenedLog::OpenedLog(std::string path, std::string_view format, const protocol::
     unpacked_ = std::move(*unpacked);
   }
   input_ = std::make_unique<log::Input>(unpacked_ != nullptr ? *unpacked_ : *file_);
+  skip_byte_order_mark(*input_);
   if (format_ == nullptr) format_ = recognise(*input_, path_);
   if (input_->here() == 0) readable(unpacked_ != nullptr ? *unpacked_ : *file_);
   if (format_ == nullptr)

@@ -15,4 +15,8 @@ namespace ocm::cli {
 /// Leaves through cli::fail when it cannot be written.
 void write_file(const std::string& path, std::string_view text);
 
+/// Leaves with exit_usage where both are one regular file ("-": the standard input, the standard output): to
+/// make the output would empty the input, or replace what cannot be made again.
+void refuse_same_file(std::string_view verb, const std::string& in, const std::string& out);
+
 }  // namespace ocm::cli

@@ -1,8 +1,6 @@
 #include <array>
 #include <memory>
 #include <string>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <fmt/format.h>
 
@@ -10,6 +8,7 @@
 #include "cli/logs/opened_log.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
+#include "cli/shared/output_file.hpp"
 #include "cli/verbs/verb.hpp"
 
 namespace ocm::cli {
@@ -21,45 +20,6 @@ struct ConvertOptions {
   bool force = false;
   bool strict = false;
 };
-
-/// The names of the formats that have `part` (a reader or a writer).
-template <class Part>
-std::string names_of(Part part) {
-  std::string names;
-  for (const logs::LogFormat& format : logs::log_formats())
-    if (format.*part != nullptr) names += (names.empty() ? "" : ", ") + std::string{format.name};
-  return names;
-}
-
-const logs::LogFormat& wanted_format(const ConvertOptions& options) {
-  const auto* const format =
-      options.to.empty() ? logs::format_of_name(options.out) : logs::find_format(options.to);
-  const std::string remedy = "--to names a format: " + names_of(&logs::LogFormat::writer);
-  if (format == nullptr && !options.to.empty())
-    fail({fmt::format("convert: no log format '{}'", options.to), remedy}, exit_usage);
-  if (format == nullptr && options.out == "-")
-    fail({"convert: what goes to the standard output has no ending to tell the format", remedy}, exit_usage);
-  if (format == nullptr)
-    fail({fmt::format("convert: the ending of {} is of no log format", options.out), remedy}, exit_usage);
-  if (format->writer == nullptr)
-    fail({fmt::format("convert: {} is read only", format->name), remedy}, exit_usage);
-  return *format;
-}
-
-/// Creating the output would empty the input.
-void refuse_same_file(const ConvertOptions& options) {
-  const auto look = [](const std::string& path, int descriptor, struct stat& status) {
-    const int result = path == "-" ? fstat(descriptor, &status) : stat(path.c_str(), &status);
-    return result == 0 && S_ISREG(status.st_mode);
-  };
-  struct stat in {};
-  struct stat out {};
-  if (!look(options.in, STDIN_FILENO, in) || !look(options.out, STDOUT_FILENO, out)) return;
-  if (in.st_dev != out.st_dev || in.st_ino != out.st_ino) return;
-  fail({fmt::format("convert: {} and {} are the same file", options.in, options.out),
-        "write to another file and rename it"},
-       exit_usage);
-}
 
 /// Copies to the end, or until a signal or a full disk; how many frames.
 std::uint64_t copy(logs::OpenedLog& in, logs::LogFile& out) {
@@ -79,9 +39,9 @@ std::uint64_t copy(logs::OpenedLog& in, logs::LogFile& out) {
 }
 
 void convert(Session& session, const ConvertOptions& options, int& exit_code) {
-  const logs::LogFormat& format = wanted_format(options);
+  const logs::LogFormat& format = logs::format_to_write("convert", options.out, options.to);
   catch_interrupts();
-  refuse_same_file(options);
+  refuse_same_file("convert", options.in, options.out);
   logs::OpenedLog in{options.in, options.from, session.catalogue()};
   auto out = logs::LogFile::create(options.out, format, session.catalogue(),
                                    options.force ? logs::Existing::overwrite : logs::Existing::refuse);
@@ -92,7 +52,7 @@ void convert(Session& session, const ConvertOptions& options, int& exit_code) {
   const bool whole = written && interrupted() == 0 && !in.ended_early();
   remark(fmt::format("{}, {} to {}{}", counted(frames, "frame"), in.format().name, format.name,
                      whole ? ""
-                           : fmt::format(": {} {}", options.out,
+                           : fmt::format(": {} {}", options.out == "-" ? "the standard output" : options.out,
                                          (*out)->size() == 0 ? "is empty" : "holds the beginning only")));
   const bool unreadable = in.complain();
   logs::tell_losses((*out)->lost(), format);

@@ -9,6 +9,7 @@
 #include "cli/logs/log_file.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
+#include "cli/shared/output_file.hpp"
 #include "cli/verbs/verb.hpp"
 #include "cli/watch/frame_lines.hpp"
 
@@ -23,20 +24,9 @@ struct EncodeOptions {
   bool keep_going = false;
 };
 
-const logs::LogFormat& wanted_format(const EncodeOptions& options) {
-  const auto* const by_name =
-      options.to.empty() ? logs::format_of_name(options.out) : logs::find_format(options.to);
-  if (by_name == nullptr && !options.to.empty()) {
-    std::string names;
-    for (const auto& format : logs::log_formats())
-      if (format.writer != nullptr) names += (names.empty() ? "" : ", ") + std::string{format.name};
-    fail({fmt::format("encode: no log format '{}'", options.to), "--to names one of: " + names}, exit_usage);
-  }
-  return by_name != nullptr ? *by_name : *logs::find_format("candump");
-}
-
 void encode(Session& session, const EncodeOptions& options, int& exit_code) {
-  const auto& format = wanted_format(options);
+  const auto& format = logs::format_to_write("encode", options.out, options.to, "candump");
+  refuse_same_file("encode", options.in, options.out);
   catch_interrupts();
   FrameLines lines{options.in, session.catalogue(), options.keep_going,
                    options.force ? logs::Values::of_bits : logs::Values::as_stated};

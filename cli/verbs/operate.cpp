@@ -46,6 +46,7 @@ int check(const OperateOptions& options, const operate::OperatorFile& file, std:
     print_fitted(operate::to_table(study), 4);
   tell(study.doubts);
   if (!options.svg.empty()) {
+    refuse_same_file("operate", options.file, options.svg);
     const auto picture = drawn_by({"dot", "-Tsvg"}, operate::to_dot(study), "sudo apt install graphviz");
     if (!picture)
       fail({fmt::format("operate: {}: {}", options.svg, picture.error.what), picture.error.remedy});

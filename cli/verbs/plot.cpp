@@ -186,6 +186,7 @@ void run(Verb verb, Session& session, const PlotOptions& options, int& exit_code
   const std::string output = !options.output.empty() ? options.output : terminal ? "plot.svg" : "-";
   plot::Picture picture;
   picture.kind = kind_of(output);
+  for (const std::string& file : words.files) refuse_same_file("plot", file, output);
   read_size(options.size, picture);
 
   plot::Curves curves{catalogue, wanted};

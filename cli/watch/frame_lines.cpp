@@ -1,5 +1,10 @@
 #include "cli/watch/frame_lines.hpp"
 
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "ocm/log/candump.hpp"
@@ -18,6 +23,7 @@ FrameLines::FrameLines(std::string path, const protocol::Catalogue& catalogue, b
       keep_going_(keep_going) {
   if (!source_.failure().empty())
     fail({fmt::format("cannot read {}: {}", path_, source_.failure()), "expected a file of JSON lines"});
+  logs::skip_byte_order_mark(input_);
 }
 
 bool FrameLines::next(log::Entry& entry, std::string_view& bus) {
@@ -48,13 +54,27 @@ void FrameLines::tell() const {
 }
 
 void FrameLines::tell_unknown_keys() const {
-  for (const logs::UnknownKey& key : json_.unknown_keys()) {
+  constexpr std::size_t most = 8;
+  const auto unknown = json_.unknown_keys();
+  std::vector<logs::UnknownKey> keys(unknown.begin(), unknown.end());
+  // Those that may be meant for another one come first, then those of most lines.
+  const auto rank = [](const logs::UnknownKey& key) {
+    return std::pair{logs::JsonLineParser::meant_by(key.name).empty(), UINT64_MAX - key.lines};
+  };
+  std::stable_sort(keys.begin(), keys.end(), [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
+  std::uint64_t more = json_.more_unknown_keys();
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (i >= most) {
+      more += keys[i].lines;
+      continue;
+    }
     std::string text = fmt::format("{}: key '{}' of {} passed over: it is none that is read", path_,
-                                   log::Complaints::printable(key.name), counted(key.lines, "line"));
-    if (const auto meant = logs::JsonLineParser::meant_by(key.name); !meant.empty())
+                                   log::Complaints::printable(keys[i].name), counted(keys[i].lines, "line"));
+    if (const auto meant = logs::JsonLineParser::meant_by(keys[i].name); !meant.empty())
       text += fmt::format("; did you mean '{}'?", meant);
     remark(text);
   }
+  if (more != 0) remark(fmt::format("{}: other keys passed over {} times", path_, more));
 }
 
 bool FrameLines::parse(std::string_view line, log::Entry& entry, std::string_view& bus) {

@@ -408,8 +408,75 @@ class Encode(Case):
             self.assertIn("standard input: key 'who' of 1 line passed over: it is none that is read\n", err)
             self.assertEqual(err.count("passed over"), 2)
         _, err = self.run_tool("encode", stdin="".join(f'{{"id":"123","data":"11","key\\u001b{i}":0}}\n' for i in range(20)))
-        self.assertEqual(err.count("passed over"), 8)
+        self.assertEqual(err.count("passed over: it is none"), 8)
+        self.assertIn("standard input: other keys passed over 12 times\n", err)
         self.assertNotIn("\x1b", err)
+        # What may be meant for another one is named first, however late it comes.
+        lines = "".join(f'{{"id":"123","data":"11","k{i}":0,"k{i}":1}}\n' for i in range(8)) + '{"id":"123","data":"11","time":5}\n'
+        _, err = self.run_tool("encode", stdin=lines)
+        self.assertIn("key 'time' of 1 line passed over", err)
+        self.assertIn("key 'k0' of 1 line passed over", err)
+
+    def test_a_topic_is_no_file_and_a_window_has_two_ends(self):
+        log, _ = self.run_tool("encode", stdin='{"topic":"gyro","fields":{"x":0}}\n')
+        path = os.path.join(self.folder, "a.log")
+        with open(path, "w", encoding="ascii") as file:
+            file.write(log)
+        out, err = self.run_tool("decode", path, "gyro", code=2)
+        self.assertEqual(out, "")
+        self.assertIn("decode: 'gyro' is a topic, and no file\n          --topic gyro chooses it", err)
+        _, err = self.run_tool("decode", path, "--since", "500ms", "--until", "300ms", code=2)
+        self.assertIn("decode: --until is before --since", err)
+        _, err = self.run_tool("decode", path, "--field", "x", code=2)
+        self.assertIn("odometry.velocity.x", err)  # which --field takes
+        self.run_tool("decode", path, "--field", "odometry.velocity.x", code=1)
+
+    def test_a_byte_order_mark_is_passed_over(self):
+        lines = '{"time_ns":"5000","bus":"can0","id":"608","data":"000000000000"}\n'
+        log, _ = self.run_tool("encode", stdin=lines)
+        for name in ("a.log", "a.csv", "a.asc", "a.jsonl"):
+            path = os.path.join(self.folder, name)
+            self.run_tool("encode", "-o", path, stdin=lines)
+            with open(path, "rb") as file:
+                content = file.read()
+            with open(path, "wb") as file:
+                file.write(b"\xef\xbb\xbf" + content)
+            out, err = self.run_tool("decode", path)
+            self.assertEqual(len(out.splitlines()), 1, name)
+            self.assertNotIn("not of the expected form", err, name)
+        self.assertEqual(self.run_tool("encode", stdin="\ufeff" + lines)[0], log)
+        self.assertIn("608", self.run_tool("send", "--stdin", "--dry-run", stdin="\ufeff608#00\n")[0])
+
+    def test_values_that_are_none(self):
+        for line, what in [('{"id":"123","data":"11","fd":true}', '"fd" has no flags'),
+                           ('{"id":"123","data":"11","fd":{"brs":5}}', '"fd" has no flags'),
+                           ('{"topic":"motors","fields":null}', '"fields" is no object'),
+                           ('{"topic":"motors","fields":{"x":true}}', 'field "x" has no value'),
+                           ('{"topic":"motors","fields":{"x":0.1,"z":[1]}}', 'field "z" has no value'),
+                           ('{"topic":"gyro","frame":"request","fields":{"mode":"once","period":1}}', "a period with mode once"),
+                           ('{"topic":"motors","fields":{"x":5}}', "x takes -1 to 1 m/s\n          write a value in its range"),
+                           ('{"id":"201","data":"0000000000000000","fields":{"x":5}}', "x takes -1 to 1 m/s\n          leave the field out"),
+                           ('{"id":"123","data":"11"', "no JSON object in one line")]:
+            _, err = self.run_tool("encode", stdin=line + "\n", code=1)
+            self.assertIn("standard input:1: " if "x takes" not in what else "is out of range", err)
+            self.assertIn(what, err)
+
+    def test_encode_replaces_no_input_and_guesses_no_format(self):
+        path = os.path.join(self.folder, "frames.jsonl")
+        text = '{"id":"123","data":"11"}\n'
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+        link = os.path.join(self.folder, "other.log")
+        os.link(path, link)
+        for out in (path, link):
+            _, err = self.run_tool("encode", path, "-o", out, "--to", "candump", "--force", code=2)
+            self.assertIn(f"encode: {path} and {out} are the same file\n", err)
+        with open(path, encoding="utf-8") as file:
+            self.assertEqual(file.read(), text)
+        for name, what in [("m.foo", "the ending of m.foo is of no log format"), ("m.blf", "blf is read only")]:
+            _, err = self.run_tool("encode", path, "-o", name, code=2)
+            self.assertIn(f"encode: {what}\n          --to names a format: pcapng, ", err)
+            self.assertFalse(os.path.exists(name))
 
     def test_bad_lines(self):
         lines = '{"id":"123","data":"11"}\n{"id":"123"}\n{"id":"124","data":"22"}\n'

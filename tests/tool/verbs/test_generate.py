@@ -36,6 +36,17 @@ class Generate(harness.Case):
             self.assertTrue(file.read().startswith("VERSION"))
         self.assertEqual(os.listdir(self.folder), ["amiro.dbc"])
 
+    def test_what_is_generated_does_not_replace_its_spec(self):
+        path = os.path.join(self.folder, "car.dbc")
+        with open(CAR, "rb") as file:
+            text = file.read()
+        with open(path, "wb") as file:
+            file.write(text)
+        _, err = self.run_tool("--spec", path, "generate", "dbc", "-o", path, code=2)
+        self.assertIn("are the same file\n", err)
+        with open(path, "rb") as file:
+            self.assertEqual(file.read(), text)
+
     def test_mistakes(self):
         for arguments, code, words in ((("pdf",), 2, "one of: cpp, spec, dbc, c, markdown, wireshark, json-schema"),
                                        (("dbc", "--priority", "big"), 2, "urgent, high, medium or low"),

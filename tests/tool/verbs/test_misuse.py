@@ -472,7 +472,7 @@ usage: amiroctl encode [FILE] [OPTION ...]
 
 encode --to wav
 encode: no log format 'wav'
---to names one of: pcapng, pcap, mcap, mcap-raw, asc, candump, candump-ns, csv, json
+--to names a format: pcapng, pcap, mcap, mcap-raw, asc, candump, candump-ns, csv, json
 
 convert
 convert: missing IN
@@ -647,12 +647,12 @@ sim: --links 129: out of range
 write a number from 1 to 128
 
 sim --bitrate 999
-sim: --bitrate 999: out of range
-write a number from 1000 to 1000000000
+sim: --bitrate 999: no bit rate of a simulated bus
+1000 to 1000000000 bits a second, such as 500k or 125000
 
 sim --data-bitrate 999
-sim: --data-bitrate 999: out of range
-write a number from 1000 to 1000000000
+sim: --data-bitrate 999: no bit rate of a simulated bus
+1000 to 1000000000 bits a second, such as 500k or 125000
 
 sim --bus-errors -1
 sim: --bus-errors -1: out of range
@@ -687,12 +687,12 @@ operate: --black-box-files 0: out of range
 write a number from 1 to 10000
 
 sim --bitrate 99999999999
-sim: --bitrate 99999999999: too large
-the greatest is 4294967295
+sim: --bitrate 99999999999: no bit rate of a simulated bus
+1000 to 1000000000 bits a second, such as 500k or 125000
 
 sim --bitrate x
-sim: --bitrate x: not a whole number
-write a whole number, such as 10
+sim: --bitrate x: no bit rate of a simulated bus
+1000 to 1000000000 bits a second, such as 500k or 125000
 
 central --robots x
 central: unknown option '--robots'

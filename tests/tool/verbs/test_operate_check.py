@@ -440,6 +440,17 @@ class Drawn(Operate):
         out, _ = self.run_tool("operate", GUARD, "--check", "--svg", "-")
         xml.etree.ElementTree.fromstring(out)
 
+    def test_a_picture_does_not_replace_what_is_drawn(self):
+        path = os.path.join(self.folder, "own.json")
+        with open(GUARD, encoding="utf-8") as file:
+            text = file.read()
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+        _, err = self.run_tool("operate", path, "--check", "--svg", path, code=2)
+        self.assertIn(f"operate: {path} and {path} are the same file\n", err)
+        with open(path, encoding="utf-8") as file:
+            self.assertEqual(file.read(), text)
+
     def test_without_graphviz_it_says_what_to_install(self):
         self.environment["PATH"] = self.folder
         _, err = self.run_tool("operate", GUARD, "--check", "--svg", os.path.join(self.folder, "a.svg"), code=1)

@@ -45,6 +45,12 @@ class Plot(Case):
         return ["".join(element.itertext()).strip() for element in
                 ElementTree.fromstring(svg).iter("{http://www.w3.org/2000/svg}text")]
 
+    def test_a_picture_does_not_replace_its_log(self):
+        path = self.log([(0, "608#" + i16(0, 0, 0))], "drive.svg")
+        _, err = self.run_tool("plot", path, "gyro.z", "-o", path, "--from", "candump", code=2)
+        self.assertIn(f"plot: {path} and {path} are the same file\n", err)
+        self.assertGreater(os.path.getsize(path), 0)
+
     def test_points_and_labels_of_an_svg(self):
         svg, _ = self.run_tool("plot", self.gyro(), "gyro.z")
         texts = self.texts(svg)
