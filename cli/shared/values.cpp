@@ -13,6 +13,7 @@ namespace ocm::cli {
 namespace {
 
 constexpr const char* a_data_bit_rate = "1 to 16000000 bits a second, such as 2M or 5000000";
+constexpr const char* a_simulated_bit_rate = "1000 to 1000000000 bits a second, such as 500k or 125000";
 constexpr const char* a_bit_rate = "1 to 1000000 bits a second, such as 500k or 125000";
 
 base::Result<base::Duration, words::WordError> read_duration(std::string_view text) {
@@ -43,6 +44,10 @@ base::Result<std::uint32_t, words::WordError> read_bit_rate(std::string_view dig
 base::Result<std::uint32_t, words::WordError> read_data_bit_rate(std::string_view digits) {
   if (const std::uint32_t rate = bits_a_second(digits, spec::max_data_bit_rate); rate != 0) return rate;
   return words::WordError{0, "no bit rate of the data of CAN FD", a_data_bit_rate};
+}
+base::Result<std::uint32_t, words::WordError> read_simulated_bit_rate(std::string_view digits) {
+  if (const std::uint32_t rate = bits_a_second(digits, 1'000'000'000); rate >= 1000) return rate;
+  return words::WordError{0, "no bit rate of a simulated bus", a_simulated_bit_rate};
 }
 
 }  // namespace
@@ -76,6 +81,15 @@ Option add_data_bit_rate(Verb verb, const std::string& names, std::optional<std:
   return option.type_name("RATE").takes(
       {ValueKind::text, true, a_data_bit_rate, {}, [](const std::string& text) {
          return static_cast<bool>(read_data_bit_rate(text));
+       }});
+}
+
+Option add_simulated_bit_rate(Verb verb, const std::string& names, std::uint32_t& value,
+                              const std::string& help) {
+  const auto option = verb.add_value(names, take_into(value, read_simulated_bit_rate), help);
+  return option.type_name("RATE").takes(
+      {ValueKind::text, true, a_simulated_bit_rate, {}, [](const std::string& text) {
+         return static_cast<bool>(read_simulated_bit_rate(text));
        }});
 }
 

@@ -40,6 +40,9 @@ Option add_bit_rate(Verb verb, const std::string& names, std::optional<std::uint
 /// The same of the data of CAN FD, to 16 Mbit/s.
 Option add_data_bit_rate(Verb verb, const std::string& names, std::optional<std::uint32_t>& value,
                          const std::string& help);
+/// Of a bus that is simulated, which may be faster than CAN.
+Option add_simulated_bit_rate(Verb verb, const std::string& names, std::uint32_t& value,
+                              const std::string& help);
 
 /// What such options are declared to take.
 [[nodiscard]] Accepted accepted_duration();

@@ -335,9 +335,7 @@ void add_analyse(Verb app, Session& session, int& exit_code) {
   auto trace_verb = verb.add_inner_verb("trace", "a recorded log, held against the bounds",
                                         "  amiroctl analyse trace drive.log\n"
                                         "  amiroctl analyse trace drive.log --set car.dbc --csv");
-  trace_verb
-      .add_option("LOG", of_trace->file,
-                  "as candump -l and `amiroctl listen --raw` write it; - for standard input")
+  trace_verb.add_option("LOG", of_trace->file, "in any format that convert reads; - for standard input")
       .required();
   trace_verb
       .add_option("--set", of_trace->set,

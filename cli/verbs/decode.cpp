@@ -1,4 +1,5 @@
 #include <array>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 #include "cli/verbs/verb.hpp"
 #include "cli/watch/choice.hpp"
 #include "cli/watch/display.hpp"
+#include "cli/words/topics.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -106,6 +108,14 @@ void decode(Session& session, const DecodeOptions& options, int& exit_code) {
   const auto& catalogue = session.catalogue();
   catch_interrupts();
   Decoding decoding{Display{"decode", session, options.display}, Window{catalogue, options}, options.count};
+  if (options.since && options.until && *options.until < *options.since)
+    fail({"decode: --until is before --since", "both count from the first frame of the log"}, exit_usage);
+  // A topic among the files is better known before the first of them is printed.
+  for (const auto& file : options.files)
+    if (words::find_topic(catalogue, file) != nullptr && !std::filesystem::exists(file))
+      fail({fmt::format("decode: '{}' is a topic, and no file", file),
+            fmt::format("--topic {} chooses it", file)},
+           exit_usage);
   const std::vector<std::string> standard_input{"-"};
   for (const auto& file : options.files.empty() ? standard_input : options.files) {
     if (decoding.over()) break;

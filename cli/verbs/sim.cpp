@@ -30,14 +30,11 @@ void add_boards(Verb verb, sim::AmiroOptions& options, std::string& boards) {
   verb.add_option("--speed", options.speed, "how many times faster than real time")
       .range(0.001, 1000.0)
       .type_name("N");
-  verb.add_option("--bitrate", options.bit_rate, "of the virtual bus, bit/s")
-      .range(1'000U, simulate::fastest_bit_rate)
-      .type_name("N");
-  verb.add_option("--data-bitrate", options.data_bit_rate,
-                  "of the data of CAN FD frames, bit/s: a multiple of --bitrate; default: the spec's, or "
-                  "four times as fast")
-      .range(1'000U, simulate::fastest_bit_rate)
-      .type_name("N");
+  add_simulated_bit_rate(verb, "--bitrate", options.bit_rate,
+                         "of the virtual bus, such as 500k or 125000; default: the spec's");
+  add_simulated_bit_rate(verb, "--data-bitrate", options.data_bit_rate,
+                         "of the data of CAN FD frames, such as 2M: a multiple of --bitrate; default: the "
+                         "spec's, or four times as fast");
   verb.add_option("--bus-errors", options.bus_errors,
                   "on the virtual bus: bits a second that interference breaks, on average")
       .range(0.0, 100'000.0)

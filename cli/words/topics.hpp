@@ -56,18 +56,23 @@ namespace ocm::cli::words {
   return words;
 }
 
-/// "it is a field of Status: Status.Torque", of at most three topics; empty: of none.
+/// "it is a field of Status: Status.Torque", of at most three topics; with the frame where a topic has
+/// several. Empty: of none.
 [[nodiscard]] inline std::string whose_field(const protocol::Catalogue& catalogue, std::string_view word) {
   std::string topics;
   std::string example;
   std::size_t found = 0;
   for (const auto& topic : catalogue.topics) {
-    const bool has = std::any_of(topic.frames.begin(), topic.frames.end(), [word](const auto& frame) {
-      return std::any_of(frame.fields.begin(), frame.fields.end(),
+    const auto frame = std::find_if(topic.frames.begin(), topic.frames.end(), [word](const auto& each) {
+      return std::any_of(each.fields.begin(), each.fields.end(),
                          [word](const protocol::Field& field) { return field.name == word; });
     });
-    if (!has || ++found > 3) continue;
-    if (example.empty()) example = std::string{topic.name} + '.' + std::string{word};
+    if (frame == topic.frames.end() || ++found > 3) continue;
+    if (example.empty()) {
+      example = std::string{topic.name} + '.';
+      if (topic.frames.size() > 1) example.append(frame->name).append(".");
+      example += word;
+    }
     topics.append(topics.empty() ? "" : ", ").append(topic.name);
   }
   if (found == 0) return {};

@@ -227,8 +227,11 @@ class Config(harness.Case):
     def test_a_value_for_all_verbs_that_only_some_take(self):
         self.write('bitrate = "500k"\n')
         self.run_tool("analyse", "bus")
+        self.start_sim()
+        self.write('bitrate = 900\n')
+        self.run_tool("analyse", "bus", code=1)
         _, err = self.run_tool("sim", code=2)
-        self.assertIn(f"{self.file}:1: bitrate 500k: not a whole number\n", err)
+        self.assertIn(f"{self.file}:1: bitrate 900: no bit rate of a simulated bus\n", err)
         self.assertIn("what is for another verb, write in its table", err)
 
     def test_what_is_for_all_verbs_does_not_stop_one_that_has_no_use_for_it(self):
