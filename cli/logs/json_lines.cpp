@@ -159,9 +159,6 @@ bool JsonLineParser::scan_fields(JsonScanner& scanner) {
     auto& named = record_.fields[record_.field_count++];
     named.value = {};
     if (!scanner.take_key(named.name) || !scanner.take_value(named.value)) return false;
-    if (!named.value)
-      return refuse(log::Cause::syntax, "field " + shown(named.name) + " has no value",
-                    "a value is a number or a string");
   } while (scanner.take(','));
   return scanner.take('}');
 }
@@ -489,6 +486,9 @@ bool JsonLineParser::put_field(std::span<std::uint8_t> data, std::span<const std
       return give(data, before, field, text, *raw);
   }
   const auto raw = words::parse_value(field, text);
+  if (!raw && !named.value)
+    return refuse(log::Cause::syntax, fmt::format("field {} has no value: {}", shown(named.name), raw.error),
+                  "write a number or a string");
   if (!raw)
     return refuse(log::Cause::syntax, raw.error,
                   record_.data ? "leave the field out, and data counts" : "write a value in its range");
@@ -539,7 +539,7 @@ bool JsonLineParser::put_request(log::Entry& entry, const protocol::Topic& topic
          *period == (entry.length == 1 ? topic.period : present->period).duration()))
       return true;
   }
-  if (period && mode != Mode::publish)
+  if (period && mode != Mode::publish && !record_.data)  // else it may be that of the data
     return refuse(log::Cause::syntax, fmt::format("a period with mode {}", mode_text.text),
                   "only publish has one; leave it out");
   const auto priority = protocol::Identifier::decode(entry.id).priority;

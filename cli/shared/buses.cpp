@@ -56,6 +56,9 @@ AnyBus open_simulated(const std::string& path) {
 AnyBus open_interface(const std::string& name) {
   auto opened = transport::SocketCan::open(name);
   if (opened) return any(std::move(opened));
+  if (name.find(',') != std::string::npos)
+    return transport::Failure{fmt::format("'{}' are several buses", name),
+                              "only record takes several: name one"};
   if (name == "slcan")
     return transport::Failure{opened.error.what, "name the adapter's line: slcan:/dev/ttyACM0"};
   // "simm" and "scan:/dev/ttyACM0" are no interfaces, and one bus is always there under its name.

@@ -53,6 +53,13 @@ namespace detail {
 
 using Parsed = base::Result<Command, WordError>;
 
+/// Whether a frame in candump's notation begins with as many hex digits as an identifier has.
+[[nodiscard]] constexpr bool has_identifier(std::string_view frame) noexcept {
+  const std::string_view id = frame.substr(0, frame.find('#'));
+  return (id.size() == 3 || id.size() == 8) &&
+         id.find_first_not_of("0123456789abcdefABCDEF") == std::string_view::npos;
+}
+
 }  // namespace detail
 
 /// Reads one command at a time against a catalogue.
@@ -394,7 +401,11 @@ class CommandParser {
                        "CAN FD has frames of 0 to 8, 12, 16, 20, 24, 32, 48 and 64 bytes"};
     if (error != base::Error::none)
       return WordError{
-          1, detail::quoted(line[1]) + ": " + std::string{base::describe(error)},
+          1,
+          detail::quoted(line[1]) + ": " +
+              std::string{error == base::Error::bad_identifier && !detail::has_identifier(line[1])
+                              ? "the identifier is not three hex digits, or eight"
+                              : base::describe(error)},
           "write 205#01840302 (three hex digits, or eight for an extended identifier), 205#R, or "
           "205##101840302 for CAN FD"};
     if (frame->format == can::Format::error)

@@ -316,6 +316,13 @@ class Library(Case):
         self.assertIn("no simulator is running", result.stderr)
 
 
+class Several(Case):
+    def test_several_buses_are_for_record(self):
+        for buses in ("can0,can1", "sim,sim:/nowhere"):
+            _, err = self.run_tool("--bus", buses, "listen", code=1)
+            self.assertIn(f"amiroctl: '{buses}' are several buses\n          only record takes several: name one\n", err)
+
+
 class Scripts(Case):
     def script(self, text):
         path = os.path.join(self.folder, "steps.script")
