@@ -179,6 +179,11 @@ TEST_CASE("bus models: one a bus, each of which has a value a quarter of a secon
   other.until(morning);
   other.until(morning + 60'001ms + 250ms);
   CHECK(other.of("a").history(x).size() == 2);
+  Models third{amiro::catalogue, 250'000};
+  CHECK(third.of("a").follow(x));
+  third.until(morning);
+  third.until(morning + 60s + 250ms);  // as much as a graph holds
+  CHECK(third.of("a").history(x).size() == Model::history_size);
 }
 
 TEST_CASE("playing: as fast as is asked for, within bounds") {

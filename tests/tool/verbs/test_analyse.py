@@ -1024,6 +1024,8 @@ BA_ "GenSigSendType" SG_ 8 b 1;
                         for i in range(1, 80))
         out, _ = self.run_tool("analyse", "bus", self.file(many, "many.dbc"))
         self.assertIn("79 clocks, of 64", out)
+        out, err = self.run_tool("analyse", "bus", self.file(many.replace(' 5;\n', ' 0;\n'), "none.dbc"))
+        self.assertNotIn("clocks", out + err)  # nothing is left out of account
 
     def test_no_message_is_dropped_in_silence(self):
         """Whatever a file says: each message is in the set, or left out with a reason; J1939's long ones, too."""
