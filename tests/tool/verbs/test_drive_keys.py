@@ -66,6 +66,20 @@ class Keys(harness.Case):
         out, _ = self.interrupt(self.listener)
         return [(int(each["time_ns"]) / 1e9, each["data"]) for each in self.objects(out)], said
 
+    def test_it_waits_between_two_looks_at_the_keys(self):
+        process = self.drive()
+        before = self.processor_time(process)
+        time.sleep(1)  # over which its processor time is taken
+        self.assertLess(self.processor_time(process) - before, 0.3)  # without a wait it is all there is
+        os.write(self.primary, b"q")
+        self.set_points(process)
+
+    @staticmethod
+    def processor_time(process):
+        with open(f"/proc/{process.pid}/stat", encoding="ascii") as file:
+            fields = file.read().rsplit(")", 1)[1].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
     def test_drives_while_a_key_is_held(self):
         process = self.drive()
         begin = time.time()
