@@ -6,6 +6,8 @@ Each runs in a copy of the little that it reads, where cmake, ctest and apt-get 
 
 import concurrent.futures
 import contextlib
+import importlib.machinery
+import importlib.util
 import os
 import pathlib
 import re
@@ -150,6 +152,15 @@ class Mutate(Case):
         done = self.run_script("mutate", "--room", "include/ocm/base", "--number", "1,99", "--list")
         self.assertEqual(done.returncode, 2)
         self.assertRegex(done.stderr.splitlines()[-1], r"^mutate: error: argument --number: 99: the set has \d$")
+
+    def test_what_a_library_is_made_of_is_judged_by_what_is_linked_with_it(self):
+        path = str(ROOT / "scripts" / "mutate")
+        spec = importlib.util.spec_from_file_location("mutate", path, loader=importlib.machinery.SourceFileLoader("mutate", path))
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        for made, library in (("cli/output/CMakeFiles/ocm_output_objects.dir/__/logs/json_lines.cpp.o", "ocm_output"),
+                              ("generator/spec/CMakeFiles/ocm_spec.dir/schema.cpp.o", "ocm_spec")):
+            self.assertEqual(module.library_of(made), library)
 
     def test_what_is_missing_or_fails_without_a_bug_is_named(self):
         self.small_tree()
