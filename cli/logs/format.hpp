@@ -34,8 +34,8 @@ struct LogFormat {
 [[nodiscard]] std::vector<std::string> writable_formats();
 /// By the ending of a file's name, without .gz and .zst; nullptr: it says nothing.
 [[nodiscard]] const LogFormat* format_of_name(std::string_view file);
-/// That in which `out` is to be written: `named`, where it is not empty, else that of its ending;
-/// `for_stdout`, where there is one, for "-". Leaves with exit_usage where it is none that is written.
+/// The format in which to write `out`: `named`, if it is not empty, else that of the ending; for "-"
+/// `for_stdout`, if there is one. Leaves with exit_usage if there is no such format, or it is only read.
 [[nodiscard]] const LogFormat& format_to_write(std::string_view verb, const std::string& out,
                                                const std::string& named, const char* for_stdout = nullptr);
 /// Whether a word names a file, there or not: it has a slash or the ending of a log, packed or not.

@@ -20,7 +20,7 @@
 namespace ocm::cli::logs {
 namespace {
 
-/// What is printed for readers, and says nothing that other keys do not say.
+/// Printed for people; other keys say the same.
 constexpr std::string_view printed_keys[] = {"units",  "names",       "error",     "pgn",
                                              "source", "destination", "transport", "message"};
 constexpr std::size_t most_unknown = 64;
@@ -140,6 +140,7 @@ void JsonLineParser::pass_over(std::string_view key) {
 }
 
 std::string_view JsonLineParser::meant_by(std::string_view unknown) {
+  // `scan` compares with each of them by itself: a loop over this list would cost encode 5 % of its time.
   constexpr std::string_view read[] = {"time_ns", "bus",       "id",      "priority", "topic", "frame",
                                        "data",    "direction", "raw_dlc", "fields",   "fd"};
   return words::nearest(unknown, read);
@@ -487,7 +488,8 @@ bool JsonLineParser::put_field(std::span<std::uint8_t> data, std::span<const std
   }
   const auto raw = words::parse_value(field, text);
   if (!raw && !named.value)
-    return refuse(log::Cause::syntax, fmt::format("field {} has no value: {}", shown(named.name), raw.error),
+    return refuse(log::Cause::syntax,
+                  fmt::format("field {} has no value; {}", shown(named.name), words::detail::takes(field)),
                   "write a number or a string");
   if (!raw)
     return refuse(log::Cause::syntax, raw.error,

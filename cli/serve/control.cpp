@@ -20,8 +20,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// So soon rest is tried again that the bus did not take, and it is looked what has left.
+/// From one try of a rest that the bus did not take, and one look at what has left, to the next.
 constexpr base::Duration look_again = 10ms;
+constexpr const char* program_commands =
+    "another program commands the motors: end it first, or stop the robot";
 /// In which a board answers.
 constexpr base::Duration time_to_answer = 100ms;
 /// Who looks later than that did not run, and has not heard what waits.
@@ -130,7 +132,7 @@ void Control::drive(ViewerId viewer, const client::Hold& hold) {
   if (!is_rest(hold.frame) && !driver_.holds(id) && !driver_.must_rest(viewer, id)) {
     if (const std::string why = obstacle_(); !why.empty()) return refuse(viewer, why);
     if (other_heard_ && Clock::now() - other_ < client::listen_before_hold)
-      return refuse(viewer, "another program commands the motors: end it first, or stop the robot");
+      return refuse(viewer, program_commands);
     if (behaviour_.exists()) return begin(viewer, hold);
   }
   if (is_rest(hold.frame) && waiting_ && waiting_->viewer == viewer) waiting_.reset();
@@ -141,8 +143,7 @@ void Control::drive(ViewerId viewer, const client::Hold& hold) {
 }
 
 void Control::begin(ViewerId viewer, const client::Hold& hold) {
-  if (waiting_ && waiting_->viewer != viewer)
-    return refuse(viewer, "another viewer drives; stop it first, or wait");
+  if (waiting_ && waiting_->viewer != viewer) return refuse(viewer, viewer_drives);
   const auto now = Clock::now();
   if (waiting_) {
     waiting_->hold = hold;
@@ -192,9 +193,8 @@ std::string Control::why_not_begun(ViewerId viewer, const client::Command& comma
     return !is_rest(frame) && behaviour_.commanded(index_, frame) != nullptr;
   });
   if (!begins) return {};
-  if (driver_.drives() && !driver_.drives(viewer)) return "another viewer drives; stop it first, or wait";
-  if (other_heard_ && Clock::now() - other_ < client::listen_before_hold)
-    return "another program commands the motors: end it first, or stop the robot";
+  if (driver_.drives() && !driver_.drives(viewer)) return viewer_drives;
+  if (other_heard_ && Clock::now() - other_ < client::listen_before_hold) return program_commands;
   return {};
 }
 

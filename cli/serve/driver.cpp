@@ -27,7 +27,7 @@ std::string Driver::drive(ViewerId viewer, const client::Hold& hold, Clock::time
       return std::exchange(ended->told, true) ? "" : "the drive was ended: release first, then drive again";
     ended_.erase(ended);
   }
-  if (held != held_.end() && held->viewer != viewer) return "another viewer drives; stop it first, or wait";
+  if (held != held_.end() && held->viewer != viewer) return viewer_drives;
   if (held == held_.end()) {
     out.push_back(hold.frame);
     held_.push_back({viewer, hold, now, now + client::hold_period});

@@ -21,6 +21,9 @@
 
 namespace ocm::cli::serve {
 
+/// Why a viewer may not drive.
+inline constexpr const char* viewer_drives = "another viewer drives; stop it first, or wait";
+
 class Driver {
  public:
   using Frames = std::vector<can::Frame>;

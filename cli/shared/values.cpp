@@ -46,7 +46,7 @@ base::Result<std::uint32_t, words::WordError> read_data_bit_rate(std::string_vie
   return words::WordError{0, "no bit rate of the data of CAN FD", a_data_bit_rate};
 }
 base::Result<std::uint32_t, words::WordError> read_simulated_bit_rate(std::string_view digits) {
-  if (const std::uint32_t rate = bits_a_second(digits, 1'000'000'000); rate >= 1000) return rate;
+  if (const std::uint32_t rate = bits_a_second(digits, fastest_simulated_bit_rate); rate >= 1000) return rate;
   return words::WordError{0, "no bit rate of a simulated bus", a_simulated_bit_rate};
 }
 

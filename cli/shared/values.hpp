@@ -40,7 +40,8 @@ Option add_bit_rate(Verb verb, const std::string& names, std::optional<std::uint
 /// The same of the data of CAN FD, to 16 Mbit/s.
 Option add_data_bit_rate(Verb verb, const std::string& names, std::optional<std::uint32_t>& value,
                          const std::string& help);
-/// Of a bus that is simulated, which may be faster than CAN.
+/// Of the virtual bus, which may be faster than CAN; bit/s. [decided]
+inline constexpr std::uint32_t fastest_simulated_bit_rate = 1'000'000'000;
 Option add_simulated_bit_rate(Verb verb, const std::string& names, std::uint32_t& value,
                               const std::string& help);
 

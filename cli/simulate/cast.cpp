@@ -8,6 +8,7 @@
 #include "ocm/topics/amiro.hpp"
 
 #include "cli/shared/messages.hpp"
+#include "cli/shared/values.hpp"
 #include "generator/spec/spec.hpp"
 
 namespace ocm::cli::simulate {
@@ -54,7 +55,7 @@ BitRates bit_rates(std::optional<std::uint32_t> typed, std::optional<std::uint32
   const std::uint32_t nominal = typed.value_or(stated ? model->bit_rate : usual);
   if (typed_data) return {nominal, *typed_data};
   if (model != nullptr && model->data_bit_rate >= nominal) return {nominal, model->data_bit_rate};
-  return {nominal, nominal <= fastest_bit_rate / 4 ? 4 * nominal : nominal};
+  return {nominal, nominal <= fastest_simulated_bit_rate / 4 ? 4 * nominal : nominal};
 }
 
 }  // namespace ocm::cli::simulate

@@ -19,8 +19,6 @@ enum class Cast : std::uint8_t {
 /// for single interfaces, those of --bus, or of the bus sim, or of the only interface that is named.
 [[nodiscard]] Cast cast_of(Session& session);
 
-constexpr std::uint32_t fastest_bit_rate = 1'000'000'000;  ///< bit/s, of the virtual bus
-
 /// Bit/s.
 struct BitRates {
   std::uint32_t nominal = 0;

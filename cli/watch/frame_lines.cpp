@@ -68,13 +68,13 @@ void FrameLines::tell_unknown_keys() const {
       more += keys[i].lines;
       continue;
     }
-    std::string text = fmt::format("{}: key '{}' of {} passed over: it is none that is read", path_,
+    std::string text = fmt::format("{}: key '{}' is not read ({})", path_,
                                    log::Complaints::printable(keys[i].name), counted(keys[i].lines, "line"));
     if (const auto meant = logs::JsonLineParser::meant_by(keys[i].name); !meant.empty())
       text += fmt::format("; did you mean '{}'?", meant);
     remark(text);
   }
-  if (more != 0) remark(fmt::format("{}: other keys passed over {} times", path_, more));
+  if (more != 0) remark(fmt::format("{}: other keys are not read, either ({} times)", path_, more));
 }
 
 bool FrameLines::parse(std::string_view line, log::Entry& entry, std::string_view& bus) {

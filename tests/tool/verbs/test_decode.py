@@ -404,18 +404,18 @@ class Encode(Case):
         lines = '{"id":"123","data":"11","time":5}\n{"id":"123","data":"11","time":6,"who":"me","units":{},"error":"no"}\n'
         for verb in (["encode"], ["send", "--stdin", "--dry-run"]):
             _, err = self.run_tool(*verb, stdin=lines)
-            self.assertIn("standard input: key 'time' of 2 lines passed over: it is none that is read; did you mean 'time_ns'?\n", err)
-            self.assertIn("standard input: key 'who' of 1 line passed over: it is none that is read\n", err)
-            self.assertEqual(err.count("passed over"), 2)
+            self.assertIn("standard input: key 'time' is not read (2 lines); did you mean 'time_ns'?\n", err)
+            self.assertIn("standard input: key 'who' is not read (1 line)\n", err)
+            self.assertEqual(err.count("not read"), 2)
         _, err = self.run_tool("encode", stdin="".join(f'{{"id":"123","data":"11","key\\u001b{i}":0}}\n' for i in range(20)))
-        self.assertEqual(err.count("passed over: it is none"), 8)
-        self.assertIn("standard input: other keys passed over 12 times\n", err)
+        self.assertEqual(err.count("is not read (1 line)"), 8)
+        self.assertIn("standard input: other keys are not read, either (12 times)\n", err)
         self.assertNotIn("\x1b", err)
         # What may be meant for another one is named first, however late it comes.
         lines = "".join(f'{{"id":"123","data":"11","k{i}":0,"k{i}":1}}\n' for i in range(8)) + '{"id":"123","data":"11","time":5}\n'
         _, err = self.run_tool("encode", stdin=lines)
-        self.assertIn("key 'time' of 1 line passed over", err)
-        self.assertIn("key 'k0' of 1 line passed over", err)
+        self.assertIn("key 'time' is not read (1 line)", err)
+        self.assertIn("key 'k0' is not read (1 line)", err)
 
     def test_a_topic_is_no_file_and_a_window_has_two_ends(self):
         log, _ = self.run_tool("encode", stdin='{"topic":"gyro","fields":{"x":0}}\n')
