@@ -13,6 +13,7 @@ namespace {
 
 /// A signal that comes just before a wait is seen after so long at most.
 constexpr Live::Clock::duration longest_wait = std::chrono::milliseconds{200};
+constexpr Live::Clock::duration between_looks_beside = std::chrono::milliseconds{10};
 
 }  // namespace
 
@@ -26,7 +27,21 @@ void StateWatch::look(const transport::Bus& bus) {
 
 void Live::wait_for_both(Clock::duration longest) {
   std::array inputs{pollfd{beside_.descriptor, POLLIN, 0}, pollfd{bus_->descriptor(), POLLIN, 0}};
-  if (wait_for_input(inputs, longest) && inputs[0].revents != 0) beside_.serve();
+  if (!wait_for_input(inputs, longest) || inputs[1].revents != 0) return;
+  beside_waits_ = false;
+  beside_.serve();
+}
+
+void Live::look_beside() {
+  const auto now = Clock::now();
+  if (now - looked_beside_ < between_looks_beside) return;
+  looked_beside_ = now;
+  pollfd input{beside_.descriptor, POLLIN, 0};
+  const bool waited = beside_waits_;
+  beside_waits_ = wait_for_input(std::span{&input, 1}, Clock::duration{0});
+  if (!waited || !beside_waits_) return;
+  beside_waits_ = false;
+  beside_.serve();
 }
 
 template <class Ask, class GiveTo>
@@ -45,6 +60,7 @@ Over Live::receive_next(Clock::time_point until, const Ask& ask, const GiveTo& t
     if (received) {
       all_taken = !idle_;
       if (!take(*received)) return Over::enough;
+      if (beside_.descriptor >= 0) look_beside();
       continue;
     }
     if (received.error == base::Error::closed) return Over::gone;

@@ -31,7 +31,8 @@ class StateWatch {
 };
 
 /// Something else that is waited for, such as the socket of another program: when it is readable, it is
-/// served, between two frames.
+/// served once no frame is left, so that what is done there knows what had come. On a bus that always has one
+/// it waits 20 ms at most, and a frame.
 struct Beside {
   int descriptor = -1;
   std::function<void()> serve{};
@@ -63,12 +64,16 @@ class Live {
   template <class Ask, class GiveTo>
   [[nodiscard]] Over receive_next(Clock::time_point until, const Ask& ask, const GiveTo& take);
 
-  /// Until a frame may be there, or time is up; serves what is beside.
+  /// Until a frame may be there, or time is up; serves what is beside, where no frame is.
   void wait_for_both(Clock::duration longest);
+  /// Between two frames: serves what is beside where it has waited from one look to the next.
+  void look_beside();
 
   transport::Bus* bus_;
   std::function<void()> idle_;
   Beside beside_;
+  Clock::time_point looked_beside_{};
+  bool beside_waits_ = false;
   StateWatch state_;
 };
 

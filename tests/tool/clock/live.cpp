@@ -1,0 +1,72 @@
+// What is served beside a bus: behind the frames that came before it, and in time all the same.
+#include "cli/shared/live.hpp"
+
+#include <vector>
+
+#include "tests/tool/clock/played_bus.hpp"
+
+namespace tool_clock_live_test {
+
+using namespace ocm;
+using namespace ocm::test;
+
+constexpr int beside = 600;
+
+/// Frames at such times, numbered.
+PlayedBus::Conditions frames_at(const std::vector<Moment>& times) {
+  PlayedBus::Conditions conditions;
+  std::uint32_t number = 0;
+  for (const Moment time : times) conditions.incoming.push_back({time, {0x100 + number++, 0, {}}});
+  return conditions;
+}
+
+TEST_CASE("live: what is beside is served behind the frames that came before it") {
+  World world{1};
+  const Moment first = World::start + 50ms;
+  // The program does not run while both come, first the frames.
+  world.stop(first - 1ms, 20ms);
+  PlayedBus bus{world, frames_at({first, first + 1ms, first + 2ms})};
+  Moment ready = first + 3ms;
+  world.inputs[beside] = [&] { return ready; };
+  std::size_t taken = 0;
+  std::vector<std::size_t> taken_before;
+  cli::Live live{bus, [] {}, {beside, [&] {
+                                taken_before.push_back(taken);
+                                ready = Moment::max();
+                              }}};
+  const auto over = live.receive(World::start + 1s, [&](const can::Received&) {
+    ++taken;
+    return true;
+  });
+  CHECK(over == cli::Over::time);
+  CHECK(taken == 3);
+  CHECK(taken_before == std::vector<std::size_t>{3});
+}
+
+TEST_CASE("live: what is beside does not wait behind a bus that always has a frame") {
+  World world{1};
+  std::vector<Moment> times;
+  for (int i = 0; i < 10'000; ++i) times.push_back(World::start + i * 100us);
+  PlayedBus bus{world, frames_at(times)};
+  Moment ready = World::start + 300ms;
+  world.inputs[beside] = [&] { return ready; };
+  std::vector<Moment> served;
+  cli::Live live{bus, [] {}, {beside, [&] {
+                                served.push_back(world.now());
+                                ready = served.size() < 3 ? world.now() + 100ms : Moment::max();
+                              }}};
+  const auto over = live.receive(World::start + 1s, [&](const can::Received&) {
+    world.pass(150us);  // it takes longer than to the next
+    return true;
+  });
+  CHECK(over == cli::Over::time);
+  REQUIRE(served.size() == 3);
+  Moment due = World::start + 300ms;
+  for (const Moment time : served) {
+    CHECK(time >= due);
+    CHECK(time - due <= 20ms + 1ms);
+    due = time + 100ms;
+  }
+}
+
+}  // namespace tool_clock_live_test
