@@ -155,7 +155,13 @@ std::function<std::string(Device&, char)> by_letter(std::vector<std::pair<char, 
 /// An adapter answers in time, however busy this machine is.
 SlcanOptions patient() {
   SlcanOptions options;
-  options.answer_limit = 20s;
+  options.patience = options.answer_limit = 20s;
+  return options;
+}
+/// Is not waited for while it is opened: it may be one that never answers, or talks of something else.
+SlcanOptions patient_for(base::Duration patience) {
+  SlcanOptions options = patient();
+  options.patience = patience;
   return options;
 }
 
@@ -303,16 +309,17 @@ TEST_CASE("slcan: filters hold for what comes and for what waits; error frames p
 TEST_CASE("slcan: an adapter that refuses is distinguished by what it refuses") {
   SECTION("the bit rate") {
     Device device(by_letter({{'\r', "\r"}, {'C', "\r"}, {'V', "V1013\r"}}));
-    const auto told = failure(device.path());
+    const auto told = failure(device.path(), patient());
     CHECK_THAT(told.what, Contains("refuses the bit rate 500k (command S6)") && Contains(device.path()));
   }
   SECTION("the channel") {
     Device device(by_letter({{'\r', "\r"}, {'C', "\r"}, {'V', "V1013\r"}, {'S', "\r"}, {'Z', "\r"}}));
-    CHECK_THAT(failure(device.path()).what, Contains("refuses to open the channel (command O)"));
+    CHECK_THAT(failure(device.path(), patient()).what, Contains("refuses to open the channel (command O)"));
   }
   SECTION("it falls silent on the way") {
     Device device(by_letter({{'\r', "\r"}, {'C', "\r"}, {'V', "V1013\r"}, {'S', ""}}));
-    CHECK_THAT(failure(device.path()).what, Contains("has stopped to answer") && Contains("(command S6)"));
+    CHECK_THAT(failure(device.path(), patient_for(1s)).what,
+               Contains("has stopped to answer") && Contains("(command S6)"));
   }
   SECTION("what it does not have, it need not have: V, Z, F") {
     Device device(by_letter({{'\r', "\a"}, {'C', "\a"}, {'S', "\r"}, {'O', "\r"}, {'t', "\r"}}));
@@ -324,13 +331,13 @@ TEST_CASE("slcan: an adapter that refuses is distinguished by what it refuses") 
   }
   SECTION("something that is no adapter talks") {
     Device device([](Device&, char c) { return c == '\r' ? std::string{"login: \r\n"} : std::string{}; });
-    const auto told = failure(device.path());
+    const auto told = failure(device.path(), patient_for(1s));
     CHECK_THAT(told.what, Contains("is not SLCAN"));
     CHECK_THAT(told.remedy, Contains("57600"));
   }
   SECTION("the wrong speed of the line") {
     Device device([](Device&, char c) { return c == '\r' ? std::string{"\xF8\x80\x80\r"} : std::string{}; });
-    CHECK_THAT(failure(device.path()).what, Contains("is not SLCAN"));
+    CHECK_THAT(failure(device.path(), patient_for(1s)).what, Contains("is not SLCAN"));
   }
   SECTION("it goes while it is opened") {
     Device device(by_letter({{'\r', "\r"}}));
@@ -338,7 +345,7 @@ TEST_CASE("slcan: an adapter that refuses is distinguished by what it refuses") 
       std::this_thread::sleep_for(50ms);
       device.unplug();
     });
-    CHECK_THAT(failure(device.path()).what, Contains("is gone"));
+    CHECK_THAT(failure(device.path(), patient()).what, Contains("is gone"));
     hand.join();
   }
 }
@@ -349,7 +356,7 @@ TEST_CASE("slcan: adapters that never answer work") {
       (void)Device::by_the_manual(d, c);
       return std::string{};
     });
-    const auto bus = open(device.path());
+    const auto bus = open(device.path(), patient_for(300ms));
     CHECK_FALSE(bus->answers());
     CHECK_FALSE(bus->delivery().known);
     for (int i = 0; i < 100; ++i) send(*bus, {0x205, 1, {static_cast<std::uint8_t>(i)}});
@@ -377,8 +384,9 @@ TEST_CASE("slcan: adapters that never answer work") {
       const std::string answer = Device::by_the_manual(d, c);
       return answer == "z\r" ? std::string{} : answer;
     });
-    SlcanOptions options;
+    SlcanOptions options = patient();
     options.answer_limit = 50ms;
+    options.status_period = 1h;
     const auto bus = open(device.path(), options);
     for (int i = 0; i < 200; ++i) send(*bus, {static_cast<std::uint32_t>(i), 0, {}});
     eventually([&] { return device.with([&] { return device.wire.sent.size() == 200; }); });
@@ -392,7 +400,7 @@ TEST_CASE("slcan: no more than the window is unanswered, and of one identifier o
     const std::string answer = Device::by_the_manual(d, c);
     return answer == "z\r" || answer == "Z\r" ? std::string{} : answer;
   });
-  SlcanOptions options;
+  SlcanOptions options = patient();
   options.answer_limit = 60s;
   const auto bus = open(device.path(), options);
   CHECK(*bus->send(frame("100#01")));
@@ -488,7 +496,7 @@ TEST_CASE("slcan: a line that no adapter reads is full, and not one frame is tor
     (void)Device::by_the_manual(d, c);
     return std::string{};
   });
-  const auto bus = open(device.path());
+  const auto bus = open(device.path(), patient_for(300ms));
   device.stall(true);
   std::size_t taken = 0;
   for (int i = 0; i < 100'000 && bus->counters().refused == 0; ++i) {
@@ -570,7 +578,7 @@ TEST_CASE("slcan: an answer that never comes does not stop the others") {
     const std::string answer = Device::by_the_manual(d, c);
     return answer == "z\r" && ++number == 2 ? std::string{"\xFF\r"} : answer;
   });
-  SlcanOptions options;
+  SlcanOptions options = patient();
   options.answer_limit = 2s;  // longer than a busy machine keeps an adapter from answering
   const auto bus = open(device.path(), options);
   for (std::uint32_t id = 1; id <= 30; ++id) send(*bus, {id, 0, {}});
@@ -592,7 +600,7 @@ TEST_CASE("slcan: an answer that comes too late is none, also while the program 
     const std::string answer = Device::by_the_manual(d, c);
     return mute && answer == "z\r" ? std::string{} : answer;
   });
-  SlcanOptions options;
+  SlcanOptions options = patient();
   options.answer_limit = 300ms;
   options.status_period = 1h;
   const auto bus = open(device.path(), options);
