@@ -446,7 +446,7 @@ class AscWriter final : public Writer {
   char* time(char* at, std::int64_t ns) noexcept {
     std::int64_t since = 0;
     if (ns < start_ || __builtin_sub_overflow(ns, start_, &since)) {  // the format has no sign
-      losses_.add(Lost::time_digits);
+      losses_.add(Lost::time);
       since = 0;
     } else if (ns % 1000 != 0) {
       losses_.add(Lost::time_digits);

@@ -364,7 +364,7 @@ class CandumpWriter : public Writer {
   char* time(char* at, base::Time when) noexcept {
     std::int64_t ns = when.time_since_epoch().count();
     if (ns < 0) {  // before 1970: candump has no sign
-      losses_.add(Lost::time_digits);
+      losses_.add(Lost::time);
       ns = 0;
     }
     const auto us = static_cast<std::uint64_t>(ns) / 1000;

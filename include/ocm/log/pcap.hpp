@@ -187,7 +187,7 @@ class PcapWriter final : public Writer {
     constexpr std::int64_t latest = std::int64_t{0xFFFF'FFFF} * 1'000'000'000 + 999'999'999;
     const std::int64_t ns = entry.time.time_since_epoch().count();
     if (ns >= 0 && ns <= latest) return static_cast<std::uint64_t>(ns);
-    losses_.add(Lost::time_digits);
+    losses_.add(Lost::time);
     return ns < 0 ? 0 : static_cast<std::uint64_t>(latest);
   }
 };

@@ -491,7 +491,7 @@ class PcapngWriter final : public Writer {
   void append(Bytes& out, const Entry& entry) {
     constexpr std::size_t head = 28, flags = 12;
     const std::int64_t signed_ns = entry.time.time_since_epoch().count();
-    if (signed_ns < 0) losses_.add(Lost::time_digits);  // before 1970: the format has no sign
+    if (signed_ns < 0) losses_.add(Lost::time);  // before 1970: the format has no sign
     const std::uint64_t ns = signed_ns < 0 ? 0 : static_cast<std::uint64_t>(signed_ns);
     last_ = std::max(last_, ns);
     const auto size = static_cast<std::uint32_t>(packet::size_of(entry));

@@ -16,7 +16,8 @@ namespace ocm::log {
 
 /// What an entry had and the format has not.
 enum class Lost : std::uint8_t {
-  entry,        ///< the whole entry: the format has no such frames. All others: it was written without that
+  entry,  ///< the whole entry: the format has no such frames. All others: it was written without that
+  time,   ///< all of its time, which is earlier or later than the format can say: written is the nearest
   time_digits,  ///< digits of its time, beyond the format's finest
   direction,
   interface,  ///< its name; the format has numbers, or none. An empty name is none
@@ -25,11 +26,12 @@ enum class Lost : std::uint8_t {
   remote_length,
   error_detail,  ///< what kind of error an error frame reports
 };
-inline constexpr std::size_t losses = 8;
+inline constexpr std::size_t losses = 9;
 
 /// Goes before the number of frames of which it is lost: "the direction of" 2 frames.
 [[nodiscard]] constexpr std::string_view describe(Lost lost) noexcept {
   constexpr std::string_view words[losses] = {"all of",
+                                              "the time of",
                                               "digits of the time of",
                                               "the direction of",
                                               "the name of the interface of",

@@ -15,10 +15,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       const auto since = entry.time.time_since_epoch();
       first = entry.time - (since % second + second) % second;
     }
-    if (lost.count(log::Lost::time_digits) != 0) {
-      entry.time = std::max(entry.time, first);
-      entry.time -= (entry.time - first) % base::Duration{1000};
-    }
+    if (lost.count(log::Lost::time) != 0) entry.time = std::max(entry.time, first);
+    if (lost.count(log::Lost::time_digits) != 0) entry.time -= (entry.time - first) % base::Duration{1000};
     if (lost.count(log::Lost::direction) != 0 && entry.format == can::Format::error)
       entry.direction = log::Direction::unknown;
   });

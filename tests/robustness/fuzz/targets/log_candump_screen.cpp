@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::rewrite<log::CandumpScreenReader, log::CandumpNanoWriter, log::CandumpReader>(
       fuzz::text_of(data, size), [](log::Entry& entry, const log::Losses& lost) {
         // -t A knows times before 1970, and a candump log none.
-        if (lost.count(log::Lost::time_digits) != 0) entry.time = std::max(entry.time, base::Time{});
+        if (lost.count(log::Lost::time) != 0) entry.time = std::max(entry.time, base::Time{});
       });
   return 0;
 }

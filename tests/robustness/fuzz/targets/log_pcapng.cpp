@@ -9,7 +9,7 @@ using namespace ocm;
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   fuzz::rewrite<log::PcapngReader, log::PcapngWriter>(fuzz::text_of(data, size),
                                                       [](log::Entry& entry, const log::Losses& lost) {
-                                                        if (lost.count(log::Lost::time_digits) != 0)
+                                                        if (lost.count(log::Lost::time) != 0)
                                                           entry.time = std::max(entry.time, base::Time{});
                                                       });
   return 0;
