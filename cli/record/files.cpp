@@ -45,7 +45,7 @@ transport::Outcome<void> Files::join_ring() {
       return transport::Failure{fmt::format("another program records to {} now", file.path),
                                 "end it, or give another name"};
   // One more than the ring has is what a recording leaves that was cut off while it changed files.
-  if (there.size() > options_.ring + 1 && !options_.overwrite)
+  if (!there.empty() && there.size() - 1 > options_.ring && !options_.overwrite)
     return transport::Failure{fmt::format("{} files {} are there, and --ring {} would delete {} of them now",
                                           there.size(), all, options_.ring, there.size() + 1 - options_.ring),
                               "give another name, or --force to delete them"};
@@ -113,6 +113,8 @@ bool Files::write(std::span<const log::Entry> entries, const log::Interfaces& in
                   base::Duration now) {
   clock_.fetched(entries, now);
   while (!entries.empty()) {
+    // Not before something follows: an empty file would end the recording.
+    if (options_.split.size != 0 && file_->size() >= options_.split.size && !next_file()) return false;
     std::size_t count = entries.size();
     if (options_.split.time > base::Duration::zero()) count = entries_before_split(entries);
     if (count == 0) {
@@ -124,7 +126,6 @@ bool Files::write(std::span<const log::Entry> entries, const log::Interfaces& in
     if (options_.split.size == 0) continue;
     // What a buffer holds back has no size yet.
     if (!file_->flush()) return failed(file_->failure());
-    if (file_->size() >= options_.split.size && !next_file()) return false;
   }
   return true;
 }

@@ -63,6 +63,17 @@ Option add_duration(Verb verb, const std::string& names, std::optional<base::Dur
   return option.type_name("T").takes(accepted_duration());
 }
 
+Option add_lasting(Verb verb, const std::string& names, base::Duration& value, const std::string& help) {
+  const auto option = verb.add_value(names, take_into(value, words::read_lasting), help);
+  return option.type_name("T").takes(accepted_duration()).default_text(words::to_text(value));
+}
+
+Option add_lasting(Verb verb, const std::string& names, std::optional<base::Duration>& value,
+                   const std::string& help) {
+  const auto option = verb.add_value(names, take_into(value, words::read_lasting), help);
+  return option.type_name("T").takes(accepted_duration());
+}
+
 Option add_priority(Verb verb, const std::string& names, std::optional<protocol::Priority>& value,
                     const std::string& help) {
   const auto option = verb.add_value(names, take_into(value, words::read_priority), help);

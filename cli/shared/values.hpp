@@ -29,6 +29,10 @@ Option add_duration(Verb verb, const std::string& names, base::Duration& value, 
 /// The same without a default.
 Option add_duration(Verb verb, const std::string& names, std::optional<base::Duration>& value,
                     const std::string& help);
+/// Both with a time above zero: how long something lasts.
+Option add_lasting(Verb verb, const std::string& names, base::Duration& value, const std::string& help);
+Option add_lasting(Verb verb, const std::string& names, std::optional<base::Duration>& value,
+                   const std::string& help);
 
 /// A priority by its name or number; without one it stays as it is.
 Option add_priority(Verb verb, const std::string& names, std::optional<protocol::Priority>& value,

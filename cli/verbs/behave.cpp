@@ -214,9 +214,7 @@ void add_behave(Verb app, Session& session, int& exit_code) {
   verb.add_option("which", options->which, "what to do").type_name("follow|avoid|home|none").required();
   verb.add_option("--speed", options->speed, "at most").type_name("V");
   verb.add_option("--distance", options->distance, "home: from the wall").type_name("X");
-  verb.add_value("--for", take_into(options->lasting, words::read_lasting), "how long")
-      .type_name("T")
-      .takes(accepted_duration());
+  add_lasting(verb, "--for", options->lasting, "how long");
   verb.add_flag("--force", options->force, "begin even if another program commands the motors");
   add_priority(verb, "--priority", options->priority,
                "urgent, high, medium or low, or 0 to 3; default: the topic's own");

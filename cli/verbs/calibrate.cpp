@@ -163,7 +163,7 @@ void add_calibrate(Verb app, Session&, int& exit_code) {
   const auto options = std::make_shared<CalibrateOptions>();
   verb.add_option("robot", options->robot, "its name, address or index").required().type_name("ROBOT");
   verb.add_flag("--show", options->show, "ask what it knows; it does not turn");
-  add_duration(verb, "--timeout", options->timeout, "then it is stopped");
+  add_lasting(verb, "--timeout", options->timeout, "then it is stopped");
   fleet::add_line_options(verb, options->line);
   verb.callback([options, &exit_code] { run(*options, exit_code); });
 }

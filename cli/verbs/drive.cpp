@@ -31,11 +31,7 @@ void add_drive(Verb app, Session& session, int& exit_code) {
     std::string gamepad;
   };
   const auto options = std::make_shared<Options>(verb, session);
-  const auto lasting =
-      verb.add_value("--for", take_into(options->commanding.options().lasting, words::read_lasting),
-                     "how long to drive")
-          .type_name("T")
-          .takes(accepted_duration());
+  const auto lasting = add_lasting(verb, "--for", options->commanding.options().lasting, "how long to drive");
   const auto once =
       verb.add_flag("--once", options->once, "send one frame; the board stops the motors when none follows")
           .excludes(lasting);

@@ -209,7 +209,7 @@ void add_goto(Verb app, Session&, int& exit_code) {
   verb.add_flag("--no-wait", options->no_wait, "wait until it has heard, not until it is there");
   verb.add_flag("--call-back", options->call_back,
                 "if its link gets bad: stop it, and send it back towards where it began");
-  add_duration(verb, "--timeout", options->timeout, "then it is stopped");
+  add_lasting(verb, "--timeout", options->timeout, "then it is stopped");
   fleet::add_line_options(verb, options->line);
   verb.callback([options, &exit_code] { run(*options, exit_code); });
 }

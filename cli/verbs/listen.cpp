@@ -100,8 +100,8 @@ void add_listen(Verb app, Session& session, int& exit_code) {
   verb.add_flag("--commands", options->commands, "show requests and set points too");
   verb.add_flag("--strict", options->strict, "exit 1 when frames were lost, unknown, wrong or incomplete");
   verb.add_option("-n,--count", options->count, "end after so many").type_name("N").positive();
-  add_duration(verb, "--timeout", options->timeout, "end after this time; exit 1 when -n is not reached");
-  add_duration(verb, "--idle-timeout", options->idle_timeout, "end when nothing came for this time");
+  add_lasting(verb, "--timeout", options->timeout, "end after this time; exit 1 when -n is not reached");
+  add_lasting(verb, "--idle-timeout", options->idle_timeout, "end when nothing came for this time");
   verb.callback([options, &session, &exit_code] { listen(session, *options, exit_code); });
 }
 

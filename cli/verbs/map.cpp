@@ -130,7 +130,7 @@ void add_map(Verb app, Session& session, int& exit_code) {
       .type_name("FILE ...");
   verb.add_option("--robots", options->robots, "names, addresses or indexes; default: all")
       .type_name("ROBOT ...");
-  add_duration(verb, "--duration", options->duration, "at most this long; default: until all is known");
+  add_lasting(verb, "--duration", options->duration, "at most this long; default: until all is known");
   verb.add_option("--start", options->starts, "where a robot was switched on: metres, degrees")
       .type_name("NAME=X,Y,DEG");
   verb.add_option("--world", options->world,

@@ -125,17 +125,29 @@ class ChosenFilters {
 };
 
 /// --bus can0,can1: several at once.
-std::vector<record::Port> open_ports(Session& session, const ChosenFilters& filters) {
-  if (session.bus_name.empty())
-    static_cast<void>(session.open_bus());  // says which it is, or that there is none or several
-  else
-    remark("bus: " + session.bus_name);
-  std::vector<record::Port> ports;
-  for (std::size_t begin = 0; begin <= session.bus_name.size();) {
-    const std::size_t end = std::min(session.bus_name.find(',', begin), session.bus_name.size());
-    record::Port port;
-    port.name = session.bus_name.substr(begin, end - begin);
+std::vector<std::string> bus_names(const std::string& list) {
+  std::vector<std::string> names;
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    names.push_back(list.substr(begin, end - begin));
     begin = end + 1;
+    if (std::find(names.begin(), names.end() - 1, names.back()) != names.end() - 1)
+      fail({fmt::format("record: --bus {} names {} twice", list, names.back()), "name each bus once"},
+           exit_usage);
+  }
+  return names;
+}
+
+std::vector<record::Port> open_ports(Session& session, const ChosenFilters& filters) {
+  const std::string given = session.bus_name;
+  if (given.empty())
+    static_cast<void>(session.open_bus());  // says which it is, or that there is none or several
+  const auto names = bus_names(session.bus_name);
+  if (!given.empty()) remark("bus: " + given);
+  std::vector<record::Port> ports;
+  for (const std::string& name : names) {
+    record::Port port;
+    port.name = name;
     if (!filters.has_any_on(port.name))
       remark(fmt::format("none of the topics is on {}: of it error frames alone are recorded", port.name));
     auto capture = record::open_capture(port.name, filters.of(port.name));
@@ -269,9 +281,7 @@ void add_record(Verb app, Session& session, int& exit_code) {
       .type_name("N")
       .positive();
   verb.add_option("-n,--count", options->count, "end after so many frames").type_name("N").positive();
-  verb.add_value("--duration", take_into(options->duration, words::read_lasting), "end after this time")
-      .type_name("T")
-      .takes(accepted_duration());
+  add_lasting(verb, "--duration", options->duration, "end after this time");
   verb.add_flag("--no-sync", options->no_sync,
                 "leave it to the kernel when data reach the disk; default: every second");
   verb.add_flag("--strict", options->strict, "exit 1 when frames were lost");

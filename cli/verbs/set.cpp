@@ -22,10 +22,7 @@ void add_set(Verb app, Session& session, int& exit_code) {
                                     "send it again and again until Ctrl-C or --for")
                          .type_name("T")
                          .takes(accepted_duration());
-  verb.add_value("--for", take_into(options.lasting, words::read_lasting), "how long to send it")
-      .type_name("T")
-      .takes(accepted_duration())
-      .needs(every);
+  add_lasting(verb, "--for", options.lasting, "how long to send it").needs(every);
   verb.add_flag("--force", options.force, "also values beyond the range that the spec states");
   verb.callback([commanding, &session, &exit_code] {
     const auto command = commanding->parse();

@@ -18,8 +18,8 @@ void add_watch_options(Verb verb, WatchOptions& options) {
   verb.add_option("--from", options.format, "format of the logs; default: what they begin with says it")
       .type_name("FORMAT")
       .takes(accepted_words(logs::readable_formats()));
-  add_duration(verb, "--duration", options.duration,
-               "end after this time; of a log: look at its first T only");
+  add_lasting(verb, "--duration", options.duration,
+              "end after this time; of a log: look at its first T only");
   verb.add_option("-n,--count", options.count, "end after so many frames").type_name("N").positive();
 }
 

@@ -328,6 +328,7 @@ class Run {
       }
       for (std::size_t i = 0; i < read.recorded.size(); ++i)
         dropped[read.names[i]] += read.recorded[i].dropped;
+      if (left.size() > 1 && !disk_was_full_) CHECK_FALSE(read.entries.empty());
       // A bunch of frames that were fetched together may come into a file that is full by its size.
       if (options_.split.size != 0)
         CHECK(std::filesystem::file_size(path) < options_.split.size + 256 * 120 + 1000);

@@ -383,8 +383,12 @@ listen: missing value for --timeout
 usage: --timeout T
 
 listen --timeout soon
-listen: --timeout soon: not a time
-write 500ms, 2s or 1.5s
+listen: --timeout soon: not a time above zero
+write 2s, 500ms or 1min
+
+listen --timeout 0s
+listen: --timeout 0s: not a time above zero
+write 2s, 500ms or 1min
 
 listen --json --csv
 listen: --json and --csv exclude each other
@@ -401,6 +405,10 @@ did you mean 'gyro'?
 record --duration 0s
 record: --duration 0s: not a time above zero
 write 2s, 500ms or 1min
+
+record --bus sim,other,sim
+record: --bus sim,other,sim names sim twice
+name each bus once
 
 record --split soon
 record: --split soon: neither a size nor a time
@@ -545,6 +553,10 @@ did you mean '--assert'?
 stats gyr
 stats: no topic 'gyr'
 did you mean 'gyro'?
+
+stats --duration 0s
+stats: --duration 0s: not a time above zero
+write 2s, 500ms or 1min
 
 stats --assert gyro
 stats: --assert gyro: compares nothing
@@ -743,8 +755,8 @@ goto: invalid ANGLE 'x'
 expected a whole number of deg, -360 to 360, such as 90
 
 goto a 1 2 --timeout soon
-goto: --timeout soon: not a time
-write 500ms, 2s or 1.5s
+goto: --timeout soon: not a time above zero
+write 2s, 500ms or 1min
 
 calibrate
 calibrate: missing ROBOT
@@ -763,8 +775,8 @@ calibrate: --baud fast: not a whole number
 write a whole number, such as 10
 
 calibrate a --timeout soon
-calibrate: --timeout soon: not a time
-write 500ms, 2s or 1.5s
+calibrate: --timeout soon: not a time above zero
+write 2s, 500ms or 1min
 
 pause
 pause: missing ROBOT
