@@ -13,7 +13,8 @@ namespace {
 
 class HostBoards final : public Boards {
  public:
-  HostBoards(const WorldOptions& world, Ports& ports) : robot_{world, ports[0], ports[1], ports[2]} {}
+  HostBoards(const WorldOptions& world, Ports& ports)
+      : ports_(&ports), robot_{world, ports[0], ports[1], ports[2]} {}
   void receive(const can::Frame& frame, base::Time now) override { robot_.receive(frame, now); }
   base::Status advance(base::Time now) override {
     robot_.advance(now);
@@ -23,20 +24,22 @@ class HostBoards final : public Boards {
   [[nodiscard]] bool waiting() const override { return robot_.waiting(); }
   [[nodiscard]] const World& world() const override { return robot_.world(); }
   void summarise(const Shell& shell) const override {
-    shell.report(line(board_names[0], robot_.di_wheel_drive().counters()));
-    shell.report(line(board_names[1], robot_.power_management().counters()));
-    shell.report(line(board_names[2], robot_.light_ring().counters()));
+    shell.report(line(0, robot_.di_wheel_drive().counters()));
+    shell.report(line(1, robot_.power_management().counters()));
+    shell.report(line(2, robot_.light_ring().counters()));
   }
 
  private:
-  static std::string line(std::string_view board, const protocol::Counters& counters) {
+  [[nodiscard]] std::string line(std::size_t board, const protocol::Counters& counters) const {
+    if (!(*ports_)[board].on) return fmt::format("{:<17} switched off", board_names[board]);
     std::string text;
     protocol::for_each(counters, [&text](std::string_view name, std::uint32_t value) {
       if (value != 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, value);
     });
-    return fmt::format("{:<17} {}", board, text.empty() ? "nothing came" : text);
+    return fmt::format("{:<17} {}", board_names[board], text.empty() ? "nothing came" : text);
   }
 
+  const Ports* ports_;
   SimulatedRobot<Port> robot_;
 };
 

@@ -56,11 +56,14 @@ struct Watched {
 TEST_CASE("An AMiRo on a virtual bus says where it is, and at its end what each board received") {
   const Folder folder;
   Watched watched;
-  const Ending ending = sim::serve_amiro(folder / "bus", {}, watched.shell());
+  sim::AmiroOptions options;
+  options.without = {"light_ring"};
+  const Ending ending = sim::serve_amiro(folder / "bus", options, watched.shell());
   CHECK(ending.well());
   REQUIRE(watched.reports.size() == 5);
   CHECK(watched.reports[0].starts_with("simulated AMiRo on --bus sim:"));
   CHECK(watched.reports[1] == "di_wheel_drive    nothing came");
+  CHECK(watched.reports[3] == "light_ring        switched off");
   CHECK(watched.reports[4].starts_with("bus               0 frames, 0 clients"));
 }
 
