@@ -26,6 +26,7 @@ struct LogFile::State {
   std::string path;
   int descriptor = -1;
   bool regular = false;
+  bool made_now = false;  ///< the name was free
   dev_t device = 0;
   ino_t inode = 0;
   bool finished = false;
@@ -39,6 +40,12 @@ struct LogFile::State {
   Signals signals = Signals::reach;
 
   bool broken = false;  ///< the writer was cut off: it takes no more, and what came before can be written
+
+  /// Whether the name is still of the file that was opened.
+  [[nodiscard]] bool is_named() const noexcept {
+    struct stat named {};
+    return ::stat(path.c_str(), &named) == 0 && named.st_dev == device && named.st_ino == inode;
+  }
 
   /// Runs `append`; where that has no memory, nothing of what it appended is written.
   template <class Append>
@@ -79,7 +86,6 @@ struct LogFile::State {
   bool open(Existing existing) {
     constexpr int how = O_WRONLY | O_CREAT | O_CLOEXEC;
     constexpr ::mode_t all_users = 0666;  // less the umask
-    bool made_now = false;
     if (path == "-") {
       descriptor = STDOUT_FILENO;
     } else {
@@ -213,6 +219,10 @@ bool LogFile::finish() {
   return done;
 }
 
+void LogFile::discard() noexcept {
+  if (state_->regular && state_->made_now && state_->is_named()) ::unlink(state_->path.c_str());
+}
+
 const transport::Failure& LogFile::failure() const noexcept {
   return state_->failure;
 }
@@ -234,11 +244,7 @@ Place LogFile::place() const noexcept {
   if (!state_->regular || state_->finished || ::fstat(state_->descriptor, &ours) != 0) return Place::as_named;
   if (ours.st_nlink == 0) return Place::deleted;
   if (ours.st_size >= 0 && static_cast<std::uint64_t>(ours.st_size) < state_->size) return Place::emptied;
-  struct stat named {};
-  if (::stat(state_->path.c_str(), &named) == 0 && named.st_dev == state_->device &&
-      named.st_ino == state_->inode)
-    return Place::as_named;
-  return Place::elsewhere;
+  return state_->is_named() ? Place::as_named : Place::elsewhere;
 }
 
 transport::Failure exists_failure(const std::string& path) {

@@ -21,7 +21,7 @@ struct ConvertOptions {
   bool strict = false;
 };
 
-/// Copies to the end, or until a signal or a full disk; how many frames.
+/// Copies to the end, or until a signal or a full disk; how many frames were read.
 std::uint64_t copy(logs::OpenedLog& in, logs::LogFile& out) {
   std::array<log::Entry, log::batch> entries;
   std::uint64_t frames = 0;
@@ -29,9 +29,9 @@ std::uint64_t copy(logs::OpenedLog& in, logs::LogFile& out) {
   while (interrupted() == 0) {
     const std::size_t count = in.reader().read(entries);
     if (count == 0) break;
+    frames += count;
     if (!out.write(std::span{entries}.first(count), in.reader().interfaces())) return frames;
     if (live && count < entries.size() && !out.flush()) return frames;
-    frames += count;
   }
   out.recorded(in.reader().recorded());
   out.finish();
@@ -50,14 +50,18 @@ void convert(Session& session, const ConvertOptions& options, int& exit_code) {
   const std::uint64_t frames = copy(in, **out);
   const bool written = (*out)->failure().what.empty();
   const bool whole = written && interrupted() == 0 && !in.ended_early();
-  remark(fmt::format("{}, {} to {}{}", counted(frames, "frame"), in.format().name, format.name,
-                     whole ? ""
-                           : fmt::format(": {} {}", options.out == "-" ? "the standard output" : options.out,
-                                         (*out)->size() == 0 ? "is empty" : "holds the beginning only")));
+  const std::string name = options.out == "-" ? "the standard output" : options.out;
+  const std::string kept = (*out)->size() == 0 ? fmt::format(": nothing of it is in {}", name)
+                                               : fmt::format(": {} holds the beginning only", name);
+  // How many of them a full disk took is not known: they are handed to it in large pieces.
+  remark(fmt::format("{}{}, {} to {}{}", counted(frames, "frame"), written ? "" : " read", in.format().name,
+                     format.name, whole ? "" : kept));
   const bool unreadable = in.complain();
   logs::tell_losses((*out)->lost(), format);
+  if (!written && (*out)->size() == 0) (*out)->discard();
   if (!written) fail((*out)->failure(), exit_code_after_interrupt(exit_failure));
-  const bool nothing = frames == 0 && unreadable;
+  const bool nothing = frames == 0 && (unreadable || in.ended_early());
+  if (nothing) (*out)->discard();
   const bool not_all = unreadable || (*out)->lost().any();
   if (in.ended_early() || nothing || (options.strict && not_all)) exit_code = exit_failure;
   exit_code = exit_code_after_interrupt(exit_code);

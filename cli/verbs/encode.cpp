@@ -58,6 +58,7 @@ void encode(Session& session, const EncodeOptions& options, int& exit_code) {
   logs::tell_losses((*out)->lost(), format);
   if (!(*out)->failure().what.empty()) fail((*out)->failure(), exit_code_after_interrupt(exit_failure));
   if (lines.failed()) exit_code = exit_failure;
+  if (lines.failed() && frames == 0) (*out)->discard();
   exit_code = exit_code_after_interrupt(exit_code);
 }
 

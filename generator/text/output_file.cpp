@@ -24,7 +24,7 @@ std::optional<Problem> replace(const std::string& path, const std::filesystem::p
   std::string temporary = target.string() + ".XXXXXX";
   const int file = ::mkstemp(temporary.data());
   if (file < 0)
-    return Problem{path, std::string{"no file can be made beside it: "} + std::strerror(errno),
+    return Problem{path, std::string{"it cannot be written: "} + std::strerror(errno),
                    "a folder that exists and that you may write to"};
   const ::mode_t mask = ::umask(0);
   ::umask(mask);

@@ -115,10 +115,15 @@ class Failing(Base):
             self.assertEqual(self.frames(name), 60, what)
         return whole
 
+    def expect_no_empty(self, name):
+        def broken(what, _):
+            self.assertFalse(os.path.exists(self.path(name)) and os.path.getsize(self.path(name)) == 0, what)
+        return broken
+
     def test_convert_says_each_failing_write(self):
         for ending in ENDINGS:
             with self.subTest(ending):
-                self.walk_files(("convert", "in.log", f"out.{ending}"), self.expect_all(f"out.{ending}"))
+                self.walk_files(("convert", "in.log", f"out.{ending}"), self.expect_all(f"out.{ending}"), self.expect_no_empty(f"out.{ending}"))
 
     def test_convert_says_each_failing_allocation(self):
         for ending in ENDINGS:
