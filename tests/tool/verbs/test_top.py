@@ -81,6 +81,29 @@ class Top(played_adapter.WithAdapter, screens.Screens):
         self.press(100, "q")
         self.assertEqual(self.ended(100)[-1], "END 0")
 
+    def test_keys_that_move(self):
+        self.start_bus("gyro", "odom", "power")
+        self.open(100, "--bus", "sim", "top", rows=24)
+        self.shows(100, "gyroscope", "odometry", "power_status")
+        self.press(100, "p")  # a row that is late would change its place
+        self.shows(100, "PAUSED")
+
+        def opened():
+            """The row with lines of its fields below it."""
+            lines = self.screen(100, joined=False)
+            return [above.split()[0] for above, below in zip(lines, lines[1:]) if below.startswith("  ") and above[:1].isalpha()]
+        first, second, last = (line.split()[0] for line in self.screen(100, joined=False) if line.startswith(("gyro", "odom", "power")))
+        for keys, chosen in ((("End",), last), (("Up",), second), (("Home",), first), (("NPage",), last), (("PPage",), first), (("Down",), second)):
+            self.press(100, *keys, "Enter")
+            harness.waiting.until(lambda name=chosen: opened() == [name], f"{chosen} opens")
+            self.press(100, "Enter")
+            harness.waiting.until(lambda: not opened(), "it closes")
+        self.press(100, "/", "o", "x", "BSpace", "d", "Enter")
+        harness.waiting.until(lambda: not self.row(100, "gyroscope"), "the filter")
+        self.shows(100, "odometry", "/od")
+        self.press(100, "q")
+        self.assertEqual(self.ended(100)[-1], "END 0")
+
     def click(self, columns, line):
         """As a terminal of xterm's kind says it: button, column and line, each 32 more, from 1; then the release."""
         for button in " #":
@@ -180,6 +203,8 @@ class Top(played_adapter.WithAdapter, screens.Screens):
         self.shows(80, "20.0 of 29.9 s", " 3.5 deg/s")  # sample 200, in steps of 17.5 mdeg/s
         self.press(80, ",")
         self.shows(80, "19.0 of 29.9 s", " 3.325 deg/s")
+        self.press(80, "Left")
+        self.shows(80, " 9.0 of 29.9 s")
         self.press(80, "]", "]", "p")
         self.shows(80, " end")
         # A graph that is asked for now shows what came before.
