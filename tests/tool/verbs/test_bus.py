@@ -50,6 +50,17 @@ class OnTheBus(Case):
         for word in ("no power_status within 300ms", "power_management", "500000"):
             self.assertIn(word, err)
 
+    def test_a_sample_that_is_never_whole_or_of_another_length(self):
+        self.start_sim("--without", "power_management")
+        for frame, words in (("61F#0102", "of it came, and never all of a sample: does the bus lose frames? See `amiroctl doctor`"),
+                             ("61F#01", "of it came in another length: does the robot run another protocol version?")):
+            asked = self.start("once", "ring", "--wait", "2s", "--no-confirm")
+            while asked.poll() is None:
+                self.run_tool("send", frame)
+            out, err = asked.communicate(timeout=60)
+            self.assertEqual(asked.returncode, 1)
+            self.assertRegex(err, r"amiroctl: once: no proximity_ring within 2s\n +\d+ frames? " + re.escape(words))
+
     def test_formats(self):
         self.start_sim()
         self.run_tool("publish", "odom", "50ms")
