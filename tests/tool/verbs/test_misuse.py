@@ -698,6 +698,10 @@ operate x.json --black-box-files 0
 operate: --black-box-files 0: out of range
 write a number from 1 to 10000
 
+sim --bitrate 1000000001
+sim: --bitrate 1000000001: no bit rate of a simulated bus
+1000 to 1000000000 bits a second, such as 500k or 125000
+
 sim --bitrate 99999999999
 sim: --bitrate 99999999999: no bit rate of a simulated bus
 1000 to 1000000000 bits a second, such as 500k or 125000
