@@ -8,7 +8,7 @@ import struct
 import subprocess
 import termios
 
-from harness import AMIROCTL, Case, main
+from harness import AMIROCTL, SOURCE, Case, main
 
 
 class Terminal(Case):
@@ -50,6 +50,18 @@ class Terminal(Case):
         # Columns: all lines of a topic are as long as each other.
         for topic in ("gyroscope", "magnetometer"):
             self.assertEqual(len({len(line) for line in lines if topic in line}), 1)
+
+    def test_the_severity_of_what_doctor_finds_is_in_colour(self):
+        self.run_tool("send", "208#03")  # the board says that it has refused it: a note
+        with open(os.path.join(SOURCE, "spec", "topics.json"), encoding="utf-8") as file:
+            other = file.read().replace('"scale": 0.0175', '"scale": 0.035')  # of another robot: a problem
+        spec = os.path.join(self.folder, "spec.json")
+        with open(spec, "w", encoding="utf-8") as file:
+            file.write(other)
+        for environment, marks in (({}, ("\033[2mnote    \033[0m", "\033[31mproblem \033[0m")), ({"NO_COLOR": "1"}, ("note    ", "problem "))):
+            shown = self.on_terminal("--spec", spec, "doctor", "--listen", "200ms", code=1, **environment)
+            for mark in marks:
+                self.assertRegex(shown, r"(?m)^" + re.escape(mark) + " di_wheel_drive: ")
 
     def test_no_colour(self):
         for arguments, environment in ((["--no-color"], {}), ([], {"NO_COLOR": "1"})):
