@@ -260,6 +260,24 @@ class Recording(Case):
         self.assertIn("a.log was deleted while it was recorded", err)
         self.assertIn("0 frames can be read, 10 were not written", err)
 
+    def test_a_file_that_another_program_empties_is_an_error(self):
+        self.start_sim()
+        recorder = self.record("-o", "a.log")
+        self.send_numbered(10)
+        waiting.until(lambda: os.path.getsize(self.path("a.log")) > 0, "the first frames are in the file")
+        os.truncate(self.path("a.log"), 0)
+        _, err = recorder.communicate(timeout=60)
+        self.assertEqual(recorder.returncode, 1, err)
+        self.assertIn("a.log was emptied by another program while it was recorded", err)
+
+    def test_a_ring_that_is_recorded_to_is_not_joined(self):
+        self.start_sim()
+        recorder = self.record("-o", "bb.log", "--split", "1h", "--ring", "2")
+        _, err = self.run_tool("record", "-o", self.path("bb.log"), "--split", "1h", "--ring", "2", "--duration", "100ms", code=1)
+        self.assertRegex(err, "another program records to .*bb_001.log now\n +end it, or give another name")
+        self.interrupt(recorder)
+        self.assertEqual(self.ring("bb_"), ["bb_001.log"])
+
     def test_a_file_that_is_moved_is_recorded_to_the_end(self):
         self.start_sim()
         recorder = self.record("-o", "a.log")
