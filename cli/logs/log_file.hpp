@@ -48,8 +48,8 @@ class LogFile {
   bool flush(bool to_disk = false);
   /// Writes the end of the format, flushes and closes.
   bool finish();
-  /// After `finish`, where no frame could be read: takes an ordinary file that `create` made away again, so
-  /// that the next try finds the name free. A file that was there before stays.
+  /// After `finish`, where no frame could be read: deletes an ordinary file that `create` has made, so that
+  /// the next try finds the name free. A file that was there before stays.
   void discard() noexcept;
 
   [[nodiscard]] const transport::Failure& failure() const noexcept;

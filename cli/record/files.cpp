@@ -113,7 +113,7 @@ bool Files::write(std::span<const log::Entry> entries, const log::Interfaces& in
                   base::Duration now) {
   clock_.fetched(entries, now);
   while (!entries.empty()) {
-    // Not before something follows: an empty file would end the recording.
+    // Only now that a frame follows: the recording would leave an empty file at its end.
     if (options_.split.size != 0 && file_->size() >= options_.split.size && !next_file()) return false;
     std::size_t count = entries.size();
     if (options_.split.time > base::Duration::zero()) count = entries_before_split(entries);

@@ -50,9 +50,10 @@ void convert(Session& session, const ConvertOptions& options, int& exit_code) {
   const std::uint64_t frames = copy(in, **out);
   const bool written = (*out)->failure().what.empty();
   const bool whole = written && interrupted() == 0 && !in.ended_early();
-  const std::string name = options.out == "-" ? "the standard output" : options.out;
-  const std::string kept = (*out)->size() == 0 ? fmt::format(": nothing of it is in {}", name)
-                                               : fmt::format(": {} holds the beginning only", name);
+  const std::string kept = (*out)->size() == 0
+                               ? ": nothing of it was written"
+                               : fmt::format(": {} holds the beginning only",
+                                             options.out == "-" ? "the standard output" : options.out);
   // How many of them a full disk took is not known: they are handed to it in large pieces.
   remark(fmt::format("{}{}, {} to {}{}", counted(frames, "frame"), written ? "" : " read", in.format().name,
                      format.name, whole ? "" : kept));

@@ -16,8 +16,8 @@ namespace ocm::log {
 
 /// What an entry had and the format has not.
 enum class Lost : std::uint8_t {
-  entry,  ///< the whole entry: the format has no such frames. All others: it was written without that
-  time,   ///< all of its time, which is earlier or later than the format can say: written is the nearest
+  entry,        ///< the whole entry: the format has no such frames. All others: it was written without that
+  time,         ///< all of its time, which the format cannot say, too early or too late: it says the nearest
   time_digits,  ///< digits of its time, beyond the format's finest
   direction,
   interface,  ///< its name; the format has numbers, or none. An empty name is none
