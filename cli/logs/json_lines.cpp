@@ -61,6 +61,7 @@ JsonLineParser::JsonLineParser(const protocol::Catalogue& catalogue, Values valu
         texts.fields.emplace_back(field);
         texts.multiplexed = texts.multiplexed || field.selector != protocol::no_selector;
       }
+      texts.given_in.resize(texts.fields.size());
       texts.overlapping = has_common_bits(layout.fields);
     }
 }
@@ -68,6 +69,10 @@ JsonLineParser::JsonLineParser(const protocol::Catalogue& catalogue, Values valu
 bool JsonLineParser::refuse(log::Cause cause, std::string what, std::string remedy) {
   problem_ = {cause, std::move(what), std::move(remedy)};
   return false;
+}
+
+bool JsonLineParser::refuse_twice(std::string_view what, std::string_view name) {
+  return refuse(log::Cause::syntax, fmt::format("{} {} is given twice", what, shown(name)), "give it once");
 }
 
 bool JsonLineParser::parse(std::string_view line, log::Entry& entry, std::string_view& bus) {
@@ -101,10 +106,12 @@ bool JsonLineParser::scan(std::string_view line) {
       std::string_view key;
       if (!scanner.take_key(key)) return broken();
       if (key == "fields") {
+        if (record_.has_fields) return refuse_twice("key", key);
         if (!scan_fields(scanner)) return problem_.what.empty() ? broken() : false;
         continue;
       }
       if (key == "fd") {
+        if (record_.has_fd) return refuse_twice("key", key);
         if (!scan_fd(scanner)) return problem_.what.empty() ? broken() : false;
         continue;
       }
@@ -119,6 +126,7 @@ bool JsonLineParser::scan(std::string_view line) {
                                : key == "raw_dlc"   ? &record_.raw_dlc
                                                     : nullptr;
       if (value == nullptr) pass_over(key);
+      if (value != nullptr && *value) return refuse_twice("key", key);
       if (!(value != nullptr ? scanner.take_value(*value) : scanner.skip_value())) return broken();
     } while (scanner.take(','));
     if (!scanner.take('}')) return broken();
@@ -167,6 +175,7 @@ bool JsonLineParser::scan_fields(JsonScanner& scanner) {
 bool JsonLineParser::scan_fd(JsonScanner& scanner) {
   record_.has_fd = true;
   record_.fd_flags = log::flag::fd;
+  bool has_brs = false, has_esi = false;
   const auto wrong = [this] {
     return refuse(log::Cause::syntax, R"("fd" has no flags)",
                   R"(write "fd":{"brs":true,"esi":false}, or leave it out for a classic frame)");
@@ -178,8 +187,13 @@ bool JsonLineParser::scan_fd(JsonScanner& scanner) {
     bool set = false;
     if (!scanner.take_key(key)) return false;
     if (!scanner.take_boolean(set)) return wrong();
-    if (key == "brs" && set) record_.fd_flags |= log::flag::bit_rate_switch;
-    if (key == "esi" && set) record_.fd_flags |= log::flag::error_state;
+    const bool brs = key == "brs";
+    if (!brs && key != "esi") {
+      pass_over(key);
+      continue;
+    }
+    if (std::exchange(brs ? has_brs : has_esi, true)) return refuse_twice("key", key);
+    if (set) record_.fd_flags |= brs ? log::flag::bit_rate_switch : log::flag::error_state;
   } while (scanner.take(','));
   return scanner.take('}');
 }
@@ -389,13 +403,13 @@ bool JsonLineParser::put_fields(log::Entry& entry, const Meaning& meaning) {
                   fmt::format("data of {} bytes with fields of {}", entry.length, meaning.frame.topic->name),
                   fmt::format("it has {} bytes; leave data or fields out", layout.length));
   const std::span data{entry.data.data(), entry.length};
-  const auto& [texts, multiplexed, overlapping] = texts_[&layout];  // none for a frame without fields
-  if (overlapping) return put_overlapping(data, layout);
+  Texts& texts = texts_[&layout];  // none for a frame without fields
+  if (texts.overlapping) return put_overlapping(data, layout);
   // Selectors first: they say which fields there are.
-  if (multiplexed)
+  if (texts.multiplexed)
     for (std::size_t i = 0; i < record_.field_count; ++i)
       if (!put_field(data, data, layout, record_.fields[i], texts, i, Part::selectors)) return false;
-  const Part rest = multiplexed ? Part::others : Part::all;
+  const Part rest = texts.multiplexed ? Part::others : Part::all;
   std::array<std::uint8_t, can::max_dlc> before{};  // only frames of topics have derived fields
   std::copy_n(data.begin(), std::min(data.size(), before.size()), before.begin());
   for (std::size_t i = 0; i < record_.field_count; ++i)
@@ -409,7 +423,7 @@ bool JsonLineParser::put_fields(log::Entry& entry, const Meaning& meaning) {
 /// What the data says already was not edited, even where an edited field lies over it. Of what was edited
 /// each must be there at the end as the line has it.
 bool JsonLineParser::put_overlapping(std::span<std::uint8_t> data, const protocol::FrameLayout& layout) {
-  const auto& texts = texts_[&layout].fields;
+  Texts& texts = texts_[&layout];
   std::array<std::uint8_t, log::max_fd_length> as_read{};
   std::copy(data.begin(), data.end(), as_read.begin());
   const std::span before = std::span{as_read}.first(data.size());
@@ -422,8 +436,6 @@ bool JsonLineParser::put_overlapping(std::span<std::uint8_t> data, const protoco
     const auto other = std::find_if(given_.begin(), given_.end(), [field = field](const Given& each) {
       return each.field != field && each.field->position.overlaps(field->position);
     });
-    if (other == given_.end())
-      return refuse(log::Cause::syntax, "field " + shown(field->name) + " is given twice", "give it once");
     return refuse(log::Cause::syntax,
                   fmt::format("fields {} and {} have bits in common, and cannot be what both are given",
                               shown(field->name), shown(other->field->name)),
@@ -457,8 +469,9 @@ bool JsonLineParser::agrees(const protocol::Field& field, const protocol::FrameL
 /// `before`: what counts as not edited. `hint`: where the field is if the line has all of them, in their
 /// order.
 bool JsonLineParser::put_field(std::span<std::uint8_t> data, std::span<const std::uint8_t> before,
-                               const protocol::FrameLayout& layout, const NamedText& named,
-                               std::span<const FieldText> fields, std::size_t hint, Part part) {
+                               const protocol::FrameLayout& layout, const NamedText& named, Texts& texts,
+                               std::size_t hint, Part part) {
+  const auto& fields = texts.fields;
   std::size_t i = hint < fields.size() && fields[hint].field().name == named.name ? hint : 0;
   while (i < fields.size() && fields[i].field().name != named.name) ++i;
   if (i == fields.size() && derived_field(layout, named.name) != nullptr) return true;  // looked at later
@@ -470,6 +483,7 @@ bool JsonLineParser::put_field(std::span<std::uint8_t> data, std::span<const std
   }
   const auto& field = fields[i].field();
   if (part != Part::all && layout.selects(i) != (part == Part::selectors)) return true;
+  if (std::exchange(texts.given_in[i], lines_) == lines_) return refuse_twice("field", named.name);
   const std::string_view text = named.value.text;
   if (part != Part::selectors && !layout.has(field, data))
     return refuse(log::Cause::syntax, "field " + shown(named.name) + " is not in this frame",
@@ -516,7 +530,9 @@ bool JsonLineParser::put_request(log::Entry& entry, const protocol::Topic& topic
     const auto& named = record_.fields[i];
     if (named.name != "mode" && named.name != "period")
       return refuse(log::Cause::syntax, "no field " + shown(named.name), "a request has mode and period");
-    (named.name == "mode" ? mode_text : period_text) = named.value;
+    JsonValue& value = named.name == "mode" ? mode_text : period_text;
+    if (value) return refuse_twice("field", named.name);
+    value = named.value;
   }
   constexpr std::string_view modes[] = {"stop", "publish", "once"};
   const auto* const found = std::find(std::begin(modes), std::end(modes), mode_text.text);

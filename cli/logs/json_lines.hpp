@@ -90,6 +90,7 @@ class JsonLineParser {
   };
 
   bool refuse(log::Cause cause, std::string what, std::string remedy);
+  bool refuse_twice(std::string_view what, std::string_view name);
   bool scan(std::string_view line);
   /// A key of which nothing is read.
   void pass_over(std::string_view key);
@@ -106,9 +107,10 @@ class JsonLineParser {
   bool put_fields(log::Entry& entry, const Meaning& meaning);
   bool put_overlapping(std::span<std::uint8_t> data, const protocol::FrameLayout& layout);
   enum class Part : std::uint8_t { all, selectors, others };
+  struct Texts;
   bool put_field(std::span<std::uint8_t> data, std::span<const std::uint8_t> before,
-                 const protocol::FrameLayout& layout, const NamedText& named,
-                 std::span<const FieldText> fields, std::size_t hint, Part part);
+                 const protocol::FrameLayout& layout, const NamedText& named, Texts& texts, std::size_t hint,
+                 Part part);
   [[nodiscard]] static const protocol::Field* derived_field(const protocol::FrameLayout& layout,
                                                             std::string_view name) noexcept;
   bool agrees(const protocol::Field& field, const protocol::FrameLayout& layout, std::string_view text,
@@ -128,6 +130,7 @@ class JsonLineParser {
   /// The fields of a layout.
   struct Texts {
     std::vector<FieldText> fields;
+    std::vector<std::uint64_t> given_in;  ///< the line that a field was given in last
     bool multiplexed = false;
     bool overlapping = false;  ///< two fields have bits in common
   };

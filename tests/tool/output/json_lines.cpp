@@ -324,6 +324,33 @@ TEST_CASE("JSON lines: what contradicts itself or is none is refused in words", 
   wrong(R"({"id":"4FF","fields":{"x":1},"data":"00"})", "of no topic");
 }
 
+TEST_CASE("JSON lines: what is given twice is refused, same or not", "[output]") {
+  const auto twice = [](std::string_view line, std::string_view what) {
+    const std::string answer = frame_of(line);
+    CAPTURE(line, answer);
+    CHECK(has(answer, fmt::format("{} is given twice; give it once", what)));
+  };
+  for (const std::string_view pair :
+       {R"("time_ns":5)", R"("bus":"can0")", R"("id":"608")", R"("priority":"medium")",
+        R"("topic":"gyroscope")", R"("frame":"gyroscope")", R"("data":"000000000000")",
+        R"("direction":"sent")", R"("raw_dlc":9)", R"("fields":{})", R"("fd":{})"})
+    twice(fmt::format("{{{},{}}}", pair, pair), fmt::format("key {}", pair.substr(0, pair.find(':'))));
+  twice(R"({"topic":"gyro","topic":"accel","fields":{}})", R"(key "topic")");
+  twice(replaced(gyroscope, "\"x\":", "\"x\":1,\"x\":"), R"(field "x")");
+  twice(replaced(gyroscope, "\"x\":0.0525", "\"x\":0.0525,\"x\":0.0525"), R"(field "x")");
+  twice(R"({"topic":"gyro","fields":{"x":1,"y":1,"x":2}})", R"(field "x")");
+  twice(R"({"topic":"gyro","frame":"request","fields":{"mode":"stop","mode":"publish"}})", R"(field "mode")");
+  twice(R"({"topic":"gyro","frame":"request","fields":{"mode":"publish","period":1,"period":1}})",
+        R"(field "period")");
+  twice(R"({"id":"608","fd":{"brs":true,"brs":false},"data":""})", R"(key "brs")");
+  twice(R"({"id":"608","fd":{"esi":true,"brs":false,"esi":true},"data":""})", R"(key "esi")");
+  // A key that is not read may be there twice, and each line has its own.
+  CHECK(has(frame_of(replaced(gyroscope, "{", R"({"note":1,"note":2,)")), "608#"));
+  const auto log = log::testing::read_all<JsonLinesReader>(fmt::format("{}\n{}\n", gyroscope, gyroscope),
+                                                           amiro::catalogue);
+  CHECK(log.entries.size() == 2);
+}
+
 TEST_CASE("JSON lines: a log that is cut or damaged anywhere gives entries that can exist", "[output]") {
   const std::string text = std::string{gyroscope} + "\n" + std::string{gyroscope} + "\n";
   for (std::size_t size = 0; size < text.size(); ++size) {
