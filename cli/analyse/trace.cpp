@@ -121,22 +121,35 @@ struct Pace {
 };
 using Paces = std::map<std::uint32_t, Pace>;
 
-/// How far apart the set points of an actuator come, in a run.
-struct Distances {
-  std::size_t held = 0;   ///< about as drives are repeated
-  std::size_t other = 0;  ///< shorter ones
-  bool rested = true;
-
-  void add(std::int64_t distance, bool rests) {
-    constexpr std::int64_t period = client::hold_period.count();
-    const bool pause = rested || distance > period + period / 4;
-    if (!pause) ++(distance >= period - period / 4 ? held : other);
-    rested = rests;
+/// How far apart the set points of an actuator come.
+class Distances {
+ public:
+  void add(std::int64_t time, bool rests) {
+    if (last_) {
+      constexpr std::int64_t period = client::hold_period.count();
+      const std::int64_t distance = time - last_->time;
+      if (shortest_ == 0 || distance < shortest_) shortest_ = distance;
+      const bool pause = last_->rests || distance > period + period / 4;
+      if (!pause) ++(distance >= period - period / 4 ? held_ : other_);
+    }
+    last_ = Last{time, rests};
   }
+  /// 0: there was one set point.
+  [[nodiscard]] std::int64_t shortest() const { return shortest_; }
   /// Another period than that of a drive is not known well enough to lay a grid by.
   [[nodiscard]] Pace pace() const {
-    return held > other ? Pace{Grid::of_run, client::hold_period.count()} : Pace{Grid::none, 0};
+    return held_ > other_ ? Pace{Grid::of_run, client::hold_period.count()} : Pace{Grid::none, 0};
   }
+
+ private:
+  struct Last {
+    std::int64_t time;
+    bool rests;
+  };
+  std::optional<Last> last_;
+  std::int64_t shortest_ = 0;
+  std::size_t held_ = 0;   ///< in a run, about as drives are repeated
+  std::size_t other_ = 0;  ///< in a run, shorter ones
 };
 
 /// The topics that are in the log, with the periods that requests in it ask for, and all messages: they are
@@ -152,8 +165,6 @@ BusSet set_of(const Log& log, const protocol::Catalogue& catalogue, const spec::
     bool sent = false;
     protocol::Priority priority = protocol::default_priority;
     std::vector<Asked> asked;
-    std::int64_t last = 0;
-    std::int64_t shortest = 0;
     std::uint32_t key = 0;
     Distances distances;
   };
@@ -183,10 +194,7 @@ BusSet set_of(const Log& log, const protocol::Catalogue& catalogue, const spec::
       its.priority = id.priority;
       its.sent = true;
       if (frame.frame != 0) continue;
-      if (its.last != 0 && (its.shortest == 0 || arrival.time - its.last < its.shortest))
-        its.shortest = arrival.time - its.last;
-      its.distances.add(arrival.time - its.last, is_rest(arrival.frame));
-      its.last = arrival.time;
+      its.distances.add(arrival.time, is_rest(arrival.frame));
       its.key = can::arbitration_key(arrival.frame);
     }
   }
@@ -214,7 +222,8 @@ BusSet set_of(const Log& log, const protocol::Catalogue& catalogue, const spec::
       rate.period = topic.period.duration();
       if (asked != 0) rate.period = base::Duration{asked};
       if (topic.kind == protocol::Kind::actuator) {
-        rate.period = base::Duration{its->second.shortest > 0 ? its->second.shortest : 1'000'000'000};
+        const std::int64_t shortest = its->second.distances.shortest();
+        rate.period = base::Duration{shortest > 0 ? shortest : 1'000'000'000};
         remarks.push_back(
             fmt::format("{} has no period of its own: the shortest distance in the log, {}, counts.",
                         topic.name, time_text(rate.period.count())));

@@ -213,7 +213,7 @@ class Bus(Analyse):
 
     def test_the_usual_bit_rates(self):
         """A frame of 135 bits every 140 bits is in time at one of them, and not at the one before."""
-        usual = ("10 kbit/s", "20 kbit/s", "50 kbit/s", "125 kbit/s", "250 kbit/s", "500 kbit/s", "800 kbit/s", "1 Mbit/s")
+        usual = ("5 kbit/s", "10 kbit/s", "20 kbit/s", "50 kbit/s", "125 kbit/s", "250 kbit/s", "500 kbit/s", "800 kbit/s", "1 Mbit/s")
         for slower, faster in zip(usual, usual[1:]):
             rate = faster.replace(" kbit/s", "k").replace(" Mbit/s", "M")
             period = 140 * 10 ** 9 // (int(rate[:-1]) * (1000 if rate[-1] == "k" else 10 ** 6))
@@ -569,6 +569,12 @@ set,triggered,0,2000000,19003000
 act,sampled,2000000,2000,21005000
 """)
 
+    def test_a_slowest_hop_that_waits_for_nothing(self):
+        self.file(TASKS + "read,2,1000,1000000,,,\n", "cpu.csv")
+        self.file(BUS + "pose,1,7,1000000000,,\n", "bus.csv")
+        found = self.chain(self.HOPS + "read,cpu.csv,sampled\npose,bus.csv,triggered\n", "--bitrate", "125k")
+        self.assertEqual(found["why"], "pose takes the longest: 1ms")
+
     def test_over_the_robots_own_bus(self):
         found = self.chain(self.HOPS + "estimate,,sampled,2000000,,30000000\nodometry.pose,robot,triggered\n")
         self.assertGreater(found["latency_ns"], 2000000 + 111 * 2000)
@@ -719,6 +725,16 @@ b,15,20000000,20000000,20000000,20000000,0,136000,300000,true
         self.assertEqual((row["lateness_ns"], broken), (0, []))
         row, _ = motors(fast, "--rates", "motors=20ms", code=1)
         self.assertEqual(row["lateness_ns"], 5_000_000)
+
+    def test_set_points_of_a_log_that_begins_at_zero(self):
+        """As a simulation in virtual time writes it: a frame at time zero is one as any other."""
+        def motors(*times, code=0):
+            path = self.file("".join(f"({time:.6f}) can0 201#A086010000000000\n" for time in times), "zero.log")
+            return json.loads(self.run_tool("analyse", "trace", path, "--json", code=code)[0])["messages"][0]
+
+        self.assertEqual(motors(0, 0.02)["period_ns"], 20_000_000)
+        # What comes first has no distance, also where a drive's would fit: one of these two is as a drive repeats it.
+        self.assertEqual(motors(0.04, 0.14, 0.26, code=1)["lateness_ns"], 20_000_000)
 
     def test_a_refused_request_asks_for_nothing(self):
         frames = [(0, "208#01320000")] + [(1000 + i * 50000, "608#000000000000") for i in range(50)]
