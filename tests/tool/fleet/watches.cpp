@@ -281,6 +281,20 @@ TEST_CASE("pausing: it is said again each half second until updates stay away an
   CHECK(step(700ms + 1500ms) == Pausing::Seen::obeys);
 }
 
+TEST_CASE("pausing: a robot that sends no update from the first word on is believed after a while, too") {
+  PlayedLine line;
+  auto& robot = standing(line);
+  const base::Time begin{10s};
+  Pausing pausing{robot, true, begin};
+  for (int word = 1; word <= 2; ++word) {
+    robot.heard = begin + word * 100ms;
+    CHECK(pausing.step(line, begin + word * 100ms) == Pausing::Seen::not_yet);
+  }
+  // The first word may have been lost: its silence counts from the second on.
+  CHECK(pausing.step(line, begin + 500ms + 1499ms) == Pausing::Seen::not_yet);
+  CHECK(pausing.step(line, begin + 500ms + 1500ms) == Pausing::Seen::obeys);
+}
+
 TEST_CASE("pausing: one word is too few, and a robot that is lost or never obeys is said so") {
   PlayedLine line;
   auto& robot = standing(line);
