@@ -665,6 +665,10 @@ Verb Program::root() noexcept {
 }
 
 Program::Outcome Program::run(int argc, char** argv) {
+  if (const auto misuse = empty_word({argv + std::min(argc, 1), argv + argc})) {
+    complain({misuse->what, misuse->remedy});
+    return Outcome::refused;
+  }
   try {
     app_->parse(words_of(argc, argv));
     return Outcome::done;

@@ -127,6 +127,9 @@ std::optional<Refusal> refuse(const Option& option, const std::vector<OptionValu
   const bool bare = option.most_values() > 0 && option.least_values() == 0;  // --loop, or --loop 3
   if (bare && values.front().kind == ValueKind::truth) return std::nullopt;
   for (const OptionValue& value : values)
+    if (value.kind == ValueKind::text && value.text.empty())
+      return Refusal{"is empty", "give it a value, or leave the line out"};
+  for (const OptionValue& value : values)
     if (const auto refusal = refuse_value(option.accepted(), value)) {
       auto told = as_on_the_command_line(option, value.text, *refusal);
       if (!suits(option.accepted(), value.kind) && !told->remedy.ends_with("quotes"))

@@ -122,6 +122,23 @@ std::optional<Misuse> misuse_before_verb(Verb program, const std::vector<std::st
   return {};
 }
 
+std::optional<Misuse> empty_word(const std::vector<std::string>& words) {
+  const auto misuse = [](std::string what) {
+    return Misuse{"an empty " + what, "is a variable of the shell not set?"};
+  };
+  std::string_view before;
+  for (const std::string_view word : words) {
+    if (word == "--") return {};
+    if (word.empty() && before.size() > 1 && before.front() == '-')
+      return misuse(fmt::format("value for {}", before));
+    if (word.empty()) return misuse(before.empty() ? "word" : fmt::format("word behind '{}'", before));
+    if (word.starts_with("--") && word.find('=') == word.size() - 1)
+      return misuse(fmt::format("value for {}", word.substr(0, word.size() - 1)));
+    before = word;
+  }
+  return {};
+}
+
 Misuse missing_value(Verb program, const std::string& option_name) {
   for (Verb verb = innermost(program); verb; verb = verb.parent())
     for (const Option& option : verb.options())

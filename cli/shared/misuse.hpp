@@ -20,6 +20,10 @@ namespace ocm::cli {
 /// Of a command line that ends, or goes on with another option, where the value of this one is expected.
 [[nodiscard]] Misuse missing_value(Verb program, const std::string& option_name);
 
+/// An empty word or value, as a variable of a shell leaves that is not set: verbs would take it for none.
+/// Behind `--` all words are as they are meant.
+[[nodiscard]] std::optional<Misuse> empty_word(const std::vector<std::string>& words);
+
 /// Prints it with the verb that was called.
 void refuse(Verb program, const Misuse& misuse);
 

@@ -151,6 +151,7 @@ class Config(harness.Case):
                 ('bus = true', "bus true: not a text", "write a text, in quotes"),
                 ('bus = ["sim", "can0"]', "bus is given more than once", "give it once"),
                 ('bus = []', "bus is an array without a value", "leave the line out"),
+                ('bus = ""', "bus is empty", "give it a value, or leave the line out"),
                 ('no-color = "yes"', "no-color 'yes': neither true nor false", "write true or false, without quotes"),
                 ('dry-run = 1', "dry-run 1: neither true nor false", "write true or false, without quotes"),
                 ('[sim]\nboards = "paper"', "boards paper: unknown value", "one of: host, qemu"),

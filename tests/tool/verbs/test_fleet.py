@@ -236,7 +236,7 @@ class Goto(Line):
     def test_wrong_words(self):
         for words, text in ((["AVR", "north", "5"], "ANGLE 'north'"), (["AVR", "361", "5"], "-360 to 360"),
                             (["AVR", "90", "4e9"], "DISTANCE '4e9'"), (["AVR", "90", "5.5"], "DISTANCE '5.5'"),
-                            (["AVR", "90", "99999999999999999999"], "DISTANCE"), (["AVR", "90", ""], "DISTANCE"),
+                            (["AVR", "90", "99999999999999999999"], "DISTANCE"), (["AVR", "90", ""], "an empty word behind '90'"),
                             (["AVR", "90"], "distance"), (["AVR", "90", "5", "--timeout", "soon"], "soon")):
             with self.subTest(words=words):
                 _, err = self.run_tool("goto", *words, code=2)

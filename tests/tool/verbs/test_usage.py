@@ -162,11 +162,19 @@ class Messages(Case):
         self.assertEqual(result.returncode, 2)
         self.assertIn(rb"no topic 'a\x9b2Jb\xc2\xffc" + b"\xc3\xa9'", result.stderr)
 
-    def test_an_empty_word_is_no_topic(self):
-        for words in (["info", ""], ["publish", ""], ["stop", ""], ["listen", ""], ["listen", "", "odom"],
-                      ["plot", "live", ""], ["decode", "--topic", "", os.devnull], ["replay", os.devnull, ""]):
-            _, err = self.run_tool(*words, code=2)
-            self.assertIn("no topic ''", err, words)
+    def test_an_empty_word_is_a_mistake(self):
+        """As a variable of the shell leaves it that is not set: no command does then what it does without the word."""
+        for words, what in ((["stop", ""], "word behind 'stop'"), (["", "listen"], "word"), (["decode", ""], "word behind 'decode'"),
+                            (["listen", "odom", "", "gyro"], "word behind 'odom'"), (["analyse", "bus", ""], "word behind 'bus'"),
+                            (["--bus", "", "drive", "5cm/s"], "value for --bus"), (["--bus=", "listen"], "value for --bus"),
+                            (["record", "-o", ""], "value for -o"), (["publish", "gyro", "--wait="], "value for --wait"),
+                            (["drive", "-", ""], "word behind '-'"), (["help", ""], "word behind 'help'"), ([""], "word")):
+            out, err = self.run_tool(*words, code=2)
+            self.assertEqual((out, err), ("", f"amiroctl: an empty {what}\n          is a variable of the shell not set?\n"))
+        # Behind -- a word is what it is; a value may have an equals sign at its end.
+        for words in (["info", "--", ""], ["listen", "--", "", "odom"]):
+            self.assertIn("no topic ''", self.run_tool(*words, code=2)[1])
+        self.assertIn("'' is not a number", self.run_tool("set", "motors", "x=", code=2)[1])
 
     def test_many_errors_of_a_script_are_counted(self):
         _, err = self.run_tool("run", "-", stdin="nonsense\n" * 100_000, code=2)
