@@ -23,8 +23,6 @@ bool can_be_interface(std::string_view name) {
 SpecWord parse_spec_word(const std::string& word) {
   const auto equals = word.find('=');
   std::error_code error;
-  if (word.empty())
-    fail({"--spec '': no file", "--spec FILE, or --spec can0=FILE for one interface"}, exit_usage);
   if (equals == std::string::npos || std::filesystem::exists(word, error)) return {"", word};
   const SpecWord parts{word.substr(0, equals), word.substr(equals + 1)};
   if (parts.interface.empty())
