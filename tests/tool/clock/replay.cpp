@@ -4,6 +4,7 @@
 #include <csignal>
 #include <cstring>
 
+#include "ocm/client/command.hpp"
 #include "ocm/topics/amiro.hpp"
 
 #include "cli/replay/player.hpp"

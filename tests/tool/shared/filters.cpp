@@ -92,6 +92,65 @@ TEST_CASE("filters: of topics, and with commands") {
       passes(id(Direction::sensor, Priority::low, 0x30), Format::base, filters_for(std::array{lamp}, true)));
 }
 
+TEST_CASE("filters: of messages, by identifier or parameter group, with packets where one goes in them") {
+  const auto message = [](protocol::FrameLayout& layout, protocol::Address address, std::uint16_t length) {
+    layout.address = address;
+    layout.length = length;
+    protocol::Topic topic;
+    topic.kind = protocol::Kind::message;
+    topic.frames = {&layout, 1};
+    return topic;
+  };
+  using By = protocol::Address::By;
+  protocol::FrameLayout base, extended, group, in_packets;
+  const protocol::Topic of_11_bits = message(base, {By::identifier, false, 0x123}, 64);
+  const protocol::Topic of_29_bits = message(extended, {By::identifier, true, 0x123}, 8);
+  const protocol::Topic in_one_frame = message(group, {By::pgn, true, 0x18FEF100}, 8);
+  const protocol::Topic in_several = message(in_packets, {By::pgn, true, 0x18FEEC00}, 9);
+  CHECK_FALSE(goes_in_packets(of_11_bits));
+  CHECK_FALSE(goes_in_packets(in_one_frame));
+  CHECK(goes_in_packets(in_several));
+  CHECK_FALSE(goes_in_packets(test::catalogue.topics[0]));
+
+  const Filters filters_11 = filters_for(std::array{&of_11_bits}, false);
+  CHECK(passes(0x123, Format::base, filters_11));
+  CHECK_FALSE(passes(0x124, Format::base, filters_11));
+  CHECK_FALSE(passes(0x123, Format::extended, filters_11));
+  CHECK_FALSE(passes(0x123, Format::base_remote, filters_11));
+  CHECK(bus_filters(filters_11));
+  const Filters filters_29 = filters_for(std::array{&of_29_bits}, true);
+  CHECK(passes(0x123, Format::extended, filters_29));
+  CHECK_FALSE(passes(0x123, Format::base, filters_29));
+  CHECK_FALSE(passes(0x1000'0123, Format::extended, filters_29));
+
+  // Packets of any message are in the groups EC00 and EB00. [SAE J1939-21, 5.10]
+  constexpr std::uint32_t announcement = 0x1CECFF00, packet = 0x1CEBFF00;
+  const Filters alone = filters_for(std::array{&in_one_frame}, false);
+  CHECK(passes(0x18FEF12A, Format::extended, alone));
+  CHECK_FALSE(passes(announcement, Format::extended, alone));
+  CHECK_FALSE(passes(packet, Format::extended, alone));
+  for (const auto& several :
+       {std::array{&in_several, &in_one_frame}, std::array{&in_one_frame, &in_several}}) {
+    const Filters with_packets = filters_for(several, false);
+    CHECK(passes(0x18FEEC2A, Format::extended, with_packets));
+    CHECK(passes(0x18FEF12A, Format::extended, with_packets));
+    CHECK(passes(announcement, Format::extended, with_packets));
+    CHECK(passes(packet, Format::extended, with_packets));
+    CHECK_FALSE(passes(0x18FEF200, Format::extended, with_packets));
+    CHECK_FALSE(passes(packet & CAN_SFF_MASK, Format::base, with_packets));
+    CHECK_FALSE(bus_filters(with_packets));
+  }
+  CHECK(is_packet(announcement, Format::extended));
+  CHECK_FALSE(is_packet(0x18FEF100, Format::extended));
+  CHECK_FALSE(is_packet(0x700, Format::base));
+  can::AnyFrame frame;
+  frame.id = packet;
+  frame.format = Format::extended;
+  CHECK(is_packet(log::Entry{{}, frame}));
+  frame.flags = can::fd_flags(true);  // CAN FD has no such protocol
+  CHECK_FALSE(is_packet(log::Entry{{}, frame}));
+}
+
 TEST_CASE("filters: a bus that filters base frames only, or does not filter") {
   constexpr canid_t formats = CAN_EFF_FLAG | CAN_RTR_FLAG;
   const auto known =

@@ -1,0 +1,180 @@
+// What a verb says of frames that do not leave, and how long it waits for them.
+#include "cli/shared/outgoing.hpp"
+
+#include "ocm/can/text.hpp"
+
+#include "cli/shared/messages.hpp"
+#include "tests/tool/clock/played_bus.hpp"
+#include "tests/tool/clock/said.hpp"
+
+namespace tool_clock_outgoing_test {
+
+using namespace ocm;
+using namespace ocm::test;
+using cli::Outgoing;
+
+constexpr Moment never = Moment::max();
+constexpr const char* none_acknowledges =
+    "          no node acknowledges the frames: is a board powered and connected, and is the bit rate the "
+    "same?\n";
+
+can::Frame frame(std::string_view text) {
+  const auto parsed = can::parse_frame(text);
+  REQUIRE(parsed.ok());
+  return *parsed;
+}
+
+/// What it says as it leaves, and how long that took.
+struct Left {
+  std::string text;
+  Duration after{};
+};
+template <class Act>
+Left left(World& world, Act&& act) {
+  const Moment begin = world.now();
+  Said said;
+  int code = 0;
+  try {
+    act();
+  } catch (const cli::Exit& exit) {
+    code = exit.code;
+  }
+  CHECK(code == cli::exit_failure);
+  return {said.text(), world.now() - begin};
+}
+
+TEST_CASE("outgoing: a full queue is waited for, a second and no longer") {
+  World world{1};
+  PlayedBus::Conditions conditions;
+  conditions.room = 1;
+  conditions.frame_time = 5ms;
+  conditions.stuck = {{World::start, World::start + 900ms}, {World::start + 902ms, never}};
+  PlayedBus bus{world, std::move(conditions)};
+  Outgoing outgoing{bus, "led"};
+  outgoing.send(frame("23C#010203"));
+  outgoing.send(frame("23D#010203"));  // when the first has left
+  CHECK(world.now() >= World::start + 900ms);
+  CHECK(world.now() < World::start + 910ms);
+  CHECK(outgoing.stood_still() < 10ms);  // it looked at the clock all the time
+  world.pass(100ms);
+  const Left end = left(world, [&] { outgoing.send(frame("23E#010203")); });
+  CHECK(end.text == std::string{"amiroctl: led: the transmit queue of can0 stays full: 23E#010203 was not "
+                                "sent\n"} +
+                        none_acknowledges);
+  CHECK(end.after >= 1s);
+  CHECK(end.after < 1010ms);
+  CHECK(bus.sent().size() == 2);
+}
+
+TEST_CASE("outgoing: a bus that is down is said before anything is sent, or when it goes down") {
+  World world{1};
+  PlayedBus::Conditions conditions;
+  conditions.down = {{World::start + 10ms, never}};
+  PlayedBus bus{world, std::move(conditions)};
+  Outgoing outgoing{bus, "stop", "it moves"};
+  world.pass(20ms);
+  CHECK(left(world, [&] {
+          const Outgoing late{bus, "stop", "it moves"};
+        }).text == "amiroctl: stop: can0 is down; nothing was sent; it moves\n          bring it up\n");
+  CHECK(left(world, [&] { outgoing.send(frame("205#00")); }).text ==
+        "amiroctl: stop: can0 is down: 205#00 was not sent; it moves\n"
+        "          bring it up: sudo ip link set can0 up\n");
+}
+
+TEST_CASE("outgoing: what is no frame is none") {
+  World world{1};
+  PlayedBus bus{world, {}};
+  Outgoing outgoing{bus, "send"};
+  can::Frame wrong = frame("205#00");
+  wrong.id = 0x800;
+  const Left end = left(world, [&] { outgoing.send(wrong); });
+  CHECK_THAT(end.text, Catch::Contains("cannot be sent: "));
+  CHECK(end.after < 10ms);
+}
+
+TEST_CASE("outgoing: how many frames did not leave, after half a second in which none did") {
+  const auto waits = [](std::size_t frames, Duration stuck_after) {
+    World world{1};
+    PlayedBus::Conditions conditions;
+    conditions.frame_time = 1ms;
+    conditions.stuck = {{World::start + stuck_after, never}};
+    PlayedBus bus{world, std::move(conditions)};
+    Outgoing outgoing{bus, "led"};
+    for (std::size_t i = 0; i < frames; ++i) outgoing.send(frame("23C#010203"));
+    return left(world, [&] { outgoing.expect_all_left(); });
+  };
+  const Left one = waits(1, 0s);
+  CHECK(one.text == std::string{"amiroctl: led: the frame did not leave can0, and may leave later\n"} +
+                        none_acknowledges);
+  CHECK(one.after >= 500ms);
+  CHECK(one.after < 510ms);
+  CHECK(waits(3, 0s).text ==
+        std::string{"amiroctl: led: 3 of 3 frames did not leave can0, and may leave later\n"} +
+            none_acknowledges);
+  const Left some = waits(3, 1500us);  // one leaves before
+  CHECK(some.text == std::string{"amiroctl: led: 2 of 3 frames did not leave can0, and may leave later\n"} +
+                         none_acknowledges);
+  CHECK(some.after >= 500ms);
+}
+
+TEST_CASE("outgoing: a slow bus is waited for as long as frames leave, and one that cannot tell is not") {
+  World world{1};
+  PlayedBus::Conditions conditions;
+  conditions.frame_time = 400ms;
+  PlayedBus slow{world, conditions};
+  Outgoing outgoing{slow, "led"};
+  for (int i = 0; i < 5; ++i) outgoing.send(frame("23C#010203"));
+  const Moment begin = world.now();
+  outgoing.expect_all_left();
+  CHECK(world.now() - begin > 1900ms);
+  CHECK(slow.sent().back().left <= world.now());
+  conditions.knows_delivery = false;
+  PlayedBus silent{world, conditions};
+  Outgoing other{silent, "led"};
+  other.send(frame("23C#010203"));
+  const Moment sent = world.now();
+  CHECK(other.all_left(1s));
+  CHECK(world.now() - sent < 10ms);
+}
+
+TEST_CASE("outgoing: what it means that frames do not leave is said once something has left") {
+  World world{1};
+  PlayedBus::Conditions conditions;
+  conditions.frame_time = 1ms;
+  PlayedBus bus{world, conditions};
+  Outgoing outgoing{bus, "drive"};
+  CHECK_FALSE(outgoing.matters());
+  outgoing.send(frame("23C#010203"));
+  world.pass(10ms);
+  CHECK_FALSE(outgoing.matters());
+  outgoing.otherwise_after_the_next("it moves");
+  CHECK_FALSE(outgoing.matters());
+  outgoing.send(frame("201#0100000000000000"));
+  CHECK_FALSE(outgoing.matters());  // in the queue
+  world.pass(10ms);
+  CHECK(outgoing.matters());
+  outgoing.otherwise_after_the_next("something else");  // it has a meaning
+  CHECK(outgoing.matters());
+
+  // Where that cannot be known, what was taken counts.
+  conditions.knows_delivery = false;
+  conditions.gone = world.now() + 1s;
+  PlayedBus silent{world, conditions};
+  Outgoing other{silent, "drive"};
+  other.otherwise_after_the_next("it moves");
+  CHECK_FALSE(other.matters());
+  other.send(frame("201#0100000000000000"));
+  CHECK(other.matters());
+  other.otherwise("it goes on");
+  world.pass(1s);
+  CHECK(left(world, [&] { other.send(frame("201#0000000000000000")); }).text ==
+        "amiroctl: can0 is gone; it goes on\n          plug it in\n");
+  CHECK_FALSE(other.all_left(1s));
+
+  PlayedBus new_one{world, {}};
+  Outgoing stop{new_one, "stop"};
+  stop.otherwise("it moves");  // whether or not something has left
+  CHECK(stop.matters());
+}
+
+}  // namespace tool_clock_outgoing_test
