@@ -386,6 +386,16 @@ class OnSerialLines(Case):
             self.assertIn(words, error)
 
 
+class Many(Case):
+    def test_as_many_robots_as_it_takes(self):
+        """The speed is one that no line has, so that it ends."""
+        def refused(count):
+            robots = [word for number in range(count) for word in ("--robot", f"R{number}=/nowhere/{number}")]
+            return self.run_tool("central", *robots, "--baud", "38401", code=2)[1]
+        self.assertIn("a serial line has no speed 38401 here", refused(64))
+        self.assertIn("central: 65 robots\n          it takes at most 64\n", refused(65))
+
+
 class OnAPseudoTerminal(Case):
     """The server is a program that opens the central's line, such as the one of thesis 2."""
 
