@@ -91,7 +91,9 @@ constexpr Quantity quantities[] = {
      [](const Bus& b) -> std::optional<double> { return number(b.figures.counters.errors); }},
     {"drops", Unit::none, nullptr, [](const Bus& b) -> std::optional<double> { return number(b.drops); }},
     {"unknown", Unit::none, nullptr,
-     [](const Bus& b) -> std::optional<double> { return number(b.figures.counters.unknown); }},
+     [](const Bus& b) -> std::optional<double> {
+       return number(b.figures.counters.unknown + b.figures.counters.fd);
+     }},
 };
 
 std::vector<std::string_view> names_of(bool bus) {
