@@ -5,7 +5,7 @@
 #include "ocm/topics/amiro.hpp"
 
 #include "cli/shared/messages.hpp"
-#include "tests/tool/clock/said.hpp"
+#include "tests/tool/captured.hpp"
 #include "tests/tool/clock/world.hpp"
 
 namespace tool_clock_other_commander_test {
@@ -23,15 +23,23 @@ can::Received received(std::string_view text) {
   return {{}, *parsed};
 }
 
+/// What is said meanwhile.
+template <class Act>
+std::string said(Act&& act) {
+  Captured said{STDERR_FILENO};
+  act();
+  return said.text();
+}
+
 /// What it says as it refuses; empty: it does not.
 std::string refusal(OtherCommander& other) {
-  Said said;
-  try {
-    other.refuse_if_heard();
-  } catch (const cli::Exit& exit) {
-    CHECK(exit.code == cli::exit_failure);
-  }
-  return said.text();
+  return said([&] {
+    try {
+      other.refuse_if_heard();
+    } catch (const cli::Exit& exit) {
+      CHECK(exit.code == cli::exit_failure);
+    }
+  });
 }
 
 TEST_CASE("another commander: set points of the last 150 ms are heard, and counted") {
@@ -67,51 +75,39 @@ TEST_CASE("another commander: set points of the last 150 ms are heard, and count
 
 TEST_CASE("another commander: while this program drives it is said once, counted, and a stop is one") {
   const World world{1};
-  Said said;
-  {
-    OtherCommander other{amiro::catalogue, "run"};
-    other.sum_up();
-    CHECK(said.text().empty());
-    other.take(received(moves), true);
-    CHECK(said.text() ==
-          "run: another program commands motors, too: 201#50C3000000000000; the robot follows the set point "
-          "that came last\n");
-    CHECK_FALSE(other.has_stopped());
-    other.sum_up();
-    CHECK(said.text() == "run: 1 set point of another program came meanwhile\n");
-    other.take(received(moves), true);
-    other.take(received(rests), true);
-    CHECK(other.has_stopped());
-    CHECK(said.text().empty());
-    other.take(received(moves), false);  // none of this program's moves any more
-    other.sum_up();
-    CHECK(said.text() == "run: 3 set points of another program came meanwhile\n");
-  }
+  OtherCommander other{amiro::catalogue, "run"};
+  const auto takes = [&](const char* frame, bool holding) {
+    return said([&] { other.take(received(frame), holding); });
+  };
+  const auto sums_up = [&] { return said([&] { other.sum_up(); }); };
+  CHECK(sums_up().empty());
+  CHECK(
+      takes(moves, true) ==
+      "run: another program commands motors, too: 201#50C3000000000000; the robot follows the set point that "
+      "came last\n");
+  CHECK_FALSE(other.has_stopped());
+  CHECK(sums_up() == "run: 1 set point of another program came meanwhile\n");
+  CHECK(takes(moves, true).empty());
+  CHECK(takes(rests, true).empty());
+  CHECK(other.has_stopped());
+  CHECK(takes(moves, false).empty());  // none of this program's moves any more
+  CHECK(sums_up() == "run: 3 set points of another program came meanwhile\n");
   // A stop needs no warning.
-  OtherCommander stopped{amiro::catalogue, "run"};
-  stopped.take(received(rests), true);
-  CHECK(stopped.has_stopped());
-  CHECK(said.text().empty());
+  other = OtherCommander{amiro::catalogue, "run"};
+  CHECK(takes(rests, true).empty());
+  CHECK(other.has_stopped());
 }
 
 TEST_CASE("another commander: a board that drives by itself is one, unless this program has asked it to") {
   const World world{1};
   OtherCommander other{amiro::catalogue, "drive"};
   REQUIRE(other.unheard_sensor() != nullptr);
-  {
-    Said said;
-    other.tell_unanswered();
-    CHECK(said.text() ==
-          "drive: di_wheel_drive has not answered, so it may be off; `amiroctl doctor` says which boards are "
-          "there\n");
-  }
+  CHECK(said([&] { other.tell_unanswered(); }) ==
+        "drive: di_wheel_drive has not answered, so it may be off; `amiroctl doctor` says which boards are "
+        "there\n");
   other.take(received("60D#0100000000000000"), false);
   CHECK(other.unheard_sensor() == nullptr);
-  {
-    Said said;
-    other.tell_unanswered();
-    CHECK(said.text().empty());
-  }
+  CHECK(said([&] { other.tell_unanswered(); }).empty());
   CHECK(
       refusal(other) ==
       "amiroctl: drive: di_wheel_drive drives the wheels by itself, as another program has asked it to: "

@@ -4,8 +4,8 @@
 #include "ocm/can/text.hpp"
 
 #include "cli/shared/messages.hpp"
+#include "tests/tool/captured.hpp"
 #include "tests/tool/clock/played_bus.hpp"
-#include "tests/tool/clock/said.hpp"
 
 namespace tool_clock_outgoing_test {
 
@@ -32,7 +32,7 @@ struct Left {
 template <class Act>
 Left left(World& world, Act&& act) {
   const Moment begin = world.now();
-  Said said;
+  Captured said{STDERR_FILENO};
   int code = 0;
   try {
     act();

@@ -1,13 +1,14 @@
 // How long a verb listens for refusals, and what it makes of them.
 #include "cli/command/refusal_watch.hpp"
 
+#include <string>
 #include <vector>
 
 #include "ocm/can/text.hpp"
 #include "ocm/topics/amiro.hpp"
 
+#include "tests/tool/captured.hpp"
 #include "tests/tool/clock/played_bus.hpp"
-#include "tests/tool/clock/said.hpp"
 
 namespace tool_clock_refusal_watch_test {
 
@@ -36,6 +37,12 @@ struct Bench {
     watch.listen(bus);
     return (world.now() - begin) / 1ms;
   }
+  /// Whether it tells of refusals, and what it says.
+  std::string tells() {
+    Captured said{STDERR_FILENO};
+    const bool any = watch.tell();
+    return (any ? "true: " : "false: ") + said.text();
+  }
   static PlayedBus::Conditions conditions(const Refusals& refusals) {
     PlayedBus::Conditions conditions;
     for (const auto& [at, text] : refusals) conditions.incoming.push_back({World::start + at, frame(text)});
@@ -61,26 +68,20 @@ constexpr const char* light_bad_length = "759#3C03010000000000";
 TEST_CASE("refusals: for what no board refuses it listens 100 ms, and says nothing") {
   Bench bench{{}};
   CHECK(bench.listens(led()) == 100);
-  Said said;
-  CHECK_FALSE(bench.watch.tell());
-  CHECK(said.text().empty());
+  CHECK(bench.tells() == "false: ");
   bench.watch.leave_if_refused();
 }
 
 TEST_CASE("refusals: of one frame the refusal is the end, of several all may be refused") {
   Bench one{{{20ms, light_bad_length}}};
   CHECK(one.listens(led()) == 20);
-  {
-    Said said;
-    CHECK(one.watch.refused().size() == 1);
-    CHECK_THROWS_AS(one.watch.leave_if_refused(), cli::Exit);
-    CHECK_THAT(said.text(),
-               Catch::StartsWith("amiroctl: set: light_ring refuses led_1: bad_length (the board "
-                                 "expects another number of bytes)\n"));
-    CHECK(one.watch.refused().empty());
-    CHECK(one.watch.tell());  // it was
-    CHECK(said.text().empty());
-  }
+  CHECK(one.watch.refused().size() == 1);
+  CHECK_THAT(one.tells(),
+             Catch::StartsWith("true: amiroctl: set: light_ring refuses led_1: bad_length (the board expects "
+                               "another number of bytes)\n"));
+  CHECK(one.watch.refused().empty());
+  CHECK(one.tells() == "true: ");  // it was
+  CHECK_THROWS_AS(one.watch.leave_if_refused(), cli::Exit);
   Bench both{{{20ms, light_bad_length}, {30ms, motors_not_served}}};
   CHECK(both.listens(two()) == 100);
   CHECK(both.watch.refused().size() == 2);
@@ -90,9 +91,7 @@ TEST_CASE("refusals: what could be asked for instead goes in place of a remedy")
   Bench bench{{{20ms, light_bad_length}}};
   CHECK(bench.listens(led()) == 20);
   bench.watch.offer("ask for less");
-  Said said;
-  CHECK(bench.watch.tell());
-  CHECK_THAT(said.text(), Catch::EndsWith("\n          ask for less\n"));
+  CHECK_THAT(bench.tells(), Catch::EndsWith("\n          ask for less\n"));
 }
 
 TEST_CASE("refusals: what came before, or late, or was not sent, is none of it") {
@@ -128,7 +127,6 @@ TEST_CASE("refusals: of a stop, what is not served is at rest, but for the motor
 TEST_CASE("refusals: a signal leaves") {
   Bench bench{{}};
   bench.world.interrupt(World::start + 30ms, 2);
-  Said said;
   try {
     static_cast<void>(bench.listens(led()));
     CHECK(false);

@@ -2,6 +2,7 @@
 
 import json
 import os
+import signal
 import subprocess
 
 from harness import AMIROCTL, SOURCE, Case, main
@@ -93,6 +94,42 @@ class FullDisk(Case):
                 self.assertEqual(done.returncode, 1)
                 # Of what is longer than a buffer an earlier write fails, and its reason is not kept.
                 self.assertRegex(done.stderr, "No space left on device|an earlier write failed")
+
+
+class Streams(Case):
+    def ended(self, *arguments, **options):
+        done = subprocess.run([AMIROCTL, *arguments], env=self.environment, cwd=self.folder, text=True, timeout=30, check=False,
+                              **({"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE} | options))
+        return done.returncode, done.stderr
+
+    def test_a_disk_that_is_full_at_the_end(self):
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            self.assertEqual(self.ended("publish", "gyro", "1s", "--dry-run", stdout=full),
+                             (1, "amiroctl: cannot write to the standard output: No space left on device\n"))
+
+    def test_a_reader_that_has_gone(self):
+        """It is killed, as other programs are; where the signal is ignored, it says why it ends."""
+        for ignored, end in ((False, (-signal.SIGPIPE, "")), (True, (1, "amiroctl: cannot write to the standard output: Broken pipe\n"))):
+            reader, writer = os.pipe()
+            os.close(reader)
+            ignore = (lambda: signal.signal(signal.SIGPIPE, signal.SIG_IGN)) if ignored else None
+            self.assertEqual(self.ended("list", stdout=writer, preexec_fn=ignore), end)
+            os.close(writer)
+
+    def test_one_that_was_closed_is_no_other_file(self):
+        self.assertEqual(self.ended("list", preexec_fn=lambda: os.close(1)), (1, "amiroctl: cannot write to the standard output: Bad file descriptor\n"))
+        self.assertEqual(self.ended("decode", preexec_fn=lambda: os.close(0)),
+                         (1, "amiroctl: cannot read the standard input: Bad file descriptor\n          expected a log\n"))
+        with open(os.path.join(self.folder, "a.log"), "w", encoding="ascii") as file:
+            file.write("(1.0) can0 608#0A0000000000\n")
+        code, remarks = self.ended("convert", "a.log", "a.csv")
+        self.assertEqual((code, remarks.splitlines()[0]), (0, "1 frame, candump to csv"))
+        self.assertEqual(self.ended("convert", "a.log", "b.csv", preexec_fn=lambda: os.close(2)), (0, ""))
+        texts = []
+        for name in ("a.csv", "b.csv"):
+            with open(os.path.join(self.folder, name), encoding="ascii") as file:
+                texts.append(file.read())
+        self.assertEqual(texts[1], texts[0])  # and not what was to be said
 
 
 class Look(Case):
