@@ -238,6 +238,8 @@ TEST_CASE("what is wrong is said of the word where it stands") {
       {"send 0x205#00", 1, "the identifier is not three hex digits, or eight", ""},
       {"send 20G#00", 1, "the identifier is not three hex digits, or eight", ""},
       {"send FFF#00", 1, "identifier out of range for its format", ""},
+      {"send FFFFFFFF#00", 1, "identifier out of range for its format", ""},
+      {"send 1FFFFFFG#00", 1, "the identifier is not three hex digits, or eight", ""},
       {"send 205#001122334455667788", 1, "length", ""},
       {"send 20000004#", 1, "is an error frame", ""},
       {"send 123##", 1, "not of the expected form", "205##101840302"},

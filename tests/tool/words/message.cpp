@@ -3,6 +3,7 @@
 
 #include <array>
 #include <initializer_list>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -294,6 +295,70 @@ TEST_CASE("a message is sent again and again with --every") {
   CHECK(command->repeat->lasting == 2s);
   CHECK(parse("set Engine rpm=1 --every 10ms")->repeat->lasting == 0s);
   CHECK_FALSE(parse("set Engine rpm=1")->repeat.has_value());
+}
+
+TEST_CASE("a message of any length that its kind of frame has is composed, and none of one byte more") {
+  const auto composes = [](bool fd, protocol::Address::By by, std::uint16_t length) {
+    protocol::FrameLayout one = layout({}, 0x18FEEC00, true, length);
+    one.fd = fd;
+    one.address.by = by;
+    protocol::Topic topic = topics[2];
+    topic.frames = {&one, 1};
+    const auto bytes = compose(topic, {});
+    return bytes.ok() ? std::to_string(bytes->size()) : bytes.error.what + "; " + bytes.error.remedy;
+  };
+  using By = protocol::Address::By;
+  CHECK(composes(false, By::identifier, 8) == "8");
+  CHECK(composes(false, By::identifier, 9) ==
+        "Long is a message of 9 bytes; a classic frame has 8 bytes at most; state CAN FD in the spec");
+  CHECK(composes(true, By::identifier, 64) == "64");
+  CHECK(composes(true, By::identifier, 65) ==
+        "Long is a message of 65 bytes in CAN FD; a frame of CAN FD has 64 bytes at most");
+  CHECK(composes(false, By::pgn, 8) == "8");
+  CHECK(composes(false, By::pgn, 1785) == "1785");
+  CHECK(composes(false, By::pgn, 1786) ==
+        "Long is a message of 1786 bytes of J1939; its transport protocol takes 1785 bytes at most");
+}
+
+TEST_CASE("a stated range has its ends, of floats too, and all names of values") {
+  Field real = field("r", {0, 32, ByteOrder::little});
+  real.number = protocol::Number::float32;
+  const auto raw = [&real](double value) { return *real.float_from(value); };
+  CHECK(is_in_stated_range(real, raw(1e30)));  // none is stated
+  real.min = {-1, 0};
+  real.max = {25, -1};
+  for (const double value : {-1.0, 0.0, 2.5}) CHECK(is_in_stated_range(real, raw(value)));
+  for (const double value : {-1.0625, 2.5625, std::numeric_limits<double>::quiet_NaN()})
+    CHECK_FALSE(is_in_stated_range(real, raw(value)));
+  Field whole = field("w", {0, 8, ByteOrder::little});
+  whole.scale = {5, -1};
+  whole.min = {1, 0};
+  whole.max = {10, 0};
+  whole.values = gears;
+  for (const int value : {0, 1, 2, 7, 20}) CHECK(is_in_stated_range(whole, value));
+  for (const int value : {21, 255}) CHECK_FALSE(is_in_stated_range(whole, value));
+}
+
+TEST_CASE("the bits of a selector are its number, and are said by its names") {
+  Field selector = field("gear", {0, 4, ByteOrder::little}, true);
+  CHECK(detail::bits_of(selector, -1) == 0xF);
+  CHECK(detail::raw_of(selector, 0xF) == -1);
+  CHECK(detail::raw_of(selector, 0x7) == 7);
+  selector.values = gears;
+  Field chosen = field("speed", {8, 8, ByteOrder::little});
+  constexpr SelectorRange some[] = {{1, 1}, {5, 7}, {0xF, 0xF}};
+  chosen.selected = some;
+  CHECK(detail::presence(chosen, selector) == "speed is there only with gear=first, 5 to broken, -1");
+  selector.is_signed = false;
+  CHECK(detail::raw_of(selector, 0xF) == 15);
+  selector.values = {};
+  selector.scale = {2, 0};
+  CHECK(detail::presence(chosen, selector) == "speed is there only with gear=2, 10 to 14, 30");
+  for (const std::uint64_t bits : {1U, 5U, 6U, 7U, 15U}) CHECK(detail::selects(chosen, bits));
+  for (const std::uint64_t bits : {0U, 2U, 4U, 8U, 14U, 16U}) CHECK_FALSE(detail::selects(chosen, bits));
+  const Field word = field("word", {0, 64, ByteOrder::little});
+  CHECK(detail::bits_of(word, -1) == UINT64_MAX);
+  CHECK(detail::raw_of(word, UINT64_MAX) == -1);
 }
 
 }  // namespace tool_words_message_test

@@ -54,6 +54,11 @@ TEST_CASE("units of the same kind convert exactly") {
   CHECK(converted("0.001km", "m") == "1");
   CHECK(converted("7", "m/s") == "7");  // bare: already in the field's unit
   CHECK(converted("-930mW", "W") == "-0.93");
+  CHECK(converted("7nm", "um") == "0.007");
+  CHECK(converted("5dm", "cm") == "50");
+  CHECK(converted("3\u00b5m", "nm") == "3000");
+  CHECK(converted("3\u03bcm", "nm") == "3000");
+  CHECK(converted("2l", "L") == "2");
 }
 
 TEST_CASE("units per second, minute and hour convert") {

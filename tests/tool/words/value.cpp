@@ -1,9 +1,11 @@
 #include "cli/words/value.hpp"
 
+#include <algorithm>
 #include <random>
 #include <string>
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 
 #include "ocm/can/text.hpp"
 #include "ocm/topics/amiro.hpp"
@@ -204,6 +206,50 @@ TEST_CASE("a number with more digits than a Decimal has is a raw number all the 
   CHECK(parse_value(number, "1138689841553980.056804799") == INT64_MAX);
   number.raw_max = 1'000'000'000'000'000'000;  // a range that is stated
   CHECK_FALSE(parse_value(number, "1138689841553980.056804799").ok());
+}
+
+TEST_CASE("what a field takes is said with its range, or by its law") {
+  protocol::Field field{"n", {0, 8, protocol::ByteOrder::little}, false, {5, -1}, {}, "", 0, 255, {}};
+  CHECK(detail::takes(field) == "n takes 0 to 127.5");
+  field.unit = "V";
+  field.min = {1, 0};
+  field.max = {100, 0};
+  CHECK(detail::takes(field) == "n takes 1 to 100 V");
+  constexpr protocol::NamedValue names[] = {{0, "off"}, {1, "on"}};
+  field.values = names;
+  CHECK(detail::takes(field) == "n takes off, on, or 1 to 100 V");
+  field.flags = true;
+  CHECK(detail::takes(field) == "n takes 1 to 100 V");
+  field = {"f", {0, 32, protocol::ByteOrder::little}, false, {1, 0}, {}, "m", 0, 0, {}};
+  field.number = protocol::Number::float32;
+  CHECK(detail::takes(field) == "f takes any number m");
+  field.min = {-1, 0};
+  field.max = {25, -1};
+  CHECK(detail::takes(field) == "f takes -1 to 2.5 m");
+  const auto ring = amiro::catalogue.find("ring")->frames[0].values();
+  const auto distance =
+      std::find_if(ring.begin(), ring.end(), [](const protocol::Field& each) { return each.is_derived(); });
+  REQUIRE(distance != ring.end());
+  CHECK(detail::takes(*distance) == "distance is 0.0038 to 0.2 m");
+}
+
+TEST_CASE("a float is read with its unit or without, in another unit, and no further than it goes") {
+  protocol::Field field{"f", {0, 32, protocol::ByteOrder::little}, false, {1, 0}, {}, "m", 0, 0, {}};
+  field.number = protocol::Number::float32;
+  const auto value = [&field](std::string_view typed) {
+    const auto raw = parse_value(field, typed);
+    return raw.ok() ? text(*base::parse_decimal(fmt::format("{}", field.value(*raw)))) : raw.error;
+  };
+  CHECK(value("1.5") == "1.5");
+  CHECK(value("+1.5 m") == "1.5");
+  CHECK(value("25cm") == "0.25");
+  CHECK(value("1e39") == "'1e39' is out of range: f takes any number m");
+  CHECK(value("1e999") == "'1e999' is out of range: f takes any number m");
+  CHECK(value("1.5s") == "'1.5s' is in another unit: f takes any number m");
+  CHECK(value("1.5x5") == "'1.5x5' is in another unit: f takes any number m");
+  CHECK(value("fast") == "'fast' is not a number: f takes any number m");
+  CHECK_FALSE(parse_typed_value(field, "1.5").ok());
+  CHECK(parse_typed_value(field, "1.5m").ok());
 }
 
 }  // namespace tool_words_value_test
