@@ -16,6 +16,7 @@
 
 #include "cli/command/timeline.hpp"
 #include "cli/shared/messages.hpp"
+#include "tests/tool/captured.hpp"
 #include "tests/tool/clock/played_bus.hpp"
 #include "tests/unit/base/explore.hpp"
 
@@ -259,6 +260,50 @@ TEST_CASE("broadcasts: what was to be sent once and waits is known") {
   CHECK(counted.broadcasts.unfinished()->message == &topics[0]);
   REQUIRE(counted.broadcasts.waiting().size() == 1);
   CHECK(counted.broadcasts.waiting()[0]->message == &topics[1]);
+}
+
+TEST_CASE("broadcasts: what was late, waited, met another or was cut off is said") {
+  const auto said_of = [](const std::vector<client::Command>& commands, World& world,
+                          PlayedBus::Conditions conditions = {}) {
+    PlayedBus bus{world, std::move(conditions)};
+    Captured said{STDERR_FILENO};
+    Timeline timeline{bus, truck, "set", Timeline::Others::allowed, cli::Confirm::no, {}};
+    for (const auto& each : commands) timeline.carry_out(each);
+    static_cast<void>(timeline.wait_for_end());
+    const bool fine = timeline.finish();
+    static_cast<void>(timeline.finish());  // what was said is not said again
+    return said.text() + (fine ? "fine" : "not fine");
+  };
+  World calm{1};
+  CHECK(said_of({command(0, 1, client::Repeat{500ms, 2s})}, calm) == "fine");
+  World late{1};
+  late.stop(World::start + 580ms, 6s);
+  CHECK(said_of({command(0, 1, client::Repeat{500ms, 2s})}, late) ==
+        "set: 3 broadcasts left out or begun again, because this program or can0 was too late\nfine");
+  World once{1};
+  once.stop(World::start + 80ms, 2s);
+  CHECK(said_of({command(0, 1)}, once) ==
+        "set: 1 broadcast left out or begun again, because this program or can0 was too late\nfine");
+  World both{1};
+  CHECK_THAT(
+      said_of({command(1, 1, client::Repeat{500ms, 10s}), command(0, 1, client::Repeat{200ms, 10s})}, both),
+      Catch::Matches("set: [0-9]+ broadcasts left out, because a source sends one at a time\nfine"));
+  World cut{1};
+  cut.interrupt(World::start + 80ms, SIGINT);
+  CHECK(said_of({command(0, 1), command(1, 1)}, cut) ==
+        "set: Vehicle was not sent to its end\nset: Trouble was not sent\nfine");
+  const std::string first =
+      "set: another node broadcasts from source 2A during Vehicle, so listeners may drop both\n";
+  PlayedBus::Conditions conditions;
+  for (const Duration at : {20ms, 30ms, 520ms, 1020ms, 1900ms})
+    conditions.incoming.push_back(
+        {World::start + at, {0x1CEBFF2A, 8, {1, 2, 3, 4, 5, 6, 7, 8}, can::Format::extended}});
+  World met{1};
+  CHECK(said_of({command(0, 1, client::Repeat{500ms, 2s})}, met, conditions) ==
+        first + "set: 3 broadcasts met others of the same source\nnot fine");
+  conditions.incoming.resize(2);
+  World met_once{1};
+  CHECK(said_of({command(0, 1, client::Repeat{500ms, 2s})}, met_once, conditions) == first + "not fine");
 }
 
 TEST_CASE("broadcasts: a bus that takes nothing ends the command") {

@@ -10,6 +10,7 @@
 #include "cli/shared/behaviour_sensor.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/shared/set_points.hpp"
+#include "tests/tool/captured.hpp"
 #include "tests/tool/clock/played_bus.hpp"
 #include "tests/tool/clock/question.hpp"
 #include "tests/unit/base/explore.hpp"
@@ -437,6 +438,66 @@ TEST_CASE("set: after a stop nothing is sent behind the end of what is sent agai
     CHECK(timeline.finish());
     CHECK(bus.sent().size() == row.sent);
   }
+}
+
+/// What is said of a command that is carried out, to its end.
+std::string said_of(const client::Command& command, PlayedBus::Conditions conditions,
+                    std::optional<std::pair<Moment, Duration>> stop = {}) {
+  World world{1};
+  PlayedBus bus{world, std::move(conditions)};
+  if (stop) world.stop(stop->first, stop->second);
+  Captured said{STDERR_FILENO};
+  try {
+    Timeline timeline{bus, amiro::catalogue, "set", Timeline::Others::allowed, cli::Confirm::no, {}};
+    timeline.carry_out(command);
+    static_cast<void>(timeline.wait_for_end());
+    static_cast<void>(timeline.finish());
+  } catch (const cli::Exit& exit) {
+    CHECK(exit.code == cli::exit_failure);
+  }
+  return said.text();
+}
+
+TEST_CASE("set: what was not sent is counted and said, with the reason") {
+  const std::vector<std::string_view> words{"led", "1", "red"};
+  auto led = cli::words::CommandParser{amiro::catalogue}.parse_line(words);
+  REQUIRE(led.ok());
+  led->repeat = client::Repeat{100ms, 1s};
+  const auto stops = [&](Duration lasting) {
+    return said_of(*led, {}, std::pair{World::start + 310ms, lasting});
+  };
+  CHECK(stops(10ms).empty());
+  CHECK(stops(180ms).empty());  // of two turns neither is lost
+  CHECK(stops(230ms) == "set: 1 frame was not sent, because this program ran too late for its time\n");
+  CHECK(stops(5s) == "set: 6 frames were not sent, because this program ran too late for their time\n");
+  const auto down = [&](Duration lasting) {
+    return said_of(*led, {.down = {{World::start + 150ms, World::start + 150ms + lasting}}});
+  };
+  CHECK(down(30ms).empty());
+  const std::string goes = "can0 went down; waiting for it to come back\n", comes = "can0 is up again\n";
+  CHECK(down(100ms) == goes + comes + "set: 1 frame was not sent, because can0 had not taken those before\n");
+  CHECK(down(300ms) ==
+        goes + comes + "set: 3 frames were not sent, because can0 had not taken those before\n");
+  CHECK(down(10s) ==
+        goes +
+            "set: 5 frames were not sent, because can0 had not taken those before\n"
+            "amiroctl: set: can0 has taken no frame for 500ms: can0 is down\n          bring it up\n");
+  const auto stuck = [&](Duration from, Duration lasting) {
+    return said_of(drive(1s),
+                   {.frame_time = 1ms, .stuck = {{World::start + from, World::start + from + lasting}}});
+  };
+  CHECK(stuck(150ms, 30ms).empty());
+  CHECK(stuck(150ms, 200ms) == "set: 1 set point was not sent, because the one before had not left\n");
+  CHECK(stuck(150ms, 300ms) == "set: 2 set points were not sent, because the one before had not left\n");
+  const std::string
+      five =
+          "set: 5 set points were not sent, because the one before had not left\n"
+          "amiroctl: set: no set point has left can0 for 500ms; ",
+      remedy =
+          "          no node acknowledges the frames: is a board powered and connected, and is the bit "
+          "rate the same?\n";
+  CHECK(stuck(150ms, 10s) == five + cli::still_moving + "\n" + remedy);
+  CHECK(stuck(0ms, 10s) == five + "no set point has reached the robot\n" + remedy);
 }
 
 TEST_CASE("drive: of a script whose program was stopped, whenever that was, one step at most is late") {
