@@ -131,6 +131,20 @@ TEST_CASE("options are values, and a script's line is split into words and value
   CHECK(parser.parse(once, {}).error == WordError{1, "missing TOPIC", "usage: amiroctl once TOPIC"});
 }
 
+TEST_CASE("the value of an option is read alone, too") {
+  CHECK(*read_lasting("1ns") == 1ns);
+  CHECK(read_lasting("0s").error == WordError{0, "not a time above zero", "write 2s, 500ms or 1min"});
+  CHECK(read_lasting("-1s").error.what == "not a time above zero");
+  CHECK(read_lasting("5").error.what == "a time without a unit");
+  CHECK(*read_every("100us") == 100us);
+  CHECK(read_every("99999ns").error ==
+        WordError{0, "not a time of 100us or more", "write 10ms, 1s or 500us"});
+  CHECK(*read_priority("3") == protocol::Priority::low);
+  CHECK(*read_priority("0") == protocol::Priority::urgent);
+  CHECK(read_priority("").error ==
+        WordError{0, "not a priority", "write urgent, high, medium or low, or 0 to 3"});
+}
+
 TEST_CASE("drive holds, until told otherwise or for a time") {
   const auto command = parse("drive 5cm/s --for 2s");
   REQUIRE(command.ok());
