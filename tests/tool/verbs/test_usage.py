@@ -120,11 +120,14 @@ class Streams(Case):
         self.assertEqual(self.ended("list", preexec_fn=lambda: os.close(1)), (1, "amiroctl: cannot write to the standard output: Bad file descriptor\n"))
         self.assertEqual(self.ended("decode", preexec_fn=lambda: os.close(0)),
                          (1, "amiroctl: cannot read the standard input: Bad file descriptor\n          expected a log\n"))
-        with open(os.path.join(self.folder, "a.log"), "w", encoding="ascii") as file:
+        log = os.path.join(self.folder, "a.log")
+        with open(log, "w", encoding="ascii") as file:
             file.write("(1.0) can0 608#0A0000000000\n")
-        code, remarks = self.ended("convert", "a.log", "a.csv")
+        with open(log, encoding="ascii") as file:
+            code, remarks = self.ended("convert", "-", "a.csv", stdin=file)
         self.assertEqual((code, remarks.splitlines()[0]), (0, "1 frame, candump to csv"))
-        self.assertEqual(self.ended("convert", "a.log", "b.csv", preexec_fn=lambda: os.close(2)), (0, ""))
+        with open(log, encoding="ascii") as file:  # the file that is written is the next that is opened
+            self.assertEqual(self.ended("convert", "-", "b.csv", stdin=file, preexec_fn=lambda: os.close(2)), (0, ""))
         texts = []
         for name in ("a.csv", "b.csv"):
             with open(os.path.join(self.folder, name), encoding="ascii") as file:
