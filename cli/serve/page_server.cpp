@@ -159,6 +159,7 @@ void PageServer::forget() {
   model_interfaces();
   diagnosis_ = client::Diagnosis{catalogue_};
   status_requests_ = client::StatusRequests{catalogue_};
+  commanders_ = {};
   bounds_ = Bounds{catalogue_, rates_.nominal};
 }
 

@@ -390,6 +390,23 @@ class Serve(harness.Case):
         viewer.publish("/ocm/playback", {"speed": 0})
         self.assertIn("a time bar takes", viewer.text("status")["message"])
 
+    def test_a_log_that_is_wound_back_has_no_second_commander(self):
+        """One program that drives forwards and then back: a set point that comes again in the log that is read again is no other program's."""
+        path = os.path.join(self.folder, "there_and_back.log")
+        with open(path, "w", encoding="ascii") as file:
+            for i in range(100):
+                speed = "A0860100" if i < 50 else "607AFEFF"
+                file.write(f"({1000 + i / 10:.6f}) can0 201#{speed}00000000\n")
+        _, port, _ = self.serve(path)
+        viewer = self.viewer(port)
+        viewer.subscribe("/ocm/playback")
+        for jump, at in enumerate([9.9, 0, 9.9, 0, 9.9, 0, 9.9], 1):
+            viewer.publish("/ocm/playback", {"paused": True, "at_s": at})
+            self.state(viewer, "/ocm/playback", lambda s, jumps=jump: s["jumps"] == jumps, f"jump {jump}")
+        viewer.subscribe("/ocm/boards")
+        findings = viewer.message("/ocm/boards").fields["findings"]
+        self.assertEqual([each["what"] for each in findings if "two programs" in each["what"]], [])
+
     # --- commands ---
 
     def set_points(self, listener):
