@@ -62,6 +62,102 @@ TEST_CASE("a number may be the least and the most of its range") {
   }
 }
 
+/// A world of one robot, with more members, each followed by a comma.
+std::string with(const std::string& members, const std::string& of_robot = "") {
+  return R"({"name":"w",)" + members + R"("robots":[{"name":"A","model":"avr","at":[0,0])" + of_robot + "}]}";
+}
+
+TEST_CASE("each number has the bounds that are said, and both are allowed") {
+  struct Bounds {
+    std::string before, behind, of_robot;
+    std::string least, most, below, above, said;
+  };
+  const std::string walls = R"("walls":[],)";
+  const Bounds all[] = {
+      {walls + R"("friction":)", ",", "", "0.05", "2", "0.049", "2.01", "from 0.05 to 2 (0.5: the floor"},
+      {walls + R"("field":{"gauss":)", "},", "", "0.01", "2", "0.0099", "2.01", "from 0.01 to 2 gauss"},
+      {walls + R"("field":{"north":)", "},", "", "-360", "360", "-360.1", "360.1",
+       "from -360 to 360 degrees"},
+      {walls + R"("anomalies":[{"at":[0,0],"gauss":[0,0],"radius":)", "}],", "", "0.01", "1000", "0.009",
+       "1000.1", "from 0.01 to 1000 m"},
+      {walls + R"("anomalies":[{"at":[0,0],"radius":1,"gauss":[0,)", "]}],", "", "-8", "8", "-8.1", "8.1",
+       "from -8 to 8 gauss"},
+      {walls + R"("central":{"at":[0,0],"range":)", "},", "", "0.1", "1000", "0.09", "1000.1",
+       "from 0.1 to 1000 m"},
+      {walls + R"("central":{"at":[0,0],"loss_at_range":)", "},", "", "0", "1", "-0.1", "1.1",
+       "from 0 to 1 (a share of the packets)"},
+      {walls + R"("central":{"at":[)", ",0]},", "", "-1000", "1000", "-1000.1", "1000.1",
+       "from -1000 to 1000 m"},
+      {R"("walls":[[[5,5],[6,)", "]]],", "", "-1000", "1000", "-1000.1", "1000.1", "from -1000 to 1000 m"},
+      {walls, "", R"(,"heading":)", "-360", "360", "-360.1", "360.1", "from -360 to 360 degrees"},
+  };
+  for (const Bounds& each : all) {
+    const auto text = [&each](const std::string& number) {
+      return each.of_robot.empty() ? with(each.before + number + each.behind)
+                                   : with(each.before, each.of_robot + number);
+    };
+    for (const std::string& number : {each.least, each.most}) {
+      CAPTURE(text(number));
+      static_cast<void>(good(text(number)));
+    }
+    for (const std::string& number : {each.below, each.above}) {
+      CAPTURE(text(number));
+      const auto loaded = ocm::sim::worlds::parse(text(number), "f");
+      REQUIRE(loaded.problems.size() == 1);
+      CHECK(loaded.problems[0].what == number + " is out of range");
+      CHECK(loaded.problems[0].remedy.find("a number " + each.said) == 0);
+    }
+  }
+}
+
+TEST_CASE("a world holds so much, and no more") {
+  const auto list = [](std::size_t count, const auto& item) {
+    std::string text = "[";
+    for (std::size_t i = 0; i < count; ++i) text += (i == 0 ? "" : ",") + item(i);
+    return text + "]";
+  };
+  const auto corner = [](std::size_t i) { return "[" + std::to_string(i) + ",5]"; };
+  const auto wall = [&corner](std::size_t) { return "[" + corner(5) + "," + corner(6) + "]"; };
+  const auto only = [](const std::string& text) {
+    const auto loaded = ocm::sim::worlds::parse(text, "f");
+    REQUIRE(loaded.problems.size() == 1);
+    CHECK_FALSE(loaded.world);
+    return loaded.problems[0].what + "; " + loaded.problems[0].remedy;
+  };
+  CHECK(good(with(R"("walls":)" + list(1000, wall) + ",")).walls.size() == 1000);
+  CHECK(only(with(R"("walls":)" + list(1001, wall) + ",")) ==
+        "a list of 1001; a list of at most 1000 walls, [] for none");
+  const std::string long_wall = list(1000, corner);
+  CHECK(good(with(R"("walls":[)" + long_wall + "," + wall(0) + "],")).walls.size() == 1000);
+  CHECK(only(with(R"("walls":[)" + long_wall + "," + wall(0) + "," + wall(0) + "," + wall(0) + "],")) ==
+        "more than 1000 pieces of wall; fewer of them");
+  const auto anomaly = [](std::size_t) { return std::string{R"({"at":[0,0],"radius":1,"gauss":[0,0]})"}; };
+  const std::string of_anomalies = R"("walls":[],"anomalies":)";
+  CHECK(good(with(of_anomalies + list(100, anomaly) + ",")).anomalies.size() == 100);
+  CHECK(only(with(of_anomalies + list(101, anomaly) + ",")) ==
+        "a list of 101; a list of at most 100 anomalies");
+  const auto robot = [](std::size_t i) {
+    return R"({"name":")" + std::to_string(i) + R"(","model":"avr","at":[)" + std::to_string(i) + ",0]}";
+  };
+  const auto robots = [&](std::size_t count) {
+    return R"({"name":"w","walls":[],"robots":)" + list(count, robot) + "}";
+  };
+  CHECK(good(robots(200)).starts.size() == 200);
+  CHECK(only(robots(201)) == "a list of 201; a list of 1 to 200 robots");
+  const auto named = [](std::size_t size) {
+    return R"({"name":"w","walls":[],"robots":[{"name":")" + std::string(size, 'n') +
+           R"(","model":"avr","at":[0,0]}]})";
+  };
+  CHECK(good(named(20)).starts[0].name == std::string(20, 'n'));
+  CHECK(only(named(21)).find("is not a valid name of a robot; 1 to 20 printed ASCII characters") !=
+        std::string::npos);
+  std::string text = named(1);
+  text.resize(ocm::sim::worlds::max_world_bytes, ' ');
+  CHECK(text.size() == 1'000'000);
+  static_cast<void>(good(text));
+  CHECK(only(text + ' ') == "the file has 1000001 bytes; a world has at most 1000000");
+}
+
 TEST_CASE("what a world does not say is as documented") {
   const WorldModel world =
       good(R"({"name":"w","walls":[],"robots":[{"name":"A","model":"avr","at":[1,2]}]})");
