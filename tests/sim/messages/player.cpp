@@ -1,11 +1,14 @@
 #include "sim/messages/player.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <vector>
 
@@ -173,6 +176,114 @@ TEST_CASE("A message of several frames is broadcast, and is put together again")
   const auto counters = receiver.transport_counters(*last);
   CHECK(counters.lost() == 0);
   CHECK(counters.complete == parts.size());
+}
+
+/// A message without a field, of a catalogue that a test makes.
+protocol::Topic message_of(const protocol::FrameLayout& layout, std::string_view name) {
+  protocol::Topic topic;
+  topic.name = name;
+  topic.board = protocol::no_board;
+  topic.kind = protocol::Kind::message;
+  topic.frames = {&layout, 1};
+  return topic;
+}
+
+TEST_CASE("A message without a period comes at half to one and a half of what is asked for, at random") {
+  protocol::FrameLayout layout;
+  layout.length = 1;
+  layout.address = {protocol::Address::By::identifier, false, 0x100};
+  const auto distances = [&layout](base::Duration shortest) {
+    std::vector<protocol::Topic> topics{message_of(layout, "M")};
+    topics[0].shortest_period = shortest;
+    const protocol::Catalogue catalogue{"car", 500'000, {}, topics};
+    sim::MessagePlayer player{catalogue, {.seed = 3, .sporadic = 101ms}};
+    std::vector<base::Duration> all;
+    std::optional<base::Time> last;
+    CHECK(player.next_event() < base::Time{101ms});
+    player.advance(base::Time{100s}, [&](const auto&, const can::AnyFrame&, base::Time due) {
+      if (last) all.push_back(due - *last);
+      last = due;
+    });
+    CHECK(player.next_event() > base::Time{100s});
+    std::sort(all.begin(), all.end());
+    return all;
+  };
+  const auto free = distances({});
+  CHECK(free.size() > 900);
+  CHECK(free.front() >= 50'500us);
+  CHECK(free.front() < 51ms);
+  CHECK(free[free.size() / 2] > 97ms);
+  CHECK(free[free.size() / 2] < 105ms);
+  CHECK(free.back() > 151ms);
+  CHECK(free.back() < 151'500us);
+  const auto held = distances(120ms);
+  CHECK(held.front() == 120ms);
+  CHECK(held.back() > 151ms);
+  CHECK(sim::MessagePlayer{protocol::Catalogue{"none", 500'000, {}, {}}}.next_event() == base::Time::max());
+}
+
+TEST_CASE("What is longer than a frame, or than a broadcast, is not played") {
+  struct Case {
+    protocol::Address::By by;
+    bool fd;
+    std::uint16_t most;
+  };
+  for (const Case& each :
+       {Case{protocol::Address::By::identifier, false, 8}, Case{protocol::Address::By::identifier, true, 64},
+        Case{protocol::Address::By::pgn, false, 1785}}) {
+    CAPTURE(each.most);
+    const bool pgn = each.by == protocol::Address::By::pgn;
+    for (const int more : {0, 1}) {
+      protocol::FrameLayout layout;
+      layout.length = static_cast<decltype(layout.length)>(each.most + more);
+      layout.fd = each.fd;
+      layout.address = {each.by, pgn, pgn ? 0x18FEEC01U : 0x100U};
+      std::vector<protocol::Topic> topics{message_of(layout, "M")};
+      topics[0].cycle = 1s;
+      const protocol::Catalogue catalogue{"car", 500'000, {}, topics};
+      const sim::MessagePlayer player{catalogue};
+      CHECK(player.size() == (more == 0 ? 1U : 0U));
+      CHECK(player.left_out().too_long.size() == (more == 0 ? 0U : 1U));
+      CHECK(player.sent_by(protocol::no_board) == player.size());
+      CHECK(player.sent_by(0) == 0);
+    }
+  }
+}
+
+TEST_CASE("A J1939 message of no address has one of 128 to 247, another one for each node") {
+  const auto source_of = [](std::uint8_t board, std::uint32_t id) {
+    protocol::FrameLayout layout;
+    layout.length = 8;
+    layout.address = {protocol::Address::By::pgn, true, id};
+    protocol::Topic topic = message_of(layout, "M");
+    topic.board = board;
+    return sim::played_identifier(topic);
+  };
+  CHECK(source_of(0, 0x0CF004FE) == 0x0CF00480);
+  CHECK(source_of(119, 0x0CF004FE) == 0x0CF004F7);
+  CHECK(source_of(120, 0x0CF004FE) == 0x0CF00480);
+  CHECK(source_of(3, 0x0CF00421) == 0x0CF00421);
+}
+
+TEST_CASE("Every machine sends the same bits, whatever the build and however often it is asked") {
+  // FNV-1a of all that is sent; to be changed only where something else is to be sent.
+  const auto fingerprint = [](base::Duration step) {
+    std::uint64_t hash = 14'695'981'039'346'656'037U;
+    const auto add = [&hash](std::uint64_t number) {
+      for (int i = 0; i < 8; ++i) hash = (hash ^ (number >> 8 * i & 0xFF)) * 1'099'511'628'211U;
+    };
+    sim::MessagePlayer player{bus().catalogue(), {.seed = 7, .sporadic = 1s}};
+    for (base::Duration at = step; at <= 60s; at += step)
+      player.advance(base::Time{at}, [&](const auto&, const can::AnyFrame& frame, base::Time due) {
+        add(frame.id);
+        add(static_cast<std::uint64_t>(due.time_since_epoch().count()));
+        for (const std::uint8_t byte : frame.bytes()) add(byte);
+      });
+    return hash;
+  };
+  const std::uint64_t all = fingerprint(60s);
+  CHECK(all == 0x536B0898EEDD08E1);
+  CHECK(fingerprint(100ms) == all);
 }
 
 TEST_CASE("A source broadcasts one message at a time, however short their periods are") {
