@@ -33,6 +33,23 @@ std::string text_of(const top::Picture& picture) {
   return text;
 }
 
+/// Each line, and below it how many columns each style has.
+std::string styled(const top::Picture& picture) {
+  static constexpr std::string_view names[] = {"plain",    "dim",  "bold",    "heading", "sorted",
+                                               "selected", "good", "warning", "bad"};
+  std::string text;
+  for (const top::Line& line : picture) {
+    std::string words, styles;
+    for (const top::Piece& piece : line) {
+      words += piece.text;
+      styles += ' ' + std::string{names[static_cast<std::size_t>(piece.style)]} + ':' +
+                std::to_string(base::columns(piece.text));
+    }
+    text += '|' + words + "|\n" + (styles.empty() ? "" : "   " + styles + '\n');
+  }
+  return text;
+}
+
 /// Has driven an arc of the line, with its lights on.
 sim::SeenWorld driven(Trails& trails) {
   sim::World world;
@@ -81,6 +98,48 @@ TEST_CASE("room view: mappers in theirs, each with its number") {
            text_of(draw_room(world, {}, {.speed = 10, .chosen = 0}, {80, 24}, true)));
   is_as_in("tests/tool/simulate/golden/mappers_80x24_ascii.txt",
            text_of(draw_room(world, {}, {.speed = 10, .chosen = 1}, {80, 24}, false)));
+}
+
+TEST_CASE("room view: each thing has its style, and what is chosen or touches something another one") {
+  Trails trails;
+  sim::SeenWorld world = two_mappers();
+  world.line.push_back({{0.2, 0.9}, {1.8, 0.9}});
+  for (int i = 0; i < 5; ++i) {
+    world.robots[0].centre.x = 0.3 + i * 0.05;
+    trails.take(world);
+  }
+  std::string all;
+  for (const std::size_t chosen : {0U, 1U})
+    for (const TerminalSize size : {TerminalSize{64, 16}, TerminalSize{40, 14}, TerminalSize{63, 7}})
+      all += styled(draw_room(world, trails, {.speed = 0.5, .bus = "sim", .chosen = chosen}, size, true));
+  all += styled(draw_room(world, trails, {.beams = false, .message = "the bus is down"}, {64, 16}, false));
+  is_as_in("tests/tool/simulate/golden/styles.txt", all);
+}
+
+TEST_CASE("room view: more robots than digits, and than lines beside the room") {
+  sim::SeenWorld world = two_mappers();
+  world.robots.resize(1);
+  for (int i = 1; i < 12; ++i) {
+    sim::SeenRobot robot = world.robots[0];
+    robot.name = "robot_" + std::to_string(i);
+    robot.pose = {0.15 * i, 0.25, 2 * sim::pi * i / 11};
+    robot.centre = robot.pose.position();
+    robot.beams.clear();
+    world.robots.push_back(robot);
+  }
+  std::string all;
+  for (const std::size_t rows : {30U, 24U, 23U, 22U, 12U})
+    all += text_of(draw_room(world, {}, {.chosen = 10}, {100, rows}, rows != 24));
+  is_as_in("tests/tool/simulate/golden/many_robots.txt", all);
+}
+
+TEST_CASE("room view: a light is the letter of its nearest colour") {
+  sim::SeenWorld world = two_mappers();
+  world.robots[0].lights = {{0, 0, 255}, {0, 200, 0},     {0, 200, 100}, {255, 0, 0},   {90, 0, 90},
+                            {9, 8, 0},   {255, 255, 255}, {255, 127, 0}, {255, 128, 0}, {0, 1, 0},
+                            {},          {100, 50, 49},   {49, 100, 50}};
+  const auto drawn = [&](TerminalSize size) { return text_of(draw_room(world, {}, {}, size, true)); };
+  CHECK(drawn({60, 24}).find("lights bgcrmywryg.yc") != std::string::npos);
 }
 
 TEST_CASE("room view: fits any terminal, and says where the robot is on all that have a line for it") {
