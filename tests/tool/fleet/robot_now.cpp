@@ -77,6 +77,77 @@ TEST_CASE("robot now: a row says all of a robot") {
   CHECK_FALSE((nothing->handshake || nothing->update || nothing->origin_known));
 }
 
+TEST_CASE("robot now: each of what is said in a word or a flag is its own") {
+  using Flag = bool RobotNow::*;
+  for (const Flag flag :
+       {Flag{&RobotNow::linked}, Flag{&RobotNow::confirmed}, Flag{&RobotNow::idle}, Flag{&RobotNow::located},
+        Flag{&RobotNow::paused}, Flag{&RobotNow::lost}, Flag{&RobotNow::held}, Flag{&RobotNow::standing},
+        Flag{&RobotNow::blocked}, Flag{&RobotNow::origin_known}}) {
+    RobotNow robot;
+    robot.*flag = true;
+    const auto again = parse_row(to_row(robot));
+    REQUIRE(again);
+    CHECK((*again).*flag);
+    CHECK(to_row(*again) == to_row(robot));
+  }
+  for (unsigned kind = 0; kind <= static_cast<unsigned>(mapper::link::Kind::pong); ++kind) {
+    RobotNow robot;
+    robot.last = static_cast<mapper::link::Kind>(kind);
+    const auto again = parse_row(to_row(robot));
+    REQUIRE(again);
+    CHECK(again->last == robot.last);
+  }
+  for (unsigned word = 0; word <= static_cast<unsigned>(Progress::stopped); ++word) {
+    RobotNow robot;
+    robot.progress = static_cast<Progress>(word);
+    CHECK(parse_row(to_row(robot))->progress == robot.progress);
+  }
+  for (unsigned word = 0; word <= static_cast<unsigned>(Calibrator::Phase::done); ++word) {
+    RobotNow robot;
+    robot.compass = static_cast<Calibrator::Phase>(word);
+    CHECK(parse_row(to_row(robot))->compass == robot.compass);
+  }
+}
+
+TEST_CASE("robot now: what was asked of it is not over while it drives or turns") {
+  RobotNow robot;
+  for (const Progress progress : {Progress::none, Progress::reached, Progress::ended, Progress::stopped}) {
+    robot.progress = progress;
+    CHECK_FALSE(robot.busy());
+  }
+  for (const Progress progress : {Progress::waiting, Progress::said, Progress::heard, Progress::stopping}) {
+    robot.progress = progress;
+    CHECK(robot.busy());
+  }
+  using Phase = Calibrator::Phase;
+  robot.progress = Progress::stopped;
+  for (const Phase phase : {Phase::asking, Phase::ordering, Phase::turning, Phase::storing}) {
+    robot.compass = phase;
+    CHECK(robot.busy());
+    CHECK(robot.may_turn() == (phase == Phase::ordering || phase == Phase::turning));
+  }
+  for (const Phase phase : {Phase::none, Phase::done}) {
+    robot.compass = phase;
+    CHECK_FALSE(robot.busy());
+    CHECK_FALSE(robot.may_turn());
+  }
+}
+
+TEST_CASE("robot now: what other programs read of it") {
+  CHECK(cli::fleet::to_json(some_robot()).line() ==
+        R"({"robot":"Arduino 2","index":127,"address":"C00000000001","state":"held","linked":true,)"
+        R"("confirmed":true,"idle":false,"held":true,"quality":0.637,"call_back":"bad_link",)"
+        R"("pose":{"x_cm":-120,"y_cm":7,"heading_deg":-179},"body":{"width_cm":20,"length_cm":18,)"
+        R"("axle_offset_cm":-3,"tower_offset_cm":4,"sensor_out_cm":3,"deadline_ms":5000,)"
+        R"("packed":true}})");
+  RobotNow robot;
+  robot.name = "A";
+  robot.quality_per_mille = 500;
+  CHECK(cli::fleet::to_json(robot).line() ==
+        R"({"robot":"A","index":0,"address":"","state":"no link","linked":false,"confirmed":false,)"
+        R"("idle":false,"held":false,"quality":null,"call_back":null,"pose":null,"body":null})");
+}
+
 TEST_CASE("robot now: what a name holds does not divide rows") {
   RobotNow robot = some_robot();
   robot.name = "a\tlinked=0\nidle";
@@ -101,6 +172,7 @@ TEST_CASE("robot now: what is no row") {
                           "index=0\tname=A\tupdate=0,0,0,0,0,0,0,0,0",
                           "index=0\tname=A\tupdate=0,0,361,0,0,0,0,0",
                           "index=0\tname=A\tupdate=0,0,0,0,0,0,0,256",
+                          "index=0\tname=A\tquality=-1",
                           "index=0\tname=A\tquality=1001",
                           "index=0\tname=A\tprogress=Said",
                           "index=0\tname=A\tprogress=",
