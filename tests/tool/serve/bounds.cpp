@@ -93,6 +93,18 @@ TEST_CASE("bounds: a frame is as long as the bus is slow") {
   CHECK(unknown.rows().empty());
 }
 
+TEST_CASE("bounds: of a bus that is too slow for what it carries none is proved, and none is exceeded") {
+  Desk desk{10'000};
+  desk.bounds.assume(std::vector{row("gyroscope", 10ms), row("accelerometer", 10ms)});
+  for (int i = 0; i < 3; ++i) desk.take(i * 13ms, gyroscope, {1, 2, 3, 4, 5, 6});
+  const Json state = desk.rows();
+  REQUIRE(state.size() == 2);
+  const Json& last = state[0]["name"] == "gyroscope" ? state[0] : state[1];
+  CHECK(state[1]["bound_ms"].is_null());
+  CHECK(state[1]["exceeds"] == false);
+  CHECK(last["measured_ms"].get<double>() > 6);
+}
+
 TEST_CASE("bounds: a sensor has the priority that it was asked for with, and an actuator its own") {
   Desk desk;
   desk.bounds.assume(std::vector{row("motors", {}, protocol::Priority::low), row("accelerometer", 50ms),

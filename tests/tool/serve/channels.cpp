@@ -149,6 +149,37 @@ TEST_CASE("publisher: each interface has channels and samples of its own") {
   CHECK(desk.publisher.counters().commands == 3);
 }
 
+TEST_CASE("publisher: what is counted is that of all interfaces") {
+  Desk desk{{"can0", "can1"}};
+  can::AnyFrame fd;
+  fd.id = 0x123;
+  fd.length = 12;
+  fd.flags = can::frame_flag::fd;
+  for (int i = 1; i <= 2; ++i) {
+    const std::string interface = "can" + std::to_string(i - 1);
+    for (int k = 0; k < i; ++k) {
+      desk.weigh(1s, 4, interface);
+      CHECK(desk.lamp(2s, 1, interface) == Meaning::set_point);
+      CHECK(desk.take(test::entry(3s, 0x7FF, {9}), interface) == Meaning::unknown);
+      CHECK(desk.take(log::Entry{test::morning + 4s, fd}, interface) == Meaning::unknown);
+      desk.take(test::entry(5s, 0x510, {1, 2, 3}), interface);     // of three bytes
+      desk.take(test::entry(6s, 0x510, {0, 0, 0, 1}), interface);  // its second frame does not come
+      desk.take(test::entry(7s, 0, {0, 0, 0, 0, 0, 0, 0, 0}, can::Format::error), interface);
+      desk.weigh(8s, 4, interface);
+    }
+  }
+  const auto sum = desk.publisher.counters();
+  CHECK(sum.frames == 30);
+  CHECK(sum.samples == 6);
+  CHECK(sum.commands == 3);
+  CHECK(sum.unknown == 3);
+  CHECK(sum.fd == 3);
+  CHECK(sum.wrong_dlc == 3);
+  CHECK(sum.incomplete == 3);
+  CHECK(sum.errors == 3);
+  CHECK(sum.transport == 0);
+}
+
 TEST_CASE("publisher: while a log is wound only the newest of each channel counts") {
   Desk desk;
   desk.subscribe(0);

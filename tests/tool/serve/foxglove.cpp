@@ -77,6 +77,36 @@ TEST_CASE("foxglove: what is no request is refused in words") {
         "no JSON: a NUL character");
 }
 
+TEST_CASE("foxglove: what is missing of a request is named") {
+  const auto why = [](const char* text) { return parse(text).error; };
+  CHECK(why(R"({"id":"x"})") == "no text 'op', which says what is asked");
+  CHECK(why(R"({"op":"subscribe","subscriptionIds":[1]})") == "subscribe without its list 'subscriptions'");
+  CHECK(why(R"({"op":"unsubscribe","subscriptionIds":3})") ==
+        "unsubscribe without its list 'subscriptionIds'");
+  CHECK(why(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":0},{"channelId":1}]})") ==
+        "subscribe: each of its subscriptions is an id and a channelId, both whole numbers");
+  CHECK(why(R"({"op":"subscribe","subscriptions":[{"id":1}]})") ==
+        "subscribe: each of its subscriptions is an id and a channelId, both whole numbers");
+  const char* const advertise =
+      "advertise: each of its channels is an id, a topic of 256 bytes at most, and an encoding";
+  CHECK(why(R"({"op":"advertise","channels":[{"topic":"/motors","encoding":"json"}]})") == advertise);
+  CHECK(why(R"({"op":"advertise","channels":[{"id":1,"encoding":"json"}]})") == advertise);
+  CHECK(why(R"({"op":"advertise","channels":[{"id":1,"topic":"/motors"}]})") == advertise);
+  CHECK(why(R"({"op":"unadvertise","channelIds":[-1]})") ==
+        "unadvertise: each of its channelIds is a whole number");
+  const char* const set = "setParameters: each of its parameters is a name and a number as its value";
+  CHECK(why(R"({"op":"setParameters","parameters":[{"value":1}]})") == set);
+  CHECK(why(R"({"op":"setParameters","parameters":[{"name":"a"}]})") == set);
+  CHECK(why(R"({"op":"setParameters","parameters":[{"name":"a","value":null}]})") == set);
+  CHECK(why(R"({"op":"getParameters","parameterNames":["a",1]})") ==
+        "getParameters: each of its parameterNames is a text");
+  CHECK(parse(R"({"op":"subscribeParameterUpdates","parameterNames":["a","b"]})")->op ==
+        Op::subscribe_parameters);
+  CHECK(parse(R"({"op":"unsubscribeParameterUpdates","parameterNames":["a","b"]})")->names ==
+        std::vector<std::string>{"a", "b"});
+  CHECK(parse(R"({"op":"unadvertise","channelIds":[7,8]})")->ids == std::vector<std::uint32_t>{7, 8});
+}
+
 TEST_CASE("foxglove: what is kept of a client, or goes back to it, is bounded") {
   const auto topic = [](std::size_t size) {
     return R"({"op":"advertise","channels":[{"id":1,"topic":")" + std::string(size, 'a') +

@@ -108,6 +108,20 @@ TEST_CASE("parameters: who subscribes gets the value, and each change of it") {
   CHECK_FALSE(desk.parameters.wanted());
 }
 
+TEST_CASE("parameters: a period in whole microseconds, and of all parameters those of sensors alone") {
+  Desk desk;
+  desk.publishes("gyroscope", 33'333'333ns);
+  desk.take(Kind::get_parameters, {});
+  const std::string said = desk.said();
+  CHECK(said.find(R"("name":"/gyroscope/period_ms","value":33.333,)") != std::string::npos);
+  CHECK(said.find("/motors/") == std::string::npos);
+  std::size_t count = 0, sensors = 0;
+  for (std::size_t at = 0; (at = said.find("/period_ms", at)) != std::string::npos; ++at) ++count;
+  for (const auto& topic : amiro::catalogue.topics)
+    sensors += topic.kind == ocm::protocol::Kind::sensor ? 1U : 0U;
+  CHECK(count == sensors);
+}
+
 TEST_CASE("parameters: their names") {
   CHECK(sensor_of(amiro::catalogue, "/gyroscope/period_ms") == amiro::catalogue.find("gyroscope"));
   for (const char* name :

@@ -132,6 +132,47 @@ TEST_CASE("viewers: whether anything waits for any of them") {
   CHECK_FALSE(viewers.anything_waits());
 }
 
+TEST_CASE("viewers: a single message that is lost is known at once, and the next loss a second later") {
+  Viewers viewers{1, {1000, 2}};
+  const ViewerId slow = viewers.add();
+  REQUIRE(viewers.subscribe(slow, {1, 0}).empty());
+  for (int i = 0; i < 3; ++i) viewers.publish(0, 0, "x");
+  CHECK(all(viewers, slow).size() == 3);  // two, and a word about the one that is lost
+  for (int i = 0; i < 3; ++i) viewers.publish(0, 0, "x");
+  CHECK(all(viewers, slow, start + 999ms).size() == 2);
+  CHECK(all(viewers, slow, start + 1s).size() == 1);
+}
+
+TEST_CASE("viewers: how much the queue of a server holds") {
+  const auto kept = [](std::size_t messages, std::size_t bytes) {
+    Viewers viewers{1};
+    const ViewerId viewer = viewers.add();
+    REQUIRE(viewers.subscribe(viewer, {1, 0}).empty());
+    for (std::size_t i = 0; i < messages; ++i) viewers.publish(0, 0, std::string(bytes, 'x'));
+    return messages - viewers.lost(viewer);
+  };
+  CHECK(kept(32'768, 1) == 32'768);
+  CHECK(kept(32'769, 1) == 32'768);
+  CHECK(kept(8, 1 << 20) == 8);
+  CHECK(kept(9, 1 << 20) == 8);
+}
+
+TEST_CASE("viewers: whatever way a message comes, it has its own time") {
+  Viewers viewers{2};
+  const ViewerId viewer = viewers.add();
+  const auto time_of_next = [&] { return static_cast<int>(viewers.next(viewer, start)->head[5]); };
+  viewers.publish_state(0, 17, "state");
+  REQUIRE(viewers.subscribe(viewer, {1, 0}).empty());
+  CHECK(time_of_next() == 17);
+  viewers.publish_state(0, 18, "state");
+  CHECK(time_of_next() == 18);
+  REQUIRE(viewers.subscribe(viewer, {2, 1}).empty());
+  viewers.give(viewer, 1, 19, "before");
+  CHECK(time_of_next() == 19);
+  viewers.publish(1, 20, "sample");
+  CHECK(time_of_next() == 20);
+}
+
 TEST_CASE("viewers: the queue has a bound in bytes, too") {
   Viewers viewers{1, {100, 1000}};
   const ViewerId viewer = viewers.add();
