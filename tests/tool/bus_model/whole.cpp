@@ -131,6 +131,17 @@ TEST_CASE("bus model: a period that was only seen is no reason to be late; one t
   CHECK(health(fast, 66ms) == 2);
 }
 
+TEST_CASE("bus model: a period that was only seen is missed when it is ten times over") {
+  Model model{amiro::catalogue, 500'000};
+  for (int i = 0; i < 20; ++i) model.take(entry(i * 70ms, 0x608, {i, 0, 0, 0, 0, 0}));
+  const auto health = [&](base::Duration behind) {
+    return model.rows(morning + 1330ms + behind, false)[0].health;
+  };
+  CHECK(model.rows(morning + 1330ms, false)[0].period == 70ms);
+  CHECK(health(700ms) == cli::bus_model::Health::fine);
+  CHECK(health(701ms) == cli::bus_model::Health::missing);
+}
+
 TEST_CASE("bus models: one a bus, each of which has a value a quarter of a second") {
   Models models{amiro::catalogue, 250'000, 2'000'000};
   log::Interfaces interfaces;
