@@ -74,11 +74,21 @@ class Top(played_adapter.WithAdapter, screens.Screens):
         self.shows(100, "  x ", "..")
         self.press(100, "p")
         self.shows(100, "PAUSED")
-        self.press(100, "p", "?")
+        # What comes meanwhile is shown when it goes on.
+        self.press(100, "Escape")
+        self.run_tool("send", "7F0#01")
+        self.press(100, "?", "x")
+        self.assertNotIn("7F0", "\n".join(self.shows(100, "PAUSED", "odometry")))
+        self.press(100, "p")
+        self.shows(100, "7F0")
+        self.assertNotIn("PAUSED", "\n".join(self.screen(100)))
+        self.run_tool("send", "7F1#01")
+        self.shows(100, "7F1")
+        self.press(100, "F1")
         self.shows(100, "Any key leaves this page.")
-        self.press(100, "x", "Escape")
+        self.press(100, "x")
         self.shows(100, "odometry")
-        self.press(100, "q")
+        self.press(100, "F10")
         self.assertEqual(self.ended(100)[-1], "END 0")
 
     def test_keys_that_move(self):
@@ -122,6 +132,21 @@ class Top(played_adapter.WithAdapter, screens.Screens):
             self.shows(name, *(("  x ", "  y ") if chosen else ("  velocity.x",)))
             self.press(name, "q")
             self.assertEqual(self.ended(name)[-1], "END 0")
+
+    def test_the_wheel_of_a_mouse_moves_as_the_arrows_do(self):
+        log = self.log(1)
+        with open(log, "a", encoding="ascii") as file:
+            file.write("(1000.950000) can0 7F0#01\n")
+        self.open(100, "top", log, "--mouse", rows=24)
+        self.shows(100, "gyroscope", "7F0", " end")
+        chosen = [30, 46]  # black on cyan
+        self.press(100, "Home")
+        harness.waiting.until(lambda: self.look_of(100, "gyroscope") == chosen, "the first row")
+        for button, row in (("a", "7F0"), ("`", "gyroscope")):
+            self.tmux("send-keys", "-t", "of100", "-l", f"\x1b[M{button}!%")
+            harness.waiting.until(lambda row=row: self.look_of(100, row) == chosen, row)
+        self.press(100, "q")
+        self.assertEqual(self.ended(100)[-1], "END 0")
 
     def test_no_more_than_twenty_pictures_a_second(self):
         """Keys come forty times a second. A picture is what comes in one piece: 10 ms after the one before it, at least."""
@@ -307,6 +332,42 @@ class Top(played_adapter.WithAdapter, screens.Screens):
             shown = self.drawn(*arguments, **environment)
             self.assertNotRegex(shown, colour)
             self.assertRegex(shown, r"\x1b\[(?:\d+;)*[17](?:;\d+)*m")  # bold and reverse are left
+
+    def look_of(self, columns, word):
+        """Colours and weight of the first character of a word on the screen, as numbers of SGR [ECMA-48, 8.3.117]."""
+        now = set()  # tmux says what changes, also from one line to the next
+        for line in self.tmux("capture-pane", "-p", "-e", "-t", f"of{columns}").splitlines():
+            plain, looks = "", []
+            for codes, character in re.findall(r"\x1b\[([\d;]*)m|(.)", line):
+                if character and character != "\x0f":
+                    plain += character
+                    looks.append(sorted(now))
+                for code in [] if character else map(int, (codes or "0").split(";")):
+                    if code in (0, 39, 49):
+                        now = {each for each in now if code and each // 10 != code // 10}
+                    else:
+                        now = {each for each in now if each < 30 or each // 10 != code // 10} | {code}
+            if word in plain:
+                return looks[plain.index(word)]
+        return None
+
+    def test_colours_of_what_is_late_chosen_and_well(self):
+        log = os.path.join(self.folder, "late.log")
+        with open(log, "w", encoding="ascii") as file:
+            file.write("(1000.000000) can0 208#01640000\n")  # the gyroscope is asked for, and does not come
+            file.writelines(f"({1000.01 + i / 10:.6f}) can0 7F0#01\n" for i in range(40))
+        self.open(100, "top", log, rows=24)
+        self.shows(100, "7F0")
+        self.press(100, "p", "0", ".", ".", ">", "End")
+        self.shows(100, "2.0 of 3.9 s", "PAUSED", "1 missing", "by name")
+        black, green, yellow, red, cyan = 30, 32, 33, 31, 36
+        background, bold, dim = 10, 1, 2
+        for word, look in (("late.log", [bold]), ("AMiRo", [dim]), ("PAUSED", [yellow]), ("1 missing", [bold, red]), ("gyroscope", [bold, red]),
+                           ("NAME", [black, cyan + background]), ("HZ", [black, green + background]), ("7F0", [black, cyan + background]),
+                           ("===", [green]), ("x1 paused", [bold]), ("? help", [dim]), ("2.0 of", [])):
+            harness.waiting.until(lambda: self.look_of(100, word) == look, f"{word}: {look}, not {self.look_of(100, word)}")
+        self.press(100, "q")
+        self.assertEqual(self.ended(100)[-1], "END 0")
 
     def test_a_serial_adapter(self):
         adapter = self.adapter()
