@@ -129,6 +129,46 @@ class Serve(harness.Case):
         self.assertEqual(status, 403)
         self.assertIn("without Host", text)
 
+    def test_all_that_an_answer_says(self):
+        self.start_sim("--frozen")
+        _, port, _ = self.serve()
+        same = {"x-content-type-options": "nosniff", "referrer-policy": "no-referrer", "cross-origin-resource-policy": "same-origin",
+                "cross-origin-opener-policy": "same-origin", "cache-control": "no-cache"}
+        pages = (("/", 200, "text/html; charset=utf-8"), ("/index.html", 200, "text/html; charset=utf-8"), ("/page.css", 200, "text/css; charset=utf-8"),
+                 ("/dygraph.min.js", 200, "text/javascript; charset=utf-8"), ("/none", 404, "text/plain; charset=utf-8"))
+        for path, expected, kind in pages:
+            status, headers, body = self.get(port, path)
+            self.assertEqual((status, headers["content-type"]), (expected, kind), path)
+            self.assertEqual({name: headers.get(name) for name in same}, same, path)
+            self.assertIn("default-src 'none'", headers["content-security-policy"])
+            self.assertEqual(int(headers["content-length"]), len(body), path)
+        own = f"Host: 127.0.0.1:{port}"
+        refusals = (((own, "Content-Length: 2"), 413, "no request has a body here"), ((own, "Transfer-Encoding: chunked"), 413, "no request has a body here"),
+                    ((f"Host: evil.example:{port}",), 403, "this server has no name 'evil.example'; --name gives it one"),
+                    (("Host: 127.0.0.1:123456",), 403, "this server has no name '127.0.0.1:123456'; --name gives it one"),
+                    ((own, "Origin: http://evil.example"), 403, "a page of http://evil.example may not connect; --allow-origin http://evil.example lets it"))
+        for lines, status, text in refusals:
+            self.assertEqual(self.answer_to(port, *lines), (status, text + "\n"), lines)
+        for host in ("127.0.0.1", "127.0.0.1:12345", "localhost", f"[::1]:{port}", "[::1]"):
+            self.assertEqual(self.answer_to(port, f"Host: {host}")[0], 200, host)
+        status, _, body = self.get(port, "/", "POST")
+        self.assertEqual((status, body), (405, b"only GET and HEAD are served\n"))
+        # What was refused is counted: a page that is missing, the five, and the last.
+        viewer = self.viewer(port)
+        viewer.subscribe("/ocm/bus")
+        self.assertEqual(viewer.message("/ocm/bus").fields["refused"], 2 + len(refusals))
+        # One connection fetches one page after the other, until something is refused.
+        connection = http.client.HTTPConnection("127.0.0.1", port, timeout=10)
+        self.addCleanup(connection.close)
+        for method, path in (("GET", "/"), ("HEAD", "/page.css"), ("GET", "/page.css"), ("GET", "/none")):
+            connection.request(method, path, headers={"Host": f"127.0.0.1:{port}"})
+            answer = connection.getresponse()
+            self.assertEqual(answer.status, 404 if path == "/none" else 200)
+            self.assertEqual(bool(answer.read()), method == "GET")
+            if path != "/none":
+                self.assertIsNotNone(connection.sock, path)
+        self.assertEqual(connection.sock.recv(1) if connection.sock else b"", b"")
+
     def test_no_other_protocol(self):
         """libwebsockets would go over to HTTP/2, in clear, and to a draft of WebSocket."""
         self.start_sim("--frozen")
