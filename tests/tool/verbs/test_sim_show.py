@@ -57,8 +57,10 @@ class Show(screens.Screens):
         self.shows(80, "labyrinth", "1 AVR  of 2", "2 Arduino", "→1", "↑2")
         self.press(80, "Tab")
         self.shows(80, "2 Arduino  of 2", "1 AVR ")
-        self.press(80, "b")
-        self.press(80, "q")
+        for key, chosen in (("Up", "1 AVR"), ("Up", "2 Arduino"), ("Right", "1 AVR"), ("Left", "2 Arduino"), ("Down", "1 AVR")):
+            self.press(80, key)
+            self.shows(80, f"{chosen}  of 2")
+        self.press(80, "F10")
         self.assertEqual(self.ended(80)[-1], "END 0")
 
     def test_each_on_its_line(self):
@@ -71,6 +73,14 @@ class Show(screens.Screens):
         self.open(80, "--bus", self.socket(), "sim", "--frozen", "--show=text", rows=24, before="export LC_ALL=C NO_COLOR=1; ")
         lines = self.shows(80, "heading", "####")
         self.assertTrue("\n".join(lines).isascii())
+
+        def beams():
+            return sum(line[:54].count("-") for line in self.screen(80, joined=False)[1:])  # below the line that names the bus
+        self.assertGreater(beams(), 0)
+        self.press(80, "b")
+        harness.waiting.until(lambda: beams() == 0, "no beams")
+        self.press(80, "b")
+        harness.waiting.until(beams, "beams again")
         self.press(80, "q")
         self.assertEqual(self.ended(80)[-1], "END 0")
 
