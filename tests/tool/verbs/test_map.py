@@ -56,6 +56,14 @@ class Map(Case):
         self.assertGreater(figures["agreement"]["explored"], 0.8)
         self.assertGreater(figures["free_m2"], 0.9)
         self.assertGreater(figures["updates"], 50)
+        self.assertEqual(set(figures), {"seconds", "done", "ended", "robots", "border_known", "free_m2", "updates", "turning", "beams", "goals", "calls_back",
+                                        "agreement"})
+        self.assertEqual((figures["robots"], figures["calls_back"], figures["agreement"]["tolerance_m"]), (1, 0, 0.06))
+        self.assertGreaterEqual(figures["seconds"], 12)
+        self.assertTrue(0 < figures["border_known"] <= 1, figures)
+        self.assertLess(figures["free_m2"], 1.3)  # of 1.2 square metres
+        self.assertGreaterEqual(figures["goals"], 1)
+        self.assertTrue(figures["updates"] < figures["beams"] <= 4 * figures["updates"], figures)  # of four sensors
         for file in (svg, png, pgm):
             self.assertIn(f"map: {file}", err)
         texts = ["".join(element.itertext()).strip() for element in
