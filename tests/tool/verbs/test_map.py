@@ -121,14 +121,17 @@ class Map(Case):
             with self.subTest(number=number):
                 self.avr.heard.clear()
                 svg, pgm = self.path(f"{code}.svg"), self.path(f"{code}.pgm")
-                tool = self.start_map(svg, pgm)
+                tool = self.start_map(svg, pgm, "--title", "a 'room'")
                 self.avr.loses = 3
                 out, err = self.interrupt(tool, number)
                 self.assertEqual(self.avr.heard[-4:], ["{U,0,0}"] * 4)
                 self.assertEqual(tool.returncode, code, err)
                 self.assertIn("what was seen before it was interrupted", out)
                 self.assertIn(f"map: {svg}", err)
-                self.assertEqual(ElementTree.parse(svg).getroot().tag, "{http://www.w3.org/2000/svg}svg")
+                texts = ["".join(element.itertext()).strip() for element in
+                         ElementTree.parse(svg).getroot().iter("{http://www.w3.org/2000/svg}text")]
+                self.assertIn("a 'room'", texts)
+                self.assertRegex("\n".join(texts), r"(?m)^\d+ s, \d\.\d\d m² free$")
                 self.check_drawn(pgm)
                 self.assertEqual(self.avr.heard[-1], "{U,0,0}")
 
