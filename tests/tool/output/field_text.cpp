@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <string>
 
@@ -19,6 +20,11 @@ using cli::FieldText;
 std::string printed(const protocol::Field& field, const can::Payload& data) {
   char text[FieldText::room];
   return {text, FieldText{field}.print(text, data)};
+}
+
+std::string printed_as_json(const protocol::Field& field, const can::Payload& data) {
+  char text[FieldText::room];
+  return {text, FieldText{field}.print_json(text, data.data())};
 }
 
 std::string expected(const protocol::Field& field, const can::Payload& data) {
@@ -129,6 +135,41 @@ TEST_CASE("values of 16 digits and more are printed exactly", "[output]") {
       CHECK(printed(field, payload(negative)) == "-" + text);
     }
   }
+}
+
+/// A number of IEEE 754 that fills a field of its width.
+protocol::Field float_field(protocol::Number number, base::Decimal scale = {1, 0}) {
+  auto field = field_of(number == protocol::Number::float32 ? 32 : 64, false, scale);
+  field.number = number;
+  return field;
+}
+
+TEST_CASE("a float is the shortest number that reads back as itself", "[output]") {
+  const auto single = payload(std::bit_cast<std::uint32_t>(0.1F));
+  const auto twice = payload(std::bit_cast<std::uint64_t>(0.1 + 0.2));
+  for (const auto print : {printed, printed_as_json}) {
+    CHECK(print(float_field(protocol::Number::float32), single) == "0.1");
+    CHECK(print(float_field(protocol::Number::float64), twice) == "0.30000000000000004");
+    // With a scale the product counts, of which a float32 would keep less.
+    CHECK(print(float_field(protocol::Number::float32, {5, -1}), single) == "0.05000000074505806");
+    CHECK(print(float_field(protocol::Number::float32), payload(0)) == "0");
+    CHECK(print(float_field(protocol::Number::float32), payload(0xC0A0'0000)) == "-5");
+  }
+}
+
+TEST_CASE("what is no number is a word, in JSON a string", "[output]") {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const auto wide = float_field(protocol::Number::float64);
+  const auto narrow = float_field(protocol::Number::float32);
+  const auto wide_of = [](double value) { return payload(std::bit_cast<std::uint64_t>(value)); };
+  CHECK(printed(wide, wide_of(infinity)) == "Infinity");
+  CHECK(printed(wide, wide_of(-infinity)) == "-Infinity");
+  CHECK(printed(wide, wide_of(std::nan(""))) == "NaN");
+  CHECK(printed_as_json(wide, wide_of(infinity)) == R"("Infinity")");
+  CHECK(printed_as_json(wide, wide_of(-infinity)) == R"("-Infinity")");
+  CHECK(printed_as_json(wide, wide_of(std::nan(""))) == R"("NaN")");
+  CHECK(printed_as_json(narrow, payload(0x7F80'0000)) == R"("Infinity")");
+  CHECK(printed_as_json(narrow, payload(0x7FC0'0000)) == R"("NaN")");
 }
 
 TEST_CASE("a field's value is what the catalogue says, for every field and any bits", "[output]") {

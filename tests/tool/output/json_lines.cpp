@@ -373,9 +373,11 @@ TEST_CASE("JSON lines: a log that is cut or damaged anywhere gives entries that 
   }
 }
 
-TEST_CASE("JSON lines: a line without a time has the time of the one before", "[output]") {
-  const std::string text = std::string{gyroscope} + "\n\n" + R"({"id":"123","data":"R"})" + "\n";
+TEST_CASE("JSON lines: a line without a time has the time of the one before, and blank lines are none",
+          "[output]") {
+  const std::string text = std::string{gyroscope} + "\n\n \t\n" + R"({"id":"123","data":"R"})" + "\n";
   const auto log = log::testing::read_all<JsonLinesReader>(text, amiro::catalogue);
+  CHECK(log.complained == 0);
   REQUIRE(log.entries.size() == 2);
   CHECK(log.entries[1].time == log.entries[0].time);
 }
