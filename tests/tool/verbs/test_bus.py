@@ -403,6 +403,13 @@ class Scripts(Case):
         topics = {line["topic"] for line in self.objects("\n".join(line.strip() for line in shown))}
         self.assertEqual(topics, {"gyroscope", "odometry"})
 
+    def test_a_script_of_16_mib_and_one_byte_more(self):
+        line, most = "0s led 1 red\n#", 16 << 20
+        out, _ = self.run_tool("run", self.script(line + "x" * (most - len(line))), "--dry-run")
+        self.assertEqual(out.split(), ["0s", "23C#FF0000"])
+        _, err = self.run_tool("run", self.script(line + "x" * (most + 1 - len(line))), "--dry-run", code=1)
+        self.assertIn("larger than 16 MiB", err)
+
     def test_a_missing_script(self):
         _, err = self.run_tool("run", os.path.join(self.folder, "none.script"), code=1)
         self.assertIn("none.script", err)

@@ -311,12 +311,14 @@ class Recording(Case):
     def test_two_buses_in_one_file(self):
         other = "sim:" + self.path("other.sock")
         self.start_sim()
-        self.start_sim("--bus", other)
+        self.start_sim("--bus", other, "--bus-errors", "400", "--seed", "3")
         recorder = self.record("-o", "both.log", "--bus", "sim," + other)
         for bus in ("sim", other):
             self.run_tool("publish", "gyro", "2ms", "--bus", bus)
         self.wait_for_frames("both.log", 800)
-        self.interrupt(recorder)
+        _, err = self.interrupt(recorder)
+        self.assertRegex(err, rf"\d error frames on {re.escape(other)}")
+        self.assertNotRegex(err, "error frames on sim[,\n]")
         with open(self.path("both.log")) as file:
             lines = [LINE.match(line.rstrip("\n")) for line in file]
         self.assertEqual(sorted({line[2] for line in lines}), ["sim", other])
@@ -353,7 +355,7 @@ class Recording(Case):
         self.assertEqual(written, sent[:len(written)])
         lost = len(sent) - len(written)
         self.assertGreater(lost, 0)
-        self.assertIn(f"{lost} lost in the receive queue", err)
+        self.assertIn(f", {lost} lost in the receive queue\n", err)  # of one bus its name says nothing
         self.assertIn(f"{lost} frames lost by slow ones", said_sim)
 
     def test_a_file_that_may_not_grow_keeps_what_it_has(self):

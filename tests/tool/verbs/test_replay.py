@@ -170,6 +170,9 @@ class Replaying(RealTime, Case):
         frames, err = self.replayed(log, "--speed", "10")  # to its end: as it was recorded
         self.assertEqual(len(frames), 3)
         self.assertNotIn("set to zero", err)
+        _, err = self.run_tool("replay", self.write_log((1, "201#50C3000000000000"), name="end.log"))  # also where that moves
+        self.assertIn("sent 1 frame in ", err)
+        self.assertNotIn("set to zero", err)
 
     def test_loops(self):
         self.start_sim()
@@ -203,6 +206,8 @@ class Replaying(RealTime, Case):
         self.assertEqual([frame for _, frame in self.lines("here.log")], ["608#01"])
         self.assertEqual([frame for _, frame in self.lines("there.log")], ["608#02"])
         self.assertIn("1 of interfaces without a bus", err)
+        _, err = self.run_tool("replay", self.path("in.log"), "--interface", "can2=sim", "--interface", "can0=sim")
+        self.assertIn("sent 2 frames in ", err)  # two interfaces, one bus
 
     def test_a_log_stands_in_for_the_robot(self):
         sim = self.start_sim("--without", "di_wheel_drive,light_ring,power_management")
