@@ -12,10 +12,10 @@ from harness import AMIROCTL, SOURCE, Case, main
 
 
 class Terminal(Case):
-    def on_terminal(self, *arguments, columns=0, errors=False, code=0, **environment):
+    def on_terminal(self, *arguments, columns=0, rows=50, errors=False, code=0, **environment):
         """Runs the tool on a pseudo terminal of its own; returns what it showed. 0 columns: it does not say."""
         primary, secondary = pty.openpty()
-        fcntl.ioctl(secondary, termios.TIOCSWINSZ, struct.pack("HHHH", 50 if columns else 0, columns, 0, 0))
+        fcntl.ioctl(secondary, termios.TIOCSWINSZ, struct.pack("HHHH", rows if columns else 0, columns, 0, 0))
         process = subprocess.Popen([AMIROCTL, *arguments], env={**self.environment, "TERM": "xterm", **environment},
                                    stdin=secondary, stdout=secondary, stderr=secondary if errors else subprocess.DEVNULL)
         os.close(secondary)
@@ -72,9 +72,14 @@ class Terminal(Case):
     def test_live_stats_fit_the_width(self):
         """What is drawn again in place has no line that breaks, and what matters is in sight."""
         for columns in (40, 80, 120, 200):
-            shown = self.on_terminal("stats", "--duration", "1500ms", "--no-color", columns=columns)
+            rows = 4 if columns == 200 else 50  # its last one is left free, so that nothing scrolls
+            shown = self.on_terminal("stats", "--duration", "1500ms", "--no-color", columns=columns, rows=rows)
             live, _, last = shown.replace("\r\n", "\n").partition("\r\033[")  # up to where it is drawn again
-            live, last = live.splitlines(), last.partition("\033[J")[2].splitlines()
+            up, _, last = last.partition("\033[J")
+            live, last = live.splitlines(), last.splitlines()
+            self.assertEqual(up, f"{len(live)}A", shown)
+            if rows == 4:
+                self.assertEqual((len(live), len(last)), (3, 4), shown)
             self.assertTrue(live, shown)
             self.assertTrue(last, shown)
             self.assertLessEqual(max(map(len, live + last)), columns)
