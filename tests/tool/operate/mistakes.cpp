@@ -1,6 +1,10 @@
 // What is said of mistakes in an operator file, word for word: each row is wide.operator.json with one
 // change.
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
 #include <string>
+#include <string_view>
 
 #include <catch2/catch.hpp>
 
@@ -123,6 +127,7 @@ constexpr Row rows[] = {
     {R"({"age": "ring", "above": "300ms"})", R"({"age": "ring"})"},
     {R"({"age": "ring", "above": "300ms"})", R"({"age": "ring", "gap": "ring", "above": "300ms"})"},
     {R"({"age": "ring", "above": "300ms"})", R"({"age": "ring", "above": "0ms"})"},
+    {R"({"age": "ring", "above": "300ms"})", R"({"age": "ring", "above": "86400s"})"},
     {R"({"age": "ring", "above": "300ms"})", R"({"age": "rin", "above": "86401s"})"},
     {R"({"age": "ring", "above": "300ms"})", R"({"age": "motors", "above": "1s"})"},
     {R"({"age": "ring", "above": "300ms"})", R"({"all": []})"},
@@ -135,14 +140,19 @@ constexpr Row rows[] = {
     {R"({"rate": "odometry", "below": 5, "window": "1s"})",
      R"({"rate": "odometry", "below": -1, "window": "1s"})"},
     {R"({"rate": "odometry", "below": 5, "window": "1s"})",
+     R"({"rate": "odometry", "below": 1000000000, "window": "60s"})"},
+    {R"({"rate": "odometry", "below": 5, "window": "1s"})",
      R"({"rate": "odometry", "below": 1000000001, "window": "61s"})"},
+    {R"("above": "72.5%")", R"("above": "100%")"},
     {R"("above": "72.5%")", R"("above": "100.1%")"},
+    {R"("above": "72.5%")", R"("above": "0%")"},
     {R"("above": "72.5%")", R"("above": "-0.1%")"},
     {R"("above": "72.5%")", R"("above": "full")"},
     {R"("above": "72.5%")", R"("above": 72)"},
     {R"("above": "72.5%", "window": "500ms"})", R"("above": "72.5%", "window": "600ms"})"},
     {R"({"bus_load": true, "above")", R"({"bus_load": false, "above")"},
     {R"({"refusals": true, "above": 3})", R"({"refusals": 1})"},
+    {R"({"refusals": true, "above": 3})", R"({"refusals": true, "above": 1000000})"},
     {R"({"refusals": true, "above": 3})", R"({"refusals": true, "above": 1000001})"},
     {R"({"bus_state": "off"})", R"({"bus_state": "on"})"},
     {R"({"bus_state": "off"})", R"({"bus_state": "off", "above": 3})"},
@@ -170,6 +180,8 @@ constexpr Row rows[] = {
     {R"("to": "halted", "when": "refused", "precedence": 3)",
      R"("to": "halted", "when": "refuse", "precedence": 3)"},
     {R"("to": "halted", "when": "refused", "precedence": 3)",
+     R"("to": "halted", "when": "refused", "precedence": 255)"},
+    {R"("to": "halted", "when": "refused", "precedence": 3)",
      R"("to": "halted", "when": "refused", "precedence": 256)"},
     {R"("to": "halted", "when": "refused", "precedence": 3)",
      R"("to": "slow", "when": "refused", "precedence": 1)"},
@@ -195,6 +207,50 @@ TEST_CASE("operate: what is said of each mistake in a file is as it was") {
       text += problem.place + ": " + problem.what + "\n    " + problem.remedy + "\n";
   }
   is_as_in("tests/tool/operate/golden/mistakes.txt", text);
+}
+
+/// wide.operator.json with one change.
+operate::Loaded with_change(std::string_view from, std::string_view to) {
+  std::string text = text_of("tests/tool/operate/wide.operator.json");
+  const auto at = text.find(from);
+  REQUIRE(at != std::string::npos);
+  return operate::parse(text.replace(at, from.size(), to), "a", amiro::catalogue, 500'000);
+}
+
+TEST_CASE("operate: a distance of two values is rounded up to whole steps, and is one at least") {
+  struct Typed {
+    const char* typed;
+    std::int64_t raw;
+  };
+  // The field has steps of 1 um/s.
+  for (const auto& [typed, raw] :
+       {Typed{"0.5m/s", 500'000}, Typed{"0.0000014m/s", 2}, Typed{"0.0000016m/s", 2}, Typed{"0.000001m/s", 1},
+        Typed{"0.0000001m/s", 1}, Typed{"20mm/s", 20'000}}) {
+    CAPTURE(typed);
+    const auto loaded = with_change(R"("0.5m/s")", '"' + std::string{typed} + '"');
+    REQUIRE(loaded.file);
+    CHECK(loaded.file->parts[0].limits[0].per_second == raw);
+  }
+}
+
+TEST_CASE("operate: a load of the bus is rounded to per mille, with and without its sign") {
+  struct Typed {
+    const char* typed;
+    std::int64_t per_mille;
+  };
+  for (const auto& [typed, per_mille] : {Typed{"72.5%", 725}, Typed{"72.5", 725}, Typed{"7.04%", 70},
+                                         Typed{"7.06%", 71}, Typed{"100%", 1000}, Typed{"1", 10}}) {
+    CAPTURE(typed);
+    const auto loaded = with_change(R"("72.5%")", '"' + std::string{typed} + '"');
+    REQUIRE(loaded.file);
+    const auto& conditions = loaded.file->conditions;
+    const auto found = std::find_if(conditions.begin(), conditions.end(), [](const auto& each) {
+      return each.watched == reflective::Watched::bus_load && each.is == reflective::Is::above;
+    });
+    REQUIRE(found != conditions.end());
+    CHECK(found->limit == per_mille);
+    CHECK(found->window == std::chrono::milliseconds{500});
+  }
 }
 
 TEST_CASE("operate: a file is as large as there is room for, and no larger") {

@@ -103,6 +103,27 @@ TEST_CASE("stats report: colours, and the topics that are asked for") {
   is_as_in("tests/tool/stats/golden/shown.txt", all);
 }
 
+TEST_CASE("stats report: of many messages that never came ten are named, and those that are asked for") {
+  const auto* const message = amiro::catalogue.find("gyroscope");
+  const auto* const other = amiro::catalogue.find("motors");
+  const auto text = [&](std::size_t count, const stats::Shown& shown) {
+    stats::Report report;
+    report.never_came.assign(count, message);
+    report.never_came.push_back(other);
+    return stats::never_came_text(report, shown);
+  };
+  const auto named = [](std::size_t count) {
+    std::string names = "never came: gyroscope (0 ns)";
+    for (std::size_t i = 1; i < count; ++i) names += ", gyroscope (0 ns)";
+    return names;
+  };
+  CHECK(text(9, {}) == named(9) + ", motors (0 ns)");
+  CHECK(text(10, {}) == named(10) + " and 1 more");
+  CHECK(text(14, {}) == named(10) + " and 5 more");
+  CHECK(text(14, {message}) == named(14));
+  CHECK(text(0, {message}).empty());
+}
+
 TEST_CASE("stats report: one object, and lines, without a bit rate and with two") {
   std::string all;
   for (const measure::BitRates rates : {measure::BitRates{0, 0}, measure::BitRates{250'000, 2'000'000}}) {
