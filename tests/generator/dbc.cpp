@@ -62,6 +62,43 @@ TEST_CASE("dbc: each character of code page 1252 that Unicode has elsewhere") {
         "�‘’“”•–—˜™š›œ�žŸ");
 }
 
+TEST_CASE("dbc: every other byte of code page 1252 is that character, there and back") {
+  std::string all;
+  for (int byte = 0; byte < 0x100; ++byte) {
+    const std::string one(1, static_cast<char>(byte));
+    if (byte == 0x81 || byte == 0x8D || byte == 0x8F || byte == 0x90 || byte == 0x9D) continue;
+    CAPTURE(byte);
+    CHECK(dbc::has_cp1252(dbc::to_utf8(one)));
+    CHECK(dbc::to_cp1252(dbc::to_utf8(one)) == one);
+    all += one;
+  }
+  CHECK(dbc::to_cp1252(dbc::to_utf8(all)) == all);
+  CHECK(dbc::to_utf8("\xA0") == "\xC2\xA0");
+  CHECK(dbc::to_utf8("\xFF") == "\xC3\xBF");
+  CHECK(dbc::has_cp1252(""));
+  // What it does not have: what stands for nothing, U+0081, U+0100, a Chinese character.
+  for (const char* text : {"a\xEF\xBF\xBD", "\xC2\x81", "\xC4\x80",
+                           "\xE4\xB8\xAD"
+                           "b"}) {
+    CAPTURE(text);
+    CHECK_FALSE(dbc::has_cp1252(text));
+    CHECK_FALSE(dbc::to_cp1252(text).has_value());
+  }
+  // Its bytes would be read as UTF-8.
+  CHECK(dbc::has_cp1252("\xC3\x83\xC2\xBA"));
+  CHECK_FALSE(dbc::to_cp1252("\xC3\x83\xC2\xBA").has_value());
+}
+
+TEST_CASE("dbc: of a long word or string a message shows forty characters") {
+  const std::string word(40, 'W');
+  message(
+      "BO_ 1 A: 8 X\n" + word + " 1;\n" + word + "W 1;\n",
+      {"2: unknown statement '" + word + "'; left out", "3: unknown statement '" + word + "...'; left out"});
+  const std::string form = " is expected; CM_ [BO_ IDENTIFIER | SG_ IDENTIFIER SIGNAL | BU_ NODE] \"TEXT\";";
+  message("BO_ 1 A: 8 X\nCM_ BO_ \"" + word + "W\";\n",
+          {"2: CM_: the string \"" + word + "\", where a message's identifier" + form});
+}
+
 TEST_CASE("dbc: a message with its signals") {
   const auto file = read(std::string{head} +
                          "BO_ 256 Engine: 8 Motor\n"
