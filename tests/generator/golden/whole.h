@@ -1700,6 +1700,38 @@ static inline void whole_Long_set_Step(whole_Long* message, int8_t value) {
   message->bytes[38] = (uint8_t)((message->bytes[38] & 0xFEu) | ((uint32_t)bits & 0x01u));
 }
 
+// Nine_bytes. 9 bytes, parameter group 0x0FEE4, every 1000 ms.
+#define WHOLE_NINE_BYTES_ID 0x18FEE4FEu
+#define WHOLE_NINE_BYTES_EXTENDED 1
+#define WHOLE_NINE_BYTES_LENGTH 9u
+#define WHOLE_NINE_BYTES_FD 0
+#define WHOLE_NINE_BYTES_PERIOD_US 1000000u
+typedef struct whole_Nine_bytes { uint8_t bytes[9]; } whole_Nine_bytes;
+// Each field at its start value, all other bits zero.
+static inline void whole_Nine_bytes_init(whole_Nine_bytes* message) {
+  unsigned i;
+  for (i = 0; i < 9u; ++i) message->bytes[i] = 0;
+}
+static inline int whole_Nine_bytes_is(uint32_t id, int extended) {
+  return extended && (id & 0x03FFFF00u) == 0x00FEE400u;
+}
+// 0, and the struct is as it was, where it is shorter than the message.
+static inline int whole_Nine_bytes_decode(whole_Nine_bytes* message, const uint8_t* data, unsigned length) {
+  unsigned i;
+  if (length < 9u) return 0;
+  for (i = 0; i < 9u; ++i) message->bytes[i] = data[i];
+  return 1;
+}
+// Ninth. In V.
+static inline uint8_t whole_Nine_bytes_Ninth(const whole_Nine_bytes* message) {
+  const uint32_t bits = (uint32_t)message->bytes[8];
+  return (uint8_t)bits;
+}
+static inline void whole_Nine_bytes_set_Ninth(whole_Nine_bytes* message, uint8_t value) {
+  const uint32_t bits = (uint32_t)value;
+  message->bytes[8] = (uint8_t)((uint32_t)bits & 0xFFu);
+}
+
 // Service. 64 bytes of CAN FD, identifier 0x7DF, every 1.5 ms.
 #define WHOLE_SERVICE_ID 0x7DFu
 #define WHOLE_SERVICE_EXTENDED 0

@@ -1261,6 +1261,33 @@ struct Long {
   friend constexpr bool operator==(const Long&, const Long&) = default;
 };
 
+/// Nine_bytes. 9 bytes, parameter group 0x0FEE4, every 1000 ms.
+struct Nine_bytes {
+  static constexpr std::string_view name = "Nine_bytes";
+  static constexpr ocm::protocol::Address address{ocm::protocol::Address::By::pgn, true, 0x18FEE4FE};
+  static constexpr std::size_t length = 9;
+  static constexpr bool fd = false;
+  static constexpr ocm::base::Duration period{1'000'000'000};  ///< ns; 0: none is stated
+  static constexpr std::string_view sender = "engine";
+
+  ocm::protocol::MessageBytes<9> bytes{};
+
+  /// Ninth. In V.
+  static constexpr ocm::protocol::Position Ninth_at{64, 8};
+  [[nodiscard]] constexpr std::uint8_t Ninth() const noexcept {
+    return ocm::protocol::read_field<std::uint8_t>(bytes, Ninth_at);
+  }
+  constexpr void set_Ninth(std::uint8_t value_) noexcept {
+    ocm::protocol::write_field(bytes, Ninth_at, value_);
+  }
+
+  /// Of a can::Frame or of bytes: nothing where it is another message, or shorter than this one.
+  [[nodiscard]] static constexpr auto decode(const auto& data_) noexcept {
+    return ocm::protocol::message_from<Nine_bytes>(data_);
+  }
+  friend constexpr bool operator==(const Nine_bytes&, const Nine_bytes&) = default;
+};
+
 /// Service. 64 bytes of CAN FD, identifier 0x7DF, every 1.5 ms.
 struct Service {
   static constexpr std::string_view name = "Service";

@@ -195,6 +195,9 @@ group_messages[0x0FEE3] = { name = "Long", abbreviation = "Long", length = 0, se
   { name = "Curve", start = 247, width = 40, big = true, signed = true, unit = "Nm", physical = function(raw) return raw * -1.0 / 100.0 end },
   { name = "Step", start = 304, width = 1, signed = true },
 } }
+group_messages[0x0FEE4] = { name = "Nine_bytes", abbreviation = "Nine_bytes", length = 0, sender = "engine", fields = {
+  { name = "Ninth", start = 64, width = 8, unit = "V" },
+} }
 base_messages[0x7DF] = { name = "Service", abbreviation = "Service", length = 64, sender = "dash", fields = {
   { name = "Mode", start = 0, width = 8, signed = true },
   { name = "Load", start = 8, width = 32, selector = 1, selected = { { 1, 1 }, { 4, 7 }, { 6, 9 } }, float = true, unit = "kW", physical = function(raw) return raw * 2.0 + 1.0 end },
