@@ -122,6 +122,45 @@ TEST_CASE("what is no spec at all") {
   CHECK(ocm::spec::parse("{}", "f").problems.size() == 5);
 }
 
+TEST_CASE("a spec may be as deep and as large as is said, and names and units as long") {
+  const auto first = [](std::string_view text) {
+    const auto loaded = ocm::spec::parse(text, "f");
+    REQUIRE_FALSE(loaded.problems.empty());
+    return loaded.problems[0].what;
+  };
+  CHECK(first(std::string(32, '[') + std::string(32, ']')) == "a list, not an object");
+  CHECK(first(std::string(33, '[') + std::string(33, ']')) == "nested deeper than 32 levels");
+  CHECK(first("[\"" + std::string(20'000, 'a') + "\"]") == "a list, not an object");
+  CHECK(first(std::string(10'000'000, ' ')) == "the file is empty");
+  // Of other documents a text is shorter.
+  for (const std::size_t size : {std::size_t{1000}, std::size_t{1001}}) {
+    std::vector<ocm::spec::Problem> problems;
+    static_cast<void>(ocm::spec::parse_json("[\"" + std::string(size, 'a') + "\"]", "f", problems));
+    CHECK(problems.empty() == (size == 1000));
+  }
+
+  const std::string good = read("tests/generator/good.json");
+  const auto with = [&good](const std::string& from, const std::string& to) {
+    std::string text = good;
+    const auto at = text.find(from);
+    REQUIRE(at != std::string::npos);
+    return printed(ocm::spec::parse(text.replace(at, from.size(), to), "f").problems);
+  };
+  const std::string longest(40, 'a');
+  const std::string unit = "\"unit\": \"deg/s\"";
+  CHECK(with("\"gyroscope\"", '"' + longest + '"').empty());
+  CHECK(with("\"gyroscope\"", '"' + longest + "a\"") ==
+        std::vector<std::string>{"f:11: /topics/0/name: the name \"" + longest +
+                                 "a\" has 41 characters; at most 40"});
+  CHECK(with(unit, "\"unit\": \"" + longest + '"').empty());
+  CHECK(with(unit, "\"unit\": \"" + longest + "a\"") ==
+        std::vector<std::string>{"f:16: /topics/0/frames/0/fields/0/unit: the unit \"" + longest +
+                                 "a\" cannot be read as a name; add \"unit_name\", which ends the name of "
+                                 "the accessor, such as \"gauss\""});
+  CHECK(with(unit, unit + ", \"unit_name\": \"" + longest + '"').empty());
+  CHECK(with(unit, unit + ", \"unit_name\": \"" + longest + "a\"").size() == 1);
+}
+
 TEST_CASE("a file that is not there, or is no file") {
   const auto only = [](const std::filesystem::path& file) { return ocm::spec::load(file).problems.at(0); };
   CHECK(only("/nonexistent/spec.json").what == "there is no such file");
