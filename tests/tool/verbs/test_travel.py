@@ -185,7 +185,9 @@ class Travel(Case):
         self.assertIn("di_wheel_drive refuses travel: out_of_range", err)
         self.interrupt(sim)
         self.start_sim("--without", "di_wheel_drive")
+        begin = time.monotonic()
         _, err = self.run_tool("travel", "10cm", code=1)
+        self.assertGreater(time.monotonic() - begin, 1.2)  # four times 300 ms, counted from each question
         self.assertIn("no behaviour within 1.2s", err)
         self.assertIn("di_wheel_drive", err)
         self.assertNotIn("has not answered", err)  # which says the same
