@@ -5,19 +5,20 @@
 
 namespace ocm::cli::replay {
 
-StandIn::StandIn(const protocol::Catalogue& catalogue)
+StandIn::StandIn(const protocol::Catalogue& catalogue, std::size_t room)
     : catalogue_(&catalogue),
       receiver_(catalogue),
       index_(catalogue),
       recordings_(catalogue.topics.size()),
-      publisher_(std::make_unique<scheduling::Publisher<most_topics>>()) {}
+      publisher_(std::make_unique<scheduling::Publisher<most_topics>>()),
+      room_(room) {}
 
 bool StandIn::learn(const can::Frame& frame, std::uint16_t interface) {
   const auto reception = receiver_.take(can::FrameView{frame}, {}, interface);
   if (reception.meaning != client::Meaning::sample) return true;
   if (reception.topic->is_message()) return true;  // is asked for by no request
   const std::size_t count = reception.topic->frames.size();
-  if (frames_ + count > most_frames) return false;
+  if (frames_ + count > room_) return false;
   auto& recorded = recordings_[index(*reception.topic)].payloads;
   for (std::size_t i = 0; i < count; ++i) recorded.push_back(reception.sample.payload(i));
   frames_ += count;

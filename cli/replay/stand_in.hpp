@@ -23,8 +23,8 @@ class StandIn {
   /// 1 GB.
   static constexpr std::size_t most_frames = std::size_t{64} << 20;
 
-  /// The catalogue must outlive it.
-  explicit StandIn(const protocol::Catalogue& catalogue);
+  /// The catalogue must outlive it. It learns `room` frames at most.
+  explicit StandIn(const protocol::Catalogue& catalogue, std::size_t room = most_frames);
 
   /// Frames of `interface` of the log come over the one of this name: topics that are on another are none of
   /// theirs.
@@ -67,6 +67,7 @@ class StandIn {
   client::FrameIndex index_;
   std::vector<Recording> recordings_;
   std::unique_ptr<scheduling::Publisher<most_topics>> publisher_;
+  std::size_t room_;
   std::size_t frames_ = 0;
   std::vector<can::Frame> sample_;
 };

@@ -119,6 +119,18 @@ TEST_CASE("stand-in: what is no request, what no board takes, and what was not r
   CHECK(empty.robot.next() == base::never);
 }
 
+TEST_CASE("stand-in: it learns as many frames as there is room for, and only whole samples") {
+  for (const std::size_t room : {std::size_t{4}, std::size_t{5}}) {
+    CAPTURE(room);
+    StandIn robot{test::catalogue, room};
+    for (int i = 1; i <= 3; ++i) {
+      CHECK(robot.learn(frame(Direction::sensor, 0x10, {0, 0, 0, i})));
+      CHECK(robot.learn(frame(Direction::sensor, 0x21, {i})) == (i <= 2));
+    }
+    CHECK(robot.samples() == 2);
+  }
+}
+
 TEST_CASE("stand-in: half of a sample is none, and set points are not learnt") {
   Robot robot{0};
   CHECK(robot.robot.learn(frame(Direction::sensor, 0x10, {0, 0, 0, 1})));
