@@ -44,6 +44,12 @@ class Decode(Case):
         again, _ = self.run_tool("convert", "-", "-", "--to", "candump", stdin=converted)
         self.assertEqual(again, LOG)
 
+    def test_without_a_standard_input_a_file_takes_its_number(self):
+        path = self.file("a.log", LOG)
+        done = subprocess.run([AMIROCTL, "decode", "--raw", path], env=self.environment, capture_output=True, text=True, timeout=60,
+                              preexec_fn=lambda: os.close(0))
+        self.assertEqual((done.stdout, done.stderr), self.run_tool("decode", "--raw", path))
+
     def test_derived_fields(self):
         # Sensor 4 sees 377 counts above its offset, 2350, and so something 50 mm away; sensor 1 nothing.
         log = "(1.0) can0 61F#F108\n(1.1) can0 622#A70A\n"
