@@ -27,6 +27,7 @@ struct LogFile::State {
   int descriptor = -1;
   bool regular = false;
   bool made_now = false;  ///< the name was free
+  bool emptied = false;   ///< what was in the file is gone; not before there is something in its place
   dev_t device = 0;
   ino_t inode = 0;
   bool finished = false;
@@ -82,7 +83,7 @@ struct LogFile::State {
     return false;
   }
 
-  /// Empties an ordinary file only once it is locked: another program may be writing to it.
+  /// Locks an ordinary file: another program may be writing to it.
   bool open(Existing existing) {
     constexpr int how = O_WRONLY | O_CREAT | O_CLOEXEC;
     constexpr ::mode_t all_users = 0666;  // less the umask
@@ -108,15 +109,12 @@ struct LogFile::State {
     if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
       return refuse({fmt::format("another program writes {} now", path), "end it, or give another name"});
     if (!made_now && existing == Existing::refuse) return refuse(exists_failure(path));
-    if (!made_now && ::ftruncate(descriptor, 0) != 0) {
-      failed("empty");
-      return refuse({failure.what, "give another name"});
-    }
     return true;
   }
 
   /// A file that takes no more ends where the last call ended, so that it ends with a whole record.
   bool hand_out(std::string_view text) {
+    if (regular && !std::exchange(emptied, true) && ::ftruncate(descriptor, 0) != 0) return failed("empty");
     const Written written = write_all(descriptor, text, signals);
     if (written.error != 0) {
       errno = written.error;
@@ -167,7 +165,7 @@ transport::Outcome<std::unique_ptr<LogFile>> LogFile::create(const std::string& 
     }
     state->packer = std::move(*packer);
   }
-  // Takes what memory it takes before a file that is there is emptied.
+  // Takes what memory it takes before a file is made.
   state->writer = format.writer(catalogue);
   state->writer->begin(state->bytes);
   std::unique_ptr<LogFile> file{new LogFile};
@@ -219,8 +217,11 @@ bool LogFile::finish() {
   return done;
 }
 
-void LogFile::discard() noexcept {
-  if (state_->regular && state_->made_now && state_->is_named()) ::unlink(state_->path.c_str());
+bool LogFile::discard() {
+  if (!state_->regular || state_->size != 0) return finish();
+  if (state_->made_now && state_->is_named()) ::unlink(state_->path.c_str());
+  if (!std::exchange(state_->finished, true)) ::close(state_->descriptor);
+  return state_->failure.what.empty();
 }
 
 const transport::Failure& LogFile::failure() const noexcept {

@@ -48,9 +48,10 @@ class LogFile {
   bool flush(bool to_disk = false);
   /// Writes the end of the format, flushes and closes.
   bool finish();
-  /// After `finish`, where no frame could be read: deletes an ordinary file that `create` has made, so that
-  /// the next try finds the name free. A file that was there before stays.
-  void discard() noexcept;
+  /// In place of `finish`, where no frame could be read: deletes an ordinary file that `create` has made, so
+  /// that the next try finds the name free; one that was there before is as it was. Where something was
+  /// written, or is read as it comes, it finishes. After a `finish` that failed: deletes what is empty.
+  bool discard();
 
   [[nodiscard]] const transport::Failure& failure() const noexcept;
   [[nodiscard]] const log::Losses& lost() const noexcept;

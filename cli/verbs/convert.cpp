@@ -33,6 +33,10 @@ std::uint64_t copy(logs::OpenedLog& in, logs::LogFile& out) {
     if (!out.write(std::span{entries}.first(count), in.reader().interfaces())) return frames;
     if (live && count < entries.size() && !out.flush()) return frames;
   }
+  if (frames == 0 && (in.reader().complaints().total() != 0 || in.ended_early())) {
+    out.discard();
+    return 0;
+  }
   out.recorded(in.reader().recorded());
   out.finish();
   return frames;
@@ -62,7 +66,6 @@ void convert(Session& session, const ConvertOptions& options, int& exit_code) {
   if (!written && (*out)->size() == 0) (*out)->discard();
   if (!written) fail((*out)->failure(), exit_code_after_interrupt(exit_failure));
   const bool nothing = frames == 0 && (unreadable || in.ended_early());
-  if (nothing) (*out)->discard();
   const bool not_all = unreadable || (*out)->lost().any();
   if (in.ended_early() || nothing || (options.strict && not_all)) exit_code = exit_failure;
   exit_code = exit_code_after_interrupt(exit_code);

@@ -52,13 +52,12 @@ void encode(Session& session, const EncodeOptions& options, int& exit_code) {
     ++count;
   }
   write(false);
-  (*out)->finish();
+  lines.failed() && frames == 0 ? (*out)->discard() : (*out)->finish();
   remark(counted(frames, "frame") + " encoded");
   lines.tell_unknown_keys();
   logs::tell_losses((*out)->lost(), format);
   if (!(*out)->failure().what.empty()) fail((*out)->failure(), exit_code_after_interrupt(exit_failure));
   if (lines.failed()) exit_code = exit_failure;
-  if (lines.failed() && frames == 0) (*out)->discard();
   exit_code = exit_code_after_interrupt(exit_code);
 }
 

@@ -216,6 +216,23 @@ class Messages(Case):
             self.assertIn("no topic ''", self.run_tool(*words, code=2)[1])
         self.assertIn("'' is not a number", self.run_tool("set", "motors", "x=", code=2)[1])
 
+    def test_what_is_overwritten_stays_where_nothing_could_be_read(self):
+        """--force overwrites with something, also with a log of no frames, and not with nothing."""
+        bad, none, out = (os.path.join(self.folder, name) for name in ("bad.log", "none.json", "out.csv"))
+        for path, text in ((bad, "garbage\n"), (none, "\n"), (out, "mine")):
+            with open(path, "w", encoding="ascii") as file:
+                file.write(text)
+
+        def content():
+            with open(out, encoding="ascii") as file:
+                return file.read()
+
+        self.run_tool("convert", bad, out, "--from", "candump", "--force", code=1)
+        self.run_tool("encode", bad, "-o", out, "--force", code=1)
+        self.assertEqual(content(), "mine")
+        self.run_tool("convert", none, out, "--from", "json", "--force")
+        self.assertRegex(content(), r"\A[^\n]*\n\Z")  # the header
+
     def test_many_errors_of_a_script_are_counted(self):
         _, err = self.run_tool("run", "-", stdin="nonsense\n" * 100_000, code=2)
         self.assertEqual(err.count("is not a time from the start"), 20)
