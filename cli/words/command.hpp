@@ -183,10 +183,10 @@ class CommandParser {
     const auto wire =
         period ? protocol::Period::from(*period) : base::Result<protocol::Period>{base::Error::bad_period};
     if (!wire) {
-      const bool fine = !period && !word.starts_with('-') && word.find('.') != std::string_view::npos;
-      const base::Duration wanted = period ? *period : base::Duration{fine ? 1 : INT64_MAX};
+      const base::Duration too_long{word.starts_with('-') ? INT64_MIN : INT64_MAX};
+      const auto rounded = nearest_duration(word);
       return WordError{2, "the wire cannot carry a period of " + std::string{word},
-                       "nearest: " + to_text(protocol::Period::nearest(wanted))};
+                       "nearest: " + to_text(protocol::Period::nearest(rounded ? *rounded : too_long))};
     }
     command.frames = {protocol::encode(
         {(*sensor)->id, protocol::Mode::publish, *wire, priority.value_or((*sensor)->priority)})};

@@ -161,28 +161,44 @@ constexpr NamedUnit named_units[] = {
   return base::normalised(std::llround(scaled), -9);
 }
 
-/// "500ms", "2s", "1.5s", "900us", "1min", "1h". bad_unit: no unit or another one; out_of_range: over 292
-/// years or finer than a nanosecond.
-[[nodiscard]] constexpr base::Result<base::Duration> parse_duration(std::string_view text) noexcept {
+namespace detail {
+[[nodiscard]] constexpr base::Result<base::Decimal> nanoseconds_in(std::string_view text) noexcept {
   const auto quantity = parse_quantity(text);
   if (!quantity) return quantity.error;
-  struct Unit {
+  struct UnitOfTime {
     std::string_view name;
     std::int64_t nanoseconds;
   };
-  constexpr Unit units[] = {
+  constexpr UnitOfTime times[] = {
       {"ns", 1},         {"us", 1'000},        {"\u00b5s", 1'000},      {"\u03bcs", 1'000},
       {"ms", 1'000'000}, {"s", 1'000'000'000}, {"min", 60'000'000'000}, {"h", 3'600'000'000'000}};
-  for (const auto& unit : units) {
+  for (const auto& unit : times) {
     if (quantity->unit != unit.name) continue;
     // Normalised, so that powers of ten go into the exponent: every duration that is printed can be read.
-    const auto ns = base::multiply(quantity->number, base::normalised(unit.nanoseconds, 0));
-    if (!ns || ns->exponent < 0) return base::Error::out_of_range;
-    const auto count = base::detail::scaled(ns->digits, ns->exponent);
-    if (!count) return count.error;
-    return base::Duration{*count};
+    return base::multiply(quantity->number, base::normalised(unit.nanoseconds, 0));
   }
   return base::Error::bad_unit;
+}
+}  // namespace detail
+
+/// "500ms", "2s", "1.5s", "900us", "1min", "1h". bad_unit: no unit or another one; out_of_range: over 292
+/// years or finer than a nanosecond.
+[[nodiscard]] constexpr base::Result<base::Duration> parse_duration(std::string_view text) noexcept {
+  const auto ns = detail::nanoseconds_in(text);
+  if (!ns) return ns.error;
+  if (ns->exponent < 0) return base::Error::out_of_range;
+  const auto count = base::detail::scaled(ns->digits, ns->exponent);
+  if (!count) return count.error;
+  return base::Duration{*count};
+}
+
+/// The same, rounded to nanoseconds.
+[[nodiscard]] constexpr base::Result<base::Duration> nearest_duration(std::string_view text) noexcept {
+  const auto ns = detail::nanoseconds_in(text);
+  if (!ns) return ns.error;
+  const auto count = base::divide_rounded(*ns, {1, 0});
+  if (!count) return count.error;
+  return base::Duration{*count};
 }
 
 /// Whether it is a quantity but for its unit.
