@@ -89,7 +89,7 @@ void add_request_options(Verb verb, Session& session, std::string_view words_hel
   const auto options = std::make_shared<Options>(verb, session, words_help);
   const auto wait = verb.add_value("--wait", take_into(options->wait, words::read_lasting),
                                    "show the first sample; T: how long to wait for it");
-  wait.expected(0, 1).type_name("[T]").takes(accepted_duration()).default_text(words::to_text(options->wait));
+  wait.expected(0, 1).type_name("[T]").takes(accepted_lasting()).default_text(words::to_text(options->wait));
   if (starts == Starts::stream) add_admission_options(verb, options->admission);
   verb.callback([options, wait, &session] {
     protocol::Catalogue catalogue = options->commanding.catalogue();

@@ -65,13 +65,13 @@ Option add_duration(Verb verb, const std::string& names, std::optional<base::Dur
 
 Option add_lasting(Verb verb, const std::string& names, base::Duration& value, const std::string& help) {
   const auto option = verb.add_value(names, take_into(value, words::read_lasting), help);
-  return option.type_name("T").takes(accepted_duration()).default_text(words::to_text(value));
+  return option.type_name("T").takes(accepted_lasting()).default_text(words::to_text(value));
 }
 
 Option add_lasting(Verb verb, const std::string& names, std::optional<base::Duration>& value,
                    const std::string& help) {
   const auto option = verb.add_value(names, take_into(value, words::read_lasting), help);
-  return option.type_name("T").takes(accepted_duration());
+  return option.type_name("T").takes(accepted_lasting());
 }
 
 Option add_priority(Verb verb, const std::string& names, std::optional<protocol::Priority>& value,
@@ -104,10 +104,26 @@ Option add_simulated_bit_rate(Verb verb, const std::string& names, std::uint32_t
        }});
 }
 
-Accepted accepted_duration() {
-  return {ValueKind::text, false, "a time such as 500ms, 2s or 1.5s", {}, [](const std::string& text) {
-            return static_cast<bool>(read_duration(text));
+namespace {
+/// A time that `read` takes.
+template <class Read>
+Accepted accepted_time(Read read) {
+  return {ValueKind::text, false, "a time such as 500ms, 2s or 1.5s", {}, [read](const std::string& text) {
+            return static_cast<bool>(read(text));
           }};
+}
+}  // namespace
+
+Accepted accepted_duration() {
+  return accepted_time(read_duration);
+}
+
+Accepted accepted_lasting() {
+  return accepted_time(words::read_lasting);
+}
+
+Accepted accepted_every() {
+  return accepted_time(words::read_every);
 }
 
 Accepted accepted_bit_rate() {

@@ -51,6 +51,8 @@ Option add_simulated_bit_rate(Verb verb, const std::string& names, std::uint32_t
 
 /// What such options are declared to take.
 [[nodiscard]] Accepted accepted_duration();
+[[nodiscard]] Accepted accepted_lasting();
+[[nodiscard]] Accepted accepted_every();
 [[nodiscard]] Accepted accepted_bit_rate();
 [[nodiscard]] Accepted accepted_priority();
 

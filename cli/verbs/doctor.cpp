@@ -330,7 +330,7 @@ void add_doctor(Verb app, Session& session, int& exit_code) {
   const auto options = std::make_shared<DoctorOptions>();
   add_duration(verb, "--listen,--watch", options->listen, "how long to listen before asking")
       .formerly("--watch");
-  add_duration(verb, "--patience", options->patience, "how long a board may take to answer");
+  add_lasting(verb, "--patience", options->patience, "how long a board may take to answer");
   verb.add_flag("--json", options->json, "one object, for programs");
   verb.callback([options, &session, &exit_code] {
     catch_interrupts();

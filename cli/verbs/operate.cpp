@@ -151,7 +151,7 @@ void add_operate(Verb app, Session& session, int& exit_code) {
                       "keep the last seconds before each fall-back in this folder, as candump logs")
           .type_name("FOLDER")
           .excludes(check_flag);
-  add_duration(verb, "--black-box-time", options->black_box.lasting, "how much of it").needs(box);
+  add_lasting(verb, "--black-box-time", options->black_box.lasting, "how much of it").needs(box);
   verb.add_option("--black-box-files", options->black_box.files, "how many of them; the oldest are deleted")
       .type_name("N")
       .range(1U, 10'000U)

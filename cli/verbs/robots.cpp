@@ -73,7 +73,7 @@ void add_robots(Verb app, Session&, int& exit_code) {
   const auto options = std::make_shared<RobotsOptions>();
   verb.add_flag("--json", options->json, "an object a robot");
   verb.add_flag("--list", options->list, "those that advertise; connect to none");
-  add_duration(verb, "--listen,--watch", options->listen, "how long to listen once all are connected")
+  add_lasting(verb, "--listen,--watch", options->listen, "how long to listen once all are connected")
       .formerly("--watch");
   fleet::add_line_options(verb, options->line);
   verb.callback([options, &exit_code] { run(*options, exit_code); });

@@ -21,7 +21,7 @@ void add_set(Verb app, Session& session, int& exit_code) {
   const auto every = verb.add_value("--every", take_into(options.every, words::read_every),
                                     "send it again and again until Ctrl-C or --for")
                          .type_name("T")
-                         .takes(accepted_duration());
+                         .takes(accepted_every());
   add_lasting(verb, "--for", options.lasting, "how long to send it").needs(every);
   verb.add_flag("--force", options.force, "also values beyond the range that the spec states");
   verb.callback([commanding, &session, &exit_code] {

@@ -161,6 +161,8 @@ class Config(harness.Case):
                 ('[listen]\ncount = -1', "count -1: not above zero", "write a number above zero, such as 10"),
                 ('[listen]\ncount = 1.5', "count 1.5: not a whole number", "write a whole number, such as 10"),
                 ('[listen]\ntimeout = "5"', "timeout 5: a time without a unit", "write 2s, 500ms or 1min"),
+                ('[listen]\ntimeout = "0s"', "timeout 0s: not a time above zero", "write 2s, 500ms or 1min"),
+                ('[set]\nevery = "50us"', "every 50us: not a time of 100us or more", "write 10ms, 1s or 500us"),
                 ('[listen]\ntimeout = 5', "timeout 5: a time without a unit", "write 2s, 500ms or 1min, in quotes"),
                 ('[publish]\nwait = "soon"', "wait soon: not a time above zero", "write 2s, 500ms or 1min"),
                 ('[replay]\nspeed = "fast"', "speed fast: invalid value", "write how many times faster, 0.000001 to 1000000, or max"),
