@@ -541,13 +541,15 @@ bool JsonLineParser::put_request(log::Entry& entry, const protocol::Topic& topic
   const auto mode = static_cast<Mode>(found - std::begin(modes));
   std::optional<base::Duration> period;
   if (period_text) {
-    const auto seconds = base::parse_decimal(period_text.text);
-    const auto ns =
-        seconds ? base::divide_rounded(*seconds, {1, -9}) : base::Result<std::int64_t>{seconds.error};
-    if (!ns || !protocol::Period::from(base::Duration{*ns}))
-      return refuse(log::Cause::syntax, "period " + shown(period_text.text) + " is none that a request has",
-                    "expected seconds that are 1 to 65535 whole us, ms or s");
-    period = base::Duration{*ns};
+    if (const auto seconds = base::parse_decimal(period_text.text)) {
+      if (const auto ns = base::divide_rounded(*seconds, {1, -9})) period = base::Duration{*ns};
+    } else if (const auto time = words::parse_duration(period_text.text)) {
+      period = *time;
+    }
+    if (!period || !protocol::Period::from(*period))
+      return refuse(
+          log::Cause::syntax, "period " + shown(period_text.text) + " is none that a request has",
+          R"(write seconds or a time with its unit, such as 0.5 or "500ms": 1 to 65535 us, ms or s)");
   }
   // What the data says already, as JsonText shows it, stays as it is.
   if (record_.data) {
