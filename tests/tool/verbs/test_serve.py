@@ -793,6 +793,7 @@ print(lost, flush=True)
         viewer.subscribe("/gyroscope")
         self.settle()
         self.run_tool("send", "--stdin", stdin="608#000100000000\n608#000200000000\n608#000300000000\n")
+        self.settle()  # it has them, and a viewer has them up to 20 ms later
         server.send_signal(signal.SIGINT)
         self.assertEqual([round(viewer.message("/gyroscope").fields["x"] / 0.0175) for _ in range(3)], [256, 512, 768])
         server.communicate(timeout=60)
