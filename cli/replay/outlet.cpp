@@ -14,7 +14,8 @@ Outlet::Outlet(std::unique_ptr<transport::Bus> bus, const protocol::Catalogue& c
     : bus_(std::move(bus)),
       outgoing_(*bus_, "replay"),
       takes_fd_(bus_->fd_obstacle().what.empty()),
-      index_(catalogue) {
+      index_(catalogue),
+      behaviours_(catalogue) {
   // What comes back is not read; one identifier is the least that a bus can be asked for.
   const can::Filter least{can::max_base_id, can::max_base_id};
   if (const auto subscribed = bus_->subscribe({&least, 1}); !subscribed) fail(subscribed.error);
@@ -26,6 +27,7 @@ Outlet::Sent Outlet::send(const log::Entry& entry) {
   const auto frame = entry.classic();
   if (!frame || commanded_motors(index_, *frame) == nullptr) {
     outgoing_.send(entry.frame());
+    if (frame) behaviours_.sent(*frame);
     ++behind_;
     return Sent::yes;
   }
@@ -60,6 +62,16 @@ void Outlet::expect_open() const {
   auto received = bus_->receive(base::Duration::zero());
   while (received) received = bus_->receive(base::Duration::zero());
   if (received.error == base::Error::closed) fail(bus_->failure());
+}
+
+std::string Outlet::end_behaviours() {
+  for (const auto& each : behaviours_.all()) {
+    outgoing_.send(each.end);
+    ++behind_;
+  }
+  std::string names = behaviours_.names();
+  behaviours_.clear();
+  return names;
 }
 
 bool Outlet::rest() {

@@ -4,12 +4,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <string_view>
 
 #include "ocm/client/frame_index.hpp"
 #include "ocm/log/entry.hpp"
 #include "ocm/transport/bus.hpp"
 
+#include "cli/shared/begun_behaviours.hpp"
 #include "cli/shared/outgoing.hpp"
 
 namespace ocm::cli::replay {
@@ -36,6 +38,9 @@ class Outlet {
   /// Sets motors to zero that the frames have left running. false: they have not.
   bool rest();
 
+  /// Ends what boards do by themselves because of the frames: "travel was"; empty: nothing.
+  std::string end_behaviours();
+
   /// Waits until all has left, or leaves through cli::fail and says how much has not.
   void expect_all_left();
 
@@ -49,6 +54,7 @@ class Outlet {
   Outgoing outgoing_;
   bool takes_fd_;
   client::FrameIndex index_;
+  BegunBehaviours behaviours_;
   can::Frame set_point_;      ///< of motors, the last that was sent
   std::uint64_t behind_ = 0;  ///< frames that were sent after it
 };

@@ -83,6 +83,14 @@ class Player {
     return any;
   }
 
+  /// Ends what boards do by themselves because of the frames; a remark on each bus where there was something.
+  std::vector<std::string> end_behaviours() {
+    std::vector<std::string> all;
+    for (Outlet& outlet : outlets_)
+      if (std::string names = outlet.end_behaviours(); !names.empty()) all.push_back(std::move(names));
+    return all;
+  }
+
   /// Waits until all that was sent has left, or leaves through cli::fail and says how much has not.
   void expect_all_left() {
     for (Outlet& outlet : outlets_) outlet.expect_all_left();

@@ -218,9 +218,13 @@ void play(Session& session, const ReplayOptions& options, int& exit_code) {
       log = std::make_unique<logs::OpenedLog>(options.file, options.from_format, catalogue);
     }
     // Where the log was not played to its end, the set point that would have ended a drive is not sent.
-    const bool rested = (player.cut_short() || damaged) && player.rest();
+    const bool cut_short = player.cut_short() || damaged;
+    const bool rested = cut_short && player.rest();
+    const auto ended = cut_short ? player.end_behaviours() : std::vector<std::string>{};
     player.expect_all_left();
     if (rested) remark("the motors were set to zero: the log goes on behind this");
+    for (const std::string& names : ended)
+      remark(fmt::format("{} ended: the log goes on behind this", names));
   } catch (const Exit&) {  // the bus took no more: what was sent is reported all the same
     if (!options.dry_run) summarise(player, false);
     throw;

@@ -20,6 +20,7 @@
 #include "cli/command/operated_bus.hpp"
 #include "cli/command/timeline.hpp"
 #include "cli/output/printer.hpp"
+#include "cli/shared/begun_behaviours.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/terminal.hpp"
 #include "cli/verbs/verb.hpp"
@@ -137,6 +138,19 @@ std::string left_by(std::span<const words::Step> steps, const protocol::Catalogu
   return left.empty() ? "interrupted" : fmt::format("interrupted: {}", fmt::join(left, "; "));
 }
 
+/// Ends what boards do by themselves because of these steps.
+void end_behaviours(std::span<const words::Step> steps, Timeline& timeline, BegunBehaviours& behaviours) {
+  for (const auto& step : steps)
+    step.command.each_frame([&](const can::AnyFrame& frame) {
+      if (const auto classic = frame.classic()) behaviours.sent(*classic);
+    });
+  client::Command end;
+  for (const auto& each : behaviours.all()) end.frames.push_back(each.end);
+  if (end.frames.empty()) return;
+  timeline.forgive_a_stop();  // an end is never too late
+  timeline.carry_out_once(end);
+}
+
 void run(Session& session, const RunOptions& options, int& exit_code) {
   const auto& catalogue = session.catalogue_on_bus(false);
   const auto script = checked(options.file, read_script(options.file), catalogue);
@@ -193,9 +207,14 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
     remark(fmt::format("run: {} {} sent until Ctrl-C; --for ends that", fmt::join(names, ", "),
                        names.size() == 1 ? "is" : "are"));
   const bool whole = interrupted() == 0 && timeline.wait_for_end();
+  const auto done = std::span{script.steps}.first(carried_out);
+  BegunBehaviours behaviours{catalogue};
+  if (!whole) end_behaviours(done, timeline, behaviours);
   if (!timeline.finish()) exit_code = exit_failure;
   if (!whole) {
-    remark(left_by(std::span{script.steps}.first(carried_out), catalogue));
+    if (const std::string names = behaviours.names(); !names.empty())
+      remark(fmt::format("run: {} ended", names));
+    remark(left_by(done, catalogue));
     exit_code = exit_code_after_interrupt(exit_success);
   }
 }

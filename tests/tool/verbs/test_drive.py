@@ -234,6 +234,20 @@ class Alarm(WithAdapter, Drive):
                 self.assertNotIn("MAY STILL MOVE", err)
 
 
+class Interrupted(Drive):
+    def test_a_travel_that_a_script_has_begun_is_ended(self):
+        """The board would travel on without the script."""
+        self.start_sim()
+        listener = self.listen("--commands", "--timeout", "20s")
+        run = self.start("run", self.script("0s set travel distance=50cm angle=0rad speed=10cm/s\n9s led 1 red\n"))
+        self.assertIn("50C300000000E803", listener.stdout.readline())
+        _, err = self.interrupt(run)
+        self.assertEqual(run.returncode, 130, err)
+        self.assertIn("run: travel was ended\n", err)
+        line = json.loads(listener.stdout.readline())
+        self.assertEqual((line["id"], line["data"]), ("20B", "0000000000000000"))
+
+
 class LateSteps(Drive):
     def test_a_script_that_stood_still_carries_out_no_late_steps(self):
         self.start_sim()

@@ -279,6 +279,23 @@ class Replaying(RealTime, Case):
         self.assertIn("cannot be read beyond", err)
         self.assertIn("the motors were set to zero", err)
 
+    def test_a_travel_that_is_cut_short_is_ended(self):
+        """A board travels without the program that has sent the set point."""
+        self.start_sim()
+        travel, end = "20B#50C300000000E803", "20B#0000000000000000"
+        log = self.write_log((1, travel), (1.1, "608#01"), (9, "603#0000000000000000"))
+        frames, err = self.replayed(log, "--until", "500ms")
+        self.assertEqual([frame for _, frame in frames if frame.startswith("20B")], [travel, end])
+        self.assertIn("travel was ended: the log goes on behind this", err)
+        # One that the log itself ends, or that is played whole, is left as it is.
+        log = self.write_log((1, travel), (1.1, end), (1.2, "608#01"), (9, "608#01"))
+        frames, err = self.replayed(log, "--until", "500ms")
+        self.assertEqual([frame for _, frame in frames if frame.startswith("20B")], [travel, end])
+        self.assertNotIn("was ended", err)
+        frames, err = self.replayed(self.write_log((1, travel), (1.1, "608#01")))
+        self.assertEqual([frame for _, frame in frames if frame.startswith("20B")], [travel])
+        self.run_tool("behave", "none")
+
     def test_usage(self):
         log = self.write_log((1, "608#01"))
         for words, hint in ((("--speed", "0"), "max"), (("--speed", "fast"), "max"), (("--loop", "x"), "--loop 3"),
