@@ -117,6 +117,7 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   occupy_standard_streams();
   keep_memory();
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is reported like a full disk
   try {
     return run(argc, argv);
   } catch (const Exit& exit) {

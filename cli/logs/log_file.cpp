@@ -92,7 +92,9 @@ struct LogFile::State {
     } else {
       descriptor = ::open(path.c_str(), how | O_EXCL, all_users);
       made_now = descriptor >= 0;
-      if (!made_now && errno == EEXIST) descriptor = ::open(path.c_str(), how, all_users);
+      // A link to no file is one that is there: nothing is made behind it that was not asked for.
+      const int again = existing == Existing::overwrite ? how : how & ~O_CREAT;
+      if (!made_now && errno == EEXIST) descriptor = ::open(path.c_str(), again, all_users);
     }
     struct stat status {};
     if (descriptor < 0 || ::fstat(descriptor, &status) != 0) {

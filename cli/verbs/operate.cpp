@@ -91,7 +91,6 @@ int run(const OperateOptions& options, Session& session, std::uint32_t bit_rate)
   catch_hangups();
   std::signal(SIGPIPE,
               SIG_IGN);  // a reader that leaves does not end what guards the robot: lines are counted
-  std::signal(SIGXFSZ, SIG_IGN);  // a black box that may not grow is reported like a full disk
   const auto bus = session.open_bus();
   const auto control = open_control(*bus);
   if (!options.bit_rate && bus->bit_rate() != 0) bit_rate = bus->bit_rate();

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <csignal>
 #include <cstdio>
 #include <ctime>
 #include <memory>
@@ -220,7 +219,6 @@ void run_record(Session& session, const RecordOptions& options, int& exit_code) 
 
   catch_interrupts();
   catch_hangups();
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is reported like a full disk
   auto ports = open_ports(session, filters);
   record::Files files{std::move(chosen), catalogue};
   if (const auto opened = files.open(); !opened) fail(opened.error);

@@ -2,6 +2,7 @@
 
 import json
 import os
+import resource
 import signal
 import subprocess
 
@@ -232,6 +233,25 @@ class Messages(Case):
         self.assertEqual(content(), "mine")
         self.run_tool("convert", none, out, "--from", "json", "--force")
         self.assertRegex(content(), r"\A[^\n]*\n\Z")  # the header
+
+    def test_a_link_to_no_file_is_there_already(self):
+        log, link, target = (os.path.join(self.folder, name) for name in ("a.log", "link.csv", "target.csv"))
+        with open(log, "w", encoding="ascii") as file:
+            file.write("(1.000000) can0 608#000000000000\n")
+        os.symlink(target, link)
+        self.run_tool("convert", log, link, code=1)
+        self.assertFalse(os.path.exists(target))
+        self.run_tool("convert", log, link, "--force")
+        self.assertTrue(os.path.exists(target))
+
+    def test_a_file_that_may_not_grow_is_a_full_disk(self):
+        log, out = os.path.join(self.folder, "a.log"), os.path.join(self.folder, "b.csv")
+        with open(log, "w", encoding="ascii") as file:
+            file.writelines(f"({i}.000000) can0 608#000000000000\n" for i in range(9999))
+        result = subprocess.run([AMIROCTL, "convert", log, out], env=self.environment, text=True, capture_output=True, timeout=60,
+                                preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000)))
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertIn("File too large", result.stderr)
 
     def test_many_errors_of_a_script_are_counted(self):
         _, err = self.run_tool("run", "-", stdin="nonsense\n" * 100_000, code=2)
