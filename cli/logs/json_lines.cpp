@@ -126,8 +126,9 @@ bool JsonLineParser::scan(std::string_view line) {
                                : key == "raw_dlc"   ? &record_.raw_dlc
                                                     : nullptr;
       if (value == nullptr) pass_over(key);
-      if (value != nullptr && *value) return refuse_twice("key", key);
+      if (value != nullptr && value->is_there) return refuse_twice("key", key);
       if (!(value != nullptr ? scanner.take_value(*value) : scanner.skip_value())) return broken();
+      if (value != nullptr) value->is_there = true;
     } while (scanner.take(','));
     if (!scanner.take('}')) return broken();
   }

@@ -14,6 +14,7 @@ struct JsonValue {
   std::string_view text;
   bool is_string = false;
   bool escaped = false;
+  bool is_there = false;  ///< its key is, whatever the value is
   [[nodiscard]] explicit operator bool() const noexcept { return text.data() != nullptr; }
 };
 
