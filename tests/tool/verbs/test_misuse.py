@@ -447,8 +447,8 @@ doctor: unexpected argument 'gyro'
 usage: amiroctl doctor [OPTION ...]
 
 doctor --patience soon
-doctor: --patience soon: not a time
-write 500ms, 2s or 1.5s
+doctor: --patience soon: not a time above zero
+write 2s, 500ms or 1min
 
 doctor --patience
 doctor: missing value for --patience

@@ -131,9 +131,9 @@ class OldNames(Case):
         self.assertEqual(self.replay("--from", "1s", "--until", "1500ms"), part)
 
     def test_times_to_listen(self):
-        for verb in ("doctor", "robots"):
+        for verb, what, remedy in (("doctor", "not a time", "500ms, 2s or 1.5s"), ("robots", "not a time above zero", "2s, 500ms or 1min")):
             _, err = self.run_tool(verb, "--watch", "soon", code=2)
-            self.assertEqual(err, f"amiroctl: {verb}: --listen soon: not a time\n          write 500ms, 2s or 1.5s\n")
+            self.assertEqual(err, f"amiroctl: {verb}: --listen soon: {what}\n          write {remedy}\n")
         self.start_sim()
         for name in ("--listen", "--watch"):
             self.run_tool("doctor", name, "100ms")
