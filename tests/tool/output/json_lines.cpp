@@ -339,6 +339,8 @@ TEST_CASE("JSON lines: what is given twice is refused, same or not", "[output]")
         R"("direction":"sent")", R"("raw_dlc":9)", R"("fields":{})", R"("fd":{})"})
     twice(fmt::format("{{{},{}}}", pair, pair), fmt::format("key {}", pair.substr(0, pair.find(':'))));
   twice(R"({"topic":"gyro","topic":"accel","fields":{}})", R"(key "topic")");
+  twice(R"({"id":null,"id":"201","data":""})", R"(key "id")");
+  twice(R"({"id":"201","time_ns":[5],"time_ns":7,"data":""})", R"(key "time_ns")");
   twice(replaced(gyroscope, "\"x\":", "\"x\":1,\"x\":"), R"(field "x")");
   twice(replaced(gyroscope, "\"x\":0.0525", "\"x\":0.0525,\"x\":0.0525"), R"(field "x")");
   twice(R"({"topic":"gyro","fields":{"x":1,"y":1,"x":2}})", R"(field "x")");
