@@ -118,8 +118,8 @@ class Travel(Case):
         self.start_sim()  # which starts on the line
         travel = self.travelling("1m")
         follow = self.start("behave", "follow", "--force", "--for", "1s")
-        _, err = travel.communicate(timeout=20)
-        self.assertEqual(travel.returncode, 1, err)
+        out, err = travel.communicate(timeout=20)
+        self.assertEqual((travel.returncode, out), (1, ""), err)
         self.assertRegex(err, "travel: replaced by another program, follow 20C#E803; ")
         _, err = follow.communicate(timeout=20)
         self.assertEqual(follow.returncode, 0, err)
