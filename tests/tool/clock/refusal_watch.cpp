@@ -7,6 +7,7 @@
 #include "ocm/can/text.hpp"
 #include "ocm/topics/amiro.hpp"
 
+#include "cli/shared/messages.hpp"
 #include "tests/tool/captured.hpp"
 #include "tests/tool/clock/played_bus.hpp"
 
