@@ -122,14 +122,17 @@ std::vector<std::string_view> repeated_after(std::span<const words::Step> steps,
   return names;
 }
 
-/// What an interrupted script leaves, of the steps that it has carried out.
-std::string left_by(std::span<const words::Step> steps, const protocol::Catalogue& catalogue) {
+/// What an interrupted script leaves, of the steps that it has carried out. `ended`: what boards did by
+/// themselves.
+std::string left_by(std::span<const words::Step> steps, const protocol::Catalogue& catalogue,
+                    const BegunBehaviours& ended) {
   const auto any = [steps](auto is) {
     return std::any_of(steps.begin(), steps.end(), [&](const words::Step& each) { return is(each.command); });
   };
   std::vector<std::string> left;
   if (any([](const client::Command& each) { return each.hold.has_value(); }))
     left.emplace_back("the motors were set to zero");
+  if (!ended.all().empty()) left.push_back(ended.names() + " ended");
   if (const auto names = repeated_after(steps, catalogue); !names.empty())
     left.push_back(fmt::format("{} {} no longer sent, and what was sent last holds", fmt::join(names, ", "),
                                names.size() == 1 ? "is" : "are"));
@@ -212,9 +215,7 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
   if (!whole) end_behaviours(done, timeline, behaviours);
   if (!timeline.finish()) exit_code = exit_failure;
   if (!whole) {
-    if (const std::string names = behaviours.names(); !names.empty())
-      remark(fmt::format("run: {} ended", names));
-    remark(left_by(done, catalogue));
+    remark(left_by(done, catalogue, behaviours));
     exit_code = exit_code_after_interrupt(exit_success);
   }
 }

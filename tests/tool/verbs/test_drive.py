@@ -243,7 +243,7 @@ class Interrupted(Drive):
         self.assertIn("50C300000000E803", listener.stdout.readline())
         _, err = self.interrupt(run)
         self.assertEqual(run.returncode, 130, err)
-        self.assertIn("run: travel was ended\n", err)
+        self.assertIn("interrupted: travel was ended\n", err)
         line = json.loads(listener.stdout.readline())
         self.assertEqual((line["id"], line["data"]), ("20B", "0000000000000000"))
 
