@@ -33,12 +33,6 @@ std::uint64_t copy(logs::OpenedLog& in, logs::LogFile& out) {
     if (!out.write(std::span{entries}.first(count), in.reader().interfaces())) return frames;
     if (live && count < entries.size() && !out.flush()) return frames;
   }
-  if (frames == 0 && (in.reader().complaints().total() != 0 || in.ended_early())) {
-    out.discard();
-    return 0;
-  }
-  out.recorded(in.reader().recorded());
-  out.finish();
   return frames;
 }
 
@@ -52,6 +46,13 @@ void convert(Session& session, const ConvertOptions& options, int& exit_code) {
   if (!out) fail(out.error);
 
   const std::uint64_t frames = copy(in, **out);
+  const bool nothing = frames == 0 && (in.reader().complaints().total() != 0 || in.ended_early());
+  if (nothing) {
+    (*out)->discard();
+  } else if ((*out)->failure().what.empty()) {
+    (*out)->recorded(in.reader().recorded());
+    (*out)->finish();
+  }
   const bool written = (*out)->failure().what.empty();
   const bool whole = written && interrupted() == 0 && !in.ended_early();
   const std::string kept = (*out)->size() == 0
@@ -65,7 +66,6 @@ void convert(Session& session, const ConvertOptions& options, int& exit_code) {
   logs::tell_losses((*out)->lost(), format);
   if (!written && (*out)->size() == 0) (*out)->discard();
   if (!written) fail((*out)->failure(), exit_code_after_interrupt(exit_failure));
-  const bool nothing = frames == 0 && (unreadable || in.ended_early());
   const bool not_all = unreadable || (*out)->lost().any();
   if (in.ended_early() || nothing || (options.strict && not_all)) exit_code = exit_failure;
   exit_code = exit_code_after_interrupt(exit_code);
