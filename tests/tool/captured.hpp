@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <unistd.h>
+
+#include "cli/shared/messages.hpp"
 
 namespace ocm::test {
 
@@ -35,5 +38,21 @@ class Captured {
   std::FILE* file_;
   std::string text_;
 };
+
+/// What is said as `act` leaves through cli::fail, and with which exit code; none: it does not leave.
+struct Leaving {
+  std::string text;
+  std::optional<int> code;
+};
+template <class Act>
+Leaving leaving(Act&& act) {
+  Captured said{STDERR_FILENO};
+  try {
+    act();
+  } catch (const cli::Exit& exit) {
+    return {said.text(), exit.code};
+  }
+  return {said.text(), std::nullopt};
+}
 
 }  // namespace ocm::test

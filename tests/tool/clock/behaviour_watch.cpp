@@ -5,7 +5,6 @@
 #include "ocm/can/text.hpp"
 #include "ocm/topics/amiro.hpp"
 
-#include "cli/shared/messages.hpp"
 #include "tests/tool/captured.hpp"
 #include "tests/tool/clock/world.hpp"
 #include "tests/unit/protocol/example_topics.hpp"
@@ -56,15 +55,9 @@ TEST_CASE(
 TEST_CASE("behaviour watch: a spec that has no such behaviour, or does not say what becomes of it") {
   const World world{1};
   const auto refusal = [](auto&& act) {
-    Captured said{STDERR_FILENO};
-    int code = 0;
-    try {
-      act();
-    } catch (const cli::Exit& exit) {
-      code = exit.code;
-    }
-    CHECK(code == cli::exit_usage);
-    return said.text();
+    const Leaving left = leaving(act);
+    CHECK(left.code == cli::exit_usage);
+    return left.text;
   };
   for (const char* const name : {"fly", "gyroscope"})
     CHECK(refusal([&] { static_cast<void>(cli::behaviour_topic(amiro::catalogue, "behave", name)); }) ==

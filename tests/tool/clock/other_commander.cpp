@@ -33,13 +33,9 @@ std::string said(Act&& act) {
 
 /// What it says as it refuses; empty: it does not.
 std::string refusal(OtherCommander& other) {
-  return said([&] {
-    try {
-      other.refuse_if_heard();
-    } catch (const cli::Exit& exit) {
-      CHECK(exit.code == cli::exit_failure);
-    }
-  });
+  const Leaving left = leaving([&] { other.refuse_if_heard(); });
+  CHECK(left.code.value_or(cli::exit_failure) == cli::exit_failure);
+  return left.text;
 }
 
 TEST_CASE("another commander: set points of the last 150 ms are heard, and counted") {

@@ -32,15 +32,9 @@ struct Left {
 template <class Act>
 Left left(World& world, Act&& act) {
   const Moment begin = world.now();
-  Captured said{STDERR_FILENO};
-  int code = 0;
-  try {
-    act();
-  } catch (const cli::Exit& exit) {
-    code = exit.code;
-  }
-  CHECK(code == cli::exit_failure);
-  return {said.text(), world.now() - begin};
+  const Leaving left = leaving(act);
+  CHECK(left.code == cli::exit_failure);
+  return {left.text, world.now() - begin};
 }
 
 TEST_CASE("outgoing: a full queue is waited for, a second and no longer") {
