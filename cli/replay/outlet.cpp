@@ -5,8 +5,8 @@
 #include "ocm/can/filter.hpp"
 #include "ocm/client/command.hpp"
 
+#include "cli/shared/clock.hpp"
 #include "cli/shared/messages.hpp"
-#include "cli/shared/set_points.hpp"
 
 namespace ocm::cli::replay {
 
@@ -21,7 +21,7 @@ Outlet::Outlet(std::unique_ptr<transport::Bus> bus, const protocol::Catalogue& c
   if (const auto subscribed = bus_->subscribe({&least, 1}); !subscribed) fail(subscribed.error);
 }
 
-Outlet::Sent Outlet::send(const log::Entry& entry) {
+Outlet::Sent Outlet::send(const log::Entry& entry, base::Time latest) {
   if (entry.format == can::Format::error) return Sent::error_frame;
   if (entry.is_fd() && !takes_fd_) return Sent::fd_frame;
   const auto frame = entry.classic();
@@ -36,6 +36,7 @@ Outlet::Sent Outlet::send(const log::Entry& entry) {
       rest_if_it_is_taken();
       outgoing_.expect_all_left({});
     }
+    if (Clock::now().time_since_epoch() > latest.time_since_epoch()) return Sent::late;
     outgoing_.otherwise_after_the_next(still_moving);
   }
   outgoing_.send(*frame);

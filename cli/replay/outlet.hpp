@@ -7,12 +7,14 @@
 #include <string>
 #include <string_view>
 
+#include "ocm/base/time.hpp"
 #include "ocm/client/frame_index.hpp"
 #include "ocm/log/entry.hpp"
 #include "ocm/transport/bus.hpp"
 
 #include "cli/shared/begun_behaviours.hpp"
 #include "cli/shared/outgoing.hpp"
+#include "cli/shared/set_points.hpp"
 
 namespace ocm::cli::replay {
 
@@ -25,10 +27,15 @@ class Outlet {
     yes,
     error_frame,  ///< a report of a controller: nothing for the wire
     fd_frame,     ///< this bus has none
+    late,         ///< a set point of motion that could not go before `latest`
   };
   /// Waits for room up to a second, then leaves through cli::fail. A set point of motion waits until all that
-  /// was sent before it has left, as long as motors wait for one; then zero is put behind what waits.
-  Sent send(const log::Entry& entry);
+  /// was sent before it has left, as long as motors wait for one; then zero is put behind what waits. It is
+  /// not sent after `latest`.
+  Sent send(const log::Entry& entry, base::Time latest);
+
+  /// Whether motors run, or a board does something by itself, because of the frames.
+  [[nodiscard]] bool commands() const { return !is_rest(set_point_) || !behaviours_.all().empty(); }
 
   /// Leaves through cli::fail when the bus is gone. Waits for nothing.
   void expect_open() const;

@@ -5,6 +5,8 @@
 #include <chrono>
 #include <poll.h>
 
+#include "ocm/client/command.hpp"
+
 #include "cli/output/printer.hpp"
 #include "cli/shared/clock.hpp"
 #include "cli/shared/filters.hpp"
@@ -99,24 +101,56 @@ bool Player::play(const log::Entry& entry, const log::Interfaces& interfaces) {
   if (printer_ != nullptr)
     print(entry, interfaces);
   else
-    send(entry, interfaces);
+    return send(entry, interfaces);
   return true;
 }
 
-void Player::send(const log::Entry& entry, const log::Interfaces& interfaces) {
+bool Player::send(const log::Entry& entry, const log::Interfaces& interfaces) {
   const auto outlet = route(entry.interface, interfaces);
   if (!outlet) {
     ++played_.no_route;
-    return;
+    return true;
   }
-  if (!options_.at_once) {
-    const base::Time due = playback_.due(entry.time);
-    watch_until(due - std::chrono::milliseconds{2});
-    wait_until(due);  // to the microsecond
-    if (interrupted() != 0) return;
-    playback_.sent(due, monotonic_now());
+  auto& bus = outlets_[*outlet];
+  if (options_.at_once) {
+    count(bus.send(entry, base::never));
+    return true;
   }
-  switch (outlets_[*outlet].send(entry)) {
+  const base::Time due = playback_.due(entry.time);
+  watch_until(due - std::chrono::milliseconds{2});
+  wait_until(due);  // to the microsecond
+  if (interrupted() != 0) return true;
+  playback_.sent(due, monotonic_now());
+  if (!keep_up(entry, due)) return false;
+  // The bus may take its time before it takes a set point, too.
+  const base::Time planned = playback_.last_due();
+  auto sent = bus.send(entry, planned + lateness_ + client::longest_without_set_point);
+  if (sent == Outlet::Sent::late) {
+    if (!keep_up(entry, planned)) return false;
+    sent = bus.send(entry, base::never);
+  }
+  count(sent);
+  return true;
+}
+
+bool Player::keep_up(const log::Entry& entry, base::Time due) {
+  const base::Time now = monotonic_now();
+  const base::Duration later = now - due - lateness_;
+  if (later < client::longest_without_set_point) {
+    lateness_ = now - due;
+    return true;
+  }
+  if (std::any_of(outlets_.begin(), outlets_.end(), [](const Outlet& each) { return each.commands(); })) {
+    held_up_ = later;
+    return false;
+  }
+  playback_.begin(now, entry.time);
+  lateness_ = {};
+  return true;
+}
+
+void Player::count(Outlet::Sent sent) {
+  switch (sent) {
     case Outlet::Sent::yes:
       ++played_.sent;
       return;
@@ -125,6 +159,8 @@ void Player::send(const log::Entry& entry, const log::Interfaces& interfaces) {
       return;
     case Outlet::Sent::fd_frame:
       ++played_.fd_frames;
+      return;
+    case Outlet::Sent::late:  // not without a latest time
       return;
   }
 }

@@ -1,4 +1,10 @@
 /// Sends the frames of a log, each at its time, to the buses that their interfaces map to.
+///
+/// Frames may be late, by a slow bus more and more. But one that is later than those before it by as long as
+/// motors wait for a set point was held up: this program was stopped, the machine slept, or what is read came
+/// too late. What the frames before it have commanded is then out of date, and the play ends; where they have
+/// left nothing in motion it goes on from there, later by so much, and no frames follow one another faster
+/// than they were recorded.
 #pragma once
 
 #include <cstdint>
@@ -74,8 +80,10 @@ class Player {
   /// The whole log, or as far as --until, or until a signal comes (interrupted()).
   void play(log::Reader& log);
 
-  /// Play was ended before the log's end, by --until or a signal.
+  /// Play was ended before the log's end, by --until, a signal, or because it was held up.
   [[nodiscard]] bool cut_short() const noexcept { return cut_short_; }
+  /// For so long, while something was in motion: this has ended it.
+  [[nodiscard]] std::optional<base::Duration> held_up() const noexcept { return held_up_; }
   /// Sets motors to zero that the frames have left running. false: they have left none so.
   bool rest() {
     bool any = false;
@@ -104,7 +112,11 @@ class Player {
  private:
   /// false: no later frame is to be played.
   bool play(const log::Entry& entry, const log::Interfaces& interfaces);
-  void send(const log::Entry& entry, const log::Interfaces& interfaces);
+  /// false: it was held up, and ends.
+  bool send(const log::Entry& entry, const log::Interfaces& interfaces);
+  /// A frame was due at `due` and can go now at the earliest. false: it was held up, and ends.
+  bool keep_up(const log::Entry& entry, base::Time due);
+  void count(Outlet::Sent sent);
   void print(const log::Entry& entry, const log::Interfaces& interfaces);
   /// Until `time`, or a signal; leaves through cli::fail as soon as a bus is gone.
   void watch_until(base::Time time) const;
@@ -118,6 +130,8 @@ class Player {
   log::Playback playback_;
   Played played_;
   bool cut_short_ = false;
+  std::optional<base::Duration> held_up_;
+  base::Duration lateness_{};        ///< of the last frame
   base::Time begin_{};               ///< of the first pass
   std::optional<base::Time> first_;  ///< of the log, in this pass
   bool started_ = false;

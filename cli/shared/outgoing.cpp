@@ -72,6 +72,7 @@ bool Outgoing::all_left(base::Duration patience) {
   auto late = Clock::now() + patience;
   std::uint64_t pending = UINT64_MAX;
   for (;;) {
+    const auto now = Clock::now();  // before the bus is asked: a stop in between is no silence of the bus
     const auto delivery = bus_.delivery();
     if (delivery.pending < pending) {  // a slow bus takes its time, and is not stuck
       pending = delivery.pending;
@@ -79,7 +80,7 @@ bool Outgoing::all_left(base::Duration patience) {
     }
     if (bus_.state() == transport::BusState::closed) return false;
     if (!delivery.known || delivery.pending == 0) return delivery.obstruction.what.empty();
-    if (!delivery.obstruction.what.empty() || Clock::now() >= late) return false;
+    if (!delivery.obstruction.what.empty() || now >= late) return false;
     sleep_for(look_again);
   }
 }

@@ -214,7 +214,7 @@ void play(Session& session, const ReplayOptions& options, int& exit_code) {
       if (pass == 1) damaged = log->complain();
       const bool last = options.passes != 0 && pass == options.passes;
       // A pass without a frame takes no time: more of them would never end.
-      if (last || interrupted() != 0 || player.played().sent == sent_before) break;
+      if (last || interrupted() != 0 || player.held_up() || player.played().sent == sent_before) break;
       log = std::make_unique<logs::OpenedLog>(options.file, options.from_format, catalogue);
     }
     // Where the log was not played to its end, the set point that would have ended a drive is not sent.
@@ -230,6 +230,10 @@ void play(Session& session, const ReplayOptions& options, int& exit_code) {
     throw;
   }
   summarise(player, options.dry_run);
+  if (const auto lasting = player.held_up())
+    fail({fmt::format("replay: held up for {}, so it has ended",
+                      words::to_text(std::chrono::duration_cast<std::chrono::milliseconds>(*lasting))),
+          "was it stopped, did the machine sleep, or was what it reads too slow? Start it again"});
   if (!damaged) expect_any(player, options);
   exit_code = exit_code_after_interrupt(damaged ? exit_failure : exit_success);
 }

@@ -290,4 +290,110 @@ TEST_CASE("replay: on a bus from which nothing leaves, zero comes behind the one
   }
 }
 
+/// A set point of motion at each of these times, sent with a frame of a sensor just before it.
+std::vector<log::Entry> drive_at(const std::vector<Duration>& times, bool rest_last) {
+  std::vector<log::Entry> entries;
+  for (const Duration time : times) {
+    entries.emplace_back(base::Time{time}, can::Frame{0x601, 4, {1}}, std::uint16_t{0});
+    can::Frame frame{motors, 8, {}};
+    if (!rest_last || time != times.back()) frame.data[0] = 100;
+    entries.emplace_back(base::Time{time}, frame, std::uint16_t{0});
+  }
+  return entries;
+}
+
+TEST_CASE("replay: a stop of the program while the motors run ends it, whenever that was") {
+  const Silence silence;
+  std::vector<Duration> times;
+  for (int i = 0; i < 40; ++i) times.push_back(i * 100ms);
+  const auto entries = drive_at(times, false);
+  for (const Duration lasting : {300ms, 700ms, 5000ms})
+    for (Duration at = 2s; at < 2s + 110ms; at += at < 2s + 1ms ? Duration{700ns} : Duration{3ms}) {
+      INFO("stopped at " << at.count() << " for " << lasting.count() << " ns");
+      World world{1};
+      world.stop(World::start + at, lasting);
+      auto made = std::make_unique<PlayedBus>(world, PlayedBus::Conditions{});
+      auto& bus = *made;
+      std::vector<replay::Outlet> outlets;
+      outlets.emplace_back(std::move(made), amiro::catalogue);
+      log::MemorySource nothing{""};
+      log::Input input{nothing};
+      PlayedLog log{world, input, entries, 1};
+      replay::Player player{
+          {}, replay::Selection{amiro::catalogue, {}, replay::Only::all}, std::move(outlets), nullptr};
+      player.play(log);
+      const bool long_stop = lasting > client::longest_without_set_point;
+      CHECK(player.held_up().has_value() == long_stop);
+      CHECK(player.cut_short() == long_stop);
+      if (!long_stop) {
+        CHECK(player.played().sent == entries.size());
+        continue;
+      }
+      CHECK(*player.held_up() > lasting - 110ms);
+      CHECK(*player.held_up() <= lasting + 2ms);
+      CHECK(player.rest());
+      const auto& sent = bus.sent();
+      CHECK(std::count_if(sent.begin(), sent.end(), [&](const auto& each) {
+              return each.taken > World::start + at + lasting && each.frame.id == motors &&
+                     !cli::is_rest(each.frame);
+            }) <= 1);
+      CHECK(cli::is_rest(sent.back().frame));
+    }
+}
+
+TEST_CASE(
+    "replay: a stop of the program while nothing is in motion makes all later, and none follow at once") {
+  const Silence silence;
+  const std::vector<Duration> times{0s, 3s, 3s + 100ms, 4s, 6s};
+  auto entries = drive_at(times, true);
+  for (std::size_t i = 1; i < 4; i += 2) entries[i].data[0] = 0;  // the motors run from 3.1 s on
+  World world{1};
+  world.stop(World::start + 1s, 10s);
+  auto made = std::make_unique<PlayedBus>(world, PlayedBus::Conditions{});
+  auto& bus = *made;
+  std::vector<replay::Outlet> outlets;
+  outlets.emplace_back(std::move(made), amiro::catalogue);
+  log::MemorySource nothing{""};
+  log::Input input{nothing};
+  PlayedLog log{world, input, entries, 1};
+  replay::Player player{
+      {}, replay::Selection{amiro::catalogue, {}, replay::Only::all}, std::move(outlets), nullptr};
+  player.play(log);
+  CHECK_FALSE(player.held_up());
+  CHECK_FALSE(player.cut_short());
+  REQUIRE(bus.sent().size() == entries.size());
+  const Moment resumed = World::start + 11s;
+  for (std::size_t i = 2; i < entries.size(); ++i) {
+    const Duration apart = bus.sent()[i].taken - resumed - (times[i / 2] - times[1]);
+    CHECK(apart >= 0s);
+    CHECK(apart < 5ms);
+  }
+  CHECK(player.playback().late() == 1);
+  CHECK(player.playback().worst() > 7s);
+}
+
+TEST_CASE("replay: a bus that is too slow for the log makes it late, and no more") {
+  const Silence silence;
+  std::vector<Duration> times;
+  for (int i = 0; i < 100; ++i) times.push_back(i * 10ms);
+  const auto entries = drive_at(times, true);
+  World world{1};
+  PlayedBus::Conditions slow;
+  slow.frame_time = 20ms;
+  auto made = std::make_unique<PlayedBus>(world, slow);
+  auto& bus = *made;
+  std::vector<replay::Outlet> outlets;
+  outlets.emplace_back(std::move(made), amiro::catalogue);
+  log::MemorySource nothing{""};
+  log::Input input{nothing};
+  PlayedLog log{world, input, entries, 1};
+  replay::Player player{
+      {}, replay::Selection{amiro::catalogue, {}, replay::Only::all}, std::move(outlets), nullptr};
+  player.play(log);
+  player.expect_all_left();
+  CHECK_FALSE(player.held_up());
+  CHECK(bus.sent().size() == entries.size());
+  CHECK(player.playback().worst() > 2s);
+}
+
 }  // namespace tool_clock_replay_test

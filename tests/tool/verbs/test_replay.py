@@ -296,6 +296,40 @@ class Replaying(RealTime, Case):
         self.assertEqual([frame for _, frame in frames if frame.startswith("20B")], [travel])
         self.run_tool("behave", "none")
 
+    def test_a_drive_that_was_held_up_ends_with_zero_and_a_pause_goes_on(self):
+        self.start_sim()
+        drive = self.write_log(*((1 + i / 10, "201#50C3000000000000") for i in range(600)))
+        recorder = self.recording("held.log")
+        replay = self.start("replay", drive)
+        self.recorded("held.log", 2)
+        replay.send_signal(signal.SIGSTOP)
+        time.sleep(2)  # longer than motors wait for a set point
+        before = len(self.lines("held.log"))
+        replay.send_signal(signal.SIGCONT)
+        _, err = replay.communicate(timeout=20)
+        self.settle()
+        self.interrupt(recorder)
+        self.assertEqual(replay.returncode, 1, err)
+        self.assertRegex(err, r"sent \d+ frames in .*\namiroctl: replay: held up for \d+(\.\d+)?m?s, so it has ended\n {10}was it stopped")
+        self.assertIn("the motors were set to zero: the log goes on behind this", err)
+        behind = [frame for _, frame in self.lines("held.log")][before:]
+        self.assertIn(behind, (["201#0000000000000000"], ["201#50C3000000000000", "201#0000000000000000"]))
+        # What nothing commands goes on later.
+        log = self.write_log((1, "608#01"), (2, "608#02"), (2.8, "608#03"))
+        recorder = self.recording("paused.log")
+        replay = self.start("replay", log)
+        self.recorded("paused.log", 1)
+        replay.send_signal(signal.SIGSTOP)
+        time.sleep(2)  # the second is late
+        replay.send_signal(signal.SIGCONT)
+        _, err = replay.communicate(timeout=20)
+        self.settle()
+        self.interrupt(recorder)
+        self.assertEqual(replay.returncode, 0, err)
+        times = [time for time, _ in self.lines("paused.log")]
+        self.assertEqual(len(times), 3)
+        self.assertGreater(times[2] - times[1], 0.79)
+
     def test_usage(self):
         log = self.write_log((1, "608#01"))
         for words, hint in ((("--speed", "0"), "max"), (("--speed", "fast"), "max"), (("--loop", "x"), "--loop 3"),
