@@ -22,7 +22,8 @@ void OtherCommander::take(const can::Received& received, bool holding) {
   while (now - recent_.front() > client::listen_before_hold) recent_.pop_front();
   if (!holding) return;
   stopped_ = stopped_ || is_rest(last_);
-  if (meanwhile_++ == 0 && !stopped_)
+  begun_too_ = begun_too_ || (!stopped_ && hold_began_ && now - *hold_began_ < client::listen_before_hold);
+  if (meanwhile_++ == 0 && !stopped_ && !begun_too_)
     remark(fmt::format(
         "{}: another program commands {}, too: {}; the robot follows the set point that came last", verb_,
         motors->name, can::to_text(last_).view()));

@@ -34,6 +34,10 @@ class OtherCommander {
   }
   /// A frame from the bus. `holding`: this program commands the motors, too, and says so, once.
   void take(const can::Received& received, bool holding);
+  /// This program begins to hold the motors, and would not have done so beside another one.
+  void hold_begins() { hold_began_ = Clock::now(); }
+  /// Another program began within client::listen_before_hold of that: neither can have heard the other.
+  [[nodiscard]] bool has_begun_too() const { return begun_too_; }
   /// A set point of rest came while this program commanded the motors.
   [[nodiscard]] bool has_stopped() const { return stopped_; }
   /// Leaves through cli::fail if a set point came within client::listen_before_hold, or a board does
@@ -70,8 +74,10 @@ class OtherCommander {
   const protocol::Topic* motors_ = nullptr;  // of `last_`
   can::Frame last_;
   std::deque<Clock::time_point> recent_;  // of set points within client::listen_before_hold
-  bool stopped_ = false;                  // one of `meanwhile_` was zero
-  std::uint64_t meanwhile_ = 0;           // set points while this program commanded the motors
+  std::optional<Clock::time_point> hold_began_;
+  bool begun_too_ = false;
+  bool stopped_ = false;         // one of `meanwhile_` was zero
+  std::uint64_t meanwhile_ = 0;  // set points while this program commanded the motors
 };
 
 }  // namespace ocm::cli

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "ocm/can/text.hpp"
+
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/words/quantity.hpp"
@@ -14,6 +16,8 @@ namespace {
 
 /// In which a board answers a request: a sample is sent some milliseconds after it.
 constexpr base::Duration time_to_answer = std::chrono::milliseconds{40};
+/// Not longer where there is always a frame.
+constexpr base::Duration longest_look = std::chrono::milliseconds{10};
 /// Nothing tells when a frame has left.
 constexpr base::Duration look_again = std::chrono::milliseconds{1};
 
@@ -68,8 +72,28 @@ bool Timeline::wait_for_answer(Clock::time_point end) {
   }
 }
 
+bool Timeline::take(const can::Received& received) {
+  other_.take(received, moving_);
+  meet(received.frame);
+  const bool refused = refusals_.take(received);
+  if (on_receive_) on_receive_(received);
+  return !refused && !other_.has_stopped() && !other_.has_begun_too();
+}
+
+void Timeline::take_what_waits() {
+  const auto late = Clock::now() + longest_look;
+  while (Clock::now() < late) {
+    const auto received = bus_->receive({});
+    if (!received) break;
+    static_cast<void>(take(*received));
+  }
+  tell_refusals();
+}
+
 void Timeline::expect_no_other() {
-  if (others_ == Others::allowed || !other_.is_heard()) return;
+  if (others_ == Others::allowed) return;
+  take_what_waits();  // this program may not have run while it should have listened
+  if (!other_.is_heard()) return;
   if (const auto own = commanded_by_operator(); own.again_and_again)
     fail({fmt::format("{}: {} is in {}, where it commands {} itself", verb_, own.who, own.configuration,
                       other_.motors()),
@@ -130,6 +154,7 @@ void Timeline::carry_out(const client::Command& command) {
                     repeated_.end());
   });
   const auto begin = Clock::now();
+  if (command.hold && !held_ && others_ == Others::refused) other_.hold_begins();
   carry_out_once(command);
   if (command.ends_hold) held_.reset();
   if (command.repeat) {
@@ -239,6 +264,10 @@ void Timeline::abandon(std::string what, std::string remedy) {
 }
 
 void Timeline::end_for_another() {
+  if (!other_.has_stopped())
+    abandon(fmt::format("another program began to command {} in the same moment: {}", other_.motors(),
+                        can::to_text(other_.last()).view()),
+            "end one of them, and give the command again; --force drives all the same");
   if (held_) static_cast<void>(rest_after_all());
   other_.sum_up();
   if (const auto own = commanded_by_operator(); !own.who.empty())
@@ -374,20 +403,15 @@ bool Timeline::wait(Clock::time_point until) {
     if (held_) wake = std::min({wake, held_->next, held_->end});
     for (const Repeated& each : repeated_) wake = std::min(wake, std::min(each.next, each.end));
     awake_ = wake;
-    const Over over = live_.receive(wake, [&](const can::Received& received) {
-      other_.take(received, moving_);
-      meet(received.frame);
-      const bool refused = refusals_.take(received);
-      if (on_receive_) on_receive_(received);
-      return !refused && !other_.has_stopped();  // at once, not when the next step is due
-    });
+    const Over over = live_.receive(wake, [this](const can::Received& received) { return take(received); });
     tell_refusals();
     if (over == Over::gone) {
       held_.reset();
       tell_unsent();
       outgoing_.leave_gone();
     }
-    if (others_ == Others::refused && other_.has_stopped()) end_for_another();
+    if (others_ == Others::refused && (other_.has_stopped() || (held_ && other_.has_begun_too())))
+      end_for_another();
   }
 }
 

@@ -4,7 +4,7 @@
 /// The robot only does what is commanded now. No set point is given to a queue while the one before it has
 /// not left; when none has left for as long as the motors' watchdog waits, or when this program did not run
 /// for so long, the hold ends, and the set point of rest is the next that can leave. No hold begins while
-/// another program commands the motors, unless that is allowed.
+/// another program commands the motors, unless that is allowed; of two that begin at once both end.
 ///
 /// Frames that are sent again and again go at times that do not drift. A turn that comes too late, because
 /// this program did not run or the bus did not take what came before, is left out and counted.
@@ -112,6 +112,10 @@ class Timeline {
   /// Until the request for the sensor of behaviours has left and can have been answered, at least until
   /// `end`. False: a signal came first.
   [[nodiscard]] bool wait_for_answer(Clock::time_point end);
+  /// A frame from the bus. false: it ends the command, at once and not when the next step is due.
+  [[nodiscard]] bool take(const can::Received& received);
+  /// What has come and was not looked at.
+  void take_what_waits();
   void send(const can::Frame& frame);
   /// What is no set point: a robot has no CAN FD.
   void send_fd(const can::AnyFrame& frame);
@@ -144,7 +148,8 @@ class Timeline {
   [[noreturn]] void abandon(std::string what, std::string remedy);
   /// Ends the hold because this program did not run for so long.
   [[noreturn]] void end_for_a_stop(Clock::duration lasting);
-  /// Ends the command, a hold or not, because another program stopped the robot that it has set in motion.
+  /// Ends the command, a hold or not, because another program stopped the robot that it has set in motion, or
+  /// began to hold it in the same moment.
   [[noreturn]] void end_for_another();
   /// Whether the set point that came last is of the operator that guards the bus.
   [[nodiscard]] Guarded::Own commanded_by_operator();

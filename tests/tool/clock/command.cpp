@@ -241,6 +241,61 @@ bool drive_a_second(World& world, PlayedBus& bus) {
   return false;
 }
 
+TEST_CASE("drive: another program is heard, too, where its set points have come and were not looked at yet") {
+  for (const auto others : {Timeline::Others::refused, Timeline::Others::allowed}) {
+    World world{1};
+    PlayedBus::Conditions conditions;
+    conditions.incoming = {{World::start + 10ms, drive(1s).frames.front()}};
+    PlayedBus bus{world, conditions};
+    const Leaving left = leaving([&] {
+      Timeline timeline{bus, amiro::catalogue, "drive", others, cli::Confirm::no, {}};
+      world.wait_until(World::start + 100ms);  // it does not run
+      timeline.carry_out(drive(1s));
+    });
+    const bool refused = others == Timeline::Others::refused;
+    CHECK(left.code.has_value() == refused);
+    CHECK(bus.sent().empty() == refused);
+    if (refused) CHECK_THAT(left.text, Catch::Contains("1 set point within 150ms"));
+  }
+}
+
+TEST_CASE("drive: of two that begin within the time in which neither hears the other both end") {
+  const client::Command ours = drive(1s);
+  can::Frame theirs = ours.frames.front();
+  theirs.data[0] ^= 1;
+  const Moment begin = World::start + client::listen_before_hold;
+  for (const auto& [at, ends] :
+       {std::pair{begin + 1ms, true}, std::pair{begin + 149ms, true}, std::pair{begin + 160ms, false}}) {
+    for (const auto others : {Timeline::Others::refused, Timeline::Others::allowed}) {
+      World world{1};
+      PlayedBus::Conditions conditions;
+      conditions.incoming = {{at, theirs}};
+      PlayedBus bus{world, conditions};
+      const Leaving left = leaving([&] {
+        Timeline timeline{bus, amiro::catalogue, "drive", others, cli::Confirm::no, {}};
+        world.wait_until(begin);
+        timeline.carry_out(ours);
+        const bool whole = timeline.wait_for_end();
+        const bool taken = timeline.finish();
+        CHECK((whole && taken));
+      });
+      INFO((at - begin).count() << " ns: " << left.text);
+      CHECK(cli::is_rest(bus.sent().back().frame));
+      if (ends && others == Timeline::Others::refused) {
+        CHECK(left.code == cli::exit_failure);
+        CHECK_THAT(left.text,
+                   Catch::Contains("amiroctl: drive: another program began to command motors in the same "
+                                   "moment: 201#"));
+        CHECK_THAT(left.text, Catch::Contains("; the motors were set to zero\n"));
+        CHECK(world.now() - at < 50ms);
+      } else {
+        CHECK_FALSE(left.code);
+        CHECK_THAT(left.text, Catch::Contains("drive: another program commands motors, too: 201#"));
+      }
+    }
+  }
+}
+
 /// A bus from which no frame leaves for so long, from the beginning.
 PlayedBus::Conditions stuck_for(Duration lasting) {
   PlayedBus::Conditions conditions;

@@ -94,6 +94,23 @@ TEST_CASE("another commander: while this program drives it is said once, counted
   CHECK(other.has_stopped());
 }
 
+TEST_CASE("another commander: one that begins within 150 ms of this program could not hear it") {
+  World world{1};
+  const auto begun_too = [&](base::Duration after, const char* const frame, bool holding) {
+    OtherCommander other{amiro::catalogue, "drive"};
+    other.hold_begins();
+    world.pass(after);
+    const std::string text = said([&] { other.take(received(frame), holding); });
+    CHECK(text.empty() == (other.has_begun_too() || other.has_stopped() || !holding));
+    return other.has_begun_too();
+  };
+  CHECK(begun_too(0ms, moves, true));
+  CHECK(begun_too(149ms, moves, true));
+  CHECK_FALSE(begun_too(150ms, moves, true));
+  CHECK_FALSE(begun_too(0ms, rests, true));
+  CHECK_FALSE(begun_too(0ms, moves, false));
+}
+
 TEST_CASE("another commander: a board that drives by itself is one, unless this program has asked it to") {
   const World world{1};
   OtherCommander other{amiro::catalogue, "drive"};

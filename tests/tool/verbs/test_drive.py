@@ -24,12 +24,16 @@ class Drive(Case):
         return path
 
     def driving(self, *arguments):
-        """A drive whose first set point was seen."""
+        """A drive that goes on: one that begins now could have heard it."""
         listener = self.listen("motors", "--timeout", "20s")
         drive = self.start("drive", *(arguments or ("5cm/s",)))
-        self.assertIn("50C3000000000000", listener.stdout.readline())
+        self.drives(listener)
         self.interrupt(listener)
         return drive
+
+    def drives(self, listener):
+        for _ in range(3):
+            self.assertIn("50C3000000000000", listener.stdout.readline())
 
 
 class TwoCommanders(Drive):
@@ -84,7 +88,7 @@ class TwoCommanders(Drive):
         self.start_sim()
         listener = self.listen("motors", "--timeout", "20s")
         run = self.start("run", self.script("0s drive 5cm/s\n1s stop\n"))
-        self.assertIn("50C3000000000000", listener.stdout.readline())
+        self.drives(listener)
         self.run_tool("set", "motors", "x=-1cm/s")
         _, err = run.communicate(timeout=60)
         self.assertEqual(run.returncode, 0)
@@ -244,6 +248,21 @@ class Interrupted(Drive):
         _, err = self.interrupt(run)
         self.assertEqual(run.returncode, 130, err)
         self.assertIn("interrupted: travel was ended\n", err)
+        line = json.loads(listener.stdout.readline())
+        self.assertEqual((line["id"], line["data"]), ("20B", "0000000000000000"))
+
+
+    def test_also_by_an_error(self):
+        self.start_sim()
+        listener = self.listen("--commands", "--timeout", "20s")
+        run = self.start("run", self.script("0s set travel distance=50cm angle=0rad speed=10cm/s\n1s led 1 red\n"))
+        self.assertIn("50C300000000E803", listener.stdout.readline())
+        run.send_signal(signal.SIGSTOP)
+        time.sleep(2)  # longer than a script may be stopped
+        run.send_signal(signal.SIGCONT)
+        _, err = run.communicate(timeout=20)
+        self.assertEqual(run.returncode, 1, err)
+        self.assertRegex(err, r"run: this program did not run for \S+, so no further command is sent\n.*\ntravel was ended\n")
         line = json.loads(listener.stdout.readline())
         self.assertEqual((line["id"], line["data"]), ("20B", "0000000000000000"))
 
