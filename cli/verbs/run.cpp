@@ -141,7 +141,8 @@ std::string left_by(std::span<const words::Step> steps, const protocol::Catalogu
   return left.empty() ? "interrupted" : fmt::format("interrupted: {}", fmt::join(left, "; "));
 }
 
-/// Ends what boards do by themselves because of these steps.
+/// Ends what boards do by themselves because of these steps; leaves through cli::fail if the end cannot be
+/// sent.
 void end_behaviours(std::span<const words::Step> steps, Timeline& timeline, BegunBehaviours& behaviours) {
   for (const auto& step : steps)
     step.command.each_frame([&](const can::AnyFrame& frame) {
@@ -194,28 +195,39 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
   started = true;
   const auto start = Timeline::Clock::now();
   bool asks = drives && *drives > asks_before && !timeline.has_asked();
-  std::size_t carried_out = 0;
-  for (const auto& step : script.steps) {
-    if (asks && due(step, options.speed) > *drives - asks_before) {
-      if (!timeline.wait_for_step(start + *drives - asks_before)) break;
-      timeline.ask();
-      asks = false;
+  std::size_t begun = 0;  // steps, the last one perhaps in part
+  const auto carry_out = [&] {
+    for (const auto& step : script.steps) {
+      if (asks && due(step, options.speed) > *drives - asks_before) {
+        if (!timeline.wait_for_step(start + *drives - asks_before)) break;
+        timeline.ask();
+        asks = false;
+      }
+      if (!timeline.wait_for_step(start + due(step, options.speed))) break;
+      remark(fmt::format("{:>8}  {}", words::to_text(step.at), step.text));
+      ++begun;
+      timeline.carry_out(step.command);
     }
-    if (!timeline.wait_for_step(start + due(step, options.speed))) break;
-    remark(fmt::format("{:>8}  {}", words::to_text(step.at), step.text));
-    timeline.carry_out(step.command);
-    ++carried_out;
-  }
-  if (const auto names = repeated_after(script.steps, catalogue); !names.empty() && interrupted() == 0)
-    remark(fmt::format("run: {} {} sent until Ctrl-C; --for ends that", fmt::join(names, ", "),
-                       names.size() == 1 ? "is" : "are"));
-  const bool whole = interrupted() == 0 && timeline.wait_for_end();
-  const auto done = std::span{script.steps}.first(carried_out);
+    if (const auto names = repeated_after(script.steps, catalogue); !names.empty() && interrupted() == 0)
+      remark(fmt::format("run: {} {} sent until Ctrl-C; --for ends that", fmt::join(names, ", "),
+                         names.size() == 1 ? "is" : "are"));
+    return interrupted() == 0 && timeline.wait_for_end();
+  };
   BegunBehaviours behaviours{catalogue};
-  if (!whole) end_behaviours(done, timeline, behaviours);
+  const auto done = [&] { return std::span{script.steps}.first(begun); };
+  bool whole = false;
+  try {
+    whole = carry_out();
+  } catch (const Exit&) {  // the error is said
+    if (bus->state() == transport::BusState::closed) throw;
+    end_behaviours(done(), timeline, behaviours);
+    if (!behaviours.all().empty() && timeline.finish()) remark(behaviours.names() + " ended");
+    throw;
+  }
+  if (!whole) end_behaviours(done(), timeline, behaviours);
   if (!timeline.finish()) exit_code = exit_failure;
   if (!whole) {
-    remark(left_by(done, catalogue, behaviours));
+    remark(left_by(done(), catalogue, behaviours));
     exit_code = exit_code_after_interrupt(exit_success);
   }
 }
