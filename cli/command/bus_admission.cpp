@@ -89,6 +89,11 @@ class Judgement {
     return base::Duration{period};
   }
 
+  /// Whether such a period passes beside whatever may run without having been heard, too.
+  [[nodiscard]] bool surely_passes(base::Duration period) {
+    return sure_bus_->decide(period.count()).admitted && board_takes(period, Traffic::Unheard::may_be_late);
+  }
+
   void print_table();
 
  private:
@@ -208,8 +213,12 @@ void admit(const protocol::Catalogue& catalogue, transport::Bus& bus, const clie
     own = judgement.bus().is_asked(key);
   }
   if (options.explain) judgement.print_table();
-  const auto offer = [](base::Duration period) {
-    return fmt::format("the shortest period that passes is {}", to_text(period));
+  const auto offer = [&](base::Duration period) {
+    if (judgement.surely_passes(period))
+      return fmt::format("the shortest period that passes is {}", to_text(period));
+    return fmt::format(
+        "the shortest period that passes beside what was heard within {} is {} (--listen hears more)",
+        to_text(options.listen), to_text(period));
   };
   if (decision.admitted || options.force) {
     // Its board decides about it, and says so; this is what it would take.
