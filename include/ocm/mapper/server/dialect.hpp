@@ -9,6 +9,10 @@
 ///   are read; that a link is there is proved by a packet of the robot, that a command was heard by nothing.
 ///   [Thesis 2, table 4.2]
 ///
+/// Where the base firmware has not answered in time, its answer may still come, and in which mode it is, is
+/// not known: before the next command it is brought into command mode, and all that it answers to that is
+/// waited for.
+///
 /// Where the base firmware writes no prefixes, what comes belongs to the robot of the last link or switch. A
 /// link that ends is not reported by these dongles: a robot that is silent for its deadline is lost.
 ///
@@ -105,6 +109,9 @@ class Translator {
  private:
   static constexpr unsigned most_robots = 32;  ///< asked for, of a list whose length is not known
   static constexpr base::Duration answer = std::chrono::milliseconds{800};
+  /// To be in command mode: an answer, and then none for so long. Less than CentralClient waits.
+  static constexpr base::Duration settling = std::chrono::milliseconds{600};
+  static constexpr base::Duration settled = std::chrono::milliseconds{200};
   static constexpr base::Duration listing =
       std::chrono::milliseconds{500};  ///< between lines, of the thesis's dongle
   /// To the first line behind a scan: the dongle may still end that, or have no robot to list.
@@ -180,7 +187,12 @@ class Translator {
     while (!busy_ && !jobs_.empty()) {
       busy_ = true;
       step_ = 0;
-      dialect_ == Dialect::at ? begin_at(now) : begin_thesis(now);
+      if (dialect_ == Dialect::thesis)
+        begin_thesis(now);
+      else if (unsure_ && speaks_at())
+        settle_at(now);
+      else
+        begin_at(now);
     }
   }
   void done() {
@@ -192,12 +204,22 @@ class Translator {
     to_dongle_ += words;
     deadline_ = now + time;
   }
-  void late(base::Time now) { dialect_ == Dialect::at ? late_at() : late_thesis(now); }
+  void late(base::Time now) { dialect_ == Dialect::at ? late_at(now) : late_thesis(now); }
 
   // --- the base firmware ---
 
   static std::string at(std::string_view command, unsigned index) {
     return "AT+" + std::string{command} + "=" + std::to_string(index) + ".";
+  }
+  /// Whether the first job says something to the dongle.
+  [[nodiscard]] bool speaks_at() const {
+    const Kind kind = jobs_.front().kind;
+    return kind != Kind::list && (kind != Kind::stop || scanning_ || !list_known_);
+  }
+  void settle_at(base::Time now) {
+    settling_ = true;
+    settled_ = false;
+    send("*.AT?.", now, settling);
   }
   void begin_at(base::Time now) {
     const Job& job = jobs_.front();
@@ -287,6 +309,11 @@ class Translator {
     const bool waits = text == "WAIT";
     const bool error = text.starts_with("ERROR");
     if (!ok && !waits && !error) return;
+    if (settling_) {
+      settled_ = settled_ || ok;
+      if (settled_) deadline_ = now + settled;
+      return;
+    }
     const unsigned index = jobs_.front().index;
     switch (jobs_.front().kind) {
       case Kind::leave:
@@ -367,10 +394,15 @@ class Translator {
     tell(ok ? "connected " : "error: no link to ", index);
     done();
   }
-  void late_at() {
-    const bool linking_to = jobs_.front().kind == Kind::connect && step_ == 2;
-    if (linking_to) tell("error: no link to ", jobs_.front().index);
-    if (jobs_.front().kind == Kind::stop && step_ == 1 && !list_.empty()) return listed_at();
+  void late_at(base::Time now) {
+    if (std::exchange(settling_, false)) {
+      if (!settled_) return done();
+      unsure_ = dongle_in_data_ = false;
+      return begin_at(now);
+    }
+    if (jobs_.front().kind == Kind::stop && step_ == 1 && !list_.empty()) return listed_at();  // its end
+    unsure_ = true;
+    if (jobs_.front().kind == Kind::connect && step_ == 2) tell("error: no link to ", jobs_.front().index);
     done();  // the client waits for its answer, and says that none came
   }
 
@@ -486,6 +518,9 @@ class Translator {
   bool busy_ = false;  ///< the first job is under way
   bool client_in_data_ = false;
   bool dongle_in_data_ = false;
+  bool unsure_ = false;    ///< an answer did not come: dongle_in_data_ may be wrong
+  bool settling_ = false;  ///< before the first job,
+  bool settled_ = false;   ///< and the dongle has answered
   bool scanning_ = false;
   bool list_known_ = false;
   bool prefixed_ = false;  ///< this firmware writes prefixes

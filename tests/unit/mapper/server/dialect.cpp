@@ -100,17 +100,21 @@ TEST_CASE("dialect: links of the base firmware: one that is there, one that come
                         {9'011, 'd', "WAIT.", "", "connecting 4\n"},
                         {18'010, 't', "", "", ""},
                         {18'011, 't', "", "", "error: no link to 4\n"},
-                        // It is in command mode still, the client in data mode: what it says goes nowhere.
-                        {18'012, 'c', "{}\n*", "", "command\n"},
-                        {18'013, 'c', "switch 1\n", "AT+SWITCH=1.", ""},
-                        {18'014, 'd', "ERROR.", "", "error: no link to 1; conn first\n"},
-                        {18'015, 'c', "drop 1\n", "AT+DROP=1.", ""},
-                        {18'016, 'd', "WAIT.", "", ""},
-                        {18'017, 'd', "OK.", "", "closing 1\nclosed 1\n"},
-                        {18'018, 'c', "drop 1\n", "AT+DROP=1.", ""},
-                        {18'019, 'd', "ERROR.", "", "error: no link to 1\n"},
-                        {18'020, 'c', "switch 5\n", "AT+SWITCH=5.", ""},
-                        {18'021, 'd', "OK.", "", "data 5\n"},
+                        // Its last answer may come yet: it is brought into command mode first. The client is
+                        // in data mode: what it says goes nowhere.
+                        {18'012, 'c', "{}\n*", "*.AT?.", ""},
+                        {18'013, 'd', "ERROR.OK.", "", ""},
+                        {18'212, 't', "", "", ""},
+                        {18'213, 't', "", "", "command\n"},
+                        {18'313, 'c', "switch 1\n", "AT+SWITCH=1.", ""},
+                        {18'314, 'd', "ERROR.", "", "error: no link to 1; conn first\n"},
+                        {18'315, 'c', "drop 1\n", "AT+DROP=1.", ""},
+                        {18'316, 'd', "WAIT.", "", ""},
+                        {18'317, 'd', "OK.", "", "closing 1\nclosed 1\n"},
+                        {18'318, 'c', "drop 1\n", "AT+DROP=1.", ""},
+                        {18'319, 'd', "ERROR.", "", "error: no link to 1\n"},
+                        {18'320, 'c', "switch 5\n", "AT+SWITCH=5.", ""},
+                        {18'321, 'd', "OK.", "", "data 5\n"},
                     });
 }
 
@@ -184,6 +188,37 @@ TEST_CASE("dialect: an answer of the base firmware in the middle of a sentence t
   CHECK(translator.take_for_client() == "[3]:OWE:{S,IDL}\n");
 }
 
+TEST_CASE("dialect: an answer of the base firmware that comes too late leaves nobody in the wrong mode") {
+  talk(Dialect::at,
+       {
+           {0, 'c', "conn 2\n", "AT+SWITCH=2.", ""},
+           {800, 't', "", "", ""},     // it is given up
+           {900, 'd', "OK.", "", ""},  // and the dongle is in data mode
+           {1'000, 'c', "*\nstop\n", "*.AT?.", ""},
+           {1'010, 'd', "OK.", "", ""},  // of the star, of an empty command, and of the question
+           {1'020, 'd', "ERROR.OK.", "", ""},
+           {1'219, 't', "", "", ""},
+           {1'220, 't', "", "AT+FOUND=0.", ""},
+           {1'221, 'd', "OK-C0000000000A-AVR.", "AT+FOUND=1.", ""},
+           {1'222, 'd', "ERROR.", "", "found 1\n"},
+           // What is known asks nothing, nor does the dongle that is known to be in command mode.
+           {1'230, 'c', "list\n", "", "0:C0000000000A:AVR\nend of list\n"},
+           {1'240, 'c', "conn 2\n", "AT+SWITCH=2.", ""},
+           {2'040, 't', "", "", ""},
+           {2'041, 'c', "stop\nlist\n", "", "found 1\n0:C0000000000A:AVR\nend of list\n"},
+           // One that answers nothing holds up nothing, and is not believed the next time either.
+           {2'050, 'c', "conn 2\n", "*.AT?.", ""},
+           {2'649, 't', "", "", ""},
+           {2'650, 't', "", "", ""},
+           {2'651, 'c', "conn 2\n", "*.AT?.", ""},
+           {2'652, 'd', "WAIT.ERROR.", "", ""},  // no answer to the question
+           {3'250, 'd', "OK.", "", ""},
+           {3'450, 't', "", "AT+SWITCH=2.", ""},
+           {3'451, 'd', "OK.", "", "data 2\n"},
+           {3'452, 'c', "{S,CON}\n", "{S,CON}\n.", ""},
+       });
+}
+
 TEST_CASE("dialect: a command that the base firmware does not answer holds up nothing") {
   Translator translator{Dialect::at};
   translator.from_client("start\n", begin);
@@ -192,10 +227,13 @@ TEST_CASE("dialect: a command that the base firmware does not answer holds up no
   translator.expire(begin + 500ms);
   CHECK(translator.take_for_dongle().empty());
   translator.expire(begin + 1s);
+  CHECK(translator.take_for_dongle() == "*.AT?.");
+  translator.from_dongle("ERROR.OK.", begin + 1s);
+  translator.expire(begin + 1200ms);
   CHECK(translator.take_for_dongle() == "AT+SWITCH=2.");
-  translator.from_dongle("ERROR.", begin + 1s);
+  translator.from_dongle("ERROR.", begin + 1200ms);
   CHECK(translator.take_for_dongle() == "AT+CONN=2.");
-  translator.from_dongle("WAIT.ERROR.", begin + 1s);
+  translator.from_dongle("WAIT.ERROR.", begin + 1200ms);
   CHECK(translator.take_for_client() == "connecting 2\nerror: no link to 2\n");
   CHECK(translator.idle());
   // No answer is no list: that it has found none would be a lie.
