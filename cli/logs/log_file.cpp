@@ -26,7 +26,7 @@ struct LogFile::State {
   std::string path;
   int descriptor = -1;
   bool regular = false;
-  bool made_now = false;  ///< the name was free
+  bool made_now = false;  ///< the name was free, or claimed
   bool emptied = false;   ///< what was in the file is gone; not before there is something in its place
   dev_t device = 0;
   ino_t inode = 0;
@@ -46,6 +46,11 @@ struct LogFile::State {
   [[nodiscard]] bool is_named() const noexcept {
     struct stat named {};
     return ::stat(path.c_str(), &named) == 0 && named.st_dev == device && named.st_ino == inode;
+  }
+
+  /// Deletes what was made for nothing.
+  void delete_empty() const noexcept {
+    if (regular && size == 0 && made_now && is_named()) ::unlink(path.c_str());
   }
 
   /// Runs `append`; where that has no memory, nothing of what it appended is written.
@@ -93,7 +98,7 @@ struct LogFile::State {
       descriptor = ::open(path.c_str(), how | O_EXCL, all_users);
       made_now = descriptor >= 0;
       // A link to no file is one that is there: nothing is made behind it that was not asked for.
-      const int again = existing == Existing::overwrite ? how : how & ~O_CREAT;
+      const int again = existing == Existing::refuse ? how & ~O_CREAT : how;
       if (!made_now && errno == EEXIST) descriptor = ::open(path.c_str(), again, all_users);
     }
     struct stat status {};
@@ -111,6 +116,7 @@ struct LogFile::State {
     if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
       return refuse({fmt::format("another program writes {} now", path), "end it, or give another name"});
     if (!made_now && existing == Existing::refuse) return refuse(exists_failure(path));
+    made_now = made_now || existing == Existing::claimed;
     return true;
   }
 
@@ -216,12 +222,13 @@ bool LogFile::finish() {
   if (!state_->broken) state_->whole([&] { state_->writer->finish(state_->bytes); });
   bool done = state_->empty_out(Packer::Until::ended);
   if (state_->path != "-" && ::close(state_->descriptor) != 0 && done) done = state_->failed("write");
+  if (!done) state_->delete_empty();
   return done;
 }
 
 bool LogFile::discard() {
   if (!state_->regular || state_->size != 0) return finish();
-  if (state_->made_now && state_->is_named()) ::unlink(state_->path.c_str());
+  state_->delete_empty();
   if (!std::exchange(state_->finished, true)) ::close(state_->descriptor);
   return state_->failure.what.empty();
 }

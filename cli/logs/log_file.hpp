@@ -17,7 +17,11 @@
 namespace ocm::cli::logs {
 
 /// What happens to an ordinary file that has the name already. Pipes and devices are written to in any case.
-enum class Existing : bool { refuse, overwrite };
+enum class Existing : std::uint8_t {
+  refuse,
+  overwrite,
+  claimed,  ///< it is empty, and the caller has just made it
+};
 
 /// Where an ordinary file is, some time after it was created.
 enum class Place : std::uint8_t {
@@ -46,11 +50,11 @@ class LogFile {
   bool recorded(std::span<const log::Recorded> recorded);
   /// Hands all that was taken so far to the kernel; with `to_disk` waits until the disk has it (fdatasync).
   bool flush(bool to_disk = false);
-  /// Writes the end of the format, flushes and closes.
+  /// Writes the end of the format, flushes and closes. Where the file took nothing of all that, an ordinary
+  /// one that was made for it is deleted, so that the next try finds the name free.
   bool finish();
-  /// In place of `finish`, where no frame could be read: deletes an ordinary file that `create` has made, so
-  /// that the next try finds the name free; one that was there before is as it was. Where something was
-  /// written, or is read as it comes, it finishes. After a `finish` that failed: deletes what is empty.
+  /// In place of `finish`, where no frame could be read: deletes such a file; one that was there before is as
+  /// it was. Where something was written, or is read as it comes, it finishes.
   bool discard();
 
   [[nodiscard]] const transport::Failure& failure() const noexcept;

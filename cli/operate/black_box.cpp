@@ -119,13 +119,8 @@ transport::Outcome<void> BlackBox::write(const Recording& recording) {
   (*file)->without_signals();
   const std::vector<log::Entry> entries{recording.entries.begin(), recording.entries.end()};
   if (!(*file)->write(entries, interfaces_) || !(*file)->flush(true) || !(*file)->finish()) {
-    transport::Failure failure = (*file)->failure();
-    file->reset();
-    std::error_code error;
-    // What the disk took can be read. Of nothing no file is kept: it would count, and another one go for it.
-    if (std::filesystem::file_size(recording.path, error) == 0)
-      std::filesystem::remove(recording.path, error);
-    return failure;
+    // What the disk took can be read; of nothing there is no file, which would count.
+    return (*file)->failure();
   }
   of_this_run_.push_back(recording.path);
   delete_oldest();

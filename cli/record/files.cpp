@@ -66,8 +66,7 @@ transport::Outcome<std::string> Files::claim_next() {
     std::string path = options_.split.any() ? numbered(name_, number_)
                        : number_ == 1       ? options_.path
                                             : fmt::format("{}-{}{}", name_.stem, number_, name_.ending);
-    // In a ring all that may be overwritten comes before the number.
-    switch (options_.overwrite && options_.ring == 0 ? Claimed::ours : claim(path)) {
+    switch (claims() ? claim(path) : Claimed::ours) {
       case Claimed::ours:
         return path;
       case Claimed::failed:
@@ -84,7 +83,8 @@ transport::Outcome<std::string> Files::claim_next() {
 transport::Outcome<void> Files::open_next() {
   auto path = claim_next();
   if (!path) return std::move(path.error);
-  auto file = logs::LogFile::create(*path, *options_.format, *catalogue_, logs::Existing::overwrite);
+  const auto existing = claims() ? logs::Existing::claimed : logs::Existing::overwrite;
+  auto file = logs::LogFile::create(*path, *options_.format, *catalogue_, existing);
   if (!file) return std::move(file.error);
   file_ = std::move(file.value);
   file_->without_signals();  // they are for the thread that receives

@@ -82,6 +82,9 @@ class Files {
  private:
   [[nodiscard]] std::size_t entries_before_split(std::span<const log::Entry> entries);
   [[nodiscard]] transport::Outcome<void> join_ring();
+  /// Whether a file is made with its name, and none overwritten. In a ring all that may be overwritten comes
+  /// before the number.
+  [[nodiscard]] bool claims() const { return !options_.overwrite || options_.ring != 0; }
   [[nodiscard]] transport::Outcome<std::string> claim_next();
   [[nodiscard]] transport::Outcome<void> open_next();
   [[nodiscard]] bool append(std::span<const log::Entry> entries, const log::Interfaces& interfaces);

@@ -64,7 +64,6 @@ void convert(Session& session, const ConvertOptions& options, int& exit_code) {
                      format.name, whole ? "" : kept));
   const bool unreadable = in.complain();
   logs::tell_losses((*out)->lost(), format);
-  if (!written && (*out)->size() == 0) (*out)->discard();
   if (!written) fail((*out)->failure(), exit_code_after_interrupt(exit_failure));
   const bool not_all = unreadable || (*out)->lost().any();
   if (in.ended_early() || nothing || (options.strict && not_all)) exit_code = exit_failure;

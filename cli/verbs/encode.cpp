@@ -56,9 +56,7 @@ void encode(Session& session, const EncodeOptions& options, int& exit_code) {
   remark(counted(frames, "frame") + " encoded");
   lines.tell_unknown_keys();
   logs::tell_losses((*out)->lost(), format);
-  const bool failed = !(*out)->failure().what.empty();
-  if (failed && (*out)->size() == 0) (*out)->discard();
-  if (failed) fail((*out)->failure(), exit_code_after_interrupt(exit_failure));
+  if (!(*out)->failure().what.empty()) fail((*out)->failure(), exit_code_after_interrupt(exit_failure));
   if (lines.failed()) exit_code = exit_failure;
   exit_code = exit_code_after_interrupt(exit_code);
 }

@@ -234,9 +234,10 @@ void run_record(Session& session, const RecordOptions& options, int& exit_code) 
   logs::tell_losses(files.losses(), format);
   if (!files.failure().what.empty()) {
     const std::uint64_t readable = std::min(files.readable(), recorder.received());
+    const std::uint64_t unwritten = recorder.received() - readable;
     if (options.file != "-")  // of a pipe its reader knows
-      remark(fmt::format("{} can be read, {} were not written", counted(readable, "frame"),
-                         recorder.received() - readable));
+      remark(fmt::format("{} can be read, {} {} not written", counted(readable, "frame"), unwritten,
+                         unwritten == 1 ? "was" : "were"));
     fail(files.failure(), exit_code_after_interrupt(exit_failure));
   }
   if (!recorder.ended().what.empty()) fail(recorder.ended());

@@ -363,16 +363,26 @@ class Recording(Case):
         limit = 20_000
         recorder = self.record("-o", "a.log", "--no-sync",
                                preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
-        sent = self.send_numbered(3000)
+        sent = self.send_numbered(100)
+        waiting.until(lambda: os.path.getsize(self.path("a.log")) != 0, "what has come is in the file")
+        sent += self.send_numbered(3000, first=100)
         _, err = recorder.communicate(timeout=60)
         self.assertEqual(recorder.returncode, 1, err)
         written = self.frames("a.log")
         self.assertEqual(written, sent[:len(written)])
-        said = re.search(r"(\d+) frames? can be read, (\d+) were not written", err)
+        self.assertGreater(len(written), 0)
+        said = re.search(r"(\d+) frames? can be read, (\d+) (?:was|were) not written", err)
         self.assertEqual(int(said[1]), len(written))
         received = int(re.search(r"recorded (\d+) frames?", err)[1])
         self.assertEqual(int(said[2]), received - len(written))
         self.assertIn("cannot write a.log", err)
+        # Where it takes nothing, nothing stands in the way of the next try.
+        recorder = self.record("-o", "b.log", preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0)))
+        self.send_numbered(1)
+        _, err = recorder.communicate(timeout=60)
+        self.assertEqual(recorder.returncode, 1, err)
+        self.assertIn("0 frames can be read, 1 was not written", err)
+        self.assertFalse(os.path.exists(self.path("b.log")))
 
     def test_usage(self):
         self.start_sim()
