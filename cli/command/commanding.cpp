@@ -8,6 +8,7 @@
 
 #include "cli/command/operated_bus.hpp"
 #include "cli/shared/outgoing.hpp"
+#include "cli/shared/unhurried_messages.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/words/quantity.hpp"
 
@@ -51,6 +52,7 @@ void add_no_confirm(Verb verb, bool& no_confirm) {
 void carry_out(Session& session, const Commanding& commanding, const client::Command& command) {
   const auto& frames = command.frames;
   if (commanding.dry_run()) return print_frames(command);
+  wait_for_no_message();
   // A stop goes to the robot at once, and so does a frame that is sent as it is.
   const std::string& verb = commanding.verb();
   const bool guarded = verb == "drive" || verb == "led" || verb == "set";

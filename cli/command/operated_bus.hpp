@@ -74,7 +74,7 @@ class OperatedBus final : public transport::Bus, public Guarded {
 };
 
 /// The bus that the verb sends its commands to: that of `session`, or of that name; through its operator, if
-/// one runs. Says so.
+/// one runs. Says so. From now on no message waits for who reads stderr: the robot would wait, too.
 [[nodiscard]] std::unique_ptr<transport::Bus> open_to_command(Session& session, std::string_view verb);
 [[nodiscard]] std::unique_ptr<transport::Bus> open_to_command(Session& session, std::string_view verb,
                                                               std::string_view bus);

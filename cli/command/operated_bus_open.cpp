@@ -6,6 +6,7 @@
 
 #include "cli/command/operated_bus.hpp"
 #include "cli/shared/messages.hpp"
+#include "cli/shared/unhurried_messages.hpp"
 
 namespace ocm::cli {
 
@@ -31,11 +32,13 @@ std::unique_ptr<transport::Bus> with_operator(std::unique_ptr<transport::Bus> bu
 }  // namespace
 
 std::unique_ptr<transport::Bus> open_to_command(Session& session, std::string_view verb) {
+  wait_for_no_message();
   return with_operator(session.open_bus(), session, verb);
 }
 
 std::unique_ptr<transport::Bus> open_to_command(Session& session, std::string_view verb,
                                                 std::string_view bus) {
+  wait_for_no_message();
   return with_operator(Session::open_bus(bus), session, verb);
 }
 

@@ -9,6 +9,7 @@
 
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
+#include "cli/shared/unhurried_messages.hpp"
 #include "cli/words/quantity.hpp"
 
 namespace ocm::cli {
@@ -392,6 +393,7 @@ void Timeline::meet(const can::Frame& frame) {
 bool Timeline::wait(Clock::time_point until) {
   for (;;) {
     if (interrupted() != 0) return false;
+    UnhurriedMessages::write();
     const auto now = look_at_clock();
     if (held_ && now >= held_->end) rest();
     if (held_ && now >= held_->next) repeat(now);

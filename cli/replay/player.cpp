@@ -11,6 +11,7 @@
 #include "cli/shared/clock.hpp"
 #include "cli/shared/filters.hpp"
 #include "cli/shared/interrupt.hpp"
+#include "cli/shared/unhurried_messages.hpp"
 
 namespace ocm::cli::replay {
 
@@ -170,6 +171,7 @@ void Player::watch_until(base::Time time) const {
   while (interrupted() == 0) {
     const base::Time now = monotonic_now();
     if (now >= time) return;
+    UnhurriedMessages::write();
     buses.clear();
     for (const Outlet& outlet : outlets_) {
       outlet.expect_open();

@@ -211,6 +211,10 @@ void UnhurriedMessages::write() {
   if (!kept().holds) write_kept(kept(), std::chrono::milliseconds{0});
 }
 
+void wait_for_no_message() {
+  static const UnhurriedMessages messages;
+}
+
 std::string counted(std::uint64_t count, std::string_view noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }

@@ -17,4 +17,7 @@ class UnhurriedMessages {
   static void write();
 };
 
+/// From now on to the program's end.
+void wait_for_no_message();
+
 }  // namespace ocm::cli

@@ -22,9 +22,9 @@ class StuckOutput(Case):
         with open(self.json, "w", encoding="utf-8") as file:
             file.write(self.run_tool("decode", self.log)[0])
 
-    def start_to(self, stdout, *arguments):
+    def start_to(self, stdout, *arguments, stderr=subprocess.PIPE):
         process = subprocess.Popen([AMIROCTL, *arguments], env=self.environment, stdin=subprocess.DEVNULL, stdout=stdout,
-                                   stderr=subprocess.PIPE, text=True)
+                                   stderr=stderr, text=True)
         self._started.append(process)
         return process
 
@@ -76,6 +76,21 @@ class StuckOutput(Case):
                 process.send_signal(signal.SIGINT)
                 self.assertEqual(process.wait(timeout=60), 128 + signal.SIGINT)
                 os.close(reader)
+
+    def test_messages_that_cannot_go_hold_up_no_robot(self):
+        script = os.path.join(self.folder, "tour.script")
+        with open(script, "w", encoding="utf-8") as file:
+            file.write("0s led 1 red\n100ms drive 5cm/s\n400ms stop\n")
+        self.start_sim()
+        listener = self.start("listen", "--commands", "motors", "--timeout", "20s")
+        self.assertIn("bus: sim", listener.stderr.readline())
+        reader, writer = self.full_pipe()
+        process = self.start_to(subprocess.DEVNULL, "--bus", "sim", "run", script, stderr=writer)
+        os.close(writer)
+        for data in ("50C3000000000000", "0000000000000000"):
+            waiting.until(lambda data=data: data in listener.stdout.readline(), data)
+        self.assertEqual(process.wait(timeout=60), 0)
+        os.close(reader)
 
     def test_a_slow_reader_gets_whole_lines(self):
         with open(self.log, "a", encoding="utf-8") as file:
