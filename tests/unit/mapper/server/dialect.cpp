@@ -188,7 +188,7 @@ TEST_CASE("dialect: an answer of the base firmware in the middle of a sentence t
   CHECK(translator.take_for_client() == "[3]:OWE:{S,IDL}\n");
 }
 
-TEST_CASE("dialect: an answer of the base firmware that comes too late leaves nobody in the wrong mode") {
+TEST_CASE("dialect: an answer of the base firmware that comes too late leaves no side in the wrong mode") {
   talk(Dialect::at,
        {
            {0, 'c', "conn 2\n", "AT+SWITCH=2.", ""},
