@@ -396,9 +396,9 @@ class Arbiter {
       received = break_frame(disturbance);
     else
       disturb_silence(disturbance);
+    if (received) hand_out(*received, deliver);  // it was complete before the error was seen
     now_ = std::max(now_, error.time);
     if (totals_.errors != errors) complain(error);
-    if (received) hand_out(*received, deliver);
   }
 
   /// The frame under way is disturbed. Returns what receivers have got in spite of it.

@@ -1,4 +1,5 @@
 // CAN FD on the simulated bus: frames of two bit rates.
+#include <algorithm>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -185,6 +186,32 @@ TEST_CASE("in its last bit: receivers have it, and get it again") {
   CHECK(heard[1].sent);
   CHECK(heard[1].text == "555##1");
   CHECK(bus.totals().duplicates == 1);
+}
+
+TEST_CASE("what is told of a frame and of an error in its last bit is told in the order of time") {
+  for (unsigned before_end = 1; before_end <= 8; ++before_end) {
+    CAPTURE(before_end);
+    Arbiter bus{500'000, {}, 4};
+    const NodeId a = bus.attach();
+    CHECK(*bus.send_any(a, any("555##1"), at(0ns)));
+    bus.disturb({.boundary = 26 * 4 + 33 - before_end});
+    std::vector<base::Time> told;
+    std::string order;
+    bus.advance(
+        at(1ms),
+        [&](const Delivery& d) {
+          told.push_back(d.time);
+          order += 'f';
+          CHECK(bus.now() == d.time);
+        },
+        [&](const auto& e) {
+          told.push_back(e.time);
+          order += 'e';
+          CHECK(bus.now() == e.time);
+        });
+    CHECK(order == (before_end <= 4 ? "fef" : "ef"));
+    CHECK(std::is_sorted(told.begin(), told.end()));
+  }
 }
 
 /// Three frames of a node whose first one is disturbed in its first bit, `breaks` times in a row: from 18
