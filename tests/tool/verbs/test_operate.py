@@ -172,14 +172,13 @@ class Running(Operating):
                                     {"from": "halted", "to": "idle", "on_request": True}]
         document["initial"] = "idle"
         operator = self.operate(document=document)
+        listener = self.raw_frames("odometry")
         self.run_tool("operator", "switch", "driving")
         self.event(operator, "switched")
+        waiting.until(lambda: " 502#" in listener.stdout.readline(), "the stream runs")
         operator.kill()
         operator.wait()
-        listener = self.raw_frames("odometry")
-        for line in listener.stdout:  # it goes on
-            if " 502#" in line or " 503#" in line:
-                break
+        waiting.until(lambda: " 502#" in listener.stdout.readline(), "it goes on")
         self.operate(document=document)
         time.sleep(0.5)  # ten periods, in which nothing must come
         frames = self.frames(listener)
