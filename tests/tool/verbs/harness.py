@@ -117,6 +117,6 @@ class TogetherRunner(unittest.TextTestRunner):
 
 def main(together=False):
     """`together`: for cases that wait for the clock more than they work."""
-    # A case that hangs is ended by ctest after 600 s, without a word; this says where it hangs.
-    faulthandler.dump_traceback_later(580)
+    # A case that hangs is ended by ctest after 1200 s, without a word; this says where it hangs.
+    faulthandler.dump_traceback_later(1180)
     unittest.main(verbosity=1, testRunner=TogetherRunner if together else None)

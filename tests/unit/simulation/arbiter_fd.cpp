@@ -188,7 +188,7 @@ TEST_CASE("in its last bit: receivers have it, and get it again") {
   CHECK(bus.totals().duplicates == 1);
 }
 
-TEST_CASE("what is told of a frame and of an error in its last bit is told in the order of time") {
+TEST_CASE("a frame and an error in its last bit come in the order of time") {
   for (unsigned before_end = 1; before_end <= 8; ++before_end) {
     CAPTURE(before_end);
     Arbiter bus{500'000, {}, 4};
