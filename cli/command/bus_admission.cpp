@@ -18,6 +18,7 @@
 #include "ocm/protocol/topic.hpp"
 
 #include "cli/command/traffic.hpp"
+#include "cli/shared/fitted.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/live.hpp"
 #include "cli/shared/values.hpp"
@@ -157,8 +158,9 @@ void Judgement::print_table() {
   std::size_t width = 7;
   for (const auto& message : messages)
     if (message.key != Traffic::any_other) width = std::max(width, name(message.key).size());
-  fmt::print("{:<8}  {:<{}}  {:>9}  {:>9}  {:>4}  {:>9}  {:>9}  {}\n", "ID", "MESSAGE", width, "PERIOD",
-             "DEADLINE", "BITS", "RESPONSE", "SLACK", "VERDICT");
+  print_fitted(fmt::format("{:<8}  {:<{}}  {:>9}  {:>9}  {:>4}  {:>9}  {:>9}  {}\n", "ID", "MESSAGE", width,
+                           "PERIOD", "DEADLINE", "BITS", "RESPONSE", "SLACK", "VERDICT"),
+               4);
   const std::int64_t load = analysis::utilisation(messages).parts_per_million();
   bool all_known = true;
   for (std::size_t i = 0; i < results.size(); ++i) {
@@ -168,23 +170,29 @@ void Judgement::print_table() {
     const auto& result = results[i];
     const std::string verdict = fate(result, bus_->is_asked(key), surely(key));
     all_known = all_known && verdict != "not known";
-    fmt::print("{:<8}  {:<{}}  {:>9}  {:>9}  {:>4}  {:>9}  {:>9}  {}{}\n", fmt::format("{:03X}", line.id),
-               line.name, width, us(messages[i].period), us(result.deadline), line.bits,
-               result.bounded() ? us(result.response) : "-", result.bounded() ? us(result.slack()) : "-",
-               verdict, bus_->is_asked(key) ? ", asked for" : "");
+    print_fitted(fmt::format("{:<8}  {:<{}}  {:>9}  {:>9}  {:>4}  {:>9}  {:>9}  {}{}\n",
+                             fmt::format("{:03X}", line.id), line.name, width, us(messages[i].period),
+                             us(result.deadline), line.bits, result.bounded() ? us(result.response) : "-",
+                             result.bounded() ? us(result.slack()) : "-", verdict,
+                             bus_->is_asked(key) ? ", asked for" : ""),
+                 4);
   }
   if (!all_known) {
     std::string names;
     for (const auto* topic : traffic_.unheard(asked_))
       names.append(names.empty() ? "" : ", ").append(topic->name);
-    fmt::print("not known: in time unless one of these runs, less often than every {}: {}\n",
-               us(traffic_.window().count()), names);
+    print_fitted(fmt::format("not known: in time unless one of these runs, less often than every {}: {}\n",
+                             us(traffic_.window().count()), names),
+                 4);
   }
   const auto better = shortest(base::Duration{0});
-  if (better) fmt::print("the shortest period that passes beside what was heard is {}\n", to_text(*better));
-  fmt::print("load {}.{} % of {} bit/s at worst; {} identifier{} heard within {}\n", load / 10'000,
-             load / 1'000 % 10, catalogue_.bit_rate, traffic_.identifiers(),
-             traffic_.identifiers() == 1 ? "" : "s", us(traffic_.window().count()));
+  if (better)
+    print_fitted(
+        fmt::format("the shortest period that passes beside what was heard is {}\n", to_text(*better)), 4);
+  print_fitted(fmt::format("load {}.{} % of {} bit/s at worst; {} identifier{} heard within {}\n",
+                           load / 10'000, load / 1'000 % 10, catalogue_.bit_rate, traffic_.identifiers(),
+                           traffic_.identifiers() == 1 ? "" : "s", us(traffic_.window().count())),
+               4);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "ocm/client/diagnosis.hpp"
 
+#include "cli/shared/fitted.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/json.hpp"
 #include "cli/shared/messages.hpp"
@@ -201,15 +202,19 @@ void MapRun::report(const std::optional<Agreement>& result) const {
     fmt::print("{}\n", out.line());
     return;
   }
-  fmt::print(
-      "{} in {}: {:.2f} m2 free, {:.0f} % of their border known; {} drawn, {} not, because a robot turned; "
-      "{}\n",
-      words(end_), span(took_), free, 100 * left.known(), client::count(drawn.drawn, "update*"),
-      drawn.turning, client::count(explorer.goals, "goal*"));
+  print_fitted(
+      fmt::format("{} in {}: {:.2f} m2 free, {:.0f} % of their border known; {} drawn, {} not, because a "
+                  "robot turned; "
+                  "{}\n",
+                  words(end_), span(took_), free, 100 * left.known(), client::count(drawn.drawn, "update*"),
+                  drawn.turning, client::count(explorer.goals, "goal*")),
+      4);
   if (result)
-    fmt::print(
-        "agreement with the true walls within 6 cm: precision {:.3f}, recall {:.3f}; explored {:.3f}\n",
-        result->precision, result->recall, result->explored);
+    print_fitted(
+        fmt::format(
+            "agreement with the true walls within 6 cm: precision {:.3f}, recall {:.3f}; explored {:.3f}\n",
+            result->precision, result->recall, result->explored),
+        4);
 }
 
 End MapRun::drive(std::optional<base::Duration> limit) {

@@ -158,9 +158,11 @@ std::vector<std::string> summary(const Bus& bus) {
                        to_text(figures.load * 100, Unit::percent), kbit_per_second(figures),
                        to_text(figures.worst_load * 100, Unit::percent),
                        time((figures.worst_until - figures.first).count()));
-  lines.push_back(fmt::format("{}: {} in {} ({}); {}", log::Complaints::printable(bus.name),
-                              client::count(counters.frames - counters.errors, "frame*"),
-                              time(figures.span().count()), to_text(figures.rate_hz, Unit::hertz), load));
+  lines.push_back(
+      fmt::format("{}: {} in {} ({}); {}",
+                  bus.name.empty() ? "a bus without a name" : log::Complaints::printable(bus.name),
+                  client::count(counters.frames - counters.errors, "frame*"), time(figures.span().count()),
+                  to_text(figures.rate_hz, Unit::hertz), load));
   std::string faults;
   const auto fault = [&faults](std::uint64_t count, std::string_view what) {
     if (count == 0) return;

@@ -19,6 +19,7 @@
 #include "ocm/protocol/message.hpp"
 #include "ocm/protocol/request.hpp"
 
+#include "cli/shared/fitted.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/json.hpp"
 #include "cli/shared/live.hpp"
@@ -229,8 +230,9 @@ void print_pretty(const Examination& examination, const std::vector<Finding>& fi
   const auto& diagnosis = examination.diagnosis();
   std::size_t width = 5;
   for (const auto& board : catalogue.boards) width = std::max(width, board.name.size());
-  fmt::print("{:<{}}  {:<10}  {:<9}  {:<7}  {:>5}  {:<7}  {}\n", "BOARD", width, "UP", "RESET", "SPEC",
-             "LOAD", "BUS", "PUBLISHES");
+  print_fitted(fmt::format("{:<{}}  {:<10}  {:<9}  {:<7}  {:>5}  {:<7}  {}\n", "BOARD", width, "UP", "RESET",
+                           "SPEC", "LOAD", "BUS", "PUBLISHES"),
+               4);
   for (std::size_t i = 0; i < catalogue.boards.size(); ++i) {
     const BoardReport& board = diagnosis.boards()[i];
     if (!board.answered) {
@@ -242,17 +244,19 @@ void print_pretty(const Examination& examination, const std::vector<Finding>& fi
     }
     const bool same = static_cast<std::uint32_t>(board.wire_hash) == protocol::wire_hash(catalogue);
     const std::string running = diagnosis.sensors_of(i, board.publishing);
-    fmt::print("{:<{}}  {:<10}  {:<9}  {:<7}  {:>5}  {:<7}  {}\n", catalogue.boards[i].name, width,
-               span(board.uptime_s), board.reset.empty() ? "?" : board.reset, same ? "same" : "another",
-               board.load ? fmt::format("{} %", *board.load) : "-", board.bus.empty() ? "?" : board.bus,
-               running.empty() ? "-" : running);
+    print_fitted(fmt::format("{:<{}}  {:<10}  {:<9}  {:<7}  {:>5}  {:<7}  {}\n", catalogue.boards[i].name,
+                             width, span(board.uptime_s), board.reset.empty() ? "?" : board.reset,
+                             same ? "same" : "another", board.load ? fmt::format("{} %", *board.load) : "-",
+                             board.bus.empty() ? "?" : board.bus, running.empty() ? "-" : running),
+                 4);
   }
   if (const auto& battery = diagnosis.battery(); battery.answered)
     fmt::print("battery {} %{}\n", battery.state_of_charge, battery.plugged ? ", charger plugged in" : "");
   for (const auto& each : diagnosis.batteries().all)
     if (each.present)
-      fmt::print("{} {:.3f} V, {:+.3f} A, {:.0f} mAh left, {:.1f} degC\n", each.name, each.voltage_v,
-                 each.current_a, each.remaining_mah, each.temperature_celsius);
+      print_fitted(fmt::format("{} {:.3f} V, {:+.3f} A, {:.0f} mAh left, {:.1f} degC\n", each.name,
+                               each.voltage_v, each.current_a, each.remaining_mah, each.temperature_celsius),
+                   4);
     else
       fmt::print("{} not inserted\n", each.name);
   fmt::print("\n");
@@ -261,10 +265,12 @@ void print_pretty(const Examination& examination, const std::vector<Finding>& fi
                        : finding.severity == Severity::problem ? "\x1b[31m"
                        : finding.severity == Severity::warning ? "\x1b[33m"
                                                                : "\x1b[2m";
-    fmt::print("{}{:<8}{} {}{}{}\n         {}\n", mark, name(finding.severity), colour ? "\x1b[0m" : "",
-               finding.board, finding.board.empty() ? "" : ": ", finding.what, finding.remedy);
+    print_fitted(
+        fmt::format("{}{:<8}{} {}{}{}\n         {}\n", mark, name(finding.severity), colour ? "\x1b[0m" : "",
+                    finding.board, finding.board.empty() ? "" : ": ", finding.what, finding.remedy),
+        9);
   }
-  if (findings.empty()) fmt::print("{}\n", examination.well(listened));
+  if (findings.empty()) print_fitted(fmt::format("{}\n", examination.well(listened)), 0);
 }
 
 /// To a thousandth: what a double has behind that is no measurement.

@@ -173,16 +173,17 @@ void summarise(const replay::Player& player, bool dry_run) {
 /// Of a log with frames none was sent: what was chosen is not in it.
 void expect_any(const replay::Player& player, const ReplayOptions& options) {
   const auto& played = player.played();
+  const std::string log = options.file == "-" ? "the standard input" : options.file;
   if (played.sent != 0 || interrupted() != 0) return;
   if (played.not_chosen != 0)
-    fail({fmt::format("replay: no frame of {} was chosen", options.file),
+    fail({fmt::format("replay: no frame of {} was chosen", log),
           options.file == "-" ? "name other topics, or none: then all frames are sent"
                               : fmt::format("`amiroctl stats {}` shows what it has", options.file)});
   if (played.no_route != 0)
-    fail({fmt::format("replay: all frames of {} are of interfaces without a bus", options.file),
+    fail({fmt::format("replay: all frames of {} are of interfaces without a bus", log),
           "name them: --interface LOG=BUS"});
   if (played.error_frames != 0 || played.fd_frames != 0)
-    fail({fmt::format("replay: {} has no frame that can be sent there", options.file), ""});
+    fail({fmt::format("replay: {} has no frame that can be sent there", log), ""});
 }
 
 void play(Session& session, const ReplayOptions& options, int& exit_code) {

@@ -92,6 +92,16 @@ TEST_CASE("stats report: a table's widest line is what decides what it has room 
   CHECK(lines > 1000);
 }
 
+TEST_CASE("stats report: a bus without a name is called so") {
+  stats::Report report = report_of(amiro::catalogue, log_text(), {500'000, 0});
+  REQUIRE_FALSE(report.buses.empty());
+  for (auto& bus : report.buses) bus.name.clear();
+  std::string all;
+  for (const std::string& line : stats::to_table(report, {}, false, SIZE_MAX)) all += line + "\n";
+  CHECK_THAT(all, Catch::Contains("a bus without a name: "));
+  CHECK_THAT(all, !Catch::Contains("\n: "));
+}
+
 TEST_CASE("stats report: colours, and the topics that are asked for") {
   const stats::Report report = report_of(amiro::catalogue, log_text(), {500'000, 0});
   const stats::Shown shown{amiro::catalogue.find("magnetometer"), amiro::catalogue.find("power_status")};

@@ -103,6 +103,18 @@ class Terminal(Case):
                     for line in shown.splitlines():  # a word that is wider than the terminal has a line of its own
                         self.assertTrue(len(line) <= columns or len(line.split()) == 1, line)
 
+    def test_what_was_heard_fits_the_width_and_breaks_no_word(self):
+        self.run_tool("send", "208#03")  # the board says that it has refused it
+        for arguments, code in ((("doctor", "--listen", "300ms"), 0), (("publish", "mag", "900us", "--dry-run", "--explain"), 0)):
+            whole = self.on_terminal(*arguments, "--no-color", code=code).split()
+            for columns in (40, 80):
+                with self.subTest(arguments=arguments, columns=columns):
+                    shown = self.on_terminal(*arguments, "--no-color", columns=columns, code=code).replace("\r\n", "\n")
+                    for line in shown.splitlines():
+                        self.assertTrue(len(line) <= columns or len(line.split()) == 1, line)
+                    words = [word for word in whole if word.isalpha()]
+                    self.assertEqual(sorted(set(words) - set(shown.split())), [])
+
     def test_of_a_list_only_aliases_leave_their_row(self):
         rows = [line for line in self.on_terminal("list", columns=80).splitlines() if line.startswith("    ")]
         self.assertEqual({row.strip() for row in rows}, {"battery", "ambient"})
