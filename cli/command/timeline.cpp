@@ -255,10 +255,12 @@ bool Timeline::rest_after_all() {
 }
 
 void Timeline::abandon(std::string what, std::string remedy) {
+  const char* const done =
+      other_.is_set_point(held_->hold.frame) ? "the motors were set to zero" : "the board was told so";
   const bool rests = rest_after_all();
   other_.sum_up();
   tell_unsent();
-  const char* const now = rests                 ? "the motors were set to zero"
+  const char* const now = rests                 ? done
                           : outgoing_.matters() ? still_moving
                                                 : "no set point has reached the robot";
   fail({fmt::format("{}: {}; {}", verb_, what, now), std::move(remedy)});
@@ -280,8 +282,9 @@ void Timeline::end_for_another() {
 }
 
 void Timeline::end_for_a_stop(Clock::duration lasting) {
-  abandon(fmt::format("this program did not run for {}, so the drive has ended",
-                      words::to_text(std::chrono::duration_cast<std::chrono::milliseconds>(lasting))),
+  abandon(fmt::format("this program did not run for {}, so the {} has ended",
+                      words::to_text(std::chrono::duration_cast<std::chrono::milliseconds>(lasting)),
+                      other_.is_set_point(held_->hold.frame) ? "drive" : "behaviour"),
           "was it stopped, or did the machine sleep? Give the command again");
 }
 

@@ -72,6 +72,19 @@ class Behave(Case):
             self.assertIn("avoid was ended: stopped", err)
             self.assertTrue(self.standing())
 
+    def test_one_whose_program_stood_still_is_ended(self):
+        self.start_sim()
+        listener = self.listen("--commands", "avoid", "--timeout", "20s")
+        behave = self.start("behave", "avoid", "--for", "20s")
+        listener.stdout.readline()
+        behave.send_signal(signal.SIGSTOP)
+        time.sleep(2)  # longer than a program may be stopped
+        behave.send_signal(signal.SIGCONT)
+        _, err = behave.communicate(timeout=20)
+        self.assertEqual(behave.returncode, 1, err)
+        self.assertRegex(err, "behave: this program did not run for .*, so the behaviour has ended; the board was told so\n")
+        waiting.until(lambda: '"0000' in listener.stdout.readline(), "zero")
+
     def test_home(self):
         self.start_sim()
         _, err = self.run_tool("behave", "home", "--distance", "2cm", code=1)
