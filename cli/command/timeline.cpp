@@ -256,7 +256,7 @@ bool Timeline::rest_after_all() {
 
 void Timeline::abandon(std::string what, std::string remedy) {
   const char* const done =
-      other_.is_set_point(held_->hold.frame) ? "the motors were set to zero" : "the board was told so";
+      other_.is_set_point(held_->hold.frame) ? "the motors were set to zero" : "it was set to zero";
   const bool rests = rest_after_all();
   other_.sum_up();
   tell_unsent();

@@ -82,7 +82,7 @@ class Behave(Case):
         behave.send_signal(signal.SIGCONT)
         _, err = behave.communicate(timeout=20)
         self.assertEqual(behave.returncode, 1, err)
-        self.assertRegex(err, "behave: this program did not run for .*, so the behaviour has ended; the board was told so\n")
+        self.assertRegex(err, "behave: this program did not run for .*, so the behaviour has ended; it was set to zero\n")
         waiting.until(lambda: '"0000' in listener.stdout.readline(), "zero")
 
     def test_home(self):
