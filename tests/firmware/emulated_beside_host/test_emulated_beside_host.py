@@ -34,8 +34,10 @@ SLOW_SENSORS = ["batteries", "ring_light"]
 PRIORITIES = ["urgent", "high", "medium", "low"]
 
 
-class Robots(RealTime, Case):
+class Robots(Case):
     """Two robots, each on its own bus: "host" and "qemu"."""
+    had_time = RealTime.had_time
+
 
     def start_robots(self, *arguments):
         self.sims = {}

@@ -14,6 +14,10 @@ AMIROCTL = os.environ["AMIROCTL"]
 SOURCE = os.environ["OCM_SOURCE_DIR"]
 sys.path.insert(0, os.path.join(SOURCE, "tests"))
 import waiting
+from realtime import RealTime
+
+# What commands a robot ends when it did not run for half a second. [docs/verbs/drive.md]
+STOOD_STILL_S = 0.3
 
 
 def sanitized():
@@ -22,8 +26,12 @@ def sanitized():
         return b"__asan_init" in program.read()
 
 
-class Case(unittest.TestCase):
-    """A test case with its own runtime folder; nothing is inherited from the user's environment."""
+class Case(RealTime):
+    """A test case with its own runtime folder; nothing is inherited from the user's environment. A failure counts unless this
+    machine did not run meanwhile: programs that command a robot then end, as they have to."""
+
+    def had_time(self, spare):
+        return spare.late < STOOD_STILL_S
 
     def setUp(self):
         self._folder = tempfile.TemporaryDirectory(prefix="ocm-test-")

@@ -31,7 +31,7 @@ class Keys(harness.Case):
                                    stdout=secondary if stdout is None else stdout, stderr=subprocess.PIPE, text=True,
                                    start_new_session=True, env={**self.environment, "TERM": term})
         self._started.append(process)
-        self.secondary, self.primary = secondary, primary
+        self.process, self.secondary, self.primary = process, secondary, primary
         self.addCleanup(self.close)
         self.shown = b""
         if stdout is None:
@@ -46,7 +46,10 @@ class Keys(harness.Case):
 
     def shows(self, text):
         while text not in self.shown:
-            self.shown += os.read(self.primary, 4096)
+            if select.select([self.primary], [], [], 0.1)[0]:
+                self.shown += os.read(self.primary, 4096)
+            elif self.process.poll() is not None:
+                self.fail(f"{text} was not shown: {self.process.communicate()[1]}")
         self.shown = self.shown.partition(text)[2]
 
     def hold(self, key, seconds):
