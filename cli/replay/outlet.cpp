@@ -1,14 +1,22 @@
 #include "cli/replay/outlet.hpp"
 
 #include <utility>
+#include <vector>
 
 #include "ocm/can/filter.hpp"
 #include "ocm/client/command.hpp"
+#include "ocm/transport/virtual_bus.hpp"
 
 #include "cli/shared/clock.hpp"
 #include "cli/shared/messages.hpp"
 
 namespace ocm::cli::replay {
+namespace {
+
+/// In which a bus that was full may have room again.
+constexpr base::Duration patience_after_all = std::chrono::milliseconds{200};
+
+}  // namespace
 
 Outlet::Outlet(std::unique_ptr<transport::Bus> bus, const protocol::Catalogue& catalogue)
     : bus_(std::move(bus)),
@@ -73,6 +81,32 @@ std::string Outlet::end_behaviours() {
   std::string names = behaviours_.names();
   behaviours_.clear();
   return names;
+}
+
+std::string Outlet::end_after_all() {
+  std::vector<can::Frame> ends;
+  const bool travels = !behaviours_.all().empty();
+  for (const auto& each : behaviours_.all()) ends.push_back(each.end);
+  behaviours_.clear();
+  if (!is_rest(set_point_)) {
+    set_point_.data = {};
+    ends.push_back(set_point_);
+  }
+  if (ends.empty()) return {};
+  const char* const otherwise = travels ? still_travelling : still_moving;
+  const auto late = Clock::now() + patience_after_all;
+  for (const can::Frame& frame : ends)
+    for (;;) {
+      const auto taken = bus_->send(frame);
+      if (taken && *taken) break;
+      // A simulated robot has gone with its bus.
+      if (taken.error == base::Error::closed &&
+          dynamic_cast<const transport::VirtualBus*>(bus_.get()) != nullptr)
+        return {};
+      if (!taken || Clock::now() >= late) return otherwise;
+      sleep_for(std::chrono::milliseconds{1});
+    }
+  return outgoing_.all_left(std::chrono::milliseconds{500}) ? std::string{} : otherwise;
 }
 
 bool Outlet::rest() {

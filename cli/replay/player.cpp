@@ -137,11 +137,13 @@ bool Player::send(const log::Entry& entry, const log::Interfaces& interfaces) {
 bool Player::keep_up(const log::Entry& entry, base::Time due) {
   const base::Time now = monotonic_now();
   const base::Duration later = now - due - lateness_;
-  if (later < client::longest_without_set_point) {
+  const bool held_up = later >= client::longest_without_set_point;
+  if (now - due < client::longest_without_set_point) {
     lateness_ = now - due;
     return true;
   }
-  if (std::any_of(outlets_.begin(), outlets_.end(), [](const Outlet& each) { return each.commands(); })) {
+  if (held_up &&
+      std::any_of(outlets_.begin(), outlets_.end(), [](const Outlet& each) { return each.commands(); })) {
     held_up_ = later;
     return false;
   }

@@ -1,10 +1,10 @@
 /// Sends the frames of a log, each at its time, to the buses that their interfaces map to.
 ///
-/// Frames may be late, by a slow bus more and more. But one that is later than those before it by as long as
-/// motors wait for a set point was held up: this program was stopped, the machine slept, or what is read came
-/// too late. What the frames before it have commanded is then out of date, and the play ends; where they have
-/// left nothing in motion it goes on from there, later by so much, and no frames follow one another faster
-/// than they were recorded.
+/// One that is as late as long as motors wait for a set point makes all later: a bus, or a pipe, that is too
+/// slow is followed, and what has come late is not made up for at once. One that is so much later than the
+/// frame before was held up: this program was stopped, the machine slept, or what is read came too late. What
+/// the frames before it have commanded is then out of date, and the play ends, unless they have left nothing
+/// in motion.
 #pragma once
 
 #include <cstdint>
@@ -96,6 +96,15 @@ class Player {
     std::vector<std::string> all;
     for (Outlet& outlet : outlets_)
       if (std::string names = outlet.end_behaviours(); !names.empty()) all.push_back(std::move(names));
+    return all;
+  }
+
+  /// Both on all buses, after something has failed on one: a remark on each robot that may go on.
+  std::vector<std::string> end_after_all() {
+    std::vector<std::string> all;
+    for (Outlet& outlet : outlets_)
+      if (std::string otherwise = outlet.end_after_all(); !otherwise.empty())
+        all.push_back(std::string{outlet.name()} + ": " + otherwise);
     return all;
   }
 

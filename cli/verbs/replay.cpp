@@ -227,6 +227,7 @@ void play(Session& session, const ReplayOptions& options, int& exit_code) {
     for (const std::string& names : ended)
       remark(fmt::format("{} ended: the log goes on behind this", names));
   } catch (const Exit&) {  // the bus took no more: what was sent is reported all the same
+    for (const std::string& otherwise : player.end_after_all()) remark("replay: " + otherwise);
     if (!options.dry_run) summarise(player, false);
     throw;
   }
