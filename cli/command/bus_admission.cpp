@@ -229,9 +229,10 @@ void admit(const protocol::Catalogue& catalogue, transport::Bus& bus, const clie
         to_text(options.listen), to_text(period));
   };
   if (decision.admitted || options.force) {
-    // Its board decides about it, and says so; this is what it would take.
+    // Its board decides about it, and says so; this is what it would take. It knows of streams that were not
+    // heard here, so that only what passes beside those, too, helps after its refusal.
     if (!judgement.board_takes())
-      if (const auto better = judgement.shortest(asked->period))
+      if (const auto better = judgement.shortest(asked->period); better && judgement.surely_passes(*better))
         refusals.offer(offer(*better) + "; --explain shows all");
     return;
   }

@@ -34,8 +34,9 @@ class OtherCommander {
   }
   /// A frame from the bus. `holding`: this program commands the motors, too, and says so, once.
   void take(const can::Received& received, bool holding);
-  /// This program begins to hold the motors, and would not have done so beside another one.
-  void hold_begins() { hold_began_ = Clock::now(); }
+  /// This program has begun to hold the motors, with its first set point just before `first`, and would not
+  /// have done so beside another one.
+  void hold_begins(Clock::time_point first) { hold_began_ = first; }
   /// Another program began within client::listen_before_hold of that: neither can have heard the other.
   [[nodiscard]] bool has_begun_too() const { return begun_too_; }
   /// A set point of rest came while this program commanded the motors.
@@ -55,6 +56,10 @@ class OtherCommander {
   /// This program sends a frame: if it commands the wheels, what a board does from now on may be that.
   void send(const can::Frame& frame) {
     own_ = own_ || is_set_point(frame) || behaviour_.commanded(index_, frame) != nullptr;
+  }
+  /// Whether it has a board do something by itself.
+  [[nodiscard]] bool is_behaviour(const can::Frame& frame) const {
+    return behaviour_.commanded(index_, frame) != nullptr && !is_rest(frame);
   }
   /// The last set point that came.
   [[nodiscard]] const can::Frame& last() const { return last_; }

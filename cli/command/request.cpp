@@ -20,6 +20,7 @@
 #include "cli/shared/messages.hpp"
 #include "cli/shared/outgoing.hpp"
 #include "cli/shared/terminal.hpp"
+#include "cli/shared/unhurried_messages.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/words/quantity.hpp"
 
@@ -96,6 +97,7 @@ void add_request_options(Verb verb, Session& session, std::string_view words_hel
     const auto command = options->commanding.parse();
     const bool dry_run = options->commanding.dry_run();
     if (dry_run && !options->admission.explain) return print_frames(command);
+    wait_for_no_message();
     const auto bus = session.open_bus();
     if (const std::uint32_t rate = bus->bit_rate(); rate != 0) catalogue.bit_rate = rate;
     RefusalWatch refusals{catalogue, options->commanding.verb(), options->commanding.confirm()};

@@ -111,6 +111,7 @@ void Timeline::send(const can::Frame& frame) {
   const bool set_point = other_.is_set_point(frame);
   other_.send(frame);
   if (set_point) outgoing_.otherwise_after_the_next(still_moving);
+  if (other_.is_behaviour(frame)) outgoing_.otherwise_after_the_next(still_travelling);
   hand_over(frame);
   behind_ = set_point ? 0 : behind_ + 1;
   refusals_.sent(frame, set_point && moving_);
@@ -155,8 +156,9 @@ void Timeline::carry_out(const client::Command& command) {
                     repeated_.end());
   });
   const auto begin = Clock::now();
-  if (command.hold && !held_ && others_ == Others::refused) other_.hold_begins();
+  const bool begins = command.hold && !held_ && others_ == Others::refused;
   carry_out_once(command);
+  if (begins) other_.hold_begins(awake_);  // when the bus had it, however late this program looks next
   if (command.ends_hold) held_.reset();
   if (command.repeat) {
     const auto [period, lasting] = *command.repeat;
@@ -288,6 +290,12 @@ void Timeline::end_for_a_stop(Clock::duration lasting) {
           "was it stopped, or did the machine sleep? Give the command again");
 }
 
+void Timeline::end_of_hold(Clock::time_point now) {
+  const auto last_turn = held_->next - client::hold_period;
+  if (now - last_turn >= client::longest_without_set_point) end_for_a_stop(now - last_turn);
+  rest();
+}
+
 void Timeline::repeat(Clock::time_point now) {
   constexpr auto longest = client::longest_without_set_point;
   const auto in_words = [now](Clock::time_point since) {
@@ -398,7 +406,7 @@ bool Timeline::wait(Clock::time_point until) {
     if (interrupted() != 0) return false;
     UnhurriedMessages::write();
     const auto now = look_at_clock();
-    if (held_ && now >= held_->end) rest();
+    if (held_ && now >= held_->end) end_of_hold(now);
     if (held_ && now >= held_->next) repeat(now);
     repeat_due(now);
     broadcast_due(now);

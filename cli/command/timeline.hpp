@@ -129,6 +129,8 @@ class Timeline {
   void expect_awake();
   /// The time; notes for how long this program did not look where it should have.
   Clock::time_point look_at_clock();
+  /// As long as it was to be held: rests, unless this program did not run up to then.
+  void end_of_hold(Clock::time_point now);
   /// Sends the held set point again, if the last one has left.
   void repeat(Clock::time_point now);
   /// Sends what is sent again and again and is due; removes what is over.

@@ -122,6 +122,15 @@ std::vector<std::string_view> repeated_after(std::span<const words::Step> steps,
   return names;
 }
 
+/// Whether the motors are held behind these steps, without end.
+bool holds_after(std::span<const words::Step> steps) {
+  bool holds = false;
+  for (const auto& step : steps)
+    if (step.command.hold || step.command.ends_hold)
+      holds = step.command.hold && step.command.hold->lasting.count() == 0;
+  return holds;
+}
+
 /// What an interrupted script leaves, of the steps that it has carried out. `ended`: what boards did by
 /// themselves.
 std::string left_by(std::span<const words::Step> steps, const protocol::Catalogue& catalogue,
@@ -211,6 +220,8 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
     if (const auto names = repeated_after(script.steps, catalogue); !names.empty() && interrupted() == 0)
       remark(fmt::format("run: {} {} sent until Ctrl-C; --for ends that", fmt::join(names, ", "),
                          names.size() == 1 ? "is" : "are"));
+    if (interrupted() == 0 && holds_after(script.steps))
+      remark("run: the drive goes on until Ctrl-C; --for, or a last step `drive stop`, ends it");
     return interrupted() == 0 && timeline.wait_for_end();
   };
   BegunBehaviours behaviours{catalogue};

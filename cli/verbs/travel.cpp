@@ -120,6 +120,7 @@ void travel(Session& session, const TravelOptions& options, int& exit_code) {
   if (asked) begin.frames.insert(begin.frames.begin(), ask);
   watch.begin();
   timeline.expect_motion();
+  const auto begun = Clock::now();
   timeline.carry_out_once(begin);
   auto heard = Clock::now();  // or asked
   bool silent = false;
@@ -139,8 +140,11 @@ void travel(Session& session, const TravelOptions& options, int& exit_code) {
     asked = true;
     heard = Clock::now();
   }
+  // Of two that begin at once neither has heard the other: both end, and no way is left that belongs to none.
+  const bool together =
+      watch.is_replaced() && !options.force && Clock::now() - begun < client::listen_before_hold;
   client::Command end;
-  if (!watch.over()) end.frames.push_back(client::set_point(topic, {}, options.priority));
+  if (!watch.over() || together) end.frames.push_back(client::set_point(topic, {}, options.priority));
   if (asked) end.frames.push_back(protocol::stop(sensor.id, sensor.priority));
   timeline.forgive_a_stop();  // an end is never too late
   timeline.carry_out_once(end);

@@ -241,6 +241,26 @@ bool drive_a_second(World& world, PlayedBus& bus) {
   return false;
 }
 
+TEST_CASE("drive: a stop beyond the end of its time is one, too") {
+  for (const Duration lasting : {300ms, 700ms, 5000ms}) {
+    World world{1};
+    PlayedBus bus{world, {}};
+    world.stop(World::start + 700ms, lasting);  // 550 ms behind the first set point
+    const Leaving left = leaving([&] {
+      Timeline timeline{bus, amiro::catalogue, "drive", Timeline::Others::refused, cli::Confirm::no, {}};
+      const bool begins = timeline.listen_first();
+      REQUIRE(begins);
+      timeline.carry_out(drive(700ms));
+      static_cast<void>(timeline.wait_for_end());
+      static_cast<void>(timeline.finish());
+    });
+    CAPTURE(lasting.count(), left.text);
+    CHECK(left.code.has_value() == (lasting > watchdog));
+    CHECK(cli::is_rest(bus.sent().back().frame));
+    if (left.code) CHECK_THAT(left.text, Catch::Contains("drive: this program did not run for"));
+  }
+}
+
 TEST_CASE("drive: another program is heard, too, where its set points have come and were not looked at yet") {
   for (const auto others : {Timeline::Others::refused, Timeline::Others::allowed}) {
     World world{1};

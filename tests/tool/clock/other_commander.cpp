@@ -98,7 +98,7 @@ TEST_CASE("another commander: one that begins within 150 ms of this program coul
   World world{1};
   const auto begun_too = [&](base::Duration after, const char* const frame, bool holding) {
     OtherCommander other{amiro::catalogue, "drive"};
-    other.hold_begins();
+    other.hold_begins(world.now());
     world.pass(after);
     const std::string text = said([&] { other.take(received(frame), holding); });
     CHECK(text.empty() == (other.has_begun_too() || other.has_stopped() || !holding));

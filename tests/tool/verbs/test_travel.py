@@ -104,6 +104,15 @@ class Travel(Case):
         self.interrupt(listener)
         return travel
 
+    def test_of_two_that_begin_at_once_none_is_left_behind(self):
+        self.start_sim()
+        for _ in range(3):
+            both = [self.start("travel", way, "--speed", "30cm/s") for way in ("30cm", "-30cm")]
+            said = [travel.communicate(timeout=30)[1] for travel in both]
+            self.assertIn(1, [travel.returncode for travel in both], said)
+            sample = self.sample("behaviour")
+            self.assertEqual(sample["behaviour.active"], NONE, said)
+
     def test_another_travel_replaces_it_and_goes_on(self):
         self.start_sim()
         travel = self.travelling("1m")
