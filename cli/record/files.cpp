@@ -83,7 +83,9 @@ transport::Outcome<std::string> Files::claim_next() {
 transport::Outcome<void> Files::open_next() {
   auto path = claim_next();
   if (!path) return std::move(path.error);
-  const auto existing = claims() ? logs::Existing::claimed : logs::Existing::overwrite;
+  // Of a ring, whose oldest file goes when a new one begins, each name stays.
+  const bool may_go = claims() && options_.ring == 0;
+  const auto existing = may_go ? logs::Existing::claimed : logs::Existing::overwrite;
   auto file = logs::LogFile::create(*path, *options_.format, *catalogue_, existing);
   if (!file) return std::move(file.error);
   file_ = std::move(file.value);
@@ -221,7 +223,7 @@ std::uint64_t Files::readable() const {
   if (elsewhere_) return finished_entries_ + entries_;
   // A device may have no end.
   if (path_ == "-" || !std::filesystem::is_regular_file(path_, unreadable)) return finished_entries_;
-  if (entries_ == 0 || file_->size() > most_to_read_back) return finished_entries_;
+  if (entries_ == 0 || file_->size() == 0 || file_->size() > most_to_read_back) return finished_entries_;
   try {
     logs::OpenedLog log{path_, options_.format->name, *catalogue_,
                         logs::Reading::to_the_end};  // Ctrl-C may have ended the recording
