@@ -226,6 +226,7 @@ int run(int argc, char** argv) {
     } else if (argument == "--version") {
       return print("ocm-generate " OCM_VERSION "\n");
     } else if (argument == "--schema") {
+      if (argc != 2) return complain_usage("--schema prints it, and takes nothing else: --schema > FILE");
       return print(std::string{spec::schema_text()});
     } else if (argument == "--man") {
       return print(man_page());

@@ -154,6 +154,8 @@ class Examination {
     if (overflows_ != 0) all.push_back(overflow());
     const auto counted = findings_of(bus_->counters(), receiver_.counters());
     all.insert(all.end(), counted.begin(), counted.end());
+    std::stable_sort(all.begin(), all.end(),
+                     [](const Finding& a, const Finding& b) { return a.severity > b.severity; });
     return all;
   }
 

@@ -82,8 +82,12 @@ class CommandParser {
     if (verb == "led") return led(words, options.priority);
     if (verb == "set") return set(words, options);
     if (verb == "send") return send(words);
-    return WordError{0, "unknown command " + detail::quoted(verb),
-                     suggest([&] { return suggestion(verb, verbs()); })};
+    return WordError{0, "unknown command " + detail::quoted(verb), suggest([&] {
+                       const auto* const topic = find_topic(*catalogue_, verb);
+                       const bool is_set = topic != nullptr && topic->kind == protocol::Kind::actuator;
+                       return is_set ? "its set point: set " + std::string{verb} + " FIELD=VALUE ..."
+                                     : suggestion(verb, verbs());
+                     })};
   }
 
   /// As a line of a script has it: options stand anywhere among the words, as `--for 2s` or `--for=2s`.

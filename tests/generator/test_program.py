@@ -266,6 +266,9 @@ class Program(unittest.TestCase):
         self.assertRegex(run("--version").stdout, r"^ocm-generate [0-9]+\.[0-9]+\.[0-9]+\n$")
         self.assertIn(run("--version").stdout.split()[1], project)
         self.assertEqual(run("--schema").stdout, (ROOT / "spec" / "topics.schema.json").read_text())
+        done = run("--schema", "-o", "schema.json")  # it would not be written
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertIn("--schema prints it, and takes nothing else: --schema > FILE", done.stderr)
 
     def test_the_page_on_specs_names_every_member(self):
         page = (ROOT / "docs" / "spec.md").read_text()

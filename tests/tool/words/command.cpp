@@ -165,6 +165,8 @@ TEST_CASE("what is wrong is said of the word where it stands") {
   const Row rows[] = {
       {"", 0, "no command", "publish"},
       {"pubish gyro", 0, "unknown command 'pubish'", "did you mean 'publish'?"},
+      {"travel 10cm", 0, "unknown command 'travel'", "its set point: set travel FIELD=VALUE ..."},
+      {"gyro 500ms", 0, "unknown command 'gyro'", "one of: publish, once, stop, drive, led, set, send"},
       {"publish", 1, "missing TOPIC", "usage: publish TOPIC [PERIOD]"},
       {"publish gyr 1s", 1, "no topic 'gyr'", "did you mean 'gyro'?"},
       {"publish zzzzzz 1s", 1, "no topic 'zzzzzz'", "one of: "},
