@@ -99,8 +99,8 @@ class Player {
     return all;
   }
 
-  /// Ends what the frames have set in motion on all buses, behind a failure of one: a remark on each robot that
-  /// may go on.
+  /// Ends what the frames have set in motion on all buses, behind a failure of one: a remark on each robot
+  /// that may go on.
   std::vector<std::string> end_after_all() {
     std::vector<std::string> all;
     for (Outlet& outlet : outlets_)
