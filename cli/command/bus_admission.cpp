@@ -21,6 +21,7 @@
 #include "cli/shared/fitted.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/live.hpp"
+#include "cli/shared/messages.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/words/quantity.hpp"
 
