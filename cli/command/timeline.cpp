@@ -246,14 +246,7 @@ bool Timeline::rest_after_all() {
   held_.reset();
   // One set point may still wait somewhere; nothing but rest comes behind it. Where that is an adapter that
   // has not answered, the bus gives it up about now, and has room only then.
-  const auto late = Clock::now() + client::hold_period;
-  for (;;) {
-    const auto taken = bus_->send(frame);
-    if (!taken) return false;
-    if (*taken) return outgoing_.all_left(std::chrono::seconds{1});
-    if (Clock::now() >= late) return false;
-    sleep_for(look_again);
-  }
+  return outgoing_.is_taken(frame, client::hold_period) && outgoing_.all_left(std::chrono::seconds{1});
 }
 
 void Timeline::abandon(std::string what, std::string remedy) {

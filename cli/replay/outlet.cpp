@@ -5,7 +5,6 @@
 
 #include "ocm/can/filter.hpp"
 #include "ocm/client/command.hpp"
-#include "ocm/transport/virtual_bus.hpp"
 
 #include "cli/shared/clock.hpp"
 #include "cli/shared/messages.hpp"
@@ -93,20 +92,10 @@ std::string Outlet::end_after_all() {
     ends.push_back(set_point_);
   }
   if (ends.empty()) return {};
-  const char* const otherwise = travels ? still_travelling : still_moving;
-  const auto late = Clock::now() + patience_after_all;
-  for (const can::Frame& frame : ends)
-    for (;;) {
-      const auto taken = bus_->send(frame);
-      if (taken && *taken) break;
-      // A simulated robot has gone with its bus.
-      if (taken.error == base::Error::closed &&
-          dynamic_cast<const transport::VirtualBus*>(bus_.get()) != nullptr)
-        return {};
-      if (!taken || Clock::now() >= late) return otherwise;
-      sleep_for(std::chrono::milliseconds{1});
-    }
-  return outgoing_.all_left(std::chrono::milliseconds{500}) ? std::string{} : otherwise;
+  bool taken = true;
+  for (const can::Frame& frame : ends) taken = taken && outgoing_.is_taken(frame, patience_after_all);
+  if ((taken && outgoing_.all_left(std::chrono::milliseconds{500})) || outgoing_.robot_is_gone()) return {};
+  return travels ? still_travelling : still_moving;
 }
 
 bool Outlet::rest() {

@@ -48,8 +48,8 @@ class Outlet {
   /// Ends what boards do by themselves because of the frames: "travel was"; empty: nothing.
   std::string end_behaviours();
 
-  /// Ends all of that behind a failure, as far as the bus takes it within 200 ms: what it means for the robot
-  /// where it does not; empty: it does, or there was nothing to end.
+  /// Ends all of that behind a failure, as far as the bus takes each frame within 200 ms: what it means for
+  /// the robot where it does not; empty: it does, or there was nothing to end.
   std::string end_after_all();
 
   /// Waits until all has left, or leaves through cli::fail and says how much has not.

@@ -62,6 +62,21 @@ void Outgoing::send(const can::AnyFrame& frame, base::Duration patience) {
   }
 }
 
+bool Outgoing::is_taken(const can::Frame& frame, base::Duration patience) {
+  const auto late = Clock::now() + patience;
+  for (;;) {
+    const auto taken = bus_.send(frame);
+    if (!taken || *taken) return taken.ok();
+    if (Clock::now() >= late) return false;
+    sleep_for(look_again);
+  }
+}
+
+bool Outgoing::robot_is_gone() const {
+  return bus_.state() == transport::BusState::closed &&
+         dynamic_cast<const transport::VirtualBus*>(&bus_) != nullptr;
+}
+
 Clock::time_point Outgoing::look() {
   const auto now = Clock::now();
   stood_still_ = std::max(stood_still_, now - looked_);
@@ -118,9 +133,7 @@ bool Outgoing::matters() const {
 
 void Outgoing::leave_gone() const {
   transport::Failure failure = bus_.failure();
-  // A simulated robot has gone with its bus.
-  if (matters() && dynamic_cast<const transport::VirtualBus*>(&bus_) == nullptr)
-    failure.what += fmt::format("; {}", otherwise_);
+  if (matters() && !robot_is_gone()) failure.what += fmt::format("; {}", otherwise_);
   fail(failure);
 }
 

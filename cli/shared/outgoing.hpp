@@ -40,6 +40,10 @@ class Outgoing {
   /// Waits for room in the queue, at most `patience`; then leaves with the bus's words. Leaves with them,
   /// too, if the bus carries no CAN FD frames and this is one.
   void send(const can::AnyFrame& frame, base::Duration patience = std::chrono::seconds{1});
+  /// Behind a failure, for an end: whether the bus has taken it within `patience`. Says nothing.
+  [[nodiscard]] bool is_taken(const can::Frame& frame, base::Duration patience);
+  /// A simulated robot has gone with its bus: nothing moves.
+  [[nodiscard]] bool robot_is_gone() const;
   /// The looks at the clock of `send`, each millisecond, go on from a look of the caller.
   void looks_from(Clock::time_point look) noexcept { looked_ = look; }
   [[nodiscard]] Clock::time_point looked() const noexcept { return looked_; }  ///< the last one

@@ -224,15 +224,20 @@ TEST_CASE("drive: a stop of the program just as the first set point leaves ends 
   }
 }
 
+/// A drive that listens first, to its end.
+void drive_to_its_end(PlayedBus& bus, Duration lasting) {
+  Timeline timeline{bus, amiro::catalogue, "drive", Timeline::Others::refused, cli::Confirm::no, {}};
+  const bool begins = timeline.listen_first();
+  REQUIRE(begins);
+  timeline.carry_out(drive(lasting));
+  static_cast<void>(timeline.wait_for_end());
+  static_cast<void>(timeline.finish());
+}
+
 /// A drive of a second on such a bus, and whether it left.
 bool drive_a_second(World& world, PlayedBus& bus) {
   try {
-    Timeline timeline{bus, amiro::catalogue, "drive", Timeline::Others::refused, cli::Confirm::no, {}};
-    const bool begins = timeline.listen_first();
-    REQUIRE(begins);
-    timeline.carry_out(drive(1s));
-    static_cast<void>(timeline.wait_for_end());
-    static_cast<void>(timeline.finish());
+    drive_to_its_end(bus, 1s);
   } catch (const cli::Exit& exit) {
     CHECK(exit.code == 1);
     world.wait_until(world.now() + 100s);
@@ -246,14 +251,7 @@ TEST_CASE("drive: a stop beyond the end of its time is one, too") {
     World world{1};
     PlayedBus bus{world, {}};
     world.stop(World::start + 700ms, lasting);  // 550 ms behind the first set point
-    const Leaving left = leaving([&] {
-      Timeline timeline{bus, amiro::catalogue, "drive", Timeline::Others::refused, cli::Confirm::no, {}};
-      const bool begins = timeline.listen_first();
-      REQUIRE(begins);
-      timeline.carry_out(drive(700ms));
-      static_cast<void>(timeline.wait_for_end());
-      static_cast<void>(timeline.finish());
-    });
+    const Leaving left = leaving([&] { drive_to_its_end(bus, 700ms); });
     CAPTURE(lasting.count(), left.text);
     CHECK(left.code.has_value() == (lasting > watchdog));
     CHECK(cli::is_rest(bus.sent().back().frame));

@@ -246,32 +246,57 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("replay: on a bus from which nothing leaves, zero comes behind the one set point that waits") {
-  const Silence silence;
-  std::vector<log::Entry> drive;  // of 10 s
-  for (int i = 0; i < 100; ++i) {
+/// A player of all frames of a log, on one bus.
+template <class Log>
+class OnOneBus {
+ public:
+  template <class... Arguments>
+  OnOneBus(World& world, PlayedBus::Conditions conditions, Arguments&&... log)
+      : log_(world, input_, std::forward<Arguments>(log)...) {
+    auto made = std::make_unique<PlayedBus>(world, std::move(conditions));
+    bus_ = made.get();
+    std::vector<replay::Outlet> outlets;
+    outlets.emplace_back(std::move(made), amiro::catalogue);
+    player.emplace(replay::PlayerOptions{}, replay::Selection{amiro::catalogue, {}, replay::Only::all},
+                   std::move(outlets), nullptr);
+  }
+  void play() { player->play(log_); }
+  [[nodiscard]] const std::vector<PlayedBus::Sent>& sent() { return bus_->sent(); }
+
+  std::optional<replay::Player> player;
+
+ private:
+  log::MemorySource nothing_{""};
+  log::Input input_{nothing_};
+  Log log_;
+  PlayedBus* bus_ = nullptr;
+};
+
+/// Set points that move, so many of them, each 100 ms behind the last.
+std::vector<log::Entry> drive_of(int count) {
+  std::vector<log::Entry> drive;
+  for (int i = 0; i < count; ++i) {
     can::Frame frame{motors, 8, {}};
     frame.data[0] = 100;
     drive.emplace_back(base::Time{i * 100ms}, frame, std::uint16_t{0});
   }
+  return drive;
+}
+
+TEST_CASE("replay: on a bus from which nothing leaves, zero comes behind the one set point that waits") {
+  const Silence silence;
+  const auto drive = drive_of(100);
   for (const Duration stuck : {400ms, 5000ms}) {
     INFO("stuck for " << stuck.count() << " ns");
     World world{1};
     PlayedBus::Conditions conditions;
     const Moment begin = World::start + 2s;
     conditions.stuck = {{begin, begin + stuck}};
-    auto made = std::make_unique<PlayedBus>(world, conditions);
-    auto& bus = *made;
-    std::vector<replay::Outlet> outlets;
-    outlets.emplace_back(std::move(made), amiro::catalogue);
-    log::MemorySource nothing{""};
-    log::Input input{nothing};
-    PlayedLog log{world, input, drive, 1};
-    replay::Player player{
-        {}, replay::Selection{amiro::catalogue, {}, replay::Only::all}, std::move(outlets), nullptr};
+    OnOneBus<PlayedLog> replayed{world, conditions, drive, std::size_t{1}};
+    auto& player = *replayed.player;
     bool left = false;
     try {
-      player.play(log);
+      replayed.play();
       player.expect_all_left();
     } catch (const cli::Exit& exit) {
       left = true;
@@ -279,11 +304,11 @@ TEST_CASE("replay: on a bus from which nothing leaves, zero comes behind the one
     }
     CHECK(left == (stuck > client::longest_without_set_point));
     if (!left) {
-      CHECK(bus.sent().size() == drive.size());
+      CHECK(replayed.sent().size() == drive.size());
       continue;
     }
     CHECK(world.now() < begin + client::longest_without_set_point + 200ms);
-    const auto& sent = bus.sent();
+    const auto& sent = replayed.sent();
     CHECK(std::count_if(sent.begin(), sent.end(), [&](const auto& each) {
             return each.taken > begin && !cli::is_rest(each.frame);
           }) == 1);
@@ -313,16 +338,9 @@ TEST_CASE("replay: a stop of the program while the motors run ends it, whenever 
       INFO("stopped at " << at.count() << " for " << lasting.count() << " ns");
       World world{1};
       world.stop(World::start + at, lasting);
-      auto made = std::make_unique<PlayedBus>(world, PlayedBus::Conditions{});
-      auto& bus = *made;
-      std::vector<replay::Outlet> outlets;
-      outlets.emplace_back(std::move(made), amiro::catalogue);
-      log::MemorySource nothing{""};
-      log::Input input{nothing};
-      PlayedLog log{world, input, entries, 1};
-      replay::Player player{
-          {}, replay::Selection{amiro::catalogue, {}, replay::Only::all}, std::move(outlets), nullptr};
-      player.play(log);
+      OnOneBus<PlayedLog> replayed{world, PlayedBus::Conditions{}, entries, std::size_t{1}};
+      auto& player = *replayed.player;
+      replayed.play();
       const bool long_stop = lasting > client::longest_without_set_point;
       CHECK(player.held_up().has_value() == long_stop);
       CHECK(player.cut_short() == long_stop);
@@ -333,7 +351,7 @@ TEST_CASE("replay: a stop of the program while the motors run ends it, whenever 
       CHECK(*player.held_up() > lasting - 110ms);
       CHECK(*player.held_up() <= lasting + 2ms);
       CHECK(player.rest());
-      const auto& sent = bus.sent();
+      const auto& sent = replayed.sent();
       CHECK(std::count_if(sent.begin(), sent.end(), [&](const auto& each) {
               return each.taken > World::start + at + lasting && each.frame.id == motors &&
                      !cli::is_rest(each.frame);
@@ -350,22 +368,15 @@ TEST_CASE(
   for (std::size_t i = 1; i < 4; i += 2) entries[i].data[0] = 0;  // the motors run from 3.1 s on
   World world{1};
   world.stop(World::start + 1s, 10s);
-  auto made = std::make_unique<PlayedBus>(world, PlayedBus::Conditions{});
-  auto& bus = *made;
-  std::vector<replay::Outlet> outlets;
-  outlets.emplace_back(std::move(made), amiro::catalogue);
-  log::MemorySource nothing{""};
-  log::Input input{nothing};
-  PlayedLog log{world, input, entries, 1};
-  replay::Player player{
-      {}, replay::Selection{amiro::catalogue, {}, replay::Only::all}, std::move(outlets), nullptr};
-  player.play(log);
+  OnOneBus<PlayedLog> replayed{world, PlayedBus::Conditions{}, entries, std::size_t{1}};
+  auto& player = *replayed.player;
+  replayed.play();
   CHECK_FALSE(player.held_up());
   CHECK_FALSE(player.cut_short());
-  REQUIRE(bus.sent().size() == entries.size());
+  REQUIRE(replayed.sent().size() == entries.size());
   const Moment resumed = World::start + 11s;
   for (std::size_t i = 2; i < entries.size(); ++i) {
-    const Duration apart = bus.sent()[i].taken - resumed - (times[i / 2] - times[1]);
+    const Duration apart = replayed.sent()[i].taken - resumed - (times[i / 2] - times[1]);
     CHECK(apart >= 0s);
     CHECK(apart < 5ms);
   }
@@ -381,20 +392,13 @@ TEST_CASE("replay: a bus that is too slow for the log is followed, and nothing i
   World world{1};
   PlayedBus::Conditions slow;
   slow.frame_time = 20ms;
-  auto made = std::make_unique<PlayedBus>(world, slow);
-  auto& bus = *made;
-  std::vector<replay::Outlet> outlets;
-  outlets.emplace_back(std::move(made), amiro::catalogue);
-  log::MemorySource nothing{""};
-  log::Input input{nothing};
-  PlayedLog log{world, input, entries, 1};
-  replay::Player player{
-      {}, replay::Selection{amiro::catalogue, {}, replay::Only::all}, std::move(outlets), nullptr};
-  player.play(log);
+  OnOneBus<PlayedLog> replayed{world, slow, entries, std::size_t{1}};
+  auto& player = *replayed.player;
+  replayed.play();
   player.expect_all_left();
   CHECK_FALSE(player.held_up());
-  CHECK(bus.sent().size() == entries.size());
-  CHECK(bus.sent().back().taken - World::start > 3900ms);  // 200 frames of 20 ms
+  CHECK(replayed.sent().size() == entries.size());
+  CHECK(replayed.sent().back().taken - World::start > 3900ms);  // 200 frames of 20 ms
   CHECK(player.playback().worst() < client::longest_without_set_point + 50ms);
 }
 
@@ -421,25 +425,13 @@ class SlowLog final : public log::Reader {
 
 TEST_CASE("replay: what has come late by a slow pipe is not sent at once when the pipe is fast again") {
   const Silence silence;
-  std::vector<log::Entry> drive;
-  for (int i = 0; i < 80; ++i) {
-    can::Frame frame{motors, 8, {}};
-    frame.data[0] = 100;
-    drive.emplace_back(base::Time{i * 100ms}, frame, std::uint16_t{0});
-  }
+  const auto drive = drive_of(80);
   World world{1};
-  auto made = std::make_unique<PlayedBus>(world, PlayedBus::Conditions{});
-  auto& bus = *made;
-  std::vector<replay::Outlet> outlets;
-  outlets.emplace_back(std::move(made), amiro::catalogue);
-  log::MemorySource nothing{""};
-  log::Input input{nothing};
-  SlowLog log{world, input, drive, 40};
-  replay::Player player{
-      {}, replay::Selection{amiro::catalogue, {}, replay::Only::all}, std::move(outlets), nullptr};
-  player.play(log);
+  OnOneBus<SlowLog> replayed{world, PlayedBus::Conditions{}, drive, std::size_t{40}};
+  auto& player = *replayed.player;
+  replayed.play();
   CHECK_FALSE(player.held_up());
-  const auto& sent = bus.sent();
+  const auto& sent = replayed.sent();
   REQUIRE(sent.size() == drive.size());
   std::size_t at_once = 0;
   for (std::size_t i = 1; i < sent.size(); ++i)
