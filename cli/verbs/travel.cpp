@@ -155,7 +155,8 @@ void travel(Session& session, const TravelOptions& options, int& exit_code) {
   if (watch.is_replaced() && goes_on) {
     fail({fmt::format("travel: replaced by another program, {}; {} were left", watch.commanded(),
                       watch.left().empty() ? "all" : watch.left()),
-          "it was not ended: the robot does what came last"});
+          together ? "both began in the same moment, and were ended: give the command again, in one of them"
+                   : "it was not ended: the robot does what came last"});
   } else if (!goes_on) {
     exit_code = exit_code_after_interrupt(exit_code);
   } else if (!taken) {

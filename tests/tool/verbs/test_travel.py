@@ -110,6 +110,9 @@ class Travel(Case):
             both = [self.start("travel", way, "--speed", "30cm/s") for way in ("30cm", "-30cm")]
             said = [travel.communicate(timeout=30)[1] for travel in both]
             self.assertIn(1, [travel.returncode for travel in both], said)
+            for text in said:
+                if "replaced" in text:
+                    self.assertIn("both began in the same moment, and were ended", text)
             sample = self.sample("behaviour")
             self.assertEqual(sample["behaviour.active"], NONE, said)
 
