@@ -52,7 +52,7 @@ void add_no_confirm(Verb verb, bool& no_confirm) {
 void carry_out(Session& session, const Commanding& commanding, const client::Command& command) {
   const auto& frames = command.frames;
   if (commanding.dry_run()) return print_frames(command);
-  wait_for_no_message();
+  never_wait_for_messages();
   // A stop goes to the robot at once, and so does a frame that is sent as it is.
   const std::string& verb = commanding.verb();
   const bool guarded = verb == "drive" || verb == "led" || verb == "set";

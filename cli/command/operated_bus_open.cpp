@@ -32,13 +32,13 @@ std::unique_ptr<transport::Bus> with_operator(std::unique_ptr<transport::Bus> bu
 }  // namespace
 
 std::unique_ptr<transport::Bus> open_to_command(Session& session, std::string_view verb) {
-  wait_for_no_message();
+  never_wait_for_messages();
   return with_operator(session.open_bus(), session, verb);
 }
 
 std::unique_ptr<transport::Bus> open_to_command(Session& session, std::string_view verb,
                                                 std::string_view bus) {
-  wait_for_no_message();
+  never_wait_for_messages();
   return with_operator(Session::open_bus(bus), session, verb);
 }
 

@@ -97,7 +97,7 @@ void add_request_options(Verb verb, Session& session, std::string_view words_hel
     const auto command = options->commanding.parse();
     const bool dry_run = options->commanding.dry_run();
     if (dry_run && !options->admission.explain) return print_frames(command);
-    wait_for_no_message();
+    never_wait_for_messages();
     const auto bus = session.open_bus();
     if (const std::uint32_t rate = bus->bit_rate(); rate != 0) catalogue.bit_rate = rate;
     RefusalWatch refusals{catalogue, options->commanding.verb(), options->commanding.confirm()};

@@ -211,7 +211,7 @@ void UnhurriedMessages::write() {
   if (!kept().holds) write_kept(kept(), std::chrono::milliseconds{0});
 }
 
-void wait_for_no_message() {
+void never_wait_for_messages() {
   static const UnhurriedMessages messages;
 }
 

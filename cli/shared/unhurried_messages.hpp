@@ -17,7 +17,7 @@ class UnhurriedMessages {
   static void write();
 };
 
-/// From now on to the program's end.
-void wait_for_no_message();
+/// The same from now on, to the program's end.
+void never_wait_for_messages();
 
 }  // namespace ocm::cli
