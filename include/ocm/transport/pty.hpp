@@ -160,7 +160,7 @@ class Pty {
     if (!line || ::tcgetattr(line.get(), &settings) < 0) return;
     ::cfmakeraw(&settings);
     ::tcsetattr(line.get(), TCSANOW, &settings);
-    ::tcflush(line.get(), TCIOFLUSH);
+    ::tcflush(line.get(), TCIFLUSH);  // what another program may have said meanwhile is not of before
   }
 
   [[nodiscard]] std::optional<host::Failure> make_link(const std::string& link) {

@@ -212,10 +212,11 @@ class SerialPort {
   /// Why `read` or `write` answered Error::closed.
   [[nodiscard]] const host::Failure& failure() const noexcept { return failure_; }
 
-  /// Throws away what the kernel has not yet sent: it must not make the end wait.
+  /// Throws away what the kernel has not yet sent: it must not make the end wait. What a pseudo terminal took
+  /// is sent, though perhaps not yet where its reader finds it: there a flush would take the last words away.
   void close() noexcept {
     if (restore_) {
-      ::tcflush(line_.get(), TCOFLUSH);
+      if (!is_pseudo_terminal()) ::tcflush(line_.get(), TCOFLUSH);
       ::tcsetattr(line_.get(), TCSANOW, &*restore_);
       ::ioctl(line_.get(), TIOCNXCL);
     }
@@ -258,7 +259,7 @@ class SerialPort {
       return host::Failure{
           "cannot set '" + path_ + "' to " + std::to_string(baud) + " baud: " + std::strerror(errno),
           "try another speed, such as 115200"};
-    ::tcflush(line_.get(), TCIOFLUSH);
+    ::tcflush(line_.get(), is_pseudo_terminal() ? TCIFLUSH : TCIOFLUSH);
     return std::nullopt;
   }
   /// [Linux, Documentation/admin-guide/devices.txt: 136 to 143, Unix98 PTY slaves]

@@ -132,6 +132,22 @@ TEST_CASE("serial port: unplugged, what had come is read first, then it is gone"
   CHECK(port->write("x").error == base::Error::closed);
 }
 
+TEST_CASE("serial port: the last words before the end arrive, whoever opens the line next") {
+  // As a program ends that leaves a central in command mode, and asks nothing more.
+  auto pty = Pty::open();
+  REQUIRE(pty);
+  std::string arrived;
+  for (int round = 0; round < 100; ++round) {
+    auto port = SerialPort::open(pty->path());
+    REQUIRE(port);
+    CHECK(port->write("*").value == 1);
+    port->close();
+    REQUIRE(SerialPort::open(pty->path()));
+    arrived += all(*pty);
+  }
+  CHECK(arrived == std::string(100, '*'));
+}
+
 TEST_CASE("serial port: the line gets its settings back, and its owner may move") {
   auto pty = Pty::open();
   REQUIRE(pty);
