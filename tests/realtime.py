@@ -5,12 +5,17 @@ a test that fails while other programs took the processors, or the machine below
 long, is run again, three times in all; what fails on a machine with time to spare fails at once. `had_time` says what that is
 for a case."""
 
+import collections
 import os
 import threading
 import time
 import unittest
 
+import waiting
+
 MOST_LATE = 0.05  # s, of a thread that wants to wake
+WINDOW = 1.0  # s, over which a program's waits for a processor are added up
+LOOKS = 10
 MOST_TAKEN = 0.05  # of all processors, by what this test did not start; 0.01 on an idle machine
 
 
@@ -27,7 +32,11 @@ def own_time():
 
 
 class Spare:
-    """Whether the machine had time to spare between `with` and its end, at which all that the test started has ended."""
+    """Whether the machine had time to spare between `with` and its end, at which all that the test started has ended.
+    `programs()`: pids of those whose lateness counts as well, which may have ended."""
+
+    def __init__(self, programs=tuple):
+        self.programs = programs
 
     def __enter__(self):
         self.late = 0.0
@@ -49,10 +58,15 @@ class Spare:
         return self
 
     def watch(self):
+        looks = collections.deque(maxlen=LOOKS)
         while not self.done.is_set():
             begin = time.monotonic()
             time.sleep(0.01)
             self.late = max(self.late, time.monotonic() - begin - 0.01)
+            if not looks or begin - looks[-1][0] >= WINDOW / LOOKS:
+                looks.append((begin, {pid: waiting.starved(pid) for pid in self.programs()}))
+                before = looks[0][1]
+                self.late = max(self.late, *(now - before.get(pid, now) for pid, now in looks[-1][1].items()), 0.0)
 
     def enough(self):
         return self.late < MOST_LATE and self.taken < MOST_TAKEN
@@ -66,18 +80,21 @@ class RealTime(unittest.TestCase):
     def had_time(self, spare):
         return spare.enough()
 
+    def programs(self):
+        return ()
+
     def run(self, result=None):
         if result is None:
             result = self.defaultTestResult()
         for attempt in range(self.tries):
             trial = unittest.TestResult()
-            with Spare() as spare:
+            with Spare(self.programs) as spare:
                 self.spare = spare
                 super().run(trial)
             if trial.wasSuccessful() or self.had_time(spare):
                 break
             print(f"{self.id()} failed while this machine was busy (others took {spare.taken:.0%} of it, a thread "
-                  f"woke {spare.late * 1000:.0f} ms late), try {attempt + 1} of {self.tries}:", flush=True)
+                  f"or program was {spare.late * 1000:.0f} ms late), try {attempt + 1} of {self.tries}:", flush=True)
             for _, text in trial.failures + trial.errors:
                 print(text, flush=True)
         result.startTest(self)

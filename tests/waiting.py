@@ -28,12 +28,15 @@ def asleep(pid):
 
 def starved(pid):
     """For how many seconds the threads of a process could have worked so far, and had no processor. [Linux,
-    Documentation/scheduler/sched-stats: schedstat]"""
+    Documentation/scheduler/sched-stats: schedstat] 0 where it has ended."""
     tasks = f"/proc/{pid}/task"
     total = 0
-    for task in os.listdir(tasks):
-        with open(f"{tasks}/{task}/schedstat", encoding="utf-8") as file:
-            total += int(file.read().split()[1])
+    try:
+        for task in os.listdir(tasks):
+            with open(f"{tasks}/{task}/schedstat", encoding="utf-8") as file:
+                total += int(file.read().split()[1])
+    except (FileNotFoundError, ProcessLookupError):
+        return 0.0
     return total / 1e9
 
 

@@ -33,6 +33,9 @@ class Case(RealTime):
     def had_time(self, spare):
         return spare.late < STOOD_STILL_S
 
+    def programs(self):
+        return [process.pid for process in getattr(self, "_started", ())]
+
     def setUp(self):
         self._folder = tempfile.TemporaryDirectory(prefix="ocm-test-")
         self.folder = self._folder.name
