@@ -120,9 +120,30 @@ struct LogFile::State {
     return true;
   }
 
+  /// Whether the disk has room for so much beside what is in the file, or cannot say: takes it for a moment.
+  [[nodiscard]] bool has_room(std::size_t more) const noexcept {
+    struct stat now {};
+    if (!regular || more == 0 || ::fstat(descriptor, &now) != 0) return true;
+    const auto length = static_cast<off_t>(more);
+    if (::fallocate(descriptor, FALLOC_FL_KEEP_SIZE, now.st_size, length) != 0) return errno != ENOSPC;
+    static_cast<void>(!::ftruncate(descriptor, now.st_size));
+    return true;
+  }
+
+  /// The first time: what was in the file before goes, where `more` bytes can take its place.
+  bool empty(std::size_t more) {
+    if (!regular || emptied) return true;
+    if (!made_now && !has_room(more)) {
+      errno = ENOSPC;
+      return failed("write");
+    }
+    emptied = true;
+    return ::ftruncate(descriptor, 0) == 0 || failed("empty");
+  }
+
   /// A file that takes no more ends where the last call ended, so that it ends with a whole record.
   bool hand_out(std::string_view text) {
-    if (regular && !std::exchange(emptied, true) && ::ftruncate(descriptor, 0) != 0) return failed("empty");
+    if (!empty(text.size())) return false;
     const Written written = write_all(descriptor, text, signals);
     if (written.error != 0) {
       errno = written.error;
@@ -231,6 +252,10 @@ bool LogFile::discard() {
   state_->delete_empty();
   if (!std::exchange(state_->finished, true)) ::close(state_->descriptor);
   return state_->failure.what.empty();
+}
+
+bool LogFile::has_room() const noexcept {
+  return state_->has_room(State::enough);
 }
 
 const transport::Failure& LogFile::failure() const noexcept {

@@ -57,6 +57,9 @@ class LogFile {
   /// it was. Where something was written, or is read as it comes, it finishes.
   bool discard();
 
+  /// Whether the disk has room for what is written at once, or cannot say. Three system calls. Before
+  /// `finish`.
+  [[nodiscard]] bool has_room() const noexcept;
   [[nodiscard]] const transport::Failure& failure() const noexcept;
   [[nodiscard]] const log::Losses& lost() const noexcept;
   [[nodiscard]] std::uint64_t size() const noexcept;  ///< bytes written to the file

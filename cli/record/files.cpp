@@ -31,7 +31,6 @@ transport::Outcome<void> Files::open() {
   auto opened = open_next();
   if (!opened) return opened;
   first_path_ = path_;
-  delete_oldest();
   return opened;
 }
 
@@ -83,9 +82,7 @@ transport::Outcome<std::string> Files::claim_next() {
 transport::Outcome<void> Files::open_next() {
   auto path = claim_next();
   if (!path) return std::move(path.error);
-  // Of a ring, whose oldest file goes when a new one begins, each name stays.
-  const bool may_go = claims() && options_.ring == 0;
-  const auto existing = may_go ? logs::Existing::claimed : logs::Existing::overwrite;
+  const auto existing = claims() ? logs::Existing::claimed : logs::Existing::overwrite;
   auto file = logs::LogFile::create(*path, *options_.format, *catalogue_, existing);
   if (!file) return std::move(file.error);
   file_ = std::move(file.value);
@@ -98,6 +95,7 @@ transport::Outcome<void> Files::open_next() {
   begin_.reset();
   elsewhere_ = false;
   std::fill(recorded_.begin(), recorded_.end(), log::Recorded{});
+  if (!file_->has_room()) delete_oldest();
   return {};
 }
 
@@ -128,6 +126,7 @@ bool Files::write(std::span<const log::Entry> entries, const log::Interfaces& in
     if (options_.split.size == 0) continue;
     // What a buffer holds back has no size yet.
     if (!file_->flush()) return failed(file_->failure());
+    if (file_->size() != 0) delete_oldest();
   }
   return true;
 }
@@ -142,6 +141,7 @@ bool Files::append(std::span<const log::Entry> entries, const log::Interfaces& i
 
 bool Files::flush() {
   if (!file_->flush(options_.sync)) return failed(file_->failure());
+  if (file_->size() != 0) delete_oldest();
   return is_in_place();
 }
 
@@ -179,6 +179,7 @@ bool Files::finish(Next next) {
   // finish whatever happens: it closes the file. What it writes then must be on the disk, too.
   const bool told = file_->recorded(recorded_) && file_->flush(options_.sync) && is_in_place();
   const bool done = file_->finish() && told;
+  if (done) delete_oldest();
   for (std::size_t i = 0; i < log::losses; ++i) {
     const auto lost = static_cast<log::Lost>(i);
     // No format has less than microseconds, and no bus of at most 1 Mbit/s says more: a bit takes that long.
@@ -199,10 +200,10 @@ bool Files::next_file() {
     entries_ = 0;
     return failed(opened.error);
   }
-  delete_oldest();
   return true;
 }
 
+/// Once the newest file has something in it, or to make room for that.
 void Files::delete_oldest() {
   while (options_.ring != 0 && kept_.size() > options_.ring) {
     if (::unlink(kept_.front().c_str()) == 0)

@@ -1,6 +1,7 @@
 """A recording that is killed, or whose disk is full: the file opens in the tools that others use, and holds a prefix of
 what was on the bus, less at most the last second."""
 
+import contextlib
 import json
 import os
 import random
@@ -218,7 +219,7 @@ class Killed(OnTheBus):
 class FullDisk(OnTheBus):
     bit_rate = 2_000_000
 
-    def test_a_full_disk(self):
+    def small_disk(self):
         disk = os.path.join(self.folder, "disk")
         os.mkdir(disk)
         mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=600k", "tmpfs", disk], check=False,
@@ -226,6 +227,28 @@ class FullDisk(OnTheBus):
         if not mounted:
             self.skipTest("no right to mount a small disk")
         self.addCleanup(subprocess.run, ["umount", disk], check=False)
+        return disk
+
+    def test_what_has_no_room_replaces_nothing(self):
+        disk = self.small_disk()
+        log = os.path.join(disk, "in.log")
+        with open(log, "w") as file:
+            file.writelines(f"({1e9 + i:.6f}) can0 605#00D20000\n" for i in range(3000))
+        old = os.path.join(disk, "old.csv")
+        with open(old, "w") as file:
+            file.write("# an older file\n")
+        with contextlib.suppress(OSError), open(os.path.join(disk, "fill"), "wb", buffering=0) as fill:
+            while fill.write(bytes(1024)):
+                pass
+        for verb in (["convert", log], ["convert", log, "--to", "pcapng"]):
+            with self.subTest(verb):
+                _, err = self.start(verb[0], verb[1], old, "--force", *verb[2:]).communicate(timeout=60)
+                self.assertIn("No space left on device\n          free some space; nothing of it was kept\n", err)
+                with open(old) as file:
+                    self.assertEqual(file.read(), "# an older file\n")
+
+    def test_a_full_disk(self):
+        disk = self.small_disk()
         for ending, numbers_of in FORMATS.items():
             if not self.writes(ending):
                 continue

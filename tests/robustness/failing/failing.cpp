@@ -2,7 +2,7 @@
 ///
 ///     OCM_FAIL=file:ENOSPC:3 LD_PRELOAD=libfailing.so amiroctl convert a.log b.csv
 ///
-/// Kinds: `file` (what reaches a file or a folder for writing: open, write, ftruncate, fdatasync, fsync,
+/// Kinds: `file` (what reaches a file or a folder for writing: open, write, fallocate, ftruncate, fdatasync, fsync,
 /// rename, unlink, close, mkstemp), `sync` (fdatasync and fsync alone) and `memory` (malloc and what is built
 /// on it; fails from the N-th call on when the number has a + after it). The total goes to the file
 /// OCM_FAIL_CALLS at the end.
@@ -150,6 +150,12 @@ int open64(const char* path, int flags, ...) {
   return open(path, flags, mode);
 }
 
+int fallocate(int file, int how, off_t from, off_t size) {
+  return fails(Kind::file) ? -1 : static_cast<int>(::syscall(SYS_fallocate, file, how, from, size));
+}
+int fallocate64(int file, int how, off64_t from, off64_t size) {
+  return fallocate(file, how, from, size);
+}
 int ftruncate(int file, off_t size) __THROW {
   return fails(Kind::file) ? -1 : static_cast<int>(::syscall(SYS_ftruncate, file, size));
 }

@@ -144,8 +144,15 @@ class Failing(Base):
             result, _ = self.failing(plan, "convert", "in.log", "out.log")
             self.assertEqual(result.returncode, 1, plan)
             still_there()
-        # Where it may be overwritten, memory fails before it is emptied, or once there is something to write.
+        # Where it may be overwritten, it goes once there is room for what takes its place.
         run = ("convert", "in.log", "out.log", "--force")
+        for plan in ("file:ENOSPC:2", "file:ENOSPC:3"):  # opens it, asks for room
+            prepare()
+            result, _ = self.failing(plan, *run)
+            self.assertEqual(result.returncode, 1, plan)
+            self.judge(f"{run}, {plan}", result)
+            still_there()
+        # Memory fails before it is emptied, or once there is something to write.
         for number in self.memory_numbers(run):
             prepare()
             result, _ = self.failing(f"memory:ENOMEM:{number}", *run)

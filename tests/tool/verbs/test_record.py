@@ -232,6 +232,18 @@ class Recording(Case):
             self.run_ring()
         self.assertEqual(self.ring("amiro-ring_"), ["amiro-ring_002.log", "amiro-ring_003.log"])
 
+    def test_a_ring_whose_disk_is_full_keeps_what_it_has(self):
+        """A service that is restarted until there is room must not empty its black box."""
+        self.start_sim()
+        for _ in range(2):
+            self.run_ring("bb.log")
+        for _ in range(3):
+            recorder = self.record("-o", "bb.log", "--split", "1h", "--ring", "2",
+                                   preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0)))
+            self.send_numbered(1)
+            self.assertIn("cannot write bb_003.log: File too large", recorder.communicate(timeout=60)[1])
+        self.assertEqual(self.ring("bb_"), ["bb_001.log", "bb_002.log"])
+
     def run_ring(self, *name):
         recorder = self.record(*(("-o", *name) if name else ()), "--split", "1h", "--ring", "2")
         return self.interrupt(recorder)
