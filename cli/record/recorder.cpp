@@ -19,6 +19,7 @@
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
 #include "cli/shared/terminal.hpp"
+#include "cli/shared/unhurried_messages.hpp"
 
 namespace ocm::cli::record {
 namespace {
@@ -59,8 +60,9 @@ class SignalsBlocked {
   sigset_t before_{};
 };
 
+/// Where the terminal takes it: after Ctrl-S the recording goes on.
 void erase_line() {
-  fmt::print(stderr, "\r\x1b[K");
+  if (takes_lines(STDERR_FILENO)) fmt::print(stderr, "\r\x1b[K");
 }
 
 /// Gives each its number in the log.
@@ -274,6 +276,7 @@ void Recorder::wait() {
 void Recorder::show_progress() {
   const auto now = Clock::now();
   const base::Duration passed = now - shown_;
+  if (!takes_lines(STDERR_FILENO)) return;
   const double frames =
       static_cast<double>(received_ - shown_received_) * 1e9 / static_cast<double>(passed.count());
   std::string text = fmt::format("{}, {:.0f}/s", counted(received_, "frame"), frames);

@@ -1,14 +1,17 @@
 #include "cli/shared/messages.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <deque>
 #include <mutex>
+#include <new>
 #include <poll.h>
 #include <string>
+#include <sys/uio.h>
 #include <unistd.h>
 #include <utility>
 
@@ -50,10 +53,10 @@ Kept& kept() {
 
 constexpr std::size_t most_kept = 1000;  // of those that stderr does not take
 
-/// Whether stderr takes something within so long. What it takes without a wait is at least this much: a
-/// terminal reports room below 256 characters of its 4096, and a pipe a page.
-bool takes(std::chrono::milliseconds patience) {
-  pollfd entry{STDERR_FILENO, POLLOUT, 0};
+/// Whether it takes something within so long. What it takes without a wait is at least this much: a terminal
+/// reports room below 256 characters of its 4096, and a pipe a page.
+bool takes(int descriptor, std::chrono::milliseconds patience) {
+  pollfd entry{descriptor, POLLOUT, 0};
   return ::poll(&entry, 1, static_cast<int>(patience.count())) > 0;
 }
 constexpr std::size_t most_at_once = 256;
@@ -70,11 +73,17 @@ void write_kept(Kept& messages, std::chrono::milliseconds patience) {
                                " lost: stderr took none");
     if (messages.lines.empty()) return;
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - steady_clock::now());
-    if (!takes(std::max(left, std::chrono::milliseconds{0}))) return;
-    const std::string rest = messages.lines.front().substr(messages.written) + "\n";
-    const ssize_t size = ::write(STDERR_FILENO, rest.data(), std::min(rest.size(), most_at_once));
+    if (!takes(STDERR_FILENO, std::max(left, std::chrono::milliseconds{0}))) return;
+    std::string& line = messages.lines.front();
+    const std::size_t left_of_it = line.size() - messages.written;
+    // Without memory, too: a message may be about that.
+    char line_feed[] = "\n";
+    const std::array<iovec, 2> pieces{{{line.data() + messages.written, std::min(left_of_it, most_at_once)},
+                                       {line_feed, left_of_it < most_at_once ? 1U : 0U}}};
+    const ssize_t size = ::writev(STDERR_FILENO, pieces.data(), static_cast<int>(pieces.size()));
     if (size < 0 && (errno == EINTR || errno == EAGAIN)) return;
-    messages.written += size < 0 ? rest.size() : static_cast<std::size_t>(size);  // no reader, or a full disk
+    // Where it fails there is no reader, or a full disk.
+    messages.written += size < 0 ? left_of_it + 1 : static_cast<std::size_t>(size);
     if (messages.written <= messages.lines.front().size()) continue;
     messages.lines.pop_front();
     messages.written = 0;
@@ -202,7 +211,10 @@ UnhurriedMessages::UnhurriedMessages() {
 UnhurriedMessages::~UnhurriedMessages() {
   const std::lock_guard lock{kept().mutex};
   if (--kept().unhurried != 0 || kept().holds) return;
-  write_kept(kept(), std::chrono::seconds{1});
+  try {
+    write_kept(kept(), std::chrono::seconds{1});
+  } catch (const std::bad_alloc&) {  // of what is lost, the count
+  }
   kept().lines.clear();
 }
 
@@ -213,6 +225,10 @@ void UnhurriedMessages::write() {
 
 void never_wait_for_messages() {
   static const UnhurriedMessages messages;
+}
+
+bool takes_lines(int descriptor) {
+  return takes(descriptor, std::chrono::milliseconds{0});
 }
 
 std::string counted(std::uint64_t count, std::string_view noun) {

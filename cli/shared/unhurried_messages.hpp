@@ -20,4 +20,7 @@ class UnhurriedMessages {
 /// The same from now on, to the program's end.
 void never_wait_for_messages();
 
+/// Whether a line or two written to it now need no wait.
+[[nodiscard]] bool takes_lines(int descriptor);
+
 }  // namespace ocm::cli

@@ -20,6 +20,7 @@
 #include "cli/shared/filters.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/messages.hpp"
+#include "cli/shared/unhurried_messages.hpp"
 #include "cli/shared/values.hpp"
 #include "cli/verbs/verb.hpp"
 #include "cli/watch/chosen_topics.hpp"
@@ -219,6 +220,7 @@ void run_record(Session& session, const RecordOptions& options, int& exit_code) 
 
   catch_interrupts();
   catch_hangups();
+  never_wait_for_messages();
   auto ports = open_ports(session, filters);
   record::Files files{std::move(chosen), catalogue};
   if (const auto opened = files.open(); !opened) fail(opened.error);

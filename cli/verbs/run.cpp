@@ -23,6 +23,7 @@
 #include "cli/shared/begun_behaviours.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/terminal.hpp"
+#include "cli/shared/unhurried_messages.hpp"
 #include "cli/verbs/verb.hpp"
 #include "cli/words/quantity.hpp"
 #include "cli/words/script.hpp"
@@ -164,6 +165,43 @@ void end_behaviours(std::span<const words::Step> steps, Timeline& timeline, Begu
   timeline.carry_out_once(end);
 }
 
+/// What the robot says meanwhile, for --show.
+class Answers {
+ public:
+  Answers(const Session& session, const protocol::Catalogue& catalogue, std::string_view bus)
+      : bus_(bus),
+        receiver_(catalogue),
+        printer_(make_output(isatty(STDOUT_FILENO) != 0 ? Format::pretty : Format::json, catalogue, {},
+                             session.colour(), columns_of_output)) {}
+
+  /// What comes before that is for the script, which listens for another commander.
+  void begin() { begun_ = true; }
+
+  void show(const can::Received& received) {
+    if (!begun_) return;
+    const auto reception = receiver_.take(received);
+    if (reception.meaning == client::Meaning::request || reception.meaning == client::Meaning::set_point)
+      return;
+    if (!takes_lines(STDOUT_FILENO)) {  // the next step waits for no reader
+      ++hidden_;
+      return;
+    }
+    printer_.write({bus_, log::Entry{received.time, received.frame}, reception});
+    printer_.flush();
+  }
+
+  void tell_hidden() const {
+    if (hidden_ != 0) remark(fmt::format("run: {} not shown: stdout took none", counted(hidden_, "answer")));
+  }
+
+ private:
+  std::string bus_;
+  client::Receiver receiver_;
+  Printer printer_;
+  bool begun_ = false;
+  std::uint64_t hidden_ = 0;
+};
+
 void run(Session& session, const RunOptions& options, int& exit_code) {
   const auto& catalogue = session.catalogue_on_bus(false);
   const auto script = checked(options.file, read_script(options.file), catalogue);
@@ -179,29 +217,20 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
   catch_hangups();
   catch_broken_pipe();
   const auto bus = open_to_command(session, "run");
-  client::Receiver receiver{catalogue};
-  Printer printer{make_output(isatty(STDOUT_FILENO) != 0 ? Format::pretty : Format::json, catalogue, {},
-                              session.colour(), columns_of_output)};
-  bool started = false;  // what comes before that is for this program, which listens for another one
-  const auto show = [&](const can::Received& received) {
-    if (!started) return;
-    const auto reception = receiver.take(received);
-    if (reception.meaning != client::Meaning::request && reception.meaning != client::Meaning::set_point)
-      printer.write({bus->name(), log::Entry{received.time, received.frame}, reception});
-    printer.flush();
-  };
+  Answers answers{session, catalogue, bus->name()};
   Timeline timeline{*bus,
                     catalogue,
                     "run",
                     options.force ? Timeline::Others::allowed : Timeline::Others::refused,
                     options.no_confirm ? Confirm::no : Confirm::yes,
-                    options.show ? std::function<void(const can::Received&)>{show}
-                                 : std::function<void(const can::Received&)>{}};
+                    options.show
+                        ? std::function{[&](const can::Received& received) { answers.show(received); }}
+                        : std::function<void(const can::Received&)>{}};
   // So long that another program that commands the motors is heard before the first drive.
   const auto drives = first_drive(script, options.speed);
   if (drives && *drives < client::listen_before_hold)
     static_cast<void>(timeline.listen_first(client::listen_before_hold - *drives));  // a signal is seen below
-  started = true;
+  answers.begin();
   const auto start = Timeline::Clock::now();
   bool asks = drives && *drives > asks_before && !timeline.has_asked();
   std::size_t begun = 0;  // steps, the last one perhaps in part
@@ -230,6 +259,7 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
   try {
     whole = carry_out();
   } catch (const Exit&) {  // the error is said
+    answers.tell_hidden();
     if (bus->state() == transport::BusState::closed) throw;
     end_behaviours(done(), timeline, behaviours);
     if (!behaviours.all().empty() && timeline.finish()) remark(behaviours.names() + " ended");
@@ -237,6 +267,7 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
   }
   if (!whole) end_behaviours(done(), timeline, behaviours);
   if (!timeline.finish()) exit_code = exit_failure;
+  answers.tell_hidden();
   if (!whole) {
     remark(left_by(done(), catalogue, behaviours));
     exit_code = exit_code_after_interrupt(exit_success);

@@ -6,6 +6,7 @@ import json
 import os
 import signal
 import subprocess
+import termios
 
 from harness import AMIROCTL, Case, main, waiting
 
@@ -91,6 +92,50 @@ class StuckOutput(Case):
             waiting.until(lambda data=data: data in listener.stdout.readline(), data)
         self.assertEqual(process.wait(timeout=60), 0)
         os.close(reader)
+
+    def test_answers_that_nobody_reads_hold_up_no_script(self):
+        script = os.path.join(self.folder, "tour.script")
+        with open(script, "w", encoding="utf-8") as file:
+            file.write("0s publish gyro 10ms\n0s drive 5cm/s\n400ms stop\n")
+        self.start_sim()
+        listener = self.start("listen", "--commands", "motors", "--timeout", "20s")
+        self.assertIn("bus: sim", listener.stderr.readline())
+        reader, writer = self.full_pipe()
+        process = self.start_to(writer, "--bus", "sim", "run", script, "--show")
+        os.close(writer)
+        for data in ("50C3000000000000", "0000000000000000"):
+            waiting.until(lambda data=data: data in listener.stdout.readline(), data)
+        _, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 0, err)
+        self.assertRegex(err, r"run: [1-9]\d* answers not shown: stdout took none\n")
+        os.close(reader)
+
+    def test_messages_that_nobody_reads_hold_up_no_recording(self):
+        self.start_sim()
+        self.run_tool("publish", "gyro", "10ms")
+        out = os.path.join(self.folder, "out.log")
+        reader, writer = self.full_pipe()
+        process = self.start_to(subprocess.DEVNULL, "record", "-o", out, "-n", "20", stderr=writer)
+        os.close(writer)
+        self.assertEqual(process.wait(timeout=60), 0)
+        os.close(reader)
+        with open(out, encoding="utf-8") as file:
+            self.assertEqual(len(file.readlines()), 20)
+
+    def test_a_terminal_that_is_held_holds_up_no_recording(self):
+        """Ctrl-S, which a terminal obeys before any program reads it."""
+        self.start_sim()
+        self.run_tool("publish", "gyro", "5ms")
+        out = os.path.join(self.folder, "out.log")
+        ours, theirs = os.openpty()
+        process = self.start_to(subprocess.DEVNULL, "record", "-o", out, "-n", "300", stderr=theirs)
+        self.assertIn(b"bus: ", os.read(ours, 4096))
+        termios.tcflow(theirs, termios.TCOOFF)
+        os.close(theirs)
+        self.assertEqual(process.wait(timeout=60), 0)
+        os.close(ours)
+        with open(out, encoding="utf-8") as file:
+            self.assertEqual(len(file.readlines()), 300)
 
     def test_a_slow_reader_gets_whole_lines(self):
         with open(self.log, "a", encoding="utf-8") as file:
