@@ -2,9 +2,9 @@
 ///
 ///     OCM_FAIL=file:ENOSPC:3 LD_PRELOAD=libfailing.so amiroctl convert a.log b.csv
 ///
-/// Kinds: `file` (what reaches a file or a folder for writing: open, write, fallocate, ftruncate, fdatasync, fsync,
-/// rename, unlink, close, mkstemp), `sync` (fdatasync and fsync alone) and `memory` (malloc and what is built
-/// on it; fails from the N-th call on when the number has a + after it). The total goes to the file
+/// Kinds: `file` (what reaches a file or a folder for writing: open, write, fallocate, ftruncate, fdatasync,
+/// fsync, rename, unlink, close, mkstemp), `sync` (fdatasync and fsync alone) and `memory` (malloc and what
+/// is built on it; fails from the N-th call on when the number has a + after it). The total goes to the file
 /// OCM_FAIL_CALLS at the end.
 #include <atomic>
 #include <cerrno>
