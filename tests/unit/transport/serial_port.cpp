@@ -132,7 +132,7 @@ TEST_CASE("serial port: unplugged, what had come is read first, then it is gone"
   CHECK(port->write("x").error == base::Error::closed);
 }
 
-TEST_CASE("serial port: the last words before the end arrive, whoever opens the line next") {
+TEST_CASE("serial port: the last words before the end arrive, also where the line is opened again") {
   // As a program ends that leaves a central in command mode, and asks nothing more.
   auto pty = Pty::open();
   REQUIRE(pty);
