@@ -64,9 +64,13 @@ class Spare:
             time.sleep(0.01)
             self.late = max(self.late, time.monotonic() - begin - 0.01)
             if not looks or begin - looks[-1][0] >= WINDOW / LOOKS:
-                looks.append((begin, {pid: waiting.starved(pid) for pid in self.programs()}))
+                looks.append((begin, self.waits()))
                 before = looks[0][1]
-                self.late = max(self.late, *(now - before.get(pid, now) for pid, now in looks[-1][1].items()), 0.0)
+                self.late = max(self.late, *(now - before.get(task, now) for task, now in looks[-1][1].items()), 0.0)
+
+    def waits(self):
+        """Of each thread of the programs."""
+        return {task: wait for pid in self.programs() for task, wait in waiting.starved_threads(pid).items()}
 
     def enough(self):
         return self.late < MOST_LATE and self.taken < MOST_TAKEN

@@ -26,18 +26,23 @@ def asleep(pid):
     return True
 
 
-def starved(pid):
-    """For how many seconds the threads of a process could have worked so far, and had no processor. [Linux,
-    Documentation/scheduler/sched-stats: schedstat] 0 where it has ended."""
+def starved_threads(pid):
+    """Of each thread of a process: for how many seconds it could have worked so far, and had no processor. [Linux,
+    Documentation/scheduler/sched-stats: schedstat] Without those that have ended."""
     tasks = f"/proc/{pid}/task"
-    total = 0
+    seconds = {}
     try:
         for task in os.listdir(tasks):
             with open(f"{tasks}/{task}/schedstat", encoding="utf-8") as file:
-                total += int(file.read().split()[1])
+                seconds[task] = int(file.read().split()[1]) / 1e9
     except (FileNotFoundError, ProcessLookupError):
-        return 0.0
-    return total / 1e9
+        pass
+    return seconds
+
+
+def starved(pid):
+    """The same of all its threads together."""
+    return sum(starved_threads(pid).values())
 
 
 def until_asleep(*pids, looks=5, limit=30):
