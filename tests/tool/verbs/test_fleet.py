@@ -156,7 +156,8 @@ class Goto(Line):
         self.avr.loses = 5
         self.tool("goto", "AVR", "0", "0")
         self.assertEqual(self.avr.loses, 0)
-        self.assertEqual(self.avr.heard[2:], ["{U,0,0}"] * 6)
+        begin = self.avr.heard.index("{U,0,0}")  # the set point before it may be said twice, too
+        self.assertEqual(self.avr.heard[begin:], ["{U,0,0}"] * 6)
 
     def test_a_stop_that_no_robot_hears_fails(self):
         self.tool("robots", "--listen", "100ms")
