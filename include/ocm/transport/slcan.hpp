@@ -59,7 +59,7 @@ class Slcan final : public Bus {
   }
 
   /// Takes the adapter for this program alone, closes its channel, sets the bit rate and opens it again.
-  /// Takes a few round trips; `patience` once for an adapter that never answers.
+  /// Takes a few round trips; `first_answer` once for an adapter that never answers.
   [[nodiscard]] static Outcome<std::unique_ptr<Slcan>> open(const std::string& path,
                                                             const SlcanOptions& options) {
     if (!can::slcan::bit_rate_code(options.bit_rate)) {
@@ -208,8 +208,9 @@ class Slcan final : public Bus {
     tell("\rC\rV\r");
     const base::Time begin = now();
     base::Time last = begin;
-    for (std::size_t heard = 0; version_.empty() && now() - begin < 3 * options_.patience;) {
-      if (now() - last >= (answers_ ? quiet : options_.patience)) break;
+    const base::Duration longest = std::max(options_.first_answer, 3 * options_.patience);
+    for (std::size_t heard = 0; version_.empty() && now() - begin < longest;) {
+      if (now() - last >= (answers_ ? quiet : options_.first_answer)) break;
       wait(std::chrono::milliseconds{10});
       read();
       if (state() == BusState::closed) return failure_;

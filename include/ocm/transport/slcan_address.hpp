@@ -19,8 +19,10 @@ namespace ocm::transport {
 struct SlcanOptions {
   std::uint32_t bit_rate = 500'000;  ///< of the CAN bus: one of can::slcan::bit_rates
   std::uint32_t baud = 115'200;      ///< of the serial line; USB devices mostly ignore it
-  /// How long to wait for each answer while opening. An adapter that says nothing at all within it is taken
-  /// for one that never answers.
+  /// How long an adapter has for its first answer, on a busy machine, too. One that says nothing at all is
+  /// taken for one that never answers: what becomes of its frames is not known.
+  base::Duration first_answer = std::chrono::seconds{1};
+  /// How long to wait for each answer after that, while opening.
   base::Duration patience = std::chrono::milliseconds{300};
   std::size_t window = 8;  ///< frames that may wait for their answer
   /// After that long an answer is taken for lost.

@@ -118,7 +118,7 @@ class Adapter:
 
 class WithAdapter(RealTime):
     """For test cases: adapters that are unplugged at the end. They answer in time where the machine has the time: the tool
-    takes one that says nothing for 300 ms for one that never does."""
+    takes one that says nothing for a second for one that never does."""
     had_time = RealTime.had_time
 
     def adapter(self, **options):

@@ -77,6 +77,7 @@ TEST_CASE("slcan address: what is not chosen is that of most adapters") {
   CHECK(options.bit_rate == 500'000);
   CHECK(options.baud == 115'200);
   CHECK(options.window == 8);
+  CHECK(options.first_answer == 1s);
   CHECK(options.patience == 300ms);
   CHECK(options.answer_limit == 500ms);
   CHECK(options.status_period == 1s);

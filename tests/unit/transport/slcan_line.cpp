@@ -113,8 +113,8 @@ TEST_CASE("slcan line: an adapter that is silent is waited for once, and opened 
   Scene scene{{}};
   scene.open();
   CHECK(scene.line.heard == "\rC\rV\rS6\rO\r");
-  CHECK(scene.line.passed() == 300ms);
-  CHECK(scene.line.kernel.waits == Waits(30, {POLLIN, 10ms}));
+  CHECK(scene.line.passed() == 1s);
+  CHECK(scene.line.kernel.waits == Waits(100, {POLLIN, 10ms}));
   CHECK_FALSE(scene.bus->answers());
   CHECK(scene.bus->version().empty());
   CHECK(scene.bus->state() == BusState::up);
@@ -123,7 +123,7 @@ TEST_CASE("slcan line: an adapter that is silent is waited for once, and opened 
 TEST_CASE("slcan line: an adapter is waited for as long as chosen") {
   Scene scene{{}};
   SlcanOptions options;
-  options.patience = 70ms;
+  options.first_answer = 70ms;
   scene.open(options);
   CHECK(scene.line.passed() == 70ms);
 }
@@ -175,11 +175,11 @@ TEST_CASE("slcan line: the version may come late") {
   CHECK(scene.bus->version() == "2");
 }
 
-TEST_CASE("slcan line: an adapter that talks on and on is opened after three times the patience") {
+TEST_CASE("slcan line: an adapter that talks on and on is opened after a second") {
   Scene scene{without("V")};
   for (int i = 1; i < 40; ++i) scene.line.say_later(i * 50ms, "\r");
   scene.open();
-  CHECK(scene.line.times_of("S6") == Times{900ms});
+  CHECK(scene.line.times_of("S6") == Times{1s});
 }
 
 TEST_CASE("slcan line: a version without a text is a version") {
@@ -310,7 +310,7 @@ TEST_CASE("slcan line: a line that never has room is given up, each command afte
   scene.open();
   CHECK(scene.line.heard == "\r");
   CHECK_FALSE(scene.bus->answers());
-  CHECK(scene.line.passed() == 1200ms);  // three commands, and the answer
+  CHECK(scene.line.passed() == 1900ms);  // three commands, and the answer
 }
 
 TEST_CASE("slcan line: a socket that is connected already is in use") {
