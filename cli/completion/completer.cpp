@@ -7,9 +7,11 @@
 #include "ocm/transport/interfaces.hpp"
 #include "ocm/transport/virtual_bus.hpp"
 
+#include "cli/words/colour.hpp"
 #include "cli/words/topics.hpp"
 #include "generator/targets/target.hpp"
 #include "generator/text/messages.hpp"
+#include "sim/worlds/texts.hpp"
 
 namespace ocm::cli {
 namespace {
@@ -67,7 +69,8 @@ Line read_line(Verb program, Session& session, const std::vector<std::string>& w
 
 class Completer {
  public:
-  Completer(Session& session, std::string typed) : session_(session), typed_(std::move(typed)) {}
+  Completer(Verb program, Session& session, std::string typed)
+      : program_(program), session_(session), typed_(std::move(typed)) {}
 
   Completion take() { return std::move(completion_); }
   void files() { completion_.files = true; }
@@ -129,6 +132,8 @@ class Completer {
   void values_of(const Option& option) {
     if (option.is_named("--bus")) return buses();
     if (option.is_named("--priority")) return priorities();
+    for (const std::string& word : option.accepted().words) add(word);
+    if (!option.accepted().words.empty()) return;
     const std::string type = option.type();
     if (const auto open = type.find('{'); open != std::string::npos)
       return words_of(type.substr(open + 1, type.find('}', open) - open - 1), ',');
@@ -174,9 +179,11 @@ class Completer {
   void word_of(std::string_view word) {
     const auto names = [&](std::string_view what) { return word.find(what) != std::string_view::npos; };
     if (names("TOPIC")) return topics(Of::all);
+    if (names("FIELD") || names("CONDITION")) return all_fields();
+    if (names("VERB")) return verbs_of(program_);
     if (names("FILE") || names("FOLDER") || names("SCRIPT") || names("LOG")) return files();
     if (names("BOARD")) return boards();
-    if (names("CONDITION")) return conditions();
+    if (names("WORLD")) return worlds();
     if (names("BUS")) return buses();
     if (names("RATE")) return topics(Of::sensors, "=");
     if (names("TARGET")) {
@@ -188,13 +195,17 @@ class Completer {
     if (literal && !word.empty()) add(word);
   }
 
-  /// What a condition begins with: Engine.Speed, odometry.velocity.x.
-  void conditions() {
+  /// Engine.Speed, odometry.velocity.x; a condition begins with one.
+  void all_fields() {
     for (const auto& topic : session_.catalogue().topics)
       for (const auto& layout : topic.frames)
         for (const auto& field : layout.values())
           add(fmt::format("{}.{}{}{}", topic.name, layout.name, layout.name.empty() ? "" : ".", field.name),
               field.unit);
+  }
+  void worlds() {
+    for (const auto& world : sim::worlds::world_texts()) add(world.name, "built in");
+    files();
   }
   void boards() {
     for (const auto& board : session_.catalogue().boards) add(board.name, board.mcu);
@@ -206,11 +217,10 @@ class Completer {
     add("all");
   }
   void colours() {
-    for (const char* name :
-         {"off", "white", "red", "green", "blue", "yellow", "cyan", "magenta", "orange", "purple", "pink"})
-      add(name);
+    for (const auto& colour : words::named_colours) add(colour.name);
   }
 
+  Verb program_;
   Session& session_;
   std::string typed_;
   std::string prefix_;
@@ -222,7 +232,7 @@ class Completer {
 Completion complete(Verb program, Session& session, const std::vector<std::string>& words) {
   const Line line = read_line(program, session, words);
   const std::string typed = words.empty() ? "" : words.back();
-  Completer completer{session, typed};
+  Completer completer{program, session, typed};
   if (line.waiting) {
     completer.values_of(*line.waiting);
   } else if (!line.only_positionals && typed.starts_with('-')) {

@@ -59,7 +59,8 @@ OpenedLog::OpenedLog(std::string path, std::string_view format, const protocol::
   const auto readable = [&](const log::Source& source) {
     if (!source.failure().empty() && interrupted() != 0) throw Exit{exit_code_after_interrupt(exit_failure)};
     if (!source.failure().empty())
-      fail({fmt::format("cannot read {}: {}", shown(path_), source.failure()), "expected a log"});
+      fail({fmt::format("cannot read {}: {}", shown(path_), source.failure()),
+            path_ == "-" ? "expected a log" : "give the name of a log, or - for the standard input"});
   };
   readable(*file);
   if (file->beginning().empty())

@@ -36,9 +36,10 @@ transport::Outcome<Selection> Selection::of(const protocol::Catalogue& catalogue
         for (const auto& field : layout.values()) {
           const std::string name = name_within(layout, field);
           names.push_back(std::string{of_topic} + '.' + name);
-          // A topic or a frame is what is on the wire.
+          // A topic or a frame is what is on the wire; a field of several frames is meant in each of them.
           const bool whole = point == std::string_view::npos || rest == layout.name;
-          if (rest != name && (!whole || field.is_derived())) continue;
+          const bool is_meant = rest == name || (rest == field.name && rest != layout.name);
+          if (!is_meant && (!whole || field.is_derived())) continue;
           found = true;
           if (!selection.fields_.empty() && selection.has(layout, field)) continue;
           selection.fields_.push_back({&topic, &layout, &field, std::string{topic.name} + '.' + name});

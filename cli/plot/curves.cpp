@@ -4,28 +4,15 @@
 
 #include <fmt/format.h>
 
-#include "cli/words/topics.hpp"
-
 namespace ocm::cli::plot {
 namespace {
 
 using Chosen = std::vector<ChosenField>;
 
-/// As Selection, and: a field that several frames of its topic have is meant in each of them; `*` is all.
+/// As Selection, and `*` is all.
 transport::Outcome<Chosen> choose(const protocol::Catalogue& catalogue, std::string_view word) {
-  std::vector<std::string> words;
-  const std::size_t point = word.find('.');
-  const std::string_view of_topic = word.substr(0, point);
-  const protocol::Topic* const topic = words::find_topic(catalogue, of_topic);
-  if (word.ends_with(".*")) {
-    words.emplace_back(word.substr(0, word.size() - 2));
-  } else if (topic != nullptr && point != std::string_view::npos) {
-    for (const auto& layout : topic->frames)
-      for (const auto& field : layout.values())
-        if (!layout.name.empty() && field.name == word.substr(point + 1))
-          words.push_back(fmt::format("{}.{}.{}", of_topic, layout.name, field.name));
-  }
-  if (words.empty()) words.emplace_back(word);
+  if (word.ends_with(".*")) word.remove_suffix(2);
+  const std::vector<std::string> words{std::string{word}};
   auto selection = Selection::of(catalogue, words);
   if (!selection) return selection.error;
   return Chosen{selection->fields().begin(), selection->fields().end()};

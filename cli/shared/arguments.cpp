@@ -364,6 +364,10 @@ std::vector<Option> Option::needed() const {
   return handles(option_->get_needs(), owner_);
 }
 
+std::string Option::last_text() const {
+  return option_->results().empty() ? std::string{} : option_->results().back();
+}
+
 int Option::least_values() const {
   return option_->get_items_expected_min();
 }

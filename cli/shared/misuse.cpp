@@ -10,6 +10,7 @@
 
 #include "cli/shared/messages.hpp"
 #include "cli/shared/usage.hpp"
+#include "cli/words/quantity.hpp"
 #include "cli/words/suggestion.hpp"
 #include "generator/spec/edit_distance.hpp"
 
@@ -64,7 +65,14 @@ Misuse unknown_word(Verb program, Verb verb, const std::string& word) {
                 ? fmt::format("did you mean '{}'?", same)
                 : remedy_for(name, known, fmt::format("`{}` lists the options", help_of(program, verb)))};
   }
-  if (verb.verbs().empty()) return {fmt::format("unexpected argument '{}'", word), "usage: " + usage(verb)};
+  if (verb.verbs().empty()) {
+    std::string before;
+    for (const Option& option : verb.options())
+      if (option.is_positional() && option.count() != 0) before = option.last_text();
+    const std::string whole = words::written_apart(before, word);
+    return {fmt::format("unexpected argument '{}'", word),
+            whole.empty() ? "usage: " + usage(verb) : "write it as one word, " + whole};
+  }
   std::vector<std::string> known;
   for (const Verb each : verb.verbs_for_all()) known.push_back(each.name());
   if (verb == program) known.emplace_back("help");

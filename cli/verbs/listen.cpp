@@ -12,6 +12,7 @@
 #include "cli/shared/values.hpp"
 #include "cli/verbs/verb.hpp"
 #include "cli/watch/choice.hpp"
+#include "cli/watch/chosen_topics.hpp"
 #include "cli/watch/display.hpp"
 
 namespace ocm::cli {
@@ -26,6 +27,9 @@ struct ListenOptions {
   std::optional<base::Duration> timeout;
   std::optional<base::Duration> idle_timeout;
 };
+
+/// Who hears nothing for so long may wait for what was never asked for.
+constexpr base::Duration silence = std::chrono::seconds{2};
 
 void listen(Session& session, const ListenOptions& options, int& exit_code) {
   const auto& catalogue = session.catalogue();
@@ -49,7 +53,9 @@ void listen(Session& session, const ListenOptions& options, int& exit_code) {
   const auto begin = Clock::now();
   auto last = begin;
   const auto end = [&] { return std::min(begin + timeout, last + idle); };
+  bool any = false;
   const auto take = [&](const transport::ReceivedAny& received) {
+    any = true;
     const log::Entry entry{received.time, received.frame};
     if (!choice.has(entry)) return true;
     const client::Reception reception = display.understand(entry);
@@ -63,9 +69,9 @@ void listen(Session& session, const ListenOptions& options, int& exit_code) {
     return options.count == 0 || display.shown() < options.count;
   };
   Live live{*bus, [&] { display.flush(); }};
-  Over over = Over::time;
-  do over = live.receive_any(end(), take);
-  while (over == Over::time && Clock::now() < end());
+  Over over = live.receive_any(std::min(end(), begin + silence), take);
+  if (over == Over::time && !any) tell_to_ask(catalogue, topics);
+  while (over == Over::time && Clock::now() < end()) over = live.receive_any(end(), take);
   display.flush();
   display.summarise(bus->counters().lost, listened.now());
   display.tell_contradictions(Seen::live);

@@ -135,7 +135,7 @@ void add_map(Verb app, Session& session, int& exit_code) {
       .type_name("NAME=X,Y,DEG");
   verb.add_option("--world", options->world,
                   "a simulated world, or its name: starts, central, true walls to compare with")
-      .type_name("FILE");
+      .type_name("WORLD");
   verb.add_option("--resolution", options->resolution_cm, "side of a cell in cm")
       .type_name("CM")
       .show_default();

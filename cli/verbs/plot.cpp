@@ -24,6 +24,7 @@
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/output_file.hpp"
 #include "cli/verbs/verb.hpp"
+#include "cli/watch/chosen_topics.hpp"
 #include "cli/watch/watching.hpp"
 
 namespace ocm::cli {
@@ -200,6 +201,9 @@ void run(Verb verb, Session& session, const PlotOptions& options, int& exit_code
   if (curves.points() == 0) {
     if (interrupted() == 0)
       remark(fmt::format("amiroctl: plot: nothing to draw came from {}", watching.source()));
+    std::vector<const protocol::Topic*> topics;
+    for (const plot::Wanted& each : wanted) topics.push_back(each.y.topic);
+    if (watching.live()) tell_to_ask(catalogue, topics);
     exit_code = exit_code_after_interrupt(watching.ending(exit_failure));
     return;
   }

@@ -172,7 +172,7 @@ void add_serve(Verb app, Session& session, int& exit_code) {
       .one_a_mention();
   verb.add_option("--world", fleet.world,
                   "a simulated world, or its name: where its robots and its central are")
-      .type_name("FILE");
+      .type_name("WORLD");
   verb.add_flag("--call-back", fleet.call_back, "a robot that drives with a bad link is called back");
   verb.callback([given, verb, &session, &exit_code] { serve_given(verb, session, *given, exit_code); });
 }

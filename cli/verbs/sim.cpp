@@ -120,7 +120,7 @@ void add_mappers(Verb verb, sim::MapperOptions& options) {
       .type_name("N");
   verb.add_option("--world", options.world,
                   "where the mappers are: a file, or square (default), labyrinth, range")
-      .type_name("FILE");
+      .type_name("WORLD");
   verb.add_flag("--lines", options.lines, "no central: each mapper on a serial line of its own");
   verb.add_option("--radio-loss", options.radio_loss, "share of packets lost wherever a robot is")
       .range(0.0, 1.0)

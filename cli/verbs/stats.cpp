@@ -156,9 +156,11 @@ void run(Session& session, const StatsOptions& options, int& exit_code) {
   tell_contradictions(result, catalogue, watching.live() ? Seen::live : Seen::in_log);
   if (!collector.any() && interrupted() == 0) {
     remark(fmt::format("amiroctl: stats: no frame came from {}", watching.source()));
+    if (watching.live()) tell_to_ask(catalogue, shown);
     exit_code = exit_failure;
   } else if (!shown.empty() && !any_shown(result, shown) && interrupted() == 0) {
     remark(fmt::format("amiroctl: stats: nothing came of {}", fmt::join(names_of(shown), ", ")));
+    if (watching.live()) tell_to_ask(catalogue, shown);
     exit_code = exit_failure;
   }
   for (const auto& assertion : assertions) {

@@ -33,4 +33,19 @@ std::vector<const protocol::Topic*> chosen_topics(std::string_view verb, const p
   return topics;
 }
 
+void tell_to_ask(const protocol::Catalogue& catalogue, std::span<const protocol::Topic* const> topics) {
+  const auto is_asked = [](const protocol::Topic& topic) {
+    return topic.kind == protocol::Kind::sensor && topic.role != protocol::Role::status &&
+           topic.role != protocol::Role::refusal;
+  };
+  const protocol::Topic* asked = nullptr;
+  for (const protocol::Topic* topic : topics)
+    if (asked == nullptr && is_asked(*topic)) asked = topic;
+  for (const protocol::Topic& topic : catalogue.topics)
+    if (topics.empty() && asked == nullptr && is_asked(topic)) asked = &topic;
+  if (asked != nullptr)
+    remark(
+        fmt::format("a sensor is silent until it is asked, as by `amiroctl publish {} 500ms`", asked->name));
+}
+
 }  // namespace ocm::cli

@@ -15,4 +15,8 @@ namespace ocm::cli {
                                                                 const protocol::Catalogue& catalogue,
                                                                 std::span<const std::string> words);
 
+/// Where nothing came from a bus: says how to ask for the first sensor of `topics`, or of the catalogue where
+/// that is empty. Nothing where there is none.
+void tell_to_ask(const protocol::Catalogue& catalogue, std::span<const protocol::Topic* const> topics);
+
 }  // namespace ocm::cli

@@ -43,7 +43,7 @@ void add_display_options(Verb verb, DisplayOptions& options) {
   format.add_flag("--raw", options.raw, "candump's log line");
   verb.add_option("--field", options.fields,
                   "only this, such as gyroscope.x or odometry.velocity.x; repeatable")
-      .type_name("NAME")
+      .type_name("FIELD")
       .one_a_mention();
 }
 

@@ -11,17 +11,19 @@
 
 namespace ocm::cli::words {
 
+struct NamedColour {
+  std::string_view name;
+  std::array<std::uint8_t, 3> rgb;
+};
+inline constexpr NamedColour named_colours[] = {
+    {"off", {0, 0, 0}},        {"black", {0, 0, 0}},      {"white", {255, 255, 255}},
+    {"red", {255, 0, 0}},      {"green", {0, 255, 0}},    {"blue", {0, 0, 255}},
+    {"yellow", {255, 255, 0}}, {"cyan", {0, 255, 255}},   {"magenta", {255, 0, 255}},
+    {"orange", {255, 128, 0}}, {"purple", {128, 0, 255}}, {"pink", {255, 96, 160}}};
+
 /// "100,50,120", "#643278", "red" or "off".
 [[nodiscard]] inline base::Result<std::array<std::uint8_t, 3>> parse_colour(std::string_view text) {
-  struct Named {
-    std::string_view name;
-    std::array<std::uint8_t, 3> rgb;
-  };
-  constexpr Named names[] = {{"off", {0, 0, 0}},        {"black", {0, 0, 0}},      {"white", {255, 255, 255}},
-                             {"red", {255, 0, 0}},      {"green", {0, 255, 0}},    {"blue", {0, 0, 255}},
-                             {"yellow", {255, 255, 0}}, {"cyan", {0, 255, 255}},   {"magenta", {255, 0, 255}},
-                             {"orange", {255, 128, 0}}, {"purple", {128, 0, 255}}, {"pink", {255, 96, 160}}};
-  for (const auto& named : names)
+  for (const auto& named : named_colours)
     if (text == named.name) return named.rgb;
   std::array<std::uint8_t, 3> rgb{};
   if (text.starts_with('#')) {

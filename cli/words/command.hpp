@@ -138,9 +138,10 @@ class CommandParser {
       if (line.size() <= count && !word.starts_with('['))
         return WordError{line.size(), "missing " + std::string{word}, usage(line[0])};
     }
-    if (!form.empty() && line.size() > count)
-      return WordError{count, "unexpected argument " + detail::quoted(line[count]), usage(line[0])};
-    return {};
+    if (form.empty() || line.size() <= count) return {};
+    const std::string whole = written_apart(line[count - 1], line[count]);
+    return WordError{count, "unexpected argument " + detail::quoted(line[count]),
+                     whole.empty() ? usage(line[0]) : "write it as one word, " + whole};
   }
 
   [[nodiscard]] std::string usage(std::string_view verb) const {
@@ -295,12 +296,27 @@ class CommandParser {
           2,
           detail::quoted(line[2]) +
               (rgb.error == base::Error::out_of_range ? " has a component over 255" : " is not a colour"),
-          "write 100,50,120 or #643278 or a name such as red, white, off"};
+          colour_remedy(line[2])};
     Command command;
     for (const auto* light : chosen)
       command.frames.push_back(
           set_point(*light, std::array<std::int64_t, 3>{(*rgb)[0], (*rgb)[1], (*rgb)[2]}, priority));
     return command;
+  }
+
+  /// What was written with the field's unit, where only that was missing.
+  static std::string example_of(const protocol::Field& field, std::string_view text) {
+    const std::string unit{field.unit};
+    const std::string with_unit = std::string{text} + unit;
+    return lacks_unit(text) && parse_typed_value(field, with_unit) ? with_unit : "0" + unit;
+  }
+
+  static std::string colour_remedy(std::string_view word) {
+    std::vector<std::string_view> names;
+    for (const auto& named : named_colours) names.push_back(named.name);
+    const std::string_view near = nearest(word, names);
+    return near.empty() ? "write 100,50,120 or #643278 or a name such as red, white, off"
+                        : "did you mean " + detail::quoted(near) + "?";
   }
 
   detail::Parsed set(Line line, const CommandOptions& options) const {
@@ -388,7 +404,7 @@ class CommandParser {
       // [docs/decisions/0027]
       const auto value = target.is_message() ? parse_value(field, text) : parse_typed_value(field, text);
       if (!value)
-        return WordError{i, value.error, "for example " + std::string{name} + "=0" + std::string{field.unit}};
+        return WordError{i, value.error, "for example " + std::string{name} + "=" + example_of(field, text)};
       if (!is_in_stated_range(field, *value))
         return WordError{i, beyond_stated_range(field, text),
                          target.is_message() ? force_beyond_range : "a value within it"};

@@ -207,6 +207,14 @@ namespace detail {
   return quantity && quantity->unit.empty();
 }
 
+/// "500ms", where that was written as two words, 500 and ms; empty: it was not.
+[[nodiscard]] inline std::string written_apart(std::string_view number, std::string_view unit) {
+  const std::string whole = std::string{number} + std::string{unit};
+  const auto quantity = parse_quantity(whole);
+  if (!lacks_unit(number) || !quantity || quantity->unit != unit) return {};
+  return parse_duration(whole) || detail::parse_unit(unit) ? whole : std::string{};
+}
+
 /// What `text` is in place of the time that was expected: `otherwise`, unless it is one but for its unit.
 [[nodiscard]] inline std::string instead_of_time(std::string_view text, std::string_view otherwise) {
   return std::string{lacks_unit(text) ? "a time without a unit" : otherwise};

@@ -46,6 +46,17 @@ class Words(harness.Case):
         self.assertEqual(self.candidates("led", "1", "ma"), ["magenta"])
         self.assertIn("8", self.candidates("led", ""))
 
+    def test_fields_by_their_names(self):
+        self.assertEqual(self.candidates("listen", "--field", "odometry.v"), ["odometry.velocity.x", "odometry.velocity.z"])
+        self.assertEqual(self.words("plot", "a.log", "gyroscope.z"), ("files", ["gyroscope.z"]))
+        self.assertEqual(self.candidates("listen", "--where", "gyroscope.z"), ["gyroscope.z"])
+
+    def test_words_of_which_there_is_a_list(self):
+        self.assertEqual(self.candidates("convert", "a.log", "b.csv", "--to", "pcap"), ["pcapng", "pcap"])
+        self.assertEqual(self.candidates("record", "--to=csv"), ["--to=csv"])
+        self.assertEqual(self.words("sim", "--world", "la"), ("files", ["labyrinth"]))
+        self.assertEqual(self.candidates("man", "pub"), ["publish"])
+
     def test_options_and_their_values(self):
         self.assertEqual(self.candidates("publish", "--prio"), ["--priority"])
         self.assertEqual(self.candidates("--b"), ["--bus"])

@@ -170,6 +170,10 @@ publish gyro 1s 2s
 publish: unexpected argument '2s'
 usage: amiroctl publish TOPIC [PERIOD]
 
+publish gyro 500 ms
+publish: unexpected argument 'ms'
+write it as one word, 500ms
+
 publish gyro 500
 publish: '500' needs a unit: us, ms or s
 write 500ms, 2s or 900us
@@ -820,7 +824,7 @@ end it in .svg, .png, .pdf or .pgm
 
 map a.svg --world
 map: missing value for --world
-usage: --world FILE
+usage: --world WORLD
 
 map a.svg --resolution wide
 map: --resolution wide: not a number

@@ -379,7 +379,7 @@ class Stats(Case):
     def test_live_on_a_silent_bus(self):
         self.start_sim("--without", "di_wheel_drive,power_management,light_ring")
         _, err = self.run_tool("stats", "--duration", "300ms", code=1)
-        self.assertIn("no frame came from sim", err)
+        self.assertIn("no frame came from sim\na sensor is silent until it is asked, as by `amiroctl publish odometry 500ms`\n", err)
         _, err = self.run_tool("stats", "--duration", "300ms", "--assert", "gyro.rate>0", code=1)
         self.assertIn("does not hold: gyro.rate>0: nothing was measured", err)
 

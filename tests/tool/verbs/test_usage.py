@@ -25,7 +25,7 @@ class Usage(Case):
         self.refused(["led", "9", "red"], "1 to 8")
         self.refused(["drive", "5cm"], "m/s")
         self.refused(["drive", "500"], "'500' needs a unit: x takes -1 to 1 m/s", "50000um/s")
-        self.refused(["set", "motors", "x=1"], "'1' needs a unit: x takes -1 to 1 m/s", "x=0m/s")
+        self.refused(["set", "motors", "x=1"], "'1' needs a unit: x takes -1 to 1 m/s", "x=1m/s")
         self.refused(["drive", "2000m/s"], "'2000m/s' is out of range: x takes -1 to 1 m/s")
         self.refused(["send", "205"], "205#01840302")
         self.refused(["listen", "gyr"], "did you mean 'gyro'?")

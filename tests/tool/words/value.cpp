@@ -118,7 +118,7 @@ TEST_CASE("the refusal of a bare number names the units") {
   CHECK(turn.error.remedy == "write 0.2rad/s or 30deg/s");
   const auto set = motors.parse({"set", "motors", "x=1"});
   CHECK(set.error.what == "'1' needs a unit: x takes -1 to 1 m/s");
-  CHECK(set.error.remedy == "for example x=0m/s");
+  CHECK(set.error.remedy == "for example x=1m/s");
   CHECK(motors.parse({"drive", "0", "-0.0"}).ok());
   CHECK(motors.parse({"set", "motors", "x=0"}).ok());
 }
