@@ -182,6 +182,10 @@ TEST_CASE("JSON lines: chosen fields only", "[output]") {
   CHECK(line_of(entry_of("608#11"), "can0", chosen).empty());
   CHECK(selection({"power.flags", "power"}).fields().size() == 4);
   CHECK(selection({"led.red"}).fields().size() == 8);
+  // In each frame that has it, or in the one that is named.
+  CHECK(selection({"odom.x"}).fields().size() == 2);
+  CHECK(selection({"odom.pose.x"}).fields().size() == 1);
+  CHECK(selection({"ring.distance"}).fields().size() == 8);
   const std::vector<std::string> wrong{"gyro.w"};
   CHECK(has(cli::Selection::of(amiro::catalogue, wrong).error.remedy, "gyro.x"));
 }
