@@ -18,7 +18,7 @@ std::unique_ptr<transport::Bus> with_operator(std::unique_ptr<transport::Bus> bu
   if (!link) fail({fmt::format("{}: {}", verb, link.error.what), link.error.remedy});
   if (*link == nullptr) return bus;
   const auto is_actuator = [](const protocol::Topic& topic) {
-    return !topic.is_message() && topic.kind == protocol::Kind::actuator;
+    return topic.kind == protocol::Kind::actuator;
   };
   const auto& topics = session.catalogue().topics;
   remark(fmt::format("{}: {} {}", verb, (*link)->who(),

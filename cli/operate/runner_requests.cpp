@@ -124,7 +124,7 @@ std::string Runner::commands(std::string_view text) const {
 std::string Runner::pass_on(Caller& caller, std::string_view text) {
   auto frame = can::parse_frame(text);
   const auto found = frame ? index_.subject(frame->id, frame->format) : client::Subject{};
-  if (!found.frame || found.topic->is_message() || found.topic->kind != protocol::Kind::actuator)
+  if (!found.frame || found.topic->kind != protocol::Kind::actuator)
     return no(fmt::format("{} commands no actuator", printable(text)), "it goes to the bus itself");
   const auto& tables = file_->tables;
   const auto& topic = *found.topic;

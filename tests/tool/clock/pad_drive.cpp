@@ -36,6 +36,7 @@ class PlayedPad final : public cli::Gamepad {
 
   void at(Moment time, PadState state) { states_.push_back({time, state}); }
   std::optional<PadState> read() override {
+    ++looks;
     PadState pressed;
     for (; next_ < states_.size() && states_[next_].first <= world_->now(); ++next_) {
       newest_ = states_[next_].second;
@@ -59,6 +60,7 @@ class PlayedPad final : public cli::Gamepad {
   }
 
   Moment gone = Moment::max();
+  int looks = 0;
 
  private:
   World* world_;
@@ -177,6 +179,8 @@ TEST_CASE("drive by gamepad: a signal stops the robot") {
   drive.at(1s, drives);
   drive.world.interrupt(World::start + 2s, SIGTERM);
   CHECK(drive.go() == PadDrive::End::signal);
+  CHECK(drive.pad.looks >= 80);  // 50 a second, behind 150 ms in which it listens
+  CHECK(drive.pad.looks <= 100);
   CHECK(cli::is_rest(drive.bus.sent().back().frame));
   CHECK(drive.moving().back() <= 2s + 25ms);
 }
