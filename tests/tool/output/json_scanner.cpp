@@ -7,6 +7,8 @@
 
 namespace tool_output_json_scanner_test {
 
+using ocm::cli::logs::JsonScanner;
+using ocm::cli::logs::JsonValue;
 using ocm::cli::logs::unescape;
 
 /// The text that the inside of a JSON string stands for; "(none)": it is none.
@@ -56,6 +58,21 @@ TEST_CASE("JSON strings: a byte in words", "[output]") {
   CHECK(text_of(R"(\\xf)") == "\\xf");
   CHECK(text_of(R"(\\xg0)") == "\\xg0");
   CHECK(text_of(R"(\\x0g)") == "\\x0g");
+}
+
+TEST_CASE("JSON lines: a value that is cut off is none, whatever stands behind the line", "[output]") {
+  constexpr std::string_view text = R"({"a":["b",{"c\"":"d"},true,null,[]],"e":"f"})";
+  for (std::size_t size = 0; size <= text.size(); ++size) {
+    INFO(size);
+    JsonScanner scanner{text.substr(0, size)};
+    CHECK((scanner.skip_value() && scanner.at_end()) == (size == text.size()));
+  }
+  for (const std::string_view word : {R"("b)", R"("b\)", R"("b\")"}) {
+    const std::string behind = std::string{word} + "\"}";
+    JsonScanner scanner{std::string_view{behind}.substr(0, word.size())};
+    JsonValue value;
+    CHECK_FALSE(scanner.take_value(value));
+  }
 }
 
 }  // namespace tool_output_json_scanner_test
