@@ -471,6 +471,21 @@ TEST_CASE("messages: what a signal of a DBC file can hold is what its bits can")
   CHECK(fields.at(1).raw_max == 4095);
 }
 
+TEST_CASE("messages: C++ has no name for a value that the bits of its field cannot hold") {
+  const Model model = parse(
+      "BO_ 1 A: 8 X\n SG_ U : 0|2@1+ (1,0) [0|0] \"\" X\n SG_ S : 8|2@1- (1,0) [0|0] \"\" X\n"
+      "VAL_ 1 U 3 \"Most\" 4 \"Beyond\" ;\nVAL_ 1 S -3 \"Below\" -2 \"Least\" ;\n",
+      {}, "f.dbc");
+  const auto* cpp = generate::find_target("cpp");
+  REQUIRE(cpp != nullptr);
+  const std::string text = cpp->make(model, {});
+  const auto has = [&text](const char* name) { return text.find(name) != std::string::npos; };
+  CHECK(has("Most"));
+  CHECK(has("Least"));
+  CHECK_FALSE(has("Beyond"));
+  CHECK_FALSE(has("Below"));
+}
+
 TEST_CASE("messages: more nodes than a catalogue has place for") {
   std::string text;
   for (int i = 0; i < 300; ++i)

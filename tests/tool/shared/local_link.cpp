@@ -145,6 +145,16 @@ TEST_CASE("local link: a greeting, and each kind of answer") {
         std::vector<std::string>{"hello 1 goto", "one", "two", "three", "four", "five", "six"});
 }
 
+TEST_CASE("local link: the longest answer comes whole") {
+  const Folder folder;
+  const std::string rows(cli::longest_local_message - 3, 'x');
+  Played server{folder.file("a.sock"), {"ok\nguard", "ok\n" + rows}};
+  auto link = connected(folder.file("a.sock"));
+  const auto answer = link->ask("rows", 30s);
+  CHECK(answer.kind == LocalAnswer::Kind::ok);
+  CHECK((answer.text == rows && rows.size() > 50'000));
+}
+
 TEST_CASE("local link: one that has ended, and asks no more") {
   const Folder folder;
   Played server{folder.file("a.sock"), {"ok\nguard"}};
