@@ -428,6 +428,11 @@ class OnAPseudoTerminal(Case):
                 text += os.read(line, 4096)
         return text
 
+    def bytes_read(self):
+        """By the central, so far: what a robot says is on its way in the kernel while both of them sleep. [man 5 proc: io]"""
+        with open(f"/proc/{self.process.pid}/io", encoding="ascii") as file:
+            return int(file.readline().split()[1])
+
     def test_programs_come_and_go(self):
         self.begin()
         line = self.open()
@@ -435,7 +440,9 @@ class OnAPseudoTerminal(Case):
         self.assertEqual(self.read(line, b"connected 0\n"), b"scanning\nconnecting 0\nconnected 0\n")
         os.close(line)
         self.settle()
+        before = self.bytes_read()
         self.robot.say("{S,IDL}\n")  # no program hears it
+        waiting.until(lambda: self.bytes_read() >= before + len("{S,IDL}\n"), "the central has heard it")
         self.settle()
         line = self.open()
         self.robot.say("{U,1,2,3,4,5,6,7,8}\n")
