@@ -262,7 +262,11 @@ class CommandParser {
                                              "write 0.2rad/s or 30deg/s"};
     for (std::size_t i = 1; i < line.size(); ++i) {
       const auto value = parse_typed_value(*velocities[i - 1], line[i]);
-      if (!value) return WordError{i, value.error, std::string{remedies[i - 1]}};
+      if (!value) {
+        const std::string whole = i + 1 < line.size() ? written_apart(line[i], line[i + 1]) : std::string{};
+        return WordError{i, value.error,
+                         whole.empty() ? std::string{remedies[i - 1]} : "write it as one word, " + whole};
+      }
       raw[static_cast<std::size_t>(velocities[i - 1] - fields.data())] = *value;
     }
     command.hold = Hold{set_point(*motors, raw, priority), rest, {}};

@@ -207,12 +207,13 @@ namespace detail {
   return quantity && quantity->unit.empty();
 }
 
-/// "500ms", where that was written as two words, 500 and ms; empty: it was not.
+/// "500ms" or "5cm/s", where a time or a speed was written as two words; empty: it was not.
 [[nodiscard]] inline std::string written_apart(std::string_view number, std::string_view unit) {
   const std::string whole = std::string{number} + std::string{unit};
   const auto quantity = parse_quantity(whole);
   if (!lacks_unit(number) || !quantity || quantity->unit != unit) return {};
-  return parse_duration(whole) || detail::parse_unit(unit) ? whole : std::string{};
+  const auto of_speed = detail::parse_unit(unit);
+  return parse_duration(whole) || (of_speed && of_speed->per != 0) ? whole : std::string{};
 }
 
 /// What `text` is in place of the time that was expected: `otherwise`, unless it is one but for its unit.

@@ -196,6 +196,8 @@ TEST_CASE("what is wrong is said of the word where it stands") {
       {"publish gyro 500 ms", 3, "unexpected argument 'ms'", "write it as one word, 500ms"},
       {"publish gyro 500 sheep", 3, "unexpected argument 'sheep'", "usage: publish TOPIC"},
       {"drive 0 30 deg/s", 3, "unexpected argument 'deg/s'", "write it as one word, 30deg/s"},
+      {"drive 5 cm/s", 1, "'5' needs a unit", "write it as one word, 5cm/s"},
+      {"publish gyro 5 cm", 3, "unexpected argument 'cm'", "usage: publish TOPIC"},
       {"led 1 grene", 2, "'grene' is not a colour", "did you mean 'green'?"},
       {"publish gyro 1s --priority top", 4, "'top' is not a priority", "urgent, high, medium or low"},
       {"publish gyro 1s --priority=top", 3, "'top' is not a priority", "urgent, high, medium or low"},
