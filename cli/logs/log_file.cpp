@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <new>
 #include <sys/file.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <utility>
@@ -125,18 +126,24 @@ struct LogFile::State {
     struct stat now {};
     if (!regular || more == 0 || ::fstat(descriptor, &now) != 0) return true;
     const auto length = static_cast<off_t>(more);
-    if (::fallocate(descriptor, FALLOC_FL_KEEP_SIZE, now.st_size, length) != 0) return errno != ENOSPC;
+    if (::fallocate(descriptor, FALLOC_FL_KEEP_SIZE, now.st_size, length) != 0)
+      return errno != ENOSPC && errno != EDQUOT;
     static_cast<void>(!::ftruncate(descriptor, now.st_size));
     return true;
+  }
+
+  /// Whether a file may have so much.
+  [[nodiscard]] static bool is_allowed(std::size_t size) noexcept {
+    rlimit limit{};
+    if (::getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_cur >= size) return true;
+    errno = EFBIG;
+    return false;
   }
 
   /// The first time: what was in the file before goes, where `more` bytes can take its place.
   bool empty(std::size_t more) {
     if (!regular || emptied) return true;
-    if (!made_now && !has_room(more)) {
-      errno = ENOSPC;
-      return failed("write");
-    }
+    if (!made_now && (!is_allowed(more) || !has_room(more))) return failed("write");
     emptied = true;
     return ::ftruncate(descriptor, 0) == 0 || failed("empty");
   }

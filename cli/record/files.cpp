@@ -179,7 +179,10 @@ bool Files::finish(Next next) {
   // finish whatever happens: it closes the file. What it writes then must be on the disk, too.
   const bool told = file_->recorded(recorded_) && file_->flush(options_.sync) && is_in_place();
   const bool done = file_->finish() && told;
-  if (done) delete_oldest();
+  if (done && (entries_ != 0 || any_dropped))
+    delete_oldest();
+  else if (done && next == Next::none)
+    delete_newest();
   for (std::size_t i = 0; i < log::losses; ++i) {
     const auto lost = static_cast<log::Lost>(i);
     // No format has less than microseconds, and no bus of at most 1 Mbit/s says more: a bit takes that long.
@@ -206,12 +209,21 @@ bool Files::next_file() {
 /// Once the newest file has something in it, or to make room for that.
 void Files::delete_oldest() {
   while (options_.ring != 0 && kept_.size() > options_.ring) {
-    if (::unlink(kept_.front().c_str()) == 0)
-      ++deleted_;
-    else if (errno != ENOENT)  // another program may have removed it, which is the aim
-      remark(fmt::format("cannot delete {}: {}", kept_.front(), std::strerror(errno)));
+    remove(kept_.front());
     kept_.pop_front();
   }
+}
+
+/// One without a frame takes the place of none that has some.
+void Files::delete_newest() {
+  if (options_.ring != 0) remove(path_);
+}
+
+void Files::remove(const std::string& path) {
+  if (::unlink(path.c_str()) == 0)
+    ++deleted_;
+  else if (errno != ENOENT)  // another program may have removed it, which is the aim
+    remark(fmt::format("cannot delete {}: {}", path, std::strerror(errno)));
 }
 
 bool Files::failed(const transport::Failure& failure) {

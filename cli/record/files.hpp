@@ -94,6 +94,8 @@ class Files {
   [[nodiscard]] bool is_in_place();
   [[nodiscard]] bool finish(Next next);
   void delete_oldest();
+  void delete_newest();
+  void remove(const std::string& path);
 
   FilesOptions options_;
   const protocol::Catalogue* catalogue_;

@@ -62,7 +62,7 @@ class SignalsBlocked {
 
 /// Where the terminal takes it: after Ctrl-S the recording goes on.
 void erase_line() {
-  if (takes_lines(STDERR_FILENO)) fmt::print(stderr, "\r\x1b[K");
+  static_cast<void>(write_now(STDERR_FILENO, "\r\x1b[K"));
 }
 
 /// Gives each its number in the log.
@@ -276,7 +276,6 @@ void Recorder::wait() {
 void Recorder::show_progress() {
   const auto now = Clock::now();
   const base::Duration passed = now - shown_;
-  if (!takes_lines(STDERR_FILENO)) return;
   const double frames =
       static_cast<double>(received_ - shown_received_) * 1e9 / static_cast<double>(passed.count());
   std::string text = fmt::format("{}, {:.0f}/s", counted(received_, "frame"), frames);
@@ -295,8 +294,7 @@ void Recorder::show_progress() {
   // line.
   text.resize(std::min(text.size(), terminal_size(STDERR_FILENO).columns - 1));
   erase_line();
-  fmt::print(stderr, "{}", text);
-  std::fflush(stderr);
+  static_cast<void>(write_now(STDERR_FILENO, text));
   shown_ = now;
   shown_received_ = received_;
 }

@@ -244,9 +244,21 @@ class Recording(Case):
             self.assertIn("cannot write bb_003.log: File too large", recorder.communicate(timeout=60)[1])
         self.assertEqual(self.ring("bb_"), ["bb_001.log", "bb_002.log"])
 
+    def test_a_ring_on_a_silent_bus_keeps_what_it_has(self):
+        self.start_sim()
+        for _ in range(2):
+            self.run_ring("bb.log")
+        for ending in ("log", "pcapng", "log.gz"):
+            for _ in range(3):
+                _, err = self.interrupt(self.record("-o", "bb." + ending, "--split", "1h", "--ring", "2"))
+                self.assertIn(" 0 frames ", err)
+                self.assertIn(", 1 of the files deleted again", err)
+        self.assertEqual(self.ring("bb_"), ["bb_001.log", "bb_002.log"])
+
     def run_ring(self, *name):
-        recorder = self.record(*(("-o", *name) if name else ()), "--split", "1h", "--ring", "2")
-        return self.interrupt(recorder)
+        recorder = self.record(*(("-o", *name) if name else ()), "--split", "1h", "--ring", "2", "-n", "1")
+        self.send_numbered(1)
+        self.assertEqual((recorder.communicate(timeout=60), recorder.returncode)[1], 0)
 
     def ring(self, beginning):
         return sorted(name for name in os.listdir(self.folder) if name.startswith(beginning))
@@ -255,7 +267,8 @@ class Recording(Case):
         self.start_sim()
         for number in range(1, 6):
             open(self.path(f"bb_{number:03}.log"), "w").close()
-        words = ("record", "-o", self.path("bb.log"), "--split", "1h", "--ring", "2", "--duration", "100ms")
+        self.run_tool("publish", "gyro", "5ms")
+        words = ("record", "-o", self.path("bb.log"), "--split", "1h", "--ring", "2", "-n", "1")
         _, err = self.run_tool(*words, code=1)
         self.assertIn("--ring 2 would delete 4 of them", err)
         self.assertEqual(len(self.ring("bb_")), 5)
@@ -287,8 +300,8 @@ class Recording(Case):
         recorder = self.record("-o", "bb.log", "--split", "1h", "--ring", "2")
         _, err = self.run_tool("record", "-o", self.path("bb.log"), "--split", "1h", "--ring", "2", "--duration", "100ms", code=1)
         self.assertRegex(err, "another program records to .*bb_001.log now\n +end it, or give another name")
-        self.interrupt(recorder)
         self.assertEqual(self.ring("bb_"), ["bb_001.log"])
+        self.interrupt(recorder)
 
     def test_a_file_that_is_moved_is_recorded_to_the_end(self):
         self.start_sim()
@@ -388,7 +401,14 @@ class Recording(Case):
         received = int(re.search(r"recorded (\d+) frames?", err)[1])
         self.assertEqual(int(said[2]), received - len(written))
         self.assertIn("cannot write a.log", err)
-        # Where it takes nothing, nothing stands in the way of the next try.
+        # Where it takes nothing, what was there stays, and nothing stands in the way of the next try.
+        with open(self.path("old.log"), "w") as file:
+            file.write("# an older file\n")
+        recorder = self.record("-o", "old.log", "--force", preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0)))
+        self.send_numbered(1)
+        self.assertIn("cannot write old.log: File too large", recorder.communicate(timeout=60)[1])
+        with open(self.path("old.log")) as file:
+            self.assertEqual(file.read(), "# an older file\n")
         recorder = self.record("-o", "b.log", preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0)))
         self.send_numbered(1)
         _, err = recorder.communicate(timeout=60)
