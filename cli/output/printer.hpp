@@ -2,6 +2,7 @@
 /// waiting.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string_view>
 #include <utility>
@@ -25,12 +26,16 @@ class Printer {
     if (buffer_.size() >= enough) flush();
     return shown;
   }
-  void flush() { write_out(buffer_); }
+  void flush();
+  /// Writes what stdout takes without a wait, and keeps the rest. Whether that was all. Leaves as write_out
+  /// does.
+  [[nodiscard]] bool flush_now();
 
  private:
   static constexpr std::size_t enough = 1 << 16;
   std::unique_ptr<Output> output_;
   Buffer buffer_;
+  std::size_t written_ = 0;  ///< of the buffer
 };
 
 }  // namespace ocm::cli

@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstdio>
 #include <deque>
+#include <fcntl.h>
 #include <mutex>
 #include <new>
 #include <poll.h>
@@ -53,13 +54,26 @@ Kept& kept() {
 
 constexpr std::size_t most_kept = 1000;  // of those that stderr does not take
 
-/// Whether it takes something within so long. What it takes without a wait is at least this much: a terminal
-/// reports room below 256 characters of its 4096, and a pipe a page.
+/// Whether it takes something within so long: a pipe takes a page then, a terminal may take one byte.
 bool takes(int descriptor, std::chrono::milliseconds patience) {
   pollfd entry{descriptor, POLLOUT, 0};
   return ::poll(&entry, 1, static_cast<int>(patience.count())) > 0;
 }
 constexpr std::size_t most_at_once = 256;
+
+/// A way into the same terminal on which no write waits; the descriptor itself where it is none, or there is
+/// no other way.
+int without_wait(int descriptor) {
+  static std::array<int, STDERR_FILENO + 1> ways{-1, -1, -1};
+  if (isatty(descriptor) == 0) return descriptor;
+  int& way = ways.at(static_cast<std::size_t>(descriptor));
+  if (way < 0) {
+    const std::string path = fmt::format("/proc/self/fd/{}", descriptor);
+    way = ::open(path.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    if (way < 0) way = descriptor;
+  }
+  return way;
+}
 
 /// Writes what is kept, in pieces that do not wait, as long as stderr takes one within `patience`.
 void write_kept(Kept& messages, std::chrono::milliseconds patience) {
@@ -80,7 +94,8 @@ void write_kept(Kept& messages, std::chrono::milliseconds patience) {
     char line_feed[] = "\n";
     const std::array<iovec, 2> pieces{{{line.data() + messages.written, std::min(left_of_it, most_at_once)},
                                        {line_feed, left_of_it < most_at_once ? 1U : 0U}}};
-    const ssize_t size = ::writev(STDERR_FILENO, pieces.data(), static_cast<int>(pieces.size()));
+    const int way = without_wait(STDERR_FILENO);
+    const ssize_t size = ::writev(way, pieces.data(), static_cast<int>(pieces.size()));
     if (size < 0 && (errno == EINTR || errno == EAGAIN)) return;
     // Where it fails there is no reader, or a full disk.
     messages.written += size < 0 ? left_of_it + 1 : static_cast<std::size_t>(size);
@@ -227,8 +242,19 @@ void never_wait_for_messages() {
   static const UnhurriedMessages messages;
 }
 
-bool takes_lines(int descriptor) {
-  return takes(descriptor, std::chrono::milliseconds{0});
+Written write_now(int descriptor, std::string_view text) {
+  Written written;
+  while (written.bytes < text.size() && takes(descriptor, std::chrono::milliseconds{0})) {
+    const std::string_view piece = text.substr(written.bytes, most_at_once);
+    const ssize_t size = ::write(without_wait(descriptor), piece.data(), piece.size());
+    if (size < 0 && (errno == EINTR || errno == EAGAIN)) break;
+    if (size < 0) {
+      written.error = errno;
+      break;
+    }
+    written.bytes += static_cast<std::size_t>(size);
+  }
+  return written;
 }
 
 std::string counted(std::uint64_t count, std::string_view noun) {

@@ -2,6 +2,10 @@
 /// Ctrl-S, or for a pager.
 #pragma once
 
+#include <string_view>
+
+#include "cli/shared/interrupt.hpp"
+
 namespace ocm::cli {
 
 /// As long as one lives, no message waits for who reads stderr. What is not taken at once is kept, and
@@ -20,7 +24,8 @@ class UnhurriedMessages {
 /// The same from now on, to the program's end.
 void never_wait_for_messages();
 
-/// Whether a line or two written to it now need no wait.
-[[nodiscard]] bool takes_lines(int descriptor);
+/// Writes to stdout or stderr what that takes without a wait; less than all without an error: it takes no
+/// more now.
+[[nodiscard]] Written write_now(int descriptor, std::string_view text);
 
 }  // namespace ocm::cli

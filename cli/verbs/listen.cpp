@@ -31,6 +31,15 @@ struct ListenOptions {
 /// Who hears nothing for so long may wait for what was never asked for.
 constexpr base::Duration silence = std::chrono::seconds{2};
 
+void say_how_to_ask(const protocol::Catalogue& catalogue, std::vector<const protocol::Topic*> topics,
+                    const ListenOptions& options) {
+  // Who sends what is chosen by its identifier is not known.
+  if (!options.choice.filters.empty() || !options.choice.groups.empty()) return;
+  if (const auto selection = Selection::of(catalogue, options.display.fields); topics.empty() && selection)
+    for (const ChosenField& field : selection->fields()) topics.push_back(field.topic);
+  tell_to_ask(catalogue, topics);
+}
+
 void listen(Session& session, const ListenOptions& options, int& exit_code) {
   const auto& catalogue = session.catalogue();
   Choice choice{"listen", catalogue, options.choice};
@@ -70,7 +79,7 @@ void listen(Session& session, const ListenOptions& options, int& exit_code) {
   };
   Live live{*bus, [&] { display.flush(); }};
   Over over = live.receive_any(std::min(end(), begin + silence), take);
-  if (over == Over::time && !any) tell_to_ask(catalogue, topics);
+  if (over == Over::time && !any) say_how_to_ask(catalogue, topics, options);
   while (over == Over::time && Clock::now() < end()) over = live.receive_any(end(), take);
   display.flush();
   display.summarise(bus->counters().lost, listened.now());

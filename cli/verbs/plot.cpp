@@ -203,7 +203,7 @@ void run(Verb verb, Session& session, const PlotOptions& options, int& exit_code
       remark(fmt::format("amiroctl: plot: nothing to draw came from {}", watching.source()));
     std::vector<const protocol::Topic*> topics;
     for (const plot::Wanted& each : wanted) topics.push_back(each.y.topic);
-    if (watching.live()) tell_to_ask(catalogue, topics);
+    if (watching.live() && interrupted() == 0) tell_to_ask(catalogue, topics);
     exit_code = exit_code_after_interrupt(watching.ending(exit_failure));
     return;
   }

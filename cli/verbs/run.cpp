@@ -21,6 +21,7 @@
 #include "cli/command/timeline.hpp"
 #include "cli/output/printer.hpp"
 #include "cli/shared/begun_behaviours.hpp"
+#include "cli/shared/clock.hpp"
 #include "cli/shared/interrupt.hpp"
 #include "cli/shared/terminal.hpp"
 #include "cli/shared/unhurried_messages.hpp"
@@ -182,15 +183,21 @@ class Answers {
     const auto reception = receiver_.take(received);
     if (reception.meaning == client::Meaning::request || reception.meaning == client::Meaning::set_point)
       return;
-    if (!takes_lines(STDOUT_FILENO)) {  // the next step waits for no reader
+    if (!printer_.flush_now()) {  // the next step waits for no reader
       ++hidden_;
       return;
     }
     printer_.write({bus_, log::Entry{received.time, received.frame}, reception});
-    printer_.flush();
+    rest_ = !printer_.flush_now();
   }
 
-  void tell_hidden() const {
+  void tell_hidden() {
+    // A line that was begun: its reader may need a moment.
+    for (int looks = 0; looks < 10 && rest_; ++looks) {
+      rest_ = !printer_.flush_now();
+      if (rest_) sleep_for(std::chrono::milliseconds{100});
+    }
+    hidden_ += rest_ ? 1 : 0;
     if (hidden_ != 0) remark(fmt::format("run: {} not shown: stdout took none", counted(hidden_, "answer")));
   }
 
@@ -199,6 +206,7 @@ class Answers {
   client::Receiver receiver_;
   Printer printer_;
   bool begun_ = false;
+  bool rest_ = false;  ///< of the newest line
   std::uint64_t hidden_ = 0;
 };
 

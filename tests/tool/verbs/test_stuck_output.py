@@ -110,6 +110,24 @@ class StuckOutput(Case):
         self.assertRegex(err, r"run: [1-9]\d* answers not shown: stdout took none\n")
         os.close(reader)
 
+    def test_a_terminal_that_nobody_reads_holds_up_no_script(self):
+        """It says that it takes more while it takes one byte."""
+        script = os.path.join(self.folder, "tour.script")
+        with open(script, "w", encoding="utf-8") as file:
+            file.write("0s publish proximity_ring 5ms\n0s publish gyro 2ms\n0s drive 5cm/s\n1500ms stop\n")
+        self.start_sim()
+        listener = self.start("listen", "--commands", "motors", "--timeout", "20s")
+        self.assertIn("bus: sim", listener.stderr.readline())
+        ours, theirs = os.openpty()
+        process = self.start_to(theirs, "--bus", "sim", "run", script, "--show")
+        os.close(theirs)
+        for data in ("50C3000000000000", "0000000000000000"):
+            waiting.until(lambda data=data: data in listener.stdout.readline(), data)
+        _, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 0, err)
+        self.assertRegex(err, r"run: [1-9]\d* answers not shown: stdout took none\n")
+        os.close(ours)
+
     def test_messages_that_nobody_reads_hold_up_no_recording(self):
         self.start_sim()
         self.run_tool("publish", "gyro", "10ms")
