@@ -95,7 +95,7 @@ transport::Outcome<void> Files::open_next() {
   begin_.reset();
   elsewhere_ = false;
   std::fill(recorded_.begin(), recorded_.end(), log::Recorded{});
-  if (!file_->has_room()) delete_oldest();
+  if (options_.ring != 0 && !file_->has_room()) delete_oldest();
   return {};
 }
 
@@ -126,7 +126,7 @@ bool Files::write(std::span<const log::Entry> entries, const log::Interfaces& in
     if (options_.split.size == 0) continue;
     // What a buffer holds back has no size yet.
     if (!file_->flush()) return failed(file_->failure());
-    if (file_->size() != 0) delete_oldest();
+    delete_oldest();
   }
   return true;
 }
@@ -141,7 +141,7 @@ bool Files::append(std::span<const log::Entry> entries, const log::Interfaces& i
 
 bool Files::flush() {
   if (!file_->flush(options_.sync)) return failed(file_->failure());
-  if (file_->size() != 0) delete_oldest();
+  if (entries_ != 0) delete_oldest();  // a format may begin its file without a frame
   return is_in_place();
 }
 
@@ -206,7 +206,7 @@ bool Files::next_file() {
   return true;
 }
 
-/// Once the newest file has something in it, or to make room for that.
+/// Once the newest file has a frame in it, or to make room for one.
 void Files::delete_oldest() {
   while (options_.ring != 0 && kept_.size() > options_.ring) {
     remove(kept_.front());
@@ -214,7 +214,7 @@ void Files::delete_oldest() {
   }
 }
 
-/// One without a frame takes the place of none that has some.
+/// A file without a frame must not take the place of one that has some.
 void Files::delete_newest() {
   if (options_.ring != 0) remove(path_);
 }

@@ -250,7 +250,11 @@ class Recording(Case):
             self.run_ring("bb.log")
         for ending in ("log", "pcapng", "log.gz"):
             for _ in range(3):
-                _, err = self.interrupt(self.record("-o", "bb." + ending, "--split", "1h", "--ring", "2"))
+                recorder = self.record("-o", "bb." + ending, "--split", "1h", "--ring", "2")
+                if ending == "pcapng":  # it begins its file without a frame
+                    waiting.until(lambda: any(os.path.getsize(self.path(name)) for name in self.ring("bb_") if name.endswith("ng")),
+                                  "the file is begun")
+                _, err = self.interrupt(recorder)
                 self.assertIn(" 0 frames ", err)
                 self.assertIn(", 1 of the files deleted again", err)
         self.assertEqual(self.ring("bb_"), ["bb_001.log", "bb_002.log"])
