@@ -69,7 +69,8 @@ void OwnLine::finish() {
 }
 
 void OwnLine::flush(base::Duration limit) {
-  constexpr int fewest = 20;  // a stop of this program takes no time from the dongle
+  constexpr int fewest =
+      20;  // after a stop of this program the limit is over, and the dongle has had no time
   const base::Time end = line_time() + limit;
   server_.expire(line_time());
   const auto rest = [this] {

@@ -61,18 +61,18 @@ bool takes(int descriptor, std::chrono::milliseconds patience) {
 }
 constexpr std::size_t most_at_once = 256;
 
-/// A way into the same terminal on which no write waits; the descriptor itself where it is none, or there is
-/// no other way.
-int without_wait(int descriptor) {
-  static std::array<int, STDERR_FILENO + 1> ways{-1, -1, -1};
+/// A terminal is opened a second time, without blocking: other programs share the first descriptor, and its
+/// flags. The descriptor itself where it is no terminal, or the terminal cannot be opened.
+int non_blocking(int descriptor) {
+  static std::array<int, STDERR_FILENO + 1> opened{-1, -1, -1};
   if (isatty(descriptor) == 0) return descriptor;
-  int& way = ways.at(static_cast<std::size_t>(descriptor));
-  if (way < 0) {
+  int& again = opened.at(static_cast<std::size_t>(descriptor));
+  if (again < 0) {
     const std::string path = fmt::format("/proc/self/fd/{}", descriptor);
-    way = ::open(path.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
-    if (way < 0) way = descriptor;
+    again = ::open(path.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    if (again < 0) again = descriptor;
   }
-  return way;
+  return again;
 }
 
 /// Writes what is kept, in pieces that do not wait, as long as stderr takes one within `patience`.
@@ -90,12 +90,12 @@ void write_kept(Kept& messages, std::chrono::milliseconds patience) {
     if (!takes(STDERR_FILENO, std::max(left, std::chrono::milliseconds{0}))) return;
     std::string& line = messages.lines.front();
     const std::size_t left_of_it = line.size() - messages.written;
-    // Without memory, too: a message may be about that.
+    // Takes no memory: the message may be that there is none.
     char line_feed[] = "\n";
     const std::array<iovec, 2> pieces{{{line.data() + messages.written, std::min(left_of_it, most_at_once)},
                                        {line_feed, left_of_it < most_at_once ? 1U : 0U}}};
-    const int way = without_wait(STDERR_FILENO);
-    const ssize_t size = ::writev(way, pieces.data(), static_cast<int>(pieces.size()));
+    const int out = non_blocking(STDERR_FILENO);
+    const ssize_t size = ::writev(out, pieces.data(), static_cast<int>(pieces.size()));
     if (size < 0 && (errno == EINTR || errno == EAGAIN)) return;
     // Where it fails there is no reader, or a full disk.
     messages.written += size < 0 ? left_of_it + 1 : static_cast<std::size_t>(size);
@@ -228,7 +228,7 @@ UnhurriedMessages::~UnhurriedMessages() {
   if (--kept().unhurried != 0 || kept().holds) return;
   try {
     write_kept(kept(), std::chrono::seconds{1});
-  } catch (const std::bad_alloc&) {  // of what is lost, the count
+  } catch (const std::bad_alloc&) {  // the number of lost messages is not said: that needs memory
   }
   kept().lines.clear();
 }
@@ -246,7 +246,7 @@ Written write_now(int descriptor, std::string_view text) {
   Written written;
   while (written.bytes < text.size() && takes(descriptor, std::chrono::milliseconds{0})) {
     const std::string_view piece = text.substr(written.bytes, most_at_once);
-    const ssize_t size = ::write(without_wait(descriptor), piece.data(), piece.size());
+    const ssize_t size = ::write(non_blocking(descriptor), piece.data(), piece.size());
     if (size < 0 && (errno == EINTR || errno == EAGAIN)) break;
     if (size < 0) {
       written.error = errno;

@@ -24,8 +24,8 @@ class UnhurriedMessages {
 /// The same from now on, to the program's end.
 void never_wait_for_messages();
 
-/// Writes to stdout or stderr what that takes without a wait; less than all without an error: it takes no
-/// more now.
+/// Writes to stdout or stderr as much as it takes without a wait. Fewer bytes and no error: it has no room
+/// now.
 [[nodiscard]] Written write_now(int descriptor, std::string_view text);
 
 }  // namespace ocm::cli

@@ -28,7 +28,7 @@ struct ListenOptions {
   std::optional<base::Duration> idle_timeout;
 };
 
-/// Who hears nothing for so long may wait for what was never asked for.
+/// After so long without a frame the sensor may never have been asked.
 constexpr base::Duration silence = std::chrono::seconds{2};
 
 void say_how_to_ask(const protocol::Catalogue& catalogue, std::vector<const protocol::Topic*> topics,

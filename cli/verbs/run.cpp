@@ -176,28 +176,32 @@ class Answers {
                              session.colour(), columns_of_output)) {}
 
   /// What comes before that is for the script, which listens for another commander.
-  void begin() { begun_ = true; }
+  void begin() { shows_ = true; }
 
   void show(const can::Received& received) {
-    if (!begun_) return;
+    if (!shows_) return;
     const auto reception = receiver_.take(received);
     if (reception.meaning == client::Meaning::request || reception.meaning == client::Meaning::set_point)
       return;
+    shows_ = false;               // a failure ends this: what stops the robot then hears frames, too
     if (!printer_.flush_now()) {  // the next step waits for no reader
       ++hidden_;
-      return;
+    } else {
+      printer_.write({bus_, log::Entry{received.time, received.frame}, reception});
+      static_cast<void>(printer_.flush_now());
     }
-    printer_.write({bus_, log::Entry{received.time, received.frame}, reception});
-    rest_ = !printer_.flush_now();
+    shows_ = true;
   }
 
-  void tell_hidden() {
-    // A line that was begun: its reader may need a moment.
-    for (int looks = 0; looks < 10 && rest_; ++looks) {
-      rest_ = !printer_.flush_now();
-      if (rest_) sleep_for(std::chrono::milliseconds{100});
+  /// Writes the rest of a line, for which its reader has a second; says how many were not shown. Leaves
+  /// through cli::fail where stdout takes no more.
+  void finish() {
+    bool whole = printer_.flush_now();
+    for (int looks = 0; looks < 10 && !whole; ++looks) {
+      sleep_for(std::chrono::milliseconds{100});
+      whole = printer_.flush_now();
     }
-    hidden_ += rest_ ? 1 : 0;
+    if (!whole) ++hidden_;
     if (hidden_ != 0) remark(fmt::format("run: {} not shown: stdout took none", counted(hidden_, "answer")));
   }
 
@@ -205,8 +209,7 @@ class Answers {
   std::string bus_;
   client::Receiver receiver_;
   Printer printer_;
-  bool begun_ = false;
-  bool rest_ = false;  ///< of the newest line
+  bool shows_ = false;
   std::uint64_t hidden_ = 0;
 };
 
@@ -267,7 +270,6 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
   try {
     whole = carry_out();
   } catch (const Exit&) {  // the error is said
-    answers.tell_hidden();
     if (bus->state() == transport::BusState::closed) throw;
     end_behaviours(done(), timeline, behaviours);
     if (!behaviours.all().empty() && timeline.finish()) remark(behaviours.names() + " ended");
@@ -275,11 +277,11 @@ void run(Session& session, const RunOptions& options, int& exit_code) {
   }
   if (!whole) end_behaviours(done(), timeline, behaviours);
   if (!timeline.finish()) exit_code = exit_failure;
-  answers.tell_hidden();
   if (!whole) {
     remark(left_by(done(), catalogue, behaviours));
     exit_code = exit_code_after_interrupt(exit_success);
   }
+  answers.finish();
 }
 
 }  // namespace

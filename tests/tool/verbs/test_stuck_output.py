@@ -128,6 +128,24 @@ class StuckOutput(Case):
         self.assertRegex(err, r"run: [1-9]\d* answers not shown: stdout took none\n")
         os.close(ours)
 
+    def test_a_terminal_that_goes_ends_a_travel(self):
+        """In the middle of a line that it had no room for."""
+        script = os.path.join(self.folder, "tour.script")
+        with open(script, "w", encoding="utf-8") as file:
+            file.write("0s publish gyro 2ms\n0s set travel distance=100cm angle=0rad speed=10cm/s\n60s stop\n")
+        self.start_sim()
+        listener = self.start("listen", "gyro", "-n", "600")
+        self.assertIn("bus: sim", listener.stderr.readline())
+        ours, theirs = os.openpty()
+        process = self.start_to(theirs, "--bus", "sim", "run", script, "--show")
+        os.close(theirs)
+        listener.communicate(timeout=60)  # so many do not fit into a terminal that is not read
+        os.close(ours)
+        _, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 1, err)
+        self.assertIn("travel was ended\n", err)
+        self.assertEqual(err.count("cannot write the output"), 1, err)
+
     def test_messages_that_nobody_reads_hold_up_no_recording(self):
         self.start_sim()
         self.run_tool("publish", "gyro", "10ms")
