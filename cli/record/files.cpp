@@ -19,6 +19,14 @@ namespace {
 /// Reading back more would delay a message too long.
 constexpr std::uint64_t most_to_read_back = std::uint64_t{1} << 30;
 
+/// Whether it did.
+bool remove(const std::string& path) {
+  if (::unlink(path.c_str()) == 0) return true;
+  if (errno != ENOENT)  // another program may have removed it, which is the aim
+    remark(fmt::format("cannot delete {}: {}", path, std::strerror(errno)));
+  return false;
+}
+
 }  // namespace
 
 Files::Files(FilesOptions options, const protocol::Catalogue& catalogue)
@@ -37,12 +45,17 @@ transport::Outcome<void> Files::open() {
 /// A ring is a budget of the folder: what recordings of the same name have left counts, and goes first.
 transport::Outcome<void> Files::join_ring() {
   if (options_.ring == 0) return {};
-  const auto there = numbered_files(name_);
+  auto there = numbered_files(name_);
   const std::string all = fmt::format("{}_*{}", name_.stem, name_.ending);
   for (const auto& file : there)
     if (logs::is_being_written(file.path))
       return transport::Failure{fmt::format("another program records to {} now", file.path),
                                 "end it, or give another name"};
+  // What a recording leaves that was killed before its first frame takes the place of none.
+  std::erase_if(there, [](const auto& file) {
+    std::error_code unreadable;
+    return std::filesystem::file_size(file.path, unreadable) == 0 && !unreadable && remove(file.path);
+  });
   // One more than the ring has is what a recording leaves that was cut off while it changed files.
   if (!there.empty() && there.size() - 1 > options_.ring && !options_.overwrite)
     return transport::Failure{fmt::format("{} files {} are there, and --ring {} would delete {} of them now",
@@ -140,8 +153,10 @@ bool Files::append(std::span<const log::Entry> entries, const log::Interfaces& i
 }
 
 bool Files::flush() {
+  // A file of a ring is empty up to its first frame, whatever its format begins with.
+  if (options_.ring != 0 && entries_ == 0) return is_in_place();
   if (!file_->flush(options_.sync)) return failed(file_->failure());
-  if (entries_ != 0) delete_oldest();  // a format may begin its file without a frame
+  delete_oldest();
   return is_in_place();
 }
 
@@ -209,21 +224,14 @@ bool Files::next_file() {
 /// Once the newest file has a frame in it, or to make room for one.
 void Files::delete_oldest() {
   while (options_.ring != 0 && kept_.size() > options_.ring) {
-    remove(kept_.front());
+    if (remove(kept_.front())) ++deleted_;
     kept_.pop_front();
   }
 }
 
 /// A file without a frame must not take the place of one that has some.
 void Files::delete_newest() {
-  if (options_.ring != 0) remove(path_);
-}
-
-void Files::remove(const std::string& path) {
-  if (::unlink(path.c_str()) == 0)
-    ++deleted_;
-  else if (errno != ENOENT)  // another program may have removed it, which is the aim
-    remark(fmt::format("cannot delete {}: {}", path, std::strerror(errno)));
+  if (options_.ring != 0) keeps_none_ = remove(path_);
 }
 
 bool Files::failed(const transport::Failure& failure) {

@@ -74,7 +74,9 @@ class Files {
   [[nodiscard]] const std::string& first_path() const noexcept { return first_path_; }
   /// What the format could not hold, of all files that are finished.
   [[nodiscard]] const log::Losses& losses() const noexcept { return losses_; }
-  [[nodiscard]] std::uint64_t deleted() const noexcept { return deleted_; }
+  [[nodiscard]] std::uint64_t deleted() const noexcept { return deleted_; }  ///< to make room in the ring
+  /// Whether the newest file was deleted at the end, because a ring keeps none without a frame.
+  [[nodiscard]] bool keeps_none() const noexcept { return keeps_none_; }
 
   /// After a failure: how many frames can be read back. Reads the last file once more.
   [[nodiscard]] std::uint64_t readable() const;
@@ -95,7 +97,6 @@ class Files {
   [[nodiscard]] bool finish(Next next);
   void delete_oldest();
   void delete_newest();
-  void remove(const std::string& path);
 
   FilesOptions options_;
   const protocol::Catalogue* catalogue_;
@@ -109,6 +110,7 @@ class Files {
   std::uint64_t number_ = 0;  ///< of the newest file's name
   std::uint64_t count_ = 0;
   std::uint64_t deleted_ = 0;
+  bool keeps_none_ = false;
   std::uint64_t finished_size_ = 0;
   std::uint64_t finished_entries_ = 0;
   std::uint64_t entries_ = 0;  ///< in the newest file

@@ -196,6 +196,7 @@ std::uint64_t summarise(const record::Recorder& recorder, const record::Files& f
   if (files.count() > 1) text += fmt::format(" .. {} ({} files)", files.path(), files.count());
   text += fmt::format(", {}", record::size_text(files.size()));
   add_count(text, files.deleted(), "of the files deleted again");
+  if (files.keeps_none()) text += ", not kept: a ring keeps no file without a frame";
   std::uint64_t lost = 0;
   for (const auto& port : recorder.ports()) {
     const std::string where = recorder.ports().size() > 1 ? " on " + port.name : "";
