@@ -364,8 +364,8 @@ std::vector<Option> Option::needed() const {
   return handles(option_->get_needs(), owner_);
 }
 
-std::string Option::last_text() const {
-  return option_->results().empty() ? std::string{} : option_->results().back();
+std::vector<std::string> Option::texts() const {
+  return option_->results();
 }
 
 int Option::least_values() const {

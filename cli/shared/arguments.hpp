@@ -63,8 +63,8 @@ class Option {
 
   /// How often the command line has it.
   [[nodiscard]] std::size_t count() const;
-  /// The last of its values there; empty: it has none.
-  [[nodiscard]] std::string last_text() const;
+  /// Its values there, as they were typed.
+  [[nodiscard]] std::vector<std::string> texts() const;
 
   // What was declared.
   [[nodiscard]] std::vector<std::string> long_names() const;  ///< without --; former ones, too

@@ -66,10 +66,12 @@ Misuse unknown_word(Verb program, Verb verb, const std::string& word) {
                 : remedy_for(name, known, fmt::format("`{}` lists the options", help_of(program, verb)))};
   }
   if (verb.verbs().empty()) {
-    std::string before;
+    std::vector<std::string> typed;
     for (const Option& option : verb.options())
-      if (option.is_positional() && option.count() != 0) before = option.last_text();
-    const std::string whole = words::written_apart(before, word);
+      if (const auto texts = option.texts(); option.is_positional())
+        typed.insert(typed.end(), texts.begin(), texts.end());
+    typed.push_back(word);
+    const std::string whole = words::any_written_apart(typed);
     return {fmt::format("unexpected argument '{}'", word),
             whole.empty() ? "usage: " + usage(verb) : "write it as one word, " + whole};
   }

@@ -31,13 +31,13 @@ struct ListenOptions {
 /// After so long without a frame the sensor may never have been asked.
 constexpr base::Duration silence = std::chrono::seconds{2};
 
-void say_how_to_ask(const protocol::Catalogue& catalogue, std::vector<const protocol::Topic*> topics,
-                    const ListenOptions& options) {
-  // Who sends what is chosen by its identifier is not known.
-  if (!options.choice.filters.empty() || !options.choice.groups.empty()) return;
+/// The topics that are waited for; none: any frame will do.
+std::vector<const protocol::Topic*> awaited_topics(const protocol::Catalogue& catalogue, const Choice& choice,
+                                                   const ListenOptions& options) {
+  auto topics = choice.topics();
   if (const auto selection = Selection::of(catalogue, options.display.fields); topics.empty() && selection)
     for (const ChosenField& field : selection->fields()) topics.push_back(field.topic);
-  tell_to_ask(catalogue, topics);
+  return topics;
 }
 
 void listen(Session& session, const ListenOptions& options, int& exit_code) {
@@ -62,12 +62,15 @@ void listen(Session& session, const ListenOptions& options, int& exit_code) {
   const auto begin = Clock::now();
   auto last = begin;
   const auto end = [&] { return std::min(begin + timeout, last + idle); };
-  bool any = false;
+  const auto awaited = awaited_topics(catalogue, choice, options);
+  const bool any_will_do = awaited.empty() || !options.choice.conditions.empty();  // not all meet them
+  bool any = !options.choice.filters.empty() || !options.choice.groups.empty();    // who sends these?
   const auto take = [&](const transport::ReceivedAny& received) {
-    any = true;
     const log::Entry entry{received.time, received.frame};
+    any |= any_will_do;
     if (!choice.has(entry)) return true;
     const client::Reception reception = display.understand(entry);
+    any |= std::find(awaited.begin(), awaited.end(), reception.topic) != awaited.end();
     if (!choice.shows(entry, reception)) return true;
     const auto meaning = reception.meaning;
     using client::Meaning;
@@ -79,7 +82,7 @@ void listen(Session& session, const ListenOptions& options, int& exit_code) {
   };
   Live live{*bus, [&] { display.flush(); }};
   Over over = live.receive_any(std::min(end(), begin + silence), take);
-  if (over == Over::time && !any) say_how_to_ask(catalogue, topics, options);
+  if (over == Over::time && !any) tell_to_ask(catalogue, awaited);
   while (over == Over::time && Clock::now() < end()) over = live.receive_any(end(), take);
   display.flush();
   display.summarise(bus->counters().lost, listened.now());

@@ -139,7 +139,7 @@ class CommandParser {
         return WordError{line.size(), "missing " + std::string{word}, usage(line[0])};
     }
     if (form.empty() || line.size() <= count) return {};
-    const std::string whole = written_apart(line[count - 1], line[count]);
+    const std::string whole = any_written_apart(line.first(count + 1));
     return WordError{count, "unexpected argument " + detail::quoted(line[count]),
                      whole.empty() ? usage(line[0]) : "write it as one word, " + whole};
   }
@@ -407,8 +407,12 @@ class CommandParser {
       // The number of a message is physical wherever messages are known; it needs no unit.
       // [docs/decisions/0027]
       const auto value = target.is_message() ? parse_value(field, text) : parse_typed_value(field, text);
-      if (!value)
-        return WordError{i, value.error, "for example " + std::string{name} + "=" + example_of(field, text)};
+      if (!value) {
+        const std::string whole = i + 1 < line.size() ? written_apart(text, line[i + 1]) : std::string{};
+        return WordError{i, value.error,
+                         (whole.empty() ? "for example " : "write it as one word, ") + std::string{name} +
+                             "=" + (whole.empty() ? example_of(field, text) : whole)};
+      }
       if (!is_in_stated_range(field, *value))
         return WordError{i, beyond_stated_range(field, text),
                          target.is_message() ? force_beyond_range : "a value within it"};

@@ -216,6 +216,14 @@ namespace detail {
   return parse_duration(whole) || (of_speed && of_speed->per != 0) ? whole : std::string{};
 }
 
+/// The same, of the first such two of a line; empty: none was.
+template <typename Words>
+[[nodiscard]] std::string any_written_apart(const Words& words) {
+  for (std::size_t i = 1; i < words.size(); ++i)
+    if (std::string whole = written_apart(words[i - 1], words[i]); !whole.empty()) return whole;
+  return {};
+}
+
 /// What `text` is in place of the time that was expected: `otherwise`, unless it is one but for its unit.
 [[nodiscard]] inline std::string instead_of_time(std::string_view text, std::string_view otherwise) {
   return std::string{lacks_unit(text) ? "a time without a unit" : otherwise};

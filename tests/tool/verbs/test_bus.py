@@ -102,6 +102,16 @@ class OnTheBus(Case):
         self.run_tool("listen", "--idle-timeout", "200ms")
         self.run_tool("listen", "-n", "1", "--timeout", "200ms", code=1)
 
+    def test_a_sensor_that_nobody_asked(self):
+        self.start_sim()
+        self.run_tool("publish", "odom", "100ms")
+        hint = "a sensor is silent until it is asked, as by `amiroctl publish gyroscope 500ms`"
+        for words, told in ((("gyro",), True), (("--field", "gyro.z"), True), (("--field", "odom.x"), False), ((), False),
+                            (("--filter", "600:700"), False), (("--where", "odom.velocity.x>100"), False)):
+            with self.subTest(words=words):
+                _, err = self.run_tool("listen", *words, "--timeout", "2100ms")
+                self.assertEqual(hint in err, told, err)
+
     def test_ctrl_c_ends_listen_cleanly(self):
         self.start_sim()
         for number in (signal.SIGINT, signal.SIGTERM):

@@ -174,6 +174,10 @@ publish gyro 500 ms
 publish: unexpected argument 'ms'
 write it as one word, 500ms
 
+drive 5 cm/s 10 deg/s
+drive: unexpected argument '10'
+write it as one word, 5cm/s
+
 publish gyro 500
 publish: '500' needs a unit: us, ms or s
 write 500ms, 2s or 900us
