@@ -152,20 +152,6 @@ std::string left_by(std::span<const words::Step> steps, const protocol::Catalogu
   return left.empty() ? "interrupted" : fmt::format("interrupted: {}", fmt::join(left, "; "));
 }
 
-/// Ends what boards do by themselves because of these steps; leaves through cli::fail if the end cannot be
-/// sent.
-void end_behaviours(std::span<const words::Step> steps, Timeline& timeline, BegunBehaviours& behaviours) {
-  for (const auto& step : steps)
-    step.command.each_frame([&](const can::AnyFrame& frame) {
-      if (const auto classic = frame.classic()) behaviours.sent(*classic);
-    });
-  client::Command end;
-  for (const auto& each : behaviours.all()) end.frames.push_back(each.end);
-  if (end.frames.empty()) return;
-  timeline.forgive_a_stop();  // an end is never too late
-  timeline.carry_out_once(end);
-}
-
 /// What the robot says meanwhile, for --show.
 class Answers {
  public:
@@ -213,75 +199,129 @@ class Answers {
   std::uint64_t hidden_ = 0;
 };
 
+/// A script that is carried out on the bus.
+class ScriptRun {
+ public:
+  ScriptRun(Session& session, const RunOptions& options, const protocol::Catalogue& catalogue,
+            const words::Script& script)
+      : catalogue_(&catalogue),
+        steps_(script.steps),
+        speed_(options.speed),
+        drives_(first_drive(script, options.speed)),
+        bus_(open_to_command(session, "run")),
+        answers_(session, catalogue, bus_->name()),
+        timeline_(
+            *bus_, catalogue, "run", options.force ? Timeline::Others::allowed : Timeline::Others::refused,
+            options.no_confirm ? Confirm::no : Confirm::yes,
+            options.show ? std::function{[this](const can::Received& received) { answers_.show(received); }}
+                         : std::function<void(const can::Received&)>{}),
+        behaviours_(catalogue) {}
+
+  /// The exit code. Leaves through cli::fail where a step cannot be carried out; what boards do by themselves
+  /// because of earlier ones is ended then, as after a signal.
+  [[nodiscard]] int carry_out() {
+    listen_first();
+    bool whole = false;
+    try {
+      whole = carry_out_steps() && wait_for_end();
+    } catch (const Exit&) {  // the error is said
+      if (bus_->state() == transport::BusState::closed) throw;
+      end_behaviours();
+      if (!behaviours_.all().empty() && timeline_.finish()) remark(behaviours_.names() + " ended");
+      throw;
+    }
+    if (!whole) end_behaviours();
+    int exit_code = timeline_.finish() ? exit_success : exit_failure;
+    if (!whole) {
+      remark(left_by(done(), *catalogue_, behaviours_));
+      exit_code = exit_code_after_interrupt(exit_success);
+    }
+    answers_.finish();
+    return exit_code;
+  }
+
+ private:
+  /// So long that another program that commands the motors is heard before the first drive.
+  void listen_first() {
+    if (drives_ && *drives_ < client::listen_before_hold)
+      static_cast<void>(timeline_.listen_first(client::listen_before_hold - *drives_));  // signals: see below
+    answers_.begin();
+  }
+
+  /// Whether all of them were.
+  [[nodiscard]] bool carry_out_steps() {
+    const auto start = Timeline::Clock::now();
+    bool asks = drives_ && *drives_ > asks_before && !timeline_.has_asked();
+    for (const auto& step : steps_) {
+      if (asks && due(step, speed_) > *drives_ - asks_before) {
+        if (!timeline_.wait_for_step(start + *drives_ - asks_before)) return false;
+        timeline_.ask();
+        asks = false;
+      }
+      if (!timeline_.wait_for_step(start + due(step, speed_))) return false;
+      remark(fmt::format("{:>8}  {}", words::to_text(step.at), step.text));
+      ++begun_;
+      timeline_.carry_out(step.command);
+    }
+    return interrupted() == 0;
+  }
+
+  /// Of what the steps have begun; says what has none. Whether no signal came.
+  [[nodiscard]] bool wait_for_end() {
+    if (const auto names = repeated_after(steps_, *catalogue_); !names.empty())
+      remark(fmt::format("run: {} {} sent until Ctrl-C; --for ends that", fmt::join(names, ", "),
+                         names.size() == 1 ? "is" : "are"));
+    if (holds_after(steps_))
+      remark("run: the drive goes on until Ctrl-C; --for, or a last step `drive stop`, ends it");
+    return interrupted() == 0 && timeline_.wait_for_end();
+  }
+
+  /// Ends what boards do by themselves because of the steps; leaves through cli::fail if the end cannot be
+  /// sent.
+  void end_behaviours() {
+    for (const auto& step : done())
+      step.command.each_frame([&](const can::AnyFrame& frame) {
+        if (const auto classic = frame.classic()) behaviours_.sent(*classic);
+      });
+    client::Command end;
+    for (const auto& each : behaviours_.all()) end.frames.push_back(each.end);
+    if (end.frames.empty()) return;
+    timeline_.forgive_a_stop();  // an end is never too late
+    timeline_.carry_out_once(end);
+  }
+
+  [[nodiscard]] std::span<const words::Step> done() const { return steps_.first(begun_); }
+
+  const protocol::Catalogue* catalogue_;
+  std::span<const words::Step> steps_;
+  double speed_;
+  std::optional<base::Duration> drives_;  ///< when the first drive is due, from the start
+  std::unique_ptr<transport::Bus> bus_;
+  Answers answers_;
+  Timeline timeline_;
+  BegunBehaviours behaviours_;
+  std::size_t begun_ = 0;  ///< steps, the last one perhaps in part
+};
+
+/// What each step sends, and when.
+void print_frames(const words::Script& script) {
+  for (const auto& step : script.steps)
+    step.command.each_frame([&](const can::AnyFrame& frame) {
+      fmt::print("{:<8} {}\n", words::to_text(step.at), can::to_text(frame).view());
+    });
+}
+
 void run(Session& session, const RunOptions& options, int& exit_code) {
   const auto& catalogue = session.catalogue_on_bus(false);
   const auto script = checked(options.file, read_script(options.file), catalogue);
   if (options.dry_run) {
-    for (const auto& step : script.steps)
-      step.command.each_frame([&](const can::AnyFrame& frame) {
-        fmt::print("{:<8} {}\n", words::to_text(step.at), can::to_text(frame).view());
-      });
+    print_frames(script);
     return;
   }
-
   catch_interrupts();
   catch_hangups();
   catch_broken_pipe();
-  const auto bus = open_to_command(session, "run");
-  Answers answers{session, catalogue, bus->name()};
-  Timeline timeline{*bus,
-                    catalogue,
-                    "run",
-                    options.force ? Timeline::Others::allowed : Timeline::Others::refused,
-                    options.no_confirm ? Confirm::no : Confirm::yes,
-                    options.show
-                        ? std::function{[&](const can::Received& received) { answers.show(received); }}
-                        : std::function<void(const can::Received&)>{}};
-  // So long that another program that commands the motors is heard before the first drive.
-  const auto drives = first_drive(script, options.speed);
-  if (drives && *drives < client::listen_before_hold)
-    static_cast<void>(timeline.listen_first(client::listen_before_hold - *drives));  // a signal is seen below
-  answers.begin();
-  const auto start = Timeline::Clock::now();
-  bool asks = drives && *drives > asks_before && !timeline.has_asked();
-  std::size_t begun = 0;  // steps, the last one perhaps in part
-  const auto carry_out = [&] {
-    for (const auto& step : script.steps) {
-      if (asks && due(step, options.speed) > *drives - asks_before) {
-        if (!timeline.wait_for_step(start + *drives - asks_before)) break;
-        timeline.ask();
-        asks = false;
-      }
-      if (!timeline.wait_for_step(start + due(step, options.speed))) break;
-      remark(fmt::format("{:>8}  {}", words::to_text(step.at), step.text));
-      ++begun;
-      timeline.carry_out(step.command);
-    }
-    if (const auto names = repeated_after(script.steps, catalogue); !names.empty() && interrupted() == 0)
-      remark(fmt::format("run: {} {} sent until Ctrl-C; --for ends that", fmt::join(names, ", "),
-                         names.size() == 1 ? "is" : "are"));
-    if (interrupted() == 0 && holds_after(script.steps))
-      remark("run: the drive goes on until Ctrl-C; --for, or a last step `drive stop`, ends it");
-    return interrupted() == 0 && timeline.wait_for_end();
-  };
-  BegunBehaviours behaviours{catalogue};
-  const auto done = [&] { return std::span{script.steps}.first(begun); };
-  bool whole = false;
-  try {
-    whole = carry_out();
-  } catch (const Exit&) {  // the error is said
-    if (bus->state() == transport::BusState::closed) throw;
-    end_behaviours(done(), timeline, behaviours);
-    if (!behaviours.all().empty() && timeline.finish()) remark(behaviours.names() + " ended");
-    throw;
-  }
-  if (!whole) end_behaviours(done(), timeline, behaviours);
-  if (!timeline.finish()) exit_code = exit_failure;
-  if (!whole) {
-    remark(left_by(done(), catalogue, behaviours));
-    exit_code = exit_code_after_interrupt(exit_success);
-  }
-  answers.finish();
+  exit_code = ScriptRun{session, options, catalogue, script}.carry_out();
 }
 
 }  // namespace
