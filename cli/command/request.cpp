@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <unistd.h>
 #include <vector>
 
@@ -88,11 +89,13 @@ void add_request_options(Verb verb, Session& session, std::string_view words_hel
     base::Duration wait = std::chrono::seconds{2};
   };
   const auto options = std::make_shared<Options>(verb, session, words_help);
-  const auto wait = verb.add_value("--wait", take_into(options->wait, words::read_lasting),
-                                   "show the first sample; T: how long to wait for it");
+  const auto wait =
+      verb.add_value("--wait", take_into(options->wait, words::read_lasting),
+                     starts == Starts::stream ? "show the first sample; T: how long to wait for it"
+                                              : "how long to wait for the sample, with --no-confirm, too");
   wait.expected(0, 1).type_name("[T]").takes(accepted_lasting()).default_text(words::to_text(options->wait));
   if (starts == Starts::stream) add_admission_options(verb, options->admission);
-  verb.callback([options, wait, &session] {
+  verb.callback([options, wait, starts, &session] {
     protocol::Catalogue catalogue = options->commanding.catalogue();
     const auto command = options->commanding.parse();
     const bool dry_run = options->commanding.dry_run();
@@ -104,14 +107,14 @@ void add_request_options(Verb verb, Session& session, std::string_view words_hel
     admit(catalogue, *bus, command, options->admission, refusals);
     if (dry_run) return print_frames(command);
     const auto& verb_name = options->commanding.verb();
-    if (wait.count() != 0) {
-      Printer printer{make_output(isatty(STDOUT_FILENO) != 0 ? Format::pretty : Format::json, catalogue, {},
-                                  session.colour(), columns_of_output)};
-      return send_and_await(catalogue, *bus, refusals, verb_name, command, options->wait, &printer);
-    }
-    if (options->commanding.confirm() == Confirm::yes)
-      return send_and_await(catalogue, *bus, refusals, verb_name, command, options->wait, nullptr);
-    send_all(*bus, refusals, verb_name, command);
+    if (options->commanding.confirm() == Confirm::no && wait.count() == 0)
+      return send_all(*bus, refusals, verb_name, command);
+    std::optional<Printer> printer;
+    if (starts == Starts::sample || wait.count() != 0)
+      printer.emplace(make_output(isatty(STDOUT_FILENO) != 0 ? Format::pretty : Format::json, catalogue, {},
+                                  session.colour(), columns_of_output));
+    send_and_await(catalogue, *bus, refusals, verb_name, command, options->wait,
+                   printer ? &*printer : nullptr);
   });
 }
 

@@ -1,4 +1,4 @@
-/// publish and once: a request, and the first sample that answers it, which --wait shows.
+/// publish and once: a request, and the first sample that answers it, which once shows, and publish --wait.
 #pragma once
 
 #include <string_view>

@@ -5,7 +5,8 @@ namespace ocm::cli {
 
 void add_once(Verb app, Session& session, int&) {
   auto verb = app.add_verb("once", "ask a sensor for one sample; a running publisher of it stops", ask_group,
-                           "  amiroctl once power --wait\n"
+                           "  amiroctl once power\n"
+                           "  amiroctl once floor --wait 10s           a slow one\n"
                            "  amiroctl once floor --dry-run            prints 204#02");
   add_request_options(verb, session, "name, alias or id");
 }

@@ -37,7 +37,7 @@ class OnTheBus(Case):
 
     def test_once_waits_and_shows(self):
         self.start_sim()
-        sample, = self.objects(self.run_tool("once", "power", "--wait")[0])
+        sample, = self.objects(self.run_tool("once", "power")[0])
         self.assertEqual(sample["topic"], "power_status")
         frames = self.objects(self.run_tool("once", "ring", "--wait", "5s")[0])
         self.assertEqual(len(frames), 8)
