@@ -69,6 +69,11 @@ std::string read_script(const std::string& file) {
   if (text.size() > max_script)
     fail({fmt::format("{} is larger than {} MiB", file, max_script >> 20U),
           "a script has one command a line"});
+  if (const auto at = text.find('\0'); at != std::string::npos)
+    fail({fmt::format("{} is no text: line {} has a byte of zero", file,
+                      std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n') + 1),
+          "a script has one command a line"},
+         exit_usage);
   return text;
 }
 

@@ -420,6 +420,10 @@ class Scripts(Case):
         _, err = self.run_tool("run", self.script(line + "x" * (most + 1 - len(line))), "--dry-run", code=1)
         self.assertIn("larger than 16 MiB", err)
 
+    def test_what_is_no_script(self):
+        _, err = self.run_tool("run", self.script("0s led 1 red\n0s led\0 1 red\n"), "--dry-run", code=2)
+        self.assertRegex(err, r"^amiroctl: run: \S* is no text: line 2 has a byte of zero\n +a script has one command a line\n$")
+
     def test_a_missing_script(self):
         _, err = self.run_tool("run", os.path.join(self.folder, "none.script"), code=1)
         self.assertIn("none.script", err)
