@@ -44,6 +44,8 @@ struct BehaveOptions {
   bool force = false;
   bool dry_run = false;
   bool no_confirm = false;
+
+  [[nodiscard]] Confirm confirm() const { return no_confirm ? Confirm::no : Confirm::yes; }
 };
 
 /// The set point of a behaviour with a speed and, where it has one, a distance; leaves with exit_usage where
@@ -83,122 +85,184 @@ std::string remedy_for(const std::string& ended) {
   return "another program has commanded the robot";
 }
 
-/// Ends what any board does by itself.
-client::Command none(const protocol::Catalogue& catalogue, const BehaveOptions& options) {
+/// `none`: ends what any board does by itself. The exit code.
+int end_all(Session& session, const BehaveOptions& options) {
+  if (options.lasting) fail({"behave: none takes no --for", "drop --for"}, exit_usage);
+  if (!options.speed.empty()) fail({"behave: none takes no --speed", "drop --speed"}, exit_usage);
+  if (!options.distance.empty()) fail({"behave: none takes no --distance", "drop --distance"}, exit_usage);
+  const auto& catalogue = session.catalogue();
   client::Command command;
   for (const std::string_view name : {"avoid", "home", "follow", "travel"})
     if (const auto* topic = catalogue.find(name); topic != nullptr && topic->kind == protocol::Kind::actuator)
       command.frames.push_back(client::set_point(*topic, {}, options.priority));
   if (command.frames.empty()) static_cast<void>(behaviour_topic(catalogue, "behave", "avoid"));
-  return command;
+  if (options.dry_run) {
+    print_frames(command);
+    return exit_success;
+  }
+  const auto bus = open_to_command(session, "behave");
+  Timeline timeline{*bus, catalogue, "behave", Timeline::Others::allowed, options.confirm(), {}};
+  timeline.carry_out_once(command);
+  return timeline.finish() ? exit_success : exit_failure;
 }
 
+/// A behaviour of a board, from listening for others to its end.
+class Behaviour {
+ public:
+  Behaviour(Session& session, const BehaveOptions& options, const protocol::Catalogue& catalogue,
+            const protocol::Topic& topic)
+      : options_(&options),
+        catalogue_(&catalogue),
+        topic_(&topic),
+        index_(catalogue),
+        watch_(watch_of(options, catalogue)),
+        bus_(open_to_command(session, "behave")),
+        timeline_(*bus_, catalogue, "behave",
+                  options.force ? Timeline::Others::allowed : Timeline::Others::refused, options.confirm(),
+                  [this](const can::Received& received) { take(received); }) {}
+
+  /// The exit code. Leaves through cli::fail where another program or the board ended it, or where it is not
+  /// known that the board has done it.
+  [[nodiscard]] int carry_out(const client::Command& command) {
+    if (!listen_first()) return exit_code_after_interrupt(exit_success);
+    begin(command);
+    follow();
+    const bool early = over();
+    const std::string how = how_it_ended();
+    const bool taken = end();
+    const bool could_answer = timeline_.has_asked() || Clock::now() - begun_ >= longest_silence;
+    if (unheard() && could_answer && goes_on_ && taken) fail(unanswered());
+    if (early) fail({fmt::format("behave: {} was ended: {}", options_->which, how), remedy_for(how)});
+    if (!goes_on_) return exit_code_after_interrupt(exit_success);
+    return taken ? exit_success : exit_failure;
+  }
+
+ private:
+  /// What the wheels' board does it reports; another board's commands to the wheels are what can be seen of
+  /// it.
+  static std::optional<BehaviourWatch> watch_of(const BehaveOptions& options,
+                                                const protocol::Catalogue& catalogue) {
+    if (options.which != "follow") return std::nullopt;
+    return BehaviourWatch{catalogue, "behave", options.which};
+  }
+
+  void take(const can::Received& received) {
+    if (watch_) watch_->take(received);
+    const auto subject = index_.subject(received.frame.id, received.frame.format);
+    if (subject.topic == topic_ && subject.frame && is_rest(received.frame)) ended_by_another_ = true;
+    // The board follows without a word of the motors; one of another program ends it, and the next repetition
+    // would begin it again before the report of its end.
+    if (watch_ && subject.topic != nullptr && subject.topic->role == protocol::Role::drive)
+      ended_by_another_ = true;
+  }
+
+  /// As long as it takes to hear other programs. False: a signal came first.
+  [[nodiscard]] bool listen_first() {
+    if (!(options_->force ? timeline_.wait(Clock::now() + client::listen_before_hold)
+                          : timeline_.listen_first()))
+      return false;
+    timeline_.expect_no_other();
+    return true;
+  }
+
+  void begin(const client::Command& command) {
+    begun_ = Clock::now();
+    answered_ = watch_ && watch_->heard();
+    if (watch_ && (!watch_->heard() || timeline_.has_asked())) ask_progress();
+    if (watch_) watch_->begin();
+    ended_by_another_ = false;
+    timeline_.carry_out(command);
+  }
+
+  /// Until its time is over, it has ended, or a signal comes.
+  void follow() {
+    const auto end = options_->lasting ? Clock::now() + *options_->lasting : Clock::time_point::max();
+    bool told = false;
+    auto heard = Clock::now();  // or asked
+    while (goes_on_ && !over() && Clock::now() < end) {
+      goes_on_ = timeline_.wait(std::min(end, Clock::now() + std::chrono::milliseconds{20}));
+      if (!watch_) continue;
+      if (!told && unheard() && Clock::now() - begun_ >= told_after) {
+        told = true;
+        const auto failure = unanswered();
+        remark(fmt::format("{}; {}", failure.what, failure.remedy));
+      }
+      heard = std::max(heard, watch_->last());
+      if (!goes_on_ || Clock::now() - heard < longest_silence) continue;
+      ask_progress();  // a stop of everything ends this stream, too
+      heard = Clock::now();
+    }
+  }
+
+  /// Whether the boards took all.
+  [[nodiscard]] bool end() {
+    timeline_.rest();
+    if (asked_) send(protocol::stop(watch_->sensor().id, watch_->sensor().priority));
+    if (watch_) timeline_.leave_silence_to_caller();
+    return timeline_.finish();
+  }
+
+  [[nodiscard]] bool over() const { return ended_by_another_ || (watch_ && watch_->over()); }
+  /// Whether the board should have said something of it, and has not.
+  [[nodiscard]] bool unheard() const { return watch_ && !answered_ && !watch_->heard(); }
+
+  [[nodiscard]] std::string how_it_ended() const {
+    if (watch_ && watch_->is_replaced()) return "replaced by " + watch_->commanded();
+    return watch_ && watch_->over() ? watch_->ended() : "stopped";
+  }
+
+  [[nodiscard]] transport::Failure unanswered() const {
+    const auto board = catalogue_->board_name(*topic_);
+    return {
+        fmt::format("behave: no {} came, so nothing shows that {} has done it", watch_->sensor().name, board),
+        fmt::format("is board {} powered and on {}? See `amiroctl doctor`", board, bus_->name())};
+  }
+
+  void ask_progress() {
+    send(protocol::encode({watch_->sensor().id, protocol::Mode::publish,
+                           *protocol::Period::from(progress_period), watch_->sensor().priority}));
+    asked_ = true;
+  }
+
+  void send(const can::Frame& request) {
+    client::Command command;
+    command.frames = {request};
+    timeline_.carry_out_once(command);
+  }
+
+  const BehaveOptions* options_;
+  const protocol::Catalogue* catalogue_;
+  const protocol::Topic* topic_;
+  client::FrameIndex index_;
+  std::optional<BehaviourWatch> watch_;
+  std::unique_ptr<transport::Bus> bus_;
+  Timeline timeline_;
+  Clock::time_point begun_;
+  bool answered_ = false;  ///< the board said what it does before it was asked
+  bool asked_ = false;     ///< for what the board says of it
+  bool goes_on_ = true;    ///< no signal came
+  bool ended_by_another_ = false;
+};
+
 void behave(Session& session, const BehaveOptions& options, int& exit_code) {
-  const std::string verb = "behave";
-  const auto& catalogue = session.catalogue();
-  const Confirm confirm = options.no_confirm ? Confirm::no : Confirm::yes;
   if (options.which == "none") {
-    if (options.lasting) fail({"behave: none takes no --for", "drop --for"}, exit_usage);
-    if (!options.speed.empty()) fail({"behave: none takes no --speed", "drop --speed"}, exit_usage);
-    if (!options.distance.empty()) fail({"behave: none takes no --distance", "drop --distance"}, exit_usage);
-    const auto command = none(catalogue, options);
-    if (options.dry_run) return print_frames(command);
-    const auto bus = open_to_command(session, verb);
-    Timeline timeline{*bus, catalogue, verb, Timeline::Others::allowed, confirm, {}};
-    timeline.carry_out_once(command);
-    if (!timeline.finish()) exit_code = exit_failure;
+    exit_code = end_all(session, options);
     return;
   }
+  const auto& catalogue = session.catalogue();
   if (options.which != "follow" && options.which != "avoid" && options.which != "home")
     fail({fmt::format("behave: unknown behaviour '{}'", options.which), "one of: follow, avoid, home, none"},
          exit_usage);
-  const protocol::Topic& topic = behaviour_topic(catalogue, verb, options.which);
+  const protocol::Topic& topic = behaviour_topic(catalogue, "behave", options.which);
   client::Command command;
   command.hold = client::Hold{set_point_of(topic, options), client::set_point(topic, {}, options.priority),
                               options.lasting.value_or(base::Duration{})};
   command.frames = {command.hold->frame};
   if (options.dry_run) return print_frames(command);
-
   catch_interrupts();
   catch_hangups();
   catch_broken_pipe();
-  // What the wheels' board does it reports; another board's commands to the wheels are what can be seen of
-  // it.
-  std::optional<BehaviourWatch> watch;
-  if (options.which == "follow") watch.emplace(catalogue, verb, options.which);
-  const client::FrameIndex index{catalogue};
-  bool ended_by_another = false;
-  const auto bus = open_to_command(session, verb);
-  const auto others = options.force ? Timeline::Others::allowed : Timeline::Others::refused;
-  Timeline timeline{*bus, catalogue, verb, others, confirm, [&](const can::Received& received) {
-                      if (watch) watch->take(received);
-                      const auto subject = index.subject(received.frame.id, received.frame.format);
-                      if (subject.topic == &topic && subject.frame && is_rest(received.frame))
-                        ended_by_another = true;
-                      // The board follows without a word of the motors; one of another program ends it, and
-                      // the next repetition would begin it again before the report of its end.
-                      if (watch && subject.topic != nullptr && subject.topic->role == protocol::Role::drive)
-                        ended_by_another = true;
-                    }};
-  bool goes_on =
-      options.force ? timeline.wait(Clock::now() + client::listen_before_hold) : timeline.listen_first();
-  if (!goes_on) {
-    exit_code = exit_code_after_interrupt(exit_code);
-    return;
-  }
-  timeline.expect_no_other();
-  bool asked = watch && (!watch->heard() || timeline.has_asked());
-  const auto ask = [&](const can::Frame& request) {
-    client::Command command_of_one;
-    command_of_one.frames = {request};
-    timeline.carry_out_once(command_of_one);
-  };
-  const auto ask_progress = [&] {
-    ask(protocol::encode({watch->sensor().id, protocol::Mode::publish,
-                          *protocol::Period::from(progress_period), watch->sensor().priority}));
-    asked = true;
-  };
-  const auto begun = Clock::now();
-  const bool answered = watch && watch->heard();
-  if (asked) ask_progress();
-  if (watch) watch->begin();
-  ended_by_another = false;
-  timeline.carry_out(command);
-  const auto end = options.lasting ? Clock::now() + *options.lasting : Clock::time_point::max();
-  const auto over = [&] { return ended_by_another || (watch && watch->over()); };
-  const auto unanswered = [&] {
-    return transport::Failure{fmt::format("behave: no {} came, so nothing shows that {} has done it",
-                                          watch->sensor().name, catalogue.board_name(topic)),
-                              fmt::format("is board {} powered and on {}? See `amiroctl doctor`",
-                                          catalogue.board_name(topic), bus->name())};
-  };
-  bool told = false;
-  auto heard = Clock::now();  // or asked
-  while (goes_on && !over() && Clock::now() < end) {
-    goes_on = timeline.wait(std::min(end, Clock::now() + std::chrono::milliseconds{20}));
-    if (!watch) continue;
-    if (!told && !answered && !watch->heard() && Clock::now() - begun >= told_after) {
-      told = true;
-      remark(fmt::format("{}; {}", unanswered().what, unanswered().remedy));
-    }
-    heard = std::max(heard, watch->last());
-    if (!goes_on || Clock::now() - heard < longest_silence) continue;
-    ask_progress();  // a stop of everything ends this stream, too
-    heard = Clock::now();
-  }
-  const bool early = over();
-  const std::string how = watch && watch->is_replaced() ? "replaced by " + watch->commanded()
-                          : watch && watch->over()      ? watch->ended()
-                                                        : "stopped";
-  timeline.rest();
-  if (asked) ask(protocol::stop(watch->sensor().id, watch->sensor().priority));
-  if (watch) timeline.leave_silence_to_caller();
-  if (!timeline.finish()) exit_code = exit_failure;
-  const bool could_answer = timeline.has_asked() || Clock::now() - begun >= longest_silence;
-  if (watch && !answered && !watch->heard() && could_answer && goes_on && exit_code == exit_success)
-    fail(unanswered());
-  if (early) fail({fmt::format("behave: {} was ended: {}", options.which, how), remedy_for(how)});
-  if (!goes_on) exit_code = exit_code_after_interrupt(exit_success);
+  exit_code = Behaviour{session, options, catalogue, topic}.carry_out(command);
 }
 
 }  // namespace

@@ -79,106 +79,152 @@ std::string remedy_for(const std::string& ended) {
   return "another program has commanded the robot; one that ended without a stop counts for 500 ms";
 }
 
-void travel(Session& session, const TravelOptions& options, int& exit_code) {
-  const std::string verb = "travel";
-  const auto& catalogue = session.catalogue();
-  const protocol::Topic& topic = behaviour_topic(catalogue, verb, "travel");
-  const can::Frame frame = set_point_of(topic, options);
-  client::Command begin;
-  begin.frames = {frame};
-  if (options.dry_run) return print_frames(begin);
+/// A travel, from listening for others to its end.
+class Travel {
+ public:
+  Travel(Session& session, const TravelOptions& options, const protocol::Catalogue& catalogue,
+         const protocol::Topic& topic)
+      : options_(&options),
+        catalogue_(&catalogue),
+        topic_(&topic),
+        watch_(catalogue, "travel", "travel"),
+        bus_(open_to_command(session, "travel")),
+        timeline_(*bus_, catalogue, "travel",
+                  options.force ? Timeline::Others::allowed : Timeline::Others::refused,
+                  options.no_confirm ? Confirm::no : Confirm::yes,
+                  [this](const can::Received& received) { watch_.take(received); }) {}
 
+  /// The exit code. Leaves through cli::fail where it did not arrive.
+  [[nodiscard]] int carry_out(const can::Frame& set_point) {
+    if (!listen_first()) return exit_code_after_interrupt(exit_success);
+    begin(set_point);
+    follow();
+    const bool taken = end();
+    if (watch_.is_replaced() && goes_on_) fail(replaced());
+    if (!goes_on_) return exit_code_after_interrupt(exit_success);
+    if (!taken) return exit_failure;  // a board has refused it, which was said
+    if (silent_ || !watch_.was_active() || watch_.ended() != "arrived") fail(not_arrived());
+    fmt::print("arrived; {} are left\n", watch_.left());
+    return exit_success;
+  }
+
+ private:
+  /// As long as it takes to hear other programs, and the sensor, if one has asked for it already. False: a
+  /// signal came first.
+  [[nodiscard]] bool listen_first() {
+    if (!(options_->force ? look(client::listen_before_hold) : timeline_.listen_first())) return false;
+    timeline_.expect_no_other();
+    return true;
+  }
+
+  void begin(const can::Frame& set_point) {
+    client::Command begin;
+    asked_ = !watch_.heard() || timeline_.has_asked();
+    if (asked_) begin.frames.push_back(ask());
+    begin.frames.push_back(set_point);
+    watch_.begin();
+    timeline_.expect_motion();
+    begun_ = Clock::now();
+    timeline_.carry_out_once(begin);
+  }
+
+  /// Until it is over, the board is silent, or a signal comes.
+  void follow() {
+    auto heard = Clock::now();  // or asked
+    for (int asks = 0; goes_on_ && !watch_.over();) {
+      goes_on_ = look(std::chrono::milliseconds{20});
+      if (watch_.last() > heard) {
+        heard = watch_.last();
+        asks = 0;
+      }
+      if (Clock::now() - heard < longest_silence) continue;
+      silent_ = asks++ == most_asks;
+      if (silent_) return;
+      // A stop of everything ends this stream, too.
+      client::Command again;
+      again.frames = {ask()};
+      timeline_.carry_out_once(again);
+      asked_ = true;
+      heard = Clock::now();
+    }
+  }
+
+  /// Whether the boards took all.
+  [[nodiscard]] bool end() {
+    together_ =
+        watch_.is_replaced() && !options_->force && Clock::now() - begun_ < client::listen_before_hold;
+    client::Command end;
+    if (!watch_.over() || together_) end.frames.push_back(client::set_point(*topic_, {}, options_->priority));
+    if (asked_) end.frames.push_back(protocol::stop(watch_.sensor().id, watch_.sensor().priority));
+    timeline_.forgive_a_stop();  // an end is never too late
+    timeline_.carry_out_once(end);
+    if (silent_) timeline_.leave_silence_to_caller();
+    return timeline_.finish();
+  }
+
+  [[nodiscard]] transport::Failure replaced() const {
+    return {fmt::format("travel: replaced by another program, {}; {} were left", watch_.commanded(),
+                        watch_.left().empty() ? "all" : watch_.left()),
+            together_
+                ? "both began in the same moment, and were ended: give the command again, in one of them"
+                : "it was not ended: the robot does what came last"};
+  }
+
+  [[nodiscard]] transport::Failure not_arrived() const {
+    const auto board = catalogue_->board_name(*topic_);
+    if (silent_) {
+      const std::string time = words::to_text((most_asks + 1) * longest_silence);
+      return {watch_.was_active() ? fmt::format("travel: {} has been silent for {}, so zeros were sent; {}",
+                                                board, time, still_travelling)
+                                  : fmt::format("travel: no {} within {}, so the travel was ended",
+                                                watch_.sensor().name, time),
+              fmt::format("is board {} powered and on {}? See `amiroctl doctor`", board, bus_->name())};
+    }
+    if (!watch_.was_active()) return {fmt::format("travel: {} has not begun it", board), remedy_for({})};
+    return {fmt::format("travel: ended by {}: {}{}; {} are left", board, watch_.ended(),
+                        watch_.commanded().empty() ? "" : " by " + watch_.commanded(), watch_.left()),
+            remedy_for(watch_.ended())};
+  }
+
+  /// Whether no signal came. The board travels without this program, which may be stopped and go on.
+  [[nodiscard]] bool look(base::Duration time) {
+    const bool on = timeline_.wait(Clock::now() + time);
+    timeline_.forgive_a_stop();
+    return on;
+  }
+
+  [[nodiscard]] can::Frame ask() const {
+    const protocol::Topic& sensor = watch_.sensor();
+    return protocol::encode(
+        {sensor.id, protocol::Mode::publish, *protocol::Period::from(progress_period), sensor.priority});
+  }
+
+  const TravelOptions* options_;
+  const protocol::Catalogue* catalogue_;
+  const protocol::Topic* topic_;
+  BehaviourWatch watch_;
+  std::unique_ptr<transport::Bus> bus_;
+  Timeline timeline_;
+  Clock::time_point begun_;
+  bool asked_ = false;     ///< for what the board says of it
+  bool goes_on_ = true;    ///< no signal came
+  bool silent_ = false;    ///< the board does not answer
+  bool together_ = false;  ///< another began in the same moment: neither has heard the other, so both end
+};
+
+void travel(Session& session, const TravelOptions& options, int& exit_code) {
+  const auto& catalogue = session.catalogue();
+  const protocol::Topic& topic = behaviour_topic(catalogue, "travel", "travel");
+  const can::Frame set_point = set_point_of(topic, options);
+  if (options.dry_run) {
+    client::Command command;
+    command.frames = {set_point};
+    return print_frames(command);
+  }
   catch_interrupts();
   catch_hangups();
   catch_broken_pipe();
-  BehaviourWatch watch{catalogue, verb, "travel"};
-  const auto bus = open_to_command(session, verb);
-  const auto others = options.force ? Timeline::Others::allowed : Timeline::Others::refused;
-  Timeline timeline{*bus,
-                    catalogue,
-                    verb,
-                    others,
-                    options.no_confirm ? Confirm::no : Confirm::yes,
-                    [&watch](const can::Received& received) { watch.take(received); }};
-  // The board travels without this program, which may be stopped and go on.
-  const auto look = [&](base::Duration time) {
-    const bool on = timeline.wait(Clock::now() + time);
-    timeline.forgive_a_stop();
-    return on;
-  };
-  // As long as it takes to hear other programs, and the sensor, if one has asked for it already.
-  bool goes_on = options.force ? look(client::listen_before_hold) : timeline.listen_first();
-  if (!goes_on) {
-    exit_code = exit_code_after_interrupt(exit_code);
-    return;
-  }
-  timeline.expect_no_other();
-  const auto& sensor = watch.sensor();
-  const can::Frame ask = protocol::encode(
-      {sensor.id, protocol::Mode::publish, *protocol::Period::from(progress_period), sensor.priority});
-  bool asked = !watch.heard() || timeline.has_asked();
-  if (asked) begin.frames.insert(begin.frames.begin(), ask);
-  watch.begin();
-  timeline.expect_motion();
-  const auto begun = Clock::now();
-  timeline.carry_out_once(begin);
-  auto heard = Clock::now();  // or asked
-  bool silent = false;
-  for (int asks = 0; goes_on && !watch.over() && !silent;) {
-    goes_on = look(std::chrono::milliseconds{20});
-    if (watch.last() > heard) {
-      heard = watch.last();
-      asks = 0;
-    }
-    if (Clock::now() - heard < longest_silence) continue;
-    // A stop of everything ends this stream, too.
-    silent = asks++ == most_asks;
-    if (silent) break;
-    client::Command again;
-    again.frames = {ask};
-    timeline.carry_out_once(again);
-    asked = true;
-    heard = Clock::now();
-  }
-  // Of two that begin at once neither has heard the other: both end, and no way is left that belongs to none.
-  const bool together =
-      watch.is_replaced() && !options.force && Clock::now() - begun < client::listen_before_hold;
-  client::Command end;
-  if (!watch.over() || together) end.frames.push_back(client::set_point(topic, {}, options.priority));
-  if (asked) end.frames.push_back(protocol::stop(sensor.id, sensor.priority));
-  timeline.forgive_a_stop();  // an end is never too late
-  timeline.carry_out_once(end);
-  if (silent) timeline.leave_silence_to_caller();
-  const bool taken = timeline.finish();
-  const std::string doctor = fmt::format("is board {} powered and on {}? See `amiroctl doctor`",
-                                         catalogue.board_name(topic), bus->name());
-  if (watch.is_replaced() && goes_on) {
-    fail({fmt::format("travel: replaced by another program, {}; {} were left", watch.commanded(),
-                      watch.left().empty() ? "all" : watch.left()),
-          together ? "both began in the same moment, and were ended: give the command again, in one of them"
-                   : "it was not ended: the robot does what came last"});
-  } else if (!goes_on) {
-    exit_code = exit_code_after_interrupt(exit_code);
-  } else if (!taken) {
-    exit_code = exit_failure;  // a board has refused it, which was said
-  } else if (silent && watch.was_active()) {
-    fail(
-        {fmt::format("travel: {} has been silent for {}, so zeros were sent; {}", catalogue.board_name(topic),
-                     words::to_text((most_asks + 1) * longest_silence), still_travelling),
-         doctor});
-  } else if (silent) {
-    fail({fmt::format("travel: no {} within {}, so the travel was ended", sensor.name,
-                      words::to_text((most_asks + 1) * longest_silence)),
-          doctor});
-  } else if (!watch.was_active()) {
-    fail({fmt::format("travel: {} has not begun it", catalogue.board_name(topic)), remedy_for({})});
-  } else if (watch.ended() != "arrived") {
-    fail({fmt::format("travel: ended by {}: {}{}; {} are left", catalogue.board_name(topic), watch.ended(),
-                      watch.commanded().empty() ? "" : " by " + watch.commanded(), watch.left()),
-          remedy_for(watch.ended())});
-  } else {
-    fmt::print("arrived; {} are left\n", watch.left());
-  }
+  exit_code = Travel{session, options, catalogue, topic}.carry_out(set_point);
 }
 
 }  // namespace
