@@ -35,7 +35,7 @@ class Attendance {
     std::vector<ViewerId> silent;
     for (const ViewerId viewer : driving) {
       const std::uint64_t heard = viewers.heard(viewer);
-      Asked& asked = asked_.try_emplace(viewer, Asked{heard, 0}).first->second;
+      Asked& asked = asked_.try_emplace(viewer, Asked{heard}).first->second;
       if (std::exchange(asked.heard, heard) != heard) asked.unanswered = 0;
       if (asked.unanswered++ == most_unanswered) {
         silent.push_back(viewer);

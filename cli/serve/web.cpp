@@ -43,8 +43,7 @@ constexpr std::string_view content_policy =
 
 /// A viewer that is silent is asked, and hung up where it does not answer: a computer that was switched off
 /// closes nothing.
-constexpr std::uint32_t no_backoff[] = {1000};
-constexpr lws_retry_bo_t patience{no_backoff, 1, 1, 20, 40, 0};
+constexpr lws_retry_bo_t patience{nullptr, 0, 0, 20, 40, 0};
 
 /// What libwebsockets has said last of what is wrong.
 std::string& last_error() {

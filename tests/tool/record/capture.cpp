@@ -20,10 +20,43 @@
 
 namespace tool_record_capture_test {
 
+/// A frame in the queue of a socket, and what the kernel says of it.
+struct Waiting {
+  canfd_frame frame{};
+  unsigned size = CAN_MTU;
+  int flags = 0;
+  timespec time{};
+  std::uint32_t drops = 0;  ///< before it
+
+  void hand_out(mmsghdr& message) const {
+    msghdr& header = message.msg_hdr;
+    std::memcpy(header.msg_iov->iov_base, &frame, size);
+    message.msg_len = size;
+    header.msg_flags = flags;
+    REQUIRE(header.msg_controllen >= CMSG_SPACE(sizeof time) + CMSG_SPACE(sizeof drops));
+    std::memset(header.msg_control, 0, header.msg_controllen);
+    cmsghdr* item = CMSG_FIRSTHDR(&header);
+    const auto put = [&](int type, const auto& value) {
+      item->cmsg_level = SOL_SOCKET;
+      item->cmsg_type = type;
+      item->cmsg_len = CMSG_LEN(sizeof value);
+      std::memcpy(CMSG_DATA(item), &value, sizeof value);
+    };
+    put(SO_TIMESTAMPNS, time);
+    std::size_t length = CMSG_SPACE(sizeof time);
+    if (drops != 0) {  // as sock_recv_drops does
+      item = CMSG_NXTHDR(&header, item);
+      put(SO_RXQ_OVFL, drops);
+      length += CMSG_SPACE(sizeof drops);
+    }
+    header.msg_controllen = length;
+  }
+};
+
 /// One interface and one socket on it.
 struct Kernel {
   int socket = -1;
-  std::deque<canfd_frame> queue{};
+  std::deque<Waiting> queue{};
   std::deque<int> errors{};  ///< that are to be reported
   std::size_t room = 1000;
   std::uint32_t drops = 0;
@@ -36,11 +69,12 @@ struct Kernel {
       ++drops;
       return;
     }
-    canfd_frame frame{};
-    frame.can_id = 0x123;
-    frame.len = sizeof number;
-    std::memcpy(frame.data, &number, sizeof number);
-    queue.push_back(frame);
+    Waiting waiting;
+    waiting.frame.can_id = 0x123;
+    waiting.frame.len = sizeof number;
+    std::memcpy(waiting.frame.data, &number, sizeof number);
+    waiting.drops = drops;
+    queue.push_back(waiting);
   }
   void set_error(int error) { errors.assign(1, error); }  // a socket has room for one
   void go_down() {
@@ -86,12 +120,8 @@ int recvmmsg(int file, mmsghdr* messages, unsigned count, int flags, timespec* t
   if (const int error = kernel->error(); error != 0) return fail(error);
   unsigned taken = 0;
   for (; taken < count && !kernel->queue.empty(); ++taken) {
-    msghdr& header = messages[taken].msg_hdr;
-    std::memcpy(header.msg_iov->iov_base, &kernel->queue.front(), CAN_MTU);
+    kernel->queue.front().hand_out(messages[taken]);
     kernel->queue.pop_front();
-    messages[taken].msg_len = CAN_MTU;
-    header.msg_flags = 0;
-    header.msg_controllen = 0;
   }
   return static_cast<int>(taken);
 }
@@ -194,6 +224,48 @@ TEST_CASE("it is the look that finds the interface gone: what waits is read all 
   CHECK(scene.read() == 3);
   scene.capture->look();
   scene.judge();
+}
+
+TEST_CASE("what the kernel says of a frame is kept: when it came, who sent it, and how it was sent") {
+  Scene scene;
+  Waiting plain, sent, fd, longer;
+  plain.frame.can_id = 0x123;
+  plain.frame.len = 8;
+  plain.time = {1'700'000'000, 123'456'789};
+  sent.frame.can_id = 0x12345678 | CAN_EFF_FLAG;
+  sent.flags = MSG_DONTROUTE;
+  sent.time = {1'700'000'001, 999'999'999};
+  fd.frame.len = 64;
+  fd.frame.flags = CANFD_BRS;
+  fd.frame.data[63] = 0xA5;
+  fd.size = CANFD_MTU;
+  longer.frame.len = 8;
+  longer.frame.__res1 = 12;  // len8_dlc
+  scene.played.queue = {plain, sent, fd, longer};
+  std::array<log::Entry, Capture::batch> entries;
+  REQUIRE(scene.capture->read(entries, 3) == 4);
+  CHECK(entries[0].time.time_since_epoch() == std::chrono::nanoseconds{1'700'000'000'123'456'789});
+  CHECK(entries[0].direction == log::Direction::received);
+  CHECK(entries[0].interface == 3);
+  CHECK(entries[0].raw_dlc == 0);
+  CHECK(entries[1].time.time_since_epoch() == std::chrono::nanoseconds{1'700'000'001'999'999'999});
+  CHECK(entries[1].direction == log::Direction::sent);
+  CHECK(entries[1].format == can::Format::extended);
+  CHECK(entries[2].length == 64);
+  CHECK(entries[2].flags == (log::flag::fd | CANFD_BRS));
+  CHECK(entries[2].data[63] == 0xA5);
+  CHECK(entries[3].raw_dlc == 12);
+}
+
+TEST_CASE("what was dropped is known with the next frame, without a look") {
+  Scene scene;
+  scene.played.room = 10;
+  scene.arrive(25);
+  CHECK(scene.read() == 10);
+  CHECK(scene.capture->lost() == 0);
+  scene.arrive(1);
+  CHECK(scene.read() == 1);
+  CHECK(scene.capture->lost() == 15);
 }
 
 TEST_CASE("an interface goes down while frames wait: they come with the same call") {

@@ -167,6 +167,13 @@ class Bus(Analyse):
         found = self.bus(BUS + "a,1,7,100000000,,250000\nb,2,7,100000000,,\n", "--bitrate", "125k")
         self.assertEqual(self.column(found["messages"], "response_ns")["a"], 2250000)
 
+    def test_of_a_long_busy_period_the_first_1000_releases_are_listed(self):
+        """Frames of 135 us: each period of b makes up for 0.1 us of what c has blocked."""
+        found = self.bus(BUS + "a,1,8,270000,,\nb,2,8,270100,1000000,\nc,3,8,1000000000,1000000000,\n", "--bitrate", "1M")
+        listed = self.column(found["messages"], "instances_ns")["b"]
+        self.assertEqual(len(listed), 1000)
+        self.assertEqual(max(listed), found["messages"][1]["response_ns"])
+
     def test_overload_has_no_bound(self):
         found = self.bus(BUS + "a,1,8,150000,,\nb,2,8,150000,,\nc,3,8,1000000,,\n", "--bitrate", "1M", code=1)
         self.assertEqual(self.column(found["messages"], "response_ns"), {"a": 270000, "b": None, "c": None})
