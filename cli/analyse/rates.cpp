@@ -1,6 +1,7 @@
 /// A robot's own traffic as a set of messages, and periods that differ from the spec's.
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <system_error>
 
@@ -90,17 +91,24 @@ std::vector<Rate> read_rates(const std::vector<std::string>& words) {
   return rates;
 }
 
-BusSet robot_bus(const protocol::Catalogue& catalogue, const spec::Model* model,
-                 const std::vector<Rate>& rates, const std::string& source) {
-  std::vector<Mistake> mistakes;
-  std::vector<std::pair<const protocol::Topic*, const Rate*>> chosen;
+namespace {
+
+/// A topic that a rate names, by itself or with its group; the last one counts.
+struct Chosen {
+  const protocol::Topic* topic;
+  const Rate* rate;
+};
+
+std::vector<Chosen> choose(const protocol::Catalogue& catalogue, const std::vector<Rate>& rates,
+                           std::vector<Mistake>& mistakes) {
+  std::vector<Chosen> chosen;
   for (const Rate& rate : rates) {
     bool found = false;
     const auto* const named = words::find_topic(catalogue, rate.name);
     for (const auto& topic : catalogue.topics) {
       if (named != &topic && !words::is_in_group(topic, rate.name)) continue;
       found = true;
-      chosen.emplace_back(&topic, &rate);
+      chosen.push_back({&topic, &rate});
     }
     const auto words = words::topic_words(catalogue);
     if (!found)
@@ -110,71 +118,97 @@ BusSet robot_bus(const protocol::Catalogue& catalogue, const spec::Model* model,
       mistakes.push_back(
           {rate.place, fmt::format("'{}' has the priority of its identifier", rate.name), "leave out the @"});
   }
+  return chosen;
+}
 
+/// How a topic is sent.
+struct Sending {
+  base::Duration period;
+  protocol::Priority priority;
+  bool rated = false;  ///< a rate names it
+  bool off = false;
+};
+
+Sending sending_of(const protocol::Topic& topic, std::span<const Chosen> chosen) {
+  const bool drives = topic.role == protocol::Role::drive;
+  Sending sending{drives ? client::hold_period : topic.usual_period(), topic.priority};
+  for (const Chosen& each : chosen) {
+    if (each.topic != &topic) continue;
+    sending.rated = true;
+    sending.off = each.rate->off;
+    if (!sending.off) sending.period = each.rate->period;
+    if (each.rate->has_priority) sending.priority = each.rate->priority;
+  }
+  return sending;
+}
+
+void add_frames(const protocol::Catalogue& catalogue, const protocol::Topic& topic, const Sending& sending,
+                BusSet& set) {
+  if (sending.period.count() == 0) {
+    set.left_out.push_back({std::string{topic.name}, LeftOut::Reason::no_period});
+    return;
+  }
+  for (std::size_t i = 0; i < topic.frames.size(); ++i) {
+    const protocol::FrameRef ref{&topic, static_cast<std::uint8_t>(i)};
+    const auto& frame = ref.layout();
+    BusEntry entry;
+    entry.name = frame.name.empty() ? std::string{topic.name} : fmt::format("{}.{}", topic.name, frame.name);
+    entry.head.id = protocol::identifier_of(ref, sending.priority);
+    entry.head.format = protocol::format_of(frame);
+    entry.head.length = frame.dlc();
+    entry.bits = frame.worst_bits[static_cast<std::size_t>(sending.priority)];
+    entry.period = sending.period.count();
+    entry.deadline = topic.deadline.count() == 0 ? analysis::implicit_deadline : topic.deadline.count();
+    entry.overwritten = true;
+    entry.node = topic.kind == protocol::Kind::actuator ? operator_node : catalogue.board_name(topic);
+    entry.jitter = topic.jitter.count();
+    set.entries.push_back(std::move(entry));
+  }
+}
+
+/// Nothing: the set has an entry, or nothing but what the spec leaves out.
+std::optional<Mistake> nothing_sent(const BusSet& set, const protocol::Catalogue& catalogue,
+                                    const std::string& source) {
+  if (catalogue.topics.empty() && set.left_out.empty())
+    return Mistake{source, "the file has no message", "a file that has some"};
+  if (!set.entries.empty()) return std::nullopt;
+  if (set.left_out.empty()) return Mistake{"--rates", "every topic is off", "leave one on"};
+  return Mistake{
+      source, fmt::format("no message has a cycle time or a shortest distance, of {}", set.left_out.size()),
+      "--rates NAME=PERIOD gives one; in a DBC file BA_ \"GenMsgCycleTime\" BO_ 257 10; says "
+      "every 10 ms"};
+}
+
+}  // namespace
+
+BusSet robot_bus(const protocol::Catalogue& catalogue, const spec::Model* model,
+                 const std::vector<Rate>& rates, const std::string& source) {
+  std::vector<Mistake> mistakes;
+  const auto chosen = choose(catalogue, rates, mistakes);
   BusSet set;
   set.bit_rate = catalogue.bit_rate;
   bool has_topics = false;
   std::size_t messages = 0;  // messages of a catalogue are in the order of their model
   for (const auto& topic : catalogue.topics) {
-    base::Duration period = topic.usual_period();
-    if (topic.role == protocol::Role::drive) period = client::hold_period;
-    protocol::Priority priority = topic.priority;
-    bool off = false;
-    for (const auto& [of, rate] : chosen) {
-      if (of != &topic) continue;
-      off = rate->off;
-      if (!off) period = rate->period;
-      if (rate->has_priority) priority = rate->priority;
-    }
     const spec::MessageModel* message = nullptr;
     if (topic.is_message() && model != nullptr && messages < model->messages.size())
       message = &model->messages[messages++];
     has_topics = has_topics || !topic.is_message();
-    if (off) continue;
-    if (message != nullptr) {
-      const bool rated =
-          std::any_of(chosen.begin(), chosen.end(), [&](const auto& each) { return each.first == &topic; });
-      if (auto entry =
-              entry_of(*message, catalogue.board_name(topic), rated ? period.count() : 0, set.left_out))
-        set.entries.push_back(std::move(*entry));
-      continue;
-    }
-    if (period.count() == 0) {
-      set.left_out.push_back({std::string{topic.name}, LeftOut::Reason::no_period});
-      continue;
-    }
-    for (std::size_t i = 0; i < topic.frames.size(); ++i) {
-      const protocol::FrameRef ref{&topic, static_cast<std::uint8_t>(i)};
-      const auto& frame = ref.layout();
-      BusEntry entry;
-      entry.name =
-          frame.name.empty() ? std::string{topic.name} : fmt::format("{}.{}", topic.name, frame.name);
-      entry.head.id = protocol::identifier_of(ref, priority);
-      entry.head.format = protocol::format_of(frame);
-      entry.head.length = frame.dlc();
-      entry.bits = frame.worst_bits[static_cast<std::size_t>(priority)];
-      entry.period = period.count();
-      entry.deadline = topic.deadline.count() == 0 ? analysis::implicit_deadline : topic.deadline.count();
-      entry.overwritten = true;
-      entry.node = topic.kind == protocol::Kind::actuator ? operator_node : catalogue.board_name(topic);
-      entry.jitter = topic.jitter.count();
-      set.entries.push_back(std::move(entry));
+    const Sending sending = sending_of(topic, chosen);
+    if (sending.off) continue;
+    if (message == nullptr) {
+      add_frames(catalogue, topic, sending, set);
+    } else if (auto entry = entry_of(*message, catalogue.board_name(topic),
+                                     sending.rated ? sending.period.count() : 0, set.left_out)) {
+      set.entries.push_back(std::move(*entry));
     }
   }
   if (model != nullptr) {
     set.data_bit_rate = model->data_bit_rate;
     for (const std::string& name : model->too_long) set.left_out.push_back({name, LeftOut::Reason::too_long});
   }
-  if (mistakes.empty() && catalogue.topics.empty() && set.left_out.empty())
-    mistakes.push_back({source, "the file has no message", "a file that has some"});
-  else if (mistakes.empty() && set.entries.empty() && set.left_out.empty())
-    mistakes.push_back({"--rates", "every topic is off", "leave one on"});
-  else if (mistakes.empty() && set.entries.empty())
-    mistakes.push_back(
-        {source,
-         fmt::format("no message has a cycle time or a shortest distance, of {}", set.left_out.size()),
-         "--rates NAME=PERIOD gives one; in a DBC file BA_ \"GenMsgCycleTime\" BO_ 257 10; says "
-         "every 10 ms"});
+  if (const auto nothing = nothing_sent(set, catalogue, source); nothing && mistakes.empty())
+    mistakes.push_back(*nothing);
   order_bus(set, source, mistakes);
   stop_at(mistakes, source);
   limit_clocks(set);

@@ -152,11 +152,67 @@ class Distances {
   std::size_t other_ = 0;  ///< in a run, shorter ones
 };
 
-/// The topics that are in the log, with the periods that requests in it ask for, and all messages: they are
-/// sent unasked, and one that is missing is a finding.
-BusSet set_of(const Log& log, const protocol::Catalogue& catalogue, const spec::Model* model,
-              std::vector<Rate> rates, Paces& paces) {
-  const client::FrameIndex index{catalogue};
+/// What a log says of the topics of a catalogue: which are sent, at which priority, and for which periods
+/// they were asked.
+class SeenTopics {
+ public:
+  explicit SeenTopics(const protocol::Catalogue& catalogue)
+      : catalogue_(&catalogue), index_(catalogue), receiver_(catalogue), refusals_(catalogue) {}
+
+  void take(const Arrival& arrival) {
+    if (arrival.frame.format != can::Format::base && arrival.frame.format != can::Format::base_remote) return;
+    const auto id = protocol::Identifier::decode(arrival.frame.id);
+    const auto reception = receiver_.take({base::Time{base::Duration{arrival.time}}, arrival.frame});
+    if (const auto refused = refusals_.take(reception)) {
+      // It was never asked: the newest requests that this refusal can be of.
+      const std::int64_t wait = client::RefusalReader::longest_wait(*reception.topic).count();
+      auto& asked = seen_[refused->topic].asked;
+      for (std::uint32_t i = 0; i < refused->count && !asked.empty(); ++i)
+        if (arrival.time - asked.back().time <= wait) asked.pop_back();
+    }
+    if (const auto* topic = index_.requested(id)) {
+      const auto request = protocol::decode_request(arrival.frame);
+      const bool publishes = request && request->mode == protocol::Mode::publish;
+      const auto period = arrival.frame.dlc == 1 ? topic->period : request.value.period;
+      seen_[topic].asked.push_back({arrival.time, publishes ? period.duration().count() : 0});
+    } else if (const auto frame = index_.find(id)) {
+      Seen& its = seen_[frame.topic];
+      its.priority = id.priority;
+      its.sent = true;
+      if (frame.frame != 0) return;
+      its.distances.add(arrival.time, is_rest(arrival.frame));
+      its.key = can::arbitration_key(arrival.frame);
+    }
+  }
+
+  /// Of each topic, off where it is not in the log.
+  [[nodiscard]] std::vector<Rate> rates(Paces& paces, std::vector<std::string>& remarks) const {
+    std::vector<Rate> rates;
+    for (const auto& topic : catalogue_->topics) {
+      if (topic.is_message()) continue;
+      const auto its = seen_.find(&topic);
+      rates.push_back(its == seen_.end() ? Rate{} : rate(topic, its->second, paces, remarks));
+      rates.back().name = topic.name;
+      rates.back().place = "the log";
+      rates.back().off = its == seen_.end() || !its->second.sent;
+    }
+    return rates;
+  }
+
+  /// One that says no priority leaves that of the log; the period that it gives a drive is meant.
+  void complete(Rate& given, Paces& paces) const {
+    const protocol::Topic* const topic = words::find_topic(*catalogue_, given.name);
+    const auto its = seen_.find(topic);
+    if (topic == nullptr || its == seen_.end()) return;
+    if (!given.has_priority) {
+      given.has_priority = its->second.sent;
+      given.priority = its->second.priority;
+    }
+    if (topic->role == protocol::Role::drive && !given.off)
+      paces[its->second.key] = {Grid::of_run, given.period.count()};
+  }
+
+ private:
   struct Asked {
     std::int64_t time = 0;
     std::int64_t period = 0;  ///< 0: none, or none that can be read
@@ -168,85 +224,58 @@ BusSet set_of(const Log& log, const protocol::Catalogue& catalogue, const spec::
     std::uint32_t key = 0;
     Distances distances;
   };
-  std::map<const protocol::Topic*, Seen> seen;
-  client::Receiver receiver{catalogue};
-  client::RefusalReader refusals{catalogue};
-  std::vector<std::string> remarks;
-  for (const Arrival& arrival : log.arrivals) {
-    if (arrival.frame.format != can::Format::base && arrival.frame.format != can::Format::base_remote)
-      continue;
-    const auto id = protocol::Identifier::decode(arrival.frame.id);
-    const auto reception = receiver.take({base::Time{base::Duration{arrival.time}}, arrival.frame});
-    if (const auto refused = refusals.take(reception)) {
-      // It was never asked: the newest requests that this refusal can be of.
-      const std::int64_t wait = client::RefusalReader::longest_wait(*reception.topic).count();
-      auto& asked = seen[refused->topic].asked;
-      for (std::uint32_t i = 0; i < refused->count && !asked.empty(); ++i)
-        if (arrival.time - asked.back().time <= wait) asked.pop_back();
-    }
-    if (const auto* topic = index.requested(id)) {
-      const auto request = protocol::decode_request(arrival.frame);
-      const bool publishes = request && request->mode == protocol::Mode::publish;
-      const auto period = arrival.frame.dlc == 1 ? topic->period : request.value.period;
-      seen[topic].asked.push_back({arrival.time, publishes ? period.duration().count() : 0});
-    } else if (const auto frame = index.find(id)) {
-      Seen& its = seen[frame.topic];
-      its.priority = id.priority;
-      its.sent = true;
-      if (frame.frame != 0) continue;
-      its.distances.add(arrival.time, is_rest(arrival.frame));
-      its.key = can::arbitration_key(arrival.frame);
-    }
-  }
-  std::vector<Rate> all;
-  for (const auto& topic : catalogue.topics) {
-    if (topic.is_message()) continue;
-    const auto its = seen.find(&topic);
-    std::int64_t asked = 0;
-    if (its != seen.end())
-      for (const Asked& each : its->second.asked) {
-        if (each.period == 0) continue;
-        if (asked != 0 && asked != each.period)
-          remarks.push_back(fmt::format("{} was asked for every {} and every {}: the shorter one counts.",
-                                        topic.name, time_text(asked), time_text(each.period)));
-        if (asked == 0 || each.period < asked) asked = each.period;
-      }
+
+  static Rate rate(const protocol::Topic& topic, const Seen& its, Paces& paces,
+                   std::vector<std::string>& remarks) {
+    const std::int64_t asked = shortest_asked(topic, its.asked, remarks);
     Rate rate;
-    rate.name = topic.name;
-    rate.place = "the log";
-    if (its == seen.end() || !its->second.sent) {
-      rate.off = true;
-    } else {
-      rate.has_priority = true;
-      rate.priority = its->second.priority;
-      rate.period = topic.period.duration();
-      if (asked != 0) rate.period = base::Duration{asked};
-      if (topic.kind == protocol::Kind::actuator) {
-        const std::int64_t shortest = its->second.distances.shortest();
-        rate.period = base::Duration{shortest > 0 ? shortest : 1'000'000'000};
-        remarks.push_back(
-            fmt::format("{} has no period of its own: the shortest distance in the log, {}, counts.",
-                        topic.name, time_text(rate.period.count())));
-        const bool drives = topic.role == protocol::Role::drive;
-        paces[its->second.key] = drives ? its->second.distances.pace() : Pace{Grid::none, 0};
-      }
-    }
-    all.push_back(std::move(rate));
+    if (!its.sent) return rate;
+    rate.has_priority = true;
+    rate.priority = its.priority;
+    rate.period = asked != 0 ? base::Duration{asked} : topic.period.duration();
+    if (topic.kind != protocol::Kind::actuator) return rate;
+    const std::int64_t shortest = its.distances.shortest();
+    rate.period = base::Duration{shortest > 0 ? shortest : 1'000'000'000};
+    remarks.push_back(
+        fmt::format("{} has no period of its own: the shortest distance in the log, {}, counts.", topic.name,
+                    time_text(rate.period.count())));
+    const bool drives = topic.role == protocol::Role::drive;
+    paces[its.key] = drives ? its.distances.pace() : Pace{Grid::none, 0};
+    return rate;
   }
-  for (Rate& rate : rates) {
-    // A rate that says no priority leaves that of the log.
-    for (const Rate& from_log : all)
-      if (const auto* topic = words::find_topic(catalogue, rate.name);
-          topic != nullptr && from_log.name == topic->name && !rate.has_priority) {
-        rate.has_priority = from_log.has_priority;
-        rate.priority = from_log.priority;
-      }
-    // What --rates says of a drive is meant.
-    if (const auto* topic = words::find_topic(catalogue, rate.name);
-        topic != nullptr && topic->role == protocol::Role::drive && !rate.off)
-      if (const auto its = seen.find(topic); its != seen.end())
-        paces[its->second.key] = {Grid::of_run, rate.period.count()};
-    all.push_back(rate);
+
+  /// 0: it was not asked for a period.
+  static std::int64_t shortest_asked(const protocol::Topic& topic, std::span<const Asked> all,
+                                     std::vector<std::string>& remarks) {
+    std::int64_t shortest = 0;
+    for (const Asked& each : all) {
+      if (each.period == 0) continue;
+      if (shortest != 0 && shortest != each.period)
+        remarks.push_back(fmt::format("{} was asked for every {} and every {}: the shorter one counts.",
+                                      topic.name, time_text(shortest), time_text(each.period)));
+      if (shortest == 0 || each.period < shortest) shortest = each.period;
+    }
+    return shortest;
+  }
+
+  const protocol::Catalogue* catalogue_;
+  client::FrameIndex index_;
+  client::Receiver receiver_;
+  client::RefusalReader refusals_;
+  std::map<const protocol::Topic*, Seen> seen_;
+};
+
+/// The topics that are in the log, with the periods that requests in it ask for, and all messages: they are
+/// sent unasked, and one that is missing is a finding.
+BusSet set_of(const Log& log, const protocol::Catalogue& catalogue, const spec::Model* model,
+              std::vector<Rate> given, Paces& paces) {
+  SeenTopics seen{catalogue};
+  for (const Arrival& arrival : log.arrivals) seen.take(arrival);
+  std::vector<std::string> remarks;
+  std::vector<Rate> all = seen.rates(paces, remarks);
+  for (Rate& rate : given) {
+    seen.complete(rate, paces);
+    all.push_back(std::move(rate));
   }
   const bool any = std::any_of(all.begin(), all.end(), [](const Rate& rate) { return !rate.off; }) ||
                    std::any_of(catalogue.topics.begin(), catalogue.topics.end(),
