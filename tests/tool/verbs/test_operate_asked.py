@@ -235,6 +235,17 @@ class Asked(Operating):
                     operator.kill()
                 operator.wait()
 
+    def test_an_operator_that_is_slow_is_waited_for(self):
+        self.start_sim()
+        operator = self.operate(document=GUARDED)
+        operator.send_signal(signal.SIGSTOP)
+        asked = self.start("operator", "status")
+        time.sleep(0.3)  # of a second
+        operator.send_signal(signal.SIGCONT)
+        out, err = asked.communicate(timeout=30)
+        self.assertEqual(asked.returncode, 0, err)
+        self.assertIn("halt", out)
+
     def test_a_request_of_a_program_that_has_left_is_not_met(self):
         # It was in a hurry, found the operator stopped, and has set the motors to zero past it.
         self.start_sim()

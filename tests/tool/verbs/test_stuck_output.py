@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import termios
+import time
 
 from harness import AMIROCTL, Case, main, waiting
 
@@ -108,6 +109,25 @@ class StuckOutput(Case):
         _, err = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 0, err)
         self.assertRegex(err, r"run: [1-9]\d* answers not shown: stdout took none\n")
+        os.close(reader)
+
+    def test_a_reader_that_is_slow_gets_the_last_answer(self):
+        script = os.path.join(self.folder, "tour.script")
+        with open(script, "w", encoding="utf-8") as file:
+            file.write("0s once gyro\n200ms stop\n")
+        self.start_sim()
+        listener = self.start("listen", "--commands", "motors", "--timeout", "20s")
+        self.assertIn("bus: sim", listener.stderr.readline())
+        reader, writer = self.full_pipe()
+        process = self.start_to(writer, "--bus", "sim", "run", script, "--show")
+        os.close(writer)
+        waiting.until(lambda: "0000000000000000" in listener.stdout.readline(), "the last step")
+        time.sleep(0.3)  # of a second
+        os.set_blocking(reader, True)
+        os.read(reader, 1 << 20)
+        self.assertEqual(process.wait(timeout=60), 0)
+        self.assertNotIn("not shown", process.stderr.read())
+        self.assertIn(b'"topic":"gyroscope"', os.read(reader, 1 << 20))
         os.close(reader)
 
     def test_a_terminal_that_nobody_reads_holds_up_no_script(self):
