@@ -23,7 +23,7 @@ using spec::TopicModel;
 
 /// The mask of one bit: 0x01, 0x8000.
 std::string mask_literal(std::int64_t bit) {
-  base::Text<20> text;
+  base::Text<18> text;
   text << "0x";
   text.hex(std::uint64_t{1} << bit, static_cast<int>(bit / 8 * 2 + 2));
   return std::string{text.view()};
