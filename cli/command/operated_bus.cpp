@@ -60,10 +60,9 @@ base::Result<bool> OperatedBus::send_any(const can::AnyFrame& frame) {
   return bus_->send_any(frame);
 }
 
-void OperatedBus::tell_limits(std::string_view fields) {
-  if (fields.empty() || fields == limited_) return;
-  limited_ = fields;
-  remark(fmt::format("{}: {} limits {}", verb_, link_->who(), fields));
+void OperatedBus::tell_limits(std::string_view limits) {
+  if (limits.empty() || !told_limits_.emplace(limits).second) return;
+  remark(fmt::format("{}: {} limits {}", verb_, link_->who(), limits));
 }
 
 bool OperatedBus::is_echo(const can::Frame& frame) {

@@ -4,6 +4,7 @@
 
 #include <deque>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -52,8 +53,8 @@ class OperatedBus final : public transport::Bus, public Guarded {
   /// Whether the frame commands an actuator.
   [[nodiscard]] bool commands(const can::Frame& frame) const;
   [[nodiscard]] bool is_echo(const can::Frame& frame);
-  /// Says what the operator has changed, each time that it is something else.
-  void tell_limits(std::string_view fields);
+  /// Says what the operator has changed, each once.
+  void tell_limits(std::string_view limits);
 
   struct Echo {
     can::Frame frame;
@@ -64,7 +65,7 @@ class OperatedBus final : public transport::Bus, public Guarded {
   std::unique_ptr<OperatorLink> link_;
   client::FrameIndex index_;
   std::string verb_;
-  std::string limited_;          ///< what was said last
+  std::set<std::string> told_limits_;
   std::deque<Echo> echoes_;      ///< frames that the bus will hand over as another program's
   transport::Failure obstacle_;  ///< why the operator took the last one not
   bool past_it_ = false;         ///< it was silent, and rest went to the bus itself

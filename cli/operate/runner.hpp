@@ -105,7 +105,12 @@ class Runner {
   [[nodiscard]] const reflective::SetPoint* own_set_point(std::uint16_t topic) const;
   [[nodiscard]] std::string commands(std::string_view text) const;
   /// Tells once a program and topic.
-  void tell_command(Caller& caller, std::uint16_t topic, const std::string& limited, bool beyond);
+  /// Of a set point that was held within the limits.
+  struct Limited {
+    std::string fields;  ///< "motors.x, motors.z"; empty: nothing was
+    std::string text;    ///< with the limits
+  };
+  void tell_command(Caller& caller, std::uint16_t topic, const Limited& limited, bool beyond);
   [[nodiscard]] Answers answers() const { return {*file_, supervisor_, changes_, commands_, lines_lost_}; }
 
   void tell_switch(const reflective::Action& action);

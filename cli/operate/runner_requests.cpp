@@ -1,5 +1,7 @@
 // What other programs ask of an operator that runs: what it does and why, another configuration, a set point.
 #include <algorithm>
+#include <span>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,8 +14,30 @@
 #include "cli/shared/messages.hpp"
 #include "cli/shared/operator_link.hpp"
 #include "cli/shared/set_points.hpp"
+#include "cli/words/value.hpp"
 
 namespace ocm::cli::operate {
+namespace {
+
+/// "motors.x to at most 0.02 m/s": what a configuration makes of a field for which more was asked.
+std::string limit_text(std::span<const reflective::Limit> limits, const protocol::Topic& topic,
+                       std::uint16_t number, std::size_t field, std::int64_t asked) {
+  const auto& layout = topic.frames[0].fields[field];
+  const std::string name = fmt::format("{}.{}", topic.name, layout.name);
+  const auto with_unit = [&](std::int64_t raw) {
+    return fmt::format("{}{}{}", words::physical_text(layout, raw), layout.unit.empty() ? "" : " ",
+                       layout.unit);
+  };
+  for (const reflective::Limit& limit : limits) {
+    if (limit.topic != number || limit.field != field) continue;
+    if (asked > limit.max) return fmt::format("{} to at most {}", name, with_unit(limit.max));
+    if (asked < limit.min) return fmt::format("{} to at least {}", name, with_unit(limit.min));
+    return fmt::format("the change of {} to {} in a second", name, with_unit(limit.per_second));
+  }
+  return name;
+}
+
+}  // namespace
 
 std::string Runner::answer(Caller& caller, std::string_view request) {
   const auto line = [](const Json& json) { return json.line() + "\n"; };
@@ -155,7 +179,7 @@ std::string Runner::pass_on(Caller& caller, std::string_view text) {
   std::vector<std::int64_t> raw;
   for (const auto& field : layout.fields) raw.push_back(field.raw(frame->data));
   const auto asked = raw;
-  std::string limited;
+  Limited limited;
   if (rests) {
     supervisor_.commanded(number, raw, now());
   } else if (supervisor_.permit(number, raw, now()) != 0) {
@@ -163,7 +187,11 @@ std::string Runner::pass_on(Caller& caller, std::string_view text) {
       if (raw[i] == asked[i]) continue;
       const auto& field = layout.fields[i];
       protocol::put(frame->data, field.position, raw[i]);
-      limited += fmt::format("{}{}.{}", limited.empty() ? "" : ", ", topic.name, field.name);
+      const std::string_view comma = limited.fields.empty() ? "" : ", ";
+      limited.fields += fmt::format("{}{}.{}", comma, topic.name, field.name);
+      limited.text += comma;
+      limited.text +=
+          limit_text(tables.configurations[supervisor_.configuration()].limits, topic, number, i, asked[i]);
     }
   }
   const auto taken = bus_->send(*frame);
@@ -173,7 +201,7 @@ std::string Runner::pass_on(Caller& caller, std::string_view text) {
   }
   ++commands_.passed;
   caller.handed_over = ++handed_over_;
-  if (!limited.empty()) ++commands_.limited;
+  if (!limited.fields.empty()) ++commands_.limited;
   const bool beyond = !counted_.take(supervisor_.configuration(), number,
                                      protocol::Identifier::decode(frame->id).priority, now());
   if (beyond) ++commands_.beyond;
@@ -182,10 +210,10 @@ std::string Runner::pass_on(Caller& caller, std::string_view text) {
   entry.direction = log::Direction::sent;
   box_.add(entry, Clock::now());
   tell_command(caller, number, limited, beyond);
-  return yes(fmt::format("{}\n{}", can::to_text(*frame).view(), limited));
+  return yes(fmt::format("{}\n{}", can::to_text(*frame).view(), limited.text));
 }
 
-void Runner::tell_command(Caller& caller, std::uint16_t topic, const std::string& limited, bool beyond) {
+void Runner::tell_command(Caller& caller, std::uint16_t topic, const Limited& limited, bool beyond) {
   const auto first = [topic](std::vector<std::uint16_t>& told) {
     if (std::find(told.begin(), told.end(), topic) != told.end()) return false;
     told.push_back(topic);
@@ -195,9 +223,9 @@ void Runner::tell_command(Caller& caller, std::uint16_t topic, const std::string
   if (first(caller.commanded))
     tell("commanded", {{"topic", name}, {"by", caller.verb}, {"process", caller.process}},
          fmt::format("{} (process {}) commands {}", caller.verb, caller.process, name));
-  if (!limited.empty() && first(caller.limited))
-    tell("limited", {{"fields", limited}, {"by", caller.verb}, {"process", caller.process}},
-         fmt::format("{} (process {}) is limited: {}", caller.verb, caller.process, limited));
+  if (!limited.fields.empty() && first(caller.limited))
+    tell("limited", {{"fields", limited.fields}, {"by", caller.verb}, {"process", caller.process}},
+         fmt::format("{} (process {}) is limited: {}", caller.verb, caller.process, limited.text));
   if (beyond && first(caller.beyond))
     tell("beyond_proof", {{"topic", name}, {"by", caller.verb}, {"process", caller.process}},
          fmt::format("{} (process {}) commands {} more often, or more urgently, than the proof counts: the "

@@ -89,7 +89,7 @@ class Asked(Operating):
         listener = self.raw_frames("motors")
         _, err = self.run_tool("drive", "5cm/s", "--for", "500ms")
         self.assertRegex(err, r"drive: operator halt \(process [0-9]+\) guards the robot")
-        self.assertRegex(err, r"drive: operator halt \(process [0-9]+\) limits motors\.x")
+        self.assertRegex(err, r"drive: operator halt \(process [0-9]+\) limits motors\.x to at most 0\.02 m/s\n")
         self.assertEqual(self.event(operator, "commanded")["by"], "drive")
         self.assertEqual(self.event(operator, "limited")["fields"], "motors.x")
         _, err = self.run_tool("set", "motors", "x=1cm/s")
@@ -111,7 +111,7 @@ class Asked(Operating):
         listener = self.raw_frames("motors", "led_1")
         _, err = self.run_tool("replay", log)
         self.assertRegex(err, r"replay: operator halt \(process [0-9]+\) guards the robot")
-        self.assertRegex(err, r"replay: operator halt \(process [0-9]+\) limits motors\.x")
+        self.assertRegex(err, r"replay: operator halt \(process [0-9]+\) limits motors\.x to at most 0\.02 m/s\n")
         self.assertEqual(self.event(operator, "commanded")["by"], "replay")
         self.run_tool("led", "1", "red")
         frames = [frame for _, frame in self.frames(listener)]
