@@ -32,7 +32,13 @@ LineReplay::LineReplay(ReadLineLog log, Known known) : log_(std::move(log)), kno
   playing_.length = log_.said.back().time - first_;
   go_to(playing_.length);
   alone_ = state_.peers.size() <= 1;
+  begin_again();
   go_to({});
+}
+
+void LineReplay::begin_again() {
+  state_ = State();
+  next_ = 0;
 }
 
 void LineReplay::play(base::Duration time) {
@@ -41,10 +47,7 @@ void LineReplay::play(base::Duration time) {
 
 void LineReplay::go_to(base::Duration at) {
   at = std::clamp(at, base::Duration{0}, playing_.length);
-  if (at < playing_.at) {
-    state_ = State();
-    next_ = 0;
-  }
+  if (at < playing_.at) begin_again();
   playing_.at = at;
   playing_.ended = at >= playing_.length;
   while (next_ < log_.said.size() && log_.said[next_].time <= now()) take(log_.said[next_++]);

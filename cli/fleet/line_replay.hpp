@@ -67,6 +67,7 @@ class LineReplay {
     std::map<unsigned, bool> placed;  ///< its place in the world is known
   };
 
+  void begin_again();
   void expire(base::Time time);
   void take(const Said& said);
   void take_line(const mapper::server::CentralLine& line, base::Time now);
@@ -78,7 +79,7 @@ class LineReplay {
 
   ReadLineLog log_;
   Known known_;
-  bool alone_ = true;  ///< in all of the log
+  bool alone_ = false;  ///< in all of the log
   std::size_t next_ = 0;
   base::Time first_{};
   State state_;

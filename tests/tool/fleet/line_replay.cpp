@@ -118,6 +118,11 @@ TEST_CASE("line replay: where robots began must be known, but for a robot alone;
   CHECK_FALSE(two.robots()[0].linked);
   CHECK(two.robots()[1].linked);
   CHECK(two.drawing().counters().drawn == 0);
+  Log moment;
+  moment.robot(0, update(0, 0, 0), 0s);
+  CHECK(LineReplay{moment.read, {}}.robots()[0].origin_known);
+  moment.robot(1, update(0, 0, 0), 0s);
+  CHECK_FALSE(LineReplay{moment.read, {}}.robots()[0].origin_known);
 }
 
 TEST_CASE("line replay: a robot moves while its updates show it, or it does not say that it stands") {
