@@ -33,7 +33,7 @@ def own_time():
 
 class Spare:
     """Whether the machine had time to spare between `with` and its end, at which all that the test started has ended.
-    `programs()`: pids of those whose lateness counts as well, which may have ended."""
+    `programs()`: of waiting.Program, those whose lateness counts as well; they may have ended."""
 
     def __init__(self, programs=tuple):
         self.programs = programs
@@ -59,18 +59,20 @@ class Spare:
 
     def watch(self):
         looks = collections.deque(maxlen=LOOKS)
-        while not self.done.is_set():
+        over = False
+        while not over:
             begin = time.monotonic()
-            time.sleep(0.01)
-            self.late = max(self.late, time.monotonic() - begin - 0.01)
-            if not looks or begin - looks[-1][0] >= WINDOW / LOOKS:
+            over = self.done.wait(0.01)  # then once more: what ended just now was late, too
+            if not over:
+                self.late = max(self.late, time.monotonic() - begin - 0.01)
+            if over or not looks or begin - looks[-1][0] >= WINDOW / LOOKS:
                 looks.append((begin, self.waits()))
                 before = looks[0][1]
                 self.late = max(self.late, *(now - before.get(task, 0.0) for task, now in looks[-1][1].items()), 0.0)
 
     def waits(self):
         """Of each thread of the programs."""
-        return {task: wait for pid in self.programs() for task, wait in waiting.starved_threads(pid).items()}
+        return {(program.pid, task): wait for program in self.programs() for task, wait in program.starved_threads().items()}
 
     def enough(self):
         return self.late < MOST_LATE and self.taken < MOST_TAKEN

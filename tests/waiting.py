@@ -1,6 +1,7 @@
 """Waits for events, never for a time: what a test may wait for in place of a sleep."""
 
 import os
+import subprocess
 import time
 
 
@@ -38,6 +39,38 @@ def starved_threads(pid):
     except (FileNotFoundError, ProcessLookupError):
         pass
     return seconds
+
+
+class Program(subprocess.Popen):
+    """A program of which it is known after its end, too, how long its threads had no processor: the kernel counts a wait once
+    it is over, and who was held up for too long may end within the next millisecond."""
+
+    at_end = {}
+
+    def starved_threads(self):
+        """As above; after its end what was known then, of the threads that it had left."""
+        return self.at_end if self.returncode is not None else starved_threads(self.pid)
+
+    def has_ended(self, patience=os.WNOHANG):
+        """It is still there, to be looked at, until `poll` or `wait` has taken its exit code."""
+        ended = os.waitid(os.P_PID, self.pid, os.WEXITED | os.WNOWAIT | patience) is not None
+        if ended:
+            self.at_end = starved_threads(self.pid)
+        return ended
+
+    def poll(self):
+        return super().poll() if self.returncode is not None or self.has_ended() else None
+
+    def wait(self, timeout=None):
+        if self.returncode is None and timeout is None:
+            self.has_ended(0)
+        elif self.returncode is None:
+            end = time.monotonic() + timeout
+            while not self.has_ended():
+                if time.monotonic() >= end:
+                    raise subprocess.TimeoutExpired(self.args, timeout)
+                time.sleep(0.001)
+        return super().wait()
 
 
 def starved(pid):

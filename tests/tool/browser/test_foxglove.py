@@ -20,7 +20,7 @@ class Foxglove(harness.Case):
         return address.replace("http:", "ws:") + (f"?token={token}" if token else "")
 
     def client(self, *arguments):
-        process = subprocess.Popen(["node", CLIENT, browser.node_modules(), *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        process = harness.waiting.Program(["node", CLIENT, browser.node_modules(), *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self._started.append(process)
         self.assertEqual(process.stderr.readline(), "ready\n")
         return process

@@ -34,7 +34,7 @@ class Case(RealTime):
         return spare.late < STOOD_STILL_S
 
     def programs(self):
-        return [process.pid for process in getattr(self, "_started", ())]
+        return tuple(getattr(self, "_started", ()))
 
     def setUp(self):
         self._folder = tempfile.TemporaryDirectory(prefix="ocm-test-")
@@ -57,16 +57,16 @@ class Case(RealTime):
 
     def start(self, *arguments, **options):
         streams = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
-        process = subprocess.Popen([AMIROCTL, *arguments], env=self.environment, text=True, **(streams | options))
+        process = waiting.Program([AMIROCTL, *arguments], env=self.environment, text=True, **(streams | options))
         self._started.append(process)
         return process
 
     def run_tool(self, *arguments, code=0, stdin="", timeout=30):
         """Runs to the end and checks the exit code; returns (stdout, stderr)."""
-        result = subprocess.run([AMIROCTL, *arguments], env=self.environment, text=True, input=stdin,
-                                capture_output=True, timeout=timeout)
-        self.assertEqual(result.returncode, code, f"{arguments}: {result.stdout}{result.stderr}")
-        return result.stdout, result.stderr
+        process = self.start(*arguments, stdin=subprocess.PIPE)
+        out, err = process.communicate(stdin, timeout=timeout)
+        self.assertEqual(process.returncode, code, f"{arguments}: {out}{err}")
+        return out, err
 
     def start_sim(self, *arguments):
         """Starts a simulator and returns when it can be reached: it says so when its socket listens."""

@@ -58,9 +58,9 @@ class Talk:
     """A central and what it says, read by a thread."""
 
     def __init__(self, case, *arguments, **options):
-        self.process = subprocess.Popen([AMIROCTL, "central", *arguments], env=case.environment, text=True,
-                                        stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                        errors="replace", bufsize=1, **options)
+        self.process = waiting.Program([AMIROCTL, "central", *arguments], env=case.environment, text=True,
+                                       stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                       errors="replace", bufsize=1, **options)
         case.addCleanup(self.close)
         self.said = ""
         self.news = threading.Condition()
@@ -261,8 +261,8 @@ class OnSerialLines(Case):
     def test_a_server_that_does_not_read(self):
         """A full pipe: the central stays alive, keeps whole packets only, and counts the others."""
         robot = self.robot()
-        process = subprocess.Popen([AMIROCTL, "central", "--robot", f"AVR={robot.path}"], env=self.environment,
-                                   stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        process = waiting.Program([AMIROCTL, "central", "--robot", f"AVR={robot.path}"], env=self.environment,
+                                  stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         self.addCleanup(process.kill)
         process.stdin.write(b"start\nconn 0\n")
         process.stdin.flush()
@@ -298,8 +298,8 @@ class OnSerialLines(Case):
 
     def test_the_reader_of_its_output_goes(self):
         robot = self.robot()
-        process = subprocess.Popen([AMIROCTL, "central", "--robot", f"AVR={robot.path}"], env=self.environment,
-                                   stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        process = waiting.Program([AMIROCTL, "central", "--robot", f"AVR={robot.path}"], env=self.environment,
+                                  stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         self.addCleanup(process.kill)
         process.stdout.close()
         process.stdin.write(b"start\n")
@@ -496,8 +496,8 @@ class AtATerminal(Case):
         robot = Robot()
         self.addCleanup(robot.unplug)
         master, slave = pty.openpty()
-        process = subprocess.Popen([AMIROCTL, "central", "--robot", f"AVR={robot.path}"], env=self.environment,
-                                   stdin=slave, stdout=slave, stderr=subprocess.PIPE, start_new_session=True)
+        process = waiting.Program([AMIROCTL, "central", "--robot", f"AVR={robot.path}"], env=self.environment,
+                                  stdin=slave, stdout=slave, stderr=subprocess.PIPE, start_new_session=True)
         self.addCleanup(process.kill)
         os.close(slave)
         os.write(master, b"start\nlist\n")

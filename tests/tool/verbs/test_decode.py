@@ -6,7 +6,7 @@ import os
 import re
 import subprocess
 
-from harness import AMIROCTL, SOURCE, Case, main, sanitized
+from harness import AMIROCTL, SOURCE, Case, main, sanitized, waiting
 
 # One frame of every kind. [docs/verbs/listen.md; candump's notation: can-utils lib.h]
 LOG = """\
@@ -322,8 +322,8 @@ class Decode(Case):
                 self.assertIn("cannot write", result.stderr)
 
     def test_memory_is_constant(self):
-        process = subprocess.Popen([AMIROCTL, "decode", "-"], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
-                                   stderr=subprocess.DEVNULL)
+        process = waiting.Program([AMIROCTL, "decode", "-"], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
+                                  stderr=subprocess.DEVNULL)
         self._started.append(process)
         peaks = []
         for megabytes in (1, 25):
@@ -337,8 +337,8 @@ class Decode(Case):
             self.assertLess(peaks[1], 32 * 1024)
 
     def test_a_live_pipe_is_shown_at_once(self):
-        process = subprocess.Popen([AMIROCTL, "decode", "--json"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                                   stderr=subprocess.PIPE, text=True, bufsize=1)
+        process = waiting.Program([AMIROCTL, "decode", "--json"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                  stderr=subprocess.PIPE, text=True, bufsize=1)
         self._started.append(process)
         for line in LOG.splitlines()[:3]:
             process.stdin.write(line + "\n")

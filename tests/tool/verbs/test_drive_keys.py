@@ -27,9 +27,9 @@ class Keys(harness.Case):
         primary, secondary = pty.openpty()
         fcntl.ioctl(secondary, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 100, 0, 0))
         self.before = termios.tcgetattr(secondary)
-        process = subprocess.Popen([harness.AMIROCTL, "drive", "--keys", *arguments], stdin=secondary,
-                                   stdout=secondary if stdout is None else stdout, stderr=subprocess.PIPE, text=True,
-                                   start_new_session=True, env={**self.environment, "TERM": term})
+        process = harness.waiting.Program([harness.AMIROCTL, "drive", "--keys", *arguments], stdin=secondary,
+                                          stdout=secondary if stdout is None else stdout, stderr=subprocess.PIPE, text=True,
+                                          start_new_session=True, env={**self.environment, "TERM": term})
         self._started.append(process)
         self.process, self.secondary, self.primary = process, secondary, primary
         self.addCleanup(self.close)

@@ -7,7 +7,7 @@ import select
 import subprocess
 import tty
 
-from harness import AMIROCTL, Case, main
+from harness import AMIROCTL, Case, main, waiting
 
 # What robot 0 said at the edge of the radio's reach, through a central. [Thesis 2, listing 15.1]
 LISTING = (
@@ -157,8 +157,8 @@ class Line(Case):
         self.assertEqual(err.count(" 0 damaged"), 3)
 
     def test_a_live_pipe_is_shown_at_once_and_ended_by_a_signal(self):
-        process = subprocess.Popen([AMIROCTL, "line"], env=self.environment, stdin=subprocess.PIPE,
-                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        process = waiting.Program([AMIROCTL, "line"], env=self.environment, stdin=subprocess.PIPE,
+                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         self._started.append(process)
         for piece in (b"[0]:AVR:{S,I", b"DL}", b"{S,ID"):
             process.stdin.write(piece)

@@ -456,9 +456,9 @@ class Recording(Case):
         self.start_sim()
         self.run_tool("publish", "gyro", "5ms")
         ours, theirs = os.openpty()
-        recorder = subprocess.Popen([AMIROCTL, "record", "-o", self.path("a.log"), "--duration", "2500ms"],
-                                    env=self.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                                    stderr=theirs)
+        recorder = waiting.Program([AMIROCTL, "record", "-o", self.path("a.log"), "--duration", "2500ms"],
+                                   env=self.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                   stderr=theirs)
         os.close(theirs)
         self._started.append(recorder)
         text = b""

@@ -25,8 +25,8 @@ class StuckOutput(Case):
             file.write(self.run_tool("decode", self.log)[0])
 
     def start_to(self, stdout, *arguments, stderr=subprocess.PIPE):
-        process = subprocess.Popen([AMIROCTL, *arguments], env=self.environment, stdin=subprocess.DEVNULL, stdout=stdout,
-                                   stderr=stderr, text=True)
+        process = waiting.Program([AMIROCTL, *arguments], env=self.environment, stdin=subprocess.DEVNULL, stdout=stdout,
+                                  stderr=stderr, text=True)
         self._started.append(process)
         return process
 

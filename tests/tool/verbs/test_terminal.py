@@ -8,7 +8,7 @@ import struct
 import subprocess
 import termios
 
-from harness import AMIROCTL, SOURCE, Case, main
+from harness import AMIROCTL, SOURCE, Case, main, waiting
 
 
 class Terminal(Case):
@@ -16,8 +16,8 @@ class Terminal(Case):
         """Runs the tool on a pseudo terminal of its own; returns what it showed. 0 columns: it does not say."""
         primary, secondary = pty.openpty()
         fcntl.ioctl(secondary, termios.TIOCSWINSZ, struct.pack("HHHH", rows if columns else 0, columns, 0, 0))
-        process = subprocess.Popen([AMIROCTL, *arguments], env={**self.environment, "TERM": "xterm", **environment},
-                                   stdin=secondary, stdout=secondary, stderr=secondary if errors else subprocess.DEVNULL)
+        process = waiting.Program([AMIROCTL, *arguments], env={**self.environment, "TERM": "xterm", **environment},
+                                  stdin=secondary, stdout=secondary, stderr=secondary if errors else subprocess.DEVNULL)
         os.close(secondary)
         shown = b""
         while True:

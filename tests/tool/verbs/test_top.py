@@ -154,8 +154,8 @@ class Top(played_adapter.WithAdapter, screens.Screens):
         primary, secondary = pty.openpty()
         self.addCleanup(os.close, primary)
         fcntl.ioctl(secondary, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 100, 0, 0))
-        top = subprocess.Popen([harness.AMIROCTL, "--bus", "sim", "top"], stdin=secondary, stdout=secondary, stderr=subprocess.DEVNULL,
-                               env={**self.environment, "TERM": "xterm"}, start_new_session=True)
+        top = harness.waiting.Program([harness.AMIROCTL, "--bus", "sim", "top"], stdin=secondary, stdout=secondary, stderr=subprocess.DEVNULL,
+                                      env={**self.environment, "TERM": "xterm"}, start_new_session=True)
         self._started.append(top)
         os.close(secondary)
         self.assertTrue(select.select([primary], [], [], 30)[0])
@@ -294,8 +294,8 @@ class Top(played_adapter.WithAdapter, screens.Screens):
         primary, secondary = pty.openpty()
         self.addCleanup(os.close, primary)
         fcntl.ioctl(secondary, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 100, 0, 0))
-        top = subprocess.Popen([harness.AMIROCTL, *arguments], stdin=secondary, stdout=secondary, stderr=subprocess.DEVNULL,
-                               env={**self.environment, "TERM": "xterm-256color", **environment}, start_new_session=True)
+        top = harness.waiting.Program([harness.AMIROCTL, *arguments], stdin=secondary, stdout=secondary, stderr=subprocess.DEVNULL,
+                                      env={**self.environment, "TERM": "xterm-256color", **environment}, start_new_session=True)
         self._started.append(top)
         shown = b""
 
