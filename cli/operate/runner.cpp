@@ -125,7 +125,15 @@ void Runner::recover() {
 }
 
 void Runner::step(const Event& event, base::Time at) {
-  carry_out(supervisor_.step(event, at), at);
+  const std::uint16_t waited = supervisor_.requested();
+  const Actions actions = supervisor_.step(event, at);
+  carry_out(actions, at);
+  for (const Action& action : actions)
+    if (action.kind == Action::Kind::switched && waited != none && action.to != waited) {
+      const std::string_view name = file_->configurations[waited].name;
+      tell("request_dropped", {{"configuration", name}},
+           fmt::format("the request for {} is dropped: another transition came first", name));
+    }
 }
 
 void Runner::carry_out(Actions actions, base::Time) {

@@ -93,7 +93,10 @@ std::string Runner::switch_to(const Caller& caller, std::string_view name) {
   }
   const auto to = static_cast<std::uint16_t>(found - configurations.begin());
   const auto from = supervisor_.configuration();
-  if (to == from) return yes(fmt::format("operator {} is in {} already\n", tables.name, name));
+  if (to == from) {
+    step({.kind = Event::Kind::request, .value = to}, now());  // in place of one that waits
+    return yes(fmt::format("operator {} is in {} already\n", tables.name, name));
+  }
   if (!supervisor_.leads_to(to))
     return no(fmt::format("no request leads from {} to {}", configurations[from].name, name),
               "`amiroctl operator why` shows what leads from here");
@@ -104,7 +107,8 @@ std::string Runner::switch_to(const Caller& caller, std::string_view name) {
   if (supervisor_.configuration() == to)
     return yes(fmt::format("{} -> {}\n", configurations[from].name, name));
   if (supervisor_.requested() == to)
-    return yes(fmt::format("{} follows when the last change is over\n", name));
+    return yes(fmt::format("{} follows when the last change is over, unless another transition comes first\n",
+                           name));
   return no(fmt::format("another transition came first: it is in {}",
                         configurations[supervisor_.configuration()].name),
             "`amiroctl operator why` says which");

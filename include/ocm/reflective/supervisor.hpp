@@ -100,6 +100,7 @@ struct SupervisorCounters {
   std::uint32_t adapted = 0;            ///< periods that followed a value
   std::uint32_t requests_refused = 0;   ///< nothing leads there
   std::uint32_t requests_replaced = 0;  ///< by a later one, before they could be met
+  std::uint32_t requests_dropped = 0;   ///< another transition came before they could be met
   std::uint32_t limited = 0;            ///< values of set points that were changed
   std::uint32_t not_a_number = 0;       ///< values of watched fields
   friend constexpr bool operator==(const SupervisorCounters&, const SupervisorCounters&) = default;
@@ -383,6 +384,7 @@ class Supervisor {
     transition_ = transition;
     entered_ = now;
     settled_ = now + tables_->settle;
+    if (requested_ != none && requested_ != to) ++counters_.requests_dropped;
     requested_ = none;
     refusals_ = 0;
     if (!first) ++counters_.switches;

@@ -8,7 +8,7 @@ import signal
 import socket
 import time
 
-from harness import main, waiting
+from harness import SOURCE, main, waiting
 from operate_cases import HALT, ODOMETRY, Operating, REST
 
 GUARDED = json.loads(json.dumps(HALT)) | {
@@ -234,6 +234,27 @@ class Asked(Operating):
                     self.assertIn("does not answer", err)
                     operator.kill()
                 operator.wait()
+
+    def test_a_request_that_waits_is_met_replaced_or_said_to_be_dropped(self):
+        """The guard of the examples leaves `stopped` as soon as the way is clear, which goes before a request."""
+        self.start_sim()
+        with open(os.path.join(SOURCE, "examples", "guard.operator.json"), encoding="utf-8") as file:
+            document = json.load(file)
+        document["settle"] = "1s"
+        document["monitors"][0]["when"]["any"][4]["above"] = "2s"  # a change takes so long
+        operator = self.operate(document=document)
+        time.sleep(1)  # of a change
+        self.run_tool("operator", "switch", "driving")
+        self.assertIn("in driving already", self.run_tool("operator", "switch", "driving")[0])
+        self.assertRegex(self.run_tool("operator", "switch", "idle")[0], "^idle follows when the last change is over, unless another")
+        self.run_tool("operator", "switch", "driving")
+        self.assertIsNone(json.loads(self.run_tool("operator", "status", "--json")[0])["requested"])
+        self.run_tool("operator", "switch", "stopped")
+        self.assertEqual(self.event(operator, "switched")["to"], "driving")
+        self.assertEqual(self.event(operator, "switched")["to"], "stopped")
+        self.assertIn("idle follows", self.run_tool("operator", "switch", "idle")[0])
+        self.assertEqual(self.event(operator, "switched")["to"], "driving")
+        self.assertEqual(self.event(operator, "request_dropped")["configuration"], "idle")
 
     def test_an_operator_that_is_slow_is_waited_for(self):
         self.start_sim()

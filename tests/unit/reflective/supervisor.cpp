@@ -26,7 +26,7 @@ static_assert(fits(guard::tables, room));
 static_assert(Room{}.conditions == 64 && Room{}.monitors == 32 && Room{}.streams == 32);
 static_assert(Room{}.entry == 16 && Room{}.limits == 16 && Room{}.adaptations == 8);
 static_assert(Event{}.value == 0);
-static_assert(SupervisorCounters{} == SupervisorCounters{0, 0, 0, 0, 0, 0, 0});
+static_assert(SupervisorCounters{} == SupervisorCounters{0, 0, 0, 0, 0, 0, 0, 0});
 // A switch and a refusal, set points, and of each stream a stop and a request.
 static_assert(Room{}.actions() == 82 && Room{.streams = 3, .entry = 1}.actions() == 9);
 
@@ -296,6 +296,22 @@ TEST_CASE("supervisor: requests that lead nowhere are refused, and counted") {
   CHECK(run.supervisor.counters().requests_replaced == 1);
   run.pass(run.now + 60ms);
   CHECK(run.supervisor.configuration() == guard::stopped);
+}
+
+TEST_CASE("supervisor: a request that waits is dropped where another transition comes first") {
+  Run run;
+  run.ask(60ms, guard::driving);
+  run.ring(10ms, obstacle);
+  run.ask(10ms, guard::idle);
+  CHECK(run.supervisor.requested() == guard::idle);
+  CHECK(run.supervisor.counters().requests_dropped == 0);
+  run.pass(run.now + 60ms);
+  CHECK(run.supervisor.configuration() == guard::stopped);  // which has precedence
+  CHECK(run.supervisor.requested() == none);
+  CHECK(run.supervisor.counters().requests_dropped == 1);
+  run.ask(60ms, guard::idle);
+  CHECK(run.supervisor.configuration() == guard::idle);
+  CHECK(run.supervisor.counters().requests_dropped == 1);
 }
 
 TEST_CASE("supervisor: a request for where it is replaces one that waits") {
