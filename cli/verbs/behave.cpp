@@ -276,8 +276,10 @@ void add_behave(Verb app, Session& session, int& exit_code) {
       "  amiroctl behave none                       ends it, whichever program began it");
   const auto options = std::make_shared<BehaveOptions>();
   verb.add_option("which", options->which, "what to do").type_name("follow|avoid|home|none").required();
-  verb.add_option("--speed", options->speed, "at most").type_name("V");
-  verb.add_option("--distance", options->distance, "home: from the wall").type_name("X");
+  verb.add_option("--speed", options->speed, fmt::format("at most; default: {}", usual_speed)).type_name("V");
+  verb.add_option("--distance", options->distance,
+                  fmt::format("home: from the wall; default: {}", usual_distance))
+      .type_name("X");
   add_lasting(verb, "--for", options->lasting, "how long");
   verb.add_flag("--force", options->force, "begin even if another program commands the motors");
   add_priority(verb, "--priority", options->priority,

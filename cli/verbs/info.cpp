@@ -130,7 +130,7 @@ void message(const spec::Spec& spec, const protocol::Topic& topic) {
   const auto& layout = topic.frames[0];
   const auto sender = catalogue.board_name(topic);
   const auto [by, extended, number] = layout.address;
-  print_line("{} (message{}{}, id {:0{}X})\n", topic.name, sender.empty() ? "" : " of ", sender, number,
+  print_line("{} (message{}{}, id 0x{:0{}X})\n", topic.name, sender.empty() ? "" : " of ", sender, number,
              extended ? 8 : 3);
   if (by == protocol::Address::By::pgn) {
     const auto id = j1939::Identifier::decode(number);

@@ -238,7 +238,7 @@ void add_travel(Verb app, Session& session, int& exit_code) {
   verb.add_option("distance", options->distance, "how far ahead; negative: back").type_name("[DISTANCE]");
   verb.add_option("--turn", options->turn, "then turns so far on the spot; to the left is positive")
       .type_name("ANGLE");
-  verb.add_option("--speed", options->speed, "of the wheels").type_name("V");
+  verb.add_option("--speed", options->speed, "of the wheels").type_name("V").show_default();
   verb.add_flag("--force", options->force, "travel even if another program commands the motors");
   add_priority(verb, "--priority", options->priority,
                "urgent, high, medium or low, or 0 to 3; default: the topic's own");

@@ -312,7 +312,12 @@ class CommandParser {
   static std::string example_of(const protocol::Field& field, std::string_view text) {
     const std::string unit{field.unit};
     const std::string with_unit = std::string{text} + unit;
-    return lacks_unit(text) && parse_typed_value(field, with_unit) ? with_unit : "0" + unit;
+    if (lacks_unit(text) && parse_typed_value(field, with_unit)) return with_unit;
+    for (const char* const number : {"0.1", "1", "10", "100"}) {
+      const auto value = parse_typed_value(field, number + unit);
+      if (value && *value != 0 && is_in_stated_range(field, *value)) return number + unit;
+    }
+    return "0" + unit;
   }
 
   static std::string colour_remedy(std::string_view word) {

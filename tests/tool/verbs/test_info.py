@@ -59,7 +59,7 @@ class Info(Case):
 
     def test_a_message_by_its_number_and_a_field_by_its_name(self):
         car = ("--spec", os.path.join(os.environ["OCM_SOURCE_DIR"], "examples", "small_car.dbc"))
-        self.assertIn("Engine (message of EngineControl, id 100)", self.run_tool(*car, "info", "0x100")[0])
+        self.assertIn("Engine (message of EngineControl, id 0x100)", self.run_tool(*car, "info", "0x100")[0])
         _, err = self.run_tool(*car, "info", "Torque", code=2)
         self.assertIn("it is a field of Engine: Engine.Torque", err)
         _, err = self.run_tool(*car, "decode", "--field", "Torque", code=2)
@@ -74,7 +74,7 @@ class Info(Case):
         out, err = self.run_tool(*self.spec("car.dbc", DBC), "info", "Transmission")
         self.assertEqual(err, "")
         lines = out.splitlines()
-        self.assertIn("Transmission (message of Gearbox, id 100)", lines[0])
+        self.assertIn("Transmission (message of Gearbox, id 0x100)", lines[0])
         for line in ('  comment    says "so",', "             in two lines", "  senders    Gearbox, Logger", "  send type  OnChange",
                      "  attribute  Safety = QM"):
             self.assertIn(line, lines, out)
